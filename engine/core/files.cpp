@@ -1,0 +1,83 @@
+#include "engine/core/files.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+
+namespace neritic {
+namespace fs = std::filesystem;
+namespace {
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+template <class Buffer>
+Status read_into(const fs::path& path, Buffer& out) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) return bad_input("{}: no such file", path.string());
+  if (!fs::is_regular_file(status)) return bad_input("{}: not a plain file", path.string());
+  const auto size = fs::file_size(path, error);
+  if (error) return bad_input("{}: cannot be read: {}", path.string(), error.message());
+  if (size > kMaxFileBytes)
+    return bad_input("{}: {} bytes, at most {} are accepted", path.string(), size, kMaxFileBytes);
+  File file(std::fopen(path.c_str(), "rb"));
+  if (!file) return bad_input("{}: cannot be opened", path.string());
+  out.resize(size);
+  if (size > 0 && std::fread(out.data(), 1, size, file.get()) != size)
+    return bad_input("{}: cannot be read to its end", path.string());
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> read_file(const fs::path& path) {
+  std::vector<std::byte> bytes;
+  NERITIC_TRY_STATUS(read_into(path, bytes));
+  return bytes;
+}
+
+Result<std::string> read_text(const fs::path& path) {
+  std::string text;
+  NERITIC_TRY_STATUS(read_into(path, text));
+  return text;
+}
+
+Status write_file(const fs::path& path, std::span<const std::byte> bytes) {
+  static std::atomic<unsigned> counter{0};  // two threads may write the same name at once
+  fs::path temporary = path;
+  temporary += fmt::format(".{}-{}.tmp", ::getpid(), counter++);
+  File file(std::fopen(temporary.c_str(), "wb"));
+  if (!file) return failure(ErrorCode::kIo, "{}: cannot be written", path.string());
+  const bool written = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
+  const bool closed = std::fclose(file.release()) == 0;
+  std::error_code error;
+  if (written && closed) fs::rename(temporary, path, error);
+  if (!written || !closed || error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    return failure(ErrorCode::kIo, "{}: cannot be written{}", path.string(),
+                   error ? ": " + error.message() : std::string(" whole (disk full?)"));
+  }
+  return {};
+}
+
+Status write_text(const fs::path& path, std::string_view text) {
+  return write_file(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+Status make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error || !fs::is_directory(path))
+    return failure(ErrorCode::kIo, "{}: the folder cannot be made{}", path.string(),
+                   error ? ": " + error.message() : std::string());
+  return {};
+}
+
+}  // namespace neritic

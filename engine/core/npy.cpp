@@ -1,0 +1,197 @@
+#include "engine/core/npy.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+#include <limits>
+
+#include "engine/core/files.hpp"
+
+namespace neritic {
+namespace {
+
+struct TypeRow {
+  NpyType type;
+  const char* name;
+  std::size_t size;
+};
+constexpr std::array<TypeRow, 9> kTypes{{{NpyType::kFloat32, "<f4", 4},
+                                         {NpyType::kFloat64, "<f8", 8},
+                                         {NpyType::kUint8, "|u1", 1},
+                                         {NpyType::kUint16, "<u2", 2},
+                                         {NpyType::kUint32, "<u4", 4},
+                                         {NpyType::kInt16, "<i2", 2},
+                                         {NpyType::kInt32, "<i4", 4},
+                                         {NpyType::kInt64, "<i8", 8},
+                                         {NpyType::kBool, "|b1", 1}}};
+
+constexpr const char* kMagic = "\x93NUMPY";
+constexpr std::size_t kMaxDimensions = 32;  // NumPy's own limit
+
+// The value text behind 'key': in the header's dictionary; empty where the key is missing.
+std::string_view value_of(std::string_view header, std::string_view key) {
+  for (const char quote : {'\'', '"'}) {
+    const std::string needle = quote + std::string(key) + quote;
+    const auto at = header.find(needle);
+    if (at == std::string_view::npos) continue;
+    auto rest = header.substr(at + needle.size());
+    const auto colon = rest.find(':');
+    if (colon == std::string_view::npos) return {};
+    rest = rest.substr(colon + 1);
+    while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.front()))) rest.remove_prefix(1);
+    return rest;
+  }
+  return {};
+}
+
+Result<std::vector<std::size_t>> parse_shape(std::string_view text, const std::string& name) {
+  if (text.empty() || text.front() != '(') return bad_input("{}: the .npy header has no shape", name);
+  std::vector<std::size_t> shape;
+  std::size_t i = 1;
+  while (i < text.size() && text[i] != ')') {
+    if (std::isspace(static_cast<unsigned char>(text[i])) || text[i] == ',') {
+      ++i;
+      continue;
+    }
+    if (!std::isdigit(static_cast<unsigned char>(text[i])))
+      return bad_input("{}: the .npy shape has '{}', only whole numbers are accepted", name, text[i]);
+    std::size_t value = 0;
+    while (i < text.size() && std::isdigit(static_cast<unsigned char>(text[i]))) {
+      if (value > kMaxFileBytes) return bad_input("{}: the .npy shape is too large", name);
+      value = value * 10 + static_cast<std::size_t>(text[i++] - '0');
+    }
+    shape.push_back(value);
+    if (shape.size() > kMaxDimensions) return bad_input("{}: the .npy shape has over 32 axes", name);
+  }
+  if (i >= text.size()) return bad_input("{}: the .npy shape does not end", name);
+  return shape;
+}
+
+template <class T>
+void append_as_doubles(std::span<const std::byte> bytes, std::vector<double>& out) {
+  for (std::size_t i = 0; i + sizeof(T) <= bytes.size(); i += sizeof(T)) {
+    T value;
+    std::memcpy(&value, bytes.data() + i, sizeof(T));
+    out.push_back(static_cast<double>(value));
+  }
+}
+
+}  // namespace
+
+std::size_t npy_type_size(NpyType type) {
+  return std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& r) { return r.type == type; })->size;
+}
+
+std::string npy_type_name(NpyType type) {
+  return std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& r) { return r.type == type; })->name;
+}
+
+std::size_t NpyArray::count() const {
+  std::size_t n = 1;
+  for (const std::size_t extent : shape) n *= extent;
+  return n;
+}
+
+std::vector<double> NpyArray::to_doubles() const {
+  std::vector<double> out;
+  out.reserve(count());
+  switch (type) {
+    case NpyType::kFloat32: append_as_doubles<float>(bytes, out); break;
+    case NpyType::kFloat64: append_as_doubles<double>(bytes, out); break;
+    case NpyType::kUint8:
+    case NpyType::kBool: append_as_doubles<std::uint8_t>(bytes, out); break;
+    case NpyType::kUint16: append_as_doubles<std::uint16_t>(bytes, out); break;
+    case NpyType::kUint32: append_as_doubles<std::uint32_t>(bytes, out); break;
+    case NpyType::kInt16: append_as_doubles<std::int16_t>(bytes, out); break;
+    case NpyType::kInt32: append_as_doubles<std::int32_t>(bytes, out); break;
+    case NpyType::kInt64: append_as_doubles<std::int64_t>(bytes, out); break;
+  }
+  return out;
+}
+
+Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& name) {
+  if (bytes.size() < 10 || std::memcmp(bytes.data(), kMagic, 6) != 0)
+    return bad_input("{}: not an .npy file", name);
+  const auto byte_at = [&](std::size_t i) { return std::to_integer<std::size_t>(bytes[i]); };
+  const std::size_t major = byte_at(6);
+  if (major < 1 || major > 3) return bad_input("{}: .npy version {}, 1 to 3 are accepted", name, major);
+  const std::size_t prefix = major == 1 ? 10 : 12;
+  if (bytes.size() < prefix) return bad_input("{}: the .npy header is cut off", name);
+  std::size_t length = byte_at(8) | byte_at(9) << 8;
+  if (major > 1) length |= byte_at(10) << 16 | byte_at(11) << 24;
+  if (length > bytes.size() - prefix) return bad_input("{}: the .npy header is cut off", name);
+  const std::string_view header(reinterpret_cast<const char*>(bytes.data()) + prefix, length);
+
+  NpyArray array;
+  const std::string_view descr = value_of(header, "descr");
+  if (descr.size() < 5) return bad_input("{}: the .npy header has no descr", name);
+  std::string type_name(descr.substr(1, 3));
+  if (type_name[0] == '=' || type_name[0] == '|' || type_name[0] == '<') {
+    const bool one_byte = type_name[2] == '1';
+    type_name[0] = one_byte ? '|' : '<';
+  }
+  if (type_name == "|i1") return bad_input("{}: int8 elements; float, uint and int of 16 bits up are accepted", name);
+  const auto row = std::find_if(kTypes.begin(), kTypes.end(),
+                                [&](const TypeRow& r) { return type_name == r.name; });
+  if (row == kTypes.end())
+    return bad_input("{}: element type {}; <f4 <f8 |u1 <u2 <u4 <i2 <i4 <i8 |b1 are accepted", name,
+                     std::string(descr.substr(0, std::min<std::size_t>(descr.size(), 8))));
+  array.type = row->type;
+  if (!value_of(header, "fortran_order").starts_with("False"))
+    return bad_input("{}: Fortran order; save it with numpy.ascontiguousarray", name);
+  NERITIC_TRY(array.shape, parse_shape(value_of(header, "shape"), name));
+
+  std::size_t expected = row->size;
+  for (const std::size_t extent : array.shape) {
+    if (extent != 0 && expected > kMaxFileBytes / extent)
+      return bad_input("{}: the .npy shape is larger than the file", name);
+    expected *= extent;
+  }
+  const std::size_t present = bytes.size() - prefix - length;
+  if (present < expected)
+    return bad_input("{}: {} bytes of elements, the shape needs {}", name, present, expected);
+  const auto data = bytes.subspan(prefix + length, expected);
+  array.bytes.assign(data.begin(), data.end());
+  return array;
+}
+
+Result<NpyArray> read_npy(const std::filesystem::path& path) {
+  NERITIC_TRY(const auto bytes, read_file(path));
+  return parse_npy(bytes, path.string());
+}
+
+Status write_npy(const std::filesystem::path& path, NpyType type, std::span<const std::size_t> shape,
+                 std::span<const std::byte> bytes) {
+  std::string dims;
+  for (const std::size_t extent : shape) dims += fmt::format("{}, ", extent);
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}",
+                                   npy_type_name(type), shape.size() == 1 ? dims : dims.substr(0, dims.size() - 2));
+  // Data starts on a multiple of 64 bytes, as the format asks.
+  while ((10 + header.size() + 1) % 64 != 0) header += ' ';
+  header += '\n';
+  std::vector<std::byte> out(10 + header.size() + bytes.size());
+  std::memcpy(out.data(), kMagic, 6);
+  out[6] = std::byte{1};
+  out[7] = std::byte{0};
+  out[8] = static_cast<std::byte>(header.size() & 0xff);
+  out[9] = static_cast<std::byte>(header.size() >> 8);
+  std::memcpy(out.data() + 10, header.data(), header.size());
+  if (!bytes.empty()) std::memcpy(out.data() + 10 + header.size(), bytes.data(), bytes.size());
+  return write_file(path, out);
+}
+
+Status write_npy(const std::filesystem::path& path, std::span<const float> values,
+                 std::initializer_list<std::size_t> shape) {
+  return write_npy(path, NpyType::kFloat32, std::span(shape.begin(), shape.size()), std::as_bytes(values));
+}
+Status write_npy(const std::filesystem::path& path, std::span<const double> values,
+                 std::initializer_list<std::size_t> shape) {
+  return write_npy(path, NpyType::kFloat64, std::span(shape.begin(), shape.size()), std::as_bytes(values));
+}
+Status write_npy(const std::filesystem::path& path, std::span<const std::uint16_t> values,
+                 std::initializer_list<std::size_t> shape) {
+  return write_npy(path, NpyType::kUint16, std::span(shape.begin(), shape.size()), std::as_bytes(values));
+}
+
+}  // namespace neritic

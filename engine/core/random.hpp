@@ -1,0 +1,28 @@
+// Counter-based random numbers: the value depends only on (seed, stream, frame, index), so that any
+// order and any number of threads give the same. SplitMix64's finalizer (Steele, Lea, Flood 2014)
+// chained over the four words. Any thread.
+#pragma once
+
+#include <cstdint>
+
+namespace neritic {
+
+struct RandomKey {
+  std::uint64_t seed = 0, stream = 0, frame = 0;
+};
+
+inline std::uint64_t mix64(std::uint64_t z) {
+  z += 0x9e3779b97f4a7c15ull;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return z ^ (z >> 31);
+}
+inline std::uint64_t random_bits(const RandomKey& key, std::uint64_t index) {
+  return mix64(index ^ mix64(key.frame ^ mix64(key.stream ^ mix64(key.seed))));
+}
+// Uniform in [0, 1), 53 bits.
+inline double random_uniform(const RandomKey& key, std::uint64_t index) {
+  return static_cast<double>(random_bits(key, index) >> 11) * 0x1.0p-53;
+}
+
+}  // namespace neritic

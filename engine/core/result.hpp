@@ -1,0 +1,96 @@
+// Result<T>: a value, or what went wrong in one sentence. For everything that can fail from
+// outside (a file, a flag, a packet, a device). A bug of ours is a NERITIC_CHECK instead.
+// Any thread; a Result is a plain value.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace neritic {
+
+enum class ErrorCode {
+  kBadInput,     // a file, flag or scene key is wrong: exit status 2
+  kNoDevice,     // no Vulkan device, or none that fits
+  kUnsupported,  // the device lacks something that was asked for
+  kOutOfMemory,
+  kDeviceLost,
+  kIo,  // could not write, disk full
+};
+
+struct Error {
+  ErrorCode code = ErrorCode::kBadInput;
+  // One line without a trailing newline: what (file, field or line), what was found, what is
+  // accepted.
+  std::string message;
+};
+
+// The program's exit status for an error: 2 for bad input or usage, 1 for everything else.
+inline int exit_status(ErrorCode code) { return code == ErrorCode::kBadInput ? 2 : 1; }
+
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+  Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
+
+  bool ok() const { return state_.index() == 0; }
+  explicit operator bool() const { return ok(); }
+  // Precondition of value(): ok(). Of error(): !ok(). Violations throw std::bad_variant_access.
+  T& value() & { return std::get<0>(state_); }
+  const T& value() const& { return std::get<0>(state_); }
+  T&& value() && { return std::get<0>(std::move(state_)); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  const Error& error() const { return std::get<1>(state_); }
+
+ private:
+  std::variant<T, Error> state_;
+};
+
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)), ok_(false) {}
+  bool ok() const { return ok_; }
+  explicit operator bool() const { return ok_; }
+  const Error& error() const { return error_; }
+
+ private:
+  Error error_;
+  bool ok_ = true;
+};
+
+using Status = Result<void>;
+
+// bad_input("{}: width {} is not positive", path, width): an Error with exit status 2.
+template <class... Args>
+Error bad_input(fmt::format_string<Args...> format, Args&&... args) {
+  return {ErrorCode::kBadInput, fmt::format(format, std::forward<Args>(args)...)};
+}
+template <class... Args>
+Error failure(ErrorCode code, fmt::format_string<Args...> format, Args&&... args) {
+  return {code, fmt::format(format, std::forward<Args>(args)...)};
+}
+
+}  // namespace neritic
+
+#define NERITIC_CONCAT_INNER(a, b) a##b
+#define NERITIC_CONCAT(a, b) NERITIC_CONCAT_INNER(a, b)
+// NERITIC_TRY(auto x, f()): x is f()'s value, or the enclosing function returns f()'s error.
+#define NERITIC_TRY(declaration, expression) \
+  NERITIC_TRY_INNER(declaration, expression, NERITIC_CONCAT(result_, __LINE__))
+#define NERITIC_TRY_INNER(declaration, expression, name) \
+  auto name = (expression);                              \
+  if (!name.ok()) return name.error();                   \
+  declaration = std::move(name).value()
+// The same for a Status.
+#define NERITIC_TRY_STATUS(expression)                                             \
+  if (auto NERITIC_CONCAT(status_, __LINE__) = (expression);                       \
+      !NERITIC_CONCAT(status_, __LINE__).ok())                                     \
+  return NERITIC_CONCAT(status_, __LINE__).error()

@@ -1,0 +1,97 @@
+// The Vulkan 1.3 instance, device and queue that everything runs on. Created once by a program and
+// passed by reference; owned by the thread that renders. Errors carry one sentence a user can act on.
+#pragma once
+
+#include <volk.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/result.hpp"
+
+namespace neritic::gpu {
+
+class Allocator;
+
+struct DeviceOptions {
+  std::string device;            // part of a name (any case) or an index; empty: discrete, integrated, CPU
+  bool validation = false;       // the Khronos layer with synchronization validation
+  bool present = false;          // needs a swapchain: surface extensions are enabled
+  // Instance extensions a window system asks for (glfwGetRequiredInstanceExtensions).
+  std::vector<const char*> instance_extensions;
+  // Where the pipeline cache is kept; empty: not kept. See default_cache_folder().
+  std::filesystem::path cache_folder;
+};
+
+struct DeviceInfo {
+  std::string name, driver, kind;  // kind: "discrete GPU", "integrated GPU", "CPU", ...
+  std::uint32_t index = 0;
+  std::uint32_t api_version = 0;
+  bool usable = false;
+  std::string missing;  // what it lacks where it is not usable
+};
+
+// What validation said. A test fails on any message.
+struct ValidationLog {
+  std::vector<std::string> messages;
+};
+
+// $XDG_CACHE_HOME/neritic or ~/.cache/neritic; empty where neither is known.
+std::filesystem::path default_cache_folder();
+
+// Every device the loader shows, usable or not. kNoDevice where there is no Vulkan loader or device,
+// with the Debian package to install.
+Result<std::vector<DeviceInfo>> list_devices();
+
+class Device {
+ public:
+  static Result<std::unique_ptr<Device>> create(const DeviceOptions& options);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkInstance instance() const { return instance_; }
+  VkPhysicalDevice physical() const { return physical_; }
+  VkDevice handle() const { return device_; }
+  VkQueue queue() const { return queue_; }  // graphics, compute, transfer (and present)
+  std::uint32_t queue_family() const { return queue_family_; }
+  const DeviceInfo& info() const { return info_; }
+  const VkPhysicalDeviceLimits& limits() const { return limits_; }
+  double timestamp_period_ns() const { return limits_.timestampPeriod; }
+  std::uint32_t max_views() const { return max_views_; }  // multiview
+  bool validation() const { return messenger_ != VK_NULL_HANDLE; }
+  Allocator& allocator() const { return *allocator_; }
+  VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
+  const ValidationLog& validation_log() const { return *validation_log_; }
+  void clear_validation_log() { validation_log_->messages.clear(); }
+
+  // Names an object for the debugger and for validation messages (no cost without them).
+  void name_object(VkObjectType type, std::uint64_t handle, const std::string& name) const;
+  // Waits until the GPU has done all that was submitted.
+  void wait_idle() const;
+  // Writes the pipeline cache to disk (also done on destruction). Best effort: a cache is no result.
+  void save_pipeline_cache() const;
+
+ private:
+  Device() = default;
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  std::uint32_t queue_family_ = 0;
+  std::uint32_t max_views_ = 1;
+  DeviceInfo info_;
+  VkPhysicalDeviceLimits limits_{};
+  VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
+  std::filesystem::path cache_file_;
+  std::unique_ptr<Allocator> allocator_;
+  std::unique_ptr<ValidationLog> validation_log_;
+};
+
+// "vkCreateImage: VK_ERROR_OUT_OF_DEVICE_MEMORY" with a fitting ErrorCode.
+Error vulkan_error(VkResult result, const std::string& what);
+
+}  // namespace neritic::gpu

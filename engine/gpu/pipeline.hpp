@@ -1,0 +1,145 @@
+// Pipelines and what they bind. Every pipeline declares its bindings in plain structs whose numbers
+// come from the shared shader headers. Set 0 is written anew for each pass (Commands::bind); further
+// sets are persistent (materials). Move-only owners, named; made on the rendering thread.
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/result.hpp"
+
+namespace neritic::gpu {
+
+class Device;
+
+struct BindingDesc {
+  std::uint32_t binding = 0;
+  VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  std::uint32_t count = 1;
+};
+
+class SetLayout {
+ public:
+  static Result<SetLayout> create(const Device& device, const std::string& name,
+                                  std::span<const BindingDesc> bindings, VkShaderStageFlags stages);
+  SetLayout() = default;
+  SetLayout(SetLayout&& other) noexcept;
+  SetLayout& operator=(SetLayout&& other) noexcept;
+  ~SetLayout();
+  VkDescriptorSetLayout handle() const { return handle_; }
+
+ private:
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkDescriptorSetLayout handle_ = VK_NULL_HANDLE;
+};
+
+struct SpecConstant {
+  std::uint32_t id = 0;
+  std::uint32_t value = 0;  // bit pattern: floats by std::bit_cast
+};
+
+struct PipelineLayoutDesc {
+  std::vector<BindingDesc> bindings;               // set 0
+  std::vector<VkDescriptorSetLayout> other_sets;   // sets 1 and up, borrowed
+  std::uint32_t push_constant_bytes = 0;           // at most 128
+};
+
+struct ComputePipelineDesc {
+  std::string name;
+  std::span<const std::uint32_t> code;
+  PipelineLayoutDesc layout;
+  std::vector<SpecConstant> constants;
+};
+
+struct VertexStream {
+  std::uint32_t stride = 0;
+  struct Attribute {
+    std::uint32_t location = 0;
+    VkFormat format = VK_FORMAT_R32G32B32_SFLOAT;
+    std::uint32_t offset = 0;
+  };
+  std::vector<Attribute> attributes;
+  bool per_instance = false;
+};
+
+enum class Blend { kNone, kAlphaOver };  // kAlphaOver: premultiplied source over destination
+
+struct GraphicsPipelineDesc {
+  std::string name;
+  std::span<const std::uint32_t> vertex_code, fragment_code;  // no fragment code: depth only
+  PipelineLayoutDesc layout;
+  std::vector<SpecConstant> constants;  // for both stages
+  std::vector<VertexStream> streams;    // binding = position in this list
+  VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  std::vector<VkFormat> color_formats;
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;
+  bool depth_write = true;
+  VkCompareOp depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;  // reversed-Z
+  Blend blend = Blend::kNone;  // on the first colour attachment
+  std::uint32_t view_mask = 0;  // multiview; 0: off
+};
+// Dynamic state of every graphics pipeline: viewport, scissor, cull mode, front face.
+
+class Pipeline {
+ public:
+  static Result<Pipeline> create(const Device& device, const ComputePipelineDesc& desc);
+  static Result<Pipeline> create(const Device& device, const GraphicsPipelineDesc& desc);
+  Pipeline() = default;
+  Pipeline(Pipeline&& other) noexcept;
+  Pipeline& operator=(Pipeline&& other) noexcept;
+  ~Pipeline();
+
+  VkPipeline handle() const { return handle_; }
+  VkPipelineLayout layout() const { return layout_; }
+  VkPipelineBindPoint bind_point() const { return bind_point_; }
+  VkDescriptorSetLayout set0() const { return set0_.handle(); }
+  const std::vector<BindingDesc>& bindings() const { return bindings_; }
+  const std::string& name() const { return name_; }
+  explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
+
+ private:
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkPipeline handle_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkPipelineBindPoint bind_point_ = VK_PIPELINE_BIND_POINT_COMPUTE;
+  SetLayout set0_;
+  std::vector<BindingDesc> bindings_;
+  std::string name_;
+};
+
+// Persistent descriptor sets of one layout (materials): grows pool by pool, freed all at once.
+class DescriptorArena {
+ public:
+  explicit DescriptorArena(const Device& device);
+  DescriptorArena(DescriptorArena&& other) noexcept;
+  DescriptorArena& operator=(DescriptorArena&& other) noexcept;
+  ~DescriptorArena();
+  Result<VkDescriptorSet> allocate(VkDescriptorSetLayout layout);
+  void reset();  // every set handed out becomes invalid
+
+ private:
+  VkDevice device_ = VK_NULL_HANDLE;
+  std::vector<VkDescriptorPool> pools_;
+  std::size_t current_ = 0;
+};
+
+// What one binding of set 0 is bound to.
+struct BoundResource {
+  std::uint32_t binding = 0;
+  VkDescriptorBufferInfo buffer{};
+  VkDescriptorImageInfo image{};
+};
+BoundResource bound_buffer(std::uint32_t binding, VkBuffer buffer, VkDeviceSize offset = 0,
+                           VkDeviceSize size = VK_WHOLE_SIZE);
+BoundResource bound_storage_image(std::uint32_t binding, VkImageView view);  // layout GENERAL
+BoundResource bound_texture(std::uint32_t binding, VkImageView view, VkSampler sampler);  // READ_ONLY
+BoundResource bound_texel_image(std::uint32_t binding, VkImageView view);  // SAMPLED_IMAGE, READ_ONLY
+
+void write_descriptors(const Device& device, VkDescriptorSet set, std::span<const BindingDesc> bindings,
+                       std::span<const BoundResource> resources);
+
+}  // namespace neritic::gpu

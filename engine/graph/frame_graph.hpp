@@ -1,0 +1,131 @@
+// Declares this frame's passes and runs them. A pass is a name, a struct of typed handles, a setup
+// that runs now and a record that runs later. write() returns a new version of the handle, so that an
+// ambiguous order cannot be written. Passes nobody needs are culled: an undeclared or culled pass
+// costs nothing. Rendering thread only.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/result.hpp"
+#include "engine/gpu/frames.hpp"
+#include "engine/gpu/resources.hpp"
+#include "engine/graph/plan.hpp"
+
+namespace neritic::graph {
+
+inline constexpr std::uint32_t kNoResource = ~0u;
+
+struct ImageHandle {
+  std::uint32_t resource = kNoResource, version = 0;
+  explicit operator bool() const { return resource != kNoResource; }
+};
+struct BufferHandle {
+  std::uint32_t resource = kNoResource, version = 0;
+  explicit operator bool() const { return resource != kNoResource; }
+};
+
+struct TransientImage {
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  std::uint32_t width = 1, height = 1, layers = 1;
+};
+
+class FrameGraph;
+
+class PassBuilder {
+ public:
+  ImageHandle create_image(const std::string& name, const TransientImage& desc);
+  BufferHandle create_buffer(const std::string& name, std::uint64_t size_bytes);
+  void read(ImageHandle image, Access access);
+  void read(BufferHandle buffer, Access access);
+  [[nodiscard]] ImageHandle write(ImageHandle image, Access access);
+  [[nodiscard]] BufferHandle write(BufferHandle buffer, Access access);
+  // Kept although no output needs it.
+  void side_effect();
+
+ private:
+  friend class FrameGraph;
+  PassBuilder(FrameGraph& graph, std::uint32_t pass) : graph_(graph), pass_(pass) {}
+  FrameGraph& graph_;
+  std::uint32_t pass_;
+};
+
+// What a pass sees while it records: the real objects behind its handles.
+class PassContext {
+ public:
+  gpu::Commands& commands;
+  VkCommandBuffer cmd() const { return commands.handle(); }
+  const gpu::Image& image(ImageHandle handle) const;
+  const gpu::Buffer& buffer(BufferHandle handle) const;
+
+ private:
+  friend class Executor;
+  PassContext(gpu::Commands& c, const std::vector<const gpu::Image*>& images,
+              const std::vector<const gpu::Buffer*>& buffers)
+      : commands(c), images_(images), buffers_(buffers) {}
+  const std::vector<const gpu::Image*>& images_;
+  const std::vector<const gpu::Buffer*>& buffers_;
+};
+
+class FrameGraph {
+ public:
+  // State of an imported resource at the frame's start; contents are defined unless layout is
+  // UNDEFINED for an image.
+  struct ImportState {
+    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    VkAccessFlags2 access = VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_MEMORY_READ_BIT;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  };
+  ImageHandle import_image(const gpu::Image& image, const ImportState& state);
+  BufferHandle import_buffer(const std::string& name, const gpu::Buffer& buffer,
+                             const ImportState& state = {});
+
+  // setup: void(PassBuilder&, Data&), runs now. record: void(const Data&, PassContext&), runs in
+  // Executor::run if the pass is kept. Returns the data with its handles.
+  template <class Data, class Setup, class Record>
+  const Data& add_pass(const std::string& name, Setup&& setup, Record&& record) {
+    auto data = std::make_shared<Data>();
+    PassBuilder builder = begin_pass(name);
+    setup(builder, *data);
+    records_.back() = [data, record = std::forward<Record>(record)](PassContext& context) mutable {
+      record(std::as_const(*data), context);
+    };
+    return *data;  // owned by the record
+  }
+
+  // The version must be there at the frame's end, in that access (kHostRead, kPresent, kSampled...).
+  void output(ImageHandle image, Access access);
+  void output(BufferHandle buffer, Access access);
+
+  const GraphDecl& declaration() const { return declaration_; }
+
+ private:
+  friend class PassBuilder;
+  friend class Executor;
+  PassBuilder begin_pass(const std::string& name);
+  GraphDecl declaration_;
+  std::vector<std::function<void(PassContext&)>> records_;
+  std::vector<const gpu::Image*> imported_images_;    // by resource; nullptr for others
+  std::vector<const gpu::Buffer*> imported_buffers_;
+};
+
+// Compiles graphs for a device and runs them. Keeps the transient memory and images of the newest
+// graphs, so a frame that declares the same as the last allocates nothing.
+class Executor {
+ public:
+  explicit Executor(gpu::Frames& frames);
+  ~Executor();
+  // Compiles (from cache when the declaration is unchanged); errors name pass and resource.
+  Result<const Plan*> compile(const FrameGraph& graph);
+  // Compiles and records every kept pass with its barriers, each in a region of its name.
+  Result<const Plan*> run(FrameGraph& graph, gpu::Commands& commands);
+  std::uint64_t transient_bytes() const;  // device memory held for transients now
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace neritic::graph

@@ -1,0 +1,159 @@
+// The frame graph as plain data, and its compilation: validate, cull, order, barriers, lifetimes,
+// aliasing. Each stage is a pure function, so that tests reach it without a GPU. Nothing here calls
+// Vulkan; only its enums are used. frame_graph.hpp declares passes into a GraphDecl and executes a
+// Plan.
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/result.hpp"
+
+namespace neritic::graph {
+
+// How a pass uses a resource. Each means one stage mask, access mask and image layout (access_info).
+enum class Access {
+  kColorAttachment,   // write
+  kDepthAttachment,   // write (and test)
+  kDepthTest,         // read-only depth test
+  kSampledFragment,   // read by texture or texelFetch
+  kSampledCompute,
+  kStorageReadCompute,   // buffer or image
+  kStorageWriteCompute,  // write; earlier contents may be read (atomics)
+  kStorageReadVertex,    // buffers in vertex shaders
+  kStorageReadFragment,
+  kVertexBuffer,
+  kIndexBuffer,
+  kIndirectBuffer,
+  kTransferRead,
+  kTransferWrite,  // write
+  kHostRead,       // after the frame
+  kPresent,        // after the frame
+};
+
+struct AccessInfo {
+  VkPipelineStageFlags2 stages;
+  VkAccessFlags2 access;
+  VkImageLayout layout;  // UNDEFINED for buffers-only uses
+  VkImageUsageFlags image_usage;
+  VkBufferUsageFlags buffer_usage;
+  bool write;
+  const char* name;
+};
+const AccessInfo& access_info(Access access);
+
+enum class ResourceKind { kImage, kBuffer };
+
+struct ResourceDecl {
+  std::string name;
+  ResourceKind kind = ResourceKind::kImage;
+  bool imported = false;  // lives outside the frame; contents defined at its start
+  // Images. usage flags of both are gathered from the declared accesses by gather_usage.
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  std::uint32_t width = 0, height = 0, layers = 1;
+  VkImageUsageFlags image_usage = 0;
+  // Buffers.
+  std::uint64_t size_bytes = 0;
+  VkBufferUsageFlags buffer_usage = 0;
+  // Imported: the state it comes in (and, after execution, the state it is left in is in the plan).
+  VkPipelineStageFlags2 initial_stages = VK_PIPELINE_STAGE_2_NONE;
+  VkAccessFlags2 initial_access = VK_ACCESS_2_NONE;
+  VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
+// A use of one version of a resource. Reading version v needs its writer; writing turns v into v + 1.
+struct Use {
+  std::uint32_t resource = 0;
+  std::uint32_t version = 0;  // the version read, or the version that the write replaces
+  Access access = Access::kSampledCompute;
+};
+
+struct PassDecl {
+  std::string name;
+  std::vector<Use> uses;
+  bool side_effect = false;  // kept although nobody reads what it writes
+};
+
+struct GraphDecl {
+  std::vector<ResourceDecl> resources;
+  std::vector<PassDecl> passes;
+  std::vector<Use> outputs;  // versions that must be there at the end, and in which access
+};
+
+// --- The stages -------------------------------------------------------------------------------
+
+// kBadInput-free: an inconsistency is our own bug, but it is returned (ErrorCode::kUnsupported is not
+// used; code kBadInput, message names pass and resource): stale handle (a version that a later write
+// replaced before this pass was declared), read before write, two writers of one version, a
+// resource used in two ways that one pass cannot combine, an index out of range.
+Status validate(const GraphDecl& graph);
+
+// True for the passes that an output or a side effect needs, directly or through others.
+std::vector<bool> cull(const GraphDecl& graph);
+
+// Kept passes in an order that respects every dependency (declaration order where free).
+std::vector<std::uint32_t> order(const GraphDecl& graph, const std::vector<bool>& kept);
+
+// First and last position in the order that touches each resource; first > last: unused.
+struct Lifetime {
+  std::uint32_t first = 1, last = 0;
+  bool used() const { return first <= last; }
+};
+std::vector<Lifetime> lifetimes(const GraphDecl& graph, std::span<const std::uint32_t> order);
+
+struct MemoryNeed {
+  std::uint64_t size = 0, alignment = 1;
+  std::uint32_t memory_class = 0;  // only resources of one class may share memory (type bits, kind)
+};
+// Where each transient resource lies in its class's heap. Two whose lifetimes overlap never overlap
+// in memory.
+struct Placement {
+  std::vector<std::uint64_t> offset;         // a resource; only meaningful for used transients
+  std::vector<std::uint64_t> heap_size;      // a memory class
+  std::uint64_t bytes_with_aliasing = 0, bytes_without = 0;
+};
+Placement place(const GraphDecl& graph, std::span<const Lifetime> lifetimes,
+                std::span<const MemoryNeed> needs);
+
+struct Barrier {
+  std::uint32_t resource = 0;
+  VkPipelineStageFlags2 src_stages = 0, dst_stages = 0;
+  VkAccessFlags2 src_access = 0, dst_access = 0;
+  VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED, new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  bool discards = false;  // contents are not kept (first use, or memory taken over from another)
+};
+struct BarrierPlan {
+  std::vector<std::vector<Barrier>> before;  // one list a position in the order
+  std::vector<Barrier> at_end;               // to the outputs' accesses
+};
+// Read after read in the same layout gives none. The first use of a transient waits for the last use
+// of whatever had its memory before.
+BarrierPlan barriers(const GraphDecl& graph, std::span<const std::uint32_t> order,
+                     std::span<const Lifetime> lifetimes, std::span<const MemoryNeed> needs,
+                     const Placement& placement);
+
+struct Plan {
+  GraphDecl graph;
+  std::vector<bool> kept;
+  std::vector<std::uint32_t> order;
+  std::vector<Lifetime> lifetimes;
+  std::vector<MemoryNeed> needs;
+  Placement placement;
+  BarrierPlan barriers;
+};
+
+// Fills usage flags of every resource from the accesses declared on it.
+void gather_usage(GraphDecl& graph);
+
+// All stages. needs: what each resource takes (the device says; tests invent it).
+Result<Plan> compile(GraphDecl graph, std::span<const MemoryNeed> needs);
+
+// --- Looking at it ----------------------------------------------------------------------------
+std::string dump_text(const Plan& plan);
+std::string dump_graphviz(const Plan& plan);
+
+}  // namespace neritic::graph

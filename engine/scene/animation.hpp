@@ -1,0 +1,29 @@
+// Poses of a model: node transforms and morph weights at an instant of a clip, joint matrices of a
+// skin. Pure functions of their arguments; any thread. All matrices are in the model's frame.
+#pragma once
+
+#include <vector>
+
+#include "engine/scene/model.hpp"
+
+namespace neritic::scene {
+
+struct ModelPose {
+  std::vector<Mat4> model_from_node;            // one a node
+  std::vector<std::vector<float>> morph_weights;  // one a node; empty where its mesh has no targets
+};
+
+// The pose at time_s of clip (an index, or -1 for the rest pose). Time wraps at the clip's duration
+// where loop, else it is clamped. A NaN time counts as 0.
+ModelPose evaluate_pose(const Model& model, int clip, double time_s, bool loop = true);
+
+// The clip of that name; -1 where there is none.
+int find_clip(const Model& model, std::string_view name);
+
+// model_from_bind, one a joint: model_from_joint * inverse_bind.
+std::vector<Mat4> joint_matrices(const Model& model, const ModelPose& pose, int skin);
+
+// Bounds in the model's frame of all that the default scene draws in that pose.
+Bounds model_bounds(const Model& model, const ModelPose& pose);
+
+}  // namespace neritic::scene

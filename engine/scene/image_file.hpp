@@ -1,0 +1,37 @@
+// Picture and map files: read PNG, JPEG (8 and 16 bit) and OpenEXR; write PNG. Any thread.
+// Errors are kBadInput with the path and what is accepted; sizes are limited to 32768 x 32768 and
+// 2^28 pixels, so a forged header cannot exhaust the memory.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/image.hpp"
+#include "engine/core/result.hpp"
+
+namespace neritic::scene {
+
+// channels 0: as in the file; else converted to that many (1, 3 or 4).
+Result<ImageU8> read_image8(const std::filesystem::path& path, std::uint32_t channels = 0);
+Result<ImageU8> decode_image8(std::span<const std::byte> bytes, const std::string& name,
+                              std::uint32_t channels = 0);
+// 16-bit PNG as stored (an 8-bit file is an error that says so).
+Result<ImageU16> read_image16(const std::filesystem::path& path);
+// True where the file is a PNG with 16 bits a channel.
+bool is_png16(const std::filesystem::path& path);
+// OpenEXR (half, float or uint channels) to float; names gives the channels in order of the result:
+// R,G,B(,A) or X,Y,Z where the file has those, else alphabetical.
+struct ExrImage {
+  ImageF32 image;
+  std::vector<std::string> names;
+};
+Result<ExrImage> read_exr(const std::filesystem::path& path);
+
+// 1, 3 or 4 channels. Deterministic bytes for the same pixels.
+Status write_png8(const std::filesystem::path& path, const ImageU8& image);
+Status write_png16(const std::filesystem::path& path, const ImageU16& image);
+
+}  // namespace neritic::scene

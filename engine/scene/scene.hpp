@@ -1,0 +1,131 @@
+// A scene: what a TOML file names, resolved (includes merged, models loaded, units SI, angles in
+// radians). It holds only what the file named: an effect that is absent here is neither modelled nor
+// paid for. World frame; positions double. A plain value; any thread may read it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/math.hpp"
+#include "engine/core/result.hpp"
+#include "engine/scene/model.hpp"
+
+namespace neritic::scene {
+
+// Semantic classes. 0 is nothing. The names and ids below are known everywhere; a scene's [classes]
+// adds others.
+struct ClassName {
+  const char* name;
+  std::uint16_t id;
+};
+inline constexpr ClassName kClasses[] = {{"seabed", 1}, {"rock", 2},  {"wreck", 3},     {"diver", 4},
+                                         {"rov", 5},    {"fish", 6},  {"shark", 7},     {"plant", 8},
+                                         {"coral", 9},  {"pipe", 10}, {"structure", 11}, {"target", 12}};
+
+// Where something is: fixed to the world, or to an object (then the pose is object_from_this).
+struct Mount {
+  int object = -1;  // index into Scene::objects; -1: the world
+  Pose pose;
+};
+
+struct Object {
+  std::string name;
+  int model = -1;  // index into Scene::models
+  Mount mount;
+  Vec3 scale{1.0};
+  std::uint16_t class_id = 0;
+  std::uint16_t instance = 0;    // label, unique; first of instance_count() consecutive labels
+  float reflectivity = 1.0f;     // acoustic, 0 to 1, multiplies the incidence term
+  int clip = -1;                 // of the model; -1: rest pose
+  double clip_offset_s = 0.0, clip_rate = 1.0;
+  // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
+  std::vector<Mat4> copies;
+  std::size_t instance_count() const { return copies.empty() ? 1 : copies.size(); }
+};
+
+// Light at the surface. Sun irradiance and colour come from the water model's spectrum.
+struct Sun {
+  double elevation_rad = 1.0, azimuth_rad = 0.0;  // in air; azimuth from -Z (north) towards +X (east)
+  double intensity = 1.0;                         // 1: clear day
+};
+
+struct Water {
+  std::string type = "II";  // Jerlov: I IA IB II III 1C 3C 5C 7C 9C
+  bool scattering = false;  // backscatter along the line of sight
+  bool surface = false;     // the surface seen from below (Snell's window)
+};
+
+struct Lamp {
+  std::string name;
+  Mount mount;  // shines along the mount's -Z
+  Vec3f color{1.0f};
+  double intensity_cd = 1000.0;
+  double inner_cone_rad = 0.3, outer_cone_rad = 0.6;
+};
+
+struct Exposure {
+  // "auto": from the light that the water leaves at the camera's depth; else stops over that.
+  double compensation_ev = 0.0;
+  std::optional<double> fixed_ev;  // absolute: 2^-ev scales radiance
+};
+
+struct Camera {
+  std::string name;
+  Mount mount;
+  std::uint32_t width = 1280, height = 720;
+  double vertical_fov_rad = radians(60.0);
+  double near_m = 0.05;
+  double rate_hz = 30.0;
+  double stereo_baseline_m = 0.0;  // > 0: a stereo pair by one multiview pass
+  Exposure exposure;
+};
+
+struct Sonar {
+  std::string name;
+  std::string kind = "imaging";
+  Mount mount;
+  double range_min_m = 1.0, range_max_m = 5.0;
+  double azimuth_rad = radians(90.0), elevation_rad = radians(28.0);  // full apertures
+  std::uint32_t bins_range = 500, bins_azimuth = 500, bins_elevation = 500;
+  double rate_hz = 10.0;
+  // G-buffer pixels per beam cell, linear (1: a pixel a cell); 0: the documented default.
+  double gbuffer_scale = 0.0;
+  std::string gather;  // "plane", "nearest", "published"; empty: the documented default
+  double near_m = 0.02;
+};
+
+struct Scene {
+  std::string title;
+  std::string path;
+  std::uint64_t seed = 1;
+  std::vector<std::shared_ptr<const Model>> models;
+  std::vector<Object> objects;
+  std::map<std::uint16_t, std::string> class_names;
+  std::optional<Sun> sun;
+  std::optional<Water> water;
+  std::vector<Lamp> lamps;
+  std::vector<Camera> cameras;
+  std::vector<Sonar> sonars;
+  std::vector<std::string> notes;  // what was ignored, once each
+
+  // World_from_mount at a time (objects move in later versions; now the chain of mounts).
+  Pose world_from(const Mount& mount) const;
+};
+
+struct SceneOptions {
+  Vec3 offset_m{0.0};  // added to everything fixed to the world: to test far from the origin
+};
+
+// Reads a scene file. Every error names file, line and key, what was found, what is accepted (an
+// unknown key with the nearest known one).
+Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& options = {});
+
+// A scene that shows one model: framed by a camera, lit by sun, no water. For `render model.glb`.
+Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height);
+
+}  // namespace neritic::scene

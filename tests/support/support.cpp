@@ -1,0 +1,33 @@
+#include "tests/support/support.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+
+namespace neritic::test {
+namespace fs = std::filesystem;
+
+fs::path source_dir() { return NERITIC_SOURCE_DIR; }
+
+std::optional<fs::path> shared_dir() {
+  const char* named = std::getenv("NERITIC_SHARED");
+  const fs::path folder = named ? fs::path(named) : source_dir().parent_path() / "shared";
+  if (!fs::is_directory(folder / "reference")) return std::nullopt;
+  return folder;
+}
+
+ScratchFolder::ScratchFolder() {
+  static std::atomic<int> counter{0};
+  path_ = fs::temp_directory_path() /
+          ("neritic-test-" + std::to_string(::getpid()) + "-" + std::to_string(counter++));
+  fs::remove_all(path_);
+  fs::create_directories(path_);
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+}  // namespace neritic::test

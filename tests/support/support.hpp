@@ -1,0 +1,37 @@
+// What every test program shares: where the source tree and the shared real data lie, scratch folders.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace neritic::test {
+
+// The repository's root.
+std::filesystem::path source_dir();
+
+// The folder of real data and reference numbers beside the checkout (../shared, or $NERITIC_SHARED);
+// nothing where it is absent: such tests report skipped, never passed.
+std::optional<std::filesystem::path> shared_dir();
+
+// A fresh, empty folder for this test's files, removed at its end.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace neritic::test
+
+// In a test: NERITIC_REQUIRE_SHARED(shared); then shared is the folder.
+#define NERITIC_REQUIRE_SHARED(variable)                                     \
+  const auto variable##_maybe = ::neritic::test::shared_dir();               \
+  if (!variable##_maybe) GTEST_SKIP() << "no ../shared folder with real data"; \
+  const std::filesystem::path& variable = *variable##_maybe

@@ -1,0 +1,179 @@
+"""A small glTF 2.0 binary writer: textures, materials, meshes, skins, clips."""
+import io
+import json
+import struct
+
+import numpy as np
+from PIL import Image
+
+import mesh as M
+
+F32, U16, U32, U8 = 5126, 5123, 5125, 5121
+
+
+class Glb:
+    """Collects one model and writes it with save()."""
+
+    def __init__(self, name):
+        self.bin = bytearray()
+        self.doc = {"asset": {"version": "2.0", "generator": "Neritic tools/assets",
+                              "copyright": "Neritic authors, Apache-2.0"},
+                    "scene": 0, "scenes": [{"name": name, "nodes": []}], "nodes": [], "meshes": [],
+                    "materials": [], "accessors": [], "bufferViews": []}
+        self.quantized = {}
+
+    def _view(self, data, target=None):
+        while len(self.bin) % 4:
+            self.bin.append(0)
+        view = {"buffer": 0, "byteOffset": len(self.bin), "byteLength": len(data)}
+        if target:
+            view["target"] = target
+        self.bin += data
+        self.doc["bufferViews"].append(view)
+        return len(self.doc["bufferViews"]) - 1
+
+    def accessor(self, array, ctype, kind, target=None, bounds=False, normalized=False):
+        dt = {F32: "<f4", U16: "<u2", U32: "<u4", U8: "u1"}[ctype]
+        a = np.ascontiguousarray(array, dt)
+        acc = {"bufferView": self._view(a.tobytes(), target), "componentType": ctype,
+               "count": len(a), "type": kind}
+        if normalized:
+            acc["normalized"] = True
+        if bounds:
+            acc["min"] = np.atleast_1d(a.min(0)).tolist()
+            acc["max"] = np.atleast_1d(a.max(0)).tolist()
+        self.doc["accessors"].append(acc)
+        return len(self.doc["accessors"]) - 1
+
+    def texture(self, name, image, quality=88):
+        """image: float 0..1 array [h, w, 3 or 4], row 0 on top; 4 channels go to PNG."""
+        a = np.round(np.clip(image, 0, 1) * 255).astype(np.uint8)
+        buf = io.BytesIO()
+        if a.shape[2] == 4:
+            Image.fromarray(a, "RGBA").save(buf, "PNG", optimize=True)
+            mime = "image/png"
+        else:
+            Image.fromarray(a, "RGB").save(buf, "JPEG", quality=quality, subsampling=0)
+            mime = "image/jpeg"
+        d = self.doc
+        d.setdefault("samplers", [{"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}])
+        d.setdefault("images", []).append({"name": name, "bufferView": self._view(buf.getvalue()),
+                                           "mimeType": mime})
+        d.setdefault("textures", []).append({"sampler": 0, "source": len(d["images"]) - 1, "name": name})
+        return len(d["textures"]) - 1
+
+    def material(self, name, color=(1, 1, 1, 1), metal=0.0, rough=0.8, base=None, mr=None, normal=None,
+                 normal_scale=1.0, emissive=None, double=False, mask=None, blend=False):
+        pbr = {"baseColorFactor": list(color), "metallicFactor": metal, "roughnessFactor": rough}
+        m = {"name": name, "pbrMetallicRoughness": pbr}
+        if base is not None:
+            pbr["baseColorTexture"] = {"index": base}
+        if mr is not None:
+            pbr["metallicRoughnessTexture"] = {"index": mr}
+        if normal is not None:
+            m["normalTexture"] = {"index": normal, "scale": normal_scale}
+        if emissive is not None:
+            m["emissiveFactor"] = list(emissive)
+        if double:
+            m["doubleSided"] = True
+        if mask is not None:
+            m["alphaMode"], m["alphaCutoff"] = "MASK", mask
+        if blend:
+            m["alphaMode"] = "BLEND"
+        self.doc["materials"].append(m)
+        return len(self.doc["materials"]) - 1
+
+    def mesh(self, name, prims, crease=40.0):
+        """prims: (Part, material index) pairs; normals are made where missing."""
+        out = []
+        for part, mat in prims:
+            if part.nrm is None:
+                part = M.shade(part, crease)
+            vert = 34962
+            attr = {"POSITION": self.accessor(part.pos, F32, "VEC3", vert, True),
+                    "NORMAL": self.accessor(part.nrm, F32, "VEC3", vert),
+                    "TEXCOORD_0": self.accessor(part.uv, F32, "VEC2", vert)}
+            if "normalTexture" in self.doc["materials"][mat]:
+                attr["TANGENT"] = self.accessor(M.tangents(part), F32, "VEC4", vert)
+            if part.col is not None:
+                attr["COLOR_0"] = self.accessor(np.round(np.clip(part.col, 0, 1) * 255), U8, "VEC4", vert,
+                                                normalized=True)
+            if part.joints is not None:
+                attr["JOINTS_0"] = self.accessor(part.joints, U8, "VEC4", vert)
+                attr["WEIGHTS_0"] = self.accessor(part.weights, F32, "VEC4", vert)
+            wide = len(part.pos) > 65535
+            out.append({"attributes": attr, "material": mat, "mode": 4,
+                        "indices": self.accessor(part.tri.ravel(), U32 if wide else U16, "SCALAR", 34963)})
+        self.doc["meshes"].append({"name": name, "primitives": out})
+        return len(self.doc["meshes"]) - 1
+
+    def node(self, name, mesh=None, at=None, rot=None, scale=None, parent=None, skin=None):
+        n = {"name": name}
+        if mesh is not None:
+            n["mesh"] = mesh
+        if at is not None:
+            n["translation"] = [float(v) for v in at]
+        if rot is not None:
+            n["rotation"] = [float(v) for v in rot]
+        if scale is not None:
+            n["scale"] = [float(v) for v in scale]
+        if skin is not None:
+            n["skin"] = skin
+        self.doc["nodes"].append(n)
+        me = len(self.doc["nodes"]) - 1
+        if parent is None:
+            self.doc["scenes"][0]["nodes"].append(me)
+        else:
+            self.doc["nodes"][parent].setdefault("children", []).append(me)
+        return me
+
+    def skin(self, name, joints, rest):
+        """rest: joint positions in the bind frame; every rest rotation is identity."""
+        ibm = np.tile(np.eye(4), (len(joints), 1, 1))
+        ibm[:, 3, :3] = -np.asarray(rest)
+        self.doc.setdefault("skins", []).append(
+            {"name": name, "joints": joints, "skeleton": joints[0],
+             "inverseBindMatrices": self.accessor(ibm.reshape(-1, 16), F32, "MAT4")})
+        return len(self.doc["skins"]) - 1
+
+    def animation(self, name, times, tracks):
+        """tracks: (node, 'rotation' or 'translation', values [t, 4 or 3])."""
+        t = self.accessor(times, F32, "SCALAR", bounds=True)
+        chans, samps = [], []
+        for node, path, values in tracks:
+            kind = "VEC4" if path == "rotation" else "VEC3"
+            samps.append({"input": t, "output": self.accessor(values, F32, kind), "interpolation": "LINEAR"})
+            chans.append({"sampler": len(samps) - 1, "target": {"node": node, "path": path}})
+        self.doc.setdefault("animations", []).append({"name": name, "channels": chans, "samplers": samps})
+
+    def save(self, path):
+        self.doc["buffers"] = [{"byteLength": len(self.bin)}]
+        js = json.dumps(self.doc, separators=(",", ":")).encode()
+        js += b" " * (-len(js) % 4)
+        data = bytes(self.bin) + b"\0" * (-len(self.bin) % 4)
+        self.doc["buffers"][0]["byteLength"] = len(data)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        tmp = path.with_suffix(".tmp")
+        with open(tmp, "wb") as f:
+            f.write(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(js) + 8 + len(data)))
+            f.write(struct.pack("<I4s", len(js), b"JSON") + js)
+            f.write(struct.pack("<I4s", len(data), b"BIN\0") + data)
+        tmp.replace(path)
+        print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
+
+
+def quat(axis, deg):
+    """Unit quaternion xyzw about x, y or z; deg may be an array."""
+    a = np.radians(np.asarray(deg, float)) / 2
+    q = np.zeros(a.shape + (4,))
+    q[..., "xyz".index(axis)] = np.sin(a)
+    q[..., 3] = np.cos(a)
+    return q
+
+
+def qmul(a, b):
+    """Hamilton product: apply b, then a."""
+    ax, ay, az, aw = np.moveaxis(a, -1, 0)
+    bx, by, bz, bw = np.moveaxis(b, -1, 0)
+    return np.stack([aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
+                     aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz], -1)

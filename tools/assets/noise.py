@@ -1,0 +1,92 @@
+"""Tileable textures from numpy: noise, cells, normal maps, colour ramps.
+
+Every field wraps in both directions. Images are float arrays, row 0 on top.
+"""
+import numpy as np
+
+
+def spectral(n, seed, beta=2.0, low=1.0, high=1e9, stretch=(1.0, 1.0), m=None):
+    """Random field with power falling as frequency^-beta inside [low, high]; mean 0, sd 1."""
+    m = n if m is None else m
+    rng = np.random.default_rng(seed)
+    fy, fx = np.meshgrid(np.fft.fftfreq(n) * n * stretch[0], np.fft.fftfreq(m) * m * stretch[1], indexing="ij")
+    f = np.hypot(fx, fy)
+    amp = np.where((f >= low) & (f <= high), np.maximum(f, 1e-9) ** (-beta / 2), 0)
+    field = np.fft.ifft2(np.fft.fft2(rng.standard_normal((n, m))) * amp).real
+    return (field - field.mean()) / (field.std() + 1e-12)
+
+
+def cells(n, count, seed, m=None):
+    """Distance to the nearest and second-nearest of count wrapped points, in tile units."""
+    m = n if m is None else m
+    rng = np.random.default_rng(seed)
+    pts = rng.random((count, 2))
+    y, x = np.meshgrid((np.arange(n) + .5) / n, (np.arange(m) + .5) / m, indexing="ij")
+    d1, d2, who = np.full((n, m), 9.), np.full((n, m), 9.), np.zeros((n, m), int)
+    for k, (py, px) in enumerate(pts):
+        dy, dx = np.abs(y - py), np.abs(x - px)
+        d = np.hypot(np.minimum(dy, 1 - dy), np.minimum(dx, 1 - dx))
+        closer = d < d1
+        d2 = np.where(closer, d1, np.minimum(d2, d))
+        who = np.where(closer, k, who)
+        d1 = np.minimum(d1, d)
+    return d1, d2, who
+
+
+def smooth(lo, hi, x):
+    t = np.clip((np.asarray(x, float) - lo) / (hi - lo), 0, 1)
+    return t * t * (3 - 2 * t)
+
+
+def blur(a, sigma):
+    """Wrapped Gaussian blur, sigma in pixels."""
+    fy, fx = np.meshgrid(np.fft.fftfreq(a.shape[0]), np.fft.fftfreq(a.shape[1]), indexing="ij")
+    return np.fft.ifft2(np.fft.fft2(a) * np.exp(-2 * (np.pi * sigma) ** 2 * (fx ** 2 + fy ** 2))).real
+
+
+def mix(a, b, t):
+    t = np.asarray(t)
+    t = t[..., None] if np.ndim(a) != np.ndim(t) or np.ndim(b) == 1 else t
+    return np.asarray(a, float) * (1 - t) + np.asarray(b, float) * t
+
+
+def flat(n, rgb, m=None):
+    return np.tile(np.asarray(rgb, float), (n, n if m is None else m, 1))
+
+
+def normal_map(height, metres_x, metres_y=None):
+    """Tangent-space normals (+y up the image) of a height field in metres over one tile."""
+    metres_y = metres_x if metres_y is None else metres_y
+    n, m = height.shape
+    dx = (np.roll(height, -1, 1) - np.roll(height, 1, 1)) / (2 * metres_x / m)
+    dy = (np.roll(height, -1, 0) - np.roll(height, 1, 0)) / (2 * metres_y / n)
+    v = np.stack([-dx, dy, np.ones_like(dx)], 2)
+    return v / np.linalg.norm(v, axis=2, keepdims=True) * 0.5 + 0.5
+
+
+def rough_metal(rough, metal=0.0):
+    """glTF packing: G roughness, B metal."""
+    r = np.asarray(rough, float)
+    return np.stack([np.ones_like(r), r, np.broadcast_to(metal, r.shape)], 2)
+
+
+def value3(p, seed, freq=1.0):
+    """Smooth value noise at points p [n, 3], range about -1..1."""
+    p = np.asarray(p, float) * freq + 1000.0
+    i = np.floor(p).astype(np.int64)
+    f = p - i
+    f = f * f * (3 - 2 * f)
+    out = 0.0
+    for dx in (0, 1):
+        for dy in (0, 1):
+            for dz in (0, 1):
+                h = ((i[:, 0] + dx) * 73856093) ^ ((i[:, 1] + dy) * 19349663) ^ ((i[:, 2] + dz) * 83492791) ^ (seed * 2654435761)
+                h = (h ^ (h >> 13)) * 1274126177 & 0x7fffffff
+                h = (h ^ (h >> 16)) & 0xffff
+                w = (f[:, 0] if dx else 1 - f[:, 0]) * (f[:, 1] if dy else 1 - f[:, 1]) * (f[:, 2] if dz else 1 - f[:, 2])
+                out = out + w * (h / 32767.5 - 1)
+    return out
+
+
+def fbm3(p, seed, freq=1.0, octaves=4, gain=0.5):
+    return sum(value3(p, seed + k, freq * 2 ** k) * gain ** k for k in range(octaves))
