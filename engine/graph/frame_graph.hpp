@@ -48,11 +48,13 @@ class PassBuilder {
  private:
   friend class FrameGraph;
   PassBuilder(FrameGraph& graph, std::uint32_t pass) : graph_(graph), pass_(pass) {}
+  void use(std::uint32_t resource, std::uint32_t version, Access access, bool write);
   FrameGraph& graph_;
   std::uint32_t pass_;
 };
 
-// What a pass sees while it records: the real objects behind its handles.
+// What a pass sees while it records: the real objects behind its handles. Only what the pass
+// declared may be asked for.
 class PassContext {
  public:
   gpu::Commands& commands;
@@ -62,22 +64,28 @@ class PassContext {
 
  private:
   friend class Executor;
-  PassContext(gpu::Commands& c, const std::vector<const gpu::Image*>& images,
+  PassContext(gpu::Commands& c, const PassDecl& pass, const std::vector<const gpu::Image*>& images,
               const std::vector<const gpu::Buffer*>& buffers)
-      : commands(c), images_(images), buffers_(buffers) {}
+      : commands(c), pass_(pass), images_(images), buffers_(buffers) {}
+  void check_declared(std::uint32_t resource) const;
+  const PassDecl& pass_;
   const std::vector<const gpu::Image*>& images_;
   const std::vector<const gpu::Buffer*>& buffers_;
 };
 
+// State of an imported resource at the frame's start; contents are defined unless layout is
+// UNDEFINED for an image. stages and access 0: nothing on the GPU is pending on it.
+struct ImportState {
+  VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  VkAccessFlags2 access = VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_MEMORY_READ_BIT;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
 class FrameGraph {
  public:
-  // State of an imported resource at the frame's start; contents are defined unless layout is
-  // UNDEFINED for an image.
-  struct ImportState {
-    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    VkAccessFlags2 access = VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_MEMORY_READ_BIT;
-    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  };
+  using ImportState = graph::ImportState;
+  // The image and buffer must live until Executor::run returns (the GPU: until the frame is done).
+  // Importing one again gives the same resource.
   ImageHandle import_image(const gpu::Image& image, const ImportState& state);
   BufferHandle import_buffer(const std::string& name, const gpu::Buffer& buffer,
                              const ImportState& state = {});
@@ -105,6 +113,8 @@ class FrameGraph {
   friend class PassBuilder;
   friend class Executor;
   PassBuilder begin_pass(const std::string& name);
+  std::uint32_t add_resource(ResourceDecl&& resource, const gpu::Image* image,
+                             const gpu::Buffer* buffer);
   GraphDecl declaration_;
   std::vector<std::function<void(PassContext&)>> records_;
   std::vector<const gpu::Image*> imported_images_;    // by resource; nullptr for others
@@ -122,6 +132,10 @@ class Executor {
   // Compiles and records every kept pass with its barriers, each in a region of its name.
   Result<const Plan*> run(FrameGraph& graph, gpu::Commands& commands);
   std::uint64_t transient_bytes() const;  // device memory held for transients now
+
+  // For tests only: run() hands a copy of each plan to spoil before it records it, so that a test can
+  // plant a wrong barrier and see validation catch it. An empty function takes it off again.
+  void spoil_plans_for_test(std::function<void(Plan&)> spoil);
 
  private:
   struct Impl;

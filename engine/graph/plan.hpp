@@ -15,7 +15,10 @@
 
 namespace neritic::graph {
 
-// How a pass uses a resource. Each means one stage mask, access mask and image layout (access_info).
+// How a pass uses a resource. Each means one stage mask, access mask and image layout (access_info);
+// access.cpp has the table. Attachments and descriptors take their layout from there:
+// access_info(Access::kDepthTest).layout. A read-only depth attachment needs storeOp NONE: STORE
+// counts as a write.
 enum class Access {
   kColorAttachment,   // write
   kDepthAttachment,   // write (and test)
@@ -63,6 +66,8 @@ struct ResourceDecl {
   VkPipelineStageFlags2 initial_stages = VK_PIPELINE_STAGE_2_NONE;
   VkAccessFlags2 initial_access = VK_ACCESS_2_NONE;
   VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+
+  bool operator==(const ResourceDecl&) const = default;
 };
 
 // A use of one version of a resource. Reading version v needs its writer; writing turns v into v + 1.
@@ -70,18 +75,24 @@ struct Use {
   std::uint32_t resource = 0;
   std::uint32_t version = 0;  // the version read, or the version that the write replaces
   Access access = Access::kSampledCompute;
+
+  bool operator==(const Use&) const = default;
 };
 
 struct PassDecl {
   std::string name;
   std::vector<Use> uses;
   bool side_effect = false;  // kept although nobody reads what it writes
+
+  bool operator==(const PassDecl&) const = default;
 };
 
 struct GraphDecl {
   std::vector<ResourceDecl> resources;
   std::vector<PassDecl> passes;
   std::vector<Use> outputs;  // versions that must be there at the end, and in which access
+
+  bool operator==(const GraphDecl&) const = default;
 };
 
 // --- The stages -------------------------------------------------------------------------------

@@ -1,0 +1,200 @@
+// Executor: caches plans by declaration, gives the newest graphs real memory, records passes and
+// barriers. Each frame opens with one full memory barrier, so that frames never race each other
+// over transient memory or over imports; within the frame the plan's barriers are exact. Rendering
+// thread.
+#include <algorithm>
+#include <utility>
+
+#include "engine/core/check.hpp"
+#include "engine/core/hash.hpp"
+#include "engine/gpu/device.hpp"
+#include "engine/graph/frame_graph.hpp"
+#include "engine/graph/realisation.hpp"
+#include "engine/graph/record_barriers.hpp"
+
+namespace neritic::graph {
+namespace {
+
+// Plans are small; memory is not. A program that alternates between a few graphs (with and without
+// a sonar ping, a screenshot now and then) should allocate nothing.
+constexpr std::size_t kPlansKept = 32;
+constexpr std::size_t kRealisationsKept = 4;
+
+void add_text(Hash64& hash, const std::string& text) {
+  hash.add(text.size());
+  hash.add_bytes(text.data(), text.size());
+}
+
+void add_uses(Hash64& hash, const std::vector<Use>& uses) {
+  hash.add(uses.size());
+  for (const Use& use : uses) {
+    hash.add(std::uint64_t{use.resource} << 32 | use.version);
+    hash.add(static_cast<std::uint64_t>(use.access));
+  }
+}
+
+// Equal declarations hash equal; unequal ones are told apart by == where the hash should not.
+std::uint64_t hash_of(const GraphDecl& graph) {
+  Hash64 hash;
+  for (const ResourceDecl& r : graph.resources) {
+    add_text(hash, r.name);
+    const std::uint64_t facts[] = {static_cast<std::uint64_t>(r.kind),
+                                   r.imported,
+                                   static_cast<std::uint64_t>(r.format),
+                                   std::uint64_t{r.width} << 32 | r.height,
+                                   std::uint64_t{r.layers} << 32 | r.image_usage,
+                                   r.size_bytes,
+                                   r.buffer_usage,
+                                   r.initial_stages,
+                                   r.initial_access,
+                                   static_cast<std::uint64_t>(r.initial_layout)};
+    hash.add_bytes(facts, sizeof facts);
+  }
+  for (const PassDecl& pass : graph.passes) {
+    add_text(hash, pass.name);
+    add_uses(hash, pass.uses);
+    hash.add(pass.side_effect);
+  }
+  add_uses(hash, graph.outputs);
+  return hash.value();
+}
+
+}  // namespace
+
+struct Executor::Impl {
+  struct Entry {
+    std::uint64_t hash = 0;
+    std::uint64_t last_use = 0;
+    GraphDecl declaration;  // as declared, before usage flags are gathered
+    Plan plan;
+    std::vector<MemoryClass> classes;
+    std::unique_ptr<Realisation> realisation;  // null until first run, and again after eviction
+  };
+
+  explicit Impl(gpu::Frames& f) : frames(f) {}
+
+  gpu::Frames& frames;
+  std::vector<std::unique_ptr<Entry>> entries;  // stable addresses: callers hold Plan pointers
+  std::uint64_t clock = 0;
+  std::function<void(Plan&)> spoil;
+  Plan spoiled;
+  // Scratch, kept to allocate nothing in a frame.
+  BarrierRecorder recorder;
+  std::vector<const gpu::Image*> images;
+  std::vector<const gpu::Buffer*> buffers;
+
+  // The realisation's objects may still be in use by frames in flight.
+  void retire(std::unique_ptr<Realisation> realisation) {
+    if (!realisation) return;
+    // std::function must be copyable, so the owner is shared with the copies it may make.
+    std::shared_ptr<Realisation> owner = std::move(realisation);
+    frames.retire([owner]() mutable { owner.reset(); });
+  }
+
+  Result<Entry*> find_or_compile(const GraphDecl& declaration) {
+    const std::uint64_t hash = hash_of(declaration);
+    for (const auto& entry : entries) {
+      if (entry->hash != hash || entry->declaration != declaration) continue;
+      entry->last_use = ++clock;
+      return entry.get();
+    }
+    NERITIC_TRY_STATUS(validate(declaration));
+    auto entry = std::make_unique<Entry>();
+    entry->hash = hash;
+    entry->declaration = declaration;
+    GraphDecl with_usage = declaration;
+    gather_usage(with_usage);
+    const std::vector<MemoryNeed> needs = memory_needs(frames.device(), with_usage, entry->classes);
+    NERITIC_TRY(entry->plan, graph::compile(std::move(with_usage), needs));
+    entry->last_use = ++clock;
+    if (entries.size() >= kPlansKept) evict_oldest_plan();
+    entries.push_back(std::move(entry));
+    return entries.back().get();
+  }
+
+  void evict_oldest_plan() {
+    const auto oldest =
+        std::min_element(entries.begin(), entries.end(),
+                         [](const auto& a, const auto& b) { return a->last_use < b->last_use; });
+    retire(std::move((*oldest)->realisation));
+    entries.erase(oldest);
+  }
+
+  // Memory for the entry, at the cost of the least recently used other graph's.
+  Status realise(Entry& entry) {
+    if (entry.realisation) return {};
+    Entry* oldest = nullptr;
+    std::size_t held = 0;
+    for (const auto& other : entries) {
+      if (!other->realisation) continue;
+      ++held;
+      if (!oldest || other->last_use < oldest->last_use) oldest = other.get();
+    }
+    if (held >= kRealisationsKept) retire(std::move(oldest->realisation));
+    NERITIC_TRY(Realisation made, Realisation::create(frames.device(), entry.plan, entry.classes));
+    entry.realisation = std::make_unique<Realisation>(std::move(made));
+    return {};
+  }
+
+  // The object behind every resource in this frame: imports may move between equal declarations.
+  void resolve(const FrameGraph& graph, const Realisation& realisation) {
+    images = graph.imported_images_;
+    buffers = graph.imported_buffers_;
+    for (std::size_t r = 0; r < images.size(); ++r) {
+      if (realisation.images()[r]) images[r] = &realisation.images()[r];
+      if (realisation.buffers()[r]) buffers[r] = &realisation.buffers()[r];
+    }
+  }
+
+  void record(FrameGraph& graph, const Plan& plan, gpu::Commands& commands) {
+    const VkCommandBuffer cmd = commands.handle();
+    record_frame_barrier(cmd);
+    for (std::size_t position = 0; position < plan.order.size(); ++position) {
+      const std::uint32_t pass = plan.order[position];
+      commands.begin_region(plan.graph.passes[pass].name);
+      recorder.record(cmd, plan.barriers.before[position], images, buffers);
+      PassContext context(commands, plan.graph.passes[pass], images, buffers);
+      graph.records_[pass](context);
+      commands.end_region();
+    }
+    recorder.record(cmd, plan.barriers.at_end, images, buffers);
+  }
+};
+
+Executor::Executor(gpu::Frames& frames) : impl_(std::make_unique<Impl>(frames)) {}
+
+Executor::~Executor() {
+  for (auto& entry : impl_->entries) impl_->retire(std::move(entry->realisation));
+}
+
+Result<const Plan*> Executor::compile(const FrameGraph& graph) {
+  NERITIC_TRY(Impl::Entry* const entry, impl_->find_or_compile(graph.declaration()));
+  return &entry->plan;
+}
+
+Result<const Plan*> Executor::run(FrameGraph& graph, gpu::Commands& commands) {
+  NERITIC_TRY(Impl::Entry* const entry, impl_->find_or_compile(graph.declaration()));
+  NERITIC_TRY_STATUS(impl_->realise(*entry));
+  impl_->resolve(graph, *entry->realisation);
+  const Plan* plan = &entry->plan;
+  if (impl_->spoil) {
+    impl_->spoiled = *plan;
+    impl_->spoil(impl_->spoiled);
+    plan = &impl_->spoiled;
+  }
+  impl_->record(graph, *plan, commands);
+  return plan;
+}
+
+std::uint64_t Executor::transient_bytes() const {
+  std::uint64_t sum = 0;
+  for (const auto& entry : impl_->entries)
+    if (entry->realisation) sum += entry->realisation->bytes();
+  return sum;
+}
+
+void Executor::spoil_plans_for_test(std::function<void(Plan&)> spoil) {
+  impl_->spoil = std::move(spoil);
+}
+
+}  // namespace neritic::graph

@@ -1,0 +1,106 @@
+// See realisation.hpp.
+#include "engine/graph/realisation.hpp"
+
+#include <algorithm>
+
+#include "engine/gpu/device.hpp"
+
+namespace neritic::graph {
+namespace {
+
+gpu::ImageDesc image_desc(const ResourceDecl& resource) {
+  gpu::ImageDesc desc;
+  desc.name = resource.name;
+  desc.format = resource.format;
+  desc.width = resource.width;
+  desc.height = resource.height;
+  desc.layers = resource.layers;
+  desc.usage = resource.image_usage;
+  desc.array_view = true;
+  return desc;
+}
+
+gpu::BufferDesc buffer_desc(const ResourceDecl& resource) {
+  gpu::BufferDesc desc;
+  desc.name = resource.name;
+  desc.size = resource.size_bytes;
+  desc.usage = resource.buffer_usage;
+  return desc;
+}
+
+std::uint32_t class_of(ResourceKind kind, const VkMemoryRequirements& needs,
+                       std::vector<MemoryClass>& classes) {
+  for (std::uint32_t c = 0; c < classes.size(); ++c) {
+    MemoryClass& known = classes[c];
+    if (known.kind != kind || known.memory_type_bits != needs.memoryTypeBits) continue;
+    known.alignment = std::max(known.alignment, needs.alignment);
+    return c;
+  }
+  classes.push_back({kind, needs.memoryTypeBits, needs.alignment});
+  return static_cast<std::uint32_t>(classes.size() - 1);
+}
+
+// A transient that only a culled pass mentions may have no usage at all; it is never made.
+bool has_usage(const ResourceDecl& resource) {
+  return resource.image_usage != 0 || resource.buffer_usage != 0;
+}
+
+}  // namespace
+
+std::vector<MemoryNeed> memory_needs(const gpu::Device& device, const GraphDecl& graph,
+                                     std::vector<MemoryClass>& classes) {
+  classes.clear();
+  std::vector<MemoryNeed> needs(graph.resources.size());
+  for (std::size_t r = 0; r < graph.resources.size(); ++r) {
+    const ResourceDecl& resource = graph.resources[r];
+    if (resource.imported || !has_usage(resource)) continue;
+    const VkMemoryRequirements wanted =
+        resource.kind == ResourceKind::kImage
+            ? gpu::image_requirements(device, image_desc(resource))
+            : gpu::buffer_requirements(device, buffer_desc(resource));
+    needs[r] = {wanted.size, wanted.alignment, class_of(resource.kind, wanted, classes)};
+  }
+  return needs;
+}
+
+Result<Realisation> Realisation::create(const gpu::Device& device, const Plan& plan,
+                                        const std::vector<MemoryClass>& classes) {
+  Realisation made;
+  const std::size_t count = plan.graph.resources.size();
+  made.images_.resize(count);
+  made.buffers_.resize(count);
+  for (std::size_t c = 0; c < plan.placement.heap_size.size(); ++c) {
+    VkMemoryRequirements needs{};
+    needs.size = plan.placement.heap_size[c];
+    needs.alignment = classes[c].alignment;
+    needs.memoryTypeBits = classes[c].memory_type_bits;
+    gpu::Allocation heap;
+    if (needs.size > 0) {
+      NERITIC_TRY(heap, device.allocator().allocate(needs, gpu::MemoryUse::kDevice,
+                                                    classes[c].kind == ResourceKind::kBuffer));
+    }
+    made.heaps_.push_back(std::move(heap));
+  }
+  for (std::size_t r = 0; r < count; ++r) {
+    const ResourceDecl& resource = plan.graph.resources[r];
+    if (resource.imported || !plan.lifetimes[r].used()) continue;
+    const gpu::Allocation& heap = made.heaps_[plan.needs[r].memory_class];
+    const VkDeviceSize offset = heap.offset() + plan.placement.offset[r];
+    if (resource.kind == ResourceKind::kImage) {
+      NERITIC_TRY(made.images_[r],
+                  gpu::Image::create_at(device, image_desc(resource), heap.memory(), offset));
+    } else {
+      NERITIC_TRY(made.buffers_[r],
+                  gpu::Buffer::create_at(device, buffer_desc(resource), heap.memory(), offset));
+    }
+  }
+  return made;
+}
+
+std::uint64_t Realisation::bytes() const {
+  std::uint64_t sum = 0;
+  for (const gpu::Allocation& heap : heaps_) sum += heap.size();
+  return sum;
+}
+
+}  // namespace neritic::graph

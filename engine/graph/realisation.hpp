@@ -1,0 +1,43 @@
+// Inside engine/graph: the real memory, images and buffers of one plan's transients. One heap a
+// memory class; objects lie in it where the plan placed them. Move-only; rendering thread. Destroy
+// only when the GPU is done with it (Frames::retire).
+#pragma once
+
+#include <vector>
+
+#include "engine/gpu/memory.hpp"
+#include "engine/gpu/resources.hpp"
+#include "engine/graph/plan.hpp"
+
+namespace neritic::graph {
+
+// Resources that may share memory: same kind (buffers and optimal images must not meet within
+// bufferImageGranularity) and same memory types.
+struct MemoryClass {
+  ResourceKind kind = ResourceKind::kImage;
+  std::uint32_t memory_type_bits = 0;
+  VkDeviceSize alignment = 1;  // the largest of its members
+};
+
+// What the device says each transient of the graph takes; the graph's usage flags must be gathered.
+// Fills classes; MemoryNeed::memory_class indexes them.
+std::vector<MemoryNeed> memory_needs(const gpu::Device& device, const GraphDecl& graph,
+                                     std::vector<MemoryClass>& classes);
+
+class Realisation {
+ public:
+  static Result<Realisation> create(const gpu::Device& device, const Plan& plan,
+                                    const std::vector<MemoryClass>& classes);
+  // By resource; empty ones for imports and unused transients.
+  const std::vector<gpu::Image>& images() const { return images_; }
+  const std::vector<gpu::Buffer>& buffers() const { return buffers_; }
+  std::uint64_t bytes() const;
+
+ private:
+  // Declared before what lies in it, so that it is freed after.
+  std::vector<gpu::Allocation> heaps_;
+  std::vector<gpu::Image> images_;
+  std::vector<gpu::Buffer> buffers_;
+};
+
+}  // namespace neritic::graph

@@ -1,0 +1,197 @@
+// First stage: refuses a declaration that has no single meaning. Handles only go forward: a pass
+// may read or replace the newest version that the passes declared before it made, so declaration
+// order is always one valid order, and each later stage can rely on that. Pure; any thread.
+#include "engine/graph/access.hpp"
+#include "engine/graph/plan.hpp"
+
+namespace neritic::graph {
+namespace {
+
+// Which version of a resource is the newest so far, and who made it.
+struct Newest {
+  std::uint32_t version = 0;
+  std::uint32_t writer = 0;  // only meaningful where version > 0
+};
+
+class Validator {
+ public:
+  explicit Validator(const GraphDecl& graph) : graph_(graph), newest_(graph.resources.size()) {}
+
+  Status run() {
+    for (const ResourceDecl& resource : graph_.resources) {
+      NERITIC_TRY_STATUS(check_resource(resource));
+    }
+    for (std::uint32_t p = 0; p < graph_.passes.size(); ++p) {
+      NERITIC_TRY_STATUS(check_pass(p));
+    }
+    return check_outputs();
+  }
+
+ private:
+  static Status check_resource(const ResourceDecl& resource) {
+    if (resource.kind == ResourceKind::kBuffer) return {};
+    if (resource.format == VK_FORMAT_UNDEFINED)
+      return bad_input("frame graph: image \"{}\" has no format", resource.name);
+    if (resource.width == 0 || resource.height == 0 || resource.layers == 0)
+      return bad_input("frame graph: image \"{}\" is {}x{} with {} layers, all must be at least 1",
+                       resource.name, resource.width, resource.height, resource.layers);
+    return {};
+  }
+
+  Status check_pass(std::uint32_t p) {
+    const PassDecl& pass = graph_.passes[p];
+    const std::string who = fmt::format("pass \"{}\"", pass.name);
+    for (const Use& use : pass.uses) {
+      NERITIC_TRY_STATUS(check_use(who, use));
+      if (only_as_output(use.access))
+        return bad_input("frame graph: {} uses \"{}\" for {}, which only an output can", who,
+                         name(use), access_info(use.access).name);
+    }
+    NERITIC_TRY_STATUS(check_combination(pass));
+    for (const Use& use : pass.uses) {
+      NERITIC_TRY_STATUS(access_info(use.access).write ? check_write(who, use)
+                                                       : check_read(who, use));
+    }
+    for (const Use& use : pass.uses)
+      if (access_info(use.access).write) newest_[use.resource] = {use.version + 1, p};
+    return {};
+  }
+
+  Status check_use(const std::string& who, const Use& use) const {
+    if (use.resource >= graph_.resources.size())
+      return bad_input("frame graph: {} uses a handle of no resource (index {}, there are {})", who,
+                       use.resource, graph_.resources.size());
+    const ResourceDecl& resource = graph_.resources[use.resource];
+    const AccessInfo& info = access_info(use.access);
+    const bool image = resource.kind == ResourceKind::kImage;
+    if (!access_fits(use.access, resource.kind))
+      return bad_input("frame graph: {} uses {} \"{}\" for {}, which it cannot be", who,
+                       image ? "image" : "buffer", resource.name, info.name);
+    const std::uint32_t made_for = image ? resource.image_usage : resource.buffer_usage;
+    const std::uint32_t wanted = image ? info.image_usage : info.buffer_usage;
+    if (resource.imported && made_for != 0 && (wanted & ~made_for) != 0)
+      return bad_input("frame graph: {} uses imported \"{}\" for {}, which it was not made for",
+                       who, resource.name, info.name);
+    return {};
+  }
+
+  // Version 0 holds something only where it was imported with contents.
+  bool has_contents(const ResourceDecl& resource) const {
+    return resource.imported && (resource.kind == ResourceKind::kBuffer ||
+                                 resource.initial_layout != VK_IMAGE_LAYOUT_UNDEFINED);
+  }
+
+  Status check_read(const std::string& who, const Use& use) const {
+    const Newest& now = newest_[use.resource];
+    if (use.version < now.version)
+      return bad_input(
+          "frame graph: {} reads version {} of \"{}\", a stale handle: pass \"{}\" has already "
+          "replaced it",
+          who, use.version, name(use), writer_of_next(use));
+    if (use.version > now.version)
+      return bad_input(
+          "frame graph: {} reads version {} of \"{}\" before any pass has written it "
+          "(newest is {})",
+          who, use.version, name(use), now.version);
+    if (use.version == 0 && !has_contents(graph_.resources[use.resource]))
+      return bad_input("frame graph: {} reads \"{}\" before any pass has written it", who,
+                       name(use));
+    return {};
+  }
+
+  Status check_write(const std::string& who, const Use& use) const {
+    const Newest& now = newest_[use.resource];
+    if (use.version < now.version)
+      return bad_input(
+          "frame graph: two writers of version {} of \"{}\": pass \"{}\" and {} (write to the "
+          "handle that the first write returned)",
+          use.version, name(use), writer_of_next(use), who);
+    if (use.version > now.version)
+      return bad_input(
+          "frame graph: {} writes over version {} of \"{}\" before any pass has written that "
+          "(newest is {})",
+          who, use.version, name(use), now.version);
+    return {};
+  }
+
+  // What one pass does with one resource must be possible in one state of it, without a barrier
+  // inside the pass.
+  Status check_combination(const PassDecl& pass) const {
+    for (std::size_t i = 0; i < pass.uses.size(); ++i) {
+      for (std::size_t j = i + 1; j < pass.uses.size(); ++j) {
+        const Use &a = pass.uses[i], &b = pass.uses[j];
+        if (a.resource == b.resource) {
+          NERITIC_TRY_STATUS(check_pair(pass, a, b));
+        }
+      }
+    }
+    return {};
+  }
+
+  Status check_pair(const PassDecl& pass, const Use& a, const Use& b) const {
+    const AccessInfo &ia = access_info(a.access), &ib = access_info(b.access);
+    if (ia.write && ib.write) {
+      if (a.version == b.version)
+        return bad_input("frame graph: two writers of version {} of \"{}\": both are pass \"{}\"",
+                         a.version, name(a), pass.name);
+      return bad_input("frame graph: pass \"{}\" writes \"{}\" twice ({} and {})", pass.name,
+                       name(a), ia.name, ib.name);
+    }
+    if (ia.write || ib.write) {
+      const Use &write = ia.write ? a : b, &read = ia.write ? b : a;
+      if (read.version == write.version + 1)
+        return bad_input("frame graph: pass \"{}\" reads version {} of \"{}\", which it writes",
+                         pass.name, read.version, name(read));
+      if (!subsumes(write.access, read.access))
+        return bad_input(
+            "frame graph: pass \"{}\" cannot both read (as {}) and write (as {}) \"{}\"", pass.name,
+            access_info(read.access).name, access_info(write.access).name, name(read));
+      return {};
+    }
+    if (graph_.resources[a.resource].kind == ResourceKind::kImage && ia.layout != ib.layout)
+      return bad_input("frame graph: pass \"{}\" needs image \"{}\" in two layouts ({} and {})",
+                       pass.name, name(a), ia.name, ib.name);
+    return {};
+  }
+
+  Status check_outputs() const {
+    for (std::size_t i = 0; i < graph_.outputs.size(); ++i) {
+      const Use& use = graph_.outputs[i];
+      NERITIC_TRY_STATUS(check_use("an output", use));
+      NERITIC_TRY_STATUS(check_read("an output", use));
+      for (std::size_t j = 0; j < i; ++j) {
+        const Use& other = graph_.outputs[j];
+        if (other.resource != use.resource) continue;
+        const AccessInfo &ia = access_info(other.access), &ib = access_info(use.access);
+        if ((ia.write || ib.write || ia.layout != ib.layout) && other.access != use.access &&
+            (ia.write || ib.write || graph_.resources[use.resource].kind == ResourceKind::kImage))
+          return bad_input("frame graph: \"{}\" is an output in two ways ({} and {})", name(use),
+                           ia.name, ib.name);
+      }
+    }
+    return {};
+  }
+
+  const std::string& name(const Use& use) const { return graph_.resources[use.resource].name; }
+
+  // The pass that turned use.version into the next one. Only for messages, hence the plain search.
+  std::string writer_of_next(const Use& use) const {
+    for (const PassDecl& pass : graph_.passes)
+      for (const Use& other : pass.uses)
+        if (other.resource == use.resource && other.version == use.version &&
+            access_info(other.access).write)
+          return pass.name;
+    return "?";
+  }
+
+  const GraphDecl& graph_;
+  std::vector<Newest> newest_;
+};
+
+}  // namespace
+
+Status validate(const GraphDecl& graph) {
+  return Validator(graph).run();
+}
+
+}  // namespace neritic::graph
