@@ -1,6 +1,6 @@
 // A scene: what a TOML file names, resolved (includes merged, models loaded, units SI, angles in
-// radians). It holds only what the file named: an effect that is absent here is neither modelled nor
-// paid for. World frame; positions double. A plain value; any thread may read it.
+// radians). It holds only what the file named: an effect that is absent here is neither modelled
+// nor paid for. World frame; positions double. A plain value; any thread may read it.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct ClassName {
   const char* name;
   std::uint16_t id;
 };
-inline constexpr ClassName kClasses[] = {{"seabed", 1}, {"rock", 2},  {"wreck", 3},     {"diver", 4},
-                                         {"rov", 5},    {"fish", 6},  {"shark", 7},     {"plant", 8},
-                                         {"coral", 9},  {"pipe", 10}, {"structure", 11}, {"target", 12}};
+inline constexpr ClassName kClasses[] = {
+    {"seabed", 1}, {"rock", 2},  {"wreck", 3}, {"diver", 4}, {"rov", 5},        {"fish", 6},
+    {"shark", 7},  {"plant", 8}, {"coral", 9}, {"pipe", 10}, {"structure", 11}, {"target", 12}};
 
 // Where something is: fixed to the world, or to an object (then the pose is object_from_this).
 struct Mount {
@@ -39,9 +39,9 @@ struct Object {
   Mount mount;
   Vec3 scale{1.0};
   std::uint16_t class_id = 0;
-  std::uint16_t instance = 0;    // label, unique; first of instance_count() consecutive labels
-  float reflectivity = 1.0f;     // acoustic, 0 to 1, multiplies the incidence term
-  int clip = -1;                 // of the model; -1: rest pose
+  std::uint16_t instance = 0;  // label, unique; first of instance_count() consecutive labels
+  float reflectivity = 1.0f;   // acoustic, 0 to 1, multiplies the incidence term
+  int clip = -1;               // of the model; -1: rest pose
   double clip_offset_s = 0.0, clip_rate = 1.0;
   // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
   std::vector<Mat4> copies;
@@ -50,8 +50,9 @@ struct Object {
 
 // Light at the surface. Sun irradiance and colour come from the water model's spectrum.
 struct Sun {
-  double elevation_rad = 1.0, azimuth_rad = 0.0;  // in air; azimuth from -Z (north) towards +X (east)
-  double intensity = 1.0;                         // 1: clear day
+  double elevation_rad = 1.0,
+         azimuth_rad = 0.0;  // in air; azimuth from -Z (north) towards +X (east)
+  double intensity = 1.0;    // 1: clear day
 };
 
 struct Water {
@@ -115,14 +116,17 @@ struct Scene {
 
   // World_from_mount at a time (objects move in later versions; now the chain of mounts).
   Pose world_from(const Mount& mount) const;
+  // World_from_model of one copy, the object's scale in it: copy < object.instance_count(). After
+  // loading, scale is 1 wherever there are copies: theirs hold it.
+  Mat4 world_from_copy(const Object& object, std::size_t copy) const;
 };
 
 struct SceneOptions {
   Vec3 offset_m{0.0};  // added to everything fixed to the world: to test far from the origin
 };
 
-// Reads a scene file. Every error names file, line and key, what was found, what is accepted (an
-// unknown key with the nearest known one).
+// Reads a scene file (its format: assets/scenes/README.md). Every error names file, line and key,
+// what was found, what is accepted (an unknown key with the nearest known one).
 Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& options = {});
 
 // A scene that shows one model: framed by a camera, lit by sun, no water. For `render model.glb`.

@@ -1,0 +1,117 @@
+// Loads a scene: includes, keys, models, places, copies, labels; each step a file of its own.
+#include "engine/scene/scene.hpp"
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "engine/core/check.hpp"
+#include "engine/scene/scene_copies.hpp"
+#include "engine/scene/scene_draft.hpp"
+#include "engine/scene/scene_text.hpp"
+
+namespace neritic::scene {
+namespace {
+
+// The clip of that name. (Names may repeat in a file; the first counts.)
+Status find_clips(SceneDraft& draft, const std::vector<std::shared_ptr<const Model>>& models) {
+  for (ObjectDraft& object : draft.objects) {
+    if (object.clip.empty()) continue;
+    const Model& model = *models[static_cast<std::size_t>(object.object.model)];
+    std::vector<std::string_view> names;
+    for (const Clip& clip : model.clips) {
+      if (clip.name == object.clip && object.object.clip < 0)
+        object.object.clip = static_cast<int>(names.size());
+      names.push_back(clip.name);
+    }
+    if (object.object.clip >= 0) continue;
+    if (names.empty())
+      return bad_input("{}: found \"{}\"; accepted: none, the model has no clips",
+                       object.place_clip, printable(object.clip));
+    return bad_input("{}: found \"{}\"; accepted: a clip of the model: {}", object.place_clip,
+                     printable(object.clip), printable(join(names), 300));
+  }
+  return {};
+}
+
+// Gives every copy a label of its own, from 1.
+Status number_instances(SceneDraft& draft) {
+  std::size_t next = 1;
+  for (ObjectDraft& object : draft.objects) {
+    const std::size_t count = object.object.instance_count();
+    if (count > kMaxInstances + 1 - next)
+      return bad_input(
+          "{}: {} copies make {} instances in all; accepted: at most {} (16-bit labels)",
+          object.place, count, next - 1 + count, kMaxInstances);
+    object.object.instance = static_cast<std::uint16_t>(next);
+    next += count;
+  }
+  return {};
+}
+
+void move_out(SceneDraft& draft, const Vec3& offset_m) {
+  Scene& scene = draft.scene;
+  const auto moved = [&offset_m](Mount mount) {
+    if (mount.object < 0) mount.pose.position_m += offset_m;
+    return mount;
+  };
+  for (ObjectDraft& object : draft.objects) {
+    object.object.mount = moved(object.object.mount);
+    // Into the copies, so that object_from_copy is all there is to a copy.
+    for (Mat4& copy : object.object.copies) copy = glm::scale(copy, object.object.scale);
+    if (!object.object.copies.empty()) object.object.scale = Vec3(1.0);
+    scene.objects.push_back(std::move(object.object));
+  }
+  const auto move_sensors = [&moved](auto& from, auto& to) {
+    for (auto& sensor : from) {
+      sensor.sensor.mount = moved(sensor.sensor.mount);
+      to.push_back(std::move(sensor.sensor));
+    }
+  };
+  move_sensors(draft.cameras, scene.cameras);
+  move_sensors(draft.sonars, scene.sonars);
+  move_sensors(draft.lamps, scene.lamps);
+}
+
+}  // namespace
+
+Pose Scene::world_from(const Mount& mount) const {
+  Pose pose = mount.pose;
+  std::size_t steps = 0;
+  for (int object = mount.object; object >= 0;) {
+    const auto index = static_cast<std::size_t>(object);
+    NERITIC_CHECK(index < objects.size() && steps++ < objects.size(), "object {} of {}", index,
+                  objects.size());
+    pose = objects[index].mount.pose * pose;
+    object = objects[index].mount.object;
+  }
+  return pose;
+}
+
+Mat4 Scene::world_from_copy(const Object& object, std::size_t copy) const {
+  const Mat4 world_from_object = to_matrix(world_from(object.mount));
+  const bool single = object.copies.empty();
+  return glm::scale(single ? world_from_object : world_from_object * object.copies.at(copy),
+                    object.scale);
+}
+
+Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& options) {
+  NERITIC_TRY(const SceneSource source, read_scene_source(path));
+  NERITIC_TRY(SceneDraft draft, read_draft(source));
+  NERITIC_TRY_STATUS(place_all(draft));
+  NERITIC_TRY(LoadedModels loaded, load_models(draft.requests));
+  for (ObjectDraft& object : draft.objects)
+    object.object.model = loaded.model_of_request[object.request];
+  NERITIC_TRY_STATUS(find_clips(draft, loaded.models));
+  NERITIC_TRY_STATUS(scatter_all(draft, loaded.models));
+  NERITIC_TRY_STATUS(number_instances(draft));
+  move_out(draft, options.offset_m);
+  for (const auto& model : loaded.models)
+    for (const std::string& note : model->notes)
+      if (std::find(draft.scene.notes.begin(), draft.scene.notes.end(), note) ==
+          draft.scene.notes.end())
+        draft.scene.notes.push_back(note);
+  draft.scene.models = std::move(loaded.models);
+  return std::move(draft.scene);
+}
+
+}  // namespace neritic::scene

@@ -1,0 +1,120 @@
+// A scene half-way: what its file says, type- and range-checked, while names are not yet resolved
+// nor models loaded. Inside engine/scene only. One thread.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.hpp"
+#include "engine/scene/scene_includes.hpp"
+#include "engine/scene/shapes.hpp"
+
+namespace neritic::scene {
+
+// A pose with the names it depends on. place_*: "file:line: key", for errors.
+struct PlacementDraft {
+  Pose pose;
+  std::string on, look_at;  // names of objects; empty: none
+  std::optional<Vec3> look_at_m;
+  std::string place_on, place_look_at;
+};
+
+struct Look {
+  Vec3 color{0.5};  // linear
+  double roughness = 0.9, metallic = 0.0;
+  bool double_sided = false;
+  std::filesystem::path color_texture;
+  double texture_m = 1.0;
+};
+
+// What an object draws. Two requests with the same identity() are the same model.
+struct ModelRequest {
+  enum class Kind { kFile, kShape, kTerrain };
+  Kind kind = Kind::kFile;
+  std::filesystem::path file;  // of kFile and kTerrain
+  std::string node;            // of kFile; empty: the whole scene of the file
+  std::string shape;           // of kShape
+  double radius_m = 0.5, height_m = 1.0;
+  Vec3 size_m{1.0};
+  int segments = 48;
+  bool inside_out = false;
+  HeightfieldOptions heights;
+  Look look;  // of kShape and kTerrain
+  std::string place;
+
+  std::string base_identity() const;  // without the node
+  std::string identity() const { return base_identity() + "#" + node; }
+};
+
+struct ScatterDraft {
+  std::uint32_t count = 1;
+  std::uint64_t seed = 0;
+  double x_min_m = 0, z_min_m = 0, x_max_m = 0, z_max_m = 0;
+  std::string on;
+  double scale_min = 1.0, scale_max = 1.0;
+  bool align_to_surface = false;
+  double sink_m = 0.0;
+  struct KeepOut {
+    double x_m, z_m, radius_m;
+  };
+  std::vector<KeepOut> keep_out;
+  std::string place;  // of the table
+};
+
+struct ObjectDraft {
+  Object object;
+  PlacementDraft placement;
+  std::size_t request = 0;  // index into SceneDraft::requests
+  std::string clip, place_clip;
+  std::optional<ScatterDraft> scatter;
+  std::string place, place_node;
+};
+
+template <class Sensor>
+struct MountedDraft {
+  Sensor sensor;
+  PlacementDraft placement;
+  std::string place;
+};
+
+struct SceneDraft {
+  Scene scene;  // title, seed, classes, sun, water
+  std::vector<ModelRequest> requests;
+  std::vector<ObjectDraft> objects;
+  std::vector<MountedDraft<Camera>> cameras;
+  std::vector<MountedDraft<Sonar>> sonars;
+  std::vector<MountedDraft<Lamp>> lamps;
+};
+
+// scene_read.cpp: the whole file. scene_read_object.cpp, scene_read_sensor.cpp: its parts.
+Result<SceneDraft> read_draft(const SceneSource& source);
+
+class TableReader;
+// The keys that camera, sonar, lamp and object share. default_on: the object that the table is in.
+PlacementDraft read_placement(TableReader& reader, const std::string& default_on);
+std::string read_name(TableReader& reader, const std::string& otherwise);
+// Each appends to the draft. parent_object carries the sensors and prefixes their names; empty:
+// none.
+Status read_objects(SceneDraft& draft, const SceneSource& source,
+                    const std::vector<TomlValue>& tables, const std::string& path);
+Status read_sensors(SceneDraft& draft, TableReader& parent, const std::string& parent_object);
+
+// scene_models.cpp: one model a distinct request, in the order of first use, and each request's.
+struct LoadedModels {
+  std::vector<std::shared_ptr<const Model>> models;
+  std::vector<int> model_of_request;
+};
+Result<LoadedModels> load_models(const std::vector<ModelRequest>& requests);
+
+// scene_node.cpp: the model that draws only that node and what hangs below it.
+Result<Model> model_of_node(const Model& model, const std::string& node);
+
+// scene_place.cpp: names to indices, look_at to rotations.
+Status place_all(SceneDraft& draft);
+
+// scene_scatter.cpp: fills the copies of objects that are scattered. Needs placed objects.
+Status scatter_all(SceneDraft& draft, const std::vector<std::shared_ptr<const Model>>& models);
+
+}  // namespace neritic::scene

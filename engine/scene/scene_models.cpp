@@ -1,0 +1,151 @@
+// Loads the models of a scene: each distinct file, shape and terrain once, several at a time. The
+// order of the result is that of first use, whatever the threads did. Called from one thread.
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <system_error>
+#include <thread>
+
+#include "engine/scene/gltf_loader.hpp"
+#include "engine/scene/image_file.hpp"
+#include "engine/scene/scene_draft.hpp"
+
+namespace neritic::scene {
+namespace fs = std::filesystem;
+namespace {
+
+std::string identity_of(const fs::path& file) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(file, error);
+  return error ? file.string() : canonical.string();
+}
+
+Result<Material> make_material(const Look& look, bool metres_in_uv, Model& model) {
+  Material material;
+  material.base_color = Vec4f(Vec3f(look.color), 1.0f);
+  material.roughness = static_cast<float>(look.roughness);
+  material.metallic = static_cast<float>(look.metallic);
+  material.double_sided = look.double_sided;
+  if (look.color_texture.empty()) return material;
+  NERITIC_TRY(ImageU8 image, read_image8(look.color_texture, 4));
+  model.images.push_back(std::move(image));
+  model.textures.push_back({0, {}});
+  material.base_color_texture.texture = 0;
+  if (metres_in_uv) {
+    const float repeats_per_m = static_cast<float>(1.0 / look.texture_m);
+    material.base_color_texture.transform_u = {repeats_per_m, 0, 0};
+    material.base_color_texture.transform_v = {0, repeats_per_m, 0};
+  }
+  return material;
+}
+
+Model make_shape(const ModelRequest& request) {
+  if (request.shape == "box") return make_box(request.size_m);
+  if (request.shape == "plane") return make_plane(request.size_m.x, request.size_m.z);
+  if (request.shape == "cylinder")
+    return make_cylinder(request.radius_m, request.height_m, request.segments);
+  return make_sphere(request.radius_m, request.segments);
+}
+
+Result<Model> load_base(const ModelRequest& request) {
+  if (request.kind == ModelRequest::Kind::kFile) return load_gltf(request.file);
+  Model model;
+  if (request.kind == ModelRequest::Kind::kTerrain) {
+    NERITIC_TRY(const Heightfield field, read_heightfield(request.file, request.heights));
+    model = make_terrain(field, request.look.texture_m);
+  } else {
+    model = make_shape(request);
+    if (request.inside_out) turn_inside_out(model);
+  }
+  const bool metres_in_uv = request.shape == "box" || request.shape == "plane";
+  NERITIC_TRY(Material material, make_material(request.look, metres_in_uv, model));
+  model.materials.push_back(std::move(material));
+  for (Primitive& primitive : model.meshes[0].primitives) primitive.material = 0;
+  return model;
+}
+
+// Runs load_base for each base, the largest files first, on as many threads as the machine has.
+std::vector<std::optional<Result<Model>>> load_bases(
+    const std::vector<const ModelRequest*>& bases) {
+  std::vector<std::size_t> order(bases.size());
+  std::vector<std::uintmax_t> bytes(bases.size(), 0);
+  for (std::size_t i = 0; i < bases.size(); ++i) {
+    order[i] = i;
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(bases[i]->file, error);
+    if (!error) bytes[i] = size;
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return bytes[a] > bytes[b]; });
+  std::vector<std::optional<Result<Model>>> results(bases.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < order.size(); i = next++)
+      results[order[i]].emplace(load_base(*bases[order[i]]));
+  };
+  std::vector<std::thread> helpers;
+  const std::size_t threads =
+      std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), bases.size());
+  try {
+    for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
+  } catch (const std::system_error&) {
+    // No thread to be had: this one does the work.
+  }
+  work();
+  for (std::thread& helper : helpers) helper.join();
+  return results;
+}
+
+}  // namespace
+
+std::string ModelRequest::base_identity() const {
+  if (kind == Kind::kFile) return "file " + identity_of(file);
+  const std::string of_look =
+      fmt::format("{} {} {} {} {} {} {} {}", look.color.x, look.color.y, look.color.z,
+                  look.roughness, look.metallic, look.double_sided, look.texture_m,
+                  look.color_texture.empty() ? std::string() : identity_of(look.color_texture));
+  if (kind == Kind::kTerrain)
+    return fmt::format("terrain {} {} {} {} {}", heights.cell_m, heights.scale, heights.offset_m,
+                       identity_of(file), of_look);
+  return fmt::format("shape {} {} {} {} {} {} {} {} {}", shape, radius_m, height_m, size_m.x,
+                     size_m.y, size_m.z, segments, inside_out, of_look);
+}
+
+Result<LoadedModels> load_models(const std::vector<ModelRequest>& requests) {
+  std::map<std::string, std::size_t> base_index;
+  std::vector<const ModelRequest*> bases;
+  std::vector<std::size_t> base_of_request;
+  for (const ModelRequest& request : requests) {
+    const auto [at, is_new] = base_index.emplace(request.base_identity(), bases.size());
+    if (is_new) bases.push_back(&request);
+    base_of_request.push_back(at->second);
+  }
+  auto results = load_bases(bases);
+  for (std::size_t i = 0; i < bases.size(); ++i)
+    if (!results[i]->ok())
+      return Error{results[i]->error().code, bases[i]->place + ": " + results[i]->error().message};
+
+  LoadedModels loaded;
+  std::map<std::string, int> model_index;
+  std::vector<std::shared_ptr<const Model>> whole(bases.size());
+  for (std::size_t i = 0; i < bases.size(); ++i)
+    whole[i] = std::make_shared<const Model>(std::move(*results[i]).value());
+  for (std::size_t r = 0; r < requests.size(); ++r) {
+    const auto [at, is_new] =
+        model_index.emplace(requests[r].identity(), static_cast<int>(loaded.models.size()));
+    loaded.model_of_request.push_back(at->second);
+    if (!is_new) continue;
+    const std::shared_ptr<const Model>& base = whole[base_of_request[r]];
+    if (requests[r].node.empty()) {
+      loaded.models.push_back(base);
+      continue;
+    }
+    Result<Model> part = model_of_node(*base, requests[r].node);
+    if (!part.ok())
+      return Error{part.error().code, requests[r].place + ": " + part.error().message};
+    loaded.models.push_back(std::make_shared<const Model>(std::move(part).value()));
+  }
+  return loaded;
+}
+
+}  // namespace neritic::scene

@@ -1,0 +1,137 @@
+// Turns the names that placements mention into indices, and look_at into rotations. Positions hang
+// on parents; a look_at hangs on the target's position only, so two things may face each other. A
+// chain that returns to itself is refused. One thread.
+#include <map>
+
+#include "engine/scene/scene_draft.hpp"
+#include "engine/scene/scene_text.hpp"
+
+namespace neritic::scene {
+namespace {
+
+class Placer {
+ public:
+  explicit Placer(SceneDraft& draft) : draft_(draft) {}
+
+  Status place() {
+    for (std::size_t i = 0; i < draft_.objects.size(); ++i) {
+      const ObjectDraft& object = draft_.objects[i];
+      const auto [at, is_new] = index_.emplace(object.object.name, static_cast<int>(i));
+      if (!is_new) return twice(object.place, object.object.name);
+      names_.push_back(object.object.name);
+    }
+    NERITIC_TRY_STATUS(check_sensor_names());
+    for (ObjectDraft& object : draft_.objects) {
+      NERITIC_TRY(object.object.mount.object, find(object.placement.on, object.placement.place_on));
+    }
+    pose_state_.assign(draft_.objects.size(), State::kOpen);
+    for (std::size_t i = 0; i < draft_.objects.size(); ++i) NERITIC_TRY_STATUS(settle(i));
+    for (auto& camera : draft_.cameras)
+      NERITIC_TRY_STATUS(place_sensor(camera.placement, camera.sensor.mount));
+    for (auto& sonar : draft_.sonars)
+      NERITIC_TRY_STATUS(place_sensor(sonar.placement, sonar.sensor.mount));
+    for (auto& lamp : draft_.lamps)
+      NERITIC_TRY_STATUS(place_sensor(lamp.placement, lamp.sensor.mount));
+    return {};
+  }
+
+ private:
+  enum class State { kOpen, kBusy, kDone };
+
+  static Error twice(const std::string& place, const std::string& name) {
+    return bad_input("{}: found \"{}\" a second time; accepted: a name of its own", place, name);
+  }
+
+  Status check_sensor_names() const {
+    std::map<std::string, bool> views, lamps;  // a view's name is a folder's
+    for (const auto& camera : draft_.cameras)
+      if (!views.emplace(camera.sensor.name, true).second)
+        return twice(camera.place, camera.sensor.name);
+    for (const auto& sonar : draft_.sonars)
+      if (!views.emplace(sonar.sensor.name, true).second)
+        return twice(sonar.place, sonar.sensor.name);
+    for (const auto& lamp : draft_.lamps)
+      if (!lamps.emplace(lamp.sensor.name, true).second) return twice(lamp.place, lamp.sensor.name);
+    return {};
+  }
+
+  Result<int> find(const std::string& name, const std::string& place) const {
+    if (name.empty()) return -1;
+    if (const auto at = index_.find(name); at != index_.end()) return at->second;
+    return bad_input(
+        "{}: found \"{}\"; accepted: the name of an object or vehicle{}", place, printable(name),
+        names_.empty() ? std::string() : fmt::format(" (nearest: {})", nearest(name, names_)));
+  }
+
+  Mount& mount_of(std::size_t i) { return draft_.objects[i].object.mount; }
+
+  // World pose of an object whose own rotation and parents are settled.
+  Pose world_pose(int object) {
+    Pose pose;
+    for (; object >= 0; object = mount_of(static_cast<std::size_t>(object)).object)
+      pose = mount_of(static_cast<std::size_t>(object)).pose * pose;
+    return pose;
+  }
+
+  // Settles the object's parent: then its position in the world is known.
+  Status settle_parent(std::size_t i) {
+    const int parent = mount_of(i).object;
+    if (parent < 0) return {};
+    return settle(static_cast<std::size_t>(parent));
+  }
+
+  // Settles the object's pose: its parents first, then what it looks at.
+  Status settle(std::size_t i) {
+    ObjectDraft& object = draft_.objects[i];
+    if (pose_state_[i] == State::kDone) return {};
+    if (pose_state_[i] == State::kBusy || ++depth_ > kMaxDepth)
+      return bad_input(
+          "{}: {} hangs on itself through on or look_at; accepted: no such loop, at most "
+          "{} steps",
+          object.placement.on.empty() ? object.placement.place_look_at : object.placement.place_on,
+          object.object.name, kMaxDepth);
+    pose_state_[i] = State::kBusy;
+    NERITIC_TRY_STATUS(settle_parent(i));
+    NERITIC_TRY(object.object.mount.pose, resolve(object.placement, object.object.mount.object));
+    pose_state_[i] = State::kDone;
+    --depth_;
+    return {};
+  }
+
+  // The placement's pose in its parent's frame. The parent is settled.
+  Result<Pose> resolve(const PlacementDraft& placement, int parent) {
+    if (placement.look_at_m) return look_at(placement.pose.position_m, *placement.look_at_m);
+    if (placement.look_at.empty()) return placement.pose;
+    NERITIC_TRY(const int target, find(placement.look_at, placement.place_look_at));
+    const auto target_index = static_cast<std::size_t>(target);
+    NERITIC_TRY_STATUS(settle_parent(target_index));
+    const Vec3 target_in_world = world_pose(mount_of(target_index).object) *
+                                 draft_.objects[target_index].placement.pose.position_m;
+    const Vec3 target_m = inverse(world_pose(parent)) * target_in_world;
+    if (target_m == placement.pose.position_m)
+      return bad_input("{}: {} is at the very place it would be looked at from; accepted: another",
+                       placement.place_look_at, placement.look_at);
+    return look_at(placement.pose.position_m, target_m);
+  }
+
+  Status place_sensor(const PlacementDraft& placement, Mount& mount) {
+    NERITIC_TRY(mount.object, find(placement.on, placement.place_on));
+    NERITIC_TRY(mount.pose, resolve(placement, mount.object));
+    return {};
+  }
+
+  static constexpr int kMaxDepth = 64;
+  SceneDraft& draft_;
+  std::map<std::string, int> index_;
+  std::vector<std::string_view> names_;
+  std::vector<State> pose_state_;
+  int depth_ = 0;
+};
+
+}  // namespace
+
+Status place_all(SceneDraft& draft) {
+  return Placer(draft).place();
+}
+
+}  // namespace neritic::scene

@@ -1,0 +1,134 @@
+// Reads the scene's own tables (title, classes, sun, water) and the keys that placed things share.
+#include <algorithm>
+#include <cctype>
+
+#include "engine/scene/scene_draft.hpp"
+#include "engine/scene/scene_reader.hpp"
+#include "engine/scene/scene_text.hpp"
+
+namespace neritic::scene {
+namespace {
+
+// Jerlov's optical water types (Jerlov 1976): five oceanic, five coastal.
+constexpr auto kWaterTypes =
+    std::to_array<Key>({"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"});
+
+bool is_name(const std::string& text) {
+  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+  });
+}
+
+Status read_classes(Scene& scene, const SceneSource& source, const TomlValue* table) {
+  for (const ClassName& known : kClasses) scene.class_names[known.id] = known.name;
+  if (!table) return {};
+  for (const TomlEntry& entry : table->entries) {
+    const std::string place = source.place(entry.where) + ": classes." + printable(entry.key);
+    if (!is_name(entry.key))
+      return bad_input("{}: a name of 1 to 64 letters, digits, _ and - is accepted", place);
+    const TomlValue& id = entry.value;
+    if (id.kind != TomlValue::Kind::kInteger || id.integer < 1 || id.integer > 65535)
+      return bad_input("{}: found {}; accepted: a whole number from 1 to 65535", place,
+                       describe(id));
+    for (const auto& [other_id, other_name] : scene.class_names)
+      if (other_id == id.integer || other_name == entry.key)
+        return bad_input("{}: found {}; accepted: a name and number of its own (class {} is {})",
+                         place, describe(id), other_name, other_id);
+    scene.class_names[static_cast<std::uint16_t>(id.integer)] = entry.key;
+  }
+  return {};
+}
+
+Result<Sun> read_sun(const SceneSource& source, const TomlValue& table) {
+  TableReader reader(source, table, "sun", kSunKeys);
+  Sun sun;
+  sun.elevation_rad =
+      radians(reader.number("elevation_deg", 55.0, {0, 90, false, false, "degrees"}));
+  sun.azimuth_rad = radians(reader.number("azimuth_deg", 0.0, kAnyTurn));
+  sun.intensity = reader.number("intensity", 1.0, {0, 1000});
+  NERITIC_TRY_STATUS(reader.status());
+  return sun;
+}
+
+Result<Water> read_water(const SceneSource& source, const TomlValue& table) {
+  TableReader reader(source, table, "water", kWaterKeys);
+  Water water;
+  water.type = reader.choice("type", "II", kWaterTypes);
+  water.scattering = reader.flag("scattering", false);
+  water.surface = reader.flag("surface", false);
+  NERITIC_TRY_STATUS(reader.status());
+  return water;
+}
+
+// yaw, pitch, roll or rotation_xyzw or a look_at: at most one of the three ways.
+void read_rotation(TableReader& reader, PlacementDraft& placement) {
+  const bool turned = reader.has("yaw_deg") || reader.has("pitch_deg") || reader.has("roll_deg");
+  const int ways = int{turned} + int{reader.has("rotation_xyzw")} + int{reader.has("look_at_m")} +
+                   int{reader.has("look_at")};
+  if (ways > 1)
+    reader.refuse_table(
+        "more than one attitude; accepted: one of yaw_deg with pitch_deg and roll_deg, "
+        "rotation_xyzw, look_at_m, look_at");
+  placement.pose.rotation = from_yaw_pitch_roll(radians(reader.number("yaw_deg", 0.0, kAnyTurn)),
+                                                radians(reader.number("pitch_deg", 0.0, kAnyTurn)),
+                                                radians(reader.number("roll_deg", 0.0, kAnyTurn)));
+  const std::vector<double> q = reader.numbers("rotation_xyzw", {4}, {-1.001, 1.001});
+  if (q.size() == 4) {
+    const Quat rotation(q[3], q[0], q[1], q[2]);
+    if (std::abs(glm::length(rotation) - 1.0) > 1e-3)
+      reader.refuse("rotation_xyzw", "a unit quaternion [x, y, z, w]");
+    else
+      placement.pose.rotation = glm::normalize(rotation);
+  }
+}
+
+}  // namespace
+
+std::string read_name(TableReader& reader, const std::string& otherwise) {
+  const std::string name = reader.text("name", otherwise);
+  if (!is_name(name)) reader.refuse("name", "1 to 64 letters, digits, _ and -");
+  return name;
+}
+
+PlacementDraft read_placement(TableReader& reader, const std::string& default_on) {
+  PlacementDraft placement;
+  placement.pose.position_m = reader.vector3("position_m", Vec3(0.0), kAnyMetres);
+  read_rotation(reader, placement);
+  placement.on = reader.text("on", default_on);
+  placement.place_on = reader.place("on");
+  if (reader.has("look_at_m"))
+    placement.look_at_m = reader.vector3("look_at_m", Vec3(0.0), kAnyMetres);
+  placement.look_at = reader.text("look_at", "");
+  placement.place_look_at = reader.place("look_at");
+  if (placement.look_at_m && *placement.look_at_m == placement.pose.position_m)
+    reader.refuse("look_at_m", "a point other than position_m");
+  return placement;
+}
+
+Result<SceneDraft> read_draft(const SceneSource& source) {
+  SceneDraft draft;
+  Scene& scene = draft.scene;
+  TableReader reader(source, source.root, "", kSceneKeys);
+  scene.title = reader.text("title", "");
+  scene.path = source.files.front();
+  scene.seed = reader.whole("seed", 1, 0, INT64_MAX);
+  const TomlValue* classes = reader.table("classes");
+  const TomlValue* sun = reader.table("sun");
+  const TomlValue* water = reader.table("water");
+  const auto& objects = reader.tables("objects");
+  const auto& vehicles = reader.tables("vehicles");
+  NERITIC_TRY_STATUS(reader.status());
+  NERITIC_TRY_STATUS(read_classes(scene, source, classes));
+  if (sun) {
+    NERITIC_TRY(scene.sun, read_sun(source, *sun));
+  }
+  if (water) {
+    NERITIC_TRY(scene.water, read_water(source, *water));
+  }
+  NERITIC_TRY_STATUS(read_objects(draft, source, objects, "objects"));
+  NERITIC_TRY_STATUS(read_objects(draft, source, vehicles, "vehicles"));
+  NERITIC_TRY_STATUS(read_sensors(draft, reader, ""));
+  return draft;
+}
+
+}  // namespace neritic::scene

@@ -1,0 +1,125 @@
+// Reads [[cameras]], [[sonars]] and [[lamps]], of the scene or of an object that carries them.
+#include <cmath>
+
+#include "engine/scene/scene_draft.hpp"
+#include "engine/scene/scene_reader.hpp"
+
+namespace neritic::scene {
+namespace {
+
+constexpr auto kKinds = std::to_array<Key>({"imaging"});
+constexpr auto kGathers = std::to_array<Key>({"plane", "nearest", "published"});
+
+constexpr std::uint64_t kMaxPictureSide = 16384;
+constexpr std::uint64_t kMaxBins = 8192;
+constexpr double kMaxSonarRange_m = 20000.0;
+constexpr Interval kRate{0, 1000, true, false, "hertz"};
+constexpr Interval kNear{0, 10, true, false, "metres"};
+constexpr Interval kStops{-30, 30, false, false, "stops"};
+
+Exposure read_exposure(TableReader& reader) {
+  Exposure exposure;
+  exposure.compensation_ev = reader.number("exposure_compensation_ev", 0.0, kStops);
+  const TomlValue* value = reader.find("exposure");
+  if (!value || (value->kind == TomlValue::Kind::kString && value->text == "auto")) return exposure;
+  if (value->is_number() && kStops.holds(value->number))
+    exposure.fixed_ev = value->number;
+  else
+    reader.refuse("exposure", "\"auto\" or a number in " + kStops.text());
+  return exposure;
+}
+
+void read_camera(TableReader& reader, Camera& camera) {
+  camera.width = static_cast<std::uint32_t>(reader.whole("width", 1280, 1, kMaxPictureSide));
+  camera.height = static_cast<std::uint32_t>(reader.whole("height", 720, 1, kMaxPictureSide));
+  camera.vertical_fov_rad =
+      radians(reader.number("fov_deg", 60.0, {1, 170, true, true, "degrees"}));
+  camera.near_m = reader.number("near_m", 0.05, kNear);
+  camera.rate_hz = reader.number("rate_hz", 30.0, kRate);
+  camera.stereo_baseline_m =
+      reader.number("stereo_baseline_m", 0.0, {0, 10, false, false, "metres"});
+  camera.exposure = read_exposure(reader);
+}
+
+void read_ranges(TableReader& reader, Sonar& sonar) {
+  const std::vector<double> range =
+      reader.numbers("range_m", {2}, {0, kMaxSonarRange_m, false, false, "metres"});
+  if (range.size() == 2) {
+    sonar.range_min_m = range[0];
+    sonar.range_max_m = range[1];
+    if (!(range[0] < range[1]))
+      reader.refuse("range_m", "[nearest, farthest], the nearest smaller than the farthest");
+  }
+  const Interval bin_count{1, static_cast<double>(kMaxBins)};
+  const std::vector<double> bins = reader.numbers("bins", {3}, bin_count);
+  if (bins.size() == 3) {
+    for (const double n : bins)
+      if (n != std::floor(n))
+        reader.refuse("bins",
+                      "whole numbers [range, azimuth, elevation], each in " + bin_count.text());
+    sonar.bins_range = static_cast<std::uint32_t>(bins[0]);
+    sonar.bins_azimuth = static_cast<std::uint32_t>(bins[1]);
+    sonar.bins_elevation = static_cast<std::uint32_t>(bins[2]);
+  }
+}
+
+void read_sonar(TableReader& reader, Sonar& sonar) {
+  sonar.kind = reader.choice("kind", "imaging", kKinds);
+  read_ranges(reader, sonar);
+  sonar.azimuth_rad = radians(reader.number("azimuth_deg", 90.0, {0, 360, true, false, "degrees"}));
+  sonar.elevation_rad =
+      radians(reader.number("elevation_deg", 28.0, {0, 120, true, false, "degrees"}));
+  sonar.rate_hz = reader.number("rate_hz", 10.0, kRate);
+  sonar.gbuffer_scale = reader.number("gbuffer_scale", 0.0, {0, 16});
+  sonar.gather = reader.choice("gather", "", kGathers);
+  sonar.near_m = reader.number("near_m", 0.02, kNear);
+}
+
+void read_lamp(TableReader& reader, Lamp& lamp) {
+  lamp.color = Vec3f(reader.vector3("color", Vec3(1.0), {0, 1}));
+  lamp.intensity_cd = reader.number("intensity_cd", 1000.0, {0, 1e7, false, false, "candela"});
+  const std::vector<double> cone =
+      reader.numbers("cone_deg", {2}, {0, 90, false, false, "degrees"});
+  if (cone.size() != 2) return;
+  lamp.inner_cone_rad = radians(cone[0]);
+  lamp.outer_cone_rad = radians(cone[1]);
+  if (!(cone[0] < cone[1]))
+    reader.refuse("cone_deg", "[inner, outer] half angles, the inner smaller than the outer");
+}
+
+// Reads one array of tables. kind: "cameras"; carried sensors are named after their object.
+template <class Sensor, class Read>
+Status read_array(std::vector<MountedDraft<Sensor>>& out, TableReader& parent, Key kind,
+                  const std::string& object, KeyList keys, Read read) {
+  const std::vector<TomlValue>& tables = parent.tables(kind);
+  NERITIC_TRY_STATUS(parent.status());
+  const std::string singular(kind.substr(0, kind.size() - 1));
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    TableReader reader(parent.source(), tables[i], fmt::format("{}[{}]", parent.path(kind), i),
+                       keys);
+    MountedDraft<Sensor> draft;
+    const std::string own = i == 0 ? singular : fmt::format("{}_{}", singular, i);
+    draft.sensor.name = read_name(reader, own);
+    if (!object.empty()) draft.sensor.name = object + "_" + draft.sensor.name;
+    if (!object.empty() && reader.has("on"))
+      reader.refuse("on", fmt::format("no such key here: it is mounted on {}", object));
+    draft.placement = read_placement(reader, object);
+    draft.place = reader.place("name");
+    read(reader, draft.sensor);
+    NERITIC_TRY_STATUS(reader.status());
+    out.push_back(std::move(draft));
+  }
+  return {};
+}
+
+}  // namespace
+
+Status read_sensors(SceneDraft& draft, TableReader& parent, const std::string& parent_object) {
+  NERITIC_TRY_STATUS(
+      read_array(draft.cameras, parent, "cameras", parent_object, kCameraKeys, read_camera));
+  NERITIC_TRY_STATUS(
+      read_array(draft.sonars, parent, "sonars", parent_object, kSonarKeys, read_sonar));
+  return read_array(draft.lamps, parent, "lamps", parent_object, kLampKeys, read_lamp);
+}
+
+}  // namespace neritic::scene

@@ -1,0 +1,83 @@
+// Reads the keys of one TOML table with type and range checks. The first fault sticks: what is read
+// after it are defaults, and status() tells it as one line (file:line: key: found; accepted). One
+// thread, while a scene loads.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/math.hpp"
+#include "engine/core/result.hpp"
+#include "engine/scene/scene_includes.hpp"
+#include "engine/scene/scene_keys.hpp"
+
+namespace neritic::scene {
+
+// An interval of numbers that a key accepts.
+struct Interval {
+  double min, max;
+  bool min_open = false, max_open = false;
+  const char* unit = "";
+  bool holds(double value) const;
+  std::string text() const;  // "[0, 90] degrees"
+};
+
+// Positions: farther out than the Earth's circumference is a mistake.
+inline constexpr Interval kAnyMetres{-4e7, 4e7, false, false, "metres"};
+inline constexpr Interval kAnyTurn{-360.0, 360.0, false, false, "degrees"};
+
+class TableReader {
+ public:
+  // path: where the table stands in the scene, "sonars[0]"; empty for the scene itself. A key that
+  // is none of keys is the first fault.
+  TableReader(const SceneSource& source, const TomlValue& table, std::string path, KeyList keys);
+
+  bool has(Key key) const { return find(key) != nullptr; }
+  const TomlValue* find(Key key) const;
+
+  bool flag(Key key, bool otherwise);
+  double number(Key key, double otherwise, const Interval& interval);
+  std::uint64_t whole(Key key, std::uint64_t otherwise, std::uint64_t min, std::uint64_t max);
+  std::string text(Key key, std::string otherwise);
+  std::string choice(Key key, std::string otherwise, KeyList options);
+  // A file beside the file that names it; empty where the key is absent. The file must exist.
+  std::filesystem::path file(Key key);
+  // counts: the accepted numbers of elements, e.g. {3} or {3, 4, 5}. Empty where the key is absent.
+  std::vector<double> numbers(Key key, std::vector<std::size_t> counts, const Interval& interval);
+  Vec3 vector3(Key key, const Vec3& otherwise, const Interval& interval);
+  // Rows of numbers, as numbers() each.
+  std::vector<std::vector<double>> rows(Key key, std::vector<std::size_t> counts,
+                                        const Interval& interval);
+  // Entries of an array of tables, or an empty list.
+  const std::vector<TomlValue>& tables(Key key);
+  // A table, or nullptr where the key is absent.
+  const TomlValue* table(Key key);
+
+  // Faults. accepted completes "accepted: ...".
+  void refuse(Key key, std::string_view accepted);
+  void refuse_table(std::string_view complaint);
+  void fail(Error error);
+
+  Status status() const;
+  bool ok() const { return !error_; }
+  Where where() const { return table_->where; }
+  Where where(Key key) const;
+  std::string path(Key key) const;
+  // "scene.toml:12: sonars[0].range_m"
+  std::string place(Key key) const;
+  const SceneSource& source() const { return *source_; }
+
+ private:
+  bool check_numbers(Key key, const TomlValue& value, const std::vector<std::size_t>& counts,
+                     const Interval& interval, std::vector<double>& out);
+
+  const SceneSource* source_;
+  const TomlValue* table_;
+  std::string path_;
+  KeyList keys_;
+  std::optional<Error> error_;
+};
+
+}  // namespace neritic::scene
