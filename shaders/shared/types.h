@@ -20,7 +20,8 @@ using uvec4 = glm::uvec4;
 using ivec2 = glm::ivec2;
 using mat3 = glm::mat3;
 using mat4 = glm::mat4;
-// Three rows of an affine matrix: p' = (dot(row0, p1), dot(row1, p1), dot(row2, p1)), p1 = (p, 1).
+using glm::abs;
+using glm::normalize;
 }  // namespace neritic::shared
 #define NERITIC_SHARED_BEGIN namespace neritic::shared {
 #define NERITIC_SHARED_END }

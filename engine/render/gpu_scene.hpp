@@ -1,0 +1,86 @@
+// A scene on the GPU: vertex and index streams of every mesh, textures, materials, and the list of what
+// is drawn, grouped so that all instances of one primitive are one draw. Made once per scene; owned by
+// the rendering thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/core/result.hpp"
+#include "engine/gpu/device.hpp"
+#include "engine/gpu/pipeline.hpp"
+#include "engine/gpu/resources.hpp"
+#include "engine/scene/scene.hpp"
+#include "shared/raster.h"
+
+namespace neritic::render {
+
+inline constexpr std::uint32_t kNone = ~0u;
+
+struct GpuMaterial {
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  std::uint32_t flags = 0;
+  bool double_sided = false, mask = false, blend = false;
+};
+
+struct GpuPrimitive {
+  scene::Topology topology = scene::Topology::kTriangles;
+  std::uint32_t first_index = 0, index_count = 0;
+  std::uint32_t first_vertex = 0, vertex_count = 0;
+  std::uint32_t material = 0;
+  std::uint32_t first_skin = kNone;   // in the skin stream
+  std::uint32_t first_morph = 0, morph_targets = 0;
+  Vec3 center_m{0.0};  // bounding sphere in the mesh's frame, rest shape
+  double radius_m = 0.0;
+  bool deforms() const { return first_skin != kNone || morph_targets > 0; }
+};
+
+// One appearance of a primitive: object, its model's node, and which copies.
+struct Appearance {
+  std::uint32_t object = 0, node = 0;
+  int copy = -1;           // of Object::copies; -1: the object itself
+  int node_instance = -1;  // of Node::instances
+  std::uint16_t label = 0;
+};
+
+struct DrawGroup {
+  GpuPrimitive primitive;
+  std::vector<Appearance> appearances;
+};
+
+class GpuScene {
+ public:
+  // Uploads everything the scene's objects use. material_layout: set 1 of the raster pipelines.
+  static Result<std::unique_ptr<GpuScene>> create(gpu::Device& device, const scene::Scene& scene,
+                                                  VkDescriptorSetLayout material_layout);
+
+  const gpu::Buffer& positions() const { return positions_; }
+  const gpu::Buffer& surfaces() const { return surfaces_; }
+  const gpu::Buffer& indices() const { return indices_; }
+  const gpu::Buffer& skin() const { return skin_; }
+  const gpu::Buffer& morphs() const { return morphs_; }
+  const std::vector<GpuMaterial>& materials() const { return materials_; }
+  const std::vector<DrawGroup>& groups() const { return groups_; }
+  bool has_emission() const { return has_emission_; }
+  bool has_blended() const { return has_blended_; }
+  bool has_masked() const { return has_masked_; }
+  std::uint64_t triangles() const { return triangles_; }  // of one of each appearance
+
+ private:
+  friend class GpuSceneBuilder;
+  GpuScene() = default;
+  gpu::Buffer positions_, surfaces_, indices_, skin_, morphs_, material_constants_;
+  std::vector<gpu::Image> images_;
+  std::vector<gpu::Sampler> samplers_;
+  std::unique_ptr<gpu::DescriptorArena> descriptors_;
+  std::vector<GpuMaterial> materials_;
+  std::vector<DrawGroup> groups_;
+  bool has_emission_ = false, has_blended_ = false, has_masked_ = false;
+  std::uint64_t triangles_ = 0;
+};
+
+// Set 1 of the raster pipelines.
+Result<gpu::SetLayout> create_material_layout(const gpu::Device& device);
+
+}  // namespace neritic::render

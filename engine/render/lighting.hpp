@@ -1,0 +1,20 @@
+// Sun, lamps and water of a scene as the shaders see them, relative to a view set's origin.
+#pragma once
+
+#include "engine/core/result.hpp"
+#include "engine/render/frame_state.hpp"
+#include "engine/scene/scene.hpp"
+#include "shared/lighting.h"
+
+namespace neritic::render {
+
+// Illuminance of a clear day with the sun in the zenith, lux (CIE S 011 clear sky, rounded).
+inline constexpr double kClearDay_lx = 100000.0;
+// Share of it that comes straight from the sun.
+inline constexpr double kSunShare = 0.85;
+
+// kBadInput for an unknown water type or too many lamps. exposure: of the camera that looks.
+Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& origin_m,
+                                       const scene::Exposure& exposure, bool has_emission);
+
+}  // namespace neritic::render

@@ -1,0 +1,91 @@
+// The passes that make pictures, as free-standing declarations on a frame graph: deform, G-buffer
+// (full or geometry only), shade, forward, tonemap. Each is declared only by who needs it: a scene
+// without skins has no deform pass, a sonar's view no albedo. Rendering thread only.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+
+#include "engine/core/result.hpp"
+#include "engine/gpu/device.hpp"
+#include "engine/gpu/pipeline.hpp"
+#include "engine/graph/frame_graph.hpp"
+#include "engine/render/draw_list.hpp"
+#include "shared/lighting.h"
+
+namespace neritic::render {
+
+// Formats of the G-buffer.
+inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+inline constexpr VkFormat kNormalFormat = VK_FORMAT_R16G16_SNORM;    // octahedral, world axes
+inline constexpr VkFormat kLabelFormat = VK_FORMAT_R16G16_UINT;      // class, instance
+inline constexpr VkFormat kAlbedoFormat = VK_FORMAT_R8G8B8A8_SRGB;   // linear when sampled
+inline constexpr VkFormat kMaterialFormat = VK_FORMAT_R8G8B8A8_UNORM;  // roughness, metal, occlusion, unlit
+inline constexpr VkFormat kEmissiveFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+inline constexpr VkFormat kMotionFormat = VK_FORMAT_R32G32_SFLOAT;   // pixels to the next frame
+inline constexpr VkFormat kHdrFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // exposed radiance
+inline constexpr VkFormat kColorFormat = VK_FORMAT_R8G8B8A8_UNORM;   // sRGB-encoded by the tonemap
+
+// Images of one view set; absent ones are empty handles.
+struct GBuffer {
+  graph::ImageHandle depth, normal, label;              // always
+  graph::ImageHandle albedo, material, emissive, motion;  // as asked for
+  std::uint32_t width = 0, height = 0, layers = 1;
+};
+
+// Vertices of this frame's skinned and morphed primitives; empty handles where there are none.
+struct DeformedGeometry {
+  graph::BufferHandle positions, next_positions;
+};
+
+enum class GBufferKind {
+  kGeometry,  // depth, normal, label: a sonar's
+  kSurface,   // and what shading needs: a camera's
+};
+
+class Renderer {
+ public:
+  static Result<std::unique_ptr<Renderer>> create(gpu::Device& device);
+
+  VkDescriptorSetLayout material_layout() const { return material_layout_.handle(); }
+
+  // Each declares its pass under a name that starts with prefix. References must live until the graph
+  // has run. Errors: a pipeline cannot be made.
+  Result<DeformedGeometry> declare_deform(graph::FrameGraph& graph, const GpuScene& scene, const FrameState& state);
+  Result<GBuffer> declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix, GBufferKind kind,
+                                  const GpuScene& scene, const FrameState& state, const DeformedGeometry& deformed,
+                                  const ViewSet& views, const DrawList& draws);
+  // HDR picture of a surface G-buffer.
+  Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix, const GBuffer& gbuffer,
+                                           const ViewSet& views, const shared::Lighting& lighting);
+  // Blended materials over the HDR picture; only declared where the draw list has some.
+  Result<graph::ImageHandle> declare_forward(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
+                                             const GBuffer& gbuffer, const GpuScene& scene, const DeformedGeometry& deformed,
+                                             const ViewSet& views, const DrawList& draws, const shared::Lighting& lighting);
+  // Display picture, kColorFormat.
+  Result<graph::ImageHandle> declare_tonemap(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
+                                             std::uint32_t width, std::uint32_t height, std::uint32_t layers);
+
+ private:
+  enum class RasterStage { kGeometry, kGeometryMasked, kSurface, kSurfaceMasked, kForward };
+  // stage, topology, motion, emissive, view mask.
+  using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, std::uint32_t>;
+  explicit Renderer(gpu::Device& device) : device_(device) {}
+  Result<const gpu::Pipeline*> raster_pipeline(const RasterKey& key);
+  // The pipelines that a list of draws needs, made before the pass records.
+  struct PreparedDraws;
+  Result<PreparedDraws> prepare(const GpuScene& scene, const std::vector<Draw>& draws, GBufferKind kind, bool forward,
+                                bool motion, bool emissive, std::uint32_t view_mask);
+  static void record_draws(const PreparedDraws& prepared, const GpuScene& scene, const gpu::Buffer* deformed,
+                           const Vec2f& target_size, std::span<const gpu::BoundResource> set0, gpu::Commands& commands);
+
+  gpu::Device& device_;
+  gpu::SetLayout material_layout_;
+  std::map<RasterKey, gpu::Pipeline> raster_;
+  gpu::Pipeline deform_, shade_, tonemap_;
+  gpu::Buffer nothing_;  // bound where a shader declares a buffer that this frame does not use
+};
+
+}  // namespace neritic::render

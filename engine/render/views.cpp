@@ -1,0 +1,63 @@
+#include "engine/render/views.hpp"
+
+namespace neritic::render {
+namespace {
+
+Mat4 clip_from_origin(const Pose& world_from_view, const FrustumTangents& tangents, double near_m,
+                      const Vec3& origin_m) {
+  Pose origin_from_view = world_from_view;
+  origin_from_view.position_m -= origin_m;
+  return reversed_z_projection(tangents, near_m) * to_matrix(inverse(origin_from_view));
+}
+
+}  // namespace
+
+Intrinsics intrinsics_of(const FrustumTangents& t, std::uint32_t width, std::uint32_t height) {
+  Intrinsics k;
+  k.fx = width / (t.right - t.left);
+  k.fy = height / (t.top - t.bottom);
+  k.cx = -t.left * k.fx;
+  k.cy = t.top * k.fy;
+  return k;
+}
+
+std::vector<shared::View> gpu_views(const ViewSet& set) {
+  std::vector<shared::View> out;
+  const Vec3 origin = set.origin_m();
+  for (const ViewDesc& view : set.views) {
+    shared::View v{};
+    v.clip_from_origin = Mat4f(clip_from_origin(view.world_from_view, view.tangents, view.near_m, origin));
+    v.next_clip_from_origin = Mat4f(clip_from_origin(view.next_world_from_view, view.tangents, view.near_m, origin));
+    v.eye = Vec3f(view.world_from_view.position_m - origin);
+    v.near_m = static_cast<float>(view.near_m);
+    const FrustumTangents& t = view.tangents;
+    const Quat& q = view.world_from_view.rotation;
+    v.ray_corner = Vec3f(q * Vec3(t.left, t.top, -1.0));
+    v.ray_dx = Vec3f(q * Vec3((t.right - t.left) / set.width, 0.0, 0.0));
+    v.ray_dy = Vec3f(q * Vec3(0.0, -(t.top - t.bottom) / set.height, 0.0));
+    out.push_back(v);
+  }
+  return out;
+}
+
+bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double radius_m) {
+  if (!(radius_m < 1e9)) return true;
+  const Vec3 origin = set.origin_m();
+  for (const ViewDesc& view : set.views) {
+    Pose origin_from_view = view.world_from_view;
+    origin_from_view.position_m -= origin;
+    const Vec3 p = inverse(origin_from_view) * center_from_origin_m;
+    const FrustumTangents& t = view.tangents;
+    // Signed distances to the side planes through the eye and to the near plane.
+    const auto outside = [&](double a, double b, double tangent) {
+      return (a + b * tangent) / std::sqrt(1.0 + tangent * tangent) > radius_m;
+    };
+    if (p.z - radius_m > -view.near_m) continue;
+    if (outside(p.x, p.z, t.right) || outside(-p.x, p.z, -t.left)) continue;
+    if (outside(p.y, p.z, t.top) || outside(-p.y, p.z, -t.bottom)) continue;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace neritic::render

@@ -1,0 +1,40 @@
+// Views are drawn in sets: one camera, a stereo pair by multiview, a sonar's sectors. All share an
+// origin (a point in the world, double), and everything on the GPU is relative to it in floats.
+// Plain data; any thread.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/core/math.hpp"
+#include "shared/raster.h"
+
+namespace neritic::render {
+
+struct ViewDesc {
+  Pose world_from_view;
+  FrustumTangents tangents;
+  double near_m = 0.05;
+  Pose next_world_from_view;  // at the next frame's time, for motion
+};
+
+struct ViewSet {
+  std::uint32_t width = 1, height = 1;  // pixels, each view's
+  std::vector<ViewDesc> views;          // 1 to shared::kMaxViews
+  Vec3 origin_m() const { return views.front().world_from_view.position_m; }
+  std::uint32_t layers() const { return static_cast<std::uint32_t>(views.size()); }
+};
+
+// Focal lengths and centre in pixels (centres at +0.5, row 0 on top) of a view of that size.
+struct Intrinsics {
+  double fx = 0, fy = 0, cx = 0, cy = 0;
+};
+Intrinsics intrinsics_of(const FrustumTangents& tangents, std::uint32_t width, std::uint32_t height);
+
+// What the shaders see of the set.
+std::vector<shared::View> gpu_views(const ViewSet& set);
+
+// True where a sphere (relative to the set's origin) can be in any view.
+bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double radius_m);
+
+}  // namespace neritic::render

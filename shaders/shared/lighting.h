@@ -1,0 +1,58 @@
+// Light and water as the shading passes see them. Photometric scale: irradiance in lux per colour
+// channel (linear sRGB primaries stand for 600, 550 and 450 nm), radiance in lux per steradian.
+#ifndef NERITIC_SHARED_LIGHTING_H
+#define NERITIC_SHARED_LIGHTING_H
+#include "shared/raster.h"
+
+NERITIC_SHARED_BEGIN
+
+NERITIC_CONST uint kLightSun = 1;
+NERITIC_CONST uint kLightWater = 2;
+NERITIC_CONST uint kLightScattering = 4;
+NERITIC_CONST uint kLightSurface = 8;
+NERITIC_CONST uint kLightEmissive = 16;  // the G-buffer has an emissive image
+
+struct SpotLight {
+  vec3 position;  // relative to the origin
+  vec3 direction;
+  vec3 intensity_cd;
+  float cos_inner;
+  float cos_outer;
+};
+
+struct Lighting {
+  uint terms;             // kLight... bits
+  uint lamp_count;
+  vec3 to_sun;            // unit, in water where there is water
+  vec3 surface_irradiance;  // downwelling just under the surface (in air without water), lux
+  float direct_share;     // of it that arrives in the sun's beam at the surface
+  float origin_depth_m;   // of the view set's origin below y = 0
+  vec3 diffuse_attenuation;  // K_d, 1/m
+  vec3 beam_attenuation;     // c = a + b, 1/m
+  vec3 water_scattering;     // b of pure water, 1/m
+  vec3 particle_scattering;  // b of particles, 1/m
+  vec3 background;        // radiance where nothing is hit and there is no water
+  float emissive_scale;   // lux per steradian of emission 1
+  float exposure;         // multiplies radiance before it is stored
+  float sun_cosine;       // of the refracted sun to the vertical
+  SpotLight lamps[16];
+};
+NERITIC_CONST uint kMaxLamps = 16;
+
+// Bindings of the shade pass.
+NERITIC_CONST uint kShadeViews = 0;
+NERITIC_CONST uint kShadeLighting = 1;
+NERITIC_CONST uint kShadeDepth = 2;
+NERITIC_CONST uint kShadeNormal = 3;
+NERITIC_CONST uint kShadeAlbedo = 4;
+NERITIC_CONST uint kShadeMaterial = 5;
+NERITIC_CONST uint kShadeEmissive = 6;
+NERITIC_CONST uint kShadeHdr = 7;
+NERITIC_CONST uint kShadeGroup = 8;
+
+// Bindings of the tonemap pass.
+NERITIC_CONST uint kTonemapHdr = 0;
+NERITIC_CONST uint kTonemapOut = 1;
+
+NERITIC_SHARED_END
+#endif

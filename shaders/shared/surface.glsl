@@ -1,0 +1,68 @@
+// Light on a surface: Lambert and GGX (Walter et al. 2007; height-correlated Smith, Heitz 2014;
+// Fresnel by Schlick 1994), under sun, diffuse water light and lamps. GLSL only.
+#ifndef NERITIC_SURFACE_GLSL
+#define NERITIC_SURFACE_GLSL
+#include "shared/water.glsl"
+
+struct Surface {
+  vec3 position;  // relative to the origin
+  vec3 normal;    // towards the eye
+  vec3 albedo;
+  float roughness;
+  float metallic;
+  float occlusion;
+};
+
+// BRDF times cosine.
+vec3 reflect_light(Surface s, vec3 to_eye, vec3 to_light) {
+  float n_l = dot(s.normal, to_light);
+  if (n_l <= 0.0) return vec3(0.0);
+  float n_v = max(dot(s.normal, to_eye), 1e-3);
+  vec3 h = normalize(to_eye + to_light);
+  float n_h = max(dot(s.normal, h), 0.0);
+  float alpha = max(s.roughness * s.roughness, 0.002);
+  float a2 = alpha * alpha;
+  float d = n_h * n_h * (a2 - 1.0) + 1.0;
+  float distribution = a2 / (kPi * d * d);
+  float visibility = 0.5 / (n_l * sqrt(n_v * n_v * (1.0 - a2) + a2) + n_v * sqrt(n_l * n_l * (1.0 - a2) + a2));
+  vec3 f0 = mix(vec3(0.04), s.albedo, s.metallic);
+  float one_minus = 1.0 - max(dot(h, to_eye), 0.0);
+  float p5 = one_minus * one_minus;
+  p5 = p5 * p5 * one_minus;
+  vec3 fresnel = f0 + (1.0 - f0) * p5;
+  vec3 diffuse = s.albedo * (1.0 - s.metallic) * (1.0 - fresnel) / kPi;
+  return (diffuse + fresnel * distribution * visibility) * n_l;
+}
+
+// Radiance that the surface sends towards the eye (before the water between).
+vec3 shade_surface(Lighting light, Surface s, vec3 to_eye) {
+  vec3 radiance = vec3(0.0);
+  if ((light.terms & kLightSun) != 0u) {
+    float depth_m = light.origin_depth_m - s.position.y;
+    vec3 irradiance = downwelling(light, depth_m);
+    vec3 direct = direct_share(light, depth_m);
+    radiance += irradiance * direct / light.sun_cosine * reflect_light(s, to_eye, light.to_sun);
+    // Diffuse light comes mostly from above; from below what the deep (or the sand) sends back: an
+    // irradiance reflectance of some percent (Jerlov 1976), more in air.
+    float from_below = (light.terms & kLightWater) != 0u ? 0.08 : 0.35;
+    float up = 0.5 + 0.5 * s.normal.y;
+    float share = mix(from_below, 1.0, up * up * (3.0 - 2.0 * up));
+    vec3 diffuse_color = s.albedo * (1.0 - s.metallic) + mix(vec3(0.04), s.albedo, s.metallic) * 0.6;
+    radiance += irradiance * (1.0 - direct) * share * s.occlusion * diffuse_color / kPi;
+  }
+  for (uint i = 0u; i < light.lamp_count; ++i) {
+    vec3 to_lamp = light.lamps[i].position - s.position;
+    float distance_m = max(length(to_lamp), 1e-3);
+    to_lamp /= distance_m;
+    float cosine = dot(-to_lamp, light.lamps[i].direction);
+    float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, cosine);
+    if (cone <= 0.0) continue;
+    vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m);
+    if ((light.terms & kLightWater) != 0u)
+      arriving *= exp(-min(light.beam_attenuation * distance_m, vec3(80.0)));
+    radiance += arriving * reflect_light(s, to_eye, to_lamp);
+  }
+  return radiance;
+}
+
+#endif

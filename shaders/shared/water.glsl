@@ -1,0 +1,94 @@
+// Light in water. Sources: Mobley, "Light and Water" (1994), ch. 5 (single scattering), Henyey and
+// Greenstein (1941), Morel (1974) for the phase function of pure sea water. GLSL only.
+#ifndef NERITIC_WATER_GLSL
+#define NERITIC_WATER_GLSL
+
+const float kPi = 3.14159265358979;
+// Mean cosine of particle scattering (Petzold's phase function has about 0.924).
+const float kParticleG = 0.924;
+// Light that was scattered before arrives from a broad cone about the zenith; scattered once more by
+// particles it is spread as by this g (a fit, no measurement: the path radiance near the horizon is a
+// few percent of the downwelling irradiance, Jerlov 1976 fig. 36).
+const float kDiffuseG = 0.6;
+
+float henyey_greenstein(float cosine, float g) {
+  float d = 1.0 + g * g - 2.0 * g * cosine;
+  return (1.0 - g * g) / (4.0 * kPi * d * sqrt(d));
+}
+
+// Morel 1974: 0.06225 (1 + 0.835 cos^2), integral 1 over the sphere.
+float sea_water_phase(float cosine) { return 0.06225 * (1.0 + 0.835 * cosine * cosine); }
+
+// Downwelling irradiance at a depth (m, positive down): fades by K_d. In air depth counts as 0.
+vec3 downwelling(Lighting light, float depth_m) {
+  if ((light.terms & kLightWater) == 0u) return light.surface_irradiance;
+  return light.surface_irradiance * exp(-light.diffuse_attenuation * max(depth_m, 0.0));
+}
+
+// Share of the downwelling irradiance that still comes in the sun's beam: scattering takes from it what
+// it turns by more than a small angle (similarity scaling b (1 - g), Joseph, Wiscombe, Weinman 1976).
+vec3 direct_share(Lighting light, float depth_m) {
+  if ((light.terms & kLightWater) == 0u) return vec3(light.direct_share);
+  vec3 turned = light.particle_scattering * (1.0 - kParticleG) + light.water_scattering;
+  return light.direct_share * exp(-turned * max(depth_m, 0.0) / light.sun_cosine);
+}
+
+// What a length of sight does: radiance arriving = transmittance * radiance at its end + added.
+struct Sight {
+  vec3 transmittance;
+  vec3 added;
+};
+
+// From a point at depth_m along the unit direction (world axes) for length_m (may be infinite).
+Sight look_through(Lighting light, float depth_m, vec3 direction, float length_m) {
+  Sight sight;
+  sight.transmittance = vec3(1.0);
+  sight.added = vec3(0.0);
+  if ((light.terms & kLightWater) == 0u) return sight;
+  // Above the surface there is no water.
+  if (direction.y > 0.0) length_m = min(length_m, max(depth_m, 0.0) / direction.y);
+  // Exponents beyond 80 are as good as infinite and keep inf * 0 out.
+  sight.transmittance = exp(-min(light.beam_attenuation * length_m, vec3(80.0)));
+  if ((light.terms & kLightScattering) == 0u || (light.terms & kLightSun) == 0u) return sight;
+  vec3 irradiance = downwelling(light, depth_m);
+  vec3 direct = direct_share(light, depth_m);
+  // The scattering angle is between the light's travel and the way to the eye, so its cosine is that of
+  // the view direction and the direction to the sun.
+  float to_sun = dot(direction, light.to_sun);
+  vec3 from_beam = light.particle_scattering * henyey_greenstein(to_sun, kParticleG) +
+                   light.water_scattering * sea_water_phase(to_sun);
+  vec3 from_diffuse = light.particle_scattering * henyey_greenstein(direction.y, kDiffuseG) +
+                      light.water_scattering * sea_water_phase(direction.y);
+  vec3 source = irradiance * (direct * from_beam / light.sun_cosine + (1.0 - direct) * from_diffuse / 0.8);
+  // Integral of source * exp(-(c + K_d down) s) over the length; down is the sine of the dive angle.
+  vec3 rate = light.beam_attenuation - light.diffuse_attenuation * direction.y;
+  vec3 exponent = clamp(rate * length_m, vec3(-80.0), vec3(80.0));
+  vec3 integral = (1.0 - exp(-exponent)) / (abs(rate) + 1e-9) * sign(rate);
+  sight.added = source * mix(integral, vec3(length_m), lessThan(abs(exponent), vec3(1e-4)));
+  return sight;
+}
+
+// Radiance where sight meets nothing: water to infinity, or to the surface where that is named.
+vec3 look_at_nothing(Lighting light, float depth_m, vec3 direction) {
+  if ((light.terms & kLightWater) == 0u) return light.background;
+  if ((light.terms & kLightSurface) == 0u || direction.y < 1e-3 || depth_m <= 0.0)
+    return look_through(light, depth_m, direction, 1e9).added;
+  float length_m = depth_m / direction.y;
+  Sight sight = look_through(light, depth_m, direction, length_m);
+  // Snell's window: within 48.6 degrees of the zenith the sky, outside the mirrored deep (n = 1.333).
+  float sine_air = 1.333 * sqrt(max(0.0, 1.0 - direction.y * direction.y));
+  vec3 mirrored = look_through(light, 0.0, vec3(direction.x, -direction.y, direction.z), 1e9).added;
+  if (sine_air >= 1.0) return sight.transmittance * mirrored + sight.added;
+  float cosine_air = sqrt(1.0 - sine_air * sine_air);
+  // Fresnel, unpolarised.
+  float rs = (1.333 * direction.y - cosine_air) / (1.333 * direction.y + cosine_air);
+  float rp = (1.333 * cosine_air - direction.y) / (1.333 * cosine_air + direction.y);
+  float reflected = 0.5 * (rs * rs + rp * rp);
+  // Sky radiance gains n^2 on entering the water; a clear sky of a fifth of the light.
+  vec3 sky = light.surface_irradiance * (0.2 / kPi) * 1.777 * vec3(0.8, 0.95, 1.1);
+  float to_sun = dot(direction, light.to_sun);
+  sky += light.surface_irradiance * 60.0 * smoothstep(0.9965, 0.9995, to_sun);
+  return sight.transmittance * mix(sky, mirrored, reflected) + sight.added;
+}
+
+#endif

@@ -1,0 +1,63 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// The published algorithm turned round: for each (theta, phi) cell, every pixel whose direction lies in
+// it, from the last in row-major order to the first; a range bin of the cell counts once, with the
+// last pixel's value. One thread owns a column (kLanes is 1), so nothing races.
+#include "shared/sonar_common.glsl"
+
+// First pixel row below the direction of elevation tan_phi at the pixel column whose distance from the
+// axis is 1 / cos = sec. Neighbouring cells share the expression, so no pixel is lost or counted twice.
+int first_row_below(float tan_phi, float sec) {
+  float v = floor(c.cy - 0.5 - c.fy * sec * tan_phi) + 1.0;
+  return int(clamp(v, 0.0, float(c.height)));
+}
+
+float sec_of(int u) {
+  float tx = (float(u) + 0.5 - c.cx) / c.fx;
+  return sqrt(1.0 + tx * tx);
+}
+
+void add_pixel(ivec3 at, SonarColumn s, uint base, uint stamp) {
+  float planar = planar_metres(texelFetch(depth_image, at, 0).r);
+  if (planar <= 0.0) return;
+  vec3 n = normal_of(at);
+  if (!(dot(n, n) > 0.0)) return;
+  float tx = (float(at.x) + 0.5 - c.cx) / c.fx, ty = (c.cy - (float(at.y) + 0.5)) / c.fy;
+  float length_of = sqrt(1.0 + tx * tx + ty * ty);
+  vec3 right = cross(s.forward, s.up);
+  float along = tx * dot(n, right) + ty * dot(n, s.up) + dot(n, s.forward);
+  float bin = (planar * length_of - c.range_min_m) * c.bins_per_m;
+  if (!(bin >= 0.0 && bin < float(c.n_range))) return;
+  uint slot = slot_of(2, uint(bin));
+  if (load_slot(slot, base) == stamp) return;  // a later pixel has that cell
+  store_slot(slot, base, stamp);
+  float strength = min(facing(-along / length_of), 1.0);
+  if (strength > 0.0) add_return(uint(bin), base, strength, at);
+}
+
+void main() {
+  uint column = gl_GlobalInvocationID.x;
+  uint base = scratch_base(3);
+  if (column >= c.n_azimuth) return;
+  clear_column(3, base);
+  SonarColumn s = columns[column];
+  for (uint row = 0; row < c.n_elevation && s.first_pixel < s.end_pixel; ++row) {
+    float low = rows[row].tan_bottom, high = rows[row].tan_top;
+    // The cell's rows in its outermost and innermost pixel columns bound those in between.
+    float sec_a = sec_of(s.first_pixel), sec_b = sec_of(s.end_pixel - 1);
+    float sec_in = s.first_pixel < int(c.cx) && s.end_pixel > int(c.cx) ? 1.0 : min(sec_a, sec_b);
+    float sec_out = max(sec_a, sec_b);
+    int v_first = min(first_row_below(high, sec_in), first_row_below(high, sec_out));
+    int v_end = max(first_row_below(low, sec_in), first_row_below(low, sec_out));
+    for (int v = v_end - 1; v >= v_first; --v)
+      for (int u = s.end_pixel - 1; u >= s.first_pixel; --u) {
+        float sec = sec_of(u);
+        if (v >= first_row_below(high, sec) && v < first_row_below(low, sec))
+          add_pixel(ivec3(u, v, s.layer), s, base, row + 1);
+      }
+  }
+  write_column(column, base);
+}

@@ -1,0 +1,93 @@
+// A scene on a device, ready to give frames: what `render`, `dive`, `tools/bench` and the golden tests
+// share. One call declares one graph for the sensors asked for (and nothing else), runs it and brings
+// the results to the host in the conventions of the file contract. Rendering thread only.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/image.hpp"
+#include "engine/core/result.hpp"
+#include "engine/gpu/device.hpp"
+#include "engine/gpu/frames.hpp"
+#include "engine/graph/frame_graph.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/scene.hpp"
+#include "tools/session/readback.hpp"
+
+namespace neritic::tools {
+
+// One eye's images at the host. Empty where they were not asked for.
+struct ViewImages {
+  Pose world_from_view;
+  render::Intrinsics intrinsics;
+  double near_m = 0.0;
+  std::uint32_t width = 0, height = 0;
+  ImageF32 depth;       // planar metres, +inf where nothing is hit
+  ImageF32 normals;     // 3 channels, view axes; 0 where nothing is hit
+  ImageU16 labels;      // class
+  ImageU16 instances;
+  ImageU8 color;        // RGB, sRGB
+  ImageF32 motion;      // 2 channels, pixels to the next frame
+};
+
+struct CameraFrame {
+  std::string name;
+  std::vector<ViewImages> eyes;  // one, or left and right
+};
+
+struct Capture {
+  bool color = true;
+  bool geometry = true;  // depth, normals, labels, instances
+  bool motion = true;
+};
+
+struct FrameRequest {
+  double time_s = 0.0;
+  double next_time_s = 1.0 / 30.0;
+  std::vector<std::size_t> cameras;  // indices into the scene's
+  Capture capture;
+};
+
+struct FrameResult {
+  std::vector<CameraFrame> cameras;
+  std::vector<gpu::PassTime> passes;
+  double frame_ms = 0.0;  // declare, record, run, read back
+};
+
+class Session {
+ public:
+  static Result<std::unique_ptr<Session>> create(gpu::Device& device, scene::Scene scene);
+  ~Session();
+
+  const scene::Scene& scene() const { return scene_; }
+  scene::Scene& scene() { return scene_; }  // poses and settings may change between frames, meshes not
+  gpu::Device& device() { return device_; }
+  gpu::Frames& frames() { return *frames_; }
+  const render::GpuScene& gpu_scene() const { return *gpu_scene_; }
+
+  Result<FrameResult> render(const FrameRequest& request);
+  // The newest frame's plan, as text or Graphviz; empty before the first.
+  const std::string& plan_text() const { return plan_text_; }
+  const std::string& plan_graphviz() const { return plan_graphviz_; }
+  void keep_plan_dump(bool on) { keep_dump_ = on; }
+
+ private:
+  explicit Session(gpu::Device& device) : device_(device) {}
+  gpu::Device& device_;
+  scene::Scene scene_;
+  std::unique_ptr<gpu::Frames> frames_;
+  std::unique_ptr<graph::Executor> executor_;
+  std::unique_ptr<render::Renderer> renderer_;
+  std::unique_ptr<render::GpuScene> gpu_scene_;
+  ReadbackPool readback_;
+  std::string plan_text_, plan_graphviz_;
+  bool keep_dump_ = false;
+};
+
+// The views of a camera of the scene: one, or two for a stereo pair, half the baseline to each side.
+render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera);
+
+}  // namespace neritic::tools
