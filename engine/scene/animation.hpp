@@ -2,6 +2,7 @@
 // skin. Pure functions of their arguments; any thread. All matrices are in the model's frame.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "engine/scene/model.hpp"
@@ -9,7 +10,7 @@
 namespace neritic::scene {
 
 struct ModelPose {
-  std::vector<Mat4> model_from_node;            // one a node
+  std::vector<Mat4> model_from_node;              // one a node
   std::vector<std::vector<float>> morph_weights;  // one a node; empty where its mesh has no targets
 };
 

@@ -20,6 +20,7 @@ Result<ImageU8> decode_image8(std::span<const std::byte> bytes, const std::strin
                               std::uint32_t channels = 0);
 // 16-bit PNG as stored (an 8-bit file is an error that says so).
 Result<ImageU16> read_image16(const std::filesystem::path& path);
+Result<ImageU16> decode_image16(std::span<const std::byte> bytes, const std::string& name);
 // True where the file is a PNG with 16 bits a channel.
 bool is_png16(const std::filesystem::path& path);
 // OpenEXR (half, float or uint channels) to float; names gives the channels in order of the result:
@@ -29,6 +30,7 @@ struct ExrImage {
   std::vector<std::string> names;
 };
 Result<ExrImage> read_exr(const std::filesystem::path& path);
+Result<ExrImage> decode_exr(std::span<const std::byte> bytes, const std::string& name);
 
 // 1, 3 or 4 channels. Deterministic bytes for the same pixels.
 Status write_png8(const std::filesystem::path& path, const ImageU8& image);

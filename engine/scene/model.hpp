@@ -47,6 +47,8 @@ struct Primitive {
   std::vector<std::uint32_t> indices;       // always present, in range, a multiple of the topology's size
   std::vector<MorphTarget> targets;
   int material = -1;                        // -1: glTF's default material
+  // Vertices in the file, before flat normals or mirrored texture seams split some of them.
+  std::uint32_t file_vertices = 0;
   Bounds bounds;                            // of the positions, without skin and morphs
 };
 

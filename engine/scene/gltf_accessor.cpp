@@ -1,0 +1,232 @@
+// See gltf_accessor.hpp: where elements lie, checked. Their decoding is in
+// gltf_accessor_decode.cpp.
+#include "engine/scene/gltf_accessor.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "engine/scene/gltf_container.hpp"
+
+namespace neritic::scene::gltf {
+namespace {
+
+// What one file may make the model hold: a base, plus so many times its own bytes.
+constexpr std::size_t kBaseBudgetBytes = std::size_t{256} << 20, kBudgetFactor = 64;
+constexpr std::size_t kMaxBudgetBytes = std::size_t{6} << 30;
+
+int components_of(std::string_view type) {
+  if (type == "SCALAR") return 1;
+  if (type == "VEC2") return 2;
+  if (type == "VEC3") return 3;
+  if (type == "VEC4") return 4;
+  if (type == "MAT4") return 16;
+  return 0;  // MAT2 and MAT3 are used by nothing that a model holds
+}
+
+}  // namespace
+
+Resources::Resources(Field root, std::span<const std::byte> bin, std::filesystem::path folder)
+    : root_(root), bin_(bin), folder_(std::move(folder)), buffers_(root["buffers"].size()) {
+  source_bytes_ = bin.size();
+}
+
+std::size_t Resources::size_of(Component component) {
+  switch (component) {
+    case Component::kInt8:
+    case Component::kUint8:
+      return 1;
+    case Component::kInt16:
+    case Component::kUint16:
+      return 2;
+    case Component::kUint32:
+    case Component::kFloat:
+      return 4;
+  }
+  return 0;
+}
+
+bool Resources::parse_component(Field field, Component& out) {
+  switch (const auto code = field.whole(0)) {
+    case 5120:
+      out = Component::kInt8;
+      return true;
+    case 5121:
+      out = Component::kUint8;
+      return true;
+    case 5122:
+      out = Component::kInt16;
+      return true;
+    case 5123:
+      out = Component::kUint16;
+      return true;
+    case 5125:
+      out = Component::kUint32;
+      return true;
+    case 5126:
+      out = Component::kFloat;
+      return true;
+    default:
+      if (!field.report().failed())
+        field.fail_with("component type {} found, 5120 to 5126 without 5124 are accepted", code);
+      return false;
+  }
+}
+
+std::span<const std::byte> Resources::buffer(int i) {
+  Buffer& buffer = buffers_[i];
+  if (buffer.read) return buffer.bytes;
+  buffer.read = true;
+  const Field field = root_["buffers"].at(i);
+  const Field uri = field["uri"];
+  const std::uint64_t declared = field["byteLength"].whole(0);
+  if (uri.present()) {
+    auto bytes = read_uri(uri.text(), folder_);
+    if (!bytes.ok()) {
+      uri.fail(bytes.error().message);
+      return {};
+    }
+    buffer.owned = std::move(bytes).value();
+    buffer.bytes = buffer.owned;
+    source_bytes_ += buffer.owned.size();
+  } else if (i == 0 && !bin_.empty()) {
+    buffer.bytes = bin_;
+  } else {
+    field.fail("a buffer without bytes is used (no uri, no binary chunk)");
+    return {};
+  }
+  // Bytes beyond the declared length are padding; views may not reach into it.
+  if (declared < buffer.bytes.size()) buffer.bytes = buffer.bytes.first(declared);
+  return buffer.bytes;
+}
+
+std::span<const std::byte> Resources::view_at(int i) {
+  const Field field = root_["bufferViews"].at(i);
+  const int buffer_index = field["buffer"].index(buffers_.size(), "buffers");
+  if (buffer_index < 0) {
+    field.fail("a buffer view without a buffer");
+    return {};
+  }
+  const auto bytes = buffer(buffer_index);
+  const std::uint64_t offset = field["byteOffset"].whole(0), length = field["byteLength"].whole(0);
+  if (field.report().failed()) return {};
+  if (offset > bytes.size() || length > bytes.size() - offset) {
+    field.fail_with("bytes {} + {} found, but buffer {} has {}", offset, length, buffer_index,
+                    bytes.size());
+    return {};
+  }
+  return bytes.subspan(offset, length);
+}
+
+std::span<const std::byte> Resources::view(Field reference) {
+  const int i = reference.index(root_["bufferViews"].size(), "bufferViews");
+  return i < 0 ? std::span<const std::byte>{} : view_at(i);
+}
+
+Field Resources::accessor(Field reference) const {
+  const Field accessors = root_["accessors"];
+  const int i = reference.index(accessors.size(), "accessors");
+  return i < 0 ? reference.absent() : accessors.at(i);
+}
+
+std::size_t Resources::count(Field reference) const {
+  return accessor(reference)["count"].whole(0, std::numeric_limits<std::uint32_t>::max());
+}
+
+bool Resources::charge(std::size_t bytes, Field where) {
+  const std::size_t budget =
+      std::min(kMaxBudgetBytes, kBaseBudgetBytes + kBudgetFactor * source_bytes_);
+  if (bytes > budget - std::min(budget, charged_bytes_)) {
+    where.fail_with("the model would need more than {} MiB, too much for a file of this size",
+                    budget >> 20);
+    return false;
+  }
+  charged_bytes_ += bytes;
+  return true;
+}
+
+bool Resources::resolve(Field reference, std::string_view shapes, Elements& out) {
+  const Field field = accessor(reference);
+  if (!field.present()) return false;
+  const std::string type = field["type"].text();
+  out.components = components_of(type);
+  if (out.components == 0 || shapes.find(type) == shapes.npos) {
+    if (!field.report().failed())
+      reference.fail_with("an accessor of type \"{}\" found, {} is accepted", one_line(type, 20),
+                          shapes);
+    return false;
+  }
+  if (!parse_component(field["componentType"], out.component)) return false;
+  out.normalized = field["normalized"].boolean(false);
+  out.count = field["count"].whole(0, std::numeric_limits<std::uint32_t>::max());
+  const std::size_t element_bytes = size_of(out.component) * out.components;
+  out.stride = element_bytes;
+  if (field.report().failed()) return false;
+  if (!charge(out.count * element_bytes, field)) return false;
+
+  if (const Field view_reference = field["bufferView"]; view_reference.present()) {
+    const auto bytes = view(view_reference);
+    const int view_index = view_reference.index(root_["bufferViews"].size(), "bufferViews");
+    const std::uint64_t offset = field["byteOffset"].whole(0);
+    if (field.report().failed()) return false;
+    const Field stride = root_["bufferViews"].at(view_index)["byteStride"];
+    out.stride = stride.whole(element_bytes, 1 << 20);
+    if (out.stride == 0) out.stride = element_bytes;  // 0 is how glTF 1.0 said "packed"
+    if (field.report().failed()) return false;
+    if (out.stride < element_bytes) {
+      stride.fail_with("{} found, but an element has {} bytes", out.stride, element_bytes);
+      return false;
+    }
+    // Overflow-safe: count and stride are below 2^32 and 2^21.
+    const std::size_t need = out.count == 0 ? 0 : (out.count - 1) * out.stride + element_bytes;
+    if (offset > bytes.size() || need > bytes.size() - offset) {
+      field.fail_with("{} elements need {} bytes from {}, but bufferViews[{}] has {}", out.count,
+                      need, offset, view_index, bytes.size());
+      return false;
+    }
+    out.data = bytes.data() + offset;
+  }
+  if (const Field sparse = field["sparse"]; sparse.present()) return resolve_sparse(sparse, out);
+  return true;
+}
+
+bool Resources::resolve_sparse(Field sparse, Elements& out) {
+  const Field indices = sparse["indices"], values = sparse["values"];
+  out.sparse_count = sparse["count"].whole(0);
+  Elements index_elements;
+  index_elements.components = 1;
+  index_elements.count = out.sparse_count;
+  if (sparse.report().failed()) return false;
+  if (out.sparse_count > out.count) {
+    sparse.fail_with("{} sparse elements found, but the accessor has {}", out.sparse_count,
+                     out.count);
+    return false;
+  }
+  if (!parse_component(indices["componentType"], index_elements.component)) return false;
+  index_elements.stride = size_of(index_elements.component);
+  const std::size_t element_bytes = size_of(out.component) * out.components;
+  const auto place = [&](Field field, std::size_t stride) -> const std::byte* {
+    if (!field["bufferView"].present()) field.fail("no bufferView");
+    const auto bytes = view(field["bufferView"]);
+    const std::uint64_t offset = field["byteOffset"].whole(0);
+    if (field.report().failed()) return nullptr;
+    if (offset > bytes.size() || out.sparse_count > (bytes.size() - offset) / stride) {
+      field.fail_with("{} sparse elements found, but its buffer view has {} bytes",
+                      out.sparse_count, bytes.size());
+      return nullptr;
+    }
+    return bytes.data() + offset;
+  };
+  index_elements.data = place(indices, index_elements.stride);
+  out.sparse_values = place(values, element_bytes);
+  if (sparse.report().failed()) return false;
+  if (out.sparse_count > 0) out.sparse_indices = wholes(index_elements);
+  for (const std::uint32_t i : out.sparse_indices) {
+    if (i < out.count) continue;
+    indices.fail_with("sparse index {} found, but the accessor has {} elements", i, out.count);
+    return false;
+  }
+  return true;
+}
+
+}  // namespace neritic::scene::gltf

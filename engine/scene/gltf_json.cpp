@@ -1,0 +1,207 @@
+// See gltf_json.hpp.
+#include "engine/scene/gltf_json.hpp"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace neritic::scene::gltf {
+namespace {
+
+constexpr int kMaxNesting = 128;  // the specification's own objects nest about ten deep
+
+// Deepest nesting of brackets outside strings. The parser itself is iterative, but whatever walks
+// the document later (path search, destructor) must not exhaust the stack.
+int nesting_of(std::string_view text) {
+  int depth = 0, deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+bool find_path(const Json& from, const Json* wanted, std::string& path) {
+  if (&from == wanted) return true;
+  const std::size_t length = path.size();
+  if (from.is_object()) {
+    for (auto it = from.begin(); it != from.end(); ++it) {
+      path += length == 0 ? it.key() : "." + it.key();
+      if (find_path(*it, wanted, path)) return true;
+      path.resize(length);
+    }
+  } else if (from.is_array()) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      path += fmt::format("[{}]", i);
+      if (find_path(from[i], wanted, path)) return true;
+      path.resize(length);
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string one_line(std::string_view text, std::size_t max_length) {
+  std::string line(text.substr(0, max_length));
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  if (text.size() > max_length) line += "...";
+  return line;
+}
+
+Error Report::error() const {
+  return *error_;
+}
+
+void Report::fail(std::string_view path, std::string_view message) {
+  if (error_) return;
+  const std::string where = path.empty() ? "" : one_line(path) + ": ";
+  error_ = bad_input("{}: {}{}", one_line(file_, 4096), where, one_line(message));
+}
+
+void Report::note(std::string line) {
+  line = one_line(line);
+  if (said_.insert(line).second) notes_.push_back(std::move(line));
+}
+
+Field Field::operator[](std::string_view key) const {
+  if (!value_) return *this;
+  if (!value_->is_object()) {
+    fail_with("{} found, an object is accepted", found());
+    return {root_, nullptr, report_};
+  }
+  const auto it = value_->find(std::string(key));
+  return {root_, it == value_->end() ? nullptr : &*it, report_};
+}
+
+std::size_t Field::size() const {
+  if (!value_) return 0;
+  if (value_->is_array()) return value_->size();
+  fail_with("{} found, an array is accepted", found());
+  return 0;
+}
+
+Field Field::at(std::size_t i) const {
+  return {root_, value_ && value_->is_array() && i < value_->size() ? &(*value_)[i] : nullptr,
+          report_};
+}
+
+std::vector<std::string> Field::keys() const {
+  std::vector<std::string> out;
+  if (!value_) return out;
+  if (!value_->is_object()) {
+    fail_with("{} found, an object is accepted", found());
+    return out;
+  }
+  for (auto it = value_->begin(); it != value_->end(); ++it) out.push_back(it.key());
+  return out;
+}
+
+std::string Field::text(std::string_view fallback) const {
+  if (!value_) return std::string(fallback);
+  if (value_->is_string()) return value_->get<std::string>();
+  fail_with("{} found, a string is accepted", found());
+  return std::string(fallback);
+}
+
+bool Field::boolean(bool fallback) const {
+  if (!value_) return fallback;
+  if (value_->is_boolean()) return value_->get<bool>();
+  fail_with("{} found, true or false is accepted", found());
+  return fallback;
+}
+
+double Field::number(double fallback) const {
+  if (!value_) return fallback;
+  if (value_->is_number()) return value_->get<double>();
+  fail_with("{} found, a number is accepted", found());
+  return fallback;
+}
+
+float Field::number_f(float fallback) const {
+  constexpr double kMax = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(number(fallback), -kMax, kMax));
+}
+
+std::uint64_t Field::whole(std::uint64_t fallback, std::uint64_t max) const {
+  if (!value_) return fallback;
+  std::uint64_t value = 0;
+  bool whole = false;
+  if (value_->is_number_unsigned()) {
+    value = value_->get<std::uint64_t>();
+    whole = true;
+  } else if (value_->is_number_float()) {  // 3.0 is a whole number too
+    const double number = value_->get<double>();
+    whole = number >= 0.0 && number <= 9007199254740992.0 && number == std::floor(number);
+    if (whole) value = static_cast<std::uint64_t>(number);
+  }
+  if (whole && value <= max) return value;
+  if (max == UINT64_MAX)
+    fail_with("{} found, a whole number from 0 is accepted", found());
+  else
+    fail_with("{} found, a whole number from 0 to {} is accepted", found(), max);
+  return fallback;
+}
+
+int Field::index(std::size_t count, std::string_view what) const {
+  if (!value_) return -1;
+  const std::uint64_t value = whole(UINT64_MAX);
+  if (value < count) return static_cast<int>(value);
+  if (!report_->failed()) fail_with("{} found, but the file has {} {}", found(), count, what);
+  return -1;
+}
+
+bool Field::read_numbers(double* out, std::size_t count) const {
+  if (!value_) return false;
+  bool good = value_->is_array() && value_->size() == count;
+  for (std::size_t i = 0; good && i < count; ++i) good = (*value_)[i].is_number();
+  if (!good) {
+    fail_with("{} found, {} numbers are accepted", found(), count);
+    return false;
+  }
+  for (std::size_t i = 0; i < count; ++i) out[i] = (*value_)[i].get<double>();
+  return true;
+}
+
+std::string Field::path() const {
+  std::string path;
+  if (value_) find_path(*root_, value_, path);
+  return path;
+}
+
+std::string Field::found() const {
+  if (!value_) return "nothing";
+  if (value_->is_object()) return "an object";
+  if (value_->is_array()) return fmt::format("an array of {}", value_->size());
+  if (value_->is_string()) return "\"" + one_line(value_->get<std::string>(), 40) + "\"";
+  return one_line(value_->dump(), 40);
+}
+
+void parse_json(std::string_view text, Json& out, Report& report) {
+  if (const int depth = nesting_of(text); depth > kMaxNesting) {
+    report.fail("", fmt::format("JSON nested {} deep, at most {} is accepted", depth, kMaxNesting));
+    return;
+  }
+  try {
+    out = Json::parse(text.begin(), text.end());
+    if (!out.is_object()) report.fail("", "no JSON object found where glTF has one");
+  } catch (const std::exception& exception) {
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
+    std::string_view what = exception.what();
+    if (const auto end = what.find("] "); end != what.npos) what.remove_prefix(end + 2);
+    report.fail("", fmt::format("no glTF JSON: {}", what));
+  }
+}
+
+}  // namespace neritic::scene::gltf

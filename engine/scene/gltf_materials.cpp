@@ -1,0 +1,199 @@
+// Textures, samplers and materials. See gltf_stages.hpp. Source: Khronos glTF 2.0
+// sections 3.8, 3.9; KHR_texture_transform, KHR_materials_emissive_strength, KHR_materials_unlit.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/gltf_stages.hpp"
+
+namespace neritic::scene::gltf {
+namespace {
+
+Wrap parse_wrap(Field field) {
+  switch (field.whole(10497)) {
+    case 10497:
+      return Wrap::kRepeat;
+    case 33648:
+      return Wrap::kMirroredRepeat;
+    case 33071:
+      return Wrap::kClampToEdge;
+    default:
+      field.report().note(field.path() + ": unknown wrap mode, repeat is used");
+      return Wrap::kRepeat;
+  }
+}
+
+Sampler parse_sampler(Field field) {
+  Sampler out;
+  out.wrap_u = parse_wrap(field["wrapS"]);
+  out.wrap_v = parse_wrap(field["wrapT"]);
+  out.mag_linear = field["magFilter"].whole(9729) != 9728;
+  switch (field["minFilter"].whole(9987)) {  // OpenGL's enumerants
+    case 9728:
+      out.min_linear = out.mip_linear = out.mipmapped = false;
+      break;
+    case 9729:
+      out.mip_linear = out.mipmapped = false;
+      break;
+    case 9984:
+      out.min_linear = out.mip_linear = false;
+      break;
+    case 9985:
+      out.mip_linear = false;
+      break;
+    case 9986:
+      out.min_linear = false;
+      break;
+    default:
+      break;
+  }
+  return out;
+}
+
+void load_textures(Loading& loading) {
+  const Field textures = loading.root["textures"], samplers = loading.root["samplers"];
+  const std::size_t n_images = loading.root["images"].size();
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    const Field field = textures.at(i);
+    Texture texture;
+    texture.image = field["source"].index(n_images, "images");
+    const int sampler = field["sampler"].index(samplers.size(), "samplers");
+    if (sampler >= 0) texture.sampler = parse_sampler(samplers.at(sampler));
+    loading.model.textures.push_back(texture);
+  }
+}
+
+// uv' = translation * rotation * scale * uv. A positive angle turns the coordinates
+// counter-clockwise as seen in the picture, whose v axis points down; hence the signs. Checked
+// against the extension's own example: offset (0, 1), a quarter turn, scale 1/2 is the lower left
+// quadrant.
+void parse_transform(Field field, TextureRef& out) {
+  const auto offset = field["offset"].numbers<2>({0.0, 0.0});
+  const auto scale = field["scale"].numbers<2>({1.0, 1.0});
+  const double angle_rad = field["rotation"].number(0.0);
+  const double c = std::isfinite(angle_rad) ? std::cos(angle_rad) : 1.0;
+  const double s = std::isfinite(angle_rad) ? std::sin(angle_rad) : 0.0;
+  out.transform_u = Vec3f(c * scale[0], s * scale[1], offset[0]);
+  out.transform_v = Vec3f(-s * scale[0], c * scale[1], offset[1]);
+}
+
+TextureRef parse_texture_ref(Loading& loading, Field field) {
+  TextureRef out;
+  if (!field.present()) return out;
+  out.texture = field["index"].index(loading.model.textures.size(), "textures");
+  if (out.texture < 0) field.fail("a texture reference without a valid index");
+  Field set = field["texCoord"];
+  const Field transform = field.extension("KHR_texture_transform");
+  if (transform.present()) {
+    parse_transform(transform, out);
+    if (transform["texCoord"].present()) set = transform["texCoord"];
+  }
+  const std::uint64_t uv_set = set.whole(0);
+  if (uv_set > 1)
+    loading.report.note(fmt::format("{}: texture coordinate set {}, 0 is used (0 and 1 are read)",
+                                    set.path(), uv_set));
+  out.uv_set = uv_set == 1 ? 1 : 0;
+  return out;
+}
+
+Vec3f color_of(const std::array<double, 3>& rgb) {
+  return glm::clamp(Vec3f(rgb[0], rgb[1], rgb[2]), 0.0f, 1.0f);
+}
+float unit(Field field, float fallback) {
+  return std::clamp(field.number_f(fallback), 0.0f, 1.0f);
+}
+
+AlphaMode parse_alpha_mode(Field field) {
+  const std::string mode = field.text("OPAQUE");
+  if (mode == "MASK") return AlphaMode::kMask;
+  if (mode == "BLEND") return AlphaMode::kBlend;
+  if (mode != "OPAQUE")
+    field.report().note(fmt::format("{}: \"{}\" is unknown, OPAQUE is used", field.path(), mode));
+  return AlphaMode::kOpaque;
+}
+
+Material parse_material(Loading& loading, Field field) {
+  Material out;
+  out.name = field["name"].text();
+  const Field pbr = field["pbrMetallicRoughness"];
+  const auto base = pbr["baseColorFactor"].numbers<4>({1.0, 1.0, 1.0, 1.0});
+  out.base_color = glm::clamp(Vec4f(base[0], base[1], base[2], base[3]), 0.0f, 1.0f);
+  out.metallic = unit(pbr["metallicFactor"], 1.0f);
+  out.roughness = unit(pbr["roughnessFactor"], 1.0f);
+  out.base_color_texture = parse_texture_ref(loading, pbr["baseColorTexture"]);
+  out.metallic_roughness_texture = parse_texture_ref(loading, pbr["metallicRoughnessTexture"]);
+  out.normal_texture = parse_texture_ref(loading, field["normalTexture"]);
+  out.normal_scale = field["normalTexture"]["scale"].number_f(1.0f);
+  out.occlusion_texture = parse_texture_ref(loading, field["occlusionTexture"]);
+  out.occlusion_strength = unit(field["occlusionTexture"]["strength"], 1.0f);
+  out.emissive_texture = parse_texture_ref(loading, field["emissiveTexture"]);
+  // Emitted light has no upper limit: kept below 1e6 so that products stay finite.
+  const float strength =
+      field.extension("KHR_materials_emissive_strength")["emissiveStrength"].number_f(1.0f);
+  out.emissive = color_of(field["emissiveFactor"].numbers<3>({0.0, 0.0, 0.0})) *
+                 std::clamp(strength, 0.0f, 1e6f);
+  out.alpha_mode = parse_alpha_mode(field["alphaMode"]);
+  out.alpha_cutoff = std::max(0.0f, field["alphaCutoff"].number_f(0.5f));
+  out.double_sided = field["doubleSided"].boolean(false);
+  out.unlit = field.extension("KHR_materials_unlit").present();
+  return out;
+}
+
+std::array<TextureRef*, 5> texture_refs(Material& material) {
+  return {&material.base_color_texture, &material.metallic_roughness_texture,
+          &material.normal_texture, &material.occlusion_texture, &material.emissive_texture};
+}
+
+void start_images(Loading& loading) {
+  const Field images = loading.root["images"];
+  std::vector<bool> used(images.size(), false);
+  for (Material& material : loading.model.materials)
+    for (const TextureRef* ref : texture_refs(material)) {
+      const int image = ref->present() ? loading.model.textures[ref->texture].image : -1;
+      if (image >= 0) used[image] = true;
+    }
+  std::vector<ImageDecoder::Job> jobs;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const Field field = images.at(i);
+    if (!used[i]) continue;
+    ImageDecoder::Job job;
+    job.image = i;
+    job.uri = field["uri"].text();
+    if (job.uri.empty()) job.bytes = loading.resources.view(field["bufferView"]);
+    jobs.push_back(std::move(job));
+  }
+  loading.model.images.assign(images.size(), ImageU8(1, 1, 4, 255));
+  if (!loading.report.failed()) loading.images.start(std::move(jobs));
+}
+
+}  // namespace
+
+void load_materials(Loading& loading) {
+  load_textures(loading);
+  const Field materials = loading.root["materials"];
+  for (std::size_t i = 0; i < materials.size() && !loading.report.failed(); ++i)
+    loading.model.materials.push_back(parse_material(loading, materials.at(i)));
+  if (!loading.report.failed()) start_images(loading);
+}
+
+void finish_images(Loading& loading) {
+  std::vector<bool> broken(loading.model.images.size(), false);
+  for (ImageDecoder::Job& job : loading.images.wait()) {
+    if (job.error.empty()) {
+      loading.model.images[job.image] = std::move(job.picture);
+    } else {
+      broken[job.image] = true;
+      loading.report.note(job.error + "; drawn without it");
+    }
+  }
+  for (Material& material : loading.model.materials)
+    for (TextureRef* ref : texture_refs(material)) {
+      if (!ref->present()) continue;
+      const int image = loading.model.textures[ref->texture].image;
+      if (image < 0)
+        loading.report.note(fmt::format(
+            "textures[{}]: no picture of a supported kind; drawn without it", ref->texture));
+      if (image < 0 || broken[image]) *ref = TextureRef{};
+    }
+}
+
+}  // namespace neritic::scene::gltf
