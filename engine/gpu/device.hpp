@@ -1,5 +1,6 @@
 // The Vulkan 1.3 instance, device and queue that everything runs on. Created once by a program and
-// passed by reference; owned by the thread that renders. Errors carry one sentence a user can act on.
+// passed by reference; owned by the thread that renders. Errors carry one sentence a user can act
+// on.
 #pragma once
 
 #include <volk.h>
@@ -15,14 +16,20 @@ namespace neritic::gpu {
 
 class Allocator;
 
+struct ValidationLog;
+struct ValidationTarget;
+
 struct DeviceOptions {
-  std::string device;            // part of a name (any case) or an index; empty: discrete, integrated, CPU
-  bool validation = false;       // the Khronos layer with synchronization validation
-  bool present = false;          // needs a swapchain: surface extensions are enabled
+  std::string device;  // part of a name (any case) or an index; empty: discrete, integrated, CPU
+  bool validation = false;  // the Khronos layer with synchronization validation
+  bool present = false;     // needs a swapchain: surface extensions are enabled
   // Instance extensions a window system asks for (glfwGetRequiredInstanceExtensions).
   std::vector<const char*> instance_extensions;
   // Where the pipeline cache is kept; empty: not kept. See default_cache_folder().
   std::filesystem::path cache_folder;
+  // Borrowed, may be nullptr: gets every validation message too, those about objects that still
+  // live when the Device goes away included. Without it those are printed as notes.
+  ValidationLog* validation_sink = nullptr;
 };
 
 struct DeviceInfo {
@@ -30,7 +37,12 @@ struct DeviceInfo {
   std::uint32_t index = 0;
   std::uint32_t api_version = 0;
   bool usable = false;
-  std::string missing;  // what it lacks where it is not usable
+  std::string missing;               // what it lacks where it is not usable
+  std::uint32_t max_views = 1;       // of one multiview pass
+  std::uint32_t max_image_size = 0;  // texels along an axis of a 2D image
+  bool timestamps = false;           // its queue can time passes
+  bool shared_memory = false;        // all device memory is also the host's (integrated GPU, CPU)
+  std::uint64_t memory_bytes = 0;    // device-local heaps together
 };
 
 // What validation said. A test fails on any message.
@@ -41,8 +53,8 @@ struct ValidationLog {
 // $XDG_CACHE_HOME/neritic or ~/.cache/neritic; empty where neither is known.
 std::filesystem::path default_cache_folder();
 
-// Every device the loader shows, usable or not. kNoDevice where there is no Vulkan loader or device,
-// with the Debian package to install.
+// Every device the loader shows, usable or not. kNoDevice where there is no Vulkan loader or
+// device, with the Debian package to install.
 Result<std::vector<DeviceInfo>> list_devices();
 
 class Device {
@@ -59,6 +71,12 @@ class Device {
   std::uint32_t queue_family() const { return queue_family_; }
   const DeviceInfo& info() const { return info_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
+  // The optional features that are on (those the device has of independentBlend, samplerAnisotropy,
+  // wideLines, fillModeNonSolid, geometryShader, ...; see physical_device.cpp).
+  const VkPhysicalDeviceFeatures& features() const { return features_; }
+  bool shader_draw_parameters() const { return shader_draw_parameters_; }
+  // Bits of a timestamp that count; 0: the queue has no timestamps.
+  std::uint32_t timestamp_valid_bits() const { return timestamp_valid_bits_; }
   double timestamp_period_ns() const { return limits_.timestampPeriod; }
   std::uint32_t max_views() const { return max_views_; }  // multiview
   bool validation() const { return messenger_ != VK_NULL_HANDLE; }
@@ -69,13 +87,19 @@ class Device {
 
   // Names an object for the debugger and for validation messages (no cost without them).
   void name_object(VkObjectType type, std::uint64_t handle, const std::string& name) const;
+  // A named region for debuggers (no cost without them).
+  void begin_label(VkCommandBuffer commands, const std::string& name) const;
+  void end_label(VkCommandBuffer commands) const;
   // Waits until the GPU has done all that was submitted.
   void wait_idle() const;
-  // Writes the pipeline cache to disk (also done on destruction). Best effort: a cache is no result.
+  // Writes the pipeline cache to disk (also done on destruction). Best effort: a cache is no
+  // result.
   void save_pipeline_cache() const;
 
  private:
-  Device() = default;
+  Device();
+  Status create_device(const DeviceOptions& options);
+  void load_pipeline_cache(const std::filesystem::path& folder);
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
@@ -85,10 +109,18 @@ class Device {
   std::uint32_t max_views_ = 1;
   DeviceInfo info_;
   VkPhysicalDeviceLimits limits_{};
+  VkPhysicalDeviceFeatures features_{};
+  bool shader_draw_parameters_ = false;
+  std::uint32_t timestamp_valid_bits_ = 0;
+  PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
+  PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
+  PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;
   VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
   std::filesystem::path cache_file_;
+  std::uint64_t cache_hash_ = 0;  // of what the file holds: unchanged data is not written again
   std::unique_ptr<Allocator> allocator_;
   std::unique_ptr<ValidationLog> validation_log_;
+  std::unique_ptr<ValidationTarget> validation_target_;
 };
 
 // "vkCreateImage: VK_ERROR_OUT_OF_DEVICE_MEMORY" with a fitting ErrorCode.

@@ -52,6 +52,8 @@ class Allocator {
   // kOutOfMemory names the size. linear: buffers; !linear: optimally tiled images.
   Result<Allocation> allocate(const VkMemoryRequirements& needs, MemoryUse use, bool linear);
   MemoryStatistics statistics() const;
+  // Gives blocks that hold nothing back to the driver (one a kind is kept for the next request).
+  void trim();
 
  private:
   friend class Allocation;

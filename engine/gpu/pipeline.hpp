@@ -1,6 +1,6 @@
 // Pipelines and what they bind. Every pipeline declares its bindings in plain structs whose numbers
-// come from the shared shader headers. Set 0 is written anew for each pass (Commands::bind); further
-// sets are persistent (materials). Move-only owners, named; made on the rendering thread.
+// come from the shared shader headers. Set 0 is written anew for each pass (Commands::bind);
+// further sets are persistent (materials). Move-only owners, named; made on the rendering thread.
 #pragma once
 
 #include <volk.h>
@@ -43,9 +43,9 @@ struct SpecConstant {
 };
 
 struct PipelineLayoutDesc {
-  std::vector<BindingDesc> bindings;               // set 0
-  std::vector<VkDescriptorSetLayout> other_sets;   // sets 1 and up, borrowed
-  std::uint32_t push_constant_bytes = 0;           // at most 128
+  std::vector<BindingDesc> bindings;              // set 0
+  std::vector<VkDescriptorSetLayout> other_sets;  // sets 1 and up, borrowed
+  std::uint32_t push_constant_bytes = 0;          // at most 128
 };
 
 struct ComputePipelineDesc {
@@ -79,8 +79,8 @@ struct GraphicsPipelineDesc {
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
   bool depth_write = true;
   VkCompareOp depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;  // reversed-Z
-  Blend blend = Blend::kNone;  // on the first colour attachment
-  std::uint32_t view_mask = 0;  // multiview; 0: off
+  Blend blend = Blend::kNone;                                  // on the first colour attachment
+  std::uint32_t view_mask = 0;                                 // multiview; 0: off
 };
 // Dynamic state of every graphics pipeline: viewport, scissor, cull mode, front face.
 
@@ -102,6 +102,8 @@ class Pipeline {
   explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 
  private:
+  static Result<Pipeline> create_base(const Device& device, const std::string& name,
+                                      const PipelineLayoutDesc& desc, VkShaderStageFlags stages);
   VkDevice device_ = VK_NULL_HANDLE;
   VkPipeline handle_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
@@ -127,7 +129,8 @@ class DescriptorArena {
   std::size_t current_ = 0;
 };
 
-// What one binding of set 0 is bound to.
+// What one binding is bound to. The elements of a binding with count > 1 are given one by one, in
+// order.
 struct BoundResource {
   std::uint32_t binding = 0;
   VkDescriptorBufferInfo buffer{};
@@ -136,10 +139,12 @@ struct BoundResource {
 BoundResource bound_buffer(std::uint32_t binding, VkBuffer buffer, VkDeviceSize offset = 0,
                            VkDeviceSize size = VK_WHOLE_SIZE);
 BoundResource bound_storage_image(std::uint32_t binding, VkImageView view);  // layout GENERAL
-BoundResource bound_texture(std::uint32_t binding, VkImageView view, VkSampler sampler);  // READ_ONLY
-BoundResource bound_texel_image(std::uint32_t binding, VkImageView view);  // SAMPLED_IMAGE, READ_ONLY
+BoundResource bound_texture(std::uint32_t binding, VkImageView view,
+                            VkSampler sampler);  // SHADER_READ_ONLY_OPTIMAL
+BoundResource bound_texel_image(std::uint32_t binding, VkImageView view);  // SAMPLED_IMAGE, same
 
-void write_descriptors(const Device& device, VkDescriptorSet set, std::span<const BindingDesc> bindings,
+void write_descriptors(const Device& device, VkDescriptorSet set,
+                       std::span<const BindingDesc> bindings,
                        std::span<const BoundResource> resources);
 
 }  // namespace neritic::gpu

@@ -25,8 +25,8 @@ class Buffer {
  public:
   static Result<Buffer> create(const Device& device, const BufferDesc& desc);
   // In memory that someone else owns (aliased transient memory): device memory at an offset.
-  static Result<Buffer> create_at(const Device& device, const BufferDesc& desc, VkDeviceMemory memory,
-                                  VkDeviceSize offset);
+  static Result<Buffer> create_at(const Device& device, const BufferDesc& desc,
+                                  VkDeviceMemory memory, VkDeviceSize offset);
   Buffer() = default;
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;

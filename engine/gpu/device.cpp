@@ -1,0 +1,201 @@
+#include "engine/gpu/device.hpp"
+
+#include <array>
+#include <cstdlib>
+
+#include "engine/core/files.hpp"
+#include "engine/core/hash.hpp"
+#include "engine/gpu/device_select.hpp"
+#include "engine/gpu/error.hpp"
+#include "engine/gpu/instance.hpp"
+#include "engine/gpu/memory.hpp"
+#include "engine/gpu/physical_device.hpp"
+#include "engine/gpu/pipeline_cache.hpp"
+
+namespace neritic::gpu {
+namespace fs = std::filesystem;
+namespace {
+
+std::uint64_t hash_of(std::span<const std::byte> data) {
+  Hash64 hash;
+  hash.add_span(data);
+  return hash.value();
+}
+
+std::vector<DeviceInfo> describe_all(std::span<const VkPhysicalDevice> devices) {
+  std::vector<DeviceInfo> infos;
+  for (const VkPhysicalDevice device : devices)
+    infos.push_back(describe(device, static_cast<std::uint32_t>(infos.size())));
+  return infos;
+}
+
+template <class Function>
+Function instance_function(VkInstance instance, const char* name) {
+  return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
+}
+
+}  // namespace
+
+fs::path default_cache_folder() {
+  // An XDG path that is not absolute is to be ignored (XDG Base Directory Specification).
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && fs::path(xdg).is_absolute())
+    return fs::path(xdg) / "neritic";
+  if (const char* home = std::getenv("HOME"); home && *home)
+    return fs::path(home) / ".cache" / "neritic";
+  return {};
+}
+
+Result<std::vector<DeviceInfo>> list_devices() {
+  ValidationTarget unused;
+  NERITIC_TRY(const InstanceHandles handles, create_instance({}, &unused));
+  const auto devices = physical_devices(handles.instance);
+  std::vector<DeviceInfo> infos;
+  if (devices.ok()) infos = describe_all(devices.value());
+  destroy_instance(handles);
+  if (!devices.ok()) return devices.error();
+  return infos;
+}
+
+Device::Device()
+    : validation_log_(std::make_unique<ValidationLog>()),
+      validation_target_(std::make_unique<ValidationTarget>()) {}
+
+Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
+  std::unique_ptr<Device> device(new Device());
+  *device->validation_target_ = {device->validation_log_.get(), options.validation_sink};
+  NERITIC_TRY(const InstanceHandles handles,
+              create_instance(options, device->validation_target_.get()));
+  device->instance_ = handles.instance;
+  device->messenger_ = handles.messenger;
+  if (handles.debug_utils) {
+    const VkInstance instance = handles.instance;
+    device->set_name_ = instance_function<PFN_vkSetDebugUtilsObjectNameEXT>(
+        instance, "vkSetDebugUtilsObjectNameEXT");
+    device->begin_label_ = instance_function<PFN_vkCmdBeginDebugUtilsLabelEXT>(
+        instance, "vkCmdBeginDebugUtilsLabelEXT");
+    device->end_label_ =
+        instance_function<PFN_vkCmdEndDebugUtilsLabelEXT>(instance, "vkCmdEndDebugUtilsLabelEXT");
+  }
+  NERITIC_TRY(const auto devices, physical_devices(device->instance_));
+  const auto infos = describe_all(devices);
+  NERITIC_TRY(const std::uint32_t chosen, choose_device(infos, options.device));
+  device->physical_ = devices[chosen];
+  device->info_ = infos[chosen];
+  NERITIC_TRY_STATUS(device->create_device(options));
+  device->allocator_ = std::make_unique<Allocator>(*device);
+  device->load_pipeline_cache(options.cache_folder);
+  return device;
+}
+
+Status Device::create_device(const DeviceOptions& options) {
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(physical_, &properties);
+  limits_ = properties.limits;
+  max_views_ = info_.max_views;
+  const QueueChoice queue = choose_queue(physical_);
+  queue_family_ = queue.family;
+  timestamp_valid_bits_ = queue.timestamp_valid_bits;
+
+  FeatureChain features;
+  select_features(physical_, features);
+  features_ = features.core.features;
+  shader_draw_parameters_ = features.v11.shaderDrawParameters;
+
+  std::vector<const char*> extensions;
+  if (options.present) {
+    if (!has_device_extension(physical_, VK_KHR_SWAPCHAIN_EXTENSION_NAME))
+      return failure(ErrorCode::kUnsupported, "device {} cannot show pictures in a window (no {})",
+                     info_.name, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  }
+  const float priority = 1.0f;
+  VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+  queue_info.queueFamilyIndex = queue_family_;
+  queue_info.queueCount = 1;
+  queue_info.pQueuePriorities = &priority;
+  VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.core};
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue_info;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
+  NERITIC_TRY_VK("vkCreateDevice (" + info_.name + ")",
+                 vkCreateDevice(physical_, &info, nullptr, &device_));
+  vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+  name_object(VK_OBJECT_TYPE_QUEUE, reinterpret_cast<std::uint64_t>(queue_), "main queue");
+  return {};
+}
+
+void Device::load_pipeline_cache(const fs::path& folder) {
+  std::vector<std::byte> data;
+  if (!folder.empty()) {
+    cache_file_ = pipeline_cache_file(folder, physical_);
+    VkPhysicalDeviceProperties properties{};
+    vkGetPhysicalDeviceProperties(physical_, &properties);
+    if (const auto file = read_file(cache_file_); file.ok())
+      data = unpack_cache(file.value(), properties);
+    cache_hash_ = data.empty() ? 0 : hash_of(data);
+  }
+  VkPipelineCacheCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+  info.initialDataSize = data.size();
+  info.pInitialData = data.data();
+  VkResult result = vkCreatePipelineCache(device_, &info, nullptr, &pipeline_cache_);
+  if (result != VK_SUCCESS && !data.empty()) {  // the driver refused it after all: start empty
+    info.initialDataSize = 0;
+    info.pInitialData = nullptr;
+    result = vkCreatePipelineCache(device_, &info, nullptr, &pipeline_cache_);
+  }
+  if (result != VK_SUCCESS) pipeline_cache_ = VK_NULL_HANDLE;  // pipelines can do without
+  name_object(VK_OBJECT_TYPE_PIPELINE_CACHE, reinterpret_cast<std::uint64_t>(pipeline_cache_),
+              "pipeline cache");
+}
+
+void Device::save_pipeline_cache() const {
+  if (pipeline_cache_ == VK_NULL_HANDLE || cache_file_.empty()) return;
+  std::size_t size = 0;
+  if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
+  std::vector<std::byte> data(size);
+  if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, data.data()) != VK_SUCCESS) return;
+  data.resize(size);
+  if (hash_of(data) == cache_hash_) return;
+  if (!make_folder(cache_file_.parent_path()).ok()) return;
+  (void)write_file(cache_file_, pack_cache(data));
+}
+
+Device::~Device() {
+  if (device_ != VK_NULL_HANDLE) {
+    wait_idle();
+    save_pipeline_cache();
+    if (pipeline_cache_ != VK_NULL_HANDLE)
+      vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
+    allocator_.reset();
+    validation_target_->log = nullptr;  // what comes now is about leaks: to the sink, or printed
+    vkDestroyDevice(device_, nullptr);
+  }
+  destroy_instance({instance_, messenger_, false});
+}
+
+void Device::name_object(VkObjectType type, std::uint64_t handle, const std::string& name) const {
+  if (!set_name_ || handle == 0) return;
+  VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
+  info.objectType = type;
+  info.objectHandle = handle;
+  info.pObjectName = name.c_str();
+  (void)set_name_(device_, &info);  // a name is no result
+}
+
+void Device::begin_label(VkCommandBuffer commands, const std::string& name) const {
+  if (!begin_label_) return;
+  VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
+  label.pLabelName = name.c_str();
+  begin_label_(commands, &label);
+}
+
+void Device::end_label(VkCommandBuffer commands) const {
+  if (end_label_) end_label_(commands);
+}
+
+void Device::wait_idle() const {
+  (void)vkDeviceWaitIdle(device_);
+}
+
+}  // namespace neritic::gpu

@@ -1,0 +1,48 @@
+// Inside engine/gpu only: the timestamps of one frame in flight and what they say. Rendering
+// thread.
+//
+// Both ends of a region are written when all work before them is complete (ALL_COMMANDS), so that
+// regions follow one another without overlap. What lavapipe's values mean: see frame_timer.cpp.
+#pragma once
+
+#include <volk.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/core/clock.hpp"
+#include "engine/core/result.hpp"
+#include "engine/gpu/frames.hpp"
+
+namespace neritic::gpu {
+
+class FrameTimer {
+ public:
+  // Regions beyond this many in a frame are not timed.
+  static constexpr std::uint32_t kMaxRegions = 256;
+
+  explicit FrameTimer(const Device& device) : device_(&device) {}
+  FrameTimer(FrameTimer&& other) noexcept;
+  FrameTimer& operator=(FrameTimer&&) = delete;
+  ~FrameTimer();
+  Status create();
+
+  // Starts a frame's recording; with on == false nothing is timed.
+  void start(bool on);
+  void begin_region(VkCommandBuffer commands, const std::string& name);
+  void end_region(VkCommandBuffer commands);
+  void stop();  // recording is over
+  // After the GPU is done: the times, in the order in which the regions began. Once a frame.
+  bool collect(std::vector<PassTime>& times);
+
+ private:
+  const Device* device_;
+  VkQueryPool pool_ = VK_NULL_HANDLE;
+  bool on_ = false, pending_ = false;
+  TimeNs record_start_ns_ = 0, record_ns_ = 0;
+  std::vector<std::string> names_;
+  std::vector<std::uint32_t>
+      open_;  // regions that have begun and not ended; kMaxRegions: not timed
+};
+
+}  // namespace neritic::gpu

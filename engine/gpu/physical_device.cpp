@@ -1,0 +1,213 @@
+#include "engine/gpu/physical_device.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "engine/gpu/device_select.hpp"
+#include "engine/gpu/error.hpp"
+
+namespace neritic::gpu {
+namespace {
+
+template <class Struct>
+struct FeatureRow {
+  VkBool32 Struct::*member;
+  const char* name;
+};
+
+// Required beyond Vulkan 1.3: what the engine is built on.
+constexpr std::array kRequired11{
+    FeatureRow<VkPhysicalDeviceVulkan11Features>{&VkPhysicalDeviceVulkan11Features::multiview,
+                                                 "multiview"},
+};
+constexpr std::array kRequired12{
+    FeatureRow<VkPhysicalDeviceVulkan12Features>{
+        &VkPhysicalDeviceVulkan12Features::timelineSemaphore, "timelineSemaphore"},
+    FeatureRow<VkPhysicalDeviceVulkan12Features>{
+        &VkPhysicalDeviceVulkan12Features::scalarBlockLayout, "scalarBlockLayout"},
+    FeatureRow<VkPhysicalDeviceVulkan12Features>{&VkPhysicalDeviceVulkan12Features::hostQueryReset,
+                                                 "hostQueryReset"},
+};
+constexpr std::array kRequired13{
+    FeatureRow<VkPhysicalDeviceVulkan13Features>{
+        &VkPhysicalDeviceVulkan13Features::dynamicRendering, "dynamicRendering"},
+    FeatureRow<VkPhysicalDeviceVulkan13Features>{
+        &VkPhysicalDeviceVulkan13Features::synchronization2, "synchronization2"},
+    FeatureRow<VkPhysicalDeviceVulkan13Features>{&VkPhysicalDeviceVulkan13Features::maintenance4,
+                                                 "maintenance4"},
+};
+
+// Turned on where the device has them; a pass that needs one asks Device::features().
+constexpr std::array kOptional{
+    &VkPhysicalDeviceFeatures::independentBlend,
+    &VkPhysicalDeviceFeatures::samplerAnisotropy,
+    &VkPhysicalDeviceFeatures::wideLines,
+    &VkPhysicalDeviceFeatures::largePoints,
+    &VkPhysicalDeviceFeatures::fillModeNonSolid,
+    &VkPhysicalDeviceFeatures::depthClamp,
+    &VkPhysicalDeviceFeatures::fullDrawIndexUint32,
+    &VkPhysicalDeviceFeatures::multiDrawIndirect,
+    &VkPhysicalDeviceFeatures::drawIndirectFirstInstance,
+    &VkPhysicalDeviceFeatures::geometryShader,  // gl_PrimitiveID in fragment shaders
+    &VkPhysicalDeviceFeatures::fragmentStoresAndAtomics,
+    &VkPhysicalDeviceFeatures::vertexPipelineStoresAndAtomics,
+    &VkPhysicalDeviceFeatures::shaderStorageImageExtendedFormats,
+    &VkPhysicalDeviceFeatures::shaderStorageImageReadWithoutFormat,
+    &VkPhysicalDeviceFeatures::shaderStorageImageWriteWithoutFormat,
+    &VkPhysicalDeviceFeatures::shaderInt16,
+    &VkPhysicalDeviceFeatures::shaderInt64,
+    &VkPhysicalDeviceFeatures::shaderFloat64,
+    &VkPhysicalDeviceFeatures::textureCompressionBC,
+};
+constexpr std::array kOptional11{
+    &VkPhysicalDeviceVulkan11Features::shaderDrawParameters,
+    &VkPhysicalDeviceVulkan11Features::storageBuffer16BitAccess,
+    &VkPhysicalDeviceVulkan11Features::uniformAndStorageBuffer16BitAccess,
+};
+constexpr std::array kOptional12{
+    &VkPhysicalDeviceVulkan12Features::storageBuffer8BitAccess,
+    &VkPhysicalDeviceVulkan12Features::uniformAndStorageBuffer8BitAccess,
+    &VkPhysicalDeviceVulkan12Features::shaderFloat16,
+    &VkPhysicalDeviceVulkan12Features::shaderInt8,
+    &VkPhysicalDeviceVulkan12Features::samplerFilterMinmax,
+    &VkPhysicalDeviceVulkan12Features::drawIndirectCount,
+};
+constexpr std::array kOptional13{
+    &VkPhysicalDeviceVulkan13Features::shaderDemoteToHelperInvocation,
+};
+
+// Adds the names of the required features that have lacks, comma-separated.
+template <class Struct, std::size_t N>
+void add_missing(const Struct& have, const std::array<FeatureRow<Struct>, N>& rows,
+                 std::string& missing) {
+  for (const auto& row : rows)
+    if (!(have.*row.member)) missing += (missing.empty() ? "" : ", ") + std::string(row.name);
+}
+
+template <class Struct, std::size_t N>
+void require(Struct& wanted, const std::array<FeatureRow<Struct>, N>& rows) {
+  for (const auto& row : rows) wanted.*row.member = VK_TRUE;
+}
+
+template <class Struct, std::size_t N>
+void take(Struct& wanted, const Struct& have, const std::array<VkBool32 Struct::*, N>& members) {
+  for (const auto member : members) wanted.*member = have.*member;
+}
+
+std::string missing_of(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
+  if (properties.apiVersion < VK_API_VERSION_1_3)
+    return fmt::format("Vulkan 1.3 (it has {}.{})", VK_API_VERSION_MAJOR(properties.apiVersion),
+                       VK_API_VERSION_MINOR(properties.apiVersion));
+  std::string missing;
+  FeatureChain have;
+  vkGetPhysicalDeviceFeatures2(device, &have.core);
+  add_missing(have.v11, kRequired11, missing);
+  add_missing(have.v12, kRequired12, missing);
+  add_missing(have.v13, kRequired13, missing);
+  if (!choose_queue(device).found)
+    missing += (missing.empty() ? "" : ", ") + std::string("a queue with graphics and compute");
+  return missing;
+}
+
+void describe_memory(VkPhysicalDevice device, DeviceInfo& info) {
+  VkPhysicalDeviceMemoryProperties memory{};
+  vkGetPhysicalDeviceMemoryProperties(device, &memory);
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+    if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
+      info.memory_bytes += memory.memoryHeaps[i].size;
+  info.shared_memory = true;
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+    if (!(memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT))
+      info.shared_memory = false;
+}
+
+}  // namespace
+
+FeatureChain::FeatureChain() {
+  core.pNext = &v11;
+  v11.pNext = &v12;
+  v12.pNext = &v13;
+}
+
+void select_features(VkPhysicalDevice device, FeatureChain& wanted) {
+  FeatureChain have;
+  vkGetPhysicalDeviceFeatures2(device, &have.core);
+  take(wanted.core.features, have.core.features, kOptional);
+  take(wanted.v11, have.v11, kOptional11);
+  take(wanted.v12, have.v12, kOptional12);
+  take(wanted.v13, have.v13, kOptional13);
+  require(wanted.v11, kRequired11);
+  require(wanted.v12, kRequired12);
+  require(wanted.v13, kRequired13);
+}
+
+QueueChoice choose_queue(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  for (std::uint32_t i = 0; i < count; ++i)
+    if ((families[i].queueFlags & kNeeded) == kNeeded)
+      return {true, i, families[i].timestampValidBits};
+  return {};
+}
+
+bool has_device_extension(VkPhysicalDevice device, const char* name) {
+  std::uint32_t count = 0;
+  if (vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS)
+    return false;
+  std::vector<VkExtensionProperties> extensions(count);
+  if (vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()) < VK_SUCCESS)
+    return false;
+  extensions.resize(count);
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+DeviceInfo describe(VkPhysicalDevice device, std::uint32_t index) {
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(device, &properties);
+  DeviceInfo info;
+  info.name = properties.deviceName;
+  info.kind = device_kind_name(properties.deviceType);
+  info.index = index;
+  info.api_version = properties.apiVersion;
+  info.max_image_size = properties.limits.maxImageDimension2D;
+  info.timestamps = choose_queue(device).timestamp_valid_bits > 0;
+  describe_memory(device, info);
+  info.missing = missing_of(device, properties);
+  info.usable = info.missing.empty();
+  if (properties.apiVersion >= VK_API_VERSION_1_2) {
+    VkPhysicalDeviceMultiviewProperties multiview{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_PROPERTIES};
+    VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES,
+                                            &multiview};
+    VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver};
+    vkGetPhysicalDeviceProperties2(device, &all);
+    info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
+    info.max_views = multiview.maxMultiviewViewCount;
+  }
+  return info;
+}
+
+Result<std::vector<VkPhysicalDevice>> physical_devices(VkInstance instance) {
+  std::uint32_t count = 0;
+  VkResult result = vkEnumeratePhysicalDevices(instance, &count, nullptr);
+  std::vector<VkPhysicalDevice> devices(count);
+  if (result == VK_SUCCESS && count > 0)
+    result = vkEnumeratePhysicalDevices(instance, &count, devices.data());
+  // No driver can report itself as a failed initialization.
+  if (result == VK_ERROR_INITIALIZATION_FAILED)
+    count = 0;
+  else if (result < VK_SUCCESS)
+    return vulkan_error(result, "vkEnumeratePhysicalDevices");
+  devices.resize(count);
+  if (devices.empty())
+    return failure(ErrorCode::kNoDevice,
+                   "no Vulkan device: install the Debian package mesa-vulkan-drivers");
+  return devices;
+}
+
+}  // namespace neritic::gpu
