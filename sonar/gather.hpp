@@ -1,0 +1,101 @@
+// The imaging sonar on the GPU: one compute pass that gathers per beam from a G-buffer and sums
+// into range bins with integers, so that the same input gives the same bits in any order. Declared
+// into a frame graph each frame; made once. Rendering thread.
+//
+// Precision: an intensity is rounded to 1 / fixed_scale() (2^-20 for up to 4096 elevation bins, so
+// that their sum cannot overflow 32 bits), which moves a cell of the image by at most half of that.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/graph/frame_graph.hpp"
+#include "shared/sonar.h"
+#include "sonar/beam_grid.hpp"
+
+namespace neritic::sonar {
+
+enum class Gather {
+  kNearest,    // the range of the pixel that the beam hits
+  kPlane,      // the beam meets the plane through that pixel's point and normal
+  kPublished,  // every pixel of the cell, the last of a range bin wins: Algorithm 1 turned round
+};
+const char* name_of(Gather gather);
+// "nearest", "plane", "published"; kBadInput names the others.
+Result<Gather> gather_of(const std::string& name);
+
+// How the images that a gather reads are stored. All sectors have one size and one pinhole.
+struct GBufferLayout {
+  std::uint32_t width = 1, height = 1;
+  Intrinsics intrinsics;
+  bool reversed_z = true;  // depth = near_m / planar metres, else planar metres (R32_SFLOAT)
+  double near_m = 0.02;
+  bool octahedral = true;  // normals R16G16_SNORM octahedral, else unit x, y, z (4 floats)
+  bool normals_face_sensor = true;
+};
+
+struct GatherOptions {
+  Gather gather = Gather::kPlane;
+  bool labels = true;        // make the label image
+  bool reflectivity = true;  // a table by instance label will be given
+};
+
+class SonarGather {
+ public:
+  // kUnsupported where the device's limits do not allow it.
+  static Result<SonarGather> create(gpu::Device& device, const BeamGrid& grid,
+                                    std::vector<Sector> sectors, const GBufferLayout& layout,
+                                    const GatherOptions& options);
+
+  struct Inputs {
+    graph::ImageHandle depth, normals;
+    graph::ImageHandle labels;         // R16G16_UINT class, instance; may be absent
+    graph::BufferHandle reflectivity;  // floats by instance label; may be absent
+    std::uint32_t reflectivities = 0;
+    // Sonar axes from the axes that the normals are in (world axes of a scene's G-buffer).
+    Mat3 sonar_from_gbuffer{1.0};
+    // Where to write; absent: transient buffers of the frame. An imported host-readable buffer
+    // saves a copy on devices that share memory with the host.
+    graph::BufferHandle image_target, labels_target;
+  };
+  struct Outputs {
+    graph::BufferHandle image;   // float [n_range][n_azimuth]
+    graph::BufferHandle labels;  // uint32 [n_range][n_azimuth]; only written where options.labels
+  };
+  // Adds the pass "sonar gather". The object must outlive the graph's run.
+  Outputs declare(graph::FrameGraph& graph, const Inputs& inputs) const;
+
+  std::uint64_t image_bytes() const;
+  double fixed_scale() const { return fixed_scale_; }
+  const BeamGrid& grid() const { return grid_; }
+  const std::vector<Sector>& sectors() const { return sectors_; }
+  const GBufferLayout& layout() const { return layout_; }
+
+ private:
+  struct Pass;
+  SonarGather() = default;
+  void record(const Pass& pass, graph::PassContext& context) const;
+  std::uint64_t scratch_bytes() const;
+
+  BeamGrid grid_;
+  std::vector<Sector> sectors_;
+  GBufferLayout layout_;
+  GatherOptions options_;
+  std::uint32_t columns_per_group_ = 1, groups_ = 1;
+  bool shared_sums_ = true;
+  double fixed_scale_ = 1.0;
+  std::vector<shared::SonarRow> rows_;
+  gpu::Pipeline pipeline_;
+  gpu::Image no_labels_;
+  gpu::Buffer no_buffer_;
+};
+
+// The tables of the pass, for tests. Columns depend on where the normals' axes are.
+std::vector<shared::SonarColumn> column_table(const BeamGrid& grid, std::span<const Sector> sectors,
+                                              const GBufferLayout& layout,
+                                              const Mat3& sonar_from_gbuffer);
+std::vector<shared::SonarRow> row_table(const BeamGrid& grid);
+
+}  // namespace neritic::sonar
