@@ -1,5 +1,17 @@
 // The only file that compiles toml++ (header-only; its errors are values here, not exceptions).
 #define TOML_HEADER_ONLY 1
+// toml++ 3.3 asserts, and with NDEBUG assumes, what a wrong file can break ("[=]"): a failed
+// assertion must become an error of the file. It is thrown to try_parse() and goes no farther.
+#undef NDEBUG
+namespace neritic::scene {
+namespace {
+struct ParserGaveUp {};
+[[noreturn]] void give_up() {
+  throw ParserGaveUp();
+}
+}  // namespace
+}  // namespace neritic::scene
+#define TOML_ASSERT(expression) ((expression) ? static_cast<void>(0) : ::neritic::scene::give_up())
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_FORMATTERS 0
 #define TOML_MAX_NESTED_VALUES 32
@@ -8,6 +20,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "engine/scene/scene_text.hpp"
 
@@ -73,6 +86,27 @@ Status check_lines(std::string_view text, const std::string& file_name) {
   return {};
 }
 
+// The parser's result; nothing where it met text that it has no error for.
+std::optional<toml::parse_result> try_parse(std::string_view text) {
+  try {
+    return toml::parse(text);
+  } catch (const ParserGaveUp&) {
+    return std::nullopt;
+  }
+}
+
+// The line at which try_parse gives up: it reads from the front, so it gives up on every beginning
+// of the text that holds that line, and on none that does not.
+int line_of_giving_up(std::string_view text) {
+  std::vector<std::size_t> line_ends;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] == '\n') line_ends.push_back(i + 1);
+  const auto first = std::partition_point(line_ends.begin(), line_ends.end(), [&](std::size_t end) {
+    return try_parse(text.substr(0, end)).has_value();
+  });
+  return static_cast<int>(first - line_ends.begin()) + 1;
+}
+
 }  // namespace
 
 bool TomlValue::is_table_array() const {
@@ -118,13 +152,16 @@ std::string describe(const TomlValue& value) {
 
 Result<TomlValue> parse_toml(std::string_view text, const std::string& file_name, int file) {
   NERITIC_TRY_STATUS(check_lines(text, file_name));
-  const toml::parse_result parsed = toml::parse(text);
-  if (!parsed) {
-    const toml::parse_error& error = parsed.error();
+  const std::optional<toml::parse_result> parsed = try_parse(text);
+  if (!parsed)
+    return bad_input("{}:{}: not TOML: a key, a value or a table's name in brackets is expected",
+                     file_name, line_of_giving_up(text));
+  if (!*parsed) {
+    const toml::parse_error& error = parsed->error();
     return bad_input("{}:{}: not TOML: {}", file_name, error.source().begin.line,
                      printable(error.description(), 200));
   }
-  return convert_table(parsed.table(), file);
+  return convert_table(parsed->table(), file);
 }
 
 }  // namespace neritic::scene

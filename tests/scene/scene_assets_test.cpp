@@ -1,0 +1,117 @@
+// The scenes in assets/scenes: each loads, and holds what its page and the benchmarks promise.
+#include <gtest/gtest.h>
+
+#include "engine/core/files.hpp"
+#include "engine/scene/animation.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/scene/scene_keys.hpp"
+#include "engine/scene/shapes.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::scene {
+namespace {
+
+Scene load(const std::string& name) {
+  auto scene = load_scene(test::source_dir() / "assets/scenes" / name);
+  if (scene.ok()) return std::move(scene).value();
+  ADD_FAILURE() << scene.error().message;
+  return {};
+}
+
+const Object* find_object(const Scene& scene, std::string_view name) {
+  for (const Object& object : scene.objects)
+    if (object.name == name) return &object;
+  return nullptr;
+}
+
+std::size_t drawn_triangles(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Object& object : scene.objects)
+    count += object.instance_count() * triangle_count(*scene.models.at(object.model));
+  return count;
+}
+
+TEST(SceneAssets, EverySceneLoads) {
+  int count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::source_dir() / "assets/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    const auto scene = load_scene(entry.path());
+    EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
+  }
+  EXPECT_GE(count, 5);
+}
+
+TEST(SceneAssets, TheWreckHasTheRovFacingTheDiverAtTwoToFourMetres) {
+  const Scene scene = load("wreck.toml");
+  for (const char* name : {"seabed", "submarine", "diver", "rov", "shark"})
+    EXPECT_NE(find_object(scene, name), nullptr) << name;
+  ASSERT_TRUE(scene.sun && scene.water);
+  EXPECT_TRUE(scene.water->scattering);
+  EXPECT_EQ(scene.lamps.size(), 2u);
+  ASSERT_EQ(scene.sonars.size(), 1u);
+  ASSERT_GE(scene.cameras.size(), 2u);
+  EXPECT_EQ(scene.cameras[0].name, "overview");
+  const Object* diver = find_object(scene, "diver");
+  ASSERT_NE(diver, nullptr);
+  const Pose sonar_from_world = inverse(scene.world_from(scene.sonars[0].mount));
+  const Vec3 p = sonar_from_world * scene.world_from(diver->mount).position_m;
+  const double range_m = glm::length(p);
+  EXPECT_GT(range_m, 2.0);
+  EXPECT_LT(range_m, 4.0);
+  EXPECT_LT(std::abs(std::atan2(p.x, -p.z)), radians(10.0));
+  EXPECT_LT(std::abs(std::asin(p.y / range_m)), radians(5.0));
+  const Vec3 diver_depth = scene.world_from(diver->mount).position_m;
+  EXPECT_LT(diver_depth.y, -10.0);
+  EXPECT_GT(diver_depth.y, -18.0);
+}
+
+TEST(SceneAssets, TheBenchmarkSceneHasItsSizeAndNothingElse) {
+  const Scene scene = load("benchmark_23k.toml");
+  EXPECT_NEAR(static_cast<double>(drawn_triangles(scene)), 23000.0, 500.0);
+  EXPECT_FALSE(scene.sun || scene.water);
+  EXPECT_TRUE(scene.cameras.empty() && scene.lamps.empty());
+  ASSERT_EQ(scene.sonars.size(), 1u);
+  EXPECT_EQ(scene.sonars[0].bins_azimuth, 512u);
+  EXPECT_EQ(scene.sonars[0].bins_range, 500u);
+  EXPECT_DOUBLE_EQ(scene.sonars[0].azimuth_rad, radians(90.0));
+  EXPECT_DOUBLE_EQ(scene.sonars[0].elevation_rad, radians(28.0));
+  const double sonar_y = scene.world_from(scene.sonars[0].mount).position_m.y;
+  const Object* floor = find_object(scene, "floor");
+  ASSERT_NE(floor, nullptr);
+  EXPECT_NEAR(sonar_y - floor->mount.pose.position_m.y, 1.5, 1e-9);
+}
+
+TEST(SceneAssets, TheInstancesAreAHundredOfTwentyThousandTriangles) {
+  const Scene scene = load("instances.toml");
+  std::size_t hundred = 0;
+  for (const Object& object : scene.objects)
+    if (object.instance_count() == 100) {
+      ++hundred;
+      EXPECT_NEAR(static_cast<double>(triangle_count(*scene.models.at(object.model))), 20000.0,
+                  600.0);
+    }
+  EXPECT_EQ(hundred, 1u);
+}
+
+TEST(SceneAssets, TheSeabedIsATerrainOfAFile) {
+  const Scene scene = load("seabed.toml");
+  const Object* ridge = find_object(scene, "ridge");
+  ASSERT_NE(ridge, nullptr);
+  EXPECT_EQ(triangle_count(*scene.models.at(ridge->model)), 2u * 256u * 256u);
+}
+
+// The format's page names every key that the reader knows.
+TEST(SceneAssets, TheFormatsPageHasEveryKey) {
+  const auto page = read_text(test::source_dir() / "assets/scenes/README.md");
+  ASSERT_TRUE(page.ok());
+  for (const KeyList keys :
+       {KeyList(kSceneKeys), KeyList(kSunKeys), KeyList(kWaterKeys), KeyList(kObjectKeys),
+        KeyList(kScatterKeys), KeyList(kCameraKeys), KeyList(kSonarKeys), KeyList(kLampKeys)})
+    for (const Key key : keys)
+      EXPECT_NE(page->find("`" + std::string(key) + "`"), std::string::npos) << key;
+}
+
+}  // namespace
+}  // namespace neritic::scene
