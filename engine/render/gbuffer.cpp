@@ -15,8 +15,6 @@ VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layo
   return info;
 }
 
-VkRenderingAttachmentInfo no_attachment() { return {VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO}; }
-
 // With one layer multiview is off (mask 0): some devices draw plain views faster.
 std::uint32_t view_mask_of(std::uint32_t layers) { return layers > 1 ? (1u << layers) - 1u : 0u; }
 
@@ -122,7 +120,7 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
         if (deformed.positions) builder.read(deformed.positions, graph::Access::kVertexBuffer);
         if (motion && deformed.next_positions) builder.read(deformed.next_positions, graph::Access::kStorageReadVertex);
       },
-      [this, surface, motion, prepared = std::move(prepared), deformed, &scene, &views, &draws](
+      [this, motion, prepared = std::move(prepared), deformed, &scene, &views, &draws](
           const GBuffer& g, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::BoundResource set0[] = {
@@ -133,11 +131,9 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
                                                                 ? context.buffer(deformed.next_positions).handle()
                                                                 : nothing_.handle())};
         constexpr auto kColor = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        const auto cleared = [&](graph::ImageHandle handle) {
-          return handle ? attachment(context.image(handle), kColor, VK_ATTACHMENT_LOAD_OP_CLEAR) : no_attachment();
-        };
-        std::vector<VkRenderingAttachmentInfo> colors{cleared(g.normal), cleared(g.label)};
-        if (surface) colors.insert(colors.end(), {cleared(g.albedo), cleared(g.material), cleared(g.emissive), cleared(g.motion)});
+        std::vector<VkRenderingAttachmentInfo> colors;
+        for (const graph::ImageHandle handle : {g.normal, g.label, g.albedo, g.material, g.emissive, g.motion})
+          if (handle) colors.push_back(attachment(context.image(handle), kColor, VK_ATTACHMENT_LOAD_OP_CLEAR));
         const VkRenderingAttachmentInfo depth =
             attachment(context.image(g.depth), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_CLEAR);
         begin_rendering(context.cmd(), g, colors, depth);

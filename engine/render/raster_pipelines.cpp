@@ -34,6 +34,11 @@ gpu::VertexStream surface_stream() {
           false};
 }
 
+std::span<const std::uint32_t> gbuffer_fragment(bool emissive, bool motion) {
+  if (emissive) return motion ? shaders::kGbufferEmissiveMotionFrag : shaders::kGbufferEmissiveFrag;
+  return motion ? shaders::kGbufferMotionFrag : shaders::kGbufferFrag;
+}
+
 }  // namespace
 
 Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
@@ -46,7 +51,7 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   desc.name = plain ? "geometry" : stage == RasterStage::kGeometryMasked ? "geometry masked" : surface ? "gbuffer" : "forward";
   desc.vertex_code = plain ? shaders::kGeometryVert : shaders::kGbufferVert;
   desc.fragment_code = plain     ? shaders::kGeometryFrag
-                       : surface ? shaders::kGbufferFrag
+                       : surface ? gbuffer_fragment(emissive, motion)
                        : forward ? shaders::kForwardFrag
                                  : shaders::kGeometryMaskedFrag;
   constexpr auto kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -60,10 +65,7 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
     desc.layout.push_constant_bytes = sizeof(shared::RasterPush);
     desc.streams.push_back(surface_stream());
     desc.constants = {{shared::kSpecMotion, motion}};
-    if (surface) {
-      desc.constants.push_back({shared::kSpecMask, stage == RasterStage::kSurfaceMasked});
-      desc.constants.push_back({shared::kSpecEmissive, emissive});
-    }
+    if (surface) desc.constants.push_back({shared::kSpecMask, stage == RasterStage::kSurfaceMasked});
   }
   desc.topology = topology;
   desc.depth_format = kDepthFormat;
@@ -74,10 +76,9 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
     desc.blend = gpu::Blend::kAlphaOver;
   } else {
     desc.color_formats = {kNormalFormat, kLabelFormat};
-    if (surface)
-      desc.color_formats.insert(desc.color_formats.end(),
-                                {kAlbedoFormat, kMaterialFormat, emissive ? kEmissiveFormat : VK_FORMAT_UNDEFINED,
-                                 motion ? kMotionFormat : VK_FORMAT_UNDEFINED});
+    if (surface) desc.color_formats.insert(desc.color_formats.end(), {kAlbedoFormat, kMaterialFormat});
+    if (surface && emissive) desc.color_formats.push_back(kEmissiveFormat);
+    if (surface && motion) desc.color_formats.push_back(kMotionFormat);
   }
   NERITIC_TRY(auto pipeline, gpu::Pipeline::create(device_, desc));
   return &raster_.emplace(key, std::move(pipeline)).first->second;

@@ -98,7 +98,6 @@ NERITIC_CONST uint kMaterialEmissive = 5;
 // Specialisation constants.
 NERITIC_CONST uint kSpecMotion = 0;
 NERITIC_CONST uint kSpecMask = 1;
-NERITIC_CONST uint kSpecEmissive = 2;
 
 struct RasterPush {
   vec2 target_size;      // pixels, for motion

@@ -3,8 +3,7 @@
 namespace neritic::tools {
 
 void add_commands(CLI::App& app, Run& run) {
-  (void)app;
-  (void)run;
+  add_render_command(app, run);
 }
 
 }  // namespace neritic::tools

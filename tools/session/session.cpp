@@ -3,26 +3,18 @@
 #include "engine/core/clock.hpp"
 #include "engine/render/lighting.hpp"
 #include "tools/session/decode.hpp"
+#include "tools/session/session_work.hpp"
 
 namespace neritic::tools {
 namespace {
-
-// What one camera has in the graph: its CPU data (which must outlive the run) and readback buffers.
-struct CameraWork {
-  std::size_t index = 0;
-  render::ViewSet views;
-  render::DrawList draws;
-  const gpu::Buffer *depth = nullptr, *normal = nullptr, *label = nullptr, *color = nullptr, *motion = nullptr;
-};
 
 template <class T>
 std::span<const T> layer_of(const gpu::Buffer& buffer, std::size_t layer, std::size_t elements) {
   return std::span<const T>(buffer.mapped<T>()).subspan(layer * elements, elements);
 }
 
-CameraFrame decode_camera(const scene::Camera& camera, const CameraWork& work) {
-  CameraFrame frame;
-  frame.name = camera.name;
+std::vector<ViewImages> decode_views(const ViewWork& work) {
+  std::vector<ViewImages> views;
   for (std::size_t i = 0; i < work.views.views.size(); ++i) {
     const render::ViewDesc& view = work.views.views[i];
     ViewImages eye;
@@ -37,12 +29,90 @@ CameraFrame decode_camera(const scene::Camera& camera, const CameraWork& work) {
     if (work.label) decode_labels(layer_of<std::uint32_t>(*work.label, i, pixels), eye);
     if (work.color) decode_color(layer_of<std::uint32_t>(*work.color, i, pixels), eye);
     if (work.motion) decode_motion(layer_of<float>(*work.motion, i, pixels * 2), eye);
-    frame.eyes.push_back(std::move(eye));
+    views.push_back(std::move(eye));
   }
+  return views;
+}
+
+render::ViewSet sonar_views(const scene::Scene& scene, const scene::Sonar& sonar, const Session::SonarState& state) {
+  render::ViewSet set;
+  set.width = state.size.width;
+  set.height = state.size.height;
+  const Pose world_from_sonar = scene.world_from(sonar.mount);
+  for (const sonar::Sector& sector : state.gather->sectors()) {
+    render::ViewDesc view;
+    view.tangents = sector.tangents;
+    view.near_m = sonar.near_m;
+    view.world_from_view = world_from_sonar * Pose{Vec3(0.0), glm::angleAxis(-sector.yaw_rad, Vec3(0, 1, 0))};
+    view.next_world_from_view = view.world_from_view;
+    set.views.push_back(view);
+  }
+  return set;
+}
+
+SonarFrame decode_sonar(const scene::Sonar& sonar, const SonarWork& work) {
+  SonarFrame frame;
+  frame.name = sonar.name;
+  frame.gather = sonar::name_of(work.state->mode);
+  frame.grid = work.state->gather->grid();
+  frame.fixed_scale = work.state->gather->fixed_scale();
+  frame.image.n_range = frame.grid.bins.range;
+  frame.image.n_azimuth = frame.grid.bins.azimuth;
+  const std::size_t cells = std::size_t{frame.image.n_range} * frame.image.n_azimuth;
+  const std::span<const float> image = std::span<const float>(work.state->image.mapped<float>()).first(cells);
+  frame.image.intensity.assign(image.begin(), image.end());
+  const std::span<const std::uint32_t> labels = std::span<const std::uint32_t>(work.state->labels.mapped<std::uint32_t>()).first(cells);
+  frame.image.labels.assign(labels.begin(), labels.end());
+  frame.sectors = work.depth ? decode_views(work) : std::vector<ViewImages>{};
   return frame;
 }
 
 }  // namespace
+
+Result<sonar::BeamGrid> sonar_grid(const scene::Sonar& sonar) {
+  const sonar::BeamGrid grid = sonar::symmetric_grid(sonar.range_min_m, sonar.range_max_m, sonar.azimuth_rad, sonar.elevation_rad,
+                                                     {sonar.bins_range, sonar.bins_azimuth, sonar.bins_elevation});
+  if (const Status valid = sonar::validate(grid); !valid.ok()) return bad_input("sonar {}: {}", sonar.name, valid.error().message);
+  return grid;
+}
+
+Result<Session::SonarState*> Session::sonar_state(std::size_t index) {
+  std::unique_ptr<SonarState>& slot = sonars_[index];
+  if (slot) return slot.get();
+  const scene::Sonar& sonar = scene_.sonars[index];
+  auto state = std::make_unique<SonarState>();
+  NERITIC_TRY(const sonar::BeamGrid grid, sonar_grid(sonar));
+  NERITIC_TRY(state->mode, sonar::gather_of(sonar.gather.empty() ? kDefaultGather : sonar.gather));
+  const std::vector<sonar::Sector> sectors = sonar::plan_sectors(grid);
+  const double scale = sonar.gbuffer_scale > 0.0 ? sonar.gbuffer_scale : kDefaultGBufferScale;
+  state->size = sonar::gbuffer_size(grid, sectors.front(), scale, device_.limits().maxImageDimension2D);
+  sonar::GBufferLayout layout;
+  layout.width = state->size.width;
+  layout.height = state->size.height;
+  layout.intrinsics = sonar::intrinsics_of(sectors.front().tangents, layout.width, layout.height);
+  layout.near_m = sonar.near_m;
+  NERITIC_TRY(auto gather, sonar::SonarGather::create(device_, grid, sectors, layout, {state->mode, true, true}));
+  state->gather = std::make_unique<sonar::SonarGather>(std::move(gather));
+  const VkDeviceSize cells = VkDeviceSize{grid.bins.range} * grid.bins.azimuth;
+  constexpr auto kUse = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  NERITIC_TRY(state->image, gpu::Buffer::create(device_, {sonar.name + " image", cells * sizeof(float), kUse, gpu::MemoryUse::kReadback}));
+  NERITIC_TRY(state->labels, gpu::Buffer::create(device_, {sonar.name + " labels", cells * sizeof(std::uint32_t), kUse, gpu::MemoryUse::kReadback}));
+  slot = std::move(state);
+  return slot.get();
+}
+
+// Acoustic reflectivity by instance label.
+Status Session::create_reflectivity() {
+  std::vector<float> table(1, 0.0f);
+  for (const scene::Object& object : scene_.objects) {
+    const std::size_t end = object.instance + object.instance_count();
+    if (table.size() < end) table.resize(end, 1.0f);
+    std::fill_n(table.begin() + object.instance, object.instance_count(), object.reflectivity);
+  }
+  NERITIC_TRY(reflectivity_, gpu::Buffer::create(device_, {"reflectivity", table.size() * sizeof(float),
+                                                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
+  return gpu::upload_buffer(device_, reflectivity_, std::as_bytes(std::span(table)));
+}
 
 render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera) {
   render::ViewSet set;
@@ -63,6 +133,8 @@ render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& cam
   return set;
 }
 
+Session::Session(gpu::Device& device) : device_(device) {}
+
 Session::~Session() {
   if (device_.handle()) device_.wait_idle();
 }
@@ -75,51 +147,98 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Sce
   session->executor_ = std::make_unique<graph::Executor>(*session->frames_);
   NERITIC_TRY(session->renderer_, render::Renderer::create(device));
   NERITIC_TRY(session->gpu_scene_, render::GpuScene::create(device, session->scene_, session->renderer_->material_layout()));
+  if (!session->scene_.sonars.empty()) NERITIC_TRY_STATUS(session->create_reflectivity());
   return session;
+}
+
+// Adds everything one camera needs to the graph.
+Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameState& state, const render::DeformedGeometry& deformed,
+                               const Capture& capture, CameraWork& work) {
+  const scene::Camera& camera = scene_.cameras[work.index];
+  NERITIC_TRY_STATUS(check_size("camera " + camera.name, camera.width, camera.height));
+  work.views = camera_views(scene_, camera);
+  work.draws = render::build_draw_list(scene_, *gpu_scene_, state, work.views);
+  const std::string prefix = camera.name + " ";
+  const std::uint32_t w = work.views.width, h = work.views.height, layers = work.views.layers();
+  const auto kind = capture.color ? render::GBufferKind::kSurface : render::GBufferKind::kGeometry;
+  NERITIC_TRY(const render::GBuffer g, renderer_->declare_gbuffer(graph, prefix, kind, *gpu_scene_, state, deformed, work.views, work.draws));
+  const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
+    return readback_.declare(graph, device_, prefix + name, image, format, w, h, layers);
+  };
+  if (capture.color) {
+    NERITIC_TRY(const shared::Lighting lighting,
+                render::make_lighting(scene_, work.views.origin_m(), camera.exposure, gpu_scene_->has_emission()));
+    NERITIC_TRY(graph::ImageHandle hdr, renderer_->declare_shade(graph, prefix, g, work.views, lighting));
+    NERITIC_TRY(hdr, renderer_->declare_forward(graph, prefix, hdr, g, *gpu_scene_, deformed, work.views, work.draws, lighting));
+    NERITIC_TRY(const graph::ImageHandle color, renderer_->declare_tonemap(graph, prefix, hdr, w, h, layers));
+    NERITIC_TRY(work.color, bring("color", color, render::kColorFormat));
+  }
+  if (capture.geometry) {
+    NERITIC_TRY(work.depth, bring("depth", g.depth, render::kDepthFormat));
+    NERITIC_TRY(work.normal, bring("normal", g.normal, render::kNormalFormat));
+    NERITIC_TRY(work.label, bring("label", g.label, render::kLabelFormat));
+  }
+  if (g.motion) {
+    NERITIC_TRY(work.motion, bring("motion", g.motion, render::kMotionFormat));
+  }
+  return {};
+}
+
+// Adds one sonar: its own geometry G-buffer, then the gather into buffers that the host reads.
+Status Session::declare_sonar(graph::FrameGraph& graph, const render::FrameState& state, const render::DeformedGeometry& deformed,
+                              const Capture& capture, SonarWork& work) {
+  const scene::Sonar& sonar = scene_.sonars[work.index];
+  NERITIC_TRY(work.state, sonar_state(work.index));
+  work.views = sonar_views(scene_, sonar, *work.state);
+  work.draws = render::build_draw_list(scene_, *gpu_scene_, state, work.views);
+  const std::string prefix = sonar.name + " ";
+  NERITIC_TRY(const render::GBuffer g, renderer_->declare_gbuffer(graph, prefix, render::GBufferKind::kGeometry, *gpu_scene_, state, deformed, work.views, work.draws));
+  sonar::SonarGather::Inputs inputs;
+  inputs.depth = g.depth;
+  inputs.normals = g.normal;
+  inputs.labels = g.label;
+  inputs.reflectivity = graph.import_buffer(prefix + "reflectivity", reflectivity_);
+  inputs.reflectivities = static_cast<std::uint32_t>(reflectivity_.size() / sizeof(float));
+  inputs.sonar_from_gbuffer = glm::mat3_cast(glm::conjugate(scene_.world_from(sonar.mount).rotation));
+  inputs.image_target = graph.import_buffer(prefix + "image", work.state->image);
+  inputs.labels_target = graph.import_buffer(prefix + "labels", work.state->labels);
+  const sonar::SonarGather::Outputs outputs = work.state->gather->declare(graph, inputs);
+  graph.output(outputs.image, graph::Access::kHostRead);
+  graph.output(outputs.labels, graph::Access::kHostRead);
+  if (!capture.geometry) return {};
+  const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
+    return readback_.declare(graph, device_, prefix + name, image, format, g.width, g.height, g.layers);
+  };
+  NERITIC_TRY(work.depth, bring("depth", g.depth, render::kDepthFormat));
+  NERITIC_TRY(work.normal, bring("normal", g.normal, render::kNormalFormat));
+  NERITIC_TRY(work.label, bring("label", g.label, render::kLabelFormat));
+  return {};
+}
+
+Status Session::check_size(const std::string& what, std::uint32_t width, std::uint32_t height) const {
+  const std::uint32_t limit = device_.limits().maxImageDimension2D;
+  if (width == 0 || height == 0 || width > limit || height > limit)
+    return bad_input("{}: size {}x{}; 1 to {} pixels a side are accepted", what, width, height, limit);
+  return {};
 }
 
 Result<FrameResult> Session::render(const FrameRequest& request) {
   const TimeNs start = now_ns();
-  const std::uint32_t limit = device_.limits().maxImageDimension2D;
-  const bool motion = request.capture.motion;
-  const render::FrameState state =
-      render::evaluate_frame(scene_, *gpu_scene_, request.time_s, request.next_time_s, motion);
+  const bool motion = request.capture.motion && !request.cameras.empty() && request.capture.color;
+  const render::FrameState state = render::evaluate_frame(scene_, *gpu_scene_, request.time_s, request.next_time_s, motion);
   graph::FrameGraph graph;
   NERITIC_TRY(const render::DeformedGeometry deformed, renderer_->declare_deform(graph, *gpu_scene_, state));
-
   std::vector<std::unique_ptr<CameraWork>> cameras;
   for (const std::size_t index : request.cameras) {
-    const scene::Camera& camera = scene_.cameras[index];
-    if (camera.width == 0 || camera.height == 0 || camera.width > limit || camera.height > limit)
-      return bad_input("camera {}: size {}x{}; 1 to {} pixels a side are accepted", camera.name, camera.width, camera.height, limit);
-    auto work = std::make_unique<CameraWork>();
-    work->index = index;
-    work->views = camera_views(scene_, camera);
-    work->draws = render::build_draw_list(scene_, *gpu_scene_, state, work->views);
-    const std::string prefix = camera.name + " ";
-    const std::uint32_t w = work->views.width, h = work->views.height, layers = work->views.layers();
-    NERITIC_TRY(const render::GBuffer g, renderer_->declare_gbuffer(graph, prefix, request.capture.color ? render::GBufferKind::kSurface : render::GBufferKind::kGeometry,
-                                                                    *gpu_scene_, state, deformed, work->views, work->draws));
-    const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
-      return readback_.declare(graph, device_, prefix + name, image, format, w, h, layers);
-    };
-    if (request.capture.color) {
-      NERITIC_TRY(const shared::Lighting lighting,
-                  render::make_lighting(scene_, work->views.origin_m(), camera.exposure, gpu_scene_->has_emission()));
-      NERITIC_TRY(graph::ImageHandle hdr, renderer_->declare_shade(graph, prefix, g, work->views, lighting));
-      NERITIC_TRY(hdr, renderer_->declare_forward(graph, prefix, hdr, g, *gpu_scene_, deformed, work->views, work->draws, lighting));
-      NERITIC_TRY(const graph::ImageHandle color, renderer_->declare_tonemap(graph, prefix, hdr, w, h, layers));
-      NERITIC_TRY(work->color, bring("color", color, render::kColorFormat));
-    }
-    if (request.capture.geometry) {
-      NERITIC_TRY(work->depth, bring("depth", g.depth, render::kDepthFormat));
-      NERITIC_TRY(work->normal, bring("normal", g.normal, render::kNormalFormat));
-      NERITIC_TRY(work->label, bring("label", g.label, render::kLabelFormat));
-    }
-    if (g.motion) {
-      NERITIC_TRY(work->motion, bring("motion", g.motion, render::kMotionFormat));
-    }
-    cameras.push_back(std::move(work));
+    cameras.push_back(std::make_unique<CameraWork>());
+    cameras.back()->index = index;
+    NERITIC_TRY_STATUS(declare_camera(graph, state, deformed, request.capture, *cameras.back()));
+  }
+  std::vector<std::unique_ptr<SonarWork>> sonars;
+  for (const std::size_t index : request.sonars) {
+    sonars.push_back(std::make_unique<SonarWork>());
+    sonars.back()->index = index;
+    NERITIC_TRY_STATUS(declare_sonar(graph, state, deformed, request.capture, *sonars.back()));
   }
 
   NERITIC_TRY(gpu::Commands * commands, frames_->begin());
@@ -132,7 +251,10 @@ Result<FrameResult> Session::render(const FrameRequest& request) {
   NERITIC_TRY_STATUS(frames_->wait(done));
 
   FrameResult result;
-  for (const auto& work : cameras) result.cameras.push_back(decode_camera(scene_.cameras[work->index], *work));
+  for (const auto& work : cameras) {
+    result.cameras.push_back({scene_.cameras[work->index].name, decode_views(*work)});
+  }
+  for (const auto& work : sonars) result.sonars.push_back(decode_sonar(scene_.sonars[work->index], *work));
   result.passes = frames_->pass_times();
   result.frame_ms = to_ms(now_ns() - start);
   return result;

@@ -3,7 +3,7 @@
 // the results to the host in the conventions of the file contract. Rendering thread only.
 #pragma once
 
-#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,6 +15,8 @@
 #include "engine/graph/frame_graph.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
+#include "sonar/gather.hpp"
+#include "sonar/reference.hpp"
 #include "tools/session/readback.hpp"
 
 namespace neritic::tools {
@@ -38,27 +40,42 @@ struct CameraFrame {
   std::vector<ViewImages> eyes;  // one, or left and right
 };
 
+struct SonarFrame {
+  std::string name, gather;
+  sonar::BeamGrid grid;
+  sonar::SonarImage image;
+  double fixed_scale = 1.0;
+  std::vector<ViewImages> sectors;  // geometry only; one for apertures up to 100 degrees
+  ImageU8 panel;                    // left empty by Session; see draw_panel
+};
+
 struct Capture {
-  bool color = true;
-  bool geometry = true;  // depth, normals, labels, instances
-  bool motion = true;
+  bool color = true;     // of cameras
+  bool geometry = true;  // depth, normals, labels, instances, of cameras and sonars
+  bool motion = true;    // of cameras
 };
 
 struct FrameRequest {
   double time_s = 0.0;
   double next_time_s = 1.0 / 30.0;
-  std::vector<std::size_t> cameras;  // indices into the scene's
+  std::uint32_t frame = 0;
+  std::vector<std::size_t> cameras, sonars;  // indices into the scene's
   Capture capture;
 };
 
 struct FrameResult {
   std::vector<CameraFrame> cameras;
+  std::vector<SonarFrame> sonars;
   std::vector<gpu::PassTime> passes;
   double frame_ms = 0.0;  // declare, record, run, read back
 };
 
+struct CameraWork;
+struct SonarWork;
+
 class Session {
  public:
+  struct SonarState;  // what a sonar keeps from frame to frame
   static Result<std::unique_ptr<Session>> create(gpu::Device& device, scene::Scene scene);
   ~Session();
 
@@ -75,17 +92,33 @@ class Session {
   void keep_plan_dump(bool on) { keep_dump_ = on; }
 
  private:
-  explicit Session(gpu::Device& device) : device_(device) {}
+  explicit Session(gpu::Device& device);
   gpu::Device& device_;
   scene::Scene scene_;
   std::unique_ptr<gpu::Frames> frames_;
   std::unique_ptr<graph::Executor> executor_;
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<render::GpuScene> gpu_scene_;
+  Status create_reflectivity();
+  Result<SonarState*> sonar_state(std::size_t index);
+  Status check_size(const std::string& what, std::uint32_t width, std::uint32_t height) const;
+  Status declare_camera(graph::FrameGraph& graph, const render::FrameState& state, const render::DeformedGeometry& deformed,
+                        const Capture& capture, CameraWork& work);
+  Status declare_sonar(graph::FrameGraph& graph, const render::FrameState& state, const render::DeformedGeometry& deformed,
+                       const Capture& capture, SonarWork& work);
+  std::map<std::size_t, std::unique_ptr<SonarState>> sonars_;
+  gpu::Buffer reflectivity_;  // by instance label
   ReadbackPool readback_;
   std::string plan_text_, plan_graphviz_;
   bool keep_dump_ = false;
 };
+
+// The documented defaults of a sonar (sonar/README.md: the knee of `neritic tradeoff sonar`).
+inline constexpr double kDefaultGBufferScale = 0.5;
+inline constexpr const char* kDefaultGather = "plane";
+
+// The bins of a sonar of the scene; kBadInput as sonar::validate says.
+Result<sonar::BeamGrid> sonar_grid(const scene::Sonar& sonar);
 
 // The views of a camera of the scene: one, or two for a stereo pair, half the baseline to each side.
 render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera);

@@ -1,0 +1,32 @@
+// Small things that several subcommands share: parsing of flag values, progress on a terminal.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/core/result.hpp"
+
+namespace neritic::tools {
+
+// "1280x720"; each side 1 to 16384.
+Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& flag, const std::string& text);
+
+// "a,b,c": exactly count finite numbers.
+Result<std::vector<double>> parse_numbers(const std::string& flag, const std::string& text, std::size_t count);
+
+// One line on stderr that is rewritten, only where stderr is a terminal and there is more than one step.
+class Progress {
+ public:
+  Progress(std::string what, std::uint64_t total);
+  ~Progress();
+  void step();
+
+ private:
+  std::string what_;
+  std::uint64_t total_, done_ = 0;
+  bool shown_;
+};
+
+}  // namespace neritic::tools

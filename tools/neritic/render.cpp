@@ -1,0 +1,182 @@
+// `neritic render SCENE --out DIR`: offscreen pictures and sensor data of a scene or a model.
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "engine/core/files.hpp"
+#include "engine/core/log.hpp"
+#include "engine/scene/gltf_loader.hpp"
+#include "engine/scene/image_file.hpp"
+#include "sonar/panel.hpp"
+#include "tools/neritic/commands.hpp"
+#include "tools/neritic/flags.hpp"
+#include "tools/session/output.hpp"
+#include "tools/session/pictures.hpp"
+#include "tools/session/session.hpp"
+
+namespace neritic::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderFlags {
+  std::string scene, out, size, device, dump_graph, water;
+  std::vector<std::string> sensors;
+  std::vector<double> offset_m;
+  std::uint32_t frames = 1;
+  double time_s = 0.0;
+  bool sheet = false, validation = false;
+};
+
+bool is_model(const fs::path& path) { return path.extension() == ".gltf" || path.extension() == ".glb"; }
+
+Result<scene::Scene> load(const RenderFlags& flags) {
+  scene::SceneOptions options;
+  if (!flags.offset_m.empty()) {
+    options.offset_m = {flags.offset_m[0], flags.offset_m[1], flags.offset_m[2]};
+    if (!is_finite(options.offset_m)) return bad_input("--offset: three finite numbers (metres) are accepted");
+  }
+  scene::Scene scene;
+  if (is_model(flags.scene)) {
+    NERITIC_TRY(scene::Model model, scene::load_gltf(flags.scene));
+    scene = scene::scene_of_model(std::move(model), 1280, 720);
+    scene.path = flags.scene;
+  } else {
+    NERITIC_TRY(scene, scene::load_scene(flags.scene, options));
+  }
+  if (!flags.size.empty()) {
+    NERITIC_TRY(const auto size, parse_size("--size", flags.size));
+    for (scene::Camera& camera : scene.cameras) camera.width = size.first, camera.height = size.second;
+  }
+  if (!flags.water.empty()) {
+    if (!scene.water) return bad_input("--water {}: {} names no water", flags.water, flags.scene);
+    scene.water->type = flags.water;
+  }
+  return scene;
+}
+
+bool wanted(const RenderFlags& flags, const std::string& name) {
+  return flags.sensors.empty() || std::find(flags.sensors.begin(), flags.sensors.end(), name) != flags.sensors.end();
+}
+
+Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& scene) {
+  FrameRequest request;
+  std::string known;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    known += (known.empty() ? "" : ", ") + scene.cameras[i].name;
+    if (wanted(flags, scene.cameras[i].name)) request.cameras.push_back(i), ++found;
+  }
+  for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
+    known += (known.empty() ? "" : ", ") + scene.sonars[i].name;
+    if (wanted(flags, scene.sonars[i].name)) request.sonars.push_back(i), ++found;
+  }
+  if (!flags.sensors.empty() && found < flags.sensors.size())
+    return bad_input("--sensor: {} has {}", flags.scene, known.empty() ? "no sensors" : known);
+  if (found == 0) return bad_input("{}: no camera and no sonar, so there is nothing to render", flags.scene);
+  return request;
+}
+
+// Frames follow the first camera's rate, or the first sonar's.
+double frame_step_s(const scene::Scene& scene, const FrameRequest& request) {
+  if (!request.cameras.empty()) return 1.0 / scene.cameras[request.cameras.front()].rate_hz;
+  return 1.0 / scene.sonars[request.sonars.front()].rate_hz;
+}
+
+void add_tiles(std::vector<Tile>& tiles, const FrameResult& result) {
+  for (const CameraFrame& camera : result.cameras)
+    for (std::size_t e = 0; e < camera.eyes.size(); ++e)
+      tiles.push_back({camera.eyes[e].color, camera.eyes.size() > 1 ? fmt::format("{} {}", camera.name, e == 0 ? "left" : "right") : camera.name});
+  for (const SonarFrame& sonar : result.sonars) tiles.push_back({sonar.panel, sonar.name});
+  if (result.cameras.empty()) return;
+  const ViewImages& view = result.cameras.front().eyes.front();
+  tiles.push_back({depth_picture(view.depth), "depth"});
+  tiles.push_back({normals_picture(view.normals), "normals"});
+  tiles.push_back({labels_picture(view.labels), "class labels"});
+  tiles.push_back({labels_picture(view.instances), "instance labels"});
+  if (!view.motion.empty()) tiles.push_back({motion_picture(view.motion), "motion to the next frame"});
+}
+
+Status write_sheet(const fs::path& out, const FrameResult& result) {
+  std::vector<Tile> tiles;
+  add_tiles(tiles, result);
+  for (const Tile& tile : tiles) {
+    std::string file = tile.caption + ".png";
+    std::replace(file.begin(), file.end(), ' ', '_');
+    NERITIC_TRY_STATUS(scene::write_png8(out / file, tile.image));
+  }
+  return scene::write_png8(out / "sheet.png", contact_sheet(tiles));
+}
+
+Status write_frame(const fs::path& folder, const FrameResult& result, const FrameFacts& facts) {
+  for (const CameraFrame& camera : result.cameras)
+    for (std::size_t e = 0; e < camera.eyes.size(); ++e) {
+      const std::string name = camera.eyes.size() == 1 ? camera.name : camera.name + (e == 0 ? "_left" : "_right");
+      NERITIC_TRY_STATUS(write_view(folder / name, camera.eyes[e], facts));
+    }
+  for (const SonarFrame& sonar : result.sonars) NERITIC_TRY_STATUS(write_sonar(folder / sonar.name, sonar, facts));
+  return {};
+}
+
+Status dump_graph(const RenderFlags& flags, const Session& session) {
+  if (flags.dump_graph == "-") {
+    fmt::print("{}", session.plan_text());
+    return {};
+  }
+  const bool dot = fs::path(flags.dump_graph).extension() == ".dot";
+  return write_text(flags.dump_graph, dot ? session.plan_graphviz() : session.plan_text());
+}
+
+Status render(const RenderFlags& flags) {
+  if (!std::isfinite(flags.time_s)) return bad_input("--time: {} s; a finite number is accepted", flags.time_s);
+  NERITIC_TRY(scene::Scene scene, load(flags));
+  for (const std::string& note : scene.notes) log_warn("{}", note);
+  gpu::DeviceOptions options;
+  options.device = flags.device;
+  options.validation = flags.validation;
+  options.cache_folder = gpu::default_cache_folder();
+  NERITIC_TRY(const auto device, gpu::Device::create(options));
+  NERITIC_TRY(FrameRequest request, request_of(flags, scene));
+  const double step_s = frame_step_s(scene, request);
+  NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
+  session->keep_plan_dump(!flags.dump_graph.empty());
+  Progress progress("frame", flags.frames);
+  for (std::uint32_t i = 0; i < flags.frames; ++i) {
+    request.time_s = flags.time_s + i * step_s;
+    request.next_time_s = request.time_s + step_s;
+    request.frame = i;
+    NERITIC_TRY(FrameResult result, session->render(request));
+    for (SonarFrame& sonar : result.sonars) sonar.panel = sonar::draw_panel(sonar.grid, sonar.image);
+    const FrameFacts facts{request.time_s, session->scene().seed, flags.scene, device->info().name, result.passes, result.frame_ms};
+    NERITIC_TRY_STATUS(write_frame(fs::path(flags.out) / fmt::format("frame_{:04}", i), result, facts));
+    if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result));
+    if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
+    progress.step();
+  }
+  device->wait_idle();
+  for (const std::string& message : device->validation_log().messages) log_warn("validation: {}", message);
+  if (!device->validation_log().messages.empty())
+    return failure(ErrorCode::kUnsupported, "validation reported {} messages", device->validation_log().messages.size());
+  return {};
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<RenderFlags>();
+  CLI::App* command = app.add_subcommand("render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
+  command->add_option("scene", flags->scene, "scene or model file")->required();
+  command->add_option("--out", flags->out, "folder for the results")->required();
+  command->add_option("--frames", flags->frames, "number of frames")->check(CLI::Range(1, 1000000));
+  command->add_option("--size", flags->size, "WxH of every camera, pixels");
+  command->add_option("--time", flags->time_s, "scene time of the first frame, seconds");
+  command->add_option("--sensor", flags->sensors, "only these sensors, by name");
+  command->add_option("--water", flags->water, "another Jerlov type than the scene's");
+  command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")->expected(3);
+  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
+  command->add_option("--dump-graph", flags->dump_graph, "the frame graph's plan: to a file (.dot: Graphviz), or - for standard output");
+  command->add_flag("--sheet", flags->sheet, "also pictures of every image, and one contact sheet");
+  command->add_flag("--validate", flags->validation, "run with Vulkan validation; any message is a failure");
+  command->callback([flags, &run] { run = [flags] { return render(*flags); }; });
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,78 @@
+#include "tools/session/output.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/npy.hpp"
+#include "engine/scene/image_file.hpp"
+
+namespace neritic::tools {
+namespace {
+
+nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
+  const Vec3& p = view.world_from_view.position_m;
+  const Quat& q = view.world_from_view.rotation;
+  nlohmann::json passes = nlohmann::json::object();
+  for (const gpu::PassTime& pass : facts.passes) passes[pass.name] = pass.ms;
+  return {{"width", view.width},
+          {"height", view.height},
+          {"fx", view.intrinsics.fx},
+          {"fy", view.intrinsics.fy},
+          {"cx", view.intrinsics.cx},
+          {"cy", view.intrinsics.cy},
+          {"pixel_centers", "half"},
+          {"near_m", view.near_m},
+          {"pose", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}},
+          {"frames", {{"pose", "world_from_view"}, {"world", "right-handed, y up, metres, water surface at y = 0"},
+                      {"view", "x right, y up, z backwards"}}},
+          {"time_s", facts.time_s},
+          {"seed", facts.seed},
+          {"scene", facts.scene},
+          {"device", facts.device},
+          {"frame_ms", facts.frame_ms},
+          {"passes_ms", passes}};
+}
+
+}  // namespace
+
+Status write_view(const std::filesystem::path& folder, const ViewImages& view, const FrameFacts& facts) {
+  NERITIC_TRY_STATUS(make_folder(folder));
+  const std::size_t w = view.width, h = view.height;
+  if (!view.depth.empty()) NERITIC_TRY_STATUS(write_npy(folder / "depth.npy", view.depth.data, {h, w}));
+  if (!view.normals.empty()) NERITIC_TRY_STATUS(write_npy(folder / "normals.npy", view.normals.data, {h, w, 3}));
+  if (!view.labels.empty()) NERITIC_TRY_STATUS(write_npy(folder / "labels.npy", view.labels.data, {h, w}));
+  if (!view.instances.empty()) NERITIC_TRY_STATUS(write_npy(folder / "instances.npy", view.instances.data, {h, w}));
+  if (!view.motion.empty()) NERITIC_TRY_STATUS(write_npy(folder / "motion.npy", view.motion.data, {h, w, 2}));
+  if (!view.color.empty()) NERITIC_TRY_STATUS(scene::write_png8(folder / "color.png", view.color));
+  return write_text(folder / "meta.json", meta_of(view, facts).dump(2) + "\n");
+}
+
+Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame, const FrameFacts& facts) {
+  NERITIC_TRY_STATUS(make_folder(folder));
+  for (std::size_t i = 0; i < frame.sectors.size(); ++i)
+    NERITIC_TRY_STATUS(write_view(frame.sectors.size() == 1 ? folder : folder / fmt::format("sector_{}", i), frame.sectors[i], facts));
+  const std::size_t r = frame.image.n_range, t = frame.image.n_azimuth;
+  NERITIC_TRY_STATUS(write_npy(folder / "sonar.npy", frame.image.intensity, {r, t}));
+  NERITIC_TRY_STATUS(write_npy(folder / "sonar_labels.npy", frame.image.labels, {r, t}));
+  NERITIC_TRY_STATUS(scene::write_png8(folder / "sonar.png", frame.panel));
+  const sonar::Limits& limits = frame.grid.limits;
+  nlohmann::json passes = nlohmann::json::object();
+  for (const gpu::PassTime& pass : facts.passes) passes[pass.name] = pass.ms;
+  const nlohmann::json json{
+      {"kind", "imaging"},
+      {"range_m", {limits.range_min_m, limits.range_max_m}},
+      {"azimuth_deg", {degrees(limits.azimuth_min_rad), degrees(limits.azimuth_max_rad)}},
+      {"elevation_deg", {degrees(limits.elevation_min_rad), degrees(limits.elevation_max_rad)}},
+      {"bins", {{"range", frame.grid.bins.range}, {"azimuth", frame.grid.bins.azimuth}, {"elevation", frame.grid.bins.elevation}}},
+      {"units", {{"sonar.npy", "mean incidence cosine times reflectivity over elevation, 0 to 1"}, {"sonar_labels.npy", "class of the strongest contribution, 0: nothing"}}},
+      {"model", {{"method", "gpu"}, {"gather", frame.gather}, {"fixed_scale", frame.fixed_scale}, {"sectors", frame.sectors.size()}}},
+      {"time_s", facts.time_s},
+      {"seed", facts.seed},
+      {"scene", facts.scene},
+      {"device", facts.device},
+      {"frame_ms", facts.frame_ms},
+      {"passes_ms", passes}};
+  return write_text(folder / "sonar.json", json.dump(2) + "\n");
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,28 @@
+// Writes what a frame gave, in the layout of the file contract: DIR/frame_0000/SENSOR/...
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "engine/core/result.hpp"
+#include "tools/session/session.hpp"
+
+namespace neritic::tools {
+
+// What meta.json says besides the view itself.
+struct FrameFacts {
+  double time_s = 0.0;
+  std::uint64_t seed = 0;
+  std::string scene, device;
+  std::vector<gpu::PassTime> passes;
+  double frame_ms = 0.0;
+};
+
+// depth.npy, normals.npy, labels.npy, instances.npy, meta.json; for a camera color.png and motion.npy.
+Status write_view(const std::filesystem::path& folder, const ViewImages& view, const FrameFacts& facts);
+
+// sonar.npy, sonar_labels.npy, sonar.png, sonar.json, and its view beside them (sector_0, sector_1, ...
+// where the wedge took several).
+Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame, const FrameFacts& facts);
+
+}  // namespace neritic::tools

@@ -1,0 +1,30 @@
+// What one sensor has in a frame's graph: CPU data that must outlive the run, and the buffers that the
+// host reads afterwards. Private to Session.
+#pragma once
+
+#include "tools/session/session.hpp"
+
+namespace neritic::tools {
+
+struct ViewWork {
+  std::size_t index = 0;
+  render::ViewSet views;
+  render::DrawList draws;
+  // Readback; nullptr: not asked for.
+  const gpu::Buffer *depth = nullptr, *normal = nullptr, *label = nullptr, *color = nullptr, *motion = nullptr;
+};
+
+struct CameraWork : ViewWork {};
+
+struct SonarWork : ViewWork {
+  Session::SonarState* state = nullptr;
+};
+
+struct Session::SonarState {
+  sonar::Gather mode = sonar::Gather::kPlane;
+  sonar::PixelSize size;
+  std::unique_ptr<sonar::SonarGather> gather;
+  gpu::Buffer image, labels;  // host-readable
+};
+
+}  // namespace neritic::tools

@@ -1,0 +1,78 @@
+// Contact sheets: captioned pictures beside each other.
+#include <algorithm>
+
+#include "sonar/canvas.hpp"
+#include "tools/session/pictures.hpp"
+
+namespace neritic::tools {
+namespace {
+
+constexpr sonar::Color kPaper{0.055f, 0.075f, 0.10f, 1.0f}, kInk{0.80f, 0.88f, 0.92f, 1.0f};
+constexpr double kCaption_px = 11.0;
+constexpr std::uint32_t kCaptionBand_px = 26, kGap_px = 10;
+
+// Scales to fit a box and keeps the proportions; the result's place in the box is its middle.
+void place(sonar::Canvas& canvas, ImageU8& out, const Tile& tile, std::uint32_t x, std::uint32_t y,
+           std::uint32_t width, std::uint32_t height) {
+  canvas.text(x + 2.0, y + kCaptionBand_px - 9.0, kCaption_px, tile.caption, kInk);
+  if (tile.image.empty()) return;
+  const double scale = std::min(double(width) / tile.image.width, double(height - kCaptionBand_px) / tile.image.height);
+  const auto w = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(tile.image.width * scale));
+  const auto h = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(tile.image.height * scale));
+  const ImageU8 small = resized(tile.image, w, h);
+  const std::uint32_t left = x + (width - w) / 2, top = y + kCaptionBand_px + (height - kCaptionBand_px - h) / 2;
+  // Queued in `out` because the canvas owns its pixels until it is taken.
+  for (std::uint32_t v = 0; v < h; ++v)
+    std::copy_n(&small.data[std::size_t{v} * w * 3], std::size_t{w} * 3, &out.data[(std::size_t{top + v} * out.width + left) * 3]);
+}
+
+struct Slot {
+  std::uint32_t x, y, width, height;
+};
+
+ImageU8 draw(std::uint32_t width, std::uint32_t height, const std::vector<Tile>& tiles, const std::vector<Slot>& slots) {
+  sonar::Canvas canvas(width, height, kPaper);
+  ImageU8 pictures(width, height, 3);
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    place(canvas, pictures, tiles[i], slots[i].x, slots[i].y, slots[i].width, slots[i].height);
+  ImageU8 out = canvas.take();
+  for (std::size_t i = 0; i < out.data.size(); i += 3)
+    if (pictures.data[i] | pictures.data[i + 1] | pictures.data[i + 2]) std::copy_n(&pictures.data[i], 3, &out.data[i]);
+  return out;
+}
+
+}  // namespace
+
+ImageU8 contact_sheet(const std::vector<Tile>& tiles) {
+  constexpr std::uint32_t kLargeWidth = 1280, kLargeHeight = 720 + kCaptionBand_px, kSmallWidth = 420;
+  constexpr std::uint32_t kSmallHeight = 236 + kCaptionBand_px;
+  std::vector<Slot> slots;
+  const std::uint32_t side = kGap_px + kLargeWidth + kGap_px;
+  const std::uint32_t across = (kLargeWidth + kGap_px + kSmallWidth) / (kSmallWidth + kGap_px);
+  constexpr std::uint32_t kBeside = 3;  // small tiles to the right of the large one
+  std::uint32_t height = kGap_px + std::max(kLargeHeight, kBeside * (kSmallHeight + kGap_px)) + kGap_px;
+  const std::uint32_t below = height;
+  for (std::uint32_t i = 0; i < tiles.size(); ++i) {
+    if (i == 0) {
+      slots.push_back({kGap_px, kGap_px, kLargeWidth, kLargeHeight});
+    } else if (i <= kBeside) {
+      slots.push_back({side, kGap_px + (i - 1) * (kSmallHeight + kGap_px), kSmallWidth, kSmallHeight});
+    } else {
+      const std::uint32_t k = i - kBeside - 1;
+      slots.push_back({kGap_px + (k % across) * (kSmallWidth + kGap_px), below + (k / across) * (kSmallHeight + kGap_px), kSmallWidth, kSmallHeight});
+      height = slots.back().y + kSmallHeight + kGap_px;
+    }
+  }
+  return draw(side + kSmallWidth + kGap_px, height, tiles, slots);
+}
+
+ImageU8 grid_sheet(const std::vector<Tile>& tiles, std::uint32_t columns, std::uint32_t tile_width, std::uint32_t tile_height) {
+  const std::uint32_t cell_height = tile_height + kCaptionBand_px + kGap_px, cell_width = tile_width + kGap_px;
+  const auto rows = (static_cast<std::uint32_t>(tiles.size()) + columns - 1) / columns;
+  std::vector<Slot> slots;
+  for (std::uint32_t i = 0; i < tiles.size(); ++i)
+    slots.push_back({kGap_px + (i % columns) * cell_width, kGap_px + (i / columns) * cell_height, tile_width, tile_height + kCaptionBand_px});
+  return draw(kGap_px + columns * cell_width, kGap_px + std::max(rows, 1u) * cell_height, tiles, slots);
+}
+
+}  // namespace neritic::tools
