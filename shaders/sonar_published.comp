@@ -20,7 +20,7 @@ float sec_of(int u) {
   return sqrt(1.0 + tx * tx);
 }
 
-void add_pixel(ivec3 at, SonarColumn s, uint base, uint stamp) {
+void add_pixel(ivec3 at, SonarColumn s, uint column, uint stamp) {
   float planar = planar_metres(texelFetch(depth_image, at, 0).r);
   if (planar <= 0.0) return;
   vec3 n = normal_of(at);
@@ -31,21 +31,20 @@ void add_pixel(ivec3 at, SonarColumn s, uint base, uint stamp) {
   float along = tx * dot(n, right) + ty * dot(n, s.up) + dot(n, s.forward);
   float bin = (planar * length_of - c.range_min_m) * c.bins_per_m;
   if (!(bin >= 0.0 && bin < float(c.n_range))) return;
-  uint slot = slot_of(2, uint(bin));
-  if (load_slot(slot, base) == stamp) return;  // a later pixel has that cell
-  store_slot(slot, base, stamp);
+  uint cell = uint(bin) * c.n_azimuth + column;
+  if (stamps[cell] == stamp) return;  // a later pixel has that cell of the volume
+  stamps[cell] = stamp;
   float strength = min(facing(-along / length_of), 1.0);
-  if (strength > 0.0) add_return(uint(bin), base, strength, at);
+  if (strength > 0.0) add_return(cell, strength, at);
 }
 
 void main() {
   uint column = gl_GlobalInvocationID.x;
-  uint base = scratch_base(3);
   if (column >= c.n_azimuth) return;
-  clear_column(3, base);
   SonarColumn s = columns[column];
   for (uint row = 0; row < c.n_elevation && s.first_pixel < s.end_pixel; ++row) {
-    float low = rows[row].tan_bottom, high = rows[row].tan_top;
+    vec2 edges = texelFetch(rows, ivec2(row, 0), 0).zw;
+    float low = edges.x, high = edges.y;
     // The cell's rows in its outermost and innermost pixel columns bound those in between.
     float sec_a = sec_of(s.first_pixel), sec_b = sec_of(s.end_pixel - 1);
     float sec_in = s.first_pixel < int(c.cx) && s.end_pixel > int(c.cx) ? 1.0 : min(sec_a, sec_b);
@@ -56,8 +55,7 @@ void main() {
       for (int u = s.end_pixel - 1; u >= s.first_pixel; --u) {
         float sec = sec_of(u);
         if (v >= first_row_below(high, sec) && v < first_row_below(low, sec))
-          add_pixel(ivec3(u, v, s.layer), s, base, row + 1);
+          add_pixel(ivec3(u, v, s.layer), s, column, row + 1);
       }
   }
-  write_column(column, base);
 }

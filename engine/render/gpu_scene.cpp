@@ -17,7 +17,7 @@ using shared::MaterialData;
 
 const std::vector<gpu::BindingDesc>& material_bindings() {
   static const std::vector<gpu::BindingDesc> bindings{
-      {shared::kMaterialConstants, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+      {shared::kMaterialConstants, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
       {shared::kMaterialBaseColor, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
       {shared::kMaterialMetalRough, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
       {shared::kMaterialNormal, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
@@ -313,7 +313,7 @@ class GpuSceneBuilder {
     std::vector<std::byte> bytes(kStride * material_data_.size());
     for (std::size_t i = 0; i < material_data_.size(); ++i)
       std::memcpy(bytes.data() + i * kStride, &material_data_[i], sizeof(MaterialData));
-    NERITIC_TRY(out_->material_constants_, filled("material constants", bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+    NERITIC_TRY(out_->material_constants_, filled("material constants", bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
     out_->descriptors_ = std::make_unique<gpu::DescriptorArena>(device_);
     for (std::size_t i = 0; i < material_data_.size(); ++i) {
       NERITIC_TRY(const VkDescriptorSet set, out_->descriptors_->allocate(layout_));

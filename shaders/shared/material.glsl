@@ -2,7 +2,9 @@
 #ifndef NERITIC_MATERIAL_GLSL
 #define NERITIC_MATERIAL_GLSL
 
-layout(set = 1, binding = kMaterialConstants, scalar) readonly buffer Material { MaterialData material; };
+// A uniform block, not a storage buffer: helper invocations at triangle edges must read it too, or the
+// derivatives there (so the mip level) are wrong. llvmpipe masks storage loads of helpers.
+layout(set = 1, binding = kMaterialConstants, scalar) uniform Material { MaterialData material; };
 layout(set = 1, binding = kMaterialBaseColor) uniform sampler2D base_color_texture;
 layout(set = 1, binding = kMaterialMetalRough) uniform sampler2D metal_rough_texture;
 layout(set = 1, binding = kMaterialNormal) uniform sampler2D normal_texture;

@@ -22,13 +22,8 @@ struct SonarColumn {
   int end_pixel;
 };
 
-// One elevation row: tangent and 1 / cos of its centre, tangents of its edges.
-struct SonarRow {
-  float tan_phi;
-  float sec_phi;
-  float tan_bottom;
-  float tan_top;
-};
+// One elevation row is one texel of a 1-texel-high image: tangent and 1 / cos of its centre, tangents
+// of its edges. (An image, because a processor's driver reads a buffer lane by lane.)
 
 struct SonarPush {
   uint n_range;
@@ -44,7 +39,6 @@ struct SonarPush {
   float range_min_m;
   float bins_per_m;
   float fixed_scale;    // intensity 1 in counts
-  float image_scale;    // counts to the image's unit: 1 / (fixed_scale * n_elevation)
   float edge_bias_bins;
   uint reflectivities;  // entries of the table by instance label; others reflect fully
 };
@@ -55,20 +49,19 @@ NERITIC_CONST uint kSonarBindDepth = 2;
 NERITIC_CONST uint kSonarBindNormal = 3;
 NERITIC_CONST uint kSonarBindLabel = 4;
 NERITIC_CONST uint kSonarBindReflectivity = 5;
-NERITIC_CONST uint kSonarBindImage = 6;
-NERITIC_CONST uint kSonarBindLabels = 7;
-NERITIC_CONST uint kSonarBindScratch = 8;
+NERITIC_CONST uint kSonarBindSums = 6;
+NERITIC_CONST uint kSonarBindKeys = 7;
+NERITIC_CONST uint kSonarBindStamps = 8;
 
 // Specialisation constants.
 NERITIC_CONST uint kSonarSpecColumns = 0;      // columns a workgroup (its x size)
 NERITIC_CONST uint kSonarSpecLanes = 1;        // threads a column (its y size)
-NERITIC_CONST uint kSonarSpecSharedWords = 2;  // 1: the sums lie in the scratch buffer
-NERITIC_CONST uint kSonarSpecPlane = 3;        // beam meets the plane of the pixel's point and normal
-NERITIC_CONST uint kSonarSpecReversedZ = 4;    // else the depth image holds planar metres
-NERITIC_CONST uint kSonarSpecOctahedral = 5;   // else the normal image holds x, y, z
-NERITIC_CONST uint kSonarSpecFacing = 6;       // else the normals' signs are unknown
-NERITIC_CONST uint kSonarSpecReflect = 7;      // multiply by the reflectivity of the instance
-NERITIC_CONST uint kSonarSpecLabels = 8;       // write the label image
+NERITIC_CONST uint kSonarSpecPlane = 2;        // beam meets the plane of the pixel's point and normal
+NERITIC_CONST uint kSonarSpecReversedZ = 3;    // else the depth image holds planar metres
+NERITIC_CONST uint kSonarSpecOctahedral = 4;   // else the normal image holds x, y, z
+NERITIC_CONST uint kSonarSpecFacing = 5;       // else the normals' signs are unknown
+NERITIC_CONST uint kSonarSpecReflect = 6;      // multiply by the reflectivity of the instance
+NERITIC_CONST uint kSonarSpecLabels = 7;       // keep the label of the strongest return
 
 NERITIC_SHARED_END
 #endif

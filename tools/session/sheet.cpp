@@ -11,33 +11,29 @@ constexpr sonar::Color kPaper{0.055f, 0.075f, 0.10f, 1.0f}, kInk{0.80f, 0.88f, 0
 constexpr double kCaption_px = 11.0;
 constexpr std::uint32_t kCaptionBand_px = 26, kGap_px = 10;
 
-// Scales to fit a box and keeps the proportions; the result's place in the box is its middle.
-void place(sonar::Canvas& canvas, ImageU8& out, const Tile& tile, std::uint32_t x, std::uint32_t y,
-           std::uint32_t width, std::uint32_t height) {
-  canvas.text(x + 2.0, y + kCaptionBand_px - 9.0, kCaption_px, tile.caption, kInk);
-  if (tile.image.empty()) return;
-  const double scale = std::min(double(width) / tile.image.width, double(height - kCaptionBand_px) / tile.image.height);
-  const auto w = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(tile.image.width * scale));
-  const auto h = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(tile.image.height * scale));
-  const ImageU8 small = resized(tile.image, w, h);
-  const std::uint32_t left = x + (width - w) / 2, top = y + kCaptionBand_px + (height - kCaptionBand_px - h) / 2;
-  // Queued in `out` because the canvas owns its pixels until it is taken.
-  for (std::uint32_t v = 0; v < h; ++v)
-    std::copy_n(&small.data[std::size_t{v} * w * 3], std::size_t{w} * 3, &out.data[(std::size_t{top + v} * out.width + left) * 3]);
-}
-
 struct Slot {
   std::uint32_t x, y, width, height;
 };
 
+// Copies the tile's picture into its slot, scaled to fit, in the middle.
+void place(ImageU8& out, const Tile& tile, const Slot& slot) {
+  if (tile.image.empty()) return;
+  const std::uint32_t room = slot.height - kCaptionBand_px;
+  const double scale = std::min(double(slot.width) / tile.image.width, double(room) / tile.image.height);
+  const auto w = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(tile.image.width * scale));
+  const auto h = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(tile.image.height * scale));
+  const ImageU8 small = resized(tile.image, w, h);
+  const std::uint32_t left = slot.x + (slot.width - w) / 2, top = slot.y + kCaptionBand_px + (room - h) / 2;
+  for (std::uint32_t v = 0; v < h; ++v)
+    std::copy_n(&small.data[std::size_t{v} * w * 3], std::size_t{w} * 3, &out.data[(std::size_t{top + v} * out.width + left) * 3]);
+}
+
 ImageU8 draw(std::uint32_t width, std::uint32_t height, const std::vector<Tile>& tiles, const std::vector<Slot>& slots) {
   sonar::Canvas canvas(width, height, kPaper);
-  ImageU8 pictures(width, height, 3);
   for (std::size_t i = 0; i < tiles.size(); ++i)
-    place(canvas, pictures, tiles[i], slots[i].x, slots[i].y, slots[i].width, slots[i].height);
+    canvas.text(slots[i].x + 2.0, slots[i].y + kCaptionBand_px - 9.0, kCaption_px, tiles[i].caption, kInk);
   ImageU8 out = canvas.take();
-  for (std::size_t i = 0; i < out.data.size(); i += 3)
-    if (pictures.data[i] | pictures.data[i + 1] | pictures.data[i + 2]) std::copy_n(&pictures.data[i], 3, &out.data[i]);
+  for (std::size_t i = 0; i < tiles.size(); ++i) place(out, tiles[i], slots[i]);
   return out;
 }
 
