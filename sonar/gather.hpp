@@ -14,6 +14,7 @@
 #include "engine/graph/frame_graph.hpp"
 #include "shared/sonar.h"
 #include "sonar/beam_grid.hpp"
+#include "sonar/reference.hpp"
 
 namespace neritic::sonar {
 
@@ -38,7 +39,7 @@ struct GBufferLayout {
 
 struct GatherOptions {
   Gather gather = Gather::kPlane;
-  bool labels = true;        // make the label image
+  bool labels = true;        // keep the class of each cell's strongest return
   bool reflectivity = true;  // a table by instance label will be given
 };
 
@@ -58,16 +59,21 @@ class SonarGather {
     Mat3 sonar_from_gbuffer{1.0};
     // Where to write; absent: transient buffers of the frame. An imported host-readable buffer
     // saves a copy on devices that share memory with the host.
-    graph::BufferHandle image_target, labels_target;
+    graph::BufferHandle sums_target, keys_target;
   };
   struct Outputs {
-    graph::BufferHandle image;   // float [n_range][n_azimuth]
-    graph::BufferHandle labels;  // uint32 [n_range][n_azimuth]; only written where options.labels
+    graph::BufferHandle sums;  // uint32 [n_range][n_azimuth]
+    graph::BufferHandle
+        keys;  // uint32 [n_range][n_azimuth] for label_of_key; absent without labels
   };
-  // Adds the pass "sonar gather". The object must outlive the graph's run.
+  // Adds the passes "sonar clear" and "sonar gather". The object must outlive the graph's run.
   Outputs declare(graph::FrameGraph& graph, const Inputs& inputs) const;
 
-  std::uint64_t image_bytes() const;
+  std::uint64_t buffer_bytes() const;  // of each output
+  // Outputs as read back, to an image. keys may be empty.
+  SonarImage to_image(std::span<const std::uint32_t> sums,
+                      std::span<const std::uint32_t> keys) const;
+  double image_scale() const { return 1.0 / (fixed_scale_ * grid_.bins.elevation); }
   double fixed_scale() const { return fixed_scale_; }
   const BeamGrid& grid() const { return grid_; }
   const std::vector<Sector>& sectors() const { return sectors_; }
@@ -77,18 +83,15 @@ class SonarGather {
   struct Pass;
   SonarGather() = default;
   void record(const Pass& pass, graph::PassContext& context) const;
-  std::uint64_t scratch_bytes() const;
 
   BeamGrid grid_;
   std::vector<Sector> sectors_;
   GBufferLayout layout_;
   GatherOptions options_;
-  std::uint32_t columns_per_group_ = 1, groups_ = 1;
-  bool shared_sums_ = true;
+  std::uint32_t groups_ = 1;
   double fixed_scale_ = 1.0;
-  std::vector<shared::SonarRow> rows_;
   gpu::Pipeline pipeline_;
-  gpu::Image no_labels_;
+  gpu::Image rows_, no_labels_;
   gpu::Buffer no_buffer_;
 };
 
@@ -96,6 +99,7 @@ class SonarGather {
 std::vector<shared::SonarColumn> column_table(const BeamGrid& grid, std::span<const Sector> sectors,
                                               const GBufferLayout& layout,
                                               const Mat3& sonar_from_gbuffer);
-std::vector<shared::SonarRow> row_table(const BeamGrid& grid);
+// tan and 1 / cos of the centre, tan of the lower and upper edge.
+std::vector<glm::vec4> row_table(const BeamGrid& grid);
 
 }  // namespace neritic::sonar

@@ -60,16 +60,16 @@ std::vector<shared::SonarColumn> column_table(const BeamGrid& grid, std::span<co
   return table;
 }
 
-std::vector<shared::SonarRow> row_table(const BeamGrid& grid) {
-  std::vector<shared::SonarRow> table;
+std::vector<glm::vec4> row_table(const BeamGrid& grid) {
+  std::vector<glm::vec4> table;
   for (std::uint32_t row = 0; row < grid.bins.elevation; ++row) {
     const double phi = grid.elevation_rad(row);
     const auto edge = [&](std::uint32_t i) {
       return static_cast<float>(
           std::tan(grid.limits.elevation_min_rad + i * grid.elevation_step_rad()));
     };
-    table.push_back({static_cast<float>(std::tan(phi)), static_cast<float>(1.0 / std::cos(phi)),
-                     edge(row), edge(row + 1)});
+    table.emplace_back(static_cast<float>(std::tan(phi)), static_cast<float>(1.0 / std::cos(phi)),
+                       edge(row), edge(row + 1));
   }
   return table;
 }

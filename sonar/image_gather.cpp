@@ -167,14 +167,15 @@ Status ImageGather::upload(std::span<const SonarInput> inputs) {
         gpu::upload_buffer(*device_, reflectivity_, std::as_bytes(std::span(table))));
   }
   const auto result = [&](const char* name) {
-    return gpu::Buffer::create(*device_, {.name = name,
-                                          .size = gather_->image_bytes(),
-                                          .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                          .memory = gpu::MemoryUse::kReadback});
+    return gpu::Buffer::create(
+        *device_, {.name = name,
+                   .size = gather_->buffer_bytes(),
+                   .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                   .memory = gpu::MemoryUse::kReadback});
   };
-  NERITIC_TRY(image_, result("sonar image"));
+  NERITIC_TRY(sums_, result("sonar sums"));
   if (labels_) {
-    NERITIC_TRY(label_buffer_, result("sonar labels"));
+    NERITIC_TRY(keys_, result("sonar keys"));
   }
   return {};
 }
@@ -190,28 +191,18 @@ Result<SonarImage> ImageGather::run() {
     inputs.reflectivity = graph.import_buffer("sonar reflectivity", reflectivity_);
     inputs.reflectivities = kReflectivitySteps;
   }
-  inputs.image_target = graph.import_buffer("sonar image", image_);
-  if (labels_) inputs.labels_target = graph.import_buffer("sonar labels", label_buffer_);
+  inputs.sums_target = graph.import_buffer("sonar sums", sums_);
+  if (labels_) inputs.keys_target = graph.import_buffer("sonar keys", keys_);
   const SonarGather::Outputs outputs = gather_->declare(graph, inputs);
-  graph.output(outputs.image, graph::Access::kHostRead);
-  if (labels_) graph.output(outputs.labels, graph::Access::kHostRead);
+  graph.output(outputs.sums, graph::Access::kHostRead);
+  if (labels_) graph.output(outputs.keys, graph::Access::kHostRead);
 
   NERITIC_TRY(gpu::Commands * commands, frames_->begin());
   NERITIC_TRY([[maybe_unused]] const graph::Plan* plan, executor_->run(graph, *commands));
   NERITIC_TRY(const std::uint64_t done, frames_->submit());
   NERITIC_TRY_STATUS(frames_->wait(done));
 
-  const Bins& bins = gather_->grid().bins;
-  SonarImage out{bins.range, bins.azimuth, {}, {}};
-  const std::size_t cells = std::size_t{bins.range} * bins.azimuth;
-  const auto values = image_.mapped<float>().first(cells);
-  out.intensity.assign(values.begin(), values.end());
-  out.labels.resize(cells, 0);
-  if (labels_) {
-    const auto labels = label_buffer_.mapped<std::uint32_t>().first(cells);
-    std::transform(labels.begin(), labels.end(), out.labels.begin(),
-                   [](std::uint32_t label) { return static_cast<std::uint16_t>(label); });
-  }
+  SonarImage out = gather_->to_image(sums_.mapped<std::uint32_t>(), keys_.mapped<std::uint32_t>());
   wall_ms_ = to_ms(now_ns() - start);
   return out;
 }

@@ -34,7 +34,7 @@ class ImageGather {
   std::unique_ptr<SonarGather> gather_;
   bool labels_ = false, reflect_ = false;
   gpu::Image depth_image_, normal_image_, label_image_;
-  gpu::Buffer reflectivity_, image_, label_buffer_;
+  gpu::Buffer reflectivity_, sums_, keys_;
   std::unique_ptr<gpu::Frames> frames_;
   std::unique_ptr<graph::Executor> executor_;
   double wall_ms_ = 0.0;

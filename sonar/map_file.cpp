@@ -1,0 +1,76 @@
+#include "sonar/map_file.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "engine/core/npy.hpp"
+#include "engine/scene/image_file.hpp"
+
+namespace neritic::sonar {
+namespace {
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+template <class T>
+MapFile from_raster(const std::filesystem::path& path, const Raster<T>& raster,
+                    MapFile::Coding coding) {
+  MapFile map{path.string(), raster.width, raster.height, raster.channels, coding, {}, {}};
+  map.values.assign(raster.data.begin(), raster.data.end());
+  return map;
+}
+
+Result<MapFile> read_npy_map(const std::filesystem::path& path) {
+  NERITIC_TRY(const NpyArray array, read_npy(path));
+  if (array.shape.size() < 2 || array.shape.size() > 3)
+    return bad_input(
+        "{}: an array of {} axes found, [height, width] or [height, width, channels] is "
+        "accepted",
+        path.string(), array.shape.size());
+  const std::size_t channels = array.shape.size() == 3 ? array.shape[2] : 1;
+  if (array.shape[0] > 32768 || array.shape[1] > 32768 || channels > 16)
+    return bad_input("{}: {} x {} x {} found, at most 32768 x 32768 x 16 is accepted",
+                     path.string(), array.shape[1], array.shape[0], channels);
+  MapFile map;
+  map.path = path.string();
+  map.height = static_cast<std::uint32_t>(array.shape[0]);
+  map.width = static_cast<std::uint32_t>(array.shape[1]);
+  map.channels = static_cast<std::uint32_t>(channels);
+  if (array.type == NpyType::kUint8) map.coding = MapFile::Coding::kCoded8;
+  if (array.type == NpyType::kUint16) map.coding = MapFile::Coding::kCoded16;
+  map.values = array.to_doubles();
+  return map;
+}
+
+}  // namespace
+
+Result<MapFile> read_map(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  MapFile map;
+  if (extension == ".npy") {
+    NERITIC_TRY(map, read_npy_map(path));
+  } else if (extension == ".exr") {
+    NERITIC_TRY(const scene::ExrImage exr, scene::read_exr(path));
+    map = from_raster(path, exr.image, MapFile::Coding::kNumbers);
+    map.channel_names = exr.names;
+  } else if (extension == ".png" && scene::is_png16(path)) {
+    NERITIC_TRY(const ImageU16 image, scene::read_image16(path));
+    map = from_raster(path, image, MapFile::Coding::kCoded16);
+  } else if (extension == ".png") {
+    NERITIC_TRY(const ImageU8 image, scene::read_image8(path));
+    map = from_raster(path, image, MapFile::Coding::kCoded8);
+  } else {
+    return bad_input("{}: a file named '{}' found, .npy, .png or .exr is accepted", path.string(),
+                     extension);
+  }
+  if (map.pixels() == 0 || map.channels == 0)
+    return bad_input("{}: {} x {} pixels of {} channels found, at least one of each is accepted",
+                     path.string(), map.width, map.height, map.channels);
+  return map;
+}
+
+}  // namespace neritic::sonar

@@ -1,0 +1,30 @@
+// Depth, normal and label maps from files of any kind that people keep them in: .npy, PNG (8 and 16
+// bit) and OpenEXR. Values as stored, in double, so that nothing is lost. Any thread.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/core/result.hpp"
+
+namespace neritic::sonar {
+
+struct MapFile {
+  enum class Coding { kNumbers, kCoded8, kCoded16 };  // floats; or integers of 8 or 16 bit
+  std::string path;
+  std::uint32_t width = 0, height = 0, channels = 1;
+  Coding coding = Coding::kNumbers;
+  std::vector<double> values;              // [height][width][channels]
+  std::vector<std::string> channel_names;  // of an EXR; else empty
+
+  double at(std::size_t pixel, std::uint32_t channel) const {
+    return values[pixel * channels + channel];
+  }
+  std::size_t pixels() const { return std::size_t{width} * height; }
+};
+
+// kBadInput with the path, what was found and what is accepted.
+Result<MapFile> read_map(const std::filesystem::path& path);
+
+}  // namespace neritic::sonar

@@ -1,0 +1,138 @@
+#include "sonar/offline_input.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace neritic::sonar {
+namespace {
+
+// The channel that holds depth: named so in an EXR, else the first.
+std::uint32_t depth_channel(const MapFile& map) {
+  for (const char* name : {"Z", "depth", "Y", "R"}) {
+    const auto at = std::find(map.channel_names.begin(), map.channel_names.end(), name);
+    if (at != map.channel_names.end())
+      return static_cast<std::uint32_t>(at - map.channel_names.begin());
+  }
+  return 0;
+}
+
+Status check_size(const MapFile& depth, const MapFile& other) {
+  if (other.width == depth.width && other.height == depth.height) return {};
+  return bad_input("{}: {} x {} pixels found, the {} x {} of {} are accepted", other.path,
+                   other.width, other.height, depth.width, depth.height, depth.path);
+}
+
+Vec3 to_sonar_axes(const Vec3& n, NormalAxes axes) {
+  switch (axes) {
+    case NormalAxes::kOpencv:
+      return {n.x, -n.y, -n.z};
+    case NormalAxes::kRos:
+      return {-n.y, n.z, -n.x};
+    case NormalAxes::kOpengl:
+      break;
+  }
+  return n;
+}
+
+std::vector<double> normals_of(const MapFile& map, const OfflineOptions& options) {
+  std::vector<double> out;
+  out.reserve(3 * map.pixels());
+  const double max = map.coding == MapFile::Coding::kCoded8 ? 255.0 : 65535.0;
+  for (std::size_t i = 0; i < map.pixels(); ++i) {
+    Vec3 n(map.at(i, 0), map.at(i, 1), map.at(i, 2));
+    if (map.coding != MapFile::Coding::kNumbers)
+      for (int k = 0; k < 3; ++k) n[k] = decode_normal(n[k], max, options.gamma);
+    // A marker of "unknown" stays one in any axes.
+    if (n != Vec3(-1.0)) n = to_sonar_axes(n, options.axes);
+    out.insert(out.end(), {n.x, n.y, n.z});
+  }
+  return out;
+}
+
+Result<std::vector<std::uint16_t>> labels_of(const MapFile& map) {
+  std::vector<std::uint16_t> out(map.pixels());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double value = map.at(i, 0);
+    if (!(value >= 0.0 && value <= 65535.0))
+      return bad_input("{}: label {:g} at column {}, row {} found, 0 to 65535 is accepted",
+                       map.path, value, i % map.width, i / map.width);
+    out[i] = static_cast<std::uint16_t>(std::lround(value));
+  }
+  return out;
+}
+
+// The step to the neighbour's side along one image axis: towards the side whose depth is nearer to
+// this pixel's, or both. before and after may be absent.
+std::optional<Vec3> step(const std::optional<Vec3>& before, const Vec3& here,
+                         const std::optional<Vec3>& after) {
+  if (!before && !after) return std::nullopt;
+  if (!before) return *after - here;
+  if (!after) return here - *before;
+  const double back = std::abs(before->z - here.z), forth = std::abs(after->z - here.z);
+  // Three times: a smooth surface bends by far less from pixel to pixel, an outline by far more.
+  constexpr double kOutline = 3.0;
+  if (forth > kOutline * back) return here - *before;
+  if (back > kOutline * forth) return *after - here;
+  return *after - *before;
+}
+
+}  // namespace
+
+double decode_normal(double code, double max, double gamma) {
+  return 2.0 * std::pow(code / max, gamma) - 1.0;
+}
+
+std::vector<double> normals_from_depth(const SonarInput& in) {
+  std::vector<double> out(3 * std::size_t{in.width} * in.height, 0.0);
+  const auto point = [&](std::int64_t u, std::int64_t v) -> std::optional<Vec3> {
+    if (u < 0 || v < 0 || u >= in.width || v >= in.height) return std::nullopt;
+    return point_of(in, static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v));
+  };
+  for (std::int64_t v = 0; v < in.height; ++v)
+    for (std::int64_t u = 0; u < in.width; ++u) {
+      const auto here = point(u, v);
+      if (!here) continue;
+      const auto right = step(point(u - 1, v), *here, point(u + 1, v));
+      const auto down = step(point(u, v - 1), *here, point(u, v + 1));
+      if (!right || !down) continue;
+      Vec3 n = glm::cross(*down, *right);
+      const double size = glm::length(n);
+      if (!(size > 0.0) || !std::isfinite(size)) continue;
+      n *= (glm::dot(n, *here) > 0.0 ? -1.0 : 1.0) / size;
+      double* to = &out[3 * static_cast<std::size_t>(v * in.width + u)];
+      std::copy_n(&n[0], 3, to);
+    }
+  return out;
+}
+
+Result<SonarInput> make_input(const MapFile& depth, const MapFile* normals, const MapFile* labels,
+                              const Intrinsics& intrinsics, const OfflineOptions& options) {
+  SonarInput in;
+  in.width = depth.width;
+  in.height = depth.height;
+  in.intrinsics = intrinsics;
+  in.depth_is_range = options.depth_is_range;
+  in.normals_face_sensor = options.normals_face_sensor;
+  const std::uint32_t channel = depth_channel(depth);
+  in.depth.resize(depth.pixels());
+  for (std::size_t i = 0; i < in.depth.size(); ++i)
+    in.depth[i] = depth.at(i, channel) * options.depth_scale;
+  if (normals != nullptr) {
+    NERITIC_TRY_STATUS(check_size(depth, *normals));
+    if (normals->channels < 3)
+      return bad_input("{}: {} channels found, x, y and z are accepted", normals->path,
+                       normals->channels);
+    in.normals = normals_of(*normals, options);
+  } else {
+    in.normals = normals_from_depth(in);
+    in.normals_face_sensor = true;
+  }
+  if (labels != nullptr) {
+    NERITIC_TRY_STATUS(check_size(depth, *labels));
+    NERITIC_TRY(in.labels, labels_of(*labels));
+  }
+  NERITIC_TRY_STATUS(validate(in));
+  return in;
+}
+
+}  // namespace neritic::sonar
