@@ -81,6 +81,26 @@ void normalize_rotations(Channel& channel) {
   }
 }
 
+// Times must start at 0 or later and increase; keys that do not are dropped with a note (an
+// accessor without bytes, all zeros, is valid and ends here too).
+void keep_increasing(Loading& loading, Field input, Channel& channel) {
+  if (channel.times_s.empty()) return;
+  const std::size_t n = channel.times_s.size(), width = channel.values.size() / n;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const float time_s = channel.times_s[i];
+    if (time_s < 0.0f || (kept > 0 && time_s <= channel.times_s[kept - 1])) continue;
+    channel.times_s[kept] = time_s;
+    std::copy_n(channel.values.begin() + i * width, width, channel.values.begin() + kept * width);
+    ++kept;
+  }
+  if (kept == n) return;
+  channel.times_s.resize(kept);
+  channel.values.resize(kept * width);
+  loading.report.note(fmt::format("{}: {} of {} keys whose times do not increase are ignored",
+                                  input.path(), n - kept, n));
+}
+
 void load_keys(Loading& loading, Field sampler, Channel& out) {
   const Field input = sampler["input"], output = sampler["output"];
   if (!input.present() || !output.present()) {
@@ -91,12 +111,6 @@ void load_keys(Loading& loading, Field sampler, Channel& out) {
   int components = 0;
   out.values = loading.resources.any(output, components);
   if (loading.report.failed()) return;
-  for (std::size_t i = 0; i < out.times_s.size(); ++i) {
-    if (out.times_s[i] >= 0.0f && (i == 0 || out.times_s[i] > out.times_s[i - 1])) continue;
-    input.fail_with("key {} is at {} s: times from 0 that increase are accepted", i,
-                    out.times_s[i]);
-    return;
-  }
   const int expected_components = out.path == Channel::Path::kWeights ? 1 : out.width;
   const bool cubic = out.interpolation == Channel::Interpolation::kCubic;
   const std::size_t expected = out.times_s.size() * out.width * (cubic ? 3 : 1);
@@ -106,6 +120,7 @@ void load_keys(Loading& loading, Field sampler, Channel& out) {
                      expected / expected_components, expected_components);
     return;
   }
+  keep_increasing(loading, input, out);
   if (out.path == Channel::Path::kRotation) normalize_rotations(out);
 }
 
