@@ -211,7 +211,6 @@ TEST(Barriers, ReadThatItsOwnWriteIncludesGivesOneBarrier) {
 }
 
 // --- The judge itself
-// -----------------------------------------------------------------------------
 
 TEST(Simulator, MissesNoHazardThatWasPlanted) {
   GraphMaker m;
