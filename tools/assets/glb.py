@@ -16,10 +16,20 @@ class Glb:
 
     def __init__(self, name):
         self.bin = bytearray()
-        self.doc = {"asset": {"version": "2.0", "generator": "Neritic tools/assets",
-                              "copyright": "Neritic authors, Apache-2.0"},
-                    "scene": 0, "scenes": [{"name": name, "nodes": []}], "nodes": [], "meshes": [],
-                    "materials": [], "accessors": [], "bufferViews": []}
+        self.doc = {
+            "asset": {
+                "version": "2.0",
+                "generator": "Neritic tools/assets",
+                "copyright": "Neritic authors, Apache-2.0",
+            },
+            "scene": 0,
+            "scenes": [{"name": name, "nodes": []}],
+            "nodes": [],
+            "meshes": [],
+            "materials": [],
+            "accessors": [],
+            "bufferViews": [],
+        }
         self.quantized = {}
 
     def _view(self, data, target=None):
@@ -35,8 +45,7 @@ class Glb:
     def accessor(self, array, ctype, kind, target=None, bounds=False, normalized=False):
         dt = {F32: "<f4", U16: "<u2", U32: "<u4", U8: "u1"}[ctype]
         a = np.ascontiguousarray(array, dt)
-        acc = {"bufferView": self._view(a.tobytes(), target), "componentType": ctype,
-               "count": len(a), "type": kind}
+        acc = {"bufferView": self._view(a.tobytes(), target), "componentType": ctype, "count": len(a), "type": kind}
         if normalized:
             acc["normalized"] = True
         if bounds:
@@ -57,13 +66,25 @@ class Glb:
             mime = "image/jpeg"
         d = self.doc
         d.setdefault("samplers", [{"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}])
-        d.setdefault("images", []).append({"name": name, "bufferView": self._view(buf.getvalue()),
-                                           "mimeType": mime})
+        d.setdefault("images", []).append({"name": name, "bufferView": self._view(buf.getvalue()), "mimeType": mime})
         d.setdefault("textures", []).append({"sampler": 0, "source": len(d["images"]) - 1, "name": name})
         return len(d["textures"]) - 1
 
-    def material(self, name, color=(1, 1, 1, 1), metal=0.0, rough=0.8, base=None, mr=None, normal=None,
-                 normal_scale=1.0, emissive=None, double=False, mask=None, blend=False):
+    def material(
+        self,
+        name,
+        color=(1, 1, 1, 1),
+        metal=0.0,
+        rough=0.8,
+        base=None,
+        mr=None,
+        normal=None,
+        normal_scale=1.0,
+        emissive=None,
+        double=False,
+        mask=None,
+        blend=False,
+    ):
         pbr = {"baseColorFactor": list(color), "metallicFactor": metal, "roughnessFactor": rough}
         m = {"name": name, "pbrMetallicRoughness": pbr}
         if base is not None:
@@ -90,20 +111,29 @@ class Glb:
             if part.nrm is None:
                 part = M.shade(part, crease)
             vert = 34962
-            attr = {"POSITION": self.accessor(part.pos, F32, "VEC3", vert, True),
-                    "NORMAL": self.accessor(part.nrm, F32, "VEC3", vert),
-                    "TEXCOORD_0": self.accessor(part.uv, F32, "VEC2", vert)}
+            attr = {
+                "POSITION": self.accessor(part.pos, F32, "VEC3", vert, True),
+                "NORMAL": self.accessor(part.nrm, F32, "VEC3", vert),
+                "TEXCOORD_0": self.accessor(part.uv, F32, "VEC2", vert),
+            }
             if "normalTexture" in self.doc["materials"][mat]:
                 attr["TANGENT"] = self.accessor(M.tangents(part), F32, "VEC4", vert)
             if part.col is not None:
-                attr["COLOR_0"] = self.accessor(np.round(np.clip(part.col, 0, 1) * 255), U8, "VEC4", vert,
-                                                normalized=True)
+                attr["COLOR_0"] = self.accessor(
+                    np.round(np.clip(part.col, 0, 1) * 255), U8, "VEC4", vert, normalized=True
+                )
             if part.joints is not None:
                 attr["JOINTS_0"] = self.accessor(part.joints, U8, "VEC4", vert)
                 attr["WEIGHTS_0"] = self.accessor(part.weights, F32, "VEC4", vert)
             wide = len(part.pos) > 65535
-            out.append({"attributes": attr, "material": mat, "mode": 4,
-                        "indices": self.accessor(part.tri.ravel(), U32 if wide else U16, "SCALAR", 34963)})
+            out.append(
+                {
+                    "attributes": attr,
+                    "material": mat,
+                    "mode": 4,
+                    "indices": self.accessor(part.tri.ravel(), U32 if wide else U16, "SCALAR", 34963),
+                }
+            )
         self.doc["meshes"].append({"name": name, "primitives": out})
         return len(self.doc["meshes"]) - 1
 
@@ -132,8 +162,13 @@ class Glb:
         ibm = np.tile(np.eye(4), (len(joints), 1, 1))
         ibm[:, 3, :3] = -np.asarray(rest)
         self.doc.setdefault("skins", []).append(
-            {"name": name, "joints": joints, "skeleton": joints[0],
-             "inverseBindMatrices": self.accessor(ibm.reshape(-1, 16), F32, "MAT4")})
+            {
+                "name": name,
+                "joints": joints,
+                "skeleton": joints[0],
+                "inverseBindMatrices": self.accessor(ibm.reshape(-1, 16), F32, "MAT4"),
+            }
+        )
         return len(self.doc["skins"]) - 1
 
     def animation(self, name, times, tracks):
@@ -175,5 +210,12 @@ def qmul(a, b):
     """Hamilton product: apply b, then a."""
     ax, ay, az, aw = np.moveaxis(a, -1, 0)
     bx, by, bz, bw = np.moveaxis(b, -1, 0)
-    return np.stack([aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
-                     aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz], -1)
+    return np.stack(
+        [
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+            aw * bw - ax * bx - ay * by - az * bz,
+        ],
+        -1,
+    )

@@ -21,8 +21,8 @@ def cells(n, count, seed, m=None):
     m = n if m is None else m
     rng = np.random.default_rng(seed)
     pts = rng.random((count, 2))
-    y, x = np.meshgrid((np.arange(n) + .5) / n, (np.arange(m) + .5) / m, indexing="ij")
-    d1, d2, who = np.full((n, m), 9.), np.full((n, m), 9.), np.zeros((n, m), int)
+    y, x = np.meshgrid((np.arange(n) + 0.5) / n, (np.arange(m) + 0.5) / m, indexing="ij")
+    d1, d2, who = np.full((n, m), 9.0), np.full((n, m), 9.0), np.zeros((n, m), int)
     for k, (py, px) in enumerate(pts):
         dy, dx = np.abs(y - py), np.abs(x - px)
         d = np.hypot(np.minimum(dy, 1 - dy), np.minimum(dx, 1 - dx))
@@ -41,13 +41,14 @@ def smooth(lo, hi, x):
 def blur(a, sigma):
     """Wrapped Gaussian blur, sigma in pixels."""
     fy, fx = np.meshgrid(np.fft.fftfreq(a.shape[0]), np.fft.fftfreq(a.shape[1]), indexing="ij")
-    return np.fft.ifft2(np.fft.fft2(a) * np.exp(-2 * (np.pi * sigma) ** 2 * (fx ** 2 + fy ** 2))).real
+    return np.fft.ifft2(np.fft.fft2(a) * np.exp(-2 * (np.pi * sigma) ** 2 * (fx**2 + fy**2))).real
 
 
 def mix(a, b, t):
-    t = np.asarray(t)
-    t = t[..., None] if np.ndim(a) != np.ndim(t) or np.ndim(b) == 1 else t
-    return np.asarray(a, float) * (1 - t) + np.asarray(b, float) * t
+    """Blend a to b by t; t may lack the colour axis."""
+    a, b, t = np.asarray(a, float), np.asarray(b, float), np.asarray(t, float)
+    t = t[..., None] if 0 < t.ndim < max(a.ndim, b.ndim) else t
+    return a * (1 - t) + b * t
 
 
 def flat(n, rgb, m=None):
@@ -80,13 +81,22 @@ def value3(p, seed, freq=1.0):
     for dx in (0, 1):
         for dy in (0, 1):
             for dz in (0, 1):
-                h = ((i[:, 0] + dx) * 73856093) ^ ((i[:, 1] + dy) * 19349663) ^ ((i[:, 2] + dz) * 83492791) ^ (seed * 2654435761)
-                h = (h ^ (h >> 13)) * 1274126177 & 0x7fffffff
-                h = (h ^ (h >> 16)) & 0xffff
-                w = (f[:, 0] if dx else 1 - f[:, 0]) * (f[:, 1] if dy else 1 - f[:, 1]) * (f[:, 2] if dz else 1 - f[:, 2])
+                h = (
+                    ((i[:, 0] + dx) * 73856093)
+                    ^ ((i[:, 1] + dy) * 19349663)
+                    ^ ((i[:, 2] + dz) * 83492791)
+                    ^ (seed * 2654435761)
+                )
+                h = (h ^ (h >> 13)) * 1274126177 & 0x7FFFFFFF
+                h = (h ^ (h >> 16)) & 0xFFFF
+                w = (
+                    (f[:, 0] if dx else 1 - f[:, 0])
+                    * (f[:, 1] if dy else 1 - f[:, 1])
+                    * (f[:, 2] if dz else 1 - f[:, 2])
+                )
                 out = out + w * (h / 32767.5 - 1)
     return out
 
 
 def fbm3(p, seed, freq=1.0, octaves=4, gain=0.5):
-    return sum(value3(p, seed + k, freq * 2 ** k) * gain ** k for k in range(octaves))
+    return sum(value3(p, seed + k, freq * 2**k) * gain**k for k in range(octaves))
