@@ -56,13 +56,7 @@ SonarFrame decode_sonar(const scene::Sonar& sonar, const SonarWork& work) {
   frame.gather = sonar::name_of(work.state->mode);
   frame.grid = work.state->gather->grid();
   frame.fixed_scale = work.state->gather->fixed_scale();
-  frame.image.n_range = frame.grid.bins.range;
-  frame.image.n_azimuth = frame.grid.bins.azimuth;
-  const std::size_t cells = std::size_t{frame.image.n_range} * frame.image.n_azimuth;
-  const std::span<const float> image = std::span<const float>(work.state->image.mapped<float>()).first(cells);
-  frame.image.intensity.assign(image.begin(), image.end());
-  const std::span<const std::uint32_t> labels = std::span<const std::uint32_t>(work.state->labels.mapped<std::uint32_t>()).first(cells);
-  frame.image.labels.assign(labels.begin(), labels.end());
+  frame.image = work.state->gather->to_image(work.state->sums.mapped<std::uint32_t>(), work.state->keys.mapped<std::uint32_t>());
   frame.sectors = work.depth ? decode_views(work) : std::vector<ViewImages>{};
   return frame;
 }
@@ -93,10 +87,12 @@ Result<Session::SonarState*> Session::sonar_state(std::size_t index) {
   layout.near_m = sonar.near_m;
   NERITIC_TRY(auto gather, sonar::SonarGather::create(device_, grid, sectors, layout, {state->mode, true, true}));
   state->gather = std::make_unique<sonar::SonarGather>(std::move(gather));
-  const VkDeviceSize cells = VkDeviceSize{grid.bins.range} * grid.bins.azimuth;
-  constexpr auto kUse = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-  NERITIC_TRY(state->image, gpu::Buffer::create(device_, {sonar.name + " image", cells * sizeof(float), kUse, gpu::MemoryUse::kReadback}));
-  NERITIC_TRY(state->labels, gpu::Buffer::create(device_, {sonar.name + " labels", cells * sizeof(std::uint32_t), kUse, gpu::MemoryUse::kReadback}));
+  const auto result = [&](const char* what) {
+    return gpu::Buffer::create(device_, {sonar.name + what, state->gather->buffer_bytes(),
+                                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryUse::kReadback});
+  };
+  NERITIC_TRY(state->sums, result(" sums"));
+  NERITIC_TRY(state->keys, result(" keys"));
   slot = std::move(state);
   return slot.get();
 }
@@ -200,11 +196,11 @@ Status Session::declare_sonar(graph::FrameGraph& graph, const render::FrameState
   inputs.reflectivity = graph.import_buffer(prefix + "reflectivity", reflectivity_);
   inputs.reflectivities = static_cast<std::uint32_t>(reflectivity_.size() / sizeof(float));
   inputs.sonar_from_gbuffer = glm::mat3_cast(glm::conjugate(scene_.world_from(sonar.mount).rotation));
-  inputs.image_target = graph.import_buffer(prefix + "image", work.state->image);
-  inputs.labels_target = graph.import_buffer(prefix + "labels", work.state->labels);
+  inputs.sums_target = graph.import_buffer(prefix + "sums", work.state->sums);
+  inputs.keys_target = graph.import_buffer(prefix + "keys", work.state->keys);
   const sonar::SonarGather::Outputs outputs = work.state->gather->declare(graph, inputs);
-  graph.output(outputs.image, graph::Access::kHostRead);
-  graph.output(outputs.labels, graph::Access::kHostRead);
+  graph.output(outputs.sums, graph::Access::kHostRead);
+  graph.output(outputs.keys, graph::Access::kHostRead);
   if (!capture.geometry) return {};
   const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
     return readback_.declare(graph, device_, prefix + name, image, format, g.width, g.height, g.layers);

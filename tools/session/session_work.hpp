@@ -24,7 +24,7 @@ struct Session::SonarState {
   sonar::Gather mode = sonar::Gather::kPlane;
   sonar::PixelSize size;
   std::unique_ptr<sonar::SonarGather> gather;
-  gpu::Buffer image, labels;  // host-readable
+  gpu::Buffer sums, keys;  // host-readable
 };
 
 }  // namespace neritic::tools
