@@ -1,0 +1,107 @@
+// Golden images: every case of cases.json rendered and compared with its pictures here. A failure writes
+// actual, golden and an amplified difference to build/.../golden/. NERITIC_UPDATE_GOLDEN=1 (see
+// tools/golden) writes the goldens anew.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tests/support/gpu_fixture.hpp"
+#include "tests/support/support.hpp"
+#include "tools/session/session.hpp"
+
+namespace neritic::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kFolder = test::source_dir() / "tests" / "golden";
+
+struct Case {
+  std::string name, scene, water;
+  std::uint32_t width = 0, height = 0;
+  double time_s = 0.0, max_fraction = 0.0;
+  int max_difference = 0;
+};
+
+std::vector<Case> read_cases() {
+  const auto text = read_text(kFolder / "cases.json");
+  if (!text.ok()) return {};
+  std::vector<Case> cases;
+  for (const nlohmann::json& entry : nlohmann::json::parse(*text))
+    cases.push_back({entry["name"], entry["scene"], entry.value("water", ""), entry["size"][0], entry["size"][1],
+                     entry["time_s"], entry["max_fraction_of_pixels"], entry["max_channel_difference"]});
+  return cases;
+}
+
+class Golden : public test::GpuTest, public ::testing::WithParamInterface<Case> {};
+
+// Intensity as grey: 1 is white, with a square root so that weak echoes show.
+ImageU8 grey_sonar(const sonar::SonarImage& image) {
+  ImageU8 out(image.n_azimuth, image.n_range, 1);
+  for (std::size_t i = 0; i < out.data.size(); ++i)
+    out.data[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::sqrt(std::min(image.intensity[i], 1.0f))));
+  return out;
+}
+
+void expect_like_golden(const ImageU8& actual, const std::string& name, const Case& c) {
+  const fs::path golden_path = kFolder / (name + ".png");
+  if (std::getenv("NERITIC_UPDATE_GOLDEN")) {
+    NERITIC_ASSERT_STATUS(scene::write_png8(golden_path, actual));
+    return;
+  }
+  NERITIC_ASSERT_OK(const ImageU8 golden, scene::read_image8(golden_path, actual.channels));
+  ASSERT_EQ(golden.width, actual.width);
+  ASSERT_EQ(golden.height, actual.height);
+  std::size_t off = 0;
+  int worst = 0;
+  ImageU8 difference(actual.width, actual.height, actual.channels);
+  for (std::size_t pixel = 0; pixel < std::size_t{actual.width} * actual.height; ++pixel) {
+    int most = 0;
+    for (std::uint32_t ch = 0; ch < actual.channels; ++ch) {
+      const std::size_t i = pixel * actual.channels + ch;
+      const int d = std::abs(int(actual.data[i]) - int(golden.data[i]));
+      most = std::max(most, d);
+      difference.data[i] = static_cast<std::uint8_t>(std::min(255, d * 16));
+    }
+    worst = std::max(worst, most);
+    off += most > c.max_difference;
+  }
+  const double fraction = double(off) / (double(actual.width) * actual.height);
+  EXPECT_LE(fraction, c.max_fraction) << name << ": " << off << " pixels differ by more than " << c.max_difference
+                                      << ", worst " << worst << "; pictures in build golden/";
+  if (fraction <= c.max_fraction) return;
+  const fs::path folder = fs::path(NERITIC_BINARY_DIR) / "golden";
+  NERITIC_ASSERT_STATUS(make_folder(folder));
+  NERITIC_ASSERT_STATUS(scene::write_png8(folder / (name + ".actual.png"), actual));
+  NERITIC_ASSERT_STATUS(scene::write_png8(folder / (name + ".golden.png"), golden));
+  NERITIC_ASSERT_STATUS(scene::write_png8(folder / (name + ".difference.png"), difference));
+}
+
+TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
+  const Case& c = GetParam();
+  NERITIC_ASSERT_OK(scene::Scene scene, scene::load_scene(test::source_dir() / c.scene));
+  for (scene::Camera& camera : scene.cameras) camera.width = c.width, camera.height = c.height;
+  if (!c.water.empty()) scene.water->type = c.water;
+  FrameRequest request;
+  request.time_s = c.time_s;
+  request.next_time_s = c.time_s + 1.0 / 30.0;
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) request.cameras.push_back(i);
+  for (std::size_t i = 0; i < scene.sonars.size(); ++i) request.sonars.push_back(i);
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+  NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+  ASSERT_FALSE(result.cameras.empty() && result.sonars.empty());
+  for (const CameraFrame& camera : result.cameras)
+    for (std::size_t e = 0; e < camera.eyes.size(); ++e)
+      expect_like_golden(camera.eyes[e].color, c.name + "." + camera.name + (e ? ".right" : ""), c);
+  for (const SonarFrame& sonar : result.sonars) expect_like_golden(grey_sonar(sonar.image), c.name + "." + sonar.name, c);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Golden, ::testing::ValuesIn(read_cases()),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace neritic::tools
