@@ -25,7 +25,7 @@ struct Look {
   Vec3 color{0.5};  // linear
   double roughness = 0.9, metallic = 0.0;
   bool double_sided = false;
-  std::filesystem::path color_texture;
+  std::filesystem::path color_texture, normal_texture;
   double texture_m = 1.0;
 };
 

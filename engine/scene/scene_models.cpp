@@ -20,23 +20,37 @@ std::string identity_of(const fs::path& file) {
   return error ? file.string() : canonical.string();
 }
 
+// Adds the picture as a texture of the model and refers to it.
+Status add_texture(const fs::path& file, double repeats_per_unit, Model& model, TextureRef& ref) {
+  if (file.empty()) return {};
+  NERITIC_TRY(ImageU8 image, read_image8(file, 4));
+  ref.texture = static_cast<int>(model.textures.size());
+  const auto repeats = static_cast<float>(repeats_per_unit);
+  ref.transform_u = {repeats, 0, 0};
+  ref.transform_v = {0, repeats, 0};
+  model.textures.push_back({static_cast<int>(model.images.size()), {}});
+  model.images.push_back(std::move(image));
+  return {};
+}
+
 Result<Material> make_material(const Look& look, bool metres_in_uv, Model& model) {
   Material material;
   material.base_color = Vec4f(Vec3f(look.color), 1.0f);
   material.roughness = static_cast<float>(look.roughness);
   material.metallic = static_cast<float>(look.metallic);
   material.double_sided = look.double_sided;
-  if (look.color_texture.empty()) return material;
-  NERITIC_TRY(ImageU8 image, read_image8(look.color_texture, 4));
-  model.images.push_back(std::move(image));
-  model.textures.push_back({0, {}});
-  material.base_color_texture.texture = 0;
-  if (metres_in_uv) {
-    const float repeats_per_m = static_cast<float>(1.0 / look.texture_m);
-    material.base_color_texture.transform_u = {repeats_per_m, 0, 0};
-    material.base_color_texture.transform_v = {0, repeats_per_m, 0};
-  }
+  const double repeats = metres_in_uv ? 1.0 / look.texture_m : 1.0;
+  NERITIC_TRY_STATUS(add_texture(look.color_texture, repeats, model, material.base_color_texture));
+  NERITIC_TRY_STATUS(add_texture(look.normal_texture, repeats, model, material.normal_texture));
   return material;
+}
+
+// A terrain's texture runs along +x and, downwards in the picture, +z: the tangent is +x made
+// perpendicular to the normal, and the bitangent (up in the picture) is -z, handedness 1.
+void add_terrain_tangents(Model& model) {
+  for (Primitive& primitive : model.meshes[0].primitives)
+    for (const Vec3f& normal : primitive.normals)
+      primitive.tangents.emplace_back(glm::normalize(Vec3f(1, 0, 0) - normal * normal.x), 1.0f);
 }
 
 Model make_shape(const ModelRequest& request) {
@@ -53,6 +67,7 @@ Result<Model> load_base(const ModelRequest& request) {
   if (request.kind == ModelRequest::Kind::kTerrain) {
     NERITIC_TRY(const Heightfield field, read_heightfield(request.file, request.heights));
     model = make_terrain(field, request.look.texture_m);
+    if (!request.look.normal_texture.empty()) add_terrain_tangents(model);
   } else {
     model = make_shape(request);
     if (request.inside_out) turn_inside_out(model);
@@ -101,9 +116,10 @@ std::vector<std::optional<Result<Model>>> load_bases(
 std::string ModelRequest::base_identity() const {
   if (kind == Kind::kFile) return "file " + identity_of(file);
   const std::string of_look =
-      fmt::format("{} {} {} {} {} {} {} {}", look.color.x, look.color.y, look.color.z,
+      fmt::format("{} {} {} {} {} {} {} {} {}", look.color.x, look.color.y, look.color.z,
                   look.roughness, look.metallic, look.double_sided, look.texture_m,
-                  look.color_texture.empty() ? std::string() : identity_of(look.color_texture));
+                  look.color_texture.empty() ? std::string() : identity_of(look.color_texture),
+                  look.normal_texture.empty() ? std::string() : identity_of(look.normal_texture));
   if (kind == Kind::kTerrain)
     return fmt::format("terrain {} {} {} {} {}", heights.cell_m, heights.scale, heights.offset_m,
                        identity_of(file), of_look);

@@ -125,9 +125,9 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   if (water) {
     NERITIC_TRY(scene.water, read_water(source, *water));
   }
+  NERITIC_TRY_STATUS(read_sensors(draft, reader, ""));  // first: a scene's own camera leads
   NERITIC_TRY_STATUS(read_objects(draft, source, objects, "objects"));
   NERITIC_TRY_STATUS(read_objects(draft, source, vehicles, "vehicles"));
-  NERITIC_TRY_STATUS(read_sensors(draft, reader, ""));
   return draft;
 }
 

@@ -24,14 +24,14 @@ constexpr ShapeKeys kShapes[] = {{"sphere", {"radius_m", "segments", "inside_out
 constexpr auto kShapeNames = std::to_array<Key>({"sphere", "box", "plane", "cylinder"});
 
 // Keys that describe a drawing; each kind of drawing takes only some of them.
-constexpr auto kDrawingKeys =
-    std::to_array<Key>({"node", "radius_m", "size_m", "height_m", "segments", "inside_out",
-                        "cell_m", "height_scale", "height_offset_m", "texture_m", "color",
-                        "color_texture", "roughness", "metallic", "double_sided"});
+constexpr auto kDrawingKeys = std::to_array<Key>(
+    {"node", "radius_m", "size_m", "height_m", "segments", "inside_out", "cell_m", "height_scale",
+     "height_offset_m", "texture_m", "color", "color_texture", "normal_texture", "roughness",
+     "metallic", "double_sided"});
 constexpr auto kLookKeys =
     std::to_array<Key>({"color", "color_texture", "roughness", "metallic", "double_sided"});
-constexpr auto kTerrainKeys =
-    std::to_array<Key>({"cell_m", "height_scale", "height_offset_m", "texture_m"});
+constexpr auto kTerrainKeys = std::to_array<Key>(
+    {"cell_m", "height_scale", "height_offset_m", "texture_m", "normal_texture"});
 
 bool contains(KeyList keys, Key key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
@@ -52,6 +52,7 @@ void read_look(TableReader& reader, ModelRequest& request, double default_textur
   look.metallic = reader.number("metallic", look.metallic, kFraction);
   look.double_sided = reader.flag("double_sided", false);
   look.color_texture = reader.file("color_texture");
+  look.normal_texture = reader.file("normal_texture");
   look.texture_m = reader.number("texture_m", default_texture_m, kSize);
 }
 

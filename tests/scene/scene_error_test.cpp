@@ -167,6 +167,9 @@ INSTANTIATE_TEST_SUITE_P(
             "them"},
         Case{SPHERE "copies_file = 'c.csv'",
              "s.toml:3: objects[0].copies_file: found \"c.csv\"; accepted: a file; c.csv is none"},
+        Case{SPHERE "normal_texture = 'x.png'",
+             "s.toml:3: objects[0].normal_texture: found \"x.png\"; accepted: no such key for a "
+             "sphere"},
         Case{SPHERE "node = 'x'",
              "s.toml:3: objects[0].node: found \"x\"; accepted: no such key for a sphere"}));
 

@@ -6,6 +6,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/scene/image_file.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/scene_keys.hpp"
 #include "engine/scene/shapes.hpp"
@@ -465,6 +466,29 @@ TEST(SceneModels, ANamedNodeIsTakenAloneAndBroughtToTheOrigin) {
   EXPECT_NE(bad.error().message.find("accepted: a node of the file (nearest: \"rock_0\")"),
             std::string::npos)
       << bad.error().message;
+}
+
+TEST(SceneModels, ATerrainWithANormalMapHasTangentsAlongX) {
+  const test::ScratchFolder scratch;
+  write_hill(scratch);
+  ImageU8 flat(2, 2, 3, 128);
+  ASSERT_TRUE(write_png8(scratch / "n.png", flat).ok());
+  const Scene scene =
+      scene_of(scratch,
+               "[[objects]]\nterrain = 'hill.npy'\ncell_m = 2\nnormal_texture = 'n.png'\n"
+               "color_texture = 'n.png'");
+  const Model& model = *scene.models.at(0);
+  const Primitive& p = model.meshes[0].primitives[0];
+  ASSERT_EQ(p.tangents.size(), p.positions.size());
+  // The slope rises by a half: along x it climbs at that angle.
+  const Vec3 along = glm::normalize(Vec3(1.0, 0.5, 0.0));
+  for (const Vec4f& tangent : p.tangents) {
+    expect_near(Vec3(tangent), along, 1e-6);
+    EXPECT_EQ(tangent.w, 1.0f);
+  }
+  EXPECT_EQ(model.images.size(), 2u);
+  EXPECT_EQ(model.textures.at(model.materials[0].normal_texture.texture).image, 1);
+  EXPECT_EQ(model.textures.at(model.materials[0].base_color_texture.texture).image, 0);
 }
 
 TEST(SceneModels, AFileThatDoesNotLoadIsNamedWithTheLineThatAsksForIt) {
