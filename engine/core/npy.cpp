@@ -123,6 +123,12 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
   if (length > bytes.size() - prefix) return bad_input("{}: the .npy header is cut off", name);
   const std::string_view header(reinterpret_cast<const char*>(bytes.data()) + prefix, length);
 
+  // Printable ASCII that ends in a newline (NEP 1): what is quoted below then stays on one line.
+  const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
+  if (!std::all_of(header.begin(), header.end(), [&](char c) { return printable(c) || c == '\n'; }) ||
+      header.substr(0, header.empty() ? 0 : header.size() - 1).find('\n') != header.npos)
+    return bad_input("{}: the .npy header is not one line of text", name);
+
   NpyArray array;
   const std::string_view descr = value_of(header, "descr");
   if (descr.size() < 5) return bad_input("{}: the .npy header has no descr", name);

@@ -162,7 +162,6 @@ bool Resources::resolve(Field reference, std::string_view shapes, Elements& out)
   const std::size_t element_bytes = size_of(out.component) * out.components;
   out.stride = element_bytes;
   if (field.report().failed()) return false;
-  if (!charge(out.count * element_bytes, field)) return false;
 
   if (const Field view_reference = field["bufferView"]; view_reference.present()) {
     const auto bytes = view(view_reference);
@@ -186,8 +185,9 @@ bool Resources::resolve(Field reference, std::string_view shapes, Elements& out)
     }
     out.data = bytes.data() + offset;
   }
-  if (const Field sparse = field["sparse"]; sparse.present()) return resolve_sparse(sparse, out);
-  return true;
+  if (!charge(out.count * element_bytes, field)) return false;
+  const Field sparse = field["sparse"];
+  return !sparse.present() || resolve_sparse(sparse, out);
 }
 
 bool Resources::resolve_sparse(Field sparse, Elements& out) {

@@ -13,6 +13,7 @@
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_NO_STDIO
+#define STBI_NO_FAILURE_STRINGS  // they are built in a static buffer, which threads would share
 #define STBI_MAX_DIMENSIONS 32768
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -87,7 +88,7 @@ Result<Header> read_header(std::span<const std::byte> bytes, const std::string& 
     if (png && (big_endian(bytes, 16) > kMaxSide || big_endian(bytes, 20) > kMaxSide))
       return bad_input("{}: {} x {} pixels, at most {} x {} are accepted", name,
                        big_endian(bytes, 16), big_endian(bytes, 20), kMaxSide, kMaxSide);
-    return bad_input("{}: a broken picture ({})", name, stbi_failure_reason());
+    return bad_input("{}: a broken {} header", name, png ? "PNG" : "JPEG");
   }
   const std::uint64_t width = header.width, height = header.height, pixels = width * height;
   if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide || pixels > kMaxPixels)
@@ -110,7 +111,7 @@ Result<Raster<T>> decode(std::span<const std::byte> bytes, const std::string& na
   const std::unique_ptr<T, FreeStb> pixels(load(reinterpret_cast<const stbi_uc*>(bytes.data()),
                                                 static_cast<int>(bytes.size()), &width, &height,
                                                 &stored, static_cast<int>(channels)));
-  if (!pixels) return bad_input("{}: a broken picture ({})", name, stbi_failure_reason());
+  if (!pixels) return bad_input("{}: a broken or unfinished picture", name);
   Raster<T> image;
   image.width = static_cast<std::uint32_t>(width);
   image.height = static_cast<std::uint32_t>(height);

@@ -1,0 +1,252 @@
+// Pictures and maps: what is written reads back; other programs' files; forged and cut files.
+#include "engine/scene/image_file.hpp"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <gtest/gtest.h>
+#include <half.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "engine/core/files.hpp"
+#include "engine/core/npy.hpp"
+#include "engine/core/random.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::scene {
+namespace {
+
+template <class T>
+Raster<T> noise(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+  Raster<T> image(width, height, channels);
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    image.data[i] = static_cast<T>(random_bits({7, channels, 0}, i));
+  return image;
+}
+
+std::span<const std::byte> bytes_of(const std::vector<unsigned char>& v) {
+  return std::as_bytes(std::span(v.data(), v.size()));
+}
+
+TEST(ImageFile, EightBitPicturesReadBackExactly) {
+  const test::ScratchFolder folder;
+  for (const std::uint32_t channels : {1u, 3u, 4u}) {
+    const ImageU8 image = noise<std::uint8_t>(37, 11, channels);
+    ASSERT_TRUE(write_png8(folder / "a.png", image).ok());
+    const auto read = read_image8(folder / "a.png");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->width, 37u);
+    EXPECT_EQ(read->channels, channels);
+    EXPECT_EQ(read->data, image.data);
+    EXPECT_FALSE(is_png16(folder / "a.png"));
+  }
+}
+
+TEST(ImageFile, SixteenBitPicturesReadBackExactly) {
+  const test::ScratchFolder folder;
+  for (const std::uint32_t channels : {1u, 3u, 4u}) {
+    const ImageU16 image = noise<std::uint16_t>(19, 23, channels);
+    ASSERT_TRUE(write_png16(folder / "a.png", image).ok());
+    EXPECT_TRUE(is_png16(folder / "a.png"));
+    const auto read = read_image16(folder / "a.png");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->channels, channels);
+    EXPECT_EQ(read->data, image.data);
+  }
+}
+
+TEST(ImageFile, TheSamePixelsGiveTheSameBytes) {
+  const test::ScratchFolder folder;
+  const ImageU8 image = noise<std::uint8_t>(300, 200, 3);
+  ASSERT_TRUE(write_png8(folder / "a.png", image).ok());
+  ASSERT_TRUE(write_png8(folder / "b.png", image).ok());
+  EXPECT_EQ(*read_file(folder / "a.png"), *read_file(folder / "b.png"));
+}
+
+TEST(ImageFile, ChannelsAreConvertedAsAsked) {
+  const test::ScratchFolder folder;
+  ImageU8 image(2, 1, 3);
+  image.data = {10, 20, 30, 200, 100, 0};
+  ASSERT_TRUE(write_png8(folder / "a.png", image).ok());
+  const auto read = read_image8(folder / "a.png", 4);
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read->data, (std::vector<std::uint8_t>{10, 20, 30, 255, 200, 100, 0, 255}));
+}
+
+TEST(ImageFile, AnEightBitFileIsNoSixteenBitFile) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_png8(folder / "a.png", ImageU8(4, 4, 1)).ok());
+  const auto read = read_image16(folder / "a.png");
+  ASSERT_FALSE(read.ok());
+  EXPECT_NE(read.error().message.find("8 bits a channel"), std::string::npos);
+  EXPECT_NE(read.error().message.find("a.png"), std::string::npos);
+}
+
+TEST(ImageFile, PicturesWithoutPixelsAndUnwritableFoldersAreErrors) {
+  const test::ScratchFolder folder;
+  const auto empty = write_png8(folder / "a.png", ImageU8());
+  ASSERT_FALSE(empty.ok());
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+  EXPECT_FALSE(write_png8(folder / "none/a.png", ImageU8(1, 1, 1)).ok());
+}
+
+TEST(ImageFile, EveryCutOfAPngIsAnErrorOrAPictureOfTheSameSize) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_png8(folder / "a.png", noise<std::uint8_t>(16, 16, 3)).ok());
+  const auto bytes = *read_file(folder / "a.png");
+  for (std::size_t length = 0; length + 20 < bytes.size(); ++length) {
+    const auto read = decode_image8(std::span(bytes).first(length), "cut.png");
+    EXPECT_FALSE(read.ok()) << length;
+    if (read.ok()) continue;
+    EXPECT_EQ(read.error().message.rfind("cut.png: ", 0), 0u);
+  }
+}
+
+// A PNG header that claims 30000 x 8000 pixels in 60 bytes must be refused before memory is asked
+// for.
+TEST(ImageFile, ForgedHeadersAreRefused) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_png8(folder / "a.png", ImageU8(8, 8, 4)).ok());
+  auto bytes = *read_file(folder / "a.png");
+  const auto set_size = [&](std::uint32_t width, std::uint32_t height) {
+    for (int i = 0; i < 4; ++i) {
+      bytes[16 + i] = static_cast<std::byte>(width >> (24 - 8 * i));
+      bytes[20 + i] = static_cast<std::byte>(height >> (24 - 8 * i));
+    }
+  };
+  set_size(30000, 8000);
+  auto read = decode_image8(bytes, "forged.png");
+  ASSERT_FALSE(read.ok());
+  EXPECT_NE(read.error().message.find("cannot come from"), std::string::npos)
+      << read.error().message;
+  set_size(40000, 8);
+  read = decode_image8(bytes, "wide.png");
+  ASSERT_FALSE(read.ok());
+  EXPECT_NE(read.error().message.find("32768"), std::string::npos) << read.error().message;
+}
+
+// The largest real ratio: a picture of one colour, as strongly packed as deflate can.
+TEST(ImageFile, AWidePictureOfOneColourIsNoForgery) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_png8(folder / "a.png", ImageU8(16384, 64, 4, 77)).ok());
+  const auto read = read_image8(folder / "a.png");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->at(16383, 63, 2), 77);
+}
+
+TEST(ImageFile, OtherFilesAreNamedAsNoPicture) {
+  const std::vector<unsigned char> text(100, 'a');
+  const auto read = decode_image8(bytes_of(text), "notes.txt");
+  ASSERT_FALSE(read.ok());
+  EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
+  EXPECT_NE(read.error().message.find("notes.txt: no PNG or JPEG"), std::string::npos);
+  EXPECT_FALSE(decode_image8({}, "empty").ok());
+}
+
+// Channels of every type, a data window that starts elsewhere, names in need of order.
+TEST(ImageFile, OpenExrChannelsComeInOrderAndAsFloats) {
+  const test::ScratchFolder folder;
+  const auto path = folder / "a.exr";
+  const int width = 5, height = 3;
+  const Imath::Box2i window({-7, 100}, {-7 + width - 1, 100 + height - 1});
+  std::vector<float> b(width * height), r(width * height);
+  std::vector<half> g(width * height);
+  std::vector<std::uint32_t> id(width * height);
+  for (int i = 0; i < width * height; ++i) {
+    r[i] = i + 0.25f, g[i] = half(i * 0.5f), b[i] = -i, id[i] = 1000u + i;
+  }
+  {
+    Imf::Header header(Imath::Box2i({0, 0}, {99, 99}), window);
+    header.channels().insert("layer.B", Imf::Channel(Imf::FLOAT));
+    header.channels().insert("layer.G", Imf::Channel(Imf::HALF));
+    header.channels().insert("layer.R", Imf::Channel(Imf::FLOAT));
+    header.channels().insert("id", Imf::Channel(Imf::UINT));
+    Imf::OutputFile file(path.c_str(), header);
+    Imf::FrameBuffer frame;
+    const auto insert = [&](const char* name, Imf::PixelType type, auto& list) {
+      const std::size_t size = sizeof(list[0]);
+      frame.insert(name, Imf::Slice::Make(type, list.data(), window, size, size * width));
+    };
+    insert("layer.R", Imf::FLOAT, r);
+    insert("layer.G", Imf::HALF, g);
+    insert("layer.B", Imf::FLOAT, b);
+    insert("id", Imf::UINT, id);
+    file.setFrameBuffer(frame);
+    file.writePixels(height);
+  }
+  const auto exr = read_exr(path);
+  ASSERT_TRUE(exr.ok()) << exr.error().message;
+  EXPECT_EQ(exr->names, (std::vector<std::string>{"layer.R", "layer.G", "layer.B", "id"}));
+  ASSERT_EQ(exr->image.width, 5u);
+  ASSERT_EQ(exr->image.height, 3u);
+  for (std::uint32_t y = 0; y < 3; ++y)
+    for (std::uint32_t x = 0; x < 5; ++x) {
+      const int i = static_cast<int>(y * 5 + x);
+      EXPECT_EQ(exr->image.at(x, y, 0), i + 0.25f);
+      EXPECT_EQ(exr->image.at(x, y, 1), i * 0.5f);
+      EXPECT_EQ(exr->image.at(x, y, 2), static_cast<float>(-i));
+      EXPECT_EQ(exr->image.at(x, y, 3), 1000.0f + i);
+    }
+  auto bytes = *read_file(path);
+  for (std::size_t length = 0; length < bytes.size(); length += 3) {
+    const auto cut = decode_exr(std::span(bytes).first(length), "cut.exr");
+    if (cut.ok()) continue;
+    EXPECT_EQ(cut.error().message.rfind("cut.exr: ", 0), 0u) << cut.error().message;
+  }
+  EXPECT_FALSE(decode_exr(std::span(bytes).first(bytes.size() / 2), "cut.exr").ok());
+}
+
+TEST(ImageFile, RealDepthAndNormalMapsReadAsTheirChannels) {
+  NERITIC_REQUIRE_SHARED(shared);
+  const auto wreck = shared / "data/rgbd/depth-synthetic-wreck";
+  const auto depth = read_exr(wreck / "frame_0000_depth_m.exr");
+  ASSERT_TRUE(depth.ok()) << depth.error().message;
+  EXPECT_EQ(depth->image.width, 640u);
+  EXPECT_EQ(depth->image.height, 480u);
+  EXPECT_EQ(depth->names.size(), 1u);
+  const auto normals = read_exr(wreck / "frame_0000_normal_cam.exr");
+  ASSERT_TRUE(normals.ok()) << normals.error().message;
+  ASSERT_EQ(normals->names.size(), 3u);
+  std::size_t n_unit = 0, n_set = 0;
+  for (std::size_t i = 0; i < normals->image.data.size(); i += 3) {
+    const float* n = &normals->image.data[i];
+    const double length = std::sqrt(double{n[0]} * n[0] + n[1] * n[1] + n[2] * n[2]);
+    n_set += length > 0.0;
+    n_unit += std::abs(length - 1.0) < 0.01;
+  }
+  EXPECT_GT(n_set, 1000u);
+  EXPECT_EQ(n_unit, n_set);
+}
+
+TEST(ImageFile, EveryRealPictureReads) {
+  NERITIC_REQUIRE_SHARED(shared);
+  std::size_t n = 0, n_16 = 0, n_exr = 0;
+  for (const char* part : {"data/rgbd", "data/photos"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(shared / part)) {
+      const std::string extension = entry.path().extension();
+      if (extension == ".exr") {
+        const auto exr = read_exr(entry.path());
+        ASSERT_TRUE(exr.ok()) << exr.error().message;
+        EXPECT_FALSE(exr->image.empty());
+        ++n_exr;
+      } else if (extension == ".png" || extension == ".jpg") {
+        if (is_png16(entry.path())) {
+          const auto image = read_image16(entry.path());
+          ASSERT_TRUE(image.ok()) << image.error().message;
+          ++n_16;
+        }
+        const auto image = read_image8(entry.path());
+        ASSERT_TRUE(image.ok()) << image.error().message;
+        ++n;
+      }
+    }
+  EXPECT_GT(n, 20u);
+  EXPECT_GT(n_16, 2u);
+  EXPECT_GT(n_exr, 5u);
+}
+
+}  // namespace
+}  // namespace neritic::scene
