@@ -88,9 +88,12 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
 }
 
 Status Device::create_device(const DeviceOptions& options) {
-  VkPhysicalDeviceProperties properties{};
-  vkGetPhysicalDeviceProperties(physical_, &properties);
-  limits_ = properties.limits;
+  VkPhysicalDeviceMaintenance4Properties sizes{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &sizes};
+  vkGetPhysicalDeviceProperties2(physical_, &properties);
+  limits_ = properties.properties.limits;
+  max_buffer_bytes_ = sizes.maxBufferSize;
   max_views_ = info_.max_views;
   const QueueChoice queue = choose_queue(physical_);
   queue_family_ = queue.family;

@@ -78,6 +78,7 @@ class Device {
   // Bits of a timestamp that count; 0: the queue has no timestamps.
   std::uint32_t timestamp_valid_bits() const { return timestamp_valid_bits_; }
   double timestamp_period_ns() const { return limits_.timestampPeriod; }
+  VkDeviceSize max_buffer_bytes() const { return max_buffer_bytes_; }
   std::uint32_t max_views() const { return max_views_; }  // multiview
   bool validation() const { return messenger_ != VK_NULL_HANDLE; }
   Allocator& allocator() const { return *allocator_; }
@@ -107,6 +108,7 @@ class Device {
   VkQueue queue_ = VK_NULL_HANDLE;
   std::uint32_t queue_family_ = 0;
   std::uint32_t max_views_ = 1;
+  VkDeviceSize max_buffer_bytes_ = 0;
   DeviceInfo info_;
   VkPhysicalDeviceLimits limits_{};
   VkPhysicalDeviceFeatures features_{};

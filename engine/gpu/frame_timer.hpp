@@ -2,7 +2,8 @@
 // thread.
 //
 // Both ends of a region are written when all work before them is complete (ALL_COMMANDS), so that
-// regions follow one another without overlap. What lavapipe's values mean: see frame_timer.cpp.
+// regions follow one another without overlap. Regions begin and end outside vkCmdBeginRendering.
+// What lavapipe's values mean: see frame_timer.cpp.
 #pragma once
 
 #include <volk.h>
@@ -21,7 +22,7 @@ class FrameTimer {
   // Regions beyond this many in a frame are not timed.
   static constexpr std::uint32_t kMaxRegions = 256;
 
-  explicit FrameTimer(const Device& device) : device_(&device) {}
+  explicit FrameTimer(const Device& device);
   FrameTimer(FrameTimer&& other) noexcept;
   FrameTimer& operator=(FrameTimer&&) = delete;
   ~FrameTimer();
@@ -36,7 +37,9 @@ class FrameTimer {
   bool collect(std::vector<PassTime>& times);
 
  private:
+  void write(VkCommandBuffer commands, std::uint32_t query);
   const Device* device_;
+  bool bins_timestamps_;
   VkQueryPool pool_ = VK_NULL_HANDLE;
   bool on_ = false, pending_ = false;
   TimeNs record_start_ns_ = 0, record_ns_ = 0;

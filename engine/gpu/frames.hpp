@@ -54,7 +54,8 @@ class Commands {
     return upload(values.data(), values.size_bytes());
   }
 
-  // A named region for debuggers, with GPU timestamps around it when timing is on.
+  // A named region for debuggers, with GPU timestamps around it when timing is on. Regions may
+  // nest; they begin and end outside vkCmdBeginRendering. The first 256 of a frame are timed.
   void begin_region(const std::string& name);
   void end_region();
 

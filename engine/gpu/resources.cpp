@@ -1,5 +1,7 @@
 #include "engine/gpu/resources.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "engine/core/check.hpp"
@@ -60,9 +62,12 @@ Status check_image(const Device& device, const ImageDesc& desc) {
   if (result != VK_SUCCESS)
     return vulkan_error(result, fmt::format("image {} of format {} and usage {:#x}", desc.name,
                                             static_cast<int>(desc.format), desc.usage));
-  if (desc.mips > properties.maxMipLevels)
-    return failure(ErrorCode::kUnsupported, "image {}: {} mips, this device takes up to {}",
-                   desc.name, desc.mips, properties.maxMipLevels);
+  const auto full_chain =
+      static_cast<std::uint32_t>(std::bit_width(std::max(desc.width, desc.height)));
+  const std::uint32_t most_mips = std::min(properties.maxMipLevels, full_chain);
+  if (desc.mips > most_mips)
+    return failure(ErrorCode::kUnsupported, "image {}: {} mips, {} x {} takes up to {}", desc.name,
+                   desc.mips, desc.width, desc.height, most_mips);
   return {};
 }
 
@@ -94,6 +99,9 @@ Result<VkImageView> make_view(const Device& device, VkImage image, const ImageDe
 // --- Buffer -----------------------------------------------------------------------------------
 
 Result<Buffer> Buffer::create(const Device& device, const BufferDesc& desc) {
+  if (desc.size > device.max_buffer_bytes())
+    return failure(ErrorCode::kOutOfMemory, "buffer {}: {} bytes, this device takes up to {}",
+                   desc.name, desc.size, device.max_buffer_bytes());
   const VkMemoryRequirements needs = buffer_requirements(device, desc);
   NERITIC_TRY(Allocation allocation, device.allocator().allocate(needs, desc.memory, true));
   NERITIC_TRY(Buffer buffer, create_at(device, desc, allocation.memory(), allocation.offset()));
@@ -145,6 +153,11 @@ VkMemoryRequirements buffer_requirements(const Device& device, const BufferDesc&
 Result<Image> Image::create(const Device& device, const ImageDesc& desc) {
   NERITIC_TRY_STATUS(check_image(device, desc));
   const VkMemoryRequirements needs = image_requirements(device, desc);
+  // lavapipe answers 0 for an image that is more than it can hold.
+  if (needs.size == 0)
+    return failure(ErrorCode::kOutOfMemory,
+                   "image {}: {} x {} with {} layers is more than {} holds", desc.name, desc.width,
+                   desc.height, desc.layers, device.info().name);
   NERITIC_TRY(Allocation allocation, device.allocator().allocate(needs, MemoryUse::kDevice, false));
   NERITIC_TRY(Image image, create_at(device, desc, allocation.memory(), allocation.offset()));
   image.allocation_ = std::move(allocation);
