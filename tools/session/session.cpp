@@ -1,5 +1,6 @@
 #include "tools/session/session.hpp"
 
+#include "engine/core/check.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/render/lighting.hpp"
 #include "tools/session/decode.hpp"
@@ -166,8 +167,11 @@ Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameStat
                 render::make_lighting(scene_, work.views.origin_m(), camera.exposure, gpu_scene_->has_emission()));
     NERITIC_TRY(graph::ImageHandle hdr, renderer_->declare_shade(graph, prefix, g, work.views, lighting));
     NERITIC_TRY(hdr, renderer_->declare_forward(graph, prefix, hdr, g, *gpu_scene_, deformed, work.views, work.draws, lighting));
-    NERITIC_TRY(const graph::ImageHandle color, renderer_->declare_tonemap(graph, prefix, hdr, w, h, layers));
-    NERITIC_TRY(work.color, bring("color", color, render::kColorFormat));
+    NERITIC_TRY(work.color_image, renderer_->declare_tonemap(graph, prefix, hdr, w, h, layers));
+  }
+  if (!capture.to_host) return {};
+  if (capture.color) {
+    NERITIC_TRY(work.color, bring("color", work.color_image, render::kColorFormat));
   }
   if (capture.geometry) {
     NERITIC_TRY(work.depth, bring("depth", g.depth, render::kDepthFormat));
@@ -196,11 +200,14 @@ Status Session::declare_sonar(graph::FrameGraph& graph, const render::FrameState
   inputs.reflectivity = graph.import_buffer(prefix + "reflectivity", reflectivity_);
   inputs.reflectivities = static_cast<std::uint32_t>(reflectivity_.size() / sizeof(float));
   inputs.sonar_from_gbuffer = glm::mat3_cast(glm::conjugate(scene_.world_from(sonar.mount).rotation));
-  inputs.sums_target = graph.import_buffer(prefix + "sums", work.state->sums);
-  inputs.keys_target = graph.import_buffer(prefix + "keys", work.state->keys);
-  const sonar::SonarGather::Outputs outputs = work.state->gather->declare(graph, inputs);
-  graph.output(outputs.sums, graph::Access::kHostRead);
-  graph.output(outputs.keys, graph::Access::kHostRead);
+  if (capture.to_host) {
+    inputs.sums_target = graph.import_buffer(prefix + "sums", work.state->sums);
+    inputs.keys_target = graph.import_buffer(prefix + "keys", work.state->keys);
+  }
+  work.outputs = work.state->gather->declare(graph, inputs);
+  if (!capture.to_host) return {};
+  graph.output(work.outputs.sums, graph::Access::kHostRead);
+  graph.output(work.outputs.keys, graph::Access::kHostRead);
   if (!capture.geometry) return {};
   const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
     return readback_.declare(graph, device_, prefix + name, image, format, g.width, g.height, g.layers);
@@ -218,24 +225,44 @@ Status Session::check_size(const std::string& what, std::uint32_t width, std::ui
   return {};
 }
 
+// Adds the passes of every sensor asked for; work keeps what they borrow.
+Status Session::declare_sensors(graph::FrameGraph& graph, const FrameRequest& request, FrameWork& work) {
+  const bool motion = request.capture.motion && !request.cameras.empty() && request.capture.color;
+  work.state = render::evaluate_frame(scene_, *gpu_scene_, request.time_s, request.next_time_s, motion);
+  NERITIC_TRY(const render::DeformedGeometry deformed, renderer_->declare_deform(graph, *gpu_scene_, work.state));
+  for (const std::size_t index : request.cameras) {
+    work.cameras.push_back(std::make_unique<CameraWork>());
+    work.cameras.back()->index = index;
+    NERITIC_TRY_STATUS(declare_camera(graph, work.state, deformed, request.capture, *work.cameras.back()));
+  }
+  for (const std::size_t index : request.sonars) {
+    work.sonars.push_back(std::make_unique<SonarWork>());
+    work.sonars.back()->index = index;
+    NERITIC_TRY_STATUS(declare_sonar(graph, work.state, deformed, request.capture, *work.sonars.back()));
+  }
+  return {};
+}
+
+LiveFrame::LiveFrame() : work_(std::make_unique<FrameWork>()) {}
+LiveFrame::~LiveFrame() = default;
+
+Result<std::unique_ptr<LiveFrame>> Session::declare(graph::FrameGraph& graph, FrameRequest request) {
+  request.capture = {.color = true, .geometry = false, .motion = false, .to_host = false};
+  auto frame = std::make_unique<LiveFrame>();
+  NERITIC_TRY_STATUS(declare_sensors(graph, request, *frame->work_));
+  for (const auto& work : frame->work_->cameras)
+    frame->cameras.push_back({work->index, work->color_image, work->views.width, work->views.height, work->views.layers()});
+  for (const auto& work : frame->work_->sonars)
+    frame->sonars.push_back({work->index, work->outputs.sums, work->state->gather.get()});
+  return frame;
+}
+
 Result<FrameResult> Session::render(const FrameRequest& request) {
   const TimeNs start = now_ns();
-  const bool motion = request.capture.motion && !request.cameras.empty() && request.capture.color;
-  const render::FrameState state = render::evaluate_frame(scene_, *gpu_scene_, request.time_s, request.next_time_s, motion);
+  NERITIC_CHECK(request.capture.to_host, "frame {}: render brings its images to the host", request.frame);
   graph::FrameGraph graph;
-  NERITIC_TRY(const render::DeformedGeometry deformed, renderer_->declare_deform(graph, *gpu_scene_, state));
-  std::vector<std::unique_ptr<CameraWork>> cameras;
-  for (const std::size_t index : request.cameras) {
-    cameras.push_back(std::make_unique<CameraWork>());
-    cameras.back()->index = index;
-    NERITIC_TRY_STATUS(declare_camera(graph, state, deformed, request.capture, *cameras.back()));
-  }
-  std::vector<std::unique_ptr<SonarWork>> sonars;
-  for (const std::size_t index : request.sonars) {
-    sonars.push_back(std::make_unique<SonarWork>());
-    sonars.back()->index = index;
-    NERITIC_TRY_STATUS(declare_sonar(graph, state, deformed, request.capture, *sonars.back()));
-  }
+  FrameWork work;
+  NERITIC_TRY_STATUS(declare_sensors(graph, request, work));
 
   NERITIC_TRY(gpu::Commands * commands, frames_->begin());
   NERITIC_TRY(const graph::Plan* plan, executor_->run(graph, *commands));
@@ -247,10 +274,10 @@ Result<FrameResult> Session::render(const FrameRequest& request) {
   NERITIC_TRY_STATUS(frames_->wait(done));
 
   FrameResult result;
-  for (const auto& work : cameras) {
-    result.cameras.push_back({scene_.cameras[work->index].name, decode_views(*work)});
+  for (const auto& camera : work.cameras) {
+    result.cameras.push_back({scene_.cameras[camera->index].name, decode_views(*camera)});
   }
-  for (const auto& work : sonars) result.sonars.push_back(decode_sonar(scene_.sonars[work->index], *work));
+  for (const auto& sonar : work.sonars) result.sonars.push_back(decode_sonar(scene_.sonars[sonar->index], *sonar));
   result.passes = frames_->pass_times();
   result.frame_ms = to_ms(now_ns() - start);
   return result;

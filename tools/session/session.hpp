@@ -53,6 +53,7 @@ struct Capture {
   bool color = true;     // of cameras
   bool geometry = true;  // depth, normals, labels, instances, of cameras and sonars
   bool motion = true;    // of cameras
+  bool to_host = true;   // false: declared only, for who draws with it on the GPU (Session::declare)
 };
 
 struct FrameRequest {
@@ -72,6 +73,31 @@ struct FrameResult {
 
 struct CameraWork;
 struct SonarWork;
+struct FrameWork;
+
+// One frame's sensors in a graph that the caller runs: what other passes may read, nothing brought to the
+// host. Keeps what the passes borrow, so it must live until Executor::run has returned.
+class LiveFrame {
+ public:
+  struct Camera {
+    std::size_t index = 0;     // into the scene's
+    graph::ImageHandle color;  // render::kColorFormat, a layer an eye
+    std::uint32_t width = 1, height = 1, layers = 1;
+  };
+  struct Sonar {
+    std::size_t index = 0;
+    graph::BufferHandle sums;  // uint32 [n_range][n_azimuth], of gather->image_scale()
+    const sonar::SonarGather* gather = nullptr;
+  };
+  std::vector<Camera> cameras;
+  std::vector<Sonar> sonars;
+  LiveFrame();
+  ~LiveFrame();
+
+ private:
+  friend class Session;
+  std::unique_ptr<FrameWork> work_;
+};
 
 class Session {
  public:
@@ -86,6 +112,10 @@ class Session {
   const render::GpuScene& gpu_scene() const { return *gpu_scene_; }
 
   Result<FrameResult> render(const FrameRequest& request);
+  // Only declares (the request's capture does not count): the caller adds passes that use the images,
+  // begins the frame, runs executor(), submits.
+  Result<std::unique_ptr<LiveFrame>> declare(graph::FrameGraph& graph, FrameRequest request);
+  graph::Executor& executor() { return *executor_; }
   // The newest frame's plan, as text or Graphviz; empty before the first.
   const std::string& plan_text() const { return plan_text_; }
   const std::string& plan_graphviz() const { return plan_graphviz_; }
@@ -106,6 +136,7 @@ class Session {
                         const Capture& capture, CameraWork& work);
   Status declare_sonar(graph::FrameGraph& graph, const render::FrameState& state, const render::DeformedGeometry& deformed,
                        const Capture& capture, SonarWork& work);
+  Status declare_sensors(graph::FrameGraph& graph, const FrameRequest& request, FrameWork& work);
   std::map<std::size_t, std::unique_ptr<SonarState>> sonars_;
   gpu::Buffer reflectivity_;  // by instance label
   ReadbackPool readback_;

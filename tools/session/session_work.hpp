@@ -14,10 +14,19 @@ struct ViewWork {
   const gpu::Buffer *depth = nullptr, *normal = nullptr, *label = nullptr, *color = nullptr, *motion = nullptr;
 };
 
-struct CameraWork : ViewWork {};
+struct CameraWork : ViewWork {
+  graph::ImageHandle color_image;
+};
 
 struct SonarWork : ViewWork {
   Session::SonarState* state = nullptr;
+  sonar::SonarGather::Outputs outputs;
+};
+
+struct FrameWork {
+  render::FrameState state;
+  std::vector<std::unique_ptr<CameraWork>> cameras;
+  std::vector<std::unique_ptr<SonarWork>> sonars;
 };
 
 struct Session::SonarState {
