@@ -182,6 +182,17 @@ Result<Image> Image::create_at(const Device& device, const ImageDesc& desc, VkDe
   return image;
 }
 
+Result<Image> Image::borrow(const Device& device, const ImageDesc& desc, VkImage handle) {
+  Image image;
+  image.device_ = device.handle();
+  image.desc_ = desc;
+  image.borrowed_ = true;
+  image.handle_ = handle;
+  device.name_object(VK_OBJECT_TYPE_IMAGE, id(handle), desc.name);
+  NERITIC_TRY(image.view_, make_view(device, handle, desc));
+  return image;
+}
+
 Image::Image(Image&& other) noexcept {
   *this = std::move(other);
 }
@@ -191,13 +202,14 @@ Image& Image::operator=(Image&& other) noexcept {
   std::swap(handle_, other.handle_);
   std::swap(view_, other.view_);
   std::swap(desc_, other.desc_);
+  std::swap(borrowed_, other.borrowed_);
   std::swap(allocation_, other.allocation_);
   return *this;
 }
 
 Image::~Image() {
   if (view_ != VK_NULL_HANDLE) vkDestroyImageView(device_, view_, nullptr);
-  if (handle_ != VK_NULL_HANDLE) vkDestroyImage(device_, handle_, nullptr);
+  if (handle_ != VK_NULL_HANDLE && !borrowed_) vkDestroyImage(device_, handle_, nullptr);
 }
 
 VkImageAspectFlags Image::aspect() const {

@@ -63,6 +63,8 @@ class Image {
   static Result<Image> create(const Device& device, const ImageDesc& desc);
   static Result<Image> create_at(const Device& device, const ImageDesc& desc, VkDeviceMemory memory,
                                  VkDeviceSize offset);
+  // Somebody else's image (a swapchain's), with a view of our own: only the view dies with this.
+  static Result<Image> borrow(const Device& device, const ImageDesc& desc, VkImage image);
   Image() = default;
   Image(Image&& other) noexcept;
   Image& operator=(Image&& other) noexcept;
@@ -79,6 +81,7 @@ class Image {
   VkImage handle_ = VK_NULL_HANDLE;
   VkImageView view_ = VK_NULL_HANDLE;
   ImageDesc desc_;
+  bool borrowed_ = false;
   Allocation allocation_;
 };
 
