@@ -127,7 +127,7 @@ class Executor {
  public:
   explicit Executor(gpu::Frames& frames);
   ~Executor();
-  // Compiles (from cache when the declaration is unchanged); errors name pass and resource.
+  // Compiles (cached by declaration); errors name pass and resource. Valid until the next call.
   Result<const Plan*> compile(const FrameGraph& graph);
   // Compiles and records every kept pass with its barriers, each in a region of its name.
   Result<const Plan*> run(FrameGraph& graph, gpu::Commands& commands);
