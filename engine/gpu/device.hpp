@@ -40,6 +40,7 @@ struct DeviceInfo {
   std::string missing;               // what it lacks where it is not usable
   std::uint32_t max_views = 1;       // of one multiview pass
   std::uint32_t max_image_size = 0;  // texels along an axis of a 2D image
+  bool can_present = false;          // it has a swapchain, for a window
   bool timestamps = false;           // its queue can time passes
   bool shared_memory = false;        // all device memory is also the host's (integrated GPU, CPU)
   std::uint64_t memory_bytes = 0;    // device-local heaps together
@@ -52,6 +53,9 @@ struct ValidationLog {
 
 // $XDG_CACHE_HOME/neritic or ~/.cache/neritic; empty where neither is known.
 std::filesystem::path default_cache_folder();
+
+// Is VK_LAYER_KHRONOS_validation (Debian package vulkan-validationlayers) installed?
+bool validation_layer_present();
 
 // Every device the loader shows, usable or not. kNoDevice where there is no Vulkan loader or
 // device, with the Debian package to install.

@@ -29,7 +29,4 @@ struct InstanceHandles {
 Result<InstanceHandles> create_instance(const DeviceOptions& options, ValidationTarget* target);
 void destroy_instance(const InstanceHandles& handles);
 
-// Is VK_LAYER_KHRONOS_validation installed?
-bool validation_layer_present();
-
 }  // namespace neritic::gpu

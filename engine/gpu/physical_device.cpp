@@ -176,6 +176,7 @@ DeviceInfo describe(VkPhysicalDevice device, std::uint32_t index) {
   info.api_version = properties.apiVersion;
   info.max_image_size = properties.limits.maxImageDimension2D;
   info.timestamps = choose_queue(device).timestamp_valid_bits > 0;
+  info.can_present = has_device_extension(device, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   describe_memory(device, info);
   info.missing = missing_of(device, properties);
   info.usable = info.missing.empty();

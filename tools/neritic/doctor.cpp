@@ -1,0 +1,187 @@
+// `neritic doctor`: what this machine has, and what will work on it.
+#include "tools/neritic/doctor.hpp"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/neritic/commands.hpp"
+
+namespace neritic::tools {
+namespace {
+
+constexpr const char* kNoDevice = "no Vulkan device to run on";
+constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
+
+std::string version(std::uint32_t api) {
+  return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(api), VK_API_VERSION_MINOR(api),
+                     VK_API_VERSION_PATCH(api));
+}
+
+bool can_render(const Machine& machine) {
+  return machine.chosen && !machine.trouble;
+}
+
+Verdict window_verdict(const Machine& machine) {
+  Verdict verdict{"dive (window)", false, ""};
+  if (!can_render(machine))
+    verdict.why = kNoDevice;
+  else if (machine.display.empty())
+    verdict.why = "no display: neither DISPLAY nor WAYLAND_DISPLAY is set";
+  else if (!machine.display_there)
+    verdict.why = "display " + machine.display + " is named but not there";
+  else if (!machine.devices[*machine.chosen].can_present)
+    verdict.why = machine.devices[*machine.chosen].name + " cannot show pictures in a window";
+  else
+    verdict = {verdict.command, true, "on " + machine.display};
+  return verdict;
+}
+
+Verdict headset_verdict(const Machine& machine) {
+  Verdict verdict{"dive (headset)", false, ""};
+  if (machine.openxr_runtime.empty())
+    verdict.why = "no OpenXR runtime is configured";
+  else if (!machine.openxr_manifest_exists)
+    verdict.why = machine.openxr_runtime.string() + " (XR_RUNTIME_JSON) is not there";
+  else
+    verdict.why = "this version does not drive headsets yet; a runtime is configured";
+  return verdict;
+}
+
+std::string device_text(const Machine& machine, std::size_t position) {
+  const gpu::DeviceInfo& device = machine.devices[position];
+  const bool chosen = machine.chosen == static_cast<std::uint32_t>(position);
+  std::string text =
+      fmt::format("  {}: {}{}\n", device.index, device.name, chosen ? "   <- would be used" : "");
+  text += fmt::format("     {}, {}, Vulkan {}\n", device.kind,
+                      device.driver.empty() ? "driver not named" : device.driver,
+                      version(device.api_version));
+  text +=
+      fmt::format("     {}\n", device.usable ? "usable" : "not usable: lacks " + device.missing);
+  text += fmt::format(
+      "     {} views a pass, images up to {} x {}, {} pass times, {:.1f} GiB {}{}\n",
+      device.max_views, device.max_image_size, device.max_image_size,
+      device.timestamps ? "measures" : "no", static_cast<double>(device.memory_bytes) / kGiB,
+      device.shared_memory ? "shared with the host" : "of its own",
+      device.can_present ? "" : ", no windows");
+  return text;
+}
+
+nlohmann::ordered_json device_json(const gpu::DeviceInfo& device) {
+  return {{"index", device.index},
+          {"name", device.name},
+          {"kind", device.kind},
+          {"driver", device.driver},
+          {"api_version", version(device.api_version)},
+          {"usable", device.usable},
+          {"missing", device.missing},
+          {"max_views", device.max_views},
+          {"max_image_size", device.max_image_size},
+          {"timestamps", device.timestamps},
+          {"can_present", device.can_present},
+          {"shared_memory", device.shared_memory},
+          {"memory_bytes", device.memory_bytes}};
+}
+
+Status doctor(const std::string& device, bool json) {
+  const Machine machine = examine_machine(device);
+  fmt::print("{}", json ? doctor_json(machine) : doctor_text(machine));
+  std::fflush(stdout);
+  if (!machine.trouble) return {};
+  // A device that is not there is this command's finding (status 1), not a usage error.
+  Error error = *machine.trouble;
+  if (error.code == ErrorCode::kBadInput) error.code = ErrorCode::kNoDevice;
+  return error;
+}
+
+}  // namespace
+
+std::vector<Verdict> verdicts(const Machine& machine) {
+  const bool render = can_render(machine);
+  const std::string device =
+      render ? "on " + machine.devices[*machine.chosen].name : std::string(kNoDevice);
+  std::vector<Verdict> out;
+  out.push_back({"render", render, device});
+  out.push_back({"sonar --method gpu", render, device});
+  out.push_back({"sonar --method reference", true, "on the CPU, no Vulkan needed"});
+  out.push_back(window_verdict(machine));
+  out.push_back(headset_verdict(machine));
+  out.push_back({"tests with validation", render && machine.validation_layer,
+                 !render ? kNoDevice
+                 : machine.validation_layer
+                     ? "the layer is installed"
+                     : "install the Debian package vulkan-validationlayers"});
+  return out;
+}
+
+std::string doctor_text(const Machine& machine) {
+  std::string text = "Vulkan devices\n";
+  for (std::size_t i = 0; i < machine.devices.size(); ++i) text += device_text(machine, i);
+  if (machine.devices.empty()) text += "  none\n";
+  if (machine.trouble) text += fmt::format("  {}\n", machine.trouble->message);
+  if (can_render(machine))
+    text += fmt::format("  tried: it starts and answers in {:.0f} ms\n", machine.device_start_ms);
+  text += fmt::format(
+      "Validation layer    {}\n",
+      machine.validation_layer ? "installed" : "absent (Debian package vulkan-validationlayers)");
+  text +=
+      fmt::format("Display             {}{}\n", machine.display.empty() ? "none" : machine.display,
+                  machine.display.empty() || machine.display_there ? "" : " (not there)");
+  text += fmt::format(
+      "OpenXR runtime      {}{}\n",
+      machine.openxr_runtime.empty() ? "none configured" : machine.openxr_runtime.string(),
+      machine.openxr_runtime.empty() || machine.openxr_manifest_exists ? "" : " (no such file)");
+  text += fmt::format(
+      "Pipeline cache      {}{}\n",
+      machine.cache_folder.empty() ? "nowhere (HOME is not set)" : machine.cache_folder.string(),
+      machine.cache_folder.empty() || machine.cache_writable ? "" : " (not writable)");
+  text += fmt::format("Processor           {} threads\n", machine.cpu_threads);
+  text += fmt::format("Memory              {:.1f} GiB, {:.1f} GiB available\n",
+                      static_cast<double>(machine.memory_bytes) / kGiB,
+                      static_cast<double>(machine.memory_available_bytes) / kGiB);
+  text += "What will work\n";
+  for (const Verdict& verdict : verdicts(machine))
+    text += fmt::format("  {:<26}{:<5}{}\n", verdict.command, verdict.works ? "yes" : "no",
+                        verdict.why);
+  return text;
+}
+
+std::string doctor_json(const Machine& machine) {
+  nlohmann::ordered_json json;
+  json["devices"] = nlohmann::ordered_json::array();
+  for (const gpu::DeviceInfo& device : machine.devices)
+    json["devices"].push_back(device_json(device));
+  json["chosen"] = nullptr;
+  if (machine.chosen) json["chosen"] = machine.devices[*machine.chosen].index;
+  json["trouble"] = nullptr;
+  if (machine.trouble) json["trouble"] = machine.trouble->message;
+  json["device_start_ms"] = machine.device_start_ms;
+  json["validation_layer"] = machine.validation_layer;
+  json["display"] = {{"name", machine.display}, {"there", machine.display_there}};
+  json["openxr"] = {{"runtime", machine.openxr_runtime.string()},
+                    {"exists", machine.openxr_manifest_exists}};
+  json["cache"] = {{"folder", machine.cache_folder.string()}, {"writable", machine.cache_writable}};
+  json["cpu_threads"] = machine.cpu_threads;
+  json["memory_bytes"] = machine.memory_bytes;
+  json["memory_available_bytes"] = machine.memory_available_bytes;
+  for (const Verdict& verdict : verdicts(machine))
+    json["works"][verdict.command] = {{"works", verdict.works}, {"why", verdict.why}};
+  // Names from the environment may be any bytes; what is not UTF-8 is replaced.
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+void add_doctor_command(CLI::App& app, Run& run) {
+  struct Flags {
+    std::string device;
+    bool json = false;
+  };
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command =
+      app.add_subcommand("doctor", "says what this machine has and what will work on it");
+  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
+  command->add_flag("--json", flags->json, "for programs: JSON on standard output");
+  command->callback(
+      [flags, &run] { run = [flags] { return doctor(flags->device, flags->json); }; });
+}
+
+}  // namespace neritic::tools
