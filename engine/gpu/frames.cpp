@@ -19,12 +19,6 @@ namespace {
 constexpr std::uint64_t kTimeoutNs = 60ull * 1000 * 1000 * 1000;
 constexpr VkDeviceSize kSmallestUpload = 16;  // bytes: empty data can still be bound
 
-VkShaderStageFlags stages_of(const Pipeline& pipeline) {
-  return pipeline.bind_point() == VK_PIPELINE_BIND_POINT_COMPUTE
-             ? VK_SHADER_STAGE_COMPUTE_BIT
-             : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-}
-
 // What one frame in flight owns.
 struct Slot {
   Slot(const Device& gpu, std::uint32_t index)
@@ -268,42 +262,6 @@ Result<std::unique_ptr<Frames>> Frames::create(Device& device, std::uint32_t in_
   auto frames = std::make_unique<FramesImpl>(device);
   NERITIC_TRY_STATUS(frames->create(in_flight));
   return std::unique_ptr<Frames>(std::move(frames));
-}
-
-// --- Commands ---------------------------------------------------------------------------------
-
-void Commands::bind_pipeline(const Pipeline& pipeline) {
-  vkCmdBindPipeline(handle_, pipeline.bind_point(), pipeline.handle());
-}
-
-void Commands::bind(const Pipeline& pipeline, std::span<const BoundResource> resources) {
-  const VkDescriptorSet set = frames_->frame_set(pipeline);
-  if (set == VK_NULL_HANDLE) return;  // submit returns the error
-  write_descriptors(frames_->device(), set, pipeline.bindings(), resources);
-  vkCmdBindDescriptorSets(handle_, pipeline.bind_point(), pipeline.layout(), 0, 1, &set, 0,
-                          nullptr);
-}
-
-void Commands::push_bytes(const Pipeline& pipeline, const void* data, std::uint32_t size) {
-  vkCmdPushConstants(handle_, pipeline.layout(), stages_of(pipeline), 0, size, data);
-}
-
-void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  vkCmdDispatch(handle_, x, y, z);
-}
-
-UploadSlice Commands::upload(const void* data, VkDeviceSize size) {
-  return frames_->frame_upload(data, size);
-}
-
-void Commands::begin_region(const std::string& name) {
-  frames_->device().begin_label(handle_, name);
-  frames_->timestamp(&name);
-}
-
-void Commands::end_region() {
-  frames_->timestamp(nullptr);
-  frames_->device().end_label(handle_);
 }
 
 }  // namespace neritic::gpu
