@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include "engine/core/image.hpp"
 
@@ -20,6 +21,7 @@ enum class Align { kLeft, kCenter, kRight };
 class Canvas {
  public:
   Canvas(std::uint32_t width, std::uint32_t height, const Color& background);
+  explicit Canvas(ImageU8 rgb) : image_(std::move(rgb)) {}
 
   std::uint32_t width() const { return image_.width; }
   std::uint32_t height() const { return image_.height; }

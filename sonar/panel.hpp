@@ -1,8 +1,10 @@
 // The polar picture of a sonar image: a fan with range rings, bearing lines, numbers and a colour
-// scale. For people only; it never changes the data. Pure function; any thread.
+// scale. For people only; it never changes the data.
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "engine/core/image.hpp"
 #include "sonar/beam_grid.hpp"
@@ -20,7 +22,26 @@ struct PanelOptions {
   double gamma = 0.6;
 };
 
-// RGB. Port is left, ahead is up.
+// Draws one sonar's images. Where each pixel looks and the lines over it are worked out once, so
+// that a live display can draw every ping. One owner, one thread.
+class PolarPanel {
+ public:
+  explicit PolarPanel(const BeamGrid& grid, const PanelOptions& options = {});
+  // RGB. Port is left, ahead is up.
+  ImageU8 draw(const SonarImage& image) const;
+
+ private:
+  struct Fan {  // a pixel that shows the wedge, and the cells that its samples fall in
+    std::uint32_t pixel;
+    std::array<std::uint32_t, 4> cells;  // kOutside: none
+  };
+  std::uint32_t cell_at(double right_m, double below_m) const;
+  BeamGrid grid_;
+  PanelOptions options_;
+  ImageU8 under_, lines_over_black_, lines_over_white_;
+  std::vector<Fan> fan_;
+};
+
 ImageU8 draw_panel(const BeamGrid& grid, const SonarImage& image, const PanelOptions& options = {});
 
 // The panel's full scale for an image (PanelOptions::full_scale or the automatic one; 1 for
