@@ -3,8 +3,9 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Exposed scene radiance to a display picture: filmic curve (fit of the ACES reference transform by
-// Narkowicz 2015), sRGB encoding (IEC 61966-2-1).
+// Exposed scene radiance to a display picture: the filmic curve fitted by Stephen Hill to the ACES
+// reference and output transforms (in ACES's wider primaries, so that a saturated sea keeps its shades),
+// then sRGB encoding (IEC 61966-2-1).
 #include "shared/lighting.h"
 
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
@@ -12,7 +13,17 @@ layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 layout(set = 0, binding = kTonemapHdr) uniform texture2DArray hdr_image;
 layout(set = 0, binding = kTonemapOut, rgba8) writeonly uniform image2DArray out_image;
 
-vec3 filmic(vec3 x) { return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0); }
+// Columns of the matrices into and out of the fit's working space.
+const mat3 kFromSrgb = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
+const mat3 kToSrgb = mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
+
+vec3 filmic(vec3 x) {
+  // The fit leaves mid grey darker than the exposure asks for; 1.8 puts a white surface in scene light
+  // at a display value of about 0.8.
+  vec3 v = kFromSrgb * (x * 1.8);
+  v = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
+  return clamp(kToSrgb * v, 0.0, 1.0);
+}
 
 vec3 srgb(vec3 x) {
   return mix(12.92 * x, 1.055 * pow(max(x, vec3(1e-6)), vec3(1.0 / 2.4)) - 0.055,

@@ -67,8 +67,21 @@ class Renderer {
   // Display picture, kColorFormat.
   Result<graph::ImageHandle> declare_tonemap(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
                                              std::uint32_t width, std::uint32_t height, std::uint32_t layers);
+  // The display picture with smoothed edges.
+  Result<graph::ImageHandle> declare_antialias(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle color,
+                                               std::uint32_t width, std::uint32_t height, std::uint32_t layers);
 
  private:
+  // A pass that turns one picture into another of the same size, pixel by pixel.
+  struct PictureFilter {
+    const char* name;           // of the pass
+    const char* result;         // of the image
+    std::span<const std::uint32_t> code;
+    VkFormat format;            // of the result
+  };
+  Result<graph::ImageHandle> declare_filter(graph::FrameGraph& graph, const std::string& prefix, const PictureFilter& filter,
+                                            gpu::Pipeline& pipeline, graph::ImageHandle in, std::uint32_t width,
+                                            std::uint32_t height, std::uint32_t layers);
   enum class RasterStage { kGeometry, kGeometryMasked, kSurface, kSurfaceMasked, kForward };
   // stage, topology, motion, emissive, view mask.
   using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, std::uint32_t>;
@@ -84,7 +97,7 @@ class Renderer {
   gpu::Device& device_;
   gpu::SetLayout material_layout_;
   std::map<RasterKey, gpu::Pipeline> raster_;
-  gpu::Pipeline deform_, shade_, tonemap_;
+  gpu::Pipeline deform_, shade_, tonemap_, antialias_;
   gpu::Buffer nothing_;  // bound where a shader declares a buffer that this frame does not use
 };
 

@@ -63,34 +63,48 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, con
   return pass.hdr;
 }
 
-Result<graph::ImageHandle> Renderer::declare_tonemap(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
-                                                     std::uint32_t width, std::uint32_t height, std::uint32_t layers) {
-  if (!tonemap_) {
+// Both filters bind their source at 0 and their result at 1.
+static_assert(shared::kTonemapHdr == 0 && shared::kTonemapOut == 1 && shared::kAntialiasIn == 0 && shared::kAntialiasOut == 1);
+
+Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph, const std::string& prefix, const PictureFilter& filter,
+                                                    gpu::Pipeline& pipeline, graph::ImageHandle in, std::uint32_t width,
+                                                    std::uint32_t height, std::uint32_t layers) {
+  if (!pipeline) {
     gpu::ComputePipelineDesc desc;
-    desc.name = "tonemap";
-    desc.code = shaders::kTonemapComp;
-    desc.layout.bindings = {{shared::kTonemapHdr, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                            {shared::kTonemapOut, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    NERITIC_TRY(tonemap_, gpu::Pipeline::create(device_, desc));
+    desc.name = filter.name;
+    desc.code = filter.code;
+    desc.layout.bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+    NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
   struct Data {
-    graph::ImageHandle color;
+    graph::ImageHandle out;
   };
   const Data& pass = graph.add_pass<Data>(
-      prefix + "tonemap",
+      prefix + filter.name,
       [&](graph::PassBuilder& builder, Data& data) {
-        builder.read(hdr, graph::Access::kSampledCompute);
-        data.color = builder.write(builder.create_image(prefix + "color", {kColorFormat, width, height, layers}),
-                                   graph::Access::kStorageWriteCompute);
+        builder.read(in, graph::Access::kSampledCompute);
+        data.out = builder.write(builder.create_image(prefix + filter.result, {filter.format, width, height, layers}),
+                                 graph::Access::kStorageWriteCompute);
       },
-      [this, hdr, width, height, layers](const Data& data, graph::PassContext& context) {
+      [&pipeline, in, width, height, layers](const Data& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
-        commands.bind_pipeline(tonemap_);
-        commands.bind(tonemap_, {gpu::bound_texel_image(shared::kTonemapHdr, context.image(hdr).view()),
-                                 gpu::bound_storage_image(shared::kTonemapOut, context.image(data.color).view())});
+        commands.bind_pipeline(pipeline);
+        commands.bind(pipeline, {gpu::bound_texel_image(0, context.image(in).view()),
+                                 gpu::bound_storage_image(1, context.image(data.out).view())});
         commands.dispatch(groups(width), groups(height), layers);
       });
-  return pass.color;
+  return pass.out;
+}
+
+Result<graph::ImageHandle> Renderer::declare_tonemap(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
+                                                     std::uint32_t width, std::uint32_t height, std::uint32_t layers) {
+  return declare_filter(graph, prefix, {"tonemap", "color", shaders::kTonemapComp, kColorFormat}, tonemap_, hdr, width, height, layers);
+}
+
+Result<graph::ImageHandle> Renderer::declare_antialias(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle color,
+                                                       std::uint32_t width, std::uint32_t height, std::uint32_t layers) {
+  return declare_filter(graph, prefix, {"antialias", "smooth color", shaders::kAntialiasComp, kColorFormat}, antialias_, color, width,
+                        height, layers);
 }
 
 }  // namespace neritic::render

@@ -83,6 +83,7 @@ struct Camera {
   double near_m = 0.05;
   double rate_hz = 30.0;
   double stereo_baseline_m = 0.0;  // > 0: a stereo pair by one multiview pass
+  bool antialias = false;          // smooth edges of the display picture
   Exposure exposure;
 };
 

@@ -68,7 +68,7 @@ inline constexpr auto kScatterKeys =
 inline constexpr auto kCameraKeys = std::to_array<Key>(
     {"name", "include", "on", "position_m", "yaw_deg", "pitch_deg", "roll_deg", "rotation_xyzw",
      "look_at_m", "look_at", "width", "height", "fov_deg", "near_m", "rate_hz", "stereo_baseline_m",
-     "exposure", "exposure_compensation_ev"});
+     "antialias", "exposure", "exposure_compensation_ev"});
 
 inline constexpr auto kSonarKeys =
     std::to_array<Key>({"name", "include", "on", "position_m", "yaw_deg", "pitch_deg", "roll_deg",

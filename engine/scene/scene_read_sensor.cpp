@@ -38,6 +38,7 @@ void read_camera(TableReader& reader, Camera& camera) {
   camera.rate_hz = reader.number("rate_hz", 30.0, kRate);
   camera.stereo_baseline_m =
       reader.number("stereo_baseline_m", 0.0, {0, 10, false, false, "metres"});
+  camera.antialias = reader.flag("antialias", false);
   camera.exposure = read_exposure(reader);
 }
 

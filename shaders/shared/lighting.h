@@ -54,5 +54,9 @@ NERITIC_CONST uint kShadeGroup = 8;
 NERITIC_CONST uint kTonemapHdr = 0;
 NERITIC_CONST uint kTonemapOut = 1;
 
+// Bindings of the antialias pass.
+NERITIC_CONST uint kAntialiasIn = 0;
+NERITIC_CONST uint kAntialiasOut = 1;
+
 NERITIC_SHARED_END
 #endif

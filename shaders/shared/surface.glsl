@@ -57,7 +57,8 @@ vec3 shade_surface(Lighting light, Surface s, vec3 to_eye) {
     float cosine = dot(-to_lamp, light.lamps[i].direction);
     float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, cosine);
     if (cone <= 0.0) continue;
-    vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m);
+    // A lamp is a disk of some centimetres, no point: close by its light stays finite.
+    vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.02);
     if ((light.terms & kLightWater) != 0u)
       arriving *= exp(-min(light.beam_attenuation * distance_m, vec3(80.0)));
     radiance += arriving * reflect_light(s, to_eye, to_lamp);

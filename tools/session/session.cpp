@@ -168,6 +168,9 @@ Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameStat
     NERITIC_TRY(graph::ImageHandle hdr, renderer_->declare_shade(graph, prefix, g, work.views, lighting));
     NERITIC_TRY(hdr, renderer_->declare_forward(graph, prefix, hdr, g, *gpu_scene_, deformed, work.views, work.draws, lighting));
     NERITIC_TRY(work.color_image, renderer_->declare_tonemap(graph, prefix, hdr, w, h, layers));
+    if (camera.antialias) {
+      NERITIC_TRY(work.color_image, renderer_->declare_antialias(graph, prefix, work.color_image, w, h, layers));
+    }
   }
   if (!capture.to_host) return {};
   if (capture.color) {
