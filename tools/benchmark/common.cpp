@@ -1,0 +1,97 @@
+#include <cmath>
+
+#include "engine/core/clock.hpp"
+#include "engine/core/hash.hpp"
+#include "tools/benchmark/groups.hpp"
+
+namespace neritic::bench {
+namespace {
+
+template <class T>
+void add(Hash64& hash, const std::vector<T>& values) {
+  hash.add_span(std::span<const T>(values));
+}
+
+void add(Hash64& hash, const tools::ViewImages& view) {
+  add(hash, view.depth.data);
+  add(hash, view.normals.data);
+  add(hash, view.labels.data);
+  add(hash, view.instances.data);
+  add(hash, view.color.data);
+  add(hash, view.motion.data);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<tools::Session>> open_scene(const Suite& suite, gpu::Device& device,
+                                                   const std::string& file) {
+  NERITIC_TRY(scene::Scene scene, scene::load_scene(suite.options().assets + "/scenes/" + file));
+  return tools::Session::create(device, std::move(scene));
+}
+
+std::string hash_of(const sonar::SonarImage& image) {
+  Hash64 hash;
+  add(hash, image.intensity);
+  add(hash, image.labels);
+  return hash.hex();
+}
+
+std::string hash_of(const tools::FrameResult& result) {
+  Hash64 hash;
+  for (const tools::CameraFrame& camera : result.cameras)
+    for (const tools::ViewImages& eye : camera.eyes) add(hash, eye);
+  for (const tools::SonarFrame& sonar : result.sonars) {
+    add(hash, sonar.image.intensity);
+    add(hash, sonar.image.labels);
+    for (const tools::ViewImages& view : sonar.sectors) add(hash, view);
+  }
+  return hash.hex();
+}
+
+std::map<std::string, double> parts_of(const std::vector<gpu::PassTime>& passes) {
+  std::map<std::string, double> parts;
+  for (const gpu::PassTime& pass : passes) parts[pass.name] += pass.ms;
+  return parts;
+}
+
+Contender frames_of(const std::string& name, tools::Session& session, tools::FrameRequest request) {
+  return {name, [&session, request]() -> Result<Sample> {
+            const TimeNs start = now_ns();
+            NERITIC_TRY(const tools::FrameResult result, session.render(request));
+            const double ms = to_ms(now_ns() - start);
+            Sample sample{ms, parts_of(result.passes), hash_of(result)};
+            double known = 0.0;
+            for (const auto& [part, part_ms] : sample.parts) known += part_ms;
+            sample.parts["(evaluate, draw lists, decode, waits)"] = ms - known;
+            return sample;
+          }};
+}
+
+sonar::SonarInput relief_input(const sonar::BeamGrid& grid, std::uint32_t width,
+                               std::uint32_t height) {
+  const sonar::Sector sector = sonar::plan_sectors(grid).front();
+  sonar::SonarInput in;
+  in.width = width;
+  in.height = height;
+  in.intrinsics = sonar::intrinsics_of(sector.tangents, width, height);
+  const auto point = [](double tx, double ty) {
+    const double range_m =
+        3.0 + 0.8 * std::sin(4.0 * tx) * std::cos(7.0 * ty) + 0.2 * std::sin(31.0 * tx + 17.0 * ty);
+    return glm::normalize(Vec3(tx, ty, -1.0)) * range_m;
+  };
+  constexpr double kStep = 1e-5;
+  for (std::uint32_t v = 0; v < height; ++v)
+    for (std::uint32_t u = 0; u < width; ++u) {
+      const double tx = (u + 0.5 - in.intrinsics.cx) / in.intrinsics.fx;
+      const double ty = -(v + 0.5 - in.intrinsics.cy) / in.intrinsics.fy;
+      const Vec3 p = point(tx, ty);
+      Vec3 n = glm::normalize(glm::cross(point(tx + kStep, ty) - point(tx - kStep, ty),
+                                         point(tx, ty + kStep) - point(tx, ty - kStep)));
+      if (glm::dot(n, p) > 0.0) n = -n;
+      in.depth.push_back(-p.z);
+      in.normals.insert(in.normals.end(), {n.x, n.y, n.z});
+    }
+  return in;
+}
+
+}  // namespace neritic::bench

@@ -1,0 +1,36 @@
+// The groups of benchmarks, one file each. Each leaves its results, ratios and aims in the suite.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/gpu/device.hpp"
+#include "tools/benchmark/suite.hpp"
+#include "tools/session/session.hpp"
+
+namespace neritic::bench {
+
+Status bench_sonar_binning(Suite& suite, gpu::Device& device);  // the gather against the volume
+Status bench_sonar_frame(Suite& suite, gpu::Device& device);    // whole frames, one sonar and ten
+Status bench_camera_frame(Suite& suite, gpu::Device& device);   // pictures, many instances
+Status bench_sweeps(Suite& suite, gpu::Device& device);         // cost against sizes
+Status bench_start(Suite& suite, gpu::Device& device);          // process start to picture
+Status bench_threads(Suite& suite, const std::string& device_name);  // same bits on 1 and 2 threads
+
+// A scene of assets/scenes in a session.
+Result<std::unique_ptr<tools::Session>> open_scene(const Suite& suite, gpu::Device& device,
+                                                   const std::string& file);
+
+std::string hash_of(const sonar::SonarImage& image);
+std::string hash_of(const tools::FrameResult& result);
+std::map<std::string, double> parts_of(const std::vector<gpu::PassTime>& passes);
+
+// Frames of a session as a contender; the session must outlive it. Wall time of Session::render:
+// evaluate, draw lists, graph, record, run, arrays at the host.
+Contender frames_of(const std::string& name, tools::Session& session, tools::FrameRequest request);
+
+// Depth and normals of a wavy wall 2 to 4 m away that fills a wedge: every pixel counts.
+sonar::SonarInput relief_input(const sonar::BeamGrid& grid, std::uint32_t width,
+                               std::uint32_t height);
+
+}  // namespace neritic::bench

@@ -1,0 +1,143 @@
+#include "tools/benchmark/suite.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+namespace neritic::bench {
+namespace {
+
+constexpr double kLongest_ms = 20000.0;  // of all rounds of one group
+constexpr int kFewest = 5, kQuick = 7;
+
+// Time that all threads of this process spent on a core: other programs on the machine move it
+// little.
+double process_cpu_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const std::size_t middle = values.size() / 2;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(middle),
+                   values.end());
+  const double upper = values[middle];
+  if (values.size() % 2 == 1) return upper;
+  const double lower =
+      *std::max_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(middle));
+  return 0.5 * (lower + upper);
+}
+
+double Measured::median_ms() const {
+  return median(ms);
+}
+double Measured::min_ms() const {
+  return ms.empty() ? 0.0 : *std::min_element(ms.begin(), ms.end());
+}
+
+bool Suite::wants(const std::string& group) const {
+  return options_.filter.empty() || group.find(options_.filter) != std::string::npos;
+}
+
+Status Suite::measure(std::vector<Contender> contenders, int rounds) {
+  std::vector<Measured> measured;
+  double round_ms = 0.0;
+  // The warm-up: pipelines, first touches of memory. Its result counts, its time does not.
+  for (const Contender& c : contenders) {
+    NERITIC_TRY(const Sample sample, c.run());
+    measured.push_back({c.name, sample.hash, {}, {}, {}, c.facts});
+    round_ms += sample.ms;
+  }
+  if (options_.quick) rounds = std::min(rounds, kQuick);
+  rounds = std::clamp(static_cast<int>(kLongest_ms / std::max(round_ms, 1e-3)),
+                      std::min(kFewest, rounds), rounds);
+  if (options_.once) rounds = 1;
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+      const double cpu_before_ms = process_cpu_ms();
+      NERITIC_TRY(const Sample sample, contenders[i].run());
+      measured[i].cpu_ms.push_back(process_cpu_ms() - cpu_before_ms);
+      measured[i].ms.push_back(sample.ms);
+      for (const auto& [name, ms] : sample.parts) measured[i].parts[name].push_back(ms);
+      if (sample.hash != measured[i].hash)
+        fail(fmt::format("{}: the result of round {} differs: {}, before {}", measured[i].name,
+                         round, sample.hash, measured[i].hash));
+    }
+  results_.insert(results_.end(), measured.begin(), measured.end());
+  return {};
+}
+
+const Measured* Suite::find(const std::string& name) const {
+  const auto at = std::find_if(results_.begin(), results_.end(),
+                               [&](const Measured& m) { return m.name == name; });
+  return at == results_.end() ? nullptr : &*at;
+}
+
+void Suite::ratio(const std::string& name, const std::string& numerator,
+                  const std::string& denominator) {
+  const Measured *a = find(numerator), *b = find(denominator);
+  if (a && b && b->median_ms() > 0.0) ratios_[name] = a->median_ms() / b->median_ms();
+}
+
+void Suite::must_agree(const std::string& a, const std::string& b) {
+  const Measured *x = find(a), *y = find(b);
+  if (!x || !y) return;
+  if (x->hash != y->hash)
+    fail(fmt::format("{} gives {}, {} gives {}: they must be the same", a, x->hash, b, y->hash));
+}
+
+void Suite::aim(const std::string& what, double reached, double limit, bool at_most,
+                const std::string& unit) {
+  aims_.push_back({{"what", what},
+                   {"reached", reached},
+                   {at_most ? "at_most" : "at_least", limit},
+                   {"unit", unit},
+                   {"met", at_most ? reached <= limit : reached >= limit}});
+}
+
+nlohmann::json Suite::to_json(const std::string& device, unsigned threads) const {
+  nlohmann::json results = nlohmann::json::array();
+  for (const Measured& m : results_) {
+    nlohmann::json one{{"name", m.name},       {"median_ms", m.median_ms()},
+                       {"min_ms", m.min_ms()}, {"cpu_ms", median(m.cpu_ms)},
+                       {"n", m.ms.size()},     {"hash", m.hash}};
+    for (const auto& [name, values] : m.parts) one["parts_ms"][name] = median(values);
+    one.update(m.facts);
+    results.push_back(std::move(one));
+  }
+  return {{"device", device}, {"threads", threads}, {"results", results},   {"ratios", ratios_},
+          {"facts", facts_},  {"aims", aims_},      {"failures", failures_}};
+}
+
+void Suite::print() const {
+  fmt::print("{:<44} {:>10} {:>10} {:>10} {:>4}  {}\n", "", "median ms", "min ms", "cpu ms", "n",
+             "hash");
+  for (const Measured& m : results_) {
+    fmt::print("{:<44} {:>10.3f} {:>10.3f} {:>10.3f} {:>4}  {}\n", m.name, m.median_ms(),
+               m.min_ms(), median(m.cpu_ms), m.ms.size(), m.hash);
+    for (const auto& [name, values] : m.parts)
+      fmt::print("    {:<40} {:>10.3f} {:>10.3f}\n", name, median(values),
+                 *std::min_element(values.begin(), values.end()));
+  }
+  if (!ratios_.empty()) fmt::print("\n");
+  for (const auto& [name, value] : ratios_.items())
+    fmt::print("{:<44} {:>10.2f}\n", name, value.get<double>());
+  for (const auto& [name, value] : facts_.items())
+    fmt::print("{:<44} {:>10}\n", name, value.dump());
+  if (!aims_.empty()) fmt::print("\n");
+  for (const nlohmann::json& a : aims_) {
+    const bool at_most = a.contains("at_most");
+    fmt::print("{:<44} {:>10.3f} {} (aim: {} {}) {}\n", a["what"].get<std::string>(),
+               a["reached"].get<double>(), a["unit"].get<std::string>(),
+               at_most ? "at most" : "at least", a[at_most ? "at_most" : "at_least"].get<double>(),
+               a["met"].get<bool>() ? "met" : "MISSED");
+  }
+  for (const std::string& failure : failures_) fmt::print("FAILED: {}\n", failure);
+}
+
+}  // namespace neritic::bench
