@@ -168,8 +168,9 @@ Result<graph::ImageHandle> Renderer::declare_forward(graph::FrameGraph& graph, c
             bound_slice(shared::kRasterLighting, commands.upload(&lighting, sizeof lighting))};
         const VkRenderingAttachmentInfo color =
             attachment(context.image(data.hdr), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_LOAD);
-        const VkRenderingAttachmentInfo depth = attachment(
+        VkRenderingAttachmentInfo depth = attachment(
             context.image(gbuffer.depth), graph::access_info(graph::Access::kDepthTest).layout, VK_ATTACHMENT_LOAD_OP_LOAD);
+        depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;  // a store would count as a write
         begin_rendering(context.cmd(), gbuffer, std::span(&color, 1), depth);
         record_draws(prepared, scene, deformed.positions ? &context.buffer(deformed.positions) : nullptr,
                      Vec2f(gbuffer.width, gbuffer.height), set0, commands);

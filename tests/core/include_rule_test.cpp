@@ -1,0 +1,68 @@
+// The folder table of ARCHITECTURE.md, checked against every #include of the sources.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+#include <set>
+
+#include "engine/core/files.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string, std::set<std::string>>& allowed() {
+  static const std::map<std::string, std::set<std::string>> table{
+      {"engine/core", {}},
+      {"engine/gpu", {"engine/core"}},
+      {"engine/graph", {"engine/core", "engine/gpu"}},
+      {"engine/scene", {"engine/core", "engine/gpu"}},
+      {"engine/render", {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "shared"}},
+      {"engine/xr", {"engine/core", "engine/gpu", "engine/graph", "shared"}},
+      {"engine/sim", {"engine/core"}},
+      {"engine/net", {"engine/core"}},
+      {"sonar", {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "shared"}},
+      {"diver", {"engine/core", "engine/sim", "engine/net"}},
+      {"rov", {"engine/core", "engine/sim", "engine/net"}},
+      {"hud", {"engine/core", "engine/gpu", "engine/graph", "engine/xr", "diver", "rov"}},
+      {"shaders/shared", {"shared"}}};
+  return table;
+}
+
+// "engine/gpu/device.hpp" is in "engine/gpu"; "shared/types.h" in "shared"; "tools/..." in "tools".
+std::string folder_of(const std::string& include) {
+  const auto first = include.find('/');
+  if (first == std::string::npos) return "";
+  const std::string top = include.substr(0, first);
+  if (top != "engine") return top;
+  return include.substr(0, include.find('/', first + 1));
+}
+
+TEST(IncludeRule, FoldersIncludeOnlyWhatTheTableAllows) {
+  const std::set<std::string> ours{"engine", "shared", "sonar", "diver", "rov", "hud", "tools", "tests", "shaders"};
+  const std::regex include("^\\s*#include \"([^\"]+)\"");
+  int files = 0;
+  for (const auto& [folder, may] : allowed()) {
+    const fs::path root = test::source_dir() / folder;
+    if (!fs::is_directory(root)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root)) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".hpp" && extension != ".cpp" && extension != ".h") continue;
+      ++files;
+      std::istringstream text(read_text(entry.path()).value());
+      for (std::string line; std::getline(text, line);) {
+        std::smatch match;
+        if (!std::regex_search(line, match, include)) continue;
+        const std::string target = folder_of(match[1]);
+        if (!ours.contains(target.substr(0, target.find('/'))) || target == folder) continue;
+        EXPECT_TRUE(may.contains(target)) << entry.path() << " includes " << match[1];
+      }
+    }
+  }
+  EXPECT_GT(files, 50);
+}
+
+}  // namespace
+}  // namespace neritic

@@ -1,0 +1,126 @@
+// Every struct that GLSL and C++ share has the same members at the same places in both: the offsets that
+// SPIR-V declares (read with SPIRV-Cross) against offsetof.
+#include <gtest/gtest.h>
+#include <spirv_cross/spirv_cross_c.h>
+
+#include <cstddef>
+#include <map>
+#include <set>
+#include <string>
+
+#include "shaders.hpp"
+#include "shared/lighting.h"
+#include "shared/raster.h"
+#include "shared/sonar.h"
+
+namespace neritic::shared {
+namespace {
+
+using Offsets = std::map<std::string, std::size_t>;
+
+#define MEMBER(type, member) {#member, offsetof(type, member)}
+
+const std::map<std::string, Offsets>& shared_structs() {
+  static const std::map<std::string, Offsets> structs{
+      {"View",
+       {MEMBER(View, clip_from_origin), MEMBER(View, next_clip_from_origin), MEMBER(View, eye), MEMBER(View, near_m),
+        MEMBER(View, ray_corner), MEMBER(View, ray_dx), MEMBER(View, ray_dy)}},
+      {"Instance",
+       {MEMBER(Instance, row0), MEMBER(Instance, row1), MEMBER(Instance, row2), MEMBER(Instance, label), MEMBER(Instance, deformed)}},
+      {"NextInstance", {MEMBER(NextInstance, row0), MEMBER(NextInstance, row1), MEMBER(NextInstance, row2)}},
+      {"VertexPosition", {MEMBER(VertexPosition, position), MEMBER(VertexPosition, normal)}},
+      {"TextureMapping", {MEMBER(TextureMapping, u), MEMBER(TextureMapping, v), MEMBER(TextureMapping, uv_set)}},
+      {"MaterialData",
+       {MEMBER(MaterialData, base_color), MEMBER(MaterialData, emissive), MEMBER(MaterialData, metallic),
+        MEMBER(MaterialData, roughness), MEMBER(MaterialData, normal_scale), MEMBER(MaterialData, occlusion_strength),
+        MEMBER(MaterialData, alpha_cutoff), MEMBER(MaterialData, flags), MEMBER(MaterialData, base_color_map),
+        MEMBER(MaterialData, metal_rough_map), MEMBER(MaterialData, normal_map), MEMBER(MaterialData, occlusion_map),
+        MEMBER(MaterialData, emissive_map)}},
+      {"RasterPush", {MEMBER(RasterPush, target_size), MEMBER(RasterPush, material_flags)}},
+      {"SkinVertex", {MEMBER(SkinVertex, joints01), MEMBER(SkinVertex, joints23), MEMBER(SkinVertex, weights)}},
+      {"MorphDelta", {MEMBER(MorphDelta, position), MEMBER(MorphDelta, normal)}},
+      {"DeformPush",
+       {MEMBER(DeformPush, vertex_count), MEMBER(DeformPush, first_source), MEMBER(DeformPush, first_skin),
+        MEMBER(DeformPush, first_joint), MEMBER(DeformPush, joint_stride), MEMBER(DeformPush, first_morph),
+        MEMBER(DeformPush, morph_targets), MEMBER(DeformPush, first_weight), MEMBER(DeformPush, weight_stride),
+        MEMBER(DeformPush, first_out), MEMBER(DeformPush, next)}},
+      {"SpotLight",
+       {MEMBER(SpotLight, position), MEMBER(SpotLight, direction), MEMBER(SpotLight, intensity_cd), MEMBER(SpotLight, cos_inner),
+        MEMBER(SpotLight, cos_outer)}},
+      {"Lighting",
+       {MEMBER(Lighting, terms), MEMBER(Lighting, lamp_count), MEMBER(Lighting, to_sun), MEMBER(Lighting, surface_irradiance),
+        MEMBER(Lighting, direct_share), MEMBER(Lighting, origin_depth_m), MEMBER(Lighting, diffuse_attenuation),
+        MEMBER(Lighting, beam_attenuation), MEMBER(Lighting, water_scattering), MEMBER(Lighting, particle_scattering),
+        MEMBER(Lighting, background), MEMBER(Lighting, emissive_scale), MEMBER(Lighting, exposure), MEMBER(Lighting, sun_cosine),
+        MEMBER(Lighting, lamps)}},
+      {"SonarColumn",
+       {MEMBER(SonarColumn, beam_base), MEMBER(SonarColumn, sec_theta), MEMBER(SonarColumn, pixel_base),
+        MEMBER(SonarColumn, pixel_square), MEMBER(SonarColumn, up), MEMBER(SonarColumn, forward), MEMBER(SonarColumn, pixel),
+        MEMBER(SonarColumn, layer), MEMBER(SonarColumn, first_pixel), MEMBER(SonarColumn, end_pixel)}},
+      {"SonarPush",
+       {MEMBER(SonarPush, n_range), MEMBER(SonarPush, n_azimuth), MEMBER(SonarPush, n_elevation), MEMBER(SonarPush, width),
+        MEMBER(SonarPush, height), MEMBER(SonarPush, fx), MEMBER(SonarPush, fy), MEMBER(SonarPush, cx), MEMBER(SonarPush, cy),
+        MEMBER(SonarPush, near_m), MEMBER(SonarPush, range_min_m), MEMBER(SonarPush, bins_per_m), MEMBER(SonarPush, fixed_scale),
+        MEMBER(SonarPush, edge_bias_bins), MEMBER(SonarPush, reflectivities)}}};
+  return structs;
+}
+
+class Walker {
+ public:
+  explicit Walker(std::set<std::string>& seen) : seen_(seen) {}
+
+  void stage(const shaders::Stage& stage) {
+    spvc_context context = nullptr;
+    ASSERT_EQ(spvc_context_create(&context), SPVC_SUCCESS);
+    spvc_parsed_ir ir = nullptr;
+    ASSERT_EQ(spvc_context_parse_spirv(context, stage.code.data(), stage.code.size(), &ir), SPVC_SUCCESS) << stage.file;
+    ASSERT_EQ(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler_), SPVC_SUCCESS);
+    spvc_resources resources = nullptr;
+    ASSERT_EQ(spvc_compiler_create_shader_resources(compiler_, &resources), SPVC_SUCCESS);
+    for (const spvc_resource_type kind :
+         {SPVC_RESOURCE_TYPE_STORAGE_BUFFER, SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, SPVC_RESOURCE_TYPE_PUSH_CONSTANT}) {
+      const spvc_reflected_resource* list = nullptr;
+      std::size_t count = 0;
+      ASSERT_EQ(spvc_resources_get_resource_list_for_type(resources, kind, &list, &count), SPVC_SUCCESS);
+      for (std::size_t i = 0; i < count; ++i) type(list[i].base_type_id, stage.file);
+    }
+    spvc_context_destroy(context);
+  }
+
+ private:
+  void type(spvc_type_id id, const char* file) {
+    const spvc_type handle = spvc_compiler_get_type_handle(compiler_, id);
+    if (spvc_type_get_basetype(handle) != SPVC_BASETYPE_STRUCT) return;
+    const spvc_type_id base = spvc_type_get_base_type_id(handle);
+    const std::string name = spvc_compiler_get_name(compiler_, base);
+    const auto known = shared_structs().find(name);
+    const unsigned members = spvc_type_get_num_member_types(handle);
+    if (known != shared_structs().end()) {
+      seen_.insert(name);
+      EXPECT_EQ(members, known->second.size()) << file << ": " << name;
+    }
+    for (unsigned m = 0; m < members; ++m) {
+      if (known != shared_structs().end()) {
+        unsigned offset = 0;
+        ASSERT_EQ(spvc_compiler_type_struct_member_offset(compiler_, handle, m, &offset), SPVC_SUCCESS);
+        const std::string member = spvc_compiler_get_member_name(compiler_, base, m);
+        const auto row = known->second.find(member);
+        ASSERT_NE(row, known->second.end()) << file << ": " << name << "." << member << " is not in the test's table";
+        EXPECT_EQ(offset, row->second) << file << ": " << name << "." << member;
+      }
+      type(spvc_type_get_member_type(handle, m), file);
+    }
+  }
+
+  spvc_compiler compiler_ = nullptr;
+  std::set<std::string>& seen_;
+};
+
+TEST(SharedStructs, LieAtTheSameOffsetsInShadersAndHost) {
+  std::set<std::string> seen;
+  for (const shaders::Stage& stage : shaders::all_stages()) Walker(seen).stage(stage);
+  for (const auto& [name, members] : shared_structs()) EXPECT_TRUE(seen.contains(name)) << name << " is in no shader's interface";
+}
+
+}  // namespace
+}  // namespace neritic::shared
