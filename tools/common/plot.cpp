@@ -1,0 +1,139 @@
+#include "tools/common/plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace neritic::tools {
+namespace {
+
+using sonar::Align;
+using sonar::Canvas;
+using sonar::Color;
+
+constexpr double kTextPx = 10.0, kTitlePx = 13.0;
+
+// The rectangle inside the axes.
+Box inner(const Box& box) {
+  return {box.left + 72, box.top + 34, box.right - 18, box.bottom - 52};
+}
+
+double place(const Axis& axis, double value, double from, double to) {
+  const double t = axis.log ? std::log(value / axis.min) / std::log(axis.max / axis.min)
+                            : (value - axis.min) / (axis.max - axis.min);
+  return from + t * (to - from);
+}
+
+// Numbers at the axis: 1, 2, 5 times powers of ten.
+std::vector<double> ticks(const Axis& axis) {
+  std::vector<double> out;
+  if (axis.log) {
+    for (int e = static_cast<int>(std::floor(std::log10(axis.min))); std::pow(10.0, e) <= axis.max;
+         ++e)
+      for (const double m : {1.0, 2.0, 5.0}) {
+        const double v = m * std::pow(10.0, e);
+        if (v >= axis.min * 0.999 && v <= axis.max * 1.001) out.push_back(v);
+      }
+    return out;
+  }
+  const double raw = (axis.max - axis.min) / 6.0,
+               power = std::pow(10.0, std::floor(std::log10(raw)));
+  double step = 10.0 * power;
+  for (const double m : {5.0, 2.0, 1.0})
+    if (m * power >= raw * 0.999) step = m * power;
+  for (double v = std::ceil(axis.min / step - 1e-9) * step; v <= axis.max + 1e-9 * step; v += step)
+    out.push_back(std::abs(v) < 1e-9 * step ? 0.0 : v);
+  return out;
+}
+
+void draw_axes(Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
+               const Axis& y, bool x_ticks) {
+  const Box in = inner(box);
+  const Color grid = kInk.with_alpha(0.10f), line = kInk.with_alpha(0.7f);
+  canvas.text(in.left, box.top + 20, kTitlePx, title, kInk, Align::kLeft, 1.7);
+  for (const double v : ticks(y)) {
+    const double py = place(y, v, in.bottom, in.top);
+    canvas.segment(in.left, py, in.right, py, 1.0, grid);
+    canvas.text(in.left - 8, py + 4, kTextPx, fmt::format("{:g}", v), kInk, Align::kRight);
+  }
+  if (x_ticks)
+    for (const double v : ticks(x)) {
+      const double px = place(x, v, in.left, in.right);
+      canvas.segment(px, in.top, px, in.bottom, 1.0, grid);
+      canvas.text(px, in.bottom + 18, kTextPx, fmt::format("{:g}", v), kInk, Align::kCenter);
+    }
+  canvas.segment(in.left, in.bottom, in.right, in.bottom, 1.4, line);
+  canvas.segment(in.left, in.top, in.left, in.bottom, 1.4, line);
+  canvas.text((in.left + in.right) / 2, in.bottom + 40, kTextPx, x.label, kInk, Align::kCenter);
+  canvas.text(in.left + 8, in.top + 2, kTextPx, y.label, kInk.with_alpha(0.8f));
+}
+
+}  // namespace
+
+Axis axis_for(const std::string& label, const std::vector<double>& values, bool log) {
+  Axis axis{label, 0.0, 1.0, log};
+  if (values.empty()) return log ? Axis{label, 0.1, 1.0, true} : axis;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  if (log) {
+    axis.min = std::max(*low, 1e-9) / 1.25;
+    axis.max = std::max(*high, 1e-9) * 1.5;
+  } else {
+    axis.min = std::min(0.0, *low * 1.1);
+    axis.max = std::max(*high * 1.15, axis.min + 1e-9);
+  }
+  return axis;
+}
+
+void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
+                const Axis& y, const std::vector<Series>& series) {
+  draw_axes(canvas, box, title, x, y, true);
+  const Box in = inner(box);
+  double legend_y = in.top + 8;
+  for (const Series& s : series) {
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+      const double px = place(x, s.x[i], in.left, in.right),
+                   py = place(y, s.y[i], in.bottom, in.top);
+      if (i > 0)
+        canvas.segment(place(x, s.x[i - 1], in.left, in.right),
+                       place(y, s.y[i - 1], in.bottom, in.top), px, py, 1.8,
+                       s.color.with_alpha(0.8f));
+      canvas.segment(px, py, px, py, 7.0, s.color);
+      if (i < s.notes.size()) canvas.text(px + 6, py - 6, 8.0, s.notes[i], kInk.with_alpha(0.7f));
+    }
+    const double width = Canvas::text_width(kTextPx, s.name);
+    canvas.text(in.right - 4 - width, legend_y + 4, kTextPx, s.name, kInk);
+    canvas.segment(in.right - 38 - width, legend_y, in.right - 14 - width, legend_y, 2.4, s.color);
+    legend_y += 18;
+  }
+}
+
+void draw_mark(Canvas& canvas, const Box& box, const Axis& x, const Axis& y, double at_x,
+               double at_y, const std::string& words) {
+  const Box in = inner(box);
+  const double px = place(x, at_x, in.left, in.right), py = place(y, at_y, in.bottom, in.top);
+  canvas.arc(px, py, 10.0, -3.1416, 3.1416, 2.0, {0.75f, 0.1f, 0.1f});
+  canvas.segment(px + 7, py - 7, px + 26, py - 34, 1.2, {0.75f, 0.1f, 0.1f});
+  canvas.text(px + 28, py - 36, kTextPx, words, {0.75f, 0.1f, 0.1f});
+}
+
+void draw_bars(Canvas& canvas, const Box& box, const std::string& title, const std::string& label,
+               const std::vector<Bar>& bars) {
+  std::vector<double> values;
+  for (const Bar& bar : bars) values.push_back(bar.value);
+  const Axis y = axis_for(label, values, false);
+  draw_axes(canvas, box, title, {"", 0, 1, false}, y, false);
+  const Box in = inner(box);
+  const double slot =
+      (in.right - in.left) / static_cast<double>(std::max<std::size_t>(bars.size(), 1));
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    const double left = in.left + (static_cast<double>(i) + 0.2) * slot;
+    const double top = place(y, bars[i].value, in.bottom, in.top);
+    canvas.fill_rectangle(left, top, left + 0.6 * slot, in.bottom, bars[i].color);
+    canvas.text(left + 0.3 * slot, top - 6, 9.0, fmt::format("{:.3g}", bars[i].value), kInk,
+                Align::kCenter);
+    canvas.text(left + 0.3 * slot, in.bottom + 18, 9.0, bars[i].name, kInk, Align::kCenter);
+  }
+}
+
+}  // namespace neritic::tools

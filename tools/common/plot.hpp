@@ -1,0 +1,54 @@
+// Plots as pictures: axes with ticks and words, lines with markers, bars, a legend. Small on
+// purpose. One owner, one thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sonar/canvas.hpp"
+
+namespace neritic::tools {
+
+struct Axis {
+  std::string label;
+  double min = 0.0, max = 1.0;
+  bool log = false;  // then min and max are positive
+};
+
+struct Series {
+  std::string name;
+  sonar::Color color;
+  std::vector<double> x, y;
+  std::vector<std::string> notes;  // beside the points; empty: none
+};
+
+struct Bar {
+  std::string name;
+  sonar::Color color;
+  double value = 0.0;
+};
+
+struct Box {
+  double left = 0, top = 0, right = 0, bottom = 0;  // pixels, axes included
+};
+
+// Paper, ink, and colours that tell apart also for the colour-blind (Okabe and Ito 2008).
+inline constexpr sonar::Color kPaper{0.985f, 0.98f, 0.97f}, kInk{0.13f, 0.15f, 0.18f};
+inline constexpr sonar::Color kSeriesColors[] = {{0.0f, 0.447f, 0.698f},
+                                                 {0.835f, 0.369f, 0.0f},
+                                                 {0.0f, 0.62f, 0.451f},
+                                                 {0.8f, 0.475f, 0.655f},
+                                                 {0.35f, 0.35f, 0.35f}};
+
+// An axis that holds all values with a little room.
+Axis axis_for(const std::string& label, const std::vector<double>& values, bool log);
+
+void draw_lines(sonar::Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
+                const Axis& y, const std::vector<Series>& series);
+// A ring around a point of such a plot, with words.
+void draw_mark(sonar::Canvas& canvas, const Box& box, const Axis& x, const Axis& y, double at_x,
+               double at_y, const std::string& words);
+void draw_bars(sonar::Canvas& canvas, const Box& box, const std::string& title,
+               const std::string& label, const std::vector<Bar>& bars);
+
+}  // namespace neritic::tools

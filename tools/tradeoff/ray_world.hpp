@@ -1,0 +1,30 @@
+// What rays from the sonar hit: triangles (Embree) or closed forms. Any number of threads may cast.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/core/result.hpp"
+#include "tools/tradeoff/flatten.hpp"
+
+namespace neritic::tools {
+
+struct RayHit {
+  double t = 0.0;      // multiple of the direction; 0: nothing
+  Vec3f normal{0.0f};  // unit, of the side that is seen
+  float reflectivity = 1.0f;
+  std::uint16_t label = 0;
+};
+
+class RayWorld {
+ public:
+  virtual ~RayWorld() = default;
+  // From the origin along direction (any length).
+  virtual RayHit cast(const Vec3& direction) const = 0;
+};
+
+Result<std::unique_ptr<RayWorld>> make_triangle_world(Triangles triangles);
+// A seabed plane .8 m below and spheres of radius .35 and .15 m at 3 and 4 m.
+std::unique_ptr<RayWorld> make_analytic_world();
+
+}  // namespace neritic::tools
