@@ -1,0 +1,60 @@
+// Dear ImGui on this engine: takes a window's input, and draws what was asked for between begin and
+// declare as one pass of the frame graph. Pictures of the frame (a camera's, a sonar's) are
+// textures like any other. One at a time, since ImGui keeps one context. Rendering thread.
+#pragma once
+
+#include <imgui.h>
+
+#include <memory>
+#include <vector>
+
+#include "engine/gpu/device.hpp"
+#include "engine/gpu/pipeline.hpp"
+#include "engine/graph/frame_graph.hpp"
+#include "engine/xr/window.hpp"
+
+namespace neritic::xr {
+
+class Overlay {
+ public:
+  // window: whose input it takes (before others set callbacks is too early: create it after the
+  // window); nullptr: no input. format: of the targets it will draw to. scale: of text and panels.
+  static Result<std::unique_ptr<Overlay>> create(gpu::Device& device, Window* window,
+                                                 VkFormat format, float scale);
+  ~Overlay();
+
+  // Starts a frame of that many pixels; ImGui calls may follow.
+  void begin(std::uint32_t width, std::uint32_t height, double elapsed_s);
+  // An image of this frame's graph for ImGui to draw with (sRGB-encoded values, a 2D array as all
+  // of the graph's images). Valid until declare's pass has run.
+  ImTextureID texture(graph::ImageHandle image, std::uint32_t layer = 0);
+  // Ends ImGui's frame and declares the pass that draws it over a cleared target.
+  graph::ImageHandle declare(graph::FrameGraph& graph, graph::ImageHandle target);
+
+  bool wants_mouse() const;
+  bool wants_keys() const;
+  float scale() const { return scale_; }
+
+ private:
+  struct Texture {
+    graph::ImageHandle image;
+    std::uint32_t layer = 0;
+  };
+  explicit Overlay(gpu::Device& device) : device_(device) {}
+  Status create_font();
+  Status create_pipeline(VkFormat format);
+  void record(graph::PassContext& context, graph::ImageHandle target) const;
+  void draw(graph::PassContext& context, const ImDrawData& data) const;
+  VkImageView bind_texture(graph::PassContext& context, ImTextureID id, std::uint32_t& layer) const;
+
+  gpu::Device& device_;
+  ImGuiContext* context_ = nullptr;
+  bool glfw_ = false;
+  float scale_ = 1.0f;
+  gpu::Image font_;
+  gpu::Sampler sampler_;
+  gpu::Pipeline pipeline_;
+  std::vector<Texture> textures_;  // of this frame; ImTextureID is its place plus one, 0: the font
+};
+
+}  // namespace neritic::xr
