@@ -82,9 +82,11 @@ struct Allocator::Impl {
   VkDeviceSize used_bytes = 0;
   std::uint32_t allocations = 0;
 
+  VkDeviceSize heap_bytes(std::uint32_t type) const {
+    return memory.memoryHeaps[memory.memoryTypes[type].heapIndex].size;
+  }
   VkDeviceSize block_bytes(std::uint32_t type) const {
-    return std::min(kBlockBytes,
-                    memory.memoryHeaps[memory.memoryTypes[type].heapIndex].size / kHeapParts);
+    return std::min(kBlockBytes, heap_bytes(type) / kHeapParts);
   }
   Result<Block*> add_block(const PoolKey& key, VkDeviceSize size, bool own);
   void destroy(Block& block) const {
@@ -162,6 +164,10 @@ Result<Allocation> Allocator::allocate(const VkMemoryRequirements& needs, Memory
   if (!type)
     return failure(ErrorCode::kUnsupported, "no memory type of {:#x} fits a {}",
                    needs.memoryTypeBits, linear ? "buffer" : "image");
+  const VkDeviceSize heap_bytes = impl_->heap_bytes(*type);
+  if (needs.size > heap_bytes)  // not a valid request; lavapipe would try all the same
+    return failure(ErrorCode::kOutOfMemory, "{} bytes in one piece, the device's memory holds {}",
+                   needs.size, heap_bytes);
   const PoolKey key{*type, linear, use != MemoryUse::kDevice};
   Block* block = nullptr;
   std::optional<VkDeviceSize> offset;
