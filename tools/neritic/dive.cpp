@@ -1,0 +1,172 @@
+// `neritic dive SCENE`: the live program. A desktop window with a free camera, the scene's sonars
+// and timings; or, with --headless, the same frames without a window and a summary of their times.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/log.hpp"
+#include "engine/scene/gltf_loader.hpp"
+#include "engine/xr/desktop.hpp"
+#include "engine/xr/offscreen.hpp"
+#include "tools/neritic/commands.hpp"
+#include "tools/neritic/dive_loop.hpp"
+#include "tools/neritic/flags.hpp"
+
+namespace neritic::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t kFramesInFlight = 2;  // as Session's
+constexpr double kHeadlessSeconds = 5.0;      // where neither --frames nor --seconds is given
+
+struct DiveFlags {
+  std::string scene, size, device, screenshot;
+  std::vector<std::string> sensors;
+  std::uint64_t frames = 0;
+  double seconds = 0.0;
+  bool headless = false, fast = false, panels = false, validation = false;
+};
+
+Result<scene::Scene> load(const DiveFlags& flags) {
+  const fs::path path = flags.scene;
+  scene::Scene scene;
+  if (path.extension() == ".gltf" || path.extension() == ".glb") {
+    NERITIC_TRY(scene::Model model, scene::load_gltf(path));
+    scene = scene::scene_of_model(std::move(model), 1280, 720);
+    scene.title = path.filename().string();
+  } else {
+    NERITIC_TRY(scene, scene::load_scene(path));
+  }
+  if (scene.cameras.empty()) scene.cameras.push_back(camera_for(scene));
+  if (!flags.size.empty()) {
+    NERITIC_TRY(const auto size, parse_size("--size", flags.size));
+    for (scene::Camera& camera : scene.cameras)
+      camera.width = size.first, camera.height = size.second;
+  }
+  for (scene::Camera& camera : scene.cameras)
+    camera.stereo_baseline_m = 0.0;  // one window, one eye
+  return scene;
+}
+
+// The first camera and every sonar, or those named.
+Status choose_sensors(const DiveFlags& flags, const scene::Scene& scene, DiveOptions& options) {
+  std::string known;
+  for (const scene::Camera& camera : scene.cameras) known += " " + camera.name;
+  for (const scene::Sonar& sonar : scene.sonars) known += " " + sonar.name;
+  const auto wanted = [&](const std::string& name) {
+    return std::find(flags.sensors.begin(), flags.sensors.end(), name) != flags.sensors.end();
+  };
+  std::size_t found = 0;
+  for (std::size_t i = scene.cameras.size(); i-- > 0;)
+    if (wanted(scene.cameras[i].name)) options.camera = i, ++found;
+  for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
+    const bool named = wanted(scene.sonars[i].name);
+    if (flags.sensors.empty() || named) options.sonars.push_back(i);
+    if (named) ++found;
+  }
+  if (found < flags.sensors.size())
+    return bad_input("--sensor: {} found, {} has{}", fmt::join(flags.sensors, " "), flags.scene,
+                     known);
+  return {};
+}
+
+Result<std::unique_ptr<gpu::Device>> make_device(const DiveFlags& flags, const xr::Window* window) {
+  gpu::DeviceOptions options;
+  options.device = flags.device;
+  options.validation = flags.validation;
+  options.cache_folder = gpu::default_cache_folder();
+  options.present = window != nullptr;
+  if (window) options.instance_extensions = window->instance_extensions();
+  return gpu::Device::create(options);
+}
+
+Status check_validation(const gpu::Device& device) {
+  device.wait_idle();
+  const auto& messages = device.validation_log().messages;
+  for (const std::string& message : messages) log_warn("validation: {}", message);
+  if (messages.empty()) return {};
+  return failure(ErrorCode::kUnsupported, "validation reported {} messages", messages.size());
+}
+
+Status dive_offscreen(const DiveFlags& flags, gpu::Device& device, Session& session,
+                      DiveOptions options) {
+  const scene::Camera& camera = session.scene().cameras[options.camera];
+  xr::OffscreenOptions offscreen{camera.width, camera.height, camera.rate_hz, flags.fast};
+  if (options.frames == 0 && options.seconds == 0.0) options.seconds = kHeadlessSeconds;
+  options.summary = true;
+  NERITIC_TRY(const auto display, xr::OffscreenDisplay::create(device, offscreen));
+  std::unique_ptr<xr::Overlay> overlay;
+  if (flags.panels) {
+    NERITIC_TRY(overlay, xr::Overlay::create(device, nullptr, display->target().desc().format, 1));
+  }
+  Dive dive(device, session, *display, overlay.get(), nullptr, options);
+  NERITIC_TRY_STATUS(dive.run());
+  fmt::print("{}, {} x {}\n{}", device.info().name, offscreen.width, offscreen.height,
+             dive.times().summary(dive.frames_drawn(), dive.seconds()));
+  return {};
+}
+
+Status dive_window(xr::Window& window, gpu::Device& device, Session& session,
+                   const DiveOptions& options) {
+  NERITIC_TRY(const auto display, xr::DesktopDisplay::create(device, window, kFramesInFlight));
+  NERITIC_TRY(const auto overlay,
+              xr::Overlay::create(device, &window, display->format(), window.content_scale()));
+  Dive dive(device, session, *display, overlay.get(), &window, options);
+  return dive.run();
+}
+
+Status dive(const DiveFlags& flags) {
+  if (!std::isfinite(flags.seconds) || flags.seconds < 0.0)
+    return bad_input("--seconds: {}; a number from 0 is accepted", flags.seconds);
+  if (flags.fast && !flags.headless)
+    return bad_input("--fast: accepted with --headless (a window follows its screen)");
+  if (flags.panels && !flags.headless)
+    return bad_input("--panels: accepted with --headless (a window has them; F2)");
+  NERITIC_TRY(scene::Scene scene, load(flags));
+  for (const std::string& note : scene.notes) log_warn("{}", note);
+  DiveOptions options;
+  options.frames = flags.frames;
+  options.seconds = flags.seconds;
+  options.screenshot = flags.screenshot;
+  NERITIC_TRY_STATUS(choose_sensors(flags, scene, options));
+
+  std::unique_ptr<xr::Window> window;
+  const scene::Camera& camera = scene.cameras[options.camera];
+  if (!flags.headless) {
+    NERITIC_TRY(window, xr::Window::create("Neritic: " + scene.title, camera.width, camera.height,
+                                           "use --headless, or neritic render for pictures"));
+  }
+  NERITIC_TRY(const auto device, make_device(flags, window.get()));
+  NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
+  const Status status = window ? dive_window(*window, *device, *session, options)
+                               : dive_offscreen(flags, *device, *session, options);
+  if (!status.ok()) return status;
+  return check_validation(*device);
+}
+
+}  // namespace
+
+void add_dive_command(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<DiveFlags>();
+  CLI::App* command = app.add_subcommand(
+      "dive",
+      "the live program: a scene (.toml) or a model (.gltf, .glb) in a window; F1 lists keys");
+  command->add_option("scene", flags->scene, "scene or model file")->required();
+  command->add_flag("--headless", flags->headless,
+                    "no window: frames at the camera's rate, then a summary of their times");
+  command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
+  command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
+  command->add_option("--seconds", flags->seconds, "stop after so many seconds");
+  command->add_option("--frames", flags->frames, "stop after so many frames");
+  command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png");
+  command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
+  command->add_option("--sensor", flags->sensors,
+                      "fly this camera, show only these sonars, by name");
+  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
+  command->add_flag("--validate", flags->validation,
+                    "run with Vulkan validation; any message is a failure");
+  command->callback([flags, &run] { run = [flags] { return dive(*flags); }; });
+}
+
+}  // namespace neritic::tools
