@@ -7,7 +7,6 @@
 #include "shared/lighting.h"
 #include "shared/material.glsl"
 #include "shared/fragment_surface.glsl"
-#include "shared/surface.glsl"
 
 layout(location = 0) in vec3 normal;
 layout(location = 1) flat in uint label;
@@ -16,8 +15,10 @@ layout(location = 3) in vec4 tangent;
 layout(location = 4) in vec4 color;
 layout(location = 5) in vec3 position;
 
-layout(set = 0, binding = kRasterViews, scalar) readonly buffer Views { View views[]; };
-layout(set = 0, binding = kRasterLighting, scalar) readonly buffer Light { Lighting light; };
+layout(set = 0, binding = kRasterViews, scalar) uniform Views { View views[kMaxViews]; };
+layout(set = 0, binding = kRasterLighting, scalar) uniform Light { Lighting light; };
+
+#include "shared/surface.glsl"
 
 layout(location = 0) out vec4 out_color;
 
@@ -32,8 +33,8 @@ void main() {
     radiance = base.rgb;
   } else {
     Surface s = Surface(position, fragment_normal(normal, tangent, uv), base.rgb, m.x, m.y, m.z);
-    radiance = shade_surface(light, s, -along) + fragment_emissive(uv) * light.emissive_scale;
+    radiance = shade_surface(s, -along) + fragment_emissive(uv) * light.emissive_scale;
   }
-  Sight sight = look_through(light, light.origin_depth_m - views[gl_ViewIndex].eye.y, along, distance_m);
+  Sight sight = look_through(light.origin_depth_m - views[gl_ViewIndex].eye.y, along, distance_m);
   out_color = vec4((radiance * sight.transmittance + sight.added) * base.a, base.a);
 }

@@ -16,7 +16,7 @@ layout(location = 3) in vec2 uv1;
 layout(location = 4) in uint tangent;
 layout(location = 5) in vec4 color;
 
-layout(set = 0, binding = kRasterViews, scalar) readonly buffer Views { View views[]; };
+layout(set = 0, binding = kRasterViews, scalar) uniform Views { View views[kMaxViews]; };
 layout(set = 0, binding = kRasterInstances, scalar) readonly buffer Instances { Instance instances[]; };
 layout(set = 0, binding = kRasterNextInstances, scalar) readonly buffer NextInstances {
   NextInstance next_instances[];

@@ -10,7 +10,7 @@
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 normal;
 
-layout(set = 0, binding = kRasterViews, scalar) readonly buffer Views { View views[]; };
+layout(set = 0, binding = kRasterViews, scalar) uniform Views { View views[kMaxViews]; };
 layout(set = 0, binding = kRasterInstances, scalar) readonly buffer Instances { Instance instances[]; };
 
 layout(location = 0) out vec3 out_normal;

@@ -6,12 +6,11 @@
 // Shading in compute on the G-buffer: surface light, then the water between it and the eye.
 #include "shared/octahedral.h"
 #include "shared/lighting.h"
-#include "shared/surface.glsl"
 
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 
-layout(set = 0, binding = kShadeViews, scalar) readonly buffer Views { View views[]; };
-layout(set = 0, binding = kShadeLighting, scalar) readonly buffer Light { Lighting light; };
+layout(set = 0, binding = kShadeViews, scalar) uniform Views { View views[kMaxViews]; };
+layout(set = 0, binding = kShadeLighting, scalar) uniform Light { Lighting light; };
 layout(set = 0, binding = kShadeDepth) uniform texture2DArray depth_image;
 layout(set = 0, binding = kShadeNormal) uniform texture2DArray normal_image;
 layout(set = 0, binding = kShadeAlbedo) uniform texture2DArray albedo_image;
@@ -19,37 +18,38 @@ layout(set = 0, binding = kShadeMaterial) uniform texture2DArray material_image;
 layout(set = 0, binding = kShadeEmissive) uniform texture2DArray emissive_image;
 layout(set = 0, binding = kShadeHdr, rgba16f) writeonly uniform image2DArray hdr_image;
 
+#include "shared/surface.glsl"
+
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec2 size = imageSize(hdr_image).xy;
   if (at.x >= size.x || at.y >= size.y) return;
-  View view = views[at.z];
-  vec3 ray = view.ray_corner + (float(at.x) + 0.5) * view.ray_dx + (float(at.y) + 0.5) * view.ray_dy;
-  float eye_depth_m = light.origin_depth_m - view.eye.y;
+  vec3 ray = views[at.z].ray_corner + (float(at.x) + 0.5) * views[at.z].ray_dx + (float(at.y) + 0.5) * views[at.z].ray_dy;
+  float eye_depth_m = light.origin_depth_m - views[at.z].eye.y;
   float stretch = length(ray);
   vec3 direction = ray / stretch;
   float depth = texelFetch(depth_image, at, 0).r;
   vec3 radiance;
   if (depth <= 0.0) {
-    radiance = look_at_nothing(light, eye_depth_m, direction);
+    radiance = look_at_nothing(eye_depth_m, direction);
   } else {
-    float planar_m = view.near_m / depth;
+    float planar_m = views[at.z].near_m / depth;
     vec4 material = texelFetch(material_image, at, 0);
     if (material.w > 0.5) {
       radiance = texelFetch(emissive_image, at, 0).rgb * light.emissive_scale;
     } else {
       Surface s;
-      s.position = view.eye + ray * planar_m;
+      s.position = views[at.z].eye + ray * planar_m;
       s.normal = octahedral_decode(texelFetch(normal_image, at, 0).rg);
       s.albedo = texelFetch(albedo_image, at, 0).rgb;
       s.roughness = material.x;
       s.metallic = material.y;
       s.occlusion = material.z;
-      radiance = shade_surface(light, s, -direction);
+      radiance = shade_surface(s, -direction);
       if ((light.terms & kLightEmissive) != 0u)
         radiance += texelFetch(emissive_image, at, 0).rgb * light.emissive_scale;
     }
-    Sight sight = look_through(light, eye_depth_m, direction, planar_m * stretch);
+    Sight sight = look_through(eye_depth_m, direction, planar_m * stretch);
     radiance = radiance * sight.transmittance + sight.added;
   }
   imageStore(hdr_image, at, vec4(min(radiance * light.exposure, vec3(60000.0)), 1.0));

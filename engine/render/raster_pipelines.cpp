@@ -54,13 +54,13 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
                        : surface ? gbuffer_fragment(emissive, motion)
                        : forward ? shaders::kForwardFrag
                                  : shaders::kGeometryMaskedFrag;
-  constexpr auto kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  desc.layout.bindings = {{shared::kRasterViews, kStorage}, {shared::kRasterInstances, kStorage}};
+  constexpr auto kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  desc.layout.bindings = {{shared::kRasterViews, kUniform}, {shared::kRasterInstances, kStorage}};
   desc.streams = {position_stream()};
   if (!plain) {
     desc.layout.bindings.push_back({shared::kRasterNextInstances, kStorage});
     desc.layout.bindings.push_back({shared::kRasterNextPositions, kStorage});
-    if (forward) desc.layout.bindings.push_back({shared::kRasterLighting, kStorage});
+    if (forward) desc.layout.bindings.push_back({shared::kRasterLighting, kUniform});
     desc.layout.other_sets = {material_layout_.handle()};
     desc.layout.push_constant_bytes = sizeof(shared::RasterPush);
     desc.streams.push_back(surface_stream());

@@ -22,8 +22,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, con
     gpu::ComputePipelineDesc desc;
     desc.name = "shade";
     desc.code = shaders::kShadeComp;
-    desc.layout.bindings = {{shared::kShadeViews, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                            {shared::kShadeLighting, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+    desc.layout.bindings = {{shared::kShadeViews, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                            {shared::kShadeLighting, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                             {shared::kShadeDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeNormal, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeAlbedo, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},

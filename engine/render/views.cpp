@@ -1,5 +1,7 @@
 #include "engine/render/views.hpp"
 
+#include "engine/core/check.hpp"
+
 namespace neritic::render {
 namespace {
 
@@ -21,8 +23,10 @@ Intrinsics intrinsics_of(const FrustumTangents& t, std::uint32_t width, std::uin
   return k;
 }
 
-std::vector<shared::View> gpu_views(const ViewSet& set) {
-  std::vector<shared::View> out;
+std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set) {
+  NERITIC_CHECK(set.views.size() <= shared::kMaxViews, "{} views in a set", set.views.size());
+  std::array<shared::View, shared::kMaxViews> out{};
+  std::size_t filled = 0;
   const Vec3 origin = set.origin_m();
   for (const ViewDesc& view : set.views) {
     shared::View v{};
@@ -35,7 +39,7 @@ std::vector<shared::View> gpu_views(const ViewSet& set) {
     v.ray_corner = Vec3f(q * Vec3(t.left, t.top, -1.0));
     v.ray_dx = Vec3f(q * Vec3((t.right - t.left) / set.width, 0.0, 0.0));
     v.ray_dy = Vec3f(q * Vec3(0.0, -(t.top - t.bottom) / set.height, 0.0));
-    out.push_back(v);
+    out[filled++] = v;
   }
   return out;
 }

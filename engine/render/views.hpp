@@ -3,6 +3,7 @@
 // Plain data; any thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -31,8 +32,8 @@ struct Intrinsics {
 };
 Intrinsics intrinsics_of(const FrustumTangents& tangents, std::uint32_t width, std::uint32_t height);
 
-// What the shaders see of the set.
-std::vector<shared::View> gpu_views(const ViewSet& set);
+// What the shaders see of the set: a uniform block of kMaxViews, those beyond the set's own are zero.
+std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set);
 
 // True where a sphere (relative to the set's origin) can be in any view.
 bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double radius_m);

@@ -35,12 +35,12 @@ vec3 reflect_light(Surface s, vec3 to_eye, vec3 to_light) {
 }
 
 // Radiance that the surface sends towards the eye (before the water between).
-vec3 shade_surface(Lighting light, Surface s, vec3 to_eye) {
+vec3 shade_surface(Surface s, vec3 to_eye) {
   vec3 radiance = vec3(0.0);
   if ((light.terms & kLightSun) != 0u) {
     float depth_m = light.origin_depth_m - s.position.y;
-    vec3 irradiance = downwelling(light, depth_m);
-    vec3 direct = direct_share(light, depth_m);
+    vec3 irradiance = downwelling(depth_m);
+    vec3 direct = direct_share(depth_m);
     radiance += irradiance * direct / light.sun_cosine * reflect_light(s, to_eye, light.to_sun);
     // Diffuse light comes mostly from above; from below what the deep (or the sand) sends back: an
     // irradiance reflectance of some percent (Jerlov 1976), more in air.

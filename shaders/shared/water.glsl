@@ -1,5 +1,7 @@
 // Light in water. Sources: Mobley, "Light and Water" (1994), ch. 5 (single scattering), Henyey and
 // Greenstein (1941), Morel (1974) for the phase function of pure sea water. GLSL only.
+// Who includes this has declared `light`, a uniform block of type Lighting. It is no parameter: the copy
+// of a struct with all its lamps is paid for by every pixel on drivers that do not see through it.
 #ifndef NERITIC_WATER_GLSL
 #define NERITIC_WATER_GLSL
 
@@ -20,14 +22,14 @@ float henyey_greenstein(float cosine, float g) {
 float sea_water_phase(float cosine) { return 0.06225 * (1.0 + 0.835 * cosine * cosine); }
 
 // Downwelling irradiance at a depth (m, positive down): fades by K_d. In air depth counts as 0.
-vec3 downwelling(Lighting light, float depth_m) {
+vec3 downwelling(float depth_m) {
   if ((light.terms & kLightWater) == 0u) return light.surface_irradiance;
   return light.surface_irradiance * exp(-light.diffuse_attenuation * max(depth_m, 0.0));
 }
 
 // Share of the downwelling irradiance that still comes in the sun's beam: scattering takes from it what
 // it turns by more than a small angle (similarity scaling b (1 - g), Joseph, Wiscombe, Weinman 1976).
-vec3 direct_share(Lighting light, float depth_m) {
+vec3 direct_share(float depth_m) {
   if ((light.terms & kLightWater) == 0u) return vec3(light.direct_share);
   vec3 turned = light.particle_scattering * (1.0 - kParticleG) + light.water_scattering;
   return light.direct_share * exp(-turned * max(depth_m, 0.0) / light.sun_cosine);
@@ -40,7 +42,7 @@ struct Sight {
 };
 
 // From a point at depth_m along the unit direction (world axes) for length_m (may be infinite).
-Sight look_through(Lighting light, float depth_m, vec3 direction, float length_m) {
+Sight look_through(float depth_m, vec3 direction, float length_m) {
   Sight sight;
   sight.transmittance = vec3(1.0);
   sight.added = vec3(0.0);
@@ -50,8 +52,8 @@ Sight look_through(Lighting light, float depth_m, vec3 direction, float length_m
   // Exponents beyond 80 are as good as infinite and keep inf * 0 out.
   sight.transmittance = exp(-min(light.beam_attenuation * length_m, vec3(80.0)));
   if ((light.terms & kLightScattering) == 0u || (light.terms & kLightSun) == 0u) return sight;
-  vec3 irradiance = downwelling(light, depth_m);
-  vec3 direct = direct_share(light, depth_m);
+  vec3 irradiance = downwelling(depth_m);
+  vec3 direct = direct_share(depth_m);
   // The scattering angle is between the light's travel and the way to the eye, so its cosine is that of
   // the view direction and the direction to the sun.
   float to_sun = dot(direction, light.to_sun);
@@ -69,15 +71,15 @@ Sight look_through(Lighting light, float depth_m, vec3 direction, float length_m
 }
 
 // Radiance where sight meets nothing: water to infinity, or to the surface where that is named.
-vec3 look_at_nothing(Lighting light, float depth_m, vec3 direction) {
+vec3 look_at_nothing(float depth_m, vec3 direction) {
   if ((light.terms & kLightWater) == 0u) return light.background;
   if ((light.terms & kLightSurface) == 0u || direction.y < 1e-3 || depth_m <= 0.0)
-    return look_through(light, depth_m, direction, 1e9).added;
+    return look_through(depth_m, direction, 1e9).added;
   float length_m = depth_m / direction.y;
-  Sight sight = look_through(light, depth_m, direction, length_m);
+  Sight sight = look_through(depth_m, direction, length_m);
   // Snell's window: within 48.6 degrees of the zenith the sky, outside the mirrored deep (n = 1.333).
   float sine_air = 1.333 * sqrt(max(0.0, 1.0 - direction.y * direction.y));
-  vec3 mirrored = look_through(light, 0.0, vec3(direction.x, -direction.y, direction.z), 1e9).added;
+  vec3 mirrored = look_through(0.0, vec3(direction.x, -direction.y, direction.z), 1e9).added;
   if (sine_air >= 1.0) return sight.transmittance * mirrored + sight.added;
   float cosine_air = sqrt(1.0 - sine_air * sine_air);
   // Fresnel, unpolarised.
