@@ -88,7 +88,7 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& or
   if (exposure.fixed_ev) scale = std::exp2(-*exposure.fixed_ev);
   light.exposure = static_cast<float>(scale * std::exp2(exposure.compensation_ev));
   light.emissive_scale = 1.0f / light.exposure;
-  light.background = Vec3f(0.30f, 0.33f, 0.37f) / light.exposure;
+  light.background = Vec3f(0.06f, 0.075f, 0.10f) / light.exposure;
   return light;
 }
 
