@@ -86,10 +86,11 @@ Axis axis_for(const std::string& label, const std::vector<double>& values, bool 
 }
 
 void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
-                const Axis& y, const std::vector<Series>& series) {
+                const Axis& y, const std::vector<Series>& series, bool legend_below) {
   draw_axes(canvas, box, title, x, y, true);
   const Box in = inner(box);
-  double legend_y = in.top + 8;
+  double legend_y =
+      legend_below ? in.bottom - 18.0 * static_cast<double>(series.size()) : in.top + 8;
   for (const Series& s : series) {
     for (std::size_t i = 0; i < s.x.size(); ++i) {
       const double px = place(x, s.x[i], in.left, in.right),

@@ -44,7 +44,7 @@ inline constexpr sonar::Color kSeriesColors[] = {{0.0f, 0.447f, 0.698f},
 Axis axis_for(const std::string& label, const std::vector<double>& values, bool log);
 
 void draw_lines(sonar::Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
-                const Axis& y, const std::vector<Series>& series);
+                const Axis& y, const std::vector<Series>& series, bool legend_below = false);
 // A ring around a point of such a plot, with words.
 void draw_mark(sonar::Canvas& canvas, const Box& box, const Axis& x, const Axis& y, double at_x,
                double at_y, const std::string& words);

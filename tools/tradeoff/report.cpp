@@ -34,7 +34,8 @@ std::string csv_of(const SonarTradeoff& t) {
   return out;
 }
 
-// The knee of a gather's curve over resolution: error by l1, cost in milliseconds.
+// The knee of a gather's curve over resolution: error by l1, cost in milliseconds. A finer G-buffer
+// cannot cost less than a coarser one: where it seems so, something else slowed the coarser down.
 const Point* knee(const SonarTradeoff& t, const std::string& scene, const std::string& gather) {
   const auto points = select(t, scene, "resolution", gather);
   if (points.empty()) return nullptr;
@@ -43,7 +44,18 @@ const Point* knee(const SonarTradeoff& t, const std::string& scene, const std::s
     cost.push_back(p->cost_ms());
     error.push_back(p->error.l1);
   }
+  for (std::size_t i = cost.size() - 1; i-- > 0;) cost[i] = std::min(cost[i], cost[i + 1]);
   return points[knee_of(cost, error)];
+}
+
+// Short enough to stand under a bar.
+std::string bar_name(const Point& p) {
+  if (p.sweep == "bins")
+    return p.bins.range == p.bins.elevation
+               ? fmt::format("{} bins", p.bins.range)
+               : fmt::format("{}, {} up", p.bins.range, p.bins.elevation);
+  if (p.normals == "octahedral 16") return "oct 16";
+  return p.normals == "rgb 8 gamma 2.2" ? "rgb 8 g" : p.normals;
 }
 
 nlohmann::json json_of(const Point& p) {
@@ -68,8 +80,7 @@ nlohmann::json summary_of(const SonarTradeoff& t, const std::vector<std::string>
        {{"error_energy", "total energy over the truth's, less 1"},
         {"error_l1", "sum of absolute differences over the truth's total"},
         {"error_range_mm", "mean way that energy must move along range, by column"}}},
-      {"cost",
-       "least GPU time of the sonar's passes; raster_ms: of the G-buffer by the renderer"}};
+      {"cost", "least GPU time of the sonar's passes; raster_ms: of the G-buffer by the renderer"}};
   for (const std::string& scene : scenes) {
     nlohmann::json knees = nlohmann::json::object();
     for (const char* gather : kGatherNames)
@@ -112,7 +123,7 @@ void draw_curve(sonar::Canvas& canvas, const Box& box, const SonarTradeoff& t,
   }
   x = axis_for(x.label, xs, x.log);
   y = axis_for(y.label, ys, y.log);
-  draw_lines(canvas, box, title, x, y, series);
+  draw_lines(canvas, box, title, x, y, series, !mark);
   const Point* p = mark ? knee(t, scene, "plane") : nullptr;
   if (p != nullptr)
     draw_mark(canvas, box, x, y, fx(*p), fy(*p), fmt::format("knee: {:g} pixels a cell", p->scale));
@@ -146,11 +157,9 @@ ImageU8 plot_of(const SonarTradeoff& t, const std::vector<std::string>& scenes) 
         false);
     std::vector<Bar> bars;
     for (const Point* p : select(t, scene, "normals", "plane"))
-      bars.push_back({p->normals, kSeriesColors[1], p->error.l1});
+      bars.push_back({bar_name(*p), kSeriesColors[1], p->error.l1});
     for (const Point* p : select(t, scene, "bins", "plane"))
-      bars.push_back(
-          {fmt::format("bins {}x{}x{}", p->bins.range, p->bins.azimuth, p->bins.elevation),
-           kSeriesColors[2], p->error.l1});
+      bars.push_back({bar_name(*p), kSeriesColors[2], p->error.l1});
     draw_bars(canvas, box(2), scene + ": normals and bins (plane gather, 0.5 pixels a cell)",
               "sum of differences / energy", bars);
   }
