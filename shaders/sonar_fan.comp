@@ -23,8 +23,8 @@ vec3 copper(float value) {
   return mix(kStops[i], kStops[i + 1], at - float(i));
 }
 
-// Shown brightness at metres to starboard and ahead; negative: outside the fan.
-float shown(vec2 metres) {
+// The echo at metres to starboard and ahead; negative: outside the fan.
+float echo(vec2 metres) {
   float bin = (length(metres) - c.range_min_m) * c.bins_per_m;
   if (bin < 0.0 || bin >= float(c.n_range)) return -1.0;
   const float kTurn = 6.28318530718;
@@ -32,22 +32,21 @@ float shown(vec2 metres) {
   off -= kTurn * round(off / kTurn);
   if (abs(off) >= c.azimuth_half_rad) return -1.0;
   uint column = min(uint((off + c.azimuth_half_rad) * c.bins_per_rad), c.n_azimuth - 1);
-  if (full_scale <= 0.0) return 0.0;
-  return pow(float(sums[uint(bin) * c.n_azimuth + column]) / full_scale, c.gamma);
+  return float(sums[uint(bin) * c.n_azimuth + column]);
 }
 
 void main() {
   uvec2 at = gl_GlobalInvocationID.xy;
   if (at.x >= c.width || at.y >= c.height) return;
-  vec3 color = vec3(0.0);
-  float inside = 0.0;
+  float sum = 0.0, inside = 0.0;
   for (int k = 0; k < 4; ++k) {
     vec2 px = vec2(at) + vec2(0.25 + 0.5 * float(k & 1), 0.25 + 0.5 * float(k >> 1));
-    float value = shown(vec2(c.left_m, c.top_m) + vec2(px.x, -px.y) * c.m_per_px);
+    float value = echo(vec2(c.left_m, c.top_m) + vec2(px.x, -px.y) * c.m_per_px);
     if (value < 0.0) continue;
-    color += copper(value);
+    sum += value;
     inside += 1.0;
   }
-  vec3 rgb = inside > 0.0 ? color / inside : kStops[0];
+  float part = inside > 0.0 && full_scale > 0.0 ? sum / inside / full_scale : 0.0;
+  vec3 rgb = copper(part > 0.0 ? pow(part, c.gamma) : 0.0);
   imageStore(picture, ivec3(at, 0), vec4(rgb, inside / 4.0));
 }

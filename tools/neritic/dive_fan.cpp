@@ -8,7 +8,7 @@
 namespace neritic::tools {
 namespace {
 
-constexpr std::uint32_t kLongestSide_px = 560;
+constexpr std::uint32_t kLongestSide_px = 420;
 constexpr std::uint32_t kCellsLookedAt = 65536;  // for the full scale; more add nothing to see
 constexpr float kQuantile = 0.995f;              // as the panel picture's full scale
 constexpr float kFollow = 0.25f;
@@ -98,7 +98,8 @@ Result<SonarFans::Fan*> SonarFans::fan_of(std::size_t sonar, const std::string& 
                                                          .width = fan->shape.width,
                                                          .height = fan->shape.height,
                                                          .usage = VK_IMAGE_USAGE_STORAGE_BIT |
-                                                                  VK_IMAGE_USAGE_SAMPLED_BIT,
+                                                                  VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                                  VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
                                                          .array_view = true}));
   NERITIC_TRY(fan->scale,
               gpu::Buffer::create(device_, {.name = name + " fan scale",

@@ -13,6 +13,7 @@ constexpr ImU32 kInk = IM_COL32(230, 242, 247, 255);
 constexpr ImU32 kFaint = IM_COL32(230, 242, 247, 150);
 constexpr ImU32 kPaper = IM_COL32(5, 12, 17, 190);
 constexpr float kEdge_px = 12.0f;  // between panels and the window's edges
+constexpr float kStatusWidth_px = 330.0f, kSonarWidth_px = 360.0f, kReadoutWidth_px = 340.0f;
 
 void text_line(const std::string& text) {
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
@@ -132,6 +133,11 @@ void timings_table(const DiveTimes& times, TimeNs now_ns, float scale) {
   if (!ImGui::BeginTable("passes", 2)) return;
   ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableSetupColumn("ms", ImGuiTableColumnFlags_WidthFixed, 110.0f * scale);
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextDisabled("GPU pass");
+  ImGui::TableNextColumn();
+  ImGui::TextDisabled("ms");
   for (const TimeRow& pass : times.passes())
     if (times.recent(pass, now_ns))
       row(pass.name == "record" ? "(record, host)" : pass.name, pass.smooth_ms, gpu_ms);
@@ -148,8 +154,11 @@ void draw_background(ImTextureID picture) {
 
 void draw_readout(const FreeCamera& camera, float scale) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float x = ImGui::GetIO().DisplaySize.x * 0.5f, y = kEdge_px * scale;
-  const float half = 170.0f * scale;
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  const float x = display.x * 0.5f, half = 0.5f * kReadoutWidth_px * scale;
+  // At the top, or at the bottom where the panels leave no room between them.
+  const float between = 0.5f * display.x - (kSonarWidth_px + 4.0f * kEdge_px) * scale;
+  const float y = between > half ? kEdge_px * scale : display.y - 70.0f * scale;
   draw_card(list, camera.heading_deg(), x, y, half, scale);
   const double depth_m = -camera.position_m().y;
   const std::string text =
@@ -165,7 +174,8 @@ void draw_readout(const FreeCamera& camera, float scale) {
 void draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTimes& times,
                  TimeNs now_ns, float scale) {
   ImGui::SetNextWindowPos(ImVec2(kEdge_px * scale, kEdge_px * scale), ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowSizeConstraints(ImVec2(330.0f * scale, 0.0f), ImVec2(330.0f * scale, 1e6f));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(kStatusWidth_px * scale, 0.0f),
+                                      ImVec2(kStatusWidth_px * scale, 1e6f));
   const std::string title = facts.title + "###status";
   ImGui::Begin(title.c_str(), nullptr,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
@@ -188,7 +198,7 @@ void draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTi
 }
 
 void draw_sonars(const PanelFacts& facts, float scale) {
-  const float width = 360.0f * scale;
+  const float width = kSonarWidth_px * scale;
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   float y = kEdge_px * scale;
   for (const SonarPanel& panel : facts.sonars) {

@@ -1,0 +1,130 @@
+// `neritic dive` as a user starts it: a window under a virtual X server, no window, no display.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "engine/scene/image_file.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+Outcome dive(const test::ScratchFolder& scratch, const std::string& before,
+             const std::string& arguments) {
+  const std::string program = std::string(NERITIC_BINARY_DIR) + "/tools/neritic";
+  const std::string command =
+      fmt::format("{} '{}' dive {} > '{}' 2> '{}'", before, program, arguments,
+                  (scratch / "out").string(), (scratch / "err").string());
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(scratch / "out"),
+          text_of(scratch / "err")};
+}
+
+std::string pool() {
+  return (test::source_dir() / "assets/scenes/pool.toml").string();
+}
+bool has_program(const char* name) {
+  return std::system(fmt::format("command -v {} > /dev/null", name).c_str()) == 0;
+}
+bool no_device(const Outcome& outcome) {
+  return outcome.err.find("no Vulkan") != std::string::npos ||
+         outcome.err.find("vulkan-validationlayers") != std::string::npos;
+}
+
+// Pixels of the picture that are not its corner's colour: more than a blank one has.
+std::size_t drawn_pixels(const ImageU8& image) {
+  std::size_t count = 0;
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x)
+      count += image.at(x, y, 1) != image.at(0, image.height - 1, 1);
+  return count;
+}
+
+TEST(Dive, WindowShowsFramesWithPanelsAndValidationSilent) {
+  if (!has_program("xvfb-run")) GTEST_SKIP() << "no xvfb-run (Debian package xvfb)";
+  const test::ScratchFolder scratch;
+  const Outcome outcome = dive(scratch, "xvfb-run -a -s '-screen 0 640x480x24'",
+                               fmt::format("'{}' --size 480x270 --frames 6 --validate "
+                                           "--screenshot '{}'",
+                                           pool(), (scratch / "last.png").string()));
+  if (no_device(outcome)) GTEST_SKIP() << outcome.err;
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto image = scene::read_image8(scratch / "last.png", 3);
+  ASSERT_TRUE(image.ok()) << image.error().message;
+  EXPECT_EQ(image->width, 480u);
+  EXPECT_EQ(image->height, 270u);
+  EXPECT_GT(drawn_pixels(*image), 480u * 270u / 10);
+}
+
+TEST(Dive, HeadlessDrawsThatManyFramesAndSaysWhatTheyTook) {
+  const test::ScratchFolder scratch;
+  const Outcome outcome =
+      dive(scratch, "env -u DISPLAY -u WAYLAND_DISPLAY",
+           fmt::format("'{}' --headless --fast --panels --size 160x90 --frames 7 --validate "
+                       "--screenshot '{}'",
+                       pool(), (scratch / "last.png").string()));
+  if (no_device(outcome)) GTEST_SKIP() << outcome.err;
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("7 frames in"), std::string::npos) << outcome.out;
+  for (const char* pass : {"camera gbuffer", "camera tonemap", "sonar gather", "overlay"})
+    EXPECT_NE(outcome.out.find(pass), std::string::npos) << pass << "\n" << outcome.out;
+  EXPECT_TRUE(fs::exists(scratch / "last.png"));
+}
+
+TEST(Dive, SceneWithoutCameraOrSonarIsSeenAndPaysForNoSonar) {
+  const test::ScratchFolder scratch;
+  std::ofstream(scratch / "ball.toml") << "title = \"Ball\"\n[sun]\nelevation_deg = 60\n"
+                                          "[[objects]]\nname = \"ball\"\nshape = \"sphere\"\n"
+                                          "radius_m = 0.5\nposition_m = [3, -4, 5]\n";
+  const Outcome outcome =
+      dive(scratch, "",
+           fmt::format("'{}' --headless --fast --size 160x90 --frames 3 "
+                       "--screenshot '{}'",
+                       (scratch / "ball.toml").string(), (scratch / "last.png").string()));
+  if (no_device(outcome)) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find("sonar"), std::string::npos) << outcome.out;
+  const auto image = scene::read_image8(scratch / "last.png", 3);
+  ASSERT_TRUE(image.ok()) << image.error().message;
+  EXPECT_GT(drawn_pixels(*image), 200u);  // the ball
+}
+
+TEST(Dive, WithoutADisplaySaysSoInOneLineAndNamesTheWaysRound) {
+  const test::ScratchFolder scratch;
+  const Outcome outcome =
+      dive(scratch, "env -u DISPLAY -u WAYLAND_DISPLAY", fmt::format("'{}' --frames 1", pool()));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("--headless"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("neritic render"), std::string::npos) << outcome.err;
+}
+
+TEST(Dive, UnknownSensorIsRefusedWithTheKnownOnes) {
+  const test::ScratchFolder scratch;
+  const Outcome outcome =
+      dive(scratch, "", fmt::format("'{}' --headless --frames 1 --sensor nose", pool()));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("nose"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("camera sonar"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace neritic
