@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "engine/core/log.hpp"
 #include "tools/neritic/commands.hpp"
@@ -22,6 +23,12 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+      std::string names;
+      for (const CLI::App* command : app.get_subcommands(nullptr)) names += (names.empty() ? "" : ", ") + command->get_name();
+      std::fprintf(stderr, "neritic: '%s' is no command; %s are\n", argv[1], names.c_str());
+      return 2;
+    }
     std::fprintf(stderr, "neritic: %s (see neritic --help)\n", error.what());
     return 2;
   }

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <set>
 
 #include "engine/core/hash.hpp"
 #include "engine/scene/shapes.hpp"
@@ -186,6 +188,23 @@ TEST_F(SessionTest, CameraInsideAMeshAndEmptySceneStillGivePictures) {
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
     for (const float v : result.sonars[0].image.intensity) ASSERT_TRUE(std::isfinite(v) && v >= 0.0f);
   }
+}
+
+TEST_F(SessionTest, FiveThousandInstancesAreOneDraw) {
+  scene::Scene scene = sphere_scene(0.4);
+  for (int i = 0; i < 5000; ++i)
+    scene.objects[0].copies.push_back(glm::translate(Mat4(1.0), Vec3(i % 100 - 50, i / 100 - 25, -60.0)));
+  FrameRequest request;
+  request.cameras = {0};
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+  const render::FrameState state = render::evaluate_frame(session->scene(), session->gpu_scene(), 0.0, 0.1, false);
+  const render::DrawList draws = render::build_draw_list(session->scene(), session->gpu_scene(), state,
+                                                         camera_views(session->scene(), session->scene().cameras[0]));
+  ASSERT_EQ(draws.opaque.size(), 1u);
+  EXPECT_GT(draws.opaque[0].instance_count, 1000u);
+  NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+  const auto& instances = result.cameras[0].eyes[0].instances.data;
+  EXPECT_GT(std::set<std::uint16_t>(instances.begin(), instances.end()).size(), 1000u);
 }
 
 TEST_F(SessionTest, WideApertureTakesSeveralViewsInOnePass) {

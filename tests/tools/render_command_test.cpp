@@ -1,0 +1,136 @@
+// `neritic render` as its users run it: exit statuses, one clear line for bad input, the file contract,
+// and the same bytes whatever the number of the driver's threads.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/npy.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status = -1;
+  std::string said;  // stderr
+};
+
+Outcome neritic(const std::string& arguments, const std::string& environment = "") {
+  const test::ScratchFolder folder;
+  const std::string command = environment + " " NERITIC_BINARY_DIR "/tools/neritic " + arguments + " >/dev/null 2>" +
+                              (folder / "stderr").string();
+  const int raw = std::system(command.c_str());
+  return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read_text(folder / "stderr").value()};
+}
+
+std::string scene(const std::string& name) { return (test::source_dir() / "assets/scenes" / name).string(); }
+
+bool no_device() { return neritic("doctor").status != 0; }
+
+TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
+  const test::ScratchFolder folder;
+  const std::string out = " --out " + (folder / "out").string();
+  std::ofstream(folder / "garbage.toml") << "\x01\x02 not a [scene";
+  std::ofstream(folder / "unknown.toml") << "[watr]\ntype = \"II\"\n";
+  const struct {
+    std::string arguments, names;
+  } cases[] = {{"render nothere.toml" + out, "nothere.toml"},
+               {"render " + (folder / "garbage.toml").string() + out, "garbage.toml"},
+               {"render " + (folder / "unknown.toml").string() + out, "water"},  // the nearest known key
+               {"render " + scene("pool.toml") + out + " --size 0x0", "0x0"},
+               {"render " + scene("pool.toml") + out + " --size 99999x1", "99999x1"},
+               {"render " + scene("pool.toml") + out + " --time inf", "--time"},
+               {"render " + scene("pool.toml") + out + " --offset nan 0 0", "--offset"},
+               {"render " + scene("pool.toml") + out + " --sensor nobody", "camera, sonar"},
+               {"render " + scene("pool.toml") + out + " --water 4X", "4X"},
+               {"render " + scene("pool.toml") + out + " --colour red", "--colour"},
+               {"rendre " + scene("pool.toml"), "rendre"},
+               {"render", "scene"}};
+  for (const auto& c : cases) {
+    const Outcome outcome = neritic(c.arguments);
+    EXPECT_EQ(outcome.status, 2) << c.arguments << "\n" << outcome.said;
+    EXPECT_EQ(std::count(outcome.said.begin(), outcome.said.end(), '\n'), 1) << c.arguments << "\n" << outcome.said;
+    EXPECT_NE(outcome.said.find(c.names), std::string::npos) << c.arguments << "\n" << outcome.said;
+    EXPECT_FALSE(fs::exists(folder / "out")) << c.arguments;
+  }
+}
+
+TEST(RenderCommand, WithoutADeviceOneLineNamesThePackage) {
+  const test::ScratchFolder folder;
+  const Outcome outcome = neritic("render " + scene("pool.toml") + " --out " + (folder / "out").string(),
+                                  "VK_ICD_FILENAMES=/nonexistent.json VK_DRIVER_FILES=/nonexistent.json");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.said.find("mesa-vulkan-drivers"), std::string::npos) << outcome.said;
+  EXPECT_EQ(std::count(outcome.said.begin(), outcome.said.end(), '\n'), 1);
+}
+
+TEST(RenderCommand, OneAndTwoThreadsOfTheDriverWriteTheSameBytes) {
+  if (no_device()) GTEST_SKIP() << "no Vulkan device";
+  const test::ScratchFolder folder;
+  for (const char* threads : {"1", "2"}) {
+    const Outcome outcome = neritic("render " + scene("wreck.toml") + " --size 320x180 --out " + (folder / threads).string(),
+                                    std::string("LP_NUM_THREADS=") + threads);
+    ASSERT_EQ(outcome.status, 0) << outcome.said;
+  }
+  int compared = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "1")) {
+    const std::string extension = entry.path().extension();
+    if (extension != ".npy" && extension != ".png") continue;
+    const fs::path other = folder / "2" / fs::relative(entry.path(), folder / "1").string();
+    EXPECT_EQ(read_file(entry.path()).value(), read_file(other).value()) << entry.path();
+    ++compared;
+  }
+  EXPECT_GE(compared, 15);
+}
+
+TEST(RenderCommand, WritesTheFileContractAndTheArraysAgreeWithEachOther) {
+  if (no_device()) GTEST_SKIP() << "no Vulkan device";
+  const test::ScratchFolder folder;
+  const Outcome outcome = neritic("render " + scene("pool.toml") + " --size 101x57 --frames 2 --out " + (folder / "out").string());
+  ASSERT_EQ(outcome.status, 0) << outcome.said;
+  for (const char* frame : {"frame_0000", "frame_0001"}) {
+    const fs::path camera = folder / "out" / frame / "camera", sonar = folder / "out" / frame / "sonar";
+    const auto depth = read_npy(camera / "depth.npy"), normals = read_npy(camera / "normals.npy");
+    const auto labels = read_npy(camera / "labels.npy"), instances = read_npy(camera / "instances.npy");
+    const auto motion = read_npy(camera / "motion.npy");
+    ASSERT_TRUE(depth.ok() && normals.ok() && labels.ok() && instances.ok() && motion.ok());
+    EXPECT_EQ(depth->shape, (std::vector<std::size_t>{57, 101}));
+    EXPECT_EQ(normals->shape, (std::vector<std::size_t>{57, 101, 3}));
+    EXPECT_EQ(motion->shape, (std::vector<std::size_t>{57, 101, 2}));
+    EXPECT_EQ(depth->type, NpyType::kFloat32);
+    EXPECT_EQ(labels->type, NpyType::kUint16);
+    const auto d = depth->to_doubles(), n = normals->to_doubles(), l = labels->to_doubles();
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      const double size = std::hypot(n[3 * i], n[3 * i + 1], n[3 * i + 2]);
+      EXPECT_NEAR(size, std::isfinite(d[i]) ? 1.0 : 0.0, 1e-3);
+      EXPECT_EQ(std::isfinite(d[i]), l[i] > 0.0);
+    }
+    const auto color = scene::read_image8(camera / "color.png");
+    ASSERT_TRUE(color.ok());
+    EXPECT_EQ(color->width, 101u);
+    const auto image = read_npy(sonar / "sonar.npy"), classes = read_npy(sonar / "sonar_labels.npy");
+    ASSERT_TRUE(image.ok() && classes.ok());
+    EXPECT_EQ(image->shape, (std::vector<std::size_t>{500, 500}));
+    EXPECT_EQ(classes->shape, image->shape);
+    for (const fs::path& facts : {camera / "meta.json", sonar / "meta.json"}) {
+      const auto meta = nlohmann::json::parse(read_text(facts).value());
+      for (const char* key : {"fx", "fy", "cx", "cy", "pose", "frames", "near_m", "time_s", "seed", "scene", "device", "passes_ms"})
+        EXPECT_TRUE(meta.contains(key)) << facts << " " << key;
+    }
+    const auto json = nlohmann::json::parse(read_text(sonar / "sonar.json").value());
+    for (const char* key : {"range_m", "azimuth_deg", "elevation_deg", "bins", "units", "model", "seed", "passes_ms"})
+      EXPECT_TRUE(json.contains(key)) << key;
+    EXPECT_TRUE(fs::exists(sonar / "sonar.png"));
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "out")) EXPECT_NE(entry.path().extension(), ".tmp");
+}
+
+}  // namespace
+}  // namespace neritic
