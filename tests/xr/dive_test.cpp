@@ -87,6 +87,21 @@ TEST(Dive, HeadlessDrawsThatManyFramesAndSaysWhatTheyTook) {
   for (const char* pass : {"camera gbuffer", "camera tonemap", "sonar gather", "overlay"})
     EXPECT_NE(outcome.out.find(pass), std::string::npos) << pass << "\n" << outcome.out;
   EXPECT_TRUE(fs::exists(scratch / "last.png"));
+  // Every frame's passes are counted, those still in flight at the end included.
+  const std::size_t line = outcome.out.find("camera gbuffer");
+  EXPECT_EQ(outcome.out.substr(outcome.out.find('\n', line) - 2, 2), " 7") << outcome.out;
+}
+
+// Bodies that bend, without the motion image that `render` always asks for.
+TEST(Dive, AnimatedSceneLeavesValidationSilent) {
+  const test::ScratchFolder scratch;
+  const fs::path wreck = test::source_dir() / "assets/scenes/wreck.toml";
+  const Outcome outcome = dive(
+      scratch, "",
+      fmt::format("'{}' --headless --fast --size 160x90 --frames 4 --validate", wreck.string()));
+  if (no_device(outcome)) GTEST_SKIP() << outcome.err;
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("deform"), std::string::npos) << outcome.out;
 }
 
 TEST(Dive, SceneWithoutCameraOrSonarIsSeenAndPaysForNoSonar) {

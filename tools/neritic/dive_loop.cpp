@@ -72,8 +72,9 @@ Status Dive::run() {
     NERITIC_TRY_STATUS(frame(display_frame, last));
     if (last) break;
   }
-  if (last_submitted_ > 0) {
-    NERITIC_TRY_STATUS(session_.frames().wait(last_submitted_));
+  // The frames still in flight count in the summary too.
+  for (std::uint64_t behind = std::min<std::uint64_t>(frames_drawn_, 2); behind > 0; --behind) {
+    NERITIC_TRY_STATUS(session_.frames().wait(last_submitted_ - (behind - 1)));
     times_.add_passes(session_.frames().pass_times(), now_ns());
   }
   seconds_ = to_s(now_ns() - begun_ns);
