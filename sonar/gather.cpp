@@ -74,7 +74,7 @@ Result<SonarGather> SonarGather::create(gpu::Device& device, const BeamGrid& gri
   // column: no atomics. Graphics hardware wants many threads: a workgroup a column, its rows shared
   // out.
   const bool published = options.gather == Gather::kPublished;
-  const bool own_columns = device.info().kind == "CPU" || published;
+  const bool own_columns = published || !options.atomics.value_or(device.info().kind != "CPU");
   const std::uint32_t columns = own_columns ? 8 : 1, lanes = own_columns ? 1 : 64;
   made.groups_ = (grid.bins.azimuth + columns - 1) / columns;
 

@@ -41,6 +41,9 @@ struct GatherOptions {
   Gather gather = Gather::kPlane;
   bool labels = true;        // keep the class of each cell's strongest return
   bool reflectivity = true;  // a table by instance label will be given
+  // A workgroup a column whose threads add by atomics (graphics hardware), or a thread a column
+  // (processors). Absent: what suits the device. The bits are the same.
+  std::optional<bool> atomics;
 };
 
 class SonarGather {

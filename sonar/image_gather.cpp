@@ -114,7 +114,8 @@ ImageGather::~ImageGather() {
 
 Result<std::unique_ptr<ImageGather>> ImageGather::create(gpu::Device& device, const BeamGrid& grid,
                                                          std::span<const SonarInput> inputs,
-                                                         Gather gather) {
+                                                         Gather gather,
+                                                         std::optional<bool> atomics) {
   NERITIC_TRY_STATUS(check_inputs(grid, inputs, device.limits()));
   std::unique_ptr<ImageGather> made(new ImageGather);
   made->device_ = &device;
@@ -127,7 +128,7 @@ Result<std::unique_ptr<ImageGather>> ImageGather::create(gpu::Device& device, co
   layout.normals_face_sensor = inputs[0].normals_face_sensor;
   NERITIC_TRY(SonarGather sonar,
               SonarGather::create(device, grid, sectors_for(grid, inputs), layout,
-                                  {gather, made->labels_, made->reflect_}));
+                                  {gather, made->labels_, made->reflect_, atomics}));
   made->gather_ = std::make_unique<SonarGather>(std::move(sonar));
   NERITIC_TRY_STATUS(made->upload(inputs));
   NERITIC_TRY(made->frames_, gpu::Frames::create(device, 1));

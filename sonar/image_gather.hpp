@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,7 +20,8 @@ class ImageGather {
   // Inputs: one view, or the sectors that plan_sectors(grid) gives, all of one size and pinhole.
   static Result<std::unique_ptr<ImageGather>> create(gpu::Device& device, const BeamGrid& grid,
                                                      std::span<const SonarInput> inputs,
-                                                     Gather gather);
+                                                     Gather gather,
+                                                     std::optional<bool> atomics = {});
   ~ImageGather();
   // One frame: gather, wait, read back. The same bits every time.
   Result<SonarImage> run();
