@@ -13,19 +13,23 @@ struct Surface {
   float occlusion;
 };
 
-// BRDF times cosine.
-vec3 reflect_light(Surface s, vec3 to_eye, vec3 to_light) {
+// Reflectance of a dielectric (n = 1.5) at normal incidence: in air .04, in water (n = 1.333) .0035, which
+// is why wet things look dull under water (Fresnel).
+float dielectric_f0() { return light_has(kLightWater) ? 0.0035 : 0.04; }
+
+// BRDF times cosine. spread: half-angle of the source in radians; a highlight is no narrower.
+vec3 reflect_light(Surface s, vec3 to_eye, vec3 to_light, float spread) {
   float n_l = dot(s.normal, to_light);
   if (n_l <= 0.0) return vec3(0.0);
   float n_v = max(dot(s.normal, to_eye), 1e-3);
   vec3 h = normalize(to_eye + to_light);
   float n_h = max(dot(s.normal, h), 0.0);
-  float alpha = max(s.roughness * s.roughness, 0.002);
+  float alpha = max(s.roughness * s.roughness, spread);
   float a2 = alpha * alpha;
   float d = n_h * n_h * (a2 - 1.0) + 1.0;
   float distribution = a2 / (kPi * d * d);
   float visibility = 0.5 / (n_l * sqrt(n_v * n_v * (1.0 - a2) + a2) + n_v * sqrt(n_l * n_l * (1.0 - a2) + a2));
-  vec3 f0 = mix(vec3(0.04), s.albedo, s.metallic);
+  vec3 f0 = mix(vec3(dielectric_f0()), s.albedo, s.metallic);
   float one_minus = 1.0 - max(dot(h, to_eye), 0.0);
   float p5 = one_minus * one_minus;
   p5 = p5 * p5 * one_minus;
@@ -37,19 +41,23 @@ vec3 reflect_light(Surface s, vec3 to_eye, vec3 to_light) {
 // Radiance that the surface sends towards the eye (before the water between).
 vec3 shade_surface(Surface s, vec3 to_eye) {
   vec3 radiance = vec3(0.0);
-  if ((light.terms & kLightSun) != 0u) {
+  if (light_has(kLightSun)) {
     float depth_m = light.origin_depth_m - s.position.y;
     vec3 irradiance = downwelling(depth_m);
     vec3 direct = direct_share(depth_m);
-    radiance += irradiance * direct / light.sun_cosine * reflect_light(s, to_eye, light.to_sun);
+    // The sun's disk has a half-angle of 4.7 mrad; waves spread its beam below them over some 10 degrees
+    // (slopes of Cox and Munk 1954 at a light breeze).
+    float sun_spread = light_has(kLightWater) ? 0.17 : 0.0047;
+    radiance += irradiance * direct / light.sun_cosine * reflect_light(s, to_eye, light.to_sun, sun_spread);
     // Diffuse light comes mostly from above; from below what the deep (or the sand) sends back: an
     // irradiance reflectance of some percent (Jerlov 1976), more in air.
-    float from_below = (light.terms & kLightWater) != 0u ? 0.08 : 0.35;
+    float from_below = light_has(kLightWater) ? 0.08 : 0.35;
     float up = 0.5 + 0.5 * s.normal.y;
     float share = mix(from_below, 1.0, up * up * (3.0 - 2.0 * up));
-    vec3 diffuse_color = s.albedo * (1.0 - s.metallic) + mix(vec3(0.04), s.albedo, s.metallic) * 0.6;
+    vec3 diffuse_color = s.albedo * (1.0 - s.metallic) + mix(vec3(dielectric_f0()), s.albedo, s.metallic) * 0.6;
     radiance += irradiance * (1.0 - direct) * share * s.occlusion * diffuse_color / kPi;
   }
+  if (!light_has(kLightLamps)) return radiance;
   for (uint i = 0u; i < light.lamp_count; ++i) {
     vec3 to_lamp = light.lamps[i].position - s.position;
     float distance_m = max(length(to_lamp), 1e-3);
@@ -59,9 +67,9 @@ vec3 shade_surface(Surface s, vec3 to_eye) {
     if (cone <= 0.0) continue;
     // A lamp is a disk of some centimetres, no point: close by its light stays finite.
     vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.02);
-    if ((light.terms & kLightWater) != 0u)
+    if (light_has(kLightWater))
       arriving *= exp(-min(light.beam_attenuation * distance_m, vec3(80.0)));
-    radiance += arriving * reflect_light(s, to_eye, to_lamp);
+    radiance += arriving * reflect_light(s, to_eye, to_lamp, max(0.05 / distance_m, 0.01));
   }
   return radiance;
 }
