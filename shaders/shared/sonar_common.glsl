@@ -58,7 +58,7 @@ void add_return(uint cell, float strength, ivec3 at) {
   else atomicAdd(sums[cell], counts);
   if (kLabels != 0 && strength > 0.0) {
     uint key = label_key(strength, label.x);
-    if (kLanes == 1) keys[cell] = max(keys[cell], key);
-    else atomicMax(keys[cell], key);
+    if (kLanes > 1) atomicMax(keys[cell], key);
+    else if (key > keys[cell]) keys[cell] = key;
   }
 }
