@@ -18,39 +18,37 @@ layout(set = 0, binding = kShadeMaterial) uniform texture2DArray material_image;
 layout(set = 0, binding = kShadeEmissive) uniform texture2DArray emissive_image;
 layout(set = 0, binding = kShadeHdr, rgba16f) writeonly uniform image2DArray hdr_image;
 
+layout(constant_id = kSpecTerms) const uint kTerms = ~0u;
+bool light_has(uint term) { return (kTerms & term) != 0u; }
+
 #include "shared/surface.glsl"
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec2 size = imageSize(hdr_image).xy;
   if (at.x >= size.x || at.y >= size.y) return;
-  vec3 ray = views[at.z].ray_corner + (float(at.x) + 0.5) * views[at.z].ray_dx + (float(at.y) + 0.5) * views[at.z].ray_dy;
-  float eye_depth_m = light.origin_depth_m - views[at.z].eye.y;
+  // The layer by workgroup: so drivers see that a whole group reads one view.
+  uint layer = gl_WorkGroupID.z;
+  vec3 ray = views[layer].ray_corner + (float(at.x) + 0.5) * views[layer].ray_dx + (float(at.y) + 0.5) * views[layer].ray_dy;
+  float eye_depth_m = light.origin_depth_m - views[layer].eye.y;
   float stretch = length(ray);
   vec3 direction = ray / stretch;
   float depth = texelFetch(depth_image, at, 0).r;
-  vec3 radiance;
-  if (depth <= 0.0) {
-    radiance = look_at_nothing(eye_depth_m, direction);
-  } else {
-    float planar_m = views[at.z].near_m / depth;
-    vec4 material = texelFetch(material_image, at, 0);
-    if (material.w > 0.5) {
-      radiance = texelFetch(emissive_image, at, 0).rgb * light.emissive_scale;
-    } else {
-      Surface s;
-      s.position = views[at.z].eye + ray * planar_m;
-      s.normal = octahedral_decode(texelFetch(normal_image, at, 0).rg);
-      s.albedo = texelFetch(albedo_image, at, 0).rgb;
-      s.roughness = material.x;
-      s.metallic = material.y;
-      s.occlusion = material.z;
-      radiance = shade_surface(s, -direction);
-      if ((light.terms & kLightEmissive) != 0u)
-        radiance += texelFetch(emissive_image, at, 0).rgb * light.emissive_scale;
-    }
-    Sight sight = look_through(eye_depth_m, direction, planar_m * stretch);
-    radiance = radiance * sight.transmittance + sight.added;
-  }
+  bool hit = depth > 0.0;
+  float planar_m = hit ? views[layer].near_m / depth : kForever_m;
+  vec4 material = texelFetch(material_image, at, 0);
+  vec3 emitted = light_has(kLightEmissive) ? texelFetch(emissive_image, at, 0).rgb * light.emissive_scale : vec3(0.0);
+  Surface s;
+  s.position = views[layer].eye + ray * planar_m;
+  s.normal = octahedral_decode(texelFetch(normal_image, at, 0).rg);
+  s.albedo = texelFetch(albedo_image, at, 0).rgb;
+  s.roughness = material.x;
+  s.metallic = material.y;
+  s.occlusion = material.z;
+  vec3 radiance = emitted;
+  if (material.w <= 0.5) radiance += shade_surface(s, -direction);  // w: unlit
+  if (!hit) radiance = beyond(eye_depth_m, direction);
+  Sight sight = look_through(eye_depth_m, direction, hit ? planar_m * stretch : kForever_m);
+  radiance = radiance * sight.transmittance + sight.added;
   imageStore(hdr_image, at, vec4(min(radiance * light.exposure, vec3(60000.0)), 1.0));
 }

@@ -46,6 +46,12 @@ gpu::BoundResource uploaded(gpu::Commands& commands, std::uint32_t binding, cons
 
 }  // namespace
 
+Renderer::InstanceStreams Renderer::upload_instances(gpu::Commands& commands, const DrawList& draws, bool motion) {
+  const gpu::UploadSlice now = commands.upload(std::span<const shared::Instance>(draws.instances));
+  if (!motion) return {now, now};
+  return {now, commands.upload(std::span<const shared::NextInstance>(draws.next_instances))};
+}
+
 Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, const GpuScene& scene, const FrameState& state) {
   if (state.deforms.empty()) return DeformedGeometry{};
   if (!deform_) {
@@ -76,7 +82,8 @@ Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, cons
             uploaded(commands, shared::kDeformWeights, state.weights, nothing_),
             gpu::bound_buffer(shared::kDeformOut, context.buffer(data.positions).handle()),
             gpu::bound_buffer(shared::kDeformNextOut,
-                              data.next_positions ? context.buffer(data.next_positions).handle() : nothing_.handle())};
+                              // Without motion nothing is written there; a buffer of no other pass stands in.
+                              context.buffer(data.next_positions ? data.next_positions : data.positions).handle())};
         commands.bind_pipeline(deform_);
         commands.bind(deform_, resources);
         for (const DeformJob& job : state.deforms) {
@@ -125,8 +132,6 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
         gpu::Commands& commands = context.commands;
         const gpu::BoundResource set0[] = {
             bound_slice(shared::kRasterViews, commands.upload(std::span<const shared::View>(gpu_views(views)))),
-            uploaded(commands, shared::kRasterInstances, draws.instances, nothing_),
-            uploaded(commands, shared::kRasterNextInstances, motion ? draws.next_instances : std::vector<shared::NextInstance>{}, nothing_),
             gpu::bound_buffer(shared::kRasterNextPositions, motion && deformed.next_positions
                                                                 ? context.buffer(deformed.next_positions).handle()
                                                                 : nothing_.handle())};
@@ -138,7 +143,7 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
             attachment(context.image(g.depth), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_CLEAR);
         begin_rendering(context.cmd(), g, colors, depth);
         record_draws(prepared, scene, deformed.positions ? &context.buffer(deformed.positions) : nullptr,
-                     Vec2f(g.width, g.height), set0, commands);
+                     upload_instances(commands, draws, motion), Vec2f(g.width, g.height), set0, commands);
         vkCmdEndRendering(context.cmd());
       });
 }
@@ -162,8 +167,6 @@ Result<graph::ImageHandle> Renderer::declare_forward(graph::FrameGraph& graph, c
         gpu::Commands& commands = context.commands;
         const gpu::BoundResource set0[] = {
             bound_slice(shared::kRasterViews, commands.upload(std::span<const shared::View>(gpu_views(views)))),
-            uploaded(commands, shared::kRasterInstances, draws.instances, nothing_),
-            gpu::bound_buffer(shared::kRasterNextInstances, nothing_.handle()),
             gpu::bound_buffer(shared::kRasterNextPositions, nothing_.handle()),
             bound_slice(shared::kRasterLighting, commands.upload(&lighting, sizeof lighting))};
         const VkRenderingAttachmentInfo color =
@@ -173,7 +176,7 @@ Result<graph::ImageHandle> Renderer::declare_forward(graph::FrameGraph& graph, c
         depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;  // a store would count as a write
         begin_rendering(context.cmd(), gbuffer, std::span(&color, 1), depth);
         record_draws(prepared, scene, deformed.positions ? &context.buffer(deformed.positions) : nullptr,
-                     Vec2f(gbuffer.width, gbuffer.height), set0, commands);
+                     upload_instances(commands, draws, false), Vec2f(gbuffer.width, gbuffer.height), set0, commands);
         vkCmdEndRendering(context.cmd());
       });
   return pass.hdr;

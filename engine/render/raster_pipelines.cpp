@@ -34,6 +34,25 @@ gpu::VertexStream surface_stream() {
           false};
 }
 
+gpu::VertexStream instance_stream() {
+  return {sizeof(shared::Instance),
+          {{shared::kInstanceRow0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::Instance, row0)},
+           {shared::kInstanceRow1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::Instance, row1)},
+           {shared::kInstanceRow2, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::Instance, row2)},
+           {shared::kInstanceLabel, VK_FORMAT_R32G32_UINT, offsetof(shared::Instance, label)}},
+          true};
+}
+
+// Bound in every pipeline of the full vertex stage, since it declares the inputs; what feeds it without
+// motion is the instance stream again, unread.
+gpu::VertexStream next_instance_stream(bool motion) {
+  return {motion ? sizeof(shared::NextInstance) : sizeof(shared::Instance),
+          {{shared::kNextInstanceRow0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::NextInstance, row0)},
+           {shared::kNextInstanceRow1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::NextInstance, row1)},
+           {shared::kNextInstanceRow2, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::NextInstance, row2)}},
+          true};
+}
+
 std::span<const std::uint32_t> gbuffer_fragment(bool emissive, bool motion) {
   if (emissive) return motion ? shaders::kGbufferEmissiveMotionFrag : shaders::kGbufferEmissiveFrag;
   return motion ? shaders::kGbufferMotionFrag : shaders::kGbufferFrag;
@@ -43,7 +62,7 @@ std::span<const std::uint32_t> gbuffer_fragment(bool emissive, bool motion) {
 
 Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   if (const auto found = raster_.find(key); found != raster_.end()) return &found->second;
-  const auto& [stage, topology, motion, emissive, view_mask] = key;
+  const auto& [stage, topology, motion, emissive, view_mask, material_flags] = key;
   const bool forward = stage == RasterStage::kForward;
   const bool surface = stage == RasterStage::kSurface || stage == RasterStage::kSurfaceMasked;
   const bool plain = stage == RasterStage::kGeometry;
@@ -55,16 +74,18 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
                        : forward ? shaders::kForwardFrag
                                  : shaders::kGeometryMaskedFrag;
   constexpr auto kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-  desc.layout.bindings = {{shared::kRasterViews, kUniform}, {shared::kRasterInstances, kStorage}};
-  desc.streams = {position_stream()};
+  desc.layout.bindings = {{shared::kRasterViews, kUniform}};
+  desc.streams = {position_stream(), instance_stream()};
+  desc.constants = {{shared::kSpecMultiview, view_mask != 0}};
   if (!plain) {
-    desc.layout.bindings.push_back({shared::kRasterNextInstances, kStorage});
     desc.layout.bindings.push_back({shared::kRasterNextPositions, kStorage});
     if (forward) desc.layout.bindings.push_back({shared::kRasterLighting, kUniform});
     desc.layout.other_sets = {material_layout_.handle()};
     desc.layout.push_constant_bytes = sizeof(shared::RasterPush);
     desc.streams.push_back(surface_stream());
-    desc.constants = {{shared::kSpecMotion, motion}};
+    desc.streams.push_back(next_instance_stream(motion));
+    desc.constants.push_back({shared::kSpecMotion, motion});
+    desc.constants.push_back({shared::kSpecMaterial, material_flags});
     if (surface) desc.constants.push_back({shared::kSpecMask, stage == RasterStage::kSurfaceMasked});
   }
   desc.topology = topology;
@@ -96,7 +117,8 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const s
       stage = material.mask ? RasterStage::kSurfaceMasked : RasterStage::kSurface;
     NERITIC_TRY(const gpu::Pipeline* pipeline,
                 raster_pipeline({stage, vk_topology(draw.primitive->topology), motion && stage != RasterStage::kGeometry,
-                                 emissive && (stage == RasterStage::kSurface || stage == RasterStage::kSurfaceMasked), view_mask}));
+                                 emissive && (stage == RasterStage::kSurface || stage == RasterStage::kSurfaceMasked), view_mask,
+                                 stage == RasterStage::kGeometry ? 0u : material.flags}));
     // A sonar hears both sides of a sheet; a camera culls as the material says.
     const bool both_sides = kind == GBufferKind::kGeometry || material.double_sided;
     prepared.draws.push_back({draw, pipeline, stage != RasterStage::kGeometry, both_sides, &material});
@@ -105,7 +127,8 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const s
 }
 
 void Renderer::record_draws(const PreparedDraws& prepared, const GpuScene& scene, const gpu::Buffer* deformed,
-                            const Vec2f& target_size, std::span<const gpu::BoundResource> set0, gpu::Commands& commands) {
+                            const InstanceStreams& instances, const Vec2f& target_size,
+                            std::span<const gpu::BoundResource> set0, gpu::Commands& commands) {
   const VkCommandBuffer cmd = commands.handle();
   vkCmdBindIndexBuffer(cmd, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
   const gpu::Pipeline* bound = nullptr;
@@ -122,14 +145,15 @@ void Renderer::record_draws(const PreparedDraws& prepared, const GpuScene& scene
     vkCmdSetFrontFace(cmd, d.draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     // Deformed vertices lie elsewhere than the surface stream's, so both are bound at their own offsets.
     const bool own = d.draw.deformed == kNone;
-    const VkBuffer buffers[2] = {own ? scene.positions().handle() : deformed->handle(), scene.surfaces().handle()};
-    const VkDeviceSize offsets[2] = {
-        (own ? primitive.first_vertex : d.draw.deformed) * sizeof(shared::VertexPosition),
-        primitive.first_vertex * sizeof(shared::VertexSurface)};
-    vkCmdBindVertexBuffers(cmd, 0, d.surface ? 2 : 1, buffers, offsets);
+    const VkBuffer buffers[] = {own ? scene.positions().handle() : deformed->handle(), instances.now.buffer,
+                                scene.surfaces().handle(), instances.next.buffer};
+    const VkDeviceSize offsets[] = {(own ? primitive.first_vertex : d.draw.deformed) * sizeof(shared::VertexPosition),
+                                    instances.now.offset, primitive.first_vertex * sizeof(shared::VertexSurface),
+                                    instances.next.offset};
+    vkCmdBindVertexBuffers(cmd, 0, d.surface ? 4 : 2, buffers, offsets);
     if (d.surface) {
       vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, bound->layout(), 1, 1, &d.material->set, 0, nullptr);
-      commands.push(*bound, shared::RasterPush{target_size, d.material->flags});
+      commands.push(*bound, shared::RasterPush{target_size});
     }
     vkCmdDrawIndexed(cmd, primitive.index_count, d.draw.instance_count, primitive.first_index, 0, d.draw.first_instance);
   }

@@ -83,21 +83,28 @@ class Renderer {
                                             gpu::Pipeline& pipeline, graph::ImageHandle in, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
   enum class RasterStage { kGeometry, kGeometryMasked, kSurface, kSurfaceMasked, kForward };
-  // stage, topology, motion, emissive, view mask.
-  using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, std::uint32_t>;
+  // stage, topology, motion, emissive, view mask, the material's flags.
+  using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, std::uint32_t, std::uint32_t>;
   explicit Renderer(gpu::Device& device) : device_(device) {}
   Result<const gpu::Pipeline*> raster_pipeline(const RasterKey& key);
   // The pipelines that a list of draws needs, made before the pass records.
   struct PreparedDraws;
+  // This frame's instances; next is the same as now where there is no motion.
+  struct InstanceStreams {
+    gpu::UploadSlice now, next;
+  };
+  static InstanceStreams upload_instances(gpu::Commands& commands, const DrawList& draws, bool motion);
   Result<PreparedDraws> prepare(const GpuScene& scene, const std::vector<Draw>& draws, GBufferKind kind, bool forward,
                                 bool motion, bool emissive, std::uint32_t view_mask);
   static void record_draws(const PreparedDraws& prepared, const GpuScene& scene, const gpu::Buffer* deformed,
-                           const Vec2f& target_size, std::span<const gpu::BoundResource> set0, gpu::Commands& commands);
+                           const InstanceStreams& instances, const Vec2f& target_size,
+                           std::span<const gpu::BoundResource> set0, gpu::Commands& commands);
 
   gpu::Device& device_;
   gpu::SetLayout material_layout_;
   std::map<RasterKey, gpu::Pipeline> raster_;
-  gpu::Pipeline deform_, shade_, tonemap_, antialias_;
+  std::map<std::uint32_t, gpu::Pipeline> shade_;  // by the lighting's terms
+  gpu::Pipeline deform_, tonemap_, antialias_;
   gpu::Buffer nothing_;  // bound where a shader declares a buffer that this frame does not use
 };
 

@@ -18,7 +18,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device) {
 
 Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, const std::string& prefix, const GBuffer& gbuffer,
                                                    const ViewSet& views, const shared::Lighting& lighting) {
-  if (!shade_) {
+  gpu::Pipeline& pipeline = shade_[lighting.terms];
+  if (!pipeline) {
     gpu::ComputePipelineDesc desc;
     desc.name = "shade";
     desc.code = shaders::kShadeComp;
@@ -30,7 +31,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, con
                             {shared::kShadeMaterial, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeEmissive, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeHdr, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    NERITIC_TRY(shade_, gpu::Pipeline::create(device_, desc));
+    desc.constants = {{shared::kSpecTerms, lighting.terms}};
+    NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
   struct Data {
     graph::ImageHandle hdr;
@@ -43,15 +45,15 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, con
         data.hdr = builder.write(builder.create_image(prefix + "hdr", {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
                                  graph::Access::kStorageWriteCompute);
       },
-      [this, gbuffer, lighting, &views](const Data& data, graph::PassContext& context) {
+      [&pipeline, gbuffer, lighting, &views](const Data& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::UploadSlice view_data = commands.upload(std::span<const shared::View>(gpu_views(views)));
         const gpu::UploadSlice light_data = commands.upload(&lighting, sizeof lighting);
         const auto texels = [&](std::uint32_t binding, graph::ImageHandle handle) {
           return gpu::bound_texel_image(binding, context.image(handle).view());
         };
-        commands.bind_pipeline(shade_);
-        commands.bind(shade_, {gpu::bound_buffer(shared::kShadeViews, view_data.buffer, view_data.offset, view_data.size),
+        commands.bind_pipeline(pipeline);
+        commands.bind(pipeline, {gpu::bound_buffer(shared::kShadeViews, view_data.buffer, view_data.offset, view_data.size),
                                gpu::bound_buffer(shared::kShadeLighting, light_data.buffer, light_data.offset, light_data.size),
                                texels(shared::kShadeDepth, gbuffer.depth), texels(shared::kShadeNormal, gbuffer.normal),
                                texels(shared::kShadeAlbedo, gbuffer.albedo), texels(shared::kShadeMaterial, gbuffer.material),

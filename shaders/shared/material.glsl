@@ -11,7 +11,8 @@ layout(set = 1, binding = kMaterialNormal) uniform sampler2D normal_texture;
 layout(set = 1, binding = kMaterialOcclusion) uniform sampler2D occlusion_texture;
 layout(set = 1, binding = kMaterialEmissive) uniform sampler2D emissive_texture;
 
-bool material_has(uint flag) { return (material.flags & flag) != 0u; }
+layout(constant_id = kSpecMaterial) const uint kMaterialFlags = ~0u;
+bool material_has(uint flag) { return (kMaterialFlags & flag) != 0u; }
 
 // uv: both sets, xy and zw.
 vec2 mapped(TextureMapping map, vec4 uv) {

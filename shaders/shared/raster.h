@@ -20,7 +20,8 @@ struct View {
   vec3 ray_dy;
 };
 
-// Rows of the affine origin_from_object: p' = (dot(row0, p1), ...), p1 = (p, 1).
+// One instance, as a vertex stream that steps once an instance: a processor's driver fetches vertices
+// in bulk, but reads a storage buffer lane by lane. Rows of the affine origin_from_object: p' = (dot(row0, p1), ...), p1 = (p, 1).
 struct Instance {
   vec4 row0;
   vec4 row1;
@@ -81,12 +82,19 @@ struct MaterialData {
   TextureMapping emissive_map;
 };
 
+// Locations of the instance streams; a vertex's own are 0 to 5.
+NERITIC_CONST uint kInstanceRow0 = 6;
+NERITIC_CONST uint kInstanceRow1 = 7;
+NERITIC_CONST uint kInstanceRow2 = 8;
+NERITIC_CONST uint kInstanceLabel = 9;  // label, deformed
+NERITIC_CONST uint kNextInstanceRow0 = 10;
+NERITIC_CONST uint kNextInstanceRow1 = 11;
+NERITIC_CONST uint kNextInstanceRow2 = 12;
+
 // Set 0 of the raster passes.
 NERITIC_CONST uint kRasterViews = 0;
-NERITIC_CONST uint kRasterInstances = 1;
-NERITIC_CONST uint kRasterNextInstances = 2;
-NERITIC_CONST uint kRasterNextPositions = 3;  // deformed positions at the next frame's time
-NERITIC_CONST uint kRasterLighting = 4;       // forward pass only
+NERITIC_CONST uint kRasterNextPositions = 1;  // deformed positions at the next frame's time
+NERITIC_CONST uint kRasterLighting = 2;       // forward pass only
 // Set 1: a material.
 NERITIC_CONST uint kMaterialConstants = 0;
 NERITIC_CONST uint kMaterialBaseColor = 1;
@@ -95,13 +103,16 @@ NERITIC_CONST uint kMaterialNormal = 3;
 NERITIC_CONST uint kMaterialOcclusion = 4;
 NERITIC_CONST uint kMaterialEmissive = 5;
 
-// Specialisation constants.
+// Specialisation constants. A processor's driver computes both sides of a branch and loads lane by lane
+// what an index picks that it cannot prove uniform, so both the texture reads of a material and the view
+// are settled when the pipeline is made.
 NERITIC_CONST uint kSpecMotion = 0;
 NERITIC_CONST uint kSpecMask = 1;
+NERITIC_CONST uint kSpecMaterial = 2;   // the material's flags
+NERITIC_CONST uint kSpecMultiview = 3;  // 0: the set has one view
 
 struct RasterPush {
-  vec2 target_size;      // pixels, for motion
-  uint material_flags;   // the draw's, so that the vertex stage knows them too
+  vec2 target_size;  // pixels, for motion
 };
 
 // The deform pass: skin and morph one primitive of one instance.

@@ -1,7 +1,8 @@
 // Light in water. Sources: Mobley, "Light and Water" (1994), ch. 5 (single scattering), Henyey and
 // Greenstein (1941), Morel (1974) for the phase function of pure sea water. GLSL only.
-// Who includes this has declared `light`, a uniform block of type Lighting. It is no parameter: the copy
-// of a struct with all its lamps is paid for by every pixel on drivers that do not see through it.
+// Who includes this has declared `light`, a uniform block of type Lighting (no parameter: the copy of a
+// struct with all its lamps is paid for by every pixel on drivers that do not see through it), and
+// light_has(term), from a constant where the pipeline knows the terms.
 #ifndef NERITIC_WATER_GLSL
 #define NERITIC_WATER_GLSL
 
@@ -23,16 +24,29 @@ float sea_water_phase(float cosine) { return 0.06225 * (1.0 + 0.835 * cosine * c
 
 // Downwelling irradiance at a depth (m, positive down): fades by K_d. In air depth counts as 0.
 vec3 downwelling(float depth_m) {
-  if ((light.terms & kLightWater) == 0u) return light.surface_irradiance;
+  if (!light_has(kLightWater)) return light.surface_irradiance;
   return light.surface_irradiance * exp(-light.diffuse_attenuation * max(depth_m, 0.0));
 }
 
 // Share of the downwelling irradiance that still comes in the sun's beam: scattering takes from it what
 // it turns by more than a small angle (similarity scaling b (1 - g), Joseph, Wiscombe, Weinman 1976).
 vec3 direct_share(float depth_m) {
-  if ((light.terms & kLightWater) == 0u) return vec3(light.direct_share);
+  if (!light_has(kLightWater)) return vec3(light.direct_share);
   vec3 turned = light.particle_scattering * (1.0 - kParticleG) + light.water_scattering;
   return light.direct_share * exp(-turned * max(depth_m, 0.0) / light.sun_cosine);
+}
+
+// Radiance that a metre of water adds along a sight in the unit direction, 1/m, where irradiance comes
+// down and the share direct of it still in the sun's beam.
+vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct) {
+  // The scattering angle is between the light's travel and the way to the eye, so its cosine is that of
+  // the view direction and the direction to the sun.
+  float to_sun = dot(direction, light.to_sun);
+  vec3 from_beam = light.particle_scattering * henyey_greenstein(to_sun, kParticleG) +
+                   light.water_scattering * sea_water_phase(to_sun);
+  vec3 from_diffuse = light.particle_scattering * henyey_greenstein(direction.y, kDiffuseG) +
+                      light.water_scattering * sea_water_phase(direction.y);
+  return irradiance * (direct * from_beam / light.sun_cosine + (1.0 - direct) * from_diffuse / 0.8);
 }
 
 // What a length of sight does: radiance arriving = transmittance * radiance at its end + added.
@@ -46,22 +60,13 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
   Sight sight;
   sight.transmittance = vec3(1.0);
   sight.added = vec3(0.0);
-  if ((light.terms & kLightWater) == 0u) return sight;
+  if (!light_has(kLightWater)) return sight;
   // Above the surface there is no water.
   if (direction.y > 0.0) length_m = min(length_m, max(depth_m, 0.0) / direction.y);
   // Exponents beyond 80 are as good as infinite and keep inf * 0 out.
   sight.transmittance = exp(-min(light.beam_attenuation * length_m, vec3(80.0)));
-  if ((light.terms & kLightScattering) == 0u || (light.terms & kLightSun) == 0u) return sight;
-  vec3 irradiance = downwelling(depth_m);
-  vec3 direct = direct_share(depth_m);
-  // The scattering angle is between the light's travel and the way to the eye, so its cosine is that of
-  // the view direction and the direction to the sun.
-  float to_sun = dot(direction, light.to_sun);
-  vec3 from_beam = light.particle_scattering * henyey_greenstein(to_sun, kParticleG) +
-                   light.water_scattering * sea_water_phase(to_sun);
-  vec3 from_diffuse = light.particle_scattering * henyey_greenstein(direction.y, kDiffuseG) +
-                      light.water_scattering * sea_water_phase(direction.y);
-  vec3 source = irradiance * (direct * from_beam / light.sun_cosine + (1.0 - direct) * from_diffuse / 0.8);
+  if (!light_has(kLightScattering) || !light_has(kLightSun)) return sight;
+  vec3 source = scattered_towards(direction, downwelling(depth_m), direct_share(depth_m));
   // Integral of source * exp(-(c + K_d down) s) over the length; down is the sine of the dive angle.
   vec3 rate = light.beam_attenuation - light.diffuse_attenuation * direction.y;
   vec3 exponent = clamp(rate * length_m, vec3(-80.0), vec3(80.0));
@@ -70,27 +75,33 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
   return sight;
 }
 
-// Radiance where sight meets nothing: water to infinity, or to the surface where that is named.
-vec3 look_at_nothing(float depth_m, vec3 direction) {
-  if ((light.terms & kLightWater) == 0u) return light.background;
-  if ((light.terms & kLightSurface) == 0u || direction.y < 1e-3 || depth_m <= 0.0)
-    return look_through(depth_m, direction, 1e9).added;
-  float length_m = depth_m / direction.y;
-  Sight sight = look_through(depth_m, direction, length_m);
+// Longer than any sight in water, m.
+const float kForever_m = 1e9;
+
+// Radiance at the end of a sight that meets no surface of a solid: the water's end, to be looked at
+// through look_through(depth_m, direction, kForever_m).
+vec3 beyond(float depth_m, vec3 direction) {
+  if (!light_has(kLightWater)) return light.background;
+  if (!light_has(kLightSurface)) return vec3(0.0);
   // Snell's window: within 48.6 degrees of the zenith the sky, outside the mirrored deep (n = 1.333).
   float sine_air = 1.333 * sqrt(max(0.0, 1.0 - direction.y * direction.y));
-  vec3 mirrored = look_through(0.0, vec3(direction.x, -direction.y, direction.z), 1e9).added;
-  if (sine_air >= 1.0) return sight.transmittance * mirrored + sight.added;
-  float cosine_air = sqrt(1.0 - sine_air * sine_air);
+  vec3 mirrored = vec3(0.0);
+  if (light_has(kLightScattering) && light_has(kLightSun)) {
+    // What look_through(0, ..., kForever_m) adds on the way down from the surface.
+    vec3 down = vec3(direction.x, -direction.y, direction.z);
+    vec3 rate = light.beam_attenuation - light.diffuse_attenuation * down.y;
+    mirrored = scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);
+  }
+  float cosine_air = sqrt(max(0.0, 1.0 - sine_air * sine_air));
   // Fresnel, unpolarised.
   float rs = (1.333 * direction.y - cosine_air) / (1.333 * direction.y + cosine_air);
   float rp = (1.333 * cosine_air - direction.y) / (1.333 * cosine_air + direction.y);
-  float reflected = 0.5 * (rs * rs + rp * rp);
+  float reflected = sine_air >= 1.0 ? 1.0 : 0.5 * (rs * rs + rp * rp);
   // Sky radiance gains n^2 on entering the water; a clear sky of a fifth of the light.
   vec3 sky = light.surface_irradiance * (0.2 / kPi) * 1.777 * vec3(0.8, 0.95, 1.1);
   float to_sun = dot(direction, light.to_sun);
   sky += light.surface_irradiance * 60.0 * smoothstep(0.9965, 0.9995, to_sun);
-  return sight.transmittance * mix(sky, mirrored, reflected) + sight.added;
+  return direction.y < 1e-3 || depth_m <= 0.0 ? vec3(0.0) : mix(sky, mirrored, reflected);
 }
 
 #endif
