@@ -78,8 +78,7 @@ Status bench_sonar_frame(Suite& suite, gpu::Device& device) {
     if (hash_of(frame.image) != expected)
       suite.fail("one of ten equal sonars gives another image: " + frame.name);
   suite.ratio("ten_sonars_vs_one", "sonar_frame/23k_ten_sonars", "sonar_frame/23k");
-  suite.aim("sonar frame, 23 000 triangles", suite.find("sonar_frame/23k")->median_ms(), 10.0, true,
-            "ms");
+  suite.aim_ms("sonar frame, 23 000 triangles", "sonar_frame/23k", 10.0);
   return {};
 }
 
@@ -113,8 +112,7 @@ Status bench_camera_frame(Suite& suite, gpu::Device& device) {
   NERITIC_TRY(const auto b, wreck->render(everything));
   if (a.cameras[0].eyes[0].color.data != b.cameras[0].eyes[0].color.data)
     suite.fail("the wreck's picture differs when the other images are asked for too");
-  suite.aim("default scene at 1280x720", suite.find("camera_frame/wreck_720p")->median_ms(), 150.0,
-            true, "ms");
+  suite.aim_ms("default scene at 1280x720", "camera_frame/wreck_720p", 150.0);
   return {};
 }
 

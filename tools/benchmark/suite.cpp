@@ -41,10 +41,16 @@ double Measured::min_ms() const {
 }
 
 bool Suite::wants(const std::string& group) const {
-  return options_.filter.empty() || group.find(options_.filter) != std::string::npos;
+  const std::string& filter = options_.filter;
+  return filter.empty() || group.find(filter) != std::string::npos ||
+         filter.rfind(group + "/", 0) == 0;
 }
 
 Status Suite::measure(std::vector<Contender> contenders, int rounds) {
+  if (options_.filter.find('/') != std::string::npos)
+    std::erase_if(contenders, [&](const Contender& c) {
+      return c.name.find(options_.filter) == std::string::npos;
+    });
   std::vector<Measured> measured;
   double round_ms = 0.0;
   // The warm-up: pipelines, first touches of memory. Its result counts, its time does not.
@@ -98,6 +104,10 @@ void Suite::aim(const std::string& what, double reached, double limit, bool at_m
                    {at_most ? "at_most" : "at_least", limit},
                    {"unit", unit},
                    {"met", at_most ? reached <= limit : reached >= limit}});
+}
+
+void Suite::aim_ms(const std::string& what, const std::string& result, double limit_ms) {
+  if (const Measured* m = find(result)) aim(what, m->median_ms(), limit_ms, true, "ms");
 }
 
 nlohmann::json Suite::to_json(const std::string& device, unsigned threads) const {

@@ -17,7 +17,7 @@ struct Options {
   bool quick = false;  // few rounds
   bool sweep = false;  // also the scaling sweeps
   bool once = false;   // one round of what has a hash: how a second thread count is compared
-  std::string filter;  // only benchmarks whose group's name holds this
+  std::string filter;  // a group, or part of a GROUP/NAME: only these
   std::string device;
   std::string json;
   std::string assets = "assets";
@@ -64,6 +64,8 @@ class Suite {
   // An aim: printed with what was reached; no failure, since it depends on the machine.
   void aim(const std::string& what, double reached, double limit, bool at_most,
            const std::string& unit);
+  // The same for the median of a result of this run.
+  void aim_ms(const std::string& what, const std::string& result, double limit_ms);
 
   // A fact of the whole run, beside the ratios.
   void note(const std::string& name, nlohmann::json value) { facts_[name] = std::move(value); }
