@@ -146,7 +146,12 @@ void add_corners(Bounds& bounds, const Mat4& m, const Bounds& box) {
                    i & 4 ? box.max.z : box.min.z));
 }
 
-void add_node(const Model& model, const ModelPose& pose, int index, Bounds& bounds) {
+// Beyond so many vertices the corners of boxes stand for them: bounds stay true, but less tight.
+constexpr std::size_t kMaxBoundsVertices = 4'000'000;
+
+// n_vertices: of the primitives without instances so far.
+void add_node(const Model& model, const ModelPose& pose, int index, std::size_t& n_vertices,
+              Bounds& bounds) {
   const Node& node = model.nodes[index];
   if (node.mesh < 0) return;
   const bool skinned = node.skin >= 0;
@@ -158,6 +163,13 @@ void add_node(const Model& model, const ModelPose& pose, int index, Bounds& boun
     for (const Mat4& node_from_instance : node.instances)
       add_corners(bounds, model_from_node * node_from_instance, primitive.bounds);
     if (!node.instances.empty()) continue;
+    n_vertices += primitive.positions.size();
+    if (n_vertices > kMaxBoundsVertices) {
+      if (!skinned) add_corners(bounds, model_from_node, primitive.bounds);
+      for (const Mat4& model_from_bind : joints)
+        add_corners(bounds, model_from_bind, primitive.bounds);
+      continue;
+    }
     for (std::size_t v = 0; v < primitive.positions.size(); ++v) {
       const Vec3 p = morphed(primitive, v, pose.morph_weights[index]);
       if (!skinned || primitive.joints.empty()) {
@@ -222,11 +234,12 @@ std::vector<Mat4> joint_matrices(const Model& model, const ModelPose& pose, int 
 
 Bounds model_bounds(const Model& model, const ModelPose& pose) {
   Bounds bounds;
+  std::size_t n_vertices = 0;
   std::vector<int> open = model.roots;
   while (!open.empty()) {
     const int i = open.back();
     open.pop_back();
-    add_node(model, pose, i, bounds);
+    add_node(model, pose, i, n_vertices, bounds);
     open.insert(open.end(), model.nodes[i].children.begin(), model.nodes[i].children.end());
   }
   return bounds;

@@ -88,8 +88,7 @@ void Resources::decode(const Elements& e, Integers integers, int out_components,
     ++n_repaired;
   }
   if (n_repaired > 0)
-    reference.report().note(fmt::format("{}: {} numbers that are not finite were set to 0",
-                                        reference.path(), n_repaired));
+    reference.note_with("{} numbers that are not finite were set to 0", n_repaired);
 }
 
 std::vector<std::uint32_t> Resources::wholes(const Elements& e) {

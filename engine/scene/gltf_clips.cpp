@@ -53,8 +53,7 @@ bool parse_target(Loading& loading, Field target, Channel& out) {
   } else if (path == "weights") {
     out.path = Channel::Path::kWeights;
   } else {
-    loading.report.note(
-        fmt::format("{}: path \"{}\" is not supported and ignored", target.path(), path));
+    target.note_with("path \"{}\" is not supported and ignored", path);
     return false;
   }
   out.node = target["node"].index(loading.model.nodes.size(), "nodes");
@@ -63,8 +62,7 @@ bool parse_target(Loading& loading, Field target, Channel& out) {
   if (out.path != Channel::Path::kWeights) return true;
   const int mesh = loading.model.nodes[out.node].mesh;
   out.width = mesh < 0 ? 0 : static_cast<int>(loading.model.meshes[mesh].weights.size());
-  if (out.width == 0)
-    loading.report.note(target.path() + ": weights of a node without morph targets are ignored");
+  if (out.width == 0) target.note_with("weights of a node without morph targets are ignored");
   return out.width > 0;
 }
 
@@ -83,7 +81,7 @@ void normalize_rotations(Channel& channel) {
 
 // Times must start at 0 or later and increase; keys that do not are dropped with a note (an
 // accessor without bytes, all zeros, is valid and ends here too).
-void keep_increasing(Loading& loading, Field input, Channel& channel) {
+void keep_increasing(Field input, Channel& channel) {
   if (channel.times_s.empty()) return;
   const std::size_t n = channel.times_s.size(), width = channel.values.size() / n;
   std::size_t kept = 0;
@@ -97,8 +95,7 @@ void keep_increasing(Loading& loading, Field input, Channel& channel) {
   if (kept == n) return;
   channel.times_s.resize(kept);
   channel.values.resize(kept * width);
-  loading.report.note(fmt::format("{}: {} of {} keys whose times do not increase are ignored",
-                                  input.path(), n - kept, n));
+  input.note_with("{} of {} keys whose times do not increase are ignored", n - kept, n);
 }
 
 void load_keys(Loading& loading, Field sampler, Channel& out) {
@@ -120,7 +117,7 @@ void load_keys(Loading& loading, Field sampler, Channel& out) {
                      expected / expected_components, expected_components);
     return;
   }
-  keep_increasing(loading, input, out);
+  keep_increasing(input, out);
   if (out.path == Channel::Path::kRotation) normalize_rotations(out);
 }
 

@@ -71,8 +71,10 @@ void Report::fail(std::string_view path, std::string_view message) {
 }
 
 void Report::note(std::string line) {
+  if (!takes_notes()) return;
   line = one_line(line);
-  if (said_.insert(line).second) notes_.push_back(std::move(line));
+  if (!said_.insert(line).second) return;
+  notes_.push_back(notes_.size() + 1 < kMaxNotes ? std::move(line) : "further notes are left out");
 }
 
 Field Field::operator[](std::string_view key) const {

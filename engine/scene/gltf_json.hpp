@@ -30,10 +30,13 @@ class Report {
   Error error() const;
   // Only the first failure counts: what follows it is mostly its echo.
   void fail(std::string_view path, std::string_view message);
+  // After kMaxNotes the rest is summed up in one line.
   void note(std::string line);
+  bool takes_notes() const { return notes_.size() < kMaxNotes; }
   std::vector<std::string> take_notes() { return std::move(notes_); }
 
  private:
+  static constexpr std::size_t kMaxNotes = 32;
   std::string file_;
   std::optional<Error> error_;
   std::vector<std::string> notes_;
@@ -80,10 +83,18 @@ class Field {
 
   // "meshes[0].primitives[1]"; found by searching the document, since only failures need it.
   std::string path() const;
-  void fail(std::string_view message) const { report_->fail(path(), message); }
+  // Both search the path, so only for what will be said.
+  void fail(std::string_view message) const {
+    if (!report_->failed()) report_->fail(path(), message);
+  }
   template <class... Args>
   void fail_with(fmt::format_string<Args...> format, Args&&... args) const {
     fail(fmt::format(format, std::forward<Args>(args)...));
+  }
+  template <class... Args>
+  void note_with(fmt::format_string<Args...> format, Args&&... args) const {
+    if (report_->takes_notes())
+      report_->note(path() + ": " + fmt::format(format, std::forward<Args>(args)...));
   }
   Report& report() const { return *report_; }
 

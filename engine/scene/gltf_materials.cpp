@@ -17,7 +17,7 @@ Wrap parse_wrap(Field field) {
     case 33071:
       return Wrap::kClampToEdge;
     default:
-      field.report().note(field.path() + ": unknown wrap mode, repeat is used");
+      field.note_with("unknown wrap mode, repeat is used");
       return Wrap::kRepeat;
   }
 }
@@ -88,9 +88,7 @@ TextureRef parse_texture_ref(Loading& loading, Field field) {
     if (transform["texCoord"].present()) set = transform["texCoord"];
   }
   const std::uint64_t uv_set = set.whole(0);
-  if (uv_set > 1)
-    loading.report.note(fmt::format("{}: texture coordinate set {}, 0 is used (0 and 1 are read)",
-                                    set.path(), uv_set));
+  if (uv_set > 1) set.note_with("texture coordinate set {}, 0 is used (0 and 1 are read)", uv_set);
   out.uv_set = uv_set == 1 ? 1 : 0;
   return out;
 }
@@ -106,8 +104,7 @@ AlphaMode parse_alpha_mode(Field field) {
   const std::string mode = field.text("OPAQUE");
   if (mode == "MASK") return AlphaMode::kMask;
   if (mode == "BLEND") return AlphaMode::kBlend;
-  if (mode != "OPAQUE")
-    field.report().note(fmt::format("{}: \"{}\" is unknown, OPAQUE is used", field.path(), mode));
+  if (mode != "OPAQUE") field.note_with("\"{}\" is unknown, OPAQUE is used", mode);
   return AlphaMode::kOpaque;
 }
 

@@ -99,8 +99,7 @@ void load_targets(Loading& loading, Field targets, Primitive& out) {
     const auto read = [&](const char* name, bool has_base, std::vector<Vec3f>& list) {
       if (!field[name].present()) return;
       if (!has_base) {
-        loading.report.note(
-            fmt::format("{}: ignored, the primitive itself has no {}", field[name].path(), name));
+        field[name].note_with("ignored, the primitive itself has no {}", name);
         return;
       }
       list = loading.resources.vec3s(field[name]);
@@ -153,7 +152,7 @@ bool load_primitive(Loading& loading, Field field, Primitive& out) {
   out.material = field["material"].index(loading.model.materials.size(), "materials");
   const std::uint64_t mode = field["mode"].whole(4, 6);
   if (!attributes["POSITION"].present()) {
-    loading.report.note(field.path() + ": no POSITION, nothing is drawn");
+    field.note_with("no POSITION, nothing is drawn");
     return false;
   }
   out.positions = loading.resources.vec3s(attributes["POSITION"]);
@@ -170,14 +169,13 @@ bool load_primitive(Loading& loading, Field field, Primitive& out) {
   return true;
 }
 
-void load_default_weights(Loading& loading, Field field, Mesh& mesh) {
+void load_default_weights(Field field, Mesh& mesh) {
   const std::size_t n_targets = mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
   const Field weights = field["weights"];
   for (std::size_t i = 0; i < weights.size(); ++i)
     mesh.weights.push_back(weights.at(i).number_f(0.0f));
   if (weights.present() && mesh.weights.size() != n_targets)
-    loading.report.note(fmt::format("{}: {} weights for {} morph targets", weights.path(),
-                                    mesh.weights.size(), n_targets));
+    weights.note_with("{} weights for {} morph targets", mesh.weights.size(), n_targets);
   mesh.weights.resize(n_targets, 0.0f);
 }
 
@@ -201,7 +199,7 @@ void load_meshes(Loading& loading) {
         return;
       }
     }
-    load_default_weights(loading, field, mesh);
+    load_default_weights(field, mesh);
     if (loading.report.failed()) return;
     loading.model.meshes.push_back(std::move(mesh));
   }

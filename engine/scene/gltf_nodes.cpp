@@ -111,26 +111,28 @@ void link_parents(Loading& loading) {
   fields.at(looped).fail("the node is its own ancestor");
 }
 
+// The largest joint that each mesh uses, -1 where it uses none. Once a mesh: many nodes may share
+// it.
+std::vector<int> largest_joints(const Model& model) {
+  std::vector<int> out(model.meshes.size(), -1);
+  for (std::size_t m = 0; m < out.size(); ++m)
+    for (const Primitive& primitive : model.meshes[m].primitives)
+      for (const auto& joints : primitive.joints)
+        for (const std::uint16_t joint : joints) out[m] = std::max<int>(out[m], joint);
+  return out;
+}
+
 // The mesh's joints must be the skin's.
-void check_joints(Loading& loading, std::size_t node_index) {
+void check_joints(Loading& loading, std::size_t node_index, const std::vector<int>& largest) {
   Node& node = loading.model.nodes[node_index];
-  const Skin& skin = loading.model.skins[node.skin];
+  const int n_joints = static_cast<int>(loading.model.skins[node.skin].joints.size());
   const Field field = loading.root["nodes"].at(node_index);
-  bool skinned = false;
-  for (const Primitive& primitive : loading.model.meshes[node.mesh].primitives) {
-    skinned = skinned || !primitive.joints.empty();
-    for (const auto& joints : primitive.joints)
-      for (const std::uint16_t joint : joints) {
-        if (joint < skin.joints.size()) continue;
-        field["skin"].fail_with("the mesh uses joint {}, but skin {} has {}", joint, node.skin,
-                                skin.joints.size());
-        return;
-      }
-  }
-  if (!skinned) {
-    loading.report.note(field.path() + ": a skin on a mesh without joints is ignored");
-    node.skin = -1;
-  }
+  if (largest[node.mesh] >= n_joints)
+    field["skin"].fail_with("the mesh uses joint {}, but skin {} has {}", largest[node.mesh],
+                            node.skin, n_joints);
+  if (largest[node.mesh] >= 0) return;
+  field.note_with("a skin on a mesh without joints is ignored");
+  node.skin = -1;
 }
 
 }  // namespace
@@ -161,8 +163,9 @@ void load_skins(Loading& loading) {
     skin.inverse_bind.resize(skin.joints.size(), Mat4(1.0));
     loading.model.skins.push_back(std::move(skin));
   }
+  const std::vector<int> largest = largest_joints(loading.model);
   for (std::size_t i = 0; i < loading.model.nodes.size() && !loading.report.failed(); ++i)
-    if (loading.model.nodes[i].skin >= 0) check_joints(loading, i);
+    if (loading.model.nodes[i].skin >= 0) check_joints(loading, i, largest);
 }
 
 void load_roots(Loading& loading) {

@@ -88,7 +88,7 @@ struct Sampler {
   bool mag_linear = true, min_linear = true, mip_linear = true, mipmapped = true;
 };
 struct Texture {
-  int image = -1;
+  int image = -1;  // -1: no picture of a supported kind; then no material refers to this texture
   Sampler sampler;
 };
 
@@ -152,11 +152,14 @@ struct Model {
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
   std::vector<Texture> textures;
-  std::vector<ImageU8> images;  // RGBA8, row 0 on top; colour space is the use's, not the image's
+  // RGBA8, row 0 on top; colour space is the use's, not the image's. Pictures that no material uses
+  // or that cannot be read are one white pixel.
+  std::vector<ImageU8> images;
   std::vector<Light> lights;
   std::vector<CameraLens> cameras;
   std::vector<Node> nodes;
-  std::vector<int> roots;  // of the default scene (or all parentless nodes where there is none)
+  // Of the default scene, else of the first; all parentless nodes where the file has no scenes.
+  std::vector<int> roots;
   std::vector<Skin> skins;
   std::vector<Clip> clips;
   std::vector<std::string> notes;  // what was ignored, one line each, said once to the user

@@ -207,6 +207,22 @@ TEST(Animation, MorphWeightsComeFromMeshNodeOrClipAndMoveTheBounds) {
   EXPECT_EQ(model_bounds(model, evaluate_pose(model, -1, 0.0)).max, Vec3(0, 8, 0));
 }
 
+TEST(Animation, BoundsOfTooManyVerticesStayTrue) {
+  Model model = skinned_pair();
+  Primitive& primitive = model.meshes[0].primitives[0];
+  primitive.positions.assign(100000, Vec3f(2, 0, 0));
+  primitive.joints.assign(100000, {0, 1, 0, 0});
+  primitive.weights.assign(100000, Vec4f(0.5f, 0.5f, 0, 0));
+  const Node node = model.nodes[2];
+  for (int i = 0; i < 60; ++i) {  // 6 million vertices in all
+    model.roots.push_back(static_cast<int>(model.nodes.size()));
+    model.nodes.push_back(node);
+  }
+  const Bounds bounds = model_bounds(model, evaluate_pose(model, -1, 0.0));
+  EXPECT_LE(bounds.min.x, 2.0);
+  EXPECT_GE(bounds.max.x, 2.0);
+}
+
 TEST(Animation, BoundsContainEveryInstance) {
   Model model;
   Primitive primitive;

@@ -391,6 +391,40 @@ TEST(GltfLoader, UrisLeadBelowTheModelsFolderOnly) {
   }
 }
 
+TEST(GltfLoader, SamplersKeepFiltersAndWraps) {
+  Builder b;
+  b.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};
+  b.json["samplers"] = {
+      {{"magFilter", 9728}, {"minFilter", 9728}, {"wrapS", 33071}, {"wrapT", 33648}},
+      {{"minFilter", 9985}, {"wrapS", 1}}};
+  b.json["textures"] = {
+      {{"source", 0}, {"sampler", 0}}, {{"source", 0}, {"sampler", 1}}, {{"source", 0}}};
+  const auto model = b.load();
+  ASSERT_LOADS(model);
+  const Sampler& nearest = model->textures[0].sampler;
+  EXPECT_FALSE(nearest.mag_linear || nearest.min_linear || nearest.mipmapped);
+  EXPECT_EQ(nearest.wrap_u, Wrap::kClampToEdge);
+  EXPECT_EQ(nearest.wrap_v, Wrap::kMirroredRepeat);
+  const Sampler& nearest_mip = model->textures[1].sampler;
+  EXPECT_TRUE(nearest_mip.mag_linear && nearest_mip.min_linear && nearest_mip.mipmapped);
+  EXPECT_FALSE(nearest_mip.mip_linear);
+  EXPECT_EQ(nearest_mip.wrap_u, Wrap::kRepeat);
+  const Sampler& standard = model->textures[2].sampler;
+  EXPECT_TRUE(standard.mag_linear && standard.min_linear && standard.mip_linear &&
+              standard.mipmapped);
+}
+
+// A file with many faults or oddities must not take time that grows with their square.
+TEST(GltfLoader, ManyOdditiesAreSummedUpQuickly) {
+  Builder b;
+  for (int i = 0; i < 20000; ++i)
+    b.json["meshes"].push_back({{"primitives", {{{"attributes", Json::object()}}}}});
+  const auto model = b.load();
+  ASSERT_LOADS(model);
+  ASSERT_EQ(model->notes.size(), 32u);
+  EXPECT_EQ(model->notes.back(), "further notes are left out");
+}
+
 TEST(GltfLoader, JsonNestedAThousandDeepIsRefused) {
   for (const std::string open : {"[", "{\"a\":"}) {
     std::string text = "{\"extras\":";

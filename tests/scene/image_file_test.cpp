@@ -105,23 +105,37 @@ TEST(ImageFile, EveryCutOfAPngIsAnErrorOrAPictureOfTheSameSize) {
   }
 }
 
+// CRC-32 of a PNG chunk (PNG specification, annex D), bit by bit.
+std::uint32_t crc32_of(std::span<const std::byte> bytes) {
+  std::uint32_t crc = 0xffffffffu;
+  for (const std::byte b : bytes) {
+    crc ^= std::to_integer<std::uint32_t>(b);
+    for (int i = 0; i < 8; ++i) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0u);
+  }
+  return ~crc;
+}
+
 // A PNG header that claims 30000 x 8000 pixels in 60 bytes must be refused before memory is asked
 // for.
 TEST(ImageFile, ForgedHeadersAreRefused) {
   const test::ScratchFolder folder;
   ASSERT_TRUE(write_png8(folder / "a.png", ImageU8(8, 8, 4)).ok());
   auto bytes = *read_file(folder / "a.png");
+  const auto put = [&](std::size_t at, std::uint32_t value) {
+    for (int i = 0; i < 4; ++i) bytes[at + i] = static_cast<std::byte>(value >> (24 - 8 * i));
+  };
   const auto set_size = [&](std::uint32_t width, std::uint32_t height) {
-    for (int i = 0; i < 4; ++i) {
-      bytes[16 + i] = static_cast<std::byte>(width >> (24 - 8 * i));
-      bytes[20 + i] = static_cast<std::byte>(height >> (24 - 8 * i));
-    }
+    put(16, width);
+    put(20, height);
+    put(29, crc32_of(std::span(bytes).subspan(12, 17)));
   };
   set_size(30000, 8000);
   auto read = decode_image8(bytes, "forged.png");
   ASSERT_FALSE(read.ok());
   EXPECT_NE(read.error().message.find("cannot come from"), std::string::npos)
       << read.error().message;
+  bytes[29] ^= std::byte{1};
+  EXPECT_NE(decode_image8(bytes, "sum.png").error().message.find("CRC"), std::string::npos);
   set_size(40000, 8);
   read = decode_image8(bytes, "wide.png");
   ASSERT_FALSE(read.ok());
@@ -144,6 +158,37 @@ TEST(ImageFile, OtherFilesAreNamedAsNoPicture) {
   EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
   EXPECT_NE(read.error().message.find("notes.txt: no PNG or JPEG"), std::string::npos);
   EXPECT_FALSE(decode_image8({}, "empty").ok());
+}
+
+// A table of 288 codes where 256 is the most: other decoders write past their end here.
+TEST(ImageFile, JpegTablesWithTooManyCodesAreRefused) {
+  std::vector<unsigned char> jpeg = {0xff, 0xd8, 0xff, 0xc4, 0x01, 0x33, 0x00};
+  jpeg.insert(jpeg.end(), 2, 0x90);  // 144 codes of 1 bit, 144 of 2
+  jpeg.insert(jpeg.end(), 14 + 288, 0x00);
+  const auto read = decode_image8(bytes_of(jpeg), "a.jpg");
+  ASSERT_FALSE(read.ok());
+  EXPECT_NE(read.error().message.find("Huffman"), std::string::npos) << read.error().message;
+}
+
+TEST(ImageFile, JpegsReadInEveryLayoutAndCutOnesAreErrors) {
+  const auto folder = test::source_dir() / "tests/fuzz/corpus/images";
+  const auto color = read_image8(folder / "rgb.jpg");
+  ASSERT_TRUE(color.ok()) << color.error().message;
+  EXPECT_EQ(color->channels, 3u);
+  EXPECT_EQ(color->width, 16u);
+  const auto rgba = read_image8(folder / "rgb.jpg", 4);
+  ASSERT_TRUE(rgba.ok());
+  for (std::size_t i = 0; i < 256; ++i) {
+    EXPECT_EQ(rgba->data[4 * i + 1], color->data[3 * i + 1]);
+    EXPECT_EQ(rgba->data[4 * i + 3], 255);
+  }
+  const auto gray = read_image8(folder / "gray.jpg");
+  ASSERT_TRUE(gray.ok()) << gray.error().message;
+  EXPECT_EQ(gray->channels, 1u);
+  EXPECT_EQ(read_image8(folder / "gray.jpg", 4)->at(3, 3, 2), gray->at(3, 3));
+  const auto bytes = *read_file(folder / "rgb.jpg");
+  for (std::size_t length = 2; length + 8 < bytes.size(); length += 7)
+    EXPECT_FALSE(decode_image8(std::span(bytes).first(length), "cut.jpg").ok()) << length;
 }
 
 // Channels of every type, a data window that starts elsewhere, names in need of order.

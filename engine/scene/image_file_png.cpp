@@ -1,0 +1,163 @@
+// See image_file_png.hpp.
+#include "engine/scene/image_file_png.hpp"
+
+#include <png.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstring>
+
+namespace neritic::scene {
+namespace {
+
+constexpr std::uint64_t kMaxSide = 32768, kMaxPixels = std::uint64_t{1} << 28;
+// Largest ratio that deflate reaches (zlib technical details, J. Gailly, M. Adler: 1032:1).
+constexpr std::uint64_t kMaxDeflateRatio = 1032;
+// Text and profiles that nobody here reads need not be larger.
+constexpr png_alloc_size_t kMaxChunkBytes = 8 << 20;
+constexpr png_uint_32 kMaxKeptChunks = 1000;
+
+struct Source {
+  std::span<const std::byte> bytes;
+  char reason[128] = "";
+};
+
+void pull(png_structp png, png_bytep out, png_size_t size) {
+  auto& source = *static_cast<Source*>(png_get_io_ptr(png));
+  if (size > source.bytes.size()) png_error(png, "the file ends too early");
+  std::memcpy(out, source.bytes.data(), size);
+  source.bytes = source.bytes.subspan(size);
+}
+void on_error(png_structp png, png_const_charp reason) {
+  auto& source = *static_cast<Source*>(png_get_error_ptr(png));
+  std::strncpy(source.reason, reason, sizeof source.reason - 1);
+  png_longjmp(png, 1);
+}
+void stay_silent(png_structp, png_const_charp) {}
+
+// Owns libpng's two structures. Methods return false after a failure, whose reason is in the
+// source; they hold plain values only, since libpng reports errors by longjmp.
+class Reader {
+ public:
+  explicit Reader(Source* source) : source_(source) {
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, source, on_error, stay_silent);
+    info_ = png_ ? png_create_info_struct(png_) : nullptr;
+  }
+  ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  // Everything before the pixels.
+  bool read_header() {
+    if (!info_ || setjmp(png_jmpbuf(png_))) return false;
+    png_set_read_fn(png_, source_, pull);
+    png_set_user_limits(png_, kMaxSide, kMaxSide);
+    png_set_chunk_malloc_max(png_, kMaxChunkBytes);
+    png_set_chunk_cache_max(png_, kMaxKeptChunks);
+    png_read_info(png_, info_);
+    return true;
+  }
+  // Arranges that rows come out with so many channels (0: as stored) of 8 or 16 bits.
+  bool set_layout(std::uint32_t channels, int bits) {
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_set_expand(png_);  // palettes, fewer than 8 bits, colours that mean transparent
+    if (bits == 8) png_set_scale_16(png_);
+    if (bits == 16) png_set_swap(png_);  // PNG is big-endian
+    const bool gray = (png_get_color_type(png_, info_) & PNG_COLOR_MASK_COLOR) == 0;
+    if (channels >= 3 && gray) png_set_gray_to_rgb(png_);
+    if (channels == 1 && !gray) png_set_rgb_to_gray(png_, PNG_ERROR_ACTION_NONE, -1, -1);
+    if (channels == 1 || channels == 3) png_set_strip_alpha(png_);
+    if (channels == 4) png_set_add_alpha(png_, bits == 8 ? 0xff : 0xffff, PNG_FILLER_AFTER);
+    n_passes_ = png_set_interlace_handling(png_);
+    png_read_update_info(png_, info_);
+    return true;
+  }
+  // out: rows of row_bytes().
+  bool read_rows(png_bytep out) {
+    if (setjmp(png_jmpbuf(png_))) return false;
+    for (int pass = 0; pass < n_passes_; ++pass)
+      for (std::uint32_t y = 0; y < height(); ++y)
+        png_read_row(png_, out + std::size_t{y} * row_bytes(), nullptr);
+    return true;  // what follows the pixels is of no use here
+  }
+  std::uint32_t width() const { return png_get_image_width(png_, info_); }
+  std::uint32_t height() const { return png_get_image_height(png_, info_); }
+  std::uint32_t channels() const { return png_get_channels(png_, info_); }
+  std::size_t row_bytes() const { return png_get_rowbytes(png_, info_); }
+
+ private:
+  Source* source_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+  int n_passes_ = 1;
+};
+
+template <class T>
+Result<Raster<T>> decode_png(std::span<const std::byte> bytes, const std::string& name,
+                             std::uint32_t channels) {
+  const auto broken = [&](const Source& source) {
+    return bad_input("{}: a broken PNG ({})", name, source.reason);
+  };
+  Source source{bytes};
+  Reader reader(&source);
+  if (!reader.read_header()) return broken(source);
+  const std::uint64_t pixels = std::uint64_t{reader.width()} * reader.height();
+  if (pixels > kMaxPixels)
+    return bad_input("{}: {} x {} pixels, at most 2^28 in all are accepted", name, reader.width(),
+                     reader.height());
+  // row_bytes: still as stored.
+  if (std::uint64_t{reader.row_bytes()} * reader.height() > bytes.size() * kMaxDeflateRatio)
+    return bad_input("{}: {} x {} pixels cannot come from {} bytes", name, reader.width(),
+                     reader.height(), bytes.size());
+  if (!reader.set_layout(channels, 8 * sizeof(T))) return broken(source);
+  Raster<T> image(reader.width(), reader.height(), reader.channels());
+  if (reader.row_bytes() * reader.height() != image.data.size() * sizeof(T))
+    return bad_input("{}: a PNG of an unknown layout", name);
+  if (!reader.read_rows(reinterpret_cast<png_bytep>(image.data.data()))) return broken(source);
+  return image;
+}
+
+std::uint32_t big_endian(std::span<const std::byte> bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+  return value;
+}
+
+// Said here in full: libpng only says "invalid IHDR data".
+Status check_size(std::span<const std::byte> bytes, const std::string& name) {
+  if (!is_png(bytes)) return bad_input("{}: no PNG picture ({} bytes)", name, bytes.size());
+  const std::uint32_t width = big_endian(bytes, 16), height = big_endian(bytes, 20);
+  if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide)
+    return bad_input("{}: {} x {} pixels, 1 x 1 to {} x {} are accepted", name, width, height,
+                     kMaxSide, kMaxSide);
+  return {};
+}
+
+}  // namespace
+
+bool is_png(std::span<const std::byte> bytes) {
+  static constexpr unsigned char kSignature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  constexpr std::size_t kShortest = 33;  // the signature and the IHDR chunk
+  return bytes.size() >= kShortest && std::memcmp(bytes.data(), kSignature, sizeof kSignature) == 0;
+}
+
+int png_bits(std::span<const std::byte> bytes) {
+  return std::to_integer<int>(bytes[24]);
+}
+
+Result<ImageU8> decode_png8(std::span<const std::byte> bytes, const std::string& name,
+                            std::uint32_t channels) {
+  NERITIC_TRY_STATUS(check_size(bytes, name));
+  return decode_png<std::uint8_t>(bytes, name, channels);
+}
+
+Result<ImageU16> decode_png16(std::span<const std::byte> bytes, const std::string& name) {
+  NERITIC_TRY_STATUS(check_size(bytes, name));
+  if (png_bits(bytes) != 16)
+    return bad_input("{}: {} bits a channel found, a 16-bit PNG is accepted", name,
+                     png_bits(bytes));
+  return decode_png<std::uint16_t>(bytes, name, 0);
+}
+
+}  // namespace neritic::scene
