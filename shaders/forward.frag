@@ -21,6 +21,7 @@ layout(set = 0, binding = kRasterViews, scalar) uniform Views { View views[kMaxV
 layout(set = 0, binding = kRasterLighting, scalar) uniform Light { Lighting light; };
 
 bool light_has(uint term) { return (light.terms & term) != 0u; }
+uint lamp_count() { return light.lamp_count; }
 
 #include "shared/surface.glsl"
 

@@ -19,7 +19,9 @@ layout(set = 0, binding = kShadeEmissive) uniform texture2DArray emissive_image;
 layout(set = 0, binding = kShadeHdr, rgba16f) writeonly uniform image2DArray hdr_image;
 
 layout(constant_id = kSpecTerms) const uint kTerms = ~0u;
+layout(constant_id = kSpecLamps) const uint kLamps = kMaxLamps;
 bool light_has(uint term) { return (kTerms & term) != 0u; }
+uint lamp_count() { return kLamps; }
 
 #include "shared/surface.glsl"
 

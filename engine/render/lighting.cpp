@@ -76,7 +76,6 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& or
     return bad_input("{}: {} lamps, at most {} are accepted", scene.path, scene.lamps.size(), shared::kMaxLamps);
   for (const scene::Lamp& lamp : scene.lamps) {
     const Pose pose = scene.world_from(lamp.mount);
-    light.terms |= shared::kLightLamps;
     shared::SpotLight& spot = light.lamps[light.lamp_count++];
     spot.position = Vec3f(pose.position_m - origin_m);
     spot.direction = Vec3f(pose.rotation * Vec3(0, 0, -1));

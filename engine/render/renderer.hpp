@@ -103,7 +103,7 @@ class Renderer {
   gpu::Device& device_;
   gpu::SetLayout material_layout_;
   std::map<RasterKey, gpu::Pipeline> raster_;
-  std::map<std::uint32_t, gpu::Pipeline> shade_;  // by the lighting's terms
+  std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline> shade_;  // by terms, number of lamps
   gpu::Pipeline deform_, tonemap_, antialias_;
   gpu::Buffer nothing_;  // bound where a shader declares a buffer that this frame does not use
 };

@@ -18,7 +18,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device) {
 
 Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, const std::string& prefix, const GBuffer& gbuffer,
                                                    const ViewSet& views, const shared::Lighting& lighting) {
-  gpu::Pipeline& pipeline = shade_[lighting.terms];
+  gpu::Pipeline& pipeline = shade_[{lighting.terms, lighting.lamp_count}];
   if (!pipeline) {
     gpu::ComputePipelineDesc desc;
     desc.name = "shade";
@@ -31,7 +31,7 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, con
                             {shared::kShadeMaterial, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeEmissive, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeHdr, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    desc.constants = {{shared::kSpecTerms, lighting.terms}};
+    desc.constants = {{shared::kSpecTerms, lighting.terms}, {shared::kSpecLamps, lighting.lamp_count}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
   struct Data {

@@ -11,7 +11,6 @@ NERITIC_CONST uint kLightWater = 2;
 NERITIC_CONST uint kLightScattering = 4;
 NERITIC_CONST uint kLightSurface = 8;
 NERITIC_CONST uint kLightEmissive = 16;  // the G-buffer has an emissive image
-NERITIC_CONST uint kLightLamps = 32;
 
 struct SpotLight {
   vec3 position;  // relative to the origin
@@ -50,9 +49,11 @@ NERITIC_CONST uint kShadeMaterial = 5;
 NERITIC_CONST uint kShadeEmissive = 6;
 NERITIC_CONST uint kShadeHdr = 7;
 NERITIC_CONST uint kShadeGroup = 8;
-// Specialisation constant of the shade pass: the terms. What a scene does not name is not even compiled,
-// and a processor's driver computes both sides of a branch.
+// Specialisation constants of the shade pass: the terms and the number of lamps. What a scene does not
+// name is not even compiled: a processor's driver computes both sides of a branch, and runs the body of
+// a loop once at least.
 NERITIC_CONST uint kSpecTerms = 0;
+NERITIC_CONST uint kSpecLamps = 1;
 
 // Bindings of the tonemap pass.
 NERITIC_CONST uint kTonemapHdr = 0;

@@ -57,8 +57,7 @@ vec3 shade_surface(Surface s, vec3 to_eye) {
     vec3 diffuse_color = s.albedo * (1.0 - s.metallic) + mix(vec3(dielectric_f0()), s.albedo, s.metallic) * 0.6;
     radiance += irradiance * (1.0 - direct) * share * s.occlusion * diffuse_color / kPi;
   }
-  if (!light_has(kLightLamps)) return radiance;
-  for (uint i = 0u; i < light.lamp_count; ++i) {
+  for (uint i = 0u; i < lamp_count(); ++i) {
     vec3 to_lamp = light.lamps[i].position - s.position;
     float distance_m = max(length(to_lamp), 1e-3);
     to_lamp /= distance_m;

@@ -2,7 +2,7 @@
 // Greenstein (1941), Morel (1974) for the phase function of pure sea water. GLSL only.
 // Who includes this has declared `light`, a uniform block of type Lighting (no parameter: the copy of a
 // struct with all its lamps is paid for by every pixel on drivers that do not see through it), and
-// light_has(term), from a constant where the pipeline knows the terms.
+// light_has(term) and lamp_count(), from constants where the pipeline knows them.
 #ifndef NERITIC_WATER_GLSL
 #define NERITIC_WATER_GLSL
 
