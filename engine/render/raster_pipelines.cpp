@@ -46,7 +46,7 @@ gpu::VertexStream instance_stream() {
 // Bound in every pipeline of the full vertex stage, since it declares the inputs; what feeds it without
 // motion is the instance stream again, unread.
 gpu::VertexStream next_instance_stream(bool motion) {
-  return {motion ? sizeof(shared::NextInstance) : sizeof(shared::Instance),
+  return {static_cast<std::uint32_t>(motion ? sizeof(shared::NextInstance) : sizeof(shared::Instance)),
           {{shared::kNextInstanceRow0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::NextInstance, row0)},
            {shared::kNextInstanceRow1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::NextInstance, row1)},
            {shared::kNextInstanceRow2, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::NextInstance, row2)}},
