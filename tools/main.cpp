@@ -1,43 +1,28 @@
 // The program `neritic`: reads the command line, runs one subcommand, returns its exit status.
-#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <new>
-#include <string>
 
 #include "engine/core/log.hpp"
 #include "tools/neritic/commands.hpp"
 
 namespace {
 
+int failed(const neritic::Error& error) {
+  std::fprintf(stderr, "neritic: %s\n", error.message.c_str());
+  return neritic::exit_status(error.code);
+}
+
 int run(int argc, char** argv) {
-  CLI::App app{"Neritic: divers and underwater robots together in one simulated sea", "neritic"};
-  app.require_subcommand(1);
-  app.fallthrough();
-  bool verbose = false, quiet = false;
-  app.add_flag("-v,--verbose", verbose, "say more on stderr");
-  app.add_flag("-q,--quiet", quiet, "say only what failed");
-  neritic::tools::Run chosen;
-  neritic::tools::add_commands(app, chosen);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
-      std::string names;
-      for (const CLI::App* command : app.get_subcommands(nullptr)) names += (names.empty() ? "" : ", ") + command->get_name();
-      std::fprintf(stderr, "neritic: '%s' is no command; %s are\n", argv[1], names.c_str());
-      return 2;
-    }
-    std::fprintf(stderr, "neritic: %s (see neritic --help)\n", error.what());
-    return 2;
+  const auto line = neritic::tools::parse_command_line(std::vector<std::string>(argv + 1, argv + argc));
+  if (!line.ok()) return failed(line.error());
+  if (!line->help.empty()) {
+    std::fputs(line->help.c_str(), stdout);
+    return 0;
   }
-  if (verbose) neritic::set_log_level(neritic::LogLevel::kInfo);
-  if (quiet) neritic::set_log_level(neritic::LogLevel::kQuiet);
-  const neritic::Status status = chosen();
-  if (status.ok()) return 0;
-  std::fprintf(stderr, "neritic: %s\n", status.error().message.c_str());
-  return neritic::exit_status(status.error().code);
+  if (line->verbose) neritic::set_log_level(neritic::LogLevel::kInfo);
+  if (line->quiet) neritic::set_log_level(neritic::LogLevel::kQuiet);
+  const neritic::Status status = line->run();
+  return status.ok() ? 0 : failed(status.error());
 }
 
 }  // namespace

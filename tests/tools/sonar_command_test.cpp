@@ -2,7 +2,6 @@
 // input.
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
@@ -20,17 +19,9 @@ namespace fs = std::filesystem;
 
 // The command as a user types it after `neritic sonar imaging`.
 Status sonar(std::vector<std::string> words) {
-  CLI::App app;
-  tools::Run run;
-  tools::add_sonar_command(app, run);
   words.insert(words.begin(), {"sonar", "imaging"});
-  std::reverse(words.begin(), words.end());  // CLI11 takes a vector back to front
-  try {
-    app.parse(words);
-  } catch (const CLI::ParseError& error) {
-    return bad_input("{}", error.what());
-  }
-  return run();
+  NERITIC_TRY(const tools::CommandLine line, tools::parse_command_line(words));
+  return line.run();
 }
 
 bool have_device() {

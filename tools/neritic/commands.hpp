@@ -1,25 +1,67 @@
-// The subcommands of `neritic`, one file each. Each adds its flags to the parser and, when chosen,
-// leaves what to do in run.
+// The subcommands of `neritic`: what each is asked (its flags, as typed) and what does it, one source file
+// each. command_line.cpp reads the flags; it alone knows the parser.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "engine/core/result.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace neritic::tools {
 
-using Run = std::function<Status()>;
+struct RenderFlags {
+  std::string scene, out, size, device, dump_graph, water;
+  std::vector<std::string> sensors;
+  std::vector<double> offset_m;
+  std::uint32_t frames = 1;
+  double time_s = 0.0;
+  bool sheet = false, validation = false;
+};
+Status run_render(const RenderFlags& flags);
 
-void add_commands(CLI::App& app, Run& run);
+struct SonarFlags {
+  std::string kind = "imaging";
+  std::filesystem::path depth, normals, labels, out;
+  std::string intrinsics;
+  std::string range = "1,5", azimuth = "90", elevation = "28", bins = "500,500,500";
+  std::string method = "gpu", gather = "published", depth_kind = "planar", axes = "opengl";
+  std::string normals_sign = "facing", pixel_centers = "half", device;
+  std::string depth_scale = "1", gamma = "1";
+};
+Status run_sonar(const SonarFlags& flags);
 
-void add_render_command(CLI::App& app, Run& run);
-void add_sonar_command(CLI::App& app, Run& run);
-void add_tradeoff_command(CLI::App& app, Run& run);
-void add_dive_command(CLI::App& app, Run& run);
-void add_doctor_command(CLI::App& app, Run& run);
+struct DiveFlags {
+  std::string scene, size, device, screenshot;
+  std::vector<std::string> sensors;
+  std::uint64_t frames = 0;
+  double seconds = 0.0;
+  bool headless = false, fast = false, panels = false, validation = false;
+};
+Status run_dive(const DiveFlags& flags);
+
+struct TradeoffFlags {
+  std::string what, device, scene = "assets/scenes/wreck.toml";
+  std::filesystem::path out;
+  bool quick = false;
+};
+Status run_tradeoff(const TradeoffFlags& flags);
+
+struct DoctorFlags {
+  std::string device;
+  bool json = false;
+};
+Status run_doctor(const DoctorFlags& flags);
+
+// What a command line asks for: something to run, or help to print.
+struct CommandLine {
+  std::function<Status()> run;
+  std::string help;  // not empty: print this instead
+  bool verbose = false, quiet = false;
+};
+// arguments without the program's name. kBadInput names the argument.
+Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace neritic::tools

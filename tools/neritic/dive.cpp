@@ -1,16 +1,15 @@
 // `neritic dive SCENE`: the live program. A desktop window with a free camera, the scene's sonars
 // and timings; or, with --headless, the same frames without a window and a summary of their times.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
 #include "engine/core/log.hpp"
-#include "engine/scene/gltf_loader.hpp"
 #include "engine/xr/desktop.hpp"
 #include "engine/xr/offscreen.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/dive_loop.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/neritic/load_scene.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -20,32 +19,16 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kFramesInFlight = 2;  // as Session's
 constexpr double kHeadlessSeconds = 5.0;      // where neither --frames nor --seconds is given
 
-struct DiveFlags {
-  std::string scene, size, device, screenshot;
-  std::vector<std::string> sensors;
-  std::uint64_t frames = 0;
-  double seconds = 0.0;
-  bool headless = false, fast = false, panels = false, validation = false;
-};
-
 Result<scene::Scene> load(const DiveFlags& flags) {
-  const fs::path path = flags.scene;
-  scene::Scene scene;
-  if (path.extension() == ".gltf" || path.extension() == ".glb") {
-    NERITIC_TRY(scene::Model model, scene::load_gltf(path));
-    scene = scene::scene_of_model(std::move(model), 1280, 720);
-    scene.title = path.filename().string();
-  } else {
-    NERITIC_TRY(scene, scene::load_scene(path));
+  NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size));
+  if (scene.cameras.empty()) {
+    scene.cameras.push_back(camera_for(scene));
+    if (!flags.size.empty()) {
+      NERITIC_TRY(const auto size, parse_size("--size", flags.size));
+      scene.cameras[0].width = size.first, scene.cameras[0].height = size.second;
+    }
   }
-  if (scene.cameras.empty()) scene.cameras.push_back(camera_for(scene));
-  if (!flags.size.empty()) {
-    NERITIC_TRY(const auto size, parse_size("--size", flags.size));
-    for (scene::Camera& camera : scene.cameras)
-      camera.width = size.first, camera.height = size.second;
-  }
-  for (scene::Camera& camera : scene.cameras)
-    camera.stereo_baseline_m = 0.0;  // one window, one eye
+  for (scene::Camera& camera : scene.cameras) camera.stereo_baseline_m = 0.0;  // one window, one eye
   return scene;
 }
 
@@ -116,7 +99,9 @@ Status dive_window(xr::Window& window, gpu::Device& device, Session& session,
   return dive.run();
 }
 
-Status dive(const DiveFlags& flags) {
+}  // namespace
+
+Status run_dive(const DiveFlags& flags) {
   if (!std::isfinite(flags.seconds) || flags.seconds < 0.0)
     return bad_input("--seconds: {}; a number from 0 is accepted", flags.seconds);
   if (flags.fast && !flags.headless)
@@ -143,30 +128,6 @@ Status dive(const DiveFlags& flags) {
                                : dive_offscreen(flags, *device, *session, options);
   if (!status.ok()) return status;
   return check_validation(*device);
-}
-
-}  // namespace
-
-void add_dive_command(CLI::App& app, Run& run) {
-  auto flags = std::make_shared<DiveFlags>();
-  CLI::App* command = app.add_subcommand(
-      "dive",
-      "the live program: a scene (.toml) or a model (.gltf, .glb) in a window; F1 lists keys");
-  command->add_option("scene", flags->scene, "scene or model file")->required();
-  command->add_flag("--headless", flags->headless,
-                    "no window: frames at the camera's rate, then a summary of their times");
-  command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
-  command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
-  command->add_option("--seconds", flags->seconds, "stop after so many seconds");
-  command->add_option("--frames", flags->frames, "stop after so many frames");
-  command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png");
-  command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
-  command->add_option("--sensor", flags->sensors,
-                      "fly this camera, show only these sonars, by name");
-  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
-  command->add_flag("--validate", flags->validation,
-                    "run with Vulkan validation; any message is a failure");
-  command->callback([flags, &run] { run = [flags] { return dive(*flags); }; });
 }
 
 }  // namespace neritic::tools

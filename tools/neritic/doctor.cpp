@@ -1,7 +1,6 @@
 // `neritic doctor`: what this machine has, and what will work on it.
 #include "tools/neritic/doctor.hpp"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -83,17 +82,6 @@ nlohmann::ordered_json device_json(const gpu::DeviceInfo& device) {
           {"memory_bytes", device.memory_bytes}};
 }
 
-Status doctor(const std::string& device, bool json) {
-  const Machine machine = examine_machine(device);
-  fmt::print("{}", json ? doctor_json(machine) : doctor_text(machine));
-  std::fflush(stdout);
-  if (!machine.trouble) return {};
-  // A device that is not there is this command's finding (status 1), not a usage error.
-  Error error = *machine.trouble;
-  if (error.code == ErrorCode::kBadInput) error.code = ErrorCode::kNoDevice;
-  return error;
-}
-
 }  // namespace
 
 std::vector<Verdict> verdicts(const Machine& machine) {
@@ -170,18 +158,15 @@ std::string doctor_json(const Machine& machine) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-void add_doctor_command(CLI::App& app, Run& run) {
-  struct Flags {
-    std::string device;
-    bool json = false;
-  };
-  auto flags = std::make_shared<Flags>();
-  CLI::App* command =
-      app.add_subcommand("doctor", "says what this machine has and what will work on it");
-  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
-  command->add_flag("--json", flags->json, "for programs: JSON on standard output");
-  command->callback(
-      [flags, &run] { run = [flags] { return doctor(flags->device, flags->json); }; });
+Status run_doctor(const DoctorFlags& flags) {
+  const Machine machine = examine_machine(flags.device);
+  fmt::print("{}", flags.json ? doctor_json(machine) : doctor_text(machine));
+  std::fflush(stdout);
+  if (!machine.trouble) return {};
+  // A device that is not there is this command's finding (status 1), not a usage error.
+  Error error = *machine.trouble;
+  if (error.code == ErrorCode::kBadInput) error.code = ErrorCode::kNoDevice;
+  return error;
 }
 
 }  // namespace neritic::tools

@@ -1,14 +1,13 @@
 // `neritic render SCENE --out DIR`: offscreen pictures and sensor data of a scene or a model.
-#include <CLI/CLI.hpp>
 #include <cmath>
 
 #include "engine/core/files.hpp"
 #include "engine/core/log.hpp"
-#include "engine/scene/gltf_loader.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/panel.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/neritic/load_scene.hpp"
 #include "tools/session/output.hpp"
 #include "tools/session/pictures.hpp"
 #include "tools/session/session.hpp"
@@ -18,39 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct RenderFlags {
-  std::string scene, out, size, device, dump_graph, water;
-  std::vector<std::string> sensors;
-  std::vector<double> offset_m;
-  std::uint32_t frames = 1;
-  double time_s = 0.0;
-  bool sheet = false, validation = false;
-};
-
-bool is_model(const fs::path& path) { return path.extension() == ".gltf" || path.extension() == ".glb"; }
-
 Result<scene::Scene> load(const RenderFlags& flags) {
   scene::SceneOptions options;
   if (!flags.offset_m.empty()) {
     options.offset_m = {flags.offset_m[0], flags.offset_m[1], flags.offset_m[2]};
     if (!is_finite(options.offset_m)) return bad_input("--offset: three finite numbers (metres) are accepted");
   }
-  scene::Scene scene;
-  if (is_model(flags.scene)) {
-    NERITIC_TRY(scene::Model model, scene::load_gltf(flags.scene));
-    scene = scene::scene_of_model(std::move(model), 1280, 720);
-    scene.path = flags.scene;
-  } else {
-    NERITIC_TRY(scene, scene::load_scene(flags.scene, options));
-  }
-  if (!flags.size.empty()) {
-    NERITIC_TRY(const auto size, parse_size("--size", flags.size));
-    for (scene::Camera& camera : scene.cameras) camera.width = size.first, camera.height = size.second;
-  }
-  if (!flags.water.empty()) {
-    if (!scene.water) return bad_input("--water {}: {} names no water", flags.water, flags.scene);
-    scene.water->type = flags.water;
-  }
+  NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size, options));
+  if (flags.water.empty()) return scene;
+  if (!scene.water) return bad_input("--water {}: {} names no water", flags.water, flags.scene);
+  scene.water->type = flags.water;
   return scene;
 }
 
@@ -126,7 +102,9 @@ Status dump_graph(const RenderFlags& flags, const Session& session) {
   return write_text(flags.dump_graph, dot ? session.plan_graphviz() : session.plan_text());
 }
 
-Status render(const RenderFlags& flags) {
+}  // namespace
+
+Status run_render(const RenderFlags& flags) {
   if (!std::isfinite(flags.time_s)) return bad_input("--time: {} s; a finite number is accepted", flags.time_s);
   NERITIC_TRY(scene::Scene scene, load(flags));
   for (const std::string& note : scene.notes) log_warn("{}", note);
@@ -157,26 +135,6 @@ Status render(const RenderFlags& flags) {
   if (!device->validation_log().messages.empty())
     return failure(ErrorCode::kUnsupported, "validation reported {} messages", device->validation_log().messages.size());
   return {};
-}
-
-}  // namespace
-
-void add_render_command(CLI::App& app, Run& run) {
-  auto flags = std::make_shared<RenderFlags>();
-  CLI::App* command = app.add_subcommand("render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
-  command->add_option("scene", flags->scene, "scene or model file")->required();
-  command->add_option("--out", flags->out, "folder for the results")->required();
-  command->add_option("--frames", flags->frames, "number of frames")->check(CLI::Range(1, 1000000));
-  command->add_option("--size", flags->size, "WxH of every camera, pixels");
-  command->add_option("--time", flags->time_s, "scene time of the first frame, seconds");
-  command->add_option("--sensor", flags->sensors, "only these sensors, by name");
-  command->add_option("--water", flags->water, "another Jerlov type than the scene's");
-  command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")->expected(3);
-  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
-  command->add_option("--dump-graph", flags->dump_graph, "the frame graph's plan: to a file (.dot: Graphviz), or - for standard output");
-  command->add_flag("--sheet", flags->sheet, "also pictures of every image, and one contact sheet");
-  command->add_flag("--validate", flags->validation, "run with Vulkan validation; any message is a failure");
-  command->callback([flags, &run] { run = [flags] { return render(*flags); }; });
 }
 
 }  // namespace neritic::tools

@@ -1,5 +1,4 @@
 // `neritic sonar imaging`: a sonar image from depth and normal images of anyone's making, no scene.
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,16 +14,6 @@ namespace neritic::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct SonarFlags {
-  std::string kind = "imaging";
-  fs::path depth, normals, labels, out;
-  std::string intrinsics;
-  std::string range = "1,5", azimuth = "90", elevation = "28", bins = "500,500,500";
-  std::string method = "gpu", gather = "published", depth_kind = "planar", axes = "opengl";
-  std::string normals_sign = "facing", pixel_centers = "half", device;
-  std::string depth_scale = "1", gamma = "1";
-};
 
 // Numbers separated by commas; counts that are accepted in words for the message.
 Result<std::vector<double>> numbers(const char* flag, const std::string& text, std::size_t fewest,
@@ -166,6 +155,8 @@ Result<sonar::SonarImage> on_gpu(const SonarFlags& flags, const sonar::BeamGrid&
   return image;
 }
 
+}  // namespace
+
 Status run_sonar(const SonarFlags& flags) {
   if (flags.kind != "imaging")
     return bad_input("sonar kind: '{}' found, imaging is accepted", flags.kind);
@@ -184,53 +175,6 @@ Status run_sonar(const SonarFlags& flags) {
     NERITIC_TRY(image, on_gpu(flags, grid, in, facts));
   }
   return sonar::write_sonar(flags.out, grid, image, facts);
-}
-
-}  // namespace
-
-void add_sonar_command(CLI::App& app, Run& run) {
-  auto flags = std::make_shared<SonarFlags>();
-  CLI::App* command = app.add_subcommand("sonar", "a sonar image from any depth and normal images");
-  command->add_option("kind", flags->kind, "imaging")->required();
-  command->add_option("--depth", flags->depth, "depth image: .npy, .png (8, 16 bit), .exr")
-      ->required();
-  command->add_option("--normals", flags->normals,
-                      "normal image; without it, estimated from depth");
-  command->add_option("--labels", flags->labels, "class image, 0 to 65535");
-  command->add_option("--intrinsics", flags->intrinsics, "fx,fy,cx,cy in pixels, or a .json file")
-      ->required();
-  command->add_option("--pixel-centers", flags->pixel_centers, "where cx, cy count pixel centres")
-      ->check(CLI::IsMember({"half", "integer"}))
-      ->capture_default_str();
-  command->add_option("--range", flags->range, "nearest,farthest in metres")->capture_default_str();
-  command->add_option("--azimuth", flags->azimuth, "full aperture in degrees, or from,to")
-      ->capture_default_str();
-  command->add_option("--elevation", flags->elevation, "full aperture in degrees, or from,to")
-      ->capture_default_str();
-  command->add_option("--bins", flags->bins, "range,azimuth,elevation")->capture_default_str();
-  command->add_option("--method", flags->method, "reference: the published loop in double, no GPU")
-      ->check(CLI::IsMember({"gpu", "reference"}))
-      ->capture_default_str();
-  command->add_option("--gather", flags->gather, "how the GPU samples (with --method gpu)")
-      ->check(CLI::IsMember({"published", "nearest", "plane"}))
-      ->capture_default_str();
-  command->add_option("--depth-kind", flags->depth_kind, "along the view axis, or along each ray")
-      ->check(CLI::IsMember({"planar", "range"}))
-      ->capture_default_str();
-  command->add_option("--depth-scale", flags->depth_scale, "metres a unit of the depth image")
-      ->capture_default_str();
-  command->add_option("--axes", flags->axes, "of the normals")
-      ->check(CLI::IsMember({"opengl", "opencv", "ros"}))
-      ->capture_default_str();
-  command
-      ->add_option("--normals-sign", flags->normals_sign, "unknown: the absolute incidence counts")
-      ->check(CLI::IsMember({"facing", "unknown"}))
-      ->capture_default_str();
-  command->add_option("--gamma", flags->gamma, "of normals coded in 8 or 16 bit: n = 2 v^gamma - 1")
-      ->capture_default_str();
-  command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
-  command->add_option("--out", flags->out, "folder for sonar.npy, .png, .json")->required();
-  command->callback([flags, &run] { run = [flags] { return run_sonar(*flags); }; });
 }
 
 }  // namespace neritic::tools

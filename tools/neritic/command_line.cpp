@@ -1,0 +1,153 @@
+// The command line of `neritic`: every flag of every subcommand. The one file that includes the parser,
+// since it takes long to compile.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "tools/neritic/commands.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using Run = std::function<Status()>;
+
+void add_render(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<RenderFlags>();
+  CLI::App* command = app.add_subcommand("render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
+  command->add_option("scene", flags->scene, "scene or model file")->required();
+  command->add_option("--out", flags->out, "folder for the results")->required();
+  command->add_option("--frames", flags->frames, "number of frames")->check(CLI::Range(1, 1000000));
+  command->add_option("--size", flags->size, "WxH of every camera, pixels");
+  command->add_option("--time", flags->time_s, "scene time of the first frame, seconds");
+  command->add_option("--sensor", flags->sensors, "only these sensors, by name");
+  command->add_option("--water", flags->water, "another Jerlov type than the scene's");
+  command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")->expected(3);
+  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
+  command->add_option("--dump-graph", flags->dump_graph, "the frame graph's plan: to a file (.dot: Graphviz), or - for standard output");
+  command->add_flag("--sheet", flags->sheet, "also pictures of every image, and one contact sheet");
+  command->add_flag("--validate", flags->validation, "run with Vulkan validation; any message is a failure");
+  command->callback([flags, &run] { run = [flags] { return run_render(*flags); }; });
+}
+
+void add_sonar(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<SonarFlags>();
+  CLI::App* command = app.add_subcommand("sonar", "a sonar image from any depth and normal images");
+  command->add_option("kind", flags->kind, "imaging")->required();
+  command->add_option("--depth", flags->depth, "depth image: .npy, .png (8, 16 bit), .exr")
+      ->required();
+  command->add_option("--normals", flags->normals,
+                      "normal image; without it, estimated from depth");
+  command->add_option("--labels", flags->labels, "class image, 0 to 65535");
+  command->add_option("--intrinsics", flags->intrinsics, "fx,fy,cx,cy in pixels, or a .json file")
+      ->required();
+  command->add_option("--pixel-centers", flags->pixel_centers, "where cx, cy count pixel centres")
+      ->check(CLI::IsMember({"half", "integer"}))
+      ->capture_default_str();
+  command->add_option("--range", flags->range, "nearest,farthest in metres")->capture_default_str();
+  command->add_option("--azimuth", flags->azimuth, "full aperture in degrees, or from,to")
+      ->capture_default_str();
+  command->add_option("--elevation", flags->elevation, "full aperture in degrees, or from,to")
+      ->capture_default_str();
+  command->add_option("--bins", flags->bins, "range,azimuth,elevation")->capture_default_str();
+  command->add_option("--method", flags->method, "reference: the published loop in double, no GPU")
+      ->check(CLI::IsMember({"gpu", "reference"}))
+      ->capture_default_str();
+  command->add_option("--gather", flags->gather, "how the GPU samples (with --method gpu)")
+      ->check(CLI::IsMember({"published", "nearest", "plane"}))
+      ->capture_default_str();
+  command->add_option("--depth-kind", flags->depth_kind, "along the view axis, or along each ray")
+      ->check(CLI::IsMember({"planar", "range"}))
+      ->capture_default_str();
+  command->add_option("--depth-scale", flags->depth_scale, "metres a unit of the depth image")
+      ->capture_default_str();
+  command->add_option("--axes", flags->axes, "of the normals")
+      ->check(CLI::IsMember({"opengl", "opencv", "ros"}))
+      ->capture_default_str();
+  command
+      ->add_option("--normals-sign", flags->normals_sign, "unknown: the absolute incidence counts")
+      ->check(CLI::IsMember({"facing", "unknown"}))
+      ->capture_default_str();
+  command->add_option("--gamma", flags->gamma, "of normals coded in 8 or 16 bit: n = 2 v^gamma - 1")
+      ->capture_default_str();
+  command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
+  command->add_option("--out", flags->out, "folder for sonar.npy, .png, .json")->required();
+  command->callback([flags, &run] { run = [flags] { return run_sonar(*flags); }; });
+}
+
+void add_dive(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<DiveFlags>();
+  CLI::App* command = app.add_subcommand(
+      "dive",
+      "the live program: a scene (.toml) or a model (.gltf, .glb) in a window; F1 lists keys");
+  command->add_option("scene", flags->scene, "scene or model file")->required();
+  command->add_flag("--headless", flags->headless,
+                    "no window: frames at the camera's rate, then a summary of their times");
+  command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
+  command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
+  command->add_option("--seconds", flags->seconds, "stop after so many seconds");
+  command->add_option("--frames", flags->frames, "stop after so many frames");
+  command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png");
+  command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
+  command->add_option("--sensor", flags->sensors,
+                      "fly this camera, show only these sonars, by name");
+  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
+  command->add_flag("--validate", flags->validation,
+                    "run with Vulkan validation; any message is a failure");
+  command->callback([flags, &run] { run = [flags] { return run_dive(*flags); }; });
+}
+
+void add_tradeoff(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<TradeoffFlags>();
+  CLI::App* command =
+      app.add_subcommand("tradeoff", "error against cost of one model, with its curve");
+  command->add_option("what", flags->what, "sonar")->required();
+  command->add_option("--out", flags->out, "folder for tradeoff.csv, .png, .json")->required();
+  command
+      ->add_option("--scene", flags->scene, "whose first sonar is taken; none: only closed forms")
+      ->capture_default_str();
+  command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
+  command->add_flag("--quick", flags->quick, "fewer rays, bins and points");
+  command->callback([flags, &run] { run = [flags] { return run_tradeoff(*flags); }; });
+}
+
+void add_doctor(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<DoctorFlags>();
+  CLI::App* command =
+      app.add_subcommand("doctor", "says what this machine has and what will work on it");
+  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
+  command->add_flag("--json", flags->json, "for programs: JSON on standard output");
+  command->callback(
+      [flags, &run] { run = [flags] { return run_doctor(*flags); }; });
+}
+
+}  // namespace
+
+Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments) {
+  CLI::App app{"Neritic: divers and underwater robots together in one simulated sea", "neritic"};
+  app.require_subcommand(1);
+  app.fallthrough();
+  CommandLine line;
+  app.add_flag("-v,--verbose", line.verbose, "say more on stderr");
+  app.add_flag("-q,--quiet", line.quiet, "say only what failed");
+  add_render(app, line.run);
+  add_sonar(app, line.run);
+  add_dive(app, line.run);
+  add_tradeoff(app, line.run);
+  add_doctor(app, line.run);
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // back to front, as it wants them
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    line.help = chosen.empty() ? app.help() : chosen.front()->help();
+  } catch (const CLI::ParseError& error) {
+    if (app.get_subcommands().empty() && !arguments.empty() && !arguments[0].starts_with('-')) {
+      std::string names;
+      for (const CLI::App* command : app.get_subcommands(nullptr)) names += (names.empty() ? "" : ", ") + command->get_name();
+      return bad_input("'{}' is no command; {} are", arguments[0], names);
+    }
+    return bad_input("{} (see neritic --help)", error.what());
+  }
+  return line;
+}
+
+}  // namespace neritic::tools
