@@ -27,6 +27,8 @@ struct Case {
   int max_difference = 0;
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.scene; }  // for GoogleTest's listings
+
 std::vector<Case> read_cases() {
   const auto text = read_text(kFolder / "cases.json");
   if (!text.ok()) return {};
@@ -39,11 +41,11 @@ std::vector<Case> read_cases() {
 
 class Golden : public test::GpuTest, public ::testing::WithParamInterface<Case> {};
 
-// Intensity as grey: 1 is white, with a square root so that weak echoes show.
+// Intensity as grey: 1/16 and more is white, with a square root so that weak echoes show.
 ImageU8 grey_sonar(const sonar::SonarImage& image) {
   ImageU8 out(image.n_azimuth, image.n_range, 1);
   for (std::size_t i = 0; i < out.data.size(); ++i)
-    out.data[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::sqrt(std::min(image.intensity[i], 1.0f))));
+    out.data[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::sqrt(std::min(16.0f * image.intensity[i], 1.0f))));
   return out;
 }
 
