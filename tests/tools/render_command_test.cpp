@@ -125,7 +125,7 @@ TEST(RenderCommand, WritesTheFileContractAndTheArraysAgreeWithEachOther) {
         EXPECT_TRUE(meta.contains(key)) << facts << " " << key;
     }
     const auto json = nlohmann::json::parse(read_text(sonar / "sonar.json").value());
-    for (const char* key : {"range_m", "azimuth_deg", "elevation_deg", "bins", "units", "model", "seed", "passes_ms"})
+    for (const char* key : {"limits", "bins", "units", "model", "seed", "timings_ms"})
       EXPECT_TRUE(json.contains(key)) << key;
     EXPECT_TRUE(fs::exists(sonar / "sonar.png"));
   }

@@ -62,7 +62,7 @@ void add_tiles(std::vector<Tile>& tiles, const FrameResult& result) {
   for (const CameraFrame& camera : result.cameras)
     for (std::size_t e = 0; e < camera.eyes.size(); ++e)
       tiles.push_back({camera.eyes[e].color, camera.eyes.size() > 1 ? fmt::format("{} {}", camera.name, e == 0 ? "left" : "right") : camera.name});
-  for (const SonarFrame& sonar : result.sonars) tiles.push_back({sonar.panel, sonar.name});
+  for (const SonarFrame& sonar : result.sonars) tiles.push_back({sonar::draw_panel(sonar.grid, sonar.image), sonar.name});
   if (result.cameras.empty()) return;
   const ViewImages& view = result.cameras.front().eyes.front();
   tiles.push_back({depth_picture(view.depth), "depth"});
@@ -122,8 +122,7 @@ Status run_render(const RenderFlags& flags) {
     request.time_s = flags.time_s + i * step_s;
     request.next_time_s = request.time_s + step_s;
     request.frame = i;
-    NERITIC_TRY(FrameResult result, session->render(request));
-    for (SonarFrame& sonar : result.sonars) sonar.panel = sonar::draw_panel(sonar.grid, sonar.image);
+    NERITIC_TRY(const FrameResult result, session->render(request));
     const FrameFacts facts{request.time_s, session->scene().seed, flags.scene, device->info().name, result.passes, result.frame_ms};
     NERITIC_TRY_STATUS(write_frame(fs::path(flags.out) / fmt::format("frame_{:04}", i), result, facts));
     if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result));

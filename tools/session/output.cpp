@@ -5,15 +5,20 @@
 #include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
+#include "sonar/write_sonar.hpp"
 
 namespace neritic::tools {
 namespace {
 
+nlohmann::json passes_of(const FrameFacts& facts) {
+  nlohmann::json passes = nlohmann::json::object();
+  for (const gpu::PassTime& pass : facts.passes) passes[pass.name] = pass.ms;
+  return passes;
+}
+
 nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
   const Vec3& p = view.world_from_view.position_m;
   const Quat& q = view.world_from_view.rotation;
-  nlohmann::json passes = nlohmann::json::object();
-  for (const gpu::PassTime& pass : facts.passes) passes[pass.name] = pass.ms;
   return {{"width", view.width},
           {"height", view.height},
           {"fx", view.intrinsics.fx},
@@ -30,7 +35,7 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
           {"scene", facts.scene},
           {"device", facts.device},
           {"frame_ms", facts.frame_ms},
-          {"passes_ms", passes}};
+          {"passes_ms", passes_of(facts)}};
 }
 
 }  // namespace
@@ -51,28 +56,15 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
   NERITIC_TRY_STATUS(make_folder(folder));
   for (std::size_t i = 0; i < frame.sectors.size(); ++i)
     NERITIC_TRY_STATUS(write_view(frame.sectors.size() == 1 ? folder : folder / fmt::format("sector_{}", i), frame.sectors[i], facts));
-  const std::size_t r = frame.image.n_range, t = frame.image.n_azimuth;
-  NERITIC_TRY_STATUS(write_npy(folder / "sonar.npy", frame.image.intensity, {r, t}));
-  NERITIC_TRY_STATUS(write_npy(folder / "sonar_labels.npy", frame.image.labels, {r, t}));
-  NERITIC_TRY_STATUS(scene::write_png8(folder / "sonar.png", frame.panel));
-  const sonar::Limits& limits = frame.grid.limits;
-  nlohmann::json passes = nlohmann::json::object();
-  for (const gpu::PassTime& pass : facts.passes) passes[pass.name] = pass.ms;
-  const nlohmann::json json{
+  const nlohmann::json more{
       {"kind", "imaging"},
-      {"range_m", {limits.range_min_m, limits.range_max_m}},
-      {"azimuth_deg", {degrees(limits.azimuth_min_rad), degrees(limits.azimuth_max_rad)}},
-      {"elevation_deg", {degrees(limits.elevation_min_rad), degrees(limits.elevation_max_rad)}},
-      {"bins", {{"range", frame.grid.bins.range}, {"azimuth", frame.grid.bins.azimuth}, {"elevation", frame.grid.bins.elevation}}},
-      {"units", {{"sonar.npy", "mean incidence cosine times reflectivity over elevation, 0 to 1"}, {"sonar_labels.npy", "class of the strongest contribution, 0: nothing"}}},
-      {"model", {{"method", "gpu"}, {"gather", frame.gather}, {"fixed_scale", frame.fixed_scale}, {"sectors", frame.sectors.size()}}},
+      {"model", {{"method", "gpu"}, {"gather", frame.gather}, {"fixed_scale", frame.fixed_scale}, {"sectors", frame.sectors.size()}, {"reflectivity", "by object"}}},
       {"time_s", facts.time_s},
       {"seed", facts.seed},
       {"scene", facts.scene},
       {"device", facts.device},
-      {"frame_ms", facts.frame_ms},
-      {"passes_ms", passes}};
-  return write_text(folder / "sonar.json", json.dump(2) + "\n");
+      {"timings_ms", {{"frame", facts.frame_ms}, {"passes", passes_of(facts)}}}};
+  return sonar::write_sonar(folder, frame.grid, frame.image, more);
 }
 
 }  // namespace neritic::tools

@@ -46,7 +46,6 @@ struct SonarFrame {
   sonar::SonarImage image;
   double fixed_scale = 1.0;
   std::vector<ViewImages> sectors;  // geometry only; one for apertures up to 100 degrees
-  ImageU8 panel;                    // left empty by Session; see draw_panel
 };
 
 struct Capture {
