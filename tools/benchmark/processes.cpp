@@ -115,7 +115,8 @@ Status bench_threads(Suite& suite, const std::string& device_name) {
       return failure(ErrorCode::kIo, "{} --once on {} threads ended with {}", words[0], i + 1,
                      status);
     NERITIC_TRY(const std::string text, read_text(json));
-    for (const nlohmann::json& r : nlohmann::json::parse(text)["results"])
+    const nlohmann::json parsed = nlohmann::json::parse(text);
+    for (const nlohmann::json& r : parsed["results"])
       hashes[i][r["name"].get<std::string>()] = r["hash"].get<std::string>();
   }
   for (const auto& [name, hash] : hashes[0]) {

@@ -1,9 +1,9 @@
 #include "tools/benchmark/suite.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
-#include <ctime>
 
 namespace neritic::bench {
 namespace {
@@ -11,12 +11,22 @@ namespace {
 constexpr double kLongest_ms = 20000.0;  // of all rounds of one group
 constexpr int kFewest = 5, kQuick = 7;
 
-// Time that all threads of this process spent on a core: other programs on the machine move it
-// little.
+// Time that all threads of this process and of its ended children spent on a core: other programs
+// on the machine move it little.
 double process_cpu_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
+  double ms = 0.0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    for (const timeval& t : {usage.ru_utime, usage.ru_stime})
+      ms += static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_usec) * 1e-3;
+  }
+  return ms;
+}
+
+Status run_untimed(const Contender& contender) {
+  const Result<Sample> sample = contender.run();
+  return sample.ok() ? Status{} : Status{sample.error()};
 }
 
 }  // namespace
@@ -65,6 +75,7 @@ Status Suite::measure(std::vector<Contender> contenders, int rounds) {
   if (options_.once) rounds = 1;
   for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < contenders.size(); ++i) {
+      if (contenders[i].warm) NERITIC_TRY_STATUS(run_untimed(contenders[i]));
       const double cpu_before_ms = process_cpu_ms();
       NERITIC_TRY(const Sample sample, contenders[i].run());
       measured[i].cpu_ms.push_back(process_cpu_ms() - cpu_before_ms);
@@ -87,7 +98,9 @@ const Measured* Suite::find(const std::string& name) const {
 void Suite::ratio(const std::string& name, const std::string& numerator,
                   const std::string& denominator) {
   const Measured *a = find(numerator), *b = find(denominator);
-  if (a && b && b->median_ms() > 0.0) ratios_[name] = a->median_ms() / b->median_ms();
+  if (!a || !b || b->min_ms() <= 0.0) return;
+  ratios_[name] = a->min_ms() / b->min_ms();
+  median_ratios_[name] = a->median_ms() / b->median_ms();
 }
 
 void Suite::must_agree(const std::string& a, const std::string& b) {
@@ -110,6 +123,10 @@ void Suite::aim_ms(const std::string& what, const std::string& result, double li
   if (const Measured* m = find(result)) aim(what, m->median_ms(), limit_ms, true, "ms");
 }
 
+void Suite::aim_ratio(const std::string& what, const std::string& ratio, double at_least) {
+  if (ratios_.contains(ratio)) aim(what, ratios_[ratio].get<double>(), at_least, false, "times");
+}
+
 nlohmann::json Suite::to_json(const std::string& device, unsigned threads) const {
   nlohmann::json results = nlohmann::json::array();
   for (const Measured& m : results_) {
@@ -120,8 +137,14 @@ nlohmann::json Suite::to_json(const std::string& device, unsigned threads) const
     one.update(m.facts);
     results.push_back(std::move(one));
   }
-  return {{"device", device}, {"threads", threads}, {"results", results},   {"ratios", ratios_},
-          {"facts", facts_},  {"aims", aims_},      {"failures", failures_}};
+  return {{"device", device},
+          {"threads", threads},
+          {"results", results},
+          {"ratios", ratios_},
+          {"ratios_of_medians", median_ratios_},
+          {"facts", facts_},
+          {"aims", aims_},
+          {"failures", failures_}};
 }
 
 void Suite::print() const {
@@ -134,9 +157,10 @@ void Suite::print() const {
       fmt::print("    {:<40} {:>10.3f} {:>10.3f}\n", name, median(values),
                  *std::min_element(values.begin(), values.end()));
   }
-  if (!ratios_.empty()) fmt::print("\n");
+  if (!ratios_.empty()) fmt::print("\n{:<44} {:>10} {:>10}\n", "ratios", "of least", "of medians");
   for (const auto& [name, value] : ratios_.items())
-    fmt::print("{:<44} {:>10.2f}\n", name, value.get<double>());
+    fmt::print("{:<44} {:>10.2f} {:>10.2f}\n", name, value.get<double>(),
+               median_ratios_[name].get<double>());
   for (const auto& [name, value] : facts_.items())
     fmt::print("{:<44} {:>10}\n", name, value.dump());
   if (!aims_.empty()) fmt::print("\n");
