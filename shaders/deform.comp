@@ -7,6 +7,7 @@
 // motion is asked for.
 #include "shared/octahedral.h"
 #include "shared/raster.h"
+#include "shared/affine.glsl"
 
 layout(local_size_x = kDeformGroup) in;
 
@@ -44,7 +45,8 @@ void main() {
       mat4 m = blended(vertex, push.first_joint + time * push.joint_stride);
       p = (m * vec4(p, 1.0)).xyz;
       mat3 a = mat3(m);
-      n = mat3(cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1])) * n;
+      mat3 rows = transpose(a);
+      n = turned_normal(rows[0], rows[1], rows[2], n).xyz;
     }
     if (time == 0u) {
       float size = dot(n, n);

@@ -42,6 +42,7 @@ void main() {
     radiance = shade_surface(s, -along) + fragment_emissive(uv) * light.emissive_scale;
   }
   Sight sight = look_through(light.origin_depth_m - views[view].eye.y, along, distance_m);
-  vec3 arriving = (radiance * sight.transmittance + sight.added) * light.exposure;
+  vec3 glow = lamp_glow(views[view].eye, along, distance_m);
+  vec3 arriving = (radiance * sight.transmittance + sight.added + glow) * light.exposure;
   out_color = vec4(min(arriving, vec3(60000.0)) * base.a, base.a);
 }

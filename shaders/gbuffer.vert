@@ -6,6 +6,7 @@
 // Vertex stage of the full G-buffer and of the forward pass for blended materials.
 #include "shared/octahedral.h"
 #include "shared/raster.h"
+#include "shared/affine.glsl"
 
 layout(constant_id = kSpecMotion) const bool kMotion = false;
 layout(constant_id = kSpecMaterial) const uint kMaterialFlags = ~0u;
@@ -49,7 +50,8 @@ void main() {
   gl_PointSize = 1.0;
   vec3 r0 = row0.xyz, r1 = row1.xyz, r2 = row2.xyz;
   vec3 n = octahedral_decode(normal);
-  out_normal = vec3(dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n));
+  vec4 turned = turned_normal(r0, r1, r2, n);
+  out_normal = turned.xyz;
   out_label = label_deformed.x;
   out_uv = vec4(uv0, uv1);
   out_color = color;
@@ -58,7 +60,7 @@ void main() {
   if ((kMaterialFlags & kMaterialNormalTexture) != 0u) {
     vec2 e = vec2(float(tangent & 0xffffu), float(tangent >> 17)) / vec2(65535.0, 32767.0) * 2.0 - 1.0;
     vec3 t = octahedral_decode(e);
-    out_tangent = vec4(dot(r0, t), dot(r1, t), dot(r2, t), (tangent & 0x10000u) != 0u ? 1.0 : -1.0);
+    out_tangent = vec4(dot(r0, t), dot(r1, t), dot(r2, t), ((tangent & 0x10000u) != 0u ? 1.0 : -1.0) * turned.w);
   }
   if (kMotion) {
     vec4 q = p;

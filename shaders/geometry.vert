@@ -6,6 +6,7 @@
 // Vertex stage of the geometry G-buffer (depth, normal, label): all that a sonar needs.
 #include "shared/octahedral.h"
 #include "shared/raster.h"
+#include "shared/affine.glsl"
 
 layout(constant_id = kSpecMultiview) const bool kMultiview = true;
 
@@ -27,9 +28,6 @@ void main() {
   vec3 at = vec3(dot(row0, p), dot(row1, p), dot(row2, p));
   gl_Position = views[view].clip_from_origin * vec4(at, 1.0);
   gl_PointSize = 1.0;
-  // The cofactor matrix turns normals rightly under any affine map (it is det * inverse transpose).
-  vec3 r0 = row0.xyz, r1 = row1.xyz, r2 = row2.xyz;
-  vec3 n = octahedral_decode(normal);
-  out_normal = vec3(dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n));
+  out_normal = turned_normal(row0.xyz, row1.xyz, row2.xyz, octahedral_decode(normal)).xyz;
   out_label = label;
 }

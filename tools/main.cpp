@@ -1,5 +1,6 @@
 // The program `neritic`: reads the command line, runs one subcommand, returns its exit status.
 #include <cstdio>
+#include <exception>
 #include <new>
 
 #include "engine/core/log.hpp"
@@ -32,6 +33,9 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "neritic: out of memory\n");
+    return 1;
+  } catch (const std::exception& error) {  // of a library; ours returns its errors
+    std::fprintf(stderr, "neritic: %s\n", error.what());
     return 1;
   }
 }

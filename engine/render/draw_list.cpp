@@ -1,6 +1,7 @@
 #include "engine/render/draw_list.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace neritic::render {
 namespace {
@@ -20,8 +21,9 @@ struct Seen {
   double distance_m;
 };
 
+// No length grows by more than this (the Frobenius norm bounds every stretch, sheared or not).
 double largest_scale(const Mat4& m) {
-  return std::max({glm::length(Vec3(m[0])), glm::length(Vec3(m[1])), glm::length(Vec3(m[2]))});
+  return std::sqrt(glm::dot(Vec3(m[0]), Vec3(m[0])) + glm::dot(Vec3(m[1]), Vec3(m[1])) + glm::dot(Vec3(m[2]), Vec3(m[2])));
 }
 
 class Builder {

@@ -9,8 +9,11 @@ namespace neritic::render {
 namespace {
 
 constexpr double kWaterIndex = 1.333;
-// A flat surface lets about 97 % of a high sun through (normal reflectance .0204).
-constexpr double kSurfaceTransmittance = 0.97;
+// Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance .066).
+constexpr double kSkyTransmittance = 0.934;
+// Auto exposure opens no further than for this light: what a sensitive video camera still sees in. Deeper
+// or darker scenes come out dark.
+constexpr double kDarkest_lx = 1.0;
 // Weights of linear sRGB in luminance (ITU-R BT.709).
 constexpr Vec3 kLuminance{0.2126, 0.7152, 0.0722};
 
@@ -19,11 +22,26 @@ struct SunLight {
   double irradiance_lx = 0.0, direct_share = 0.0, cosine = 1.0;
 };
 
+// From air into flat water, unpolarised; sine: of the sun's elevation (Fresnel).
+double fresnel_transmittance(double sine) {
+  const double in_air = sine;  // cosine of the angle to the vertical
+  const double in_water = std::sqrt(1.0 - (1.0 - in_air * in_air) / (kWaterIndex * kWaterIndex));
+  const double rs = (in_air - kWaterIndex * in_water) / (in_air + kWaterIndex * in_water);
+  const double rp = (kWaterIndex * in_air - in_water) / (kWaterIndex * in_air + in_water);
+  return 1.0 - 0.5 * (rs * rs + rp * rp);
+}
+
 SunLight sun_light(const scene::Sun& sun, bool under_water) {
   const double sine = std::sin(sun.elevation_rad);
-  const double direct = kSunShare * std::max(sine, 0.0), sky = (1.0 - kSunShare) * std::max(std::sqrt(std::max(sine, 0.0)), 0.02);
+  double direct = kSunShare * std::max(sine, 0.0);
+  // The sky keeps some light when the sun is low.
+  double sky = (1.0 - kSunShare) * std::max(std::sqrt(std::max(sine, 0.0)), 0.02);
+  if (under_water) {
+    direct *= fresnel_transmittance(std::max(sine, 0.0));
+    sky *= kSkyTransmittance;
+  }
   SunLight out;
-  out.irradiance_lx = sun.intensity * kClearDay_lx * (direct + sky) * (under_water ? kSurfaceTransmittance : 1.0);
+  out.irradiance_lx = sun.intensity * kClearDay_lx * (direct + sky);
   out.direct_share = direct / (direct + sky);
   // Refraction at the flat surface turns the sun towards the zenith (Snell).
   const double in_air = std::cos(sun.elevation_rad);
@@ -33,7 +51,8 @@ SunLight sun_light(const scene::Sun& sun, bool under_water) {
   return out;
 }
 
-// What a white surface near the camera receives, lux: the sun's light there, or the lamps' at 3 m.
+// What a white surface near the camera receives, lux: the sun's light there, or half of the strongest
+// lamp's at 3 m (most of what it lights is further or oblique), and no less than kDarkest_lx.
 double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& scene) {
   double sum = 0.0;
   if (light.terms & shared::kLightSun) {
@@ -43,7 +62,7 @@ double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& s
   }
   double lamps = 0.0;
   for (const scene::Lamp& lamp : scene.lamps) lamps = std::max(lamps, lamp.intensity_cd / 9.0);
-  return std::max(sum, lamps * 0.5);
+  return std::max({sum, lamps * 0.5, kDarkest_lx});
 }
 
 }  // namespace
@@ -84,7 +103,7 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& or
     spot.cos_outer = static_cast<float>(std::cos(std::max(lamp.outer_cone_rad, lamp.inner_cone_rad + 1e-3)));
   }
   const double illuminance = scene_illuminance_lx(light, scene);
-  double scale = illuminance > 0.0 ? kPi / illuminance : 1.0;
+  double scale = kPi / illuminance;
   if (exposure.fixed_ev) scale = std::exp2(-*exposure.fixed_ev);
   light.exposure = static_cast<float>(scale * std::exp2(exposure.compensation_ev));
   light.emissive_scale = 1.0f / light.exposure;

@@ -8,9 +8,10 @@
 
 namespace neritic::render {
 
-// Illuminance of a clear day with the sun in the zenith, lux (CIE S 011 clear sky, rounded).
+// Illuminance of a clear day with the sun in the zenith, lux (rounded; direct sunlight 80 to 100 klx,
+// Schlyter, "Radiometry and photometry in astronomy").
 inline constexpr double kClearDay_lx = 100000.0;
-// Share of it that comes straight from the sun.
+// Share of it that comes straight from the sun (the rest is sky; clear days have .8 to .9).
 inline constexpr double kSunShare = 0.85;
 
 // kBadInput for an unknown water type or too many lamps. exposure: of the camera that looks.

@@ -36,6 +36,9 @@ double water_scattering_m(double wavelength_nm) {
   return 16.06 * 4.72e-4 * std::pow(400.0 / wavelength_nm, 4.32);
 }
 
+// Absorption of pure water at 600, 550 and 450 nm, 1/m: Pope and Fry 1997, Applied Optics 36, table 3.
+constexpr std::array<double, 3> kPureWater_m{.2224, .0565, .00922};
+
 // Particles scatter a little more at short waves: b ~ 1/lambda, between the exponents 1.7 (small) and
 // 0.3 (large particles) of Kopelevich's two fractions (Haltrin 1999).
 constexpr double kParticleExponent = 1.0;
@@ -58,9 +61,8 @@ Result<WaterOptics> jerlov_optics(const std::string& type) {
     optics.diffuse_attenuation_m[i] = k_d;
     optics.water_scattering_m[i] = water;
     optics.particle_scattering_m[i] = particles;
-    // Absorption from the closure; where the series' scattering leaves too little of K_d, at least a
-    // third of it is kept as absorption (all published types have more).
-    optics.absorption_m[i] = std::max(k_d * kMeanCosine / kClosure - kBackFraction * (water + particles), k_d / 3.0);
+    // Absorption from the closure, but no less than pure water's.
+    optics.absorption_m[i] = std::max(k_d * kMeanCosine / kClosure - kBackFraction * (water + particles), kPureWater_m[i]);
   }
   return optics;
 }

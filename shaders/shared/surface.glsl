@@ -64,11 +64,11 @@ vec3 shade_surface(Surface s, vec3 to_eye) {
     float cosine = dot(-to_lamp, light.lamps[i].direction);
     float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, cosine);
     if (cone <= 0.0) continue;
-    // A lamp is a disk of some centimetres, no point: close by its light stays finite.
-    vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.02);
-    if (light_has(kLightWater))
+    // A lamp is a disk of 5 cm, no point: close by its light stays finite.
+    vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.0025);
+    if (light_has(kLightWater) && light.origin_depth_m > s.position.y)
       arriving *= exp(-min(light.beam_attenuation * distance_m, vec3(80.0)));
-    radiance += arriving * reflect_light(s, to_eye, to_lamp, max(0.05 / distance_m, 0.01));
+    radiance += arriving * reflect_light(s, to_eye, to_lamp, clamp(0.05 / distance_m, 0.01, 1.0));
   }
   return radiance;
 }

@@ -61,7 +61,13 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
   sight.transmittance = vec3(1.0);
   sight.added = vec3(0.0);
   if (!light_has(kLightWater)) return sight;
-  // Above the surface there is no water.
+  // Above the surface there is no water: an eye in the air looks through what lies below it only.
+  if (depth_m < 0.0) {
+    if (direction.y >= 0.0) return sight;
+    length_m -= depth_m / direction.y;
+    if (length_m <= 0.0) return sight;
+    depth_m = 0.0;
+  }
   if (direction.y > 0.0) length_m = min(length_m, max(depth_m, 0.0) / direction.y);
   // Exponents beyond 80 are as good as infinite and keep inf * 0 out.
   sight.transmittance = exp(-min(light.beam_attenuation * length_m, vec3(80.0)));
@@ -92,16 +98,53 @@ vec3 beyond(float depth_m, vec3 direction) {
     vec3 rate = light.beam_attenuation - light.diffuse_attenuation * down.y;
     mirrored = scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);
   }
+  // A sky of even radiance holds the light that does not come straight from the sun.
+  vec3 sky = light.surface_irradiance * ((1.0 - light.direct_share) / kPi) * vec3(0.8, 0.95, 1.1);
+  if (depth_m < 0.0 && direction.y >= 0.0) return sky;
   float cosine_air = sqrt(max(0.0, 1.0 - sine_air * sine_air));
   // Fresnel, unpolarised.
   float rs = (1.333 * direction.y - cosine_air) / (1.333 * direction.y + cosine_air);
   float rp = (1.333 * cosine_air - direction.y) / (1.333 * cosine_air + direction.y);
   float reflected = sine_air >= 1.0 ? 1.0 : 0.5 * (rs * rs + rp * rp);
-  // Sky radiance gains n^2 on entering the water; a clear sky of a fifth of the light.
-  vec3 sky = light.surface_irradiance * (0.2 / kPi) * 1.777 * vec3(0.8, 0.95, 1.1);
+  // Sky radiance gains n^2 on entering the water. The sun's beam, spread by waves over a few degrees, is a
+  // glow of 1 / 0.0165 sr, the solid angle of a cone of 4.2 degrees.
+  sky *= 1.777;
   float to_sun = dot(direction, light.to_sun);
-  sky += light.surface_irradiance * 60.0 * smoothstep(0.9965, 0.9995, to_sun);
+  sky += light.surface_irradiance * light.direct_share * 60.0 * smoothstep(0.9965, 0.9995, to_sun);
   return direction.y < 1e-3 || depth_m <= 0.0 ? vec3(0.0) : mix(sky, mirrored, reflected);
+}
+
+// Radiance that the water in the lamps' beams sends along a sight from the eye (relative to the origin):
+// single scattering, four samples a lamp, placed equi-angularly (Kulla and Fajardo 2012). Without a term
+// that asks for it, and for lamps whose glow cannot be seen, it costs a comparison.
+vec3 lamp_glow(vec3 eye, vec3 direction, float length_m) {
+  vec3 sum = vec3(0.0);
+  if (!light_has(kLightWater) || !light_has(kLightScattering)) return sum;
+  vec3 scattering = light.particle_scattering + light.water_scattering;
+  for (uint i = 0u; i < lamp_count(); ++i) {
+    vec3 intensity = light.lamps[i].intensity_cd;
+    vec3 from_lamp = eye - light.lamps[i].position;
+    float nearest_t = -dot(from_lamp, direction);
+    float distance_m = max(length(from_lamp + direction * nearest_t), 0.05);
+    // A sight that passes at distance d gathers about I b 0.05 / d: less than 0.002 of white is not seen.
+    vec3 seen = intensity * scattering * light.exposure;
+    if (distance_m > 25.0 * max(seen.x, max(seen.y, seen.z))) continue;
+    float from_angle = atan(-nearest_t, distance_m);
+    float to_angle = atan(min(length_m, 100.0) - nearest_t, distance_m);
+    for (uint k = 0u; k < 4u; ++k) {
+      float t = nearest_t + distance_m * tan(mix(from_angle, to_angle, (float(k) + 0.5) * 0.25));
+      vec3 travel = from_lamp + direction * t;
+      float reach = max(length(travel), 0.05);
+      travel /= reach;
+      float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, dot(travel, light.lamps[i].direction));
+      float cosine = dot(travel, -direction);
+      vec3 turned = light.particle_scattering * henyey_greenstein(cosine, kParticleG) +
+                    light.water_scattering * sea_water_phase(cosine);
+      sum += intensity * cone * turned * exp(-min(light.beam_attenuation * (t + reach), vec3(80.0))) *
+             (to_angle - from_angle) / (4.0 * distance_m);
+    }
+  }
+  return sum;
 }
 
 #endif

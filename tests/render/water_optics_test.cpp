@@ -46,26 +46,34 @@ TEST(WaterOptics, EveryTypeOfTheReferenceTableHasItsKd) {
   EXPECT_EQ(checked, 10);
 }
 
-TEST(WaterOptics, SightFadesFasterThanDaylightInEveryType) {
+// Not in I and IA: there absorption is nearly all, and the path of daylight is longer than its depth.
+TEST(WaterOptics, SightFadesFasterThanDaylightWhereWaterScatters) {
   for (const char* type : {"IB", "II", "III", "1C", "3C", "5C", "7C", "9C"}) {
     const auto optics = jerlov_optics(type);
     ASSERT_TRUE(optics.ok());
     const Vec3 c = optics->beam_attenuation_m();
     for (int i = 0; i < 3; ++i) {
       EXPECT_GT(c[i], optics->diffuse_attenuation_m[i]) << type << " " << i;
-      EXPECT_GT(optics->absorption_m[i], 0.0);
     }
   }
 }
 
-TEST(WaterOptics, ClosureGivesBackKd) {
-  // K_d = 1.04 (a + b_b) / mu_d with b_b = .0183 b, where absorption is not held at its floor.
-  for (const char* type : {"I", "IA", "IB", "II"}) {
+TEST(WaterOptics, ClosureGivesBackKdAndSeaWaterAbsorbsNoLessThanPure) {
+  // K_d = 1.04 (a + b_b) / mu_d with b_b = .0183 b, where absorption is not held at pure water's
+  // (Pope and Fry 1997: .2224, .0565, .00922 at 600, 550, 450 nm).
+  const Vec3 pure(.2224, .0565, .00922);
+  int closed = 0;
+  for (const char* type : {"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"}) {
     const auto o = jerlov_optics(type);
     const Vec3 b = o->water_scattering_m + o->particle_scattering_m;
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_GE(o->absorption_m[i], pure[i]) << type << " " << i;
+      if (o->absorption_m[i] == pure[i]) continue;
       EXPECT_NEAR(1.04 * (o->absorption_m[i] + .0183 * b[i]) / .86, o->diffuse_attenuation_m[i], 1e-9) << type;
+      ++closed;
+    }
   }
+  EXPECT_GE(closed, 20);
 }
 
 TEST(WaterOptics, UnknownTypeNamesTheTen) {

@@ -19,7 +19,7 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--frames", flags->frames, "number of frames")->check(CLI::Range(1, 1000000));
   command->add_option("--size", flags->size, "WxH of every camera, pixels");
   command->add_option("--time", flags->time_s, "scene time of the first frame, seconds");
-  command->add_option("--sensor", flags->sensors, "only these sensors, by name");
+  command->add_option("--sensor", flags->sensors, "only this sensor, by name; may be given again")->expected(1)->take_all();
   command->add_option("--water", flags->water, "another Jerlov type than the scene's");
   command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")->expected(3);
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
@@ -89,7 +89,9 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png");
   command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
   command->add_option("--sensor", flags->sensors,
-                      "fly this camera, show only these sonars, by name");
+                      "fly this camera, show only this sonar, by name; may be given again")
+      ->expected(1)
+      ->take_all();
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_flag("--validate", flags->validation,
                     "run with Vulkan validation; any message is a failure");

@@ -1,5 +1,8 @@
 #include "tools/neritic/load_scene.hpp"
 
+#include <algorithm>
+#include <cctype>
+
 #include "engine/scene/gltf_loader.hpp"
 #include "tools/neritic/flags.hpp"
 
@@ -7,11 +10,15 @@ namespace neritic::tools {
 namespace {
 
 Result<scene::Scene> load(const std::filesystem::path& path, const scene::SceneOptions& options) {
-  if (path.extension() != ".gltf" && path.extension() != ".glb") return scene::load_scene(path, options);
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (extension != ".gltf" && extension != ".glb") return scene::load_scene(path, options);
   NERITIC_TRY(scene::Model model, scene::load_gltf(path));
   scene::Scene scene = scene::scene_of_model(std::move(model), 1280, 720);
   scene.path = path.string();
   scene.title = path.filename().string();
+  for (scene::Object& object : scene.objects) object.mount.pose.position_m += options.offset_m;
+  for (scene::Camera& camera : scene.cameras) camera.mount.pose.position_m += options.offset_m;
   return scene;
 }
 

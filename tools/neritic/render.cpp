@@ -1,8 +1,11 @@
 // `neritic render SCENE --out DIR`: offscreen pictures and sensor data of a scene or a model.
+#include <algorithm>
 #include <cmath>
 
+#include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/log.hpp"
+#include "engine/render/water_optics.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/panel.hpp"
 #include "tools/neritic/commands.hpp"
@@ -27,8 +30,11 @@ Result<scene::Scene> load(const RenderFlags& flags) {
   if (flags.water.empty()) return scene;
   if (!scene.water) return bad_input("--water {}: {} names no water", flags.water, flags.scene);
   scene.water->type = flags.water;
+  if (const auto known = render::jerlov_optics(flags.water); !known.ok()) return bad_input("--water: {}", known.error().message);
   return scene;
 }
+
+Status status_of(const Result<sonar::BeamGrid>& grid) { return grid.ok() ? Status() : Status(grid.error()); }
 
 bool wanted(const RenderFlags& flags, const std::string& name) {
   return flags.sensors.empty() || std::find(flags.sensors.begin(), flags.sensors.end(), name) != flags.sensors.end();
@@ -43,6 +49,7 @@ Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& sc
     if (wanted(flags, scene.cameras[i].name)) request.cameras.push_back(i), ++found;
   }
   for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
+    if (wanted(flags, scene.sonars[i].name)) NERITIC_TRY_STATUS(status_of(sonar_grid(scene.sonars[i])));
     known += (known.empty() ? "" : ", ") + scene.sonars[i].name;
     if (wanted(flags, scene.sonars[i].name)) request.sonars.push_back(i), ++found;
   }
@@ -106,16 +113,22 @@ Status dump_graph(const RenderFlags& flags, const Session& session) {
 
 Status run_render(const RenderFlags& flags) {
   if (!std::isfinite(flags.time_s)) return bad_input("--time: {} s; a finite number is accepted", flags.time_s);
+  const TimeNs start = now_ns();
   NERITIC_TRY(scene::Scene scene, load(flags));
+  NERITIC_TRY(FrameRequest request, request_of(flags, scene));
   for (const std::string& note : scene.notes) log_warn("{}", note);
+  if (!request.cameras.empty() && !scene.sun && scene.lamps.empty())
+    log_warn("{}: no sun and no lamps, so only what glows by itself is seen", flags.scene);
+  log_info("scene read in {:.0f} ms: {} models, {} objects", to_ms(now_ns() - start), scene.models.size(), scene.objects.size());
   gpu::DeviceOptions options;
   options.device = flags.device;
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(const auto device, gpu::Device::create(options));
-  NERITIC_TRY(FrameRequest request, request_of(flags, scene));
+  log_info("device: {}, {}", device->info().name, device->info().driver);
   const double step_s = frame_step_s(scene, request);
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
+  log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start), session->gpu_scene().triangles());
   session->keep_plan_dump(!flags.dump_graph.empty());
   Progress progress("frame", flags.frames);
   for (std::uint32_t i = 0; i < flags.frames; ++i) {

@@ -157,7 +157,8 @@ Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameStat
   work.draws = render::build_draw_list(scene_, *gpu_scene_, state, work.views);
   const std::string prefix = camera.name + " ";
   const std::uint32_t w = work.views.width, h = work.views.height, layers = work.views.layers();
-  const auto kind = capture.color ? render::GBufferKind::kSurface : render::GBufferKind::kGeometry;
+  // Always as a camera sees (single-sided materials, no blended ones in the depth), with or without colour.
+  constexpr auto kind = render::GBufferKind::kSurface;
   NERITIC_TRY(const render::GBuffer g, renderer_->declare_gbuffer(graph, prefix, kind, *gpu_scene_, state, deformed, work.views, work.draws));
   const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
     return readback_.declare(graph, device_, prefix + name, image, format, w, h, layers);
