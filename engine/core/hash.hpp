@@ -1,5 +1,5 @@
-// 64-bit FNV-1a over bytes: image and state hashes that tests and benchmarks compare.
-// Source: Fowler, Noll, Vo; draft-eastlake-fnv, 64-bit offset basis and prime. Any thread.
+// A 64-bit hash in the manner of FNV-1a: image and state hashes that tests and benchmarks compare.
+// Basis and prime of Fowler, Noll and Vo (draft-eastlake-fnv). Any thread.
 #pragma once
 
 #include <cstdint>

@@ -46,7 +46,7 @@ struct VertexPosition {
 struct VertexSurface {
   vec2 uv0;
   vec2 uv1;
-  uint tangent;  // octahedral 15 + 16 bits; lowest bit: handedness
+  uint tangent;  // octahedral 15 + 16 bits; bit 16: handedness
   uint color;    // RGBA8, linear
 };
 
