@@ -53,6 +53,6 @@ void main() {
   if (!hit) radiance = beyond(eye_depth_m, direction);
   Sight sight = look_through(eye_depth_m, direction, hit ? planar_m * stretch : kForever_m);
   radiance = radiance * sight.transmittance + sight.added;
-  if (lamp_count() > 0u) radiance += lamp_glow(views[layer].eye, direction, hit ? planar_m * stretch : kForever_m);
+  radiance += lamp_glow(views[layer].eye, direction, hit ? planar_m * stretch : kForever_m);
   imageStore(hdr_image, at, vec4(min(radiance * light.exposure, vec3(60000.0)), 1.0));
 }

@@ -65,6 +65,19 @@ double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& s
   return std::max({sum, lamps * 0.5, kDarkest_lx});
 }
 
+// Beams that reach less than this past their lamp (in daylight, say) are not worth a term.
+constexpr float kLeastGlow_m = 1.0f;
+
+bool glows(const shared::Lighting& light) {
+  if (!(light.terms & shared::kLightScattering)) return false;
+  const Vec3f scattering = light.particle_scattering + light.water_scattering;
+  for (std::uint32_t i = 0; i < light.lamp_count; ++i) {
+    const Vec3f seen = light.lamps[i].intensity_cd * scattering * light.exposure;
+    if (shared::kGlowReach * std::max({seen.x, seen.y, seen.z}) >= kLeastGlow_m) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& origin_m,
@@ -106,6 +119,7 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& or
   double scale = kPi / illuminance;
   if (exposure.fixed_ev) scale = std::exp2(-*exposure.fixed_ev);
   light.exposure = static_cast<float>(scale * std::exp2(exposure.compensation_ev));
+  if (glows(light)) light.terms |= shared::kLightGlow;
   light.emissive_scale = 1.0f / light.exposure;
   light.background = Vec3f(0.06f, 0.075f, 0.10f) / light.exposure;
   return light;

@@ -11,6 +11,10 @@ NERITIC_CONST uint kLightWater = 2;
 NERITIC_CONST uint kLightScattering = 4;
 NERITIC_CONST uint kLightSurface = 8;
 NERITIC_CONST uint kLightEmissive = 16;  // the G-buffer has an emissive image
+NERITIC_CONST uint kLightGlow = 32;  // lamps whose beams are seen in the water: scattering and kGlowReach
+// A sight that passes a lamp at distance d gathers about I b 0.05 m / d of its light. It is seen where that
+// exceeds 0.002 of white, so up to this times I b exposure from the lamp.
+NERITIC_CONST float kGlowReach = 25.0f;
 
 struct SpotLight {
   vec3 position;  // relative to the origin

@@ -114,37 +114,35 @@ vec3 beyond(float depth_m, vec3 direction) {
   return direction.y < 1e-3 || depth_m <= 0.0 ? vec3(0.0) : mix(sky, mirrored, reflected);
 }
 
+// The glow of lamp i along a sight that passes it at distance_m, nearest_t from the eye.
+vec3 one_lamp_glow(uint i, vec3 from_lamp, vec3 direction, float length_m, float nearest_t, float distance_m) {
+  vec3 sum = vec3(0.0);
+  float from_angle = atan(-nearest_t, distance_m);
+  float to_angle = atan(min(length_m, 100.0) - nearest_t, distance_m);
+  for (uint k = 0u; k < 4u; ++k) {
+    float t = nearest_t + distance_m * tan(mix(from_angle, to_angle, (float(k) + 0.5) * 0.25));
+    vec3 travel = from_lamp + direction * t;
+    float reach = max(length(travel), 0.05);
+    travel /= reach;
+    float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, dot(travel, light.lamps[i].direction));
+    float cosine = dot(travel, -direction);
+    vec3 turned = light.particle_scattering * henyey_greenstein(cosine, kParticleG) +
+                  light.water_scattering * sea_water_phase(cosine);
+    sum += cone * turned * exp(-min(light.beam_attenuation * (t + reach), vec3(80.0)));
+  }
+  return sum * light.lamps[i].intensity_cd * (to_angle - from_angle) / (4.0 * distance_m);
+}
+
 // Radiance that the water in the lamps' beams sends along a sight from the eye (relative to the origin):
-// single scattering, four samples a lamp, placed equi-angularly (Kulla and Fajardo 2012). Without a term
-// that asks for it, it costs a comparison; of lamps whose glow cannot be seen, at most a sample.
+// single scattering, four samples a lamp, placed equi-angularly (Kulla and Fajardo 2012).
 vec3 lamp_glow(vec3 eye, vec3 direction, float length_m) {
   vec3 sum = vec3(0.0);
-  if (!light_has(kLightWater) || !light_has(kLightScattering)) return sum;
-  vec3 scattering = light.particle_scattering + light.water_scattering;
+  if (!light_has(kLightGlow)) return sum;
   for (uint i = 0u; i < lamp_count(); ++i) {
-    vec3 intensity = light.lamps[i].intensity_cd;
     vec3 from_lamp = eye - light.lamps[i].position;
     float nearest_t = -dot(from_lamp, direction);
     float distance_m = max(length(from_lamp + direction * nearest_t), 0.05);
-    // A sight that passes at distance d gathers about I b 0.05 / d: less than 0.002 of white is not seen.
-    vec3 seen = intensity * scattering * light.exposure;
-    bool unseen = distance_m > 25.0 * max(seen.x, max(seen.y, seen.z));
-    float from_angle = atan(-nearest_t, distance_m);
-    float to_angle = atan(min(length_m, 100.0) - nearest_t, distance_m);
-    // A processor's driver jumps at the end of a loop only: unrolled, all four samples would be paid for
-    // where none is seen.
-    [[dont_unroll]] for (uint k = unseen ? 4u : 0u; k < 4u; ++k) {
-      float t = nearest_t + distance_m * tan(mix(from_angle, to_angle, (float(k) + 0.5) * 0.25));
-      vec3 travel = from_lamp + direction * t;
-      float reach = max(length(travel), 0.05);
-      travel /= reach;
-      float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, dot(travel, light.lamps[i].direction));
-      float cosine = dot(travel, -direction);
-      vec3 turned = light.particle_scattering * henyey_greenstein(cosine, kParticleG) +
-                    light.water_scattering * sea_water_phase(cosine);
-      sum += intensity * cone * turned * exp(-min(light.beam_attenuation * (t + reach), vec3(80.0))) *
-             (to_angle - from_angle) / (4.0 * distance_m);
-    }
+    sum += one_lamp_glow(i, from_lamp, direction, length_m, nearest_t, distance_m);
   }
   return sum;
 }
