@@ -1,0 +1,48 @@
+// Only what a scene names is a term of its light: what it does not name is not compiled into the
+// shader.
+#include "engine/render/lighting.hpp"
+
+#include <gtest/gtest.h>
+
+namespace neritic::render {
+namespace {
+
+shared::Lighting light_of(const scene::Scene& scene, bool has_emission = false) {
+  const auto light = make_lighting(scene, Vec3(0.0, -3.0, 0.0), {}, has_emission);
+  EXPECT_TRUE(light.ok());
+  return light.ok() ? *light : shared::Lighting{};
+}
+
+TEST(Lighting, TermsAreExactlyWhatTheSceneNames) {
+  for (int bits = 0; bits < 32; ++bits) {
+    scene::Scene scene;
+    const bool sun = bits & 1, water = bits & 2, scattering = bits & 4, surface = bits & 8,
+               emission = bits & 16;
+    if (sun) scene.sun = scene::Sun{};
+    if (water)
+      scene.water = scene::Water{.type = "II", .scattering = scattering, .surface = surface};
+    std::uint32_t wanted = sun ? shared::kLightSun : 0;
+    if (water) wanted |= shared::kLightWater;
+    if (water && scattering) wanted |= shared::kLightScattering;
+    if (water && surface) wanted |= shared::kLightSurface;
+    if (emission) wanted |= shared::kLightEmissive;
+    EXPECT_EQ(light_of(scene, emission).terms, wanted) << bits;
+    EXPECT_EQ(light_of(scene, emission).lamp_count, 0u) << bits;
+  }
+}
+
+TEST(Lighting, LampsAreCountedAndOneTooManyIsBadInput) {
+  scene::Scene scene;
+  for (std::uint32_t n = 1; n <= shared::kMaxLamps; ++n) {
+    scene.lamps.push_back({});
+    EXPECT_EQ(light_of(scene).lamp_count, n);
+    EXPECT_EQ(light_of(scene).terms, 0u);
+  }
+  scene.lamps.push_back({});
+  const auto light = make_lighting(scene, Vec3(0.0), {}, false);
+  ASSERT_FALSE(light.ok());
+  EXPECT_EQ(light.error().code, ErrorCode::kBadInput);
+}
+
+}  // namespace
+}  // namespace neritic::render
