@@ -59,12 +59,6 @@ void add_primitive(Triangles& out, const Primitive& p, const std::vector<float>&
   }
 }
 
-// The renderer's G-buffer holds no blended surfaces, so a sonar does not hear them.
-bool blended(const Model& model, const Primitive& p) {
-  return p.material >= 0 && model.materials[static_cast<std::size_t>(p.material)].alpha_mode ==
-                                scene::AlphaMode::kBlend;
-}
-
 void add_node(Triangles& out, const Model& model, const ModelPose& pose, int index,
               const Mat4& frame_from_model, const scene::Object& object) {
   const scene::Node& node = model.nodes[static_cast<std::size_t>(index)];
@@ -77,9 +71,8 @@ void add_node(Triangles& out, const Model& model, const ModelPose& pose, int ind
     const std::vector<Mat4> once{Mat4(1.0)};
     for (const Mat4& node_from_instance : node.instances.empty() ? once : node.instances)
       for (const Primitive& p : model.meshes[static_cast<std::size_t>(node.mesh)].primitives)
-        if (!blended(model, p))
-          add_primitive(out, p, weights, joints, frame_from_node * node_from_instance,
-                        frame_from_model, object);
+        add_primitive(out, p, weights, joints, frame_from_node * node_from_instance,
+                      frame_from_model, object);
   }
   for (const int child : node.children) add_node(out, model, pose, child, frame_from_model, object);
 }
