@@ -1,5 +1,3 @@
-#pragma GCC optimize("O3")  // before everything: the opponent is to be quick
-
 #include "sonar/literal_volume.hpp"
 
 #include <algorithm>
