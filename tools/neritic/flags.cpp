@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -20,24 +21,27 @@ Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& fl
   return std::pair{width, height};
 }
 
-Result<std::vector<double>> parse_numbers(const std::string& flag, const std::string& text, std::size_t count) {
-  std::vector<double> numbers;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (at != end) {
+Result<std::vector<double>> parse_numbers(const char* flag, const std::string& text, std::size_t fewest,
+                                    std::size_t most) {
+  std::vector<double> out;
+  std::size_t at = 0;
+  while (at <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
     double value = 0.0;
-    const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc{} || !std::isfinite(value)) break;
-    numbers.push_back(value);
-    at = next;
-    if (at == end) break;
-    if (*at != ',') break;
-    ++at;
-    if (at == end) numbers.clear();  // a comma at the end
+    const char* end = text.data() + comma;
+    const auto [stop, error] = std::from_chars(text.data() + at, end, value);
+    if (error != std::errc() || stop != end || !std::isfinite(value))
+      return bad_input("--{}: '{}' found, {} is accepted", flag, text,
+                       most == 1 ? "a number" : "numbers separated by commas");
+    out.push_back(value);
+    at = comma + 1;
   }
-  if (at != end || numbers.size() != count)
-    return bad_input("{}: '{}'; {} finite numbers with commas between are accepted", flag, text, count);
-  return numbers;
+  if (out.size() < fewest || out.size() > most)
+    return bad_input(
+        "--{}: {} numbers in '{}' found, {} {} accepted", flag, out.size(), text,
+        fewest == most ? fmt::format("{}", most) : fmt::format("{} or {}", fewest, most),
+        most == 1 ? "is" : "are");
+  return out;
 }
 
 Progress::Progress(std::string what, std::uint64_t total)

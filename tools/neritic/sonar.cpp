@@ -1,5 +1,5 @@
 // `neritic sonar imaging`: a sonar image from depth and normal images of anyone's making, no scene.
-#include <charconv>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -9,49 +9,26 @@
 #include "sonar/offline_input.hpp"
 #include "sonar/write_sonar.hpp"
 #include "tools/neritic/commands.hpp"
+#include "tools/neritic/flags.hpp"
 
 namespace neritic::tools {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Numbers separated by commas; counts that are accepted in words for the message.
-Result<std::vector<double>> numbers(const char* flag, const std::string& text, std::size_t fewest,
-                                    std::size_t most) {
-  std::vector<double> out;
-  std::size_t at = 0;
-  while (at <= text.size()) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    double value = 0.0;
-    const char* end = text.data() + comma;
-    const auto [stop, error] = std::from_chars(text.data() + at, end, value);
-    if (error != std::errc() || stop != end || !std::isfinite(value))
-      return bad_input("--{}: '{}' found, {} is accepted", flag, text,
-                       most == 1 ? "a number" : "numbers separated by commas");
-    out.push_back(value);
-    at = comma + 1;
-  }
-  if (out.size() < fewest || out.size() > most)
-    return bad_input(
-        "--{}: {} numbers in '{}' found, {} {} accepted", flag, out.size(), text,
-        fewest == most ? fmt::format("{}", most) : fmt::format("{} or {}", fewest, most),
-        most == 1 ? "is" : "are");
-  return out;
-}
-
 // A full aperture about dead ahead, or its two edges; radians.
 Result<std::pair<double, double>> aperture(const char* flag, const std::string& text) {
-  NERITIC_TRY(const auto values, numbers(flag, text, 1, 2));
+  NERITIC_TRY(const auto values, parse_numbers(flag, text, 1, 2));
   if (values.size() == 2) return std::pair{radians(values[0]), radians(values[1])};
   return std::pair{-radians(values[0]) / 2.0, radians(values[0]) / 2.0};
 }
 
 Result<sonar::BeamGrid> grid_of(const SonarFlags& flags) {
   sonar::BeamGrid grid;
-  NERITIC_TRY(const auto range, numbers("range", flags.range, 2, 2));
+  NERITIC_TRY(const auto range, parse_numbers("range", flags.range, 2, 2));
   NERITIC_TRY(const auto azimuth, aperture("azimuth", flags.azimuth));
   NERITIC_TRY(const auto elevation, aperture("elevation", flags.elevation));
-  NERITIC_TRY(const auto bins, numbers("bins", flags.bins, 3, 3));
+  NERITIC_TRY(const auto bins, parse_numbers("bins", flags.bins, 3, 3));
   for (const double n : bins)
     if (n != std::floor(n) || n < 1.0 || n > sonar::kMaxBins)
       return bad_input("--bins: {:g} in '{}' found, whole numbers from 1 to {} are accepted", n,
@@ -72,8 +49,8 @@ Result<sonar::OfflineOptions> options_of(const SonarFlags& flags) {
   options.axes = flags.axes == "opencv" ? sonar::NormalAxes::kOpencv
                  : flags.axes == "ros"  ? sonar::NormalAxes::kRos
                                         : sonar::NormalAxes::kOpengl;
-  NERITIC_TRY(const auto scale, numbers("depth-scale", flags.depth_scale, 1, 1));
-  NERITIC_TRY(const auto gamma, numbers("gamma", flags.gamma, 1, 1));
+  NERITIC_TRY(const auto scale, parse_numbers("depth-scale", flags.depth_scale, 1, 1));
+  NERITIC_TRY(const auto gamma, parse_numbers("gamma", flags.gamma, 1, 1));
   if (!(scale[0] > 0.0))
     return bad_input("--depth-scale: {:g} found, a positive number is accepted", scale[0]);
   if (!(gamma[0] > 0.0))
@@ -88,7 +65,7 @@ Result<sonar::Intrinsics> intrinsics_of(const SonarFlags& flags, const sonar::Ma
   if (fs::path(flags.intrinsics).extension() == ".json") {
     NERITIC_TRY(k, sonar::read_intrinsics(flags.intrinsics, depth));
   } else {
-    NERITIC_TRY(const auto values, numbers("intrinsics", flags.intrinsics, 4, 4));
+    NERITIC_TRY(const auto values, parse_numbers("intrinsics", flags.intrinsics, 4, 4));
     k = {values[0], values[1], values[2], values[3]};
   }
   if (!(k.fx > 0.0 && k.fy > 0.0))
@@ -101,8 +78,8 @@ Result<sonar::Intrinsics> intrinsics_of(const SonarFlags& flags, const sonar::Ma
   return k;
 }
 
-Result<sonar::SonarInput> input_of(const SonarFlags& flags) {
-  NERITIC_TRY(const sonar::OfflineOptions options, options_of(flags));
+Result<sonar::SonarInput> input_of(const SonarFlags& flags,
+                                    const sonar::OfflineOptions& options) {
   NERITIC_TRY(const sonar::MapFile depth, sonar::read_map(flags.depth));
   NERITIC_TRY(const sonar::Intrinsics intrinsics, intrinsics_of(flags, depth));
   if (depth.coding != sonar::MapFile::Coding::kNumbers && options.depth_scale == 1.0)
@@ -120,18 +97,19 @@ Result<sonar::SonarInput> input_of(const SonarFlags& flags) {
                            intrinsics, options);
 }
 
-nlohmann::json facts_of(const SonarFlags& flags, const sonar::SonarInput& in) {
+nlohmann::json facts_of(const SonarFlags& flags, const sonar::OfflineOptions& options,
+                        const sonar::SonarInput& in) {
   const sonar::Intrinsics& k = in.intrinsics;
   nlohmann::json json{{"kind", flags.kind},
                       {"method", flags.method},
                       {"depth", flags.depth.filename().string()},
                       {"depth_kind", flags.depth_kind},
-                      {"depth_scale", std::stod(flags.depth_scale)},
+                      {"depth_scale", options.depth_scale},
                       {"normals", flags.normals.empty() ? "estimated from depth"
                                                         : flags.normals.filename().string()},
                       {"axes", flags.axes},
                       {"normals_sign", flags.normals.empty() ? "facing" : flags.normals_sign},
-                      {"gamma", std::stod(flags.gamma)},
+                      {"gamma", options.gamma},
                       {"image", {in.width, in.height}},
                       {"intrinsics", {{"fx", k.fx}, {"fy", k.fy}, {"cx", k.cx}, {"cy", k.cy}}},
                       {"seed", nullptr}};
@@ -162,8 +140,9 @@ Status run_sonar(const SonarFlags& flags) {
     return bad_input("sonar kind: '{}' found, imaging is accepted", flags.kind);
   NERITIC_TRY(const sonar::BeamGrid grid, grid_of(flags));
   const TimeNs start = now_ns();
-  NERITIC_TRY(const sonar::SonarInput in, input_of(flags));
-  nlohmann::json facts = facts_of(flags, in);
+  NERITIC_TRY(const sonar::OfflineOptions options, options_of(flags));
+  NERITIC_TRY(const sonar::SonarInput in, input_of(flags, options));
+  nlohmann::json facts = facts_of(flags, options, in);
   facts["timings_ms"]["read"] = to_ms(now_ns() - start);
   sonar::SonarImage image;
   if (flags.method == "reference") {
