@@ -150,10 +150,10 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
     graph::BufferHandle sums, keys, stamps;
   };
   const Cleared& cleared = graph.add_pass<Cleared>(
-      "sonar clear",
+      inputs.prefix + "sonar clear",
       [&](graph::PassBuilder& builder, Cleared& pass) {
         const auto make = [&](graph::BufferHandle target, const char* name) {
-          return builder.write(target ? target : builder.create_buffer(name, buffer_bytes()),
+          return builder.write(target ? target : builder.create_buffer(inputs.prefix + name, buffer_bytes()),
                                Access::kTransferWrite);
         };
         pass.sums = make(inputs.sums_target, "sonar sums");
@@ -177,7 +177,7 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
   };
   return graph
       .add_pass<Pass>(
-          "sonar gather", setup,
+          inputs.prefix + "sonar gather", setup,
           [this](const Pass& pass, graph::PassContext& context) { record(pass, context); })
       .out;
 }

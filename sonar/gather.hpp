@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/graph/frame_graph.hpp"
@@ -63,13 +64,14 @@ class SonarGather {
     // Where to write; absent: transient buffers of the frame. An imported host-readable buffer
     // saves a copy on devices that share memory with the host.
     graph::BufferHandle sums_target, keys_target;
+    std::string prefix = "";  // of the names of passes and transients: which sonar's they are
   };
   struct Outputs {
     graph::BufferHandle sums;  // uint32 [n_range][n_azimuth]
     graph::BufferHandle
         keys;  // uint32 [n_range][n_azimuth] for label_of_key; absent without labels
   };
-  // Adds the passes "sonar clear" and "sonar gather". The object must outlive the graph's run.
+  // Adds the passes PREFIX"sonar clear" and PREFIX"sonar gather". The object must outlive the graph's run.
   Outputs declare(graph::FrameGraph& graph, const Inputs& inputs) const;
 
   std::uint64_t buffer_bytes() const;  // of each output

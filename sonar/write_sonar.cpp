@@ -30,7 +30,7 @@ Status write_sonar(const std::filesystem::path& folder, const BeamGrid& grid,
   json["units"] = "mean over elevation bins of the cosine of incidence, 0 to 1 a bin";
   json["layout"] = "sonar.npy [range, azimuth]: row 0 nearest, column 0 full port";
   json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"gamma", panel.gamma}};
-  return write_text(folder / "sonar.json", json.dump(2) + "\n");
+  return write_text(folder / "sonar.json", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace neritic::sonar

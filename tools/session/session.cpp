@@ -1,5 +1,8 @@
 #include "tools/session/session.hpp"
 
+#include <algorithm>
+#include <tuple>
+
 #include "engine/core/check.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/render/lighting.hpp"
@@ -51,12 +54,25 @@ render::ViewSet sonar_views(const scene::Scene& scene, const scene::Sonar& sonar
   return set;
 }
 
+// What a sonar's state is made from: all but its name, its rate and where it is.
+auto settings_of(const scene::Sonar& s) {
+  return std::tie(s.kind, s.range_min_m, s.range_max_m, s.azimuth_rad, s.elevation_rad, s.bins_range, s.bins_azimuth,
+                  s.bins_elevation, s.gbuffer_scale, s.gather, s.near_m);
+}
+
 SonarFrame decode_sonar(const scene::Sonar& sonar, const SonarWork& work) {
   SonarFrame frame;
   frame.name = sonar.name;
   frame.gather = sonar::name_of(work.state->mode);
   frame.grid = work.state->gather->grid();
   frame.fixed_scale = work.state->gather->fixed_scale();
+  frame.gbuffer_width = work.state->size.width;
+  frame.gbuffer_height = work.state->size.height;
+  frame.pixels_per_cell = work.state->pixels_per_cell;
+  const FrustumTangents& t = work.state->gather->sectors().front().tangents;
+  frame.pixels_per_cell_used = {work.state->size.width * frame.grid.azimuth_step_rad() / (t.right - t.left),
+                                work.state->size.height * frame.grid.elevation_step_rad() / (t.top - t.bottom)};
+  frame.reflectivity = work.state->reflectivity;
   frame.image = work.state->gather->to_image(work.state->sums.mapped<std::uint32_t>(), work.state->keys.mapped<std::uint32_t>());
   frame.sectors = work.depth ? decode_views(work) : std::vector<ViewImages>{};
   return frame;
@@ -73,20 +89,22 @@ Result<sonar::BeamGrid> sonar_grid(const scene::Sonar& sonar) {
 
 Result<Session::SonarState*> Session::sonar_state(std::size_t index) {
   std::unique_ptr<SonarState>& slot = sonars_[index];
-  if (slot) return slot.get();
   const scene::Sonar& sonar = scene_.sonars[index];
+  if (slot && settings_of(slot->made_from) == settings_of(sonar)) return slot.get();
   auto state = std::make_unique<SonarState>();
+  state->made_from = sonar;
   NERITIC_TRY(const sonar::BeamGrid grid, sonar_grid(sonar));
   NERITIC_TRY(state->mode, sonar::gather_of(sonar.gather.empty() ? kDefaultGather : sonar.gather));
   const std::vector<sonar::Sector> sectors = sonar::plan_sectors(grid);
-  const double scale = sonar.gbuffer_scale > 0.0 ? sonar.gbuffer_scale : kDefaultGBufferScale;
-  state->size = sonar::gbuffer_size(grid, sectors.front(), scale, device_.limits().maxImageDimension2D);
+  state->pixels_per_cell = sonar.gbuffer_scale > 0.0 ? sonar.gbuffer_scale : kDefaultGBufferScale;
+  state->reflectivity = reflectivity_.size() > 0;
+  state->size = sonar::gbuffer_size(grid, sectors.front(), state->pixels_per_cell, device_.limits().maxImageDimension2D);
   sonar::GBufferLayout layout;
   layout.width = state->size.width;
   layout.height = state->size.height;
   layout.intrinsics = sonar::intrinsics_of(sectors.front().tangents, layout.width, layout.height);
   layout.near_m = sonar.near_m;
-  NERITIC_TRY(auto gather, sonar::SonarGather::create(device_, grid, sectors, layout, {state->mode, true, true}));
+  NERITIC_TRY(auto gather, sonar::SonarGather::create(device_, grid, sectors, layout, {state->mode, true, state->reflectivity}));
   state->gather = std::make_unique<sonar::SonarGather>(std::move(gather));
   const auto result = [&](const char* what) {
     return gpu::Buffer::create(device_, {sonar.name + what, state->gather->buffer_bytes(),
@@ -94,12 +112,14 @@ Result<Session::SonarState*> Session::sonar_state(std::size_t index) {
   };
   NERITIC_TRY(state->sums, result(" sums"));
   NERITIC_TRY(state->keys, result(" keys"));
+  if (slot) device_.wait_idle();  // frames in flight may read what the old settings made
   slot = std::move(state);
   return slot.get();
 }
 
-// Acoustic reflectivity by instance label.
+// Acoustic reflectivity by instance label; no table where every object's is 1.
 Status Session::create_reflectivity() {
+  if (std::ranges::all_of(scene_.objects, [](const scene::Object& object) { return object.reflectivity == 1.0f; })) return {};
   std::vector<float> table(1, 0.0f);
   for (const scene::Object& object : scene_.objects) {
     const std::size_t end = object.instance + object.instance_count();
@@ -198,11 +218,14 @@ Status Session::declare_sonar(graph::FrameGraph& graph, const render::FrameState
   const std::string prefix = sonar.name + " ";
   NERITIC_TRY(const render::GBuffer g, renderer_->declare_gbuffer(graph, prefix, render::GBufferKind::kGeometry, *gpu_scene_, state, deformed, work.views, work.draws));
   sonar::SonarGather::Inputs inputs;
+  inputs.prefix = prefix;
   inputs.depth = g.depth;
   inputs.normals = g.normal;
   inputs.labels = g.label;
-  inputs.reflectivity = graph.import_buffer(prefix + "reflectivity", reflectivity_);
-  inputs.reflectivities = static_cast<std::uint32_t>(reflectivity_.size() / sizeof(float));
+  if (work.state->reflectivity) {
+    inputs.reflectivity = graph.import_buffer(prefix + "reflectivity", reflectivity_);
+    inputs.reflectivities = static_cast<std::uint32_t>(reflectivity_.size() / sizeof(float));
+  }
   inputs.sonar_from_gbuffer = glm::mat3_cast(glm::conjugate(scene_.world_from(sonar.mount).rotation));
   if (capture.to_host) {
     inputs.sums_target = graph.import_buffer(prefix + "sums", work.state->sums);

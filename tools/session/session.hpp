@@ -45,6 +45,10 @@ struct SonarFrame {
   sonar::BeamGrid grid;
   sonar::SonarImage image;
   double fixed_scale = 1.0;
+  std::uint32_t gbuffer_width = 1, gbuffer_height = 1;  // of one sector
+  double pixels_per_cell = 1.0;      // asked for, linear
+  glm::dvec2 pixels_per_cell_used{1.0};  // azimuth, elevation; less where the device's images end
+  bool reflectivity = true;          // by object; false: all are 1
   std::vector<ViewImages> sectors;  // geometry only; one for apertures up to 100 degrees
 };
 

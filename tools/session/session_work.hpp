@@ -30,8 +30,11 @@ struct FrameWork {
 };
 
 struct Session::SonarState {
+  scene::Sonar made_from;
   sonar::Gather mode = sonar::Gather::kPlane;
   sonar::PixelSize size;
+  double pixels_per_cell = 1.0;  // asked for; the device's largest image may allow less
+  bool reflectivity = true;      // by object; false: all are 1
   std::unique_ptr<sonar::SonarGather> gather;
   gpu::Buffer sums, keys;  // host-readable
 };
