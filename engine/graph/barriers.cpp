@@ -85,57 +85,33 @@ bool ready(const Epoch& initial, const Epoch& first) {
 
 // --- Memory taken over from another resource ---------------------------------------------------
 
-struct Range {
-  std::uint64_t begin, end;
-};
-
-// Takes cut out of the pieces; true if any byte was in them.
-bool subtract(std::vector<Range>& pieces, Range cut) {
-  bool hit = false;
-  for (std::size_t i = pieces.size(); i-- > 0;) {
-    const Range piece = pieces[i];
-    if (piece.end <= cut.begin || cut.end <= piece.begin) continue;
-    hit = true;
-    pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(i));
-    if (piece.begin < cut.begin) pieces.push_back({piece.begin, cut.begin});
-    if (cut.end < piece.end) pieces.push_back({cut.end, piece.end});
-  }
-  return hit;
-}
-
 class Takeover {
  public:
   Takeover(const GraphDecl& graph, std::span<const Lifetime> lifetimes,
            std::span<const MemoryNeed> needs, const Placement& placement)
       : lifetimes_(lifetimes), needs_(needs), placement_(placement) {
     for (std::uint32_t r = 0; r < graph.resources.size(); ++r)
-      if (!graph.resources[r].imported && lifetimes[r].used()) latest_first_.push_back(r);
-    std::stable_sort(
-        latest_first_.begin(), latest_first_.end(),
-        [&](std::uint32_t a, std::uint32_t b) { return lifetimes[a].last > lifetimes[b].last; });
+      if (!graph.resources[r].imported && lifetimes[r].used()) transients_.push_back(r);
   }
 
-  // Who had a byte of the resource's memory last before it. Earlier owners of the same byte are
-  // ordered through these.
+  // Who had a byte of the resource's memory before it, the last and all earlier ones. Waiting for the last
+  // would do, since earlier ones are ordered through it; but the validation layer follows such a chain only
+  // through images that it takes for aliases of each other, and reports a hazard otherwise.
   void previous_owners(std::uint32_t resource, std::vector<std::uint32_t>& owners) const {
     owners.clear();
-    std::vector<Range> open = {range(resource)};
-    for (const std::uint32_t other : latest_first_) {
-      if (open.empty()) return;
+    for (const std::uint32_t other : transients_) {
       if (lifetimes_[other].last >= lifetimes_[resource].first) continue;
       if (needs_[other].memory_class != needs_[resource].memory_class) continue;
-      if (subtract(open, range(other))) owners.push_back(other);
+      const std::uint64_t begin = placement_.offset[resource], other_begin = placement_.offset[other];
+      if (begin < other_begin + needs_[other].size && other_begin < begin + needs_[resource].size) owners.push_back(other);
     }
   }
 
  private:
-  Range range(std::uint32_t r) const {
-    return {placement_.offset[r], placement_.offset[r] + needs_[r].size};
-  }
   std::span<const Lifetime> lifetimes_;
   std::span<const MemoryNeed> needs_;
   const Placement& placement_;
-  std::vector<std::uint32_t> latest_first_;
+  std::vector<std::uint32_t> transients_;
 };
 
 }  // namespace

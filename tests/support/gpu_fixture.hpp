@@ -1,7 +1,8 @@
 // GpuTest: a test on the shared Vulkan device, with validation and synchronization validation on.
 // Any message fails the test; objects still alive at the program's end fail the program. One device
 // a process, made by the first test that asks. Reports skipped where the machine has no Vulkan
-// device or no validation layer. $NERITIC_TEST_DEVICE: which device (name or index) to test on.
+// device or no validation layer, unless $NERITIC_REQUIRE_DEVICE is 1; any other error is a failure.
+// $NERITIC_TEST_DEVICE: which device (name or index) to test on.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -41,6 +42,14 @@ class GpuEnvironment : public ::testing::Environment {
   std::unique_ptr<Result<std::unique_ptr<gpu::Device>>> device_;
 };
 
+// May a test be skipped for this error? Only where nothing is there to test on, and none is required.
+inline bool may_skip_without_device(const Error& error) {
+  const char* required = std::getenv("NERITIC_REQUIRE_DEVICE");
+  if (required && std::string(required) == "1") return false;
+  const bool named = std::getenv("NERITIC_TEST_DEVICE") != nullptr;  // a wrong name is no missing device
+  return (error.code == ErrorCode::kNoDevice && !named) || !gpu::validation_layer_present();
+}
+
 // Registered once a program; GoogleTest owns it.
 inline GpuEnvironment* const gpu_environment =
     static_cast<GpuEnvironment*>(::testing::AddGlobalTestEnvironment(new GpuEnvironment));
@@ -49,7 +58,8 @@ class GpuTest : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto& made = gpu_environment->device();
-    if (!made.ok()) GTEST_SKIP() << made.error().message;
+    if (!made.ok() && may_skip_without_device(made.error())) GTEST_SKIP() << made.error().message;
+    ASSERT_TRUE(made.ok()) << made.error().message;
     device_ = made.value().get();
     device_->clear_validation_log();
   }
