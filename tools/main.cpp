@@ -14,7 +14,8 @@ int failed(const neritic::Error& error) {
 }
 
 int run(int argc, char** argv) {
-  const auto line = neritic::tools::parse_command_line(std::vector<std::string>(argv + 1, argv + argc));
+  const auto line =
+      neritic::tools::parse_command_line(std::vector<std::string>(argv + 1, argv + argc));
   if (!line.ok()) return failed(line.error());
   if (!line->help.empty()) {
     std::fputs(line->help.c_str(), stdout);

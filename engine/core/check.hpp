@@ -17,8 +17,8 @@ namespace neritic {
 }  // namespace neritic
 
 // NERITIC_CHECK(i < n, "i {} n {}", i, n)
-#define NERITIC_CHECK(condition, ...)                                                 \
-  do {                                                                                \
-    if (!(condition)) [[unlikely]]                                                    \
+#define NERITIC_CHECK(condition, ...)                                                    \
+  do {                                                                                   \
+    if (!(condition)) [[unlikely]]                                                       \
       ::neritic::check_failed(__FILE__, __LINE__, #condition, fmt::format(__VA_ARGS__)); \
   } while (false)

@@ -13,6 +13,8 @@ inline TimeNs now_ns() {
              std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
-inline double to_ms(TimeNs duration_ns) { return static_cast<double>(duration_ns) * 1e-6; }
+inline double to_ms(TimeNs duration_ns) {
+  return static_cast<double>(duration_ns) * 1e-6;
+}
 
 }  // namespace neritic

@@ -54,7 +54,8 @@ Status write_file(const fs::path& path, std::span<const std::byte> bytes) {
   temporary += fmt::format(".{}-{}.tmp", ::getpid(), counter++);
   File file(std::fopen(temporary.c_str(), "wb"));
   if (!file) return failure(ErrorCode::kIo, "{}: cannot be written", path.string());
-  const bool written = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
+  const bool written =
+      bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
   const bool closed = std::fclose(file.release()) == 0;
   std::error_code error;
   if (written && closed) fs::rename(temporary, path, error);

@@ -2,20 +2,20 @@
 // Basis and prime of Fowler, Noll and Vo (draft-eastlake-fnv). Any thread.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <string>
-
-#include <fmt/format.h>
 
 namespace neritic {
 
 class Hash64 {
  public:
   void add_bytes(const void* data, std::size_t size) {
-    // Eight bytes a step (FNV's mixing on words, then a fold): the value is ours, not interchangeable
-    // with other FNV programs; it only has to differ when the bytes do.
+    // Eight bytes a step (FNV's mixing on words, then a fold): the value is ours, not
+    // interchangeable with other FNV programs; it only has to differ when the bytes do.
     const auto* p = static_cast<const unsigned char*>(data);
     for (; size >= 8; p += 8, size -= 8) {
       std::uint64_t word = 0;

@@ -9,7 +9,9 @@ namespace {
 std::atomic<LogLevel> g_level{LogLevel::kWarnings};  // the one process-wide setting: what to print
 }
 
-void set_log_level(LogLevel level) { g_level = level; }
+void set_log_level(LogLevel level) {
+  g_level = level;
+}
 
 void log_line(LogLevel level, std::string_view line) {
   if (level > g_level.load()) return;

@@ -23,8 +23,12 @@ using Vec4f = glm::vec4;
 using Mat4f = glm::mat4;
 
 inline constexpr double kPi = std::numbers::pi;
-constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
-constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
+constexpr double radians(double degrees) {
+  return degrees * (kPi / 180.0);
+}
+constexpr double degrees(double radians) {
+  return radians * (180.0 / kPi);
+}
 
 // A rigid transform: target_from_source. point_target = rotation * point_source + position_m.
 struct Pose {
@@ -49,8 +53,8 @@ inline Mat4 to_matrix(const Pose& pose) {
   return m;
 }
 
-// World_from_view pose of a camera at eye that looks at target; up defaults to +Y. Where the line of
-// sight is parallel to up, -Z (or +X) stands in for it.
+// World_from_view pose of a camera at eye that looks at target; up defaults to +Y. Where the line
+// of sight is parallel to up, -Z (or +X) stands in for it.
 Pose look_at(const Vec3& eye_m, const Vec3& target_m, const Vec3& up = Vec3(0.0, 1.0, 0.0));
 
 // Attitude of a body that faces -Z: yaw about +Y (positive turns to port), then pitch about the

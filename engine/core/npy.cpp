@@ -39,14 +39,16 @@ std::string_view value_of(std::string_view header, std::string_view key) {
     const auto colon = rest.find(':');
     if (colon == std::string_view::npos) return {};
     rest = rest.substr(colon + 1);
-    while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.front()))) rest.remove_prefix(1);
+    while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.front())))
+      rest.remove_prefix(1);
     return rest;
   }
   return {};
 }
 
 Result<std::vector<std::size_t>> parse_shape(std::string_view text, const std::string& name) {
-  if (text.empty() || text.front() != '(') return bad_input("{}: the .npy header has no shape", name);
+  if (text.empty() || text.front() != '(')
+    return bad_input("{}: the .npy header has no shape", name);
   std::vector<std::size_t> shape;
   std::size_t i = 1;
   while (i < text.size() && text[i] != ')') {
@@ -55,14 +57,16 @@ Result<std::vector<std::size_t>> parse_shape(std::string_view text, const std::s
       continue;
     }
     if (!std::isdigit(static_cast<unsigned char>(text[i])))
-      return bad_input("{}: the .npy shape has '{}', only whole numbers are accepted", name, text[i]);
+      return bad_input("{}: the .npy shape has '{}', only whole numbers are accepted", name,
+                       text[i]);
     std::size_t value = 0;
     while (i < text.size() && std::isdigit(static_cast<unsigned char>(text[i]))) {
       if (value > kMaxFileBytes) return bad_input("{}: the .npy shape is too large", name);
       value = value * 10 + static_cast<std::size_t>(text[i++] - '0');
     }
     shape.push_back(value);
-    if (shape.size() > kMaxDimensions) return bad_input("{}: the .npy shape has over 32 axes", name);
+    if (shape.size() > kMaxDimensions)
+      return bad_input("{}: the .npy shape has over 32 axes", name);
   }
   if (i >= text.size()) return bad_input("{}: the .npy shape does not end", name);
   return shape;
@@ -80,11 +84,15 @@ void append_as_doubles(std::span<const std::byte> bytes, std::vector<double>& ou
 }  // namespace
 
 std::size_t npy_type_size(NpyType type) {
-  return std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& r) { return r.type == type; })->size;
+  return std::find_if(kTypes.begin(), kTypes.end(),
+                      [&](const TypeRow& r) { return r.type == type; })
+      ->size;
 }
 
 std::string npy_type_name(NpyType type) {
-  return std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& r) { return r.type == type; })->name;
+  return std::find_if(kTypes.begin(), kTypes.end(),
+                      [&](const TypeRow& r) { return r.type == type; })
+      ->name;
 }
 
 std::size_t NpyArray::count() const {
@@ -97,15 +105,31 @@ std::vector<double> NpyArray::to_doubles() const {
   std::vector<double> out;
   out.reserve(count());
   switch (type) {
-    case NpyType::kFloat32: append_as_doubles<float>(bytes, out); break;
-    case NpyType::kFloat64: append_as_doubles<double>(bytes, out); break;
+    case NpyType::kFloat32:
+      append_as_doubles<float>(bytes, out);
+      break;
+    case NpyType::kFloat64:
+      append_as_doubles<double>(bytes, out);
+      break;
     case NpyType::kUint8:
-    case NpyType::kBool: append_as_doubles<std::uint8_t>(bytes, out); break;
-    case NpyType::kUint16: append_as_doubles<std::uint16_t>(bytes, out); break;
-    case NpyType::kUint32: append_as_doubles<std::uint32_t>(bytes, out); break;
-    case NpyType::kInt16: append_as_doubles<std::int16_t>(bytes, out); break;
-    case NpyType::kInt32: append_as_doubles<std::int32_t>(bytes, out); break;
-    case NpyType::kInt64: append_as_doubles<std::int64_t>(bytes, out); break;
+    case NpyType::kBool:
+      append_as_doubles<std::uint8_t>(bytes, out);
+      break;
+    case NpyType::kUint16:
+      append_as_doubles<std::uint16_t>(bytes, out);
+      break;
+    case NpyType::kUint32:
+      append_as_doubles<std::uint32_t>(bytes, out);
+      break;
+    case NpyType::kInt16:
+      append_as_doubles<std::int16_t>(bytes, out);
+      break;
+    case NpyType::kInt32:
+      append_as_doubles<std::int32_t>(bytes, out);
+      break;
+    case NpyType::kInt64:
+      append_as_doubles<std::int64_t>(bytes, out);
+      break;
   }
   return out;
 }
@@ -115,7 +139,8 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
     return bad_input("{}: not an .npy file", name);
   const auto byte_at = [&](std::size_t i) { return std::to_integer<std::size_t>(bytes[i]); };
   const std::size_t major = byte_at(6);
-  if (major < 1 || major > 3) return bad_input("{}: .npy version {}, 1 to 3 are accepted", name, major);
+  if (major < 1 || major > 3)
+    return bad_input("{}: .npy version {}, 1 to 3 are accepted", name, major);
   const std::size_t prefix = major == 1 ? 10 : 12;
   if (bytes.size() < prefix) return bad_input("{}: the .npy header is cut off", name);
   std::size_t length = byte_at(8) | byte_at(9) << 8;
@@ -125,7 +150,8 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
 
   // Printable ASCII that ends in a newline (NEP 1): what is quoted below then stays on one line.
   const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
-  if (!std::all_of(header.begin(), header.end(), [&](char c) { return printable(c) || c == '\n'; }) ||
+  if (!std::all_of(header.begin(), header.end(),
+                   [&](char c) { return printable(c) || c == '\n'; }) ||
       header.substr(0, header.empty() ? 0 : header.size() - 1).find('\n') != header.npos)
     return bad_input("{}: the .npy header is not one line of text", name);
 
@@ -137,7 +163,8 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
     const bool one_byte = type_name[2] == '1';
     type_name[0] = one_byte ? '|' : '<';
   }
-  if (type_name == "|i1") return bad_input("{}: int8 elements; float, uint and int of 16 bits up are accepted", name);
+  if (type_name == "|i1")
+    return bad_input("{}: int8 elements; float, uint and int of 16 bits up are accepted", name);
   const auto row = std::find_if(kTypes.begin(), kTypes.end(),
                                 [&](const TypeRow& r) { return type_name == r.name; });
   if (row == kTypes.end())
@@ -167,12 +194,13 @@ Result<NpyArray> read_npy(const std::filesystem::path& path) {
   return parse_npy(bytes, path.string());
 }
 
-Status write_npy(const std::filesystem::path& path, NpyType type, std::span<const std::size_t> shape,
-                 std::span<const std::byte> bytes) {
+Status write_npy(const std::filesystem::path& path, NpyType type,
+                 std::span<const std::size_t> shape, std::span<const std::byte> bytes) {
   std::string dims;
   for (const std::size_t extent : shape) dims += fmt::format("{}, ", extent);
-  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}",
-                                   npy_type_name(type), shape.size() == 1 ? dims : dims.substr(0, dims.size() - 2));
+  std::string header =
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", npy_type_name(type),
+                  shape.size() == 1 ? dims : dims.substr(0, dims.size() - 2));
   // Data starts on a multiple of 64 bytes, as the format asks.
   while ((10 + header.size() + 1) % 64 != 0) header += ' ';
   header += '\n';
@@ -189,15 +217,18 @@ Status write_npy(const std::filesystem::path& path, NpyType type, std::span<cons
 
 Status write_npy(const std::filesystem::path& path, std::span<const float> values,
                  std::initializer_list<std::size_t> shape) {
-  return write_npy(path, NpyType::kFloat32, std::span(shape.begin(), shape.size()), std::as_bytes(values));
+  return write_npy(path, NpyType::kFloat32, std::span(shape.begin(), shape.size()),
+                   std::as_bytes(values));
 }
 Status write_npy(const std::filesystem::path& path, std::span<const double> values,
                  std::initializer_list<std::size_t> shape) {
-  return write_npy(path, NpyType::kFloat64, std::span(shape.begin(), shape.size()), std::as_bytes(values));
+  return write_npy(path, NpyType::kFloat64, std::span(shape.begin(), shape.size()),
+                   std::as_bytes(values));
 }
 Status write_npy(const std::filesystem::path& path, std::span<const std::uint16_t> values,
                  std::initializer_list<std::size_t> shape) {
-  return write_npy(path, NpyType::kUint16, std::span(shape.begin(), shape.size()), std::as_bytes(values));
+  return write_npy(path, NpyType::kUint16, std::span(shape.begin(), shape.size()),
+                   std::as_bytes(values));
 }
 
 }  // namespace neritic

@@ -34,8 +34,8 @@ Result<NpyArray> read_npy(const std::filesystem::path& path);
 // The same from bytes already in memory; name stands in messages. For fuzzing and archives.
 Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& name);
 
-Status write_npy(const std::filesystem::path& path, NpyType type, std::span<const std::size_t> shape,
-                 std::span<const std::byte> bytes);
+Status write_npy(const std::filesystem::path& path, NpyType type,
+                 std::span<const std::size_t> shape, std::span<const std::byte> bytes);
 Status write_npy(const std::filesystem::path& path, std::span<const float> values,
                  std::initializer_list<std::size_t> shape);
 Status write_npy(const std::filesystem::path& path, std::span<const double> values,

@@ -28,7 +28,9 @@ struct Error {
 };
 
 // The program's exit status for an error: 2 for bad input or usage, 1 for everything else.
-inline int exit_status(ErrorCode code) { return code == ErrorCode::kBadInput ? 2 : 1; }
+inline int exit_status(ErrorCode code) {
+  return code == ErrorCode::kBadInput ? 2 : 1;
+}
 
 template <class T>
 class [[nodiscard]] Result {
@@ -90,7 +92,7 @@ Error failure(ErrorCode code, fmt::format_string<Args...> format, Args&&... args
   if (!name.ok()) return name.error();                   \
   declaration = std::move(name).value()
 // The same for a Status.
-#define NERITIC_TRY_STATUS(expression)                                             \
-  if (auto NERITIC_CONCAT(status_, __LINE__) = (expression);                       \
-      !NERITIC_CONCAT(status_, __LINE__).ok())                                     \
+#define NERITIC_TRY_STATUS(expression)                       \
+  if (auto NERITIC_CONCAT(status_, __LINE__) = (expression); \
+      !NERITIC_CONCAT(status_, __LINE__).ok())               \
   return NERITIC_CONCAT(status_, __LINE__).error()

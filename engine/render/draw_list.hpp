@@ -20,12 +20,12 @@ struct Draw {
 struct DrawList {
   std::vector<shared::Instance> instances;
   std::vector<shared::NextInstance> next_instances;  // empty without motion
-  std::vector<Draw> opaque;   // front to back
-  std::vector<Draw> blended;  // back to front, one instance a draw
+  std::vector<Draw> opaque;                          // front to back
+  std::vector<Draw> blended;                         // back to front, one instance a draw
   std::uint64_t triangles = 0;
 };
 
-DrawList build_draw_list(const scene::Scene& scene, const GpuScene& gpu_scene, const FrameState& state,
-                         const ViewSet& views);
+DrawList build_draw_list(const scene::Scene& scene, const GpuScene& gpu_scene,
+                         const FrameState& state, const ViewSet& views);
 
 }  // namespace neritic::render

@@ -12,22 +12,26 @@ scene::ModelPose pose_of(const scene::Object& object, const scene::Model& model,
   return scene::evaluate_pose(model, object.clip, object.clip_offset_s + time_s * object.clip_rate);
 }
 
-void append_joints(std::vector<Mat4f>& out, const scene::Model& model, const scene::ModelPose& pose, int skin) {
+void append_joints(std::vector<Mat4f>& out, const scene::Model& model, const scene::ModelPose& pose,
+                   int skin) {
   for (const Mat4& m : scene::joint_matrices(model, pose, skin)) out.push_back(Mat4f(m));
 }
 
-void append_weights(std::vector<float>& out, const scene::ModelPose& pose, std::uint32_t node, std::uint32_t count) {
+void append_weights(std::vector<float>& out, const scene::ModelPose& pose, std::uint32_t node,
+                    std::uint32_t count) {
   const std::vector<float>& weights = pose.morph_weights[node];
   for (std::uint32_t i = 0; i < count; ++i) out.push_back(i < weights.size() ? weights[i] : 0.0f);
 }
 
 }  // namespace
 
-std::uint32_t FrameState::deformed_at(std::uint32_t group, std::uint32_t object, std::uint32_t node) const {
+std::uint32_t FrameState::deformed_at(std::uint32_t group, std::uint32_t object,
+                                      std::uint32_t node) const {
   const auto key = std::make_tuple(group, object, node);
-  const auto at = std::lower_bound(deforms.begin(), deforms.end(), key, [](const DeformJob& job, const auto& k) {
-    return std::make_tuple(job.group, job.object, job.node) < k;
-  });
+  const auto at = std::lower_bound(deforms.begin(), deforms.end(), key,
+                                   [](const DeformJob& job, const auto& k) {
+                                     return std::make_tuple(job.group, job.object, job.node) < k;
+                                   });
   if (at == deforms.end() || std::make_tuple(at->group, at->object, at->node) != key) return kNone;
   return at->push.first_out;
 }
@@ -41,13 +45,15 @@ FrameState evaluate_frame(const scene::Scene& scene, const GpuScene& gpu_scene, 
   for (const scene::Object& object : scene.objects) {
     state.world_from_object.push_back(scene.world_from(object.mount));
     const scene::Model empty;
-    const scene::Model& model = object.model >= 0 ? *scene.models[static_cast<std::size_t>(object.model)] : empty;
+    const scene::Model& model =
+        object.model >= 0 ? *scene.models[static_cast<std::size_t>(object.model)] : empty;
     state.poses.push_back(pose_of(object, model, time_s));
     if (motion) state.next_poses.push_back(pose_of(object, model, next_time_s));
   }
   state.next_world_from_object = state.world_from_object;
 
-  // One job an object's node and primitive, however many copies; groups ascend, so the list is sorted.
+  // One job an object's node and primitive, however many copies; groups ascend, so the list is
+  // sorted.
   for (std::uint32_t g = 0; g < gpu_scene.groups().size(); ++g) {
     const DrawGroup& group = gpu_scene.groups()[g];
     const GpuPrimitive& primitive = group.primitive;
@@ -55,7 +61,8 @@ FrameState evaluate_frame(const scene::Scene& scene, const GpuScene& gpu_scene, 
     std::set<std::pair<std::uint32_t, std::uint32_t>> who;
     for (const Appearance& a : group.appearances) who.insert({a.object, a.node});
     for (const auto& [object, node] : who) {
-      const scene::Model& model = *scene.models[static_cast<std::size_t>(scene.objects[object].model)];
+      const scene::Model& model =
+          *scene.models[static_cast<std::size_t>(scene.objects[object].model)];
       const int skin = model.nodes[node].skin;
       const bool skinned = primitive.first_skin != kNone && skin >= 0;
       if (!skinned && primitive.morph_targets == 0) continue;
@@ -70,11 +77,13 @@ FrameState evaluate_frame(const scene::Scene& scene, const GpuScene& gpu_scene, 
       job.push.first_out = state.deformed_vertices;
       job.push.next = motion ? 1u : 0u;
       if (skinned) append_joints(state.joints, model, state.poses[object], skin);
-      job.push.joint_stride = static_cast<std::uint32_t>(state.joints.size()) - job.push.first_joint;
+      job.push.joint_stride =
+          static_cast<std::uint32_t>(state.joints.size()) - job.push.first_joint;
       if (skinned && motion) append_joints(state.joints, model, state.next_poses[object], skin);
       append_weights(state.weights, state.poses[object], node, primitive.morph_targets);
       job.push.weight_stride = primitive.morph_targets;
-      if (motion) append_weights(state.weights, state.next_poses[object], node, primitive.morph_targets);
+      if (motion)
+        append_weights(state.weights, state.next_poses[object], node, primitive.morph_targets);
       state.deformed_vertices += primitive.vertex_count;
       state.deforms.push_back(job);
     }
@@ -82,8 +91,8 @@ FrameState evaluate_frame(const scene::Scene& scene, const GpuScene& gpu_scene, 
   return state;
 }
 
-Mat4 world_from_appearance(const scene::Scene& scene, const Pose& world_from_object, const scene::ModelPose& pose,
-                           const Appearance& a, bool skinned) {
+Mat4 world_from_appearance(const scene::Scene& scene, const Pose& world_from_object,
+                           const scene::ModelPose& pose, const Appearance& a, bool skinned) {
   const scene::Object& object = scene.objects[a.object];
   Mat4 m = to_matrix(world_from_object);
   if (a.copy >= 0) m = m * object.copies[static_cast<std::size_t>(a.copy)];

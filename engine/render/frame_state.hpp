@@ -1,6 +1,6 @@
 // Where everything of a scene is at one instant (and, for motion, at the next frame's): object and
-// node transforms, joint matrices, morph weights. Computed on the CPU in double, once a frame, shared
-// by all view sets. A plain value.
+// node transforms, joint matrices, morph weights. Computed on the CPU in double, once a frame,
+// shared by all view sets. A plain value.
 #pragma once
 
 #include <vector>
@@ -20,10 +20,10 @@ struct DeformJob {
 struct FrameState {
   double time_s = 0.0, next_time_s = 0.0;
   bool motion = false;
-  std::vector<Pose> world_from_object, next_world_from_object;       // an object
-  std::vector<scene::ModelPose> poses, next_poses;                   // an object
-  std::vector<Mat4f> joints;     // of all jobs: now, then next
-  std::vector<float> weights;    // likewise
+  std::vector<Pose> world_from_object, next_world_from_object;  // an object
+  std::vector<scene::ModelPose> poses, next_poses;              // an object
+  std::vector<Mat4f> joints;                                    // of all jobs: now, then next
+  std::vector<float> weights;                                   // likewise
   std::vector<DeformJob> deforms;
   std::uint32_t deformed_vertices = 0;
 
@@ -34,8 +34,10 @@ struct FrameState {
 FrameState evaluate_frame(const scene::Scene& scene, const GpuScene& gpu_scene, double time_s,
                           double next_time_s, bool motion);
 
-// World_from_primitive of an appearance: object, copy, node (unless skinned: joints hold it), instance.
+// World_from_primitive of an appearance: object, copy, node (unless skinned: joints hold it),
+// instance.
 Mat4 world_from_appearance(const scene::Scene& scene, const Pose& world_from_object,
-                           const scene::ModelPose& pose, const Appearance& appearance, bool skinned);
+                           const scene::ModelPose& pose, const Appearance& appearance,
+                           bool skinned);
 
 }  // namespace neritic::render

@@ -6,7 +6,8 @@
 namespace neritic::render {
 namespace {
 
-VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layout, VkAttachmentLoadOp load) {
+VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layout,
+                                     VkAttachmentLoadOp load) {
   VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
   info.imageView = image.view();
   info.imageLayout = layout;
@@ -16,9 +17,12 @@ VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layo
 }
 
 // With one layer multiview is off (mask 0): some devices draw plain views faster.
-std::uint32_t view_mask_of(std::uint32_t layers) { return layers > 1 ? (1u << layers) - 1u : 0u; }
+std::uint32_t view_mask_of(std::uint32_t layers) {
+  return layers > 1 ? (1u << layers) - 1u : 0u;
+}
 
-void begin_rendering(VkCommandBuffer cmd, const GBuffer& gbuffer, std::span<const VkRenderingAttachmentInfo> colors,
+void begin_rendering(VkCommandBuffer cmd, const GBuffer& gbuffer,
+                     std::span<const VkRenderingAttachmentInfo> colors,
                      const VkRenderingAttachmentInfo& depth) {
   VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
   info.renderArea.extent = {gbuffer.width, gbuffer.height};
@@ -28,7 +32,9 @@ void begin_rendering(VkCommandBuffer cmd, const GBuffer& gbuffer, std::span<cons
   info.pColorAttachments = colors.data();
   info.pDepthAttachment = &depth;
   vkCmdBeginRendering(cmd, &info);
-  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(gbuffer.width), static_cast<float>(gbuffer.height), 0.0f, 1.0f};
+  const VkViewport viewport{
+      0.0f, 0.0f, static_cast<float>(gbuffer.width), static_cast<float>(gbuffer.height),
+      0.0f, 1.0f};
   vkCmdSetViewport(cmd, 0, 1, &viewport);
   vkCmdSetScissor(cmd, 0, 1, &info.renderArea);
 }
@@ -38,39 +44,45 @@ gpu::BoundResource bound_slice(std::uint32_t binding, const gpu::UploadSlice& sl
 }
 
 template <class T>
-gpu::BoundResource uploaded(gpu::Commands& commands, std::uint32_t binding, const std::vector<T>& values,
-                            const gpu::Buffer& nothing) {
+gpu::BoundResource uploaded(gpu::Commands& commands, std::uint32_t binding,
+                            const std::vector<T>& values, const gpu::Buffer& nothing) {
   if (values.empty()) return gpu::bound_buffer(binding, nothing.handle());
   return bound_slice(binding, commands.upload(std::span<const T>(values)));
 }
 
 }  // namespace
 
-Renderer::InstanceStreams Renderer::upload_instances(gpu::Commands& commands, const DrawList& draws, bool motion) {
+Renderer::InstanceStreams Renderer::upload_instances(gpu::Commands& commands, const DrawList& draws,
+                                                     bool motion) {
   const gpu::UploadSlice now = commands.upload(std::span<const shared::Instance>(draws.instances));
   if (!motion) return {now, now};
   return {now, commands.upload(std::span<const shared::NextInstance>(draws.next_instances))};
 }
 
-Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, const GpuScene& scene, const FrameState& state) {
+Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, const GpuScene& scene,
+                                                  const FrameState& state) {
   if (state.deforms.empty()) return DeformedGeometry{};
   if (!deform_) {
     constexpr auto kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     gpu::ComputePipelineDesc desc;
     desc.name = "deform";
     desc.code = shaders::kDeformComp;
-    for (std::uint32_t b = shared::kDeformPositions; b <= shared::kDeformNextOut; ++b) desc.layout.bindings.push_back({b, kStorage});
+    for (std::uint32_t b = shared::kDeformPositions; b <= shared::kDeformNextOut; ++b)
+      desc.layout.bindings.push_back({b, kStorage});
     desc.layout.push_constant_bytes = sizeof(shared::DeformPush);
     NERITIC_TRY(deform_, gpu::Pipeline::create(device_, desc));
   }
   return graph.add_pass<DeformedGeometry>(
       "deform",
       [&](graph::PassBuilder& builder, DeformedGeometry& data) {
-        data.positions = builder.create_buffer("deformed positions", state.deformed_vertices * sizeof(shared::VertexPosition));
+        data.positions = builder.create_buffer(
+            "deformed positions", state.deformed_vertices * sizeof(shared::VertexPosition));
         data.positions = builder.write(data.positions, graph::Access::kStorageWriteCompute);
         if (!state.motion) return;
-        data.next_positions = builder.create_buffer("next positions", state.deformed_vertices * sizeof(Vec3f));
-        data.next_positions = builder.write(data.next_positions, graph::Access::kStorageWriteCompute);
+        data.next_positions =
+            builder.create_buffer("next positions", state.deformed_vertices * sizeof(Vec3f));
+        data.next_positions =
+            builder.write(data.next_positions, graph::Access::kStorageWriteCompute);
       },
       [this, &scene, &state](const DeformedGeometry& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
@@ -81,29 +93,35 @@ Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, cons
             gpu::bound_buffer(shared::kDeformMorphs, scene.morphs().handle()),
             uploaded(commands, shared::kDeformWeights, state.weights, nothing_),
             gpu::bound_buffer(shared::kDeformOut, context.buffer(data.positions).handle()),
-            gpu::bound_buffer(shared::kDeformNextOut,
-                              // Without motion nothing is written there; a buffer of no other pass stands in.
-                              context.buffer(data.next_positions ? data.next_positions : data.positions).handle())};
+            gpu::bound_buffer(
+                shared::kDeformNextOut,
+                // Without motion nothing is written there; a buffer of no other pass stands in.
+                context.buffer(data.next_positions ? data.next_positions : data.positions)
+                    .handle())};
         commands.bind_pipeline(deform_);
         commands.bind(deform_, resources);
         for (const DeformJob& job : state.deforms) {
           commands.push(deform_, job.push);
-          commands.dispatch((job.push.vertex_count + shared::kDeformGroup - 1) / shared::kDeformGroup);
+          commands.dispatch((job.push.vertex_count + shared::kDeformGroup - 1) /
+                            shared::kDeformGroup);
         }
       });
 }
 
-Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix, GBufferKind kind,
-                                          const GpuScene& scene, const FrameState& state, const DeformedGeometry& deformed,
+Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix,
+                                          GBufferKind kind, const GpuScene& scene,
+                                          const FrameState& state, const DeformedGeometry& deformed,
                                           const ViewSet& views, const DrawList& draws) {
   const bool surface = kind == GBufferKind::kSurface;
   const bool motion = surface && state.motion;
   const bool emissive = surface && scene.has_emission();
   const std::uint32_t layers = views.layers();
-  NERITIC_TRY(PreparedDraws prepared, prepare(scene, draws.opaque, kind, false, motion, emissive, view_mask_of(layers)));
+  NERITIC_TRY(PreparedDraws prepared,
+              prepare(scene, draws.opaque, kind, false, motion, emissive, view_mask_of(layers)));
   // A sonar hears blended surfaces as solid ones; a camera draws them in the forward pass.
   if (!surface) {
-    NERITIC_TRY(PreparedDraws more, prepare(scene, draws.blended, kind, false, false, false, view_mask_of(layers)));
+    NERITIC_TRY(PreparedDraws more,
+                prepare(scene, draws.blended, kind, false, false, false, view_mask_of(layers)));
     prepared.draws.insert(prepared.draws.end(), more.draws.begin(), more.draws.end());
   }
   return graph.add_pass<GBuffer>(
@@ -113,7 +131,8 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
         g.height = views.height;
         g.layers = layers;
         const auto target = [&](const char* name, VkFormat format, graph::Access access) {
-          return builder.write(builder.create_image(prefix + name, {format, g.width, g.height, layers}), access);
+          return builder.write(
+              builder.create_image(prefix + name, {format, g.width, g.height, layers}), access);
         };
         g.depth = target("depth", kDepthFormat, graph::Access::kDepthAttachment);
         g.normal = target("normal", kNormalFormat, graph::Access::kColorAttachment);
@@ -122,37 +141,48 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
           g.albedo = target("albedo", kAlbedoFormat, graph::Access::kColorAttachment);
           g.material = target("material", kMaterialFormat, graph::Access::kColorAttachment);
         }
-        if (emissive) g.emissive = target("emissive", kEmissiveFormat, graph::Access::kColorAttachment);
+        if (emissive)
+          g.emissive = target("emissive", kEmissiveFormat, graph::Access::kColorAttachment);
         if (motion) g.motion = target("motion", kMotionFormat, graph::Access::kColorAttachment);
         if (deformed.positions) builder.read(deformed.positions, graph::Access::kVertexBuffer);
-        if (motion && deformed.next_positions) builder.read(deformed.next_positions, graph::Access::kStorageReadVertex);
+        if (motion && deformed.next_positions)
+          builder.read(deformed.next_positions, graph::Access::kStorageReadVertex);
       },
       [this, motion, prepared = std::move(prepared), deformed, &scene, &views, &draws](
           const GBuffer& g, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::BoundResource set0[] = {
-            bound_slice(shared::kRasterViews, commands.upload(std::span<const shared::View>(gpu_views(views)))),
-            gpu::bound_buffer(shared::kRasterNextPositions, motion && deformed.next_positions
-                                                                ? context.buffer(deformed.next_positions).handle()
-                                                                : nothing_.handle())};
+            bound_slice(shared::kRasterViews,
+                        commands.upload(std::span<const shared::View>(gpu_views(views)))),
+            gpu::bound_buffer(shared::kRasterNextPositions,
+                              motion && deformed.next_positions
+                                  ? context.buffer(deformed.next_positions).handle()
+                                  : nothing_.handle())};
         constexpr auto kColor = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
         std::vector<VkRenderingAttachmentInfo> colors;
-        for (const graph::ImageHandle handle : {g.normal, g.label, g.albedo, g.material, g.emissive, g.motion})
-          if (handle) colors.push_back(attachment(context.image(handle), kColor, VK_ATTACHMENT_LOAD_OP_CLEAR));
+        for (const graph::ImageHandle handle :
+             {g.normal, g.label, g.albedo, g.material, g.emissive, g.motion})
+          if (handle)
+            colors.push_back(
+                attachment(context.image(handle), kColor, VK_ATTACHMENT_LOAD_OP_CLEAR));
         const VkRenderingAttachmentInfo depth =
-            attachment(context.image(g.depth), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_CLEAR);
+            attachment(context.image(g.depth), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                       VK_ATTACHMENT_LOAD_OP_CLEAR);
         begin_rendering(context.cmd(), g, colors, depth);
-        record_draws(prepared, scene, deformed.positions ? &context.buffer(deformed.positions) : nullptr,
-                     upload_instances(commands, draws, motion), Vec2f(g.width, g.height), set0, commands);
+        record_draws(
+            prepared, scene, deformed.positions ? &context.buffer(deformed.positions) : nullptr,
+            upload_instances(commands, draws, motion), Vec2f(g.width, g.height), set0, commands);
         vkCmdEndRendering(context.cmd());
       });
 }
 
-Result<graph::ImageHandle> Renderer::declare_forward(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
-                                                     const GBuffer& gbuffer, const GpuScene& scene, const DeformedGeometry& deformed,
-                                                     const ViewSet& views, const DrawList& draws, const shared::Lighting& lighting) {
+Result<graph::ImageHandle> Renderer::declare_forward(
+    graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
+    const GBuffer& gbuffer, const GpuScene& scene, const DeformedGeometry& deformed,
+    const ViewSet& views, const DrawList& draws, const shared::Lighting& lighting) {
   if (draws.blended.empty()) return hdr;
-  NERITIC_TRY(PreparedDraws prepared, prepare(scene, draws.blended, GBufferKind::kSurface, true, false, false, view_mask_of(gbuffer.layers)));
+  NERITIC_TRY(PreparedDraws prepared, prepare(scene, draws.blended, GBufferKind::kSurface, true,
+                                              false, false, view_mask_of(gbuffer.layers)));
   struct Data {
     graph::ImageHandle hdr;
   };
@@ -163,20 +193,26 @@ Result<graph::ImageHandle> Renderer::declare_forward(graph::FrameGraph& graph, c
         builder.read(gbuffer.depth, graph::Access::kDepthTest);
         if (deformed.positions) builder.read(deformed.positions, graph::Access::kVertexBuffer);
       },
-      [this, gbuffer, prepared = std::move(prepared), deformed, lighting, &scene, &views, &draws](const Data& data, graph::PassContext& context) {
+      [this, gbuffer, prepared = std::move(prepared), deformed, lighting, &scene, &views, &draws](
+          const Data& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::BoundResource set0[] = {
-            bound_slice(shared::kRasterViews, commands.upload(std::span<const shared::View>(gpu_views(views)))),
+            bound_slice(shared::kRasterViews,
+                        commands.upload(std::span<const shared::View>(gpu_views(views)))),
             gpu::bound_buffer(shared::kRasterNextPositions, nothing_.handle()),
             bound_slice(shared::kRasterLighting, commands.upload(&lighting, sizeof lighting))};
         const VkRenderingAttachmentInfo color =
-            attachment(context.image(data.hdr), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_LOAD);
+            attachment(context.image(data.hdr), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                       VK_ATTACHMENT_LOAD_OP_LOAD);
         VkRenderingAttachmentInfo depth = attachment(
-            context.image(gbuffer.depth), graph::access_info(graph::Access::kDepthTest).layout, VK_ATTACHMENT_LOAD_OP_LOAD);
+            context.image(gbuffer.depth), graph::access_info(graph::Access::kDepthTest).layout,
+            VK_ATTACHMENT_LOAD_OP_LOAD);
         depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;  // a store would count as a write
         begin_rendering(context.cmd(), gbuffer, std::span(&color, 1), depth);
-        record_draws(prepared, scene, deformed.positions ? &context.buffer(deformed.positions) : nullptr,
-                     upload_instances(commands, draws, false), Vec2f(gbuffer.width, gbuffer.height), set0, commands);
+        record_draws(prepared, scene,
+                     deformed.positions ? &context.buffer(deformed.positions) : nullptr,
+                     upload_instances(commands, draws, false), Vec2f(gbuffer.width, gbuffer.height),
+                     set0, commands);
         vkCmdEndRendering(context.cmd());
       });
   return pass.hdr;

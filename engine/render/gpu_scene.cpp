@@ -32,7 +32,8 @@ std::uint32_t pack_normal(const Vec3f& n) {
   return glm::packSnorm2x16(shared::octahedral_encode(unit));
 }
 
-// Octahedral x in the low 16 bits, sign of the bitangent in bit 16, y in the upper 15 (gbuffer.vert).
+// Octahedral x in the low 16 bits, sign of the bitangent in bit 16, y in the upper 15
+// (gbuffer.vert).
 std::uint32_t pack_tangent(const Vec4f& t) {
   const float size = glm::length(Vec3f(t));
   if (!(size > 1e-20f) || !std::isfinite(size)) return 0x80008000u | 0x10000u;
@@ -48,16 +49,20 @@ shared::TextureMapping mapping_of(const scene::TextureRef& ref) {
 
 VkSamplerAddressMode address_mode(scene::Wrap wrap) {
   switch (wrap) {
-    case scene::Wrap::kMirroredRepeat: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-    case scene::Wrap::kClampToEdge: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    default: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    case scene::Wrap::kMirroredRepeat:
+      return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    case scene::Wrap::kClampToEdge:
+      return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    default:
+      return VK_SAMPLER_ADDRESS_MODE_REPEAT;
   }
 }
 
 }  // namespace
 
 Result<gpu::SetLayout> create_material_layout(const gpu::Device& device) {
-  return gpu::SetLayout::create(device, "material", material_bindings(), VK_SHADER_STAGE_FRAGMENT_BIT);
+  return gpu::SetLayout::create(device, "material", material_bindings(),
+                                VK_SHADER_STAGE_FRAGMENT_BIT);
 }
 
 // Gathers the CPU side of a GpuScene, then uploads it in one go.
@@ -99,10 +104,11 @@ class GpuSceneBuilder {
     desc.height = pixels.height;
     const std::uint32_t limit = device_.limits().maxImageDimension2D;
     if (pixels.width > limit || pixels.height > limit)
-      return failure(ErrorCode::kUnsupported, "{}: texture of {}x{}, the device takes at most {}", name,
-                     pixels.width, pixels.height, limit);
+      return failure(ErrorCode::kUnsupported, "{}: texture of {}x{}, the device takes at most {}",
+                     name, pixels.width, pixels.height, limit);
     for (std::uint32_t n = std::max(pixels.width, pixels.height); n > 1; n /= 2) ++desc.mips;
-    desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     NERITIC_TRY(auto image, gpu::Image::create(device_, desc));
     NERITIC_TRY_STATUS(gpu::upload_image(device_, image, std::as_bytes(std::span(pixels.data))));
     out_->images_.push_back(std::move(image));
@@ -129,7 +135,8 @@ class GpuSceneBuilder {
   }
 
   Result<std::uint32_t> sampler_for(const scene::Sampler& s) {
-    const auto key = std::make_tuple(s.wrap_u, s.wrap_v, s.mag_linear, s.min_linear, s.mip_linear, s.mipmapped);
+    const auto key =
+        std::make_tuple(s.wrap_u, s.wrap_v, s.mag_linear, s.min_linear, s.mip_linear, s.mipmapped);
     if (const auto found = samplers_.find(key); found != samplers_.end()) return found->second;
     gpu::SamplerDesc desc;
     desc.name = "material sampler";
@@ -172,7 +179,8 @@ class GpuSceneBuilder {
 
     MaterialTextures textures;
     NERITIC_TRY(textures.base_color, texture_use(model_index, m.base_color_texture, true));
-    NERITIC_TRY(textures.metal_rough, texture_use(model_index, m.metallic_roughness_texture, false));
+    NERITIC_TRY(textures.metal_rough,
+                texture_use(model_index, m.metallic_roughness_texture, false));
     NERITIC_TRY(textures.normal, texture_use(model_index, m.normal_texture, false));
     NERITIC_TRY(textures.occlusion, texture_use(model_index, m.occlusion_texture, false));
     NERITIC_TRY(textures.emissive, texture_use(model_index, m.emissive_texture, true));
@@ -194,12 +202,14 @@ class GpuSceneBuilder {
   // The GPU material of a primitive: with vertex colours it is another one than without.
   Result<std::uint32_t> material_of(std::size_t model_index, int material, bool vertex_colors) {
     const auto key = std::make_tuple(model_index, material, vertex_colors);
-    if (const auto found = material_index_.find(key); found != material_index_.end()) return found->second;
+    if (const auto found = material_index_.find(key); found != material_index_.end())
+      return found->second;
     const auto index = static_cast<std::uint32_t>(out_->materials_.size());
     const scene::Material fallback;
     const scene::Model& model = *scene_.models[model_index];
     NERITIC_TRY_STATUS(add_material(
-        model_index, material >= 0 ? model.materials[static_cast<std::size_t>(material)] : fallback, vertex_colors));
+        model_index, material >= 0 ? model.materials[static_cast<std::size_t>(material)] : fallback,
+        vertex_colors));
     material_index_[key] = index;
     return index;
   }
@@ -238,7 +248,8 @@ class GpuSceneBuilder {
       g.first_skin = static_cast<std::uint32_t>(skin_data_.size());
       for (std::size_t i = 0; i < p.positions.size(); ++i) {
         const auto& j = p.joints[i];
-        skin_data_.push_back({j[0] | std::uint32_t{j[1]} << 16, j[2] | std::uint32_t{j[3]} << 16, p.weights[i]});
+        skin_data_.push_back(
+            {j[0] | std::uint32_t{j[1]} << 16, j[2] | std::uint32_t{j[3]} << 16, p.weights[i]});
       }
     }
     g.first_morph = static_cast<std::uint32_t>(morph_data_.size());
@@ -271,9 +282,11 @@ class GpuSceneBuilder {
     }
   }
 
-  void add_node(std::size_t object_index, const scene::Object& object, const scene::Model& model, int n) {
+  void add_node(std::size_t object_index, const scene::Object& object, const scene::Model& model,
+                int n) {
     const scene::Node& node = model.nodes[static_cast<std::size_t>(n)];
-    const std::size_t first = first_group_[static_cast<std::size_t>(object.model)][static_cast<std::size_t>(node.mesh)];
+    const std::size_t first =
+        first_group_[static_cast<std::size_t>(object.model)][static_cast<std::size_t>(node.mesh)];
     const std::size_t count = model.meshes[static_cast<std::size_t>(node.mesh)].primitives.size();
     const int copies = static_cast<int>(object.copies.size());
     const int instances = static_cast<int>(node.instances.size());
@@ -290,17 +303,22 @@ class GpuSceneBuilder {
   }
 
   template <class T>
-  Result<gpu::Buffer> filled(const char* name, const std::vector<T>& data, VkBufferUsageFlags usage) {
-    NERITIC_TRY(auto buffer, gpu::Buffer::create(device_, {name, data.size() * sizeof(T),
-                                                           usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
-    if (!data.empty()) NERITIC_TRY_STATUS(gpu::upload_buffer(device_, buffer, std::as_bytes(std::span(data))));
+  Result<gpu::Buffer> filled(const char* name, const std::vector<T>& data,
+                             VkBufferUsageFlags usage) {
+    NERITIC_TRY(auto buffer,
+                gpu::Buffer::create(device_, {name, data.size() * sizeof(T),
+                                              usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
+    if (!data.empty())
+      NERITIC_TRY_STATUS(gpu::upload_buffer(device_, buffer, std::as_bytes(std::span(data))));
     return buffer;
   }
 
   Status upload_streams() {
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    NERITIC_TRY(out_->positions_, filled("positions", position_data_, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kStorage));
-    NERITIC_TRY(out_->surfaces_, filled("surfaces", surface_data_, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
+    NERITIC_TRY(out_->positions_,
+                filled("positions", position_data_, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kStorage));
+    NERITIC_TRY(out_->surfaces_,
+                filled("surfaces", surface_data_, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
     NERITIC_TRY(out_->indices_, filled("indices", index_data_, VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
     NERITIC_TRY(out_->skin_, filled("skin", skin_data_, kStorage));
     NERITIC_TRY(out_->morphs_, filled("morphs", morph_data_, kStorage));
@@ -313,18 +331,23 @@ class GpuSceneBuilder {
     std::vector<std::byte> bytes(kStride * material_data_.size());
     for (std::size_t i = 0; i < material_data_.size(); ++i)
       std::memcpy(bytes.data() + i * kStride, &material_data_[i], sizeof(MaterialData));
-    NERITIC_TRY(out_->material_constants_, filled("material constants", bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
+    NERITIC_TRY(out_->material_constants_,
+                filled("material constants", bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
     out_->descriptors_ = std::make_unique<gpu::DescriptorArena>(device_);
     for (std::size_t i = 0; i < material_data_.size(); ++i) {
       NERITIC_TRY(const VkDescriptorSet set, out_->descriptors_->allocate(layout_));
       const MaterialTextures& t = material_textures_[i];
       const auto texture = [&](std::uint32_t binding, const TextureUse& use) {
-        return gpu::bound_texture(binding, out_->images_[use.image].view(), out_->samplers_[use.sampler].handle());
+        return gpu::bound_texture(binding, out_->images_[use.image].view(),
+                                  out_->samplers_[use.sampler].handle());
       };
       const gpu::BoundResource resources[] = {
-          gpu::bound_buffer(shared::kMaterialConstants, out_->material_constants_.handle(), i * kStride, sizeof(MaterialData)),
-          texture(shared::kMaterialBaseColor, t.base_color), texture(shared::kMaterialMetalRough, t.metal_rough),
-          texture(shared::kMaterialNormal, t.normal),        texture(shared::kMaterialOcclusion, t.occlusion),
+          gpu::bound_buffer(shared::kMaterialConstants, out_->material_constants_.handle(),
+                            i * kStride, sizeof(MaterialData)),
+          texture(shared::kMaterialBaseColor, t.base_color),
+          texture(shared::kMaterialMetalRough, t.metal_rough),
+          texture(shared::kMaterialNormal, t.normal),
+          texture(shared::kMaterialOcclusion, t.occlusion),
           texture(shared::kMaterialEmissive, t.emissive)};
       gpu::write_descriptors(device_, set, material_bindings(), resources);
       out_->materials_[i].set = set;

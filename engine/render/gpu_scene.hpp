@@ -1,6 +1,6 @@
-// A scene on the GPU: vertex and index streams of every mesh, textures, materials, and the list of what
-// is drawn, grouped so that all instances of one primitive are one draw. Made once per scene; owned by
-// the rendering thread.
+// A scene on the GPU: vertex and index streams of every mesh, textures, materials, and the list of
+// what is drawn, grouped so that all instances of one primitive are one draw. Made once per scene;
+// owned by the rendering thread.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct GpuPrimitive {
   std::uint32_t first_index = 0, index_count = 0;
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t material = 0;
-  std::uint32_t first_skin = kNone;   // in the skin stream
+  std::uint32_t first_skin = kNone;  // in the skin stream
   std::uint32_t first_morph = 0, morph_targets = 0;
   Vec3 center_m{0.0};  // bounding sphere in the mesh's frame, rest shape
   double radius_m = 0.0;

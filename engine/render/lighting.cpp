@@ -11,8 +11,8 @@ namespace {
 constexpr double kWaterIndex = 1.333;
 // Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance .066).
 constexpr double kSkyTransmittance = 0.934;
-// Auto exposure opens no further than for this light: what a sensitive video camera still sees in. Deeper
-// or darker scenes come out dark.
+// Auto exposure opens no further than for this light: what a sensitive video camera still sees in.
+// Deeper or darker scenes come out dark.
 constexpr double kDarkest_lx = 1.0;
 // Weights of linear sRGB in luminance (ITU-R BT.709).
 constexpr Vec3 kLuminance{0.2126, 0.7152, 0.0722};
@@ -47,18 +47,22 @@ SunLight sun_light(const scene::Sun& sun, bool under_water) {
   const double in_air = std::cos(sun.elevation_rad);
   const double horizontal = under_water ? in_air / kWaterIndex : in_air;
   out.cosine = std::max(std::sqrt(std::max(0.0, 1.0 - horizontal * horizontal)), 0.02);
-  out.to_sun = glm::normalize(Vec3(std::sin(sun.azimuth_rad) * horizontal, out.cosine, -std::cos(sun.azimuth_rad) * horizontal));
+  out.to_sun = glm::normalize(Vec3(std::sin(sun.azimuth_rad) * horizontal, out.cosine,
+                                   -std::cos(sun.azimuth_rad) * horizontal));
   return out;
 }
 
-// What a white surface near the camera receives, lux: the sun's light there, or half of the strongest
-// lamp's at 3 m (most of what it lights is further or oblique), and no less than kDarkest_lx.
+// What a white surface near the camera receives, lux: the sun's light there, or half of the
+// strongest lamp's at 3 m (most of what it lights is further or oblique), and no less than
+// kDarkest_lx.
 double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& scene) {
   double sum = 0.0;
   if (light.terms & shared::kLightSun) {
-    const double depth = (light.terms & shared::kLightWater) ? std::max(0.0f, light.origin_depth_m) : 0.0;
+    const double depth =
+        (light.terms & shared::kLightWater) ? std::max(0.0f, light.origin_depth_m) : 0.0;
     for (int i = 0; i < 3; ++i)
-      sum += kLuminance[i] * light.surface_irradiance[i] * std::exp(-light.diffuse_attenuation[i] * depth);
+      sum += kLuminance[i] * light.surface_irradiance[i] *
+             std::exp(-light.diffuse_attenuation[i] * depth);
   }
   double lamps = 0.0;
   for (const scene::Lamp& lamp : scene.lamps) lamps = std::max(lamps, lamp.intensity_cd / 9.0);
@@ -105,7 +109,8 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& or
     light.sun_cosine = static_cast<float>(sun.cosine);
   }
   if (scene.lamps.size() > shared::kMaxLamps)
-    return bad_input("{}: {} lamps, at most {} are accepted", scene.path, scene.lamps.size(), shared::kMaxLamps);
+    return bad_input("{}: {} lamps, at most {} are accepted", scene.path, scene.lamps.size(),
+                     shared::kMaxLamps);
   for (const scene::Lamp& lamp : scene.lamps) {
     const Pose pose = scene.world_from(lamp.mount);
     shared::SpotLight& spot = light.lamps[light.lamp_count++];
@@ -113,7 +118,8 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& or
     spot.direction = Vec3f(pose.rotation * Vec3(0, 0, -1));
     spot.intensity_cd = lamp.color * static_cast<float>(lamp.intensity_cd);
     spot.cos_inner = static_cast<float>(std::cos(lamp.inner_cone_rad));
-    spot.cos_outer = static_cast<float>(std::cos(std::max(lamp.outer_cone_rad, lamp.inner_cone_rad + 1e-3)));
+    spot.cos_outer =
+        static_cast<float>(std::cos(std::max(lamp.outer_cone_rad, lamp.inner_cone_rad + 1e-3)));
   }
   const double illuminance = scene_illuminance_lx(light, scene);
   double scale = kPi / illuminance;

@@ -8,8 +8,8 @@
 
 namespace neritic::render {
 
-// Illuminance of a clear day with the sun in the zenith, lux (rounded; direct sunlight 80 to 100 klx,
-// Schlyter, "Radiometry and photometry in astronomy").
+// Illuminance of a clear day with the sun in the zenith, lux (rounded; direct sunlight 80 to 100
+// klx, Schlyter, "Radiometry and photometry in astronomy").
 inline constexpr double kClearDay_lx = 100000.0;
 // Share of it that comes straight from the sun (the rest is sky; clear days have .8 to .9).
 inline constexpr double kSunShare = 0.85;

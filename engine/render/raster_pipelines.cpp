@@ -1,10 +1,10 @@
-// Renderer: the graphics pipelines of the raster passes, made when first needed, and the recording of
-// draws with them.
+// Renderer: the graphics pipelines of the raster passes, made when first needed, and the recording
+// of draws with them.
 #include <bit>
 #include <utility>
 
-#include "engine/render/renderer.hpp"
 #include "engine/render/raster_draws.hpp"
+#include "engine/render/renderer.hpp"
 #include "shaders.hpp"
 
 namespace neritic::render {
@@ -12,9 +12,12 @@ namespace {
 
 VkPrimitiveTopology vk_topology(scene::Topology topology) {
   switch (topology) {
-    case scene::Topology::kPoints: return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
-    case scene::Topology::kLines: return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
-    default: return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    case scene::Topology::kPoints:
+      return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+    case scene::Topology::kLines:
+      return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+    default:
+      return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
   }
 }
 
@@ -43,14 +46,18 @@ gpu::VertexStream instance_stream() {
           true};
 }
 
-// Bound in every pipeline of the full vertex stage, since it declares the inputs; what feeds it without
-// motion is the instance stream again, unread.
+// Bound in every pipeline of the full vertex stage, since it declares the inputs; what feeds it
+// without motion is the instance stream again, unread.
 gpu::VertexStream next_instance_stream(bool motion) {
-  return {static_cast<std::uint32_t>(motion ? sizeof(shared::NextInstance) : sizeof(shared::Instance)),
-          {{shared::kNextInstanceRow0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::NextInstance, row0)},
-           {shared::kNextInstanceRow1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::NextInstance, row1)},
-           {shared::kNextInstanceRow2, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::NextInstance, row2)}},
-          true};
+  return {
+      static_cast<std::uint32_t>(motion ? sizeof(shared::NextInstance) : sizeof(shared::Instance)),
+      {{shared::kNextInstanceRow0, VK_FORMAT_R32G32B32A32_SFLOAT,
+        offsetof(shared::NextInstance, row0)},
+       {shared::kNextInstanceRow1, VK_FORMAT_R32G32B32A32_SFLOAT,
+        offsetof(shared::NextInstance, row1)},
+       {shared::kNextInstanceRow2, VK_FORMAT_R32G32B32A32_SFLOAT,
+        offsetof(shared::NextInstance, row2)}},
+      true};
 }
 
 std::span<const std::uint32_t> gbuffer_fragment(bool emissive, bool motion) {
@@ -67,13 +74,17 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   const bool surface = stage == RasterStage::kSurface || stage == RasterStage::kSurfaceMasked;
   const bool plain = stage == RasterStage::kGeometry;
   gpu::GraphicsPipelineDesc desc;
-  desc.name = plain ? "geometry" : stage == RasterStage::kGeometryMasked ? "geometry masked" : surface ? "gbuffer" : "forward";
+  desc.name = plain                                   ? "geometry"
+              : stage == RasterStage::kGeometryMasked ? "geometry masked"
+              : surface                               ? "gbuffer"
+                                                      : "forward";
   desc.vertex_code = plain ? shaders::kGeometryVert : shaders::kGbufferVert;
   desc.fragment_code = plain     ? shaders::kGeometryFrag
                        : surface ? gbuffer_fragment(emissive, motion)
                        : forward ? shaders::kForwardFrag
                                  : shaders::kGeometryMaskedFrag;
-  constexpr auto kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  constexpr auto kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                 kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   desc.layout.bindings = {{shared::kRasterViews, kUniform}};
   desc.streams = {position_stream(), instance_stream()};
   desc.constants = {{shared::kSpecMultiview, view_mask != 0}};
@@ -86,7 +97,8 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
     desc.streams.push_back(next_instance_stream(motion));
     desc.constants.push_back({shared::kSpecMotion, motion});
     desc.constants.push_back({shared::kSpecMaterial, material_flags});
-    if (surface) desc.constants.push_back({shared::kSpecMask, stage == RasterStage::kSurfaceMasked});
+    if (surface)
+      desc.constants.push_back({shared::kSpecMask, stage == RasterStage::kSurfaceMasked});
   }
   desc.topology = topology;
   desc.depth_format = kDepthFormat;
@@ -97,7 +109,8 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
     desc.blend = gpu::Blend::kAlphaOver;
   } else {
     desc.color_formats = {kNormalFormat, kLabelFormat};
-    if (surface) desc.color_formats.insert(desc.color_formats.end(), {kAlbedoFormat, kMaterialFormat});
+    if (surface)
+      desc.color_formats.insert(desc.color_formats.end(), {kAlbedoFormat, kMaterialFormat});
     if (surface && emissive) desc.color_formats.push_back(kEmissiveFormat);
     if (surface && motion) desc.color_formats.push_back(kMotionFormat);
   }
@@ -105,8 +118,10 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   return &raster_.emplace(key, std::move(pipeline)).first->second;
 }
 
-Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const std::vector<Draw>& draws, GBufferKind kind,
-                                                  bool forward, bool motion, bool emissive, std::uint32_t view_mask) {
+Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene,
+                                                  const std::vector<Draw>& draws, GBufferKind kind,
+                                                  bool forward, bool motion, bool emissive,
+                                                  std::uint32_t view_mask) {
   PreparedDraws prepared;
   for (const Draw& draw : draws) {
     const GpuMaterial& material = scene.materials()[draw.primitive->material];
@@ -115,20 +130,25 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const s
       stage = material.mask ? RasterStage::kGeometryMasked : RasterStage::kGeometry;
     else if (!forward)
       stage = material.mask ? RasterStage::kSurfaceMasked : RasterStage::kSurface;
-    NERITIC_TRY(const gpu::Pipeline* pipeline,
-                raster_pipeline({stage, vk_topology(draw.primitive->topology), motion && stage != RasterStage::kGeometry,
-                                 emissive && (stage == RasterStage::kSurface || stage == RasterStage::kSurfaceMasked), view_mask,
-                                 stage == RasterStage::kGeometry ? 0u : material.flags}));
+    NERITIC_TRY(
+        const gpu::Pipeline* pipeline,
+        raster_pipeline(
+            {stage, vk_topology(draw.primitive->topology),
+             motion && stage != RasterStage::kGeometry,
+             emissive && (stage == RasterStage::kSurface || stage == RasterStage::kSurfaceMasked),
+             view_mask, stage == RasterStage::kGeometry ? 0u : material.flags}));
     // A sonar hears both sides of a sheet; a camera culls as the material says.
     const bool both_sides = kind == GBufferKind::kGeometry || material.double_sided;
-    prepared.draws.push_back({draw, pipeline, stage != RasterStage::kGeometry, both_sides, &material});
+    prepared.draws.push_back(
+        {draw, pipeline, stage != RasterStage::kGeometry, both_sides, &material});
   }
   return prepared;
 }
 
-void Renderer::record_draws(const PreparedDraws& prepared, const GpuScene& scene, const gpu::Buffer* deformed,
-                            const InstanceStreams& instances, const Vec2f& target_size,
-                            std::span<const gpu::BoundResource> set0, gpu::Commands& commands) {
+void Renderer::record_draws(const PreparedDraws& prepared, const GpuScene& scene,
+                            const gpu::Buffer* deformed, const InstanceStreams& instances,
+                            const Vec2f& target_size, std::span<const gpu::BoundResource> set0,
+                            gpu::Commands& commands) {
   const VkCommandBuffer cmd = commands.handle();
   vkCmdBindIndexBuffer(cmd, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
   const gpu::Pipeline* bound = nullptr;
@@ -142,20 +162,26 @@ void Renderer::record_draws(const PreparedDraws& prepared, const GpuScene& scene
     vkCmdSetCullMode(cmd, d.both_sides ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     // Vulkan's y points down in clip space and the projection flips it, so glTF's counter-clockwise
     // front faces stay counter-clockwise as seen.
-    vkCmdSetFrontFace(cmd, d.draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
-    // Deformed vertices lie elsewhere than the surface stream's, so both are bound at their own offsets.
+    vkCmdSetFrontFace(cmd,
+                      d.draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+    // Deformed vertices lie elsewhere than the surface stream's, so both are bound at their own
+    // offsets.
     const bool own = d.draw.deformed == kNone;
-    const VkBuffer buffers[] = {own ? scene.positions().handle() : deformed->handle(), instances.now.buffer,
-                                scene.surfaces().handle(), instances.next.buffer};
-    const VkDeviceSize offsets[] = {(own ? primitive.first_vertex : d.draw.deformed) * sizeof(shared::VertexPosition),
-                                    instances.now.offset, primitive.first_vertex * sizeof(shared::VertexSurface),
-                                    instances.next.offset};
+    const VkBuffer buffers[] = {own ? scene.positions().handle() : deformed->handle(),
+                                instances.now.buffer, scene.surfaces().handle(),
+                                instances.next.buffer};
+    const VkDeviceSize offsets[] = {
+        (own ? primitive.first_vertex : d.draw.deformed) * sizeof(shared::VertexPosition),
+        instances.now.offset, primitive.first_vertex * sizeof(shared::VertexSurface),
+        instances.next.offset};
     vkCmdBindVertexBuffers(cmd, 0, d.surface ? 4 : 2, buffers, offsets);
     if (d.surface) {
-      vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, bound->layout(), 1, 1, &d.material->set, 0, nullptr);
+      vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, bound->layout(), 1, 1,
+                              &d.material->set, 0, nullptr);
       commands.push(*bound, shared::RasterPush{target_size});
     }
-    vkCmdDrawIndexed(cmd, primitive.index_count, d.draw.instance_count, primitive.first_index, 0, d.draw.first_instance);
+    vkCmdDrawIndexed(cmd, primitive.index_count, d.draw.instance_count, primitive.first_index, 0,
+                     d.draw.first_instance);
   }
 }
 

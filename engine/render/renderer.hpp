@@ -19,18 +19,19 @@ namespace neritic::render {
 
 // Formats of the G-buffer.
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-inline constexpr VkFormat kNormalFormat = VK_FORMAT_R16G16_SNORM;    // octahedral, world axes
-inline constexpr VkFormat kLabelFormat = VK_FORMAT_R16G16_UINT;      // class, instance
-inline constexpr VkFormat kAlbedoFormat = VK_FORMAT_R8G8B8A8_SRGB;   // linear when sampled
-inline constexpr VkFormat kMaterialFormat = VK_FORMAT_R8G8B8A8_UNORM;  // roughness, metal, occlusion, unlit
+inline constexpr VkFormat kNormalFormat = VK_FORMAT_R16G16_SNORM;   // octahedral, world axes
+inline constexpr VkFormat kLabelFormat = VK_FORMAT_R16G16_UINT;     // class, instance
+inline constexpr VkFormat kAlbedoFormat = VK_FORMAT_R8G8B8A8_SRGB;  // linear when sampled
+inline constexpr VkFormat kMaterialFormat =
+    VK_FORMAT_R8G8B8A8_UNORM;  // roughness, metal, occlusion, unlit
 inline constexpr VkFormat kEmissiveFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-inline constexpr VkFormat kMotionFormat = VK_FORMAT_R32G32_SFLOAT;   // pixels to the next frame
+inline constexpr VkFormat kMotionFormat = VK_FORMAT_R32G32_SFLOAT;     // pixels to the next frame
 inline constexpr VkFormat kHdrFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // exposed radiance
-inline constexpr VkFormat kColorFormat = VK_FORMAT_R8G8B8A8_UNORM;   // sRGB-encoded by the tonemap
+inline constexpr VkFormat kColorFormat = VK_FORMAT_R8G8B8A8_UNORM;  // sRGB-encoded by the tonemap
 
 // Images of one view set; absent ones are empty handles.
 struct GBuffer {
-  graph::ImageHandle depth, normal, label;              // always
+  graph::ImageHandle depth, normal, label;                // always
   graph::ImageHandle albedo, material, emissive, motion;  // as asked for
   std::uint32_t width = 0, height = 0, layers = 1;
 };
@@ -51,40 +52,50 @@ class Renderer {
 
   VkDescriptorSetLayout material_layout() const { return material_layout_.handle(); }
 
-  // Each declares its pass under a name that starts with prefix. References must live until the graph
-  // has run. Errors: a pipeline cannot be made.
-  Result<DeformedGeometry> declare_deform(graph::FrameGraph& graph, const GpuScene& scene, const FrameState& state);
-  Result<GBuffer> declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix, GBufferKind kind,
-                                  const GpuScene& scene, const FrameState& state, const DeformedGeometry& deformed,
-                                  const ViewSet& views, const DrawList& draws);
+  // Each declares its pass under a name that starts with prefix. References must live until the
+  // graph has run. Errors: a pipeline cannot be made.
+  Result<DeformedGeometry> declare_deform(graph::FrameGraph& graph, const GpuScene& scene,
+                                          const FrameState& state);
+  Result<GBuffer> declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix,
+                                  GBufferKind kind, const GpuScene& scene, const FrameState& state,
+                                  const DeformedGeometry& deformed, const ViewSet& views,
+                                  const DrawList& draws);
   // HDR picture of a surface G-buffer.
-  Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix, const GBuffer& gbuffer,
-                                           const ViewSet& views, const shared::Lighting& lighting);
+  Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix,
+                                           const GBuffer& gbuffer, const ViewSet& views,
+                                           const shared::Lighting& lighting);
   // Blended materials over the HDR picture; only declared where the draw list has some.
-  Result<graph::ImageHandle> declare_forward(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
-                                             const GBuffer& gbuffer, const GpuScene& scene, const DeformedGeometry& deformed,
-                                             const ViewSet& views, const DrawList& draws, const shared::Lighting& lighting);
+  Result<graph::ImageHandle> declare_forward(graph::FrameGraph& graph, const std::string& prefix,
+                                             graph::ImageHandle hdr, const GBuffer& gbuffer,
+                                             const GpuScene& scene,
+                                             const DeformedGeometry& deformed, const ViewSet& views,
+                                             const DrawList& draws,
+                                             const shared::Lighting& lighting);
   // Display picture, kColorFormat.
-  Result<graph::ImageHandle> declare_tonemap(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
-                                             std::uint32_t width, std::uint32_t height, std::uint32_t layers);
+  Result<graph::ImageHandle> declare_tonemap(graph::FrameGraph& graph, const std::string& prefix,
+                                             graph::ImageHandle hdr, std::uint32_t width,
+                                             std::uint32_t height, std::uint32_t layers);
   // The display picture with smoothed edges.
-  Result<graph::ImageHandle> declare_antialias(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle color,
-                                               std::uint32_t width, std::uint32_t height, std::uint32_t layers);
+  Result<graph::ImageHandle> declare_antialias(graph::FrameGraph& graph, const std::string& prefix,
+                                               graph::ImageHandle color, std::uint32_t width,
+                                               std::uint32_t height, std::uint32_t layers);
 
  private:
   // A pass that turns one picture into another of the same size, pixel by pixel.
   struct PictureFilter {
-    const char* name;           // of the pass
-    const char* result;         // of the image
+    const char* name;    // of the pass
+    const char* result;  // of the image
     std::span<const std::uint32_t> code;
-    VkFormat format;            // of the result
+    VkFormat format;  // of the result
   };
-  Result<graph::ImageHandle> declare_filter(graph::FrameGraph& graph, const std::string& prefix, const PictureFilter& filter,
-                                            gpu::Pipeline& pipeline, graph::ImageHandle in, std::uint32_t width,
+  Result<graph::ImageHandle> declare_filter(graph::FrameGraph& graph, const std::string& prefix,
+                                            const PictureFilter& filter, gpu::Pipeline& pipeline,
+                                            graph::ImageHandle in, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
   enum class RasterStage { kGeometry, kGeometryMasked, kSurface, kSurfaceMasked, kForward };
   // stage, topology, motion, emissive, view mask, the material's flags.
-  using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, std::uint32_t, std::uint32_t>;
+  using RasterKey =
+      std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, std::uint32_t, std::uint32_t>;
   explicit Renderer(gpu::Device& device) : device_(device) {}
   Result<const gpu::Pipeline*> raster_pipeline(const RasterKey& key);
   // The pipelines that a list of draws needs, made before the pass records.
@@ -93,17 +104,21 @@ class Renderer {
   struct InstanceStreams {
     gpu::UploadSlice now, next;
   };
-  static InstanceStreams upload_instances(gpu::Commands& commands, const DrawList& draws, bool motion);
-  Result<PreparedDraws> prepare(const GpuScene& scene, const std::vector<Draw>& draws, GBufferKind kind, bool forward,
-                                bool motion, bool emissive, std::uint32_t view_mask);
-  static void record_draws(const PreparedDraws& prepared, const GpuScene& scene, const gpu::Buffer* deformed,
-                           const InstanceStreams& instances, const Vec2f& target_size,
-                           std::span<const gpu::BoundResource> set0, gpu::Commands& commands);
+  static InstanceStreams upload_instances(gpu::Commands& commands, const DrawList& draws,
+                                          bool motion);
+  Result<PreparedDraws> prepare(const GpuScene& scene, const std::vector<Draw>& draws,
+                                GBufferKind kind, bool forward, bool motion, bool emissive,
+                                std::uint32_t view_mask);
+  static void record_draws(const PreparedDraws& prepared, const GpuScene& scene,
+                           const gpu::Buffer* deformed, const InstanceStreams& instances,
+                           const Vec2f& target_size, std::span<const gpu::BoundResource> set0,
+                           gpu::Commands& commands);
 
   gpu::Device& device_;
   gpu::SetLayout material_layout_;
   std::map<RasterKey, gpu::Pipeline> raster_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline> shade_;  // by terms, number of lamps
+  std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline>
+      shade_;  // by terms, number of lamps
   gpu::Pipeline deform_, tonemap_, antialias_;
   gpu::Buffer nothing_;  // bound where a shader declares a buffer that this frame does not use
 };

@@ -5,19 +5,24 @@
 namespace neritic::render {
 namespace {
 
-constexpr std::uint32_t groups(std::uint32_t size) { return (size + shared::kShadeGroup - 1) / shared::kShadeGroup; }
+constexpr std::uint32_t groups(std::uint32_t size) {
+  return (size + shared::kShadeGroup - 1) / shared::kShadeGroup;
+}
 
 }  // namespace
 
 Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device) {
   std::unique_ptr<Renderer> renderer(new Renderer(device));
   NERITIC_TRY(renderer->material_layout_, create_material_layout(device));
-  NERITIC_TRY(renderer->nothing_, gpu::Buffer::create(device, {"nothing", 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
+  NERITIC_TRY(renderer->nothing_,
+              gpu::Buffer::create(device, {"nothing", 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
   return renderer;
 }
 
-Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, const std::string& prefix, const GBuffer& gbuffer,
-                                                   const ViewSet& views, const shared::Lighting& lighting) {
+Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
+                                                   const std::string& prefix,
+                                                   const GBuffer& gbuffer, const ViewSet& views,
+                                                   const shared::Lighting& lighting) {
   gpu::Pipeline& pipeline = shade_[{lighting.terms, lighting.lamp_count}];
   if (!pipeline) {
     gpu::ComputePipelineDesc desc;
@@ -31,7 +36,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, con
                             {shared::kShadeMaterial, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeEmissive, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeHdr, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    desc.constants = {{shared::kSpecTerms, lighting.terms}, {shared::kSpecLamps, lighting.lamp_count}};
+    desc.constants = {{shared::kSpecTerms, lighting.terms},
+                      {shared::kSpecLamps, lighting.lamp_count}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
   struct Data {
@@ -40,42 +46,57 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph, con
   const Data& pass = graph.add_pass<Data>(
       prefix + "shade",
       [&](graph::PassBuilder& builder, Data& data) {
-        for (const graph::ImageHandle handle : {gbuffer.depth, gbuffer.normal, gbuffer.albedo, gbuffer.material, gbuffer.emissive})
+        for (const graph::ImageHandle handle :
+             {gbuffer.depth, gbuffer.normal, gbuffer.albedo, gbuffer.material, gbuffer.emissive})
           if (handle) builder.read(handle, graph::Access::kSampledCompute);
-        data.hdr = builder.write(builder.create_image(prefix + "hdr", {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
-                                 graph::Access::kStorageWriteCompute);
+        data.hdr = builder.write(
+            builder.create_image(prefix + "hdr",
+                                 {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
+            graph::Access::kStorageWriteCompute);
       },
       [&pipeline, gbuffer, lighting, &views](const Data& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
-        const gpu::UploadSlice view_data = commands.upload(std::span<const shared::View>(gpu_views(views)));
+        const gpu::UploadSlice view_data =
+            commands.upload(std::span<const shared::View>(gpu_views(views)));
         const gpu::UploadSlice light_data = commands.upload(&lighting, sizeof lighting);
         const auto texels = [&](std::uint32_t binding, graph::ImageHandle handle) {
           return gpu::bound_texel_image(binding, context.image(handle).view());
         };
         commands.bind_pipeline(pipeline);
-        commands.bind(pipeline, {gpu::bound_buffer(shared::kShadeViews, view_data.buffer, view_data.offset, view_data.size),
-                               gpu::bound_buffer(shared::kShadeLighting, light_data.buffer, light_data.offset, light_data.size),
-                               texels(shared::kShadeDepth, gbuffer.depth), texels(shared::kShadeNormal, gbuffer.normal),
-                               texels(shared::kShadeAlbedo, gbuffer.albedo), texels(shared::kShadeMaterial, gbuffer.material),
-                               // Without emission the shader's flag keeps it from reading what is bound here.
-                               texels(shared::kShadeEmissive, gbuffer.emissive ? gbuffer.emissive : gbuffer.albedo),
-                               gpu::bound_storage_image(shared::kShadeHdr, context.image(data.hdr).view())});
+        commands.bind(
+            pipeline,
+            {gpu::bound_buffer(shared::kShadeViews, view_data.buffer, view_data.offset,
+                               view_data.size),
+             gpu::bound_buffer(shared::kShadeLighting, light_data.buffer, light_data.offset,
+                               light_data.size),
+             texels(shared::kShadeDepth, gbuffer.depth),
+             texels(shared::kShadeNormal, gbuffer.normal),
+             texels(shared::kShadeAlbedo, gbuffer.albedo),
+             texels(shared::kShadeMaterial, gbuffer.material),
+             // Without emission the shader's flag keeps it from reading what is bound here.
+             texels(shared::kShadeEmissive, gbuffer.emissive ? gbuffer.emissive : gbuffer.albedo),
+             gpu::bound_storage_image(shared::kShadeHdr, context.image(data.hdr).view())});
         commands.dispatch(groups(gbuffer.width), groups(gbuffer.height), gbuffer.layers);
       });
   return pass.hdr;
 }
 
 // Both filters bind their source at 0 and their result at 1.
-static_assert(shared::kTonemapHdr == 0 && shared::kTonemapOut == 1 && shared::kAntialiasIn == 0 && shared::kAntialiasOut == 1);
+static_assert(shared::kTonemapHdr == 0 && shared::kTonemapOut == 1 && shared::kAntialiasIn == 0 &&
+              shared::kAntialiasOut == 1);
 
-Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph, const std::string& prefix, const PictureFilter& filter,
-                                                    gpu::Pipeline& pipeline, graph::ImageHandle in, std::uint32_t width,
-                                                    std::uint32_t height, std::uint32_t layers) {
+Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph,
+                                                    const std::string& prefix,
+                                                    const PictureFilter& filter,
+                                                    gpu::Pipeline& pipeline, graph::ImageHandle in,
+                                                    std::uint32_t width, std::uint32_t height,
+                                                    std::uint32_t layers) {
   if (!pipeline) {
     gpu::ComputePipelineDesc desc;
     desc.name = filter.name;
     desc.code = filter.code;
-    desc.layout.bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+    desc.layout.bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                            {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
   struct Data {
@@ -85,8 +106,9 @@ Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph, co
       prefix + filter.name,
       [&](graph::PassBuilder& builder, Data& data) {
         builder.read(in, graph::Access::kSampledCompute);
-        data.out = builder.write(builder.create_image(prefix + filter.result, {filter.format, width, height, layers}),
-                                 graph::Access::kStorageWriteCompute);
+        data.out = builder.write(
+            builder.create_image(prefix + filter.result, {filter.format, width, height, layers}),
+            graph::Access::kStorageWriteCompute);
       },
       [&pipeline, in, width, height, layers](const Data& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
@@ -98,15 +120,22 @@ Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph, co
   return pass.out;
 }
 
-Result<graph::ImageHandle> Renderer::declare_tonemap(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
-                                                     std::uint32_t width, std::uint32_t height, std::uint32_t layers) {
-  return declare_filter(graph, prefix, {"tonemap", "color", shaders::kTonemapComp, kColorFormat}, tonemap_, hdr, width, height, layers);
+Result<graph::ImageHandle> Renderer::declare_tonemap(graph::FrameGraph& graph,
+                                                     const std::string& prefix,
+                                                     graph::ImageHandle hdr, std::uint32_t width,
+                                                     std::uint32_t height, std::uint32_t layers) {
+  return declare_filter(graph, prefix, {"tonemap", "color", shaders::kTonemapComp, kColorFormat},
+                        tonemap_, hdr, width, height, layers);
 }
 
-Result<graph::ImageHandle> Renderer::declare_antialias(graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle color,
-                                                       std::uint32_t width, std::uint32_t height, std::uint32_t layers) {
-  return declare_filter(graph, prefix, {"antialias", "smooth color", shaders::kAntialiasComp, kColorFormat}, antialias_, color, width,
-                        height, layers);
+Result<graph::ImageHandle> Renderer::declare_antialias(graph::FrameGraph& graph,
+                                                       const std::string& prefix,
+                                                       graph::ImageHandle color,
+                                                       std::uint32_t width, std::uint32_t height,
+                                                       std::uint32_t layers) {
+  return declare_filter(graph, prefix,
+                        {"antialias", "smooth color", shaders::kAntialiasComp, kColorFormat},
+                        antialias_, color, width, height, layers);
 }
 
 }  // namespace neritic::render

@@ -30,8 +30,10 @@ std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set) {
   const Vec3 origin = set.origin_m();
   for (const ViewDesc& view : set.views) {
     shared::View v{};
-    v.clip_from_origin = Mat4f(clip_from_origin(view.world_from_view, view.tangents, view.near_m, origin));
-    v.next_clip_from_origin = Mat4f(clip_from_origin(view.next_world_from_view, view.tangents, view.near_m, origin));
+    v.clip_from_origin =
+        Mat4f(clip_from_origin(view.world_from_view, view.tangents, view.near_m, origin));
+    v.next_clip_from_origin =
+        Mat4f(clip_from_origin(view.next_world_from_view, view.tangents, view.near_m, origin));
     v.eye = Vec3f(view.world_from_view.position_m - origin);
     v.near_m = static_cast<float>(view.near_m);
     const FrustumTangents& t = view.tangents;

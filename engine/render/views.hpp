@@ -30,9 +30,11 @@ struct ViewSet {
 struct Intrinsics {
   double fx = 0, fy = 0, cx = 0, cy = 0;
 };
-Intrinsics intrinsics_of(const FrustumTangents& tangents, std::uint32_t width, std::uint32_t height);
+Intrinsics intrinsics_of(const FrustumTangents& tangents, std::uint32_t width,
+                         std::uint32_t height);
 
-// What the shaders see of the set: a uniform block of kMaxViews, those beyond the set's own are zero.
+// What the shaders see of the set: a uniform block of kMaxViews, those beyond the set's own are
+// zero.
 std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set);
 
 // True where a sphere (relative to the set's origin) can be in any view.

@@ -13,8 +13,8 @@ struct TypeRow {
   const char* name;
   // Jerlov 1976, Marine Optics, Table XXVII, at 600, 550 and 450 nm.
   std::array<double, 3> diffuse_attenuation_m;
-  // Total scattering in the green, 1/m: published values for I, II, III, 1C, 5C and 9C (derived from
-  // Solonenko and Mobley 2015). IA, IB, 3C and 7C have none: geometric means between their
+  // Total scattering in the green, 1/m: published values for I, II, III, 1C, 5C and 9C (derived
+  // from Solonenko and Mobley 2015). IA, IB, 3C and 7C have none: geometric means between their
   // neighbours, since scattering runs over three decades along the series.
   double green_scattering_m;
 };
@@ -36,11 +36,12 @@ double water_scattering_m(double wavelength_nm) {
   return 16.06 * 4.72e-4 * std::pow(400.0 / wavelength_nm, 4.32);
 }
 
-// Absorption of pure water at 600, 550 and 450 nm, 1/m: Pope and Fry 1997, Applied Optics 36, table 3.
+// Absorption of pure water at 600, 550 and 450 nm, 1/m: Pope and Fry 1997, Applied Optics 36,
+// table 3.
 constexpr std::array<double, 3> kPureWater_m{.2224, .0565, .00922};
 
-// Particles scatter a little more at short waves: b ~ 1/lambda, between the exponents 1.7 (small) and
-// 0.3 (large particles) of Kopelevich's two fractions (Haltrin 1999).
+// Particles scatter a little more at short waves: b ~ 1/lambda, between the exponents 1.7 (small)
+// and 0.3 (large particles) of Kopelevich's two fractions (Haltrin 1999).
 constexpr double kParticleExponent = 1.0;
 // Closure K_d = 1.04 (a + b_b) / mu_d, b_b = 0.0183 b (Petzold); mu_d for a high sun.
 constexpr double kClosure = 1.04, kBackFraction = 0.0183, kMeanCosine = 0.86;
@@ -48,21 +49,25 @@ constexpr double kClosure = 1.04, kBackFraction = 0.0183, kMeanCosine = 0.86;
 }  // namespace
 
 Result<WaterOptics> jerlov_optics(const std::string& type) {
-  const auto row = std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& r) { return type == r.name; });
+  const auto row =
+      std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& r) { return type == r.name; });
   if (row == kTypes.end())
-    return bad_input("water type '{}'; I, IA, IB, II, III, 1C, 3C, 5C, 7C and 9C are accepted", type);
+    return bad_input("water type '{}'; I, IA, IB, II, III, 1C, 3C, 5C, 7C and 9C are accepted",
+                     type);
   WaterOptics optics;
   for (int i = 0; i < 3; ++i) {
     const double wavelength_nm = kWavelength_nm[i];
     const double k_d = row->diffuse_attenuation_m[i];
     const double water = water_scattering_m(wavelength_nm);
-    const double particles_green = std::max(0.0, row->green_scattering_m - water_scattering_m(550.0));
+    const double particles_green =
+        std::max(0.0, row->green_scattering_m - water_scattering_m(550.0));
     const double particles = particles_green * std::pow(550.0 / wavelength_nm, kParticleExponent);
     optics.diffuse_attenuation_m[i] = k_d;
     optics.water_scattering_m[i] = water;
     optics.particle_scattering_m[i] = particles;
     // Absorption from the closure, but no less than pure water's.
-    optics.absorption_m[i] = std::max(k_d * kMeanCosine / kClosure - kBackFraction * (water + particles), kPureWater_m[i]);
+    optics.absorption_m[i] = std::max(
+        k_d * kMeanCosine / kClosure - kBackFraction * (water + particles), kPureWater_m[i]);
   }
   return optics;
 }

@@ -10,12 +10,14 @@
 namespace neritic::render {
 
 struct WaterOptics {
-  Vec3 diffuse_attenuation_m;   // K_d, 1/m: how sunlight fades with depth
-  Vec3 absorption_m;            // a, 1/m
-  Vec3 water_scattering_m;      // b of pure sea water, 1/m
-  Vec3 particle_scattering_m;   // b of particles, 1/m
+  Vec3 diffuse_attenuation_m;  // K_d, 1/m: how sunlight fades with depth
+  Vec3 absorption_m;           // a, 1/m
+  Vec3 water_scattering_m;     // b of pure sea water, 1/m
+  Vec3 particle_scattering_m;  // b of particles, 1/m
   // c = a + b, 1/m: how sight along a line fades.
-  Vec3 beam_attenuation_m() const { return absorption_m + water_scattering_m + particle_scattering_m; }
+  Vec3 beam_attenuation_m() const {
+    return absorption_m + water_scattering_m + particle_scattering_m;
+  }
 };
 
 // The ten types I IA IB II III 1C 3C 5C 7C 9C; another name is kBadInput with the list.

@@ -41,7 +41,8 @@ std::string folder_of(const std::string& include) {
 }
 
 TEST(IncludeRule, FoldersIncludeOnlyWhatTheTableAllows) {
-  const std::set<std::string> ours{"engine", "shared", "sonar", "diver", "rov", "hud", "tools", "tests", "shaders"};
+  const std::set<std::string> ours{"engine", "shared", "sonar", "diver",  "rov",
+                                   "hud",    "tools",  "tests", "shaders"};
   const std::regex include("^\\s*#include \"([^\"]+)\"");
   int files = 0;
   for (const auto& [folder, may] : allowed()) {

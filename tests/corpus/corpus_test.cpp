@@ -1,5 +1,5 @@
-// Real models that nobody here made: each renders on the device, and a contact sheet of all of them is
-// left in build/.../corpus/ to be looked at. Broken files end in a picture or in one clear line.
+// Real models that nobody here made: each renders on the device, and a contact sheet of all of them
+// is left in build/.../corpus/ to be looked at. Broken files end in a picture or in one clear line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,9 @@ bool has_faces(const scene::Model& model) {
 class Corpus : public test::GpuTest {
  protected:
   Result<ViewImages> picture(scene::Model model) {
-    NERITIC_TRY(const auto session, Session::create(device(), scene::scene_of_model(std::move(model), kSide_px, kSide_px)));
+    NERITIC_TRY(
+        const auto session,
+        Session::create(device(), scene::scene_of_model(std::move(model), kSide_px, kSide_px)));
     FrameRequest request;
     request.cameras = {0};
     request.time_s = 0.2;
@@ -54,13 +56,15 @@ TEST_F(Corpus, EveryModelRenders) {
   NERITIC_REQUIRE_SHARED(shared);
   std::vector<Tile> tiles;
   // Needs glTF 2.1 (04), or requires an extension that is not supported: refused by name.
-  const std::set<std::string> refused{"Compatibility_04.gltf", "Compatibility_05.gltf", "14_emission_strength.gltf"};
+  const std::set<std::string> refused{"Compatibility_04.gltf", "Compatibility_05.gltf",
+                                      "14_emission_strength.gltf"};
   for (const fs::path& path : models_below(shared / "data" / "gltf")) {
     const std::string name = path.filename();
     auto model = scene::load_gltf(path);
     if (refused.contains(name)) {
       ASSERT_FALSE(model.ok()) << path;
-      EXPECT_TRUE(model.error().message.find("xtension") != std::string::npos || model.error().message.find("minVersion") != std::string::npos)
+      EXPECT_TRUE(model.error().message.find("xtension") != std::string::npos ||
+                  model.error().message.find("minVersion") != std::string::npos)
           << model.error().message;
       continue;
     }
@@ -68,13 +72,15 @@ TEST_F(Corpus, EveryModelRenders) {
     const bool expects_pixels = has_faces(*model) && !model->roots.empty();
     const auto eye = picture(std::move(model).value());
     ASSERT_TRUE(eye.ok()) << path << ": " << eye.error().message;
-    const auto hits = std::count_if(eye->depth.data.begin(), eye->depth.data.end(), [](float d) { return std::isfinite(d); });
+    const auto hits = std::count_if(eye->depth.data.begin(), eye->depth.data.end(),
+                                    [](float d) { return std::isfinite(d); });
     // Blended surfaces leave no depth, so a model of those alone is judged by the sheet.
     // Material_AlphaMask_03 has a cutoff of 1.1, which hides all of it.
     if (expects_pixels && hits == 0 && name != "Material_AlphaMask_03.gltf") {
       std::set<std::uint32_t> colors;
       for (std::size_t i = 0; i + 2 < eye->color.data.size(); i += 3)
-        colors.insert(eye->color.data[i] | eye->color.data[i + 1] << 8 | eye->color.data[i + 2] << 16);
+        colors.insert(eye->color.data[i] | eye->color.data[i + 1] << 8 |
+                      eye->color.data[i + 2] << 16);
       EXPECT_GT(colors.size(), 1u) << path << " leaves an empty picture";
     }
     for (const float n : eye->normals.data) ASSERT_TRUE(std::isfinite(n)) << path;
@@ -83,7 +89,8 @@ TEST_F(Corpus, EveryModelRenders) {
   EXPECT_GT(tiles.size(), 150u);
   const fs::path folder = fs::path(NERITIC_BINARY_DIR) / "corpus";
   NERITIC_ASSERT_STATUS(make_folder(folder));
-  NERITIC_ASSERT_STATUS(scene::write_png8(folder / "sheet.png", grid_sheet(tiles, 18, kSide_px, kSide_px)));
+  NERITIC_ASSERT_STATUS(
+      scene::write_png8(folder / "sheet.png", grid_sheet(tiles, 18, kSide_px, kSide_px)));
 }
 
 TEST_F(Corpus, EveryBrokenFileEndsInAPictureOrOneLine) {
@@ -94,7 +101,8 @@ TEST_F(Corpus, EveryBrokenFileEndsInAPictureOrOneLine) {
     if (!model.ok()) {
       EXPECT_EQ(model.error().code, ErrorCode::kBadInput) << path;
       EXPECT_EQ(model.error().message.find('\n'), std::string::npos) << model.error().message;
-      EXPECT_NE(model.error().message.find(path.filename().string()), std::string::npos) << model.error().message;
+      EXPECT_NE(model.error().message.find(path.filename().string()), std::string::npos)
+          << model.error().message;
       ++refused;
       continue;
     }

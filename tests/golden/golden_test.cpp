@@ -1,6 +1,6 @@
-// Golden images: every case of cases.json rendered and compared with its pictures here. A failure writes
-// actual, golden and an amplified difference to build/.../golden/. NERITIC_UPDATE_GOLDEN=1 (see
-// tools/golden) writes the goldens anew.
+// Golden images: every case of cases.json rendered and compared with its pictures here. A failure
+// writes actual, golden and an amplified difference to build/.../golden/. NERITIC_UPDATE_GOLDEN=1
+// (see tools/golden) writes the goldens anew.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,15 +27,18 @@ struct Case {
   int max_difference = 0;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.scene; }  // for GoogleTest's listings
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.scene;
+}  // for GoogleTest's listings
 
 std::vector<Case> read_cases() {
   const auto text = read_text(kFolder / "cases.json");
   if (!text.ok()) return {};
   std::vector<Case> cases;
   for (const nlohmann::json& entry : nlohmann::json::parse(*text))
-    cases.push_back({entry["name"], entry["scene"], entry.value("water", ""), entry["size"][0], entry["size"][1],
-                     entry["time_s"], entry["max_fraction_of_pixels"], entry["max_channel_difference"]});
+    cases.push_back({entry["name"], entry["scene"], entry.value("water", ""), entry["size"][0],
+                     entry["size"][1], entry["time_s"], entry["max_fraction_of_pixels"],
+                     entry["max_channel_difference"]});
   return cases;
 }
 
@@ -46,7 +49,8 @@ class Golden : public test::GpuTest, public ::testing::WithParamInterface<Case> 
     const auto devices = gpu::list_devices();
     if (!devices.ok()) return;
     for (const gpu::DeviceInfo& device : *devices)
-      if (device.usable && device.name.find("llvmpipe") != std::string::npos) ::setenv("NERITIC_TEST_DEVICE", "llvmpipe", 0);
+      if (device.usable && device.name.find("llvmpipe") != std::string::npos)
+        ::setenv("NERITIC_TEST_DEVICE", "llvmpipe", 0);
   }
 };
 
@@ -60,7 +64,8 @@ void write_picture(const std::string& file, const ImageU8& image) {
 ImageU8 grey_sonar(const sonar::SonarImage& image) {
   ImageU8 out(image.n_azimuth, image.n_range, 1);
   for (std::size_t i = 0; i < out.data.size(); ++i)
-    out.data[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::sqrt(std::min(16.0f * image.intensity[i], 1.0f))));
+    out.data[i] = static_cast<std::uint8_t>(
+        std::lround(255.0 * std::sqrt(std::min(16.0f * image.intensity[i], 1.0f))));
   return out;
 }
 
@@ -75,8 +80,10 @@ void expect_like_golden(const ImageU8& actual, const std::string& name, const Ca
     // Nothing to compare with: all of the picture differs.
     write_picture(name + ".actual.png", actual);
     write_picture(name + ".difference.png", actual);
-    ADD_FAILURE() << name << ": " << (read.ok() ? "the golden has another size" : read.error().message)
-                  << "; see golden/" << name << ".actual.png and .difference.png in the build folder";
+    ADD_FAILURE() << name << ": "
+                  << (read.ok() ? "the golden has another size" : read.error().message)
+                  << "; see golden/" << name
+                  << ".actual.png and .difference.png in the build folder";
     return;
   }
   const ImageU8& golden = *read;
@@ -95,16 +102,19 @@ void expect_like_golden(const ImageU8& actual, const std::string& name, const Ca
     off += most > c.max_difference;
   }
   const double fraction = double(off) / (double(actual.width) * actual.height);
-  EXPECT_LE(fraction, c.max_fraction) << name << ": " << off << " pixels differ by more than " << c.max_difference
-                                      << ", worst " << worst << "; see golden/" << name
-                                      << ".actual.png, .golden.png and .difference.png in the build folder";
+  EXPECT_LE(fraction, c.max_fraction)
+      << name << ": " << off << " pixels differ by more than " << c.max_difference << ", worst "
+      << worst << "; see golden/" << name
+      << ".actual.png, .golden.png and .difference.png in the build folder";
   if (fraction <= c.max_fraction) return;
   write_picture(name + ".actual.png", actual);
   write_picture(name + ".golden.png", golden);
   write_picture(name + ".difference.png", difference);
 }
 
-TEST(GoldenCases, CanBeRead) { ASSERT_FALSE(read_cases().empty()); }
+TEST(GoldenCases, CanBeRead) {
+  ASSERT_FALSE(read_cases().empty());
+}
 
 TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
   const Case& c = GetParam();
@@ -122,7 +132,8 @@ TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
   for (const CameraFrame& camera : result.cameras)
     for (std::size_t e = 0; e < camera.eyes.size(); ++e)
       expect_like_golden(camera.eyes[e].color, c.name + "." + camera.name + (e ? ".right" : ""), c);
-  for (const SonarFrame& sonar : result.sonars) expect_like_golden(grey_sonar(sonar.image), c.name + "." + sonar.name, c);
+  for (const SonarFrame& sonar : result.sonars)
+    expect_like_golden(grey_sonar(sonar.image), c.name + "." + sonar.name, c);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Golden, ::testing::ValuesIn(read_cases()),

@@ -25,7 +25,8 @@ TEST(Views, PointProjectsToItsPixelAndDepth) {
   const Vec3 in_view{0.7, -0.3, -4.0};
   const Vec3 from_origin = pose * in_view - set.origin_m();
   const Vec4f clip = view.clip_from_origin * Vec4f(Vec3f(from_origin), 1.0f);
-  const double u = (clip.x / clip.w * 0.5 + 0.5) * set.width, v = (clip.y / clip.w * 0.5 + 0.5) * set.height;
+  const double u = (clip.x / clip.w * 0.5 + 0.5) * set.width,
+               v = (clip.y / clip.w * 0.5 + 0.5) * set.height;
   EXPECT_NEAR(u, k.cx + k.fx * 0.7 / 4.0, 1e-3);
   EXPECT_NEAR(v, k.cy - k.fy * -0.3 / 4.0, 1e-3);
   EXPECT_NEAR(set.views[0].near_m / (clip.z / clip.w), 4.0, 1e-5);
@@ -38,7 +39,7 @@ TEST(Views, SphereIsSeenExactlyWhenItReachesTheFrustum) {
   const ViewSet set = one_view({});
   EXPECT_TRUE(any_view_sees(set, {0, 0, -5}, 1.0));
   EXPECT_FALSE(any_view_sees(set, {0, 0, 5}, 1.0));
-  EXPECT_TRUE(any_view_sees(set, {0, 0, 0.5}, 1.0));   // around the eye
+  EXPECT_TRUE(any_view_sees(set, {0, 0, 0.5}, 1.0));  // around the eye
   // Right plane x = -z: the centre at (6, 0, -5) lies 1 / sqrt(2) outside.
   EXPECT_TRUE(any_view_sees(set, {6, 0, -5}, 0.72));
   EXPECT_FALSE(any_view_sees(set, {6, 0, -5}, 0.69));

@@ -46,7 +46,8 @@ TEST(WaterOptics, EveryTypeOfTheReferenceTableHasItsKd) {
   EXPECT_EQ(checked, 10);
 }
 
-// Not in I and IA: there absorption is nearly all, and the path of daylight is longer than its depth.
+// Not in I and IA: there absorption is nearly all, and the path of daylight is longer than its
+// depth.
 TEST(WaterOptics, SightFadesFasterThanDaylightWhereWaterScatters) {
   for (const char* type : {"IB", "II", "III", "1C", "3C", "5C", "7C", "9C"}) {
     const auto optics = jerlov_optics(type);
@@ -69,7 +70,9 @@ TEST(WaterOptics, ClosureGivesBackKdAndSeaWaterAbsorbsNoLessThanPure) {
     for (int i = 0; i < 3; ++i) {
       EXPECT_GE(o->absorption_m[i], pure[i]) << type << " " << i;
       if (o->absorption_m[i] == pure[i]) continue;
-      EXPECT_NEAR(1.04 * (o->absorption_m[i] + .0183 * b[i]) / .86, o->diffuse_attenuation_m[i], 1e-9) << type;
+      EXPECT_NEAR(1.04 * (o->absorption_m[i] + .0183 * b[i]) / .86, o->diffuse_attenuation_m[i],
+                  1e-9)
+          << type;
       ++closed;
     }
   }

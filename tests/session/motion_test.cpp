@@ -1,5 +1,5 @@
-// Motion images against the projected displacement in closed form: a body moved by an animation's node,
-// a quad moved by a skin's joint, and a background that stands still.
+// Motion images against the projected displacement in closed form: a body moved by an animation's
+// node, a quad moved by a skin's joint, and a background that stands still.
 #include <gtest/gtest.h>
 
 #include "engine/scene/shapes.hpp"
@@ -19,7 +19,8 @@ class Motion : public test::GpuTest {
     scene::Channel channel;
     channel.node = node;
     channel.times_s = {0.0f, 1.0f};
-    channel.values = {0.0f, 0.0f, 0.0f, float(kSpeed_m_s.x), float(kSpeed_m_s.y), float(kSpeed_m_s.z)};
+    channel.values = {
+        0.0f, 0.0f, 0.0f, float(kSpeed_m_s.x), float(kSpeed_m_s.y), float(kSpeed_m_s.z)};
     model.clips.push_back({"move", 1.0, {channel}});
   }
 

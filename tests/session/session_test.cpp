@@ -1,5 +1,5 @@
-// What a session promises: the same picture far from the origin, from one or two eyes, and nothing in
-// the graph that the scene does not name.
+// What a session promises: the same picture far from the origin, from one or two eyes, and nothing
+// in the graph that the scene does not name.
 #include "tools/session/session.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ Result<scene::Scene> small_scene(const std::string& file, const Vec3& offset_m =
   options.offset_m = offset_m;
   auto scene = scene::load_scene(test::source_dir() / "assets/scenes" / file, options);
   if (scene.ok())
-    for (scene::Camera& camera : scene->cameras) camera.width = 201, camera.height = 113;  // no multiple of a group
+    for (scene::Camera& camera : scene->cameras)
+      camera.width = 201, camera.height = 113;  // no multiple of a group
   return scene;
 }
 
@@ -98,7 +99,8 @@ TEST_P(SceneFiles, HundredKilometresAwayLooksAndSoundsTheSame) {
   NERITIC_ASSERT_OK(const FrameResult b, far->render(request));
   const ImageU8 &x = a.cameras[0].eyes[0].color, &y = b.cameras[0].eyes[0].color;
   int worst = 0;
-  for (std::size_t i = 0; i < x.data.size(); ++i) worst = std::max(worst, std::abs(int(x.data[i]) - int(y.data[i])));
+  for (std::size_t i = 0; i < x.data.size(); ++i)
+    worst = std::max(worst, std::abs(int(x.data[i]) - int(y.data[i])));
   EXPECT_LE(worst, 1);
   double energy = 0.0, moved = 0.0;
   const sonar::SonarImage &s = a.sonars[0].image, &t = b.sonars[0].image;
@@ -133,7 +135,8 @@ TEST_F(SessionTest, StereoPairOfOneMultiviewPassIsTwoSingleViews) {
       double normal = 0.0;
       int color = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        normal = std::max<double>(normal, std::abs(a.normals.data[3 * i + k] - b.normals.data[3 * i + k]));
+        normal = std::max<double>(normal,
+                                  std::abs(a.normals.data[3 * i + k] - b.normals.data[3 * i + k]));
         const std::size_t at = i * a.color.channels + k;
         color = std::max(color, std::abs(int(a.color.data[at]) - int(b.color.data[at])));
       }
@@ -161,7 +164,8 @@ TEST_F(SessionTest, SphereHasItsClosedFormDepthAndNormals) {
   int checked = 0;
   for (std::uint32_t y = 0; y < eye.height; ++y)
     for (std::uint32_t x = 0; x < eye.width; ++x) {
-      const Vec3 ray{(x + 0.5 - eye.intrinsics.cx) / eye.intrinsics.fx, -(y + 0.5 - eye.intrinsics.cy) / eye.intrinsics.fy, -1.0};
+      const Vec3 ray{(x + 0.5 - eye.intrinsics.cx) / eye.intrinsics.fx,
+                     -(y + 0.5 - eye.intrinsics.cy) / eye.intrinsics.fy, -1.0};
       // |t ray - center| = 1 with the centre 4 m ahead.
       const double a = glm::dot(ray, ray), b = -2.0 * 4.0, c = 16.0 - 1.0;
       const double under = b * b - 4.0 * a * c;
@@ -170,7 +174,8 @@ TEST_F(SessionTest, SphereHasItsClosedFormDepthAndNormals) {
         continue;  // the mesh's silhouette
       }
       const double t = (-b - std::sqrt(under)) / (2.0 * a);
-      EXPECT_NEAR(eye.depth.at(x, y), t, 0.02);  // 48 segments: a facet lies up to 2 mm inside, more at the rim
+      EXPECT_NEAR(eye.depth.at(x, y), t,
+                  0.02);  // 48 segments: a facet lies up to 2 mm inside, more at the rim
       const Vec3 n = ray * t - Vec3(0, 0, -4);
       const Vec3 seen(eye.normals.at(x, y, 0), eye.normals.at(x, y, 1), eye.normals.at(x, y, 2));
       EXPECT_GT(glm::dot(n, seen), 0.995);
@@ -187,10 +192,12 @@ TEST_F(SessionTest, GraphHoldsNothingThatTheSceneDoesNotName) {
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
   session->keep_plan_dump(true);
   NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
-  for (const char* absent : {"sonar", "gather", "deform", "forward", "motion", "emissive", "reflectivity"})
+  for (const char* absent :
+       {"sonar", "gather", "deform", "forward", "motion", "emissive", "reflectivity"})
     EXPECT_EQ(session->plan_text().find(absent), std::string::npos) << absent;
   for (const gpu::PassTime& pass : result.passes)
-    for (const char* absent : {"sonar", "deform", "forward", "motion"}) EXPECT_EQ(pass.name.find(absent), std::string::npos) << pass.name;
+    for (const char* absent : {"sonar", "deform", "forward", "motion"})
+      EXPECT_EQ(pass.name.find(absent), std::string::npos) << pass.name;
 }
 
 TEST_F(SessionTest, CameraInsideAMeshAndEmptySceneStillGivePictures) {
@@ -207,20 +214,24 @@ TEST_F(SessionTest, CameraInsideAMeshAndEmptySceneStillGivePictures) {
     FrameRequest request = everything(*scene);
     NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(*scene)));
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
-    for (const float v : result.sonars[0].image.intensity) ASSERT_TRUE(std::isfinite(v) && v >= 0.0f);
+    for (const float v : result.sonars[0].image.intensity)
+      ASSERT_TRUE(std::isfinite(v) && v >= 0.0f);
   }
 }
 
 TEST_F(SessionTest, FiveThousandInstancesAreOneDraw) {
   scene::Scene scene = sphere_scene(0.4);
   for (int i = 0; i < 5000; ++i)
-    scene.objects[0].copies.push_back(glm::translate(Mat4(1.0), Vec3(i % 100 - 50, i / 100 - 25, -60.0)));
+    scene.objects[0].copies.push_back(
+        glm::translate(Mat4(1.0), Vec3(i % 100 - 50, i / 100 - 25, -60.0)));
   FrameRequest request;
   request.cameras = {0};
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
-  const render::FrameState state = render::evaluate_frame(session->scene(), session->gpu_scene(), 0.0, 0.1, false);
-  const render::DrawList draws = render::build_draw_list(session->scene(), session->gpu_scene(), state,
-                                                         camera_views(session->scene(), session->scene().cameras[0]));
+  const render::FrameState state =
+      render::evaluate_frame(session->scene(), session->gpu_scene(), 0.0, 0.1, false);
+  const render::DrawList draws =
+      render::build_draw_list(session->scene(), session->gpu_scene(), state,
+                              camera_views(session->scene(), session->scene().cameras[0]));
   ASSERT_EQ(draws.opaque.size(), 1u);
   EXPECT_GT(draws.opaque[0].instance_count, 1000u);
   NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
@@ -249,7 +260,8 @@ TEST_F(SessionTest, WideApertureTakesSeveralViewsInOnePass) {
     EXPECT_GT(result.sonars[0].image.intensity[5 * 500 + column], 0.999f) << column;
     for (std::uint32_t row = 0; row < 20; ++row)
       if (row != 5) {
-        EXPECT_LT(result.sonars[0].image.intensity[row * 500 + column], 0.001f) << row << " " << column;
+        EXPECT_LT(result.sonars[0].image.intensity[row * 500 + column], 0.001f)
+            << row << " " << column;
       }
   }
 }

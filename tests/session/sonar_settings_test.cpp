@@ -1,5 +1,5 @@
-// A session's sonars follow their settings from frame to frame, keep their times apart, and say what
-// they were made with.
+// A session's sonars follow their settings from frame to frame, keep their times apart, and say
+// what they were made with.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,7 +69,8 @@ TEST_F(SonarSettings, ChangedBetweenFramesGiveTheImageOfANewSession) {
   EXPECT_EQ(after.sonars[0].gather, "nearest");
   EXPECT_EQ(after.sonars[0].image.intensity, expected.sonars[0].image.intensity);
   EXPECT_EQ(after.sonars[0].image.labels, expected.sonars[0].image.labels);
-  EXPECT_GT(std::count(after.sonars[0].image.labels.begin(), after.sonars[0].image.labels.end(), 12), 0);
+  EXPECT_GT(
+      std::count(after.sonars[0].image.labels.begin(), after.sonars[0].image.labels.end(), 12), 0);
 }
 
 TEST_F(SonarSettings, TwoSonarsHavePassTimesOfTheirOwn) {
@@ -78,7 +79,8 @@ TEST_F(SonarSettings, TwoSonarsHavePassTimesOfTheirOwn) {
   NERITIC_ASSERT_OK(const FrameResult result, session->render(all_sonars(scene)));
   std::multiset<std::string> names;
   for (const gpu::PassTime& pass : result.passes) names.insert(pass.name);
-  for (const char* name : {"port sonar clear", "port sonar gather", "starboard sonar clear", "starboard sonar gather"})
+  for (const char* name :
+       {"port sonar clear", "port sonar gather", "starboard sonar clear", "starboard sonar gather"})
     EXPECT_EQ(names.count(name), 1u) << name;
 }
 

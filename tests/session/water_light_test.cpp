@@ -1,5 +1,5 @@
-// Light in water measured on pictures: the documented tone curve is inverted, and what a white wall sends
-// through 2 m more of water has faded by exp(-2 c) in every channel (Beer and Lambert).
+// Light in water measured on pictures: the documented tone curve is inverted, and what a white wall
+// sends through 2 m more of water has faded by exp(-2 c) in every channel (Beer and Lambert).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,15 +16,19 @@ using WaterLight = test::GpuTest;
 
 // The inverse of Hill's fit of the ACES transforms and of the sRGB encoding (IEC 61966-2-1).
 Vec3 exposed_radiance(const Vec3& encoded) {
-  const Mat3 from_srgb(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
-  const Mat3 to_srgb(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
+  const Mat3 from_srgb(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566,
+                       0.83777);
+  const Mat3 to_srgb(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605,
+                     1.07602);
   Vec3 linear;
   for (int i = 0; i < 3; ++i)
-    linear[i] = encoded[i] <= 0.04045 ? encoded[i] / 12.92 : std::pow((encoded[i] + 0.055) / 1.055, 2.4);
+    linear[i] =
+        encoded[i] <= 0.04045 ? encoded[i] / 12.92 : std::pow((encoded[i] + 0.055) / 1.055, 2.4);
   Vec3 y = glm::inverse(to_srgb) * linear;
   for (int i = 0; i < 3; ++i) {
     // y = (v^2 + .0245786 v - .000090537) / (.983729 v^2 + .432951 v + .238081).
-    const double a = 1.0 - 0.983729 * y[i], b = 0.0245786 - 0.432951 * y[i], c = -0.000090537 - 0.238081 * y[i];
+    const double a = 1.0 - 0.983729 * y[i], b = 0.0245786 - 0.432951 * y[i],
+                 c = -0.000090537 - 0.238081 * y[i];
     y[i] = (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
   }
   return glm::inverse(from_srgb) * y / 1.8;
@@ -36,7 +40,8 @@ TEST_F(WaterLight, OneMoreMetreOfWaterFadesByBeamAttenuation) {
     for (int i = 0; i < 2; ++i) {
       scene::Scene scene;
       scene.path = "test";
-      scene.sun = scene::Sun{.elevation_rad = radians(50.0), .azimuth_rad = kPi};  // behind the camera
+      scene.sun =
+          scene::Sun{.elevation_rad = radians(50.0), .azimuth_rad = kPi};  // behind the camera
       scene.water = scene::Water{.type = type};
       scene::Model wall = scene::make_box({20.0, 20.0, 1.0});
       scene::Material white;

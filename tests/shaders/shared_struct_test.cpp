@@ -1,5 +1,5 @@
-// Every struct that GLSL and C++ share has the same members at the same places in both: the offsets that
-// SPIR-V declares (read with SPIRV-Cross) against offsetof.
+// Every struct that GLSL and C++ share has the same members at the same places in both: the offsets
+// that SPIR-V declares (read with SPIRV-Cross) against offsetof.
 #include <gtest/gtest.h>
 #include <spirv_cross/spirv_cross_c.h>
 
@@ -21,54 +21,72 @@ namespace {
 
 using Offsets = std::map<std::string, std::size_t>;
 
-#define MEMBER(type, member) {#member, offsetof(type, member)}
+#define MEMBER(type, member) \
+  { #member, offsetof(type, member) }
 
 const std::map<std::string, Offsets>& shared_structs() {
   static const std::map<std::string, Offsets> structs{
       {"View",
-       {MEMBER(View, clip_from_origin), MEMBER(View, next_clip_from_origin), MEMBER(View, eye), MEMBER(View, near_m),
-        MEMBER(View, ray_corner), MEMBER(View, ray_dx), MEMBER(View, ray_dy)}},
+       {MEMBER(View, clip_from_origin), MEMBER(View, next_clip_from_origin), MEMBER(View, eye),
+        MEMBER(View, near_m), MEMBER(View, ray_corner), MEMBER(View, ray_dx),
+        MEMBER(View, ray_dy)}},
 
       {"VertexPosition", {MEMBER(VertexPosition, position), MEMBER(VertexPosition, normal)}},
-      {"TextureMapping", {MEMBER(TextureMapping, u), MEMBER(TextureMapping, v), MEMBER(TextureMapping, uv_set)}},
+      {"TextureMapping",
+       {MEMBER(TextureMapping, u), MEMBER(TextureMapping, v), MEMBER(TextureMapping, uv_set)}},
       {"MaterialData",
-       {MEMBER(MaterialData, base_color), MEMBER(MaterialData, emissive), MEMBER(MaterialData, metallic),
-        MEMBER(MaterialData, roughness), MEMBER(MaterialData, normal_scale), MEMBER(MaterialData, occlusion_strength),
-        MEMBER(MaterialData, alpha_cutoff), MEMBER(MaterialData, flags), MEMBER(MaterialData, base_color_map),
-        MEMBER(MaterialData, metal_rough_map), MEMBER(MaterialData, normal_map), MEMBER(MaterialData, occlusion_map),
+       {MEMBER(MaterialData, base_color), MEMBER(MaterialData, emissive),
+        MEMBER(MaterialData, metallic), MEMBER(MaterialData, roughness),
+        MEMBER(MaterialData, normal_scale), MEMBER(MaterialData, occlusion_strength),
+        MEMBER(MaterialData, alpha_cutoff), MEMBER(MaterialData, flags),
+        MEMBER(MaterialData, base_color_map), MEMBER(MaterialData, metal_rough_map),
+        MEMBER(MaterialData, normal_map), MEMBER(MaterialData, occlusion_map),
         MEMBER(MaterialData, emissive_map)}},
       {"RasterPush", {MEMBER(RasterPush, target_size)}},
-      {"SkinVertex", {MEMBER(SkinVertex, joints01), MEMBER(SkinVertex, joints23), MEMBER(SkinVertex, weights)}},
+      {"SkinVertex",
+       {MEMBER(SkinVertex, joints01), MEMBER(SkinVertex, joints23), MEMBER(SkinVertex, weights)}},
       {"MorphDelta", {MEMBER(MorphDelta, position), MEMBER(MorphDelta, normal)}},
       {"DeformPush",
-       {MEMBER(DeformPush, vertex_count), MEMBER(DeformPush, first_source), MEMBER(DeformPush, first_skin),
-        MEMBER(DeformPush, first_joint), MEMBER(DeformPush, joint_stride), MEMBER(DeformPush, first_morph),
-        MEMBER(DeformPush, morph_targets), MEMBER(DeformPush, first_weight), MEMBER(DeformPush, weight_stride),
-        MEMBER(DeformPush, first_out), MEMBER(DeformPush, next)}},
+       {MEMBER(DeformPush, vertex_count), MEMBER(DeformPush, first_source),
+        MEMBER(DeformPush, first_skin), MEMBER(DeformPush, first_joint),
+        MEMBER(DeformPush, joint_stride), MEMBER(DeformPush, first_morph),
+        MEMBER(DeformPush, morph_targets), MEMBER(DeformPush, first_weight),
+        MEMBER(DeformPush, weight_stride), MEMBER(DeformPush, first_out),
+        MEMBER(DeformPush, next)}},
       {"SpotLight",
-       {MEMBER(SpotLight, position), MEMBER(SpotLight, direction), MEMBER(SpotLight, intensity_cd), MEMBER(SpotLight, cos_inner),
-        MEMBER(SpotLight, cos_outer)}},
+       {MEMBER(SpotLight, position), MEMBER(SpotLight, direction), MEMBER(SpotLight, intensity_cd),
+        MEMBER(SpotLight, cos_inner), MEMBER(SpotLight, cos_outer)}},
       {"Lighting",
-       {MEMBER(Lighting, terms), MEMBER(Lighting, lamp_count), MEMBER(Lighting, to_sun), MEMBER(Lighting, surface_irradiance),
-        MEMBER(Lighting, direct_share), MEMBER(Lighting, origin_depth_m), MEMBER(Lighting, diffuse_attenuation),
-        MEMBER(Lighting, beam_attenuation), MEMBER(Lighting, water_scattering), MEMBER(Lighting, particle_scattering),
-        MEMBER(Lighting, background), MEMBER(Lighting, emissive_scale), MEMBER(Lighting, exposure), MEMBER(Lighting, sun_cosine),
+       {MEMBER(Lighting, terms), MEMBER(Lighting, lamp_count), MEMBER(Lighting, to_sun),
+        MEMBER(Lighting, surface_irradiance), MEMBER(Lighting, direct_share),
+        MEMBER(Lighting, origin_depth_m), MEMBER(Lighting, diffuse_attenuation),
+        MEMBER(Lighting, beam_attenuation), MEMBER(Lighting, water_scattering),
+        MEMBER(Lighting, particle_scattering), MEMBER(Lighting, background),
+        MEMBER(Lighting, emissive_scale), MEMBER(Lighting, exposure), MEMBER(Lighting, sun_cosine),
         MEMBER(Lighting, lamps)}},
       {"SonarColumn",
-       {MEMBER(SonarColumn, beam_base), MEMBER(SonarColumn, sec_theta), MEMBER(SonarColumn, pixel_base),
-        MEMBER(SonarColumn, pixel_square), MEMBER(SonarColumn, up), MEMBER(SonarColumn, forward), MEMBER(SonarColumn, pixel),
-        MEMBER(SonarColumn, layer), MEMBER(SonarColumn, first_pixel), MEMBER(SonarColumn, end_pixel)}},
+       {MEMBER(SonarColumn, beam_base), MEMBER(SonarColumn, sec_theta),
+        MEMBER(SonarColumn, pixel_base), MEMBER(SonarColumn, pixel_square), MEMBER(SonarColumn, up),
+        MEMBER(SonarColumn, forward), MEMBER(SonarColumn, pixel), MEMBER(SonarColumn, layer),
+        MEMBER(SonarColumn, first_pixel), MEMBER(SonarColumn, end_pixel)}},
       {"SonarPush",
-       {MEMBER(SonarPush, n_range), MEMBER(SonarPush, n_azimuth), MEMBER(SonarPush, n_elevation), MEMBER(SonarPush, width),
-        MEMBER(SonarPush, height), MEMBER(SonarPush, fx), MEMBER(SonarPush, fy), MEMBER(SonarPush, cx), MEMBER(SonarPush, cy),
-        MEMBER(SonarPush, near_m), MEMBER(SonarPush, range_min_m), MEMBER(SonarPush, bins_per_m), MEMBER(SonarPush, fixed_scale),
-        MEMBER(SonarPush, edge_bias_bins), MEMBER(SonarPush, reflectivities)}},
+       {MEMBER(SonarPush, n_range), MEMBER(SonarPush, n_azimuth), MEMBER(SonarPush, n_elevation),
+        MEMBER(SonarPush, width), MEMBER(SonarPush, height), MEMBER(SonarPush, fx),
+        MEMBER(SonarPush, fy), MEMBER(SonarPush, cx), MEMBER(SonarPush, cy),
+        MEMBER(SonarPush, near_m), MEMBER(SonarPush, range_min_m), MEMBER(SonarPush, bins_per_m),
+        MEMBER(SonarPush, fixed_scale), MEMBER(SonarPush, edge_bias_bins),
+        MEMBER(SonarPush, reflectivities)}},
       {"SonarFanPush",
-       {MEMBER(SonarFanPush, width), MEMBER(SonarFanPush, height), MEMBER(SonarFanPush, n_range), MEMBER(SonarFanPush, n_azimuth), MEMBER(SonarFanPush, left_m), MEMBER(SonarFanPush, top_m), MEMBER(SonarFanPush, m_per_px), MEMBER(SonarFanPush, range_min_m), MEMBER(SonarFanPush, bins_per_m), MEMBER(SonarFanPush, azimuth_middle_rad), MEMBER(SonarFanPush, azimuth_half_rad), MEMBER(SonarFanPush, bins_per_rad), MEMBER(SonarFanPush, gamma)}},
+       {MEMBER(SonarFanPush, width), MEMBER(SonarFanPush, height), MEMBER(SonarFanPush, n_range),
+        MEMBER(SonarFanPush, n_azimuth), MEMBER(SonarFanPush, left_m), MEMBER(SonarFanPush, top_m),
+        MEMBER(SonarFanPush, m_per_px), MEMBER(SonarFanPush, range_min_m),
+        MEMBER(SonarFanPush, bins_per_m), MEMBER(SonarFanPush, azimuth_middle_rad),
+        MEMBER(SonarFanPush, azimuth_half_rad), MEMBER(SonarFanPush, bins_per_rad),
+        MEMBER(SonarFanPush, gamma)}},
       {"SonarFanScalePush",
-       {MEMBER(SonarFanScalePush, cells), MEMBER(SonarFanScalePush, stride), MEMBER(SonarFanScalePush, quantile), MEMBER(SonarFanScalePush, follow)}},
-      {"ImguiPush",
-       {MEMBER(ImguiPush, clip_from_pixel), MEMBER(ImguiPush, layer)}}};
+       {MEMBER(SonarFanScalePush, cells), MEMBER(SonarFanScalePush, stride),
+        MEMBER(SonarFanScalePush, quantile), MEMBER(SonarFanScalePush, follow)}},
+      {"ImguiPush", {MEMBER(ImguiPush, clip_from_pixel), MEMBER(ImguiPush, layer)}}};
   return structs;
 }
 
@@ -80,22 +98,29 @@ class Walker {
     spvc_context context = nullptr;
     ASSERT_EQ(spvc_context_create(&context), SPVC_SUCCESS);
     spvc_parsed_ir ir = nullptr;
-    ASSERT_EQ(spvc_context_parse_spirv(context, stage.code.data(), stage.code.size(), &ir), SPVC_SUCCESS) << stage.file;
-    ASSERT_EQ(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler_), SPVC_SUCCESS);
+    ASSERT_EQ(spvc_context_parse_spirv(context, stage.code.data(), stage.code.size(), &ir),
+              SPVC_SUCCESS)
+        << stage.file;
+    ASSERT_EQ(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir,
+                                           SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler_),
+              SPVC_SUCCESS);
     spvc_resources resources = nullptr;
     ASSERT_EQ(spvc_compiler_create_shader_resources(compiler_, &resources), SPVC_SUCCESS);
     for (const spvc_resource_type kind :
-         {SPVC_RESOURCE_TYPE_STORAGE_BUFFER, SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, SPVC_RESOURCE_TYPE_PUSH_CONSTANT}) {
+         {SPVC_RESOURCE_TYPE_STORAGE_BUFFER, SPVC_RESOURCE_TYPE_UNIFORM_BUFFER,
+          SPVC_RESOURCE_TYPE_PUSH_CONSTANT}) {
       const spvc_reflected_resource* list = nullptr;
       std::size_t count = 0;
-      ASSERT_EQ(spvc_resources_get_resource_list_for_type(resources, kind, &list, &count), SPVC_SUCCESS);
+      ASSERT_EQ(spvc_resources_get_resource_list_for_type(resources, kind, &list, &count),
+                SPVC_SUCCESS);
       for (std::size_t i = 0; i < count; ++i) type(list[i].base_type_id, stage.file, true);
     }
     spvc_context_destroy(context);
   }
 
  private:
-  // block: an interface block, which only GLSL names; a struct inside one is shared and must be in the table.
+  // block: an interface block, which only GLSL names; a struct inside one is shared and must be in
+  // the table.
   void type(spvc_type_id id, const char* file, bool block) {
     const spvc_type handle = spvc_compiler_get_type_handle(compiler_, id);
     if (spvc_type_get_basetype(handle) != SPVC_BASETYPE_STRUCT) return;
@@ -107,14 +132,17 @@ class Walker {
       seen_.insert(name);
       EXPECT_EQ(members, known->second.size()) << file << ": " << name;
     }
-    EXPECT_TRUE(block || known != shared_structs().end()) << file << ": struct " << name << " is not in the test's table";
+    EXPECT_TRUE(block || known != shared_structs().end())
+        << file << ": struct " << name << " is not in the test's table";
     for (unsigned m = 0; m < members; ++m) {
       if (known != shared_structs().end()) {
         unsigned offset = 0;
-        ASSERT_EQ(spvc_compiler_type_struct_member_offset(compiler_, handle, m, &offset), SPVC_SUCCESS);
+        ASSERT_EQ(spvc_compiler_type_struct_member_offset(compiler_, handle, m, &offset),
+                  SPVC_SUCCESS);
         const std::string member = spvc_compiler_get_member_name(compiler_, base, m);
         const auto row = known->second.find(member);
-        ASSERT_NE(row, known->second.end()) << file << ": " << name << "." << member << " is not in the test's table";
+        ASSERT_NE(row, known->second.end())
+            << file << ": " << name << "." << member << " is not in the test's table";
         EXPECT_EQ(offset, row->second) << file << ": " << name << "." << member;
       }
       type(spvc_type_get_member_type(handle, m), file, false);
@@ -128,8 +156,10 @@ class Walker {
 TEST(SharedStructs, LieAtTheSameOffsetsInShadersAndHost) {
   std::set<std::string> seen;
   for (const shaders::Stage& stage : shaders::all_stages())
-    if (!std::string_view(stage.file).starts_with("test_")) Walker(seen).stage(stage);  // those have structs of their own
-  for (const auto& [name, members] : shared_structs()) EXPECT_TRUE(seen.contains(name)) << name << " is in no shader's interface";
+    if (!std::string_view(stage.file).starts_with("test_"))
+      Walker(seen).stage(stage);  // those have structs of their own
+  for (const auto& [name, members] : shared_structs())
+    EXPECT_TRUE(seen.contains(name)) << name << " is in no shader's interface";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// `neritic render` as its users run it: exit statuses, one clear line for bad input, the file contract,
-// and the same bytes whatever the number of the driver's threads.
+// `neritic render` as its users run it: exit statuses, one clear line for bad input, the file
+// contract, and the same bytes whatever the number of the driver's threads.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -25,13 +25,16 @@ struct Outcome {
 
 Outcome neritic(const std::string& arguments, const std::string& environment = "") {
   const test::ScratchFolder folder;
-  const std::string command = environment + " " NERITIC_BINARY_DIR "/tools/neritic " + arguments + " >/dev/null 2>" +
-                              (folder / "stderr").string();
+  const std::string command = environment + " " NERITIC_BINARY_DIR "/tools/neritic " + arguments +
+                              " >/dev/null 2>" + (folder / "stderr").string();
   const int raw = std::system(command.c_str());
-  return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read_text(folder / "stderr").value()};
+  return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw),
+          read_text(folder / "stderr").value()};
 }
 
-std::string scene(const std::string& name) { return (test::source_dir() / "assets/scenes" / name).string(); }
+std::string scene(const std::string& name) {
+  return (test::source_dir() / "assets/scenes" / name).string();
+}
 
 // Skips only where the error is a missing device, and none is required ($NERITIC_REQUIRE_DEVICE).
 bool no_device() {
@@ -48,22 +51,24 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
   std::ofstream(folder / "unknown.toml") << "[watr]\ntype = \"II\"\n";
   const struct {
     std::string arguments, names;
-  } cases[] = {{"render nothere.toml" + out, "nothere.toml"},
-               {"render " + (folder / "garbage.toml").string() + out, "garbage.toml"},
-               {"render " + (folder / "unknown.toml").string() + out, "water"},  // the nearest known key
-               {"render " + scene("pool.toml") + out + " --size 0x0", "0x0"},
-               {"render " + scene("pool.toml") + out + " --size 99999x1", "99999x1"},
-               {"render " + scene("pool.toml") + out + " --time inf", "--time"},
-               {"render " + scene("pool.toml") + out + " --offset nan 0 0", "--offset"},
-               {"render " + scene("pool.toml") + out + " --sensor nobody", "camera, sonar"},
-               {"render " + scene("pool.toml") + out + " --water 4X", "4X"},
-               {"render " + scene("pool.toml") + out + " --colour red", "--colour"},
-               {"rendre " + scene("pool.toml"), "rendre"},
-               {"render", "scene"}};
+  } cases[] = {
+      {"render nothere.toml" + out, "nothere.toml"},
+      {"render " + (folder / "garbage.toml").string() + out, "garbage.toml"},
+      {"render " + (folder / "unknown.toml").string() + out, "water"},  // the nearest known key
+      {"render " + scene("pool.toml") + out + " --size 0x0", "0x0"},
+      {"render " + scene("pool.toml") + out + " --size 99999x1", "99999x1"},
+      {"render " + scene("pool.toml") + out + " --time inf", "--time"},
+      {"render " + scene("pool.toml") + out + " --offset nan 0 0", "--offset"},
+      {"render " + scene("pool.toml") + out + " --sensor nobody", "camera, sonar"},
+      {"render " + scene("pool.toml") + out + " --water 4X", "4X"},
+      {"render " + scene("pool.toml") + out + " --colour red", "--colour"},
+      {"rendre " + scene("pool.toml"), "rendre"},
+      {"render", "scene"}};
   for (const auto& c : cases) {
     const Outcome outcome = neritic(c.arguments);
     EXPECT_EQ(outcome.status, 2) << c.arguments << "\n" << outcome.said;
-    EXPECT_EQ(std::count(outcome.said.begin(), outcome.said.end(), '\n'), 1) << c.arguments << "\n" << outcome.said;
+    EXPECT_EQ(std::count(outcome.said.begin(), outcome.said.end(), '\n'), 1) << c.arguments << "\n"
+                                                                             << outcome.said;
     EXPECT_NE(outcome.said.find(c.names), std::string::npos) << c.arguments << "\n" << outcome.said;
     EXPECT_FALSE(fs::exists(folder / "out")) << c.arguments;
   }
@@ -71,8 +76,9 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
 
 TEST(RenderCommand, WithoutADeviceOneLineNamesThePackage) {
   const test::ScratchFolder folder;
-  const Outcome outcome = neritic("render " + scene("pool.toml") + " --out " + (folder / "out").string(),
-                                  "VK_ICD_FILENAMES=/nonexistent.json VK_DRIVER_FILES=/nonexistent.json");
+  const Outcome outcome =
+      neritic("render " + scene("pool.toml") + " --out " + (folder / "out").string(),
+              "VK_ICD_FILENAMES=/nonexistent.json VK_DRIVER_FILES=/nonexistent.json");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.said.find("mesa-vulkan-drivers"), std::string::npos) << outcome.said;
   EXPECT_EQ(std::count(outcome.said.begin(), outcome.said.end(), '\n'), 1);
@@ -82,8 +88,9 @@ TEST(RenderCommand, OneAndTwoThreadsOfTheDriverWriteTheSameBytes) {
   if (no_device()) GTEST_SKIP() << "no Vulkan device";
   const test::ScratchFolder folder;
   for (const char* threads : {"1", "2"}) {
-    const Outcome outcome = neritic("render " + scene("wreck.toml") + " --size 320x180 --out " + (folder / threads).string(),
-                                    std::string("LP_NUM_THREADS=") + threads);
+    const Outcome outcome = neritic(
+        "render " + scene("wreck.toml") + " --size 320x180 --out " + (folder / threads).string(),
+        std::string("LP_NUM_THREADS=") + threads);
     ASSERT_EQ(outcome.status, 0) << outcome.said;
   }
   int compared = 0;
@@ -100,12 +107,15 @@ TEST(RenderCommand, OneAndTwoThreadsOfTheDriverWriteTheSameBytes) {
 TEST(RenderCommand, WritesTheFileContractAndTheArraysAgreeWithEachOther) {
   if (no_device()) GTEST_SKIP() << "no Vulkan device";
   const test::ScratchFolder folder;
-  const Outcome outcome = neritic("render " + scene("pool.toml") + " --size 101x57 --frames 2 --out " + (folder / "out").string());
+  const Outcome outcome = neritic("render " + scene("pool.toml") +
+                                  " --size 101x57 --frames 2 --out " + (folder / "out").string());
   ASSERT_EQ(outcome.status, 0) << outcome.said;
   for (const char* frame : {"frame_0000", "frame_0001"}) {
-    const fs::path camera = folder / "out" / frame / "camera", sonar = folder / "out" / frame / "sonar";
+    const fs::path camera = folder / "out" / frame / "camera",
+                   sonar = folder / "out" / frame / "sonar";
     const auto depth = read_npy(camera / "depth.npy"), normals = read_npy(camera / "normals.npy");
-    const auto labels = read_npy(camera / "labels.npy"), instances = read_npy(camera / "instances.npy");
+    const auto labels = read_npy(camera / "labels.npy"),
+               instances = read_npy(camera / "instances.npy");
     const auto motion = read_npy(camera / "motion.npy");
     ASSERT_TRUE(depth.ok() && normals.ok() && labels.ok() && instances.ok() && motion.ok());
     EXPECT_EQ(depth->shape, (std::vector<std::size_t>{57, 101}));
@@ -122,13 +132,15 @@ TEST(RenderCommand, WritesTheFileContractAndTheArraysAgreeWithEachOther) {
     const auto color = scene::read_image8(camera / "color.png");
     ASSERT_TRUE(color.ok());
     EXPECT_EQ(color->width, 101u);
-    const auto image = read_npy(sonar / "sonar.npy"), classes = read_npy(sonar / "sonar_labels.npy");
+    const auto image = read_npy(sonar / "sonar.npy"),
+               classes = read_npy(sonar / "sonar_labels.npy");
     ASSERT_TRUE(image.ok() && classes.ok());
     EXPECT_EQ(image->shape, (std::vector<std::size_t>{500, 500}));
     EXPECT_EQ(classes->shape, image->shape);
     for (const fs::path& facts : {camera / "meta.json", sonar / "meta.json"}) {
       const auto meta = nlohmann::json::parse(read_text(facts).value());
-      for (const char* key : {"fx", "fy", "cx", "cy", "pose", "frames", "near_m", "time_s", "seed", "scene", "device", "passes_ms"})
+      for (const char* key : {"fx", "fy", "cx", "cy", "pose", "frames", "near_m", "time_s", "seed",
+                              "scene", "device", "passes_ms"})
         EXPECT_TRUE(meta.contains(key)) << facts << " " << key;
     }
     const auto json = nlohmann::json::parse(read_text(sonar / "sonar.json").value());
@@ -136,7 +148,8 @@ TEST(RenderCommand, WritesTheFileContractAndTheArraysAgreeWithEachOther) {
       EXPECT_TRUE(json.contains(key)) << key;
     EXPECT_TRUE(fs::exists(sonar / "sonar.png"));
   }
-  for (const auto& entry : fs::recursive_directory_iterator(folder / "out")) EXPECT_NE(entry.path().extension(), ".tmp");
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "out"))
+    EXPECT_NE(entry.path().extension(), ".tmp");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The command line of `neritic`: every flag of every subcommand. The one file that includes the parser,
-// since it takes long to compile.
+// The command line of `neritic`: every flag of every subcommand. The one file that includes the
+// parser, since it takes long to compile.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
@@ -13,19 +13,26 @@ using Run = std::function<Status()>;
 
 void add_render(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RenderFlags>();
-  CLI::App* command = app.add_subcommand("render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
+  CLI::App* command = app.add_subcommand(
+      "render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
   command->add_option("scene", flags->scene, "scene or model file")->required();
   command->add_option("--out", flags->out, "folder for the results")->required();
   command->add_option("--frames", flags->frames, "number of frames")->check(CLI::Range(1, 1000000));
   command->add_option("--size", flags->size, "WxH of every camera, pixels");
   command->add_option("--time", flags->time_s, "scene time of the first frame, seconds");
-  command->add_option("--sensor", flags->sensors, "only this sensor, by name; may be given again")->expected(1)->take_all();
+  command->add_option("--sensor", flags->sensors, "only this sensor, by name; may be given again")
+      ->expected(1)
+      ->take_all();
   command->add_option("--water", flags->water, "another Jerlov type than the scene's");
-  command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")->expected(3);
+  command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")
+      ->expected(3);
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
-  command->add_option("--dump-graph", flags->dump_graph, "the frame graph's plan: to a file (.dot: Graphviz), or - for standard output");
+  command->add_option(
+      "--dump-graph", flags->dump_graph,
+      "the frame graph's plan: to a file (.dot: Graphviz), or - for standard output");
   command->add_flag("--sheet", flags->sheet, "also pictures of every image, and one contact sheet");
-  command->add_flag("--validate", flags->validation, "run with Vulkan validation; any message is a failure");
+  command->add_flag("--validate", flags->validation,
+                    "run with Vulkan validation; any message is a failure");
   command->callback([flags, &run] { run = [flags] { return run_render(*flags); }; });
 }
 
@@ -88,8 +95,9 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_option("--frames", flags->frames, "stop after so many frames");
   command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png");
   command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
-  command->add_option("--sensor", flags->sensors,
-                      "fly this camera, show only this sonar, by name; may be given again")
+  command
+      ->add_option("--sensor", flags->sensors,
+                   "fly this camera, show only this sonar, by name; may be given again")
       ->expected(1)
       ->take_all();
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
@@ -118,8 +126,7 @@ void add_doctor(CLI::App& app, Run& run) {
       app.add_subcommand("doctor", "says what this machine has and what will work on it");
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_flag("--json", flags->json, "for programs: JSON on standard output");
-  command->callback(
-      [flags, &run] { run = [flags] { return run_doctor(*flags); }; });
+  command->callback([flags, &run] { run = [flags] { return run_doctor(*flags); }; });
 }
 
 }  // namespace
@@ -137,14 +144,16 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_tradeoff(app, line.run);
   add_doctor(app, line.run);
   try {
-    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // back to front, as it wants them
+    app.parse(std::vector<std::string>(arguments.rbegin(),
+                                       arguments.rend()));  // back to front, as it wants them
   } catch (const CLI::CallForHelp&) {
     const auto chosen = app.get_subcommands();
     line.help = chosen.empty() ? app.help() : chosen.front()->help();
   } catch (const CLI::ParseError& error) {
     if (app.get_subcommands().empty() && !arguments.empty() && !arguments[0].starts_with('-')) {
       std::string names;
-      for (const CLI::App* command : app.get_subcommands(nullptr)) names += (names.empty() ? "" : ", ") + command->get_name();
+      for (const CLI::App* command : app.get_subcommands(nullptr))
+        names += (names.empty() ? "" : ", ") + command->get_name();
       return bad_input("'{}' is no command; {} are", arguments[0], names);
     }
     return bad_input("{} (see neritic --help)", error.what());

@@ -1,5 +1,5 @@
-// The subcommands of `neritic`: what each is asked (its flags, as typed) and what does it, one source file
-// each. command_line.cpp reads the flags; it alone knows the parser.
+// The subcommands of `neritic`: what each is asked (its flags, as typed) and what does it, one
+// source file each. command_line.cpp reads the flags; it alone knows the parser.
 #pragma once
 
 #include <cstdint>

@@ -28,7 +28,8 @@ Result<scene::Scene> load(const DiveFlags& flags) {
       scene.cameras[0].width = size.first, scene.cameras[0].height = size.second;
     }
   }
-  for (scene::Camera& camera : scene.cameras) camera.stereo_baseline_m = 0.0;  // one window, one eye
+  for (scene::Camera& camera : scene.cameras)
+    camera.stereo_baseline_m = 0.0;  // one window, one eye
   return scene;
 }
 

@@ -9,20 +9,23 @@
 
 namespace neritic::tools {
 
-Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& flag, const std::string& text) {
+Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& flag,
+                                                           const std::string& text) {
   constexpr std::uint32_t kMax = 16384;
   const char* const end = text.data() + text.size();
   std::uint32_t width = 0, height = 0;
   const auto first = std::from_chars(text.data(), end, width);
   const bool cross = first.ec == std::errc{} && first.ptr != end && *first.ptr == 'x';
   const auto second = cross ? std::from_chars(first.ptr + 1, end, height) : first;
-  if (!cross || second.ec != std::errc{} || second.ptr != end || width < 1 || height < 1 || width > kMax || height > kMax)
-    return bad_input("{}: '{}'; WIDTHxHEIGHT of 1 to {} pixels a side is accepted", flag, text, kMax);
+  if (!cross || second.ec != std::errc{} || second.ptr != end || width < 1 || height < 1 ||
+      width > kMax || height > kMax)
+    return bad_input("{}: '{}'; WIDTHxHEIGHT of 1 to {} pixels a side is accepted", flag, text,
+                     kMax);
   return std::pair{width, height};
 }
 
-Result<std::vector<double>> parse_numbers(const char* flag, const std::string& text, std::size_t fewest,
-                                    std::size_t most) {
+Result<std::vector<double>> parse_numbers(const char* flag, const std::string& text,
+                                          std::size_t fewest, std::size_t most) {
   std::vector<double> out;
   std::size_t at = 0;
   while (at <= text.size()) {

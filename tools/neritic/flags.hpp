@@ -11,12 +11,15 @@
 namespace neritic::tools {
 
 // "1280x720"; each side 1 to 16384.
-Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& flag, const std::string& text);
+Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& flag,
+                                                           const std::string& text);
 
 // "a,b,c": fewest to most finite numbers. flag: its name without dashes.
-Result<std::vector<double>> parse_numbers(const char* flag, const std::string& text, std::size_t fewest, std::size_t most);
+Result<std::vector<double>> parse_numbers(const char* flag, const std::string& text,
+                                          std::size_t fewest, std::size_t most);
 
-// One line on stderr that is rewritten, only where stderr is a terminal and there is more than one step.
+// One line on stderr that is rewritten, only where stderr is a terminal and there is more than one
+// step.
 class Progress {
  public:
   Progress(std::string what, std::uint64_t total);

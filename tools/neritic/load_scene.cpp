@@ -11,7 +11,8 @@ namespace {
 
 Result<scene::Scene> load(const std::filesystem::path& path, const scene::SceneOptions& options) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   if (extension != ".gltf" && extension != ".glb") return scene::load_scene(path, options);
   NERITIC_TRY(scene::Model model, scene::load_gltf(path));
   scene::Scene scene = scene::scene_of_model(std::move(model), 1280, 720);
@@ -24,11 +25,13 @@ Result<scene::Scene> load(const std::filesystem::path& path, const scene::SceneO
 
 }  // namespace
 
-Result<scene::Scene> load_scene_or_model(const std::string& path, const std::string& size, const scene::SceneOptions& options) {
+Result<scene::Scene> load_scene_or_model(const std::string& path, const std::string& size,
+                                         const scene::SceneOptions& options) {
   NERITIC_TRY(scene::Scene scene, load(path, options));
   if (size.empty()) return scene;
   NERITIC_TRY(const auto extent, parse_size("--size", size));
-  for (scene::Camera& camera : scene.cameras) camera.width = extent.first, camera.height = extent.second;
+  for (scene::Camera& camera : scene.cameras)
+    camera.width = extent.first, camera.height = extent.second;
   return scene;
 }
 

@@ -8,7 +8,8 @@
 
 namespace neritic::tools {
 
-// path: .toml, or .gltf / .glb (shown alone, framed by a camera). size: "WxH" of every camera, or empty.
+// path: .toml, or .gltf / .glb (shown alone, framed by a camera). size: "WxH" of every camera, or
+// empty.
 Result<scene::Scene> load_scene_or_model(const std::string& path, const std::string& size,
                                          const scene::SceneOptions& options = {});
 

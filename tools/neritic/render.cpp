@@ -24,20 +24,25 @@ Result<scene::Scene> load(const RenderFlags& flags) {
   scene::SceneOptions options;
   if (!flags.offset_m.empty()) {
     options.offset_m = {flags.offset_m[0], flags.offset_m[1], flags.offset_m[2]};
-    if (!is_finite(options.offset_m)) return bad_input("--offset: three finite numbers (metres) are accepted");
+    if (!is_finite(options.offset_m))
+      return bad_input("--offset: three finite numbers (metres) are accepted");
   }
   NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size, options));
   if (flags.water.empty()) return scene;
   if (!scene.water) return bad_input("--water {}: {} names no water", flags.water, flags.scene);
   scene.water->type = flags.water;
-  if (const auto known = render::jerlov_optics(flags.water); !known.ok()) return bad_input("--water: {}", known.error().message);
+  if (const auto known = render::jerlov_optics(flags.water); !known.ok())
+    return bad_input("--water: {}", known.error().message);
   return scene;
 }
 
-Status status_of(const Result<sonar::BeamGrid>& grid) { return grid.ok() ? Status() : Status(grid.error()); }
+Status status_of(const Result<sonar::BeamGrid>& grid) {
+  return grid.ok() ? Status() : Status(grid.error());
+}
 
 bool wanted(const RenderFlags& flags, const std::string& name) {
-  return flags.sensors.empty() || std::find(flags.sensors.begin(), flags.sensors.end(), name) != flags.sensors.end();
+  return flags.sensors.empty() ||
+         std::find(flags.sensors.begin(), flags.sensors.end(), name) != flags.sensors.end();
 }
 
 Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& scene) {
@@ -49,13 +54,15 @@ Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& sc
     if (wanted(flags, scene.cameras[i].name)) request.cameras.push_back(i), ++found;
   }
   for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
-    if (wanted(flags, scene.sonars[i].name)) NERITIC_TRY_STATUS(status_of(sonar_grid(scene.sonars[i])));
+    if (wanted(flags, scene.sonars[i].name))
+      NERITIC_TRY_STATUS(status_of(sonar_grid(scene.sonars[i])));
     known += (known.empty() ? "" : ", ") + scene.sonars[i].name;
     if (wanted(flags, scene.sonars[i].name)) request.sonars.push_back(i), ++found;
   }
   if (!flags.sensors.empty() && found < flags.sensors.size())
     return bad_input("--sensor: {} has {}", flags.scene, known.empty() ? "no sensors" : known);
-  if (found == 0) return bad_input("{}: no camera and no sonar, so there is nothing to render", flags.scene);
+  if (found == 0)
+    return bad_input("{}: no camera and no sonar, so there is nothing to render", flags.scene);
   return request;
 }
 
@@ -68,15 +75,20 @@ double frame_step_s(const scene::Scene& scene, const FrameRequest& request) {
 void add_tiles(std::vector<Tile>& tiles, const FrameResult& result) {
   for (const CameraFrame& camera : result.cameras)
     for (std::size_t e = 0; e < camera.eyes.size(); ++e)
-      tiles.push_back({camera.eyes[e].color, camera.eyes.size() > 1 ? fmt::format("{} {}", camera.name, e == 0 ? "left" : "right") : camera.name});
-  for (const SonarFrame& sonar : result.sonars) tiles.push_back({sonar::draw_panel(sonar.grid, sonar.image), sonar.name});
+      tiles.push_back(
+          {camera.eyes[e].color, camera.eyes.size() > 1
+                                     ? fmt::format("{} {}", camera.name, e == 0 ? "left" : "right")
+                                     : camera.name});
+  for (const SonarFrame& sonar : result.sonars)
+    tiles.push_back({sonar::draw_panel(sonar.grid, sonar.image), sonar.name});
   if (result.cameras.empty()) return;
   const ViewImages& view = result.cameras.front().eyes.front();
   tiles.push_back({depth_picture(view.depth), "depth"});
   tiles.push_back({normals_picture(view.normals), "normals"});
   tiles.push_back({labels_picture(view.labels), "class labels"});
   tiles.push_back({labels_picture(view.instances), "instance labels"});
-  if (!view.motion.empty()) tiles.push_back({motion_picture(view.motion), "motion to the next frame"});
+  if (!view.motion.empty())
+    tiles.push_back({motion_picture(view.motion), "motion to the next frame"});
 }
 
 Status write_sheet(const fs::path& out, const FrameResult& result) {
@@ -93,10 +105,12 @@ Status write_sheet(const fs::path& out, const FrameResult& result) {
 Status write_frame(const fs::path& folder, const FrameResult& result, const FrameFacts& facts) {
   for (const CameraFrame& camera : result.cameras)
     for (std::size_t e = 0; e < camera.eyes.size(); ++e) {
-      const std::string name = camera.eyes.size() == 1 ? camera.name : camera.name + (e == 0 ? "_left" : "_right");
+      const std::string name =
+          camera.eyes.size() == 1 ? camera.name : camera.name + (e == 0 ? "_left" : "_right");
       NERITIC_TRY_STATUS(write_view(folder / name, camera.eyes[e], facts));
     }
-  for (const SonarFrame& sonar : result.sonars) NERITIC_TRY_STATUS(write_sonar(folder / sonar.name, sonar, facts));
+  for (const SonarFrame& sonar : result.sonars)
+    NERITIC_TRY_STATUS(write_sonar(folder / sonar.name, sonar, facts));
   return {};
 }
 
@@ -112,14 +126,16 @@ Status dump_graph(const RenderFlags& flags, const Session& session) {
 }  // namespace
 
 Status run_render(const RenderFlags& flags) {
-  if (!std::isfinite(flags.time_s)) return bad_input("--time: {} s; a finite number is accepted", flags.time_s);
+  if (!std::isfinite(flags.time_s))
+    return bad_input("--time: {} s; a finite number is accepted", flags.time_s);
   const TimeNs start = now_ns();
   NERITIC_TRY(scene::Scene scene, load(flags));
   NERITIC_TRY(FrameRequest request, request_of(flags, scene));
   for (const std::string& note : scene.notes) log_warn("{}", note);
   if (!request.cameras.empty() && !scene.sun && scene.lamps.empty())
     log_warn("{}: no sun and no lamps, so only what glows by itself is seen", flags.scene);
-  log_info("scene read in {:.0f} ms: {} models, {} objects", to_ms(now_ns() - start), scene.models.size(), scene.objects.size());
+  log_info("scene read in {:.0f} ms: {} models, {} objects", to_ms(now_ns() - start),
+           scene.models.size(), scene.objects.size());
   gpu::DeviceOptions options;
   options.device = flags.device;
   options.validation = flags.validation;
@@ -128,7 +144,8 @@ Status run_render(const RenderFlags& flags) {
   log_info("device: {}, {}", device->info().name, device->info().driver);
   const double step_s = frame_step_s(scene, request);
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
-  log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start), session->gpu_scene().triangles());
+  log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
+           session->gpu_scene().triangles());
   session->keep_plan_dump(!flags.dump_graph.empty());
   Progress progress("frame", flags.frames);
   for (std::uint32_t i = 0; i < flags.frames; ++i) {
@@ -136,16 +153,20 @@ Status run_render(const RenderFlags& flags) {
     request.next_time_s = request.time_s + step_s;
     request.frame = i;
     NERITIC_TRY(const FrameResult result, session->render(request));
-    const FrameFacts facts{request.time_s, session->scene().seed, flags.scene, device->info().name, result.passes, result.frame_ms};
-    NERITIC_TRY_STATUS(write_frame(fs::path(flags.out) / fmt::format("frame_{:04}", i), result, facts));
+    const FrameFacts facts{request.time_s,      session->scene().seed, flags.scene,
+                           device->info().name, result.passes,         result.frame_ms};
+    NERITIC_TRY_STATUS(
+        write_frame(fs::path(flags.out) / fmt::format("frame_{:04}", i), result, facts));
     if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result));
     if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
     progress.step();
   }
   device->wait_idle();
-  for (const std::string& message : device->validation_log().messages) log_warn("validation: {}", message);
+  for (const std::string& message : device->validation_log().messages)
+    log_warn("validation: {}", message);
   if (!device->validation_log().messages.empty())
-    return failure(ErrorCode::kUnsupported, "validation reported {} messages", device->validation_log().messages.size());
+    return failure(ErrorCode::kUnsupported, "validation reported {} messages",
+                   device->validation_log().messages.size());
   return {};
 }
 

@@ -78,8 +78,7 @@ Result<sonar::Intrinsics> intrinsics_of(const SonarFlags& flags, const sonar::Ma
   return k;
 }
 
-Result<sonar::SonarInput> input_of(const SonarFlags& flags,
-                                    const sonar::OfflineOptions& options) {
+Result<sonar::SonarInput> input_of(const SonarFlags& flags, const sonar::OfflineOptions& options) {
   NERITIC_TRY(const sonar::MapFile depth, sonar::read_map(flags.depth));
   NERITIC_TRY(const sonar::Intrinsics intrinsics, intrinsics_of(flags, depth));
   if (depth.coding != sonar::MapFile::Coding::kNumbers && options.depth_scale == 1.0)

@@ -11,12 +11,14 @@ void decode_depth(std::span<const float> texels, ViewImages& out) {
   out.depth = ImageF32(out.width, out.height, 1);
   const auto near_m = static_cast<float>(out.near_m);
   for (std::size_t i = 0; i < texels.size(); ++i)
-    out.depth.data[i] = texels[i] > 0.0f ? near_m / texels[i] : std::numeric_limits<float>::infinity();
+    out.depth.data[i] =
+        texels[i] > 0.0f ? near_m / texels[i] : std::numeric_limits<float>::infinity();
 }
 
 void decode_normals(std::span<const std::uint32_t> texels, ViewImages& out) {
   out.normals = ImageF32(out.width, out.height, 3);
-  const glm::mat3 view_from_world = glm::mat3(glm::mat3_cast(glm::conjugate(out.world_from_view.rotation)));
+  const glm::mat3 view_from_world =
+      glm::mat3(glm::mat3_cast(glm::conjugate(out.world_from_view.rotation)));
   for (std::size_t i = 0; i < texels.size(); ++i) {
     if (!(out.depth.data[i] < std::numeric_limits<float>::infinity())) continue;
     const Vec3f n = view_from_world * shared::octahedral_decode(glm::unpackSnorm2x16(texels[i]));
@@ -39,7 +41,8 @@ void decode_labels(std::span<const std::uint32_t> texels, ViewImages& out) {
 void decode_color(std::span<const std::uint32_t> texels, ViewImages& out) {
   out.color = ImageU8(out.width, out.height, 3);
   for (std::size_t i = 0; i < texels.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) out.color.data[3 * i + c] = static_cast<std::uint8_t>(texels[i] >> (8 * c));
+    for (std::size_t c = 0; c < 3; ++c)
+      out.color.data[3 * i + c] = static_cast<std::uint8_t>(texels[i] >> (8 * c));
 }
 
 void decode_motion(std::span<const float> texels, ViewImages& out) {

@@ -28,8 +28,10 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
           {"pixel_centers", "half"},
           {"near_m", view.near_m},
           {"pose", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}},
-          {"frames", {{"pose", "world_from_view"}, {"world", "right-handed, y up, metres, water surface at y = 0"},
-                      {"view", "x right, y up, z backwards"}}},
+          {"frames",
+           {{"pose", "world_from_view"},
+            {"world", "right-handed, y up, metres, water surface at y = 0"},
+            {"view", "x right, y up, z backwards"}}},
           {"time_s", facts.time_s},
           {"seed", facts.seed},
           {"scene", facts.scene},
@@ -40,28 +42,48 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
 
 }  // namespace
 
-Status write_view(const std::filesystem::path& folder, const ViewImages& view, const FrameFacts& facts) {
+Status write_view(const std::filesystem::path& folder, const ViewImages& view,
+                  const FrameFacts& facts) {
   NERITIC_TRY_STATUS(make_folder(folder));
   const std::size_t w = view.width, h = view.height;
-  if (!view.depth.empty()) NERITIC_TRY_STATUS(write_npy(folder / "depth.npy", view.depth.data, {h, w}));
-  if (!view.normals.empty()) NERITIC_TRY_STATUS(write_npy(folder / "normals.npy", view.normals.data, {h, w, 3}));
-  if (!view.labels.empty()) NERITIC_TRY_STATUS(write_npy(folder / "labels.npy", view.labels.data, {h, w}));
-  if (!view.instances.empty()) NERITIC_TRY_STATUS(write_npy(folder / "instances.npy", view.instances.data, {h, w}));
-  if (!view.motion.empty()) NERITIC_TRY_STATUS(write_npy(folder / "motion.npy", view.motion.data, {h, w, 2}));
+  if (!view.depth.empty())
+    NERITIC_TRY_STATUS(write_npy(folder / "depth.npy", view.depth.data, {h, w}));
+  if (!view.normals.empty())
+    NERITIC_TRY_STATUS(write_npy(folder / "normals.npy", view.normals.data, {h, w, 3}));
+  if (!view.labels.empty())
+    NERITIC_TRY_STATUS(write_npy(folder / "labels.npy", view.labels.data, {h, w}));
+  if (!view.instances.empty())
+    NERITIC_TRY_STATUS(write_npy(folder / "instances.npy", view.instances.data, {h, w}));
+  if (!view.motion.empty())
+    NERITIC_TRY_STATUS(write_npy(folder / "motion.npy", view.motion.data, {h, w, 2}));
   if (!view.color.empty()) NERITIC_TRY_STATUS(scene::write_png8(folder / "color.png", view.color));
-  return write_text(folder / "meta.json", meta_of(view, facts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_text(
+      folder / "meta.json",
+      meta_of(view, facts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
-Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame, const FrameFacts& facts) {
+Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
+                   const FrameFacts& facts) {
   NERITIC_TRY_STATUS(make_folder(folder));
   for (std::size_t i = 0; i < frame.sectors.size(); ++i)
-    NERITIC_TRY_STATUS(write_view(frame.sectors.size() == 1 ? folder : folder / fmt::format("sector_{}", i), frame.sectors[i], facts));
-  const nlohmann::json gbuffer{{"width", frame.gbuffer_width},
-                               {"height", frame.gbuffer_height},
-                               {"pixels_per_cell", {{"requested", frame.pixels_per_cell}, {"used", {frame.pixels_per_cell_used.x, frame.pixels_per_cell_used.y}}}}};
+    NERITIC_TRY_STATUS(
+        write_view(frame.sectors.size() == 1 ? folder : folder / fmt::format("sector_{}", i),
+                   frame.sectors[i], facts));
+  const nlohmann::json gbuffer{
+      {"width", frame.gbuffer_width},
+      {"height", frame.gbuffer_height},
+      {"pixels_per_cell",
+       {{"requested", frame.pixels_per_cell},
+        {"used", {frame.pixels_per_cell_used.x, frame.pixels_per_cell_used.y}}}}};
   const nlohmann::json more{
       {"kind", "imaging"},
-      {"model", {{"method", "gpu"}, {"gather", frame.gather}, {"fixed_scale", frame.fixed_scale}, {"sectors", frame.sectors.size()}, {"gbuffer", gbuffer}, {"reflectivity", frame.reflectivity ? "by object" : "1"}}},
+      {"model",
+       {{"method", "gpu"},
+        {"gather", frame.gather},
+        {"fixed_scale", frame.fixed_scale},
+        {"sectors", frame.sectors.size()},
+        {"gbuffer", gbuffer},
+        {"reflectivity", frame.reflectivity ? "by object" : "1"}}},
       {"time_s", facts.time_s},
       {"seed", facts.seed},
       {"scene", facts.scene},

@@ -18,11 +18,14 @@ struct FrameFacts {
   double frame_ms = 0.0;
 };
 
-// depth.npy, normals.npy, labels.npy, instances.npy, meta.json; for a camera color.png and motion.npy.
-Status write_view(const std::filesystem::path& folder, const ViewImages& view, const FrameFacts& facts);
+// depth.npy, normals.npy, labels.npy, instances.npy, meta.json; for a camera color.png and
+// motion.npy.
+Status write_view(const std::filesystem::path& folder, const ViewImages& view,
+                  const FrameFacts& facts);
 
-// sonar.npy, sonar_labels.npy, sonar.png, sonar.json, and its view beside them (sector_0, sector_1, ...
-// where the wedge took several).
-Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame, const FrameFacts& facts);
+// sonar.npy, sonar_labels.npy, sonar.png, sonar.json, and its view beside them (sector_0, sector_1,
+// ... where the wedge took several).
+Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
+                   const FrameFacts& facts);
 
 }  // namespace neritic::tools

@@ -8,7 +8,9 @@
 namespace neritic::tools {
 namespace {
 
-std::uint8_t byte_of(double unit) { return static_cast<std::uint8_t>(std::lround(std::clamp(unit, 0.0, 1.0) * 255.0)); }
+std::uint8_t byte_of(double unit) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(unit, 0.0, 1.0) * 255.0));
+}
 
 void set_rgb(ImageU8& image, std::size_t pixel, double r, double g, double b) {
   image.data[3 * pixel] = byte_of(r);
@@ -41,7 +43,8 @@ ImageU8 depth_picture(const ImageF32& depth_m) {
     const double d = depth_m.data[i];
     if (!std::isfinite(d) || d <= 0.0) continue;
     const double t = 1.0 - std::log(d / nearest) / span;
-    set_rgb(out, i, 0.08 + 0.92 * t * t, 0.10 + 0.80 * t, 0.25 + 0.50 * std::sqrt(t) * (1.2 - 0.6 * t));
+    set_rgb(out, i, 0.08 + 0.92 * t * t, 0.10 + 0.80 * t,
+            0.25 + 0.50 * std::sqrt(t) * (1.2 - 0.6 * t));
   }
   return out;
 }
@@ -81,10 +84,12 @@ ImageU8 resized(const ImageU8& image, std::uint32_t width, std::uint32_t height)
   ImageU8 out(width, height, image.channels);
   for (std::uint32_t y = 0; y < height; ++y) {
     const std::uint32_t y0 = std::uint64_t{y} * image.height / height;
-    const std::uint32_t y1 = std::max<std::uint32_t>(y0 + 1, std::uint64_t{y + 1} * image.height / height);
+    const std::uint32_t y1 =
+        std::max<std::uint32_t>(y0 + 1, std::uint64_t{y + 1} * image.height / height);
     for (std::uint32_t x = 0; x < width; ++x) {
       const std::uint32_t x0 = std::uint64_t{x} * image.width / width;
-      const std::uint32_t x1 = std::max<std::uint32_t>(x0 + 1, std::uint64_t{x + 1} * image.width / width);
+      const std::uint32_t x1 =
+          std::max<std::uint32_t>(x0 + 1, std::uint64_t{x + 1} * image.width / width);
       for (std::uint32_t c = 0; c < image.channels; ++c) {
         std::uint64_t sum = 0;
         for (std::uint32_t v = y0; v < y1; ++v)

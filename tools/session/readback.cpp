@@ -2,13 +2,16 @@
 
 namespace neritic::tools {
 
-Result<const gpu::Buffer*> ReadbackPool::declare(graph::FrameGraph& graph, gpu::Device& device, const std::string& name,
-                                                 graph::ImageHandle image, VkFormat format, std::uint32_t width,
+Result<const gpu::Buffer*> ReadbackPool::declare(graph::FrameGraph& graph, gpu::Device& device,
+                                                 const std::string& name, graph::ImageHandle image,
+                                                 VkFormat format, std::uint32_t width,
                                                  std::uint32_t height, std::uint32_t layers) {
   const VkDeviceSize size = VkDeviceSize{gpu::texel_bytes(format)} * width * height * layers;
   std::unique_ptr<gpu::Buffer>& buffer = buffers_[name];
   if (!buffer || buffer->size() != size) {
-    NERITIC_TRY(auto fresh, gpu::Buffer::create(device, {name + " readback", size, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryUse::kReadback}));
+    NERITIC_TRY(auto fresh, gpu::Buffer::create(
+                                device, {name + " readback", size, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                         gpu::MemoryUse::kReadback}));
     buffer = std::make_unique<gpu::Buffer>(std::move(fresh));
   }
   struct Data {
@@ -24,9 +27,13 @@ Result<const gpu::Buffer*> ReadbackPool::declare(graph::FrameGraph& graph, gpu::
       },
       [image, depth, width, height, layers](const Data& data, graph::PassContext& context) {
         VkBufferImageCopy region{};
-        region.imageSubresource = {static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 0, layers};
+        region.imageSubresource = {
+            static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT
+                                                  : VK_IMAGE_ASPECT_COLOR_BIT),
+            0, 0, layers};
         region.imageExtent = {width, height, 1};
-        vkCmdCopyImageToBuffer(context.cmd(), context.image(image).handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+        vkCmdCopyImageToBuffer(context.cmd(), context.image(image).handle(),
+                               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                context.buffer(data.target).handle(), 1, &region);
       });
   graph.output(pass.target, graph::Access::kHostRead);

@@ -38,7 +38,8 @@ std::vector<ViewImages> decode_views(const ViewWork& work) {
   return views;
 }
 
-render::ViewSet sonar_views(const scene::Scene& scene, const scene::Sonar& sonar, const Session::SonarState& state) {
+render::ViewSet sonar_views(const scene::Scene& scene, const scene::Sonar& sonar,
+                            const Session::SonarState& state) {
   render::ViewSet set;
   set.width = state.size.width;
   set.height = state.size.height;
@@ -47,7 +48,8 @@ render::ViewSet sonar_views(const scene::Scene& scene, const scene::Sonar& sonar
     render::ViewDesc view;
     view.tangents = sector.tangents;
     view.near_m = sonar.near_m;
-    view.world_from_view = world_from_sonar * Pose{Vec3(0.0), glm::angleAxis(-sector.yaw_rad, Vec3(0, 1, 0))};
+    view.world_from_view =
+        world_from_sonar * Pose{Vec3(0.0), glm::angleAxis(-sector.yaw_rad, Vec3(0, 1, 0))};
     view.next_world_from_view = view.world_from_view;
     set.views.push_back(view);
   }
@@ -56,8 +58,9 @@ render::ViewSet sonar_views(const scene::Scene& scene, const scene::Sonar& sonar
 
 // What a sonar's state is made from: all but its name, its rate and where it is.
 auto settings_of(const scene::Sonar& s) {
-  return std::tie(s.kind, s.range_min_m, s.range_max_m, s.azimuth_rad, s.elevation_rad, s.bins_range, s.bins_azimuth,
-                  s.bins_elevation, s.gbuffer_scale, s.gather, s.near_m);
+  return std::tie(s.kind, s.range_min_m, s.range_max_m, s.azimuth_rad, s.elevation_rad,
+                  s.bins_range, s.bins_azimuth, s.bins_elevation, s.gbuffer_scale, s.gather,
+                  s.near_m);
 }
 
 SonarFrame decode_sonar(const scene::Sonar& sonar, const SonarWork& work) {
@@ -70,10 +73,12 @@ SonarFrame decode_sonar(const scene::Sonar& sonar, const SonarWork& work) {
   frame.gbuffer_height = work.state->size.height;
   frame.pixels_per_cell = work.state->pixels_per_cell;
   const FrustumTangents& t = work.state->gather->sectors().front().tangents;
-  frame.pixels_per_cell_used = {work.state->size.width * frame.grid.azimuth_step_rad() / (t.right - t.left),
-                                work.state->size.height * frame.grid.elevation_step_rad() / (t.top - t.bottom)};
+  frame.pixels_per_cell_used = {
+      work.state->size.width * frame.grid.azimuth_step_rad() / (t.right - t.left),
+      work.state->size.height * frame.grid.elevation_step_rad() / (t.top - t.bottom)};
   frame.reflectivity = work.state->reflectivity;
-  frame.image = work.state->gather->to_image(work.state->sums.mapped<std::uint32_t>(), work.state->keys.mapped<std::uint32_t>());
+  frame.image = work.state->gather->to_image(work.state->sums.mapped<std::uint32_t>(),
+                                             work.state->keys.mapped<std::uint32_t>());
   frame.sectors = work.depth ? decode_views(work) : std::vector<ViewImages>{};
   return frame;
 }
@@ -81,9 +86,11 @@ SonarFrame decode_sonar(const scene::Sonar& sonar, const SonarWork& work) {
 }  // namespace
 
 Result<sonar::BeamGrid> sonar_grid(const scene::Sonar& sonar) {
-  const sonar::BeamGrid grid = sonar::symmetric_grid(sonar.range_min_m, sonar.range_max_m, sonar.azimuth_rad, sonar.elevation_rad,
-                                                     {sonar.bins_range, sonar.bins_azimuth, sonar.bins_elevation});
-  if (const Status valid = sonar::validate(grid); !valid.ok()) return bad_input("sonar {}: {}", sonar.name, valid.error().message);
+  const sonar::BeamGrid grid = sonar::symmetric_grid(
+      sonar.range_min_m, sonar.range_max_m, sonar.azimuth_rad, sonar.elevation_rad,
+      {sonar.bins_range, sonar.bins_azimuth, sonar.bins_elevation});
+  if (const Status valid = sonar::validate(grid); !valid.ok())
+    return bad_input("sonar {}: {}", sonar.name, valid.error().message);
   return grid;
 }
 
@@ -98,17 +105,21 @@ Result<Session::SonarState*> Session::sonar_state(std::size_t index) {
   const std::vector<sonar::Sector> sectors = sonar::plan_sectors(grid);
   state->pixels_per_cell = sonar.gbuffer_scale > 0.0 ? sonar.gbuffer_scale : kDefaultGBufferScale;
   state->reflectivity = reflectivity_.size() > 0;
-  state->size = sonar::gbuffer_size(grid, sectors.front(), state->pixels_per_cell, device_.limits().maxImageDimension2D);
+  state->size = sonar::gbuffer_size(grid, sectors.front(), state->pixels_per_cell,
+                                    device_.limits().maxImageDimension2D);
   sonar::GBufferLayout layout;
   layout.width = state->size.width;
   layout.height = state->size.height;
   layout.intrinsics = sonar::intrinsics_of(sectors.front().tangents, layout.width, layout.height);
   layout.near_m = sonar.near_m;
-  NERITIC_TRY(auto gather, sonar::SonarGather::create(device_, grid, sectors, layout, {state->mode, true, state->reflectivity}));
+  NERITIC_TRY(auto gather, sonar::SonarGather::create(device_, grid, sectors, layout,
+                                                      {state->mode, true, state->reflectivity}));
   state->gather = std::make_unique<sonar::SonarGather>(std::move(gather));
   const auto result = [&](const char* what) {
-    return gpu::Buffer::create(device_, {sonar.name + what, state->gather->buffer_bytes(),
-                                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryUse::kReadback});
+    return gpu::Buffer::create(
+        device_, {sonar.name + what, state->gather->buffer_bytes(),
+                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                  gpu::MemoryUse::kReadback});
   };
   NERITIC_TRY(state->sums, result(" sums"));
   NERITIC_TRY(state->keys, result(" keys"));
@@ -119,15 +130,19 @@ Result<Session::SonarState*> Session::sonar_state(std::size_t index) {
 
 // Acoustic reflectivity by instance label; no table where every object's is 1.
 Status Session::create_reflectivity() {
-  if (std::ranges::all_of(scene_.objects, [](const scene::Object& object) { return object.reflectivity == 1.0f; })) return {};
+  if (std::ranges::all_of(scene_.objects,
+                          [](const scene::Object& object) { return object.reflectivity == 1.0f; }))
+    return {};
   std::vector<float> table(1, 0.0f);
   for (const scene::Object& object : scene_.objects) {
     const std::size_t end = object.instance + object.instance_count();
     if (table.size() < end) table.resize(end, 1.0f);
     std::fill_n(table.begin() + object.instance, object.instance_count(), object.reflectivity);
   }
-  NERITIC_TRY(reflectivity_, gpu::Buffer::create(device_, {"reflectivity", table.size() * sizeof(float),
-                                                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
+  NERITIC_TRY(reflectivity_,
+              gpu::Buffer::create(device_, {"reflectivity", table.size() * sizeof(float),
+                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                                VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
   return gpu::upload_buffer(device_, reflectivity_, std::as_bytes(std::span(table)));
 }
 
@@ -143,7 +158,8 @@ render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& cam
   for (int i = 0; i < eyes; ++i) {
     const double side = eyes == 1 ? 0.0 : (i == 0 ? -0.5 : 0.5);
     view.world_from_view = center;
-    view.world_from_view.position_m += center.rotation * Vec3(side * camera.stereo_baseline_m, 0.0, 0.0);
+    view.world_from_view.position_m +=
+        center.rotation * Vec3(side * camera.stereo_baseline_m, 0.0, 0.0);
     view.next_world_from_view = view.world_from_view;
     set.views.push_back(view);
   }
@@ -163,34 +179,43 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Sce
   session->frames_->enable_timing(true);
   session->executor_ = std::make_unique<graph::Executor>(*session->frames_);
   NERITIC_TRY(session->renderer_, render::Renderer::create(device));
-  NERITIC_TRY(session->gpu_scene_, render::GpuScene::create(device, session->scene_, session->renderer_->material_layout()));
+  NERITIC_TRY(session->gpu_scene_, render::GpuScene::create(device, session->scene_,
+                                                            session->renderer_->material_layout()));
   if (!session->scene_.sonars.empty()) NERITIC_TRY_STATUS(session->create_reflectivity());
   return session;
 }
 
 // Adds everything one camera needs to the graph.
-Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameState& state, const render::DeformedGeometry& deformed,
-                               const Capture& capture, CameraWork& work) {
+Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameState& state,
+                               const render::DeformedGeometry& deformed, const Capture& capture,
+                               CameraWork& work) {
   const scene::Camera& camera = scene_.cameras[work.index];
   NERITIC_TRY_STATUS(check_size("camera " + camera.name, camera.width, camera.height));
   work.views = camera_views(scene_, camera);
   work.draws = render::build_draw_list(scene_, *gpu_scene_, state, work.views);
   const std::string prefix = camera.name + " ";
   const std::uint32_t w = work.views.width, h = work.views.height, layers = work.views.layers();
-  // Always as a camera sees (single-sided materials, no blended ones in the depth), with or without colour.
+  // Always as a camera sees (single-sided materials, no blended ones in the depth), with or without
+  // colour.
   constexpr auto kind = render::GBufferKind::kSurface;
-  NERITIC_TRY(const render::GBuffer g, renderer_->declare_gbuffer(graph, prefix, kind, *gpu_scene_, state, deformed, work.views, work.draws));
+  NERITIC_TRY(const render::GBuffer g,
+              renderer_->declare_gbuffer(graph, prefix, kind, *gpu_scene_, state, deformed,
+                                         work.views, work.draws));
   const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
     return readback_.declare(graph, device_, prefix + name, image, format, w, h, layers);
   };
   if (capture.color) {
     NERITIC_TRY(const shared::Lighting lighting,
-                render::make_lighting(scene_, work.views.origin_m(), camera.exposure, gpu_scene_->has_emission()));
-    NERITIC_TRY(graph::ImageHandle hdr, renderer_->declare_shade(graph, prefix, g, work.views, lighting));
-    NERITIC_TRY(hdr, renderer_->declare_forward(graph, prefix, hdr, g, *gpu_scene_, deformed, work.views, work.draws, lighting));
+                render::make_lighting(scene_, work.views.origin_m(), camera.exposure,
+                                      gpu_scene_->has_emission()));
+    NERITIC_TRY(graph::ImageHandle hdr,
+                renderer_->declare_shade(graph, prefix, g, work.views, lighting));
+    NERITIC_TRY(hdr, renderer_->declare_forward(graph, prefix, hdr, g, *gpu_scene_, deformed,
+                                                work.views, work.draws, lighting));
     NERITIC_TRY(work.color_image, renderer_->declare_tonemap(graph, prefix, hdr, w, h, layers));
     if (camera.antialias) {
-      NERITIC_TRY(work.color_image, renderer_->declare_antialias(graph, prefix, work.color_image, w, h, layers));
+      NERITIC_TRY(work.color_image,
+                  renderer_->declare_antialias(graph, prefix, work.color_image, w, h, layers));
     }
   }
   if (!capture.to_host) return {};
@@ -209,14 +234,17 @@ Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameStat
 }
 
 // Adds one sonar: its own geometry G-buffer, then the gather into buffers that the host reads.
-Status Session::declare_sonar(graph::FrameGraph& graph, const render::FrameState& state, const render::DeformedGeometry& deformed,
-                              const Capture& capture, SonarWork& work) {
+Status Session::declare_sonar(graph::FrameGraph& graph, const render::FrameState& state,
+                              const render::DeformedGeometry& deformed, const Capture& capture,
+                              SonarWork& work) {
   const scene::Sonar& sonar = scene_.sonars[work.index];
   NERITIC_TRY(work.state, sonar_state(work.index));
   work.views = sonar_views(scene_, sonar, *work.state);
   work.draws = render::build_draw_list(scene_, *gpu_scene_, state, work.views);
   const std::string prefix = sonar.name + " ";
-  NERITIC_TRY(const render::GBuffer g, renderer_->declare_gbuffer(graph, prefix, render::GBufferKind::kGeometry, *gpu_scene_, state, deformed, work.views, work.draws));
+  NERITIC_TRY(const render::GBuffer g,
+              renderer_->declare_gbuffer(graph, prefix, render::GBufferKind::kGeometry, *gpu_scene_,
+                                         state, deformed, work.views, work.draws));
   sonar::SonarGather::Inputs inputs;
   inputs.prefix = prefix;
   inputs.depth = g.depth;
@@ -226,7 +254,8 @@ Status Session::declare_sonar(graph::FrameGraph& graph, const render::FrameState
     inputs.reflectivity = graph.import_buffer(prefix + "reflectivity", reflectivity_);
     inputs.reflectivities = static_cast<std::uint32_t>(reflectivity_.size() / sizeof(float));
   }
-  inputs.sonar_from_gbuffer = glm::mat3_cast(glm::conjugate(scene_.world_from(sonar.mount).rotation));
+  inputs.sonar_from_gbuffer =
+      glm::mat3_cast(glm::conjugate(scene_.world_from(sonar.mount).rotation));
   if (capture.to_host) {
     inputs.sums_target = graph.import_buffer(prefix + "sums", work.state->sums);
     inputs.keys_target = graph.import_buffer(prefix + "keys", work.state->keys);
@@ -237,7 +266,8 @@ Status Session::declare_sonar(graph::FrameGraph& graph, const render::FrameState
   graph.output(work.outputs.keys, graph::Access::kHostRead);
   if (!capture.geometry) return {};
   const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
-    return readback_.declare(graph, device_, prefix + name, image, format, g.width, g.height, g.layers);
+    return readback_.declare(graph, device_, prefix + name, image, format, g.width, g.height,
+                             g.layers);
   };
   NERITIC_TRY(work.depth, bring("depth", g.depth, render::kDepthFormat));
   NERITIC_TRY(work.normal, bring("normal", g.normal, render::kNormalFormat));
@@ -245,27 +275,34 @@ Status Session::declare_sonar(graph::FrameGraph& graph, const render::FrameState
   return {};
 }
 
-Status Session::check_size(const std::string& what, std::uint32_t width, std::uint32_t height) const {
+Status Session::check_size(const std::string& what, std::uint32_t width,
+                           std::uint32_t height) const {
   const std::uint32_t limit = device_.limits().maxImageDimension2D;
   if (width == 0 || height == 0 || width > limit || height > limit)
-    return bad_input("{}: size {}x{}; 1 to {} pixels a side are accepted", what, width, height, limit);
+    return bad_input("{}: size {}x{}; 1 to {} pixels a side are accepted", what, width, height,
+                     limit);
   return {};
 }
 
 // Adds the passes of every sensor asked for; work keeps what they borrow.
-Status Session::declare_sensors(graph::FrameGraph& graph, const FrameRequest& request, FrameWork& work) {
+Status Session::declare_sensors(graph::FrameGraph& graph, const FrameRequest& request,
+                                FrameWork& work) {
   const bool motion = request.capture.motion && !request.cameras.empty() && request.capture.color;
-  work.state = render::evaluate_frame(scene_, *gpu_scene_, request.time_s, request.next_time_s, motion);
-  NERITIC_TRY(const render::DeformedGeometry deformed, renderer_->declare_deform(graph, *gpu_scene_, work.state));
+  work.state =
+      render::evaluate_frame(scene_, *gpu_scene_, request.time_s, request.next_time_s, motion);
+  NERITIC_TRY(const render::DeformedGeometry deformed,
+              renderer_->declare_deform(graph, *gpu_scene_, work.state));
   for (const std::size_t index : request.cameras) {
     work.cameras.push_back(std::make_unique<CameraWork>());
     work.cameras.back()->index = index;
-    NERITIC_TRY_STATUS(declare_camera(graph, work.state, deformed, request.capture, *work.cameras.back()));
+    NERITIC_TRY_STATUS(
+        declare_camera(graph, work.state, deformed, request.capture, *work.cameras.back()));
   }
   for (const std::size_t index : request.sonars) {
     work.sonars.push_back(std::make_unique<SonarWork>());
     work.sonars.back()->index = index;
-    NERITIC_TRY_STATUS(declare_sonar(graph, work.state, deformed, request.capture, *work.sonars.back()));
+    NERITIC_TRY_STATUS(
+        declare_sonar(graph, work.state, deformed, request.capture, *work.sonars.back()));
   }
   return {};
 }
@@ -273,12 +310,14 @@ Status Session::declare_sensors(graph::FrameGraph& graph, const FrameRequest& re
 LiveFrame::LiveFrame() : work_(std::make_unique<FrameWork>()) {}
 LiveFrame::~LiveFrame() = default;
 
-Result<std::unique_ptr<LiveFrame>> Session::declare(graph::FrameGraph& graph, FrameRequest request) {
+Result<std::unique_ptr<LiveFrame>> Session::declare(graph::FrameGraph& graph,
+                                                    FrameRequest request) {
   request.capture = {.color = true, .geometry = false, .motion = false, .to_host = false};
   auto frame = std::make_unique<LiveFrame>();
   NERITIC_TRY_STATUS(declare_sensors(graph, request, *frame->work_));
   for (const auto& work : frame->work_->cameras)
-    frame->cameras.push_back({work->index, work->color_image, work->views.width, work->views.height, work->views.layers()});
+    frame->cameras.push_back({work->index, work->color_image, work->views.width, work->views.height,
+                              work->views.layers()});
   for (const auto& work : frame->work_->sonars)
     frame->sonars.push_back({work->index, work->outputs.sums, work->state->gather.get()});
   return frame;
@@ -286,7 +325,8 @@ Result<std::unique_ptr<LiveFrame>> Session::declare(graph::FrameGraph& graph, Fr
 
 Result<FrameResult> Session::render(const FrameRequest& request) {
   const TimeNs start = now_ns();
-  NERITIC_CHECK(request.capture.to_host, "frame {}: render brings its images to the host", request.frame);
+  NERITIC_CHECK(request.capture.to_host, "frame {}: render brings its images to the host",
+                request.frame);
   graph::FrameGraph graph;
   FrameWork work;
   NERITIC_TRY_STATUS(declare_sensors(graph, request, work));
@@ -304,7 +344,8 @@ Result<FrameResult> Session::render(const FrameRequest& request) {
   for (const auto& camera : work.cameras) {
     result.cameras.push_back({scene_.cameras[camera->index].name, decode_views(*camera)});
   }
-  for (const auto& sonar : work.sonars) result.sonars.push_back(decode_sonar(scene_.sonars[sonar->index], *sonar));
+  for (const auto& sonar : work.sonars)
+    result.sonars.push_back(decode_sonar(scene_.sonars[sonar->index], *sonar));
   result.passes = frames_->pass_times();
   result.frame_ms = to_ms(now_ns() - start);
   return result;

@@ -1,6 +1,7 @@
-// A scene on a device, ready to give frames: what `render`, `dive`, `tools/bench` and the golden tests
-// share. One call declares one graph for the sensors asked for (and nothing else), runs it and brings
-// the results to the host in the conventions of the file contract. Rendering thread only.
+// A scene on a device, ready to give frames: what `render`, `dive`, `tools/bench` and the golden
+// tests share. One call declares one graph for the sensors asked for (and nothing else), runs it
+// and brings the results to the host in the conventions of the file contract. Rendering thread
+// only.
 #pragma once
 
 #include <map>
@@ -27,12 +28,12 @@ struct ViewImages {
   render::Intrinsics intrinsics;
   double near_m = 0.0;
   std::uint32_t width = 0, height = 0;
-  ImageF32 depth;       // planar metres, +inf where nothing is hit
-  ImageF32 normals;     // 3 channels, view axes; 0 where nothing is hit
-  ImageU16 labels;      // class
+  ImageF32 depth;    // planar metres, +inf where nothing is hit
+  ImageF32 normals;  // 3 channels, view axes; 0 where nothing is hit
+  ImageU16 labels;   // class
   ImageU16 instances;
-  ImageU8 color;        // RGB, sRGB
-  ImageF32 motion;      // 2 channels, pixels to the next frame
+  ImageU8 color;    // RGB, sRGB
+  ImageF32 motion;  // 2 channels, pixels to the next frame
 };
 
 struct CameraFrame {
@@ -46,17 +47,17 @@ struct SonarFrame {
   sonar::SonarImage image;
   double fixed_scale = 1.0;
   std::uint32_t gbuffer_width = 1, gbuffer_height = 1;  // of one sector
-  double pixels_per_cell = 1.0;      // asked for, linear
+  double pixels_per_cell = 1.0;                         // asked for, linear
   glm::dvec2 pixels_per_cell_used{1.0};  // azimuth, elevation; less where the device's images end
-  bool reflectivity = true;          // by object; false: all are 1
-  std::vector<ViewImages> sectors;  // geometry only; one for apertures up to 100 degrees
+  bool reflectivity = true;              // by object; false: all are 1
+  std::vector<ViewImages> sectors;       // geometry only; one for apertures up to 100 degrees
 };
 
 struct Capture {
   bool color = true;     // of cameras
   bool geometry = true;  // depth, normals, labels, instances, of cameras and sonars
   bool motion = true;    // of cameras
-  bool to_host = true;   // false: declared only, for who draws with it on the GPU (Session::declare)
+  bool to_host = true;  // false: declared only, for who draws with it on the GPU (Session::declare)
 };
 
 struct FrameRequest {
@@ -78,8 +79,8 @@ struct CameraWork;
 struct SonarWork;
 struct FrameWork;
 
-// One frame's sensors in a graph that the caller runs: what other passes may read, nothing brought to the
-// host. Keeps what the passes borrow, so it must live until Executor::run has returned.
+// One frame's sensors in a graph that the caller runs: what other passes may read, nothing brought
+// to the host. Keeps what the passes borrow, so it must live until Executor::run has returned.
 class LiveFrame {
  public:
   struct Camera {
@@ -109,14 +110,16 @@ class Session {
   ~Session();
 
   const scene::Scene& scene() const { return scene_; }
-  scene::Scene& scene() { return scene_; }  // poses and settings may change between frames, meshes not
+  scene::Scene& scene() {
+    return scene_;
+  }  // poses and settings may change between frames, meshes not
   gpu::Device& device() { return device_; }
   gpu::Frames& frames() { return *frames_; }
   const render::GpuScene& gpu_scene() const { return *gpu_scene_; }
 
   Result<FrameResult> render(const FrameRequest& request);
-  // Only declares (the request's capture does not count): the caller adds passes that use the images,
-  // begins the frame, runs executor(), submits.
+  // Only declares (the request's capture does not count): the caller adds passes that use the
+  // images, begins the frame, runs executor(), submits.
   Result<std::unique_ptr<LiveFrame>> declare(graph::FrameGraph& graph, FrameRequest request);
   graph::Executor& executor() { return *executor_; }
   // The newest frame's plan, as text or Graphviz; empty before the first.
@@ -135,10 +138,12 @@ class Session {
   Status create_reflectivity();
   Result<SonarState*> sonar_state(std::size_t index);
   Status check_size(const std::string& what, std::uint32_t width, std::uint32_t height) const;
-  Status declare_camera(graph::FrameGraph& graph, const render::FrameState& state, const render::DeformedGeometry& deformed,
-                        const Capture& capture, CameraWork& work);
-  Status declare_sonar(graph::FrameGraph& graph, const render::FrameState& state, const render::DeformedGeometry& deformed,
-                       const Capture& capture, SonarWork& work);
+  Status declare_camera(graph::FrameGraph& graph, const render::FrameState& state,
+                        const render::DeformedGeometry& deformed, const Capture& capture,
+                        CameraWork& work);
+  Status declare_sonar(graph::FrameGraph& graph, const render::FrameState& state,
+                       const render::DeformedGeometry& deformed, const Capture& capture,
+                       SonarWork& work);
   Status declare_sensors(graph::FrameGraph& graph, const FrameRequest& request, FrameWork& work);
   std::map<std::size_t, std::unique_ptr<SonarState>> sonars_;
   gpu::Buffer reflectivity_;  // by instance label
@@ -154,7 +159,8 @@ inline constexpr const char* kDefaultGather = "plane";
 // The bins of a sonar of the scene; kBadInput as sonar::validate says.
 Result<sonar::BeamGrid> sonar_grid(const scene::Sonar& sonar);
 
-// The views of a camera of the scene: one, or two for a stereo pair, half the baseline to each side.
+// The views of a camera of the scene: one, or two for a stereo pair, half the baseline to each
+// side.
 render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera);
 
 }  // namespace neritic::tools

@@ -1,5 +1,5 @@
-// What one sensor has in a frame's graph: CPU data that must outlive the run, and the buffers that the
-// host reads afterwards. Private to Session.
+// What one sensor has in a frame's graph: CPU data that must outlive the run, and the buffers that
+// the host reads afterwards. Private to Session.
 #pragma once
 
 #include "tools/session/session.hpp"
@@ -11,7 +11,8 @@ struct ViewWork {
   render::ViewSet views;
   render::DrawList draws;
   // Readback; nullptr: not asked for.
-  const gpu::Buffer *depth = nullptr, *normal = nullptr, *label = nullptr, *color = nullptr, *motion = nullptr;
+  const gpu::Buffer *depth = nullptr, *normal = nullptr, *label = nullptr, *color = nullptr,
+                    *motion = nullptr;
 };
 
 struct CameraWork : ViewWork {

@@ -19,19 +19,24 @@ struct Slot {
 void place(ImageU8& out, const Tile& tile, const Slot& slot) {
   if (tile.image.empty()) return;
   const std::uint32_t room = slot.height - kCaptionBand_px;
-  const double scale = std::min(double(slot.width) / tile.image.width, double(room) / tile.image.height);
+  const double scale =
+      std::min(double(slot.width) / tile.image.width, double(room) / tile.image.height);
   const auto w = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(tile.image.width * scale));
   const auto h = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(tile.image.height * scale));
   const ImageU8 small = resized(tile.image, w, h);
-  const std::uint32_t left = slot.x + (slot.width - w) / 2, top = slot.y + kCaptionBand_px + (room - h) / 2;
+  const std::uint32_t left = slot.x + (slot.width - w) / 2,
+                      top = slot.y + kCaptionBand_px + (room - h) / 2;
   for (std::uint32_t v = 0; v < h; ++v)
-    std::copy_n(&small.data[std::size_t{v} * w * 3], std::size_t{w} * 3, &out.data[(std::size_t{top + v} * out.width + left) * 3]);
+    std::copy_n(&small.data[std::size_t{v} * w * 3], std::size_t{w} * 3,
+                &out.data[(std::size_t{top + v} * out.width + left) * 3]);
 }
 
-ImageU8 draw(std::uint32_t width, std::uint32_t height, const std::vector<Tile>& tiles, const std::vector<Slot>& slots) {
+ImageU8 draw(std::uint32_t width, std::uint32_t height, const std::vector<Tile>& tiles,
+             const std::vector<Slot>& slots) {
   sonar::Canvas canvas(width, height, kPaper);
   for (std::size_t i = 0; i < tiles.size(); ++i)
-    canvas.text(slots[i].x + 2.0, slots[i].y + kCaptionBand_px - 9.0, kCaption_px, tiles[i].caption, kInk);
+    canvas.text(slots[i].x + 2.0, slots[i].y + kCaptionBand_px - 9.0, kCaption_px, tiles[i].caption,
+                kInk);
   ImageU8 out = canvas.take();
   for (std::size_t i = 0; i < tiles.size(); ++i) place(out, tiles[i], slots[i]);
   return out;
@@ -40,35 +45,43 @@ ImageU8 draw(std::uint32_t width, std::uint32_t height, const std::vector<Tile>&
 }  // namespace
 
 ImageU8 contact_sheet(const std::vector<Tile>& tiles) {
-  constexpr std::uint32_t kLargeWidth = 1280, kLargeHeight = 720 + kCaptionBand_px, kSmallWidth = 420;
+  constexpr std::uint32_t kLargeWidth = 1280, kLargeHeight = 720 + kCaptionBand_px,
+                          kSmallWidth = 420;
   constexpr std::uint32_t kSmallHeight = 236 + kCaptionBand_px;
   std::vector<Slot> slots;
   const std::uint32_t side = kGap_px + kLargeWidth + kGap_px;
   const std::uint32_t across = (kLargeWidth + kGap_px + kSmallWidth) / (kSmallWidth + kGap_px);
   constexpr std::uint32_t kBeside = 3;  // small tiles to the right of the large one
-  std::uint32_t height = kGap_px + std::max(kLargeHeight, kBeside * (kSmallHeight + kGap_px)) + kGap_px;
+  std::uint32_t height =
+      kGap_px + std::max(kLargeHeight, kBeside * (kSmallHeight + kGap_px)) + kGap_px;
   const std::uint32_t below = height;
   for (std::uint32_t i = 0; i < tiles.size(); ++i) {
     if (i == 0) {
       slots.push_back({kGap_px, kGap_px, kLargeWidth, kLargeHeight});
     } else if (i <= kBeside) {
-      slots.push_back({side, kGap_px + (i - 1) * (kSmallHeight + kGap_px), kSmallWidth, kSmallHeight});
+      slots.push_back(
+          {side, kGap_px + (i - 1) * (kSmallHeight + kGap_px), kSmallWidth, kSmallHeight});
     } else {
       const std::uint32_t k = i - kBeside - 1;
-      slots.push_back({kGap_px + (k % across) * (kSmallWidth + kGap_px), below + (k / across) * (kSmallHeight + kGap_px), kSmallWidth, kSmallHeight});
+      slots.push_back({kGap_px + (k % across) * (kSmallWidth + kGap_px),
+                       below + (k / across) * (kSmallHeight + kGap_px), kSmallWidth, kSmallHeight});
       height = slots.back().y + kSmallHeight + kGap_px;
     }
   }
   return draw(side + kSmallWidth + kGap_px, height, tiles, slots);
 }
 
-ImageU8 grid_sheet(const std::vector<Tile>& tiles, std::uint32_t columns, std::uint32_t tile_width, std::uint32_t tile_height) {
-  const std::uint32_t cell_height = tile_height + kCaptionBand_px + kGap_px, cell_width = tile_width + kGap_px;
+ImageU8 grid_sheet(const std::vector<Tile>& tiles, std::uint32_t columns, std::uint32_t tile_width,
+                   std::uint32_t tile_height) {
+  const std::uint32_t cell_height = tile_height + kCaptionBand_px + kGap_px,
+                      cell_width = tile_width + kGap_px;
   const auto rows = (static_cast<std::uint32_t>(tiles.size()) + columns - 1) / columns;
   std::vector<Slot> slots;
   for (std::uint32_t i = 0; i < tiles.size(); ++i)
-    slots.push_back({kGap_px + (i % columns) * cell_width, kGap_px + (i / columns) * cell_height, tile_width, tile_height + kCaptionBand_px});
-  return draw(kGap_px + columns * cell_width, kGap_px + std::max(rows, 1u) * cell_height, tiles, slots);
+    slots.push_back({kGap_px + (i % columns) * cell_width, kGap_px + (i / columns) * cell_height,
+                     tile_width, tile_height + kCaptionBand_px});
+  return draw(kGap_px + columns * cell_width, kGap_px + std::max(rows, 1u) * cell_height, tiles,
+              slots);
 }
 
 }  // namespace neritic::tools
