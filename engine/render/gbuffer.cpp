@@ -21,13 +21,23 @@ std::uint32_t view_mask_of(std::uint32_t layers) {
   return layers > 1 ? (1u << layers) - 1u : 0u;
 }
 
-void begin_rendering(VkCommandBuffer cmd, const GBuffer& gbuffer,
+// The view masks that a set of layers is drawn with, one rendering each: all at once, except on
+// llvmpipe, which (Mesa 22.3) draws triangles that need clipping into the wrong view of a multiview
+// rendering.
+std::vector<std::uint32_t> view_masks_of(std::uint32_t layers, const gpu::Device& device) {
+  if (layers == 1 || !device.info().driver.starts_with("llvmpipe")) return {view_mask_of(layers)};
+  std::vector<std::uint32_t> masks;
+  for (std::uint32_t i = 0; i < layers; ++i) masks.push_back(1u << i);
+  return masks;
+}
+
+void begin_rendering(VkCommandBuffer cmd, const GBuffer& gbuffer, std::uint32_t view_mask,
                      std::span<const VkRenderingAttachmentInfo> colors,
                      const VkRenderingAttachmentInfo& depth) {
   VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
   info.renderArea.extent = {gbuffer.width, gbuffer.height};
   info.layerCount = 1;
-  info.viewMask = view_mask_of(gbuffer.layers);
+  info.viewMask = view_mask;
   info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
   info.pColorAttachments = colors.data();
   info.pDepthAttachment = &depth;
@@ -116,13 +126,17 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
   const bool motion = surface && state.motion;
   const bool emissive = surface && scene.has_emission();
   const std::uint32_t layers = views.layers();
-  NERITIC_TRY(PreparedDraws prepared,
-              prepare(scene, draws.opaque, kind, false, motion, emissive, view_mask_of(layers)));
-  // A sonar hears blended surfaces as solid ones; a camera draws them in the forward pass.
-  if (!surface) {
-    NERITIC_TRY(PreparedDraws more,
-                prepare(scene, draws.blended, kind, false, false, false, view_mask_of(layers)));
-    prepared.draws.insert(prepared.draws.end(), more.draws.begin(), more.draws.end());
+  std::vector<MaskedDraws> masked;
+  for (const std::uint32_t mask : view_masks_of(layers, device_)) {
+    NERITIC_TRY(PreparedDraws prepared,
+                prepare(scene, draws.opaque, kind, false, motion, emissive, mask));
+    // A sonar hears blended surfaces as solid ones; a camera draws them in the forward pass.
+    if (!surface) {
+      NERITIC_TRY(PreparedDraws more,
+                  prepare(scene, draws.blended, kind, false, false, false, mask));
+      prepared.draws.insert(prepared.draws.end(), more.draws.begin(), more.draws.end());
+    }
+    masked.push_back({mask, std::move(prepared)});
   }
   return graph.add_pass<GBuffer>(
       prefix + "gbuffer",
@@ -148,7 +162,7 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
         if (motion && deformed.next_positions)
           builder.read(deformed.next_positions, graph::Access::kStorageReadVertex);
       },
-      [this, motion, prepared = std::move(prepared), deformed, &scene, &views, &draws](
+      [this, motion, masked = std::move(masked), deformed, &scene, &views, &draws](
           const GBuffer& g, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::BoundResource set0[] = {
@@ -168,11 +182,14 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
         const VkRenderingAttachmentInfo depth =
             attachment(context.image(g.depth), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
                        VK_ATTACHMENT_LOAD_OP_CLEAR);
-        begin_rendering(context.cmd(), g, colors, depth);
-        record_draws(
-            prepared, scene, deformed.positions ? &context.buffer(deformed.positions) : nullptr,
-            upload_instances(commands, draws, motion), Vec2f(g.width, g.height), set0, commands);
-        vkCmdEndRendering(context.cmd());
+        const auto instances = upload_instances(commands, draws, motion);
+        for (const MaskedDraws& m : masked) {
+          begin_rendering(context.cmd(), g, m.view_mask, colors, depth);
+          record_draws(m.prepared, scene,
+                       deformed.positions ? &context.buffer(deformed.positions) : nullptr,
+                       instances, Vec2f(g.width, g.height), set0, commands);
+          vkCmdEndRendering(context.cmd());
+        }
       });
 }
 
@@ -181,8 +198,12 @@ Result<graph::ImageHandle> Renderer::declare_forward(
     const GBuffer& gbuffer, const GpuScene& scene, const DeformedGeometry& deformed,
     const ViewSet& views, const DrawList& draws, const shared::Lighting& lighting) {
   if (draws.blended.empty()) return hdr;
-  NERITIC_TRY(PreparedDraws prepared, prepare(scene, draws.blended, GBufferKind::kSurface, true,
-                                              false, false, view_mask_of(gbuffer.layers)));
+  std::vector<MaskedDraws> masked;
+  for (const std::uint32_t mask : view_masks_of(gbuffer.layers, device_)) {
+    NERITIC_TRY(PreparedDraws prepared,
+                prepare(scene, draws.blended, GBufferKind::kSurface, true, false, false, mask));
+    masked.push_back({mask, std::move(prepared)});
+  }
   struct Data {
     graph::ImageHandle hdr;
   };
@@ -193,7 +214,7 @@ Result<graph::ImageHandle> Renderer::declare_forward(
         builder.read(gbuffer.depth, graph::Access::kDepthTest);
         if (deformed.positions) builder.read(deformed.positions, graph::Access::kVertexBuffer);
       },
-      [this, gbuffer, prepared = std::move(prepared), deformed, lighting, &scene, &views, &draws](
+      [this, gbuffer, masked = std::move(masked), deformed, lighting, &scene, &views, &draws](
           const Data& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::BoundResource set0[] = {
@@ -208,12 +229,14 @@ Result<graph::ImageHandle> Renderer::declare_forward(
             context.image(gbuffer.depth), graph::access_info(graph::Access::kDepthTest).layout,
             VK_ATTACHMENT_LOAD_OP_LOAD);
         depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;  // a store would count as a write
-        begin_rendering(context.cmd(), gbuffer, std::span(&color, 1), depth);
-        record_draws(prepared, scene,
-                     deformed.positions ? &context.buffer(deformed.positions) : nullptr,
-                     upload_instances(commands, draws, false), Vec2f(gbuffer.width, gbuffer.height),
-                     set0, commands);
-        vkCmdEndRendering(context.cmd());
+        const auto instances = upload_instances(commands, draws, false);
+        for (const MaskedDraws& m : masked) {
+          begin_rendering(context.cmd(), gbuffer, m.view_mask, std::span(&color, 1), depth);
+          record_draws(m.prepared, scene,
+                       deformed.positions ? &context.buffer(deformed.positions) : nullptr,
+                       instances, Vec2f(gbuffer.width, gbuffer.height), set0, commands);
+          vkCmdEndRendering(context.cmd());
+        }
       });
   return pass.hdr;
 }

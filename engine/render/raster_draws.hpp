@@ -19,4 +19,10 @@ struct Renderer::PreparedDraws {
   std::vector<PreparedDraw> draws;
 };
 
+// The draws of one rendering, which shows the views of its mask.
+struct Renderer::MaskedDraws {
+  std::uint32_t view_mask = 0;
+  PreparedDraws prepared;
+};
+
 }  // namespace neritic::render

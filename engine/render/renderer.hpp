@@ -100,6 +100,7 @@ class Renderer {
   Result<const gpu::Pipeline*> raster_pipeline(const RasterKey& key);
   // The pipelines that a list of draws needs, made before the pass records.
   struct PreparedDraws;
+  struct MaskedDraws;
   // This frame's instances; next is the same as now where there is no motion.
   struct InstanceStreams {
     gpu::UploadSlice now, next;

@@ -219,6 +219,19 @@ TEST_F(SessionTest, CameraInsideAMeshAndEmptySceneStillGivePictures) {
   }
 }
 
+// Triangles that reach far outside the frustum are clipped: in every view of the set, not in one.
+TEST_F(SessionTest, WallWiderThanThePictureFillsBothEyes) {
+  scene::Scene scene = sphere_scene(1.0);
+  scene.models[0] = std::make_shared<scene::Model>(scene::make_box({40.0, 40.0, 0.1}));
+  scene.cameras[0].stereo_baseline_m = 0.1;
+  FrameRequest request;
+  request.cameras = {0};
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+  NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+  for (const ViewImages& eye : result.cameras[0].eyes)
+    for (const float depth : eye.depth.data) ASSERT_NEAR(depth, 3.95, 1e-3);
+}
+
 TEST_F(SessionTest, FiveThousandInstancesAreOneDraw) {
   scene::Scene scene = sphere_scene(0.4);
   for (int i = 0; i < 5000; ++i)
