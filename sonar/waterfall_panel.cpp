@@ -207,10 +207,14 @@ void draw_legend(Canvas& canvas, const PlotBox& bar, Palette palette, double at_
 void draw_scale_bar(Canvas& canvas, double x, double y, double px_per_m, double max_px,
                     double unit) {
   const double length_m = nice_at_most(max_px / px_per_m), end = x + length_m * px_per_m;
+  const std::string text = number_text(length_m) + " m";
+  canvas.fill_rectangle(x - 7 * unit, y - 11 * unit,
+                        end + Canvas::text_width(10 * unit, text) + 18 * unit, y + 11 * unit,
+                        Color{0, 0, 0, 0.55f});
   canvas.segment(x, y, end, y, 2.2 * unit, kPlotText);
   for (const double at : {x, end})
     canvas.segment(at, y - 4 * unit, at, y + 4 * unit, 1.6 * unit, kPlotText);
-  canvas.text(end + 9 * unit, y + 4 * unit, 10 * unit, number_text(length_m) + " m", kPlotText);
+  canvas.text(end + 9 * unit, y + 4 * unit, 10 * unit, text, kPlotText);
 }
 
 void draw_title(Canvas& canvas, const std::string& title, const std::string& subtitle,
