@@ -19,10 +19,11 @@ double heard(const BeamPattern& pattern, Steering steering, double theta_rad, do
              : pattern.amplitude(std::remainder(theta_rad - axis_rad, 2.0 * kPi));
 }
 
-// How many midpoints sample an angle: 16 a lobe, and an odd number, so that the axis is one.
+// How many midpoints sample an angle: 16 a lobe, 5 at least, and an odd number, so that the axis is
+// one.
 int samples_over(double width_rad, const BeamPattern& pattern) {
   const double lobes = width_rad / pattern.half_power_width_rad();
-  return 2 * static_cast<int>(std::clamp(8.0 * lobes, 8.0, 32768.0)) + 1;
+  return 2 * static_cast<int>(std::clamp(8.0 * lobes, 2.0, 32768.0)) + 1;
 }
 
 template <class F>
