@@ -32,7 +32,8 @@ float echo(vec2 metres) {
   off -= kTurn * round(off / kTurn);
   if (abs(off) >= c.azimuth_half_rad) return -1.0;
   uint column = min(uint((off + c.azimuth_half_rad) * c.bins_per_rad), c.n_azimuth - 1);
-  return float(sums[uint(bin) * c.n_azimuth + column]);
+  uint cell = sums[uint(bin) * c.n_azimuth + column];
+  return c.is_power != 0 ? sqrt(uintBitsToFloat(cell)) : float(cell);
 }
 
 void main() {

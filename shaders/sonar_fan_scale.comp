@@ -15,13 +15,18 @@ layout(push_constant, scalar) uniform Push { SonarFanScalePush c; };
 shared uint counts[kSonarFanScaleBins];
 
 uint bin_of(uint value) {
+  if (c.is_power != 0)
+    return uint(clamp((0.5 * log2(uintBitsToFloat(value)) + 64.0) * 2.0, 0.0, float(kSonarFanScaleBins - 1)));
   uint octave = uint(findMSB(value));
   uint eighth = octave >= 3 ? (value >> (octave - 3)) & 7u : (value << (3 - octave)) & 7u;
   return octave * 8 + eighth;
 }
 
 // Upper edge of a bin.
-float value_of(uint bin) { return exp2(float(bin / 8)) * (1.0 + float(bin % 8 + 1) / 8.0); }
+float value_of(uint bin) {
+  if (c.is_power != 0) return exp2(float(bin + 1) * 0.5 - 64.0);
+  return exp2(float(bin / 8)) * (1.0 + float(bin % 8 + 1) / 8.0);
+}
 
 void main() {
   uint lane = gl_LocalInvocationID.x;

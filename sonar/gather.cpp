@@ -14,13 +14,26 @@ namespace {
 constexpr float kEdgeBias_bins = 1.0f / 1024.0f;
 
 // Counts for intensity 1, a power of two: n_elevation of them fit 32 bits, and a float holds each.
-double fixed_scale_for(std::uint32_t n_elevation) {
+double plain_scale(std::uint32_t n_elevation) {
   double scale = 0x1p20;
   while (scale * n_elevation >= 0x1p32) scale /= 2.0;
   return scale;
 }
 
-constexpr std::array<gpu::BindingDesc, 9> kBindings{
+// Counts for amplitude 1: a bin's amplitudes fit 31 bits although each may be eight times as large
+// by chance (the chance of more is below e^-64).
+double amplitude_scale(std::uint32_t n_elevation) {
+  double scale = 0x1p24;
+  while (scale * n_elevation * 8.0 >= 0x1p31) scale /= 2.0;
+  return scale;
+}
+
+double scale_for(const GatherOptions& options, std::uint32_t n_elevation) {
+  if (!options.echo) return plain_scale(n_elevation);
+  return options.echo->coherent ? amplitude_scale(n_elevation) : double(shared::kSonarRecordScale);
+}
+
+constexpr std::array<gpu::BindingDesc, 14> kBindings{
     {{shared::kSonarBindColumns, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindRows, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
@@ -29,7 +42,14 @@ constexpr std::array<gpu::BindingDesc, 9> kBindings{
      {shared::kSonarBindReflectivity, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindSums, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindKeys, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindStamps, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1}}};
+     {shared::kSonarBindStamps, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+     // Of a gather with terms only.
+     {shared::kSonarBindEcho, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+     {shared::kSonarBindWeights, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
+     {shared::kSonarBindCorrection, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+     {shared::kSonarBindTexture, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
+     {shared::kSonarBindRecords, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1}}};
+constexpr std::size_t kPlainBindings = 9;
 
 }  // namespace
 
@@ -60,28 +80,35 @@ Result<SonarGather> SonarGather::create(gpu::Device& device, const BeamGrid& gri
   made.sectors_ = std::move(sectors);
   made.layout_ = layout;
   made.options_ = options;
-  made.fixed_scale_ = fixed_scale_for(grid.bins.elevation);
+  made.fixed_scale_ = scale_for(options, grid.bins.elevation);
   const VkPhysicalDeviceLimits& limits = device.limits();
-  if (made.buffer_bytes() > limits.maxStorageBufferRange)
+  if (made.sums_bytes() > limits.maxStorageBufferRange)
     return failure(ErrorCode::kUnsupported,
                    "sonar image of {} x {} bins: {} bytes, the device allows {}", grid.bins.range,
-                   grid.bins.azimuth, made.buffer_bytes(), limits.maxStorageBufferRange);
+                   grid.bins.azimuth, made.sums_bytes(), limits.maxStorageBufferRange);
   if (grid.bins.elevation > limits.maxImageDimension2D)
     return failure(ErrorCode::kUnsupported, "sonar of {} bins of elevation: the device allows {}",
                    grid.bins.elevation, limits.maxImageDimension2D);
 
+  const EchoOptions* echo = made.options_.echo ? &*made.options_.echo : nullptr;
+  const bool published = options.gather == Gather::kPublished;
+  if (published && echo)
+    return bad_input(
+        "gather published: it is the plain cosine; with terms, plane or nearest is accepted");
   // A processor runs a workgroup on one core, eight columns to a vector, each lane owning its
   // column: no atomics. Graphics hardware wants many threads: a workgroup a column, its rows shared
-  // out.
-  const bool published = options.gather == Gather::kPublished;
-  const bool own_columns = published || !options.atomics.value_or(device.info().kind != "CPU");
+  // out. Runs of beams that meet one scatterer want their column's rows in order.
+  const bool own_columns = published || (echo && echo->coherent) ||
+                           !options.atomics.value_or(device.info().kind != "CPU");
   const std::uint32_t columns = own_columns ? 8 : 1, lanes = own_columns ? 1 : 64;
   made.groups_ = (grid.bins.azimuth + columns - 1) / columns;
 
   gpu::ComputePipelineDesc desc;
-  desc.name = std::string("sonar gather ") + name_of(options.gather);
-  desc.code = published ? shaders::kSonarPublishedComp : shaders::kSonarGatherComp;
-  desc.layout.bindings.assign(kBindings.begin(), kBindings.end());
+  desc.name = std::string(echo ? "sonar echo " : "sonar gather ") + name_of(options.gather);
+  desc.code = echo ? shaders::kSonarEchoComp
+                   : (published ? shaders::kSonarPublishedComp : shaders::kSonarGatherComp);
+  desc.layout.bindings.assign(kBindings.begin(),
+                              echo ? kBindings.end() : kBindings.begin() + kPlainBindings);
   desc.layout.push_constant_bytes = sizeof(shared::SonarPush);
   desc.constants = {{shared::kSonarSpecColumns, columns},
                     {shared::kSonarSpecLanes, lanes},
@@ -91,15 +118,27 @@ Result<SonarGather> SonarGather::create(gpu::Device& device, const BeamGrid& gri
                     {shared::kSonarSpecFacing, layout.normals_face_sensor},
                     {shared::kSonarSpecReflect, options.reflectivity},
                     {shared::kSonarSpecLabels, options.labels}};
+  if (echo)
+    for (const auto& [constant, on] : std::initializer_list<std::pair<std::uint32_t, bool>>{
+             {shared::kSonarSpecCoherent, echo->coherent},
+             {shared::kSonarSpecWeighted, !echo->weights.empty()},
+             {shared::kSonarSpecCorrected, echo->corrected},
+             {shared::kSonarSpecTextured, !echo->gamma_quantiles.empty()},
+             {shared::kSonarSpecRecords, echo->records},
+             {shared::kSonarSpecGhost, echo->ghost},
+             {shared::kSonarSpecMoving, echo->moving}})
+      desc.constants.push_back({constant, on});
   NERITIC_TRY(made.pipeline_, gpu::Pipeline::create(device, desc));
 
   const auto texels = [&](const char* what, VkFormat format, std::uint32_t width, bool array,
-                          std::span<const std::byte> bytes) -> Result<gpu::Image> {
+                          std::span<const std::byte> bytes,
+                          std::uint32_t height = 1) -> Result<gpu::Image> {
     NERITIC_TRY(gpu::Image image,
                 gpu::Image::create(
                     device, {.name = what,
                              .format = format,
                              .width = width,
+                             .height = height,
                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                              .array_view = array}));
     NERITIC_TRY_STATUS(gpu::upload_image(device, image, bytes));
@@ -108,6 +147,19 @@ Result<SonarGather> SonarGather::create(gpu::Device& device, const BeamGrid& gri
   const auto rows = row_table(grid);
   NERITIC_TRY(made.rows_, texels("sonar rows", VK_FORMAT_R32G32B32A32_SFLOAT, grid.bins.elevation,
                                  false, std::as_bytes(std::span(rows))));
+  if (echo && !echo->weights.empty()) {
+    NERITIC_CHECK(echo->weights.size() == std::size_t{grid.bins.azimuth} * grid.bins.elevation,
+                  "a weight a beam is needed");
+    NERITIC_TRY(made.weights_,
+                texels("sonar weights", VK_FORMAT_R32_SFLOAT, grid.bins.azimuth, false,
+                       std::as_bytes(std::span(echo->weights)), grid.bins.elevation));
+  }
+  if (echo && !echo->gamma_quantiles.empty()) {
+    NERITIC_TRY(made.gamma_quantiles_,
+                texels("sonar gamma texture", VK_FORMAT_R32_SFLOAT,
+                       static_cast<std::uint32_t>(echo->gamma_quantiles.size()), false,
+                       std::as_bytes(std::span(echo->gamma_quantiles))));
+  }
   // What is bound where a scene has no labels or no reflectivities.
   const std::array<std::byte, 4> zero{};
   NERITIC_TRY(made.no_labels_, texels("sonar no labels", VK_FORMAT_R16G16_UINT, 1, true, zero));
@@ -117,22 +169,34 @@ Result<SonarGather> SonarGather::create(gpu::Device& device, const BeamGrid& gri
   return made;
 }
 
-std::uint64_t SonarGather::buffer_bytes() const {
+std::uint64_t SonarGather::keys_bytes() const {
   return std::uint64_t{grid_.bins.range} * grid_.bins.azimuth * sizeof(std::uint32_t);
+}
+
+std::uint64_t SonarGather::sums_bytes() const {
+  return keys_bytes() * (options_.echo ? 2 : 1);
+}
+
+std::uint64_t SonarGather::records_bytes() const {
+  return std::uint64_t{grid_.bins.elevation} * grid_.bins.azimuth * sizeof(shared::SonarRecord);
+}
+
+std::vector<std::uint16_t> SonarGather::to_labels(std::span<const std::uint32_t> keys) const {
+  std::vector<std::uint16_t> labels(std::size_t{grid_.bins.range} * grid_.bins.azimuth);
+  // A key is the strength above, 65535 less the label below; 0: nothing was heard.
+  for (std::size_t i = 0; i < labels.size() && i < keys.size(); ++i)
+    labels[i] = keys[i] == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(~keys[i]);
+  return labels;
 }
 
 SonarImage SonarGather::to_image(std::span<const std::uint32_t> sums,
                                  std::span<const std::uint32_t> keys) const {
+  NERITIC_CHECK(!options_.echo, "the sums of a gather with terms go through a receiver");
   const std::size_t cells = std::size_t{grid_.bins.range} * grid_.bins.azimuth;
-  SonarImage image{grid_.bins.range, grid_.bins.azimuth, {}, {}};
+  SonarImage image{grid_.bins.range, grid_.bins.azimuth, {}, to_labels(keys)};
   image.intensity.resize(cells);
-  image.labels.resize(cells);
   const auto scale = static_cast<float>(image_scale());
   for (std::size_t i = 0; i < cells; ++i) image.intensity[i] = static_cast<float>(sums[i]) * scale;
-  // A key is the strength above, 65535 less the label below; 0: nothing was heard.
-  if (!keys.empty())
-    for (std::size_t i = 0; i < cells; ++i)
-      image.labels[i] = keys[i] == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(~keys[i]);
   return image;
 }
 
@@ -149,24 +213,31 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
   struct Cleared {
     graph::BufferHandle sums, keys, stamps;
   };
-  const Cleared& cleared = graph.add_pass<Cleared>(
-      inputs.prefix + "sonar clear",
-      [&](graph::PassBuilder& builder, Cleared& pass) {
-        const auto make = [&](graph::BufferHandle target, const char* name) {
-          return builder.write(target ? target : builder.create_buffer(inputs.prefix + name, buffer_bytes()),
-                               Access::kTransferWrite);
-        };
-        pass.sums = make(inputs.sums_target, "sonar sums");
-        if (options_.labels) pass.keys = make(inputs.keys_target, "sonar keys");
-        if (options_.gather == Gather::kPublished) pass.stamps = make({}, "sonar stamps");
-      },
-      [](const Cleared& pass, graph::PassContext& context) {
-        for (const graph::BufferHandle buffer : {pass.sums, pass.keys, pass.stamps})
-          if (buffer)
-            vkCmdFillBuffer(context.cmd(), context.buffer(buffer).handle(), 0, VK_WHOLE_SIZE, 0);
-      });
+  const auto clear = [&]() -> const Cleared& {
+    return graph.add_pass<Cleared>(
+        inputs.prefix + "sonar clear",
+        [&](graph::PassBuilder& builder, Cleared& pass) {
+          const auto make = [&](graph::BufferHandle target, const char* name, std::uint64_t bytes) {
+            return builder.write(
+                target ? target : builder.create_buffer(inputs.prefix + name, bytes),
+                Access::kTransferWrite);
+          };
+          pass.sums = make(inputs.sums_target, "sonar sums", sums_bytes());
+          if (options_.labels) pass.keys = make(inputs.keys_target, "sonar keys", keys_bytes());
+          if (options_.gather == Gather::kPublished)
+            pass.stamps = make({}, "sonar stamps", keys_bytes());
+        },
+        [](const Cleared& pass, graph::PassContext& context) {
+          for (const graph::BufferHandle buffer : {pass.sums, pass.keys, pass.stamps})
+            if (buffer)
+              vkCmdFillBuffer(context.cmd(), context.buffer(buffer).handle(), 0, VK_WHOLE_SIZE, 0);
+        });
+  };
+  const Cleared cleared =
+      inputs.sums_so_far ? Cleared{inputs.sums_so_far, inputs.keys_so_far, {}} : clear();
   const auto setup = [&](graph::PassBuilder& builder, Pass& pass) {
     pass.in = inputs;
+    pass.in.echo.sum_scale = static_cast<float>(fixed_scale_);
     builder.read(inputs.depth, Access::kSampledCompute);
     builder.read(inputs.normals, Access::kSampledCompute);
     if (inputs.labels) builder.read(inputs.labels, Access::kSampledCompute);
@@ -174,6 +245,12 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
     pass.out.sums = builder.write(cleared.sums, Access::kStorageWriteCompute);
     if (cleared.keys) pass.out.keys = builder.write(cleared.keys, Access::kStorageWriteCompute);
     if (cleared.stamps) pass.stamps = builder.write(cleared.stamps, Access::kStorageWriteCompute);
+    if (options_.echo && options_.echo->records)
+      pass.out.records = builder.write(
+          inputs.records_target
+              ? inputs.records_target
+              : builder.create_buffer(inputs.prefix + "sonar records", records_bytes()),
+          Access::kStorageWriteCompute);
   };
   return graph
       .add_pass<Pass>(
@@ -207,21 +284,38 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
                                .fixed_scale = static_cast<float>(fixed_scale_),
                                .edge_bias_bins = kEdgeBias_bins,
                                .reflectivities = reflects ? pass.in.reflectivities : 0u};
+  std::vector<gpu::BoundResource> bound{
+      gpu::bound_buffer(shared::kSonarBindColumns, column_slice.buffer, column_slice.offset,
+                        column_slice.size),
+      gpu::bound_texel_image(shared::kSonarBindRows, rows_.view()),
+      gpu::bound_texel_image(shared::kSonarBindDepth, context.image(pass.in.depth).view()),
+      gpu::bound_texel_image(shared::kSonarBindNormal, context.image(pass.in.normals).view()),
+      gpu::bound_texel_image(shared::kSonarBindLabel, pass.in.labels
+                                                          ? context.image(pass.in.labels).view()
+                                                          : no_labels_.view()),
+      gpu::bound_buffer(shared::kSonarBindReflectivity, buffer_or_none(pass.in.reflectivity)),
+      gpu::bound_buffer(shared::kSonarBindSums, buffer_or_none(pass.out.sums)),
+      gpu::bound_buffer(shared::kSonarBindKeys, buffer_or_none(pass.out.keys)),
+      gpu::bound_buffer(shared::kSonarBindStamps, buffer_or_none(pass.stamps))};
+  if (options_.echo) {
+    const gpu::UploadSlice echo = commands.upload(&pass.in.echo, sizeof pass.in.echo);
+    const gpu::UploadSlice correction =
+        options_.echo->corrected ? commands.upload(pass.in.correction)
+                                 : gpu::UploadSlice{no_buffer_.handle(), 0, VK_WHOLE_SIZE};
+    const auto image_or_rows = [&](const gpu::Image& image) {
+      return image.handle() ? image.view() : rows_.view();
+    };
+    bound.insert(
+        bound.end(),
+        {gpu::bound_buffer(shared::kSonarBindEcho, echo.buffer, echo.offset, echo.size),
+         gpu::bound_texel_image(shared::kSonarBindWeights, image_or_rows(weights_)),
+         gpu::bound_buffer(shared::kSonarBindCorrection, correction.buffer, correction.offset,
+                           correction.size),
+         gpu::bound_texel_image(shared::kSonarBindTexture, image_or_rows(gamma_quantiles_)),
+         gpu::bound_buffer(shared::kSonarBindRecords, buffer_or_none(pass.out.records))});
+  }
   commands.bind_pipeline(pipeline_);
-  commands.bind(
-      pipeline_,
-      {gpu::bound_buffer(shared::kSonarBindColumns, column_slice.buffer, column_slice.offset,
-                         column_slice.size),
-       gpu::bound_texel_image(shared::kSonarBindRows, rows_.view()),
-       gpu::bound_texel_image(shared::kSonarBindDepth, context.image(pass.in.depth).view()),
-       gpu::bound_texel_image(shared::kSonarBindNormal, context.image(pass.in.normals).view()),
-       gpu::bound_texel_image(shared::kSonarBindLabel, pass.in.labels
-                                                           ? context.image(pass.in.labels).view()
-                                                           : no_labels_.view()),
-       gpu::bound_buffer(shared::kSonarBindReflectivity, buffer_or_none(pass.in.reflectivity)),
-       gpu::bound_buffer(shared::kSonarBindSums, buffer_or_none(pass.out.sums)),
-       gpu::bound_buffer(shared::kSonarBindKeys, buffer_or_none(pass.out.keys)),
-       gpu::bound_buffer(shared::kSonarBindStamps, buffer_or_none(pass.stamps))});
+  commands.bind(pipeline_, bound);
   commands.push(pipeline_, push);
   commands.dispatch(groups_);
 }

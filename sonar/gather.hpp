@@ -1,9 +1,14 @@
-// The imaging sonar on the GPU: one compute pass that gathers per beam from a G-buffer and sums
-// into range bins with integers, so that the same input gives the same bits in any order. Declared
-// into a frame graph each frame; made once. Rendering thread.
+// The sonar on the GPU: one compute pass that gathers per beam from a G-buffer and sums into range
+// bins with integers, so that the same input gives the same bits in any order. Declared into a
+// frame graph each frame; made once. Rendering thread.
 //
-// Precision: an intensity is rounded to 1 / fixed_scale() (2^-20 for up to 4096 elevation bins, so
-// that their sum cannot overflow 32 bits), which moves a cell of the image by at most half of that.
+// Two shaders: the plain cosine (one 32-bit sum a bin), and, where GatherOptions::echo is there,
+// the gather with terms (two integers a bin: a 64-bit power, or a complex amplitude).
+//
+// Precision: a plain intensity is rounded to 1 / fixed_scale() (2^-20 for up to 4096 elevation
+// bins, so that their sum cannot overflow 32 bits), which moves a cell of the image by at most half
+// of that. With terms a power is rounded to 2^-28, an amplitude to 1 / fixed_scale() (2^-19 for 512
+// elevation bins).
 #pragma once
 
 #include <memory>
@@ -14,6 +19,7 @@
 
 #include "engine/graph/frame_graph.hpp"
 #include "shared/sonar.h"
+#include "shared/sonar_echo.h"
 #include "sonar/beam_grid.hpp"
 #include "sonar/reference.hpp"
 
@@ -38,6 +44,17 @@ struct GBufferLayout {
   bool normals_face_sensor = true;
 };
 
+// The terms of a gather beyond the plain cosine; each costs only where it is named.
+struct EchoOptions {
+  bool coherent = false;               // sum the world's scatterers as complex amplitudes (speckle)
+  bool corrected = false;              // a table of range factors will be given
+  bool moving = false;                 // ranges change by motion within the ping or Doppler
+  bool records = false;                // keep what each beam returned
+  bool ghost = false;                  // the view is from the sonar's mirror image
+  std::vector<float> weights;          // [n_elevation][n_azimuth], 0 to 1; empty: all 1
+  std::vector<float> gamma_quantiles;  // of a texture of mean 1; empty: none
+};
+
 struct GatherOptions {
   Gather gather = Gather::kPlane;
   bool labels = true;        // keep the class of each cell's strongest return
@@ -45,6 +62,7 @@ struct GatherOptions {
   // A workgroup a column whose threads add by atomics (graphics hardware), or a thread a column
   // (processors). Absent: what suits the device. The bits are the same.
   std::optional<bool> atomics;
+  std::optional<EchoOptions> echo;
 };
 
 class SonarGather {
@@ -63,21 +81,30 @@ class SonarGather {
     Mat3 sonar_from_gbuffer{1.0};
     // Where to write; absent: transient buffers of the frame. An imported host-readable buffer
     // saves a copy on devices that share memory with the host.
-    graph::BufferHandle sums_target, keys_target;
+    graph::BufferHandle sums_target, keys_target, records_target;
+    // Sums, keys and nothing else of an earlier gather of this frame: this one adds to them.
+    graph::BufferHandle sums_so_far, keys_so_far;
+    shared::SonarEcho echo{};                // with terms: of this ping; sum_scale is filled in
+    std::span<const float> correction = {};  // [correction_height][correction_width], until the run
     std::string prefix = "";  // of the names of passes and transients: which sonar's they are
   };
   struct Outputs {
-    graph::BufferHandle sums;  // uint32 [n_range][n_azimuth]
-    graph::BufferHandle
-        keys;  // uint32 [n_range][n_azimuth] for label_of_key; absent without labels
+    graph::BufferHandle sums;     // uint32 [n_range][n_azimuth], with terms two each
+    graph::BufferHandle keys;     // uint32 [n_range][n_azimuth]; absent without labels
+    graph::BufferHandle records;  // shared::SonarRecord [n_elevation][n_azimuth]; absent without
   };
-  // Adds the passes PREFIX"sonar clear" and PREFIX"sonar gather". The object must outlive the graph's run.
+  // Adds the passes PREFIX"sonar clear" and PREFIX"sonar gather". The object must outlive the
+  // graph's run.
   Outputs declare(graph::FrameGraph& graph, const Inputs& inputs) const;
 
-  std::uint64_t buffer_bytes() const;  // of each output
-  // Outputs as read back, to an image. keys may be empty.
+  std::uint64_t sums_bytes() const;
+  std::uint64_t keys_bytes() const;
+  std::uint64_t records_bytes() const;
+  // Outputs of a plain gather as read back, to an image. keys may be empty.
   SonarImage to_image(std::span<const std::uint32_t> sums,
                       std::span<const std::uint32_t> keys) const;
+  // Class of each cell's strongest return; 0: nothing was heard.
+  std::vector<std::uint16_t> to_labels(std::span<const std::uint32_t> keys) const;
   double image_scale() const { return 1.0 / (fixed_scale_ * grid_.bins.elevation); }
   double fixed_scale() const { return fixed_scale_; }
   const BeamGrid& grid() const { return grid_; }
@@ -96,7 +123,7 @@ class SonarGather {
   std::uint32_t groups_ = 1;
   double fixed_scale_ = 1.0;
   gpu::Pipeline pipeline_;
-  gpu::Image rows_, no_labels_;
+  gpu::Image rows_, no_labels_, weights_, gamma_quantiles_;
   gpu::Buffer no_buffer_;
 };
 

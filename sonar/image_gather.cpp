@@ -167,16 +167,16 @@ Status ImageGather::upload(std::span<const SonarInput> inputs) {
     NERITIC_TRY_STATUS(
         gpu::upload_buffer(*device_, reflectivity_, std::as_bytes(std::span(table))));
   }
-  const auto result = [&](const char* name) {
+  const auto result = [&](const char* name, std::uint64_t bytes) {
     return gpu::Buffer::create(
         *device_, {.name = name,
-                   .size = gather_->buffer_bytes(),
+                   .size = bytes,
                    .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                    .memory = gpu::MemoryUse::kReadback});
   };
-  NERITIC_TRY(sums_, result("sonar sums"));
+  NERITIC_TRY(sums_, result("sonar sums", gather_->sums_bytes()));
   if (labels_) {
-    NERITIC_TRY(keys_, result("sonar keys"));
+    NERITIC_TRY(keys_, result("sonar keys", gather_->keys_bytes()));
   }
   return {};
 }

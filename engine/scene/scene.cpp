@@ -74,7 +74,7 @@ void move_out(SceneDraft& draft, const Vec3& offset_m) {
 
 }  // namespace
 
-Pose Scene::world_from(const Mount& mount) const {
+Pose Scene::world_from(const Mount& mount, [[maybe_unused]] double time_s) const {
   Pose pose = mount.pose;
   std::size_t steps = 0;
   for (int object = mount.object; object >= 0;) {

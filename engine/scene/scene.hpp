@@ -14,6 +14,7 @@
 #include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
 #include "engine/scene/model.hpp"
+#include "engine/scene/sonar_settings.hpp"
 
 namespace neritic::scene {
 
@@ -41,6 +42,8 @@ struct Object {
   std::uint16_t class_id = 0;
   std::uint16_t instance = 0;  // label, unique; first of instance_count() consecutive labels
   float reflectivity = 1.0f;   // acoustic, 0 to 1, multiplies the incidence term
+  std::string material;        // by name, for its acoustic impedance; empty: none
+  std::optional<double> backscatter_db;  // Lambert's strength of the surface, 10 log mu
   int clip = -1;               // of the model; -1: rest pose
   double clip_offset_s = 0.0, clip_rate = 1.0;
   // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
@@ -89,7 +92,7 @@ struct Camera {
 
 struct Sonar {
   std::string name;
-  std::string kind = "imaging";
+  SonarKind kind = SonarKind::kImaging;
   Mount mount;
   double range_min_m = 1.0, range_max_m = 5.0;
   double azimuth_rad = radians(90.0), elevation_rad = radians(28.0);  // full apertures
@@ -99,7 +102,16 @@ struct Sonar {
   double gbuffer_scale = 0.0;
   std::string gather;  // "plane", "nearest", "published"; empty: the documented default
   double near_m = 0.02;
+  double semi_angle_rad = radians(12.5);  // echo sounder: of its cone
+  double depression_rad = radians(35.0);  // side-scan: of each side's axis below the horizontal
+  double step_rad = radians(1.0);         // mechanical: from ping to ping
+  // "draft", "standard", "reference" or an error to stay under: what is not set follows from it.
+  std::string quality;
+  double max_error = 0.0;  // 0: not named
+  SonarTerms terms;
 };
+// Whether all but name, rate and mount are the same.
+bool same_settings(const Sonar& a, const Sonar& b);
 
 struct Scene {
   std::string title;
@@ -115,8 +127,8 @@ struct Scene {
   std::vector<Sonar> sonars;
   std::vector<std::string> notes;  // what was ignored, once each
 
-  // World_from_mount at a time (objects move in later versions; now the chain of mounts).
-  Pose world_from(const Mount& mount) const;
+  // World_from_mount at a time.
+  Pose world_from(const Mount& mount, double time_s = 0.0) const;
   // World_from_model of one copy, the object's scale in it: copy < object.instance_count(). After
   // loading, scale is 1 wherever there are copies: theirs hold it.
   Mat4 world_from_copy(const Object& object, std::size_t copy) const;

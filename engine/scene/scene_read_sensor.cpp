@@ -65,7 +65,7 @@ void read_ranges(TableReader& reader, Sonar& sonar) {
 }
 
 void read_sonar(TableReader& reader, Sonar& sonar) {
-  sonar.kind = reader.choice("kind", "imaging", kKinds);
+  reader.choice("kind", "imaging", kKinds);
   read_ranges(reader, sonar);
   sonar.azimuth_rad = radians(reader.number("azimuth_deg", 90.0, {0, 360, true, false, "degrees"}));
   sonar.elevation_rad =

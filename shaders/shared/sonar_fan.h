@@ -20,6 +20,7 @@ struct SonarFanPush {
   float azimuth_half_rad;
   float bins_per_rad;
   float gamma;            // shown brightness = (value / full scale)^gamma
+  uint is_power;          // cells are floats of power, shown as amplitudes; else counts
 };
 
 NERITIC_CONST uint kSonarFanSums = 0;
@@ -34,6 +35,7 @@ struct SonarFanScalePush {
   uint stride;
   float quantile;  // of the cells that are not silent
   float follow;    // how much of the new full scale is taken: 1 all of it
+  uint is_power;   // then a bin is half an octave of amplitude, from 2^-64
 };
 NERITIC_CONST uint kSonarFanScaleGroup = 64;
 NERITIC_CONST uint kSonarFanScaleBins = 256;

@@ -14,6 +14,7 @@
 #include "shared/lighting.h"
 #include "shared/raster.h"
 #include "shared/sonar.h"
+#include "shared/sonar_echo.h"
 #include "shared/sonar_fan.h"
 
 namespace neritic::shared {
@@ -76,16 +77,37 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(SonarPush, near_m), MEMBER(SonarPush, range_min_m), MEMBER(SonarPush, bins_per_m),
         MEMBER(SonarPush, fixed_scale), MEMBER(SonarPush, edge_bias_bins),
         MEMBER(SonarPush, reflectivities)}},
+      {"SonarEcho",
+       {MEMBER(SonarEcho, motion), MEMBER(SonarEcho, sum_scale), MEMBER(SonarEcho, doppler),
+        MEMBER(SonarEcho, turns_per_m), MEMBER(SonarEcho, cell_fraction),
+        MEMBER(SonarEcho, cells_per_m), MEMBER(SonarEcho, origin_cell), MEMBER(SonarEcho, seed),
+        MEMBER(SonarEcho, patch_fraction), MEMBER(SonarEcho, patches_per_m),
+        MEMBER(SonarEcho, origin_patch), MEMBER(SonarEcho, correction_width),
+        MEMBER(SonarEcho, world_up), MEMBER(SonarEcho, correction_height),
+        MEMBER(SonarEcho, correction_range_m), MEMBER(SonarEcho, water_level_m),
+        MEMBER(SonarEcho, water_sign), MEMBER(SonarEcho, ghost_weight),
+        MEMBER(SonarEcho, ghost_source)}},
+      {"SonarRecord",
+       {MEMBER(SonarRecord, bin), MEMBER(SonarRecord, counts), MEMBER(SonarRecord, label)}},
+      {"SonarReceiverPush",
+       {MEMBER(SonarReceiverPush, columns), MEMBER(SonarReceiverPush, rows),
+        MEMBER(SonarReceiverPush, out_columns), MEMBER(SonarReceiverPush, stride),
+        MEMBER(SonarReceiverPush, first), MEMBER(SonarReceiverPush, taps),
+        MEMBER(SonarReceiverPush, scale), MEMBER(SonarReceiverPush, first_shift),
+        MEMBER(SonarReceiverPush, shift), MEMBER(SonarReceiverPush, noise),
+        MEMBER(SonarReceiverPush, seed), MEMBER(SonarReceiverPush, ping),
+        MEMBER(SonarReceiverPush, wrap)}},
       {"SonarFanPush",
        {MEMBER(SonarFanPush, width), MEMBER(SonarFanPush, height), MEMBER(SonarFanPush, n_range),
         MEMBER(SonarFanPush, n_azimuth), MEMBER(SonarFanPush, left_m), MEMBER(SonarFanPush, top_m),
         MEMBER(SonarFanPush, m_per_px), MEMBER(SonarFanPush, range_min_m),
         MEMBER(SonarFanPush, bins_per_m), MEMBER(SonarFanPush, azimuth_middle_rad),
         MEMBER(SonarFanPush, azimuth_half_rad), MEMBER(SonarFanPush, bins_per_rad),
-        MEMBER(SonarFanPush, gamma)}},
+        MEMBER(SonarFanPush, gamma), MEMBER(SonarFanPush, is_power)}},
       {"SonarFanScalePush",
        {MEMBER(SonarFanScalePush, cells), MEMBER(SonarFanScalePush, stride),
-        MEMBER(SonarFanScalePush, quantile), MEMBER(SonarFanScalePush, follow)}},
+        MEMBER(SonarFanScalePush, quantile), MEMBER(SonarFanScalePush, follow),
+        MEMBER(SonarFanScalePush, is_power)}},
       {"ImguiPush", {MEMBER(ImguiPush, clip_from_pixel), MEMBER(ImguiPush, layer)}}};
   return structs;
 }

@@ -23,11 +23,6 @@ class SonarFansTest : public test::GpuTest {};
 TEST_F(SonarFansTest, OneEchoLightsItsCellOnly) {
   const sonar::BeamGrid grid =
       sonar::symmetric_grid(1.0, 5.0, radians(90.0), radians(20.0), {40, 30, 10});
-  const auto sectors = sonar::plan_sectors(grid);
-  sonar::GBufferLayout layout{.width = 64, .height = 32};
-  layout.intrinsics = sonar::intrinsics_of(sectors.front().tangents, 64, 32);
-  NERITIC_ASSERT_OK(const auto gather,
-                    sonar::SonarGather::create(device(), grid, sectors, layout, {}));
   constexpr std::uint32_t kRange = 25, kAzimuth = 21;
   std::vector<std::uint32_t> sums(40 * 30, 0);
   sums[kRange * 30 + kAzimuth] = 1 << 18;
@@ -44,7 +39,7 @@ TEST_F(SonarFansTest, OneEchoLightsItsCellOnly) {
   graph::FrameGraph graph;
   fans->begin_frame();
   NERITIC_ASSERT_STATUS(
-      fans->declare(graph, "sonar", {0, graph.import_buffer("sums", buffer), &gather}));
+      fans->declare(graph, "sonar", {0, grid, graph.import_buffer("sums", buffer)}));
   const FanShape shape = *fans->shape(0);
   NERITIC_ASSERT_OK(const gpu::Buffer* texels,
                     readback.declare(graph, device(), "fan", fans->picture(graph, 0),

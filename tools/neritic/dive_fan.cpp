@@ -18,7 +18,7 @@ constexpr std::uint32_t groups(std::uint32_t pixels) {
   return (pixels + shared::kSonarFanGroup - 1) / shared::kSonarFanGroup;
 }
 
-shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid) {
+shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid, bool is_power) {
   const sonar::Limits& l = grid.limits;
   const double half = (l.azimuth_max_rad - l.azimuth_min_rad) / 2.0;
   return {.width = shape.width,
@@ -33,7 +33,8 @@ shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid)
           .azimuth_middle_rad = static_cast<float>((l.azimuth_min_rad + l.azimuth_max_rad) / 2.0),
           .azimuth_half_rad = static_cast<float>(half),
           .bins_per_rad = static_cast<float>(1.0 / grid.azimuth_step_rad()),
-          .gamma = kGamma};
+          .gamma = kGamma,
+          .is_power = is_power};
 }
 
 }  // namespace
@@ -92,6 +93,7 @@ Result<SonarFans::Fan*> SonarFans::fan_of(std::size_t sonar, const std::string& 
   std::unique_ptr<Fan>& slot = fans_[sonar];
   if (slot) return slot.get();
   auto fan = std::make_unique<Fan>();
+  fan->grid = grid;
   fan->shape = fan_shape(grid.limits, kLongestSide_px);
   NERITIC_TRY(fan->picture, gpu::Image::create(device_, {.name = name + " fan",
                                                          .format = VK_FORMAT_R8G8B8A8_UNORM,
@@ -114,7 +116,7 @@ Result<SonarFans::Fan*> SonarFans::fan_of(std::size_t sonar, const std::string& 
 
 graph::BufferHandle SonarFans::declare_scale(graph::FrameGraph& graph, const std::string& name,
                                              const LiveFrame::Sonar& ping, const Fan& fan) {
-  const sonar::Bins& bins = ping.gather->grid().bins;
+  const sonar::Bins& bins = ping.grid.bins;
   const std::uint32_t cells = bins.range * bins.azimuth;
   const graph::BufferHandle scale = graph.import_buffer(name + " fan scale", fan.scale);
   struct Data {
@@ -124,13 +126,13 @@ graph::BufferHandle SonarFans::declare_scale(graph::FrameGraph& graph, const std
       .add_pass<Data>(
           name + " fan scale",
           [&](graph::PassBuilder& builder, Data& data) {
-            data.sums = ping.sums;
-            builder.read(ping.sums, graph::Access::kStorageReadCompute);
+            data.sums = ping.image;
+            builder.read(ping.image, graph::Access::kStorageReadCompute);
             data.scale = builder.write(scale, graph::Access::kStorageWriteCompute);
           },
-          [this, cells](const Data& data, graph::PassContext& context) {
+          [this, cells, is_power = ping.is_float](const Data& data, graph::PassContext& context) {
             const shared::SonarFanScalePush push{
-                cells, (cells + kCellsLookedAt - 1) / kCellsLookedAt, kQuantile, kFollow};
+                cells, (cells + kCellsLookedAt - 1) / kCellsLookedAt, kQuantile, kFollow, is_power};
             gpu::Commands& commands = context.commands;
             commands.bind_pipeline(scale_);
             commands.bind(
@@ -149,7 +151,7 @@ void SonarFans::begin_frame() {
 
 Status SonarFans::declare(graph::FrameGraph& graph, const std::string& name,
                           const LiveFrame::Sonar& ping) {
-  NERITIC_TRY(Fan* const fan, fan_of(ping.index, name, ping.gather->grid()));
+  NERITIC_TRY(Fan* const fan, fan_of(ping.index, name, ping.grid));
   const graph::BufferHandle scale = declare_scale(graph, name, ping, *fan);
   // Every texel is written: what was there need not be kept.
   const graph::ImageHandle picture = graph.import_image(fan->picture, {});
@@ -162,13 +164,13 @@ Status SonarFans::declare(graph::FrameGraph& graph, const std::string& name,
           .add_pass<Data>(
               name + " fan",
               [&](graph::PassBuilder& builder, Data& data) {
-                data.sums = ping.sums;
+                data.sums = ping.image;
                 data.scale = scale;
-                builder.read(ping.sums, graph::Access::kStorageReadCompute);
+                builder.read(ping.image, graph::Access::kStorageReadCompute);
                 builder.read(scale, graph::Access::kStorageReadCompute);
                 data.picture = builder.write(picture, graph::Access::kStorageWriteCompute);
               },
-              [this, push = push_of(fan->shape, ping.gather->grid())](const Data& data,
+              [this, push = push_of(fan->shape, ping.grid, ping.is_float)](const Data& data,
                                                                       graph::PassContext& context) {
                 gpu::Commands& commands = context.commands;
                 commands.bind_pipeline(draw_);
@@ -194,6 +196,11 @@ graph::ImageHandle SonarFans::picture(graph::FrameGraph& graph, std::size_t sona
   return graph.import_image(fan.picture,
                             {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
                              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+}
+
+const sonar::BeamGrid* SonarFans::grid(std::size_t sonar) const {
+  const auto found = fans_.find(sonar);
+  return found == fans_.end() ? nullptr : &found->second->grid;
 }
 
 const FanShape* SonarFans::shape(std::size_t sonar) const {

@@ -153,14 +153,20 @@ Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_f
   if (overlay_) {
     overlay_->begin(display_frame.width, display_frame.height, elapsed_s_);
     fans_->begin_frame();
-    for (const LiveFrame::Sonar& ping : live->sonars)
-      NERITIC_TRY_STATUS(fans_->declare(graph, session_.scene().sonars[ping.index].name, ping));
+    for (const LiveFrame::Sonar& ping : live->sonars) {
+      const scene::Sonar& sonar = session_.scene().sonars[ping.index];
+      if (sonar.kind == scene::SonarKind::kImaging || sonar.kind == scene::SonarKind::kProfiling) {
+        NERITIC_TRY_STATUS(fans_->declare(graph, sonar.name, ping));
+      } else {
+        graph.output(ping.image, graph::Access::kStorageReadCompute);
+      }
+    }
     NERITIC_TRY(shown, declare_overlay(graph, *live));
     desc = display_.target().desc();
     left_as = display_.target_access();
   } else {
     for (const LiveFrame::Sonar& ping : live->sonars)
-      graph.output(ping.sums, graph::Access::kStorageReadCompute);
+      graph.output(ping.image, graph::Access::kStorageReadCompute);
   }
   // A window may be closed at any frame, so with --screenshot each is brought to the host there.
   const bool final_shot = !options_.screenshot.empty() && (last || window_);
@@ -187,9 +193,8 @@ Result<graph::ImageHandle> Dive::declare_overlay(graph::FrameGraph& graph, const
     for (const std::size_t index : options_.sonars) {
       const graph::ImageHandle picture = fans_->picture(graph, index);
       if (!picture) continue;
-      NERITIC_TRY(const sonar::BeamGrid grid, sonar_grid(scene.sonars[index]));
       facts.sonars.push_back({scene.sonars[index].name, overlay_->texture(picture),
-                              *fans_->shape(index), grid, scene.sonars[index].rate_hz});
+                              *fans_->shape(index), *fans_->grid(index), scene.sonars[index].rate_hz});
     }
     draw_readout(camera_, scale);
     draw_status(facts, camera_, times_, now, scale);

@@ -36,10 +36,6 @@ Result<scene::Scene> load(const RenderFlags& flags) {
   return scene;
 }
 
-Status status_of(const Result<sonar::BeamGrid>& grid) {
-  return grid.ok() ? Status() : Status(grid.error());
-}
-
 bool wanted(const RenderFlags& flags, const std::string& name) {
   return flags.sensors.empty() ||
          std::find(flags.sensors.begin(), flags.sensors.end(), name) != flags.sensors.end();
@@ -55,7 +51,7 @@ Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& sc
   }
   for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
     if (wanted(flags, scene.sonars[i].name))
-      NERITIC_TRY_STATUS(status_of(sonar_grid(scene.sonars[i])));
+      NERITIC_TRY_STATUS(check_sonar(scene.sonars[i]));
     known += (known.empty() ? "" : ", ") + scene.sonars[i].name;
     if (wanted(flags, scene.sonars[i].name)) request.sonars.push_back(i), ++found;
   }

@@ -76,7 +76,7 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
        {{"requested", frame.pixels_per_cell},
         {"used", {frame.pixels_per_cell_used.x, frame.pixels_per_cell_used.y}}}}};
   const nlohmann::json more{
-      {"kind", "imaging"},
+      {"kind", scene::name_of(frame.kind)},
       {"model",
        {{"method", "gpu"},
         {"gather", frame.gather},

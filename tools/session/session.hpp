@@ -4,8 +4,8 @@
 // only.
 #pragma once
 
-#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +16,7 @@
 #include "engine/graph/frame_graph.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
-#include "sonar/gather.hpp"
+#include "sonar/beam_grid.hpp"
 #include "sonar/reference.hpp"
 #include "tools/session/readback.hpp"
 
@@ -41,10 +41,18 @@ struct CameraFrame {
   std::vector<ViewImages> eyes;  // one, or left and right
 };
 
+// What one head of a sonar heard (a side-scan has two).
 struct SonarFrame {
-  std::string name, gather;
-  sonar::BeamGrid grid;
+  std::string name, head;  // head: "" or "port", "starboard"
+  scene::SonarKind kind = scene::SonarKind::kImaging;
+  std::string gather;
+  sonar::BeamGrid grid;  // of the image: azimuth bins are beams
+  // Intensity: the plain cosine's mean over elevation, or, with level, the power that leaves the
+  // receiver (times its gains), 1 being 1 uPa^2.
   sonar::SonarImage image;
+  bool level = false;
+  Pose world_from_head;
+  double sound_speed_m_s = 0.0, absorption_db_per_m = 0.0;  // with terms
   double fixed_scale = 1.0;
   std::uint32_t gbuffer_width = 1, gbuffer_height = 1;  // of one sector
   double pixels_per_cell = 1.0;                         // asked for, linear
@@ -76,8 +84,8 @@ struct FrameResult {
 };
 
 struct CameraWork;
-struct SonarWork;
 struct FrameWork;
+class SonarStation;
 
 // One frame's sensors in a graph that the caller runs: what other passes may read, nothing brought
 // to the host. Keeps what the passes borrow, so it must live until Executor::run has returned.
@@ -88,10 +96,14 @@ class LiveFrame {
     graph::ImageHandle color;  // render::kColorFormat, a layer an eye
     std::uint32_t width = 1, height = 1, layers = 1;
   };
+  // A head of a sonar.
   struct Sonar {
     std::size_t index = 0;
-    graph::BufferHandle sums;  // uint32 [n_range][n_azimuth], of gather->image_scale()
-    const sonar::SonarGather* gather = nullptr;
+    sonar::BeamGrid grid;
+    // [n_range][n_azimuth]: uint32 sums of the plain cosine, image_scale each; or floats of power.
+    graph::BufferHandle image;
+    bool is_float = false;
+    double image_scale = 1.0;
   };
   std::vector<Camera> cameras;
   std::vector<Sonar> sonars;
@@ -105,7 +117,6 @@ class LiveFrame {
 
 class Session {
  public:
-  struct SonarState;  // what a sonar keeps from frame to frame
   static Result<std::unique_ptr<Session>> create(gpu::Device& device, scene::Scene scene);
   ~Session();
 
@@ -135,18 +146,12 @@ class Session {
   std::unique_ptr<graph::Executor> executor_;
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<render::GpuScene> gpu_scene_;
-  Status create_reflectivity();
-  Result<SonarState*> sonar_state(std::size_t index);
   Status check_size(const std::string& what, std::uint32_t width, std::uint32_t height) const;
   Status declare_camera(graph::FrameGraph& graph, const render::FrameState& state,
                         const render::DeformedGeometry& deformed, const Capture& capture,
                         CameraWork& work);
-  Status declare_sonar(graph::FrameGraph& graph, const render::FrameState& state,
-                       const render::DeformedGeometry& deformed, const Capture& capture,
-                       SonarWork& work);
   Status declare_sensors(graph::FrameGraph& graph, const FrameRequest& request, FrameWork& work);
-  std::map<std::size_t, std::unique_ptr<SonarState>> sonars_;
-  gpu::Buffer reflectivity_;  // by instance label
+  std::unique_ptr<SonarStation> sonars_;
   ReadbackPool readback_;
   std::string plan_text_, plan_graphviz_;
   bool keep_dump_ = false;
@@ -156,8 +161,8 @@ class Session {
 inline constexpr double kDefaultGBufferScale = 0.5;
 inline constexpr const char* kDefaultGather = "plane";
 
-// The bins of a sonar of the scene; kBadInput as sonar::validate says.
-Result<sonar::BeamGrid> sonar_grid(const scene::Sonar& sonar);
+// What a sonar of the scene cannot be; kBadInput as sonar::plan_heads says.
+Status check_sonar(const scene::Sonar& sonar);
 
 // The views of a camera of the scene: one, or two for a stereo pair, half the baseline to each
 // side.

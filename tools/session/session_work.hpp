@@ -19,25 +19,17 @@ struct CameraWork : ViewWork {
   graph::ImageHandle color_image;
 };
 
-struct SonarWork : ViewWork {
-  Session::SonarState* state = nullptr;
-  sonar::SonarGather::Outputs outputs;
-};
+struct SonarWork;
 
 struct FrameWork {
   render::FrameState state;
   std::vector<std::unique_ptr<CameraWork>> cameras;
   std::vector<std::unique_ptr<SonarWork>> sonars;
+  FrameWork();
+  ~FrameWork();
 };
 
-struct Session::SonarState {
-  scene::Sonar made_from;
-  sonar::Gather mode = sonar::Gather::kPlane;
-  sonar::PixelSize size;
-  double pixels_per_cell = 1.0;  // asked for; the device's largest image may allow less
-  bool reflectivity = true;      // by object; false: all are 1
-  std::unique_ptr<sonar::SonarGather> gather;
-  gpu::Buffer sums, keys;  // host-readable
-};
+// One eye's or sector's images of a view, where they were asked for, after the frame is done.
+std::vector<ViewImages> decode_views(const ViewWork& work);
 
 }  // namespace neritic::tools

@@ -1,0 +1,133 @@
+// What a scene (or a command line) says of an acoustic sensor. Everything optional is a term of the
+// sonar's physics that is neither modelled nor paid for unless it is named. Plain values, SI,
+// angles in radians, levels in decibels; any thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/math.hpp"
+
+namespace neritic::scene {
+
+enum class SonarKind { kImaging, kProfiling, kEchoSounder, kSideScan, kMechanical };
+// "imaging", "profiling", "echosounder", "sidescan", "mechanical".
+const char* name_of(SonarKind kind);
+
+// The water's acoustics at the sonar. depth_m absent: the sonar's own depth.
+struct SonarWater {
+  double temperature_c = 10.0, salinity_psu = 35.0, ph = 8.0;
+  std::optional<double> depth_m;
+  std::optional<double> sound_speed_m_s;  // absent: Mackenzie's from the above
+  bool operator==(const SonarWater&) const = default;
+};
+
+// A column of a table read from a file or a list: x strictly increasing.
+using SonarTable = std::vector<std::array<double, 2>>;
+
+// Decibels: echo level = source level - 2 transmission loss + target strength, then the receiver.
+// Absent: the published model's plain cosine.
+struct SonarLevel {
+  double source_level_db = 200.0;  // re 1 uPa at 1 m
+  enum class Absorption { kFrancoisGarrison, kAinslieMcColm, kFixed, kNone };
+  Absorption absorption = Absorption::kFrancoisGarrison;
+  double absorption_db_per_m = 0.0;  // kFixed
+  bool spreading = true;             // spherical, 20 log r each way
+  double tvg_log = 0.0;              // time-varied gain: tvg_log * log10(r / 1 m): 20, 30, 40; 0: none
+  bool tvg_absorption = false;       // and 2 alpha r
+  SonarTable tvg_table;              // metres, decibels: instead of tvg_log
+  double gain_db = 0.0;              // of the receiver
+  bool operator==(const SonarLevel&) const = default;
+};
+
+// One axis' one-way beam pattern.
+struct SonarPattern {
+  enum class Shape { kUniform, kHamming, kTable };  // sinc; Hamming-shaded line; from a file
+  Shape shape = Shape::kUniform;
+  double half_power_rad = radians(1.0);  // full width at half power of one way
+  SonarTable table;                      // off-axis angle (radians, from 0), decibels
+  bool operator==(const SonarPattern&) const = default;
+};
+
+struct SonarBeam {
+  std::optional<SonarPattern> azimuth, elevation;
+  // Gather columns a beam, so that the pattern's main lobe is sampled; at least 1.
+  std::uint32_t samples = 1;
+  bool operator==(const SonarBeam&) const = default;
+};
+
+// Range point spread of a pulse: c / 2B.
+struct SonarRangeSpread {
+  double bandwidth_hz = 30e3;
+  enum class Window { kNone, kHann };
+  Window window = Window::kHann;
+  bool operator==(const SonarRangeSpread&) const = default;
+};
+
+struct SonarSpeckle {
+  double scatterer_m = 0.0;  // size of the world's cells, each one scatterer; 0: the range step
+  double shape = 0.0;        // K distribution's nu; 0: Rayleigh
+  double texture_m = 0.5;    // size of the patches that share one draw of the gamma texture
+  bool operator==(const SonarSpeckle&) const = default;
+};
+
+struct SonarNoise {
+  double level_db = 60.0;  // re 1 uPa in the receiver's band, ambient and self together
+  bool operator==(const SonarNoise&) const = default;
+};
+
+struct SonarGhosts {
+  bool surface = false;             // one bounce off y = 0
+  std::optional<double> bottom_m;   // depth of a flat bottom that mirrors
+  double surface_reflection = 1.0;  // amplitude, absolute
+  double bottom_reflection = 0.4;
+  bool operator==(const SonarGhosts&) const = default;
+};
+
+// Sound speed over depth. Absent: constant.
+struct SonarProfile {
+  SonarTable table;   // depth in metres, m/s
+  bool bent = false;  // rays bend; else straight rays, only time differs
+  bool operator==(const SonarProfile&) const = default;
+};
+
+struct SonarMotion {
+  bool within_ping = false;  // the sonar moves while the echo comes back
+  bool doppler = false;      // a chirp's range shift by the closing speed
+  double pulse_s = 100e-6;   // of the chirp
+  bool operator==(const SonarMotion&) const = default;
+};
+
+struct SonarLabels {
+  bool energy = false;  // by the class and instance that gave most energy, with its fraction
+  bool coco = false;    // boxes and masks as COCO JSON
+  bool operator==(const SonarLabels&) const = default;
+};
+
+// What leaves the receiver. bits 0: floats; else 8 or 16-bit counts, 0 at floor_db.
+struct SonarOutput {
+  std::uint32_t bits = 0;
+  double floor_db = 40.0, span_db = 80.0;
+  bool operator==(const SonarOutput&) const = default;
+};
+
+struct SonarTerms {
+  double frequency_hz = 750e3;
+  SonarWater water;
+  std::optional<SonarLevel> level;
+  SonarBeam beam;
+  std::optional<SonarRangeSpread> range_spread;
+  std::optional<SonarSpeckle> speckle;
+  std::optional<SonarNoise> noise;
+  std::optional<SonarGhosts> ghosts;
+  std::optional<SonarProfile> profile;
+  std::optional<SonarMotion> motion;
+  SonarLabels labels;
+  SonarOutput output;
+  bool operator==(const SonarTerms&) const = default;
+};
+
+}  // namespace neritic::scene

@@ -1,0 +1,6 @@
+// What the receiver's passes share.
+#include "shared/sonar_echo.h"
+
+layout(local_size_x = kReceiverGroup, local_size_y = kReceiverGroup) in;
+layout(constant_id = kReceiverSpecCoherent) const uint kCoherent = 0;
+layout(push_constant, scalar) uniform Push { SonarReceiverPush c; };

@@ -1,0 +1,42 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Spreads a field along range (the pulse) or across columns into beams (the beam's pattern): taps of a
+// kernel, amplitudes where the field is coherent, powers where not.
+#include "shared/sonar_receiver.glsl"
+
+layout(constant_id = kReceiverSpecAxis) const uint kAxis = 0;
+layout(constant_id = kReceiverSpecShift) const uint kShift = 0;
+layout(set = 0, binding = kReceiverIn) uniform texture2DArray field;
+layout(set = 0, binding = kReceiverTaps) uniform texture2D taps;
+layout(set = 0, binding = kReceiverOut, rg32f) writeonly uniform image2DArray result;
+
+vec2 column_at(int column, int row) {
+  int n = int(c.columns);
+  if (c.wrap != 0) column = ((column % n) + n) % n;
+  return column >= 0 && column < n ? texelFetch(field, ivec3(column, row, 0), 0).rg : vec2(0.0);
+}
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  if (at.x >= int(c.out_columns) || at.y >= int(c.rows)) return;
+  vec2 sum = vec2(0.0);
+  if (kAxis == 1) {
+    int low = max(0, -(at.y + c.first)), high = min(int(c.taps), int(c.rows) - at.y - c.first);
+    for (int k = low; k < high; ++k)
+      sum += texelFetch(taps, ivec2(k, 0), 0).r * texelFetch(field, ivec3(at.x, at.y + c.first + k, 0), 0).rg;
+  } else {
+    int start = at.x * int(c.stride) + c.first;
+    float turned = kShift != 0 ? c.first_shift + c.shift * float(at.y) : 0.0;
+    float whole = floor(turned), part = turned - whole;
+    start += int(whole);
+    for (int k = 0; k < int(c.taps); ++k) {
+      vec2 value = column_at(start + k, at.y);
+      if (kShift != 0) value = mix(value, column_at(start + k + 1, at.y), part);
+      sum += texelFetch(taps, ivec2(k, 0), 0).r * value;
+    }
+  }
+  imageStore(result, ivec3(at, 0), vec4(sum, 0.0, 0.0));
+}

@@ -1,0 +1,219 @@
+#include "sonar/head.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "sonar/acoustics_pulse.hpp"
+#include "sonar/head_pattern.hpp"
+
+namespace neritic::sonar {
+namespace {
+
+using scene::SonarKind;
+using scene::SonarTerms;
+
+constexpr std::uint32_t kGammaQuantiles = 4096;
+// A beam's taps leave out at most this share of its pattern's power.
+constexpr double kPatternTruncated = 0.005;
+
+// Whether anything beyond the published plain cosine is named.
+bool has_terms(const scene::Sonar& sonar) {
+  const SonarTerms& t = sonar.terms;
+  return t.level || t.beam.azimuth || t.beam.elevation || t.beam.samples > 1 || t.range_spread ||
+         t.speckle || t.noise || t.ghosts || t.profile || t.motion || t.labels.energy ||
+         sonar.kind == SonarKind::kEchoSounder;
+}
+
+// The grid that leaves the head: of an echo sounder the pyramid around its cone, as one beam.
+BeamGrid beam_grid_of(const scene::Sonar& s) {
+  const bool cone = s.kind == SonarKind::kEchoSounder;
+  const double azimuth = cone ? 2.0 * s.semi_angle_rad : s.azimuth_rad;
+  const double elevation = cone ? 2.0 * s.semi_angle_rad : s.elevation_rad;
+  return symmetric_grid(s.range_min_m, s.range_max_m, azimuth, elevation,
+                        {s.bins_range, s.bins_azimuth, s.bins_elevation});
+}
+
+bool full_turn(const BeamGrid& grid) {
+  return grid.limits.azimuth_max_rad - grid.limits.azimuth_min_rad > 2.0 * kPi - 1e-9;
+}
+
+// Makes head.samples from head.beams: columns a beam, and as many beyond the edges as the pattern
+// reaches, so that what lies just outside is heard through the flank of the edge beams.
+Status plan_samples(Head& head, std::uint32_t samples, std::uint32_t reach) {
+  head.samples = head.beams;
+  head.samples_per_beam = head.folded ? head.beams.bins.azimuth : samples;
+  if (head.folded) {
+    head.beams.bins.azimuth = 1;
+    return {};
+  }
+  const bool ring = full_turn(head.beams);
+  const double column = head.beams.azimuth_step_rad() / samples;
+  const double room =
+      (2.0 * kPi - (head.beams.limits.azimuth_max_rad - head.beams.limits.azimuth_min_rad)) / 2.0;
+  head.margin = ring ? 0 : std::min(reach, static_cast<std::uint32_t>(std::floor(room / column)));
+  head.samples.bins.azimuth = head.beams.bins.azimuth * samples + 2 * head.margin;
+  head.samples.limits.azimuth_min_rad -= head.margin * column;
+  head.samples.limits.azimuth_max_rad += head.margin * column;
+  return validate(head.samples);
+}
+
+// Weights of each gathered beam: the elevation pattern there and back, the solid angle's cosine
+// where powers are physical, and a cone's edge. Empty: all are 1.
+std::vector<float> beam_weights(const scene::Sonar& sonar, const Head& head,
+                                const HeadPatterns& patterns) {
+  if (!sonar.terms.level && !patterns.elevation && !patterns.cone) return {};
+  const BeamGrid& grid = head.samples;
+  std::vector<float> weights(std::size_t{grid.bins.azimuth} * grid.bins.elevation);
+  for (std::uint32_t row = 0; row < grid.bins.elevation; ++row)
+    for (std::uint32_t column = 0; column < grid.bins.azimuth; ++column) {
+      const double phi = grid.elevation_rad(row);
+      double weight = patterns.power(grid.azimuth_rad(column), phi);
+      if (sonar.terms.level || patterns.cone) weight *= std::cos(phi);
+      if (patterns.cone) weight *= cone_share(grid, column, row, sonar.semi_angle_rad);
+      weights[std::size_t{row} * grid.bins.azimuth + column] = static_cast<float>(weight);
+    }
+  return weights;
+}
+
+// What spreads along range. Calibrated levels keep a point's peak; else its energy is kept.
+Result<Taps> range_taps(const scene::Sonar& sonar, const BeamGrid& grid, bool coherent) {
+  const auto& spread = sonar.terms.range_spread;
+  if (!spread) return Taps{};
+  using Window = scene::SonarRangeSpread::Window;
+  const PulseShape shape = spread->window == Window::kHann ? PulseShape::kHann : PulseShape::kFlat;
+  const double resolution =
+      range_resolution_m(sound_speed_of(sonar.terms.water, 0.0), spread->bandwidth_hz);
+  NERITIC_TRY(const RangeSpread kernel, range_spread(shape, resolution, grid.range_step_m()));
+  const double peak = sonar.terms.level ? kernel.energy[kernel.reach] : 1.0;
+  Taps taps{-static_cast<int>(kernel.reach), {}};
+  for (std::size_t i = 0; i < kernel.energy.size(); ++i)
+    taps.weights.push_back(static_cast<float>(coherent ? kernel.amplitude[i] / std::sqrt(peak)
+                                                       : kernel.energy[i] / peak));
+  return taps;
+}
+
+// What gathers columns into a beam.
+Taps across_taps(const scene::Sonar& sonar, const Head& head, const HeadPatterns& patterns,
+                 std::uint32_t reach, bool coherent) {
+  if (head.samples_per_beam == 1 && reach == 0 && !head.folded) return {};
+  const std::uint32_t samples = head.samples_per_beam;
+  const double column = head.samples.azimuth_step_rad();
+  std::vector<double> amplitude(samples + 2 * reach, 1.0);
+  for (std::size_t i = 0; i < amplitude.size() && !head.folded; ++i)
+    amplitude[i] = patterns.across((double(i) - reach - (samples - 1) / 2.0) * column);
+  // Calibrated levels count all that a beam hears; else the taps share the energy out.
+  const bool counts_all = sonar.terms.level || head.folded;
+  double total = 0.0;
+  for (const double a : amplitude) total += a * a;
+  const double scale = counts_all ? 1.0 : 1.0 / total;
+  Taps taps{static_cast<int>(head.margin) - static_cast<int>(reach), {}};
+  for (const double a : amplitude)
+    taps.weights.push_back(static_cast<float>(coherent ? a * std::sqrt(scale) : a * a * scale));
+  return taps;
+}
+
+double sample_power_of(const scene::Sonar& sonar, const Head& head) {
+  const BeamGrid& g = head.samples;
+  if (sonar.terms.level) return g.azimuth_step_rad() * g.elevation_step_rad();
+  if (!head.folded) return 1.0 / g.bins.elevation;
+  const auto& w = head.echo->weights;
+  return 1.0 / std::max(std::accumulate(w.begin(), w.end(), 0.0), 1e-30);
+}
+
+Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& rotation) {
+  Head head;
+  head.name = std::move(name);
+  head.sonar_from_head.rotation = rotation;
+  head.beams = beam_grid_of(sonar);
+  head.folded = sonar.kind == SonarKind::kEchoSounder;
+  if (const Status valid = validate(head.beams); !valid.ok())
+    return bad_input("sonar {}: {}", sonar.name, valid.error().message);
+  const SonarTerms& t = sonar.terms;
+  if (!has_terms(sonar)) {
+    head.samples = head.beams;
+    return head;
+  }
+  auto made = head_patterns(sonar);
+  if (!made.ok()) return bad_input("sonar {}: beam: {}", sonar.name, made.error().message);
+  const HeadPatterns& patterns = *made;
+  const double column = head.beams.azimuth_step_rad() / t.beam.samples;
+  const std::uint32_t reach =
+      patterns.azimuth && !head.folded ? pattern_reach(patterns, column, kPatternTruncated) : 0;
+  if (const Status valid = plan_samples(head, t.beam.samples, reach); !valid.ok())
+    return bad_input("sonar {}: with {} samples a beam: {}", sonar.name, t.beam.samples,
+                     valid.error().message);
+  EchoOptions echo;
+  echo.coherent = t.speckle.has_value();
+  echo.corrected = t.profile.has_value();
+  echo.moving = t.motion.has_value();
+  echo.records = t.labels.energy;
+  echo.weights = beam_weights(sonar, head, patterns);
+  if (t.speckle && t.speckle->shape > 0.0)
+    echo.gamma_quantiles = gamma_quantiles(t.speckle->shape, kGammaQuantiles);
+  head.echo = std::move(echo);
+  head.sample_power = sample_power_of(sonar, head);
+  ReceiverDesc& r = head.receiver;
+  r.rows = head.samples.bins.range;
+  r.columns = head.samples.bins.azimuth;
+  r.beams = head.beams.bins.azimuth;
+  r.stride = head.samples_per_beam;
+  r.wrap = full_turn(head.beams);
+  r.coherent = t.speckle.has_value();
+  r.noise = t.noise.has_value();
+  r.shift = t.motion && t.motion->within_ping && !head.folded;
+  NERITIC_TRY(r.range, range_taps(sonar, head.beams, r.coherent));
+  r.across = across_taps(sonar, head, patterns, reach, r.coherent);
+  if (r.shift && r.across.weights.empty()) r.across = {0, {1.0f}};
+  return head;
+}
+
+}  // namespace
+
+std::vector<float> gamma_quantiles(double shape, std::uint32_t count) {
+  // The distribution function by Simpson's rule in t = log x, where the density x^shape e^-x is
+  // smooth at 0; then read backwards.
+  const double low = std::log(1e-12) / std::min(shape, 1.0),
+               high = std::log(shape + 40.0 + 12.0 * std::sqrt(shape));
+  constexpr int kSteps = 20000;
+  const double step = (high - low) / kSteps;
+  const auto density = [&](double t) {
+    return std::exp(shape * t - std::exp(t) - std::lgamma(shape));
+  };
+  std::vector<double> below(kSteps + 1, 0.0);
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = low + i * step;
+    below[i + 1] =
+        below[i] + step / 6.0 * (density(t) + 4.0 * density(t + step / 2.0) + density(t + step));
+  }
+  std::vector<double> x(count);
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double wanted = (i + 0.5) / count * below.back();
+    while (at + 1 < below.size() - 1 && below[at + 1] < wanted) ++at;
+    const double part = (wanted - below[at]) / std::max(below[at + 1] - below[at], 1e-300);
+    x[i] = std::exp(low + (at + std::clamp(part, 0.0, 1.0)) * step);
+  }
+  const double mean = std::accumulate(x.begin(), x.end(), 0.0) / count;
+  std::vector<float> out(count);
+  for (std::uint32_t i = 0; i < count; ++i) out[i] = static_cast<float>(x[i] / mean);
+  return out;
+}
+
+Result<std::vector<Head>> plan_heads(const scene::Sonar& sonar) {
+  std::vector<Head> heads;
+  if (sonar.kind != SonarKind::kSideScan) {
+    NERITIC_TRY(Head head, plan_head(sonar, "", Quat(1, 0, 0, 0)));
+    heads.push_back(std::move(head));
+    return heads;
+  }
+  // To either side of the track, tilted down.
+  for (const auto& [name, side] : {std::pair("port", 1.0), std::pair("starboard", -1.0)}) {
+    const Quat turn = glm::angleAxis(side * kPi / 2.0, Vec3(0, 1, 0)) *
+                      glm::angleAxis(-sonar.depression_rad, Vec3(1, 0, 0));
+    NERITIC_TRY(Head head, plan_head(sonar, name, turn));
+    heads.push_back(std::move(head));
+  }
+  return heads;
+}
+
+}  // namespace neritic::sonar

@@ -1,0 +1,37 @@
+// The beam patterns that a sonar's settings name, for its head's tables. Pure functions; any
+// thread.
+#pragma once
+
+#include <optional>
+
+#include "engine/scene/scene.hpp"
+#include "sonar/beam_grid.hpp"
+#include "sonar/beam_pattern.hpp"
+
+namespace neritic::sonar {
+
+// Sound speed that turns time to range: the settings', or Mackenzie's at depth_m unless they name
+// one.
+double sound_speed_of(const scene::SonarWater& water, double depth_m);
+
+struct HeadPatterns {
+  std::optional<BeamPattern> azimuth, elevation;
+  bool azimuth_two_way = false;  // sends and receives through it: all but imaging and profiling
+  bool cone = false;             // an echo sounder's: elevation (else azimuth) about the axis
+
+  // Amplitude of a scatterer so far off a beam's axis in azimuth; 1 without a pattern. Signed.
+  double across(double off_rad) const;
+  // Power there and back of a direction of the gathered grid.
+  double power(double azimuth_rad, double elevation_rad) const;
+};
+// kBadInput names what is wrong with a pattern.
+Result<HeadPatterns> head_patterns(const scene::Sonar& sonar);
+
+// The share of a cell of the grid within the cone of semi-angle semi_rad about the axis, 0 to 1.
+double cone_share(const BeamGrid& grid, std::uint32_t column, std::uint32_t row, double semi_rad);
+
+// Columns of column_rad to either side beyond which a pattern holds less than max_truncated of its
+// power.
+std::uint32_t pattern_reach(const HeadPatterns& patterns, double column_rad, double max_truncated);
+
+}  // namespace neritic::sonar

@@ -1,0 +1,179 @@
+#include "sonar/ping.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sonar/acoustics.hpp"
+#include "sonar/head_pattern.hpp"
+#include "sonar/range_correction.hpp"
+
+namespace neritic::sonar {
+namespace {
+
+using scene::SonarLevel;
+
+// Powers that a float holds with room to spare: a gain beyond is held there.
+constexpr double kLargestGain = 1e30;
+
+double power_from(double db) {
+  return std::min(std::pow(10.0, db / 10.0), kLargestGain);
+}
+
+double absorption_of(const scene::Sonar& sonar, double depth_m) {
+  if (!sonar.terms.level) return 0.0;
+  const SonarLevel& level = *sonar.terms.level;
+  if (level.absorption == SonarLevel::Absorption::kNone) return 0.0;
+  if (level.absorption == SonarLevel::Absorption::kFixed) return level.absorption_db_per_m;
+  const scene::SonarWater& w = sonar.terms.water;
+  const Water water{w.temperature_c, w.salinity_psu,
+                    std::clamp(w.depth_m.value_or(depth_m), 0.0, 12000.0), w.ph};
+  const AbsorptionModel model = level.absorption == SonarLevel::Absorption::kAinslieMcColm
+                                    ? AbsorptionModel::kAinslieMcColm
+                                    : AbsorptionModel::kFrancoisGarrison;
+  return absorption_db_m(model, water, sonar.terms.frequency_hz);
+}
+
+// Power of the field a unit of the gather's sum: what one beam's solid angle sends back from range
+// r. A patch of r^2 dOmega / cos i scatters mu cos^2 i, and both ways spread: 1 / r^4.
+double field_gain(const scene::Sonar& sonar, const Head& head, const PingState& state, double r,
+                  double absorption_db_per_m) {
+  if (!sonar.terms.level) return head.sample_power;
+  const SonarLevel& level = *sonar.terms.level;
+  const double loss_db = 2.0 * absorption_db_per_m * r;
+  const double spread = level.spreading ? 1.0 / (r * r) : r * r;
+  return std::min(head.sample_power * state.backscatter_scale * spread *
+                      std::pow(10.0, (level.source_level_db - loss_db) / 10.0),
+                  kLargestGain);
+}
+
+double receiver_gain(const scene::Sonar& sonar, double r, double absorption_db_per_m) {
+  if (!sonar.terms.level) return 1.0;
+  const SonarLevel& level = *sonar.terms.level;
+  double db = level.gain_db;
+  if (!level.tvg_table.empty()) {
+    Table table;
+    for (const auto& [range_m, gain] : level.tvg_table) table.push_back({range_m, gain});
+    db += interpolate(table, r);
+  } else {
+    db += level.tvg_log * std::log10(r);
+    if (level.tvg_absorption) db += 2.0 * absorption_db_per_m * r;
+  }
+  return power_from(db);
+}
+
+std::uint32_t cell_index(double cell) {
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(cell));
+}
+
+// Where the eye lies in a lattice of cells fixed to the world.
+void place_in_lattice(const Vec3& eye_m, double cell_m, glm::vec3& fraction, glm::uvec3& cell,
+                      float& cells_per_m) {
+  const Vec3 in_cells = eye_m / cell_m;
+  const Vec3 low = glm::floor(in_cells);
+  fraction = glm::vec3(in_cells - low);
+  cell = {cell_index(low.x), cell_index(low.y), cell_index(low.z)};
+  cells_per_m = static_cast<float>(1.0 / cell_m);
+}
+
+void add_speckle(Ping& ping, const scene::Sonar& sonar, const Head& head, const Vec3& eye_m,
+                 std::uint64_t seed) {
+  if (!sonar.terms.speckle) return;
+  const scene::SonarSpeckle& speckle = *sonar.terms.speckle;
+  const double cell_m = speckle.scatterer_m > 0.0 ? speckle.scatterer_m : head.beams.range_step_m();
+  place_in_lattice(eye_m, cell_m, ping.echo.cell_fraction, ping.echo.origin_cell,
+                   ping.echo.cells_per_m);
+  place_in_lattice(eye_m, speckle.texture_m, ping.echo.patch_fraction, ping.echo.origin_patch,
+                   ping.echo.patches_per_m);
+  ping.echo.turns_per_m = static_cast<float>(2.0 * sonar.terms.frequency_hz / ping.sound_speed_m_s);
+  ping.echo.seed = static_cast<std::uint32_t>(seed ^ (seed >> 32));
+}
+
+void add_motion(Ping& ping, const scene::Sonar& sonar, const Head& head, const PingState& state) {
+  if (!sonar.terms.motion) return;
+  const scene::SonarMotion& motion = *sonar.terms.motion;
+  const double c = ping.sound_speed_m_s;
+  const Mat3 gbuffer_from_world =
+      state.gbuffer_in_world_axes ? Mat3(1.0)
+                                  : glm::mat3_cast(glm::conjugate(state.world_from_sonar.rotation));
+  const Vec3 velocity = gbuffer_from_world * state.velocity_m_s;
+  if (motion.within_ping) {
+    // The echo comes back to where the sonar is by then: half the path is shorter by v . d * 2r/c.
+    ping.echo.motion = glm::vec3(-velocity / c);
+    const double columns_per_m = -state.yaw_rate_rad_s * 2.0 / c / head.samples.azimuth_step_rad();
+    ping.shift_columns_per_row = static_cast<float>(columns_per_m * head.beams.range_step_m());
+    ping.first_shift_columns = static_cast<float>(columns_per_m * head.beams.range_m(0));
+  }
+  // An up-chirp of pulse T over bandwidth B: a closing speed v shortens the range by v f T / B.
+  if (motion.doppler && sonar.terms.range_spread)
+    ping.echo.doppler = glm::vec3(-velocity * (sonar.terms.frequency_hz * motion.pulse_s /
+                                               sonar.terms.range_spread->bandwidth_hz));
+}
+
+void add_mirror(Ping& ping, const Mirror& mirror, const PingState& state, const Vec3& eye_m) {
+  ping.echo.ghost_source = glm::vec3(state.world_from_sonar.position_m - eye_m);
+  ping.echo.water_level_m = static_cast<float>(mirror.height_m - eye_m.y);
+  ping.echo.water_sign = mirror.water_below ? 1.0f : -1.0f;
+  // Out by the mirror and back directly, and the other way round.
+  ping.echo.ghost_weight = static_cast<float>(2.0 * mirror.reflection * mirror.reflection);
+}
+
+}  // namespace
+
+std::vector<Mirror> mirrors_of(const scene::Sonar& sonar) {
+  std::vector<Mirror> mirrors;
+  if (!sonar.terms.ghosts) return mirrors;
+  const scene::SonarGhosts& ghosts = *sonar.terms.ghosts;
+  if (ghosts.surface) mirrors.push_back({0.0, ghosts.surface_reflection, true});
+  if (ghosts.bottom_m) mirrors.push_back({-*ghosts.bottom_m, ghosts.bottom_reflection, false});
+  return mirrors;
+}
+
+Pose mirrored(const Mirror& mirror, const Pose& world_from_head) {
+  Pose out = world_from_head;
+  out.position_m.y = 2.0 * mirror.height_m - out.position_m.y;
+  // The columns of the rotation are the head's axes; a mirror turns their y over, and the head's
+  // own y with it, so that the axes stay right-handed.
+  Mat3 axes = glm::mat3_cast(world_from_head.rotation);
+  for (int i = 0; i < 3; ++i) axes[i].y = -axes[i].y;
+  axes[1] = -axes[1];
+  out.rotation = glm::normalize(glm::quat_cast(axes));
+  return out;
+}
+
+Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state,
+             const Mirror* mirror) {
+  const Vec3 sonar_m = state.world_from_sonar.position_m;
+  const Vec3 eye_m = mirror ? mirrored(*mirror, state.world_from_sonar).position_m : sonar_m;
+  Ping ping;
+  ping.ping = state.ping;
+  ping.seed = static_cast<std::uint32_t>(state.seed * 0x9e3779b97f4a7c15ull >> 32) ^
+              state.stream * 0x85ebca6bu;
+  ping.sound_speed_m_s = sound_speed_of(sonar.terms.water, -sonar_m.y);
+  ping.absorption_db_per_m = absorption_of(sonar, -sonar_m.y);
+  for (std::uint32_t row = 0; row < head.samples.bins.range; ++row) {
+    const double r = std::max(head.samples.range_m(row), kNearestRange_m);
+    const double field = field_gain(sonar, head, state, r, ping.absorption_db_per_m);
+    ping.gains.emplace_back(static_cast<float>(sonar.terms.speckle ? std::sqrt(field) : field),
+                            static_cast<float>(receiver_gain(sonar, r, ping.absorption_db_per_m)));
+  }
+  if (sonar.terms.noise)
+    ping.noise_power = static_cast<float>(power_from(sonar.terms.noise->level_db));
+  ping.echo.world_up =
+      state.gbuffer_in_world_axes
+          ? glm::vec3(0, 1, 0)
+          : glm::vec3(glm::conjugate(state.world_from_sonar.rotation) * Vec3(0, 1, 0));
+  add_speckle(ping, sonar, head, eye_m, state.seed);
+  add_motion(ping, sonar, head, state);
+  if (sonar.terms.profile) {
+    RangeCorrection table = range_correction(*sonar.terms.profile, -sonar_m.y,
+                                             head.samples.limits.range_max_m, ping.sound_speed_m_s);
+    ping.echo.correction_width = table.width;
+    ping.echo.correction_height = table.height;
+    ping.echo.correction_range_m = static_cast<float>(head.samples.limits.range_max_m);
+    ping.correction = std::move(table.factors);
+  }
+  if (mirror) add_mirror(ping, *mirror, state, eye_m);
+  return ping;
+}
+
+}  // namespace neritic::sonar

@@ -1,0 +1,48 @@
+// What one ping of a head needs besides its head: where the sonar is, how it moves, and the numbers
+// that follow from that for the passes. Pure functions of plain values; any thread.
+#pragma once
+
+#include <vector>
+
+#include "engine/scene/scene.hpp"
+#include "sonar/head.hpp"
+
+namespace neritic::sonar {
+
+struct PingState {
+  Pose world_from_sonar;
+  Vec3 velocity_m_s{0.0};             // of the sonar, world axes
+  double yaw_rate_rad_s = 0.0;        // about the sonar's y, positive to port
+  std::uint64_t seed = 1;             // the scene's
+  std::uint32_t stream = 0;           // which of the scene's sonars: its noise is its own
+  std::uint32_t ping = 0;             // number of the ping
+  double backscatter_scale = 1.0;     // what a strength of 1 in the reflectivity table stands for
+  bool gbuffer_in_world_axes = true;  // else in the sonar's (images without a scene)
+};
+
+// A mirror for ghosts: the horizontal plane y = height_m; amplitude reflection.
+struct Mirror {
+  double height_m = 0.0;
+  double reflection = 1.0;
+  bool water_below = true;  // a surface; else a bottom
+};
+// The mirrors that the settings name.
+std::vector<Mirror> mirrors_of(const scene::Sonar& sonar);
+// The head seen in a mirror: the view that sees what the mirror shows. Its elevation is turned over
+// (its +y is the mirror image of -y), so that it is right-handed.
+Pose mirrored(const Mirror& mirror, const Pose& world_from_head);
+
+struct Ping {
+  shared::SonarEcho echo{};
+  std::vector<float> correction;
+  std::vector<glm::vec2> gains;
+  float noise_power = 0.0f, shift_columns_per_row = 0.0f, first_shift_columns = 0.0f;
+  std::uint32_t seed = 0, ping = 0;
+  double sound_speed_m_s = 1500.0;  // that turns time to range
+  double absorption_db_per_m = 0.0;
+};
+// mirror: of a ghost's gather; nullptr: of the direct one.
+Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state,
+             const Mirror* mirror = nullptr);
+
+}  // namespace neritic::sonar

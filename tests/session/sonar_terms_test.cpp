@@ -1,0 +1,289 @@
+// Each term of the sonar against a closed form, end to end: scene, G-buffer, gather, receiver.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numeric>
+
+#include "engine/scene/shapes.hpp"
+#include "sonar/acoustics.hpp"
+#include "tests/support/gpu_fixture.hpp"
+#include "tests/support/support.hpp"
+#include "tools/session/session.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using SonarTerms = test::GpuTest;
+
+scene::Object object_of(scene::Scene& scene, scene::Model model, const Vec3& at) {
+  scene.models.push_back(std::make_shared<scene::Model>(std::move(model)));
+  scene::Object object;
+  object.name = fmt::format("object_{}", scene.objects.size());
+  object.model = static_cast<int>(scene.models.size()) - 1;
+  object.mount.pose.position_m = at;
+  object.class_id = 12;
+  object.instance = static_cast<std::uint16_t>(scene.objects.size() + 1);
+  return object;
+}
+
+scene::Sonar sonar_of(double range_min, double range_max, std::uint32_t bins) {
+  scene::Sonar sonar;
+  sonar.name = "sonar";
+  sonar.range_min_m = range_min;
+  sonar.range_max_m = range_max;
+  sonar.azimuth_rad = radians(20.0);
+  sonar.elevation_rad = radians(20.0);
+  sonar.bins_range = bins;
+  sonar.bins_azimuth = sonar.bins_elevation = 128;
+  return sonar;
+}
+
+scene::SonarLevel plain_level() {
+  scene::SonarLevel level;
+  level.source_level_db = 200.0;
+  level.absorption = scene::SonarLevel::Absorption::kFixed;
+  level.absorption_db_per_m = 0.3;
+  return level;
+}
+
+SonarFrame ping(gpu::Device& device, const scene::Scene& scene, std::uint32_t number = 0) {
+  FrameRequest request;
+  request.sonars = {0};
+  request.frame = number;
+  request.capture.geometry = false;
+  auto session = Session::create(device, scene);
+  if (!session.ok()) {
+    ADD_FAILURE() << session.error().message;
+    return {};
+  }
+  auto result = (*session)->render(request);
+  if (!result.ok()) {
+    ADD_FAILURE() << result.error().message;
+    return {};
+  }
+  return std::move(result->sonars.at(0));
+}
+
+double total(const SonarFrame& frame) {
+  return std::accumulate(frame.image.intensity.begin(), frame.image.intensity.end(), 0.0);
+}
+
+// Mean range of the energy.
+double mean_range_m(const SonarFrame& frame) {
+  double sum = 0.0, weighted = 0.0;
+  for (std::uint32_t row = 0; row < frame.image.n_range; ++row)
+    for (std::uint32_t c = 0; c < frame.image.n_azimuth; ++c) {
+      const double v = frame.image.intensity[std::size_t{row} * frame.image.n_azimuth + c];
+      sum += v;
+      weighted += v * frame.grid.range_m(row);
+    }
+  return weighted / sum;
+}
+
+// A wall 20 m wide, across the axis, and far enough to fill the wedge.
+scene::Scene wall(double distance_m, scene::Sonar sonar) {
+  scene::Scene scene;
+  scene.objects.push_back(
+      object_of(scene, scene::make_box(Vec3(60.0, 60.0, 1.0)), {0.0, 0.0, -distance_m - 0.5}));
+  scene.sonars = {std::move(sonar)};
+  return scene;
+}
+
+TEST_F(SonarTerms, ARigidSphereHasItsTargetStrength) {
+  scene::Sonar sonar = sonar_of(9.0, 11.0, 200);
+  sonar.azimuth_rad = sonar.elevation_rad = radians(2.0);
+  sonar.bins_azimuth = sonar.bins_elevation = 256;
+  sonar.gbuffer_scale = 2.0;
+  sonar.terms.level = plain_level();
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.1, 256), {0.0, 0.0, -10.0}));
+  scene.sonars = {sonar};
+  const double level_db = 10.0 * std::log10(total(ping(device(), scene)));
+  // SL - (40 log 10 + 2 * 0.3 * 10 = 46.0 dB) + 20 log(a / 2); its near side is a tenth nearer.
+  EXPECT_NEAR(level_db, 200.0 - 46.0 - 26.02, 0.15);
+}
+
+TEST_F(SonarTerms, ALambertWallSendsBackItsClosedForm) {
+  scene::Sonar sonar = sonar_of(8.0, 14.0, 600);
+  sonar.terms.level = plain_level();
+  scene::Scene scene = wall(10.0, sonar);
+  scene.objects[0].backscatter_db = -27.0;
+  // mu SL times the integral of cos(i) / r^2 10^(-2 alpha r / 10) over the wedge's solid angle,
+  // with cos i = cos theta cos phi and r = 10 / cos i.
+  double expected = 0.0;
+  constexpr int kSteps = 400;
+  const double step = radians(20.0) / kSteps;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const double theta = radians(-10.0) + (i + 0.5) * step,
+                   phi = radians(-10.0) + (j + 0.5) * step;
+      const double cosine = std::cos(theta) * std::cos(phi), r = 10.0 / cosine;
+      expected += cosine / (r * r) * std::pow(10.0, -0.06 * r) * std::cos(phi) * step * step;
+    }
+  expected *= std::pow(10.0, 20.0 - 2.7);
+  EXPECT_NEAR(total(ping(device(), scene)) / expected, 1.0, 0.003);
+}
+
+TEST_F(SonarTerms, WithNothingButLabelsTheImageIsThePlainCosine) {
+  scene::Scene scene = wall(3.0, sonar_of(2.0, 4.0, 100));
+  const SonarFrame plain = ping(device(), scene);
+  scene.sonars[0].terms.labels.energy = true;
+  const SonarFrame terms = ping(device(), scene);
+  ASSERT_EQ(plain.image.intensity.size(), terms.image.intensity.size());
+  for (std::size_t i = 0; i < plain.image.intensity.size(); ++i)
+    ASSERT_NEAR(plain.image.intensity[i], terms.image.intensity[i], 2e-6) << i;
+  EXPECT_EQ(plain.image.labels, terms.image.labels);
+}
+
+TEST_F(SonarTerms, APulseSpreadsEnergyAndKeepsIt) {
+  scene::Scene scene = wall(3.0, sonar_of(2.0, 4.0, 400));
+  const SonarFrame sharp = ping(device(), scene);
+  scene.sonars[0].terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 30e3};
+  const SonarFrame spread = ping(device(), scene);
+  EXPECT_NEAR(total(spread) / total(sharp), 1.0, 1e-3);
+  EXPECT_NEAR(mean_range_m(spread), mean_range_m(sharp), 1e-3);
+}
+
+TEST_F(SonarTerms, AConstantProfileScalesRanges) {
+  scene::Sonar sonar = sonar_of(2.0, 4.0, 800);
+  sonar.terms.water.sound_speed_m_s = 1500.0;
+  scene::Scene scene = wall(3.0, sonar);
+  const double before = mean_range_m(ping(device(), scene));
+  scene.sonars[0].terms.profile = scene::SonarProfile{{{0.0, 1530.0}, {100.0, 1530.0}}, false};
+  EXPECT_NEAR(mean_range_m(ping(device(), scene)) / before, 1500.0 / 1530.0, 2e-4);
+  scene.sonars[0].terms.profile->bent = true;
+  EXPECT_NEAR(mean_range_m(ping(device(), scene)) / before, 1500.0 / 1530.0, 2e-4);
+}
+
+TEST_F(SonarTerms, SpeckleIsRayleighAndKeepsTheMean) {
+  scene::Sonar sonar = sonar_of(2.9, 3.1, 100);
+  sonar.terms.frequency_hz = 900e3;
+  scene::Scene scene = wall(3.0, sonar);
+  const SonarFrame smooth = ping(device(), scene);
+  scene.sonars[0].terms.speckle = scene::SonarSpeckle{};
+  const SonarFrame speckled = ping(device(), scene);
+  double ratio = 0.0, amplitude = 0.0, squares = 0.0;
+  int n = 0;
+  for (std::size_t i = 0; i < smooth.image.intensity.size(); ++i) {
+    if (smooth.image.intensity[i] < 0.02f) continue;
+    const double x = speckled.image.intensity[i] / smooth.image.intensity[i];
+    ratio += x;
+    amplitude += std::sqrt(x);
+    squares += x;
+    ++n;
+  }
+  ASSERT_GT(n, 500);
+  amplitude /= n;
+  const double deviation = std::sqrt(squares / n - amplitude * amplitude);
+  EXPECT_NEAR(ratio / n, 1.0, 0.12);
+  EXPECT_NEAR(deviation / amplitude, 0.5227, 0.05);
+}
+
+TEST_F(SonarTerms, NoiseIsExponentialInPowerAndItsOwnInEveryBeam) {
+  scene::Sonar sonar = sonar_of(1.0, 2.0, 200);
+  sonar.terms.level = plain_level();
+  sonar.terms.noise = scene::SonarNoise{60.0};
+  const SonarFrame frame = ping(device(), wall(50.0, sonar));
+  const auto& v = frame.image.intensity;
+  const double mean = total(frame) / static_cast<double>(v.size());
+  EXPECT_NEAR(10.0 * std::log10(mean), 60.0, 0.1);
+  double variance = 0.0, neighbours = 0.0;
+  for (std::size_t i = 0; i + 1 < v.size(); ++i) {
+    variance += (v[i] - mean) * (v[i] - mean);
+    neighbours += (v[i] - mean) * (v[i + 1] - mean);
+  }
+  EXPECT_NEAR(variance / v.size() / mean / mean, 1.0, 0.05);
+  EXPECT_LT(std::abs(neighbours / variance), 0.05);
+  EXPECT_NE(v, ping(device(), wall(50.0, sonar), 1).image.intensity);  // another ping
+  EXPECT_EQ(v, ping(device(), wall(50.0, sonar), 0).image.intensity);
+}
+
+TEST_F(SonarTerms, TheSurfaceMirrorsAGhostAtTheMeanOfBothWays) {
+  scene::Sonar sonar = sonar_of(4.0, 8.0, 800);
+  sonar.elevation_rad = radians(80.0);
+  sonar.terms.labels.energy = true;
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.1, 64), {0.0, -2.0, -5.0}));
+  scene.sonars = {sonar};
+  scene.sonars[0].mount.pose.position_m = {0.0, -2.0, 0.0};
+  const SonarFrame plain = ping(device(), scene);
+  scene.sonars[0].terms.ghosts = scene::SonarGhosts{.surface = true};
+  const SonarFrame ghosts = ping(device(), scene);
+  const double direct = 5.0 - 0.1, mirrored = std::hypot(5.0, 4.0) - 0.1;
+  double energy = 0.0, range = 0.0;
+  for (std::uint32_t row = 0; row < 800; ++row)
+    for (std::uint32_t c = 0; c < 128; ++c) {
+      const std::size_t i = std::size_t{row} * 128 + c;
+      const double more = ghosts.image.intensity[i] - plain.image.intensity[i];
+      energy += more;
+      range += more * ghosts.grid.range_m(row);
+    }
+  ASSERT_GT(energy, 0.0);
+  EXPECT_NEAR(range / energy, (direct + mirrored) / 2.0, 0.06);
+}
+
+TEST_F(SonarTerms, AConeHearsAFloorAtItsDepth) {
+  scene::Sonar sonar = sonar_of(1.0, 20.0, 950);
+  sonar.kind = scene::SonarKind::kEchoSounder;
+  sonar.semi_angle_rad = radians(12.5);
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_box(Vec3(60.0, 1.0, 60.0)), {0, -12.5, 0}));
+  scene.sonars = {sonar};
+  scene.sonars[0].mount.pose.rotation = glm::angleAxis(-kPi / 2.0, Vec3(1, 0, 0));
+  const SonarFrame frame = ping(device(), scene);
+  ASSERT_EQ(frame.image.n_azimuth, 1u);
+  std::uint32_t first = 0, last = 0;
+  for (std::uint32_t row = 0; row < 950; ++row)
+    if (frame.image.intensity[row] > 0.0f) {
+      if (!first) first = row;
+      last = row;
+    }
+  EXPECT_NEAR(frame.grid.range_m(first), 12.0, 0.02);
+  EXPECT_NEAR(frame.grid.range_m(last), 12.0 / std::cos(radians(12.5)), 0.03);
+  // Mean of cos i over the cone: (1 - cos^2 psi) / 2 over (1 - cos psi).
+  const double c = std::cos(radians(12.5));
+  EXPECT_NEAR(total(frame), (1.0 + c) / 2.0, 0.002);
+}
+
+TEST_F(SonarTerms, ASideScanHearsItsTwoSides) {
+  scene::Sonar sonar = sonar_of(1.0, 20.0, 400);
+  sonar.kind = scene::SonarKind::kSideScan;
+  sonar.azimuth_rad = radians(1.0);
+  sonar.elevation_rad = radians(60.0);
+  sonar.bins_azimuth = 1;
+  sonar.bins_elevation = 1024;
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.5, 64), {10.0, -5.0, 0.0}));
+  scene.sonars = {sonar};
+  FrameRequest request;
+  request.sonars = {0};
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
+  NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+  ASSERT_EQ(result.sonars.size(), 2u);
+  EXPECT_EQ(result.sonars[0].head, "port");
+  EXPECT_EQ(total(result.sonars[0]), 0.0);
+  EXPECT_GT(total(result.sonars[1]), 0.0);
+  EXPECT_NEAR(mean_range_m(result.sonars[1]), std::hypot(10.0, 5.0) - 0.4, 0.1);
+}
+
+TEST_F(SonarTerms, APolesEnergyGoesWithItsArea) {
+  const auto energy = [&](double radius_m) {
+    scene::Sonar sonar = sonar_of(1.5, 2.5, 100);
+    sonar.azimuth_rad = radians(10.0);
+    sonar.bins_azimuth = 56;
+    sonar.terms.beam.samples = 16;
+    sonar.terms.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(0.6)};
+    sonar.terms.range_spread = scene::SonarRangeSpread{};
+    sonar.gbuffer_scale = 2.0;
+    scene::Scene scene;
+    scene.objects.push_back(
+        object_of(scene, scene::make_cylinder(radius_m, 4.0, 96), {0.013, 0.0, -2.0}));
+    scene.sonars = {sonar};
+    return total(ping(device(), scene));
+  };
+  EXPECT_NEAR(energy(0.010) / energy(0.001), 10.0, 0.5);
+}
+
+}  // namespace
+}  // namespace neritic::tools
