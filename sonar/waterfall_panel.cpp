@@ -198,7 +198,7 @@ void draw_legend(Canvas& canvas, const PlotBox& bar, Palette palette, double at_
     const double y = bar.bottom - (tick - at_bottom) / (at_top - at_bottom) * bar.height();
     canvas.segment(bar.right + unit, y, bar.right + 5 * unit, y, 1.2 * unit,
                    kPlotText.with_alpha(0.8f));
-    canvas.text(bar.right + 9 * unit, y + 4 * unit, 9 * unit, number_text(tick),
+    canvas.text(bar.right + 12 * unit, y + 4 * unit, 9 * unit, number_text(tick),
                 kPlotText.with_alpha(0.85f));
   }
   canvas.text(bar.left, bar.top - 9 * unit, 9 * unit, label, kPlotText.with_alpha(0.7f));
