@@ -201,7 +201,7 @@ void draw_legend(Canvas& canvas, const PlotBox& bar, Palette palette, double at_
     canvas.text(bar.right + 12 * unit, y + 4 * unit, 9 * unit, number_text(tick),
                 kPlotText.with_alpha(0.85f));
   }
-  canvas.text(bar.left, bar.top - 9 * unit, 9 * unit, label, kPlotText.with_alpha(0.7f));
+  canvas.text(bar.left, bar.top - 14 * unit, 9 * unit, label, kPlotText.with_alpha(0.7f));
 }
 
 void draw_scale_bar(Canvas& canvas, double x, double y, double px_per_m, double max_px,

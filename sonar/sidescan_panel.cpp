@@ -1,0 +1,191 @@
+// The pictures of a side-scan record.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sonar/sidescan.hpp"
+#include "sonar/waterfall_panel.hpp"
+
+namespace neritic::sonar {
+namespace {
+
+// Margins, and the lettering's unit, of a picture of the width.
+struct Layout {
+  double unit;
+  PlotBox box;
+  std::uint32_t width, height;
+};
+Layout lay_out(const SidescanPictureOptions& options, double box_height_per_width) {
+  const double unit = options.width_px / 1200.0;
+  Layout out{unit, {}, options.width_px, 0};
+  const double left = std::round(78 * unit), right = std::round(options.width_px - 110 * unit),
+               top = std::round(96 * unit), below = std::round(64 * unit);
+  const double high = std::clamp(std::round((right - left) * box_height_per_width), 1.0,
+                                 std::max(1.0, options.max_height_px - top - below));
+  out.box = {left, top, right, top + high};
+  // High enough for the legend at least.
+  out.height = static_cast<std::uint32_t>(top + std::max(high, 240 * unit) + below);
+  return out;
+}
+
+double full_scale_of(std::span<const float> values, const SidescanPictureOptions& options) {
+  return options.full_scale > 0.0 ? options.full_scale : percentile_of_heard(values, 0.99);
+}
+
+void to_shades(ImageF32& image, double full_scale, double gamma) {
+  for (float& v : image.data)
+    if (!std::isnan(v))
+      v = static_cast<float>(std::pow(std::clamp(v / full_scale, 0.0, 1.0), gamma));
+}
+
+std::string subtitle(const SidescanRecord& record, double full_scale, double gamma) {
+  const SidescanOptions& o = record.options();
+  const std::vector<double> along = record.along_track_m();
+  return fmt::format(
+      "{} pings over {:.4g} m   range {} to {} m a side   full scale {:.3g}, gamma {:g}",
+      record.pings(), along.empty() ? 0.0 : along.back(), number_text(o.range_min_m),
+      number_text(o.range_max_m), full_scale, gamma);
+}
+
+void finish(Canvas& canvas, const Layout& layout, double full_scale, double gamma) {
+  draw_frame(canvas, layout.box, layout.unit);
+  const double bar = layout.width - 82 * layout.unit, top = layout.box.top;
+  // The bar is even in brightness: value = full scale * shade^(1 / gamma).
+  draw_legend(canvas, {bar, top, bar + 14 * layout.unit, top + 220 * layout.unit}, Palette::kBronze,
+              0.0, 100.0, "display, %", layout.unit);
+  canvas.text(layout.box.left + 14 * layout.unit, layout.box.top - 9 * layout.unit, 10 * layout.unit,
+              "PORT", kPlotText);
+  canvas.text(layout.box.right, layout.box.top - 9 * layout.unit, 10 * layout.unit, "STARBOARD",
+              kPlotText, Align::kRight);
+  canvas.text(layout.width - 110 * layout.unit + 12 * layout.unit, top + 250 * layout.unit,
+              8 * layout.unit, fmt::format("100%: {:.2g}", full_scale), kPlotText.with_alpha(0.7f));
+  canvas.text(layout.width - 110 * layout.unit + 12 * layout.unit, top + 268 * layout.unit,
+              8 * layout.unit, fmt::format("gamma {:g}", gamma), kPlotText.with_alpha(0.7f));
+}
+
+// Rows in reverse: the newest line on top.
+std::vector<float> newest_first(std::span<const float> image, std::size_t rows) {
+  const std::size_t width = image.size() / rows;
+  std::vector<float> out;
+  out.reserve(image.size());
+  for (std::size_t row = rows; row-- > 0;)
+    out.insert(out.end(), image.begin() + static_cast<std::ptrdiff_t>(row * width),
+               image.begin() + static_cast<std::ptrdiff_t>((row + 1) * width));
+  return out;
+}
+
+// The tracked bottom on both sides.
+void draw_bottom(Canvas& canvas, const Layout& layout, const SidescanOptions& o,
+                 std::span<const double> altitude_m) {
+  const double middle = (layout.box.left + layout.box.right) / 2.0,
+               row = layout.box.height() / static_cast<double>(altitude_m.size());
+  for (std::size_t i = 0; i + 1 < altitude_m.size(); ++i)
+    for (const double side : {-1.0, 1.0}) {
+      const auto x = [&](double h) {
+        return middle + side * (h - o.range_min_m) / (o.range_max_m - o.range_min_m) *
+                            layout.box.width() / 2.0;
+      };
+      if (std::isnan(altitude_m[i]) || std::isnan(altitude_m[i + 1])) continue;
+      const double y = layout.box.bottom - (static_cast<double>(i) + 0.5) * row;
+      canvas.segment(x(altitude_m[i]), y, x(altitude_m[i + 1]), y - row, layout.unit,
+                     Color{0.45f, 0.85f, 1.0f, 0.55f});
+    }
+}
+
+// Ticks at ranges on both sides of the middle.
+void draw_ranges(Canvas& canvas, const Layout& layout, double from_m, double to_m,
+                 const std::string& label) {
+  const double middle = (layout.box.left + layout.box.right) / 2.0, unit = layout.unit;
+  for (const double tick : nice_ticks(from_m, to_m, 5.0))
+    for (const double side : {-1.0, 1.0}) {
+      const double x = middle + side * (tick - from_m) / (to_m - from_m) * layout.box.width() / 2.0;
+      canvas.segment(x, layout.box.top, x, layout.box.bottom, unit, kPlotLine.with_alpha(0.18f));
+      canvas.segment(x, layout.box.bottom + unit, x, layout.box.bottom + 5 * unit, 1.2 * unit,
+                     kPlotText.with_alpha(0.8f));
+      if (side > 0.0 || x < middle - unit)
+        canvas.text(x, layout.box.bottom + 19 * unit, 9 * unit, number_text(tick),
+                    kPlotText.with_alpha(0.85f), Align::kCenter);
+    }
+  canvas.text(middle, layout.box.bottom + 38 * unit, 9.5 * unit, label, kPlotText.with_alpha(0.7f),
+              Align::kCenter);
+}
+
+// Index of the ping nearest to each of height distances along the track, the farthest first.
+std::vector<std::size_t> pings_along(std::span<const double> along_m, std::uint32_t height) {
+  std::vector<std::size_t> out(height);
+  std::size_t ping = 0;
+  for (std::uint32_t y = height; y-- > 0;) {
+    const double at = along_m.back() * (height - y - 0.5) / height;
+    while (ping + 1 < along_m.size() &&
+           std::abs(along_m[ping + 1] - at) <= std::abs(along_m[ping] - at))
+      ++ping;
+    out[y] = ping;
+  }
+  return out;
+}
+
+}  // namespace
+
+ImageU8 draw_slant(const SidescanRecord& record, std::span<const double> altitude_m,
+                   const SidescanPictureOptions& options) {
+  const SidescanOptions& o = record.options();
+  const std::size_t pings = record.pings();
+  // As the device: a line a ping, some two pixels high, whatever the speed was.
+  const Layout layout = lay_out(options, 2.0 * static_cast<double>(pings) / options.width_px);
+  Canvas canvas(layout.width, layout.height, kPlotBackground);
+  const double full_scale = full_scale_of(record.slant_image(), options);
+  draw_title(canvas, options.title + "   SLANT RANGE", subtitle(record, full_scale, options.gamma),
+             layout.unit);
+  if (pings > 0) {
+    ImageF32 shades =
+        resample_area(newest_first(record.slant_image(), pings), pings, 2 * std::size_t{o.n_range},
+                      static_cast<std::uint32_t>(layout.box.width()),
+                      static_cast<std::uint32_t>(layout.box.height()));
+    to_shades(shades, full_scale, options.gamma);
+    draw_shades(canvas, layout.box, shades, Palette::kBronze);
+    draw_bottom(canvas, layout, o, altitude_m);
+    draw_left_axis(canvas, layout.box, static_cast<double>(pings), 0.0, "ping", layout.unit);
+  }
+  draw_ranges(canvas, layout, o.range_min_m, o.range_max_m,
+              "slant range, m   (newest ping on top; blue: first bottom return)");
+  finish(canvas, layout, full_scale, options.gamma);
+  return canvas.take();
+}
+
+ImageU8 draw_ground(const SidescanRecord& record, const GroundImage& ground,
+                    const SidescanPictureOptions& options) {
+  const std::vector<double> along = record.along_track_m();
+  const double length_m = along.empty() ? 0.0 : along.back();
+  const Layout layout = lay_out(options, length_m / (2.0 * ground.ground_max_m));
+  Canvas canvas(layout.width, layout.height, kPlotBackground);
+  const double full_scale = full_scale_of(ground.intensity, options);
+  draw_title(canvas, options.title + "   GROUND RANGE", subtitle(record, full_scale, options.gamma),
+             layout.unit);
+  const double px_per_m = layout.box.width() / (2.0 * ground.ground_max_m);
+  // A track too long for the picture is shown to scale from its beginning.
+  const double shown_m = std::min(length_m, layout.box.height() / px_per_m);
+  if (length_m > 0.0) {
+    const auto height = static_cast<std::uint32_t>(layout.box.height());
+    const std::size_t width = 2 * std::size_t{ground.n_ground};
+    std::vector<float> rows;
+    const auto all = static_cast<std::uint32_t>(
+        std::max<double>(height, std::round(height * length_m / shown_m)));
+    const std::vector<std::size_t> pings = pings_along(along, all);
+    for (std::uint32_t y = all - height; y < all; ++y)
+      rows.insert(rows.end(),
+                  ground.intensity.begin() + static_cast<std::ptrdiff_t>(pings[y] * width),
+                  ground.intensity.begin() + static_cast<std::ptrdiff_t>((pings[y] + 1) * width));
+    ImageF32 shades =
+        resample_area(rows, height, width, static_cast<std::uint32_t>(layout.box.width()), height);
+    to_shades(shades, full_scale, options.gamma);
+    draw_shades(canvas, layout.box, shades, Palette::kBronze);
+    draw_left_axis(canvas, layout.box, shown_m, 0.0, "along, m", layout.unit);
+    draw_scale_bar(canvas, layout.box.left + 14 * layout.unit, layout.box.bottom - 18 * layout.unit,
+                   px_per_m, 0.2 * layout.box.width(), layout.unit);
+  }
+  draw_ranges(canvas, layout, 0.0, ground.ground_max_m, "ground range, m   (ahead is up)");
+  finish(canvas, layout, full_scale, options.gamma);
+  return canvas.take();
+}
+
+}  // namespace neritic::sonar
