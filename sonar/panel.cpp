@@ -12,18 +12,26 @@ namespace {
 constexpr std::uint32_t kOutside = ~0u;
 constexpr int kLevels = 1024;  // of brightness that are told apart
 
-// The colour of each level, as bytes.
-std::vector<std::array<std::uint16_t, 3>> level_colors(double gamma) {
+// The colour of each level of brightness, as bytes.
+std::vector<std::array<std::uint16_t, 3>> level_colors() {
   std::vector<std::array<std::uint16_t, 3>> out;
   const auto byte = [](float v) { return static_cast<std::uint16_t>(v * 255.0f + 0.5f); };
   for (int i = 0; i < kLevels; ++i) {
-    const Color c = panel_color(std::pow(i / (kLevels - 1.0), gamma));
+    const Color c = panel_color(i / (kLevels - 1.0));
     out.push_back({byte(c.r), byte(c.g), byte(c.b)});
   }
   return out;
 }
 
 }  // namespace
+
+double panel_brightness(double value, double full_scale, const PanelOptions& options) {
+  const double part = value / full_scale;
+  if (!(part > 0.0)) return 0.0;
+  const double shown = options.span_db > 0.0 ? 1.0 + 10.0 * std::log10(part) / options.span_db
+                                             : std::pow(part, options.gamma);
+  return std::clamp(shown, 0.0, 1.0);
+}
 
 double panel_full_scale(const SonarImage& image, const PanelOptions& options) {
   if (options.full_scale > 0.0) return options.full_scale;
@@ -87,12 +95,11 @@ ImageU8 PolarPanel::draw(const SonarImage& image) const {
   draw_gain(canvas, full_scale, options_);
   ImageU8 out = canvas.take();
 
-  const auto colors = level_colors(options_.gamma);
-  const auto to_level = static_cast<float>((kLevels - 1) / full_scale);
+  const auto colors = level_colors();
   std::vector<std::uint16_t> levels(image.intensity.size());
   for (std::size_t i = 0; i < levels.size(); ++i)
     levels[i] = static_cast<std::uint16_t>(
-        std::clamp(image.intensity[i] * to_level, 0.0f, static_cast<float>(kLevels - 1)));
+        panel_brightness(image.intensity[i], full_scale, options_) * (kLevels - 1) + 0.5);
   for (const Fan& fan : fan_) {
     std::uint8_t* p = &out.data[3 * std::size_t{fan.pixel}];
     unsigned sum[3] = {};

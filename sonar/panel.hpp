@@ -20,7 +20,11 @@ struct PanelOptions {
   double full_scale = 0.0;
   // Shown brightness = (value / full scale)^gamma. Display only; stated on the panel.
   double gamma = 0.6;
+  // > 0: brightness follows decibels instead, from full scale down to that many below it.
+  double span_db = 0.0;
 };
+// Shown brightness of a value, 0 to 1.
+double panel_brightness(double value, double full_scale, const PanelOptions& options);
 
 // Draws one sonar's images. Where each pixel looks and the lines over it are worked out once, so
 // that a live display can draw every ping. One owner, one thread.

@@ -148,15 +148,21 @@ void draw_scale(Canvas& canvas, double unit) {
 void draw_gain(Canvas& canvas, double full_scale, const PanelOptions& options) {
   const double unit = options.height_px / 900.0;
   const ScaleBox box = scale_box(canvas, unit);
+  const bool decibels = options.span_db > 0.0;
+  const double full_db = 10.0 * std::log10(full_scale);
   for (const double part : kScaleMarks)
     canvas.text(box.left - 9 * unit, box.bottom - part * (box.bottom - box.top) + 4 * unit,
-                9 * unit, fmt::format("{:.3g}", full_scale * std::pow(part, 1.0 / options.gamma)),
+                9 * unit,
+                decibels ? fmt::format("{:.0f} dB", full_db - (1.0 - part) * options.span_db)
+                         : fmt::format("{:.3g}", full_scale * std::pow(part, 1.0 / options.gamma)),
                 kText.with_alpha(0.85f), Align::kRight);
-  canvas.text(
-      24 * unit, canvas.height() - 15 * unit, 10.5 * unit,
-      fmt::format("display: {} full scale {:.3g}, gamma {:g}",
-                  options.full_scale > 0.0 ? "fixed" : "auto gain,", full_scale, options.gamma),
-      kText.with_alpha(0.65f));
+  const char* gain = options.full_scale > 0.0 ? "fixed" : "auto gain,";
+  canvas.text(24 * unit, canvas.height() - 15 * unit, 10.5 * unit,
+              decibels ? fmt::format("display: {} full scale {:.0f} dB, {:g} dB below it shown",
+                                     gain, full_db, options.span_db)
+                       : fmt::format("display: {} full scale {:.3g}, gamma {:g}", gain, full_scale,
+                                     options.gamma),
+              kText.with_alpha(0.65f));
 }
 
 void draw_words(Canvas& canvas, const BeamGrid& grid, const std::string& title, double unit) {

@@ -1,36 +1,124 @@
 #include "sonar/write_sonar.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
+#include "sonar/trace_panel.hpp"
 
 namespace neritic::sonar {
+namespace {
 
-Status write_sonar(const std::filesystem::path& folder, const BeamGrid& grid,
-                   const SonarImage& image, const nlohmann::json& facts,
-                   const PanelOptions& panel) {
-  NERITIC_TRY_STATUS(make_folder(folder));
-  const std::size_t rows = image.n_range, columns = image.n_azimuth;
-  NERITIC_TRY_STATUS(
-      write_npy(folder / "sonar.npy", std::span<const float>(image.intensity), {rows, columns}));
-  NERITIC_TRY_STATUS(write_npy(folder / "sonar_labels.npy",
-                               std::span<const std::uint16_t>(image.labels), {rows, columns}));
-  NERITIC_TRY_STATUS(scene::write_png8(folder / "sonar.png", draw_panel(grid, image, panel)));
-  nlohmann::json json = facts;
+constexpr double kShown_db = 50.0;  // below the picture's full scale
+
+const char* title_of(scene::SonarKind kind) {
+  switch (kind) {
+    case scene::SonarKind::kImaging:
+      return "IMAGING SONAR";
+    case scene::SonarKind::kProfiling:
+      return "PROFILING SONAR";
+    case scene::SonarKind::kEchoSounder:
+      return "ECHO SOUNDER";
+    case scene::SonarKind::kSideScan:
+      return "SIDE-SCAN SONAR";
+    case scene::SonarKind::kMechanical:
+      return "MECHANICAL SCANNING SONAR";
+  }
+  return "";
+}
+
+template <class T>
+Status write_array(const std::filesystem::path& path, const SonarImage& image,
+                   const std::vector<T>& values) {
+  if (image.n_azimuth == 1) return write_npy(path, std::span<const T>(values), {image.n_range});
+  return write_npy(path, std::span<const T>(values), {image.n_range, image.n_azimuth});
+}
+
+Status write_counts(const std::filesystem::path& folder, const SonarFiles& files) {
+  const std::vector<std::uint16_t> counts = quantize(files.image.intensity, files.output);
+  if (files.output.bits == 16) return write_array(folder / "sonar_counts.npy", files.image, counts);
+  const std::vector<std::uint8_t> bytes(counts.begin(), counts.end());
+  return write_array(folder / "sonar_counts.npy", files.image, bytes);
+}
+
+nlohmann::json grid_facts(const BeamGrid& grid) {
   const Limits& l = grid.limits;
-  json["limits"] = {
-      {"range_m", {l.range_min_m, l.range_max_m}},
-      {"azimuth_deg", {degrees(l.azimuth_min_rad), degrees(l.azimuth_max_rad)}},
-      {"elevation_deg", {degrees(l.elevation_min_rad), degrees(l.elevation_max_rad)}}};
-  json["bins"] = {{"range", grid.bins.range},
-                  {"azimuth", grid.bins.azimuth},
-                  {"elevation", grid.bins.elevation}};
-  json["units"] = "mean over elevation bins of the cosine of incidence, 0 to 1 a bin";
-  json["layout"] = "sonar.npy [range, azimuth]: row 0 nearest, column 0 full port";
+  return {{"limits",
+           {{"range_m", {l.range_min_m, l.range_max_m}},
+            {"azimuth_deg", {degrees(l.azimuth_min_rad), degrees(l.azimuth_max_rad)}},
+            {"elevation_deg", {degrees(l.elevation_min_rad), degrees(l.elevation_max_rad)}}}},
+          {"bins",
+           {{"range", grid.bins.range},
+            {"azimuth", grid.bins.azimuth},
+            {"elevation", grid.bins.elevation}}}};
+}
+
+}  // namespace
+
+std::vector<std::uint16_t> quantize(std::span<const float> power,
+                                    const scene::SonarOutput& output) {
+  const double most = output.bits == 8 ? 255.0 : 65535.0;
+  std::vector<std::uint16_t> counts(power.size());
+  for (std::size_t i = 0; i < power.size(); ++i) {
+    if (!(power[i] > 0.0f)) continue;
+    const double part = (10.0 * std::log10(power[i]) - output.floor_db) / output.span_db;
+    counts[i] = static_cast<std::uint16_t>(std::lround(std::clamp(part, 0.0, 1.0) * most));
+  }
+  return counts;
+}
+
+PanelOptions panel_options(scene::SonarKind kind, bool level) {
+  PanelOptions options;
+  options.title = title_of(kind);
+  if (level) options.span_db = kShown_db;
+  return options;
+}
+
+ImageU8 draw_sonar(const SonarFiles& files) {
+  const PanelOptions options = panel_options(files.kind, files.level);
+  if (files.image.n_azimuth > 1) return draw_panel(files.grid, files.image, options);
+  return draw_trace(files.grid, files.image.intensity, options);
+}
+
+Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
+                   const nlohmann::json& facts) {
+  NERITIC_TRY_STATUS(make_folder(folder));
+  const SonarImage& image = files.image;
+  NERITIC_TRY_STATUS(write_array(folder / "sonar.npy", image, image.intensity));
+  const LabelImage* energy = files.label_energy;
+  NERITIC_TRY_STATUS(
+      write_array(folder / "sonar_labels.npy", image, energy ? energy->classes : image.labels));
+  if (energy) {
+    NERITIC_TRY_STATUS(write_array(folder / "sonar_instances.npy", image, energy->instances));
+    NERITIC_TRY_STATUS(write_array(folder / "sonar_label_fraction.npy", image, energy->fraction));
+  }
+  if (files.output.bits > 0) NERITIC_TRY_STATUS(write_counts(folder, files));
+  NERITIC_TRY_STATUS(scene::write_png8(folder / "sonar.png", draw_sonar(files)));
+  nlohmann::json json = facts;
+  json.update(grid_facts(files.grid));
+  json["units"] = files.level
+                      ? "power after the receiver's gains, 1 is 1 uPa^2 (10 log10: dB re 1 uPa)"
+                  : files.kind == scene::SonarKind::kEchoSounder
+                      ? "mean over the cone of the cosine of incidence, 0 to 1"
+                      : "mean over elevation bins of the cosine of incidence, 0 to 1 a bin";
+  json["layout"] = image.n_azimuth == 1
+                       ? "sonar.npy [range]: 0 nearest"
+                       : "sonar.npy [range, azimuth]: row 0 nearest, column 0 full port";
+  json["labels"] = energy ? "class that gave most of the bin's energy; 65534 shadow, 65533 ghost"
+                          : "class of the bin's strongest return";
+  if (files.output.bits > 0)
+    json["counts"] = {{"bits", files.output.bits},
+                      {"floor_db", files.output.floor_db},
+                      {"span_db", files.output.span_db}};
+  const PanelOptions panel = panel_options(files.kind, files.level);
   json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"gamma", panel.gamma}};
-  return write_text(folder / "sonar.json", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  if (panel.span_db > 0.0)
+    json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"span_db", panel.span_db}};
+  return write_text(folder / "sonar.json",
+                    json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace neritic::sonar

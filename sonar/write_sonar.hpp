@@ -1,17 +1,39 @@
-// A sonar image as files: sonar.npy, sonar_labels.npy, sonar.png, sonar.json. Any thread.
+// A sonar image as files: sonar.npy, sonar_labels.npy, sonar.png, sonar.json, and what the settings
+// ask for beside them. Any thread.
 #pragma once
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "engine/scene/sonar_settings.hpp"
+#include "sonar/label_energy.hpp"
 #include "sonar/panel.hpp"
 
 namespace neritic::sonar {
 
+struct SonarFiles {
+  const BeamGrid& grid;
+  const SonarImage& image;
+  scene::SonarKind kind = scene::SonarKind::kImaging;
+  bool level = false;                        // the image is power, 1 being 1 uPa^2
+  scene::SonarOutput output;                 // bits: 0, or counts of decibels (level only)
+  const LabelImage* label_energy = nullptr;  // nullptr: labels of the strongest return
+};
+
+// Counts of what leaves a receiver of 8 or 16 bits: 0 at floor_db and below, the largest count at
+// floor_db + span_db and above, decibels in between.
+std::vector<std::uint16_t> quantize(std::span<const float> power, const scene::SonarOutput& output);
+
+// How the picture shows it: decibels where it is a level.
+PanelOptions panel_options(scene::SonarKind kind, bool level);
+// The picture: polar, or for a single beam the echo over range.
+ImageU8 draw_sonar(const SonarFiles& files);
+
 // facts: what else sonar.json shall say (options, device, timings); limits, bins and units are
-// added. The .json is written last: where it is, the others are whole.
-Status write_sonar(const std::filesystem::path& folder, const BeamGrid& grid,
-                   const SonarImage& image, const nlohmann::json& facts,
-                   const PanelOptions& panel = {});
+// added. sonar.npy is [n_range, n_azimuth], of a single beam [n_range]. With label_energy also
+// sonar_instances.npy and sonar_label_fraction.npy, with bits sonar_counts.npy. The .json is
+// written last: where it is, the others are whole.
+Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
+                   const nlohmann::json& facts);
 
 }  // namespace neritic::sonar

@@ -230,5 +230,10 @@ Status write_npy(const std::filesystem::path& path, std::span<const std::uint16_
   return write_npy(path, NpyType::kUint16, std::span(shape.begin(), shape.size()),
                    std::as_bytes(values));
 }
+Status write_npy(const std::filesystem::path& path, std::span<const std::uint8_t> values,
+                 std::initializer_list<std::size_t> shape) {
+  return write_npy(path, NpyType::kUint8, std::span(shape.begin(), shape.size()),
+                   std::as_bytes(values));
+}
 
 }  // namespace neritic

@@ -42,5 +42,7 @@ Status write_npy(const std::filesystem::path& path, std::span<const double> valu
                  std::initializer_list<std::size_t> shape);
 Status write_npy(const std::filesystem::path& path, std::span<const std::uint16_t> values,
                  std::initializer_list<std::size_t> shape);
+Status write_npy(const std::filesystem::path& path, std::span<const std::uint8_t> values,
+                 std::initializer_list<std::size_t> shape);
 
 }  // namespace neritic

@@ -76,7 +76,8 @@ void add_tiles(std::vector<Tile>& tiles, const FrameResult& result) {
                                      ? fmt::format("{} {}", camera.name, e == 0 ? "left" : "right")
                                      : camera.name});
   for (const SonarFrame& sonar : result.sonars)
-    tiles.push_back({sonar::draw_panel(sonar.grid, sonar.image), sonar.name});
+    tiles.push_back({sonar::draw_sonar(sonar_files(sonar)),
+                     sonar.head.empty() ? sonar.name : sonar.name + " " + sonar.head});
   if (result.cameras.empty()) return;
   const ViewImages& view = result.cameras.front().eyes.front();
   tiles.push_back({depth_picture(view.depth), "depth"});

@@ -152,7 +152,7 @@ Status run_sonar(const SonarFlags& flags) {
   } else {
     NERITIC_TRY(image, on_gpu(flags, grid, in, facts));
   }
-  return sonar::write_sonar(flags.out, grid, image, facts);
+  return sonar::write_sonar(flags.out, {grid, image}, facts);
 }
 
 }  // namespace neritic::tools

@@ -5,7 +5,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
-#include "sonar/write_sonar.hpp"
+#include "sonar/terms_json.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -16,9 +16,13 @@ nlohmann::json passes_of(const FrameFacts& facts) {
   return passes;
 }
 
+nlohmann::json pose_of(const Pose& pose) {
+  const Vec3& p = pose.position_m;
+  const Quat& q = pose.rotation;
+  return {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}};
+}
+
 nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
-  const Vec3& p = view.world_from_view.position_m;
-  const Quat& q = view.world_from_view.rotation;
   return {{"width", view.width},
           {"height", view.height},
           {"fx", view.intrinsics.fx},
@@ -27,7 +31,7 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
           {"cy", view.intrinsics.cy},
           {"pixel_centers", "half"},
           {"near_m", view.near_m},
-          {"pose", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}},
+          {"pose", pose_of(view.world_from_view)},
           {"frames",
            {{"pose", "world_from_view"},
             {"world", "right-handed, y up, metres, water surface at y = 0"},
@@ -62,8 +66,14 @@ Status write_view(const std::filesystem::path& folder, const ViewImages& view,
       meta_of(view, facts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
-Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
+sonar::SonarFiles sonar_files(const SonarFrame& frame) {
+  return {frame.grid,  frame.image,        frame.kind,
+          frame.level, frame.terms.output, frame.label_energy ? &*frame.label_energy : nullptr};
+}
+
+Status write_sonar(const std::filesystem::path& parent, const SonarFrame& frame,
                    const FrameFacts& facts) {
+  const std::filesystem::path folder = frame.head.empty() ? parent : parent / frame.head;
   NERITIC_TRY_STATUS(make_folder(folder));
   for (std::size_t i = 0; i < frame.sectors.size(); ++i)
     NERITIC_TRY_STATUS(
@@ -75,21 +85,27 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
       {"pixels_per_cell",
        {{"requested", frame.pixels_per_cell},
         {"used", {frame.pixels_per_cell_used.x, frame.pixels_per_cell_used.y}}}}};
-  const nlohmann::json more{
-      {"kind", scene::name_of(frame.kind)},
-      {"model",
-       {{"method", "gpu"},
-        {"gather", frame.gather},
-        {"fixed_scale", frame.fixed_scale},
-        {"sectors", frame.sectors.size()},
-        {"gbuffer", gbuffer},
-        {"reflectivity", frame.reflectivity ? "by object" : "1"}}},
-      {"time_s", facts.time_s},
-      {"seed", facts.seed},
-      {"scene", facts.scene},
-      {"device", facts.device},
-      {"timings_ms", {{"frame", facts.frame_ms}, {"passes", passes_of(facts)}}}};
-  return sonar::write_sonar(folder, frame.grid, frame.image, more);
+  nlohmann::json more{{"kind", scene::name_of(frame.kind)},
+                      {"model",
+                       {{"method", "gpu"},
+                        {"gather", frame.gather},
+                        {"fixed_scale", frame.fixed_scale},
+                        {"sectors", frame.sectors.size()},
+                        {"gbuffer", gbuffer},
+                        {"reflectivity", frame.reflectivity ? "by object" : "1"},
+                        {"terms", sonar::terms_json(frame.terms)}}},
+                      {"pose", pose_of(frame.world_from_head)},
+                      {"time_s", facts.time_s},
+                      {"seed", facts.seed},
+                      {"scene", facts.scene},
+                      {"device", facts.device},
+                      {"timings_ms", {{"frame", facts.frame_ms}, {"passes", passes_of(facts)}}}};
+  if (!frame.head.empty()) more["head"] = frame.head;
+  if (frame.sound_speed_m_s > 0.0) {
+    more["model"]["sound_speed_m_s"] = frame.sound_speed_m_s;
+    more["model"]["absorption_db_per_m"] = frame.absorption_db_per_m;
+  }
+  return sonar::write_sonar(folder, sonar_files(frame), more);
 }
 
 }  // namespace neritic::tools

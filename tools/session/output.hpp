@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/core/result.hpp"
+#include "sonar/write_sonar.hpp"
 #include "tools/session/session.hpp"
 
 namespace neritic::tools {
@@ -25,6 +26,8 @@ Status write_view(const std::filesystem::path& folder, const ViewImages& view,
 
 // sonar.npy, sonar_labels.npy, sonar.png, sonar.json, and its view beside them (sector_0, sector_1,
 // ... where the wedge took several).
+// What sonar/write_sonar.hpp draws and writes of it.
+sonar::SonarFiles sonar_files(const SonarFrame& frame);
 Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
                    const FrameFacts& facts);
 

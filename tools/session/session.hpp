@@ -17,6 +17,7 @@
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "sonar/beam_grid.hpp"
+#include "sonar/label_energy.hpp"
 #include "sonar/reference.hpp"
 #include "tools/session/readback.hpp"
 
@@ -51,6 +52,8 @@ struct SonarFrame {
   // receiver (times its gains), 1 being 1 uPa^2.
   sonar::SonarImage image;
   bool level = false;
+  scene::SonarTerms terms;
+  std::optional<sonar::LabelImage> label_energy;  // where labels by energy are named
   Pose world_from_head;
   double sound_speed_m_s = 0.0, absorption_db_per_m = 0.0;  // with terms
   double fixed_scale = 1.0;
@@ -165,7 +168,8 @@ inline constexpr const char* kDefaultGather = "plane";
 Status check_sonar(const scene::Sonar& sonar);
 
 // The views of a camera of the scene: one, or two for a stereo pair, half the baseline to each
-// side.
-render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera);
+// side; where it is at time_s and, for motion, at next_time_s.
+render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera,
+                             double time_s = 0.0, double next_time_s = 0.0);
 
 }  // namespace neritic::tools

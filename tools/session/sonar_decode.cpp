@@ -1,5 +1,6 @@
 // What a sonar's heads heard, from the buffers that the host reads.
 #include <algorithm>
+#include <cstddef>
 
 #include "tools/session/sonar_station.hpp"
 
@@ -25,6 +26,26 @@ std::vector<std::uint16_t> beam_labels(const sonar::Head& head, const sonar::Son
   return labels;
 }
 
+// The records of the beams' own columns, direct and by mirrors, for labels by energy.
+sonar::LabelImage energies(const HeadState& state) {
+  static_assert(sizeof(sonar::EnergyRecord) == sizeof(shared::SonarRecord) &&
+                offsetof(sonar::EnergyRecord, class_id) == offsetof(shared::SonarRecord, label));
+  const std::uint32_t columns = state.head.samples.bins.azimuth, margin = state.head.margin;
+  const std::uint32_t own = state.head.beams.bins.azimuth * state.head.samples_per_beam;
+  std::vector<sonar::EnergyRecord> records;
+  const auto add = [&](const gpu::Buffer& buffer) {
+    const auto all = buffer.mapped<sonar::EnergyRecord>();
+    for (std::size_t row = 0; row < state.head.samples.bins.elevation; ++row) {
+      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row * columns + margin);
+      records.insert(records.end(), begin, begin + own);
+    }
+  };
+  add(state.records);
+  for (const gpu::Buffer& ghost : state.ghost_records) add(ghost);
+  return sonar::label_by_energy(records, state.head.beams.bins.range, state.head.beams.bins.azimuth,
+                                state.head.samples_per_beam);
+}
+
 }  // namespace
 
 std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
@@ -39,6 +60,7 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
     frame.gather = sonar::name_of(work.state->mode);
     frame.grid = state.head.beams;
     frame.level = sonar.terms.level.has_value();
+    frame.terms = sonar.terms;
     frame.world_from_head =
         head->views.views.front().world_from_view *
         Pose{Vec3(0.0), glm::angleAxis(state.sectors.front().yaw_rad, Vec3(0, 1, 0))};
@@ -60,6 +82,7 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
                      beam_labels(state.head, *state.gather, keys)};
       frame.sound_speed_m_s = head->ping.sound_speed_m_s;
       frame.absorption_db_per_m = head->ping.absorption_db_per_m;
+      if (state.records.size() > 0) frame.label_energy = energies(state);
     } else {
       frame.image = state.gather->to_image(state.sums.mapped<std::uint32_t>(), keys);
     }
