@@ -43,14 +43,15 @@ FrameState evaluate_frame(const scene::Scene& scene, const GpuScene& gpu_scene, 
   state.next_time_s = next_time_s;
   state.motion = motion;
   for (const scene::Object& object : scene.objects) {
-    state.world_from_object.push_back(scene.world_from(object.mount));
+    state.world_from_object.push_back(scene.world_from(object.mount, time_s));
+    state.next_world_from_object.push_back(motion ? scene.world_from(object.mount, next_time_s)
+                                                  : state.world_from_object.back());
     const scene::Model empty;
     const scene::Model& model =
         object.model >= 0 ? *scene.models[static_cast<std::size_t>(object.model)] : empty;
     state.poses.push_back(pose_of(object, model, time_s));
     if (motion) state.next_poses.push_back(pose_of(object, model, next_time_s));
   }
-  state.next_world_from_object = state.world_from_object;
 
   // One job an object's node and primitive, however many copies; groups ascend, so the list is
   // sorted.

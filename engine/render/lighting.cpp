@@ -85,7 +85,8 @@ bool glows(const shared::Lighting& light) {
 }  // namespace
 
 Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& origin_m,
-                                       const scene::Exposure& exposure, bool has_emission) {
+                                       const scene::Exposure& exposure, bool has_emission,
+                                       double time_s) {
   shared::Lighting light{};
   light.origin_depth_m = static_cast<float>(-origin_m.y);
   light.sun_cosine = 1.0f;
@@ -112,7 +113,7 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& or
     return bad_input("{}: {} lamps, at most {} are accepted", scene.path, scene.lamps.size(),
                      shared::kMaxLamps);
   for (const scene::Lamp& lamp : scene.lamps) {
-    const Pose pose = scene.world_from(lamp.mount);
+    const Pose pose = scene.world_from(lamp.mount, time_s);
     shared::SpotLight& spot = light.lamps[light.lamp_count++];
     spot.position = Vec3f(pose.position_m - origin_m);
     spot.direction = Vec3f(pose.rotation * Vec3(0, 0, -1));

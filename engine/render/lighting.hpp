@@ -14,8 +14,10 @@ inline constexpr double kClearDay_lx = 100000.0;
 // Share of it that comes straight from the sun (the rest is sky; clear days have .8 to .9).
 inline constexpr double kSunShare = 0.85;
 
-// kBadInput for an unknown water type or too many lamps. exposure: of the camera that looks.
+// kBadInput for an unknown water type or too many lamps. exposure: of the camera that looks. Lamps
+// shine from where they are at time_s.
 Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& origin_m,
-                                       const scene::Exposure& exposure, bool has_emission);
+                                       const scene::Exposure& exposure, bool has_emission,
+                                       double time_s);
 
 }  // namespace neritic::render

@@ -51,7 +51,10 @@ Status number_instances(SceneDraft& draft) {
 void move_out(SceneDraft& draft, const Vec3& offset_m) {
   Scene& scene = draft.scene;
   const auto moved = [&offset_m](Mount mount) {
-    if (mount.object < 0) mount.pose.position_m += offset_m;
+    if (mount.object >= 0) return mount;
+    mount.pose.position_m += offset_m;
+    if (mount.track)
+      for (Track::Place& place : mount.track->places) place.position_m += offset_m;
     return mount;
   };
   for (ObjectDraft& object : draft.objects) {
@@ -74,21 +77,21 @@ void move_out(SceneDraft& draft, const Vec3& offset_m) {
 
 }  // namespace
 
-Pose Scene::world_from(const Mount& mount, [[maybe_unused]] double time_s) const {
-  Pose pose = mount.pose;
+Pose Scene::world_from(const Mount& mount, double time_s) const {
+  Pose pose = mount.pose_at(time_s);
   std::size_t steps = 0;
   for (int object = mount.object; object >= 0;) {
     const auto index = static_cast<std::size_t>(object);
     NERITIC_CHECK(index < objects.size() && steps++ < objects.size(), "object {} of {}", index,
                   objects.size());
-    pose = objects[index].mount.pose * pose;
+    pose = objects[index].mount.pose_at(time_s) * pose;
     object = objects[index].mount.object;
   }
   return pose;
 }
 
-Mat4 Scene::world_from_copy(const Object& object, std::size_t copy) const {
-  const Mat4 world_from_object = to_matrix(world_from(object.mount));
+Mat4 Scene::world_from_copy(const Object& object, std::size_t copy, double time_s) const {
+  const Mat4 world_from_object = to_matrix(world_from(object.mount, time_s));
   const bool single = object.copies.empty();
   return glm::scale(single ? world_from_object : world_from_object * object.copies.at(copy),
                     object.scale);

@@ -15,6 +15,7 @@
 #include "engine/core/result.hpp"
 #include "engine/scene/model.hpp"
 #include "engine/scene/sonar_settings.hpp"
+#include "engine/scene/track.hpp"
 
 namespace neritic::scene {
 
@@ -28,10 +29,12 @@ inline constexpr ClassName kClasses[] = {
     {"seabed", 1}, {"rock", 2},  {"wreck", 3}, {"diver", 4}, {"rov", 5},        {"fish", 6},
     {"shark", 7},  {"plant", 8}, {"coral", 9}, {"pipe", 10}, {"structure", 11}, {"target", 12}};
 
-// Where something is: fixed to the world, or to an object (then the pose is object_from_this).
+// Where something is: in the world, or on an object (then the pose is object_from_this).
 struct Mount {
-  int object = -1;  // index into Scene::objects; -1: the world
-  Pose pose;
+  int object = -1;                  // index into Scene::objects; -1: the world
+  Pose pose;                        // of what moves: at time 0
+  std::optional<Track> track = {};  // absent: it stands still there
+  Pose pose_at(double time_s) const { return track ? scene::pose_at(*track, time_s) : pose; }
 };
 
 struct Object {
@@ -44,7 +47,7 @@ struct Object {
   float reflectivity = 1.0f;   // acoustic, 0 to 1, multiplies the incidence term
   std::string material;        // by name, for its acoustic impedance; empty: none
   std::optional<double> backscatter_db;  // Lambert's strength of the surface, 10 log mu
-  int clip = -1;               // of the model; -1: rest pose
+  int clip = -1;                         // of the model; -1: rest pose
   double clip_offset_s = 0.0, clip_rate = 1.0;
   // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
   std::vector<Mat4> copies;
@@ -127,11 +130,11 @@ struct Scene {
   std::vector<Sonar> sonars;
   std::vector<std::string> notes;  // what was ignored, once each
 
-  // World_from_mount at a time.
+  // World_from_mount at a time, with all that carries it.
   Pose world_from(const Mount& mount, double time_s = 0.0) const;
   // World_from_model of one copy, the object's scale in it: copy < object.instance_count(). After
   // loading, scale is 1 wherever there are copies: theirs hold it.
-  Mat4 world_from_copy(const Object& object, std::size_t copy) const;
+  Mat4 world_from_copy(const Object& object, std::size_t copy, double time_s = 0.0) const;
 };
 
 struct SceneOptions {

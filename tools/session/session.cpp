@@ -40,21 +40,22 @@ std::vector<ViewImages> decode_views(const ViewWork& work) {
   return views;
 }
 
-render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera) {
+render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera, double time_s,
+                             double next_time_s) {
   render::ViewSet set;
   set.width = camera.width;
   set.height = camera.height;
   render::ViewDesc view;
   view.tangents = tangents_from_fov(camera.vertical_fov_rad, double(camera.width) / camera.height);
   view.near_m = camera.near_m;
-  const Pose center = scene.world_from(camera.mount);
+  const Pose center = scene.world_from(camera.mount, time_s);
+  const Pose next_center = scene.world_from(camera.mount, next_time_s);
   const int eyes = camera.stereo_baseline_m > 0.0 ? 2 : 1;
   for (int i = 0; i < eyes; ++i) {
     const double side = eyes == 1 ? 0.0 : (i == 0 ? -0.5 : 0.5);
-    view.world_from_view = center;
-    view.world_from_view.position_m +=
-        center.rotation * Vec3(side * camera.stereo_baseline_m, 0.0, 0.0);
-    view.next_world_from_view = view.world_from_view;
+    const Vec3 eye_m(side * camera.stereo_baseline_m, 0.0, 0.0);
+    view.world_from_view = {center * eye_m, center.rotation};
+    view.next_world_from_view = {next_center * eye_m, next_center.rotation};
     set.views.push_back(view);
   }
   return set;
@@ -85,7 +86,7 @@ Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameStat
                                CameraWork& work) {
   const scene::Camera& camera = scene_.cameras[work.index];
   NERITIC_TRY_STATUS(check_size("camera " + camera.name, camera.width, camera.height));
-  work.views = camera_views(scene_, camera);
+  work.views = camera_views(scene_, camera, state.time_s, state.next_time_s);
   work.draws = render::build_draw_list(scene_, *gpu_scene_, state, work.views);
   const std::string prefix = camera.name + " ";
   const std::uint32_t w = work.views.width, h = work.views.height, layers = work.views.layers();
@@ -101,7 +102,7 @@ Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameStat
   if (capture.color) {
     NERITIC_TRY(const shared::Lighting lighting,
                 render::make_lighting(scene_, work.views.origin_m(), camera.exposure,
-                                      gpu_scene_->has_emission()));
+                                      gpu_scene_->has_emission(), state.time_s));
     NERITIC_TRY(graph::ImageHandle hdr,
                 renderer_->declare_shade(graph, prefix, g, work.views, lighting));
     NERITIC_TRY(hdr, renderer_->declare_forward(graph, prefix, hdr, g, *gpu_scene_, deformed,

@@ -89,7 +89,7 @@ Triangles flatten(const scene::Scene& scene, double time_s, const Pose& frame_fr
     for (std::size_t copy = 0; copy < object.instance_count(); ++copy)
       for (const int root : model.roots)
         add_node(out, model, pose, root,
-                 to_matrix(frame_from_world) * scene.world_from_copy(object, copy), object);
+                 to_matrix(frame_from_world) * scene.world_from_copy(object, copy, time_s), object);
   }
   return out;
 }
