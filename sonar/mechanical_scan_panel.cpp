@@ -1,0 +1,75 @@
+// The map of a mechanical scan.
+#include <algorithm>
+#include <cmath>
+
+#include "sonar/mechanical_scan.hpp"
+#include "sonar/waterfall_panel.hpp"
+
+namespace neritic::sonar {
+namespace {
+
+constexpr double kGamma = 0.6, kTop = 96, kBottom = 64, kLeft = 84, kRight = 110;
+
+void draw_track(Canvas& canvas, const PlotBox& box, const MechanicalScan& scan,
+                const ScanMosaic& mosaic, double px_per_m, double unit) {
+  const Vec2 corner(static_cast<double>(mosaic.first_column) * mosaic.cell_m,
+                    static_cast<double>(mosaic.first_row) * mosaic.cell_m);
+  const auto pixel = [&](const ScanStep& step) {
+    const Vec3& p = step.world_from_sonar.position_m;
+    return Vec2(box.left, box.top) + (Vec2(p.x, p.z) - corner) * px_per_m;
+  };
+  const auto& steps = scan.steps();
+  const Color blue{0.45f, 0.85f, 1.0f, 0.9f};
+  for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+    const Vec2 a = pixel(steps[i]), b = pixel(steps[i + 1]);
+    canvas.segment(a.x, a.y, b.x, b.y, 1.6 * unit, blue);
+  }
+  const Vec2 end = pixel(steps.back());
+  canvas.segment(end.x, end.y, end.x, end.y, 7.0 * unit, blue);
+}
+
+}  // namespace
+
+ImageU8 draw_mosaic(const MechanicalScan& scan, const ScanMosaic& mosaic, const std::string& title,
+                    std::uint32_t height_px) {
+  const double unit = height_px / 900.0;
+  const double columns = std::max(1u, mosaic.columns), rows = std::max(1u, mosaic.rows);
+  const double room = height_px - (kTop + kBottom) * unit;
+  const double px_per_cell = std::min(room / rows, 2.0 * room / columns);
+  const double wide = std::max(1.0, std::round(columns * px_per_cell)),
+               high = std::max(1.0, std::round(rows * px_per_cell));
+  Canvas canvas(static_cast<std::uint32_t>(
+                    std::lround(std::max(wide, 420.0 * unit) + (kLeft + kRight) * unit)),
+                height_px, kPlotBackground);
+  const double left = std::round(kLeft * unit), top = std::round(kTop * unit);
+  const PlotBox box{left, top, left + wide, top + high};
+  const double full_scale = percentile_of_heard(mosaic.intensity, 0.995);
+  draw_title(canvas, title,
+             fmt::format("{} steps   cells of {} m   full scale {:.3g}, gamma {:g}   blue: track",
+                         scan.steps().size(), number_text(mosaic.cell_m), full_scale, kGamma),
+             unit);
+  if (!mosaic.intensity.empty()) {
+    ImageF32 shades =
+        resample_area(mosaic.intensity, mosaic.rows, mosaic.columns,
+                      static_cast<std::uint32_t>(wide), static_cast<std::uint32_t>(high));
+    for (float& v : shades.data)
+      v = std::isnan(v)
+              ? v
+              : static_cast<float>(std::pow(std::clamp(v / full_scale, 0.0, 1.0), kGamma));
+    draw_shades(canvas, box, shades, Palette::kBronze);
+    const double west = static_cast<double>(mosaic.first_column) * mosaic.cell_m,
+                 north = static_cast<double>(mosaic.first_row) * mosaic.cell_m;
+    draw_left_axis(canvas, box, north, north + rows * mosaic.cell_m, "z, m", unit);
+    draw_bottom_axis(canvas, box, west, west + columns * mosaic.cell_m, "x, m (north is up)", unit);
+    draw_track(canvas, box, scan, mosaic, px_per_cell / mosaic.cell_m, unit);
+    draw_scale_bar(canvas, box.left + 14 * unit, box.bottom - 18 * unit,
+                   px_per_cell / mosaic.cell_m, 0.25 * wide, unit);
+  }
+  draw_frame(canvas, box, unit);
+  const double bar = canvas.width() - 82 * unit;
+  draw_legend(canvas, {bar, top, bar + 14 * unit, top + 220 * unit}, Palette::kBronze, 0.0, 100.0,
+              "display, %", unit);
+  return canvas.take();
+}
+
+}  // namespace neritic::sonar
