@@ -27,10 +27,14 @@ bool has_terms(const scene::Sonar& sonar) {
 // The grid that leaves the head: of an echo sounder the pyramid around its cone, as one beam.
 BeamGrid beam_grid_of(const scene::Sonar& s) {
   const bool cone = s.kind == SonarKind::kEchoSounder;
-  const double azimuth = cone ? 2.0 * s.semi_angle_rad : s.azimuth_rad;
+  // A scanner's head is one beam that a step's width of the bottom belongs to.
+  const double azimuth = cone                               ? 2.0 * s.semi_angle_rad
+                         : s.kind == SonarKind::kMechanical ? s.step_rad
+                                                            : s.azimuth_rad;
   const double elevation = cone ? 2.0 * s.semi_angle_rad : s.elevation_rad;
-  return symmetric_grid(s.range_min_m, s.range_max_m, azimuth, elevation,
-                        {s.bins_range, s.bins_azimuth, s.bins_elevation});
+  return symmetric_grid(
+      s.range_min_m, s.range_max_m, azimuth, elevation,
+      {s.bins_range, s.kind == SonarKind::kMechanical ? 1 : s.bins_azimuth, s.bins_elevation});
 }
 
 bool full_turn(const BeamGrid& grid) {
@@ -168,6 +172,19 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
 }
 
 }  // namespace
+
+double scan_heading_rad(const scene::Sonar& sonar, std::uint32_t ping) {
+  if (sonar.kind != SonarKind::kMechanical) return 0.0;
+  const bool round = sonar.azimuth_rad > 2.0 * kPi - 1e-9;
+  const auto steps =
+      std::max(1u, static_cast<std::uint32_t>(std::lround(sonar.azimuth_rad / sonar.step_rad)));
+  std::uint32_t at = ping % steps;
+  if (!round && steps > 1) {
+    at = ping % (2 * (steps - 1));
+    if (at >= steps) at = 2 * (steps - 1) - at;
+  }
+  return -sonar.azimuth_rad / 2.0 + (at + 0.5) * sonar.step_rad;
+}
 
 std::vector<float> gamma_quantiles(double shape, std::uint32_t count) {
   // The distribution function by Simpson's rule in t = log x, where the density x^shape e^-x is

@@ -30,6 +30,8 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option(
       "--dump-graph", flags->dump_graph,
       "the frame graph's plan: to a file (.dot: Graphviz), or - for standard output");
+  command->add_flag("--track-only", flags->track_only,
+                    "no frame folders: only what sonars accumulate over the frames (OUT/track)");
   command->add_flag("--sheet", flags->sheet, "also pictures of every image, and one contact sheet");
   command->add_flag("--validate", flags->validation,
                     "run with Vulkan validation; any message is a failure");

@@ -19,6 +19,7 @@ struct RenderFlags {
   std::uint32_t frames = 1;
   double time_s = 0.0;
   bool sheet = false, validation = false;
+  bool track_only = false;  // no frame folders: only what accumulates over the frames
 };
 Status run_render(const RenderFlags& flags);
 

@@ -14,6 +14,7 @@
 #include "tools/session/output.hpp"
 #include "tools/session/pictures.hpp"
 #include "tools/session/session.hpp"
+#include "tools/session/survey.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -144,20 +145,26 @@ Status run_render(const RenderFlags& flags) {
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
            session->gpu_scene().triangles());
   session->keep_plan_dump(!flags.dump_graph.empty());
+  if (flags.track_only) request.capture.geometry = request.capture.motion = false;
+  Survey survey(session->scene());
+  FrameFacts facts;
   Progress progress("frame", flags.frames);
   for (std::uint32_t i = 0; i < flags.frames; ++i) {
     request.time_s = flags.time_s + i * step_s;
     request.next_time_s = request.time_s + step_s;
     request.frame = i;
     NERITIC_TRY(const FrameResult result, session->render(request));
-    const FrameFacts facts{request.time_s,      session->scene().seed, flags.scene,
-                           device->info().name, result.passes,         result.frame_ms};
-    NERITIC_TRY_STATUS(
-        write_frame(fs::path(flags.out) / fmt::format("frame_{:04}", i), result, facts));
+    facts = {request.time_s,      session->scene().seed, flags.scene,
+             device->info().name, result.passes,         result.frame_ms};
+    if (!flags.track_only)
+      NERITIC_TRY_STATUS(
+          write_frame(fs::path(flags.out) / fmt::format("frame_{:04}", i), result, facts));
+    if (flags.frames > 1) survey.add(result, request.time_s);
     if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result));
     if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
     progress.step();
   }
+  if (flags.frames > 1) NERITIC_TRY_STATUS(survey.write(flags.out, facts));
   device->wait_idle();
   for (const std::string& message : device->validation_log().messages)
     log_warn("validation: {}", message);

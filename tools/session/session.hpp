@@ -55,6 +55,7 @@ struct SonarFrame {
   scene::SonarTerms terms;
   std::optional<sonar::LabelImage> label_energy;  // where labels by energy are named
   Pose world_from_head;
+  double heading_rad = 0.0;  // of a mechanical scanner's beam, sonar axes, positive to starboard
   double sound_speed_m_s = 0.0, absorption_db_per_m = 0.0;  // with terms
   double fixed_scale = 1.0;
   std::uint32_t gbuffer_width = 1, gbuffer_height = 1;  // of one sector

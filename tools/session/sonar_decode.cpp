@@ -61,6 +61,7 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
     frame.grid = state.head.beams;
     frame.level = sonar.terms.level.has_value();
     frame.terms = sonar.terms;
+    frame.heading_rad = head->heading_rad;
     frame.world_from_head =
         head->views.views.front().world_from_view *
         Pose{Vec3(0.0), glm::angleAxis(state.sectors.front().yaw_rad, Vec3(0, 1, 0))};

@@ -173,8 +173,10 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
   const scene::Sonar& sonar = scene_.sonars[work.index];
   HeadState& state = *head.state;
   const bool host = frame.capture.to_host;
+  head.heading_rad = sonar::scan_heading_rad(sonar, frame.number);
+  const Pose turned{Vec3(0.0), glm::angleAxis(-head.heading_rad, Vec3(0, 1, 0))};
   const Pose world_from_head =
-      scene_.world_from(sonar.mount, frame.time_s) * state.head.sonar_from_head;
+      scene_.world_from(sonar.mount, frame.time_s) * turned * state.head.sonar_from_head;
   head.index = work.index;
   head.views = head_views(sonar, state, world_from_head);
   head.draws = render::build_draw_list(scene_, frame.gpu_scene, frame.state, head.views);

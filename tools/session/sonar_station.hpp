@@ -39,6 +39,7 @@ struct SonarState {
 struct HeadWork : ViewWork {
   HeadState* state = nullptr;
   sonar::Ping ping;
+  double heading_rad = 0.0;
   struct Ghost {
     sonar::Ping ping;
     ViewWork view;

@@ -1,0 +1,178 @@
+#include "tools/session/survey.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/scene/scene_surface.hpp"
+#include "sonar/bathymetry.hpp"
+#include "sonar/bottom_detection.hpp"
+#include "sonar/coco.hpp"
+#include "sonar/echo_trace.hpp"
+#include "sonar/mechanical_scan.hpp"
+#include "sonar/point_cloud.hpp"
+#include "sonar/sidescan.hpp"
+#include "sonar/terrain_error.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using scene::SonarKind;
+
+constexpr double kNadir_rad = radians(5.0);
+constexpr std::uint16_t kSeabedClass = scene::kClasses[0].id;
+
+nlohmann::json facts_json(const FrameFacts& facts, std::size_t pings) {
+  return {{"scene", facts.scene}, {"seed", facts.seed}, {"device", facts.device}, {"pings", pings}};
+}
+
+// The bottom is what objects of class seabed show from above.
+std::vector<std::shared_ptr<scene::Surface>> seabeds(const scene::Scene& scene) {
+  std::vector<std::shared_ptr<scene::Surface>> out;
+  for (const scene::Object& object : scene.objects) {
+    if (object.class_id != kSeabedClass || object.model < 0) continue;
+    std::vector<Mat4> places;
+    for (std::size_t i = 0; i < object.instance_count(); ++i)
+      places.push_back(scene.world_from_copy(object, i));
+    out.push_back(std::make_shared<scene::Surface>(
+        *scene.models[static_cast<std::size_t>(object.model)], places));
+  }
+  return out;
+}
+
+sonar::TrueDepth true_depth(const scene::Scene& scene) {
+  return [surfaces = seabeds(scene)](double x_m, double z_m) {
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const auto& surface : surfaces)
+      if (const auto at = surface->at(x_m, z_m)) highest = std::max(highest, at->y_m);
+    return std::isfinite(highest) ? -highest : std::numeric_limits<double>::quiet_NaN();
+  };
+}
+
+}  // namespace
+
+struct Survey::Record {
+  const scene::Sonar* sonar = nullptr;
+  std::size_t pings = 0;
+  // Of a profiling sonar.
+  sonar::PointCloud cloud;
+  std::unique_ptr<sonar::Bathymetry> bathymetry;
+  std::vector<Vec3> nadir;
+  std::unique_ptr<sonar::EchoTrace> trace;
+  std::unique_ptr<sonar::SidescanRecord> sidescan;
+  SonarFrame port;  // kept until the starboard side of the same ping comes
+  std::unique_ptr<sonar::MechanicalScan> scan;
+  std::unique_ptr<sonar::CocoFile> coco;
+
+  void add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s);
+  void add_profile(const SonarFrame& frame);
+  Status write(const std::filesystem::path& folder, const scene::Scene& scene,
+               const FrameFacts& facts) const;
+  Status write_bathymetry(const std::filesystem::path& folder, const scene::Scene& scene,
+                          nlohmann::json json) const;
+};
+
+Survey::Survey(const scene::Scene& scene) : scene_(scene) {}
+Survey::~Survey() = default;
+
+Survey::Record& Survey::record_of(const SonarFrame& frame) {
+  std::unique_ptr<Record>& slot = records_[frame.name];
+  if (slot) return *slot;
+  slot = std::make_unique<Record>();
+  Record& r = *slot;
+  for (const scene::Sonar& sonar : scene_.sonars)
+    if (sonar.name == frame.name) r.sonar = &sonar;
+  const sonar::Limits& l = frame.grid.limits;
+  const std::uint32_t bins = frame.grid.bins.range;
+  if (frame.kind == SonarKind::kProfiling) {
+    // A cell that the swath samples a few times at its middle range.
+    const double cell_m = std::max(frame.grid.azimuth_step_rad() * (l.range_min_m + l.range_max_m),
+                                   2.0 * frame.grid.range_step_m());
+    r.bathymetry = std::make_unique<sonar::Bathymetry>(cell_m);
+  }
+  if (frame.kind == SonarKind::kEchoSounder)
+    r.trace = std::make_unique<sonar::EchoTrace>(sonar::EchoTraceOptions{
+        .n_range = bins, .range_min_m = l.range_min_m, .range_max_m = l.range_max_m});
+  if (frame.kind == SonarKind::kSideScan)
+    r.sidescan = std::make_unique<sonar::SidescanRecord>(sonar::SidescanOptions{
+        .n_range = bins, .range_min_m = l.range_min_m, .range_max_m = l.range_max_m});
+  if (frame.kind == SonarKind::kMechanical)
+    r.scan = std::make_unique<sonar::MechanicalScan>(sonar::MechanicalScanOptions{
+        .n_range = bins,
+        .range_min_m = l.range_min_m,
+        .range_max_m = l.range_max_m,
+        .beam_rad = std::max(r.sonar->step_rad, l.azimuth_max_rad - l.azimuth_min_rad),
+        .elevation_rad = r.sonar->elevation_rad});
+  if (frame.terms.labels.coco) {
+    std::map<std::uint16_t, std::string> names = scene_.class_names;
+    for (const scene::ClassName& known : scene::kClasses) names.emplace(known.id, known.name);
+    r.coco = std::make_unique<sonar::CocoFile>(std::move(names));
+  }
+  return r;
+}
+
+void Survey::add(const FrameResult& result, double time_s) {
+  for (const SonarFrame& frame : result.sonars) {
+    Record& record = record_of(frame);
+    record.add(frame, scene_.world_from(record.sonar->mount, time_s), time_s);
+  }
+}
+
+void Survey::Record::add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s) {
+  if (frame.head != "port") ++pings;
+  const std::vector<float>& heard = frame.image.intensity;
+  if (bathymetry) add_profile(frame);
+  if (trace) trace->append(heard, time_s, -world_from_sonar.position_m.y);
+  if (scan) scan->append(heard, {frame.heading_rad, world_from_sonar, time_s});
+  if (sidescan && frame.head == "port") port = frame;
+  if (sidescan && frame.head == "starboard")
+    sidescan->append(port.image.intensity, heard, world_from_sonar, time_s);
+  if (coco && frame.label_energy)
+    coco->add(fmt::format("frame_{:04}/{}/sonar.png", pings - 1, frame.name), *frame.label_energy);
+}
+
+void Survey::Record::add_profile(const SonarFrame& frame) {
+  const auto detections = sonar::detect_bottom(frame.grid, frame.image.intensity);
+  sonar::append(cloud, frame.grid, detections, frame.world_from_head);
+  for (const sonar::BottomDetection& d : detections)
+    bathymetry->add(frame.world_from_head * sonar::detection_point(frame.grid, d));
+  for (const sonar::BottomDetection& d :
+       sonar::nadir_detections(frame.grid, detections, frame.world_from_head, kNadir_rad))
+    nadir.push_back(frame.world_from_head * sonar::detection_point(frame.grid, d));
+}
+
+Status Survey::Record::write_bathymetry(const std::filesystem::path& folder,
+                                        const scene::Scene& scene, nlohmann::json json) const {
+  NERITIC_TRY_STATUS(sonar::write_cloud_npy(folder / "cloud.npy", cloud));
+  NERITIC_TRY_STATUS(sonar::write_pcd(folder / "cloud.pcd", cloud));
+  NERITIC_TRY(const sonar::BathymetryGrid grid, bathymetry->grid());
+  const sonar::TrueDepth truth = true_depth(scene);
+  json["error"] = {
+      {"grid_at_cell_centres",
+       sonar::to_json(grid_error(grid, truth, sonar::CompareAt::kCellCentre))},
+      {"grid_at_soundings", sonar::to_json(grid_error(grid, truth, sonar::CompareAt::kCentroid))},
+      {"nadir_soundings", sonar::to_json(sonar::point_error(nadir, truth))},
+      {"range_bin_m", (sonar->range_max_m - sonar->range_min_m) / sonar->bins_range}};
+  return sonar::write_bathymetry(folder, grid, json);
+}
+
+Status Survey::Record::write(const std::filesystem::path& folder, const scene::Scene& scene,
+                             const FrameFacts& facts) const {
+  const nlohmann::json json = facts_json(facts, pings);
+  if (bathymetry || trace || sidescan || scan || coco) NERITIC_TRY_STATUS(make_folder(folder));
+  if (bathymetry) NERITIC_TRY_STATUS(write_bathymetry(folder, scene, json));
+  if (trace) NERITIC_TRY_STATUS(sonar::write_echo_trace(folder, *trace, json));
+  if (sidescan) NERITIC_TRY_STATUS(sonar::write_sidescan(folder, *sidescan, json));
+  if (scan)
+    NERITIC_TRY_STATUS(sonar::write_mechanical_scan(
+        folder, *scan, std::max(4.0 * scan->options().range_step_m(), 0.01), json));
+  if (coco) NERITIC_TRY_STATUS(coco->write(folder / "coco.json"));
+  return {};
+}
+
+Status Survey::write(const std::filesystem::path& out, const FrameFacts& facts) const {
+  for (const auto& [name, record] : records_)
+    NERITIC_TRY_STATUS(record->write(out / "track" / name, scene_, facts));
+  return {};
+}
+
+}  // namespace neritic::tools

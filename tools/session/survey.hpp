@@ -1,0 +1,34 @@
+// What accumulates while a sonar moves along a track: point cloud and bathymetric grid of a
+// profiling sonar, the range-time record of an echo sounder, the waterfall of a side-scan, the turn
+// of a mechanical scanner, COCO boxes. Fed frame by frame; written once. One thread.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "tools/session/output.hpp"
+#include "tools/session/session.hpp"
+
+namespace neritic::tools {
+
+class Survey {
+ public:
+  // The scene tells the sonars' kinds, the classes' names and where the true bottom lies (its
+  // objects of class seabed). Must outlive it.
+  explicit Survey(const scene::Scene& scene);
+  ~Survey();
+
+  void add(const FrameResult& result, double time_s);
+  // OUT/track/SONAR/ for each sonar that has something to say of a track.
+  Status write(const std::filesystem::path& out, const FrameFacts& facts) const;
+
+ private:
+  struct Record;
+  Record& record_of(const SonarFrame& frame);
+  const scene::Scene& scene_;
+  std::map<std::string, std::unique_ptr<Record>> records_;
+};
+
+}  // namespace neritic::tools
