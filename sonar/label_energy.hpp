@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace neritic::sonar {
@@ -17,11 +18,12 @@ inline constexpr std::uint16_t kShadow = 65534;  // behind something nearer, and
 // the image's last is a surface farther off, which neither sounds nor casts a shadow here.
 inline constexpr std::uint32_t kNoReturn = 0xffffffff;
 struct EnergyRecord {
-  std::uint32_t bin = kNoReturn;
-  std::uint32_t counts = 0;  // energy in fixed point; 0: the ray ended there without an echo
-  std::uint16_t class_id = 0, instance = 0;
+  std::uint32_t bin;
+  std::uint32_t counts;  // energy in fixed point; 0: the ray ended there without an echo
+  std::uint16_t class_id, instance;
 };
-static_assert(sizeof(EnergyRecord) == 12);
+static_assert(sizeof(EnergyRecord) == 12 &&
+              std::is_trivial_v<EnergyRecord>);  // as the GPU writes it
 
 struct LabelImage {
   std::uint32_t n_range = 0, n_beams = 0;

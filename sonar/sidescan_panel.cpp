@@ -53,8 +53,8 @@ void finish(Canvas& canvas, const Layout& layout, double full_scale, double gamm
   // The bar is even in brightness: value = full scale * shade^(1 / gamma).
   draw_legend(canvas, {bar, top, bar + 14 * layout.unit, top + 220 * layout.unit}, Palette::kBronze,
               0.0, 100.0, "display, %", layout.unit);
-  canvas.text(layout.box.left + 14 * layout.unit, layout.box.top - 9 * layout.unit, 10 * layout.unit,
-              "PORT", kPlotText);
+  canvas.text(layout.box.left + 14 * layout.unit, layout.box.top - 9 * layout.unit,
+              10 * layout.unit, "PORT", kPlotText);
   canvas.text(layout.box.right, layout.box.top - 9 * layout.unit, 10 * layout.unit, "STARBOARD",
               kPlotText, Align::kRight);
   canvas.text(layout.width - 110 * layout.unit + 12 * layout.unit, top + 250 * layout.unit,

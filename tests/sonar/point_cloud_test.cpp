@@ -41,7 +41,7 @@ Pcd parse_pcd(const std::string& text) {
   pcd.points.resize(std::stoul(pcd.header["POINTS"]));
   if (pcd.header["DATA"] == "binary") {
     EXPECT_EQ(text.size() - at, pcd.points.size() * 16);
-    std::memcpy(pcd.points.data(), text.data() + at, text.size() - at);
+    if (!pcd.points.empty()) std::memcpy(pcd.points.data(), text.data() + at, text.size() - at);
   } else {
     std::istringstream rest(text.substr(at));
     for (auto& p : pcd.points) rest >> p[0] >> p[1] >> p[2] >> p[3];
