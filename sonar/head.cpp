@@ -20,21 +20,22 @@ constexpr double kPatternTruncated = 0.005;
 bool has_terms(const scene::Sonar& sonar) {
   const SonarTerms& t = sonar.terms;
   return t.level || t.beam.azimuth || t.beam.elevation || t.beam.samples > 1 || t.range_spread ||
-         t.speckle || t.noise || t.ghosts || t.profile || t.motion || t.labels.energy ||
+         (sonar.kind == SonarKind::kSideScan && sonar.bins_azimuth > 1) || t.speckle || t.noise ||
+         t.ghosts || t.profile || t.motion || t.labels.energy ||
          sonar.kind == SonarKind::kEchoSounder;
 }
 
 // The grid that leaves the head: of an echo sounder the pyramid around its cone, as one beam.
 BeamGrid beam_grid_of(const scene::Sonar& s) {
   const bool cone = s.kind == SonarKind::kEchoSounder;
+  const bool one_beam = s.kind == SonarKind::kMechanical || s.kind == SonarKind::kSideScan;
   // A scanner's head is one beam that a step's width of the bottom belongs to.
   const double azimuth = cone                               ? 2.0 * s.semi_angle_rad
                          : s.kind == SonarKind::kMechanical ? s.step_rad
                                                             : s.azimuth_rad;
   const double elevation = cone ? 2.0 * s.semi_angle_rad : s.elevation_rad;
-  return symmetric_grid(
-      s.range_min_m, s.range_max_m, azimuth, elevation,
-      {s.bins_range, s.kind == SonarKind::kMechanical ? 1 : s.bins_azimuth, s.bins_elevation});
+  return symmetric_grid(s.range_min_m, s.range_max_m, azimuth, elevation,
+                        {s.bins_range, one_beam ? 1 : s.bins_azimuth, s.bins_elevation});
 }
 
 bool full_turn(const BeamGrid& grid) {
@@ -140,11 +141,15 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
   auto made = head_patterns(sonar);
   if (!made.ok()) return bad_input("sonar {}: beam: {}", sonar.name, made.error().message);
   const HeadPatterns& patterns = *made;
-  const double column = head.beams.azimuth_step_rad() / t.beam.samples;
+  // Side-scans and scanners hear one beam: their azimuth bins sample it.
+  const std::uint32_t samples = sonar.kind == SonarKind::kSideScan
+                                    ? std::max(sonar.bins_azimuth, t.beam.samples)
+                                    : t.beam.samples;
+  const double column = head.beams.azimuth_step_rad() / samples;
   const std::uint32_t reach =
       patterns.azimuth && !head.folded ? pattern_reach(patterns, column, kPatternTruncated) : 0;
-  if (const Status valid = plan_samples(head, t.beam.samples, reach); !valid.ok())
-    return bad_input("sonar {}: with {} samples a beam: {}", sonar.name, t.beam.samples,
+  if (const Status valid = plan_samples(head, samples, reach); !valid.ok())
+    return bad_input("sonar {}: with {} samples a beam: {}", sonar.name, samples,
                      valid.error().message);
   EchoOptions echo;
   echo.coherent = t.speckle.has_value();

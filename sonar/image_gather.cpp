@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/core/clock.hpp"
+#include "sonar/head_decode.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -84,21 +85,16 @@ auto all_layers(std::span<const SonarInput> inputs, Make make) {
   return all;
 }
 
-template <class T>
-Result<gpu::Image> image_of(gpu::Device& device, const std::string& name, VkFormat format,
-                            const SonarInput& in, std::uint32_t layers,
-                            const std::vector<T>& texels) {
-  NERITIC_TRY(gpu::Image image,
-              gpu::Image::create(
-                  device, {.name = name,
-                           .format = format,
-                           .width = in.width,
-                           .height = in.height,
-                           .layers = layers,
-                           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                           .array_view = true}));
-  NERITIC_TRY_STATUS(gpu::upload_image(device, image, std::as_bytes(std::span(texels))));
-  return image;
+Result<gpu::Image> image_like(gpu::Device& device, const std::string& name, VkFormat format,
+                              const SonarInput& in, std::uint32_t layers) {
+  return gpu::Image::create(device,
+                            {.name = name,
+                             .format = format,
+                             .width = in.width,
+                             .height = in.height,
+                             .layers = layers,
+                             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                             .array_view = true});
 }
 
 graph::FrameGraph::ImportState readable() {
@@ -116,57 +112,77 @@ Result<std::unique_ptr<ImageGather>> ImageGather::create(gpu::Device& device, co
                                                          std::span<const SonarInput> inputs,
                                                          Gather gather,
                                                          std::optional<bool> atomics) {
-  NERITIC_TRY_STATUS(check_inputs(grid, inputs, device.limits()));
   std::unique_ptr<ImageGather> made(new ImageGather);
-  made->device_ = &device;
+  NERITIC_TRY_STATUS(made->prepare(device, grid, inputs, {.gather = gather, .atomics = atomics}));
+  return made;
+}
+
+Result<std::unique_ptr<ImageGather>> ImageGather::create(gpu::Device& device,
+                                                         const scene::Sonar& sonar,
+                                                         const Head& head, const SonarInput& input,
+                                                         Gather gather) {
+  std::unique_ptr<ImageGather> made(new ImageGather);
+  made->sonar_ = sonar;
+  made->head_ = head;
+  NERITIC_TRY_STATUS(made->prepare(device, head.samples, std::span(&input, 1),
+                                   {.gather = gather, .echo = head.echo}));
+  if (!head.echo) return made;
+  ReceiverDesc desc = head.receiver;
+  desc.sum_scale = made->gather_->fixed_scale();
+  NERITIC_TRY(Receiver receiver, Receiver::create(device, std::move(desc)));
+  made->receiver_ = std::make_unique<Receiver>(std::move(receiver));
+  NERITIC_TRY_STATUS(made->make_buffers());
+  return made;
+}
+
+Status ImageGather::prepare(gpu::Device& device, const BeamGrid& grid,
+                            std::span<const SonarInput> inputs, GatherOptions options) {
+  NERITIC_TRY_STATUS(check_inputs(grid, inputs, device.limits()));
+  device_ = &device;
+  const bool records = options.echo && options.echo->records;
   for (const SonarInput& in : inputs) {
-    made->labels_ |= !in.labels.empty();
-    made->reflect_ |= !in.reflectivity.empty();
+    labels_ |= !in.labels.empty() || records;
+    reflect_ |= !in.reflectivity.empty();
   }
   GBufferLayout layout{inputs[0].width, inputs[0].height, inputs[0].intrinsics};
   layout.reversed_z = layout.octahedral = false;
   layout.normals_face_sensor = inputs[0].normals_face_sensor;
+  options.labels = labels_;
+  options.reflectivity = reflect_;
+  const bool terms = options.echo.has_value();
   NERITIC_TRY(SonarGather sonar,
-              SonarGather::create(device, grid, sectors_for(grid, inputs), layout,
-                                  {gather, made->labels_, made->reflect_, atomics}));
-  made->gather_ = std::make_unique<SonarGather>(std::move(sonar));
-  NERITIC_TRY_STATUS(made->upload(inputs));
-  NERITIC_TRY(made->frames_, gpu::Frames::create(device, 1));
-  made->frames_->enable_timing(true);
-  made->executor_ = std::make_unique<graph::Executor>(*made->frames_);
-  return made;
+              SonarGather::create(device, grid, sectors_for(grid, inputs), layout, options));
+  gather_ = std::make_unique<SonarGather>(std::move(sonar));
+  NERITIC_TRY_STATUS(make_images(inputs[0], static_cast<std::uint32_t>(inputs.size())));
+  if (!terms) NERITIC_TRY_STATUS(make_buffers());
+  NERITIC_TRY_STATUS(upload(inputs));
+  NERITIC_TRY(frames_, gpu::Frames::create(device, 1));
+  frames_->enable_timing(true);
+  executor_ = std::make_unique<graph::Executor>(*frames_);
+  return {};
 }
 
-Status ImageGather::upload(std::span<const SonarInput> inputs) {
-  const auto layers = static_cast<std::uint32_t>(inputs.size());
-  const SonarInput& in = inputs[0];
-  NERITIC_TRY(depth_image_, image_of(*device_, "sonar depth", VK_FORMAT_R32_SFLOAT, in, layers,
-                                     all_layers(inputs, planar_depths)));
-  std::vector<glm::vec4> normals;
-  // Each view's normals are in its own axes; the gather wants one set of axes: the sonar's.
-  for (const SonarInput& view : inputs) {
-    const Mat3 turn = sonar_from_view(view.yaw_rad);
-    for (const glm::vec4& n : unit_normals(view))
-      normals.emplace_back(glm::vec3(turn * Vec3(n.x, n.y, n.z)), 0.0f);
-  }
-  NERITIC_TRY(normal_image_, image_of(*device_, "sonar normals", VK_FORMAT_R32G32B32A32_SFLOAT, in,
-                                      layers, normals));
+Status ImageGather::make_images(const SonarInput& in, std::uint32_t layers) {
+  NERITIC_TRY(depth_image_, image_like(*device_, "sonar depth", VK_FORMAT_R32_SFLOAT, in, layers));
+  NERITIC_TRY(normal_image_,
+              image_like(*device_, "sonar normals", VK_FORMAT_R32G32B32A32_SFLOAT, in, layers));
   if (labels_ || reflect_) {
-    NERITIC_TRY(label_image_, image_of(*device_, "sonar input labels", VK_FORMAT_R16G16_UINT, in,
-                                       layers, all_layers(inputs, label_pairs)));
+    NERITIC_TRY(label_image_,
+                image_like(*device_, "sonar input labels", VK_FORMAT_R16G16_UINT, in, layers));
   }
-  if (reflect_) {
-    std::vector<float> table(kReflectivitySteps);
-    for (std::uint32_t i = 0; i < kReflectivitySteps; ++i)
-      table[i] = static_cast<float>(i) / (kReflectivitySteps - 1);
-    NERITIC_TRY(reflectivity_,
-                gpu::Buffer::create(*device_, {.name = "sonar reflectivity",
-                                               .size = table.size() * sizeof(float),
-                                               .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                                        VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
-    NERITIC_TRY_STATUS(
-        gpu::upload_buffer(*device_, reflectivity_, std::as_bytes(std::span(table))));
-  }
+  if (!reflect_) return {};
+  std::vector<float> table(kReflectivitySteps);
+  for (std::uint32_t i = 0; i < kReflectivitySteps; ++i)
+    table[i] = static_cast<float>(i) / (kReflectivitySteps - 1);
+  NERITIC_TRY(reflectivity_,
+              gpu::Buffer::create(*device_, {.name = "sonar reflectivity",
+                                             .size = table.size() * sizeof(float),
+                                             .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                                      VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
+  return gpu::upload_buffer(*device_, reflectivity_, std::as_bytes(std::span(table)));
+}
+
+Status ImageGather::make_buffers() {
   const auto result = [&](const char* name, std::uint64_t bytes) {
     return gpu::Buffer::create(
         *device_, {.name = name,
@@ -174,14 +190,42 @@ Status ImageGather::upload(std::span<const SonarInput> inputs) {
                    .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                    .memory = gpu::MemoryUse::kReadback});
   };
-  NERITIC_TRY(sums_, result("sonar sums", gather_->sums_bytes()));
   if (labels_) {
     NERITIC_TRY(keys_, result("sonar keys", gather_->keys_bytes()));
+  }
+  if (!receiver_) {
+    NERITIC_TRY(sums_, result("sonar sums", gather_->sums_bytes()));
+    return {};
+  }
+  NERITIC_TRY(power_, result("sonar power", receiver_->power_bytes()));
+  if (head_.echo->records) {
+    NERITIC_TRY(records_, result("sonar records", gather_->records_bytes()));
   }
   return {};
 }
 
-Result<SonarImage> ImageGather::run() {
+Status ImageGather::upload(std::span<const SonarInput> inputs) {
+  const SonarInput& in = inputs[0];
+  if (in.width != gather_->layout().width || in.height != gather_->layout().height)
+    return bad_input("depth image: {} x {} pixels found, {} x {} as before is accepted", in.width,
+                     in.height, gather_->layout().width, gather_->layout().height);
+  const auto put = [&](gpu::Image& image, const auto& texels) {
+    return gpu::upload_image(*device_, image, std::as_bytes(std::span(texels)));
+  };
+  NERITIC_TRY_STATUS(put(depth_image_, all_layers(inputs, planar_depths)));
+  std::vector<glm::vec4> normals;
+  // Each view's normals are in its own axes; the gather wants one set of axes: the sonar's.
+  for (const SonarInput& view : inputs) {
+    const Mat3 turn = sonar_from_view(view.yaw_rad);
+    for (const glm::vec4& n : unit_normals(view))
+      normals.emplace_back(glm::vec3(turn * Vec3(n.x, n.y, n.z)), 0.0f);
+  }
+  NERITIC_TRY_STATUS(put(normal_image_, normals));
+  if (labels_ || reflect_) return put(label_image_, all_layers(inputs, label_pairs));
+  return {};
+}
+
+Result<SonarImage> ImageGather::run(const PingState& state) {
   const TimeNs start = now_ns();
   graph::FrameGraph graph;
   SonarGather::Inputs inputs;
@@ -192,18 +236,43 @@ Result<SonarImage> ImageGather::run() {
     inputs.reflectivity = graph.import_buffer("sonar reflectivity", reflectivity_);
     inputs.reflectivities = kReflectivitySteps;
   }
-  inputs.sums_target = graph.import_buffer("sonar sums", sums_);
+  if (!receiver_) inputs.sums_target = graph.import_buffer("sonar sums", sums_);
   if (labels_) inputs.keys_target = graph.import_buffer("sonar keys", keys_);
+  if (records_.size() > 0) inputs.records_target = graph.import_buffer("sonar records", records_);
+  Ping ping;
+  if (receiver_) {
+    PingState here = state;
+    here.gbuffer_in_world_axes = false;
+    ping = ping_of(sonar_, head_, here);
+    inputs.echo = ping.echo;
+    inputs.correction = ping.correction;
+  }
   const SonarGather::Outputs outputs = gather_->declare(graph, inputs);
-  graph.output(outputs.sums, graph::Access::kHostRead);
   if (labels_) graph.output(outputs.keys, graph::Access::kHostRead);
+  if (outputs.records) graph.output(outputs.records, graph::Access::kHostRead);
+  graph.output(receiver_ ? receiver_->declare(graph, outputs.sums, ping.receiver(),
+                                              graph.import_buffer("sonar power", power_), "")
+                         : outputs.sums,
+               graph::Access::kHostRead);
 
   NERITIC_TRY(gpu::Commands * commands, frames_->begin());
   NERITIC_TRY([[maybe_unused]] const graph::Plan* plan, executor_->run(graph, *commands));
   NERITIC_TRY(const std::uint64_t done, frames_->submit());
   NERITIC_TRY_STATUS(frames_->wait(done));
 
-  SonarImage out = gather_->to_image(sums_.mapped<std::uint32_t>(), keys_.mapped<std::uint32_t>());
+  const auto keys = keys_.mapped<std::uint32_t>();
+  SonarImage out;
+  if (receiver_) {
+    const auto power = power_.mapped<float>();
+    out = {head_.beams.bins.range,
+           head_.beams.bins.azimuth,
+           {power.begin(), power.end()},
+           beam_labels(head_, keys)};
+    if (records_.size() > 0)
+      label_energy_ = beam_energies(head_, {records_.mapped<shared::SonarRecord>()});
+  } else {
+    out = gather_->to_image(sums_.mapped<std::uint32_t>(), keys);
+  }
   wall_ms_ = to_ms(now_ns() - start);
   return out;
 }

@@ -1,5 +1,5 @@
-// The GPU sonar on images from anywhere (files, tests): uploads them once, runs the gather as a
-// frame graph of its own, reads the result back. Rendering thread.
+// The GPU sonar on images from anywhere (files, tests): uploads them, runs the passes as a frame
+// graph of their own, reads the result back. Rendering thread.
 #pragma once
 
 #include <memory>
@@ -11,6 +11,9 @@
 #include "engine/gpu/frames.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "sonar/gather.hpp"
+#include "sonar/head.hpp"
+#include "sonar/label_energy.hpp"
+#include "sonar/ping.hpp"
 #include "sonar/reference.hpp"
 
 namespace neritic::sonar {
@@ -22,21 +25,37 @@ class ImageGather {
                                                      std::span<const SonarInput> inputs,
                                                      Gather gather,
                                                      std::optional<bool> atomics = {});
+  // A sensor with its terms on one view whose axis is the sonar's. Reflectivities a pixel count as
+  // strengths of strength_scale at 1 where the sensor has a level.
+  static Result<std::unique_ptr<ImageGather>> create(gpu::Device& device, const scene::Sonar& sonar,
+                                                     const Head& head, const SonarInput& input,
+                                                     Gather gather);
   ~ImageGather();
-  // One frame: gather, wait, read back. The same bits every time.
-  Result<SonarImage> run();
+  // Other images of the same size, pinhole and kind (labels, reflectivities or none).
+  Status upload(std::span<const SonarInput> inputs);
+  // One frame: gather, wait, read back. The same bits every time. state: of a sensor with terms.
+  Result<SonarImage> run(const PingState& state = {});
+  // Of the last run, where the sensor names labels by energy.
+  const std::optional<LabelImage>& label_energy() const { return label_energy_; }
   // GPU times of the newest finished run, and the wall time of the last run with its waiting.
   const std::vector<gpu::PassTime>& pass_times() const { return frames_->pass_times(); }
   double wall_ms() const { return wall_ms_; }
 
  private:
   ImageGather() = default;
-  Status upload(std::span<const SonarInput> inputs);
+  Status prepare(gpu::Device& device, const BeamGrid& grid, std::span<const SonarInput> inputs,
+                 GatherOptions options);
+  Status make_images(const SonarInput& in, std::uint32_t layers);
+  Status make_buffers();
   gpu::Device* device_ = nullptr;
   std::unique_ptr<SonarGather> gather_;
+  std::unique_ptr<Receiver> receiver_;  // with terms
+  scene::Sonar sonar_;
+  Head head_;
+  std::optional<LabelImage> label_energy_;
   bool labels_ = false, reflect_ = false;
   gpu::Image depth_image_, normal_image_, label_image_;
-  gpu::Buffer reflectivity_, sums_, keys_;
+  gpu::Buffer reflectivity_, sums_, keys_, power_, records_;
   std::unique_ptr<gpu::Frames> frames_;
   std::unique_ptr<graph::Executor> executor_;
   double wall_ms_ = 0.0;

@@ -38,6 +38,10 @@ struct Ping {
   std::vector<glm::vec2> gains;
   float noise_power = 0.0f, shift_columns_per_row = 0.0f, first_shift_columns = 0.0f;
   std::uint32_t seed = 0, ping = 0;
+  // What the receiver takes of it; gains must live until the run.
+  Receiver::Ping receiver() const {
+    return {gains, noise_power, seed, ping, first_shift_columns, shift_columns_per_row};
+  }
   double sound_speed_m_s = 1500.0;  // that turns time to range
   double absorption_db_per_m = 0.0;
 };

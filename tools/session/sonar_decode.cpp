@@ -1,53 +1,8 @@
 // What a sonar's heads heard, from the buffers that the host reads.
-#include <algorithm>
-#include <cstddef>
-
+#include "sonar/head_decode.hpp"
 #include "tools/session/sonar_station.hpp"
 
 namespace neritic::tools {
-namespace {
-
-// A beam's label is that of its strongest gathered column, its margin's not counted.
-std::vector<std::uint16_t> beam_labels(const sonar::Head& head, const sonar::SonarGather& gather,
-                                       std::span<const std::uint32_t> keys) {
-  const std::uint32_t columns = head.samples.bins.azimuth, beams = head.beams.bins.azimuth;
-  if (columns == beams) return gather.to_labels(keys);
-  std::vector<std::uint32_t> strongest(std::size_t{head.beams.bins.range} * beams, 0);
-  for (std::uint32_t row = 0; row < head.beams.bins.range; ++row)
-    for (std::uint32_t beam = 0; beam < beams; ++beam)
-      for (std::uint32_t i = 0; i < head.samples_per_beam; ++i) {
-        const std::uint32_t column = head.margin + beam * head.samples_per_beam + i;
-        std::uint32_t& key = strongest[std::size_t{row} * beams + beam];
-        key = std::max(key, keys[std::size_t{row} * columns + column]);
-      }
-  std::vector<std::uint16_t> labels(strongest.size());
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    labels[i] = strongest[i] == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(~strongest[i]);
-  return labels;
-}
-
-// The records of the beams' own columns, direct and by mirrors, for labels by energy.
-sonar::LabelImage energies(const HeadState& state) {
-  static_assert(sizeof(sonar::EnergyRecord) == sizeof(shared::SonarRecord) &&
-                offsetof(sonar::EnergyRecord, class_id) == offsetof(shared::SonarRecord, label));
-  const std::uint32_t columns = state.head.samples.bins.azimuth, margin = state.head.margin;
-  const std::uint32_t own = state.head.beams.bins.azimuth * state.head.samples_per_beam;
-  std::vector<sonar::EnergyRecord> records;
-  const auto add = [&](const gpu::Buffer& buffer) {
-    const auto all = buffer.mapped<sonar::EnergyRecord>();
-    for (std::size_t row = 0; row < state.head.samples.bins.elevation; ++row) {
-      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row * columns + margin);
-      records.insert(records.end(), begin, begin + own);
-    }
-  };
-  add(state.records);
-  for (const gpu::Buffer& ghost : state.ghost_records) add(ghost);
-  return sonar::label_by_energy(records, state.head.beams.bins.range, state.head.beams.bins.azimuth,
-                                state.head.samples_per_beam);
-}
-
-}  // namespace
-
 std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
   const scene::Sonar& sonar = scene_.sonars[work.index];
   std::vector<SonarFrame> frames;
@@ -80,10 +35,16 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
       frame.image = {frame.grid.bins.range,
                      frame.grid.bins.azimuth,
                      {power.begin(), power.end()},
-                     beam_labels(state.head, *state.gather, keys)};
+                     sonar::beam_labels(state.head, keys)};
       frame.sound_speed_m_s = head->ping.sound_speed_m_s;
       frame.absorption_db_per_m = head->ping.absorption_db_per_m;
-      if (state.records.size() > 0) frame.label_energy = energies(state);
+      if (state.records.size() > 0) {
+        std::vector<std::span<const shared::SonarRecord>> layers{
+            state.records.mapped<shared::SonarRecord>()};
+        for (const gpu::Buffer& ghost : state.ghost_records)
+          layers.push_back(ghost.mapped<shared::SonarRecord>());
+        frame.label_energy = sonar::beam_energies(state.head, layers);
+      }
     } else {
       frame.image = state.gather->to_image(state.sums.mapped<std::uint32_t>(), keys);
     }

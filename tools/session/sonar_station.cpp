@@ -214,13 +214,7 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
   NERITIC_TRY_STATUS(declare_ghosts(frame, work, head, ping, inputs, out));
   head.sums = out.sums;
   if (state.receiver)
-    head.power = state.receiver->declare(frame.graph, out.sums,
-                                         {.gains = head.ping.gains,
-                                          .noise_power = head.ping.noise_power,
-                                          .seed = head.ping.seed,
-                                          .ping = head.ping.ping,
-                                          .first_shift_columns = head.ping.first_shift_columns,
-                                          .shift_columns_per_row = head.ping.shift_columns_per_row},
+    head.power = state.receiver->declare(frame.graph, out.sums, head.ping.receiver(),
                                          target(state.power, "power"), prefix);
   if (!host) return {};
   frame.graph.output(state.receiver ? head.power : head.sums, graph::Access::kHostRead);
