@@ -13,9 +13,17 @@
 
 namespace neritic::scene {
 
+// A track before the rotation that comes on top of its heading is known.
+struct TrackDraft {
+  std::vector<Track::Place> places;
+  std::vector<Quat> recorded;  // attitudes of a file, one a place; empty: heading says
+  TrackHeading heading;
+};
+
 // A pose with the names it depends on. place_*: "file:line: key", for errors.
 struct PlacementDraft {
-  Pose pose;
+  Pose pose;  // of what moves: at time 0
+  std::optional<TrackDraft> track;
   std::string on, look_at;  // names of objects; empty: none
   std::optional<Vec3> look_at_m;
   std::string place_on, place_look_at;
@@ -95,6 +103,12 @@ class TableReader;
 // The keys that camera, sonar, lamp and object share. default_on: the object that the table is in.
 PlacementDraft read_placement(TableReader& reader, const std::string& default_on);
 std::string read_name(TableReader& reader, const std::string& otherwise);
+// scene_read_track.cpp: the key track, where it is there.
+std::optional<TrackDraft> read_track(TableReader& parent);
+Track make_track(const TrackDraft& draft, const Quat& rotation);
+// scene_read_sonar.cpp, scene_read_sonar_terms.cpp: a sonar's own keys, and its tables.
+void read_sonar(TableReader& reader, Sonar& sonar);
+void read_sonar_terms(TableReader& reader, SonarTerms& terms);
 // Each appends to the draft. parent_object carries the sensors and prefixes their names; empty:
 // none.
 Status read_objects(SceneDraft& draft, const SceneSource& source,

@@ -22,8 +22,11 @@ inline constexpr auto kWaterKeys = std::to_array<Key>({"type", "scattering", "su
 // Of [[objects]] and [[vehicles]].
 inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "include",
+                                                        "track",
                                                         "class",
                                                         "reflectivity",
+                                                        "material",
+                                                        "backscatter_db",
                                                         "model",
                                                         "node",
                                                         "shape",
@@ -62,21 +65,65 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "sonars",
                                                         "lamps"});
 
+// Of what moves.
+inline constexpr auto kTrackKeys = std::to_array<Key>(
+    {"waypoints_m", "lawn_mower", "file", "speed_m_s", "start_s", "heading", "turn_m"});
+inline constexpr auto kLawnMowerKeys =
+    std::to_array<Key>({"area_m", "depth_m", "spacing_m", "legs"});
+
 inline constexpr auto kScatterKeys =
     std::to_array<Key>({"count", "seed", "area_m", "on", "scale", "align", "sink_m", "keep_out_m"});
 
-inline constexpr auto kCameraKeys = std::to_array<Key>(
-    {"name", "include", "on", "position_m", "yaw_deg", "pitch_deg", "roll_deg", "rotation_xyzw",
-     "look_at_m", "look_at", "width", "height", "fov_deg", "near_m", "rate_hz", "stereo_baseline_m",
-     "antialias", "exposure", "exposure_compensation_ev"});
+inline constexpr auto kCameraKeys = std::to_array<Key>({"name",
+                                                        "include",
+                                                        "on",
+                                                        "track",
+                                                        "position_m",
+                                                        "yaw_deg",
+                                                        "pitch_deg",
+                                                        "roll_deg",
+                                                        "rotation_xyzw",
+                                                        "look_at_m",
+                                                        "look_at",
+                                                        "width",
+                                                        "height",
+                                                        "fov_deg",
+                                                        "near_m",
+                                                        "rate_hz",
+                                                        "stereo_baseline_m",
+                                                        "antialias",
+                                                        "exposure",
+                                                        "exposure_compensation_ev"});
 
-inline constexpr auto kSonarKeys =
-    std::to_array<Key>({"name", "include", "on", "position_m", "yaw_deg", "pitch_deg", "roll_deg",
-                        "rotation_xyzw", "look_at_m", "look_at", "kind", "range_m", "azimuth_deg",
-                        "elevation_deg", "bins", "rate_hz", "gbuffer_scale", "gather", "near_m"});
+inline constexpr auto kSonarKeys = std::to_array<Key>(
+    {"name",           "include",        "on",       "track",         "position_m",
+     "yaw_deg",        "pitch_deg",      "roll_deg", "rotation_xyzw", "look_at_m",
+     "look_at",        "kind",           "range_m",  "azimuth_deg",   "elevation_deg",
+     "semi_angle_deg", "depression_deg", "step_deg", "bins",          "rate_hz",
+     "gbuffer_scale",  "gather",         "near_m",   "quality",       "max_error",
+     "frequency_hz",   "bandwidth_hz",   "water",    "level",         "beam",
+     "range_spread",   "speckle",        "noise",    "ghosts",        "sound_speed",
+     "motion",         "labels",         "output"});
+
+// The terms of a sonar, each a table.
+inline constexpr auto kSonarWaterKeys =
+    std::to_array<Key>({"temperature_c", "salinity_psu", "ph", "depth_m", "sound_speed_m_s"});
+inline constexpr auto kSonarLevelKeys = std::to_array<Key>(
+    {"source_level_db", "absorption", "spreading", "tvg", "tvg_absorption", "gain_db"});
+inline constexpr auto kSonarBeamKeys =
+    std::to_array<Key>({"azimuth", "azimuth_deg", "elevation", "elevation_deg", "samples"});
+inline constexpr auto kSonarRangeSpreadKeys = std::to_array<Key>({"bandwidth_hz", "window"});
+inline constexpr auto kSonarSpeckleKeys = std::to_array<Key>({"scatterer_m", "shape", "texture_m"});
+inline constexpr auto kSonarNoiseKeys = std::to_array<Key>({"level_db"});
+inline constexpr auto kSonarGhostKeys =
+    std::to_array<Key>({"surface", "bottom_m", "surface_reflection", "bottom_reflection"});
+inline constexpr auto kSonarSoundSpeedKeys = std::to_array<Key>({"profile", "rays"});
+inline constexpr auto kSonarMotionKeys = std::to_array<Key>({"within_ping", "doppler", "pulse_s"});
+inline constexpr auto kSonarLabelKeys = std::to_array<Key>({"energy", "coco"});
+inline constexpr auto kSonarOutputKeys = std::to_array<Key>({"bits", "floor_db", "span_db"});
 
 inline constexpr auto kLampKeys = std::to_array<Key>(
-    {"name", "include", "on", "position_m", "yaw_deg", "pitch_deg", "roll_deg", "rotation_xyzw",
-     "look_at_m", "look_at", "color", "intensity_cd", "cone_deg"});
+    {"name", "include", "on", "track", "position_m", "yaw_deg", "pitch_deg", "roll_deg",
+     "rotation_xyzw", "look_at_m", "look_at", "color", "intensity_cd", "cone_deg"});
 
 }  // namespace neritic::scene

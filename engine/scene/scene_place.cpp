@@ -1,6 +1,6 @@
 // Turns the names that placements mention into indices, and look_at into rotations. Positions hang
-// on parents; a look_at hangs on the target's position only, so two things may face each other. A
-// chain that returns to itself is refused. One thread.
+// on parents; a look_at hangs on the target's position only, so two things may face each other; of
+// what moves, the position at time 0. A chain that returns to itself is refused. One thread.
 #include <map>
 
 #include "engine/scene/scene_draft.hpp"
@@ -92,7 +92,7 @@ class Placer {
           object.object.name, kMaxDepth);
     pose_state_[i] = State::kBusy;
     NERITIC_TRY_STATUS(settle_parent(i));
-    NERITIC_TRY(object.object.mount.pose, resolve(object.placement, object.object.mount.object));
+    NERITIC_TRY_STATUS(put(object.placement, object.object.mount));
     pose_state_[i] = State::kDone;
     --depth_;
     return {};
@@ -114,10 +114,18 @@ class Placer {
     return look_at(placement.pose.position_m, target_m);
   }
 
+  // Gives a mount whose parent is settled its pose and, where it moves, its track.
+  Status put(const PlacementDraft& placement, Mount& mount) {
+    NERITIC_TRY(mount.pose, resolve(placement, mount.object));
+    if (!placement.track) return {};
+    mount.track = make_track(*placement.track, mount.pose.rotation);
+    mount.pose = mount.pose_at(0.0);
+    return {};
+  }
+
   Status place_sensor(const PlacementDraft& placement, Mount& mount) {
     NERITIC_TRY(mount.object, find(placement.on, placement.place_on));
-    NERITIC_TRY(mount.pose, resolve(placement, mount.object));
-    return {};
+    return put(placement, mount);
   }
 
   static constexpr int kMaxDepth = 64;

@@ -93,6 +93,9 @@ std::string read_name(TableReader& reader, const std::string& otherwise) {
 PlacementDraft read_placement(TableReader& reader, const std::string& default_on) {
   PlacementDraft placement;
   placement.pose.position_m = reader.vector3("position_m", Vec3(0.0), kAnyMetres);
+  placement.track = read_track(reader);
+  if (placement.track)
+    placement.pose.position_m = pose_at({placement.track->places, {Track::Attitude{}}}, 0.0).position_m;
   read_rotation(reader, placement);
   placement.on = reader.text("on", default_on);
   placement.place_on = reader.place("on");

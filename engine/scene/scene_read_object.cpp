@@ -4,6 +4,7 @@
 #include "engine/core/files.hpp"
 #include "engine/scene/scene_copies.hpp"
 #include "engine/scene/scene_draft.hpp"
+#include "engine/scene/scene_materials.hpp"
 #include "engine/scene/scene_reader.hpp"
 #include "engine/scene/scene_text.hpp"
 
@@ -129,6 +130,19 @@ std::uint16_t read_class(TableReader& reader, const Scene& scene, std::uint16_t 
   return otherwise;
 }
 
+// What the surface gives back in decibels: by its material, or as a number.
+void read_acoustics(TableReader& reader, Object& object) {
+  object.reflectivity = static_cast<float>(reader.number("reflectivity", 1.0, kFraction));
+  object.material = reader.text("material", "");
+  if (!object.material.empty() && !contains(kMaterialNames, object.material))
+    reader.refuse("material", fmt::format("one of {} (nearest: {})", join(kMaterialNames),
+                                          nearest(object.material, kMaterialNames)));
+  if (!reader.has("backscatter_db")) return;
+  object.backscatter_db =
+      reader.number("backscatter_db", 0.0, {-100, 20, false, false, "decibels"});
+  if (reader.has("material")) reader.refuse("backscatter_db", "no such key beside material");
+}
+
 std::vector<Mat4> read_copies(TableReader& reader) {
   if (int{reader.has("copies")} + int{reader.has("copies_file")} + int{reader.has("scatter")} > 1)
     reader.refuse_table("more than one of copies, copies_file, scatter; accepted: one of them");
@@ -180,7 +194,7 @@ std::optional<ScatterDraft> read_scatter(TableReader& parent, std::uint64_t scen
     scatter.keep_out.push_back({row[0], row[1], row[2]});
   if (!reader.ok()) parent.fail(reader.status().error());
   for (const Key key : {"position_m", "yaw_deg", "pitch_deg", "roll_deg", "rotation_xyzw",
-                        "look_at_m", "look_at", "on"})
+                        "look_at_m", "look_at", "on", "track"})
     if (parent.has(key)) parent.refuse(key, "no such key beside scatter");
   return scatter;
 }
@@ -192,7 +206,7 @@ ObjectDraft read_object(TableReader& reader, const Scene& scene, const std::stri
   object.name = read_name(reader, default_name);
   draft.place = reader.place("name");
   object.class_id = read_class(reader, scene, default_class);
-  object.reflectivity = static_cast<float>(reader.number("reflectivity", 1.0, kFraction));
+  read_acoustics(reader, object);
   draft.placement = read_placement(reader, "");
   object.scale = read_scale(reader);
   draft.clip = reader.text("clip", "");

@@ -1,18 +1,11 @@
 // Reads [[cameras]], [[sonars]] and [[lamps]], of the scene or of an object that carries them.
-#include <cmath>
-
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
 
 namespace neritic::scene {
 namespace {
 
-constexpr auto kKinds = std::to_array<Key>({"imaging"});
-constexpr auto kGathers = std::to_array<Key>({"plane", "nearest", "published"});
-
 constexpr std::uint64_t kMaxPictureSide = 16384;
-constexpr std::uint64_t kMaxBins = 8192;
-constexpr double kMaxSonarRange_m = 20000.0;
 constexpr Interval kRate{0, 1000, true, false, "hertz"};
 constexpr Interval kNear{0, 10, true, false, "metres"};
 constexpr Interval kStops{-30, 30, false, false, "stops"};
@@ -40,40 +33,6 @@ void read_camera(TableReader& reader, Camera& camera) {
       reader.number("stereo_baseline_m", 0.0, {0, 10, false, false, "metres"});
   camera.antialias = reader.flag("antialias", false);
   camera.exposure = read_exposure(reader);
-}
-
-void read_ranges(TableReader& reader, Sonar& sonar) {
-  const std::vector<double> range =
-      reader.numbers("range_m", {2}, {0, kMaxSonarRange_m, false, false, "metres"});
-  if (range.size() == 2) {
-    sonar.range_min_m = range[0];
-    sonar.range_max_m = range[1];
-    if (!(range[0] < range[1]))
-      reader.refuse("range_m", "[nearest, farthest], the nearest smaller than the farthest");
-  }
-  const Interval bin_count{1, static_cast<double>(kMaxBins)};
-  const std::vector<double> bins = reader.numbers("bins", {3}, bin_count);
-  if (bins.size() == 3) {
-    for (const double n : bins)
-      if (n != std::floor(n))
-        reader.refuse("bins",
-                      "whole numbers [range, azimuth, elevation], each in " + bin_count.text());
-    sonar.bins_range = static_cast<std::uint32_t>(bins[0]);
-    sonar.bins_azimuth = static_cast<std::uint32_t>(bins[1]);
-    sonar.bins_elevation = static_cast<std::uint32_t>(bins[2]);
-  }
-}
-
-void read_sonar(TableReader& reader, Sonar& sonar) {
-  reader.choice("kind", "imaging", kKinds);
-  read_ranges(reader, sonar);
-  sonar.azimuth_rad = radians(reader.number("azimuth_deg", 90.0, {0, 360, true, false, "degrees"}));
-  sonar.elevation_rad =
-      radians(reader.number("elevation_deg", 28.0, {0, 120, true, false, "degrees"}));
-  sonar.rate_hz = reader.number("rate_hz", 10.0, kRate);
-  sonar.gbuffer_scale = reader.number("gbuffer_scale", 0.0, {0, 16});
-  sonar.gather = reader.choice("gather", "", kGathers);
-  sonar.near_m = reader.number("near_m", 0.02, kNear);
 }
 
 void read_lamp(TableReader& reader, Lamp& lamp) {

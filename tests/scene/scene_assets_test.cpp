@@ -106,9 +106,27 @@ TEST(SceneAssets, TheSeabedIsATerrainOfAFile) {
 TEST(SceneAssets, TheFormatsPageHasEveryKey) {
   const auto page = read_text(test::source_dir() / "assets/scenes/README.md");
   ASSERT_TRUE(page.ok());
-  for (const KeyList keys :
-       {KeyList(kSceneKeys), KeyList(kSunKeys), KeyList(kWaterKeys), KeyList(kObjectKeys),
-        KeyList(kScatterKeys), KeyList(kCameraKeys), KeyList(kSonarKeys), KeyList(kLampKeys)})
+  for (const KeyList keys : {KeyList(kSceneKeys),
+                             KeyList(kSunKeys),
+                             KeyList(kWaterKeys),
+                             KeyList(kObjectKeys),
+                             KeyList(kScatterKeys),
+                             KeyList(kTrackKeys),
+                             KeyList(kLawnMowerKeys),
+                             KeyList(kCameraKeys),
+                             KeyList(kSonarKeys),
+                             KeyList(kSonarWaterKeys),
+                             KeyList(kSonarLevelKeys),
+                             KeyList(kSonarBeamKeys),
+                             KeyList(kSonarRangeSpreadKeys),
+                             KeyList(kSonarSpeckleKeys),
+                             KeyList(kSonarNoiseKeys),
+                             KeyList(kSonarGhostKeys),
+                             KeyList(kSonarSoundSpeedKeys),
+                             KeyList(kSonarMotionKeys),
+                             KeyList(kSonarLabelKeys),
+                             KeyList(kSonarOutputKeys),
+                             KeyList(kLampKeys)})
     for (const Key key : keys)
       EXPECT_NE(page->find("`" + std::string(key) + "`"), std::string::npos) << key;
 }

@@ -249,8 +249,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"[[sonars]]\nbins = [500, 500, 2.5]",
              "s.toml:2: sonars[0].bins: found [500, 500, 2.5]; accepted: whole numbers [range, "
              "azimuth, elevation], each in [1, 8192]"},
-        Case{"[[sonars]]\nkind = 'sidescan'",
-             "s.toml:2: sonars[0].kind: found \"sidescan\"; accepted: one of imaging"},
+        Case{"[[sonars]]\nkind = 'side-scan'",
+             "s.toml:2: sonars[0].kind: found \"side-scan\"; accepted: one of imaging, profiling, "
+             "echosounder, sidescan, mechanical"},
         Case{"[[sonars]]\ngather = 'linear'",
              "s.toml:2: sonars[0].gather: found \"linear\"; accepted: one of plane, nearest, "
              "published"},
