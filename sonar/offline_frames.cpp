@@ -1,0 +1,168 @@
+#include "sonar/offline_frames.hpp"
+
+#include <glob.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+namespace neritic::sonar {
+namespace {
+
+namespace fs = std::filesystem;
+using Paths = std::vector<fs::path>;
+
+bool is_digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+bool is_separator(char c) {
+  return c == '_' || c == '-' || c == '.' || c == ' ';
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool ends_so(const fs::path& path, std::span<const char* const> extensions) {
+  const std::string extension = lower(path.extension().string());
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const char* e) { return extension == std::string(".") + e; });
+}
+
+Result<Paths> files_in(const fs::path& folder, std::span<const char* const> extensions) {
+  Paths out;
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (at->is_regular_file() && ends_so(at->path(), extensions) &&
+        at->path().filename().string().front() != '.')
+      out.push_back(at->path());
+  if (error) return bad_input("{}: cannot be listed: {}", folder.string(), error.message());
+  return out;
+}
+
+Result<Paths> files_like(const std::string& pattern) {
+  glob_t found{};
+  const int status = ::glob(pattern.c_str(), 0, nullptr, &found);
+  Paths out;
+  for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i)
+    if (fs::is_regular_file(found.gl_pathv[i])) out.emplace_back(found.gl_pathv[i]);
+  ::globfree(&found);
+  if (status != 0 && status != GLOB_NOMATCH)
+    return bad_input("{}: the files it matches cannot be listed", pattern);
+  return out;
+}
+
+std::string reversed(const std::string& text) {
+  return {text.rbegin(), text.rend()};
+}
+
+// How many characters the stems share at their beginning, up to a place where a name may begin.
+// At most limit.
+std::size_t shared_beginning(std::span<const std::string> stems, std::size_t limit) {
+  std::size_t length = limit;
+  for (const std::string& stem : stems) {
+    const auto differs =
+        std::mismatch(stem.begin(), stem.begin() + std::ptrdiff_t(length), stems[0].begin());
+    length = static_cast<std::size_t>(differs.first - stem.begin());
+  }
+  const auto may_end = [&](std::size_t at) {
+    const char before = stems[0][at - 1];
+    if (is_separator(before)) return true;
+    return !is_digit(before) && std::all_of(stems.begin(), stems.end(), [&](const auto& stem) {
+      return at < stem.size() && is_digit(stem[at]);
+    });
+  };
+  while (length > 0 && !may_end(length)) --length;
+  return length;
+}
+
+std::string longest_number(const std::string& stem) {
+  std::string longest, here;
+  for (const char c : stem) {
+    here = is_digit(c) ? here + c : "";
+    if (here.size() > longest.size()) longest = here;
+  }
+  return longest.empty() ? stem : longest;
+}
+
+std::vector<std::string> stems_of(std::span<const fs::path> files) {
+  std::vector<std::string> stems;
+  for (const fs::path& file : files) stems.push_back(file.stem().string());
+  return stems;
+}
+
+using ByName = std::map<std::string, fs::path>;
+Result<ByName> by_name(const Paths& files, const std::vector<std::string>& names) {
+  ByName out;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (const auto [at, added] = out.emplace(names[i], files[i]); !added)
+      return bad_input("{} and {}: both are frame '{}', one of them is accepted",
+                       at->second.string(), files[i].string(), names[i]);
+  return out;
+}
+
+}  // namespace
+
+bool names_many(const std::string& pattern) {
+  std::error_code error;
+  if (fs::is_directory(pattern, error)) return true;
+  return pattern.find_first_of("*?[") != std::string::npos && !fs::exists(pattern, error);
+}
+
+Result<Paths> list_files(const std::string& pattern, std::span<const char* const> extensions) {
+  std::error_code error;
+  const bool folder = fs::is_directory(pattern, error);
+  NERITIC_TRY(Paths files, folder ? files_in(pattern, extensions) : files_like(pattern));
+  std::sort(files.begin(), files.end());
+  if (!files.empty()) return files;
+  if (!folder) return bad_input("{}: no file like that found", pattern);
+  std::string kinds;
+  for (const char* e : extensions) kinds += std::string(kinds.empty() ? "." : ", .") + e;
+  return bad_input("{}: no image in that folder, {} is accepted", pattern, kinds);
+}
+
+std::vector<std::string> frame_names(std::span<const fs::path> files) {
+  const std::vector<std::string> stems = stems_of(files);
+  if (stems.size() == 1) return {longest_number(stems[0])};
+  std::vector<std::string> backwards;
+  std::size_t shortest = stems.empty() ? 0 : stems[0].size();
+  for (const std::string& stem : stems) {
+    backwards.push_back(reversed(stem));
+    shortest = std::min(shortest, stem.size());
+  }
+  if (shortest == 0) return stems;
+  const std::size_t before = shared_beginning(stems, shortest);
+  const std::size_t after = shared_beginning(backwards, shortest - before);
+  std::vector<std::string> names;
+  for (const std::string& stem : stems)
+    names.push_back(stem.substr(before, stem.size() - before - after));
+  // "depth" and "depth_1", or a name that a folder could not carry.
+  const bool whole = std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    return name.empty() || name.front() == '.';
+  });
+  return whole ? stems : names;
+}
+
+Result<std::vector<FrameFiles>> pair_frames(std::span<const Paths> files) {
+  const Paths& lead = files[0];
+  const std::vector<std::string> names = frame_names(lead), stems = stems_of(lead);
+  NERITIC_TRY([[maybe_unused]] const ByName unique, by_name(lead, names));
+  std::vector<FrameFiles> frames(lead.size());
+  for (std::size_t i = 0; i < lead.size(); ++i) frames[i] = {names[i], Paths(files.size())};
+  for (std::size_t g = 0; g < files.size(); ++g) {
+    NERITIC_TRY(const ByName named, by_name(files[g], frame_names(files[g])));
+    NERITIC_TRY(const ByName whole, by_name(files[g], stems_of(files[g])));
+    const bool by_stem = std::any_of(stems.begin(), stems.end(),
+                                     [&](const std::string& s) { return whole.contains(s); });
+    for (std::size_t i = 0; i < lead.size(); ++i) {
+      const ByName& from = by_stem ? whole : named;
+      const auto at = from.find(by_stem ? stems[i] : names[i]);
+      if (at != from.end()) frames[i].paths[g] = at->second;
+    }
+  }
+  return frames;
+}
+
+}  // namespace neritic::sonar
