@@ -16,7 +16,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 bool is_separator(char c) {
-  return c == '_' || c == '-' || c == '.' || c == ' ';
+  return c == '/' || c == '_' || c == '-' || c == '.' || c == ' ';
 }
 
 std::string lower(std::string text) {
@@ -93,6 +93,11 @@ std::vector<std::string> stems_of(std::span<const fs::path> files) {
   return stems;
 }
 
+bool all_differ(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  return std::adjacent_find(names.begin(), names.end()) == names.end();
+}
+
 using ByName = std::map<std::string, fs::path>;
 Result<ByName> by_name(const Paths& files, const std::vector<std::string>& names) {
   ByName out;
@@ -124,25 +129,27 @@ Result<Paths> list_files(const std::string& pattern, std::span<const char* const
 }
 
 std::vector<std::string> frame_names(std::span<const fs::path> files) {
-  const std::vector<std::string> stems = stems_of(files);
-  if (stems.size() == 1) return {longest_number(stems[0])};
-  std::vector<std::string> backwards;
-  std::size_t shortest = stems.empty() ? 0 : stems[0].size();
-  for (const std::string& stem : stems) {
-    backwards.push_back(reversed(stem));
-    shortest = std::min(shortest, stem.size());
+  if (files.size() == 1) return {longest_number(files[0].stem().string())};
+  std::vector<std::string> paths, backwards;
+  for (const fs::path& file : files) {
+    paths.push_back((file.parent_path() / file.stem()).generic_string());
+    backwards.push_back(reversed(paths.back()));
   }
-  if (shortest == 0) return stems;
-  const std::size_t before = shared_beginning(stems, shortest);
+  if (files.empty()) return paths;
+  const auto shorter = [](const auto& a, const auto& b) { return a.size() < b.size(); };
+  const std::size_t shortest = std::min_element(paths.begin(), paths.end(), shorter)->size();
+  const std::size_t before = shared_beginning(paths, shortest);
   const std::size_t after = shared_beginning(backwards, shortest - before);
   std::vector<std::string> names;
-  for (const std::string& stem : stems)
-    names.push_back(stem.substr(before, stem.size() - before - after));
-  // "depth" and "depth_1", or a name that a folder could not carry.
+  for (const std::string& path : paths) {
+    names.push_back(path.substr(before, path.size() - before - after));
+    std::replace(names.back().begin(), names.back().end(), '/', '_');
+  }
+  // "depth" and "depth_1", or a name that hides a folder.
   const bool whole = std::any_of(names.begin(), names.end(), [](const std::string& name) {
     return name.empty() || name.front() == '.';
   });
-  return whole ? stems : names;
+  return whole ? stems_of(files) : names;
 }
 
 Result<std::vector<FrameFiles>> pair_frames(std::span<const Paths> files) {
@@ -152,12 +159,12 @@ Result<std::vector<FrameFiles>> pair_frames(std::span<const Paths> files) {
   std::vector<FrameFiles> frames(lead.size());
   for (std::size_t i = 0; i < lead.size(); ++i) frames[i] = {names[i], Paths(files.size())};
   for (std::size_t g = 0; g < files.size(); ++g) {
-    NERITIC_TRY(const ByName named, by_name(files[g], frame_names(files[g])));
-    NERITIC_TRY(const ByName whole, by_name(files[g], stems_of(files[g])));
-    const bool by_stem = std::any_of(stems.begin(), stems.end(),
-                                     [&](const std::string& s) { return whole.contains(s); });
+    const std::vector<std::string> own_stems = stems_of(files[g]);
+    const bool by_stem = all_differ(stems) && all_differ(own_stems) &&
+                         std::find_first_of(stems.begin(), stems.end(), own_stems.begin(),
+                                            own_stems.end()) != stems.end();
+    NERITIC_TRY(const ByName from, by_name(files[g], by_stem ? own_stems : frame_names(files[g])));
     for (std::size_t i = 0; i < lead.size(); ++i) {
-      const ByName& from = by_stem ? whole : named;
       const auto at = from.find(by_stem ? stems[i] : names[i]);
       if (at != from.end()) frames[i].paths[g] = at->second;
     }

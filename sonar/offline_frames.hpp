@@ -1,11 +1,12 @@
 // Folders of images as frames: which files there are, and which belong together.
 //
-// A frame's name is its file's stem without what all stems of its group share before and after:
-// depth_0001.png and normal_0001.exr, or 0001_depth.npy and 0001_normals.npy, are both frame 0001.
-// What is shared ends at a separator (_ - . or a space) or between a letter and a digit, so that
-// no number is cut in two: depth_0010 and depth_0011 are 0010 and 0011. A group of one file is
-// named by the longest run of digits in its stem, or all of it. Where a group has files whose whole
-// stems are the leading group's, these count. Any thread.
+// A frame's name is its file's path, without folder parts, prefix and suffix that all files of its
+// group share, and without its extension: depth_0001.png and normal_0001.exr, 0001_depth.npy and
+// 0001_normals.npy, or frame_0001/camera/depth.npy and .../normals.npy are all frame 0001. What is
+// shared ends at a separator (/ _ - . or a space) or between a letter and a digit, so that no
+// number is cut in two: depth_0010 and depth_0011 are 0010 and 0011. A group of one file is named
+// by the longest run of digits in its stem, or all of it. Where a group has files of the same stems
+// as the leading group, these count. Any thread.
 #pragma once
 
 #include <filesystem>
@@ -26,7 +27,7 @@ bool names_many(const std::string& pattern);
 Result<std::vector<std::filesystem::path>> list_files(const std::string& pattern,
                                                       std::span<const char* const> extensions);
 
-// The frames' names, in the order of the files. Not empty, no two the same unless the stems are.
+// The frames' names, in the order of the files: fit for a folder's, never empty.
 std::vector<std::string> frame_names(std::span<const std::filesystem::path> files);
 
 // files[0] leads. One frame a leading file, in its order; paths[g] belongs to files[g], empty where

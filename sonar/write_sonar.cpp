@@ -96,7 +96,7 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
     NERITIC_TRY_STATUS(write_array(folder / "sonar_label_fraction.npy", image, energy->fraction));
   }
   if (files.output.bits > 0) NERITIC_TRY_STATUS(write_counts(folder, files));
-  NERITIC_TRY_STATUS(scene::write_png8(folder / "sonar.png", draw_sonar(files)));
+  if (files.picture) NERITIC_TRY_STATUS(scene::write_png8(folder / "sonar.png", draw_sonar(files)));
   nlohmann::json json = facts;
   json.update(grid_facts(files.grid));
   json["units"] = files.level

@@ -18,6 +18,7 @@ struct SonarFiles {
   bool level = false;                        // the image is power, 1 being 1 uPa^2
   scene::SonarOutput output;                 // bits: 0, or counts of decibels (level only)
   const LabelImage* label_energy = nullptr;  // nullptr: labels of the strongest return
+  bool picture = true;                       // sonar.png too, which takes longest
 };
 
 // Counts of what leaves a receiver of 8 or 16 bits: 0 at floor_db and below, the largest count at

@@ -20,6 +20,11 @@ TEST(OfflineFrames, NamesAreStemsWithoutWhatAllShare) {
             (Names{"0010", "0011"}));
   EXPECT_EQ(sonar::frame_names(Paths{"frame_0000_depth_m.exr", "frame_0001_depth_m.exr"}),
             (Names{"0000", "0001"}));
+  EXPECT_EQ(sonar::frame_names(Paths{"o/frame_0000/cam/depth.npy", "o/frame_0001/cam/depth.npy"}),
+            (Names{"0000", "0001"}));
+  EXPECT_EQ(sonar::frame_names(Paths{"o/1/port/depth.npy", "o/1/star/depth.npy"}),
+            (Names{"port", "star"}));
+  EXPECT_EQ(sonar::frame_names(Paths{"o/1/a/depth.npy", "o/2/b/depth.npy"}), (Names{"1_a", "2_b"}));
   EXPECT_EQ(sonar::frame_names(Paths{"depth7.npy", "depth12.npy"}), (Names{"7", "12"}));
   // No word is cut either: wall and wreck share a letter.
   EXPECT_EQ(sonar::frame_names(Paths{"wall_depth.npy", "wreck_depth.npy"}),
@@ -43,6 +48,15 @@ TEST(OfflineFrames, FilesOfOneNameBelongTogether) {
   EXPECT_EQ((*frames)[0].paths, (Paths{"d/depth_01.png", "n/normal_01.exr", ""}));
   EXPECT_EQ((*frames)[1].paths, (Paths{"d/depth_02.png", "", ""}));
   EXPECT_EQ((*frames)[2].paths, (Paths{"d/depth_03.png", "n/normal_03.exr", ""}));
+}
+
+TEST(OfflineFrames, FoldersNameFramesWhoseFilesAreCalledTheSame) {
+  const Paths groups[] = {{"o/frame_0000/depth.npy", "o/frame_0001/depth.npy"},
+                          {"o/frame_0000/normals.npy", "o/frame_0001/normals.npy"}};
+  const auto frames = sonar::pair_frames(groups);
+  ASSERT_TRUE(frames.ok()) << frames.error().message;
+  EXPECT_EQ((*frames)[1].name, "0001");
+  EXPECT_EQ((*frames)[1].paths[1], "o/frame_0001/normals.npy");
 }
 
 TEST(OfflineFrames, WholeStemsCountWhereTheyAreTheLeadersOwn) {
