@@ -30,6 +30,10 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option(
       "--dump-graph", flags->dump_graph,
       "the frame graph's plan: to a file (.dot: Graphviz), or - for standard output");
+  command
+      ->add_option("--chart-cell", flags->chart_cell_m,
+                   "metres a cell of charts that profiling sonars sound")
+      ->check(CLI::Range(0.001, 1000.0));
   command->add_flag("--track-only", flags->track_only,
                     "no frame folders: only what sonars accumulate over the frames (OUT/track)");
   command->add_flag("--sheet", flags->sheet, "also pictures of every image, and one contact sheet");
@@ -38,48 +42,87 @@ void add_render(CLI::App& app, Run& run) {
   command->callback([flags, &run] { run = [flags] { return run_render(*flags); }; });
 }
 
-void add_sonar(CLI::App& app, Run& run) {
-  auto flags = std::make_shared<SonarFlags>();
-  CLI::App* command = app.add_subcommand("sonar", "a sonar image from any depth and normal images");
-  command->add_option("kind", flags->kind, "imaging")->required();
-  command->add_option("--depth", flags->depth, "depth image: .npy, .png (8, 16 bit), .exr")
+void add_sonar_images(CLI::App& command, SonarFlags& flags) {
+  command.add_option("--depth", flags.depth,
+                     "depth image: .npy, .png (8, 16 bit), .exr; or a folder of them, or a quoted "
+                     "pattern, for a frame each");
+  command.add_option("--normals", flags.normals,
+                     "normal image, or a folder; without it, estimated from depth");
+  command.add_option("--labels", flags.labels, "class image, 0 to 65535, or a folder");
+  command.add_option("--intrinsics", flags.intrinsics, "fx,fy,cx,cy in pixels, or a .json file")
       ->required();
-  command->add_option("--normals", flags->normals,
-                      "normal image; without it, estimated from depth");
-  command->add_option("--labels", flags->labels, "class image, 0 to 65535");
-  command->add_option("--intrinsics", flags->intrinsics, "fx,fy,cx,cy in pixels, or a .json file")
-      ->required();
-  command->add_option("--pixel-centers", flags->pixel_centers, "where cx, cy count pixel centres")
+  command.add_option("--pixel-centers", flags.pixel_centers, "where cx, cy count pixel centres")
       ->check(CLI::IsMember({"half", "integer"}))
       ->capture_default_str();
-  command->add_option("--range", flags->range, "nearest,farthest in metres")->capture_default_str();
-  command->add_option("--azimuth", flags->azimuth, "full aperture in degrees, or from,to")
-      ->capture_default_str();
-  command->add_option("--elevation", flags->elevation, "full aperture in degrees, or from,to")
-      ->capture_default_str();
-  command->add_option("--bins", flags->bins, "range,azimuth,elevation")->capture_default_str();
-  command->add_option("--method", flags->method, "reference: the published loop in double, no GPU")
-      ->check(CLI::IsMember({"gpu", "reference"}))
-      ->capture_default_str();
-  command->add_option("--gather", flags->gather, "how the GPU samples (with --method gpu)")
-      ->check(CLI::IsMember({"published", "nearest", "plane"}))
-      ->capture_default_str();
-  command->add_option("--depth-kind", flags->depth_kind, "along the view axis, or along each ray")
+  command.add_option("--depth-kind", flags.depth_kind, "along the view axis, or along each ray")
       ->check(CLI::IsMember({"planar", "range"}))
       ->capture_default_str();
-  command->add_option("--depth-scale", flags->depth_scale, "metres a unit of the depth image")
+  command.add_option("--depth-scale", flags.depth_scale, "metres a unit of the depth image")
       ->capture_default_str();
-  command->add_option("--axes", flags->axes, "of the normals")
+  command.add_option("--axes", flags.axes, "of the normals")
       ->check(CLI::IsMember({"opengl", "opencv", "ros"}))
       ->capture_default_str();
   command
-      ->add_option("--normals-sign", flags->normals_sign, "unknown: the absolute incidence counts")
+      .add_option("--normals-sign", flags.normals_sign, "unknown: the absolute incidence counts")
       ->check(CLI::IsMember({"facing", "unknown"}))
       ->capture_default_str();
-  command->add_option("--gamma", flags->gamma, "of normals coded in 8 or 16 bit: n = 2 v^gamma - 1")
+  command.add_option("--gamma", flags.gamma, "of normals coded in 8 or 16 bit: n = 2 v^gamma - 1")
       ->capture_default_str();
+}
+
+void add_sonar_device(CLI::App& command, SonarFlags& flags) {
+  command.add_option("--sensor", flags.sensor,
+                     "a sensor's file with its terms (assets/sensors); the next four override it");
+  command.add_option("--range", flags.range, "nearest,farthest in metres (imaging: 1,5)");
+  command.add_option("--azimuth", flags.azimuth,
+                     "full aperture in degrees, or from,to; of an echo sounder its whole cone "
+                     "(imaging: 90)");
+  command.add_option("--elevation", flags.elevation,
+                     "full aperture in degrees, or from,to (imaging: 28)");
+  command.add_option("--bins", flags.bins, "range,azimuth,elevation (imaging: 500,500,500)");
+  command
+      .add_option("--method", flags.method,
+                  "reference: the published loop in double, no GPU; image: a side-scan line from "
+                  "a camera's picture")
+      ->check(CLI::IsMember({"gpu", "reference", "image"}))
+      ->capture_default_str();
+  command
+      .add_option("--gather", flags.gather,
+                  "how the GPU samples (published; with terms plane)")
+      ->check(CLI::IsMember({"published", "nearest", "plane"}));
+  command.add_option("--side", flags.side, "of a side-scan: which side's noise")
+      ->check(CLI::IsMember({"port", "starboard"}))
+      ->capture_default_str();
+  command
+      .add_option("--backscatter-db", flags.backscatter_db,
+                  "Lambert strength of all surfaces, for sensors with a level")
+      ->capture_default_str();
+  command.add_option("--seed", flags.seed, "of speckle and noise")->capture_default_str();
+  command.add_option("--picture", flags.picture,
+                     "with --method image: the picture from straight above, or a folder");
+  command.add_option("--altitude", flags.altitude,
+                     "with --method image: metres above a flat bottom, instead of --depth");
+  command.add_flag("--incidence", flags.incidence,
+                   "with --method image: times the cosine of incidence");
+}
+
+void add_sonar(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<SonarFlags>();
+  CLI::App* command = app.add_subcommand(
+      "sonar", "sonar images from any depth and normal images, one or a folder of them");
+  command->add_option("kind", flags->kind, "imaging, profiling, echosounder, sidescan")->required();
+  add_sonar_images(*command, *flags);
+  add_sonar_device(*command, *flags);
   command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
-  command->add_option("--out", flags->out, "folder for sonar.npy, .png, .json")->required();
+  command->add_flag("--no-pictures", flags->no_pictures, "without sonar.png, which takes longest");
+  command->add_flag("--overwrite", flags->overwrite,
+                    "of folders: make frames again that OUT has already");
+  command->add_option("--workers", flags->workers, "of folders: threads that read and write")
+      ->check(CLI::Range(1, 256));
+  command
+      ->add_option("--out", flags->out,
+                   "folder for sonar.npy, .png, .json; of a folder, one folder a frame")
+      ->required();
   command->callback([flags, &run] { run = [flags] { return run_sonar(*flags); }; });
 }
 
@@ -113,10 +156,14 @@ void add_tradeoff(CLI::App& app, Run& run) {
   CLI::App* command =
       app.add_subcommand("tradeoff", "error against cost of one model, with its curve");
   command->add_option("what", flags->what, "sonar")->required();
-  command->add_option("--out", flags->out, "folder for tradeoff.csv, .png, .json")->required();
+  command->add_option("--out", flags->out, "folder for tables (.csv, .md), pictures and levels")
+      ->required();
   command
-      ->add_option("--scene", flags->scene, "whose first sonar is taken; none: only closed forms")
+      ->add_option("scene,--scene", flags->scene,
+                   "whose first sonar's place is taken; none: only closed forms")
       ->capture_default_str();
+  command->add_option("--kind", flags->kind,
+                      "only this: imaging, profiling, echosounder, sidescan, mechanical");
   command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
   command->add_flag("--quick", flags->quick, "fewer rays, bins and points");
   command->callback([flags, &run] { run = [flags] { return run_tradeoff(*flags); }; });

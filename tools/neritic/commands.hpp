@@ -19,18 +19,25 @@ struct RenderFlags {
   std::uint32_t frames = 1;
   double time_s = 0.0;
   bool sheet = false, validation = false;
+  double chart_cell_m = 0.0;
   bool track_only = false;  // no frame folders: only what accumulates over the frames
 };
 Status run_render(const RenderFlags& flags);
 
+// depth, normals, labels, picture: a file, a folder of them or a pattern ("d/*_depth.png").
 struct SonarFlags {
   std::string kind = "imaging";
-  std::filesystem::path depth, normals, labels, out;
+  std::string depth, normals, labels, picture;
+  std::filesystem::path sensor, out;
   std::string intrinsics;
-  std::string range = "1,5", azimuth = "90", elevation = "28", bins = "500,500,500";
-  std::string method = "gpu", gather = "published", depth_kind = "planar", axes = "opengl";
+  std::string range, azimuth, elevation, bins;  // empty: the sensor's, else the kind's
+  std::string method = "gpu", gather, depth_kind = "planar", axes = "opengl";
   std::string normals_sign = "facing", pixel_centers = "half", device;
   std::string depth_scale = "1", gamma = "1";
+  std::string side = "port", backscatter_db = "-27", altitude;
+  std::uint64_t seed = 1;
+  std::uint32_t workers = 0;  // 0: as many as cores
+  bool no_pictures = false, overwrite = false, incidence = false;
 };
 Status run_sonar(const SonarFlags& flags);
 
@@ -44,7 +51,7 @@ struct DiveFlags {
 Status run_dive(const DiveFlags& flags);
 
 struct TradeoffFlags {
-  std::string what, device, scene = "assets/scenes/wreck.toml";
+  std::string what, device, kind, scene = "assets/scenes/harbour.toml";
   std::filesystem::path out;
   bool quick = false;
 };

@@ -146,7 +146,7 @@ Status run_render(const RenderFlags& flags) {
            session->gpu_scene().triangles());
   session->keep_plan_dump(!flags.dump_graph.empty());
   if (flags.track_only) request.capture.geometry = request.capture.motion = false;
-  Survey survey(session->scene());
+  Survey survey(session->scene(), flags.chart_cell_m);
   FrameFacts facts;
   Progress progress("frame", flags.frames);
   for (std::uint32_t i = 0; i < flags.frames; ++i) {

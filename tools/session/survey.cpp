@@ -71,7 +71,8 @@ struct Survey::Record {
                           nlohmann::json json) const;
 };
 
-Survey::Survey(const scene::Scene& scene) : scene_(scene) {}
+Survey::Survey(const scene::Scene& scene, double chart_cell_m)
+    : scene_(scene), chart_cell_m_(chart_cell_m) {}
 Survey::~Survey() = default;
 
 Survey::Record& Survey::record_of(const SonarFrame& frame) {
@@ -83,12 +84,9 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
     if (sonar.name == frame.name) r.sonar = &sonar;
   const sonar::Limits& l = frame.grid.limits;
   const std::uint32_t bins = frame.grid.bins.range;
-  if (frame.kind == SonarKind::kProfiling) {
-    // A cell that the swath samples a few times at its middle range.
-    const double cell_m = std::max(frame.grid.azimuth_step_rad() * (l.range_min_m + l.range_max_m),
-                                   2.0 * frame.grid.range_step_m());
-    r.bathymetry = std::make_unique<sonar::Bathymetry>(cell_m);
-  }
+  if (frame.kind == SonarKind::kProfiling)
+    r.bathymetry = std::make_unique<sonar::Bathymetry>(
+        chart_cell_m_ > 0.0 ? chart_cell_m_ : l.range_max_m / 50.0);
   if (frame.kind == SonarKind::kEchoSounder)
     r.trace = std::make_unique<sonar::EchoTrace>(sonar::EchoTraceOptions{
         .n_range = bins, .range_min_m = l.range_min_m, .range_max_m = l.range_max_m});

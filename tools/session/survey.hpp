@@ -17,7 +17,8 @@ class Survey {
  public:
   // The scene tells the sonars' kinds, the classes' names and where the true bottom lies (its
   // objects of class seabed). Must outlive it.
-  explicit Survey(const scene::Scene& scene);
+  // chart_cell_m: of bathymetric grids; 0: a fiftieth of the sonar's farthest range.
+  explicit Survey(const scene::Scene& scene, double chart_cell_m = 0.0);
   ~Survey();
 
   void add(const FrameResult& result, double time_s);
@@ -28,6 +29,7 @@ class Survey {
   struct Record;
   Record& record_of(const SonarFrame& frame);
   const scene::Scene& scene_;
+  const double chart_cell_m_;
   std::map<std::string, std::unique_ptr<Record>> records_;
 };
 
