@@ -103,7 +103,7 @@ Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& 
   NERITIC_TRY_STATUS(place_all(draft));
   NERITIC_TRY(LoadedModels loaded, load_models(draft.requests));
   for (ObjectDraft& object : draft.objects)
-    object.object.model = loaded.model_of_request[object.request];
+    if (object.request) object.object.model = loaded.model_of_request[*object.request];
   NERITIC_TRY_STATUS(find_clips(draft, loaded.models));
   NERITIC_TRY_STATUS(scatter_all(draft, loaded.models));
   NERITIC_TRY_STATUS(number_instances(draft));

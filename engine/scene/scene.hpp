@@ -39,7 +39,7 @@ struct Mount {
 
 struct Object {
   std::string name;
-  int model = -1;  // index into Scene::models
+  int model = -1;  // index into Scene::models; -1: not drawn, it carries others
   Mount mount;
   Vec3 scale{1.0};
   std::uint16_t class_id = 0;

@@ -74,7 +74,7 @@ struct ScatterDraft {
 struct ObjectDraft {
   Object object;
   PlacementDraft placement;
-  std::size_t request = 0;  // index into SceneDraft::requests
+  std::optional<std::size_t> request;  // index into SceneDraft::requests; absent: not drawn
   std::string clip, place_clip;
   std::optional<ScatterDraft> scatter;
   std::string place, place_node;

@@ -92,13 +92,28 @@ void read_model(TableReader& reader, ModelRequest& request) {
   request.node = reader.text("node", "");
 }
 
-ModelRequest read_drawing(TableReader& reader) {
+// Whether it may go undrawn: what only carries sensors, or moves for others to hang on.
+bool is_carrier(const TableReader& reader) {
+  return reader.has("track") || reader.has("cameras") || reader.has("sonars") ||
+         reader.has("lamps");
+}
+
+// Nothing for a carrier that is not drawn.
+std::optional<ModelRequest> read_drawing(TableReader& reader) {
   ModelRequest request;
   const bool model = reader.has("model"), shape = reader.has("shape"),
              terrain = reader.has("terrain");
-  if (int{model} + int{shape} + int{terrain} != 1) {
+  const int drawings = int{model} + int{shape} + int{terrain};
+  if (drawings == 0 && is_carrier(reader)) {
+    refuse_other_keys(reader, "what is not drawn", {});
+    for (const Key key : {"scale", "clip", "copies", "copies_file", "scatter", "material",
+                          "backscatter_db", "reflectivity"})
+      if (reader.has(key)) reader.refuse(key, "no such key for what is not drawn");
+    return std::nullopt;
+  }
+  if (drawings != 1) {
     reader.refuse_table(fmt::format("{} of model, shape, terrain; accepted: one of them",
-                                    model || shape || terrain ? "more than one" : "none"));
+                                    drawings > 0 ? "more than one" : "none"));
     return request;
   }
   request.place = reader.place(model ? "model" : shape ? "shape" : "terrain");
@@ -229,11 +244,13 @@ Status read_objects(SceneDraft& draft, const SceneSource& source,
     ObjectDraft object =
         read_object(reader, draft.scene, fmt::format("{}_{}", vehicles ? "vehicle" : "object", i),
                     vehicles ? std::uint16_t{5} : std::uint16_t{0});
-    ModelRequest request = read_drawing(reader);
+    std::optional<ModelRequest> request = read_drawing(reader);
     NERITIC_TRY_STATUS(reader.status());
-    object.request = draft.requests.size();
     const std::string name = object.object.name;
-    draft.requests.push_back(std::move(request));
+    if (request) {
+      object.request = draft.requests.size();
+      draft.requests.push_back(std::move(*request));
+    }
     draft.objects.push_back(std::move(object));
     NERITIC_TRY_STATUS(read_sensors(draft, reader, name));
   }

@@ -88,14 +88,14 @@ Status scatter_all(SceneDraft& draft, const std::vector<std::shared_ptr<const Mo
       int on = -1;
       for (std::size_t i = 0; i < draft.objects.size(); ++i)
         if (draft.objects[i].object.name == scatter.on) on = static_cast<int>(i);
-      if (on < 0 || draft.objects[static_cast<std::size_t>(on)].scatter)
+      const ObjectDraft* ground = on < 0 ? nullptr : &draft.objects[static_cast<std::size_t>(on)];
+      if (!ground || ground->scatter || !ground->request)
         return bad_input(
-            "{}.on: found \"{}\"; accepted: the name of an object that is not scattered",
+            "{}.on: found \"{}\"; accepted: the name of an object that is drawn, not scattered",
             scatter.place, scatter.on);
       auto at = surfaces.find(scatter.on);
       if (at == surfaces.end()) {
-        const auto model =
-            static_cast<std::size_t>(draft.objects[static_cast<std::size_t>(on)].object.model);
+        const auto model = static_cast<std::size_t>(ground->object.model);
         at = surfaces.try_emplace(scatter.on, *models[model], world_from_models(draft, on)).first;
       }
       surface = &at->second;

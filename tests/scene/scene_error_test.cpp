@@ -188,7 +188,17 @@ INSTANTIATE_TEST_SUITE_P(
         Case{
             SPHERE "scatter = {area_m = [0, 0, 1, 1], on = 'sand'}",
             "s.toml:3: objects[0].scatter.on: found \"sand\"; accepted: the name of an object that "
-            "is not scattered"},
+            "is drawn, not scattered"},
+        Case{SPHERE "scatter = {area_m = [0, 0, 1, 1], on = 'rig'}\n[[objects]]\nname = 'rig'\n"
+                    "lamps = [{}]",
+             "s.toml:3: objects[0].scatter.on: found \"rig\"; accepted: the name of an object that "
+             "is drawn, not scattered"},
+        Case{"[[objects]]\nlamps = [{}]\nradius_m = 3",
+             "s.toml:3: objects[0].radius_m: found 3; accepted: no such key for what is not drawn"},
+        Case{
+            "[[objects]]\nlamps = [{}]\nmaterial = 'steel'",
+            "s.toml:3: objects[0].material: found \"steel\"; accepted: no such key for what is not "
+            "drawn"},
         Case{SPHERE "scatter = {area_m = [0, 0, 1, 1], aling = 'up'}",
              "s.toml:3: objects[0].scatter.aling: unknown key; nearest known key: align"},
         Case{SPHERE "on = 'x'\nscatter = {area_m = [0, 0, 1, 1]}",

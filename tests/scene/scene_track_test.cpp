@@ -122,6 +122,20 @@ position_m = [-6, 0, 6]
     expect_near(scene.world_from(camera, t).rotation * Vec3(0, 0, -1), {-1, 0, 0});
 }
 
+TEST(SceneTrack, WhatOnlyCarriesNeedNotBeDrawn) {
+  const test::ScratchFolder scratch;
+  const Scene scene = scene_of(scratch, R"(
+[[objects]]
+name = "carriage"
+track = { waypoints_m = [[0, 0, 0], [0, 0, -9]], speed_m_s = 3 }
+[[objects.sonars]]
+position_m = [0, -1, 0]
+)");
+  EXPECT_TRUE(scene.models.empty());
+  EXPECT_EQ(scene.objects.at(0).model, -1);
+  expect_near(scene.world_from(scene.sonars.at(0).mount, 2).position_m, {0, -1, -6});
+}
+
 TEST(SceneTrack, AFileGivesTimesAndAttitudesOrWaypoints) {
   const test::ScratchFolder scratch;
   ASSERT_TRUE(

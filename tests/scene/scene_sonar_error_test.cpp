@@ -1,0 +1,155 @@
+// Each wrong or idle key of a sonar's kinds and terms, and of objects' acoustics, ends in its line.
+#include <gtest/gtest.h>
+
+#include "engine/core/files.hpp"
+#include "engine/scene/scene.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::scene {
+namespace {
+
+struct Case {
+  const char* keys;
+  const char* message;  // after "s.toml:2: sonars[0]", or, with a file in it, whole
+};
+class SonarError : public testing::TestWithParam<Case> {};
+
+TEST_P(SonarError, IsTheDocumentedLine) {
+  const test::ScratchFolder scratch;
+  ASSERT_TRUE(write_text(scratch / "back.csv", "m,db\n1,0\n1,2").ok());
+  ASSERT_TRUE(write_text(scratch / "loud.csv", "0,0\n1,3").ok());
+  ASSERT_TRUE(write_text(scratch / "three.csv", "0,0,0").ok());
+  ASSERT_TRUE(write_text(scratch / "s.toml", std::string("[[sonars]]\n") + GetParam().keys).ok());
+  const auto scene = load_scene(scratch / "s.toml");
+  ASSERT_FALSE(scene.ok());
+  std::string message = scene.error().message;
+  const std::string folder = scratch.path().string() + "/";
+  for (auto at = message.find(folder); at != std::string::npos; at = message.find(folder))
+    message.erase(at, folder.size());
+  EXPECT_EQ(message, std::string("s.toml:2: sonars[0]") + GetParam().message);
+}
+
+#define DB "accepted: a number in [-300, 300] decibels"
+#define HZ "accepted: a number in [1, 10000000] hertz"
+#define GAINS "rows [range_m, db] or a .csv file of them"
+#define ANGLES "rows [angle_deg, db] or a .csv file of them"
+#define SPEEDS "rows [depth_m, m/s] or a .csv file of them"
+
+INSTANTIATE_TEST_SUITE_P(
+    Keys, SonarError,
+    testing::Values(
+        Case{"semi_angle_deg = 4",
+             ".semi_angle_deg: found 4; accepted: no such key for kind \"imaging\""},
+        Case{"step_deg = 4\nkind = 'sidescan'",
+             ".step_deg: found 4; accepted: no such key for kind \"sidescan\""},
+        Case{"depression_deg = 91\nkind = 'sidescan'",
+             ".depression_deg: found 91; accepted: a number in [0, 90] degrees"},
+        Case{"azimuth_deg = 90\nkind = 'echosounder'",
+             ".azimuth_deg: found 90; accepted: none, or twice semi_angle_deg: 25 for a cone of "
+             "12.5"},
+        Case{"bins = [1, 3, 1]\nkind = 'mechanical'\nazimuth_deg = 360",
+             ".bins: found [1, 3, 1]; accepted: azimuth bins that make steps of at most 90 "
+             "degrees"},
+        Case{"quality = 'best'",
+             ".quality: found \"best\"; accepted: one of draft, standard, reference"},
+        Case{"max_error = 0", ".max_error: found 0; accepted: a number in (0, 1]"},
+        Case{"max_error = 0.1\nquality = 'draft'",
+             ".max_error: found 0.1; accepted: no such key beside quality"},
+        Case{"frequency_hz = 0.5", ".frequency_hz: found 0.5; " HZ},
+        Case{"bandwidth_hz = 0", ".bandwidth_hz: found 0; " HZ},
+        Case{"water = {salinty_psu = 3}",
+             ".water.salinty_psu: unknown key; nearest known key: salinity_psu"},
+        Case{"water = {ph = 5}", ".water.ph: found 5; accepted: a number in [6, 10]"},
+        Case{"water = {temperature_c = 61}",
+             ".water.temperature_c: found 61; accepted: a number in [-4, 60] degrees Celsius"},
+        Case{"level = 3", ".level: found 3; accepted: a table, under [level]"},
+        Case{"level = {source_level_db = 301}", ".level.source_level_db: found 301; " DB},
+        Case{"level = {absorption = 'thorp'}",
+             ".level.absorption: found \"thorp\"; accepted: francois-garrison, ainslie-mccolm, "
+             "none, or a number in [0, 1000] dB/m"},
+        Case{"level = {tvg = 81}",
+             ".level.tvg: found 81; accepted: none, a number in [0, 80] (times log10 of metres), "
+             "or " GAINS},
+        Case{"level = {tvg = []}", ".level.tvg: found []; accepted: " GAINS},
+        Case{"level = {tvg = 'no.csv'}",
+             ".level.tvg: found \"no.csv\"; accepted: a file; no.csv is none"},
+        Case{"level = {tvg = 'back.csv'}",
+             ".level.tvg: back.csv:3: found 1 after 1; accepted: range_m, db, the first column "
+             "rising"},
+        Case{"level = {tvg = 'three.csv'}",
+             ".level.tvg: three.csv:1: more than 2 numbers; accepted: range_m, db"},
+        Case{"level = {tvg = [[0, 1]], tvg_absorption = true}",
+             ".level.tvg_absorption: found true; accepted: no such key beside a table of gains"},
+        Case{"beam = {azimuth = 'sync'}",
+             ".beam.azimuth: found \"sync\"; accepted: sinc, hamming, or " ANGLES},
+        Case{"beam = {azimuth = 'loud.csv'}",
+             ".beam.azimuth: loud.csv:2: found 1, 3; accepted: angle_deg, db in [-180, 180] "
+             "degrees and [-300, 0] decibels"},
+        Case{"beam = {azimuth = [[0, 0], [181, -3]]}",
+             ".beam.azimuth: row 2: found 181, -3; accepted: angle_deg, db in [-180, 180] degrees "
+             "and [-300, 0] decibels"},
+        Case{"beam = {azimuth_deg = 2}",
+             ".beam.azimuth_deg: found 2; accepted: no such key without azimuth, the beam's "
+             "shape"},
+        Case{"beam = {elevation = [[0, 0]], elevation_deg = 2}",
+             ".beam.elevation_deg: found 2; accepted: no such key beside a table"},
+        Case{"beam = {samples = 65}",
+             ".beam.samples: found 65; accepted: a whole number from 1 to 64"},
+        Case{"range_spread = {window = 'hamming'}",
+             ".range_spread.window: found \"hamming\"; accepted: one of none, hann"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Terms, SonarError,
+    testing::Values(
+        Case{"speckle = {shape = 0.01}",
+             ".speckle.shape: found 0.01; accepted: 0, or in [0.05, 1000]"},
+        Case{"speckle = {texture_m = 1}",
+             ".speckle.texture_m: found 1; accepted: no such key without shape"},
+        Case{"noise = {level_db = 60}",
+             ".noise: found a table; accepted: noise beside level: its decibels are the level's"},
+        Case{"ghosts = {}", ".ghosts: no mirror; accepted: surface = true, bottom_m, or both"},
+        Case{"ghosts = {surface = true, bottom_reflection = 1}",
+             ".ghosts.bottom_reflection: found 1; accepted: no such key without bottom_m"},
+        Case{"ghosts = {bottom_m = 0}",
+             ".ghosts.bottom_m: found 0; accepted: a number in (0, 12000] metres"},
+        Case{"sound_speed = {}", ".sound_speed.profile: found nothing; accepted: " SPEEDS},
+        Case{"sound_speed = {profile = [[0, 99]]}",
+             ".sound_speed.profile: row 1: found 0, 99; accepted: depth_m, m/s in [-100, 12000] "
+             "metres and [100, 10000] m/s"},
+        Case{"motion = {}",
+             ".motion: no motion; accepted: within_ping = true, doppler = true, or both"},
+        Case{"motion = {within_ping = true, pulse_s = 1}",
+             ".motion.pulse_s: found 1; accepted: no such key without doppler = true"},
+        Case{"motion = {doppler = true}",
+             ".motion: found a table; accepted: doppler beside range_spread or bandwidth_hz: it "
+             "shifts the pulse"},
+        Case{"labels = {cocoa = true}", ".labels.cocoa: unknown key; nearest known key: coco"},
+        Case{"output = {bits = 12}", ".output.bits: found 12; accepted: 0 (floats), 8 or 16"},
+        Case{"output = {bits = 8}",
+             ".output: found a table; accepted: bits beside level: its floor is in decibels"},
+        Case{"output = {span_db = 8}",
+             ".output.span_db: found 8; accepted: no such key without bits"}));
+
+TEST(SceneMaterial, AnUnknownMaterialIsToldWithTheNearest) {
+  const test::ScratchFolder scratch;
+  const auto message = [&](const char* keys) {
+    EXPECT_TRUE(
+        write_text(scratch / "s.toml", std::string("[[objects]]\nshape='sphere'\n") + keys).ok());
+    const auto scene = load_scene(scratch / "s.toml");
+    return scene.ok() ? std::string("loaded") : scene.error().message;
+  };
+  const std::string wrong = message("material = 'stel'");
+  EXPECT_NE(wrong.find("s.toml:3: objects[0].material: found \"stel\"; accepted: one of water, "),
+            std::string::npos)
+      << wrong;
+  EXPECT_NE(wrong.find("(nearest: steel)"), std::string::npos) << wrong;
+  EXPECT_NE(
+      message("material = 'steel'\nbackscatter_db = -20")
+          .find("objects[0].backscatter_db: found -20; accepted: no such key beside material"),
+      std::string::npos);
+  EXPECT_NE(message("backscatter_db = 21").find("accepted: a number in [-100, 20] decibels"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace neritic::scene
