@@ -10,8 +10,6 @@
 namespace neritic::sonar {
 namespace {
 
-constexpr std::uint32_t kRanges = 33, kSines = 65;
-
 // Travel time of the bent ray from the launch to a point at range r and elevation (straight).
 double bent_time_s(const SoundSpeedProfile& profile, double launch_depth_m, double elevation_rad,
                    double r) {
@@ -36,17 +34,18 @@ double bent_time_s(const SoundSpeedProfile& profile, double launch_depth_m, doub
 }  // namespace
 
 RangeCorrection range_correction(const scene::SonarProfile& settings, double launch_depth_m,
-                                 double range_max_m, double assumed_speed_m_s) {
+                                 double range_max_m, double assumed_speed_m_s,
+                                 RangeCorrectionSize size) {
   Table rows;
   for (const auto& [depth_m, speed] : settings.table) rows.push_back({depth_m, speed});
   const auto made = SoundSpeedProfile::of_table(std::move(rows));
   NERITIC_CHECK(made.ok(), "sound speed profile: {}", made.ok() ? "" : made.error().message);
   const SoundSpeedProfile& profile = *made;
-  RangeCorrection out{kRanges, kSines, {}};
-  for (std::uint32_t j = 0; j < kSines; ++j) {
-    const double elevation = std::asin(std::clamp(-1.0 + 2.0 * j / (kSines - 1), -1.0, 1.0));
-    for (std::uint32_t i = 0; i < kRanges; ++i) {
-      const double r = std::max(range_max_m * i / (kRanges - 1), 1e-6 * range_max_m);
+  RangeCorrection out{size.ranges, size.sines, {}};
+  for (std::uint32_t j = 0; j < size.sines; ++j) {
+    const double elevation = std::asin(std::clamp(-1.0 + 2.0 * j / (size.sines - 1), -1.0, 1.0));
+    for (std::uint32_t i = 0; i < size.ranges; ++i) {
+      const double r = std::max(range_max_m * i / (size.ranges - 1), 1e-6 * range_max_m);
       const double time_s = settings.bent ? bent_time_s(profile, launch_depth_m, elevation, r)
                                           : profile.straight_time_s(launch_depth_m, elevation, r);
       out.factors.push_back(static_cast<float>(assumed_speed_m_s * time_s / r));

@@ -20,7 +20,13 @@ struct RangeCorrection {
 // where no ray comes within a thousandth of the range (a shadow zone) the straight path's time
 // stands. What a bent ray passes through on its way is not looked at: what hides what is as with
 // straight rays. A profile that the settings' reader has accepted.
+// Sizes: the default's interpolation is off by what sonar/README.md's section Trade says; at
+// least 2.
+struct RangeCorrectionSize {
+  std::uint32_t ranges = 33, sines = 65;
+};
 RangeCorrection range_correction(const scene::SonarProfile& profile, double launch_depth_m,
-                                 double range_max_m, double assumed_speed_m_s);
+                                 double range_max_m, double assumed_speed_m_s,
+                                 RangeCorrectionSize size = {});
 
 }  // namespace neritic::sonar

@@ -6,16 +6,8 @@
 #include <cmath>
 
 namespace neritic::tools {
-namespace {
 
-using sonar::Align;
-using sonar::Canvas;
-using sonar::Color;
-
-constexpr double kTextPx = 10.0, kTitlePx = 13.0;
-
-// The rectangle inside the axes.
-Box inner(const Box& box) {
+Box inside(const Box& box) {
   return {box.left + 72, box.top + 34, box.right - 18, box.bottom - 52};
 }
 
@@ -24,6 +16,14 @@ double place(const Axis& axis, double value, double from, double to) {
                             : (value - axis.min) / (axis.max - axis.min);
   return from + t * (to - from);
 }
+
+namespace {
+
+using sonar::Align;
+using sonar::Canvas;
+using sonar::Color;
+
+constexpr double kTextPx = 10.0, kTitlePx = 13.0;
 
 // Numbers at the axis: 1, 2, 5 times powers of ten.
 std::vector<double> ticks(const Axis& axis) {
@@ -49,7 +49,7 @@ std::vector<double> ticks(const Axis& axis) {
 
 void draw_axes(Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
                const Axis& y, bool x_ticks) {
-  const Box in = inner(box);
+  const Box in = inside(box);
   const Color grid = kInk.with_alpha(0.10f), line = kInk.with_alpha(0.7f);
   canvas.text(in.left, box.top + 20, kTitlePx, title, kInk, Align::kLeft, 1.7);
   for (const double v : ticks(y)) {
@@ -88,18 +88,18 @@ Axis axis_for(const std::string& label, const std::vector<double>& values, bool 
 void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
                 const Axis& y, const std::vector<Series>& series, bool legend_below) {
   draw_axes(canvas, box, title, x, y, true);
-  const Box in = inner(box);
+  const Box in = inside(box);
   double legend_y =
       legend_below ? in.bottom - 18.0 * static_cast<double>(series.size()) : in.top + 8;
   for (const Series& s : series) {
     for (std::size_t i = 0; i < s.x.size(); ++i) {
       const double px = place(x, s.x[i], in.left, in.right),
                    py = place(y, s.y[i], in.bottom, in.top);
-      if (i > 0)
+      if (i > 0 && s.joined)
         canvas.segment(place(x, s.x[i - 1], in.left, in.right),
                        place(y, s.y[i - 1], in.bottom, in.top), px, py, 1.8,
                        s.color.with_alpha(0.8f));
-      canvas.segment(px, py, px, py, 7.0, s.color);
+      canvas.segment(px, py, px, py, s.joined ? 7.0 : 4.0, s.color);
       if (i < s.notes.size()) canvas.text(px + 6, py - 6, 8.0, s.notes[i], kInk.with_alpha(0.7f));
     }
     const double width = Canvas::text_width(kTextPx, s.name);
@@ -111,7 +111,7 @@ void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const 
 
 void draw_mark(Canvas& canvas, const Box& box, const Axis& x, const Axis& y, double at_x,
                double at_y, const std::string& words) {
-  const Box in = inner(box);
+  const Box in = inside(box);
   const double px = place(x, at_x, in.left, in.right), py = place(y, at_y, in.bottom, in.top);
   canvas.arc(px, py, 10.0, -3.1416, 3.1416, 2.0, {0.75f, 0.1f, 0.1f});
   canvas.segment(px + 7, py - 7, px + 26, py - 34, 1.2, {0.75f, 0.1f, 0.1f});
@@ -124,7 +124,7 @@ void draw_bars(Canvas& canvas, const Box& box, const std::string& title, const s
   for (const Bar& bar : bars) values.push_back(bar.value);
   const Axis y = axis_for(label, values, false);
   draw_axes(canvas, box, title, {"", 0, 1, false}, y, false);
-  const Box in = inner(box);
+  const Box in = inside(box);
   const double slot =
       (in.right - in.left) / static_cast<double>(std::max<std::size_t>(bars.size(), 1));
   for (std::size_t i = 0; i < bars.size(); ++i) {

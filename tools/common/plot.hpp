@@ -19,7 +19,8 @@ struct Series {
   std::string name;
   sonar::Color color;
   std::vector<double> x, y;
-  std::vector<std::string> notes;  // beside the points; empty: none
+  std::vector<std::string> notes = {};  // beside the points; empty: none
+  bool joined = true;                   // by lines
 };
 
 struct Bar {
@@ -45,6 +46,10 @@ Axis axis_for(const std::string& label, const std::vector<double>& values, bool 
 
 void draw_lines(sonar::Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
                 const Axis& y, const std::vector<Series>& series, bool legend_below = false);
+// A number's place on an axis that runs from one pixel to another.
+double place(const Axis& axis, double value, double from, double to);
+// The rectangle inside the axes of a plot.
+Box inside(const Box& box);
 // A ring around a point of such a plot, with words.
 void draw_mark(sonar::Canvas& canvas, const Box& box, const Axis& x, const Axis& y, double at_x,
                double at_y, const std::string& words);

@@ -1,4 +1,6 @@
 // `neritic tradeoff WHAT`: error against cost for one model, as table, curve and summary.
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -14,6 +16,20 @@ Status run_tradeoff(const TradeoffFlags& flags) {
   options.scene = flags.scene == "none" ? "" : flags.scene;
   options.device = flags.device;
   options.quick = flags.quick;
+  options.kind = flags.kind;
+  if (!flags.kind.empty()) {
+    const auto known = [&](scene::SonarKind k) { return flags.kind == scene::name_of(k); };
+    using enum scene::SonarKind;
+    if (std::ranges::none_of(std::array{kImaging, kProfiling, kEchoSounder, kSideScan, kMechanical},
+                             known))
+      return bad_input(
+          "tradeoff: kind '{}' found, imaging, profiling, echosounder, sidescan or mechanical is "
+          "accepted",
+          flags.kind);
+    if (options.scene.empty())
+      return bad_input("tradeoff: kind '{}' without a scene found, a scene is accepted",
+                       flags.kind);
+  }
   Progress progress("tradeoff sonar", steps(options));
   options.step = [&] { progress.step(); };
   NERITIC_TRY(const SonarTradeoff tradeoff, run_sonar_tradeoff(options));

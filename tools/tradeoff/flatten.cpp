@@ -1,6 +1,7 @@
 #include "tools/tradeoff/flatten.hpp"
 
 #include "engine/scene/animation.hpp"
+#include "sonar/backscatter.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -50,12 +51,14 @@ void add_primitive(Triangles& out, const Primitive& p, const std::vector<float>&
   }
   // A mirrored mesh turns its faces inside out; glTF says that the winding follows.
   const bool mirrored = glm::determinant(Mat3(skinned ? frame_from_model : frame_from_mesh)) < 0.0;
+  const double backscatter = sonar::backscatter_strength(object);
   for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
     const std::uint32_t a = p.indices[i], b = p.indices[i + 1], c = p.indices[i + 2];
     out.indices.insert(out.indices.end(),
                        {first + a, first + (mirrored ? c : b), first + (mirrored ? b : c)});
     out.classes.push_back(object.class_id);
     out.reflectivity.push_back(object.reflectivity);
+    out.backscatter.push_back(backscatter);
   }
 }
 

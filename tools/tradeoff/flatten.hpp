@@ -15,6 +15,7 @@ struct Triangles {
   std::vector<std::uint32_t> indices;
   std::vector<std::uint16_t> classes;  // one a triangle
   std::vector<float> reflectivity;     // one a triangle
+  std::vector<double> backscatter;     // one a triangle: sonar::backscatter_strength
 };
 
 // frame_from_world: the frame to put them in; subtraction in double.

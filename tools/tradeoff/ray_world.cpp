@@ -42,11 +42,14 @@ class TriangleWorld : public RayWorld {
     return {};
   }
 
-  RayHit cast(const Vec3& direction) const override {
+  RayHit cast_from(const Vec3& origin_m, const Vec3& direction) const override {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     RTCRayHit ray{};
+    ray.ray.org_x = static_cast<float>(origin_m.x);
+    ray.ray.org_y = static_cast<float>(origin_m.y);
+    ray.ray.org_z = static_cast<float>(origin_m.z);
     ray.ray.dir_x = static_cast<float>(direction.x);
     ray.ray.dir_y = static_cast<float>(direction.y);
     ray.ray.dir_z = static_cast<float>(direction.z);
@@ -66,7 +69,7 @@ class TriangleWorld : public RayWorld {
     if (glm::dot(face, Vec3f(direction)) > 0.0f) n = -n;  // the back of the face is seen
     const float size = glm::length(n);
     return {ray.ray.tfar, size > 0.0f ? n / size : Vec3f(0.0f), triangles_.reflectivity[triangle],
-            triangles_.classes[triangle]};
+            triangles_.classes[triangle], triangles_.backscatter[triangle]};
   }
 
  private:
@@ -77,18 +80,19 @@ class TriangleWorld : public RayWorld {
 
 class AnalyticWorld : public RayWorld {
  public:
-  RayHit cast(const Vec3& d) const override {
+  RayHit cast_from(const Vec3& o, const Vec3& d) const override {
     RayHit best;
     const auto offer = [&](double t, const Vec3& normal, std::uint16_t label) {
       if (t > 0.0 && (best.t == 0.0 || t < best.t)) best = {t, Vec3f(normal), 1.0f, label};
     };
-    if (d.y < 0.0) offer(-kDepthBelow_m / d.y, Vec3(0, 1, 0), 1);
+    if (d.y < 0.0) offer((-kDepthBelow_m - o.y) / d.y, Vec3(0, 1, 0), 1);
     for (const Sphere& s : spheres_) {
-      const double a = glm::dot(d, d), b = glm::dot(d, s.centre),
-                   c = glm::dot(s.centre, s.centre) - s.radius * s.radius, root = b * b - a * c;
+      const Vec3 to_centre = s.centre - o;
+      const double a = glm::dot(d, d), b = glm::dot(d, to_centre),
+                   c = glm::dot(to_centre, to_centre) - s.radius * s.radius, root = b * b - a * c;
       if (root <= 0.0) continue;
       const double t = (b - std::sqrt(root)) / a;
-      offer(t, (t * d - s.centre) / s.radius, 12);
+      offer(t, (t * d - to_centre) / s.radius, 12);
     }
     return best;
   }

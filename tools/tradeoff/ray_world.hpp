@@ -14,13 +14,15 @@ struct RayHit {
   Vec3f normal{0.0f};  // unit, of the side that is seen
   float reflectivity = 1.0f;
   std::uint16_t label = 0;
+  double backscatter = 1.0;  // mu of Lambert's law
 };
 
 class RayWorld {
  public:
   virtual ~RayWorld() = default;
-  // From the origin along direction (any length).
-  virtual RayHit cast(const Vec3& direction) const = 0;
+  // From the origin of the frame, or another place, along direction (any length).
+  RayHit cast(const Vec3& direction) const { return cast_from(Vec3(0.0), direction); }
+  virtual RayHit cast_from(const Vec3& origin_m, const Vec3& direction) const = 0;
 };
 
 Result<std::unique_ptr<RayWorld>> make_triangle_world(Triangles triangles);

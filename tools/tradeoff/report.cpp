@@ -169,10 +169,12 @@ ImageU8 plot_of(const SonarTradeoff& t, const std::vector<std::string>& scenes) 
 }  // namespace
 
 Status write_sonar_tradeoff(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
+  NERITIC_TRY_STATUS(make_folder(folder));
+  NERITIC_TRY_STATUS(write_kinds(folder, tradeoff));
+  if (tradeoff.points.empty()) return {};
   std::vector<std::string> scenes;
   for (const Point& p : tradeoff.points)
     if (std::find(scenes.begin(), scenes.end(), p.scene) == scenes.end()) scenes.push_back(p.scene);
-  NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(write_text(folder / "tradeoff.csv", csv_of(tradeoff)));
   NERITIC_TRY_STATUS(scene::write_png8(folder / "tradeoff.png", plot_of(tradeoff, scenes)));
   return write_text(folder / "tradeoff.json", summary_of(tradeoff, scenes).dump(2) + "\n");

@@ -194,11 +194,70 @@ std::vector<Truth> truths_for(const Setting& setting, bool quick) {
 
 }  // namespace
 
-std::uint64_t steps(const SonarTradeoffOptions& options) {
+namespace {
+
+// Enough to see that it works.
+void make_small(KindSetting& kind) {
+  kind.base.bins_range /= 4;
+  kind.base.bins_azimuth = std::max(1u, kind.base.bins_azimuth / 4);
+  kind.middle.rows = std::max(8u, kind.middle.rows / 4);
+  kind.shots.resize(1);
+}
+
+// Each kind in the scene, with the triangles as rays see them about its first sonar.
+Status measure_kinds(gpu::Device& device, const scene::Scene& scene,
+                     const SonarTradeoffOptions& options, SonarTradeoff& out) {
+  const Pose place = place_of(scene);
+  NERITIC_TRY(const auto world,
+              make_triangle_world(flatten(scene, 0.0, Pose{-place.position_m, Quat(1, 0, 0, 0)})));
+  const RayHit below = world->cast(Vec3(0, -1, 0));
+  // Over open water the fans look as far as they would 5 m above a bottom.
+  const double altitude_m = below.t > 0.0 ? below.t : 5.0;
+  out.kinds_scene = std::filesystem::path(scene.path).stem().string();
+  for (KindSetting& kind : kind_settings(scene, altitude_m)) {
+    if (!options.kind.empty() && options.kind != scene::name_of(kind.base.kind)) continue;
+    if (options.quick) make_small(kind);
+    NERITIC_TRY(KindResult result,
+                sweep_kind(device, scene, *world, kind, {options.quick, options.step}));
+    out.kinds.push_back(std::move(result));
+  }
+  return {};
+}
+
+std::uint64_t plain_steps(const SonarTradeoffOptions& options) {
+  if (!options.kind.empty()) return 0;
   const std::uint64_t sweeps =
       std::size(kGathers) *
       (scales(options.quick).size() + bins_of(options.quick).size() - 1 + std::size(kCodings));
   return options.scene.empty() ? sweeps + 1 : 2 * (sweeps + 1) + scales(options.quick).size();
+}
+
+Status measure_plain(gpu::Device& device, const SonarTradeoffOptions& options, SonarTradeoff& out) {
+  if (!options.scene.empty()) {
+    NERITIC_TRY(const scene::Scene scene, scene::load_scene(options.scene));
+    NERITIC_TRY(const Setting setting, scene_setting(scene, options));
+    const auto truths = truths_for(setting, options.quick);
+    options.step();
+    std::map<double, double> raster_ms;
+    NERITIC_TRY_STATUS(
+        measure_renderer(device, scene, setting, truths.front(), options, raster_ms, out.points));
+    NERITIC_TRY_STATUS(Sweep(device, setting, options, truths, raster_ms, out.points).run());
+  }
+  const Setting analytic = analytic_setting(options);
+  const auto truths = truths_for(analytic, options.quick);
+  options.step();
+  return Sweep(device, analytic, options, truths, {}, out.points).run();
+}
+
+}  // namespace
+
+std::uint64_t steps(const SonarTradeoffOptions& options) {
+  std::uint64_t count = plain_steps(options);
+  using enum scene::SonarKind;
+  for (const auto kind : {kImaging, kProfiling, kEchoSounder, kSideScan, kMechanical})
+    if (!options.scene.empty() && (options.kind.empty() || options.kind == scene::name_of(kind)))
+      count += kind_steps(kind, options.quick);
+  return count;
 }
 
 Result<SonarTradeoff> run_sonar_tradeoff(const SonarTradeoffOptions& options) {
@@ -209,20 +268,13 @@ Result<SonarTradeoff> run_sonar_tradeoff(const SonarTradeoffOptions& options) {
   SonarTradeoff out;
   out.device = device->info().name;
   out.rays_a_cell = options.quick ? 16 : 64;
+  if (options.kind.empty()) NERITIC_TRY_STATUS(measure_plain(*device, options, out));
   if (!options.scene.empty()) {
     NERITIC_TRY(const scene::Scene scene, scene::load_scene(options.scene));
-    NERITIC_TRY(const Setting setting, scene_setting(scene, options));
-    const auto truths = truths_for(setting, options.quick);
-    options.step();
-    std::map<double, double> raster_ms;
-    NERITIC_TRY_STATUS(
-        measure_renderer(*device, scene, setting, truths.front(), options, raster_ms, out.points));
-    NERITIC_TRY_STATUS(Sweep(*device, setting, options, truths, raster_ms, out.points).run());
+    if (scene.sonars.empty())
+      return bad_input("{}: no sonar found, a scene with one is accepted", scene.path);
+    NERITIC_TRY_STATUS(measure_kinds(*device, scene, options, out));
   }
-  const Setting analytic = analytic_setting(options);
-  const auto truths = truths_for(analytic, options.quick);
-  options.step();
-  NERITIC_TRY_STATUS(Sweep(*device, analytic, options, truths, {}, out.points).run());
   return out;
 }
 

@@ -1,0 +1,119 @@
+// Tables of `neritic tradeoff sonar` for each kind (sonar_tradeoff.hpp); the pictures are
+// kind_plots'.
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tools/tradeoff/kind_plots.hpp"
+#include "tools/tradeoff/sonar_tradeoff.hpp"
+
+namespace neritic::tools {
+namespace {
+
+struct Level {
+  const char* name;
+  double max_error;
+};
+constexpr Level kLevels[] = {{"draft", 0.05}, {"standard", 0.02}, {"reference", 0.01}};
+
+std::string knobs_csv(const KindResult& k) {
+  std::string out =
+      "sweep,setting,gather,gbuffer_scale,columns,rows,bins_range,beams,error,error_cells,"
+      "error_energy,raster_ms,gather_ms,receive_ms,ms\n";
+  for (const KindPoint& p : k.points)
+    out += fmt::format(
+        "{},\"{}\",{},{:g},{},{},{},{},{:.5f},{},{:.5f},{:.3f},{:.3f},{:.3f},{:.3f}\n", p.sweep,
+        p.setting, p.knobs.gather, p.knobs.scale, p.knobs.columns, p.knobs.rows, p.bins_range,
+        p.beams, p.error, p.error_cells < 0.0 ? "" : fmt::format("{:.5f}", p.error_cells), p.energy,
+        p.raster_ms, p.gather_ms, p.receive_ms, p.ms());
+  return out;
+}
+
+std::string number(double v) {
+  return v < 0.0 ? "" : fmt::format("{:.5f}", v);
+}
+
+std::string terms_csv(const KindResult& k) {
+  std::string out = "term,ms,error_with,error_without,note\n";
+  for (const TermPoint& t : k.terms)
+    out += fmt::format("\"{}\",{:.3f},{},{},\"{}\"\n", t.term, t.ms, number(t.error_with),
+                       number(t.error_without), t.note);
+  return out;
+}
+
+nlohmann::json json_of(const KindPoint& p) {
+  return {{"gbuffer_scale", p.knobs.scale}, {"columns", p.knobs.columns}, {"rows", p.knobs.rows},
+          {"gather", p.knobs.gather},       {"error", p.error},           {"ms", p.ms()}};
+}
+
+nlohmann::json summary(const SonarTradeoff& t) {
+  nlohmann::json json{
+      {"device", t.device},
+      {"scene", t.kinds_scene},
+      {"error",
+       "mean relative error of a cell of the image with the sensor's point spread, weighted by the "
+       "cell's true energy: sum of absolute differences over the total"},
+      {"columns", "gathered a beam in azimuth (an echo sounder's: in its cone)"},
+      {"rows", "gathered in elevation"}};
+  for (const KindResult& k : t.kinds) {
+    nlohmann::json& kind = json["kinds"][k.kind];
+    kind["rays"] = k.rays;
+    kind["error_of_the_rays"] = k.uncertain;
+    for (const Level& level : kLevels)
+      if (const KindPoint* p = cheapest(k, level.max_error)) kind[level.name] = json_of(*p);
+  }
+  return json;
+}
+
+std::string percent(double v) {
+  return v < 0.0 ? "" : fmt::format("{:.2f} %", 100.0 * v);
+}
+
+// For a person: what the levels are, what each knob and term costs and buys.
+std::string markdown(const SonarTradeoff& t) {
+  std::string out = fmt::format("Scene {}, on {}.\n", t.kinds_scene, t.device);
+  out +=
+      "\n| kind | level | pixels a cell | columns | rows | error | ms "
+      "|\n|---|---|---|---|---|---|---|\n";
+  for (const KindResult& k : t.kinds)
+    for (const Level& level : kLevels) {
+      const KindPoint* p = cheapest(k, level.max_error);
+      out += p ? fmt::format("| {} | {} | {:g} | {} | {} | {} | {:.1f} |\n", k.kind, level.name,
+                             p->knobs.scale, p->knobs.columns, p->knobs.rows, percent(p->error),
+                             p->ms())
+               : fmt::format("| {} | {} | none | | | | |\n", k.kind, level.name);
+    }
+  for (const KindResult& k : t.kinds) {
+    out += fmt::format(
+        "\n## {}\n\n{:.2g} rays, whose own image is off by {}.\n\n"
+        "| knob | setting | error | error of cells | raster ms | gather ms | receive ms |\n"
+        "|---|---|---|---|---|---|---|\n",
+        k.kind, k.rays, percent(k.uncertain));
+    for (const KindPoint& p : k.points)
+      if (p.sweep != "joint")
+        out += fmt::format("| {} | {} | {} | {} | {:.1f} | {:.1f} | {:.1f} |\n", p.sweep, p.setting,
+                           percent(p.error), percent(p.error_cells), p.raster_ms, p.gather_ms,
+                           p.receive_ms);
+    out += "\n| term | ms | error with it | error without it | |\n|---|---|---|---|---|\n";
+    for (const TermPoint& p : k.terms)
+      out += fmt::format("| {} | {:+.1f} | {} | {} | {} |\n", p.term, p.ms, percent(p.error_with),
+                         percent(p.error_without), p.note);
+  }
+  return out;
+}
+
+}  // namespace
+
+Status write_kinds(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
+  if (tradeoff.kinds.empty()) return {};
+  for (const KindResult& k : tradeoff.kinds) {
+    NERITIC_TRY_STATUS(write_text(folder / (k.kind + ".csv"), knobs_csv(k)));
+    NERITIC_TRY_STATUS(write_text(folder / (k.kind + "_terms.csv"), terms_csv(k)));
+    NERITIC_TRY_STATUS(scene::write_png8(folder / (k.kind + ".png"),
+                                         draw_kind(k, tradeoff.device, tradeoff.kinds_scene)));
+  }
+  NERITIC_TRY_STATUS(write_text(folder / "tradeoff.md", markdown(tradeoff)));
+  return write_text(folder / "quality.json", summary(tradeoff).dump(2) + "\n");
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,217 @@
+#include "tools/tradeoff/term_truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "sonar/ping.hpp"
+
+namespace neritic::tools {
+namespace {
+
+struct Column {
+  double azimuth_rad, width_rad;
+  bool fine;
+};
+
+// Outside the aperture a pattern hears little: its columns are so much wider.
+constexpr int kCoarser = 8;
+// Half-power widths around the aperture that are still traced finely.
+constexpr double kFineWidths = 4.0;
+
+std::vector<Column> columns_of(const sonar::BeamGrid& grid, const scene::Sonar& sonar, bool folded,
+                               const TruthRays& rays) {
+  const double step = grid.azimuth_step_rad();
+  const bool wide = sonar.terms.beam.azimuth.has_value() && !folded;
+  const double half_power = wide ? sonar.terms.beam.azimuth->half_power_rad : step;
+  double wanted = step / rays.columns_per_step;
+  if (wide) wanted = std::min(wanted, half_power / rays.columns_per_width);
+  const double span = grid.limits.azimuth_max_rad - grid.limits.azimuth_min_rad;
+  const auto inside = static_cast<int>(std::ceil(span / wanted - 1e-9));
+  // A whole number of columns a step, so that none lies across two beams.
+  const int a_step = std::max(1, static_cast<int>(std::ceil(double(inside) / grid.bins.azimuth)));
+  const double width = step / a_step;
+  const int columns = a_step * static_cast<int>(grid.bins.azimuth);
+  std::vector<Column> out;
+  for (int i = 0; i < columns; ++i)
+    out.push_back({grid.limits.azimuth_min_rad + (i + 0.5) * width, width, true});
+  if (!wide) return out;
+  const double room = std::min(kPi / 2.0, (2.0 * kPi - span) / 2.0);
+  const double fine = std::min(room, kFineWidths * half_power);
+  for (const double side : {-1.0, 1.0}) {
+    const double edge = side < 0.0 ? grid.limits.azimuth_min_rad : grid.limits.azimuth_max_rad;
+    double from = 0.0;
+    const auto fill = [&](double to, double w, bool is_fine) {
+      const auto n = static_cast<int>(std::ceil((to - from) / w - 1e-9));
+      for (int i = 0; i < n; ++i)
+        out.push_back(
+            {edge + side * (from + (i + 0.5) * (to - from) / n), (to - from) / n, is_fine});
+      from = to;
+    };
+    fill(fine, width, true);
+    fill(room, width * kCoarser, false);
+  }
+  return out;
+}
+
+class Tracer {
+ public:
+  Tracer(const RayWorld& world, const TruthView& view, const sonar::Head& head,
+         const sonar::HeadPatterns& patterns, double semi_angle_rad,
+         const std::vector<sonar::Mirror>& mirrors, std::vector<TermImage>& images)
+      : world_(world),
+        view_(view),
+        head_(head),
+        patterns_(patterns),
+        cone_(std::cos(semi_angle_rad)),
+        mirrors_(mirrors),
+        images_(images) {}
+
+  void trace(const Column& column, int index, std::uint32_t rays) {
+    for (TermImage& image : images_) image.begin_column(column.azimuth_rad, column.width_rad);
+    const sonar::Limits& l = head_.beams.limits;
+    const double width = (l.elevation_max_rad - l.elevation_min_rad) / rays;
+    // Each column's rays lie at other elevations, by the golden ratio, so that neighbours fill
+    // each other's gaps.
+    const double offset = std::fmod((index + 1) * 0.6180339887498949, 1.0);
+    for (std::uint32_t i = 0; i < rays; ++i) {
+      TruthRay ray;
+      ray.elevation_rad = l.elevation_min_rad + (i + offset) * width;
+      ray.elevation_width_rad = width;
+      const Vec3 d = sonar::direction(column.azimuth_rad, ray.elevation_rad);
+      ray.inside = !head_.folded || -d.z >= cone_;
+      ray.direction = view_.world_from_head * d;
+      ray.pattern = patterns_.power(column.azimuth_rad, ray.elevation_rad);
+      cast(ray);
+    }
+    for (TermImage& image : images_) image.end_column(index % 2);
+  }
+
+ private:
+  // A ray's pattern counts for an image whose settings name one (of a cone, either).
+  static TruthRay seen_by(const TermImage& image, const TruthRay& ray) {
+    const scene::Sonar& sonar = image.settings();
+    const bool cone = sonar.kind == scene::SonarKind::kEchoSounder;
+    const bool named = sonar.terms.beam.elevation || (cone && sonar.terms.beam.azimuth);
+    TruthRay out = ray;
+    if (!named) out.pattern = 1.0;
+    return out;
+  }
+
+  void cast(const TruthRay& ray) {
+    if (!ray.inside) return;
+    const RayHit hit = world_.cast_from(view_.origin_m, ray.direction);
+    TruthEcho echo;
+    if (hit.t > 0.0) {
+      echo.out_m = echo.back_m = hit.t;
+      echo.target_m = ray.direction * hit.t;
+      echo.cosine = -glm::dot(Vec3(hit.normal), ray.direction);
+      echo.reflectivity = hit.reflectivity;
+      echo.backscatter = hit.backscatter;
+    }
+    for (TermImage& image : images_) {
+      const TruthRay seen = seen_by(image, ray);
+      image.add_solid_angle(seen);
+      if (!(hit.t > 0.0)) continue;
+      if (image.profile()) echo.seconds = 2.0 * leg_s(*image.profile(), Vec3(0.0), echo.target_m);
+      image.add(seen, echo);
+    }
+    for (const sonar::Mirror& mirror : mirrors_) bounce(ray, hit, mirror);
+  }
+
+  // Along a straight leg, points from the sonar.
+  double leg_s(const sonar::SoundSpeedProfile& profile, const Vec3& from, const Vec3& to) const {
+    const Vec3 way = to - from;
+    const double length = glm::length(way);
+    return profile.straight_time_s(view_.depth_m - from.y,
+                                   std::asin(std::clamp(way.y / length, -1.0, 1.0)), length);
+  }
+
+  void bounce(const TruthRay& ray, const RayHit& direct, const sonar::Mirror& mirror) {
+    const double above_m = mirror.height_m + view_.depth_m;  // of the mirror over the sonar
+    const double leg_m = ray.direction.y != 0.0 ? above_m / ray.direction.y : 0.0;
+    if (!(leg_m > 0.0) || (direct.t > 0.0 && direct.t < leg_m)) return;
+    const Vec3 at = ray.direction * leg_m;
+    const Vec3 onward(ray.direction.x, -ray.direction.y, ray.direction.z);
+    const RayHit hit = world_.cast_from(view_.origin_m + at, onward);
+    if (!(hit.t > 0.0)) return;
+    TruthEcho echo;
+    echo.target_m = at + onward * hit.t;
+    echo.out_m = leg_m + hit.t;
+    echo.back_m = glm::length(echo.target_m);
+    const Vec3 back = -echo.target_m / echo.back_m;
+    echo.cosine = glm::dot(Vec3(hit.normal), back);
+    if (!(echo.cosine > 0.0)) return;
+    // Is the way back free? From just above the surface that was hit.
+    const Vec3 start = echo.target_m + Vec3(hit.normal) * 1e-3;
+    const RayHit between = world_.cast_from(view_.origin_m + start, back);
+    if (between.t > 0.0 && between.t < echo.back_m - 2e-3) return;
+    echo.reflectivity = hit.reflectivity;
+    echo.backscatter = hit.backscatter;
+    echo.bounce = 2.0 * mirror.reflection * mirror.reflection;
+    for (TermImage& image : images_) {
+      if (!image.wants_ghosts()) continue;
+      if (image.profile())
+        echo.seconds = leg_s(*image.profile(), Vec3(0.0), at) +
+                       leg_s(*image.profile(), at, echo.target_m) +
+                       leg_s(*image.profile(), echo.target_m, Vec3(0.0));
+      image.add(seen_by(image, ray), echo);
+    }
+  }
+
+  const RayWorld& world_;
+  const TruthView& view_;
+  const sonar::Head& head_;
+  const sonar::HeadPatterns& patterns_;
+  double cone_;
+  const std::vector<sonar::Mirror>& mirrors_;
+  std::vector<TermImage>& images_;
+};
+
+Result<std::vector<TermImage>> images_of(std::span<const scene::Sonar> sonars, std::size_t head,
+                                         const TruthView& view) {
+  std::vector<TermImage> images;
+  for (const scene::Sonar& sonar : sonars) {
+    NERITIC_TRY(const auto heads, sonar::plan_heads(sonar));
+    NERITIC_TRY(TermImage image, TermImage::create(sonar, heads.at(head), view));
+    images.push_back(std::move(image));
+  }
+  return images;
+}
+
+}  // namespace
+
+Result<std::vector<TermTruth>> trace_terms(const RayWorld& world, const TruthView& view,
+                                           std::span<const scene::Sonar> sonars, std::size_t head,
+                                           const TruthRays& rays) {
+  NERITIC_TRY(const auto heads, sonar::plan_heads(sonars.front()));
+  const sonar::Head& plan = heads.at(head);
+  NERITIC_TRY(const sonar::HeadPatterns patterns, sonar::head_patterns(sonars.front()));
+  const auto columns =
+      columns_of(plan.folded ? plan.samples : plan.beams, sonars.front(), plan.folded, rays);
+  std::vector<sonar::Mirror> mirrors;
+  for (const scene::Sonar& sonar : sonars)
+    if (mirrors.empty()) mirrors = sonar::mirrors_of(sonar);
+  NERITIC_TRY(std::vector<TermImage> images, images_of(sonars, head, view));
+  std::vector<TermImage> others = images;
+  const auto work = [&](std::vector<TermImage>& into, std::size_t thread) {
+    Tracer tracer(world, view, plan, patterns, sonars.front().semi_angle_rad, mirrors, into);
+    // Pairs of columns in turns: each half of the columns goes to both threads.
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (i / 2 % 2 == thread)
+        tracer.trace(columns[i], static_cast<int>(i), columns[i].fine ? rays.rays : rays.rays / 4);
+  };
+  std::thread other([&] { work(others, 1); });
+  work(images, 0);
+  other.join();
+  double cast = 0.0;
+  for (const Column& column : columns) cast += column.fine ? rays.rays : rays.rays / 4;
+  std::vector<TermTruth> out;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    images[i].merge(others[i]);
+    out.push_back({images[i].grid(), images[i].image(), images[i].half_difference(), cast});
+  }
+  return out;
+}
+
+}  // namespace neritic::tools
