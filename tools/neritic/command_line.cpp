@@ -86,9 +86,7 @@ void add_sonar_device(CLI::App& command, SonarFlags& flags) {
                   "a camera's picture")
       ->check(CLI::IsMember({"gpu", "reference", "image"}))
       ->capture_default_str();
-  command
-      .add_option("--gather", flags.gather,
-                  "how the GPU samples (published; with terms plane)")
+  command.add_option("--gather", flags.gather, "how the GPU samples (published; with terms plane)")
       ->check(CLI::IsMember({"published", "nearest", "plane"}));
   command.add_option("--side", flags.side, "of a side-scan: which side's noise")
       ->check(CLI::IsMember({"port", "starboard"}))

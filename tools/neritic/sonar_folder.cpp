@@ -1,0 +1,198 @@
+#include "tools/neritic/sonar_folder.hpp"
+
+#include <unistd.h>
+
+#include "engine/core/clock.hpp"
+#include "engine/core/files.hpp"
+#include "engine/core/log.hpp"
+#include "tools/neritic/flags.hpp"
+#include "tools/neritic/sonar_picture.hpp"
+#include "tools/neritic/sonar_pipeline.hpp"
+#include "tools/neritic/sonar_resume.hpp"
+
+namespace neritic::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using sonar::FrameFiles;
+
+constexpr const char* kMaps[] = {"npy", "png", "exr"};
+constexpr const char* kPictures[] = {"png", "jpg", "jpeg"};
+
+struct Group {
+  FrameGroup group;
+  const char* flag;
+  const std::string& pattern;
+};
+std::vector<Group> groups_of(const SonarFlags& flags) {
+  return {{kDepthGroup, "depth", flags.depth},
+          {kNormalGroup, "normals", flags.normals},
+          {kLabelGroup, "labels", flags.labels},
+          {kPictureGroup, "picture", flags.picture}};
+}
+
+// The frames, their paths by FrameGroup whatever group leads.
+Result<std::vector<FrameFiles>> frames_of(const SonarJob& job) {
+  const FrameGroup lead = job.flags.method == "image" ? kPictureGroup : kDepthGroup;
+  std::vector<std::vector<fs::path>> files(kGroups);
+  for (const Group& g : groups_of(job.flags)) {
+    if (g.pattern.empty()) continue;
+    if (!sonar::names_many(g.pattern))
+      return bad_input("--{}: the file {} found, a folder or a pattern as the others is accepted",
+                       g.flag, g.pattern);
+    std::span<const char* const> kinds = kMaps;
+    if (g.group == kPictureGroup) kinds = kPictures;
+    NERITIC_TRY(files[g.group], sonar::list_files(g.pattern, kinds));
+  }
+  std::swap(files[0], files[lead]);
+  NERITIC_TRY(std::vector<FrameFiles> frames, sonar::pair_frames(files));
+  for (FrameFiles& frame : frames) std::swap(frame.paths[0], frame.paths[lead]);
+  return frames;
+}
+
+// The first group that is asked for and of which the frame has no file.
+Status complete(const SonarJob& job, const FrameFiles& frame) {
+  for (const Group& g : groups_of(job.flags))
+    if (!g.pattern.empty() && frame.paths[g.group].empty())
+      return bad_input("no file for frame '{}' in --{} {}", frame.name, g.flag, g.pattern);
+  return {};
+}
+
+// How one kind of frame is made.
+template <class LoadedT, class HeardT>
+struct Maker {
+  using Loaded = LoadedT;
+  using Heard = HeardT;
+  std::function<Result<Loaded>(const FrameFiles&)> load;  // any thread
+  std::function<Result<Heard>(Loaded)> hear;              // the calling thread
+  std::function<Status(const fs::path&, Heard)> write;    // any thread
+};
+
+struct Run {
+  const SonarJob& job;
+  const std::vector<FrameFiles>& frames;
+  const std::vector<std::size_t>& todo;
+  SkippedFrames& skipped;
+  std::size_t workers;
+};
+
+// What is wrong with one frame's files leaves it out; anything else ends the run.
+template <class T>
+Result<std::optional<T>> or_skip(const Run& run, std::size_t frame, Result<T> made) {
+  if (made.ok()) return std::optional<T>(std::move(*made));
+  if (made.error().code != ErrorCode::kBadInput) return made.error();
+  run.skipped.add(frame, made.error().message);
+  return std::optional<T>();
+}
+
+template <class M>
+Status run_frames(const Run& run, const M& maker) {
+  using Heard = typename M::Heard;
+  using Frames = Pipeline<typename M::Loaded, std::optional<Heard>>;
+  Progress progress("frame", run.todo.size());
+  typename Frames::Steps steps;
+  steps.read = [&](std::size_t i) -> Result<std::optional<typename M::Loaded>> {
+    const FrameFiles& frame = run.frames[run.todo[i]];
+    if (const Status all = complete(run.job, frame); !all.ok())
+      return or_skip(run, run.todo[i], Result<typename M::Loaded>(all.error()));
+    return or_skip(run, run.todo[i], maker.load(frame));
+  };
+  steps.process = [&](std::size_t i, typename M::Loaded loaded) {
+    return or_skip(run, run.todo[i], maker.hear(std::move(loaded)));
+  };
+  steps.write = [&](std::size_t i, std::optional<Heard> heard) -> Status {
+    if (!heard) return {};
+    const FrameFiles& frame = run.frames[run.todo[i]];
+    heard->facts["settings"] = run.job.settings;
+    heard->facts["files"] = file_names(frame);
+    return write_whole(run.job.flags.out, frame.name, [&](const fs::path& folder) {
+      return maker.write(folder, std::move(*heard));
+    });
+  };
+  steps.finished = [&] { progress.step(); };
+  return Frames({run.todo.size(), run.workers, run.workers + 2}, std::move(steps)).run();
+}
+
+Status run_kind(const Run& run) {
+  const SonarJob& job = run.job;
+  SonarNotes notes;
+  if (job.flags.method == "image")
+    return run_frames(run,
+                      Maker<PictureLine, PictureLine>{
+                          [&](const FrameFiles& f) { return load_picture_line(job, f, notes); },
+                          [](PictureLine line) -> Result<PictureLine> { return line; },
+                          [&](const fs::path& folder, PictureLine line) {
+                            return write_picture_line(job, folder, std::move(line));
+                          }});
+  const auto write = [&](const fs::path& folder, HeardFrame frame) {
+    return write_frame(job, folder, std::move(frame));
+  };
+  if (job.flags.method == "reference")
+    return run_frames(run,
+                      Maker<HeardFrame, HeardFrame>{
+                          [&](const FrameFiles& f) -> Result<HeardFrame> {
+                            NERITIC_TRY(LoadedFrame frame, load_frame(job, f, notes));
+                            return hear_by_reference(job, std::move(frame));
+                          },
+                          [](HeardFrame frame) -> Result<HeardFrame> { return frame; }, write});
+  NERITIC_TRY(const std::unique_ptr<SonarEar> ear, SonarEar::create(job));
+  return run_frames(run,
+                    Maker<LoadedFrame, HeardFrame>{
+                        [&](const FrameFiles& f) { return load_frame(job, f, notes); },
+                        [&](LoadedFrame frame) { return ear->hear(std::move(frame)); }, write});
+}
+
+// Says how it went, on a terminal and in OUT/run.json.
+Status report(const Run& run, double seconds) {
+  const std::size_t skipped = run.skipped.size(), made = run.todo.size() - skipped;
+  const double per_s = static_cast<double>(made) / std::max(seconds, 1e-9);
+  const std::string line =
+      fmt::format("{} frames made in {:.1f} s, {:.1f} frames/s; {} were there; {} skipped", made,
+                  seconds, per_s, run.frames.size() - run.todo.size(), skipped);
+  if (isatty(STDERR_FILENO))
+    fmt::print(stderr, "{}\n", line);
+  else
+    log_info("{}", line);
+  if (skipped > 0)
+    log_warn("{} of {} frames skipped: {}", skipped, run.frames.size(),
+             (run.job.flags.out / "skipped.csv").string());
+  const nlohmann::json json{{"frames", run.frames.size()},
+                            {"made", made},
+                            {"already_there", run.frames.size() - run.todo.size()},
+                            {"skipped", skipped},
+                            {"seconds", seconds},
+                            {"frames_per_s", per_s},
+                            {"workers", run.workers},
+                            {"settings", run.job.settings}};
+  return write_text(run.job.flags.out / "run.json", json.dump(2) + "\n");
+}
+
+}  // namespace
+
+bool is_folder_job(const SonarJob& job) {
+  const auto groups = groups_of(job.flags);
+  return std::any_of(groups.begin(), groups.end(), [](const Group& g) {
+    return !g.pattern.empty() && sonar::names_many(g.pattern);
+  });
+}
+
+Status run_folder(const SonarJob& job) {
+  NERITIC_TRY(const std::vector<FrameFiles> frames, frames_of(job));
+  NERITIC_TRY(const std::vector<std::size_t> todo, frames_to_do(job, frames));
+  NERITIC_TRY_STATUS(make_folder(job.flags.out));
+  SkippedFrames skipped;
+  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+  const Run run{job, frames, todo, skipped, job.flags.workers > 0 ? job.flags.workers : cores};
+  const TimeNs start = now_ns();
+  if (!todo.empty()) NERITIC_TRY_STATUS(run_kind(run));
+  const double seconds = to_ms(now_ns() - start) / 1000.0;
+  const FrameGroup lead = job.flags.method == "image" ? kPictureGroup : kDepthGroup;
+  NERITIC_TRY_STATUS(skipped.write(job.flags.out / "skipped.csv", frames, lead));
+  if (skipped.size() == frames.size())
+    return bad_input("none of {} frames could be made; the first: {}", frames.size(),
+                     skipped.first());
+  if (job.flags.method == "image") NERITIC_TRY_STATUS(write_waterfall(job, frames));
+  return report(run, seconds);
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,200 @@
+#include "tools/neritic/sonar_frame.hpp"
+
+#include "engine/core/clock.hpp"
+#include "engine/core/files.hpp"
+#include "engine/core/hash.hpp"
+#include "engine/core/log.hpp"
+#include "sonar/echo_trace.hpp"
+#include "sonar/point_cloud.hpp"
+#include "sonar/terms_json.hpp"
+#include "sonar/write_sonar.hpp"
+#include "tools/neritic/flags.hpp"
+
+namespace neritic::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+nlohmann::json facts_of(const SonarJob& job, const sonar::FrameFiles& files,
+                        const sonar::SonarInput& in) {
+  const SonarFlags& flags = job.flags;
+  const sonar::Intrinsics& k = in.intrinsics;
+  const bool normals = !flags.normals.empty();
+  nlohmann::json json{
+      {"kind", flags.kind},
+      {"method", flags.method},
+      {"depth", files.paths[kDepthGroup].filename().string()},
+      {"depth_kind", flags.depth_kind},
+      {"depth_scale", job.options.depth_scale},
+      {"normals", normals ? files.paths[kNormalGroup].filename().string() : "estimated from depth"},
+      {"axes", flags.axes},
+      {"normals_sign", normals ? flags.normals_sign : "facing"},
+      {"gamma", job.options.gamma},
+      {"image", {in.width, in.height}},
+      {"intrinsics", {{"fx", k.fx}, {"fy", k.fy}, {"cx", k.cx}, {"cy", k.cy}}},
+      {"seed", nullptr}};
+  if (!flags.labels.empty()) json["label_image"] = files.paths[kLabelGroup].filename().string();
+  if (!job.head.name.empty()) json["head"] = job.head.name + ", looking along the image's axis";
+  if (!flags.sensor.empty()) json["sensor"] = job.sonar.name;
+  if (job.plain()) return json;
+  json["terms"] = sonar::terms_json(job.sonar.terms);
+  json["seed"] = flags.seed;
+  if (job.sonar.terms.level) json["backscatter_db"] = std::stod(flags.backscatter_db);
+  return json;
+}
+
+// Noise is drawn anew for each image, and for the same image the same.
+std::uint32_t ping_number(const sonar::FrameFiles& files) {
+  const std::string name = files.paths[kDepthGroup].filename().string();
+  Hash64 hash;
+  hash.add_bytes(name.data(), name.size());
+  return static_cast<std::uint32_t>(hash.value() >> 32);
+}
+
+bool same_shape(const sonar::SonarInput& a, const sonar::SonarInput& b) {
+  const sonar::Intrinsics &k = a.intrinsics, &l = b.intrinsics;
+  return a.width == b.width && a.height == b.height && k.fx == l.fx && k.fy == l.fy &&
+         k.cx == l.cx && k.cy == l.cy && a.normals_face_sensor == b.normals_face_sensor;
+}
+
+// What a kind of sonar says of one ping beside its image.
+Status add_findings(const SonarJob& job, const fs::path& folder, const sonar::SonarImage& image,
+                    nlohmann::json& facts) {
+  const sonar::BeamGrid& grid = job.head.beams;
+  if (job.sonar.kind == scene::SonarKind::kProfiling) {
+    sonar::PointCloud cloud;
+    sonar::append(cloud, grid, sonar::detect_bottom(grid, image.intensity), Pose{});
+    NERITIC_TRY_STATUS(sonar::write_cloud_npy(folder / "cloud.npy", cloud));
+    NERITIC_TRY_STATUS(sonar::write_pcd(folder / "cloud.pcd", cloud));
+    facts["detections"] = {{"points", cloud.size()}, {"axes", "x starboard, y up, z backwards"}};
+  }
+  if (job.sonar.kind == scene::SonarKind::kEchoSounder) {
+    const sonar::Limits& l = grid.limits;
+    sonar::EchoTrace trace(
+        {.n_range = grid.bins.range, .range_min_m = l.range_min_m, .range_max_m = l.range_max_m});
+    trace.append(image.intensity, 0.0, 0.0);
+    const sonar::EchoPing& ping = trace.pings().front();  // NaN, no return, becomes null
+    facts["echo"] = {{"first_return_m", ping.first_m}, {"strongest_return_m", ping.strongest_m}};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<sonar::Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFile& image) {
+  sonar::Intrinsics k;
+  if (fs::path(flags.intrinsics).extension() == ".json") {
+    NERITIC_TRY(k, sonar::read_intrinsics(flags.intrinsics, image));
+  } else {
+    NERITIC_TRY(const auto values, parse_numbers("intrinsics", flags.intrinsics, 4, 4));
+    k = {values[0], values[1], values[2], values[3]};
+  }
+  if (!(k.fx > 0.0 && k.fy > 0.0))
+    return bad_input("--intrinsics: fx {:g}, fy {:g} found, positive numbers are accepted", k.fx,
+                     k.fy);
+  if (flags.pixel_centers == "integer") {
+    k.cx += 0.5;
+    k.cy += 0.5;
+  }
+  return k;
+}
+
+void note_whole_metres(const SonarJob& job, const sonar::MapFile& depth, SonarNotes& notes) {
+  if (depth.coding != sonar::MapFile::Coding::kNumbers && job.options.depth_scale == 1.0 &&
+      !notes.whole_metres.exchange(true))
+    log_warn("{}: whole numbers taken as metres (--depth-scale 0.001 for millimetres)", depth.path);
+}
+
+Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& files,
+                               SonarNotes& notes) {
+  const TimeNs start = now_ns();
+  NERITIC_TRY(const sonar::MapFile depth, sonar::read_map(files.paths[kDepthGroup]));
+  NERITIC_TRY(const sonar::Intrinsics intrinsics, frame_intrinsics(job.flags, depth));
+  note_whole_metres(job, depth, notes);
+  std::optional<sonar::MapFile> normals, labels;
+  if (!files.paths[kNormalGroup].empty()) {
+    NERITIC_TRY(normals, sonar::read_map(files.paths[kNormalGroup]));
+  }
+  if (!files.paths[kLabelGroup].empty()) {
+    NERITIC_TRY(labels, sonar::read_map(files.paths[kLabelGroup]));
+  }
+  LoadedFrame frame;
+  NERITIC_TRY(frame.in, sonar::make_input(depth, normals ? &*normals : nullptr,
+                                          labels ? &*labels : nullptr, intrinsics, job.options));
+  frame.files = files;
+  frame.facts = facts_of(job, files, frame.in);
+  frame.facts["timings_ms"]["read"] = to_ms(now_ns() - start);
+  return frame;
+}
+
+HeardFrame hear_by_reference(const SonarJob& job, LoadedFrame frame) {
+  const TimeNs begin = now_ns();
+  HeardFrame heard;
+  heard.image = sonar::reference_image(job.head.beams, std::span(&frame.in, 1));
+  heard.facts = std::move(frame.facts);
+  heard.facts["timings_ms"]["sonar"] = to_ms(now_ns() - begin);
+  heard.facts["device"] = "CPU, double precision";
+  return heard;
+}
+
+Result<std::unique_ptr<SonarEar>> SonarEar::create(const SonarJob& job) {
+  std::unique_ptr<SonarEar> made(new SonarEar(job));
+  gpu::DeviceOptions options;
+  options.device = job.flags.device;
+  options.cache_folder = gpu::default_cache_folder();
+  NERITIC_TRY(made->device_, gpu::Device::create(options));
+  return made;
+}
+
+Status SonarEar::prepare(const sonar::SonarInput& in) {
+  if (gather_ && same_shape(in, shape_)) return gather_->upload(std::span(&in, 1));
+  gather_.reset();
+  if (job_.plain()) {
+    NERITIC_TRY(gather_, sonar::ImageGather::create(*device_, job_.head.beams, std::span(&in, 1),
+                                                    job_.gather));
+  } else {
+    NERITIC_TRY(gather_,
+                sonar::ImageGather::create(*device_, job_.sonar, job_.head, in, job_.gather));
+  }
+  shape_.width = in.width;
+  shape_.height = in.height;
+  shape_.intrinsics = in.intrinsics;
+  shape_.normals_face_sensor = in.normals_face_sensor;
+  return {};
+}
+
+Result<HeardFrame> SonarEar::hear(LoadedFrame frame) {
+  NERITIC_TRY_STATUS(prepare(frame.in));
+  sonar::PingState state = job_.state;
+  state.ping = ping_number(frame.files);
+  HeardFrame heard;
+  NERITIC_TRY(heard.image, gather_->run(state));
+  heard.label_energy = gather_->label_energy();
+  // Images tell classes; the index that stands for the instance in the gather means nothing here.
+  if (heard.label_energy)
+    std::fill(heard.label_energy->instances.begin(), heard.label_energy->instances.end(),
+              std::uint16_t{0});
+  heard.facts = std::move(frame.facts);
+  heard.facts["gather"] = sonar::name_of(job_.gather);
+  heard.facts["device"] = device_->info().name;
+  heard.facts["timings_ms"]["sonar"] = gather_->wall_ms();
+  for (const gpu::PassTime& pass : gather_->pass_times())
+    heard.facts["timings_ms"][pass.name] = pass.ms;
+  return heard;
+}
+
+Status write_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame) {
+  NERITIC_TRY_STATUS(make_folder(folder));
+  NERITIC_TRY_STATUS(add_findings(job, folder, frame.image, frame.facts));
+  return sonar::write_sonar(folder,
+                            {.grid = job.head.beams,
+                             .image = frame.image,
+                             .kind = job.sonar.kind,
+                             .level = job.sonar.terms.level.has_value(),
+                             .output = job.sonar.terms.output,
+                             .label_energy = frame.label_energy ? &*frame.label_energy : nullptr,
+                             .picture = !job.flags.no_pictures},
+                            frame.facts);
+}
+
+}  // namespace neritic::tools

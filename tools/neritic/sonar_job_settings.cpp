@@ -1,0 +1,76 @@
+// The settings of a `neritic sonar` run as they stand in its results, so that a later run can tell
+// whether a result would be its own.
+#include "engine/core/files.hpp"
+#include "engine/core/hash.hpp"
+#include "sonar/terms_json.hpp"
+#include "tools/neritic/sonar_job.hpp"
+
+namespace neritic::tools {
+namespace {
+
+// Everything that the terms come to: what differs in it makes another image.
+std::string hash_of(const SonarJob& job) {
+  const auto floats = [](Hash64& hash, const auto& values) {
+    for (const auto& v : values) hash.add(v);
+  };
+  Hash64 hash;
+  const sonar::Ping ping = sonar::ping_of(job.sonar, job.head, job.state);
+  for (const glm::vec2& gain : ping.gains) hash.add(gain.x), hash.add(gain.y);
+  floats(hash, ping.correction);
+  hash.add(ping.noise_power);
+  hash.add(ping.echo.turns_per_m), hash.add(ping.echo.cells_per_m);
+  hash.add(ping.echo.patches_per_m);
+  if (job.head.echo) {
+    floats(hash, job.head.echo->weights);
+    floats(hash, job.head.echo->gamma_quantiles);
+  }
+  floats(hash, job.head.receiver.range.weights);
+  floats(hash, job.head.receiver.across.weights);
+  return hash.hex();
+}
+
+}  // namespace
+
+Result<nlohmann::json> settings_of(const SonarJob& job) {
+  const SonarFlags& f = job.flags;
+  const sonar::Limits& l = job.head.beams.limits;
+  const sonar::Bins& bins = job.head.samples.bins;
+  nlohmann::json json{{"kind", f.kind},
+                      {"method", f.method},
+                      {"range", {l.range_min_m, l.range_max_m}},
+                      {"azimuth", {degrees(l.azimuth_min_rad), degrees(l.azimuth_max_rad)}},
+                      {"elevation", {degrees(l.elevation_min_rad), degrees(l.elevation_max_rad)}},
+                      {"bins", {bins.range, bins.azimuth, bins.elevation}},
+                      {"normals", f.normals.empty() ? "estimated from depth" : "from files"},
+                      {"labels", f.labels.empty() ? "none" : "from files"},
+                      {"depth_kind", f.depth_kind},
+                      {"depth_scale", job.options.depth_scale},
+                      {"axes", f.axes},
+                      {"normals_sign", f.normals_sign},
+                      {"gamma", job.options.gamma},
+                      {"intrinsics", f.intrinsics},
+                      {"pixel_centers", f.pixel_centers},
+                      {"pictures", !f.no_pictures}};
+  if (std::filesystem::path(f.intrinsics).extension() == ".json") {
+    NERITIC_TRY(const std::string text, read_text(f.intrinsics));
+    Hash64 hash;
+    hash.add_bytes(text.data(), text.size());
+    json["intrinsics"] = std::filesystem::path(f.intrinsics).filename().string() + " " + hash.hex();
+  }
+  if (f.method == "gpu") json["gather"] = sonar::name_of(job.gather);
+  if (f.method == "image") {
+    json["altitude"] = f.altitude.empty() ? "from depth images" : f.altitude;
+    json["incidence"] = f.incidence;
+  } else if (!job.plain()) {
+    json["terms"] = sonar::terms_json(job.sonar.terms);
+    json["terms_hash"] = hash_of(job);
+    json["labels_by_energy"] = job.sonar.terms.labels.energy;
+    json["seed"] = f.seed;
+    json["side"] = job.head.name;
+    json["output"] = {job.sonar.terms.output.bits, job.sonar.terms.output.floor_db,
+                      job.sonar.terms.output.span_db};
+  }
+  return json;
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,43 @@
+// What lies in OUT of a run over a folder: which frames are there already and are this run's,
+// results that appear whole, and the list of what was left out.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <mutex>
+
+#include "tools/neritic/sonar_frame.hpp"
+
+namespace neritic::tools {
+
+// The names of a frame's images, as sonar.json tells them.
+nlohmann::json file_names(const sonar::FrameFiles& frame);
+
+// The numbers of the frames without a result of the same settings and files, or whose images are
+// newer; with --overwrite of all. kBadInput where a result has other settings, and names one.
+Result<std::vector<std::size_t>> frames_to_do(const SonarJob& job,
+                                              const std::vector<sonar::FrameFiles>& frames);
+
+// Runs write on a hidden folder beside OUT/name, which then takes its place. kBadInput where a
+// folder of that name is there that holds no earlier result: nobody's files are removed. Any
+// thread.
+Status write_whole(const std::filesystem::path& out, const std::string& name,
+                   const std::function<Status(const std::filesystem::path&)>& write);
+
+// Frames left out, with their reasons. Any thread.
+class SkippedFrames {
+ public:
+  void add(std::size_t frame, std::string reason);
+  std::size_t size() const;
+  std::string first() const;  // reason of the first frame left out; CHECKed
+  // file,reason, in order of frames; removes an older list where none was left out. The file is the
+  // leading group's.
+  Status write(const std::filesystem::path& path, const std::vector<sonar::FrameFiles>& frames,
+               FrameGroup lead) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::size_t, std::string> reasons_;
+};
+
+}  // namespace neritic::tools
