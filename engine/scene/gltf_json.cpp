@@ -5,31 +5,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/json.hpp"
+
 namespace neritic::scene::gltf {
 namespace {
-
-constexpr int kMaxNesting = 128;  // the specification's own objects nest about ten deep
-
-// Deepest nesting of brackets outside strings. The parser itself is iterative, but whatever walks
-// the document later (path search, destructor) must not exhaust the stack.
-int nesting_of(std::string_view text) {
-  int depth = 0, deepest = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      deepest = std::max(deepest, ++depth);
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return deepest;
-}
 
 bool find_path(const Json& from, const Json* wanted, std::string& path) {
   if (&from == wanted) return true;
@@ -187,23 +166,14 @@ std::string Field::found() const {
   if (value_->is_object()) return "an object";
   if (value_->is_array()) return fmt::format("an array of {}", value_->size());
   if (value_->is_string()) return "\"" + one_line(value_->get<std::string>(), 40) + "\"";
-  return one_line(value_->dump(), 40);
+  return one_line(json_text(*value_, -1), 40);
 }
 
 void parse_json(std::string_view text, Json& out, Report& report) {
-  if (const int depth = nesting_of(text); depth > kMaxNesting) {
-    report.fail("", fmt::format("JSON nested {} deep, at most {} is accepted", depth, kMaxNesting));
-    return;
-  }
-  try {
-    out = Json::parse(text.begin(), text.end());
-    if (!out.is_object()) report.fail("", "no JSON object found where glTF has one");
-  } catch (const std::exception& exception) {
-    // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
-    std::string_view what = exception.what();
-    if (const auto end = what.find("] "); end != what.npos) what.remove_prefix(end + 2);
-    report.fail("", fmt::format("no glTF JSON: {}", what));
-  }
+  Result<Json> parsed = neritic::parse_json(text);
+  if (!parsed.ok()) return report.fail("", "no glTF JSON: " + parsed.error().message);
+  out = std::move(*parsed);
+  if (!out.is_object()) report.fail("", "no JSON object found where glTF has one");
 }
 
 }  // namespace neritic::scene::gltf

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
@@ -35,7 +36,8 @@ std::vector<Case> read_cases() {
   const auto text = read_text(kFolder / "cases.json");
   if (!text.ok()) return {};
   std::vector<Case> cases;
-  for (const nlohmann::json& entry : nlohmann::json::parse(*text))
+  const nlohmann::json listed = parse_json(*text).value();
+  for (const nlohmann::json& entry : listed)
     cases.push_back({entry["name"], entry["scene"], entry.value("water", ""), entry["size"][0],
                      entry["size"][1], entry["time_s"], entry["max_fraction_of_pixels"],
                      entry["max_channel_difference"]});

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/scene/animation.hpp"
 #include "engine/scene/gltf_loader.hpp"
 #include "tests/scene/gltf_invariants.hpp"
@@ -28,8 +28,7 @@ std::vector<Case> validator_cases(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const std::string name = entry.path().string();
     if (!name.ends_with(".report.json")) continue;
-    std::ifstream in(entry.path());
-    const auto issues = nlohmann::json::parse(in)["issues"];
+    const auto issues = parse_json(read_text(entry.path()).value()).value()["issues"];
     Case one{name.substr(0, name.size() - std::string(".report.json").size()), {}};
     for (const auto& message : issues["messages"])
       if (message["severity"] == 0) one.errors.insert(message["code"]);
@@ -40,8 +39,7 @@ std::vector<Case> validator_cases(const fs::path& folder) {
 
 std::vector<Case> bad_inputs(const fs::path& folder) {
   std::vector<Case> cases;
-  std::ifstream in(folder / "validator.json");
-  const auto verdicts = nlohmann::json::parse(in);
+  const auto verdicts = parse_json(read_text(folder / "validator.json").value()).value();
   for (const auto& [name, verdict] : verdicts.items()) {
     Case one{folder / name, {}};
     for (const auto& [code, count] : verdict["codes"].items()) one.errors.insert(code);

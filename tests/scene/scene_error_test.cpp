@@ -1,42 +1,30 @@
 // Every wrong scene file ends in one line that names file, line and key, what was found and what is
-// accepted: a table of wrong lines and their messages, include loops, garbage.
+// accepted: a table of wrong lines and their messages.
 #include <gtest/gtest.h>
 
-#include <string>
-
-#include "engine/core/files.hpp"
-#include "engine/core/random.hpp"
-#include "engine/scene/scene.hpp"
-#include "tests/support/support.hpp"
+#include "tests/scene/scene_texts.hpp"
 
 namespace neritic::scene {
 namespace {
-
-// The message of loading text as a scene, its folder left out; "loaded" where it loads.
-std::string message_of(const test::ScratchFolder& scratch, const std::string& text,
-                       const std::string& name = "s.toml") {
-  EXPECT_TRUE(write_text(scratch / name, text).ok());
-  const auto scene = load_scene(scratch / name);
-  if (scene.ok()) return "loaded";
-  EXPECT_EQ(scene.error().code, ErrorCode::kBadInput);
-  std::string message = scene.error().message;
-  const std::string folder = scratch.path().string() + "/";
-  for (auto at = message.find(folder); at != std::string::npos; at = message.find(folder))
-    message.erase(at, folder.size());
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  return message;
-}
 
 struct Case {
   const char* text;
   const char* message;
 };
 
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.message;
+}
+
 class SceneError : public testing::TestWithParam<Case> {};
 
 TEST_P(SceneError, IsTheDocumentedLine) {
   const test::ScratchFolder scratch;
   EXPECT_EQ(message_of(scratch, GetParam().text), GetParam().message);
+}
+
+std::string name_of(const testing::TestParamInfo<Case>& info) {
+  return test::test_name(info.index, info.param.message);
 }
 
 #define SPHERE "[[objects]]\nshape = \"sphere\"\n"
@@ -84,7 +72,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"[classes]\ndiver = 40",
              "s.toml:2: classes.diver: found 40; accepted: a name and number of its own (class "
              "diver "
-             "is 4)"}));
+             "is 4)"}),
+    name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Object, SceneError,
@@ -171,7 +160,8 @@ INSTANTIATE_TEST_SUITE_P(
              "s.toml:3: objects[0].normal_texture: found \"x.png\"; accepted: no such key for a "
              "sphere"},
         Case{SPHERE "node = 'x'",
-             "s.toml:3: objects[0].node: found \"x\"; accepted: no such key for a sphere"}));
+             "s.toml:3: objects[0].node: found \"x\"; accepted: no such key for a sphere"}),
+    name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Scatter, SceneError,
@@ -211,7 +201,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "scatter = {area_m = [0, 0, 1, 1], count = 65535}",
              "s.toml:4: objects[1].name: 65535 copies make 65536 instances in all; accepted: at "
              "most "
-             "65535 (16-bit labels)"}));
+             "65535 (16-bit labels)"}),
+    name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Sensor, SceneError,
@@ -279,137 +270,8 @@ INSTANTIATE_TEST_SUITE_P(
              "hertz"},
         Case{"[[vehicles]]\nshape = 'box'\n[[vehicles.sonars]]\non = 'x'",
              "s.toml:4: vehicles[0].sonars[0].on: found \"x\"; accepted: no such key here: it is "
-             "mounted on vehicle_0"}));
-
-TEST(SceneInclude, ALoopIsRefusedWithItsChain) {
-  const test::ScratchFolder scratch;
-  ASSERT_TRUE(write_text(scratch / "b.toml", "\ninclude = 'c.toml'").ok());
-  ASSERT_TRUE(write_text(scratch / "c.toml", "include = ['s.toml']").ok());
-  EXPECT_EQ(message_of(scratch, "include = 'b.toml'"),
-            "c.toml:1: include: a loop: s.toml -> b.toml -> c.toml -> s.toml; accepted: files that "
-            "do not include each other");
-  EXPECT_EQ(message_of(scratch, "[[sonars]]\ninclude = './s.toml'"),
-            "s.toml:2: include: a loop: s.toml -> s.toml; accepted: files that do not include each "
-            "other");
-}
-
-TEST(SceneInclude, AWrongKeyInAnIncludedFileIsToldWithThatFilesLine) {
-  const test::ScratchFolder scratch;
-  ASSERT_TRUE(write_text(scratch / "sonar.toml", "# a sonar\nazimut_deg = 90").ok());
-  EXPECT_EQ(message_of(scratch, "[[sonars]]\ninclude = 'sonar.toml'"),
-            "sonar.toml:2: sonars[0].azimut_deg: unknown key; nearest known key: azimuth_deg");
-}
-
-TEST(SceneInclude, WhatIsNoFileIsRefused) {
-  const test::ScratchFolder scratch;
-  EXPECT_EQ(message_of(scratch, "include = 'no.toml'"), "s.toml:1: include: no.toml: no such file");
-  EXPECT_EQ(message_of(scratch, "include = '.'"), "s.toml:1: include: : no such file");
-  EXPECT_EQ(message_of(scratch, "include = 3"),
-            "s.toml:1: include: found 3; accepted: the path of a TOML file, or a list of such");
-  EXPECT_EQ(message_of(scratch, "include = [3]"),
-            "s.toml:1: include: found 3; accepted: the path of a TOML file, or a list of such");
-}
-
-TEST(SceneInclude, TooDeepOrTooManyIsRefused) {
-  const test::ScratchFolder scratch;
-  for (int i = 0; i < 12; ++i)
-    ASSERT_TRUE(
-        write_text(scratch / fmt::format("d{}.toml", i), fmt::format("include = 'd{}.toml'", i + 1))
-            .ok());
-  ASSERT_TRUE(write_text(scratch / "d12.toml", "").ok());
-  EXPECT_EQ(message_of(scratch, "include = 'd0.toml'"),
-            "d7.toml:1: include: more than 8 includes deep or 1000 in all");
-  // Five files a level, five levels deep: 3905 includes.
-  for (int i = 0; i < 5; ++i) {
-    const std::string next = fmt::format("'f{}.toml'", i + 1);
-    ASSERT_TRUE(write_text(scratch / fmt::format("f{}.toml", i),
-                           fmt::format("include = [{0}, {0}, {0}, {0}, {0}]", next))
-                    .ok());
-  }
-  ASSERT_TRUE(write_text(scratch / "f5.toml", "").ok());
-  EXPECT_NE(message_of(scratch, "include = 'f0.toml'").find("1000 in all"), std::string::npos);
-}
-
-TEST(SceneGarbage, TextThatIsNotTomlNamesItsLine) {
-  const test::ScratchFolder scratch;
-  const std::string message = message_of(scratch, "title = 'a'\nseed = = 3\n");
-  EXPECT_EQ(message.substr(0, 19), "s.toml:2: not TOML:") << message;
-  EXPECT_EQ(message_of(scratch, "title = 'a'\n\n[=]\nseed = 1\n"),
-            "s.toml:3: not TOML: a key, a value or a table's name in brackets is expected");
-  EXPECT_EQ(message_of(scratch, std::string("a = 1\n\0", 7)), "s.toml:2: not TOML: a zero byte");
-}
-
-TEST(SceneGarbage, RandomBytesAreOneLineEach) {
-  const test::ScratchFolder scratch;
-  const RandomKey key{2024, 1, 0};
-  std::uint64_t draw = 0;
-  for (int file = 0; file < 200; ++file) {
-    std::string bytes(1 + random_bits(key, draw++) % 3000, '\0');
-    for (char& byte : bytes) byte = static_cast<char>(random_bits(key, draw++));
-    EXPECT_NE(message_of(scratch, bytes), "loaded");
-  }
-}
-
-// A good scene with a few bytes changed either loads or is refused with one line.
-TEST(SceneGarbage, BrokenScenesNeverCrash) {
-  const test::ScratchFolder scratch;
-  const auto good = read_text(test::source_dir() / "assets/scenes/pool.toml");
-  ASSERT_TRUE(good.ok());
-  const RandomKey key{2024, 2, 0};
-  std::uint64_t draw = 0;
-  for (int file = 0; file < 500; ++file) {
-    std::string text = *good;
-    for (int change = 0; change < 3; ++change) {
-      const std::size_t at = random_bits(key, draw++) % text.size();
-      switch (random_bits(key, draw++) % 3) {
-        case 0:
-          text[at] = static_cast<char>(random_bits(key, draw++));
-          break;
-        case 1:
-          text.erase(at, 1 + random_bits(key, draw++) % 8);
-          break;
-        default:
-          text.insert(at, text.substr(random_bits(key, draw++) % text.size(), 9));
-          break;
-      }
-    }
-    message_of(scratch, text);
-  }
-}
-
-TEST(SceneGarbage, DeepNestingIsRefusedBeforeTheStackEnds) {
-  const test::ScratchFolder scratch;
-  std::string dotted = "a";
-  for (int i = 0; i < 200000; ++i) dotted += ".a";
-  EXPECT_NE(message_of(scratch, dotted + " = 1").find("more than 400 dots"), std::string::npos);
-  EXPECT_NE(message_of(scratch, "[" + dotted + "]").find("more than 400 dots"), std::string::npos);
-  EXPECT_NE(message_of(scratch, "a = " + std::string(100000, '[')).find("not TOML"),
-            std::string::npos);
-  // As deep as the limits allow: inline tables over many lines, 400 dots each.
-  std::string deep;
-  for (int i = 0; i < 30; ++i) {
-    deep += "a";
-    for (int k = 0; k < 399; ++k) deep += ".a";
-    deep += " = [\n{";
-  }
-  EXPECT_NE(message_of(scratch, deep), "loaded");
-}
-
-TEST(SceneGarbage, AHugeFileIsRefusedByItsSize) {
-  const test::ScratchFolder scratch;
-  EXPECT_EQ(message_of(scratch, std::string((4u << 20) + 1, '#')),
-            "s.toml: 4194305 bytes; accepted: a scene file of at most 4194304");
-}
-
-TEST(SceneGarbage, AFolderOrNothingIsRefused) {
-  const test::ScratchFolder scratch;
-  const auto folder = load_scene(scratch.path());
-  ASSERT_FALSE(folder.ok());
-  EXPECT_EQ(folder.error().code, ErrorCode::kBadInput);
-  const auto nothing = load_scene(scratch / "no.toml");
-  ASSERT_FALSE(nothing.ok());
-  EXPECT_EQ(nothing.error().message, (scratch / "no.toml").string() + ": no such file");
-}
+             "mounted on vehicle_0"}),
+    name_of);
 
 }  // namespace
 }  // namespace neritic::scene

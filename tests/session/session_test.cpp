@@ -170,7 +170,9 @@ TEST_F(SessionTest, SphereHasItsClosedFormDepthAndNormals) {
       const double a = glm::dot(ray, ray), b = -2.0 * 4.0, c = 16.0 - 1.0;
       const double under = b * b - 4.0 * a * c;
       if (under < 0.6) {
-        if (under < -0.6) EXPECT_TRUE(std::isinf(eye.depth.at(x, y)));
+        if (under < -0.6) {
+          EXPECT_TRUE(std::isinf(eye.depth.at(x, y)));
+        }
         continue;  // the mesh's silhouette
       }
       const double t = (-b - std::sqrt(under)) / (2.0 * a);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/scene/shapes.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
@@ -117,7 +118,7 @@ TEST_F(SonarSettings, FileSaysWhichPixelsACellWereAskedForAndUsed) {
   facts.scene = "scene\xff.toml";  // a path need not be UTF-8
   ASSERT_TRUE(write_sonar(scratch / "sonar", result.sonars[0], facts).ok());
   NERITIC_ASSERT_OK(const auto text, read_text(scratch / "sonar" / "sonar.json"));
-  const auto gbuffer = nlohmann::json::parse(text)["model"]["gbuffer"];
+  const auto gbuffer = parse_json(text).value()["model"]["gbuffer"];
   EXPECT_EQ(gbuffer["width"], result.sonars[0].gbuffer_width);
   EXPECT_EQ(gbuffer["pixels_per_cell"]["requested"], 10.0);
   EXPECT_LT(gbuffer["pixels_per_cell"]["used"][0].get<double>(), 9.0);

@@ -42,11 +42,13 @@ class GpuEnvironment : public ::testing::Environment {
   std::unique_ptr<Result<std::unique_ptr<gpu::Device>>> device_;
 };
 
-// May a test be skipped for this error? Only where nothing is there to test on, and none is required.
+// May a test be skipped for this error? Only where nothing is there to test on, and none is
+// required.
 inline bool may_skip_without_device(const Error& error) {
   const char* required = std::getenv("NERITIC_REQUIRE_DEVICE");
   if (required && std::string(required) == "1") return false;
-  const bool named = std::getenv("NERITIC_TEST_DEVICE") != nullptr;  // a wrong name is no missing device
+  const bool named =
+      std::getenv("NERITIC_TEST_DEVICE") != nullptr;  // a wrong name is no missing device
   return (error.code == ErrorCode::kNoDevice && !named) || !gpu::validation_layer_present();
 }
 

@@ -3,18 +3,32 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cctype>
 #include <cstdlib>
 
 namespace neritic::test {
 namespace fs = std::filesystem;
 
-fs::path source_dir() { return NERITIC_SOURCE_DIR; }
+fs::path source_dir() {
+  return NERITIC_SOURCE_DIR;
+}
 
 std::optional<fs::path> shared_dir() {
   const char* named = std::getenv("NERITIC_SHARED");
   const fs::path folder = named ? fs::path(named) : source_dir().parent_path() / "shared";
   if (!fs::is_directory(folder / "reference")) return std::nullopt;
   return folder;
+}
+
+std::string test_name(std::size_t index, std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  std::string name = std::to_string(index) + "_";
+  for (const char c : text.substr(0, kLongest)) {
+    const bool word = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (word || name.back() != '_') name += word ? c : '_';
+  }
+  if (name.back() == '_') name.pop_back();
+  return name;
 }
 
 ScratchFolder::ScratchFolder() {

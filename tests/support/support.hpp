@@ -1,18 +1,23 @@
-// What every test program shares: where the source tree and the shared real data lie, scratch folders.
+// What every test program shares: where the source tree and the shared real data lie, scratch
+// folders.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace neritic::test {
 
 // The repository's root.
 std::filesystem::path source_dir();
 
-// The folder of real data and reference numbers beside the checkout (../shared, or $NERITIC_SHARED);
-// nothing where it is absent: such tests report skipped, never passed.
+// The folder of real data and reference numbers beside the checkout (../shared, or
+// $NERITIC_SHARED); nothing where it is absent: such tests report skipped, never passed.
 std::optional<std::filesystem::path> shared_dir();
+
+// The name of a parameterised test: its index and the words of a text that says what it is about.
+std::string test_name(std::size_t index, std::string_view text);
 
 // A fresh, empty folder for this test's files, removed at its end.
 class ScratchFolder {
@@ -31,7 +36,7 @@ class ScratchFolder {
 }  // namespace neritic::test
 
 // In a test: NERITIC_REQUIRE_SHARED(shared); then shared is the folder.
-#define NERITIC_REQUIRE_SHARED(variable)                                     \
-  const auto variable##_maybe = ::neritic::test::shared_dir();               \
+#define NERITIC_REQUIRE_SHARED(variable)                                       \
+  const auto variable##_maybe = ::neritic::test::shared_dir();                 \
   if (!variable##_maybe) GTEST_SKIP() << "no ../shared folder with real data"; \
   const std::filesystem::path& variable = *variable##_maybe

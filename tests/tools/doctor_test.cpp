@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic::tools {
@@ -105,7 +106,7 @@ TEST(DoctorText, SaysWhatAnUnusableDeviceLacks) {
 TEST(DoctorJson, HoldsTheSameForProgramsEvenWithBytesThatAreNoText) {
   Machine machine = complete_machine();
   machine.openxr_runtime = "/tmp/\xff\xfe";
-  const auto json = nlohmann::json::parse(doctor_json(machine));
+  const auto json = parse_json(doctor_json(machine)).value();
   EXPECT_EQ(json["devices"][0]["name"], "Good Card");
   EXPECT_EQ(json["chosen"], 0);
   EXPECT_TRUE(json["trouble"].is_null());

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/gpu/device.hpp"
 #include "engine/scene/image_file.hpp"
@@ -138,12 +139,12 @@ TEST(RenderCommand, WritesTheFileContractAndTheArraysAgreeWithEachOther) {
     EXPECT_EQ(image->shape, (std::vector<std::size_t>{500, 500}));
     EXPECT_EQ(classes->shape, image->shape);
     for (const fs::path& facts : {camera / "meta.json", sonar / "meta.json"}) {
-      const auto meta = nlohmann::json::parse(read_text(facts).value());
+      const auto meta = parse_json(read_text(facts).value()).value();
       for (const char* key : {"fx", "fy", "cx", "cy", "pose", "frames", "near_m", "time_s", "seed",
                               "scene", "device", "passes_ms"})
         EXPECT_TRUE(meta.contains(key)) << facts << " " << key;
     }
-    const auto json = nlohmann::json::parse(read_text(sonar / "sonar.json").value());
+    const auto json = parse_json(read_text(sonar / "sonar.json").value()).value();
     for (const char* key : {"limits", "bins", "units", "model", "seed", "timings_ms"})
       EXPECT_TRUE(json.contains(key)) << key;
     EXPECT_TRUE(fs::exists(sonar / "sonar.png"));

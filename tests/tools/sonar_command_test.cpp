@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/math.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/gpu/device.hpp"
@@ -158,7 +159,7 @@ TEST_P(RealImages, GiveTheSameSonarImageByBothMethods) {
   ASSERT_TRUE(done.ok()) << done.error().message;
   const auto reference = numbers_of(out("reference") / "sonar.npy");
   const auto labels = numbers_of(out("reference") / "sonar_labels.npy");
-  const auto facts = nlohmann::json::parse(*read_text(out("reference") / "sonar.json"));
+  const auto facts = parse_json(*read_text(out("reference") / "sonar.json")).value();
   const std::size_t columns = facts["bins"]["azimuth"], rows = facts["bins"]["range"];
   ASSERT_EQ(reference.size(), rows * columns);
   ASSERT_EQ(labels.size(), rows * columns);
@@ -281,7 +282,7 @@ TEST_F(SmallImages, NormalsAreEstimatedFromTheDepthAndSaidSo) {
   all.erase(at, at + 2);
   ASSERT_TRUE(sonar(all).ok());
   EXPECT_NEAR(energy(), expected, 1e-6 * expected);
-  const auto facts = nlohmann::json::parse(*read_text(folder_ / "out" / "sonar.json"));
+  const auto facts = parse_json(*read_text(folder_ / "out" / "sonar.json")).value();
   EXPECT_EQ(facts["normals"], "estimated from depth");
 }
 

@@ -28,7 +28,7 @@ std::string text_of(const fs::path& path) {
 
 Outcome dive(const test::ScratchFolder& scratch, const std::string& before,
              const std::string& arguments) {
-  const std::string program = std::string(NERITIC_BINARY_DIR) + "/tools/neritic";
+  const std::string program = fmt::format("{}/tools/neritic", NERITIC_BINARY_DIR);
   const std::string command =
       fmt::format("{} '{}' dive {} > '{}' 2> '{}'", before, program, arguments,
                   (scratch / "out").string(), (scratch / "err").string());

@@ -19,8 +19,8 @@ FrameRequest request_of(std::vector<std::size_t> cameras, std::vector<std::size_
   return request;
 }
 
-nlohmann::json scene_facts(const std::string& file, const Session& session) {
-  return {{"scene", file}, {"triangles", session.gpu_scene().triangles()}};
+Facts scene_facts(const std::string& file, const Session& session) {
+  return {{"scene", file}, {"triangles", static_cast<double>(session.gpu_scene().triangles())}};
 }
 
 // What a frame costs on the CPU before anything is recorded.
@@ -63,7 +63,9 @@ Status bench_sonar_frame(Suite& suite, gpu::Device& device) {
   Contender many = frames_of("sonar_frame/23k_ten_sonars", *ten, all);
   for (Contender* c : {&single, &with_arrays, &many}) {
     c->facts = scene_facts(file, *one);
-    c->facts["bins"] = {sonar.bins_range, sonar.bins_azimuth, sonar.bins_elevation};
+    c->facts["bins"] = std::vector<double>{static_cast<double>(sonar.bins_range),
+                                           static_cast<double>(sonar.bins_azimuth),
+                                           static_cast<double>(sonar.bins_elevation)};
   }
   NERITIC_TRY_STATUS(suite.measure({single, with_arrays, many}, 40));
 
@@ -98,7 +100,7 @@ Status bench_camera_frame(Suite& suite, gpu::Device& device) {
                              const FrameRequest& request) {
     Contender c = frames_of("camera_frame/" + name, session, request);
     c.facts = scene_facts(file, session);
-    c.facts["size"] = {1280, 720};
+    c.facts["size"] = std::vector<double>{1280, 720};
     return c;
   };
   NERITIC_TRY_STATUS(

@@ -1,10 +1,8 @@
 // The program `neritic_bench`; tools/bench builds and runs it.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
 
-#include "engine/core/files.hpp"
 #include "tools/benchmark/groups.hpp"
 
 namespace neritic::bench {
@@ -30,34 +28,68 @@ Status run(Suite& suite) {
   fmt::print("{}, {} threads\n\n", device->info().name, thread_count());
   suite.print();
   if (suite.options().json.empty()) return {};
-  return write_text(suite.options().json,
-                    suite.to_json(device->info().name, thread_count()).dump(2) + "\n");
+  return suite.write(suite.options().json, device->info().name, thread_count());
 }
 
-int main_of(int argc, char** argv) {
+// A flag takes either a text or nothing. Read here and not by CLI11, whose header alone would take
+// longer to compile than all of this program.
+struct Flag {
+  const char *name, *help;
+  std::string Options::*text = nullptr;
+  bool Options::*on = nullptr;
+};
+
+constexpr Flag kFlags[] = {
+    {"--json", "also write the results to this file", &Options::json},
+    {"--filter",
+     "only groups whose name holds this: sonar_binning, sonar_frame, camera_frame, sweep, start,\n"
+     "             threads; or one GROUP/NAME",
+     &Options::filter},
+    {"--device", "Vulkan device: index or part of its name", &Options::device},
+    {"--assets", "the folder that holds scenes/", &Options::assets},
+    {"--quick", "few rounds", nullptr, &Options::quick},
+    {"--sweep", "also cost against bins, pixels and triangles", nullptr, &Options::sweep},
+    {"--once", "one round of each, in this process only", nullptr, &Options::once},
+};
+
+void print_help() {
+  fmt::print("Measures Neritic, checks that results keep their bits\n\nneritic_bench [FLAGS]\n");
+  for (const Flag& flag : kFlags) fmt::print("  {:<10} {}\n", flag.name, flag.help);
+}
+
+Result<Options> parse(std::span<char* const> words) {
   Options options;
-  CLI::App app{"Measures Neritic, checks that results keep their bits", "neritic_bench"};
-  app.add_option("--json", options.json, "also write the results to this file");
-  app.add_option("--filter", options.filter,
-                 "only groups whose name holds this: sonar_binning, sonar_frame, camera_frame, "
-                 "sweep, start, threads");
-  app.add_option("--device", options.device, "Vulkan device: index or part of its name");
-  app.add_option("--assets", options.assets, "the folder that holds scenes/");
-  app.add_flag("--quick", options.quick, "few rounds");
-  app.add_flag("--sweep", options.sweep, "also cost against bins, pixels and triangles");
-  app.add_flag("--once", options.once, "one round of each, in this process only");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    std::fprintf(stderr, "neritic_bench: %s (see neritic_bench --help)\n", error.what());
-    return 2;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string word = words[i];
+    const auto flag = std::find_if(std::begin(kFlags), std::end(kFlags),
+                                   [&](const Flag& f) { return word == f.name; });
+    if (flag == std::end(kFlags))
+      return bad_input("'{}' is no flag (see neritic_bench --help)", word);
+    if (flag->on) {
+      options.*flag->on = true;
+      continue;
+    }
+    if (++i == words.size()) return bad_input("{} needs a value (see neritic_bench --help)", word);
+    options.*flag->text = words[i];
   }
-  Suite suite(options);
-  if (const Status status = run(suite); !status.ok()) {
-    std::fprintf(stderr, "neritic_bench: %s\n", status.error().message.c_str());
-    return exit_status(status.error().code);
-  }
+  return options;
+}
+
+int fail(const Error& error) {
+  std::fprintf(stderr, "neritic_bench: %s\n", error.message.c_str());
+  return exit_status(error.code);
+}
+
+int main_of(std::span<char* const> words) {
+  for (const std::string_view word : words)
+    if (word == "--help" || word == "-h") {
+      print_help();
+      return 0;
+    }
+  const Result<Options> options = parse(words);
+  if (!options.ok()) return fail(options.error());
+  Suite suite(*options);
+  if (const Status status = run(suite); !status.ok()) return fail(status.error());
   return suite.failures().empty() ? 0 : 1;
 }
 
@@ -65,5 +97,5 @@ int main_of(int argc, char** argv) {
 }  // namespace neritic::bench
 
 int main(int argc, char** argv) {
-  return neritic::bench::main_of(argc, argv);
+  return neritic::bench::main_of({argv + 1, argv + argc});
 }

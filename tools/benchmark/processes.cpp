@@ -4,7 +4,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
@@ -114,18 +113,18 @@ Status bench_threads(Suite& suite, const std::string& device_name) {
         status != 0)
       return failure(ErrorCode::kIo, "{} --once on {} threads ended with {}", words[0], i + 1,
                      status);
-    NERITIC_TRY(const std::string text, read_text(json));
-    const nlohmann::json parsed = nlohmann::json::parse(text);
-    for (const nlohmann::json& r : parsed["results"])
-      hashes[i][r["name"].get<std::string>()] = r["hash"].get<std::string>();
+    NERITIC_TRY(hashes[i], read_hashes(json));
   }
+  std::size_t equal = 0;
   for (const auto& [name, hash] : hashes[0]) {
-    if (hashes[1][name] != hash)
+    if (hashes[1][name] == hash)
+      ++equal;
+    else
       suite.fail(fmt::format("{}: {} on one thread, {} on two", name, hash, hashes[1][name]));
     if (const Measured* here = suite.find(name); here && here->hash != hash)
       suite.fail(fmt::format("{}: {} in this run, {} on one thread", name, here->hash, hash));
   }
-  suite.note("same_hash_on_1_and_2_threads", hashes[0].size());
+  suite.note("equal_on_1_and_2_threads", fmt::format("{} of {} results", equal, hashes[0].size()));
   return {};
 }
 

@@ -70,7 +70,7 @@ Status bench_sonar_binning(Suite& suite, gpu::Device& device) {
                                             energies[mode]));
   }
   for (Contender& c : contenders) {
-    c.facts = {{"pixels", kPixels * kPixels}, {"bins", {500, 500, 500}}};
+    c.facts = {{"pixels", double(kPixels) * kPixels}, {"bins", std::vector<double>{500, 500, 500}}};
     c.warm = true;
   }
   NERITIC_TRY_STATUS(suite.measure(std::move(contenders), 40));

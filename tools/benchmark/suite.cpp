@@ -4,6 +4,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 
 namespace neritic::bench {
 namespace {
@@ -22,6 +27,23 @@ double process_cpu_ms() {
       ms += static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_usec) * 1e-3;
   }
   return ms;
+}
+
+// Counts are doubles here and whole numbers there.
+nlohmann::json json_of(double value) {
+  return value == std::floor(value) ? nlohmann::json(static_cast<std::int64_t>(value))
+                                    : nlohmann::json(value);
+}
+nlohmann::json json_of(const std::string& text) {
+  return text;
+}
+nlohmann::json json_of(const std::vector<double>& values) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const double value : values) list.push_back(json_of(value));
+  return list;
+}
+nlohmann::json json_of(const Fact& fact) {
+  return std::visit([](const auto& value) { return json_of(value); }, fact);
 }
 
 Status run_untimed(const Contender& contender) {
@@ -99,8 +121,7 @@ void Suite::ratio(const std::string& name, const std::string& numerator,
                   const std::string& denominator) {
   const Measured *a = find(numerator), *b = find(denominator);
   if (!a || !b || b->min_ms() <= 0.0) return;
-  ratios_[name] = a->min_ms() / b->min_ms();
-  median_ratios_[name] = a->median_ms() / b->median_ms();
+  ratios_[name] = {a->min_ms() / b->min_ms(), a->median_ms() / b->median_ms()};
 }
 
 void Suite::must_agree(const std::string& a, const std::string& b) {
@@ -110,41 +131,47 @@ void Suite::must_agree(const std::string& a, const std::string& b) {
     fail(fmt::format("{} gives {}, {} gives {}: they must be the same", a, x->hash, b, y->hash));
 }
 
-void Suite::aim(const std::string& what, double reached, double limit, bool at_most,
-                const std::string& unit) {
-  aims_.push_back({{"what", what},
-                   {"reached", reached},
-                   {at_most ? "at_most" : "at_least", limit},
-                   {"unit", unit},
-                   {"met", at_most ? reached <= limit : reached >= limit}});
-}
-
 void Suite::aim_ms(const std::string& what, const std::string& result, double limit_ms) {
-  if (const Measured* m = find(result)) aim(what, m->median_ms(), limit_ms, true, "ms");
+  if (const Measured* m = find(result))
+    aims_.push_back({what, "ms", m->median_ms(), limit_ms, true});
 }
 
 void Suite::aim_ratio(const std::string& what, const std::string& ratio, double at_least) {
-  if (ratios_.contains(ratio)) aim(what, ratios_[ratio].get<double>(), at_least, false, "times");
+  if (const auto at = ratios_.find(ratio); at != ratios_.end())
+    aims_.push_back({what, "times", at->second.of_least, at_least, false});
 }
 
-nlohmann::json Suite::to_json(const std::string& device, unsigned threads) const {
+Status Suite::write(const std::string& file, const std::string& device, unsigned threads) const {
   nlohmann::json results = nlohmann::json::array();
   for (const Measured& m : results_) {
     nlohmann::json one{{"name", m.name},       {"median_ms", m.median_ms()},
                        {"min_ms", m.min_ms()}, {"cpu_ms", median(m.cpu_ms)},
                        {"n", m.ms.size()},     {"hash", m.hash}};
     for (const auto& [name, values] : m.parts) one["parts_ms"][name] = median(values);
-    one.update(m.facts);
+    for (const auto& [name, fact] : m.facts) one[name] = json_of(fact);
     results.push_back(std::move(one));
   }
-  return {{"device", device},
-          {"threads", threads},
-          {"results", results},
-          {"ratios", ratios_},
-          {"ratios_of_medians", median_ratios_},
-          {"facts", facts_},
-          {"aims", aims_},
-          {"failures", failures_}};
+  nlohmann::json ratios = nlohmann::json::object(), of_medians = ratios, facts = ratios;
+  for (const auto& [name, ratio] : ratios_) {
+    ratios[name] = ratio.of_least;
+    of_medians[name] = ratio.of_medians;
+  }
+  for (const auto& [name, fact] : facts_) facts[name] = json_of(fact);
+  nlohmann::json aims = nlohmann::json::array();
+  for (const Aim& a : aims_)
+    aims.push_back({{"what", a.what},
+                    {"reached", a.reached},
+                    {a.at_most ? "at_most" : "at_least", a.limit},
+                    {"unit", a.unit},
+                    {"met", a.met()}});
+  return write_json(file, {{"device", device},
+                           {"threads", threads},
+                           {"results", results},
+                           {"ratios", ratios},
+                           {"ratios_of_medians", of_medians},
+                           {"facts", facts},
+                           {"aims", aims},
+                           {"failures", failures_}});
 }
 
 void Suite::print() const {
@@ -158,20 +185,24 @@ void Suite::print() const {
                  *std::min_element(values.begin(), values.end()));
   }
   if (!ratios_.empty()) fmt::print("\n{:<44} {:>10} {:>10}\n", "ratios", "of least", "of medians");
-  for (const auto& [name, value] : ratios_.items())
-    fmt::print("{:<44} {:>10.2f} {:>10.2f}\n", name, value.get<double>(),
-               median_ratios_[name].get<double>());
-  for (const auto& [name, value] : facts_.items())
-    fmt::print("{:<44} {:>10}\n", name, value.dump());
+  for (const auto& [name, ratio] : ratios_)
+    fmt::print("{:<44} {:>10.2f} {:>10.2f}\n", name, ratio.of_least, ratio.of_medians);
+  for (const auto& [name, fact] : facts_)
+    fmt::print("{:<44} {:>10}\n", name, json_text(json_of(fact), -1));
   if (!aims_.empty()) fmt::print("\n");
-  for (const nlohmann::json& a : aims_) {
-    const bool at_most = a.contains("at_most");
-    fmt::print("{:<44} {:>10.3f} {} (aim: {} {}) {}\n", a["what"].get<std::string>(),
-               a["reached"].get<double>(), a["unit"].get<std::string>(),
-               at_most ? "at most" : "at least", a[at_most ? "at_most" : "at_least"].get<double>(),
-               a["met"].get<bool>() ? "met" : "MISSED");
-  }
+  for (const Aim& a : aims_)
+    fmt::print("{:<44} {:>10.3f} {} (aim: {} {}) {}\n", a.what, a.reached, a.unit,
+               a.at_most ? "at most" : "at least", a.limit, a.met() ? "met" : "MISSED");
   for (const std::string& failure : failures_) fmt::print("FAILED: {}\n", failure);
+}
+
+Result<std::map<std::string, std::string>> read_hashes(const std::string& file) {
+  NERITIC_TRY(const std::string text, read_text(file));
+  NERITIC_TRY(const nlohmann::json parsed, parse_json(text));
+  std::map<std::string, std::string> hashes;
+  for (const nlohmann::json& result : parsed["results"])
+    hashes[result["name"].get<std::string>()] = result["hash"].get<std::string>();
+  return hashes;
 }
 
 }  // namespace neritic::bench

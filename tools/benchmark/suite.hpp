@@ -5,8 +5,8 @@
 
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "engine/core/result.hpp"
@@ -30,10 +30,14 @@ struct Sample {
   std::string hash;
 };
 
+// Sizes, counts, settings: what a figure is about.
+using Fact = std::variant<double, std::string, std::vector<double>>;
+using Facts = std::map<std::string, Fact>;
+
 struct Contender {
   std::string name;
   std::function<Result<Sample>()> run;
-  nlohmann::json facts = nlohmann::json::object();  // sizes, counts, settings
+  Facts facts;
   // One untimed run before each timed one, so that a contender finds its own data in the caches and
   // not the half gigabyte of the one before it.
   bool warm = false;
@@ -44,12 +48,19 @@ struct Measured {
   std::vector<double> ms;      // wall time, or GPU time where the name says so
   std::vector<double> cpu_ms;  // of all threads and child processes, the hashing included
   std::map<std::string, std::vector<double>> parts;
-  nlohmann::json facts;
+  Facts facts;
   double median_ms() const;
   double min_ms() const;
 };
 
 double median(std::vector<double> values);
+
+struct Aim {
+  std::string what, unit;
+  double reached = 0.0, limit = 0.0;
+  bool at_most = true;  // or at least
+  bool met() const { return at_most ? reached <= limit : reached >= limit; }
+};
 
 class Suite {
  public:
@@ -71,22 +82,27 @@ class Suite {
   void aim_ratio(const std::string& what, const std::string& ratio, double at_least);
 
   // A fact of the whole run, beside the ratios.
-  void note(const std::string& name, nlohmann::json value) { facts_[name] = std::move(value); }
+  void note(const std::string& name, Fact value) { facts_[name] = std::move(value); }
 
-  nlohmann::json to_json(const std::string& device, unsigned threads) const;
+  // Everything as a JSON file.
+  Status write(const std::string& file, const std::string& device, unsigned threads) const;
   void print() const;
   const std::vector<std::string>& failures() const { return failures_; }
   const std::vector<Measured>& results() const { return results_; }
 
  private:
-  void aim(const std::string& what, double reached, double limit, bool at_most,
-           const std::string& unit);
   Options options_;
   std::vector<Measured> results_;
-  nlohmann::json ratios_ = nlohmann::json::object(), median_ratios_ = nlohmann::json::object();
-  nlohmann::json facts_ = nlohmann::json::object();
-  nlohmann::json aims_ = nlohmann::json::array();
+  struct Ratio {
+    double of_least = 0.0, of_medians = 0.0;
+  };
+  std::map<std::string, Ratio> ratios_;
+  Facts facts_;
+  std::vector<Aim> aims_;
   std::vector<std::string> failures_;
 };
+
+// Name and hash of every result in a file that Suite::write made.
+Result<std::map<std::string, std::string>> read_hashes(const std::string& file);
 
 }  // namespace neritic::bench

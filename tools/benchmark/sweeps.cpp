@@ -26,7 +26,7 @@ Status sweep_bins(Suite& suite, gpu::Device& device, const std::string& axis,
                             sample.ms = sample.parts["sonar clear"] + sample.parts["sonar gather"];
                             return sample;
                           },
-                          {{axis, count}}});
+                          {{axis, double(count)}}});
   }
   return suite.measure(std::move(contenders));
 }
@@ -71,7 +71,7 @@ Status sweep_triangles(Suite& suite, gpu::Device& device) {
     request.capture = {false, false, false};
     contenders.push_back(
         frames_of(fmt::format("sweep/triangles_{}", triangles), *session, request));
-    contenders.back().facts = {{"triangles", triangles}};
+    contenders.back().facts = {{"triangles", static_cast<double>(triangles)}};
     sessions.push_back(std::move(session));
   }
   return suite.measure(std::move(contenders));

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/json.hpp"
 #include "tools/neritic/commands.hpp"
 
 namespace neritic::tools {
@@ -66,7 +67,7 @@ std::string device_text(const Machine& machine, std::size_t position) {
   return text;
 }
 
-nlohmann::ordered_json device_json(const gpu::DeviceInfo& device) {
+nlohmann::json device_json(const gpu::DeviceInfo& device) {
   return {{"index", device.index},
           {"name", device.name},
           {"kind", device.kind},
@@ -135,8 +136,8 @@ std::string doctor_text(const Machine& machine) {
 }
 
 std::string doctor_json(const Machine& machine) {
-  nlohmann::ordered_json json;
-  json["devices"] = nlohmann::ordered_json::array();
+  nlohmann::json json;
+  json["devices"] = nlohmann::json::array();
   for (const gpu::DeviceInfo& device : machine.devices)
     json["devices"].push_back(device_json(device));
   json["chosen"] = nullptr;
@@ -155,7 +156,7 @@ std::string doctor_json(const Machine& machine) {
   for (const Verdict& verdict : verdicts(machine))
     json["works"][verdict.command] = {{"works", verdict.works}, {"why", verdict.why}};
   // Names from the environment may be any bytes; what is not UTF-8 is replaced.
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 Status run_doctor(const DoctorFlags& flags) {
