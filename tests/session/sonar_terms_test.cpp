@@ -2,93 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
-#include <numeric>
 
-#include "engine/scene/shapes.hpp"
-#include "sonar/acoustics.hpp"
-#include "tests/support/gpu_fixture.hpp"
-#include "tests/support/support.hpp"
-#include "tools/session/session.hpp"
+#include "tests/session/sonar_pings.hpp"
 
 namespace neritic::tools {
 namespace {
 
 using SonarTerms = test::GpuTest;
-
-scene::Object object_of(scene::Scene& scene, scene::Model model, const Vec3& at) {
-  scene.models.push_back(std::make_shared<scene::Model>(std::move(model)));
-  scene::Object object;
-  object.name = fmt::format("object_{}", scene.objects.size());
-  object.model = static_cast<int>(scene.models.size()) - 1;
-  object.mount.pose.position_m = at;
-  object.class_id = 12;
-  object.instance = static_cast<std::uint16_t>(scene.objects.size() + 1);
-  return object;
-}
-
-scene::Sonar sonar_of(double range_min, double range_max, std::uint32_t bins) {
-  scene::Sonar sonar;
-  sonar.name = "sonar";
-  sonar.range_min_m = range_min;
-  sonar.range_max_m = range_max;
-  sonar.azimuth_rad = radians(20.0);
-  sonar.elevation_rad = radians(20.0);
-  sonar.bins_range = bins;
-  sonar.bins_azimuth = sonar.bins_elevation = 128;
-  return sonar;
-}
-
-scene::SonarLevel plain_level() {
-  scene::SonarLevel level;
-  level.source_level_db = 200.0;
-  level.absorption = scene::SonarLevel::Absorption::kFixed;
-  level.absorption_db_per_m = 0.3;
-  return level;
-}
-
-SonarFrame ping(gpu::Device& device, const scene::Scene& scene, std::uint32_t number = 0) {
-  FrameRequest request;
-  request.sonars = {0};
-  request.frame = number;
-  request.capture.geometry = false;
-  auto session = Session::create(device, scene);
-  if (!session.ok()) {
-    ADD_FAILURE() << session.error().message;
-    return {};
-  }
-  auto result = (*session)->render(request);
-  if (!result.ok()) {
-    ADD_FAILURE() << result.error().message;
-    return {};
-  }
-  return std::move(result->sonars.at(0));
-}
-
-double total(const SonarFrame& frame) {
-  return std::accumulate(frame.image.intensity.begin(), frame.image.intensity.end(), 0.0);
-}
-
-// Mean range of the energy.
-double mean_range_m(const SonarFrame& frame) {
-  double sum = 0.0, weighted = 0.0;
-  for (std::uint32_t row = 0; row < frame.image.n_range; ++row)
-    for (std::uint32_t c = 0; c < frame.image.n_azimuth; ++c) {
-      const double v = frame.image.intensity[std::size_t{row} * frame.image.n_azimuth + c];
-      sum += v;
-      weighted += v * frame.grid.range_m(row);
-    }
-  return weighted / sum;
-}
-
-// A wall 20 m wide, across the axis, and far enough to fill the wedge.
-scene::Scene wall(double distance_m, scene::Sonar sonar) {
-  scene::Scene scene;
-  scene.objects.push_back(
-      object_of(scene, scene::make_box(Vec3(60.0, 60.0, 1.0)), {0.0, 0.0, -distance_m - 0.5}));
-  scene.sonars = {std::move(sonar)};
-  return scene;
-}
 
 TEST_F(SonarTerms, ARigidSphereHasItsTargetStrength) {
   scene::Sonar sonar = sonar_of(9.0, 11.0, 200);
@@ -154,49 +74,6 @@ TEST_F(SonarTerms, AConstantProfileScalesRanges) {
   EXPECT_NEAR(mean_range_m(ping(device(), scene)) / before, 1500.0 / 1530.0, 2e-4);
   scene.sonars[0].terms.profile->bent = true;
   EXPECT_NEAR(mean_range_m(ping(device(), scene)) / before, 1500.0 / 1530.0, 2e-4);
-}
-
-TEST_F(SonarTerms, SpeckleIsRayleighAndKeepsTheMean) {
-  scene::Sonar sonar = sonar_of(2.9, 3.1, 100);
-  sonar.terms.frequency_hz = 900e3;
-  scene::Scene scene = wall(3.0, sonar);
-  const SonarFrame smooth = ping(device(), scene);
-  scene.sonars[0].terms.speckle = scene::SonarSpeckle{};
-  const SonarFrame speckled = ping(device(), scene);
-  double ratio = 0.0, amplitude = 0.0, squares = 0.0;
-  int n = 0;
-  for (std::size_t i = 0; i < smooth.image.intensity.size(); ++i) {
-    if (smooth.image.intensity[i] < 0.02f) continue;
-    const double x = speckled.image.intensity[i] / smooth.image.intensity[i];
-    ratio += x;
-    amplitude += std::sqrt(x);
-    squares += x;
-    ++n;
-  }
-  ASSERT_GT(n, 500);
-  amplitude /= n;
-  const double deviation = std::sqrt(squares / n - amplitude * amplitude);
-  EXPECT_NEAR(ratio / n, 1.0, 0.12);
-  EXPECT_NEAR(deviation / amplitude, 0.5227, 0.05);
-}
-
-TEST_F(SonarTerms, NoiseIsExponentialInPowerAndItsOwnInEveryBeam) {
-  scene::Sonar sonar = sonar_of(1.0, 2.0, 200);
-  sonar.terms.level = plain_level();
-  sonar.terms.noise = scene::SonarNoise{60.0};
-  const SonarFrame frame = ping(device(), wall(50.0, sonar));
-  const auto& v = frame.image.intensity;
-  const double mean = total(frame) / static_cast<double>(v.size());
-  EXPECT_NEAR(10.0 * std::log10(mean), 60.0, 0.1);
-  double variance = 0.0, neighbours = 0.0;
-  for (std::size_t i = 0; i + 1 < v.size(); ++i) {
-    variance += (v[i] - mean) * (v[i] - mean);
-    neighbours += (v[i] - mean) * (v[i + 1] - mean);
-  }
-  EXPECT_NEAR(variance / v.size() / mean / mean, 1.0, 0.05);
-  EXPECT_LT(std::abs(neighbours / variance), 0.05);
-  EXPECT_NE(v, ping(device(), wall(50.0, sonar), 1).image.intensity);  // another ping
-  EXPECT_EQ(v, ping(device(), wall(50.0, sonar), 0).image.intensity);
 }
 
 TEST_F(SonarTerms, TheSurfaceMirrorsAGhostAtTheMeanOfBothWays) {

@@ -1,0 +1,100 @@
+// A sonar that moves while it listens, and one that turns from ping to ping.
+#include "sonar/head.hpp"
+#include "tests/session/sonar_pings.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using SonarMotion = test::GpuTest;
+
+constexpr double kSpeed = 3.0;
+
+// Towards the wall at kSpeed, through the origin at time 0.
+scene::Scene closing_in(const scene::SonarMotion& motion) {
+  scene::Sonar sonar = sonar_of(2.0, 4.0, 2000);
+  sonar.terms.water.sound_speed_m_s = 1500.0;
+  sonar.terms.frequency_hz = 750e3;
+  sonar.terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 60e3};
+  sonar.terms.motion = motion;
+  scene::Scene scene = wall(3.0, sonar);
+  scene.sonars[0].mount.track = scene::Track{
+      {{-1.0, Vec3(0, 0, kSpeed)}, {1.0, Vec3(0, 0, -kSpeed)}}, {{0.0, Quat(1, 0, 0, 0)}}};
+  return scene;
+}
+
+TEST_F(SonarMotion, ClosingInWithinThePingShortensTheWayBack) {
+  const double still = mean_range_m(ping(device(), closing_in({})));
+  const double moving = mean_range_m(ping(device(), closing_in({.within_ping = true})));
+  // v / c of the range, on the axis; less by the cosine off it.
+  EXPECT_NEAR((still - moving) / (3.0 * kSpeed / 1500.0), 1.0, 0.03);
+}
+
+TEST_F(SonarMotion, AChirpReadsAClosingTargetTooNear) {
+  const double still = mean_range_m(ping(device(), closing_in({})));
+  const double moving =
+      mean_range_m(ping(device(), closing_in({.doppler = true, .pulse_s = 500e-6})));
+  EXPECT_NEAR((still - moving) / (kSpeed * 750e3 * 500e-6 / 60e3), 1.0, 0.03);
+}
+
+TEST_F(SonarMotion, ATurningSonarHearsLateEchoesOnTurnedBearings) {
+  scene::Sonar sonar = sonar_of(20.0, 40.0, 100);
+  sonar.azimuth_rad = radians(40.0);
+  sonar.bins_azimuth = 400;
+  sonar.terms.water.sound_speed_m_s = 1500.0;
+  sonar.terms.motion = scene::SonarMotion{.within_ping = true};
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.5, 64), {0.0, 0.0, -30.0}));
+  scene.sonars = {sonar};
+  constexpr double kTurn = 1.0;  // rad/s to port
+  scene.sonars[0].mount.track = scene::Track{
+      {{0.0, Vec3(0.0)}},
+      {{-1.0, glm::angleAxis(-kTurn, Vec3(0, 1, 0))}, {1.0, glm::angleAxis(kTurn, Vec3(0, 1, 0))}}};
+  const SonarFrame frame = ping(device(), scene);
+  double sum = 0.0, weighted = 0.0;
+  for (std::uint32_t row = 0; row < 100; ++row)
+    for (std::uint32_t c = 0; c < 400; ++c) {
+      const double v = frame.image.intensity[row * 400 + c];
+      sum += v;
+      weighted += v * frame.grid.azimuth_rad(c);
+    }
+  // Turned to port by 2 r / c, it hears the target to starboard.
+  EXPECT_NEAR(weighted / sum, kTurn * 2.0 * 29.5 / 1500.0, radians(0.1));
+}
+
+TEST_F(SonarMotion, AScannerStepsRoundOrToAndFro) {
+  scene::Sonar sonar;
+  sonar.kind = scene::SonarKind::kMechanical;
+  sonar.azimuth_rad = radians(360.0);
+  sonar.step_rad = radians(90.0);
+  const auto heading = [&](std::uint32_t ping) {
+    return std::lround(degrees(sonar::scan_heading_rad(sonar, ping)));
+  };
+  EXPECT_EQ(heading(0), -135);
+  EXPECT_EQ(heading(3), 135);
+  EXPECT_EQ(heading(4), -135);
+  sonar.azimuth_rad = radians(90.0);
+  sonar.step_rad = radians(30.0);
+  EXPECT_EQ(heading(0), -30);
+  EXPECT_EQ(heading(2), 30);
+  EXPECT_EQ(heading(3), 0);
+  EXPECT_EQ(heading(4), -30);
+}
+
+TEST_F(SonarMotion, AScannersBeamHearsWhereItPoints) {
+  scene::Sonar sonar = sonar_of(2.0, 8.0, 60);
+  sonar.kind = scene::SonarKind::kMechanical;
+  sonar.azimuth_rad = radians(360.0);
+  sonar.step_rad = radians(10.0);
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.5, 64), {5.0, 0.0, 0.0}));
+  scene.sonars = {sonar};
+  for (std::uint32_t step = 0; step < 36; ++step) {
+    const SonarFrame frame = ping(device(), scene, step);
+    const double off = std::abs(degrees(frame.heading_rad) - 90.0);
+    if (off < 5.1) EXPECT_GT(total(frame), 0.0) << step;
+    if (off > 15.0) EXPECT_EQ(total(frame), 0.0) << step;
+  }
+}
+
+}  // namespace
+}  // namespace neritic::tools
