@@ -1,0 +1,418 @@
+// Sonars at the ends of what they accept, every kind with every term: finite, never negative, right
+// where a closed form exists, and the same bits at every run on any number of driver threads.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+#include "engine/core/files.hpp"
+#include "engine/core/hash.hpp"
+#include "engine/scene/shapes.hpp"
+#include "sonar/acoustics.hpp"
+#include "tests/support/gpu_fixture.hpp"
+#include "tests/support/support.hpp"
+#include "tools/session/session.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using scene::SonarKind;
+using SonarExtremes = test::GpuTest;
+
+constexpr SonarKind kKinds[] = {SonarKind::kImaging, SonarKind::kProfiling, SonarKind::kEchoSounder,
+                                SonarKind::kSideScan, SonarKind::kMechanical};
+
+void add_object(scene::Scene& scene, scene::Model model, const Vec3& at, std::uint16_t class_id) {
+  scene.models.push_back(std::make_shared<scene::Model>(std::move(model)));
+  scene::Object object;
+  object.name = fmt::format("object_{}", scene.objects.size());
+  object.model = static_cast<int>(scene.models.size()) - 1;
+  object.mount.pose.position_m = at;
+  object.class_id = class_id;
+  object.instance = static_cast<std::uint16_t>(scene.objects.size() + 1);
+  scene.objects.push_back(object);
+}
+
+scene::Sonar small_sonar(SonarKind kind = SonarKind::kImaging) {
+  scene::Sonar sonar;
+  sonar.name = "sonar";
+  sonar.kind = kind;
+  sonar.range_min_m = 0.5;
+  sonar.range_max_m = 12.0;
+  sonar.azimuth_rad = radians(60.0);
+  sonar.elevation_rad = radians(40.0);
+  sonar.bins_range = 100;
+  sonar.bins_azimuth = 32;
+  sonar.bins_elevation = 48;
+  return sonar;
+}
+
+scene::SonarTerms every_term() {
+  scene::SonarTerms t;
+  t.frequency_hz = 450e3;
+  t.level = scene::SonarLevel{.tvg_log = 30.0, .tvg_absorption = true};
+  t.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(4.0)};
+  t.beam.elevation = scene::SonarPattern{.shape = scene::SonarPattern::Shape::kHamming,
+                                         .half_power_rad = radians(30.0)};
+  t.beam.samples = 2;
+  t.range_spread = scene::SonarRangeSpread{};
+  t.speckle = scene::SonarSpeckle{.shape = 2.0};
+  t.noise = scene::SonarNoise{};
+  t.ghosts = scene::SonarGhosts{.surface = true, .bottom_m = 9.0};
+  t.profile = scene::SonarProfile{{{0.0, 1520.0}, {4.0, 1490.0}, {50.0, 1480.0}}, true};
+  t.motion = scene::SonarMotion{.within_ping = true, .doppler = true};
+  t.labels.energy = true;
+  return t;
+}
+
+// A sonar 4 m under the surface, underway and turning, a sphere before it and a floor below.
+scene::Scene some_sea(scene::Sonar sonar) {
+  scene::Scene scene;
+  scene.path = "test";
+  add_object(scene, scene::make_sphere(1.0, 48), {0.5, -4.0, -5.0}, 12);
+  add_object(scene, scene::make_box({80.0, 1.0, 80.0}), {0.0, -8.5, 0.0}, 1);
+  add_object(scene, scene::make_sphere(0.7, 48), {6.0, -6.0, 0.0}, 2);
+  scene::Track track;
+  for (const double t : {-1.0, 1.0}) {
+    track.places.push_back({t, Vec3(0.4 * t, -4.0, -1.5 * t)});
+    track.attitudes.push_back({t, glm::angleAxis(0.2 * t, Vec3(0, 1, 0))});
+  }
+  sonar.mount.pose.position_m = {0.0, -4.0, 0.0};
+  sonar.mount.track = track;
+  scene.sonars = {std::move(sonar)};
+  return scene;
+}
+
+std::vector<SonarFrame> ping(gpu::Device& device, const scene::Scene& scene,
+                             std::uint32_t number = 0) {
+  FrameRequest request;
+  request.sonars = {0};
+  request.frame = number;
+  request.capture.geometry = false;
+  auto session = Session::create(device, scene);
+  if (!session.ok()) {
+    ADD_FAILURE() << session.error().message;
+    return {};
+  }
+  auto result = (*session)->render(request);
+  if (!result.ok()) {
+    ADD_FAILURE() << result.error().message;
+    return {};
+  }
+  return std::move(result->sonars);
+}
+
+// What must hold of any sonar whatever: returns the total.
+double expect_sane(const std::vector<SonarFrame>& frames, const std::string& of) {
+  double total = 0.0;
+  EXPECT_FALSE(frames.empty()) << of;
+  for (const SonarFrame& frame : frames) {
+    EXPECT_EQ(frame.image.intensity.size(),
+              std::size_t{frame.grid.bins.range} * frame.grid.bins.azimuth)
+        << of;
+    std::size_t wrong = 0;
+    for (const float v : frame.image.intensity) {
+      wrong += !std::isfinite(v) || v < 0.0f;
+      total += v;
+    }
+    EXPECT_EQ(wrong, 0u) << of;
+    EXPECT_TRUE(std::isfinite(frame.absorption_db_per_m)) << of;
+    if (frame.label_energy)
+      for (const float part : frame.label_energy->fraction)
+        EXPECT_TRUE(part >= 0.0f && part <= 1.0f) << of << ": " << part;
+  }
+  return total;
+}
+
+double total(const SonarFrame& frame) {
+  return std::accumulate(frame.image.intensity.begin(), frame.image.intensity.end(), 0.0);
+}
+
+double mean_range_m(const SonarFrame& frame) {
+  double sum = 0.0, weighted = 0.0;
+  for (std::uint32_t row = 0; row < frame.image.n_range; ++row)
+    for (std::uint32_t c = 0; c < frame.image.n_azimuth; ++c) {
+      const double v = frame.image.intensity[std::size_t{row} * frame.image.n_azimuth + c];
+      sum += v;
+      weighted += v * frame.grid.range_m(row);
+    }
+  return weighted / sum;
+}
+
+// A narrow sonar on a wall that lies across its axis.
+scene::Scene wall_at(double distance_m, scene::Sonar sonar) {
+  scene::Scene scene;
+  const double half = distance_m;
+  add_object(scene, scene::make_box({half, half, half}), {0.0, 0.0, -distance_m - half / 2.0}, 1);
+  sonar.azimuth_rad = sonar.elevation_rad = radians(1.0);
+  scene.sonars = {std::move(sonar)};
+  return scene;
+}
+
+TEST_F(SonarExtremes, EveryKindWithEveryTermIsFinite) {
+  for (const SonarKind kind : kKinds) {
+    scene::Sonar sonar = small_sonar(kind);
+    sonar.terms = every_term();
+    EXPECT_GT(expect_sane(ping(device(), some_sea(sonar), 3), scene::name_of(kind)), 0.0);
+  }
+}
+
+TEST_F(SonarExtremes, FromFiveCentimetresToTenKilometres) {
+  for (const double distance_m : {0.05, 9000.0}) {
+    scene::Sonar sonar = small_sonar();
+    sonar.range_min_m = 0.8 * distance_m;
+    sonar.range_max_m = distance_m / 0.9;
+    sonar.near_m = std::min(0.02, sonar.near_m);
+    scene::Scene scene = wall_at(distance_m, sonar);
+    const auto plain = ping(device(), scene);
+    expect_sane(plain, fmt::format("{} m", distance_m));
+    EXPECT_NEAR(mean_range_m(plain.at(0)) / distance_m, 1.0, 2e-3) << distance_m;
+    EXPECT_NEAR(total(plain[0]), 32.0, 0.01) << distance_m;  // 1 a beam, cos of half a degree
+    scene.sonars[0].terms.level = scene::SonarLevel{
+        .absorption = scene::SonarLevel::Absorption::kFixed, .absorption_db_per_m = 1e-3};
+    const auto level = ping(device(), scene);
+    // mu dOmega / r^2 10^(-2 alpha r / 10).
+    const double solid_angle = radians(1.0) * 2.0 * std::sin(radians(0.5));
+    const double db = 10.0 * std::log10(solid_angle) - 27.0 - 20.0 * std::log10(distance_m) -
+                      2e-3 * distance_m + 200.0;
+    EXPECT_NEAR(10.0 * std::log10(total(level.at(0))), db, 0.1) << distance_m;
+    scene.sonars[0].terms = every_term();
+    expect_sane(ping(device(), scene), fmt::format("{} m, every term", distance_m));
+  }
+}
+
+TEST_F(SonarExtremes, AperturesOfATenthDegreeAndAFullTurn) {
+  for (const SonarKind kind : kKinds)
+    for (const double aperture_deg : {0.1, 360.0}) {
+      scene::Sonar sonar = small_sonar(kind);
+      sonar.azimuth_rad = radians(aperture_deg);
+      if (aperture_deg < 1.0) {
+        sonar.elevation_rad = sonar.azimuth_rad;
+        sonar.semi_angle_rad = radians(0.05);
+      }
+      sonar.terms = every_term();
+      if (aperture_deg < 1.0) sonar.terms.beam.azimuth->half_power_rad = radians(0.1);
+      expect_sane(ping(device(), some_sea(sonar)),
+                  fmt::format("{} {} degrees", scene::name_of(kind), aperture_deg));
+    }
+  // Inside a ball every beam of a full turn hears the same.
+  scene::Sonar sonar = small_sonar();
+  sonar.azimuth_rad = 2.0 * kPi;
+  sonar.gbuffer_scale = 2.0;
+  sonar.terms.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(20.0)};
+  scene::Scene scene;
+  scene::Model ball = scene::make_sphere(6.0, 256);
+  scene::turn_inside_out(ball);
+  add_object(scene, std::move(ball), {0, 0, 0}, 12);
+  scene.sonars = {sonar};
+  const auto frames = ping(device(), scene);
+  const sonar::SonarImage& image = frames.at(0).image;
+  for (std::uint32_t c = 0; c < image.n_azimuth; ++c) {
+    double sum = 0.0;
+    for (std::uint32_t row = 0; row < image.n_range; ++row)
+      sum += image.intensity[std::size_t{row} * image.n_azimuth + c];
+    EXPECT_NEAR(sum, 1.0, 3e-3) << c;
+  }
+}
+
+TEST_F(SonarExtremes, FromOneBeamTo4096) {
+  double plain[2], spread[2];
+  int i = 0;
+  for (const std::uint32_t beams : {1u, 4096u}) {
+    scene::Sonar sonar = small_sonar();
+    sonar.bins_azimuth = beams;
+    sonar.bins_range = 64;
+    sonar.bins_elevation = 32;
+    sonar.gbuffer_scale = beams == 1 ? 16.0 : 0.25;
+    plain[i] = expect_sane(ping(device(), some_sea(sonar)), fmt::format("{} beams", beams)) / beams;
+    sonar.terms.beam.samples = beams == 1 ? 128 : 1;
+    spread[i] =
+        expect_sane(ping(device(), some_sea(sonar)), fmt::format("{} beams", beams)) / beams;
+    sonar.terms = every_term();
+    if (beams > 1) sonar.terms.beam.azimuth->half_power_rad = radians(0.1);
+    expect_sane(ping(device(), some_sea(sonar)), fmt::format("{} beams, every term", beams));
+    ++i;
+  }
+  // The mean over a beam of all bearings is the mean of many beams.
+  EXPECT_NEAR(spread[0] / spread[1], 1.0, 0.02);
+  EXPECT_NEAR(plain[1] / spread[1], 1.0, 0.02);
+}
+
+TEST_F(SonarExtremes, AbsorptionFromOneHertzToTenMegahertz) {
+  double heard[2];
+  int i = 0;
+  for (const double frequency_hz : {1.0, 10e6}) {
+    scene::Sonar sonar = small_sonar();
+    sonar.range_min_m = 0.9;
+    sonar.range_max_m = 1.1;
+    sonar.terms.frequency_hz = frequency_hz;
+    sonar.terms.level = scene::SonarLevel{};
+    sonar.terms.water.depth_m = 0.0;
+    const scene::Scene scene = wall_at(1.0, sonar);
+    const auto frames = ping(device(), scene);
+    heard[i++] = expect_sane(frames, fmt::format("{} Hz", frequency_hz));
+    const double wanted = sonar::absorption_db_m(sonar::AbsorptionModel::kFrancoisGarrison,
+                                                 {10.0, 35.0, 0.0, 8.0}, frequency_hz);
+    EXPECT_DOUBLE_EQ(frames.at(0).absorption_db_per_m, wanted);
+    EXPECT_GE(wanted, 0.0);
+    scene::Scene every = scene;
+    every.sonars[0].terms = every_term();
+    every.sonars[0].terms.frequency_hz = frequency_hz;
+    expect_sane(ping(device(), every), fmt::format("{} Hz, every term", frequency_hz));
+    if (i == 2) {
+      EXPECT_NEAR(10.0 * std::log10(heard[0] / heard[1]), 2.0 * wanted, 0.5);
+    }
+  }
+}
+
+TEST_F(SonarExtremes, NoReturnAtAllIsSilenceOrNoise) {
+  for (const SonarKind kind : kKinds) {
+    scene::Sonar sonar = small_sonar(kind);
+    scene::Scene empty;
+    sonar.terms = every_term();
+    sonar.terms.noise.reset();
+    empty.sonars = {sonar};
+    for (const SonarFrame& frame : ping(device(), empty)) EXPECT_EQ(total(frame), 0.0);
+    empty.sonars[0].terms.noise = scene::SonarNoise{60.0};
+    empty.sonars[0].terms.level = scene::SonarLevel{};
+    for (const SonarFrame& frame : ping(device(), empty)) {
+      const double n = static_cast<double>(frame.image.intensity.size());
+      // Exponential: the mean of n is off by 1 / sqrt(n).
+      EXPECT_NEAR(total(frame) / n / 1e6, 1.0, 4.0 / std::sqrt(n)) << scene::name_of(kind);
+    }
+  }
+}
+
+TEST_F(SonarExtremes, AFloorFillsEveryBin) {
+  for (const SonarKind kind : {SonarKind::kImaging, SonarKind::kSideScan}) {
+    scene::Sonar sonar = small_sonar(kind);
+    sonar.range_min_m = 1.8;
+    sonar.elevation_rad = radians(80.0);
+    sonar.depression_rad = radians(40.0);
+    sonar.range_max_m = 6.0;
+    sonar.bins_elevation = 4096;  // steps of less than half a bin at the farthest
+    scene::Scene scene;
+    add_object(scene, scene::make_box({200.0, 1.0, 200.0}), {0.0, -1.5, 0.0}, 1);
+    scene.sonars = {sonar};
+    const auto silent_bins = [&](const scene::Scene& s) {
+      std::size_t silent = 0;
+      for (const SonarFrame& frame : ping(device(), s))
+        for (const float v : frame.image.intensity) silent += !(v > 0.0f);
+      return silent;
+    };
+    EXPECT_EQ(silent_bins(scene), 0u) << scene::name_of(kind);
+    scene.sonars[0].terms = every_term();
+    scene.sonars[0].terms.speckle.reset();  // which may cancel to nothing
+    EXPECT_EQ(silent_bins(scene), 0u) << scene::name_of(kind);
+  }
+}
+
+TEST_F(SonarExtremes, AFloorSeenAtAHundredthOfADegree) {
+  // Rows from level to .02 degrees down; the floor, 2 mm below, is met at 2 mm / sin.
+  constexpr double kHeight_m = 0.002, kFar_m = 50.0;
+  scene::Sonar sonar = small_sonar();
+  sonar.azimuth_rad = radians(2.0);
+  sonar.elevation_rad = radians(0.02);
+  sonar.bins_elevation = 512;
+  sonar.range_min_m = 1.0;
+  sonar.range_max_m = kFar_m;
+  sonar.near_m = 0.5;
+  sonar.mount.pose.rotation = glm::angleAxis(radians(-0.01), Vec3(1, 0, 0));
+  scene::Scene scene;
+  add_object(scene, scene::make_box({300.0, 1.0, 300.0}), {0.0, -0.5 - kHeight_m, 0.0}, 1);
+  scene.sonars = {sonar};
+  const auto frames = ping(device(), scene);
+  expect_sane(frames, "grazing");
+  const double nearest = radians(0.02), farthest = kHeight_m / kFar_m;
+  const double mean =
+      (std::cos(farthest) - std::cos(nearest)) / radians(0.02);  // of sin over all rows
+  EXPECT_NEAR(total(frames.at(0)) / frames[0].image.n_azimuth / mean, 1.0, 0.05);
+  scene.sonars[0].terms = every_term();
+  expect_sane(ping(device(), scene), "grazing, every term");
+}
+
+TEST_F(SonarExtremes, AHundredKilometresFromTheOriginItSoundsTheSame) {
+  for (const SonarKind kind : kKinds) {
+    scene::Sonar sonar = small_sonar(kind);
+    sonar.terms = every_term();
+    expect_sane(ping(device(), some_sea(sonar)), scene::name_of(kind));
+    // Scatterers belong to their place in the world; all else goes with the sonar.
+    sonar.terms.speckle.reset();
+    sonar.terms.noise.reset();
+    scene::Scene here = some_sea(sonar), there = here;
+    for (scene::Object& object : there.objects) object.mount.pose.position_m.x += 1e5;
+    there.sonars[0].mount.pose.position_m.x += 1e5;
+    for (auto& place : there.sonars[0].mount.track->places) place.position_m.x += 1e5;
+    const auto a = ping(device(), here), b = ping(device(), there);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t head = 0; head < a.size(); ++head) {
+      double difference = 0.0;
+      for (std::size_t i = 0; i < a[head].image.intensity.size(); ++i)
+        difference += std::abs(double{a[head].image.intensity[i]} - b[head].image.intensity[i]);
+      EXPECT_LE(difference, 2e-3 * total(a[head])) << scene::name_of(kind);
+    }
+    there.sonars[0].terms = every_term();
+    expect_sane(ping(device(), there), fmt::format("{} far away", scene::name_of(kind)));
+  }
+}
+
+// Where another run of this program shall leave its hash, to be compared.
+constexpr const char* kHashFile = "NERITIC_TEST_SONAR_HASH_FILE";
+
+std::string hash_of(const std::vector<SonarFrame>& frames) {
+  Hash64 hash;
+  for (const SonarFrame& frame : frames) {
+    hash.add_span(std::span<const float>(frame.image.intensity));
+    hash.add_span(std::span<const std::uint16_t>(frame.image.labels));
+    if (frame.label_energy) {
+      hash.add_span(std::span<const std::uint16_t>(frame.label_energy->classes));
+      hash.add_span(std::span<const float>(frame.label_energy->fraction));
+    }
+  }
+  return hash.hex();
+}
+
+TEST_F(SonarExtremes, TwentyRunsOfEveryTermGiveTheSameBits) {
+  std::string all;
+  for (const SonarKind kind : kKinds) {
+    scene::Sonar sonar = small_sonar(kind);
+    sonar.terms = every_term();
+    NERITIC_ASSERT_OK(const auto session, Session::create(device(), some_sea(sonar)));
+    FrameRequest request;
+    request.sonars = {0};
+    request.frame = 5;
+    request.capture.geometry = false;
+    std::string first;
+    for (int run = 0; run < 20; ++run) {
+      NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+      const std::string hash = hash_of(result.sonars);
+      if (run == 0) first = hash;
+      ASSERT_EQ(hash, first) << scene::name_of(kind) << ", run " << run;
+    }
+    all += first + " ";
+  }
+  if (const char* file = std::getenv(kHashFile)) NERITIC_ASSERT_STATUS(write_text(file, all));
+}
+
+TEST_F(SonarExtremes, OneAndTwoThreadsOfTheDriverGiveTheSameBits) {
+  if (device().info().name.find("llvmpipe") == std::string::npos)
+    GTEST_SKIP() << "the number of threads is llvmpipe's switch";
+  const test::ScratchFolder folder;
+  std::string hashes[2];
+  for (int i = 0; i < 2; ++i) {
+    // The driver reads its switch when a device is made: each in a program of its own.
+    const std::filesystem::path file = folder / fmt::format("{}", i + 1);
+    const std::string command = fmt::format(
+        "LP_NUM_THREADS={} {}={} {} --gtest_filter=SonarExtremes.TwentyRuns* > {} 2>&1", i + 1,
+        kHashFile, file.string(), std::filesystem::read_symlink("/proc/self/exe").string(),
+        (folder / "said").string());
+    ASSERT_EQ(std::system(command.c_str()), 0) << read_text(folder / "said").value();
+    NERITIC_ASSERT_OK(hashes[i], read_text(file));
+  }
+  EXPECT_FALSE(hashes[0].empty());
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+}  // namespace
+}  // namespace neritic::tools
