@@ -27,7 +27,7 @@ struct PanelOptions {
 double panel_brightness(double value, double full_scale, const PanelOptions& options);
 
 // Draws one sonar's images. Where each pixel looks and the lines over it are worked out once, so
-// that a live display can draw every ping. One owner, one thread.
+// that a live display can draw every ping. draw may run on several threads at once.
 class PolarPanel {
  public:
   explicit PolarPanel(const BeamGrid& grid, const PanelOptions& options = {});

@@ -78,6 +78,7 @@ PanelOptions panel_options(scene::SonarKind kind, bool level) {
 }
 
 ImageU8 draw_sonar(const SonarFiles& files) {
+  if (files.panel != nullptr) return files.panel->draw(files.image);
   const PanelOptions options = panel_options(files.kind, files.level);
   if (files.image.n_azimuth > 1) return draw_panel(files.grid, files.image, options);
   return draw_trace(files.grid, files.image.intensity, options);

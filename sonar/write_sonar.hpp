@@ -19,6 +19,7 @@ struct SonarFiles {
   scene::SonarOutput output;                 // bits: 0, or counts of decibels (level only)
   const LabelImage* label_energy = nullptr;  // nullptr: labels of the strongest return
   bool picture = true;                       // sonar.png too, which takes longest
+  const PolarPanel* panel = nullptr;         // of grid and panel_options, for many images; or none
 };
 
 // Counts of what leaves a receiver of 8 or 16 bits: 0 at floor_db and below, the largest count at

@@ -124,8 +124,9 @@ Status run_kind(const Run& run) {
                           [&](const fs::path& folder, PictureLine line) {
                             return write_picture_line(job, folder, std::move(line));
                           }});
+  const std::unique_ptr<sonar::PolarPanel> panel = panel_of(job);
   const auto write = [&](const fs::path& folder, HeardFrame frame) {
-    return write_frame(job, folder, std::move(frame));
+    return write_frame(job, folder, std::move(frame), panel.get());
   };
   if (job.flags.method == "reference")
     return run_frames(run,

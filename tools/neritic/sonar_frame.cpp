@@ -183,7 +183,14 @@ Result<HeardFrame> SonarEar::hear(LoadedFrame frame) {
   return heard;
 }
 
-Status write_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame) {
+std::unique_ptr<sonar::PolarPanel> panel_of(const SonarJob& job) {
+  if (job.flags.no_pictures || job.head.beams.bins.azimuth == 1) return nullptr;
+  return std::make_unique<sonar::PolarPanel>(
+      job.head.beams, sonar::panel_options(job.sonar.kind, job.sonar.terms.level.has_value()));
+}
+
+Status write_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame,
+                   const sonar::PolarPanel* panel) {
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(add_findings(job, folder, frame.image, frame.facts));
   return sonar::write_sonar(folder,
@@ -193,7 +200,8 @@ Status write_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame
                              .level = job.sonar.terms.level.has_value(),
                              .output = job.sonar.terms.output,
                              .label_energy = frame.label_energy ? &*frame.label_energy : nullptr,
-                             .picture = !job.flags.no_pictures},
+                             .picture = !job.flags.no_pictures,
+                             .panel = panel},
                             frame.facts);
 }
 

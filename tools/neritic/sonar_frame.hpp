@@ -8,6 +8,7 @@
 #include "engine/gpu/device.hpp"
 #include "sonar/image_gather.hpp"
 #include "sonar/offline_frames.hpp"
+#include "sonar/panel.hpp"
 #include "tools/neritic/sonar_job.hpp"
 
 namespace neritic::tools {
@@ -59,7 +60,10 @@ class SonarEar {
   sonar::SonarInput shape_;                     // what gather_ was made for, without its pixels
 };
 
-// Into the folder, sonar.json last.
-Status write_frame(const SonarJob& job, const std::filesystem::path& folder, HeardFrame frame);
+// Into the folder, sonar.json last. panel: the job's, where there are many frames to draw.
+Status write_frame(const SonarJob& job, const std::filesystem::path& folder, HeardFrame frame,
+                   const sonar::PolarPanel* panel = nullptr);
+// Nothing where no picture is asked for, or it is not polar.
+std::unique_ptr<sonar::PolarPanel> panel_of(const SonarJob& job);
 
 }  // namespace neritic::tools

@@ -26,7 +26,25 @@ std::string hash_of(const SonarJob& job) {
   }
   floats(hash, job.head.receiver.range.weights);
   floats(hash, job.head.receiver.across.weights);
+  const scene::SonarOutput& output = job.sonar.terms.output;
+  hash.add(job.sonar.terms.labels.energy), hash.add(output.bits);
+  hash.add(output.floor_db), hash.add(output.span_db);
   return hash.hex();
+}
+
+// Their names, and whether anything in them differs.
+std::string terms_text(const SonarJob& job) {
+  std::string names;
+  const nlohmann::json terms = sonar::terms_json(job.sonar.terms);
+  for (const auto& [name, value] : terms.items()) names += name + " ";
+  return names + hash_of(job);
+}
+
+std::string text(double value) {
+  return fmt::format("{:.12g}", value);
+}
+std::string pair(double from, double to) {
+  return text(from) + "," + text(to);
 }
 
 }  // namespace
@@ -35,22 +53,24 @@ Result<nlohmann::json> settings_of(const SonarJob& job) {
   const SonarFlags& f = job.flags;
   const sonar::Limits& l = job.head.beams.limits;
   const sonar::Bins& bins = job.head.samples.bins;
-  nlohmann::json json{{"kind", f.kind},
-                      {"method", f.method},
-                      {"range", {l.range_min_m, l.range_max_m}},
-                      {"azimuth", {degrees(l.azimuth_min_rad), degrees(l.azimuth_max_rad)}},
-                      {"elevation", {degrees(l.elevation_min_rad), degrees(l.elevation_max_rad)}},
-                      {"bins", {bins.range, bins.azimuth, bins.elevation}},
-                      {"normals", f.normals.empty() ? "estimated from depth" : "from files"},
-                      {"labels", f.labels.empty() ? "none" : "from files"},
-                      {"depth_kind", f.depth_kind},
-                      {"depth_scale", job.options.depth_scale},
-                      {"axes", f.axes},
-                      {"normals_sign", f.normals_sign},
-                      {"gamma", job.options.gamma},
-                      {"intrinsics", f.intrinsics},
-                      {"pixel_centers", f.pixel_centers},
-                      {"pictures", !f.no_pictures}};
+  // Numbers as text: however a file writes numbers, these come back as they are.
+  nlohmann::json json{
+      {"kind", f.kind},
+      {"method", f.method},
+      {"range_m", pair(l.range_min_m, l.range_max_m)},
+      {"azimuth_deg", pair(degrees(l.azimuth_min_rad), degrees(l.azimuth_max_rad))},
+      {"elevation_deg", pair(degrees(l.elevation_min_rad), degrees(l.elevation_max_rad))},
+      {"bins", fmt::format("{},{},{}", bins.range, bins.azimuth, bins.elevation)},
+      {"normals", f.normals.empty() ? "estimated from depth" : "from files"},
+      {"labels", f.labels.empty() ? "none" : "from files"},
+      {"depth_kind", f.depth_kind},
+      {"depth_scale", text(job.options.depth_scale)},
+      {"axes", f.axes},
+      {"normals_sign", f.normals_sign},
+      {"gamma", text(job.options.gamma)},
+      {"intrinsics", f.intrinsics},
+      {"pixel_centers", f.pixel_centers},
+      {"pictures", !f.no_pictures}};
   if (std::filesystem::path(f.intrinsics).extension() == ".json") {
     NERITIC_TRY(const std::string text, read_text(f.intrinsics));
     Hash64 hash;
@@ -62,13 +82,10 @@ Result<nlohmann::json> settings_of(const SonarJob& job) {
     json["altitude"] = f.altitude.empty() ? "from depth images" : f.altitude;
     json["incidence"] = f.incidence;
   } else if (!job.plain()) {
-    json["terms"] = sonar::terms_json(job.sonar.terms);
-    json["terms_hash"] = hash_of(job);
-    json["labels_by_energy"] = job.sonar.terms.labels.energy;
-    json["seed"] = f.seed;
-    json["side"] = job.head.name;
-    json["output"] = {job.sonar.terms.output.bits, job.sonar.terms.output.floor_db,
-                      job.sonar.terms.output.span_db};
+    json["sensor"] = job.sonar.name;
+    json["terms"] = terms_text(job);
+    json["seed"] = std::to_string(f.seed);
+    if (!job.head.name.empty()) json["side"] = job.head.name;
   }
   return json;
 }
