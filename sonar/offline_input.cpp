@@ -2,18 +2,35 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace neritic::sonar {
 namespace {
 
-// The channel that holds depth: named so in an EXR, else the first.
-std::uint32_t depth_channel(const MapFile& map) {
-  for (const char* name : {"Z", "depth", "Y", "R"}) {
+// Is it grey, kept as colour? Alpha does not count.
+bool is_grey(const MapFile& map) {
+  if (map.channels == 2) return map.coding != MapFile::Coding::kNumbers;
+  for (std::size_t i = 0; i < map.pixels(); ++i)
+    for (std::uint32_t c = 1; c < 3; ++c) {
+      const double first = map.at(i, 0), other = map.at(i, c);
+      if (first != other && !(std::isnan(first) && std::isnan(other))) return false;
+    }
+  return true;
+}
+
+// The channel that holds depth: named so in an EXR, else the first of a grey image.
+Result<std::uint32_t> depth_channel(const MapFile& map) {
+  for (const char* name : {"Z", "depth", "Y"}) {
     const auto at = std::find(map.channel_names.begin(), map.channel_names.end(), name);
     if (at != map.channel_names.end())
       return static_cast<std::uint32_t>(at - map.channel_names.begin());
   }
-  return 0;
+  if (map.channels > 1 && !is_grey(map))
+    return bad_input(
+        "{}: {} channels that differ found, one channel of depth is accepted (of an EXR also Z, "
+        "depth or Y)",
+        map.path, map.channels);
+  return 0u;
 }
 
 Status check_size(const MapFile& depth, const MapFile& other) {
@@ -113,7 +130,7 @@ Result<SonarInput> make_input(const MapFile& depth, const MapFile* normals, cons
   in.intrinsics = intrinsics;
   in.depth_is_range = options.depth_is_range;
   in.normals_face_sensor = options.normals_face_sensor;
-  const std::uint32_t channel = depth_channel(depth);
+  NERITIC_TRY(const std::uint32_t channel, depth_channel(depth));
   in.depth.resize(depth.pixels());
   for (std::size_t i = 0; i < in.depth.size(); ++i)
     in.depth[i] = depth.at(i, channel) * options.depth_scale;

@@ -26,7 +26,8 @@ struct OfflineOptions {
 // Where the normals came from.
 enum class NormalSource { kFile, kDepth };
 
-// normals absent: estimated from the depth. Sizes must match.
+// normals absent: estimated from the depth. Sizes must match. kBadInput too where the depth has
+// several channels that differ: a picture or normals, given in its place.
 Result<SonarInput> make_input(const MapFile& depth, const MapFile* normals, const MapFile* labels,
                               const Intrinsics& intrinsics, const OfflineOptions& options);
 

@@ -23,8 +23,10 @@ int run(int argc, char** argv) {
   }
   if (line->verbose) neritic::set_log_level(neritic::LogLevel::kInfo);
   if (line->quiet) neritic::set_log_level(neritic::LogLevel::kQuiet);
-  const neritic::Status status = line->run();
-  return status.ok() ? 0 : failed(status.error());
+  const auto done = line->run();
+  if (!done.ok()) return failed(done.error());
+  if (!line->quiet && !done->empty()) std::printf("%s\n", done->c_str());
+  return 0;
 }
 
 }  // namespace

@@ -60,9 +60,10 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
       {"render " + scene("pool.toml") + out + " --size 99999x1", "99999x1"},
       {"render " + scene("pool.toml") + out + " --time inf", "--time"},
       {"render " + scene("pool.toml") + out + " --offset nan 0 0", "--offset"},
-      {"render " + scene("pool.toml") + out + " --sensor nobody", "camera, sonar"},
+      {"render " + scene("pool.toml") + out + " --sensor nobody", "nobody: not in"},
+      {"render " + scene("pool.toml") + out + " --sensor camera --sensor nobody", "camera, sonar"},
       {"render " + scene("pool.toml") + out + " --water 4X", "4X"},
-      {"render " + scene("pool.toml") + out + " --colour red", "--colour"},
+      {"render " + scene("pool.toml") + out + " --colour red", "neritic render --help"},
       {"rendre " + scene("pool.toml"), "rendre"},
       {"render", "scene"}};
   for (const auto& c : cases) {

@@ -22,7 +22,9 @@ namespace fs = std::filesystem;
 Status sonar(std::vector<std::string> words) {
   words.insert(words.begin(), {"sonar", "imaging"});
   NERITIC_TRY(const tools::CommandLine line, tools::parse_command_line(words));
-  return line.run();
+  NERITIC_TRY(const std::string done, line.run());
+  EXPECT_NE(done.find("sonar.png"), std::string::npos) << done;
+  return {};
 }
 
 bool have_device() {

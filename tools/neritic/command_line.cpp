@@ -9,7 +9,13 @@
 namespace neritic::tools {
 namespace {
 
-using Run = std::function<Status()>;
+using Run = std::function<Result<std::string>()>;
+
+// Of commands that say themselves what they did.
+Result<std::string> nothing_to_say(const Status& status) {
+  if (!status.ok()) return status.error();
+  return std::string();
+}
 
 void add_render(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RenderFlags>();
@@ -23,7 +29,9 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--sensor", flags->sensors, "only this sensor, by name; may be given again")
       ->expected(1)
       ->take_all();
-  command->add_option("--water", flags->water, "another Jerlov type than the scene's");
+  command->add_option(
+      "--water", flags->water,
+      "another Jerlov type than the scene's: I, IA, IB, II, III, 1C, 3C, 5C, 7C, 9C");
   command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")
       ->expected(3);
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
@@ -36,7 +44,8 @@ void add_render(CLI::App& app, Run& run) {
       ->check(CLI::Range(0.001, 1000.0));
   command->add_flag("--track-only", flags->track_only,
                     "no frame folders: only what sonars accumulate over the frames (OUT/track)");
-  command->add_flag("--sheet", flags->sheet, "also pictures of every image, and one contact sheet");
+  command->add_flag("--sheet", flags->sheet,
+                    "also a picture of every image (OUT/sheet), and all on one (OUT/sheet.png)");
   command->add_flag("--validate", flags->validation,
                     "run with Vulkan validation; any message is a failure");
   command->callback([flags, &run] { run = [flags] { return run_render(*flags); }; });
@@ -86,7 +95,12 @@ void add_sonar_device(CLI::App& command, SonarFlags& flags) {
                   "a camera's picture")
       ->check(CLI::IsMember({"gpu", "reference", "image"}))
       ->capture_default_str();
-  command.add_option("--gather", flags.gather, "how the GPU samples (published; with terms plane)")
+  command
+      .add_option(
+          "--gather", flags.gather,
+          "how the GPU samples. published (without terms the default here): each pixel adds to one "
+          "cell, as the published loop does; plane (the default of scenes and with "
+          "terms): each cell looks into the image, better where pixels are few")
       ->check(CLI::IsMember({"published", "nearest", "plane"}));
   command.add_option("--side", flags.side, "of a side-scan: which side's noise")
       ->check(CLI::IsMember({"port", "starboard"}))
@@ -146,7 +160,7 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_flag("--validate", flags->validation,
                     "run with Vulkan validation; any message is a failure");
-  command->callback([flags, &run] { run = [flags] { return run_dive(*flags); }; });
+  command->callback([flags, &run] { run = [flags] { return nothing_to_say(run_dive(*flags)); }; });
 }
 
 void add_tradeoff(CLI::App& app, Run& run) {
@@ -173,7 +187,8 @@ void add_doctor(CLI::App& app, Run& run) {
       app.add_subcommand("doctor", "says what this machine has and what will work on it");
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_flag("--json", flags->json, "for programs: JSON on standard output");
-  command->callback([flags, &run] { run = [flags] { return run_doctor(*flags); }; });
+  command->callback(
+      [flags, &run] { run = [flags] { return nothing_to_say(run_doctor(*flags)); }; });
 }
 
 }  // namespace
@@ -183,7 +198,8 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   app.require_subcommand(1);
   app.fallthrough();
   CommandLine line;
-  app.add_flag("-v,--verbose", line.verbose, "say more on stderr");
+  app.set_version_flag("--version", "neritic " NERITIC_VERSION);
+  app.add_flag("-v,--verbose", line.verbose, "say on stderr what is loaded, chosen and compiled");
   app.add_flag("-q,--quiet", line.quiet, "say only what failed");
   add_render(app, line.run);
   add_sonar(app, line.run);
@@ -195,7 +211,9 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
                                        arguments.rend()));  // back to front, as it wants them
   } catch (const CLI::CallForHelp&) {
     const auto chosen = app.get_subcommands();
-    line.help = chosen.empty() ? app.help() : chosen.front()->help();
+    line.help = chosen.empty() ? app.help() : chosen.front()->help(app.get_name());
+  } catch (const CLI::CallForVersion& version) {
+    line.help = std::string(version.what()) + "\n";
   } catch (const CLI::ParseError& error) {
     if (app.get_subcommands().empty() && !arguments.empty() && !arguments[0].starts_with('-')) {
       std::string names;
@@ -203,7 +221,9 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
         names += (names.empty() ? "" : ", ") + command->get_name();
       return bad_input("'{}' is no command; {} are", arguments[0], names);
     }
-    return bad_input("{} (see neritic --help)", error.what());
+    const auto chosen = app.get_subcommands();
+    return bad_input("{} (see neritic {}--help)", error.what(),
+                     chosen.empty() ? "" : chosen.front()->get_name() + " ");
   }
   return line;
 }

@@ -1,5 +1,6 @@
 // The subcommands of `neritic`: what each is asked (its flags, as typed) and what does it, one
-// source file each. command_line.cpp reads the flags; it alone knows the parser.
+// source file each. command_line.cpp reads the flags; it alone knows the parser. The text that some
+// return says in one line where the results are.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,7 @@ struct RenderFlags {
   double chart_cell_m = 0.0;
   bool track_only = false;  // no frame folders: only what accumulates over the frames
 };
-Status run_render(const RenderFlags& flags);
+Result<std::string> run_render(const RenderFlags& flags);
 
 // depth, normals, labels, picture: a file, a folder of them or a pattern ("d/*_depth.png").
 struct SonarFlags {
@@ -39,7 +40,7 @@ struct SonarFlags {
   std::uint32_t workers = 0;  // 0: as many as cores
   bool no_pictures = false, overwrite = false, incidence = false;
 };
-Status run_sonar(const SonarFlags& flags);
+Result<std::string> run_sonar(const SonarFlags& flags);
 
 struct DiveFlags {
   std::string scene, size, device, screenshot;
@@ -55,7 +56,7 @@ struct TradeoffFlags {
   std::filesystem::path out;
   bool quick = false;
 };
-Status run_tradeoff(const TradeoffFlags& flags);
+Result<std::string> run_tradeoff(const TradeoffFlags& flags);
 
 struct DoctorFlags {
   std::string device;
@@ -65,8 +66,9 @@ Status run_doctor(const DoctorFlags& flags);
 
 // What a command line asks for: something to run, or help to print.
 struct CommandLine {
-  std::function<Status()> run;
-  std::string help;  // not empty: print this instead
+  // Gives one line that says where the results are, or nothing.
+  std::function<Result<std::string>()> run;
+  std::string help;  // not empty: print this instead (help, version)
   bool verbose = false, quiet = false;
 };
 // arguments without the program's name. kBadInput names the argument.

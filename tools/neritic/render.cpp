@@ -6,13 +6,11 @@
 #include "engine/core/files.hpp"
 #include "engine/core/log.hpp"
 #include "engine/render/water_optics.hpp"
-#include "engine/scene/image_file.hpp"
-#include "sonar/panel.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/load_scene.hpp"
+#include "tools/neritic/render_sheet.hpp"
 #include "tools/session/output.hpp"
-#include "tools/session/pictures.hpp"
 #include "tools/session/session.hpp"
 #include "tools/session/survey.hpp"
 
@@ -31,9 +29,13 @@ Result<scene::Scene> load(const RenderFlags& flags) {
   NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size, options));
   if (flags.water.empty()) return scene;
   if (!scene.water) return bad_input("--water {}: {} names no water", flags.water, flags.scene);
-  scene.water->type = flags.water;
-  if (const auto known = render::jerlov_optics(flags.water); !known.ok())
+  // The types are written in capitals; a flag may be typed in any.
+  std::string type = flags.water;
+  std::transform(type.begin(), type.end(), type.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  if (const auto known = render::jerlov_optics(type); !known.ok())
     return bad_input("--water: {}", known.error().message);
+  scene.water->type = type;
   return scene;
 }
 
@@ -44,21 +46,22 @@ bool wanted(const RenderFlags& flags, const std::string& name) {
 
 Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& scene) {
   FrameRequest request;
-  std::string known;
-  std::size_t found = 0;
+  std::vector<std::string> known;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-    known += (known.empty() ? "" : ", ") + scene.cameras[i].name;
-    if (wanted(flags, scene.cameras[i].name)) request.cameras.push_back(i), ++found;
+    known.push_back(scene.cameras[i].name);
+    if (wanted(flags, known.back())) request.cameras.push_back(i);
   }
   for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
-    if (wanted(flags, scene.sonars[i].name))
-      NERITIC_TRY_STATUS(check_sonar(scene.sonars[i]));
-    known += (known.empty() ? "" : ", ") + scene.sonars[i].name;
-    if (wanted(flags, scene.sonars[i].name)) request.sonars.push_back(i), ++found;
+    known.push_back(scene.sonars[i].name);
+    if (!wanted(flags, known.back())) continue;
+    NERITIC_TRY_STATUS(check_sonar(scene.sonars[i]));
+    request.sonars.push_back(i);
   }
-  if (!flags.sensors.empty() && found < flags.sensors.size())
-    return bad_input("--sensor: {} has {}", flags.scene, known.empty() ? "no sensors" : known);
-  if (found == 0)
+  for (const std::string& name : flags.sensors)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      return bad_input("--sensor {}: not in {}, which has {}", name, flags.scene,
+                       known.empty() ? "no sensors" : fmt::format("{}", fmt::join(known, ", ")));
+  if (request.cameras.empty() && request.sonars.empty())
     return bad_input("{}: no camera and no sonar, so there is nothing to render", flags.scene);
   return request;
 }
@@ -67,37 +70,6 @@ Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& sc
 double frame_step_s(const scene::Scene& scene, const FrameRequest& request) {
   if (!request.cameras.empty()) return 1.0 / scene.cameras[request.cameras.front()].rate_hz;
   return 1.0 / scene.sonars[request.sonars.front()].rate_hz;
-}
-
-void add_tiles(std::vector<Tile>& tiles, const FrameResult& result) {
-  for (const CameraFrame& camera : result.cameras)
-    for (std::size_t e = 0; e < camera.eyes.size(); ++e)
-      tiles.push_back(
-          {camera.eyes[e].color, camera.eyes.size() > 1
-                                     ? fmt::format("{} {}", camera.name, e == 0 ? "left" : "right")
-                                     : camera.name});
-  for (const SonarFrame& sonar : result.sonars)
-    tiles.push_back({sonar::draw_sonar(sonar_files(sonar)),
-                     sonar.head.empty() ? sonar.name : sonar.name + " " + sonar.head});
-  if (result.cameras.empty()) return;
-  const ViewImages& view = result.cameras.front().eyes.front();
-  tiles.push_back({depth_picture(view.depth), "depth"});
-  tiles.push_back({normals_picture(view.normals), "normals"});
-  tiles.push_back({labels_picture(view.labels), "class labels"});
-  tiles.push_back({labels_picture(view.instances), "instance labels"});
-  if (!view.motion.empty())
-    tiles.push_back({motion_picture(view.motion), "motion to the next frame"});
-}
-
-Status write_sheet(const fs::path& out, const FrameResult& result) {
-  std::vector<Tile> tiles;
-  add_tiles(tiles, result);
-  for (const Tile& tile : tiles) {
-    std::string file = tile.caption + ".png";
-    std::replace(file.begin(), file.end(), ' ', '_');
-    NERITIC_TRY_STATUS(scene::write_png8(out / file, tile.image));
-  }
-  return scene::write_png8(out / "sheet.png", contact_sheet(tiles));
 }
 
 Status write_frame(const fs::path& folder, const FrameResult& result, const FrameFacts& facts) {
@@ -121,9 +93,23 @@ Status dump_graph(const RenderFlags& flags, const Session& session) {
   return write_text(flags.dump_graph, dot ? session.plan_graphviz() : session.plan_text());
 }
 
+// "out: frame_0000 to 0029 of rov_camera, rov_sonar; track; sheet.png shows all at one glance".
+std::string summary(const RenderFlags& flags, const scene::Scene& scene,
+                    const FrameRequest& request) {
+  std::vector<std::string> names, parts;
+  for (const std::size_t i : request.cameras) names.push_back(scene.cameras[i].name);
+  for (const std::size_t i : request.sonars) names.push_back(scene.sonars[i].name);
+  const std::string last = flags.frames > 1 ? fmt::format(" to {:04}", flags.frames - 1) : "";
+  if (!flags.track_only)
+    parts.push_back(fmt::format("frame_0000{} of {}", last, fmt::join(names, ", ")));
+  if (fs::is_directory(fs::path(flags.out) / "track")) parts.push_back("track");
+  if (flags.sheet) parts.push_back("sheet.png shows all at one glance");
+  return fmt::format("{}: {}", flags.out, fmt::join(parts, "; "));
+}
+
 }  // namespace
 
-Status run_render(const RenderFlags& flags) {
+Result<std::string> run_render(const RenderFlags& flags) {
   if (!std::isfinite(flags.time_s))
     return bad_input("--time: {} s; a finite number is accepted", flags.time_s);
   const TimeNs start = now_ns();
@@ -171,7 +157,7 @@ Status run_render(const RenderFlags& flags) {
   if (!device->validation_log().messages.empty())
     return failure(ErrorCode::kUnsupported, "validation reported {} messages",
                    device->validation_log().messages.size());
-  return {};
+  return summary(flags, session->scene(), request);
 }
 
 }  // namespace neritic::tools

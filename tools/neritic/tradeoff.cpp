@@ -9,7 +9,7 @@
 #include "tools/tradeoff/sonar_tradeoff.hpp"
 
 namespace neritic::tools {
-Status run_tradeoff(const TradeoffFlags& flags) {
+Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what != "sonar")
     return bad_input("tradeoff: '{}' found, sonar is accepted", flags.what);
   SonarTradeoffOptions options;
@@ -33,7 +33,8 @@ Status run_tradeoff(const TradeoffFlags& flags) {
   Progress progress("tradeoff sonar", steps(options));
   options.step = [&] { progress.step(); };
   NERITIC_TRY(const SonarTradeoff tradeoff, run_sonar_tradeoff(options));
-  return write_sonar_tradeoff(flags.out, tradeoff);
+  NERITIC_TRY_STATUS(write_sonar_tradeoff(flags.out, tradeoff));
+  return flags.out.string() + ": tables (.csv, .md), pictures";
 }
 
 }  // namespace neritic::tools

@@ -1,0 +1,40 @@
+// What `neritic` says about itself: help, version, wrong flags. No device.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tools/neritic/commands.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+
+std::string said(const std::vector<std::string>& words) {
+  const auto line = parse_command_line(words);
+  return line.ok() ? line->help : line.error().message;
+}
+
+TEST(CommandLine, HelpOfASubcommandNamesTheProgram) {
+  for (const std::string name : {"render", "sonar", "dive", "tradeoff", "doctor"})
+    EXPECT_THAT(said({name, "--help"}), HasSubstr("Usage: neritic " + name)) << name;
+  EXPECT_THAT(said({"--help"}), HasSubstr("Usage: neritic"));
+}
+
+TEST(CommandLine, VersionIsOneLine) {
+  EXPECT_THAT(said({"--version"}), MatchesRegex("neritic [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST(CommandLine, AWrongFlagPointsAtTheSubcommandsHelp) {
+  EXPECT_THAT(said({"render", "a.toml", "--out", "o", "--colour"}),
+              HasSubstr("(see neritic render --help)"));
+  EXPECT_THAT(said({"sonar", "imaging"}), HasSubstr("(see neritic sonar --help)"));
+  EXPECT_THAT(said({"--colour"}), HasSubstr("(see neritic --help)"));
+}
+
+TEST(CommandLine, AWrongSubcommandListsThem) {
+  EXPECT_THAT(said({"rendre"}), HasSubstr("render, sonar, dive, tradeoff, doctor"));
+}
+
+}  // namespace
+}  // namespace neritic::tools

@@ -1,0 +1,64 @@
+#include "tools/neritic/render_sheet.hpp"
+
+#include <algorithm>
+
+#include "engine/core/files.hpp"
+#include "engine/scene/image_file.hpp"
+#include "sonar/write_sonar.hpp"
+#include "tools/session/output.hpp"
+#include "tools/session/pictures.hpp"
+
+namespace neritic::tools {
+namespace {
+
+struct Picture {
+  Tile tile;
+  std::string file;  // sensor names are unique and every kind ends differently, so these are too
+};
+
+bool moves(const ImageF32& motion_px) {
+  return std::any_of(motion_px.data.begin(), motion_px.data.end(),
+                     [](float v) { return v != 0.0f; });
+}
+
+void add_camera(std::vector<Picture>& out, const CameraFrame& camera) {
+  for (std::size_t e = 0; e < camera.eyes.size(); ++e) {
+    const bool stereo = camera.eyes.size() > 1;
+    const std::string name = stereo ? camera.name + (e == 0 ? "_left" : "_right") : camera.name;
+    out.push_back({{camera.eyes[e].color, name}, name + "_color"});
+  }
+}
+
+void add_geometry(std::vector<Picture>& out, const CameraFrame& camera) {
+  const ViewImages& view = camera.eyes.front();
+  const auto add = [&](ImageU8 picture, const std::string& what) {
+    out.push_back({{std::move(picture), camera.name + ": " + what}, camera.name + "_" + what});
+  };
+  if (!view.depth.empty()) add(depth_picture(view.depth), "depth");
+  if (!view.normals.empty()) add(normals_picture(view.normals), "normals");
+  if (!view.labels.empty()) add(labels_picture(view.labels), "labels");
+  if (!view.instances.empty()) add(labels_picture(view.instances), "instances");
+  if (moves(view.motion)) add(motion_picture(view.motion), "motion");
+}
+
+}  // namespace
+
+Status write_sheet(const std::filesystem::path& out, const FrameResult& result) {
+  std::vector<Picture> pictures;
+  for (const CameraFrame& camera : result.cameras) add_camera(pictures, camera);
+  for (const SonarFrame& sonar : result.sonars) {
+    const std::string name = sonar.head.empty() ? sonar.name : sonar.name + "_" + sonar.head;
+    pictures.push_back({{sonar::draw_sonar(sonar_files(sonar)), name}, name + "_sonar"});
+  }
+  if (!result.cameras.empty()) add_geometry(pictures, result.cameras.front());
+  NERITIC_TRY_STATUS(make_folder(out / "sheet"));
+  std::vector<Tile> tiles;
+  for (Picture& picture : pictures) {
+    NERITIC_TRY_STATUS(
+        scene::write_png8(out / "sheet" / (picture.file + ".png"), picture.tile.image));
+    tiles.push_back(std::move(picture.tile));
+  }
+  return scene::write_png8(out / "sheet.png", contact_sheet(tiles));
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,25 @@
+// What a user should know about one sonar image made from images: whether anything lies in the
+// wedge, and whether the images are fine enough for its cells. Pure functions; any thread.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "sonar/reference.hpp"
+
+namespace neritic::tools {
+
+struct Coverage {
+  std::size_t in_wedge = 0;     // pixels with a depth, within the limits of range and both angles
+  std::size_t in_aperture = 0;  // pixels within both angles, whatever their depth
+  double nearest_m = 0.0, farthest_m = 0.0;  // ranges found in the image; 0, 0 where none has any
+  double pixels_per_cell = 0.0;              // in_aperture over cells of azimuth times elevation
+};
+Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in);
+
+// The line that tells the user what is amiss, if anything. published: each pixel adds to one cell.
+std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Coverage& coverage,
+                                         bool published);
+
+}  // namespace neritic::tools
