@@ -9,14 +9,19 @@
 
 layout(constant_id = kReceiverSpecAxis) const uint kAxis = 0;
 layout(constant_id = kReceiverSpecShift) const uint kShift = 0;
+layout(constant_id = kReceiverSpecWrap) const uint kWrap = 0;
 layout(set = 0, binding = kReceiverIn) uniform texture2DArray field;
 layout(set = 0, binding = kReceiverTaps) uniform texture2D taps;
 layout(set = 0, binding = kReceiverOut, rg32f) writeonly uniform image2DArray result;
 
 vec2 column_at(int column, int row) {
   int n = int(c.columns);
-  if (c.wrap != 0) column = ((column % n) + n) % n;
-  return column >= 0 && column < n ? texelFetch(field, ivec3(column, row, 0), 0).rg : vec2(0.0);
+  if (kWrap != 0) {  // a kernel reaches less than once round
+    column += column < 0 ? n : 0;
+    column -= column >= n ? n : 0;
+  }
+  vec2 value = texelFetch(field, ivec3(clamp(column, 0, n - 1), row, 0), 0).rg;
+  return column >= 0 && column < n ? value : vec2(0.0);
 }
 
 void main() {

@@ -62,12 +62,14 @@ Result<Receiver> Receiver::create(gpu::Device& device, ReceiverDesc desc) {
                                        {shared::kReceiverOut, kBuffer}},
                                       {coherent, {shared::kReceiverSpecNoise, d.noise}}));
   const auto spread = [&](const char* name, std::uint32_t axis) {
-    return pipeline(
-        device, name, shaders::kSonarSpreadComp,
-        {{shared::kReceiverIn, kSampled},
-         {shared::kReceiverTaps, kSampled},
-         {shared::kReceiverOut, kImage}},
-        {coherent, {shared::kReceiverSpecAxis, axis}, {shared::kReceiverSpecShift, d.shift}});
+    return pipeline(device, name, shaders::kSonarSpreadComp,
+                    {{shared::kReceiverIn, kSampled},
+                     {shared::kReceiverTaps, kSampled},
+                     {shared::kReceiverOut, kImage}},
+                    {coherent,
+                     {shared::kReceiverSpecAxis, axis},
+                     {shared::kReceiverSpecShift, d.shift},
+                     {shared::kReceiverSpecWrap, d.wrap}});
   };
   if (!d.range.weights.empty()) {
     NERITIC_TRY(made.range_taps_, taps_image(device, "sonar pulse", d.range));
@@ -92,8 +94,7 @@ shared::SonarReceiverPush Receiver::push(const Ping& ping) const {
           .shift = ping.shift_columns_per_row,
           .noise = std::sqrt(ping.noise_power),
           .seed = ping.seed,
-          .ping = ping.ping,
-          .wrap = desc_.wrap};
+          .ping = ping.ping};
 }
 
 graph::ImageHandle Receiver::declare_spread(graph::FrameGraph& graph, const std::string& name,

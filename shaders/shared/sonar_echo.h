@@ -69,7 +69,6 @@ struct SonarReceiverPush {
   float noise;        // receive: amplitude of either part
   uint seed;
   uint ping;
-  uint wrap;          // a full turn: the columns are a ring
 };
 NERITIC_CONST uint kReceiverIn = 0;     // sums (buffer), or the field
 NERITIC_CONST uint kReceiverGains = 1;  // vec2 [n_range]: of the field (amplitude where coherent), of the power after it
@@ -80,6 +79,7 @@ NERITIC_CONST uint kReceiverSpecCoherent = 0;
 NERITIC_CONST uint kReceiverSpecAxis = 1;   // spread: 0 across beams, 1 along range
 NERITIC_CONST uint kReceiverSpecNoise = 2;
 NERITIC_CONST uint kReceiverSpecShift = 3;
+NERITIC_CONST uint kReceiverSpecWrap = 4;   // a full turn: the columns are a ring
 
 NERITIC_SHARED_END
 #endif

@@ -12,6 +12,7 @@ namespace neritic::bench {
 
 Status bench_sonar_binning(Suite& suite, gpu::Device& device);  // the gather against the volume
 Status bench_sonar_frame(Suite& suite, gpu::Device& device);    // whole frames, one sonar and ten
+Status bench_sonar_terms(Suite& suite, gpu::Device& device);    // a frame with each term named
 Status bench_camera_frame(Suite& suite, gpu::Device& device);   // pictures, many instances
 Status bench_sweeps(Suite& suite, gpu::Device& device);         // cost against sizes
 Status bench_start(Suite& suite, gpu::Device& device);          // process start to picture

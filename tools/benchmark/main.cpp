@@ -21,6 +21,7 @@ Status run(Suite& suite) {
   NERITIC_TRY(const auto device, gpu::Device::create(options));
   NERITIC_TRY_STATUS(bench_sonar_binning(suite, *device));
   NERITIC_TRY_STATUS(bench_sonar_frame(suite, *device));
+  NERITIC_TRY_STATUS(bench_sonar_terms(suite, *device));
   NERITIC_TRY_STATUS(bench_camera_frame(suite, *device));
   NERITIC_TRY_STATUS(bench_sweeps(suite, *device));
   if (!suite.options().once) NERITIC_TRY_STATUS(bench_start(suite, *device));

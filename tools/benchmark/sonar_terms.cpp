@@ -1,0 +1,80 @@
+// What each term of a sonar costs, one at a time and all together, on the sonar benchmark's scene.
+#include <utility>
+
+#include "tools/benchmark/groups.hpp"
+
+namespace neritic::bench {
+namespace {
+
+using scene::SonarTerms;
+
+SonarTerms every_term() {
+  SonarTerms t;
+  t.frequency_hz = 900e3;
+  t.level = scene::SonarLevel{.tvg_log = 40.0, .tvg_absorption = true};
+  t.beam.azimuth = scene::SonarPattern{.shape = scene::SonarPattern::Shape::kHamming,
+                                       .half_power_rad = radians(0.6)};
+  t.beam.elevation = scene::SonarPattern{.half_power_rad = radians(20.0)};
+  t.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 60e3};
+  t.speckle = scene::SonarSpeckle{};
+  t.noise = scene::SonarNoise{};
+  t.ghosts = scene::SonarGhosts{.surface = true};
+  t.profile = scene::SonarProfile{{{0.0, 1500.0}, {20.0, 1480.0}}, false};
+  t.motion = scene::SonarMotion{.within_ping = true};
+  t.labels.energy = true;
+  return t;
+}
+
+// The terms of which only one is named.
+std::vector<std::pair<std::string, SonarTerms>> one_by_one() {
+  const SonarTerms all = every_term();
+  const auto with = [&](auto keep) {
+    SonarTerms t;
+    t.frequency_hz = all.frequency_hz;
+    keep(t);
+    return t;
+  };
+  return {{"plain", with([](SonarTerms&) {})},
+          {"level", with([&](SonarTerms& t) { t.level = all.level; })},
+          {"beam_elevation", with([&](SonarTerms& t) { t.beam.elevation = all.beam.elevation; })},
+          {"beam_azimuth", with([&](SonarTerms& t) { t.beam.azimuth = all.beam.azimuth; })},
+          {"range_spread", with([&](SonarTerms& t) { t.range_spread = all.range_spread; })},
+          {"speckle", with([&](SonarTerms& t) { t.speckle = all.speckle; })},
+          {"noise", with([&](SonarTerms& t) { t.level = all.level, t.noise = all.noise; })},
+          {"ghosts", with([&](SonarTerms& t) { t.ghosts = all.ghosts; })},
+          {"profile", with([&](SonarTerms& t) { t.profile = all.profile; })},
+          {"profile_bent", with([&](SonarTerms& t) {
+             t.profile = all.profile;
+             t.profile->bent = true;
+           })},
+          {"motion", with([&](SonarTerms& t) { t.motion = all.motion; })},
+          {"labels_energy", with([&](SonarTerms& t) { t.labels = all.labels; })},
+          {"all", all}};
+}
+
+}  // namespace
+
+Status bench_sonar_terms(Suite& suite, gpu::Device& device) {
+  if (!suite.wants("sonar_terms")) return {};
+  NERITIC_TRY(const scene::Scene base,
+              scene::load_scene(suite.options().assets + "/scenes/benchmark_23k.toml"));
+  std::vector<std::unique_ptr<tools::Session>> sessions;
+  std::vector<Contender> contenders;
+  tools::FrameRequest request;
+  request.sonars = {0};
+  request.capture = {.color = false, .geometry = false, .motion = false};
+  for (const auto& [name, terms] : one_by_one()) {
+    scene::Scene scene = base;
+    scene.sonars.at(0).terms = terms;
+    NERITIC_TRY(auto session, tools::Session::create(device, std::move(scene)));
+    sessions.push_back(std::move(session));
+    contenders.push_back(frames_of("sonar_terms/" + name, *sessions.back(), request));
+  }
+  NERITIC_TRY_STATUS(suite.measure(std::move(contenders), 20));
+  for (const auto& [name, terms] : one_by_one())
+    if (name != "plain")
+      suite.ratio("sonar_" + name + "_vs_plain", "sonar_terms/" + name, "sonar_terms/plain");
+  return {};
+}
+
+}  // namespace neritic::bench
