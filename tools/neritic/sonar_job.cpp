@@ -144,10 +144,12 @@ Result<sonar::Head> head_of(const scene::Sonar& sonar, const sonar::BeamGrid& gr
   return head;
 }
 
+// Plain imaging is the published algorithm; a thin swath would fall between its pixels.
 Result<sonar::Gather> gather_of(const SonarFlags& flags, const scene::Sonar& sonar, bool plain) {
   std::string name = flags.gather;
   if (name.empty()) name = sonar.gather;
-  if (name.empty()) name = plain ? "published" : kDefaultGather;
+  const bool published = plain && sonar.kind == SonarKind::kImaging;
+  if (name.empty()) name = published ? "published" : kDefaultGather;
   return sonar::gather_of(name);
 }
 

@@ -1,0 +1,241 @@
+// `neritic sonar` on folders: the same as one by one, going on where it stopped, leaving out what
+// cannot be read, a thousand frames.
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tests/support/support.hpp"
+#include "tests/tools/sonar_command.hpp"
+
+namespace neritic {
+namespace {
+
+namespace fs = std::filesystem;
+using test::numbers_of;
+using test::sonar_command;
+using test::sum;
+using test::Words;
+using test::operator+;
+
+// Walls farther and farther off, in small images: d/depth_000.npy, n/normal_000.npy.
+class SonarFolder : public ::testing::Test {
+ protected:
+  static constexpr std::uint32_t kWidth = 32, kHeight = 24;
+
+  void write_frames(int count) {
+    ASSERT_TRUE(make_folder(folder_ / "d").ok() && make_folder(folder_ / "n").ok());
+    std::vector<float> normals;
+    for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) normals.insert(normals.end(), {0, 0, 1});
+    for (int i = 0; i < count; ++i) {
+      const std::vector<float> depth(kWidth * kHeight, 1.2f + 0.003f * float(i % 1000));
+      ASSERT_TRUE(write_npy(depth_file(i), std::span<const float>(depth), {kHeight, kWidth}).ok());
+      ASSERT_TRUE(
+          write_npy(normal_file(i), std::span<const float>(normals), {kHeight, kWidth, 3}).ok());
+    }
+  }
+  static std::string name(int i) { return fmt::format("{:03}", i); }
+  fs::path depth_file(int i) { return folder_ / "d" / ("depth_" + name(i) + ".npy"); }
+  fs::path normal_file(int i) { return folder_ / "n" / ("normal_" + name(i) + ".npy"); }
+  fs::path result(int i) { return folder_ / "out" / name(i); }
+  Words settings() {
+    return Words{"--intrinsics", "20,20,16,12", "--bins", "32,16,16"} + test::by_any_method();
+  }
+  Words words(const Words& more = {}) {
+    return Words{"imaging",
+                 "--depth",
+                 (folder_ / "d").string(),
+                 "--normals",
+                 (folder_ / "n").string(),
+                 "--out",
+                 (folder_ / "out").string()} +
+           settings() + more;
+  }
+  void expect_done(const Words& all) {
+    const Status done = sonar_command(all);
+    EXPECT_TRUE(done.ok()) << done.error().message;
+  }
+  void expect_refused(const Words& all, const std::string& named) {
+    const Status status = sonar_command(all);
+    ASSERT_FALSE(status.ok()) << named;
+    EXPECT_EQ(status.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(status.error().message.find(named), std::string::npos) << status.error().message;
+    EXPECT_EQ(status.error().message.find('\n'), std::string::npos);
+  }
+  nlohmann::json run_facts() {
+    return parse_json(read_text(folder_ / "out" / "run.json").value()).value();
+  }
+  std::string skipped() {
+    const auto text = read_text(folder_ / "out" / "skipped.csv");
+    return text.ok() ? *text : "";
+  }
+  test::ScratchFolder folder_;
+};
+
+TEST_F(SonarFolder, GivesEachFrameWhatItGivesAlone) {
+  write_frames(7);
+  expect_done(words({"--workers", "3"}));
+  for (int i = 0; i < 7; ++i) {
+    const fs::path alone = folder_ / ("alone_" + name(i));
+    expect_done(Words{"imaging", "--depth", depth_file(i).string(), "--normals",
+                      normal_file(i).string(), "--out", alone.string()} +
+                settings());
+    for (const char* file : {"sonar.npy", "sonar_labels.npy", "sonar.png"})
+      EXPECT_EQ(read_text(result(i) / file).value(), read_text(alone / file).value())
+          << i << " " << file;
+  }
+  EXPECT_NE(numbers_of(result(0) / "sonar.npy"), numbers_of(result(6) / "sonar.npy"));
+  EXPECT_EQ(run_facts()["made"], 7);
+  EXPECT_EQ(skipped(), "");
+  for (const auto& entry : fs::directory_iterator(folder_ / "out"))
+    EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
+}
+
+TEST_F(SonarFolder, GoesOnWhereItStopped) {
+  write_frames(5);
+  expect_done(words());
+  const std::string whole = read_text(result(3) / "sonar.npy").value();
+  // As a run leaves it that was stopped: one frame half-written, one not begun.
+  fs::remove_all(result(3));
+  ASSERT_TRUE(make_folder(folder_ / "out" / ".003.partial").ok());
+  ASSERT_TRUE(write_text(folder_ / "out" / ".003.partial" / "sonar.npy", "half").ok());
+  fs::remove_all(result(4));
+  const auto kept = fs::last_write_time(result(0) / "sonar.json");
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 2);
+  EXPECT_EQ(run_facts()["already_there"], 3);
+  EXPECT_EQ(fs::last_write_time(result(0) / "sonar.json"), kept);
+  EXPECT_EQ(read_text(result(3) / "sonar.npy").value(), whole);
+  EXPECT_FALSE(fs::exists(folder_ / "out" / ".003.partial"));
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 0);
+}
+
+TEST_F(SonarFolder, MakesFramesAgainWhoseImagesAreNewer) {
+  write_frames(3);
+  expect_done(words());
+  fs::last_write_time(depth_file(1),
+                      fs::last_write_time(result(1) / "sonar.json") + std::chrono::seconds(5));
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 1);
+}
+
+TEST_F(SonarFolder, OtherSettingsAreRefusedUnlessToOverwrite) {
+  write_frames(3);
+  expect_done(words());
+  const std::string before = read_text(result(2) / "sonar.npy").value();
+  expect_refused(words({"--range", "1,6"}), "range_m");
+  expect_refused(words({"--no-pictures"}), "pictures");
+  EXPECT_EQ(read_text(result(2) / "sonar.npy").value(), before);
+  expect_done(words({"--range", "1,6", "--overwrite"}));
+  EXPECT_EQ(run_facts()["made"], 3);
+  EXPECT_NE(read_text(result(2) / "sonar.npy").value(), before);
+}
+
+TEST_F(SonarFolder, LeavesOutAndListsWhatItCannotRead) {
+  write_frames(6);
+  ASSERT_TRUE(write_text(depth_file(1), "not an array, \"really\"").ok());
+  fs::remove(normal_file(3));
+  ASSERT_TRUE(write_npy(normal_file(4), std::vector<float>(12, 1.0f), {2, 2, 3}).ok());
+  expect_done(words());
+  EXPECT_EQ(run_facts()["skipped"], 3);
+  EXPECT_TRUE(fs::exists(result(0) / "sonar.json") && fs::exists(result(5) / "sonar.json"));
+  for (const int i : {1, 3, 4}) {
+    EXPECT_FALSE(fs::exists(result(i)));
+    EXPECT_NE(skipped().find(depth_file(i).string()), std::string::npos) << skipped();
+  }
+  EXPECT_NE(skipped().find("--normals"), std::string::npos);
+  const std::string list = skipped();
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 4);
+  // Put right, they are made, and the list goes.
+  write_frames(6);
+  expect_done(words());
+  EXPECT_EQ(skipped(), "");
+  EXPECT_TRUE(fs::exists(result(4) / "sonar.json"));
+}
+
+TEST_F(SonarFolder, NothingReadableIsBadInput) {
+  write_frames(2);
+  for (const int i : {0, 1}) ASSERT_TRUE(write_text(depth_file(i), "junk").ok());
+  expect_refused(words(), "none of 2 frames");
+  EXPECT_NE(skipped(), "");
+}
+
+TEST_F(SonarFolder, FilesOfOthersAreLeftAlone) {
+  write_frames(2);
+  ASSERT_TRUE(make_folder(result(1)).ok());
+  ASSERT_TRUE(write_text(result(1) / "diary.txt", "mine").ok());
+  for (const Words& more : {Words{}, Words{"--overwrite"}})
+    expect_refused(words(more), result(1).string());
+  EXPECT_EQ(read_text(result(1) / "diary.txt").value(), "mine");
+}
+
+TEST_F(SonarFolder, FoldersThatDoNotFitAreRefusedByName) {
+  write_frames(2);
+  Words all = words();
+  all[4] = normal_file(0).string();
+  expect_refused(all, "--normals");
+  all = words();
+  all[2] = (folder_ / "d" / "*.exr").string();
+  expect_refused(all, "*.exr");
+  ASSERT_TRUE(make_folder(folder_ / "empty").ok());
+  all[2] = (folder_ / "empty").string();
+  expect_refused(all, "empty");
+}
+
+TEST_F(SonarFolder, ImagesOfDifferentSizesAreAllTaken) {
+  write_frames(4);
+  const std::vector<float> depth(48 * 40, 2.0f);
+  std::vector<float> normals;
+  for (int i = 0; i < 48 * 40; ++i) normals.insert(normals.end(), {0, 0, 1});
+  ASSERT_TRUE(write_npy(depth_file(2), depth, {40, 48}).ok());
+  ASSERT_TRUE(write_npy(normal_file(2), normals, {40, 48, 3}).ok());
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 4);
+}
+
+// Pictures, a ping each, from 3 m above a flat bottom.
+TEST_F(SonarFolder, PicturesMakeASideScanWaterfall) {
+  ASSERT_TRUE(make_folder(folder_ / "p").ok());
+  ImageU8 picture(64, 48, 3);
+  for (std::uint8_t i = 0; i < 5; ++i) {
+    std::fill(picture.data.begin(), picture.data.end(), static_cast<std::uint8_t>(50 * i + 50));
+    ASSERT_TRUE(scene::write_png8(folder_ / "p" / fmt::format("rgb_{}.png", i), picture).ok());
+  }
+  const Words all{
+      "sidescan",   "--method", "image",        "--picture",   (folder_ / "p").string(),
+      "--altitude", "3",        "--intrinsics", "40,40,32,24", "--range",
+      "2,5",        "--bins",   "30,1,1",       "--out",       (folder_ / "out").string()};
+  expect_done(all);
+  const std::vector<double> waterfall = numbers_of(folder_ / "out" / "waterfall.npy");
+  ASSERT_EQ(waterfall.size(), 5u * 60u);
+  double before = 0.0;
+  for (int i = 0; i < 5; ++i) {
+    const auto row = waterfall.begin() + 60 * i;
+    const double port = sum({row, row + 30}), starboard = sum({row + 30, row + 60});
+    EXPECT_NEAR(port, starboard, 1e-3 * port);  // an even bottom
+    EXPECT_GT(port, before);                    // brighter and brighter
+    before = port;
+    EXPECT_EQ(row[29], 0.0f);  // water: nothing is nearer than 3 m
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "waterfall.png"));
+  expect_done(all);
+  EXPECT_EQ(run_facts()["made"], 0);
+}
+
+// NERITIC_FRAMES: another number of frames, to measure with.
+TEST_F(SonarFolder, AThousandFramesGoThrough) {
+  const char* asked = std::getenv("NERITIC_FRAMES");
+  const int count = asked != nullptr ? std::atoi(asked) : 1000;
+  write_frames(count);
+  expect_done(words({"--no-pictures"}));
+  const nlohmann::json facts = run_facts();
+  EXPECT_EQ(facts["made"], count);
+  for (int i = 0; i < count; ++i) ASSERT_TRUE(fs::exists(result(i) / "sonar.json")) << i;
+  fmt::print("{} frames of {} x {} pixels: {:.0f} frames/s with {} workers\n", count, kWidth,
+             kHeight, facts["frames_per_s"].get<double>(), facts["workers"].get<int>());
+}
+
+}  // namespace
+}  // namespace neritic
