@@ -98,9 +98,9 @@ void add_sonar_device(CLI::App& command, SonarFlags& flags) {
   command
       .add_option(
           "--gather", flags.gather,
-          "how the GPU samples. published (without terms the default here): each pixel adds to one "
-          "cell, as the published loop does; plane (the default of scenes and with "
-          "terms): each cell looks into the image, better where pixels are few")
+          "how the GPU samples. published (the default of imaging without terms): each pixel adds "
+          "to one cell, as the published loop does; plane (the default of all others and of "
+          "scenes): each cell looks into the image, better where pixels are few")
       ->check(CLI::IsMember({"published", "nearest", "plane"}));
   command.add_option("--side", flags.side, "of a side-scan: which side's noise")
       ->check(CLI::IsMember({"port", "starboard"}))

@@ -1,7 +1,6 @@
 // `neritic sonar`: sonar images from depth and normal images of anyone's making, no scene.
 #include "engine/core/log.hpp"
 #include "tools/neritic/sonar_folder.hpp"
-#include "tools/neritic/sonar_notes.hpp"
 #include "tools/neritic/sonar_picture.hpp"
 
 namespace neritic::tools {
@@ -16,10 +15,6 @@ Status run_one(const SonarJob& job) {
     return write_picture_line(job, flags.out, std::move(line));
   }
   NERITIC_TRY(LoadedFrame frame, load_frame(job, files, notes));
-  const bool published = flags.method == "reference" || job.gather == sonar::Gather::kPublished;
-  const sonar::BeamGrid& grid = job.head.beams;
-  if (const auto note = coverage_note(grid, coverage_of(grid, frame.in), published))
-    log_warn("{}", *note);
   if (flags.method == "reference")
     return write_frame(job, flags.out, hear_by_reference(job, std::move(frame)));
   NERITIC_TRY(const std::unique_ptr<SonarEar> ear, SonarEar::create(job));
@@ -33,14 +28,11 @@ Result<std::string> run_sonar(const SonarFlags& flags) {
   NERITIC_TRY(const SonarJob job, plan_job(flags));
   if (flags.normals.empty() && flags.method != "image")
     log_warn("no --normals: estimated from the depth image");
-  const std::string out = flags.out.string();
-  if (is_folder_job(job)) {
-    NERITIC_TRY_STATUS(run_folder(job));
-    return fmt::format("{}: a folder a frame, run.json says how many", out);
-  }
+  if (is_folder_job(job)) return run_folder(job);
   NERITIC_TRY_STATUS(run_one(job));
   const bool picture = !flags.no_pictures && flags.method != "image";
-  return fmt::format("{}: sonar.npy, {}sonar.json", out, picture ? "sonar.png, " : "");
+  return fmt::format("{}: sonar.npy, {}sonar.json", flags.out.string(),
+                     picture ? "sonar.png, " : "");
 }
 
 }  // namespace neritic::tools

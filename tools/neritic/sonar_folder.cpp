@@ -1,10 +1,8 @@
 #include "tools/neritic/sonar_folder.hpp"
 
-#include <unistd.h>
-
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
-#include "engine/core/log.hpp"
+#include "engine/core/json.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/sonar_picture.hpp"
 #include "tools/neritic/sonar_pipeline.hpp"
@@ -143,29 +141,22 @@ Status run_kind(const Run& run) {
                         [&](LoadedFrame frame) { return ear->hear(std::move(frame)); }, write});
 }
 
-// Says how it went, on a terminal and in OUT/run.json.
-Status report(const Run& run, double seconds) {
+// How it went, in one line and in OUT/run.json.
+Result<std::string> report(const Run& run, double seconds) {
   const std::size_t skipped = run.skipped.size(), made = run.todo.size() - skipped;
+  const std::size_t there = run.frames.size() - run.todo.size();
   const double per_s = static_cast<double>(made) / std::max(seconds, 1e-9);
-  const std::string line =
-      fmt::format("{} frames made in {:.1f} s, {:.1f} frames/s; {} were there; {} skipped", made,
-                  seconds, per_s, run.frames.size() - run.todo.size(), skipped);
-  if (isatty(STDERR_FILENO))
-    fmt::print(stderr, "{}\n", line);
-  else
-    log_info("{}", line);
-  if (skipped > 0)
-    log_warn("{} of {} frames skipped: {}", skipped, run.frames.size(),
-             (run.job.flags.out / "skipped.csv").string());
-  const nlohmann::json json{{"frames", run.frames.size()},
-                            {"made", made},
-                            {"already_there", run.frames.size() - run.todo.size()},
-                            {"skipped", skipped},
-                            {"seconds", seconds},
-                            {"frames_per_s", per_s},
-                            {"workers", run.workers},
-                            {"settings", run.job.settings}};
-  return write_text(run.job.flags.out / "run.json", json.dump(2) + "\n");
+  const std::string out = run.job.flags.out.string();
+  const nlohmann::json json{{"frames", run.frames.size()}, {"made", made},
+                            {"already_there", there},      {"skipped", skipped},
+                            {"seconds", seconds},          {"frames_per_s", per_s},
+                            {"workers", run.workers},      {"settings", run.job.settings}};
+  NERITIC_TRY_STATUS(write_json(run.job.flags.out / "run.json", json));
+  std::string line =
+      fmt::format("{}: {} frames in {:.1f} s, {:.1f} frames/s", out, made, seconds, per_s);
+  if (there > 0) line += fmt::format("; {} were there already", there);
+  if (skipped > 0) line += fmt::format("; {} skipped, see {}/skipped.csv", skipped, out);
+  return line;
 }
 
 }  // namespace
@@ -177,7 +168,7 @@ bool is_folder_job(const SonarJob& job) {
   });
 }
 
-Status run_folder(const SonarJob& job) {
+Result<std::string> run_folder(const SonarJob& job) {
   NERITIC_TRY(const std::vector<FrameFiles> frames, frames_of(job));
   NERITIC_TRY(const std::vector<std::size_t> todo, frames_to_do(job, frames));
   NERITIC_TRY_STATUS(make_folder(job.flags.out));

@@ -10,7 +10,7 @@ namespace neritic::tools {
 bool is_folder_job(const SonarJob& job);
 
 // kBadInput where the folders do not fit, OUT holds frames of other settings, or no frame could be
-// read; else the first error that is not one frame's.
-Status run_folder(const SonarJob& job);
+// read; else the first error that is not one frame's. The text says how many frames and how fast.
+Result<std::string> run_folder(const SonarJob& job);
 
 }  // namespace neritic::tools

@@ -9,6 +9,7 @@
 #include "sonar/terms_json.hpp"
 #include "sonar/write_sonar.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/neritic/sonar_notes.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -79,6 +80,15 @@ Status add_findings(const SonarJob& job, const fs::path& folder, const sonar::So
   return {};
 }
 
+// Of the first frame: what the images leave of the sonar's wedge.
+void note_coverage(const SonarJob& job, const sonar::SonarInput& in, SonarNotes& notes) {
+  if (notes.coverage.exchange(true)) return;
+  const bool published = job.flags.method == "reference" || job.gather == sonar::Gather::kPublished;
+  const sonar::BeamGrid& grid = job.head.beams;
+  if (const auto note = coverage_note(grid, coverage_of(grid, in), published))
+    log_warn("{}", *note);
+}
+
 }  // namespace
 
 Result<sonar::Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFile& image) {
@@ -121,6 +131,7 @@ Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& fil
   LoadedFrame frame;
   NERITIC_TRY(frame.in, sonar::make_input(depth, normals ? &*normals : nullptr,
                                           labels ? &*labels : nullptr, intrinsics, job.options));
+  note_coverage(job, frame.in, notes);
   frame.files = files;
   frame.facts = facts_of(job, files, frame.in);
   frame.facts["timings_ms"]["read"] = to_ms(now_ns() - start);

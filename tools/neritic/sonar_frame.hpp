@@ -18,7 +18,7 @@ enum FrameGroup : std::size_t { kDepthGroup, kNormalGroup, kLabelGroup, kPicture
 
 // What is said once in a run, however many frames it concerns.
 struct SonarNotes {
-  std::atomic<bool> whole_metres = false;
+  std::atomic<bool> whole_metres = false, coverage = false;
 };
 // Says once that whole numbers are taken as metres, where the map holds some and no scale is given.
 void note_whole_metres(const SonarJob& job, const sonar::MapFile& depth, SonarNotes& notes);

@@ -2,6 +2,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/sidescan.hpp"
@@ -87,7 +88,7 @@ Status write_picture_line(const SonarJob& job, const fs::path& folder, PictureLi
                             ? "the picture's linear brightness times the cosine of incidence"
                             : "the picture's linear brightness";
   line.facts["layout"] = "sonar.npy [side, range]: 0 port, 1 starboard; 0 nearest";
-  return write_text(folder / "sonar.json", line.facts.dump(2) + "\n");
+  return write_json(folder / "sonar.json", line.facts);
 }
 
 Status write_waterfall(const SonarJob& job, const std::vector<sonar::FrameFiles>& frames) {

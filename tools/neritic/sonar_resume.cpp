@@ -2,6 +2,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -16,16 +17,16 @@ constexpr const char* kFacts = "sonar.json";
 json earlier_result(const fs::path& folder) {
   const auto text = read_text(folder / kFacts);
   if (!text.ok()) return nullptr;
-  json facts = json::parse(*text, nullptr, false);
-  const bool ours =
-      facts.is_object() && facts.contains("settings") && facts["settings"].is_object();
-  return ours ? facts : json(nullptr);
+  const auto facts = parse_json(*text);
+  const bool ours = facts.ok() && facts->is_object() && facts->contains("settings") &&
+                    (*facts)["settings"].is_object();
+  return ours ? *facts : json(nullptr);
 }
 
 Status same_settings(const json& found, const json& asked, const fs::path& path) {
   if (found == asked) return {};
   const auto in = [](const json& all, const std::string& key) {
-    return all.contains(key) ? all[key].dump() : std::string("none");
+    return all.contains(key) ? json_text(all[key], -1) : std::string("none");
   };
   json both = found;
   both.update(asked);
