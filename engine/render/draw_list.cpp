@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <tuple>
 
 namespace neritic::render {
 namespace {
@@ -18,7 +20,7 @@ struct Seen {
   Mat4 origin_from_primitive;
   std::uint32_t deformed;
   bool mirrored;
-  double distance_m;
+  double order_m;
 };
 
 // No length grows by more than this (the Frobenius norm bounds every stretch, sheared or not).
@@ -27,30 +29,69 @@ double largest_scale(const Mat4& m) {
                    glm::dot(Vec3(m[2]), Vec3(m[2])));
 }
 
+// What an instance must lose to be a draw of its own: a draw command costs llvmpipe what 270
+// triangles outside the picture do (cluster_culling.cpp).
+constexpr std::uint32_t kLeastSaved = 3 * 256;  // indices
+
+// What opaque draws are sorted by: how near their surface may be, and among those around the eye
+// the centre. By the centre alone the seabed under the eye would come last, or first.
+double nearness(double center_m, double radius_m) {
+  return std::max(0.0, center_m - radius_m) + 1e-3 * center_m;
+}
+
 class Builder {
  public:
   Builder(const scene::Scene& scene, const GpuScene& gpu_scene, const FrameState& state,
-          const ViewSet& views)
+          const ViewSet& views, const DrawListOptions& options)
       : scene_(scene),
         gpu_scene_(gpu_scene),
         state_(state),
         views_(views),
-        origin_(views.origin_m()) {}
+        options_(options),
+        origin_(views.origin_m()),
+        culling_(views) {}
 
   DrawList build() {
+    out_.all_triangles = gpu_scene_.triangles();
     for (std::uint32_t g = 0; g < gpu_scene_.groups().size(); ++g) add_group(g);
     std::stable_sort(out_.opaque.begin(), out_.opaque.end(),
-                     [](const Draw& a, const Draw& b) { return a.distance_m < b.distance_m; });
+                     [](const Draw& a, const Draw& b) { return a.order_m < b.order_m; });
     std::stable_sort(out_.blended.begin(), out_.blended.end(),
-                     [](const Draw& a, const Draw& b) { return a.distance_m > b.distance_m; });
+                     [](const Draw& a, const Draw& b) { return a.order_m > b.order_m; });
     return std::move(out_);
   }
 
  private:
   void add_group(std::uint32_t g) {
+    const GpuPrimitive& primitive = gpu_scene_.groups()[g].primitive;
+    if (primitive.index_count == 0) return;
+    std::vector<Seen> seen = seen_of(g);
+    // Instances that share vertices and winding follow each other, front to back, however many
+    // draws they become: the order decides between equal depths.
+    std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) {
+      return std::tuple(a.deformed, a.mirrored, a.order_m) <
+             std::tuple(b.deformed, b.mirrored, b.order_m);
+    });
+    const GpuMaterial& material = gpu_scene_.materials()[primitive.material];
+    const bool clusters = options_.clusters && !primitive.clusters.empty() &&
+                          (material.blend || seen.size() <= kMostSplitInstances);
+    for (std::size_t i = 0; i < seen.size();) {
+      std::size_t end = i + 1;
+      if (!material.blend)
+        while (end < seen.size() && seen[end].deformed == seen[i].deformed &&
+               seen[end].mirrored == seen[i].mirrored)
+          ++end;
+      const std::span<const Seen> alike(seen.data() + i, end - i);
+      add_alike(primitive, alike, clusters && seen[i].deformed == kNone,
+                material.blend ? out_.blended : out_.opaque);
+      i = end;
+    }
+  }
+
+  std::vector<Seen> seen_of(std::uint32_t g) const {
     const DrawGroup& group = gpu_scene_.groups()[g];
     const GpuPrimitive& primitive = group.primitive;
-    if (primitive.index_count == 0) return;
+    const bool blend = gpu_scene_.materials()[primitive.material].blend;
     std::vector<Seen> seen;
     for (const Appearance& a : group.appearances) {
       const std::uint32_t deformed =
@@ -60,65 +101,92 @@ class Builder {
                                      state_.poses[a.object], a, skinned);
       m[3] -= Vec4(origin_, 0.0);
       const Vec3 center = Vec3(m * Vec4(primitive.center_m, 1.0));
+      const double center_m = glm::length(center), stretch = largest_scale(m);
+      const double error_m =
+          kFloatError * (glm::length(Vec3(m[3])) +
+                         stretch * (glm::length(primitive.center_m) + primitive.radius_m));
       // The rest shape bounds nothing that deforms: such are always drawn.
       if (deformed == kNone &&
-          !any_view_sees(views_, center, primitive.radius_m * largest_scale(m)))
+          !any_view_sees(views_, center, primitive.radius_m * stretch + error_m))
         continue;
-      seen.push_back({&a, m, deformed, glm::determinant(glm::dmat3(m)) < 0.0, glm::length(center)});
+      // The Frobenius norm of a turn without scale is sqrt(3): near enough for an order.
+      const double order_m =
+          blend ? center_m : nearness(center_m, primitive.radius_m * stretch / std::sqrt(3.0));
+      seen.push_back({&a, m, deformed, glm::determinant(glm::dmat3(m)) < 0.0, order_m});
     }
-    const bool blend = gpu_scene_.materials()[primitive.material].blend;
-    // Instances that share vertices and winding share a draw; blended ones are sorted one by one.
-    std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) {
-      return std::pair(a.deformed, a.mirrored) < std::pair(b.deformed, b.mirrored);
-    });
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const bool joins = i > 0 && !blend && seen[i].deformed == seen[i - 1].deformed &&
-                         seen[i].mirrored == seen[i - 1].mirrored;
-      add_instance(primitive, seen[i], blend, joins);
+    return seen;
+  }
+
+  // Instances that may share a draw, in their order: those seen whole do with their neighbours.
+  void add_alike(const GpuPrimitive& primitive, std::span<const Seen> alike, bool clusters,
+                 std::vector<Draw>& draws) {
+    const double order_m = alike.front().order_m;  // the nearest's
+    bool joins = false;
+    for (const Seen& s : alike) {
+      const auto first_range = static_cast<std::uint32_t>(out_.ranges.size());
+      const bool part = clusters && add_visible_part(primitive, s);
+      if (part && out_.ranges.size() == first_range) continue;  // nothing of it is seen
+      if (part || !joins) {
+        if (!part) out_.ranges.push_back({primitive.first_index, primitive.index_count});
+        draws.push_back({&primitive, static_cast<std::uint32_t>(out_.instances.size()), 0,
+                         first_range, static_cast<std::uint32_t>(out_.ranges.size()) - first_range,
+                         s.deformed, s.mirrored, order_m});
+      }
+      joins = !part;
+      ++draws.back().instance_count;
+      add_instance(primitive, s);
+      if (primitive.topology != scene::Topology::kTriangles) continue;
+      for (std::uint32_t r = 0; r < draws.back().range_count; ++r)
+        out_.triangles += out_.ranges[draws.back().first_range + r].index_count / 3;
     }
   }
 
-  void add_instance(const GpuPrimitive& primitive, const Seen& seen, bool blend, bool joins) {
+  // Adds the ranges of an instance that some view can see. False, and nothing added, where that is
+  // so nearly all that it is better drawn whole.
+  bool add_visible_part(const GpuPrimitive& primitive, const Seen& seen) {
+    const std::size_t before = out_.ranges.size();
+    culling_.append_visible(primitive.clusters, primitive.first_index, seen.origin_from_primitive,
+                            out_.ranges);
+    std::uint32_t count = 0;
+    for (std::size_t r = before; r < out_.ranges.size(); ++r) count += out_.ranges[r].index_count;
+    if (count == 0 || count + kLeastSaved <= primitive.index_count) return true;
+    out_.ranges.resize(before);
+    return false;
+  }
+
+  void add_instance(const GpuPrimitive& primitive, const Seen& seen) {
     const Appearance& a = *seen.appearance;
-    std::vector<Draw>& draws = blend ? out_.blended : out_.opaque;
-    if (joins) {
-      ++draws.back().instance_count;
-      draws.back().distance_m = std::min(draws.back().distance_m, seen.distance_m);
-    } else {
-      draws.push_back({&primitive, static_cast<std::uint32_t>(out_.instances.size()), 1,
-                       seen.deformed, seen.mirrored, seen.distance_m});
-    }
     shared::Instance instance{};
     set_rows(instance, seen.origin_from_primitive);
     instance.label = scene_.objects[a.object].class_id | std::uint32_t{a.label} << 16;
     instance.deformed = seen.deformed;
     out_.instances.push_back(instance);
-    if (state_.motion) {
-      Mat4 next = world_from_appearance(scene_, state_.next_world_from_object[a.object],
-                                        state_.next_poses[a.object], a,
-                                        primitive.first_skin != kNone && seen.deformed != kNone);
-      next[3] -= Vec4(origin_, 0.0);
-      shared::NextInstance next_instance{};
-      set_rows(next_instance, next);
-      out_.next_instances.push_back(next_instance);
-    }
-    if (primitive.topology == scene::Topology::kTriangles)
-      out_.triangles += primitive.index_count / 3;
+    if (!state_.motion) return;
+    Mat4 next = world_from_appearance(scene_, state_.next_world_from_object[a.object],
+                                      state_.next_poses[a.object], a,
+                                      primitive.first_skin != kNone && seen.deformed != kNone);
+    next[3] -= Vec4(origin_, 0.0);
+    shared::NextInstance next_instance{};
+    set_rows(next_instance, next);
+    out_.next_instances.push_back(next_instance);
   }
 
   const scene::Scene& scene_;
   const GpuScene& gpu_scene_;
   const FrameState& state_;
   const ViewSet& views_;
+  const DrawListOptions options_;
   const Vec3 origin_;
+  const ClusterCulling culling_;
   DrawList out_;
 };
 
 }  // namespace
 
 DrawList build_draw_list(const scene::Scene& scene, const GpuScene& gpu_scene,
-                         const FrameState& state, const ViewSet& views) {
-  return Builder(scene, gpu_scene, state, views).build();
+                         const FrameState& state, const ViewSet& views,
+                         const DrawListOptions& options) {
+  return Builder(scene, gpu_scene, state, views, options).build();
 }
 
 }  // namespace neritic::render

@@ -1,9 +1,10 @@
-// What one view set draws: instances that some view can see, as few draws as there are primitives.
-// Plain data made on the CPU.
+// What one view set draws: instances that some view can see, and of rigid meshes the clusters that
+// some view can see. Plain data made on the CPU.
 #pragma once
 
 #include <vector>
 
+#include "engine/render/cluster_culling.hpp"
 #include "engine/render/frame_state.hpp"
 #include "engine/render/views.hpp"
 
@@ -12,20 +13,33 @@ namespace neritic::render {
 struct Draw {
   const GpuPrimitive* primitive = nullptr;
   std::uint32_t first_instance = 0, instance_count = 0;
-  std::uint32_t deformed = kNone;  // first vertex in the deformed stream
-  bool mirrored = false;           // negative determinant: front faces turn round
-  double distance_m = 0.0;         // of the nearest instance's centre, for sorting
+  std::uint32_t first_range = 0, range_count = 0;  // of DrawList::ranges
+  std::uint32_t deformed = kNone;                  // first vertex in the deformed stream
+  bool mirrored = false;                           // negative determinant: front faces turn round
+  double order_m = 0.0;  // see nearness(); of blended ones the centre's distance
 };
 
 struct DrawList {
   std::vector<shared::Instance> instances;
   std::vector<shared::NextInstance> next_instances;  // empty without motion
-  std::vector<Draw> opaque;                          // front to back
-  std::vector<Draw> blended;                         // back to front, one instance a draw
-  std::uint64_t triangles = 0;
+  std::vector<IndexRange> ranges;
+  std::vector<Draw> opaque;         // front to back
+  std::vector<Draw> blended;        // back to front, one instance a draw
+  std::uint64_t triangles = 0;      // drawn
+  std::uint64_t all_triangles = 0;  // of the scene's rigid and deforming meshes, every appearance
 };
 
+struct DrawListOptions {
+  bool clusters = true;  // false: every instance whole, for comparison; no bit of a picture differs
+};
+
+// Up to so many seen instances of a mesh that has clusters are looked at one by one, and each that
+// loses enough triangles to the picture's edges is a draw of its own. More of them stay one draw:
+// most are then wholly inside or small, and looking costs more than it saves.
+inline constexpr std::size_t kMostSplitInstances = 256;
+
 DrawList build_draw_list(const scene::Scene& scene, const GpuScene& gpu_scene,
-                         const FrameState& state, const ViewSet& views);
+                         const FrameState& state, const ViewSet& views,
+                         const DrawListOptions& options = {});
 
 }  // namespace neritic::render

@@ -11,6 +11,7 @@
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/pipeline.hpp"
 #include "engine/gpu/resources.hpp"
+#include "engine/render/clusters.hpp"
 #include "engine/scene/scene.hpp"
 #include "shared/raster.h"
 
@@ -20,8 +21,8 @@ inline constexpr std::uint32_t kNone = ~0u;
 
 struct GpuMaterial {
   VkDescriptorSet set = VK_NULL_HANDLE;
-  std::uint32_t flags = 0;
-  bool double_sided = false, mask = false, blend = false;
+  std::uint32_t flags = 0;  // shared::kMaterial...
+  bool double_sided = false, mask = false, blend = false, emissive = false;
 };
 
 struct GpuPrimitive {
@@ -33,6 +34,7 @@ struct GpuPrimitive {
   std::uint32_t first_morph = 0, morph_targets = 0;
   Vec3 center_m{0.0};  // bounding sphere in the mesh's frame, rest shape
   double radius_m = 0.0;
+  std::vector<ClusterNode> clusters;  // empty: drawn whole
   bool deforms() const { return first_skin != kNone || morph_targets > 0; }
 };
 
@@ -55,28 +57,24 @@ class GpuScene {
   static Result<std::unique_ptr<GpuScene>> create(gpu::Device& device, const scene::Scene& scene,
                                                   VkDescriptorSetLayout material_layout);
 
-  const gpu::Buffer& positions() const { return positions_; }
-  const gpu::Buffer& surfaces() const { return surfaces_; }
-  const gpu::Buffer& indices() const { return indices_; }
-  const gpu::Buffer& skin() const { return skin_; }
-  const gpu::Buffer& morphs() const { return morphs_; }
-  const std::vector<GpuMaterial>& materials() const { return materials_; }
+  ~GpuScene();
+
+  const gpu::Buffer& positions() const;
+  const gpu::Buffer& surfaces() const;
+  const gpu::Buffer& indices() const;
+  const gpu::Buffer& skin() const;
+  const gpu::Buffer& morphs() const;
+  const std::vector<GpuMaterial>& materials() const;
   const std::vector<DrawGroup>& groups() const { return groups_; }
-  bool has_emission() const { return has_emission_; }
-  bool has_blended() const { return has_blended_; }
-  bool has_masked() const { return has_masked_; }
-  std::uint64_t triangles() const { return triangles_; }  // of one of each appearance
+  bool has_emission() const;
+  std::uint64_t triangles() const { return triangles_; }  // of all appearances
 
  private:
   friend class GpuSceneBuilder;
-  GpuScene() = default;
-  gpu::Buffer positions_, surfaces_, indices_, skin_, morphs_, material_constants_;
-  std::vector<gpu::Image> images_;
-  std::vector<gpu::Sampler> samplers_;
-  std::unique_ptr<gpu::DescriptorArena> descriptors_;
-  std::vector<GpuMaterial> materials_;
+  struct Parts;
+  GpuScene();
+  std::unique_ptr<Parts> parts_;
   std::vector<DrawGroup> groups_;
-  bool has_emission_ = false, has_blended_ = false, has_masked_ = false;
   std::uint64_t triangles_ = 0;
 };
 

@@ -1,6 +1,8 @@
-// Draws with their pipelines looked up, ready to record. Private to the renderer.
+// Draws with their pipelines looked up, ready to record, and what the raster passes share. Private
+// to the renderer.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/render/renderer.hpp"
@@ -9,6 +11,7 @@ namespace neritic::render {
 
 struct PreparedDraw {
   Draw draw;
+  std::span<const IndexRange> ranges;  // the draw list's
   const gpu::Pipeline* pipeline = nullptr;
   bool surface = false;     // uses stream 1, the material and push constants
   bool both_sides = false;  // no face culling
@@ -24,5 +27,20 @@ struct Renderer::MaskedDraws {
   std::uint32_t view_mask = 0;
   PreparedDraws prepared;
 };
+
+VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layout,
+                                     VkAttachmentLoadOp load);
+
+// The view masks that a set of layers is drawn with, one rendering each: all at once, except on
+// llvmpipe, which (Mesa 22.3) draws triangles that need clipping into the wrong view of a multiview
+// rendering.
+std::vector<std::uint32_t> view_masks_of(std::uint32_t layers, const gpu::Device& device);
+
+// Begins a rendering of the whole picture, viewport and scissor set.
+void begin_rendering(VkCommandBuffer cmd, const GBuffer& gbuffer, std::uint32_t view_mask,
+                     std::span<const VkRenderingAttachmentInfo> colors,
+                     const VkRenderingAttachmentInfo& depth);
+
+gpu::BoundResource bound_slice(std::uint32_t binding, const gpu::UploadSlice& slice);
 
 }  // namespace neritic::render

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <tuple>
 
@@ -92,7 +93,7 @@ class Renderer {
                                             const PictureFilter& filter, gpu::Pipeline& pipeline,
                                             graph::ImageHandle in, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
-  enum class RasterStage { kGeometry, kGeometryMasked, kSurface, kSurfaceMasked, kForward };
+  enum class RasterStage { kGeometry, kGeometryMasked, kSurface, kForward };
   // stage, topology, motion, emissive, view mask, the material's flags.
   using RasterKey =
       std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, std::uint32_t, std::uint32_t>;
@@ -107,9 +108,21 @@ class Renderer {
   };
   static InstanceStreams upload_instances(gpu::Commands& commands, const DrawList& draws,
                                           bool motion);
-  Result<PreparedDraws> prepare(const GpuScene& scene, const std::vector<Draw>& draws,
-                                GBufferKind kind, bool forward, bool motion, bool emissive,
-                                std::uint32_t view_mask);
+  // emissive: the draws that glow, else those that do not (of a surface G-buffer).
+  Result<PreparedDraws> prepare(const GpuScene& scene, const DrawList& list,
+                                const std::vector<Draw>& draws, GBufferKind kind, bool forward,
+                                bool motion, bool emissive, std::uint32_t view_mask);
+  // What passes that draw borrow until the graph has run.
+  struct RasterInputs {
+    const GpuScene& scene;
+    const ViewSet& views;
+    const DrawList& draws;
+    DeformedGeometry deformed;
+  };
+  // load: of all images but the emission's, which is cleared.
+  void record_gbuffer(const GBuffer& gbuffer, VkAttachmentLoadOp load,
+                      std::span<const MaskedDraws> masked, const RasterInputs& inputs,
+                      graph::PassContext& context) const;
   static void record_draws(const PreparedDraws& prepared, const GpuScene& scene,
                            const gpu::Buffer* deformed, const InstanceStreams& instances,
                            const Vec2f& target_size, std::span<const gpu::BoundResource> set0,

@@ -37,6 +37,11 @@ Intrinsics intrinsics_of(const FrustumTangents& tangents, std::uint32_t width,
 // zero.
 std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set);
 
+// What a position on the GPU may be off, relative to the sizes of the terms that it is the sum of:
+// rows rounded to float, four products and sums, then four more to clip space. (1 + 4 + 4) 2^-24 is
+// 5.4e-7; this is near four times that.
+inline constexpr double kFloatError = 2e-6;
+
 // True where a sphere (relative to the set's origin) can be in any view.
 bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double radius_m);
 

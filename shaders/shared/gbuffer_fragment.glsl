@@ -6,8 +6,6 @@
 #include "shared/material.glsl"
 #include "shared/fragment_surface.glsl"
 
-layout(constant_id = kSpecMask) const bool kMask = false;
-
 layout(location = 0) in vec3 normal;
 layout(location = 1) flat in uint label;
 layout(location = 2) in vec4 uv;
@@ -37,7 +35,7 @@ layout(location = 4) out vec2 out_motion;
 
 void main() {
   vec4 base = material_base_color(uv, color);
-  if (kMask && base.a < material.alpha_cutoff) discard;
+  if (material_has(kMaterialMask) && base.a < material.alpha_cutoff) discard;
   out_normal = octahedral_encode(fragment_normal(normal, tangent, uv));
   out_label = uvec2(label & 0xffffu, label >> 16);
   vec3 m = fragment_material(uv);

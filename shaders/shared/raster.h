@@ -74,7 +74,6 @@ struct MaterialData {
   float normal_scale;
   float occlusion_strength;
   float alpha_cutoff;
-  uint flags;
   TextureMapping base_color_map;
   TextureMapping metal_rough_map;
   TextureMapping normal_map;
@@ -107,9 +106,8 @@ NERITIC_CONST uint kMaterialEmissive = 5;
 // what an index picks that it cannot prove uniform, so both the texture reads of a material and the view
 // are settled when the pipeline is made.
 NERITIC_CONST uint kSpecMotion = 0;
-NERITIC_CONST uint kSpecMask = 1;
-NERITIC_CONST uint kSpecMaterial = 2;   // the material's flags
-NERITIC_CONST uint kSpecMultiview = 3;  // 0: the set has one view
+NERITIC_CONST uint kSpecMaterial = 1;   // the material's flags
+NERITIC_CONST uint kSpecMultiview = 2;  // 0: the set has one view
 
 struct RasterPush {
   vec2 target_size;  // pixels, for motion

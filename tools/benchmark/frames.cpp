@@ -37,7 +37,7 @@ Contender cpu_costs(const std::string& name, Session& session) {
             return Sample{
                 to_ms(listed - start),
                 {{"evaluate", to_ms(evaluated - start)}, {"draw list", to_ms(listed - evaluated)}},
-                fmt::format("{} triangles", draws.triangles)};
+                fmt::format("{} of {} triangles", draws.triangles, draws.all_triangles)};
           }};
 }
 

@@ -1,0 +1,41 @@
+// Which clusters of an instance the views of a set can see. Never drops a triangle that could reach
+// a pixel: bounds are in double, and what the GPU's floats may move is added. Plain data on the
+// CPU; any thread.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "engine/render/clusters.hpp"
+#include "engine/render/views.hpp"
+
+namespace neritic::render {
+
+// A run of the index buffer, one draw command.
+struct IndexRange {
+  std::uint32_t first_index = 0, index_count = 0;
+};
+
+class ClusterCulling {
+ public:
+  explicit ClusterCulling(const ViewSet& views);
+
+  // Appends the runs (in their order, from first_index on) of what some view can see of an
+  // instance.
+  void append_visible(std::span<const ClusterNode> nodes, std::uint32_t first_index,
+                      const Mat4& origin_from_primitive, std::vector<IndexRange>& out) const;
+
+ private:
+  static constexpr std::size_t kPlanes = 5;  // four sides and the near plane; there is no far plane
+  // A view's bounds: n . p + offset_m >= 0 inside, n unit, in the frame of the set's origin.
+  struct View {
+    std::array<Vec3, kPlanes> normal{};
+    std::array<double, kPlanes> offset_m{};
+  };
+  class Walk;
+  std::vector<View> views_;
+  double farthest_eye_m_ = 0.0;  // from the origin
+};
+
+}  // namespace neritic::render

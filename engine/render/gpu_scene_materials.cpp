@@ -1,0 +1,218 @@
+#include "engine/render/gpu_scene_materials.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/gpu/frames.hpp"
+
+namespace neritic::render {
+namespace {
+
+using shared::MaterialData;
+
+const std::vector<gpu::BindingDesc>& material_bindings() {
+  static const std::vector<gpu::BindingDesc> bindings{
+      {shared::kMaterialConstants, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+      {shared::kMaterialBaseColor, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+      {shared::kMaterialMetalRough, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+      {shared::kMaterialNormal, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+      {shared::kMaterialOcclusion, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+      {shared::kMaterialEmissive, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}};
+  return bindings;
+}
+
+shared::TextureMapping mapping_of(const scene::TextureRef& ref) {
+  return {ref.transform_u, ref.transform_v, static_cast<std::uint32_t>(ref.uv_set)};
+}
+
+VkSamplerAddressMode address_mode(scene::Wrap wrap) {
+  switch (wrap) {
+    case scene::Wrap::kMirroredRepeat:
+      return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    case scene::Wrap::kClampToEdge:
+      return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    default:
+      return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  }
+}
+
+std::uint32_t flags_of(const scene::Material& m, bool vertex_colors) {
+  std::uint32_t flags = 0;
+  const auto flag = [&](bool on, std::uint32_t bit) { flags |= on ? bit : 0u; };
+  flag(m.base_color_texture.present(), shared::kMaterialBaseColorTexture);
+  flag(m.metallic_roughness_texture.present(), shared::kMaterialMetalRoughTexture);
+  flag(m.normal_texture.present(), shared::kMaterialNormalTexture);
+  flag(m.occlusion_texture.present(), shared::kMaterialOcclusionTexture);
+  flag(m.emissive_texture.present(), shared::kMaterialEmissiveTexture);
+  flag(m.unlit, shared::kMaterialUnlit);
+  flag(vertex_colors, shared::kMaterialVertexColor);
+  flag(m.alpha_mode == scene::AlphaMode::kMask, shared::kMaterialMask);
+  return flags;
+}
+
+}  // namespace
+
+Result<gpu::SetLayout> create_material_layout(const gpu::Device& device) {
+  return gpu::SetLayout::create(device, "material", material_bindings(),
+                                VK_SHADER_STAGE_FRAGMENT_BIT);
+}
+
+Result<MaterialBuilder> MaterialBuilder::create(gpu::Device& device, const scene::Scene& scene) {
+  MaterialBuilder builder(device, scene);
+  NERITIC_TRY_STATUS(builder.add_default_texture());
+  return builder;
+}
+
+Status MaterialBuilder::add_default_texture() {
+  ImageU8 white(1, 1, 4, 255);
+  NERITIC_TRY_STATUS(add_image("default white", white, false));
+  NERITIC_TRY(auto sampler, gpu::Sampler::create(*device_, {.name = "default"}));
+  out_.samplers.push_back(std::move(sampler));
+  return {};
+}
+
+Status MaterialBuilder::add_image(const std::string& name, const ImageU8& pixels, bool srgb) {
+  gpu::ImageDesc desc;
+  desc.name = name;
+  desc.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+  desc.width = pixels.width;
+  desc.height = pixels.height;
+  const std::uint32_t limit = device_->limits().maxImageDimension2D;
+  if (pixels.width > limit || pixels.height > limit)
+    return failure(ErrorCode::kUnsupported, "{}: texture of {}x{}, the device takes at most {}",
+                   name, pixels.width, pixels.height, limit);
+  for (std::uint32_t n = std::max(pixels.width, pixels.height); n > 1; n /= 2) ++desc.mips;
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+               VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  NERITIC_TRY(auto image, gpu::Image::create(*device_, desc));
+  NERITIC_TRY_STATUS(gpu::upload_image(*device_, image, std::as_bytes(std::span(pixels.data))));
+  out_.images.push_back(std::move(image));
+  return {};
+}
+
+Result<MaterialBuilder::TextureUse> MaterialBuilder::texture_use(std::size_t model_index,
+                                                                 const scene::TextureRef& ref,
+                                                                 bool srgb) {
+  if (!ref.present()) return TextureUse{};
+  const scene::Model& model = *scene_->models[model_index];
+  const scene::Texture& texture = model.textures[static_cast<std::size_t>(ref.texture)];
+  if (texture.image < 0) return TextureUse{};
+  TextureUse use;
+  const auto image_key = std::make_tuple(model_index, texture.image, srgb);
+  if (const auto found = images_.find(image_key); found != images_.end()) {
+    use.image = found->second;
+  } else {
+    use.image = static_cast<std::uint32_t>(out_.images.size());
+    NERITIC_TRY_STATUS(add_image(fmt::format("{} image {}", model.name, texture.image),
+                                 model.images[static_cast<std::size_t>(texture.image)], srgb));
+    images_[image_key] = use.image;
+  }
+  NERITIC_TRY(use.sampler, sampler_for(texture.sampler));
+  return use;
+}
+
+Result<std::uint32_t> MaterialBuilder::sampler_for(const scene::Sampler& s) {
+  const auto key =
+      std::make_tuple(s.wrap_u, s.wrap_v, s.mag_linear, s.min_linear, s.mip_linear, s.mipmapped);
+  if (const auto found = sampler_index_.find(key); found != sampler_index_.end())
+    return found->second;
+  gpu::SamplerDesc desc;
+  desc.name = "material sampler";
+  desc.mag = s.mag_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  desc.min = s.min_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  desc.mip = s.mip_linear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  desc.u = address_mode(s.wrap_u);
+  desc.v = address_mode(s.wrap_v);
+  desc.mipmapped = s.mipmapped;
+  NERITIC_TRY(auto sampler, gpu::Sampler::create(*device_, desc));
+  const auto index = static_cast<std::uint32_t>(out_.samplers.size());
+  out_.samplers.push_back(std::move(sampler));
+  sampler_index_[key] = index;
+  return index;
+}
+
+Status MaterialBuilder::add_material(std::size_t model_index, const scene::Material& m,
+                                     bool vertex_colors) {
+  MaterialData data{};
+  data.base_color = m.base_color;
+  data.emissive = m.emissive;
+  data.metallic = m.metallic;
+  data.roughness = m.roughness;
+  data.normal_scale = m.normal_scale;
+  data.occlusion_strength = m.occlusion_strength;
+  data.alpha_cutoff = m.alpha_cutoff;
+  data.base_color_map = mapping_of(m.base_color_texture);
+  data.metal_rough_map = mapping_of(m.metallic_roughness_texture);
+  data.normal_map = mapping_of(m.normal_texture);
+  data.occlusion_map = mapping_of(m.occlusion_texture);
+  data.emissive_map = mapping_of(m.emissive_texture);
+
+  MaterialTextures textures;
+  NERITIC_TRY(textures.base_color, texture_use(model_index, m.base_color_texture, true));
+  NERITIC_TRY(textures.metal_rough, texture_use(model_index, m.metallic_roughness_texture, false));
+  NERITIC_TRY(textures.normal, texture_use(model_index, m.normal_texture, false));
+  NERITIC_TRY(textures.occlusion, texture_use(model_index, m.occlusion_texture, false));
+  NERITIC_TRY(textures.emissive, texture_use(model_index, m.emissive_texture, true));
+
+  GpuMaterial material;
+  material.flags = flags_of(m, vertex_colors);
+  material.double_sided = m.double_sided;
+  material.mask = m.alpha_mode == scene::AlphaMode::kMask;
+  material.blend = m.alpha_mode == scene::AlphaMode::kBlend;
+  material.emissive = m.unlit || m.emissive != Vec3f(0.0f);
+  out_.has_emission |= material.emissive;
+  out_.materials.push_back(material);
+  data_.push_back(data);
+  textures_.push_back(textures);
+  return {};
+}
+
+Result<std::uint32_t> MaterialBuilder::material_of(std::size_t model_index, int material,
+                                                   bool vertex_colors) {
+  const auto key = std::make_tuple(model_index, material, vertex_colors);
+  if (const auto found = material_index_.find(key); found != material_index_.end())
+    return found->second;
+  const auto index = static_cast<std::uint32_t>(out_.materials.size());
+  const scene::Material fallback;
+  const scene::Model& model = *scene_->models[model_index];
+  NERITIC_TRY_STATUS(add_material(
+      model_index, material >= 0 ? model.materials[static_cast<std::size_t>(material)] : fallback,
+      vertex_colors));
+  material_index_[key] = index;
+  return index;
+}
+
+Result<GpuSceneMaterials> MaterialBuilder::finish(VkDescriptorSetLayout layout) {
+  // Each material's constants at an offset that any device accepts (at most 256).
+  constexpr std::size_t kStride = (sizeof(MaterialData) + 255) / 256 * 256;
+  std::vector<std::byte> bytes(kStride * data_.size());
+  for (std::size_t i = 0; i < data_.size(); ++i)
+    std::memcpy(bytes.data() + i * kStride, &data_[i], sizeof(MaterialData));
+  NERITIC_TRY(out_.constants,
+              gpu::Buffer::create(*device_, {"material constants", bytes.size(),
+                                             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                                 VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
+  if (!bytes.empty()) NERITIC_TRY_STATUS(gpu::upload_buffer(*device_, out_.constants, bytes));
+  out_.descriptors = std::make_unique<gpu::DescriptorArena>(*device_);
+  for (std::size_t i = 0; i < data_.size(); ++i) {
+    NERITIC_TRY(const VkDescriptorSet set, out_.descriptors->allocate(layout));
+    const MaterialTextures& t = textures_[i];
+    const auto texture = [&](std::uint32_t binding, const TextureUse& use) {
+      return gpu::bound_texture(binding, out_.images[use.image].view(),
+                                out_.samplers[use.sampler].handle());
+    };
+    const gpu::BoundResource resources[] = {
+        gpu::bound_buffer(shared::kMaterialConstants, out_.constants.handle(), i * kStride,
+                          sizeof(MaterialData)),
+        texture(shared::kMaterialBaseColor, t.base_color),
+        texture(shared::kMaterialMetalRough, t.metal_rough),
+        texture(shared::kMaterialNormal, t.normal),
+        texture(shared::kMaterialOcclusion, t.occlusion),
+        texture(shared::kMaterialEmissive, t.emissive)};
+    gpu::write_descriptors(*device_, set, material_bindings(), resources);
+    out_.materials[i].set = set;
+  }
+  return std::move(out_);
+}
+
+}  // namespace neritic::render
