@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "sonar/offline_input.hpp"
 
 namespace neritic::sonar {
@@ -14,7 +15,8 @@ Result<double> number(const Json& json, const char* key, const std::string& path
   if (at == json.end())
     return bad_input("{}: no \"{}\" found, fx, fy, cx and cy are accepted", path, key);
   if (!at->is_number())
-    return bad_input("{}: \"{}\" is {}, a number is accepted", path, key, at->dump().substr(0, 40));
+    return bad_input("{}: \"{}\" is {}, a number is accepted", path, key,
+                     json_text(*at, -1).substr(0, 40));
   return at->get<double>();
 }
 
@@ -50,15 +52,17 @@ Result<Intrinsics> from_matrix(const Json& matrix, const std::string& path) {
 Result<Intrinsics> read_intrinsics(const std::filesystem::path& path, const MapFile& depth) {
   NERITIC_TRY(const std::string text, read_text(path));
   const std::string name = path.string();
-  const Json whole = Json::parse(text, nullptr, false);
-  if (whole.is_discarded() || !whole.is_object())
-    return bad_input("{}: not a JSON object; one with fx, fy, cx and cy is accepted", name);
+  const Result<Json> parsed = parse_json(text);
+  if (!parsed.ok() || !parsed->is_object())
+    return bad_input("{}: not a JSON object; one with fx, fy, cx and cy is accepted{}", name,
+                     parsed.ok() ? "" : ": " + parsed.error().message);
+  const Json& whole = *parsed;
   NERITIC_TRY(Json json, frame_of(whole, name, depth.path));
   for (const auto& [key, found] : {std::pair{"width", depth.width}, {"height", depth.height}}) {
     const auto at = json.find(key);
     if (at != json.end() && at->is_number() && at->get<double>() != found)
-      return bad_input("{}: \"{}\" is {}, that of {} is {}", name, key, at->dump(), depth.path,
-                       found);
+      return bad_input("{}: \"{}\" is {}, that of {} is {}", name, key, json_text(*at, -1),
+                       depth.path, found);
   }
   if (json.contains("intrinsic_matrix")) return from_matrix(json["intrinsic_matrix"], name);
   if (json.contains("intrinsics") && json["intrinsics"].is_object())

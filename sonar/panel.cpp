@@ -47,16 +47,18 @@ double panel_full_scale(const SonarImage& image, const PanelOptions& options) {
 
 PolarPanel::PolarPanel(const BeamGrid& grid, const PanelOptions& options)
     : grid_(grid), options_(options) {
-  const PanelLayout layout = lay_out(grid, options.height_px);
+  const PanelLayout layout = lay_out(grid, options.height_px, options.words);
   const double unit = options.height_px / 900.0;
   Canvas under(layout.width, layout.height, kPanelBackground);
-  draw_scale(under, unit);
-  draw_words(under, grid, options.title, unit);
+  if (options.words) {
+    draw_scale(under, unit);
+    draw_words(under, grid, options.title, unit);
+  }
   under_ = under.take();
   const auto lines = [&](const Color& ground) {
     Canvas canvas(layout.width, layout.height, ground);
-    draw_rings(canvas, layout, grid.limits, unit);
-    draw_bearings(canvas, layout, grid.limits, unit);
+    draw_rings(canvas, layout, grid.limits, unit, options.words);
+    draw_bearings(canvas, layout, grid.limits, unit, options.words);
     return canvas.take();
   };
   lines_over_black_ = lines({0, 0, 0});
@@ -92,7 +94,7 @@ ImageU8 PolarPanel::draw(const SonarImage& image) const {
                 grid_.bins.azimuth);
   const double full_scale = panel_full_scale(image, options_);
   Canvas canvas(under_);
-  draw_gain(canvas, full_scale, options_);
+  if (options_.words) draw_gain(canvas, full_scale, options_);
   ImageU8 out = canvas.take();
 
   const auto colors = level_colors();

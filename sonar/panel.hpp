@@ -22,6 +22,8 @@ struct PanelOptions {
   double gamma = 0.6;
   // > 0: brightness follows decibels instead, from full scale down to that many below it.
   double span_db = 0.0;
+  // false: the fan with its lines alone, for small pictures on which no word could be read.
+  bool words = true;
 };
 // Shown brightness of a value, 0 to 1.
 double panel_brightness(double value, double full_scale, const PanelOptions& options);

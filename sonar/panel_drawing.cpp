@@ -24,7 +24,10 @@ std::string range_text(double metres) {
                           : fmt::format("{:g} m", std::round(metres * 1000.0) / 1000.0);
 }
 
-constexpr double kTop = 106, kBottom = 66, kLeft = 64, kRight = 118;  // margins in 900 px of height
+struct Margins {
+  double top, bottom, left, right;  // in 900 px of height
+};
+constexpr Margins kWithWords{106, 66, 64, 118}, kWithoutWords{24, 24, 24, 24};
 
 // The colour scale lies in a corner that no fan reaches.
 struct ScaleBox {
@@ -49,7 +52,8 @@ Color panel_color(double value) {
   return mix(kStops[i], kStops[i + 1], static_cast<float>(at - static_cast<double>(i)));
 }
 
-PanelLayout lay_out(const BeamGrid& grid, std::uint32_t height_px) {
+PanelLayout lay_out(const BeamGrid& grid, std::uint32_t height_px, bool words) {
+  const Margins& margins = words ? kWithWords : kWithoutWords;
   const Limits& l = grid.limits;
   // The fan's box for a radius of 1, bearings clockwise from up.
   double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
@@ -62,18 +66,19 @@ PanelLayout lay_out(const BeamGrid& grid, std::uint32_t height_px) {
     bottom = std::max(bottom, -r * std::cos(a));
   }
   const double unit = height_px / 900.0;
-  const double room = height_px - (kTop + kBottom) * unit;
+  const double room = height_px - (margins.top + margins.bottom) * unit;
   double radius = room / (bottom - top);
-  const double width =
-      std::clamp((right - left) * radius + (kLeft + kRight) * unit, 720.0 * unit, 1500.0 * unit);
-  const double room_x = width - (kLeft + kRight) * unit;
+  const double width = std::clamp((right - left) * radius + (margins.left + margins.right) * unit,
+                                  720.0 * unit, 1500.0 * unit);
+  const double room_x = width - (margins.left + margins.right) * unit;
   radius = std::min(radius, room_x / std::max(right - left, 1e-9));
   return {static_cast<std::uint32_t>(std::lround(width)), height_px,
-          kLeft * unit + room_x / 2.0 - (left + right) / 2.0 * radius,
-          kTop * unit + room / 2.0 - (top + bottom) / 2.0 * radius, radius / l.range_max_m};
+          margins.left * unit + room_x / 2.0 - (left + right) / 2.0 * radius,
+          margins.top * unit + room / 2.0 - (top + bottom) / 2.0 * radius, radius / l.range_max_m};
 }
 
-void draw_rings(Canvas& canvas, const PanelLayout& layout, const Limits& l, double unit) {
+void draw_rings(Canvas& canvas, const PanelLayout& layout, const Limits& l, double unit,
+                bool words) {
   const auto ring = [&](double range_m, float alpha, double width) {
     canvas.arc(layout.apex_x, layout.apex_y, range_m * layout.scale, l.azimuth_min_rad,
                l.azimuth_max_rad, width, kLine.with_alpha(alpha));
@@ -82,6 +87,7 @@ void draw_rings(Canvas& canvas, const PanelLayout& layout, const Limits& l, doub
   const double step = nice_step(l.range_max_m, 5.0);
   const double edge = full_turn ? 0.0 : l.azimuth_max_rad;
   const auto label = [&](double range_m) {
+    if (!words) return;
     const double x = layout.apex_x + range_m * layout.scale * std::sin(edge);
     const double y = layout.apex_y - range_m * layout.scale * std::cos(edge);
     // Beside the starboard edge, a little off along the edge's normal.
@@ -103,7 +109,8 @@ void draw_rings(Canvas& canvas, const PanelLayout& layout, const Limits& l, doub
     label(l.range_max_m);  // on a full circle it would lie on the arc; the title has it
 }
 
-void draw_bearings(Canvas& canvas, const PanelLayout& layout, const Limits& l, double unit) {
+void draw_bearings(Canvas& canvas, const PanelLayout& layout, const Limits& l, double unit,
+                   bool words) {
   const auto line = [&](double bearing, float alpha, double width) {
     const double s = std::sin(bearing) * layout.scale, c = -std::cos(bearing) * layout.scale;
     canvas.segment(layout.apex_x + l.range_min_m * s, layout.apex_y + l.range_min_m * c,
@@ -122,6 +129,7 @@ void draw_bearings(Canvas& canvas, const PanelLayout& layout, const Limits& l, d
                    layout.apex_x + (out + 6 * unit) * std::sin(a),
                    layout.apex_y - (out + 6 * unit) * std::cos(a), 1.2 * unit,
                    kLine.with_alpha(0.6f));
+    if (!words) continue;
     const double far = out + 22 * unit;
     const double rounded = std::abs(b) < 1e-9 ? 0.0 : b;
     canvas.text(layout.apex_x + far * std::sin(a), layout.apex_y - far * std::cos(a) + 5 * unit,

@@ -17,14 +17,17 @@ struct PanelLayout {
   std::uint32_t width, height;
   double apex_x, apex_y, scale;
 };
-PanelLayout lay_out(const BeamGrid& grid, std::uint32_t height_px);
+// words: with room for them.
+PanelLayout lay_out(const BeamGrid& grid, std::uint32_t height_px, bool words);
 
 // Shown brightness 0 to 1 in copper: black, umber, copper, amber, cream.
 Color panel_color(double value);
 
 // unit: the panel's height / 900 px, on which all sizes are given.
-void draw_rings(Canvas& canvas, const PanelLayout& layout, const Limits& limits, double unit);
-void draw_bearings(Canvas& canvas, const PanelLayout& layout, const Limits& limits, double unit);
+void draw_rings(Canvas& canvas, const PanelLayout& layout, const Limits& limits, double unit,
+                bool words);
+void draw_bearings(Canvas& canvas, const PanelLayout& layout, const Limits& limits, double unit,
+                   bool words);
 // What stays: the colour scale, the title and the limits.
 void draw_scale(Canvas& canvas, double unit);
 void draw_words(Canvas& canvas, const BeamGrid& grid, const std::string& title, double unit);

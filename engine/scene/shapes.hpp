@@ -44,6 +44,7 @@ struct HeightfieldOptions {
 Result<Heightfield> read_heightfield(const std::filesystem::path& path,
                                      const HeightfieldOptions& options);
 // The text of an .asc file already in memory; name stands in messages. Stored numbers, unscaled.
+// cell_m is 0 where the text names none.
 Result<Heightfield> parse_asc(std::string_view text, const std::string& name);
 // Centred on the origin in x and z; triangles with a NaN corner are left out; smooth normals.
 Model make_terrain(const Heightfield& field, double texture_m = 2.5);

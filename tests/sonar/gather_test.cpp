@@ -13,7 +13,7 @@ using sonar::Gather;
 using sonar::SonarImage;
 using sonar::SonarInput;
 
-class SonarGpu : public test::GpuFixture {};
+class SonarGpu : public test::SonarGpuTest {};
 
 test::Shape seabed_with_two_spheres() {
   return test::nearest_of({test::sphere(Vec3(.4, .1, -3), .35, 4),

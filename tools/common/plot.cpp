@@ -69,6 +69,32 @@ void draw_axes(Canvas& canvas, const Box& box, const std::string& title, const A
   canvas.text(in.left + 8, in.top + 2, kTextPx, y.label, kInk.with_alpha(0.8f));
 }
 
+bool overlap(const Box& a, const Box& b) {
+  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+}
+
+// Notes beside their points: each at the first of four corners where it hides no other; left out
+// where all four are taken.
+void draw_notes(Canvas& canvas, const Box& in, const Series& s, const Axis& x, const Axis& y,
+                std::vector<Box>& taken) {
+  constexpr double kNotePx = 8.0, kOff = 6.0;
+  for (std::size_t i = 0; i < std::min(s.notes.size(), s.x.size()); ++i) {
+    const double px = place(x, s.x[i], in.left, in.right), py = place(y, s.y[i], in.bottom, in.top);
+    const double width = Canvas::text_width(kNotePx, s.notes[i]);
+    for (const auto& [right, above] :
+         {std::pair{true, true}, {true, false}, {false, true}, {false, false}}) {
+      const double left = right ? px + kOff : px - kOff - width;
+      const double bottom = above ? py - kOff : py + kOff + kNotePx;
+      const Box box{left - 1.0, bottom - kNotePx - 1.0, left + width + 1.0, bottom + 1.0};
+      if (std::any_of(taken.begin(), taken.end(), [&](const Box& b) { return overlap(b, box); }))
+        continue;
+      canvas.text(left, bottom, kNotePx, s.notes[i], kInk.with_alpha(0.7f));
+      taken.push_back(box);
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 Axis axis_for(const std::string& label, const std::vector<double>& values, bool log) {
@@ -89,6 +115,7 @@ void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const 
                 const Axis& y, const std::vector<Series>& series, bool legend_below) {
   draw_axes(canvas, box, title, x, y, true);
   const Box in = inside(box);
+  std::vector<Box> taken;
   double legend_y =
       legend_below ? in.bottom - 18.0 * static_cast<double>(series.size()) : in.top + 8;
   for (const Series& s : series) {
@@ -100,8 +127,8 @@ void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const 
                        place(y, s.y[i - 1], in.bottom, in.top), px, py, 1.8,
                        s.color.with_alpha(0.8f));
       canvas.segment(px, py, px, py, s.joined ? 7.0 : 4.0, s.color);
-      if (i < s.notes.size()) canvas.text(px + 6, py - 6, 8.0, s.notes[i], kInk.with_alpha(0.7f));
     }
+    draw_notes(canvas, in, s, x, y, taken);
     const double width = Canvas::text_width(kTextPx, s.name);
     canvas.text(in.right - 4 - width, legend_y + 4, kTextPx, s.name, kInk);
     canvas.segment(in.right - 38 - width, legend_y, in.right - 14 - width, legend_y, 2.4, s.color);
@@ -115,6 +142,9 @@ void draw_mark(Canvas& canvas, const Box& box, const Axis& x, const Axis& y, dou
   const double px = place(x, at_x, in.left, in.right), py = place(y, at_y, in.bottom, in.top);
   canvas.arc(px, py, 10.0, -3.1416, 3.1416, 2.0, {0.75f, 0.1f, 0.1f});
   canvas.segment(px + 7, py - 7, px + 26, py - 34, 1.2, {0.75f, 0.1f, 0.1f});
+  // On paper of its own: lines and notes crowd where a curve bends.
+  canvas.fill_rectangle(px + 24, py - 36 - kTextPx - 3,
+                        px + 32 + Canvas::text_width(kTextPx, words), py - 32, kPaper);
   canvas.text(px + 28, py - 36, kTextPx, words, {0.75f, 0.1f, 0.1f});
 }
 

@@ -31,14 +31,25 @@ void add_camera(std::vector<Picture>& out, const CameraFrame& camera) {
 
 void add_geometry(std::vector<Picture>& out, const CameraFrame& camera) {
   const ViewImages& view = camera.eyes.front();
-  const auto add = [&](ImageU8 picture, const std::string& what) {
-    out.push_back({{std::move(picture), camera.name + ": " + what}, camera.name + "_" + what});
+  const auto add = [&](ImageU8 picture, const std::string& what, const std::string& legend = "") {
+    out.push_back(
+        {{std::move(picture), camera.name + ": " + what + legend}, camera.name + "_" + what});
   };
   if (!view.depth.empty()) add(depth_picture(view.depth), "depth");
   if (!view.normals.empty()) add(normals_picture(view.normals), "normals");
   if (!view.labels.empty()) add(labels_picture(view.labels), "labels");
   if (!view.instances.empty()) add(labels_picture(view.instances), "instances");
-  if (moves(view.motion)) add(motion_picture(view.motion), "motion");
+  if (moves(view.motion)) add(motion_picture(view.motion), "motion", " (black: still)");
+}
+
+// On a sheet no word of a sonar's own picture could be read, so the caption says the range.
+Tile sonar_tile(const SonarFrame& sonar, const std::string& name) {
+  const sonar::Limits& l = sonar.grid.limits;
+  sonar::PanelOptions options = sonar::panel_options(sonar.kind, sonar.level);
+  options.words = false;
+  if (sonar.image.n_azimuth == 1) return {sonar::draw_sonar(sonar_files(sonar)), name};
+  return {sonar::draw_panel(sonar.grid, sonar.image, options),
+          fmt::format("{}: {:g} to {:g} m", name, l.range_min_m, l.range_max_m)};
 }
 
 }  // namespace
@@ -48,7 +59,7 @@ Status write_sheet(const std::filesystem::path& out, const FrameResult& result) 
   for (const CameraFrame& camera : result.cameras) add_camera(pictures, camera);
   for (const SonarFrame& sonar : result.sonars) {
     const std::string name = sonar.head.empty() ? sonar.name : sonar.name + "_" + sonar.head;
-    pictures.push_back({{sonar::draw_sonar(sonar_files(sonar)), name}, name + "_sonar"});
+    pictures.push_back({sonar_tile(sonar, name), name + "_sonar"});
   }
   if (!result.cameras.empty()) add_geometry(pictures, result.cameras.front());
   NERITIC_TRY_STATUS(make_folder(out / "sheet"));

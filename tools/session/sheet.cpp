@@ -44,31 +44,43 @@ ImageU8 draw(std::uint32_t width, std::uint32_t height, const std::vector<Tile>&
 
 }  // namespace
 
+namespace {
+
+// Tiles in one row over the whole width, 16 to 9 but no higher than kHighest_px.
+void add_row(std::vector<Slot>& slots, std::uint32_t tiles, std::uint32_t width, std::uint32_t& y) {
+  constexpr std::uint32_t kHighest_px = 360;
+  const std::uint32_t slot = (width - kGap_px) / tiles - kGap_px;
+  const std::uint32_t height = std::min(slot * 9 / 16, kHighest_px) + kCaptionBand_px;
+  for (std::uint32_t k = 0; k < tiles; ++k)
+    slots.push_back({kGap_px + k * (slot + kGap_px), y, slot, height});
+  y += height + kGap_px;
+}
+
+}  // namespace
+
 ImageU8 contact_sheet(const std::vector<Tile>& tiles) {
-  constexpr std::uint32_t kLargeWidth = 1280, kLargeHeight = 720 + kCaptionBand_px,
-                          kSmallWidth = 420;
-  constexpr std::uint32_t kSmallHeight = 236 + kCaptionBand_px;
-  std::vector<Slot> slots;
-  const std::uint32_t side = kGap_px + kLargeWidth + kGap_px;
-  const std::uint32_t across = (kLargeWidth + kGap_px + kSmallWidth) / (kSmallWidth + kGap_px);
-  constexpr std::uint32_t kBeside = 3;  // small tiles to the right of the large one
-  std::uint32_t height =
-      kGap_px + std::max(kLargeHeight, kBeside * (kSmallHeight + kGap_px)) + kGap_px;
-  const std::uint32_t below = height;
-  for (std::uint32_t i = 0; i < tiles.size(); ++i) {
-    if (i == 0) {
-      slots.push_back({kGap_px, kGap_px, kLargeWidth, kLargeHeight});
-    } else if (i <= kBeside) {
-      slots.push_back(
-          {side, kGap_px + (i - 1) * (kSmallHeight + kGap_px), kSmallWidth, kSmallHeight});
-    } else {
-      const std::uint32_t k = i - kBeside - 1;
-      slots.push_back({kGap_px + (k % across) * (kSmallWidth + kGap_px),
-                       below + (k / across) * (kSmallHeight + kGap_px), kSmallWidth, kSmallHeight});
-      height = slots.back().y + kSmallHeight + kGap_px;
-    }
+  // Three small tiles beside the large one, each 16 to 9, are as high as it: 3 h + 2 (caption +
+  // gap).
+  constexpr std::uint32_t kSmallWidth = 420, kSmallHeight = 236 + kCaptionBand_px, kBeside = 3;
+  constexpr std::uint32_t kLargeHeight = kBeside * kSmallHeight + (kBeside - 1) * kGap_px;
+  constexpr std::uint32_t kLargeWidth = (kLargeHeight - kCaptionBand_px) * 16 / 9;
+  constexpr std::uint32_t kMostInARow = 4;
+  const auto count = static_cast<std::uint32_t>(tiles.size());
+  const std::uint32_t beside = kGap_px + kLargeWidth + kGap_px;
+  const std::uint32_t width = count > 1 ? beside + kSmallWidth + kGap_px : beside;
+  std::vector<Slot> slots{{kGap_px, kGap_px, kLargeWidth, kLargeHeight}};
+  for (std::uint32_t i = 1; i < std::min(count, kBeside + 1); ++i)
+    slots.push_back(
+        {beside, kGap_px + (i - 1) * (kSmallHeight + kGap_px), kSmallWidth, kSmallHeight});
+  std::uint32_t y = kGap_px + kLargeHeight + kGap_px;
+  std::uint32_t left = count > kBeside + 1 ? count - kBeside - 1 : 0;
+  while (left > 0) {  // rows of nearly equal numbers, each filled
+    const std::uint32_t rows = (left + kMostInARow - 1) / kMostInARow;
+    const std::uint32_t tiles_here = (left + rows - 1) / rows;
+    add_row(slots, tiles_here, width, y);
+    left -= tiles_here;
   }
-  return draw(side + kSmallWidth + kGap_px, height, tiles, slots);
+  return draw(width, y, tiles, slots);
 }
 
 ImageU8 grid_sheet(const std::vector<Tile>& tiles, std::uint32_t columns, std::uint32_t tile_width,

@@ -1,0 +1,82 @@
+// The pictures and the contact sheet of `neritic render --sheet`, of frames made here. No device.
+#include "tools/neritic/render_sheet.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "engine/scene/image_file.hpp"
+#include "tests/support/support.hpp"
+#include "tools/session/pictures.hpp"
+
+namespace neritic::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t kWidth = 32, kHeight = 18;
+
+CameraFrame camera_frame(const std::string& name, float motion_px) {
+  CameraFrame camera;
+  camera.name = name;
+  ViewImages view;
+  view.width = kWidth;
+  view.height = kHeight;
+  view.color = ImageU8(kWidth, kHeight, 3, 200);
+  view.depth = ImageF32(kWidth, kHeight, 1, 2.0f);
+  view.normals = ImageF32(kWidth, kHeight, 3, 0.5f);
+  view.labels = ImageU16(kWidth, kHeight, 1, 3);
+  view.instances = ImageU16(kWidth, kHeight, 1, 4);
+  view.motion = ImageF32(kWidth, kHeight, 2, motion_px);
+  camera.eyes.push_back(view);
+  return camera;
+}
+
+std::set<std::string> files_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename());
+  return names;
+}
+
+TEST(RenderSheet, PicturesLieInAFolderOfTheirOwnAndNamesDoNotCollide) {
+  const test::ScratchFolder out;
+  FrameResult result;
+  result.cameras = {camera_frame("sheet", 1.0f), camera_frame("depth", 1.0f)};
+  ASSERT_TRUE(write_sheet(out.path(), result).ok());
+  EXPECT_EQ(files_in(out.path()), (std::set<std::string>{"sheet", "sheet.png"}));
+  EXPECT_EQ(files_in(out / "sheet"),
+            (std::set<std::string>{"sheet_color.png", "depth_color.png", "sheet_depth.png",
+                                   "sheet_normals.png", "sheet_labels.png", "sheet_instances.png",
+                                   "sheet_motion.png"}));
+}
+
+TEST(RenderSheet, WhereNothingMovesThereIsNoMotionPicture) {
+  const test::ScratchFolder out;
+  FrameResult result;
+  result.cameras = {camera_frame("camera", 0.0f)};
+  ASSERT_TRUE(write_sheet(out.path(), result).ok());
+  EXPECT_FALSE(fs::exists(out / "sheet/camera_motion.png"));
+  EXPECT_TRUE(fs::exists(out / "sheet/camera_depth.png"));
+}
+
+// Share of columns without any picture in the lowest rows of a sheet.
+double empty_share(const ImageU8& sheet) {
+  std::uint32_t empty = 0;
+  for (std::uint32_t x = 0; x < sheet.width; ++x) {
+    bool any = false;
+    for (std::uint32_t y = sheet.height - 100; y < sheet.height; ++y)
+      any |= sheet.at(x, y, 0) > 150;
+    empty += any ? 0 : 1;
+  }
+  return static_cast<double>(empty) / sheet.width;
+}
+
+TEST(ContactSheet, TheLowestRowIsFilledWhateverTheNumberOfTiles) {
+  for (std::size_t count = 5; count < 14; ++count) {
+    const std::vector<Tile> tiles(count, Tile{ImageU8(1280, 720, 3, 200), "tile"});
+    EXPECT_LT(empty_share(contact_sheet(tiles)), count == 5 ? 0.67 : 0.35) << count;
+  }
+}
+
+}  // namespace
+}  // namespace neritic::tools
