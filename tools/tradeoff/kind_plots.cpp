@@ -87,8 +87,8 @@ void draw_other_knobs(Canvas& canvas, const Box& box, const KindResult& k) {
   for (const char* sweep : {"gather", "columns", "rows", "range bins", "beams"}) {
     for (const KindPoint* p : of_sweep(k, sweep)) {
       const bool words = std::string(sweep) == "gather";
-      bars.push_back({words ? p->setting.substr(0, 5) : p->setting, kSeriesColors[color % 5],
-                      100.0 * p->error});
+      bars.push_back({words ? p->setting.substr(0, p->setting == "plane" ? 5 : 4) : p->setting,
+                      kSeriesColors[color % 5], 100.0 * p->error});
     }
     ++color;
   }
@@ -153,17 +153,17 @@ ImageU8 draw_kind(const KindResult& k, const std::string& device, const std::str
               fmt::format("{}; scene {}; truth: {:.2g} rays, themselves off by {:.2f} %", device,
                           scene, k.rays, 100.0 * k.uncertain),
               kInk.with_alpha(0.7f));
-  draw_cost(canvas, {0, kTop, 760, kTop + kCurves}, k);
-  draw_resolution(canvas, {760, kTop, 1300, kTop + kCurves}, k);
-  draw_other_knobs(canvas, {1300, kTop, kWidth, kTop + kCurves}, k);
+  draw_cost(canvas, {0, kTop, 660, kTop + kCurves}, k);
+  draw_resolution(canvas, {660, kTop, 1130, kTop + kCurves}, k);
+  draw_other_knobs(canvas, {1130, kTop, kWidth, kTop + kCurves}, k);
   double x = 72;
   for (std::size_t i = 0; i < std::size(kLevels); ++i) {
     const KindPoint* p = cheapest(k, kLevels[i]);
     const std::string words =
         p ? fmt::format(
-                "{} (under {:g} %): {:g} pixels a cell, {} columns, {} rows: {:.2f} %, {:.1f} ms",
+                "{} (under {:g} %): {:g} px, {} columns, {} rows, {} bins: {:.2f} %, {:.1f} ms",
                 kLevelNames[i], 100 * kLevels[i], p->knobs.scale, p->knobs.columns, p->knobs.rows,
-                100.0 * p->error, p->ms())
+                p->bins_range, 100.0 * p->error, p->ms())
           : fmt::format("{} (under {:g} %): none of these", kLevelNames[i], 100 * kLevels[i]);
     canvas.arc(x, kTop + kCurves + 26, 5.0 + 2.0 * double(i), -3.1416, 3.1416, 1.6, kRing);
     canvas.text(x + 18, kTop + kCurves + 31, 10, words, kInk);

@@ -42,8 +42,13 @@ std::string terms_csv(const KindResult& k) {
 }
 
 nlohmann::json json_of(const KindPoint& p) {
-  return {{"gbuffer_scale", p.knobs.scale}, {"columns", p.knobs.columns}, {"rows", p.knobs.rows},
-          {"gather", p.knobs.gather},       {"error", p.error},           {"ms", p.ms()}};
+  return {{"gbuffer_scale", p.knobs.scale},
+          {"columns", p.knobs.columns},
+          {"rows", p.knobs.rows},
+          {"bins_range", p.bins_range},
+          {"gather", p.knobs.gather},
+          {"error", p.error},
+          {"ms", p.ms()}};
 }
 
 nlohmann::json summary(const SonarTradeoff& t) {
@@ -78,10 +83,10 @@ std::string markdown(const SonarTradeoff& t) {
   for (const KindResult& k : t.kinds)
     for (const Level& level : kLevels) {
       const KindPoint* p = cheapest(k, level.max_error);
-      out += p ? fmt::format("| {} | {} | {:g} | {} | {} | {} | {:.1f} |\n", k.kind, level.name,
-                             p->knobs.scale, p->knobs.columns, p->knobs.rows, percent(p->error),
-                             p->ms())
-               : fmt::format("| {} | {} | none | | | | |\n", k.kind, level.name);
+      out += p ? fmt::format("| {} | {} | {:g} | {} | {} | {} | {} | {:.1f} |\n", k.kind,
+                             level.name, p->knobs.scale, p->knobs.columns, p->knobs.rows,
+                             p->bins_range, percent(p->error), p->ms())
+               : fmt::format("| {} | {} | none | | | | | |\n", k.kind, level.name);
     }
   for (const KindResult& k : t.kinds) {
     out += fmt::format(

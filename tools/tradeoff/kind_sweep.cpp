@@ -1,10 +1,12 @@
 #include "tools/tradeoff/kind_sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
-#include "tools/session/session.hpp"
+#include "tools/tradeoff/kind_bench.hpp"
 #include "tools/tradeoff/term_judges.hpp"
 #include "tools/tradeoff/term_truth.hpp"
 
@@ -13,6 +15,7 @@ namespace {
 
 using scene::Sonar;
 using scene::SonarKind;
+using Measured = KindBench::Measured;
 
 std::vector<double> scales(bool quick) {
   if (quick) return {0.25, 1.0};
@@ -41,6 +44,9 @@ bool many_beams(SonarKind kind) {
   return kind == SonarKind::kImaging || kind == SonarKind::kProfiling;
 }
 
+// What the levels stay under.
+constexpr double kBounds[] = {0.05, 0.02, 0.01};
+
 // Without the point spread: what the cells themselves hold.
 Sonar cells_of(Sonar sonar) {
   sonar.terms.beam.azimuth.reset();
@@ -49,28 +55,11 @@ Sonar cells_of(Sonar sonar) {
   return sonar;
 }
 
-struct Measured {
-  std::vector<float> image;  // heads and shots one after the other
-  double raster_ms = 0.0, gather_ms = 0.0, receive_ms = 0.0;
-  double ms() const { return raster_ms + gather_ms + receive_ms; }
-};
-
 class KindSweep {
  public:
-  KindSweep(const KindSetting& kind, const RayWorld& world, const Pose& place,
+  KindSweep(const KindSetting& kind, KindBench& bench, const RayWorld& world, const Pose& place,
             const KindSweepOptions& options)
-      : kind_(kind), world_(world), place_(place), options_(options) {}
-
-  Status open(gpu::Device& device, const scene::Scene& scene) {
-    scene::Scene own = scene;
-    Sonar first = with_knobs(kind_.base, kind_.middle);
-    first.terms.level = scene::SonarLevel{};  // so that the session knows what objects scatter
-    own.sonars = {first};
-    own.cameras.clear();
-    NERITIC_TRY(session_, Session::create(device, std::move(own)));
-    session_->frames().enable_timing(true);
-    return {};
-  }
+      : kind_(kind), bench_(bench), world_(world), place_(place), options_(options) {}
 
   Result<KindResult> run() {
     KindResult out;
@@ -112,13 +101,13 @@ class KindSweep {
   }
 
   static std::string key_of_bins(const Sonar& s) {
-    return fmt::format("bins {} {}", s.bins_range, s.bins_azimuth);
+    return fmt::format("bins {} {}", s.bins_range, many_beams(s.kind) ? s.bins_azimuth : 1);
   }
 
   std::vector<Sonar> other_bins(const Sonar& base) const {
     std::vector<Sonar> out;
     for (const double factor :
-         options_.quick ? std::vector<double>{} : std::vector<double>{0.5, 2.0}) {
+         options_.quick ? std::vector<double>{} : std::vector<double>{0.5, 2.0, 4.0}) {
       Sonar s = base;
       s.bins_range = static_cast<std::uint32_t>(s.bins_range * factor);
       out.push_back(s);
@@ -151,8 +140,8 @@ class KindSweep {
     std::vector<Sonar> sonars;
     for (const Want& want : wants) sonars.push_back(want.sonar);
     double off = 0.0, all = 0.0;
-    NERITIC_TRY(const Measured poses, render(sonars.front(), 0));
-    for (const Placed& placed : placed_) {
+    NERITIC_TRY(const Measured poses, bench_.render(sonars.front(), 0));
+    for (const KindBench::Placed& placed : bench_.placed()) {
       TruthView view;
       view.origin_m = placed.world_from_head.position_m - place_.position_m;
       view.world_from_head = glm::mat3_cast(placed.world_from_head.rotation);
@@ -175,69 +164,12 @@ class KindSweep {
     return {};
   }
 
-  // ---- Pings ----------------------------------------------------------------------------------
-  struct Placed {
-    Pose world_from_head;
-    std::size_t head = 0;
-  };
-
-  // Every shot; the least time of repeats (none: only the images), mean over shots.
-  Result<Measured> render(const Sonar& sonar, int repeats) {
-    Measured out;
-    placed_.clear();
-    for (const Shot& shot : kind_.shots) {
-      Sonar& mine = session_->scene().sonars[0];
-      mine = sonar;
-      mine.mount = moving_mount(shot.world_from_sonar);
-      FrameRequest request;
-      request.sonars = {0};
-      request.frame = shot.frame;
-      request.capture.geometry = false;
-      Measured least;
-      for (int i = 0; i < repeats + 1; ++i) {
-        NERITIC_TRY(const FrameResult frame, session_->render(request));
-        if (i == 0) {
-          for (const SonarFrame& head : frame.sonars) {
-            out.image.insert(out.image.end(), head.image.intensity.begin(),
-                             head.image.intensity.end());
-            placed_.push_back(
-                {head.world_from_head, static_cast<std::size_t>(&head - frame.sonars.data())});
-          }
-          continue;
-        }
-        const Measured now = times_of(frame);
-        if (i == 1 || now.ms() < least.ms()) least = now;
-      }
-      const double share = 1.0 / static_cast<double>(kind_.shots.size());
-      out.raster_ms += least.raster_ms * share;
-      out.gather_ms += least.gather_ms * share;
-      out.receive_ms += least.receive_ms * share;
-    }
-    return out;
-  }
-
-  static Measured times_of(const FrameResult& frame) {
-    Measured out;
-    for (const gpu::PassTime& pass : frame.passes) {
-      const auto has = [&](const char* word) { return pass.name.find(word) != std::string::npos; };
-      if (pass.name == "record" || has("deform")) continue;  // the scene's, not a sonar's
-      if (has("sonar clear") || has("sonar gather"))
-        out.gather_ms += pass.ms;
-      else if (has("sonar resolve") || has("sonar pulse") || has("sonar beams") ||
-               has("sonar receive"))
-        out.receive_ms += pass.ms;
-      else
-        out.raster_ms += pass.ms;
-    }
-    return out;
-  }
-
   int repeats() const { return options_.quick ? 1 : kind_.shots.size() > 1 ? 3 : 6; }
 
   // ---- Knobs ----------------------------------------------------------------------------------
   Result<KindPoint> point(const Sonar& base, const std::string& truth, const Knobs& knobs,
-                          bool cells) {
-    NERITIC_TRY(const Measured found, render(with_knobs(base, knobs), repeats()));
+                          bool cells, int repeats) {
+    NERITIC_TRY(const Measured found, bench_.render(with_knobs(base, knobs), repeats));
     KindPoint p;
     p.knobs = knobs;
     p.bins_range = base.bins_range;
@@ -249,7 +181,7 @@ class KindSweep {
     p.gather_ms = found.gather_ms;
     p.receive_ms = found.receive_ms;
     if (cells) {
-      NERITIC_TRY(const Measured bare, render(with_knobs(cells_of(base), knobs), 0));
+      NERITIC_TRY(const Measured bare, bench_.render(with_knobs(cells_of(base), knobs), 0));
       const std::string key = truth == "base" ? "cells" : truth + " cells";
       p.error_cells = difference(bare.image, truths_.at(key)).l1;
     }
@@ -258,7 +190,7 @@ class KindSweep {
 
   Status add(KindResult& out, const char* sweep, std::string setting, const Sonar& base,
              const std::string& truth, const Knobs& knobs) {
-    NERITIC_TRY(KindPoint p, point(base, truth, knobs, true));
+    NERITIC_TRY(KindPoint p, point(base, truth, knobs, true, repeats()));
     p.sweep = sweep;
     p.setting = std::move(setting);
     out.points.push_back(std::move(p));
@@ -297,18 +229,69 @@ class KindSweep {
     return {};
   }
 
-  Status sweep_joint(KindResult& out) {
+  // ---- All knobs together ---------------------------------------------------------------------
+  // A setting as its place on each knob's ladder, coarse to fine: range bins, pixels a cell,
+  // columns, rows.
+  using Place = std::array<std::size_t, 4>;
+
+  struct Ladders {
+    std::vector<std::uint32_t> bins;
+    std::vector<double> scales;
+    std::vector<std::uint32_t> columns, rows;
+    Place finest() const {
+      return {bins.size() - 1, scales.size() - 1, columns.size() - 1, rows.size() - 1};
+    }
+  };
+
+  Ladders ladders() const {
+    const std::uint32_t bins = kind_.base.bins_range;
+    Ladders out{
+        {bins}, {}, columns_of(kind_.base.kind, options_.quick), rows_of(kind_, options_.quick)};
+    if (!options_.quick) out.bins = {bins / 2, bins, 2 * bins, 4 * bins};
     for (const double scale : scales(options_.quick))
-      for (const std::uint32_t columns : columns_of(kind_.base.kind, options_.quick))
-        for (const std::uint32_t rows : rows_of(kind_, options_.quick)) {
-          // A G-buffer of more than 64 M pixels is no choice of anyone's.
-          if (scale > 1.5 && rows > 2 * kind_.middle.rows) continue;
-          NERITIC_TRY(KindPoint p,
-                      point(kind_.base, "base", {scale, columns, rows, "plane"}, false));
-          p.sweep = "joint";
-          p.setting = fmt::format("{:g}, {}, {}", scale, columns, rows);
-          out.points.push_back(std::move(p));
+      if (scale < 1.5) out.scales.push_back(scale);  // beyond, images are of 64 M pixels
+    return out;
+  }
+
+  Result<KindPoint> at(const Ladders& l, const Place& place) {
+    if (const auto found = joint_.find(place); found != joint_.end()) return found->second;
+    Knobs knobs{l.scales[place[1]], l.columns[place[2]], l.rows[place[3]], "plane",
+                l.bins[place[0]]};
+    Sonar sonar = kind_.base;
+    sonar.bins_range = knobs.bins_range;
+    const bool own = sonar.bins_range == kind_.base.bins_range;
+    NERITIC_TRY(KindPoint p, point(sonar, own ? "base" : key_of_bins(sonar), knobs, false, 3));
+    p.sweep = "joint";
+    p.setting =
+        fmt::format("{:g}, {}, {}, {}", knobs.scale, knobs.columns, knobs.rows, knobs.bins_range);
+    joint_[place] = p;
+    return p;
+  }
+
+  // For each bound on the error from the finest setting down: of all knobs that can go a step
+  // coarser, the one that leaves the cheapest ping. What is found is a valley, not surely the
+  // deepest.
+  Status sweep_joint(KindResult& out) {
+    const Ladders l = ladders();
+    for (const double bound : kBounds) {
+      Place here = l.finest();
+      NERITIC_TRY(KindPoint best, at(l, here));
+      while (best.error <= bound) {
+        std::optional<Place> next;
+        for (std::size_t knob = 0; knob < here.size(); ++knob) {
+          if (here[knob] == 0) continue;
+          Place coarser = here;
+          --coarser[knob];
+          NERITIC_TRY(const KindPoint p, at(l, coarser));
+          if (p.error > bound || (next && p.ms() >= best.ms())) continue;
+          next = coarser;
+          best = p;
         }
+        if (!next) break;
+        here = *next;
+      }
+    }
+    for (const auto& [place, p] : joint_) out.points.push_back(p);
     options_.step();
     return {};
   }
@@ -319,8 +302,8 @@ class KindSweep {
       using Judge = TermCase::Judge;
       Sonar changed = c.with;
       if (c.judge == Judge::kNoise) changed.terms.noise->level_db = a_tenth_db(c);
-      NERITIC_TRY(const Measured with, render(changed, repeats()));
-      NERITIC_TRY(const Measured without, render(c.without, repeats()));
+      NERITIC_TRY(const Measured with, bench_.render(changed, repeats()));
+      NERITIC_TRY(const Measured without, bench_.render(c.without, repeats()));
       TermPoint p;
       p.term = c.name;
       p.ms = with.ms() - without.ms();
@@ -356,17 +339,17 @@ class KindSweep {
 
   // Over draws of the world's scatterers.
   Result<SpeckleFound> speckle_of(Sonar sonar) {
-    const std::uint64_t seed = session_->scene().seed;
+    const std::uint64_t seed = bench_.seed();
     Sonar without = sonar;
     without.terms.speckle.reset();
-    NERITIC_TRY(const Measured smooth, render(without, 0));
+    NERITIC_TRY(const Measured smooth, bench_.render(without, 0));
     SpeckleMoments moments;
     for (std::uint64_t draw = 0; draw < (options_.quick ? 1u : 4u); ++draw) {
-      session_->scene().seed = seed + draw;
-      NERITIC_TRY(const Measured found, render(sonar, 0));
+      bench_.set_seed(seed + draw);
+      NERITIC_TRY(const Measured found, bench_.render(sonar, 0));
       moments.add(found.image, smooth.image);
     }
-    session_->scene().seed = seed;
+    bench_.set_seed(seed);
     return moments.found();
   }
 
@@ -386,7 +369,7 @@ class KindSweep {
       Sonar s = with_knobs(kind_.base, kind_.middle);
       const double step_m = (s.range_max_m - s.range_min_m) / s.bins_range;
       s.terms.speckle = scene::SonarSpeckle{.scatterer_m = steps * step_m};
-      NERITIC_TRY(const Measured timed, render(s, repeats()));
+      NERITIC_TRY(const Measured timed, bench_.render(s, repeats()));
       NERITIC_TRY(const SpeckleFound found, speckle_of(s));
       TermPoint p;
       p.term = fmt::format("speckle, scatterers of {:g} range steps", steps);
@@ -401,20 +384,20 @@ class KindSweep {
   }
 
   const KindSetting& kind_;
+  KindBench& bench_;
   const RayWorld& world_;
   Pose place_;
   const KindSweepOptions& options_;
-  std::unique_ptr<Session> session_;
   std::vector<TermCase> cases_;
-  std::vector<Placed> placed_;
   std::map<std::string, std::vector<double>> truths_;
+  std::map<Place, KindPoint> joint_;
   double uncertain_ = 0.0, rays_ = 0.0;
 };
 
 }  // namespace
 
 std::uint64_t kind_steps(SonarKind kind, bool quick) {
-  const std::uint64_t bins = quick ? 0 : many_beams(kind) ? 3 : 2;
+  const std::uint64_t bins = quick ? 0 : many_beams(kind) ? 4 : 3;
   const std::uint64_t terms = kind == SonarKind::kEchoSounder ? 12 : 13;  // of term_cases
   // The rays; gathers; terms and scatterers; the joint sweep.
   return 1 + scales(quick).size() + 2 + columns_of(kind, quick).size() + row_factors(quick).size() +
@@ -423,9 +406,9 @@ std::uint64_t kind_steps(SonarKind kind, bool quick) {
 
 Result<KindResult> sweep_kind(gpu::Device& device, const scene::Scene& scene, const RayWorld& world,
                               const KindSetting& kind, const KindSweepOptions& options) {
-  KindSweep sweep(kind, world, place_of(scene), options);
-  NERITIC_TRY_STATUS(sweep.open(device, scene));
-  return sweep.run();
+  KindBench bench(kind);
+  NERITIC_TRY_STATUS(bench.open(device, scene));
+  return KindSweep(kind, bench, world, place_of(scene), options).run();
 }
 
 const KindPoint* cheapest(const KindResult& result, double max_error) {

@@ -15,6 +15,7 @@ struct Knobs {
   double scale = 0.5;                   // G-buffer pixels a cell, linear
   std::uint32_t columns = 1, rows = 1;  // gathered a beam in azimuth, and in elevation
   std::string gather = "plane";
+  std::uint32_t bins_range = 0;  // 0: the sensor's
 };
 scene::Sonar with_knobs(scene::Sonar sonar, const Knobs& knobs);
 

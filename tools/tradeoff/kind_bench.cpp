@@ -1,0 +1,68 @@
+#include "tools/tradeoff/kind_bench.hpp"
+
+namespace neritic::tools {
+namespace {
+
+KindBench::Measured times_of(const FrameResult& frame) {
+  KindBench::Measured out;
+  for (const gpu::PassTime& pass : frame.passes) {
+    const auto has = [&](const char* word) { return pass.name.find(word) != std::string::npos; };
+    if (pass.name == "record" || has("deform")) continue;
+    if (has("sonar clear") || has("sonar gather"))
+      out.gather_ms += pass.ms;
+    else if (has("sonar resolve") || has("sonar pulse") || has("sonar beams") ||
+             has("sonar receive"))
+      out.receive_ms += pass.ms;
+    else
+      out.raster_ms += pass.ms;
+  }
+  return out;
+}
+
+}  // namespace
+
+Status KindBench::open(gpu::Device& device, const scene::Scene& scene) {
+  scene::Scene own = scene;
+  scene::Sonar first = with_knobs(kind_.base, kind_.middle);
+  first.terms.level = scene::SonarLevel{};  // so that the session knows what objects scatter
+  own.sonars = {first};
+  own.cameras.clear();
+  NERITIC_TRY(session_, Session::create(device, std::move(own)));
+  session_->frames().enable_timing(true);
+  return {};
+}
+
+Result<KindBench::Measured> KindBench::render(const scene::Sonar& sonar, int repeats) {
+  Measured out;
+  placed_.clear();
+  const double share = 1.0 / static_cast<double>(kind_.shots.size());
+  for (const Shot& shot : kind_.shots) {
+    scene::Sonar& mine = session_->scene().sonars[0];
+    mine = sonar;
+    mine.mount = moving_mount(shot.world_from_sonar);
+    FrameRequest request;
+    request.sonars = {0};
+    request.frame = shot.frame;
+    request.capture.geometry = false;
+    Measured least;
+    for (int i = 0; i < repeats + 1; ++i) {
+      NERITIC_TRY(const FrameResult frame, session_->render(request));
+      if (i == 0) {  // the first also compiles
+        for (std::size_t head = 0; head < frame.sonars.size(); ++head) {
+          const auto& intensity = frame.sonars[head].image.intensity;
+          out.image.insert(out.image.end(), intensity.begin(), intensity.end());
+          placed_.push_back({frame.sonars[head].world_from_head, head});
+        }
+        continue;
+      }
+      const Measured now = times_of(frame);
+      if (i == 1 || now.ms() < least.ms()) least = now;
+    }
+    out.raster_ms += least.raster_ms * share;
+    out.gather_ms += least.gather_ms * share;
+    out.receive_ms += least.receive_ms * share;
+  }
+  return out;
+}
+
+}  // namespace neritic::tools

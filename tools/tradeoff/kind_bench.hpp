@@ -1,0 +1,43 @@
+// One kind of sonar on a device: its settings rendered from every shot, images and times brought
+// back. Rendering thread.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "tools/session/session.hpp"
+#include "tools/tradeoff/kinds.hpp"
+
+namespace neritic::tools {
+
+class KindBench {
+ public:
+  struct Measured {
+    std::vector<float> image;  // shots, and heads within each, one after the other
+    double raster_ms = 0.0, gather_ms = 0.0, receive_ms = 0.0;  // mean over shots
+    double ms() const { return raster_ms + gather_ms + receive_ms; }
+  };
+  // Where each head was, in the order of the image.
+  struct Placed {
+    Pose world_from_head;
+    std::size_t head = 0;
+  };
+
+  // kind must outlive it.
+  explicit KindBench(const KindSetting& kind) : kind_(kind) {}
+  Status open(gpu::Device& device, const scene::Scene& scene);
+  // A setting of the kind's sensor; the least time of repeats (0: only images). What is the scene's
+  // rather than the sonar's (bodies that bend) is not counted.
+  Result<Measured> render(const scene::Sonar& sonar, int repeats);
+  // Of the last render.
+  const std::vector<Placed>& placed() const { return placed_; }
+  std::uint64_t seed() const { return session_->scene().seed; }
+  void set_seed(std::uint64_t seed) { session_->scene().seed = seed; }
+
+ private:
+  const KindSetting& kind_;
+  std::unique_ptr<Session> session_;
+  std::vector<Placed> placed_;
+};
+
+}  // namespace neritic::tools
