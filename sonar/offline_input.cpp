@@ -51,17 +51,26 @@ Vec3 to_sonar_axes(const Vec3& n, NormalAxes axes) {
   return n;
 }
 
+// What each code of a channel stands for; empty where the map holds numbers.
+std::vector<double> decode_table(MapFile::Coding coding, double gamma) {
+  if (coding == MapFile::Coding::kNumbers) return {};
+  std::vector<double> table(coding == MapFile::Coding::kCoded8 ? 256 : 65536);
+  const double max = static_cast<double>(table.size() - 1);
+  for (std::size_t code = 0; code < table.size(); ++code)
+    table[code] = decode_normal(static_cast<double>(code), max, gamma);
+  return table;
+}
+
 std::vector<double> normals_of(const MapFile& map, const OfflineOptions& options) {
-  std::vector<double> out;
-  out.reserve(3 * map.pixels());
-  const double max = map.coding == MapFile::Coding::kCoded8 ? 255.0 : 65535.0;
+  std::vector<double> out(3 * map.pixels());
+  const std::vector<double> table = decode_table(map.coding, options.gamma);
   for (std::size_t i = 0; i < map.pixels(); ++i) {
     Vec3 n(map.at(i, 0), map.at(i, 1), map.at(i, 2));
-    if (map.coding != MapFile::Coding::kNumbers)
-      for (int k = 0; k < 3; ++k) n[k] = decode_normal(n[k], max, options.gamma);
+    if (!table.empty())
+      for (int k = 0; k < 3; ++k) n[k] = table[static_cast<std::size_t>(n[k])];
     // A marker of "unknown" stays one in any axes.
     if (n != Vec3(-1.0)) n = to_sonar_axes(n, options.axes);
-    out.insert(out.end(), {n.x, n.y, n.z});
+    std::copy_n(&n[0], 3, &out[3 * i]);
   }
   return out;
 }

@@ -24,15 +24,15 @@ class SonarFolder : public ::testing::Test {
  protected:
   static constexpr std::uint32_t kWidth = 32, kHeight = 24;
 
-  void write_frames(int count) {
+  void write_frames(int count, std::uint32_t width = kWidth, std::uint32_t height = kHeight) {
     ASSERT_TRUE(make_folder(folder_ / "d").ok() && make_folder(folder_ / "n").ok());
     std::vector<float> normals;
-    for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) normals.insert(normals.end(), {0, 0, 1});
+    for (std::uint32_t i = 0; i < width * height; ++i) normals.insert(normals.end(), {0, 0, 1});
     for (int i = 0; i < count; ++i) {
-      const std::vector<float> depth(kWidth * kHeight, 1.2f + 0.003f * float(i % 1000));
-      ASSERT_TRUE(write_npy(depth_file(i), std::span<const float>(depth), {kHeight, kWidth}).ok());
+      const std::vector<float> depth(width * height, 1.2f + 0.003f * float(i % 1000));
+      ASSERT_TRUE(write_npy(depth_file(i), std::span<const float>(depth), {height, width}).ok());
       ASSERT_TRUE(
-          write_npy(normal_file(i), std::span<const float>(normals), {kHeight, kWidth, 3}).ok());
+          write_npy(normal_file(i), std::span<const float>(normals), {height, width, 3}).ok());
     }
   }
   static std::string name(int i) { return fmt::format("{:03}", i); }
@@ -224,17 +224,25 @@ TEST_F(SonarFolder, PicturesMakeASideScanWaterfall) {
   EXPECT_EQ(run_facts()["made"], 0);
 }
 
-// NERITIC_FRAMES: another number of frames, to measure with.
+// To measure with: NERITIC_FRAMES, another number of frames; NERITIC_FRAME_SIZE=large, 640 x 480
+// pixels and 512 x 500 x 500 bins (5 MB a frame of scratch disk).
 TEST_F(SonarFolder, AThousandFramesGoThrough) {
-  const char* asked = std::getenv("NERITIC_FRAMES");
+  const char *asked = std::getenv("NERITIC_FRAMES"), *size = std::getenv("NERITIC_FRAME_SIZE");
   const int count = asked != nullptr ? std::atoi(asked) : 1000;
-  write_frames(count);
-  expect_done(words({"--no-pictures"}));
+  const bool large = size != nullptr && std::string(size) == "large";
+  write_frames(count, large ? 640 : kWidth, large ? 480 : kHeight);
+  Words all = words({"--no-pictures"});
+  if (large) {
+    *(std::find(all.begin(), all.end(), "--bins") + 1) = "512,500,500";
+    *(std::find(all.begin(), all.end(), "--intrinsics") + 1) = "320,320,320,240";
+  }
+  expect_done(all);
   const nlohmann::json facts = run_facts();
   EXPECT_EQ(facts["made"], count);
   for (int i = 0; i < count; ++i) ASSERT_TRUE(fs::exists(result(i) / "sonar.json")) << i;
-  fmt::print("{} frames of {} x {} pixels: {:.0f} frames/s with {} workers\n", count, kWidth,
-             kHeight, facts["frames_per_s"].get<double>(), facts["workers"].get<int>());
+  fmt::print("{} frames of {} pixels: {:.0f} frames/s with {} workers\n", count,
+             large ? "640 x 480" : "32 x 24", facts["frames_per_s"].get<double>(),
+             facts["workers"].get<int>());
 }
 
 }  // namespace
