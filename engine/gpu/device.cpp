@@ -5,6 +5,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
+#include "engine/core/log.hpp"
 #include "engine/gpu/device_select.hpp"
 #include "engine/gpu/error.hpp"
 #include "engine/gpu/instance.hpp"
@@ -81,6 +82,8 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
   NERITIC_TRY(const std::uint32_t chosen, choose_device(infos, options.device));
   device->physical_ = devices[chosen];
   device->info_ = infos[chosen];
+  log_info("device {} of {}: {}, {} {}", chosen, devices.size(), device->info_.name,
+           device->info_.kind, device->info_.driver);
   NERITIC_TRY_STATUS(device->create_device(options));
   device->allocator_ = std::make_unique<Allocator>(*device);
   device->load_pipeline_cache(options.cache_folder);
@@ -148,6 +151,8 @@ void Device::load_pipeline_cache(const fs::path& folder) {
     result = vkCreatePipelineCache(device_, &info, nullptr, &pipeline_cache_);
   }
   if (result != VK_SUCCESS) pipeline_cache_ = VK_NULL_HANDLE;  // pipelines can do without
+  log_info("pipeline cache: {:.1f} KiB from {}", static_cast<double>(data.size()) / 1024.0,
+           cache_file_.empty() ? "nowhere" : cache_file_.string());
   name_object(VK_OBJECT_TYPE_PIPELINE_CACHE, reinterpret_cast<std::uint64_t>(pipeline_cache_),
               "pipeline cache");
 }

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "engine/core/check.hpp"
+#include "engine/core/clock.hpp"
+#include "engine/core/log.hpp"
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/error.hpp"
 
@@ -253,7 +255,9 @@ Result<Pipeline> Pipeline::create(const Device& device, const ComputePipelineDes
   NERITIC_TRY(Pipeline pipeline,
               create_base(device, desc.name, desc.layout, VK_SHADER_STAGE_COMPUTE_BIT));
   pipeline.bind_point_ = VK_PIPELINE_BIND_POINT_COMPUTE;
+  const TimeNs start = now_ns();
   NERITIC_TRY(pipeline.handle_, make_compute(device, desc, pipeline.layout_));
+  log_info("pipeline {} in {:.1f} ms", desc.name, to_ms(now_ns() - start));
   device.name_object(VK_OBJECT_TYPE_PIPELINE, id(pipeline.handle_), desc.name);
   return pipeline;
 }
@@ -262,7 +266,9 @@ Result<Pipeline> Pipeline::create(const Device& device, const GraphicsPipelineDe
   NERITIC_TRY_STATUS(check_graphics(device, desc));
   NERITIC_TRY(Pipeline pipeline, create_base(device, desc.name, desc.layout, kGraphicsStages));
   pipeline.bind_point_ = VK_PIPELINE_BIND_POINT_GRAPHICS;
+  const TimeNs start = now_ns();
   NERITIC_TRY(pipeline.handle_, make_graphics(device, desc, pipeline.layout_));
+  log_info("pipeline {} in {:.1f} ms", desc.name, to_ms(now_ns() - start));
   device.name_object(VK_OBJECT_TYPE_PIPELINE, id(pipeline.handle_), desc.name);
   return pipeline;
 }

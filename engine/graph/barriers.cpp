@@ -94,16 +94,19 @@ class Takeover {
       if (!graph.resources[r].imported && lifetimes[r].used()) transients_.push_back(r);
   }
 
-  // Who had a byte of the resource's memory before it, the last and all earlier ones. Waiting for the last
-  // would do, since earlier ones are ordered through it; but the validation layer follows such a chain only
-  // through images that it takes for aliases of each other, and reports a hazard otherwise.
+  // Who had a byte of the resource's memory before it, the last and all earlier ones. Waiting for
+  // the last would do, since earlier ones are ordered through it; but the validation layer follows
+  // such a chain only through images that it takes for aliases of each other, and reports a hazard
+  // otherwise.
   void previous_owners(std::uint32_t resource, std::vector<std::uint32_t>& owners) const {
     owners.clear();
     for (const std::uint32_t other : transients_) {
       if (lifetimes_[other].last >= lifetimes_[resource].first) continue;
       if (needs_[other].memory_class != needs_[resource].memory_class) continue;
-      const std::uint64_t begin = placement_.offset[resource], other_begin = placement_.offset[other];
-      if (begin < other_begin + needs_[other].size && other_begin < begin + needs_[resource].size) owners.push_back(other);
+      const std::uint64_t begin = placement_.offset[resource],
+                          other_begin = placement_.offset[other];
+      if (begin < other_begin + needs_[other].size && other_begin < begin + needs_[resource].size)
+        owners.push_back(other);
     }
   }
 

@@ -7,6 +7,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/hash.hpp"
+#include "engine/core/log.hpp"
 #include "engine/gpu/device.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "engine/graph/realisation.hpp"
@@ -107,6 +108,9 @@ struct Executor::Impl {
     const std::vector<MemoryNeed> needs = memory_needs(frames.device(), with_usage, entry->classes);
     NERITIC_TRY(entry->plan, graph::compile(std::move(with_usage), needs));
     entry->last_use = ++clock;
+    log_info("frame graph {}: {} of {} passes kept, {:.1f} MiB of transient memory", entries.size(),
+             entry->plan.order.size(), declaration.passes.size(),
+             static_cast<double>(entry->plan.placement.bytes_with_aliasing) / (1 << 20));
     if (entries.size() >= kPlansKept) evict_oldest_plan();
     entries.push_back(std::move(entry));
     return entries.back().get();

@@ -1,7 +1,7 @@
 // Declares this frame's passes and runs them. A pass is a name, a struct of typed handles, a setup
-// that runs now and a record that runs later. write() returns a new version of the handle, so that an
-// ambiguous order cannot be written. Passes nobody needs are culled: an undeclared or culled pass
-// costs nothing. Rendering thread only.
+// that runs now and a record that runs later. write() returns a new version of the handle, so that
+// an ambiguous order cannot be written. Passes nobody needs are culled: an undeclared or culled
+// pass costs nothing. Rendering thread only.
 #pragma once
 
 #include <functional>
@@ -103,7 +103,8 @@ class FrameGraph {
     return *data;  // owned by the record
   }
 
-  // The version must be there at the frame's end, in that access (kHostRead, kPresent, kSampled...).
+  // The version must be there at the frame's end, in that access (kHostRead, kPresent,
+  // kSampled...).
   void output(ImageHandle image, Access access);
   void output(BufferHandle buffer, Access access);
 
@@ -117,7 +118,7 @@ class FrameGraph {
                              const gpu::Buffer* buffer);
   GraphDecl declaration_;
   std::vector<std::function<void(PassContext&)>> records_;
-  std::vector<const gpu::Image*> imported_images_;    // by resource; nullptr for others
+  std::vector<const gpu::Image*> imported_images_;  // by resource; nullptr for others
   std::vector<const gpu::Buffer*> imported_buffers_;
 };
 
@@ -133,8 +134,8 @@ class Executor {
   Result<const Plan*> run(FrameGraph& graph, gpu::Commands& commands);
   std::uint64_t transient_bytes() const;  // device memory held for transients now
 
-  // For tests only: run() hands a copy of each plan to spoil before it records it, so that a test can
-  // plant a wrong barrier and see validation catch it. An empty function takes it off again.
+  // For tests only: run() hands a copy of each plan to spoil before it records it, so that a test
+  // can plant a wrong barrier and see validation catch it. An empty function takes it off again.
   void spoil_plans_for_test(std::function<void(Plan&)> spoil);
 
  private:

@@ -15,15 +15,15 @@
 
 namespace neritic::graph {
 
-// How a pass uses a resource. Each means one stage mask, access mask and image layout (access_info);
-// access.cpp has the table. Attachments and descriptors take their layout from there:
-// access_info(Access::kDepthTest).layout. A read-only depth attachment needs storeOp NONE: STORE
-// counts as a write.
+// How a pass uses a resource. Each means one stage mask, access mask and image layout
+// (access_info); access.cpp has the table. Attachments and descriptors take their layout from
+// there: access_info(Access::kDepthTest).layout. A read-only depth attachment needs storeOp NONE:
+// STORE counts as a write.
 enum class Access {
-  kColorAttachment,   // write
-  kDepthAttachment,   // write (and test)
-  kDepthTest,         // read-only depth test
-  kSampledFragment,   // read by texture or texelFetch
+  kColorAttachment,  // write
+  kDepthAttachment,  // write (and test)
+  kDepthTest,        // read-only depth test
+  kSampledFragment,  // read by texture or texelFetch
   kSampledCompute,
   kStorageReadCompute,   // buffer or image
   kStorageWriteCompute,  // write; earlier contents may be read (atomics)
@@ -70,7 +70,8 @@ struct ResourceDecl {
   bool operator==(const ResourceDecl&) const = default;
 };
 
-// A use of one version of a resource. Reading version v needs its writer; writing turns v into v + 1.
+// A use of one version of a resource. Reading version v needs its writer; writing turns v into v
+// + 1.
 struct Use {
   std::uint32_t resource = 0;
   std::uint32_t version = 0;  // the version read, or the version that the write replaces
@@ -97,9 +98,9 @@ struct GraphDecl {
 
 // --- The stages -------------------------------------------------------------------------------
 
-// kBadInput-free: an inconsistency is our own bug, but it is returned (ErrorCode::kUnsupported is not
-// used; code kBadInput, message names pass and resource): stale handle (a version that a later write
-// replaced before this pass was declared), read before write, two writers of one version, a
+// kBadInput-free: an inconsistency is our own bug, but it is returned (ErrorCode::kUnsupported is
+// not used; code kBadInput, message names pass and resource): stale handle (a version that a later
+// write replaced before this pass was declared), read before write, two writers of one version, a
 // resource used in two ways that one pass cannot combine, an index out of range.
 Status validate(const GraphDecl& graph);
 
@@ -123,8 +124,8 @@ struct MemoryNeed {
 // Where each transient resource lies in its class's heap. Two whose lifetimes overlap never overlap
 // in memory.
 struct Placement {
-  std::vector<std::uint64_t> offset;         // a resource; only meaningful for used transients
-  std::vector<std::uint64_t> heap_size;      // a memory class
+  std::vector<std::uint64_t> offset;     // a resource; only meaningful for used transients
+  std::vector<std::uint64_t> heap_size;  // a memory class
   std::uint64_t bytes_with_aliasing = 0, bytes_without = 0;
 };
 Placement place(const GraphDecl& graph, std::span<const Lifetime> lifetimes,
@@ -141,8 +142,8 @@ struct BarrierPlan {
   std::vector<std::vector<Barrier>> before;  // one list a position in the order
   std::vector<Barrier> at_end;               // to the outputs' accesses
 };
-// Read after read in the same layout gives none. The first use of a transient waits for the last use
-// of whatever had its memory before.
+// Read after read in the same layout gives none. The first use of a transient waits for the last
+// use of whatever had its memory before.
 BarrierPlan barriers(const GraphDecl& graph, std::span<const std::uint32_t> order,
                      std::span<const Lifetime> lifetimes, std::span<const MemoryNeed> needs,
                      const Placement& placement);

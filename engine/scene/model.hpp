@@ -38,18 +38,19 @@ struct Primitive {
   // One entry a vertex; positions and normals always (made from the faces where the file has none,
   // zero length for points and lines without normals); the others empty where the file has none.
   std::vector<Vec3f> positions;
-  std::vector<Vec3f> normals;               // unit
-  std::vector<Vec4f> tangents;              // unit xyz, w = handedness; made where a normal map needs them
+  std::vector<Vec3f> normals;   // unit
+  std::vector<Vec4f> tangents;  // unit xyz, w = handedness; made where a normal map needs them
   std::vector<Vec2f> uv0, uv1;
-  std::vector<Vec4f> colors;                // linear RGBA
+  std::vector<Vec4f> colors;                         // linear RGBA
   std::vector<std::array<std::uint16_t, 4>> joints;  // indices into the skin's joints
-  std::vector<Vec4f> weights;               // sum 1, the four largest influences
-  std::vector<std::uint32_t> indices;       // always present, in range, a multiple of the topology's size
+  std::vector<Vec4f> weights;                        // sum 1, the four largest influences
+  std::vector<std::uint32_t>
+      indices;  // always present, in range, a multiple of the topology's size
   std::vector<MorphTarget> targets;
-  int material = -1;                        // -1: glTF's default material
+  int material = -1;  // -1: glTF's default material
   // Vertices in the file, before flat normals or mirrored texture seams split some of them.
   std::uint32_t file_vertices = 0;
-  Bounds bounds;                            // of the positions, without skin and morphs
+  Bounds bounds;  // of the positions, without skin and morphs
 };
 
 struct Mesh {
@@ -106,7 +107,7 @@ struct CameraLens {
   std::string name;
   bool perspective = true;
   double vertical_fov_rad = 0.8, near_m = 0.1;
-  double aspect = 0.0;              // 0: the picture's own
+  double aspect = 0.0;                             // 0: the picture's own
   double half_width_m = 1.0, half_height_m = 1.0;  // orthographic
 };
 
@@ -126,8 +127,8 @@ struct Node {
 
 struct Skin {
   std::string name;
-  std::vector<int> joints;           // nodes
-  std::vector<Mat4> inverse_bind;    // one a joint
+  std::vector<int> joints;         // nodes
+  std::vector<Mat4> inverse_bind;  // one a joint
 };
 
 struct Channel {

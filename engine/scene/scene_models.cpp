@@ -6,6 +6,8 @@
 #include <system_error>
 #include <thread>
 
+#include "engine/core/clock.hpp"
+#include "engine/core/log.hpp"
 #include "engine/scene/gltf_loader.hpp"
 #include "engine/scene/image_file.hpp"
 #include "engine/scene/scene_draft.hpp"
@@ -79,6 +81,17 @@ Result<Model> load_base(const ModelRequest& request) {
   return model;
 }
 
+// The same with a line about it.
+Result<Model> load_and_say(const ModelRequest& request) {
+  const TimeNs start = now_ns();
+  Result<Model> model = load_base(request);
+  if (model.ok())
+    log_info("{}: {} triangles, {} pictures, {:.0f} ms",
+             request.file.empty() ? request.shape : request.file.string(), triangle_count(*model),
+             model->images.size(), to_ms(now_ns() - start));
+  return model;
+}
+
 // Runs load_base for each base, the largest files first, on as many threads as the machine has.
 std::vector<std::optional<Result<Model>>> load_bases(
     const std::vector<const ModelRequest*>& bases) {
@@ -96,7 +109,7 @@ std::vector<std::optional<Result<Model>>> load_bases(
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
     for (std::size_t i = next++; i < order.size(); i = next++)
-      results[order[i]].emplace(load_base(*bases[order[i]]));
+      results[order[i]].emplace(load_and_say(*bases[order[i]]));
   };
   std::vector<std::thread> helpers;
   const std::size_t threads =

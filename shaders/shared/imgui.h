@@ -1,4 +1,5 @@
-// What the overlay's pass and its shaders share: Dear ImGui's triangles in pixels, one texture a draw.
+// What the overlay's pass and its shaders share: Dear ImGui's triangles in pixels, one texture a
+// draw.
 #ifndef NERITIC_SHARED_IMGUI_H
 #define NERITIC_SHARED_IMGUI_H
 #include "shared/types.h"

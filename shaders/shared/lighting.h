@@ -11,9 +11,10 @@ NERITIC_CONST uint kLightWater = 2;
 NERITIC_CONST uint kLightScattering = 4;
 NERITIC_CONST uint kLightSurface = 8;
 NERITIC_CONST uint kLightEmissive = 16;  // the G-buffer has an emissive image
-NERITIC_CONST uint kLightGlow = 32;  // lamps whose beams are seen in the water: scattering and kGlowReach
-// A sight that passes a lamp at distance d gathers about I b 0.05 m / d of its light. It is seen where that
-// exceeds 0.002 of white, so up to this times I b exposure from the lamp.
+// Lamps whose beams are seen in the water: scattering and kGlowReach.
+NERITIC_CONST uint kLightGlow = 32;
+// A sight that passes a lamp at distance d gathers about I b 0.05 m / d of its light. It is seen
+// where that exceeds 0.002 of white, so up to this times I b exposure from the lamp.
 NERITIC_CONST float kGlowReach = 25.0f;
 
 struct SpotLight {
@@ -25,20 +26,20 @@ struct SpotLight {
 };
 
 struct Lighting {
-  uint terms;             // kLight... bits
+  uint terms;  // kLight... bits
   uint lamp_count;
-  vec3 to_sun;            // unit, in water where there is water
-  vec3 surface_irradiance;  // downwelling just under the surface (in air without water), lux
-  float direct_share;     // of it that arrives in the sun's beam at the surface
-  float origin_depth_m;   // of the view set's origin below y = 0
+  vec3 to_sun;               // unit, in water where there is water
+  vec3 surface_irradiance;   // downwelling just under the surface (in air without water), lux
+  float direct_share;        // of it that arrives in the sun's beam at the surface
+  float origin_depth_m;      // of the view set's origin below y = 0
   vec3 diffuse_attenuation;  // K_d, 1/m
   vec3 beam_attenuation;     // c = a + b, 1/m
   vec3 water_scattering;     // b of pure water, 1/m
   vec3 particle_scattering;  // b of particles, 1/m
-  vec3 background;        // radiance where nothing is hit and there is no water
-  float emissive_scale;   // lux per steradian of emission 1
-  float exposure;         // multiplies radiance before it is stored
-  float sun_cosine;       // of the refracted sun to the vertical
+  vec3 background;           // radiance where nothing is hit and there is no water
+  float emissive_scale;      // lux per steradian of emission 1
+  float exposure;            // multiplies radiance before it is stored
+  float sun_cosine;          // of the refracted sun to the vertical
   SpotLight lamps[16];
 };
 NERITIC_CONST uint kMaxLamps = 16;
@@ -53,9 +54,9 @@ NERITIC_CONST uint kShadeMaterial = 5;
 NERITIC_CONST uint kShadeEmissive = 6;
 NERITIC_CONST uint kShadeHdr = 7;
 NERITIC_CONST uint kShadeGroup = 8;
-// Specialisation constants of the shade pass: the terms and the number of lamps. What a scene does not
-// name is not even compiled: a processor's driver computes both sides of a branch, and runs the body of
-// a loop once at least.
+// Specialisation constants of the shade pass: the terms and the number of lamps. What a scene does
+// not name is not even compiled: a processor's driver computes both sides of a branch, and runs the
+// body of a loop once at least.
 NERITIC_CONST uint kSpecTerms = 0;
 NERITIC_CONST uint kSpecLamps = 1;
 

@@ -1,6 +1,6 @@
 // Unit vectors as two numbers in [-1, 1]: octahedral map (Meyer et al. 2010; Cigolle et al. 2014,
-// "A Survey of Efficient Representations for Independent Unit Vectors"). With 16-bit signed-normalised
-// storage the worst angular error is about 5e-5 rad.
+// "A Survey of Efficient Representations for Independent Unit Vectors"). With 16-bit
+// signed-normalised storage the worst angular error is about 5e-5 rad.
 #ifndef NERITIC_SHARED_OCTAHEDRAL_H
 #define NERITIC_SHARED_OCTAHEDRAL_H
 #include "shared/types.h"

@@ -1,6 +1,6 @@
 // What the passes that rasterise share: views, instances, materials, vertex streams, bindings.
-// All positions on the GPU are metres relative to the view set's origin (the first camera's place), in
-// world axes, so a scene 100 km away loses nothing.
+// All positions on the GPU are metres relative to the view set's origin (the first camera's place),
+// in world axes, so a scene 100 km away loses nothing.
 #ifndef NERITIC_SHARED_RASTER_H
 #define NERITIC_SHARED_RASTER_H
 #include "shared/types.h"
@@ -20,8 +20,9 @@ struct View {
   vec3 ray_dy;
 };
 
-// One instance, as a vertex stream that steps once an instance: a processor's driver fetches vertices
-// in bulk, but reads a storage buffer lane by lane. Rows of the affine origin_from_object: p' = (dot(row0, p1), ...), p1 = (p, 1).
+// One instance, as a vertex stream that steps once an instance: a processor's driver fetches
+// vertices in bulk, but reads a storage buffer lane by lane. Rows of the affine origin_from_object:
+// p' = (dot(row0, p1), ...), p1 = (p, 1).
 struct Instance {
   vec4 row0;
   vec4 row1;
@@ -102,9 +103,9 @@ NERITIC_CONST uint kMaterialNormal = 3;
 NERITIC_CONST uint kMaterialOcclusion = 4;
 NERITIC_CONST uint kMaterialEmissive = 5;
 
-// Specialisation constants. A processor's driver computes both sides of a branch and loads lane by lane
-// what an index picks that it cannot prove uniform, so both the texture reads of a material and the view
-// are settled when the pipeline is made.
+// Specialisation constants. A processor's driver computes both sides of a branch and loads lane by
+// lane what an index picks that it cannot prove uniform, so both the texture reads of a material
+// and the view are settled when the pipeline is made.
 NERITIC_CONST uint kSpecMotion = 0;
 NERITIC_CONST uint kSpecMaterial = 1;   // the material's flags
 NERITIC_CONST uint kSpecMultiview = 2;  // 0: the set has one view

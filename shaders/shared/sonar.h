@@ -1,5 +1,6 @@
-// What the sonar's gather passes and their host share: tables, constants, bindings. Directions are in
-// the axes of the G-buffer's normals (G-buffer axes), lengths per unit of planar depth of the view.
+// What the sonar's gather passes and their host share: tables, constants, bindings. Directions are
+// in the axes of the G-buffer's normals (G-buffer axes), lengths per unit of planar depth of the
+// view.
 #ifndef NERITIC_SHARED_SONAR_H
 #define NERITIC_SHARED_SONAR_H
 #include "shared/types.h"
@@ -7,38 +8,39 @@
 NERITIC_SHARED_BEGIN
 
 // One azimuth column of the sonar. A column is a vertical plane through the sonar, which a level
-// pinhole sees as one column of pixels; the beam at elevation phi is beam_base + tan(phi) * sec_theta
+// pinhole sees as one column of pixels; the beam at elevation phi is beam_base + tan(phi) *
+// sec_theta
 // * up, a pixel centre pixel_base + (cy - v - 0.5) / fy * up.
 struct SonarColumn {
-  vec3 beam_base;   // (tan theta, 0, -1) of the view
-  float sec_theta;  // 1 / cos of the azimuth off the view's axis
-  vec3 pixel_base;  // ((u + 0.5 - cx) / fx, 0, -1) of the view
+  vec3 beam_base;      // (tan theta, 0, -1) of the view
+  float sec_theta;     // 1 / cos of the azimuth off the view's axis
+  vec3 pixel_base;     // ((u + 0.5 - cx) / fx, 0, -1) of the view
   float pixel_square;  // |pixel_base|^2
-  vec3 up;          // the view's y
-  vec3 forward;     // the view's -z
-  int pixel;        // u, or -1: no view sees the column
-  uint layer;       // of the G-buffer images
-  int first_pixel;  // published gather: pixels whose centres lie in the column
+  vec3 up;             // the view's y
+  vec3 forward;        // the view's -z
+  int pixel;           // u, or -1: no view sees the column
+  uint layer;          // of the G-buffer images
+  int first_pixel;     // published gather: pixels whose centres lie in the column
   int end_pixel;
 };
 
-// One elevation row is one texel of a 1-texel-high image: tangent and 1 / cos of its centre, tangents
-// of its edges. (An image, because a processor's driver reads a buffer lane by lane.)
+// One elevation row is one texel of a 1-texel-high image: tangent and 1 / cos of its centre,
+// tangents of its edges. (An image, because a processor's driver reads a buffer lane by lane.)
 
 struct SonarPush {
   uint n_range;
   uint n_azimuth;
   uint n_elevation;
-  uint width;   // of a layer, pixels
+  uint width;  // of a layer, pixels
   uint height;
   float fx;
   float fy;
   float cx;
   float cy;
-  float near_m;         // reversed-Z: planar metres = near_m / depth
+  float near_m;  // reversed-Z: planar metres = near_m / depth
   float range_min_m;
   float bins_per_m;
-  float fixed_scale;    // intensity 1 in counts
+  float fixed_scale;  // intensity 1 in counts
   float edge_bias_bins;
   uint reflectivities;  // entries of the table by instance label; others reflect fully
 };
@@ -54,14 +56,14 @@ NERITIC_CONST uint kSonarBindKeys = 7;
 NERITIC_CONST uint kSonarBindStamps = 8;
 
 // Specialisation constants.
-NERITIC_CONST uint kSonarSpecColumns = 0;      // columns a workgroup (its x size)
-NERITIC_CONST uint kSonarSpecLanes = 1;        // threads a column (its y size)
-NERITIC_CONST uint kSonarSpecPlane = 2;        // beam meets the plane of the pixel's point and normal
-NERITIC_CONST uint kSonarSpecReversedZ = 3;    // else the depth image holds planar metres
-NERITIC_CONST uint kSonarSpecOctahedral = 4;   // else the normal image holds x, y, z
-NERITIC_CONST uint kSonarSpecFacing = 5;       // else the normals' signs are unknown
-NERITIC_CONST uint kSonarSpecReflect = 6;      // multiply by the reflectivity of the instance
-NERITIC_CONST uint kSonarSpecLabels = 7;       // keep the label of the strongest return
+NERITIC_CONST uint kSonarSpecColumns = 0;    // columns a workgroup (its x size)
+NERITIC_CONST uint kSonarSpecLanes = 1;      // threads a column (its y size)
+NERITIC_CONST uint kSonarSpecPlane = 2;      // beam meets the plane of the pixel's point and normal
+NERITIC_CONST uint kSonarSpecReversedZ = 3;  // else the depth image holds planar metres
+NERITIC_CONST uint kSonarSpecOctahedral = 4;  // else the normal image holds x, y, z
+NERITIC_CONST uint kSonarSpecFacing = 5;      // else the normals' signs are unknown
+NERITIC_CONST uint kSonarSpecReflect = 6;     // multiply by the reflectivity of the instance
+NERITIC_CONST uint kSonarSpecLabels = 7;      // keep the label of the strongest return
 
 NERITIC_SHARED_END
 #endif

@@ -1,5 +1,6 @@
-// What the sonar's passes beyond the plain cosine and their host share: the gather with terms, and the
-// receiver's passes. Fields and powers are in units of the gather's scale; gains turn them to what leaves.
+// What the sonar's passes beyond the plain cosine and their host share: the gather with terms, and
+// the receiver's passes. Fields and powers are in units of the gather's scale; gains turn them to
+// what leaves.
 #ifndef NERITIC_SHARED_SONAR_ECHO_H
 #define NERITIC_SHARED_SONAR_ECHO_H
 #include "shared/types.h"
@@ -14,19 +15,20 @@ struct SonarEcho {
   float turns_per_m;   // phase of an echo: 2 f / c times its range
   vec3 cell_fraction;  // where the eye lies in its scatterer cell, 0 to 1
   float cells_per_m;
-  uvec3 origin_cell;   // that cell, modulo 2^32
+  uvec3 origin_cell;  // that cell, modulo 2^32
   uint seed;
-  vec3 patch_fraction; // the same for the patches of the gamma texture
+  vec3 patch_fraction;  // the same for the patches of the gamma texture
   float patches_per_m;
   uvec3 origin_patch;
   uint correction_width;  // of the table of range factors: ranges
   vec3 world_up;
-  uint correction_height; // sines of the elevation above the horizon, -1 to 1
+  uint correction_height;    // sines of the elevation above the horizon, -1 to 1
   float correction_range_m;  // range of its last column
-  float water_level_m;    // ghosts: hits above (sign +) or below (-) this height over the eye are none
+  // Ghosts: hits above (sign +) or below (-) this height over the eye are none.
+  float water_level_m;
   float water_sign;
   float ghost_weight;
-  vec3 ghost_source;      // ghosts: the sonar, seen from its mirror image (the eye)
+  vec3 ghost_source;  // ghosts: the sonar, seen from its mirror image (the eye)
 };
 
 // What one gathered beam returned, for labels by energy. bin: row of the range, or kSonarNoReturn.
@@ -54,14 +56,15 @@ NERITIC_CONST uint kSonarSpecRecords = 12;
 NERITIC_CONST uint kSonarSpecGhost = 13;
 NERITIC_CONST uint kSonarSpecMoving = 14;
 
-// The receiver: sums to a field (resolve), spread along range and across beams (spread), noise and gain
-// (receive). Fields are RG32F images [n_range][columns]: (power, 0), or real and imaginary amplitude.
+// The receiver: sums to a field (resolve), spread along range and across beams (spread), noise and
+// gain (receive). Fields are RG32F images [n_range][columns]: (power, 0), or real and imaginary
+// amplitude.
 struct SonarReceiverPush {
-  uint columns;       // of the field read
+  uint columns;  // of the field read
   uint rows;
-  uint out_columns;   // of what is written
-  uint stride;        // columns of the field a beam
-  int first;          // of the taps' offsets, may be negative
+  uint out_columns;  // of what is written
+  uint stride;       // columns of the field a beam
+  int first;         // of the taps' offsets, may be negative
   uint taps;
   float scale;        // resolve: counts to field
   float first_shift;  // spread across beams: columns that the bearing has turned until row 0
@@ -70,16 +73,17 @@ struct SonarReceiverPush {
   uint seed;
   uint ping;
 };
-NERITIC_CONST uint kReceiverIn = 0;     // sums (buffer), or the field
-NERITIC_CONST uint kReceiverGains = 1;  // vec2 [n_range]: of the field (amplitude where coherent), of the power after it
-NERITIC_CONST uint kReceiverTaps = 2;   // R32F
+NERITIC_CONST uint kReceiverIn = 0;  // sums (buffer), or the field
+// vec2 [n_range]: of the field (amplitude where coherent), of the power after it.
+NERITIC_CONST uint kReceiverGains = 1;
+NERITIC_CONST uint kReceiverTaps = 2;  // R32F
 NERITIC_CONST uint kReceiverOut = 3;
 NERITIC_CONST uint kReceiverGroup = 8;
 NERITIC_CONST uint kReceiverSpecCoherent = 0;
-NERITIC_CONST uint kReceiverSpecAxis = 1;   // spread: 0 across beams, 1 along range
+NERITIC_CONST uint kReceiverSpecAxis = 1;  // spread: 0 across beams, 1 along range
 NERITIC_CONST uint kReceiverSpecNoise = 2;
 NERITIC_CONST uint kReceiverSpecShift = 3;
-NERITIC_CONST uint kReceiverSpecWrap = 4;   // a full turn: the columns are a ring
+NERITIC_CONST uint kReceiverSpecWrap = 4;  // a full turn: the columns are a ring
 
 NERITIC_SHARED_END
 #endif

@@ -7,20 +7,20 @@
 NERITIC_SHARED_BEGIN
 
 struct SonarFanPush {
-  uint width;             // of the picture, pixels
+  uint width;  // of the picture, pixels
   uint height;
   uint n_range;
   uint n_azimuth;
-  float left_m;           // of the picture's left edge, starboard positive
-  float top_m;            // of its upper edge, ahead positive
+  float left_m;  // of the picture's left edge, starboard positive
+  float top_m;   // of its upper edge, ahead positive
   float m_per_px;
   float range_min_m;
   float bins_per_m;
   float azimuth_middle_rad;
   float azimuth_half_rad;
   float bins_per_rad;
-  float gamma;            // shown brightness = (value / full scale)^gamma
-  uint is_power;          // cells are floats of power, shown as amplitudes; else counts
+  float gamma;    // shown brightness = (value / full scale)^gamma
+  uint is_power;  // cells are floats of power, shown as amplitudes; else counts
 };
 
 NERITIC_CONST uint kSonarFanSums = 0;

@@ -118,18 +118,22 @@ void draw_sonar(const SonarPanel& panel, float width, float scale) {
 }
 
 void timings_table(const DiveTimes& times, TimeNs now_ns, float scale) {
-  const auto row = [&](const std::string& name, double ms, double whole_ms) {
+  double gpu_ms = 0.0;
+  for (const TimeRow& pass : times.passes())
+    if (pass.name != "record" && times.recent(pass, now_ns)) gpu_ms += pass.smooth_ms;
+  if (!(gpu_ms > 0.0)) {  // the first frames are still under way, or the device measures none
+    ImGui::TextDisabled("no pass measured yet");
+    return;
+  }
+  const auto row = [&](const std::string& name, double ms) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     text_line(name);
     ImGui::TableNextColumn();
-    const auto part = static_cast<float>(whole_ms > 0.0 ? std::min(1.0, ms / whole_ms) : 0.0);
+    const auto part = static_cast<float>(std::min(1.0, ms / gpu_ms));
     ImGui::ProgressBar(part, ImVec2(-1.0f, ImGui::GetTextLineHeight()),
                        fmt::format("{:.2f}", ms).c_str());
   };
-  double gpu_ms = 0.0;
-  for (const TimeRow& pass : times.passes())
-    if (pass.name != "record" && times.recent(pass, now_ns)) gpu_ms += pass.smooth_ms;
   if (!ImGui::BeginTable("passes", 2)) return;
   ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableSetupColumn("ms", ImGuiTableColumnFlags_WidthFixed, 110.0f * scale);
@@ -140,8 +144,8 @@ void timings_table(const DiveTimes& times, TimeNs now_ns, float scale) {
   ImGui::TextDisabled("ms");
   for (const TimeRow& pass : times.passes())
     if (times.recent(pass, now_ns))
-      row(pass.name == "record" ? "(record, host)" : pass.name, pass.smooth_ms, gpu_ms);
-  row("all passes", gpu_ms, gpu_ms);
+      row(pass.name == "record" ? "(record, host)" : pass.name, pass.smooth_ms);
+  row("all passes", gpu_ms);
   ImGui::EndTable();
 }
 
@@ -181,9 +185,10 @@ void draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTi
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
                    ImGuiWindowFlags_NoSavedSettings);
   const double frame_ms = times.frame().smooth_ms;
-  text_line(fmt::format("{:.1f} FPS   {:.1f} ms a frame   {} x {}",
-                        frame_ms > 0.0 ? 1000.0 / frame_ms : 0.0, frame_ms, facts.width,
-                        facts.height));
+  const std::string rate =
+      frame_ms > 0.0 ? fmt::format("{:.1f} FPS   {:.1f} ms a frame", 1000.0 / frame_ms, frame_ms)
+                     : "first frame";
+  text_line(fmt::format("{}   {} x {}", rate, facts.width, facts.height));
   ImGui::PushTextWrapPos(0.0f);
   ImGui::TextDisabled("%s", facts.device.c_str());
   ImGui::PopTextWrapPos();

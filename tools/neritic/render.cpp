@@ -125,7 +125,6 @@ Result<std::string> run_render(const RenderFlags& flags) {
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(const auto device, gpu::Device::create(options));
-  log_info("device: {}, {}", device->info().name, device->info().driver);
   const double step_s = frame_step_s(scene, request);
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
