@@ -102,7 +102,7 @@ void add_sonar_device(CLI::App& command, SonarFlags& flags) {
           "to one cell, as the published loop does; plane (the default of all others and of "
           "scenes): each cell looks into the image, better where pixels are few")
       ->check(CLI::IsMember({"published", "nearest", "plane"}));
-  command.add_option("--side", flags.side, "of a side-scan: which side's noise")
+  command.add_option("--side", flags.side, "of a side-scan: the side whose axis is the image's")
       ->check(CLI::IsMember({"port", "starboard"}))
       ->capture_default_str();
   command
