@@ -198,9 +198,13 @@ namespace {
 
 // Enough to see that it works.
 void make_small(KindSetting& kind) {
-  kind.base.bins_range /= 4;
-  kind.base.bins_azimuth = std::max(1u, kind.base.bins_azimuth / 4);
-  kind.middle.rows = std::max(8u, kind.middle.rows / 4);
+  const bool one_beam =
+      kind.base.bins_azimuth == 1 || kind.base.kind == scene::SonarKind::kEchoSounder;
+  if (!one_beam) {
+    kind.base.bins_range /= 4;
+    kind.base.bins_azimuth /= 4;
+  }
+  kind.middle.rows = std::max(std::min(kind.middle.rows, 64u), kind.middle.rows / 4);
   kind.shots.resize(1);
 }
 
