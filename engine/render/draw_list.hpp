@@ -31,6 +31,8 @@ struct DrawList {
 
 struct DrawListOptions {
   bool clusters = true;  // false: every instance whole, for comparison; no bit of a picture differs
+  // Objects of this class are left out; 0: none are.
+  std::uint16_t without_class = 0;
 };
 
 // Up to so many seen instances of a mesh that has clusters are looked at one by one, and each that

@@ -91,8 +91,12 @@ TEST_F(SonarMotion, AScannersBeamHearsWhereItPoints) {
   for (std::uint32_t step = 0; step < 36; ++step) {
     const SonarFrame frame = ping(device(), scene, step);
     const double off = std::abs(degrees(frame.heading_rad) - 90.0);
-    if (off < 5.1) EXPECT_GT(total(frame), 0.0) << step;
-    if (off > 15.0) EXPECT_EQ(total(frame), 0.0) << step;
+    if (off < 5.1) {
+      EXPECT_GT(total(frame), 0.0) << step;
+    }
+    if (off > 15.0) {
+      EXPECT_EQ(total(frame), 0.0) << step;
+    }
   }
 }
 

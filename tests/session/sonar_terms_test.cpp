@@ -100,6 +100,32 @@ TEST_F(SonarTerms, TheSurfaceMirrorsAGhostAtTheMeanOfBothWays) {
   EXPECT_NEAR(range / energy, (direct + mirrored) / 2.0, 0.06);
 }
 
+TEST_F(SonarTerms, AFlatBottomMirrorsToo) {
+  scene::Sonar sonar = sonar_of(4.0, 8.0, 800);
+  sonar.elevation_rad = radians(80.0);
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.1, 64), {0.0, -8.0, -5.0}));
+  scene::Object bottom = object_of(scene, scene::make_plane(60.0, 60.0), {0.0, -10.0, 0.0});
+  bottom.class_id = 1;
+  scene.objects.push_back(bottom);
+  scene.sonars = {sonar};
+  scene.sonars[0].mount.pose.position_m = {0.0, -8.0, 0.0};
+  scene.sonars[0].terms.labels.energy = true;
+  const SonarFrame plain = ping(device(), scene);
+  scene.sonars[0].terms.ghosts = scene::SonarGhosts{.bottom_m = 10.0};
+  const SonarFrame ghosts = ping(device(), scene);
+  double energy = 0.0, range = 0.0;
+  for (std::uint32_t row = 0; row < 800; ++row)
+    for (std::uint32_t c = 0; c < 128; ++c) {
+      const std::size_t i = std::size_t{row} * 128 + c;
+      const double more = ghosts.image.intensity[i] - plain.image.intensity[i];
+      energy += more;
+      range += more * ghosts.grid.range_m(row);
+    }
+  ASSERT_GT(energy, 0.0);
+  EXPECT_NEAR(range / energy, (5.0 - 0.1 + std::hypot(5.0, 4.0) - 0.1) / 2.0, 0.06);
+}
+
 TEST_F(SonarTerms, AConeHearsAFloorAtItsDepth) {
   scene::Sonar sonar = sonar_of(1.0, 20.0, 950);
   sonar.kind = scene::SonarKind::kEchoSounder;

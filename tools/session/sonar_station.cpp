@@ -243,8 +243,11 @@ Status SonarStation::declare_ghosts(const Frame& frame, const SonarWork& work, H
     HeadWork::Ghost& ghost = *head.ghosts.back();
     const Pose pose = sonar::mirrored(mirror, direct_ping.world_from_sonar);
     ghost.view.views = head_views(sonar, state, pose);
+    // A bottom that mirrors does not stand in its own way.
+    const render::DrawListOptions draw{.without_class = mirror.water_below ? std::uint16_t{0}
+                                                                           : scene::kClasses[0].id};
     ghost.view.draws =
-        render::build_draw_list(scene_, frame.gpu_scene, frame.state, ghost.view.views);
+        render::build_draw_list(scene_, frame.gpu_scene, frame.state, ghost.view.views, draw);
     const std::string prefix =
         direct.prefix + (mirror.water_below ? "surface ghosts " : "bottom ghosts ");
     NERITIC_TRY(const render::GBuffer g,
