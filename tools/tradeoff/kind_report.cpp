@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
 #include "tools/tradeoff/kind_plots.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
@@ -118,7 +119,7 @@ Status write_kinds(const std::filesystem::path& folder, const SonarTradeoff& tra
                                          draw_kind(k, tradeoff.device, tradeoff.kinds_scene)));
   }
   NERITIC_TRY_STATUS(write_text(folder / "tradeoff.md", markdown(tradeoff)));
-  return write_text(folder / "quality.json", summary(tradeoff).dump(2) + "\n");
+  return write_json(folder / "quality.json", summary(tradeoff));
 }
 
 }  // namespace neritic::tools

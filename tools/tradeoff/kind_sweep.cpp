@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "tools/tradeoff/kind_bench.hpp"
+#include "tools/tradeoff/kind_terms.hpp"
 #include "tools/tradeoff/term_judges.hpp"
 #include "tools/tradeoff/term_truth.hpp"
 
@@ -71,7 +72,7 @@ class KindSweep {
     out.uncertain = uncertain_;
     out.rays = rays_;
     NERITIC_TRY_STATUS(sweep_knobs(out));
-    NERITIC_TRY_STATUS(sweep_terms(out));
+    NERITIC_TRY_STATUS(sweep_terms({kind_, bench_, options_, cases_, truths_, repeats()}, out));
     NERITIC_TRY_STATUS(sweep_joint(out));
     return out;
   }
@@ -292,93 +293,6 @@ class KindSweep {
       }
     }
     for (const auto& [place, p] : joint_) out.points.push_back(p);
-    options_.step();
-    return {};
-  }
-
-  // ---- Terms ----------------------------------------------------------------------------------
-  Status sweep_terms(KindResult& out) {
-    for (const TermCase& c : cases_) {
-      using Judge = TermCase::Judge;
-      Sonar changed = c.with;
-      if (c.judge == Judge::kNoise) changed.terms.noise->level_db = a_tenth_db(c);
-      NERITIC_TRY(const Measured with, bench_.render(changed, repeats()));
-      NERITIC_TRY(const Measured without, bench_.render(c.without, repeats()));
-      TermPoint p;
-      p.term = c.name;
-      p.ms = with.ms() - without.ms();
-      if (c.judge == Judge::kImage || c.judge == Judge::kShape) {
-        const auto& truth = truths_.at(c.name);
-        p.error_with = difference(with.image, truth).l1;
-        p.error_without = difference(without.image, truth, c.judge == Judge::kShape).l1;
-      } else if (c.judge == Judge::kSpeckle) {
-        NERITIC_TRY_STATUS(judge_speckle(c, p));
-      } else if (c.judge == Judge::kNoise) {
-        const auto& clean = truths_.at(c.name);
-        const NoiseFound n = judge_noise(with.image, clean, kind_.base, changed);
-        if (n.cells > 0) p.error_with = std::abs(n.mean_over_expected - 1.0);
-        p.error_without = n.share;
-        p.note = fmt::format("mean {:.3f} of the level named over {} silent cells",
-                             n.mean_over_expected, n.cells);
-      }
-      out.terms.push_back(std::move(p));
-      options_.step();
-    }
-    return sweep_scatterers(out);
-  }
-
-  // The noise level whose power, in all cells together, is a tenth of the echoes'.
-  double a_tenth_db(const TermCase& c) const {
-    const auto& clean = truths_.at(c.name);
-    Sonar unit = c.with;
-    unit.terms.noise->level_db = 0.0;
-    const double share =
-        judge_noise(std::vector<float>(clean.size()), clean, kind_.base, unit).share;
-    return 10.0 * std::log10(0.1 * (1.0 - share) / share);
-  }
-
-  // Over draws of the world's scatterers.
-  Result<SpeckleFound> speckle_of(Sonar sonar) {
-    const std::uint64_t seed = bench_.seed();
-    Sonar without = sonar;
-    without.terms.speckle.reset();
-    NERITIC_TRY(const Measured smooth, bench_.render(without, 0));
-    SpeckleMoments moments;
-    for (std::uint64_t draw = 0; draw < (options_.quick ? 1u : 4u); ++draw) {
-      bench_.set_seed(seed + draw);
-      NERITIC_TRY(const Measured found, bench_.render(sonar, 0));
-      moments.add(found.image, smooth.image);
-    }
-    bench_.set_seed(seed);
-    return moments.found();
-  }
-
-  Status judge_speckle(const TermCase& c, TermPoint& p) {
-    NERITIC_TRY(const SpeckleFound s, speckle_of(c.with));
-    p.error_with = std::abs(s.contrast / kRayleighContrast - 1.0);
-    p.error_without = s.departure;
-    p.note =
-        fmt::format("contrast {:.3f} (Rayleigh {:.3f}), mean power {:.3f} of what it is without",
-                    s.contrast, kRayleighContrast, s.mean);
-    return {};
-  }
-
-  Status sweep_scatterers(KindResult& out) {
-    for (const double steps : options_.quick ? std::vector<double>{1.0}
-                                             : std::vector<double>{0.25, 0.5, 1.0, 2.0, 4.0}) {
-      Sonar s = with_knobs(kind_.base, kind_.middle);
-      const double step_m = (s.range_max_m - s.range_min_m) / s.bins_range;
-      s.terms.speckle = scene::SonarSpeckle{.scatterer_m = steps * step_m};
-      NERITIC_TRY(const Measured timed, bench_.render(s, repeats()));
-      NERITIC_TRY(const SpeckleFound found, speckle_of(s));
-      TermPoint p;
-      p.term = fmt::format("speckle, scatterers of {:g} range steps", steps);
-      p.ms = timed.ms();
-      p.error_with = std::abs(found.contrast / kRayleighContrast - 1.0);
-      p.note = fmt::format("contrast {:.3f}, mean power {:.3f}; ms of the whole ping",
-                           found.contrast, found.mean);
-      out.terms.push_back(std::move(p));
-    }
     options_.step();
     return {};
   }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
 #include "tools/common/plot.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
@@ -177,7 +178,7 @@ Status write_sonar_tradeoff(const std::filesystem::path& folder, const SonarTrad
     if (std::find(scenes.begin(), scenes.end(), p.scene) == scenes.end()) scenes.push_back(p.scene);
   NERITIC_TRY_STATUS(write_text(folder / "tradeoff.csv", csv_of(tradeoff)));
   NERITIC_TRY_STATUS(scene::write_png8(folder / "tradeoff.png", plot_of(tradeoff, scenes)));
-  return write_text(folder / "tradeoff.json", summary_of(tradeoff, scenes).dump(2) + "\n");
+  return write_json(folder / "tradeoff.json", summary_of(tradeoff, scenes));
 }
 
 }  // namespace neritic::tools
