@@ -8,6 +8,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 
@@ -145,8 +146,7 @@ Status write_bathymetry(const std::filesystem::path& folder, const BathymetryGri
       "x = west_m, z = north_m";
   json["units"] = "metres of depth, positive down from y = 0; NaN: no sounding";
   json["sums"] = "exact integers of 2^-16 m: the order of soundings changes nothing";
-  return write_text(folder / "bathymetry.json",
-                    json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_json(folder / "bathymetry.json", json);
 }
 
 }  // namespace neritic::sonar

@@ -4,6 +4,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -107,8 +108,7 @@ nlohmann::json CocoFile::json() const {
 }
 
 Status CocoFile::write(const std::filesystem::path& path) const {
-  return write_text(path,
-                    json().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_text(path, json_text(json(), -1) + "\n");
 }
 
 }  // namespace neritic::sonar

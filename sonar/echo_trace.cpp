@@ -7,6 +7,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/bottom_detection.hpp"
@@ -162,8 +163,7 @@ Status write_echo_trace(const std::filesystem::path& folder, const EchoTrace& tr
                                 {"range_at_time_0_m", fit->at_zero},
                                 {"rms_m", fit->rms},
                                 {"pings", fit->count}};
-  return write_text(folder / "echo_trace.json",
-                    json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_json(folder / "echo_trace.json", json);
 }
 
 }  // namespace neritic::sonar

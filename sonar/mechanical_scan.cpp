@@ -7,6 +7,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/panel.hpp"
@@ -262,8 +263,7 @@ Status write_mechanical_scan(const std::filesystem::path& folder, const Mechanic
       {"west_m", static_cast<double>(mosaic.first_column) * mosaic.cell_m},
       {"north_m", static_cast<double>(mosaic.first_row) * mosaic.cell_m},
       {"layout", "mechanical_world.npy [row, column]: row 0 north (-z); NaN: no beam"}};
-  return write_text(folder / "mechanical.json",
-                    json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_json(folder / "mechanical.json", json);
 }
 
 }  // namespace neritic::sonar

@@ -7,6 +7,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/beam_grid.hpp"
@@ -193,8 +194,7 @@ Status write_sidescan(const std::filesystem::path& folder, const SidescanRecord&
       scene::write_png8(folder / "sidescan_ground.png", draw_ground(record, ground, picture)));
   nlohmann::json json = facts;
   json.update(facts_of(record, ground));
-  return write_text(folder / "sidescan.json",
-                    json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_json(folder / "sidescan.json", json);
 }
 
 }  // namespace neritic::sonar

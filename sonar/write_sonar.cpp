@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/trace_panel.hpp"
@@ -118,8 +119,7 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
   json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"gamma", panel.gamma}};
   if (panel.span_db > 0.0)
     json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"span_db", panel.span_db}};
-  return write_text(folder / "sonar.json",
-                    json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_json(folder / "sonar.json", json);
 }
 
 }  // namespace neritic::sonar

@@ -12,7 +12,15 @@ struct Case {
   const char* keys;
   const char* message;  // after "s.toml:2: sonars[0]", or, with a file in it, whole
 };
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.message;
+}
+
 class SonarError : public testing::TestWithParam<Case> {};
+
+std::string name_of(const testing::TestParamInfo<Case>& info) {
+  return test::test_name(info.index, info.param.message);
+}
 
 TEST_P(SonarError, IsTheDocumentedLine) {
   const test::ScratchFolder scratch;
@@ -96,7 +104,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"beam = {samples = 65}",
              ".beam.samples: found 65; accepted: a whole number from 1 to 64"},
         Case{"range_spread = {window = 'hamming'}",
-             ".range_spread.window: found \"hamming\"; accepted: one of none, hann"}));
+             ".range_spread.window: found \"hamming\"; accepted: one of none, hann"}),
+    name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Terms, SonarError,
@@ -128,7 +137,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"output = {bits = 8}",
              ".output: found a table; accepted: bits beside level: its floor is in decibels"},
         Case{"output = {span_db = 8}",
-             ".output.span_db: found 8; accepted: no such key without bits"}));
+             ".output.span_db: found 8; accepted: no such key without bits"}),
+    name_of);
 
 TEST(SceneMaterial, AnUnknownMaterialIsToldWithTheNearest) {
   const test::ScratchFolder scratch;

@@ -166,7 +166,15 @@ struct Case {
   const char* track;
   const char* message;
 };
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.message;
+}
+
 class TrackError : public testing::TestWithParam<Case> {};
+
+std::string name_of(const testing::TestParamInfo<Case>& info) {
+  return test::test_name(info.index, info.param.message);
+}
 
 TEST_P(TrackError, IsTheDocumentedLine) {
   const test::ScratchFolder scratch;
@@ -254,7 +262,8 @@ INSTANTIATE_TEST_SUITE_P(
              "makes at most 50000 legs"},
         Case{"track = {speed_m_s = 1, lawn_mower = {area_m = [1,0,0,1]}}",
              "s.toml:2: lamps[0].track.lawn_mower.area_m: found [1, 0, 0, 1]; accepted: [x0, z0, "
-             "x1, z1] in metres, with x0 < x1 and z0 < z1"}));
+             "x1, z1] in metres, with x0 < x1 and z0 < z1"}),
+    name_of);
 
 }  // namespace
 }  // namespace neritic::scene

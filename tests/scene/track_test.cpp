@@ -6,7 +6,15 @@
 
 #include <algorithm>
 
+#include "tests/support/support.hpp"
+
 namespace neritic::scene {
+
+void PrintTo(const LawnMower& mower, std::ostream* out) {
+  *out << fmt::format("{:g} x {:g} m, legs {:g} m apart", mower.x1_m - mower.x0_m,
+                      mower.z1_m - mower.z0_m, mower.spacing_m);
+}
+
 namespace {
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-9) {
@@ -141,7 +149,10 @@ INSTANTIATE_TEST_SUITE_P(Areas, LawnMowerTest,
                          testing::Values(LawnMower{-50, -30, 50, 30, 12, 10, true},
                                          LawnMower{0, 0, 10, 40, 2, 3, false},
                                          LawnMower{0, 0, 0.3, 1, 2, 0.1, false},
-                                         LawnMower{0, 0, 1, 1, -1, 5, true}));
+                                         LawnMower{0, 0, 1, 1, -1, 5, true}),
+                         [](const auto& info) {
+                           return test::test_name(info.index, testing::PrintToString(info.param));
+                         });
 
 }  // namespace
 }  // namespace neritic::scene

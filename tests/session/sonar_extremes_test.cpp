@@ -118,9 +118,10 @@ double expect_sane(const std::vector<SonarFrame>& frames, const std::string& of)
     }
     EXPECT_EQ(wrong, 0u) << of;
     EXPECT_TRUE(std::isfinite(frame.absorption_db_per_m)) << of;
-    if (frame.label_energy)
+    if (frame.label_energy) {
       for (const float part : frame.label_energy->fraction)
         EXPECT_TRUE(part >= 0.0f && part <= 1.0f) << of << ": " << part;
+    }
   }
   return total;
 }

@@ -50,6 +50,9 @@ struct DataSet {
   std::vector<std::string> words;
   double least_heard;  // share of columns with a return
 };
+void PrintTo(const DataSet& set, std::ostream* out) {
+  *out << set.name;
+}
 
 const DataSet kDataSets[] = {
     {"wall5m",

@@ -24,6 +24,9 @@ struct RealSet {
   std::size_t frames;
   const char* range;
 };
+void PrintTo(const RealSet& set, std::ostream* out) {
+  *out << set.name;
+}
 const RealSet kSets[] = {
     {"analytic",
      {"--depth", "depth-analytic/*_depth_m.exr", "--normals", "depth-analytic/*_normal_cam.exr",
@@ -73,7 +76,9 @@ TEST_P(RealSets, GoThroughEveryKind) {
   ASSERT_TRUE(done.ok()) << done.error().message;
   const auto run = parse_json(read_text(out / "run.json").value()).value();
   EXPECT_EQ(run["skipped"], 0);
-  if (set.frames > 0) EXPECT_EQ(run["made"], set.frames);
+  if (set.frames > 0) {
+    EXPECT_EQ(run["made"], set.frames);
+  }
   double heard = 0.0;
   for (const auto& entry : fs::directory_iterator(out)) {
     if (!entry.is_directory()) continue;

@@ -1,8 +1,10 @@
 #include "tools/session/output.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/terms_json.hpp"
@@ -10,9 +12,14 @@
 namespace neritic::tools {
 namespace {
 
+// Finer times are noise.
+double to_microsecond(double ms) {
+  return std::round(ms * 1000.0) / 1000.0;
+}
+
 nlohmann::json passes_of(const FrameFacts& facts) {
   nlohmann::json passes = nlohmann::json::object();
-  for (const gpu::PassTime& pass : facts.passes) passes[pass.name] = pass.ms;
+  for (const gpu::PassTime& pass : facts.passes) passes[pass.name] = to_microsecond(pass.ms);
   return passes;
 }
 
@@ -40,7 +47,7 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
           {"seed", facts.seed},
           {"scene", facts.scene},
           {"device", facts.device},
-          {"frame_ms", facts.frame_ms},
+          {"frame_ms", to_microsecond(facts.frame_ms)},
           {"passes_ms", passes_of(facts)}};
 }
 
@@ -61,9 +68,7 @@ Status write_view(const std::filesystem::path& folder, const ViewImages& view,
   if (!view.motion.empty())
     NERITIC_TRY_STATUS(write_npy(folder / "motion.npy", view.motion.data, {h, w, 2}));
   if (!view.color.empty()) NERITIC_TRY_STATUS(scene::write_png8(folder / "color.png", view.color));
-  return write_text(
-      folder / "meta.json",
-      meta_of(view, facts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_json(folder / "meta.json", meta_of(view, facts));
 }
 
 sonar::SonarFiles sonar_files(const SonarFrame& frame) {
@@ -85,21 +90,22 @@ Status write_sonar(const std::filesystem::path& parent, const SonarFrame& frame,
       {"pixels_per_cell",
        {{"requested", frame.pixels_per_cell},
         {"used", {frame.pixels_per_cell_used.x, frame.pixels_per_cell_used.y}}}}};
-  nlohmann::json more{{"kind", scene::name_of(frame.kind)},
-                      {"model",
-                       {{"method", "gpu"},
-                        {"gather", frame.gather},
-                        {"fixed_scale", frame.fixed_scale},
-                        {"sectors", frame.sectors.size()},
-                        {"gbuffer", gbuffer},
-                        {"reflectivity", frame.reflectivity ? "by object" : "1"},
-                        {"terms", sonar::terms_json(frame.terms)}}},
-                      {"pose", pose_of(frame.world_from_head)},
-                      {"time_s", facts.time_s},
-                      {"seed", facts.seed},
-                      {"scene", facts.scene},
-                      {"device", facts.device},
-                      {"timings_ms", {{"frame", facts.frame_ms}, {"passes", passes_of(facts)}}}};
+  nlohmann::json more{
+      {"kind", scene::name_of(frame.kind)},
+      {"model",
+       {{"method", "gpu"},
+        {"gather", frame.gather},
+        {"fixed_scale", frame.fixed_scale},
+        {"sectors", frame.sectors.size()},
+        {"gbuffer", gbuffer},
+        {"reflectivity", frame.reflectivity ? "by object" : "1"},
+        {"terms", sonar::terms_json(frame.terms)}}},
+      {"pose", pose_of(frame.world_from_head)},
+      {"time_s", facts.time_s},
+      {"seed", facts.seed},
+      {"scene", facts.scene},
+      {"device", facts.device},
+      {"timings_ms", {{"frame", to_microsecond(facts.frame_ms)}, {"passes", passes_of(facts)}}}};
   if (!frame.head.empty()) more["head"] = frame.head;
   if (frame.sound_speed_m_s > 0.0) {
     more["model"]["sound_speed_m_s"] = frame.sound_speed_m_s;
