@@ -106,6 +106,22 @@ void draw_other_knobs(Canvas& canvas, const Box& box, const KindResult& k) {
   }
 }
 
+// What the rings of draw_cost are, a line each.
+void draw_levels(Canvas& canvas, double y, const KindResult& k) {
+  for (std::size_t i = 0; i < std::size(kLevels); ++i, y += 22) {
+    const KindPoint* p = cheapest(k, kLevels[i]);
+    const std::string words =
+        p ? fmt::format(
+                "{} (under {:g} %): {:g} pixels a cell, {} columns, {} rows, {} range bins: "
+                "{:.2f} %, {:.1f} ms",
+                kLevelNames[i], 100 * kLevels[i], p->knobs.scale, p->knobs.columns, p->knobs.rows,
+                p->bins_range, 100.0 * p->error, p->ms())
+          : fmt::format("{} (under {:g} %): none of these", kLevelNames[i], 100 * kLevels[i]);
+    canvas.arc(84, y - 4, 4.0 + 1.5 * double(i), -3.1416, 3.1416, 1.6, kRing);
+    canvas.text(104, y, 10, words, kInk);
+  }
+}
+
 // One term a line: name, three bars (milliseconds; error with, without), a note.
 void draw_terms(Canvas& canvas, double top, const KindResult& k) {
   struct Lane {
@@ -144,7 +160,7 @@ void draw_terms(Canvas& canvas, double top, const KindResult& k) {
 }  // namespace
 
 ImageU8 draw_kind(const KindResult& k, const std::string& device, const std::string& scene) {
-  const double terms_top = kTop + kCurves + 110;
+  const double terms_top = kTop + kCurves + 130;
   const double height = terms_top + kRow * static_cast<double>(k.terms.size()) + 40;
   Canvas canvas(static_cast<std::uint32_t>(kWidth), static_cast<std::uint32_t>(height), kPaper);
   canvas.text(24, 34, 18, fmt::format("Sonar, {}: error against cost", k.kind), kInk, Align::kLeft,
@@ -156,19 +172,7 @@ ImageU8 draw_kind(const KindResult& k, const std::string& device, const std::str
   draw_cost(canvas, {0, kTop, 660, kTop + kCurves}, k);
   draw_resolution(canvas, {660, kTop, 1130, kTop + kCurves}, k);
   draw_other_knobs(canvas, {1130, kTop, kWidth, kTop + kCurves}, k);
-  double x = 72;
-  for (std::size_t i = 0; i < std::size(kLevels); ++i) {
-    const KindPoint* p = cheapest(k, kLevels[i]);
-    const std::string words =
-        p ? fmt::format(
-                "{} (under {:g} %): {:g} px, {} columns, {} rows, {} bins: {:.2f} %, {:.1f} ms",
-                kLevelNames[i], 100 * kLevels[i], p->knobs.scale, p->knobs.columns, p->knobs.rows,
-                p->bins_range, 100.0 * p->error, p->ms())
-          : fmt::format("{} (under {:g} %): none of these", kLevelNames[i], 100 * kLevels[i]);
-    canvas.arc(x, kTop + kCurves + 26, 5.0 + 2.0 * double(i), -3.1416, 3.1416, 1.6, kRing);
-    canvas.text(x + 18, kTop + kCurves + 31, 10, words, kInk);
-    x += 610;
-  }
+  draw_levels(canvas, kTop + kCurves + 26, k);
   draw_terms(canvas, terms_top, k);
   return canvas.take();
 }

@@ -23,10 +23,16 @@ std::vector<double> scales(bool quick) {
   return {0.18, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0};
 }
 
+bool many_beams(SonarKind kind) {
+  return kind == SonarKind::kImaging || kind == SonarKind::kProfiling;
+}
+
 std::vector<std::uint32_t> columns_of(SonarKind kind, bool quick) {
   if (kind == SonarKind::kEchoSounder)
     return quick ? std::vector<std::uint32_t>{32} : std::vector<std::uint32_t>{16, 24, 32, 64, 128};
-  return quick ? std::vector<std::uint32_t>{1} : std::vector<std::uint32_t>{1, 2, 3, 4, 6};
+  if (quick) return {1};
+  if (many_beams(kind)) return {1, 2, 3, 4, 6};
+  return {1, 2, 4, 6, 10, 16};
 }
 
 // Of the middle's.
@@ -39,10 +45,6 @@ std::vector<std::uint32_t> rows_of(const KindSetting& kind, bool quick) {
   for (const double factor : row_factors(quick))
     out.push_back(static_cast<std::uint32_t>(kind.middle.rows * factor));
   return out;
-}
-
-bool many_beams(SonarKind kind) {
-  return kind == SonarKind::kImaging || kind == SonarKind::kProfiling;
 }
 
 // What the levels stay under.
@@ -121,19 +123,26 @@ class KindSweep {
     return out;
   }
 
+  // What makes the rays' own error a fraction of a per cent (KindResult::uncertain tells).
   TruthRays rays() const {
     TruthRays rays;
-    const bool narrow = kind_.base.kind == SonarKind::kProfiling;
-    const bool cone = kind_.base.kind == SonarKind::kEchoSounder;
-    rays.rays = narrow ? 256 : cone ? 1024 : kind_.base.kind == SonarKind::kSideScan ? 8000 : 3000;
-    rays.columns_per_step = cone ? 8.0 : narrow ? 8.0 : 4.0;
-    rays.columns_per_width = kind_.base.kind == SonarKind::kImaging ? 16.0 : 24.0;
-    if (options_.quick) {
-      rays.rays /= cone ? 4 : 8;
-      rays.columns_per_step = cone ? 4.0 : 1.0;
-      rays.columns_per_width = 6.0;
+    switch (kind_.base.kind) {
+      case SonarKind::kImaging:
+        rays = {4.0, 16.0, 3000};
+        break;
+      case SonarKind::kProfiling:
+        rays = {8.0, 24.0, 256};
+        break;
+      case SonarKind::kEchoSounder:
+        rays = {8.0, 24.0, 1024};
+        break;
+      case SonarKind::kSideScan:
+      case SonarKind::kMechanical:
+        rays = {32.0, 32.0, 16000};
+        break;
     }
-    return rays;
+    if (!options_.quick) return rays;
+    return {1.0, 6.0, std::max(64u, rays.rays / 16)};
   }
 
   Status trace() {

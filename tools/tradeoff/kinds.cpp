@@ -89,7 +89,7 @@ KindSetting mechanical(const Sonar& like, const Pose& place) {
   s.bins_azimuth = 1;
   s.terms.beam.azimuth = pattern(Shape::kUniform, radians(2.0));
   s.terms.beam.elevation = pattern(Shape::kUniform, radians(25.0));
-  KindSetting out{s, {0.5, 4, 500}, {}};
+  KindSetting out{s, {0.5, 4, 1000}, {}};
   for (const std::uint32_t step : {160u, 175u, 200u, 212u, 240u})
     out.shots.push_back({place, step});
   return out;
@@ -99,7 +99,7 @@ KindSetting mechanical(const Sonar& like, const Pose& place) {
 std::vector<Shot> along(const Pose& pose, const Vec3& ahead, int count) {
   std::vector<Shot> shots;
   for (int i = 0; i < count; ++i) {
-    shots.push_back({pose, 0});
+    shots.push_back({pose, static_cast<std::uint32_t>(i)});
     shots.back().world_from_sonar.position_m += ahead * (0.8 * i);
   }
   return shots;

@@ -22,7 +22,7 @@ scene::Sonar with_knobs(scene::Sonar sonar, const Knobs& knobs);
 // One place to listen from.
 struct Shot {
   Pose world_from_sonar;
-  std::uint32_t frame = 0;  // which of a scanner's steps
+  std::uint32_t frame = 0;  // whose noise is its own, and which of a scanner's steps
 };
 
 struct KindSetting {
