@@ -260,6 +260,11 @@ class KindSweep {
     if (!options_.quick) out.bins = {bins / 2, bins, 2 * bins, 4 * bins};
     for (const double scale : scales(options_.quick))
       if (scale < 1.5) out.scales.push_back(scale);  // beyond, images are of 64 M pixels
+    if (kind_.base.kind != SonarKind::kImaging || options_.quick) return out;
+    // All beams and rows of the finest would keep two cores for a minute a ping.
+    out.bins.pop_back();
+    out.scales.pop_back();
+    out.rows.pop_back();
     return out;
   }
 
