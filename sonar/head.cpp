@@ -5,6 +5,7 @@
 
 #include "sonar/acoustics_pulse.hpp"
 #include "sonar/head_pattern.hpp"
+#include "sonar/quality.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -224,12 +225,9 @@ std::vector<float> gamma_quantiles(double shape, std::uint32_t count) {
   return out;
 }
 
-Result<std::vector<Head>> plan_heads(const scene::Sonar& sonar) {
-  if (!sonar.quality.empty() || sonar.max_error > 0.0)
-    return bad_input(
-        "sonar {}: {} found; no level is measured for kind {} yet: gbuffer_scale, bins and "
-        "beam.samples are accepted",
-        sonar.name, sonar.quality.empty() ? "max_error" : "quality", scene::name_of(sonar.kind));
+Result<std::vector<Head>> plan_heads(const scene::Sonar& settings) {
+  scene::Sonar sonar = settings;
+  NERITIC_TRY_STATUS(apply_quality(sonar));
   std::vector<Head> heads;
   if (sonar.kind != SonarKind::kSideScan) {
     NERITIC_TRY(Head head, plan_head(sonar, "", Quat(1, 0, 0, 0)));

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "engine/core/check.hpp"
+#include "sonar/quality.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -124,10 +125,11 @@ Result<std::unique_ptr<HeadState>> SonarStation::make_head(const scene::Sonar& s
 
 Result<SonarState*> SonarStation::state_of(std::size_t index) {
   std::unique_ptr<SonarState>& slot = sonars_[index];
-  const scene::Sonar& sonar = scene_.sonars[index];
+  scene::Sonar sonar = scene_.sonars[index];
   if (slot && scene::same_settings(slot->made_from, sonar)) return slot.get();
   auto state = std::make_unique<SonarState>();
   state->made_from = sonar;
+  NERITIC_TRY_STATUS(sonar::apply_quality(sonar));
   NERITIC_TRY(state->mode, sonar::gather_of(sonar.gather.empty() ? kDefaultGather : sonar.gather));
   state->pixels_per_cell = sonar.gbuffer_scale > 0.0 ? sonar.gbuffer_scale : kDefaultGBufferScale;
   state->mirrors = sonar::mirrors_of(sonar);

@@ -1,0 +1,131 @@
+#include "sonar/quality.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sonar/acoustics_pulse.hpp"
+#include "sonar/beam_grid.hpp"
+#include "sonar/head_pattern.hpp"
+
+namespace neritic::sonar {
+namespace {
+
+using scene::SonarKind;
+
+// name, pixels a cell, columns, rows, range bins a resolution cell, error, ms: from
+// `neritic tradeoff sonar` in assets/scenes/harbour.toml, llvmpipe on two shared Xeon cores.
+constexpr QualityLevel kProfiling[] = {
+    {"draft", 0.7, 1.99, 8, 4, 0.0482, 17.7},
+    {"standard", 1, 7.96, 32, 4, 0.0187, 60.9},
+    {"reference", 1, 7.96, 4, 8, 0.0092, 171.9},
+};
+constexpr QualityLevel kEchoSounder[] = {
+    {"draft", 1.4, 16, 128, 2, 0.0489, 2.0},
+    {"standard", 1.4, 24, 64, 4, 0.0182, 2.9},
+    {"reference", 1.4, 64, 64, 4, 0.0085, 4.9},
+};
+constexpr QualityLevel kSideScan[] = {
+    {"draft", 1.4, 2, 1.61, 1, 0.0471, 4.8},
+    {"standard", 1.4, 4, 3.23, 1, 0.0189, 7.2},
+    {"reference", 1.4, 4, 6.45, 2, 0.0096, 10.0},
+};
+constexpr QualityLevel kMechanical[] = {
+    {"draft", 1.4, 13.3, 1.61, 2, 0.0460, 6.8},
+    {"standard", 1.4, 22.2, 3.23, 4, 0.0197, 16.7},
+    {"reference", 1.4, 35.6, 6.45, 8, 0.0098, 141.0},
+};
+
+constexpr std::uint32_t kUnsetBins = 500;  // scene::Sonar's default
+constexpr std::uint32_t kMaxElevationBins = 8192;
+
+bool rows_are_counts(SonarKind kind) {
+  return kind == SonarKind::kProfiling || kind == SonarKind::kEchoSounder;
+}
+
+// What two echoes must be apart to be told apart: the pulse's, or a bin where none is named.
+double range_cell_m(const scene::Sonar& s) {
+  const auto& spread = s.terms.range_spread;
+  if (!spread) return (s.range_max_m - s.range_min_m) / s.bins_range;
+  return range_resolution_m(sound_speed_of(s.terms.water, 0.0), spread->bandwidth_hz);
+}
+
+Result<const QualityLevel*> level_of(const scene::Sonar& sonar) {
+  const auto levels = quality_levels(sonar.kind);
+  if (levels.empty())
+    return bad_input(
+        "sonar {}: {} found; no level is measured for kind {}: gbuffer_scale, bins and "
+        "beam.samples "
+        "are accepted",
+        sonar.name, sonar.quality.empty() ? "max_error" : "quality", scene::name_of(sonar.kind));
+  if (!sonar.quality.empty()) {
+    for (const QualityLevel& level : levels)
+      if (sonar.quality == level.name) return &level;
+    return bad_input("sonar {}: quality '{}' found, draft, standard or reference is accepted",
+                     sonar.name, sonar.quality);
+  }
+  // Levels rise in cost as they fall in error.
+  for (const QualityLevel& level : levels)
+    if (level.error <= sonar.max_error) return &level;
+  return bad_input("sonar {}: max_error {:g} found, at least {:g} is accepted for kind {}",
+                   sonar.name, sonar.max_error, levels.back().error, scene::name_of(sonar.kind));
+}
+
+std::uint32_t columns_for(const scene::Sonar& sonar, const QualityLevel& level) {
+  const auto& pattern = sonar.terms.beam.azimuth;
+  if (!pattern) return static_cast<std::uint32_t>(std::ceil(level.columns));
+  const double beam_rad = sonar.kind == SonarKind::kMechanical ? sonar.step_rad
+                          : sonar.kind == SonarKind::kSideScan
+                              ? sonar.azimuth_rad
+                              : sonar.azimuth_rad / sonar.bins_azimuth;
+  const double columns = level.columns * beam_rad / pattern->half_power_rad;
+  return static_cast<std::uint32_t>(std::max(1.0, std::ceil(columns - 1e-6)));
+}
+
+}  // namespace
+
+std::span<const QualityLevel> quality_levels(SonarKind kind) {
+  switch (kind) {
+    case SonarKind::kImaging:
+      return {};
+    case SonarKind::kProfiling:
+      return kProfiling;
+    case SonarKind::kEchoSounder:
+      return kEchoSounder;
+    case SonarKind::kSideScan:
+      return kSideScan;
+    case SonarKind::kMechanical:
+      return kMechanical;
+  }
+  return {};
+}
+
+Status apply_quality(scene::Sonar& sonar) {
+  if (sonar.quality.empty() && !(sonar.max_error > 0.0)) return {};
+  if (!sonar.quality.empty() && sonar.max_error > 0.0)
+    return bad_input("sonar {}: quality '{}' and max_error {:g} found, one of them is accepted",
+                     sonar.name, sonar.quality, sonar.max_error);
+  NERITIC_TRY(const QualityLevel* level, level_of(sonar));
+  const double span_m = sonar.range_max_m - sonar.range_min_m, cell_m = range_cell_m(sonar);
+  const double least_bins = level->bins_a_cell * span_m / cell_m;
+  // The last of a measured sensor's bins may be a fraction.
+  if (sonar.terms.range_spread && sonar.bins_range < 0.99 * least_bins)
+    return bad_input(
+        "sonar {}: {} range bins found, at least {} is accepted for quality {}: {:g} to a "
+        "resolution cell c / 2B of {:.1f} mm",
+        sonar.name, sonar.bins_range, std::lround(least_bins), level->name, level->bins_a_cell,
+        1000.0 * cell_m);
+  if (sonar.gbuffer_scale == 0.0) sonar.gbuffer_scale = level->gbuffer_scale;
+  if (sonar.bins_elevation == kUnsetBins) {
+    const double rows = rows_are_counts(sonar.kind) ? level->rows : level->rows * span_m / cell_m;
+    sonar.bins_elevation =
+        static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMaxElevationBins}));
+  }
+  if (sonar.kind == SonarKind::kEchoSounder) {
+    if (sonar.bins_azimuth == kUnsetBins) sonar.bins_azimuth = columns_for(sonar, *level);
+  } else if (sonar.terms.beam.samples == 1) {
+    sonar.terms.beam.samples = columns_for(sonar, *level);
+  }
+  return {};
+}
+
+}  // namespace neritic::sonar

@@ -1,0 +1,140 @@
+// Named quality levels: what they set, what they leave, what they refuse.
+#include "sonar/quality.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sonar/head.hpp"
+
+namespace neritic::sonar {
+namespace {
+
+using scene::SonarKind;
+
+// All that are measured.
+constexpr SonarKind kKinds[] = {SonarKind::kProfiling, SonarKind::kEchoSounder,
+                                SonarKind::kSideScan, SonarKind::kMechanical};
+
+scene::Sonar sonar_of(SonarKind kind) {
+  scene::Sonar sonar;
+  sonar.name = "ears";
+  sonar.kind = kind;
+  sonar.range_min_m = 1.0;
+  sonar.range_max_m = 16.0;
+  sonar.bins_range = 5000;
+  sonar.terms.range_spread = scene::SonarRangeSpread{};
+  if (kind != SonarKind::kEchoSounder)
+    sonar.terms.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(1.0)};
+  return sonar;
+}
+
+TEST(SonarQuality, EveryMeasuredKindHasThreeLevelsUnderTheirBounds) {
+  for (const SonarKind kind : kKinds) {
+    const auto levels = quality_levels(kind);
+    ASSERT_EQ(levels.size(), 3u) << scene::name_of(kind);
+    const double bounds[] = {0.05, 0.02, 0.01};
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_LE(levels[i].error, bounds[i]) << scene::name_of(kind) << " " << levels[i].name;
+      EXPECT_GT(levels[i].error, 0.0);
+      if (i > 0) {
+        EXPECT_GE(levels[i].ms, levels[i - 1].ms) << scene::name_of(kind);
+      }
+    }
+  }
+}
+
+TEST(SonarQuality, WithoutANameNothingChanges) {
+  for (const SonarKind kind : kKinds) {
+    scene::Sonar sonar = sonar_of(kind);
+    const scene::Sonar before = sonar;
+    ASSERT_TRUE(apply_quality(sonar).ok());
+    EXPECT_TRUE(scene::same_settings(before, sonar));
+  }
+}
+
+TEST(SonarQuality, ALevelFillsWhatIsUnsetAndCanBePlanned) {
+  for (const SonarKind kind : kKinds)
+    for (const QualityLevel& level : quality_levels(kind)) {
+      scene::Sonar sonar = sonar_of(kind);
+      sonar.quality = level.name;
+      const Status status = apply_quality(sonar);
+      ASSERT_TRUE(status.ok()) << status.error().message;
+      EXPECT_EQ(sonar.gbuffer_scale, level.gbuffer_scale);
+      EXPECT_NE(sonar.bins_elevation, 500u);
+      sonar.quality.clear();  // applied
+      EXPECT_TRUE(plan_heads(sonar).ok()) << scene::name_of(kind) << " " << level.name;
+    }
+}
+
+TEST(SonarQuality, WhatTheSceneSetsStays) {
+  scene::Sonar sonar = sonar_of(SonarKind::kMechanical);
+  sonar.quality = "reference";
+  sonar.gbuffer_scale = 0.3;
+  sonar.bins_elevation = 64;
+  sonar.terms.beam.samples = 2;
+  ASSERT_TRUE(apply_quality(sonar).ok());
+  EXPECT_EQ(sonar.gbuffer_scale, 0.3);
+  EXPECT_EQ(sonar.bins_elevation, 64u);
+  EXPECT_EQ(sonar.terms.beam.samples, 2u);
+}
+
+TEST(SonarQuality, ColumnsFollowTheBeamsWidth) {
+  scene::Sonar narrow = sonar_of(SonarKind::kMechanical), wide = narrow;
+  narrow.terms.beam.azimuth->half_power_rad = radians(0.2);
+  wide.terms.beam.azimuth->half_power_rad = radians(60.0);
+  narrow.quality = wide.quality = "reference";
+  ASSERT_TRUE(apply_quality(narrow).ok());
+  ASSERT_TRUE(apply_quality(wide).ok());
+  EXPECT_GT(narrow.terms.beam.samples, 1u);
+  EXPECT_EQ(wide.terms.beam.samples, 1u);
+}
+
+TEST(SonarQuality, AnErrorTakesTheCheapestLevelThatKeepsIt) {
+  for (const SonarKind kind : kKinds) {
+    const auto levels = quality_levels(kind);
+    for (const QualityLevel& level : levels) {
+      scene::Sonar by_error = sonar_of(kind), by_name = by_error;
+      by_error.max_error = level.error;
+      by_name.quality = level.name;
+      ASSERT_TRUE(apply_quality(by_error).ok());
+      ASSERT_TRUE(apply_quality(by_name).ok());
+      by_error.max_error = 0.0;
+      by_name.quality.clear();
+      EXPECT_TRUE(scene::same_settings(by_error, by_name)) << scene::name_of(kind);
+    }
+  }
+}
+
+TEST(SonarQuality, RefusalsNameWhatIsAccepted) {
+  const auto refused = [](auto change, const char* names) {
+    scene::Sonar sonar = sonar_of(SonarKind::kMechanical);
+    change(sonar);
+    const Status status = apply_quality(sonar);
+    ASSERT_FALSE(status.ok()) << names;
+    EXPECT_EQ(status.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(status.error().message.find(names), std::string::npos) << status.error().message;
+    EXPECT_NE(status.error().message.find("ears"), std::string::npos) << status.error().message;
+  };
+  refused([](auto& s) { s.quality = "superb"; }, "draft, standard or reference");
+  refused([](auto& s) { s.max_error = 1e-6; }, "max_error");
+  refused(
+      [](auto& s) {
+        s.kind = SonarKind::kImaging;
+        s.quality = "draft";
+      },
+      "no level is measured for kind imaging");
+  refused(
+      [](auto& s) {
+        s.quality = "draft";
+        s.max_error = 0.02;
+      },
+      "one of them");
+  refused(
+      [](auto& s) {
+        s.quality = "reference";
+        s.bins_range = 50;
+      },
+      "range bins");
+}
+
+}  // namespace
+}  // namespace neritic::sonar
