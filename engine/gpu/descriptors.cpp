@@ -52,8 +52,7 @@ Result<SetLayout> SetLayout::create(const Device& device, const std::string& nam
   layout.device_ = device.handle();
   NERITIC_TRY_VK("vkCreateDescriptorSetLayout (" + name + ")",
                  vkCreateDescriptorSetLayout(device.handle(), &info, nullptr, &layout.handle_));
-  device.name_object(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT,
-                     reinterpret_cast<std::uint64_t>(layout.handle_), name);
+  device.name_object(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, layout.handle_, name);
   return layout;
 }
 

@@ -127,7 +127,7 @@ Status Device::create_device(const DeviceOptions& options) {
   NERITIC_TRY_VK("vkCreateDevice (" + info_.name + ")",
                  vkCreateDevice(physical_, &info, nullptr, &device_));
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-  name_object(VK_OBJECT_TYPE_QUEUE, reinterpret_cast<std::uint64_t>(queue_), "main queue");
+  name_object(VK_OBJECT_TYPE_QUEUE, queue_, "main queue");
   return {};
 }
 
@@ -153,8 +153,7 @@ void Device::load_pipeline_cache(const fs::path& folder) {
   if (result != VK_SUCCESS) pipeline_cache_ = VK_NULL_HANDLE;  // pipelines can do without
   log_info("pipeline cache: {:.1f} KiB from {}", static_cast<double>(data.size()) / 1024.0,
            cache_file_.empty() ? "nowhere" : cache_file_.string());
-  name_object(VK_OBJECT_TYPE_PIPELINE_CACHE, reinterpret_cast<std::uint64_t>(pipeline_cache_),
-              "pipeline cache");
+  name_object(VK_OBJECT_TYPE_PIPELINE_CACHE, pipeline_cache_, "pipeline cache");
 }
 
 void Device::save_pipeline_cache() const {
@@ -182,7 +181,8 @@ Device::~Device() {
   destroy_instance({instance_, messenger_, false});
 }
 
-void Device::name_object(VkObjectType type, std::uint64_t handle, const std::string& name) const {
+void Device::name_object_bits(VkObjectType type, std::uint64_t handle,
+                              const std::string& name) const {
   if (!set_name_ || handle == 0) return;
   VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
   info.objectType = type;

@@ -91,7 +91,10 @@ class Device {
   void clear_validation_log() { validation_log_->messages.clear(); }
 
   // Names an object for the debugger and for validation messages (no cost without them).
-  void name_object(VkObjectType type, std::uint64_t handle, const std::string& name) const;
+  template <class Handle>
+  void name_object(VkObjectType type, Handle handle, const std::string& name) const {
+    name_object_bits(type, reinterpret_cast<std::uint64_t>(handle), name);
+  }
   // A named region for debuggers (no cost without them).
   void begin_label(VkCommandBuffer commands, const std::string& name) const;
   void end_label(VkCommandBuffer commands) const;
@@ -103,6 +106,7 @@ class Device {
 
  private:
   Device();
+  void name_object_bits(VkObjectType type, std::uint64_t handle, const std::string& name) const;
   Status create_device(const DeviceOptions& options);
   void load_pipeline_cache(const std::filesystem::path& folder);
   VkInstance instance_ = VK_NULL_HANDLE;

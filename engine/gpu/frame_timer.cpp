@@ -34,8 +34,7 @@ Status FrameTimer::create() {
   info.queryCount = 2 * kMaxRegions;
   NERITIC_TRY_VK("vkCreateQueryPool (timestamps)",
                  vkCreateQueryPool(device_->handle(), &info, nullptr, &pool_));
-  device_->name_object(VK_OBJECT_TYPE_QUERY_POOL, reinterpret_cast<std::uint64_t>(pool_),
-                       "frame timestamps");
+  device_->name_object(VK_OBJECT_TYPE_QUERY_POOL, pool_, "frame timestamps");
   return {};
 }
 

@@ -60,9 +60,8 @@ Status create_slot(const Device& device, std::uint32_t index, Slot& slot) {
   info.commandBufferCount = 1;
   NERITIC_TRY_VK("vkAllocateCommandBuffers",
                  vkAllocateCommandBuffers(device.handle(), &info, &slot.commands));
-  device.name_object(VK_OBJECT_TYPE_COMMAND_POOL, reinterpret_cast<std::uint64_t>(slot.pool),
-                     fmt::format("frame slot {}", index));
-  device.name_object(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(slot.commands),
+  device.name_object(VK_OBJECT_TYPE_COMMAND_POOL, slot.pool, fmt::format("frame slot {}", index));
+  device.name_object(VK_OBJECT_TYPE_COMMAND_BUFFER, slot.commands,
                      fmt::format("frame slot {}", index));
   return slot.timer.create();
 }
@@ -120,8 +119,7 @@ Status FramesImpl::create(std::uint32_t in_flight) {
   VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, &type};
   NERITIC_TRY_VK("vkCreateSemaphore (timeline)",
                  vkCreateSemaphore(device_.handle(), &info, nullptr, &timeline_));
-  device_.name_object(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(timeline_),
-                      "frames timeline");
+  device_.name_object(VK_OBJECT_TYPE_SEMAPHORE, timeline_, "frames timeline");
   BufferDesc spare;
   spare.name = "stand-in for failed uploads";
   spare.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |

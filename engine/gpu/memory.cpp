@@ -16,21 +16,6 @@ constexpr VkDeviceSize kBlockBytes = VkDeviceSize{64} << 20;
 // Of a small heap (a 256 MiB window into a graphics card) one block takes no more than this part.
 constexpr VkDeviceSize kHeapParts = 8;
 
-struct PoolKey {
-  std::uint32_t type = 0;
-  bool linear = true;
-  bool mapped = false;
-  bool operator==(const PoolKey&) const = default;
-};
-
-struct Block {
-  PoolKey key;
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  std::byte* mapped = nullptr;
-  bool own = false;  // made for one large request
-  FreeList free;
-};
-
 // What each use must have, would like, and would rather not have.
 struct Wish {
   VkMemoryPropertyFlags must, like, avoid;
@@ -75,6 +60,21 @@ std::optional<std::uint32_t> choose_type(const VkPhysicalDeviceMemoryProperties&
 }  // namespace
 
 struct Allocator::Impl {
+  struct PoolKey {
+    std::uint32_t type = 0;
+    bool linear = true;
+    bool mapped = false;
+    bool operator==(const PoolKey&) const = default;
+  };
+
+  struct Block {
+    PoolKey key;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    std::byte* mapped = nullptr;
+    bool own = false;  // made for one large request
+    FreeList free;
+  };
+
   VkDevice device = VK_NULL_HANDLE;
   const Device* owner = nullptr;
   VkPhysicalDeviceMemoryProperties memory{};
@@ -104,7 +104,8 @@ struct Allocator::Impl {
   void release(Block* block, VkDeviceSize offset, VkDeviceSize size);
 };
 
-Result<Block*> Allocator::Impl::add_block(const PoolKey& key, VkDeviceSize size, bool own) {
+Result<Allocator::Impl::Block*> Allocator::Impl::add_block(const PoolKey& key, VkDeviceSize size,
+                                                           bool own) {
   VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
   info.allocationSize = size;
   info.memoryTypeIndex = key.type;
@@ -121,7 +122,7 @@ Result<Block*> Allocator::Impl::add_block(const PoolKey& key, VkDeviceSize size,
     }
     block->mapped = static_cast<std::byte*>(mapped);
   }
-  owner->name_object(VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<std::uint64_t>(block->memory),
+  owner->name_object(VK_OBJECT_TYPE_DEVICE_MEMORY, block->memory,
                      fmt::format("{} block of type {}{}", key.linear ? "buffer" : "image", key.type,
                                  own ? " for one resource" : ""));
   blocks.push_back(std::move(block));
@@ -155,7 +156,7 @@ Allocator::~Allocator() {
 }
 
 void Allocator::trim() {
-  impl_->destroy_if([](const Block& block) { return block.free.all_free(); });
+  impl_->destroy_if([](const Impl::Block& block) { return block.free.all_free(); });
 }
 
 Result<Allocation> Allocator::allocate(const VkMemoryRequirements& needs, MemoryUse use,
@@ -168,8 +169,8 @@ Result<Allocation> Allocator::allocate(const VkMemoryRequirements& needs, Memory
   if (needs.size > heap_bytes)  // not a valid request; lavapipe would try all the same
     return failure(ErrorCode::kOutOfMemory, "{} bytes in one piece, the device's memory holds {}",
                    needs.size, heap_bytes);
-  const PoolKey key{*type, linear, use != MemoryUse::kDevice};
-  Block* block = nullptr;
+  const Impl::PoolKey key{*type, linear, use != MemoryUse::kDevice};
+  Impl::Block* block = nullptr;
   std::optional<VkDeviceSize> offset;
   if (needs.size <= impl_->block_bytes(*type)) {
     for (const auto& candidate : impl_->blocks) {
@@ -220,15 +221,16 @@ Allocation& Allocation::operator=(Allocation&& other) noexcept {
 }
 
 Allocation::~Allocation() {
-  if (allocator_) allocator_->impl_->release(static_cast<Block*>(block_), offset_, size_);
+  if (allocator_)
+    allocator_->impl_->release(static_cast<Allocator::Impl::Block*>(block_), offset_, size_);
 }
 
 VkDeviceMemory Allocation::memory() const {
-  return block_ ? static_cast<const Block*>(block_)->memory : VK_NULL_HANDLE;
+  return block_ ? static_cast<const Allocator::Impl::Block*>(block_)->memory : VK_NULL_HANDLE;
 }
 
 std::byte* Allocation::mapped() const {
-  const auto* block = static_cast<const Block*>(block_);
+  const auto* block = static_cast<const Allocator::Impl::Block*>(block_);
   return block && block->mapped ? block->mapped + offset_ : nullptr;
 }
 

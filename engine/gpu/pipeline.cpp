@@ -17,11 +17,6 @@ constexpr std::uint32_t kMaxPushBytes = 128;  // what every Vulkan device guaran
 constexpr VkShaderStageFlags kGraphicsStages =
     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
-template <class Handle>
-std::uint64_t id(Handle handle) {
-  return reinterpret_cast<std::uint64_t>(handle);
-}
-
 // Lives while a pipeline is made.
 class ShaderModule {
  public:
@@ -34,7 +29,7 @@ class ShaderModule {
     module.device_ = device.handle();
     NERITIC_TRY_VK("vkCreateShaderModule (" + name + ")",
                    vkCreateShaderModule(device.handle(), &info, nullptr, &module.handle_));
-    device.name_object(VK_OBJECT_TYPE_SHADER_MODULE, id(module.handle_), name);
+    device.name_object(VK_OBJECT_TYPE_SHADER_MODULE, module.handle_, name);
     return module;
   }
   ShaderModule() = default;
@@ -100,7 +95,7 @@ Result<VkPipelineLayout> make_layout(const Device& device, const std::string& na
   VkPipelineLayout layout = VK_NULL_HANDLE;
   NERITIC_TRY_VK("vkCreatePipelineLayout (" + name + ")",
                  vkCreatePipelineLayout(device.handle(), &info, nullptr, &layout));
-  device.name_object(VK_OBJECT_TYPE_PIPELINE_LAYOUT, id(layout), name);
+  device.name_object(VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout, name);
   return layout;
 }
 
@@ -258,7 +253,7 @@ Result<Pipeline> Pipeline::create(const Device& device, const ComputePipelineDes
   const TimeNs start = now_ns();
   NERITIC_TRY(pipeline.handle_, make_compute(device, desc, pipeline.layout_));
   log_info("pipeline {} in {:.1f} ms", desc.name, to_ms(now_ns() - start));
-  device.name_object(VK_OBJECT_TYPE_PIPELINE, id(pipeline.handle_), desc.name);
+  device.name_object(VK_OBJECT_TYPE_PIPELINE, pipeline.handle_, desc.name);
   return pipeline;
 }
 
@@ -269,7 +264,7 @@ Result<Pipeline> Pipeline::create(const Device& device, const GraphicsPipelineDe
   const TimeNs start = now_ns();
   NERITIC_TRY(pipeline.handle_, make_graphics(device, desc, pipeline.layout_));
   log_info("pipeline {} in {:.1f} ms", desc.name, to_ms(now_ns() - start));
-  device.name_object(VK_OBJECT_TYPE_PIPELINE, id(pipeline.handle_), desc.name);
+  device.name_object(VK_OBJECT_TYPE_PIPELINE, pipeline.handle_, desc.name);
   return pipeline;
 }
 

@@ -12,11 +12,6 @@ namespace {
 
 constexpr VkDeviceSize kSmallestBuffer = 16;  // bytes: an empty buffer can still be bound
 
-template <class Handle>
-std::uint64_t id(Handle handle) {
-  return reinterpret_cast<std::uint64_t>(handle);
-}
-
 VkBufferCreateInfo buffer_info(const BufferDesc& desc) {
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = desc.size == 0 ? kSmallestBuffer : desc.size;
@@ -89,7 +84,7 @@ Result<VkImageView> make_view(const Device& device, VkImage image, const ImageDe
   VkImageView view = VK_NULL_HANDLE;
   NERITIC_TRY_VK("vkCreateImageView (" + desc.name + ")",
                  vkCreateImageView(device.handle(), &info, nullptr, &view));
-  device.name_object(VK_OBJECT_TYPE_IMAGE_VIEW, id(view), desc.name);
+  device.name_object(VK_OBJECT_TYPE_IMAGE_VIEW, view, desc.name);
   return view;
 }
 
@@ -116,7 +111,7 @@ Result<Buffer> Buffer::create_at(const Device& device, const BufferDesc& desc,
   buffer.size_ = info.size;
   NERITIC_TRY_VK("vkCreateBuffer (" + desc.name + ")",
                  vkCreateBuffer(device.handle(), &info, nullptr, &buffer.handle_));
-  device.name_object(VK_OBJECT_TYPE_BUFFER, id(buffer.handle_), desc.name);
+  device.name_object(VK_OBJECT_TYPE_BUFFER, buffer.handle_, desc.name);
   NERITIC_TRY_VK("vkBindBufferMemory (" + desc.name + ")",
                  vkBindBufferMemory(device.handle(), buffer.handle_, memory, offset));
   return buffer;
@@ -172,7 +167,7 @@ Result<Image> Image::create_at(const Device& device, const ImageDesc& desc, VkDe
   image.desc_ = desc;
   NERITIC_TRY_VK("vkCreateImage (" + desc.name + ")",
                  vkCreateImage(device.handle(), &info, nullptr, &image.handle_));
-  device.name_object(VK_OBJECT_TYPE_IMAGE, id(image.handle_), desc.name);
+  device.name_object(VK_OBJECT_TYPE_IMAGE, image.handle_, desc.name);
   NERITIC_TRY_VK("vkBindImageMemory (" + desc.name + ")",
                  vkBindImageMemory(device.handle(), image.handle_, memory, offset));
   if (can_have_view(desc.usage)) {
@@ -187,7 +182,7 @@ Result<Image> Image::borrow(const Device& device, const ImageDesc& desc, VkImage
   image.desc_ = desc;
   image.borrowed_ = true;
   image.handle_ = handle;
-  device.name_object(VK_OBJECT_TYPE_IMAGE, id(handle), desc.name);
+  device.name_object(VK_OBJECT_TYPE_IMAGE, handle, desc.name);
   NERITIC_TRY(image.view_, make_view(device, handle, desc));
   return image;
 }
@@ -246,7 +241,7 @@ Result<Sampler> Sampler::create(const Device& device, const SamplerDesc& desc) {
   sampler.device_ = device.handle();
   NERITIC_TRY_VK("vkCreateSampler (" + desc.name + ")",
                  vkCreateSampler(device.handle(), &info, nullptr, &sampler.handle_));
-  device.name_object(VK_OBJECT_TYPE_SAMPLER, id(sampler.handle_), desc.name);
+  device.name_object(VK_OBJECT_TYPE_SAMPLER, sampler.handle_, desc.name);
   return sampler;
 }
 

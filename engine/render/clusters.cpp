@@ -16,9 +16,9 @@ struct Key {
   std::uint32_t triangle = 0;
 };
 
-class Builder {
+class ClusterBuilder {
  public:
-  Builder(std::span<const Vec3f> positions, const std::vector<std::uint32_t>& indices)
+  ClusterBuilder(std::span<const Vec3f> positions, const std::vector<std::uint32_t>& indices)
       : positions_(positions), indices_(indices) {}
 
   std::vector<ClusterNode> build(std::vector<std::uint32_t>& ordered) {
@@ -128,7 +128,7 @@ std::vector<ClusterNode> build_clusters(std::span<const Vec3f> positions,
   if (indices.size() <= 3 * kClusterTriangles) return {};
   for (const std::uint32_t i : indices)
     if (!is_finite(Vec3(positions[i]))) return {};
-  return Builder(positions, indices).build(indices);
+  return ClusterBuilder(positions, indices).build(indices);
 }
 
 }  // namespace neritic::render

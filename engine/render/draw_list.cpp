@@ -39,9 +39,9 @@ double nearness(double center_m, double radius_m) {
   return std::max(0.0, center_m - radius_m) + 1e-3 * center_m;
 }
 
-class Builder {
+class DrawListBuilder {
  public:
-  Builder(const scene::Scene& scene, const GpuScene& gpu_scene, const FrameState& state,
+  DrawListBuilder(const scene::Scene& scene, const GpuScene& gpu_scene, const FrameState& state,
           const ViewSet& views, const DrawListOptions& options)
       : scene_(scene),
         gpu_scene_(gpu_scene),
@@ -188,7 +188,7 @@ class Builder {
 DrawList build_draw_list(const scene::Scene& scene, const GpuScene& gpu_scene,
                          const FrameState& state, const ViewSet& views,
                          const DrawListOptions& options) {
-  return Builder(scene, gpu_scene, state, views, options).build();
+  return DrawListBuilder(scene, gpu_scene, state, views, options).build();
 }
 
 }  // namespace neritic::render

@@ -13,7 +13,7 @@
 namespace neritic::scene {
 namespace {
 
-constexpr double kMaxSide = 32768.0;
+constexpr double kMaxAscSide = 32768.0;
 
 // Words of a text with the line that each stands on.
 class Words {
@@ -67,9 +67,9 @@ bool set_header(Header& header, const std::string& key, double value) {
 Status check_header(Header& header, const std::string& name) {
   for (const auto& [key, value] : {std::pair("ncols", header.columns), {"nrows", header.rows}}) {
     if (!value) return bad_input("{}: the header has no {}", name, key);
-    if (!(*value >= 2.0 && *value <= kMaxSide && *value == std::floor(*value)))
+    if (!(*value >= 2.0 && *value <= kMaxAscSide && *value == std::floor(*value)))
       return bad_input("{}: {}: found {}; accepted: a whole number from 2 to {}", name, key, *value,
-                       kMaxSide);
+                       kMaxAscSide);
   }
   if (!header.cell_m && header.dx_m) {
     if (header.dy_m && *header.dy_m != *header.dx_m)

@@ -11,11 +11,11 @@
 
 #include "engine/core/files.hpp"
 #include "engine/scene/image_file.hpp"
+#include "engine/scene/image_file_limits.hpp"
 
 namespace neritic::scene {
 namespace {
 
-constexpr std::int64_t kMaxSide = 32768, kMaxPixels = std::int64_t{1} << 28;
 // Deflate reaches 1032:1; the wavelet and block codecs of flat pictures a little more. Beyond that
 // a header is forged.
 constexpr std::uint64_t kMaxRatio = 4096, kRatioSlackBytes = 1 << 20;
@@ -67,10 +67,10 @@ Result<ExrImage> read_channels(std::span<const std::byte> bytes, const std::stri
   const Imath::Box2i window = file.header().dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
-      width * height > kMaxPixels)
+  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide ||
+      static_cast<std::uint64_t>(width * height) > kMaxImagePixels)
     return bad_input("{}: {} x {} pixels, at most {} x {} and 2^28 in all are accepted", name,
-                     width, height, kMaxSide, kMaxSide);
+                     width, height, kMaxImageSide, kMaxImageSide);
   ExrImage out;
   const Imf::ChannelList& channels = file.header().channels();
   for (auto it = channels.begin(); it != channels.end(); ++it) {

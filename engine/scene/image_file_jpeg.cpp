@@ -8,10 +8,11 @@
 // After jpeglib.
 #include <jerror.h>
 
+#include "engine/scene/image_file_limits.hpp"
+
 namespace neritic::scene {
 namespace {
 
-constexpr std::uint64_t kMaxSide = 32768, kMaxPixels = std::uint64_t{1} << 28;
 // A block of 8 x 8 pixels needs at least a bit for its DC value, in one component.
 constexpr std::uint64_t kMaxPixelsPerByte = 8 * 64, kSlackPixels = 64 * 64;
 // A progressive file repeats whole passes over the picture: ten are usual, and a forged file must
@@ -45,17 +46,17 @@ void on_progress(j_common_ptr info) {
 
 // Owns a decompressor. Its methods return false after a failure, whose reason is in error(). They
 // hold plain values only, since libjpeg reports errors by longjmp.
-class Reader {
+class JpegReader {
  public:
-  Reader() {
+  JpegReader() {
     info_.err = jpeg_std_error(&errors_.base);
     errors_.base.error_exit = leave;
     errors_.base.emit_message = on_message;
     progress_.progress_monitor = on_progress;
   }
-  ~Reader() { jpeg_destroy_decompress(&info_); }  // harmless where nothing was created
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  ~JpegReader() { jpeg_destroy_decompress(&info_); }  // harmless where nothing was created
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
 
   bool read_header(std::span<const std::byte> bytes) {
     if (setjmp(errors_.jump)) return false;
@@ -100,12 +101,13 @@ bool is_jpeg(std::span<const std::byte> bytes) {
 
 Result<ImageU8> decode_jpeg(std::span<const std::byte> bytes, const std::string& name,
                             std::uint32_t channels) {
-  Reader reader;
+  JpegReader reader;
   if (!reader.read_header(bytes)) return bad_input("{}: a broken JPEG ({})", name, reader.error());
   const std::uint64_t width = reader.width(), height = reader.height(), pixels = width * height;
-  if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide || pixels > kMaxPixels)
+  if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide ||
+      pixels > kMaxImagePixels)
     return bad_input("{}: {} x {} pixels, at most {} x {} and 2^28 in all are accepted", name,
-                     width, height, kMaxSide, kMaxSide);
+                     width, height, kMaxImageSide, kMaxImageSide);
   if (pixels > bytes.size() * kMaxPixelsPerByte + kSlackPixels)
     return bad_input("{}: {} x {} pixels cannot come from {} bytes", name, width, height,
                      bytes.size());

@@ -7,10 +7,11 @@
 #include <csetjmp>
 #include <cstring>
 
+#include "engine/scene/image_file_limits.hpp"
+
 namespace neritic::scene {
 namespace {
 
-constexpr std::uint64_t kMaxSide = 32768, kMaxPixels = std::uint64_t{1} << 28;
 // Largest ratio that deflate reaches (zlib technical details, J. Gailly, M. Adler: 1032:1).
 constexpr std::uint64_t kMaxDeflateRatio = 1032;
 // Text and profiles that nobody here reads need not be larger.
@@ -33,25 +34,25 @@ void on_error(png_structp png, png_const_charp reason) {
   std::strncpy(source.reason, reason, sizeof source.reason - 1);
   png_longjmp(png, 1);
 }
-void stay_silent(png_structp, png_const_charp) {}
+void ignore_warning(png_structp, png_const_charp) {}
 
 // Owns libpng's two structures. Methods return false after a failure, whose reason is in the
 // source; they hold plain values only, since libpng reports errors by longjmp.
-class Reader {
+class PngReader {
  public:
-  explicit Reader(Source* source) : source_(source) {
-    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, source, on_error, stay_silent);
+  explicit PngReader(Source* source) : source_(source) {
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, source, on_error, ignore_warning);
     info_ = png_ ? png_create_info_struct(png_) : nullptr;
   }
-  ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
 
   // Everything before the pixels.
   bool read_header() {
     if (!info_ || setjmp(png_jmpbuf(png_))) return false;
     png_set_read_fn(png_, source_, pull);
-    png_set_user_limits(png_, kMaxSide, kMaxSide);
+    png_set_user_limits(png_, kMaxImageSide, kMaxImageSide);
     png_set_chunk_malloc_max(png_, kMaxChunkBytes);
     png_set_chunk_cache_max(png_, kMaxKeptChunks);
     png_read_info(png_, info_);
@@ -99,10 +100,10 @@ Result<Raster<T>> decode_png(std::span<const std::byte> bytes, const std::string
     return bad_input("{}: a broken PNG ({})", name, source.reason);
   };
   Source source{bytes};
-  Reader reader(&source);
+  PngReader reader(&source);
   if (!reader.read_header()) return broken(source);
   const std::uint64_t pixels = std::uint64_t{reader.width()} * reader.height();
-  if (pixels > kMaxPixels)
+  if (pixels > kMaxImagePixels)
     return bad_input("{}: {} x {} pixels, at most 2^28 in all are accepted", name, reader.width(),
                      reader.height());
   // row_bytes: still as stored.
@@ -128,9 +129,9 @@ std::uint32_t big_endian(std::span<const std::byte> bytes, std::size_t at) {
 Status check_size(std::span<const std::byte> bytes, const std::string& name) {
   if (!is_png(bytes)) return bad_input("{}: no PNG picture ({} bytes)", name, bytes.size());
   const std::uint32_t width = big_endian(bytes, 16), height = big_endian(bytes, 20);
-  if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide)
+  if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide)
     return bad_input("{}: {} x {} pixels, 1 x 1 to {} x {} are accepted", name, width, height,
-                     kMaxSide, kMaxSide);
+                     kMaxImageSide, kMaxImageSide);
   return {};
 }
 

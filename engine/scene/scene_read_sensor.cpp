@@ -6,8 +6,6 @@ namespace neritic::scene {
 namespace {
 
 constexpr std::uint64_t kMaxPictureSide = 16384;
-constexpr Interval kRate{0, 1000, true, false, "hertz"};
-constexpr Interval kNear{0, 10, true, false, "metres"};
 constexpr Interval kStops{-30, 30, false, false, "stops"};
 
 Exposure read_exposure(TableReader& reader) {

@@ -16,8 +16,6 @@ constexpr auto kQualities = std::to_array<Key>({"draft", "standard", "reference"
 
 constexpr std::uint64_t kMaxBins = 8192;
 constexpr double kMaxSonarRange_m = 20000.0;
-constexpr Interval kRate{0, 1000, true, false, "hertz"};
-constexpr Interval kNear{0, 10, true, false, "metres"};
 
 void read_kind(TableReader& reader, Sonar& sonar) {
   std::vector<Key> names;

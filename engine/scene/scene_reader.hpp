@@ -26,6 +26,9 @@ struct Interval {
 
 // Positions: farther out than the Earth's circumference is a mistake.
 inline constexpr Interval kAnyMetres{-4e7, 4e7, false, false, "metres"};
+// What cameras and sonars both have.
+inline constexpr Interval kRate{0, 1000, true, false, "hertz"};
+inline constexpr Interval kNear{0, 10, true, false, "metres"};
 inline constexpr Interval kAnyTurn{-360.0, 360.0, false, false, "degrees"};
 
 class TableReader {

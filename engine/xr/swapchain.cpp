@@ -78,7 +78,7 @@ Result<VkSemaphore> Swapchain::create_semaphore(const std::string& name) const {
   VkSemaphore semaphore = VK_NULL_HANDLE;
   const VkResult result = vkCreateSemaphore(device_->handle(), &info, nullptr, &semaphore);
   if (result != VK_SUCCESS) return gpu::vulkan_error(result, "vkCreateSemaphore");
-  device_->name_object(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(semaphore), name);
+  device_->name_object(VK_OBJECT_TYPE_SEMAPHORE, semaphore, name);
   return semaphore;
 }
 
@@ -114,8 +114,7 @@ Result<bool> Swapchain::recreate(std::uint32_t wanted_width, std::uint32_t wante
   if (swapchain_ != VK_NULL_HANDLE) vkDestroySwapchainKHR(device_->handle(), swapchain_, nullptr);
   swapchain_ = result == VK_SUCCESS ? fresh : VK_NULL_HANDLE;
   if (result != VK_SUCCESS) return gpu::vulkan_error(result, "vkCreateSwapchainKHR");
-  device_->name_object(VK_OBJECT_TYPE_SWAPCHAIN_KHR, reinterpret_cast<std::uint64_t>(swapchain_),
-                       "window");
+  device_->name_object(VK_OBJECT_TYPE_SWAPCHAIN_KHR, swapchain_, "window");
   NERITIC_TRY_STATUS(create_images());
   return true;
 }

@@ -68,7 +68,7 @@ TEST_F(DeviceTest, ALeakedObjectIsReportedToTheSinkAtTheEnd) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   VkSampler sampler = VK_NULL_HANDLE;
   ASSERT_EQ(vkCreateSampler(other->handle(), &info, nullptr, &sampler), VK_SUCCESS);
-  other->name_object(VK_OBJECT_TYPE_SAMPLER, reinterpret_cast<std::uint64_t>(sampler), "forgotten");
+  other->name_object(VK_OBJECT_TYPE_SAMPLER, sampler, "forgotten");
   EXPECT_TRUE(sink.messages.empty());
   other.reset();
   ASSERT_EQ(sink.messages.size(), 1u);

@@ -11,8 +11,6 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr Access kWrite = Access::kStorageWriteCompute;
-constexpr Access kRead = Access::kStorageReadCompute;
 constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr auto kFragment = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
 constexpr auto kColor = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;

@@ -9,8 +9,6 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr Access kWrite = Access::kStorageWriteCompute;
-constexpr Access kRead = Access::kStorageReadCompute;
 
 TEST(Cull, KeepsOnlyWhatAnOutputNeeds) {
   // [make] -> (a1) -> [use]   -> (b1) -> output

@@ -11,6 +11,10 @@
 
 namespace neritic::graph {
 
+// What most test graphs do to a resource.
+inline constexpr Access kWrite = Access::kStorageWriteCompute;
+inline constexpr Access kRead = Access::kStorageReadCompute;
+
 inline Use use(std::uint32_t resource, std::uint32_t version, Access access) {
   return {resource, version, access};
 }

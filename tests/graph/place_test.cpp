@@ -7,8 +7,6 @@
 namespace neritic::graph {
 namespace {
 
-constexpr Access kWrite = Access::kStorageWriteCompute;
-constexpr Access kRead = Access::kStorageReadCompute;
 
 // position   0      1      2      3
 // a (100)    W      R

@@ -8,17 +8,17 @@
 namespace neritic::scene {
 namespace {
 
-struct Case {
+struct WrongKeys {
   const char* keys;
   const char* message;  // after "s.toml:2: sonars[0]", or, with a file in it, whole
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const WrongKeys& c, std::ostream* out) {
   *out << c.message;
 }
 
-class SonarError : public testing::TestWithParam<Case> {};
+class SonarError : public testing::TestWithParam<WrongKeys> {};
 
-std::string name_of(const testing::TestParamInfo<Case>& info) {
+std::string wrong_keys_name(const testing::TestParamInfo<WrongKeys>& info) {
   return test::test_name(info.index, info.param.message);
 }
 
@@ -46,99 +46,99 @@ TEST_P(SonarError, IsTheDocumentedLine) {
 INSTANTIATE_TEST_SUITE_P(
     Keys, SonarError,
     testing::Values(
-        Case{"semi_angle_deg = 4",
+        WrongKeys{"semi_angle_deg = 4",
              ".semi_angle_deg: found 4; accepted: no such key for kind \"imaging\""},
-        Case{"step_deg = 4\nkind = 'sidescan'",
+        WrongKeys{"step_deg = 4\nkind = 'sidescan'",
              ".step_deg: found 4; accepted: no such key for kind \"sidescan\""},
-        Case{"depression_deg = 91\nkind = 'sidescan'",
+        WrongKeys{"depression_deg = 91\nkind = 'sidescan'",
              ".depression_deg: found 91; accepted: a number in [0, 90] degrees"},
-        Case{"azimuth_deg = 90\nkind = 'echosounder'",
+        WrongKeys{"azimuth_deg = 90\nkind = 'echosounder'",
              ".azimuth_deg: found 90; accepted: none, or twice semi_angle_deg: 25 for a cone of "
              "12.5"},
-        Case{"bins = [1, 3, 1]\nkind = 'mechanical'\nazimuth_deg = 360",
+        WrongKeys{"bins = [1, 3, 1]\nkind = 'mechanical'\nazimuth_deg = 360",
              ".bins: found [1, 3, 1]; accepted: azimuth bins that make steps of at most 90 "
              "degrees"},
-        Case{"quality = 'best'",
+        WrongKeys{"quality = 'best'",
              ".quality: found \"best\"; accepted: one of draft, standard, reference"},
-        Case{"max_error = 0", ".max_error: found 0; accepted: a number in (0, 1]"},
-        Case{"max_error = 0.1\nquality = 'draft'",
+        WrongKeys{"max_error = 0", ".max_error: found 0; accepted: a number in (0, 1]"},
+        WrongKeys{"max_error = 0.1\nquality = 'draft'",
              ".max_error: found 0.1; accepted: no such key beside quality"},
-        Case{"frequency_hz = 0.5", ".frequency_hz: found 0.5; " HZ},
-        Case{"bandwidth_hz = 0", ".bandwidth_hz: found 0; " HZ},
-        Case{"water = {salinty_psu = 3}",
+        WrongKeys{"frequency_hz = 0.5", ".frequency_hz: found 0.5; " HZ},
+        WrongKeys{"bandwidth_hz = 0", ".bandwidth_hz: found 0; " HZ},
+        WrongKeys{"water = {salinty_psu = 3}",
              ".water.salinty_psu: unknown key; nearest known key: salinity_psu"},
-        Case{"water = {ph = 5}", ".water.ph: found 5; accepted: a number in [6, 10]"},
-        Case{"water = {temperature_c = 61}",
+        WrongKeys{"water = {ph = 5}", ".water.ph: found 5; accepted: a number in [6, 10]"},
+        WrongKeys{"water = {temperature_c = 61}",
              ".water.temperature_c: found 61; accepted: a number in [-4, 60] degrees Celsius"},
-        Case{"level = 3", ".level: found 3; accepted: a table, under [level]"},
-        Case{"level = {source_level_db = 301}", ".level.source_level_db: found 301; " DB},
-        Case{"level = {absorption = 'thorp'}",
+        WrongKeys{"level = 3", ".level: found 3; accepted: a table, under [level]"},
+        WrongKeys{"level = {source_level_db = 301}", ".level.source_level_db: found 301; " DB},
+        WrongKeys{"level = {absorption = 'thorp'}",
              ".level.absorption: found \"thorp\"; accepted: francois-garrison, ainslie-mccolm, "
              "none, or a number in [0, 1000] dB/m"},
-        Case{"level = {tvg = 81}",
+        WrongKeys{"level = {tvg = 81}",
              ".level.tvg: found 81; accepted: none, a number in [0, 80] (times log10 of metres), "
              "or " GAINS},
-        Case{"level = {tvg = []}", ".level.tvg: found []; accepted: " GAINS},
-        Case{"level = {tvg = 'no.csv'}",
+        WrongKeys{"level = {tvg = []}", ".level.tvg: found []; accepted: " GAINS},
+        WrongKeys{"level = {tvg = 'no.csv'}",
              ".level.tvg: found \"no.csv\"; accepted: a file; no.csv is none"},
-        Case{"level = {tvg = 'back.csv'}",
+        WrongKeys{"level = {tvg = 'back.csv'}",
              ".level.tvg: back.csv:3: found 1 after 1; accepted: range_m, db, the first column "
              "rising"},
-        Case{"level = {tvg = 'three.csv'}",
+        WrongKeys{"level = {tvg = 'three.csv'}",
              ".level.tvg: three.csv:1: more than 2 numbers; accepted: range_m, db"},
-        Case{"level = {tvg = [[0, 1]], tvg_absorption = true}",
+        WrongKeys{"level = {tvg = [[0, 1]], tvg_absorption = true}",
              ".level.tvg_absorption: found true; accepted: no such key beside a table of gains"},
-        Case{"beam = {azimuth = 'sync'}",
+        WrongKeys{"beam = {azimuth = 'sync'}",
              ".beam.azimuth: found \"sync\"; accepted: sinc, hamming, or " ANGLES},
-        Case{"beam = {azimuth = 'loud.csv'}",
+        WrongKeys{"beam = {azimuth = 'loud.csv'}",
              ".beam.azimuth: loud.csv:2: found 1, 3; accepted: angle_deg, db in [-180, 180] "
              "degrees and [-300, 0] decibels"},
-        Case{"beam = {azimuth = [[0, 0], [181, -3]]}",
+        WrongKeys{"beam = {azimuth = [[0, 0], [181, -3]]}",
              ".beam.azimuth: row 2: found 181, -3; accepted: angle_deg, db in [-180, 180] degrees "
              "and [-300, 0] decibels"},
-        Case{"beam = {azimuth_deg = 2}",
+        WrongKeys{"beam = {azimuth_deg = 2}",
              ".beam.azimuth_deg: found 2; accepted: no such key without azimuth, the beam's "
              "shape"},
-        Case{"beam = {elevation = [[0, 0]], elevation_deg = 2}",
+        WrongKeys{"beam = {elevation = [[0, 0]], elevation_deg = 2}",
              ".beam.elevation_deg: found 2; accepted: no such key beside a table"},
-        Case{"beam = {samples = 65}",
+        WrongKeys{"beam = {samples = 65}",
              ".beam.samples: found 65; accepted: a whole number from 1 to 64"},
-        Case{"range_spread = {window = 'hamming'}",
+        WrongKeys{"range_spread = {window = 'hamming'}",
              ".range_spread.window: found \"hamming\"; accepted: one of none, hann"}),
-    name_of);
+    wrong_keys_name);
 
 INSTANTIATE_TEST_SUITE_P(
     Terms, SonarError,
     testing::Values(
-        Case{"speckle = {shape = 0.01}",
+        WrongKeys{"speckle = {shape = 0.01}",
              ".speckle.shape: found 0.01; accepted: 0, or in [0.05, 1000]"},
-        Case{"speckle = {texture_m = 1}",
+        WrongKeys{"speckle = {texture_m = 1}",
              ".speckle.texture_m: found 1; accepted: no such key without shape"},
-        Case{"noise = {level_db = 60}",
+        WrongKeys{"noise = {level_db = 60}",
              ".noise: found a table; accepted: noise beside level: its decibels are the level's"},
-        Case{"ghosts = {}", ".ghosts: no mirror; accepted: surface = true, bottom_m, or both"},
-        Case{"ghosts = {surface = true, bottom_reflection = 1}",
+        WrongKeys{"ghosts = {}", ".ghosts: no mirror; accepted: surface = true, bottom_m, or both"},
+        WrongKeys{"ghosts = {surface = true, bottom_reflection = 1}",
              ".ghosts.bottom_reflection: found 1; accepted: no such key without bottom_m"},
-        Case{"ghosts = {bottom_m = 0}",
+        WrongKeys{"ghosts = {bottom_m = 0}",
              ".ghosts.bottom_m: found 0; accepted: a number in (0, 12000] metres"},
-        Case{"sound_speed = {}", ".sound_speed.profile: found nothing; accepted: " SPEEDS},
-        Case{"sound_speed = {profile = [[0, 99]]}",
+        WrongKeys{"sound_speed = {}", ".sound_speed.profile: found nothing; accepted: " SPEEDS},
+        WrongKeys{"sound_speed = {profile = [[0, 99]]}",
              ".sound_speed.profile: row 1: found 0, 99; accepted: depth_m, m/s in [-100, 12000] "
              "metres and [100, 10000] m/s"},
-        Case{"motion = {}",
+        WrongKeys{"motion = {}",
              ".motion: no motion; accepted: within_ping = true, doppler = true, or both"},
-        Case{"motion = {within_ping = true, pulse_s = 1}",
+        WrongKeys{"motion = {within_ping = true, pulse_s = 1}",
              ".motion.pulse_s: found 1; accepted: no such key without doppler = true"},
-        Case{"motion = {doppler = true}",
+        WrongKeys{"motion = {doppler = true}",
              ".motion: found a table; accepted: doppler beside range_spread or bandwidth_hz: it "
              "shifts the pulse"},
-        Case{"labels = {cocoa = true}", ".labels.cocoa: unknown key; nearest known key: coco"},
-        Case{"output = {bits = 12}", ".output.bits: found 12; accepted: 0 (floats), 8 or 16"},
-        Case{"output = {bits = 8}",
+        WrongKeys{"labels = {cocoa = true}", ".labels.cocoa: unknown key; nearest known key: coco"},
+        WrongKeys{"output = {bits = 12}", ".output.bits: found 12; accepted: 0 (floats), 8 or 16"},
+        WrongKeys{"output = {bits = 8}",
              ".output: found a table; accepted: bits beside level: its floor is in decibels"},
-        Case{"output = {span_db = 8}",
+        WrongKeys{"output = {span_db = 8}",
              ".output.span_db: found 8; accepted: no such key without bits"}),
-    name_of);
+    wrong_keys_name);
 
 TEST(SceneMaterial, AnUnknownMaterialIsToldWithTheNearest) {
   const test::ScratchFolder scratch;

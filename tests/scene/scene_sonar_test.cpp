@@ -5,18 +5,10 @@
 #include "engine/core/files.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/scene_materials.hpp"
-#include "tests/support/support.hpp"
+#include "tests/scene/scene_texts.hpp"
 
 namespace neritic::scene {
 namespace {
-
-Scene scene_of(const test::ScratchFolder& scratch, const std::string& text) {
-  EXPECT_TRUE(write_text(scratch / "s.toml", text).ok());
-  auto scene = load_scene(scratch / "s.toml");
-  if (scene.ok()) return std::move(scene).value();
-  ADD_FAILURE() << scene.error().message;
-  return {};
-}
 
 Sonar sonar_of(const test::ScratchFolder& scratch, const std::string& keys) {
   Scene scene = scene_of(scratch, "[[sonars]]\n" + keys);

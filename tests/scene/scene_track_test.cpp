@@ -4,24 +4,10 @@
 
 #include "engine/core/files.hpp"
 #include "engine/scene/scene.hpp"
-#include "tests/support/support.hpp"
+#include "tests/scene/scene_texts.hpp"
 
 namespace neritic::scene {
 namespace {
-
-Scene scene_of(const test::ScratchFolder& scratch, const std::string& text,
-               const SceneOptions& options = {}) {
-  EXPECT_TRUE(write_text(scratch / "s.toml", text).ok());
-  auto scene = load_scene(scratch / "s.toml", options);
-  if (scene.ok()) return std::move(scene).value();
-  ADD_FAILURE() << scene.error().message;
-  return {};
-}
-
-void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-9) {
-  EXPECT_NEAR(glm::length(a - b), 0.0, tolerance)
-      << a.x << ' ' << a.y << ' ' << a.z << " against " << b.x << ' ' << b.y << ' ' << b.z;
-}
 
 constexpr const char* kConvoy = R"(
 [[vehicles]]

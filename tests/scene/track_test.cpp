@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "tests/support/support.hpp"
+#include "tests/scene/scene_texts.hpp"
 
 namespace neritic::scene {
 
@@ -16,11 +16,6 @@ void PrintTo(const LawnMower& mower, std::ostream* out) {
 }
 
 namespace {
-
-void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-9) {
-  EXPECT_NEAR(glm::length(a - b), 0.0, tolerance)
-      << a.x << ' ' << a.y << ' ' << a.z << " against " << b.x << ' ' << b.y << ' ' << b.z;
-}
 
 Vec3 forward(const Pose& pose) {
   return pose.rotation * Vec3(0, 0, -1);

@@ -4,14 +4,12 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/scene/shapes.hpp"
 #include "sonar/acoustics.hpp"
-#include "tests/support/gpu_fixture.hpp"
-#include "tests/support/support.hpp"
+#include "tests/session/sonar_pings.hpp"
 #include "tools/session/session.hpp"
 
 namespace neritic::tools {
@@ -84,25 +82,6 @@ scene::Scene some_sea(scene::Sonar sonar) {
   return scene;
 }
 
-std::vector<SonarFrame> ping(gpu::Device& device, const scene::Scene& scene,
-                             std::uint32_t number = 0) {
-  FrameRequest request;
-  request.sonars = {0};
-  request.frame = number;
-  request.capture.geometry = false;
-  auto session = Session::create(device, scene);
-  if (!session.ok()) {
-    ADD_FAILURE() << session.error().message;
-    return {};
-  }
-  auto result = (*session)->render(request);
-  if (!result.ok()) {
-    ADD_FAILURE() << result.error().message;
-    return {};
-  }
-  return std::move(result->sonars);
-}
-
 // What must hold of any sonar whatever: returns the total.
 double expect_sane(const std::vector<SonarFrame>& frames, const std::string& of) {
   double total = 0.0;
@@ -126,21 +105,6 @@ double expect_sane(const std::vector<SonarFrame>& frames, const std::string& of)
   return total;
 }
 
-double total(const SonarFrame& frame) {
-  return std::accumulate(frame.image.intensity.begin(), frame.image.intensity.end(), 0.0);
-}
-
-double mean_range_m(const SonarFrame& frame) {
-  double sum = 0.0, weighted = 0.0;
-  for (std::uint32_t row = 0; row < frame.image.n_range; ++row)
-    for (std::uint32_t c = 0; c < frame.image.n_azimuth; ++c) {
-      const double v = frame.image.intensity[std::size_t{row} * frame.image.n_azimuth + c];
-      sum += v;
-      weighted += v * frame.grid.range_m(row);
-    }
-  return weighted / sum;
-}
-
 // A narrow sonar on a wall that lies across its axis.
 scene::Scene wall_at(double distance_m, scene::Sonar sonar) {
   scene::Scene scene;
@@ -155,7 +119,7 @@ TEST_F(SonarExtremes, EveryKindWithEveryTermIsFinite) {
   for (const SonarKind kind : kKinds) {
     scene::Sonar sonar = small_sonar(kind);
     sonar.terms = every_term();
-    EXPECT_GT(expect_sane(ping(device(), some_sea(sonar), 3), scene::name_of(kind)), 0.0);
+    EXPECT_GT(expect_sane(pings(device(), some_sea(sonar), 3), scene::name_of(kind)), 0.0);
   }
 }
 
@@ -166,20 +130,20 @@ TEST_F(SonarExtremes, FromFiveCentimetresToTenKilometres) {
     sonar.range_max_m = distance_m / 0.9;
     sonar.near_m = std::min(0.02, sonar.near_m);
     scene::Scene scene = wall_at(distance_m, sonar);
-    const auto plain = ping(device(), scene);
+    const auto plain = pings(device(), scene);
     expect_sane(plain, fmt::format("{} m", distance_m));
     EXPECT_NEAR(mean_range_m(plain.at(0)) / distance_m, 1.0, 2e-3) << distance_m;
     EXPECT_NEAR(total(plain[0]), 32.0, 0.01) << distance_m;  // 1 a beam, cos of half a degree
     scene.sonars[0].terms.level = scene::SonarLevel{
         .absorption = scene::SonarLevel::Absorption::kFixed, .absorption_db_per_m = 1e-3};
-    const auto level = ping(device(), scene);
+    const auto level = pings(device(), scene);
     // mu dOmega / r^2 10^(-2 alpha r / 10).
     const double solid_angle = radians(1.0) * 2.0 * std::sin(radians(0.5));
     const double db = 10.0 * std::log10(solid_angle) - 27.0 - 20.0 * std::log10(distance_m) -
                       2e-3 * distance_m + 200.0;
     EXPECT_NEAR(10.0 * std::log10(total(level.at(0))), db, 0.1) << distance_m;
     scene.sonars[0].terms = every_term();
-    expect_sane(ping(device(), scene), fmt::format("{} m, every term", distance_m));
+    expect_sane(pings(device(), scene), fmt::format("{} m, every term", distance_m));
   }
 }
 
@@ -194,7 +158,7 @@ TEST_F(SonarExtremes, AperturesOfATenthDegreeAndAFullTurn) {
       }
       sonar.terms = every_term();
       if (aperture_deg < 1.0) sonar.terms.beam.azimuth->half_power_rad = radians(0.1);
-      expect_sane(ping(device(), some_sea(sonar)),
+      expect_sane(pings(device(), some_sea(sonar)),
                   fmt::format("{} {} degrees", scene::name_of(kind), aperture_deg));
     }
   // Inside a ball every beam of a full turn hears the same.
@@ -207,7 +171,7 @@ TEST_F(SonarExtremes, AperturesOfATenthDegreeAndAFullTurn) {
   scene::turn_inside_out(ball);
   add_object(scene, std::move(ball), {0, 0, 0}, 12);
   scene.sonars = {sonar};
-  const auto frames = ping(device(), scene);
+  const auto frames = pings(device(), scene);
   const sonar::SonarImage& image = frames.at(0).image;
   for (std::uint32_t c = 0; c < image.n_azimuth; ++c) {
     double sum = 0.0;
@@ -226,13 +190,13 @@ TEST_F(SonarExtremes, FromOneBeamTo4096) {
     sonar.bins_range = 64;
     sonar.bins_elevation = 32;
     sonar.gbuffer_scale = beams == 1 ? 16.0 : 0.25;
-    plain[i] = expect_sane(ping(device(), some_sea(sonar)), fmt::format("{} beams", beams)) / beams;
+    plain[i] = expect_sane(pings(device(), some_sea(sonar)), fmt::format("{} beams", beams)) / beams;
     sonar.terms.beam.samples = beams == 1 ? 128 : 1;
     spread[i] =
-        expect_sane(ping(device(), some_sea(sonar)), fmt::format("{} beams", beams)) / beams;
+        expect_sane(pings(device(), some_sea(sonar)), fmt::format("{} beams", beams)) / beams;
     sonar.terms = every_term();
     if (beams > 1) sonar.terms.beam.azimuth->half_power_rad = radians(0.1);
-    expect_sane(ping(device(), some_sea(sonar)), fmt::format("{} beams, every term", beams));
+    expect_sane(pings(device(), some_sea(sonar)), fmt::format("{} beams, every term", beams));
     ++i;
   }
   // The mean over a beam of all bearings is the mean of many beams.
@@ -251,7 +215,7 @@ TEST_F(SonarExtremes, AbsorptionFromOneHertzToTenMegahertz) {
     sonar.terms.level = scene::SonarLevel{};
     sonar.terms.water.depth_m = 0.0;
     const scene::Scene scene = wall_at(1.0, sonar);
-    const auto frames = ping(device(), scene);
+    const auto frames = pings(device(), scene);
     heard[i++] = expect_sane(frames, fmt::format("{} Hz", frequency_hz));
     const double wanted = sonar::absorption_db_m(sonar::AbsorptionModel::kFrancoisGarrison,
                                                  {10.0, 35.0, 0.0, 8.0}, frequency_hz);
@@ -260,7 +224,7 @@ TEST_F(SonarExtremes, AbsorptionFromOneHertzToTenMegahertz) {
     scene::Scene every = scene;
     every.sonars[0].terms = every_term();
     every.sonars[0].terms.frequency_hz = frequency_hz;
-    expect_sane(ping(device(), every), fmt::format("{} Hz, every term", frequency_hz));
+    expect_sane(pings(device(), every), fmt::format("{} Hz, every term", frequency_hz));
     if (i == 2) {
       EXPECT_NEAR(10.0 * std::log10(heard[0] / heard[1]), 2.0 * wanted, 0.5);
     }
@@ -274,10 +238,10 @@ TEST_F(SonarExtremes, NoReturnAtAllIsSilenceOrNoise) {
     sonar.terms = every_term();
     sonar.terms.noise.reset();
     empty.sonars = {sonar};
-    for (const SonarFrame& frame : ping(device(), empty)) EXPECT_EQ(total(frame), 0.0);
+    for (const SonarFrame& frame : pings(device(), empty)) EXPECT_EQ(total(frame), 0.0);
     empty.sonars[0].terms.noise = scene::SonarNoise{60.0};
     empty.sonars[0].terms.level = scene::SonarLevel{};
-    for (const SonarFrame& frame : ping(device(), empty)) {
+    for (const SonarFrame& frame : pings(device(), empty)) {
       const double n = static_cast<double>(frame.image.intensity.size());
       // Exponential: the mean of n is off by 1 / sqrt(n).
       EXPECT_NEAR(total(frame) / n / 1e6, 1.0, 4.0 / std::sqrt(n)) << scene::name_of(kind);
@@ -298,7 +262,7 @@ TEST_F(SonarExtremes, AFloorFillsEveryBin) {
     scene.sonars = {sonar};
     const auto silent_bins = [&](const scene::Scene& s) {
       std::size_t silent = 0;
-      for (const SonarFrame& frame : ping(device(), s))
+      for (const SonarFrame& frame : pings(device(), s))
         for (const float v : frame.image.intensity) silent += !(v > 0.0f);
       return silent;
     };
@@ -323,21 +287,21 @@ TEST_F(SonarExtremes, AFloorSeenAtAHundredthOfADegree) {
   scene::Scene scene;
   add_object(scene, scene::make_box({300.0, 1.0, 300.0}), {0.0, -0.5 - kHeight_m, 0.0}, 1);
   scene.sonars = {sonar};
-  const auto frames = ping(device(), scene);
+  const auto frames = pings(device(), scene);
   expect_sane(frames, "grazing");
   const double nearest = radians(0.02), farthest = kHeight_m / kFar_m;
   const double mean =
       (std::cos(farthest) - std::cos(nearest)) / radians(0.02);  // of sin over all rows
   EXPECT_NEAR(total(frames.at(0)) / frames[0].image.n_azimuth / mean, 1.0, 0.05);
   scene.sonars[0].terms = every_term();
-  expect_sane(ping(device(), scene), "grazing, every term");
+  expect_sane(pings(device(), scene), "grazing, every term");
 }
 
 TEST_F(SonarExtremes, AHundredKilometresFromTheOriginItSoundsTheSame) {
   for (const SonarKind kind : kKinds) {
     scene::Sonar sonar = small_sonar(kind);
     sonar.terms = every_term();
-    expect_sane(ping(device(), some_sea(sonar)), scene::name_of(kind));
+    expect_sane(pings(device(), some_sea(sonar)), scene::name_of(kind));
     // Scatterers belong to their place in the world; all else goes with the sonar.
     sonar.terms.speckle.reset();
     sonar.terms.noise.reset();
@@ -345,7 +309,7 @@ TEST_F(SonarExtremes, AHundredKilometresFromTheOriginItSoundsTheSame) {
     for (scene::Object& object : there.objects) object.mount.pose.position_m.x += 1e5;
     there.sonars[0].mount.pose.position_m.x += 1e5;
     for (auto& place : there.sonars[0].mount.track->places) place.position_m.x += 1e5;
-    const auto a = ping(device(), here), b = ping(device(), there);
+    const auto a = pings(device(), here), b = pings(device(), there);
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t head = 0; head < a.size(); ++head) {
       double difference = 0.0;
@@ -354,7 +318,7 @@ TEST_F(SonarExtremes, AHundredKilometresFromTheOriginItSoundsTheSame) {
       EXPECT_LE(difference, 2e-3 * total(a[head])) << scene::name_of(kind);
     }
     there.sonars[0].terms = every_term();
-    expect_sane(ping(device(), there), fmt::format("{} far away", scene::name_of(kind)));
+    expect_sane(pings(device(), there), fmt::format("{} far away", scene::name_of(kind)));
   }
 }
 

@@ -44,7 +44,9 @@ inline scene::SonarLevel plain_level() {
   return level;
 }
 
-inline SonarFrame ping(gpu::Device& device, const scene::Scene& scene, std::uint32_t number = 0) {
+// What every head of the scene's first sonar heard.
+inline std::vector<SonarFrame> pings(gpu::Device& device, const scene::Scene& scene,
+                                     std::uint32_t number = 0) {
   FrameRequest request;
   request.sonars = {0};
   request.frame = number;
@@ -59,7 +61,12 @@ inline SonarFrame ping(gpu::Device& device, const scene::Scene& scene, std::uint
     ADD_FAILURE() << result.error().message;
     return {};
   }
-  return std::move(result->sonars.at(0));
+  return std::move(result->sonars);
+}
+
+inline SonarFrame ping(gpu::Device& device, const scene::Scene& scene, std::uint32_t number = 0) {
+  auto frames = pings(device, scene, number);
+  return frames.empty() ? SonarFrame{} : std::move(frames.front());
 }
 
 inline double total(const SonarFrame& frame) {

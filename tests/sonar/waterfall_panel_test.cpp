@@ -8,13 +8,13 @@
 namespace neritic {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNanPixel = std::numeric_limits<float>::quiet_NaN();
 
 TEST(WaterfallPanel, TicksAreRoundNumbersInsideTheSpan) {
   EXPECT_EQ(sonar::nice_ticks(0, 10, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
   EXPECT_EQ(sonar::nice_ticks(7.5, -7.5, 3), (std::vector<double>{-5, 0, 5}));
   EXPECT_TRUE(sonar::nice_ticks(3, 3, 5).empty());
-  EXPECT_TRUE(sonar::nice_ticks(0, kNan, 5).empty());
+  EXPECT_TRUE(sonar::nice_ticks(0, kNanPixel, 5).empty());
   EXPECT_LT(sonar::nice_ticks(1e17, 1e17 + 64, 50).size(), 60u);
   for (const double value : {0.011, 0.02, 3.0, 49.99, 50.0, 1e6}) {
     const double nice = sonar::nice_at_most(value);
@@ -37,7 +37,7 @@ TEST(WaterfallPanel, ResamplingKeepsTheMeanAndLeavesOutHoles) {
     EXPECT_NEAR(sum, mean, 1e-5) << w << " x " << h;
   }
   EXPECT_EQ(sonar::resample_area(values, 5, 7, 7, 5).data, values);
-  const std::vector<float> holes{kNan, 2, kNan, kNan};
+  const std::vector<float> holes{kNanPixel, 2, kNanPixel, kNanPixel};
   EXPECT_EQ(sonar::resample_area(holes, 2, 2, 1, 1).data[0], 2.0f);
   EXPECT_TRUE(std::isnan(sonar::resample_area(holes, 2, 2, 1, 2).data[1]));
 }
@@ -65,7 +65,7 @@ TEST(WaterfallPanel, ThePercentileIsOfWhatIsHeard) {
   std::vector<float> values(1000, 0.0f);
   EXPECT_EQ(sonar::percentile_of_heard(values, 0.9), 1.0);
   for (int i = 0; i < 101; ++i) values[i * 9] = static_cast<float>(i + 1);
-  values[1] = kNan;
+  values[1] = kNanPixel;
   EXPECT_EQ(sonar::percentile_of_heard(values, 0.5), 51.0);
   EXPECT_EQ(sonar::percentile_of_heard(values, 1.0), 101.0);
 }

@@ -1,5 +1,7 @@
 // `neritic sonar imaging` on files: real data sets in their own conventions, coded normals, bad
 // input.
+#include "tests/tools/sonar_command.hpp"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -7,16 +9,16 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/math.hpp"
-#include "engine/core/npy.hpp"
-#include "engine/gpu/device.hpp"
 #include "engine/scene/image_file.hpp"
 #include "tests/support/support.hpp"
-#include "tools/neritic/commands.hpp"
 
 namespace neritic {
 namespace {
 
 namespace fs = std::filesystem;
+using test::have_device;
+using test::numbers_of;
+using test::sum;
 
 // The command as a user types it after `neritic sonar imaging`.
 Status sonar(std::vector<std::string> words) {
@@ -25,23 +27,6 @@ Status sonar(std::vector<std::string> words) {
   NERITIC_TRY(const std::string done, line.run());
   EXPECT_NE(done.find("sonar.png"), std::string::npos) << done;
   return {};
-}
-
-bool have_device() {
-  const auto devices = gpu::list_devices();
-  return devices.ok() && !devices->empty();
-}
-
-std::vector<double> numbers_of(const fs::path& path) {
-  const auto array = read_npy(path);
-  EXPECT_TRUE(array.ok()) << array.error().message;
-  return array.ok() ? array->to_doubles() : std::vector<double>();
-}
-
-double sum(const std::vector<double>& values) {
-  double total = 0.0;
-  for (const double v : values) total += v;
-  return total;
 }
 
 // The data sets' conventions, as sonar/README.md lists them. Paths are below shared/data/rgbd.

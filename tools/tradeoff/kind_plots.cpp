@@ -12,8 +12,6 @@ using sonar::Canvas;
 using sonar::Color;
 
 constexpr double kWidth = 1920, kTop = 70, kCurves = 560, kRow = 24;
-constexpr double kLevels[] = {0.05, 0.02, 0.01};
-const char* const kLevelNames[] = {"draft", "standard", "reference"};
 const Color kRing{0.75f, 0.1f, 0.1f};
 
 std::vector<const KindPoint*> of_sweep(const KindResult& k, const std::string& sweep) {
@@ -54,11 +52,11 @@ void draw_cost(Canvas& canvas, const Box& box, const KindResult& k) {
   y.min = std::min(y.min, 0.008);
   draw_lines(canvas, box, "error over cost", x, y, series);
   const Box in = inside(box);
-  for (std::size_t i = 0; i < std::size(kLevels); ++i) {
-    if (kLevels[i] < y.min || kLevels[i] > y.max) continue;
-    const double py = place(y, kLevels[i], in.bottom, in.top);
+  for (std::size_t i = 0; i < std::size(kErrorLevels); ++i) {
+    if (kErrorLevels[i].max_error < y.min || kErrorLevels[i].max_error > y.max) continue;
+    const double py = place(y, kErrorLevels[i].max_error, in.bottom, in.top);
     canvas.segment(in.left, py, in.right, py, 1.0, kRing.with_alpha(0.5f));
-    const KindPoint* p = cheapest(k, kLevels[i]);
+    const KindPoint* p = cheapest(k, kErrorLevels[i].max_error);
     if (p == nullptr) continue;
     canvas.arc(place(x, p->ms(), in.left, in.right), place(y, p->error, in.bottom, in.top),
                8.0 + 3.0 * double(i), -3.1416, 3.1416, 1.8, kRing);
@@ -108,15 +106,16 @@ void draw_other_knobs(Canvas& canvas, const Box& box, const KindResult& k) {
 
 // What the rings of draw_cost are, a line each.
 void draw_levels(Canvas& canvas, double y, const KindResult& k) {
-  for (std::size_t i = 0; i < std::size(kLevels); ++i, y += 22) {
-    const KindPoint* p = cheapest(k, kLevels[i]);
+  for (std::size_t i = 0; i < std::size(kErrorLevels); ++i, y += 22) {
+    const KindPoint* p = cheapest(k, kErrorLevels[i].max_error);
     const std::string words =
         p ? fmt::format(
                 "{} (under {:g} %): {:g} pixels a cell, {} columns, {} rows, {} range bins: "
                 "{:.2f} %, {:.1f} ms",
-                kLevelNames[i], 100 * kLevels[i], p->knobs.scale, p->knobs.columns, p->knobs.rows,
-                p->bins_range, 100.0 * p->error, p->ms())
-          : fmt::format("{} (under {:g} %): none of these", kLevelNames[i], 100 * kLevels[i]);
+                kErrorLevels[i].name, 100 * kErrorLevels[i].max_error, p->knobs.scale,
+                p->knobs.columns, p->knobs.rows, p->bins_range, 100.0 * p->error, p->ms())
+          : fmt::format("{} (under {:g} %): none of these", kErrorLevels[i].name,
+                        100 * kErrorLevels[i].max_error);
     canvas.arc(84, y - 4, 4.0 + 1.5 * double(i), -3.1416, 3.1416, 1.6, kRing);
     canvas.text(104, y, 10, words, kInk);
   }

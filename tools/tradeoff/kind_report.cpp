@@ -11,12 +11,6 @@
 namespace neritic::tools {
 namespace {
 
-struct Level {
-  const char* name;
-  double max_error;
-};
-constexpr Level kLevels[] = {{"draft", 0.05}, {"standard", 0.02}, {"reference", 0.01}};
-
 std::string knobs_csv(const KindResult& k) {
   std::string out =
       "sweep,setting,gather,gbuffer_scale,columns,rows,bins_range,beams,error,error_cells,"
@@ -65,7 +59,7 @@ nlohmann::json summary(const SonarTradeoff& t) {
     nlohmann::json& kind = json["kinds"][k.kind];
     kind["rays"] = k.rays;
     kind["error_of_the_rays"] = k.uncertain;
-    for (const Level& level : kLevels)
+    for (const ErrorLevel& level : kErrorLevels)
       if (const KindPoint* p = cheapest(k, level.max_error)) kind[level.name] = json_of(*p);
   }
   return json;
@@ -82,7 +76,7 @@ std::string markdown(const SonarTradeoff& t) {
       "\n| kind | level | pixels a cell | columns | rows | error | ms "
       "|\n|---|---|---|---|---|---|---|\n";
   for (const KindResult& k : t.kinds)
-    for (const Level& level : kLevels) {
+    for (const ErrorLevel& level : kErrorLevels) {
       const KindPoint* p = cheapest(k, level.max_error);
       out += p ? fmt::format("| {} | {} | {:g} | {} | {} | {} | {} | {:.1f} |\n", k.kind,
                              level.name, p->knobs.scale, p->knobs.columns, p->knobs.rows,

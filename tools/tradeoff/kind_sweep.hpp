@@ -54,6 +54,14 @@ std::uint64_t kind_steps(scene::SonarKind kind, bool quick);
 Result<KindResult> sweep_kind(gpu::Device& device, const scene::Scene& scene, const RayWorld& world,
                               const KindSetting& kind, const KindSweepOptions& options);
 
+// What a named quality level promises: the cheapest settings below this error.
+struct ErrorLevel {
+  const char* name;
+  double max_error;
+};
+inline constexpr ErrorLevel kErrorLevels[] = {
+    {"draft", 0.05}, {"standard", 0.02}, {"reference", 0.01}};
+
 // The cheapest of the joint sweep whose error is at most that; nullptr: none.
 const KindPoint* cheapest(const KindResult& result, double max_error);
 
