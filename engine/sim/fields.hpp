@@ -1,0 +1,114 @@
+// What a struct consists of, said once: hash, finiteness check and log read it from here.
+//   struct Pilot {
+//     double surge_n = 0.0;
+//     Vec3 goal_m{0.0};
+//     static void fields(auto&& field, auto& self) {
+//       field("surge_n", self.surge_n);
+//       field("goal_m", self.goal_m);
+//     }
+//   };
+// Fields are numbers of 32 or 64 bits, vectors, quaternions, poses, arrays of those, and structs
+// that say theirs. No bool, enum or smaller number: they would leave padding, whose bytes mean
+// nothing.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <type_traits>
+
+#include "engine/core/check.hpp"
+#include "engine/core/math.hpp"
+
+namespace neritic::sim {
+
+template <class T>
+concept Scalar = std::same_as<T, double> || std::same_as<T, float> ||
+    std::same_as<T, std::int32_t> || std::same_as<T, std::uint32_t> ||
+    std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t>;
+
+namespace detail {
+template <class T>
+struct IsStdArray : std::false_type {};
+template <class T, std::size_t n>
+struct IsStdArray<std::array<T, n>> : std::true_type {};
+}  // namespace detail
+
+// Calls part(name, piece) for each piece that value, which is no number, consists of directly.
+template <class T, class Part>
+void for_each_part(T& value, Part&& part) {
+  using Plain = std::remove_const_t<T>;
+  if constexpr (std::same_as<Plain, Vec2>) {
+    part("x", value.x), part("y", value.y);
+  } else if constexpr (std::same_as<Plain, Vec3>) {
+    part("x", value.x), part("y", value.y), part("z", value.z);
+  } else if constexpr (std::same_as<Plain, Quat>) {
+    part("w", value.w), part("x", value.x), part("y", value.y), part("z", value.z);
+  } else if constexpr (std::same_as<Plain, Pose>) {
+    part("position_m", value.position_m), part("rotation", value.rotation);
+  } else if constexpr (std::is_bounded_array_v<Plain> || detail::IsStdArray<Plain>::value) {
+    for (std::size_t i = 0; i < std::size(value); ++i) part(i, value[i]);
+  } else {
+    Plain::fields(part, value);
+  }
+}
+
+// Calls visit(scalar) for every number in value, in the order of declaration.
+template <class T, class Visit>
+void for_each_scalar(T& value, Visit&& visit) {
+  if constexpr (Scalar<std::remove_const_t<T>>)
+    visit(value);
+  else
+    for_each_part(value, [&](const auto&, auto& piece) { for_each_scalar(piece, visit); });
+}
+
+// The same with names: visit("pose.position_m.x", scalar).
+template <class T, class Visit>
+void for_each_named_scalar(T& value, Visit&& visit, const std::string& name = {}) {
+  if constexpr (Scalar<std::remove_const_t<T>>)
+    visit(name, value);
+  else
+    for_each_part(value, [&](const auto& piece_name, auto& piece) {
+      const std::string last = fmt::format("{}", piece_name);
+      for_each_named_scalar(piece, visit, name.empty() ? last : name + "." + last);
+    });
+}
+
+// Bytes of all numbers in value.
+template <class T>
+std::size_t scalar_bytes(const T& value) {
+  std::size_t bytes = 0;
+  for_each_scalar(value, [&](const auto& scalar) { bytes += sizeof scalar; });
+  return bytes;
+}
+
+// A bug where a struct has bytes that no field names: a forgotten field, or padding.
+template <class T>
+void check_fields_cover(const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  NERITIC_CHECK(scalar_bytes(value) == sizeof(T), "fields name {} bytes of {}", scalar_bytes(value),
+                sizeof(T));
+}
+
+template <class T>
+bool all_finite(const T& value) {
+  bool finite = true;
+  for_each_scalar(value, [&](const auto& scalar) {
+    if constexpr (std::is_floating_point_v<std::remove_cvref_t<decltype(scalar)>>)
+      finite = finite && std::isfinite(scalar);
+  });
+  return finite;
+}
+
+// The same bits in every number.
+template <class T>
+bool same_bits(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+}  // namespace neritic::sim

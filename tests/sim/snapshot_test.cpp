@@ -1,0 +1,95 @@
+#include "engine/sim/snapshot.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/spring.hpp"
+
+namespace neritic::sim {
+namespace {
+
+TEST(BlendShare, SaysHowItKnows) {
+  const auto expect = [](TimeNs time_ns, double share, BlendKind kind) {
+    const BlendShare found = blend_share(1000, 2000, time_ns, 500);
+    EXPECT_DOUBLE_EQ(found.share, share) << time_ns;
+    EXPECT_EQ(found.kind, kind) << time_ns;
+  };
+  expect(0, 0.0, BlendKind::kHeld);
+  expect(1000, 0.0, BlendKind::kExact);
+  expect(1250, 0.25, BlendKind::kInterpolated);
+  expect(2000, 1.0, BlendKind::kExact);
+  expect(2400, 1.4, BlendKind::kPredicted);
+  expect(2500, 1.5, BlendKind::kPredicted);
+  expect(9000, 1.5, BlendKind::kHeld);
+}
+
+TEST(BlendShare, BeforeTheFirstStepThereIsNoLineToFollow) {
+  const BlendShare found = blend_share(1000, 1000, 5000, 1'000'000);
+  EXPECT_EQ(found.share, 1.0);
+  EXPECT_EQ(found.kind, BlendKind::kHeld);
+}
+
+TEST(BlendPose, TurnsAtAConstantRateThroughBothAndBeyond) {
+  const auto at = [](double angle_rad) {
+    return Pose{Vec3(3.0 * angle_rad, 0.0, 1.0),
+                glm::angleAxis(angle_rad, glm::normalize(Vec3(1.0, 2.0, -1.0)))};
+  };
+  for (const double share : {-0.5, 0.0, 0.3, 1.0, 2.5}) {
+    const Pose found = blend_pose(at(0.2), at(0.5), share), expected = at(0.2 + 0.3 * share);
+    EXPECT_LT(glm::length(found.position_m - expected.position_m), 1e-14);
+    EXPECT_GT(std::abs(glm::dot(found.rotation, expected.rotation)), 1.0 - 1e-14) << share;
+  }
+}
+
+TEST(BlendPose, TakesTheShortWayBetweenQuaternionsOfEitherSign) {
+  const Pose a{Vec3(0.0), glm::angleAxis(0.1, Vec3(0.0, 1.0, 0.0))};
+  Pose b{Vec3(0.0), glm::angleAxis(0.3, Vec3(0.0, 1.0, 0.0))};
+  const Pose middle = blend_pose(a, b, 0.5);
+  b.rotation = -b.rotation;
+  EXPECT_GT(std::abs(glm::dot(blend_pose(a, b, 0.5).rotation, middle.rotation)), 1.0 - 1e-15);
+  EXPECT_NEAR(glm::angle(middle.rotation), 0.2, 1e-14);
+}
+
+TEST(BlendPose, EqualPosesStay) {
+  const Pose pose{Vec3(1.0, 2.0, 3.0), glm::angleAxis(1.0, Vec3(1.0, 0.0, 0.0))};
+  const Pose found = blend_pose(pose, pose, 0.37);
+  EXPECT_EQ(found.position_m, pose.position_m);
+  EXPECT_EQ(found.rotation, pose.rotation);
+}
+
+TEST(SnapshotReader, LockStepGivesTheStatesOfEveryTimeBetweenTheNewestTwo) {
+  auto spring = test::make_spring();
+  auto reader = spring.reader();
+  EXPECT_FALSE(reader.update());
+  EXPECT_EQ(reader.newest().state, test::SpringState{});
+  spring.advance(7);
+  const test::SpringState older = spring.newest().state;
+  spring.advance(1);
+  const test::SpringState newer = spring.newest().state;
+  ASSERT_TRUE(reader.update());
+  EXPECT_EQ(reader.newest().step, 8u);
+  EXPECT_DOUBLE_EQ(reader.newest().time_s, 8.0 / 240.0);
+  EXPECT_EQ(reader.newest().hash, state_hash(newer));
+  const TimeNs from = reader.previous().due_ns, to = reader.newest().due_ns;
+  EXPECT_EQ(to, 33'333'333);
+  const auto exact = reader.at(from, test::blend_spring);
+  EXPECT_EQ(exact.state, older);
+  EXPECT_EQ(exact.kind, BlendKind::kExact);
+  const auto middle = reader.at((from + to) / 2, test::blend_spring);
+  EXPECT_EQ(middle.kind, BlendKind::kInterpolated);
+  EXPECT_NEAR(middle.state.position_m, (older.position_m + newer.position_m) / 2, 1e-9);
+  EXPECT_EQ(reader.at(to + 1000, test::blend_spring).kind, BlendKind::kPredicted);
+}
+
+TEST(SnapshotReader, EveryReaderHasItsOwnEnd) {
+  auto spring = test::make_spring({.readers = 2});
+  auto first = spring.reader(0), second = spring.reader(1);
+  spring.advance(1);
+  EXPECT_TRUE(first.update());
+  spring.advance(1);
+  EXPECT_TRUE(second.update());
+  EXPECT_EQ(first.newest().step, 1u);
+  EXPECT_EQ(second.newest().step, 2u);
+}
+
+}  // namespace
+}  // namespace neritic::sim

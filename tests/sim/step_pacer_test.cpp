@@ -1,0 +1,103 @@
+#include "engine/sim/step_pacer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <vector>
+
+#include "engine/sim/step_clock.hpp"
+#include "engine/sim/step_thread.hpp"
+
+namespace neritic::sim {
+namespace {
+
+constexpr TimeNs kSecond = 1'000'000'000;
+
+TEST(StepPacer, AnHourAtAnyRateGivesItsStepsToTheNanosecond) {
+  for (const double rate_hz : {60.0, 144.0, 240.0, 999.9, 1000.0}) {
+    StepPacer pacer(rate_hz, 1'000'000'000, 12345);
+    EXPECT_EQ(pacer.take(12345 + 3600 * kSecond), static_cast<int>(std::floor(rate_hz * 3600.0)));
+    EXPECT_EQ(pacer.counts().dropped, 0u);
+  }
+}
+
+TEST(StepPacer, AsksForAStepJustWhenItIsDue) {
+  StepPacer pacer(240.0, 4, 0);
+  for (int step = 1; step <= 2400; ++step) {
+    const TimeNs due = pacer.next_ns();
+    EXPECT_EQ(due, std::llround(step * 1e9 / 240.0));
+    EXPECT_EQ(pacer.take(due - 1), 0);
+    ASSERT_EQ(pacer.take(due), 1);
+    EXPECT_EQ(pacer.taken_ns(1, 0), due);
+  }
+  EXPECT_EQ(pacer.counts().caught_up, 0u);
+}
+
+TEST(StepPacer, AShortDelayIsCaughtUp) {
+  StepPacer pacer(1000.0, 4, 0);
+  EXPECT_EQ(pacer.take(3'500'000), 3);
+  EXPECT_EQ(pacer.taken_ns(3, 0), 1'000'000);
+  EXPECT_EQ(pacer.taken_ns(3, 2), 3'000'000);
+  EXPECT_EQ(pacer.next_ns(), 4'000'000);
+  EXPECT_EQ(pacer.counts().steps, 3u);
+  EXPECT_EQ(pacer.counts().caught_up, 2u);
+  EXPECT_EQ(pacer.counts().dropped, 0u);
+}
+
+TEST(StepPacer, ALongDelayIsDroppedAndCounted) {
+  StepPacer pacer(1000.0, 4, 0);
+  EXPECT_EQ(pacer.take(10 * kSecond + 300'000), 4);
+  EXPECT_EQ(pacer.counts().dropped, 9996u);
+  EXPECT_EQ(pacer.counts().dropped_ns, 9'996'000'000);
+  // The four that run are the latest, and the pace goes on from there.
+  EXPECT_EQ(pacer.taken_ns(4, 3), 10 * kSecond);
+  EXPECT_EQ(pacer.next_ns(), 10 * kSecond + 1'000'000);
+  EXPECT_EQ(pacer.take(10 * kSecond + 1'000'000), 1);
+}
+
+TEST(StepPacer, AClockThatGoesBackAsksForNothing) {
+  StepPacer pacer(240.0, 4, kSecond);
+  EXPECT_EQ(pacer.take(0), 0);
+  EXPECT_EQ(pacer.take(-kSecond), 0);
+  EXPECT_EQ(pacer.take(kSecond + 4'166'667), 1);
+}
+
+TEST(StepThread, RunsStepsAtTheirTimesOnASimulatedClock) {
+  SimulatedClock clock(5 * kSecond);
+  std::vector<TimeNs> due;
+  std::atomic<bool> enough{false};
+  {
+    const StepThread thread(clock, StepPacer(240.0, 4, clock.now()), [&](TimeNs due_ns) {
+      if (due.size() < 1000) due.push_back(due_ns);
+      enough = due.size() == 1000;
+    });
+    while (!enough) std::this_thread::yield();
+  }
+  for (std::size_t i = 0; i < due.size(); ++i)
+    ASSERT_EQ(due[i], 5 * kSecond + std::llround(static_cast<double>(i + 1) * 1e9 / 240.0));
+}
+
+TEST(StepThread, AStallOfTheMachineIsCountedNotPiledUp) {
+  SimulatedClock clock;
+  std::atomic<int> steps{0};
+  StepPacer::Counts counts;
+  {
+    const StepThread thread(clock, StepPacer(240.0, 4, 0), [&](TimeNs) {
+      // Every hundredth step takes a second.
+      if (++steps % 100 == 0) clock.advance(kSecond);
+    });
+    while (steps < 1000) std::this_thread::yield();
+    counts = thread.counts();
+    while (counts.steps < 1000) counts = thread.counts();
+  }
+  const std::uint64_t stalls = counts.steps / 100;
+  EXPECT_GE(stalls, 10u);
+  // A second is 240 steps: 4 are caught up, 3 of them beyond the one that was due anyway.
+  EXPECT_NEAR(static_cast<double>(counts.dropped), 236.0 * static_cast<double>(stalls), 237.0);
+  EXPECT_NEAR(static_cast<double>(counts.caught_up), 3.0 * static_cast<double>(stalls), 6.0);
+  EXPECT_NEAR(static_cast<double>(counts.dropped_ns),
+              static_cast<double>(counts.dropped) * 1e9 / 240.0, 1000.0);
+}
+
+}  // namespace
+}  // namespace neritic::sim
