@@ -16,7 +16,7 @@ std::string said(const std::vector<std::string>& words) {
 }
 
 TEST(CommandLine, HelpOfASubcommandNamesTheProgram) {
-  for (const std::string name : {"render", "sonar", "dive", "tradeoff", "doctor"})
+  for (const std::string name : {"render", "sonar", "dive", "tradeoff", "check", "doctor"})
     EXPECT_THAT(said({name, "--help"}), HasSubstr("Usage: neritic " + name)) << name;
   EXPECT_THAT(said({"--help"}), HasSubstr("Usage: neritic"));
 }
@@ -33,7 +33,7 @@ TEST(CommandLine, AWrongFlagPointsAtTheSubcommandsHelp) {
 }
 
 TEST(CommandLine, AWrongSubcommandListsThem) {
-  EXPECT_THAT(said({"rendre"}), HasSubstr("render, sonar, dive, tradeoff, doctor"));
+  EXPECT_THAT(said({"rendre"}), HasSubstr("render, sonar, dive, tradeoff, check, doctor"));
 }
 
 }  // namespace

@@ -181,6 +181,19 @@ void add_tradeoff(CLI::App& app, Run& run) {
   command->callback([flags, &run] { run = [flags] { return run_tradeoff(*flags); }; });
 }
 
+void add_check(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<CheckFlags>();
+  CLI::App* command = app.add_subcommand(
+      "check", "holds the vehicle against a file of trajectories, or of control; a line a case");
+  command->add_option("what", flags->what, "rov (trajectories) or control")->required();
+  command->add_option("file", flags->file, "the cases, JSON")->required();
+  command->add_option("--integrator", flags->integrator, "guarded, rk4 or semi_euler")
+      ->capture_default_str();
+  command->add_option("--hz", flags->hz, "steps a second")->capture_default_str();
+  command->add_flag("--json", flags->json, "for programs: JSON on standard output");
+  command->callback([flags, &run] { run = [flags] { return nothing_to_say(run_check(*flags)); }; });
+}
+
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
@@ -205,6 +218,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_sonar(app, line.run);
   add_dive(app, line.run);
   add_tradeoff(app, line.run);
+  add_check(app, line.run);
   add_doctor(app, line.run);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(),

@@ -58,6 +58,13 @@ struct TradeoffFlags {
 };
 Result<std::string> run_tradeoff(const TradeoffFlags& flags);
 
+struct CheckFlags {
+  std::string what, file, integrator = "guarded";
+  double hz = 240.0;
+  bool json = false;
+};
+Status run_check(const CheckFlags& flags);
+
 struct DoctorFlags {
   std::string device;
   bool json = false;

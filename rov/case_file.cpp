@@ -1,0 +1,181 @@
+// The only file of this folder that knows the JSON library.
+#include "rov/case_file.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/json.hpp"
+
+namespace neritic::rov {
+namespace {
+
+// On one line: control characters become '?', long text is cut.
+std::string printable(std::string_view text, std::size_t most) {
+  std::string line(text.substr(0, most));
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  if (text.size() > most) line += "...";
+  return line;
+}
+
+}  // namespace
+
+CaseFile::CaseFile() : json_(std::make_unique<nlohmann::json>()) {}
+CaseFile::CaseFile(CaseFile&&) noexcept = default;
+CaseFile& CaseFile::operator=(CaseFile&&) noexcept = default;
+CaseFile::~CaseFile() = default;
+
+Result<CaseFile> CaseFile::parse(std::string_view text, std::string name) {
+  Result<nlohmann::json> parsed = parse_json(text);
+  if (!parsed.ok())
+    return bad_input("{}: no JSON: {}", name, printable(parsed.error().message, 200));
+  if (!parsed->is_object()) return bad_input("{}: a JSON object is accepted, none found", name);
+  CaseFile file;
+  file.name_ = std::move(name);
+  *file.json_ = std::move(*parsed);
+  return file;
+}
+
+CaseField CaseFile::root() {
+  return {*this, json_.get(), ""};
+}
+
+void CaseFile::fail(const std::string& field, const std::string& message) {
+  if (error_) return;
+  std::string text = name_ + ": ";
+  if (!case_.empty()) text += "case '" + printable(case_, 60) + "': ";
+  if (!field.empty()) text += printable(field, 100) + ": ";
+  error_ = bad_input("{}{}", text, printable(message, 300));
+}
+
+bool CaseField::present() const {
+  return value_ && !value_->is_null();
+}
+bool CaseField::is_number() const {
+  return present() && value_->is_number();
+}
+bool CaseField::is_text() const {
+  return present() && value_->is_string();
+}
+bool CaseField::is_array() const {
+  return present() && value_->is_array();
+}
+bool CaseField::is_object() const {
+  return present() && value_->is_object();
+}
+
+CaseField CaseField::operator[](std::string_view key) const {
+  const std::string path = path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+  if (!present()) return {*file_, nullptr, path};
+  if (!value_->is_object()) {
+    refuse("an object is");
+    return {*file_, nullptr, path};
+  }
+  const auto it = value_->find(std::string(key));
+  return {*file_, it == value_->end() ? nullptr : &*it, path};
+}
+
+CaseField CaseField::required(std::string_view key) const {
+  CaseField field = (*this)[key];
+  if (!field.present() && !file_->failed()) field.fail("not found, but needed");
+  return field;
+}
+
+std::vector<std::string> CaseField::keys() const {
+  std::vector<std::string> out;
+  if (!is_object()) return out;
+  for (auto it = value_->begin(); it != value_->end(); ++it) out.push_back(it.key());
+  return out;
+}
+
+std::size_t CaseField::size() const {
+  if (!present()) return 0;
+  if (value_->is_array()) return value_->size();
+  refuse("a list is");
+  return 0;
+}
+
+CaseField CaseField::at(std::size_t i) const {
+  const bool there = is_array() && i < value_->size();
+  return {*file_, there ? &(*value_)[i] : nullptr, fmt::format("{}[{}]", path_, i)};
+}
+
+std::string CaseField::text(std::string_view fallback) const {
+  if (is_text()) return value_->get<std::string>();
+  if (present()) refuse("a text is");
+  return std::string(fallback);
+}
+
+double CaseField::number(double fallback, double least, double most) const {
+  if (!present()) return fallback;
+  if (value_->is_number()) {
+    const double number = value_->get<double>();
+    if (number >= least && number <= most) return number;
+  }
+  if (least > -1e300 || most < 1e300)
+    refuse(fmt::format("a number in [{}, {}] is", least, most));
+  else
+    refuse("a number is");
+  return fallback;
+}
+
+std::vector<double> CaseField::numbers() const {
+  std::vector<double> out;
+  if (!present()) return out;
+  bool good = value_->is_array();
+  if (good)
+    for (const nlohmann::json& item : *value_) {
+      good = good && item.is_number() && std::isfinite(item.get<double>());
+      if (good) out.push_back(item.get<double>());
+    }
+  if (good) return out;
+  refuse("a list of numbers is");
+  return {};
+}
+
+std::vector<double> CaseField::numbers(std::size_t count) const {
+  if (!present()) return {};
+  if (value_->is_array() && value_->size() == count) {
+    std::vector<double> out;
+    for (const nlohmann::json& item : *value_)
+      if (item.is_number() && std::isfinite(item.get<double>())) out.push_back(item.get<double>());
+    if (out.size() == count) return out;
+  }
+  refuse(fmt::format("a list of {} numbers is", count));
+  return {};
+}
+
+std::vector<std::vector<double>> CaseField::rows(std::size_t rows, std::size_t columns) const {
+  std::vector<std::vector<double>> out;
+  if (!present()) return out;
+  const bool good = value_->is_array() && (rows == 0 || value_->size() == rows);
+  if (!good) {
+    refuse(rows == 0 ? fmt::format("a list of rows of {} numbers is", columns)
+                     : fmt::format("{} rows of {} numbers are", rows, columns));
+    return out;
+  }
+  for (std::size_t i = 0; i < value_->size(); ++i) {
+    out.push_back(at(i).required_numbers(columns));
+    if (out.back().size() != columns) return {};
+  }
+  return out;
+}
+
+std::vector<double> CaseField::required_numbers(std::size_t count) const {
+  if (!present()) fail("not found, but needed");
+  return numbers(count);
+}
+
+void CaseField::refuse(std::string_view accepted) const {
+  if (!file_->failed()) fail(fmt::format("{} found, {} accepted", found(), accepted));
+}
+
+std::string CaseField::found() const {
+  if (!present()) return "nothing";
+  if (value_->is_object()) return "an object";
+  if (value_->is_array() && json_text(*value_, -1).size() > 60)
+    return fmt::format("a list of {}", value_->size());
+  return printable(json_text(*value_, -1), 60);
+}
+
+}  // namespace neritic::rov

@@ -1,0 +1,37 @@
+// What a check of a case found: each quantity's worst error beside the tolerance that it has to
+// stay under. Plain values; any thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace neritic::rov {
+
+struct CheckedError {
+  std::string what, unit;
+  double error = 0.0, tolerance = 0.0;
+  double time_s = 0.0;  // of the worst
+  // An error that is no number does not hold either.
+  bool holds() const { return error <= tolerance; }
+  double ratio() const { return error / tolerance; }
+};
+
+struct CaseResult {
+  std::string id;
+  std::vector<CheckedError> errors;  // at least one
+
+  bool ok() const {
+    for (const CheckedError& e : errors)
+      if (!e.holds()) return false;
+    return true;
+  }
+  // The one nearest to its tolerance, or farthest beyond it.
+  const CheckedError& worst() const {
+    const CheckedError* worst = &errors.front();
+    for (const CheckedError& e : errors)
+      if (!(e.ratio() <= worst->ratio())) worst = &e;
+    return *worst;
+  }
+};
+
+}  // namespace neritic::rov

@@ -1,0 +1,59 @@
+// Holds a vehicle at a setpoint, u = K_P (s* - s) + integral K_I (s* - s) dt - K_D s', on all six
+// axes, and turns u into thruster commands. World axes north, east, down; body axes forward,
+// starboard, down. Pure functions over plain states; any thread.
+#pragma once
+
+#include <array>
+
+#include "rov/allocation.hpp"
+#include "rov/dynamics.hpp"
+#include "rov/pid.hpp"
+
+namespace neritic::rov {
+
+// Where to be. What is not held is left to the pilot: neither pushed back nor damped.
+struct Setpoint {
+  Vec3 position_ned_m{0.0};
+  Quat attitude{1.0, 0.0, 0.0, 0.0};
+  // How the setpoint itself moves; its drag is fed forward.
+  Vec3 velocity_ned_m_s{0.0};
+  bool hold_north = true, hold_east = true, hold_depth = true;
+  bool hold_heading = true;
+  bool hold_level = true;  // roll and pitch
+  Vec6 pilot;              // a wrench on top, body axes
+};
+
+struct ControlGains {
+  std::array<PidAxis, 6> axes;
+  double period_s = 0.02;
+};
+// For the BlueROV2 Heavy at 50 Hz.
+ControlGains default_gains();
+
+struct ControlState {
+  Vec6 integral;
+};
+
+// [R^T (p* - p); log(q^-1 q*)]: metres and radians in body axes, the short way round.
+Vec6 pose_error(const Vec3& position, const Quat& attitude, const Vec3& wanted_position,
+                const Quat& wanted_attitude);
+
+// The wrench M_RB u and what is fed forward. state.velocity is taken over ground.
+Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Setpoint& setpoint,
+                    const State& state, ControlState& control);
+
+// The same as thruster commands. Precondition: the allocator is of this vehicle.
+Inputs control_inputs(const Vehicle& vehicle, const Allocator& allocator, const ControlGains& gains,
+                      const Setpoint& setpoint, const State& state, ControlState& control);
+
+// A setpoint where the vehicle is: station keeping.
+Setpoint stay(const State& state);
+// The pilot flies; depth or heading are held as they are.
+Setpoint depth_hold(const State& state, const Vec6& pilot);
+Setpoint heading_hold(const State& state, const Vec6& pilot);
+
+// Rotation about down, positive from north to east; and that of an attitude.
+Quat heading_attitude(double heading_rad);
+double heading_of(const Quat& attitude);
+
+}  // namespace neritic::rov

@@ -1,0 +1,234 @@
+#include "rov/trajectory_cases.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "rov/bluerov2.hpp"
+
+namespace neritic::rov {
+namespace {
+
+constexpr double kDefaultLag = 0.1;  // s, that of the closed loops of control_vectors.json
+constexpr double kLongest = 1e5;     // s
+
+Vec3 vec3(const CaseField& field) {
+  const std::vector<double> v = field.numbers(3);
+  return v.empty() ? Vec3(0.0) : Vec3(v[0], v[1], v[2]);
+}
+
+Vec6 vec6_of(const CaseField& field) {
+  const std::vector<double> v = field.numbers(6);
+  Vec6 out;
+  std::copy(v.begin(), v.end(), out.v.begin());
+  return out;
+}
+
+// Rows, or the diagonal alone.
+std::vector<std::vector<double>> square(const CaseField& field, std::size_t n) {
+  if (field.is_array() && field.size() == n && !field.at(0).is_array()) {
+    const std::vector<double> d = field.numbers(n);
+    std::vector<std::vector<double>> out(d.size(), std::vector<double>(n, 0.0));
+    for (std::size_t i = 0; i < d.size(); ++i) out[i][i] = d[i];
+    return out;
+  }
+  return field.rows(n, n);
+}
+
+Mat6 matrix6(const CaseField& field) {
+  Mat6 out;
+  const auto rows = square(field, 6);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t j = 0; j < 6; ++j) out(i, j) = rows[i][j];
+  return out;
+}
+
+VehicleParameters read_parameters(const CaseField& field) {
+  VehicleParameters p;
+  p.mass_kg = field.required("m_kg").number(1.0, 1e-9, 1e9);
+  const auto inertia = square(field.required("I_CO_kgm2"), 3);
+  for (std::size_t i = 0; i < inertia.size(); ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      p.inertia_kg_m2[static_cast<int>(j)][static_cast<int>(i)] = inertia[i][j];
+  p.gravity_centre_m = vec3(field["r_g_m"]);
+  p.buoyancy_centre_m = vec3(field["r_b_m"]);
+  p.weight_n = field["W_N"].number(p.mass_kg * kGravity);
+  p.buoyancy_n = field["B_N"].number(p.weight_n);
+  p.added_mass = matrix6(field["M_A"]);
+  p.linear_damping = matrix6(field["D_L"]);
+  p.quadratic_damping = vec6_of(field["D_Q_diag"]);
+  return p;
+}
+
+std::vector<Thruster> read_thrusters(const CaseField& field) {
+  if (!field["position_frd_m"].present() && !field["direction_frd"].present()) {
+    std::vector<Thruster> out = heavy_thrusters();
+    for (Thruster& t : out) t = {t.position_m, t.direction};  // files give forces as they are
+    return out;
+  }
+  const auto positions = field.required("position_frd_m").rows(0, 3);
+  const auto directions = field.required("direction_frd").rows(positions.size(), 3);
+  std::vector<Thruster> out;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const auto &p = positions[i], &d = directions[i];
+    out.push_back({{p[0], p[1], p[2]}, {d[0], d[1], d[2]}});
+  }
+  return out;
+}
+
+// A number whose name says that it is a lag's time constant.
+std::optional<double> find_lag_time(const CaseField& place) {
+  for (const std::string& key : place.keys()) {
+    const CaseField field = place[key];
+    const bool named = key == "T" || key == "T_s" || key.find("lag") != key.npos ||
+                       key.find("time_const") != key.npos;
+    if (!named) continue;
+    if (field.is_number()) return field.number(kDefaultLag, 1e-6, 1e6);
+    if (field.is_object())
+      if (const auto inner = find_lag_time(field)) return inner;
+  }
+  return std::nullopt;
+}
+
+// Of the case: thrusters push, and how they follow their commands.
+bool read_mode(const CaseField& scenario, const CaseField& thrusters, ThrusterLag& lag) {
+  const std::string mode = scenario["thruster_mode"].text("none");
+  if (mode == "lag1") {
+    lag.kind = ThrusterLag::Kind::kFirstOrder;
+    lag.time_s = kDefaultLag;
+    for (const CaseField& place : {scenario, scenario["thrusters"], scenario["params"], thrusters})
+      if (const auto time = find_lag_time(place)) {
+        lag.time_s = *time;
+        break;
+      }
+  } else if (mode == "vb3") {
+    lag.kind = ThrusterLag::Kind::kThirdOrder;
+  } else if (mode != "none" && mode != "force") {
+    scenario["thruster_mode"].refuse("none, force, lag1 or vb3 is");
+  }
+  return mode != "none";
+}
+
+void read_segments(const CaseField& scenario, bool thrust, TrajectoryCase& out) {
+  const CaseField list = scenario["input_segments"];
+  const CaseField inputs = scenario["input_normalised_V"];
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const CaseField at = list.at(i);
+    InputSegment segment;
+    segment.t0_s = at.required("t0").number(0.0, 0.0, kLongest);
+    segment.t1_s = at.required("t1").number(0.0, 0.0, kLongest);
+    if (!(segment.t1_s > segment.t0_s)) at["t1"].refuse("a time after t0 is");
+    if (!out.segments.empty() && segment.t0_s < out.segments.back().t1_s)
+      at["t0"].refuse("a time not before the last segment's t1 is");
+    segment.wrench = vec6_of(at["tau_body"]);
+    segment.sines = read_sines(at["tau_sin"]);
+    const std::size_t count = out.vehicle.thruster_count;
+    if (at["thruster_force_cmd_N"].present()) {
+      const auto forces = at["thruster_force_cmd_N"].numbers(count);
+      if (thrust) std::copy(forces.begin(), forces.end(), segment.thruster_n.begin());
+    } else if (thrust && inputs.present()) {
+      const auto volts = inputs.at(i).required_numbers(count);
+      std::transform(volts.begin(), volts.end(), segment.thruster_n.begin(), von_benzon_thrust_n);
+    }
+    out.segments.push_back(segment);
+  }
+}
+
+std::optional<Quat> read_attitude(const CaseField& field) {
+  const std::vector<double> q = field.numbers(4);
+  if (q.empty()) return std::nullopt;
+  const Quat out(q[0], q[1], q[2], q[3]);
+  const double length = glm::length(out);
+  if (!(length > 0.5 && length < 2.0)) {
+    field.refuse("a unit quaternion [w, x, y, z] is");
+    return std::nullopt;
+  }
+  return out / length;
+}
+
+void read_samples(const CaseField& scenario, TrajectoryCase& out) {
+  const CaseField list = scenario.required("samples");
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const CaseField at = list.at(i);
+    TrajectorySample sample;
+    sample.t_s = at.required("t").number(0.0, 0.0, kLongest);
+    if (!out.samples.empty() && !(sample.t_s > out.samples.back().t_s))
+      at["t"].refuse("a time after the last sample's is");
+    if (at["p_ned"].present()) sample.position_ned_m = vec3(at["p_ned"]);
+    sample.attitude = read_attitude(at["q_wxyz"]);
+    if (at["nu_frd"].present()) sample.velocity = vec6_of(at["nu_frd"]);
+    sample.thruster_n = at["thruster_force_N"].present()
+                            ? at["thruster_force_N"].numbers(out.vehicle.thruster_count)
+                            : std::vector<double>();
+    if (!sample.position_ned_m && !sample.attitude && !sample.velocity && sample.thruster_n.empty())
+      at.fail("nothing to compare found; p_ned, q_wxyz, nu_frd or thruster_force_N is accepted");
+    out.samples.push_back(std::move(sample));
+  }
+  if (out.samples.empty()) list.fail("empty; at least one sample is accepted");
+}
+
+// "rk4_240Hz": [position, velocity]; null where that integrator diverged.
+void read_promises(const CaseField& field, TrajectoryCase& out) {
+  for (const std::string& key : field.keys()) {
+    const auto cut = key.rfind('_');
+    double hz = 0.0;
+    if (cut == key.npos || !key.ends_with("Hz")) continue;
+    std::from_chars(key.data() + cut + 1, key.data() + key.size() - 2, hz);
+    const CaseField pair = field[key];
+    if (!(hz > 0.0) || pair.size() < 2 || !pair.at(0).is_number() || !pair.at(1).is_number())
+      continue;
+    out.promised.push_back(
+        {key.substr(0, cut), hz, pair.at(0).number(0.0), pair.at(1).number(0.0)});
+  }
+}
+
+TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseField& thrusters) {
+  TrajectoryCase out;
+  VehicleParameters parameters = read_parameters(scenario.required("params"));
+  const bool thrust = read_mode(scenario, thrusters, parameters.lag);
+  const CaseField own = scenario["thrusters"];
+  parameters.thrusters = read_thrusters(own["position_frd_m"].present() ? own : thrusters);
+  if (file.failed()) return out;
+  Result<Vehicle> vehicle = make_vehicle(parameters);
+  if (!vehicle.ok()) {
+    scenario["params"].fail(vehicle.error().message);
+    return out;
+  }
+  out.vehicle = *vehicle;
+  out.current_ned_m_s = vec3(scenario["current_ned_mps"]);
+  const CaseField initial = scenario["initial"];
+  out.position_ned_m = vec3(initial["p_ned"]);
+  out.attitude = read_attitude(initial["q_wxyz"]).value_or(Quat(1.0, 0.0, 0.0, 0.0));
+  out.velocity = vec6_of(initial["nu_frd"]);
+  out.sines = read_sines(scenario["tau_sin"]);
+  read_segments(scenario, thrust, out);
+  read_samples(scenario, out);
+  read_promises(scenario["fixed_step_end_error"], out);
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<TrajectoryCase>> read_trajectories(std::string_view text,
+                                                      const std::string& name) {
+  NERITIC_TRY(CaseFile file, CaseFile::parse(text, name));
+  const CaseField root = file.root();
+  if (root["format"].present() && root["format"].text() != "rov_vectors/1")
+    root["format"].refuse("\"rov_vectors/1\" is");
+  const CaseField list = root.required("scenarios");
+  std::vector<TrajectoryCase> out;
+  for (std::size_t i = 0; i < list.size() && !file.failed(); ++i) {
+    const CaseField scenario = list.at(i);
+    const std::string id = scenario["id"].text(fmt::format("case {}", i + 1));
+    file.enter_case(id);
+    TrajectoryCase one = read_case(file, scenario, root["thrusters"]);
+    one.id = id;
+    out.push_back(std::move(one));
+  }
+  file.enter_case("");
+  if (list.present() && out.empty()) list.fail("empty; at least one case is accepted");
+  if (file.failed()) return file.error();
+  return out;
+}
+
+}  // namespace neritic::rov

@@ -1,0 +1,147 @@
+#include "rov/vehicle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace neritic::rov {
+namespace {
+
+// Below this a mass matrix (scaled to a unit diagonal) counts as singular.
+constexpr double kSingular = 1e-9;
+constexpr double kLargest = 1e9;  // of any parameter, in SI units
+
+bool within(double value, double least) {
+  return value >= least && value <= kLargest;
+}
+bool within(const Vec3& v, double most) {
+  return is_finite(v) && glm::length(v) <= most;
+}
+
+Status check_scalars(const VehicleParameters& p) {
+  if (!(p.mass_kg > 0.0 && p.mass_kg <= kLargest))
+    return bad_input("mass_kg: {} found, a number in (0, 1e9] is accepted", p.mass_kg);
+  if (!within(p.weight_n, 0.0))
+    return bad_input("weight_n: {} found, a number in [0, 1e9] is accepted", p.weight_n);
+  if (!within(p.buoyancy_n, 0.0))
+    return bad_input("buoyancy_n: {} found, a number in [0, 1e9] is accepted", p.buoyancy_n);
+  if (!within(p.gravity_centre_m, 100.0) || !within(p.buoyancy_centre_m, 100.0))
+    return bad_input("{}: a point within 100 m of the body's origin is accepted",
+                     within(p.gravity_centre_m, 100.0) ? "buoyancy_centre_m" : "gravity_centre_m");
+  return {};
+}
+
+Status check_matrices(const VehicleParameters& p, const Mat6& rigid, const Mat6& mass) {
+  if (!is_finite(rigid) || !(smallest_pivot(rigid) > kSingular))
+    return bad_input(
+        "inertia_kg_m2: with mass {} and centre of gravity ({}, {}, {}) the mass matrix is not "
+        "positive definite; a matrix that is one is accepted",
+        p.mass_kg, p.gravity_centre_m.x, p.gravity_centre_m.y, p.gravity_centre_m.z);
+  if (!is_finite(mass) || !(smallest_pivot(symmetric_part(mass)) > kSingular))
+    return bad_input(
+        "added_mass: with the rigid body's the matrix is singular or not positive definite; a "
+        "matrix that is positive definite is accepted");
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!within(p.added_mass(i, i), 0.0))
+      return bad_input("added_mass: {} found on its diagonal, a number in [0, 1e9] is accepted",
+                       p.added_mass(i, i));
+    if (!within(p.linear_damping(i, i), 0.0))
+      return bad_input("linear_damping: {} found on its diagonal, a number in [0, 1e9] is accepted",
+                       p.linear_damping(i, i));
+    if (!within(p.quadratic_damping[i], 0.0))
+      return bad_input("quadratic_damping: {} found, a number in [0, 1e9] is accepted",
+                       p.quadratic_damping[i]);
+  }
+  if (!is_finite(p.linear_damping))
+    return bad_input("linear_damping: a number that is not finite found");
+  return {};
+}
+
+Status check_thrusters(const std::vector<Thruster>& thrusters) {
+  if (thrusters.size() > kMaxThrusters)
+    return bad_input("thrusters: {} found, up to {} are accepted", thrusters.size(), kMaxThrusters);
+  for (std::size_t i = 0; i < thrusters.size(); ++i) {
+    const Thruster& t = thrusters[i];
+    if (!within(t.position_m, 100.0))
+      return bad_input("thrusters[{}].position_m: a point within 100 m is accepted", i);
+    if (!within(t.direction, 2.0) || glm::length(t.direction) < 0.5)
+      return bad_input("thrusters[{}].direction: ({}, {}, {}) found, a unit vector is accepted", i,
+                       t.direction.x, t.direction.y, t.direction.z);
+    if (!(t.min_n <= 0.0 && t.max_n >= 0.0 && t.min_n >= -kLargest && t.max_n <= kLargest))
+      return bad_input(
+          "thrusters[{}]: forces from {} to {} N found, from [-1e9, 0] to [0, 1e9] "
+          "are accepted",
+          i, t.min_n, t.max_n);
+  }
+  return {};
+}
+
+void prepare_rates(Vehicle& v) {
+  const Mat6 damping = v.inverse_mass * v.linear_damping;
+  for (std::size_t i = 0; i < 6; ++i) {  // the largest row sum bounds every eigenvalue
+    double sum = 0.0;
+    for (std::size_t j = 0; j < 6; ++j) sum += std::abs(damping(i, j));
+    v.damping_rate = std::max(v.damping_rate, sum);
+  }
+  for (std::size_t j = 0; j < 6; ++j)
+    for (std::size_t i = 0; i < 6; ++i)
+      v.quadratic_rate[j] = std::max(v.quadratic_rate[j],
+                                     2.0 * std::abs(v.inverse_mass(i, j)) * v.quadratic_damping[j]);
+  const auto diagonal_range = [&](std::size_t first) {
+    const Mat6& m = v.mass;
+    return std::minmax({m(first, first), m(first + 1, first + 1), m(first + 2, first + 2)});
+  };
+  const auto [least_mass, most_mass] = diagonal_range(0);
+  const double least_inertia = diagonal_range(3).first;
+  v.righting_rate = std::sqrt((v.weight_n * glm::length(v.gravity_centre_m) +
+                               v.buoyancy_n * glm::length(v.buoyancy_centre_m)) /
+                              least_inertia);
+  v.munk_rate = std::sqrt((most_mass - least_mass) / least_inertia);
+  if (!v.tether) return;
+  const double arm = glm::length(v.tether->attachment_m);
+  const double inverse = 1.0 / least_mass + arm * arm / least_inertia;
+  v.tether_rate = std::sqrt(v.tether->stiffness_n / v.tether->length_m * inverse) +
+                  v.tether->damping_n_s / v.tether->length_m * inverse;
+}
+
+}  // namespace
+
+Mat6 rigid_mass_matrix(double mass_kg, const Vec3& r_g, const Mat3& inertia) {
+  Mat6 m;
+  for (std::size_t i = 0; i < 3; ++i) m(i, i) = mass_kg;
+  set_cross(m, 0, 3, r_g, -mass_kg);
+  set_cross(m, 3, 0, r_g, mass_kg);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(3 + i, 3 + j) = inertia[j][i];
+  return m;
+}
+
+Result<Vehicle> make_vehicle(const VehicleParameters& p) {
+  NERITIC_TRY_STATUS(check_scalars(p));
+  Vehicle v;
+  v.mass_kg = p.mass_kg;
+  v.weight_n = p.weight_n;
+  v.buoyancy_n = p.buoyancy_n;
+  v.gravity_centre_m = p.gravity_centre_m;
+  v.buoyancy_centre_m = p.buoyancy_centre_m;
+  v.rigid_mass = rigid_mass_matrix(p.mass_kg, p.gravity_centre_m, p.inertia_kg_m2);
+  v.mass = v.rigid_mass + p.added_mass;
+  NERITIC_TRY_STATUS(check_matrices(p, v.rigid_mass, v.mass));
+  NERITIC_TRY_STATUS(check_thrusters(p.thrusters));
+  NERITIC_TRY_STATUS(check_lag(p.lag));
+  if (p.tether) NERITIC_TRY_STATUS(check_tether(*p.tether));
+  v.inverse_mass = inverse(v.mass);
+  v.linear_damping = p.linear_damping;
+  v.quadratic_damping = p.quadratic_damping;
+  v.thruster_count = static_cast<std::uint32_t>(p.thrusters.size());
+  for (std::size_t i = 0; i < p.thrusters.size(); ++i) {
+    const Thruster& t = p.thrusters[i];
+    v.thrusters[i] = t;
+    v.thruster_wrench[i] = vec6(t.direction, glm::cross(t.position_m, t.direction));
+  }
+  v.lag = p.lag;
+  v.tether = p.tether;
+  prepare_rates(v);
+  return v;
+}
+
+}  // namespace neritic::rov

@@ -1,0 +1,147 @@
+// Files of cases: defaults of what is left out, and one line that says what is wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/json.hpp"
+#include "rov/control_check.hpp"
+#include "rov/trajectory_check.hpp"
+#include "tests/rov/cases.hpp"
+
+namespace neritic::rov {
+namespace {
+
+using Json = nlohmann::json;
+using ::testing::HasSubstr;
+
+Json smallest() {
+  return parse_json(R"({"scenarios": [{"id": "small",
+    "params": {"m_kg": 10, "I_CO_kgm2": [0.2, 0.2, 0.3]},
+    "samples": [{"t": 1, "p_ned": [0, 0, 0]}]}]})")
+      .value();
+}
+
+std::string fault(const Json& json) {
+  const auto read = read_trajectories(json_text(json), "cases.json");
+  return read.ok() ? "" : read.error().message;
+}
+std::string control_fault(const Json& json) {
+  const auto read = read_control_cases(json_text(json), "cases.json");
+  return read.ok() ? "" : read.error().message;
+}
+
+TEST(RovCaseFile, WhatIsLeftOutHasItsDefault) {
+  const auto read = read_trajectories(json_text(smallest()), "cases.json");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const TrajectoryCase& one = read->front();
+  EXPECT_DOUBLE_EQ(one.vehicle.weight_n, 98.2);
+  EXPECT_DOUBLE_EQ(one.vehicle.buoyancy_n, 98.2);
+  EXPECT_EQ(one.vehicle.thruster_count, 8u);
+  EXPECT_EQ(one.vehicle.mass, one.vehicle.rigid_mass);
+  EXPECT_TRUE(check_trajectory(one).ok());  // at rest where it was put
+}
+
+TEST(RovCaseFile, Lag1FindsItsTimeConstant) {
+  const auto time_of = [](const Json& json) {
+    const auto read = read_trajectories(json_text(json), "cases.json");
+    EXPECT_TRUE(read.ok()) << read.error().message;
+    return read.ok() ? read->front().vehicle.lag.time_s : 0.0;
+  };
+  Json json = smallest();
+  Json& one = json["scenarios"][0];
+  one["thruster_mode"] = "lag1";
+  EXPECT_EQ(time_of(json), 0.1);
+  one["T"] = 0.2;
+  EXPECT_EQ(time_of(json), 0.2);
+  one.erase("T");
+  one["params"]["lag1_T_s"] = 0.3;
+  EXPECT_EQ(time_of(json), 0.3);
+  one["params"].erase("lag1_T_s");
+  json["thrusters"]["lag1_T_s"] = 0.4;
+  EXPECT_EQ(time_of(json), 0.4);
+  one["T"] = -1.0;
+  EXPECT_THAT(fault(json), HasSubstr("case 'small': scenarios[0].T: -1.0 found"));
+}
+
+TEST(RovCaseFile, SinesAreReadInEveryForm) {
+  const char* forms[] = {
+      R"({"amplitude": [3, 0, 0, 0, 0, 0], "omega": 2, "phase": 0.5})",
+      R"({"A": 3, "axis": "X", "w": 2, "phi": 0.5})",
+      R"({"amp_N": 3, "axis": 0, "freq_hz": 0.3183098861837907, "phase_deg": 28.64788975654116})",
+      R"([{"amp": [3, 0, 0, 0, 0, 0], "period_s": 3.141592653589793, "phase_rad": 0.5}])",
+      R"([["X", 3, 2, 0.5]])",
+      R"([[3, 2, 0.5], [0, 1], [0, 1], [0, 1], [0, 1], [0, 1]])"};
+  for (const char* form : forms) {
+    Json json = smallest();
+    json["scenarios"][0]["tau_sin"] = parse_json(form).value();
+    const auto read = read_trajectories(json_text(json), "cases.json");
+    ASSERT_TRUE(read.ok()) << form << read.error().message;
+    Vec6 sum;
+    for (const SineWrench& sine : read->front().sines) sum = sum + sine.at(0.7);
+    EXPECT_NEAR(sum[0], 3.0 * std::sin(1.9), 1e-12) << form;
+    EXPECT_EQ(sum[1] + sum[2] + sum[3] + sum[4] + sum[5], 0.0) << form;
+  }
+}
+
+struct Fault {
+  const char* pointer;  // where in the document
+  const char* value;    // JSON
+  const char* said;
+};
+
+TEST(RovCaseFile, FaultsAreSaidInOneLine) {
+  const Fault faults[] = {
+      {"/format", "\"rov_vectors/9\"", "cases.json: format: \"rov_vectors/9\" found, \"rov_vec"},
+      {"/scenarios", "{}", "cases.json: scenarios: an object found, a list is accepted"},
+      {"/scenarios", "[]", "cases.json: scenarios: empty; at least one case is accepted"},
+      {"/scenarios/0", "7", "scenarios[0]: 7 found, an object is accepted"},
+      {"/scenarios/0/params/m_kg", "-1", "case 'small': scenarios[0].params.m_kg: -1 found, a num"},
+      {"/scenarios/0/params/m_kg", "\"heavy\"", "params.m_kg: \"heavy\" found, a number in"},
+      {"/scenarios/0/params/I_CO_kgm2", "[0, 0, 0]", "params: inertia_kg_m2: with mass 10"},
+      {"/scenarios/0/params/D_Q_diag", "[1, 2]", "D_Q_diag: [1,2] found, a list of 6 numbers is"},
+      {"/scenarios/0/params/D_Q_diag", "[-1, 0, 0, 0, 0, 0]", "quadratic_damping: -1 found"},
+      {"/scenarios/0/samples/0/p_ned", "[1, null, 3]", "samples[0].p_ned: [1,null,3] found, a li"},
+      {"/scenarios/0/samples/0", "{\"t\": 1}", "samples[0]: nothing to compare found; p_ned"},
+      {"/scenarios/0/thruster_mode", "\"warp\"", "\"warp\" found, none, force, lag1 or vb3 is ac"},
+      {"/scenarios/0/initial", "{\"q_wxyz\": [0, 0, 0, 0]}", "q_wxyz: [0,0,0,0] found, a unit qu"},
+      {"/scenarios/0/tau_sin", "{\"amp\": [1, 1, 1, 1, 1, 1]}", "tau_sin: no frequency found"},
+      {"/scenarios/0/tau_sin", "{\"omega\": 1, \"colour\": 1}", "tau_sin.colour: not known"},
+      {"/scenarios/0/input_segments", "[{\"t0\": 1, \"t1\": 1}]", "[0].t1: 1 found, a time after"},
+      {"/thrusters", "{\"position_frd_m\": [[0, 0, 0]], \"direction_frd\": [[0, 0, 0]]}",
+       "thrusters[0].direction: (0, 0, 0) found, a unit vector is accepted"}};
+  for (const Fault& f : faults) {
+    Json json = smallest();
+    json[Json::json_pointer(f.pointer)] = parse_json(f.value).value();
+    EXPECT_THAT(fault(json), HasSubstr(f.said)) << f.pointer;
+    EXPECT_THAT(fault(json), ::testing::StartsWith("cases.json: ")) << f.pointer;
+    EXPECT_EQ(fault(json).find('\n'), std::string::npos) << f.pointer;
+  }
+  Json json = smallest();
+  json["scenarios"][0].erase("samples");
+  EXPECT_THAT(fault(json), HasSubstr("scenarios[0].samples: not found, but needed"));
+}
+
+TEST(RovCaseFile, FaultsOfControlAreSaidInOneLine) {
+  const Json whole = parse_json(data_text("control.json")).value();
+  EXPECT_EQ(control_fault(whole), "");
+  const Fault faults[] = {
+      {"/pid_sequence/KD", "[1]", "case 'pid_sequence': pid_sequence.KD: [1] found, a list of 2"},
+      {"/pid_sequence/dt", "0", "pid_sequence.dt: 0 found"},
+      {"/pid_sequence/steps/3/e", "[1]", "pid_sequence.steps[3].e: [1] found"},
+      {"/allocation/B_6x8", "[[1]]", "allocation.B_6x8: [[1]] found, 6 rows of 1 numbers"},
+      {"/allocation/fmax", "-1", "allocation.fmax: -1 found, a number in [0, 1000000000] is"},
+      {"/allocation/cases/2/tau", "[1]", "case 'allocation/2': allocation.cases[2].tau: [1] fou"},
+      {"/closed_loop/gains/KP", "[1]", "closed_loop.gains.KP: [1] found, a list of six numbers"},
+      {"/closed_loop/results", "{\"mars/surge_2m\": {\"t90\": 1}}", "a name that begins with neu"},
+      {"/closed_loop/results", "{\"sea/dance\": {\"t90\": 1}}", "case 'sea/dance'"},
+      {"/closed_loop/results", "{\"sea/surge_0m\": {\"t90\": 1}}", "case 'sea/surge_0m'"}};
+  for (const Fault& f : faults) {
+    Json json = whole;
+    json[Json::json_pointer(f.pointer)] = parse_json(f.value).value();
+    EXPECT_THAT(control_fault(json), HasSubstr(f.said)) << f.pointer;
+  }
+}
+
+}  // namespace
+}  // namespace neritic::rov

@@ -1,0 +1,84 @@
+// `neritic check rov|control FILE`: every case of a file of trajectories or of control, run and
+// compared; a line a case.
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "rov/control_check.hpp"
+#include "rov/trajectory_check.hpp"
+#include "tools/neritic/commands.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using rov::CaseResult;
+using rov::CheckedError;
+
+Result<std::vector<CaseResult>> check_file(const CheckFlags& flags) {
+  if (flags.what != "rov" && flags.what != "control")
+    return bad_input("check: '{}' found, rov or control is accepted", flags.what);
+  if (!(flags.hz >= 1.0 && flags.hz <= 1e5))
+    return bad_input("check: --hz {} found, 1 to 100000 is accepted", flags.hz);
+  NERITIC_TRY(const rov::Integrator integrator, rov::integrator_of(flags.integrator));
+  NERITIC_TRY(const std::string text, read_text(flags.file));
+  std::vector<CaseResult> results;
+  if (flags.what == "rov") {
+    NERITIC_TRY(const auto cases, rov::read_trajectories(text, flags.file));
+    for (const rov::TrajectoryCase& one : cases)
+      results.push_back(rov::check_trajectory(one, {integrator, flags.hz}));
+    return results;
+  }
+  NERITIC_TRY(const auto cases, rov::read_control_cases(text, flags.file));
+  return rov::check_control(cases, {integrator, flags.hz});
+}
+
+std::string line_of(const CaseResult& one, std::size_t id_width) {
+  const CheckedError& worst = one.worst();
+  const std::string unit = worst.unit.empty() ? "" : " " + worst.unit;
+  const std::string when = worst.time_s > 0.0 ? fmt::format(", at {:g} s", worst.time_s) : "";
+  return fmt::format("{:<{}}  {:<6}  worst {:.2e}{} of {:.2e}{} in {}{}\n", one.id, id_width,
+                     one.ok() ? "ok" : "not ok", worst.error, unit, worst.tolerance, unit,
+                     worst.what, when);
+}
+
+std::string text_of(const std::vector<CaseResult>& results) {
+  std::size_t width = 0;
+  for (const CaseResult& one : results) width = std::max(width, one.id.size());
+  std::string text;
+  for (const CaseResult& one : results) text += line_of(one, width);
+  return text;
+}
+
+nlohmann::json error_json(const CheckedError& error) {
+  return {{"what", error.what},           {"unit", error.unit},  {"error", error.error},
+          {"tolerance", error.tolerance}, {"t_s", error.time_s}, {"ok", error.holds()}};
+}
+
+std::string json_of(const CheckFlags& flags, const std::vector<CaseResult>& results,
+                    std::size_t failed) {
+  nlohmann::json json{
+      {"check", flags.what}, {"file", flags.file}, {"integrator", flags.integrator},
+      {"hz", flags.hz},      {"ok", failed == 0},  {"cases", nlohmann::json::array()}};
+  json["failed"] = failed;
+  for (const CaseResult& one : results) {
+    nlohmann::json entry{{"id", one.id}, {"ok", one.ok()}, {"worst", error_json(one.worst())}};
+    for (const CheckedError& error : one.errors) entry["errors"].push_back(error_json(error));
+    json["cases"].push_back(std::move(entry));
+  }
+  return json_text(json) + "\n";
+}
+
+}  // namespace
+
+Status run_check(const CheckFlags& flags) {
+  NERITIC_TRY(const std::vector<CaseResult> results, check_file(flags));
+  const auto failed = static_cast<std::size_t>(
+      std::ranges::count_if(results, [](const CaseResult& one) { return !one.ok(); }));
+  fmt::print("{}", flags.json ? json_of(flags, results, failed) : text_of(results));
+  std::fflush(stdout);
+  if (failed == 0) return {};
+  return failure(ErrorCode::kUnsupported, "{}: {} of {} cases do not hold", flags.file, failed,
+                 results.size());
+}
+
+}  // namespace neritic::tools
