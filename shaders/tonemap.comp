@@ -5,13 +5,15 @@
 
 // Exposed scene radiance to a display picture: the filmic curve fitted by Stephen Hill to the ACES
 // reference and output transforms (in ACES's wider primaries, so that a saturated sea keeps its shades),
-// then sRGB encoding (IEC 61966-2-1).
+// then sRGB encoding.
 #include "shared/lighting.h"
 
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 
 layout(set = 0, binding = kTonemapHdr) uniform texture2DArray hdr_image;
 layout(set = 0, binding = kTonemapOut, rgba8) writeonly uniform image2DArray out_image;
+
+layout(constant_id = kSpecLumaInAlpha) const bool kLumaInAlpha = false;
 
 // Columns of the matrices into and out of the fit's working space.
 const mat3 kFromSrgb = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
@@ -25,9 +27,12 @@ vec3 filmic(vec3 x) {
   return clamp(kToSrgb * v, 0.0, 1.0);
 }
 
+// IEC 61966-2-1. Its power of 1/2.4 by square roots, which every device has and which cost a CPU a fifth
+// (own minimax fit on [0.0031308, 1], error below 4.5e-5: a ninetieth of a grey level of 8 bits).
 vec3 srgb(vec3 x) {
-  return mix(12.92 * x, 1.055 * pow(max(x, vec3(1e-6)), vec3(1.0 / 2.4)) - 0.055,
-             greaterThan(x, vec3(0.0031308)));
+  vec3 root = sqrt(max(x, vec3(0.003))), fourth = sqrt(root), eighth = sqrt(fourth);
+  vec3 curve = 0.64236636 * root + 0.71210962 * fourth - 0.33686959 * eighth - 0.01756334 * x;
+  return mix(12.92 * x, curve, greaterThan(x, vec3(0.0031308)));
 }
 
 void main() {
@@ -35,5 +40,6 @@ void main() {
   ivec2 size = imageSize(out_image).xy;
   if (at.x >= size.x || at.y >= size.y) return;
   vec3 x = max(texelFetch(hdr_image, at, 0).rgb, vec3(0.0));
-  imageStore(out_image, at, vec4(srgb(filmic(x)), 1.0));
+  vec3 c = srgb(filmic(x));
+  imageStore(out_image, at, vec4(c, kLumaInAlpha ? dot(c, vec3(0.299, 0.587, 0.114)) : 1.0));
 }

@@ -42,7 +42,7 @@ double nearness(double center_m, double radius_m) {
 class DrawListBuilder {
  public:
   DrawListBuilder(const scene::Scene& scene, const GpuScene& gpu_scene, const FrameState& state,
-          const ViewSet& views, const DrawListOptions& options)
+                  const ViewSet& views, const DrawListOptions& options)
       : scene_(scene),
         gpu_scene_(gpu_scene),
         state_(state),

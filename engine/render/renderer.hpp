@@ -72,14 +72,11 @@ class Renderer {
                                              const DeformedGeometry& deformed, const ViewSet& views,
                                              const DrawList& draws,
                                              const shared::Lighting& lighting);
-  // Display picture, kColorFormat.
-  Result<graph::ImageHandle> declare_tonemap(graph::FrameGraph& graph, const std::string& prefix,
+  // Display picture, kColorFormat: tonemap and, where asked for, antialias, which smooths edges.
+  Result<graph::ImageHandle> declare_picture(graph::FrameGraph& graph, const std::string& prefix,
                                              graph::ImageHandle hdr, std::uint32_t width,
-                                             std::uint32_t height, std::uint32_t layers);
-  // The display picture with smoothed edges.
-  Result<graph::ImageHandle> declare_antialias(graph::FrameGraph& graph, const std::string& prefix,
-                                               graph::ImageHandle color, std::uint32_t width,
-                                               std::uint32_t height, std::uint32_t layers);
+                                             std::uint32_t height, std::uint32_t layers,
+                                             bool antialias);
 
  private:
   // A pass that turns one picture into another of the same size, pixel by pixel.
@@ -87,7 +84,7 @@ class Renderer {
     const char* name;    // of the pass
     const char* result;  // of the image
     std::span<const std::uint32_t> code;
-    VkFormat format;  // of the result
+    std::vector<gpu::SpecConstant> constants;
   };
   Result<graph::ImageHandle> declare_filter(graph::FrameGraph& graph, const std::string& prefix,
                                             const PictureFilter& filter, gpu::Pipeline& pipeline,
@@ -133,7 +130,7 @@ class Renderer {
   std::map<RasterKey, gpu::Pipeline> raster_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline>
       shade_;  // by terms, number of lamps
-  gpu::Pipeline deform_, tonemap_, antialias_;
+  gpu::Pipeline deform_, tonemap_, tonemap_luma_, antialias_;
   gpu::Buffer nothing_;  // bound where a shader declares a buffer that this frame does not use
 };
 

@@ -95,6 +95,7 @@ Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph,
     gpu::ComputePipelineDesc desc;
     desc.name = filter.name;
     desc.code = filter.code;
+    desc.constants = filter.constants;
     desc.layout.bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
@@ -107,7 +108,7 @@ Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph,
       [&](graph::PassBuilder& builder, Data& data) {
         builder.read(in, graph::Access::kSampledCompute);
         data.out = builder.write(
-            builder.create_image(prefix + filter.result, {filter.format, width, height, layers}),
+            builder.create_image(prefix + filter.result, {kColorFormat, width, height, layers}),
             graph::Access::kStorageWriteCompute);
       },
       [&pipeline, in, width, height, layers](const Data& data, graph::PassContext& context) {
@@ -120,21 +121,18 @@ Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph,
   return pass.out;
 }
 
-Result<graph::ImageHandle> Renderer::declare_tonemap(graph::FrameGraph& graph,
+Result<graph::ImageHandle> Renderer::declare_picture(graph::FrameGraph& graph,
                                                      const std::string& prefix,
                                                      graph::ImageHandle hdr, std::uint32_t width,
-                                                     std::uint32_t height, std::uint32_t layers) {
-  return declare_filter(graph, prefix, {"tonemap", "color", shaders::kTonemapComp, kColorFormat},
-                        tonemap_, hdr, width, height, layers);
-}
-
-Result<graph::ImageHandle> Renderer::declare_antialias(graph::FrameGraph& graph,
-                                                       const std::string& prefix,
-                                                       graph::ImageHandle color,
-                                                       std::uint32_t width, std::uint32_t height,
-                                                       std::uint32_t layers) {
-  return declare_filter(graph, prefix,
-                        {"antialias", "smooth color", shaders::kAntialiasComp, kColorFormat},
+                                                     std::uint32_t height, std::uint32_t layers,
+                                                     bool antialias) {
+  const PictureFilter tonemap{
+      "tonemap", "color", shaders::kTonemapComp, {{shared::kSpecLumaInAlpha, antialias ? 1u : 0u}}};
+  NERITIC_TRY(const graph::ImageHandle color,
+              declare_filter(graph, prefix, tonemap, antialias ? tonemap_luma_ : tonemap_, hdr,
+                             width, height, layers));
+  if (!antialias) return color;
+  return declare_filter(graph, prefix, {"antialias", "smooth color", shaders::kAntialiasComp, {}},
                         antialias_, color, width, height, layers);
 }
 

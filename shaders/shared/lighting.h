@@ -63,6 +63,8 @@ NERITIC_CONST uint kSpecLamps = 1;
 // Bindings of the tonemap pass.
 NERITIC_CONST uint kTonemapHdr = 0;
 NERITIC_CONST uint kTonemapOut = 1;
+// Specialisation constant of the tonemap pass: alpha is the luma that antialias compares, else 1.
+NERITIC_CONST uint kSpecLumaInAlpha = 0;
 
 // Bindings of the antialias pass.
 NERITIC_CONST uint kAntialiasIn = 0;

@@ -65,8 +65,9 @@ class Studio {
       NERITIC_TRY(auto hdr, renderer_->declare_shade(graph, "", g, views, lighting));
       NERITIC_TRY(hdr, renderer_->declare_forward(graph, "", hdr, g, *gpu_scene_, deformed, views,
                                                   draws, lighting));
-      NERITIC_TRY(const auto color, renderer_->declare_tonemap(graph, "", hdr, views.width,
-                                                               views.height, views.layers()));
+      NERITIC_TRY(const auto color,
+                  renderer_->declare_picture(graph, "", hdr, views.width, views.height,
+                                             views.layers(), false));
       NERITIC_TRY_STATUS(copy("color", color, render::kColorFormat));
     }
     NERITIC_TRY(gpu::Commands * commands, frames_->begin());

@@ -1,5 +1,6 @@
 #include "tools/session/decode.hpp"
 
+#include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <limits>
 
@@ -40,9 +41,14 @@ void decode_labels(std::span<const std::uint32_t> texels, ViewImages& out) {
 
 void decode_color(std::span<const std::uint32_t> texels, ViewImages& out) {
   out.color = ImageU8(out.width, out.height, 3);
-  for (std::size_t i = 0; i < texels.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      out.color.data[3 * i + c] = static_cast<std::uint8_t>(texels[i] >> (8 * c));
+  if (texels.empty()) return;
+  // Four bytes at a time, the last of which the next pixel overwrites.
+  std::uint8_t* to = out.color.data.data();
+  for (const std::uint32_t texel : texels.first(texels.size() - 1)) {
+    std::memcpy(to, &texel, 4);
+    to += 3;
+  }
+  std::memcpy(to, &texels.back(), 3);
 }
 
 void decode_motion(std::span<const float> texels, ViewImages& out) {
