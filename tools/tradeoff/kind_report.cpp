@@ -73,8 +73,8 @@ std::string percent(double v) {
 std::string markdown(const SonarTradeoff& t) {
   std::string out = fmt::format("Scene {}, on {}.\n", t.kinds_scene, t.device);
   out +=
-      "\n| kind | level | pixels a cell | columns | rows | error | ms "
-      "|\n|---|---|---|---|---|---|---|\n";
+      "\n| kind | level | pixels a cell | columns | rows | range bins | error | ms |\n"
+      "|---|---|---|---|---|---|---|---|\n";
   for (const KindResult& k : t.kinds)
     for (const ErrorLevel& level : kErrorLevels) {
       const KindPoint* p = cheapest(k, level.max_error);
