@@ -44,7 +44,8 @@ void main() {
   Surface s;
   s.position = views[layer].eye + ray * planar_m;
   s.normal = octahedral_decode(texelFetch(normal_image, at, 0).rg);
-  s.albedo = texelFetch(albedo_image, at, 0).rgb;
+  vec3 root_albedo = texelFetch(albedo_image, at, 0).rgb;
+  s.albedo = root_albedo * root_albedo;
   s.roughness = material.x;
   s.metallic = material.y;
   s.occlusion = material.z;

@@ -40,7 +40,7 @@ void main() {
   out_label = uvec2(label & 0xffffu, label >> 16);
   vec3 m = fragment_material(uv);
   bool unlit = material_has(kMaterialUnlit);
-  out_albedo = vec4(unlit ? vec3(0.0) : base.rgb, 1.0);
+  out_albedo = vec4(unlit ? vec3(0.0) : sqrt(max(base.rgb, vec3(0.0))), 1.0);
   out_material = vec4(m, unlit ? 1.0 : 0.0);
 #ifdef NERITIC_EMISSIVE
   out_emissive = unlit ? base.rgb : fragment_emissive(uv);
