@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "engine/core/check.hpp"
@@ -95,7 +94,7 @@ Allocator::Allocator(ThrusterMatrix columns, std::span<const double> min_n,
   std::ranges::copy(max_n, max_n_.begin());
 }
 
-Allocation Allocator::allocate(const Vec6& wrench) const {
+Allocation Allocator::allocate(const Vec6& wrench, Saturation saturation) const {
   Allocation out;
   for (std::size_t i = 0; i < count_; ++i) {
     const double f = dot(inverse_.rows[i], wrench);
@@ -103,8 +102,34 @@ Allocation Allocator::allocate(const Vec6& wrench) const {
     if (f > max_n_[i]) out.scale = std::min(out.scale, max_n_[i] / f);
     if (f < min_n_[i]) out.scale = std::min(out.scale, min_n_[i] / f);
   }
-  for (std::size_t i = 0; i < count_; ++i) out.force_n[i] = out.scale * out.wanted_n[i];
+  for (std::size_t i = 0; i < count_; ++i)  // clamped: the product rounds
+    out.force_n[i] = std::clamp(out.scale * out.wanted_n[i], min_n_[i], max_n_[i]);
+  if (saturation == Saturation::kRedistribute && out.scale < 1.0) redistribute(wrench, out);
   return out;
+}
+
+void Allocator::redistribute(const Vec6& wrench, Allocation& out) const {
+  for (std::size_t round = 0; round < count_ && out.scale < 1.0; ++round) {
+    std::array<Vec6, kMaxThrusters> open{};  // columns of those that can give more; else 0
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double slack = 1e-9 * (max_n_[i] - min_n_[i]);
+      if (out.force_n[i] < max_n_[i] - slack && out.force_n[i] > min_n_[i] + slack)
+        open[i] = columns_[i];
+    }
+    const PseudoInverse more = pseudo_inverse({open.data(), count_});
+    std::array<double, kMaxThrusters> rise{};  // of the forces, for all of the wrench
+    for (std::size_t i = 0; i < count_; ++i) rise[i] = dot(more.rows[i], wrench);
+    const Vec6 off = wrench_of(rise) - wrench;
+    if (dot(off, off) > 1e-18 * dot(wrench, wrench)) return;
+    double by = 1.0 - out.scale;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (rise[i] > 0.0) by = std::min(by, (max_n_[i] - out.force_n[i]) / rise[i]);
+      if (rise[i] < 0.0) by = std::min(by, (min_n_[i] - out.force_n[i]) / rise[i]);
+    }
+    for (std::size_t i = 0; i < count_; ++i)
+      out.force_n[i] = std::clamp(out.force_n[i] + by * rise[i], min_n_[i], max_n_[i]);
+    out.scale += by;
+  }
 }
 
 Vec6 Allocator::wrench_of(const std::array<double, kMaxThrusters>& force_n) const {
@@ -114,13 +139,7 @@ Vec6 Allocator::wrench_of(const std::array<double, kMaxThrusters>& force_n) cons
 }
 
 double Allocator::largest(const Vec6& direction) const {
-  double s = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < count_; ++i) {
-    const double f = dot(inverse_.rows[i], direction);
-    if (std::abs(f) < 1e-12) continue;
-    s = std::min(s, (f > 0.0 ? max_n_[i] : min_n_[i]) / f);
-  }
-  return s;
+  return 1e6 * allocate(1e6 * direction, Saturation::kRedistribute).scale;
 }
 
 }  // namespace neritic::rov

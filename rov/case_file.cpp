@@ -1,6 +1,7 @@
-// The only file of this folder that knows the JSON library.
+// See case_file.hpp.
 #include "rov/case_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -18,9 +19,25 @@ std::string printable(std::string_view text, std::size_t most) {
   return line;
 }
 
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t corner = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = corner + (a[i - 1] != b[j - 1]);
+      corner = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
 }  // namespace
 
-CaseFile::CaseFile() : json_(std::make_unique<nlohmann::json>()) {}
+CaseFile::CaseFile(nlohmann::json&& object, std::string name)
+    : name_(std::move(name)), json_(std::make_unique<nlohmann::json>(std::move(object))) {}
 CaseFile::CaseFile(CaseFile&&) noexcept = default;
 CaseFile& CaseFile::operator=(CaseFile&&) noexcept = default;
 CaseFile::~CaseFile() = default;
@@ -30,10 +47,7 @@ Result<CaseFile> CaseFile::parse(std::string_view text, std::string name) {
   if (!parsed.ok())
     return bad_input("{}: no JSON: {}", name, printable(parsed.error().message, 200));
   if (!parsed->is_object()) return bad_input("{}: a JSON object is accepted, none found", name);
-  CaseFile file;
-  file.name_ = std::move(name);
-  *file.json_ = std::move(*parsed);
-  return file;
+  return CaseFile(std::move(*parsed), std::move(name));
 }
 
 CaseField CaseFile::root() {
@@ -164,6 +178,33 @@ std::vector<std::vector<double>> CaseField::rows(std::size_t rows, std::size_t c
 std::vector<double> CaseField::required_numbers(std::size_t count) const {
   if (!present()) fail("not found, but needed");
   return numbers(count);
+}
+
+Vec3 CaseField::vec3(const Vec3& fallback) const {
+  const std::vector<double> v = numbers(3);
+  return v.empty() ? fallback : Vec3(v[0], v[1], v[2]);
+}
+
+std::vector<std::vector<double>> CaseField::square(std::size_t n) const {
+  if (!present()) return {};
+  if (is_array() && size() == n && at(0).is_array()) return rows(n, n);
+  if (!is_array() || size() != n) {
+    refuse(fmt::format("{} rows of {} numbers, or {} of a diagonal, are", n, n, n));
+    return {};
+  }
+  const std::vector<double> diagonal = numbers(n);
+  std::vector<std::vector<double>> out(diagonal.size(), std::vector<double>(n, 0.0));
+  for (std::size_t i = 0; i < diagonal.size(); ++i) out[i][i] = diagonal[i];
+  return out;
+}
+
+void CaseField::allow(std::span<const std::string_view> names) const {
+  for (const std::string& key : keys()) {
+    if (std::ranges::find(names, key) != names.end()) continue;
+    const auto near = std::ranges::min(
+        names, {}, [&](std::string_view name) { return edit_distance(key.substr(0, 40), name); });
+    (*this)[key].fail(fmt::format("not known; the nearest is {}", near));
+  }
 }
 
 void CaseField::refuse(std::string_view accepted) const {

@@ -1,16 +1,18 @@
-// Checked reading of JSON files of cases: every getter says what it accepts and records the first
-// thing that is wrong, as "file: case 'id': field: found ..., ... accepted". Later getters return
-// their fallbacks, so that a reader reads on and asks once whether it failed. One thread.
+// Checked reading of files of cases (JSON) and of vehicles (TOML): every getter says what it
+// accepts and records the first thing that is wrong, as "file: case 'id': field: ... found, ...
+// accepted". Later getters return their fallbacks, so that a reader reads on and asks once whether
+// it failed. One thread.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
 
 namespace neritic::rov {
@@ -22,6 +24,7 @@ class CaseFile {
  public:
   // name stands in messages. Errors: no JSON object.
   static Result<CaseFile> parse(std::string_view text, std::string name);
+  CaseFile(nlohmann::json&& object, std::string name);
   CaseFile(CaseFile&&) noexcept;
   CaseFile& operator=(CaseFile&&) noexcept;
   ~CaseFile();
@@ -36,7 +39,6 @@ class CaseFile {
   void fail(const std::string& field, const std::string& message);
 
  private:
-  CaseFile();
   std::string name_, case_;
   std::unique_ptr<nlohmann::json> json_;
   std::optional<Error> error_;
@@ -70,12 +72,18 @@ class CaseField {
   double number(double fallback, double least = -1e300, double most = 1e300) const;
   // Exactly count finite numbers; empty where absent or refused.
   std::vector<double> numbers(std::size_t count) const;
-  // The same; fails where it is absent too.
-  std::vector<double> required_numbers(std::size_t count) const;
   // A list of finite numbers of any length.
   std::vector<double> numbers() const;
   // Rows of columns numbers each; any number of rows where rows is 0.
   std::vector<std::vector<double>> rows(std::size_t rows, std::size_t columns) const;
+
+  // Exactly count numbers; fails where they are absent too.
+  std::vector<double> required_numbers(std::size_t count) const;
+  Vec3 vec3(const Vec3& fallback) const;
+  // n rows of n numbers, or its diagonal alone; empty where absent or refused.
+  std::vector<std::vector<double>> square(std::size_t n) const;
+  // Fails where a member has none of these names, and tells the nearest.
+  void allow(std::span<const std::string_view> names) const;
 
   // "field: found ..., accepted"
   void refuse(std::string_view accepted) const;

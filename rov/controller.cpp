@@ -89,7 +89,8 @@ Inputs control_inputs(const Vehicle& vehicle, const Allocator& allocator, const 
   Inputs inputs = state.held;
   inputs.wrench = {};
   inputs.thruster_n =
-      allocator.allocate(control_wrench(vehicle, gains, setpoint, state, control)).force_n;
+      allocator.allocate(control_wrench(vehicle, gains, setpoint, state, control), gains.saturation)
+          .force_n;
   return inputs;
 }
 

@@ -26,6 +26,7 @@ struct Setpoint {
 struct ControlGains {
   std::array<PidAxis, 6> axes;
   double period_s = 0.02;
+  Saturation saturation = Saturation::kScale;
 };
 // For the BlueROV2 Heavy at 50 Hz.
 ControlGains default_gains();

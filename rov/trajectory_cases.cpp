@@ -12,11 +12,6 @@ namespace {
 constexpr double kDefaultLag = 0.1;  // s, that of the closed loops of control_vectors.json
 constexpr double kLongest = 1e5;     // s
 
-Vec3 vec3(const CaseField& field) {
-  const std::vector<double> v = field.numbers(3);
-  return v.empty() ? Vec3(0.0) : Vec3(v[0], v[1], v[2]);
-}
-
 Vec6 vec6_of(const CaseField& field) {
   const std::vector<double> v = field.numbers(6);
   Vec6 out;
@@ -24,20 +19,9 @@ Vec6 vec6_of(const CaseField& field) {
   return out;
 }
 
-// Rows, or the diagonal alone.
-std::vector<std::vector<double>> square(const CaseField& field, std::size_t n) {
-  if (field.is_array() && field.size() == n && !field.at(0).is_array()) {
-    const std::vector<double> d = field.numbers(n);
-    std::vector<std::vector<double>> out(d.size(), std::vector<double>(n, 0.0));
-    for (std::size_t i = 0; i < d.size(); ++i) out[i][i] = d[i];
-    return out;
-  }
-  return field.rows(n, n);
-}
-
 Mat6 matrix6(const CaseField& field) {
   Mat6 out;
-  const auto rows = square(field, 6);
+  const auto rows = field.square(6);
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (std::size_t j = 0; j < 6; ++j) out(i, j) = rows[i][j];
   return out;
@@ -46,12 +30,12 @@ Mat6 matrix6(const CaseField& field) {
 VehicleParameters read_parameters(const CaseField& field) {
   VehicleParameters p;
   p.mass_kg = field.required("m_kg").number(1.0, 1e-9, 1e9);
-  const auto inertia = square(field.required("I_CO_kgm2"), 3);
+  const auto inertia = field.required("I_CO_kgm2").square(3);
   for (std::size_t i = 0; i < inertia.size(); ++i)
     for (std::size_t j = 0; j < 3; ++j)
       p.inertia_kg_m2[static_cast<int>(j)][static_cast<int>(i)] = inertia[i][j];
-  p.gravity_centre_m = vec3(field["r_g_m"]);
-  p.buoyancy_centre_m = vec3(field["r_b_m"]);
+  p.gravity_centre_m = field["r_g_m"].vec3(Vec3(0.0));
+  p.buoyancy_centre_m = field["r_b_m"].vec3(Vec3(0.0));
   p.weight_n = field["W_N"].number(p.mass_kg * kGravity);
   p.buoyancy_n = field["B_N"].number(p.weight_n);
   p.added_mass = matrix6(field["M_A"]);
@@ -154,7 +138,7 @@ void read_samples(const CaseField& scenario, TrajectoryCase& out) {
     sample.t_s = at.required("t").number(0.0, 0.0, kLongest);
     if (!out.samples.empty() && !(sample.t_s > out.samples.back().t_s))
       at["t"].refuse("a time after the last sample's is");
-    if (at["p_ned"].present()) sample.position_ned_m = vec3(at["p_ned"]);
+    if (at["p_ned"].present()) sample.position_ned_m = at["p_ned"].vec3(Vec3(0.0));
     sample.attitude = read_attitude(at["q_wxyz"]);
     if (at["nu_frd"].present()) sample.velocity = vec6_of(at["nu_frd"]);
     sample.thruster_n = at["thruster_force_N"].present()
@@ -195,9 +179,9 @@ TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseFi
     return out;
   }
   out.vehicle = *vehicle;
-  out.current_ned_m_s = vec3(scenario["current_ned_mps"]);
+  out.current_ned_m_s = scenario["current_ned_mps"].vec3(Vec3(0.0));
   const CaseField initial = scenario["initial"];
-  out.position_ned_m = vec3(initial["p_ned"]);
+  out.position_ned_m = initial["p_ned"].vec3(Vec3(0.0));
   out.attitude = read_attitude(initial["q_wxyz"]).value_or(Quat(1.0, 0.0, 0.0, 0.0));
   out.velocity = vec6_of(initial["nu_frd"]);
   out.sines = read_sines(scenario["tau_sin"]);

@@ -67,7 +67,7 @@ TEST(RovTrajectory, OrdersOfConvergenceAreFourAndOne) {
   };
   EXPECT_NEAR(order("surge_step", Integrator::kRk4, 15.0), 4.0, 0.3);
   EXPECT_NEAR(order("heave_step_up", Integrator::kRk4, 15.0), 4.0, 0.3);
-  EXPECT_NEAR(order("lossless_kirchhoff", Integrator::kRk4, 60.0), 4.0, 0.3);
+  EXPECT_NEAR(order("lossless_kirchhoff", Integrator::kRk4, 60.0), 4.0, 0.4);
   // At rates where the guard takes one substep.
   EXPECT_NEAR(order("surge_step", Integrator::kGuarded, 60.0), 4.0, 0.3);
   EXPECT_NEAR(order("heave_step_up", Integrator::kGuarded, 60.0), 4.0, 0.3);

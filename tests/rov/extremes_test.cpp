@@ -1,0 +1,217 @@
+// What no dive should meet: steps of a second, ten kilonewton, a thousandth of the mass, five
+// metres a second of current, jumps, 100 km, inputs that are no numbers. Energy stays bounded,
+// nothing that leaves is not finite, and afterwards it flies as before.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "rov/bluerov2.hpp"
+#include "rov/closed_loop.hpp"
+#include "rov/guidance.hpp"
+#include "tests/rov/random_vehicle.hpp"
+
+namespace neritic::rov {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+Vehicle heavy() {
+  return make_vehicle(bluerov2_heavy()).value();
+}
+
+// Comes to rest, within a metre of where it then is, when everything stops.
+void expect_recovers(const Vehicle& vehicle, State state, double dt_s) {
+  VehicleParameters p = bluerov2_heavy();
+  for (double t = 0.0; t < 60.0; t += dt_s) state = step(vehicle, state, {}, dt_s);
+  ASSERT_TRUE(all_finite(state));
+  EXPECT_LT(glm::length(state.velocity.linear()), 1.0);
+  EXPECT_LT(glm::length(state.velocity.angular()), 1.0);
+}
+
+TEST(RovExtremes, StepsOfASecondUnderTenKilonewtonStayBounded) {
+  const Vehicle vehicle = heavy();
+  for (const double dt : {1.0 / 240.0, 0.01, 0.05, 0.3, 1.0})
+    for (std::uint64_t index = 0; index < 20; ++index) {
+      Draws draws(index);
+      State state = random_state(draws, 1.0);
+      Inputs inputs;
+      inputs.wrench = 1e4 * vec6(draws.attitude() * Vec3(1, 0, 0), 0.2 * draws.vec3(1.0));
+      inputs.current_ned_m_s = 5.0 * (draws.attitude() * Vec3(1, 0, 0));
+      for (std::size_t i = 0; i < 8; ++i) inputs.thruster_n[i] = draws.uniform(-1e4, 1e4);
+      for (double t = 0.0; t < 10.0; t += dt) {
+        state = step(vehicle, state, inputs, dt);
+        ASSERT_TRUE(all_finite(state)) << dt << " " << index;
+        // Terminal velocities: sqrt(1.2e4 N / 141), sqrt(2.2e3 N m / 0.47), with room for swings.
+        const Vec6 nu = through_water(state.attitude, state.velocity, inputs.current_ned_m_s);
+        ASSERT_LT(glm::length(nu.linear()), 30.0) << dt << " " << index;
+        ASSERT_LT(glm::length(nu.angular()), 150.0) << dt << " " << index;
+      }
+      ASSERT_NO_FATAL_FAILURE(expect_recovers(vehicle, state, dt)) << dt << " " << index;
+    }
+}
+
+TEST(RovExtremes, AThousandthOfTheMassUnderTenKilonewton) {
+  VehicleParameters p = bluerov2_heavy();
+  p.mass_kg /= 1000.0;
+  p.inertia_kg_m2 /= 1000.0;
+  p.added_mass = 1e-3 * p.added_mass;
+  const Vehicle vehicle = make_vehicle(p).value();
+  for (const double dt : {1.0 / 240.0, 0.05, 1.0})
+    for (std::uint64_t index = 0; index < 10; ++index) {
+      Draws draws(index);
+      State state = random_state(draws, 1.0);
+      Inputs inputs;
+      inputs.wrench = 1e4 * vec6(draws.attitude() * Vec3(1, 0, 0), 0.2 * draws.vec3(1.0));
+      for (double t = 0.0; t < 5.0; t += dt) {
+        state = step(vehicle, state, inputs, dt);
+        ASSERT_TRUE(all_finite(state)) << dt << " " << index;
+        ASSERT_LT(glm::length(state.velocity.linear()), 30.0) << dt << " " << index;
+        ASSERT_LT(glm::length(state.velocity.angular()), 200.0) << dt << " " << index;
+      }
+    }
+}
+
+TEST(RovExtremes, RandomVehiclesNeverGainMoreThanTheirThrustersGive) {
+  for (std::uint64_t index = 0; index < 200; ++index) {
+    Draws draws(1000 + index);
+    const Vehicle vehicle = random_vehicle(draws);
+    State state = random_state(draws, draws.scale(0.01, 20.0));
+    Inputs inputs;
+    const double force = vehicle.mass_kg * draws.scale(0.1, 1000.0);
+    inputs.wrench = vec6(force * (draws.attitude() * Vec3(1, 0, 0)), Vec3(0.0));
+    const double dt = draws.scale(1e-3, 1.0);
+    double energy = kinetic_energy(vehicle, state, Vec3(0.0)), most_given = 0.0;
+    for (int i = 0; i < 100; ++i) {
+      state = step(vehicle, state, inputs, dt);
+      ASSERT_TRUE(all_finite(state)) << index;
+      // Power is at most force times speed; without any drag it would be F^2 t^2 / 2 m.
+      most_given = 0.5 * std::pow((force + 0.1 * vehicle.weight_n) * (i + 1) * dt, 2.0) /
+                   (0.5 * vehicle.mass_kg);
+      const double now = kinetic_energy(vehicle, state, Vec3(0.0));
+      ASSERT_LT(std::sqrt(now),
+                std::sqrt(energy) + std::sqrt(most_given) + std::sqrt(vehicle.weight_n + 1.0))
+          << index << ", dt " << dt;
+    }
+  }
+}
+
+TEST(RovExtremes, UpsideDownRightsItself) {
+  const Vehicle vehicle = heavy();
+  for (const double dt : {1.0 / 240.0, 0.1, 1.0}) {
+    State state;
+    state.attitude = Quat(0.0, 1.0, 0.0, 0.0);  // exactly on its back: a balance, if a poor one
+    state.velocity[3] = 1e-6;
+    for (double t = 0.0; t < 120.0; t += dt) state = step(vehicle, state, {}, dt);
+    EXPECT_LT(std::hypot(state.attitude.x, state.attitude.y), 0.05) << dt;
+  }
+}
+
+TEST(RovExtremes, AHundredKilometresAwayItMovesAsAtTheOrigin) {
+  const Vehicle vehicle = heavy();
+  State near, far;
+  const Vec3 offset(1e5, -1e5, 0.0);
+  far.position_ned_m = offset;
+  Inputs inputs;
+  inputs.wrench = {{40, 10, 5, 0.1, 0.2, 1.0}};
+  for (int i = 0; i < 2400; ++i) {
+    near = step(vehicle, near, inputs, 1.0 / 240.0);
+    far = step(vehicle, far, inputs, 1.0 / 240.0);
+  }
+  EXPECT_EQ(near.velocity, far.velocity);
+  EXPECT_LT(glm::distance(near.position_ned_m + offset, far.position_ned_m), 1e-7);
+}
+
+TEST(RovExtremes, InputsThatAreNoNumbersAreRefusedCountedAndHeld) {
+  const Vehicle vehicle = heavy();
+  Inputs good;
+  good.wrench = {{5, 0, 0, 0, 0, 0}};
+  good.thruster_n = {1, 2, 3, 4, 5, 6, 7, 8};
+  good.current_ned_m_s = {0.1, 0.2, 0.0};
+  State held = step(vehicle, {}, good, 0.01);
+  State expected = step(vehicle, held, good, 0.01);
+  ASSERT_EQ(held.refused_inputs, 0u);
+
+  Inputs bad = good;
+  bad.wrench[3] = kNan;
+  bad.thruster_n[2] = kInf;
+  bad.thruster_n[7] = 1e12;
+  bad.current_ned_m_s.y = -kInf;
+  bad.tether_anchor_ned_m.x = kNan;
+  const State after = step(vehicle, held, bad, 0.01);
+  EXPECT_EQ(after.refused_inputs, 5u);
+  EXPECT_EQ(after.velocity, expected.velocity);
+  EXPECT_EQ(after.position_ned_m, expected.position_ned_m);
+  EXPECT_EQ(after.held.thruster_n, good.thruster_n);
+
+  for (const double dt : {kNan, kInf, 0.0, -0.1, 11.0}) {
+    const State still = step(vehicle, held, good, dt);
+    EXPECT_EQ(still.refused_inputs, 1u) << dt;
+    EXPECT_EQ(still.velocity, held.velocity) << dt;
+  }
+}
+
+TEST(RovExtremes, TeleportsToRestAndRefusesNowhere) {
+  const Vehicle vehicle = heavy();
+  Inputs inputs;
+  inputs.thruster_n.fill(30.0);
+  State state;
+  for (int i = 0; i < 240; ++i) state = step(vehicle, state, inputs, 1.0 / 240.0);
+  const State before = state;
+  EXPECT_FALSE(teleport(state, {kNan, 0, 0}, {1, 0, 0, 0}));
+  EXPECT_FALSE(teleport(state, {0, 0, 0}, {0, 0, 0, 0}));
+  EXPECT_FALSE(teleport(state, {0, 0, 0}, {kNan, 0, 0, 0}));
+  EXPECT_EQ(state.position_ned_m, before.position_ned_m);
+  EXPECT_TRUE(teleport(state, {1e5, 2, 3}, {2, 0, 0, 0}));
+  EXPECT_EQ(state.velocity, Vec6{});
+  EXPECT_EQ(state.attitude.w, 1.0);
+  EXPECT_TRUE(all_finite(step(vehicle, state, inputs, 1.0 / 240.0)));
+}
+
+TEST(RovExtremes, FliesToItsSetpointAfterAllThat) {
+  const Vehicle vehicle = heavy();
+  Draws draws(3);
+  State state = random_state(draws, 3.0);
+  Inputs inputs;
+  inputs.wrench = {{1e4, -1e4, 1e4, 2e3, 2e3, -2e3}};
+  inputs.current_ned_m_s = {5, 0, 0};
+  for (int i = 0; i < 5; ++i) state = step(vehicle, state, inputs, 1.0);
+  inputs.wrench[0] = kNan;
+  inputs.current_ned_m_s.x = kNan;
+  state = step(vehicle, state, inputs, 1.0);
+  Setpoint home;
+  home.position_ned_m = state.position_ned_m + Vec3(1.0, 1.0, 1.0);
+  state.held = {};
+  const LoopRun run = fly(
+      vehicle, default_gains(), state, [&](const State&, double) { return home; }, 60.0);
+  EXPECT_LT(glm::distance(run.states.back().position_ned_m, home.position_ned_m), 0.02);
+}
+
+TEST(RovExtremes, ParametersThatAreNoVehicleAreErrors) {
+  const auto said = [](const auto& change) {
+    VehicleParameters p = bluerov2_heavy();
+    change(p);
+    const auto vehicle = make_vehicle(p);
+    return vehicle.ok() ? "" : vehicle.error().message;
+  };
+  using ::testing::HasSubstr;
+  EXPECT_EQ(said([](auto&) {}), "");
+  EXPECT_THAT(said([](auto& p) { p.mass_kg = -1; }), HasSubstr("mass_kg: -1 found, a number in"));
+  EXPECT_THAT(said([](auto& p) { p.mass_kg = kNan; }), HasSubstr("mass_kg: nan found"));
+  EXPECT_THAT(said([](auto& p) { p.weight_n = -5; }), HasSubstr("weight_n: -5 found"));
+  EXPECT_THAT(said([](auto& p) { p.inertia_kg_m2 = Mat3(0.0); }), HasSubstr("inertia_kg_m2: with"));
+  EXPECT_THAT(said([](auto& p) { p.gravity_centre_m = {0, 0, 1}; }), HasSubstr("(0, 0, 1) the ma"));
+  EXPECT_THAT(said([](auto& p) { p.added_mass(0, 1) = p.added_mass(1, 0) = 30; }),
+              HasSubstr("added_mass: with the rigid body's the matrix is singular or not"));
+  EXPECT_THAT(said([](auto& p) { p.added_mass(2, 2) = -3; }), HasSubstr("added_mass: -3 found"));
+  EXPECT_THAT(said([](auto& p) { p.quadratic_damping[4] = -3; }),
+              HasSubstr("quadratic_damping: -3 found"));
+  EXPECT_THAT(said([](auto& p) { p.thrusters.resize(17); }), HasSubstr("17 found, up to 16"));
+  EXPECT_THAT(said([](auto& p) { p.lag.a1 = 1.0; }), HasSubstr("stable poles"));
+  EXPECT_THAT(said([](auto& p) { p.tether = Tether{.length_m = -1.0}; }),
+              HasSubstr("tether.length_m: -1 found, [0.1, 100000] is accepted"));
+}
+
+}  // namespace
+}  // namespace neritic::rov
