@@ -1,0 +1,130 @@
+// Projected Gauss-Seidel over the contacts of one body.
+#include "engine/sim/contact_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/sim/contact_rows.hpp"
+
+namespace neritic::sim {
+namespace {
+
+constexpr int kMostRounds = 200;
+// Rounds end when no contact's velocity changes by more than this share of the fastest approach.
+constexpr double kTolerance = 1e-9;
+constexpr double kSmallestChange_m_s = 1e-13;
+
+// Depth beyond the slop is undone at this rate, up to this speed.
+constexpr double kSlop_m = 1e-6;
+constexpr double kPushRate_hz = 50.0;
+constexpr double kMostPush_m_s = 2.0;
+constexpr double kPushTolerance_m_s = 1e-9;
+constexpr int kMostPushRounds = 50;
+
+double target_of(const BodyContact& contact, double approach_m_s, double dt_s) {
+  const bool hits = contact.gap_m + approach_m_s * dt_s < 0.0;
+  if (hits && contact.restitution > 0.0 && approach_m_s < -kBounce_m_s)
+    return -contact.restitution * approach_m_s;
+  return -std::max(contact.gap_m, 0.0) / dt_s;
+}
+
+// To and fro over the contacts: what the conjugate directions ask for, and the same for all.
+double solve_round(std::vector<SolverContact>& contacts, Six& velocity) {
+  double change_m_s = 0.0;
+  const auto solve = [&](SolverContact& contact) {
+    change_m_s = std::max(change_m_s, solve_normal(contact, contact.target_m_s, velocity));
+    change_m_s = std::max(change_m_s, solve_friction(contact, velocity));
+  };
+  std::for_each(contacts.begin(), contacts.end(), solve);
+  std::for_each(contacts.rbegin(), contacts.rend(), solve);
+  return change_m_s;
+}
+
+// Kinetic energy that the impulses bring: their product with the mean of the speeds before and
+// after.
+double energy_gain(const std::vector<SolverContact>& contacts, const Six& free,
+                   const Six& velocity) {
+  Six mean = free;
+  add_scaled(mean, velocity, 1.0);
+  double twice = 0.0;
+  for (const SolverContact& contact : contacts)
+    twice += contact.impulse.x * dot_of(contact.normal.jacobian, mean) +
+             contact.impulse.y * dot_of(contact.side.jacobian, mean) +
+             contact.impulse.z * dot_of(contact.other.jacobian, mean);
+  return 0.5 * twice;
+}
+
+// Rounds that did not come to an end may leave more energy than there was. With the bounds of
+// friction held, every step of a round lowers one and the same convex function, which is 0 without
+// impulses and no less than the energy gained: from there no rounds can gain any.
+void solve_safely(std::vector<SolverContact>& contacts, double enough_m_s, Six& velocity) {
+  for (SolverContact& contact : contacts) {
+    contact.friction_bound = contact.friction * contact.impulse.x;
+    contact.impulse = Vec3(0.0);
+  }
+  for (int round = 0; round < kMostRounds; ++round)
+    if (solve_round(contacts, velocity) <= enough_m_s) return;
+}
+
+// The velocity that undoes depth within this step's motion, beside the velocity that was solved.
+Six solve_push(std::vector<SolverContact>& rows, std::span<const BodyContact> contacts,
+               const Six& velocity, double dt_s) {
+  Six push{};
+  const bool deep = std::any_of(contacts.begin(), contacts.end(),
+                                [](const BodyContact& c) { return c.gap_m < -kSlop_m; });
+  if (!deep) return push;
+  const double rate_hz = std::min(kPushRate_hz, 1.0 / dt_s);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double gap_m = contacts[i].gap_m;
+    const double left_m_s = dot_of(rows[i].normal.jacobian, velocity) + std::max(gap_m, 0.0) / dt_s;
+    rows[i].target_m_s = gap_m < -kSlop_m ? std::min((-gap_m - kSlop_m) * rate_hz, kMostPush_m_s)
+                                          : -std::max(left_m_s, 0.0);
+    rows[i].impulse = Vec3(0.0);
+    rows[i].friction = 0.0;
+  }
+  Conjugate conjugate(rows.size());
+  for (int round = 0; round < kMostPushRounds; ++round) {
+    if (round > 0) conjugate.advance(rows, push);
+    if (solve_round(rows, push) < kPushTolerance_m_s) break;
+  }
+  return push;
+}
+
+}  // namespace
+
+ContactSolution solve_contacts(std::span<const BodyContact> contacts,
+                               const InverseMass& inverse_mass, const Twist& free, double dt_s) {
+  ContactSolution solution;
+  Six velocity = six_of(free);
+  std::vector<SolverContact> rows;
+  rows.reserve(contacts.size());
+  double fastest_m_s = 0.0;
+  bool bounces = false;
+  for (const BodyContact& contact : contacts) {
+    SolverContact& row = rows.emplace_back(solver_contact(contact, inverse_mass));
+    const double approach_m_s = dot_of(row.normal.jacobian, velocity);
+    row.target_m_s = target_of(contact, approach_m_s, dt_s);
+    fastest_m_s = std::max(fastest_m_s, row.target_m_s - approach_m_s);
+    bounces = bounces || row.target_m_s > 0.0;
+  }
+  const double enough_m_s = std::max(kTolerance * fastest_m_s, kSmallestChange_m_s);
+  solution.converged = contacts.empty();
+  Conjugate conjugate(rows.size());
+  while (!solution.converged && solution.rounds < kMostRounds) {
+    if (solution.rounds > 0) conjugate.advance(rows, velocity);
+    solution.converged = solve_round(rows, velocity) <= enough_m_s;
+    ++solution.rounds;
+  }
+  if (!solution.converged && !bounces && energy_gain(rows, six_of(free), velocity) > 0.0) {
+    velocity = six_of(free);
+    solve_safely(rows, enough_m_s, velocity);
+  }
+  for (const SolverContact& row : rows)
+    solution.impulses.push_back(
+        {row.impulse.x, row.side_axis * row.impulse.y + row.other_axis * row.impulse.z});
+  solution.velocity = twist_of(velocity);
+  solution.push = twist_of(solve_push(rows, contacts, velocity, dt_s));
+  return solution;
+}
+
+}  // namespace neritic::sim

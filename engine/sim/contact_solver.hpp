@@ -1,0 +1,62 @@
+// Contact impulses of one body against what does not move. Velocity and inverse mass are the body's
+// own: six components about its origin in body axes, the mass any symmetric positive definite
+// matrix, e.g. rigid body plus added mass (Fossen 2011, eq. 6.52). Pure functions; any thread.
+//
+//   v' = v + M^-1 J^T lambda,   0 <= lambda_n  _|_  n . v'_c >= target,   |lambda_t| <= mu lambda_n
+//
+// solved by projected Gauss-Seidel in the order of the contacts (Catto 2005), friction as a cone.
+// The target is -gap / dt, so that a body comes to touch and no farther (speculative contacts), or,
+// where it would hit within the step faster than kBounce_m_s, the bounce -e n . v_c. Depth is
+// undone by a velocity of its own that moves the body in this step only and carries no energy
+// (split impulses).
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "engine/core/math.hpp"
+
+namespace neritic::sim {
+
+// Linear (m/s) and angular velocity (rad/s) of the body's origin, body axes.
+struct Twist {
+  Vec3 linear{0.0}, angular{0.0};
+};
+// Rows first; three linear components, then three angular: [kg^-1 ...].
+using InverseMass = std::array<double, 36>;
+
+inline constexpr double kBounce_m_s = 0.01;
+
+// In body axes about the body's origin.
+struct BodyContact {
+  Vec3 point_m{0.0};
+  Vec3 normal{0.0};    // unit, towards the body
+  double gap_m = 0.0;  // negative: depth
+  double friction = 0.0, restitution = 0.0;
+};
+
+struct ContactImpulse {
+  double normal_n_s = 0.0;
+  Vec3 friction_n_s{0.0};  // body axes, across the normal
+};
+
+struct ContactSolution {
+  Twist velocity;
+  Twist push;                            // out of what is penetrated: for this step's motion only
+  std::vector<ContactImpulse> impulses;  // one a contact
+  int rounds = 0;
+  bool converged = true;
+
+  bool acted() const {
+    for (const ContactImpulse& impulse : impulses)
+      if (impulse.normal_n_s > 0.0) return true;
+    return push.linear != Vec3(0.0) || push.angular != Vec3(0.0);
+  }
+};
+
+// free: the velocity at the end of the step if there were no contacts. dt_s > 0.
+ContactSolution solve_contacts(std::span<const BodyContact> contacts,
+                               const InverseMass& inverse_mass, const Twist& free, double dt_s);
+
+}  // namespace neritic::sim

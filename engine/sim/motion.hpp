@@ -1,0 +1,38 @@
+// What becomes of a body's free motion when things are in the way. The vehicle steps as if the
+// water were empty; then move_body() takes the pose before and the motion after that step, and
+// returns the motion with contacts: the same bits where nothing was touched. Nothing is passed
+// through, whatever the speed and the step. Pure functions; any thread.
+//
+//   const rov::State free = rov::step(...);
+//   const BodyMotion after = move_body(world, shape, inverse_mass, before, free_motion, dt_s);
+#pragma once
+
+#include "engine/sim/contact_solver.hpp"
+#include "engine/sim/static_world.hpp"
+
+namespace neritic::sim {
+
+struct BodyMotion {
+  Pose world_from_body;
+  Twist velocity;  // body axes
+};
+
+struct MotionReport {
+  int contacts = 0;  // near, in the last part of the step
+  int pieces = 0;    // parts the step was cut into; 1: none of it was at risk
+  bool touched = false;
+  bool converged = true;   // all contact impulses
+  double lost_s = 0.0;     // time that did not pass, since the step fell into too many parts
+  double deepest_m = 0.0;  // penetration at the start
+  Vec3 impulse_n_s{0.0};   // of all contacts on the body, world axes
+};
+
+BodyMotion move_body(const StaticWorld& world, const BodyShape& shape,
+                     const InverseMass& inverse_mass, const Pose& before, const BodyMotion& free,
+                     double dt_s, MotionReport* report = nullptr);
+
+// The pose after so long at this velocity: position along the world's direction of now, attitude
+// about the world's axis of now.
+Pose moved(const Pose& world_from_body, const Twist& velocity, double duration_s);
+
+}  // namespace neritic::sim

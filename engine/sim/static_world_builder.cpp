@@ -1,0 +1,91 @@
+// Builds a static world from plain vertices, indices and heights.
+#include <utility>
+
+#include "engine/core/check.hpp"
+#include "engine/sim/convex_hull.hpp"
+#include "engine/sim/static_things.hpp"
+
+namespace neritic::sim {
+namespace {
+
+// So far below a seabed things are led out of it.
+constexpr double kSolidBelow_m = 1000.0;
+
+template <class Shape>
+std::uint32_t add_shape(std::vector<StaticShape>& shapes, Shape shape) {
+  shapes.emplace_back(std::move(shape));
+  return static_cast<std::uint32_t>(shapes.size() - 1);
+}
+
+}  // namespace
+
+StaticWorld::StaticWorld() : things_(std::make_unique<Things>()) {}
+StaticWorld::~StaticWorld() = default;
+StaticWorld::StaticWorld(StaticWorld&&) noexcept = default;
+StaticWorld& StaticWorld::operator=(StaticWorld&&) noexcept = default;
+
+const StaticWorldCounts& StaticWorld::counts() const {
+  return things_->counts;
+}
+
+StaticWorldBuilder::StaticWorldBuilder() : things_(std::make_unique<StaticWorld::Things>()) {}
+StaticWorldBuilder::~StaticWorldBuilder() = default;
+
+Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_mesh(
+    std::span<const Vec3f> vertices_m, std::span<const std::uint32_t> indices,
+    const std::string& name) {
+  NERITIC_TRY(TriangleMesh mesh, TriangleMesh::build(vertices_m, indices, name));
+  things_->counts.dropped += mesh.dropped_count();
+  return add_shape(things_->shapes, std::move(mesh));
+}
+
+Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_hull(std::span<const Vec3> points_m,
+                                                                 const std::string& name) {
+  for (std::size_t i = 0; i < points_m.size(); ++i)
+    if (!is_finite(points_m[i])) return bad_input("{}: point {} is not finite", name, i);
+  const ConvexHull hull = convex_hull(points_m).hull;
+  if (hull.triangles.empty())
+    return bad_input("{}: the hull of {} points has no volume", name, points_m.size());
+  std::vector<Vec3f> vertices_m(hull.corners.begin(), hull.corners.end());
+  std::vector<std::uint32_t> indices;
+  for (const auto& triangle : hull.triangles)
+    indices.insert(indices.end(), triangle.begin(), triangle.end());
+  return add_mesh(vertices_m, indices, name);
+}
+
+Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_heights(
+    std::uint32_t columns, std::uint32_t rows, double cell_m, std::span<const float> heights_m,
+    const std::string& name) {
+  NERITIC_TRY(HeightGrid grid, HeightGrid::build(columns, rows, cell_m, heights_m, name));
+  return add_shape(things_->shapes, std::move(grid));
+}
+
+void StaticWorldBuilder::place(ShapeId shape, const Placement& placement, const Surface& surface) {
+  NERITIC_CHECK(shape < things_->shapes.size(), "shape {}", shape);
+  const Pose& pose = placement.world_from_thing;
+  NERITIC_CHECK(is_finite(pose.position_m) && std::isfinite(placement.scale) &&
+                    placement.scale > 0.0 &&
+                    std::abs(glm::dot(pose.rotation, pose.rotation) - 1.0) < 1e-6,
+                "placement of shape {}", shape);
+  NERITIC_CHECK(surface.friction >= 0.0 && surface.restitution >= 0.0 && surface.restitution <= 1.0,
+                "friction {}, restitution {}", surface.friction, surface.restitution);
+  auto bounds = std::visit([](const auto& s) { return s.bounds(); }, things_->shapes[shape]);
+  if (bounds.empty()) return;
+  if (std::holds_alternative<HeightGrid>(things_->shapes[shape])) bounds.low.y -= kSolidBelow_m;
+  things_->things.push_back({shape, placement, surface,
+                             transformed(placement.world_from_thing, placement.scale, bounds)});
+  things_->counts.triangles +=
+      std::visit([](const auto& s) { return s.triangle_count(); }, things_->shapes[shape]);
+}
+
+StaticWorld StaticWorldBuilder::build() {
+  std::vector<Box> boxes;
+  for (const StaticThing& thing : things_->things) boxes.push_back(thing.bounds);
+  things_->tree = BoxTree(boxes);
+  things_->counts.things = things_->things.size();
+  StaticWorld world;
+  world.things_ = std::exchange(things_, std::make_unique<StaticWorld::Things>());
+  return world;
+}
+
+}  // namespace neritic::sim
