@@ -120,6 +120,12 @@ std::string CaseField::text(std::string_view fallback) const {
   return std::string(fallback);
 }
 
+bool CaseField::boolean(bool fallback) const {
+  if (present() && value_->is_boolean()) return value_->get<bool>();
+  if (present()) refuse("true or false is");
+  return fallback;
+}
+
 double CaseField::number(double fallback, double least, double most) const {
   if (!present()) return fallback;
   if (value_->is_number()) {

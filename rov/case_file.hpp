@@ -68,6 +68,7 @@ class CaseField {
   CaseField at(std::size_t i) const;
 
   std::string text(std::string_view fallback = {}) const;
+  bool boolean(bool fallback) const;
   // In [least, most], finite.
   double number(double fallback, double least = -1e300, double most = 1e300) const;
   // Exactly count finite numbers; empty where absent or refused.

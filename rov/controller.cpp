@@ -77,6 +77,8 @@ Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Set
   for (std::size_t i = 0; i < 6; ++i)
     u[i] = pid_step(gains.axes[i], control.integral[i], error[i], rate[i], gains.period_s);
   Vec6 wrench = vehicle.rigid_mass * u + s.pilot;
+  if (gains.feed_forward)
+    wrench = wrench - static_wrench(vehicle, {state.position_ned_m, q, state.velocity}, state.held);
   const Vec6 moving = vec6(setpoint_velocity, Vec3(0.0));
   wrench = wrench + vehicle.linear_damping * moving;
   for (std::size_t i = 0; i < 6; ++i)

@@ -27,6 +27,9 @@ struct ControlGains {
   std::array<PidAxis, 6> axes;
   double period_s = 0.02;
   Saturation saturation = Saturation::kScale;
+  // Weight, buoyancy and righting moment are given on top, as the vehicle's parameters have them:
+  // without it the integral has to, and at large tilts cannot.
+  bool feed_forward = false;
 };
 // For the BlueROV2 Heavy at 50 Hz.
 ControlGains default_gains();

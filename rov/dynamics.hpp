@@ -18,13 +18,22 @@
 
 namespace neritic::rov {
 
-// What acts on a vehicle during one step. Plain bytes: logged and replayed as they are.
+// What acts on a vehicle during one step. Plain bytes: logged and replayed as they are. fields()
+// names all of them, for hashes and logs.
 struct Inputs {
   Vec6 wrench;  // tau beside the thrusters', body axes, N and N m
   std::array<double, kMaxThrusters> thruster_n{};  // commands; before lag, limits and failure
   Vec3 current_ned_m_s{0.0};  // steady during the step, of all the water around the vehicle
   Vec3 tether_anchor_ned_m{0.0};
   std::uint64_t failed_thrusters = 0;  // bit i: thruster i gives nothing, its lag runs out
+
+  static void fields(auto&& field, auto& self) {
+    field("wrench", self.wrench);
+    field("thruster_n", self.thruster_n);
+    field("current_ned_m_s", self.current_ned_m_s);
+    field("tether_anchor_ned_m", self.tether_anchor_ned_m);
+    field("failed_thrusters", self.failed_thrusters);
+  }
 };
 
 struct State {
@@ -35,6 +44,15 @@ struct State {
   // The last good value of each input, and how many were refused (step.hpp).
   Inputs held;
   std::uint64_t refused_inputs = 0;
+
+  static void fields(auto&& field, auto& self) {
+    field("position_ned_m", self.position_ned_m);
+    field("attitude", self.attitude);
+    field("velocity", self.velocity);
+    field("lag", self.lag);
+    field("held", self.held);
+    field("refused_inputs", self.refused_inputs);
+  }
 };
 
 struct StateRate {

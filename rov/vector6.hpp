@@ -20,6 +20,7 @@ struct Vec6 {
   Vec3 linear() const { return {v[0], v[1], v[2]}; }
   Vec3 angular() const { return {v[3], v[4], v[5]}; }
   bool operator==(const Vec6&) const = default;
+  static void fields(auto&& field, auto& self) { field("v", self.v); }
 };
 
 inline Vec6 vec6(const Vec3& linear, const Vec3& angular) {

@@ -6,6 +6,7 @@
 
 #include "engine/core/files.hpp"
 #include "rov/bluerov2.hpp"
+#include "rov/sensor_file.hpp"
 #include "rov/vehicle_toml.hpp"
 
 namespace neritic::rov {
@@ -28,14 +29,20 @@ constexpr std::string_view kVehicleKeys[] = {"name",
                                              "thrust_table",
                                              "voltage_v",
                                              "tether",
-                                             "control"};
+                                             "control",
+                                             "imu",
+                                             "dvl",
+                                             "pressure",
+                                             "compass",
+                                             "altimeter",
+                                             "usbl"};
 constexpr std::string_view kLagKeys[] = {"kind", "time_s", "a2", "a1", "a0", "b1"};
 constexpr std::string_view kThrusterKeys[] = {"name", "position_m", "direction", "min_n", "max_n"};
 constexpr std::string_view kTetherKeys[] = {"attachment_m",   "length_m",        "diameter_m",
                                             "net_weight_n_m", "stiffness_n",     "damping_n_s",
                                             "normal_drag",    "tangential_drag", "water_kg_m3"};
-constexpr std::string_view kControlKeys[] = {"kp",    "ki",   "kd",      "u_max",
-                                             "i_max", "zone", "rate_hz", "saturation"};
+constexpr std::string_view kControlKeys[] = {
+    "kp", "ki", "kd", "u_max", "i_max", "zone", "rate_hz", "saturation", "feed_forward"};
 
 Mat6 matrix_of(const CaseField& field) {
   Mat6 out;
@@ -142,6 +149,7 @@ void read_gains(const CaseField& field, ControlGains& gains) {
     gains.saturation = Saturation::kRedistribute;
   else if (saturation != "scale")
     field["saturation"].refuse("scale or redistribute is");
+  gains.feed_forward = field["feed_forward"].boolean(false);
 }
 
 }  // namespace
@@ -160,6 +168,7 @@ Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name
   out.gains = default_gains();
   if (root["control"].present()) read_gains(root["control"], out.gains);
   out.voltage_v = root["voltage_v"].number(16.0, 1.0, 1000.0);
+  out.sensors = read_sensors(root);
   const std::string curve = root["thrust_table"].text();
   if (file.failed()) return file.error();
   if (!curve.empty()) {

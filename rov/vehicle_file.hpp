@@ -6,6 +6,7 @@
 #include <string>
 
 #include "rov/controller.hpp"
+#include "rov/sensor_set.hpp"
 #include "rov/thrust_curve.hpp"
 #include "rov/vehicle.hpp"
 
@@ -17,6 +18,7 @@ struct VehicleFile {
   // Where the file names a thrust table: commands go through it at this voltage (drive()).
   std::optional<ThrustCurve> curve;
   double voltage_v = 16.0;
+  SensorSet sensors;
 };
 
 // Errors in one line: file:line, key, what was found, what is accepted. Buoyancy is that of the

@@ -11,12 +11,6 @@
 namespace neritic::rov {
 namespace {
 
-Vehicle heavy(double water_kg_m3, bool neutral = false) {
-  VehicleParameters p = bluerov2_heavy(water_kg_m3);
-  if (neutral) p.buoyancy_n = p.weight_n;
-  return make_vehicle(p).value();
-}
-
 TEST(RovEnergy, NeverGrowsWithoutInput) {
   for (std::uint64_t index = 0; index < 300; ++index) {
     Draws draws(index);
@@ -41,7 +35,7 @@ TEST(RovEnergy, NeverGrowsWithoutInput) {
 }
 
 TEST(RovEnergy, NeutralAtRestStaysPutForAnHour) {
-  const Vehicle vehicle = heavy(kFreshDensity, true);
+  const Vehicle vehicle = heavy_vehicle(kFreshDensity, true);
   State state;
   state.position_ned_m = {3.1, -7.7, 12.3};
   state.attitude = Quat(std::cos(0.4), 0.0, 0.0, std::sin(0.4));
@@ -53,18 +47,18 @@ TEST(RovEnergy, NeutralAtRestStaysPutForAnHour) {
 }
 
 TEST(RovEnergy, RisesInTheSeaWithItsTerminalVelocity) {
-  const Vehicle vehicle = heavy(kSeaDensity);
+  const Vehicle vehicle = heavy_vehicle(kSeaDensity);
   State state;
   for (int i = 0; i < 40 * 240; ++i) state = step(vehicle, state, {}, 1.0 / 240.0);
   // 33 w + 190 w^2 = 2.702464 N
   EXPECT_NEAR(state.velocity[2], -0.060687708616544433, 1e-9);
   EXPECT_LT(state.position_ned_m.z, 0.0);
-  const Vehicle fresh = heavy(kFreshDensity);
+  const Vehicle fresh = heavy_vehicle(kFreshDensity);
   EXPECT_NEAR(fresh.weight_n - fresh.buoyancy_n, 0.98, 0.005);  // sinks
 }
 
 TEST(RovEnergy, SmallRollSwingsAtItsClosedForm) {
-  const Vehicle vehicle = heavy(kFreshDensity, true);
+  const Vehicle vehicle = heavy_vehicle(kFreshDensity, true);
   State state;
   state.attitude = Quat(std::cos(0.0005), std::sin(0.0005), 0.0, 0.0);
   double crossed = 0.0;

@@ -1,4 +1,5 @@
-// Vehicles and motions drawn at random, the same for the same index on any machine.
+// The vehicles that tests fly: the BlueROV2 Heavy, and vehicles and motions drawn at random, the
+// same for the same index on any machine.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,9 +7,16 @@
 #include <cmath>
 
 #include "engine/core/random.hpp"
+#include "rov/bluerov2.hpp"
 #include "rov/dynamics.hpp"
 
 namespace neritic::rov {
+
+inline Vehicle heavy_vehicle(double water_kg_m3 = kSeaDensity, bool neutral = false) {
+  VehicleParameters p = bluerov2_heavy(water_kg_m3);
+  if (neutral) p.buoyancy_n = p.weight_n;
+  return make_vehicle(p).value();
+}
 
 class Draws {
  public:

@@ -112,6 +112,25 @@ TEST(RovVehicleFile, IncludesAreOverlaidAndLoopsAreRefused) {
   EXPECT_EQ(over->parameters.lag.a1, 9258.0);
 }
 
+TEST(RovVehicleFile, SensorsAreThereWhereNamedAndQuietWhereNotTold) {
+  const SensorSet none = shipped("bluerov2_heavy_dynamics.toml").sensors;
+  EXPECT_FALSE(none.imu || none.dvl || none.pressure || none.compass || none.altimeter ||
+               none.usbl);
+  const SensorSet all = shipped("bluerov2_heavy_survey_dynamics.toml").sensors;
+  ASSERT_TRUE(all.imu && all.dvl && all.pressure && all.compass && all.altimeter && all.usbl);
+  EXPECT_NEAR(all.imu->gyro.white, radians(0.057), 1e-15);
+  EXPECT_EQ(all.dvl->most_m, 50.0);
+  EXPECT_EQ(all.pressure->resolution_pa, 20.0);
+  const std::string body = "mass_kg = 10\ninertia_kg_m2 = [0.2, 0.2, 0.3]\n";
+  const auto quiet = parse_vehicle(body + "[imu]\n[dvl]\n", "v.toml", vehicles(), kSeaDensity);
+  ASSERT_TRUE(quiet.ok()) << quiet.error().message;
+  EXPECT_TRUE(quiet->sensors.imu->gyro.off() && quiet->sensors.dvl->noise.off());
+  EXPECT_THAT(vehicle_fault(body + "[dvl]\nrange_m = [5, 1]"),
+              HasSubstr("dvl.range_m: [5,1] found"));
+  EXPECT_THAT(vehicle_fault(body + "[imu]\ngyro_deg_s = { wite = 1 }"),
+              HasSubstr("imu.gyro_deg_s.wite: not known; the nearest is white"));
+}
+
 TEST(RovThrustCurve, ShippedTableIsTheMeasurementsToATenthOfANewton) {
   const auto curve = ThrustCurve::read(vehicles() / "t200_thrust.csv");
   ASSERT_TRUE(curve.ok()) << curve.error().message;

@@ -1,0 +1,63 @@
+// Sensors that feel the vehicle itself: inertial measurement unit, pressure, compass. World axes
+// north, east, down; body axes forward, starboard, down. Pure functions; any thread.
+#pragma once
+
+#include "rov/dynamics.hpp"
+#include "rov/sensor_noise.hpp"
+
+namespace neritic::rov {
+
+// Where a sensor sits, and how it is turned: body_from_sensor.
+struct Mount {
+  Vec3 position_m{0.0};
+  Quat rotation{1.0, 0.0, 0.0, 0.0};
+};
+
+struct Imu {
+  Mount mount;
+  double rate_hz = 200.0;
+  Noise gyro, accelerometer;  // rad/s, m/s^2
+  double gravity_m_s2 = 9.82;
+};
+struct ImuReading {
+  Vec3 angular_rad_s{0.0};
+  // Specific force, acceleration less gravity: at rest and level (0, 0, -g).
+  Vec3 specific_force_m_s2{0.0};
+  static void fields(auto&& field, auto& self) {
+    field("angular_rad_s", self.angular_rad_s);
+    field("specific_force_m_s2", self.specific_force_m_s2);
+  }
+};
+ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state,
+                    const NoiseSource& noise, std::uint64_t sample);
+
+struct PressureSensor {
+  Mount mount;
+  double rate_hz = 20.0;
+  Noise noise;                 // Pa
+  double resolution_pa = 0.0;  // 0: none
+  double surface_pa = 101325.0, water_kg_m3 = 1025.0, gravity_m_s2 = 9.82;
+};
+struct PressureReading {
+  double pressure_pa = 0.0;
+  double depth_m = 0.0;  // of the sensor, that the pressure stands for
+  static void fields(auto&& field, auto& self) {
+    field("pressure_pa", self.pressure_pa);
+    field("depth_m", self.depth_m);
+  }
+};
+PressureReading read_pressure(const PressureSensor& sensor, const State& state,
+                              const NoiseSource& noise, std::uint64_t sample);
+
+struct Compass {
+  double rate_hz = 50.0;
+  Noise noise;                   // rad
+  double declination_rad = 0.0;  // of magnetic north, positive east
+  // Error of first harmonic, as hard iron makes: amplitude sin(heading - phase).
+  double deviation_rad = 0.0, deviation_phase_rad = 0.0;
+};
+// Magnetic heading in [0, 2 pi), tilt compensated.
+double read_compass(const Compass& compass, const State& state, const NoiseSource& noise,
+                    std::uint64_t sample);
+
+}  // namespace neritic::rov

@@ -1,0 +1,13 @@
+// A vehicle's sensors from its file: tables [imu], [dvl], [pressure], [compass], [altimeter],
+// [usbl], each there only if named. One thread.
+#pragma once
+
+#include "rov/case_file.hpp"
+#include "rov/sensor_set.hpp"
+
+namespace neritic::rov {
+
+// Faults are recorded in the field's file.
+SensorSet read_sensors(const CaseField& vehicle);
+
+}  // namespace neritic::rov
