@@ -44,6 +44,9 @@ void add_render(CLI::App& app, Run& run) {
       ->check(CLI::Range(0.001, 1000.0));
   command->add_flag("--track-only", flags->track_only,
                     "no frame folders: only what sonars accumulate over the frames (OUT/track)");
+  command->add_flag(
+      "--own-rates", flags->own_rates,
+      "each sensor only in the frames in which its rate_hz makes it due (else all in each)");
   command->add_flag("--sheet", flags->sheet,
                     "also a picture of every image (OUT/sheet), and all on one (OUT/sheet.png)");
   command->add_flag("--validate", flags->validation,
@@ -145,7 +148,17 @@ void add_dive(CLI::App& app, Run& run) {
       "the live program: a scene (.toml) or a model (.gltf, .glb) in a window; F1 lists keys");
   command->add_option("scene", flags->scene, "scene or model file")->required();
   command->add_flag("--headless", flags->headless,
-                    "no window: frames at the camera's rate, then a summary of their times");
+                    "no window. Where vehicles move by physics and no flag asks for pictures: their "
+                    "dive alone, as fast as it can; else frames at the camera's rate, then a "
+                    "summary of their times");
+  command->add_option("--log", flags->log, "the vehicles' dive as a .csv, a row a control period");
+  command->add_option("--log-rate", flags->log_rate_hz, "rows a second instead");
+  command->add_option("--plot", flags->plot, "the dive as a .png: path, depth, thrust, error");
+  command->add_option("--record", flags->record, "inputs and state hashes, for --replay");
+  command->add_option("--replay", flags->replay,
+                      "runs a recorded dive again and compares each state's hash");
+  command->add_flag("--realtime", flags->realtime, "physics at the clock's pace");
+  command->add_flag("--json", flags->json, "the dive's summary as JSON");
   command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
   command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
   command->add_option("--seconds", flags->seconds, "stop after so many seconds");
@@ -167,7 +180,7 @@ void add_tradeoff(CLI::App& app, Run& run) {
   auto flags = std::make_shared<TradeoffFlags>();
   CLI::App* command =
       app.add_subcommand("tradeoff", "error against cost of one model, with its curve");
-  command->add_option("what", flags->what, "sonar")->required();
+  command->add_option("what", flags->what, "sonar or physics")->required();
   command->add_option("--out", flags->out, "folder for tables (.csv, .md), pictures and levels")
       ->required();
   command

@@ -22,6 +22,7 @@ struct RenderFlags {
   bool sheet = false, validation = false;
   double chart_cell_m = 0.0;
   bool track_only = false;  // no frame folders: only what accumulates over the frames
+  bool own_rates = false;   // a sensor is in those frames only in which its rate makes it due
 };
 Result<std::string> run_render(const RenderFlags& flags);
 
@@ -48,6 +49,10 @@ struct DiveFlags {
   std::uint64_t frames = 0;
   double seconds = 0.0;
   bool headless = false, fast = false, panels = false, validation = false;
+  // Of scenes with physics, headless.
+  std::string log, plot, record, replay;
+  double log_rate_hz = 0.0;  // 0: the controllers'
+  bool realtime = false, json = false;
 };
 Status run_dive(const DiveFlags& flags);
 

@@ -37,6 +37,12 @@ ImageU8 rgb_of(std::span<const std::uint8_t> texels, std::uint32_t width, std::u
   return image;
 }
 
+std::vector<double> rates_of(const scene::Scene& scene, const std::vector<std::size_t>& sonars) {
+  std::vector<double> rates_hz;
+  for (const std::size_t i : sonars) rates_hz.push_back(scene.sonars[i].rate_hz);
+  return rates_hz;
+}
+
 }  // namespace
 
 Dive::Dive(gpu::Device& device, Session& session, xr::Display& display, xr::Overlay* overlay,
@@ -49,7 +55,7 @@ Dive::Dive(gpu::Device& device, Session& session, xr::Display& display, xr::Over
       options_(options),
       camera_(session.scene().world_from(session.scene().cameras[options.camera].mount)),
       first_pose_(camera_.world_from_view()),
-      next_ping_s_(options.sonars.size(), 0.0),
+      schedule_(rates_of(session.scene(), options.sonars)),
       times_(options.summary) {}
 
 Status Dive::run() {
@@ -126,16 +132,11 @@ void Dive::aim_camera(const xr::DisplayFrame& display_frame) {
   camera.height = display_frame.height;
 }
 
-// Those whose time has come; a sonar that is late pings once, not for every ping missed.
-std::vector<std::size_t> Dive::due_sonars(double time_s) {
-  std::vector<std::size_t> due;
-  for (std::size_t i = 0; i < options_.sonars.size(); ++i) {
-    if (time_s < next_ping_s_[i]) continue;
-    due.push_back(options_.sonars[i]);
-    const double period_s = 1.0 / session_.scene().sonars[options_.sonars[i]].rate_hz;
-    next_ping_s_[i] = std::max(next_ping_s_[i] + period_s, time_s + 0.5 * period_s);
+void Dive::add_due_sonars(FrameRequest& request) {
+  for (const PingSchedule::Due& due : schedule_.due(request.time_s)) {
+    request.sonars.push_back(options_.sonars[due.sensor]);
+    request.pings.push_back(due.number);
   }
-  return due;
 }
 
 Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_frame, bool last,
@@ -144,7 +145,7 @@ Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_f
   request.time_s = request.next_time_s = time_s_;
   request.cameras = {options_.camera};
   const bool panels = options_.panels && show_panels_;
-  if (panels || !overlay_) request.sonars = due_sonars(time_s_);
+  if (panels || !overlay_) add_due_sonars(request);
   NERITIC_TRY(live, session_.declare(graph, request));
   const LiveFrame::Camera& view = live->cameras.front();
   graph::ImageHandle shown = view.color;
@@ -194,7 +195,8 @@ Result<graph::ImageHandle> Dive::declare_overlay(graph::FrameGraph& graph, const
       const graph::ImageHandle picture = fans_->picture(graph, index);
       if (!picture) continue;
       facts.sonars.push_back({scene.sonars[index].name, overlay_->texture(picture),
-                              *fans_->shape(index), *fans_->grid(index), scene.sonars[index].rate_hz});
+                              *fans_->shape(index), *fans_->grid(index),
+                              scene.sonars[index].rate_hz});
     }
     draw_readout(camera_, scale);
     draw_status(facts, camera_, times_, now, scale);

@@ -15,6 +15,7 @@
 #include "tools/neritic/dive_camera.hpp"
 #include "tools/neritic/dive_fan.hpp"
 #include "tools/neritic/dive_times.hpp"
+#include "tools/session/ping_schedule.hpp"
 #include "tools/session/readback.hpp"
 #include "tools/session/session.hpp"
 
@@ -52,7 +53,7 @@ class Dive {
   Status frame(const xr::DisplayFrame& display_frame, bool last);
   void take_input(double elapsed_s);
   void aim_camera(const xr::DisplayFrame& display_frame);
-  std::vector<std::size_t> due_sonars(double time_s);
+  void add_due_sonars(FrameRequest& request);
   Status declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_frame, bool last,
                  std::unique_ptr<LiveFrame>& live);
   Result<graph::ImageHandle> declare_overlay(graph::FrameGraph& graph, const LiveFrame& live);
@@ -69,7 +70,7 @@ class Dive {
   FreeCamera camera_;
   Pose first_pose_;
   std::unique_ptr<SonarFans> fans_;
-  std::vector<double> next_ping_s_;  // by place in options_.sonars
+  PingSchedule schedule_;  // of options_.sonars
   ReadbackPool readback_;
   std::optional<Shot> shot_;
   std::string note_;

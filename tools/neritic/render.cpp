@@ -11,6 +11,7 @@
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/render_sheet.hpp"
 #include "tools/session/output.hpp"
+#include "tools/session/ping_schedule.hpp"
 #include "tools/session/session.hpp"
 #include "tools/session/survey.hpp"
 
@@ -66,10 +67,40 @@ Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& sc
   return request;
 }
 
-// Frames follow the first camera's rate, or the first sonar's.
-double frame_step_s(const scene::Scene& scene, const FrameRequest& request) {
-  if (!request.cameras.empty()) return 1.0 / scene.cameras[request.cameras.front()].rate_hz;
-  return 1.0 / scene.sonars[request.sonars.front()].rate_hz;
+// Of the cameras, then the sonars of a request.
+std::vector<double> rates_of(const scene::Scene& scene, const FrameRequest& request) {
+  std::vector<double> rates_hz;
+  for (const std::size_t i : request.cameras) rates_hz.push_back(scene.cameras[i].rate_hz);
+  for (const std::size_t i : request.sonars) rates_hz.push_back(scene.sonars[i].rate_hz);
+  return rates_hz;
+}
+
+// What of all sensors is due; schedule is of rates_of(all).
+void take_due(PingSchedule& schedule, const FrameRequest& all, FrameRequest& request) {
+  request.cameras.clear();
+  request.sonars.clear();
+  request.pings.clear();
+  for (const PingSchedule::Due& due : schedule.due(request.time_s)) {
+    if (due.sensor < all.cameras.size()) {
+      request.cameras.push_back(all.cameras[due.sensor]);
+    } else {
+      request.sonars.push_back(all.sonars[due.sensor - all.cameras.size()]);
+      request.pings.push_back(due.number);
+    }
+  }
+}
+
+// A sonar cannot ping again before its farthest echo is back.
+void warn_of_rates(const scene::Scene& scene, const FrameRequest& request, double ping_hz) {
+  constexpr double kSoundSpeed_m_s = 1500.0;  // near enough for a warning
+  for (const std::size_t i : request.sonars) {
+    const scene::Sonar& sonar = scene.sonars[i];
+    const double most_hz = kSoundSpeed_m_s / (2.0 * sonar.range_max_m);
+    const double rate_hz = ping_hz > 0.0 ? ping_hz : sonar.rate_hz;
+    if (rate_hz > 1.01 * most_hz)
+      log_warn("sonar {}: {:.3g} pings a second, but echoes from {:g} m allow {:.3g}", sonar.name,
+               rate_hz, sonar.range_max_m, most_hz);
+  }
 }
 
 Status write_frame(const fs::path& folder, const FrameResult& result, const FrameFacts& facts) {
@@ -93,16 +124,27 @@ Status dump_graph(const RenderFlags& flags, const Session& session) {
   return write_text(flags.dump_graph, dot ? session.plan_graphviz() : session.plan_text());
 }
 
+// What an earlier run left in the folder stays; say so where it could be taken for this one's.
+void warn_of_leftovers(const RenderFlags& flags, bool wrote_track) {
+  const fs::path out = flags.out;
+  std::error_code ignored;
+  const bool more = fs::is_directory(out / fmt::format("frame_{:04}", flags.frames), ignored);
+  if (!flags.track_only && more)
+    log_warn("{}: frame_{:04} and what follows are an earlier run's", flags.out, flags.frames);
+  if (!wrote_track && fs::is_directory(out / "track", ignored))
+    log_warn("{}: track is an earlier run's", flags.out);
+}
+
 // "out: frame_0000 to 0029 of rov_camera, rov_sonar; track; sheet.png shows all at one glance".
 std::string summary(const RenderFlags& flags, const scene::Scene& scene,
-                    const FrameRequest& request) {
+                    const FrameRequest& request, bool wrote_track) {
   std::vector<std::string> names, parts;
   for (const std::size_t i : request.cameras) names.push_back(scene.cameras[i].name);
   for (const std::size_t i : request.sonars) names.push_back(scene.sonars[i].name);
   const std::string last = flags.frames > 1 ? fmt::format(" to {:04}", flags.frames - 1) : "";
   if (!flags.track_only)
     parts.push_back(fmt::format("frame_0000{} of {}", last, fmt::join(names, ", ")));
-  if (fs::is_directory(fs::path(flags.out) / "track")) parts.push_back("track");
+  if (wrote_track) parts.push_back("track");
   if (flags.sheet) parts.push_back("sheet.png shows all at one glance");
   return fmt::format("{}: {}", flags.out, fmt::join(parts, "; "));
 }
@@ -116,7 +158,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
   NERITIC_TRY(scene::Scene scene, load(flags));
   NERITIC_TRY(FrameRequest request, request_of(flags, scene));
   for (const std::string& note : scene.notes) log_warn("{}", note);
-  if (!request.cameras.empty() && !scene.sun && scene.lamps.empty())
+  if (!request.cameras.empty() && !scene.sun && scene.lamps.empty() && scene.model_lights.empty())
     log_warn("{}: no sun and no lamps, so only what glows by itself is seen", flags.scene);
   log_info("scene read in {:.0f} ms: {} models, {} objects", to_ms(now_ns() - start),
            scene.models.size(), scene.objects.size());
@@ -125,7 +167,12 @@ Result<std::string> run_render(const RenderFlags& flags) {
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(const auto device, gpu::Device::create(options));
-  const double step_s = frame_step_s(scene, request);
+  // Frames follow the first camera's rate, or the first sonar's.
+  const std::vector<double> rates_hz = rates_of(scene, request);
+  const double step_s = 1.0 / rates_hz.front();
+  PingSchedule schedule(rates_hz);
+  const FrameRequest all = request;
+  if (flags.frames > 1) warn_of_rates(scene, request, flags.own_rates ? 0.0 : rates_hz.front());
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
            session->gpu_scene().triangles());
@@ -138,6 +185,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
     request.time_s = flags.time_s + i * step_s;
     request.next_time_s = request.time_s + step_s;
     request.frame = i;
+    if (flags.own_rates) take_due(schedule, all, request);
     NERITIC_TRY(const FrameResult result, session->render(request));
     facts = {request.time_s,      session->scene().seed, flags.scene,
              device->info().name, result.passes,         result.frame_ms};
@@ -149,14 +197,18 @@ Result<std::string> run_render(const RenderFlags& flags) {
     if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
     progress.step();
   }
-  if (flags.frames > 1) NERITIC_TRY_STATUS(survey.write(flags.out, facts));
+  bool wrote_track = false;
+  if (flags.frames > 1) {
+    NERITIC_TRY(wrote_track, survey.write(flags.out, facts));
+  }
+  warn_of_leftovers(flags, wrote_track);
   device->wait_idle();
   for (const std::string& message : device->validation_log().messages)
     log_warn("validation: {}", message);
   if (!device->validation_log().messages.empty())
     return failure(ErrorCode::kUnsupported, "validation reported {} messages",
                    device->validation_log().messages.size());
-  return summary(flags, session->scene(), request);
+  return summary(flags, session->scene(), all, wrote_track);
 }
 
 }  // namespace neritic::tools

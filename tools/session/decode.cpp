@@ -1,5 +1,6 @@
 #include "tools/session/decode.hpp"
 
+#include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <limits>
@@ -51,9 +52,24 @@ void decode_color(std::span<const std::uint32_t> texels, ViewImages& out) {
   std::memcpy(to, &texels.back(), 3);
 }
 
-void decode_motion(std::span<const float> texels, ViewImages& out) {
+void decode_motion(std::span<const float> texels, std::span<const float> depth_texels,
+                   const Quat& next_from_view, ViewImages& out) {
   out.motion = ImageF32(out.width, out.height, 2);
   out.motion.data.assign(texels.begin(), texels.end());
+  if (std::abs(next_from_view.w) == 1.0) return;
+  const Mat3 turn = glm::mat3_cast(next_from_view);
+  const render::Intrinsics& k = out.intrinsics;
+  for (std::size_t i = 0; i < depth_texels.size(); ++i) {
+    if (depth_texels[i] > 0.0f) continue;
+    const double x = static_cast<double>(i % out.width) + 0.5;
+    const double y = static_cast<double>(i / out.width) + 0.5;
+    const Vec3 far = turn * Vec3((x - k.cx) / k.fx, (k.cy - y) / k.fy, -1.0);
+    const bool ahead = far.z < 0.0;
+    const double next_x = k.cx - k.fx * far.x / far.z, next_y = k.cy + k.fy * far.y / far.z;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    out.motion.data[2 * i] = ahead ? static_cast<float>(next_x - x) : nan;
+    out.motion.data[2 * i + 1] = ahead ? static_cast<float>(next_y - y) : nan;
+  }
 }
 
 }  // namespace neritic::tools

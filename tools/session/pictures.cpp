@@ -74,6 +74,7 @@ ImageU8 motion_picture(const ImageF32& motion_px) {
     longest = std::max<double>(longest, std::hypot(motion_px.data[i], motion_px.data[i + 1]));
   for (std::size_t i = 0; i < out.data.size() / 3; ++i) {
     const double x = motion_px.data[2 * i], y = motion_px.data[2 * i + 1];
+    if (!std::isfinite(x + y)) continue;
     const double turn = std::atan2(y, x) / (2.0 * kPi) + 0.5;
     set_hue(out, i, turn, 0.8, std::sqrt(std::hypot(x, y) / longest));
   }

@@ -42,7 +42,13 @@ std::vector<ViewImages> decode_views(const ViewWork& work) {
     const auto look = [&] {
       if (work.label) decode_labels(layer_of<std::uint32_t>(*work.label, i, pixels), eye);
       if (work.color) decode_color(layer_of<std::uint32_t>(*work.color, i, pixels), eye);
-      if (work.motion) decode_motion(layer_of<float>(*work.motion, i, pixels * 2), eye);
+      if (work.motion)
+        decode_motion(layer_of<float>(*work.motion, i, pixels * 2),
+                      work.depth ? layer_of<float>(*work.depth, i, pixels)
+                                 : std::span<const float>(),
+                      glm::conjugate(view.next_world_from_view.rotation) *
+                          view.world_from_view.rotation,
+                      eye);
     };
     if (pixels < kWorthAThread || !(work.depth && (work.color || work.motion))) {
       shape();
@@ -118,8 +124,8 @@ Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameStat
   };
   if (capture.color) {
     NERITIC_TRY(const shared::Lighting lighting,
-                render::make_lighting(scene_, work.views.origin_m(), camera.exposure,
-                                      gpu_scene_->has_emission(), state.time_s));
+                render::make_lighting(scene_, state, work.views.origin_m(), camera.exposure,
+                                      gpu_scene_->has_emission()));
     NERITIC_TRY(graph::ImageHandle hdr,
                 renderer_->declare_shade(graph, prefix, g, work.views, lighting));
     NERITIC_TRY(hdr, renderer_->declare_forward(graph, prefix, hdr, g, *gpu_scene_, deformed,
@@ -165,11 +171,14 @@ Status Session::declare_sensors(graph::FrameGraph& graph, const FrameRequest& re
     NERITIC_TRY_STATUS(
         declare_camera(graph, work.state, deformed, request.capture, *work.cameras.back()));
   }
-  for (const std::size_t index : request.sonars) {
+  NERITIC_CHECK(request.pings.empty() || request.pings.size() == request.sonars.size(),
+                "{} pings of {} sonars", request.pings.size(), request.sonars.size());
+  for (std::size_t i = 0; i < request.sonars.size(); ++i) {
     work.sonars.push_back(std::make_unique<SonarWork>());
-    work.sonars.back()->index = index;
+    work.sonars.back()->index = request.sonars[i];
+    const std::uint32_t ping = request.pings.empty() ? request.frame : request.pings[i];
     NERITIC_TRY_STATUS(sonars_->declare({graph, *renderer_, *gpu_scene_, work.state, deformed,
-                                         readback_, request.capture, request.time_s, request.frame},
+                                         readback_, request.capture, request.time_s, ping},
                                         *work.sonars.back()));
   }
   return {};

@@ -77,6 +77,9 @@ struct FrameRequest {
   double next_time_s = 1.0 / 30.0;
   std::uint32_t frame = 0;
   std::vector<std::size_t> cameras, sonars;  // indices into the scene's
+  // Which of its pings each of the sonars makes: noise and a scanner's step follow from it. Empty:
+  // all the frame-th.
+  std::vector<std::uint32_t> pings;
   Capture capture;
 };
 

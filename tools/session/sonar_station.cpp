@@ -107,13 +107,8 @@ Result<std::unique_ptr<HeadState>> SonarStation::make_head(const scene::Sonar& s
     NERITIC_TRY(h.records, readable("records", h.gather->records_bytes()));
   }
   if (state.mirrors.empty()) return made;
-  // A mirror shows the head's lower rows above.
   options.echo->ghost = true;
-  std::vector<float>& weights = options.echo->weights;
-  const std::size_t columns = h.head.samples.bins.azimuth, rows = h.head.samples.bins.elevation;
-  for (std::size_t row = 0; !weights.empty() && row < rows / 2; ++row)
-    std::swap_ranges(weights.begin() + row * columns, weights.begin() + (row + 1) * columns,
-                     weights.begin() + (rows - 1 - row) * columns);
+  options.echo->weights = sonar::ghost_weights(sonar, h.head);
   NERITIC_TRY(h.ghosts, gather());
   for (std::size_t i = 0; h.head.echo->records && i < state.mirrors.size(); ++i) {
     NERITIC_TRY(auto buffer,
@@ -144,9 +139,9 @@ Result<SonarState*> SonarStation::state_of(std::size_t index) {
   return slot.get();
 }
 
-sonar::PingState SonarStation::ping_state(const Frame& frame, const SonarWork& work,
+sonar::PingState SonarStation::ping_state(const Frame& frame, const HeadWork& head,
                                           const Pose& world_from_head) const {
-  const scene::Mount& mount = scene_.sonars[work.index].mount;
+  const scene::Mount& mount = scene_.sonars[head.index].mount;
   const Pose before = scene_.world_from(mount, frame.time_s - kMotionStep_s);
   const Pose after = scene_.world_from(mount, frame.time_s + kMotionStep_s);
   sonar::PingState ping;
@@ -155,8 +150,8 @@ sonar::PingState SonarStation::ping_state(const Frame& frame, const SonarWork& w
   const Quat turn = glm::conjugate(before.rotation) * after.rotation;
   ping.yaw_rate_rad_s = 2.0 * std::atan2(turn.y, turn.w) / (2.0 * kMotionStep_s);
   ping.seed = scene_.seed;
-  ping.stream = static_cast<std::uint32_t>(work.index * 2 + (work.heads.size() > 1 ? 1 : 0));
-  ping.ping = frame.number;
+  ping.stream = static_cast<std::uint32_t>(head.index * 2 + head.place);
+  ping.ping = frame.ping;
   ping.backscatter_scale = backscatter_scale_;
   return ping;
 }
@@ -166,6 +161,7 @@ Status SonarStation::declare(const Frame& frame, SonarWork& work) {
   for (const auto& state : work.state->heads) {
     work.heads.push_back(std::make_unique<HeadWork>());
     work.heads.back()->state = state.get();
+    work.heads.back()->place = work.heads.size() - 1;
     NERITIC_TRY_STATUS(declare_head(frame, work, *work.heads.back()));
   }
   return {};
@@ -175,7 +171,7 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
   const scene::Sonar& sonar = scene_.sonars[work.index];
   HeadState& state = *head.state;
   const bool host = frame.capture.to_host;
-  head.heading_rad = sonar::scan_heading_rad(sonar, frame.number);
+  head.heading_rad = sonar::scan_heading_rad(sonar, frame.ping);
   const Pose turned{Vec3(0.0), glm::angleAxis(-head.heading_rad, Vec3(0, 1, 0))};
   const Pose world_from_head =
       scene_.world_from(sonar.mount, frame.time_s) * turned * state.head.sonar_from_head;
@@ -187,7 +183,7 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
               frame.renderer.declare_gbuffer(frame.graph, prefix, render::GBufferKind::kGeometry,
                                              frame.gpu_scene, frame.state, frame.deformed,
                                              head.views, head.draws));
-  const sonar::PingState ping = ping_state(frame, work, world_from_head);
+  const sonar::PingState ping = ping_state(frame, head, world_from_head);
   sonar::SonarGather::Inputs inputs;
   inputs.prefix = prefix;
   inputs.depth = g.depth;

@@ -38,6 +38,7 @@ struct SonarState {
 // One head in one frame.
 struct HeadWork : ViewWork {
   HeadState* state = nullptr;
+  std::size_t place = 0;  // among its sonar's heads
   sonar::Ping ping;
   double heading_rad = 0.0;
   struct Ghost {
@@ -69,7 +70,7 @@ class SonarStation {
     ReadbackPool& readback;
     Capture capture;
     double time_s = 0.0;
-    std::uint32_t number = 0;
+    std::uint32_t ping = 0;
   };
   // Adds one sonar: a geometry G-buffer a head (and a mirror), the gathers, the receiver.
   Status declare(const Frame& frame, SonarWork& work);
@@ -85,7 +86,8 @@ class SonarStation {
   Status declare_ghosts(const Frame& frame, const SonarWork& work, HeadWork& head,
                         const sonar::PingState& ping, const sonar::SonarGather::Inputs& direct,
                         sonar::SonarGather::Outputs& out);
-  sonar::PingState ping_state(const Frame& frame, const SonarWork& work, const Pose& head) const;
+  sonar::PingState ping_state(const Frame& frame, const HeadWork& head,
+                              const Pose& world_from_head) const;
   const gpu::Buffer* table_of(const scene::Sonar& sonar) const;
 
   gpu::Device& device_;

@@ -63,6 +63,7 @@ struct Survey::Record {
   std::unique_ptr<sonar::MechanicalScan> scan;
   std::unique_ptr<sonar::CocoFile> coco;
 
+  bool accumulates() const { return bathymetry || trace || sidescan || scan || coco; }
   void add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s);
   void add_profile(const SonarFrame& frame);
   Status write(const std::filesystem::path& folder, const scene::Scene& scene,
@@ -85,8 +86,8 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
   const sonar::Limits& l = frame.grid.limits;
   const std::uint32_t bins = frame.grid.bins.range;
   if (frame.kind == SonarKind::kProfiling)
-    r.bathymetry = std::make_unique<sonar::Bathymetry>(
-        chart_cell_m_ > 0.0 ? chart_cell_m_ : l.range_max_m / 50.0);
+    r.bathymetry = std::make_unique<sonar::Bathymetry>(chart_cell_m_ > 0.0 ? chart_cell_m_
+                                                                           : l.range_max_m / 50.0);
   if (frame.kind == SonarKind::kEchoSounder)
     r.trace = std::make_unique<sonar::EchoTrace>(sonar::EchoTraceOptions{
         .n_range = bins, .range_min_m = l.range_min_m, .range_max_m = l.range_max_m});
@@ -156,7 +157,7 @@ Status Survey::Record::write_bathymetry(const std::filesystem::path& folder,
 Status Survey::Record::write(const std::filesystem::path& folder, const scene::Scene& scene,
                              const FrameFacts& facts) const {
   const nlohmann::json json = facts_json(facts, pings);
-  if (bathymetry || trace || sidescan || scan || coco) NERITIC_TRY_STATUS(make_folder(folder));
+  NERITIC_TRY_STATUS(make_folder(folder));
   if (bathymetry) NERITIC_TRY_STATUS(write_bathymetry(folder, scene, json));
   if (trace) NERITIC_TRY_STATUS(sonar::write_echo_trace(folder, *trace, json));
   if (sidescan) NERITIC_TRY_STATUS(sonar::write_sidescan(folder, *sidescan, json));
@@ -167,10 +168,14 @@ Status Survey::Record::write(const std::filesystem::path& folder, const scene::S
   return {};
 }
 
-Status Survey::write(const std::filesystem::path& out, const FrameFacts& facts) const {
-  for (const auto& [name, record] : records_)
+Result<bool> Survey::write(const std::filesystem::path& out, const FrameFacts& facts) const {
+  bool wrote = false;
+  for (const auto& [name, record] : records_) {
+    if (!record->accumulates()) continue;
     NERITIC_TRY_STATUS(record->write(out / "track" / name, scene_, facts));
-  return {};
+    wrote = true;
+  }
+  return wrote;
 }
 
 }  // namespace neritic::tools

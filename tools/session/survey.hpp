@@ -22,8 +22,8 @@ class Survey {
   ~Survey();
 
   void add(const FrameResult& result, double time_s);
-  // OUT/track/SONAR/ for each sonar that has something to say of a track.
-  Status write(const std::filesystem::path& out, const FrameFacts& facts) const;
+  // OUT/track/SONAR/ for each sonar that has something to say of a track; whether any had.
+  Result<bool> write(const std::filesystem::path& out, const FrameFacts& facts) const;
 
  private:
   struct Record;
