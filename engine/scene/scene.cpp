@@ -49,8 +49,25 @@ Status number_instances(SceneDraft& draft) {
 }
 
 void move_out(SceneDraft& draft, const Vec3& offset_m) {
+// What a vehicle is told in world coordinates.
+void move_out(Dynamics& dynamics, const Vec3& offset_m) {
+  if (dynamics.tether_anchor_m) *dynamics.tether_anchor_m += offset_m;
+  if (!dynamics.mission) return;
+  Mission& mission = *dynamics.mission;
+  const auto move_facing = [&offset_m](Facing& facing) {
+    if (facing.look_at) facing.look_at->point_m += offset_m;
+  };
+  move_facing(mission.facing);
+  mission.target.point_m += offset_m;
+  for (MissionWaypoint& waypoint : mission.waypoints) {
+    waypoint.position_m += offset_m;
+    move_facing(waypoint.facing);
+  }
+}
+
   Scene& scene = draft.scene;
   const auto moved = [&offset_m](Mount mount) {
+  if (scene.current) scene.current->origin_m += offset_m;
     if (mount.object >= 0) return mount;
     mount.pose.position_m += offset_m;
     if (mount.track)
@@ -60,6 +77,7 @@ void move_out(SceneDraft& draft, const Vec3& offset_m) {
   for (ObjectDraft& object : draft.objects) {
     object.object.mount = moved(object.object.mount);
     // Into the copies, so that object_from_copy is all there is to a copy.
+    if (object.object.dynamics) move_out(*object.object.dynamics, offset_m);
     for (Mat4& copy : object.object.copies) copy = glm::scale(copy, object.object.scale);
     if (!object.object.copies.empty()) object.object.scale = Vec3(1.0);
     scene.objects.push_back(std::move(object.object));

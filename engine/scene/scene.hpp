@@ -14,6 +14,7 @@
 #include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
 #include "engine/scene/model.hpp"
+#include "engine/scene/physics_settings.hpp"
 #include "engine/scene/sonar_settings.hpp"
 #include "engine/scene/track.hpp"
 
@@ -49,6 +50,8 @@ struct Object {
   std::optional<double> backscatter_db;  // Lambert's strength of the surface, 10 log mu
   int clip = -1;                         // of the model; -1: rest pose
   double clip_offset_s = 0.0, clip_rate = 1.0;
+  Collision collision = Collision::kNone;  // without [physics]: none
+  std::optional<Dynamics> dynamics;        // it moves by physics, from its mount's pose at time 0 on
   // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
   std::vector<Mat4> copies;
   std::size_t instance_count() const { return copies.empty() ? 1 : copies.size(); }
@@ -132,6 +135,8 @@ struct Scene {
 
   // World_from_mount at a time, with all that carries it.
   Pose world_from(const Mount& mount, double time_s = 0.0) const;
+  std::optional<Physics> physics;
+  std::optional<Current> current;
   // World_from_model of one copy, the object's scale in it: copy < object.instance_count(). After
   // loading, scale is 1 wherever there are copies: theirs hold it.
   Mat4 world_from_copy(const Object& object, std::size_t copy, double time_s = 0.0) const;

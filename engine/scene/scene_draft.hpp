@@ -114,6 +114,13 @@ void read_sonar_terms(TableReader& reader, SonarTerms& terms);
 Status read_objects(SceneDraft& draft, const SceneSource& source,
                     const std::vector<TomlValue>& tables, const std::string& path);
 Status read_sensors(SceneDraft& draft, TableReader& parent, const std::string& parent_object);
+// scene_read_physics.cpp: [physics] and [current], absent where nullptr; then, once all objects are
+// read, what is solid, moves by itself and where to. first_object: the draft of tables[0].
+Status read_physics(SceneDraft& draft, const SceneSource& source, const TomlValue* physics,
+                    const TomlValue* current);
+Status read_vehicle_physics(SceneDraft& draft, const SceneSource& source,
+                            const std::vector<TomlValue>& tables, const std::string& path,
+                            std::size_t first_object);
 
 // scene_models.cpp: one model a distinct request, in the order of first use, and each request's.
 struct LoadedModels {

@@ -12,8 +12,8 @@ using Key = std::string_view;
 using KeyList = std::span<const Key>;
 
 inline constexpr auto kSceneKeys =
-    std::to_array<Key>({"title", "seed", "include", "classes", "sun", "water", "objects",
-                        "vehicles", "cameras", "sonars", "lamps"});
+    std::to_array<Key>({"title", "seed", "include", "classes", "sun", "water", "physics", "current",
+                        "objects", "vehicles", "cameras", "sonars", "lamps"});
 
 inline constexpr auto kSunKeys = std::to_array<Key>({"elevation_deg", "azimuth_deg", "intensity"});
 
@@ -61,6 +61,11 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "copies",
                                                         "copies_file",
                                                         "scatter",
+                                                        "collision",
+                                                        "dynamics",
+                                                        "mission",
+                                                        "failed_thrusters",
+                                                        "tether_anchor_m",
                                                         "cameras",
                                                         "sonars",
                                                         "lamps"});
@@ -70,6 +75,21 @@ inline constexpr auto kTrackKeys = std::to_array<Key>(
     {"waypoints_m", "lawn_mower", "file", "speed_m_s", "start_s", "heading", "turn_m"});
 inline constexpr auto kLawnMowerKeys =
     std::to_array<Key>({"area_m", "depth_m", "spacing_m", "legs"});
+
+// Of what is simulated.
+inline constexpr auto kPhysicsKeys = std::to_array<Key>({"rate_hz", "integrator", "water_kg_m3"});
+inline constexpr auto kCurrentKeys =
+    std::to_array<Key>({"kind", "velocity_m_s", "deep_velocity_m_s", "depth_m", "exponent", "file",
+                        "origin_m", "spacing_m", "start_s", "interval_s"});
+inline constexpr auto kMissionKeys =
+    std::to_array<Key>({"waypoints", "acceptance_m", "speed_m_s", "repeat", "hold", "orbit",
+                        "follow", "stand_between", "heading_deg", "look_at", "look_at_m", "tilt"});
+inline constexpr auto kMissionWaypointKeys =
+    std::to_array<Key>({"position_m", "heading_deg", "look_at", "look_at_m", "tilt", "hold_s"});
+inline constexpr auto kOrbitKeys =
+    std::to_array<Key>({"object", "point_m", "radius_m", "speed_m_s"});
+inline constexpr auto kFollowKeys = std::to_array<Key>({"object", "offset_m"});
+inline constexpr auto kStandBetweenKeys = std::to_array<Key>({"a", "b", "distance_m"});
 
 inline constexpr auto kScatterKeys =
     std::to_array<Key>({"count", "seed", "area_m", "on", "scale", "align", "sink_m", "keep_out_m"});

@@ -118,6 +118,8 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   const TomlValue* classes = reader.table("classes");
   const TomlValue* sun = reader.table("sun");
   const TomlValue* water = reader.table("water");
+  const TomlValue* physics = reader.table("physics");
+  const TomlValue* current = reader.table("current");
   const auto& objects = reader.tables("objects");
   const auto& vehicles = reader.tables("vehicles");
   NERITIC_TRY_STATUS(reader.status());
@@ -128,9 +130,13 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   if (water) {
     NERITIC_TRY(scene.water, read_water(source, *water));
   }
+  NERITIC_TRY_STATUS(read_physics(draft, source, physics, current));
   NERITIC_TRY_STATUS(read_sensors(draft, reader, ""));  // first: a scene's own camera leads
   NERITIC_TRY_STATUS(read_objects(draft, source, objects, "objects"));
   NERITIC_TRY_STATUS(read_objects(draft, source, vehicles, "vehicles"));
+  NERITIC_TRY_STATUS(read_vehicle_physics(draft, source, objects, "objects", 0));
+  NERITIC_TRY_STATUS(
+      read_vehicle_physics(draft, source, vehicles, "vehicles", objects.size()));
   return draft;
 }
 

@@ -1,0 +1,86 @@
+// What a scene says of physics: the step, the current, what drives a vehicle and where it is to go,
+// what is solid. Plain data: engine/scene knows neither the simulation nor vehicles. World frame: Y
+// up, metres, seconds; headings in radians from north (-z) towards east (+x). Any thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/math.hpp"
+
+namespace neritic::scene {
+
+// [physics]: absent, nothing is simulated.
+struct Physics {
+  double rate_hz = 240.0;
+  std::string integrator = "guarded";  // guarded, rk4, semi_euler
+  double water_kg_m3 = 1028.0;         // of sea water (von Benzon et al. 2022)
+};
+
+// [current]: absent, the water rests.
+struct Current {
+  enum class Kind { kUniform, kPowerLaw, kLinear, kGrid };
+  Kind kind = Kind::kUniform;
+  Vec3 velocity_m_s{0.0};  // power law, linear: at the surface
+  Vec3 deep_velocity_m_s{0.0};
+  double depth_m = 50.0, exponent = 1.0 / 7.0;
+  // A grid's samples, and how they lie.
+  std::filesystem::path file;
+  Vec3 origin_m{0.0}, spacing_m{1.0};
+  double start_s = 0.0, interval_s = 1.0;
+};
+
+// A place to face, follow or go round: an object's, or a fixed one.
+struct Aim {
+  int object = -1;  // index into Scene::objects; -1: the point
+  Vec3 point_m{0.0};
+};
+
+// Where a vehicle faces. None of both: along its way; where it has none, as it did.
+struct Facing {
+  std::optional<double> heading_rad;
+  std::optional<Aim> look_at;
+  bool tilt = false;  // pitch follows too
+};
+
+struct MissionWaypoint {
+  Vec3 position_m{0.0};
+  Facing facing;        // none: the mission's
+  double hold_s = 0.0;  // stays so long
+};
+
+// Where a vehicle is to go; exactly what kind says.
+struct Mission {
+  enum class Kind { kStation, kWaypoints, kOrbit, kFollow, kStandBetween };
+  Kind kind = Kind::kStation;
+  Facing facing;
+  // Waypoints: each counts as reached within acceptance_m. speed_m_s of them: along the line
+  // between; 0: as the controller does.
+  std::vector<MissionWaypoint> waypoints;
+  double acceptance_m = 0.15;
+  double speed_m_s = 0.0;  // orbit: positive from north to east
+  bool repeat = false;
+  // Orbit: round target. Follow: beside it, (starboard, up, back) of its heading.
+  Aim target;
+  double radius_m = 1.0;
+  Vec3 offset_m{0.0};
+  // Stand between a and b, so far from b (negative: in the middle), facing it.
+  Aim between_a, between_b;
+  double distance_m = -1.0;
+};
+
+// What makes an object a vehicle that moves by its own physics.
+struct Dynamics {
+  std::filesystem::path file;          // its parameters
+  std::optional<Mission> mission;      // absent: nobody steers
+  std::uint64_t failed_thrusters = 0;  // bit i: the file's thruster i + 1
+  std::optional<Vec3> tether_anchor_m;
+};
+
+// Whether vehicles can touch an object, and as what.
+enum class Collision { kNone, kMesh, kHull };
+
+}  // namespace neritic::scene

@@ -1,0 +1,307 @@
+// Reads what a scene says of physics: [physics], [current], and of objects what is solid, what
+// moves by itself and where it is to go. The last in a second pass, when all names are known.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/scene_draft.hpp"
+#include "engine/scene/scene_reader.hpp"
+#include "engine/scene/scene_text.hpp"
+
+namespace neritic::scene {
+namespace {
+
+constexpr Interval kMissionSpeed{0, 100, true, false, "m/s"};
+constexpr Interval kCurrentSpeed{-100, 100, false, false, "m/s"};
+constexpr Interval kOverZeroMetres{0, 1e6, true, false, "metres"};
+constexpr Interval kAnySeconds{-1e9, 1e9, false, false, "seconds"};
+constexpr std::size_t kMaxMissionWaypoints = 10000;
+// As many as vehicles can have.
+constexpr std::size_t kMaxFailedThruster = 16;
+
+constexpr Key kPhysicsOnly[] = {"collision", "dynamics", "mission", "failed_thrusters",
+                                "tether_anchor_m"};
+constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m"};
+// What vehicles cannot pass, where nothing else is said.
+constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
+
+struct CurrentKeysOf {
+  Key kind;
+  std::array<Key, 5> keys;
+};
+constexpr CurrentKeysOf kCurrentKinds[] = {
+    {"uniform", {"velocity_m_s"}},
+    {"power_law", {"velocity_m_s", "depth_m", "exponent"}},
+    {"linear", {"velocity_m_s", "deep_velocity_m_s", "depth_m"}},
+    {"grid", {"file", "origin_m", "spacing_m", "start_s", "interval_s"}}};
+constexpr auto kCurrentNames = std::to_array<Key>({"uniform", "power_law", "linear", "grid"});
+
+Result<Physics> read_physics_table(const SceneSource& source, const TomlValue& table) {
+  TableReader reader(source, table, "physics", kPhysicsKeys);
+  Physics physics;
+  physics.rate_hz = reader.number("rate_hz", physics.rate_hz, {60, 1000, false, false, "hertz"});
+  physics.integrator = reader.choice("integrator", physics.integrator,
+                                     std::to_array<Key>({"guarded", "rk4", "semi_euler"}));
+  physics.water_kg_m3 =
+      reader.number("water_kg_m3", physics.water_kg_m3, {900, 1300, false, false, "kg/m^3"});
+  NERITIC_TRY_STATUS(reader.status());
+  return physics;
+}
+
+void read_grid(TableReader& reader, Current& current) {
+  current.file = reader.file("file");
+  current.origin_m = reader.vector3("origin_m", current.origin_m, kAnyMetres);
+  current.spacing_m = reader.vector3("spacing_m", current.spacing_m, kAnyMetres);
+  current.start_s = reader.number("start_s", 0.0, kAnySeconds);
+  current.interval_s = reader.number("interval_s", 1.0, {0, 1e9, true, false, "seconds"});
+  for (const Key key : {"file", "origin_m", "spacing_m"})
+    if (!reader.has(key)) reader.refuse(key, "this key, of a grid");
+}
+
+Result<Current> read_current_table(const SceneSource& source, const TomlValue& table) {
+  TableReader reader(source, table, "current", kCurrentKeys);
+  Current current;
+  if (!reader.has("kind")) reader.refuse("kind", "one of " + join(kCurrentNames));
+  const std::string kind = reader.choice("kind", "uniform", kCurrentNames);
+  for (std::size_t i = 0; i < std::size(kCurrentKinds); ++i) {
+    if (kCurrentKinds[i].kind != kind) continue;
+    current.kind = static_cast<Current::Kind>(i);
+    const auto& taken = kCurrentKinds[i].keys;
+    for (const Key key : kCurrentKeys)
+      if (key != "kind" && reader.has(key) && std::ranges::find(taken, key) == taken.end())
+        reader.refuse(key, fmt::format("no such key of the kind {}", kind));
+  }
+  if (current.kind == Current::Kind::kGrid) {
+    read_grid(reader, current);
+  } else {
+    current.velocity_m_s = reader.vector3("velocity_m_s", Vec3(0.0), kCurrentSpeed);
+    if (!reader.has("velocity_m_s")) reader.refuse("velocity_m_s", "[x, y, z] in m/s");
+    current.deep_velocity_m_s = reader.vector3("deep_velocity_m_s", Vec3(0.0), kCurrentSpeed);
+    current.depth_m = reader.number("depth_m", current.depth_m, kOverZeroMetres);
+    current.exponent = reader.number("exponent", current.exponent, {0, 1, true});
+  }
+  NERITIC_TRY_STATUS(reader.status());
+  return current;
+}
+
+// The physics of one table of [[objects]] or [[vehicles]].
+class VehiclePhysicsReader {
+ public:
+  VehiclePhysicsReader(TableReader& reader, ObjectDraft& object, const SceneDraft& draft)
+      : reader_(reader), object_(object), draft_(draft) {}
+
+  Status read() {
+    if (!draft_.scene.physics) {
+      for (const Key key : kPhysicsOnly)
+        if (reader_.has(key)) reader_.refuse(key, "no such key in a scene without [physics]");
+      return reader_.status();
+    }
+    read_collision();
+    if (!reader_.has("dynamics")) {
+      for (const Key key : kDynamicsOnly)
+        if (reader_.has(key)) reader_.refuse(key, "no such key without dynamics");
+      return reader_.status();
+    }
+    Dynamics dynamics;
+    dynamics.file = reader_.file("dynamics");
+    for (const Key key : {"track", "scatter", "copies", "copies_file", "on", "collision"})
+      if (reader_.has(key)) reader_.refuse(key, "no such key beside dynamics");
+    if (!object_.request)
+      reader_.refuse("dynamics", "no such key for what is not drawn: what is drawn is its shape");
+    if (reader_.has("failed_thrusters")) dynamics.failed_thrusters = read_failed();
+    if (reader_.has("tether_anchor_m"))
+      dynamics.tether_anchor_m = reader_.vector3("tether_anchor_m", Vec3(0.0), kAnyMetres);
+    if (const TomlValue* table = reader_.table("mission")) {
+      TableReader mission(reader_.source(), *table, reader_.path("mission"), kMissionKeys);
+      dynamics.mission = read_mission(mission);
+      NERITIC_TRY_STATUS(mission.status());
+    }
+    object_.object.dynamics = std::move(dynamics);
+    return reader_.status();
+  }
+
+ private:
+  void read_collision() {
+    const Scene& scene = draft_.scene;
+    Object& object = object_.object;
+    const auto name = scene.class_names.find(object.class_id);
+    const bool still = !object_.placement.track && object_.clip.empty();
+    const bool solid = name != scene.class_names.end() && still && object_.request &&
+                       std::ranges::find(kSolidClasses, name->second) != std::end(kSolidClasses);
+    object.collision = solid ? Collision::kMesh : Collision::kNone;
+    const TomlValue* value = reader_.find("collision");
+    if (!value) return;
+    if (value->kind == TomlValue::Kind::kBool)
+      object.collision = value->boolean ? Collision::kMesh : Collision::kNone;
+    else if (value->kind == TomlValue::Kind::kString && value->text == "hull")
+      object.collision = Collision::kHull;
+    else
+      reader_.refuse("collision", "true, false or \"hull\"");
+    if (object.collision != Collision::kNone && !object_.request)
+      reader_.refuse("collision", "no such key for what is not drawn");
+    if (object.collision != Collision::kNone && !still)
+      reader_.refuse("collision", "false, since what has a track or a clip is not solid");
+  }
+
+  std::uint64_t read_failed() {
+    std::uint64_t failed = 0;
+    const TomlValue* value = reader_.find("failed_thrusters");
+    bool good = value->kind == TomlValue::Kind::kArray;
+    for (const TomlValue& item : value->items) {
+      good = good && item.kind == TomlValue::Kind::kInteger && item.integer >= 1 &&
+             item.integer <= static_cast<std::int64_t>(kMaxFailedThruster);
+      if (good) failed |= std::uint64_t{1} << (item.integer - 1);
+    }
+    if (!good)
+      reader_.refuse("failed_thrusters",
+                     fmt::format("a list of the file's thrusters by number, each 1 to {}",
+                                 kMaxFailedThruster));
+    return failed;
+  }
+
+  // The object of that name, other than this one.
+  Aim read_aim(TableReader& reader, Key key) {
+    Aim aim;
+    const std::string name = reader.text(key, "");
+    std::vector<Key> names;
+    for (std::size_t i = 0; i < draft_.objects.size(); ++i) {
+      const std::string& known = draft_.objects[i].object.name;
+      if (known == object_.object.name) continue;
+      if (known == name) aim.object = static_cast<int>(i);
+      names.push_back(known);
+    }
+    if (aim.object < 0)
+      reader.refuse(
+          key, fmt::format("the name of another object or vehicle{}",
+                           names.empty() ? std::string()
+                                         : fmt::format(" (nearest: {})", nearest(name, names))));
+    return aim;
+  }
+
+  Facing read_facing(TableReader& reader) {
+    Facing facing;
+    if (int{reader.has("heading_deg")} + int{reader.has("look_at")} + int{reader.has("look_at_m")} >
+        1)
+      reader.refuse_table(
+          "more than one of heading_deg, look_at, look_at_m; accepted: one of them");
+    if (reader.has("heading_deg"))
+      facing.heading_rad = radians(reader.number("heading_deg", 0.0, kAnyTurn));
+    if (reader.has("look_at")) facing.look_at = read_aim(reader, "look_at");
+    if (reader.has("look_at_m"))
+      facing.look_at = Aim{-1, reader.vector3("look_at_m", Vec3(0.0), kAnyMetres)};
+    facing.tilt = reader.flag("tilt", false);
+    if (reader.has("tilt") && !facing.look_at)
+      reader.refuse("tilt", "no such key without look_at or look_at_m");
+    return facing;
+  }
+
+  void read_waypoints(TableReader& reader, Mission& mission) {
+    mission.kind = Mission::Kind::kWaypoints;
+    const auto& tables = reader.tables("waypoints");
+    if (tables.empty() || tables.size() > kMaxMissionWaypoints)
+      reader.refuse("waypoints",
+                    fmt::format("1 to {} tables with position_m", kMaxMissionWaypoints));
+    for (std::size_t i = 0; reader.ok() && i < tables.size(); ++i) {
+      TableReader item(reader.source(), tables[i],
+                       fmt::format("{}[{}]", reader.path("waypoints"), i), kMissionWaypointKeys);
+      MissionWaypoint waypoint;
+      waypoint.position_m = item.vector3("position_m", Vec3(0.0), kAnyMetres);
+      if (!item.has("position_m")) item.refuse("position_m", "[x, y, z] in metres");
+      waypoint.facing = read_facing(item);
+      waypoint.hold_s = item.number("hold_s", 0.0, {0, 1e6, false, false, "seconds"});
+      if (!item.ok()) reader.fail(item.status().error());
+      mission.waypoints.push_back(waypoint);
+    }
+    mission.acceptance_m = reader.number("acceptance_m", mission.acceptance_m, kOverZeroMetres);
+    mission.speed_m_s = reader.number("speed_m_s", 0.0, kMissionSpeed);
+    mission.repeat = reader.flag("repeat", false);
+  }
+
+  void read_orbit(TableReader& parent, const TomlValue& table, Mission& mission) {
+    TableReader reader(parent.source(), table, parent.path("orbit"), kOrbitKeys);
+    mission.kind = Mission::Kind::kOrbit;
+    if (reader.has("object") == reader.has("point_m"))
+      reader.refuse_table("none or both of object, point_m; accepted: one of them");
+    else if (reader.has("object"))
+      mission.target = read_aim(reader, "object");
+    else
+      mission.target.point_m = reader.vector3("point_m", Vec3(0.0), kAnyMetres);
+    mission.radius_m = reader.number("radius_m", 1.0, kOverZeroMetres);
+    mission.speed_m_s = reader.number("speed_m_s", 0.3, {-100, 100, false, false, "m/s"});
+    if (!reader.has("radius_m")) reader.refuse("radius_m", "a number in " + kOverZeroMetres.text());
+    if (!reader.ok()) parent.fail(reader.status().error());
+  }
+
+  void read_follow(TableReader& parent, const TomlValue& table, Mission& mission) {
+    TableReader reader(parent.source(), table, parent.path("follow"), kFollowKeys);
+    mission.kind = Mission::Kind::kFollow;
+    mission.target = read_aim(reader, "object");
+    mission.offset_m = reader.vector3("offset_m", Vec3(0.0), kAnyMetres);
+    if (!reader.ok()) parent.fail(reader.status().error());
+  }
+
+  void read_stand_between(TableReader& parent, const TomlValue& table, Mission& mission) {
+    TableReader reader(parent.source(), table, parent.path("stand_between"), kStandBetweenKeys);
+    mission.kind = Mission::Kind::kStandBetween;
+    mission.between_a = read_aim(reader, "a");
+    mission.between_b = read_aim(reader, "b");
+    if (reader.has("distance_m"))
+      mission.distance_m = reader.number("distance_m", 0.0, {0, 1e6, false, false, "metres"});
+    if (!reader.ok()) parent.fail(reader.status().error());
+  }
+
+  Mission read_mission(TableReader& reader) {
+    Mission mission;
+    constexpr Key kWays[] = {"waypoints", "hold", "orbit", "follow", "stand_between"};
+    const auto ways = std::ranges::count_if(kWays, [&](Key key) { return reader.has(key); });
+    if (ways != 1)
+      reader.refuse_table(fmt::format("{} of {}; accepted: one of them",
+                                      ways == 0 ? "none" : "more than one", join(kWays)));
+    if (reader.has("waypoints")) read_waypoints(reader, mission);
+    if (reader.has("hold")) reader.choice("hold", "station", std::to_array<Key>({"station"}));
+    if (const TomlValue* table = reader.table("orbit")) read_orbit(reader, *table, mission);
+    if (const TomlValue* table = reader.table("follow")) read_follow(reader, *table, mission);
+    if (const TomlValue* table = reader.table("stand_between"))
+      read_stand_between(reader, *table, mission);
+    if (mission.kind != Mission::Kind::kWaypoints)
+      for (const Key key : {"acceptance_m", "speed_m_s", "repeat"})
+        if (reader.has(key)) reader.refuse(key, "no such key without waypoints");
+    mission.facing = read_facing(reader);
+    if (mission.kind == Mission::Kind::kStandBetween)
+      for (const Key key : {"heading_deg", "look_at", "look_at_m"})
+        if (reader.has(key)) reader.refuse(key, "no such key beside stand_between, which faces b");
+    return mission;
+  }
+
+  TableReader& reader_;
+  ObjectDraft& object_;
+  const SceneDraft& draft_;
+};
+
+}  // namespace
+
+Status read_physics(SceneDraft& draft, const SceneSource& source, const TomlValue* physics,
+                    const TomlValue* current) {
+  if (physics) {
+    NERITIC_TRY(draft.scene.physics, read_physics_table(source, *physics));
+  }
+  if (!current) return {};
+  if (!physics)
+    return bad_input(
+        "{}: current: found a table; accepted: no such key in a scene without [physics]",
+        source.place(current->where));
+  NERITIC_TRY(draft.scene.current, read_current_table(source, *current));
+  return {};
+}
+
+Status read_vehicle_physics(SceneDraft& draft, const SceneSource& source,
+                            const std::vector<TomlValue>& tables, const std::string& path,
+                            std::size_t first_object) {
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    TableReader reader(source, tables[i], fmt::format("{}[{}]", path, i), kObjectKeys);
+    VehiclePhysicsReader physics(reader, draft.objects[first_object + i], draft);
+    NERITIC_TRY_STATUS(physics.read());
+  }
+  return {};
+}
+
+}  // namespace neritic::scene
