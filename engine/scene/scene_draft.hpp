@@ -96,7 +96,7 @@ struct SceneDraft {
   std::vector<MountedDraft<Lamp>> lamps;
 };
 
-// scene_read.cpp: the whole file. scene_read_object.cpp, scene_read_sensor.cpp: its parts.
+// scene_read.cpp: the whole file. scene_read_object.cpp and so on: its parts.
 Result<SceneDraft> read_draft(const SceneSource& source);
 
 class TableReader;

@@ -126,7 +126,7 @@ void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const 
         canvas.segment(place(x, s.x[i - 1], in.left, in.right),
                        place(y, s.y[i - 1], in.bottom, in.top), px, py, 1.8,
                        s.color.with_alpha(0.8f));
-      canvas.segment(px, py, px, py, s.joined ? 7.0 : 4.0, s.color);
+      if (s.marked) canvas.segment(px, py, px, py, s.joined ? 7.0 : 4.0, s.color);
     }
     draw_notes(canvas, in, s, x, y, taken);
     const double width = Canvas::text_width(kTextPx, s.name);

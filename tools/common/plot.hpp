@@ -21,6 +21,7 @@ struct Series {
   std::vector<double> x, y;
   std::vector<std::string> notes = {};  // beside the points; empty: none
   bool joined = true;                   // by lines
+  bool marked = true;                   // a dot at each point
 };
 
 struct Bar {

@@ -8,6 +8,7 @@
 #include "engine/xr/offscreen.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/dive_loop.hpp"
+#include "tools/neritic/dive_physics.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/load_scene.hpp"
 
@@ -111,6 +112,8 @@ Status run_dive(const DiveFlags& flags) {
     return bad_input("--panels: accepted with --headless (a window has them; F2)");
   NERITIC_TRY(scene::Scene scene, load(flags));
   for (const std::string& note : scene.notes) log_warn("{}", note);
+  NERITIC_TRY_STATUS(check_physics_flags(flags, scene));
+  if (asks_for_physics_alone(flags, scene)) return dive_physics(flags, scene);
   DiveOptions options;
   options.frames = flags.frames;
   options.seconds = flags.seconds;

@@ -1,0 +1,195 @@
+#include "tools/neritic/dive_physics.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "rov/frames.hpp"
+#include "tools/neritic/flags.hpp"
+#include "tools/physics/dive_plot.hpp"
+#include "tools/physics/dive_record.hpp"
+
+namespace neritic::tools {
+namespace {
+
+constexpr double kPhysicsSeconds = 60.0;  // where --seconds is not given
+constexpr double kMostPhysicsSeconds = 1e6;
+
+bool draws(const DiveFlags& flags) {
+  return flags.frames > 0 || flags.fast || flags.panels || flags.validation ||
+         !flags.screenshot.empty() || !flags.size.empty() || !flags.sensors.empty() ||
+         !flags.device.empty();
+}
+
+// The first flag that only a dive of physics alone takes; empty: none.
+std::string physics_flag(const DiveFlags& flags) {
+  if (!flags.log.empty()) return "--log";
+  if (flags.log_rate_hz > 0.0) return "--log-rate";
+  if (!flags.plot.empty()) return "--plot";
+  if (!flags.record.empty()) return "--record";
+  if (!flags.replay.empty()) return "--replay";
+  if (flags.realtime) return "--realtime";
+  if (flags.json) return "--json";
+  return "";
+}
+
+struct Pace {
+  double wall_s = 0.0;
+  std::uint64_t dropped = 0;
+};
+
+// As fast as it can, or each step when it is due.
+Pace run_steps(PhysicsSimulation& simulation, DiveRecorder& recorder, const DiveFlags& flags,
+               double seconds, double step_s) {
+  constexpr int kCatchUp = 4;  // as the live program's
+  const auto steps = static_cast<std::uint64_t>(std::ceil(seconds / step_s - 1e-9));
+  sim::HostClock clock;
+  const TimeNs begun_ns = clock.now();
+  sim::StepPacer pacer(1.0 / step_s, kCatchUp, begun_ns);
+  Progress progress("second", static_cast<std::uint64_t>(std::ceil(seconds)));
+  double told_s = 0.0;
+  recorder.add(simulation.newest());
+  for (std::uint64_t done = 0; done < steps;) {
+    std::uint64_t now = 1;
+    if (flags.realtime) {
+      clock.wait_until(pacer.next_ns());
+      now = std::min<std::uint64_t>(static_cast<std::uint64_t>(pacer.take(clock.now())),
+                                    steps - done);
+    }
+    for (std::uint64_t i = 0; i < now; ++i, ++done) {
+      simulation.advance(1);
+      recorder.add(simulation.newest());
+    }
+    for (; told_s + 1.0 <= simulation.newest().time_s; told_s += 1.0) progress.step();
+  }
+  return {static_cast<double>(clock.now() - begun_ns) * 1e-9, pacer.counts().dropped};
+}
+
+std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& state,
+                         const DiveFigures& figures) {
+  std::string line = vehicle.name + ": ";
+  if (vehicle.mission && vehicle.mission->waypoint_count() > 0) {
+    line +=
+        fmt::format("{} of {} waypoints", state.mission.arrived, vehicle.mission->waypoint_count());
+    if (!figures.arrivals_s.empty())
+      line += fmt::format(" (the last after {:.1f} s)", figures.arrivals_s.back());
+    line += ", ";
+  }
+  line += fmt::format("{:.2f} m of way, up to {:.2f} m/s, tilted up to {:.1f} degrees, ",
+                      figures.path_m, figures.largest_speed_m_s, degrees(figures.largest_tilt_rad));
+  line += state.contact.touched_steps == 0
+              ? "touched nothing"
+              : fmt::format("touched something in {} steps", state.contact.touched_steps);
+  if (state.body.refused_inputs > 0)
+    line += fmt::format(", {} inputs refused", state.body.refused_inputs);
+  return line + "\n";
+}
+
+nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& state,
+                            const DiveFigures& figures) {
+  const Pose end = rov::world_pose(state.body.position_ned_m, state.body.attitude);
+  const Vec3& p = end.position_m;
+  const Quat& q = end.rotation;
+  return {{"name", vehicle.name},
+          {"waypoints", vehicle.mission ? vehicle.mission->waypoint_count() : 0},
+          {"arrived", state.mission.arrived},
+          {"arrivals_s", figures.arrivals_s},
+          {"way_m", figures.path_m},
+          {"largest_speed_m_s", figures.largest_speed_m_s},
+          {"largest_tilt_deg", degrees(figures.largest_tilt_rad)},
+          {"touched_steps", state.contact.touched_steps},
+          {"deepest_m", state.contact.deepest_m},
+          {"refused_inputs", state.body.refused_inputs},
+          {"end", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}}};
+}
+
+void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
+                   const PhysicsSimulation& simulation, const DiveRecorder& recorder,
+                   const Pace& pace) {
+  const auto& newest = simulation.newest();
+  const double speed = newest.time_s / std::max(pace.wall_s, 1e-9);
+  const std::string hash = fmt::format("{:016x}", newest.hash);
+  if (flags.json) {
+    nlohmann::json json{{"scene", flags.scene},
+                        {"simulated_s", newest.time_s},
+                        {"steps", newest.step},
+                        {"step_s", world.step_s()},
+                        {"wall_s", pace.wall_s},
+                        {"speed", speed},
+                        {"dropped", pace.dropped},
+                        {"refused_states", simulation.refused_states()},
+                        {"hash", hash},
+                        {"vehicles", nlohmann::json::array()}};
+    for (std::size_t i = 0; i < world.vehicles().size(); ++i)
+      json["vehicles"].push_back(
+          vehicle_json(world.vehicles()[i], newest.state.vehicles[i], recorder.figures()[i]));
+    fmt::print("{}\n", json_text(json));
+    return;
+  }
+  for (std::size_t i = 0; i < world.vehicles().size(); ++i)
+    fmt::print("{}",
+               vehicle_line(world.vehicles()[i], newest.state.vehicles[i], recorder.figures()[i]));
+  fmt::print("{:g} s in {} steps, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",
+             newest.time_s, newest.step, speed, pace.dropped, hash);
+}
+
+Status replay_dive(const DiveFlags& flags, const PhysicsWorld& world) {
+  NERITIC_TRY(const auto log, sim::read_input_log<PhysicsInputs>(flags.replay));
+  if (log.step_s != world.step_s())
+    return bad_input("{}: steps of {} s; accepted: {} s, as in {}", flags.replay, log.step_s,
+                     world.step_s(), flags.scene);
+  const auto report = sim::replay(
+      log, world.start(), [&](const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) {
+        return world.step(state, inputs, dt_s);
+      });
+  if (report.first_difference)
+    return failure(ErrorCode::kUnsupported, "{}: another state than recorded from step {} of {} on",
+                   flags.replay, *report.first_difference, log.steps());
+  fmt::print("{}: {} steps, each with the hash that was recorded, the last {:016x}\n", flags.replay,
+             report.steps, log.hashes.back());
+  return {};
+}
+
+}  // namespace
+
+bool asks_for_physics_alone(const DiveFlags& flags, const scene::Scene& scene) {
+  return flags.headless && PhysicsWorld::needed(scene) && !draws(flags);
+}
+
+Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
+  const std::string flag = physics_flag(flags);
+  if (!(flags.log_rate_hz >= 0.0 && flags.log_rate_hz <= 1e4))
+    return bad_input("--log-rate: {}; a number from 0 to 10000 is accepted", flags.log_rate_hz);
+  if (flag.empty()) return {};
+  if (!PhysicsWorld::needed(scene))
+    return bad_input("{}: accepted where a vehicle has dynamics; in {} none has", flag,
+                     flags.scene);
+  if (!flags.headless || draws(flags))
+    return bad_input("{}: accepted with --headless and without flags of pictures", flag);
+  if (!flags.replay.empty() && (!flags.log.empty() || !flags.record.empty() || flags.realtime ||
+                                !flags.plot.empty() || flags.json))
+    return bad_input("--replay: accepted without --log, --plot, --record, --realtime, --json");
+  return {};
+}
+
+Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
+  const double seconds = flags.seconds > 0.0 ? flags.seconds : kPhysicsSeconds;
+  if (seconds > kMostPhysicsSeconds)
+    return bad_input("--seconds: {}; up to {:g} is accepted", seconds, kMostPhysicsSeconds);
+  NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
+  if (!flags.replay.empty()) return replay_dive(flags, *world);
+  const auto simulation = world->simulation({.readers = 0, .log = true, .seed = scene.seed});
+  DiveRecorder recorder(*world, {.rows = !flags.log.empty() || !flags.plot.empty(),
+                                 .row_rate_hz = flags.log_rate_hz});
+  const Pace pace = run_steps(*simulation, recorder, flags, seconds, world->step_s());
+  if (!flags.log.empty())
+    NERITIC_TRY_STATUS(write_text(flags.log, csv_of(*world, recorder.rows())));
+  if (!flags.plot.empty()) NERITIC_TRY_STATUS(write_dive_plot(flags.plot, *world, recorder.rows()));
+  if (!flags.record.empty())
+    NERITIC_TRY_STATUS(sim::write_input_log(flags.record, simulation->log()));
+  print_summary(flags, *world, *simulation, recorder, pace);
+  return {};
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,171 @@
+#include "tools/physics/dive_plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "engine/scene/image_file.hpp"
+#include "tools/common/plot.hpp"
+
+namespace neritic::tools {
+namespace {
+
+constexpr std::uint32_t kWidth = 1600, kHeight = 1200;
+constexpr double kMiddleX = 800.0, kMiddleY = 640.0;
+// More points than this a line are not told apart.
+constexpr std::size_t kMostPoints = 1500;
+// The ground's shading is of cells so wide.
+constexpr int kCell_px = 3;
+// Height above the lowest ground that is seen at which it is darkest.
+constexpr double kDarkest_m = 8.0;
+
+using Value = std::function<double(const DiveRow&)>;
+
+Series series_of(const std::vector<DiveRow>& rows, std::size_t vehicle, const std::string& name,
+                 const sonar::Color& color, const Value& x, const Value& y) {
+  Series series{name, color, {}, {}};
+  series.marked = false;
+  std::size_t count = 0;
+  for (const DiveRow& row : rows) count += row.vehicle == vehicle ? 1 : 0;
+  const std::size_t every = count / kMostPoints + 1;
+  std::size_t seen = 0;
+  for (const DiveRow& row : rows) {
+    if (row.vehicle != vehicle || (seen++ % every != 0 && seen != count)) continue;
+    series.x.push_back(x(row));
+    series.y.push_back(y(row));
+  }
+  return series;
+}
+
+double time_of(const DiveRow& row) {
+  return row.time_s;
+}
+double east_of(const DiveRow& row) {
+  return row.world_from_body.position_m.x;
+}
+double north_of(const DiveRow& row) {
+  return -row.world_from_body.position_m.z;
+}
+
+// Axes that hold all values, with some room.
+Axis roomy_axis(const std::string& label, const std::vector<Series>& all,
+                const std::vector<double> Series::*values, double least_span) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Series& s : all)
+    for (const double v : s.*values) low = std::min(low, v), high = std::max(high, v);
+  const double middle = 0.5 * (low + high), span = std::max(1.15 * (high - low), least_span);
+  return {label, middle - 0.5 * span, middle + 0.5 * span};
+}
+
+// One scale for both axes: metres are as long to the east as to the north.
+void make_square(Axis& x, Axis& y, const Box& in) {
+  const double metres_a_px =
+      std::max((x.max - x.min) / (in.right - in.left), (y.max - y.min) / (in.bottom - in.top));
+  const auto widen = [&](Axis& axis, double px) {
+    const double middle = 0.5 * (axis.min + axis.max);
+    axis.min = middle - 0.5 * px * metres_a_px;
+    axis.max = middle + 0.5 * px * metres_a_px;
+  };
+  widen(x, in.right - in.left);
+  widen(y, in.bottom - in.top);
+}
+
+// What is solid, seen from above: the higher, the darker.
+void draw_ground(sonar::Canvas& canvas, const Box& in, const Axis& x, const Axis& y,
+                 const sim::StaticWorld& solid) {
+  constexpr double kAbove_m = 100.0, kFar_m = 12000.0;
+  struct Cell {
+    double left, top, height_m;
+  };
+  std::vector<Cell> cells;
+  double lowest_m = std::numeric_limits<double>::infinity();
+  for (double top = in.top; top < in.bottom; top += kCell_px)
+    for (double left = in.left; left < in.right; left += kCell_px) {
+      const double east = x.min + (left - in.left) / (in.right - in.left) * (x.max - x.min);
+      const double north = y.min + (in.bottom - top) / (in.bottom - in.top) * (y.max - y.min);
+      const auto hit = solid.cast({east, kAbove_m, -north}, {0.0, -1.0, 0.0}, kFar_m);
+      if (!hit) continue;
+      cells.push_back({left, top, kAbove_m - hit->distance_m});
+      lowest_m = std::min(lowest_m, cells.back().height_m);
+    }
+  for (const Cell& cell : cells) {
+    const double dark = std::clamp((cell.height_m - lowest_m) / kDarkest_m, 0.0, 1.0);
+    canvas.fill_rectangle(cell.left, cell.top, std::min(cell.left + kCell_px, in.right),
+                          std::min(cell.top + kCell_px, in.bottom),
+                          kInk.with_alpha(static_cast<float>(0.04 + 0.4 * dark)));
+  }
+}
+
+void draw_path(sonar::Canvas& canvas, const Box& box, const PhysicsWorld& world,
+               const std::vector<DiveRow>& rows) {
+  std::vector<Series> lines;
+  for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
+    lines.push_back(series_of(rows, i, world.vehicles()[i].name,
+                              kSeriesColors[i % std::size(kSeriesColors)], east_of, north_of));
+  }
+  Axis x = roomy_axis("east, m", lines, &Series::x, 1.0);
+  Axis y = roomy_axis("north, m", lines, &Series::y, 1.0);
+  make_square(x, y, inside(box));
+  draw_ground(canvas, inside(box), x, y, world.solid());
+  Series wanted = series_of(
+      rows, 0, "wanted", kSeriesColors[4], [](const DiveRow& r) { return r.wanted.position_m.x; },
+      [](const DiveRow& r) { return -r.wanted.position_m.z; });
+  wanted.joined = false;
+  wanted.marked = true;
+  lines.insert(lines.begin(), wanted);
+  draw_lines(canvas, box, "Path from above, over what is solid", x, y, lines);
+}
+
+void draw_over_time(sonar::Canvas& canvas, const Box& box, const std::string& title,
+                    const std::string& label, const std::vector<Series>& lines, double least_span) {
+  const Axis x = roomy_axis("time, s", lines, &Series::x, 1e-3);
+  draw_lines(canvas, box, title, x, roomy_axis(label, lines, &Series::y, least_span), lines);
+}
+
+std::vector<Series> depth_lines(const PhysicsWorld& world, const std::vector<DiveRow>& rows) {
+  std::vector<Series> lines{series_of(rows, 0, "wanted", kSeriesColors[4], time_of,
+                                      [](const DiveRow& r) { return r.wanted.position_m.y; })};
+  for (std::size_t i = 0; i < world.vehicles().size(); ++i)
+    lines.push_back(series_of(rows, i, world.vehicles()[i].name,
+                              kSeriesColors[i % std::size(kSeriesColors)], time_of,
+                              [](const DiveRow& r) { return r.world_from_body.position_m.y; }));
+  return lines;
+}
+
+std::vector<Series> thrust_lines(const PhysicsWorld& world, const std::vector<DiveRow>& rows) {
+  std::vector<Series> lines;
+  for (std::size_t i = 0; i < world.vehicles()[0].vehicle.thruster_count; ++i)
+    lines.push_back(series_of(rows, 0, fmt::format("{}", i + 1),
+                              kSeriesColors[i % std::size(kSeriesColors)].with_alpha(
+                                  i < std::size(kSeriesColors) ? 1.0f : 0.5f),
+                              time_of, [i](const DiveRow& r) { return r.force_n[i]; }));
+  return lines;
+}
+
+std::vector<Series> error_lines(const std::vector<DiveRow>& rows) {
+  return {series_of(rows, 0, "off the setpoint, m", kSeriesColors[1], time_of,
+                    [](const DiveRow& r) {
+                      return glm::distance(r.world_from_body.position_m, r.wanted.position_m);
+                    }),
+          series_of(rows, 0, "speed, m/s", kSeriesColors[0], time_of,
+                    [](const DiveRow& r) { return glm::length(r.velocity.linear()); })};
+}
+
+}  // namespace
+
+Status write_dive_plot(const std::filesystem::path& path, const PhysicsWorld& world,
+                       const std::vector<DiveRow>& rows) {
+  sonar::Canvas canvas(kWidth, kHeight, kPaper);
+  const std::string& first = world.vehicles()[0].name;
+  draw_path(canvas, {10, 10, kMiddleX, kMiddleY}, world, rows);
+  draw_over_time(canvas, {kMiddleX, 10, kWidth - 10.0, kMiddleY}, "Height over the surface", "m",
+                 depth_lines(world, rows), 0.5);
+  draw_over_time(canvas, {10, kMiddleY, kMiddleX, kHeight - 10.0},
+                 "Thrust of " + first + "'s thrusters", "N", thrust_lines(world, rows), 1.0);
+  draw_over_time(canvas, {kMiddleX, kMiddleY, kWidth - 10.0, kHeight - 10.0},
+                 "Error and speed of " + first, "m, m/s", error_lines(rows), 0.05);
+  return scene::write_png8(path, canvas.take());
+}
+
+}  // namespace neritic::tools

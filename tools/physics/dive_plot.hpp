@@ -1,0 +1,15 @@
+// A dive as a picture: the path from above over what is solid, depth, thrust, error and speed over
+// time. One thread.
+#pragma once
+
+#include <filesystem>
+
+#include "tools/physics/dive_record.hpp"
+
+namespace neritic::tools {
+
+// .png. Precondition: rows as a DiveRecorder kept them.
+Status write_dive_plot(const std::filesystem::path& path, const PhysicsWorld& world,
+                       const std::vector<DiveRow>& rows);
+
+}  // namespace neritic::tools

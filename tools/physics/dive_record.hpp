@@ -1,0 +1,70 @@
+// What a simulation went through, kept as it goes: a row of numbers each control period, the
+// vehicles' paths as tracks for cameras and sonars that they carry, and figures of the whole. One
+// thread: the one that steps.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/scene/track.hpp"
+#include "tools/physics/physics_world.hpp"
+
+namespace neritic::tools {
+
+struct RecordOptions {
+  bool rows = false;         // keep rows
+  double row_rate_hz = 0.0;  // 0: one each control period
+  bool tracks = false;       // keep the paths, each step
+};
+
+// A vehicle at an instant.
+struct DiveRow {
+  double time_s = 0.0;
+  std::size_t vehicle = 0;
+  Pose world_from_body;   // model axes
+  rov::Vec6 velocity;     // body axes forward, starboard, down
+  Vec3 current_m_s{0.0};  // world
+  std::array<double, rov::kMaxThrusters> command_n{}, force_n{};
+  Pose wanted;  // world_from_body
+  std::size_t waypoint = 0;
+  std::uint64_t arrived = 0, near_points = 0, touched_steps = 0;
+  std::uint64_t hash = 0;  // of all vehicles' state
+};
+
+struct DiveFigures {
+  double path_m = 0.0, largest_speed_m_s = 0.0, largest_tilt_rad = 0.0;
+  std::vector<double> arrivals_s;  // of its waypoints
+};
+
+class DiveRecorder {
+ public:
+  DiveRecorder(const PhysicsWorld& world, const RecordOptions& options);
+
+  // Each step's result in turn, the start first.
+  void add(const sim::Snapshot<PhysicsState>& snapshot);
+
+  const std::vector<DiveRow>& rows() const { return rows_; }
+  const std::vector<DiveFigures>& figures() const { return figures_; }
+  // One a vehicle.
+  std::vector<scene::Track>& tracks() { return tracks_; }
+
+ private:
+  bool row_due(std::size_t vehicle, std::uint64_t step) const;
+  DiveRow row_of(std::size_t vehicle, const sim::Snapshot<PhysicsState>& snapshot) const;
+
+  const PhysicsWorld& world_;
+  RecordOptions options_;
+  std::vector<DiveRow> rows_;
+  std::vector<DiveFigures> figures_;
+  std::vector<scene::Track> tracks_;
+  PhysicsState last_;
+};
+
+// Rows as a table with a heading; world axes, degrees, body axes forward, starboard, down. Its
+// thruster columns are those of the vehicle with most.
+std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows);
+
+// Simulates to until_s and gives the vehicles of the scene their paths as tracks.
+Status fly_ahead(scene::Scene& scene, double until_s);
+
+}  // namespace neritic::tools
