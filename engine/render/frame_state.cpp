@@ -1,9 +1,12 @@
 #include "engine/render/frame_state.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
 #include <tuple>
+
+#include "engine/scene/model_lights.hpp"
 
 namespace neritic::render {
 namespace {
@@ -15,6 +18,22 @@ scene::ModelPose pose_of(const scene::Object& object, const scene::Model& model,
 void append_joints(std::vector<Mat4f>& out, const scene::Model& model, const scene::ModelPose& pose,
                    int skin) {
   for (const Mat4& m : scene::joint_matrices(model, pose, skin)) out.push_back(Mat4f(m));
+}
+
+// KHR_lights_punctual: a light shines along its node's -z; scale changes neither light nor
+// direction.
+PlacedLight placed_light(const scene::Scene& scene, const FrameState& state,
+                         const scene::ModelLight& from) {
+  Appearance shown;
+  shown.object = static_cast<std::uint32_t>(from.object);
+  shown.node = static_cast<std::uint32_t>(from.node);
+  shown.copy = from.copy;
+  const Mat4 m = world_from_appearance(scene, state.world_from_object[from.object],
+                                       state.poses[from.object], shown, false);
+  PlacedLight placed{&scene::light_of(scene, from), Vec3(m[3])};
+  const double length = glm::length(Vec3(m[2]));
+  if (length > 0.0 && std::isfinite(length)) placed.direction = -Vec3(m[2]) / length;
+  return placed;
 }
 
 void append_weights(std::vector<float>& out, const scene::ModelPose& pose, std::uint32_t node,
@@ -52,6 +71,9 @@ FrameState evaluate_frame(const scene::Scene& scene, const GpuScene& gpu_scene, 
     state.poses.push_back(pose_of(object, model, time_s));
     if (motion) state.next_poses.push_back(pose_of(object, model, next_time_s));
   }
+
+  for (const scene::ModelLight& light : scene.model_lights)
+    state.lights.push_back(placed_light(scene, state, light));
 
   // One job an object's node and primitive, however many copies; groups ascend, so the list is
   // sorted.

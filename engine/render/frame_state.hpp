@@ -17,11 +17,19 @@ struct DeformJob {
   shared::DeformPush push{};
 };
 
+// A model's light (scene.model_lights) where it is now, in the world.
+struct PlacedLight {
+  const scene::Light* light = nullptr;  // the scene's
+  Vec3 position_m{0.0};
+  Vec3 direction{0.0, 0.0, -1.0};  // unit, the way it shines
+};
+
 struct FrameState {
   double time_s = 0.0, next_time_s = 0.0;
   bool motion = false;
   std::vector<Pose> world_from_object, next_world_from_object;  // an object
   std::vector<scene::ModelPose> poses, next_poses;              // an object
+  std::vector<PlacedLight> lights;                              // of models
   std::vector<Mat4f> joints;                                    // of all jobs: now, then next
   std::vector<float> weights;                                   // likewise
   std::vector<DeformJob> deforms;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "engine/render/water_optics.hpp"
+#include "engine/scene/model_lights.hpp"
 
 namespace neritic::render {
 namespace {
@@ -17,11 +19,6 @@ constexpr double kDarkest_lx = 1.0;
 // Weights of linear sRGB in luminance (ITU-R BT.709).
 constexpr Vec3 kLuminance{0.2126, 0.7152, 0.0722};
 
-struct SunLight {
-  Vec3 to_sun{0.0, 1.0, 0.0};
-  double irradiance_lx = 0.0, direct_share = 0.0, cosine = 1.0;
-};
-
 // From air into flat water, unpolarised; sine: of the sun's elevation (Fresnel).
 double fresnel_transmittance(double sine) {
   const double in_air = sine;  // cosine of the angle to the vertical
@@ -30,6 +27,24 @@ double fresnel_transmittance(double sine) {
   const double rp = (kWaterIndex * in_air - in_water) / (kWaterIndex * in_air + in_water);
   return 1.0 - 0.5 * (rs * rs + rp * rp);
 }
+
+struct Beam {
+  Vec3 to_sun{0.0, 1.0, 0.0};
+  double cosine = 1.0;  // to the vertical
+};
+
+// level: the level part of the unit vector to the sun in air. Refraction at the flat surface turns
+// the sun towards the zenith (Snell).
+Beam sun_beam(Vec3 level, bool under_water) {
+  if (under_water) level /= kWaterIndex;
+  const double cosine = std::max(std::sqrt(std::max(0.0, 1.0 - glm::dot(level, level))), 0.02);
+  return {glm::normalize(level + Vec3(0.0, cosine, 0.0)), cosine};
+}
+
+struct SunLight {
+  Beam beam;
+  double irradiance_lx = 0.0, direct_share = 0.0;
+};
 
 SunLight sun_light(const scene::Sun& sun, bool under_water) {
   const double sine = std::sin(sun.elevation_rad);
@@ -43,19 +58,17 @@ SunLight sun_light(const scene::Sun& sun, bool under_water) {
   SunLight out;
   out.irradiance_lx = sun.intensity * kClearDay_lx * (direct + sky);
   out.direct_share = direct / (direct + sky);
-  // Refraction at the flat surface turns the sun towards the zenith (Snell).
-  const double in_air = std::cos(sun.elevation_rad);
-  const double horizontal = under_water ? in_air / kWaterIndex : in_air;
-  out.cosine = std::max(std::sqrt(std::max(0.0, 1.0 - horizontal * horizontal)), 0.02);
-  out.to_sun = glm::normalize(Vec3(std::sin(sun.azimuth_rad) * horizontal, out.cosine,
-                                   -std::cos(sun.azimuth_rad) * horizontal));
+  out.beam = sun_beam(std::cos(sun.elevation_rad) *
+                          Vec3(std::sin(sun.azimuth_rad), 0.0, -std::cos(sun.azimuth_rad)),
+                      under_water);
   return out;
 }
 
 // What a white surface near the camera receives, lux: the sun's light there, or half of the
 // strongest lamp's at 3 m (most of what it lights is further or oblique), and no less than
 // kDarkest_lx.
-double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& scene) {
+double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& scene,
+                            std::span<const PlacedLight> model_lights) {
   double sum = 0.0;
   if (light.terms & shared::kLightSun) {
     const double depth =
@@ -66,6 +79,9 @@ double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& s
   }
   double lamps = 0.0;
   for (const scene::Lamp& lamp : scene.lamps) lamps = std::max(lamps, lamp.intensity_cd / 9.0);
+  for (const PlacedLight& placed : model_lights)
+    if (placed.light->kind != scene::Light::Kind::kDirectional)
+      lamps = std::max(lamps, placed.light->intensity / 9.0);
   return std::max({sum, lamps * 0.5, kDarkest_lx});
 }
 
@@ -82,11 +98,64 @@ bool glows(const shared::Lighting& light) {
   return false;
 }
 
+// A directional light of a model as the sun: a beam of its lux on what faces it, with no sky. Under
+// water it is refracted at the flat surface as the sun is, and nothing of one from below it
+// arrives.
+void add_model_sun(shared::Lighting& light, const PlacedLight& placed) {
+  light.terms |= shared::kLightSun;
+  const Vec3 to_light = -placed.direction;
+  light.direct_share = 1.0f;
+  double irradiance_lx = placed.light->intensity;
+  if (light.terms & shared::kLightWater) {
+    const Beam beam = sun_beam(Vec3(to_light.x, 0.0, to_light.z), true);
+    light.to_sun = Vec3f(beam.to_sun);
+    light.sun_cosine = static_cast<float>(beam.cosine);
+    const double sine = std::max(to_light.y, 0.0);
+    irradiance_lx *= sine * fresnel_transmittance(sine);
+  } else {
+    // In air only irradiance / cosine counts: a beam may come from anywhere, the horizon included.
+    light.to_sun = Vec3f(to_light);
+    light.sun_cosine = 1.0f;
+  }
+  light.surface_irradiance = placed.light->color * static_cast<float>(irradiance_lx);
+}
+
+void add_lamp(shared::Lighting& light, const scene::Lamp& lamp, const Pose& pose,
+              const Vec3& origin_m) {
+  shared::SpotLight& spot = light.lamps[light.lamp_count++];
+  spot.position = Vec3f(pose.position_m - origin_m);
+  spot.direction = Vec3f(pose.rotation * Vec3(0, 0, -1));
+  spot.intensity_cd = lamp.color * static_cast<float>(lamp.intensity_cd);
+  spot.cos_inner = static_cast<float>(std::cos(lamp.inner_cone_rad));
+  spot.cos_outer =
+      static_cast<float>(std::cos(std::max(lamp.outer_cone_rad, lamp.inner_cone_rad + 1e-3)));
+}
+
+// Further away a lamp of 1e9 cd, the brightest that is read, gives a thousandth of a lux.
+constexpr double kFurthestLamp_m = 1e6;
+
+// A point light is a lamp whose cone is the whole sphere: all cosines are above both ends of the
+// cone's edge.
+void add_model_lamp(shared::Lighting& light, const PlacedLight& placed, const Vec3& origin_m) {
+  const Vec3 from_origin_m = placed.position_m - origin_m;
+  if (!(glm::length(from_origin_m) < kFurthestLamp_m)) return;
+  const bool point = placed.light->kind == scene::Light::Kind::kPoint;
+  const double inner = placed.light->inner_cone_rad, outer = placed.light->outer_cone_rad;
+  shared::SpotLight& spot = light.lamps[light.lamp_count++];
+  spot.position = Vec3f(from_origin_m);
+  spot.direction = Vec3f(placed.direction);
+  spot.intensity_cd = placed.light->color * placed.light->intensity;
+  spot.cos_inner = point ? -2.0f : static_cast<float>(std::cos(inner));
+  spot.cos_outer = point ? -3.0f : static_cast<float>(std::cos(std::max(outer, inner + 1e-3)));
+}
+
 }  // namespace
 
-Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& origin_m,
-                                       const scene::Exposure& exposure, bool has_emission,
-                                       double time_s) {
+static_assert(scene::kMaxLamps == shared::kMaxLamps);
+
+Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameState& state,
+                                       const Vec3& origin_m, const scene::Exposure& exposure,
+                                       bool has_emission) {
   shared::Lighting light{};
   light.origin_depth_m = static_cast<float>(-origin_m.y);
   light.sun_cosine = 1.0f;
@@ -104,25 +173,22 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& or
   if (scene.sun) {
     const SunLight sun = sun_light(*scene.sun, scene.water.has_value());
     light.terms |= shared::kLightSun;
-    light.to_sun = Vec3f(sun.to_sun);
+    light.to_sun = Vec3f(sun.beam.to_sun);
     light.surface_irradiance = Vec3f(static_cast<float>(sun.irradiance_lx));
     light.direct_share = static_cast<float>(sun.direct_share);
-    light.sun_cosine = static_cast<float>(sun.cosine);
+    light.sun_cosine = static_cast<float>(sun.beam.cosine);
   }
   if (scene.lamps.size() > shared::kMaxLamps)
     return bad_input("{}: {} lamps, at most {} are accepted", scene.path, scene.lamps.size(),
                      shared::kMaxLamps);
-  for (const scene::Lamp& lamp : scene.lamps) {
-    const Pose pose = scene.world_from(lamp.mount, time_s);
-    shared::SpotLight& spot = light.lamps[light.lamp_count++];
-    spot.position = Vec3f(pose.position_m - origin_m);
-    spot.direction = Vec3f(pose.rotation * Vec3(0, 0, -1));
-    spot.intensity_cd = lamp.color * static_cast<float>(lamp.intensity_cd);
-    spot.cos_inner = static_cast<float>(std::cos(lamp.inner_cone_rad));
-    spot.cos_outer =
-        static_cast<float>(std::cos(std::max(lamp.outer_cone_rad, lamp.inner_cone_rad + 1e-3)));
-  }
-  const double illuminance = scene_illuminance_lx(light, scene);
+  for (const scene::Lamp& lamp : scene.lamps)
+    add_lamp(light, lamp, scene.world_from(lamp.mount, state.time_s), origin_m);
+  for (const PlacedLight& placed : state.lights)
+    if (placed.light->kind == scene::Light::Kind::kDirectional)
+      add_model_sun(light, placed);
+    else if (light.lamp_count < shared::kMaxLamps)
+      add_model_lamp(light, placed, origin_m);
+  const double illuminance = scene_illuminance_lx(light, scene, state.lights);
   double scale = kPi / illuminance;
   if (exposure.fixed_ev) scale = std::exp2(-*exposure.fixed_ev);
   light.exposure = static_cast<float>(scale * std::exp2(exposure.compensation_ev));

@@ -15,9 +15,9 @@ inline constexpr double kClearDay_lx = 100000.0;
 inline constexpr double kSunShare = 0.85;
 
 // kBadInput for an unknown water type or too many lamps. exposure: of the camera that looks. Lamps
-// shine from where they are at time_s.
-Result<shared::Lighting> make_lighting(const scene::Scene& scene, const Vec3& origin_m,
-                                       const scene::Exposure& exposure, bool has_emission,
-                                       double time_s);
+// and models' lights shine from where they are in the state, at its time.
+Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameState& state,
+                                       const Vec3& origin_m, const scene::Exposure& exposure,
+                                       bool has_emission);
 
 }  // namespace neritic::render

@@ -41,7 +41,6 @@ void load_lights(Loading& loading) {
     light.color = glm::clamp(Vec3f(color[0], color[1], color[2]), 0.0f, 1.0f);
     // A lighthouse has about 1e6 candela; more than 1e9 is no lamp and would overflow later.
     light.intensity = std::clamp(field["intensity"].number_f(1.0f), 0.0f, 1e9f);
-    light.range_m = std::clamp(field["range"].number_f(0.0f), 0.0f, 1e9f);
     const std::string type = field["type"].text();
     if (type == "directional") {
       light.kind = Light::Kind::kDirectional;

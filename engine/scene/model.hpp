@@ -93,13 +93,14 @@ struct Texture {
   Sampler sampler;
 };
 
+// A file's `range` is a hint to save time; light here falls with the square of the distance for
+// ever.
 struct Light {
   enum class Kind { kDirectional, kPoint, kSpot };
   Kind kind = Kind::kPoint;
   std::string name;
   Vec3f color{1.0f};
   float intensity = 1.0f;  // candela (point, spot) or lux (directional)
-  float range_m = 0.0f;    // 0: no limit
   float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;
 };
 

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/core/check.hpp"
+#include "engine/scene/model_lights.hpp"
 #include "engine/scene/scene_copies.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_text.hpp"
@@ -132,6 +133,7 @@ Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& 
           draft.scene.notes.end())
         draft.scene.notes.push_back(note);
   draft.scene.models = std::move(loaded.models);
+  choose_model_lights(draft.scene);
   return std::move(draft.scene);
 }
 

@@ -78,6 +78,13 @@ struct Lamp {
   double inner_cone_rad = 0.3, outer_cone_rad = 0.6;
 };
 
+// A light that a model brings, shown by an object or one of its copies (see model_lights.hpp).
+struct ModelLight {
+  std::size_t object = 0;
+  int copy = -1;  // of Object::copies; -1: the object itself
+  int node = 0;   // of the object's model; it names the light
+};
+
 struct Exposure {
   // "auto": from the light that the water leaves at the camera's depth; else stops over that.
   double compensation_ev = 0.0;
@@ -129,6 +136,7 @@ struct Scene {
   std::optional<Sun> sun;
   std::optional<Water> water;
   std::vector<Lamp> lamps;
+  std::vector<ModelLight> model_lights;  // those that shine beside lamps and sun
   std::vector<Camera> cameras;
   std::vector<Sonar> sonars;
   std::vector<std::string> notes;  // what was ignored, once each
@@ -150,7 +158,8 @@ struct SceneOptions {
 // what was found, what is accepted (an unknown key with the nearest known one).
 Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& options = {});
 
-// A scene that shows one model: framed by a camera, lit by sun, no water. For `render model.glb`.
+// A scene that shows one model: framed by a camera, no water, lit by the model's own lights where
+// it brings some, else by a sun. For `render model.glb`.
 Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height);
 
 }  // namespace neritic::scene

@@ -1,8 +1,10 @@
-// The scene that shows one model: a camera that frames it, sun, no water. Pure; any thread.
+// The scene that shows one model: a camera that frames it, the model's own lights or a sun, no
+// water. Pure; any thread.
 #include <algorithm>
 #include <cmath>
 
 #include "engine/scene/animation.hpp"
+#include "engine/scene/model_lights.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace neritic::scene {
@@ -10,6 +12,8 @@ namespace {
 
 constexpr double kVerticalFov_rad = radians(40.0);
 constexpr double kMargin = 1.12;  // the model fills about nine tenths of the picture
+// Exposure is set for no less light than this: a candela at a kilometre.
+constexpr double kDarkest_lx = 1e-6;
 
 // What the camera must show. Nothing drawn, or bounds that are not numbers: a metre around the
 // origin.
@@ -74,9 +78,16 @@ Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height) {
 
   scene.models.push_back(std::make_shared<const Model>(std::move(model)));
   scene.objects.push_back(std::move(object));
+  choose_model_lights(scene);
+  if (scene.model_lights.empty()) {
+    scene.sun = Sun{radians(50.0), radians(190.0), 1.0};  // from behind the camera's left shoulder
+  } else {
+    // A white surface in the model's middle comes out white, whatever the size of the model.
+    const double light_lx =
+        model_light_lx(scene, centre, 0.5 * glm::distance(bounds.min, bounds.max));
+    camera.exposure.fixed_ev = -std::log2(kPi / std::max(light_lx, kDarkest_lx));
+  }
   scene.cameras.push_back(std::move(camera));
-  // From behind the camera's left shoulder.
-  scene.sun = Sun{radians(50.0), radians(190.0), 1.0};
   return scene;
 }
 

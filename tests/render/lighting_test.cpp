@@ -8,7 +8,7 @@ namespace neritic::render {
 namespace {
 
 shared::Lighting light_of(const scene::Scene& scene, bool has_emission = false) {
-  const auto light = make_lighting(scene, Vec3(0.0, -3.0, 0.0), {}, has_emission, 0.0);
+  const auto light = make_lighting(scene, {}, Vec3(0.0, -3.0, 0.0), {}, has_emission);
   EXPECT_TRUE(light.ok());
   return light.ok() ? *light : shared::Lighting{};
 }
@@ -39,7 +39,7 @@ TEST(Lighting, LampsAreCountedAndOneTooManyIsBadInput) {
     EXPECT_EQ(light_of(scene).terms, 0u);
   }
   scene.lamps.push_back({});
-  const auto light = make_lighting(scene, Vec3(0.0), {}, false, 0.0);
+  const auto light = make_lighting(scene, {}, Vec3(0.0), {}, false);
   ASSERT_FALSE(light.ok());
   EXPECT_EQ(light.error().code, ErrorCode::kBadInput);
 }

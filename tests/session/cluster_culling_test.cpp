@@ -60,8 +60,8 @@ class Studio {
     shared::Lighting lighting{};
     if (surface) {
       NERITIC_TRY_STATUS(copy("motion", g.motion, render::kMotionFormat));
-      NERITIC_TRY(lighting, render::make_lighting(scene_, views.origin_m(), {},
-                                                  gpu_scene_->has_emission(), 0.5));
+      NERITIC_TRY(lighting, render::make_lighting(scene_, state, views.origin_m(), {},
+                                                  gpu_scene_->has_emission()));
       NERITIC_TRY(auto hdr, renderer_->declare_shade(graph, "", g, views, lighting));
       NERITIC_TRY(hdr, renderer_->declare_forward(graph, "", hdr, g, *gpu_scene_, deformed, views,
                                                   draws, lighting));
