@@ -12,6 +12,7 @@
 #include <string>
 
 #include "engine/gpu/device.hpp"
+#include "tests/support/device_gate.hpp"
 #include "engine/gpu/frames.hpp"
 
 namespace neritic::test {
@@ -45,8 +46,7 @@ class GpuEnvironment : public ::testing::Environment {
 // May a test be skipped for this error? Only where nothing is there to test on, and none is
 // required.
 inline bool may_skip_without_device(const Error& error) {
-  const char* required = std::getenv("NERITIC_REQUIRE_DEVICE");
-  if (required && std::string(required) == "1") return false;
+  if (device_is_required()) return false;
   const bool named =
       std::getenv("NERITIC_TEST_DEVICE") != nullptr;  // a wrong name is no missing device
   return (error.code == ErrorCode::kNoDevice && !named) || !gpu::validation_layer_present();

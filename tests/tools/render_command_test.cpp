@@ -12,6 +12,7 @@
 #include "engine/core/npy.hpp"
 #include "engine/gpu/device.hpp"
 #include "engine/scene/image_file.hpp"
+#include "tests/support/device_gate.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic {
@@ -35,14 +36,6 @@ Outcome neritic(const std::string& arguments, const std::string& environment = "
 
 std::string scene(const std::string& name) {
   return (test::source_dir() / "assets/scenes" / name).string();
-}
-
-// Skips only where the error is a missing device, and none is required ($NERITIC_REQUIRE_DEVICE).
-bool no_device() {
-  const char* required = std::getenv("NERITIC_REQUIRE_DEVICE");
-  if (required && std::string(required) == "1") return false;
-  const auto devices = gpu::list_devices();
-  return !devices.ok() && devices.error().code == ErrorCode::kNoDevice;
 }
 
 TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
@@ -87,7 +80,7 @@ TEST(RenderCommand, WithoutADeviceOneLineNamesThePackage) {
 }
 
 TEST(RenderCommand, OneAndTwoThreadsOfTheDriverWriteTheSameBytes) {
-  if (no_device()) GTEST_SKIP() << "no Vulkan device";
+  if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
   const test::ScratchFolder folder;
   for (const char* threads : {"1", "2"}) {
     const Outcome outcome = neritic(
@@ -107,7 +100,7 @@ TEST(RenderCommand, OneAndTwoThreadsOfTheDriverWriteTheSameBytes) {
 }
 
 TEST(RenderCommand, WritesTheFileContractAndTheArraysAgreeWithEachOther) {
-  if (no_device()) GTEST_SKIP() << "no Vulkan device";
+  if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
   const test::ScratchFolder folder;
   const Outcome outcome = neritic("render " + scene("pool.toml") +
                                   " --size 101x57 --frames 2 --out " + (folder / "out").string());

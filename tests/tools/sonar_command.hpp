@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/npy.hpp"
-#include "engine/gpu/device.hpp"
+#include "tests/support/device_gate.hpp"
 #include "tools/neritic/commands.hpp"
 
 namespace neritic::test {
@@ -19,9 +19,9 @@ inline Status sonar_command(Words words) {
   return done.ok() ? Status() : Status(done.error());
 }
 
+// False only where tests may go without.
 inline bool have_device() {
-  const auto devices = gpu::list_devices();
-  return devices.ok() && !devices->empty();
+  return !may_skip_without_device();
 }
 
 inline std::vector<double> numbers_of(const std::filesystem::path& path) {

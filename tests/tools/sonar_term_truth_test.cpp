@@ -8,6 +8,7 @@
 #include "engine/core/files.hpp"
 #include "engine/gpu/device.hpp"
 #include "engine/scene/shapes.hpp"
+#include "tests/support/device_gate.hpp"
 #include "tests/support/support.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
 #include "tools/tradeoff/term_judges.hpp"
@@ -140,7 +141,7 @@ TEST(TermJudges, SpeckleMomentsOfAnExponentialAreRayleighs) {
 }
 
 TEST(TradeoffSonar, WritesAKindsKnobsTermsAndPicture) {
-  if (!gpu::Device::create({}).ok()) GTEST_SKIP() << "no Vulkan device";
+  if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
   SonarTradeoffOptions options;
   options.scene = test::source_dir() / "assets/scenes/harbour.toml";
   options.quick = true;

@@ -5,6 +5,7 @@
 
 #include "engine/gpu/device.hpp"
 #include "engine/scene/shapes.hpp"
+#include "tests/support/device_gate.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic::tools {
@@ -93,7 +94,7 @@ TEST(Knee, IsWhereTheCurveBends) {
 }
 
 TEST(TradeoffSonar, WritesTableCurveAndSummary) {
-  if (!gpu::Device::create({}).ok()) GTEST_SKIP() << "no Vulkan device";
+  if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
   SonarTradeoffOptions options;
   options.quick = true;
   std::uint64_t done = 0;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "engine/scene/image_file.hpp"
+#include "tests/support/device_gate.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic {
@@ -43,10 +44,6 @@ std::string pool() {
 bool has_program(const char* name) {
   return std::system(fmt::format("command -v {} > /dev/null", name).c_str()) == 0;
 }
-bool no_device(const Outcome& outcome) {
-  return outcome.err.find("no Vulkan") != std::string::npos ||
-         outcome.err.find("vulkan-validationlayers") != std::string::npos;
-}
 
 // Pixels of the picture that are not its corner's colour: more than a blank one has.
 std::size_t drawn_pixels(const ImageU8& image) {
@@ -64,7 +61,7 @@ TEST(Dive, WindowShowsFramesWithPanelsAndValidationSilent) {
                                fmt::format("'{}' --size 480x270 --frames 6 --validate "
                                            "--screenshot '{}'",
                                            pool(), (scratch / "last.png").string()));
-  if (no_device(outcome)) GTEST_SKIP() << outcome.err;
+  if (test::may_skip_without_device()) GTEST_SKIP() << outcome.err;
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const auto image = scene::read_image8(scratch / "last.png", 3);
@@ -81,7 +78,7 @@ TEST(Dive, HeadlessDrawsThatManyFramesAndSaysWhatTheyTook) {
            fmt::format("'{}' --headless --fast --panels --size 160x90 --frames 7 --validate "
                        "--screenshot '{}'",
                        pool(), (scratch / "last.png").string()));
-  if (no_device(outcome)) GTEST_SKIP() << outcome.err;
+  if (test::may_skip_without_device()) GTEST_SKIP() << outcome.err;
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("7 frames in"), std::string::npos) << outcome.out;
   for (const char* pass : {"camera gbuffer", "camera tonemap", "sonar gather", "overlay"})
@@ -99,7 +96,7 @@ TEST(Dive, AnimatedSceneLeavesValidationSilent) {
   const Outcome outcome = dive(
       scratch, "",
       fmt::format("'{}' --headless --fast --size 160x90 --frames 4 --validate", wreck.string()));
-  if (no_device(outcome)) GTEST_SKIP() << outcome.err;
+  if (test::may_skip_without_device()) GTEST_SKIP() << outcome.err;
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("deform"), std::string::npos) << outcome.out;
 }
@@ -114,7 +111,7 @@ TEST(Dive, SceneWithoutCameraOrSonarIsSeenAndPaysForNoSonar) {
            fmt::format("'{}' --headless --fast --size 160x90 --frames 3 "
                        "--screenshot '{}'",
                        (scratch / "ball.toml").string(), (scratch / "last.png").string()));
-  if (no_device(outcome)) GTEST_SKIP() << outcome.err;
+  if (test::may_skip_without_device()) GTEST_SKIP() << outcome.err;
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.out.find("sonar"), std::string::npos) << outcome.out;
   const auto image = scene::read_image8(scratch / "last.png", 3);
