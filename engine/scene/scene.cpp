@@ -49,7 +49,6 @@ Status number_instances(SceneDraft& draft) {
   return {};
 }
 
-void move_out(SceneDraft& draft, const Vec3& offset_m) {
 // What a vehicle is told in world coordinates.
 void move_out(Dynamics& dynamics, const Vec3& offset_m) {
   if (dynamics.tether_anchor_m) *dynamics.tether_anchor_m += offset_m;
@@ -66,9 +65,10 @@ void move_out(Dynamics& dynamics, const Vec3& offset_m) {
   }
 }
 
+void move_out(SceneDraft& draft, const Vec3& offset_m) {
   Scene& scene = draft.scene;
-  const auto moved = [&offset_m](Mount mount) {
   if (scene.current) scene.current->origin_m += offset_m;
+  const auto moved = [&offset_m](Mount mount) {
     if (mount.object >= 0) return mount;
     mount.pose.position_m += offset_m;
     if (mount.track)
@@ -77,8 +77,8 @@ void move_out(Dynamics& dynamics, const Vec3& offset_m) {
   };
   for (ObjectDraft& object : draft.objects) {
     object.object.mount = moved(object.object.mount);
-    // Into the copies, so that object_from_copy is all there is to a copy.
     if (object.object.dynamics) move_out(*object.object.dynamics, offset_m);
+    // Into the copies, so that object_from_copy is all there is to a copy.
     for (Mat4& copy : object.object.copies) copy = glm::scale(copy, object.object.scale);
     if (!object.object.copies.empty()) object.object.scale = Vec3(1.0);
     scene.objects.push_back(std::move(object.object));

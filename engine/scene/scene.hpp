@@ -135,6 +135,8 @@ struct Scene {
   std::map<std::uint16_t, std::string> class_names;
   std::optional<Sun> sun;
   std::optional<Water> water;
+  std::optional<Physics> physics;
+  std::optional<Current> current;
   std::vector<Lamp> lamps;
   std::vector<ModelLight> model_lights;  // those that shine beside lamps and sun
   std::vector<Camera> cameras;
@@ -143,8 +145,6 @@ struct Scene {
 
   // World_from_mount at a time, with all that carries it.
   Pose world_from(const Mount& mount, double time_s = 0.0) const;
-  std::optional<Physics> physics;
-  std::optional<Current> current;
   // World_from_model of one copy, the object's scale in it: copy < object.instance_count(). After
   // loading, scale is 1 wherever there are copies: theirs hold it.
   Mat4 world_from_copy(const Object& object, std::size_t copy, double time_s = 0.0) const;
