@@ -25,8 +25,8 @@ layout(set = 0, binding = kSonarBindCorrection, scalar) readonly buffer Correcti
 layout(set = 0, binding = kSonarBindTexture) uniform texture2D gamma_quantiles;
 layout(set = 0, binding = kSonarBindRecords, scalar) writeonly buffer Records { SonarRecord records[]; };
 
-// The largest power of one beam that the counts hold; a ghost's mirror may focus a little.
-const float kLargestPower = 8.0;
+// The largest power of one beam that 32 bits of counts hold. A ghost's may be above 1.
+const float kLargestPower = 15.0;
 
 // Heard over true range, of the table: linear in range and in the sine of the elevation.
 float correction_at(float range_m, float sine) {
@@ -39,34 +39,61 @@ float correction_at(float range_m, float sine) {
              part.y);
 }
 
-// A run of beams of one column that meet one scatterer in one range bin: its power is summed, then its
-// amplitude is added once. A scatterer is a cell of the world, so it is the same at every visit.
+// A run of beams of one column that meet one scatterer: its power is summed, then its amplitude is added
+// once, in the bin of its mean range. A scatterer is a cell of the world, so it is the same at every visit.
+// A cell is at most half a column and half a bin wide where it is heard: it is halved as often as that
+// takes. So no two columns and no two bins share one, and their fields are independent: whatever the taps of
+// pattern and pulse then add has the mean power that the smooth image has.
 struct Run {
   ivec3 cell;
-  uint bin;
+  uint halvings;
   float power;
+  float moment;  // sum of power times bin
 };
+
+uint halvings_at(float range_m) {
+  float widest = min(range_m * echo.cell_per_range, echo.cell_largest_m);
+  return uint(clamp(ceil(-log2(widest * echo.cells_per_m)), 0.0, 20.0));
+}
+
+ivec3 cell_at(vec3 point, uint halvings) {
+  return ivec3(floor((point * echo.cells_per_m + echo.cell_fraction) * float(1u << halvings)));
+}
 
 void flush(Run run, uint column) {
   if (!(run.power > 0.0)) return;
-  uvec4 bits = hash_of(uvec4(uvec3(run.cell) + echo.origin_cell, echo.seed));
+  uvec3 world_cell = uvec3(run.cell) + (echo.origin_cell << run.halvings);
+  uvec4 bits = hash_of(uvec4(world_cell, echo.seed + 0x9e3779b9u * run.halvings));
   float power = run.power;
-  vec3 center = (vec3(run.cell) + 0.5 - echo.cell_fraction) / echo.cells_per_m;
+  vec3 center = ((vec3(run.cell) + 0.5) / float(1u << run.halvings) - echo.cell_fraction) / echo.cells_per_m;
   if (kTextured != 0) {
     uvec3 patch_cell = uvec3(ivec3(floor(center * echo.patches_per_m + echo.patch_fraction))) + echo.origin_patch;
     uint entries = uint(textureSize(gamma_quantiles, 0).x);
     uint entry = hash_of(uvec4(patch_cell, echo.seed + 1u)).x % entries;
     power *= texelFetch(gamma_quantiles, ivec2(entry, 0), 0).r;
   }
-  vec2 z = sqrt(power) * complex_normal(bits.xy, fract(echo.turns_per_m * length(center)));
+  float path_m = length(center);
+  if (kGhost != 0) path_m = 0.5 * (path_m + length(center - echo.ghost_source));
+  vec2 z = sqrt(power) * complex_normal(bits.xy, fract(echo.turns_per_m * path_m));
   ivec2 counts = ivec2(round(clamp(z, vec2(-32.0), vec2(32.0)) * echo.sum_scale));
-  uint cell = 2 * (run.bin * c.n_azimuth + column);
+  uint bin = uint(clamp(run.moment / run.power, 0.0, float(c.n_range - 1)));
+  uint cell = 2 * (bin * c.n_azimuth + column);
   sums[cell] += uint(counts.x);  // two's complement: adds as signed numbers do
   sums[cell + 1] += uint(counts.y);
 }
 
-void add_power(uint cell, float power) {
-  uint counts = uint(power * echo.sum_scale + 0.5);
+void add_to_run(inout Run run, uint column, vec3 point, float bin, float power) {
+  uint halvings = halvings_at(length(point));
+  ivec3 cell = cell_at(point, halvings);
+  if (cell != run.cell || halvings != run.halvings) {
+    flush(run, column);
+    run = Run(cell, halvings, 0.0, 0.0);
+  }
+  run.power += power;
+  run.moment += power * bin;
+}
+
+void add_power(uint cell, uint counts) {
   if (kLanes == 1) {
     uint before = sums[2 * cell];
     sums[2 * cell] = before + counts;
@@ -83,17 +110,105 @@ uint power_key(float power, uint label) {
   return level << 16 | (65535u - label);
 }
 
+void add_key(uint cell, float power, uint label) {
+  if (kLabels == 0 || !(power > 0.0)) return;
+  uint key = power_key(power, label);
+  if (kLanes > 1) atomicMax(keys[cell], key);
+  else if (key > keys[cell]) keys[cell] = key;
+}
+
+// What the pattern lets through one way in a direction from the sonar; 0 beyond what the head gathers.
+float pattern_towards(vec3 direction) {
+  float azimuth = atan(dot(direction, echo.head_right), -dot(direction, echo.head_back));
+  float elevation = asin(clamp(dot(direction, echo.head_up), -1.0, 1.0));
+  // A full turn's columns are a ring: its last bearing may round over.
+  float column = (azimuth - echo.azimuth_min_rad) * echo.columns_per_rad;
+  float row = (elevation - echo.elevation_min_rad) * echo.rows_per_rad;
+  if (column < 0.0 || row < 0.0 || column > float(c.n_azimuth) || row >= float(c.n_elevation)) return 0.0;
+  // The eye's rows are the head's turned over, and so is the table.
+  ivec2 at = ivec2(min(uint(column), c.n_azimuth - 1), c.n_elevation - 1 - uint(row));
+  return kWeighted != 0 ? texelFetch(weights, at, 0).r : 1.0;
+}
+
 // What a mirror's path adds: back by the mirror, forth directly (and the other way round). The eye is the
-// sonar's mirror image. Returns the mean of both ways, 0 where there is no such path.
-float ghost_range(vec3 direction, float range_m, inout float power) {
-  vec3 hit = direction * range_m;
-  float above = dot(hit, echo.world_up) - echo.water_level_m;
+// sonar's mirror image. Returns the mean of both ways; 0 where there is no such path. The beam's solid
+// angle covers a patch of area range^2 / cos(in), which Lambert's law sends on with cos(in) cos(out), so
+// cos(out) alone is left. Each leg passes the pattern once.
+float ghost_range(vec3 direction, uint row, BeamHit hit, out float power) {
+  power = 0.0;
+  vec3 point = direction * hit.range_m;
+  float above = dot(point, echo.world_up) - echo.water_level_m;
   if (above * echo.water_sign > 0.0) return 0.0;  // beyond the mirror
-  float direct_m = length(hit - echo.ghost_source);
-  float mean_m = 0.5 * (direct_m + range_m);
-  float spread = mean_m / max(direct_m, 1e-3 * mean_m);
-  power *= echo.ghost_weight * spread * spread;  // the receiver's gain counts 1 / mean^2 once
+  vec3 leg = point - echo.ghost_source;
+  float direct_m = length(leg);
+  vec3 n = normal_of(hit.at);
+  if (kFacing == 0 && dot(n, direction) > 0.0) n = -n;
+  float cosine = -dot(n, leg) / direct_m;
+  if (!(hit.strength > 0.0 && cosine > 0.0)) return 0.0;  // turned away from the mirror or from the sonar
+  float mean_m = 0.5 * (direct_m + hit.range_m);
+  power = min(cosine, 1.0) * echo.ghost_weight * pattern_towards(leg / direct_m);
+  if (echo.solid_angle != 0) power /= texelFetch(rows, ivec2(row, 0), 0).y;
+  float spread = 1.0;
+  if (echo.ghost_spreading == kSonarGhostSpreading) spread = mean_m / max(direct_m, 1e-3 * mean_m);
+  if (echo.ghost_spreading == kSonarGhostNoSpreading) spread = hit.range_m / mean_m;
+  power *= spread * spread;
   return mean_m;
+}
+
+// One row's echo: its power by bins, heard over true range, and where its ends lie.
+struct RowEcho {
+  float power;
+  float bin;      // of its centre
+  vec2 ends_m;    // heard
+  float range_m;  // heard, of its centre
+  uint label;
+};
+
+// The surface's point at a bin, on the line between the row's ends.
+vec3 point_at(SonarColumn s, uint row, BeamHit hit, RowEcho e, float bin_range_m) {
+  vec3 near = beam_towards(s, hit.ends_tan.x) * hit.ends_m.x, far = beam_towards(s, hit.ends_tan.y) * hit.ends_m.y;
+  float span = e.ends_m.y - e.ends_m.x;
+  return mix(near, far, span > 0.0 ? clamp((bin_range_m - e.ends_m.x) / span, 0.0, 1.0) : 0.5);
+}
+
+// Shares a row's power out over the bins that its height spans. Parts are rounded at the bins' edges, so
+// that their sum is the whole.
+void share_out(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, inout Run run) {
+  vec2 ends = shared_ends(e.ends_m, e.range_m);
+  int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
+  int first = max(low, 0), last = min(high, int(c.n_range) - 1);
+  uint counts = uint(e.power * echo.sum_scale + 0.5);
+  float below = first > low ? part_below(ends, range_at(first)) : 0.0;
+  uint before = uint(below * float(counts) + 0.5);
+  for (int bin = first; bin <= last; ++bin) {
+    float upto = bin == high ? 1.0 : part_below(ends, range_at(bin + 1));
+    float power = e.power * max(upto - below, 0.0);
+    uint cell = uint(bin) * c.n_azimuth + column;
+    if (kCoherent != 0) {
+      float middle_m = 0.5 * (max(range_at(bin), ends.x) + min(range_at(bin + 1), ends.y));
+      if (power > 0.0) add_to_run(run, column, point_at(s, row, hit, e, middle_m), bin_at(middle_m), power);
+    } else {
+      uint until = bin == high ? counts : max(before, min(counts, uint(upto * float(counts) + 0.5)));
+      add_power(cell, until - before);
+      before = until;
+    }
+    add_key(cell, power, e.label);
+    below = upto;
+  }
+}
+
+uint end_of(float range_m) { return uint(clamp(bin_at(range_m), 0.0, float(kSonarFarthestEnd - 1))); }
+
+// A beam that ended on something is told where, heard or not, so that shadows are known.
+void tell(uint column, uint row, RowEcho e, bool heard, uint label) {
+  SonarRecord record = SonarRecord(kSonarNoReturn, 0, label, 0);
+  if (e.range_m > 0.0) {
+    uint near = end_of(e.ends_m.x), far = end_of(e.ends_m.y);
+    record.bin = kFootprint == kSonarFootprintShared && heard ? kSonarSharedReturn : end_of(e.range_m);
+    record.counts = heard ? uint(e.power * kSonarRecordScale + 0.5) : 0u;
+    record.ends = near | far << 16;
+  }
+  records[row * c.n_azimuth + column] = record;
 }
 
 void main() {
@@ -101,54 +216,40 @@ void main() {
   if (column >= c.n_azimuth) return;
   SonarColumn s = columns[column];
   if (s.pixel < 0 && kRecords == 0) return;
-  Run run = Run(ivec3(0), 0, 0.0);
+  Run run = Run(ivec3(0), 0, 0.0, 0.0);
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
   for (uint row = first; row < c.n_elevation; row += kLanes) {
-    BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0);
+    BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
     if (s.pixel >= 0) hit = beam_hit(s, row);
     float power = hit.strength;
-    if (kWeighted != 0) power *= texelFetch(weights, ivec2(column, row), 0).r;
     uvec2 label = uvec2(0);
-    if (kReflect != 0 || kLabels != 0 || kRecords != 0) label = texelFetch(label_image, hit.at, 0).xy;
-    if (kReflect != 0) power *= label.y < c.reflectivities ? reflectivity[label.y] : 1.0;
     float range_m = hit.range_m;
     vec3 direction = vec3(0.0);
     if (kCorrected != 0 || kGhost != 0 || kMoving != 0 || kCoherent != 0) direction = beam_direction(s, row);
-    if (kGhost != 0) {
-      range_m = ghost_range(direction, range_m, power);
-      label.x = kSonarGhostClass;
-    }
+    if (kGhost != 0) range_m = range_m > 0.0 ? ghost_range(direction, row, hit, power) : 0.0;
+    if (kWeighted != 0) power *= texelFetch(weights, ivec2(column, row), 0).r;
+    if (kReflect != 0 || kLabels != 0 || kRecords != 0) label = texelFetch(label_image, hit.at, 0).xy;
+    if (kReflect != 0) power *= label.y < c.reflectivities ? reflectivity[label.y] : 1.0;
+    if (kGhost != 0) label.x = kSonarGhostClass;
     float heard_m = range_m;
     if (kCorrected != 0) heard_m *= correction_at(range_m, dot(direction, echo.world_up));
     if (kMoving != 0) heard_m += range_m * dot(echo.motion, direction) + dot(echo.doppler, direction);
-    power = min(power, kLargestPower);
-    float bin = (heard_m - c.range_min_m) * c.bins_per_m + c.edge_bias_bins;
-    bool heard = range_m > 0.0 && power > 0.0 && bin >= 0.0 && bin < float(c.n_range);
-    if (kRecords != 0) {
-      // A beam that ended on something is told where, heard or not, so that shadows are known.
-      bool ended = range_m > 0.0 && bin < float(c.n_range);
-      records[row * c.n_azimuth + column] =
-          SonarRecord(ended ? uint(max(bin, 0.0)) : kSonarNoReturn,
-                      heard ? uint(power * kSonarRecordScale + 0.5) : 0u, label.x | label.y << 16);
-    }
+    RowEcho e = RowEcho(min(power, kLargestPower), bin_at(heard_m), vec2(heard_m), heard_m, label.x);
+    if (kFootprint != 0 && range_m > 0.0) e.ends_m = hit.ends_m * (heard_m / hit.range_m);
+    bool echoes = range_m > 0.0 && e.power > 0.0;
+    bool heard = echoes && e.bin >= 0.0 && e.bin < float(c.n_range);
+    if (kFootprint == kSonarFootprintShared)
+      heard = echoes && bin_at(e.ends_m.y) >= 0.0 && bin_at(e.ends_m.x) < float(c.n_range);
+    if (kRecords != 0) tell(column, row, e, heard, label.x | label.y << 16);
     if (!heard) continue;
-    uint range_bin = uint(bin);
-    uint cell = range_bin * c.n_azimuth + column;
-    if (kCoherent != 0) {
-      ivec3 scatterer = ivec3(floor(direction * (hit.range_m * echo.cells_per_m) + echo.cell_fraction));
-      if (scatterer != run.cell || range_bin != run.bin) {
-        flush(run, column);
-        run = Run(scatterer, range_bin, 0.0);
-      }
-      run.power += power;
-    } else {
-      add_power(cell, power);
+    if (kFootprint == kSonarFootprintShared) {
+      share_out(s, column, row, hit, e, run);
+      continue;
     }
-    if (kLabels != 0) {
-      uint key = power_key(power, label.x);
-      if (kLanes > 1) atomicMax(keys[cell], key);
-      else if (key > keys[cell]) keys[cell] = key;
-    }
+    uint cell = uint(e.bin) * c.n_azimuth + column;
+    if (kCoherent != 0) add_to_run(run, column, direction * hit.range_m, e.bin, e.power);
+    else add_power(cell, uint(e.power * echo.sum_scale + 0.5));
+    add_key(cell, e.power, e.label);
   }
   if (kCoherent != 0) flush(run, column);
 }

@@ -28,6 +28,7 @@ void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   if (at.x >= int(c.out_columns) || at.y >= int(c.rows)) return;
   vec2 sum = vec2(0.0);
+  float part = 0.0;
   if (kAxis == 1) {
     int low = max(0, -(at.y + c.first)), high = min(int(c.taps), int(c.rows) - at.y - c.first);
     for (int k = low; k < high; ++k)
@@ -35,7 +36,8 @@ void main() {
   } else {
     int start = at.x * int(c.stride) + c.first;
     float turned = kShift != 0 ? c.first_shift + c.shift * float(at.y) : 0.0;
-    float whole = floor(turned), part = turned - whole;
+    float whole = floor(turned);
+    part = turned - whole;
     start += int(whole);
     for (int k = 0; k < int(c.taps); ++k) {
       vec2 value = column_at(start + k, at.y);
@@ -43,5 +45,8 @@ void main() {
       sum += texelFetch(taps, ivec2(k, 0), 0).r * value;
     }
   }
+  // Neighbouring columns are independent: amplitudes mixed so have less power on average than either.
+  if (kShift != 0 && kAxis == 0 && kCoherent != 0)
+    sum *= inversesqrt(1.0 - 2.0 * part * (1.0 - part) * (1.0 - c.tap_correlation));
   imageStore(result, ivec3(at, 0), vec4(sum, 0.0, 0.0));
 }

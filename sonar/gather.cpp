@@ -1,11 +1,9 @@
 #include "sonar/gather.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "engine/core/check.hpp"
 #include "engine/gpu/device.hpp"
-#include "shaders.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -33,24 +31,6 @@ double scale_for(const GatherOptions& options, std::uint32_t n_elevation) {
   return options.echo->coherent ? amplitude_scale(n_elevation) : double(shared::kSonarRecordScale);
 }
 
-constexpr std::array<gpu::BindingDesc, 14> kBindings{
-    {{shared::kSonarBindColumns, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindRows, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
-     {shared::kSonarBindDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
-     {shared::kSonarBindNormal, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
-     {shared::kSonarBindLabel, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
-     {shared::kSonarBindReflectivity, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindSums, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindKeys, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindStamps, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     // Of a gather with terms only.
-     {shared::kSonarBindEcho, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-     {shared::kSonarBindWeights, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
-     {shared::kSonarBindCorrection, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindTexture, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
-     {shared::kSonarBindRecords, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1}}};
-constexpr std::size_t kPlainBindings = 9;
-
 }  // namespace
 
 const char* name_of(Gather gather) {
@@ -71,6 +51,27 @@ Result<Gather> gather_of(const std::string& name) {
   return bad_input("gather: '{}' found, nearest, plane or published is accepted", name);
 }
 
+Status SonarGather::check(const gpu::Device& device) const {
+  const VkPhysicalDeviceLimits& limits = device.limits();
+  if (options_.gather == Gather::kPublished && options_.echo)
+    return bad_input(
+        "gather published: it is the plain cosine; with terms, plane or nearest is accepted");
+  if (sums_bytes() > limits.maxStorageBufferRange)
+    return failure(ErrorCode::kUnsupported,
+                   "sonar image of {} x {} bins: {} bytes, the device allows {}", grid_.bins.range,
+                   grid_.bins.azimuth, sums_bytes(), limits.maxStorageBufferRange);
+  if (options_.echo && options_.echo->records && records_bytes() > limits.maxStorageBufferRange)
+    return failure(ErrorCode::kUnsupported,
+                   "sonar labels.energy of {} columns x {} bins of elevation: {} bytes of records, "
+                   "the device allows {}",
+                   grid_.bins.azimuth, grid_.bins.elevation, records_bytes(),
+                   limits.maxStorageBufferRange);
+  if (grid_.bins.elevation > limits.maxImageDimension2D)
+    return failure(ErrorCode::kUnsupported, "sonar of {} bins of elevation: the device allows {}",
+                   grid_.bins.elevation, limits.maxImageDimension2D);
+  return {};
+}
+
 Result<SonarGather> SonarGather::create(gpu::Device& device, const BeamGrid& grid,
                                         std::vector<Sector> sectors, const GBufferLayout& layout,
                                         const GatherOptions& options) {
@@ -81,91 +82,9 @@ Result<SonarGather> SonarGather::create(gpu::Device& device, const BeamGrid& gri
   made.layout_ = layout;
   made.options_ = options;
   made.fixed_scale_ = scale_for(options, grid.bins.elevation);
-  const VkPhysicalDeviceLimits& limits = device.limits();
-  if (made.sums_bytes() > limits.maxStorageBufferRange)
-    return failure(ErrorCode::kUnsupported,
-                   "sonar image of {} x {} bins: {} bytes, the device allows {}", grid.bins.range,
-                   grid.bins.azimuth, made.sums_bytes(), limits.maxStorageBufferRange);
-  if (grid.bins.elevation > limits.maxImageDimension2D)
-    return failure(ErrorCode::kUnsupported, "sonar of {} bins of elevation: the device allows {}",
-                   grid.bins.elevation, limits.maxImageDimension2D);
-
-  const EchoOptions* echo = made.options_.echo ? &*made.options_.echo : nullptr;
-  const bool published = options.gather == Gather::kPublished;
-  if (published && echo)
-    return bad_input(
-        "gather published: it is the plain cosine; with terms, plane or nearest is accepted");
-  // A processor runs a workgroup on one core, eight columns to a vector, each lane owning its
-  // column: no atomics. Graphics hardware wants many threads: a workgroup a column, its rows shared
-  // out. Runs of beams that meet one scatterer want their column's rows in order.
-  const bool own_columns = published || (echo && echo->coherent) ||
-                           !options.atomics.value_or(device.info().kind != "CPU");
-  const std::uint32_t columns = own_columns ? 8 : 1, lanes = own_columns ? 1 : 64;
-  made.groups_ = (grid.bins.azimuth + columns - 1) / columns;
-
-  gpu::ComputePipelineDesc desc;
-  desc.name = std::string(echo ? "sonar echo " : "sonar gather ") + name_of(options.gather);
-  desc.code = echo ? shaders::kSonarEchoComp
-                   : (published ? shaders::kSonarPublishedComp : shaders::kSonarGatherComp);
-  desc.layout.bindings.assign(kBindings.begin(),
-                              echo ? kBindings.end() : kBindings.begin() + kPlainBindings);
-  desc.layout.push_constant_bytes = sizeof(shared::SonarPush);
-  desc.constants = {{shared::kSonarSpecColumns, columns},
-                    {shared::kSonarSpecLanes, lanes},
-                    {shared::kSonarSpecPlane, options.gather == Gather::kPlane},
-                    {shared::kSonarSpecReversedZ, layout.reversed_z},
-                    {shared::kSonarSpecOctahedral, layout.octahedral},
-                    {shared::kSonarSpecFacing, layout.normals_face_sensor},
-                    {shared::kSonarSpecReflect, options.reflectivity},
-                    {shared::kSonarSpecLabels, options.labels}};
-  if (echo)
-    for (const auto& [constant, on] : std::initializer_list<std::pair<std::uint32_t, bool>>{
-             {shared::kSonarSpecCoherent, echo->coherent},
-             {shared::kSonarSpecWeighted, !echo->weights.empty()},
-             {shared::kSonarSpecCorrected, echo->corrected},
-             {shared::kSonarSpecTextured, !echo->gamma_quantiles.empty()},
-             {shared::kSonarSpecRecords, echo->records},
-             {shared::kSonarSpecGhost, echo->ghost},
-             {shared::kSonarSpecMoving, echo->moving}})
-      desc.constants.push_back({constant, on});
-  NERITIC_TRY(made.pipeline_, gpu::Pipeline::create(device, desc));
-
-  const auto texels = [&](const char* what, VkFormat format, std::uint32_t width, bool array,
-                          std::span<const std::byte> bytes,
-                          std::uint32_t height = 1) -> Result<gpu::Image> {
-    NERITIC_TRY(gpu::Image image,
-                gpu::Image::create(
-                    device, {.name = what,
-                             .format = format,
-                             .width = width,
-                             .height = height,
-                             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                             .array_view = array}));
-    NERITIC_TRY_STATUS(gpu::upload_image(device, image, bytes));
-    return image;
-  };
-  const auto rows = row_table(grid);
-  NERITIC_TRY(made.rows_, texels("sonar rows", VK_FORMAT_R32G32B32A32_SFLOAT, grid.bins.elevation,
-                                 false, std::as_bytes(std::span(rows))));
-  if (echo && !echo->weights.empty()) {
-    NERITIC_CHECK(echo->weights.size() == std::size_t{grid.bins.azimuth} * grid.bins.elevation,
-                  "a weight a beam is needed");
-    NERITIC_TRY(made.weights_,
-                texels("sonar weights", VK_FORMAT_R32_SFLOAT, grid.bins.azimuth, false,
-                       std::as_bytes(std::span(echo->weights)), grid.bins.elevation));
-  }
-  if (echo && !echo->gamma_quantiles.empty()) {
-    NERITIC_TRY(made.gamma_quantiles_,
-                texels("sonar gamma texture", VK_FORMAT_R32_SFLOAT,
-                       static_cast<std::uint32_t>(echo->gamma_quantiles.size()), false,
-                       std::as_bytes(std::span(echo->gamma_quantiles))));
-  }
-  // What is bound where a scene has no labels or no reflectivities.
-  const std::array<std::byte, 4> zero{};
-  NERITIC_TRY(made.no_labels_, texels("sonar no labels", VK_FORMAT_R16G16_UINT, 1, true, zero));
-  NERITIC_TRY(made.no_buffer_,
-              gpu::Buffer::create(device, {.name = "sonar no buffer",
-                                           .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
+  NERITIC_TRY_STATUS(made.check(device));
+  NERITIC_TRY_STATUS(made.make_pipeline(device));
+  NERITIC_TRY_STATUS(made.make_tables(device));
   return made;
 }
 

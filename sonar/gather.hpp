@@ -114,6 +114,9 @@ class SonarGather {
  private:
   struct Pass;
   SonarGather() = default;
+  Status check(const gpu::Device& device) const;
+  Status make_pipeline(gpu::Device& device);
+  Status make_tables(gpu::Device& device);
   void record(const Pass& pass, graph::PassContext& context) const;
 
   BeamGrid grid_;
@@ -126,6 +129,13 @@ class SonarGather {
   gpu::Image rows_, no_labels_, weights_, gamma_quantiles_;
   gpu::Buffer no_buffer_;
 };
+
+// What a gather does with the ranges that a row's height spans (kSonarFootprint...): it shares
+// counts out over them where a row may be wider than a range bin (its arc at the farthest range),
+// so that a surface at grazing is no comb of single bins; where rows are finer each has its
+// centre's bin and the gather pays nothing. Records of beams are told the span either way. Of the
+// plane gather only: the others do not know the surface.
+std::uint32_t footprint_of(const BeamGrid& grid, const GatherOptions& options);
 
 // The tables of the pass, for tests. Columns depend on where the normals' axes are.
 std::vector<shared::SonarColumn> column_table(const BeamGrid& grid, std::span<const Sector> sectors,

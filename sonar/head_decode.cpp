@@ -26,7 +26,8 @@ std::vector<std::uint16_t> beam_labels(const Head& head, std::span<const std::ui
 LabelImage beam_energies(const Head& head,
                          const std::vector<std::span<const shared::SonarRecord>>& layers) {
   static_assert(sizeof(EnergyRecord) == sizeof(shared::SonarRecord) &&
-                offsetof(EnergyRecord, class_id) == offsetof(shared::SonarRecord, label));
+                offsetof(EnergyRecord, class_id) == offsetof(shared::SonarRecord, label) &&
+                offsetof(EnergyRecord, nearest) == offsetof(shared::SonarRecord, ends));
   const std::size_t columns = head.samples.bins.azimuth, rows = head.samples.bins.elevation;
   const std::size_t own = std::size_t{head.beams.bins.azimuth} * head.samples_per_beam;
   std::vector<EnergyRecord> records(layers.size() * rows * own);

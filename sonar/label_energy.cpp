@@ -22,40 +22,85 @@ std::uint32_t key_of(const EnergyRecord& r) {
 // read once and the sums stay in cache.
 class BeamBlock {
  public:
-  BeamBlock(std::uint32_t n_range, std::uint32_t beams)
-      : n_range_(n_range), cells_(std::size_t{n_range} * beams), nearest_(beams) {}
+  BeamBlock(std::uint32_t n_range, std::uint32_t beams, std::uint32_t samples)
+      : n_range_(n_range),
+        samples_(samples),
+        cells_(std::size_t{n_range} * beams),
+        hidden_((std::size_t{n_range} + 1) * beams),
+        below_(std::size_t{beams} * samples) {}
 
   void clear() {
     std::fill(cells_.begin(), cells_.end(), Heard{});
-    std::fill(nearest_.begin(), nearest_.end(), n_range_);
+    std::fill(hidden_.begin(), hidden_.end(), 0);
+    std::fill(below_.begin(), below_.end(), Span{});
     more_.clear();
   }
 
-  void add(std::uint32_t beam, const EnergyRecord& r) {
-    if (r.bin >= n_range_) return;
-    if (r.class_id != kGhost) nearest_[beam] = std::min(nearest_[beam], r.bin);
+  // The next row's record of a column.
+  void add(std::uint32_t beam, std::uint32_t sample, const EnergyRecord& r) {
+    if (r.class_id != kGhost) hide_between(beam, below_[beam * samples_ + sample], r);
     if (r.counts == 0) return;
-    Heard& first = cells_[std::size_t{beam} * n_range_ + r.bin];
-    const std::uint32_t key = key_of(r);
-    if (first.sum == 0) first.key = key;
-    if (first.key == key)
-      first.sum += r.counts;
-    else
-      add_to_chain(first, key, r.counts);
+    if (r.bin != kShared) {
+      if (r.bin < n_range_) hear(beam, r.bin, key_of(r), r.counts);
+      return;
+    }
+    const std::uint32_t bins = r.farthest - r.nearest + 1u,
+                        last = std::min<std::uint32_t>(r.farthest, n_range_ - 1);
+    for (std::uint32_t bin = r.nearest; bin <= last; ++bin)
+      hear(beam, bin, key_of(r), std::max(r.counts / bins, 1u));
   }
 
   // Writes the block's columns, from_column on, of the image.
   void resolve(std::uint32_t beams, std::uint32_t from_column, LabelImage& out) const {
+    std::vector<std::int32_t> hidden(beams);
     for (std::uint32_t row = 0; row < n_range_; ++row)
-      for (std::uint32_t beam = 0; beam < beams; ++beam)
-        resolve_bin(beam, row, std::size_t{row} * out.n_beams + from_column + beam, out);
+      for (std::uint32_t beam = 0; beam < beams; ++beam) {
+        hidden[beam] += hidden_[std::size_t{beam} * (n_range_ + 1) + row];
+        resolve_bin(beam, row, hidden[beam], std::size_t{row} * out.n_beams + from_column + beam,
+                    out);
+      }
   }
 
  private:
-  void resolve_bin(std::uint32_t beam, std::uint32_t row, std::size_t at, LabelImage& out) const {
+  // Rows that a ray spans; none: it ended on nothing.
+  struct Span {
+    bool ended = false;
+    int nearest = 0, farthest = 0;
+  };
+
+  void hide_between(std::uint32_t beam, Span& below, const EnergyRecord& r) {
+    const Span here{r.bin != kNoReturn, r.nearest, r.farthest};
+    if (here.ended && below.ended) {
+      const Span& near = here.nearest < below.nearest ? here : below;
+      const Span& far = &near == &here ? below : here;
+      const int spans = near.farthest - near.nearest + far.farthest - far.nearest;
+      const int from = near.farthest + 1, bins = static_cast<int>(n_range_);
+      if (4 * (far.nearest - from) > std::max(4, spans) && from < bins) {
+        std::int32_t* hidden = &hidden_[std::size_t{beam} * (n_range_ + 1)];
+        ++hidden[from];
+        --hidden[std::min(far.nearest, bins)];
+      }
+    }
+    below = here;
+  }
+
+  void hear(std::uint32_t beam, std::uint32_t row, std::uint32_t key, std::uint32_t counts) {
+    Heard& first = cells_[std::size_t{beam} * n_range_ + row];
+    if (first.sum == 0) first.key = key;
+    if (first.key == key)
+      first.sum += counts;
+    else
+      add_to_chain(first, key, counts);
+  }
+
+  // hidden: columns of the beam that something nearer hides the bin from.
+  void resolve_bin(std::uint32_t beam, std::uint32_t row, std::int32_t hidden, std::size_t at,
+                   LabelImage& out) const {
     const Heard& first = cells_[std::size_t{beam} * n_range_ + row];
     if (first.sum == 0) {
-      if (row > nearest_[beam]) out.classes[at] = kShadow;
+      if (hidden == 0) return;
+      out.classes[at] = kShadow;
+      out.fraction[at] = std::min(1.0f, static_cast<float>(hidden) / static_cast<float>(samples_));
       return;
     }
     Heard most = first;
@@ -82,10 +127,11 @@ class BeamBlock {
     first.next = static_cast<std::uint32_t>(more_.size() - 1);
   }
 
-  std::uint32_t n_range_;
-  std::vector<Heard> cells_;            // [beams][n_range]
-  std::vector<std::uint32_t> nearest_;  // row of each beam's first return; n_range: none
-  std::vector<Heard> more_;             // the rest of the chains
+  std::uint32_t n_range_, samples_;
+  std::vector<Heard> cells_;          // [beams][n_range]
+  std::vector<std::int32_t> hidden_;  // [beams][n_range + 1]: what each bin has more than the last
+  std::vector<Span> below_;           // the last row's, by column
+  std::vector<Heard> more_;           // the rest of the chains
 };
 
 }  // namespace
@@ -100,14 +146,14 @@ LabelImage label_by_energy(std::span<const EnergyRecord> records, std::uint32_t 
   LabelImage out{n_range, n_beams, std::vector<std::uint16_t>(cells, kWater),
                  std::vector<std::uint16_t>(cells), std::vector<float>(cells)};
   constexpr std::uint32_t kBeams = 8;
-  BeamBlock block(n_range, std::min(kBeams, n_beams));
+  BeamBlock block(n_range, std::min(kBeams, n_beams), samples_per_beam);
   for (std::uint32_t from = 0; from < n_beams; from += kBeams) {
     const std::uint32_t beams = std::min(kBeams, n_beams - from);
     block.clear();
     for (std::size_t row = 0; row < rows; ++row) {
       const EnergyRecord* r = &records[row * columns + std::size_t{from} * samples_per_beam];
       for (std::uint32_t beam = 0; beam < beams; ++beam)
-        for (std::uint32_t k = 0; k < samples_per_beam; ++k) block.add(beam, *r++);
+        for (std::uint32_t k = 0; k < samples_per_beam; ++k) block.add(beam, k, *r++);
     }
     block.resolve(beams, from, out);
   }

@@ -1,6 +1,6 @@
 // Labels by energy: for every bin of a ping the class and instance that gave most of its energy,
-// the part that they gave, and what only shows by its absence: shadow. All sums are exact integers:
-// the same records give the same labels in any order of rays. Pure functions; any thread.
+// the part that they gave, and what only shows by its absence: shadow. All sums are exact integers.
+// Pure functions; any thread.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,20 @@ namespace neritic::sonar {
 
 inline constexpr std::uint16_t kWater = 0;
 inline constexpr std::uint16_t kGhost = 65533;   // a return that came by way of a mirror
-inline constexpr std::uint16_t kShadow = 65534;  // behind something nearer, and silent
+inline constexpr std::uint16_t kShadow = 65534;  // hidden by something nearer, and silent
 
-// What one ray brought. bin: its range row; kNoReturn where it hit nothing; any other bin beyond
-// the image's last is a surface farther off, which neither sounds nor casts a shadow here.
-inline constexpr std::uint32_t kNoReturn = 0xffffffff;
+// What one ray brought. bin: the range row that its energy is in; kNoReturn where it hit nothing,
+// kShared where its energy is shared evenly over the rows nearest to farthest; any other beyond the
+// image's last is a surface farther off, which does not sound here. nearest, farthest: the rows
+// that the ray's height spans on its surface, whether it sounds or not.
+inline constexpr std::uint32_t kNoReturn = 0xffffffff, kShared = 0xfffffffe;
 struct EnergyRecord {
   std::uint32_t bin;
   std::uint32_t counts;  // energy in fixed point; 0: the ray ended there without an echo
   std::uint16_t class_id, instance;
+  std::uint16_t nearest, farthest;
 };
-static_assert(sizeof(EnergyRecord) == 12 &&
+static_assert(sizeof(EnergyRecord) == 16 &&
               std::is_trivial_v<EnergyRecord>);  // as the GPU writes it
 
 struct LabelImage {
@@ -30,13 +33,20 @@ struct LabelImage {
   // [n_range][n_beams], row 0 nearest, column 0 full port.
   std::vector<std::uint16_t> classes;
   std::vector<std::uint16_t> instances;
-  std::vector<float> fraction;  // of the bin's energy, above 0 to 1; 0 in water and shadow
+  // Of the bin's energy, above 0 to 1; in shadow the part of the beam's columns that are hidden; 0
+  // in water.
+  std::vector<float> fraction;
 };
 
-// records: [n_elevation][n_columns]; n_columns = n_beams * samples_per_beam, the samples of a beam
-// side by side; n_elevation is what the sizes leave (CHECKed to divide evenly). Rows may be ghosts'
-// as well. Ties go to the smaller class, then instance. A bin without energy is kShadow where some
-// ray of its beam ended nearer (ghosts aside: they are no surface), else kWater.
+// records: [n_elevation][n_columns], rows from one edge of the aperture to the other; n_columns =
+// n_beams * samples_per_beam, the samples of a beam side by side; n_elevation is what the sizes
+// leave (CHECKed to divide evenly). Further rows may be ghosts'. Ties go to the smaller class, then
+// instance.
+//
+// Shadow: two neighbouring rows of a column that end on surfaces with a jump of range between what
+// they span hide what lies between, on the farther surface's continuation: a silent bin there is
+// kShadow. Where a neighbour ends on nothing, nothing is known to be hidden. A jump is one of more
+// than a bin and a quarter of both rows' spans: less is curvature.
 // Cost: one pass over the records; a bin that hears k different (class, instance) compares k keys.
 LabelImage label_by_energy(std::span<const EnergyRecord> records, std::uint32_t n_range,
                            std::uint32_t n_beams, std::uint32_t samples_per_beam = 1);

@@ -84,6 +84,12 @@ void add_speckle(Ping& ping, const scene::Sonar& sonar, const Head& head, const 
                    ping.echo.cells_per_m);
   place_in_lattice(eye_m, speckle.texture_m, ping.echo.patch_fraction, ping.echo.origin_patch,
                    ping.echo.patches_per_m);
+  // Half a column and half a bin: no two of either share a cell.
+  const Limits& l = head.samples.limits;
+  const double steepest = std::max(std::abs(l.elevation_min_rad), std::abs(l.elevation_max_rad));
+  ping.echo.cell_per_range =
+      static_cast<float>(0.5 * head.samples.azimuth_step_rad() * std::cos(steepest));
+  ping.echo.cell_largest_m = static_cast<float>(0.5 * head.samples.range_step_m());
   ping.echo.turns_per_m = static_cast<float>(2.0 * sonar.terms.frequency_hz / ping.sound_speed_m_s);
   ping.echo.seed = static_cast<std::uint32_t>(seed ^ (seed >> 32));
 }
@@ -109,12 +115,35 @@ void add_motion(Ping& ping, const scene::Sonar& sonar, const Head& head, const P
                                                sonar.terms.range_spread->bandwidth_hz));
 }
 
-void add_mirror(Ping& ping, const Mirror& mirror, const PingState& state, const Vec3& eye_m) {
-  ping.echo.ghost_source = glm::vec3(state.world_from_sonar.position_m - eye_m);
-  ping.echo.water_level_m = static_cast<float>(mirror.height_m - eye_m.y);
-  ping.echo.water_sign = mirror.water_below ? 1.0f : -1.0f;
-  // Out by the mirror and back directly, and the other way round.
-  ping.echo.ghost_weight = static_cast<float>(2.0 * mirror.reflection * mirror.reflection);
+// Whether beams' weights hold the cosine of the elevation, which makes them solid angles.
+bool counts_solid_angle(const scene::Sonar& sonar) {
+  return sonar.terms.level || sonar.kind == scene::SonarKind::kEchoSounder;
+}
+
+void add_mirror(Ping& ping, const Mirror& mirror, const scene::Sonar& sonar, const Head& head,
+                const PingState& state, const Vec3& eye_m) {
+  shared::SonarEcho& echo = ping.echo;
+  echo.ghost_source = glm::vec3(state.world_from_sonar.position_m - eye_m);
+  echo.water_level_m = static_cast<float>(mirror.height_m - eye_m.y);
+  echo.water_sign = mirror.water_below ? 1.0f : -1.0f;
+  // Out by the mirror and back directly, and the other way round: by reciprocity both have the same
+  // length, the same phase and the same amplitude at every scatterer, so that amplitudes add.
+  echo.ghost_weight =
+      static_cast<float>(kGhostPaths * kGhostPaths * mirror.reflection * mirror.reflection);
+  const auto& level = sonar.terms.level;
+  echo.ghost_spreading = !level             ? shared::kSonarGhostPlain
+                         : level->spreading ? shared::kSonarGhostSpreading
+                                            : shared::kSonarGhostNoSpreading;
+  echo.solid_angle = counts_solid_angle(sonar);
+  const Mat3 axes = glm::mat3_cast(state.world_from_sonar.rotation);
+  echo.head_right = glm::vec3(axes[0]);
+  echo.head_up = glm::vec3(axes[1]);
+  echo.head_back = glm::vec3(axes[2]);
+  const BeamGrid& g = head.samples;
+  echo.elevation_min_rad = static_cast<float>(g.limits.elevation_min_rad);
+  echo.rows_per_rad = static_cast<float>(1.0 / g.elevation_step_rad());
+  echo.azimuth_min_rad = static_cast<float>(g.limits.azimuth_min_rad);
+  echo.columns_per_rad = static_cast<float>(1.0 / g.azimuth_step_rad());
 }
 
 }  // namespace
@@ -126,6 +155,20 @@ std::vector<Mirror> mirrors_of(const scene::Sonar& sonar) {
   if (ghosts.surface) mirrors.push_back({0.0, ghosts.surface_reflection, true});
   if (ghosts.bottom_m) mirrors.push_back({-*ghosts.bottom_m, ghosts.bottom_reflection, false});
   return mirrors;
+}
+
+std::vector<float> ghost_weights(const scene::Sonar& sonar, const Head& head) {
+  const BeamGrid& g = head.samples;
+  std::vector<float> out(head.echo ? head.echo->weights.size() : 0);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto row = static_cast<std::uint32_t>(i / g.bins.azimuth);
+    const std::size_t column = i % g.bins.azimuth;
+    const std::size_t from = std::size_t{g.bins.elevation - 1 - row} * g.bins.azimuth + column;
+    const double cosine =
+        counts_solid_angle(sonar) ? std::cos(g.elevation_rad(g.bins.elevation - 1 - row)) : 1.0;
+    out[i] = static_cast<float>(std::sqrt(head.echo->weights[from] / cosine));
+  }
+  return out;
 }
 
 Pose mirrored(const Mirror& mirror, const Pose& world_from_head) {
@@ -172,7 +215,7 @@ Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state
     ping.echo.correction_range_m = static_cast<float>(head.samples.limits.range_max_m);
     ping.correction = std::move(table.factors);
   }
-  if (mirror) add_mirror(ping, *mirror, state, eye_m);
+  if (mirror) add_mirror(ping, *mirror, sonar, head, state, eye_m);
   return ping;
 }
 

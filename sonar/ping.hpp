@@ -32,6 +32,12 @@ std::vector<Mirror> mirrors_of(const scene::Sonar& sonar);
 // (its +y is the mirror image of -y), so that it is right-handed.
 Pose mirrored(const Mirror& mirror, const Pose& world_from_head);
 
+// A ghost's reciprocal paths, whose amplitudes add: the sound goes either way round.
+inline constexpr double kGhostPaths = 2.0;
+// Weights of a ghost's gather: what the pattern lets through one way, rows turned over as the
+// mirrored head's are. Empty where the head has none.
+std::vector<float> ghost_weights(const scene::Sonar& sonar, const Head& head);
+
 struct Ping {
   shared::SonarEcho echo{};
   std::vector<float> correction;

@@ -39,6 +39,16 @@ Result<gpu::Image> taps_image(gpu::Device& device, const char* name, const Taps&
   return image;
 }
 
+// Of the taps with themselves, one on: 1 where they change slowly, 0 of a single one.
+float correlation_a_step_on(const Taps& taps) {
+  double own = 0.0, next = 0.0;
+  for (std::size_t i = 0; i < taps.weights.size(); ++i) {
+    own += double{taps.weights[i]} * taps.weights[i];
+    if (i > 0) next += double{taps.weights[i - 1]} * taps.weights[i];
+  }
+  return own > 0.0 ? static_cast<float>(next / own) : 1.0f;
+}
+
 }  // namespace
 
 Result<Receiver> Receiver::create(gpu::Device& device, ReceiverDesc desc) {
@@ -92,6 +102,7 @@ shared::SonarReceiverPush Receiver::push(const Ping& ping) const {
           .scale = static_cast<float>(1.0 / desc_.sum_scale),
           .first_shift = ping.first_shift_columns,
           .shift = ping.shift_columns_per_row,
+          .tap_correlation = 0.0f,
           .noise = std::sqrt(ping.noise_power),
           .seed = ping.seed,
           .ping = ping.ping};
@@ -108,6 +119,7 @@ graph::ImageHandle Receiver::declare_spread(graph::FrameGraph& graph, const std:
   constants.out_columns = across ? desc_.beams : desc_.columns;
   constants.first = taps.first;
   constants.taps = static_cast<std::uint32_t>(taps.weights.size());
+  constants.tap_correlation = correlation_a_step_on(taps);
   return graph
       .add_pass<Pass>(
           name,
@@ -133,62 +145,58 @@ graph::ImageHandle Receiver::declare_spread(graph::FrameGraph& graph, const std:
       .out;
 }
 
-graph::BufferHandle Receiver::declare(graph::FrameGraph& graph, graph::BufferHandle sums,
-                                      const Ping& ping, graph::BufferHandle target,
-                                      const std::string& prefix) const {
-  NERITIC_CHECK(ping.gains.size() == desc_.rows, "a gain a range bin is needed");
-  struct Resolve {
+graph::ImageHandle Receiver::declare_resolve(graph::FrameGraph& graph, const std::string& prefix,
+                                             graph::BufferHandle sums, const Ping& ping) const {
+  struct Pass {
     graph::BufferHandle sums;
     graph::ImageHandle field;
   };
-  shared::SonarReceiverPush constants = push(ping);
-  graph::ImageHandle field =
-      graph
-          .add_pass<Resolve>(
-              prefix + "sonar resolve",
-              [&](graph::PassBuilder& builder, Resolve& pass) {
-                pass.sums = sums;
-                builder.read(sums, Access::kStorageReadCompute);
-                pass.field =
-                    builder.write(builder.create_image(prefix + "sonar field",
-                                                       {kFieldFormat, desc_.columns, desc_.rows}),
-                                  Access::kStorageWriteCompute);
-              },
-              [this, constants, gains = ping.gains](const Resolve& pass,
-                                                    graph::PassContext& context) {
-                const gpu::UploadSlice slice = context.commands.upload(gains);
-                context.commands.bind_pipeline(resolve_);
-                context.commands.bind(
-                    resolve_,
-                    {gpu::bound_buffer(shared::kReceiverIn, context.buffer(pass.sums).handle()),
-                     gpu::bound_buffer(shared::kReceiverGains, slice.buffer, slice.offset,
-                                       slice.size),
-                     gpu::bound_storage_image(shared::kReceiverOut,
-                                              context.image(pass.field).view())});
-                context.commands.push(resolve_, constants);
-                context.commands.dispatch(groups(desc_.columns), groups(desc_.rows));
-              })
-          .field;
-  if (!desc_.range.weights.empty())
-    field = declare_spread(graph, prefix + "sonar pulse", field, false, ping);
-  if (!desc_.across.weights.empty())
-    field = declare_spread(graph, prefix + "sonar beams", field, true, ping);
-  struct Receive {
+  return graph
+      .add_pass<Pass>(
+          prefix + "sonar resolve",
+          [&](graph::PassBuilder& builder, Pass& pass) {
+            pass.sums = sums;
+            builder.read(sums, Access::kStorageReadCompute);
+            pass.field =
+                builder.write(builder.create_image(prefix + "sonar field",
+                                                   {kFieldFormat, desc_.columns, desc_.rows}),
+                              Access::kStorageWriteCompute);
+          },
+          [this, constants = push(ping), gains = ping.gains](const Pass& pass,
+                                                             graph::PassContext& context) {
+            const gpu::UploadSlice slice = context.commands.upload(gains);
+            context.commands.bind_pipeline(resolve_);
+            context.commands.bind(
+                resolve_,
+                {gpu::bound_buffer(shared::kReceiverIn, context.buffer(pass.sums).handle()),
+                 gpu::bound_buffer(shared::kReceiverGains, slice.buffer, slice.offset, slice.size),
+                 gpu::bound_storage_image(shared::kReceiverOut, context.image(pass.field).view())});
+            context.commands.push(resolve_, constants);
+            context.commands.dispatch(groups(desc_.columns), groups(desc_.rows));
+          })
+      .field;
+}
+
+graph::BufferHandle Receiver::declare_receive(graph::FrameGraph& graph, const std::string& prefix,
+                                              graph::ImageHandle field, const Ping& ping,
+                                              graph::BufferHandle target) const {
+  struct Pass {
     graph::ImageHandle field;
     graph::BufferHandle power;
   };
+  shared::SonarReceiverPush constants = push(ping);
   constants.out_columns = desc_.beams;
   return graph
-      .add_pass<Receive>(
+      .add_pass<Pass>(
           prefix + "sonar receive",
-          [&](graph::PassBuilder& builder, Receive& pass) {
+          [&](graph::PassBuilder& builder, Pass& pass) {
             pass.field = field;
             builder.read(field, Access::kSampledCompute);
             pass.power = builder.write(
                 target ? target : builder.create_buffer(prefix + "sonar power", power_bytes()),
                 Access::kStorageWriteCompute);
           },
-          [this, constants, gains = ping.gains](const Receive& pass, graph::PassContext& context) {
+          [this, constants, gains = ping.gains](const Pass& pass, graph::PassContext& context) {
             const gpu::UploadSlice slice = context.commands.upload(gains);
             context.commands.bind_pipeline(receive_);
             context.commands.bind(
@@ -200,6 +208,18 @@ graph::BufferHandle Receiver::declare(graph::FrameGraph& graph, graph::BufferHan
             context.commands.dispatch(groups(desc_.beams), groups(desc_.rows));
           })
       .power;
+}
+
+graph::BufferHandle Receiver::declare(graph::FrameGraph& graph, graph::BufferHandle sums,
+                                      const Ping& ping, graph::BufferHandle target,
+                                      const std::string& prefix) const {
+  NERITIC_CHECK(ping.gains.size() == desc_.rows, "a gain a range bin is needed");
+  graph::ImageHandle field = declare_resolve(graph, prefix, sums, ping);
+  if (!desc_.range.weights.empty())
+    field = declare_spread(graph, prefix + "sonar pulse", field, false, ping);
+  if (!desc_.across.weights.empty())
+    field = declare_spread(graph, prefix + "sonar beams", field, true, ping);
+  return declare_receive(graph, prefix, field, ping, target);
 }
 
 }  // namespace neritic::sonar

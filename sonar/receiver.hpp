@@ -55,6 +55,11 @@ class Receiver {
   struct Field;
   graph::ImageHandle declare_spread(graph::FrameGraph& graph, const std::string& name,
                                     graph::ImageHandle field, bool across, const Ping& ping) const;
+  graph::ImageHandle declare_resolve(graph::FrameGraph& graph, const std::string& prefix,
+                                     graph::BufferHandle sums, const Ping& ping) const;
+  graph::BufferHandle declare_receive(graph::FrameGraph& graph, const std::string& prefix,
+                                      graph::ImageHandle field, const Ping& ping,
+                                      graph::BufferHandle target) const;
   shared::SonarReceiverPush push(const Ping& ping) const;
 
   ReceiverDesc desc_;

@@ -60,10 +60,14 @@ NERITIC_CONST uint kSonarSpecColumns = 0;    // columns a workgroup (its x size)
 NERITIC_CONST uint kSonarSpecLanes = 1;      // threads a column (its y size)
 NERITIC_CONST uint kSonarSpecPlane = 2;      // beam meets the plane of the pixel's point and normal
 NERITIC_CONST uint kSonarSpecReversedZ = 3;  // else the depth image holds planar metres
-NERITIC_CONST uint kSonarSpecOctahedral = 4;  // else the normal image holds x, y, z
-NERITIC_CONST uint kSonarSpecFacing = 5;      // else the normals' signs are unknown
-NERITIC_CONST uint kSonarSpecReflect = 6;     // multiply by the reflectivity of the instance
-NERITIC_CONST uint kSonarSpecLabels = 7;      // keep the label of the strongest return
+NERITIC_CONST uint kSonarSpecOctahedral = 4;   // else the normal image holds x, y, z
+NERITIC_CONST uint kSonarSpecFacing = 5;       // else the normals' signs are unknown
+NERITIC_CONST uint kSonarSpecReflect = 6;      // multiply by the reflectivity of the instance
+NERITIC_CONST uint kSonarSpecLabels = 7;       // keep the label of the strongest return
+NERITIC_CONST uint kSonarSpecFootprint = 15;   // what is done with the ranges that a row spans:
+NERITIC_CONST uint kSonarFootprintNone = 0;    // nothing, its centre counts
+NERITIC_CONST uint kSonarFootprintTold = 1;    // records tell them
+NERITIC_CONST uint kSonarFootprintShared = 2;  // its counts are shared out over them
 
 NERITIC_SHARED_END
 #endif

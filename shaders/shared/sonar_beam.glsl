@@ -11,11 +11,73 @@ struct BeamHit {
   ivec3 at;        // pixel and layer
   float range_m;   // 0: nothing is hit
   float strength;  // incidence term, 0 to 1
+  vec2 ends_m;     // nearest and farthest range of the row's height (kFootprint)
+  vec2 ends_tan;   // tangents of the elevations there
 };
 
+// A footprint reaches this much farther to one side of the row's centre than to the other, at most:
+// on a curved surface's limb the plane goes on, the surface does not.
+const float kLopsided = 2.0;
+
+// Range of what the pixel at another row's centre sees; 0: nothing, or it is the same pixel.
+float neighbour_range(SonarColumn s, int row, int v) {
+  if (row < 0 || row >= int(c.n_elevation)) return 0.0;
+  float t = texelFetch(rows, ivec2(row, 0), 0).x;
+  int other = int(floor(c.cy - c.fy * s.sec_theta * t));
+  if (other == v || other < 0 || other >= int(c.height)) return 0.0;
+  float ty = (c.cy - (float(other) + 0.5)) / c.fy;
+  return planar_metres(texelFetch(depth_image, ivec3(s.pixel, other, s.layer), 0).r) * sqrt(s.pixel_square + ty * ty);
+}
+
+// How far from the centre's range the plane is at the row's edge of tangent t: no farther than the
+// neighbour's range where that lies to the same side.
+float edge_reach(SonarColumn s, float t, float planar, float along_edge, float along_pixel, float range_m,
+                 float neighbour_m) {
+  float inverse = clamp(along_edge / along_pixel, 1.0 / kLargestStretch, kLargestStretch);
+  float reach = planar / inverse * s.sec_theta * sqrt(1.0 + t * t) - range_m;
+  float limit = neighbour_m - range_m;
+  if (!(neighbour_m > 0.0) || reach * limit <= 0.0) return reach;
+  return reach > 0.0 ? min(reach, limit) : max(reach, limit);
+}
+
+// Where the plane meets the lower and the upper edge of the row.
+void find_ends(SonarColumn s, uint row, int v, vec2 edges, float planar, vec2 along_edges, float along_pixel,
+               inout BeamHit hit) {
+  float low = edge_reach(s, edges.x, planar, along_edges.x, along_pixel, hit.range_m,
+                         neighbour_range(s, int(row) - 1, v));
+  float high = edge_reach(s, edges.y, planar, along_edges.y, along_pixel, hit.range_m,
+                          neighbour_range(s, int(row) + 1, v));
+  float most = kLopsided * min(abs(low), abs(high));
+  low = clamp(low, -most, most);
+  high = clamp(high, -most, most);
+  bool rising = low <= high;
+  hit.ends_m = hit.range_m + vec2(min(min(low, high), 0.0), max(max(low, high), 0.0));
+  hit.ends_tan = rising ? edges : edges.yx;
+}
+
+// Part of a row's energy that comes from below a range: seen at grazing, elevation goes with 1 / range, and
+// so does the incidence.
+float part_below(vec2 ends_m, float range_m) {
+  float r = clamp(range_m, ends_m.x, ends_m.y);
+  float part = (r - ends_m.x) * (r + ends_m.x) / (r * r);
+  float all = (ends_m.y - ends_m.x) * (ends_m.y + ends_m.x) / (ends_m.y * ends_m.y);
+  return clamp(part / all, 0.0, 1.0);
+}
+
+// A footprint is shared out over no more bins to either side of its centre.
+const float kFarthestShare_bins = 128.0;
+
+float bin_at(float range_m) { return (range_m - c.range_min_m) * c.bins_per_m + c.edge_bias_bins; }
+float range_at(int bin) { return (float(bin) - c.edge_bias_bins) / c.bins_per_m + c.range_min_m; }
+
+vec2 shared_ends(vec2 ends_m, float range_m) {
+  float most = kFarthestShare_bins / c.bins_per_m;
+  return clamp(ends_m, vec2(range_m - most), vec2(range_m + most));
+}
+
 BeamHit beam_hit(SonarColumn s, uint row) {
-  BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0);
-  vec2 e = texelFetch(rows, ivec2(row, 0), 0).xy;  // tan, sec
+  BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
+  vec4 e = texelFetch(rows, ivec2(row, 0), 0);  // tan, sec, tan of the edges
   int v = int(floor(c.cy - c.fy * s.sec_theta * e.x));
   if (v < 0 || v >= int(c.height)) return hit;
   hit.at = ivec3(s.pixel, v, s.layer);
@@ -26,10 +88,13 @@ BeamHit beam_hit(SonarColumn s, uint row) {
   float along_pixel = dot(n, s.pixel_base) + ty * along_up;
   float length_of = sqrt(s.pixel_square + ty * ty);
   float along = along_pixel;
+  float plane = planar;  // of the pixel
+  bool meets = false;
   if (kPlane != 0) {
     float along_beam = dot(n, s.beam_base) + e.x * s.sec_theta * along_up;
     float stretch = along_pixel / along_beam;
-    if (stretch < kLargestStretch && stretch * kLargestStretch > 1.0) {
+    meets = stretch < kLargestStretch && stretch * kLargestStretch > 1.0;
+    if (meets) {
       planar *= stretch;
       along = along_beam;
       length_of = s.sec_theta * e.y;
@@ -37,10 +102,19 @@ BeamHit beam_hit(SonarColumn s, uint row) {
   }
   hit.strength = min(facing(-along / length_of), 1.0);
   hit.range_m = planar * length_of;
+  if (kFootprint != 0) {
+    hit.ends_m = vec2(hit.range_m);
+    hit.ends_tan = e.xx;
+    if (meets)
+      find_ends(s, row, v, e.zw, plane, dot(n, s.beam_base) + e.zw * s.sec_theta * along_up, along_pixel, hit);
+  }
   return hit;
 }
 
-// Unit direction of a beam, in the axes of the normals.
+// Unit direction of a beam, in the axes of the normals: of a tangent of elevation, of a row's centre.
+vec3 beam_towards(SonarColumn s, float t) {
+  return (s.beam_base + t * s.sec_theta * s.up) / (s.sec_theta * sqrt(1.0 + t * t));
+}
 vec3 beam_direction(SonarColumn s, uint row) {
   vec2 e = texelFetch(rows, ivec2(row, 0), 0).xy;
   return (s.beam_base + e.x * s.sec_theta * s.up) / (s.sec_theta * e.y);

@@ -11,6 +11,7 @@ layout(constant_id = kSonarSpecOctahedral) const uint kOctahedral = 1;
 layout(constant_id = kSonarSpecFacing) const uint kFacing = 1;
 layout(constant_id = kSonarSpecReflect) const uint kReflect = 0;
 layout(constant_id = kSonarSpecLabels) const uint kLabels = 1;
+layout(constant_id = kSonarSpecFootprint) const uint kFootprint = 0;
 layout(local_size_x_id = kSonarSpecColumns, local_size_y_id = kSonarSpecLanes) in;
 
 layout(set = 0, binding = kSonarBindColumns, scalar) readonly buffer Columns { SonarColumn columns[]; };
@@ -44,21 +45,29 @@ uint label_key(float strength, uint label) {
   return max(1u, uint(strength * 65535.0 + 0.5)) << 16 | (65535u - label);
 }
 
-// Adds a return of a pixel to a cell of the image. strength is the incidence term. Where one thread
-// owns a column no other writes there, and a processor is spared its slow atomics.
-void add_return(uint cell, float strength, ivec3 at) {
-  uvec2 label = uvec2(0);
+// The incidence term with what the pixel's instance reflects; tells its label.
+float reflected(float strength, ivec3 at, out uvec2 label) {
+  label = uvec2(0);
   if (kReflect != 0 || kLabels != 0) label = texelFetch(label_image, at, 0).xy;
-  if (kReflect != 0) {
-    float reflects = label.y < c.reflectivities ? reflectivity[label.y] : 1.0;
-    strength *= clamp(reflects, 0.0, 1.0);
-  }
-  uint counts = uint(strength * c.fixed_scale + 0.5);
+  if (kReflect == 0) return strength;
+  float reflects = label.y < c.reflectivities ? reflectivity[label.y] : 1.0;
+  return strength * clamp(reflects, 0.0, 1.0);
+}
+
+// Adds to a cell of the image. Where one thread owns a column no other writes there, and a processor is
+// spared its slow atomics.
+void add_counts(uint cell, uint counts, float strength, uint label) {
   if (kLanes == 1) sums[cell] += counts;
   else atomicAdd(sums[cell], counts);
   if (kLabels != 0 && strength > 0.0) {
-    uint key = label_key(strength, label.x);
+    uint key = label_key(strength, label);
     if (kLanes > 1) atomicMax(keys[cell], key);
     else if (key > keys[cell]) keys[cell] = key;
   }
+}
+
+void add_return(uint cell, float strength, ivec3 at) {
+  uvec2 label;
+  strength = reflected(strength, at, label);
+  add_counts(cell, uint(strength * c.fixed_scale + 0.5), strength, label.x);
 }

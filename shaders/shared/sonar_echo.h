@@ -29,15 +29,35 @@ struct SonarEcho {
   float water_sign;
   float ghost_weight;
   vec3 ghost_source;  // ghosts: the sonar, seen from its mirror image (the eye)
+  // Ghosts: what the direct leg's spreading makes of the gain, which counts the mean leg's:
+  // kSonarGhost.
+  uint ghost_spreading;
+  vec3 head_right;  // ghosts: the head's axes, for the direct leg's place in its pattern
+  float elevation_min_rad;
+  vec3 head_up;
+  float rows_per_rad;
+  vec3 head_back;
+  float azimuth_min_rad;
+  float columns_per_rad;
+  uint solid_angle;  // ghosts: a beam's cosine of elevation counts
+  // Scatterers: the widest cell a metre of range, and at any range.
+  float cell_per_range;
+  float cell_largest_m;
 };
+NERITIC_CONST uint kSonarGhostPlain = 0u;        // no range counts
+NERITIC_CONST uint kSonarGhostSpreading = 1u;    // 1 / r^2 of the direct leg
+NERITIC_CONST uint kSonarGhostNoSpreading = 2u;  // the patch that a beam's solid angle covers
 
 // What one gathered beam returned, for labels by energy. bin: row of the range, or kSonarNoReturn.
 struct SonarRecord {
   uint bin;
   uint counts;  // of its power, 2^-28 each
   uint label;   // class in the low, instance in the high 16 bits
+  uint ends;    // bins of the nearest and farthest that its height spans, low and high 16 bits
 };
 NERITIC_CONST uint kSonarNoReturn = 0xffffffffu;
+NERITIC_CONST uint kSonarSharedReturn = 0xfffffffeu;  // as bin: its counts are shared over its ends
+NERITIC_CONST uint kSonarFarthestEnd = 65535u;
 NERITIC_CONST float kSonarRecordScale = 268435456.0f;
 NERITIC_CONST uint kSonarGhostClass = 65533u;
 
@@ -69,7 +89,10 @@ struct SonarReceiverPush {
   float scale;        // resolve: counts to field
   float first_shift;  // spread across beams: columns that the bearing has turned until row 0
   float shift;        // and what it turns from row to row
-  float noise;        // receive: amplitude of either part
+  // spread across beams: correlation of the taps with themselves a column on, which says what power
+  // the field between two columns has.
+  float tap_correlation;
+  float noise;  // receive: amplitude of either part
   uint seed;
   uint ping;
 };

@@ -85,6 +85,74 @@ TEST_F(SonarRandom, FewScatterersAreKDistributed) {
   }
 }
 
+// What speckle makes of a wall's whole power, through pattern and pulse, however many columns
+// sample a beam and however near the wall is.
+double speckled_over_smooth(gpu::Device& device, double distance_m, std::uint32_t samples) {
+  scene::Sonar sonar = sonar_of(0.9 * distance_m, 1.5 * distance_m, 0);
+  sonar.bins_range = static_cast<std::uint32_t>(std::lround(0.6 * distance_m / 0.0075));
+  sonar.azimuth_rad = sonar.elevation_rad = radians(60.0);
+  sonar.bins_azimuth = 120;
+  sonar.bins_elevation = 96;
+  sonar.terms.frequency_hz = 720e3;
+  sonar.terms.beam.samples = samples;
+  sonar.terms.beam.azimuth = scene::SonarPattern{.shape = scene::SonarPattern::Shape::kHamming,
+                                                 .half_power_rad = radians(1.0)};
+  sonar.terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 30e3};
+  scene::Scene scene = wall(distance_m, sonar);
+  const double smooth = total(ping(device, scene));
+  scene.sonars[0].terms.speckle = scene::SonarSpeckle{};
+  double speckled = 0.0;
+  // Near, the wall is few resolution cells deep: the mean of as many more worlds.
+  const int seeds = static_cast<int>(std::lround(std::max(4.0, 32.0 / distance_m)));
+  for (int i = 0; i < seeds; ++i) {
+    scene.seed = static_cast<std::uint64_t>(i) + 1;
+    speckled += total(ping(device, scene)) / seeds;
+  }
+  return speckled / smooth;
+}
+
+TEST_F(SonarRandom, SpeckleKeepsTheLevelHoweverABeamIsSampled) {
+  for (const double distance_m : {1.0, 2.0, 8.0})
+    for (const std::uint32_t samples : {1u, 4u, 16u})
+      EXPECT_NEAR(speckled_over_smooth(device(), distance_m, samples), 1.0, 0.05)
+          << distance_m << " m, " << samples << " samples a beam";
+}
+
+// A head that turns hears echoes between two columns: as loud as on them.
+TEST_F(SonarRandom, TurningDarkensNoRange) {
+  scene::Sonar sonar = sonar_of(4.0, 12.0, 800);
+  sonar.azimuth_rad = radians(40.0);
+  sonar.bins_azimuth = 400;
+  sonar.bins_elevation = 512;
+  sonar.terms.water.sound_speed_m_s = 1500.0;
+  sonar.terms.motion = scene::SonarMotion{.within_ping = true};
+  sonar.mount.pose.rotation = glm::angleAxis(radians(-20.0), Vec3(1, 0, 0));
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_plane(60.0, 60.0), {0.0, -2.5, 0.0}));
+  scene.sonars = {sonar};
+  const Quat pitch = sonar.mount.pose.rotation;
+  scene.sonars[0].mount.track = scene::Track{{{0.0, Vec3(0.0)}},
+                                             {{-1.0, glm::angleAxis(-1.0, Vec3(0, 1, 0)) * pitch},
+                                              {1.0, glm::angleAxis(1.0, Vec3(0, 1, 0)) * pitch}}};
+  const SonarFrame smooth = ping(device(), scene);
+  scene.sonars[0].terms.speckle = scene::SonarSpeckle{};
+  const SonarFrame speckled = ping(device(), scene);
+  // Columns turned until a range: 2 r / c over a column's tenth of a degree, times the part of the
+  // turn that is about the head's own axis.
+  const double columns_per_m = 2.0 / 1500.0 / radians(0.1) * std::cos(radians(20.0));
+  constexpr int kParts = 5;
+  double heard[kParts] = {}, wanted[kParts] = {};
+  for (std::uint32_t row = 0; row < 800; ++row) {
+    const double turned = columns_per_m * smooth.grid.range_m(row);
+    const int part = static_cast<int>(kParts * (turned - std::floor(turned)));
+    for (std::uint32_t beam = 40; beam < 360; ++beam) {
+      heard[part] += speckled.image.intensity[row * 400 + beam];
+      wanted[part] += smooth.image.intensity[row * 400 + beam];
+    }
+  }
+  for (int i = 0; i < kParts; ++i) EXPECT_NEAR(heard[i] / wanted[i], 1.0, 0.05) << i;
+}
+
 TEST_F(SonarRandom, SpeckleBelongsToTheWorld) {
   scene::Scene scene = speckled_wall();
   const SonarFrame smooth = ping(device(), scene);

@@ -299,5 +299,17 @@ TEST_F(SonarGpu, ImagesOfNoPixelsAreRefused) {
   EXPECT_EQ(made.error().code, ErrorCode::kBadInput);
 }
 
+TEST_F(SonarGpu, RecordsThatNoDeviceHoldsAreRefusedByName) {
+  const BeamGrid grid = sonar::symmetric_grid(1, 5, radians(90), radians(28),
+                                              {4, sonar::kMaxBins, sonar::kMaxBins});  // 4 GiB
+  sonar::GatherOptions options;
+  options.echo = sonar::EchoOptions{.records = true};
+  const auto made =
+      sonar::SonarGather::create(device(), grid, sonar::plan_sectors(grid), {}, options);
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(made.error().message.find("labels.energy"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace neritic

@@ -14,24 +14,69 @@ namespace {
 using sonar::EnergyRecord;
 using sonar::LabelImage;
 
+// A ray that spans the rows nearest to farthest, its energy in one bin.
+EnergyRecord ray(std::uint32_t bin, std::uint32_t counts, int class_id, int instance, int nearest,
+                 int farthest) {
+  return {bin,
+          counts,
+          static_cast<std::uint16_t>(class_id),
+          static_cast<std::uint16_t>(instance),
+          static_cast<std::uint16_t>(nearest),
+          static_cast<std::uint16_t>(farthest)};
+}
+EnergyRecord ray(std::uint32_t bin, std::uint32_t counts, int class_id, int instance) {
+  const int row = static_cast<int>(std::min(bin, 65535u));
+  return ray(bin, counts, class_id, instance, row, row);
+}
+EnergyRecord nothing() {
+  return ray(sonar::kNoReturn, 0, 0, 0);
+}
+
+// The rows between two rays' spans that the nearer one hides; empty: it hides none.
+std::pair<int, int> hidden_rows(const EnergyRecord& a, const EnergyRecord& b) {
+  if (a.bin == sonar::kNoReturn || b.bin == sonar::kNoReturn) return {0, 0};
+  const bool a_nearer = a.nearest < b.nearest;
+  const EnergyRecord &near = a_nearer ? a : b, &far = a_nearer ? b : a;
+  const int gap = int{far.nearest} - near.farthest - 1;
+  const int spans = near.farthest - near.nearest + far.farthest - far.nearest;
+  if (gap <= 1 || gap <= spans / 4.0) return {0, 0};
+  return {near.farthest + 1, far.nearest};
+}
+
 // The definition, with maps.
 LabelImage plain_labels(const std::vector<EnergyRecord>& records, std::uint32_t n_range,
                         std::uint32_t n_beams, std::uint32_t samples) {
-  const std::size_t cells = std::size_t{n_range} * n_beams;
+  const std::size_t cells = std::size_t{n_range} * n_beams, width = std::size_t{n_beams} * samples;
   std::vector<std::map<std::pair<int, int>, std::uint64_t>> heard(cells);
-  std::vector<bool> behind(cells);
+  std::vector<int> hidden(cells);
+  std::vector<const EnergyRecord*> below(width);
   for (std::size_t i = 0; i < records.size(); ++i) {
     const EnergyRecord& r = records[i];
-    const std::size_t beam = i % (std::size_t{n_beams} * samples) / samples;
-    if (r.bin >= n_range) continue;
-    if (r.counts > 0) heard[r.bin * n_beams + beam][{r.class_id, r.instance}] += r.counts;
-    if (r.class_id != sonar::kGhost)
-      for (std::uint32_t row = r.bin + 1; row < n_range; ++row) behind[row * n_beams + beam] = true;
+    const std::size_t beam = i % width / samples;
+    if (r.counts > 0)
+      for (std::uint32_t row = 0; row < n_range; ++row) {
+        const bool shared = r.bin == sonar::kShared && row >= r.nearest && row <= r.farthest;
+        if (shared)
+          heard[row * n_beams + beam][{r.class_id, r.instance}] +=
+              std::max(1u, r.counts / (r.farthest - r.nearest + 1u));
+        else if (row == r.bin)
+          heard[row * n_beams + beam][{r.class_id, r.instance}] += r.counts;
+      }
+    if (r.class_id == sonar::kGhost) continue;
+    if (below[i % width]) {
+      const auto [from, to] = hidden_rows(*below[i % width], r);
+      for (int row = from; row < std::min(to, int(n_range)); ++row)
+        ++hidden[std::size_t(row) * n_beams + beam];
+    }
+    below[i % width] = &r;
   }
   LabelImage out{n_range, n_beams, std::vector<std::uint16_t>(cells),
                  std::vector<std::uint16_t>(cells), std::vector<float>(cells)};
   for (std::size_t i = 0; i < cells; ++i) {
-    if (heard[i].empty() && behind[i]) out.classes[i] = sonar::kShadow;
+    if (heard[i].empty() && hidden[i] > 0) {
+      out.classes[i] = sonar::kShadow;
+      out.fraction[i] = std::min(1.0f, float(hidden[i]) / float(samples));
+    }
     std::uint64_t all = 0, most = 0;
     for (const auto& [key, sum] : heard[i]) {
       all += sum;
@@ -57,6 +102,11 @@ std::vector<EnergyRecord> random_records(std::size_t n, std::uint32_t n_range, i
     r.counts = kind == 2 ? 0 : random() % 4 == 0 ? 0xffffffff : random() % 5;
     r.class_id = kind == 3 ? sonar::kGhost : static_cast<std::uint16_t>(1 + random() % classes);
     r.instance = static_cast<std::uint16_t>(random() % 3);
+    r.nearest =
+        static_cast<std::uint16_t>(std::min(r.bin, 65535u) - (r.bin > 0 ? random() % 2 : 0));
+    r.farthest =
+        static_cast<std::uint16_t>(std::min(65535, r.nearest + static_cast<int>(random() % 4)));
+    if (kind == 4) r.bin = sonar::kShared;
   }
   return out;
 }
@@ -74,35 +124,55 @@ TEST(LabelEnergy, EveryBinHasTheLabelThatGaveMost) {
     EXPECT_EQ(labels.classes, plain.classes);
     EXPECT_EQ(labels.instances, plain.instances);
     EXPECT_EQ(labels.fraction, plain.fraction);
-    // Rays in another order (rows exchanged) change nothing.
+    // Which edge of the aperture the rows begin at changes nothing.
     const std::size_t width = std::size_t{c.beams} * c.samples;
-    for (std::size_t row = 0; row + 1 < c.elevations; row += 2)
+    for (std::uint32_t row = 0; row < c.elevations / 2; ++row)
       std::swap_ranges(records.begin() + row * width, records.begin() + (row + 1) * width,
-                       records.begin() + (row + 1) * width);
+                       records.begin() + (c.elevations - 1 - row) * width);
     EXPECT_EQ(sonar::label_by_energy(records, c.n_range, c.beams, c.samples).classes,
               plain.classes);
   }
 }
 
-TEST(LabelEnergy, ShadowLiesBehindWhatIsNearerAndWaterBefore) {
-  // One beam, rays from the top: far wall, a pole before the wall, the pole's back side without an
-  // echo, something beyond the range, nothing at all.
-  const std::vector<EnergyRecord> records{
-      {8, 100, 2, 1}, {3, 50, 5, 7}, {5, 0, 5, 7}, {12, 90, 9, 9}, {sonar::kNoReturn, 0, 0, 0}};
-  const LabelImage labels = sonar::label_by_energy(records, 10, 1);
+TEST(LabelEnergy, ShadowLiesBetweenAnEdgeAndWhatIsSeenPastIt) {
+  // One beam over a floor, rays from below: the floor, a box's front that has no echo, its top, the
+  // floor again, nothing.
+  const std::vector<EnergyRecord> records{ray(1, 90, 1, 1, 0, 1),   ray(2, 90, 1, 1, 2, 3),
+                                          ray(4, 0, 5, 7),          ray(4, 50, 5, 7, 4, 4),
+                                          ray(10, 70, 1, 1, 9, 11), nothing()};
+  const LabelImage labels = sonar::label_by_energy(records, 14, 1);
   const std::uint16_t s = sonar::kShadow;
-  EXPECT_EQ(labels.classes, (std::vector<std::uint16_t>{0, 0, 0, 5, s, s, s, s, 2, s}));
-  EXPECT_EQ(labels.instances[3], 7);
-  EXPECT_EQ(labels.fraction[3], 1.0f);
-  EXPECT_EQ(labels.instances[4], 0);
-  EXPECT_EQ(labels.fraction[4], 0.0f);
+  // Row 3, 9 and 11 are of rays whose energy lies beside; nothing is known of what is beyond.
+  EXPECT_EQ(labels.classes, (std::vector<std::uint16_t>{0, 1, 1, 0, 5, s, s, s, s, 0, 1, 0, 0, 0}));
+  EXPECT_EQ(labels.instances[4], 7);
+  EXPECT_EQ(labels.fraction[4], 1.0f);
+  EXPECT_EQ(labels.instances[5], 0);
+  EXPECT_EQ(labels.fraction[5], 1.0f);
+}
+
+TEST(LabelEnergy, ASharedRaySoundsInAllItsRowsAndLeavesNoShadow) {
+  const std::vector<EnergyRecord> records{ray(sonar::kShared, 90, 1, 1, 1, 3),
+                                          ray(sonar::kShared, 80, 1, 1, 4, 9), nothing()};
+  const LabelImage labels = sonar::label_by_energy(records, 8, 1);
+  EXPECT_EQ(labels.classes, (std::vector<std::uint16_t>{0, 1, 1, 1, 1, 1, 1, 1}));
+}
+
+TEST(LabelEnergy, AShadowTellsHowManyOfItsBeamsColumnsAreHidden) {
+  // Two columns; past the first one's edge something beyond the range, the second sees no edge.
+  const std::vector<EnergyRecord> records{ray(1, 9, 2, 1), ray(1, 9, 2, 1), ray(80, 0, 1, 1),
+                                          ray(2, 9, 2, 1)};
+  const LabelImage labels = sonar::label_by_energy(records, 5, 1, 2);
+  EXPECT_EQ(labels.classes, (std::vector<std::uint16_t>{0, 2, 2, sonar::kShadow, sonar::kShadow}));
+  EXPECT_EQ(labels.fraction[3], 0.5f);
 }
 
 TEST(LabelEnergy, AGhostIsHeardButCastsNoShadow) {
-  const std::vector<EnergyRecord> records{{4, 10, sonar::kGhost, 0}, {6, 10, 3, 0}, {6, 10, 2, 5}};
+  const std::vector<EnergyRecord> records{ray(6, 10, 3, 0), ray(6, 10, 2, 5),
+                                          ray(2, 10, sonar::kGhost, 0),
+                                          ray(5, 10, sonar::kGhost, 0)};
   const LabelImage labels = sonar::label_by_energy(records, 8, 1);
   EXPECT_EQ(labels.classes,
-            (std::vector<std::uint16_t>{0, 0, 0, 0, sonar::kGhost, 0, 2, sonar::kShadow}));
+            (std::vector<std::uint16_t>{0, 0, sonar::kGhost, 0, 0, sonar::kGhost, 2, 0}));
   EXPECT_EQ(labels.instances[6], 5);  // a tie: the smaller class
   EXPECT_EQ(labels.fraction[6], 0.5f);
 }
@@ -113,9 +183,9 @@ TEST(LabelEnergy, AFrameTakesMilliseconds) {
   for (std::uint32_t e = 0; e < 512; ++e)
     for (std::uint32_t a = 0; a < 512; ++a) {
       const bool object = (a / 40 + e / 50) % 5 == 0;
-      records[e * 512 + a] = {object ? 200 + a % 30 : 60 + e * 440 / 512, 1000 + a,
-                              static_cast<std::uint16_t>(object ? 2 + a / 40 % 4 : 1),
-                              static_cast<std::uint16_t>(object ? a / 40 : 0)};
+      records[e * 512 + a] =
+          ray(object ? 200 + a % 30 : 60 + e * 440 / 512, 1000 + a,
+              static_cast<int>(object ? 2 + a / 40 % 4 : 1), static_cast<int>(object ? a / 40 : 0));
     }
   double best_ms = 1e9;
   for (int i = 0; i < 10; ++i) {

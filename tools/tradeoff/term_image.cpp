@@ -95,14 +95,13 @@ void TermImage::make_kernel() {
 double TermImage::power(const TruthRay& ray, const TruthEcho& echo) const {
   double power = std::clamp(echo.cosine, 0.0, 1.0) * ray.pattern * echo.bounce;
   const double mean_m = 0.5 * (echo.out_m + echo.back_m);
-  const double spread = mean_m / echo.back_m;  // 1 but for ghosts
   if (const auto& level = sonar_->terms.level) {
     power *= echo.backscatter * std::cos(ray.elevation_rad) * ray.elevation_width_rad * width_rad_;
     const double db = level->source_level_db - 2.0 * absorption_db_per_m_ * mean_m;
     return power * std::pow(10.0, db / 10.0) *
-           (level->spreading ? 1.0 / (echo.back_m * echo.back_m) : mean_m * mean_m);
+           (level->spreading ? 1.0 / (echo.back_m * echo.back_m) : echo.out_m * echo.out_m);
   }
-  power *= std::min(1.0, echo.reflectivity) * spread * spread;
+  power *= std::min(1.0, echo.reflectivity);
   if (patterns_.cone)
     return power * std::cos(ray.elevation_rad) * ray.elevation_width_rad * width_rad_;
   return power * ray.elevation_width_rad /

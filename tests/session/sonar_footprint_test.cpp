@@ -1,0 +1,145 @@
+// Rows that are taller than a range bin: what they share out over the bins that they span, and what
+// is hidden between them, against closed forms.
+#include <algorithm>
+
+#include "sonar/label_energy.hpp"
+#include "tests/session/sonar_pings.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using SonarFootprint = test::GpuTest;
+
+constexpr double kHeight_m = 2.5;  // over the floor
+constexpr std::uint32_t kBeams = 16, kBins = 1024;
+
+scene::Scene floor_below(std::uint32_t rows, double range_max_m = 16.0) {
+  scene::Sonar sonar = sonar_of(4.0, range_max_m, kBins);
+  sonar.azimuth_rad = radians(10.0);
+  sonar.bins_azimuth = kBeams;
+  sonar.bins_elevation = rows;
+  sonar.gbuffer_scale = 2.0;
+  // Down to 26 degrees, up to 6 below the horizon: ranges 5.7 to 23.9 m.
+  sonar.mount.pose.rotation = glm::angleAxis(radians(-16.0), Vec3(1, 0, 0));
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_plane(80.0, 80.0), {0.0, -kHeight_m, 0.0}));
+  scene.sonars = {sonar};
+  return scene;
+}
+
+// The plain cosine's mean over 20 degrees of elevation that the floor gives between two ranges, in
+// the plane straight ahead: the integral of sin(g) dg, sin g = H / r.
+double floor_between(double near_m, double far_m) {
+  const auto below = [](double r) { return std::sqrt(1.0 - kHeight_m * kHeight_m / (r * r)); };
+  return (below(far_m) - below(near_m)) / radians(20.0);
+}
+
+TEST_F(SonarFootprint, AFloorAtGrazingIsNoComb) {
+  const SonarFrame frame = ping(device(), floor_below(48));
+  const auto row_of = [&](double range_m) {
+    return static_cast<std::uint32_t>((range_m - 4.0) / frame.grid.range_step_m());
+  };
+  const std::uint32_t middle = kBeams / 2;
+  double worst = 0.0;
+  std::uint32_t silent = 0;
+  for (std::uint32_t row = row_of(6.0); row < kBins; ++row) {
+    const double heard = frame.image.intensity[std::size_t{row} * kBeams + middle];
+    const double r = frame.grid.range_m(row), half = frame.grid.range_step_m() / 2.0;
+    silent += heard == 0.0;
+    worst = std::max(worst, std::abs(heard / floor_between(r - half, r + half) - 1.0));
+  }
+  EXPECT_EQ(silent, 0u);
+  EXPECT_LT(worst, 0.1);
+}
+
+// The same rows with bins that none of them spans: shared or not, the sum is the same.
+TEST_F(SonarFootprint, SharingKeepsEnergy) {
+  scene::Scene scene = floor_below(48, 40.0);
+  const double shared = total(ping(device(), scene));
+  scene.sonars[0].bins_range = 16;
+  const SonarFrame whole = ping(device(), scene);
+  ASSERT_GT(shared, 0.0);
+  EXPECT_NEAR(shared / total(whole), 1.0, 1e-6);
+  // With terms, and as speckle's power is on average.
+  scene.sonars[0].bins_range = kBins;
+  scene.sonars[0].terms.labels.energy = true;
+  EXPECT_NEAR(total(ping(device(), scene)) / shared, 1.0, 1e-5);
+}
+
+TEST_F(SonarFootprint, AFloorCastsNoShadow) {
+  for (const std::uint32_t rows : {24u, 48u, 512u}) {
+    scene::Scene scene = floor_below(rows);
+    scene.sonars[0].terms.labels.energy = true;
+    const SonarFrame frame = ping(device(), scene);
+    ASSERT_TRUE(frame.label_energy);
+    const auto& classes = frame.label_energy->classes;
+    EXPECT_EQ(std::count(classes.begin(), classes.end(), sonar::kShadow), 0) << rows;
+  }
+}
+
+TEST_F(SonarFootprint, ABoxCastsItsClosedFormShadow) {
+  constexpr double kNear_m = 8.0, kTall_m = 0.6, kDeep_m = 0.4;  // along the floor, from its face
+  for (const std::uint32_t rows : {96u, 512u}) {
+    scene::Scene scene = floor_below(rows);
+    scene::Object box = object_of(scene, scene::make_box(Vec3(6.0, kTall_m, kDeep_m)),
+                                  {0.0, kTall_m / 2.0 - kHeight_m, -kNear_m - kDeep_m / 2.0});
+    scene.objects.push_back(box);
+    scene.sonars[0].terms.labels.energy = true;
+    const SonarFrame frame = ping(device(), scene);
+    ASSERT_TRUE(frame.label_energy);
+    // From the top's far edge to where the ray past it meets the floor.
+    const double far_m = kNear_m + kDeep_m, over_m = kHeight_m - kTall_m;
+    const double from_m = std::hypot(far_m, over_m);
+    const double to_m = from_m * kHeight_m / over_m;
+    double first_m = 1e9, last_m = 0.0, hidden_m = 0.0;
+    for (std::uint32_t row = 0; row < kBins; ++row)
+      if (frame.label_energy->classes[std::size_t{row} * kBeams + kBeams / 2] == sonar::kShadow) {
+        first_m = std::min(first_m, frame.grid.range_m(row));
+        last_m = std::max(last_m, frame.grid.range_m(row));
+        hidden_m += frame.grid.range_step_m();
+      }
+    // A row at the edges belongs to what its middle sees: half a row's span of either surface.
+    const double row_rad = radians(20.0) / rows;
+    const double top_m = from_m * from_m / over_m * row_rad,
+                 floor_m = to_m * to_m / kHeight_m * row_rad;
+    const double bin_m = 2.0 * frame.grid.range_step_m();
+    EXPECT_NEAR(first_m, from_m, top_m + bin_m) << rows;
+    EXPECT_NEAR(last_m, to_m, floor_m + bin_m) << rows;
+    EXPECT_NEAR(hidden_m, last_m - first_m, bin_m) << rows;  // in one piece
+  }
+}
+
+TEST_F(SonarFootprint, ASphereOnAxisHidesTheWaterBehindItUpToTheWall) {
+  scene::Sonar sonar = sonar_of(2.0, 8.0, 300);
+  sonar.gbuffer_scale = 2.0;
+  sonar.terms.labels.energy = true;
+  scene::Scene scene = wall(7.0, sonar);
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.4, 128), {0.0, 0.0, -4.0}));
+  const SonarFrame frame = ping(device(), scene);
+  ASSERT_TRUE(frame.label_energy);
+  const double limb_m = std::sqrt(4.0 * 4.0 - 0.4 * 0.4);
+  const auto at = [&](double range_m, std::uint32_t column) {
+    const auto row = static_cast<std::size_t>((range_m - 2.0) / frame.grid.range_step_m());
+    return frame.label_energy->classes[row * 128 + column];
+  };
+  for (const double r : {limb_m + 0.3, 5.0, 6.0, 6.9}) EXPECT_EQ(at(r, 64), sonar::kShadow) << r;
+  EXPECT_EQ(at(3.3, 64), sonar::kWater);
+  EXPECT_NE(at(3.62, 64), sonar::kWater);
+  for (const double r : {3.3, 5.0, 6.0, 6.9}) EXPECT_EQ(at(r, 4), sonar::kWater) << r;  // beside it
+}
+
+// Without a wall behind it, nothing is there to be hidden.
+TEST_F(SonarFootprint, ASphereInOpenWaterHidesNothing) {
+  scene::Sonar sonar = sonar_of(2.0, 8.0, 300);
+  sonar.terms.labels.energy = true;
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.4, 128), {0.0, 0.0, -4.0}));
+  scene.sonars = {sonar};
+  const SonarFrame frame = ping(device(), scene);
+  ASSERT_TRUE(frame.label_energy);
+  const auto& classes = frame.label_energy->classes;
+  EXPECT_EQ(std::count(classes.begin(), classes.end(), sonar::kShadow), 0);
+}
+
+}  // namespace
+}  // namespace neritic::tools

@@ -1,0 +1,82 @@
+// A mirror's ghosts: how strong they are, against the closed form.
+#include "sonar/beam_pattern.hpp"
+#include "tests/session/sonar_pings.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using SonarGhost = test::GpuTest;
+
+constexpr double kRange_m = 5.0, kDepth_m = 2.0, kRadius_m = 0.05;
+
+// A small sphere dead ahead of a sonar, both at one depth under a surface that mirrors.
+scene::Scene sphere_below_surface() {
+  scene::Sonar sonar = sonar_of(4.0, 8.0, 400);
+  sonar.azimuth_rad = radians(2.0);
+  sonar.elevation_rad = radians(90.0);
+  sonar.bins_azimuth = 64;
+  sonar.bins_elevation = 2048;
+  sonar.gbuffer_scale = 2.0;
+  sonar.terms.level = plain_level();
+  scene::Scene scene;
+  scene.objects.push_back(
+      object_of(scene, scene::make_sphere(kRadius_m, 128), {0.0, -kDepth_m, -kRange_m}));
+  scene.sonars = {sonar};
+  scene.sonars[0].mount.pose.position_m = {0.0, -kDepth_m, 0.0};
+  return scene;
+}
+
+double ghost_over_direct_db(gpu::Device& device, scene::Scene scene, double reflection) {
+  const double direct = total(ping(device, scene));
+  scene.sonars[0].terms.ghosts =
+      scene::SonarGhosts{.surface = true, .surface_reflection = reflection};
+  return 10.0 * std::log10(total(ping(device, scene)) / direct - 1.0);
+}
+
+// What a Lambert sphere lit from one side sends to another, beta off, over what it sends back: the
+// integral of cos(in) cos(out) over what both see.
+double lambert_sphere(double beta_rad) {
+  return (std::sin(beta_rad) + (kPi - beta_rad) * std::cos(beta_rad)) / kPi;
+}
+
+// Both ways round in amplitude (4), the mirror, spreading and absorption of either leg, the
+// sphere's share, and what the pattern lets through once along the mirror's leg.
+double closed_form_db(double reflection, double pattern_once) {
+  const double leg_m = std::hypot(kRange_m, 2.0 * kDepth_m);
+  const double angle_rad = std::atan2(2.0 * kDepth_m, kRange_m);
+  return 10.0 * std::log10(4.0 * reflection * reflection * lambert_sphere(angle_rad) *
+                           pattern_once * kRange_m * kRange_m / (leg_m * leg_m)) -
+         0.3 * (leg_m - kRange_m);
+}
+
+TEST_F(SonarGhost, ASpheresGhostHasItsClosedFormLevel) {
+  EXPECT_NEAR(ghost_over_direct_db(device(), sphere_below_surface(), 0.9), closed_form_db(0.9, 1.0),
+              0.3);
+}
+
+TEST_F(SonarGhost, EachLegPassesThePatternOnce) {
+  scene::Scene scene = sphere_below_surface();
+  const auto expect = [&](double width_rad) {
+    scene.sonars[0].terms.beam.elevation = scene::SonarPattern{.half_power_rad = width_rad};
+    NERITIC_ASSERT_OK(const sonar::BeamPattern pattern,
+                      sonar::BeamPattern::of_half_power_width(sonar::BeamKind::kSinc, width_rad));
+    const double amplitude = pattern.amplitude(std::atan2(2.0 * kDepth_m, kRange_m));
+    EXPECT_NEAR(ghost_over_direct_db(device(), scene, 1.0),
+                closed_form_db(1.0, amplitude * amplitude), 0.3)
+        << degrees(width_rad);
+  };
+  expect(radians(20.0));
+  expect(radians(35.0));
+}
+
+// A plate above the sonar that faces the surface is lit by the mirror and shows the sonar its back.
+TEST_F(SonarGhost, WhatTurnsItsBackGivesNone) {
+  scene::Scene scene = sphere_below_surface();
+  scene.objects = {object_of(scene, scene::make_plane(1.0, 1.0), {0.0, -1.6, -kRange_m})};
+  const SonarFrame direct = ping(device(), scene);
+  scene.sonars[0].terms.ghosts = scene::SonarGhosts{.surface = true};
+  EXPECT_EQ(ping(device(), scene).image.intensity, direct.image.intensity);
+}
+
+}  // namespace
+}  // namespace neritic::tools
