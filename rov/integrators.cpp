@@ -34,6 +34,18 @@ void advance(const StepTask& task, const LagPropagator& by, LagStates& lag) {
     lag[i] = by.advance(lag[i], followed_command(task.vehicle, task.inputs, i));
 }
 
+// Advances the lag over h and returns M^-1 times the impulse that the thrusters gave.
+Vec6 thrust_half(const StepTask& task, const LagPropagator& by, double h, LagStates& lag) {
+  std::array<double, kMaxThrusters> impulses{};
+  for (std::size_t i = 0; i < task.vehicle.thruster_count; ++i) {
+    const double command = followed_command(task.vehicle, task.inputs, i);
+    const LagState before = lag[i];
+    lag[i] = by.advance(before, command);
+    impulses[i] = impulse_of(task.vehicle.lag, before, lag[i], command, h);
+  }
+  return task.vehicle.inverse_mass * thruster_wrench(task.vehicle, impulses);
+}
+
 // C(nu) as a matrix that is skew-symmetric for any nu (Fossen 2011, eq. 3.46): its power is 0.
 Mat6 coriolis_matrix(const Vehicle& vehicle, const Vec6& nu) {
   const Vec6 momentum = vehicle.mass * nu;
@@ -165,28 +177,25 @@ void rk4(const StepTask& task, WaterMotion& motion, LagStates& lag) {
 
 void split_rk4(const StepTask& task, int substeps, WaterMotion& motion, LagStates& lag) {
   const double h = task.dt_s / substeps;
-  const bool lagged = task.vehicle.lag.kind != ThrusterLag::Kind::kNone;
   const LagPropagator half(task.vehicle.lag, 0.5 * h);
-  Vec6 now = thrust(task, lag);
+  const auto rate = [&](double at, const WaterMotion& m) {
+    return motion_rate(task.vehicle, m, task.wrench_at(at), task.inputs);
+  };
+  const auto pushed = [](WaterMotion m, const Vec6& by) {
+    m.velocity = m.velocity + by;
+    return m;
+  };
   for (int i = 0; i < substeps; ++i) {
     const double t = i * h;
-    Vec6 middle = now, end = now;
-    if (lagged) {
-      advance(task, half, lag);
-      middle = thrust(task, lag);
-      advance(task, half, lag);
-      end = thrust(task, lag);
-    }
-    const auto rate = [&](double at, const WaterMotion& m, const Vec6& thrust_now) {
-      return motion_rate(task.vehicle, m, task.wrench_at(at) + thrust_now, task.inputs);
-    };
-    const WaterMotion k1 = rate(t, motion, now);
-    const WaterMotion k2 = rate(t + 0.5 * h, moved(motion, 0.5 * h, k1), middle);
-    const WaterMotion k3 = rate(t + 0.5 * h, moved(motion, 0.5 * h, k2), middle);
-    const WaterMotion k4 = rate(t + h, moved(motion, h, k3), end);
-    motion = moved(motion, h, mean(k1, k2, k3, k4));
+    // Changes of velocity by the thrusters alone.
+    const Vec6 by_middle = thrust_half(task, half, 0.5 * h, lag);
+    const Vec6 by_end = by_middle + thrust_half(task, half, 0.5 * h, lag);
+    const WaterMotion k1 = rate(t, motion);
+    const WaterMotion k2 = rate(t + 0.5 * h, pushed(moved(motion, 0.5 * h, k1), by_middle));
+    const WaterMotion k3 = rate(t + 0.5 * h, pushed(moved(motion, 0.5 * h, k2), by_middle));
+    const WaterMotion k4 = rate(t + h, pushed(moved(motion, h, k3), by_end));
+    motion = pushed(moved(motion, h, mean(k1, k2, k3, k4)), by_end);
     normalise(motion.attitude);
-    now = end;
   }
 }
 

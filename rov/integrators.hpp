@@ -25,7 +25,8 @@ using LagStates = std::array<LagState, kMaxThrusters>;
 void semi_implicit(const StepTask& task, int substeps, bool implicit_coriolis, WaterMotion& motion,
                    LagStates& lag);
 void rk4(const StepTask& task, WaterMotion& motion, LagStates& lag);
-// The lag exactly, the rest by RK4.
+// The lag exactly, the rest by RK4. What the thrusters give is known beforehand as an impulse, so
+// that RK4 sees nu less that impulse's share, whose slope has none of the lag's fast swings.
 void split_rk4(const StepTask& task, int substeps, WaterMotion& motion, LagStates& lag);
 
 // The vector's length is 1 again.

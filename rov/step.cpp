@@ -16,7 +16,7 @@ constexpr double kLongestStep = 10.0;   // s
 // Rate times substep at which RK4 errs by about 1e-6 of a motion (measured by `tradeoff physics`);
 // the lag is exact and only has to be sampled.
 constexpr double kGuard = 0.25;
-constexpr double kLagGuard = 0.5;
+constexpr double kLagGuard = 0.7;
 // More RK4 substeps than this cost more than a simulation at 240 Hz in all; semi-implicit ones are
 // stable at any length, so that fewer do.
 constexpr int kMostSubsteps = 512;

@@ -17,10 +17,9 @@ enum class Integrator {
   // Order 4. The classical method over all of the state, thruster lag included; diverges where the
   // step is too long for the lag or the drag.
   kRk4,
-  // Order 4, the default: thruster lag exactly, the rest by RK4 in as many substeps as keep the
-  // fastest rate times the substep below kGuard; where that takes too many, backward Euler with
-  // implicit Coriolis terms, to which
-  // no force and no step length can add more energy than the force gave.
+  // Order 4, the default: thrust as its lag's exact impulses, the rest by RK4 in as many substeps as
+  // keep the fastest rate times the substep below a bound; where that takes too many, backward Euler
+  // with implicit Coriolis terms, to which no step can add more energy than the forces gave.
   kGuarded,
 };
 std::string_view name_of(Integrator integrator);

@@ -84,6 +84,21 @@ LagState lag_rate(const ThrusterLag& lag, const LagState& state, double command_
   return {};
 }
 
+double impulse_of(const ThrusterLag& lag, const LagState& before, const LagState& after,
+                  double command_n, double h_s) {
+  double impulse = command_n * h_s;
+  if (lag.kind == ThrusterLag::Kind::kFirstOrder) impulse -= lag.time_s * (after[0] - before[0]);
+  if (lag.kind == ThrusterLag::Kind::kThirdOrder) {
+    // lag_rate() integrated: r times the integrals of the second and third state are the changes of
+    // the first and second.
+    const double r = std::cbrt(lag.a0);
+    const double d0 = after[0] - before[0], d1 = after[1] - before[1], d2 = after[2] - before[2];
+    impulse -= (d2 + lag.a1 / (r * r) * d0 + lag.a2 / r * d1) / r;
+    impulse += lag.b1 / lag.a0 * d0;
+  }
+  return impulse;
+}
+
 LagState settled(const ThrusterLag& lag, double command_n) {
   return {lag.kind == ThrusterLag::Kind::kNone ? 0.0 : command_n, 0.0, 0.0};
 }

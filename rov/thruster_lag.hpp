@@ -28,6 +28,10 @@ Status check_lag(const ThrusterLag& lag);
 double force_of(const ThrusterLag& lag, const LagState& state, double command_n);
 // d state / dt.
 LagState lag_rate(const ThrusterLag& lag, const LagState& state, double command_n);
+// The integral of the force, N s, over a time h at constant command in which the state went from
+// before to after: exact, since the state's own equation gives it from the differences.
+double impulse_of(const ThrusterLag& lag, const LagState& before, const LagState& after,
+                  double command_n, double h_s);
 // The state in which a constant command has settled.
 LagState settled(const ThrusterLag& lag, double command_n);
 // The fastest pole's rate, an upper bound, 1/s; 0 without lag.

@@ -6,12 +6,25 @@
 
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/tradeoff/physics_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
 
 namespace neritic::tools {
-Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
-  if (flags.what != "sonar")
-    return bad_input("tradeoff: '{}' found, sonar is accepted", flags.what);
+namespace {
+
+Result<std::string> trade_physics(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return bad_input("tradeoff: kind '{}' found, none is accepted for physics", flags.kind);
+  PhysicsTradeoffOptions options;
+  options.quick = flags.quick;
+  Progress progress("tradeoff physics", steps(options));
+  options.step = [&] { progress.step(); };
+  NERITIC_TRY(const PhysicsTradeoff tradeoff, run_physics_tradeoff(options));
+  NERITIC_TRY_STATUS(write_physics_tradeoff(flags.out, tradeoff));
+  return flags.out.string() + ": physics.csv, .md, .json, .png";
+}
+
+Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   SonarTradeoffOptions options;
   options.scene = flags.scene == "none" ? "" : flags.scene;
   options.device = flags.device;
@@ -35,6 +48,14 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   NERITIC_TRY(const SonarTradeoff tradeoff, run_sonar_tradeoff(options));
   NERITIC_TRY_STATUS(write_sonar_tradeoff(flags.out, tradeoff));
   return flags.out.string() + ": tables (.csv, .md), pictures";
+}
+
+}  // namespace
+
+Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
+  if (flags.what == "sonar") return trade_sonar(flags);
+  if (flags.what == "physics") return trade_physics(flags);
+  return bad_input("tradeoff: '{}' found, sonar or physics is accepted", flags.what);
 }
 
 }  // namespace neritic::tools

@@ -1,0 +1,102 @@
+// `neritic tradeoff physics`: the reference integrator against closed forms, what the curves say,
+// and the rates that a vehicle's error is turned into.
+#include "tools/tradeoff/physics_tradeoff.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/core/files.hpp"
+#include "rov/step_choice.hpp"
+#include "tests/support/support.hpp"
+#include "tools/tradeoff/extrapolation.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using rov::Integrator;
+
+TEST(Extrapolation, FollowsClosedFormsToItsTolerance) {
+  // A swing, and a fall against quadratic drag.
+  const auto swing = extrapolate(
+      [](double, const Vector& y) {
+        return Vector{y[1], -9.0 * y[0]};
+      },
+      0.0, 10.0, {1.0, 0.0}, 1e-13);
+  EXPECT_TRUE(swing.converged);
+  EXPECT_NEAR(swing.y[0], std::cos(30.0), 1e-11);
+  EXPECT_NEAR(swing.y[1], -3.0 * std::sin(30.0), 1e-11);
+  const auto fall = extrapolate(
+      [](double, const Vector& y) { return Vector{9.82 - 0.5 * std::abs(y[0]) * y[0]}; }, 0.0, 3.0,
+      {0.0}, 1e-13);
+  const double terminal = std::sqrt(9.82 / 0.5);
+  EXPECT_NEAR(fall.y[0], terminal * std::tanh(3.0 * 9.82 / terminal), 1e-11);
+  // Time-dependent, and stiff enough to need many steps.
+  const auto forced =
+      extrapolate([](double t, const Vector& y) { return Vector{-200.0 * (y[0] - std::cos(t))}; },
+                  0.0, 2.0, {0.0}, 1e-12);
+  const double k = 200.0, a = k * k / (k * k + 1.0), b = k / (k * k + 1.0);
+  EXPECT_NEAR(forced.y[0], a * std::cos(2.0) + b * std::sin(2.0), 1e-10);
+  EXPECT_GT(forced.steps, 3);
+}
+
+TEST(Extrapolation, SaysSoWhereThereIsNoSolution) {
+  const auto pole = extrapolate([](double, const Vector& y) { return Vector{y[0] * y[0]}; }, 0.0,
+                                2.0, {1.0}, 1e-10);  // 1 / (1 - t)
+  EXPECT_FALSE(pole.converged);
+}
+
+const PhysicsPoint& point(const PhysicsTradeoff& t, const std::string& vehicle,
+                          Integrator integrator, double step_ms) {
+  for (const PhysicsPoint& p : t.points)
+    if (p.vehicle == vehicle && p.integrator == integrator &&
+        std::abs(1e3 * p.step_s - step_ms) < 1e-6)
+      return p;
+  ADD_FAILURE() << vehicle << " " << step_ms;
+  return t.points.front();
+}
+
+TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
+  const auto measured = run_physics_tradeoff({.quick = true});
+  ASSERT_TRUE(measured.ok()) << measured.error().message;
+  const PhysicsTradeoff& t = *measured;
+  EXPECT_EQ(t.points.size(), 54u);
+  EXPECT_LT(t.reference_error_m, 1e-9);
+  for (const char* vehicle : {"lag", "no lag"}) {
+    for (const double step_ms : {1.0, 5.0, 10.0, 25.0, 50.0}) {
+      EXPECT_LT(point(t, vehicle, Integrator::kGuarded, step_ms).error_m, 5e-6) << step_ms;
+      EXPECT_GT(point(t, vehicle, Integrator::kSemiImplicit, step_ms).error_m, 1e-5) << step_ms;
+    }
+    EXPECT_LT(point(t, vehicle, Integrator::kRk4, 1.0).error_m, 1e-8);
+    EXPECT_NEAR(point(t, vehicle, Integrator::kSemiImplicit, 2.0).order, 1.0, 0.15);
+  }
+  // Plain RK4 over a lag that is four times as fast as the step.
+  EXPECT_FALSE(point(t, "lag", Integrator::kRk4, 50.0).error_m < 0.01);
+  const PhysicsPoint* best = cheapest(t, 1e-5);
+  ASSERT_NE(best, nullptr);
+  EXPECT_LE(best->error_m, 1e-5);
+  EXPECT_EQ(cheapest(t, 0.0), nullptr);
+  ASSERT_NE(knee(t, "lag"), nullptr);
+
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_physics_tradeoff(folder / "out", t).ok());
+  for (const char* name : {"physics.csv", "physics.md", "physics.json", "physics.png"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
+}
+
+TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
+  EXPECT_EQ(rov::cheapest_rate(1e-3)->hz, 80.0);
+  EXPECT_EQ(rov::cheapest_rate(1e-6)->hz, 200.0);
+  EXPECT_EQ(rov::cheapest_rate(2e-9)->hz, 1000.0);
+  EXPECT_FALSE(rov::cheapest_rate(1e-12).ok());
+  EXPECT_FALSE(rov::cheapest_rate(std::nan("")).ok());
+  const auto rates = rov::measured_rates();
+  for (std::size_t i = 1; i < rates.size(); ++i) {
+    EXPECT_GT(rates[i].hz, rates[i - 1].hz);
+    EXPECT_LT(rates[i].error_m, rates[i - 1].error_m);
+    EXPECT_GT(rates[i].us_a_second, rates[i - 1].us_a_second);
+  }
+}
+
+}  // namespace
+}  // namespace neritic::tools

@@ -1,0 +1,48 @@
+// `neritic tradeoff physics`: how far each integrator of the vehicle's motion strays from an
+// adaptive one of high order, and what it costs, over step sizes from 1 to 50 ms, with and without
+// the thrusters' lag. One thread.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/core/result.hpp"
+#include "rov/step.hpp"
+
+namespace neritic::tools {
+
+struct PhysicsTradeoffOptions {
+  bool quick = false;                  // a shorter flight, timed once: to see that it works
+  std::function<void()> step = [] {};  // after each of steps(options)
+};
+std::uint64_t steps(const PhysicsTradeoffOptions& options);
+
+struct PhysicsPoint {
+  std::string vehicle;  // "lag" or "no lag"
+  rov::Integrator integrator = rov::Integrator::kGuarded;
+  double step_s = 0.0;
+  // The largest over the flight, at every change of the commands. Not finite: it diverged.
+  double error_m = 0.0, error_rad = 0.0;
+  double us_a_second = 0.0;  // of one core, a second of flight
+  double order = 0.0;        // of the error in the step, from the next smaller one; 0: the smallest
+};
+
+struct PhysicsTradeoff {
+  double flight_s = 0.0;
+  double reference_error_m = 0.0;  // between two tolerances of the reference
+  std::vector<PhysicsPoint> points;
+};
+Result<PhysicsTradeoff> run_physics_tradeoff(const PhysicsTradeoffOptions& options);
+
+// The knee of the front of all integrators (no other is both cheaper and better), both axes
+// logarithmic.
+const PhysicsPoint* knee(const PhysicsTradeoff& tradeoff, const std::string& vehicle);
+// The cheapest whose error is at most max_error_m with and without lag; the one with lag is given.
+const PhysicsPoint* cheapest(const PhysicsTradeoff& tradeoff, double max_error_m);
+
+// physics.csv, physics.md, physics.json, physics.png in the folder.
+Status write_physics_tradeoff(const std::filesystem::path& folder, const PhysicsTradeoff& tradeoff);
+
+}  // namespace neritic::tools
