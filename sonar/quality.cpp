@@ -14,6 +14,11 @@ using scene::SonarKind;
 
 // name, pixels a cell, columns, rows, range bins a resolution cell, error, ms: from
 // `neritic tradeoff sonar` in assets/scenes/harbour.toml, llvmpipe on two shared Xeon cores.
+constexpr QualityLevel kImaging[] = {
+    {"draft", 0.7, 11.94, 0.83, 1, 0.0442, 82.8},
+    {"standard", 1, 15.92, 1.67, 2, 0.0129, 197.4},
+    {"reference", 0.7, 23.88, 3.33, 2, 0.0089, 301.4},
+};
 constexpr QualityLevel kProfiling[] = {
     {"draft", 0.7, 1.99, 8, 4, 0.0482, 17.7},
     {"standard", 1, 7.96, 32, 4, 0.0187, 60.9},
@@ -35,8 +40,8 @@ constexpr QualityLevel kMechanical[] = {
     {"reference", 1.4, 35.6, 6.45, 8, 0.0098, 141.0},
 };
 
-constexpr std::uint32_t kUnsetBins = 500;  // scene::Sonar's default
-constexpr std::uint32_t kMaxElevationBins = 8192;
+constexpr std::uint32_t kMostBins = 8192;  // as scenes accept
+constexpr double kMostFiner = 1e4;         // keeps a forged ratio from overflowing
 
 bool rows_are_counts(SonarKind kind) {
   return kind == SonarKind::kProfiling || kind == SonarKind::kEchoSounder;
@@ -51,12 +56,6 @@ double range_cell_m(const scene::Sonar& s) {
 
 Result<const QualityLevel*> level_of(const scene::Sonar& sonar) {
   const auto levels = quality_levels(sonar.kind);
-  if (levels.empty())
-    return bad_input(
-        "sonar {}: {} found; no level is measured for kind {}: gbuffer_scale, bins and "
-        "beam.samples "
-        "are accepted",
-        sonar.name, sonar.quality.empty() ? "max_error" : "quality", scene::name_of(sonar.kind));
   if (!sonar.quality.empty()) {
     for (const QualityLevel& level : levels)
       if (sonar.quality == level.name) return &level;
@@ -86,7 +85,7 @@ std::uint32_t columns_for(const scene::Sonar& sonar, const QualityLevel& level) 
 std::span<const QualityLevel> quality_levels(SonarKind kind) {
   switch (kind) {
     case SonarKind::kImaging:
-      return {};
+      return kImaging;
     case SonarKind::kProfiling:
       return kProfiling;
     case SonarKind::kEchoSounder:
@@ -108,23 +107,21 @@ Status apply_quality(scene::Sonar& sonar) {
   const double span_m = sonar.range_max_m - sonar.range_min_m, cell_m = range_cell_m(sonar);
   const double least_bins = level->bins_a_cell * span_m / cell_m;
   // The last of a measured sensor's bins may be a fraction.
-  if (sonar.terms.range_spread && sonar.bins_range < 0.99 * least_bins)
+  if (sonar.terms.range_spread)
+    sonar.bins_range *= static_cast<std::uint32_t>(
+        std::clamp(std::ceil(0.99 * least_bins / sonar.bins_range), 1.0, kMostFiner));
+  if (sonar.bins_range > kMostBins)
     return bad_input(
-        "sonar {}: {} range bins found, at least {} is accepted for quality {}: {:g} to a "
-        "resolution cell c / 2B of {:.1f} mm",
-        sonar.name, sonar.bins_range, std::lround(least_bins), level->name, level->bins_a_cell,
-        1000.0 * cell_m);
-  if (sonar.gbuffer_scale == 0.0) sonar.gbuffer_scale = level->gbuffer_scale;
-  if (sonar.bins_elevation == kUnsetBins) {
-    const double rows = rows_are_counts(sonar.kind) ? level->rows : level->rows * span_m / cell_m;
-    sonar.bins_elevation =
-        static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMaxElevationBins}));
-  }
-  if (sonar.kind == SonarKind::kEchoSounder) {
-    if (sonar.bins_azimuth == kUnsetBins) sonar.bins_azimuth = columns_for(sonar, *level);
-  } else if (sonar.terms.beam.samples == 1) {
+        "sonar {}: quality {} over {:g} m needs {} range bins, at most {} are accepted", sonar.name,
+        level->name, span_m, sonar.bins_range, kMostBins);
+  sonar.gbuffer_scale = level->gbuffer_scale;
+  const double rows = rows_are_counts(sonar.kind) ? level->rows : level->rows * span_m / cell_m;
+  sonar.bins_elevation =
+      static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMostBins}));
+  if (sonar.kind == SonarKind::kEchoSounder)
+    sonar.bins_azimuth = columns_for(sonar, *level);
+  else
     sonar.terms.beam.samples = columns_for(sonar, *level);
-  }
   return {};
 }
 

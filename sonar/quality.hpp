@@ -23,14 +23,15 @@ struct QualityLevel {
   double error;          // measured: mean relative error of a cell, weighted by its energy
   double ms;             // a ping of the measured sensor on the measured machine
 };
-// From draft to reference; empty for a kind that is not measured: imaging.
+// From draft to reference.
 std::span<const QualityLevel> quality_levels(scene::SonarKind kind);
 
-// Fills in what a sonar's `quality` or `max_error` asks for and its settings leave at their
-// defaults: gbuffer_scale 0, one beam sample (an echo sounder: 500 azimuth bins), 500 elevation
-// bins. max_error takes the cheapest level whose measured error is at most that. Without either it
-// changes nothing. kBadInput where no level is that good, where range bins are too coarse for it,
-// where both are named, or where the level is not known.
+// Samples a sonar as its `quality` or `max_error` asks for: sets gbuffer_scale, elevation bins and
+// beam samples (of an echo sounder its azimuth bins), whatever they were, and multiplies its range
+// bins by the least whole number that makes them fine enough, so that bins of the device's own can
+// be summed from them. max_error takes the cheapest level whose measured error is at most that.
+// Without either it changes nothing; a second time it changes nothing more. kBadInput where no level
+// is that good, where both are named, or where the level is not known.
 Status apply_quality(scene::Sonar& sonar);
 
 }  // namespace neritic::sonar

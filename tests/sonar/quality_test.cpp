@@ -3,15 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "engine/scene/sonar_file.hpp"
 #include "sonar/head.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::sonar {
 namespace {
 
 using scene::SonarKind;
 
-// All that are measured.
-constexpr SonarKind kKinds[] = {SonarKind::kProfiling, SonarKind::kEchoSounder,
+constexpr SonarKind kKinds[] = {SonarKind::kImaging, SonarKind::kProfiling, SonarKind::kEchoSounder,
                                 SonarKind::kSideScan, SonarKind::kMechanical};
 
 scene::Sonar sonar_of(SonarKind kind) {
@@ -65,16 +68,55 @@ TEST(SonarQuality, ALevelFillsWhatIsUnsetAndCanBePlanned) {
     }
 }
 
-TEST(SonarQuality, WhatTheSceneSetsStays) {
+TEST(SonarQuality, ALevelWinsAndASecondTimeChangesNothing) {
+  for (const SonarKind kind : kKinds) {
+    scene::Sonar sonar = sonar_of(kind);
+    sonar.quality = "standard";
+    sonar.gbuffer_scale = 0.3;
+    sonar.bins_elevation = 7777;
+    ASSERT_TRUE(apply_quality(sonar).ok());
+    EXPECT_NE(sonar.gbuffer_scale, 0.3);
+    EXPECT_NE(sonar.bins_elevation, 7777u);
+    const scene::Sonar once = sonar;
+    ASSERT_TRUE(apply_quality(sonar).ok());
+    EXPECT_TRUE(scene::same_settings(once, sonar)) << scene::name_of(kind);
+  }
+}
+
+TEST(SonarQuality, RangeBinsGrowByAWholeNumberUntilTheyResolveThePulse) {
   scene::Sonar sonar = sonar_of(SonarKind::kMechanical);
-  sonar.quality = "reference";
-  sonar.gbuffer_scale = 0.3;
-  sonar.bins_elevation = 64;
-  sonar.terms.beam.samples = 2;
+  sonar.quality = "standard";
+  sonar.bins_range = 70;
   ASSERT_TRUE(apply_quality(sonar).ok());
-  EXPECT_EQ(sonar.gbuffer_scale, 0.3);
-  EXPECT_EQ(sonar.bins_elevation, 64u);
-  EXPECT_EQ(sonar.terms.beam.samples, 2u);
+  EXPECT_EQ(sonar.bins_range % 70, 0u);
+  const double cell_m = 1500.0 / (2.0 * sonar.terms.range_spread->bandwidth_hz);
+  const double wanted = quality_levels(sonar.kind)[1].bins_a_cell * 15.0 / cell_m;
+  EXPECT_GE(sonar.bins_range, 0.95 * wanted);
+  EXPECT_LE(sonar.bins_range, 1.05 * wanted + 70);
+}
+
+// Every device that comes with the program can be had at every level, if need be over less range.
+TEST(SonarQuality, EveryPresetTakesEveryLevel) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::source_dir() / "assets" / "sensors")) {
+    if (entry.path().extension() != ".toml") continue;
+    auto loaded = scene::load_sonar(entry.path());
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    for (const char* level : {"draft", "standard", "reference"}) {
+      scene::Sonar sonar = *loaded;
+      sonar.quality = level;
+      const Status whole = apply_quality(sonar);
+      if (whole.ok()) continue;
+      EXPECT_NE(whole.error().message.find("at most 8192"), std::string::npos)
+          << whole.error().message;
+      EXPECT_STRNE(level, "draft") << whole.error().message;
+      sonar = *loaded;
+      sonar.quality = level;
+      sonar.range_max_m = sonar.range_min_m + 0.4 * (sonar.range_max_m - sonar.range_min_m);
+      const Status part = apply_quality(sonar);
+      EXPECT_TRUE(part.ok()) << part.error().message;
+    }
+  }
 }
 
 TEST(SonarQuality, ColumnsFollowTheBeamsWidth) {
@@ -118,12 +160,6 @@ TEST(SonarQuality, RefusalsNameWhatIsAccepted) {
   refused([](auto& s) { s.max_error = 1e-6; }, "max_error");
   refused(
       [](auto& s) {
-        s.kind = SonarKind::kImaging;
-        s.quality = "draft";
-      },
-      "no level is measured for kind imaging");
-  refused(
-      [](auto& s) {
         s.quality = "draft";
         s.max_error = 0.02;
       },
@@ -131,7 +167,7 @@ TEST(SonarQuality, RefusalsNameWhatIsAccepted) {
   refused(
       [](auto& s) {
         s.quality = "reference";
-        s.bins_range = 50;
+        s.range_max_m = 10000.0;
       },
       "range bins");
 }
