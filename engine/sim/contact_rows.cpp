@@ -1,6 +1,8 @@
 // Rows of a contact and the steps of a round.
 #include "engine/sim/contact_rows.hpp"
 
+#include "engine/sim/plane_axes.hpp"
+
 namespace neritic::sim {
 
 SolverRow::SolverRow(const Vec3& point_m, const Vec3& direction, const InverseMass& inverse_mass)
@@ -25,9 +27,8 @@ SolverContact::SolverContact(const BodyContact& contact, const Vec3& side_, cons
 }
 
 SolverContact solver_contact(const BodyContact& contact, const InverseMass& inverse_mass) {
-  const Vec3 seed = std::abs(contact.normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-  const Vec3 side = glm::normalize(glm::cross(seed, contact.normal));
-  return {contact, side, glm::cross(contact.normal, side), inverse_mass};
+  const PlaneAxes across = plane_axes(contact.normal);
+  return {contact, across.x, across.y, inverse_mass};
 }
 
 double solve_normal(SolverContact& contact, double target_m_s, Six& velocity) {

@@ -26,7 +26,8 @@ struct Twist {
 // Rows first; three linear components, then three angular: [kg^-1 ...].
 using InverseMass = std::array<double, 36>;
 
-inline constexpr double kBounce_m_s = 0.01;
+// More than gravity brings in a step of 240 Hz: what lies does not hop.
+inline constexpr double kBounce_m_s = 0.05;
 
 // In body axes about the body's origin.
 struct BodyContact {

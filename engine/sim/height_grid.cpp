@@ -88,13 +88,19 @@ std::optional<Triangle> HeightGrid::triangle(std::uint32_t index, double scale,
                                              const Vec3& offset) const {
   const auto own = corners(index);
   if (!own) return std::nullopt;
-  const auto place = [&](const Corner& at) { return sample(at[0], at[1]) * scale + offset; };
   Triangle out;
   out.index = index;
+  for (std::size_t i = 0; i < 3; ++i)
+    out.corner[i] = sample((*own)[i][0], (*own)[i][1]) * scale + offset;
+  return out;
+}
+
+void HeightGrid::link(Triangle& triangle, double scale, const Vec3& offset) const {
+  const std::uint32_t index = triangle.index;
+  const auto own = *corners(index);
   const std::int64_t column = index / 2 % (columns_ - 1), row = index / 2 / (columns_ - 1);
   for (std::size_t i = 0; i < 3; ++i) {
-    const Corner &a = (*own)[i], &b = (*own)[(i + 1) % 3];
-    out.corner[i] = place(a);
+    const Corner &a = own[i], &b = own[(i + 1) % 3];
     // Across an edge along x lies the cell in the next or previous row, along z in the next or
     // previous column, across the cut the cell itself.
     std::int64_t next_column = column, next_row = row;
@@ -104,11 +110,11 @@ std::optional<Triangle> HeightGrid::triangle(std::uint32_t index, double scale,
     if (!other) continue;
     const auto across = *corners(*other);
     for (const Corner& corner : across)
-      if (corner != a && corner != b) out.across[i] = place(corner);
-    out.shared[i] = true;
-    out.owned[i] = index < *other;
+      if (corner != a && corner != b)
+        triangle.across[i] = sample(corner[0], corner[1]) * scale + offset;
+    triangle.shared[i] = true;
+    triangle.owned[i] = index < *other;
   }
-  return out;
 }
 
 std::optional<HeightGrid::Hit> HeightGrid::cast(const Vec3& origin, const Vec3& direction,

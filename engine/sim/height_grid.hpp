@@ -24,7 +24,9 @@ class HeightGrid {
   const Box& bounds() const { return bounds_; }
 
   // Triangle 2 c or 2 c + 1 of cell c, times scale and moved by offset; nothing where it is a hole.
+  // link() adds what lies across its edges.
   std::optional<Triangle> triangle(std::uint32_t index, double scale, const Vec3& offset) const;
+  void link(Triangle& triangle, double scale, const Vec3& offset) const;
 
   // Calls found(index) for the triangles whose cell and heights the box overlaps, in rows.
   template <class Found>

@@ -8,12 +8,10 @@
 
 #include "engine/sim/body_shape.hpp"
 #include "engine/sim/convex_query.hpp"
+#include "engine/sim/plane_axes.hpp"
 
 namespace neritic::sim {
 namespace {
-
-// Directions nearer than this are one: GJK answers to some 1e-7.
-constexpr double kSameDirection = 1e-6;  // 1 - cosine; 1.4 mrad
 
 // A polygon of a part's core in a plane, and heights over it. Left unset where there is no point:
 // filling it would cost more than using it.
@@ -71,19 +69,9 @@ std::size_t clip(const FlatPolygon& points, std::size_t count, const Flat& a, co
   return size;
 }
 
-// Axes x and y across a unit normal z, right-handed.
-struct Across {
-  Vec3 x, y;
-};
-Across across_of(const Vec3& normal) {
-  const Vec3 side = std::abs(normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-  const Vec3 x = glm::normalize(glm::cross(side, normal));
-  return {x, glm::cross(normal, x)};
-}
-
 // The core's points that are no higher than limit over the plane, in the plane's axes.
 std::size_t points_below(const PlacedPart& part, const Vec3& origin, const Vec3& normal,
-                         const Across& axes, double limit_m, FlatPolygon& out) {
+                         const PlaneAxes& axes, double limit_m, FlatPolygon& out) {
   std::size_t count = 0;
   for (const Vec3& p : part.core_m) {
     const Vec3 from = p - origin;
@@ -99,7 +87,7 @@ std::size_t points_below(const PlacedPart& part, const Vec3& origin, const Vec3&
 double add_face(const PlacedPart& part, const Triangle& triangle, const Vec3& normal,
                 double margin_m, std::vector<TouchPoint>& out) {
   const Vec3& origin = triangle.corner[0];
-  const Across axes = across_of(normal);
+  const PlaneAxes axes = plane_axes(normal);
   FlatPolygon polygon, clipped;
   std::size_t count = points_below(part, origin, normal, axes, part.radius_m + margin_m, polygon);
   count = flat_hull(polygon, count);
@@ -128,7 +116,7 @@ bool add_edge(const PlacedPart& part, const Vec3& a, const Vec3& b, const Vec3& 
               double gap_m, std::uint32_t index, std::vector<TouchPoint>& out) {
   const Vec3 along = glm::normalize(b - a);
   const Vec3 side = glm::cross(normal, along);
-  const Across axes{along, side};
+  const PlaneAxes axes{along, side};
   FlatPolygon polygon;
   // The underside: what is within a hundredth of the part's size of its lowest point.
   const double lowest_m = gap_m + part.radius_m;
@@ -227,7 +215,6 @@ double lowest_over(const PlacedPart& part, const Vec3& origin, const Vec3& norma
 void add_touch_points(const PlacedPart& part, const Triangle& triangle, double margin_m,
                       std::vector<TouchPoint>& out) {
   const auto [plane_gap_m, side] = plane_separation(part, triangle);
-  if (plane_gap_m > margin_m) return;
   // Apart, and what is lowest over the plane lies over the triangle: no other feature is nearer.
   const std::size_t before = out.size();
   if (plane_gap_m > -part.radius_m) {
@@ -275,70 +262,6 @@ Separation widest_separation(const PlacedPart& part, const Triangle& triangle) {
   const auto found = distance_of(part, triangle);
   if (!found) return plane_separation(part, triangle);
   return {found->distance_m - part.radius_m, found->direction};
-}
-
-namespace {
-
-// Eight directions in a plane, none of them along an axis.
-constexpr std::size_t kDirections = 8;
-std::array<Vec2, kDirections> spread_directions() {
-  std::array<Vec2, kDirections> directions;
-  for (std::size_t k = 0; k < kDirections; ++k) {
-    const double angle_rad = 0.2 + static_cast<double>(k) * (2.0 * kPi / kDirections);
-    directions[k] = Vec2(std::cos(angle_rad), std::sin(angle_rad));
-  }
-  return directions;
-}
-
-// The outermost of the group in each direction, and the deepest where it is deeper than those by
-// more than rounding. Ties go to the first.
-void keep_outermost(std::span<const TouchPoint> points, std::span<const std::size_t> group,
-                    const std::array<Vec2, kDirections>& directions, std::vector<bool>& keep) {
-  constexpr double kTie_m = 1e-9, kDeeper_m = 1e-7;
-  const Across axes = across_of(points[group[0]].normal);
-  std::array<std::size_t, kDirections> outermost;
-  outermost.fill(group[0]);
-  std::array<double, kDirections> farthest_m;
-  farthest_m.fill(-std::numeric_limits<double>::infinity());
-  std::size_t deepest = group[0];
-  for (const std::size_t i : group) {
-    const Vec2 at(glm::dot(axes.x, points[i].point_m), glm::dot(axes.y, points[i].point_m));
-    for (std::size_t k = 0; k < kDirections; ++k) {
-      const double far_m = glm::dot(directions[k], at);
-      if (far_m > farthest_m[k] + kTie_m) farthest_m[k] = far_m, outermost[k] = i;
-    }
-    if (points[i].gap_m < points[deepest].gap_m) deepest = i;
-  }
-  double deepest_kept_m = std::numeric_limits<double>::infinity();
-  for (const std::size_t i : outermost) {
-    keep[i] = true;
-    deepest_kept_m = std::min(deepest_kept_m, points[i].gap_m);
-  }
-  if (points[deepest].gap_m < deepest_kept_m - kDeeper_m) keep[deepest] = true;
-}
-
-}  // namespace
-
-void thin_touch_points(std::vector<TouchPoint>& points, std::size_t from) {
-  const std::span<const TouchPoint> own(points.data() + from, points.size() - from);
-  if (own.size() <= 1) return;
-  const auto directions = spread_directions();
-  std::vector<bool> seen(own.size(), false), keep(own.size(), false);
-  std::vector<std::size_t> group;
-  for (std::size_t first = 0; first < own.size(); ++first) {
-    if (seen[first]) continue;
-    group.clear();
-    for (std::size_t i = first; i < own.size(); ++i) {
-      if (seen[i] || glm::dot(own[i].normal, own[first].normal) < 1.0 - kSameDirection) continue;
-      seen[i] = true;
-      group.push_back(i);
-    }
-    keep_outermost(own, group, directions, keep);
-  }
-  std::size_t kept = from;
-  for (std::size_t i = 0; i < keep.size(); ++i)
-    if (keep[i]) points[kept++] = points[from + i];
-  points.resize(kept);
 }
 
 }  // namespace neritic::sim

@@ -26,10 +26,10 @@ struct TouchPoint {
   std::uint32_t triangle = 0;
 };
 
-// Adds the points of the triangle at which the part is no farther than margin_m away. A face gives
-// the corners of the common area, an edge the ends of the common length. Contacts of an edge or
-// corner that another triangle hides are left out, so that nothing catches on the seams of a smooth
-// surface.
+// Adds the points of the linked triangle at which the part is no farther than margin_m away. A face
+// gives the corners of the common area, an edge the ends of the common length. Contacts of an edge
+// or corner that another triangle hides are left out, so that nothing catches on the seams of a
+// smooth surface.
 void add_touch_points(const PlacedPart& part, const Triangle& triangle, double margin_m,
                       std::vector<TouchPoint>& out);
 
@@ -39,7 +39,8 @@ struct Separation {
   double gap_m = 0.0;
   Vec3 direction{0.0};
 };
-// The triangle's own plane, on the side of the part's centre: quick, and often enough.
+// The triangle's own plane, on the side of the part's centre: quick, and often enough. Needs no
+// links.
 Separation plane_separation(const PlacedPart& part, const Triangle& triangle);
 // The widest.
 Separation widest_separation(const PlacedPart& part, const Triangle& triangle);

@@ -17,16 +17,16 @@ std::array<float, 3> place_key(const Vec3f& p) {
 }  // namespace
 
 void MeshTopology::weld(std::span<const Vec3f> vertices_m, std::span<const std::uint32_t> indices) {
-  std::vector<std::uint32_t> order(vertices_m.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](std::uint32_t i) { return std::pair(place_key(vertices_m[i]), i); };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::vector<std::pair<std::array<float, 3>, std::uint32_t>> places;
+  places.reserve(vertices_m.size());
+  for (std::uint32_t i = 0; i < vertices_m.size(); ++i)
+    places.emplace_back(place_key(vertices_m[i]), i);
+  std::sort(places.begin(), places.end());
   std::vector<std::uint32_t> welded(vertices_m.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i == 0 || key(order[i]).first != key(order[i - 1]).first)
-      mesh_.vertices_.push_back(vertices_m[order[i]]);
-    welded[order[i]] = static_cast<std::uint32_t>(mesh_.vertices_.size() - 1);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (i == 0 || places[i].first != places[i - 1].first)
+      mesh_.vertices_.push_back(vertices_m[places[i].second]);
+    welded[places[i].second] = static_cast<std::uint32_t>(mesh_.vertices_.size() - 1);
   }
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     TriangleMesh::Corners corners{};
@@ -40,19 +40,17 @@ void MeshTopology::weld(std::span<const Vec3f> vertices_m, std::span<const std::
 }
 
 void MeshTopology::drop_repeated() {
-  const auto sorted = [](const TriangleMesh::Corners& corners) {
-    auto vertex = corners.vertex;
+  std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> keys;
+  keys.reserve(mesh_.corners_.size());
+  for (std::uint32_t t = 0; t < mesh_.corners_.size(); ++t) {
+    auto vertex = mesh_.corners_[t].vertex;
     std::sort(vertex.begin(), vertex.end());
-    return vertex;
-  };
-  std::vector<std::uint32_t> order(mesh_.corners_.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](std::uint32_t i) { return std::pair(sorted(mesh_.corners_[i]), i); };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  std::vector<bool> keep(order.size(), true);
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (key(order[i]).first == key(order[i - 1]).first) keep[order[i]] = false;
+    keys.emplace_back(vertex, t);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<bool> keep(keys.size(), true);
+  for (std::size_t i = 1; i < keys.size(); ++i)
+    if (keys[i].first == keys[i - 1].first) keep[keys[i].second] = false;
   std::vector<TriangleMesh::Corners> kept;
   for (std::size_t i = 0; i < keep.size(); ++i)
     if (keep[i]) kept.push_back(mesh_.corners_[i]);

@@ -47,7 +47,10 @@ struct LocalThing {
   Vec3 to_shape(const Vec3& local_m) const { return (origin_m + local_m) / scale; }
   Box to_shape(const Box& local) const { return {to_shape(local.low), to_shape(local.high)}; }
 
-  // Calls found(triangle) with those near the box, in the local frame.
+  void link(Triangle& triangle) const {
+    std::visit([&](const auto& s) { s.link(triangle, scale, -origin_m); }, shape);
+  }
+  // Calls found(triangle) with those near the box, in the local frame, not linked.
   template <class Found>
   void triangles(const Box& local, Found&& found) const {
     const Box box = to_shape(local);

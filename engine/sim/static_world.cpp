@@ -49,7 +49,9 @@ void touch(const PlacedPart& part, const LocalThing& thing, double margin_m,
     out.push_back(escape(part, *surface));
     return;
   }
-  thing.triangles(box_of(part).grown(margin_m), [&](const Triangle& triangle) {
+  thing.triangles(box_of(part).grown(margin_m), [&](Triangle triangle) {
+    if (plane_separation(part, triangle).gap_m > margin_m) return;
+    thing.link(triangle);
     add_touch_points(part, triangle, margin_m, out);
   });
   // The tree's order is Bullet's; ours is by number.

@@ -12,12 +12,13 @@ namespace neritic::sim {
 
 struct Triangle {
   std::array<Vec3, 3> corner;
-  // The third corner of the triangle across the edge from corner i to corner i + 1, where exactly
-  // one lies there; contacts on a shared edge are the lower-numbered triangle's.
+  std::uint32_t index = 0;
+  // Left unset until linked: the third corner of the triangle across the edge from corner i to
+  // corner i + 1, where exactly one lies there; contacts on a shared edge are the lower-numbered
+  // triangle's.
   std::array<Vec3, 3> across;
   std::array<bool, 3> shared{false, false, false};
   std::array<bool, 3> owned{true, true, true};
-  std::uint32_t index = 0;
 
   Vec3 area_normal() const { return glm::cross(corner[1] - corner[0], corner[2] - corner[0]); }
   Box box() const {

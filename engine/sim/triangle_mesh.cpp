@@ -6,17 +6,21 @@
 namespace neritic::sim {
 
 Triangle TriangleMesh::triangle(std::uint32_t index, double scale, const Vec3& offset) const {
-  const Corners& corners = corners_[index];
-  const auto place = [&](std::uint32_t vertex) { return Vec3(vertices_[vertex]) * scale + offset; };
   Triangle out;
   out.index = index;
-  out.owned = corners.owned;
-  for (std::size_t i = 0; i < 3; ++i) {
-    out.corner[i] = place(corners.vertex[i]);
-    out.shared[i] = corners.across[i] != kNone;
-    if (out.shared[i]) out.across[i] = place(corners.across[i]);
-  }
+  for (std::size_t i = 0; i < 3; ++i)
+    out.corner[i] = Vec3(vertices_[corners_[index].vertex[i]]) * scale + offset;
   return out;
+}
+
+void TriangleMesh::link(Triangle& triangle, double scale, const Vec3& offset) const {
+  const Corners& corners = corners_[triangle.index];
+  triangle.owned = corners.owned;
+  for (std::size_t i = 0; i < 3; ++i) {
+    triangle.shared[i] = corners.across[i] != kNone;
+    if (triangle.shared[i])
+      triangle.across[i] = Vec3(vertices_[corners.across[i]]) * scale + offset;
+  }
 }
 
 std::optional<TriangleMesh::Hit> TriangleMesh::cast(const Vec3& origin, const Vec3& direction,

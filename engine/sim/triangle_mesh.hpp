@@ -28,8 +28,10 @@ class TriangleMesh {
   // Some of its surfaces are closed.
   bool has_inside() const { return !solid_bounds_.empty(); }
 
-  // As the mesh has it, times scale and then moved by offset.
+  // As the mesh has it, times scale and then moved by offset. link() adds what lies across its
+  // edges.
   Triangle triangle(std::uint32_t index, double scale, const Vec3& offset) const;
+  void link(Triangle& triangle, double scale, const Vec3& offset) const;
 
   template <class Found>
   void overlapping(const Box& box, Found&& found) const {
