@@ -14,6 +14,8 @@ namespace {
 // What one file may make the model hold: a base, plus so many times its own bytes.
 constexpr std::size_t kBaseBudgetBytes = std::size_t{256} << 20, kBudgetFactor = 64;
 constexpr std::size_t kMaxBudgetBytes = std::size_t{6} << 30;
+// The base for pictures: plain ones shrink to next to nothing in a file. Sixteen of 4096 x 4096.
+constexpr std::size_t kBasePictureBytes = std::size_t{1} << 30;
 
 int components_of(std::string_view type) {
   if (type == "SCALAR") return 1;
@@ -142,6 +144,15 @@ bool Resources::charge(std::size_t bytes, Field where) {
     return false;
   }
   charged_bytes_ += bytes;
+  return true;
+}
+
+bool Resources::charge_picture(std::size_t bytes, std::size_t file_bytes) {
+  source_bytes_ += file_bytes;
+  const std::size_t budget =
+      std::min(kMaxBudgetBytes, kBasePictureBytes + kBudgetFactor * source_bytes_);
+  if (bytes > budget - std::min(budget, picture_bytes_)) return false;
+  picture_bytes_ += bytes;
   return true;
 }
 

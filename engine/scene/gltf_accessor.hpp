@@ -47,6 +47,12 @@ class Resources {
   // small file cannot ask for all memory by naming one accessor often. Fails at `where` when
   // exceeded.
   bool charge(std::size_t bytes, Field where);
+  // Likewise the bytes of a decoded picture, with a limit of their own. False where it is exceeded:
+  // the picture is to be left out. file_bytes: of the picture's own file, 0 where a buffer holds
+  // it.
+  bool charge_picture(std::size_t bytes, std::size_t file_bytes);
+
+  const std::filesystem::path& folder() const { return folder_; }
 
  private:
   enum class Component { kInt8, kUint8, kInt16, kUint16, kUint32, kFloat };
@@ -85,7 +91,7 @@ class Resources {
   std::span<const std::byte> bin_;
   std::filesystem::path folder_;
   std::vector<Buffer> buffers_;
-  std::size_t source_bytes_ = 0, charged_bytes_ = 0;
+  std::size_t source_bytes_ = 0, charged_bytes_ = 0, picture_bytes_ = 0;
 };
 
 }  // namespace neritic::scene::gltf

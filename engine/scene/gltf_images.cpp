@@ -5,7 +5,6 @@
 #include <exception>
 #include <system_error>
 
-#include "engine/scene/gltf_container.hpp"
 #include "engine/scene/gltf_json.hpp"
 #include "engine/scene/image_file.hpp"
 
@@ -33,27 +32,18 @@ void ImageDecoder::work() {
   for (std::size_t i = next_++; i < jobs_.size(); i = next_++) decode(jobs_[i]);
 }
 
-void ImageDecoder::decode(Job& job) const {
-  const std::string name = fmt::format("images[{}]", job.image);
+void ImageDecoder::decode(Job& job) {
+  if (!job.error.empty()) return;
   try {
-    std::vector<std::byte> owned;
-    if (!job.uri.empty()) {
-      auto bytes = read_uri(job.uri, folder_);
-      if (!bytes.ok()) {
-        job.error = fmt::format("{}: {}", name, bytes.error().message);
-        return;
-      }
-      owned = std::move(bytes).value();
-      job.bytes = owned;
-    }
-    auto picture = decode_image8(job.bytes, name, 4);
+    auto picture = decode_image8(job.bytes, job.name, 4);
     job.bytes = {};
+    job.owned = {};
     if (picture.ok())
       job.picture = std::move(picture).value();
     else
       job.error = picture.error().message;
   } catch (const std::exception& exception) {  // out of memory; a thread must not throw
-    job.error = fmt::format("{}: {}", name, one_line(exception.what()));
+    job.error = fmt::format("{}: {}", job.name, one_line(exception.what()));
   }
 }
 

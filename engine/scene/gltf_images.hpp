@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <thread>
@@ -17,16 +16,16 @@ namespace neritic::scene::gltf {
 class ImageDecoder {
  public:
   struct Job {
-    std::size_t image = 0;             // index in the file
-    std::span<const std::byte> bytes;  // of a buffer view; must outlive the decoder, or
-    std::string uri;                   // a data URI or relative path
-    // Filled in by a worker.
+    std::size_t image = 0;  // index in the file
+    std::string name;       // for messages
+    std::vector<std::byte> owned;
+    std::span<const std::byte> bytes;  // owned, or a buffer view's, which must outlive the decoder
+    std::string error;                 // given: there is nothing to decode
+    // Filled in by a worker, like error.
     ImageU8 picture;
-    std::string error;
   };
 
-  ImageDecoder(std::string file, std::filesystem::path folder)
-      : file_(std::move(file)), folder_(std::move(folder)) {}
+  ImageDecoder() = default;
   ~ImageDecoder() {
     next_ = jobs_.size();  // a failed load wants no more pictures
     wait();
@@ -41,10 +40,8 @@ class ImageDecoder {
 
  private:
   void work();
-  void decode(Job& job) const;
+  static void decode(Job& job);
 
-  std::string file_;
-  std::filesystem::path folder_;
   std::vector<Job> jobs_;
   std::atomic<std::size_t> next_{0};
   std::vector<std::thread> threads_;

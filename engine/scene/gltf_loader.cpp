@@ -87,7 +87,7 @@ Result<Model> parse_gltf_bytes(std::span<const std::byte> bytes, const std::stri
     Model model;
     model.name = name;
     Resources resources(root, container->bin, folder);
-    ImageDecoder images(name, folder);  // dies before the bytes that it reads
+    ImageDecoder images;  // dies before the bytes that it reads
     Loading loading{root, report, resources, images, model};
     read_model(loading);
     if (report.failed()) return report.error();

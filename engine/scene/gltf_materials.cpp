@@ -2,8 +2,12 @@
 // sections 3.8, 3.9; KHR_texture_transform, KHR_materials_emissive_strength, KHR_materials_unlit.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
+#include "engine/scene/gltf_container.hpp"
 #include "engine/scene/gltf_stages.hpp"
+#include "engine/scene/image_file.hpp"
 
 namespace neritic::scene::gltf {
 namespace {
@@ -140,25 +144,64 @@ std::array<TextureRef*, 5> texture_refs(Material& material) {
           &material.normal_texture, &material.occlusion_texture, &material.emissive_texture};
 }
 
-void start_images(Loading& loading) {
+// Textures whose pictures are the same bytes get the same picture: it is decoded and held once.
+// Returns which pictures materials use.
+std::vector<bool> share_pictures(Loading& loading) {
   const Field images = loading.root["images"];
+  // By URI, else by the bytes of the buffer view.
+  std::map<std::tuple<std::string, const std::byte*, std::size_t>, int> first_of;
+  const auto source_of = [&](int image) {
+    const Field field = images.at(image);
+    const std::string uri = field["uri"].text();
+    const auto bytes =
+        uri.empty() ? loading.resources.view(field["bufferView"]) : std::span<const std::byte>{};
+    return std::tuple(uri, bytes.data(), bytes.size());
+  };
+  std::vector<int> shared(images.size(), -1);
   std::vector<bool> used(images.size(), false);
   for (Material& material : loading.model.materials)
     for (const TextureRef* ref : texture_refs(material)) {
-      const int image = ref->present() ? loading.model.textures[ref->texture].image : -1;
-      if (image >= 0) used[image] = true;
+      if (!ref->present()) continue;
+      int& image = loading.model.textures[ref->texture].image;
+      if (image < 0) continue;
+      if (shared[image] < 0)
+        shared[image] = first_of.emplace(source_of(image), image).first->second;
+      image = shared[image];
+      used[image] = true;
     }
-  std::vector<ImageDecoder::Job> jobs;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const Field field = images.at(i);
-    if (!used[i]) continue;
-    ImageDecoder::Job job;
-    job.image = i;
-    job.uri = field["uri"].text();
-    if (job.uri.empty()) job.bytes = loading.resources.view(field["bufferView"]);
-    jobs.push_back(std::move(job));
+  return used;
+}
+
+// The job with its bytes; one that cannot or must not be decoded comes with its error.
+ImageDecoder::Job picture_job(Loading& loading, Field field, std::size_t image) {
+  ImageDecoder::Job job;
+  job.image = image;
+  job.name = fmt::format("images[{}]", image);
+  const std::string uri = field["uri"].text();
+  if (uri.empty()) {
+    job.bytes = loading.resources.view(field["bufferView"]);
+  } else if (auto bytes = read_uri(uri, loading.resources.folder()); bytes.ok()) {
+    job.owned = std::move(bytes).value();
+    job.bytes = job.owned;
+  } else {
+    job.error = fmt::format("{}: {}", job.name, bytes.error().message);
+    return job;
   }
-  loading.model.images.assign(images.size(), ImageU8(1, 1, 4, 255));
+  const PictureSize size = peek_size(job.bytes);
+  const std::size_t bytes = std::size_t{size.width} * size.height * 4;
+  if (!loading.resources.charge_picture(bytes, job.owned.size()))
+    job.error = fmt::format(
+        "{}: {} x {} pixels, with the file's other pictures too much for a file of this size",
+        job.name, size.width, size.height);
+  return job;
+}
+
+void start_images(Loading& loading) {
+  const std::vector<bool> used = share_pictures(loading);
+  std::vector<ImageDecoder::Job> jobs;
+  for (std::size_t i = 0; i < used.size() && !loading.report.failed(); ++i)
+    if (used[i]) jobs.push_back(picture_job(loading, loading.root["images"].at(i), i));
+  loading.model.images.assign(used.size(), ImageU8(1, 1, 4, 255));
   if (!loading.report.failed()) loading.images.start(std::move(jobs));
 }
 

@@ -16,6 +16,12 @@ Result<ImageU8> decode_image8(std::span<const std::byte> bytes, const std::strin
   return bad_input("{}: no PNG or JPEG picture ({} bytes)", name, bytes.size());
 }
 
+PictureSize peek_size(std::span<const std::byte> bytes) {
+  if (is_png(bytes)) return png_size(bytes);
+  if (is_jpeg(bytes)) return jpeg_size(bytes);
+  return {};
+}
+
 Result<ImageU8> read_image8(const std::filesystem::path& path, std::uint32_t channels) {
   NERITIC_TRY(const auto bytes, read_file(path));
   return decode_image8(bytes, path.string(), channels);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -18,6 +19,11 @@ namespace neritic::scene {
 Result<ImageU8> read_image8(const std::filesystem::path& path, std::uint32_t channels = 0);
 Result<ImageU8> decode_image8(std::span<const std::byte> bytes, const std::string& name,
                               std::uint32_t channels = 0);
+// What the header says of a picture for decode_image8, unchecked; 0 x 0 where there is none.
+struct PictureSize {
+  std::uint32_t width = 0, height = 0;
+};
+PictureSize peek_size(std::span<const std::byte> bytes);
 // 16-bit PNG as stored (an 8-bit file is an error that says so).
 Result<ImageU16> read_image16(const std::filesystem::path& path);
 Result<ImageU16> decode_image16(std::span<const std::byte> bytes, const std::string& name);

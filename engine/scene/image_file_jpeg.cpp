@@ -99,6 +99,12 @@ bool is_jpeg(std::span<const std::byte> bytes) {
   return bytes.size() >= 4 && bytes[0] == std::byte{0xff} && bytes[1] == std::byte{0xd8};
 }
 
+PictureSize jpeg_size(std::span<const std::byte> bytes) {
+  JpegReader reader;
+  if (!reader.read_header(bytes)) return {};
+  return {reader.width(), reader.height()};
+}
+
 Result<ImageU8> decode_jpeg(std::span<const std::byte> bytes, const std::string& name,
                             std::uint32_t channels) {
   JpegReader reader;

@@ -128,7 +128,7 @@ std::uint32_t big_endian(std::span<const std::byte> bytes, std::size_t at) {
 // Said here in full: libpng only says "invalid IHDR data".
 Status check_size(std::span<const std::byte> bytes, const std::string& name) {
   if (!is_png(bytes)) return bad_input("{}: no PNG picture ({} bytes)", name, bytes.size());
-  const std::uint32_t width = big_endian(bytes, 16), height = big_endian(bytes, 20);
+  const auto [width, height] = png_size(bytes);
   if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide)
     return bad_input("{}: {} x {} pixels, 1 x 1 to {} x {} are accepted", name, width, height,
                      kMaxImageSide, kMaxImageSide);
@@ -145,6 +145,10 @@ bool is_png(std::span<const std::byte> bytes) {
 
 int png_bits(std::span<const std::byte> bytes) {
   return std::to_integer<int>(bytes[24]);
+}
+
+PictureSize png_size(std::span<const std::byte> bytes) {
+  return {big_endian(bytes, 16), big_endian(bytes, 20)};
 }
 
 Result<ImageU8> decode_png8(std::span<const std::byte> bytes, const std::string& name,
