@@ -17,6 +17,13 @@ Result<std::string> nothing_to_say(const Status& status) {
   return std::string();
 }
 
+void add_quality(CLI::App& command, std::string& quality) {
+  command
+      .add_option("--quality", quality,
+                  "how finely sonars are sampled: under 5, 2 or 1 % of error (sonar/TRADE.md)")
+      ->check(CLI::IsMember({"draft", "standard", "reference"}));
+}
+
 void add_render(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RenderFlags>();
   CLI::App* command = app.add_subcommand(
@@ -42,6 +49,7 @@ void add_render(CLI::App& app, Run& run) {
       ->add_option("--chart-cell", flags->chart_cell_m,
                    "metres a cell of charts that profiling sonars sound")
       ->check(CLI::Range(0.001, 1000.0));
+  add_quality(*command, flags->quality);
   command->add_flag("--track-only", flags->track_only,
                     "no frame folders: only what sonars accumulate over the frames (OUT/track)");
   command->add_flag(
@@ -84,7 +92,8 @@ void add_sonar_images(CLI::App& command, SonarFlags& flags) {
 
 void add_sonar_device(CLI::App& command, SonarFlags& flags) {
   command.add_option("--sensor", flags.sensor,
-                     "a sensor's file with its terms (assets/sensors); the next four override it");
+                     "a sensor's file with its terms (assets/sensors); the next five override it");
+  add_quality(command, flags.quality);
   command.add_option("--range", flags.range, "nearest,farthest in metres (imaging: 1,5)");
   command.add_option("--azimuth", flags.azimuth,
                      "full aperture in degrees, or from,to; of an echo sounder its whole cone "
@@ -147,10 +156,11 @@ void add_dive(CLI::App& app, Run& run) {
       "dive",
       "the live program: a scene (.toml) or a model (.gltf, .glb) in a window; F1 lists keys");
   command->add_option("scene", flags->scene, "scene or model file")->required();
-  command->add_flag("--headless", flags->headless,
-                    "no window. Where vehicles move by physics and no flag asks for pictures: their "
-                    "dive alone, as fast as it can; else frames at the camera's rate, then a "
-                    "summary of their times");
+  command->add_flag(
+      "--headless", flags->headless,
+      "no window. Where vehicles move by physics and no flag asks for pictures: their "
+      "dive alone, as fast as it can; else frames at the camera's rate, then a "
+      "summary of their times");
   command->add_option("--log", flags->log, "the vehicles' dive as a .csv, a row a control period");
   command->add_option("--log-rate", flags->log_rate_hz, "rows a second instead");
   command->add_option("--plot", flags->plot, "the dive as a .png: path, depth, thrust, error");

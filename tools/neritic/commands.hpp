@@ -22,6 +22,7 @@ struct RenderFlags {
   bool sheet = false, validation = false;
   double chart_cell_m = 0.0;
   bool track_only = false;  // no frame folders: only what accumulates over the frames
+  std::string quality;      // of all sonars, for what the scene says; empty: as it says
   bool own_rates = false;   // a sensor is in those frames only in which its rate makes it due
 };
 Result<std::string> run_render(const RenderFlags& flags);
@@ -37,6 +38,7 @@ struct SonarFlags {
   std::string normals_sign = "facing", pixel_centers = "half", device;
   std::string depth_scale = "1", gamma = "1";
   std::string side = "port", backscatter_db = "-27", altitude;
+  std::string quality;  // of a sensor with terms; empty: as its file says
   std::uint64_t seed = 1;
   std::uint32_t workers = 0;  // 0: as many as cores
   bool no_pictures = false, overwrite = false, incidence = false;

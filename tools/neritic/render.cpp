@@ -10,6 +10,7 @@
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/render_sheet.hpp"
+#include "tools/physics/dive_record.hpp"
 #include "tools/session/output.hpp"
 #include "tools/session/ping_schedule.hpp"
 #include "tools/session/session.hpp"
@@ -20,6 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Vehicles fly on for so long after the last frame: sensors ask how they move then.
+constexpr double kFlownBeyond_s = 0.1;
+
 Result<scene::Scene> load(const RenderFlags& flags) {
   scene::SceneOptions options;
   if (!flags.offset_m.empty()) {
@@ -28,6 +32,11 @@ Result<scene::Scene> load(const RenderFlags& flags) {
       return bad_input("--offset: three finite numbers (metres) are accepted");
   }
   NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size, options));
+  if (!flags.quality.empty())
+    for (scene::Sonar& sonar : scene.sonars) {
+      sonar.quality = flags.quality;
+      sonar.max_error = 0.0;
+    }
   if (flags.water.empty()) return scene;
   if (!scene.water) return bad_input("--water {}: {} names no water", flags.water, flags.scene);
   // The types are written in capitals; a flag may be typed in any.
@@ -172,6 +181,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
   const double step_s = 1.0 / rates_hz.front();
   PingSchedule schedule(rates_hz);
   const FrameRequest all = request;
+  NERITIC_TRY_STATUS(fly_ahead(scene, flags.time_s + flags.frames * step_s + kFlownBeyond_s));
   if (flags.frames > 1) warn_of_rates(scene, request, flags.own_rates ? 0.0 : rates_hz.front());
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),

@@ -119,6 +119,11 @@ Status refuse_terms(const std::string& file, const scene::SonarTerms& terms) {
 }
 
 Result<scene::Sonar> sensor_of(const SonarFlags& flags, SonarKind kind) {
+  if (flags.sensor.empty() && !flags.quality.empty())
+    return bad_input(
+        "--quality: found, it is accepted with --sensor: plain beams are those of --bins");
+  if (!flags.bins.empty() && !flags.quality.empty())
+    return bad_input("--bins: found beside --quality, one of them is accepted");
   if (flags.sensor.empty()) return default_sonar(kind);
   NERITIC_TRY(scene::Sonar sonar, scene::load_sonar(flags.sensor));
   const std::string file = flags.sensor.string();
@@ -126,6 +131,10 @@ Result<scene::Sonar> sensor_of(const SonarFlags& flags, SonarKind kind) {
     return bad_input("{}: a sensor of kind {} found, {} is accepted (neritic sonar {})", file,
                      scene::name_of(sonar.kind), flags.kind, flags.kind);
   NERITIC_TRY_STATUS(refuse_terms(file, sonar.terms));
+  if (!flags.quality.empty()) {
+    sonar.quality = flags.quality;
+    sonar.max_error = 0.0;
+  }
   return sonar;
 }
 
