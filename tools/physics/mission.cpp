@@ -129,7 +129,6 @@ rov::Setpoint piloted_setpoint(const VehicleInputs& inputs, const rov::State& bo
   setpoint.hold_north = setpoint.hold_east = false;
   setpoint.hold_depth = inputs.pilot[2] == 0.0;
   setpoint.hold_heading = inputs.pilot[5] == 0.0;
-  setpoint.pilot = inputs.pilot;
   mission.wanted_ned_m = setpoint.position_ned_m;
   mission.wanted_attitude = setpoint.attitude;
   return setpoint;

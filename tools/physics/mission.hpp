@@ -52,8 +52,8 @@ class MissionGuide {
   Place target_, a_, b_;
 };
 
-// A pilot's: the wrench on top, depth and heading held where they are since the pilot let go of
-// them, level always.
+// While a pilot flies: depth and heading held where they are since the pilot let go of them, level
+// always. The pilot's wrench comes on top.
 rov::Setpoint piloted_setpoint(const VehicleInputs& inputs, const rov::State& body,
                                MissionState& mission);
 

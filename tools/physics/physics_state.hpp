@@ -77,8 +77,10 @@ struct PhysicsState {
 
 // From outside, for one vehicle.
 struct VehicleInputs {
-  rov::Vec6 pilot;            // a wrench, body axes: while piloted, instead of the mission
-  std::uint64_t piloted = 0;  // 1: depth and heading are held where the pilot leaves them alone
+  // While piloted, instead of the mission: a wrench, body axes, as far as the thrusters have room
+  // for it; depth and heading are held where it leaves them alone.
+  rov::Vec6 pilot;
+  std::uint64_t piloted = 0;           // 0 or 1
   std::uint64_t failed_thrusters = 0;  // bits
 
   static void fields(auto&& field, auto& self) {

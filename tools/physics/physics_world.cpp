@@ -55,6 +55,22 @@ std::string name_of_label(const scene::Scene& scene, std::uint32_t label) {
   return "something";
 }
 
+// Of the pilot's wrench the share for which the thrusters have room beside what holds the vehicle
+// level: at full thrust they would have none left, and it would overturn.
+rov::Vec6 with_room(const rov::Vehicle& vehicle, const rov::Allocator& allocator,
+                    const rov::Vec6& holding, const rov::Vec6& pilot) {
+  const auto held_n = allocator.allocate(holding).wanted_n;
+  const auto pilot_n = allocator.allocate(pilot).wanted_n;
+  double share = 1.0;
+  for (std::size_t i = 0; i < vehicle.thruster_count; ++i) {
+    if (pilot_n[i] == 0.0) continue;
+    const double limit_n =
+        pilot_n[i] > 0.0 ? vehicle.thrusters[i].max_n : vehicle.thrusters[i].min_n;
+    share = std::min(share, (limit_n - held_n[i]) / pilot_n[i]);
+  }
+  return std::max(0.0, share) * pilot;
+}
+
 sim::Twist twist_of(const rov::Vec6& velocity) {
   return {rov::world_from_ned(velocity.linear()), rov::world_from_ned(velocity.angular())};
 }
@@ -212,14 +228,18 @@ void PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const Vehic
       piloted ? piloted_setpoint(inputs, state.body, state.mission)
               : vehicle.mission->update(all, state.body, time_s, state.mission);
   rov::ControlState control{state.integral};
-  const auto commands_of = [&](const rov::Allocator& allocator) {
-    return rov::control_inputs(vehicle.vehicle, allocator, vehicle.file.gains, setpoint, state.body,
-                               control);
+  const rov::Vec6 holding =
+      rov::control_wrench(vehicle.vehicle, vehicle.file.gains, setpoint, state.body, control);
+  rov::Inputs commands;
+  const auto allocate = [&](const rov::Allocator& allocator) {
+    const rov::Vec6 wrench =
+        piloted ? holding + with_room(vehicle.vehicle, allocator, holding, inputs.pilot) : holding;
+    commands.thruster_n = allocator.allocate(wrench, vehicle.file.gains.saturation).force_n;
   };
-  rov::Inputs commands =
-      inputs.failed_thrusters == vehicle.failed_thrusters
-          ? commands_of(vehicle.allocator)
-          : commands_of(rov::Allocator(vehicle.vehicle, inputs.failed_thrusters));
+  if (inputs.failed_thrusters == vehicle.failed_thrusters)
+    allocate(vehicle.allocator);
+  else
+    allocate(rov::Allocator(vehicle.vehicle, inputs.failed_thrusters));
   rov::drive(vehicle.file, commands);
   state.command_n = commands.thruster_n;
   state.integral = control.integral;

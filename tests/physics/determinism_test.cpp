@@ -1,0 +1,138 @@
+// The same scene gives the same states: on many runs, in lock-step and on a thread, under load, and
+// from a recorded log; and another pilot gives others.
+#include <thread>
+
+#include "tests/physics/dives.hpp"
+#include "tools/physics/dive_record.hpp"
+
+namespace neritic::tools {
+namespace {
+
+// Current, contacts, a mission and a lost thruster: all that a step does.
+std::string busy_text() {
+  return std::string(R"([physics]
+[current]
+kind = "power_law"
+velocity_m_s = [0.3, 0, 0.1]
+depth_m = 12
+[[objects]]
+name = "sand"
+class = "seabed"
+shape = "plane"
+size_m = [40, 40]
+position_m = [0, -12, 0]
+[[objects]]
+name = "wall"
+class = "structure"
+shape = "box"
+size_m = [6, 4, 0.5]
+position_m = [0, -10, -3]
+)") + rov_text(R"(
+position_m = [0, -11, 0]
+failed_thrusters = [3]
+mission = { waypoints = [ { position_m = [0, -10.5, -4] }, { position_m = [2, -8, 1] } ] }
+)") + rov_text("position_m = [3, -11.5, 1]\nroll_deg = 30\n", "adrift");
+}
+
+std::vector<std::uint64_t> hashes_of(TestDive& dive, double seconds) {
+  dive.run(seconds);
+  return dive.simulation->log().hashes;
+}
+
+TEST(PhysicsDeterminism, AHundredRunsHaveTheSameHashes) {
+  const TestDive first = dive_of(busy_text());
+  const auto run = [&] {
+    const auto simulation = first.world->simulation({});
+    simulation->advance(5 * 240);
+    return simulation->log().hashes;
+  };
+  const std::vector<std::uint64_t> expected = run();
+  ASSERT_EQ(expected.size(), 1201u);
+  EXPECT_NE(expected.front(), expected.back());
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(run(), expected) << i;
+}
+
+TEST(PhysicsDeterminism, ASceneReadAgainGivesTheSameHashes) {
+  TestDive a = dive_of(busy_text()), b = dive_of(busy_text());
+  EXPECT_EQ(hashes_of(a, 10.0), hashes_of(b, 10.0));
+  EXPECT_GT(a.vehicle(0).contact.touched_steps, 0u);  // the wall was met
+}
+
+TEST(PhysicsDeterminism, AThreadUnderLoadStepsAsLockStepDoes) {
+  TestDive locked = dive_of(busy_text());
+  const TestDive threaded = dive_of(busy_text());
+  std::atomic<bool> stop{false};
+  std::vector<std::thread> load;
+  for (int i = 0; i < 3; ++i)
+    load.emplace_back([&stop] {
+      for (volatile double x = 1.0; !stop;) x = x * 1.0000001;
+    });
+  sim::SimulatedClock clock;
+  auto reader = threaded.simulation->reader();
+  threaded.simulation->start(clock);
+  std::uint64_t seen = 0;
+  while (seen < 1200) {
+    if (reader.update()) seen = reader.newest().step;
+  }
+  threaded.simulation->stop();
+  stop = true;
+  for (std::thread& thread : load) thread.join();
+  const auto& hashes = threaded.simulation->log().hashes;
+  locked.simulation->advance(threaded.simulation->log().steps());
+  EXPECT_EQ(hashes, locked.simulation->log().hashes);
+}
+
+TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
+  const test::ScratchFolder scratch;
+  TestDive dive = dive_of(busy_text());
+  dive.run(1.0);
+  VehicleInputs inputs;
+  inputs.piloted = 1;
+  inputs.pilot[0] = 30.0;
+  inputs.failed_thrusters = 2;
+  dive.simulation->push({0, inputs});
+  dive.run(2.0);
+  inputs.pilot[5] = -4.0;
+  dive.simulation->push({1, inputs});
+  dive.simulation->push({7, inputs});  // of nobody
+  dive.run(2.0);
+  ASSERT_TRUE(sim::write_input_log(scratch / "dive.log", dive.simulation->log()).ok());
+  auto log = sim::read_input_log<PhysicsInputs>(scratch / "dive.log");
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const auto step = [&](const PhysicsState& state, const PhysicsInputs& in, double dt_s) {
+    return dive.world->step(state, in, dt_s);
+  };
+  const auto report = sim::replay(*log, dive.world->start(), step);
+  EXPECT_EQ(report.steps, 1200u);
+  EXPECT_FALSE(report.first_difference.has_value());
+  log->entries[1].inputs.vehicles[0].pilot[0] = 35.0;
+  const auto other = sim::replay(*log, dive.world->start(), step);
+  ASSERT_TRUE(other.first_difference.has_value());
+  EXPECT_GT(*other.first_difference, 240u);
+  EXPECT_LT(*other.first_difference, 260u);
+}
+
+// A path recorded for pictures is the path of the simulation, at every step and between.
+TEST(PhysicsDeterminism, TracksForPicturesAreThePathFlown) {
+  auto scene = load_text(busy_text());
+  ASSERT_TRUE(scene.ok());
+  TestDive dive = dive_of(*scene);
+  ASSERT_TRUE(fly_ahead(*scene, 6.0).ok());
+  const scene::Mount& mount = scene->objects.at(2).mount;
+  ASSERT_TRUE(mount.track.has_value());
+  EXPECT_FALSE(scene->objects.at(0).mount.track.has_value());
+  dive.run(5.0, [&] {
+    const Pose drawn = scene->world_from(mount, dive.time_s());
+    ASSERT_LT(glm::distance(drawn.position_m, dive.pose().position_m), 1e-12);
+    ASSERT_GT(std::abs(glm::dot(drawn.rotation, dive.pose().rotation)), 1.0 - 1e-12);
+  });
+}
+
+TEST(PhysicsDeterminism, TheStateNamesEveryByte) {
+  sim::check_fields_cover(PhysicsState{});
+  sim::check_fields_cover(PhysicsInputs{});
+  sim::check_fields_cover(PhysicsMessage{});
+}
+
+}  // namespace
+}  // namespace neritic::tools
