@@ -148,7 +148,8 @@ class Tracer {
     if (between.t > 0.0 && between.t < echo.back_m - 2e-3) return;
     echo.reflectivity = hit.reflectivity;
     echo.backscatter = hit.backscatter;
-    echo.bounce = 2.0 * mirror.reflection * mirror.reflection;
+    // Both reciprocal paths add in amplitude.
+    echo.bounce = sonar::kGhostPaths * sonar::kGhostPaths * mirror.reflection * mirror.reflection;
     for (TermImage& image : images_) {
       if (!image.wants_ghosts()) continue;
       if (image.profile())
