@@ -118,6 +118,9 @@ struct Sonar {
   double semi_angle_rad = radians(12.5);  // echo sounder: of its cone
   double depression_rad = radians(35.0);  // side-scan: of each side's axis below the horizontal
   double step_rad = radians(1.0);         // mechanical: from ping to ping
+  // Side-scan: a camera that looks straight down, from whose pictures the image-based record is made
+  // beside the acoustic one; empty: none.
+  std::string picture_camera;
   // "draft", "standard", "reference" or an error to stay under: what is not set follows from it.
   std::string quality;
   double max_error = 0.0;  // 0: not named

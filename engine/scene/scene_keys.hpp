@@ -121,6 +121,7 @@ inline constexpr auto kSonarKeys = std::to_array<Key>(
      "look_at",        "kind",           "range_m",  "azimuth_deg",   "elevation_deg",
      "semi_angle_deg", "depression_deg", "step_deg", "bins",          "rate_hz",
      "gbuffer_scale",  "gather",         "near_m",   "quality",       "max_error",
+     "picture_camera",
      "frequency_hz",   "bandwidth_hz",   "water",    "level",         "beam",
      "range_spread",   "speckle",        "noise",    "ghosts",        "sound_speed",
      "motion",         "labels",         "output"});

@@ -110,6 +110,10 @@ void read_sonar(TableReader& reader, Sonar& sonar) {
   read_bins(reader, sonar);
   read_apertures(reader, sonar);
   sonar.rate_hz = reader.number("rate_hz", 10.0, kRate);
+  sonar.picture_camera = reader.text("picture_camera", "");
+  if (sonar.kind != SonarKind::kSideScan && reader.has("picture_camera"))
+    reader.refuse("picture_camera",
+                  fmt::format("no such key for kind \"{}\"", name_of(sonar.kind)));
   read_quality(reader, sonar);
   read_sonar_terms(reader, sonar.terms);
 }

@@ -187,7 +187,14 @@ Result<std::string> run_render(const RenderFlags& flags) {
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
            session->gpu_scene().triangles());
   session->keep_plan_dump(!flags.dump_graph.empty());
-  if (flags.track_only) request.capture.geometry = request.capture.motion = false;
+  if (flags.track_only) {
+    // A side-scan made from pictures needs their depth.
+    const auto& sonars = session->scene().sonars;
+    request.capture.motion = false;
+    request.capture.geometry =
+        std::any_of(request.sonars.begin(), request.sonars.end(),
+                    [&](std::size_t i) { return !sonars[i].picture_camera.empty(); });
+  }
   Survey survey(session->scene(), flags.chart_cell_m);
   FrameFacts facts;
   Progress progress("frame", flags.frames);
@@ -202,7 +209,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
     if (!flags.track_only)
       NERITIC_TRY_STATUS(
           write_frame(fs::path(flags.out) / fmt::format("frame_{:04}", i), result, facts));
-    if (flags.frames > 1) survey.add(result, request.time_s);
+    if (flags.frames > 1) NERITIC_TRY_STATUS(survey.add(result, request.time_s));
     if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result));
     if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
     progress.step();

@@ -11,6 +11,7 @@
 #include "sonar/mechanical_scan.hpp"
 #include "sonar/point_cloud.hpp"
 #include "sonar/sidescan.hpp"
+#include "sonar/sidescan_from_image.hpp"
 #include "sonar/terrain_error.hpp"
 
 namespace neritic::tools {
@@ -19,6 +20,7 @@ namespace {
 using scene::SonarKind;
 
 constexpr double kNadir_rad = radians(5.0);
+constexpr double kStraightDown = 0.966;  // cosine: 15 degrees of roll and pitch
 constexpr std::uint16_t kSeabedClass = scene::kClasses[0].id;
 
 nlohmann::json facts_json(const FrameFacts& facts, std::size_t pings) {
@@ -59,6 +61,7 @@ struct Survey::Record {
   std::vector<Vec3> nadir;
   std::unique_ptr<sonar::EchoTrace> trace;
   std::unique_ptr<sonar::SidescanRecord> sidescan;
+  std::unique_ptr<sonar::SidescanRecord> from_pictures;  // of the side-scan's picture camera
   SonarFrame port;  // kept until the starboard side of the same ping comes
   std::unique_ptr<sonar::MechanicalScan> scan;
   std::unique_ptr<sonar::CocoFile> coco;
@@ -66,6 +69,7 @@ struct Survey::Record {
   bool accumulates() const { return bathymetry || trace || sidescan || scan || coco; }
   void add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s);
   void add_profile(const SonarFrame& frame);
+  Status add_picture(const FrameResult& result, const Pose& world_from_sonar, double time_s);
   Status write(const std::filesystem::path& folder, const scene::Scene& scene,
                const FrameFacts& facts) const;
   Status write_bathymetry(const std::filesystem::path& folder, const scene::Scene& scene,
@@ -94,6 +98,8 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
   if (frame.kind == SonarKind::kSideScan)
     r.sidescan = std::make_unique<sonar::SidescanRecord>(sonar::SidescanOptions{
         .n_range = bins, .range_min_m = l.range_min_m, .range_max_m = l.range_max_m});
+  if (!r.sonar->picture_camera.empty())
+    r.from_pictures = std::make_unique<sonar::SidescanRecord>(r.sidescan->options());
   if (frame.kind == SonarKind::kMechanical)
     r.scan = std::make_unique<sonar::MechanicalScan>(sonar::MechanicalScanOptions{
         .n_range = bins,
@@ -109,11 +115,47 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
   return r;
 }
 
-void Survey::add(const FrameResult& result, double time_s) {
+Status Survey::add(const FrameResult& result, double time_s) {
   for (const SonarFrame& frame : result.sonars) {
     Record& record = record_of(frame);
-    record.add(frame, scene_.world_from(record.sonar->mount, time_s), time_s);
+    const Pose world_from_sonar = scene_.world_from(record.sonar->mount, time_s);
+    record.add(frame, world_from_sonar, time_s);
+    if (record.from_pictures && frame.head == "port")
+      NERITIC_TRY_STATUS(record.add_picture(result, world_from_sonar, time_s));
   }
+  return {};
+}
+
+// The image-based line of the same ping, from what the named camera sees.
+Status Survey::Record::add_picture(const FrameResult& result, const Pose& world_from_sonar,
+                                   double time_s) {
+  const ViewImages* eye = nullptr;
+  for (const CameraFrame& camera : result.cameras)
+    if (camera.name == sonar->picture_camera) eye = &camera.eyes.front();
+  if (!eye || eye->color.empty() || eye->depth.empty())
+    return bad_input(
+        "sonar {}: picture_camera: {} found, a camera of the scene with its picture "
+        "and depth is accepted",
+        sonar->name, sonar->picture_camera);
+  const Vec3 down = eye->world_from_view.rotation * Vec3(0, 0, -1);
+  if (down.y > -kStraightDown)
+    return bad_input(
+        "sonar {}: picture_camera {}: it looks {:.0f} degrees off straight down, at "
+        "most {:.0f} are accepted",
+        sonar->name, sonar->picture_camera, degrees(std::acos(-down.y)),
+        degrees(std::acos(kStraightDown)));
+  const sonar::SeabedPicture picture{
+      sonar::brightness_of(eye->color),
+      {eye->intrinsics.fx, eye->intrinsics.fy, eye->intrinsics.cx, eye->intrinsics.cy},
+      eye->depth.data};
+  const sonar::SidescanOptions& o = from_pictures->options();
+  NERITIC_TRY(const sonar::SidescanLine line,
+              sonar::sidescan_from_picture(picture, {.n_range = o.n_range,
+                                                     .range_min_m = o.range_min_m,
+                                                     .range_max_m = o.range_max_m,
+                                                     .beam_along_rad = sonar->azimuth_rad}));
+  from_pictures->append(line.port, line.starboard, world_from_sonar, time_s);
+  return {};
 }
 
 void Survey::Record::add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s) {
@@ -161,6 +203,10 @@ Status Survey::Record::write(const std::filesystem::path& folder, const scene::S
   if (bathymetry) NERITIC_TRY_STATUS(write_bathymetry(folder, scene, json));
   if (trace) NERITIC_TRY_STATUS(sonar::write_echo_trace(folder, *trace, json));
   if (sidescan) NERITIC_TRY_STATUS(sonar::write_sidescan(folder, *sidescan, json));
+  if (from_pictures && from_pictures->pings() > 0) {
+    NERITIC_TRY_STATUS(make_folder(folder / "from_pictures"));
+    NERITIC_TRY_STATUS(sonar::write_sidescan(folder / "from_pictures", *from_pictures, json));
+  }
   if (scan)
     NERITIC_TRY_STATUS(sonar::write_mechanical_scan(
         folder, *scan, std::max(4.0 * scan->options().range_step_m(), 0.01), json));

@@ -21,7 +21,8 @@ class Survey {
   explicit Survey(const scene::Scene& scene, double chart_cell_m = 0.0);
   ~Survey();
 
-  void add(const FrameResult& result, double time_s);
+  // kBadInput where a side-scan's picture camera is not in the frame or does not suit it.
+  Status add(const FrameResult& result, double time_s);
   // OUT/track/SONAR/ for each sonar that has something to say of a track; whether any had.
   Result<bool> write(const std::filesystem::path& out, const FrameFacts& facts) const;
 
