@@ -94,6 +94,7 @@ TEST(RovVehicleFile, FaultsNameTheKeyWhatWasFoundAndWhatIsAccepted) {
   EXPECT_THAT(vehicle_fault("include = \"bluerov2_heavy_dynamics.toml\"\nmass_kg = -1"),
               HasSubstr("mass_kg: -1 found"));
   EXPECT_THAT(vehicle_fault("[=]"), HasSubstr("not TOML"));
+  EXPECT_THAT(vehicle_fault("mass_kg = [1\xc3\xb8]"), HasSubstr("not TOML"));
 }
 
 TEST(RovVehicleFile, IncludesAreOverlaidAndLoopsAreRefused) {
