@@ -232,11 +232,14 @@ Result<Sampler> Sampler::create(const Device& device, const SamplerDesc& desc) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = desc.mag;
   info.minFilter = desc.min;
-  info.mipmapMode = desc.mip;
+  // Without mips the level of detail must still tell magnified from minified, since each has its
+  // filter: up to a quarter, which rounds to the first mip (Vulkan specification,
+  // VkSamplerCreateInfo, on OpenGL's filters without mips).
+  info.mipmapMode = desc.mipmapped ? desc.mip : VK_SAMPLER_MIPMAP_MODE_NEAREST;
   info.addressModeU = desc.u;
   info.addressModeV = desc.v;
   info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.maxLod = desc.mipmapped ? VK_LOD_CLAMP_NONE : 0.0f;
+  info.maxLod = desc.mipmapped ? VK_LOD_CLAMP_NONE : 0.25f;
   Sampler sampler;
   sampler.device_ = device.handle();
   NERITIC_TRY_VK("vkCreateSampler (" + desc.name + ")",
