@@ -17,7 +17,8 @@ enum class ErrorCode {
   kUnsupported,  // the device lacks something that was asked for
   kOutOfMemory,
   kDeviceLost,
-  kIo,  // could not write, disk full
+  kIo,        // could not write, disk full
+  kInternal,  // a bug of ours that is returned instead of aborting
 };
 
 struct Error {

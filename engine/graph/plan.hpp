@@ -98,10 +98,10 @@ struct GraphDecl {
 
 // --- The stages -------------------------------------------------------------------------------
 
-// kBadInput-free: an inconsistency is our own bug, but it is returned (ErrorCode::kUnsupported is
-// not used; code kBadInput, message names pass and resource): stale handle (a version that a later
-// write replaced before this pass was declared), read before write, two writers of one version, a
-// resource used in two ways that one pass cannot combine, an index out of range.
+// An inconsistency is our own bug, returned as kInternal so that its message, which names pass and
+// resource, reaches the user: stale handle (a version that a later write replaced before this pass
+// was declared), read before write, two writers of one version, a resource used in two ways that
+// one pass cannot combine, an index out of range.
 Status validate(const GraphDecl& graph);
 
 // True for the passes that an output or a side effect needs, directly or through others.

@@ -13,6 +13,13 @@ struct Newest {
   std::uint32_t writer = 0;  // only meaningful where version > 0
 };
 
+// A declaration is ours, never the user's.
+template <class... Args>
+Error graph_bug(fmt::format_string<Args...> format, Args&&... args) {
+  return failure(ErrorCode::kInternal, "frame graph: {}",
+                 fmt::format(format, std::forward<Args>(args)...));
+}
+
 class Validator {
  public:
   explicit Validator(const GraphDecl& graph) : graph_(graph), newest_(graph.resources.size()) {}
@@ -31,9 +38,9 @@ class Validator {
   static Status check_resource(const ResourceDecl& resource) {
     if (resource.kind == ResourceKind::kBuffer) return {};
     if (resource.format == VK_FORMAT_UNDEFINED)
-      return bad_input("frame graph: image \"{}\" has no format", resource.name);
+      return graph_bug("image \"{}\" has no format", resource.name);
     if (resource.width == 0 || resource.height == 0 || resource.layers == 0)
-      return bad_input("frame graph: image \"{}\" is {}x{} with {} layers, all must be at least 1",
+      return graph_bug("image \"{}\" is {}x{} with {} layers, all must be at least 1",
                        resource.name, resource.width, resource.height, resource.layers);
     return {};
   }
@@ -44,8 +51,8 @@ class Validator {
     for (const Use& use : pass.uses) {
       NERITIC_TRY_STATUS(check_use(who, use));
       if (only_as_output(use.access))
-        return bad_input("frame graph: {} uses \"{}\" for {}, which only an output can", who,
-                         name(use), access_info(use.access).name);
+        return graph_bug("{} uses \"{}\" for {}, which only an output can", who, name(use),
+                         access_info(use.access).name);
     }
     NERITIC_TRY_STATUS(check_combination(pass));
     for (const Use& use : pass.uses) {
@@ -59,19 +66,19 @@ class Validator {
 
   Status check_use(const std::string& who, const Use& use) const {
     if (use.resource >= graph_.resources.size())
-      return bad_input("frame graph: {} uses a handle of no resource (index {}, there are {})", who,
+      return graph_bug("{} uses a handle of no resource (index {}, there are {})", who,
                        use.resource, graph_.resources.size());
     const ResourceDecl& resource = graph_.resources[use.resource];
     const AccessInfo& info = access_info(use.access);
     const bool image = resource.kind == ResourceKind::kImage;
     if (!access_fits(use.access, resource.kind))
-      return bad_input("frame graph: {} uses {} \"{}\" for {}, which it cannot be", who,
+      return graph_bug("{} uses {} \"{}\" for {}, which it cannot be", who,
                        image ? "image" : "buffer", resource.name, info.name);
     const std::uint32_t made_for = image ? resource.image_usage : resource.buffer_usage;
     const std::uint32_t wanted = image ? info.image_usage : info.buffer_usage;
     if (resource.imported && made_for != 0 && (wanted & ~made_for) != 0)
-      return bad_input("frame graph: {} uses imported \"{}\" for {}, which it was not made for",
-                       who, resource.name, info.name);
+      return graph_bug("{} uses imported \"{}\" for {}, which it was not made for", who,
+                       resource.name, info.name);
     return {};
   }
 
@@ -84,31 +91,30 @@ class Validator {
   Status check_read(const std::string& who, const Use& use) const {
     const Newest& now = newest_[use.resource];
     if (use.version < now.version)
-      return bad_input(
-          "frame graph: {} reads version {} of \"{}\", a stale handle: pass \"{}\" has already "
+      return graph_bug(
+          "{} reads version {} of \"{}\", a stale handle: pass \"{}\" has already "
           "replaced it",
           who, use.version, name(use), writer_of_next(use));
     if (use.version > now.version)
-      return bad_input(
-          "frame graph: {} reads version {} of \"{}\" before any pass has written it "
+      return graph_bug(
+          "{} reads version {} of \"{}\" before any pass has written it "
           "(newest is {})",
           who, use.version, name(use), now.version);
     if (use.version == 0 && !has_contents(graph_.resources[use.resource]))
-      return bad_input("frame graph: {} reads \"{}\" before any pass has written it", who,
-                       name(use));
+      return graph_bug("{} reads \"{}\" before any pass has written it", who, name(use));
     return {};
   }
 
   Status check_write(const std::string& who, const Use& use) const {
     const Newest& now = newest_[use.resource];
     if (use.version < now.version)
-      return bad_input(
-          "frame graph: two writers of version {} of \"{}\": pass \"{}\" and {} (write to the "
+      return graph_bug(
+          "two writers of version {} of \"{}\": pass \"{}\" and {} (write to the "
           "handle that the first write returned)",
           use.version, name(use), writer_of_next(use), who);
     if (use.version > now.version)
-      return bad_input(
-          "frame graph: {} writes over version {} of \"{}\" before any pass has written that "
+      return graph_bug(
+          "{} writes over version {} of \"{}\" before any pass has written that "
           "(newest is {})",
           who, use.version, name(use), now.version);
     return {};
@@ -132,25 +138,24 @@ class Validator {
     const AccessInfo &ia = access_info(a.access), &ib = access_info(b.access);
     if (ia.write && ib.write) {
       if (a.version == b.version)
-        return bad_input("frame graph: two writers of version {} of \"{}\": both are pass \"{}\"",
-                         a.version, name(a), pass.name);
-      return bad_input("frame graph: pass \"{}\" writes \"{}\" twice ({} and {})", pass.name,
-                       name(a), ia.name, ib.name);
+        return graph_bug("two writers of version {} of \"{}\": both are pass \"{}\"", a.version,
+                         name(a), pass.name);
+      return graph_bug("pass \"{}\" writes \"{}\" twice ({} and {})", pass.name, name(a), ia.name,
+                       ib.name);
     }
     if (ia.write || ib.write) {
       const Use &write = ia.write ? a : b, &read = ia.write ? b : a;
       if (read.version == write.version + 1)
-        return bad_input("frame graph: pass \"{}\" reads version {} of \"{}\", which it writes",
-                         pass.name, read.version, name(read));
+        return graph_bug("pass \"{}\" reads version {} of \"{}\", which it writes", pass.name,
+                         read.version, name(read));
       if (!subsumes(write.access, read.access))
-        return bad_input(
-            "frame graph: pass \"{}\" cannot both read (as {}) and write (as {}) \"{}\"", pass.name,
-            access_info(read.access).name, access_info(write.access).name, name(read));
+        return graph_bug("pass \"{}\" cannot both read (as {}) and write (as {}) \"{}\"", pass.name,
+                         access_info(read.access).name, access_info(write.access).name, name(read));
       return {};
     }
     if (graph_.resources[a.resource].kind == ResourceKind::kImage && ia.layout != ib.layout)
-      return bad_input("frame graph: pass \"{}\" needs image \"{}\" in two layouts ({} and {})",
-                       pass.name, name(a), ia.name, ib.name);
+      return graph_bug("pass \"{}\" needs image \"{}\" in two layouts ({} and {})", pass.name,
+                       name(a), ia.name, ib.name);
     return {};
   }
 
@@ -165,8 +170,8 @@ class Validator {
         const AccessInfo &ia = access_info(other.access), &ib = access_info(use.access);
         if ((ia.write || ib.write || ia.layout != ib.layout) && other.access != use.access &&
             (ia.write || ib.write || graph_.resources[use.resource].kind == ResourceKind::kImage))
-          return bad_input("frame graph: \"{}\" is an output in two ways ({} and {})", name(use),
-                           ia.name, ib.name);
+          return graph_bug("\"{}\" is an output in two ways ({} and {})", name(use), ia.name,
+                           ib.name);
       }
     }
     return {};

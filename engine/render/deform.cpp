@@ -68,11 +68,9 @@ Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, cons
             gpu::bound_buffer(shared::kDeformMorphs, scene.morphs().handle()),
             uploaded(commands, shared::kDeformWeights, state.weights, nothing_),
             gpu::bound_buffer(shared::kDeformOut, context.buffer(data.positions).handle()),
-            gpu::bound_buffer(
-                shared::kDeformNextOut,
-                // Without motion nothing is written there; a buffer of no other pass stands in.
-                context.buffer(data.next_positions ? data.next_positions : data.positions)
-                    .handle())};
+            gpu::bound_buffer(shared::kDeformNextOut,
+                              data.next_positions ? context.buffer(data.next_positions).handle()
+                                                  : nothing_.handle())};
         commands.bind_pipeline(deform_);
         commands.bind(deform_, resources);
         for (const DeformJob& job : state.deforms) {

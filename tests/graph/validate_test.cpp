@@ -38,6 +38,17 @@ TEST(Validate, StaleHandleIsRefused) {
                                HasSubstr("\"refine\"")));
 }
 
+// A graph is declared by the program, so its user is not told of bad input (status 2).
+TEST(Validate, RefusalsAreBugsOfOursNotBadInput) {
+  GraphMaker m;
+  const auto a = m.image("alga");
+  m.pass("reader", {use(a, 0, kRead)}, true);
+  const Status status = validate(m.graph);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::kInternal);
+  EXPECT_EQ(exit_status(status.error().code), 1);
+}
+
 TEST(Validate, StaleOutputIsRefused) {
   GraphMaker m;
   const auto a = m.image("alga");
