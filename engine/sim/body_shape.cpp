@@ -6,6 +6,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/sim/convex_hull.hpp"
+#include "engine/sim/plane_axes.hpp"
 
 namespace neritic::sim {
 namespace {
@@ -16,7 +17,7 @@ bool is_length(double value_m) {
 
 }  // namespace
 
-void BodyShape::add(ConvexPart part, double half_thickness_m) {
+void BodyShape::add(ConvexPart part, double half_thickness_m, const Mat3& axes) {
   NERITIC_CHECK(!part.core_m.empty() && part.core_m.size() <= kMaxCorePoints, "{} points",
                 part.core_m.size());
   Vec3 sum(0.0);
@@ -25,8 +26,13 @@ void BodyShape::add(ConvexPart part, double half_thickness_m) {
     sum += p;
   }
   part.centre_m = sum / static_cast<double>(part.core_m.size());
+  part.axes = axes;
   for (const Vec3& p : part.core_m) {
-    part.reach_m = std::max(part.reach_m, glm::length(p - part.centre_m) + part.radius_m);
+    const Vec3 from_centre = p - part.centre_m;
+    part.reach_m = std::max(part.reach_m, glm::length(from_centre) + part.radius_m);
+    const Vec3 along = from_centre * part.axes;  // its components along the axes
+    part.low_m = glm::min(part.low_m, along - Vec3(part.radius_m));
+    part.high_m = glm::max(part.high_m, along + Vec3(part.radius_m));
     reach_m_ = std::max(reach_m_, glm::length(p) + part.radius_m);
   }
   thinnest_m_ = parts_.empty() ? half_thickness_m : std::min(thinnest_m_, half_thickness_m);
@@ -41,7 +47,9 @@ void BodyShape::add_sphere(const Vec3& centre_m, double radius_m) {
 void BodyShape::add_capsule(const Vec3& from_m, const Vec3& to_m, double radius_m) {
   NERITIC_CHECK(is_length(radius_m), "radius {} m", radius_m);
   if (from_m == to_m) return add_sphere(from_m, radius_m);
-  add({{from_m, to_m}, radius_m}, radius_m);
+  const Vec3 along = glm::normalize(to_m - from_m);
+  const PlaneAxes across = plane_axes(along);
+  add({{from_m, to_m}, radius_m}, radius_m, Mat3(across.x, across.y, along));
 }
 
 void BodyShape::add_box(const Pose& body_from_box, const Vec3& half_m) {
@@ -56,7 +64,7 @@ void BodyShape::add_box(const Pose& body_from_box, const Vec3& half_m) {
                     (corner & 4) ? 1.0 : -1.0);
     part.core_m.push_back(body_from_box * (sign * (half_m - Vec3(radius_m))));
   }
-  add(std::move(part), thinnest_m);
+  add(std::move(part), thinnest_m, glm::mat3_cast(body_from_box.rotation));
 }
 
 Status BodyShape::add_hull(std::span<const Vec3> points_m, const std::string& name) {

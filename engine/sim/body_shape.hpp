@@ -23,6 +23,9 @@ struct ConvexPart {
   double radius_m = 0.0;
   Vec3 centre_m{0.0};    // inside the core
   double reach_m = 0.0;  // farthest point of the rounded part from the centre
+  // The box about the rounded part, about the centre along its own axes.
+  Mat3 axes{1.0};
+  Vec3 low_m{0.0}, high_m{0.0};
 };
 
 class BodyShape {
@@ -42,7 +45,7 @@ class BodyShape {
   double thinnest_m() const { return thinnest_m_; }
 
  private:
-  void add(ConvexPart part, double half_thickness_m);
+  void add(ConvexPart part, double half_thickness_m, const Mat3& axes = Mat3(1.0));
 
   std::vector<ConvexPart> parts_;
   double reach_m_ = 0.0;

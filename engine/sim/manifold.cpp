@@ -258,6 +258,22 @@ Separation plane_separation(const PlacedPart& part, const Triangle& triangle) {
   return {lowest_over(part, triangle.corner[0], side) - part.radius_m, side};
 }
 
+Separation box_separation(const PlacedPart& part, const Triangle& triangle) {
+  Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const Vec3& corner : triangle.corner) {
+    const Vec3 along = (corner - part.centre_m) * part.axes;
+    low = glm::min(low, along);
+    high = glm::max(high, along);
+  }
+  Separation widest{-std::numeric_limits<double>::infinity(), Vec3(0.0)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double above_m = low[axis] - part.high_m[axis], below_m = part.low_m[axis] - high[axis];
+    if (above_m > widest.gap_m) widest = {above_m, -part.axes[axis]};
+    if (below_m > widest.gap_m) widest = {below_m, part.axes[axis]};
+  }
+  return widest;
+}
+
 Separation widest_separation(const PlacedPart& part, const Triangle& triangle) {
   const auto found = distance_of(part, triangle);
   if (!found) return plane_separation(part, triangle);

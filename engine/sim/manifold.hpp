@@ -17,6 +17,8 @@ struct PlacedPart {
   Vec3 centre_m{0.0};
   double radius_m = 0.0;
   double reach_m = 0.0;
+  Mat3 axes{1.0};
+  Vec3 low_m{0.0}, high_m{0.0};
 };
 
 struct TouchPoint {
@@ -42,6 +44,8 @@ struct Separation {
 // The triangle's own plane, on the side of the part's centre: quick, and often enough. Needs no
 // links.
 Separation plane_separation(const PlacedPart& part, const Triangle& triangle);
+// The part's own box's planes: as quick.
+Separation box_separation(const PlacedPart& part, const Triangle& triangle);
 // The widest.
 Separation widest_separation(const PlacedPart& part, const Triangle& triangle);
 

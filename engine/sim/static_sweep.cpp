@@ -39,8 +39,9 @@ struct Sweeper {
     PartPoints storage;
     const Mat3 turn = thing.thing_from_world * glm::mat3_cast(way.from.rotation);
     const PlacedPart placed = place_part(part, turn, Vec3(0.0), storage);
-    const double plane_gap_m = plane_separation(placed, triangle).gap_m;
-    return plane_gap_m > 0.0 ? -plane_gap_m : -widest_separation(placed, triangle).gap_m;
+    const double gap_m =
+        std::max(box_separation(placed, triangle).gap_m, plane_separation(placed, triangle).gap_m);
+    return gap_m > 0.0 ? -gap_m : -widest_separation(placed, triangle).gap_m;
   }
 
   // First time from `start` on, before `end`, at which the part is as deep as it may be; end where
@@ -58,9 +59,12 @@ struct Sweeper {
       const auto closing = [&](const Vec3& direction) {
         return std::max(-glm::dot(move_m, direction), 0.0) + spin_m;
       };
-      Separation apart = plane_separation(placed, triangle);
-      if (apart.gap_m + may_m > closing(apart.direction) * (end - time)) return end;
-      apart = widest_separation(placed, triangle);
+      const auto is_free = [&](const Separation& apart) {
+        return apart.gap_m + may_m > closing(apart.direction) * (end - time);
+      };
+      if (is_free(box_separation(placed, triangle)) || is_free(plane_separation(placed, triangle)))
+        return end;
+      const Separation apart = widest_separation(placed, triangle);
       const double room_m = apart.gap_m + may_m;
       if (room_m <= kHit_m) return time;
       const double speed_m = closing(apart.direction);
@@ -105,9 +109,11 @@ double StaticWorld::sweep(const BodyShape& shape, const Pose& from, const Pose& 
                                   1.0, around);
       local.triangles(box, [&](const Triangle& triangle) {
         for (const ConvexPart& part : shape.parts()) {
+          double time = sweeper.advance(part, triangle, local, allowed_m, start, first);
+          if (time >= first) continue;
           const double depth_m = sweeper.depth_at_start(part, triangle, local);
-          const double may_m = std::max(allowed_m, depth_m + 0.25 * allowed_m);
-          const double time = sweeper.advance(part, triangle, local, may_m, start, first);
+          const double may_m = depth_m + 0.25 * allowed_m;
+          if (may_m > allowed_m) time = sweeper.advance(part, triangle, local, may_m, start, first);
           if (time >= first) continue;
           first = time;
           hit = true;

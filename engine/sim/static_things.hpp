@@ -69,8 +69,13 @@ using PartPoints = std::array<Vec3, kMaxCorePoints>;
 inline PlacedPart place_part(const ConvexPart& part, const Mat3& turn, const Vec3& move_m,
                              PartPoints& storage) {
   for (std::size_t i = 0; i < part.core_m.size(); ++i) storage[i] = turn * part.core_m[i] + move_m;
-  return {std::span(storage.data(), part.core_m.size()), turn * part.centre_m + move_m,
-          part.radius_m, part.reach_m};
+  return {std::span(storage.data(), part.core_m.size()),
+          turn * part.centre_m + move_m,
+          part.radius_m,
+          part.reach_m,
+          turn * part.axes,
+          part.low_m,
+          part.high_m};
 }
 
 }  // namespace neritic::sim

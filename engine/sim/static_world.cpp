@@ -50,7 +50,9 @@ void touch(const PlacedPart& part, const LocalThing& thing, double margin_m,
     return;
   }
   thing.triangles(box_of(part).grown(margin_m), [&](Triangle triangle) {
-    if (plane_separation(part, triangle).gap_m > margin_m) return;
+    if (box_separation(part, triangle).gap_m > margin_m ||
+        plane_separation(part, triangle).gap_m > margin_m)
+      return;
     thing.link(triangle);
     add_touch_points(part, triangle, margin_m, out);
   });
