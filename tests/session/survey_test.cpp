@@ -96,6 +96,47 @@ TEST_F(SurveyTest, ALawnMowerTrackChartsTheRealBottom) {
     EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
 }
 
+// Beams that pass a floor narrower than the swath hear noise alone, and no bottom in it.
+TEST_F(SurveyTest, NoiseIsNoBottom) {
+  scene::Scene scene = scene_with_bottom(scene::make_plane(8.0, 8.0));
+  scene::Sonar sonar;
+  sonar.name = "multibeam";
+  sonar.kind = scene::SonarKind::kProfiling;
+  sonar.range_min_m = 1.0;
+  sonar.range_max_m = 30.0;
+  sonar.azimuth_rad = radians(90.0);
+  sonar.elevation_rad = radians(1.0);
+  sonar.bins_range = 400;
+  sonar.bins_azimuth = 128;
+  sonar.bins_elevation = 32;
+  sonar.mount.pose = {Vec3(0.0, -10.0, 0.0), glm::angleAxis(-kPi / 2.0, Vec3(1, 0, 0))};
+  sonar.terms.level = scene::SonarLevel{.source_level_db = 200.0, .tvg_log = 30.0};
+  sonar.terms.noise = scene::SonarNoise{.level_db = 70.0};
+  scene.objects[1].mount.pose.position_m = {0.0, -20.0, 0.0};
+  scene.sonars = {sonar};
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
+  Survey survey(session->scene());
+  FrameRequest request;
+  request.sonars = {0};
+  request.capture.geometry = false;
+  double loudest_beyond = 0.0;
+  for (request.frame = 0; request.frame < 20; ++request.frame) {
+    NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+    ASSERT_TRUE(survey.add(result, request.time_s).ok());
+    const auto& image = result.sonars[0].image.intensity;
+    for (std::size_t i = 300 * 128; i < image.size(); ++i)
+      loudest_beyond = std::max<double>(loudest_beyond, image[i]);
+  }
+  EXPECT_GT(loudest_beyond, 0.0);  // there is noise behind the floor
+  const test::ScratchFolder out;
+  ASSERT_TRUE(survey.write(out.path(), {}).ok());
+  const auto json = read_json(out / "track" / "multibeam" / "bathymetry.json");
+  // The floor spans 43.6 of the 90 degrees: 62 of 128 beams.
+  EXPECT_NEAR(json["soundings"].get<double>() / 20, 62.0, 3.0);
+  ASSERT_EQ(json["error"]["all_soundings"]["count"], json["soundings"]);
+  EXPECT_LT(json["error"]["all_soundings"]["max_abs_m"], 0.3);
+}
+
 TEST_F(SurveyTest, AnEchoSounderComesDownAtFiveMetresAMinute) {
   scene::Scene scene = scene_with_bottom(scene::make_plane(200.0, 200.0));
   scene.objects[1].mount.pose.position_m = {0.0, -60.0, 0.0};

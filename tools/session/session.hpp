@@ -57,6 +57,7 @@ struct SonarFrame {
   Pose world_from_head;
   double heading_rad = 0.0;  // of a mechanical scanner's beam, sonar axes, positive to starboard
   double sound_speed_m_s = 0.0, absorption_db_per_m = 0.0;  // with terms
+  std::vector<float> noise_power;  // mean of the noise in each range row; empty: none is named
   double fixed_scale = 1.0;
   std::uint32_t gbuffer_width = 1, gbuffer_height = 1;  // of one sector
   double pixels_per_cell = 1.0;                         // asked for, linear

@@ -37,6 +37,9 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
                      {power.begin(), power.end()},
                      sonar::beam_labels(state.head, keys)};
       frame.sound_speed_m_s = head->ping.sound_speed_m_s;
+      if (head->ping.noise_power > 0.0f)
+        for (const glm::vec2& gain : head->ping.gains)
+          frame.noise_power.push_back(head->ping.noise_power * gain.y);
       frame.absorption_db_per_m = head->ping.absorption_db_per_m;
       if (state.records.size() > 0) {
         std::vector<std::span<const shared::SonarRecord>> layers{

@@ -20,6 +20,7 @@ namespace {
 using scene::SonarKind;
 
 constexpr double kNadir_rad = radians(5.0);
+constexpr double kFalseAlarms = 1e-7;    // a bin
 constexpr double kStraightDown = 0.966;  // cosine: 15 degrees of roll and pitch
 constexpr std::uint16_t kSeabedClass = scene::kClasses[0].id;
 
@@ -171,8 +172,19 @@ void Survey::Record::add(const SonarFrame& frame, const Pose& world_from_sonar, 
     coco->add(fmt::format("frame_{:04}/{}/sonar.png", pings - 1, frame.name), *frame.label_energy);
 }
 
+// Bins that noise alone reaches but once in ten million (its power is exponentially distributed)
+// are silence to a detector: a constant false alarm rate, whatever the gain does with range.
+std::vector<float> above_noise(const SonarFrame& frame) {
+  std::vector<float> heard = frame.image.intensity;
+  if (frame.noise_power.empty()) return heard;
+  const float threshold = static_cast<float>(-std::log(kFalseAlarms));
+  for (std::size_t i = 0; i < heard.size(); ++i)
+    if (heard[i] < threshold * frame.noise_power[i / frame.image.n_azimuth]) heard[i] = 0.0f;
+  return heard;
+}
+
 void Survey::Record::add_profile(const SonarFrame& frame) {
-  const auto detections = sonar::detect_bottom(frame.grid, frame.image.intensity);
+  const auto detections = sonar::detect_bottom(frame.grid, above_noise(frame));
   sonar::append(cloud, frame.grid, detections, frame.world_from_head);
   for (const sonar::BottomDetection& d : detections)
     bathymetry->add(frame.world_from_head * sonar::detection_point(frame.grid, d));
@@ -187,7 +199,9 @@ Status Survey::Record::write_bathymetry(const std::filesystem::path& folder,
   NERITIC_TRY_STATUS(sonar::write_pcd(folder / "cloud.pcd", cloud));
   NERITIC_TRY(const sonar::BathymetryGrid grid, bathymetry->grid());
   const sonar::TrueDepth truth = true_depth(scene);
+  json["soundings"] = cloud.size();
   json["error"] = {
+      {"all_soundings", sonar::to_json(sonar::point_error(cloud.positions_m, truth))},
       {"grid_at_cell_centres",
        sonar::to_json(grid_error(grid, truth, sonar::CompareAt::kCellCentre))},
       {"grid_at_soundings", sonar::to_json(grid_error(grid, truth, sonar::CompareAt::kCentroid))},
