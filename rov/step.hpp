@@ -17,8 +17,10 @@ enum class Integrator {
   // Order 4. The classical method over all of the state, thruster lag included; diverges where the
   // step is too long for the lag or the drag.
   kRk4,
-  // Order 4, the default: thrust as its lag's exact impulses, the rest by RK4 in as many substeps as
-  // keep the fastest rate times the substep below a bound; where that takes too many, backward Euler
+  // Order 4, the default: thrust as its lag's exact impulses, the rest by RK4 in as many substeps
+  // as
+  // keep the fastest rate times the substep below a bound; where that takes too many, backward
+  // Euler
   // with implicit Coriolis terms, to which no step can add more energy than the forces gave.
   kGuarded,
 };

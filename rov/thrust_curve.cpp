@@ -72,21 +72,38 @@ bool read_number(std::string_view text, double& out) {
   return read.ec == std::errc() && read.ptr == text.data() + text.size() && std::isfinite(out);
 }
 
-// The voltages that a heading names: "thrust_n_16v" is 16.
-Result<std::vector<double>> read_heading(std::string_view line, const std::string& where) {
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
+struct Heading {
+  std::size_t columns = 0;
+  std::vector<std::size_t> thrust;  // which of them are thrusts
+  std::vector<double> volts;        // at these voltages
+};
+
+// "pwm_us,thrust_n_16v,...": the number between the last '_' and the 'v' is the voltage.
+Result<Heading> read_heading(std::string_view line, const std::string& where) {
   const auto cells = cells_of(line);
-  std::vector<double> volts;
+  Heading out;
+  out.columns = cells.size();
   for (std::size_t i = 1; i < cells.size(); ++i) {
-    const auto from = cells[i].rfind('_');
-    double value = 0.0;
-    if (from == cells[i].npos || !cells[i].ends_with('v') || cells[i].size() < from + 3 ||
-        !read_number(cells[i].substr(from + 1, cells[i].size() - from - 2), value))
+    const std::string name = lower(cells[i]);
+    constexpr std::string_view kPrefix = "thrust_n_";
+    double volts = 0.0;
+    if (!name.starts_with(kPrefix)) continue;
+    if (!name.ends_with('v') ||
+        !read_number(
+            std::string_view(name).substr(kPrefix.size(), name.size() - kPrefix.size() - 1), volts))
       return bad_input("{}: column {} found, a name like thrust_n_16v is accepted", where, i + 1);
-    volts.push_back(value);
+    out.thrust.push_back(i);
+    out.volts.push_back(volts);
   }
-  if (cells[0] != "pwm_us" || volts.empty() || volts.size() > kMostColumns)
+  if (lower(cells[0]) != "pwm_us" || out.volts.empty() || cells.size() > kMostColumns)
     return bad_input("{}: a heading \"pwm_us,thrust_n_16v,...\" is accepted", where);
-  return volts;
+  return out;
 }
 
 }  // namespace
@@ -114,7 +131,8 @@ Result<ThrustCurve> ThrustCurve::make(std::vector<double> pwm_us, std::vector<do
 }
 
 Result<ThrustCurve> ThrustCurve::parse(std::string_view text, const std::string& name) {
-  std::vector<double> volts, pwm_us;
+  Heading heading;
+  std::vector<double> pwm_us;
   std::vector<std::vector<double>> thrust_n;
   int number = 0;
   while (!text.empty()) {
@@ -124,21 +142,22 @@ Result<ThrustCurve> ThrustCurve::parse(std::string_view text, const std::string&
     ++number;
     if (line.empty() || line == "\r" || line.front() == '#') continue;
     const std::string where = fmt::format("{}:{}", name, number);
-    if (volts.empty()) {
-      NERITIC_TRY(volts, read_heading(line, where));
+    if (heading.columns == 0) {
+      NERITIC_TRY(heading, read_heading(line, where));
       continue;
     }
     const auto cells = cells_of(line);
     std::vector<double> row(cells.size());
-    bool good = cells.size() == volts.size() + 1 && pwm_us.size() < kMostRows;
+    bool good = cells.size() == heading.columns && pwm_us.size() < kMostRows;
     for (std::size_t i = 0; i < cells.size(); ++i) good = good && read_number(cells[i], row[i]);
     if (!good)
-      return bad_input("{}: {} numbers are accepted, in up to {} rows", where, volts.size() + 1,
+      return bad_input("{}: {} numbers are accepted, in up to {} rows", where, heading.columns,
                        kMostRows);
     pwm_us.push_back(row[0]);
-    thrust_n.emplace_back(row.begin() + 1, row.end());
+    thrust_n.emplace_back();
+    for (const std::size_t i : heading.thrust) thrust_n.back().push_back(row[i]);
   }
-  Result<ThrustCurve> curve = make(std::move(pwm_us), std::move(volts), std::move(thrust_n));
+  Result<ThrustCurve> curve = make(std::move(pwm_us), heading.volts, std::move(thrust_n));
   if (!curve.ok()) return bad_input("{}: {}", name, curve.error().message);
   return curve;
 }

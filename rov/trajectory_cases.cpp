@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "rov/bluerov2.hpp"
+#include "rov/thrust_curve.hpp"
 
 namespace neritic::rov {
 namespace {
@@ -64,8 +65,8 @@ std::vector<Thruster> read_thrusters(const CaseField& field) {
 std::optional<double> find_lag_time(const CaseField& place) {
   for (const std::string& key : place.keys()) {
     const CaseField field = place[key];
-    const bool named = key == "T" || key == "T_s" || key.find("lag") != key.npos ||
-                       key.find("time_const") != key.npos;
+    const bool named = key == "T" || key == "T_s" || key.ends_with("_T") || key.ends_with("_T_s") ||
+                       key.find("lag") != key.npos || key.find("time_const") != key.npos;
     if (!named) continue;
     if (field.is_number()) return field.number(kDefaultLag, 1e-6, 1e6);
     if (field.is_object())
@@ -87,15 +88,37 @@ bool read_mode(const CaseField& scenario, const CaseField& thrusters, ThrusterLa
       }
   } else if (mode == "vb3") {
     lag.kind = ThrusterLag::Kind::kThirdOrder;
-  } else if (mode != "none" && mode != "force") {
-    scenario["thruster_mode"].refuse("none, force, lag1 or vb3 is");
+  } else if (mode != "none" && mode != "force" && mode != "vb_poly" && mode != "t200_16V") {
+    scenario["thruster_mode"].refuse("none, force, lag1, vb3, vb_poly or t200_16V is");
   }
   return mode != "none";
 }
 
-void read_segments(const CaseField& scenario, bool thrust, TrajectoryCase& out) {
+// The forces of the thrusters in a segment, as it gives them or as its inputs come to.
+std::vector<double> read_forces(const CaseField& scenario, std::size_t segment, std::size_t count,
+                                const std::filesystem::path& folder) {
+  const CaseField given = scenario["input_segments"].at(segment)["thruster_force_cmd_N"];
+  if (given.present()) return given.numbers(count);
+  if (const CaseField volts = scenario["input_normalised_V"]; volts.present()) {
+    std::vector<double> forces = volts.at(segment).required_numbers(count);
+    std::ranges::transform(forces, forces.begin(), von_benzon_thrust_n);
+    return forces;
+  }
+  const CaseField pulses = scenario["input_pwm_us"];
+  if (!pulses.present()) return {};
+  const auto curve = ThrustCurve::read(folder / "t200_thrust.csv");
+  if (!curve.ok()) {
+    pulses.fail(curve.error().message);
+    return {};
+  }
+  std::vector<double> forces = pulses.at(segment).required_numbers(count);
+  for (double& force : forces) force = curve->thrust_n(force, 16.0);
+  return forces;
+}
+
+void read_segments(const CaseField& scenario, bool thrust, const std::filesystem::path& folder,
+                   TrajectoryCase& out) {
   const CaseField list = scenario["input_segments"];
-  const CaseField inputs = scenario["input_normalised_V"];
   for (std::size_t i = 0; i < list.size(); ++i) {
     const CaseField at = list.at(i);
     InputSegment segment;
@@ -106,14 +129,8 @@ void read_segments(const CaseField& scenario, bool thrust, TrajectoryCase& out) 
       at["t0"].refuse("a time not before the last segment's t1 is");
     segment.wrench = vec6_of(at["tau_body"]);
     segment.sines = read_sines(at["tau_sin"]);
-    const std::size_t count = out.vehicle.thruster_count;
-    if (at["thruster_force_cmd_N"].present()) {
-      const auto forces = at["thruster_force_cmd_N"].numbers(count);
-      if (thrust) std::copy(forces.begin(), forces.end(), segment.thruster_n.begin());
-    } else if (thrust && inputs.present()) {
-      const auto volts = inputs.at(i).required_numbers(count);
-      std::transform(volts.begin(), volts.end(), segment.thruster_n.begin(), von_benzon_thrust_n);
-    }
+    const auto forces = read_forces(scenario, i, out.vehicle.thruster_count, folder);
+    if (thrust) std::ranges::copy(forces, segment.thruster_n.begin());
     out.segments.push_back(segment);
   }
 }
@@ -166,7 +183,8 @@ void read_promises(const CaseField& field, TrajectoryCase& out) {
   }
 }
 
-TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseField& thrusters) {
+TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseField& thrusters,
+                         const std::filesystem::path& folder) {
   TrajectoryCase out;
   VehicleParameters parameters = read_parameters(scenario.required("params"));
   const bool thrust = read_mode(scenario, thrusters, parameters.lag);
@@ -185,7 +203,7 @@ TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseFi
   out.attitude = read_attitude(initial["q_wxyz"]).value_or(Quat(1.0, 0.0, 0.0, 0.0));
   out.velocity = vec6_of(initial["nu_frd"]);
   out.sines = read_sines(scenario["tau_sin"]);
-  read_segments(scenario, thrust, out);
+  read_segments(scenario, thrust, folder, out);
   read_samples(scenario, out);
   read_promises(scenario["fixed_step_end_error"], out);
   return out;
@@ -194,7 +212,8 @@ TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseFi
 }  // namespace
 
 Result<std::vector<TrajectoryCase>> read_trajectories(std::string_view text,
-                                                      const std::string& name) {
+                                                      const std::string& name,
+                                                      const std::filesystem::path& folder) {
   NERITIC_TRY(CaseFile file, CaseFile::parse(text, name));
   const CaseField root = file.root();
   if (root["format"].present() && root["format"].text() != "rov_vectors/1")
@@ -205,7 +224,7 @@ Result<std::vector<TrajectoryCase>> read_trajectories(std::string_view text,
     const CaseField scenario = list.at(i);
     const std::string id = scenario["id"].text(fmt::format("case {}", i + 1));
     file.enter_case(id);
-    TrajectoryCase one = read_case(file, scenario, root["thrusters"]);
+    TrajectoryCase one = read_case(file, scenario, root["thrusters"], folder);
     one.id = id;
     out.push_back(std::move(one));
   }

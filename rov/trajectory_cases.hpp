@@ -8,10 +8,11 @@
 //     params: m_kg, I_CO_kgm2 (rows or a diagonal), r_g_m, r_b_m [0], M_A, D_L (rows or a diagonal)
 //       [0], D_Q_diag [0], W_N [9.82 m], B_N [W]
 //     current_ned_mps [0]; initial: p_ned [0], q_wxyz [1, 0, 0, 0], nu_frd [0]
-//     thruster_mode: none, force (at once), lag1, vb3 [none]
+//     thruster_mode: none, force (at once), lag1, vb3 [none]; vb_poly and t200_16V are force too
 //     lag1_T_s, or T, in the case or in thrusters [0.1 s]: T of lag1
 //     input_segments: t0, t1, tau_body [0], thruster_force_cmd_N [0]; outside of all: 0
-//     input_normalised_V: a row a segment, where no force is given: F of vb_poly
+//     input_normalised_V, input_pwm_us: a row a segment, where no force is given: F of vb_poly, or
+//       by the column thrust_N_16V of t200_thrust.csv beside the file
 //     tau_sin: tau += amplitude sin(omega t + phase), t the case's time; an object or a list of
 //     them
 //       (sine_wrench.hpp) [none]
@@ -21,6 +22,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,8 +66,9 @@ struct TrajectoryCase {
   std::vector<PromisedError> promised;
 };
 
-// Errors in one line: file, case, field, what was found, what is accepted.
+// Errors in one line: file, case, field, what was found, what is accepted. folder: the file's.
 Result<std::vector<TrajectoryCase>> read_trajectories(std::string_view text,
-                                                      const std::string& name);
+                                                      const std::string& name,
+                                                      const std::filesystem::path& folder = {});
 
 }  // namespace neritic::rov

@@ -84,6 +84,32 @@ TEST(RovCaseFile, SinesAreReadInEveryForm) {
   }
 }
 
+TEST(RovCaseFile, InputsThatAreNoForcesAreTurnedIntoThem) {
+  Json json = smallest();
+  Json& one = json["scenarios"][0];
+  one["thruster_mode"] = "vb_poly";
+  one["input_segments"] = parse_json("[{\"t0\": 0, \"t1\": 1}]").value();
+  one["input_normalised_V"] = parse_json("[[0.5, -0.5, 0, 0, 0, 0, 0, 1]]").value();
+  auto read = read_trajectories(json_text(json), "cases.json");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_DOUBLE_EQ(read->front().segments[0].thruster_n[0], 16.5939453125);
+  EXPECT_DOUBLE_EQ(read->front().segments[0].thruster_n[1], -16.5939453125);
+  one["thruster_mode"] = "t200_16V";
+  one.erase("input_normalised_V");
+  one["input_pwm_us"] = parse_json("[[1500, 1900, 1100, 1898, 1500, 1500, 1500, 1500]]").value();
+  EXPECT_THAT(fault(json), HasSubstr("input_pwm_us: t200_thrust.csv: no such file"));
+  const test::ScratchFolder folder;
+  std::filesystem::copy_file(test::source_dir() / "tests/rov/data/t200_measured.csv",
+                             folder / "t200_thrust.csv");
+  read = read_trajectories(json_text(json), "cases.json", folder.path());
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const auto& forces = read->front().segments[0].thruster_n;
+  EXPECT_EQ(forces[0], 0.0);
+  EXPECT_NEAR(forces[1], 51.4362, 1e-9);
+  EXPECT_NEAR(forces[2], -39.9079, 1e-9);
+  EXPECT_NEAR(forces[3], 0.5 * (51.4362 + 51.1990), 1e-9);
+}
+
 struct Fault {
   const char* pointer;  // where in the document
   const char* value;    // JSON
@@ -103,7 +129,7 @@ TEST(RovCaseFile, FaultsAreSaidInOneLine) {
       {"/scenarios/0/params/D_Q_diag", "[-1, 0, 0, 0, 0, 0]", "quadratic_damping: -1 found"},
       {"/scenarios/0/samples/0/p_ned", "[1, null, 3]", "samples[0].p_ned: [1,null,3] found, a li"},
       {"/scenarios/0/samples/0", "{\"t\": 1}", "samples[0]: nothing to compare found; p_ned"},
-      {"/scenarios/0/thruster_mode", "\"warp\"", "\"warp\" found, none, force, lag1 or vb3 is ac"},
+      {"/scenarios/0/thruster_mode", "\"warp\"", "\"warp\" found, none, force, lag1, vb3, vb_po"},
       {"/scenarios/0/initial", "{\"q_wxyz\": [0, 0, 0, 0]}", "q_wxyz: [0,0,0,0] found, a unit qu"},
       {"/scenarios/0/tau_sin", "{\"amp\": [1, 1, 1, 1, 1, 1]}", "tau_sin: no frequency found"},
       {"/scenarios/0/tau_sin", "{\"omega\": 1, \"colour\": 1}", "tau_sin.colour: not known"},

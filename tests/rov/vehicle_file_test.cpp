@@ -209,7 +209,7 @@ TEST(RovThrustCurve, FaultsAreSaidInOneLine) {
   EXPECT_EQ(said("# c\npwm_us,thrust_n_12v\n1100,-3\n1900,4\n"), "");
   EXPECT_THAT(said(""), HasSubstr("t.csv: 0 pulse widths"));
   EXPECT_THAT(said("pwm,thrust_n_12v\n"), HasSubstr("t.csv:1: a heading"));
-  EXPECT_THAT(said("pwm_us,thrust\n"), HasSubstr("t.csv:1: column 2"));
+  EXPECT_THAT(said("pwm_us,thrust_n_v\n"), HasSubstr("t.csv:1: column 2"));
   EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,x\n"), HasSubstr("t.csv:2: 2 numbers are accepted"));
   EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,1\n1000,2\n"), HasSubstr("do not rise"));
 }

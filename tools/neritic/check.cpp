@@ -23,7 +23,9 @@ Result<std::vector<CaseResult>> check_file(const CheckFlags& flags) {
   NERITIC_TRY(const std::string text, read_text(flags.file));
   std::vector<CaseResult> results;
   if (flags.what == "rov") {
-    NERITIC_TRY(const auto cases, rov::read_trajectories(text, flags.file));
+    NERITIC_TRY(
+        const auto cases,
+        rov::read_trajectories(text, flags.file, std::filesystem::path(flags.file).parent_path()));
     for (const rov::TrajectoryCase& one : cases)
       results.push_back(rov::check_trajectory(one, {integrator, flags.hz}));
     return results;
