@@ -135,7 +135,8 @@ TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
     for (std::size_t e = 0; e < camera.eyes.size(); ++e)
       expect_like_golden(camera.eyes[e].color, c.name + "." + camera.name + (e ? ".right" : ""), c);
   for (const SonarFrame& sonar : result.sonars)
-    expect_like_golden(grey_sonar(sonar.image), c.name + "." + sonar.name, c);
+    expect_like_golden(grey_sonar(sonar.image),
+                       c.name + "." + sonar.name + (sonar.head.empty() ? "" : "." + sonar.head), c);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Golden, ::testing::ValuesIn(read_cases()),
