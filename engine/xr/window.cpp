@@ -84,6 +84,7 @@ DesktopInput Window::take_input(bool ui_has_mouse, bool ui_has_keys) {
   input.move.x = down(GLFW_KEY_D) - down(GLFW_KEY_A);
   input.move.y = std::max(down(GLFW_KEY_E), down(GLFW_KEY_SPACE)) - down(GLFW_KEY_Q);
   input.move.z = down(GLFW_KEY_S) - down(GLFW_KEY_W);
+  input.turn = down(GLFW_KEY_RIGHT) - down(GLFW_KEY_LEFT);
   input.fast = down(GLFW_KEY_LEFT_SHIFT) + down(GLFW_KEY_RIGHT_SHIFT) > 0.0;
   return input;
 }
@@ -123,6 +124,9 @@ void Window::on_key(GLFWwindow* handle, int key, int, int action, int) {
       break;
     case GLFW_KEY_F12:
       window.events_.screenshot = true;
+      break;
+    case GLFW_KEY_P:
+      window.events_.toggle_pilot = true;
       break;
     case GLFW_KEY_HOME:
       window.events_.reset = true;

@@ -18,11 +18,13 @@ namespace neritic::xr {
 // What happened since the last take_input.
 struct DesktopInput {
   Vec3 move{0.0};      // held keys: x starboard, y up, z backwards; each -1, 0 or 1
+  double turn = 0.0;   // held keys: to starboard 1, to port -1
   bool fast = false;   // shift is held
   Vec2 look_px{0.0};   // mouse movement while the right button is held; x to the right, y down
   double wheel = 0.0;  // clicks, positive away from the user
   // Keys that went down.
   bool toggle_help = false, toggle_panels = false, screenshot = false, reset = false;
+  bool toggle_pilot = false;
 };
 
 enum class WindowState {

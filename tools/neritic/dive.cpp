@@ -115,6 +115,13 @@ Status run_dive(const DiveFlags& flags) {
   NERITIC_TRY_STATUS(check_physics_flags(flags, scene));
   if (asks_for_physics_alone(flags, scene)) return dive_physics(flags, scene);
   DiveOptions options;
+  std::unique_ptr<LivePhysics> physics;
+  if (PhysicsWorld::needed(scene)) {
+    using Pace = LivePhysics::Pace;
+    NERITIC_TRY(physics,
+                LivePhysics::create(scene, flags.headless ? Pace::kPicture : Pace::kClock));
+    options.physics = physics.get();
+  }
   options.frames = flags.frames;
   options.seconds = flags.seconds;
   options.screenshot = flags.screenshot;

@@ -54,6 +54,7 @@ Dive::Dive(gpu::Device& device, Session& session, xr::Display& display, xr::Over
       window_(window),
       options_(options),
       camera_(session.scene().world_from(session.scene().cameras[options.camera].mount)),
+      pilot_(options.physics, session.scene().cameras[options.camera].mount),
       first_pose_(camera_.world_from_view()),
       schedule_(rates_of(session.scene(), options.sonars)),
       times_(options.summary) {}
@@ -93,7 +94,10 @@ Status Dive::frame(const xr::DisplayFrame& display_frame, bool last) {
   if (last_frame_ns_ != 0) times_.add_frame(elapsed_s_ * 1e3, now);
   last_frame_ns_ = now;
   if (frames_drawn_ == 0) start_ns_ = display_frame.predicted_display_ns;
+  if (frames_drawn_ == 0 && options_.physics) options_.physics->start();
   time_s_ = to_s(display_frame.predicted_display_ns - start_ns_);
+  if (options_.physics)
+    options_.physics->place(session_.scene(), display_frame.predicted_display_ns, time_s_);
   take_input(elapsed_s_);
   aim_camera(display_frame);
 
@@ -121,7 +125,10 @@ void Dive::take_input(double elapsed_s) {
   if (input.toggle_panels) show_panels_ = !show_panels_;
   if (input.screenshot) shot_wanted_ = true;
   if (input.reset) camera_.start_at(first_pose_);
-  camera_.update(input, elapsed_s);
+  if (pilot_.take(input))
+    camera_.start_at(pilot_.world_from_view());
+  else
+    camera_.update(input, elapsed_s);
 }
 
 // The scene's camera goes where the user flies, as large as the display wants it.
@@ -190,7 +197,8 @@ Result<graph::ImageHandle> Dive::declare_overlay(graph::FrameGraph& graph, const
                      live.cameras.front().width,
                      live.cameras.front().height,
                      time_s_,
-                     {}};
+                     {},
+                     pilot_.lines()};
     for (const std::size_t index : options_.sonars) {
       const graph::ImageHandle picture = fans_->picture(graph, index);
       if (!picture) continue;

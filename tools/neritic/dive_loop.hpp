@@ -14,6 +14,7 @@
 #include "engine/xr/window.hpp"
 #include "tools/neritic/dive_camera.hpp"
 #include "tools/neritic/dive_fan.hpp"
+#include "tools/neritic/dive_pilot.hpp"
 #include "tools/neritic/dive_times.hpp"
 #include "tools/session/ping_schedule.hpp"
 #include "tools/session/readback.hpp"
@@ -29,6 +30,7 @@ struct DiveOptions {
   std::vector<std::size_t> sonars;   // of the scene, those that ping
   bool panels = true;                // draw them (else the camera's picture only)
   bool summary = false;              // keep samples for one
+  LivePhysics* physics = nullptr;    // of the scene's vehicles; outlives the Dive
 };
 
 class Dive {
@@ -68,6 +70,7 @@ class Dive {
   xr::Window* window_;
   DiveOptions options_;
   FreeCamera camera_;
+  DivePilot pilot_;
   Pose first_pose_;
   std::unique_ptr<SonarFans> fans_;
   PingSchedule schedule_;  // of options_.sonars

@@ -197,6 +197,9 @@ void draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTi
                         degrees(camera.pitch_rad())));
   text_line(fmt::format("speed {:.2f} m/s   time {:.1f} s{}", camera.speed_m_s(), facts.time_s,
                         facts.water.empty() ? "" : "   water " + facts.water));
+  ImGui::PushTextWrapPos(0.0f);
+  for (const std::string& line : facts.vehicles) text_line(line);
+  ImGui::PopTextWrapPos();
   ImGui::Separator();
   timings_table(times, now_ns, scale);
   ImGui::End();
@@ -226,6 +229,8 @@ void draw_help(float scale) {
       {"Shift", "four times as fast"},
       {"mouse wheel", "faster, slower"},
       {"right mouse button", "hold to look around"},
+      {"P", "fly a vehicle that moves by physics by hand, and back"},
+      {"Left, Right", "turn it"},
       {"Home", "back to where the dive began"},
       {"F1", "this list"},
       {"F2", "panels and live sonars on or off"},

@@ -27,6 +27,7 @@ struct PanelFacts {
   std::uint32_t width = 0, height = 0;
   double time_s = 0.0;
   std::vector<SonarPanel> sonars;
+  std::vector<std::string> vehicles;  // a line each
 };
 
 // The camera's picture behind everything.

@@ -1,0 +1,174 @@
+// `neritic dive --headless` of scenes with physics, as its users run it: without a Vulkan device,
+// with its table, picture, record and replay, and one line for flags that do not fit.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What no driver answers to.
+constexpr const char* kNoDevice = "env VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent";
+
+class DivePhysics : public testing::Test {
+ protected:
+  struct Outcome {
+    int status = -1;
+    std::string out, err;
+  };
+
+  void SetUp() override {
+    const std::string dynamics =
+        (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string();
+    ASSERT_TRUE(write_text(scratch_ / "dive.toml", R"(title = "box"
+[physics]
+[[objects]]
+name = "sand"
+class = "seabed"
+shape = "plane"
+size_m = [20, 20]
+position_m = [0, -8, 0]
+[[vehicles]]
+name = "rov"
+shape = "box"
+size_m = [0.57, 0.26, 0.46]
+dynamics = ")" + dynamics + R"("
+position_m = [0, -6, 0]
+mission = { waypoints = [ { position_m = [0, -6, -2] }, { position_m = [1, -7, -2] } ] }
+)")
+                    .ok());
+    ASSERT_TRUE(write_text(scratch_ / "still.toml", "[[objects]]\nshape = \"box\"\n").ok());
+  }
+
+  Outcome dive(const std::string& arguments, const std::string& name = "dive.toml") {
+    const int raw =
+        std::system(fmt::format("{} '{}/tools/neritic' dive '{}' {} > '{}' 2> '{}'", kNoDevice,
+                                NERITIC_BINARY_DIR, (scratch_ / name).string(), arguments,
+                                (scratch_ / "out").string(), (scratch_ / "err").string())
+                        .c_str());
+    return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, read_text(scratch_ / "out").value(),
+            read_text(scratch_ / "err").value()};
+  }
+  std::string file(const std::string& name) const { return "'" + (scratch_ / name).string() + "'"; }
+
+  // Columns by name.
+  std::map<std::string, std::vector<std::string>> table(const std::string& name) const {
+    std::istringstream text(read_text(scratch_ / name).value());
+    std::vector<std::string> names;
+    std::map<std::string, std::vector<std::string>> columns;
+    for (std::string line; std::getline(text, line);) {
+      std::istringstream cells(line);
+      std::size_t column = 0;
+      for (std::string cell; std::getline(cells, cell, ','); ++column) {
+        if (columns.size() < names.size() || names.size() == column)
+          names.push_back(cell);
+        else
+          columns[names[column]].push_back(cell);
+      }
+      for (const std::string& known : names) columns[known];
+    }
+    return columns;
+  }
+
+  test::ScratchFolder scratch_;
+};
+
+TEST_F(DivePhysics, FliesWithoutADeviceAndSaysWhatCameOfIt) {
+  const Outcome outcome = dive("--headless --seconds 20 --log " + file("a.csv"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.out.rfind("rov: 2 of 2 waypoints (the last after ", 0), 0u) << outcome.out;
+  EXPECT_NE(outcome.out.find("touched nothing\n20 s in 4800 steps, "), std::string::npos)
+      << outcome.out;
+  const auto columns = table("a.csv");
+  const auto& times = columns.at("time_s");
+  ASSERT_EQ(times.size(), 1001u);  // 50 a second, and the start
+  EXPECT_EQ(times.front(), "0");
+  EXPECT_EQ(times.back(), "20");
+  EXPECT_NEAR(std::stod(columns.at("x_m").back()), 1.0, 0.05);
+  EXPECT_NEAR(std::stod(columns.at("depth_m").back()), 7.0, 0.05);
+  EXPECT_EQ(columns.at("arrived").back(), "2");
+  EXPECT_EQ(columns.at("thrust_8_n").size(), 1001u);
+  // The hash of the last row is the one that is said.
+  EXPECT_NE(outcome.out.find("hash " + columns.at("hash").back()), std::string::npos);
+}
+
+TEST_F(DivePhysics, RunsAlikeAndReplaysWhatItRecorded) {
+  const Outcome first = dive("--headless --seconds 8 --json --record " + file("a.log"));
+  const Outcome second = dive("--headless --seconds 8 --json");
+  ASSERT_EQ(first.status, 0) << first.err;
+  const auto a = parse_json(first.out), b = parse_json(second.out);
+  ASSERT_TRUE(a.ok() && b.ok()) << first.out;
+  EXPECT_EQ((*a)["hash"], (*b)["hash"]);
+  EXPECT_EQ((*a)["steps"], 1920);
+  EXPECT_EQ((*a)["vehicles"][0]["name"], "rov");
+  EXPECT_EQ((*a)["vehicles"][0]["touched_steps"], 0);
+  const Outcome replay = dive("--headless --replay " + file("a.log"));
+  EXPECT_EQ(replay.status, 0) << replay.err;
+  EXPECT_NE(replay.out.find("1920 steps, each with the hash that was recorded"), std::string::npos)
+      << replay.out;
+  // Another scene goes another way.
+  const std::string text = read_text(scratch_ / "dive.toml").value();
+  const std::string current = "[current]\nkind = \"uniform\"\nvelocity_m_s = [0.1, 0, 0]\n";
+  ASSERT_TRUE(write_text(scratch_ / "other.toml", text + current).ok());
+  const Outcome other = dive("--headless --replay " + file("a.log"), "other.toml");
+  EXPECT_EQ(other.status, 1);
+  EXPECT_NE(other.err.find("another state than recorded from step"), std::string::npos)
+      << other.err;
+}
+
+TEST_F(DivePhysics, KeepsTheClocksPaceWhenToldTo) {
+  const Outcome outcome = dive("--headless --seconds 1 --realtime --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = parse_json(outcome.out);
+  ASSERT_TRUE(json.ok());
+  EXPECT_EQ((*json)["steps"], 240);
+  EXPECT_GT((*json)["wall_s"].get<double>(), 0.98);
+}
+
+TEST_F(DivePhysics, DrawsItsPlotAndKeepsTheRateOfItsRows) {
+  const Outcome outcome = dive("--headless --seconds 4 --log-rate 10 --log " + file("a.csv") +
+                               " --plot " + file("a.png"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(table("a.csv").at("time_s").size(), 41u);
+  const auto image = scene::read_image8(scratch_ / "a.png", 3);
+  ASSERT_TRUE(image.ok()) << image.error().message;
+  EXPECT_EQ(image->width, 1600u);
+  EXPECT_EQ(image->height, 1200u);
+}
+
+TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
+  const struct {
+    std::string arguments, scene, message;
+  } cases[] = {
+      {"--headless --log x.csv", "still.toml", "--log: accepted where a vehicle has dynamics; in "},
+      {"--log x.csv", "dive.toml", "--log: accepted with --headless and without flags of pictures"},
+      {"--headless --frames 3 --json", "dive.toml",
+       "--json: accepted with --headless and without flags of pictures"},
+      {"--headless --replay none.log", "dive.toml", "none.log"},
+      {"--headless --replay a.log --log x.csv", "dive.toml",
+       "--replay: accepted without --log, --plot, --record, --realtime, --json"},
+      {"--headless --seconds 1e7", "dive.toml", "--seconds: 10000000; up to 1e+06 is accepted"},
+      {"--headless --log-rate -1", "dive.toml",
+       "--log-rate: -1; a number from 0 to 10000 is accepted"}};
+  for (const auto& wrong : cases) {
+    const Outcome outcome = dive(wrong.arguments, wrong.scene);
+    EXPECT_EQ(outcome.status, 2) << wrong.message;
+    EXPECT_NE(outcome.err.find(wrong.message), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace neritic
