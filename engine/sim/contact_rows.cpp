@@ -68,7 +68,7 @@ void Conjugate::advance(std::vector<SolverContact>& contacts, Six& velocity) {
   }
   const double ratio = size_ > 0.0 ? size / size_ : 0.0;
   size_ = size;
-  const double go = ratio <= 1.0 ? ratio : 0.0;  // else begin anew
+  const double go = ratio <= 1.05 ? std::min(ratio, 1.0) : 0.0;  // else begin anew
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     SolverContact& contact = contacts[i];
     const Vec3 more = go * way_[i];

@@ -48,6 +48,19 @@ void keep_outermost(std::span<const TouchPoint> points, std::span<const std::siz
   if (points[deepest].gap_m < deepest_kept_m - kDeeper_m) keep[deepest] = true;
 }
 
+// Of points at one place with all but the same normal, as where surfaces overlap, the deepest
+// stays: more would say the same and only slow the solver down.
+void drop_doubles(std::span<const TouchPoint> points, std::vector<bool>& keep) {
+  constexpr double kSamePlace_m = 1e-3, kAlike = 1e-4;  // 14 mrad
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = i + 1; keep[i] && j < points.size(); ++j) {
+      if (!keep[j] || glm::dot(points[i].normal, points[j].normal) < 1.0 - kAlike) continue;
+      const Vec3 apart_m = points[i].point_m - points[j].point_m;
+      if (glm::dot(apart_m, apart_m) > kSamePlace_m * kSamePlace_m) continue;
+      keep[points[i].gap_m <= points[j].gap_m ? j : i] = false;
+    }
+}
+
 }  // namespace
 
 void thin_touch_points(std::vector<TouchPoint>& points, std::size_t from) {
@@ -66,6 +79,7 @@ void thin_touch_points(std::vector<TouchPoint>& points, std::size_t from) {
     }
     keep_outermost(own, group, directions, keep);
   }
+  drop_doubles(own, keep);
   std::size_t kept = from;
   for (std::size_t i = 0; i < keep.size(); ++i)
     if (keep[i]) points[kept++] = points[from + i];
