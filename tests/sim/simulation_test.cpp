@@ -148,7 +148,7 @@ TEST(Simulation, AThreadUnderAShowerOfMessagesReplaysToTheSameHashes) {
       other.at(clock.now(), test::blend_spring);
     }
   });
-  while (last < 20'000) {
+  while (last < 20'000 || spring.inbox_counts().refused == 0) {
     if (!reader.update()) continue;
     backwards += reader.newest().step < last;
     last = reader.newest().step;
@@ -160,7 +160,6 @@ TEST(Simulation, AThreadUnderAShowerOfMessagesReplaysToTheSameHashes) {
   spring.stop();
   EXPECT_EQ(backwards, 0u);
   EXPECT_EQ(wrong_hashes, 0u);
-  EXPECT_GT(spring.inbox_counts().refused, 0u);
   EXPECT_EQ(spring.pace().steps, spring.newest().step);
   const ReplayReport report = replay(spring.log(), SpringState{}, test::spring_step);
   EXPECT_EQ(report.steps, spring.newest().step);
