@@ -39,10 +39,11 @@ void main() {
     float whole = floor(turned);
     part = turned - whole;
     start += int(whole);
+    int kernel = min(at.x, textureSize(taps, 0).y - 1);  // a beam's own, or all beams' one
     for (int k = 0; k < int(c.taps); ++k) {
       vec2 value = column_at(start + k, at.y);
       if (kShift != 0) value = mix(value, column_at(start + k + 1, at.y), part);
-      sum += texelFetch(taps, ivec2(k, 0), 0).r * value;
+      sum += texelFetch(taps, ivec2(k, kernel), 0).r * value;
     }
   }
   // Neighbouring columns are independent: amplitudes mixed so have less power on average than either.

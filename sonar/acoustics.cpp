@@ -65,9 +65,6 @@ double db_from_power(double power_ratio) {
 double power_from_db(double level_db) {
   return std::pow(10.0, level_db / 10.0);
 }
-double db_from_amplitude(double amplitude_ratio) {
-  return 20.0 * std::log10(amplitude_ratio);
-}
 double amplitude_from_db(double level_db) {
   return std::pow(10.0, level_db / 20.0);
 }
@@ -85,16 +82,6 @@ double incoherent_sum_db(std::span<const double> levels_db) {
   return strongest + db_from_power(sum);
 }
 
-std::complex<double> coherent_sum(std::span<const double> levels_db,
-                                  std::span<const double> phases_rad) {
-  NERITIC_CHECK(levels_db.size() == phases_rad.size(), "{} levels, {} phases", levels_db.size(),
-                phases_rad.size());
-  std::complex<double> sum = 0.0;
-  for (std::size_t i = 0; i < levels_db.size(); ++i)
-    sum += std::polar(amplitude_from_db(levels_db[i]), phases_rad[i]);
-  return sum;
-}
-
 Status validate(const Water& water) {
   NERITIC_TRY_STATUS(in_range("temperature", water.temperature_c, -4.0, 60.0, "C"));
   NERITIC_TRY_STATUS(in_range("salinity", water.salinity_psu, 0.0, 60.0, "psu"));
@@ -106,18 +93,6 @@ double sound_speed_mackenzie_m_s(const Water& water) {
   const double t = water.temperature_c, s = water.salinity_psu - 35.0, d = water.depth_m;
   return 1448.96 + 4.591 * t - 5.304e-2 * t * t + 2.374e-4 * t * t * t + 1.340 * s + 1.630e-2 * d +
          1.675e-7 * d * d - 1.025e-2 * t * s - 7.139e-13 * t * d * d * d;
-}
-
-double sound_speed_medwin_m_s(const Water& water) {
-  const double t = water.temperature_c, s = water.salinity_psu - 35.0;
-  return 1449.2 + 4.6 * t - 0.055 * t * t + 0.00029 * t * t * t + (1.34 - 0.010 * t) * s +
-         0.016 * water.depth_m;
-}
-
-Result<AbsorptionModel> absorption_model_of(std::string_view name) {
-  if (name == "francois-garrison") return AbsorptionModel::kFrancoisGarrison;
-  if (name == "ainslie-mccolm") return AbsorptionModel::kAinslieMcColm;
-  return bad_input("absorption '{}'; accepted: francois-garrison, ainslie-mccolm", name);
 }
 
 double absorption_db_m(AbsorptionModel model, const Water& water, double frequency_hz) {
@@ -140,14 +115,6 @@ double two_way_loss_db(double range_m, double absorption_db_m) {
   return 2.0 * transmission_loss_db(range_m, absorption_db_m);
 }
 
-double echo_level_db(double source_level_db, double two_way_loss_db, double target_strength_db) {
-  return source_level_db - two_way_loss_db + target_strength_db;
-}
-
-double signal_to_noise_db(double echo_level_db, double noise_level_db) {
-  return echo_level_db - noise_level_db;
-}
-
 double band_level_db(double spectrum_level_db, double bandwidth_hz) {
   return spectrum_level_db + db_from_power(bandwidth_hz);
 }
@@ -167,34 +134,9 @@ double ambient_noise_db(double frequency_hz, double wind_m_s, double shipping) {
   return incoherent_sum_db(levels_db);
 }
 
-double rigid_sphere_target_strength_db(double radius_m) {
-  return 20.0 * std::log10(radius_m / 2.0);
-}
-
-double lambert_strength(double mu_db, double grazing_rad) {
-  return power_from_db(mu_db) * square(std::sin(grazing_rad));
-}
-
-double lambert_strength_db(double mu_db, double grazing_rad) {
-  return mu_db + 20.0 * std::log10(std::abs(std::sin(grazing_rad)));
-}
-
 double reflection_coefficient(const Medium& from, const Medium& into) {
   const double z1 = from.impedance_rayl(), z2 = into.impedance_rayl();
   return (z2 - z1) / (z2 + z1);
-}
-
-// Rayleigh: with grazing angles g1 and g2 of the two waves, (Z2 sin g1 - Z1 sin g2) over the sum.
-// Snell: cos g2 = (c2 / c1) cos g1, and sin g2 imaginary beyond the critical angle. Jensen et al.
-// 2011, Computational Ocean Acoustics, sec. 1.6.1.
-std::complex<double> reflection_coefficient(const Medium& from, const Medium& into,
-                                            double grazing_rad) {
-  const double sine = std::sin(grazing_rad);
-  const double cosine2 = into.sound_speed_m_s / from.sound_speed_m_s * std::cos(grazing_rad);
-  const std::complex<double> sine2 = std::sqrt(std::complex<double>(1.0 - square(cosine2), 0.0));
-  const std::complex<double> a = into.impedance_rayl() * sine;
-  const std::complex<double> b = from.impedance_rayl() * sine2;
-  return (a - b) / (a + b);
 }
 
 }  // namespace neritic::sonar

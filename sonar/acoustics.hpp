@@ -1,5 +1,5 @@
 // Acoustics of sea water and of the sonar equation, in decibels: sound speed, absorption,
-// transmission loss, scattering and target strength, reflection, ambient noise. Pure functions in
+// transmission loss, reflection, ambient noise. Pure functions in
 // double; any thread. Levels are dB re 1 uPa (at 1 m for sources), losses positive dB.
 //
 // An argument that is NaN gives NaN. Values outside a formula's published range (stated above it)
@@ -7,9 +7,7 @@
 // [1 Hz, 10 MHz]; frequencies that are not positive give NaN.
 #pragma once
 
-#include <complex>
 #include <span>
-#include <string_view>
 
 #include "engine/core/result.hpp"
 
@@ -19,13 +17,9 @@ namespace neritic::sonar {
 // A ratio of 0 is -infinity dB, and back.
 double db_from_power(double power_ratio);
 double power_from_db(double level_db);
-double db_from_amplitude(double amplitude_ratio);
 double amplitude_from_db(double level_db);
 // Level of independent contributions: their powers add. No contribution is -infinity.
 double incoherent_sum_db(std::span<const double> levels_db);
-// Of contributions with known phase: their amplitudes add. Phases as many as levels.
-std::complex<double> coherent_sum(std::span<const double> levels_db,
-                                  std::span<const double> phases_rad);
 
 // ---- Water --------------------------------------------------------------------------------------
 struct Water {
@@ -43,13 +37,7 @@ inline constexpr double kMinFrequency_hz = 1.0, kMaxFrequency_hz = 1.0e7;
 // Mackenzie 1981, "Nine-term equation for sound speed in the oceans", JASA 70, 807. Published for
 // 2 to 30 C, 25 to 40 psu, 0 to 8000 m; standard error 0.07 m/s.
 double sound_speed_mackenzie_m_s(const Water& water);
-// Medwin 1975, "Speed of sound in water: a simple equation for realistic parameters", JASA 58,
-// 1318. Published for 0 to 35 C, 0 to 45 psu, 0 to 1000 m.
-double sound_speed_medwin_m_s(const Water& water);
-
 enum class AbsorptionModel { kFrancoisGarrison, kAinslieMcColm };
-// "francois-garrison", "ainslie-mccolm"; kBadInput names the others.
-Result<AbsorptionModel> absorption_model_of(std::string_view name);
 // dB per metre, one way, >= 0.
 // Francois and Garrison 1982, "Sound absorption based on ocean measurements, Parts I and II", JASA
 // 72, 896 and 1879. Published for 0.4 to 1000 kHz, -1.8 to 30 C, 30 to 35 psu.
@@ -65,11 +53,6 @@ double spherical_spreading_db(double range_m);
 double transmission_loss_db(double range_m, double absorption_db_m);
 double two_way_loss_db(double range_m, double absorption_db_m);
 
-// ---- Sonar equation (Urick 1983, Principles of Underwater Sound, ch. 2)
-// -------------------------- EL = SL - 2 TL + TS, and the signal excess over noise that arrives in
-// the receiver's band.
-double echo_level_db(double source_level_db, double two_way_loss_db, double target_strength_db);
-double signal_to_noise_db(double echo_level_db, double noise_level_db);
 // A spectrum level (dB re 1 uPa^2/Hz) over a band in which it is flat.
 double band_level_db(double spectrum_level_db, double bandwidth_hz);
 
@@ -78,16 +61,10 @@ double band_level_db(double spectrum_level_db, double bandwidth_hz);
 double thermal_noise_db(double frequency_hz);
 double ambient_noise_db(double frequency_hz, double wind_m_s, double shipping);
 
-// ---- Targets and surfaces -----------------------------------------------------------------------
-// Rigid sphere much larger than the wavelength, any aspect: 10 log10(a^2 / 4). Urick 1983, ch. 9.
-double rigid_sphere_target_strength_db(double radius_m);
-// Lambert's rule for backscatter per square metre: mu + 20 log10 sin(grazing). mu about -27 dB for
-// many bottoms (Mackenzie 1961, JASA 33, 1498). Grazing angle in [0, pi/2]; 0 is -infinity dB.
+// ---- Surfaces -------------------------------------------------------------------------------
+// Lambert's rule for backscatter per square metre, mu sin^2(grazing), has mu about -27 dB for many
+// bottoms (Mackenzie 1961, JASA 33, 1498).
 inline constexpr double kLambertMu_db = -27.0;
-double lambert_strength_db(double mu_db, double grazing_rad);
-// The same as a ratio of powers, 0 at grazing 0.
-double lambert_strength(double mu_db, double grazing_rad);
-
 // A fluid, or a solid as its compressional wave sees it.
 struct Medium {
   double density_kg_m3 = 1000.0;
@@ -96,9 +73,4 @@ struct Medium {
 };
 // Pressure reflected at normal incidence, (Z2 - Z1) / (Z2 + Z1), in [-1, 1]. Negative: inverted.
 double reflection_coefficient(const Medium& from, const Medium& into);
-// The same for a plane wave at grazing_rad between fluids (Rayleigh). Complex where the second
-// medium is faster and the angle is below critical: then its modulus is 1. Grazing 0 gives -1.
-std::complex<double> reflection_coefficient(const Medium& from, const Medium& into,
-                                            double grazing_rad);
-
 }  // namespace neritic::sonar

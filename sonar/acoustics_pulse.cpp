@@ -87,12 +87,6 @@ Status positive(const char* what, double value) {
 
 }  // namespace
 
-Result<PulseShape> pulse_shape_of(std::string_view name) {
-  if (name == "sinc") return PulseShape::kFlat;
-  if (name == "hann") return PulseShape::kHann;
-  return bad_input("pulse shape '{}'; accepted: sinc, hann", name);
-}
-
 double range_resolution_m(double sound_speed_m_s, double bandwidth_hz) {
   return sound_speed_m_s / (2.0 * bandwidth_hz);
 }

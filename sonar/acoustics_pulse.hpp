@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "engine/core/result.hpp"
@@ -15,8 +14,6 @@ enum class PulseShape {
   kFlat,  // an unweighted chirp: envelope |sinc|, first side lobe -13.26 dB
   kHann,  // Hann-weighted: side lobe -31.47 dB, main lobe twice as wide from null to null
 };
-// "sinc", "hann"; kBadInput names the others.
-Result<PulseShape> pulse_shape_of(std::string_view name);
 
 // c / 2B: two points nearer than that merge (Urick 1983, ch. 2). 29.9 kHz at 1500 m/s: 25.08 mm.
 double range_resolution_m(double sound_speed_m_s, double bandwidth_hz);

@@ -11,6 +11,8 @@ namespace neritic::sonar {
 namespace {
 
 constexpr std::uint16_t kSeabedClass = 1;  // scene::kClasses
+// What the bottoms of Lambert's -27 dB are taken to be made of.
+constexpr std::string_view kLambertMaterial = "sand";
 
 template <class Value>
 std::vector<float> by_label(const scene::Scene& scene, Value value) {
@@ -32,7 +34,9 @@ double backscatter_strength(const scene::Object& object) {
     const auto medium = material_of(object.material);
     NERITIC_CHECK(medium.ok(), "{}: {}", object.name, medium.ok() ? "" : medium.error().message);
     const double r = reflection_coefficient(kReferenceWater, *medium);
-    return kRigidStrength * r * r * object.reflectivity;
+    if (object.class_id != kSeabedClass) return kRigidStrength * r * r * object.reflectivity;
+    const double sand = reflection_coefficient(kReferenceWater, *material_of(kLambertMaterial));
+    return power_from_db(kLambertMu_db) * r * r / (sand * sand) * object.reflectivity;
   }
   const double mu = object.class_id == kSeabedClass ? power_from_db(kLambertMu_db) : kRigidStrength;
   return mu * object.reflectivity;

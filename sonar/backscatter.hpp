@@ -18,9 +18,10 @@ struct BackscatterTable {
   double scale = 1.0;           // mu of strength 1
 };
 
-// Strength of one object: its backscatter_db as 10^(dB / 10); else its material's reflection from
-// water squared times kRigidStrength; else, of the class seabed, Lambert's -27 dB (Mackenzie 1961),
-// of others a rigid body's; either times its reflectivity.
+// Strength of one object: its backscatter_db as 10^(dB / 10); else, of the class seabed, Lambert's
+// -27 dB (Mackenzie 1961, a mean of many bottoms, here sand's), which its material scales by the
+// energy it reflects over what sand does; of others a rigid body's, times their material's
+// reflection squared; all times its reflectivity.
 double backscatter_strength(const scene::Object& object);
 
 BackscatterTable backscatter_table(const scene::Scene& scene);

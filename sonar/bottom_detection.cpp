@@ -66,6 +66,7 @@ std::optional<BottomDetection> detect(const BeamGrid& grid, std::span<const doub
     if (i >= first && i < end) part += echo[i];
   }
   out.quality = static_cast<float>(part / all);
+  if (out.quality < options.least_quality) return std::nullopt;
   return out;
 }
 
@@ -77,6 +78,8 @@ Status validate(const BottomDetectionOptions& options) {
                      options.relative_threshold);
   if (!(options.floor >= 0.0) || !std::isfinite(options.floor))
     return bad_input("bottom detection: floor {}; accepted: 0 or more", options.floor);
+  if (!(options.least_quality >= 0.0 && options.least_quality <= 1.0))
+    return bad_input("bottom detection: least quality {}; accepted: 0 to 1", options.least_quality);
   return {};
 }
 

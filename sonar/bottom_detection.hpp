@@ -34,6 +34,7 @@ struct BottomDetectionOptions {
   double floor = 0.0;                // a beam whose strongest bin is not above it has no detection
   std::uint32_t amplitude_bins = 3;  // a plateau of more has its maximum anywhere
   std::uint32_t max_gap_bins = 2;
+  double least_quality = 0.0;  // an echo that is less of all its beam heard is no detection
 };
 
 // kBadInput that names the option.

@@ -11,6 +11,7 @@
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/bottom_detection.hpp"
+#include "sonar/levels.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -61,6 +62,9 @@ Status validate(const EchoTraceOptions& o) {
                      o.relative_threshold);
   if (!(o.floor >= 0.0) || !std::isfinite(o.floor))
     return bad_input("echo trace: floor {}; accepted: 0 or more", o.floor);
+  if (!o.floor_by_bin.empty() && o.floor_by_bin.size() != o.n_range)
+    return bad_input("echo trace: a floor of {} bins; accepted: none, or {}", o.floor_by_bin.size(),
+                     o.n_range);
   return {};
 }
 
@@ -126,7 +130,8 @@ void EchoTrace::append(std::span<const float> intensity, double time_s, double s
                 options_.n_range);
   const std::size_t from = intensity_.size();
   for (const float v : intensity) intensity_.push_back(heard(v));
-  const auto profile = std::span<const float>(intensity_).subspan(from);
+  const std::vector<float> profile =
+      above_floor(std::span<const float>(intensity_).subspan(from), options_.floor_by_bin);
   const auto range = [&](std::optional<double> bins) {
     return bins ? options_.range_min_m + *bins * options_.range_step_m() : kNone;
   };

@@ -21,6 +21,7 @@ struct EchoTraceOptions {
   // A return begins in the first bin that reaches this part of the ping's strongest and the floor.
   double relative_threshold = 0.2;  // above 0, at most 1
   double floor = 0.0;               // a ping whose strongest bin is not above it has no return
+  std::vector<float> floor_by_bin;  // [n_range], what a bin must exceed as well; empty: nothing
 
   double range_step_m() const { return (range_max_m - range_min_m) / n_range; }
 };

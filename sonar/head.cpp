@@ -14,8 +14,6 @@ using scene::SonarKind;
 using scene::SonarTerms;
 
 constexpr std::uint32_t kGammaQuantiles = 4096;
-// A beam's taps leave out at most this share of its pattern's power.
-constexpr double kPatternTruncated = 0.005;
 
 // Whether anything beyond the published plain cosine is named.
 bool has_terms(const scene::Sonar& sonar) {
@@ -43,14 +41,42 @@ bool full_turn(const BeamGrid& grid) {
   return grid.limits.azimuth_max_rad - grid.limits.azimuth_min_rad > 2.0 * kPi - 1e-9;
 }
 
+// Rows beyond an aperture whose half is half_rad, so that all within reach_rad of the axis is
+// gathered; no more than a pinhole holds, and no more than a few apertures: of one much narrower
+// than its pattern the wedge stays cut.
+std::uint32_t rows_beyond(double half_rad, double step_rad, double reach_rad, std::uint32_t bins) {
+  constexpr double kMostApertures = 4.0, kMostRows = 1536.0;
+  const double most = std::floor((kMaxElevation_rad / 2.0 - half_rad) / step_rad + 1e-6);
+  const double rows = std::min({std::ceil((reach_rad - half_rad) / step_rad - 1e-6), most,
+                                kMostApertures * bins, std::floor((kMostRows - bins) / 2.0)});
+  return static_cast<std::uint32_t>(std::max(rows, 0.0));
+}
+
+// An elevation pattern is heard beyond the aperture that its half power names: as far as its second
+// null. What lies straight below a side-scan, or the surface above a flat beam, comes in there.
+void widen_elevation(Head& head, const HeadPatterns& patterns) {
+  const auto& pattern = patterns.upright();
+  if (!pattern) return;
+  BeamGrid& g = head.samples;
+  const auto widen = [&](double& min_rad, double& max_rad, double step_rad, std::uint32_t& bins) {
+    const std::uint32_t rows = rows_beyond(max_rad, step_rad, pattern->second_null_rad(), bins);
+    bins += 2 * rows;
+    min_rad -= rows * step_rad;
+    max_rad += rows * step_rad;
+  };
+  Limits& l = g.limits;
+  widen(l.elevation_min_rad, l.elevation_max_rad, g.elevation_step_rad(), g.bins.elevation);
+  if (patterns.cone)
+    widen(l.azimuth_min_rad, l.azimuth_max_rad, g.azimuth_step_rad(), g.bins.azimuth);
+}
+
 // Makes head.samples from head.beams: columns a beam, and as many beyond the edges as the pattern
 // reaches, so that what lies just outside is heard through the flank of the edge beams.
 Status plan_samples(Head& head, std::uint32_t samples, std::uint32_t reach) {
-  head.samples = head.beams;
-  head.samples_per_beam = head.folded ? head.beams.bins.azimuth : samples;
+  head.samples_per_beam = head.folded ? head.samples.bins.azimuth : samples;
   if (head.folded) {
     head.beams.bins.azimuth = 1;
-    return {};
+    return validate(head.samples);
   }
   const bool ring = full_turn(head.beams);
   const double column = head.beams.azimuth_step_rad() / samples;
@@ -75,7 +101,7 @@ std::vector<float> beam_weights(const scene::Sonar& sonar, const Head& head,
       const double phi = grid.elevation_rad(row);
       double weight = patterns.power(grid.azimuth_rad(column), phi);
       if (sonar.terms.level || patterns.cone) weight *= std::cos(phi);
-      if (patterns.cone) weight *= cone_share(grid, column, row, sonar.semi_angle_rad);
+      if (patterns.cone) weight *= cone_share(grid, column, row, patterns.cone_rad);
       weights[std::size_t{row} * grid.bins.azimuth + column] = static_cast<float>(weight);
     }
   return weights;
@@ -101,30 +127,45 @@ Result<Taps> range_taps(const scene::Sonar& sonar, const BeamGrid& grid, bool co
   return taps;
 }
 
-// What gathers columns into a beam.
-Taps across_taps(const scene::Sonar& sonar, const Head& head, const HeadPatterns& patterns,
-                 std::uint32_t reach, bool coherent) {
-  if (head.samples_per_beam == 1 && reach == 0 && !head.folded) return {};
+// The kernel of the beam at axis_rad.
+std::vector<float> beam_kernel(const scene::Sonar& sonar, const Head& head,
+                               const HeadPatterns& patterns, std::uint32_t reach, double axis_rad,
+                               bool coherent) {
   const std::uint32_t samples = head.samples_per_beam;
   const double column = head.samples.azimuth_step_rad();
   std::vector<double> amplitude(samples + 2 * reach, 1.0);
   for (std::size_t i = 0; i < amplitude.size() && !head.folded; ++i)
-    amplitude[i] = patterns.across((double(i) - reach - (samples - 1) / 2.0) * column);
+    amplitude[i] = patterns.across((double(i) - reach - (samples - 1) / 2.0) * column, axis_rad);
   // Calibrated levels count all that a beam hears; else the taps share the energy out.
   const bool counts_all = sonar.terms.level || head.folded;
   double total = 0.0;
   for (const double a : amplitude) total += a * a;
   const double scale = counts_all ? 1.0 : 1.0 / total;
-  Taps taps{static_cast<int>(head.margin) - static_cast<int>(reach), {}};
+  std::vector<float> kernel;
   for (const double a : amplitude)
-    taps.weights.push_back(static_cast<float>(coherent ? a * std::sqrt(scale) : a * a * scale));
+    kernel.push_back(static_cast<float>(coherent ? a * std::sqrt(scale) : a * a * scale));
+  return kernel;
+}
+
+// What gathers columns into a beam.
+Taps across_taps(const scene::Sonar& sonar, const Head& head, const HeadPatterns& patterns,
+                 std::uint32_t reach, bool coherent) {
+  if (head.samples_per_beam == 1 && reach == 0 && !head.folded) return {};
+  Taps taps{static_cast<int>(head.margin) - static_cast<int>(reach), {}};
+  if (patterns.flat) taps.kernels = head.beams.bins.azimuth;
+  for (std::uint32_t beam = 0; beam < taps.kernels; ++beam) {
+    const double axis_rad = patterns.flat ? head.beams.azimuth_rad(beam) : 0.0;
+    const auto kernel = beam_kernel(sonar, head, patterns, reach, axis_rad, coherent);
+    taps.weights.insert(taps.weights.end(), kernel.begin(), kernel.end());
+  }
   return taps;
 }
 
 double sample_power_of(const scene::Sonar& sonar, const Head& head) {
   const BeamGrid& g = head.samples;
   if (sonar.terms.level) return g.azimuth_step_rad() * g.elevation_step_rad();
-  if (!head.folded) return 1.0 / g.bins.elevation;
+  // The mean over the aperture; what is heard beyond it comes on top.
+  if (!head.folded) return 1.0 / head.beams.bins.elevation;
   const auto& w = head.echo->weights;
   return 1.0 / std::max(std::accumulate(w.begin(), w.end(), 0.0), 1e-30);
 }
@@ -138,20 +179,21 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
   if (const Status valid = validate(head.beams); !valid.ok())
     return bad_input("sonar {}: {}", sonar.name, valid.error().message);
   const SonarTerms& t = sonar.terms;
-  if (!has_terms(sonar)) {
-    head.samples = head.beams;
-    return head;
-  }
+  head.samples = head.beams;
+  if (!has_terms(sonar)) return head;
   auto made = head_patterns(sonar);
   if (!made.ok()) return bad_input("sonar {}: beam: {}", sonar.name, made.error().message);
   const HeadPatterns& patterns = *made;
+  widen_elevation(head, patterns);
   // Side-scans and scanners hear one beam: their azimuth bins sample it.
   const std::uint32_t samples = sonar.kind == SonarKind::kSideScan
                                     ? std::max(sonar.bins_azimuth, t.beam.samples)
                                     : t.beam.samples;
   const double column = head.beams.azimuth_step_rad() / samples;
+  // Of a flat array the outermost beam is the widest.
+  const double widest_rad = patterns.flat ? head.beams.azimuth_rad(0) : 0.0;
   const std::uint32_t reach =
-      patterns.azimuth && !head.folded ? pattern_reach(patterns, column, kPatternTruncated) : 0;
+      patterns.azimuth && !head.folded ? pattern_reach(patterns, widest_rad, column) : 0;
   if (const Status valid = plan_samples(head, samples, reach); !valid.ok())
     return bad_input("sonar {}: with {} samples a beam: {}", sonar.name, samples,
                      valid.error().message);

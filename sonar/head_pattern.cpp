@@ -1,28 +1,27 @@
 #include "sonar/head_pattern.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sonar/acoustics.hpp"
 
 namespace neritic::sonar {
 namespace {
 
+// A beam's taps leave out at most this share of its pattern's power.
+constexpr double kPatternTruncated = 0.005;
+
 Result<BeamPattern> pattern_of(const scene::SonarPattern& pattern) {
   using Shape = scene::SonarPattern::Shape;
   if (pattern.shape == Shape::kTable) {
-    Table degrees_db;
-    for (const auto& [angle_rad, db] : pattern.table)
-      degrees_db.push_back({degrees(angle_rad), db});
+    Table degrees_db = rows_of(pattern.table);
+    for (TableRow& row : degrees_db) row.x = degrees(row.x);
     return BeamPattern::of_table(std::move(degrees_db));
   }
-  return BeamPattern::of_half_power_width(
-      pattern.shape == Shape::kHamming ? BeamKind::kHamming : BeamKind::kSinc,
-      pattern.half_power_rad);
-}
-
-double power_of(double amplitude, bool two_way) {
-  const double once = amplitude * amplitude;
-  return two_way ? once * once : once;
+  return BeamPattern::of_half_power_width(pattern.shape == Shape::kHamming  ? BeamKind::kHamming
+                                          : pattern.shape == Shape::kPiston ? BeamKind::kPiston
+                                                                            : BeamKind::kSinc,
+                                          pattern.half_power_rad);
 }
 
 }  // namespace
@@ -44,24 +43,30 @@ Result<HeadPatterns> head_patterns(const scene::Sonar& sonar) {
     NERITIC_TRY(out.elevation, pattern_of(*beam.elevation));
   }
   out.cone = sonar.kind == scene::SonarKind::kEchoSounder;
-  out.azimuth_two_way =
-      sonar.kind != scene::SonarKind::kImaging && sonar.kind != scene::SonarKind::kProfiling;
+  out.cone_rad = sonar.semi_angle_rad;
+  if (out.upright())
+    out.cone_rad =
+        std::max(out.cone_rad, std::min(out.upright()->second_null_rad(), kMaxElevation_rad / 2.0));
+  out.azimuth_two_way = beam.two_way.value_or(sonar.kind != scene::SonarKind::kImaging &&
+                                              sonar.kind != scene::SonarKind::kProfiling);
+  out.flat = beam.steering == scene::SonarBeam::Steering::kFlat;
   return out;
 }
 
-double HeadPatterns::across(double off_rad) const {
+double HeadPatterns::across(double off_rad, double axis_rad) const {
   if (!azimuth) return 1.0;
-  const double a = azimuth->amplitude(std::remainder(off_rad, 2.0 * kPi));
+  const double off = std::remainder(off_rad, 2.0 * kPi);
+  const double a =
+      flat ? azimuth->steered_amplitude(axis_rad + off, axis_rad) : azimuth->amplitude(off);
   return azimuth_two_way ? a * std::abs(a) : a;
 }
 
 double HeadPatterns::power(double azimuth_rad, double elevation_rad) const {
-  if (!cone) return elevation ? power_of(elevation->amplitude(elevation_rad), true) : 1.0;
-  const auto& pattern = elevation ? elevation : azimuth;
-  if (!pattern) return 1.0;
+  if (!cone) return elevation ? elevation->two_way_power(elevation_rad) : 1.0;
+  if (!upright()) return 1.0;
   const double off =
       std::acos(std::clamp(std::cos(azimuth_rad) * std::cos(elevation_rad), -1.0, 1.0));
-  return power_of(pattern->amplitude(off), true);
+  return upright()->two_way_power(off);
 }
 
 double cone_share(const BeamGrid& grid, std::uint32_t column, std::uint32_t row, double semi_rad) {
@@ -79,19 +84,22 @@ double cone_share(const BeamGrid& grid, std::uint32_t column, std::uint32_t row,
   return double(inside) / (kSteps * kSteps);
 }
 
-std::uint32_t pattern_reach(const HeadPatterns& patterns, double column_rad, double max_truncated) {
+std::uint32_t pattern_reach(const HeadPatterns& patterns, double axis_rad, double column_rad) {
   const auto half_turn = static_cast<std::uint32_t>(kPi / column_rad);
   std::vector<double> power(half_turn + 1);
   double total = 0.0;
   for (std::uint32_t i = 0; i <= half_turn; ++i) {
-    const double a = patterns.across(i * column_rad);
-    power[i] = a * a;
-    total += power[i] * (i == 0 ? 1.0 : 2.0);
+    const double left = patterns.across(-(i * column_rad), axis_rad),
+                 right = patterns.across(i * column_rad, axis_rad);
+    power[i] = i == 0 ? right * right : left * left + right * right;
+    total += power[i];
   }
   double beyond = total - power[0];
   std::uint32_t reach = 0;
-  while (reach < half_turn && beyond > max_truncated * total) beyond -= 2.0 * power[++reach];
-  return reach;
+  while (reach < half_turn && beyond > kPatternTruncated * total) beyond -= power[++reach];
+  if (patterns.azimuth->kind() == BeamKind::kTable) return reach;
+  const double lobes = std::ceil(patterns.azimuth->second_null_rad() / column_rad);
+  return std::max(reach, std::min(half_turn, static_cast<std::uint32_t>(lobes)));
 }
 
 }  // namespace neritic::sonar

@@ -16,11 +16,18 @@ double sound_speed_of(const scene::SonarWater& water, double depth_m);
 
 struct HeadPatterns {
   std::optional<BeamPattern> azimuth, elevation;
-  bool azimuth_two_way = false;  // sends and receives through it: all but imaging and profiling
+  bool azimuth_two_way = false;  // sends and receives through it
+  bool flat = false;             // beams are steered by phase on a flat array
   bool cone = false;             // an echo sounder's: elevation (else azimuth) about the axis
+  double cone_rad = 0.0;         // its semi-angle, or as far as its pattern is gathered
+  // The pattern over elevation, of a cone over all angles off its axis.
+  const std::optional<BeamPattern>& upright() const {
+    return cone && !elevation ? azimuth : elevation;
+  }
 
-  // Amplitude of a scatterer so far off a beam's axis in azimuth; 1 without a pattern. Signed.
-  double across(double off_rad) const;
+  // Amplitude of a scatterer so far off the axis of the beam at azimuth axis_rad; 1 without a
+  // pattern. Signed.
+  double across(double off_rad, double axis_rad = 0.0) const;
   // Power there and back of a direction of the gathered grid.
   double power(double azimuth_rad, double elevation_rad) const;
 };
@@ -30,8 +37,8 @@ Result<HeadPatterns> head_patterns(const scene::Sonar& sonar);
 // The share of a cell of the grid within the cone of semi-angle semi_rad about the axis, 0 to 1.
 double cone_share(const BeamGrid& grid, std::uint32_t column, std::uint32_t row, double semi_rad);
 
-// Columns of column_rad to either side beyond which a pattern holds less than max_truncated of its
-// power.
-std::uint32_t pattern_reach(const HeadPatterns& patterns, double column_rad, double max_truncated);
+// Columns of column_rad to either side beyond which the pattern of the beam at axis_rad holds at
+// most half a per cent of its power and, of a closed form, no more than its second side lobe.
+std::uint32_t pattern_reach(const HeadPatterns& patterns, double axis_rad, double column_rad);
 
 }  // namespace neritic::sonar

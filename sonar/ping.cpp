@@ -5,60 +5,27 @@
 
 #include "sonar/acoustics.hpp"
 #include "sonar/head_pattern.hpp"
+#include "sonar/levels.hpp"
 #include "sonar/range_correction.hpp"
 
 namespace neritic::sonar {
 namespace {
 
-using scene::SonarLevel;
-
-// Powers that a float holds with room to spare: a gain beyond is held there.
-constexpr double kLargestGain = 1e30;
-
-double power_from(double db) {
-  return std::min(std::pow(10.0, db / 10.0), kLargestGain);
-}
-
-double absorption_of(const scene::Sonar& sonar, double depth_m) {
-  if (!sonar.terms.level) return 0.0;
-  const SonarLevel& level = *sonar.terms.level;
-  if (level.absorption == SonarLevel::Absorption::kNone) return 0.0;
-  if (level.absorption == SonarLevel::Absorption::kFixed) return level.absorption_db_per_m;
-  const scene::SonarWater& w = sonar.terms.water;
-  const Water water{w.temperature_c, w.salinity_psu,
-                    std::clamp(w.depth_m.value_or(depth_m), 0.0, 12000.0), w.ph};
-  const AbsorptionModel model = level.absorption == SonarLevel::Absorption::kAinslieMcColm
-                                    ? AbsorptionModel::kAinslieMcColm
-                                    : AbsorptionModel::kFrancoisGarrison;
-  return absorption_db_m(model, water, sonar.terms.frequency_hz);
-}
-
 // Power of the field a unit of the gather's sum: what one beam's solid angle sends back from range
-// r. A patch of r^2 dOmega / cos i scatters mu cos^2 i, and both ways spread: 1 / r^4.
+// r.
 double field_gain(const scene::Sonar& sonar, const Head& head, const PingState& state, double r,
                   double absorption_db_per_m) {
   if (!sonar.terms.level) return head.sample_power;
-  const SonarLevel& level = *sonar.terms.level;
-  const double loss_db = 2.0 * absorption_db_per_m * r;
-  const double spread = level.spreading ? 1.0 / (r * r) : r * r;
-  return std::min(head.sample_power * state.backscatter_scale * spread *
-                      std::pow(10.0, (level.source_level_db - loss_db) / 10.0),
-                  kLargestGain);
+  return echo_power(*sonar.terms.level, r, absorption_db_per_m, state.backscatter_scale,
+                    head.sample_power);
 }
 
-double receiver_gain(const scene::Sonar& sonar, double r, double absorption_db_per_m) {
+// largest: of what it amplifies. A receiver saturates: its output stays a finite float.
+double receiver_gain(const scene::Sonar& sonar, double r, double absorption_db_per_m,
+                     double largest) {
   if (!sonar.terms.level) return 1.0;
-  const SonarLevel& level = *sonar.terms.level;
-  double db = level.gain_db;
-  if (!level.tvg_table.empty()) {
-    Table table;
-    for (const auto& [range_m, gain] : level.tvg_table) table.push_back({range_m, gain});
-    db += interpolate(table, r);
-  } else {
-    db += level.tvg_log * std::log10(r);
-    if (level.tvg_absorption) db += 2.0 * absorption_db_per_m * r;
-  }
-  return power_from(db);
+  const double db = receiver_gain_db(*sonar.terms.level, r, absorption_db_per_m);
+  return std::min(power_from_db(db), kLargestPower / std::max(largest, 1.0));
 }
 
 std::uint32_t cell_index(double cell) {
@@ -192,15 +159,16 @@ Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state
   ping.seed = static_cast<std::uint32_t>(state.seed * 0x9e3779b97f4a7c15ull >> 32) ^
               state.stream * 0x85ebca6bu;
   ping.sound_speed_m_s = sound_speed_of(sonar.terms.water, -sonar_m.y);
-  ping.absorption_db_per_m = absorption_of(sonar, -sonar_m.y);
+  ping.absorption_db_per_m = absorption_of(sonar.terms, -sonar_m.y);
+  const double noise = sonar.terms.noise ? power_from_db(noise_level_db(sonar.terms)) : 0.0;
+  ping.noise_power = static_cast<float>(noise);
   for (std::uint32_t row = 0; row < head.samples.bins.range; ++row) {
     const double r = std::max(head.samples.range_m(row), kNearestRange_m);
     const double field = field_gain(sonar, head, state, r, ping.absorption_db_per_m);
     ping.gains.emplace_back(static_cast<float>(sonar.terms.speckle ? std::sqrt(field) : field),
-                            static_cast<float>(receiver_gain(sonar, r, ping.absorption_db_per_m)));
+                            static_cast<float>(receiver_gain(sonar, r, ping.absorption_db_per_m,
+                                                             std::max(field, noise))));
   }
-  if (sonar.terms.noise)
-    ping.noise_power = static_cast<float>(power_from(sonar.terms.noise->level_db));
   ping.echo.world_up =
       state.gbuffer_in_world_axes
           ? glm::vec3(0, 1, 0)
@@ -208,12 +176,15 @@ Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state
   add_speckle(ping, sonar, head, eye_m, state.seed);
   add_motion(ping, sonar, head, state);
   if (sonar.terms.profile) {
-    RangeCorrection table = range_correction(*sonar.terms.profile, -sonar_m.y,
-                                             head.samples.limits.range_max_m, ping.sound_speed_m_s);
+    const double range_max_m = head.samples.limits.range_max_m;
+    RangeCorrections own;
+    const RangeCorrection& table = (state.corrections ? *state.corrections : own)
+                                       .at(*sonar.terms.profile, -sonar_m.y, range_max_m);
     ping.echo.correction_width = table.width;
     ping.echo.correction_height = table.height;
     ping.echo.correction_range_m = static_cast<float>(head.samples.limits.range_max_m);
-    ping.correction = std::move(table.factors);
+    for (const float factor : table.factors)
+      ping.correction.push_back(static_cast<float>(factor * ping.sound_speed_m_s));
   }
   if (mirror) add_mirror(ping, *mirror, sonar, head, state, eye_m);
   return ping;

@@ -6,6 +6,7 @@
 
 #include "engine/scene/scene.hpp"
 #include "sonar/head.hpp"
+#include "sonar/range_correction.hpp"
 
 namespace neritic::sonar {
 
@@ -18,6 +19,7 @@ struct PingState {
   std::uint32_t ping = 0;             // number of the ping
   double backscatter_scale = 1.0;     // what a strength of 1 in the reflectivity table stands for
   bool gbuffer_in_world_axes = true;  // else in the sonar's (images without a scene)
+  RangeCorrections* corrections = nullptr;  // the head's, where it keeps them
 };
 
 // A mirror for ghosts: the horizontal plane y = height_m; amplitude reflection.

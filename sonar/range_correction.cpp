@@ -31,14 +31,62 @@ double bent_time_s(const SoundSpeedProfile& profile, double launch_depth_m, doub
   return miss < 1e-3 * r ? time_s : straight_s;
 }
 
+// Indices of rows kept between first and last, both of which are: the farthest from the chord stays
+// as long as it is farther than the tolerance.
+void keep_rows(const scene::SonarTable& rows, double tolerance_m_s, std::vector<bool>& kept) {
+  std::vector<std::pair<std::size_t, std::size_t>> spans{{0, rows.size() - 1}};
+  kept[0] = kept[rows.size() - 1] = true;
+  while (!spans.empty()) {
+    const auto [first, last] = spans.back();
+    spans.pop_back();
+    const auto &a = rows[first], &b = rows[last];
+    std::size_t worst = first;
+    double most = tolerance_m_s;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const double chord = a[1] + (b[1] - a[1]) * (rows[i][0] - a[0]) / (b[0] - a[0]);
+      if (std::abs(rows[i][1] - chord) > most) most = std::abs(rows[i][1] - chord), worst = i;
+    }
+    if (worst == first) continue;
+    kept[worst] = true;
+    spans.push_back({first, worst});
+    spans.push_back({worst, last});
+  }
+}
+
 }  // namespace
+
+scene::SonarTable simplified(const scene::SonarTable& profile, double tolerance_m_s) {
+  if (profile.size() < 3) return profile;
+  for (;; tolerance_m_s *= 2.0) {
+    std::vector<bool> kept(profile.size(), false);
+    keep_rows(profile, tolerance_m_s, kept);
+    scene::SonarTable out;
+    for (std::size_t i = 0; i < profile.size(); ++i)
+      if (kept[i]) out.push_back(profile[i]);
+    if (out.size() <= kMostRows) return out;
+  }
+}
+
+const RangeCorrection& RangeCorrections::at(const scene::SonarProfile& profile,
+                                            double launch_depth_m, double range_max_m) {
+  const double depth_m = std::round(launch_depth_m / kDepthStep_m) * kDepthStep_m;
+  const bool same = made_ > 0 && given_ == profile;
+  if (same && depth_m == depth_m_ && range_max_m == range_max_m_) return table_;
+  if (!same) {
+    given_ = profile;
+    used_ = {simplified(profile.table), profile.bent};
+  }
+  depth_m_ = depth_m;
+  range_max_m_ = range_max_m;
+  table_ = range_correction(used_, depth_m, range_max_m, 1.0);
+  ++made_;
+  return table_;
+}
 
 RangeCorrection range_correction(const scene::SonarProfile& settings, double launch_depth_m,
                                  double range_max_m, double assumed_speed_m_s,
                                  RangeCorrectionSize size) {
-  Table rows;
-  for (const auto& [depth_m, speed] : settings.table) rows.push_back({depth_m, speed});
-  const auto made = SoundSpeedProfile::of_table(std::move(rows));
+  const auto made = SoundSpeedProfile::of_table(rows_of(settings.table));
   NERITIC_CHECK(made.ok(), "sound speed profile: {}", made.ok() ? "" : made.error().message);
   const SoundSpeedProfile& profile = *made;
   RangeCorrection out{size.ranges, size.sines, {}};

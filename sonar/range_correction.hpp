@@ -1,10 +1,12 @@
 // Heard over true range where sound speed varies with depth: a table over true range and the sine
-// of the elevation above the horizon, which the gather interpolates. Pure function; any thread.
+// of the elevation above the horizon, which the gather interpolates. Any thread; a cache has one
+// owner.
 #pragma once
 
 #include <vector>
 
 #include "engine/scene/sonar_settings.hpp"
+#include "sonar/sound_speed_profile.hpp"
 
 namespace neritic::sonar {
 
@@ -28,5 +30,27 @@ struct RangeCorrectionSize {
 RangeCorrection range_correction(const scene::SonarProfile& profile, double launch_depth_m,
                                  double range_max_m, double assumed_speed_m_s,
                                  RangeCorrectionSize size = {});
+
+// The profile with only the rows it takes to be within tolerance_m_s of all of them (Douglas and
+// Peucker 1973), and with at most kMostRows: the tolerance doubles until it is so.
+inline constexpr std::size_t kMostRows = 256;
+scene::SonarTable simplified(const scene::SonarTable& profile, double tolerance_m_s = 0.01);
+
+// The tables of a head, which go by its depth alone: made anew only where that changes by
+// kDepthStep_m (whatever the order of pings, a depth has one table).
+class RangeCorrections {
+ public:
+  static constexpr double kDepthStep_m = 0.05;
+  // For an assumed speed of 1 m/s: factors are proportional to it.
+  const RangeCorrection& at(const scene::SonarProfile& profile, double launch_depth_m,
+                            double range_max_m);
+  std::size_t made() const { return made_; }  // so far
+
+ private:
+  scene::SonarProfile given_, used_;
+  double depth_m_ = 0.0, range_max_m_ = 0.0;
+  RangeCorrection table_;
+  std::size_t made_ = 0;
+};
 
 }  // namespace neritic::sonar

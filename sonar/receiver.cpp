@@ -33,7 +33,8 @@ Result<gpu::Image> taps_image(gpu::Device& device, const char* name, const Taps&
               gpu::Image::create(
                   device, {.name = name,
                            .format = VK_FORMAT_R32_SFLOAT,
-                           .width = static_cast<std::uint32_t>(taps.weights.size()),
+                           .width = taps.size(),
+                           .height = taps.kernels,
                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
   NERITIC_TRY_STATUS(gpu::upload_image(device, image, std::as_bytes(std::span(taps.weights))));
   return image;
@@ -44,7 +45,7 @@ float correlation_a_step_on(const Taps& taps) {
   double own = 0.0, next = 0.0;
   for (std::size_t i = 0; i < taps.weights.size(); ++i) {
     own += double{taps.weights[i]} * taps.weights[i];
-    if (i > 0) next += double{taps.weights[i - 1]} * taps.weights[i];
+    if (i % taps.size() > 0) next += double{taps.weights[i - 1]} * taps.weights[i];
   }
   return own > 0.0 ? static_cast<float>(next / own) : 1.0f;
 }
@@ -118,7 +119,7 @@ graph::ImageHandle Receiver::declare_spread(graph::FrameGraph& graph, const std:
   const Taps& taps = across ? desc_.across : desc_.range;
   constants.out_columns = across ? desc_.beams : desc_.columns;
   constants.first = taps.first;
-  constants.taps = static_cast<std::uint32_t>(taps.weights.size());
+  constants.taps = taps.size();
   constants.tap_correlation = correlation_a_step_on(taps);
   return graph
       .add_pass<Pass>(

@@ -11,10 +11,13 @@
 
 namespace neritic::sonar {
 
-// A kernel: taps[k] weighs what lies first + k away.
+// A kernel: weights[k] weighs what lies first + k away. Of kernels, one a beam, beam b's is the
+// b-th of their rows.
 struct Taps {
   int first = 0;
-  std::vector<float> weights;  // empty: none, each value stays where it is
+  std::vector<float> weights;  // [kernels][size]; empty: none, each value stays where it is
+  std::uint32_t kernels = 1;
+  std::uint32_t size() const { return static_cast<std::uint32_t>(weights.size()) / kernels; }
 };
 
 struct ReceiverDesc {

@@ -11,6 +11,7 @@
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/beam_grid.hpp"
+#include "sonar/levels.hpp"
 #include "sonar/waterfall_panel.hpp"
 
 namespace neritic::sonar {
@@ -22,17 +23,10 @@ float heard(float v) {
   return v > 0.0f && std::isfinite(v) ? v : 0.0f;
 }
 
-// Both sides of a line [2 n] added, nearest first: the bottom below begins on both.
-std::vector<float> both_sides(std::span<const float> line) {
-  const std::size_t n = line.size() / 2;
-  std::vector<float> sum(n);
-  for (std::size_t i = 0; i < n; ++i) sum[i] = line[n - 1 - i] + line[n + i];
-  return sum;
-}
-
 // Leading edge of the bottom in bins from the first bin's beginning; NaN where there is none. The
 // bin's filled part is its value over the next one's.
-double bottom_bins(std::span<const float> profile, const SidescanOptions& o) {
+double bottom_bins(std::span<const float> heard, const SidescanOptions& o) {
+  const std::vector<float> profile = above_floor(heard, o.floor_by_bin);
   float strongest = 0.0f;
   for (const float v : profile) strongest = std::max(strongest, v);
   if (!(strongest > o.floor)) return kNone;
@@ -87,6 +81,7 @@ nlohmann::json facts_of(const SidescanRecord& record, const GroundImage& ground)
           {"pings", record.pings()},
           {"ground_bin_m", ground.bin_m()},
           {"ground_max_m", ground.ground_max_m},
+          {"detection", {{"threshold", o.relative_threshold}, {"pings", o.tracking_pings}}},
           {"track_length_m", along.empty() ? 0.0 : along.back()},
           {"layout",
            "[ping, 2 n]: columns n-1 to 0 are port from the nearest bin on, n to 2n-1 starboard"},
@@ -106,6 +101,9 @@ Status validate(const SidescanOptions& o) {
                      o.relative_threshold);
   if (!(o.floor >= 0.0) || !std::isfinite(o.floor))
     return bad_input("side-scan: floor {}; accepted: 0 or more", o.floor);
+  if (!o.floor_by_bin.empty() && o.floor_by_bin.size() != o.n_range)
+    return bad_input("side-scan: a floor of {} bins; accepted: none, or {}", o.floor_by_bin.size(),
+                     o.n_range);
   if (o.tracking_pings % 2 == 0)
     return bad_input("side-scan: tracking over {} pings; accepted: an odd number",
                      o.tracking_pings);
@@ -136,13 +134,16 @@ std::vector<double> SidescanRecord::along_track_m() const {
   return out;
 }
 
-std::vector<double> SidescanRecord::altitude_m() const {
-  const std::size_t width = 2 * std::size_t{options_.n_range}, n = pings();
+std::vector<double> SidescanRecord::tracked_m(bool port) const {
+  const std::size_t n_range = options_.n_range, n = pings();
   std::vector<double> found, out;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto side = slant_image().subspan((2 * i + (port ? 0 : 1)) * n_range, n_range);
+    std::vector<float> nearest_first(side.begin(), side.end());
+    if (port) std::reverse(nearest_first.begin(), nearest_first.end());
     found.push_back(options_.range_min_m +
-                    options_.range_step_m() *
-                        bottom_bins(both_sides(slant_image().subspan(i * width, width)), options_));
+                    options_.range_step_m() * bottom_bins(nearest_first, options_));
+  }
   const std::size_t about = options_.tracking_pings / 2;
   for (std::size_t i = 0; i < n; ++i) {
     const auto from = found.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, about)),
@@ -152,21 +153,36 @@ std::vector<double> SidescanRecord::altitude_m() const {
   return out;
 }
 
-GroundImage ground_image(const SidescanRecord& record, std::span<const double> altitude_m,
+FirstReturns SidescanRecord::first_returns() const {
+  return {tracked_m(true), tracked_m(false)};
+}
+
+std::vector<double> FirstReturns::altitude_m() const {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < port_m.size(); ++i)
+    out.push_back(std::fmin(port_m[i], starboard_m[i]));
+  return out;
+}
+
+GroundImage ground_image(const SidescanRecord& record, const FirstReturns& bottom,
                          std::uint32_t n_ground) {
-  NERITIC_CHECK(altitude_m.size() == record.pings() && n_ground > 0,
-                "{} altitudes for {} pings, {} bins", altitude_m.size(), record.pings(), n_ground);
+  NERITIC_CHECK(bottom.port_m.size() == record.pings() &&
+                    bottom.starboard_m.size() == record.pings() && n_ground > 0,
+                "{} and {} first returns for {} pings, {} bins", bottom.port_m.size(),
+                bottom.starboard_m.size(), record.pings(), n_ground);
   const SidescanOptions& o = record.options();
   GroundImage out{
       n_ground, o.range_max_m,
       std::vector<float>(record.pings() * 2 * n_ground, std::numeric_limits<float>::quiet_NaN())};
   for (std::size_t ping = 0; ping < record.pings(); ++ping) {
-    const double h = altitude_m[ping];
-    if (std::isnan(h)) continue;
+    double port = bottom.port_m[ping], starboard = bottom.starboard_m[ping];
+    if (std::isnan(port)) port = starboard;
+    if (std::isnan(starboard)) starboard = port;
+    if (std::isnan(port)) continue;
     const float* line = record.slant_image().data() + ping * 2 * o.n_range;
     float* to = out.intensity.data() + ping * 2 * n_ground;
-    spread_side(o, h, line + o.n_range - 1, -1, out, to + n_ground - 1, -1);
-    spread_side(o, h, line + o.n_range, 1, out, to + n_ground, 1);
+    spread_side(o, port, line + o.n_range - 1, -1, out, to + n_ground - 1, -1);
+    spread_side(o, starboard, line + o.n_range, 1, out, to + n_ground, 1);
   }
   return out;
 }
@@ -175,21 +191,26 @@ Status write_sidescan(const std::filesystem::path& folder, const SidescanRecord&
                       const nlohmann::json& facts, const SidescanPictureOptions& picture) {
   NERITIC_TRY_STATUS(make_folder(folder));
   const std::size_t pings = record.pings(), n = record.options().n_range;
-  const std::vector<double> altitude = record.altitude_m();
-  const GroundImage ground = ground_image(record, altitude, record.options().n_range);
+  const FirstReturns bottom = record.first_returns();
+  const std::vector<double> altitude = bottom.altitude_m();
+  const GroundImage ground = ground_image(record, bottom, record.options().n_range);
   NERITIC_TRY_STATUS(
       write_npy(folder / "sidescan_slant.npy", record.slant_image(), {pings, 2 * n}));
   NERITIC_TRY_STATUS(write_npy(folder / "sidescan_ground.npy",
                                std::span<const float>(ground.intensity), {pings, 2 * n}));
   NERITIC_TRY_STATUS(
       write_npy(folder / "sidescan_altitude.npy", std::span<const double>(altitude), {pings}));
-  std::vector<double> track;
+  std::vector<double> sides, track;
+  for (std::size_t i = 0; i < pings; ++i)
+    sides.insert(sides.end(), {bottom.port_m[i], bottom.starboard_m[i]});
+  NERITIC_TRY_STATUS(
+      write_npy(folder / "sidescan_first_returns.npy", std::span<const double>(sides), {pings, 2}));
   for (const Pose& pose : record.poses())
     track.insert(track.end(), {pose.position_m.x, pose.position_m.y, pose.position_m.z});
   NERITIC_TRY_STATUS(
       write_npy(folder / "sidescan_track.npy", std::span<const double>(track), {pings, 3}));
   NERITIC_TRY_STATUS(
-      scene::write_png8(folder / "sidescan_slant.png", draw_slant(record, altitude, picture)));
+      scene::write_png8(folder / "sidescan_slant.png", draw_slant(record, bottom, picture)));
   NERITIC_TRY_STATUS(
       scene::write_png8(folder / "sidescan_ground.png", draw_ground(record, ground, picture)));
   nlohmann::json json = facts;

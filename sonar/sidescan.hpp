@@ -21,9 +21,10 @@ struct SidescanOptions {
   double range_min_m = 0.0, range_max_m = 50.0;
   // The bottom begins in the first bin that reaches this part of the 95th percentile of the ping's
   // heard bins, and the floor.
-  double relative_threshold = 0.25;
+  double relative_threshold = 0.05;
   double floor = 0.0;
-  // A ping's altitude is the median of this many pings about it (odd): a fish does not move the
+  std::vector<float> floor_by_bin;  // [n_range], what a bin must exceed as well; empty: nothing
+  // A side's first return is the median of this many pings about it (odd): a fish does not move the
   // bottom.
   std::uint32_t tracking_pings = 5;
 
@@ -31,6 +32,14 @@ struct SidescanOptions {
 };
 // kBadInput that names the option.
 Status validate(const SidescanOptions& options);
+
+// Slant range of each ping's first bottom return, tracked on either side by itself: over a slope
+// they differ, and what hides one leaves the other. NaN where none of the pings about it has one.
+struct FirstReturns {
+  std::vector<double> port_m, starboard_m;
+  // The nearer of both, a ping: the height above a flat bottom.
+  std::vector<double> altitude_m() const;
+};
 
 class SidescanRecord {
  public:
@@ -51,11 +60,10 @@ class SidescanRecord {
 
   // Metres travelled over ground until each ping; the first is 0.
   std::vector<double> along_track_m() const;
-  // Slant range of the first bottom return of each ping, tracked: the height above a flat bottom.
-  // NaN where none of the pings about it has one.
-  std::vector<double> altitude_m() const;
+  FirstReturns first_returns() const;
 
  private:
+  std::vector<double> tracked_m(bool port) const;
   SidescanOptions options_;
   std::vector<Pose> poses_;
   std::vector<double> times_s_;
@@ -65,7 +73,8 @@ class SidescanRecord {
 // [pings][2 * n_ground]: bins of equal width over a flat bottom, from the track outwards to
 // ground_max_m: g = sqrt(r^2 - h^2). What a slant bin heard is shared among the ground bins that
 // it covers in proportion to the part of its range that maps to each: no energy is gained or lost
-// but what lies in the water column or beyond. A ping without an altitude is NaN.
+// but what lies in the water column or beyond. A side without a first return takes the other's; a
+// ping without either is NaN.
 struct GroundImage {
   std::uint32_t n_ground = 0;
   double ground_max_m = 0.0;
@@ -73,8 +82,8 @@ struct GroundImage {
 
   double bin_m() const { return ground_max_m / n_ground; }
 };
-// altitude_m: one a ping (CHECKed), from altitude_m() or known. n_ground > 0.
-GroundImage ground_image(const SidescanRecord& record, std::span<const double> altitude_m,
+// bottom: one a ping and side (CHECKed), from first_returns() or known. n_ground > 0.
+GroundImage ground_image(const SidescanRecord& record, const FirstReturns& bottom,
                          std::uint32_t n_ground);
 
 struct SidescanPictureOptions {
@@ -84,14 +93,15 @@ struct SidescanPictureOptions {
   double gamma = 0.5;
 };
 // The waterfall: a line a ping, the newest on top, the tracked bottom as a thin line. RGB.
-ImageU8 draw_slant(const SidescanRecord& record, std::span<const double> altitude_m,
+ImageU8 draw_slant(const SidescanRecord& record, const FirstReturns& bottom,
                    const SidescanPictureOptions& options = {});
 // The ground-range picture in true proportion along and across the track, ahead up.
 ImageU8 draw_ground(const SidescanRecord& record, const GroundImage& ground,
                     const SidescanPictureOptions& options = {});
 
-// sidescan_slant.npy, sidescan_ground.npy float32 [pings, 2 n]; sidescan_altitude.npy,
-// sidescan_track.npy float64 [pings] and [pings, 3]; the two pictures, and, last, sidescan.json.
+// sidescan_slant.npy, sidescan_ground.npy float32 [pings, 2 n]; float64: sidescan_altitude.npy
+// [pings], sidescan_first_returns.npy [pings, port and starboard], sidescan_track.npy [pings, 3];
+// the two pictures, and, last, sidescan.json.
 Status write_sidescan(const std::filesystem::path& folder, const SidescanRecord& record,
                       const nlohmann::json& facts, const SidescanPictureOptions& picture = {});
 

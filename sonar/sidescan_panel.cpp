@@ -74,22 +74,21 @@ std::vector<float> newest_first(std::span<const float> image, std::size_t rows) 
   return out;
 }
 
-// The tracked bottom on both sides.
+// The tracked bottom of one side: -1 port, 1 starboard.
 void draw_bottom(Canvas& canvas, const Layout& layout, const SidescanOptions& o,
-                 std::span<const double> altitude_m) {
+                 std::span<const double> first_m, double side) {
   const double middle = (layout.box.left + layout.box.right) / 2.0,
-               row = layout.box.height() / static_cast<double>(altitude_m.size());
-  for (std::size_t i = 0; i + 1 < altitude_m.size(); ++i)
-    for (const double side : {-1.0, 1.0}) {
-      const auto x = [&](double h) {
-        return middle + side * (h - o.range_min_m) / (o.range_max_m - o.range_min_m) *
-                            layout.box.width() / 2.0;
-      };
-      if (std::isnan(altitude_m[i]) || std::isnan(altitude_m[i + 1])) continue;
-      const double y = layout.box.bottom - (static_cast<double>(i) + 0.5) * row;
-      canvas.segment(x(altitude_m[i]), y, x(altitude_m[i + 1]), y - row, layout.unit,
-                     Color{0.45f, 0.85f, 1.0f, 0.55f});
-    }
+               row = layout.box.height() / static_cast<double>(first_m.size());
+  const auto x = [&](double r) {
+    return middle +
+           side * (r - o.range_min_m) / (o.range_max_m - o.range_min_m) * layout.box.width() / 2.0;
+  };
+  for (std::size_t i = 0; i + 1 < first_m.size(); ++i) {
+    if (std::isnan(first_m[i]) || std::isnan(first_m[i + 1])) continue;
+    const double y = layout.box.bottom - (static_cast<double>(i) + 0.5) * row;
+    canvas.segment(x(first_m[i]), y, x(first_m[i + 1]), y - row, layout.unit,
+                   Color{0.45f, 0.85f, 1.0f, 0.55f});
+  }
 }
 
 // Ticks at ranges on both sides of the middle.
@@ -126,7 +125,7 @@ std::vector<std::size_t> pings_along(std::span<const double> along_m, std::uint3
 
 }  // namespace
 
-ImageU8 draw_slant(const SidescanRecord& record, std::span<const double> altitude_m,
+ImageU8 draw_slant(const SidescanRecord& record, const FirstReturns& bottom,
                    const SidescanPictureOptions& options) {
   const SidescanOptions& o = record.options();
   const std::size_t pings = record.pings();
@@ -143,7 +142,8 @@ ImageU8 draw_slant(const SidescanRecord& record, std::span<const double> altitud
                       static_cast<std::uint32_t>(layout.box.height()));
     to_shades(shades, full_scale, options.gamma);
     draw_shades(canvas, layout.box, shades, Palette::kBronze);
-    draw_bottom(canvas, layout, o, altitude_m);
+    draw_bottom(canvas, layout, o, bottom.port_m, -1.0);
+    draw_bottom(canvas, layout, o, bottom.starboard_m, 1.0);
     draw_left_axis(canvas, layout.box, static_cast<double>(pings), 0.0, "ping", layout.unit);
   }
   draw_ranges(canvas, layout, o.range_min_m, o.range_max_m,

@@ -7,15 +7,12 @@
 namespace neritic::sonar {
 namespace {
 
-constexpr TableFormat kFormat{"depth_m", "speed_m_s", -100.0, 12000.0, 100.0, 10000.0};
+constexpr TableLimits kSpeedLimits{-100.0, 12000.0, 100.0, 10000.0};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// log(1 + x) / x and (exp(x) - 1) / x, 1 at 0.
+// log(1 + x) / x, 1 at 0.
 double log1p_over(double x) {
   return x == 0.0 ? 1.0 : std::log1p(x) / x;
-}
-double expm1_over(double x) {
-  return x == 0.0 ? 1.0 : std::expm1(x) / x;
 }
 
 }  // namespace
@@ -29,30 +26,13 @@ SoundSpeedProfile::SoundSpeedProfile(Table rows) : rows_(std::move(rows)) {
   layers_.push_back({rows_.back().x, kInfinity, rows_.back().x, rows_.back().y, 0.0});
 }
 
-Result<SoundSpeedProfile> SoundSpeedProfile::constant(double speed_m_s) {
-  return of_table({{0.0, speed_m_s}});
-}
-
 Result<SoundSpeedProfile> SoundSpeedProfile::of_table(Table depth_speed) {
-  NERITIC_TRY_STATUS(validate(depth_speed, "sound speed profile", kFormat));
+  NERITIC_TRY_STATUS(validate(depth_speed, "sound speed profile", kSpeedLimits));
   return SoundSpeedProfile(std::move(depth_speed));
-}
-
-Result<SoundSpeedProfile> SoundSpeedProfile::from_file(const std::filesystem::path& path) {
-  NERITIC_TRY(Table table, read_table(path, kFormat));
-  return SoundSpeedProfile(std::move(table));
 }
 
 double SoundSpeedProfile::speed_m_s(double depth_m) const {
   return interpolate(rows_, depth_m);
-}
-
-double SoundSpeedProfile::min_speed_m_s() const {
-  return std::ranges::min_element(rows_, {}, &TableRow::y)->y;
-}
-
-double SoundSpeedProfile::max_speed_m_s() const {
-  return std::ranges::max_element(rows_, {}, &TableRow::y)->y;
 }
 
 std::size_t SoundSpeedProfile::layer_at(double depth_m) const {
@@ -84,34 +64,6 @@ double SoundSpeedProfile::straight_time_s(double launch_depth_m, double elevatio
     at += sink > 0.0 ? 1 : -1;
   }
   return time;
-}
-
-// The inverse: along the ray dc/ds = gamma, so s = c1 (exp(gamma t) - 1) / gamma.
-double SoundSpeedProfile::straight_range_m(double launch_depth_m, double elevation_rad,
-                                           double time_s) const {
-  const double sink = -std::sin(elevation_rad);
-  if (std::isnan(launch_depth_m) || std::isnan(sink) || std::isnan(time_s))
-    return launch_depth_m + sink + time_s;
-  double depth = launch_depth_m, left = time_s, range = 0.0;
-  for (std::size_t at = layer_at(depth); left > 0.0;) {
-    const Layer& layer = layers_[at];
-    const double edge = sink > 0.0 ? layer.bottom_m : layer.top_m;
-    const double to_edge = sink == 0.0 ? kInfinity : (edge - depth) / sink;
-    const double speed = layer.speed_at(depth), gamma = layer.gradient_s * sink;
-    const double time_to_edge =
-        std::isinf(to_edge) ? kInfinity : to_edge / speed * log1p_over(gamma * to_edge / speed);
-    if (!(time_to_edge < left)) return range + speed * left * expm1_over(gamma * left);
-    range += to_edge;
-    left -= time_to_edge;
-    depth = edge;
-    at += sink > 0.0 ? 1 : -1;
-  }
-  return range;
-}
-
-double SoundSpeedProfile::apparent_range_m(double launch_depth_m, double elevation_rad,
-                                           double range_m, double assumed_speed_m_s) const {
-  return assumed_speed_m_s * straight_time_s(launch_depth_m, elevation_rad, range_m);
 }
 
 }  // namespace neritic::sonar

@@ -4,11 +4,10 @@
 // one way. No surface and no bottom: who traces a ray ends it there. Immutable; any thread.
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <vector>
 
-#include "sonar/acoustics_csv.hpp"
+#include "sonar/table.hpp"
 
 namespace neritic::sonar {
 
@@ -22,24 +21,14 @@ struct RayPoint {
 
 class SoundSpeedProfile {
  public:
-  // The same speed everywhere. kBadInput where it lies outside [100, 10000] m/s.
-  static Result<SoundSpeedProfile> constant(double speed_m_s);
   // Rows of depth_m in [-100, 12000], rising, and m/s in [100, 10000].
   static Result<SoundSpeedProfile> of_table(Table depth_speed);
-  static Result<SoundSpeedProfile> from_file(const std::filesystem::path& path);
 
   double speed_m_s(double depth_m) const;
-  double min_speed_m_s() const;
-  double max_speed_m_s() const;
-  std::span<const TableRow> rows() const { return rows_; }
 
-  // Straight rays. Integral of ds / c along range_m from launch_depth_m, in closed form a layer;
-  // and the range that a time reaches. Non-negative; NaN gives NaN.
+  // Straight rays. Integral of ds / c along range_m from launch_depth_m, in closed form a layer.
+  // Non-negative; NaN gives NaN.
   double straight_time_s(double launch_depth_m, double elevation_rad, double range_m) const;
-  double straight_range_m(double launch_depth_m, double elevation_rad, double time_s) const;
-  // What a sonar that believes in one speed makes of range_m: assumed speed times the time.
-  double apparent_range_m(double launch_depth_m, double elevation_rad, double range_m,
-                          double assumed_speed_m_s) const;
 
   // A bent ray after time_s >= 0: circular arcs in layers of constant gradient g (radius
   // c / (|g| cos(elevation))), turning points included (Jensen et al. 2011, Computational Ocean

@@ -124,7 +124,7 @@ inline constexpr auto kSonarKeys = std::to_array<Key>(
      "picture_camera",
      "frequency_hz",   "bandwidth_hz",   "water",    "level",         "beam",
      "range_spread",   "speckle",        "noise",    "ghosts",        "sound_speed",
-     "motion",         "labels",         "output"});
+     "motion",         "labels",         "output",   "detection"});
 
 // The terms of a sonar, each a table.
 inline constexpr auto kSonarWaterKeys =
@@ -132,15 +132,19 @@ inline constexpr auto kSonarWaterKeys =
 inline constexpr auto kSonarLevelKeys = std::to_array<Key>(
     {"source_level_db", "absorption", "spreading", "tvg", "tvg_absorption", "gain_db"});
 inline constexpr auto kSonarBeamKeys =
-    std::to_array<Key>({"azimuth", "azimuth_deg", "elevation", "elevation_deg", "samples"});
+    std::to_array<Key>({"azimuth", "azimuth_deg", "elevation", "elevation_deg", "samples",
+                        "steering", "two_way"});
 inline constexpr auto kSonarRangeSpreadKeys = std::to_array<Key>({"bandwidth_hz", "window"});
 inline constexpr auto kSonarSpeckleKeys = std::to_array<Key>({"scatterer_m", "shape", "texture_m"});
-inline constexpr auto kSonarNoiseKeys = std::to_array<Key>({"level_db"});
+inline constexpr auto kSonarNoiseKeys =
+    std::to_array<Key>({"level_db", "wind_m_s", "shipping", "self_db"});
 inline constexpr auto kSonarGhostKeys =
     std::to_array<Key>({"surface", "bottom_m", "surface_reflection", "bottom_reflection"});
 inline constexpr auto kSonarSoundSpeedKeys = std::to_array<Key>({"profile", "rays"});
 inline constexpr auto kSonarMotionKeys = std::to_array<Key>({"within_ping", "doppler", "pulse_s"});
 inline constexpr auto kSonarLabelKeys = std::to_array<Key>({"energy", "coco"});
+inline constexpr auto kSonarDetectionKeys =
+    std::to_array<Key>({"threshold", "floor_db", "quality", "pings"});
 inline constexpr auto kSonarOutputKeys = std::to_array<Key>({"bits", "floor_db", "span_db"});
 
 inline constexpr auto kLampKeys = std::to_array<Key>(

@@ -102,6 +102,34 @@ void read_quality(TableReader& reader, Sonar& sonar) {
   if (reader.has("quality")) reader.refuse("max_error", "no such key beside quality");
 }
 
+// Keys of detection that would have no effect.
+void check_detection(TableReader& reader, const Sonar& sonar) {
+  const SonarDetection& detection = sonar.terms.detection;
+  const bool detects = sonar.kind == SonarKind::kProfiling ||
+                       sonar.kind == SonarKind::kEchoSounder || sonar.kind == SonarKind::kSideScan;
+  if (reader.has("detection") && !detects)
+    reader.refuse("detection", fmt::format("no such key for kind \"{}\"", name_of(sonar.kind)));
+  if (detection.quality > 0.0 && sonar.kind != SonarKind::kProfiling)
+    reader.refuse("detection", "quality of kind \"profiling\" only");
+  if (detection.pings != SonarDetection{}.pings && sonar.kind != SonarKind::kSideScan)
+    reader.refuse("detection", "pings of kind \"sidescan\" only");
+}
+
+// What a beam's pattern needs of the kind.
+void check_beam(TableReader& reader, const Sonar& sonar) {
+  const SonarBeam& beam = sonar.terms.beam;
+  const auto is_disc = [](const auto& pattern) {
+    return pattern && pattern->shape == SonarPattern::Shape::kPiston;
+  };
+  if ((is_disc(beam.azimuth) || is_disc(beam.elevation)) && sonar.kind != SonarKind::kEchoSounder)
+    reader.refuse("beam", "piston, a disc, of kind \"echosounder\" only");
+  if (beam.steering == SonarBeam::Steering::kNone) return;
+  if (sonar.kind != SonarKind::kImaging && sonar.kind != SonarKind::kProfiling)
+    reader.refuse("beam", "steering of kinds \"imaging\" and \"profiling\" only");
+  if (sonar.azimuth_rad > radians(170.0))
+    reader.refuse("beam", "steering = \"flat\" of at most 170 degrees of azimuth");
+}
+
 }  // namespace
 
 void read_sonar(TableReader& reader, Sonar& sonar) {
@@ -116,6 +144,8 @@ void read_sonar(TableReader& reader, Sonar& sonar) {
                   fmt::format("no such key for kind \"{}\"", name_of(sonar.kind)));
   read_quality(reader, sonar);
   read_sonar_terms(reader, sonar.terms);
+  check_beam(reader, sonar);
+  check_detection(reader, sonar);
 }
 
 }  // namespace neritic::scene

@@ -10,11 +10,16 @@ namespace {
 
 constexpr Interval kFrequency{1, 1e7, false, false, "hertz"};
 constexpr Interval kLevel{-300, 300, false, false, "decibels"};
+// The strongest sources, arrays of air guns, reach some 260 dB re 1 uPa at 1 m.
+constexpr Interval kSourceLevel{0, 260, false, false, "decibels"};
+constexpr Interval kGain{-120, 120, false, false, "decibels"};
+// From a tenth of deep water's least in 1 Hz to a ship at arm's length.
+constexpr Interval kNoiseLevel{-60, 200, false, false, "decibels"};
 constexpr Interval kSpeed{100, 10000, false, false, "m/s"};
 constexpr Interval kFraction{0, 1};
 
 constexpr TableFormat kGainTable{
-    "range_m, db", {0, 1e6, false, false, "metres"}, {-300, 300, false, false, "decibels"}};
+    "range_m, db", {0, 1e6, false, false, "metres"}, {-120, 200, false, false, "decibels"}};
 constexpr TableFormat kPatternTable{
     "angle_deg, db", {-180, 180, false, false, "degrees"}, {-300, 0, false, false, "decibels"}};
 constexpr TableFormat kSpeedTable{"depth_m, m/s", {-100, 12000, false, false, "metres"}, kSpeed};
@@ -71,7 +76,7 @@ void read_absorption(TableReader& reader, SonarLevel& level) {
 }
 
 void read_tvg(TableReader& reader, SonarLevel& level) {
-  constexpr Interval kLog{0, 80};
+  constexpr Interval kLog{0, 60};
   const TomlValue* value = reader.find("tvg");
   level.tvg_absorption = reader.flag("tvg_absorption", false);
   if (!value || is_text(value, "none")) return;
@@ -88,11 +93,11 @@ void read_tvg(TableReader& reader, SonarLevel& level) {
 
 SonarLevel read_level(TableReader& reader) {
   SonarLevel level;
-  level.source_level_db = reader.number("source_level_db", level.source_level_db, kLevel);
+  level.source_level_db = reader.number("source_level_db", level.source_level_db, kSourceLevel);
   read_absorption(reader, level);
   level.spreading = reader.flag("spreading", level.spreading);
   read_tvg(reader, level);
-  level.gain_db = reader.number("gain_db", level.gain_db, kLevel);
+  level.gain_db = reader.number("gain_db", level.gain_db, kGain);
   return level;
 }
 
@@ -113,8 +118,10 @@ std::optional<SonarPattern> read_pattern(TableReader& reader, Key key, Key width
   }
   if (is_text(value, "hamming"))
     pattern.shape = SonarPattern::Shape::kHamming;
+  else if (is_text(value, "piston"))
+    pattern.shape = SonarPattern::Shape::kPiston;
   else if (!is_text(value, "sinc"))
-    reader.refuse(key, "sinc, hamming, or " + table_text(kPatternTable));
+    reader.refuse(key, "sinc, hamming, piston, or " + table_text(kPatternTable));
   pattern.half_power_rad = radians(reader.number(width, 1.0, {0.001, 180, false, true, "degrees"}));
   return pattern;
 }
@@ -124,6 +131,13 @@ SonarBeam read_beam(TableReader& reader) {
   beam.azimuth = read_pattern(reader, "azimuth", "azimuth_deg");
   beam.elevation = read_pattern(reader, "elevation", "elevation_deg");
   beam.samples = static_cast<std::uint32_t>(reader.whole("samples", 1, 1, 64));
+  const std::string steering =
+      reader.choice("steering", "none", std::to_array<Key>({"none", "flat"}));
+  if (steering == "flat") beam.steering = SonarBeam::Steering::kFlat;
+  if (reader.has("two_way")) beam.two_way = reader.flag("two_way", false);
+  if (!beam.azimuth)
+    for (const Key key : {"steering", "two_way"})
+      refuse_beside(reader, key, "without azimuth, the beam's shape");
   return beam;
 }
 
@@ -154,7 +168,15 @@ SonarSpeckle read_speckle(TableReader& reader) {
 
 SonarNoise read_noise(TableReader& reader) {
   SonarNoise noise;
-  noise.level_db = reader.number("level_db", noise.level_db, kLevel);
+  if (reader.has("level_db")) {
+    noise.level_db = reader.number("level_db", 0.0, kNoiseLevel);
+    for (const Key key : {"wind_m_s", "shipping", "self_db"})
+      refuse_beside(reader, key, "beside level_db, which is all the noise");
+    return noise;
+  }
+  noise.wind_m_s = reader.number("wind_m_s", noise.wind_m_s, {0, 60, false, false, "m/s"});
+  noise.shipping = reader.number("shipping", noise.shipping, kFraction);
+  if (reader.has("self_db")) noise.self_db = reader.number("self_db", 0.0, kNoiseLevel);
   return noise;
 }
 
@@ -210,10 +232,26 @@ SonarOutput read_output(TableReader& reader) {
   return output;
 }
 
+SonarDetection read_detection(TableReader& reader) {
+  SonarDetection detection;
+  if (reader.has("threshold"))
+    detection.threshold = reader.number("threshold", 0.0, {0, 1, true, false});
+  if (reader.has("floor_db"))
+    detection.floor_db = reader.number("floor_db", 0.0, {-60, 120, false, false, "decibels"});
+  detection.quality = reader.number("quality", detection.quality, kFraction);
+  detection.pings = static_cast<std::uint32_t>(reader.whole("pings", detection.pings, 1, 999));
+  if (detection.pings % 2 == 0) reader.refuse("pings", "an odd number");
+  return detection;
+}
+
 // What one term needs of another.
 void check_together(TableReader& reader, const SonarTerms& terms) {
   if (terms.noise && !terms.level)
     reader.refuse("noise", "noise beside level: its decibels are the level's");
+  if (terms.noise && !terms.noise->level_db && !terms.range_spread)
+    reader.refuse("noise", "level_db, or bandwidth_hz of the sonar: ambient noise fills a band");
+  if (terms.detection.floor_db && !terms.noise)
+    reader.refuse("detection", "floor_db beside noise: its decibels are above it");
   if (terms.output.bits != 0 && !terms.level)
     reader.refuse("output", "bits beside level: its floor is in decibels");
   if (terms.motion && terms.motion->doppler && !terms.range_spread)
@@ -247,6 +285,9 @@ void read_sonar_terms(TableReader& reader, SonarTerms& terms) {
                      .value_or(SonarLabels{});
   terms.output = read_term<SonarOutput>(reader, "output", kSonarOutputKeys, read_output)
                      .value_or(SonarOutput{});
+  terms.detection =
+      read_term<SonarDetection>(reader, "detection", kSonarDetectionKeys, read_detection)
+          .value_or(SonarDetection{});
   check_together(reader, terms);
 }
 

@@ -36,19 +36,21 @@ struct SonarLevel {
   Absorption absorption = Absorption::kFrancoisGarrison;
   double absorption_db_per_m = 0.0;  // kFixed
   bool spreading = true;             // spherical, 20 log r each way
-  double tvg_log = 0.0;              // time-varied gain: tvg_log * log10(r / 1 m): 20, 30, 40; 0: none
-  bool tvg_absorption = false;       // and 2 alpha r
-  SonarTable tvg_table;              // metres, decibels: instead of tvg_log
-  double gain_db = 0.0;              // of the receiver
+  double tvg_log = 0.0;         // time-varied gain: tvg_log * log10(r / 1 m): 20, 30, 40; 0: none
+  bool tvg_absorption = false;  // and 2 alpha r
+  SonarTable tvg_table;         // metres, decibels: instead of tvg_log
+  double gain_db = 0.0;         // of the receiver
   bool operator==(const SonarLevel&) const = default;
 };
 
 // One axis' one-way beam pattern.
 struct SonarPattern {
-  enum class Shape { kUniform, kHamming, kTable };  // sinc; Hamming-shaded line; from a file
+  // Sinc; a Hamming-shaded line; a disc (echo sounders); from a file.
+  enum class Shape { kUniform, kHamming, kPiston, kTable };
   Shape shape = Shape::kUniform;
   double half_power_rad = radians(1.0);  // full width at half power of one way
-  SonarTable table;                      // off-axis angle (radians, from 0), decibels
+  // Off-axis angle (radians, -pi to pi; without negative ones both sides are alike), decibels.
+  SonarTable table;
   bool operator==(const SonarPattern&) const = default;
 };
 
@@ -56,6 +58,13 @@ struct SonarBeam {
   std::optional<SonarPattern> azimuth, elevation;
   // Gather columns a beam, so that the pattern's main lobe is sampled; at least 1.
   std::uint32_t samples = 1;
+  // How beams are formed: each with the pattern about its own axis (lenses, turned heads), or by
+  // phase on one flat array, whose beams widen to the sides by 1 / cos of their bearing.
+  enum class Steering { kNone, kFlat };
+  Steering steering = Steering::kNone;
+  // Whether the sound is sent through the azimuth pattern too. Absent: by all kinds but imaging and
+  // profiling, which send into the whole fan.
+  std::optional<bool> two_way;
   bool operator==(const SonarBeam&) const = default;
 };
 
@@ -74,8 +83,12 @@ struct SonarSpeckle {
   bool operator==(const SonarSpeckle&) const = default;
 };
 
+// dB re 1 uPa, of the whole of the receiver's band (range_spread's bandwidth).
 struct SonarNoise {
-  double level_db = 60.0;  // re 1 uPa in the receiver's band, ambient and self together
+  std::optional<double> level_db;  // all of it; else the powers of the following, added:
+  // Ambient: Wenz's 1962 curves in Coates's form of 1990 at the sonar's frequency, over its band.
+  double wind_m_s = 5.0, shipping = 0.5;
+  std::optional<double> self_db;  // of the vehicle and the receiver
   bool operator==(const SonarNoise&) const = default;
 };
 
@@ -114,6 +127,19 @@ struct SonarOutput {
   bool operator==(const SonarOutput&) const = default;
 };
 
+// How returns are told in what profiling, echo sounder and side-scan accumulate over a track.
+struct SonarDetection {
+  // A return begins where this part of the strongest (side-scan: of the 95th percentile) is
+  // reached. Absent: the kind's own.
+  std::optional<double> threshold;
+  // Above the noise's mean in the bin: what is quieter is not heard. Absent: 1e-7 false alarms a
+  // bin.
+  std::optional<double> floor_db;
+  double quality = 0.0;     // profiling: least part that the echo is of all that its beam heard
+  std::uint32_t pings = 5;  // side-scan: the altitude is the median of so many, odd
+  bool operator==(const SonarDetection&) const = default;
+};
+
 struct SonarTerms {
   double frequency_hz = 750e3;
   SonarWater water;
@@ -127,6 +153,7 @@ struct SonarTerms {
   std::optional<SonarMotion> motion;
   SonarLabels labels;
   SonarOutput output;
+  SonarDetection detection;
   bool operator==(const SonarTerms&) const = default;
 };
 

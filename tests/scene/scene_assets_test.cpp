@@ -133,6 +133,7 @@ TEST(SceneAssets, TheFormatsPageHasEveryKey) {
                              KeyList(kSonarMotionKeys),
                              KeyList(kSonarLabelKeys),
                              KeyList(kSonarOutputKeys),
+                             KeyList(kSonarDetectionKeys),
                              KeyList(kLampKeys)})
     for (const Key key : keys)
       EXPECT_NE(page->find("`" + std::string(key) + "`"), std::string::npos) << key;

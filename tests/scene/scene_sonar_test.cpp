@@ -25,9 +25,11 @@ TEST(SceneSonar, NothingNamedIsThePublishedModel) {
 
 TEST(SceneSonar, EmptyTermsHaveTheirDefaults) {
   const test::ScratchFolder scratch;
-  const Sonar sonar = sonar_of(scratch,
-                               "water = {}\nlevel = {}\nbeam = {}\nrange_spread = {}\n"
-                               "speckle = {}\nnoise = {}\nlabels = {}\noutput = {}");
+  const Sonar sonar =
+      sonar_of(scratch,
+               "water = {}\nlevel = {}\nbeam = {}\nrange_spread = {}\n"
+               "speckle = {}\nnoise = {}\nlabels = {}\noutput = {}\ndetection = {}\n"
+               "kind = \"profiling\"");
   SonarTerms wanted;
   wanted.level.emplace();
   wanted.range_spread.emplace();
@@ -41,6 +43,7 @@ TEST(SceneSonar, EveryTermCarriesItsValues) {
   const Sonar sonar = sonar_of(scratch, R"(
 frequency_hz = 450e3
 quality = "draft"
+kind = "profiling"
 [sonars.water]
 temperature_c = -1.5
 salinity_psu = 12
@@ -60,6 +63,8 @@ azimuth_deg = 0.5
 elevation = "sinc"
 elevation_deg = 20
 samples = 4
+steering = "flat"
+two_way = true
 [sonars.range_spread]
 bandwidth_hz = 1e5
 window = "none"
@@ -88,6 +93,9 @@ coco = true
 bits = 16
 floor_db = 20
 span_db = 96
+[sonars.detection]
+threshold = 0.3
+floor_db = 12
 )");
   SonarTerms t;
   t.frequency_hz = 450e3;
@@ -96,6 +104,8 @@ span_db = 96
   t.beam.azimuth = SonarPattern{SonarPattern::Shape::kHamming, radians(0.5), {}};
   t.beam.elevation = SonarPattern{SonarPattern::Shape::kUniform, radians(20.0), {}};
   t.beam.samples = 4;
+  t.beam.steering = SonarBeam::Steering::kFlat;
+  t.beam.two_way = true;
   t.range_spread = SonarRangeSpread{1e5, SonarRangeSpread::Window::kNone};
   t.speckle = SonarSpeckle{0.01, 2.5, 0.75};
   t.noise = SonarNoise{71};
@@ -104,9 +114,32 @@ span_db = 96
   t.motion = SonarMotion{true, true, 2e-3};
   t.labels = {true, true};
   t.output = {16, 20, 96};
+  t.detection.threshold = 0.3;
+  t.detection.floor_db = 12;
   EXPECT_EQ(sonar.terms, t);
   EXPECT_EQ(sonar.quality, "draft");
   EXPECT_EQ(sonar.max_error, 0.0);
+}
+
+TEST(SceneSonar, NoiseIsOneLevelOrAmbientAndSelf) {
+  const test::ScratchFolder scratch;
+  const std::string level = "level = {}\nbandwidth_hz = 2e4\n";
+  EXPECT_EQ(
+      sonar_of(scratch, level + "noise = {wind_m_s = 12, shipping = 1, self_db = 55}").terms.noise,
+      (SonarNoise{.wind_m_s = 12, .shipping = 1, .self_db = 55}));
+  EXPECT_EQ(sonar_of(scratch, level + "noise = {level_db = 71}").terms.noise, SonarNoise{71});
+}
+
+TEST(SceneSonar, DetectionAndPatternsOfSomeKinds) {
+  const test::ScratchFolder scratch;
+  EXPECT_EQ(
+      sonar_of(scratch, "kind = 'profiling'\ndetection = {quality = 0.4}").terms.detection.quality,
+      0.4);
+  EXPECT_EQ(sonar_of(scratch, "kind = 'sidescan'\ndetection = {pings = 9}").terms.detection.pings,
+            9u);
+  EXPECT_EQ(sonar_of(scratch, "kind = 'echosounder'\nbeam = {elevation = 'piston'}")
+                .terms.beam.elevation->shape,
+            SonarPattern::Shape::kPiston);
 }
 
 TEST(SceneSonar, TablesComeFromFilesBesideTheScene) {
@@ -181,7 +214,7 @@ TEST(SceneSonar, EveryPresetLoadsByInclude) {
     if (entry.path().extension() != ".toml") continue;
     const test::ScratchFolder scratch;
     const Sonar sonar = sonar_of(scratch, "include = '" + entry.path().string() + "'");
-    EXPECT_EQ(sonar.terms.beam.azimuth.has_value(), entry.path().stem() != "imaging_90x28");
+    EXPECT_EQ(sonar.terms.beam.elevation.has_value(), entry.path().stem() != "imaging_90x28");
     ++loaded;
   }
   EXPECT_GE(loaded, 13u);

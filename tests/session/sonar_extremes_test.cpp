@@ -123,6 +123,27 @@ TEST_F(SonarExtremes, EveryKindWithEveryTermIsFinite) {
   }
 }
 
+TEST_F(SonarExtremes, TheLoudestThatIsAcceptedIsAFiniteFloat) {
+  for (const SonarKind kind : kKinds)
+    for (const bool speckle : {false, true})
+      for (const double absorption : {0.0, 1000.0}) {
+        scene::Sonar sonar = small_sonar(kind);
+        sonar.range_min_m = 0.0;
+        sonar.terms = every_term();
+        if (!speckle) sonar.terms.speckle.reset();
+        sonar.terms.noise = scene::SonarNoise{200.0};
+        sonar.terms.level = scene::SonarLevel{.source_level_db = 260.0,
+                                              .absorption = scene::SonarLevel::Absorption::kFixed,
+                                              .absorption_db_per_m = absorption,
+                                              .tvg_log = 60.0,
+                                              .tvg_absorption = true,
+                                              .gain_db = 120.0};
+        scene::Scene sea = some_sea(sonar);
+        for (scene::Object& object : sea.objects) object.backscatter_db = 20.0;
+        EXPECT_GT(expect_sane(pings(device(), sea), scene::name_of(kind)), 0.0);
+      }
+}
+
 TEST_F(SonarExtremes, FromFiveCentimetresToTenKilometres) {
   for (const double distance_m : {0.05, 9000.0}) {
     scene::Sonar sonar = small_sonar();

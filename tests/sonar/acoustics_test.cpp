@@ -10,7 +10,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/math.hpp"
 #include "sonar/acoustics_materials.hpp"
-#include "sonar/acoustics_tvg.hpp"
+#include "sonar/levels.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic {
@@ -22,18 +22,16 @@ using sonar::Water;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-TEST(SonarSoundSpeed, IsMackenziesAndMedwinsToAllDigits) {
+TEST(SonarSoundSpeed, IsMackenziesToAllDigits) {
   struct Row {
-    double t, s, d, mackenzie, medwin;
+    double t, s, d, mackenzie;
   };
   for (const Row& r :
-       {Row{25, 35, 1000, 1550.7440, 1550.3563}, Row{10, 35, 0, 1489.8034, 1489.9900},
-        Row{0, 35, 0, 1448.9600, 1449.2000}, Row{4, 35, 100, 1468.1222, 1468.3386},
-        Row{15, 35, 10, 1506.8552, 1506.9638}, Row{20, 38.5, 50, 1526.2511, 1526.3100},
-        Row{27, 35, 10, 1539.0866, 1539.1731}, Row{2, 35, 8000, 1598.3207, 1586.1823}}) {
+       {Row{25, 35, 1000, 1550.7440}, Row{10, 35, 0, 1489.8034}, Row{0, 35, 0, 1448.9600},
+        Row{4, 35, 100, 1468.1222}, Row{15, 35, 10, 1506.8552}, Row{20, 38.5, 50, 1526.2511},
+        Row{27, 35, 10, 1539.0866}, Row{2, 35, 8000, 1598.3207}}) {
     const Water water{r.t, r.s, r.d, 8.0};
     EXPECT_NEAR(sonar::sound_speed_mackenzie_m_s(water), r.mackenzie, 5.1e-5);
-    EXPECT_NEAR(sonar::sound_speed_medwin_m_s(water), r.medwin, 5.1e-5);
   }
 }
 
@@ -109,15 +107,11 @@ TEST(SonarAbsorption, RefusesWhatIsNoWaterAndPassesNaNOn) {
     EXPECT_TRUE(std::isnan(sonar::absorption_db_m(model, {}, 0.0)));
     EXPECT_TRUE(std::isnan(sonar::absorption_db_m(model, {}, -5.0)));
   }
-  EXPECT_TRUE(sonar::absorption_model_of("ainslie-mccolm").ok());
-  EXPECT_FALSE(sonar::absorption_model_of("thorp").ok());
 }
 
 TEST(SonarEquation, GivesTheWorkedValues) {
   EXPECT_NEAR(sonar::two_way_loss_db(10.0, 0.3), 46.0, 1e-12);
   EXPECT_NEAR(sonar::transmission_loss_db(100.0, 0.0), 40.0, 1e-12);
-  EXPECT_EQ(sonar::echo_level_db(210.0, 46.0, -26.0), 138.0);
-  EXPECT_EQ(sonar::signal_to_noise_db(138.0, 100.0), 38.0);
   EXPECT_NEAR(sonar::band_level_db(30.0, 1e4), 70.0, 1e-12);
   // Point blank: 1 mm stands for anything nearer, NaN stays NaN.
   EXPECT_NEAR(sonar::two_way_loss_db(0.0, 0.3), -120.0, 1e-12);
@@ -127,9 +121,8 @@ TEST(SonarEquation, GivesTheWorkedValues) {
 
 TEST(SonarEquation, DecibelsRoundTripAndAdd) {
   EXPECT_NEAR(sonar::db_from_power(2.0), 3.0103, 1e-4);
-  EXPECT_NEAR(sonar::db_from_amplitude(0.5), -6.0206, 1e-4);
   EXPECT_NEAR(sonar::power_from_db(sonar::db_from_power(1.7e-9)), 1.7e-9, 1e-22);
-  EXPECT_NEAR(sonar::amplitude_from_db(sonar::db_from_amplitude(3.2)), 3.2, 1e-14);
+  EXPECT_NEAR(sonar::amplitude_from_db(20.0 * std::log10(3.2)), 3.2, 1e-14);
   EXPECT_EQ(sonar::db_from_power(0.0), -kInf);
   EXPECT_EQ(sonar::power_from_db(-kInf), 0.0);
   const double equal[] = {60.0, 60.0};
@@ -139,10 +132,6 @@ TEST(SonarEquation, DecibelsRoundTripAndAdd) {
   EXPECT_EQ(sonar::incoherent_sum_db({}), -kInf);
   const double with_nan[] = {60.0, kNaN};
   EXPECT_TRUE(std::isnan(sonar::incoherent_sum_db(with_nan)));
-  const double in_phase[] = {0.3, 0.3}, opposed[] = {0.0, kPi};
-  EXPECT_NEAR(sonar::db_from_amplitude(std::abs(sonar::coherent_sum(equal, in_phase))), 66.0206,
-              1e-4);
-  EXPECT_NEAR(std::abs(sonar::coherent_sum(equal, opposed)), 0.0, 1e-12);
 }
 
 TEST(SonarEquation, NoiseIsThermalAtHighFrequenciesAndWindBorneBelow) {
@@ -156,21 +145,6 @@ TEST(SonarEquation, NoiseIsThermalAtHighFrequenciesAndWindBorneBelow) {
   EXPECT_TRUE(std::isfinite(sonar::ambient_noise_db(1.0, 0.0, 0.5)));
   EXPECT_TRUE(std::isfinite(sonar::ambient_noise_db(1e7, 30.0, 0.5)));
   EXPECT_TRUE(std::isnan(sonar::ambient_noise_db(0.0, 1.0, 0.5)));
-}
-
-TEST(SonarTargets, SpheresAndBottomsHaveTheTextbookStrength) {
-  EXPECT_NEAR(sonar::rigid_sphere_target_strength_db(0.01), -46.0206, 1e-4);
-  EXPECT_NEAR(sonar::rigid_sphere_target_strength_db(0.1), -26.0206, 1e-4);
-  EXPECT_NEAR(sonar::rigid_sphere_target_strength_db(1.0), -6.0206, 1e-4);
-  EXPECT_EQ(sonar::rigid_sphere_target_strength_db(2.0), 0.0);
-  EXPECT_NEAR(sonar::lambert_strength_db(sonar::kLambertMu_db, kPi / 2), -27.0, 1e-12);
-  EXPECT_NEAR(sonar::lambert_strength_db(-27.0, radians(30)), -27.0 - 6.0206, 1e-4);
-  EXPECT_NEAR(sonar::db_from_power(sonar::lambert_strength(-27.0, radians(10))),
-              sonar::lambert_strength_db(-27.0, radians(10)), 1e-12);
-  EXPECT_EQ(sonar::lambert_strength(-27.0, 0.0), 0.0);
-  EXPECT_EQ(sonar::lambert_strength_db(-27.0, 0.0), -kInf);
-  const double grazing = sonar::lambert_strength(-27.0, radians(0.01));
-  EXPECT_GT(grazing, 0.0);
 }
 
 TEST(SonarReflection, MaterialsReflectAsPublished) {
@@ -195,59 +169,56 @@ TEST(SonarReflection, MaterialsReflectAsPublished) {
   EXPECT_NE(refused.error().message.find("nearest: steel"), std::string::npos);
 }
 
-TEST(SonarReflection, ObliqueWavesFollowRayleigh) {
-  const sonar::Medium water = sonar::kReferenceWater, sand = *sonar::material_of("sand");
-  const auto at = [&](double grazing_rad) {
-    return sonar::reflection_coefficient(water, sand, grazing_rad);
+TEST(SonarLevels, AnEchoIsSourceLessTwoWayLossPlusTargetStrength) {
+  scene::SonarLevel level;
+  level.source_level_db = 210.0;
+  const auto db = [&](double r) {
+    return sonar::db_from_power(sonar::echo_power(level, r, 0.3, 0.01, 0.1));
   };
-  EXPECT_NEAR(std::abs(at(kPi / 2) - sonar::reflection_coefficient(water, sand)), 0.0, 1e-12);
-  // Below the critical angle, acos(c1 / c2), everything comes back.
-  const double critical = std::acos(water.sound_speed_m_s / sand.sound_speed_m_s);
-  EXPECT_NEAR(std::abs(at(critical - 0.01)), 1.0, 1e-12);
-  EXPECT_LT(std::abs(at(critical + 0.1)), 0.75);
-  EXPECT_NEAR(std::abs(at(0.0) + 1.0), 0.0, 1e-12);
-  // A denser, slower bottom (mud-like) is transparent at one angle, where Z2 sin g1 = Z1 sin g2.
-  const sonar::Medium slow{1400.0, 1450.0};
-  const double n = 1480.0 / 1450.0, m = 1400.0 / 997.0;
-  const double intromission = std::atan(std::sqrt((n * n - 1) / (m * m - n * n)));
-  EXPECT_NEAR(std::abs(sonar::reflection_coefficient(water, slow, intromission)), 0.0, 1e-9);
+  // Strength and solid angle are -30 dB, the area grows by 20 log r: -10 dB at 10 m.
+  EXPECT_NEAR(db(10.0), 210.0 - 46.0 - 10.0, 1e-9);
+  level.spreading = false;
+  EXPECT_NEAR(db(10.0), 210.0 - 6.0 - 10.0, 1e-9);
+  EXPECT_EQ(sonar::echo_power(level, 10.0, 0.3, 0.0, 0.1), 0.0);
+  EXPECT_TRUE(std::isfinite(sonar::echo_power(level, 0.0, 1000.0, 1e2, 1.0)));
 }
 
-TEST(SonarTvg, LevelsPointTargetsExactly) {
-  const sonar::Tvg point{40.0, true, {}};
+TEST(SonarLevels, TimeVariedGainLevelsPointTargetsExactly) {
+  scene::SonarLevel level;
+  level.tvg_log = 40.0;
+  level.tvg_absorption = true;
   for (const double r : {0.05, 1.0, 10.0, 10000.0})
-    EXPECT_NEAR(point.gain_db(r, 0.3) - sonar::two_way_loss_db(r, 0.3), 0.0, 1e-9) << r;
-  EXPECT_NEAR((sonar::Tvg{30.0, false, {}}).gain_db(10.0, 0.3), 30.0, 1e-12);
-  EXPECT_NEAR((sonar::Tvg{20.0, true, {}}).gain_db(10.0, 0.3), 26.0, 1e-12);
-  EXPECT_EQ(sonar::Tvg{}.gain_db(10.0, 0.3), 0.0);
-  EXPECT_TRUE(std::isfinite(point.gain_db(0.0, 0.3)));
-  EXPECT_FALSE(sonar::validate(sonar::Tvg{-1.0, false, {}}).ok());
-  EXPECT_FALSE(sonar::validate(sonar::Tvg{kNaN, false, {}}).ok());
+    EXPECT_NEAR(sonar::receiver_gain_db(level, r, 0.3) - sonar::two_way_loss_db(r, 0.3), 0.0, 1e-9)
+        << r;
+  EXPECT_TRUE(std::isfinite(sonar::receiver_gain_db(level, 0.0, 0.3)));
+  level = {.tvg_log = 30.0, .gain_db = -6.0};
+  EXPECT_NEAR(sonar::receiver_gain_db(level, 10.0, 0.3), 24.0, 1e-12);
+  level = {.tvg_table = {{1.0, 0.0}, {10.0, 20.0}}};
+  EXPECT_EQ(sonar::receiver_gain_db(level, 0.5, 0.3), 0.0);
+  EXPECT_NEAR(sonar::receiver_gain_db(level, 5.5, 0.3), 10.0, 1e-12);
+  EXPECT_EQ(sonar::receiver_gain_db(level, 1e5, 0.3), 20.0);
 }
 
-TEST(SonarTvg, TablesAreReadAndFaultsToldByLine) {
-  const test::ScratchFolder folder;
-  const auto read = [&](const std::string& text) {
-    EXPECT_TRUE(write_text(folder / "tvg.csv", text).ok());
-    return sonar::read_tvg(folder / "tvg.csv");
-  };
-  const auto tvg = read("range_m,gain_db\n# near\n1, 0\n 10,20 # far\n");
-  ASSERT_TRUE(tvg.ok()) << tvg.error().message;
-  EXPECT_EQ(tvg->gain_db(0.5, 0.3), 0.0);
-  EXPECT_NEAR(tvg->gain_db(5.5, 0.3), 10.0, 1e-12);
-  EXPECT_EQ(tvg->gain_db(1e5, 0.3), 20.0);
-  EXPECT_TRUE(sonar::validate(*tvg).ok());
-  for (const auto& [text, told] :
-       {std::pair{"1,0\n1,2\n", ":2: range_m is 1 after 1; accepted: rising values"},
-        {"1,0\n2\n", ":2: found '2'; accepted: range_m,gain_db"},
-        {"1,0\n2,x\n", ":2: found '2,x'; accepted: range_m,gain_db"},
-        {"-1,0\n", ":1: range_m is -1; accepted: a number in [0, 1e+06]"},
-        {"1,nan\n", ":1: gain_db is nan; accepted: a number in [-300, 300]"},
-        {"range_m,gain_db\n", ": no row; accepted: rows of range_m,gain_db"}}) {
-    const auto refused = read(text);
-    ASSERT_FALSE(refused.ok()) << text;
-    EXPECT_NE(refused.error().message.find(told), std::string::npos) << refused.error().message;
-  }
+TEST(SonarLevels, NoiseIsWhatIsNamedOrAmbientAndSelfAdded) {
+  scene::SonarTerms terms;
+  terms.frequency_hz = 100e3;
+  terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 20e3};
+  terms.noise = scene::SonarNoise{.level_db = 71.0};
+  EXPECT_EQ(sonar::noise_level_db(terms), 71.0);
+  // Wind of 10 m/s and shipping .5 at 100 kHz, by hand: 17 - 60 = -43; 40 + 52 - 120.01 = -28.01;
+  // 50 + 23.717 + 40 - 80.069 = 33.648; thermal 25; together 34.204 dB re 1 uPa^2/Hz; 20 kHz of it
+  // 43.010 dB more.
+  terms.noise = scene::SonarNoise{.wind_m_s = 10.0, .shipping = 0.5};
+  EXPECT_NEAR(sonar::noise_level_db(terms), 77.2139, 0.002);
+  terms.noise->self_db = 77.2139;
+  EXPECT_NEAR(sonar::noise_level_db(terms), 80.2242, 0.002);
+}
+
+TEST(SonarLevels, WhatIsBelowItsRowsFloorIsSilence) {
+  const std::vector<float> floor{1e7f, 4e7f};
+  const std::vector<float> image{2e7f, 1e6f, 5e7f, 2e7f, 1e6f, 5e7f};
+  EXPECT_EQ(sonar::above_floor(image, floor), (std::vector<float>{2e7f, 0, 5e7f, 0, 0, 5e7f}));
+  EXPECT_EQ(sonar::above_floor(image, {}), image);
 }
 
 }  // namespace

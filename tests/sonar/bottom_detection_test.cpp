@@ -122,6 +122,9 @@ TEST(BottomDetection, AnEchoApartFromTheStrongestIsLeftOut) {
   EXPECT_NEAR(found[0].quality, 1.0 / 1.4, 1e-6);
   EXPECT_TRUE(sonar::detect_bottom(grid, image, {.floor = 1.5}).empty());
   EXPECT_EQ(sonar::detect_bottom(grid, image, {.floor = 0.5}).size(), 1u);
+  EXPECT_TRUE(sonar::detect_bottom(grid, image, {.least_quality = 0.75}).empty());
+  EXPECT_EQ(sonar::detect_bottom(grid, image, {.least_quality = 0.7}).size(), 1u);
+  EXPECT_FALSE(sonar::validate(sonar::BottomDetectionOptions{.least_quality = 1.5}).ok());
 }
 
 TEST(BottomDetection, APeakBetweenBinsIsFoundThere) {

@@ -153,7 +153,8 @@ TEST(EchoTrace, OptionsThatCannotBeAreNamed) {
   EXPECT_TRUE(sonar::validate(EchoTraceOptions{}).ok());
   for (const EchoTraceOptions& bad :
        {EchoTraceOptions{.n_range = 0}, EchoTraceOptions{.range_min_m = 60},
-        EchoTraceOptions{.relative_threshold = 2}, EchoTraceOptions{.floor = -1}}) {
+        EchoTraceOptions{.relative_threshold = 2}, EchoTraceOptions{.floor = -1},
+        EchoTraceOptions{.floor_by_bin = {1.0f}}}) {
     const Status status = sonar::validate(bad);
     ASSERT_FALSE(status.ok());
     EXPECT_NE(status.error().message.find("accepted"), std::string::npos);

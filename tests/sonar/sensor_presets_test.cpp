@@ -9,10 +9,12 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/math.hpp"
+#include "engine/scene/scene.hpp"
 #include "engine/scene/scene_toml.hpp"
 #include "sonar/acoustics.hpp"
 #include "sonar/acoustics_pulse.hpp"
-#include "sonar/beam_spread.hpp"
+#include "sonar/head.hpp"
+#include "sonar/head_pattern.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic {
@@ -52,6 +54,19 @@ std::vector<Preset> devices() {
     found.push_back(std::move(preset));
   }
   return found;
+}
+
+// The device as a scene takes it.
+scene::Sonar sonar_of(const std::string& preset) {
+  const test::ScratchFolder folder;
+  const auto file = folder / "scene.toml";
+  EXPECT_TRUE(write_text(file, fmt::format("[[sonars]]\nname = \"sonar\"\ninclude = "
+                                           "\"{}/assets/sensors/{}.toml\"\n",
+                                           test::source_dir().string(), preset))
+                  .ok());
+  auto scene = scene::load_scene(file);
+  EXPECT_TRUE(scene.ok()) << scene.error().message;
+  return scene->sonars.at(0);
 }
 
 TEST(SonarPresets, CoverEveryKindAndTheNamedDevices) {
@@ -105,32 +120,30 @@ TEST(SonarPresets, ArePhysicallyPossible) {
   }
 }
 
-TEST(SonarPresets, GiveBeamsAndPulsesThatKeepTheEnergy) {
+TEST(SonarPresets, HearBeyondHalfPowerAndKeepThePulsesEnergy) {
   for (const Preset& preset : devices()) {
     SCOPED_TRACE(preset.name);
-    const double azimuth_rad = radians(preset.number("azimuth_deg"));
-    const auto grid = sonar::symmetric_grid(preset.item("range_m", 0), preset.item("range_m", 1),
-                                            azimuth_rad, radians(preset.number("elevation_deg")),
-                                            {preset.bins(0), preset.bins(1), preset.bins(2)});
-    ASSERT_TRUE(sonar::validate(grid).ok());
-    const auto beam = [&](const char* kind, const char* width) {
-      return sonar::BeamPattern::of_half_power_width(*sonar::beam_kind_of(preset.beam(kind).text),
-                                                     radians(preset.beam(width).number));
-    };
-    const auto across = beam("azimuth", "azimuth_deg"),
-               upright = beam("elevation", "elevation_deg");
-    ASSERT_TRUE(across.ok() && upright.ok());
-    const auto spread = sonar::beam_spread(*across, grid, {});
-    ASSERT_TRUE(spread.ok()) << spread.error().message;
-    EXPECT_NEAR(std::reduce(spread->energy.begin(), spread->energy.end()), spread->beams, 1e-9);
-    // The vertical beam fits the wedge: half power at its edges, one way, within a row's width.
-    const auto rows = sonar::elevation_power(*upright, grid, sonar::Ways::kOneWay);
-    EXPECT_NEAR(rows.front(), 0.5, 0.1);
-    EXPECT_NEAR(rows.front(), rows.back(), 1e-9);
+    const scene::Sonar sonar = sonar_of(preset.name);
+    const auto heads = sonar::plan_heads(sonar);
+    ASSERT_TRUE(heads.ok()) << heads.error().message;
+    const auto patterns = sonar::head_patterns(sonar);
+    ASSERT_TRUE(patterns.ok() && patterns->upright());
+    for (const sonar::Head& head : *heads) {
+      const sonar::Limits &gathered = head.samples.limits, &own = head.beams.limits;
+      // The half-power width is the aperture; what is gathered ends at the second null, or where a
+      // pinhole does: the first side lobe is heard.
+      const double reach = std::min(patterns->upright()->second_null_rad(), radians(60.0));
+      EXPECT_GE(gathered.elevation_max_rad, reach - head.samples.elevation_step_rad());
+      EXPECT_NEAR(gathered.elevation_min_rad, -gathered.elevation_max_rad, 1e-12);
+      EXPECT_NEAR(patterns->upright()->two_way_power(own.elevation_max_rad), 0.25, 1e-6);
+      EXPECT_NEAR(head.samples.elevation_step_rad(), own.elevation_max_rad * 2 / preset.bins(2),
+                  1e-12);
+      EXPECT_LE(head.samples.bins.elevation, 700u);
+    }
     const double resolution_m =
         sonar::range_resolution_m(kSoundSpeed_m_s, preset.number("bandwidth_hz"));
-    const auto pulse =
-        sonar::range_spread(sonar::PulseShape::kHann, resolution_m, grid.range_step_m());
+    const auto pulse = sonar::range_spread(sonar::PulseShape::kHann, resolution_m,
+                                           heads->front().beams.range_step_m());
     ASSERT_TRUE(pulse.ok());
     EXPECT_LE(pulse->reach, 16u);
   }

@@ -50,12 +50,45 @@ TEST(Sidescan, TheAltitudeIsTrackedWithinABinAndAFishDoesNotMoveIt) {
     if (i % 20 == 7) side[20] = 5.0f;  // in the water column
     record.append(side, side, at(i), i);
   }
-  const auto altitude = record.altitude_m();
+  const auto altitude = record.first_returns().altitude_m();
   for (std::size_t i = 0; i < truth.size(); ++i)
     EXPECT_NEAR(altitude[i], truth[i], options.range_step_m()) << i;
   SidescanRecord silent(options);
   silent.append(std::vector<float>(400), std::vector<float>(400), at(0), 0);
-  EXPECT_TRUE(std::isnan(silent.altitude_m()[0]));
+  EXPECT_TRUE(std::isnan(silent.first_returns().altitude_m()[0]));
+}
+
+TEST(Sidescan, EachSideTracksItsOwnBottom) {
+  const SidescanOptions options{.n_range = 400, .range_min_m = 1.0, .range_max_m = 41.0};
+  SidescanRecord record(options);
+  const auto port = flat_side(options, 8.0), starboard = flat_side(options, 11.0);
+  for (int i = 0; i < 5; ++i) record.append(port, starboard, at(i), i);
+  record.append(std::vector<float>(400), starboard, at(5), 5);
+  const auto bottom = record.first_returns();
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_NEAR(bottom.port_m[i], 8.0, options.range_step_m());
+    EXPECT_NEAR(bottom.starboard_m[i], 11.0, options.range_step_m());
+    EXPECT_EQ(bottom.altitude_m()[i], bottom.port_m[i]);
+  }
+  // A side that hears nothing is laid out by the other's.
+  const std::vector<double> deaf(6, std::nan(""));
+  const auto one = sonar::ground_image(record, {deaf, bottom.starboard_m}, 100);
+  const auto both = sonar::ground_image(record, {bottom.starboard_m, bottom.starboard_m}, 100);
+  EXPECT_EQ(one.intensity, both.intensity);
+}
+
+TEST(Sidescan, WhatLiesBelowTheFloorIsNoBottom) {
+  SidescanOptions options{.n_range = 400, .range_min_m = 1.0, .range_max_m = 41.0};
+  auto side = flat_side(options, 10.0);
+  for (std::size_t i = 0; i < 80; ++i) side[i] += 0.06f;  // noise in the water column
+  options.relative_threshold = 0.1;
+  SidescanRecord noisy(options);
+  noisy.append(side, side, at(0), 0);
+  EXPECT_LT(noisy.first_returns().altitude_m()[0], 2.0);
+  options.floor_by_bin.assign(400, 0.07f);
+  SidescanRecord floored(options);
+  floored.append(side, side, at(0), 0);
+  EXPECT_NEAR(floored.first_returns().altitude_m()[0], 10.0, options.range_step_m());
 }
 
 TEST(Sidescan, AFlatBottomIsEvenInGroundRangeAndKeepsItsEnergy) {
@@ -65,7 +98,7 @@ TEST(Sidescan, AFlatBottomIsEvenInGroundRangeAndKeepsItsEnergy) {
     const auto side = flat_side(options, h);
     record.append(side, side, at(0), 0.0);
     const std::vector<double> altitude{h};
-    const auto ground = sonar::ground_image(record, altitude, 100);
+    const auto ground = sonar::ground_image(record, {altitude, altitude}, 100);
     ASSERT_EQ(ground.intensity.size(), 200u);
     double slant_sum = 0.0, ground_sum = 0.0;
     for (const float v : record.slant_image()) slant_sum += v;
@@ -93,13 +126,13 @@ TEST(Sidescan, AnObjectLandsAtItsGroundRange) {
   starboard[static_cast<std::size_t>(std::hypot(h, g) / 0.05)] = 1.0f;
   record.append(port, starboard, at(0), 0.0);
   const std::vector<double> altitude{h};
-  const auto ground = sonar::ground_image(record, altitude, 500);
+  const auto ground = sonar::ground_image(record, {altitude, altitude}, 500);
   for (std::size_t k = 0; k < 1000; ++k)
     if (ground.intensity[k] > 0.0f) {
       EXPECT_NEAR((static_cast<double>(k) - 500 + 0.5) * 0.1, g, 0.15);
     }
   const std::vector<double> unknown{std::nan("")};
-  EXPECT_TRUE(std::isnan(sonar::ground_image(record, unknown, 500).intensity[3]));
+  EXPECT_TRUE(std::isnan(sonar::ground_image(record, {unknown, unknown}, 500).intensity[3]));
 }
 
 // A seabed with ripples, a wreck that stands up and its shadow, rocks; speckle; a bank.
@@ -164,9 +197,9 @@ TEST(Sidescan, NothingIsDrawnToo) {
   EXPECT_TRUE(sonar::write_sidescan(folder.path(), record, {}, small).ok());
   for (int i = 1; i < 3000; ++i)
     record.append(std::vector<float>(20, 1.0f), std::vector<float>(20, 1.0f), at(i), i);
-  const auto altitude = record.altitude_m();
-  EXPECT_LE(sonar::draw_slant(record, altitude, small).height, 320u);
-  EXPECT_LE(sonar::draw_ground(record, sonar::ground_image(record, altitude, 20), small).height,
+  const auto bottom = record.first_returns();
+  EXPECT_LE(sonar::draw_slant(record, bottom, small).height, 320u);
+  EXPECT_LE(sonar::draw_ground(record, sonar::ground_image(record, bottom, 20), small).height,
             320u);
 }
 
@@ -175,7 +208,7 @@ TEST(Sidescan, OptionsThatCannotBeAreNamed) {
   for (const SidescanOptions& bad :
        {SidescanOptions{.n_range = 0}, SidescanOptions{.range_min_m = 60},
         SidescanOptions{.relative_threshold = 0}, SidescanOptions{.floor = -1},
-        SidescanOptions{.tracking_pings = 4}}) {
+        SidescanOptions{.floor_by_bin = {1.0f}}, SidescanOptions{.tracking_pings = 4}}) {
     const Status status = sonar::validate(bad);
     ASSERT_FALSE(status.ok());
     EXPECT_NE(status.error().message.find("accepted"), std::string::npos);

@@ -7,9 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/core/files.hpp"
 #include "engine/core/math.hpp"
-#include "tests/support/support.hpp"
+#include "sonar/range_correction.hpp"
 
 namespace neritic {
 namespace {
@@ -31,33 +30,24 @@ SoundSpeedProfile one_gradient(double gradient_s) {
   return profile({{0, 1500}, {3000, 1500 + 3000 * gradient_s}});
 }
 
-TEST(SonarProfile, IsReadInterpolatedAndHeldBeyondItsEnds) {
-  const test::ScratchFolder folder;
-  ASSERT_TRUE(write_text(folder / "c.csv", "depth_m,speed_m_s\n0,1500\n100,1520\n").ok());
-  const auto read = SoundSpeedProfile::from_file(folder / "c.csv");
-  ASSERT_TRUE(read.ok()) << read.error().message;
-  EXPECT_EQ(read->speed_m_s(25), 1505.0);
-  EXPECT_EQ(read->speed_m_s(-5), 1500.0);
-  EXPECT_EQ(read->speed_m_s(11000), 1520.0);
-  EXPECT_EQ(read->min_speed_m_s(), 1500.0);
-  EXPECT_EQ(read->max_speed_m_s(), 1520.0);
+TEST(SonarProfile, IsInterpolatedAndHeldBeyondItsEnds) {
+  const auto read = profile({{0, 1500}, {100, 1520}});
+  EXPECT_EQ(read.speed_m_s(25), 1505.0);
+  EXPECT_EQ(read.speed_m_s(-5), 1500.0);
+  EXPECT_EQ(read.speed_m_s(11000), 1520.0);
   EXPECT_FALSE(SoundSpeedProfile::of_table({{0, 1500}, {0, 1510}}).ok());
   EXPECT_FALSE(SoundSpeedProfile::of_table({{0, 1.5}}).ok());
   EXPECT_FALSE(SoundSpeedProfile::of_table({}).ok());
-  EXPECT_FALSE(SoundSpeedProfile::constant(std::nan("")).ok());
-  EXPECT_FALSE(SoundSpeedProfile::from_file(folder / "none.csv").ok());
 }
 
 TEST(SonarStraightRays, TakeRangeOverSpeedInUniformWater) {
-  const auto uniform = *SoundSpeedProfile::constant(1480);
+  const auto uniform = profile({{0, 1480}});
   for (const double elevation : {-90.0, -30.0, 0.0, 89.99})
     for (const double range : {0.05, 10.0, 1e4, 1e6}) {
       const double time = uniform.straight_time_s(50, radians(elevation), range);
       EXPECT_NEAR(time, range / 1480, 1e-15 * range);
-      EXPECT_NEAR(uniform.straight_range_m(50, radians(elevation), time), range, 1e-14 * range);
     }
   EXPECT_EQ(uniform.straight_time_s(50, 0.1, 0.0), 0.0);
-  EXPECT_NEAR(uniform.apparent_range_m(0, -0.5, 100.0, 1500.0), 100.0 * 1500 / 1480, 1e-10);
 }
 
 TEST(SonarStraightRays, TakeALogarithmOfTimeInOneGradient) {
@@ -82,18 +72,16 @@ TEST(SonarStraightRays, AreTheIntegralOfSlownessThroughLayers) {
       }
       const double time = water.straight_time_s(launch, elevation, range);
       EXPECT_NEAR(time, sum, 2e-10) << launch << ' ' << elevation_deg;
-      EXPECT_NEAR(water.straight_range_m(launch, elevation, time), range, 1e-9);
     }
 }
 
 TEST(SonarStraightRays, GiveNaNForNaN) {
   EXPECT_TRUE(std::isnan(ocean().straight_time_s(std::nan(""), 0, 1)));
-  EXPECT_TRUE(std::isnan(ocean().straight_range_m(0, std::nan(""), 1)));
   EXPECT_TRUE(std::isnan(ocean().bent(0, 0, std::nan("")).depth_m));
 }
 
 TEST(SonarBentRays, AreStraightInUniformWater) {
-  const auto uniform = *SoundSpeedProfile::constant(1480);
+  const auto uniform = profile({{0, 1480}});
   // Split by rows of equal speed, too.
   const auto split = profile({{0, 1480}, {10, 1480}, {200, 1480}});
   for (const auto* water : {&uniform, &split})
@@ -227,6 +215,46 @@ TEST(SonarBentRays, LeaveACrestOfSpeedDownwards) {
   // Only the water above bends: upwards.
   const auto above = profile({{0, 1490}, {50, 1500}, {100, 1500}});
   EXPECT_LT(above.bent(50, 0.0, 0.5).depth_m, 40.0);
+}
+
+// A thermocline in 2000 rows, as instruments give it.
+scene::SonarTable many_rows() {
+  scene::SonarTable rows;
+  for (int i = 0; i < 2000; ++i) {
+    const double depth = 0.1 * i;
+    rows.push_back({depth, 1500.0 + 12.0 / (1.0 + std::exp((depth - 40.0) / 6.0)) + 0.016 * depth});
+  }
+  return rows;
+}
+
+TEST(SonarRangeCorrection, ManyRowsAreThinnedWithinTheirTolerance) {
+  const scene::SonarTable rows = many_rows(), few = sonar::simplified(rows);
+  EXPECT_LT(few.size(), 120u);
+  const auto all = sonar::rows_of(rows), some = sonar::rows_of(few);
+  for (double depth = 0.0; depth < 200.0; depth += 0.013)
+    EXPECT_NEAR(sonar::interpolate(some, depth), sonar::interpolate(all, depth), 0.0101);
+  // Rows without any order keep to the limit.
+  scene::SonarTable noisy;
+  for (int i = 0; i < 100000; ++i) noisy.push_back({0.05 * i, 1500.0 + (i * 7919 % 101) * 0.1});
+  EXPECT_LE(sonar::simplified(noisy).size(), sonar::kMostRows);
+  EXPECT_EQ(sonar::simplified({{0, 1500}, {9, 1490}}).size(), 2u);
+  const auto exact = sonar::range_correction({rows, true}, 20.0, 100.0, 1500.0);
+  const auto thinned = sonar::range_correction({few, true}, 20.0, 100.0, 1500.0);
+  for (std::size_t i = 0; i < exact.factors.size(); ++i)
+    EXPECT_NEAR(thinned.factors[i], exact.factors[i], 1e-5) << i;
+}
+
+TEST(SonarRangeCorrection, ATableIsMadeOncePerDepth) {
+  sonar::RangeCorrections corrections;
+  const scene::SonarProfile profile{many_rows(), true};
+  const float there = corrections.at(profile, 20.0, 100.0).factors[70];
+  for (const double depth : {20.0, 20.01, 19.99}) corrections.at(profile, depth, 100.0);
+  EXPECT_EQ(corrections.made(), 1u);
+  corrections.at(profile, 24.0, 100.0);
+  EXPECT_EQ(corrections.made(), 2u);
+  EXPECT_EQ(corrections.at(profile, 20.02, 100.0).factors[70], there);
+  corrections.at({{{0, 1500}}, false}, 20.0, 100.0);
+  EXPECT_EQ(corrections.made(), 4u);
 }
 
 }  // namespace

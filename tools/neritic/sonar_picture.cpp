@@ -112,7 +112,7 @@ Status write_waterfall(const SonarJob& job, const std::vector<sonar::FrameFiles>
   if (job.flags.no_pictures) return {};
   return scene::write_png8(
       job.flags.out / "waterfall.png",
-      sonar::draw_slant(record, record.altitude_m(), {.title = "SIDE-SCAN FROM PICTURES"}));
+      sonar::draw_slant(record, record.first_returns(), {.title = "SIDE-SCAN FROM PICTURES"}));
 }
 
 }  // namespace neritic::tools

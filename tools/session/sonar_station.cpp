@@ -153,6 +153,7 @@ sonar::PingState SonarStation::ping_state(const Frame& frame, const HeadWork& he
   ping.stream = static_cast<std::uint32_t>(head.index * 2 + head.place);
   ping.ping = frame.ping;
   ping.backscatter_scale = backscatter_scale_;
+  ping.corrections = &head.state->corrections;
   return ping;
 }
 

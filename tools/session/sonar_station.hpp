@@ -20,6 +20,7 @@ namespace neritic::tools {
 struct HeadState {
   sonar::Head head;
   std::vector<sonar::Sector> sectors;
+  sonar::RangeCorrections corrections;
   sonar::PixelSize size;
   std::unique_ptr<sonar::SonarGather> gather, ghosts;  // ghosts: where mirrors are named
   std::unique_ptr<sonar::Receiver> receiver;           // where terms are named

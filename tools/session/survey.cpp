@@ -4,14 +4,17 @@
 
 #include "engine/core/files.hpp"
 #include "engine/scene/scene_surface.hpp"
+#include "sonar/acoustics.hpp"
 #include "sonar/bathymetry.hpp"
 #include "sonar/bottom_detection.hpp"
 #include "sonar/coco.hpp"
 #include "sonar/echo_trace.hpp"
+#include "sonar/levels.hpp"
 #include "sonar/mechanical_scan.hpp"
 #include "sonar/point_cloud.hpp"
 #include "sonar/sidescan.hpp"
 #include "sonar/sidescan_from_image.hpp"
+#include "sonar/terms_json.hpp"
 #include "sonar/terrain_error.hpp"
 
 namespace neritic::tools {
@@ -49,6 +52,17 @@ sonar::TrueDepth true_depth(const scene::Scene& scene) {
       if (const auto at = surface->at(x_m, z_m)) highest = std::max(highest, at->y_m);
     return std::isfinite(highest) ? -highest : std::numeric_limits<double>::quiet_NaN();
   };
+}
+
+// What a range row must exceed to be a return: floor_db above the noise's mean, or what noise alone
+// (its power is exponentially distributed) reaches but once in ten million: a constant false alarm
+// rate, whatever the gain does with range. Empty without noise.
+std::vector<float> floor_of(const SonarFrame& frame) {
+  const auto& floor_db = frame.terms.detection.floor_db;
+  const double above = floor_db ? sonar::power_from_db(*floor_db) : -std::log(kFalseAlarms);
+  std::vector<float> floor;
+  for (const float noise : frame.noise_power) floor.push_back(static_cast<float>(above * noise));
+  return floor;
 }
 
 }  // namespace
@@ -90,15 +104,28 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
     if (sonar.name == frame.name) r.sonar = &sonar;
   const sonar::Limits& l = frame.grid.limits;
   const std::uint32_t bins = frame.grid.bins.range;
+  const scene::SonarDetection& detection = frame.terms.detection;
+  const std::vector<float> floor = floor_of(frame);
   if (frame.kind == SonarKind::kProfiling)
     r.bathymetry = std::make_unique<sonar::Bathymetry>(chart_cell_m_ > 0.0 ? chart_cell_m_
                                                                            : l.range_max_m / 50.0);
   if (frame.kind == SonarKind::kEchoSounder)
     r.trace = std::make_unique<sonar::EchoTrace>(sonar::EchoTraceOptions{
-        .n_range = bins, .range_min_m = l.range_min_m, .range_max_m = l.range_max_m});
+        .n_range = bins,
+        .range_min_m = l.range_min_m,
+        .range_max_m = l.range_max_m,
+        .relative_threshold =
+            detection.threshold.value_or(sonar::EchoTraceOptions{}.relative_threshold),
+        .floor_by_bin = floor});
   if (frame.kind == SonarKind::kSideScan)
     r.sidescan = std::make_unique<sonar::SidescanRecord>(sonar::SidescanOptions{
-        .n_range = bins, .range_min_m = l.range_min_m, .range_max_m = l.range_max_m});
+        .n_range = bins,
+        .range_min_m = l.range_min_m,
+        .range_max_m = l.range_max_m,
+        .relative_threshold =
+            detection.threshold.value_or(sonar::SidescanOptions{}.relative_threshold),
+        .floor_by_bin = floor,
+        .tracking_pings = detection.pings});
   if (!r.sonar->picture_camera.empty())
     r.from_pictures = std::make_unique<sonar::SidescanRecord>(r.sidescan->options());
   if (frame.kind == SonarKind::kMechanical)
@@ -172,19 +199,13 @@ void Survey::Record::add(const SonarFrame& frame, const Pose& world_from_sonar, 
     coco->add(fmt::format("frame_{:04}/{}/sonar.png", pings - 1, frame.name), *frame.label_energy);
 }
 
-// Bins that noise alone reaches but once in ten million (its power is exponentially distributed)
-// are silence to a detector: a constant false alarm rate, whatever the gain does with range.
-std::vector<float> above_noise(const SonarFrame& frame) {
-  std::vector<float> heard = frame.image.intensity;
-  if (frame.noise_power.empty()) return heard;
-  const float threshold = static_cast<float>(-std::log(kFalseAlarms));
-  for (std::size_t i = 0; i < heard.size(); ++i)
-    if (heard[i] < threshold * frame.noise_power[i / frame.image.n_azimuth]) heard[i] = 0.0f;
-  return heard;
-}
-
 void Survey::Record::add_profile(const SonarFrame& frame) {
-  const auto detections = sonar::detect_bottom(frame.grid, above_noise(frame));
+  const scene::SonarDetection& settings = frame.terms.detection;
+  sonar::BottomDetectionOptions options;
+  options.relative_threshold = settings.threshold.value_or(options.relative_threshold);
+  options.least_quality = settings.quality;
+  const auto heard = sonar::above_floor(frame.image.intensity, floor_of(frame));
+  const auto detections = sonar::detect_bottom(frame.grid, heard, options);
   sonar::append(cloud, frame.grid, detections, frame.world_from_head);
   for (const sonar::BottomDetection& d : detections)
     bathymetry->add(frame.world_from_head * sonar::detection_point(frame.grid, d));
@@ -212,7 +233,8 @@ Status Survey::Record::write_bathymetry(const std::filesystem::path& folder,
 
 Status Survey::Record::write(const std::filesystem::path& folder, const scene::Scene& scene,
                              const FrameFacts& facts) const {
-  const nlohmann::json json = facts_json(facts, pings);
+  nlohmann::json json = facts_json(facts, pings);
+  json["sensor"] = sonar::sensor_json(*sonar);
   NERITIC_TRY_STATUS(make_folder(folder));
   if (bathymetry) NERITIC_TRY_STATUS(write_bathymetry(folder, scene, json));
   if (trace) NERITIC_TRY_STATUS(sonar::write_echo_trace(folder, *trace, json));

@@ -175,7 +175,7 @@ std::vector<TermCase> term_cases(const KindSetting& kind) {
   Sonar levelled = base;
   levelled.terms.level = calibrated();
   // Its level is set where the echoes' is known.
-  add("noise", levelled, Judge::kNoise, [](auto& t) { t.noise = scene::SonarNoise{}; });
+  add("noise", levelled, Judge::kNoise, [](auto& t) { t.noise = scene::SonarNoise{60.0}; });
   add("labels by energy", base, Judge::kCost, [](auto& t) { t.labels.energy = true; });
   return cases;
 }

@@ -31,8 +31,9 @@ struct TruthRay {
   Vec3 direction{0.0};  // unit, world axes
   double elevation_rad = 0.0;
   double elevation_width_rad = 0.0;  // what it stands for
+  double off_axis_rad = 0.0;
   double pattern = 1.0;              // elevation pattern (a cone's own), power there and back
-  bool inside = true;                // a cone's
+  bool inside = true;                // heard at all: of a cone, of an aperture
 };
 
 // What came back: out along `out_m` in one or two legs, back along one straight leg.

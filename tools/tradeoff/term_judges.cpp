@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "engine/core/check.hpp"
+#include "sonar/acoustics.hpp"
+#include "sonar/levels.hpp"
 
 namespace neritic::tools {
 
@@ -43,7 +45,7 @@ SpeckleFound SpeckleMoments::found() const {
 NoiseFound judge_noise(std::span<const float> image, std::span<const double> clean,
                        const scene::Sonar& grid, const scene::Sonar& terms) {
   NERITIC_CHECK(terms.terms.noise && terms.terms.level, "a sensor with noise and level");
-  const double power = std::pow(10.0, terms.terms.noise->level_db / 10.0);
+  const double power = sonar::power_from_db(sonar::noise_level_db(terms.terms));
   const double step = (grid.range_max_m - grid.range_min_m) / grid.bins_range;
   const std::size_t beams =
       grid.kind == scene::SonarKind::kImaging || grid.kind == scene::SonarKind::kProfiling

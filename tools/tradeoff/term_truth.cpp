@@ -57,19 +57,18 @@ std::vector<Column> columns_of(const sonar::BeamGrid& grid, const scene::Sonar& 
 class Tracer {
  public:
   Tracer(const RayWorld& world, const TruthView& view, const sonar::Head& head,
-         const sonar::HeadPatterns& patterns, double semi_angle_rad,
-         const std::vector<sonar::Mirror>& mirrors, std::vector<TermImage>& images)
+         const sonar::HeadPatterns& patterns, const std::vector<sonar::Mirror>& mirrors,
+         std::vector<TermImage>& images)
       : world_(world),
         view_(view),
         head_(head),
         patterns_(patterns),
-        cone_(std::cos(semi_angle_rad)),
         mirrors_(mirrors),
         images_(images) {}
 
   void trace(const Column& column, int index, std::uint32_t rays) {
     for (TermImage& image : images_) image.begin_column(column.azimuth_rad, column.width_rad);
-    const sonar::Limits& l = head_.beams.limits;
+    const sonar::Limits& l = head_.samples.limits;
     const double width = (l.elevation_max_rad - l.elevation_min_rad) / rays;
     // Each column's rays lie at other elevations, by the golden ratio, so that neighbours fill
     // each other's gaps.
@@ -79,7 +78,8 @@ class Tracer {
       ray.elevation_rad = l.elevation_min_rad + (i + offset) * width;
       ray.elevation_width_rad = width;
       const Vec3 d = sonar::direction(column.azimuth_rad, ray.elevation_rad);
-      ray.inside = !head_.folded || -d.z >= cone_;
+      ray.off_axis_rad = std::acos(std::clamp(-d.z, -1.0, 1.0));
+      ray.inside = !head_.folded || ray.off_axis_rad <= patterns_.cone_rad;
       ray.direction = view_.world_from_head * d;
       ray.pattern = patterns_.power(column.azimuth_rad, ray.elevation_rad);
       cast(ray);
@@ -94,7 +94,13 @@ class Tracer {
     const bool cone = sonar.kind == scene::SonarKind::kEchoSounder;
     const bool named = sonar.terms.beam.elevation || (cone && sonar.terms.beam.azimuth);
     TruthRay out = ray;
-    if (!named) out.pattern = 1.0;
+    if (!named) {
+      // Without a pattern an image hears its aperture and no more.
+      out.pattern = 1.0;
+      const double half_rad = cone ? sonar.semi_angle_rad : 0.5 * sonar.elevation_rad;
+      const double off_rad = cone ? ray.off_axis_rad : std::abs(ray.elevation_rad);
+      out.inside = ray.inside && off_rad <= half_rad;
+    }
     return out;
   }
 
@@ -164,7 +170,6 @@ class Tracer {
   const TruthView& view_;
   const sonar::Head& head_;
   const sonar::HeadPatterns& patterns_;
-  double cone_;
   const std::vector<sonar::Mirror>& mirrors_;
   std::vector<TermImage>& images_;
 };
@@ -196,7 +201,7 @@ Result<std::vector<TermTruth>> trace_terms(const RayWorld& world, const TruthVie
   NERITIC_TRY(std::vector<TermImage> images, images_of(sonars, head, view));
   std::vector<TermImage> others = images;
   const auto work = [&](std::vector<TermImage>& into, std::size_t thread) {
-    Tracer tracer(world, view, plan, patterns, sonars.front().semi_angle_rad, mirrors, into);
+    Tracer tracer(world, view, plan, patterns, mirrors, into);
     // Pairs of columns in turns: each half of the columns goes to both threads.
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (i / 2 % 2 == thread)
