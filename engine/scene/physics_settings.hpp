@@ -17,6 +17,7 @@ namespace neritic::scene {
 struct Physics {
   double rate_hz = 240.0;
   std::string integrator = "guarded";  // guarded, rk4, semi_euler
+  double max_error_m = 0.0;            // over 0: the cheapest rate that holds it, in place of both
   double water_kg_m3 = 1028.0;         // of sea water (von Benzon et al. 2022)
 };
 

@@ -77,7 +77,7 @@ inline constexpr auto kLawnMowerKeys =
     std::to_array<Key>({"area_m", "depth_m", "spacing_m", "legs"});
 
 // Of what is simulated.
-inline constexpr auto kPhysicsKeys = std::to_array<Key>({"rate_hz", "integrator", "water_kg_m3"});
+inline constexpr auto kPhysicsKeys = std::to_array<Key>({"rate_hz", "integrator", "max_error_m", "water_kg_m3"});
 inline constexpr auto kCurrentKeys =
     std::to_array<Key>({"kind", "velocity_m_s", "deep_velocity_m_s", "depth_m", "exponent", "file",
                         "origin_m", "spacing_m", "start_s", "interval_s"});

@@ -41,6 +41,10 @@ Result<Physics> read_physics_table(const SceneSource& source, const TomlValue& t
   physics.rate_hz = reader.number("rate_hz", physics.rate_hz, {60, 1000, false, false, "hertz"});
   physics.integrator = reader.choice("integrator", physics.integrator,
                                      std::to_array<Key>({"guarded", "rk4", "semi_euler"}));
+  physics.max_error_m = reader.number("max_error_m", 0.0, {0, 1, true, false, "metres"});
+  for (const Key key : {"rate_hz", "integrator"})
+    if (reader.has("max_error_m") && reader.has(key))
+      reader.refuse(key, "no such key beside max_error_m");
   physics.water_kg_m3 =
       reader.number("water_kg_m3", physics.water_kg_m3, {900, 1300, false, false, "kg/m^3"});
   NERITIC_TRY_STATUS(reader.status());

@@ -39,6 +39,9 @@ struct Folder {
   Folder() {
     fs::create_directories(root / "scenes");
     fs::copy(fs::path(NERITIC_ASSETS) / "scenes" / "instances.csv", root / "scenes");
+    const auto wreck = read_text(fs::path(NERITIC_ASSETS) / "scenes" / "wreck.toml");
+    NERITIC_CHECK(wreck.ok(), "{}", wreck.error().message);
+    write(root / "scenes" / "wreck.toml", with_spheres(*wreck));  // which mission.toml includes
     for (const char* name : {"sensors", "vehicles"}) {
       fs::create_directories(root / name);
       for (const auto& entry : fs::directory_iterator(fs::path(NERITIC_ASSETS) / name)) {
@@ -63,7 +66,31 @@ void check_mount(const scene::Scene& scene, const scene::Mount& mount) {
   NERITIC_CHECK(std::abs(glm::length(pose.rotation) - 1.0) < 1e-6, "rotation");
 }
 
+void check_aim(const scene::Scene& scene, const scene::Aim& aim) {
+  NERITIC_CHECK(aim.object >= -1 && aim.object < static_cast<int>(scene.objects.size()),
+                "aim at object {}", aim.object);
+  for (int i = 0; i < 3; ++i) NERITIC_CHECK(std::isfinite(aim.point_m[i]), "aim");
+}
+
+void check_physics(const scene::Scene& scene) {
+  NERITIC_CHECK(scene.physics || !scene.current, "a current without physics");
+  for (const scene::Object& object : scene.objects) {
+    NERITIC_CHECK(scene.physics || object.collision == scene::Collision::kNone, "solid");
+    if (!object.dynamics) continue;
+    NERITIC_CHECK(scene.physics && object.model >= 0 && object.mount.object < 0, "dynamics");
+    if (!object.dynamics->mission) continue;
+    const scene::Mission& mission = *object.dynamics->mission;
+    for (const scene::Aim& aim : {mission.target, mission.between_a, mission.between_b})
+      check_aim(scene, aim);
+    for (const scene::MissionWaypoint& waypoint : mission.waypoints)
+      if (waypoint.facing.look_at) check_aim(scene, *waypoint.facing.look_at);
+    NERITIC_CHECK((mission.kind == scene::Mission::Kind::kWaypoints) == !mission.waypoints.empty(),
+                  "{} waypoints", mission.waypoints.size());
+  }
+}
+
 void check_scene(const scene::Scene& scene) {
+  check_physics(scene);
   std::set<std::string> cameras, sonars;
   std::set<std::size_t> instances;
   for (const scene::Object& object : scene.objects) {

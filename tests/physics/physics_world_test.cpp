@@ -1,5 +1,8 @@
 // A scene's physics against what is known of it: axes, currents, floating, falling; and the lines
 // that end a scene whose physics cannot be.
+#include <algorithm>
+
+#include "rov/step_choice.hpp"
 #include "tests/physics/dives.hpp"
 #include "tools/physics/dive_record.hpp"
 #include "tools/physics/static_scene.hpp"
@@ -158,6 +161,76 @@ TEST(PhysicsWorld, TheIntegratorsThatScenesNameAreThoseOfVehicles) {
     EXPECT_TRUE(rov::integrator_of(name).ok()) << name;
     EXPECT_TRUE(load_text(fmt::format("[physics]\nintegrator = \"{}\"\n", name)).ok()) << name;
   }
+}
+
+TEST(PhysicsWorld, AnErrorChoosesTheStep) {
+  const auto step_of = [](const char* error) {
+    return dive_of(fmt::format("[physics]\nmax_error_m = {}\n", error) + rov_text(""))
+        .world->step_s();
+  };
+  EXPECT_NEAR(step_of("1e-3"), 1.0 / rov::cheapest_rate(1e-3)->hz, 1e-12);
+  EXPECT_NEAR(step_of("2e-8"), 1.0 / rov::cheapest_rate(2e-8)->hz, 1e-12);
+  EXPECT_LT(step_of("2e-8"), step_of("1e-3"));
+  const auto scene = load_text("[physics]\nmax_error_m = 1e-15\n" + rov_text(""));
+  ASSERT_TRUE(scene.ok());
+  const auto world = PhysicsWorld::create(*scene);
+  ASSERT_FALSE(world.ok());
+  EXPECT_NE(world.error().message.find("dive.toml: physics.max_error_m: 1e-15 found"),
+            std::string::npos)
+      << world.error().message;
+}
+
+// Without noise each sensor says what the state is; the ground that it hears is the scene's.
+TEST(PhysicsWorld, SensorsWithoutNoiseSayWhatIsSo) {
+  const test::ScratchFolder scratch;
+  ASSERT_TRUE(write_text(scratch / "sensors.toml",
+                         "include = \"" + vehicles_folder() +
+                             "/bluerov2_heavy_dynamics.toml\"\n[dvl]\nrate_hz = 240\n"
+                             "[altimeter]\nrate_hz = 240\n[pressure]\nrate_hz = 240\n"
+                             "water_kg_m3 = 1028\n[compass]\nrate_hz = 240\n[usbl]\n"
+                             "rate_hz = 240\n[imu]\n")
+                  .ok());
+  ASSERT_TRUE(write_text(scratch / "dive.toml", R"([physics]
+[[objects]]
+name = "sand"
+class = "seabed"
+shape = "plane"
+size_m = [60, 60]
+position_m = [0, -12, 0]
+[[vehicles]]
+name = "rov"
+shape = "box"
+dynamics = "sensors.toml"
+position_m = [0, -9, 0]
+mission = { waypoints = [ { position_m = [3, -8, -2] } ] }
+)")
+                  .ok());
+  TestDive dive = dive_of(scene::load_scene(scratch / "dive.toml").value());
+  DiveRecorder recorder(*dive.world, {.rows = true});
+  recorder.add(dive.simulation->newest());
+  dive.run(6.0, [&] { recorder.add(dive.simulation->newest()); });
+  ASSERT_GT(recorder.rows().size(), 290u);
+  for (const DiveRow& row : recorder.rows()) {
+    const rov::SensorReadings& read = row.readings;
+    const Pose& pose = row.world_from_body;
+    ASSERT_TRUE(read.dvl.value.locked());
+    EXPECT_LT(glm::distance(read.dvl.value.velocity_m_s, row.velocity.linear()), 1e-9);
+    EXPECT_NEAR(read.pressure.value.depth_m, -pose.position_m.y, 1e-9);
+    EXPECT_NEAR(std::remainder(degrees(read.heading_rad.value) - heading_deg(pose), 360.0), 0.0,
+                1e-9);
+    const double down = (pose.rotation * Vec3(0, 1, 0)).y;
+    EXPECT_NEAR(read.altimeter.value.distance_m, (12.0 + pose.position_m.y) / down, 1e-6);
+    EXPECT_LT(glm::distance(rov::world_from_ned(read.usbl.value.position_ned_m), pose.position_m),
+              1e-6);
+  }
+  const std::string csv = csv_of(*dive.world, recorder.rows());
+  for (const char* column : {",gyro_yaw_deg_s", ",dvl_altitude_m", ",pressure_depth_m",
+                             ",compass_deg", ",altimeter_m", ",usbl_z_m"})
+    EXPECT_NE(csv.find(column), std::string::npos) << column;
+  // Every row has a cell for every column.
+  const auto commas = std::count(csv.begin(), std::find(csv.begin(), csv.end(), '\n'), ',');
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), ','),
+            commas * static_cast<std::ptrdiff_t>(recorder.rows().size() + 1));
 }
 
 // Solid are the copies where they stand, of every kind of placement, and only what stands still.

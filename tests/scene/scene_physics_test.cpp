@@ -181,6 +181,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongPhysics{"[physics]\nintegrator = 'euler'",
                      "s.toml:2: physics.integrator: found \"euler\"; accepted: one of guarded, "
                      "rk4, semi_euler"},
+        WrongPhysics{"[physics]\nmax_error_m = 1e-5\nrate_hz = 240",
+                     "s.toml:3: physics.rate_hz: found 240; accepted: no such key beside "
+                     "max_error_m"},
         WrongPhysics{"[physics]\nrate = 3",
                      "s.toml:2: physics.rate: unknown key; nearest known key: rate_hz"},
         WrongPhysics{"[current]\nkind = 'uniform'",

@@ -28,7 +28,8 @@ struct DiveRow {
   Pose wanted;  // world_from_body
   std::size_t waypoint = 0;
   std::uint64_t arrived = 0, near_points = 0, touched_steps = 0;
-  std::uint64_t hash = 0;  // of all vehicles' state
+  std::uint64_t hash = 0;        // of all vehicles' state
+  rov::SensorReadings readings;  // the newest of each sensor that it has
 };
 
 struct DiveFigures {
@@ -57,11 +58,13 @@ class DiveRecorder {
   std::vector<DiveRow> rows_;
   std::vector<DiveFigures> figures_;
   std::vector<scene::Track> tracks_;
+  std::vector<rov::SensorReadings> readings_;
   PhysicsState last_;
 };
 
-// Rows as a table with a heading; world axes, degrees, body axes forward, starboard, down. Its
-// thruster columns are those of the vehicle with most.
+// Rows as a table with a heading; world axes, degrees, body axes forward, starboard, down. It has
+// the thrusters of the vehicle with most, and the sensors that any vehicle has; what a vehicle has
+// not, or has not heard yet, is empty.
 std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows);
 
 // Simulates to until_s and gives the vehicles of the scene their paths as tracks.

@@ -1,9 +1,12 @@
 #include "tools/physics/physics_world.hpp"
 
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "engine/scene/animation.hpp"
 #include "rov/frames.hpp"
+#include "rov/step_choice.hpp"
 #include "tools/physics/static_scene.hpp"
 #include "tools/physics/surface.hpp"
 
@@ -108,8 +111,8 @@ bool PhysicsWorld::needed(const scene::Scene& scene) {
 
 Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Scene& scene) {
   std::unique_ptr<PhysicsWorld> world(new PhysicsWorld);
-  world->step_s_ = 1.0 / scene.physics->rate_hz;
-  NERITIC_TRY(world->integrator_, rov::integrator_of(scene.physics->integrator));
+  world->seed_ = scene.seed;
+  NERITIC_TRY_STATUS(world->choose_step(scene));
   if (scene.current) {
     NERITIC_TRY(world->current_, current_of(*scene.current));
   }
@@ -125,6 +128,20 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
     if (scene.objects[i].dynamics)
       NERITIC_TRY_STATUS(world->add_vehicle(scene, i, vehicle_of_object));
   return std::unique_ptr<const PhysicsWorld>(std::move(world));
+}
+
+Status PhysicsWorld::choose_step(const scene::Scene& scene) {
+  const scene::Physics& physics = *scene.physics;
+  if (physics.max_error_m == 0.0) {
+    step_s_ = 1.0 / physics.rate_hz;
+    NERITIC_TRY(integrator_, rov::integrator_of(physics.integrator));
+    return {};
+  }
+  const auto rate = rov::cheapest_rate(physics.max_error_m);
+  if (!rate.ok()) return bad_input("{}: physics.{}", scene.path, rate.error().message);
+  step_s_ = 1.0 / rate->hz;
+  integrator_ = rov::Integrator::kGuarded;
+  return {};
 }
 
 Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
@@ -201,6 +218,16 @@ Vec3 PhysicsWorld::current_ned_m_s(const Vec3& position_ned_m, double time_s) co
   if (!current_) return Vec3(0.0);
   return rov::ned_from_world(
       sim::sample(*current_, rov::world_from_ned(position_ned_m), time_s).velocity_m_s);
+}
+
+rov::RayQuery PhysicsWorld::rays() const {
+  const auto cast = [](const void* solid, const Vec3& origin_ned_m, const Vec3& direction_ned,
+                       double most_m) {
+    const auto hit = static_cast<const sim::StaticWorld*>(solid)->cast(
+        rov::world_from_ned(origin_ned_m), rov::world_from_ned(direction_ned), most_m);
+    return hit ? hit->distance_m : std::numeric_limits<double>::infinity();
+  };
+  return {cast, &solid_};
 }
 
 PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& inputs,

@@ -43,6 +43,7 @@ class PhysicsWorld {
   static Result<std::unique_ptr<const PhysicsWorld>> create(const scene::Scene& scene);
 
   const std::vector<PhysicsVehicle>& vehicles() const { return vehicles_; }
+  std::uint64_t seed() const { return seed_; }  // of the scene, for sensors
   const sim::StaticWorld& solid() const { return solid_; }
   double step_s() const { return step_s_; }
   // Whether vehicle's controller acts in the step that begins at this state.
@@ -53,12 +54,15 @@ class PhysicsWorld {
   PhysicsState step(const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) const;
   static void apply(PhysicsInputs& inputs, const PhysicsMessage& message);
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
+  // What sensors hear: the first solid thing along a ray.
+  rov::RayQuery rays() const;
 
   // Borrows the world.
   std::unique_ptr<PhysicsSimulation> simulation(sim::SimulationOptions options) const;
 
  private:
   PhysicsWorld() = default;
+  Status choose_step(const scene::Scene& scene);
   Status add_vehicle(const scene::Scene& scene, std::size_t object,
                      const std::vector<int>& vehicle_of_object);
   Status check_start(const scene::Scene& scene, const PhysicsVehicle& vehicle) const;
@@ -68,6 +72,7 @@ class PhysicsWorld {
             VehicleState& state) const;
 
   double step_s_ = 1.0 / 240.0;
+  std::uint64_t seed_ = 0;
   rov::Integrator integrator_ = rov::Integrator::kGuarded;
   std::optional<sim::Current> current_;
   sim::StaticWorld solid_;
