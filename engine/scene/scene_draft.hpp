@@ -121,6 +121,8 @@ Status read_physics(SceneDraft& draft, const SceneSource& source, const TomlValu
 Status read_vehicle_physics(SceneDraft& draft, const SceneSource& source,
                             const std::vector<TomlValue>& tables, const std::string& path,
                             std::size_t first_object);
+// scene_read_mission.cpp: the table mission of the vehicle of that name.
+Mission read_mission(TableReader& reader, const SceneDraft& draft, const std::string& vehicle);
 
 // scene_models.cpp: one model a distinct request, in the order of first use, and each request's.
 struct LoadedModels {

@@ -111,6 +111,22 @@ TEST(WreckMission, AllWaypointsAreReachedAndNothingIsTouched) {
   EXPECT_EQ(dive.vehicle().body.refused_inputs, 0u);
 }
 
+// A hundred kilometres away it flies the same way, to what doubles hold there.
+TEST(WreckMission, FarFromTheOriginItFliesTheSame) {
+  const Vec3 offset(1e5, 0.0, -7e4);
+  auto far = scene::load_scene(test::source_dir() / "assets/scenes/mission.toml", {offset});
+  ASSERT_TRUE(far.ok());
+  TestDive here = dive_of(mission_scene()), there = dive_of(std::move(far).value());
+  double apart_m = 0.0;
+  here.run(40.0, [&] {
+    there.simulation->advance(1);
+    apart_m =
+        std::max(apart_m, glm::distance(there.pose().position_m, here.pose().position_m + offset));
+  });
+  EXPECT_LT(apart_m, 1e-6);
+  EXPECT_EQ(there.vehicle().mission.arrived, here.vehicle().mission.arrived);
+}
+
 class WreckRamming : public testing::TestWithParam<int> {};
 
 // At full thrust against the wreck's flank, deck and bow for a minute each: never more than a few

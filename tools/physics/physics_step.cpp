@@ -1,0 +1,163 @@
+// The step (physics_world.hpp).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "rov/frames.hpp"
+#include "tools/physics/physics_world.hpp"
+#include "tools/physics/surface.hpp"
+
+namespace neritic::tools {
+namespace {
+
+// Of the pilot's wrench the share for which the thrusters have room beside what holds the vehicle
+// level: at full thrust they would have none left, and it would overturn.
+rov::Vec6 with_room(const rov::Vehicle& vehicle, const rov::Allocator& allocator,
+                    const rov::Vec6& holding, const rov::Vec6& pilot) {
+  const auto held_n = allocator.allocate(holding).wanted_n;
+  const auto pilot_n = allocator.allocate(pilot).wanted_n;
+  double share = 1.0;
+  for (std::size_t i = 0; i < vehicle.thruster_count; ++i) {
+    if (pilot_n[i] == 0.0) continue;
+    const double limit_n =
+        pilot_n[i] > 0.0 ? vehicle.thrusters[i].max_n : vehicle.thrusters[i].min_n;
+    share = std::min(share, (limit_n - held_n[i]) / pilot_n[i]);
+  }
+  return std::max(0.0, share) * pilot;
+}
+
+sim::Twist twist_of(const rov::Vec6& velocity) {
+  return {rov::world_from_ned(velocity.linear()), rov::world_from_ned(velocity.angular())};
+}
+
+}  // namespace
+
+bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
+  if (step == 0) return true;
+  const double periods_a_step = step_s_ / vehicles_[vehicle].file.gains.period_s;
+  const auto periods = [&](std::uint64_t steps) {
+    return std::floor(static_cast<double>(steps) * periods_a_step + 1e-9);
+  };
+  return periods(step) != periods(step - 1);
+}
+
+PhysicsState PhysicsWorld::start() const {
+  PhysicsState state;
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    state.vehicles[i].body = vehicles_[i].start;
+    state.vehicles[i].mission = mission_start(vehicles_[i].start);
+  }
+  return state;
+}
+
+PhysicsInputs PhysicsWorld::start_inputs() const {
+  PhysicsInputs inputs;
+  for (std::size_t i = 0; i < vehicles_.size(); ++i)
+    inputs.vehicles[i].failed_thrusters = vehicles_[i].failed_thrusters;
+  return inputs;
+}
+
+void PhysicsWorld::apply(PhysicsInputs& inputs, const PhysicsMessage& message) {
+  if (message.vehicle < kMaxVehicles) inputs.vehicles[message.vehicle] = message.inputs;
+}
+
+Vec3 PhysicsWorld::current_ned_m_s(const Vec3& position_ned_m, double time_s) const {
+  if (!current_) return Vec3(0.0);
+  return rov::ned_from_world(
+      sim::sample(*current_, rov::world_from_ned(position_ned_m), time_s).velocity_m_s);
+}
+
+rov::RayQuery PhysicsWorld::rays() const {
+  const auto cast = [](const void* solid, const Vec3& origin_ned_m, const Vec3& direction_ned,
+                       double most_m) {
+    const auto hit = static_cast<const sim::StaticWorld*>(solid)->cast(
+        rov::world_from_ned(origin_ned_m), rov::world_from_ned(direction_ned), most_m);
+    return hit ? hit->distance_m : std::numeric_limits<double>::infinity();
+  };
+  return {cast, &solid_};
+}
+
+PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& inputs,
+                                double dt_s) const {
+  PhysicsState next = state;
+  ++next.step;
+  const double time_s = static_cast<double>(state.step) * dt_s;
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    if (control_due(i, state.step)) steer(i, state, inputs.vehicles[i], time_s, next.vehicles[i]);
+    move(vehicles_[i], inputs.vehicles[i], time_s, dt_s, next.vehicles[i]);
+  }
+  return next;
+}
+
+// New commands for the thrusters.
+void PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs,
+                         double time_s, VehicleState& state) const {
+  const PhysicsVehicle& vehicle = vehicles_[index];
+  const bool piloted = inputs.piloted != 0;
+  if (!piloted && !vehicle.mission) {
+    state.command_n = {};
+    return;
+  }
+  const rov::Setpoint setpoint =
+      piloted ? piloted_setpoint(inputs, state.body, state.mission)
+              : vehicle.mission->update(all, state.body, time_s, state.mission);
+  rov::ControlState control{state.integral};
+  const rov::Vec6 holding =
+      rov::control_wrench(vehicle.vehicle, vehicle.file.gains, setpoint, state.body, control);
+  rov::Inputs commands;
+  const auto allocate = [&](const rov::Allocator& allocator) {
+    const rov::Vec6 wrench =
+        piloted ? holding + with_room(vehicle.vehicle, allocator, holding, inputs.pilot) : holding;
+    commands.thruster_n = allocator.allocate(wrench, vehicle.file.gains.saturation).force_n;
+  };
+  if (inputs.failed_thrusters == vehicle.failed_thrusters)
+    allocate(vehicle.allocator);
+  else
+    allocate(rov::Allocator(vehicle.vehicle, inputs.failed_thrusters));
+  rov::drive(vehicle.file, commands);
+  state.command_n = commands.thruster_n;
+  state.integral = control.integral;
+}
+
+// One step through the water and along what is solid.
+void PhysicsWorld::move(const PhysicsVehicle& vehicle, const VehicleInputs& inputs, double time_s,
+                        double dt_s, VehicleState& state) const {
+  const rov::State before = state.body;
+  rov::Inputs acting;
+  acting.thruster_n = state.command_n;
+  acting.current_ned_m_s = current_ned_m_s(before.position_ned_m, time_s);
+  acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
+  acting.failed_thrusters = inputs.failed_thrusters;
+  apply_surface(vehicle.vehicle, vehicle.top_m, vehicle.bottom_m, before, acting);
+  rov::State& after = state.body;
+  after = rov::step(vehicle.vehicle, before, acting, dt_s, integrator_);
+
+  // The axes of both sides differ by exchanged components alone, so the way there and back keeps
+  // every bit of what is not touched.
+  sim::MotionReport report;
+  const sim::BodyMotion moved = sim::move_body(
+      solid_, vehicle.shape, vehicle.inverse_mass,
+      rov::world_pose(before.position_ned_m, before.attitude),
+      {rov::world_pose(after.position_ned_m, after.attitude), twist_of(after.velocity)}, dt_s,
+      &report);
+  after.position_ned_m = rov::ned_from_world(moved.world_from_body.position_m);
+  after.attitude = rov::ned_from_world(moved.world_from_body.rotation);
+  after.velocity = rov::vec6(rov::ned_from_world(moved.velocity.linear),
+                             rov::ned_from_world(moved.velocity.angular));
+  state.contact.near_points = static_cast<std::uint64_t>(report.contacts);
+  state.contact.touched_steps += report.touched ? 1 : 0;
+  state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);
+  state.contact.impulse_n_s = report.impulse_n_s;
+}
+
+std::unique_ptr<PhysicsSimulation> PhysicsWorld::simulation(sim::SimulationOptions options) const {
+  options.step_s = step_s_;
+  return std::make_unique<PhysicsSimulation>(
+      options, start(), start_inputs(),
+      [this](const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) {
+        return step(state, inputs, dt_s);
+      },
+      [](PhysicsInputs& inputs, const PhysicsMessage& message) { apply(inputs, message); });
+}
+
+}  // namespace neritic::tools
