@@ -6,6 +6,7 @@
 
 #include "engine/gpu/device_select.hpp"
 #include "engine/gpu/error.hpp"
+#include "engine/gpu/needed_formats.hpp"
 
 namespace neritic::gpu {
 namespace {
@@ -105,8 +106,15 @@ std::string missing_of(VkPhysicalDevice device, const VkPhysicalDeviceProperties
   add_missing(have.v11, kRequired11, missing);
   add_missing(have.v12, kRequired12, missing);
   add_missing(have.v13, kRequired13, missing);
-  if (!choose_queue(device).found)
-    missing += (missing.empty() ? "" : ", ") + std::string("a queue with graphics and compute");
+  const auto add = [&missing](const std::string& what) {
+    if (!what.empty()) missing += (missing.empty() ? "" : ", ") + what;
+  };
+  if (!choose_queue(device).found) add("a queue with graphics and compute");
+  add(missing_formats([device](VkFormat format) {
+    VkFormatProperties properties_of_format{};
+    vkGetPhysicalDeviceFormatProperties(device, format, &properties_of_format);
+    return properties_of_format.optimalTilingFeatures;
+  }));
   return missing;
 }
 

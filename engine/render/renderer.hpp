@@ -11,6 +11,7 @@
 
 #include "engine/core/result.hpp"
 #include "engine/gpu/device.hpp"
+#include "engine/gpu/needed_formats.hpp"
 #include "engine/gpu/pipeline.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "engine/render/draw_list.hpp"
@@ -20,8 +21,8 @@ namespace neritic::render {
 
 // Formats of the G-buffer.
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-inline constexpr VkFormat kNormalFormat = VK_FORMAT_R16G16_SNORM;   // octahedral, world axes
-inline constexpr VkFormat kLabelFormat = VK_FORMAT_R16G16_UINT;     // class, instance
+inline constexpr VkFormat kNormalFormat = VK_FORMAT_R16G16_SNORM;  // octahedral, world axes
+inline constexpr VkFormat kLabelFormat = VK_FORMAT_R16G16_UINT;    // class, instance
 // Square roots of the linear albedo: as even to the eye as sRGB, and a processor writes it for half
 // the cost of one.
 inline constexpr VkFormat kAlbedoFormat = VK_FORMAT_R8G8B8A8_UNORM;
@@ -31,6 +32,19 @@ inline constexpr VkFormat kEmissiveFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kMotionFormat = VK_FORMAT_R32G32_SFLOAT;     // pixels to the next frame
 inline constexpr VkFormat kHdrFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // exposed radiance
 inline constexpr VkFormat kColorFormat = VK_FORMAT_R8G8B8A8_UNORM;  // sRGB-encoded by the tonemap
+
+// A device that is chosen has them all, as they are used.
+static_assert(gpu::is_needed(kDepthFormat,
+                             VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT | gpu::kTexture));
+static_assert(gpu::is_needed(kNormalFormat, gpu::kColorTarget | gpu::kTexture));
+static_assert(gpu::is_needed(kLabelFormat, gpu::kColorTarget | gpu::kTexture));
+static_assert(gpu::is_needed(kAlbedoFormat, gpu::kColorTarget | gpu::kTexture));
+static_assert(gpu::is_needed(kMaterialFormat, gpu::kColorTarget | gpu::kTexture));
+static_assert(gpu::is_needed(kEmissiveFormat, gpu::kColorTarget | gpu::kTexture));
+static_assert(gpu::is_needed(kMotionFormat, gpu::kColorTarget));
+static_assert(gpu::is_needed(kHdrFormat, gpu::kColorTarget | gpu::kTexture | gpu::kStorageImage |
+                                             VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT));
+static_assert(gpu::is_needed(kColorFormat, gpu::kTexture | gpu::kStorageImage));
 
 // Images of one view set; absent ones are empty handles.
 struct GBuffer {
