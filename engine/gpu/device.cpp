@@ -17,6 +17,9 @@ namespace neritic::gpu {
 namespace fs = std::filesystem;
 namespace {
 
+// Drivers of graphics cards give up on a submission after some seconds; this is beyond all of them.
+constexpr std::uint64_t kWaitLimit_ns = 60ull * 1000 * 1000 * 1000;
+
 std::uint64_t hash_of(std::span<const std::byte> data) {
   Hash64 hash;
   hash.add_span(data);
@@ -84,6 +87,8 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
   device->info_ = infos[chosen];
   log_info("device {} of {}: {}, {} {}", chosen, devices.size(), device->info_.name,
            device->info_.kind, device->info_.driver);
+  device->wait_limit_ns_ =
+      options.wait_limit_ns.value_or(device->info_.kind == "CPU" ? UINT64_MAX : kWaitLimit_ns);
   NERITIC_TRY_STATUS(device->create_device(options));
   device->allocator_ = std::make_unique<Allocator>(*device);
   device->load_pipeline_cache(options.cache_folder);

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct DeviceOptions {
   std::vector<const char*> instance_extensions;
   // Where the pipeline cache is kept; empty: not kept. See default_cache_folder().
   std::filesystem::path cache_folder;
+  // How long one submission may take before the device counts as lost; absent: a minute, and no
+  // limit on CPUs, which are only slow.
+  std::optional<std::uint64_t> wait_limit_ns;
   // Borrowed, may be nullptr: gets every validation message too, those about objects that still
   // live when the Device goes away included. Without it those are printed as notes.
   ValidationLog* validation_sink = nullptr;
@@ -83,7 +87,8 @@ class Device {
   std::uint32_t timestamp_valid_bits() const { return timestamp_valid_bits_; }
   double timestamp_period_ns() const { return limits_.timestampPeriod; }
   VkDeviceSize max_buffer_bytes() const { return max_buffer_bytes_; }
-  std::uint32_t max_views() const { return max_views_; }  // multiview
+  std::uint32_t max_views() const { return max_views_; }          // multiview
+  std::uint64_t wait_limit_ns() const { return wait_limit_ns_; }  // UINT64_MAX: none
   bool validation() const { return messenger_ != VK_NULL_HANDLE; }
   Allocator& allocator() const { return *allocator_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
@@ -122,6 +127,7 @@ class Device {
   VkPhysicalDeviceFeatures features_{};
   bool shader_draw_parameters_ = false;
   std::uint32_t timestamp_valid_bits_ = 0;
+  std::uint64_t wait_limit_ns_ = 0;
   PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
   PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
   PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;

@@ -16,7 +16,6 @@
 namespace neritic::gpu {
 namespace {
 
-constexpr std::uint64_t kTimeoutNs = 60ull * 1000 * 1000 * 1000;
 constexpr VkDeviceSize kSmallestUpload = 16;  // bytes: empty data can still be bound
 
 // What one frame in flight owns.
@@ -199,10 +198,10 @@ Status FramesImpl::wait(std::uint64_t value) {
   info.semaphoreCount = 1;
   info.pSemaphores = &timeline_;
   info.pValues = &value;
-  const VkResult result = vkWaitSemaphores(device_.handle(), &info, kTimeoutNs);
+  const VkResult result = vkWaitSemaphores(device_.handle(), &info, device_.wait_limit_ns());
   if (result == VK_TIMEOUT)
     return failure(ErrorCode::kDeviceLost, "the device did not finish a frame in {} s",
-                   kTimeoutNs / 1'000'000'000);
+                   static_cast<double>(device_.wait_limit_ns()) * 1e-9);
   if (result != VK_SUCCESS) return vulkan_error(result, "vkWaitSemaphores");
   finished(value);
   return {};

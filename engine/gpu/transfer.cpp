@@ -11,7 +11,6 @@
 namespace neritic::gpu {
 namespace {
 
-constexpr std::uint64_t kTimeoutNs = 60ull * 1000 * 1000 * 1000;
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{32} << 20;
 
 // A command pool and fence that live for one submission.
@@ -156,10 +155,14 @@ Status run_once(Device& device, const std::function<void(VkCommandBuffer)>& reco
   info.commandBufferInfoCount = 1;
   info.pCommandBufferInfos = &commands;
   NERITIC_TRY_VK("vkQueueSubmit2", vkQueueSubmit2(device.queue(), 1, &info, shot.fence));
-  const VkResult result = vkWaitForFences(device.handle(), 1, &shot.fence, VK_TRUE, kTimeoutNs);
-  // The pool must not go away under the GPU, however long it takes.
-  if (result == VK_TIMEOUT) device.wait_idle();
-  if (result != VK_SUCCESS) return vulkan_error(result, "vkWaitForFences");
+  VkResult result =
+      vkWaitForFences(device.handle(), 1, &shot.fence, VK_TRUE, device.wait_limit_ns());
+  // The pool must not go away under the GPU, however long it takes; what is done then is done.
+  if (result == VK_TIMEOUT) {
+    device.wait_idle();
+    result = vkGetFenceStatus(device.handle(), shot.fence);
+  }
+  if (result != VK_SUCCESS) return vulkan_error(result, "waiting for a one-off submission");
   return {};
 }
 
