@@ -68,12 +68,9 @@ Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, cons
             gpu::bound_buffer(shared::kDeformMorphs, scene.morphs().handle()),
             uploaded(commands, shared::kDeformWeights, state.weights, nothing_),
             gpu::bound_buffer(shared::kDeformOut, context.buffer(data.positions).handle()),
-            // Without motion nothing is written there. Not nothing_: it stands for what other
-            // bindings of these dispatches read, and validation sees a hazard.
-            gpu::bound_buffer(
-                shared::kDeformNextOut,
-                context.buffer(data.next_positions ? data.next_positions : data.positions)
-                    .handle())};
+            gpu::bound_buffer(shared::kDeformNextOut,
+                              data.next_positions ? context.buffer(data.next_positions).handle()
+                                                  : nowhere_.handle())};
         commands.bind_pipeline(deform_);
         commands.bind(deform_, resources);
         for (const DeformJob& job : state.deforms) {

@@ -147,7 +147,9 @@ class Renderer {
   std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline>
       shade_;  // by terms, number of lamps
   gpu::Pipeline deform_, tonemap_, tonemap_luma_, antialias_;
-  gpu::Buffer nothing_;  // bound where a shader declares a buffer that this frame does not use
+  // Bound where a shader declares a buffer that this frame does not use: one to read, one to write,
+  // since what is bound counts as read or written.
+  gpu::Buffer nothing_, nowhere_;
 };
 
 }  // namespace neritic::render

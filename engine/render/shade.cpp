@@ -16,6 +16,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device) {
   NERITIC_TRY(renderer->material_layout_, create_material_layout(device));
   NERITIC_TRY(renderer->nothing_,
               gpu::Buffer::create(device, {"nothing", 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
+  NERITIC_TRY(renderer->nowhere_,
+              gpu::Buffer::create(device, {"nowhere", 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
   return renderer;
 }
 
