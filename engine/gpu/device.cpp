@@ -110,7 +110,6 @@ Status Device::create_device(const DeviceOptions& options) {
   FeatureChain features;
   select_features(physical_, features);
   features_ = features.core.features;
-  shader_draw_parameters_ = features.v11.shaderDrawParameters;
 
   std::vector<const char*> extensions;
   if (options.present) {

@@ -79,10 +79,8 @@ class Device {
   std::uint32_t queue_family() const { return queue_family_; }
   const DeviceInfo& info() const { return info_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
-  // The optional features that are on (those the device has of independentBlend, samplerAnisotropy,
-  // wideLines, fillModeNonSolid, geometryShader, ...; see physical_device.cpp).
+  // The optional features that are on: those the device has of the list in physical_device.cpp.
   const VkPhysicalDeviceFeatures& features() const { return features_; }
-  bool shader_draw_parameters() const { return shader_draw_parameters_; }
   // Bits of a timestamp that count; 0: the queue has no timestamps.
   std::uint32_t timestamp_valid_bits() const { return timestamp_valid_bits_; }
   double timestamp_period_ns() const { return limits_.timestampPeriod; }
@@ -125,7 +123,6 @@ class Device {
   DeviceInfo info_;
   VkPhysicalDeviceLimits limits_{};
   VkPhysicalDeviceFeatures features_{};
-  bool shader_draw_parameters_ = false;
   std::uint32_t timestamp_valid_bits_ = 0;
   std::uint64_t wait_limit_ns_ = 0;
   PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;

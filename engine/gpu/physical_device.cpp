@@ -18,6 +18,11 @@ struct FeatureRow {
 };
 
 // Required beyond Vulkan 1.3: what the engine is built on.
+constexpr std::array kRequired{
+    FeatureRow<VkPhysicalDeviceFeatures>{
+        &VkPhysicalDeviceFeatures::shaderStorageImageExtendedFormats,  // rg32f, in sonar shaders
+        "shaderStorageImageExtendedFormats"},
+};
 constexpr std::array kRequired11{
     FeatureRow<VkPhysicalDeviceVulkan11Features>{&VkPhysicalDeviceVulkan11Features::multiview,
                                                  "multiview"},
@@ -39,43 +44,11 @@ constexpr std::array kRequired13{
                                                  "maintenance4"},
 };
 
-// Turned on where the device has them; a pass that needs one asks Device::features().
+// Turned on where the device has them: who uses one asks Device::features(), or the limit that it
+// raises (maxDrawIndexedIndexValue).
 constexpr std::array kOptional{
     &VkPhysicalDeviceFeatures::independentBlend,
-    &VkPhysicalDeviceFeatures::samplerAnisotropy,
-    &VkPhysicalDeviceFeatures::wideLines,
-    &VkPhysicalDeviceFeatures::largePoints,
-    &VkPhysicalDeviceFeatures::fillModeNonSolid,
-    &VkPhysicalDeviceFeatures::depthClamp,
     &VkPhysicalDeviceFeatures::fullDrawIndexUint32,
-    &VkPhysicalDeviceFeatures::multiDrawIndirect,
-    &VkPhysicalDeviceFeatures::drawIndirectFirstInstance,
-    &VkPhysicalDeviceFeatures::geometryShader,  // gl_PrimitiveID in fragment shaders
-    &VkPhysicalDeviceFeatures::fragmentStoresAndAtomics,
-    &VkPhysicalDeviceFeatures::vertexPipelineStoresAndAtomics,
-    &VkPhysicalDeviceFeatures::shaderStorageImageExtendedFormats,
-    &VkPhysicalDeviceFeatures::shaderStorageImageReadWithoutFormat,
-    &VkPhysicalDeviceFeatures::shaderStorageImageWriteWithoutFormat,
-    &VkPhysicalDeviceFeatures::shaderInt16,
-    &VkPhysicalDeviceFeatures::shaderInt64,
-    &VkPhysicalDeviceFeatures::shaderFloat64,
-    &VkPhysicalDeviceFeatures::textureCompressionBC,
-};
-constexpr std::array kOptional11{
-    &VkPhysicalDeviceVulkan11Features::shaderDrawParameters,
-    &VkPhysicalDeviceVulkan11Features::storageBuffer16BitAccess,
-    &VkPhysicalDeviceVulkan11Features::uniformAndStorageBuffer16BitAccess,
-};
-constexpr std::array kOptional12{
-    &VkPhysicalDeviceVulkan12Features::storageBuffer8BitAccess,
-    &VkPhysicalDeviceVulkan12Features::uniformAndStorageBuffer8BitAccess,
-    &VkPhysicalDeviceVulkan12Features::shaderFloat16,
-    &VkPhysicalDeviceVulkan12Features::shaderInt8,
-    &VkPhysicalDeviceVulkan12Features::samplerFilterMinmax,
-    &VkPhysicalDeviceVulkan12Features::drawIndirectCount,
-};
-constexpr std::array kOptional13{
-    &VkPhysicalDeviceVulkan13Features::shaderDemoteToHelperInvocation,
 };
 
 // Adds the names of the required features that have lacks, comma-separated.
@@ -91,11 +64,6 @@ void require(Struct& wanted, const std::array<FeatureRow<Struct>, N>& rows) {
   for (const auto& row : rows) wanted.*row.member = VK_TRUE;
 }
 
-template <class Struct, std::size_t N>
-void take(Struct& wanted, const Struct& have, const std::array<VkBool32 Struct::*, N>& members) {
-  for (const auto member : members) wanted.*member = have.*member;
-}
-
 std::string missing_of(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_3)
     return fmt::format("Vulkan 1.3 (it has {}.{})", VK_API_VERSION_MAJOR(properties.apiVersion),
@@ -103,6 +71,7 @@ std::string missing_of(VkPhysicalDevice device, const VkPhysicalDeviceProperties
   std::string missing;
   FeatureChain have;
   vkGetPhysicalDeviceFeatures2(device, &have.core);
+  add_missing(have.core.features, kRequired, missing);
   add_missing(have.v11, kRequired11, missing);
   add_missing(have.v12, kRequired12, missing);
   add_missing(have.v13, kRequired13, missing);
@@ -141,10 +110,8 @@ FeatureChain::FeatureChain() {
 void select_features(VkPhysicalDevice device, FeatureChain& wanted) {
   FeatureChain have;
   vkGetPhysicalDeviceFeatures2(device, &have.core);
-  take(wanted.core.features, have.core.features, kOptional);
-  take(wanted.v11, have.v11, kOptional11);
-  take(wanted.v12, have.v12, kOptional12);
-  take(wanted.v13, have.v13, kOptional13);
+  for (const auto feature : kOptional) wanted.core.features.*feature = have.core.features.*feature;
+  require(wanted.core.features, kRequired);
   require(wanted.v11, kRequired11);
   require(wanted.v12, kRequired12);
   require(wanted.v13, kRequired13);
