@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/clock.hpp"
+#include "engine/core/log.hpp"
 #include "rov/frames.hpp"
 
 namespace neritic::tools {
@@ -86,7 +88,9 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
 
 Status fly_ahead(scene::Scene& scene, double until_s) {
   if (!PhysicsWorld::needed(scene)) return {};
+  const TimeNs begun_ns = now_ns();
   NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
+  const TimeNs built_ns = now_ns();
   const auto simulation = world->simulation({.readers = 0, .log = false});
   DiveRecorder recorder(*world, {.tracks = true});
   recorder.add(simulation->newest());
@@ -96,6 +100,11 @@ Status fly_ahead(scene::Scene& scene, double until_s) {
   }
   for (std::size_t i = 0; i < world->vehicles().size(); ++i)
     scene.objects[world->vehicles()[i].object].mount.track = std::move(recorder.tracks()[i]);
+  log_info(
+      "physics: {} solid things of {} triangles built in {:.0f} ms; {} vehicles flown for "
+      "{:g} s in {:.0f} ms",
+      world->solid().counts().things, world->solid().counts().triangles, to_ms(built_ns - begun_ns),
+      world->vehicles().size(), simulation->newest().time_s, to_ms(now_ns() - built_ns));
   return {};
 }
 
