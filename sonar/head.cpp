@@ -45,12 +45,16 @@ bool full_turn(const BeamGrid& grid) {
 // gathered; no more than a pinhole holds, and no more than a few apertures: of one much narrower
 // than its pattern the wedge stays cut.
 std::uint32_t rows_beyond(double half_rad, double step_rad, double reach_rad, std::uint32_t bins) {
-  constexpr double kMostApertures = 4.0, kMostRows = 1536.0;
+  constexpr double kMostApertures = 4.0;
   const double most = std::floor((kMaxElevation_rad / 2.0 - half_rad) / step_rad + 1e-6);
   const double rows = std::min({std::ceil((reach_rad - half_rad) / step_rad - 1e-6), most,
-                                kMostApertures * bins, std::floor((kMostRows - bins) / 2.0)});
+                                kMostApertures * bins});
   return static_cast<std::uint32_t>(std::max(rows, 0.0));
 }
+
+// Where the rows beyond would make more than this, all rows grow instead: what is heard there is
+// never cut off, and nobody pays for more rows than these or those asked for.
+constexpr std::uint32_t kMostWidened = 1536;
 
 // An elevation pattern is heard beyond the aperture that its half power names: as far as its second
 // null. What lies straight below a side-scan, or the surface above a flat beam, comes in there.
@@ -60,7 +64,7 @@ void widen_elevation(Head& head, const HeadPatterns& patterns) {
   BeamGrid& g = head.samples;
   const auto widen = [&](double& min_rad, double& max_rad, double step_rad, std::uint32_t& bins) {
     const std::uint32_t rows = rows_beyond(max_rad, step_rad, pattern->second_null_rad(), bins);
-    bins += 2 * rows;
+    bins = std::min(bins + 2 * rows, std::max(bins, kMostWidened));
     min_rad -= rows * step_rad;
     max_rad += rows * step_rad;
   };

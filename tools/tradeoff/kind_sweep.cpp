@@ -37,13 +37,14 @@ std::vector<std::uint32_t> columns_of(SonarKind kind, bool quick) {
 
 // Of the middle's.
 std::vector<double> row_factors(bool quick) {
-  return quick ? std::vector<double>{0.5} : std::vector<double>{0.25, 0.5, 1.0, 2.0, 4.0};
+  return quick ? std::vector<double>{0.5}
+               : std::vector<double>{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0};
 }
 
 std::vector<std::uint32_t> rows_of(const KindSetting& kind, bool quick) {
   std::vector<std::uint32_t> out;
   for (const double factor : row_factors(quick))
-    out.push_back(static_cast<std::uint32_t>(kind.middle.rows * factor));
+    out.push_back(std::max(1u, static_cast<std::uint32_t>(kind.middle.rows * factor)));
   return out;
 }
 

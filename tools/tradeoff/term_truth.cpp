@@ -162,8 +162,26 @@ class Tracer {
         echo.seconds = leg_s(*image.profile(), Vec3(0.0), at) +
                        leg_s(*image.profile(), at, echo.target_m) +
                        leg_s(*image.profile(), echo.target_m, Vec3(0.0));
-      image.add(seen_by(image, ray), echo);
+      image.add(both_legs(image, ray, -back), echo);
     }
+  }
+
+  // A ghost passes the pattern once along either leg, and hears nothing along a leg beyond it.
+  TruthRay both_legs(const TermImage& image, const TruthRay& mirrored, const Vec3& direct) const {
+    const Vec3 d = glm::transpose(view_.world_from_head) * direct;
+    TruthRay other = mirrored;
+    other.elevation_rad = std::asin(std::clamp(d.y, -1.0, 1.0));
+    other.off_axis_rad = std::acos(std::clamp(-d.z, -1.0, 1.0));
+    const sonar::Limits& l = head_.samples.limits;
+    other.inside = head_.folded ? other.off_axis_rad <= patterns_.cone_rad
+                                : other.elevation_rad >= l.elevation_min_rad &&
+                                      other.elevation_rad < l.elevation_max_rad;
+    other.pattern = patterns_.power(std::atan2(d.x, -d.z), other.elevation_rad);
+    TruthRay out = seen_by(image, mirrored);
+    other = seen_by(image, other);
+    out.inside = out.inside && other.inside;
+    out.pattern = std::sqrt(out.pattern * other.pattern);
+    return out;
   }
 
   const RayWorld& world_;
