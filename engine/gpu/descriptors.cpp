@@ -27,13 +27,15 @@ bool is_buffer(VkDescriptorType type) {
   return type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER || type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 }
 
-Result<VkDescriptorPool> make_pool(VkDevice device) {
+Result<VkDescriptorPool> make_pool(const Device& device, const std::string& name) {
   VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   info.maxSets = kSetsPerPool;
   info.poolSizeCount = kPoolSizes.size();
   info.pPoolSizes = kPoolSizes.data();
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  NERITIC_TRY_VK("vkCreateDescriptorPool", vkCreateDescriptorPool(device, &info, nullptr, &pool));
+  NERITIC_TRY_VK("vkCreateDescriptorPool (" + name + ")",
+                 vkCreateDescriptorPool(device.handle(), &info, nullptr, &pool));
+  device.name_object(VK_OBJECT_TYPE_DESCRIPTOR_POOL, pool, name);
   return pool;
 }
 
@@ -72,7 +74,8 @@ SetLayout::~SetLayout() {
 
 // --- DescriptorArena --------------------------------------------------------------------------
 
-DescriptorArena::DescriptorArena(const Device& device) : device_(device.handle()) {}
+DescriptorArena::DescriptorArena(const Device& device, std::string name)
+    : device_(&device), name_(std::move(name)) {}
 
 DescriptorArena::DescriptorArena(DescriptorArena&& other) noexcept {
   *this = std::move(other);
@@ -80,30 +83,37 @@ DescriptorArena::DescriptorArena(DescriptorArena&& other) noexcept {
 
 DescriptorArena& DescriptorArena::operator=(DescriptorArena&& other) noexcept {
   std::swap(device_, other.device_);
+  std::swap(name_, other.name_);
   std::swap(pools_, other.pools_);
   std::swap(current_, other.current_);
   return *this;
 }
 
 DescriptorArena::~DescriptorArena() {
-  for (const VkDescriptorPool pool : pools_) vkDestroyDescriptorPool(device_, pool, nullptr);
+  for (const VkDescriptorPool pool : pools_)
+    vkDestroyDescriptorPool(device_->handle(), pool, nullptr);
 }
 
-Result<VkDescriptorSet> DescriptorArena::allocate(VkDescriptorSetLayout layout) {
+Result<VkDescriptorSet> DescriptorArena::allocate(VkDescriptorSetLayout layout,
+                                                  const std::string& name) {
   VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
   info.descriptorSetCount = 1;
   info.pSetLayouts = &layout;
   while (true) {
     const bool fresh = current_ == pools_.size();
     if (fresh) {
-      NERITIC_TRY(const VkDescriptorPool pool, make_pool(device_));
+      NERITIC_TRY(const VkDescriptorPool pool,
+                  make_pool(*device_, fmt::format("{}, descriptors {}", name_, current_)));
       pools_.push_back(pool);
     }
     // Drivers may hand out more sets than the pool was made for, or fail; ours to count is neither.
     info.descriptorPool = pools_[current_];
     VkDescriptorSet set = VK_NULL_HANDLE;
-    const VkResult result = vkAllocateDescriptorSets(device_, &info, &set);
-    if (result == VK_SUCCESS) return set;
+    const VkResult result = vkAllocateDescriptorSets(device_->handle(), &info, &set);
+    if (result == VK_SUCCESS) {
+      device_->name_object(VK_OBJECT_TYPE_DESCRIPTOR_SET, set, name);
+      return set;
+    }
     const bool full = result == VK_ERROR_OUT_OF_POOL_MEMORY || result == VK_ERROR_FRAGMENTED_POOL;
     if (!full || fresh) return vulkan_error(result, "vkAllocateDescriptorSets");
     ++current_;
@@ -111,7 +121,8 @@ Result<VkDescriptorSet> DescriptorArena::allocate(VkDescriptorSetLayout layout) 
 }
 
 void DescriptorArena::reset() {
-  for (const VkDescriptorPool pool : pools_) (void)vkResetDescriptorPool(device_, pool, 0);
+  for (const VkDescriptorPool pool : pools_)
+    (void)vkResetDescriptorPool(device_->handle(), pool, 0);
   current_ = 0;
 }
 

@@ -22,7 +22,7 @@ constexpr VkDeviceSize kSmallestUpload = 16;  // bytes: empty data can still be 
 struct Slot {
   Slot(const Device& gpu, std::uint32_t index)
       : device(gpu.handle()),
-        descriptors(gpu),
+        descriptors(gpu, fmt::format("frame slot {}", index)),
         uploads(gpu, fmt::format("uploads of frame slot {}", index)),
         timer(gpu) {}
   Slot(Slot&& other) noexcept
@@ -226,7 +226,7 @@ void FramesImpl::retire(std::function<void()> destroy) {
 }
 
 VkDescriptorSet FramesImpl::frame_set(const Pipeline& pipeline) {
-  const auto set = slot().descriptors.allocate(pipeline.set0());
+  const auto set = slot().descriptors.allocate(pipeline.set0(), pipeline.name());
   if (set.ok()) return set.value();
   fail(set.error());
   return VK_NULL_HANDLE;

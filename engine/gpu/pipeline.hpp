@@ -116,15 +116,16 @@ class Pipeline {
 // Persistent descriptor sets of one layout (materials): grows pool by pool, freed all at once.
 class DescriptorArena {
  public:
-  explicit DescriptorArena(const Device& device);
+  DescriptorArena(const Device& device, std::string name);
   DescriptorArena(DescriptorArena&& other) noexcept;
   DescriptorArena& operator=(DescriptorArena&& other) noexcept;
   ~DescriptorArena();
-  Result<VkDescriptorSet> allocate(VkDescriptorSetLayout layout);
+  Result<VkDescriptorSet> allocate(VkDescriptorSetLayout layout, const std::string& name);
   void reset();  // every set handed out becomes invalid
 
  private:
-  VkDevice device_ = VK_NULL_HANDLE;
+  const Device* device_ = nullptr;
+  std::string name_;
   std::vector<VkDescriptorPool> pools_;
   std::size_t current_ = 0;
 };

@@ -42,6 +42,10 @@ Status create(const Device& device, OneShot& shot) {
                  vkAllocateCommandBuffers(device.handle(), &info, &shot.commands));
   const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   NERITIC_TRY_VK("vkCreateFence", vkCreateFence(device.handle(), &fence, nullptr, &shot.fence));
+  const std::string name = "one-off submission";
+  device.name_object(VK_OBJECT_TYPE_COMMAND_POOL, shot.pool, name);
+  device.name_object(VK_OBJECT_TYPE_COMMAND_BUFFER, shot.commands, name);
+  device.name_object(VK_OBJECT_TYPE_FENCE, shot.fence, name);
   return {};
 }
 

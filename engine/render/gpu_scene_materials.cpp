@@ -193,9 +193,10 @@ Result<GpuSceneMaterials> MaterialBuilder::finish(VkDescriptorSetLayout layout) 
                                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                                  VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
   if (!bytes.empty()) NERITIC_TRY_STATUS(gpu::upload_buffer(*device_, out_.constants, bytes));
-  out_.descriptors = std::make_unique<gpu::DescriptorArena>(*device_);
+  out_.descriptors = std::make_unique<gpu::DescriptorArena>(*device_, "materials");
   for (std::size_t i = 0; i < data_.size(); ++i) {
-    NERITIC_TRY(const VkDescriptorSet set, out_.descriptors->allocate(layout));
+    NERITIC_TRY(const VkDescriptorSet set,
+                out_.descriptors->allocate(layout, fmt::format("material {}", i)));
     const MaterialTextures& t = textures_[i];
     const auto texture = [&](std::uint32_t binding, const TextureUse& use) {
       return gpu::bound_texture(binding, out_.images[use.image].view(),

@@ -82,8 +82,8 @@ TEST_F(PipelineDeathTest, AMissingOrUnknownBindingStops) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");  // the device has threads
   NERITIC_ASSERT_OK(const Pipeline pipeline, fill(1));
   NERITIC_ASSERT_OK(const Buffer some, readback(64));
-  DescriptorArena arena(device());
-  NERITIC_ASSERT_OK(const VkDescriptorSet set, arena.allocate(pipeline.set0()));
+  DescriptorArena arena(device(), "test");
+  NERITIC_ASSERT_OK(const VkDescriptorSet set, arena.allocate(pipeline.set0(), "test"));
   const std::array missing{bound_buffer(0, some.handle()), bound_buffer(1, some.handle())};
   EXPECT_DEATH(write_descriptors(device(), set, pipeline.bindings(), missing),
                "binding 2 is given 0");
@@ -93,11 +93,11 @@ TEST_F(PipelineDeathTest, AMissingOrUnknownBindingStops) {
 
 TEST_F(PipelineTest, DescriptorArenasGrowAndStartOver) {
   NERITIC_ASSERT_OK(const Pipeline pipeline, fill(1));
-  DescriptorArena arena(device());
+  DescriptorArena arena(device(), "test");
   for (int round = 0; round < 3; ++round) {
     std::vector<VkDescriptorSet> sets;
     for (int i = 0; i < 1000; ++i) {
-      NERITIC_ASSERT_OK(const VkDescriptorSet set, arena.allocate(pipeline.set0()));
+      NERITIC_ASSERT_OK(const VkDescriptorSet set, arena.allocate(pipeline.set0(), "test"));
       sets.push_back(set);
     }
     std::sort(sets.begin(), sets.end());
