@@ -131,8 +131,8 @@ Status Device::create_device(const DeviceOptions& options) {
   NERITIC_TRY_VK("vkCreateDevice (" + info_.name + ")",
                  vkCreateDevice(physical_, &info, nullptr, &device_));
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-  // The instance had to wait for a device to be named with.
-  name_object(VK_OBJECT_TYPE_INSTANCE, instance_, "neritic");
+  // The instance is not named: it is the loader's own object, and the loader (1.3.239) hands it to
+  // the driver as if it were the driver's, which writes into it or crashes. So with surfaces.
   name_object(VK_OBJECT_TYPE_DEVICE, device_, info_.name);
   name_object(VK_OBJECT_TYPE_QUEUE, queue_, "main queue");
   return {};

@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kRetry{5};
 Result<std::unique_ptr<DesktopDisplay>> DesktopDisplay::create(gpu::Device& device, Window& window,
                                                                std::uint32_t frames_in_flight) {
   NERITIC_TRY(const VkSurfaceKHR surface, window.create_surface(device.instance()));
-  // Not named: Mesa 22.3 (lavapipe) crashes when a surface is.
+  // Not named: see Device::create_device.
   NERITIC_TRY(Swapchain swapchain, Swapchain::create(device, surface, frames_in_flight));
   return std::unique_ptr<DesktopDisplay>(new DesktopDisplay(window, std::move(swapchain)));
 }

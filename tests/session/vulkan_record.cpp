@@ -64,20 +64,6 @@ struct StandIn<slot, type, VkResult (*)(VkDevice, const Info*, Handle*)> {
   }
 };
 
-template <auto& slot, VkObjectType type>
-struct StandIn<slot, type,
-               VkResult (*)(const VkInstanceCreateInfo*, const VkAllocationCallbacks*,
-                            VkInstance*)> {
-  static inline std::remove_reference_t<decltype(slot)> real = nullptr;
-  static VKAPI_ATTR VkResult VKAPI_CALL call(const VkInstanceCreateInfo* info,
-                                             const VkAllocationCallbacks* callbacks,
-                                             VkInstance* instance) {
-    const VkResult result = real(info, callbacks, instance);
-    note(result, type, instance);
-    return result;
-  }
-};
-
 PFN_vkGetInstanceProcAddr real_address = nullptr;
 PFN_vkSetDebugUtilsObjectNameEXT real_set_name = nullptr;
 
@@ -104,7 +90,6 @@ void replace(bool in) {
 }
 
 void replace_all(bool in) {
-  replace<vkCreateInstance, VK_OBJECT_TYPE_INSTANCE>(in);
   replace<vkCreateDevice, VK_OBJECT_TYPE_DEVICE>(in);
   replace<vkAllocateMemory, VK_OBJECT_TYPE_DEVICE_MEMORY>(in);
   replace<vkCreateBuffer, VK_OBJECT_TYPE_BUFFER>(in);

@@ -1,6 +1,6 @@
-// Notes every Vulkan object that is made while it lives, and the name it is given, by standing
-// between the program and volk's table of functions. For devices that are created while it lives,
-// after another (whose creation filled the table). One at a time, one thread.
+// Notes every Vulkan object of a device that is made while it lives, and the name it is given, by
+// standing between the program and volk's table of functions. For devices that are created while it
+// lives, after another (whose creation filled the table). One at a time, one thread.
 #pragma once
 
 #include <volk.h>
