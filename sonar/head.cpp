@@ -168,8 +168,9 @@ Taps across_taps(const scene::Sonar& sonar, const Head& head, const HeadPatterns
 double sample_power_of(const scene::Sonar& sonar, const Head& head) {
   const BeamGrid& g = head.samples;
   if (sonar.terms.level) return g.azimuth_step_rad() * g.elevation_step_rad();
-  // The mean over the aperture; what is heard beyond it comes on top.
-  if (!head.folded) return 1.0 / head.beams.bins.elevation;
+  // The mean over the aperture; what is heard beyond it comes on top. Rows may have grown since.
+  if (!head.folded)
+    return g.elevation_step_rad() / head.beams.elevation_step_rad() / head.beams.bins.elevation;
   const auto& w = head.echo->weights;
   return 1.0 / std::max(std::accumulate(w.begin(), w.end(), 0.0), 1e-30);
 }
