@@ -15,9 +15,9 @@ using scene::SonarKind;
 // name, pixels a cell, columns, rows, range bins a resolution cell, error, ms: from
 // `neritic tradeoff sonar` in assets/scenes/harbour.toml, llvmpipe on two shared Xeon cores.
 constexpr QualityLevel kImaging[] = {
-    {"draft", 0.7, 11.94, 0.83, 1, 0.0442, 82.8},
-    {"standard", 1, 15.92, 1.67, 2, 0.0129, 197.4},
-    {"reference", 0.7, 23.88, 3.33, 2, 0.0089, 301.4},
+    {"draft", 1, 3.98, 3.33, 2, 0.0454, 212.2},
+    {"standard", 1, 7.96, 3.33, 2, 0.0196, 329.7},
+    {"reference", 1, 23.88, 3.33, 2, 0.0090, 1049.7},
 };
 constexpr QualityLevel kProfiling[] = {
     {"draft", 0.7, 1.99, 8, 4, 0.0482, 17.7},
