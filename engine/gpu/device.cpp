@@ -87,6 +87,7 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
   device->info_ = infos[chosen];
   log_info("device {} of {}: {}, {} {}", chosen, devices.size(), device->info_.name,
            device->info_.kind, device->info_.driver);
+  device->info_.quirks = options.quirks.value_or(device->info_.quirks);
   device->wait_limit_ns_ =
       options.wait_limit_ns.value_or(device->info_.kind == "CPU" ? UINT64_MAX : kWaitLimit_ns);
   NERITIC_TRY_STATUS(device->create_device(options));

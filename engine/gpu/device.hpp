@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/core/result.hpp"
+#include "engine/gpu/quirks.hpp"
 
 namespace neritic::gpu {
 
@@ -31,6 +32,7 @@ struct DeviceOptions {
   // How long one submission may take before the device counts as lost; absent: a minute, and no
   // limit on CPUs, which are only slow.
   std::optional<std::uint64_t> wait_limit_ns;
+  std::optional<Quirks> quirks;  // instead of those that the driver is known to have
   // Borrowed, may be nullptr: gets every validation message too, those about objects that still
   // live when the Device goes away included. Without it those are printed as notes.
   ValidationLog* validation_sink = nullptr;
@@ -48,6 +50,7 @@ struct DeviceInfo {
   bool timestamps = false;           // its queue can time passes
   bool shared_memory = false;        // all device memory is also the host's (integrated GPU, CPU)
   std::uint64_t memory_bytes = 0;    // device-local heaps together
+  Quirks quirks;                     // what the engine goes round
 };
 
 // What validation said. A test fails on any message.

@@ -9,18 +9,18 @@
 
 namespace neritic::gpu {
 
-// lavapipe (Mesa 22.3.6) puts a timestamp into the bins of the next scene that it rasterizes, and
-// runs dispatches at once: after the first rendering, a compute pass would begin after its own end
-// and take no time. Any barrier makes it rasterize what is binned; an empty one orders nothing, so
-// that synchronization validation judges the same frame. With it, a region's time on lavapipe is
-// its wall time from the end of all work before it, for dispatches, draws and copies alike
-// (measured: the regions add up to the frame).
+// Quirks::late_timestamps: lavapipe (Mesa 22.3.6, 25.0.7) puts a timestamp into the bins of the
+// next scene that it rasterizes, and runs dispatches at once: after the first rendering, a compute
+// pass would begin after its own end and take no time. Any barrier makes it rasterize what is
+// binned; an empty one orders nothing, so that synchronization validation judges the same frame.
+// With it, a region's time on lavapipe is its wall time from the end of all work before it, for
+// dispatches, draws and copies alike (measured: the regions add up to the frame).
 FrameTimer::FrameTimer(const Device& device)
-    : device_(&device), bins_timestamps_(device.info().driver.starts_with("llvmpipe")) {}
+    : device_(&device), late_(device.info().quirks.late_timestamps) {}
 
 FrameTimer::FrameTimer(FrameTimer&& other) noexcept
     : device_(other.device_),
-      bins_timestamps_(other.bins_timestamps_),
+      late_(other.late_),
       pool_(std::exchange(other.pool_, VK_NULL_HANDLE)) {}
 
 FrameTimer::~FrameTimer() {
@@ -70,7 +70,7 @@ void FrameTimer::end_region(VkCommandBuffer commands) {
 
 void FrameTimer::write(VkCommandBuffer commands, std::uint32_t query) {
   vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, query);
-  if (!bins_timestamps_) return;
+  if (!late_) return;
   const VkDependencyInfo nothing{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
   vkCmdPipelineBarrier2(commands, &nothing);
 }

@@ -39,7 +39,7 @@ class FrameTimer {
  private:
   void write(VkCommandBuffer commands, std::uint32_t query);
   const Device* device_;
-  bool bins_timestamps_;
+  bool late_;  // Quirks::late_timestamps
   VkQueryPool pool_ = VK_NULL_HANDLE;
   bool on_ = false, pending_ = false;
   TimeNs record_start_ns_ = 0, record_ns_ = 0;

@@ -164,6 +164,7 @@ DeviceInfo describe(VkPhysicalDevice device, std::uint32_t index) {
     vkGetPhysicalDeviceProperties2(device, &all);
     info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
     info.max_views = multiview.maxMultiviewViewCount;
+    info.quirks = quirks_of(driver.driverID, driver.driverInfo);
   }
   return info;
 }

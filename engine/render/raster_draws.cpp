@@ -33,7 +33,7 @@ VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layo
 }
 
 std::vector<std::uint32_t> view_masks_of(std::uint32_t layers, const gpu::Device& device) {
-  if (layers == 1 || !device.info().driver.starts_with("llvmpipe")) return {view_mask_of(layers)};
+  if (layers == 1 || !device.info().quirks.clips_into_wrong_view) return {view_mask_of(layers)};
   std::vector<std::uint32_t> masks;
   for (std::uint32_t i = 0; i < layers; ++i) masks.push_back(1u << i);
   return masks;

@@ -31,9 +31,8 @@ struct Renderer::MaskedDraws {
 VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layout,
                                      VkAttachmentLoadOp load);
 
-// The view masks that a set of layers is drawn with, one rendering each: all at once, except on
-// llvmpipe, which (Mesa 22.3) draws triangles that need clipping into the wrong view of a multiview
-// rendering.
+// The view masks that a set of layers is drawn with, one rendering each: all at once, except where
+// the device clips into the wrong view.
 std::vector<std::uint32_t> view_masks_of(std::uint32_t layers, const gpu::Device& device);
 
 // Begins a rendering of the whole picture, viewport and scissor set.

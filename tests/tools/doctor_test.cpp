@@ -54,6 +54,15 @@ TEST(DoctorVerdict, ACompleteMachineDoesAllButTheHeadset) {
   EXPECT_FALSE(works(machine, "dive (headset)"));
 }
 
+TEST(DoctorText, SaysWhatItGoesRound) {
+  Machine machine = complete_machine();
+  EXPECT_EQ(doctor_text(machine).find("goes round"), std::string::npos);
+  machine.devices[0].quirks.clips_into_wrong_view = true;
+  EXPECT_THAT(doctor_text(machine),
+              HasSubstr("goes round its driver's faults: one view a rendering"));
+  EXPECT_THAT(doctor_json(machine), HasSubstr("\"clips_into_wrong_view\": true"));
+}
+
 TEST(DoctorVerdict, WithoutADeviceOnlyTheReferenceSonarWorks) {
   Machine machine = complete_machine();
   machine.devices.clear();

@@ -64,6 +64,8 @@ std::string device_text(const Machine& machine, std::size_t position) {
       device.timestamps ? "measures" : "no", static_cast<double>(device.memory_bytes) / kGiB,
       device.shared_memory ? "shared with the host" : "of its own",
       device.can_present ? "" : ", no windows");
+  if (const std::string around = gpu::workarounds(device.quirks); !around.empty())
+    text += fmt::format("     goes round its driver's faults: {}\n", around);
   return text;
 }
 
@@ -80,6 +82,9 @@ nlohmann::json device_json(const gpu::DeviceInfo& device) {
           {"timestamps", device.timestamps},
           {"can_present", device.can_present},
           {"shared_memory", device.shared_memory},
+          {"quirks",
+           {{"clips_into_wrong_view", device.quirks.clips_into_wrong_view},
+            {"late_timestamps", device.quirks.late_timestamps}}},
           {"memory_bytes", device.memory_bytes}};
 }
 

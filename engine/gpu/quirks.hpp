@@ -1,0 +1,29 @@
+// What drivers are known to do wrong, so that the engine goes round it. Decided by driver and
+// version, shown by `doctor`, overridden by tests (DeviceOptions::quirks). Pure; any thread.
+#pragma once
+
+#include <volk.h>
+
+#include <string>
+#include <string_view>
+
+namespace neritic::gpu {
+
+struct Quirks {
+  // Triangles that need clipping land in the wrong view of a multiview rendering: each view is
+  // drawn in a rendering of its own.
+  bool clips_into_wrong_view = false;
+  // Timestamps are put into the next rendering, while dispatches run at once: each is followed by
+  // an empty barrier.
+  bool late_timestamps = false;
+
+  bool operator==(const Quirks&) const = default;
+};
+
+// driver_info: what VkPhysicalDeviceDriverProperties says, for Mesa "Mesa 22.3.6 (LLVM 15.0.6)".
+Quirks quirks_of(VkDriverId driver, std::string_view driver_info);
+
+// "draws one view a rendering, a barrier behind each timestamp"; empty where there are none.
+std::string workarounds(const Quirks& quirks);
+
+}  // namespace neritic::gpu
