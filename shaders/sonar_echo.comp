@@ -130,21 +130,30 @@ float pattern_towards(vec3 direction) {
   return kWeighted != 0 ? texelFetch(weights, at, 0).r : 1.0;
 }
 
-// What a mirror's path adds: back by the mirror, forth directly (and the other way round). The eye is the
-// sonar's mirror image. Returns the mean of both ways; 0 where there is no such path. The beam's solid
+// A mirror's path: back by the mirror, forth directly (and the other way round). The eye is the sonar's
+// mirror image.
+struct GhostPath {
+  float mean_m;    // of both legs; 0: there is no such path
+  float direct_m;
+  vec3 direct;     // unit, from the sonar
+  vec3 launch;     // unit, from the sonar to where the mirror shows the point
+};
+
+// And what it adds, the mean of both ways round. The beam's solid
 // angle covers a patch of area range^2 / cos(in), which Lambert's law sends on with cos(in) cos(out), so
 // cos(out) alone is left. Each leg passes the pattern once.
-float ghost_range(vec3 direction, uint row, BeamHit hit, out float power) {
+GhostPath ghost_path(vec3 direction, uint row, BeamHit hit, out float power) {
+  GhostPath none = GhostPath(0.0, 0.0, vec3(0.0), vec3(0.0));
   power = 0.0;
   vec3 point = direction * hit.range_m;
   float above = dot(point, echo.world_up) - echo.water_level_m;
-  if (above * echo.water_sign > 0.0) return 0.0;  // beyond the mirror
+  if (above * echo.water_sign > 0.0) return none;  // beyond the mirror
   vec3 leg = point - echo.ghost_source;
   float direct_m = length(leg);
   vec3 n = normal_of(hit.at);
   if (kFacing == 0 && dot(n, direction) > 0.0) n = -n;
   float cosine = -dot(n, leg) / direct_m;
-  if (!(hit.strength > 0.0 && cosine > 0.0)) return 0.0;  // turned away from the mirror or from the sonar
+  if (!(hit.strength > 0.0 && cosine > 0.0)) return none;  // turned away from the mirror or from the sonar
   float mean_m = 0.5 * (direct_m + hit.range_m);
   power = min(cosine, 1.0) * echo.ghost_weight * pattern_towards(leg / direct_m);
   if (echo.solid_angle != 0) power /= texelFetch(rows, ivec2(row, 0), 0).y;
@@ -152,7 +161,12 @@ float ghost_range(vec3 direction, uint row, BeamHit hit, out float power) {
   if (echo.ghost_spreading == kSonarGhostSpreading) spread = mean_m / max(direct_m, 1e-3 * mean_m);
   if (echo.ghost_spreading == kSonarGhostNoSpreading) spread = hit.range_m / mean_m;
   power *= spread * spread;
-  return mean_m;
+  return GhostPath(mean_m, direct_m, leg / direct_m, direction - 2.0 * dot(direction, echo.world_up) * echo.world_up);
+}
+
+// Of a range in a direction from the sonar: what the speed of sound makes of it.
+float corrected(float range_m, vec3 direction) {
+  return range_m * correction_at(range_m, dot(direction, echo.world_up));
 }
 
 // One row's echo: its power by bins, heard over true range, and where its ends lie.
@@ -224,15 +238,24 @@ void main() {
     float power = hit.strength;
     uvec2 label = uvec2(0);
     float range_m = hit.range_m;
-    vec3 direction = vec3(0.0);
-    if (kCorrected != 0 || kGhost != 0 || kMoving != 0 || kCoherent != 0) direction = beam_direction(s, row);
-    if (kGhost != 0) range_m = range_m > 0.0 ? ghost_range(direction, row, hit, power) : 0.0;
+    vec3 eye = vec3(0.0);
+    if (kCorrected != 0 || kGhost != 0 || kMoving != 0 || kCoherent != 0) eye = beam_direction(s, row);
+    vec3 direction = eye;
+    float heard_m = range_m;
+    if (kGhost != 0) {
+      GhostPath ghost = GhostPath(0.0, 0.0, vec3(0.0), vec3(0.0));
+      if (range_m > 0.0) ghost = ghost_path(eye, row, hit, power);
+      heard_m = range_m = ghost.mean_m;
+      if (kCorrected != 0)
+        heard_m = 0.5 * (corrected(hit.range_m, ghost.launch) + corrected(ghost.direct_m, ghost.direct));
+      direction = 0.5 * (ghost.launch + ghost.direct);  // the sonar's motion counts on either leg's way back
+    } else if (kCorrected != 0) {
+      heard_m = corrected(range_m, direction);
+    }
     if (kWeighted != 0) power *= texelFetch(weights, ivec2(column, row), 0).r;
     if (kReflect != 0 || kLabels != 0 || kRecords != 0) label = texelFetch(label_image, hit.at, 0).xy;
     if (kReflect != 0) power *= label.y < c.reflectivities ? reflectivity[label.y] : 1.0;
     if (kGhost != 0) label.x = kSonarGhostClass;
-    float heard_m = range_m;
-    if (kCorrected != 0) heard_m *= correction_at(range_m, dot(direction, echo.world_up));
     if (kMoving != 0) heard_m += range_m * dot(echo.motion, direction) + dot(echo.doppler, direction);
     RowEcho e = RowEcho(min(power, kLargestPower), bin_at(heard_m), vec2(heard_m), heard_m, label.x);
     if (kFootprint != 0 && range_m > 0.0) e.ends_m = hit.ends_m * (heard_m / hit.range_m);
@@ -247,7 +270,7 @@ void main() {
       continue;
     }
     uint cell = uint(e.bin) * c.n_azimuth + column;
-    if (kCoherent != 0) add_to_run(run, column, direction * hit.range_m, e.bin, e.power);
+    if (kCoherent != 0) add_to_run(run, column, eye * hit.range_m, e.bin, e.power);
     else add_power(cell, uint(e.power * echo.sum_scale + 0.5));
     add_key(cell, e.power, e.label);
   }

@@ -176,13 +176,16 @@ Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state
   add_speckle(ping, sonar, head, eye_m, state.seed);
   add_motion(ping, sonar, head, state);
   if (sonar.terms.profile) {
-    const double range_max_m = head.samples.limits.range_max_m;
+    // The longer of a ghost's legs may be beyond the range by as much as the other is within.
+    const double range_max_m = head.samples.limits.range_max_m * (mirror ? 2.0 : 1.0);
     RangeCorrections own;
+    std::optional<ProfileMirror> beyond;
+    if (mirror) beyond = ProfileMirror{-mirror->height_m, mirror->water_below};
     const RangeCorrection& table = (state.corrections ? *state.corrections : own)
-                                       .at(*sonar.terms.profile, -sonar_m.y, range_max_m);
+                                       .at(*sonar.terms.profile, -sonar_m.y, range_max_m, beyond);
     ping.echo.correction_width = table.width;
     ping.echo.correction_height = table.height;
-    ping.echo.correction_range_m = static_cast<float>(head.samples.limits.range_max_m);
+    ping.echo.correction_range_m = static_cast<float>(range_max_m);
     for (const float factor : table.factors)
       ping.correction.push_back(static_cast<float>(factor * ping.sound_speed_m_s));
   }

@@ -19,7 +19,7 @@ struct PingState {
   std::uint32_t ping = 0;             // number of the ping
   double backscatter_scale = 1.0;     // what a strength of 1 in the reflectivity table stands for
   bool gbuffer_in_world_axes = true;  // else in the sonar's (images without a scene)
-  RangeCorrections* corrections = nullptr;  // the head's, where it keeps them
+  RangeCorrections* corrections = nullptr;  // the head's or its mirror's, where it keeps them
 };
 
 // A mirror for ghosts: the horizontal plane y = height_m; amplitude reflection.

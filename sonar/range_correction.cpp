@@ -68,27 +68,31 @@ scene::SonarTable simplified(const scene::SonarTable& profile, double tolerance_
 }
 
 const RangeCorrection& RangeCorrections::at(const scene::SonarProfile& profile,
-                                            double launch_depth_m, double range_max_m) {
+                                            double launch_depth_m, double range_max_m,
+                                            const std::optional<ProfileMirror>& mirror) {
   const double depth_m = std::round(launch_depth_m / kDepthStep_m) * kDepthStep_m;
-  const bool same = made_ > 0 && given_ == profile;
+  const bool same = made_ > 0 && given_ == profile && mirror_ == mirror;
   if (same && depth_m == depth_m_ && range_max_m == range_max_m_) return table_;
   if (!same) {
     given_ = profile;
+    mirror_ = mirror;
     used_ = {simplified(profile.table), profile.bent};
   }
   depth_m_ = depth_m;
   range_max_m_ = range_max_m;
-  table_ = range_correction(used_, depth_m, range_max_m, 1.0);
+  table_ = range_correction(used_, depth_m, range_max_m, 1.0, {}, mirror);
   ++made_;
   return table_;
 }
 
 RangeCorrection range_correction(const scene::SonarProfile& settings, double launch_depth_m,
                                  double range_max_m, double assumed_speed_m_s,
-                                 RangeCorrectionSize size) {
+                                 RangeCorrectionSize size,
+                                 const std::optional<ProfileMirror>& mirror) {
   const auto made = SoundSpeedProfile::of_table(rows_of(settings.table));
   NERITIC_CHECK(made.ok(), "sound speed profile: {}", made.ok() ? "" : made.error().message);
-  const SoundSpeedProfile& profile = *made;
+  const SoundSpeedProfile profile =
+      mirror ? made->beyond_mirror(mirror->depth_m, mirror->water_below) : *made;
   RangeCorrection out{size.ranges, size.sines, {}};
   for (std::uint32_t j = 0; j < size.sines; ++j) {
     const double elevation = std::asin(std::clamp(-1.0 + 2.0 * j / (size.sines - 1), -1.0, 1.0));

@@ -3,6 +3,7 @@
 // owner.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/scene/sonar_settings.hpp"
@@ -27,27 +28,35 @@ struct RangeCorrection {
 struct RangeCorrectionSize {
   std::uint32_t ranges = 33, sines = 65;
 };
+// mirror: of a ghost's legs, which are seen as if they went on beyond it.
+struct ProfileMirror {
+  double depth_m = 0.0;
+  bool water_below = true;
+  bool operator==(const ProfileMirror&) const = default;
+};
 RangeCorrection range_correction(const scene::SonarProfile& profile, double launch_depth_m,
                                  double range_max_m, double assumed_speed_m_s,
-                                 RangeCorrectionSize size = {});
+                                 RangeCorrectionSize size = {},
+                                 const std::optional<ProfileMirror>& mirror = {});
 
 // The profile with only the rows it takes to be within tolerance_m_s of all of them (Douglas and
 // Peucker 1973), and with at most kMostRows: the tolerance doubles until it is so.
 inline constexpr std::size_t kMostRows = 256;
 scene::SonarTable simplified(const scene::SonarTable& profile, double tolerance_m_s = 0.01);
 
-// The tables of a head, which go by its depth alone: made anew only where that changes by
+// The tables of a head (and of one mirror, where named), which go by its depth alone: made anew only where that changes by
 // kDepthStep_m (whatever the order of pings, a depth has one table).
 class RangeCorrections {
  public:
   static constexpr double kDepthStep_m = 0.05;
   // For an assumed speed of 1 m/s: factors are proportional to it.
   const RangeCorrection& at(const scene::SonarProfile& profile, double launch_depth_m,
-                            double range_max_m);
+                            double range_max_m, const std::optional<ProfileMirror>& mirror = {});
   std::size_t made() const { return made_; }  // so far
 
  private:
   scene::SonarProfile given_, used_;
+  std::optional<ProfileMirror> mirror_;
   double depth_m_ = 0.0, range_max_m_ = 0.0;
   RangeCorrection table_;
   std::size_t made_ = 0;

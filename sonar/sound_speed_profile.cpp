@@ -31,6 +31,17 @@ Result<SoundSpeedProfile> SoundSpeedProfile::of_table(Table depth_speed) {
   return SoundSpeedProfile(std::move(depth_speed));
 }
 
+SoundSpeedProfile SoundSpeedProfile::beyond_mirror(double mirror_depth_m, bool water_below) const {
+  Table rows{{mirror_depth_m, speed_m_s(mirror_depth_m)}};
+  for (const TableRow& row : rows_) {
+    if (water_below ? row.x <= mirror_depth_m : row.x >= mirror_depth_m) continue;
+    rows.push_back(row);
+    rows.push_back({2.0 * mirror_depth_m - row.x, row.y});
+  }
+  std::sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  return SoundSpeedProfile(std::move(rows));
+}
+
 double SoundSpeedProfile::speed_m_s(double depth_m) const {
   return interpolate(rows_, depth_m);
 }

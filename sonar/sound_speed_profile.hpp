@@ -24,6 +24,10 @@ class SoundSpeedProfile {
   // Rows of depth_m in [-100, 12000], rising, and m/s in [100, 10000].
   static Result<SoundSpeedProfile> of_table(Table depth_speed);
 
+  // As a ray that a flat mirror sends back meets it: beyond the mirror's depth the image of what
+  // is before it.
+  SoundSpeedProfile beyond_mirror(double mirror_depth_m, bool water_below) const;
+
   double speed_m_s(double depth_m) const;
 
   // Straight rays. Integral of ds / c along range_m from launch_depth_m, in closed form a layer.

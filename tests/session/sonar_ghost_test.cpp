@@ -1,5 +1,6 @@
 // A mirror's ghosts: how strong they are, against the closed form.
 #include "sonar/beam_pattern.hpp"
+#include "sonar/sound_speed_profile.hpp"
 #include "tests/session/sonar_pings.hpp"
 
 namespace neritic::tools {
@@ -70,6 +71,41 @@ TEST_F(SonarGhost, EachLegPassesThePatternOnce) {
 }
 
 // A plate above the sonar that faces the surface is lit by the mirror and shows the sonar its back.
+// Energy over range of what the ghosts add.
+double mean_ghost_range_m(gpu::Device& device, scene::Scene scene) {
+  const SonarFrame direct = ping(device, scene);
+  scene.sonars[0].terms.ghosts = scene::SonarGhosts{.surface = true};
+  const SonarFrame both = ping(device, scene);
+  double energy = 0.0, moment = 0.0;
+  for (std::size_t i = 0; i < both.image.intensity.size(); ++i) {
+    const double more = both.image.intensity[i] - direct.image.intensity[i];
+    const auto row = static_cast<std::uint32_t>(i / both.grid.bins.azimuth);
+    energy += more;
+    moment += more * both.grid.range_m(row);
+  }
+  return moment / energy;
+}
+
+// Each leg is heard by the water that it passes: fast below the sonar, slow above it, where the
+// mirror's leg runs.
+TEST_F(SonarGhost, EachLegIsHeardByTheSpeedOfItsOwnWater) {
+  const scene::SonarTable speeds{{0.0, 1400.0}, {4.0, 1600.0}};
+  const auto profile = sonar::SoundSpeedProfile::of_table({{0.0, 1400.0}, {4.0, 1600.0}});
+  ASSERT_TRUE(profile.ok());
+  scene::Scene scene = sphere_below_surface();
+  scene.sonars[0].terms.water.sound_speed_m_s = 1500.0;
+  const double still_m = mean_ghost_range_m(device(), scene);
+  for (const bool bent : {false, true}) {
+    scene.sonars[0].terms.profile = scene::SonarProfile{speeds, bent};
+    // Straight legs up to the mirror and down from it; bent ones differ by some millimetres.
+    const double half_m = std::hypot(kRange_m / 2.0, kDepth_m);
+    const double up_rad = std::atan2(kDepth_m, kRange_m / 2.0);
+    const double slower_m =
+        1500.0 * 2.0 * profile->straight_time_s(kDepth_m, up_rad, half_m) - 2.0 * half_m;
+    EXPECT_NEAR(mean_ghost_range_m(device(), scene) - still_m, slower_m / 2.0, 0.02) << bent;
+  }
+}
+
 TEST_F(SonarGhost, WhatTurnsItsBackGivesNone) {
   scene::Scene scene = sphere_below_surface();
   scene.objects = {object_of(scene, scene::make_plane(1.0, 1.0), {0.0, -1.6, -kRange_m})};

@@ -110,6 +110,7 @@ Result<std::unique_ptr<HeadState>> SonarStation::make_head(const scene::Sonar& s
   options.echo->ghost = true;
   options.echo->weights = sonar::ghost_weights(sonar, h.head);
   NERITIC_TRY(h.ghosts, gather());
+  h.ghost_corrections.resize(state.mirrors.size());
   for (std::size_t i = 0; h.head.echo->records && i < state.mirrors.size(); ++i) {
     NERITIC_TRY(auto buffer,
                 readable(fmt::format("ghost records {}", i), h.gather->records_bytes()));
@@ -253,7 +254,9 @@ Status SonarStation::declare_ghosts(const Frame& frame, const SonarWork& work, H
                 frame.renderer.declare_gbuffer(frame.graph, prefix, render::GBufferKind::kGeometry,
                                                frame.gpu_scene, frame.state, frame.deformed,
                                                ghost.view.views, ghost.view.draws));
-    ghost.ping = sonar::ping_of(sonar, state.head, direct_ping, &mirror);
+    sonar::PingState ghost_state = direct_ping;
+    ghost_state.corrections = &state.ghost_corrections[i];
+    ghost.ping = sonar::ping_of(sonar, state.head, ghost_state, &mirror);
     sonar::SonarGather::Inputs inputs = direct;
     inputs.prefix = prefix;
     inputs.depth = g.depth;

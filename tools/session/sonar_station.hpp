@@ -21,6 +21,7 @@ struct HeadState {
   sonar::Head head;
   std::vector<sonar::Sector> sectors;
   sonar::RangeCorrections corrections;
+  std::vector<sonar::RangeCorrections> ghost_corrections;  // by mirror
   sonar::PixelSize size;
   std::unique_ptr<sonar::SonarGather> gather, ghosts;  // ghosts: where mirrors are named
   std::unique_ptr<sonar::Receiver> receiver;           // where terms are named

@@ -31,6 +31,20 @@ double return_s(const Vec3& target_m, const Vec3& velocity_m_s, double out_s, do
   return t;
 }
 
+// Of a table, at a share of its longest range and a sine of the elevation.
+double factor_of(const sonar::RangeCorrection& table, double share, double sine) {
+  const double x = std::clamp(share, 0.0, 1.0) * (table.width - 1);
+  const double y = (std::clamp(sine, -1.0, 1.0) * 0.5 + 0.5) * (table.height - 1);
+  const auto i = std::min(static_cast<std::uint32_t>(x), table.width - 2),
+             j = std::min(static_cast<std::uint32_t>(y), table.height - 2);
+  const double u = x - i, v = y - j;
+  const auto at = [&](std::uint32_t k, std::uint32_t l) {
+    return double{table.factors[std::size_t{l} * table.width + k]};
+  };
+  return (1 - v) * ((1 - u) * at(i, j) + u * at(i + 1, j)) +
+         v * ((1 - u) * at(i, j + 1) + u * at(i + 1, j + 1));
+}
+
 }  // namespace
 
 Result<TermImage> TermImage::create(const scene::Sonar& sonar, const sonar::Head& head,
@@ -50,9 +64,14 @@ Result<TermImage> TermImage::create(const scene::Sonar& sonar, const sonar::Head
     sonar::Table rows;
     for (const auto& [depth_m, speed] : profile->table) rows.push_back({depth_m, speed});
     NERITIC_TRY(made.profile_, sonar::SoundSpeedProfile::of_table(std::move(rows)));
+    const double c = made.sound_speed_m_s_, range_m = head.beams.limits.range_max_m;
     if (profile->bent)
-      made.bent_ = sonar::range_correction(*profile, view.depth_m, head.beams.limits.range_max_m,
-                                           made.sound_speed_m_s_, kFineTable);
+      made.bent_ = sonar::range_correction(*profile, view.depth_m, range_m, c, kFineTable);
+    for (const sonar::Mirror& mirror : sonar::mirrors_of(sonar))
+      if (profile->bent)
+        made.bent_ghosts_ =
+            sonar::range_correction(*profile, view.depth_m, 2.0 * range_m, c, kFineTable,
+                                    sonar::ProfileMirror{-mirror.height_m, mirror.water_below});
   }
   made.make_weights();
   for (std::uint32_t row = 0; row < made.grid_.bins.range; ++row) {
@@ -108,31 +127,32 @@ double TermImage::power(const TruthRay& ray, const TruthEcho& echo) const {
          (grid_.limits.elevation_max_rad - grid_.limits.elevation_min_rad);
 }
 
-double TermImage::bent_factor(double range_m, double sine) const {
-  const double x = std::clamp(range_m / grid_.limits.range_max_m, 0.0, 1.0) * (bent_.width - 1);
-  const double y = (sine * 0.5 + 0.5) * (bent_.height - 1);
-  const auto i = std::min(static_cast<std::uint32_t>(x), bent_.width - 2),
-             j = std::min(static_cast<std::uint32_t>(y), bent_.height - 2);
-  const double u = x - i, v = y - j;
-  const auto at = [&](std::uint32_t k, std::uint32_t l) {
-    return double{bent_.factors[std::size_t{l} * bent_.width + k]};
+// Heard along bent rays: out and back, of a ghost each leg by its own.
+double TermImage::bent_m(const TruthRay& ray, const TruthEcho& echo) const {
+  const double range_max_m = grid_.limits.range_max_m;
+  if (!echo.ghost) return echo.out_m * factor_of(bent_, echo.out_m / range_max_m, ray.direction.y);
+  const auto leg = [&](double range_m, double sine) {
+    return range_m * factor_of(bent_ghosts_, range_m / (2.0 * range_max_m), sine);
   };
-  return (1 - v) * ((1 - u) * at(i, j) + u * at(i + 1, j)) +
-         v * ((1 - u) * at(i, j + 1) + u * at(i + 1, j + 1));
+  return 0.5 * (leg(echo.out_m, ray.direction.y) +
+                leg(echo.back_m, echo.target_m.y / echo.back_m));
 }
 
 double TermImage::heard_range_m(const TruthRay& ray, const TruthEcho& echo) const {
   const double mean_m = 0.5 * (echo.out_m + echo.back_m), c = sound_speed_m_s_;
   double heard = mean_m;
   if (profile_)
-    heard = bent_.width > 0 ? mean_m * bent_factor(mean_m, std::clamp(ray.direction.y, -1.0, 1.0))
-                            : 0.5 * c * echo.seconds;
+    heard = bent_.width > 0 ? bent_m(ray, echo) : 0.5 * c * echo.seconds;
   const auto& motion = sonar_->terms.motion;
   if (!motion) return heard;
+  // A ghost goes either way round: back directly, or by the mirror, which shows the target elsewhere.
+  const Vec3 shown_m = ray.direction * echo.out_m, v = view_.velocity_m_s;
   if (motion->within_ping)
-    heard += 0.5 * c * return_s(echo.target_m, view_.velocity_m_s, echo.out_m / c, c) - mean_m;
+    heard += 0.25 * c * (return_s(echo.target_m, v, echo.out_m / c, c) +
+                         return_s(shown_m, v, echo.back_m / c, c)) - mean_m;
   if (motion->doppler && sonar_->terms.range_spread)
-    heard -= glm::dot(view_.velocity_m_s, ray.direction) * sonar_->terms.frequency_hz *
+    heard -= 0.5 * glm::dot(v, ray.direction + echo.target_m / echo.back_m) *
+             sonar_->terms.frequency_hz *
              motion->pulse_s / sonar_->terms.range_spread->bandwidth_hz;
   return heard;
 }

@@ -42,6 +42,7 @@ struct TruthEcho {
   Vec3 target_m{0.0};   // from the sonar, world axes
   double cosine = 0.0;  // between the normal and the way back
   double reflectivity = 1.0, backscatter = 1.0;
+  bool ghost = false;
   double bounce = 1.0;   // power that a mirror leaves, both ways counted
   double seconds = 0.0;  // of both ways over the profile's straight paths, where one is named
 };
@@ -74,7 +75,7 @@ class TermImage {
   TermImage() = default;
   double power(const TruthRay& ray, const TruthEcho& echo) const;
   double heard_range_m(const TruthRay& ray, const TruthEcho& echo) const;
-  double bent_factor(double range_m, double sine) const;
+  double bent_m(const TruthRay& ray, const TruthEcho& echo) const;
   void make_weights();
   double beam_weight(double off_rad) const;
   double weight_reach_rad() const;
@@ -87,7 +88,7 @@ class TermImage {
   bool folded_ = false;
   sonar::HeadPatterns patterns_;
   std::optional<sonar::SoundSpeedProfile> profile_;
-  sonar::RangeCorrection bent_;
+  sonar::RangeCorrection bent_, bent_ghosts_;  // along bent rays; by a mirror
   double sound_speed_m_s_ = 1500.0, absorption_db_per_m_ = 0.0;
   std::vector<double> weights_;  // of a pattern over the angle off its axis
   double weight_step_rad_ = 0.0;

@@ -142,6 +142,7 @@ class Tracer {
     const RayHit hit = world_.cast_from(view_.origin_m + at, onward);
     if (!(hit.t > 0.0)) return;
     TruthEcho echo;
+    echo.ghost = true;
     echo.target_m = at + onward * hit.t;
     echo.out_m = leg_m + hit.t;
     echo.back_m = glm::length(echo.target_m);
