@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "rov/case_file.hpp"
+#include "engine/core/case_file.hpp"
 #include "rov/guidance.hpp"
 
 namespace neritic::rov {

@@ -1,7 +1,7 @@
 // Runs cases of control (control_cases.hpp) and compares. Any thread.
 #pragma once
 
-#include "rov/check_result.hpp"
+#include "engine/core/check_result.hpp"
 #include "rov/control_cases.hpp"
 #include "rov/step.hpp"
 

@@ -2,7 +2,7 @@
 // [usbl], each there only if named. One thread.
 #pragma once
 
-#include "rov/case_file.hpp"
+#include "engine/core/case_file.hpp"
 #include "rov/sensor_set.hpp"
 
 namespace neritic::rov {

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "rov/case_file.hpp"
+#include "engine/core/case_file.hpp"
 #include "rov/vector6.hpp"
 
 namespace neritic::rov {

@@ -27,7 +27,7 @@
 #include <string>
 #include <vector>
 
-#include "rov/case_file.hpp"
+#include "engine/core/case_file.hpp"
 #include "rov/sine_wrench.hpp"
 #include "rov/vehicle.hpp"
 

@@ -3,7 +3,7 @@
 // by a shorter step beside them. Any thread.
 #pragma once
 
-#include "rov/check_result.hpp"
+#include "engine/core/check_result.hpp"
 #include "rov/step.hpp"
 #include "rov/trajectory_cases.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "rov/case_file.hpp"
+#include "engine/core/case_file.hpp"
 
 namespace neritic::rov {
 

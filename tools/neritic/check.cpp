@@ -11,9 +11,6 @@
 namespace neritic::tools {
 namespace {
 
-using rov::CaseResult;
-using rov::CheckedError;
-
 Result<std::vector<CaseResult>> check_file(const CheckFlags& flags) {
   if (flags.what != "rov" && flags.what != "control")
     return bad_input("check: '{}' found, rov or control is accepted", flags.what);

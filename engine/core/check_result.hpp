@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace neritic::rov {
+namespace neritic {
 
 struct CheckedError {
   std::string what, unit;
@@ -34,4 +34,4 @@ struct CaseResult {
   }
 };
 
-}  // namespace neritic::rov
+}  // namespace neritic

@@ -15,7 +15,7 @@
 #include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
 
-namespace neritic::rov {
+namespace neritic {
 
 class CaseField;
 
@@ -97,4 +97,4 @@ class CaseField {
   std::string path_;
 };
 
-}  // namespace neritic::rov
+}  // namespace neritic

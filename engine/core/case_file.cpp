@@ -1,5 +1,5 @@
 // See case_file.hpp.
-#include "rov/case_file.hpp"
+#include "engine/core/case_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "engine/core/json.hpp"
 
-namespace neritic::rov {
+namespace neritic {
 namespace {
 
 // On one line: control characters become '?', long text is cut.
@@ -225,4 +225,4 @@ std::string CaseField::found() const {
   return printable(json_text(*value_, -1), 60);
 }
 
-}  // namespace neritic::rov
+}  // namespace neritic
