@@ -247,7 +247,9 @@ Status write_mechanical_scan(const std::filesystem::path& folder, const Mechanic
   const DeviceImage device = device_image(scan);
   NERITIC_TRY_STATUS(scene::write_png8(
       folder / "mechanical.png",
-      draw_panel(device.grid, device.image, {.title = "SCANNING SONAR   AS THE DEVICE SHOWS IT"})));
+      draw_panel(device.grid, device.image,
+                 {.title = "SCANNING SONAR   AS THE DEVICE SHOWS IT",
+                  .span_db = o.levels ? kScanShown_db : 0.0})));
   NERITIC_TRY_STATUS(write_npy(folder / "mechanical_world.npy",
                                std::span<const float>(mosaic.intensity),
                                {std::size_t{mosaic.rows}, std::size_t{mosaic.columns}}));

@@ -22,6 +22,8 @@ struct MechanicalScanOptions {
   double range_min_m = 0.5, range_max_m = 20.0;
   double beam_rad = radians(1.0);  // what a step paints: the larger of the beam and the head's step
   double elevation_rad = radians(25.0);  // full height of the beam, for the panel's words
+  // Intensities are powers re 1 uPa^2: pictures are in decibels, else in parts of their full scale.
+  bool levels = false;
 
   double range_step_m() const { return (range_max_m - range_min_m) / n_range; }
 };
@@ -80,6 +82,7 @@ struct ScanMosaic {
 // kBadInput where the cell is not positive or the map holds more than 2^26 cells.
 Result<ScanMosaic> scan_mosaic(const MechanicalScan& scan, double cell_m);
 
+inline constexpr double kScanShown_db = 50.0;  // of levels: below a picture's full scale
 // North up, with the sonar's track. RGB.
 ImageU8 draw_mosaic(const MechanicalScan& scan, const ScanMosaic& mosaic,
                     const std::string& title = "SCANNING SONAR   WORLD",

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sonar/mechanical_scan.hpp"
+#include "sonar/panel.hpp"
 #include "sonar/waterfall_panel.hpp"
 
 namespace neritic::sonar {
@@ -44,18 +45,20 @@ ImageU8 draw_mosaic(const MechanicalScan& scan, const ScanMosaic& mosaic, const 
   const double left = std::round(kLeft * unit), top = std::round(kTop * unit);
   const PlotBox box{left, top, left + wide, top + high};
   const double full_scale = percentile_of_heard(mosaic.intensity, 0.995);
+  const bool levels = scan.options().levels;
   draw_title(canvas, title,
-             fmt::format("{} steps   cells of {} m   full scale {:.3g}, gamma {:g}   blue: track",
-                         scan.steps().size(), number_text(mosaic.cell_m), full_scale, kGamma),
+             fmt::format("{} steps   cells of {} m   {}   blue: track", scan.steps().size(),
+                         number_text(mosaic.cell_m),
+                         levels ? "power re 1 uPa"
+                                : fmt::format("full scale {:.3g}, gamma {:g}", full_scale, kGamma)),
              unit);
   if (!mosaic.intensity.empty()) {
     ImageF32 shades =
         resample_area(mosaic.intensity, mosaic.rows, mosaic.columns,
                       static_cast<std::uint32_t>(wide), static_cast<std::uint32_t>(high));
+    const PanelOptions display{.gamma = kGamma, .span_db = levels ? kScanShown_db : 0.0};
     for (float& v : shades.data)
-      v = std::isnan(v)
-              ? v
-              : static_cast<float>(std::pow(std::clamp(v / full_scale, 0.0, 1.0), kGamma));
+      if (!std::isnan(v)) v = static_cast<float>(panel_brightness(v, full_scale, display));
     draw_shades(canvas, box, shades, Palette::kBronze);
     const double west = static_cast<double>(mosaic.first_column) * mosaic.cell_m,
                  north = static_cast<double>(mosaic.first_row) * mosaic.cell_m;
@@ -67,8 +70,10 @@ ImageU8 draw_mosaic(const MechanicalScan& scan, const ScanMosaic& mosaic, const 
   }
   draw_frame(canvas, box, unit);
   const double bar = canvas.width() - 82 * unit;
-  draw_legend(canvas, {bar, top, bar + 14 * unit, top + 220 * unit}, Palette::kBronze, 0.0, 100.0,
-              "display, %", unit);
+  const double top_db = 10.0 * std::log10(full_scale);
+  draw_legend(canvas, {bar, top, bar + 14 * unit, top + 220 * unit}, Palette::kBronze,
+              levels ? top_db - kScanShown_db : 0.0, levels ? top_db : 100.0,
+              levels ? "dB" : "display, %", unit);
   return canvas.take();
 }
 

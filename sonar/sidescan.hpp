@@ -27,6 +27,7 @@ struct SidescanOptions {
   // A side's first return is the median of this many pings about it (odd): a fish does not move the
   // bottom.
   std::uint32_t tracking_pings = 5;
+  bool levels = false;  // intensities are powers re 1 uPa^2: pictures give their scale in decibels
 
   double range_step_m() const { return (range_max_m - range_min_m) / n_range; }
 };

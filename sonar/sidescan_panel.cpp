@@ -38,16 +38,21 @@ void to_shades(ImageF32& image, double full_scale, double gamma) {
       v = static_cast<float>(std::pow(std::clamp(v / full_scale, 0.0, 1.0), gamma));
 }
 
+std::string scale_text(const SidescanOptions& o, double full_scale) {
+  return o.levels ? fmt::format("{:.0f} dB", 10.0 * std::log10(full_scale))
+                  : fmt::format("{:.2g}", full_scale);
+}
+
 std::string subtitle(const SidescanRecord& record, double full_scale, double gamma) {
   const SidescanOptions& o = record.options();
   const std::vector<double> along = record.along_track_m();
   return fmt::format(
-      "{} pings over {:.4g} m   range {} to {} m a side   full scale {:.3g}, gamma {:g}",
+      "{} pings over {:.4g} m   range {} to {} m a side   full scale {}, gamma {:g}",
       record.pings(), along.empty() ? 0.0 : along.back(), number_text(o.range_min_m),
-      number_text(o.range_max_m), full_scale, gamma);
+      number_text(o.range_max_m), scale_text(o, full_scale), gamma);
 }
 
-void finish(Canvas& canvas, const Layout& layout, double full_scale, double gamma) {
+void finish(Canvas& canvas, const Layout& layout, const std::string& full_scale, double gamma) {
   draw_frame(canvas, layout.box, layout.unit);
   const double bar = layout.width - 82 * layout.unit, top = layout.box.top;
   // The bar is even in brightness: value = full scale * shade^(1 / gamma).
@@ -58,7 +63,7 @@ void finish(Canvas& canvas, const Layout& layout, double full_scale, double gamm
   canvas.text(layout.box.right, layout.box.top - 9 * layout.unit, 10 * layout.unit, "STARBOARD",
               kPlotText, Align::kRight);
   canvas.text(layout.width - 110 * layout.unit + 12 * layout.unit, top + 250 * layout.unit,
-              8 * layout.unit, fmt::format("100%: {:.2g}", full_scale), kPlotText.with_alpha(0.7f));
+              8 * layout.unit, fmt::format("100%: {}", full_scale), kPlotText.with_alpha(0.7f));
   canvas.text(layout.width - 110 * layout.unit + 12 * layout.unit, top + 268 * layout.unit,
               8 * layout.unit, fmt::format("gamma {:g}", gamma), kPlotText.with_alpha(0.7f));
 }
@@ -148,7 +153,7 @@ ImageU8 draw_slant(const SidescanRecord& record, const FirstReturns& bottom,
   }
   draw_ranges(canvas, layout, o.range_min_m, o.range_max_m,
               "slant range, m   (newest ping on top; blue: first bottom return)");
-  finish(canvas, layout, full_scale, options.gamma);
+  finish(canvas, layout, scale_text(o, full_scale), options.gamma);
   return canvas.take();
 }
 
@@ -184,7 +189,7 @@ ImageU8 draw_ground(const SidescanRecord& record, const GroundImage& ground,
                    px_per_m, 0.2 * layout.box.width(), layout.unit);
   }
   draw_ranges(canvas, layout, 0.0, ground.ground_max_m, "ground range, m   (ahead is up)");
-  finish(canvas, layout, full_scale, options.gamma);
+  finish(canvas, layout, scale_text(record.options(), full_scale), options.gamma);
   return canvas.take();
 }
 

@@ -27,6 +27,12 @@ constexpr double kFalseAlarms = 1e-7;    // a bin
 constexpr double kStraightDown = 0.966;  // cosine: 15 degrees of roll and pitch
 constexpr std::uint16_t kSeabedClass = scene::kClasses[0].id;
 
+// A side-scan's options for what pictures tell: brightness, no levels.
+sonar::SidescanOptions brightness_of(sonar::SidescanOptions options) {
+  options.levels = false;
+  return options;
+}
+
 nlohmann::json facts_json(const FrameFacts& facts, std::size_t pings) {
   return {{"scene", facts.scene}, {"seed", facts.seed}, {"device", facts.device}, {"pings", pings}};
 }
@@ -125,16 +131,19 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
         .relative_threshold =
             detection.threshold.value_or(sonar::SidescanOptions{}.relative_threshold),
         .floor_by_bin = floor,
-        .tracking_pings = detection.pings});
+        .tracking_pings = detection.pings,
+        .levels = frame.terms.level.has_value()});
   if (!r.sonar->picture_camera.empty())
-    r.from_pictures = std::make_unique<sonar::SidescanRecord>(r.sidescan->options());
+    r.from_pictures =
+        std::make_unique<sonar::SidescanRecord>(brightness_of(r.sidescan->options()));
   if (frame.kind == SonarKind::kMechanical)
     r.scan = std::make_unique<sonar::MechanicalScan>(sonar::MechanicalScanOptions{
         .n_range = bins,
         .range_min_m = l.range_min_m,
         .range_max_m = l.range_max_m,
         .beam_rad = std::max(r.sonar->step_rad, l.azimuth_max_rad - l.azimuth_min_rad),
-        .elevation_rad = r.sonar->elevation_rad});
+        .elevation_rad = r.sonar->elevation_rad,
+        .levels = frame.terms.level.has_value()});
   if (frame.terms.labels.coco) {
     std::map<std::uint16_t, std::string> names = scene_.class_names;
     for (const scene::ClassName& known : scene::kClasses) names.emplace(known.id, known.name);

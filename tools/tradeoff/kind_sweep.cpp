@@ -129,7 +129,7 @@ class KindSweep {
     TruthRays rays;
     switch (kind_.base.kind) {
       case SonarKind::kImaging:
-        rays = {4.0, 16.0, 3000};
+        rays = {6.0, 24.0, 5000};
         break;
       case SonarKind::kProfiling:
         rays = {8.0, 24.0, 256};
@@ -244,6 +244,7 @@ class KindSweep {
   // A setting as its place on each knob's ladder, coarse to fine: range bins, pixels a cell,
   // columns, rows.
   using Place = std::array<std::size_t, 4>;
+  static constexpr std::size_t kRowsKnob = 3;
 
   struct Ladders {
     std::vector<std::uint32_t> bins;
@@ -269,42 +270,65 @@ class KindSweep {
     return out;
   }
 
-  Result<KindPoint> at(const Ladders& l, const Place& place) {
-    if (const auto found = joint_.find(place); found != joint_.end()) return found->second;
+  Result<KindPoint> measure(const Ladders& l, const Place& place, int repeats) {
     Knobs knobs{l.scales[place[1]], l.columns[place[2]], l.rows[place[3]], "plane",
                 l.bins[place[0]]};
     Sonar sonar = kind_.base;
     sonar.bins_range = knobs.bins_range;
     const bool own = sonar.bins_range == kind_.base.bins_range;
-    NERITIC_TRY(KindPoint p, point(sonar, own ? "base" : key_of_bins(sonar), knobs, false, 3));
+    NERITIC_TRY(KindPoint p,
+                point(sonar, own ? "base" : key_of_bins(sonar), knobs, false, repeats));
     p.sweep = "joint";
     p.setting =
         fmt::format("{:g}, {}, {}, {}", knobs.scale, knobs.columns, knobs.rows, knobs.bins_range);
+    return p;
+  }
+
+  Result<KindPoint> at(const Ladders& l, const Place& place) {
+    if (const auto found = joint_.find(place); found != joint_.end()) return found->second;
+    NERITIC_TRY(const KindPoint p, measure(l, place, 1));
     joint_[place] = p;
     return p;
   }
 
-  // For each bound on the error from the finest setting down: of all knobs that can go a step
-  // coarser, the one that leaves the cheapest ping. What is found is a valley, not surely the
-  // deepest.
+  // From the finest with so many rows down: of the other knobs that can go a step coarser, the one
+  // that leaves the cheapest ping within the bound.
+  Status descend(const Ladders& l, double bound, std::size_t rows) {
+    Place here = l.finest();
+    here[kRowsKnob] = rows;
+    NERITIC_TRY(KindPoint best, at(l, here));
+    while (best.error <= bound) {
+      std::optional<Place> next;
+      for (std::size_t knob = 0; knob < kRowsKnob; ++knob) {
+        if (here[knob] == 0) continue;
+        Place coarser = here;
+        --coarser[knob];
+        NERITIC_TRY(const KindPoint p, at(l, coarser));
+        if (p.error > bound || (next && p.ms() >= best.ms())) continue;
+        next = coarser;
+        best = p;
+      }
+      if (!next) break;
+      here = *next;
+    }
+    return {};
+  }
+
+  // Rows are tried one by one, since the error does not fall evenly with them: where a row is
+  // taller than a bin it is shared out, where it is less tall it is a sample. The cheapest found
+  // is measured as often as the knobs are.
   Status sweep_joint(KindResult& out) {
     const Ladders l = ladders();
     for (const double bound : kBounds) {
-      Place here = l.finest();
-      NERITIC_TRY(KindPoint best, at(l, here));
-      while (best.error <= bound) {
-        std::optional<Place> next;
-        for (std::size_t knob = 0; knob < here.size(); ++knob) {
-          if (here[knob] == 0) continue;
-          Place coarser = here;
-          --coarser[knob];
-          NERITIC_TRY(const KindPoint p, at(l, coarser));
-          if (p.error > bound || (next && p.ms() >= best.ms())) continue;
-          next = coarser;
-          best = p;
-        }
-        if (!next) break;
-        here = *next;
+      for (std::size_t rows = 0; rows < l.rows.size(); ++rows)
+        NERITIC_TRY_STATUS(descend(l, bound, rows));
+      const std::pair<const Place, KindPoint>* best = nullptr;
+      for (const auto& found : joint_)
+        if (found.second.error <= bound && (!best || found.second.ms() < best->second.ms()))
+          best = &found;
+      if (best) {
+        const Place place = best->first;
+        NERITIC_TRY(joint_[place], measure(l, place, repeats()));
       }
     }
     for (const auto& [place, p] : joint_) out.points.push_back(p);
