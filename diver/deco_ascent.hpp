@@ -1,0 +1,50 @@
+// The ascent by DecoConventions, from any depth and tissues: gas switches, the first stop, stops.
+// It allocates nothing, so that a dive computer may ask it in every second. Pure functions; any
+// thread.
+#pragma once
+
+#include <span>
+
+#include "diver/dive_plan.hpp"
+
+namespace neritic::diver {
+
+// What holds during one ascent. Borrows conventions and gases.
+struct AscentSettings {
+  const DecoConventions& conventions;
+  Buehlmann model;  // the conventions'
+  double gf_low = 0.3, gf_high = 0.85;
+  std::span<const PlanGas> gases;
+  bool last_stop_always = true;
+  StepFactors quantum;  // of the stop quantum
+};
+AscentSettings ascent_settings(const DecoConventions& conventions, double gf_low, double gf_high,
+                               std::span<const PlanGas> gases, bool last_stop_always = true);
+
+struct AscentState {
+  TissueState tissues;
+  double run_min = 0.0, depth_m = 0.0;
+  std::size_t gas = 0;
+  // Where GF low was used up in an ascent that is already under way; 0: none yet.
+  double anchor_m = 0.0;
+};
+
+// Is told what the ascent consists of, in its order.
+class AscentSink {
+ public:
+  virtual ~AscentSink() = default;
+  virtual void segment(const PlanSegment& segment) = 0;
+  // At arrival at the first stop.
+  virtual void first_stop(const AscentState&) {}
+  virtual void stop(const PlanStop&) {}
+};
+
+enum class AscentEnd { kDirect, kStops, kNeverClears };
+// Runs state to the surface, or to the depth that is never left (after 200 000 quanta).
+AscentEnd ascend(const AscentSettings& settings, AscentState& state, AscentSink& sink);
+
+// Tissues after a direct ascent on one gas.
+TissueState after_direct_ascent(const AscentSettings& settings, const TissueState& tissues,
+                                double depth_m, const GasMix& gas);
+
+}  // namespace neritic::diver

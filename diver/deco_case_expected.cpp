@@ -1,0 +1,193 @@
+// What a case expects, and the dives before it (deco_case_parts.hpp).
+#include <algorithm>
+#include <array>
+
+#include "diver/deco_case_parts.hpp"
+
+namespace neritic::diver {
+namespace {
+
+bool has_key(const CaseField& object, std::string_view key) {
+  const std::vector<std::string> keys = object.keys();
+  return std::ranges::find(keys, key) != keys.end();
+}
+
+std::optional<ExpectedPoint> read_point(const CaseField& field) {
+  if (!field.present()) return {};
+  ExpectedPoint point;
+  point.run_min = expected_number(field["runtime_min"]);
+  if (!point.run_min) point.run_min = expected_number(field["arrival_runtime_min"]);
+  point.depth_m = expected_number(field["depth_m"]);
+  point.pressure_bar = expected_number(field["abs_pressure_bar"]);
+  point.tissues = read_tissues(field["tissues_n2_he_bar"]);
+  // At surfacing there is one number, of all compartments.
+  const CaseField high = field["ceiling_bar_gf_high"];
+  if (high.is_number())
+    point.deepest_high_bar = high.number(0.0);
+  else
+    point.high_bar = high.numbers(kCompartments);
+  point.low_bar = field["ceiling_bar_gf_low"].numbers(kCompartments);
+  point.full_bar = field["ceiling_bar_gf_100"].numbers(kCompartments);
+  point.leading_low = expected_number(field["leading_compartment_gf_low"]);
+  point.leading_bar = expected_number(field["leading_ceiling_bar"]);
+  point.low_m = expected_number(field["ceiling_m_gf_low"]);
+  point.high_m = expected_number(field["ceiling_m_gf_high"]);
+  return point;
+}
+
+std::vector<ExpectedStop> read_stops(const CaseField& list) {
+  std::vector<ExpectedStop> stops;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const CaseField field = list.at(i);
+    ExpectedStop stop;
+    stop.depth_m = field.required("depth_m").number(0.0, 0.0, 2000.0);
+    stop.minutes = field.required("minutes").number(0.0, 0.0, 1e6);
+    stop.gf_next = expected_number(field["gf_next"]);
+    if (field["o2"].present())
+      stop.mix = mix_of_percent(field["o2"].number(21.0), field["he"].number(0.0));
+    stops.push_back(stop);
+  }
+  return stops;
+}
+
+ExpectedNdl read_ndl(const CaseField& field) {
+  ExpectedNdl ndl;
+  ndl.given = has_key(field, "continuous");
+  ndl.continuous_min = expected_number(field["continuous"]);
+  ndl.whole_min = expected_number(field["whole_minutes"]);
+  return ndl;
+}
+
+SecondOpinion read_opinion(const CaseField& field, const std::string& program) {
+  SecondOpinion opinion;
+  opinion.program = program;
+  opinion.stop_min = expected_number(field["total_stop_time_min"]);
+  opinion.leave_last_min = expected_number(field["runtime_leaving_last_stop_min"]);
+  double stops = opinion.stop_min.value_or(0.0);
+  const auto rows = read_stop_rows(field["stops"]);
+  if (!opinion.stop_min && rows)
+    for (const ExpectedStop& stop : *rows) stops += stop.minutes;
+  opinion.band_min = std::max(3.0, 0.15 * stops);
+  return opinion;
+}
+
+// One dive before. told: where what is expected of it is said, each name after this prefix.
+EarlierCase read_earlier_dive(const CaseField& dive, const CaseField& told,
+                              const std::string& prefix, const DivePlanRequest& base) {
+  EarlierCase one;
+  DivePlanRequest& request = one.earlier.dive;
+  request = base;
+  request.start.reset();
+  read_parameters(dive["parameters"], request);
+  request.levels = read_levels(dive["profile"].present() ? dive["profile"] : dive);
+  if (dive["gases"].present()) request.gases = read_gases(dive["gases"]);
+  one.stops = read_stop_rows(told[prefix + "stops"]);
+  one.run_min = expected_number(told[prefix + "runtime_min"]);
+  if (one.stops && !one.stops->empty())
+    request.last_stop_always = one.stops->front().depth_m >= request.conventions.last_stop_m;
+  return one;
+}
+
+// The i-th of a list, or the one thing that is no list.
+CaseField one_of(const CaseField& field, std::size_t i) {
+  return field.is_array() ? field.at(i) : field;
+}
+
+// Dives by their ordinal names, with what is said beside them.
+std::vector<EarlierCase> read_ordinals(const CaseField& field, const DivePlanRequest& base) {
+  constexpr std::array<const char*, 6> kOrdinals{"first_",  "second_", "third_",
+                                                 "fourth_", "fifth_",  "sixth_"};
+  std::vector<EarlierCase> out;
+  for (std::size_t i = 0; i < kOrdinals.size(); ++i) {
+    const std::string prefix = std::string(kOrdinals[i]) + "dive_";
+    const CaseField dive = field[prefix.substr(0, prefix.size() - 1)];
+    if (!dive.present()) break;
+    out.push_back(read_earlier_dive(dive, field, prefix, base));
+    const CaseField own = dive["surface_interval_min"];
+    const CaseField interval =
+        own.present() ? own : one_of(field.required("surface_interval_min"), i);
+    out.back().earlier.surface_min = interval.number(0.0, 0.0, 1e9);
+    out.back().earlier.surface_gas = read_surface_gas(one_of(field["surface_interval_gas"], i));
+  }
+  if (out.empty()) {
+    field.fail("no dive found; first_dive, or a list of dives, is accepted");
+    return out;
+  }
+  // Tables: of the last dive, or one a dive.
+  const auto table = [&](const char* key, std::size_t i) -> std::optional<TissueState> {
+    const CaseField all = field[key];
+    if (!all.is_array()) return {};
+    const bool many = all.at(0).is_array() && all.at(0).at(0).is_array();
+    if (many) return read_tissues(all.at(i));
+    return i + 1 == out.size() ? read_tissues(all) : std::nullopt;
+  };
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].surfacing = table("tissues_at_surfacing", i);
+    out[i].after_interval = table("tissues_after_interval", i);
+  }
+  return out;
+}
+
+std::vector<EarlierCase> read_list(const CaseField& list, const CaseField& around,
+                                   const DivePlanRequest& base) {
+  std::vector<EarlierCase> out;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const CaseField entry = list.at(i);
+    if (entry["first_dive"].present()) {
+      const std::vector<EarlierCase> more = read_ordinals(entry, base);
+      out.insert(out.end(), more.begin(), more.end());
+      continue;
+    }
+    const CaseField inner = entry["dive"];
+    EarlierCase one = read_earlier_dive(inner.present() ? inner : entry, entry, "", base);
+    const CaseField own = entry["surface_interval_min"];
+    const CaseField interval =
+        own.present() ? own : one_of(around.required("surface_interval_min"), i);
+    one.earlier.surface_min = interval.number(0.0, 0.0, 1e9);
+    const CaseField gas = entry["surface_interval_gas"];
+    one.earlier.surface_gas =
+        read_surface_gas(gas.present() ? gas : one_of(around["surface_interval_gas"], i));
+    one.surfacing = read_tissues(entry["tissues_at_surfacing"]);
+    one.after_interval = read_tissues(entry["tissues_after_interval"]);
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+}  // namespace
+
+DecoExpected read_expected(const CaseField& profile) {
+  DecoExpected expected;
+  const CaseField reference = profile["reference"];
+  expected.end_of_bottom = read_point(reference["end_of_bottom"]);
+  expected.first_stop = read_point(reference["first_stop"]);
+  expected.surfacing = read_point(reference["surfacing"]);
+  if (reference["stops"].present()) expected.stops = read_stops(reference["stops"]);
+  if (reference["no_deco"].present()) expected.no_stops = reference["no_deco"].boolean(false);
+  expected.stop_min = expected_number(reference["total_stop_time_min"]);
+  expected.ascent_min = expected_number(reference["time_to_surface_min"]);
+  expected.run_min = expected_number(reference["total_runtime_min"]);
+  expected.ndl = read_ndl(reference["ndl_bottom_gas_runtime_min"]);
+  const CaseField oxygen = profile["oxygen_exposure"];
+  expected.cns_percent = expected_number(oxygen["cns_percent"]);
+  expected.otu = expected_number(oxygen["otu"]);
+  expected.max_po2_bar = expected_number(oxygen["max_po2_bar"]);
+  const CaseField opinions = profile["second_opinions"];
+  for (const std::string& program : opinions.keys())
+    if (opinions[program].present())
+      expected.opinions.push_back(read_opinion(opinions[program], program));
+  return expected;
+}
+
+std::vector<EarlierCase> read_earlier(const CaseField& repetitive, const DivePlanRequest& base) {
+  if (!repetitive.present()) return {};
+  if (repetitive.is_array()) {
+    // A list has nothing around it.
+    return read_list(repetitive, repetitive.at(repetitive.size()), base);
+  }
+  for (const char* name : {"dives", "earlier_dives", "previous_dives"})
+    if (repetitive[name].present()) return read_list(repetitive[name], repetitive, base);
+  return read_ordinals(repetitive, base);
+}
+
+}  // namespace neritic::diver

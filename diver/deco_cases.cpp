@@ -1,0 +1,128 @@
+#include "diver/deco_cases.hpp"
+
+#include <set>
+
+#include "diver/deco_case_parts.hpp"
+
+namespace neritic::diver {
+namespace {
+
+constexpr std::size_t kMostCases = 100000;
+
+std::vector<ReplayedSegment> read_segments(const CaseField& field) {
+  if (!field.present()) return {};
+  const CaseField columns = field.required("columns"), rows = field.required("rows");
+  // Where each of what is read stands; none: the number of columns.
+  constexpr const char* kNames[] = {"from_m", "to_m", "minutes", "o2_percent", "he_percent"};
+  std::size_t at[std::size(kNames)];
+  for (std::size_t i = 0; i < std::size(kNames); ++i) {
+    at[i] = columns.size();
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      if (columns.at(k).text() == kNames[i]) at[i] = k;
+    if (at[i] == columns.size() && i < 3)
+      columns.fail(fmt::format("no {} found, but needed", kNames[i]));
+  }
+  std::vector<ReplayedSegment> out;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const CaseField row = rows.at(r);
+    if (row.size() != columns.size()) row.refuse(fmt::format("a row of {} is", columns.size()));
+    const auto number = [&](std::size_t which, double fallback, double least, double most) {
+      return at[which] == columns.size() ? fallback
+                                         : row.at(at[which]).number(fallback, least, most);
+    };
+    const double o2 = number(3, 21.0, 1.0, 100.0), he = number(4, 0.0, 0.0, 100.0 - o2);
+    out.push_back({number(0, 0.0, -1.0, 2000.0), number(1, 0.0, -1.0, 2000.0),
+                   number(2, 0.0, 0.0, 1e6), mix_of_percent(o2, he)});
+  }
+  return out;
+}
+
+// What a request gets wrong is said in the case that it is of.
+void check_read(const CaseField& field, const DivePlanRequest& request) {
+  const Status status = check_request(request);
+  if (!status.ok()) field.fail(status.error().message);
+}
+
+DecoCase read_case(const CaseField& profile, std::string id) {
+  DecoCase one;
+  one.id = std::move(id);
+  DivePlanRequest& request = one.request;
+  read_model(profile.required("model"), profile["coefficient_table"], request.conventions);
+  const CaseField parameters = profile.required("parameters");
+  parameters.required("gf_low");
+  parameters.required("gf_high");
+  read_parameters(parameters, request);
+  request.gases = read_gases(profile.required("gases"));
+  one.earlier = read_earlier(profile["repetitive"], request);
+  request.levels = read_levels(profile.required("profile"));
+  request.start = read_tissues(profile["initial_tissues"]);
+  one.segments = read_segments(profile["segments"]);
+  one.expected = read_expected(profile);
+  if (one.expected.stops && !one.expected.stops->empty())
+    request.last_stop_always =
+        one.expected.stops->front().depth_m >= request.conventions.last_stop_m;
+  check_read(profile, request);
+  for (const EarlierCase& earlier : one.earlier)
+    check_read(profile["repetitive"], earlier.earlier.dive);
+  return one;
+}
+
+NdlTable read_table(const CaseField& table, std::string id) {
+  NdlTable out;
+  out.id = std::move(id);
+  DivePlanRequest& request = out.request;
+  read_model(table.required("model"), table["coefficient_table"], request.conventions);
+  request.gf_low = table["gf_high"].number(request.gf_high, 0.01, 1.5);
+  read_parameters(table, request);
+  request.gases = {PlanGas{
+      mix_of_percent(table["o2"].number(21.0, 1.0, 100.0), table["he"].number(0.0, 0.0, 99.0)), 0.0,
+      GasRole::kBottom}};
+  const CaseField rows = table.required("rows");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const CaseField row = rows.at(i);
+    NdlRow one;
+    one.depth_m = row.required("depth_m").number(1.0, 0.01, 2000.0);
+    one.run_min = expected_number(row["decotengu_runtime_min"]);
+    one.whole_min = expected_number(row["decotengu_runtime_whole_min"]);
+    one.closed_min = expected_number(row["closed_form_time_at_depth_min"]);
+    one.compartment = expected_number(row["controlling_compartment"]);
+    out.rows.push_back(one);
+  }
+  request.levels = {{out.rows.empty() ? 10.0 : out.rows[0].depth_m, 1e6}};
+  check_read(table, request);
+  return out;
+}
+
+}  // namespace
+
+Result<DecoCases> read_deco_cases(std::string_view text, std::string name) {
+  NERITIC_TRY(CaseFile file, CaseFile::parse(text, std::move(name)));
+  const CaseField root = file.root();
+  DecoCases out;
+  out.tissues_bar = root["tolerances"]["tissues_bar"].number(out.tissues_bar, 0.0, 1.0);
+  out.ndl_min = root["tolerances"]["ndl_continuous_min"].number(out.ndl_min, 0.0, 10.0);
+  const CaseField profiles = root["profiles"], tables = root["ndl_tables"];
+  if (profiles.size() + tables.size() == 0 && !file.failed())
+    profiles.fail("no case found, a list of dives, or of ndl_tables, is accepted");
+  if (profiles.size() + tables.size() > kMostCases) profiles.fail("more than 100000 cases found");
+  std::set<std::string> ids;
+  for (std::size_t i = 0; i < profiles.size() && !file.failed(); ++i) {
+    const CaseField profile = profiles.at(i);
+    std::string id = profile.required("id").text();
+    if (!ids.insert(id).second) profile["id"].fail(fmt::format("'{}' is there twice", id));
+    file.enter_case(id);
+    out.dives.push_back(read_case(profile, std::move(id)));
+  }
+  for (std::size_t i = 0; i < tables.size() && !file.failed(); ++i) {
+    const CaseField table = tables.at(i);
+    file.enter_case("");
+    const double high = table.required("gf_high").number(0.85, 0.01, 1.5);
+    std::string id = fmt::format("ndl_{}_gf{:.0f}_o2_{:g}", table["model"].text(), 100.0 * high,
+                                 table["o2"].number(21.0));
+    out.tables.push_back(read_table(table, std::move(id)));
+  }
+  if (file.failed()) return file.error();
+  return out;
+}
+
+}  // namespace neritic::diver

@@ -1,0 +1,251 @@
+#include "diver/dive_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diver/deco_ascent.hpp"
+#include "diver/gas_label.hpp"
+
+namespace neritic::diver {
+namespace {
+
+constexpr double kSameMinute = 1e-9;
+constexpr double kDeepest_m = 2000.0;
+
+bool within(double value, double least, double most) {
+  return value >= least && value <= most;  // false where it is no number
+}
+
+Status check_conventions(const DecoConventions& c) {
+  const DecoEnvironment& e = c.environment;
+  if (!within(e.surface_bar, 0.2, 5.0))
+    return bad_input("surface pressure {} bar found, 0.2 to 5 is accepted", e.surface_bar);
+  if (!within(e.bar_per_m, 0.05, 0.2))
+    return bad_input("{} bar a metre found, 0.05 to 0.2 is accepted", e.bar_per_m);
+  if (!within(c.water_vapour_bar, 0.0, 0.1) || !within(c.start_n2, 0.0, 1.0))
+    return bad_input(
+        "water vapour {} bar, start at {} of nitrogen found; 0 to 0.1 and 0 to 1 are "
+        "accepted",
+        c.water_vapour_bar, c.start_n2);
+  if (!within(c.descent_m_min, 0.1, 1000.0) || !within(c.ascent_m_min, 0.1, 1000.0))
+    return bad_input("rates of {} down and {} up found, 0.1 to 1000 m/min are accepted",
+                     c.descent_m_min, c.ascent_m_min);
+  if (!within(c.stop_step_m, 0.1, 100.0) || !within(c.stop_quantum_min, 0.01, 60.0))
+    return bad_input("stops every {} m and {} min found; 0.1 to 100 and 0.01 to 60 are accepted",
+                     c.stop_step_m, c.stop_quantum_min);
+  const double steps = c.last_stop_m / c.stop_step_m;
+  if (!within(steps, 1.0, 100.0) || std::abs(steps - std::round(steps)) > 1e-9)
+    return bad_input("last stop {} m found, a multiple of {} m is accepted", c.last_stop_m,
+                     c.stop_step_m);
+  if (!within(c.saturation, 0.1, 10.0) || !within(c.desaturation, 0.1, 10.0))
+    return bad_input("saturation {}, desaturation {} found; 0.1 to 10 is accepted", c.saturation,
+                     c.desaturation);
+  return {};
+}
+
+Status check_gases(const std::vector<PlanGas>& gases) {
+  if (gases.empty() || gases.size() > 32)
+    return bad_input("{} gases found, 1 to 32 are accepted", gases.size());
+  for (const PlanGas& gas : gases) {
+    if (!within(gas.mix.oxygen, 0.01, 1.0) || !within(gas.mix.helium, 0.0, 0.99) ||
+        gas.mix.nitrogen() < -1e-9)
+      return bad_input("gas of {} oxygen and {} helium found, shares of one gas are accepted",
+                       gas.mix.oxygen, gas.mix.helium);
+    if (!within(gas.switch_depth_m, 0.0, kDeepest_m))
+      return bad_input("switch to {} at {} m found, 0 to {} m is accepted", name_of(gas.mix),
+                       gas.switch_depth_m, kDeepest_m);
+  }
+  const auto is_bottom = [](const PlanGas& gas) { return gas.role == GasRole::kBottom; };
+  if (std::ranges::count_if(gases, is_bottom) != 1)
+    return bad_input("{} bottom gases found, one is accepted",
+                     std::ranges::count_if(gases, is_bottom));
+  return {};
+}
+
+Status check_numbers(const DivePlanRequest& r) {
+  NERITIC_TRY_STATUS(check_conventions(r.conventions));
+  NERITIC_TRY_STATUS(check_gases(r.gases));
+  if (!within(r.gf_low, 0.01, 1.5) || !within(r.gf_high, r.gf_low, 1.5))
+    return bad_input("gradient factors {}/{} found; 0.01 to 1.5, low not above high, are accepted",
+                     r.gf_low, r.gf_high);
+  if (r.levels.empty()) return bad_input("no depth found, at least one is accepted");
+  for (const PlanLevel& level : r.levels)
+    if (!within(level.depth_m, 0.01, kDeepest_m) || !within(level.leave_min, 0.0, 1e6))
+      return bad_input("{} m until {} min found; 0.01 to {} m and at most 1000000 min are accepted",
+                       level.depth_m, level.leave_min, kDeepest_m);
+  if (!r.start) return {};
+  for (const Compartments* gas : {&r.start->n2_bar, &r.start->he_bar})
+    for (const double bar : *gas)
+      if (!within(bar, 0.0, 1000.0))
+        return bad_input("{} bar in a tissue found, 0 to 1000 is accepted", bar);
+  return {};
+}
+
+// Collects what the dive consists of.
+class PlanWriter : public AscentSink {
+ public:
+  PlanWriter(const DivePlanRequest& request, DivePlan& plan) : request_(request), plan_(plan) {}
+
+  void segment(const PlanSegment& s) override {
+    if (s.minutes <= 0.0) return;
+    plan_.segments.push_back(s);
+    const DecoEnvironment& where = request_.conventions.environment;
+    const double o2 = request_.gases[s.gas].mix.oxygen;
+    const double from = o2 * where.pressure_bar(s.from_m), to = o2 * where.pressure_bar(s.to_m);
+    const OxygenExposure more =
+        oxygen_exposure(from, to, s.minutes, request_.conventions.cns_from_bar);
+    plan_.oxygen.cns_percent += more.cns_percent;
+    plan_.oxygen.otu += more.otu;
+    plan_.max_po2_bar = std::max({plan_.max_po2_bar, from, to});
+  }
+  void first_stop(const AscentState& s) override {
+    plan_.first_stop = PlanPoint{s.run_min, s.depth_m, s.tissues};
+  }
+  void stop(const PlanStop& s) override { plan_.stops.push_back(s); }
+
+ private:
+  const DivePlanRequest& request_;
+  DivePlan& plan_;
+};
+
+// The gas for the way down at a depth: of travel and bottom gas that with the deepest switch that
+// is not deeper. At the surface that with the shallowest.
+std::size_t gas_down_to(const std::vector<PlanGas>& gases, double depth_m) {
+  std::size_t best = gases.size(), shallowest = gases.size();
+  for (std::size_t i = 0; i < gases.size(); ++i) {
+    if (gases[i].role == GasRole::kDeco) continue;
+    const double at = gases[i].switch_depth_m;
+    if (shallowest == gases.size() || at < gases[shallowest].switch_depth_m) shallowest = i;
+    if (at <= depth_m && (best == gases.size() || at >= gases[best].switch_depth_m)) best = i;
+  }
+  return best == gases.size() ? shallowest : best;
+}
+
+// The way down and the levels.
+class WayDown {
+ public:
+  WayDown(const DivePlanRequest& request, const AscentSettings& settings, AscentState& state,
+          AscentSink& sink)
+      : request_(request), settings_(settings), state_(state), sink_(sink) {}
+
+  Status run() {
+    state_.gas = gas_down_to(request_.gases, 0.0);
+    for (const PlanLevel& level : request_.levels) {
+      if (level.depth_m > state_.depth_m)
+        descend(level.depth_m);
+      else
+        move(level.depth_m, (state_.depth_m - level.depth_m) / request_.conventions.ascent_m_min,
+             PlanPhase::kAscent);
+      const double minutes = level.leave_min - state_.run_min;
+      if (minutes < -kSameMinute)
+        return bad_input("{:g} m is reached after {:.4g} min, but to be left at {:g}",
+                         level.depth_m, state_.run_min, level.leave_min);
+      move(level.depth_m, std::max(minutes, 0.0), PlanPhase::kBottom);
+      state_.run_min = std::max(level.leave_min, state_.run_min);
+    }
+    return {};
+  }
+
+ private:
+  void move(double to_m, double minutes, PlanPhase phase) {
+    const DecoEnvironment& where = request_.conventions.environment;
+    state_.tissues = load(settings_.model, state_.tissues, where.pressure_bar(state_.depth_m),
+                          where.pressure_bar(to_m), minutes, request_.gases[state_.gas].mix);
+    sink_.segment({state_.depth_m, to_m, minutes, state_.gas, phase});
+    state_.depth_m = to_m;
+    state_.run_min += minutes;
+  }
+
+  void descend(double to_m) {
+    while (state_.depth_m < to_m) {
+      double next = to_m;  // or where the next gas is breathed
+      for (const PlanGas& gas : request_.gases)
+        if (gas.role != GasRole::kDeco && gas.switch_depth_m > state_.depth_m)
+          next = std::min(next, gas.switch_depth_m);
+      move(next, (next - state_.depth_m) / request_.conventions.descent_m_min, PlanPhase::kDescent);
+      const std::size_t gas = gas_down_to(request_.gases, next);
+      if (request_.gases[gas].switch_depth_m > request_.gases[state_.gas].switch_depth_m)
+        state_.gas = gas;
+    }
+  }
+
+  const DivePlanRequest& request_;
+  const AscentSettings& settings_;
+  AscentState& state_;
+  AscentSink& sink_;
+};
+
+PlanPoint point_of(const AscentState& s) {
+  return {s.run_min, s.depth_m, s.tissues};
+}
+
+AscentSettings settings_of(const DivePlanRequest& r) {
+  return ascent_settings(r.conventions, r.gf_low, r.gf_high, r.gases, r.last_stop_always);
+}
+
+AscentState start_of(const DivePlanRequest& request, const AscentSettings& settings) {
+  const DecoConventions& c = request.conventions;
+  AscentState state;
+  state.tissues =
+      request.start.value_or(saturated(settings.model, c.environment.surface_bar, c.start_n2));
+  return state;
+}
+
+}  // namespace
+
+double DivePlan::stop_min() const {
+  double sum = 0.0;
+  for (const PlanStop& stop : stops) sum += stop.minutes;
+  return sum;
+}
+
+Status check_request(const DivePlanRequest& request) {
+  const auto end = end_of_levels(request);
+  return end.ok() ? Status{} : Status{end.error()};
+}
+
+Result<PlanPoint> end_of_levels(const DivePlanRequest& request) {
+  NERITIC_TRY_STATUS(check_numbers(request));
+  const AscentSettings settings = settings_of(request);
+  AscentState state = start_of(request, settings);
+  DivePlan plan;
+  PlanWriter writer(request, plan);
+  NERITIC_TRY_STATUS(WayDown(request, settings, state, writer).run());
+  return point_of(state);
+}
+
+Result<DivePlan> plan_dive(const DivePlanRequest& request) {
+  NERITIC_TRY_STATUS(check_numbers(request));
+  const AscentSettings settings = settings_of(request);
+  AscentState state = start_of(request, settings);
+  DivePlan plan;
+  plan.start = point_of(state);
+  PlanWriter writer(request, plan);
+  NERITIC_TRY_STATUS(WayDown(request, settings, state, writer).run());
+  plan.end_of_bottom = point_of(state);
+  const AscentEnd end = ascend(settings, state, writer);
+  if (end == AscentEnd::kNeverClears)
+    return bad_input("at {:g} m on {} the ceiling never clears", state.depth_m,
+                     name_of(request.gases[state.gas].mix));
+  plan.no_stops = end == AscentEnd::kDirect;
+  plan.surfacing = point_of(state);
+  return plan;
+}
+
+Result<TissueState> tissues_after(const std::vector<EarlierDive>& dives,
+                                  std::vector<DivePlan>* plans) {
+  std::optional<TissueState> tissues;
+  for (const EarlierDive& earlier : dives) {
+    DivePlanRequest request = earlier.dive;
+    if (tissues) request.start = tissues;
+    NERITIC_TRY(DivePlan plan, plan_dive(request));
+    const double surface = request.conventions.environment.surface_bar;
+    tissues = load(request.conventions.model(), plan.surfacing.tissues, surface, surface,
+                   earlier.surface_min, earlier.surface_gas);
+    if (plans) plans->push_back(std::move(plan));
+  }
+  if (!tissues) return bad_input("no earlier dive found, at least one is accepted");
+  return *tissues;
+}
+
+}  // namespace neritic::diver
