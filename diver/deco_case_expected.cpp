@@ -35,21 +35,6 @@ std::optional<ExpectedPoint> read_point(const CaseField& field) {
   return point;
 }
 
-std::vector<ExpectedStop> read_stops(const CaseField& list) {
-  std::vector<ExpectedStop> stops;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const CaseField field = list.at(i);
-    ExpectedStop stop;
-    stop.depth_m = field.required("depth_m").number(0.0, 0.0, 2000.0);
-    stop.minutes = field.required("minutes").number(0.0, 0.0, 1e6);
-    stop.gf_next = expected_number(field["gf_next"]);
-    if (field["o2"].present())
-      stop.mix = mix_of_percent(field["o2"].number(21.0), field["he"].number(0.0));
-    stops.push_back(stop);
-  }
-  return stops;
-}
-
 ExpectedNdl read_ndl(const CaseField& field) {
   ExpectedNdl ndl;
   ndl.given = has_key(field, "continuous");
@@ -64,7 +49,7 @@ SecondOpinion read_opinion(const CaseField& field, const std::string& program) {
   opinion.stop_min = expected_number(field["total_stop_time_min"]);
   opinion.leave_last_min = expected_number(field["runtime_leaving_last_stop_min"]);
   double stops = opinion.stop_min.value_or(0.0);
-  const auto rows = read_stop_rows(field["stops"]);
+  const auto rows = read_stops(field["stops"]);
   if (!opinion.stop_min && rows)
     for (const ExpectedStop& stop : *rows) stops += stop.minutes;
   opinion.band_min = std::max(3.0, 0.15 * stops);
@@ -81,7 +66,7 @@ EarlierCase read_earlier_dive(const CaseField& dive, const CaseField& told,
   read_parameters(dive["parameters"], request);
   request.levels = read_levels(dive["profile"].present() ? dive["profile"] : dive);
   if (dive["gases"].present()) request.gases = read_gases(dive["gases"]);
-  one.stops = read_stop_rows(told[prefix + "stops"]);
+  one.stops = read_stops(told[prefix + "stops"]);
   one.run_min = expected_number(told[prefix + "runtime_min"]);
   if (one.stops && !one.stops->empty())
     request.last_stop_always = one.stops->front().depth_m >= request.conventions.last_stop_m;
@@ -91,6 +76,15 @@ EarlierCase read_earlier_dive(const CaseField& dive, const CaseField& told,
 // The i-th of a list, or the one thing that is no list.
 CaseField one_of(const CaseField& field, std::size_t i) {
   return field.is_array() ? field.at(i) : field;
+}
+
+// Minutes at the surface after the i-th dive: said in its entry, or around it.
+double read_interval(const CaseField& entry, const CaseField& around, std::size_t i) {
+  const CaseField own = entry["surface_interval_min"];
+  const CaseField interval =
+      own.present() ? own : one_of(around.required("surface_interval_min"), i);
+  if (!interval.present()) interval.refuse("minutes at the surface are");
+  return interval.number(0.0, 0.0, 1e9);
 }
 
 // Dives by their ordinal names, with what is said beside them.
@@ -103,16 +97,10 @@ std::vector<EarlierCase> read_ordinals(const CaseField& field, const DivePlanReq
     const CaseField dive = field[prefix.substr(0, prefix.size() - 1)];
     if (!dive.present()) break;
     out.push_back(read_earlier_dive(dive, field, prefix, base));
-    const CaseField own = dive["surface_interval_min"];
-    const CaseField interval =
-        own.present() ? own : one_of(field.required("surface_interval_min"), i);
-    out.back().earlier.surface_min = interval.number(0.0, 0.0, 1e9);
+    out.back().earlier.surface_min = read_interval(dive, field, i);
     out.back().earlier.surface_gas = read_surface_gas(one_of(field["surface_interval_gas"], i));
   }
-  if (out.empty()) {
-    field.fail("no dive found; first_dive, or a list of dives, is accepted");
-    return out;
-  }
+  if (out.empty()) field.fail("no dive found; first_dive, or a list of dives, is accepted");
   // Tables: of the last dive, or one a dive.
   const auto table = [&](const char* key, std::size_t i) -> std::optional<TissueState> {
     const CaseField all = field[key];
@@ -140,10 +128,7 @@ std::vector<EarlierCase> read_list(const CaseField& list, const CaseField& aroun
     }
     const CaseField inner = entry["dive"];
     EarlierCase one = read_earlier_dive(inner.present() ? inner : entry, entry, "", base);
-    const CaseField own = entry["surface_interval_min"];
-    const CaseField interval =
-        own.present() ? own : one_of(around.required("surface_interval_min"), i);
-    one.earlier.surface_min = interval.number(0.0, 0.0, 1e9);
+    one.earlier.surface_min = read_interval(entry, around, i);
     const CaseField gas = entry["surface_interval_gas"];
     one.earlier.surface_gas =
         read_surface_gas(gas.present() ? gas : one_of(around["surface_interval_gas"], i));
@@ -162,7 +147,7 @@ DecoExpected read_expected(const CaseField& profile) {
   expected.end_of_bottom = read_point(reference["end_of_bottom"]);
   expected.first_stop = read_point(reference["first_stop"]);
   expected.surfacing = read_point(reference["surfacing"]);
-  if (reference["stops"].present()) expected.stops = read_stops(reference["stops"]);
+  expected.stops = read_stops(reference["stops"]);
   if (reference["no_deco"].present()) expected.no_stops = reference["no_deco"].boolean(false);
   expected.stop_min = expected_number(reference["total_stop_time_min"]);
   expected.ascent_min = expected_number(reference["time_to_surface_min"]);
@@ -185,8 +170,10 @@ std::vector<EarlierCase> read_earlier(const CaseField& repetitive, const DivePla
     // A list has nothing around it.
     return read_list(repetitive, repetitive.at(repetitive.size()), base);
   }
-  for (const char* name : {"dives", "earlier_dives", "previous_dives"})
-    if (repetitive[name].present()) return read_list(repetitive[name], repetitive, base);
+  if (repetitive["first_dive"].present()) return read_ordinals(repetitive, base);
+  for (const std::string& name : repetitive.keys())
+    if (repetitive[name].is_array() && repetitive[name].at(0).is_object())
+      return read_list(repetitive[name], repetitive, base);
   return read_ordinals(repetitive, base);
 }
 

@@ -116,10 +116,26 @@ std::vector<PlanLevel> read_levels(const CaseField& profile) {
   return out;
 }
 
-std::optional<std::vector<ExpectedStop>> read_stop_rows(const CaseField& field) {
-  if (!field.present()) return {};
+std::optional<std::vector<ExpectedStop>> read_stops(const CaseField& list) {
+  if (!list.present()) return {};
   std::vector<ExpectedStop> stops;
-  for (const std::vector<double>& row : field.rows(0, 2)) stops.push_back({row[0], row[1], {}, {}});
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const CaseField field = list.at(i);
+    ExpectedStop stop;
+    if (field.is_array()) {
+      const std::vector<double> row = field.numbers(2);
+      if (row.empty()) return {};
+      stop.depth_m = row[0];
+      stop.minutes = row[1];
+    } else {
+      stop.depth_m = field.required("depth_m").number(0.0, 0.0, 2000.0);
+      stop.minutes = field.required("minutes").number(0.0, 0.0, 1e6);
+      stop.gf_next = expected_number(field["gf_next"]);
+      if (field["o2"].present())
+        stop.mix = mix_of_percent(field["o2"].number(21.0), field["he"].number(0.0));
+    }
+    stops.push_back(stop);
+  }
   return stops;
 }
 

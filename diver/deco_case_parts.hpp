@@ -21,8 +21,8 @@ std::vector<PlanGas> read_gases(const CaseField& gases);
 GasMix read_surface_gas(const CaseField& field);
 // kind, depth_m, bottom_runtime_min, levels of `profile`.
 std::vector<PlanLevel> read_levels(const CaseField& profile);
-// Rows of depth, minutes.
-std::optional<std::vector<ExpectedStop>> read_stop_rows(const CaseField& field);
+// A list of depth_m, minutes, and gf_next, o2, he where they are there; or rows of depth, minutes.
+std::optional<std::vector<ExpectedStop>> read_stops(const CaseField& list);
 // Of one profile.
 DecoExpected read_expected(const CaseField& profile);
 std::vector<EarlierCase> read_earlier(const CaseField& repetitive, const DivePlanRequest& base);

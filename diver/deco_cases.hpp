@@ -22,8 +22,8 @@
 //       ["air" or "O2/He"], and expected: first_dive_stops (rows of depth, minutes),
 //       first_dive_runtime_min, tissues_at_surfacing, tissues_after_interval. Several: second_dive,
 //       third_dive, and so on likewise with surface_interval_min a list; or a list of dives, oldest
-//       first, as repetitive, or in it as dives or earlier_dives, each with its own
-//       surface_interval_min and with stops, runtime_min and the tissues expected of it
+//       first, as repetitive, or in it under any name, each with its own surface_interval_min and
+//       with stops, runtime_min and the tissues expected of it
 //     segments: columns (from_m, to_m, minutes, o2_percent, he_percent, phase) and rows: replayed
 //     reference: end_of_bottom, first_stop, stops, surfacing, and so on: expected
 //       (DecoExpected). A first stop shallower than last_stop_m stands for a planner that made it

@@ -165,6 +165,7 @@ class DiveCheck {
     for (std::size_t i = 0; i < std::min(plan.stops.size(), e.stops->size()); ++i) {
       const PlanStop& found = plan.stops[i];
       const ExpectedStop& expected = (*e.stops)[i];
+      errors_.add("stops' depths", "m", found.depth_m - expected.depth_m, kDepth_m);
       errors_.add("stops' gradient factors", "", found.gf_next, expected.gf_next, kGf);
       if (!expected.mix) continue;
       const GasMix& mix = request.gases[found.gas].mix;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace neritic::diver {
@@ -91,7 +92,7 @@ double air_depth_m(const GasMix& mix, double depth_m, const DecoEnvironment& whe
 }
 
 double gas_density_g_l(const GasMix& mix, double pressure_bar) {
-  return pressure_bar * (1.429 * mix.oxygen + 1.251 * mix.nitrogen() + 0.179 * mix.helium);
+  return pressure_bar * (1.429 * mix.oxygen + 1.2505 * mix.nitrogen() + 0.179 * mix.helium);
 }
 
 }  // namespace neritic::diver

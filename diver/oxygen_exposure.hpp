@@ -43,9 +43,9 @@ double narcotic_depth_m(const GasMix& mix, double depth_m, const DecoEnvironment
 // where nitrogen alone narcotises.
 double air_depth_m(const GasMix& mix, double depth_m, const DecoEnvironment& where);
 
-// Gas density, g/L, from 1.429, 1.251, 0.179 of oxygen, nitrogen, helium a bar at 0 C, as the
-// limits are given (G. Anthony, S. J. Mitchell 2016): above 5.2 breathing becomes hard, 6.2 is the
-// most.
+// Gas density, g/L, from 1.429, 1.2505, 0.179 of oxygen, nitrogen, helium a bar (theirs at 0 C), as
+// the limits are given (G. Anthony, S. J. Mitchell 2016): above 5.2 breathing becomes hard, 6.2 is
+// the most.
 double gas_density_g_l(const GasMix& mix, double pressure_bar);
 inline constexpr double kAdvisedDensity_g_l = 5.2, kMostDensity_g_l = 6.2;
 

@@ -76,7 +76,7 @@ TEST(CheckCommand, Status2AndOneLineWhereThereIsNothingToCheck) {
   for (const auto& [arguments, error] :
        {std::pair{"rov " + bad, bad + ": case 'a': scenarios[0].params: not found, but needed\n"},
         {std::string("rov nowhere.json"), std::string("nowhere.json: no such file\n")},
-        {std::string("diver x"), std::string("check: 'diver' found, rov or control is accepted\n")},
+        {std::string("diver x"), std::string("check: 'diver' found, rov, control or deco is accepted\n")},
         {"rov --hz 0 " + bad, std::string("check: --hz 0 found, 1 to 100000 is accepted\n")},
         {"rov --integrator euler " + bad,
          std::string("integrator 'euler' found, semi_euler, rk4 or guarded is accepted\n")}}) {

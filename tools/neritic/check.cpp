@@ -1,7 +1,8 @@
-// `neritic check rov|control FILE`: every case of a file of trajectories or of control, run and
-// compared; a line a case.
+// `neritic check rov|control|deco FILE`: every case of a file of trajectories, of control or of
+// decompression, run and compared; a line a case.
 #include <nlohmann/json.hpp>
 
+#include "diver/deco_check.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "rov/control_check.hpp"
@@ -12,12 +13,16 @@ namespace neritic::tools {
 namespace {
 
 Result<std::vector<CaseResult>> check_file(const CheckFlags& flags) {
-  if (flags.what != "rov" && flags.what != "control")
-    return bad_input("check: '{}' found, rov or control is accepted", flags.what);
+  if (flags.what != "rov" && flags.what != "control" && flags.what != "deco")
+    return bad_input("check: '{}' found, rov, control or deco is accepted", flags.what);
   if (!(flags.hz >= 1.0 && flags.hz <= 1e5))
     return bad_input("check: --hz {} found, 1 to 100000 is accepted", flags.hz);
   NERITIC_TRY(const rov::Integrator integrator, rov::integrator_of(flags.integrator));
   NERITIC_TRY(const std::string text, read_text(flags.file));
+  if (flags.what == "deco") {
+    NERITIC_TRY(const auto cases, diver::read_deco_cases(text, flags.file));
+    return diver::check_deco(cases);
+  }
   std::vector<CaseResult> results;
   if (flags.what == "rov") {
     NERITIC_TRY(
@@ -31,12 +36,20 @@ Result<std::vector<CaseResult>> check_file(const CheckFlags& flags) {
   return rov::check_control(cases, {integrator, flags.hz});
 }
 
+// One line, whatever the file has as a name.
+std::string name_of_case(const CaseResult& one) {
+  std::string name = one.id;
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return name;
+}
+
 std::string line_of(const CaseResult& one, std::size_t id_width) {
   const CheckedError& worst = one.worst();
   const std::string unit = worst.unit.empty() ? "" : " " + worst.unit;
   const std::string when = worst.time_s > 0.0 ? fmt::format(", at {:g} s", worst.time_s) : "";
-  return fmt::format("{:<{}}  {:<6}  worst {:.2e}{} of {:.2e}{} in {}{}\n", one.id, id_width,
-                     one.ok() ? "ok" : "not ok", worst.error, unit, worst.tolerance, unit,
+  return fmt::format("{:<{}}  {:<6}  worst {:.2e}{} of {:.2e}{} in {}{}\n", name_of_case(one),
+                     id_width, one.ok() ? "ok" : "not ok", worst.error, unit, worst.tolerance, unit,
                      worst.what, when);
 }
 
@@ -55,9 +68,14 @@ nlohmann::json error_json(const CheckedError& error) {
 
 std::string json_of(const CheckFlags& flags, const std::vector<CaseResult>& results,
                     std::size_t failed) {
-  nlohmann::json json{
-      {"check", flags.what}, {"file", flags.file}, {"integrator", flags.integrator},
-      {"hz", flags.hz},      {"ok", failed == 0},  {"cases", nlohmann::json::array()}};
+  nlohmann::json json{{"check", flags.what},
+                      {"file", flags.file},
+                      {"ok", failed == 0},
+                      {"cases", nlohmann::json::array()}};
+  if (flags.what != "deco") {
+    json["integrator"] = flags.integrator;
+    json["hz"] = flags.hz;
+  }
   json["failed"] = failed;
   for (const CaseResult& one : results) {
     nlohmann::json entry{{"id", one.id}, {"ok", one.ok()}, {"worst", error_json(one.worst())}};

@@ -207,12 +207,16 @@ void add_tradeoff(CLI::App& app, Run& run) {
 void add_check(CLI::App& app, Run& run) {
   auto flags = std::make_shared<CheckFlags>();
   CLI::App* command = app.add_subcommand(
-      "check", "holds the vehicle against a file of trajectories, or of control; a line a case");
-  command->add_option("what", flags->what, "rov (trajectories) or control")->required();
+      "check",
+      "holds the vehicle, its control or the dive planner against a file of cases; a line a case");
+  command->add_option("what", flags->what, "rov (trajectories), control or deco")->required();
   command->add_option("file", flags->file, "the cases, JSON")->required();
-  command->add_option("--integrator", flags->integrator, "guarded, rk4 or semi_euler")
+  command
+      ->add_option("--integrator", flags->integrator,
+                   "of rov and control: guarded, rk4 or semi_euler")
       ->capture_default_str();
-  command->add_option("--hz", flags->hz, "steps a second")->capture_default_str();
+  command->add_option("--hz", flags->hz, "of rov and control: steps a second")
+      ->capture_default_str();
   command->add_flag("--json", flags->json, "for programs: JSON on standard output");
   command->callback([flags, &run] { run = [flags] { return nothing_to_say(run_check(*flags)); }; });
 }
