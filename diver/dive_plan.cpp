@@ -10,7 +10,7 @@ namespace neritic::diver {
 namespace {
 
 constexpr double kSameMinute = 1e-9;
-constexpr double kDeepest_m = 2000.0;
+constexpr double kDeepestPlan_m = 2000.0;
 
 bool within(double value, double least, double most) {
   return value >= least && value <= most;  // false where it is no number
@@ -51,9 +51,9 @@ Status check_gases(const std::vector<PlanGas>& gases) {
         gas.mix.nitrogen() < -1e-9)
       return bad_input("gas of {} oxygen and {} helium found, shares of one gas are accepted",
                        gas.mix.oxygen, gas.mix.helium);
-    if (!within(gas.switch_depth_m, 0.0, kDeepest_m))
+    if (!within(gas.switch_depth_m, 0.0, kDeepestPlan_m))
       return bad_input("switch to {} at {} m found, 0 to {} m is accepted", name_of(gas.mix),
-                       gas.switch_depth_m, kDeepest_m);
+                       gas.switch_depth_m, kDeepestPlan_m);
   }
   const auto is_bottom = [](const PlanGas& gas) { return gas.role == GasRole::kBottom; };
   if (std::ranges::count_if(gases, is_bottom) != 1)
@@ -70,9 +70,9 @@ Status check_numbers(const DivePlanRequest& r) {
                      r.gf_low, r.gf_high);
   if (r.levels.empty()) return bad_input("no depth found, at least one is accepted");
   for (const PlanLevel& level : r.levels)
-    if (!within(level.depth_m, 0.01, kDeepest_m) || !within(level.leave_min, 0.0, 1e6))
+    if (!within(level.depth_m, 0.01, kDeepestPlan_m) || !within(level.leave_min, 0.0, 1e6))
       return bad_input("{} m until {} min found; 0.01 to {} m and at most 1000000 min are accepted",
-                       level.depth_m, level.leave_min, kDeepest_m);
+                       level.depth_m, level.leave_min, kDeepestPlan_m);
   if (!r.start) return {};
   for (const Compartments* gas : {&r.start->n2_bar, &r.start->he_bar})
     for (const double bar : *gas)

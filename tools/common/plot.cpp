@@ -37,6 +37,7 @@ std::vector<double> ticks(const Axis& axis) {
       }
     return out;
   }
+  if (axis.max < axis.min) return ticks({axis.label, axis.max, axis.min});
   const double raw = (axis.max - axis.min) / 6.0,
                power = std::pow(10.0, std::floor(std::log10(raw)));
   double step = 10.0 * power;

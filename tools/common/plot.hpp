@@ -11,8 +11,8 @@ namespace neritic::tools {
 
 struct Axis {
   std::string label;
-  double min = 0.0, max = 1.0;
-  bool log = false;  // then min and max are positive
+  double min = 0.0, max = 1.0;  // max below min: it runs the other way (not with log)
+  bool log = false;             // then min and max are positive
 };
 
 struct Series {

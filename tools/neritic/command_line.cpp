@@ -221,6 +221,63 @@ void add_check(CLI::App& app, Run& run) {
   command->callback([flags, &run] { run = [flags] { return nothing_to_say(run_check(*flags)); }; });
 }
 
+void add_plan(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<PlanFlags>();
+  CLI::App* command = app.add_subcommand(
+      "plan", "plans a dive: stops, run times, oxygen, warnings; or replays a log of depths");
+  command
+      ->add_option(
+          "--gas", flags->gases,
+          "air, ean32, 18/45, o2. The first is the bottom's; further ones are for the ascent, "
+          "each @ its switch depth in metres (else where it has 1.6 bar of oxygen)")
+      ->expected(1, 32);
+  command
+      ->add_option("--travel", flags->travel,
+                   "MIX[@DEPTH]: breathed on the way down from there until the next one's depth; "
+                   "then the bottom gas has one too: --gas 15/55@30")
+      ->expected(1, 32);
+  command->add_option("--depth", flags->depth_m, "metres");
+  command->add_option("--time", flags->time_min,
+                      "minutes from the surface to the end of the bottom: the way down counts");
+  command
+      ->add_option("--level", flags->levels,
+                   "DEPTH,MIN: a further depth, and the run time at which it is left")
+      ->expected(1)
+      ->take_all();
+  command
+      ->add_option(
+          "--after", flags->after,
+          "DEPTH,MIN,INTERVAL[,GAS]: an earlier dive and the minutes at the surface after it; "
+          "again for more, the oldest first")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--gf", flags->gf, "gradient factors, percent")->capture_default_str();
+  command
+      ->add_option(
+          "--convention", flags->convention,
+          "stop-minutes, run-minutes or msw: what programs do differently (diver/README.md)")
+      ->capture_default_str();
+  command->add_option("--table", flags->table,
+                      "another column of ZH-L16 than the convention's: b, c");
+  command->add_option("--altitude", flags->altitude_m, "metres above the sea, acclimatised");
+  command->add_option("--surface", flags->surface_bar, "pressure at the surface, bar, instead");
+  command->add_option("--water", flags->water, "fresh, salt, en13319, or its density in kg/m3");
+  command->add_option("--last-stop", flags->last_stop_m, "metres");
+  command->add_option("--ascent-rate", flags->ascent_m_min, "m/min");
+  command->add_option("--descent-rate", flags->descent_m_min, "m/min");
+  command->add_option("--saturation", flags->saturation,
+                      "110/90: percent of the speed at which gas goes in and out");
+  command->add_option(
+      "--log", flags->log,
+      "depths of a dive (.csv: time_s, depth_m, perhaps gas) instead of a plan: what a "
+      "dive computer would have shown");
+  command->add_option("--plot", flags->plot, "a picture (.png)");
+  command->add_option("--out", flags->out,
+                      "folder for plan.json and plan.png, or log.csv and log.png");
+  command->add_flag("--json", flags->json, "for programs: JSON on standard output");
+  command->callback([flags, &run] { run = [flags] { return run_plan(*flags); }; });
+}
+
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
@@ -246,6 +303,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_dive(app, line.run);
   add_tradeoff(app, line.run);
   add_check(app, line.run);
+  add_plan(app, line.run);
   add_doctor(app, line.run);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(),

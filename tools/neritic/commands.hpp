@@ -72,6 +72,17 @@ struct CheckFlags {
 };
 Status run_check(const CheckFlags& flags);
 
+struct PlanFlags {
+  std::vector<std::string> gases{"air"}, travel, levels, after;
+  double depth_m = 0.0, time_min = 0.0;  // 0: not given
+  std::string gf = "30/85", convention = "stop-minutes", table, water, saturation, log;
+  double altitude_m = 0.0, surface_bar = 0.0, last_stop_m = 0.0;  // 0: the convention's
+  double ascent_m_min = 0.0, descent_m_min = 0.0;
+  std::filesystem::path out, plot;
+  bool json = false;
+};
+Result<std::string> run_plan(const PlanFlags& flags);
+
 struct DoctorFlags {
   std::string device;
   bool json = false;

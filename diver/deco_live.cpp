@@ -1,0 +1,174 @@
+#include "diver/deco_live.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diver/deco_ndl.hpp"
+
+namespace neritic::diver {
+namespace {
+
+constexpr double kHighestSample_m = -10.0, kDeepestSample_m = 2000.0;
+constexpr double kSubmerged_m = 0.5;
+// A longer time at the surface ends a dive.
+constexpr double kNewDive_min = 10.0;
+
+// The next stop and the sum of all times.
+class NextStop : public AscentSink {
+ public:
+  void segment(const PlanSegment& s) override { minutes += s.minutes; }
+  void stop(const PlanStop& s) override {
+    if (found) return;
+    found = true;
+    depth_m = s.depth_m;
+    stop_min = s.minutes;
+  }
+  bool found = false;
+  double depth_m = 0.0, stop_min = 0.0, minutes = 0.0;
+};
+
+bool is_good(const DiveSample& sample, std::size_t gases) {
+  return sample.depth_m >= kHighestSample_m && sample.depth_m <= kDeepestSample_m && sample.gas < gases;
+}
+
+}  // namespace
+
+DiveComputer::DiveComputer(DiveComputerSettings settings)
+    : settings_(std::move(settings)),
+      ascent_(ascent_settings(settings_.conventions, settings_.gf_low, settings_.gf_high,
+                              settings_.gases)) {}
+
+DiveComputer::DiveComputer(DiveComputer&& other) noexcept
+    : DiveComputer(std::move(other.settings_)) {}
+
+Result<DiveComputer> DiveComputer::create(DiveComputerSettings settings) {
+  // What a planner accepts.
+  DivePlanRequest request{settings.conventions,
+                          settings.gf_low,
+                          settings.gf_high,
+                          settings.gases,
+                          {{10.0, 200.0}},
+                          {},
+                          true};
+  NERITIC_TRY_STATUS(check_request(request));
+  return DiveComputer(std::move(settings));
+}
+
+DiveComputerState DiveComputer::start() const {
+  const DecoConventions& c = settings_.conventions;
+  return start(saturated(ascent_.model, c.environment.surface_bar, c.start_n2));
+}
+
+DiveComputerState DiveComputer::start(const TissueState& tissues) const {
+  DiveComputerState state;
+  state.tissues = tissues;
+  state.surface_min = kNewDive_min;
+  return state;
+}
+
+DiveComputerState DiveComputer::step(const DiveComputerState& before, const DiveSample& sample,
+                                     double dt_s) const {
+  DiveComputerState state = before;
+  if (!(dt_s >= 0.0 && std::isfinite(dt_s))) {
+    ++state.refused;
+    return state;
+  }
+  if (is_good(sample, settings_.gases.size()))
+    state.last = {std::max(sample.depth_m, 0.0), sample.gas};
+  else
+    ++state.refused;
+  const DecoConventions& c = settings_.conventions;
+  const double minutes = dt_s / 60.0, from = c.environment.pressure_bar(before.last.depth_m),
+               to = c.environment.pressure_bar(state.last.depth_m);
+  // A new gas is breathed from the sample on that says so.
+  const GasMix& mix = settings_.gases[before.last.gas].mix;
+  state.tissues = load(ascent_.model, before.tissues, from, to, minutes, mix);
+  const OxygenExposure more =
+      oxygen_exposure(mix.oxygen * from, mix.oxygen * to, minutes, c.cns_from_bar);
+  state.oxygen.cns_percent += more.cns_percent;
+  state.oxygen.otu += more.otu;
+  state.ascent = observe(before.ascent, state.last.depth_m, dt_s, settings_.ascent);
+  if (std::max(before.last.depth_m, state.last.depth_m) > kSubmerged_m) {
+    if (state.surface_min >= kNewDive_min) state.dive_min = state.deepest_m = 0.0;
+    state.surface_min = 0.0;
+    state.dive_min += minutes;
+    state.deepest_m = std::max(state.deepest_m, state.last.depth_m);
+  } else {
+    state.surface_min += minutes;
+    state.oxygen.cns_percent = cns_after(state.oxygen.cns_percent, minutes);
+  }
+  move_anchor(state);
+  return state;
+}
+
+// The first stop is where the ceiling of GF low is when the diver comes to it; it is kept while
+// there is a ceiling, and the diver does not go far below again.
+void DiveComputer::move_anchor(DiveComputerState& state) const {
+  const DecoConventions& c = settings_.conventions;
+  const auto depth_of = [&](double gf) {
+    return c.environment.depth_m(ceiling(ascent_.model, state.tissues, gf).pressure_bar);
+  };
+  const double low_m = depth_of(settings_.gf_low);
+  if (low_m <= 0.0 || depth_of(settings_.gf_high) <= 0.0) {
+    state.anchor_m = 0.0;
+    return;
+  }
+  const double stop =
+      std::max(std::ceil(low_m / c.stop_step_m - 1e-9) * c.stop_step_m, c.last_stop_m);
+  if (state.last.depth_m > std::max(stop, state.anchor_m) + 1.5 * c.stop_step_m)
+    state.anchor_m = 0.0;
+  else if (state.anchor_m > 0.0 || state.last.depth_m <= stop + 0.5 * c.stop_step_m)
+    state.anchor_m = std::max(state.anchor_m, stop);
+}
+
+double DiveComputer::gf_at(const DiveComputerState& state, double depth_m) const {
+  const double low = settings_.gf_low, high = settings_.gf_high;
+  if (state.anchor_m <= 0.0) return low;
+  return std::clamp(high - (high - low) * depth_m / state.anchor_m, low, high);
+}
+
+// The shallowest depth that is tolerated there.
+double DiveComputer::ceiling_m(const DiveComputerState& state) const {
+  const DecoEnvironment& where = settings_.conventions.environment;
+  const auto tolerated = [&](double depth_m) {
+    const double gf = gf_at(state, depth_m);
+    return ceiling(ascent_.model, state.tissues, gf).pressure_bar <= where.pressure_bar(depth_m);
+  };
+  double not_deep = 0.0;
+  double deep = where.depth_m(ceiling(ascent_.model, state.tissues, settings_.gf_low).pressure_bar);
+  if (deep <= 0.0 || tolerated(0.0)) return 0.0;
+  while (deep - not_deep > 1e-3) {
+    const double middle = 0.5 * (not_deep + deep);
+    (tolerated(middle) ? deep : not_deep) = middle;
+  }
+  return deep;
+}
+
+DiveComputerView DiveComputer::view(const DiveComputerState& state) const {
+  const DecoConventions& c = settings_.conventions;
+  const GasMix& mix = settings_.gases[state.last.gas].mix;
+  const double depth = state.last.depth_m, p = c.environment.pressure_bar(depth);
+  DiveComputerView view;
+  view.po2_bar = mix.oxygen * p;
+  view.density_g_l = gas_density_g_l(mix, p);
+  view.narcotic_m = std::max(narcotic_depth_m(mix, depth, c.environment), 0.0);
+  view.gradient = gradient_share(ascent_.model, state.tissues, p);
+  view.surface_gradient = gradient_share(ascent_.model, state.tissues, c.environment.surface_bar);
+  view.ascent_m_min = state.ascent.rate_m_min;
+  view.alarm = alarm_of(state.ascent, settings_.ascent);
+  const double left = minutes_without_stops(ascent_, state.tissues, depth, mix);
+  view.no_stop_min = std::max(left, 0.0);
+  if (left < 0.0) view.ceiling_m = ceiling_m(state);
+  AscentState up{state.tissues, 0.0, depth, state.last.gas, state.anchor_m};
+  NextStop next;
+  const bool clears = ascend(ascent_, up, next) != AscentEnd::kNeverClears;
+  view.to_surface_min = clears ? next.minutes : std::numeric_limits<double>::infinity();
+  if (next.found) {
+    view.stop_m = next.depth_m;
+    view.stop_min = next.stop_min;
+  }
+  return view;
+}
+
+}  // namespace neritic::diver

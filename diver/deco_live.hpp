@@ -1,0 +1,93 @@
+// A dive computer: tissues and oxygen sample by sample, and what it would show. Pure functions over
+// plain bytes, without allocation; any thread. One step costs microseconds, what is shown some
+// tens: a simulation steps at its own rate and asks for the view once a second.
+#pragma once
+
+#include <vector>
+
+#include "diver/deco_ascent.hpp"
+#include "diver/deco_ascent_rate.hpp"
+
+namespace neritic::diver {
+
+struct DiveComputerSettings {
+  DecoConventions conventions;
+  double gf_low = 0.3, gf_high = 0.85;
+  std::vector<PlanGas> gases{PlanGas{}};
+  AscentRateLimits ascent;
+};
+
+struct DiveSample {
+  double depth_m = 0.0;
+  std::uint64_t gas = 0;  // of the settings
+
+  static void fields(auto&& field, auto& self) {
+    field("depth_m", self.depth_m);
+    field("gas", self.gas);
+  }
+};
+
+struct DiveComputerState {
+  TissueState tissues;
+  OxygenExposure oxygen;  // the share of CNS declines at the surface
+  AscentRateState ascent;
+  DiveSample last;                           // that was good
+  double dive_min = 0.0, surface_min = 0.0;  // since the way down; since the way up
+  double deepest_m = 0.0;
+  double anchor_m = 0.0;  // the first stop, once it is reached; 0: none
+  std::uint64_t refused = 0;
+
+  static void fields(auto&& field, auto& self) {
+    field("tissues", self.tissues);
+    field("oxygen", self.oxygen);
+    field("ascent", self.ascent);
+    field("last", self.last);
+    field("dive_min", self.dive_min);
+    field("surface_min", self.surface_min);
+    field("deepest_m", self.deepest_m);
+    field("anchor_m", self.anchor_m);
+    field("refused", self.refused);
+  }
+};
+
+// What a computer's display has.
+struct DiveComputerView {
+  double ceiling_m = 0.0;               // of the gradient factor that holds there; 0: none
+  double no_stop_min = 0.0;             // left without stops; 0 with a ceiling
+  double stop_m = 0.0, stop_min = 0.0;  // the next stop; 0: none
+  double to_surface_min = 0.0;          // infinite where the ceiling never clears
+  double po2_bar = 0.0, density_g_l = 0.0, narcotic_m = 0.0;
+  double gradient = 0.0, surface_gradient = 0.0;  // of the M-value, here and if at the surface
+  double ascent_m_min = 0.0;
+  AscentAlarm alarm = AscentAlarm::kNone;
+};
+
+class DiveComputer {
+ public:
+  // Errors: what of the settings is wrong.
+  static Result<DiveComputer> create(DiveComputerSettings settings);
+  DiveComputer(const DiveComputer&) = delete;
+  DiveComputer(DiveComputer&& other) noexcept;
+
+  const DiveComputerSettings& settings() const { return settings_; }
+  // At the surface, never dived; or with these tissues.
+  DiveComputerState start() const;
+  DiveComputerState start(const TissueState& tissues) const;
+  // dt_s after the last sample; the depth changed linearly. What is no number, out of bounds (-10
+  // to 2000 m, a gas that there is none of, dt_s below 0 or endless) is refused and counted, and
+  // the last good sample held. Above the surface is at it.
+  DiveComputerState step(const DiveComputerState& before, const DiveSample& sample,
+                         double dt_s) const;
+  DiveComputerView view(const DiveComputerState& state) const;
+
+ private:
+  explicit DiveComputer(DiveComputerSettings settings);
+  void move_anchor(DiveComputerState& state) const;
+  double gf_at(const DiveComputerState& state, double depth_m) const;
+  double ceiling_m(const DiveComputerState& state) const;
+
+  DiveComputerSettings settings_;
+  AscentSettings ascent_;  // borrows settings_
+};
+
+}  // namespace neritic::diver

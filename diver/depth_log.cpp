@@ -1,0 +1,143 @@
+#include "diver/depth_log.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "diver/gas_label.hpp"
+
+namespace neritic::diver {
+namespace {
+
+constexpr std::size_t kMostSamples = 10'000'000;
+
+std::string_view trimmed(std::string_view text) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\r' || c == '"'; };
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (;;) {
+    const std::size_t end = line.find_first_of(",;\t");
+    cells.push_back(trimmed(line.substr(0, end)));
+    if (end == line.npos) return cells;
+    line.remove_prefix(end + 1);
+  }
+}
+
+bool read_cell(std::string_view cell, double& value) {
+  const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return fault == std::errc() && end == cell.data() + cell.size();
+}
+
+// What a line has on one line: other bytes become '?'.
+std::string shown(std::string_view cell) {
+  std::string text(cell.substr(0, 40));
+  for (char& c : text)
+    if (c < 0x20 || c == 0x7f) c = '?';
+  return text;
+}
+
+class LogReader {
+ public:
+  explicit LogReader(const std::string& name) : name_(name) {}
+
+  Result<DepthLog> read(std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t end = text.find('\n');
+      const std::string_view line = trimmed(text.substr(0, end));
+      ++line_;
+      text = end == text.npos ? std::string_view() : text.substr(end + 1);
+      if (line.empty() || line.front() == '#') continue;
+      NERITIC_TRY_STATUS(width_ == 0 ? read_names(line) : read_row(line));
+    }
+    if (width_ == 0)
+      return bad_input("{}: no row of names found, time_s and depth_m are accepted", name_);
+    if (log_.samples.empty())
+      return bad_input("{}: no sample found, at least one is accepted", name_);
+    return std::move(log_);
+  }
+
+ private:
+  Status read_names(std::string_view line) {
+    const std::vector<std::string_view> names = cells_of(line);
+    width_ = names.size();
+    const auto find = [&](std::string_view name) {
+      return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+    };
+    time_ = find("time_s");
+    if (time_ == width_) {
+      time_ = find("time_min");
+      unit_s_ = 60.0;
+    }
+    depth_ = find("depth_m");
+    gas_ = find("gas");
+    if (time_ == width_ || depth_ == width_)
+      return bad_input("{}: line {}: columns '{}' found, time_s or time_min and depth_m are needed",
+                       name_, line_, shown(line));
+    return {};
+  }
+
+  Status read_row(std::string_view line) {
+    const std::vector<std::string_view> cells = cells_of(line);
+    if (cells.size() != width_)
+      return bad_input("{}: line {}: {} cells found, {} are accepted", name_, line_, cells.size(),
+                       width_);
+    DepthSample sample;
+    if (!read_cell(cells[time_], sample.time_s) || !std::isfinite(sample.time_s) ||
+        std::abs(sample.time_s) > 1e12)
+      return bad_input("{}: line {}: time '{}' found, a number is accepted", name_, line_,
+                       shown(cells[time_]));
+    sample.time_s *= unit_s_;
+    if (!log_.samples.empty() && sample.time_s < log_.samples.back().time_s)
+      return bad_input(
+          "{}: line {}: time {} found after {}, times that do not go back are accepted", name_,
+          line_, shown(cells[time_]), log_.samples.back().time_s / unit_s_);
+    if (cells[depth_].empty())
+      sample.depth_m = std::numeric_limits<double>::quiet_NaN();
+    else if (!read_cell(cells[depth_], sample.depth_m))
+      return bad_input("{}: line {}: depth '{}' found, a number is accepted", name_, line_,
+                       shown(cells[depth_]));
+    if (gas_ < width_) NERITIC_TRY_STATUS(read_gas(cells[gas_], sample));
+    if (log_.samples.size() == kMostSamples)
+      return bad_input("{}: more than {} samples found", name_, kMostSamples);
+    log_.samples.push_back(sample);
+    return {};
+  }
+
+  // An empty cell is the gas of the row before.
+  Status read_gas(std::string_view cell, DepthSample& sample) {
+    if (cell.empty() && !log_.samples.empty()) {
+      sample.gas = log_.samples.back().gas;
+      return {};
+    }
+    const auto mix = parse_mix(cell);
+    if (!mix.ok())
+      return bad_input("{}: line {}: gas '{}' found; air, o2, ean32 or 18/45 is accepted", name_,
+                       line_, shown(cell));
+    const auto at = std::ranges::find(log_.gases, *mix);
+    sample.gas = static_cast<std::size_t>(at - log_.gases.begin());
+    if (at != log_.gases.end()) return {};
+    if (log_.gases.size() == 32)
+      return bad_input("{}: line {}: a 33rd gas found, 32 are accepted", name_, line_);
+    log_.gases.push_back(*mix);
+    return {};
+  }
+
+  const std::string& name_;
+  std::size_t line_ = 0, width_ = 0, time_ = 0, depth_ = 0, gas_ = 0;
+  double unit_s_ = 1.0;
+  DepthLog log_;
+};
+
+}  // namespace
+
+Result<DepthLog> read_depth_log(std::string_view text, const std::string& name) {
+  return LogReader(name).read(text);
+}
+
+}  // namespace neritic::diver

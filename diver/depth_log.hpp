@@ -1,0 +1,31 @@
+// A diver's recorded depths, from a table as computers and simulations write them. Any thread.
+//
+// The form: text, a row a line, columns by comma, semicolon or tab. The first row names them, in
+// any order: time_s or time_min; depth_m; gas (air, ean32, 18/45), if there is one. Other columns
+// are left alone, and so are empty lines and lines that begin with #. A depth that is "nan" or
+// empty is a sample that failed; times may not go back.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diver/gas_mix.hpp"
+#include "engine/core/result.hpp"
+
+namespace neritic::diver {
+
+struct DepthSample {
+  double time_s = 0.0, depth_m = 0.0;  // the depth is no number where the sample failed
+  std::size_t gas = 0;                 // of the log
+};
+
+struct DepthLog {
+  std::vector<DepthSample> samples;  // at least one
+  std::vector<GasMix> gases;         // in the order of their first use; empty without such a column
+};
+
+// name stands in messages. Errors name the line, what was found, what is accepted.
+Result<DepthLog> read_depth_log(std::string_view text, const std::string& name);
+
+}  // namespace neritic::diver

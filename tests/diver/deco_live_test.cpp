@@ -1,0 +1,256 @@
+// The dive computer sample by sample: the reference dives as logs, what it shows against plans,
+// inputs that make no sense.
+#include "diver/deco_live.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "engine/sim/fields.hpp"
+#include "engine/sim/state_hash.hpp"
+#include "tests/diver/deco_cases.hpp"
+
+namespace neritic::diver {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+DiveComputer computer_for(const DivePlanRequest& request) {
+  auto computer = DiveComputer::create(
+      {request.conventions, request.gf_low, request.gf_high, request.gases, {}});
+  EXPECT_TRUE(computer.ok()) << computer.error().message;
+  return std::move(*computer);
+}
+
+// Dives a plan's segments in steps of at most step_s, and calls seen(state) after each.
+template <class Seen>
+DiveComputerState dive(const DiveComputer& computer, const DivePlan& plan, double step_s,
+                       const Seen& seen) {
+  DiveComputerState state = computer.start(plan.start.tissues);
+  for (const PlanSegment& s : plan.segments) {
+    state = computer.step(state, {s.from_m, s.gas}, 0.0);
+    const int parts = static_cast<int>(std::ceil(60.0 * s.minutes / step_s - 1e-9));
+    for (int i = 1; i <= parts; ++i) {
+      state = computer.step(state, {s.from_m + (s.to_m - s.from_m) * i / parts, s.gas},
+                            60.0 * s.minutes / parts);
+      seen(state);
+    }
+  }
+  return state;
+}
+
+double worst_difference(const TissueState& a, const TissueState& b) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < kCompartments; ++i)
+    worst =
+        std::max({worst, std::abs(a.n2_bar[i] - b.n2_bar[i]), std::abs(a.he_bar[i] - b.he_bar[i])});
+  return worst;
+}
+
+TEST(DecoLive, LogsOfTheReferenceDivesGiveTheirTissuesAndOxygen) {
+  for (const DecoCase& one : deco_cases("deco_vectors.json").dives) {
+    const DiveComputer computer = computer_for(one.request);
+    const DivePlan plan = plan_dive(one.request).value();
+    for (const double step_s : {1.0, 10.0, 60.0}) {
+      const DiveComputerState end = dive(computer, plan, step_s, [](const auto&) {});
+      EXPECT_LT(worst_difference(end.tissues, *one.expected.surfacing->tissues), 1e-6) << one.id;
+      EXPECT_NEAR(end.oxygen.otu, plan.oxygen.otu, 1e-6 * (1.0 + plan.oxygen.otu)) << one.id;
+      EXPECT_NEAR(end.oxygen.cns_percent, plan.oxygen.cns_percent,
+                  1e-3 * (1.0 + plan.oxygen.cns_percent))  // the last half metre is the surface
+          << one.id;
+      EXPECT_EQ(end.refused, 0u);
+    }
+  }
+}
+
+TEST(DecoLive, AtTheBottomItShowsThePlansAscent) {
+  for (const DecoCase& one : deco_cases("deco_vectors.json").dives) {
+    const DiveComputer computer = computer_for(one.request);
+    const DivePlan plan = plan_dive(one.request).value();
+    DiveComputerState state = computer.start(plan.end_of_bottom.tissues);
+    state.last = {plan.end_of_bottom.depth_m, 0};
+    const DiveComputerView view = computer.view(state);
+    EXPECT_NEAR(view.to_surface_min, plan.ascent_min(), 1e-9) << one.id;
+    EXPECT_EQ(view.stop_m, plan.stops.empty() ? 0.0 : plan.stops.front().depth_m) << one.id;
+    EXPECT_EQ(view.no_stop_min > 0.0, plan.no_stops) << one.id;
+    EXPECT_EQ(view.ceiling_m > 0.0, !plan.no_stops) << one.id;
+  }
+}
+
+TEST(DecoLive, FollowingAPlanTheTimeToTheSurfaceCountsDownAndNoCeilingIsBroken) {
+  for (const DecoCase& one : deco_cases("deco_vectors.json").dives) {
+    const DiveComputer computer = computer_for(one.request);
+    const DivePlan plan = plan_dive(one.request).value();
+    double run_s = 0.0;
+    dive(computer, plan, 10.0, [&](const DiveComputerState& state) {
+      run_s = 60.0 * state.dive_min;
+      const DiveComputerView view = computer.view(state);
+      const double left_min = plan.run_min() - run_s / 60.0;
+      // A plan waits for whole minutes, at least one a stop; a computer sees when a ceiling clears.
+      if (left_min < plan.ascent_min()) {
+        EXPECT_LE(view.to_surface_min, left_min + 1.5) << one.id << " at " << run_s;
+        EXPECT_GE(view.to_surface_min, left_min - 3.0) << one.id << " at " << run_s;
+      }
+      EXPECT_LE(view.ceiling_m, state.last.depth_m + 0.2) << one.id << " at " << run_s;
+      EXPECT_LE(view.gradient, one.request.gf_high + 0.02) << one.id;
+    });
+  }
+}
+
+TEST(DecoLive, WhatMakesNoSenseIsRefusedCountedAndTheLastGoodHeld) {
+  const DiveComputer computer = computer_for(square_dive(40.0, 20.0));
+  DiveComputerState good = computer.start(), bad = computer.start();
+  good = computer.step(good, {40.0, 0}, 120.0);
+  bad = computer.step(bad, {40.0, 0}, 120.0);
+  std::uint64_t refused = 0;
+  for (const DiveSample& sample :
+       {DiveSample{kNan, 0}, {-1e9, 0}, {HUGE_VAL, 0}, {3000.0, 0}, {5.0, 7}}) {
+    good = computer.step(good, {40.0, 0}, 10.0);
+    bad = computer.step(bad, sample, 10.0);
+    EXPECT_EQ(bad.refused, ++refused);
+  }
+  for (const double dt : {kNan, -1.0, HUGE_VAL}) {
+    bad = computer.step(bad, {20.0, 0}, dt);
+    EXPECT_EQ(bad.refused, ++refused);
+  }
+  bad.refused = good.refused;
+  EXPECT_TRUE(sim::same_bits(good, bad));
+}
+
+TEST(DecoLive, ExtremesStayFinite) {
+  DivePlanRequest request = square_dive(40.0, 20.0);
+  request.gases.push_back({{1.0, 0.0}, 6.0, GasRole::kDeco});
+  const DiveComputer computer = computer_for(request);
+  const auto expect_sane = [&](const DiveComputerState& state, const char* what) {
+    EXPECT_TRUE(sim::all_finite(state)) << what;
+    for (std::size_t i = 0; i < kCompartments; ++i) {
+      EXPECT_GE(state.tissues.n2_bar[i], 0.0) << what;
+      EXPECT_LT(state.tissues.n2_bar[i], 200.0) << what;
+    }
+    const DiveComputerView view = computer.view(state);
+    EXPECT_TRUE(std::isfinite(view.ceiling_m) && view.ceiling_m >= 0.0) << what;
+    EXPECT_FALSE(std::isnan(view.to_surface_min)) << what;
+  };
+  constexpr double kYear_s = 365.25 * 86400.0;
+  // Ten years at the surface, in one step and in days, make a diver as fresh as another.
+  DiveComputerState years = computer.step(computer.start(), {0.0, 0}, 10.0 * kYear_s);
+  expect_sane(years, "ten years");
+  DiveComputerState days = computer.start();
+  for (int i = 0; i < 3653; ++i) days = computer.step(days, {0.0, 0}, 86400.0);
+  EXPECT_LT(worst_difference(years.tissues, days.tissues), 1e-12);
+  EXPECT_EQ(computer.view(years).to_surface_min, 0.0);
+  // Saturated at 300 m, then at the surface in no time: the ceiling is far down.
+  DiveComputerState deep = computer.step(computer.start(), {300.0, 0}, 600.0);
+  deep = computer.step(deep, {300.0, 0}, 30.0 * 86400.0);
+  expect_sane(deep, "saturated at 300 m");
+  deep = computer.step(deep, {0.0, 0}, 0.0);
+  expect_sane(deep, "jumped to the surface");
+  EXPECT_GT(computer.view(deep).ceiling_m, 150.0);
+  EXPECT_GT(computer.view(deep).gradient, 5.0);
+  // A kilometre down, and pure oxygen there.
+  DiveComputerState kilometre = computer.step(computer.start(), {1000.0, 0}, 60.0);
+  expect_sane(computer.step(kilometre, {1000.0, 1}, 3600.0), "1000 m");
+  kilometre = computer.step(kilometre, {1000.0, 1}, 0.0);
+  kilometre = computer.step(kilometre, {1000.0, 1}, 86400.0);
+  expect_sane(kilometre, "oxygen at 1000 m");
+  EXPECT_GT(kilometre.oxygen.cns_percent, 1e5);
+  // Steps of no time change nothing but the depth.
+  DiveComputerState none = computer.step(computer.start(), {30.0, 0}, 0.0);
+  for (int i = 0; i < 100; ++i) none = computer.step(none, {30.0, 0}, 0.0);
+  EXPECT_EQ(none.tissues, computer.start().tissues);
+  // A sensor that teleports.
+  std::mt19937 random(5);
+  DiveComputerState wild = computer.start();
+  for (int i = 0; i < 2000; ++i)
+    wild = computer.step(
+        wild, {std::uniform_real_distribution<double>(-20.0, 2100.0)(random), random() % 3},
+        std::uniform_real_distribution<double>(-1.0, 30.0)(random));
+  expect_sane(wild, "teleports");
+  EXPECT_GT(wild.refused, 500u);
+  // And it recovers.
+  wild = computer.step(wild, {0.0, 0}, 0.0);
+  for (int i = 0; i < 60; ++i) wild = computer.step(wild, {0.0, 0}, 86400.0);
+  EXPECT_EQ(computer.view(wild).ceiling_m, 0.0);
+  EXPECT_EQ(wild.ascent.rate_m_min, 0.0);
+}
+
+TEST(DecoLive, AHundredRunsHaveTheSameHash) {
+  const DivePlanRequest request = square_dive(45.0, 25.0);
+  const DiveComputer computer = computer_for(request);
+  const DivePlan plan = plan_dive(request).value();
+  const auto hash = [&] { return sim::state_hash(dive(computer, plan, 3.0, [](const auto&) {})); };
+  const auto first = hash();
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(hash(), first);
+}
+
+TEST(DecoLive, StatesArePlainBytesWithoutPadding) {
+  sim::check_fields_cover(DiveComputerState{});
+  sim::check_fields_cover(DiveSample{});
+  sim::check_fields_cover(AscentRateState{});
+}
+
+TEST(DecoLive, SurfaceTimeEndsADive) {
+  const DiveComputer computer = computer_for(square_dive(20.0, 30.0));
+  DiveComputerState state = computer.step(computer.start(), {20.0, 0}, 60.0);
+  state = computer.step(state, {20.0, 0}, 1740.0);
+  state = computer.step(state, {0.0, 0}, 120.0);
+  EXPECT_NEAR(state.dive_min, 32.0, 1e-9);
+  EXPECT_EQ(state.deepest_m, 20.0);
+  state = computer.step(state, {0.0, 0}, 300.0);  // too short
+  state = computer.step(state, {5.0, 0}, 60.0);
+  EXPECT_NEAR(state.dive_min, 33.0, 1e-9);
+  state = computer.step(state, {0.0, 0}, 60.0);
+  const double cns = state.oxygen.cns_percent;
+  EXPECT_GT(cns, 1.0);
+  state = computer.step(state, {0.0, 0}, 3600.0);
+  EXPECT_NEAR(state.surface_min, 60.0, 1e-9);
+  EXPECT_NEAR(state.oxygen.cns_percent, cns_after(cns, 60.0), 1e-12);
+  state = computer.step(state, {3.0, 0}, 60.0);
+  EXPECT_NEAR(state.dive_min, 1.0, 1e-9);
+}
+
+TEST(AscentRate, IsThePublishedLine) {
+  AscentRateState state;
+  const AscentRateLimits limits;
+  for (int i = 0; i <= 10; ++i) state = observe(state, 20.0 - 0.3 * i, i > 0 ? 1.0 : 0.0, limits);
+  EXPECT_NEAR(state.rate_m_min, 18.0, 1e-9);
+}
+
+// 5 cm of noise: by the line's theory .286 m/min at 1 Hz over eleven samples; two points have 4.2.
+TEST(AscentRate, NoiseDoesNotAlarmAndARiseDoes) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.05);
+  for (const double hz : {0.5, 1.0, 4.0, 100.0}) {
+    AscentRateState state;
+    const AscentRateLimits limits;
+    double squares = 0.0, alarm_s = -1.0;
+    int counted = 0;
+    const auto seconds = [&](double s) { return static_cast<int>(s * hz); };
+    for (int i = 0; i < seconds(2000.0); ++i) {
+      state = observe(state, 20.0 + noise(random), 1.0 / hz, limits);
+      EXPECT_EQ(alarm_of(state, limits), AscentAlarm::kNone) << hz;
+      if (i > seconds(20.0)) squares += state.rate_m_min * state.rate_m_min, ++counted;
+    }
+    const double deviation = std::sqrt(squares / counted);
+    EXPECT_LT(deviation, hz < 1.0 ? 0.45 : 0.32) << hz;
+    if (hz == 1.0) {
+      EXPECT_NEAR(deviation, 0.286, 0.03);
+    }
+    // Fast: said within some 15 s, and dangerous later or never.
+    for (int i = 0; i < seconds(40.0); ++i) {
+      state = observe(state, 20.0 - 12.0 / 60.0 * (i + 1) / hz + noise(random), 1.0 / hz, limits);
+      if (alarm_s < 0.0 && alarm_of(state, limits) == AscentAlarm::kFast) alarm_s = i / hz;
+      EXPECT_NE(alarm_of(state, limits), AscentAlarm::kDangerous) << hz;
+    }
+    EXPECT_GT(alarm_s, 5.0) << hz;
+    EXPECT_LT(alarm_s, 20.0) << hz;
+    for (int i = 0; i < seconds(25.0); ++i)
+      state = observe(state, 12.0 - 25.0 / 60.0 * (i + 1) / hz + noise(random), 1.0 / hz, limits);
+    EXPECT_EQ(alarm_of(state, limits), AscentAlarm::kDangerous) << hz;
+    for (int i = 0; i < seconds(30.0); ++i) state = observe(state, 1.6, 1.0 / hz, limits);
+    EXPECT_EQ(alarm_of(state, limits), AscentAlarm::kNone) << hz;
+  }
+}
+
+}  // namespace
+}  // namespace neritic::diver

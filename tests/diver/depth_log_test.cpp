@@ -1,0 +1,54 @@
+// Depth logs as text: columns in any order, samples that failed, and one line that says what is
+// wrong.
+#include "diver/depth_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diver/gas_label.hpp"
+
+namespace neritic::diver {
+namespace {
+
+TEST(DepthLog, ColumnsStandInAnyOrderBesideOthers) {
+  const auto log = read_depth_log(
+      "# of a computer\ntemp;depth_m;time_min;gas\r\n\n12;0;0;18/45\n12; 5.5 ;.5;\n11;;1;ean50\n"
+      "11;nan;1;18/45\n",
+      "dive.csv");
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  ASSERT_EQ(log->samples.size(), 4u);
+  EXPECT_EQ(log->samples[1].time_s, 30.0);
+  EXPECT_EQ(log->samples[1].depth_m, 5.5);
+  EXPECT_TRUE(std::isnan(log->samples[2].depth_m));
+  EXPECT_TRUE(std::isnan(log->samples[3].depth_m));
+  ASSERT_EQ(log->gases.size(), 2u);
+  EXPECT_EQ(name_of(log->gases[1]), "EAN50");
+  const std::size_t gases[] = {0, 0, 1, 0};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(log->samples[i].gas, gases[i]);
+}
+
+TEST(DepthLog, WhatIsWrongIsSaidWithItsLine) {
+  const auto fault = [](const char* text) {
+    const auto log = read_depth_log(text, "d.csv");
+    return log.ok() ? std::string("read") : log.error().message;
+  };
+  EXPECT_EQ(fault("time_s,depth_m\n0,1\n"), "read");
+  EXPECT_EQ(fault(""), "d.csv: no row of names found, time_s and depth_m are accepted");
+  EXPECT_EQ(fault("time_s,depth_m\n"), "d.csv: no sample found, at least one is accepted");
+  EXPECT_EQ(fault("t,depth_m\n0,1\n"),
+            "d.csv: line 1: columns 't,depth_m' found, time_s or time_min and depth_m are needed");
+  EXPECT_EQ(fault("time_s,depth_m\n0,1\n1\n"), "d.csv: line 3: 1 cells found, 2 are accepted");
+  EXPECT_EQ(fault("time_s,depth_m\nx,1\n"), "d.csv: line 2: time 'x' found, a number is accepted");
+  EXPECT_EQ(fault("time_s,depth_m\nnan,1\n"),
+            "d.csv: line 2: time 'nan' found, a number is accepted");
+  EXPECT_EQ(fault("time_s,depth_m\n5,1\n4,1\n"),
+            "d.csv: line 3: time 4 found after 5, times that do not go back are accepted");
+  EXPECT_EQ(fault("time_s,depth_m\n0,1m\n"),
+            "d.csv: line 2: depth '1m' found, a number is accepted");
+  EXPECT_EQ(fault("time_s,depth_m,gas\n0,1,water\n"),
+            "d.csv: line 2: gas 'water' found; air, o2, ean32 or 18/45 is accepted");
+}
+
+}  // namespace
+}  // namespace neritic::diver

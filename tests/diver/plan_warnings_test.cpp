@@ -1,0 +1,53 @@
+// What a diver is warned of, and that a plan within all limits has no warning.
+#include "diver/plan_warnings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/diver/deco_cases.hpp"
+
+namespace neritic::diver {
+namespace {
+
+std::set<PlanWarningKind> kinds_of(const DivePlanRequest& request) {
+  const auto plan = plan_dive(request);
+  EXPECT_TRUE(plan.ok()) << plan.error().message;
+  std::set<PlanWarningKind> kinds;
+  for (const PlanWarning& w : plan_warnings(request, *plan)) {
+    EXPECT_TRUE(kinds.insert(w.kind).second || w.gas > 0) << w.text;
+    EXPECT_EQ(w.text.find('\n'), w.text.npos);
+  }
+  return kinds;
+}
+
+using enum PlanWarningKind;
+using Kinds = std::set<PlanWarningKind>;
+
+TEST(PlanWarnings, AreGivenWhereALimitIsPassed) {
+  EXPECT_EQ(kinds_of(square_dive(18.0, 40.0)), Kinds{});
+  EXPECT_EQ(kinds_of(square_dive(30.0, 15.0, {0.32, 0.0})), Kinds{});
+  EXPECT_EQ(kinds_of(square_dive(39.0, 10.0)), (Kinds{kDensityMost, kNarcosis}));
+  EXPECT_EQ(kinds_of(square_dive(35.0, 10.0)), (Kinds{kDensityAdvised, kNarcosis}));
+  EXPECT_EQ(kinds_of(square_dive(30.0, 15.0, {0.5, 0.0})), (Kinds{kOxygenHigh, kDensityAdvised}));
+  EXPECT_EQ(kinds_of(square_dive(20.0, 15.0, {0.10, 0.5})), Kinds{kOxygenLow});
+  DivePlanRequest trimix = square_dive(60.0, 25.0, {0.18, 0.45});
+  trimix.gases.push_back({{0.5, 0.0}, 21.0, GasRole::kDeco});
+  trimix.gases.push_back({{1.0, 0.0}, 6.0, GasRole::kDeco});
+  EXPECT_EQ(kinds_of(trimix), (Kinds{kDensityAdvised, kCounterdiffusion}));
+  trimix.gases[2].switch_depth_m = 9.0;
+  EXPECT_TRUE(kinds_of(trimix).contains(kOxygenHigh));
+  EXPECT_TRUE(kinds_of(square_dive(20.0, 300.0, {0.5, 0.0})).contains(kCns));
+  EXPECT_TRUE(kinds_of(square_dive(20.0, 300.0, {0.5, 0.0})).contains(kOtu));
+}
+
+TEST(PlanWarnings, TellTheWorstAndWhere) {
+  const DivePlanRequest request = square_dive(45.0, 10.0);
+  const auto warnings = plan_warnings(request, plan_dive(request).value());
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0].text, "gas density 7.1 g/L on air at 45 m, 2 min: above 6.2, the most");
+  EXPECT_EQ(warnings[1].text, "narcotic depth 45 m on air at 45 m, 2 min: above 30");
+}
+
+}  // namespace
+}  // namespace neritic::diver

@@ -1,0 +1,118 @@
+// `neritic plan`: a dive planned, or a log of depths replayed; as text or JSON, and as a picture.
+#include <cmath>
+#include <cstdio>
+
+#include "diver/gas_label.hpp"
+#include "engine/core/files.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tools/neritic/plan_plot.hpp"
+#include "tools/neritic/plan_report.hpp"
+#include "tools/neritic/plan_request.hpp"
+#include "tools/neritic/plan_trace.hpp"
+
+namespace neritic::tools {
+namespace {
+
+std::string gf_text(double low, double high) {
+  return fmt::format("GF {:g}/{:g}", 100.0 * low, 100.0 * high);
+}
+
+// --plot's file, and the one in --out's folder.
+Status write_pictures(const PlanFlags& flags, const char* name, const PlanPicture& picture,
+                      const DiveTrace& trace) {
+  if (flags.plot.empty() && flags.out.empty()) return {};
+  const ImageU8 image = draw_dive(picture, trace);
+  if (!flags.plot.empty()) NERITIC_TRY_STATUS(scene::write_png8(flags.plot, image));
+  if (!flags.out.empty()) NERITIC_TRY_STATUS(scene::write_png8(flags.out / name, image));
+  return {};
+}
+
+// Where the results are; nothing where JSON was printed, which stands alone.
+std::string written(const PlanFlags& flags, const char* names) {
+  if (flags.json || (flags.out.empty() && flags.plot.empty())) return {};
+  if (flags.out.empty()) return flags.plot.string();
+  return flags.out.string() + ": " + names;
+}
+
+Result<std::string> plan_a_dive(const PlanFlags& flags) {
+  NERITIC_TRY(const diver::DivePlanRequest request, plan_request(flags));
+  NERITIC_TRY(const PlanReport report, make_plan_report(flags.convention, request));
+  if (!flags.out.empty()) {
+    NERITIC_TRY_STATUS(make_folder(flags.out));
+    NERITIC_TRY_STATUS(write_text(flags.out / "plan.json", plan_json(report)));
+  }
+  PlanPicture picture{
+      fmt::format("{:g} m, {:g} min on {}", flags.depth_m, flags.time_min,
+                  diver::name_of(request.gases[0].mix)),
+      fmt::format("{}, {}; run time {:.1f} min, stops {:.1f} min, CNS {:.0f} %, OTU "
+                  "{:.0f}; for planning with judgement, no substitute for training",
+                  gf_text(request.gf_low, request.gf_high), flags.convention, report.plan.run_min(),
+                  report.plan.stop_min(), report.plan.oxygen.cns_percent, report.plan.oxygen.otu),
+      request.conventions,
+      request.gf_low,
+      request.gf_high,
+      request.gases,
+      report.plan.stops};
+  if (!flags.plot.empty() || !flags.out.empty())
+    NERITIC_TRY_STATUS(
+        write_pictures(flags, "plan.png", picture, trace_plan(request, report.plan)));
+  fmt::print("{}", flags.json ? plan_json(report) : plan_text(report));
+  std::fflush(stdout);
+  return written(flags, "plan.json, plan.png");
+}
+
+std::string log_text(const PlanFlags& flags, const diver::DepthLog& log, const DiveTrace& trace) {
+  const diver::DiveComputerState& end = trace.end;
+  const diver::DiveComputerView& view = trace.rows.back().view;
+  std::string out =
+      fmt::format("{}: {} samples, {} refused, {:.1f} min, deepest {:.1f} m\n", flags.log,
+                  log.samples.size(), end.refused, trace.rows.back().run_min, end.deepest_m);
+  out += fmt::format("deepest ceiling {:.1f} m, {:.1f} min above it; {:.1f} min of ascent alarm\n",
+                     trace.most_ceiling_m, trace.above_ceiling_min, trace.fast_min);
+  out += fmt::format(
+      "at the end: {:.1f} m, ceiling {:.1f} m, {:.0f} % of the M-value at the surface, "
+      "CNS {:.1f} %, OTU {:.0f}",
+      end.last.depth_m, view.ceiling_m, 100.0 * view.surface_gradient, end.oxygen.cns_percent,
+      end.oxygen.otu);
+  if (view.stop_m > 0.0)
+    out += fmt::format("; next stop {:g} m {:g} min, {:.0f} min to the surface", view.stop_m,
+                       view.stop_min, view.to_surface_min);
+  return out + "\n";
+}
+
+Result<std::string> replay_a_log(const PlanFlags& flags) {
+  NERITIC_TRY(const std::string text, read_text(flags.log));
+  NERITIC_TRY(const diver::DepthLog log, diver::read_depth_log(text, flags.log));
+  NERITIC_TRY(diver::DiveComputerSettings settings, log_settings(flags, log));
+  NERITIC_TRY(const diver::TissueState start, log_start(flags));
+  NERITIC_TRY(const diver::DiveComputer computer, diver::DiveComputer::create(std::move(settings)));
+  const DiveTrace trace = trace_log(computer, start, log);
+  const diver::DiveComputerSettings& s = computer.settings();
+  if (!flags.out.empty()) {
+    NERITIC_TRY_STATUS(make_folder(flags.out));
+    NERITIC_TRY_STATUS(write_text(flags.out / "log.csv", trace_csv(trace, s.gases)));
+  }
+  NERITIC_TRY_STATUS(
+      write_pictures(flags, "log.png",
+                     {"Replayed: " + std::filesystem::path(flags.log).filename().string(),
+                      fmt::format("{}, {}; {} samples, {} refused, deepest ceiling {:.1f} m",
+                                  gf_text(s.gf_low, s.gf_high), flags.convention,
+                                  log.samples.size(), trace.end.refused, trace.most_ceiling_m),
+                      s.conventions,
+                      s.gf_low,
+                      s.gf_high,
+                      s.gases,
+                      {}},
+                     trace));
+  fmt::print("{}", flags.json ? log_json(flags.log, log, trace) : log_text(flags, log, trace));
+  std::fflush(stdout);
+  return written(flags, "log.csv, log.png");
+}
+
+}  // namespace
+
+Result<std::string> run_plan(const PlanFlags& flags) {
+  return flags.log.empty() ? plan_a_dive(flags) : replay_a_log(flags);
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,26 @@
+// A dive plan as text for a diver, and as JSON for programs.
+#pragma once
+
+#include <string>
+
+#include "diver/plan_warnings.hpp"
+#include "tools/neritic/plan_trace.hpp"
+
+namespace neritic::tools {
+
+struct PlanReport {
+  std::string convention;  // its name
+  diver::DivePlanRequest request;
+  diver::DivePlan plan;
+  std::vector<diver::PlanWarning> warnings;
+  double without_stops_min = 0.0;  // largest run time; negative: none
+};
+Result<PlanReport> make_plan_report(const std::string& convention,
+                                    const diver::DivePlanRequest& request);
+
+std::string plan_text(const PlanReport& report);
+std::string plan_json(const PlanReport& report);
+// What a replayed log came to, and its last tissues.
+std::string log_json(const std::string& file, const diver::DepthLog& log, const DiveTrace& trace);
+
+}  // namespace neritic::tools

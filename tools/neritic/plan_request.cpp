@@ -1,0 +1,196 @@
+#include "tools/neritic/plan_request.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "diver/gas_label.hpp"
+#include "tools/neritic/flags.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using diver::DecoConventions;
+using diver::DivePlanRequest;
+using diver::GasRole;
+using diver::PlanGas;
+
+// Oxygen at which deco gas is taken where no depth is said, and water for which labels say so.
+constexpr double kSwitchPo2_bar = 1.6;
+
+Result<double> plan_number(const std::string& flag, std::string_view text) {
+  double value = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return bad_input("--{}: '{}' found, a number is accepted", flag, text.substr(0, 40));
+  return value;
+}
+
+// "30/85": two shares from percent.
+Result<std::pair<double, double>> percent_pair(const std::string& flag, const std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash == text.npos)
+    return bad_input("--{}: '{}' found, two percentages as 30/85 are accepted", flag, text);
+  NERITIC_TRY(const double first, plan_number(flag, std::string_view(text).substr(0, slash)));
+  NERITIC_TRY(const double second, plan_number(flag, std::string_view(text).substr(slash + 1)));
+  return std::pair{first / 100.0, second / 100.0};
+}
+
+// The deepest multiple of 3 m at which a gas has that much oxygen.
+double switch_depth_of(const diver::GasMix& mix) {
+  const double depth = diver::max_operating_depth_m(mix, kSwitchPo2_bar, diver::kTenMetresABar);
+  return std::max(3.0 * std::floor(depth / 3.0 + 1e-9), 0.0);
+}
+
+// "18/45", "ean50@21".
+Result<PlanGas> gas_of(const std::string& text, GasRole role) {
+  const std::size_t at = text.find('@');
+  NERITIC_TRY(const diver::GasMix mix, diver::parse_mix(text.substr(0, at)));
+  PlanGas gas{mix, 0.0, role};
+  if (at != text.npos) {
+    NERITIC_TRY(gas.switch_depth_m, plan_number("gas", text.substr(at + 1)));
+  } else if (role == GasRole::kDeco) {
+    gas.switch_depth_m = switch_depth_of(mix);
+  }
+  return gas;
+}
+
+Result<std::vector<PlanGas>> gases_of(const PlanFlags& flags) {
+  std::vector<PlanGas> gases;
+  for (const std::string& text : flags.gases) {
+    NERITIC_TRY(const PlanGas gas, gas_of(text, gases.empty() ? GasRole::kBottom : GasRole::kDeco));
+    gases.push_back(gas);
+  }
+  for (const std::string& text : flags.travel) {
+    NERITIC_TRY(const PlanGas gas, gas_of(text, GasRole::kTravel));
+    gases.push_back(gas);
+  }
+  return gases;
+}
+
+Result<double> bar_per_m_of_water(const std::string& water) {
+  if (water == "fresh") return diver::bar_per_m_of(1000.0);
+  if (water == "salt") return diver::bar_per_m_of(1030.0);
+  if (water == "en13319") return 0.1;
+  double density = 0.0;
+  const auto [end, fault] = std::from_chars(water.data(), water.data() + water.size(), density);
+  if (fault != std::errc() || end != water.data() + water.size() ||
+      !(density >= 900.0 && density <= 1300.0))
+    return bad_input("--water: '{}' found; fresh, salt, en13319 or 900 to 1300 kg/m3 is accepted",
+                     water);
+  return diver::bar_per_m_of(density);
+}
+
+Result<DecoConventions> conventions_asked(const PlanFlags& flags) {
+  NERITIC_TRY(DecoConventions c, diver::conventions_of(flags.convention));
+  if (flags.altitude_m != 0.0) {
+    if (!(flags.altitude_m >= -500.0 && flags.altitude_m <= 9000.0))
+      return bad_input("--altitude {} found, -500 to 9000 m is accepted", flags.altitude_m);
+    c.environment.surface_bar = diver::surface_bar_at(flags.altitude_m);
+  }
+  if (flags.surface_bar != 0.0) c.environment.surface_bar = flags.surface_bar;
+  if (!flags.water.empty()) {
+    NERITIC_TRY(c.environment.bar_per_m, bar_per_m_of_water(flags.water));
+  }
+  if (flags.table == "b" || flags.table == "c")
+    c.table = flags.table == "b" ? diver::BuehlmannTable::kB : diver::BuehlmannTable::kC;
+  else if (!flags.table.empty())
+    return bad_input("--table: '{}' found, b or c is accepted", flags.table);
+  if (flags.last_stop_m != 0.0) c.last_stop_m = flags.last_stop_m;
+  if (flags.ascent_m_min != 0.0) c.ascent_m_min = flags.ascent_m_min;
+  if (flags.descent_m_min != 0.0) c.descent_m_min = flags.descent_m_min;
+  if (!flags.saturation.empty()) {
+    NERITIC_TRY(const auto speeds, percent_pair("saturation", flags.saturation));
+    c.saturation = speeds.first;
+    c.desaturation = speeds.second;
+  }
+  return c;
+}
+
+// Conventions, gradient factors and gases.
+Result<DivePlanRequest> bare_request(const PlanFlags& flags) {
+  DivePlanRequest request;
+  NERITIC_TRY(request.conventions, conventions_asked(flags));
+  NERITIC_TRY(const auto gf, percent_pair("gf", flags.gf));
+  request.gf_low = gf.first;
+  request.gf_high = gf.second;
+  NERITIC_TRY(request.gases, gases_of(flags));
+  return request;
+}
+
+// "30,25,60" or "30,25,60,ean32".
+Result<diver::EarlierDive> earlier_dive(const std::string& text, const DivePlanRequest& base) {
+  diver::EarlierDive earlier;
+  earlier.dive = base;
+  earlier.dive.gases = {PlanGas{}};
+  std::string numbers = text;
+  if (std::ranges::count(text, ',') == 3) {
+    NERITIC_TRY(const PlanGas gas, gas_of(text.substr(text.rfind(',') + 1), GasRole::kBottom));
+    earlier.dive.gases = {gas};
+    numbers = text.substr(0, text.rfind(','));
+  }
+  NERITIC_TRY(const auto values, parse_numbers("after", numbers, 3, 3));
+  earlier.dive.levels = {{values[0], values[1]}};
+  earlier.surface_min = values[2];
+  if (!(earlier.surface_min >= 0.0))
+    return bad_input("--after: an interval of {} min found, 0 or more is accepted", values[2]);
+  return earlier;
+}
+
+Status add_earlier(const PlanFlags& flags, DivePlanRequest& request) {
+  if (flags.after.empty()) return {};
+  std::vector<diver::EarlierDive> dives;
+  for (const std::string& text : flags.after) {
+    NERITIC_TRY(diver::EarlierDive dive, earlier_dive(text, request));
+    dives.push_back(std::move(dive));
+  }
+  NERITIC_TRY(request.start, diver::tissues_after(dives));
+  return {};
+}
+
+}  // namespace
+
+Result<DivePlanRequest> plan_request(const PlanFlags& flags) {
+  NERITIC_TRY(DivePlanRequest request, bare_request(flags));
+  if (flags.depth_m == 0.0 || flags.time_min == 0.0)
+    return bad_input("plan: --depth {} and --time {} found, both are needed (or --log)",
+                     flags.depth_m, flags.time_min);
+  request.levels = {{flags.depth_m, flags.time_min}};
+  for (const std::string& text : flags.levels) {
+    NERITIC_TRY(const auto level, parse_numbers("level", text, 2, 2));
+    request.levels.push_back({level[0], level[1]});
+  }
+  NERITIC_TRY_STATUS(add_earlier(flags, request));
+  return request;
+}
+
+Result<diver::DiveComputerSettings> log_settings(const PlanFlags& flags,
+                                                 const diver::DepthLog& log) {
+  NERITIC_TRY(const DivePlanRequest request, bare_request(flags));
+  diver::DiveComputerSettings settings;
+  settings.conventions = request.conventions;
+  settings.gf_low = request.gf_low;
+  settings.gf_high = request.gf_high;
+  settings.gases.clear();
+  for (const diver::GasMix& mix : log.gases)
+    settings.gases.push_back(
+        {mix, switch_depth_of(mix), settings.gases.empty() ? GasRole::kBottom : GasRole::kDeco});
+  for (const PlanGas& gas : request.gases) {
+    const bool known = std::ranges::any_of(
+        settings.gases, [&](const PlanGas& other) { return other.mix == gas.mix; });
+    if (known) continue;
+    // The log's first gas is the bottom's: the flags' is one more then, if it was asked for at all.
+    if (gas.role == GasRole::kBottom && !settings.gases.empty()) continue;
+    settings.gases.push_back(gas);
+  }
+  return settings;
+}
+
+Result<diver::TissueState> log_start(const PlanFlags& flags) {
+  NERITIC_TRY(DivePlanRequest request, bare_request(flags));
+  NERITIC_TRY_STATUS(add_earlier(flags, request));
+  const DecoConventions& c = request.conventions;
+  return request.start.value_or(diver::saturated(c.model(), c.environment.surface_bar, c.start_n2));
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,21 @@
+// What the flags of `neritic plan` ask for, as requests of the planner and settings of the dive
+// computer.
+#pragma once
+
+#include "diver/deco_live.hpp"
+#include "diver/depth_log.hpp"
+#include "diver/dive_plan.hpp"
+#include "tools/neritic/commands.hpp"
+
+namespace neritic::tools {
+
+// Conventions, gradient factors, gases, levels, and tissues after earlier dives.
+Result<diver::DivePlanRequest> plan_request(const PlanFlags& flags);
+
+// For a log: its gases first, the flags' after them; samples' gases are numbers of these.
+Result<diver::DiveComputerSettings> log_settings(const PlanFlags& flags,
+                                                 const diver::DepthLog& log);
+// At the start of a log: never dived, or after earlier dives.
+Result<diver::TissueState> log_start(const PlanFlags& flags);
+
+}  // namespace neritic::tools
