@@ -1,0 +1,34 @@
+// The flutter kick as a wave that travels down the legs: both legs beat in turn, hip, knee and
+// ankle so phased that thigh, shank and fin are chords of h(x, t) = a (x / l)^p sin(w t - k x), x
+// from the hip to the tip at l. Arbitrary phases of plausible size would cost kilowatts. Pure
+// functions; any thread.
+#pragma once
+
+#include "diver/kinematics.hpp"
+
+namespace neritic::diver {
+
+struct FlutterKick {
+  double amplitude_m = 0.25;   // of the tips, half of the whole beat
+  double wavelength_m = 2.33;  // the wave runs at 2.33 m times the frequency (Zamparo et al. 2002)
+  double exponent = 1.25;
+  // Knees bend one way only: this much on average. Hips and ankles make up for it.
+  double knee_rad = radians(16.0);
+  // Toes are pointed no farther than this from square: in line with the shin.
+  double pointed_rad = radians(90.0);
+  // Both legs out of the line, to the belly's side: steers in pitch.
+  double lift_rad = 0.0;
+  // How much wider the left leg beats than the right one, of the mean: steers to starboard.
+  double left_more = 0.0;
+  // The left leg so much more to the belly's side, the right one less: rolls to starboard.
+  double twist_rad = 0.0;
+};
+
+// Legs of a body at that phase (2 pi a beat of both legs), with the other joints as they are. Of
+// the left leg; the right one is half a beat later. Angles stay in the range of joints.
+void set_flutter(JointAngles& joints, const Body& body, const FlutterKick& kick, double phase_rad);
+
+// A swimmer's posture: arms along the sides, legs straight, toes pointed, looking ahead.
+JointAngles streamlined(const Body& body);
+
+}  // namespace neritic::diver

@@ -1,0 +1,90 @@
+// What a diver carries: suit, fins, tanks, jacket, lead. Parameters as a person writes them,
+// checked by make_body (body.hpp). Plain values; any thread.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "diver/gas_mix.hpp"
+#include "engine/core/math.hpp"
+
+namespace neritic::diver {
+
+// So that a state can be copied as bytes.
+inline constexpr std::size_t kMaxTanks = 4;
+
+// Foamed neoprene. Its gas follows Boyle's law, so that half of its volume is gone at 10 m.
+struct Suit {
+  double thickness_m = 0.005;  // as sold; 0: none
+};
+
+// One on each foot, flat, in line with the sole but for an angle.
+struct Fins {
+  double length_m = 0.40;  // of the blade beyond the toes
+  double width_m = 0.20;
+  double angle_rad = radians(20.0);  // of the blade away from the sole's plane, towards the sole
+  double mass_kg = 0.9;              // of each, foot pocket included
+  double volume_m3 = 0.8e-3;
+};
+
+// The first is worn on the back, the others at the sides: left, right, left. Aluminium of 80 cubic
+// feet (Luxfer S080: 14.2 kg, 11.1 litres) with valve and regulator.
+struct Tank {
+  double water_volume_m3 = 0.0111;  // that gas fills
+  double empty_mass_kg = 15.8;
+  double outer_volume_m3 = 16.6e-3;
+  double radius_m = 0.092, length_m = 0.60;
+  GasMix mix = kAir;
+  double pressure_pa = 200e5;  // at the start
+};
+
+// A bladder behind the trunk, an ellipsoid when full, and its valves. Places in the thorax's axes,
+// for a body of 1.78 m.
+struct Jacket {
+  double capacity_m3 = 0.018;
+  Vec3 centre_m{-0.04, 0.0, -0.16};
+  Vec3 half_axes_m{0.22, 0.22, 0.0888};  // of 18 litres; scaled to the capacity
+  // Two lobes beside the tank, between which gas goes hardly: of the way to the higher side that it
+  // would find in an open ellipsoid it takes this share. All of it would turn divers over.
+  double sideways = 0.2;
+  double mass_kg = 3.5, volume_m3 = 3.0e-3;  // of the cloth, plate and fittings
+  // Effective areas: opening times discharge coefficient. The inflator gives 100 litres of 1 bar a
+  // minute at the surface, the deflator some 2.5 litres a second at 10 m, the dump valve 5.
+  double inflator_m2 = 0.8e-6;
+  double deflator_m2 = 0.5e-4;
+  double dump_m2 = 1.5e-4;
+  double relief_m2 = 3.0e-4;             // wide open
+  double relief_pa = 14e3;               // over ambient, where the relief valve begins to open
+  Vec3 hose_root_m{0.14, -0.09, -0.20};  // left shoulder
+  double hose_m = 0.30;                  // the mouth is lifted so far above its root
+  Vec3 dump_m{0.13, 0.09, -0.203};       // right shoulder
+  Vec3 relief_at_m{-0.20, 0.14, -0.16};  // low on the back
+};
+
+struct Gear {
+  std::optional<Suit> suit = Suit{};
+  std::optional<Fins> fins = Fins{};
+  std::vector<Tank> tanks = std::vector<Tank>(1);
+  std::optional<Jacket> jacket = Jacket{};
+  // Lead; nothing said: as much as makes the diver neutral with an empty jacket, lungs half full of
+  // a quiet breath, and 50 bar in the tanks, at 5 m (0 where that floats no one), split between
+  // belt and shoulders so that the body lies level at 15 m with 120 bar.
+  std::optional<double> lead_kg;
+  std::optional<double> lead_at_shoulders;  // share, 0 to 1
+  // Drag of what is worn, m^2 of C_d A along the body; nothing said: as measured with a tank and a
+  // jacket, nothing without (body.cpp).
+  std::optional<double> drag_area_m2;
+};
+
+// A swimmer in trunks.
+inline Gear no_gear() {
+  Gear gear;
+  gear.suit.reset();
+  gear.fins.reset();
+  gear.tanks.clear();
+  gear.jacket.reset();
+  gear.lead_kg = 0.0;
+  return gear;
+}
+
+}  // namespace neritic::diver

@@ -1,0 +1,73 @@
+// The state of a diver as one struct, x = [j, p, l]: joints and their rates, the body's place and
+// motion, and what lives (breath and gas). Plain bytes that list their fields, so that states can
+// be copied, hashed and replayed. And what acts on a diver from outside. Any thread.
+#pragma once
+
+#include <cstdint>
+
+#include "diver/jacket.hpp"
+#include "diver/lungs.hpp"
+#include "diver/motion.hpp"
+
+namespace neritic::diver {
+
+// What a step is given; held until it changes.
+struct HumanInputs {
+  JointRotations joints = straight_joints();  // where the limbs are wanted or measured
+  Vec3 current_ned_m_s{0.0};
+  double other_power_w = 0.0;      // work beside what limbs do to the water
+  double ventilation_l_min = 0.0;  // as measured; 0: by effort
+  double breath_bias_m3 = 0.0;     // around so much more air than at rest
+  std::uint64_t hold_breath = 0;   // 1: held
+  std::uint64_t buttons = 0;       // kInflate, kDeflate, kDump
+  std::uint64_t tank = 0;          // that is breathed from
+
+  static void fields(auto&& field, auto& self) {
+    field("joints", self.joints);
+    field("current_ned_m_s", self.current_ned_m_s);
+    field("other_power_w", self.other_power_w);
+    field("ventilation_l_min", self.ventilation_l_min);
+    field("breath_bias_m3", self.breath_bias_m3);
+    field("hold_breath", self.hold_breath);
+    field("buttons", self.buttons);
+    field("tank", self.tank);
+  }
+};
+
+// l: what lives, and what it lives on.
+struct LifeState {
+  LungState lungs;
+  TankState tanks;
+  double jacket_moles = 0.0;
+  double limb_power_w = 0.0;  // mechanical, over the last second or so
+  double limb_work_j = 0.0;   // so far
+
+  static void fields(auto&& field, auto& self) {
+    field("lungs", self.lungs);
+    field("tanks", self.tanks);
+    field("jacket_moles", self.jacket_moles);
+    field("limb_power_w", self.limb_power_w);
+    field("limb_work_j", self.limb_work_j);
+  }
+};
+
+struct HumanState {
+  LimbState limbs;  // j
+  RootState root;   // p
+  LifeState life;   // l
+  // The last good value of each input, how many were refused, and how many joints were ever farther
+  // from where they were wanted than limbs move in a step (limb_filter.hpp).
+  HumanInputs held;
+  std::uint64_t refused_inputs = 0, far_joints = 0;
+
+  static void fields(auto&& field, auto& self) {
+    field("limbs", self.limbs);
+    field("root", self.root);
+    field("life", self.life);
+    field("held", self.held);
+    field("refused_inputs", self.refused_inputs);
+    field("far_joints", self.far_joints);
+  }
+};
+
+}  // namespace neritic::diver

@@ -1,0 +1,172 @@
+#include "diver/human_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace neritic::diver {
+namespace {
+
+constexpr double kMostCurrent_m_s = 100.0;
+constexpr double kMostDistance_m = 1e9;
+constexpr double kMostPower_w = 1e4;
+constexpr double kMostVentilation = 400.0;  // l/min
+constexpr double kMostBias_m3 = 5e-3;
+constexpr double kLongestStep_s = 10.0;
+constexpr double kReserve_pa = 50e5;
+// Effort is what limbs did over so long.
+constexpr double kPowerLag_s = 2.0;
+
+bool within(double value, double most) {  // NaN fails
+  return std::abs(value) <= most;
+}
+bool within(const Vec3& v, double most) {
+  return within(v.x, most) && within(v.y, most) && within(v.z, most);
+}
+
+template <class T>
+void take(bool good, const T& value, T& held, std::uint64_t& refused) {
+  if (good)
+    held = value;
+  else
+    ++refused;
+}
+
+// A rotation that is nearly one becomes one.
+bool take_rotation(const Quat& q, Quat& held) {
+  const double length = glm::length(q);
+  if (!(length > 0.5 && length < 2.0)) return false;
+  held = q / length;
+  return true;
+}
+
+void take_inputs(const HumanInputs& in, HumanState& state) {
+  HumanInputs& held = state.held;
+  std::uint64_t& refused = state.refused_inputs;
+  for (std::size_t i = 0; i < kJoints; ++i)
+    if (!take_rotation(in.joints[i], held.joints[i])) ++refused;
+  take(within(in.current_ned_m_s, kMostCurrent_m_s), in.current_ned_m_s, held.current_ned_m_s,
+       refused);
+  take(in.other_power_w >= 0.0 && in.other_power_w <= kMostPower_w, in.other_power_w,
+       held.other_power_w, refused);
+  take(in.ventilation_l_min >= 0.0 && in.ventilation_l_min <= kMostVentilation,
+       in.ventilation_l_min, held.ventilation_l_min, refused);
+  take(within(in.breath_bias_m3, kMostBias_m3), in.breath_bias_m3, held.breath_bias_m3, refused);
+  take(in.hold_breath <= 1, in.hold_breath, held.hold_breath, refused);
+  take(in.buttons <= kAllButtons, in.buttons, held.buttons, refused);
+  take(in.tank < kMaxTanks, in.tank, held.tank, refused);
+}
+
+void substep(const Body& body, HumanState& state, double dt_s) {
+  const HumanInputs& in = state.held;
+  LifeState& life = state.life;
+  // Gas where the body is now, then motion with that gas.
+  const double ambient_pa = pressure_at(body, state.root.position_ned_m.z);
+  BreathInputs breath;
+  breath.limb_power_w = life.limb_power_w + in.other_power_w;
+  breath.ventilation_l_min = in.ventilation_l_min;
+  breath.bias_m3 = in.breath_bias_m3;
+  breath.hold = in.hold_breath != 0;
+  breath.tank = in.tank;
+  step_lungs(body, life.lungs, life.tanks, breath, ambient_pa, dt_s);
+  step_jacket(body, life.jacket_moles, life.tanks, in.buttons, thorax_place(body, state), dt_s);
+
+  const LimbState before = state.limbs;
+  state.far_joints += static_cast<std::uint64_t>(follow_limbs(state.limbs, in.joints, dt_s));
+  const LimbWork work = move_root(body, state.root, before, state.limbs, gas_load(body, state),
+                                  in.current_ned_m_s, dt_s);
+  // Muscles that brake take no work back.
+  const double power_w = std::clamp(work.power_w, 0.0, kMostPower_w);
+  life.limb_work_j += power_w * dt_s;
+  life.limb_power_w += (power_w - life.limb_power_w) * -std::expm1(-dt_s / kPowerLag_s);
+}
+
+}  // namespace
+
+HumanState step(const Body& body, const HumanState& state, const HumanInputs& inputs, double dt_s,
+                double longest_substep_s) {
+  HumanState next = state;
+  take_inputs(inputs, next);
+  if (!(dt_s > 0.0 && dt_s <= kLongestStep_s)) {
+    ++next.refused_inputs;
+    return next;
+  }
+  // A step that is as long as a substep, but for rounding, is one.
+  const double count = std::ceil(dt_s / longest_substep_s - 1e-9);
+  for (int i = 0; i < static_cast<int>(count); ++i) substep(body, next, dt_s / count);
+  return next;
+}
+
+HumanState start_at(const Body& body, const Vec3& position_ned_m, const Quat& ned_from_body,
+                    const JointRotations& joints) {
+  HumanState state;
+  teleport(state, position_ned_m, ned_from_body);
+  state.limbs.rotation = state.held.joints = joints;
+  state.life.tanks = full_tanks(body);
+  const double minute_l =
+      ventilation_l_min(body, kRestingOxygen_l_min, kAir, pressure_at(body, position_ned_m.z));
+  state.life.lungs.volume_m3 = body.lungs.rest_m3 + 0.5 * tidal_volume(body, minute_l);
+  state.life.lungs.phase_rad = 0.5 * kPi;  // half full, breathing in
+  const double missing_m3 = net_weight_n(body, state) / (body.water_kg_m3 * kGravity_m_s2);
+  if (missing_m3 > 0.0)
+    state.life.jacket_moles = jacket_moles(body, missing_m3, thorax_place(body, state));
+  return state;
+}
+
+bool teleport(HumanState& state, const Vec3& position_ned_m, const Quat& ned_from_body) {
+  if (!within(position_ned_m, kMostDistance_m)) return false;
+  if (!take_rotation(ned_from_body, state.root.attitude)) return false;
+  state.root.position_ned_m = position_ned_m;
+  state.root.velocity = {};
+  return true;
+}
+
+GasLoad gas_load(const Body& body, const HumanState& state) {
+  GasLoad load;
+  load.lungs_m3 = state.life.lungs.volume_m3;
+  if (state.life.jacket_moles > 0.0) {
+    const JacketGas gas = jacket_gas(body, state.life.jacket_moles, thorax_place(body, state));
+    load.jacket_m3 = gas.volume_m3;
+    load.jacket_at_m = gas.centre_m;
+  }
+  for (std::size_t i = 0; i < body.tank_count; ++i)
+    load.tank_kg[i] = state.life.tanks.moles[i] * molar_mass(body.tanks[i].mix);
+  return load;
+}
+
+ThoraxPlace thorax_place(const Body& body, const HumanState& state) {
+  // Only the spine is between the hips and the thorax.
+  const Quat abdomen = state.limbs.rotation[joint_of(kAbdomen)];
+  const Quat thorax = abdomen * state.limbs.rotation[joint_of(kThorax)];
+  const Vec3 at = body.segments[kAbdomen].joint_m + abdomen * body.segments[kThorax].joint_m;
+  const Quat& root = state.root.attitude;
+  return {glm::conjugate(root * thorax) * Vec3(0.0, 0.0, -1.0),
+          state.root.position_ned_m.z + (root * at).z};
+}
+
+double net_weight_n(const Body& body, const HumanState& state) {
+  const Immersion immersion{glm::conjugate(state.root.attitude) * Vec3(0.0, 0.0, 1.0),
+                            state.root.position_ned_m.z};
+  const StaticForces still = static_forces(body, posture_of(body, state.limbs.rotation, {}), {},
+                                           immersion, gas_load(body, state));
+  return glm::dot(still.wrench.linear(), immersion.down);
+}
+
+GasReading read_gas(const Body& body, const HumanState& state) {
+  GasReading out;
+  const std::size_t tank = state.held.tank;
+  out.ambient_pa = pressure_at(body, state.root.position_ned_m.z);
+  out.tank_pa = tank_pressure(body, state.life.tanks, tank);
+  out.ventilation_l_min =
+      state.held.ventilation_l_min > 0.0
+          ? state.held.ventilation_l_min
+          : ventilation_l_min(body, state.life.lungs.oxygen_l_min,
+                              tank < body.tank_count ? body.tanks[tank].mix : kAir, out.ambient_pa);
+  out.breaths_min = 1e-3 * out.ventilation_l_min / tidal_volume(body, out.ventilation_l_min);
+  if (state.held.hold_breath != 0) out.breaths_min = out.ventilation_l_min = 0.0;
+  out.remaining_s =
+      remaining_s(body, state.life.tanks, tank, out.ventilation_l_min, out.ambient_pa, kReserve_pa);
+  out.jacket_m3 = jacket_gas(body, state.life.jacket_moles, thorax_place(body, state)).volume_m3;
+  return out;
+}
+
+}  // namespace neritic::diver

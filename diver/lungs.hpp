@@ -1,0 +1,64 @@
+// Breathing: how much air moves for what the body does, breath by breath, through a regulator or
+// held. Volumes at ambient pressure and the water's temperature. Pure functions; any thread.
+#pragma once
+
+#include <cstdint>
+
+#include "diver/tanks.hpp"
+
+namespace neritic::diver {
+
+struct LungState {
+  double volume_m3 = 2.5e-3;   // of gas
+  double held_moles = 0.0;     // while the breath is held
+  double phase_rad = 0.0;      // 0: empty of the tidal volume; breathing in to pi, out to 2 pi
+  double oxygen_l_min = 0.32;  // uptake, at standard temperature and pressure, dry
+  // Seconds in which the lungs were stretched beyond what they bear, a breath held on ascent: a
+  // risk of barotrauma, not an injury. And seconds without enough to breathe.
+  double overstretched_s = 0.0, starved_s = 0.0;
+  double breathed_moles = 0.0;  // from tanks, so far
+
+  static void fields(auto&& field, auto& self) {
+    field("volume_m3", self.volume_m3);
+    field("held_moles", self.held_moles);
+    field("phase_rad", self.phase_rad);
+    field("oxygen_l_min", self.oxygen_l_min);
+    field("overstretched_s", self.overstretched_s);
+    field("starved_s", self.starved_s);
+    field("breathed_moles", self.breathed_moles);
+  }
+};
+
+// At rest.
+inline constexpr double kRestingOxygen_l_min = 0.32;
+
+// Oxygen that mechanical power of the limbs asks for, litres a minute: 20.9 kJ a litre, a quarter
+// of it to work (di Prampero 1986, Int. J. Sports Med. 7, 55).
+double oxygen_demand_l_min(double limb_power_w);
+
+// Respiratory minute volume, litres of ambient pressure a minute: 25 times the oxygen taken up, as
+// far as the chest can move gas that dense (maximal voluntary ventilation falls with the root of
+// density: Camporesi and Bosco 2003, "Bennett and Elliott's Physiology", 5th ed., ch. 5).
+double ventilation_l_min(const Body& body, double oxygen_l_min, const GasMix& mix,
+                         double ambient_pa);
+
+// Volume of one breath for that ventilation; breaths are slower and deeper under water.
+double tidal_volume(const Body& body, double ventilation_l_min);
+
+struct BreathInputs {
+  double limb_power_w = 0.0;       // mean mechanical power just now
+  double ventilation_l_min = 0.0;  // as measured; 0: follows from oxygen
+  double bias_m3 = 0.0;            // breathes around so much more (or less) than at rest
+  bool hold = false;
+  std::size_t tank = 0;
+};
+
+void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const BreathInputs& inputs,
+                double ambient_pa, double dt_s);
+
+// Seconds until the tank is down to reserve_pa (or ambient pressure, where that is more) at that
+// ventilation and depth; infinite where nothing is breathed.
+double remaining_s(const Body& body, const TankState& tanks, std::size_t tank,
+                   double ventilation_l_min, double ambient_pa, double reserve_pa);
+
+}  // namespace neritic::diver

@@ -1,0 +1,46 @@
+// Inertia of a rigid thing, the water that moves along with it included: momentum P = A v + B w and
+// moment of momentum L = B^T v + C w about the origin of the axes it is given in. Plain values,
+// pure functions; any thread.
+#pragma once
+
+#include "engine/core/math.hpp"
+
+namespace neritic::diver {
+
+struct SpatialMass {
+  Mat3 a{0.0}, b{0.0}, c{0.0};
+};
+
+// S(p) x = p cross x.
+inline Mat3 cross_matrix(const Vec3& p) {
+  return Mat3(0.0, p.z, -p.y, -p.z, 0.0, p.x, p.y, -p.x, 0.0);  // columns
+}
+
+inline SpatialMass& operator+=(SpatialMass& m, const SpatialMass& other) {
+  m.a += other.a;
+  m.b += other.b;
+  m.c += other.c;
+  return m;
+}
+
+// Of mass_kg at centre_m with an inertia about that centre.
+inline SpatialMass rigid_mass(double mass_kg, const Vec3& centre_m, const Mat3& inertia_kg_m2) {
+  const Mat3 s = cross_matrix(centre_m);
+  return {mass_kg * Mat3(1.0), -mass_kg * s, inertia_kg_m2 - mass_kg * s * s};
+}
+inline SpatialMass point_mass(double mass_kg, const Vec3& centre_m) {
+  return rigid_mass(mass_kg, centre_m, Mat3(0.0));
+}
+
+// In the axes that rotation leads to (outer_from_inner), about the same origin.
+inline SpatialMass rotated(const SpatialMass& m, const Mat3& rotation) {
+  const Mat3 back = glm::transpose(rotation);
+  return {rotation * m.a * back, rotation * m.b * back, rotation * m.c * back};
+}
+// About the point from which the mass's own origin lies at p.
+inline SpatialMass shifted(const SpatialMass& m, const Vec3& p) {
+  const Mat3 s = cross_matrix(p), as = m.a * s;
+  return {m.a, m.b - as, m.c - glm::transpose(m.b) * s + s * m.b - s * as};
+}
+
+}  // namespace neritic::diver

@@ -1,0 +1,143 @@
+#include "diver/swimmer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace neritic::diver {
+namespace {
+
+// What a kick gives for each beat a second with full gear, m; the rest is learned while swimming.
+constexpr double kMetresABeat = 0.52;
+constexpr double kMostLift_rad = radians(18.0), kMostTwist_rad = radians(14.0);
+constexpr double kMostLeftMore = 0.5;
+constexpr double kMostBend_rad = radians(18.0);
+constexpr double kMostPitch_rad = radians(30.0);
+constexpr double kMostSink_m_s = 0.15;  // 9 m a minute
+constexpr double kMostBreathBias_m3 = 0.6e-3;
+// Nobody moves a joint from one side to the other within less.
+constexpr double kSteeringLag_s = 0.4;
+// Buttons are pressed for a moment, after so much want of breath, and then waited for.
+constexpr double kPress_s = 0.25, kWait_s = 3.0, kSure_l_s = 4.0;
+// Gas leaves at the shoulders: the head goes up for that, at most so long.
+constexpr double kVent_s = 6.0, kVentPress_s = 0.15, kVentFrom_rad = radians(6.0),
+                 kVentPitch_rad = radians(14.0);
+
+void follow(double& value, double wanted, double lag_s, double dt_s) {
+  value += (wanted - value) * -std::expm1(-dt_s / lag_s);
+}
+
+// How hard to kick for that speed.
+void pace(const SwimmerSettings& settings, double speed_m_s, double wanted_m_s,
+          SwimmerState& swimmer, double dt_s) {
+  const bool kicks = wanted_m_s > settings.gliding_speed_m_s;
+  follow(swimmer.effort, kicks ? 1.0 : 0.0, 1.0, dt_s);
+  const double error = wanted_m_s - speed_m_s;
+  if (kicks) swimmer.speed_sum = std::clamp(swimmer.speed_sum + error * dt_s, -3.0, 3.0);
+  const double wanted_hz =
+      std::clamp((wanted_m_s + 0.3 * error + 0.15 * swimmer.speed_sum) / kMetresABeat, 0.25,
+                 settings.most_frequency_hz);
+  follow(swimmer.frequency_hz, wanted_hz, 1.0, dt_s);
+  swimmer.phase_rad =
+      std::fmod(swimmer.phase_rad + 2.0 * kPi * swimmer.frequency_hz * dt_s, 2.0 * kPi);
+}
+
+// Rises and sinks by breath first, by the jacket where breath does not do.
+void balance(const Body& body, double sink_too_much_m_s, double pitch_rad, const HumanState& state,
+             SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
+  // Who has to point the nose down to stay down is too light.
+  const double want_l = 1.6 * sink_too_much_m_s + 0.1 * swimmer.climb_sum;
+  swimmer.lift_sum = std::clamp(swimmer.lift_sum + want_l * dt_s, -12.0, 12.0);
+  inputs.breath_bias_m3 = std::clamp(1e-3 * (want_l + 0.08 * swimmer.lift_sum), -kMostBreathBias_m3,
+                                     kMostBreathBias_m3);
+  swimmer.button_s += dt_s;
+  const bool more = swimmer.lift_sum > 0.0;
+  const double press_s = more ? kPress_s : kVentPress_s;
+  if (swimmer.button_s < -press_s && (more || pitch_rad > kVentFrom_rad))
+    swimmer.button_s = -press_s;
+  inputs.buttons = 0;
+  if (swimmer.button_s < 0.0) {
+    if (swimmer.button_s >= -press_s) inputs.buttons = more ? kInflate : kDump;
+  } else if (swimmer.button_s > kWait_s && std::abs(swimmer.lift_sum) > kSure_l_s) {
+    // There is nothing to let out of an empty jacket.
+    if (more ? tank_pressure(body, state.life.tanks, 0) > 5e5 : state.life.jacket_moles > 1e-3)
+      swimmer.button_s = more ? -kPress_s : -kVent_s;
+    swimmer.lift_sum *= 0.6;
+  }
+}
+
+// Where the head is to point: to the goal, some way into a current from the side.
+double wanted_heading(const SwimGoal& goal, const HumanState& state, double heading_rad) {
+  const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
+  const double level = std::hypot(way.x, way.y);
+  if (level < 0.1) return heading_rad;
+  const Vec3 drift = state.held.current_ned_m_s;
+  const double aside = (-drift.x * way.y + drift.y * way.x) / level;  // to starboard of the way
+  const double crab = std::asin(std::clamp(aside / std::max(goal.speed_m_s, 0.1), -0.7, 0.7));
+  return std::atan2(way.y, way.x) - crab;
+}
+
+// Spine and legs, for the head to come round by turn (to starboard) and nose_up, without rolling.
+void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
+           SwimmerState& swimmer, double dt_s) {
+  const double yaw = std::clamp(1.5 * std::clamp(turn, -0.5, 0.5) - 2.0 * velocity[5], -1.0, 1.0);
+  follow(swimmer.bend_rad, yaw * kMostBend_rad, kSteeringLag_s, dt_s);
+  follow(swimmer.left_more, yaw * kMostLeftMore, kSteeringLag_s, dt_s);
+  swimmer.pitch_sum = std::clamp(swimmer.pitch_sum + nose_up * dt_s, -2.5, 2.5);
+  const double pitch = 2.5 * nose_up - 3.0 * velocity[4] + 0.15 * swimmer.pitch_sum;
+  follow(swimmer.lift_rad, std::clamp(-pitch, -1.0, 1.0) * kMostLift_rad, kSteeringLag_s, dt_s);
+  const double level = std::clamp(-2.0 * roll_rad - 1.0 * velocity[3], -1.0, 1.0);
+  follow(swimmer.twist_rad, level * kMostTwist_rad, kSteeringLag_s, dt_s);
+}
+
+JointRotations posture_for(const Body& body, const SwimmerSettings& settings,
+                           const SwimmerState& swimmer) {
+  JointAngles joints = streamlined(body);
+  FlutterKick kick = settings.kick;
+  kick.amplitude_m *= swimmer.effort;
+  kick.lift_rad = swimmer.lift_rad;
+  kick.twist_rad = swimmer.twist_rad;
+  kick.left_more = swimmer.left_more;
+  set_flutter(joints, body, kick, swimmer.phase_rad);
+  for (const Segment spine : {kAbdomen, kThorax}) {
+    joints[joint_of(spine)].y = -0.25 * swimmer.lift_rad;
+    joints[joint_of(spine)].z = 0.5 * swimmer.bend_rad;
+  }
+  joints[joint_of(kHead)].z = 0.8 * swimmer.bend_rad;
+  return rotations_of(joints);
+}
+
+}  // namespace
+
+HumanAttitude attitude_of(const Quat& q) {
+  return {std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)),
+          std::asin(std::clamp(2.0 * (q.w * q.y - q.z * q.x), -1.0, 1.0)),
+          std::atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))};
+}
+
+void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& goal,
+          const HumanState& state, SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
+  const HumanAttitude attitude = attitude_of(state.root.attitude);
+  const Vec3 velocity_ned = state.root.attitude * state.root.velocity.linear();
+  const Vec3 ahead_ned = state.root.attitude * Vec3(1.0, 0.0, 0.0);
+  const double ahead_m_s = glm::dot(velocity_ned - state.held.current_ned_m_s, ahead_ned);
+  const double deeper_m = goal.target_ned_m.z - state.root.position_ned_m.z;
+  const double sink_m_s = std::clamp(0.1 * deeper_m, -kMostSink_m_s, kMostSink_m_s);
+  const double too_much_m_s = velocity_ned.z - sink_m_s;
+  const bool swims = goal.speed_m_s > settings.gliding_speed_m_s;
+  swimmer.climb_sum = swims ? std::clamp(swimmer.climb_sum + too_much_m_s * dt_s, -3.0, 3.0) : 0.0;
+  pace(settings, ahead_m_s, goal.speed_m_s, swimmer, dt_s);
+  balance(body, too_much_m_s, attitude.pitch_rad, state, swimmer, dt_s, inputs);
+
+  double turn = 0.0, pitch = 0.0;
+  if (swims) {
+    turn = std::remainder(wanted_heading(goal, state, attitude.heading_rad) - attitude.heading_rad,
+                          2.0 * kPi);
+    const double climb_m_s = -sink_m_s + 0.3 * too_much_m_s + 0.04 * swimmer.climb_sum;
+    pitch = std::clamp(climb_m_s / std::max(goal.speed_m_s, 0.2), -kMostPitch_rad, kMostPitch_rad);
+  }
+  if (swimmer.button_s < 0.0 && swimmer.lift_sum < 0.0) pitch = std::max(pitch, kVentPitch_rad);
+  steer(turn, pitch - attitude.pitch_rad, attitude.roll_rad, state.root.velocity, swimmer, dt_s);
+  inputs.joints = posture_for(body, settings, swimmer);
+}
+
+}  // namespace neritic::diver

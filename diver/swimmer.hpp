@@ -1,0 +1,58 @@
+// A person who swims to a place: joints for the kick and for steering, breath and buttons for the
+// depth. What stands in for the motion suit and the jacket's buttons where nobody wears them. Plain
+// bytes in, plain bytes out; pure functions, any thread. World north, east, down.
+#pragma once
+
+#include "diver/flutter_kick.hpp"
+#include "diver/human_step.hpp"
+
+namespace neritic::diver {
+
+struct SwimGoal {
+  Vec3 target_ned_m{0.0};
+  double speed_m_s = 0.5;  // through the water; 0: stays where it is, at the target's depth
+};
+
+struct SwimmerSettings {
+  FlutterKick kick;
+  double most_frequency_hz = 1.3;
+  double gliding_speed_m_s = 0.05;  // below: legs rest
+};
+
+struct SwimmerState {
+  double phase_rad = 0.0, frequency_hz = 0.0;
+  double effort = 0.0;     // kick amplitude, 0 to 1 of the settings': grows within a second
+  double speed_sum = 0.0;  // m: too slow so far
+  double climb_sum = 0.0;  // m: sunk too much so far
+  double pitch_sum = 0.0;  // rad s: too low so far
+  double lift_sum = 0.0;   // litres times seconds of breath that was wanted
+  double lift_rad = 0.0, twist_rad = 0.0, left_more = 0.0, bend_rad = 0.0;
+  double button_s = 0.0;  // since a button was last let go; negative: still to be pressed
+
+  static void fields(auto&& field, auto& self) {
+    field("phase_rad", self.phase_rad);
+    field("frequency_hz", self.frequency_hz);
+    field("effort", self.effort);
+    field("speed_sum", self.speed_sum);
+    field("climb_sum", self.climb_sum);
+    field("pitch_sum", self.pitch_sum);
+    field("lift_sum", self.lift_sum);
+    field("lift_rad", self.lift_rad);
+    field("twist_rad", self.twist_rad);
+    field("left_more", self.left_more);
+    field("bend_rad", self.bend_rad);
+    field("button_s", self.button_s);
+  }
+};
+
+// The next dt_s of swimming: joints, breath and buttons into inputs; the rest of them stays.
+void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& goal,
+          const HumanState& state, SwimmerState& swimmer, double dt_s, HumanInputs& inputs);
+
+// Attitude as people say it, from ned_from_body.
+struct HumanAttitude {
+  double heading_rad = 0.0, pitch_rad = 0.0, roll_rad = 0.0;  // of the line from hips to head
+};
+HumanAttitude attitude_of(const Quat& ned_from_body);
+
+}  // namespace neritic::diver
