@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "engine/scene/scene_text.hpp"
+#include "engine/core/text.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -69,8 +69,8 @@ Result<Medium> material_of(std::string_view name) {
     if (material.name == name) return material.medium;
     names.push_back(material.name);
   }
-  return bad_input("material '{}' is not known; nearest: {}; accepted: {}", scene::printable(name),
-                   scene::nearest(name, names), scene::join(names));
+  return bad_input("material '{}' is not known; nearest: {}; accepted: {}", printable(name),
+                   nearest(name, names), join(names));
 }
 
 }  // namespace neritic::sonar

@@ -6,35 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/json.hpp"
+#include "engine/core/text.hpp"
 
 namespace neritic {
-namespace {
-
-// On one line: control characters become '?', long text is cut.
-std::string printable(std::string_view text, std::size_t most) {
-  std::string line(text.substr(0, most));
-  for (char& c : line)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  if (text.size() > most) line += "...";
-  return line;
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t corner = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = corner + (a[i - 1] != b[j - 1]);
-      corner = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
 
 CaseFile::CaseFile(nlohmann::json&& object, std::string name)
     : name_(std::move(name)), json_(std::make_unique<nlohmann::json>(std::move(object))) {}
@@ -207,9 +181,7 @@ std::vector<std::vector<double>> CaseField::square(std::size_t n) const {
 void CaseField::allow(std::span<const std::string_view> names) const {
   for (const std::string& key : keys()) {
     if (std::ranges::find(names, key) != names.end()) continue;
-    const auto near = std::ranges::min(
-        names, {}, [&](std::string_view name) { return edit_distance(key.substr(0, 40), name); });
-    (*this)[key].fail(fmt::format("not known; the nearest is {}", near));
+    (*this)[key].fail(fmt::format("not known; the nearest is {}", nearest(key, names)));
   }
 }
 

@@ -6,8 +6,8 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/core/text.hpp"
 #include "engine/scene/image_file.hpp"
-#include "engine/scene/scene_text.hpp"
 #include "engine/scene/shapes.hpp"
 
 namespace neritic::scene {

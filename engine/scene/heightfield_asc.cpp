@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "engine/scene/scene_text.hpp"
+#include "engine/core/text.hpp"
 #include "engine/scene/shapes.hpp"
 
 namespace neritic::scene {

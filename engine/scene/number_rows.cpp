@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "engine/core/files.hpp"
-#include "engine/scene/scene_text.hpp"
+#include "engine/core/text.hpp"
 
 namespace neritic::scene {
 namespace {

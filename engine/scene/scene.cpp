@@ -5,10 +5,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/core/check.hpp"
+#include "engine/core/text.hpp"
 #include "engine/scene/model_lights.hpp"
 #include "engine/scene/scene_copies.hpp"
 #include "engine/scene/scene_draft.hpp"
-#include "engine/scene/scene_text.hpp"
 
 namespace neritic::scene {
 namespace {

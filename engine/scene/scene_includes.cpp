@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/core/files.hpp"
-#include "engine/scene/scene_text.hpp"
+#include "engine/core/text.hpp"
 
 namespace neritic::scene {
 namespace fs = std::filesystem;
@@ -143,7 +143,7 @@ class Includer {
 
 }  // namespace
 
-fs::path SceneSource::resolve(const Where& where, const std::string& written) const {
+fs::path SceneSource::resolve(const TomlWhere& where, const std::string& written) const {
   const fs::path folder = fs::path(files[static_cast<std::size_t>(where.file)]).parent_path();
   return (folder / written).lexically_normal();
 }

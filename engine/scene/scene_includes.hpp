@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/core/result.hpp"
-#include "engine/scene/scene_toml.hpp"
+#include "engine/core/toml.hpp"
 
 namespace neritic::scene {
 
@@ -17,13 +17,13 @@ inline constexpr std::uintmax_t kMaxSceneBytes = std::uintmax_t{4} << 20;
 
 struct SceneSource {
   TomlValue root;
-  std::vector<std::string> files;  // as Where::file counts; 0 is the scene's own
+  std::vector<std::string> files;  // as TomlWhere::file counts; 0 is the scene's own
 
-  std::string place(const Where& where) const {
+  std::string place(const TomlWhere& where) const {
     return files[static_cast<std::size_t>(where.file)] + ":" + std::to_string(where.line);
   }
   // A path written in a file is relative to that file.
-  std::filesystem::path resolve(const Where& where, const std::string& written) const;
+  std::filesystem::path resolve(const TomlWhere& where, const std::string& written) const;
 };
 
 // Merging: the included table is the base; keys of the including table win; tables merge key by

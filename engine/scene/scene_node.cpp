@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
-#include "engine/scene/scene_text.hpp"
 
 namespace neritic::scene {
 namespace {

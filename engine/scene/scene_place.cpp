@@ -3,8 +3,8 @@
 // what moves, the position at time 0. A chain that returns to itself is refused. One thread.
 #include <map>
 
+#include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
-#include "engine/scene/scene_text.hpp"
 
 namespace neritic::scene {
 namespace {

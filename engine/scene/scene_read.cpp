@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cctype>
 
+#include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
-#include "engine/scene/scene_text.hpp"
 
 namespace neritic::scene {
 namespace {
@@ -95,7 +95,8 @@ PlacementDraft read_placement(TableReader& reader, const std::string& default_on
   placement.pose.position_m = reader.vector3("position_m", Vec3(0.0), kAnyMetres);
   placement.track = read_track(reader);
   if (placement.track)
-    placement.pose.position_m = pose_at({placement.track->places, {Track::Attitude{}}}, 0.0).position_m;
+    placement.pose.position_m =
+        pose_at({placement.track->places, {Track::Attitude{}}}, 0.0).position_m;
   read_rotation(reader, placement);
   placement.on = reader.text("on", default_on);
   placement.place_on = reader.place("on");
@@ -135,8 +136,7 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   NERITIC_TRY_STATUS(read_objects(draft, source, objects, "objects"));
   NERITIC_TRY_STATUS(read_objects(draft, source, vehicles, "vehicles"));
   NERITIC_TRY_STATUS(read_vehicle_physics(draft, source, objects, "objects", 0));
-  NERITIC_TRY_STATUS(
-      read_vehicle_physics(draft, source, vehicles, "vehicles", objects.size()));
+  NERITIC_TRY_STATUS(read_vehicle_physics(draft, source, vehicles, "vehicles", objects.size()));
   return draft;
 }
 

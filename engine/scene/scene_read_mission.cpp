@@ -2,9 +2,9 @@
 // second pass over a scene, when all objects are known.
 #include <algorithm>
 
+#include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
-#include "engine/scene/scene_text.hpp"
 
 namespace neritic::scene {
 namespace {

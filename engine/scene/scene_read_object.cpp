@@ -2,11 +2,11 @@
 #include <algorithm>
 
 #include "engine/core/files.hpp"
+#include "engine/core/text.hpp"
 #include "engine/scene/scene_copies.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_materials.hpp"
 #include "engine/scene/scene_reader.hpp"
-#include "engine/scene/scene_text.hpp"
 
 namespace neritic::scene {
 namespace {

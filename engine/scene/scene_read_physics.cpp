@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
-#include "engine/scene/scene_text.hpp"
 
 namespace neritic::scene {
 namespace {

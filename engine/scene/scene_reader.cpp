@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/core/check.hpp"
-#include "engine/scene/scene_text.hpp"
+#include "engine/core/text.hpp"
 
 namespace neritic::scene {
 namespace {
@@ -47,7 +47,7 @@ const TomlValue* TableReader::find(Key key) const {
   return entry ? &entry->value : nullptr;
 }
 
-Where TableReader::where(Key key) const {
+TomlWhere TableReader::where(Key key) const {
   const TomlEntry* entry = table_->find(key);
   return entry ? entry->where : table_->where;
 }

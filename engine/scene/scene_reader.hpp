@@ -65,8 +65,8 @@ class TableReader {
 
   Status status() const;
   bool ok() const { return !error_; }
-  Where where() const { return table_->where; }
-  Where where(Key key) const;
+  TomlWhere where() const { return table_->where; }
+  TomlWhere where(Key key) const;
   std::string path(Key key) const;
   // "scene.toml:12: sonars[0].range_m"
   std::string place(Key key) const;

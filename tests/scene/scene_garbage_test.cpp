@@ -65,6 +65,32 @@ TEST(SceneGarbage, TextThatIsNotTomlNamesItsLine) {
   EXPECT_EQ(message_of(scratch, std::string("a = 1\n\0", 7)), "s.toml:2: not TOML: a zero byte");
 }
 
+// The code point in UTF-8, as RFC 3629 has it.
+std::string utf8(std::uint32_t code) {
+  const auto tail = [code](int shift) { return static_cast<char>(0x80 | (code >> shift & 0x3f)); };
+  if (code < 0x80) return {static_cast<char>(code)};
+  if (code < 0x800) return {static_cast<char>(0xc0 | code >> 6), tail(0)};
+  if (code < 0x10000) return {static_cast<char>(0xe0 | code >> 12), tail(6), tail(0)};
+  return {static_cast<char>(0xf0 | code >> 18), tail(12), tail(6), tail(0)};
+}
+
+// toml++ 3.3 does what is undefined on some letters beyond ASCII straight behind a value.
+TEST(SceneGarbage, ALetterBeyondAsciiBehindAValueIsRefusedWithItsLine) {
+  const test::ScratchFolder scratch;
+  const RandomKey key{2024, 3, 0};
+  for (std::uint64_t draw = 0; draw < 2000; ++draw) {
+    // Half from the letters of Europe's languages, half from everywhere but the surrogates.
+    const std::uint64_t bits = random_bits(key, draw);
+    std::uint32_t code =
+        0x80 + static_cast<std::uint32_t>(bits >> 1) % (bits & 1 ? 0x780 : 0x10ff80);
+    if (code >= 0xd800 && code < 0xe000) code -= 0x1000;
+    for (const char* start : {"seed = 1", "seed = [1", "seed = true", "seed = 'a'", "seed = "}) {
+      const std::string message = message_of(scratch, "title = 'a'\n" + (start + utf8(code)));
+      EXPECT_EQ(message.substr(0, 9), "s.toml:2:") << message << fmt::format(" U+{:04x}", code);
+    }
+  }
+}
+
 TEST(SceneGarbage, RandomBytesAreOneLineEach) {
   const test::ScratchFolder scratch;
   const RandomKey key{2024, 1, 0};

@@ -9,8 +9,8 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/math.hpp"
+#include "engine/core/toml.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/scene/scene_toml.hpp"
 #include "sonar/acoustics.hpp"
 #include "sonar/acoustics_pulse.hpp"
 #include "sonar/head.hpp"
@@ -21,8 +21,6 @@ namespace neritic {
 namespace {
 
 namespace fs = std::filesystem;
-using scene::TomlValue;
-
 constexpr double kSoundSpeed_m_s = 1500.0;
 
 struct Preset {
@@ -47,7 +45,7 @@ std::vector<Preset> devices() {
     Preset preset;
     preset.name = entry.path().stem().string();
     preset.text = read_text(entry.path()).value();
-    auto values = scene::parse_toml(preset.text, preset.name, 0);
+    auto values = parse_toml(preset.text, preset.name, 0);
     EXPECT_TRUE(values.ok()) << values.error().message;
     preset.values = std::move(values).value();
     preset.kind = preset.values.find("kind")->value.text;

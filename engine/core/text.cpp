@@ -1,4 +1,4 @@
-#include "engine/scene/scene_text.hpp"
+#include "engine/core/text.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-namespace neritic::scene {
+namespace neritic {
 namespace {
 
 // Bytes of the UTF-8 sequence that text starts with; 0 where it is none.
@@ -97,4 +97,4 @@ std::string join(std::span<const std::string_view> names) {
   return out;
 }
 
-}  // namespace neritic::scene
+}  // namespace neritic

@@ -1,4 +1,4 @@
-// Small text helpers of the scene's readers: numbers without locale, one-line echoes of what a file
+// Small text helpers of readers: numbers without locale, one-line echoes of what a file
 // held, the nearest of a list of names. Pure functions; any thread.
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace neritic::scene {
+namespace neritic {
 
 // The whole word as a number (nan and inf included); nothing where it is not one.
 std::optional<double> parse_number(std::string_view word);
@@ -23,4 +23,4 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 // "a, b, c"
 std::string join(std::span<const std::string_view> names);
 
-}  // namespace neritic::scene
+}  // namespace neritic

@@ -1,5 +1,5 @@
 // A TOML file as a plain tree in which every key and value knows its file and line, so that an
-// error can name them after includes were merged. Only scene_toml.cpp knows the TOML library. Pure
+// error can name them after includes were merged. Only toml.cpp knows the TOML library. Pure
 // values; any thread.
 #pragma once
 
@@ -10,10 +10,10 @@
 
 #include "engine/core/result.hpp"
 
-namespace neritic::scene {
+namespace neritic {
 
-struct Where {
-  int file = 0;  // index into the scene's list of files
+struct TomlWhere {
+  int file = 0;  // as parse_toml() was told
   int line = 0;  // from 1
 };
 
@@ -28,7 +28,7 @@ struct TomlValue {
   std::string text;                // of kString
   std::vector<TomlValue> items;    // of kArray
   std::vector<TomlEntry> entries;  // of kTable, by name
-  Where where;
+  TomlWhere where;
 
   bool is_table() const { return kind == Kind::kTable; }
   bool is_number() const { return kind == Kind::kNumber || kind == Kind::kInteger; }
@@ -40,14 +40,15 @@ struct TomlValue {
 
 struct TomlEntry {
   std::string key;
-  Where where;
+  TomlWhere where;
   TomlValue value;
 };
 
 // The value on one short line, for messages.
 std::string describe(const TomlValue& value);
 
-// file_name stands in messages, file in every Where. Errors: "file:line: not TOML: ...".
+// file_name stands in messages, file in every TomlWhere. Errors: "file:line: not TOML: ...". How
+// long a text may be is the caller's to check; how deep it nests is bounded here.
 Result<TomlValue> parse_toml(std::string_view text, const std::string& file_name, int file);
 
-}  // namespace neritic::scene
+}  // namespace neritic
