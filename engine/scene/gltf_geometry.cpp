@@ -164,7 +164,6 @@ void gather_vertices(Primitive& p, std::span<const std::uint32_t> old_of_new) {
   for (MorphTarget& target : p.targets) {
     gather_list(target.positions, old_of_new);
     gather_list(target.normals, old_of_new);
-    gather_list(target.tangents, old_of_new);
   }
 }
 

@@ -37,9 +37,8 @@ bool parse_version(const std::string& text, int& major, int& minor) {
 
 void read_model(Loading& loading) {
   using Stage = void (*)(Loading&);
-  constexpr Stage kStages[] = {check_asset,  load_materials, load_meshes, load_lights,
-                               load_cameras, load_nodes,     load_skins,  load_roots,
-                               load_clips,   finish_images};
+  constexpr Stage kStages[] = {check_asset, load_materials, load_meshes, load_lights,  load_nodes,
+                               load_skins,  load_roots,     load_clips,  finish_images};
   for (const Stage stage : kStages) {
     stage(loading);
     if (loading.report.failed()) return;

@@ -107,7 +107,6 @@ void load_targets(Loading& loading, Field targets, Primitive& out) {
     };
     read("POSITION", true, target.positions);
     read("NORMAL", !out.normals.empty(), target.normals);
-    read("TANGENT", !out.tangents.empty(), target.tangents);
     out.targets.push_back(std::move(target));
   }
 }

@@ -64,7 +64,6 @@ Node load_node(Loading& loading, Field field) {
   out.name = field["name"].text();
   load_transform(field, out);
   out.mesh = field["mesh"].index(loading.model.meshes.size(), "meshes");
-  out.camera = field["camera"].index(loading.model.cameras.size(), "cameras");
   out.skin = field["skin"].index(root["skins"].size(), "skins");
   out.light =
       field.extension("KHR_lights_punctual")["light"].index(loading.model.lights.size(), "lights");

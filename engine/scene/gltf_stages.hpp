@@ -31,7 +31,6 @@ void load_materials(Loading& loading);
 void finish_images(Loading& loading);
 void load_meshes(Loading& loading);
 void load_lights(Loading& loading);
-void load_cameras(Loading& loading);
 // Nodes with their hierarchy (no loops, one parent each), skins, and the default scene's roots.
 void load_nodes(Loading& loading);
 void load_skins(Loading& loading);

@@ -1,6 +1,7 @@
 // A loaded model: plain data that mirrors glTF 2.0 after decoding (floats, index lists, RGBA8
-// images). Model frame as glTF: right-handed, Y up, metres. Immutable after loading, so any thread
-// may read it. Source: Khronos glTF 2.0 specification.
+// images), but for cameras: views are the scene's to name. Model frame as glTF: right-handed, Y up,
+// metres. Immutable after loading, so any thread may read it. Source: Khronos glTF 2.0
+// specification.
 #pragma once
 
 #include <array>
@@ -29,8 +30,10 @@ struct Bounds {
 enum class Topology { kPoints, kLines, kTriangles };
 
 struct MorphTarget {
-  // Displacements per vertex; each empty or as long as the primitive's positions.
-  std::vector<Vec3f> positions, normals, tangents;
+  // Displacements per vertex; each empty or as long as the primitive's positions. A file's of
+  // tangents are not read: the deform pass moves positions and normals, and a normal map's tangent
+  // is the base's, made perpendicular to the moved normal.
+  std::vector<Vec3f> positions, normals;
 };
 
 struct Primitive {
@@ -104,14 +107,6 @@ struct Light {
   float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;
 };
 
-struct CameraLens {
-  std::string name;
-  bool perspective = true;
-  double vertical_fov_rad = 0.8, near_m = 0.1;
-  double aspect = 0.0;                             // 0: the picture's own
-  double half_width_m = 1.0, half_height_m = 1.0;  // orthographic
-};
-
 struct Node {
   std::string name;
   int parent = -1;
@@ -120,7 +115,7 @@ struct Node {
   Quat rotation{1.0, 0.0, 0.0, 0.0};
   Vec3 scale{1.0};
   std::optional<Mat4> matrix;  // instead of the three above, where the file gives one
-  int mesh = -1, skin = -1, light = -1, camera = -1;
+  int mesh = -1, skin = -1, light = -1;
   std::vector<float> weights;  // empty: the mesh's own
   // EXT_mesh_gpu_instancing: node_from_instance; empty: the mesh is drawn once.
   std::vector<Mat4> instances;
@@ -158,7 +153,6 @@ struct Model {
   // or that cannot be read are one white pixel.
   std::vector<ImageU8> images;
   std::vector<Light> lights;
-  std::vector<CameraLens> cameras;
   std::vector<Node> nodes;
   // Of the default scene, else of the first; all parentless nodes where the file has no scenes.
   std::vector<int> roots;

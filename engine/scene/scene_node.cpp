@@ -81,7 +81,6 @@ Result<Model> model_of_node(const Model& model, const std::string& name) {
   Model part;
   part.name = model.name + "#" + name;
   part.lights = model.lights;
-  part.cameras = model.cameras;
   part.skins = model.skins;
   part.clips = model.clips;
   part.notes = model.notes;

@@ -46,8 +46,7 @@ inline std::string broken_promise(const scene::Primitive& p, std::size_t n_mater
       return "a texture coordinate that is not finite";
   }
   for (const scene::MorphTarget& t : p.targets)
-    if (!fits(t.positions) || !fits(t.normals) || !fits(t.tangents))
-      return "a morph target's length";
+    if (!fits(t.positions) || !fits(t.normals)) return "a morph target's length";
   return {};
 }
 
@@ -85,7 +84,6 @@ inline std::string broken_promise(const scene::Model& model) {
     if (node.mesh >= static_cast<int>(model.meshes.size())) return "a node's mesh";
     if (node.skin >= static_cast<int>(model.skins.size())) return "a node's skin";
     if (node.light >= static_cast<int>(model.lights.size())) return "a node's light";
-    if (node.camera >= static_cast<int>(model.cameras.size())) return "a node's camera";
     if (node.skin < 0 || node.mesh < 0) continue;
     for (const auto& primitive : model.meshes[node.mesh].primitives)
       for (const auto& joints : primitive.joints)
