@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/core/image.hpp"
 #include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
 
@@ -99,7 +100,7 @@ struct PixelSize {
   std::uint32_t width = 1, height = 1;
 };
 PixelSize gbuffer_size(const BeamGrid& grid, const Sector& sector, double pixels_per_cell,
-                       std::uint32_t max_extent = 16384);
+                       std::uint32_t max_extent = kMaxPictureSide);
 
 // A pinhole in pixels, pixel centres at +0.5, row 0 on top.
 struct Intrinsics {

@@ -6,6 +6,9 @@
 
 namespace neritic {
 
+// Longest side of a picture or G-buffer that may be asked for: maxImageDimension2D of most devices.
+inline constexpr std::uint32_t kMaxPictureSide = 16384;
+
 template <class T>
 struct Raster {
   std::uint32_t width = 0, height = 0, channels = 1;

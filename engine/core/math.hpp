@@ -30,6 +30,12 @@ constexpr double degrees(double radians) {
   return radians * (180.0 / kPi);
 }
 
+// The rotation of a quaternion of any length; none where there is no length to divide by.
+inline Quat unit_or_identity(const Quat& q) {
+  const double length = glm::length(q);
+  return length > 1e-12 && std::isfinite(length) ? q / length : Quat(1.0, 0.0, 0.0, 0.0);
+}
+
 // A rigid transform: target_from_source. point_target = rotation * point_source + position_m.
 struct Pose {
   Vec3 position_m{0.0};

@@ -10,7 +10,7 @@
 namespace neritic::render {
 namespace {
 
-constexpr double kWaterIndex = 1.333;
+using shared::kWaterIndex;
 // Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance .066).
 constexpr double kSkyTransmittance = 0.934;
 // Auto exposure opens no further than for this light: what a sensitive video camera still sees in.

@@ -4,13 +4,16 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/text.hpp"
+#include "engine/scene/scene.hpp"
+
 namespace neritic::render {
 namespace {
 
 constexpr std::array<double, 3> kWavelength_nm{600.0, 550.0, 450.0};
 
 struct TypeRow {
-  const char* name;
+  std::string_view name;
   // Jerlov 1976, Marine Optics, Table XXVII, at 600, 550 and 450 nm.
   std::array<double, 3> diffuse_attenuation_m;
   // Total scattering in the green, 1/m: published values for I, II, III, 1C, 5C and 9C (derived
@@ -30,6 +33,9 @@ constexpr std::array<TypeRow, 10> kTypes{{
     {"7C", {.480, .460, .890}, 2.04},
     {"9C", {.600, .630, 1.60}, 3.12},
 }};
+
+static_assert(std::ranges::equal(kTypes, scene::kWaterTypes, {}, &TypeRow::name),
+              "every type that scenes may name has its row");
 
 // Pure sea water, 1/m: Morel 1974 as summarised by Mobley 1994 (valid 350 to 600 nm).
 double water_scattering_m(double wavelength_nm) {
@@ -52,8 +58,7 @@ Result<WaterOptics> jerlov_optics(const std::string& type) {
   const auto row =
       std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& r) { return type == r.name; });
   if (row == kTypes.end())
-    return bad_input("water type '{}'; I, IA, IB, II, III, 1C, 3C, 5C, 7C and 9C are accepted",
-                     type);
+    return bad_input("water type '{}'; accepted: {}", type, join(scene::kWaterTypes));
   WaterOptics optics;
   for (int i = 0; i < 3; ++i) {
     const double wavelength_nm = kWavelength_nm[i];

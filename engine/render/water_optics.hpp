@@ -20,7 +20,7 @@ struct WaterOptics {
   }
 };
 
-// The ten types I IA IB II III 1C 3C 5C 7C 9C; another name is kBadInput with the list.
+// The types of scene::kWaterTypes; another name is kBadInput with the list.
 Result<WaterOptics> jerlov_optics(const std::string& type);
 
 }  // namespace neritic::render

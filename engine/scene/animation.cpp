@@ -30,11 +30,6 @@ Quat to_quat(const double* v) {
   return Quat(v[3], v[0], v[1], v[2]);
 }
 
-Quat unit_or_identity(const Quat& q) {
-  const double length = glm::length(q);
-  return length > 1e-12 && std::isfinite(length) ? q / length : Quat(1.0, 0.0, 0.0, 0.0);
-}
-
 // Spherical linear interpolation on the shorter arc (appendix C.4); nearly equal ends are blended
 // linearly, where the sine of their angle would lose its digits.
 Quat slerp(const Quat& a, Quat b, double t) {

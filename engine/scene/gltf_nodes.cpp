@@ -14,19 +14,12 @@ double bounded(double value) {
   return std::clamp(value, -kLimit, kLimit);
 }
 
-Quat unit_or_identity(const Vec4& xyzw) {
-  const double length = glm::length(xyzw);
-  if (!(length > 1e-12) || !std::isfinite(length)) return Quat(1.0, 0.0, 0.0, 0.0);
-  const Vec4 q = xyzw / length;
-  return Quat(q.w, q.x, q.y, q.z);
-}
-
 void load_transform(Field field, Node& out) {
   const auto t = field["translation"].numbers<3>({0.0, 0.0, 0.0});
   const auto r = field["rotation"].numbers<4>({0.0, 0.0, 0.0, 1.0});
   const auto s = field["scale"].numbers<3>({1.0, 1.0, 1.0});
   out.translation_m = Vec3(bounded(t[0]), bounded(t[1]), bounded(t[2]));
-  out.rotation = unit_or_identity(Vec4(r[0], r[1], r[2], r[3]));
+  out.rotation = unit_or_identity(Quat(r[3], r[0], r[1], r[2]));
   out.scale = Vec3(bounded(s[0]), bounded(s[1]), bounded(s[2]));
   if (!field["matrix"].present()) return;
   const auto m = field["matrix"].numbers<16>({});
@@ -49,7 +42,10 @@ void load_instances(Loading& loading, Field field, Node& out) {
   for (std::size_t i = 0; i < n; ++i) {
     Node instance;
     if (!translations.empty()) instance.translation_m = Vec3(translations[i]);
-    if (!rotations.empty()) instance.rotation = unit_or_identity(Vec4(rotations[i]));
+    if (!rotations.empty()) {
+      const Vec4f& r = rotations[i];
+      instance.rotation = unit_or_identity(Quat(r.w, r.x, r.y, r.z));
+    }
     if (!scales.empty()) instance.scale = Vec3(scales[i]);
     Mat4 matrix = glm::mat4_cast(instance.rotation);
     for (int k = 0; k < 3; ++k) matrix[k] *= instance.scale[k];

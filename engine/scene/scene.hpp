@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/math.hpp"
@@ -51,7 +52,7 @@ struct Object {
   int clip = -1;                         // of the model; -1: rest pose
   double clip_offset_s = 0.0, clip_rate = 1.0;
   Collision collision = Collision::kNone;  // without [physics]: none
-  std::optional<Dynamics> dynamics;        // it moves by physics, from its mount's pose at time 0 on
+  std::optional<Dynamics> dynamics;  // it moves by physics, from its mount's pose at time 0 on
   // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
   std::vector<Mat4> copies;
   std::size_t instance_count() const { return copies.empty() ? 1 : copies.size(); }
@@ -64,8 +65,12 @@ struct Sun {
   double intensity = 1.0;    // 1: clear day
 };
 
+// Jerlov's optical water types (Jerlov 1976): five oceanic, five coastal.
+inline constexpr std::string_view kWaterTypes[] = {"I",  "IA", "IB", "II", "III",
+                                                   "1C", "3C", "5C", "7C", "9C"};
+
 struct Water {
-  std::string type = "II";  // Jerlov: I IA IB II III 1C 3C 5C 7C 9C
+  std::string type = "II";  // of kWaterTypes
   bool scattering = false;  // backscatter along the line of sight
   bool surface = false;     // the surface seen from below (Snell's window)
 };
@@ -118,8 +123,8 @@ struct Sonar {
   double semi_angle_rad = radians(12.5);  // echo sounder: of its cone
   double depression_rad = radians(35.0);  // side-scan: of each side's axis below the horizontal
   double step_rad = radians(1.0);         // mechanical: from ping to ping
-  // Side-scan: a camera that looks straight down, from whose pictures the image-based record is made
-  // beside the acoustic one; empty: none.
+  // Side-scan: a camera that looks straight down, from whose pictures the image-based record is
+  // made beside the acoustic one; empty: none.
   std::string picture_camera;
   // "draft", "standard", "reference" or an error to stay under: what is not set follows from it.
   std::string quality;

@@ -9,10 +9,6 @@
 namespace neritic::scene {
 namespace {
 
-// Jerlov's optical water types (Jerlov 1976): five oceanic, five coastal.
-constexpr auto kWaterTypes =
-    std::to_array<Key>({"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"});
-
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';

@@ -1,11 +1,11 @@
 // Reads [[cameras]], [[sonars]] and [[lamps]], of the scene or of an object that carries them.
+#include "engine/core/image.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
 
 namespace neritic::scene {
 namespace {
 
-constexpr std::uint64_t kMaxPictureSide = 16384;
 constexpr Interval kStops{-30, 30, false, false, "stops"};
 
 Exposure read_exposure(TableReader& reader) {

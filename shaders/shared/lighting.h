@@ -13,6 +13,8 @@ NERITIC_CONST uint kLightSurface = 8;
 NERITIC_CONST uint kLightEmissive = 16;  // the G-buffer has an emissive image
 // Lamps whose beams are seen in the water: scattering and kGlowReach.
 NERITIC_CONST uint kLightGlow = 32;
+// Refractive index of sea water against air, in the visible (1.33 to 1.34, Mobley 1994).
+NERITIC_CONST float kWaterIndex = 1.333f;
 // A sight that passes a lamp at distance d gathers about I b 0.05 m / d of its light. It is seen
 // where that exceeds 0.002 of white, so up to this times I b exposure from the lamp.
 NERITIC_CONST float kGlowReach = 25.0f;

@@ -89,8 +89,8 @@ const float kForever_m = 1e9;
 vec3 beyond(float depth_m, vec3 direction) {
   if (!light_has(kLightWater)) return light.background;
   if (!light_has(kLightSurface)) return vec3(0.0);
-  // Snell's window: within 48.6 degrees of the zenith the sky, outside the mirrored deep (n = 1.333).
-  float sine_air = 1.333 * sqrt(max(0.0, 1.0 - direction.y * direction.y));
+  // Snell's window: within 48.6 degrees of the zenith the sky, outside the mirrored deep.
+  float sine_air = kWaterIndex * sqrt(max(0.0, 1.0 - direction.y * direction.y));
   vec3 mirrored = vec3(0.0);
   if (light_has(kLightScattering) && light_has(kLightSun)) {
     // What look_through(0, ..., kForever_m) adds on the way down from the surface.
@@ -103,12 +103,12 @@ vec3 beyond(float depth_m, vec3 direction) {
   if (depth_m < 0.0 && direction.y >= 0.0) return sky;
   float cosine_air = sqrt(max(0.0, 1.0 - sine_air * sine_air));
   // Fresnel, unpolarised.
-  float rs = (1.333 * direction.y - cosine_air) / (1.333 * direction.y + cosine_air);
-  float rp = (1.333 * cosine_air - direction.y) / (1.333 * cosine_air + direction.y);
+  float rs = (kWaterIndex * direction.y - cosine_air) / (kWaterIndex * direction.y + cosine_air);
+  float rp = (kWaterIndex * cosine_air - direction.y) / (kWaterIndex * cosine_air + direction.y);
   float reflected = sine_air >= 1.0 ? 1.0 : 0.5 * (rs * rs + rp * rp);
   // Sky radiance gains n^2 on entering the water. The sun's beam, spread by waves over a few degrees, is a
   // glow of 1 / 0.0165 sr, the solid angle of a cone of 4.2 degrees.
-  sky *= 1.777;
+  sky *= kWaterIndex * kWaterIndex;
   float to_sun = dot(direction, light.to_sun);
   sky += light.surface_irradiance * light.direct_share * 60.0 * smoothstep(0.9965, 0.9995, to_sun);
   return direction.y < 1e-3 || depth_m <= 0.0 ? vec3(0.0) : mix(sky, mirrored, reflected);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "engine/core/text.hpp"
+#include "engine/scene/scene.hpp"
 #include "tools/neritic/commands.hpp"
 
 namespace neritic::tools {
@@ -38,7 +40,7 @@ void add_render(CLI::App& app, Run& run) {
       ->take_all();
   command->add_option(
       "--water", flags->water,
-      "another Jerlov type than the scene's: I, IA, IB, II, III, 1C, 3C, 5C, 7C, 9C");
+      fmt::format("another Jerlov type than the scene's: {}", join(scene::kWaterTypes)));
   command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")
       ->expected(3);
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");

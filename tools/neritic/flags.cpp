@@ -7,20 +7,21 @@
 #include <cmath>
 #include <cstdio>
 
+#include "engine/core/image.hpp"
+
 namespace neritic::tools {
 
 Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& flag,
                                                            const std::string& text) {
-  constexpr std::uint32_t kMax = 16384;
   const char* const end = text.data() + text.size();
   std::uint32_t width = 0, height = 0;
   const auto first = std::from_chars(text.data(), end, width);
   const bool cross = first.ec == std::errc{} && first.ptr != end && *first.ptr == 'x';
   const auto second = cross ? std::from_chars(first.ptr + 1, end, height) : first;
   if (!cross || second.ec != std::errc{} || second.ptr != end || width < 1 || height < 1 ||
-      width > kMax || height > kMax)
+      width > kMaxPictureSide || height > kMaxPictureSide)
     return bad_input("{}: '{}'; WIDTHxHEIGHT of 1 to {} pixels a side is accepted", flag, text,
-                     kMax);
+                     kMaxPictureSide);
   return std::pair{width, height};
 }
 

@@ -10,7 +10,7 @@
 
 namespace neritic::tools {
 
-// "1280x720"; each side 1 to 16384.
+// "1280x720"; each side 1 to kMaxPictureSide.
 Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& flag,
                                                            const std::string& text);
 
