@@ -9,6 +9,8 @@
 #include <utility>
 #include <variant>
 
+#include "engine/core/check.hpp"
+
 namespace neritic {
 
 enum class ErrorCode {
@@ -33,6 +35,14 @@ inline int exit_status(ErrorCode code) {
   return code == ErrorCode::kBadInput ? 2 : 1;
 }
 
+// What a Result ends the program with where its preconditions are broken.
+[[noreturn]] inline void value_of_error(const Error& error) {
+  check_failed(__FILE__, __LINE__, "Result has a value", error.message);
+}
+[[noreturn]] inline void error_of_value() {
+  check_failed(__FILE__, __LINE__, "Result has an error", "");
+}
+
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -41,17 +51,35 @@ class [[nodiscard]] Result {
 
   bool ok() const { return state_.index() == 0; }
   explicit operator bool() const { return ok(); }
-  // Precondition of value(): ok(). Of error(): !ok(). Violations throw std::bad_variant_access.
-  T& value() & { return std::get<0>(state_); }
-  const T& value() const& { return std::get<0>(state_); }
-  T&& value() && { return std::get<0>(std::move(state_)); }
+  // Precondition of value(): ok(). Of error(): !ok().
+  T& value() & {
+    check_value();
+    return *std::get_if<0>(&state_);
+  }
+  const T& value() const& {
+    check_value();
+    return *std::get_if<0>(&state_);
+  }
+  T&& value() && {
+    check_value();
+    return std::move(*std::get_if<0>(&state_));
+  }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
   T& operator*() & { return value(); }
   const T& operator*() const& { return value(); }
-  const Error& error() const { return std::get<1>(state_); }
+  const Error& error() const {
+    if (ok()) [[unlikely]]
+      error_of_value();
+    return *std::get_if<1>(&state_);
+  }
 
  private:
+  void check_value() const {
+    if (!ok()) [[unlikely]]
+      value_of_error(*std::get_if<1>(&state_));
+  }
+
   std::variant<T, Error> state_;
 };
 
@@ -62,7 +90,11 @@ class [[nodiscard]] Result<void> {
   Result(Error error) : error_(std::move(error)), ok_(false) {}
   bool ok() const { return ok_; }
   explicit operator bool() const { return ok_; }
-  const Error& error() const { return error_; }
+  const Error& error() const {
+    if (ok_) [[unlikely]]
+      error_of_value();
+    return error_;
+  }
 
  private:
   Error error_;
