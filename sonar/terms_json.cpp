@@ -159,6 +159,7 @@ json sensor_json(const scene::Sonar& s) {
     out["elevation_deg"] = degrees_of(s.elevation_rad);
   }
   if (s.kind == scene::SonarKind::kSideScan) out["depression_deg"] = degrees_of(s.depression_rad);
+  if (!s.picture_camera.empty()) out["picture_camera"] = s.picture_camera;
   if (s.kind == scene::SonarKind::kMechanical) out["step_deg"] = degrees_of(s.step_rad);
   if (s.gbuffer_scale > 0.0) out["gbuffer_scale"] = s.gbuffer_scale;
   if (!s.gather.empty()) out["gather"] = s.gather;

@@ -38,6 +38,15 @@ Status write_array(const std::filesystem::path& path, const SonarImage& image,
   return write_npy(path, std::span<const T>(values), {image.n_range, image.n_azimuth});
 }
 
+// What stays of an earlier image must not be taken for this one's: the .json goes first, so that
+// none ever describes other arrays, however far the writing comes.
+Status remove_earlier(const std::filesystem::path& folder) {
+  for (const char* name : {"sonar.json", "sonar.npy", "sonar_labels.npy", "sonar_instances.npy",
+                           "sonar_label_fraction.npy", "sonar_counts.npy", "sonar.png"})
+    NERITIC_TRY_STATUS(remove_file(folder / name));
+  return {};
+}
+
 Status write_counts(const std::filesystem::path& folder, const SonarFiles& files) {
   const std::vector<std::uint16_t> counts = quantize(files.image.intensity, files.output);
   if (files.output.bits == 16) return write_array(folder / "sonar_counts.npy", files.image, counts);
@@ -88,6 +97,7 @@ ImageU8 draw_sonar(const SonarFiles& files) {
 Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
                    const nlohmann::json& facts) {
   NERITIC_TRY_STATUS(make_folder(folder));
+  NERITIC_TRY_STATUS(remove_earlier(folder));
   const SonarImage& image = files.image;
   NERITIC_TRY_STATUS(write_array(folder / "sonar.npy", image, image.intensity));
   const LabelImage* energy = files.label_energy;

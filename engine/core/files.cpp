@@ -72,6 +72,14 @@ Status write_text(const fs::path& path, std::string_view text) {
   return write_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
+Status remove_file(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error)
+    return failure(ErrorCode::kIo, "{}: cannot be removed: {}", path.string(), error.message());
+  return {};
+}
+
 Status make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);

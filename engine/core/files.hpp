@@ -24,6 +24,9 @@ Result<std::string> read_text(const std::filesystem::path& path);
 Status write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status write_text(const std::filesystem::path& path, std::string_view text);
 
+// A file that is not there is no fault. kIo where it is and can't be removed.
+Status remove_file(const std::filesystem::path& path);
+
 // Makes the folder and its parents. kIo where that fails.
 Status make_folder(const std::filesystem::path& path);
 

@@ -66,7 +66,7 @@ TEST(SonarTermsJson, ReadsBackAsTheSameSensor) {
         "50}",
         "kind = 'sidescan'\ndepression_deg = 31\nrange_spread = {window = 'none'}\n"
         "level = {absorption = 'none', spreading = false, tvg = 20, tvg_absorption = true}\n"
-        "detection = {pings = 9}\nmax_error = 0.03\ngather = 'nearest'",
+        "detection = {pings = 9}\nmax_error = 0.03\ngather = 'nearest'\npicture_camera = 'eye'",
         "kind = 'mechanical'\nazimuth_deg = 270\nstep_deg = 1.8\ngbuffer_scale = 2\nrate_hz = 7\n"
         "speckle = {}"}) {
     const scene::Sonar sensor = sensor_of(keys);
@@ -79,6 +79,7 @@ TEST(SonarTermsJson, ReadsBackAsTheSameSensor) {
     EXPECT_EQ(again.terms.ghosts, sensor.terms.ghosts) << keys;
     EXPECT_EQ(again.terms.detection, sensor.terms.detection) << keys;
     EXPECT_EQ(again.terms.output, sensor.terms.output) << keys;
+    EXPECT_EQ(again.picture_camera, sensor.picture_camera) << keys;
     EXPECT_NEAR(again.azimuth_rad, sensor.azimuth_rad, 1e-12) << keys;
   }
   EXPECT_TRUE(sonar::terms_json(scene::SonarTerms{}).empty());

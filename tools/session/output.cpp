@@ -56,6 +56,8 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
 Status write_view(const std::filesystem::path& folder, const ViewImages& view,
                   const FrameFacts& facts) {
   NERITIC_TRY_STATUS(make_folder(folder));
+  // Written last, so removed first: where one is, it describes the arrays beside it.
+  NERITIC_TRY_STATUS(remove_file(folder / "meta.json"));
   const std::size_t w = view.width, h = view.height;
   if (!view.depth.empty())
     NERITIC_TRY_STATUS(write_npy(folder / "depth.npy", view.depth.data, {h, w}));
