@@ -3,12 +3,16 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "engine/gpu/device.hpp"
 #include "tools/benchmark/suite.hpp"
 #include "tools/session/session.hpp"
 
 namespace neritic::bench {
+
+inline constexpr std::string_view kGroups[] = {
+    "sonar_binning", "sonar_frame", "sonar_terms", "camera_frame", "sweep", "start", "threads"};
 
 Status bench_sonar_binning(Suite& suite, gpu::Device& device);  // the gather against the volume
 Status bench_sonar_frame(Suite& suite, gpu::Device& device);    // whole frames, one sonar and ten

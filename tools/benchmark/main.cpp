@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "engine/core/text.hpp"
 #include "tools/benchmark/groups.hpp"
 
 namespace neritic::bench {
@@ -14,7 +15,20 @@ unsigned thread_count() {
   return std::thread::hardware_concurrency();
 }
 
+// That some group will run.
+Status check_filter(const Suite& suite) {
+  const Options& o = suite.options();
+  std::vector<std::string_view> groups(std::begin(kGroups), std::end(kGroups));
+  if (!o.sweep) std::erase(groups, "sweep");
+  if (o.once) std::erase_if(groups, [](auto name) { return name == "start" || name == "threads"; });
+  if (std::ranges::any_of(groups, [&](auto name) { return suite.wants(std::string(name)); }))
+    return {};
+  return bad_input("--filter: '{}' found; accepted: {}{}, or one GROUP/NAME", o.filter,
+                   join(groups), o.sweep ? "" : " (with --sweep also sweep)");
+}
+
 Status run(Suite& suite) {
+  NERITIC_TRY_STATUS(check_filter(suite));
   gpu::DeviceOptions options;
   options.device = suite.options().device;
   options.cache_folder = gpu::default_cache_folder();
@@ -26,6 +40,10 @@ Status run(Suite& suite) {
   NERITIC_TRY_STATUS(bench_sweeps(suite, *device));
   if (!suite.options().once) NERITIC_TRY_STATUS(bench_start(suite, *device));
   NERITIC_TRY_STATUS(bench_threads(suite, device->info().name));
+  const std::string& filter = suite.options().filter;
+  if (filter.find('/') != filter.npos && suite.results().empty())
+    return bad_input("--filter: '{}' found; accepted: a GROUP/NAME of the table without --filter",
+                     filter);
   fmt::print("{}, {} threads\n\n", device->info().name, thread_count());
   suite.print();
   if (suite.options().json.empty()) return {};
@@ -43,8 +61,8 @@ struct Flag {
 constexpr Flag kFlags[] = {
     {"--json", "also write the results to this file", &Options::json},
     {"--filter",
-     "only groups whose name holds this: sonar_binning, sonar_frame, camera_frame, sweep, start,\n"
-     "             threads; or one GROUP/NAME",
+     "only groups whose name holds this: sonar_binning, sonar_frame, sonar_terms, camera_frame,\n"
+     "             sweep, start, threads; or one GROUP/NAME",
      &Options::filter},
     {"--device", "Vulkan device: index or part of its name", &Options::device},
     {"--assets", "the folder that holds scenes/", &Options::assets},

@@ -1,0 +1,34 @@
+// What `neritic_bench --filter` says to a name that nothing has. Needs no device: it is said first.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "engine/core/files.hpp"
+#include "tests/support/gpu_fixture.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic {
+namespace {
+
+TEST(BenchmarkFilter, ANameThatNoGroupHasIsRefusedWithTheGroups) {
+  const test::ScratchFolder scratch;
+  for (const std::string flags : {"--filter sonar_bining", "--filter sweep",
+                                  "--filter start --once", "--filter nothing/at_all"}) {
+    const std::string command = NERITIC_BINARY_DIR "/tools/neritic_bench " + flags + " > " +
+                                (scratch / "out").string() + " 2> " + (scratch / "err").string();
+    const int status = std::system(command.c_str());
+    ASSERT_TRUE(WIFEXITED(status)) << flags;
+    EXPECT_EQ(WEXITSTATUS(status), 2) << flags;
+    NERITIC_ASSERT_OK(const std::string said, read_text(scratch / "err"));
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    EXPECT_NE(said.find("accepted: sonar_binning, sonar_frame, sonar_terms, camera_frame"),
+              std::string::npos)
+        << said;
+    NERITIC_ASSERT_OK(const std::string table, read_text(scratch / "out"));
+    EXPECT_EQ(table, "") << flags;
+  }
+}
+
+}  // namespace
+}  // namespace neritic
