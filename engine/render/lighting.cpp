@@ -13,6 +13,12 @@ namespace {
 using shared::kWaterIndex;
 // Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance .066).
 constexpr double kSkyTransmittance = 0.934;
+// A beam along the horizon gives nothing level, and irradiance / cosine must stay finite: no beam
+// comes from lower than 1.1 degrees, the sun's disk twice over.
+constexpr double kLeastCosine = 0.02;
+// Share of the sky's light of noon that is left when the sun is on the horizon: 300 lux; of a clear
+// evening 410 to 585 are said (AMS Glossary of Meteorology, civil twilight).
+constexpr double kSkyAtSunset = 0.02;
 // Auto exposure opens no further than for this light: what a sensitive video camera still sees in.
 // Deeper or darker scenes come out dark.
 constexpr double kDarkest_lx = 1.0;
@@ -37,7 +43,8 @@ struct Beam {
 // the sun towards the zenith (Snell).
 Beam sun_beam(Vec3 level, bool under_water) {
   if (under_water) level /= kWaterIndex;
-  const double cosine = std::max(std::sqrt(std::max(0.0, 1.0 - glm::dot(level, level))), 0.02);
+  const double cosine =
+      std::max(std::sqrt(std::max(0.0, 1.0 - glm::dot(level, level))), kLeastCosine);
   return {glm::normalize(level + Vec3(0.0, cosine, 0.0)), cosine};
 }
 
@@ -49,8 +56,7 @@ struct SunLight {
 SunLight sun_light(const scene::Sun& sun, bool under_water) {
   const double sine = std::sin(sun.elevation_rad);
   double direct = kSunShare * std::max(sine, 0.0);
-  // The sky keeps some light when the sun is low.
-  double sky = (1.0 - kSunShare) * std::max(std::sqrt(std::max(sine, 0.0)), 0.02);
+  double sky = (1.0 - kSunShare) * std::max(std::sqrt(std::max(sine, 0.0)), kSkyAtSunset);
   if (under_water) {
     direct *= fresnel_transmittance(std::max(sine, 0.0));
     sky *= kSkyTransmittance;

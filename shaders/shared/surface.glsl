@@ -17,6 +17,15 @@ struct Surface {
 // is why wet things look dull under water (Fresnel).
 float dielectric_f0() { return light_has(kLightWater) ? 0.0035 : 0.04; }
 
+// Share of even light that GGX sends on where its Fresnel term is 1 (single scattering, mean over all
+// directions): .96 at roughness 0.1, .60 at 0.8, .41 at 1, by quadrature. That of 0.8 stands for all, since
+// what lies under water is rough.
+const float kEvenReflectance = 0.6;
+// Share of the light from above that comes back from below. In water an irradiance reflectance of some
+// percent (Jerlov 1976), in shallow places the sand's; in air the albedo of dry, light ground (soils .05 to
+// .40, deserts .20 to .45: Oke 1987, Boundary Layer Climates, table 1.1).
+const float kWaterFromBelow = 0.08, kGroundFromBelow = 0.35;
+
 // BRDF times cosine. spread: half-angle of the source in radians; a highlight is no narrower.
 vec3 reflect_light(Surface s, vec3 to_eye, vec3 to_light, float spread) {
   float n_l = dot(s.normal, to_light);
@@ -49,12 +58,11 @@ vec3 shade_surface(Surface s, vec3 to_eye) {
     // (slopes of Cox and Munk 1954 at a light breeze).
     float sun_spread = light_has(kLightWater) ? 0.17 : 0.0047;
     radiance += irradiance * direct / light.sun_cosine * reflect_light(s, to_eye, light.to_sun, sun_spread);
-    // Diffuse light comes mostly from above; from below what the deep (or the sand) sends back: an
-    // irradiance reflectance of some percent (Jerlov 1976), more in air.
-    float from_below = light_has(kLightWater) ? 0.08 : 0.35;
+    // Diffuse light comes mostly from above.
+    float from_below = light_has(kLightWater) ? kWaterFromBelow : kGroundFromBelow;
     float up = 0.5 + 0.5 * s.normal.y;
     float share = mix(from_below, 1.0, up * up * (3.0 - 2.0 * up));
-    vec3 diffuse_color = s.albedo * (1.0 - s.metallic) + mix(vec3(dielectric_f0()), s.albedo, s.metallic) * 0.6;
+    vec3 diffuse_color = s.albedo * (1.0 - s.metallic) + mix(vec3(dielectric_f0()), s.albedo, s.metallic) * kEvenReflectance;
     radiance += irradiance * (1.0 - direct) * share * s.occlusion * diffuse_color / kPi;
   }
   for (uint i = 0u; i < lamp_count(); ++i) {

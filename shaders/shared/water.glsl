@@ -13,6 +13,10 @@ const float kParticleG = 0.924;
 // particles it is spread as by this g (a fit, no measurement: the path radiance near the horizon is a
 // few percent of the downwelling irradiance, Jerlov 1976 fig. 36).
 const float kDiffuseG = 0.6;
+// Mean cosine of light that comes down diffusely: its radiance passes through 1 / this metres of water a
+// metre of depth. Even light from within Snell's cone has (1 + cos 48.6 deg) / 2 = 0.83; scattering spreads
+// it a little wider.
+const float kDiffuseCosine = 0.8;
 
 float henyey_greenstein(float cosine, float g) {
   float d = 1.0 + g * g - 2.0 * g * cosine;
@@ -46,7 +50,7 @@ vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct) {
                    light.water_scattering * sea_water_phase(to_sun);
   vec3 from_diffuse = light.particle_scattering * henyey_greenstein(direction.y, kDiffuseG) +
                       light.water_scattering * sea_water_phase(direction.y);
-  return irradiance * (direct * from_beam / light.sun_cosine + (1.0 - direct) * from_diffuse / 0.8);
+  return irradiance * (direct * from_beam / light.sun_cosine + (1.0 - direct) * from_diffuse / kDiffuseCosine);
 }
 
 // What a length of sight does: radiance arriving = transmittance * radiance at its end + added.
@@ -98,7 +102,8 @@ vec3 beyond(float depth_m, vec3 direction) {
     vec3 rate = light.beam_attenuation - light.diffuse_attenuation * down.y;
     mirrored = scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);
   }
-  // A sky of even radiance holds the light that does not come straight from the sun.
+  // A sky of even radiance holds the light that does not come straight from the sun. Bluer than daylight
+  // as a whole, which counts as white: a tint by eye.
   vec3 sky = light.surface_irradiance * ((1.0 - light.direct_share) / kPi) * vec3(0.8, 0.95, 1.1);
   if (depth_m < 0.0 && direction.y >= 0.0) return sky;
   float cosine_air = sqrt(max(0.0, 1.0 - sine_air * sine_air));
