@@ -92,7 +92,9 @@ void GeometryBuilder::add_vertex(const scene::Primitive& p, std::uint32_t i) {
   if (!p.uv0.empty()) s.uv0 = p.uv0[i];
   if (!p.uv1.empty()) s.uv1 = p.uv1[i];
   s.tangent = pack_tangent(p.tangents.empty() ? Vec4f(0.0f) : p.tangents[i]);
-  s.color = p.colors.empty() ? ~0u : glm::packUnorm4x8(p.colors[i]);
+  const Vec4f color = p.colors.empty() ? Vec4f(1.0f) : p.colors[i];
+  s.color_rg = glm::packUnorm2x16(Vec2f(color.x, color.y));
+  s.color_ba = glm::packUnorm2x16(Vec2f(color.z, color.w));
   surfaces_.push_back(s);
 }
 

@@ -20,7 +20,7 @@ gpu::VertexStream surface_stream() {
           {{2, VK_FORMAT_R32G32_SFLOAT, offsetof(shared::VertexSurface, uv0)},
            {3, VK_FORMAT_R32G32_SFLOAT, offsetof(shared::VertexSurface, uv1)},
            {4, VK_FORMAT_R32_UINT, offsetof(shared::VertexSurface, tangent)},
-           {5, VK_FORMAT_R8G8B8A8_UNORM, offsetof(shared::VertexSurface, color)}},
+           {5, VK_FORMAT_R16G16B16A16_UNORM, offsetof(shared::VertexSurface, color_rg)}},
           false};
 }
 

@@ -48,7 +48,9 @@ struct VertexSurface {
   vec2 uv0;
   vec2 uv1;
   uint tangent;  // octahedral 15 + 16 bits; bit 16: handedness
-  uint color;    // RGBA8, linear
+  // Linear RGBA of 16 bits each: with 8 the darkest step, 1/255, would be 13 grey levels of sRGB.
+  uint color_rg;
+  uint color_ba;
 };
 
 NERITIC_CONST uint kMaterialBaseColorTexture = 1;
