@@ -1,4 +1,4 @@
-// Executor: caches plans by declaration, gives the newest graphs real memory, records passes and
+// Executor: caches plans by declaration, gives the graphs in use real memory, records passes and
 // barriers. Each frame opens with one full memory barrier, so that frames never race each other
 // over transient memory or over imports; within the frame the plan's barriers are exact. Rendering
 // thread.
@@ -12,14 +12,16 @@
 #include "engine/graph/frame_graph.hpp"
 #include "engine/graph/realisation.hpp"
 #include "engine/graph/record_barriers.hpp"
+#include "engine/graph/transient_heaps.hpp"
 
 namespace neritic::graph {
 namespace {
 
-// Plans are small; memory is not. A program that alternates between a few graphs (with and without
-// a sonar ping, a screenshot now and then) should allocate nothing.
+// Plans are small; memory is not. A program that alternates between graphs (sensors at rates of
+// their own, a screenshot now and then) should allocate nothing: they share the memory of the
+// largest, and a graph gives up its part once it has not run for so many runs, some seconds.
 constexpr std::size_t kPlansKept = 32;
-constexpr std::size_t kRealisationsKept = 4;
+constexpr std::uint64_t kRunsRemembered = 256;
 
 void add_text(Hash64& hash, const std::string& text) {
   hash.add(text.size());
@@ -69,14 +71,16 @@ struct Executor::Impl {
     GraphDecl declaration;  // as declared, before usage flags are gathered
     Plan plan;
     std::vector<MemoryClass> classes;
-    std::unique_ptr<Realisation> realisation;  // null until first run, and again after eviction
+    std::uint64_t last_run = 0;                // 0: never
+    std::unique_ptr<Realisation> realisation;  // null until first run, and again without memory
   };
 
   explicit Impl(gpu::Frames& f) : frames(f) {}
 
   gpu::Frames& frames;
   std::vector<std::unique_ptr<Entry>> entries;  // stable addresses: callers hold Plan pointers
-  std::uint64_t clock = 0;
+  std::uint64_t clock = 0, runs = 0;
+  TransientHeaps heaps;  // what every realisation lies in
   std::function<void(Plan&)> spoil;
   Plan spoiled;
   // Scratch, kept to allocate nothing in a frame.
@@ -84,12 +88,28 @@ struct Executor::Impl {
   std::vector<const gpu::Image*> images;
   std::vector<const gpu::Buffer*> buffers;
 
-  // The realisation's objects may still be in use by frames in flight.
+  // Objects and memory that frames in flight may still use. The objects go first.
+  struct Retired {
+    std::vector<gpu::Allocation> heaps;
+    std::vector<std::unique_ptr<Realisation>> realisations;
+  };
+  void retire(Retired retired) {
+    // std::function must be copyable, so the owner is shared with the copies it may make.
+    auto owner = std::make_shared<Retired>(std::move(retired));
+    frames.retire([owner]() mutable { owner.reset(); });
+  }
   void retire(std::unique_ptr<Realisation> realisation) {
     if (!realisation) return;
-    // std::function must be copyable, so the owner is shared with the copies it may make.
-    std::shared_ptr<Realisation> owner = std::move(realisation);
-    frames.retire([owner]() mutable { owner.reset(); });
+    Retired retired;
+    retired.realisations.push_back(std::move(realisation));
+    retire(std::move(retired));
+  }
+  // All memory, and what lies in it.
+  void retire_all() {
+    Retired retired{heaps.take(), {}};
+    for (const auto& entry : entries)
+      if (entry->realisation) retired.realisations.push_back(std::move(entry->realisation));
+    retire(std::move(retired));
   }
 
   Result<Entry*> find_or_compile(const GraphDecl& declaration) {
@@ -124,20 +144,39 @@ struct Executor::Impl {
     entries.erase(oldest);
   }
 
-  // Memory for the entry, at the cost of the least recently used other graph's.
+  bool in_use(const Entry& entry) const {
+    return entry.last_run > 0 && entry.last_run + kRunsRemembered >= runs;
+  }
+
+  // Objects for the entry, which runs now, in memory for the largest of the graphs in use.
   Status realise(Entry& entry) {
-    if (entry.realisation) return {};
-    Entry* oldest = nullptr;
-    std::size_t held = 0;
+    entry.last_run = ++runs;
+    bool changed = !entry.realisation;
     for (const auto& other : entries) {
-      if (!other->realisation) continue;
-      ++held;
-      if (!oldest || other->last_use < oldest->last_use) oldest = other.get();
+      if (!other->realisation || in_use(*other)) continue;
+      retire(std::move(other->realisation));
+      changed = true;
     }
-    if (held >= kRealisationsKept) retire(std::move(oldest->realisation));
-    NERITIC_TRY(Realisation made, Realisation::create(frames.device(), entry.plan, entry.classes));
+    if (!changed) return {};
+    NERITIC_TRY_STATUS(fit_heaps());
+    if (entry.realisation) return {};
+    NERITIC_TRY(Realisation made,
+                Realisation::create(frames.device(), entry.plan, entry.classes, heaps));
     entry.realisation = std::make_unique<Realisation>(std::move(made));
     return {};
+  }
+
+  // Where the memory is too small, or twice too large, all of it is made anew: graphs in use get
+  // their objects again when they run.
+  Status fit_heaps() {
+    std::vector<TransientHeaps::Need> needs;
+    for (const auto& entry : entries)
+      if (in_use(*entry))
+        for (std::size_t c = 0; c < entry->classes.size(); ++c)
+          TransientHeaps::add(needs, entry->classes[c], entry->plan.placement.heap_size[c]);
+    if (heaps.fit(needs)) return {};
+    retire_all();
+    return heaps.allocate(frames.device().allocator(), needs);
   }
 
   // The object behind every resource in this frame: imports may move between equal declarations.
@@ -168,7 +207,7 @@ struct Executor::Impl {
 Executor::Executor(gpu::Frames& frames) : impl_(std::make_unique<Impl>(frames)) {}
 
 Executor::~Executor() {
-  for (auto& entry : impl_->entries) impl_->retire(std::move(entry->realisation));
+  impl_->retire_all();
 }
 
 Result<const Plan*> Executor::compile(const FrameGraph& graph) {
@@ -191,10 +230,7 @@ Result<const Plan*> Executor::run(FrameGraph& graph, gpu::Commands& commands) {
 }
 
 std::uint64_t Executor::transient_bytes() const {
-  std::uint64_t sum = 0;
-  for (const auto& entry : impl_->entries)
-    if (entry->realisation) sum += entry->realisation->bytes();
-  return sum;
+  return impl_->heaps.bytes();
 }
 
 void Executor::spoil_plans_for_test(std::function<void(Plan&)> spoil) {

@@ -122,8 +122,9 @@ class FrameGraph {
   std::vector<const gpu::Buffer*> imported_buffers_;
 };
 
-// Compiles graphs for a device and runs them. Keeps the transient memory and images of the newest
-// graphs, so a frame that declares the same as the last allocates nothing.
+// Compiles graphs for a device and runs them. Graphs share transient memory, enough for the largest
+// of those that ran lately, and keep their images in it: a frame that declares the same as one of
+// the last few hundred allocates nothing.
 class Executor {
  public:
   explicit Executor(gpu::Frames& frames);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/gpu/device.hpp"
+#include "engine/graph/transient_heaps.hpp"
 
 namespace neritic::graph {
 namespace {
@@ -64,27 +65,16 @@ std::vector<MemoryNeed> memory_needs(const gpu::Device& device, const GraphDecl&
 }
 
 Result<Realisation> Realisation::create(const gpu::Device& device, const Plan& plan,
-                                        const std::vector<MemoryClass>& classes) {
+                                        const std::vector<MemoryClass>& classes,
+                                        const TransientHeaps& heaps) {
   Realisation made;
   const std::size_t count = plan.graph.resources.size();
   made.images_.resize(count);
   made.buffers_.resize(count);
-  for (std::size_t c = 0; c < plan.placement.heap_size.size(); ++c) {
-    VkMemoryRequirements needs{};
-    needs.size = plan.placement.heap_size[c];
-    needs.alignment = classes[c].alignment;
-    needs.memoryTypeBits = classes[c].memory_type_bits;
-    gpu::Allocation heap;
-    if (needs.size > 0) {
-      NERITIC_TRY(heap, device.allocator().allocate(needs, gpu::MemoryUse::kDevice,
-                                                    classes[c].kind == ResourceKind::kBuffer));
-    }
-    made.heaps_.push_back(std::move(heap));
-  }
   for (std::size_t r = 0; r < count; ++r) {
     const ResourceDecl& resource = plan.graph.resources[r];
     if (resource.imported || !plan.lifetimes[r].used()) continue;
-    const gpu::Allocation& heap = made.heaps_[plan.needs[r].memory_class];
+    const gpu::Allocation& heap = heaps.of(classes[plan.needs[r].memory_class]);
     const VkDeviceSize offset = heap.offset() + plan.placement.offset[r];
     if (resource.kind == ResourceKind::kImage) {
       NERITIC_TRY(made.images_[r],
@@ -95,12 +85,6 @@ Result<Realisation> Realisation::create(const gpu::Device& device, const Plan& p
     }
   }
   return made;
-}
-
-std::uint64_t Realisation::bytes() const {
-  std::uint64_t sum = 0;
-  for (const gpu::Allocation& heap : heaps_) sum += heap.size();
-  return sum;
 }
 
 }  // namespace neritic::graph

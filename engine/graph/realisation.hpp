@@ -1,11 +1,10 @@
-// Inside engine/graph: the real memory, images and buffers of one plan's transients. One heap a
-// memory class; objects lie in it where the plan placed them. Move-only; rendering thread. Destroy
-// only when the GPU is done with it (Frames::retire).
+// Inside engine/graph: the real images and buffers of one plan's transients. They lie in the heap
+// of their memory class (transient_heaps.hpp) where the plan placed them. Move-only; rendering
+// thread. Destroy only when the GPU is done with it (Frames::retire), and before the heaps.
 #pragma once
 
 #include <vector>
 
-#include "engine/gpu/memory.hpp"
 #include "engine/gpu/resources.hpp"
 #include "engine/graph/plan.hpp"
 
@@ -24,18 +23,19 @@ struct MemoryClass {
 std::vector<MemoryNeed> memory_needs(const gpu::Device& device, const GraphDecl& graph,
                                      std::vector<MemoryClass>& classes);
 
+class TransientHeaps;
+
 class Realisation {
  public:
+  // Precondition: the heaps fit the plan.
   static Result<Realisation> create(const gpu::Device& device, const Plan& plan,
-                                    const std::vector<MemoryClass>& classes);
+                                    const std::vector<MemoryClass>& classes,
+                                    const TransientHeaps& heaps);
   // By resource; empty ones for imports and unused transients.
   const std::vector<gpu::Image>& images() const { return images_; }
   const std::vector<gpu::Buffer>& buffers() const { return buffers_; }
-  std::uint64_t bytes() const;
 
  private:
-  // Declared before what lies in it, so that it is freed after.
-  std::vector<gpu::Allocation> heaps_;
   std::vector<gpu::Image> images_;
   std::vector<gpu::Buffer> buffers_;
 };

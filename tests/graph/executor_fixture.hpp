@@ -71,10 +71,11 @@ class ExecutorTest : public test::GpuTest {
   struct StepData {
     BufferHandle source, target;
   };
-  // One more pass of test_graph_step.comp; target: where to, a new transient where it is none.
+  // One more pass of test_graph_step.comp; target: where to, a new transient, with room for so many
+  // numbers, where it is none.
   BufferHandle add_step(FrameGraph& graph, const std::string& name, BufferHandle source,
                         std::uint32_t factor, std::uint32_t shift, BufferHandle target = {},
-                        std::uint32_t count = kCount) {
+                        std::uint32_t count = kCount, std::uint32_t room = kCount) {
     return graph
         .add_pass<StepData>(
             name,
@@ -82,7 +83,7 @@ class ExecutorTest : public test::GpuTest {
               data.source = source;
               builder.read(source, Access::kStorageReadCompute);
               if (!target)
-                target = builder.create_buffer("of " + name, kCount * sizeof(std::uint32_t));
+                target = builder.create_buffer("of " + name, room * sizeof(std::uint32_t));
               data.target = builder.write(target, Access::kStorageWriteCompute);
             },
             [this, factor, shift, count](const StepData& data, PassContext& context) {

@@ -68,6 +68,61 @@ TEST_F(ExecutorTest, OldGraphsGiveTheirMemoryBack) {
   EXPECT_EQ(answers(), step(step({input.begin(), input.begin() + kCount}, 39, 1), 1, 2));
 }
 
+// Twelve graphs of different sizes, frames in flight: what sensors at rates of their own declare.
+TEST_F(ExecutorTest, GraphsThatTakeTurnsShareTheMemoryOfTheLargest) {
+  const auto graph_of = [&](std::uint32_t i) {
+    FrameGraph graph;
+    const BufferHandle input = graph.import_buffer("input", input_, ImportState{0, 0});
+    const std::string number = std::to_string(i);
+    const std::uint32_t room = kCount * (1 + (i * 5) % 12);
+    const BufferHandle a = add_step(graph, "a" + number, input, i + 2, 1, {}, kCount, room);
+    const BufferHandle b = add_step(graph, "b" + number, a, 3, 2, {}, kCount, room);
+    graph.output(add_step(graph, "last", b, 1, 3, graph.import_buffer("answers", answers_)),
+                 Access::kHostRead);
+    return graph;
+  };
+  const auto input = input_.mapped<std::uint32_t>();
+  const std::vector<std::uint32_t> source(input.begin(), input.begin() + kCount);
+  std::uint64_t largest = 0;
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const Plan* plan = run(graph_of(i));
+    largest = std::max(largest, plan->placement.bytes_with_aliasing);
+    EXPECT_EQ(answers(), step(step(step(source, i + 2, 1), 3, 2), 1, 3)) << i;
+  }
+  EXPECT_EQ(executor_->transient_bytes(), largest);
+  const std::uint32_t allocations = device().allocator().statistics().allocations;
+  std::uint64_t value = 0;
+  for (std::uint32_t frame = 0; frame < 36; ++frame) {
+    FrameGraph graph = graph_of(frame * 7 % 12);
+    gpu::Commands* commands = take(frames_->begin());
+    take(executor_->run(graph, *commands));
+    value = take(frames_->submit());
+  }
+  ASSERT_TRUE(frames_->wait(value).ok());
+  EXPECT_EQ(answers(), step(step(step(source, 35 * 7 % 12 + 2, 1), 3, 2), 1, 3));
+  EXPECT_EQ(executor_->transient_bytes(), largest);
+  EXPECT_EQ(device().allocator().statistics().allocations, allocations);
+}
+
+TEST_F(ExecutorTest, AGraphThatRunsNoMoreGivesItsMemoryBack) {
+  run(chain());
+  const std::uint64_t small = executor_->transient_bytes();
+  FrameGraph large;
+  const BufferHandle input = large.import_buffer("input", input_, ImportState{0, 0});
+  large.output(
+      add_step(large, "last", add_step(large, "large", input, 1, 1, {}, kCount, 100 * kCount), 1, 2,
+               large.import_buffer("answers", answers_)),
+      Access::kHostRead);
+  run(std::move(large));
+  const std::uint64_t both = executor_->transient_bytes();
+  EXPECT_GE(both, 100 * kCount * sizeof(std::uint32_t));
+  for (int i = 0; i < 10; ++i) run(chain());
+  EXPECT_EQ(executor_->transient_bytes(), both);
+  for (int i = 0; i < 300; ++i) run(chain());
+  EXPECT_EQ(executor_->transient_bytes(), small);
+  EXPECT_EQ(answers(), chain_result());
+}
+
 TEST_F(ExecutorTest, CulledPassesAreNotRecorded) {
   FrameGraph graph = chain();
   bool ran = false;

@@ -1,0 +1,43 @@
+// Inside engine/graph: the memory that the transients of all graphs lie in, one heap a memory class
+// (realisation.hpp). Graphs take turns with it: each run opens with a barrier behind everything,
+// and leaves nothing that the next would want. Move-only; rendering thread.
+#pragma once
+
+#include <vector>
+
+#include "engine/gpu/memory.hpp"
+#include "engine/graph/realisation.hpp"
+
+namespace neritic::graph {
+
+class TransientHeaps {
+ public:
+  // What one plan, or the largest of many, takes of a class.
+  struct Need {
+    MemoryClass memory_class;
+    std::uint64_t size = 0;
+  };
+  // Every class once, with the most of both.
+  static void add(std::vector<Need>& needs, const MemoryClass& memory_class, std::uint64_t size);
+
+  // The heaps are neither too small for the needs nor, in sum, more than twice as large.
+  bool fit(const std::vector<Need>& needs) const;
+  // Takes the heaps out, for whoever waits until the GPU is done with them.
+  std::vector<gpu::Allocation> take();
+  // New heaps of just these sizes. Precondition: none there (take()).
+  Status allocate(gpu::Allocator& allocator, const std::vector<Need>& needs);
+
+  // Precondition: of a need that the heaps fit.
+  const gpu::Allocation& of(const MemoryClass& memory_class) const;
+  std::uint64_t bytes() const;
+
+ private:
+  struct Heap {
+    Need made_for;
+    gpu::Allocation memory;
+  };
+  const Heap* find(const MemoryClass& memory_class) const;
+  std::vector<Heap> heaps_;
+};
+
+}  // namespace neritic::graph
