@@ -83,6 +83,17 @@ TEST_F(Corpus, EveryModelRenders) {
                       eye->color.data[i + 2] << 16);
       EXPECT_GT(colors.size(), 1u) << path << " leaves an empty picture";
     }
+    if (hits > 0) {
+      // Framed, and lit: neither a few stray pixels, nor all of the picture, nor black.
+      const double share = double(hits) / double(eye->depth.data.size());
+      EXPECT_TRUE(share > 0.004 && share < 0.9) << path << " covers " << share;
+      int brightest = 0;
+      for (std::size_t i = 0; i < eye->depth.data.size(); ++i)
+        if (std::isfinite(eye->depth.data[i]))
+          brightest = std::max({brightest, int{eye->color.data[3 * i]},
+                                int{eye->color.data[3 * i + 1]}, int{eye->color.data[3 * i + 2]}});
+      EXPECT_GT(brightest, 50) << path << " is dark";
+    }
     for (const float n : eye->normals.data) ASSERT_TRUE(std::isfinite(n)) << path;
     tiles.push_back({eye->color, path.stem().string().substr(0, 14)});
   }
