@@ -1,0 +1,220 @@
+#include "diver/breath_rate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/math.hpp"
+
+namespace neritic::diver {
+namespace {
+
+// Levels are smoothed by Hann's window of so many frames: 2 Hz, half of it .3 s.
+constexpr int kSmoothFrames = 10;
+// Its equivalent length, (sum w)^2 / sum w^2 of a Hann window: two thirds.
+constexpr double kSmooth_s = kSmoothFrames / kBreathFrames_hz * 2.0 / 3.0;
+constexpr double kLeastWindow_s = 4.0, kLeastOverlap_s = 2.0;
+// A level that varies no more than twice as much as that of steady noise tells nothing: the
+// variance of the logarithm of noise power over B Hz and T s is 1 / BT.
+constexpr double kOverNoise = 4.0;
+// And bands that vary by less than half a decibel are not breathed in.
+constexpr double kLeastDeviation = 0.115;  // nepers of power
+constexpr double kSilence = 1e-12;         // full scale squared: -120 dB
+// Measured: of windows of 30 s above it 70 % are right, below it 40 %.
+constexpr double kLeastConfidence = 0.25;
+// The first peak so near the highest: twice a breath is like a breath too. Measured on recordings
+// of paced breathing; between .8 and .9 nothing changes much.
+constexpr double kFirstPeak = 0.85;
+// How far off the next but one breath is looked for, in periods.
+constexpr double kReach = 0.15;
+constexpr double kMostDeviations = 1.5;                // of a level, from its mean
+constexpr double kDecibelsANeper = 4.342944819032518;  // of power
+
+using Levels = std::vector<double>;
+
+Levels smoothed(const Levels& in) {
+  std::array<double, kSmoothFrames + 1> window{};
+  double sum = 0.0;
+  for (int i = 0; i <= kSmoothFrames; ++i) {
+    window[static_cast<std::size_t>(i)] =
+        1.0 - std::cos(2.0 * kPi * (i + 1.0) / (kSmoothFrames + 2.0));
+    sum += window[static_cast<std::size_t>(i)];
+  }
+  Levels out(in.size());
+  const auto last = static_cast<int>(in.size()) - 1;
+  for (int i = 0; i <= last; ++i)
+    for (int k = 0; k <= kSmoothFrames; ++k)
+      out[static_cast<std::size_t>(i)] +=
+          window[static_cast<std::size_t>(k)] / sum *
+          in[static_cast<std::size_t>(std::clamp(i + k - kSmoothFrames / 2, 0, last))];
+  return out;
+}
+
+// To mean 0; gives the deviation.
+double center(Levels& levels) {
+  double mean = 0.0, squares = 0.0;
+  for (const double l : levels) mean += l / static_cast<double>(levels.size());
+  for (double& l : levels) {
+    l -= mean;
+    squares += l * l;
+  }
+  return std::sqrt(squares / static_cast<double>(levels.size()));
+}
+
+// Of all levels together, lag frames apart.
+double correlation(const std::vector<Levels>& all, std::size_t lag) {
+  double ab = 0.0, aa = 0.0, bb = 0.0;
+  for (const Levels& levels : all)
+    for (std::size_t i = lag; i < levels.size(); ++i) {
+      ab += levels[i] * levels[i - lag];
+      aa += levels[i] * levels[i];
+      bb += levels[i - lag] * levels[i - lag];
+    }
+  const double size = std::sqrt(aa * bb);
+  return size > 0.0 ? ab / size : 0.0;
+}
+
+// The top of a parabola through three values: its place, from -.5 to .5.
+double between(double before, double here, double after) {
+  const double bend = before - 2.0 * here + after;
+  return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+}
+
+// Fills rate and confidence by the autocorrelation of the levels, each centred.
+void by_autocorrelation(const std::vector<Levels>& all, BreathEstimate& out) {
+  const auto frames = static_cast<int>(all[0].size());
+  const int shortest = static_cast<int>(kBreathFrames_hz / kFastestBreath_hz);
+  const int last = frames - static_cast<int>(kLeastOverlap_s * kBreathFrames_hz);
+  const int longest = std::min(static_cast<int>(kBreathFrames_hz / kSlowestBreath_hz), last);
+  std::vector<double> r;  // from lag 0
+  for (int lag = 0; lag <= last + 1; ++lag)
+    r.push_back(correlation(all, static_cast<std::size_t>(lag)));
+  const auto at = [&](int lag) { return r[static_cast<std::size_t>(lag)]; };
+  const auto is_top = [&](int lag) {
+    return at(lag) > 0.0 && at(lag) >= at(lag - 1) && at(lag) > at(lag + 1);
+  };
+  const auto exact = [&](int lag) { return lag + between(at(lag - 1), at(lag), at(lag + 1)); };
+  double highest = 0.0;
+  for (int lag = shortest; lag <= longest; ++lag)
+    if (is_top(lag)) highest = std::max(highest, at(lag));
+  out.confidence = highest;
+  int first = shortest;
+  while (first <= longest && !(is_top(first) && at(first) >= kFirstPeak * highest)) ++first;
+  if (first > longest) return;
+  // Breaths farther apart say the same with less error, as far as they go on to be alike.
+  double period = exact(first);
+  for (int count = 2; count * period < 0.75 * frames; ++count) {
+    const int expected = static_cast<int>(std::lround(count * period));
+    const int reach = std::max(1, static_cast<int>(kReach * period));
+    int best = 0;
+    for (int lag = expected - reach; lag <= std::min(expected + reach, last); ++lag)
+      if (is_top(lag) && (best == 0 || at(lag) > at(best))) best = lag;
+    if (best == 0 || at(best) < 0.5 * highest) break;
+    period = exact(best) / count;
+  }
+  out.rate_bpm = 60.0 * kBreathFrames_hz / period;
+}
+
+void by_spectrum(const Levels& envelope, BreathEstimate& out) {
+  const auto n = static_cast<double>(envelope.size());
+  const double step_hz = kBreathFrames_hz / n / 8.0;
+  std::vector<double> power;
+  double all = 0.0;
+  for (std::size_t i = 0; i < envelope.size(); ++i) all += envelope[i] * envelope[i];
+  for (double hz = kSlowestBreath_hz - step_hz; hz <= kFastestBreath_hz + step_hz; hz += step_hz) {
+    double c = 0.0, s = 0.0;
+    for (std::size_t i = 0; i < envelope.size(); ++i) {
+      const double window = 0.5 - 0.5 * std::cos(2.0 * kPi * (static_cast<double>(i) + 0.5) / n);
+      const double angle = 2.0 * kPi * hz * static_cast<double>(i) / kBreathFrames_hz;
+      c += window * envelope[i] * std::cos(angle);
+      s += window * envelope[i] * std::sin(angle);
+    }
+    power.push_back(c * c + s * s);
+  }
+  std::size_t best = 1;
+  for (std::size_t i = 1; i + 1 < power.size(); ++i)
+    if (power[i] > power[best]) best = i;
+  out.rate_bpm = 60.0 * (kSlowestBreath_hz +
+                         step_hz * (static_cast<double>(best) - 1.0 +
+                                    between(power[best - 1], power[best], power[best + 1])));
+  // A pure line under a Hann window has n/8 of all squares.
+  out.confidence = std::min(1.0, all > 0.0 ? power[best] / (all * n / 8.0) : 0.0);
+}
+
+Levels log_levels(std::span<const BreathFrame> frames, std::size_t band) {
+  Levels levels;
+  for (const BreathFrame& f : frames) levels.push_back(f.power[band]);
+  levels = smoothed(levels);
+  for (double& l : levels) l = std::log(l + kSilence);
+  return levels;
+}
+
+}  // namespace
+
+const char* name_of(BreathEstimator estimator) {
+  switch (estimator) {
+    case BreathEstimator::kSpectrum:
+      return "spectrum";
+    case BreathEstimator::kAutocorrelation:
+      return "autocorrelation";
+    case BreathEstimator::kMultiBand:
+      return "multiband";
+  }
+  return "";
+}
+
+Result<BreathEstimator> breath_estimator_of(const std::string& name) {
+  using enum BreathEstimator;
+  for (const BreathEstimator e : {kSpectrum, kAutocorrelation, kMultiBand})
+    if (name == name_of(e)) return e;
+  return bad_input("estimator '{}' found, spectrum, autocorrelation or multiband is accepted",
+                   name);
+}
+
+BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
+                               BreathEstimator estimator) {
+  BreathEstimate out;
+  if (static_cast<double>(frames.size()) < kLeastWindow_s * kBreathFrames_hz) return out;
+  std::vector<Levels> lively;
+  for (int band = 0; band < front.bands(); ++band) {
+    Levels levels = log_levels(frames, static_cast<std::size_t>(band));
+    const double deviation = center(levels);
+    const double noise = 1.0 / (front.width_hz(band) * kSmooth_s);
+    if (deviation * deviation < kOverNoise * noise || deviation < kLeastDeviation) continue;
+    out.depth_db = std::max(out.depth_db, kDecibelsANeper * deviation);
+    // A band counts as much as the next, and a knock no more than a breath.
+    for (double& l : levels) l = std::clamp(l / deviation, -kMostDeviations, kMostDeviations);
+    center(levels);
+    lively.push_back(std::move(levels));
+  }
+  if (lively.empty()) return out;
+  Levels envelope;
+  for (const BreathFrame& f : frames) envelope.push_back(f.envelope);
+  envelope = smoothed(envelope);
+  center(envelope);
+  if (estimator == BreathEstimator::kSpectrum) by_spectrum(envelope, out);
+  if (estimator == BreathEstimator::kAutocorrelation) by_autocorrelation({envelope}, out);
+  if (estimator == BreathEstimator::kMultiBand) by_autocorrelation(lively, out);
+  // The spectrum always answers, as published.
+  const bool sure = estimator == BreathEstimator::kSpectrum || out.confidence >= kLeastConfidence;
+  out.breathing = out.rate_bpm > 0.0 && sure;
+  if (!out.breathing) out.rate_bpm = 0.0;
+  return out;
+}
+
+double quiet_for(std::span<const BreathFrame> frames) {
+  Levels levels;
+  for (const BreathFrame& f : frames) levels.push_back(f.envelope * f.envelope);
+  const double all_s = static_cast<double>(levels.size()) / kBreathFrames_hz;
+  if (levels.empty()) return 0.0;
+  levels = smoothed(levels);
+  for (double& l : levels) l = std::log(l + kSilence);
+  const auto [low, high] = std::ranges::minmax(levels);
+  // A burst stands out by 6 dB at least.
+  if (high - low < 2.0 * std::log(2.0)) return all_s;
+  for (std::size_t i = levels.size(); i > 0; --i)
+    if (levels[i - 1] > 0.5 * (low + high))
+      return static_cast<double>(levels.size() - i) / kBreathFrames_hz;
+  return all_s;
+}
+
+}  // namespace neritic::diver

@@ -1,0 +1,41 @@
+// How often a diver breathes, out of frames of the sound. Pure functions; any thread.
+#pragma once
+
+#include <span>
+
+#include "diver/breath_bands.hpp"
+
+namespace neritic::diver {
+
+// 6 to 42 breaths a minute.
+inline constexpr double kSlowestBreath_hz = 0.1, kFastestBreath_hz = 0.7;
+
+enum class BreathEstimator : std::uint8_t {
+  // The largest line in the spectrum of the envelope, as published. Breathing in and breathing out
+  // are both bursts of sound, so it finds twice the rate where they are alike.
+  kSpectrum,
+  // The envelope's autocorrelation: the same trap, a finer scale.
+  kAutocorrelation,
+  // The mean autocorrelation of the bands' levels in decibels: in and out differ in colour, so that
+  // only a whole breath is like the one before. The default.
+  kMultiBand,
+};
+const char* name_of(BreathEstimator estimator);
+Result<BreathEstimator> breath_estimator_of(const std::string& name);
+
+struct BreathEstimate {
+  double rate_bpm = 0.0;    // 0: no breath
+  double confidence = 0.0;  // 0 to 1: how alike a breath is to the one before
+  double depth_db = 0.0;    // how far the level goes up and down
+  bool breathing = false;
+};
+// Of a window of frames; front says which bands there are. A window without breath (steady noise,
+// silence, less than four seconds) says so.
+BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
+                               BreathEstimator estimator);
+
+// Since when no burst was heard, in seconds, at the window's end: a pause. The whole window where
+// there is none.
+double quiet_for(std::span<const BreathFrame> frames);
+
+}  // namespace neritic::diver

@@ -1,0 +1,292 @@
+#include "diver/heart_detector.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "diver/heart_filter.hpp"
+#include "engine/core/check.hpp"
+
+namespace neritic::diver {
+namespace {
+
+// More places a second say nothing new about a band of 5 to 15 Hz; faster ECG is averaged down.
+constexpr double kMostPlaces_hz = 500.0;
+constexpr double kWindow_s = 0.150, kRefractory_s = 0.200, kGuard_s = 0.100, kTWave_s = 0.360;
+constexpr double kLearn_s = 2.0, kMemory_s = 8.0, kLookBack = 1.66;
+// Half a second of missing samples is no jitter of a radio any more.
+constexpr double kLost_s = 0.5;
+// The heart stops for no longer (30 beats a minute are 2 s): the levels are wrong, as after a
+// spike.
+constexpr double kWithoutBeat_s = 4.0;
+// What rounding leaves of a constant, against its size.
+constexpr double kRounding = 1e-9;
+// No ECG is larger, in any unit; its square stays finite.
+constexpr double kMostEcg = 1e12;
+constexpr double kLeastInterval_s = 0.2, kMostInterval_s = 2.5;
+
+}  // namespace
+
+Status check_ecg_rate(double rate_hz) {
+  if (rate_hz >= kLeastEcgRate_hz && rate_hz <= kMostEcgRate_hz) return {};
+  return bad_input("ECG: a rate of {:g} Hz found, {:g} to {:g} is accepted", rate_hz,
+                   kLeastEcgRate_hz, kMostEcgRate_hz);
+}
+
+BeatDetector::BeatDetector(double rate_hz) : rate_hz_(rate_hz) {
+  NERITIC_CHECK(check_ecg_rate(rate_hz).ok(), "{} Hz", rate_hz);
+  decimation_ = std::max(1, static_cast<int>(std::ceil(rate_hz / kMostPlaces_hz)));
+  place_hz_ = rate_hz / decimation_;
+  taps_ = qrs_band_taps(place_hz_);
+  const auto places = [&](double s) { return static_cast<int>(std::lround(s * place_hz_)); };
+  half_taps_ = static_cast<int>(taps_.size() / 2);
+  half_window_ = places(kWindow_s / 2.0);
+  guard_ = places(kGuard_s);
+  refractory_ = places(kRefractory_s);
+  const std::size_t size = std::bit_ceil(static_cast<std::size_t>(places(kMemory_s)));
+  mask_ = size - 1;
+  ring_.resize(size);
+}
+
+void BeatDetector::push(double value, std::vector<Beat>& out) {
+  ++counts_.samples;
+  if (!(std::abs(value) <= kMostEcg)) {
+    ++counts_.refused;
+    ++missing_in_a_row_;
+    value = held_;
+  } else {
+    if (static_cast<double>(missing_in_a_row_) > kLost_s * rate_hz_) lose_signal();
+    missing_in_a_row_ = 0;
+    // What came before the first sample, or while the signal was lost, was as it is now: no step.
+    if (!has_value_)
+      for (Place& p : ring_) p = {value};
+    has_value_ = true;
+    held_ = value;
+  }
+  block_sum_ += value;
+  if (++block_count_ < decimation_) return;
+  const double mean = block_sum_ / decimation_;
+  block_sum_ = 0.0;
+  block_count_ = 0;
+  take(mean, out);
+}
+
+void BeatDetector::take(double value, std::vector<Beat>& out) {
+  place(++newest_) = {value};
+  filter();
+  // A place is settled once the largest energy around it is known.
+  const std::int64_t known = newest_ - half_taps_ - 2 - half_window_ - guard_;
+  while (settled_ < known) settle(++settled_, out);
+}
+
+// Band, slope and energy of the newest places that have all they need.
+void BeatDetector::filter() {
+  const std::int64_t b = newest_ - half_taps_;
+  double sum = 0.0;
+  for (int i = 0; i < static_cast<int>(taps_.size()); ++i)
+    sum += taps_[static_cast<std::size_t>(i)] * place(b - half_taps_ + i).raw;
+  place(b).band = sum;
+  // Five points: (-x[-2] - 2 x[-1] + 2 x[1] + x[2]) / 8T (Pan and Tompkins 1985, eq. 7).
+  const std::int64_t d = b - 2;
+  place(d).slope =
+      0.125 * place_hz_ *
+      (place(d + 2).band + 2.0 * place(d + 1).band - 2.0 * place(d - 1).band - place(d - 2).band);
+  const std::int64_t e = d - half_window_;
+  double energy = 0.0;
+  for (std::int64_t i = e - half_window_; i <= e + half_window_; ++i)
+    energy += place(i).slope * place(i).slope;
+  place(e).energy = energy / (2 * half_window_ + 1);
+}
+
+bool BeatDetector::is_peak(std::int64_t at) const {
+  const double here = place(at).energy;
+  double largest = 0.0;
+  for (std::int64_t i = at - half_window_; i <= at + half_window_; ++i)
+    largest = std::max(largest, std::abs(place(i).raw));
+  const double rounding = kRounding * largest * place_hz_;
+  if (!(here > rounding * rounding)) return false;
+  for (std::int64_t i = std::max(at - guard_, fresh_); i <= at + guard_; ++i)
+    if (i < at ? place(i).energy >= here : place(i).energy > here) return false;
+  return true;
+}
+
+void BeatDetector::learn(std::int64_t from, std::int64_t to) {
+  double most = 0.0, sum = 0.0;
+  for (std::int64_t i = from; i < to; ++i) {
+    most = std::max(most, place(i).energy);
+    sum += place(i).energy;
+  }
+  // A third of the largest and half the mean, as is usual for the first two seconds.
+  signal_level_ = most / 3.0;
+  noise_level_ = 0.5 * sum / static_cast<double>(std::max<std::int64_t>(to - from, 1));
+  learnt_ = most > 0.0;
+  last_look_ = to;
+  passed_count_ = 0;
+}
+
+void BeatDetector::settle(std::int64_t at, std::vector<Beat>& out) {
+  if (at < fresh_) return;
+  if (!learnt_) {
+    const auto needed = static_cast<std::int64_t>(kLearn_s * place_hz_);
+    if (at - fresh_ + 1 < needed) return;
+    const std::int64_t from = at - needed + 1;
+    learn(from, at + 1);
+    if (!learnt_) return;
+    last_look_ = from;
+    for (std::int64_t i = from; i < at; ++i)
+      if (is_peak(i)) judge({i, place(i).energy, place(i).slope}, out);
+  }
+  if (is_peak(at)) judge({at, place(at).energy, 0.0}, out);
+  look_back(at, out);
+  if (static_cast<double>(at - last_look_) > kWithoutBeat_s * place_hz_) {
+    ++counts_.relearned;
+    after_gap_ = true;
+    last_beat_.reset();
+    interval_count_ = 0;
+    learn(at - static_cast<std::int64_t>(kLearn_s * place_hz_), at);
+  }
+}
+
+void BeatDetector::judge(const Peak& found, std::vector<Beat>& out) {
+  Peak peak = found;
+  peak.slope = 0.0;
+  for (std::int64_t i = peak.at - half_window_; i <= peak.at + half_window_; ++i)
+    peak.slope = std::max(peak.slope, std::abs(place(i).slope));
+  const std::int64_t since = last_beat_ ? peak.at - last_beat_->at : refractory_;
+  if (since < refractory_) return;
+  // A T wave is gentler than the QRS complex before.
+  const bool t_wave = last_beat_ && static_cast<double>(since) < kTWave_s * place_hz_ &&
+                      peak.slope < 0.5 * last_beat_->slope;
+  if (peak.energy > threshold() && !t_wave) return accept(peak, 0.125, out);
+  noise_level_ = 0.125 * peak.energy + 0.875 * noise_level_;
+  if (t_wave) return;
+  if (passed_count_ == static_cast<int>(passed_.size())) {
+    std::ranges::move(passed_.begin() + 1, passed_.end(), passed_.begin());
+    --passed_count_;
+  }
+  passed_[static_cast<std::size_t>(passed_count_++)] = peak;
+}
+
+void BeatDetector::look_back(std::int64_t at, std::vector<Beat>& out) {
+  const double mean = mean_interval();
+  if (mean <= 0.0 || !last_beat_ || static_cast<double>(at - last_beat_->at) < kLookBack * mean)
+    return;
+  const Peak* best = nullptr;
+  for (int i = 0; i < passed_count_; ++i) {
+    const Peak& p = passed_[static_cast<std::size_t>(i)];
+    if (p.energy > 0.5 * threshold() && (!best || p.energy > best->energy)) best = &p;
+  }
+  if (best) accept(*best, 0.25, out);
+}
+
+double BeatDetector::mean_interval() const {
+  double sum = 0.0;
+  for (int i = 0; i < interval_count_; ++i) sum += intervals_[static_cast<std::size_t>(i)];
+  return interval_count_ > 0 ? sum / interval_count_ : 0.0;
+}
+
+void BeatDetector::accept(const Peak& found, double share, std::vector<Beat>& out) {
+  const Peak peak = found;  // which may lie among those that are dropped here
+  signal_level_ = share * peak.energy + (1.0 - share) * signal_level_;
+  if (last_beat_) {
+    const double interval = static_cast<double>(peak.at - last_beat_->at);
+    if (interval > kLeastInterval_s * place_hz_ && interval < kMostInterval_s * place_hz_) {
+      if (interval_count_ == static_cast<int>(intervals_.size()))
+        std::ranges::move(intervals_.begin() + 1, intervals_.end(), intervals_.begin());
+      else
+        ++interval_count_;
+      intervals_[static_cast<std::size_t>(interval_count_ - 1)] = interval;
+    }
+  }
+  int kept = 0;
+  for (int i = 0; i < passed_count_; ++i)
+    if (passed_[static_cast<std::size_t>(i)].at - peak.at >= refractory_)
+      passed_[static_cast<std::size_t>(kept++)] = passed_[static_cast<std::size_t>(i)];
+  passed_count_ = kept;
+  last_beat_ = peak;
+  last_look_ = peak.at;
+  out.push_back(locate(peak));
+  after_gap_ = false;
+}
+
+// The R wave: where the band is largest, then the nearest top of the ECG itself, between samples by
+// a parabola.
+Beat BeatDetector::locate(const Peak& peak) const {
+  const auto largest = [&](std::int64_t from, std::int64_t to, const auto& value) {
+    std::int64_t best = from;
+    for (std::int64_t i = from; i <= to; ++i)
+      if (value(i) > value(best)) best = i;
+    return best;
+  };
+  const std::int64_t low = std::max<std::int64_t>(peak.at - half_window_, 0);
+  const std::int64_t near =
+      largest(low, peak.at + half_window_, [&](std::int64_t i) { return std::abs(place(i).band); });
+  const double sign = place(near).band < 0.0 ? -1.0 : 1.0;
+  const auto reach = std::max<std::int64_t>(1, std::lround(0.025 * place_hz_));
+  const std::int64_t top = largest(std::max<std::int64_t>(near - reach, 0), near + reach,
+                                   [&](std::int64_t i) { return sign * place(i).raw; });
+  const double before = place(top - 1).raw, here = place(top).raw, after = place(top + 1).raw;
+  const double bend = before - 2.0 * here + after;
+  const double shift =
+      bend * sign < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+  double mean = 0.0;
+  for (std::int64_t i = top - guard_; i <= top + guard_; ++i) mean += place(i).raw;
+  mean /= 2 * guard_ + 1;
+  // A place is the mean of its samples: its time is their middle.
+  const double samples = (static_cast<double>(top) + shift) * decimation_ + 0.5 * (decimation_ - 1);
+  return {samples / rate_hz_, here - mean, after_gap_};
+}
+
+void BeatDetector::lose_signal() {
+  ++counts_.gaps;
+  // What is known is settled as it stands; then all is learnt anew.
+  has_value_ = false;
+  learnt_ = false;
+  after_gap_ = true;
+  last_beat_.reset();
+  interval_count_ = 0;
+  passed_count_ = 0;
+  fresh_ = newest_ + 1;
+}
+
+void BeatDetector::finish(std::vector<Beat>& out) {
+  if (newest_ < 0) return;
+  const std::int64_t end = newest_;
+  const double last = place(end).raw;
+  const int more = half_taps_ + 2 + half_window_ + guard_;
+  for (int i = 0; i < more; ++i) take(last, out);
+  if (learnt_ || end < fresh_) return;
+  // Shorter than it takes to learn: the levels of what there is.
+  learn(fresh_, end + 1);
+  last_look_ = fresh_;
+  for (std::int64_t i = fresh_; learnt_ && i <= end; ++i)
+    if (is_peak(i)) judge({i, place(i).energy, 0.0}, out);
+}
+
+bool BeatDetector::flat() const {
+  const auto span = static_cast<std::int64_t>(kLearn_s * place_hz_);
+  if (newest_ < span) return false;
+  double low = place(newest_).raw, high = low;
+  for (std::int64_t i = newest_ - span + 1; i <= newest_; ++i) {
+    low = std::min(low, place(i).raw);
+    high = std::max(high, place(i).raw);
+  }
+  return high - low <= kRounding * std::max(std::abs(low), std::abs(high));
+}
+
+double BeatDetector::signal_over_noise() const {
+  if (!learnt_ || signal_level_ <= 0.0) return 0.0;
+  return noise_level_ > 0.0 ? std::min(signal_level_ / noise_level_, 1e6) : 1e6;
+}
+
+std::vector<Beat> find_beats(double rate_hz, const std::vector<double>& samples,
+                             EcgCounts* counts) {
+  BeatDetector detector(rate_hz);
+  std::vector<Beat> beats;
+  for (const double sample : samples) detector.push(sample, beats);
+  detector.finish(beats);
+  if (counts) *counts = detector.counts();
+  return beats;
+}
+
+}  // namespace neritic::diver

@@ -1,0 +1,138 @@
+#include "diver/heart_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "engine/core/check.hpp"
+
+namespace neritic::diver {
+namespace {
+
+constexpr double kIntervalMemory_s = 300.0;
+// At five beats a second there are 1500 in that time.
+constexpr std::size_t kMostIntervals = 1600;
+constexpr double kSpectrumEvery_s = 10.0;
+// After so long without a beat a rate is no rate of now.
+constexpr double kStale_s = 5.0;
+constexpr double kLeastRr_s = 0.2, kMostRr_s = 3.0;
+constexpr double kMostSkip_s = 3600.0;
+constexpr int kRateOver = 8;
+// Energy of beats over that of noise; below, Pan's thresholds lie in the noise.
+constexpr double kPoorBelow = 4.0;
+
+static_assert(std::is_trivially_copyable_v<HeartState>);
+
+}  // namespace
+
+const char* name_of(SignalQuality quality) {
+  switch (quality) {
+    case SignalQuality::kNone:
+      return "none";
+    case SignalQuality::kLearning:
+      return "learning";
+    case SignalQuality::kPoor:
+      return "poor";
+    case SignalQuality::kGood:
+      return "good";
+  }
+  return "";
+}
+
+HeartMonitor::HeartMonitor(double rate_hz) : detector_(rate_hz), rate_hz_(rate_hz) {
+  intervals_.reserve(kMostIntervals);
+}
+
+void HeartMonitor::push(std::span<const double> samples) {
+  NERITIC_CHECK(detector_.has_value(), "a monitor of intervals has no ECG");
+  for (const double sample : samples) {
+    found_.clear();
+    detector_->push(sample, found_);
+    for (const Beat& beat : found_) take(judge_.take(beat.time_s, beat.after_gap));
+  }
+  const EcgCounts& counts = detector_->counts();
+  state_.time_s = static_cast<double>(counts.samples) / rate_hz_;
+  state_.refused = counts.refused;
+  state_.gaps = counts.gaps;
+  using enum SignalQuality;
+  state_.quality = counts.samples == counts.refused || detector_->flat() ? kNone
+                   : detector_->learning()                               ? kLearning
+                   : detector_->signal_over_noise() < kPoorBelow         ? kPoor
+                                                                         : kGood;
+  forget();
+}
+
+void HeartMonitor::push_interval(double length_s) {
+  NERITIC_CHECK(!detector_.has_value(), "a monitor of an ECG finds intervals itself");
+  if (!(length_s >= kLeastRr_s && length_s <= kMostRr_s)) {
+    ++state_.refused;
+    ++state_.gaps;
+    take({state_.time_s, 0.0, IntervalKind::kNone});
+    return;
+  }
+  state_.time_s += length_s;
+  take(judge_.take_interval(state_.time_s, length_s));
+  state_.quality = SignalQuality::kGood;
+  forget();
+}
+
+void HeartMonitor::skip(double seconds) {
+  if (!(seconds > 0.0 && seconds <= kMostSkip_s)) {
+    ++state_.refused;
+    return;
+  }
+  if (detector_) {
+    // As if the samples had come and been no numbers.
+    const double missing[] = {std::nan("")};
+    for (double t = 0.0; t < seconds; t += 1.0 / rate_hz_) push(missing);
+    return;
+  }
+  ++state_.gaps;
+  state_.time_s += seconds;
+  take({state_.time_s, 0.0, IntervalKind::kNone});
+  state_.quality = SignalQuality::kNone;
+  forget();
+}
+
+void HeartMonitor::take(const Interval& interval) {
+  if (intervals_.size() == kMostIntervals) intervals_.erase(intervals_.begin());
+  intervals_.push_back(interval);
+  if (interval.kind != IntervalKind::kNone || detector_) {
+    ++state_.beats;
+    state_.last_beat_s = interval.end_s;
+  }
+  state_.ectopic += interval.kind == IntervalKind::kEctopic;
+}
+
+// Drops what is older than five minutes, and works the figures out anew where there is something
+// new.
+void HeartMonitor::forget() {
+  const auto old = std::ranges::find_if(
+      intervals_, [&](const Interval& i) { return i.end_s >= state_.time_s - kIntervalMemory_s; });
+  intervals_.erase(intervals_.begin(), old);
+  if (state_.time_s < spectrum_due_s_) return;
+  spectrum_due_s_ = state_.time_s + kSpectrumEvery_s;
+  state_.spectrum = heart_spectrum(intervals_);
+}
+
+HeartState HeartMonitor::state() const {
+  HeartState state = state_;
+  state.over_five_minutes = variability(intervals_);
+  std::vector<double> last_s;
+  for (auto i = intervals_.rbegin(); i != intervals_.rend() && last_s.size() < kRateOver; ++i) {
+    if (i->kind == IntervalKind::kNone) break;  // what lies before a gap is old
+    if (i->kind == IntervalKind::kNormal) last_s.push_back(i->length_s);
+  }
+  if (last_s.empty() || state.time_s - state.last_beat_s > kStale_s) {
+    state.rate_bpm = 0.0;
+    return state;
+  }
+  std::ranges::sort(last_s);
+  const std::size_t half = last_s.size() / 2;
+  const double median_s =
+      last_s.size() % 2 == 1 ? last_s[half] : 0.5 * (last_s[half - 1] + last_s[half]);
+  state.rate_bpm = 60.0 / median_s;
+  return state;
+}
+
+}  // namespace neritic::diver

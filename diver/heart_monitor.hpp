@@ -1,0 +1,60 @@
+// A diver's heart as it beats: ECG samples or a strap's intervals in, one plain state out, over the
+// last five minutes. Bounded memory. One owner, one thread.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "diver/hrv.hpp"
+
+namespace neritic::diver {
+
+enum class SignalQuality : std::uint8_t {
+  kNone,      // nothing yet, or no change: electrode off, saturated
+  kLearning,  // too little seen to tell
+  kPoor,      // heard, but noise is nearly as large: the numbers may be wrong
+  kGood,
+};
+const char* name_of(SignalQuality quality);
+
+// What a snapshot holds of the heart. Always finite.
+struct HeartState {
+  double time_s = 0.0;  // of the newest sample or interval
+  double last_beat_s = 0.0;
+  double rate_bpm = 0.0;  // by the median of the last eight normal intervals; 0: none, or stale
+  Variability over_five_minutes;
+  HeartSpectrum spectrum;
+  SignalQuality quality = SignalQuality::kNone;
+  std::uint64_t beats = 0, ectopic = 0, refused = 0, gaps = 0;
+};
+
+class HeartMonitor {
+ public:
+  // Of an ECG. Precondition: check_ecg_rate(rate_hz).
+  explicit HeartMonitor(double rate_hz);
+  // Of a strap that sends intervals.
+  HeartMonitor() = default;
+
+  void push(std::span<const double> samples);
+  // An interval in seconds, oldest first; what is no heart's (.2 to 3 s) is refused and counted,
+  // and is a gap.
+  void push_interval(double length_s);
+  // No contact for so long, at most an hour; any other length is refused and counted.
+  void skip(double seconds);
+
+  HeartState state() const;
+
+ private:
+  void take(const Interval& interval);
+  void forget();
+
+  std::optional<BeatDetector> detector_;
+  double rate_hz_ = 0.0;
+  IntervalJudge judge_;
+  std::vector<Beat> found_;          // scratch
+  std::vector<Interval> intervals_;  // the last five minutes, oldest first
+  HeartState state_;
+  double spectrum_due_s_ = 0.0;
+};
+
+}  // namespace neritic::diver

@@ -1,0 +1,203 @@
+#include "diver/hrv.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/math.hpp"
+
+namespace neritic::diver {
+namespace {
+
+constexpr double kNn50_ms = 50.0;
+// So many odd intervals in a row are no extra beats: the rhythm has changed.
+constexpr int kNewRhythm = 5;
+constexpr double kPiece_s = 300.0, kLeastPiece_s = 120.0;
+constexpr double kVlf_hz = 0.0033, kLf_hz = 0.04, kHf_hz = 0.15, kEnd_hz = 0.4;
+// Frequencies to the resolution 1 / T of a piece.
+constexpr double kOversampling = 4.0;
+
+double deviation(const std::vector<double>& values) {
+  if (values.size() < 2) return 0.0;
+  double mean = 0.0, squares = 0.0;
+  for (const double v : values) mean += v / static_cast<double>(values.size());
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+// Adds the power of one piece. Angles are turned on by one step a frequency, not computed anew.
+void add_lomb(std::span<const Interval> normal, HeartSpectrum& sum) {
+  const std::size_t n = normal.size();
+  const double span_s = normal.back().end_s - normal.front().end_s;
+  const double step_hz = 1.0 / (kOversampling * span_s);
+  double mean_ms = 0.0;
+  for (const Interval& i : normal) mean_ms += 1e3 * i.length_s / static_cast<double>(n);
+  struct Turn {
+    double value_ms, c, s, step_c, step_s;
+  };
+  std::vector<Turn> turns;
+  for (const Interval& i : normal) {
+    const double t = i.end_s - normal.front().end_s;
+    const double start = 2.0 * kPi * kVlf_hz * t, step = 2.0 * kPi * step_hz * t;
+    turns.push_back({1e3 * i.length_s - mean_ms, std::cos(start), std::sin(start), std::cos(step),
+                     std::sin(step)});
+  }
+  // Unnormalised power times 2 T / N is a density: its integral over a line of amplitude A is
+  // A^2/2.
+  const double scale = 2.0 * span_s / static_cast<double>(n) * step_hz;
+  for (double hz = kVlf_hz; hz < kEnd_hz; hz += step_hz) {
+    double yc = 0.0, ys = 0.0, cc = 0.0, cs = 0.0;
+    for (Turn& t : turns) {
+      yc += t.value_ms * t.c;
+      ys += t.value_ms * t.s;
+      cc += t.c * t.c;
+      cs += t.c * t.s;
+      const double c = t.c * t.step_c - t.s * t.step_s;
+      t.s = t.s * t.step_c + t.c * t.step_s;
+      t.c = c;
+    }
+    const double ss = static_cast<double>(n) - cc;
+    // The delay tau that makes cosines and sines orthogonal (Scargle 1982, eq. 10, appendix B).
+    const double angle = 0.5 * std::atan2(2.0 * cs, cc - ss);
+    const double c = std::cos(angle), s = std::sin(angle);
+    const double along = yc * c + ys * s, across = ys * c - yc * s;
+    const double cc_turned = cc * c * c + 2.0 * cs * c * s + ss * s * s;
+    const double ss_turned = static_cast<double>(n) - cc_turned;
+    double power = 0.0;
+    if (cc_turned > 1e-9) power += 0.5 * along * along / cc_turned;
+    if (ss_turned > 1e-9) power += 0.5 * across * across / ss_turned;
+    (hz < kLf_hz ? sum.vlf_ms2 : hz < kHf_hz ? sum.lf_ms2 : sum.hf_ms2) += scale * power;
+  }
+}
+
+}  // namespace
+
+IntervalKind IntervalJudge::kind_of(double length_s) {
+  const auto remember = [&] {
+    if (normal_count_ == static_cast<int>(normal_s_.size()))
+      std::ranges::move(normal_s_.begin() + 1, normal_s_.end(), normal_s_.begin());
+    else
+      ++normal_count_;
+    normal_s_[static_cast<std::size_t>(normal_count_ - 1)] = length_s;
+    odd_in_a_row_ = 0;
+    after_ectopic_ = false;
+    return IntervalKind::kNormal;
+  };
+  // Three are the least that have a median worth the name.
+  if (normal_count_ < 3) return remember();
+  auto sorted = normal_s_;
+  const auto middle = sorted.begin() + normal_count_ / 2;
+  std::nth_element(sorted.begin(), middle, sorted.begin() + normal_count_);
+  const double usual_s = *middle;
+  if (std::abs(length_s - usual_s) <= kEctopicShare * usual_s) {
+    // What follows an ectopic beat begins with it: no NN, however long it is.
+    if (after_ectopic_) {
+      after_ectopic_ = false;
+      odd_in_a_row_ = 0;
+      return IntervalKind::kAfter;
+    }
+    return remember();
+  }
+  if (++odd_in_a_row_ >= kNewRhythm) {
+    normal_count_ = 0;
+    return remember();
+  }
+  if (after_ectopic_ && length_s > usual_s) {
+    after_ectopic_ = false;
+    return IntervalKind::kAfter;
+  }
+  after_ectopic_ = length_s < usual_s;
+  return IntervalKind::kEctopic;
+}
+
+Interval IntervalJudge::take(double time_s, bool after_gap) {
+  const double length_s = time_s - last_s_;
+  const bool none = !has_last_ || after_gap || !(length_s > 0.0);
+  last_s_ = time_s;
+  has_last_ = true;
+  if (!none) return {time_s, length_s, kind_of(length_s)};
+  after_ectopic_ = false;
+  return {time_s, 0.0, IntervalKind::kNone};
+}
+
+Interval IntervalJudge::take_interval(double end_s, double length_s) {
+  last_s_ = end_s;
+  has_last_ = true;
+  return {end_s, length_s, kind_of(length_s)};
+}
+
+std::vector<Interval> intervals_of(std::span<const Beat> beats) {
+  IntervalJudge judge;
+  std::vector<Interval> out;
+  for (const Beat& beat : beats) out.push_back(judge.take(beat.time_s, beat.after_gap));
+  return out;
+}
+
+Variability variability(std::span<const Interval> intervals, bool across_gaps) {
+  std::vector<double> lengths, differences, sums;
+  const Interval* last = nullptr;
+  for (const Interval& i : intervals) {
+    if (i.kind != IntervalKind::kNormal) {
+      if (!across_gaps) last = nullptr;
+      continue;
+    }
+    lengths.push_back(1e3 * i.length_s);
+    if (last) {
+      differences.push_back(1e3 * (i.length_s - last->length_s));
+      sums.push_back(1e3 * (i.length_s + last->length_s));
+    }
+    last = &i;
+  }
+  Variability out;
+  out.intervals = static_cast<int>(lengths.size());
+  out.pairs = static_cast<int>(differences.size());
+  if (lengths.empty()) return out;
+  for (const double l : lengths) out.mean_rr_ms += l / static_cast<double>(lengths.size());
+  out.mean_rate_bpm = 60e3 / out.mean_rr_ms;
+  out.sdnn_ms = deviation(lengths);
+  if (differences.empty()) return out;
+  double squares = 0.0;
+  for (const double d : differences) {
+    squares += d * d;
+    // Times come in nanoseconds at best: a difference of 50 ms but for rounding is 50 ms.
+    out.nn50 += std::abs(d) > kNn50_ms + 1e-6;
+  }
+  out.rmssd_ms = std::sqrt(squares / out.pairs);
+  out.pnn50_percent = 100.0 * out.nn50 / out.pairs;
+  out.sd1_ms = deviation(differences) / std::sqrt(2.0);
+  out.sd2_ms = deviation(sums) / std::sqrt(2.0);
+  return out;
+}
+
+HeartSpectrum heart_spectrum(std::span<const Interval> intervals) {
+  std::vector<Interval> normal;
+  for (const Interval& i : intervals)
+    if (i.kind == IntervalKind::kNormal) normal.push_back(i);
+  HeartSpectrum sum;
+  if (normal.size() < 2) return sum;
+  const double first_s = normal.front().end_s, last_s = normal.back().end_s;
+  int pieces = 0;
+  for (double from_s = first_s; pieces == 0 || from_s + kPiece_s <= last_s;
+       from_s += 0.5 * kPiece_s) {
+    const auto before = [](const Interval& i, double t) { return i.end_s < t; };
+    const auto begin = std::lower_bound(normal.begin(), normal.end(), from_s, before);
+    const auto end = std::lower_bound(begin, normal.end(), from_s + kPiece_s, before);
+    const std::span<const Interval> piece(begin, end);
+    double covered_s = 0.0;
+    for (const Interval& i : piece) covered_s += i.length_s;
+    const double wanted_s = std::min(kPiece_s, last_s - from_s);
+    if (wanted_s < kLeastPiece_s && pieces == 0) return sum;
+    if (covered_s < 0.5 * wanted_s) {
+      if (from_s + 0.5 * kPiece_s + kPiece_s > last_s) break;
+      continue;
+    }
+    add_lomb(piece, sum);
+    ++pieces;
+  }
+  if (pieces == 0) return {};
+  for (double* power : {&sum.vlf_ms2, &sum.lf_ms2, &sum.hf_ms2}) *power /= pieces;
+  sum.lf_over_hf = sum.hf_ms2 > 0.0 ? sum.lf_ms2 / sum.hf_ms2 : 0.0;
+  sum.valid = true;
+  return sum;
+}
+
+}  // namespace neritic::diver

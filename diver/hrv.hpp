@@ -1,0 +1,72 @@
+// How the heart's intervals vary: the figures of the Task Force (1996, Circulation 93, 1043) in
+// time and frequency. Pure functions of intervals; any thread.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "diver/heart_detector.hpp"
+
+namespace neritic::diver {
+
+// What the interval that a beat ends is to the figures.
+enum class IntervalKind : std::uint8_t {
+  kNormal,   // between two beats of the sinus rhythm: NN
+  kNone,     // the first beat, or the first after a gap: no interval
+  kEctopic,  // the beat came too early (or far too late): an extra beat, or a missed one
+  kAfter,    // the pause that follows an ectopic beat
+};
+
+struct Interval {
+  double end_s = 0.0;     // the time of the beat that ends it
+  double length_s = 0.0;  // 0 of kNone
+  IntervalKind kind = IntervalKind::kNone;
+};
+
+// An interval that is so far from the median of the normal ones before (share of it) ends in an
+// ectopic beat. 20 % is usual (Malik 1989, Eur. Heart J. 10, 1060); atrial beats come as little as
+// 15 % early.
+inline constexpr double kEctopicShare = 0.15;
+
+// Which intervals are normal, one by one. Bounded memory. One owner, one thread.
+class IntervalJudge {
+ public:
+  // The beat at time_s; after_gap: no interval leads to it.
+  Interval take(double time_s, bool after_gap);
+  // An interval that a device measured itself (a heart strap's RR).
+  Interval take_interval(double end_s, double length_s);
+
+ private:
+  IntervalKind kind_of(double length_s);
+  std::array<double, 9> normal_s_{};  // the last ones
+  int normal_count_ = 0, odd_in_a_row_ = 0;
+  double last_s_ = 0.0;
+  bool has_last_ = false, after_ectopic_ = false;
+};
+std::vector<Interval> intervals_of(std::span<const Beat> beats);
+
+struct Variability {
+  int intervals = 0;
+  double mean_rr_ms = 0.0, mean_rate_bpm = 0.0;
+  double sdnn_ms = 0.0;   // sample deviation (n - 1)
+  double rmssd_ms = 0.0;  // over pairs of intervals that follow one another
+  int nn50 = 0, pairs = 0;
+  double pnn50_percent = 0.0;         // of pairs; a difference of exactly 50 ms does not count
+  double sd1_ms = 0.0, sd2_ms = 0.0;  // Poincare: across and along
+};
+// Of normal intervals alone. Pairs that something came between count only where across_gaps says
+// so. Fewer than two intervals, or pairs: their figures are 0.
+Variability variability(std::span<const Interval> intervals, bool across_gaps = false);
+
+// Power by frequency: VLF .0033 to .04 Hz, LF to .15, HF to .4 (Task Force 1996).
+struct HeartSpectrum {
+  double vlf_ms2 = 0.0, lf_ms2 = 0.0, hf_ms2 = 0.0;
+  double lf_over_hf = 0.0;  // 0 where HF is 0
+  bool valid = false;       // two minutes or more, half of them normal intervals
+};
+// By Lomb (1976, Astrophys. Space Sci. 39, 447) and Scargle (1982, Astrophys. J. 263, 835): beats
+// are not evenly spaced, and this asks for no resampling, which would take power from HF and invent
+// values where ectopic beats were left out. The mean of pieces of 300 s, half overlapping.
+HeartSpectrum heart_spectrum(std::span<const Interval> intervals);
+
+}  // namespace neritic::diver

@@ -1,0 +1,36 @@
+// Recordings from .csv files: columns of numbers under a heading, with or without a column of time.
+// Pure functions of the text; any thread.
+#pragma once
+
+#include <optional>
+
+#include "diver/physio_recording.hpp"
+
+namespace neritic::diver {
+
+// Columns by name; an empty cell, or one without a number, is NaN. '#' starts a comment; one that
+// says fs_hz=1000 (or rate_hz=) gives the rate.
+struct SampleTable {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;  // all of one length
+  std::optional<double> rate_hz;
+
+  std::optional<std::size_t> find(std::string_view name) const;
+  // The column of time: 't' or a word that starts with time or t_; scale gives seconds (of _ms, _us
+  // and _ns too).
+  std::optional<std::size_t> time_column(double& scale) const;
+};
+// kBadInput names file and line. At least one row; a heading is required.
+Result<SampleTable> parse_sample_table(std::string_view text, const std::string& name);
+
+struct CsvChannel {
+  std::string column;    // empty: the first that is not time
+  double rate_hz = 0.0;  // 0: from the column of time, else from the comment
+};
+// One column, evenly spaced. The rate is that of the steps of usual length; where the time leaps,
+// the samples between are missing; rows whose time stands still or goes back are refused and
+// counted.
+Result<Recording> parse_csv(std::string_view text, const std::string& name,
+                            const CsvChannel& channel);
+
+}  // namespace neritic::diver

@@ -1,0 +1,243 @@
+#include "diver/physio_wfdb.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace neritic::diver {
+namespace {
+
+constexpr std::size_t kMostSignals = 64;
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  while (true) {
+    const auto start = line.find_first_not_of(" \t\r");
+    if (start == line.npos) return words;
+    line.remove_prefix(start);
+    const auto end = std::min(line.find_first_of(" \t\r"), line.size());
+    words.push_back(line.substr(0, end));
+    line.remove_prefix(end);
+  }
+}
+
+// The number that text begins with; what follows stays in text.
+template <class T>
+bool take_number(std::string_view& text, T& out) {
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (read.ec != std::errc()) return false;
+  text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
+  return true;
+}
+
+template <class T>
+bool whole_number(std::string_view text, T& out) {
+  return take_number(text, out) && text.empty();
+}
+
+// record, signals, rate, samples; what may follow (time, date) is not needed.
+Result<std::size_t> record_line(const std::vector<std::string_view>& words, WfdbHeader& header,
+                                const std::string& where) {
+  std::size_t signals = 0;
+  if (words.size() < 2 || !whole_number(words[1], signals) || signals == 0 ||
+      signals > kMostSignals)
+    return bad_input("{}: '{}' signals found, 1 to {} is accepted", where,
+                     words.size() < 2 ? "" : words[1], kMostSignals);
+  if (words[0].find('/') != std::string_view::npos)
+    return bad_input("{}: record '{}' of several segments found, one of one is accepted", where,
+                     words[0]);
+  header.record = words[0];
+  if (words.size() > 2) {
+    std::string_view rate = words[2];
+    if (!take_number(rate, header.rate_hz) || (!rate.empty() && rate[0] != '/') ||
+        !(header.rate_hz >= kLeastRate_hz && header.rate_hz <= kMostRate_hz))
+      return bad_input("{}: a rate of '{}' found, {:g} to {:g} Hz is accepted", where, words[2],
+                       kLeastRate_hz, kMostRate_hz);
+  }
+  if (words.size() > 3 &&
+      (!whole_number(words[3], header.samples) || header.samples > kMostSamples))
+    return bad_input("{}: '{}' samples found, at most {} is accepted", where, words[3],
+                     kMostSamples);
+  return signals;
+}
+
+// gain(baseline)/unit
+bool take_gain(std::string_view text, WfdbSignal& signal, bool& has_baseline) {
+  if (!take_number(text, signal.gain)) return false;
+  if (signal.gain == 0.0) signal.gain = 200.0;  // as the format defines it
+  if (text.starts_with('(')) {
+    text.remove_prefix(1);
+    has_baseline = take_number(text, signal.baseline);
+    if (!has_baseline || !text.starts_with(')')) return false;
+    text.remove_prefix(1);
+  }
+  if (text.starts_with('/')) {
+    signal.unit = text.substr(1);
+    text = {};
+  }
+  return text.empty() && std::isfinite(signal.gain) && std::isfinite(signal.baseline);
+}
+
+// file, format+offset, gain, bits, zero, first value, checksum, block, name
+Result<WfdbSignal> signal_line(const std::vector<std::string_view>& words,
+                               const std::string& where) {
+  if (words.size() < 2) return bad_input("{}: file and format of a signal are required", where);
+  WfdbSignal signal;
+  signal.file = words[0];
+  std::string_view format = words[1];
+  bool known = take_number(format, signal.format) && (signal.format == 212 || signal.format == 16);
+  if (known && format.starts_with('+')) {
+    format.remove_prefix(1);
+    known = take_number(format, signal.offset) && signal.offset >= 0;
+  }
+  if (!known || !format.empty())
+    return bad_input("{}: format '{}' found, 212 or 16 (one sample a frame, no skew) is accepted",
+                     where, words[1]);
+  bool has_baseline = false;
+  if (words.size() > 2 && !take_gain(words[2], signal, has_baseline))
+    return bad_input("{}: a gain of '{}' found, one like 200, 200(1024) or 200/mV is accepted",
+                     where, words[2]);
+  double zero = 0.0;
+  if (words.size() > 4 && !whole_number(words[4], zero))
+    return bad_input("{}: a zero of '{}' found, a number is accepted", where, words[4]);
+  if (!has_baseline) signal.baseline = zero;
+  signal.has_checksum = words.size() > 6;
+  if (signal.has_checksum && !whole_number(words[6], signal.checksum))
+    return bad_input("{}: a checksum of '{}' found, a number is accepted", where, words[6]);
+  if (words.size() > 8) signal.name = words[8];
+  return signal;
+}
+
+// Sample i of the file; the lowest number stands for a missing one.
+int raw_sample(std::span<const std::byte> bytes, int format, std::size_t i, bool& missing) {
+  const auto byte = [&](std::size_t at) { return std::to_integer<int>(bytes[at]); };
+  int value = 0;
+  if (format == 16) {
+    value = static_cast<std::int16_t>(byte(2 * i) | byte(2 * i + 1) << 8);
+    missing = value == std::numeric_limits<std::int16_t>::min();
+    return value;
+  }
+  // Two samples in three bytes: the second byte holds the high halves.
+  const std::size_t at = i / 2 * 3;
+  value = i % 2 == 0 ? byte(at) | (byte(at + 1) & 0x0F) << 8
+                     : byte(at + 2) | (byte(at + 1) & 0xF0) << 4;
+  if (value >= 2048) value -= 4096;
+  missing = value == -2048;
+  return value;
+}
+
+std::size_t whole_samples(std::size_t bytes, int format) {
+  if (format == 16) return bytes / 2;
+  return bytes / 3 * 2 + (bytes % 3 == 2 ? 1 : 0);
+}
+
+// Codes of annot(5) beside beats.
+constexpr int kSkip = 59, kNumber = 60, kSubtype = 61, kChannel = 62, kText = 63;
+
+}  // namespace
+
+bool is_beat(int code) {
+  constexpr std::array kOther{25, 30, 34, 35, 38, 41};
+  return (code >= 1 && code <= 13) || std::ranges::find(kOther, code) != kOther.end();
+}
+bool is_normal_beat(int code) {
+  return code >= 1 && code <= 3;
+}
+
+Result<WfdbHeader> parse_wfdb_header(std::string_view text, const std::string& name) {
+  WfdbHeader header;
+  std::size_t expected = 0;
+  int line_number = 0;
+  while (!text.empty() && (expected == 0 || header.signals.size() < expected)) {
+    const auto end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::string where = fmt::format("{}:{}", name, ++line_number);
+    const auto words = words_of(line);
+    if (words.empty() || words[0].starts_with('#')) continue;
+    if (expected == 0) {
+      NERITIC_TRY(expected, record_line(words, header, where));
+      continue;
+    }
+    NERITIC_TRY(WfdbSignal signal, signal_line(words, where));
+    header.signals.push_back(std::move(signal));
+  }
+  if (expected == 0) return bad_input("{}: no record line found, it is required", name);
+  if (header.signals.size() < expected)
+    return bad_input("{}: {} of {} signals found, a line each is required", name,
+                     header.signals.size(), expected);
+  return header;
+}
+
+Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t channel,
+                                    std::span<const std::byte> bytes, const std::string& name) {
+  if (channel >= header.signals.size())
+    return bad_input("{}: channel {} found, 0 to {} is accepted", name, channel,
+                     header.signals.size() - 1);
+  const WfdbSignal& signal = header.signals[channel];
+  // Signals of one file lie sample by sample side by side.
+  std::size_t side_by_side = 0, place = 0;
+  for (std::size_t i = 0; i < header.signals.size(); ++i) {
+    if (header.signals[i].file != signal.file) continue;
+    if (header.signals[i].format != signal.format)
+      return bad_input("{}: formats {} and {} in one file found, one is accepted", name,
+                       header.signals[i].format, signal.format);
+    if (i == channel) place = side_by_side;
+    ++side_by_side;
+  }
+  bytes =
+      bytes.subspan(std::min<std::size_t>(static_cast<std::size_t>(signal.offset), bytes.size()));
+  const std::size_t there = whole_samples(bytes.size(), signal.format) / side_by_side;
+  const std::size_t count = header.samples > 0 ? header.samples : there;
+  if (count == 0 || count > there)
+    return bad_input("{}: {} samples found, {} are required", name, there,
+                     std::max<std::size_t>(count, 1));
+  Recording out{signal.name, header.rate_hz};
+  out.samples.reserve(count);
+  std::uint32_t sum = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    bool missing = false;
+    const int raw = raw_sample(bytes, signal.format, i * side_by_side + place, missing);
+    sum += static_cast<std::uint32_t>(raw);
+    out.samples.push_back(missing ? std::numeric_limits<double>::quiet_NaN()
+                                  : (raw - signal.baseline) / signal.gain);
+  }
+  if (signal.has_checksum &&
+      static_cast<std::uint16_t>(sum) != static_cast<std::uint16_t>(signal.checksum))
+    return bad_input("{}: a checksum of {} found, the header's {} is accepted", name,
+                     static_cast<std::int16_t>(sum), signal.checksum);
+  return out;
+}
+
+Result<std::vector<BeatAnnotation>> parse_wfdb_beats(std::span<const std::byte> bytes,
+                                                     double rate_hz, const std::string& name) {
+  std::vector<BeatAnnotation> beats;
+  std::int64_t sample = 0;
+  const auto word = [&](std::size_t at) {
+    return std::to_integer<unsigned>(bytes[at]) | std::to_integer<unsigned>(bytes[at + 1]) << 8;
+  };
+  for (std::size_t at = 0; at + 2 <= bytes.size();) {
+    const unsigned both = word(at);
+    const int code = static_cast<int>(both >> 10);
+    const unsigned value = both & 0x3FF;
+    at += 2;
+    if (both == 0) return beats;
+    if (code == kSkip) {
+      if (at + 4 > bytes.size()) break;
+      // The high half first, as on a PDP-11.
+      sample += static_cast<std::int32_t>(word(at) << 16 | word(at + 2));
+      at += 4;
+    } else if (code == kText) {
+      at += (value + 1) / 2 * 2;
+    } else if (code != kNumber && code != kSubtype && code != kChannel) {
+      sample += value;
+      if (is_beat(code)) beats.push_back({static_cast<double>(sample) / rate_hz, code});
+    }
+  }
+  return bad_input("{}: no end mark found after {} beats, two zero bytes are required", name,
+                   beats.size());
+}
+
+}  // namespace neritic::diver

@@ -1,0 +1,87 @@
+#include "diver/risk_proxies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace neritic::diver {
+namespace {
+
+static_assert(std::is_trivially_copyable_v<RiskProxies>);
+
+// CO2 given off to O2 taken up, of mixed diet and moderate effort.
+constexpr double kRespiratoryQuotient = 0.85;
+// Of each breath, what reaches no alveolus: VD/VT .3 at rest, with a regulator's own space.
+constexpr double kDeadSpaceShare = 0.3;
+constexpr double kMetre_pa = 1e4;  // of sea water, as tables for divers count
+// Raised, high, severe. CO2: hypercapnia from 45 mmHg, impaired from 50, narcosis from 60 (Cherry
+// 2009, J. Appl. Physiol. 106, 316, and textbooks). Narcotic depth: 30 m is the usual limit by
+// plan, 40 m that of recreational diving, beyond 60 m air takes judgement away. Density: 5.2
+// and 6.2 g/L (Anthony and Mitchell 2016), severe a third above. Breaths a minute: above 25 a sign
+// of panic.
+constexpr double kCo2_mmhg[] = {45.0, 50.0, 60.0};
+constexpr double kNarcotic_m[] = {30.0, 40.0, 60.0};
+constexpr double kDensity_kg_m3[] = {5.2, 6.2, 8.3};
+constexpr double kFastBreath_bpm[] = {25.0, 30.0, 40.0};
+constexpr double kPause_s[] = {5.0, 15.0, 30.0};  // skip breathing: pauses from 5 s
+constexpr double kMostCo2_mmhg = 200.0;
+
+RiskLevel level_of(double value, const double (&limits)[3]) {
+  int level = 0;
+  for (const double limit : limits) level += value > limit;
+  return static_cast<RiskLevel>(level);
+}
+
+bool is_possible(const RiskInput& in) {
+  const auto within = [](double value, double low, double high) {
+    return value >= low && value <= high;
+  };
+  return within(in.ambient_pa, 1e3, 2e7) && within(in.surface_pa, 1e4, 1.2e5) &&
+         within(in.oxygen, 0.0, 1.0) && within(in.helium, 0.0, 1.0) &&
+         in.oxygen + in.helium <= 1.0 && within(in.gas_density_kg_m3, 0.0, 400.0) &&
+         within(in.oxygen_uptake_l_min, 0.0, 8.0) && within(in.ventilation_l_min, 0.0, 300.0) &&
+         within(in.breath_rate_bpm, 0.0, 120.0) && within(in.pause_s, 0.0, 1e7);
+}
+
+}  // namespace
+
+const char* name_of(RiskLevel level) {
+  constexpr const char* kNames[] = {"low", "raised", "high", "severe"};
+  return kNames[static_cast<int>(level)];
+}
+
+double arterial_co2_mmhg(double co2_l_min, double alveolar_l_min) {
+  return 863.0 * co2_l_min / alveolar_l_min;
+}
+
+double alveolar_ventilation(double ventilation_l_min, double dead_space_share) {
+  return ventilation_l_min * (1.0 - dead_space_share);
+}
+
+double swimming_oxygen_l_min(double speed_m_s) {
+  const double v = std::clamp(speed_m_s, 0.0, 2.0);
+  return 0.25 + 1.03 * v + 1.83 * v * v;
+}
+
+RiskProxies assess_risk(const RiskProxies& before, const RiskInput& in) {
+  RiskProxies out = before;
+  if (!is_possible(in)) {
+    ++out.refused;
+    return out;
+  }
+  const double alveolar = alveolar_ventilation(in.ventilation_l_min, kDeadSpaceShare);
+  const double co2 = kRespiratoryQuotient * in.oxygen_uptake_l_min;
+  out.co2_mmhg =
+      alveolar > 0.0 ? std::min(arterial_co2_mmhg(co2, alveolar), kMostCo2_mmhg) : kMostCo2_mmhg;
+  // (D + 10)(1 - fHe) - 10, by pressure: as narcotic as air of that pressure.
+  out.narcotic_depth_m =
+      std::max(0.0, (in.ambient_pa * (1.0 - in.helium) - in.surface_pa) / kMetre_pa);
+  out.co2 = level_of(out.co2_mmhg, kCo2_mmhg);
+  out.narcosis = level_of(out.narcotic_depth_m, kNarcotic_m);
+  out.gas_density = level_of(in.gas_density_kg_m3, kDensity_kg_m3);
+  out.breathing =
+      std::max(level_of(in.breath_rate_bpm, kFastBreath_bpm), level_of(in.pause_s, kPause_s));
+  return out;
+}
+
+}  // namespace neritic::diver

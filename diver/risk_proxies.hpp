@@ -1,0 +1,49 @@
+// Numbers a robot can be careful by: carbon dioxide and narcosis. RISK PROXIES, NOT MEASUREMENTS
+// and not a diagnosis: no validated algorithm exists, whatever shows them says so (kRiskNote). Pure
+// functions; any thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace neritic::diver {
+
+inline constexpr const char* kRiskNote = "risk proxy, not a measurement";
+
+enum class RiskLevel : std::uint8_t { kLow, kRaised, kHigh, kSevere };
+const char* name_of(RiskLevel level);
+
+// Arterial CO2 in mmHg in the steady state: 863 VCO2 / VA, VCO2 in litres a minute STPD, VA (the
+// alveolar ventilation) in litres a minute BTPS. Not finite for VA = 0.
+double arterial_co2_mmhg(double co2_l_min, double alveolar_l_min);
+// Of the ventilation, what the dead space leaves: VE (1 - VD / VT).
+double alveolar_ventilation(double ventilation_l_min, double dead_space_share);
+// Oxygen uptake of a diver who fins at v m/s: .25 + 1.03 v + 1.83 v^2 (Pendergast 2003, average
+// fins), litres a minute; v is bounded to 0 to 2.
+double swimming_oxygen_l_min(double speed_m_s);
+
+// Pressures in pascal, gas by shares.
+struct RiskInput {
+  double ambient_pa = 101325.0;
+  double surface_pa = 101325.0;
+  double oxygen = 0.21, helium = 0.0;
+  double gas_density_kg_m3 = 1.2;    // of the gas breathed, at depth
+  double oxygen_uptake_l_min = 0.3;  // by effort (rest: .25 to .3)
+  double ventilation_l_min = 8.0;    // at depth; measured, or breath rate times tidal volume
+  double breath_rate_bpm = 0.0;      // 0: not known
+  double pause_s = 0.0;              // since the last breath
+};
+
+struct RiskProxies {
+  double co2_mmhg = 40.0;
+  double narcotic_depth_m = 0.0;  // the depth of air that would be as narcotic, O2 counted as N2
+  RiskLevel co2 = RiskLevel::kLow, narcosis = RiskLevel::kLow, gas_density = RiskLevel::kLow,
+            breathing = RiskLevel::kLow;
+  std::uint64_t refused = 0;
+};
+
+// Holds the last good proxies: input that is no number, or that no diver has, is refused and
+// counted. Trivially copyable; a step is a pure function.
+RiskProxies assess_risk(const RiskProxies& before, const RiskInput& input);
+
+}  // namespace neritic::diver

@@ -1,0 +1,188 @@
+// ECG that is none, or nearly none: no number that is not one, no endless work, and recovery.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "diver/heart_monitor.hpp"
+#include "tests/diver/physio_signals.hpp"
+
+namespace neritic::diver {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+void expect_finite(const HeartState& s) {
+  for (const double v : {s.time_s, s.last_beat_s, s.rate_bpm, s.over_five_minutes.mean_rr_ms,
+                         s.over_five_minutes.mean_rate_bpm, s.over_five_minutes.sdnn_ms,
+                         s.over_five_minutes.rmssd_ms, s.over_five_minutes.pnn50_percent,
+                         s.over_five_minutes.sd1_ms, s.over_five_minutes.sd2_ms, s.spectrum.vlf_ms2,
+                         s.spectrum.lf_ms2, s.spectrum.hf_ms2, s.spectrum.lf_over_hf})
+    EXPECT_TRUE(std::isfinite(v));
+}
+
+HeartState monitored(double rate_hz, const std::vector<double>& ecg) {
+  HeartMonitor monitor(rate_hz);
+  monitor.push(ecg);
+  expect_finite(monitor.state());
+  return monitor.state();
+}
+
+TEST(HeartRate, IsThatOfTheBeatsAtAnySamplingRate) {
+  for (const double rate_hz : {50.0, 100.0, 130.16, 250.0, 360.0, 499.0, 1000.0, 2000.0, 48000.0}) {
+    const double seconds = rate_hz > 10000.0 ? 20.0 : 60.0;
+    const auto beats = test::even_beats(0.75, seconds);
+    const HeartState s = monitored(rate_hz, test::ecg_of(beats, rate_hz, seconds));
+    EXPECT_NEAR(s.rate_bpm, 80.0, 0.3) << rate_hz;
+    EXPECT_NEAR(static_cast<double>(s.beats), static_cast<double>(beats.size()), 1.0) << rate_hz;
+    EXPECT_EQ(s.ectopic, 0u) << rate_hz;
+    EXPECT_LT(s.over_five_minutes.rmssd_ms, rate_hz < 200.0 ? 4.0 : 1.0) << rate_hz;
+    EXPECT_EQ(s.quality, SignalQuality::kGood);
+  }
+}
+
+TEST(HeartRate, FromThirtyToTwoHundredBeatsAMinute) {
+  for (const double bpm : {30.0, 45.0, 60.0, 120.0, 180.0, 200.0}) {
+    const auto beats = test::even_beats(60.0 / bpm, 60.0);
+    std::vector<Beat> found = find_beats(250.0, test::ecg_of(beats, 250.0, 60.0));
+    ASSERT_EQ(found.size(), beats.size()) << bpm;
+    for (std::size_t i = 0; i < beats.size(); ++i) EXPECT_NEAR(found[i].time_s, beats[i], 0.003);
+  }
+}
+
+TEST(HeartExtremes, ZerosAndAnAmplifierAtItsLimitAreNoHeart) {
+  for (const double level : {0.0, 5.0, -2047.0, 1e6, 0.1}) {
+    const HeartState s = monitored(360.0, std::vector<double>(360 * 60, level));
+    EXPECT_EQ(s.beats, 0u) << level;
+    EXPECT_EQ(s.rate_bpm, 0.0);
+    EXPECT_EQ(s.quality, SignalQuality::kNone);
+  }
+}
+
+TEST(HeartExtremes, ClippedAndUpsideDownBeatsAreStillBeats) {
+  const auto beats = test::even_beats(0.8, 60.0);
+  for (const int form : {0, 1, 2}) {
+    std::vector<double> ecg = test::ecg_of(beats, 250.0, 60.0);
+    for (double& x : ecg) x = form == 0 ? -x : form == 1 ? std::min(x, 0.4) : 1000.0 * x + 5e4;
+    const auto found = find_beats(250.0, ecg);
+    EXPECT_EQ(found.size(), beats.size()) << form;
+    if (form == 0) {
+      for (const Beat& beat : found) EXPECT_LT(beat.amplitude, 0.0);
+    }
+  }
+}
+
+TEST(HeartExtremes, TooSlowARateIsRefusedInWords) {
+  for (const double rate_hz : {10.0, 0.0, -5.0, 1e9, kNan}) {
+    const Status status = check_ecg_rate(rate_hz);
+    ASSERT_FALSE(status.ok());
+    EXPECT_NE(status.error().message.find("is accepted"), std::string::npos);
+  }
+}
+
+TEST(HeartExtremes, NoSampleAndOneSampleGiveNothing) {
+  EXPECT_TRUE(find_beats(360.0, {}).empty());
+  EXPECT_TRUE(find_beats(360.0, {1.0}).empty());
+  EXPECT_EQ(monitored(360.0, {}).beats, 0u);
+  EXPECT_EQ(monitored(360.0, {kNan}).refused, 1u);
+}
+
+TEST(HeartExtremes, ASecondOfBeatsIsFoundAtTheEnd) {
+  const auto ecg = test::ecg_of({0.3, 1.0}, 360.0, 1.4);
+  EXPECT_EQ(find_beats(360.0, ecg).size(), 2u);
+}
+
+TEST(HeartExtremes, SamplesThatAreNoNumbersAreHeldAndCounted) {
+  const auto beats = test::even_beats(0.8, 60.0);
+  std::vector<double> ecg = test::ecg_of(beats, 360.0, 60.0);
+  std::uint64_t bad = 0;
+  for (std::size_t i = 100; i < ecg.size(); i += 53) {
+    ecg[i] = i % 3 == 0 ? kNan : i % 3 == 1 ? HUGE_VAL : -1e300;
+    ++bad;
+  }
+  EcgCounts counts;
+  const auto found = find_beats(360.0, ecg, &counts);
+  EXPECT_EQ(counts.refused, bad);
+  EXPECT_EQ(counts.gaps, 0u);
+  ASSERT_EQ(found.size(), beats.size());
+  for (std::size_t i = 0; i < beats.size(); ++i) EXPECT_NEAR(found[i].time_s, beats[i], 0.012);
+}
+
+// A lost contact: no interval across it, and beats again after it.
+TEST(HeartExtremes, AGapPartsTheBeats) {
+  const auto beats = test::even_beats(0.8, 120.0);
+  std::vector<double> ecg = test::ecg_of(beats, 250.0, 120.0);
+  for (std::size_t i = 250 * 40; i < 250 * 55; ++i) ecg[i] = kNan;
+  for (std::size_t i = 250 * 55; i < ecg.size(); ++i) ecg[i] += 3.0;  // another contact
+  EcgCounts counts;
+  const auto found = find_beats(250.0, ecg, &counts);
+  EXPECT_EQ(counts.gaps, 1u);
+  const auto intervals = intervals_of(found);
+  int parted = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_TRUE(found[i].time_s < 40.5 || found[i].time_s > 55.0) << found[i].time_s;
+    parted += intervals[i].kind == IntervalKind::kNone;
+    if (intervals[i].kind == IntervalKind::kNormal) {
+      EXPECT_NEAR(intervals[i].length_s, 0.8, 0.01);
+    }
+  }
+  EXPECT_EQ(parted, 2);  // the first beat, and the first after the gap
+  EXPECT_GT(std::ranges::count_if(found, [](const Beat& b) { return b.time_s > 55.0; }), 75);
+}
+
+// A knock a thousand times as large as a beat: beats again within a few seconds.
+TEST(HeartExtremes, RecoversFromAKnock) {
+  const auto beats = test::even_beats(0.8, 60.0);
+  std::vector<double> ecg = test::ecg_of(beats, 250.0, 60.0);
+  for (std::size_t i = 250 * 20; i < 250 * 20 + 30; ++i) ecg[i] += 1000.0;
+  EcgCounts counts;
+  const auto found = find_beats(250.0, ecg, &counts);
+  EXPECT_GE(counts.relearned, 1u);
+  const auto late = std::ranges::count_if(found, [](const Beat& b) { return b.time_s > 30.0; });
+  const auto marked = std::ranges::count_if(beats, [](double b) { return b > 30.0; });
+  EXPECT_EQ(late, marked);
+}
+
+TEST(HeartExtremes, AnExtraBeatIsFlaggedAndKeptOutOfTheFigures) {
+  std::vector<double> beats = test::even_beats(0.8, 60.0);
+  beats[30] -= 0.3;  // and the pause after it
+  const auto intervals = intervals_of(find_beats(360.0, test::ecg_of(beats, 360.0, 60.0)));
+  const auto count = [&](IntervalKind kind) {
+    return std::ranges::count_if(intervals, [&](const Interval& i) { return i.kind == kind; });
+  };
+  EXPECT_EQ(count(IntervalKind::kEctopic), 1);
+  EXPECT_EQ(count(IntervalKind::kAfter), 1);
+  EXPECT_EQ(intervals[30].kind, IntervalKind::kEctopic);
+  const Variability v = variability(intervals);
+  EXPECT_LT(v.sdnn_ms, 2.0);
+  EXPECT_NEAR(v.mean_rate_bpm, 75.0, 0.1);
+}
+
+TEST(HeartMonitor, AStrapsIntervalsAreTakenAsTheyAre) {
+  HeartMonitor monitor;
+  for (const double rr_ms : {800, 810, 790, 860, 780, 805, 795, 850})
+    monitor.push_interval(1e-3 * rr_ms);
+  const HeartState s = monitor.state();
+  EXPECT_NEAR(s.over_five_minutes.rmssd_ms, 47.13203338949606, 1e-9);
+  EXPECT_EQ(s.beats, 8u);
+  for (const double bad : {kNan, 0.0, -1.0, 100.0}) monitor.push_interval(bad);
+  EXPECT_EQ(monitor.state().refused, 4u);
+  monitor.skip(10.0);
+  EXPECT_EQ(monitor.state().rate_bpm, 0.0);
+  EXPECT_EQ(monitor.state().quality, SignalQuality::kNone);
+  monitor.push_interval(0.75);
+  EXPECT_NEAR(monitor.state().rate_bpm, 80.0, 1e-9);
+  expect_finite(monitor.state());
+}
+
+TEST(HeartMonitor, SampleBySampleIsTheSameAsAllAtOnce) {
+  const auto ecg = test::ecg_of(test::even_beats(0.7, 30.0), 200.0, 30.0);
+  HeartMonitor one(200.0), all(200.0);
+  for (const double sample : ecg) one.push({&sample, 1});
+  all.push(ecg);
+  EXPECT_EQ(one.state().beats, all.state().beats);
+  EXPECT_EQ(one.state().rate_bpm, all.state().rate_bpm);
+  EXPECT_EQ(one.state().over_five_minutes.sdnn_ms, all.state().over_five_minutes.sdnn_ms);
+}
+
+}  // namespace
+}  // namespace neritic::diver
