@@ -12,11 +12,11 @@
 namespace neritic::diver {
 namespace {
 
-constexpr double kRate_hz = 8000.0;
+constexpr double kSoundRate_hz = 8000.0;
 
 // White noise times an envelope of bursts: in from 0 to 1.5 s, out from 2 to 3.5 s of every 4 s: 15
 // breaths a minute.
-std::vector<float> bursts(double in, double out, double seconds, double rate_hz = kRate_hz) {
+std::vector<float> bursts(double in, double out, double seconds, double rate_hz = kSoundRate_hz) {
   std::vector<float> sound;
   for (std::size_t i = 0; i < static_cast<std::size_t>(seconds * rate_hz); ++i) {
     const double phase = std::fmod(static_cast<double>(i) / rate_hz, 4.0);
@@ -27,18 +27,18 @@ std::vector<float> bursts(double in, double out, double seconds, double rate_hz 
 }
 
 BreathState analysed(const std::vector<float>& sound, BreathEstimator estimator,
-                     double rate_hz = kRate_hz) {
+                     double rate_hz = kSoundRate_hz) {
   BreathAnalyser analyser(rate_hz, {estimator, 10.0, 30.0});
   return analyser.take(sound);
 }
 
-TEST(Breath, TheSpectrumFindsTwiceTheRateWhereInAndOutAreAlike) {
+TEST(BreathSound, TheSpectrumFindsTwiceTheRateWhereInAndOutAreAlike) {
   const BreathState state = analysed(bursts(1.0, 1.0, 60.0), BreathEstimator::kSpectrum);
   EXPECT_TRUE(state.estimate.breathing);
   EXPECT_NEAR(state.estimate.rate_bpm, 30.0, 0.5);
 }
 
-TEST(Breath, UnequalPhasesAreTold) {
+TEST(BreathSound, UnequalPhasesAreTold) {
   for (const double out : {0.25, 0.6}) {
     const BreathState state = analysed(bursts(1.0, out, 60.0), BreathEstimator::kMultiBand);
     EXPECT_TRUE(state.estimate.breathing);
@@ -49,7 +49,7 @@ TEST(Breath, UnequalPhasesAreTold) {
 }
 
 // A regulator: in, the valve's hiss above 1 kHz; out, bubbles below 500 Hz; both as loud.
-TEST(Breath, ARegulatorsHissAndBubblesAreOneBreath) {
+TEST(BreathSound, ARegulatorsHissAndBubblesAreOneBreath) {
   for (const double rate_hz : {8000.0, 44100.0}) {
     auto hiss = SecondOrderFilter::high_pass(1000.0, rate_hz);
     auto bubbles = SecondOrderFilter::low_pass(500.0, rate_hz);
@@ -67,13 +67,13 @@ TEST(Breath, ARegulatorsHissAndBubblesAreOneBreath) {
   }
 }
 
-TEST(Breath, APauseIsNoRate) {
+TEST(BreathSound, APauseIsNoRate) {
   std::vector<float> sound = bursts(1.0, 0.5, 40.0);
   const std::vector<float> pause = bursts(0.02, 0.02, 12.0);
   sound.insert(sound.end(), pause.begin(), pause.end());
   for (const BreathEstimator e : {BreathEstimator::kSpectrum, BreathEstimator::kAutocorrelation,
                                   BreathEstimator::kMultiBand}) {
-    BreathAnalyser analyser(kRate_hz, {e, 10.0, 10.0});
+    BreathAnalyser analyser(kSoundRate_hz, {e, 10.0, 10.0});
     analyser.take(sound);
     const BreathState& state = analyser.take({});
     EXPECT_FALSE(state.estimate.breathing) << name_of(e);
@@ -82,7 +82,7 @@ TEST(Breath, APauseIsNoRate) {
   }
 }
 
-TEST(Breath, SilenceNoiseAndNothingAreNoBreath) {
+TEST(BreathSound, SilenceNoiseAndNothingAreNoBreath) {
   const std::vector<float> silence(160000, 0.0f), steady = bursts(1.0, 1.0, 0.0);
   EXPECT_FALSE(analysed(silence, BreathEstimator::kMultiBand).estimate.breathing);
   std::vector<float> noise;
@@ -93,7 +93,7 @@ TEST(Breath, SilenceNoiseAndNothingAreNoBreath) {
   EXPECT_FALSE(analysed({0.5f}, BreathEstimator::kSpectrum).estimate.breathing);
 }
 
-TEST(Breath, WhatIsNoNumberIsRefusedAndCounted) {
+TEST(BreathSound, WhatIsNoNumberIsRefusedAndCounted) {
   std::vector<float> sound = bursts(1.0, 0.5, 40.0);
   const BreathState before = analysed(sound, BreathEstimator::kMultiBand);
   std::uint64_t bad = 0;

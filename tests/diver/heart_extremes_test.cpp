@@ -9,7 +9,7 @@
 namespace neritic::diver {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoEcg = std::numeric_limits<double>::quiet_NaN();
 
 void expect_finite(const HeartState& s) {
   for (const double v : {s.time_s, s.last_beat_s, s.rate_bpm, s.over_five_minutes.mean_rr_ms,
@@ -72,7 +72,7 @@ TEST(HeartExtremes, ClippedAndUpsideDownBeatsAreStillBeats) {
 }
 
 TEST(HeartExtremes, TooSlowARateIsRefusedInWords) {
-  for (const double rate_hz : {10.0, 0.0, -5.0, 1e9, kNan}) {
+  for (const double rate_hz : {10.0, 0.0, -5.0, 1e9, kNoEcg}) {
     const Status status = check_ecg_rate(rate_hz);
     ASSERT_FALSE(status.ok());
     EXPECT_NE(status.error().message.find("is accepted"), std::string::npos);
@@ -83,7 +83,7 @@ TEST(HeartExtremes, NoSampleAndOneSampleGiveNothing) {
   EXPECT_TRUE(find_beats(360.0, {}).empty());
   EXPECT_TRUE(find_beats(360.0, {1.0}).empty());
   EXPECT_EQ(monitored(360.0, {}).beats, 0u);
-  EXPECT_EQ(monitored(360.0, {kNan}).refused, 1u);
+  EXPECT_EQ(monitored(360.0, {kNoEcg}).refused, 1u);
 }
 
 TEST(HeartExtremes, ASecondOfBeatsIsFoundAtTheEnd) {
@@ -96,7 +96,7 @@ TEST(HeartExtremes, SamplesThatAreNoNumbersAreHeldAndCounted) {
   std::vector<double> ecg = test::ecg_of(beats, 360.0, 60.0);
   std::uint64_t bad = 0;
   for (std::size_t i = 100; i < ecg.size(); i += 53) {
-    ecg[i] = i % 3 == 0 ? kNan : i % 3 == 1 ? HUGE_VAL : -1e300;
+    ecg[i] = i % 3 == 0 ? kNoEcg : i % 3 == 1 ? HUGE_VAL : -1e300;
     ++bad;
   }
   EcgCounts counts;
@@ -111,7 +111,7 @@ TEST(HeartExtremes, SamplesThatAreNoNumbersAreHeldAndCounted) {
 TEST(HeartExtremes, AGapPartsTheBeats) {
   const auto beats = test::even_beats(0.8, 120.0);
   std::vector<double> ecg = test::ecg_of(beats, 250.0, 120.0);
-  for (std::size_t i = 250 * 40; i < 250 * 55; ++i) ecg[i] = kNan;
+  for (std::size_t i = 250 * 40; i < 250 * 55; ++i) ecg[i] = kNoEcg;
   for (std::size_t i = 250 * 55; i < ecg.size(); ++i) ecg[i] += 3.0;  // another contact
   EcgCounts counts;
   const auto found = find_beats(250.0, ecg, &counts);
@@ -164,7 +164,7 @@ TEST(HeartMonitor, AStrapsIntervalsAreTakenAsTheyAre) {
   const HeartState s = monitor.state();
   EXPECT_NEAR(s.over_five_minutes.rmssd_ms, 47.13203338949606, 1e-9);
   EXPECT_EQ(s.beats, 8u);
-  for (const double bad : {kNan, 0.0, -1.0, 100.0}) monitor.push_interval(bad);
+  for (const double bad : {kNoEcg, 0.0, -1.0, 100.0}) monitor.push_interval(bad);
   EXPECT_EQ(monitor.state().refused, 4u);
   monitor.skip(10.0);
   EXPECT_EQ(monitor.state().rate_bpm, 0.0);

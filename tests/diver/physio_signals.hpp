@@ -7,7 +7,7 @@
 #include "engine/core/math.hpp"
 #include "engine/core/random.hpp"
 
-namespace neritic::diver::test {
+namespace neritic::test {
 
 // Waves of an ECG around a beat at 0, millivolts: P, Q, R, S, T as Gaussian bumps (McSharry 2003,
 // IEEE Trans. Biomed. Eng. 50, 289, of about those places and sizes).
@@ -48,4 +48,4 @@ inline double gauss(const RandomKey& key, std::uint64_t i) {
   return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * kPi * v);
 }
 
-}  // namespace neritic::diver::test
+}  // namespace neritic::test
