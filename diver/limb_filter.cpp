@@ -5,6 +5,8 @@
 namespace neritic::diver {
 namespace {
 
+constexpr double kThere = 1e-12;  // rad, rad/s
+
 // The rotation as a vector, at most pi long.
 Vec3 log_of(const Quat& q) {
   const Vec3 v(q.x, q.y, q.z);
@@ -37,6 +39,12 @@ int follow_limbs(LimbState& limbs, const JointRotations& wanted, double dt_s) {
       ++far;
     }
     const Vec3 rate = limbs.rate[i];
+    // There: what is left would go on to shrink into numbers that processors are slow with.
+    if (angle < kThere && glm::dot(rate, rate) < kThere * kThere) {
+      limbs.rotation[i] = wanted[i];
+      limbs.rate[i] = Vec3(0.0);
+      continue;
+    }
     const Vec3 now_left = (c + n) * left - (n / s) * rate;
     limbs.rate[i] = 2.0 * s * n * left + (c - n) * rate;
     limbs.rotation[i] = glm::normalize(limbs.rotation[i] * exp_of(left - now_left));
