@@ -451,7 +451,7 @@ Result<Body> make_body(const BodyParameters& parameters) {
   NERITIC_TRY(const auto measures, measure_segments(parameters.build));
   NERITIC_TRY_STATUS(check_limits(
       {{"water density", parameters.water_kg_m3, 0.0, 1300.0},
-       {"strips a segment", static_cast<double>(parameters.strips_a_segment), 1, 16}}));
+       {"strips a segment", static_cast<double>(parameters.strips_a_segment), 1, 64}}));
   NERITIC_TRY_STATUS(check_gear(parameters.gear));
   return BodyMaker(parameters, measures).make();
 }

@@ -8,6 +8,7 @@
 #include "tools/neritic/flags.hpp"
 #include "tools/tradeoff/physics_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
+#include "tools/tradeoff/swim_tradeoff.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -22,6 +23,17 @@ Result<std::string> trade_physics(const TradeoffFlags& flags) {
   NERITIC_TRY(const PhysicsTradeoff tradeoff, run_physics_tradeoff(options));
   NERITIC_TRY_STATUS(write_physics_tradeoff(flags.out, tradeoff));
   return flags.out.string() + ": physics.csv, .md, .json, .png";
+}
+
+Result<std::string> trade_swim(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return bad_input("tradeoff: kind '{}' found, none is accepted for swim", flags.kind);
+  SwimTradeoffOptions options;
+  options.quick = flags.quick;
+  Progress progress("tradeoff swim", steps(options));
+  options.step = [&] { progress.step(); };
+  NERITIC_TRY_STATUS(write_swim_tradeoff(flags.out, run_swim_tradeoff(options)));
+  return flags.out.string() + ": swim.csv, .md, .json, .png";
 }
 
 Result<std::string> trade_sonar(const TradeoffFlags& flags) {
@@ -55,7 +67,8 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
 Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "sonar") return trade_sonar(flags);
   if (flags.what == "physics") return trade_physics(flags);
-  return bad_input("tradeoff: '{}' found, sonar or physics is accepted", flags.what);
+  if (flags.what == "swim") return trade_swim(flags);
+  return bad_input("tradeoff: '{}' found, sonar, physics or swim is accepted", flags.what);
 }
 
 }  // namespace neritic::tools

@@ -1,0 +1,150 @@
+// What `neritic tradeoff swim` writes (swim_tradeoff.hpp).
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tools/common/plot.hpp"
+#include "tools/tradeoff/swim_tradeoff.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using diver::Model;
+
+constexpr const char* kSwimNames[] = {"straight", "turning"};
+
+std::string model_name(Model model) {
+  return model == Model::kFull ? "full" : "planar";
+}
+std::string variant_name(const SwimPoint& p) {
+  return p.model == Model::kPlanar ? "planar" : fmt::format("{} strips", p.strips);
+}
+
+std::string swim_csv(const SwimTradeoff& t) {
+  std::string out = "swim,model,strips,step_ms,error_m,way_error,us_a_second,default\n";
+  for (const SwimPoint& p : t.points)
+    out += fmt::format("{},{},{},{:.6g},{:.4g},{:.4g},{:.4g},{}\n", p.swim, model_name(p.model),
+                       p.strips, 1e3 * p.step_s, p.error_m, p.way_error, p.us_a_second,
+                       is_default(p) ? 1 : 0);
+  return out;
+}
+
+// Variants in the order of the points.
+std::vector<std::string> variants_of(const SwimTradeoff& t) {
+  std::vector<std::string> out;
+  for (const SwimPoint& p : t.points)
+    if (std::ranges::find(out, variant_name(p)) == out.end()) out.push_back(variant_name(p));
+  return out;
+}
+
+std::string swim_md(const SwimTradeoff& t) {
+  std::string out = fmt::format(
+      "# Swimming: error against cost\n\nA diver with full gear kicks for {:g} s ({:.1f} m); the "
+      "largest distance from the same swim with 64 strips a segment and steps of .25 ms (itself "
+      "within {:.0e} m of steps of .5 ms), and microseconds of one core a second of swimming.\n",
+      t.swim_s, t.way_m, t.reference_error_m);
+  const auto names = variants_of(t);
+  for (const char* swim : kSwimNames) {
+    out += fmt::format("\n## {}\n\n| step, ms |", swim);
+    for (const std::string& name : names) out += fmt::format(" {}, m | us |", name);
+    out += "\n|---|";
+    for (std::size_t i = 0; i < names.size(); ++i) out += "---|---|";
+    out += "\n";
+    for (const SwimPoint& row : t.points) {
+      if (row.swim != swim || variant_name(row) != names[0]) continue;
+      out += fmt::format("| {:.3g} |", 1e3 * row.step_s);
+      for (const SwimPoint& p : t.points)
+        if (p.swim == swim && p.step_s == row.step_s)
+          out += fmt::format(" {:.1e}{} | {:.0f} |", p.error_m, is_default(p) ? " (default)" : "",
+                             p.us_a_second);
+      out += "\n";
+    }
+    if (const SwimPoint* p = knee(t, swim))
+      out += fmt::format("\nThe knee: {} at {:.3g} ms, {:.1e} m, {:.0f} us.\n", variant_name(*p),
+                         1e3 * p->step_s, p->error_m, p->us_a_second);
+  }
+  return out;
+}
+
+nlohmann::json swim_point_json(const SwimPoint& p) {
+  return {{"model", model_name(p.model)}, {"strips", p.strips},
+          {"step_ms", 1e3 * p.step_s},    {"error_m", p.error_m},
+          {"way_error", p.way_error},     {"us_a_second", p.us_a_second}};
+}
+
+nlohmann::json swim_json(const SwimTradeoff& t) {
+  nlohmann::json json{
+      {"swim_s", t.swim_s}, {"way_m", t.way_m}, {"reference_error_m", t.reference_error_m}};
+  for (const char* swim : kSwimNames)
+    if (const SwimPoint* p = knee(t, swim)) json["knees"][swim] = swim_point_json(*p);
+  for (const SwimPoint& p : t.points)
+    if (is_default(p)) json["default"][p.swim] = swim_point_json(p);
+  return json;
+}
+
+// Error over what(point), a curve a variant; some variants only, so that they can be told apart.
+void draw_swim(sonar::Canvas& canvas, const Box& box, const SwimTradeoff& t,
+               const std::string& swim, const std::string& title, const std::string& label,
+               double (*what)(const SwimPoint&), bool noted) {
+  const char* const drawn[] = {"1 strips", "2 strips", "4 strips", "16 strips", "planar"};
+  std::vector<Series> series;
+  std::vector<double> xs, ys;
+  for (const char* name : drawn) {
+    Series s{name, kSeriesColors[series.size()], {}, {}, {}};
+    for (const SwimPoint& p : t.points) {
+      if (p.swim != swim || variant_name(p) != name || !(p.error_m > 0.0) || p.error_m > 100.0)
+        continue;
+      s.x.push_back(what(p));
+      s.y.push_back(p.error_m);
+      if (noted && variant_name(p) == drawn[2])
+        s.notes.push_back(fmt::format("{:.3g} ms", 1e3 * p.step_s));
+    }
+    xs.insert(xs.end(), s.x.begin(), s.x.end());
+    ys.insert(ys.end(), s.y.begin(), s.y.end());
+    series.push_back(std::move(s));
+  }
+  const Axis x = axis_for(label, xs, true);
+  Axis y = axis_for("largest error, m", ys, true);
+  y.max *= 5.0;  // room for its label
+  draw_lines(canvas, box, title, x, y, series, !noted);
+  for (const SwimPoint& p : t.points)
+    if (p.swim == swim && is_default(p))
+      draw_mark(canvas, box, x, y, what(p), p.error_m, "default");
+}
+
+ImageU8 swim_plot(const SwimTradeoff& t) {
+  constexpr double kWide = 900, kHigh = 520, kHead = 64;
+  sonar::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
+                       static_cast<std::uint32_t>(kHead + 2 * kHigh), kPaper);
+  canvas.text(24, 34, 18, "Swimming by moving limbs: error against cost", kInk, sonar::Align::kLeft,
+              2.2);
+  canvas.text(24, 54, 10,
+              fmt::format("{:g} s of flutter kick, {:.1f} m; truth: 64 strips a segment, .25 ms",
+                          t.swim_s, t.way_m),
+              kInk.with_alpha(0.7f));
+  for (std::size_t row = 0; row < 2; ++row) {
+    const double top = kHead + kHigh * static_cast<double>(row);
+    const std::string swim = kSwimNames[row];
+    draw_swim(
+        canvas, {0, top, kWide, top + kHigh}, t, swim, swim + ": over cost",
+        "us of one core a second", [](const SwimPoint& p) { return p.us_a_second; }, true);
+    draw_swim(
+        canvas, {kWide, top, 2 * kWide, top + kHigh}, t, swim, swim + ": over the step", "step, ms",
+        [](const SwimPoint& p) { return 1e3 * p.step_s; }, false);
+  }
+  return canvas.take();
+}
+
+}  // namespace
+
+Status write_swim_tradeoff(const std::filesystem::path& folder, const SwimTradeoff& tradeoff) {
+  NERITIC_TRY_STATUS(make_folder(folder));
+  NERITIC_TRY_STATUS(write_text(folder / "swim.csv", swim_csv(tradeoff)));
+  NERITIC_TRY_STATUS(write_text(folder / "swim.md", swim_md(tradeoff)));
+  NERITIC_TRY_STATUS(scene::write_png8(folder / "swim.png", swim_plot(tradeoff)));
+  return write_json(folder / "swim.json", swim_json(tradeoff));
+}
+
+}  // namespace neritic::tools
