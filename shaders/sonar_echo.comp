@@ -39,33 +39,49 @@ float correction_at(float range_m, float sine) {
              part.y);
 }
 
-// A run of beams of one column that meet one scatterer: its power is summed, then its amplitude is added
-// once, in the bin of its mean range. A scatterer is a cell of the world, so it is the same at every visit.
-// A cell is at most half a column and half a bin wide where it is heard: it is halved as often as that
-// takes. So no two columns and no two bins share one, and their fields are independent: whatever the taps of
-// pattern and pulse then add has the mean power that the smooth image has.
+// A run of beams of one column that meet one scatterer: their power is summed, then its amplitude is added
+// once. A scatterer is what a range bin cuts out of a cell of the world, so it is the same at every visit.
+// A cell is narrower than a column where it is heard: it is halved as often as that takes. Its centre says
+// which column hears it: so no two columns and no two bins share one, their fields are independent, and
+// whatever the taps of pattern and pulse add has the mean power that the smooth image has; and as the sonar
+// moves on across, a scatterer passes from column to column and stays what it is.
 struct Run {
   ivec3 cell;
   uint halvings;
   float power;
-  float moment;  // sum of power times bin
+  int bin;
 };
+// A row is sampled at so many places across, over two columns: cells whose centres are in the column are met
+// by some.
+const int kAcross = 4;
 
 uint halvings_at(float range_m) {
-  float widest = min(range_m * echo.cell_per_range, echo.cell_largest_m);
-  return uint(clamp(ceil(-log2(widest * echo.cells_per_m)), 0.0, 20.0));
+  return uint(clamp(ceil(-log2(range_m * echo.cell_per_range * echo.cells_per_m)), 0.0, 20.0));
 }
 
 ivec3 cell_at(vec3 point, uint halvings) {
   return ivec3(floor((point * echo.cells_per_m + echo.cell_fraction) * float(1u << halvings)));
 }
 
+vec3 center_of(ivec3 cell, uint halvings) {
+  return ((vec3(cell) + 0.5) / float(1u << halvings) - echo.cell_fraction) / echo.cells_per_m;
+}
+
+// A bin's amplitudes fit 31 bits but by a chance below e^-64 (gather.cpp), or where a texture's patch is
+// brighter still: then it is at its limit.
+const float kMostCounts = 1073741824.0;
+int saturated_sum(int a, int b) {
+  int sum = a + b;
+  if (((a ^ sum) & (b ^ sum)) < 0) return a < 0 ? -2147483647 : 2147483647;
+  return sum;
+}
+
 void flush(Run run, uint column) {
   if (!(run.power > 0.0)) return;
   uvec3 world_cell = uvec3(run.cell) + (echo.origin_cell << run.halvings);
-  uvec4 bits = hash_of(uvec4(world_cell, echo.seed + 0x9e3779b9u * run.halvings));
+  uvec4 bits = hash_of(uvec4(world_cell, echo.seed + 0x9e3779b9u * run.halvings + 0x85ebca6bu * uint(run.bin)));
   float power = run.power;
-  vec3 center = ((vec3(run.cell) + 0.5) / float(1u << run.halvings) - echo.cell_fraction) / echo.cells_per_m;
+  vec3 center = center_of(run.cell, run.halvings);
   if (kTextured != 0) {
     uvec3 patch_cell = uvec3(ivec3(floor(center * echo.patches_per_m + echo.patch_fraction))) + echo.origin_patch;
     uint entries = uint(textureSize(gamma_quantiles, 0).x);
@@ -75,22 +91,45 @@ void flush(Run run, uint column) {
   float path_m = length(center);
   if (kGhost != 0) path_m = 0.5 * (path_m + length(center - echo.ghost_source));
   vec2 z = sqrt(power) * complex_normal(bits.xy, fract(echo.turns_per_m * path_m));
-  ivec2 counts = ivec2(round(clamp(z, vec2(-32.0), vec2(32.0)) * echo.sum_scale));
-  uint bin = uint(clamp(run.moment / run.power, 0.0, float(c.n_range - 1)));
-  uint cell = 2 * (bin * c.n_azimuth + column);
-  sums[cell] += uint(counts.x);  // two's complement: adds as signed numbers do
-  sums[cell + 1] += uint(counts.y);
+  ivec2 counts = ivec2(round(clamp(z * echo.sum_scale, vec2(-kMostCounts), vec2(kMostCounts))));
+  uint cell = 2 * (uint(run.bin) * c.n_azimuth + column);
+  sums[cell] = uint(saturated_sum(int(sums[cell]), counts.x));
+  sums[cell + 1] = uint(saturated_sum(int(sums[cell + 1]), counts.y));
 }
 
-void add_to_run(inout Run run, uint column, vec3 point, float bin, float power) {
-  uint halvings = halvings_at(length(point));
-  ivec3 cell = cell_at(point, halvings);
-  if (cell != run.cell || halvings != run.halvings) {
+void add_to_run(inout Run run, uint column, ivec3 cell, uint halvings, int bin, float power) {
+  if (cell != run.cell || halvings != run.halvings || bin != run.bin) {
     flush(run, column);
-    run = Run(cell, halvings, 0.0, 0.0);
+    run = Run(cell, halvings, 0.0, bin);
   }
   run.power += power;
-  run.moment += power * bin;
+}
+
+// A row's power at a point of the column's middle, to the scatterers beside it: each as its part of the places
+// across, all together the whole.
+void scatter(SonarColumn s, uint column, vec3 point, int bin, float power, inout Run runs[kAcross]) {
+  uint halvings = halvings_at(length(point));
+  vec3 ahead = normalize(s.beam_base), right = cross(ahead, s.up);
+  float half_column_m = dot(point, ahead) * echo.tan_half_column;
+  ivec3 cells[kAcross];
+  float parts[kAcross];
+  float all = 0.0;
+  for (int i = 0; i < kAcross; ++i) {
+    cells[i] = cell_at(point + right * (half_column_m * (float(i) - 1.5)), halvings);
+    vec3 center = center_of(cells[i], halvings);
+    float edge_m = dot(center, ahead) * echo.tan_half_column, across_m = dot(center, right);
+    parts[i] = across_m >= -edge_m && across_m < edge_m ? 1.0 : 0.0;
+    all += parts[i];
+  }
+  if (all == 0.0) {  // of cells that lie askew both neighbours' centres may be outside
+    parts[1] = 1.0;
+    all = 1.0;
+  }
+  for (int i = 0; i < kAcross; ++i) {
+    // What lies in one cell is one scatterer's.
+    if (i + 1 < kAcross && cells[i + 1] == cells[i]) parts[i + 1] += parts[i];
+    else if (parts[i] > 0.0) add_to_run(runs[i], column, cells[i], halvings, bin, power * parts[i] / all);
+  }
 }
 
 void add_power(uint cell, uint counts) {
@@ -185,10 +224,28 @@ vec3 point_at(SonarColumn s, uint row, BeamHit hit, RowEcho e, float bin_range_m
   return mix(near, far, span > 0.0 ? clamp((bin_range_m - e.ends_m.x) / span, 0.0, 1.0) : 0.5);
 }
 
+// Shares a row's power out over bins and scatterers, in the order in which rows go on: so that what two
+// rows have of a scatterer is one run.
+void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, inout Run runs[kAcross]) {
+  vec2 ends = e.ends_m;
+  int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
+  int first = max(low, 0), last = min(high, int(c.n_range) - 1);
+  bool rising = hit.ends_tan.x <= hit.ends_tan.y;
+  for (int i = first; i <= last; ++i) {
+    int bin = rising ? i : first + last - i;
+    float below = bin == low ? 0.0 : part_below(ends, range_at(bin));
+    float upto = bin == high ? 1.0 : part_below(ends, range_at(bin + 1));
+    float power = e.power * max(upto - below, 0.0);
+    float middle_m = 0.5 * (max(range_at(bin), ends.x) + min(range_at(bin + 1), ends.y));
+    if (power > 0.0) scatter(s, column, point_at(s, row, hit, e, middle_m), bin, power, runs);
+    add_key(uint(bin) * c.n_azimuth + column, power, e.label);
+  }
+}
+
 // Shares a row's power out over the bins that its height spans. Parts are rounded at the bins' edges, so
 // that their sum is the whole.
-void share_out(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, inout Run run) {
-  vec2 ends = shared_ends(e.ends_m, e.range_m);
+void share_out(uint column, RowEcho e) {
+  vec2 ends = e.ends_m;
   int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
   int first = max(low, 0), last = min(high, int(c.n_range) - 1);
   uint counts = uint(e.power * echo.sum_scale + 0.5);
@@ -198,14 +255,9 @@ void share_out(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, ino
     float upto = bin == high ? 1.0 : part_below(ends, range_at(bin + 1));
     float power = e.power * max(upto - below, 0.0);
     uint cell = uint(bin) * c.n_azimuth + column;
-    if (kCoherent != 0) {
-      float middle_m = 0.5 * (max(range_at(bin), ends.x) + min(range_at(bin + 1), ends.y));
-      if (power > 0.0) add_to_run(run, column, point_at(s, row, hit, e, middle_m), bin_at(middle_m), power);
-    } else {
-      uint until = bin == high ? counts : max(before, min(counts, uint(upto * float(counts) + 0.5)));
-      add_power(cell, until - before);
-      before = until;
-    }
+    uint until = bin == high ? counts : max(before, min(counts, uint(upto * float(counts) + 0.5)));
+    add_power(cell, until - before);
+    before = until;
     add_key(cell, power, e.label);
     below = upto;
   }
@@ -218,7 +270,7 @@ void tell(uint column, uint row, RowEcho e, bool heard, uint label) {
   SonarRecord record = SonarRecord(kSonarNoReturn, 0, label, 0);
   if (e.range_m > 0.0) {
     uint near = end_of(e.ends_m.x), far = end_of(e.ends_m.y);
-    record.bin = kFootprint == kSonarFootprintShared && heard ? kSonarSharedReturn : end_of(e.range_m);
+    record.bin = kFootprint != kSonarFootprintNone && heard ? kSonarSharedReturn : end_of(e.range_m);
     record.counts = heard ? uint(e.power * kSonarRecordScale + 0.5) : 0u;
     record.ends = near | far << 16;
   }
@@ -230,7 +282,8 @@ void main() {
   if (column >= c.n_azimuth) return;
   SonarColumn s = columns[column];
   if (s.pixel < 0 && kRecords == 0) return;
-  Run run = Run(ivec3(0), 0, 0.0, 0.0);
+  Run runs[kAcross];
+  for (int i = 0; i < kAcross; ++i) runs[i] = Run(ivec3(0), 0, 0.0, 0);
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
   for (uint row = first; row < c.n_elevation; row += kLanes) {
     BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
@@ -258,21 +311,22 @@ void main() {
     if (kGhost != 0) label.x = kSonarGhostClass;
     if (kMoving != 0) heard_m += range_m * dot(echo.motion, direction) + dot(echo.doppler, direction);
     RowEcho e = RowEcho(min(power, kLargestPower), bin_at(heard_m), vec2(heard_m), heard_m, label.x);
-    if (kFootprint != 0 && range_m > 0.0) e.ends_m = hit.ends_m * (heard_m / hit.range_m);
+    if (kFootprint != 0 && range_m > 0.0) e.ends_m = shared_ends(hit.ends_m * (heard_m / hit.range_m), heard_m);
     bool echoes = range_m > 0.0 && e.power > 0.0;
     bool heard = echoes && e.bin >= 0.0 && e.bin < float(c.n_range);
-    if (kFootprint == kSonarFootprintShared)
+    if (kFootprint != kSonarFootprintNone)
       heard = echoes && bin_at(e.ends_m.y) >= 0.0 && bin_at(e.ends_m.x) < float(c.n_range);
     if (kRecords != 0) tell(column, row, e, heard, label.x | label.y << 16);
     if (!heard) continue;
-    if (kFootprint == kSonarFootprintShared) {
-      share_out(s, column, row, hit, e, run);
+    if (kFootprint != kSonarFootprintNone) {
+      if (kCoherent != 0) share_out_coherent(s, column, row, hit, e, runs);
+      else share_out(column, e);
       continue;
     }
     uint cell = uint(e.bin) * c.n_azimuth + column;
-    if (kCoherent != 0) add_to_run(run, column, eye * hit.range_m, e.bin, e.power);
+    if (kCoherent != 0) scatter(s, column, eye * hit.range_m, int(e.bin), e.power, runs);
     else add_power(cell, uint(e.power * echo.sum_scale + 0.5));
     add_key(cell, e.power, e.label);
   }
-  if (kCoherent != 0) flush(run, column);
+  for (int i = 0; kCoherent != 0 && i < kAcross; ++i) flush(runs[i], column);
 }

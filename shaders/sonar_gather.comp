@@ -20,6 +20,7 @@ void share_out(uint column, BeamHit hit) {
   uint before = first > low ? uint(part_below(ends, range_at(first)) * counts + 0.5) : 0;
   for (int bin = first; bin <= last; ++bin) {
     uint until = uint(bin == high ? counts : part_below(ends, range_at(bin + 1)) * counts + 0.5);
+    until = max(before, min(until, uint(counts)));
     float part = float(until - before) / max(counts, 1.0);
     add_counts(uint(bin) * c.n_azimuth + column, until - before, strength * part, label.x);
     before = until;
@@ -34,7 +35,7 @@ void main() {
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
   for (uint row = first; row < c.n_elevation; row += kLanes) {
     BeamHit hit = beam_hit(s, row);
-    if (kFootprint == kSonarFootprintShared) {
+    if (kFootprint != kSonarFootprintNone) {
       if (hit.range_m > 0.0 && hit.strength > 0.0) share_out(column, hit);
       continue;
     }

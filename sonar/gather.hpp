@@ -131,10 +131,10 @@ class SonarGather {
 };
 
 // What a gather does with the ranges that a row's height spans (kSonarFootprint...): it shares
-// counts out over them where a row may be wider than a range bin (its arc at the farthest range),
-// so that a surface at grazing is no comb of single bins; where rows are finer each has its
-// centre's bin and the gather pays nothing. Records of beams are told the span either way. Of the
-// plane gather only: the others do not know the surface.
+// counts out over them, so that a surface at grazing is no comb of single bins, and tells records of
+// beams the span. Where a row may be wider than a range bin (its arc at the farthest range) the
+// span ends where the neighbouring rows' begin. Of the plane gather only: the others do not know the
+// surface.
 std::uint32_t footprint_of(const BeamGrid& grid, const GatherOptions& options);
 
 // The tables of the pass, for tests. Columns depend on where the normals' axes are.

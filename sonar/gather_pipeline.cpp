@@ -51,10 +51,8 @@ Result<gpu::Image> table_image(gpu::Device& device, const char* name, VkFormat f
 
 std::uint32_t footprint_of(const BeamGrid& grid, const GatherOptions& options) {
   if (options.gather != Gather::kPlane) return shared::kSonarFootprintNone;
-  if (grid.elevation_step_rad() * grid.limits.range_max_m > grid.range_step_m())
-    return shared::kSonarFootprintShared;
-  return options.echo && options.echo->records ? shared::kSonarFootprintTold
-                                               : shared::kSonarFootprintNone;
+  const bool tall = grid.elevation_step_rad() * grid.limits.range_max_m > grid.range_step_m();
+  return tall ? shared::kSonarFootprintBounded : shared::kSonarFootprintShared;
 }
 
 Status SonarGather::make_pipeline(gpu::Device& device) {

@@ -103,7 +103,7 @@ std::vector<float> beam_weights(const scene::Sonar& sonar, const Head& head,
   for (std::uint32_t row = 0; row < grid.bins.elevation; ++row)
     for (std::uint32_t column = 0; column < grid.bins.azimuth; ++column) {
       const double phi = grid.elevation_rad(row);
-      double weight = patterns.power(grid.azimuth_rad(column), phi);
+      double weight = patterns.power_of_cell(grid, column, row);
       if (sonar.terms.level || patterns.cone) weight *= std::cos(phi);
       if (patterns.cone) weight *= cone_share(grid, column, row, patterns.cone_rad);
       weights[std::size_t{row} * grid.bins.azimuth + column] = static_cast<float>(weight);
@@ -139,7 +139,8 @@ std::vector<float> beam_kernel(const scene::Sonar& sonar, const Head& head,
   const double column = head.samples.azimuth_step_rad();
   std::vector<double> amplitude(samples + 2 * reach, 1.0);
   for (std::size_t i = 0; i < amplitude.size() && !head.folded; ++i)
-    amplitude[i] = patterns.across((double(i) - reach - (samples - 1) / 2.0) * column, axis_rad);
+    amplitude[i] =
+        patterns.across_column((double(i) - reach - (samples - 1) / 2.0) * column, axis_rad, column);
   // Calibrated levels count all that a beam hears; else the taps share the energy out.
   const bool counts_all = sonar.terms.level || head.folded;
   double total = 0.0;

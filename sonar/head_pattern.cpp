@@ -24,6 +24,13 @@ Result<BeamPattern> pattern_of(const scene::SonarPattern& pattern) {
                                           pattern.half_power_rad);
 }
 
+// Places at which a pattern is looked at over a width: one, but where it has lobes narrower than that.
+int places_over(const BeamPattern& pattern, double width_rad) {
+  constexpr double kMostPlaces = 256.0;
+  const double widths = width_rad / pattern.second_null_rad();
+  return widths < 0.25 ? 1 : static_cast<int>(std::min(std::ceil(16.0 * widths), kMostPlaces));
+}
+
 }  // namespace
 
 double sound_speed_of(const scene::SonarWater& water, double depth_m) {
@@ -59,6 +66,31 @@ double HeadPatterns::across(double off_rad, double axis_rad) const {
   const double a =
       flat ? azimuth->steered_amplitude(axis_rad + off, axis_rad) : azimuth->amplitude(off);
   return azimuth_two_way ? a * std::abs(a) : a;
+}
+
+double HeadPatterns::across_column(double off_rad, double axis_rad, double column_rad) const {
+  const int places = azimuth ? places_over(*azimuth, column_rad) : 1;
+  const double middle = across(off_rad, axis_rad);
+  if (places == 1) return middle;
+  double power = 0.0;
+  for (int i = 0; i < places; ++i) {
+    const double a = across(off_rad + ((i + 0.5) / places - 0.5) * column_rad, axis_rad);
+    power += a * a / places;
+  }
+  return std::copysign(std::sqrt(power), middle);
+}
+
+double HeadPatterns::power_of_cell(const BeamGrid& grid, std::uint32_t column,
+                                   std::uint32_t row) const {
+  const double theta = grid.azimuth_rad(column), phi = grid.elevation_rad(row);
+  const int up = upright() ? places_over(*upright(), grid.elevation_step_rad()) : 1;
+  const int aside = upright() && cone ? places_over(*upright(), grid.azimuth_step_rad()) : 1;
+  double sum = 0.0;
+  for (int i = 0; i < up; ++i)
+    for (int k = 0; k < aside; ++k)
+      sum += power(theta + ((k + 0.5) / aside - 0.5) * grid.azimuth_step_rad(),
+                   phi + ((i + 0.5) / up - 0.5) * grid.elevation_step_rad());
+  return sum / (up * aside);
 }
 
 double HeadPatterns::power(double azimuth_rad, double elevation_rad) const {

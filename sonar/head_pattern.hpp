@@ -28,8 +28,13 @@ struct HeadPatterns {
   // Amplitude of a scatterer so far off the axis of the beam at azimuth axis_rad; 1 without a
   // pattern. Signed.
   double across(double off_rad, double axis_rad = 0.0) const;
+  // The same of a column of that width: the root of the mean power over it, where the pattern is
+  // narrow beside it; else that of its middle.
+  double across_column(double off_rad, double axis_rad, double column_rad) const;
   // Power there and back of a direction of the gathered grid.
   double power(double azimuth_rad, double elevation_rad) const;
+  // The mean over a cell of the grid, where the pattern is narrow beside it.
+  double power_of_cell(const BeamGrid& grid, std::uint32_t column, std::uint32_t row) const;
 };
 // kBadInput names what is wrong with a pattern.
 Result<HeadPatterns> head_patterns(const scene::Sonar& sonar);

@@ -28,6 +28,10 @@ double receiver_gain(const scene::Sonar& sonar, double r, double absorption_db_p
   return std::min(power_from_db(db), kLargestPower / std::max(largest, 1.0));
 }
 
+// Of a column: the widest a scatterer's cell may be. So wide, a cell's centre is within half a column
+// of every point of it (cells are cubes that lie as they please).
+constexpr double kWidestCell = 0.7;
+
 std::uint32_t cell_index(double cell) {
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(cell));
 }
@@ -51,12 +55,11 @@ void add_speckle(Ping& ping, const scene::Sonar& sonar, const Head& head, const 
                    ping.echo.cells_per_m);
   place_in_lattice(eye_m, speckle.texture_m, ping.echo.patch_fraction, ping.echo.origin_patch,
                    ping.echo.patches_per_m);
-  // Half a column and half a bin: no two of either share a cell.
   const Limits& l = head.samples.limits;
   const double steepest = std::max(std::abs(l.elevation_min_rad), std::abs(l.elevation_max_rad));
-  ping.echo.cell_per_range =
-      static_cast<float>(0.5 * head.samples.azimuth_step_rad() * std::cos(steepest));
-  ping.echo.cell_largest_m = static_cast<float>(0.5 * head.samples.range_step_m());
+  const double column_rad = head.samples.azimuth_step_rad();
+  ping.echo.cell_per_range = static_cast<float>(kWidestCell * column_rad * std::cos(steepest));
+  ping.echo.tan_half_column = static_cast<float>(std::tan(column_rad / 2.0));
   ping.echo.turns_per_m = static_cast<float>(2.0 * sonar.terms.frequency_hz / ping.sound_speed_m_s);
   ping.echo.seed = static_cast<std::uint32_t>(seed ^ (seed >> 32));
 }

@@ -64,10 +64,10 @@ NERITIC_CONST uint kSonarSpecOctahedral = 4;   // else the normal image holds x,
 NERITIC_CONST uint kSonarSpecFacing = 5;       // else the normals' signs are unknown
 NERITIC_CONST uint kSonarSpecReflect = 6;      // multiply by the reflectivity of the instance
 NERITIC_CONST uint kSonarSpecLabels = 7;       // keep the label of the strongest return
-NERITIC_CONST uint kSonarSpecFootprint = 15;   // what is done with the ranges that a row spans:
-NERITIC_CONST uint kSonarFootprintNone = 0;    // nothing, its centre counts
-NERITIC_CONST uint kSonarFootprintTold = 1;    // records tell them
-NERITIC_CONST uint kSonarFootprintShared = 2;  // its counts are shared out over them
+NERITIC_CONST uint kSonarSpecFootprint = 15;    // what is done with the ranges that a row spans:
+NERITIC_CONST uint kSonarFootprintNone = 0;     // nothing, its centre counts
+NERITIC_CONST uint kSonarFootprintShared = 1;   // its counts are shared out over them, evenly
+NERITIC_CONST uint kSonarFootprintBounded = 2;  // by incidence, and end where the neighbouring rows' begin
 
 NERITIC_SHARED_END
 #endif

@@ -3,8 +3,8 @@
 // range counts. Used after sonar_common.glsl.
 
 // How far the plane may carry the range from the pixel's own, as a factor: beyond, the plane is seen
-// so grazing that the neighbouring pixel sees something else, and the pixel's range counts. At half a
-// pixel of .1 degrees it is reached at a grazing angle of .2 degrees.
+// so grazing that the neighbouring pixel sees something else, and the pixel's range counts, the row's edges
+// being carried so far at most. At half a pixel of .1 degrees it is reached at a grazing angle of .2 degrees.
 const float kLargestStretch = 1.25;
 
 struct BeamHit {
@@ -40,6 +40,14 @@ float edge_reach(SonarColumn s, float t, float planar, float along_edge, float a
   return reach > 0.0 ? min(reach, limit) : max(reach, limit);
 }
 
+// Where the plane meets the edges of a row that is lower than a bin: by the plane's slope at its centre.
+void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, inout BeamHit hit) {
+  float half_tan = 0.5 * (edges.y - edges.x) * s.sec_theta;
+  float reach = hit.range_m * min(abs(half_tan * along_up / along), kLargestStretch - 1.0);
+  hit.ends_m = hit.range_m + vec2(-reach, reach);
+  hit.ends_tan = along * along_up <= 0.0 ? edges : edges.yx;
+}
+
 // Where the plane meets the lower and the upper edge of the row.
 void find_ends(SonarColumn s, uint row, int v, vec2 edges, float planar, vec2 along_edges, float along_pixel,
                inout BeamHit hit) {
@@ -58,19 +66,25 @@ void find_ends(SonarColumn s, uint row, int v, vec2 edges, float planar, vec2 al
 // Part of a row's energy that comes from below a range: seen at grazing, elevation goes with 1 / range, and
 // so does the incidence.
 float part_below(vec2 ends_m, float range_m) {
+  if (kFootprint == kSonarFootprintShared)  // so short that it is even
+    return clamp((range_m - ends_m.x) / (ends_m.y - ends_m.x), 0.0, 1.0);
   float r = clamp(range_m, ends_m.x, ends_m.y);
   float part = (r - ends_m.x) * (r + ends_m.x) / (r * r);
   float all = (ends_m.y - ends_m.x) * (ends_m.y + ends_m.x) / (ends_m.y * ends_m.y);
   return clamp(part / all, 0.0, 1.0);
 }
 
-// A footprint is shared out over no more bins to either side of its centre.
-const float kFarthestShare_bins = 128.0;
+// A footprint is shared out over no more bins to either side of its centre: what one row may cost.
+const float kFarthestShare_bins = 2048.0;
 
 float bin_at(float range_m) { return (range_m - c.range_min_m) * c.bins_per_m + c.edge_bias_bins; }
 float range_at(int bin) { return (float(bin) - c.edge_bias_bins) / c.bins_per_m + c.range_min_m; }
 
+// A footprint of a part of a bin, which is shared out as its centre.
+const float kShortest_bins = 0.25;
+
 vec2 shared_ends(vec2 ends_m, float range_m) {
+  if ((ends_m.y - ends_m.x) * c.bins_per_m < kShortest_bins) return vec2(range_m);
   float most = kFarthestShare_bins / c.bins_per_m;
   return clamp(ends_m, vec2(range_m - most), vec2(range_m + most));
 }
@@ -102,12 +116,10 @@ BeamHit beam_hit(SonarColumn s, uint row) {
   }
   hit.strength = min(facing(-along / length_of), 1.0);
   hit.range_m = planar * length_of;
-  if (kFootprint != 0) {
-    hit.ends_m = vec2(hit.range_m);
-    hit.ends_tan = e.xx;
-    if (meets)
-      find_ends(s, row, v, e.zw, plane, dot(n, s.beam_base) + e.zw * s.sec_theta * along_up, along_pixel, hit);
-  }
+  if (kFootprint == kSonarFootprintShared)
+    find_close_ends(s, e.zw, along, along_up, hit);
+  if (kFootprint == kSonarFootprintBounded)
+    find_ends(s, row, v, e.zw, plane, dot(n, s.beam_base) + e.zw * s.sec_theta * along_up, along_pixel, hit);
   return hit;
 }
 

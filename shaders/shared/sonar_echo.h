@@ -40,9 +40,8 @@ struct SonarEcho {
   float azimuth_min_rad;
   float columns_per_rad;
   uint solid_angle;  // ghosts: a beam's cosine of elevation counts
-  // Scatterers: the widest cell a metre of range, and at any range.
-  float cell_per_range;
-  float cell_largest_m;
+  float cell_per_range;  // scatterers: the widest cell a metre of range
+  float tan_half_column;
 };
 NERITIC_CONST uint kSonarGhostPlain = 0u;        // no range counts
 NERITIC_CONST uint kSonarGhostSpreading = 1u;    // 1 / r^2 of the direct leg

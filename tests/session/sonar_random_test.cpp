@@ -1,6 +1,7 @@
 // Speckle and noise: their statistics against closed forms, and what they may not share.
 #include <algorithm>
 
+#include "sonar/beam_pattern.hpp"
 #include "tests/session/sonar_pings.hpp"
 
 namespace neritic::tools {
@@ -153,6 +154,37 @@ TEST_F(SonarRandom, TurningDarkensNoRange) {
   for (int i = 0; i < kParts; ++i) EXPECT_NEAR(heard[i] / wanted[i], 1.0, 0.05) << i;
 }
 
+// A floor that a narrow beam meets at 45 degrees, so that its bins are strips.
+scene::Scene tilted_floor(double range_m, const scene::Sonar& sonar) {
+  scene::Scene scene;
+  const double down_m = range_m * std::sin(radians(45.0));
+  scene.objects.push_back(object_of(scene, scene::make_plane(60.0, 60.0), {0.0, -down_m, 0.0}));
+  scene.sonars = {sonar};
+  scene.sonars[0].mount.pose.rotation = glm::angleAxis(radians(-45.0), Vec3(1, 0, 0));
+  return scene;
+}
+
+// Correlation of a beam's power before and after the sonar has moved x_m across, of dense points at
+// random on a line across at the range: |<f f'*>|^2, each with the pattern at its bearing and the
+// phase of its path there and back.
+double expected_correlation(double x_m, double range_m, double half_power_rad, double turns_per_m) {
+  const auto pattern =
+      sonar::BeamPattern::of_half_power_width(sonar::BeamKind::kHamming, half_power_rad);
+  double real = 0.0, imaginary = 0.0, power = 0.0;
+  for (double at_m = -0.6; at_m <= 0.6; at_m += 1e-4) {
+    const auto amplitude = [&](double off_m) {
+      return pattern->amplitude(std::atan2(off_m, range_m));
+    };
+    const double before = amplitude(at_m), after = amplitude(at_m - x_m);
+    const double turns =
+        turns_per_m * (std::hypot(range_m, at_m - x_m) - std::hypot(range_m, at_m));
+    real += before * after * std::cos(2.0 * kPi * turns);
+    imaginary += before * after * std::sin(2.0 * kPi * turns);
+    power += before * before;
+  }
+  return (real * real + imaginary * imaginary) / (power * power);
+}
+
 TEST_F(SonarRandom, SpeckleBelongsToTheWorld) {
   scene::Scene scene = speckled_wall();
   const SonarFrame smooth = ping(device(), scene);
@@ -171,6 +203,43 @@ TEST_F(SonarRandom, SpeckleBelongsToTheWorld) {
   scene.objects[0].mount.pose.position_m += Vec3(1e5, -200.0, 1e5);
   scene.sonars[0].mount.pose.position_m = {1e5, -200.0, 1e5};
   EXPECT_NEAR(ratios(smooth, ping(device(), scene)).contrast, 0.5227, 0.02);
+}
+
+// Across the beam a scatterer passes from column to column and stays: what fades is what leaves the
+// beam, and what turns by its own path. Against a field of points at random, in double.
+TEST_F(SonarRandom, SpeckleFadesWithTheWayAcross) {
+  constexpr double kRange_m = 5.0, kWidth_rad = radians(1.0);
+  scene::Sonar sonar = sonar_of(4.9, 5.1, 40);
+  sonar.azimuth_rad = radians(16.0);
+  sonar.elevation_rad = radians(1.0);
+  sonar.bins_azimuth = 64;
+  sonar.bins_elevation = 64;
+  sonar.terms.frequency_hz = 750e3;
+  sonar.terms.water.sound_speed_m_s = 1500.0;
+  sonar.terms.beam.samples = 2;
+  sonar.terms.beam.azimuth = scene::SonarPattern{.shape = scene::SonarPattern::Shape::kHamming,
+                                                 .half_power_rad = kWidth_rad};
+  sonar.terms.speckle = scene::SonarSpeckle{.scatterer_m = 0.01};
+  scene::Scene scene = tilted_floor(kRange_m, sonar);
+  scene::Scene plain = scene;
+  plain.sonars[0].terms.speckle.reset();
+  const SonarFrame smooth = ping(device(), plain);
+  const auto measured = [&](double x_m) {
+    double sum = 0.0;
+    for (scene.seed = 1; scene.seed <= 5; ++scene.seed) {
+      scene.sonars[0].mount.pose.position_m.x = 0.0;
+      const Ratios here = ratios(smooth, ping(device(), scene));
+      scene.sonars[0].mount.pose.position_m.x = x_m;
+      sum += correlation(here.power, ratios(smooth, ping(device(), scene)).power);
+    }
+    return sum / 5.0;
+  };
+  for (const double x_m : {0.002, 0.01, 0.02, 0.05}) {
+    const double expected = expected_correlation(x_m, kRange_m, kWidth_rad, 2.0 * 750e3 / 1500.0);
+    const double found = measured(x_m);
+    EXPECT_LT(found, expected + 0.06) << x_m << " m";
+    EXPECT_GT(found, 0.65 * expected - 0.06) << x_m << " m";
+  }
 }
 
 scene::Sonar noisy(scene::SonarKind kind) {

@@ -76,6 +76,30 @@ TEST_F(SonarTerms, AConstantProfileScalesRanges) {
   EXPECT_NEAR(mean_range_m(ping(device(), scene)) / before, 1500.0 / 1530.0, 2e-4);
 }
 
+// A pattern much narrower than what samples it is averaged, not missed: a beam hears a wall as loud
+// however coarsely it is sampled.
+TEST_F(SonarTerms, ANarrowPatternIsHeardByCoarseColumnsAndRowsAlike) {
+  const auto heard_db = [&](std::uint32_t beams, std::uint32_t rows) {
+    scene::Sonar sonar = sonar_of(9.9, 10.3, 4);
+    sonar.azimuth_rad = radians(60.0);
+    sonar.bins_azimuth = beams;
+    sonar.bins_elevation = rows;
+    sonar.terms.level = plain_level();
+    sonar.terms.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(0.5)};
+    sonar.terms.beam.elevation = scene::SonarPattern{.half_power_rad = radians(0.5)};
+    const SonarFrame frame = ping(device(), wall(10.0, sonar));
+    const auto& v = frame.image.intensity;
+    double most = 0.0;  // of the beams about the axis, at the wall
+    for (std::uint32_t row = 0; row < 4; ++row)
+      most = std::max<double>(most, v[std::size_t{row} * beams + beams / 2]);
+    return 10.0 * std::log10(most);
+  };
+  const double fine = heard_db(512, 512);
+  EXPECT_NEAR(heard_db(512, 8), fine, 0.5);
+  EXPECT_NEAR(heard_db(64, 512), fine, 0.5);
+  EXPECT_NEAR(heard_db(8, 64), fine, 0.7);
+}
+
 TEST_F(SonarTerms, TheSurfaceMirrorsAGhostAtTheMeanOfBothWays) {
   scene::Sonar sonar = sonar_of(4.0, 8.0, 800);
   sonar.elevation_rad = radians(80.0);

@@ -143,13 +143,14 @@ Result<SonarState*> SonarStation::state_of(std::size_t index) {
 sonar::PingState SonarStation::ping_state(const Frame& frame, const HeadWork& head,
                                           const Pose& world_from_head) const {
   const scene::Mount& mount = scene_.sonars[head.index].mount;
-  const Pose before = scene_.world_from(mount, frame.time_s - kMotionStep_s);
+  // How it moves on from here, while the echo comes back: at a track's beginning too.
+  const Pose before = scene_.world_from(mount, frame.time_s);
   const Pose after = scene_.world_from(mount, frame.time_s + kMotionStep_s);
   sonar::PingState ping;
   ping.world_from_sonar = world_from_head;
-  ping.velocity_m_s = (after.position_m - before.position_m) / (2.0 * kMotionStep_s);
+  ping.velocity_m_s = (after.position_m - before.position_m) / kMotionStep_s;
   const Quat turn = glm::conjugate(before.rotation) * after.rotation;
-  ping.yaw_rate_rad_s = 2.0 * std::atan2(turn.y, turn.w) / (2.0 * kMotionStep_s);
+  ping.yaw_rate_rad_s = 2.0 * std::atan2(turn.y, turn.w) / kMotionStep_s;
   ping.seed = scene_.seed;
   ping.stream = static_cast<std::uint32_t>(head.index * 2 + head.place);
   ping.ping = frame.ping;
