@@ -21,8 +21,7 @@ void share_out(uint column, BeamHit hit) {
   for (int bin = first; bin <= last; ++bin) {
     uint until = uint(bin == high ? counts : part_below(ends, range_at(bin + 1)) * counts + 0.5);
     until = max(before, min(until, uint(counts)));
-    float part = float(until - before) / max(counts, 1.0);
-    add_counts(uint(bin) * c.n_azimuth + column, until - before, strength * part, label.x);
+    add_counts(uint(bin) * c.n_azimuth + column, until - before, float(until - before) / c.fixed_scale, label.x);
     before = until;
   }
 }

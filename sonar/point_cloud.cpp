@@ -1,5 +1,6 @@
 #include "sonar/point_cloud.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -14,6 +15,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "bytes are written as they lie");
 
+// So near the origin floats hold a tenth of a millimetre as they are.
+constexpr double kNear_m = 1024.0;
+
 using PcdPoint = std::array<float, 4>;
 
 PcdPoint pcd_point(const PointCloud& cloud, std::size_t i, const Vec3& origin) {
@@ -24,7 +28,7 @@ PcdPoint pcd_point(const PointCloud& cloud, std::size_t i, const Vec3& origin) {
 std::string pcd_header(const PointCloud& cloud, const Vec3& origin, PcdData data) {
   return fmt::format(
       "# .PCD v0.7 - Point Cloud Data file format\n"
-      "# world frame: right-handed, Y up, metres; positions are relative to the origin\n"
+      "# right-handed, Y up, metres; positions are relative to the origin\n"
       "# origin_m {0:.0f} {1:.0f} {2:.0f}\n"
       "VERSION 0.7\n"
       "FIELDS x y z intensity\n"
@@ -56,6 +60,8 @@ Vec3 cloud_origin(const PointCloud& cloud) {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
+  const Vec3 far = glm::max(glm::abs(low), glm::abs(high));
+  if (std::max({far.x, far.y, far.z}) <= kNear_m) return Vec3(0.0);
   // Adding zero turns -0 into 0, for the header's sake.
   return glm::round((low + high) / 2.0) + Vec3(0.0);
 }

@@ -23,8 +23,9 @@ struct PointCloud {
 void append(PointCloud& cloud, const BeamGrid& grid, std::span<const BottomDetection> detections,
             const Pose& world_from_sonar);
 
-// A point in whole metres near the middle of the cloud's box, from which floats hold the points
-// (within 0.25 mm for a cloud of 8 km) however far from the world's origin. Zero for no points.
+// The origin where all points are within a kilometre of it (and for none); else a point in whole
+// metres near the middle of the cloud's box, from which floats hold the points (within 0.25 mm for
+// a cloud of 8 km) however far from the world's origin.
 Vec3 cloud_origin(const PointCloud& cloud);
 
 // float64 [n, 3]: x, y, z in world metres. Absolute: no origin is needed to read it.

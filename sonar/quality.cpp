@@ -13,31 +13,31 @@ namespace {
 using scene::SonarKind;
 
 // name, pixels a cell, columns, rows, range bins a resolution cell, error, ms: from
-// `neritic tradeoff sonar` in assets/scenes/harbour.toml, llvmpipe on two shared Xeon cores.
+// `neritic tradeoff sonar` in assets/scenes/harbour.toml, llvmpipe on two cores of an AMD EPYC.
 constexpr QualityLevel kImaging[] = {
-    {"draft", 1, 3.98, 3.33, 2, 0.0454, 212.2},
-    {"standard", 1, 7.96, 3.33, 2, 0.0196, 329.7},
-    {"reference", 1, 23.88, 3.33, 2, 0.0090, 1049.7},
+    {"draft", 0.5, 7.96, 0.42, 1, 0.0452, 89.4},
+    {"standard", 0.7, 11.94, 0.83, 2, 0.0190, 216.7},
+    {"reference", 1, 23.88, 3.33, 2, 0.0090, 535.2},
 };
 constexpr QualityLevel kProfiling[] = {
-    {"draft", 0.7, 1.99, 8, 4, 0.0482, 17.7},
-    {"standard", 1, 7.96, 32, 4, 0.0187, 60.9},
-    {"reference", 1, 7.96, 4, 8, 0.0092, 171.9},
+    {"draft", 0.7, 1.99, 16, 4, 0.0495, 20.8},
+    {"standard", 0.7, 7.96, 8, 4, 0.0197, 69.1},
+    {"reference", 0.7, 7.96, 16, 8, 0.0084, 188.4},
 };
 constexpr QualityLevel kEchoSounder[] = {
-    {"draft", 1.4, 16, 128, 2, 0.0489, 2.0},
-    {"standard", 1.4, 24, 64, 4, 0.0182, 2.9},
-    {"reference", 1.4, 64, 64, 4, 0.0085, 4.9},
+    {"draft", 1, 16, 32, 2, 0.0463, 3.5},
+    {"standard", 1, 24, 64, 4, 0.0185, 6.0},
+    {"reference", 1.4, 64, 64, 4, 0.0076, 11.6},
 };
 constexpr QualityLevel kSideScan[] = {
-    {"draft", 1.4, 2, 1.61, 1, 0.0471, 4.8},
-    {"standard", 1.4, 4, 3.23, 1, 0.0189, 7.2},
-    {"reference", 1.4, 4, 6.45, 2, 0.0096, 10.0},
+    {"draft", 0.5, 2, 0.81, 1, 0.0312, 6.5},
+    {"standard", 0.5, 4, 1.61, 1, 0.0188, 8.9},
+    {"reference", 1.4, 6, 0.81, 2, 0.0083, 15.8},
 };
 constexpr QualityLevel kMechanical[] = {
-    {"draft", 1.4, 13.3, 1.61, 2, 0.0460, 6.8},
-    {"standard", 1.4, 22.2, 3.23, 4, 0.0197, 16.7},
-    {"reference", 1.4, 35.6, 6.45, 8, 0.0098, 141.0},
+    {"draft", 1.4, 13.3, 1.61, 1, 0.0419, 12.0},
+    {"standard", 1.4, 35.6, 1.61, 2, 0.0156, 38.0},
+    {"reference", 1.4, 35.6, 6.45, 2, 0.0091, 52.4},
 };
 
 constexpr std::uint32_t kMostBins = 8192;  // as scenes accept

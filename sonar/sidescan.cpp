@@ -85,7 +85,9 @@ nlohmann::json facts_of(const SidescanRecord& record, const GroundImage& ground)
           {"track_length_m", along.empty() ? 0.0 : along.back()},
           {"layout",
            "[ping, 2 n]: columns n-1 to 0 are port from the nearest bin on, n to 2n-1 starboard"},
-          {"units", "linear energy a bin; ground bins hold what their slant bins heard"}};
+          {"units", o.levels ? "power re 1 uPa^2 (10 log10 gives dB re 1 uPa); ground bins hold the sum of "
+                               "what their slant bins heard"
+                             : "linear energy a bin; ground bins hold what their slant bins heard"}};
 }
 
 }  // namespace
@@ -171,18 +173,18 @@ GroundImage ground_image(const SidescanRecord& record, const FirstReturns& botto
                 "{} and {} first returns for {} pings, {} bins", bottom.port_m.size(),
                 bottom.starboard_m.size(), record.pings(), n_ground);
   const SidescanOptions& o = record.options();
+  const std::vector<double> altitudes_m = bottom.altitude_m();
   GroundImage out{
       n_ground, o.range_max_m,
       std::vector<float>(record.pings() * 2 * n_ground, std::numeric_limits<float>::quiet_NaN())};
   for (std::size_t ping = 0; ping < record.pings(); ++ping) {
-    double port = bottom.port_m[ping], starboard = bottom.starboard_m[ping];
-    if (std::isnan(port)) port = starboard;
-    if (std::isnan(starboard)) starboard = port;
-    if (std::isnan(port)) continue;
+    // One altitude for both sides: a side's first return may be a hull that hides the bottom.
+    const double altitude_m = altitudes_m[ping];
+    if (std::isnan(altitude_m)) continue;
     const float* line = record.slant_image().data() + ping * 2 * o.n_range;
     float* to = out.intensity.data() + ping * 2 * n_ground;
-    spread_side(o, port, line + o.n_range - 1, -1, out, to + n_ground - 1, -1);
-    spread_side(o, starboard, line + o.n_range, 1, out, to + n_ground, 1);
+    spread_side(o, altitude_m, line + o.n_range - 1, -1, out, to + n_ground - 1, -1);
+    spread_side(o, altitude_m, line + o.n_range, 1, out, to + n_ground, 1);
   }
   return out;
 }

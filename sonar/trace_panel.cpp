@@ -20,7 +20,11 @@ ImageU8 draw_trace(const BeamGrid& grid, std::span<const float> intensity,
              height = static_cast<std::uint32_t>(480 * unit);
   Canvas canvas(width, height, kPanelBackground);
   const SonarImage image{grid.bins.range, 1, {intensity.begin(), intensity.end()}, {}};
-  const double full = panel_full_scale(image, options);
+  // A curve is shown to its peak.
+  PanelOptions whole = options;
+  if (!(whole.full_scale > 0.0) && !intensity.empty())
+    whole.full_scale = *std::max_element(intensity.begin(), intensity.end());
+  const double full = panel_full_scale(image, whole);
   const double left = 90 * unit, right = width - 40 * unit, top = 90 * unit,
                bottom = height - 84 * unit;
   draw_words(canvas, grid, options.title, unit);
@@ -39,6 +43,9 @@ ImageU8 draw_trace(const BeamGrid& grid, std::span<const float> intensity,
                                       : fmt::format("{:.3g}", full * part),
                 kPlotText.with_alpha(0.85f), Align::kRight);
   }
+  canvas.text(left, top - 12 * unit, 10 * unit,
+              options.span_db > 0.0 ? "dB re 1 uPa" : "mean cosine",
+              kPlotText.with_alpha(0.7f));
   PanelOptions linear = options;
   linear.gamma = 1.0;
   double last_x = left, last_y = bottom;

@@ -30,7 +30,7 @@ Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
 std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Coverage& coverage,
                                          bool published) {
   const sonar::Limits& l = grid.limits;
-  if (coverage.farthest_m == 0.0) return "no pixel has a depth, so the sonar hears nothing";
+  if (coverage.farthest_m == 0.0) return "no pixel has a depth (0, NaN, infinity and negative numbers are none), so the sonar hears nothing";
   if (coverage.in_aperture == 0)
     return "no pixel with a depth lies within --azimuth and --elevation, so the sonar hears "
            "nothing";
@@ -39,7 +39,8 @@ std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Cove
         "nothing lies between {:g} and {:g} m, so the sonar hears nothing: the image holds ranges "
         "of {:.3g} to {:.3g} m (--range, --depth-scale)",
         l.range_min_m, l.range_max_m, coverage.nearest_m, coverage.farthest_m);
-  if (published && coverage.pixels_per_cell < 1.0)
+  // Pixels do not fall evenly: below two a cell some cells have none.
+  if (published && coverage.pixels_per_cell < 2.0)
     return fmt::format(
         "{:.2g} pixels a cell of {} x {} (azimuth, elevation): cells without a pixel stay silent, "
         "as in the published algorithm; --gather plane fills them, fewer --bins avoid them",
