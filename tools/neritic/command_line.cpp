@@ -280,6 +280,37 @@ void add_plan(CLI::App& app, Run& run) {
   command->callback([flags, &run] { run = [flags] { return run_plan(*flags); }; });
 }
 
+void add_physio(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<PhysioFlags>();
+  CLI::App* command = app.add_subcommand(
+      "physio", "heart, breath or gaze out of a recording: a table, or JSON, or a picture");
+  command->add_option("what", flags->what, "ecg, breath or gaze")->required();
+  command->add_option("file", flags->file, ".csv, .wav or a WFDB record (.hea, .dat)")->required();
+  command->add_option("--channel", flags->channel,
+                      "of several: its number from 0, or the column's name (.csv)");
+  command->add_option("--rate", flags->rate_hz, "samples a second, where a .csv does not say")
+      ->check(CLI::Range(0.1, 1e6));
+  command->add_option("--annotations", flags->annotations,
+                      "ecg: marked beats (.atr); a record's own beside it is found");
+  command->add_option("--estimator", flags->estimator,
+                      "breath: multiband, autocorrelation or spectrum (as published)")
+      ->capture_default_str();
+  command->add_option("--window", flags->window_s, "breath: seconds an estimate looks back over");
+  command->add_option("--reference", flags->reference_bpm,
+                      "breath: the known rate (else of a name like ..._12bpm_...)");
+  command->add_flag("--realtime", flags->realtime,
+                    "breath: at the recording's own pace, recorded and analysed on two threads");
+  command->add_option("--method", flags->method, "gaze: ivt (30 deg/s) or idt (1 deg, 100 ms)")
+      ->capture_default_str();
+  command->add_flag("--headset", flags->headset, "gaze: idt with a headset's 250 ms");
+  command->add_option("--intrinsics", flags->intrinsics,
+                      "gaze: fx,fy,cx,cy of a camera at the eye: fixations in its pixels too");
+  command->add_option("--out", flags->out, "folder for the table and the JSON");
+  command->add_option("--plot", flags->plot, "a picture (.png)");
+  command->add_flag("--json", flags->json, "JSON on standard output instead of the table");
+  command->callback([flags, &run] { run = [flags] { return run_physio(*flags); }; });
+}
+
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
@@ -306,6 +337,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_tradeoff(app, line.run);
   add_check(app, line.run);
   add_plan(app, line.run);
+  add_physio(app, line.run);
   add_doctor(app, line.run);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(),

@@ -60,7 +60,7 @@ Status run_dive(const DiveFlags& flags);
 
 struct TradeoffFlags {
   std::string what, device, kind, scene = "assets/scenes/harbour.toml";
-  std::filesystem::path out;
+  std::filesystem::path out, recordings;
   bool quick = false;
 };
 Result<std::string> run_tradeoff(const TradeoffFlags& flags);
@@ -82,6 +82,16 @@ struct PlanFlags {
   bool json = false;
 };
 Result<std::string> run_plan(const PlanFlags& flags);
+
+// file: .csv, .wav or a WFDB record.
+struct PhysioFlags {
+  std::string what, file, channel, annotations, intrinsics;
+  std::string estimator = "multiband", method = "ivt";
+  std::filesystem::path out, plot;
+  double rate_hz = 0.0, window_s = 0.0, reference_bpm = 0.0;  // 0: the file's, the default, none
+  bool json = false, headset = false, realtime = false;
+};
+Result<std::string> run_physio(const PhysioFlags& flags);
 
 struct DoctorFlags {
   std::string device;

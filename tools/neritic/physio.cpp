@@ -1,0 +1,100 @@
+// `neritic physio ecg|breath|gaze FILE`: a recording of a diver, analysed; table, JSON and picture.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "diver/physio_csv.hpp"
+#include "diver/physio_wav.hpp"
+#include "diver/physio_wfdb.hpp"
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tools/neritic/physio_report.hpp"
+
+namespace neritic::tools {
+namespace {
+
+// A whole number, or 0 where the channel is given by name.
+Result<std::uint32_t> channel_number(const PhysioFlags& flags) {
+  std::uint32_t number = 0;
+  for (const char c : flags.channel) {
+    if (c < '0' || c > '9' || number > 1000)
+      return bad_input("--channel: '{}' found, a number from 0 is accepted", flags.channel);
+    number = 10 * number + static_cast<std::uint32_t>(c - '0');
+  }
+  return number;
+}
+
+Result<diver::Recording> load_record(const PhysioFlags& flags) {
+  std::filesystem::path header_path = flags.file;
+  header_path.replace_extension(".hea");
+  NERITIC_TRY(const std::string text, read_text(header_path));
+  NERITIC_TRY(const diver::WfdbHeader header, diver::parse_wfdb_header(text, header_path.string()));
+  NERITIC_TRY(std::uint32_t channel, channel_number(flags));
+  if (channel >= header.signals.size())
+    return bad_input("{}: channel {} found, 0 to {} is accepted", header_path.string(), channel,
+                     header.signals.size() - 1);
+  const auto data_path = header_path.parent_path() / header.signals[channel].file;
+  NERITIC_TRY(const auto bytes, read_file(data_path));
+  return diver::parse_wfdb_signal(header, channel, bytes, data_path.string());
+}
+
+template <class Report>
+Result<std::string> show(const PhysioFlags& flags, const Report& report) {
+  const std::string json = json_text(report_json(flags, report)) + "\n";
+  const std::string table = report_text(flags, report);
+  std::string where;
+  if (!flags.out.empty()) {
+    NERITIC_TRY_STATUS(make_folder(flags.out));
+    NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".csv"), table));
+    NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".json"), json));
+    where = flags.out.string() + fmt::format(": {0}.csv, {0}.json", flags.what);
+  }
+  if (!flags.plot.empty())
+    NERITIC_TRY_STATUS(scene::write_png8(flags.plot, report_plot(flags, report)));
+  if (flags.out.empty() || flags.json) {
+    fmt::print("{}", flags.json ? json : table);
+    std::fflush(stdout);
+    return std::string();
+  }
+  return where;
+}
+
+}  // namespace
+
+Result<diver::Recording> load_recording(const PhysioFlags& flags) {
+  const std::filesystem::path path = flags.file;
+  const std::string kind = path.extension().string();
+  if (kind == ".csv") {
+    NERITIC_TRY(const std::string text, read_text(path));
+    return diver::parse_csv(text, flags.file, {flags.channel, flags.rate_hz});
+  }
+  if (kind == ".wav" || kind == ".WAV") {
+    NERITIC_TRY(std::uint32_t channel, channel_number(flags));
+    NERITIC_TRY(const auto bytes, read_file(path));
+    return diver::parse_wav(bytes, flags.file, channel);
+  }
+  if (kind.empty() || kind == ".hea" || kind == ".dat") return load_record(flags);
+  return bad_input("{}: '{}' found, .csv, .wav, .hea or .dat is accepted", flags.file, kind);
+}
+
+Result<std::string> run_physio(const PhysioFlags& flags) {
+  if (flags.what == "ecg") {
+    NERITIC_TRY(const EcgReport report, analyse_ecg(flags));
+    return show(flags, report);
+  }
+  if (flags.what == "breath") {
+    if (flags.realtime) {
+      NERITIC_TRY_STATUS(play_sound(flags));
+      return std::string();
+    }
+    NERITIC_TRY(const BreathReport report, analyse_sound(flags));
+    return show(flags, report);
+  }
+  if (flags.what == "gaze") {
+    NERITIC_TRY(const GazeReport report, analyse_gaze(flags));
+    return show(flags, report);
+  }
+  return bad_input("physio: '{}' found, ecg, breath or gaze is accepted", flags.what);
+}
+
+}  // namespace neritic::tools

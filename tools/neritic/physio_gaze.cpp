@@ -1,0 +1,116 @@
+// `neritic physio gaze`: fixations and saccades.
+#include <cmath>
+
+#include "engine/core/clock.hpp"
+#include "engine/core/files.hpp"
+#include "tools/neritic/flags.hpp"
+#include "tools/neritic/physio_report.hpp"
+
+namespace neritic::tools {
+namespace {
+
+Result<diver::GazeSettings> gaze_settings(const PhysioFlags& flags) {
+  if (flags.method != "ivt" && flags.method != "idt")
+    return bad_input("--method: '{}' found, ivt or idt is accepted", flags.method);
+  const auto method =
+      flags.method == "ivt" ? diver::GazeMethod::kVelocity : diver::GazeMethod::kDispersion;
+  if (flags.headset) return diver::headset_gaze(method);
+  diver::GazeSettings settings;
+  settings.method = method;
+  return settings;
+}
+
+// A camera at the eye: its pixels are those of the directions alone.
+Result<std::optional<diver::GazeCamera>> gaze_camera(const PhysioFlags& flags) {
+  if (flags.intrinsics.empty()) return std::optional<diver::GazeCamera>();
+  NERITIC_TRY(const auto numbers, parse_numbers("intrinsics", flags.intrinsics, 4, 4));
+  if (!(numbers[0] > 0.0 && numbers[1] > 0.0))
+    return bad_input("--intrinsics: '{}' found, fx and fy above 0 are accepted", flags.intrinsics);
+  return std::optional<diver::GazeCamera>({{}, numbers[0], numbers[1], numbers[2], numbers[3]});
+}
+
+// The simplest baseline: the angle from one sample to the next, without any window.
+std::vector<bool> simple_saccades(const std::vector<diver::GazeSample>& samples,
+                                  double threshold_rad_s) {
+  std::vector<bool> out(samples.size(), false);
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double step_s = samples[i].time_s - samples[i - 1].time_s;
+    out[i] = step_s > 0.0 &&
+             diver::angle_between(samples[i - 1].direction, samples[i].direction) / step_s >
+                 threshold_rad_s;
+  }
+  return out;
+}
+
+std::string pixel_cells(const GazeReport& r, const Vec3& direction) {
+  if (!r.camera) return "";
+  const auto pixel = diver::gaze_pixel(Vec3(0.0), direction, INFINITY, *r.camera);
+  return pixel ? fmt::format(",{:.1f},{:.1f}", pixel->x, pixel->y) : ",,";
+}
+
+}  // namespace
+
+double screen_x_deg(const Vec3& direction) {
+  return degrees(std::atan2(direction.x, -direction.z));
+}
+double screen_y_deg(const Vec3& direction) {
+  return degrees(std::atan2(direction.y, -direction.z));
+}
+
+Result<GazeReport> analyse_gaze(const PhysioFlags& flags) {
+  GazeReport report;
+  NERITIC_TRY(report.settings, gaze_settings(flags));
+  NERITIC_TRY(report.camera, gaze_camera(flags));
+  if (std::filesystem::path(flags.file).extension() != ".csv")
+    return bad_input("{}: gaze as .csv is accepted", flags.file);
+  NERITIC_TRY(const std::string text, read_text(flags.file));
+  NERITIC_TRY(report.recording, diver::parse_gaze_csv(text, flags.file, flags.rate_hz));
+  const auto& samples = report.recording.samples;
+  const TimeNs start = now_ns();
+  diver::GazeMonitor monitor(report.settings);
+  for (const diver::GazeSample& sample : samples) monitor.push(sample, report.events);
+  monitor.finish(report.events);
+  const double seconds = std::max(samples.back().time_s - samples.front().time_s, 1e-3);
+  report.us_a_second = 1e-3 * static_cast<double>(now_ns() - start) / seconds;
+  report.state = monitor.state();
+  if (report.recording.marks.empty()) return report;
+  std::vector<bool> marked, found;
+  for (const int mark : report.recording.marks) marked.push_back(mark == 2);
+  for (const diver::GazeClass c : report.events.classes)
+    found.push_back(c == diver::GazeClass::kSaccade);
+  report.kappa = diver::saccade_kappa(marked, found);
+  report.simple_kappa =
+      diver::saccade_kappa(marked, simple_saccades(samples, report.settings.velocity_rad_s));
+  return report;
+}
+
+std::string report_text(const PhysioFlags& flags, const GazeReport& r) {
+  std::string out = fmt::format(
+      "# {}: {} samples, {} refused; {} {}\n", flags.file, r.recording.samples.size(),
+      r.state.refused, flags.method == "ivt" ? "I-VT" : "I-DT",
+      flags.method == "ivt"
+          ? fmt::format("above {:g} deg/s", degrees(r.settings.velocity_rad_s))
+          : fmt::format("within {:g} deg for {:g} ms or more", degrees(r.settings.dispersion_rad),
+                        1e3 * r.settings.dispersion_s));
+  out += fmt::format("# {} fixations, {} saccades\n# {}\n", r.events.fixations.size(),
+                     r.events.saccades.size(), diver::kPursuitNote);
+  if (r.kappa)
+    out += fmt::format(
+        "# against marks, saccade or none: kappa {:.3f}; from sample to sample alone {:.3f}\n",
+        *r.kappa, *r.simple_kappa);
+  out += fmt::format("# {:.0f} us of one core a second of gaze\n", r.us_a_second);
+  out += "kind,start_s,end_s,duration_ms,x_deg,y_deg,spread_deg,amplitude_deg,peak_deg_s,pursuit";
+  out += r.camera ? ",u_px,v_px\n" : "\n";
+  for (const diver::Fixation& f : r.events.fixations)
+    out += fmt::format("fixation,{:.4f},{:.4f},{:.1f},{:.3f},{:.3f},{:.3f},{:.3f},,{}{}\n",
+                       f.start_s, f.end_s, 1e3 * (f.end_s - f.start_s), screen_x_deg(f.direction),
+                       screen_y_deg(f.direction), degrees(f.spread_rad), degrees(f.drift_rad),
+                       f.may_be_pursuit ? "maybe" : "no", pixel_cells(r, f.direction));
+  for (const diver::Saccade& s : r.events.saccades)
+    out += fmt::format("saccade,{:.4f},{:.4f},{:.1f},,,,{:.3f},{:.1f},{}\n", s.start_s, s.end_s,
+                       1e3 * (s.end_s - s.start_s), degrees(s.amplitude_rad), degrees(s.peak_rad_s),
+                       r.camera ? ",," : "");
+  return out;
+}
+
+}  // namespace neritic::tools

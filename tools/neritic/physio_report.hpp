@@ -1,0 +1,85 @@
+// What `neritic physio` finds in a recording, and how it is said: a table (.csv) under a summary,
+// the same as JSON, and a picture. physio_ecg.cpp, physio_breath.cpp and physio_gaze.cpp analyse,
+// physio_json.cpp and physio_plot.cpp show. One thread.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+
+#include "diver/breath_monitor.hpp"
+#include "diver/gaze_csv.hpp"
+#include "diver/heart_monitor.hpp"
+#include "diver/heart_score.hpp"
+#include "engine/core/image.hpp"
+#include "tools/neritic/commands.hpp"
+
+namespace neritic::tools {
+
+// By the file's name: .csv, .wav, or a WFDB record (.hea, .dat, or without an ending).
+Result<diver::Recording> load_recording(const PhysioFlags& flags);
+
+struct EcgReport {
+  diver::Recording ecg;
+  std::vector<diver::Beat> beats;
+  std::vector<diver::Interval> intervals;  // one a beat
+  diver::HeartState state;                 // as a live monitor would end
+  diver::Variability variability;          // of the whole recording
+  diver::HeartSpectrum spectrum;
+  diver::EcgCounts counts;
+  std::string reference;  // the file of marked beats; empty: none
+  std::optional<diver::HeartScore> score;
+  double us_a_second = 0.0;  // of one core, a second of ECG
+};
+Result<EcgReport> analyse_ecg(const PhysioFlags& flags);
+
+// How far estimates are from a known rate.
+struct RateErrors {
+  int answered = 0, refused = 0;
+  double median_bpm = 0.0, mean_bpm = 0.0;  // of the sizes
+  double within_2 = 0.0;                    // share of those answered
+  double doubled = 0.0;                     // the same, of more than 1.6 times the rate
+};
+RateErrors rate_errors(const std::vector<diver::BreathState>& states, double true_bpm,
+                       double from_s);
+
+struct BreathReport {
+  diver::Recording sound;
+  diver::BreathSettings settings;
+  std::vector<diver::BreathState> states, plain;  // by the settings; by the spectrum alone
+  std::optional<double> true_bpm;
+  double us_a_second = 0.0;
+};
+Result<BreathReport> analyse_sound(const PhysioFlags& flags);
+// The recording at its own pace through both threads; a row as each block is done.
+Status play_sound(const PhysioFlags& flags);
+
+struct GazeReport {
+  diver::GazeRecording recording;
+  diver::GazeSettings settings;
+  diver::GazeEvents events;
+  diver::GazeState state;
+  std::optional<diver::GazeCamera> camera;
+  // Against a person's marks, sample by sample, saccade or none; and of the simplest way, the angle
+  // from one sample to the next.
+  std::optional<double> kappa, simple_kappa;
+  double us_a_second = 0.0;
+};
+Result<GazeReport> analyse_gaze(const PhysioFlags& flags);
+// The screen angles of a direction, degrees.
+double screen_x_deg(const Vec3& direction);
+double screen_y_deg(const Vec3& direction);
+
+// Lines with '#' for people, then the table.
+std::string report_text(const PhysioFlags& flags, const EcgReport& report);
+std::string report_text(const PhysioFlags& flags, const BreathReport& report);
+std::string report_text(const PhysioFlags& flags, const GazeReport& report);
+nlohmann::json report_json(const PhysioFlags& flags, const EcgReport& report);
+nlohmann::json report_json(const PhysioFlags& flags, const BreathReport& report);
+nlohmann::json report_json(const PhysioFlags& flags, const GazeReport& report);
+ImageU8 report_plot(const PhysioFlags& flags, const EcgReport& report);
+ImageU8 report_plot(const PhysioFlags& flags, const BreathReport& report);
+ImageU8 report_plot(const PhysioFlags& flags, const GazeReport& report);
+
+const char* name_of(diver::IntervalKind kind);
+
+}  // namespace neritic::tools
