@@ -16,7 +16,8 @@ namespace neritic::diver {
 struct BreathSettings {
   BreathEstimator estimator = BreathEstimator::kMultiBand;
   double block_s = 10.0;   // of sound, handed over at once: an estimate each
-  double window_s = 30.0;  // that an estimate looks back over: whole blocks, fewer at the start
+  // That an estimate looks back over: two blocks, the knee of `tradeoff physiology`.
+  double window_s = 20.0;
 };
 // kBadInput: blocks of .5 to 60 s, windows of a block to 300 s.
 Status check_breath_settings(const BreathSettings& settings);

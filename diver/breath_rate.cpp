@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <limits>
 
 #include "engine/core/math.hpp"
 
@@ -85,10 +87,14 @@ void by_autocorrelation(const std::vector<Levels>& all, BreathEstimate& out) {
   const int shortest = static_cast<int>(kBreathFrames_hz / kFastestBreath_hz);
   const int last = frames - static_cast<int>(kLeastOverlap_s * kBreathFrames_hz);
   const int longest = std::min(static_cast<int>(kBreathFrames_hz / kSlowestBreath_hz), last);
-  std::vector<double> r;  // from lag 0
-  for (int lag = 0; lag <= last + 1; ++lag)
-    r.push_back(correlation(all, static_cast<std::size_t>(lag)));
-  const auto at = [&](int lag) { return r[static_cast<std::size_t>(lag)]; };
+  // By lag, worked out where it is asked for.
+  std::vector<double> r(static_cast<std::size_t>(last + 2),
+                        std::numeric_limits<double>::quiet_NaN());
+  const auto at = [&](int lag) {
+    double& value = r[static_cast<std::size_t>(lag)];
+    if (std::isnan(value)) value = correlation(all, static_cast<std::size_t>(lag));
+    return value;
+  };
   const auto is_top = [&](int lag) {
     return at(lag) > 0.0 && at(lag) >= at(lag - 1) && at(lag) > at(lag + 1);
   };
@@ -117,18 +123,30 @@ void by_autocorrelation(const std::vector<Levels>& all, BreathEstimate& out) {
 void by_spectrum(const Levels& envelope, BreathEstimate& out) {
   const auto n = static_cast<double>(envelope.size());
   const double step_hz = kBreathFrames_hz / n / 8.0;
-  std::vector<double> power;
+  // Each frame's share under Hann's window, and its angle, turned on by one step a line.
+  struct Turn {
+    double share;
+    std::complex<double> angle, step;
+  };
+  std::vector<Turn> turns;
   double all = 0.0;
-  for (std::size_t i = 0; i < envelope.size(); ++i) all += envelope[i] * envelope[i];
+  for (std::size_t i = 0; i < envelope.size(); ++i) {
+    const double at = static_cast<double>(i);
+    const double radians_a_hz = 2.0 * kPi * at / kBreathFrames_hz;
+    turns.push_back({envelope[i] * (0.5 - 0.5 * std::cos(2.0 * kPi * (at + 0.5) / n)),
+                     std::polar(1.0, radians_a_hz * (kSlowestBreath_hz - step_hz)),
+                     std::polar(1.0, radians_a_hz * step_hz)});
+    all += envelope[i] * envelope[i];
+  }
+  std::vector<double> power;
   for (double hz = kSlowestBreath_hz - step_hz; hz <= kFastestBreath_hz + step_hz; hz += step_hz) {
-    double c = 0.0, s = 0.0;
-    for (std::size_t i = 0; i < envelope.size(); ++i) {
-      const double window = 0.5 - 0.5 * std::cos(2.0 * kPi * (static_cast<double>(i) + 0.5) / n);
-      const double angle = 2.0 * kPi * hz * static_cast<double>(i) / kBreathFrames_hz;
-      c += window * envelope[i] * std::cos(angle);
-      s += window * envelope[i] * std::sin(angle);
+    std::complex<double> sum = 0.0;
+    for (Turn& turn : turns) {
+      sum += turn.share * turn.angle;
+      turn.angle = {turn.angle.real() * turn.step.real() - turn.angle.imag() * turn.step.imag(),
+                    turn.angle.real() * turn.step.imag() + turn.angle.imag() * turn.step.real()};
     }
-    power.push_back(c * c + s * s);
+    power.push_back(std::norm(sum));
   }
   std::size_t best = 1;
   for (std::size_t i = 1; i + 1 < power.size(); ++i)

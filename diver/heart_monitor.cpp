@@ -17,7 +17,8 @@ constexpr double kSpectrumEvery_s = 10.0;
 constexpr double kStale_s = 5.0;
 constexpr double kLeastRr_s = 0.2, kMostRr_s = 3.0;
 constexpr double kMostSkip_s = 3600.0;
-constexpr int kRateOver = 8;
+// More ride over a missed beat, fewer follow an effort sooner (`tradeoff physiology`).
+constexpr int kRateOver = 4;
 // Energy of beats over that of noise; below, Pan's thresholds lie in the noise.
 constexpr double kPoorBelow = 4.0;
 

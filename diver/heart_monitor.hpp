@@ -21,7 +21,7 @@ const char* name_of(SignalQuality quality);
 struct HeartState {
   double time_s = 0.0;  // of the newest sample or interval
   double last_beat_s = 0.0;
-  double rate_bpm = 0.0;  // by the median of the last eight normal intervals; 0: none, or stale
+  double rate_bpm = 0.0;  // by the median of the last four normal intervals; 0: none, or stale
   Variability over_five_minutes;
   HeartSpectrum spectrum;
   SignalQuality quality = SignalQuality::kNone;

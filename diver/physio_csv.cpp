@@ -11,6 +11,10 @@ namespace {
 constexpr std::size_t kMostCsvColumns = 64;
 // A step so much longer than usual is a gap.
 constexpr double kGapSteps = 1.5;
+// A stamp so much after its place is the next place's: a missing sample makes it one.
+constexpr double kLateSteps = 0.75;
+// A few rows with a clock that leaps must not fill the memory with what is missing.
+constexpr double kMostMissing = 1e6, kMostMissingARow = 100.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view trimmed(std::string_view text) {
@@ -86,12 +90,16 @@ Status spread_evenly(const std::vector<double>& time_s, const std::vector<double
                      const std::string& name, Recording& out) {
   double next_s = time_s.front();
   const double step_s = 1.0 / out.rate_hz;
+  double missing = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double ahead = (time_s[i] - next_s) / step_s;
-    if (ahead > kGapSteps - 1.0) {
-      if (static_cast<double>(out.samples.size()) + ahead > static_cast<double>(kMostSamples))
-        return bad_input("{}: a gap to {:g} s found, at most {} samples are accepted", name,
-                         time_s[i], kMostSamples);
+    if (ahead > kLateSteps) {
+      const double most =
+          std::max(kMostMissing, kMostMissingARow * static_cast<double>(values.size()));
+      if ((missing += ahead) > most)
+        return bad_input(
+            "{}: {:.0f} missing samples up to {:g} s found, at most {:.0f} are accepted", name,
+            missing, time_s[i], most);
       out.samples.resize(out.samples.size() + static_cast<std::size_t>(std::lround(ahead)),
                          kNothing);
       next_s = time_s[i];

@@ -192,7 +192,7 @@ void add_tradeoff(CLI::App& app, Run& run) {
   auto flags = std::make_shared<TradeoffFlags>();
   CLI::App* command =
       app.add_subcommand("tradeoff", "error against cost of one model, with its curve");
-  command->add_option("what", flags->what, "sonar, physics or swim")->required();
+  command->add_option("what", flags->what, "sonar, physics, swim or physiology")->required();
   command->add_option("--out", flags->out, "folder for tables (.csv, .md), pictures and levels")
       ->required();
   command
@@ -201,6 +201,8 @@ void add_tradeoff(CLI::App& app, Run& run) {
       ->capture_default_str();
   command->add_option("--kind", flags->kind,
                       "only this: imaging, profiling, echosounder, sidescan, mechanical");
+  command->add_option("--recordings", flags->recordings,
+                      "physiology: a folder of paced breath too (.wav, ..._12bpm_...)");
   command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
   command->add_flag("--quick", flags->quick, "fewer rays, bins and points");
   command->callback([flags, &run] { run = [flags] { return run_tradeoff(*flags); }; });
@@ -292,8 +294,9 @@ void add_physio(CLI::App& app, Run& run) {
       ->check(CLI::Range(0.1, 1e6));
   command->add_option("--annotations", flags->annotations,
                       "ecg: marked beats (.atr); a record's own beside it is found");
-  command->add_option("--estimator", flags->estimator,
-                      "breath: multiband, autocorrelation or spectrum (as published)")
+  command
+      ->add_option("--estimator", flags->estimator,
+                   "breath: multiband, autocorrelation or spectrum (as published)")
       ->capture_default_str();
   command->add_option("--window", flags->window_s, "breath: seconds an estimate looks back over");
   command->add_option("--reference", flags->reference_bpm,

@@ -1,4 +1,6 @@
 // `neritic physio ecg`: beats, intervals and their variability.
+#include <algorithm>
+
 #include "diver/physio_wfdb.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"

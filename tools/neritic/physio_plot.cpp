@@ -9,8 +9,8 @@ namespace neritic::tools {
 namespace {
 
 constexpr std::uint32_t kPlotWidth = 1600, kPlotHeight = 1000;
-constexpr double kMargin = 10.0, kHead = 60.0;
-constexpr std::size_t kMostPlotted = 3000;
+constexpr double kMargin = 10.0, kTitlePart = 60.0;
+constexpr std::size_t kMostPlotted = 4000;
 
 sonar::Canvas titled(const std::string& title, const std::string& under) {
   sonar::Canvas canvas(kPlotWidth, kPlotHeight, kPaper);
@@ -111,17 +111,15 @@ ImageU8 report_plot(const PhysioFlags& flags, const EcgReport& r) {
     under += fmt::format("; against marks {} found, {} extra, {} missed", r.score->found,
                          r.score->extra, r.score->missed);
   sonar::Canvas canvas = titled("Heart: " + name_only(flags.file), under);
-  const double right = kPlotWidth - kMargin, half = kHead + 0.5 * (kPlotHeight - kHead);
-  draw(canvas, {kMargin, kHead, right, half - 20.0}, "Ten seconds", "time, s",
+  const double right = kPlotWidth - kMargin, half = kTitlePart + 0.5 * (kPlotHeight - kTitlePart);
+  draw(canvas, {kMargin, kTitlePart, right, half - 20.0}, "Ten seconds", "time, s",
        r.ecg.channel.empty() ? "ECG" : r.ecg.channel, ecg_excerpt(r), 1e-6);
   const auto [over_time, pairs] = interval_series(r);
   draw(canvas, {kMargin, half, 800, kPlotHeight - kMargin}, "Intervals between beats", "time, s",
        "RR, ms", over_time, 100.0);
   const Axis both = axis_over("RR, ms", pairs, &Series::y, 100.0);
-  draw_lines(
-      canvas, {810, half, 1210, kPlotHeight - kMargin},
-      fmt::format("Each against the one before: SD1 {:.1f}, SD2 {:.1f} ms", v.sd1_ms, v.sd2_ms),
-      both, {"next RR, ms", both.min, both.max}, pairs);
+  draw_lines(canvas, {810, half, 1210, kPlotHeight - kMargin}, "Each against the one before", both,
+             {"next RR, ms", both.min, both.max}, pairs);
   if (r.spectrum.valid)
     draw_bars(canvas, {1220, half, right, kPlotHeight - kMargin},
               fmt::format("Power; LF/HF {:.2f}", r.spectrum.lf_over_hf), "ms2",
@@ -148,8 +146,8 @@ ImageU8 report_plot(const PhysioFlags& flags, const BreathReport& r) {
     level.x.push_back(static_cast<double>(i) / diver::kBreathFrames_hz);
     level.y.push_back(20.0 * std::log10(sum / static_cast<double>(every) + 1e-6));
   }
-  const double right = kPlotWidth - kMargin, half = kHead + 0.5 * (kPlotHeight - kHead);
-  draw(canvas, {kMargin, kHead, right, half - 20.0}, "Sound", "time, s", "dB of full scale",
+  const double right = kPlotWidth - kMargin, half = kTitlePart + 0.5 * (kPlotHeight - kTitlePart);
+  draw(canvas, {kMargin, kTitlePart, right, half - 20.0}, "Sound", "time, s", "dB of full scale",
        {level}, 10.0);
   Series found = line(diver::name_of(r.settings.estimator), 0, true),
          plain = line(fmt::format("plain spectrum, {:g} s", r.settings.block_s), 1, true),
@@ -199,9 +197,9 @@ ImageU8 report_plot(const PhysioFlags& flags, const GazeReport& r) {
         held_x.y.push_back(angle);
       }
   }
-  const double right = kPlotWidth - kMargin, half = kHead + 0.5 * (kPlotHeight - kHead);
-  draw(canvas, {kMargin, kHead, right, half - 20.0}, "Angles, with fixations' means", "time, s",
-       "degrees", {x, y, held_x}, 1.0);
+  const double right = kPlotWidth - kMargin, half = kTitlePart + 0.5 * (kPlotHeight - kTitlePart);
+  draw(canvas, {kMargin, kTitlePart, right, half - 20.0}, "Angles, with fixations' means",
+       "time, s", "degrees", {x, y, held_x}, 1.0);
   draw(canvas, {kMargin, half, 800, kPlotHeight - kMargin}, "Where it went", "x, degrees",
        "y, degrees", {path, fixed}, 1.0);
   Series sizes = line("saccades", 1, true, false);

@@ -7,6 +7,7 @@
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/tradeoff/physics_tradeoff.hpp"
+#include "tools/tradeoff/physiology_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
 #include "tools/tradeoff/swim_tradeoff.hpp"
 
@@ -34,6 +35,19 @@ Result<std::string> trade_swim(const TradeoffFlags& flags) {
   options.step = [&] { progress.step(); };
   NERITIC_TRY_STATUS(write_swim_tradeoff(flags.out, run_swim_tradeoff(options)));
   return flags.out.string() + ": swim.csv, .md, .json, .png";
+}
+
+Result<std::string> trade_physiology(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return bad_input("tradeoff: kind '{}' found, none is accepted for physiology", flags.kind);
+  PhysiologyTradeoffOptions options;
+  options.quick = flags.quick;
+  options.recordings = flags.recordings;
+  Progress progress("tradeoff physiology", steps(options));
+  options.step = [&] { progress.step(); };
+  NERITIC_TRY(const PhysiologyTradeoff tradeoff, run_physiology_tradeoff(options));
+  NERITIC_TRY_STATUS(write_physiology_tradeoff(flags.out, tradeoff));
+  return flags.out.string() + ": physiology.csv, .md, .json, .png";
 }
 
 Result<std::string> trade_sonar(const TradeoffFlags& flags) {
@@ -68,7 +82,9 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "sonar") return trade_sonar(flags);
   if (flags.what == "physics") return trade_physics(flags);
   if (flags.what == "swim") return trade_swim(flags);
-  return bad_input("tradeoff: '{}' found, sonar, physics or swim is accepted", flags.what);
+  if (flags.what == "physiology") return trade_physiology(flags);
+  return bad_input("tradeoff: '{}' found, sonar, physics, swim or physiology is accepted",
+                   flags.what);
 }
 
 }  // namespace neritic::tools

@@ -1,0 +1,170 @@
+// Readers of recordings: every kind of .wav, WFDB, .csv; and what they say of files that are none.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "diver/physio_csv.hpp"
+#include "diver/physio_wav.hpp"
+#include "diver/physio_wfdb.hpp"
+#include "engine/core/files.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::diver {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<std::byte> bytes_of(const std::string& text) {
+  std::vector<std::byte> out(text.size());
+  std::memcpy(out.data(), text.data(), text.size());
+  return out;
+}
+
+std::string number(std::uint64_t value, int bytes) {
+  std::string out;
+  for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));
+  return out;
+}
+
+std::string wav_of(int kind, int channels, int bits, const std::string& data) {
+  const std::string format = number(static_cast<std::uint64_t>(kind), 2) +
+                             number(static_cast<std::uint64_t>(channels), 2) + number(8000, 4) +
+                             number(0, 6) + number(static_cast<std::uint64_t>(bits), 2);
+  return "RIFF" + number(0, 4) + "WAVE" + "junk" + number(3, 4) + std::string("abc\0", 4) + "fmt " +
+         number(16, 4) + format + "data" + number(data.size(), 4) + data;
+}
+
+TEST(WavFile, EveryWidthGivesTheSameSignal) {
+  struct Kind {
+    int kind, bits;
+    std::string data;  // half, minus half, minus one
+  };
+  const auto bits_of = [](auto value) {
+    std::string out(sizeof value, '\0');
+    std::memcpy(out.data(), &value, sizeof value);
+    return out;
+  };
+  const Kind kinds[] = {
+      {1, 8, number(192, 1) + number(64, 1) + number(0, 1)},
+      {1, 16, number(0x4000, 2) + number(0xC000, 2) + number(0x8000, 2)},
+      {1, 24, number(0x400000, 3) + number(0xC00000, 3) + number(0x800000, 3)},
+      {1, 32, number(0x40000000, 4) + number(0xC0000000, 4) + number(0x80000000, 4)},
+      {3, 32, bits_of(0.5f) + bits_of(-0.5f) + bits_of(-1.0f)},
+      {3, 64, bits_of(0.5) + bits_of(-0.5) + bits_of(-1.0)}};
+  for (const Kind& kind : kinds) {
+    const auto wav = parse_wav(bytes_of(wav_of(kind.kind, 1, kind.bits, kind.data)), "a.wav", 0);
+    ASSERT_TRUE(wav.ok()) << wav.error().message;
+    EXPECT_EQ(wav->rate_hz, 8000.0);
+    EXPECT_EQ(wav->samples, (std::vector{0.5, -0.5, -1.0})) << kind.kind << " " << kind.bits;
+  }
+}
+
+TEST(WavFile, ChannelsAreToldApart) {
+  const auto bytes = bytes_of(
+      wav_of(1, 2, 16, number(0x4000, 2) + number(0, 2) + number(0x2000, 2) + number(0x1000, 2)));
+  EXPECT_EQ(parse_wav(bytes, "a.wav", 0)->samples, (std::vector{0.5, 0.25}));
+  EXPECT_EQ(parse_wav(bytes, "a.wav", 1)->samples, (std::vector{0.0, 0.125}));
+  EXPECT_THAT(parse_wav(bytes, "a.wav", 2).error().message, HasSubstr("0 to 1 is accepted"));
+}
+
+TEST(WavFile, WhatIsNoneIsAnErrorInWords) {
+  EXPECT_THAT(parse_wav({}, "a.wav", 0).error().message, HasSubstr("a.wav: no RIFF"));
+  EXPECT_THAT(parse_wav(bytes_of(wav_of(2, 1, 4, "abcd")), "a.wav", 0).error().message,
+              HasSubstr("format 2 of 4 bit found"));
+  EXPECT_THAT(parse_wav(bytes_of(wav_of(1, 1, 16, "")), "a.wav", 0).error().message,
+              HasSubstr("no samples"));
+}
+
+TEST(WfdbFile, SignalsOfFormat212And16AreThoseOfTheirBits) {
+  // 100, -100, 2047, missing: low bytes 100, and the high halves in the second byte of three.
+  const std::string packed{'\x64', '\xF0', '\x9C', '\xFF', '\x87', '\x00'};
+  const std::string text =
+      "r 2 360 2\nr.dat 212 200(0)/mV 12 0 100 2147 0 I\nr.dat 212 100 12 0 -100 0 0 II\n";
+  auto header = parse_wfdb_header(text, "r.hea");
+  ASSERT_TRUE(header.ok()) << header.error().message;
+  header->signals[1].has_checksum = false;
+  const auto one = parse_wfdb_signal(*header, 0, bytes_of(packed), "r.dat");
+  ASSERT_TRUE(one.ok()) << one.error().message;
+  EXPECT_EQ(one->samples[0], 0.5);
+  EXPECT_EQ(one->samples[1], 2047.0 / 200.0);
+  const auto two = parse_wfdb_signal(*header, 1, bytes_of(packed), "r.dat");
+  EXPECT_EQ(two->samples[0], -1.0);
+  EXPECT_TRUE(std::isnan(two->samples[1]));
+  header->signals[0].checksum = 5;
+  EXPECT_THAT(parse_wfdb_signal(*header, 0, bytes_of(packed), "r.dat").error().message,
+              HasSubstr("checksum of 2147"));
+  header->samples = 100;
+  EXPECT_THAT(parse_wfdb_signal(*header, 1, bytes_of(packed), "r.dat").error().message,
+              HasSubstr("2 samples found, 100 are required"));
+  const auto plain = parse_wfdb_header("r 1 130.16\nr.dat 16\n", "r.hea");
+  ASSERT_TRUE(plain.ok());
+  EXPECT_EQ(parse_wfdb_signal(*plain, 0, bytes_of(number(0xFF38, 2)), "r.dat")->samples,
+            (std::vector{-1.0}));
+}
+
+TEST(WfdbFile, HeadersThatAreNoneSayTheLine) {
+  const auto message = [](const char* text) {
+    return parse_wfdb_header(text, "r.hea").error().message;
+  };
+  EXPECT_THAT(message(""), HasSubstr("no record line"));
+  EXPECT_THAT(message("r 1 nan\nr.dat 16\n"), HasSubstr("r.hea:1: a rate of 'nan'"));
+  EXPECT_THAT(message("r 2 360\nr.dat 16\n"), HasSubstr("1 of 2 signals"));
+  EXPECT_THAT(message("# note\nr 1 360\nr.dat 80\n"), HasSubstr("r.hea:3: format '80'"));
+  EXPECT_THAT(message("r/3 1 360\n"), HasSubstr("several segments"));
+}
+
+TEST(WfdbFile, AnnotationsSkipNotesAndLeaps) {
+  const auto word = [](int code, int value) {
+    return number(static_cast<std::uint64_t>(code << 10 | value), 2);
+  };
+  const std::string atr = word(28, 10) + word(63, 3) + std::string("(N\0\0", 4) + word(1, 90) +
+                          word(59, 0) + number(1, 2) + number(2, 2) + word(5, 4) + word(0, 0);
+  const auto beats = parse_wfdb_beats(bytes_of(atr), 100.0, "r.atr");
+  ASSERT_TRUE(beats.ok()) << beats.error().message;
+  ASSERT_EQ(beats->size(), 2u);
+  EXPECT_EQ((*beats)[0].time_s, 1.0);
+  EXPECT_EQ((*beats)[0].code, 1);
+  EXPECT_EQ((*beats)[1].time_s, (100.0 + 65536.0 + 2.0 + 4.0) / 100.0);
+  EXPECT_THAT(parse_wfdb_beats(bytes_of("abc"), 100.0, "r.atr").error().message,
+              HasSubstr("no end mark"));
+}
+
+TEST(SignalCsv, TimeGivesTheRateAndGapsAreMissing) {
+  const auto csv = parse_csv("time_ms,note,ecg\n0,a,1\n10,b,2\n20,,\n30,,4\n70,,8\n60,,7\n80,,9\n",
+                             "a.csv", {"ecg", 0.0});
+  ASSERT_TRUE(csv.ok()) << csv.error().message;
+  EXPECT_NEAR(csv->rate_hz, 100.0, 1e-9);
+  EXPECT_EQ(csv->refused, 1u);
+  ASSERT_EQ(csv->samples.size(), 9u);
+  EXPECT_EQ(csv->samples[1], 2.0);
+  for (const int missing : {2, 4, 5, 6})
+    EXPECT_TRUE(std::isnan(csv->samples[static_cast<std::size_t>(missing)])) << missing;
+  EXPECT_EQ(csv->samples[7], 8.0);
+}
+
+TEST(SignalCsv, AStrapsClockThatDriftsIsFollowed) {
+  std::string text = "t_s,ecg\n";
+  for (int i = 0; i < 2000; ++i)
+    text += fmt::format("{:.4f},{}\n", i / 130.16 + 0.002 * (i % 3), i);
+  const auto csv = parse_csv(text, "a.csv", {});
+  ASSERT_TRUE(csv.ok());
+  EXPECT_NEAR(csv->rate_hz, 130.16, 0.05);
+  EXPECT_EQ(csv->samples.size(), 2000u);
+}
+
+TEST(SignalCsv, WhatIsNoneIsAnErrorInWords) {
+  const auto message = [](const char* text) {
+    return parse_csv(text, "a.csv", {}).error().message;
+  };
+  EXPECT_THAT(message(""), HasSubstr("no row found"));
+  EXPECT_THAT(message("t,ecg\n"), HasSubstr("no row found"));
+  EXPECT_THAT(message("0.1,2\n0.2,3\n"), HasSubstr("a.csv:1: a number found in the heading"));
+  EXPECT_THAT(message("ecg\n1\n2\n"), HasSubstr("--rate is accepted"));
+  EXPECT_THAT(message("t,ecg\n0,1\n0.1,2,3\n"), HasSubstr("a.csv:3: 3 columns"));
+  EXPECT_THAT(message("t,ecg\n0,1\n0.001,2\n0.002,2\n1e9,3\n"), HasSubstr("missing samples"));
+  EXPECT_TRUE(parse_csv("ecg\n1\n", "a.csv", {"", 360.0}).ok());
+}
+
+}  // namespace
+}  // namespace neritic::diver

@@ -1,0 +1,149 @@
+// `neritic physio`: tables, JSON and pictures of recordings, and what it says of files that are
+// none.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tests/support/support.hpp"
+#include "tools/neritic/commands.hpp"
+#include "tools/tradeoff/physiology_signals.hpp"
+#include "tools/tradeoff/physiology_tradeoff.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using ::testing::HasSubstr;
+
+nlohmann::json json_in(const std::filesystem::path& path) {
+  return parse_json(read_text(path).value()).value();
+}
+
+TEST(PhysioCommand, AnEcgBecomesBeatsAsTableJsonAndPicture) {
+  const test::ScratchFolder folder;
+  std::vector<double> beats_s;
+  for (double t = 0.5; t < 29.5; t += 0.75) beats_s.push_back(t);
+  const auto ecg = make_ecg(beats_s, 250.0, 30.0, 20.0, 1);
+  std::string text = "t_s,ecg_mv\n";
+  for (std::size_t i = 0; i < ecg.size(); ++i)
+    text += fmt::format("{:.4f},{:.4f}\n", static_cast<double>(i) / 250.0, ecg[i]);
+  ASSERT_TRUE(write_text(folder / "heart.csv", text).ok());
+  PhysioFlags flags;
+  flags.what = "ecg";
+  flags.file = (folder / "heart.csv").string();
+  flags.out = folder / "out";
+  flags.plot = folder / "heart.png";
+  const auto said = run_physio(flags);
+  ASSERT_TRUE(said.ok()) << said.error().message;
+  EXPECT_THAT(*said, HasSubstr("ecg.csv, ecg.json"));
+  const nlohmann::json json = json_in(folder / "out/ecg.json");
+  EXPECT_EQ(json["beats"].size(), beats_s.size());
+  EXPECT_NEAR(json["variability"]["mean_rate_bpm"].get<double>(), 80.0, 0.1);
+  EXPECT_TRUE(json["spectrum"].is_null());  // half a minute is too short
+  const std::string table = read_text(folder / "out/ecg.csv").value();
+  EXPECT_THAT(table, HasSubstr("time_s,rr_ms,kind,amplitude\n"));
+  EXPECT_EQ(scene::read_image8(folder / "heart.png")->width, 1600u);
+}
+
+TEST(PhysioCommand, ARecordIsScoredAgainstItsOwnMarks) {
+  NERITIC_REQUIRE_SHARED(shared);
+  const test::ScratchFolder folder;
+  PhysioFlags flags;
+  flags.what = "ecg";
+  flags.file = (shared / "data/recordings/ecg_mitbih_100/100.hea").string();
+  flags.out = folder.path();
+  ASSERT_TRUE(run_physio(flags).ok());
+  const nlohmann::json score = json_in(folder / "ecg.json")["score"];
+  EXPECT_EQ(score["found"], 2273);
+  EXPECT_EQ(score["extra"], 0);
+  EXPECT_EQ(score["missed"], 0);
+}
+
+TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
+  const test::ScratchFolder folder;
+  std::string text = "# fs_hz=500\nx_deg,y_deg\n";
+  for (int i = 0; i < 400; ++i) text += i < 200 ? "0,0\n" : "45,0\n";
+  ASSERT_TRUE(write_text(folder / "gaze.csv", text).ok());
+  PhysioFlags flags;
+  flags.what = "gaze";
+  flags.file = (folder / "gaze.csv").string();
+  flags.out = folder.path();
+  flags.intrinsics = "100,100,50,50";
+  flags.plot = folder / "gaze.png";
+  for (const char* method : {"ivt", "idt"}) {
+    flags.method = method;
+    const auto said = run_physio(flags);
+    ASSERT_TRUE(said.ok()) << said.error().message;
+    const nlohmann::json json = json_in(folder / "gaze.json");
+    EXPECT_THAT(json["note"].get<std::string>(), HasSubstr("pursuit"));
+    ASSERT_EQ(json["fixations"].size(), 2u) << method;
+    EXPECT_NEAR(json["fixations"][0]["pixel"][0].get<double>(), 50.0, 1e-6);
+    EXPECT_NEAR(json["fixations"][1]["pixel"][0].get<double>(), 150.0, 1.5);
+  }
+}
+
+TEST(PhysioCommand, FilesThatAreNoneAreErrorsInWords) {
+  const test::ScratchFolder folder;
+  const auto message = [&](const char* what, const char* name, const std::string& text) {
+    EXPECT_TRUE(write_text(folder / name, text).ok());
+    PhysioFlags flags;
+    flags.what = what;
+    flags.file = (folder / name).string();
+    const auto said = run_physio(flags);
+    EXPECT_FALSE(said.ok());
+    return said.ok() ? std::string() : said.error().message;
+  };
+  EXPECT_THAT(message("ecg", "empty.csv", ""), HasSubstr("no row found"));
+  EXPECT_THAT(message("ecg", "slow.csv", "t_s,ecg\n0,1\n0.1,2\n0.2,1\n"),
+              HasSubstr("a rate of 10 Hz found, 50 to 1e+06 is accepted"));
+  EXPECT_THAT(message("ecg", "one.csv", "t_s,ecg\n0,1\n"), HasSubstr("no rate"));
+  EXPECT_THAT(message("breath", "cut.wav", "RIFF"), HasSubstr("no RIFF and WAVE"));
+  EXPECT_THAT(message("gaze", "gaze.wav", "x"), HasSubstr("gaze as .csv"));
+  EXPECT_THAT(message("ecg", "a.mp3", "x"), HasSubstr(".csv, .wav, .hea or .dat is accepted"));
+  EXPECT_THAT(message("pulse", "a.csv", "x"), HasSubstr("ecg, breath or gaze is accepted"));
+}
+
+TEST(PhysiologyTradeoff, TheDefaultsAreTheChoiceOfTheCurves) {
+  const auto measured = run_physiology_tradeoff({.quick = true});
+  ASSERT_TRUE(measured.ok());
+  const HeartPoint* heart = heart_choice(*measured);
+  ASSERT_NE(heart, nullptr);
+  EXPECT_EQ(heart->intervals, 4);
+  for (const DetectorPoint& p : measured->detector) EXPECT_EQ(p.missed, 0) << p.rate_hz;
+  // The plain spectrum doubles; bands do so less than half as often, at any window that answers.
+  for (const BreathPoint& p : measured->breath) {
+    if (p.estimator != diver::BreathEstimator::kSpectrum || p.window_s < 10.0) continue;
+    for (const BreathPoint& q : measured->breath)
+      if (q.estimator == diver::BreathEstimator::kMultiBand && q.window_s == p.window_s) {
+        EXPECT_LT(q.doubled, 0.7 * p.doubled) << p.window_s;
+        EXPECT_GT(q.right, 2.0 * p.right) << p.window_s;
+      }
+  }
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_physiology_tradeoff(folder.path(), *measured).ok());
+  EXPECT_TRUE(json_in(folder / "physiology.json")["knees"].contains("heart_median"));
+  EXPECT_GT(scene::read_image8(folder / "physiology.png")->height, 900u);
+}
+
+TEST(PhysiologyTradeoff, TheKneeIsFarthestBelowTheChord) {
+  EXPECT_EQ(knee_of({1, 2, 3, 4, 5}, {10, 4, 1, 0.9, 0.8}), 2u);
+  EXPECT_EQ(knee_of({1, 2}, {3, 1}), 1u);
+}
+
+// Breath paced by a metronome: two blocks of ten seconds lie on the knee.
+TEST(PhysiologyTradeoff, TheWindowOfBreathLiesOnTheKnee) {
+  NERITIC_REQUIRE_SHARED(shared);
+  const auto measured = run_physiology_tradeoff(
+      {.quick = true, .recordings = shared / "data/recordings/breath_paced"});
+  ASSERT_TRUE(measured.ok());
+  const BreathPoint* knee = breath_knee(*measured, "recorded");
+  ASSERT_NE(knee, nullptr);
+  EXPECT_EQ(knee->window_s, 20.0);
+}
+
+}  // namespace
+}  // namespace neritic::tools

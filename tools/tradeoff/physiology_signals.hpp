@@ -1,0 +1,36 @@
+// Signals whose truth is known, for `neritic tradeoff physiology`: an ECG of given beats, breath of
+// a given rate in three kinds of sound; and recordings with their references. Pure functions of
+// their seed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "diver/physio_recording.hpp"
+
+namespace neritic::tools {
+
+struct MadeHeart {
+  std::vector<double> beats_s;
+  std::vector<double> rate_bpm;  // at each beat, without what breath and extra beats do to it
+};
+// From rest over effort and back, with respiratory arrhythmia and one extra beat in thirty.
+MadeHeart make_heart(double seconds, std::uint64_t seed);
+// Gaussian waves around each beat, and white noise so many decibels below the signal's power.
+std::vector<double> make_ecg(const std::vector<double>& beats_s, double rate_hz, double seconds,
+                             double snr_db, std::uint64_t seed);
+
+struct BreathSound {
+  std::string kind;  // "chest", "regulator", "alike" or "recorded"
+  double true_bpm = 0.0;
+  diver::Recording sound;
+};
+// chest: in and out differ a little in colour and loudness; regulator: a valve's hiss, then
+// bubbles; alike: in and out are the same, and only breaths' lengths tell. Breaths vary by 5 %.
+std::vector<BreathSound> make_breath(const std::vector<double>& rates_bpm, double seconds,
+                                     std::uint64_t seed);
+// The .wav files of a folder and those below it whose names hold a rate (..._12bpm_...).
+Result<std::vector<BreathSound>> read_breath(const std::filesystem::path& folder);
+
+}  // namespace neritic::tools

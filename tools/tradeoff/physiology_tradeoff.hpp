@@ -1,0 +1,69 @@
+// `neritic tradeoff physiology`: how wrong the rates of heart and breath are, over how far back an
+// estimate looks (its latency) and what it costs; by every estimator there is. One thread.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "diver/breath_rate.hpp"
+#include "engine/core/result.hpp"
+
+namespace neritic::tools {
+
+struct PhysiologyTradeoffOptions {
+  bool quick = false;                  // fewer signals: to see that it works
+  std::filesystem::path recordings;    // breath paced by a metronome too; empty: only made signals
+  std::function<void()> step = [] {};  // after each of steps(options)
+};
+std::uint64_t steps(const PhysiologyTradeoffOptions& options);
+
+struct BreathPoint {
+  std::string signals;  // "made" or "recorded"
+  diver::BreathEstimator estimator = diver::BreathEstimator::kMultiBand;
+  double window_s = 0.0;
+  int windows = 0;
+  double answered = 0.0, right = 0.0, doubled = 0.0;  // shares of all windows; right: within 2
+  double median_bpm = 0.0;                            // size of the error, of those answered
+  double us = 0.0;                                    // of one core, an estimate
+};
+
+enum class RateOver : std::uint8_t { kCount, kMean, kMedian };  // beats in a time, or intervals
+const char* name_of(RateOver estimator);
+struct HeartPoint {
+  RateOver estimator = RateOver::kMedian;
+  int intervals = 0;       // that an estimate looks back over
+  double latency_s = 0.0;  // the time they take, on the mean
+  double rms_bpm = 0.0;    // of the error
+};
+
+// The detector over sampling rates, all else the same.
+struct DetectorPoint {
+  double rate_hz = 0.0;
+  int found = 0, extra = 0, missed = 0;
+  double timing_ms = 0.0;    // root mean square, of the beats found
+  double us_a_second = 0.0;  // of one core, a second of ECG
+};
+
+struct PhysiologyTradeoff {
+  std::vector<BreathPoint> breath;
+  std::vector<HeartPoint> heart;
+  std::vector<DetectorPoint> detector;
+};
+Result<PhysiologyTradeoff> run_physiology_tradeoff(const PhysiologyTradeoffOptions& options);
+
+// The knee of a falling curve: the point farthest below the line between its ends. x rises. Fewer
+// than three points: the last.
+std::size_t knee_of(const std::vector<double>& x, const std::vector<double>& y);
+// That of multiband's error, of the windows that mostly answer at all, and as a rule not wrongly.
+const BreathPoint* breath_knee(const PhysiologyTradeoff& tradeoff, const std::string& signals);
+// The median over the most intervals whose error is within 5 % of the least: more of them ride over
+// a missed beat.
+const HeartPoint* heart_choice(const PhysiologyTradeoff& tradeoff);
+
+// physiology.csv, .md, .json, .png in the folder.
+Status write_physiology_tradeoff(const std::filesystem::path& folder,
+                                 const PhysiologyTradeoff& tradeoff);
+
+}  // namespace neritic::tools
