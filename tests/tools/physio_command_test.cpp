@@ -71,14 +71,16 @@ TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
   PhysioFlags flags;
   flags.what = "gaze";
   flags.file = (folder / "gaze.csv").string();
-  flags.out = folder.path();
+  flags.out = folder.path();  // where gaze.csv is
+  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("would replace the recording"));
+  flags.out = folder / "out";
   flags.intrinsics = "100,100,50,50";
   flags.plot = folder / "gaze.png";
   for (const char* method : {"ivt", "idt"}) {
     flags.method = method;
     const auto said = run_physio(flags);
     ASSERT_TRUE(said.ok()) << said.error().message;
-    const nlohmann::json json = json_in(folder / "gaze.json");
+    const nlohmann::json json = json_in(folder / "out/gaze.json");
     EXPECT_THAT(json["note"].get<std::string>(), HasSubstr("pursuit"));
     ASSERT_EQ(json["fixations"].size(), 2u) << method;
     EXPECT_NEAR(json["fixations"][0]["pixel"][0].get<double>(), 50.0, 1e-6);

@@ -45,6 +45,12 @@ Result<std::string> show(const PhysioFlags& flags, const Report& report) {
   std::string where;
   if (!flags.out.empty()) {
     NERITIC_TRY_STATUS(make_folder(flags.out));
+    std::error_code no_such;
+    if (std::filesystem::equivalent(flags.out / (flags.what + ".csv"), flags.file, no_such))
+      return bad_input(
+          "--out: '{}' found, where the table would replace the recording; another "
+          "folder is accepted",
+          flags.out.string());
     NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".csv"), table));
     NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".json"), json));
     where = flags.out.string() + fmt::format(": {0}.csv, {0}.json", flags.what);
