@@ -160,7 +160,9 @@ void GazeMonitor::settle_dispersion(bool all, GazeEvents& out) {
       take(waiting_.back(), GazeClass::kFixation);
       waiting_.clear();
     } else {
+      // The eye has gone, perhaps between two samples.
       in_fixation_ = false;
+      leave_fixation(out);
     }
   }
   while (!in_fixation_ && !waiting_.empty() &&
@@ -191,6 +193,7 @@ void GazeMonitor::classify(const Seen& seen, GazeClass is, double velocity_rad_s
     if (in_saccade_) {
       saccade_.end_s = seen.time_s;
       saccade_.amplitude_rad = angle_between(saccade_start_.direction, seen.direction);
+      saccade_.peak_rad_s = std::max(saccade_.peak_rad_s, velocity_rad_s);
       in_saccade_ = false;
       has_saccade_ = true;
     }
@@ -198,19 +201,23 @@ void GazeMonitor::classify(const Seen& seen, GazeClass is, double velocity_rad_s
     state_.fixated_s = growing_.fixation.end_s - growing_.fixation.start_s;
     state_.fixation = glm::normalize(growing_.sum);
   } else {
-    if (growing_.open) end_fixation(out);
-    if (!in_saccade_) {
-      in_saccade_ = true;
-      saccade_start_ = has_before_ ? before_ : seen;
-      saccade_ = {saccade_start_.time_s};
-    }
+    if (!has_before_) before_ = seen;
+    if (!in_saccade_) leave_fixation(out);
     saccade_.end_s = seen.time_s;
     saccade_.amplitude_rad = angle_between(saccade_start_.direction, seen.direction);
     saccade_.peak_rad_s = std::max(saccade_.peak_rad_s, velocity_rad_s);
-    state_.fixated_s = 0.0;
   }
   before_ = seen;
   has_before_ = true;
+}
+
+// A saccade starts at the last sample.
+void GazeMonitor::leave_fixation(GazeEvents& out) {
+  if (growing_.open) end_fixation(out);
+  in_saccade_ = true;
+  saccade_start_ = before_;
+  saccade_ = {saccade_start_.time_s};
+  state_.fixated_s = 0.0;
 }
 
 // The one that grows has ended: the same as the one that is held, or the next.

@@ -114,6 +114,7 @@ class GazeMonitor {
   void settle_velocity(bool all, GazeEvents& out);
   void settle_dispersion(bool all, GazeEvents& out);
   void classify(const Seen& seen, GazeClass is, double velocity_rad_s, GazeEvents& out);
+  void leave_fixation(GazeEvents& out);
   void end_fixation(GazeEvents& out);
   void emit(GazeEvents& out);
   void break_off(GazeEvents& out);

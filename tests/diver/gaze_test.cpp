@@ -1,10 +1,12 @@
 // Gaze: angles, pixels, fixations and saccades, against closed forms and a person's marks.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "diver/gaze_csv.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/random.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic::diver {
@@ -83,6 +85,20 @@ TEST(GazeByDispersion, OneSaccadeBetweenTwoFixations) {
     EXPECT_NEAR(
         degrees(angle_between(events.fixations[0].direction, events.fixations[1].direction)), 10.0,
         0.2);
+  }
+}
+
+// Faster than the tracker: no sample lies between two fixations.
+TEST(GazeByDispersion, ALeapBetweenTwoSamplesIsASaccade) {
+  std::vector<GazeSample> samples;
+  for (int i = 0; i < 100; ++i)
+    samples.push_back({0.01 * i, direction_of_angles(i < 50 ? 0.0 : radians(20.0), 0.0)});
+  for (const GazeMethod method : {GazeMethod::kDispersion, GazeMethod::kVelocity}) {
+    const GazeEvents events = find_gaze_events(samples, headset_gaze(method));
+    ASSERT_EQ(events.fixations.size(), 2u);
+    ASSERT_EQ(events.saccades.size(), 1u);
+    EXPECT_NEAR(degrees(events.saccades[0].amplitude_rad), 20.0, 1e-6);
+    EXPECT_GT(degrees(events.saccades[0].peak_rad_s), 900.0);
   }
 }
 
