@@ -40,10 +40,17 @@ float edge_reach(SonarColumn s, float t, float planar, float along_edge, float a
   return reach > 0.0 ? min(reach, limit) : max(reach, limit);
 }
 
+// Seen more grazing than this (range over height; 89.1 degrees of incidence), or carried so far from the pixel's
+// own range, a plane may be a limb's: it goes on where the surface does not, so the row's centre counts.
+const float kSteepest = 64.0;
+const float kFarCarried = 0.05;
+
 // Where the plane meets the edges of a row that is lower than a bin: by the plane's slope at its centre.
-void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, inout BeamHit hit) {
+void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, float stretch, inout BeamHit hit) {
   float half_tan = 0.5 * (edges.y - edges.x) * s.sec_theta;
-  float reach = hit.range_m * min(abs(half_tan * along_up / along), kLargestStretch - 1.0);
+  float slope = abs(along_up / along);
+  bool limb = slope > kSteepest || abs(stretch - 1.0) > kFarCarried;
+  float reach = !limb ? hit.range_m * min(half_tan * slope, kLargestStretch - 1.0) : 0.0;
   hit.ends_m = hit.range_m + vec2(-reach, reach);
   hit.ends_tan = along * along_up <= 0.0 ? edges : edges.yx;
 }
@@ -104,11 +111,13 @@ BeamHit beam_hit(SonarColumn s, uint row) {
   float along = along_pixel;
   float plane = planar;  // of the pixel
   bool meets = false;
+  float carried = 1.0;
   if (kPlane != 0) {
     float along_beam = dot(n, s.beam_base) + e.x * s.sec_theta * along_up;
     float stretch = along_pixel / along_beam;
     meets = stretch < kLargestStretch && stretch * kLargestStretch > 1.0;
     if (meets) {
+      carried = stretch;
       planar *= stretch;
       along = along_beam;
       length_of = s.sec_theta * e.y;
@@ -117,7 +126,7 @@ BeamHit beam_hit(SonarColumn s, uint row) {
   hit.strength = min(facing(-along / length_of), 1.0);
   hit.range_m = planar * length_of;
   if (kFootprint == kSonarFootprintShared)
-    find_close_ends(s, e.zw, along, along_up, hit);
+    find_close_ends(s, e.zw, along, along_up, carried, hit);
   if (kFootprint == kSonarFootprintBounded)
     find_ends(s, row, v, e.zw, plane, dot(n, s.beam_base) + e.zw * s.sec_theta * along_up, along_pixel, hit);
   return hit;

@@ -247,16 +247,17 @@ TEST_F(SonarGpu, ExtremesOfRangeApertureAndBins) {
 
 TEST_F(SonarGpu, AGrazingPlaneLosesNoEnergyAndStaysInItsRows) {
   // A seabed 10 cm below: 1.1 degrees grazing at 5 m. The plane gather must find the rows that the
-  // closed form gives: elevation phi hits at .1 / sin(-phi).
+  // closed form gives: elevation phi hits at .1 / sin(-phi). A row is all of its elevations.
   const BeamGrid grid = sonar::symmetric_grid(0.5, 5, radians(60), radians(28), {450, 60, 400});
   const auto inputs = test::sector_images(grid, test::plane(Vec3(0, -1, 0), 0.1), 0.5);
   const SonarImage image = run(grid, inputs, Gather::kPlane);
   std::vector<double> expected(450, 0.0);
-  for (std::uint32_t e = 0; e < 400; ++e) {
-    const double phi = grid.elevation_rad(e);
+  constexpr int kParts = 400 * 256;
+  for (int e = 0; e < kParts; ++e) {
+    const double phi = radians(-14.0 + 28.0 * (e + 0.5) / kParts);
     if (phi >= 0.0) continue;
     if (const auto row = sonar::bin_index(0.1 / std::sin(-phi), 0.5, 5.0, 450))
-      expected[*row] += std::sin(-phi) / 400;
+      expected[*row] += std::sin(-phi) / kParts;
   }
   double misplaced = 0.0, sum = 0.0;
   for (std::uint32_t r = 0; r < 450; ++r) {
