@@ -34,6 +34,19 @@ Status read_into(const fs::path& path, Buffer& out) {
   return {};
 }
 
+// The name that symbolic links lead to, whether or not there is a file yet: a rename must replace
+// that one, not the link.
+fs::path behind_links(fs::path path) {
+  constexpr int kMostLinks = 40;  // as Linux: then it is a loop, and opening fails
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+    const fs::path next = fs::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / next;
+  }
+  return path;
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> read_file(const fs::path& path) {
@@ -49,19 +62,24 @@ Result<std::string> read_text(const fs::path& path) {
 }
 
 Status write_file(const fs::path& path, std::span<const std::byte> bytes) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  // A device or a pipe is written to: a rename would put a plain file in its place.
+  const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
+  const fs::path target = in_place ? path : behind_links(path);
   static std::atomic<unsigned> counter{0};  // two threads may write the same name at once
-  fs::path temporary = path;
-  temporary += fmt::format(".{}-{}.tmp", ::getpid(), counter++);
-  File file(std::fopen(temporary.c_str(), "wb"));
+  fs::path name = target;
+  if (!in_place) name += fmt::format(".{}-{}.tmp", ::getpid(), counter++);
+  File file(std::fopen(name.c_str(), "wb"));
   if (!file) return failure(ErrorCode::kIo, "{}: cannot be written", path.string());
   const bool written =
       bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
   const bool closed = std::fclose(file.release()) == 0;
-  std::error_code error;
-  if (written && closed) fs::rename(temporary, path, error);
+  error.clear();
+  if (written && closed && !in_place) fs::rename(name, target, error);
   if (!written || !closed || error) {
     std::error_code ignored;
-    fs::remove(temporary, ignored);
+    if (!in_place) fs::remove(name, ignored);
     return failure(ErrorCode::kIo, "{}: cannot be written{}", path.string(),
                    error ? ": " + error.message() : std::string(" whole (disk full?)"));
   }

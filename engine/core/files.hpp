@@ -1,5 +1,6 @@
 // Whole files in and out. Output goes to a temporary name in the same folder and is renamed when
-// whole: a half-written file never carries its final name. Any thread.
+// whole: a half-written file never carries its final name. Symbolic links are followed; what is no
+// plain file (a device, a pipe) is written to as it stands. Any thread.
 #pragma once
 
 #include <cstddef>

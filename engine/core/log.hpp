@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -14,6 +15,9 @@ enum class LogLevel { kQuiet, kWarnings, kInfo, kDebug };
 // Sets what is printed from now on (default kWarnings). Any thread.
 void set_log_level(LogLevel level);
 void log_line(LogLevel level, std::string_view line);
+// The text with its control characters written out (\n, \x1b), so that it stays one line whatever
+// a file's name holds.
+std::string one_line(std::string_view text);
 
 template <class... Args>
 void log_warn(fmt::format_string<Args...> format, Args&&... args) {
