@@ -46,6 +46,15 @@ std::string_view value_of(std::string_view header, std::string_view key) {
   return {};
 }
 
+// The quoted word that text starts with, without its quotes; else the start of text. Both short.
+std::string quoted_start(std::string_view text) {
+  constexpr std::size_t kMost = 12;
+  const bool quoted = text.front() == '\'' || text.front() == '"';
+  const auto end = quoted ? text.find(text.front(), 1) : text.npos;
+  return std::string(quoted && end != text.npos ? text.substr(1, end - 1).substr(0, kMost)
+                                                : text.substr(0, kMost));
+}
+
 Result<std::vector<std::size_t>> parse_shape(std::string_view text, const std::string& name) {
   if (text.empty() || text.front() != '(')
     return bad_input("{}: the .npy header has no shape", name);
@@ -169,7 +178,7 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
                                 [&](const TypeRow& r) { return type_name == r.name; });
   if (row == kTypes.end())
     return bad_input("{}: element type {}; <f4 <f8 |u1 <u2 <u4 <i2 <i4 <i8 |b1 are accepted", name,
-                     std::string(descr.substr(0, std::min<std::size_t>(descr.size(), 8))));
+                     quoted_start(descr));
   array.type = row->type;
   if (!value_of(header, "fortran_order").starts_with("False"))
     return bad_input("{}: Fortran order; save it with numpy.ascontiguousarray", name);

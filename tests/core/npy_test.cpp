@@ -29,6 +29,19 @@ TEST(Npy, DataStartsOnAMultipleOf64Bytes) {
   EXPECT_EQ((bytes->size() - 14) % 64, 0u);
 }
 
+TEST(Npy, AnElementTypeThatIsNotReadIsQuotedAlone) {
+  std::string text = "\x93NUMPY\x01";
+  text += '\0';
+  const std::string header = "{'descr': '>f4', 'fortran_order': False, 'shape': (1,), }\n";
+  text += static_cast<char>(header.size());
+  text += '\0';
+  text += header + "1234";
+  const auto array = parse_npy(std::as_bytes(std::span(text.data(), text.size())), "a.npy");
+  ASSERT_FALSE(array.ok());
+  EXPECT_NE(array.error().message.find("element type >f4;"), std::string::npos)
+      << array.error().message;
+}
+
 TEST(Npy, EveryTruncationIsRefusedWithTheFileName) {
   const test::ScratchFolder folder;
   ASSERT_TRUE(write_npy(folder / "a.npy", std::vector<double>(4, 2.0), {2, 2}).ok());
