@@ -31,10 +31,18 @@ const char* title_of(scene::SonarKind kind) {
   return "";
 }
 
+// Whether the arrays have an axis of azimuth: of what scans azimuths always, also at one bin; a
+// single beam's have none.
+bool has_azimuth(const SonarFiles& files) {
+  return files.kind == scene::SonarKind::kImaging || files.kind == scene::SonarKind::kProfiling ||
+         files.image.n_azimuth > 1;
+}
+
 template <class T>
-Status write_array(const std::filesystem::path& path, const SonarImage& image,
+Status write_array(const std::filesystem::path& path, const SonarFiles& files,
                    const std::vector<T>& values) {
-  if (image.n_azimuth == 1) return write_npy(path, std::span<const T>(values), {image.n_range});
+  const SonarImage& image = files.image;
+  if (!has_azimuth(files)) return write_npy(path, std::span<const T>(values), {image.n_range});
   return write_npy(path, std::span<const T>(values), {image.n_range, image.n_azimuth});
 }
 
@@ -49,9 +57,9 @@ Status remove_earlier(const std::filesystem::path& folder) {
 
 Status write_counts(const std::filesystem::path& folder, const SonarFiles& files) {
   const std::vector<std::uint16_t> counts = quantize(files.image.intensity, files.output);
-  if (files.output.bits == 16) return write_array(folder / "sonar_counts.npy", files.image, counts);
+  if (files.output.bits == 16) return write_array(folder / "sonar_counts.npy", files, counts);
   const std::vector<std::uint8_t> bytes(counts.begin(), counts.end());
-  return write_array(folder / "sonar_counts.npy", files.image, bytes);
+  return write_array(folder / "sonar_counts.npy", files, bytes);
 }
 
 nlohmann::json grid_facts(const BeamGrid& grid) {
@@ -99,13 +107,13 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(remove_earlier(folder));
   const SonarImage& image = files.image;
-  NERITIC_TRY_STATUS(write_array(folder / "sonar.npy", image, image.intensity));
+  NERITIC_TRY_STATUS(write_array(folder / "sonar.npy", files, image.intensity));
   const LabelImage* energy = files.label_energy;
   NERITIC_TRY_STATUS(
-      write_array(folder / "sonar_labels.npy", image, energy ? energy->classes : image.labels));
+      write_array(folder / "sonar_labels.npy", files, energy ? energy->classes : image.labels));
   if (energy) {
-    NERITIC_TRY_STATUS(write_array(folder / "sonar_instances.npy", image, energy->instances));
-    NERITIC_TRY_STATUS(write_array(folder / "sonar_label_fraction.npy", image, energy->fraction));
+    NERITIC_TRY_STATUS(write_array(folder / "sonar_instances.npy", files, energy->instances));
+    NERITIC_TRY_STATUS(write_array(folder / "sonar_label_fraction.npy", files, energy->fraction));
   }
   if (files.output.bits > 0) NERITIC_TRY_STATUS(write_counts(folder, files));
   if (files.picture) NERITIC_TRY_STATUS(scene::write_png8(folder / "sonar.png", draw_sonar(files)));
@@ -116,9 +124,9 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
                   : files.kind == scene::SonarKind::kEchoSounder
                       ? "mean over the cone of the cosine of incidence, 0 to 1"
                       : "mean over elevation bins of the cosine of incidence, 0 to 1 a bin";
-  json["layout"] = image.n_azimuth == 1
-                       ? "sonar.npy [range]: 0 nearest"
-                       : "sonar.npy [range, azimuth]: row 0 nearest, column 0 full port";
+  json["layout"] = has_azimuth(files)
+                       ? "sonar.npy [range, azimuth]: row 0 nearest, column 0 full port"
+                       : "sonar.npy [range]: 0 nearest";
   json["labels"] = energy ? "class that gave most of the bin's energy; 65534 shadow, 65533 ghost"
                           : "class of the bin's strongest return";
   if (files.output.bits > 0)

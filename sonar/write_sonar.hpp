@@ -32,10 +32,10 @@ PanelOptions panel_options(scene::SonarKind kind, bool level);
 ImageU8 draw_sonar(const SonarFiles& files);
 
 // facts: what else sonar.json shall say (options, device, timings); limits, bins and units are
-// added. sonar.npy is [n_range, n_azimuth], of a single beam [n_range]. With label_energy also
-// sonar_instances.npy and sonar_label_fraction.npy, with bits sonar_counts.npy. An earlier
-// image's files are removed, its .json first, and the new .json is written last: where one is, the
-// others are whole and its own.
+// added. sonar.npy is [n_range, n_azimuth], of a single beam (no imaging or profiling sonar)
+// [n_range]. With label_energy also sonar_instances.npy and sonar_label_fraction.npy, with bits
+// sonar_counts.npy. An earlier image's files are removed, its .json first, and the new .json is
+// written last: where one is, the others are whole and its own.
 Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
                    const nlohmann::json& facts);
 
