@@ -78,6 +78,7 @@ struct Allocator::Impl {
   VkDevice device = VK_NULL_HANDLE;
   const Device* owner = nullptr;
   VkPhysicalDeviceMemoryProperties memory{};
+  VkDeviceSize largest_allocation = 0;
   std::vector<std::unique_ptr<Block>> blocks;
   VkDeviceSize used_bytes = 0;
   std::uint32_t allocations = 0;
@@ -147,6 +148,11 @@ Allocator::Allocator(const Device& device) : impl_(std::make_unique<Impl>()) {
   impl_->device = device.handle();
   impl_->owner = &device;
   vkGetPhysicalDeviceMemoryProperties(device.physical(), &impl_->memory);
+  VkPhysicalDeviceMaintenance3Properties limits{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
+  VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &limits};
+  vkGetPhysicalDeviceProperties2(device.physical(), &all);
+  impl_->largest_allocation = limits.maxMemoryAllocationSize;
 }
 
 Allocator::~Allocator() {
@@ -165,10 +171,10 @@ Result<Allocation> Allocator::allocate(const VkMemoryRequirements& needs, Memory
   if (!type)
     return failure(ErrorCode::kUnsupported, "no memory type of {:#x} fits a {}",
                    needs.memoryTypeBits, linear ? "buffer" : "image");
-  const VkDeviceSize heap_bytes = impl_->heap_bytes(*type);
-  if (needs.size > heap_bytes)  // not a valid request; lavapipe would try all the same
-    return failure(ErrorCode::kOutOfMemory, "{} bytes in one piece, the device's memory holds {}",
-                   needs.size, heap_bytes);
+  const VkDeviceSize most = largest_piece(needs.memoryTypeBits, use);
+  if (needs.size > most)  // not a valid request; lavapipe would try all the same
+    return failure(ErrorCode::kOutOfMemory, "{} bytes in one piece, the device gives at most {}",
+                   needs.size, most);
   const Impl::PoolKey key{*type, linear, use != MemoryUse::kDevice};
   Impl::Block* block = nullptr;
   std::optional<VkDeviceSize> offset;
@@ -197,6 +203,11 @@ Result<Allocation> Allocator::allocate(const VkMemoryRequirements& needs, Memory
   allocation.offset_ = *offset;
   allocation.size_ = needs.size;
   return allocation;
+}
+
+VkDeviceSize Allocator::largest_piece(std::uint32_t memory_type_bits, MemoryUse use) const {
+  const auto type = choose_type(impl_->memory, memory_type_bits, use);
+  return type ? std::min(impl_->heap_bytes(*type), impl_->largest_allocation) : 0;
 }
 
 MemoryStatistics Allocator::statistics() const {

@@ -51,6 +51,8 @@ class Allocator {
   ~Allocator();
   // kOutOfMemory names the size. linear: buffers; !linear: optimally tiled images.
   Result<Allocation> allocate(const VkMemoryRequirements& needs, MemoryUse use, bool linear);
+  // The most bytes that one allocation may ask for, of what the requirements' types and use choose.
+  VkDeviceSize largest_piece(std::uint32_t memory_type_bits, MemoryUse use) const;
   MemoryStatistics statistics() const;
   // Gives blocks that hold nothing back to the driver (one a kind is kept for the next request).
   void trim();

@@ -196,7 +196,7 @@ struct Executor::Impl {
       const std::uint32_t pass = plan.order[position];
       commands.begin_region(plan.graph.passes[pass].name);
       recorder.record(cmd, plan.barriers.before[position], images, buffers);
-      PassContext context(commands, plan.graph.passes[pass], images, buffers);
+      PassContext context(commands, graph.id_, plan.graph.passes[pass], images, buffers);
       graph.records_[pass](context);
       commands.end_region();
     }

@@ -2,6 +2,8 @@
 // here: validate sees the whole declaration and can name pass and resource. Rendering thread.
 #include "engine/graph/frame_graph.hpp"
 
+#include <atomic>
+
 #include "engine/core/check.hpp"
 
 namespace neritic::graph {
@@ -16,7 +18,7 @@ ImageHandle PassBuilder::create_image(const std::string& name, const TransientIm
   resource.width = desc.width;
   resource.height = desc.height;
   resource.layers = desc.layers;
-  return {graph_.add_resource(std::move(resource), nullptr, nullptr), 0};
+  return {graph_.add_resource(std::move(resource), nullptr, nullptr), 0, graph_.id_};
 }
 
 BufferHandle PassBuilder::create_buffer(const std::string& name, std::uint64_t size_bytes) {
@@ -24,29 +26,30 @@ BufferHandle PassBuilder::create_buffer(const std::string& name, std::uint64_t s
   resource.name = name;
   resource.kind = ResourceKind::kBuffer;
   resource.size_bytes = size_bytes;
-  return {graph_.add_resource(std::move(resource), nullptr, nullptr), 0};
+  return {graph_.add_resource(std::move(resource), nullptr, nullptr), 0, graph_.id_};
 }
 
-void PassBuilder::use(std::uint32_t resource, std::uint32_t version, Access access, bool write) {
-  const PassDecl& pass = graph_.declaration_.passes[pass_];
+template <class Handle>
+void PassBuilder::use(const Handle& handle, Access access, bool write) {
+  PassDecl& pass = graph_.declaration_.passes[pass_];
   NERITIC_CHECK(access_info(access).write == write, "pass \"{}\": {} is {}a write", pass.name,
                 access_info(access).name, write ? "not " : "");
-  graph_.declaration_.passes[pass_].uses.push_back({resource, version, access});
+  pass.uses.push_back(graph_.use_of(handle, access, "pass " + pass.name));
 }
 
 void PassBuilder::read(ImageHandle image, Access access) {
-  use(image.resource, image.version, access, false);
+  use(image, access, false);
 }
 void PassBuilder::read(BufferHandle buffer, Access access) {
-  use(buffer.resource, buffer.version, access, false);
+  use(buffer, access, false);
 }
 ImageHandle PassBuilder::write(ImageHandle image, Access access) {
-  use(image.resource, image.version, access, true);
-  return {image.resource, image.version + 1};
+  use(image, access, true);
+  return {image.resource, image.version + 1, image.graph};
 }
 BufferHandle PassBuilder::write(BufferHandle buffer, Access access) {
-  use(buffer.resource, buffer.version, access, true);
-  return {buffer.resource, buffer.version + 1};
+  use(buffer, access, true);
+  return {buffer.resource, buffer.version + 1, buffer.graph};
 }
 void PassBuilder::side_effect() {
   graph_.declaration_.passes[pass_].side_effect = true;
@@ -54,7 +57,9 @@ void PassBuilder::side_effect() {
 
 // --- PassContext --------------------------------------------------------------------------------
 
-void PassContext::check_declared(std::uint32_t resource) const {
+void PassContext::check_declared(std::uint32_t resource, std::uint64_t graph) const {
+  NERITIC_CHECK(graph == graph_, "pass \"{}\" of graph {} asks for a resource of graph {}",
+                pass_.name, graph_, graph);
   for (const Use& use : pass_.uses)
     if (use.resource == resource) return;
   NERITIC_CHECK(false, "pass \"{}\" asks for resource {}, which it did not declare", pass_.name,
@@ -62,20 +67,34 @@ void PassContext::check_declared(std::uint32_t resource) const {
 }
 
 const gpu::Image& PassContext::image(ImageHandle handle) const {
-  check_declared(handle.resource);
+  check_declared(handle.resource, handle.graph);
   const gpu::Image* image = images_[handle.resource];
   NERITIC_CHECK(image, "pass \"{}\": resource {} is no image", pass_.name, handle.resource);
   return *image;
 }
 
 const gpu::Buffer& PassContext::buffer(BufferHandle handle) const {
-  check_declared(handle.resource);
+  check_declared(handle.resource, handle.graph);
   const gpu::Buffer* buffer = buffers_[handle.resource];
   NERITIC_CHECK(buffer, "pass \"{}\": resource {} is no buffer", pass_.name, handle.resource);
   return *buffer;
 }
 
 // --- FrameGraph ---------------------------------------------------------------------------------
+
+FrameGraph::FrameGraph() {
+  static std::atomic<std::uint64_t> made{0};  // only so that no two graphs share a number
+  id_ = ++made;
+}
+
+template <class Handle>
+Use FrameGraph::use_of(const Handle& handle, Access access, const std::string& who) const {
+  // No handle at all is left to validate(), which knows what to say.
+  NERITIC_CHECK(!handle || handle.graph == id_,
+                "{} of graph {} uses a handle of graph {}: kept from an earlier frame?", who, id_,
+                handle.graph);
+  return {handle.resource, handle.version, access};
+}
 
 std::uint32_t FrameGraph::add_resource(ResourceDecl&& resource, const gpu::Image* image,
                                        const gpu::Buffer* buffer) {
@@ -88,7 +107,7 @@ std::uint32_t FrameGraph::add_resource(ResourceDecl&& resource, const gpu::Image
 ImageHandle FrameGraph::import_image(const gpu::Image& image, const ImportState& state) {
   // One image is one resource, however often it is imported: two would hide each other's hazards.
   for (std::uint32_t r = 0; r < imported_images_.size(); ++r)
-    if (imported_images_[r] == &image) return {r, 0};
+    if (imported_images_[r] == &image) return {r, 0, id_};
   const gpu::ImageDesc& desc = image.desc();
   ResourceDecl resource;
   resource.name = desc.name;
@@ -102,13 +121,13 @@ ImageHandle FrameGraph::import_image(const gpu::Image& image, const ImportState&
   resource.initial_stages = state.stages;
   resource.initial_access = state.access;
   resource.initial_layout = state.layout;
-  return {add_resource(std::move(resource), &image, nullptr), 0};
+  return {add_resource(std::move(resource), &image, nullptr), 0, id_};
 }
 
 BufferHandle FrameGraph::import_buffer(const std::string& name, const gpu::Buffer& buffer,
                                        const ImportState& state) {
   for (std::uint32_t r = 0; r < imported_buffers_.size(); ++r)
-    if (imported_buffers_[r] == &buffer) return {r, 0};
+    if (imported_buffers_[r] == &buffer) return {r, 0, id_};
   ResourceDecl resource;
   resource.name = name;
   resource.kind = ResourceKind::kBuffer;
@@ -116,14 +135,14 @@ BufferHandle FrameGraph::import_buffer(const std::string& name, const gpu::Buffe
   resource.size_bytes = buffer.size();
   resource.initial_stages = state.stages;
   resource.initial_access = state.access;
-  return {add_resource(std::move(resource), nullptr, &buffer), 0};
+  return {add_resource(std::move(resource), nullptr, &buffer), 0, id_};
 }
 
 void FrameGraph::output(ImageHandle image, Access access) {
-  declaration_.outputs.push_back({image.resource, image.version, access});
+  declaration_.outputs.push_back(use_of(image, access, "an output"));
 }
 void FrameGraph::output(BufferHandle buffer, Access access) {
-  declaration_.outputs.push_back({buffer.resource, buffer.version, access});
+  declaration_.outputs.push_back(use_of(buffer, access, "an output"));
 }
 
 PassBuilder FrameGraph::begin_pass(const std::string& name) {

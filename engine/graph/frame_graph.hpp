@@ -18,12 +18,16 @@ namespace neritic::graph {
 
 inline constexpr std::uint32_t kNoResource = ~0u;
 
+// Good in the graph that gave it only (graph: which, by FrameGraph's count), so in one frame: one
+// that was kept from an earlier frame stops the program.
 struct ImageHandle {
   std::uint32_t resource = kNoResource, version = 0;
+  std::uint64_t graph = 0;
   explicit operator bool() const { return resource != kNoResource; }
 };
 struct BufferHandle {
   std::uint32_t resource = kNoResource, version = 0;
+  std::uint64_t graph = 0;
   explicit operator bool() const { return resource != kNoResource; }
 };
 
@@ -48,7 +52,8 @@ class PassBuilder {
  private:
   friend class FrameGraph;
   PassBuilder(FrameGraph& graph, std::uint32_t pass) : graph_(graph), pass_(pass) {}
-  void use(std::uint32_t resource, std::uint32_t version, Access access, bool write);
+  template <class Handle>
+  void use(const Handle& handle, Access access, bool write);
   FrameGraph& graph_;
   std::uint32_t pass_;
 };
@@ -64,10 +69,12 @@ class PassContext {
 
  private:
   friend class Executor;
-  PassContext(gpu::Commands& c, const PassDecl& pass, const std::vector<const gpu::Image*>& images,
+  PassContext(gpu::Commands& c, std::uint64_t graph, const PassDecl& pass,
+              const std::vector<const gpu::Image*>& images,
               const std::vector<const gpu::Buffer*>& buffers)
-      : commands(c), pass_(pass), images_(images), buffers_(buffers) {}
-  void check_declared(std::uint32_t resource) const;
+      : commands(c), graph_(graph), pass_(pass), images_(images), buffers_(buffers) {}
+  void check_declared(std::uint32_t resource, std::uint64_t graph) const;
+  std::uint64_t graph_;
   const PassDecl& pass_;
   const std::vector<const gpu::Image*>& images_;
   const std::vector<const gpu::Buffer*>& buffers_;
@@ -83,6 +90,7 @@ struct ImportState {
 
 class FrameGraph {
  public:
+  FrameGraph();
   using ImportState = graph::ImportState;
   // The image and buffer must live until Executor::run returns (the GPU: until the frame is done).
   // Importing one again gives the same resource.
@@ -116,6 +124,10 @@ class FrameGraph {
   PassBuilder begin_pass(const std::string& name);
   std::uint32_t add_resource(ResourceDecl&& resource, const gpu::Image* image,
                              const gpu::Buffer* buffer);
+  // What a handle names here; a CHECK where it is another graph's.
+  template <class Handle>
+  Use use_of(const Handle& handle, Access access, const std::string& who) const;
+  std::uint64_t id_;  // no other graph of the program has it
   GraphDecl declaration_;
   std::vector<std::function<void(PassContext&)>> records_;
   std::vector<const gpu::Image*> imported_images_;  // by resource; nullptr for others

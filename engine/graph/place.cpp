@@ -21,19 +21,32 @@ struct Range {
   std::uint64_t begin, end;
 };
 
-// The offset in the smallest gap between busy ranges that takes size bytes; else after them all.
-std::uint64_t best_gap(std::vector<Range>& busy, std::uint64_t size, std::uint64_t alignment) {
+// What is to be placed; block: 0, or what it must not cross multiples of.
+struct Piece {
+  std::uint64_t size, alignment, block;
+};
+
+// The first offset from cursor on where the piece may lie.
+std::uint64_t first_fit(std::uint64_t cursor, const Piece& piece) {
+  const std::uint64_t offset = align_up(cursor, piece.alignment);
+  if (piece.block == 0 || piece.size == 0) return offset;
+  const bool whole = offset / piece.block == (offset + piece.size - 1) / piece.block;
+  return whole ? offset : align_up(offset, piece.block);
+}
+
+// The offset in the smallest gap between busy ranges that takes the piece; else after them all.
+std::uint64_t best_gap(std::vector<Range>& busy, const Piece& piece) {
   std::sort(busy.begin(), busy.end(), [](Range a, Range b) { return a.begin < b.begin; });
   std::uint64_t cursor = 0, best = 0, best_slack = ~std::uint64_t{0};
   for (const Range& range : busy) {
-    const std::uint64_t offset = align_up(cursor, alignment);
-    if (offset + size <= range.begin) {
-      const std::uint64_t slack = range.begin - (offset + size);
+    const std::uint64_t offset = first_fit(cursor, piece);
+    if (offset + piece.size <= range.begin) {
+      const std::uint64_t slack = range.begin - (offset + piece.size);
       if (slack < best_slack) best = offset, best_slack = slack;
     }
     cursor = std::max(cursor, range.end);
   }
-  return best_slack != ~std::uint64_t{0} ? best : align_up(cursor, alignment);
+  return best_slack != ~std::uint64_t{0} ? best : first_fit(cursor, piece);
 }
 
 // Places the resources in turn; alias: those that never live together may share bytes.
@@ -50,7 +63,7 @@ void place_all(std::span<const std::uint32_t> by_size, std::span<const Lifetime>
       if (!alias || overlap(lifetimes[other], lifetimes[r]))
         busy.push_back({result.offset[other], result.offset[other] + needs[other].size});
     }
-    result.offset[r] = best_gap(busy, need.size, need.alignment);
+    result.offset[r] = best_gap(busy, {need.size, need.alignment, need.block_bytes});
     std::uint64_t& heap = result.heap_size[need.memory_class];
     heap = std::max(heap, result.offset[r] + need.size);
   }
@@ -74,6 +87,10 @@ Placement place(const GraphDecl& graph, std::span<const Lifetime> lifetimes,
   for (std::uint32_t r = 0; r < count; ++r) {
     if (graph.resources[r].imported || !lifetimes[r].used()) continue;
     NERITIC_CHECK(needs[r].alignment > 0, "\"{}\" has alignment 0", graph.resources[r].name);
+    NERITIC_CHECK(needs[r].block_bytes % needs[r].alignment == 0 &&
+                      (needs[r].block_bytes == 0 || needs[r].size <= needs[r].block_bytes),
+                  "\"{}\" of {} bytes, aligned to {}, in blocks of {}", graph.resources[r].name,
+                  needs[r].size, needs[r].alignment, needs[r].block_bytes);
     by_size.push_back(r);
     classes = std::max(classes, needs[r].memory_class + 1);
   }

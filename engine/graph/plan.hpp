@@ -120,9 +120,12 @@ std::vector<Lifetime> lifetimes(const GraphDecl& graph, std::span<const std::uin
 struct MemoryNeed {
   std::uint64_t size = 0, alignment = 1;
   std::uint32_t memory_class = 0;  // only resources of one class may share memory (type bits, kind)
+  // What the device gives in one piece of the class, a multiple of every alignment: the class's
+  // heap is made of blocks of so many bytes, the last as long as it must be. 0: one block.
+  std::uint64_t block_bytes = 0;
 };
 // Where each transient resource lies in its class's heap. Two whose lifetimes overlap never overlap
-// in memory.
+// in memory, and none lies in two blocks.
 struct Placement {
   std::vector<std::uint64_t> offset;     // a resource; only meaningful for used transients
   std::vector<std::uint64_t> heap_size;  // a memory class
@@ -161,7 +164,8 @@ struct Plan {
 // Fills usage flags of every resource from the accesses declared on it.
 void gather_usage(GraphDecl& graph);
 
-// All stages. needs: what each resource takes (the device says; tests invent it).
+// All stages. needs: what each resource takes (the device says; tests invent it). kOutOfMemory
+// names a transient that is larger than a block.
 Result<Plan> compile(GraphDecl graph, std::span<const MemoryNeed> needs);
 
 // --- Looking at it ----------------------------------------------------------------------------

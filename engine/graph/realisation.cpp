@@ -29,15 +29,24 @@ gpu::BufferDesc buffer_desc(const ResourceDecl& resource) {
   return desc;
 }
 
-std::uint32_t class_of(ResourceKind kind, const VkMemoryRequirements& needs,
-                       std::vector<MemoryClass>& classes) {
+// What the device gives in one piece, a multiple of every alignment.
+VkDeviceSize block_bytes_of(const gpu::Device& device, std::uint32_t memory_type_bits) {
+  constexpr VkDeviceSize kUnit = VkDeviceSize{16} << 20;
+  const VkDeviceSize most =
+      device.allocator().largest_piece(memory_type_bits, gpu::MemoryUse::kDevice);
+  return std::max(most / kUnit * kUnit, kUnit);
+}
+
+std::uint32_t class_of(const gpu::Device& device, ResourceKind kind,
+                       const VkMemoryRequirements& needs, std::vector<MemoryClass>& classes) {
   for (std::uint32_t c = 0; c < classes.size(); ++c) {
     MemoryClass& known = classes[c];
     if (known.kind != kind || known.memory_type_bits != needs.memoryTypeBits) continue;
     known.alignment = std::max(known.alignment, needs.alignment);
     return c;
   }
-  classes.push_back({kind, needs.memoryTypeBits, needs.alignment});
+  classes.push_back(
+      {kind, needs.memoryTypeBits, needs.alignment, block_bytes_of(device, needs.memoryTypeBits)});
   return static_cast<std::uint32_t>(classes.size() - 1);
 }
 
@@ -59,7 +68,8 @@ std::vector<MemoryNeed> memory_needs(const gpu::Device& device, const GraphDecl&
         resource.kind == ResourceKind::kImage
             ? gpu::image_requirements(device, image_desc(resource))
             : gpu::buffer_requirements(device, buffer_desc(resource));
-    needs[r] = {wanted.size, wanted.alignment, class_of(resource.kind, wanted, classes)};
+    const std::uint32_t c = class_of(device, resource.kind, wanted, classes);
+    needs[r] = {wanted.size, wanted.alignment, c, classes[c].block_bytes};
   }
   return needs;
 }
@@ -74,14 +84,14 @@ Result<Realisation> Realisation::create(const gpu::Device& device, const Plan& p
   for (std::size_t r = 0; r < count; ++r) {
     const ResourceDecl& resource = plan.graph.resources[r];
     if (resource.imported || !plan.lifetimes[r].used()) continue;
-    const gpu::Allocation& heap = heaps.of(classes[plan.needs[r].memory_class]);
-    const VkDeviceSize offset = heap.offset() + plan.placement.offset[r];
+    const auto [memory, offset] =
+        heaps.at(classes[plan.needs[r].memory_class], plan.placement.offset[r]);
     if (resource.kind == ResourceKind::kImage) {
       NERITIC_TRY(made.images_[r],
-                  gpu::Image::create_at(device, image_desc(resource), heap.memory(), offset));
+                  gpu::Image::create_at(device, image_desc(resource), memory, offset));
     } else {
       NERITIC_TRY(made.buffers_[r],
-                  gpu::Buffer::create_at(device, buffer_desc(resource), heap.memory(), offset));
+                  gpu::Buffer::create_at(device, buffer_desc(resource), memory, offset));
     }
   }
   return made;

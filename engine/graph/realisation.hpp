@@ -15,7 +15,8 @@ namespace neritic::graph {
 struct MemoryClass {
   ResourceKind kind = ResourceKind::kImage;
   std::uint32_t memory_type_bits = 0;
-  VkDeviceSize alignment = 1;  // the largest of its members
+  VkDeviceSize alignment = 1;    // the largest of its members
+  VkDeviceSize block_bytes = 0;  // most that the device gives of it in one piece
 };
 
 // What the device says each transient of the graph takes; the graph's usage flags must be gathered.

@@ -48,7 +48,8 @@ bool TransientHeaps::fit(const std::vector<Need>& needs) const {
 
 std::vector<gpu::Allocation> TransientHeaps::take() {
   std::vector<gpu::Allocation> taken;
-  for (Heap& heap : heaps_) taken.push_back(std::move(heap.memory));
+  for (Heap& heap : heaps_)
+    for (gpu::Allocation& block : heap.blocks) taken.push_back(std::move(block));
   heaps_.clear();
   return taken;
 }
@@ -56,22 +57,30 @@ std::vector<gpu::Allocation> TransientHeaps::take() {
 Status TransientHeaps::allocate(gpu::Allocator& allocator, const std::vector<Need>& needs) {
   NERITIC_CHECK(heaps_.empty(), "{} heaps", heaps_.size());
   for (const Need& need : needs) {
-    VkMemoryRequirements wanted{};
-    wanted.size = need.size;
-    wanted.alignment = need.memory_class.alignment;
-    wanted.memoryTypeBits = need.memory_class.memory_type_bits;
-    NERITIC_TRY(gpu::Allocation memory,
-                allocator.allocate(wanted, gpu::MemoryUse::kDevice,
-                                   need.memory_class.kind == ResourceKind::kBuffer));
-    heaps_.push_back({need, std::move(memory)});
+    const MemoryClass& c = need.memory_class;
+    Heap heap{need, {}};
+    for (std::uint64_t left = need.size; left > 0;) {
+      VkMemoryRequirements wanted{};
+      wanted.size = c.block_bytes == 0 ? left : std::min(left, c.block_bytes);
+      wanted.alignment = c.alignment;
+      wanted.memoryTypeBits = c.memory_type_bits;
+      NERITIC_TRY(gpu::Allocation block, allocator.allocate(wanted, gpu::MemoryUse::kDevice,
+                                                            c.kind == ResourceKind::kBuffer));
+      heap.blocks.push_back(std::move(block));
+      left -= wanted.size;
+    }
+    heaps_.push_back(std::move(heap));
   }
   return {};
 }
 
-const gpu::Allocation& TransientHeaps::of(const MemoryClass& memory_class) const {
+TransientHeaps::Place TransientHeaps::at(const MemoryClass& memory_class,
+                                         std::uint64_t offset) const {
   const Heap* heap = find(memory_class);
   NERITIC_CHECK(heap, "no heap of memory types {:#x}", memory_class.memory_type_bits);
-  return heap->memory;
+  const std::uint64_t length = heap->made_for.memory_class.block_bytes;
+  const gpu::Allocation& block = heap->blocks[length == 0 ? 0 : offset / length];
+  return {block.memory(), block.offset() + (length == 0 ? offset : offset % length)};
 }
 
 std::uint64_t TransientHeaps::bytes() const {

@@ -1,6 +1,7 @@
 // Inside engine/graph: the memory that the transients of all graphs lie in, one heap a memory class
-// (realisation.hpp). Graphs take turns with it: each run opens with a barrier behind everything,
-// and leaves nothing that the next would want. Move-only; rendering thread.
+// (realisation.hpp), each in as many blocks as the device makes it. Graphs take turns with it: each
+// run opens with a barrier behind everything, and leaves nothing that the next would want.
+// Move-only; rendering thread.
 #pragma once
 
 #include <vector>
@@ -27,14 +28,18 @@ class TransientHeaps {
   // New heaps of just these sizes. Precondition: none there (take()).
   Status allocate(gpu::Allocator& allocator, const std::vector<Need>& needs);
 
-  // Precondition: of a need that the heaps fit.
-  const gpu::Allocation& of(const MemoryClass& memory_class) const;
+  struct Place {
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkDeviceSize offset = 0;
+  };
+  // Where an offset in the class's heap lies. Precondition: of a need that the heaps fit.
+  Place at(const MemoryClass& memory_class, std::uint64_t offset) const;
   std::uint64_t bytes() const;
 
  private:
   struct Heap {
     Need made_for;
-    gpu::Allocation memory;
+    std::vector<gpu::Allocation> blocks;
   };
   const Heap* find(const MemoryClass& memory_class) const;
   std::vector<Heap> heaps_;

@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "engine/graph/realisation.hpp"
+#include "engine/graph/transient_heaps.hpp"
 #include "executor_fixture.hpp"
 
 namespace neritic::graph {
@@ -153,6 +155,44 @@ TEST_F(ExecutorTest, WrongGraphIsAnErrorThatNamesPassAndResource) {
   const Result<const Plan*> plan = executor_->compile(graph);
   ASSERT_FALSE(plan.ok());
   EXPECT_THAT(plan.error().message, HasSubstr("pass \"late\" reads version 1 of \"of one\""));
+}
+
+// Its numbers may well exist in the next frame's graph, where they mean something else.
+TEST_F(ExecutorTest, AHandleKeptFromAnotherFramesGraphStopsTheProgram) {
+  FrameGraph earlier, now;
+  const BufferHandle stale = earlier.import_buffer("input", input_);
+  const BufferHandle fresh = now.import_buffer("input", input_);
+  ASSERT_EQ(stale.resource, fresh.resource);
+  EXPECT_DEATH(add_step(now, "one", stale, 3, 1), "pass one .*kept from an earlier frame");
+  EXPECT_DEATH(now.output(stale, Access::kHostRead), "an output .*kept from an earlier frame");
+}
+
+// Each buffer in a block of its own.
+TEST_F(ExecutorTest, MemoryInBlocksHoldsWhatThePlanPlacedThere) {
+  GraphDecl graph = chain().declaration();
+  gather_usage(graph);
+  std::vector<MemoryClass> classes;
+  std::vector<MemoryNeed> needs = memory_needs(device(), graph, classes);
+  ASSERT_EQ(classes.size(), 1u);
+  classes[0].block_bytes = 4096;  // a buffer is of 4000 bytes
+  for (MemoryNeed& need : needs) need.block_bytes = 4096;
+  const Plan plan = take(compile(std::move(graph), needs));
+  ASSERT_GT(plan.placement.heap_size[0], 4096u);  // two live at the same time
+  std::vector<TransientHeaps::Need> heap_needs;
+  TransientHeaps::add(heap_needs, classes[0], plan.placement.heap_size[0]);
+  TransientHeaps heaps;
+  ASSERT_TRUE(heaps.allocate(device().allocator(), heap_needs).ok());
+  const TransientHeaps::Place first = heaps.at(classes[0], 0), last = heaps.at(classes[0], 4095),
+                              next = heaps.at(classes[0], 4096);
+  EXPECT_EQ(last.memory, first.memory);
+  EXPECT_EQ(last.offset, first.offset + 4095);
+  EXPECT_TRUE(next.memory != first.memory || next.offset >= first.offset + 4096 ||
+              next.offset + 4000 <= first.offset);
+  const Realisation made = take(Realisation::create(device(), plan, classes, heaps));
+  for (std::size_t r = 0; r < plan.graph.resources.size(); ++r)
+    if (!plan.graph.resources[r].imported) {
+      EXPECT_TRUE(made.buffers()[r]) << plan.graph.resources[r].name;
+    }
 }
 
 TEST_F(ExecutorTest, PassesAreTimedByName) {

@@ -7,7 +7,6 @@
 namespace neritic::graph {
 namespace {
 
-
 // position   0      1      2      3
 // a (100)    W      R
 // b (60)            W      R
@@ -90,6 +89,33 @@ TEST(Place, TakesTheSmallestGapThatFits) {
   EXPECT_EQ(plan.placement.offset[s1], 179u);
   EXPECT_EQ(plan.placement.offset[e], 179u);
   EXPECT_EQ(plan.placement.bytes_with_aliasing, 218u);
+}
+
+// Three that live together, in blocks of 128: none lies across a block's end.
+TEST(Place, InBlocksNoneLiesAcrossAnEnd) {
+  GraphMaker m;
+  const auto a = m.buffer("a", 100), b = m.buffer("b", 60), c = m.buffer("c", 28);
+  m.pass("p", {use(a, 0, kWrite), use(b, 0, kWrite), use(c, 0, kWrite)}, true);
+  std::vector<MemoryNeed> needs = m.needs(4);
+  for (MemoryNeed& need : needs) need.block_bytes = 128;
+  const Result<Plan> plan = compile(m.graph, needs);
+  ASSERT_TRUE(plan.ok());
+  EXPECT_EQ(plan->placement.offset[a], 0u);
+  EXPECT_EQ(plan->placement.offset[b], 128u);
+  EXPECT_EQ(plan->placement.offset[c], 100u);  // the smallest gap: what a left of its block
+  EXPECT_THAT(plan->placement.heap_size, testing::ElementsAre(188));
+}
+
+TEST(Place, WhatIsLargerThanABlockIsRefusedByName) {
+  const GraphMaker m = chain();
+  std::vector<MemoryNeed> needs = m.needs();
+  for (MemoryNeed& need : needs) need.block_bytes = 100;
+  EXPECT_TRUE(compile(m.graph, needs).ok());
+  needs[0].block_bytes = 99;
+  const Result<Plan> plan = compile(m.graph, needs);
+  ASSERT_FALSE(plan.ok());
+  EXPECT_EQ(plan.error().code, ErrorCode::kOutOfMemory);
+  EXPECT_EQ(plan.error().message, "a takes 100 bytes, the device gives at most 99 in one piece");
 }
 
 TEST(Place, ImportsTakeNoTransientMemory) {
