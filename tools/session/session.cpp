@@ -43,12 +43,11 @@ std::vector<ViewImages> decode_views(const ViewWork& work) {
       if (work.label) decode_labels(layer_of<std::uint32_t>(*work.label, i, pixels), eye);
       if (work.color) decode_color(layer_of<std::uint32_t>(*work.color, i, pixels), eye);
       if (work.motion)
-        decode_motion(layer_of<float>(*work.motion, i, pixels * 2),
-                      work.depth ? layer_of<float>(*work.depth, i, pixels)
-                                 : std::span<const float>(),
-                      glm::conjugate(view.next_world_from_view.rotation) *
-                          view.world_from_view.rotation,
-                      eye);
+        decode_motion(
+            layer_of<float>(*work.motion, i, pixels * 2),
+            work.depth ? layer_of<float>(*work.depth, i, pixels) : std::span<const float>(),
+            glm::conjugate(view.next_world_from_view.rotation) * view.world_from_view.rotation,
+            eye);
     };
     if (pixels < kWorthAThread || !(work.depth && (work.color || work.motion))) {
       shape();
@@ -207,7 +206,31 @@ Result<std::unique_ptr<LiveFrame>> Session::declare(graph::FrameGraph& graph,
   return frame;
 }
 
+// What a person can do about a frame that does not fit: its largest picture by name and size.
+Error Session::advised(const Error& error, const FrameRequest& request) const {
+  if (error.code != ErrorCode::kOutOfMemory || request.cameras.empty()) return error;
+  const scene::Camera* largest = &scene_.cameras[request.cameras.front()];
+  for (const std::size_t i : request.cameras) {
+    const scene::Camera& camera = scene_.cameras[i];
+    if (std::uint64_t{camera.width} * camera.height >
+        std::uint64_t{largest->width} * largest->height)
+      largest = &camera;
+  }
+  const std::size_t others = request.cameras.size() + request.sonars.size() - 1;
+  return failure(error.code,
+                 "camera {} of {}x{}{}: too large for this device: {}; a smaller size{} will do",
+                 largest->name, largest->width, largest->height,
+                 others > 0 ? fmt::format(" (and {} more sensors in the frame)", others) : "",
+                 error.message, others > 0 ? " or fewer sensors at once" : "");
+}
+
 Result<FrameResult> Session::render(const FrameRequest& request) {
+  auto result = render_frame(request);
+  if (!result.ok()) return advised(result.error(), request);
+  return result;
+}
+
+Result<FrameResult> Session::render_frame(const FrameRequest& request) {
   const TimeNs start = now_ns();
   NERITIC_CHECK(request.capture.to_host, "frame {}: render brings its images to the host",
                 request.frame);

@@ -148,6 +148,8 @@ class Session {
 
  private:
   explicit Session(gpu::Device& device);
+  Result<FrameResult> render_frame(const FrameRequest& request);
+  Error advised(const Error& error, const FrameRequest& request) const;
   gpu::Device& device_;
   scene::Scene scene_;
   std::unique_ptr<gpu::Frames> frames_;
