@@ -74,11 +74,15 @@ std::string device_names(std::span<const DeviceInfo> devices) {
   return out;
 }
 
+Error no_device() {
+  return failure(ErrorCode::kNoDevice,
+                 "no Vulkan device: install the Debian package mesa-vulkan-drivers; where it is "
+                 "installed, its driver does not load (ulimit -v too small? VK_DRIVER_FILES set?)");
+}
+
 Result<std::uint32_t> choose_device(std::span<const DeviceInfo> devices,
                                     const std::string& wanted) {
-  if (devices.empty())
-    return failure(ErrorCode::kNoDevice,
-                   "no Vulkan device: install the Debian package mesa-vulkan-drivers");
+  if (devices.empty()) return no_device();
   if (wanted.empty()) {
     const auto found = best(devices, true, [](const DeviceInfo&) { return true; });
     if (found) return *found;

@@ -13,6 +13,9 @@ namespace neritic::gpu {
 // The names DeviceInfo::kind can have.
 const char* device_kind_name(VkPhysicalDeviceType type);
 
+// Nothing to choose from: which package brings a device, and why an installed one may not show.
+Error no_device();
+
 // The position in devices to use. wanted: empty (the first usable of discrete, integrated, virtual,
 // CPU, other), an index as listed, or a part of a name in any case (a number that is no index is
 // looked for in the names). kNoDevice lists what there is; kUnsupported says what the named device

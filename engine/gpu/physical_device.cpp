@@ -7,6 +7,7 @@
 #include "engine/gpu/device_select.hpp"
 #include "engine/gpu/error.hpp"
 #include "engine/gpu/needed_formats.hpp"
+#include "engine/gpu/needed_limits.hpp"
 
 namespace neritic::gpu {
 namespace {
@@ -79,6 +80,7 @@ std::string missing_of(VkPhysicalDevice device, const VkPhysicalDeviceProperties
     if (!what.empty()) missing += (missing.empty() ? "" : ", ") + what;
   };
   if (!choose_queue(device).found) add("a queue with graphics and compute");
+  add(missing_limits(properties.limits));
   add(missing_formats([device](VkFormat format) {
     VkFormatProperties properties_of_format{};
     vkGetPhysicalDeviceFormatProperties(device, format, &properties_of_format);
@@ -181,9 +183,7 @@ Result<std::vector<VkPhysicalDevice>> physical_devices(VkInstance instance) {
   else if (result < VK_SUCCESS)
     return vulkan_error(result, "vkEnumeratePhysicalDevices");
   devices.resize(count);
-  if (devices.empty())
-    return failure(ErrorCode::kNoDevice,
-                   "no Vulkan device: install the Debian package mesa-vulkan-drivers");
+  if (devices.empty()) return no_device();
   return devices;
 }
 
