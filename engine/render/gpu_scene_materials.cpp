@@ -1,8 +1,10 @@
 #include "engine/render/gpu_scene_materials.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
+#include "engine/core/log.hpp"
 #include "engine/gpu/frames.hpp"
 
 namespace neritic::render {
@@ -50,6 +52,35 @@ std::uint32_t flags_of(const scene::Material& m, bool vertex_colors) {
   return flags;
 }
 
+// Half as wide and high (at least 1), each pixel the mean of those it covers. The mean of sRGB
+// colour is taken of its squares, which are nearly linear.
+ImageU8 halved(const ImageU8& image, bool srgb) {
+  ImageU8 out(std::max(image.width / 2, 1u), std::max(image.height / 2, 1u), image.channels);
+  for (std::uint32_t y = 0; y < out.height; ++y)
+    for (std::uint32_t x = 0; x < out.width; ++x)
+      for (std::uint32_t c = 0; c < image.channels; ++c) {
+        const bool squares = srgb && c < 3;
+        double sum = 0.0;
+        for (const std::uint32_t i : {0u, 1u})
+          for (const std::uint32_t j : {0u, 1u}) {
+            const double value = image.at(std::min(2 * x + i, image.width - 1),
+                                          std::min(2 * y + j, image.height - 1), c);
+            sum += squares ? value * value : value;
+          }
+        const double mean = squares ? std::sqrt(sum / 4.0) : sum / 4.0;
+        out.at(x, y, c) = static_cast<std::uint8_t>(mean + 0.5);
+      }
+  return out;
+}
+
+// The image itself where no side is over limit, else halved into smaller until that is so.
+const ImageU8& fitting(const ImageU8& image, std::uint32_t limit, bool srgb, ImageU8& smaller) {
+  if (image.width <= limit && image.height <= limit) return image;
+  smaller = halved(image, srgb);
+  while (smaller.width > limit || smaller.height > limit) smaller = halved(smaller, srgb);
+  return smaller;
+}
+
 }  // namespace
 
 Result<gpu::SetLayout> create_material_layout(const gpu::Device& device) {
@@ -71,16 +102,18 @@ Status MaterialBuilder::add_default_texture() {
   return {};
 }
 
-Status MaterialBuilder::add_image(const std::string& name, const ImageU8& pixels, bool srgb) {
+Status MaterialBuilder::add_image(const std::string& name, const ImageU8& whole, bool srgb) {
+  const std::uint32_t limit = device_->limits().maxImageDimension2D;
+  ImageU8 smaller;
+  const ImageU8& pixels = fitting(whole, limit, srgb, smaller);
+  if (pixels.width != whole.width || pixels.height != whole.height)
+    log_warn("{}: {}x{} is halved to {}x{}, the device takes at most {} pixels a side", name,
+             whole.width, whole.height, pixels.width, pixels.height, limit);
   gpu::ImageDesc desc;
   desc.name = name;
   desc.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
   desc.width = pixels.width;
   desc.height = pixels.height;
-  const std::uint32_t limit = device_->limits().maxImageDimension2D;
-  if (pixels.width > limit || pixels.height > limit)
-    return failure(ErrorCode::kUnsupported, "{}: texture of {}x{}, the device takes at most {}",
-                   name, pixels.width, pixels.height, limit);
   for (std::uint32_t n = std::max(pixels.width, pixels.height); n > 1; n /= 2) ++desc.mips;
   desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
                VK_IMAGE_USAGE_TRANSFER_SRC_BIT;

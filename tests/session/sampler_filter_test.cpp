@@ -13,17 +13,24 @@ namespace {
 
 using SamplerFilter = test::GpuTest;
 
-// The grey levels that a wall shows whose texture is a checkerboard of black and white texels, so
-// many of them (or so much of one) a pixel.
-Result<std::set<int>> levels_of(gpu::Device& device, const scene::Sampler& sampler,
-                                double texels_per_pixel) {
-  constexpr std::uint32_t kTexels = 256, kPixels = 40;
-  scene::Model model = scene::make_box({4.0, 4.0, 1.0});  // texture coordinates in metres
-  ImageU8 board(kTexels, kTexels, 4, 255);
-  for (std::uint32_t y = 0; y < kTexels; ++y)
-    for (std::uint32_t x = 0; x < kTexels; ++x)
+constexpr std::uint32_t kTexels = 256;
+
+// Black and white texels.
+ImageU8 checkerboard(std::uint32_t width, std::uint32_t height) {
+  ImageU8 board(width, height, 4, 255);
+  for (std::uint32_t y = 0; y < height; ++y)
+    for (std::uint32_t x = 0; x < width; ++x)
       for (std::uint32_t c = 0; c < 3; ++c) board.at(x, y, c) = (x + y) % 2 ? 255 : 0;
-  model.images.push_back(std::move(board));
+  return board;
+}
+
+// The grey levels that a wall shows whose texture repeats so that kTexels are so many pixels.
+Result<std::set<int>> levels_of(gpu::Device& device, const scene::Sampler& sampler,
+                                double texels_per_pixel,
+                                ImageU8 texture = checkerboard(kTexels, kTexels)) {
+  constexpr std::uint32_t kPixels = 40;
+  scene::Model model = scene::make_box({4.0, 4.0, 1.0});  // texture coordinates in metres
+  model.images.push_back(std::move(texture));
   model.textures.push_back({0, sampler});
   scene::Material material;
   material.unlit = true;
@@ -78,6 +85,19 @@ TEST_F(SamplerFilter, WithoutMipsTheMagFilterMagnifies) {
   EXPECT_EQ(nearest.size(), 2u);
   NERITIC_ASSERT_OK(const auto linear, levels_of(device(), sampler_of(true, false), 0.3));
   EXPECT_GT(linear.size(), 20u);
+}
+
+// A texture wider than the device takes is halved: of a checkerboard the mean is left, by the
+// squares of the colours, which are nearly linear light.
+TEST_F(SamplerFilter, TooWideATextureIsHalved) {
+  const std::uint32_t wide = device().limits().maxImageDimension2D + 2;
+  NERITIC_ASSERT_OK(const auto halved,
+                    levels_of(device(), sampler_of(false, false), 1.0, checkerboard(wide, 2)));
+  ImageU8 grey(1, 1, 4, 255);
+  for (std::uint32_t c = 0; c < 3; ++c) grey.at(0, 0, c) = 180;  // 255 / sqrt(2)
+  NERITIC_ASSERT_OK(const auto wanted, levels_of(device(), sampler_of(false, false), 1.0, grey));
+  EXPECT_EQ(halved, wanted);
+  EXPECT_EQ(halved.size(), 1u);
 }
 
 TEST_F(SamplerFilter, MipsOfAFineCheckerboardAreGrey) {
