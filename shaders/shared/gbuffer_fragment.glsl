@@ -47,7 +47,8 @@ void main() {
 #endif
 #ifdef NERITIC_MOTION
   vec2 now = clip.xy / clip.w;
-  vec2 next = next_clip.xy / max(next_clip.w, 1e-6);
+  // What will be level with the eye or behind it is nowhere in the next picture: NaN.
+  vec2 next = next_clip.w > 0.0 ? next_clip.xy / next_clip.w : vec2(uintBitsToFloat(0x7fc00000u));
   out_motion = (next - now) * 0.5 * push.target_size;
 #endif
 }

@@ -78,6 +78,39 @@ TEST_F(Motion, OfABodyMovedByAClipIsItsProjectedDisplacement) {
   expect_motion(std::move(sphere), 3.0);
 }
 
+// A wall that passes the camera before the next frame is nowhere in the next picture.
+TEST_F(Motion, OfWhatWillBeBehindTheEyeIsNotANumber) {
+  scene::Scene scene;
+  scene.path = "test";
+  scene.models.push_back(std::make_shared<scene::Model>(scene::make_box({40.0, 40.0, 1.0})));
+  scene::Object wall;
+  wall.name = "wall";
+  wall.model = 0;
+  wall.class_id = wall.instance = 1;
+  wall.mount.pose.position_m = {0.0, -5.0, -4.5};
+  wall.mount.track = scene::Track{{{0.0, {0.0, -5.0, -4.5}}, {1.0, {0.0, -5.0, 45.5}}},
+                                  {scene::Track::Attitude{}}};
+  scene.objects.push_back(wall);
+  scene::Camera camera;
+  camera.name = "eye";
+  camera.width = camera.height = 9;
+  camera.mount.pose.position_m = {0.0, -5.0, 0.0};
+  scene.cameras.push_back(camera);
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+  FrameRequest request;
+  request.cameras = {0};
+  for (const double next_s : {0.04, 0.2}) {  // at 2 m then, at 6 m behind
+    request.next_time_s = next_s;
+    NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+    const ViewImages& eye = result.cameras[0].eyes[0];
+    for (std::uint32_t y = 0; y < 9; ++y)
+      for (std::uint32_t x = 0; x < 9; ++x)
+        for (int axis = 0; axis < 2; ++axis)
+          EXPECT_EQ(std::isnan(eye.motion.at(x, y, axis)), next_s > 0.1)
+              << x << " " << y << ": " << eye.motion.at(x, y, axis);
+  }
+}
+
 TEST_F(Motion, OfASkinnedQuadIsItsJointsProjectedDisplacement) {
   scene::Primitive quad;
   for (const Vec3& corner : {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0)}) {
