@@ -11,8 +11,6 @@ namespace neritic::render {
 namespace {
 
 using shared::kWaterIndex;
-// Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance .066).
-constexpr double kSkyTransmittance = 0.934;
 // A beam along the horizon gives nothing level, and irradiance / cosine must stay finite: no beam
 // comes from lower than 1.1 degrees, the sun's disk twice over.
 constexpr double kLeastCosine = 0.02;
@@ -59,7 +57,7 @@ SunLight sun_light(const scene::Sun& sun, bool under_water) {
   double sky = (1.0 - kSunShare) * std::max(std::sqrt(std::max(sine, 0.0)), kSkyAtSunset);
   if (under_water) {
     direct *= fresnel_transmittance(std::max(sine, 0.0));
-    sky *= kSkyTransmittance;
+    sky *= shared::kSkyTransmittance;
   }
   SunLight out;
   out.irradiance_lx = sun.intensity * kClearDay_lx * (direct + sky);

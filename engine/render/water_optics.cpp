@@ -49,8 +49,10 @@ constexpr std::array<double, 3> kPureWater_m{.2224, .0565, .00922};
 // Particles scatter a little more at short waves: b ~ 1/lambda, between the exponents 1.7 (small)
 // and 0.3 (large particles) of Kopelevich's two fractions (Haltrin 1999).
 constexpr double kParticleExponent = 1.0;
-// Closure K_d = 1.04 (a + b_b) / mu_d, b_b = 0.0183 b (Petzold); mu_d for a high sun.
-constexpr double kClosure = 1.04, kBackFraction = 0.0183, kMeanCosine = 0.86;
+// Closure K_d = 1.04 (a + b_b) / mu_d; mu_d for a high sun. Backwards go half of what pure water
+// scatters (its phase function is even, Morel 1974) and 0.0183 of what particles do (Petzold).
+constexpr double kClosure = 1.04, kMeanCosine = 0.86;
+constexpr double kWaterBackFraction = 0.5, kParticleBackFraction = 0.0183;
 
 }  // namespace
 
@@ -70,9 +72,9 @@ Result<WaterOptics> jerlov_optics(const std::string& type) {
     optics.diffuse_attenuation_m[i] = k_d;
     optics.water_scattering_m[i] = water;
     optics.particle_scattering_m[i] = particles;
+    const double back = kWaterBackFraction * water + kParticleBackFraction * particles;
     // Absorption from the closure, but no less than pure water's.
-    optics.absorption_m[i] = std::max(
-        k_d * kMeanCosine / kClosure - kBackFraction * (water + particles), kPureWater_m[i]);
+    optics.absorption_m[i] = std::max(k_d * kMeanCosine / kClosure - back, kPureWater_m[i]);
   }
   return optics;
 }

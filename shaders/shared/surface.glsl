@@ -74,8 +74,11 @@ vec3 shade_surface(Surface s, vec3 to_eye) {
     if (cone <= 0.0) continue;
     // A lamp is a disk of 5 cm, no point: close by its light stays finite.
     vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.0025);
-    if (light_has(kLightWater) && light.origin_depth_m > s.position.y)
-      arriving *= exp(-min(light.beam_attenuation * distance_m, vec3(80.0)));
+    if (light_has(kLightWater)) {
+      float depth_m = light.origin_depth_m - s.position.y;
+      float in_water_m = water_length(light.origin_depth_m - light.lamps[i].position.y, depth_m, distance_m);
+      arriving *= exp(-min(light.beam_attenuation * in_water_m, vec3(80.0)));
+    }
     radiance += arriving * reflect_light(s, to_eye, to_lamp, clamp(0.05 / distance_m, 0.01, 1.0));
   }
   return radiance;

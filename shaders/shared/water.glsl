@@ -5,26 +5,13 @@
 // light_has(term) and lamp_count(), from constants where the pipeline knows them.
 #ifndef NERITIC_WATER_GLSL
 #define NERITIC_WATER_GLSL
+#include "shared/phase.h"
 
 const float kPi = 3.14159265358979;
-// Mean cosine of particle scattering (Petzold's phase function has about 0.924).
-const float kParticleG = 0.924;
-// Light that was scattered before arrives from a broad cone about the zenith; scattered once more by
-// particles it is spread as by this g (a fit, no measurement: the path radiance near the horizon is a
-// few percent of the downwelling irradiance, Jerlov 1976 fig. 36).
-const float kDiffuseG = 0.6;
 // Mean cosine of light that comes down diffusely: its radiance passes through 1 / this metres of water a
 // metre of depth. Even light from within Snell's cone has (1 + cos 48.6 deg) / 2 = 0.83; scattering spreads
 // it a little wider.
 const float kDiffuseCosine = 0.8;
-
-float henyey_greenstein(float cosine, float g) {
-  float d = 1.0 + g * g - 2.0 * g * cosine;
-  return (1.0 - g * g) / (4.0 * kPi * d * sqrt(d));
-}
-
-// Morel 1974: 0.06225 (1 + 0.835 cos^2), integral 1 over the sphere.
-float sea_water_phase(float cosine) { return 0.06225 * (1.0 + 0.835 * cosine * cosine); }
 
 // Downwelling irradiance at a depth (m, positive down): fades by K_d. In air depth counts as 0.
 vec3 downwelling(float depth_m) {
@@ -53,6 +40,28 @@ vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct) {
   return irradiance * (direct * from_beam / light.sun_cosine + (1.0 - direct) * from_diffuse / kDiffuseCosine);
 }
 
+// The part of a straight sight that lies in water: metres from its start at which it begins and ends.
+// Above the surface (y = 0, depth 0) there is no water.
+vec2 water_part(float depth_m, vec3 direction, float length_m) {
+  float begin_m = 0.0;
+  float end_m = length_m;
+  if (depth_m < 0.0) {
+    if (direction.y >= 0.0) return vec2(0.0);
+    begin_m = depth_m / direction.y;
+  } else if (direction.y > 0.0) {
+    end_m = min(end_m, depth_m / direction.y);
+  }
+  return vec2(begin_m, max(begin_m, end_m));
+}
+
+// Metres of a straight way between two depths (m, positive down) that lie in water.
+float water_length(float from_depth_m, float to_depth_m, float length_m) {
+  float high_m = min(from_depth_m, to_depth_m);
+  if (high_m >= 0.0) return length_m;
+  float low_m = max(from_depth_m, to_depth_m);
+  return low_m <= 0.0 ? 0.0 : length_m * low_m / (low_m - high_m);
+}
+
 // What a length of sight does: radiance arriving = transmittance * radiance at its end + added.
 struct Sight {
   vec3 transmittance;
@@ -65,14 +74,10 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
   sight.transmittance = vec3(1.0);
   sight.added = vec3(0.0);
   if (!light_has(kLightWater)) return sight;
-  // Above the surface there is no water: an eye in the air looks through what lies below it only.
-  if (depth_m < 0.0) {
-    if (direction.y >= 0.0) return sight;
-    length_m -= depth_m / direction.y;
-    if (length_m <= 0.0) return sight;
-    depth_m = 0.0;
-  }
-  if (direction.y > 0.0) length_m = min(length_m, max(depth_m, 0.0) / direction.y);
+  vec2 part_m = water_part(depth_m, direction, length_m);
+  length_m = part_m.y - part_m.x;
+  if (length_m <= 0.0) return sight;
+  depth_m = max(depth_m, 0.0);
   // Exponents beyond 80 are as good as infinite and keep inf * 0 out.
   sight.transmittance = exp(-min(light.beam_attenuation * length_m, vec3(80.0)));
   if (!light_has(kLightScattering) || !light_has(kLightSun)) return sight;
@@ -84,6 +89,11 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
   sight.added = source * mix(integral, vec3(length_m), lessThan(abs(exponent), vec3(1e-4)));
   return sight;
 }
+
+// Cosines at which the sun's glow in Snell's window begins and is full: 4.8 and 1.8 degrees. Its smooth
+// step's integral is pi (2 - begin - full) sr.
+const float kGlowEdge = 0.9965;
+const float kGlowFull = 0.9995;
 
 // Longer than any sight in water, m.
 const float kForever_m = 1e9;
@@ -102,9 +112,11 @@ vec3 beyond(float depth_m, vec3 direction) {
     vec3 rate = light.beam_attenuation - light.diffuse_attenuation * down.y;
     mirrored = scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);
   }
-  // A sky of even radiance holds the light that does not come straight from the sun. Bluer than daylight
-  // as a whole, which counts as white: a tint by eye.
-  vec3 sky = light.surface_irradiance * ((1.0 - light.direct_share) / kPi) * vec3(0.8, 0.95, 1.1);
+  // A sky of even radiance holds the light that does not come straight from the sun; what is known of it
+  // has passed the surface. Bluer than daylight as a whole, which counts as white: a tint by eye, of
+  // luminance 1 (ITU-R BT.709).
+  const vec3 kSkyTint = vec3(0.8612, 1.0227, 1.1841);
+  vec3 sky = light.surface_irradiance * ((1.0 - light.direct_share) / (kPi * kSkyTransmittance)) * kSkyTint;
   if (depth_m < 0.0 && direction.y >= 0.0) return sky;
   float cosine_air = sqrt(max(0.0, 1.0 - sine_air * sine_air));
   // Fresnel, unpolarised.
@@ -112,42 +124,52 @@ vec3 beyond(float depth_m, vec3 direction) {
   float rp = (kWaterIndex * cosine_air - direction.y) / (kWaterIndex * cosine_air + direction.y);
   float reflected = sine_air >= 1.0 ? 1.0 : 0.5 * (rs * rs + rp * rp);
   // Sky radiance gains n^2 on entering the water. The sun's beam, spread by waves over a few degrees, is a
-  // glow of 1 / 0.0165 sr, the solid angle of a cone of 4.2 degrees.
-  sky *= kWaterIndex * kWaterIndex;
+  // glow whose integral over all directions is its irradiance; that has passed the surface already.
   float to_sun = dot(direction, light.to_sun);
-  sky += light.surface_irradiance * light.direct_share * 60.0 * smoothstep(0.9965, 0.9995, to_sun);
-  return direction.y < 1e-3 || depth_m <= 0.0 ? vec3(0.0) : mix(sky, mirrored, reflected);
+  float spread = smoothstep(kGlowEdge, kGlowFull, to_sun) / (kPi * (2.0 - kGlowEdge - kGlowFull));
+  vec3 glow = light.surface_irradiance * (light.direct_share / light.sun_cosine * spread);
+  if (direction.y < 1e-3 || depth_m <= 0.0) return vec3(0.0);
+  return mix(sky * kWaterIndex * kWaterIndex, mirrored, reflected) + glow;
 }
 
-// The glow of lamp i along a sight that passes it at distance_m, nearest_t from the eye.
-vec3 one_lamp_glow(uint i, vec3 from_lamp, vec3 direction, float length_m, float nearest_t, float distance_m) {
+// The glow of lamp i along the part_m of a sight, which passes it at distance_m, nearest_t from the eye.
+vec3 one_lamp_glow(uint i, vec3 from_lamp, vec3 direction, vec2 part_m, float nearest_t, float distance_m) {
   vec3 sum = vec3(0.0);
-  float from_angle = atan(-nearest_t, distance_m);
-  float to_angle = atan(min(length_m, 100.0) - nearest_t, distance_m);
+  float lamp_depth_m = light.origin_depth_m - light.lamps[i].position.y;
+  float from_angle = atan(part_m.x - nearest_t, distance_m);
+  float to_angle = atan(part_m.y - nearest_t, distance_m);
   for (uint k = 0u; k < 4u; ++k) {
     float t = nearest_t + distance_m * tan(mix(from_angle, to_angle, (float(k) + 0.5) * 0.25));
     vec3 travel = from_lamp + direction * t;
     float reach = max(length(travel), 0.05);
+    float in_water_m = water_length(lamp_depth_m, lamp_depth_m - travel.y, reach) + t - part_m.x;
     travel /= reach;
     float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, dot(travel, light.lamps[i].direction));
     float cosine = dot(travel, -direction);
     vec3 turned = light.particle_scattering * henyey_greenstein(cosine, kParticleG) +
                   light.water_scattering * sea_water_phase(cosine);
-    sum += cone * turned * exp(-min(light.beam_attenuation * (t + reach), vec3(80.0)));
+    sum += cone * turned * exp(-min(light.beam_attenuation * in_water_m, vec3(80.0)));
   }
   return sum * light.lamps[i].intensity_cd * (to_angle - from_angle) / (4.0 * distance_m);
 }
 
+// No glow is seen from farther away, m.
+const float kFarthestGlow_m = 100.0;
+
 // Radiance that the water in the lamps' beams sends along a sight from the eye (relative to the origin):
-// single scattering, four samples a lamp, placed equi-angularly (Kulla and Fajardo 2012).
+// single scattering, four samples a lamp, placed equi-angularly (Kulla and Fajardo 2012). Rays that
+// cross the surface go straight on.
 vec3 lamp_glow(vec3 eye, vec3 direction, float length_m) {
   vec3 sum = vec3(0.0);
   if (!light_has(kLightGlow)) return sum;
+  vec2 part_m = water_part(light.origin_depth_m - eye.y, direction, length_m);
+  part_m.y = min(part_m.y, part_m.x + kFarthestGlow_m);
+  if (part_m.y <= part_m.x) return sum;
   for (uint i = 0u; i < lamp_count(); ++i) {
     vec3 from_lamp = eye - light.lamps[i].position;
     float nearest_t = -dot(from_lamp, direction);
     float distance_m = max(length(from_lamp + direction * nearest_t), 0.05);
-    sum += one_lamp_glow(i, from_lamp, direction, length_m, nearest_t, distance_m);
+    sum += one_lamp_glow(i, from_lamp, direction, part_m, nearest_t, distance_m);
   }
   return sum;
 }

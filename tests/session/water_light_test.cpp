@@ -1,13 +1,18 @@
 // Light in water measured on pictures, the documented tone curve inverted, against closed forms:
 // sight fades by exp(-c z) (Beer and Lambert), daylight by exp(-K_d d), the water's own light grows
-// as B (1 - exp(-c z)), and its B is the integral of what is scattered once.
+// as B (1 - exp(-c z)), and its B is the integral of what is scattered once; so are the lamps'
+// beams, and lamps light what they reach by exp(-c z) / z^2. Snell's window lets in all the light
+// there is.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <span>
 
 #include "engine/render/lighting.hpp"
 #include "engine/render/water_optics.hpp"
 #include "engine/scene/shapes.hpp"
+#include "shared/phase.h"
 #include "tests/support/gpu_fixture.hpp"
 #include "tools/session/session.hpp"
 
@@ -49,12 +54,26 @@ struct View {
   bool scattering = false;
   double ev = kFixed_ev;
   bool auto_exposure = false;
+  // Instead of the sun: a lamp here in the camera's axes, that shines as the camera looks.
+  double lamp_cd = 0.0;
+  Vec3 lamp_m{0.0};
 };
+
+// Its cone is so wide that all that is looked at is lit in full.
+scene::Lamp lamp_of(const View& view, const Pose& camera) {
+  scene::Lamp lamp;
+  lamp.intensity_cd = view.lamp_cd;
+  lamp.inner_cone_rad = radians(88.0);
+  lamp.outer_cone_rad = radians(89.0);
+  lamp.mount.pose = {camera * view.lamp_m, camera.rotation};
+  return lamp;
+}
 
 scene::Scene scene_of(const View& view) {
   scene::Scene scene;
   scene.path = "test";
-  scene.sun = scene::Sun{.elevation_rad = radians(50.0), .azimuth_rad = kPi};
+  if (view.lamp_cd == 0.0)
+    scene.sun = scene::Sun{.elevation_rad = radians(50.0), .azimuth_rad = kPi};
   scene.water = scene::Water{.type = view.water, .scattering = view.scattering};
   scene::Camera camera;
   camera.name = "eye";
@@ -63,6 +82,7 @@ scene::Scene scene_of(const View& view) {
   camera.mount.pose = {Vec3(0.0, -view.depth_m, 0.0),
                        glm::angleAxis(view.pitch_rad, Vec3(1.0, 0.0, 0.0))};
   scene.cameras.push_back(camera);
+  if (view.lamp_cd > 0.0) scene.lamps.push_back(lamp_of(view, camera.mount.pose));
   if (view.face_m == 0.0) return scene;
   scene::Model box = scene::make_box({20.0, 20.0, 1.0});
   scene::Material paint;
@@ -172,17 +192,26 @@ double morel(double cosine) {
   return 3.0 / (4.0 * kPi * (3.0 + 0.835)) * (1.0 + 0.835 * cosine * cosine);
 }
 
-TEST_F(WaterLight, PhaseFunctionsScatterAllOfTheLight) {
-  for (const double g : {0.6, 0.924}) {
+// The shaders' own, which are C++ too.
+TEST(WaterPhase, FunctionsScatterAllOfTheLightByTheirMeanCosine) {
+  const struct {
+    std::function<double(float)> phase;
+    double mean;
+  } functions[] = {
+      {[](float c) { return shared::henyey_greenstein(c, shared::kParticleG); }, 0.924},
+      {[](float c) { return shared::henyey_greenstein(c, shared::kDiffuseG); }, 0.6},
+      {[](float c) { return shared::sea_water_phase(c); }, 0.0}};
+  for (const auto& function : functions) {
     double sum = 0.0, mean = 0.0;
     constexpr int kSteps = 200000;
     for (int i = 0; i < kSteps; ++i) {
       const double cosine = -1.0 + 2.0 * (i + 0.5) / kSteps;
-      sum += 2.0 * kPi * henyey_greenstein(cosine, g) * 2.0 / kSteps;
-      mean += 2.0 * kPi * henyey_greenstein(cosine, g) * cosine * 2.0 / kSteps;
+      const double share = 2.0 * kPi * function.phase(static_cast<float>(cosine)) * 2.0 / kSteps;
+      sum += share;
+      mean += share * cosine;
     }
-    EXPECT_NEAR(sum, 1.0, 1e-5);
-    EXPECT_NEAR(mean, g, 1e-5);
+    EXPECT_NEAR(sum, 1.0, 1e-4) << function.mean;
+    EXPECT_NEAR(mean, function.mean, 1e-4);
   }
 }
 
@@ -218,6 +247,160 @@ TEST_F(WaterLight, EndlessWaterShinesAsTheIntegralOfSingleScattering) {
       EXPECT_NEAR(seen[ch] / (sum * light.exposure), 1.0, 0.04) << type << " " << ch;
     }
   }
+}
+
+// A lamp beside the camera on a wall: I / z^2 arrives, less what 2 z of water take.
+TEST_F(WaterLight, ALampsLightFadesByTheSquareAndTheWaterBothWays) {
+  constexpr double kLamp_cd = 1000.0, kAlbedo = 0.8;
+  NERITIC_ASSERT_OK(const render::WaterOptics optics, render::jerlov_optics("II"));
+  for (const double z_m : {1.0, 3.0}) {
+    const double ev = z_m == 1.0 ? 8.0 : 3.5;
+    const Vec3 seen = radiance_of(device(), {.water = "II",
+                                             .depth_m = 20.0,
+                                             .face_m = z_m,
+                                             .albedo = kAlbedo,
+                                             .ev = ev,
+                                             .lamp_cd = kLamp_cd});
+    for (int ch = 0; ch < 3; ++ch) {
+      const double wanted = kLamp_cd / (z_m * z_m) * kAlbedo / kPi *
+                            std::exp(-2.0 * optics.beam_attenuation_m()[ch] * z_m);
+      EXPECT_NEAR(seen[ch] / (wanted * std::exp2(-ev)), 1.0, 0.04) << z_m << " m, " << ch;
+    }
+  }
+}
+
+// From a metre above the surface on a plate half a metre below it: half a metre of water each way.
+TEST_F(WaterLight, ALampInTheAirIsDimmedByTheWatersPartOfTheWay) {
+  constexpr double kLamp_cd = 1000.0, kAlbedo = 0.8, kEv = 7.5;
+  NERITIC_ASSERT_OK(const render::WaterOptics optics, render::jerlov_optics("III"));
+  const Vec3 seen = radiance_of(device(), {.water = "III",
+                                           .depth_m = -1.0,
+                                           .face_m = 1.5,
+                                           .albedo = kAlbedo,
+                                           .pitch_rad = -0.5 * kPi,
+                                           .ev = kEv,
+                                           .lamp_cd = kLamp_cd});
+  for (int ch = 0; ch < 3; ++ch) {
+    const double wanted = kLamp_cd / (1.5 * 1.5) * kAlbedo / kPi *
+                          std::exp(-2.0 * optics.beam_attenuation_m()[ch] * 0.5);
+    EXPECT_NEAR(seen[ch] / (wanted * std::exp2(-kEv)), 1.0, 0.04) << ch;
+  }
+}
+
+// What a lamp beside and behind the eye sends back from the water before it, to_m of the sight
+// being in water: the sum over the sight of I / r^2, scattered once, dimmed over both legs.
+Vec3 glow_integral(const View& view, const render::WaterOptics& optics, double to_m) {
+  constexpr double kStep_m = 0.001;
+  Vec3 sum(0.0);
+  for (double t_m = 0.5 * kStep_m; t_m < to_m; t_m += kStep_m) {
+    const Vec3 leg_m = Vec3(0.0, 0.0, -t_m) - view.lamp_m;
+    const double r_m = glm::length(leg_m), cosine = leg_m.z / r_m;  // back to the eye is +z
+    for (int ch = 0; ch < 3; ++ch)
+      sum[ch] += view.lamp_cd / (r_m * r_m) *
+                 (optics.particle_scattering_m[ch] * henyey_greenstein(cosine, 0.924) +
+                  optics.water_scattering_m[ch] * morel(cosine)) *
+                 std::exp(-optics.beam_attenuation_m()[ch] * (t_m + r_m)) * kStep_m;
+  }
+  return sum;
+}
+
+// The shader takes four samples a lamp: within 5 % here.
+TEST_F(WaterLight, ALampsBeamGlowsAsTheIntegralOfSingleScattering) {
+  NERITIC_ASSERT_OK(const render::WaterOptics optics, render::jerlov_optics("III"));
+  // Deep down and level; then up from .7 m below the surface, where the water ends.
+  for (const bool up : {false, true}) {
+    const View view{.water = "III",
+                    .depth_m = up ? 0.7 : 20.0,
+                    .face_m = 0.0,
+                    .pitch_rad = up ? 0.5 * kPi : 0.0,
+                    .scattering = true,
+                    .ev = 2.0,
+                    .lamp_cd = 5000.0,
+                    .lamp_m = {0.5, 0.0, 0.3}};
+    const Vec3 seen = radiance_of(device(), view);
+    const Vec3 wanted = glow_integral(view, optics, up ? 0.7 : 40.0);
+    for (int ch = 0; ch < 3; ++ch)
+      EXPECT_NEAR(seen[ch] / (wanted[ch] * std::exp2(-view.ev)), 1.0, 0.05) << up << " " << ch;
+  }
+}
+
+TEST_F(WaterLight, AirDoesNotGlow) {
+  for (const double pitch_rad : {0.0, 0.5}) {
+    const View view{.water = "III",
+                    .depth_m = -0.5,
+                    .face_m = 0.0,
+                    .pitch_rad = pitch_rad,
+                    .scattering = true,
+                    .ev = 2.0,
+                    .lamp_cd = 5000.0,
+                    .lamp_m = {0.5, 0.0, 0.3}};
+    NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene_of(view)));
+    FrameRequest request;
+    request.cameras = {0};
+    NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+    for (int ch = 0; ch < 3; ++ch)
+      EXPECT_EQ(result.cameras[0].eyes[0].color.at(16, 16, ch), 0) << pitch_rad;
+  }
+}
+
+// The radiance of every pixel, from pictures at several exposures: the brightest that eight bits
+// hold. Pixels that all of them are too bright or too dark for are 0.
+Result<std::vector<Vec3>> radiance_map(Session& session, std::span<const double> evs) {
+  std::vector<Vec3> map;
+  for (const double ev : evs) {
+    session.scene().cameras[0].exposure.fixed_ev = ev;
+    FrameRequest request;
+    request.cameras = {0};
+    NERITIC_TRY(const FrameResult result, session.render(request));
+    const ImageU8& color = result.cameras[0].eyes[0].color;
+    map.resize(std::size_t{color.width} * color.height, Vec3(0.0));
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      const std::uint8_t* rgb = &color.data[3 * i];
+      if (map[i] != Vec3(0.0) || std::max({rgb[0], rgb[1], rgb[2]}) > 245) continue;
+      map[i] = exposed_radiance(Vec3(rgb[0], rgb[1], rgb[2]) / 255.0) * std::exp2(ev);
+    }
+  }
+  return map;
+}
+
+// Just below the surface and looking up: radiance times cosine over all directions is the
+// irradiance that the surface lets through, of sky and sun alike (Mobley 1994, ch. 4).
+TEST_F(WaterLight, SnellsWindowLetsInAllTheLight) {
+  const View view{.water = "IB", .depth_m = 0.02, .face_m = 0.0, .pitch_rad = 0.5 * kPi};
+  scene::Scene scene = scene_of(view);
+  scene.water->surface = true;
+  constexpr std::uint32_t kSide = 201;
+  scene.cameras[0].width = scene.cameras[0].height = kSide;
+  scene.cameras[0].vertical_fov_rad = radians(110.0);
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
+  const render::FrameState state =
+      render::evaluate_frame(scene, session->gpu_scene(), 0.0, 0.1, false);
+  NERITIC_ASSERT_OK(const shared::Lighting light,
+                    render::make_lighting(scene, state, Vec3(0.0, -view.depth_m, 0.0),
+                                          scene.cameras[0].exposure, false));
+  const double evs[] = {14.5, 17.0, 19.5, 22.0, 24.5};
+  NERITIC_ASSERT_OK(const std::vector<Vec3> map, radiance_map(*session, evs));
+  NERITIC_ASSERT_OK(const render::WaterOptics optics, render::jerlov_optics("IB"));
+  constexpr Vec3 kLuminance{0.2126, 0.7152, 0.0722};           // ITU-R BT.709
+  const double pixel = 2.0 * std::tan(radians(55.0)) / kSide;  // on a plane at distance 1
+  double sum = 0.0, wanted = 0.0;
+  for (std::uint32_t y = 0; y < kSide; ++y)
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      const double u = (x + 0.5) * pixel - std::tan(radians(55.0)),
+                   v = (y + 0.5) * pixel - std::tan(radians(55.0));
+      const double cosine = 1.0 / std::sqrt(1.0 + u * u + v * v);
+      const double solid_angle_sr = pixel * pixel * cosine * cosine * cosine;
+      for (int ch = 0; ch < 3; ++ch)
+        sum += kLuminance[ch] * map[y * kSide + x][ch] * cosine * solid_angle_sr *
+               std::exp(optics.beam_attenuation_m()[ch] * view.depth_m / cosine);
+    }
+  for (int ch = 0; ch < 3; ++ch) wanted += kLuminance[ch] * light.surface_irradiance[ch];
+  EXPECT_NEAR(sum / wanted, 1.0, 0.03);
+  // Of the sky alone, at the zenith: n^2 times the air's radiance, less some 2 % at the surface.
+  const Vec3 zenith = map[kSide / 2 * kSide + kSide / 2];
+  const double reflected = std::pow((1.333 - 1.0) / (1.333 + 1.0), 2.0);
+  const double air = wanted * (1.0 - light.direct_share) / 0.934 / kPi;
+  EXPECT_NEAR(glm::dot(kLuminance, zenith) / (1.333 * 1.333 * (1.0 - reflected) * air), 1.0, 0.04);
 }
 
 }  // namespace
