@@ -158,6 +158,9 @@ struct Scene {
   Mat4 world_from_copy(const Object& object, std::size_t copy, double time_s = 0.0) const;
 };
 
+// Positions: farther out than the Earth's circumference is a mistake.
+inline constexpr double kFarthest_m = 4e7;
+
 struct SceneOptions {
   Vec3 offset_m{0.0};  // added to everything fixed to the world: to test far from the origin
 };

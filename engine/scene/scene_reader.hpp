@@ -10,6 +10,7 @@
 
 #include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
+#include "engine/scene/scene.hpp"
 #include "engine/scene/scene_includes.hpp"
 #include "engine/scene/scene_keys.hpp"
 
@@ -24,8 +25,7 @@ struct Interval {
   std::string text() const;  // "[0, 90] degrees"
 };
 
-// Positions: farther out than the Earth's circumference is a mistake.
-inline constexpr Interval kAnyMetres{-4e7, 4e7, false, false, "metres"};
+inline constexpr Interval kAnyMetres{-kFarthest_m, kFarthest_m, false, false, "metres"};
 // What cameras and sonars both have.
 inline constexpr Interval kRate{0, 1000, true, false, "hertz"};
 inline constexpr Interval kNear{0, 10, true, false, "metres"};

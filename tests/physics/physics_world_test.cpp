@@ -19,7 +19,7 @@ TEST(PhysicsWorld, ASceneWithoutDynamicsNeedsNone) {
   ASSERT_TRUE(scene.ok());
   EXPECT_FALSE(PhysicsWorld::needed(*scene));
   const std::size_t tracks_before = scene->objects[0].mount.track.has_value();
-  ASSERT_TRUE(fly_ahead(*scene, 1.0).ok());
+  ASSERT_TRUE(fly_ahead(*scene, {.until_s = 1.0}).ok());
   EXPECT_EQ(scene->objects[0].mount.track.has_value(), tracks_before != 0);
 }
 

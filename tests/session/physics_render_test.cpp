@@ -57,7 +57,7 @@ TEST_F(PhysicsRender, CamerasAndSonarsAreWhereTheVehicleIsAtTheTime) {
   scene::Scene scene = scene_of_wall();
   const auto world = PhysicsWorld::create(scene);
   ASSERT_TRUE(world.ok()) << world.error().message;
-  ASSERT_TRUE(fly_ahead(scene, 6.0).ok());
+  ASSERT_TRUE(fly_ahead(scene, {.until_s = 6.0}).ok());
   auto session = Session::create(device(), scene);
   ASSERT_TRUE(session.ok()) << session.error().message;
   const auto simulation = (*world)->simulation({});

@@ -28,8 +28,13 @@ Result<scene::Scene> load(const RenderFlags& flags) {
   scene::SceneOptions options;
   if (!flags.offset_m.empty()) {
     options.offset_m = {flags.offset_m[0], flags.offset_m[1], flags.offset_m[2]};
-    if (!is_finite(options.offset_m))
-      return bad_input("--offset: three finite numbers (metres) are accepted");
+    // As positions in files. A comparison that a NaN fails.
+    const Vec3 far = glm::abs(options.offset_m);
+    if (!(std::max({far.x, far.y, far.z}) <= scene::kFarthest_m) || !is_finite(options.offset_m))
+      return bad_input(
+          "--offset: {:g} {:g} {:g}; three numbers of -{:g} to {:g} metres are accepted",
+          options.offset_m.x, options.offset_m.y, options.offset_m.z, scene::kFarthest_m,
+          scene::kFarthest_m);
   }
   NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size, options));
   if (!flags.quality.empty())
@@ -124,6 +129,15 @@ Status write_frame(const fs::path& folder, const FrameResult& result, const Fram
   return {};
 }
 
+// To the last frame's end, with its progress.
+Status fly(scene::Scene& scene, double from_s, double until_s) {
+  Flight flight{.from_s = from_s, .until_s = until_s + kFlownBeyond_s};
+  const double seconds = std::clamp(flight.until_s, 0.0, kLongestFlight_s);
+  Progress progress("second of the dive", scene.physics ? static_cast<std::uint64_t>(seconds) : 0);
+  flight.second = [&] { progress.step(); };
+  return fly_ahead(scene, flight);
+}
+
 Status dump_graph(const RenderFlags& flags, const Session& session) {
   if (flags.dump_graph == "-") {
     fmt::print("{}", session.plan_text());
@@ -181,7 +195,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
   const double step_s = 1.0 / rates_hz.front();
   PingSchedule schedule(rates_hz);
   const FrameRequest all = request;
-  NERITIC_TRY_STATUS(fly_ahead(scene, flags.time_s + flags.frames * step_s + kFlownBeyond_s));
+  NERITIC_TRY_STATUS(fly(scene, flags.time_s, flags.time_s + flags.frames * step_s));
   if (flags.frames > 1) warn_of_rates(scene, request, flags.own_rates ? 0.0 : rates_hz.front());
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),

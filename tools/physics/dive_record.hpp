@@ -3,6 +3,7 @@
 // thread: the one that steps.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,9 @@ namespace neritic::tools {
 struct RecordOptions {
   bool rows = false;         // keep rows
   double row_rate_hz = 0.0;  // 0: one each control period
-  bool tracks = false;       // keep the paths, each step
+  bool tracks = false;       // keep the paths, every track_steps-th step from tracks_from_s on
+  double tracks_from_s = 0.0;
+  std::uint64_t track_steps = 1;
 };
 
 // A vehicle at an instant.
@@ -50,6 +53,7 @@ class DiveRecorder {
   std::vector<scene::Track>& tracks() { return tracks_; }
 
  private:
+  bool track_due(const sim::Snapshot<PhysicsState>& snapshot) const;
   bool row_due(std::size_t vehicle, std::uint64_t step) const;
   DiveRow row_of(std::size_t vehicle, const sim::Snapshot<PhysicsState>& snapshot) const;
 
@@ -67,7 +71,14 @@ class DiveRecorder {
 // not, or has not heard yet, is empty.
 std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows);
 
-// Simulates to until_s and gives the vehicles of the scene their paths as tracks.
-Status fly_ahead(scene::Scene& scene, double until_s);
+// Simulates from 0 to until_s and gives the vehicles of the scene their paths from from_s on as
+// tracks; no path is needed before the first picture. second: called after each second flown.
+// kBadInput beyond kLongestFlight_s. Of long paths only every so many steps' poses are kept.
+inline constexpr double kLongestFlight_s = 24.0 * 3600.0;
+struct Flight {
+  double from_s = 0.0, until_s = 0.0;
+  std::function<void()> second = [] {};
+};
+Status fly_ahead(scene::Scene& scene, const Flight& flight);
 
 }  // namespace neritic::tools
