@@ -117,6 +117,7 @@ Result<ImageU8> decode_jpeg(std::span<const std::byte> bytes, const std::string&
   if (pixels > bytes.size() * kMaxPixelsPerByte + kSlackPixels)
     return bad_input("{}: {} x {} pixels cannot come from {} bytes", name, width, height,
                      bytes.size());
+  note_if_heavy(name, width, height);
   if (reader.four_inks())
     return bad_input("{}: a JPEG of four inks (CMYK), grey or RGB is accepted", name);
   if (channels == 0) channels = reader.gray() ? 1 : 3;

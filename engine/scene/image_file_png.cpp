@@ -111,6 +111,7 @@ Result<Raster<T>> decode_png(std::span<const std::byte> bytes, const std::string
     return bad_input("{}: {} x {} pixels cannot come from {} bytes", name, reader.width(),
                      reader.height(), bytes.size());
   if (!reader.set_layout(channels, 8 * sizeof(T))) return broken(source);
+  note_if_heavy(name, reader.width(), reader.height());
   Raster<T> image(reader.width(), reader.height(), reader.channels());
   if (reader.row_bytes() * reader.height() != image.data.size() * sizeof(T))
     return bad_input("{}: a PNG of an unknown layout", name);

@@ -112,8 +112,9 @@ class Includer {
     const fs::path path = source_.resolve(written.where, written.text);
     std::error_code error;
     if (!fs::is_regular_file(path, error))
-      return bad_input("{}: include: {}: no such file", source_.place(written.where),
-                       printable(path.string(), 300));
+      return bad_input("{}: include: {}: {}", source_.place(written.where),
+                       printable(path.string(), 300),
+                       fs::exists(path, error) ? "not a plain file" : "no such file");
     for (const fs::path& open : chain_)
       if (fs::equivalent(open, path, error)) return loop(written, path);
     if (static_cast<int>(chain_.size()) > kMaxIncludeDepth || ++include_count_ > kMaxIncludes)
