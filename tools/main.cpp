@@ -9,8 +9,15 @@
 namespace {
 
 int failed(const neritic::Error& error) {
-  std::fprintf(stderr, "neritic: %s\n", error.message.c_str());
+  std::fprintf(stderr, "neritic: %s\n", neritic::one_line(error.message).c_str());
   return neritic::exit_status(error.code);
+}
+
+// What was printed counts as done only once it has left.
+int flushed(int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  std::fprintf(stderr, "neritic: standard output cannot be written\n");
+  return status == 0 ? 1 : status;
 }
 
 int run(int argc, char** argv) {
@@ -33,12 +40,12 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return flushed(run(argc, argv));
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "neritic: out of memory\n");
     return 1;
   } catch (const std::exception& error) {  // of a library; ours returns its errors
-    std::fprintf(stderr, "neritic: %s\n", error.what());
+    std::fprintf(stderr, "neritic: %s\n", neritic::one_line(error.what()).c_str());
     return 1;
   }
 }

@@ -32,6 +32,18 @@ TEST(CommandLine, AWrongFlagPointsAtTheSubcommandsHelp) {
   EXPECT_THAT(said({"--colour"}), HasSubstr("(see neritic --help)"));
 }
 
+TEST(CommandLine, AnEmptyFolderForTheResultsIsRefused) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"render", "a.toml", "--out", ""},
+        std::vector<std::string>{"sonar", "imaging", "--intrinsics", "1,1,1,1", "--out", ""},
+        std::vector<std::string>{"tradeoff", "sonar", "--out="}}) {
+    const auto line = parse_command_line(words);
+    ASSERT_FALSE(line.ok()) << words[0];
+    EXPECT_EQ(exit_status(line.error().code), 2);
+    EXPECT_THAT(line.error().message, HasSubstr("--out"));
+  }
+}
+
 TEST(CommandLine, AWrongSubcommandListsThem) {
   EXPECT_THAT(said({"rendre"}), HasSubstr("render, sonar, dive, tradeoff, check, doctor"));
 }

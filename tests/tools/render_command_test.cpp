@@ -53,6 +53,8 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
       {"render " + scene("pool.toml") + out + " --size 99999x1", "99999x1"},
       {"render " + scene("pool.toml") + out + " --time inf", "--time"},
       {"render " + scene("pool.toml") + out + " --offset nan 0 0", "--offset"},
+      {"render " + scene("pool.toml") + out + " --offset 0 -4.1e7 0", "4e+07"},
+      {"render 'not\nthere.toml'" + out, "not\\nthere.toml"},
       {"render " + scene("pool.toml") + out + " --sensor nobody", "nobody: not in"},
       {"render " + scene("pool.toml") + out + " --sensor camera --sensor nobody", "camera, sonar"},
       {"render " + scene("pool.toml") + out + " --water 4X", "4X"},
@@ -66,6 +68,16 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
                                                                              << outcome.said;
     EXPECT_NE(outcome.said.find(c.names), std::string::npos) << c.arguments << "\n" << outcome.said;
     EXPECT_FALSE(fs::exists(folder / "out")) << c.arguments;
+  }
+}
+
+TEST(RenderCommand, WhatCannotBePrintedIsAFailure) {
+  for (const char* arguments : {"--version", "render --help"}) {
+    const std::string command =
+        std::string(NERITIC_BINARY_DIR "/tools/neritic ") + arguments + " >/dev/full 2>&1";
+    const int raw = std::system(command.c_str());
+    ASSERT_TRUE(WIFEXITED(raw));
+    EXPECT_EQ(WEXITSTATUS(raw), 1) << arguments;
   }
 }
 
@@ -134,7 +146,7 @@ TEST(RenderCommand, WritesTheFileContractAndTheArraysAgreeWithEachOther) {
     EXPECT_EQ(classes->shape, image->shape);
     for (const fs::path& facts : {camera / "meta.json", sonar / "meta.json"}) {
       const auto meta = parse_json(read_text(facts).value()).value();
-      for (const char* key : {"fx", "fy", "cx", "cy", "pose", "frames", "near_m", "time_s", "seed",
+      for (const char* key : {"fx", "fy", "cx", "cy", "pose", "frames", "near", "time", "seed",
                               "scene", "device", "passes_ms"})
         EXPECT_TRUE(meta.contains(key)) << facts << " " << key;
     }

@@ -26,8 +26,9 @@ std::vector<sonar::SonarInput> images_of(const RayWorld& world, const sonar::Bea
 }
 
 TEST(SonarAgainstRays, TheGpuIsNoWorseThanTheReferenceWhereEveryCellHasAPixel) {
-  auto device = gpu::Device::create({});
-  if (!device.ok()) GTEST_SKIP() << device.error().message;
+  if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
+  const auto device = gpu::Device::create({});
+  ASSERT_TRUE(device.ok()) << device.error().message;
   const auto world = make_analytic_world();
   const sonar::BeamGrid grid = grid_of(200);
   const auto truth = trace_truth(*world, grid, {grid.bins}, 8);
@@ -43,8 +44,9 @@ TEST(SonarAgainstRays, TheGpuIsNoWorseThanTheReferenceWhereEveryCellHasAPixel) {
 }
 
 TEST(SonarAgainstRays, ThePlaneGatherNeedsHalfTheResolution) {
-  auto device = gpu::Device::create({});
-  if (!device.ok()) GTEST_SKIP() << device.error().message;
+  if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
+  const auto device = gpu::Device::create({});
+  ASSERT_TRUE(device.ok()) << device.error().message;
   const auto world = make_analytic_world();
   const sonar::BeamGrid grid = grid_of(250);
   const auto truth = trace_truth(*world, grid, {grid.bins}, 8);

@@ -19,6 +19,11 @@ Result<std::string> nothing_to_say(const Status& status) {
   return std::string();
 }
 
+// An empty name would be the working folder, by chance.
+std::string named(const std::string& folder) {
+  return folder.empty() ? "'' found; a folder's name is accepted" : "";
+}
+
 void add_quality(CLI::App& command, std::string& quality) {
   command
       .add_option("--quality", quality,
@@ -31,7 +36,7 @@ void add_render(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand(
       "render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
   command->add_option("scene", flags->scene, "scene or model file")->required();
-  command->add_option("--out", flags->out, "folder for the results")->required();
+  command->add_option("--out", flags->out, "folder for the results")->required()->check(named);
   command->add_option("--frames", flags->frames, "number of frames")->check(CLI::Range(1, 1000000));
   command->add_option("--size", flags->size, "WxH of every camera, pixels");
   command->add_option("--time", flags->time_s, "scene time of the first frame, seconds");
@@ -148,7 +153,8 @@ void add_sonar(CLI::App& app, Run& run) {
   command
       ->add_option("--out", flags->out,
                    "folder for sonar.npy, .png, .json; of a folder, one folder a frame")
-      ->required();
+      ->required()
+      ->check(named);
   command->callback([flags, &run] { run = [flags] { return run_sonar(*flags); }; });
 }
 
@@ -194,7 +200,8 @@ void add_tradeoff(CLI::App& app, Run& run) {
       app.add_subcommand("tradeoff", "error against cost of one model, with its curve");
   command->add_option("what", flags->what, "sonar, physics, swim or physiology")->required();
   command->add_option("--out", flags->out, "folder for tables (.csv, .md), pictures and levels")
-      ->required();
+      ->required()
+      ->check(named);
   command
       ->add_option("scene,--scene", flags->scene,
                    "whose first sonar's place is taken; none: only closed forms")
