@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
@@ -116,6 +117,14 @@ void expect_like_golden(const ImageU8& actual, const std::string& name, const Ca
 
 TEST(GoldenCases, CanBeRead) {
   ASSERT_FALSE(read_cases().empty());
+}
+
+TEST(GoldenCases, NameEveryScene) {
+  std::set<std::string> named, there;
+  for (const Case& c : read_cases()) named.insert(fs::path(c.scene).filename());
+  for (const auto& entry : fs::directory_iterator(test::source_dir() / "assets/scenes"))
+    if (entry.path().extension() == ".toml") there.insert(entry.path().filename());
+  EXPECT_EQ(named, there);
 }
 
 TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
