@@ -36,7 +36,8 @@ TEST(CommandLine, AnEmptyFolderForTheResultsIsRefused) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"render", "a.toml", "--out", ""},
         std::vector<std::string>{"sonar", "imaging", "--intrinsics", "1,1,1,1", "--out", ""},
-        std::vector<std::string>{"tradeoff", "sonar", "--out="}}) {
+        std::vector<std::string>{"tradeoff", "sonar", "--out", ""},
+        std::vector<std::string>{"plan", "--out", ""}}) {
     const auto line = parse_command_line(words);
     ASSERT_FALSE(line.ok()) << words[0];
     EXPECT_EQ(exit_status(line.error().code), 2);

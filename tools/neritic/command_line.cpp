@@ -283,8 +283,9 @@ void add_plan(CLI::App& app, Run& run) {
       "depths of a dive (.csv: time_s, depth_m, perhaps gas) instead of a plan: what a "
       "dive computer would have shown");
   command->add_option("--plot", flags->plot, "a picture (.png)");
-  command->add_option("--out", flags->out,
-                      "folder for plan.json and plan.png, or log.csv and log.png");
+  command
+      ->add_option("--out", flags->out, "folder for plan.json and plan.png, or log.csv and log.png")
+      ->check(named);
   command->add_flag("--json", flags->json, "for programs: JSON on standard output");
   command->callback([flags, &run] { run = [flags] { return run_plan(*flags); }; });
 }
