@@ -36,15 +36,18 @@ Status read_into(const fs::path& path, Buffer& out) {
 
 // The name that symbolic links lead to, whether or not there is a file yet: a rename must replace
 // that one, not the link.
-fs::path behind_links(fs::path path) {
-  constexpr int kMostLinks = 40;  // as Linux: then it is a loop, and opening fails
+Result<fs::path> behind_links(const fs::path& path) {
+  constexpr int kMostLinks = 40;  // as Linux
   std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
-    const fs::path next = fs::read_symlink(path, error);
-    if (error) break;
-    path = path.parent_path() / next;
+  fs::path name = path;
+  for (int i = 0; fs::is_symlink(fs::symlink_status(name, error)); ++i) {
+    const fs::path next = fs::read_symlink(name, error);
+    if (error || i == kMostLinks)
+      return failure(ErrorCode::kIo, "{}: cannot be written: {}", path.string(),
+                     error ? error.message() : std::string("a loop of links"));
+    name = name.parent_path() / next;
   }
-  return path;
+  return name;
 }
 
 }  // namespace
@@ -66,7 +69,10 @@ Status write_file(const fs::path& path, std::span<const std::byte> bytes) {
   const fs::file_status status = fs::status(path, error);
   // A device or a pipe is written to: a rename would put a plain file in its place.
   const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
-  const fs::path target = in_place ? path : behind_links(path);
+  fs::path target = path;
+  if (!in_place) {
+    NERITIC_TRY(target, behind_links(path));
+  }
   static std::atomic<unsigned> counter{0};  // two threads may write the same name at once
   fs::path name = target;
   if (!in_place) name += fmt::format(".{}-{}.tmp", ::getpid(), counter++);

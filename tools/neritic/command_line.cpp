@@ -39,7 +39,9 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--out", flags->out, "folder for the results")->required()->check(named);
   command->add_option("--frames", flags->frames, "number of frames")->check(CLI::Range(1, 1000000));
   command->add_option("--size", flags->size, "WxH of every camera, pixels");
-  command->add_option("--time", flags->time_s, "scene time of the first frame, seconds");
+  command->add_option(
+      "--time", flags->time_s,
+      "scene time of the first frame, seconds (a day at most where vehicles fly there)");
   command->add_option("--sensor", flags->sensors, "only this sensor, by name; may be given again")
       ->expected(1)
       ->take_all();
