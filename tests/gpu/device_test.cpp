@@ -125,8 +125,10 @@ TEST_F(DeviceTest, AMissingInstanceExtensionIsNamed) {
   EXPECT_THAT(made.error().message, HasSubstr("VK_KHR_not_there"));
 }
 
-// In a process of its own: the environment decides what the loader finds.
+// In a process of its own, begun anew: the environment decides what the loader finds, and a fork
+// would lack the threads of a driver that another test has loaded.
 TEST(DeviceDeathTest, WithoutADriverOneLineNamesThePackage) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
         ::setenv("VK_ICD_FILENAMES", "/nonexistent.json", 1);
