@@ -1,5 +1,7 @@
 #include "rov/step_choice.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace neritic::rov {
@@ -9,17 +11,32 @@ constexpr MeasuredRate kRates[] = {{80.0, 2.9e-6, 202.0},  {100.0, 1.6e-6, 250.0
                                    {200.0, 2.2e-7, 327.0}, {400.0, 2.8e-8, 653.0},
                                    {500.0, 1.6e-8, 813.0}, {1000.0, 1.5e-9, 1627.0}};
 
+constexpr MeasuredContact kContacts[] = {
+    {12.5e-3, 1.6e-2},     {5e-3, 6.0e-3},         {1.0 / 240.0, 4.7e-3},  {1.0 / 480.0, 2.2e-3},
+    {1.0 / 960.0, 1.4e-3}, {1.0 / 1920.0, 5.5e-4}, {1.0 / 3840.0, 3.7e-4}, {1.0 / 7680.0, 2.4e-4}};
+
 }  // namespace
 
 std::span<const MeasuredRate> measured_rates() {
   return kRates;
 }
 
-Result<MeasuredRate> cheapest_rate(double max_error_m) {
-  for (const MeasuredRate& rate : kRates)
-    if (rate.error_m <= max_error_m) return rate;
-  return bad_input("max_error_m: {} found, a number from {} is accepted", max_error_m,
-                   std::end(kRates)[-1].error_m);
+std::span<const MeasuredContact> measured_contacts() {
+  return kContacts;
+}
+
+Result<StepChoice> cheapest_step(double max_error_m, bool among_things) {
+  const double least_m =
+      among_things ? std::end(kContacts)[-1].error_m : std::end(kRates)[-1].error_m;
+  const auto holds = [&](const auto& measured) { return measured.error_m <= max_error_m; };
+  const auto rate = std::ranges::find_if(kRates, holds);
+  const auto contact = std::ranges::find_if(kContacts, holds);
+  if (rate == std::end(kRates) || (among_things && contact == std::end(kContacts)))
+    return bad_input("max_error_m: {} found, a number from {} is accepted{}", max_error_m, least_m,
+                     among_things ? " where something solid can be touched" : "");
+  if (!among_things) return StepChoice{rate->hz, 1};
+  const double parts = std::ceil(1.0 / (rate->hz * contact->step_s) - 1e-9);
+  return StepChoice{rate->hz, std::max(1, static_cast<int>(parts))};
 }
 
 }  // namespace neritic::rov

@@ -25,11 +25,26 @@ constexpr double kMostPush_m_s = 2.0;
 constexpr double kPushTolerance_m_s = 1e-9;
 constexpr int kMostPushRounds = 50;
 
+// Nearer than this share of the way it touches.
+constexpr double kTouchShare = 0.01;
+
+// Whether it would be met within the time, and faster than what lies is.
+bool is_hit(const BodyContact& contact, double approach_m_s, double dt_s) {
+  return approach_m_s < -kBounce_m_s && contact.gap_m + approach_m_s * dt_s < 0.0;
+}
+bool touches(const BodyContact& contact, double approach_m_s, double dt_s) {
+  return contact.gap_m <= -kTouchShare * approach_m_s * dt_s;
+}
+
 double target_of(const BodyContact& contact, double approach_m_s, double dt_s) {
-  const bool hits = contact.gap_m + approach_m_s * dt_s < 0.0;
-  if (hits && contact.restitution > 0.0 && approach_m_s < -kBounce_m_s)
+  if (is_hit(contact, approach_m_s, dt_s) &&
+      (contact.restitution > 0.0 || touches(contact, approach_m_s, dt_s)))
     return -contact.restitution * approach_m_s;
   return -std::max(contact.gap_m, 0.0) / dt_s;
+}
+
+double approach_of(const BodyContact& contact, const Twist& velocity) {
+  return glm::dot(contact.normal, velocity.linear + glm::cross(velocity.angular, contact.point_m));
 }
 
 // To and fro over the contacts: what the conjugate directions ask for, and the same for all.
@@ -95,6 +110,16 @@ Six solve_push(std::vector<SolverContact>& rows, std::span<const BodyContact> co
 }
 
 }  // namespace
+
+double time_to_hit(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s) {
+  double first_s = dt_s;
+  for (const BodyContact& contact : contacts) {
+    const double approach_m_s = approach_of(contact, velocity);
+    if (is_hit(contact, approach_m_s, dt_s) && !touches(contact, approach_m_s, dt_s))
+      first_s = std::min(first_s, contact.gap_m / -approach_m_s);
+  }
+  return first_s;
+}
 
 ContactSolution solve_contacts(std::span<const BodyContact> contacts,
                                const InverseMass& inverse_mass, const Twist& free, double dt_s) {

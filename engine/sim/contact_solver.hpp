@@ -6,8 +6,9 @@
 //
 // solved by projected Gauss-Seidel in the order of the contacts (Catto 2005), friction as a cone.
 // The target is -gap / dt, so that a body comes to touch and no farther (speculative contacts), or,
-// where it would hit within the step faster than kBounce_m_s, the bounce -e n . v_c. Depth is
-// undone by a velocity of its own that moves the body in this step only and carries no energy
+// where it hits faster than kBounce_m_s, the bounce -e n . v_c, which for e = 0 is for what it
+// touches: a hit is one impulse, or its friction would depend on where in the step it falls. Depth
+// is undone by a velocity of its own that moves the body in this step only and carries no energy
 // (split impulses).
 #pragma once
 
@@ -59,5 +60,9 @@ struct ContactSolution {
 // free: the velocity at the end of the step if there were no contacts. dt_s > 0.
 ContactSolution solve_contacts(std::span<const BodyContact> contacts,
                                const InverseMass& inverse_mass, const Twist& free, double dt_s);
+
+// When within dt_s the first contact is hit faster than kBounce_m_s that is not touched yet; dt_s:
+// none.
+double time_to_hit(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s);
 
 }  // namespace neritic::sim

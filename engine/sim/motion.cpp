@@ -12,6 +12,9 @@ namespace neritic::sim {
 namespace {
 
 constexpr int kMostPieces = 64;
+// A step is cut so often where something is hit; what hits more often within one step does so
+// where the pieces end.
+constexpr int kMostHits = 8;
 // Two poses say a turn of less than half a circle.
 constexpr double kMostTurn_rad = 1.0;
 // What is farther than this has no part in a contact.
@@ -120,20 +123,21 @@ class Mover {
           std::clamp(1.01 * way_length(shape_, now_, target_), kLeastMargin_m, kMostMargin_m);
       meet(margin_m);
       const double safe_m = std::min({kShortWay_m, 0.25 * shape_.thinnest_m(), margin_m});
-      const double share = way_length(shape_, now_, target_) > safe_m
-                               ? world_.sweep(shape_, now_, target_, allowed_m, passable_)
-                               : 1.0;
+      const double share =
+          way_length(shape_, now_, target_) > safe_m
+              ? std::min(cut_, world_.sweep(shape_, now_, target_, allowed_m, passable_))
+              : cut_;
       if (share >= 1.0 && way_s_ >= left_s_) break;
       now_ = share < 1.0 ? blend_pose(now_, target_, share) : target_;
       left_s_ -= way_s_ * share;
       way_s_ = left_s_;
-      if (told_.touched) aim(velocity_);
+      if (told_.touched) aim(velocity_, left_s_);
       if (told_.pieces < kMostPieces) continue;
       // Wedged between more than can be told apart: it stays, and its energy goes.
       told_.lost_s = left_s_;
       return {now_, {}};
     }
-    if (!told_.touched && told_.pieces == 1) return free_;
+    if (!told_.touched) return free_;
     return {target_, turned(velocity_, solved_in_, target_.rotation, inverse_mass_)};
   }
 
@@ -143,6 +147,7 @@ class Mover {
     world_.contacts(shape_, now_, margin_m, contacts_);
     told_.contacts = static_cast<int>(contacts_.size());
     passable_.clear();
+    cut_ = 1.0;
     for (const Contact& contact : contacts_) {
       if (told_.pieces == 1) told_.deepest_m = std::max(told_.deepest_m, -contact.gap_m);
       if (contact.inside || contact.gap_m < -kDeep_m) passable_.push_back(contact.thing);
@@ -150,9 +155,16 @@ class Mover {
     // In the axes at the end of the way, which the free velocity is in.
     const Quat& axes = target_.rotation;
     const auto body_contacts = in_body_axes(contacts_, now_.position_m, axes);
-    const auto solution =
-        solve_contacts(body_contacts, inverse_mass_, in_body(velocity_, axes), left_s_);
-    if (!solution.acted()) return;
+    const Twist free = in_body(velocity_, axes);
+    // As far as the first hit, which then is one impulse at its own place and time.
+    const double until_s = hits_ < kMostHits ? time_to_hit(body_contacts, free, left_s_) : left_s_;
+    const bool hit = until_s < left_s_;
+    hits_ += hit ? 1 : 0;
+    const auto solution = solve_contacts(body_contacts, inverse_mass_, free, until_s);
+    if (!solution.acted()) {
+      if (hit) cut_ = until_s / left_s_;
+      return;
+    }
     told_.touched = true;
     told_.converged = told_.converged && solution.converged;
     for (std::size_t i = 0; i < contacts_.size(); ++i)
@@ -161,14 +173,13 @@ class Mover {
     velocity_ = in_world(solution.velocity, axes);
     const WorldTwist push = in_world(solution.push, axes);
     solved_in_ = axes;
-    aim({velocity_.linear + push.linear, velocity_.angular + push.angular});
+    aim({velocity_.linear + push.linear, velocity_.angular + push.angular}, until_s);
   }
 
-  // Sets out for where this velocity leads in the time that is left, or on the first part of the
-  // way.
-  void aim(const WorldTwist& velocity) {
+  // Sets out for where this velocity leads in so long, or on the first part of the way.
+  void aim(const WorldTwist& velocity, double duration_s) {
     const double turn_rad_s = glm::length(velocity.angular);
-    way_s_ = std::min(left_s_, kMostTurn_rad / turn_rad_s);
+    way_s_ = std::min(duration_s, kMostTurn_rad / turn_rad_s);
     if (!passable_.empty()) {
       // What it is deep in is not swept against: no farther than that nothing thick is passed.
       const double speed_m_s = glm::length(velocity.linear) + turn_rad_s * shape_.reach_m();
@@ -186,6 +197,8 @@ class Mover {
   Quat solved_in_;  // axes in which the velocity was last solved
   WorldTwist velocity_;
   double left_s_, way_s_;  // to the end; to the target
+  double cut_ = 1.0;       // share of the way to the target until something is hit
+  int hits_ = 0;           // so often the step was cut there
   std::vector<Contact> contacts_;
   std::vector<std::uint32_t> passable_;  // things that it is deep in
 };

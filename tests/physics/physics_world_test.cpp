@@ -164,20 +164,32 @@ TEST(PhysicsWorld, TheIntegratorsThatScenesNameAreThoseOfVehicles) {
 }
 
 TEST(PhysicsWorld, AnErrorChoosesTheStep) {
-  const auto step_of = [](const char* error) {
-    return dive_of(fmt::format("[physics]\nmax_error_m = {}\n", error) + rov_text(""))
-        .world->step_s();
+  const auto world_of = [](const char* error, const char* more = "") {
+    auto scene =
+        load_text(fmt::format("[physics]\nmax_error_m = {}\n{}", error, more) + rov_text(""));
+    EXPECT_TRUE(scene.ok());
+    return PhysicsWorld::create(*scene);
   };
-  EXPECT_NEAR(step_of("1e-3"), 1.0 / rov::cheapest_rate(1e-3)->hz, 1e-12);
-  EXPECT_NEAR(step_of("2e-8"), 1.0 / rov::cheapest_rate(2e-8)->hz, 1e-12);
-  EXPECT_LT(step_of("2e-8"), step_of("1e-3"));
-  const auto scene = load_text("[physics]\nmax_error_m = 1e-15\n" + rov_text(""));
-  ASSERT_TRUE(scene.ok());
-  const auto world = PhysicsWorld::create(*scene);
-  ASSERT_FALSE(world.ok());
-  EXPECT_NE(world.error().message.find("dive.toml: physics.max_error_m: 1e-15 found"),
+  EXPECT_NEAR((*world_of("1e-3"))->step_s(), 1.0 / 80.0, 1e-12);
+  EXPECT_NEAR((*world_of("2e-8"))->step_s(), 1.0 / 500.0, 1e-12);
+  EXPECT_EQ((*world_of("2e-8"))->method().contact_parts, 1);
+  const auto refused = world_of("1e-15");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("dive.toml: physics.max_error_m: 1e-15 found"),
             std::string::npos)
-      << world.error().message;
+      << refused.error().message;
+  // Where something can be touched, the steps that touch it are taken in parts.
+  const char* wall = "[[objects]]\nclass = 'structure'\nshape = 'box'\nposition_m = [0, -5, -9]\n";
+  const auto among = world_of("1e-3", wall);
+  ASSERT_TRUE(among.ok());
+  EXPECT_NEAR((*among)->step_s(), 1.0 / 80.0, 1e-12);
+  EXPECT_EQ((*among)->method().contact_parts, 24);
+  const auto too_good = world_of("1e-6", wall);
+  ASSERT_FALSE(too_good.ok());
+  EXPECT_NE(
+      too_good.error().message.find("a number from 0.00024 is accepted where something solid"),
+      std::string::npos)
+      << too_good.error().message;
 }
 
 // Without noise each sensor says what the state is; the ground that it hears is the scene's.

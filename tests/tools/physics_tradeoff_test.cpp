@@ -46,13 +46,13 @@ TEST(Extrapolation, SaysSoWhereThereIsNoSolution) {
   EXPECT_FALSE(pole.converged);
 }
 
-const PhysicsPoint& point(const PhysicsTradeoff& t, const std::string& vehicle,
+const PhysicsPoint& point(const PhysicsTradeoff& t, const std::string& flight,
                           Integrator integrator, double step_ms) {
   for (const PhysicsPoint& p : t.points)
-    if (p.vehicle == vehicle && p.integrator == integrator &&
+    if (p.flight == flight && p.integrator == integrator &&
         std::abs(1e3 * p.step_s - step_ms) < 1e-6)
       return p;
-  ADD_FAILURE() << vehicle << " " << step_ms;
+  ADD_FAILURE() << flight << " " << step_ms;
   return t.points.front();
 }
 
@@ -60,8 +60,9 @@ TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
   const auto measured = run_physics_tradeoff({.quick = true});
   ASSERT_TRUE(measured.ok()) << measured.error().message;
   const PhysicsTradeoff& t = *measured;
-  EXPECT_EQ(t.points.size(), 54u);
-  EXPECT_LT(t.reference_error_m, 1e-9);
+  EXPECT_EQ(t.points.size(), 135u);
+  EXPECT_LT(t.truth_error_m.at("lag"), 1e-9);
+  EXPECT_LT(t.truth_error_m.at("no lag"), 1e-9);
   for (const char* vehicle : {"lag", "no lag"}) {
     for (const double step_ms : {1.0, 5.0, 10.0, 25.0, 50.0}) {
       EXPECT_LT(point(t, vehicle, Integrator::kGuarded, step_ms).error_m, 5e-6) << step_ms;
@@ -72,6 +73,14 @@ TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
   }
   // Plain RK4 over a lag that is four times as fast as the step.
   EXPECT_FALSE(point(t, "lag", Integrator::kRk4, 50.0).error_m < 0.01);
+  // Contacts are of first order, whatever integrates the rest, and so by parts of a step.
+  for (const char* flight : {"contact, lag", "contact, no lag", "bounce"}) {
+    const double at_1_ms = point(t, flight, Integrator::kGuarded, 1.0).error_m;
+    EXPECT_LT(at_1_ms, 5e-3) << flight;
+    EXPECT_GT(point(t, flight, Integrator::kGuarded, 25.0).error_m, 5.0 * at_1_ms) << flight;
+  }
+  ASSERT_EQ(t.parts.size(), 12u);
+  EXPECT_LT(t.parts[5].error_m, 0.2 * t.parts[0].error_m);
   const PhysicsPoint* best = cheapest(t, 1e-5);
   ASSERT_NE(best, nullptr);
   EXPECT_LE(best->error_m, 1e-5);
@@ -85,16 +94,24 @@ TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
 }
 
 TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
-  EXPECT_EQ(rov::cheapest_rate(1e-3)->hz, 80.0);
-  EXPECT_EQ(rov::cheapest_rate(1e-6)->hz, 200.0);
-  EXPECT_EQ(rov::cheapest_rate(2e-9)->hz, 1000.0);
-  EXPECT_FALSE(rov::cheapest_rate(1e-12).ok());
-  EXPECT_FALSE(rov::cheapest_rate(std::nan("")).ok());
+  EXPECT_EQ(rov::cheapest_step(1e-3, false)->hz, 80.0);
+  EXPECT_EQ(rov::cheapest_step(1e-6, false)->hz, 200.0);
+  EXPECT_EQ(rov::cheapest_step(2e-9, false)->hz, 1000.0);
+  EXPECT_EQ(rov::cheapest_step(1e-2, true)->contact_parts, 3);
+  EXPECT_EQ(rov::cheapest_step(1e-2, false)->contact_parts, 1);
+  EXPECT_FALSE(rov::cheapest_step(1e-12, false).ok());
+  EXPECT_FALSE(rov::cheapest_step(1e-6, true).ok());
+  EXPECT_FALSE(rov::cheapest_step(std::nan(""), true).ok());
   const auto rates = rov::measured_rates();
   for (std::size_t i = 1; i < rates.size(); ++i) {
     EXPECT_GT(rates[i].hz, rates[i - 1].hz);
     EXPECT_LT(rates[i].error_m, rates[i - 1].error_m);
     EXPECT_GT(rates[i].us_a_second, rates[i - 1].us_a_second);
+  }
+  const auto contacts = rov::measured_contacts();
+  for (std::size_t i = 1; i < contacts.size(); ++i) {
+    EXPECT_LT(contacts[i].step_s, contacts[i - 1].step_s);
+    EXPECT_LT(contacts[i].error_m, contacts[i - 1].error_m);
   }
 }
 

@@ -11,9 +11,14 @@
 
 namespace neritic::bench {
 
-inline constexpr std::string_view kGroups[] = {
-    "sonar_binning", "sonar_frame", "sonar_terms", "camera_frame", "sweep", "start", "threads"};
+// The first two need no device.
+inline constexpr std::string_view kGroups[] = {"physics",     "contacts",    "sonar_binning",
+                                               "sonar_frame", "sonar_terms", "camera_frame",
+                                               "sweep",       "start",       "threads"};
+inline constexpr std::size_t kGroupsWithoutDevice = 2;
 
+Status bench_physics(Suite& suite);                             // vehicles, hand-off of states
+Status bench_contacts(Suite& suite);                            // contacts against triangles
 Status bench_sonar_binning(Suite& suite, gpu::Device& device);  // the gather against the volume
 Status bench_sonar_frame(Suite& suite, gpu::Device& device);    // whole frames, one sonar and ten
 Status bench_sonar_terms(Suite& suite, gpu::Device& device);    // a frame with each term named

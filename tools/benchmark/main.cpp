@@ -1,4 +1,5 @@
 // The program `neritic_bench`; tools/bench builds and runs it.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
@@ -20,15 +21,29 @@ Status check_filter(const Suite& suite) {
   const Options& o = suite.options();
   std::vector<std::string_view> groups(std::begin(kGroups), std::end(kGroups));
   if (!o.sweep) std::erase(groups, "sweep");
-  if (o.once) std::erase_if(groups, [](auto name) { return name == "start" || name == "threads"; });
+  if (o.once) {
+    groups.erase(groups.begin(), groups.begin() + kGroupsWithoutDevice);
+    std::erase_if(groups, [](auto name) { return name == "start" || name == "threads"; });
+  }
   if (std::ranges::any_of(groups, [&](auto name) { return suite.wants(std::string(name)); }))
     return {};
   return bad_input("--filter: '{}' found; accepted: {}{}, or one GROUP/NAME", o.filter,
                    join(groups), o.sweep ? "" : " (with --sweep also sweep)");
 }
 
-Status run(Suite& suite) {
-  NERITIC_TRY_STATUS(check_filter(suite));
+// These never differ by the device's threads, which is all that --once is for.
+Status run_without_device(Suite& suite) {
+  if (suite.options().once) return {};
+  NERITIC_TRY_STATUS(bench_physics(suite));
+  return bench_contacts(suite);
+}
+
+// name: of the device, where one is needed.
+Status run_on_device(Suite& suite, std::string& name) {
+  const auto first = std::begin(kGroups) + kGroupsWithoutDevice;
+  if (std::none_of(first, std::end(kGroups),
+                   [&](auto group) { return suite.wants(std::string(group)); }))
+    return {};
   gpu::DeviceOptions options;
   options.device = suite.options().device;
   options.cache_folder = gpu::default_cache_folder();
@@ -39,15 +54,23 @@ Status run(Suite& suite) {
   NERITIC_TRY_STATUS(bench_camera_frame(suite, *device));
   NERITIC_TRY_STATUS(bench_sweeps(suite, *device));
   if (!suite.options().once) NERITIC_TRY_STATUS(bench_start(suite, *device));
-  NERITIC_TRY_STATUS(bench_threads(suite, device->info().name));
+  name = device->info().name;
+  return bench_threads(suite, name);
+}
+
+Status run(Suite& suite) {
+  std::string device = "no device";
+  NERITIC_TRY_STATUS(check_filter(suite));
+  NERITIC_TRY_STATUS(run_without_device(suite));
+  NERITIC_TRY_STATUS(run_on_device(suite, device));
   const std::string& filter = suite.options().filter;
   if (filter.find('/') != filter.npos && suite.results().empty())
     return bad_input("--filter: '{}' found; accepted: a GROUP/NAME of the table without --filter",
                      filter);
-  fmt::print("{}, {} threads\n\n", device->info().name, thread_count());
+  fmt::print("{}, {} threads\n\n", device, thread_count());
   suite.print();
   if (suite.options().json.empty()) return {};
-  return suite.write(suite.options().json, device->info().name, thread_count());
+  return suite.write(suite.options().json, device, thread_count());
 }
 
 // A flag takes either a text or nothing. Read here and not by CLI11, whose header alone would take
@@ -61,8 +84,8 @@ struct Flag {
 constexpr Flag kFlags[] = {
     {"--json", "also write the results to this file", &Options::json},
     {"--filter",
-     "only groups whose name holds this: sonar_binning, sonar_frame, sonar_terms, camera_frame,\n"
-     "             sweep, start, threads; or one GROUP/NAME",
+     "only groups whose name holds this: physics, contacts, sonar_binning, sonar_frame,\n"
+     "             sonar_terms, camera_frame, sweep, start, threads; or one GROUP/NAME",
      &Options::filter},
     {"--device", "Vulkan device: index or part of its name", &Options::device},
     {"--assets", "the folder that holds scenes/", &Options::assets},

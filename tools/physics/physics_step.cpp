@@ -26,10 +26,6 @@ rov::Vec6 with_room(const rov::Vehicle& vehicle, const rov::Allocator& allocator
   return std::max(0.0, share) * pilot;
 }
 
-sim::Twist twist_of(const rov::Vec6& velocity) {
-  return {rov::world_from_ned(velocity.linear()), rov::world_from_ned(velocity.angular())};
-}
-
 }  // namespace
 
 bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
@@ -129,21 +125,9 @@ void PhysicsWorld::move(const PhysicsVehicle& vehicle, const VehicleInputs& inpu
   acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
   acting.failed_thrusters = inputs.failed_thrusters;
   apply_surface(vehicle.vehicle, vehicle.top_m, vehicle.bottom_m, before, acting);
-  rov::State& after = state.body;
-  after = rov::step(vehicle.vehicle, before, acting, dt_s, integrator_);
-
-  // The axes of both sides differ by exchanged components alone, so the way there and back keeps
-  // every bit of what is not touched.
   sim::MotionReport report;
-  const sim::BodyMotion moved = sim::move_body(
-      solid_, vehicle.shape, vehicle.inverse_mass,
-      rov::world_pose(before.position_ned_m, before.attitude),
-      {rov::world_pose(after.position_ned_m, after.attitude), twist_of(after.velocity)}, dt_s,
-      &report);
-  after.position_ned_m = rov::ned_from_world(moved.world_from_body.position_m);
-  after.attitude = rov::ned_from_world(moved.world_from_body.rotation);
-  after.velocity = rov::vec6(rov::ned_from_world(moved.velocity.linear),
-                             rov::ned_from_world(moved.velocity.angular));
+  state.body =
+      step_among(solid_, vehicle.solid, vehicle.vehicle, before, acting, dt_s, method_, &report);
   state.contact.near_points = static_cast<std::uint64_t>(report.contacts);
   state.contact.touched_steps += report.touched ? 1 : 0;
   state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);

@@ -24,7 +24,7 @@ Status give_shape(const scene::Scene& scene, const scene::Object& object, Physic
   if (bounds.empty() || !(half.x > 0.0 && half.y > 0.0 && half.z > 0.0) || !is_finite(half))
     return bad_input("{}: {}: what is drawn of it has no volume; accepted: a solid vehicle",
                      scene.path, object.name);
-  vehicle.shape.add_box({0.5 * (low + high), Quat(1.0, 0.0, 0.0, 0.0)}, half);
+  vehicle.solid.shape.add_box({0.5 * (low + high), Quat(1.0, 0.0, 0.0, 0.0)}, half);
   vehicle.top_m = high.y;
   vehicle.bottom_m = low.y;
   return {};
@@ -91,11 +91,11 @@ bool PhysicsWorld::needed(const scene::Scene& scene) {
 Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Scene& scene) {
   std::unique_ptr<PhysicsWorld> world(new PhysicsWorld);
   world->seed_ = scene.seed;
-  NERITIC_TRY_STATUS(world->choose_step(scene));
   if (scene.current) {
     NERITIC_TRY(world->current_, current_of(*scene.current));
   }
   NERITIC_TRY(world->solid_, static_world_of(scene));
+  NERITIC_TRY_STATUS(world->choose_step(scene));
   std::vector<int> vehicle_of_object(scene.objects.size(), -1);
   int vehicles = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
@@ -113,13 +113,13 @@ Status PhysicsWorld::choose_step(const scene::Scene& scene) {
   const scene::Physics& physics = *scene.physics;
   if (physics.max_error_m == 0.0) {
     step_s_ = 1.0 / physics.rate_hz;
-    NERITIC_TRY(integrator_, rov::integrator_of(physics.integrator));
+    NERITIC_TRY(method_.integrator, rov::integrator_of(physics.integrator));
     return {};
   }
-  const auto rate = rov::cheapest_rate(physics.max_error_m);
-  if (!rate.ok()) return bad_input("{}: physics.{}", scene.path, rate.error().message);
-  step_s_ = 1.0 / rate->hz;
-  integrator_ = rov::Integrator::kGuarded;
+  const auto choice = rov::cheapest_step(physics.max_error_m, solid_.counts().things > 0);
+  if (!choice.ok()) return bad_input("{}: physics.{}", scene.path, choice.error().message);
+  step_s_ = 1.0 / choice->hz;
+  method_ = {rov::Integrator::kGuarded, choice->contact_parts};
   return {};
 }
 
@@ -142,8 +142,8 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
   if (dynamics.mission) out.mission.emplace(scene, *dynamics.mission, vehicle_of_object);
   if (dynamics.tether_anchor_m)
     out.tether_anchor_ned_m = rov::ned_from_world(*dynamics.tether_anchor_m);
+  out.solid = solid_body(vehicle);
   NERITIC_TRY_STATUS(give_shape(scene, object, out));
-  out.inverse_mass = rov::world_from_ned(vehicle.inverse_mass).m;
   const Pose at = scene.world_from(object.mount, 0.0);
   rov::teleport(out.start, rov::ned_from_world(at.position_m), rov::ned_from_world(at.rotation));
   NERITIC_TRY_STATUS(check_start(scene, out));
@@ -153,7 +153,7 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
 
 Status PhysicsWorld::check_start(const scene::Scene& scene, const PhysicsVehicle& vehicle) const {
   std::vector<sim::Contact> contacts;
-  solid_.contacts(vehicle.shape,
+  solid_.contacts(vehicle.solid.shape,
                   rov::world_pose(vehicle.start.position_ned_m, vehicle.start.attitude), 0.0,
                   contacts);
   for (const sim::Contact& contact : contacts)

@@ -10,9 +10,8 @@
 
 #include "engine/scene/scene.hpp"
 #include "engine/sim/current.hpp"
-#include "engine/sim/motion.hpp"
-#include "rov/step.hpp"
 #include "rov/vehicle_file.hpp"
+#include "tools/physics/body_step.hpp"
 #include "tools/physics/mission.hpp"
 
 namespace neritic::tools {
@@ -27,9 +26,7 @@ struct PhysicsVehicle {
   rov::Allocator allocator;            // without those
   std::optional<MissionGuide> mission;
   Vec3 tether_anchor_ned_m{0.0};
-  // For contacts: model axes (starboard, up, back).
-  sim::BodyShape shape;
-  sim::InverseMass inverse_mass{};
+  SolidBody solid;
   double top_m = 0.0, bottom_m = 0.0;  // of the shape, above the origin
   rov::State start;
 };
@@ -46,6 +43,7 @@ class PhysicsWorld {
   std::uint64_t seed() const { return seed_; }  // of the scene, for sensors
   const sim::StaticWorld& solid() const { return solid_; }
   double step_s() const { return step_s_; }
+  const StepMethod& method() const { return method_; }
   // Whether vehicle's controller acts in the step that begins at this state.
   bool control_due(std::size_t vehicle, std::uint64_t step) const;
 
@@ -73,7 +71,7 @@ class PhysicsWorld {
 
   double step_s_ = 1.0 / 240.0;
   std::uint64_t seed_ = 0;
-  rov::Integrator integrator_ = rov::Integrator::kGuarded;
+  StepMethod method_;
   std::optional<sim::Current> current_;
   sim::StaticWorld solid_;
   std::vector<PhysicsVehicle> vehicles_;

@@ -15,15 +15,29 @@ namespace {
 using rov::Integrator;
 
 constexpr Integrator kDrawn[] = {Integrator::kSemiImplicit, Integrator::kRk4, Integrator::kGuarded};
-constexpr const char* kVehicles[] = {"no lag", "lag"};
 constexpr double kLevels_m[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 
+// What flights are called in tables and plots, in the order of kFlightNames.
+struct FlightWords {
+  const char *title, *about;
+};
+constexpr FlightWords kWords[] = {
+    {"open water, no lag",
+     "A BlueROV2 Heavy flies {:g} s round a square in a current, by the same recorded commands."},
+    {"open water, lag", "The same with the third-order lag of its thrusters."},
+    {"contact, no lag",
+     "A BlueROV2 Heavy is set down on sand, driven along it, lifted, driven against a wall corner "
+     "first, along it and away, {:g} s, by the same recorded commands."},
+    {"contact, lag", "The same with lag."},
+    {"a ball that bounces", "Restitution 0.6, no drag: the closed form is the truth."}};
+
 std::string physics_csv(const PhysicsTradeoff& t) {
-  std::string out = "vehicle,integrator,step_ms,error_m,error_rad,us_a_second,order\n";
-  for (const PhysicsPoint& p : t.points)
-    out +=
-        fmt::format("{},{},{:.6g},{:.4g},{:.4g},{:.4g},{:.2f}\n", p.vehicle, name_of(p.integrator),
-                    1e3 * p.step_s, p.error_m, p.error_rad, p.us_a_second, p.order);
+  std::string out = "flight,integrator,step_ms,contact_parts,error_m,error_rad,us_a_second,order\n";
+  for (const auto* points : {&t.points, &t.parts})
+    for (const PhysicsPoint& p : *points)
+      out += fmt::format("\"{}\",{},{:.6g},{},{:.4g},{:.4g},{:.4g},{:.2f}\n", p.flight,
+                         name_of(p.integrator), 1e3 * p.step_s, p.contact_parts, p.error_m,
+                         p.error_rad, p.us_a_second, p.order);
   return out;
 }
 
@@ -31,28 +45,47 @@ std::string number_text(double value) {
   return std::isfinite(value) ? fmt::format("{:.1e}", value) : "diverges";
 }
 
+std::string parts_md(const PhysicsTradeoff& t) {
+  std::string out =
+      "\n## Steps of 240 Hz, those that touch in parts (guarded)\n\n| parts | no lag, m | us | "
+      "lag, m "
+      "| us |\n|---|---|---|---|---|\n";
+  for (const PhysicsPoint& row : t.parts) {
+    if (row.flight != t.parts.front().flight) continue;
+    out += fmt::format("| {} |", row.contact_parts);
+    for (const PhysicsPoint& p : t.parts)
+      if (p.contact_parts == row.contact_parts)
+        out += fmt::format(" {} | {:.0f} |", number_text(p.error_m), p.us_a_second);
+    out += "\n";
+  }
+  return out;
+}
+
 std::string physics_md(const PhysicsTradeoff& t) {
-  std::string out = fmt::format(
-      "# Physics: error against cost\n\nA BlueROV2 Heavy flies {:g} s round a square in a current, "
-      "by the same recorded commands; the largest distance from an adaptive extrapolation of order "
-      "16 (itself within {:.0e} m), and microseconds of one core a second of flight.\n",
-      t.flight_s, t.reference_error_m);
-  for (const char* vehicle : kVehicles) {
-    out += fmt::format("\n## With {}\n\n| step, ms |", vehicle);
+  std::string out =
+      "# Physics: error against cost\n\nThe largest distance from the truth, and microseconds of "
+      "one core a second of flight. The truth is an adaptive extrapolation of order 16 in open "
+      "water, steps of 31 us among things.\n";
+  for (std::size_t f = 0; f < std::size(kFlightNames); ++f) {
+    const std::string flight = kFlightNames[f];
+    out += fmt::format("\n## {}\n\n{} The truth is sure to {:.0e} m.\n\n| step, ms |",
+                       kWords[f].title, fmt::format(fmt::runtime(kWords[f].about), t.flight_s),
+                       t.truth_error_m.at(flight));
     for (const Integrator i : kDrawn) out += fmt::format(" {}, m | us |", name_of(i));
     out += "\n|---|---|---|---|---|---|---|\n";
     for (const PhysicsPoint& row : t.points) {
-      if (row.vehicle != vehicle || row.integrator != kDrawn[0]) continue;
+      if (row.flight != flight || row.integrator != kDrawn[0]) continue;
       out += fmt::format("| {:.3g} |", 1e3 * row.step_s);
       for (const PhysicsPoint& p : t.points)
-        if (p.vehicle == vehicle && p.step_s == row.step_s)
+        if (p.flight == flight && p.step_s == row.step_s)
           out += fmt::format(" {} | {:.0f} |", number_text(p.error_m), p.us_a_second);
       out += "\n";
     }
   }
+  out += parts_md(t);
   out +=
-      "\n## Cheapest that holds an error, with and without lag\n\n| m | integrator | step, ms | us "
-      "|\n|---|---|---|---|\n";
+      "\n## Cheapest that holds an error in open water, with and without lag\n\n| m | integrator | "
+      "step, ms | us |\n|---|---|---|---|\n";
   for (const double level : kLevels_m)
     if (const PhysicsPoint* p = cheapest(t, level))
       out += fmt::format("| {:.0e} | {} | {:.3g} | {:.0f} |\n", level, name_of(p->integrator),
@@ -63,15 +96,16 @@ std::string physics_md(const PhysicsTradeoff& t) {
 nlohmann::json point_json(const PhysicsPoint& p) {
   return {{"integrator", name_of(p.integrator)},
           {"step_ms", 1e3 * p.step_s},
+          {"contact_parts", p.contact_parts},
           {"error_m", p.error_m},
           {"error_rad", p.error_rad},
           {"us_a_second", p.us_a_second}};
 }
 
 nlohmann::json physics_json(const PhysicsTradeoff& t) {
-  nlohmann::json json{{"flight_s", t.flight_s}, {"reference_error_m", t.reference_error_m}};
-  for (const char* vehicle : kVehicles)
-    if (const PhysicsPoint* p = knee(t, vehicle)) json["knees"][vehicle] = point_json(*p);
+  nlohmann::json json{{"flight_s", t.flight_s}, {"truth_error_m", t.truth_error_m}};
+  for (const char* flight : kFlightNames)
+    if (const PhysicsPoint* p = knee(t, flight)) json["knees"][flight] = point_json(*p);
   for (const double level : kLevels_m)
     if (const PhysicsPoint* p = cheapest(t, level)) {
       json["levels"].push_back(point_json(*p));
@@ -80,55 +114,103 @@ nlohmann::json physics_json(const PhysicsTradeoff& t) {
   return json;
 }
 
-// Curves over x: what(point). noted: steps beside the default's.
-void draw_physics(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t,
-                  const std::string& vehicle, const std::string& title, const std::string& label,
-                  double (*what)(const PhysicsPoint&), bool noted) {
-  std::vector<Series> series;
+using What = double (*)(const PhysicsPoint&);
+double cost_of(const PhysicsPoint& p) {
+  return p.us_a_second;
+}
+double step_ms_of(const PhysicsPoint& p) {
+  return 1e3 * p.step_s;
+}
+bool is_drawn(const PhysicsPoint& p) {
+  return p.error_m > 0.0 && p.error_m <= 10.0;
+}
+
+// The curves in a box; the knee, where there is one, is marked.
+void draw_curves(sonar::Canvas& canvas, const Box& box, const std::string& title,
+                 const std::string& label, What what, const std::vector<Series>& series,
+                 const PhysicsPoint* mark, bool legend_below = false) {
   std::vector<double> xs, ys;
-  for (const Integrator i : kDrawn) {
-    Series s{std::string(name_of(i)), kSeriesColors[series.size()], {}, {}, {}};
-    for (const PhysicsPoint& p : t.points) {
-      if (p.vehicle != vehicle || p.integrator != i || !(p.error_m > 0.0) || p.error_m > 10.0)
-        continue;
-      s.x.push_back(what(p));
-      s.y.push_back(p.error_m);
-      if (noted && i == Integrator::kGuarded)
-        s.notes.push_back(fmt::format("{:.3g} ms", 1e3 * p.step_s));
-    }
+  for (const Series& s : series) {
     xs.insert(xs.end(), s.x.begin(), s.x.end());
     ys.insert(ys.end(), s.y.begin(), s.y.end());
-    series.push_back(std::move(s));
   }
   const Axis x = axis_for(label, xs, true);
   Axis y = axis_for("largest error, m", ys, true);
   y.max *= 5.0;  // room for its label
-  draw_lines(canvas, box, title, x, y, series, !noted);
-  if (const PhysicsPoint* p = knee(t, vehicle))
-    draw_mark(canvas, box, x, y, what(*p), p->error_m, "knee");
+  draw_lines(canvas, box, title, x, y, series, legend_below);
+  if (mark) draw_mark(canvas, box, x, y, what(*mark), mark->error_m, "knee");
+}
+
+// Error over cost of one flight's integrators; steps stand beside the default's points.
+void draw_flight(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t, std::size_t f) {
+  std::vector<Series> series;
+  for (const Integrator i : kDrawn) {
+    Series s{std::string(name_of(i)), kSeriesColors[series.size()], {}, {}, {}};
+    for (const PhysicsPoint& p : t.points) {
+      if (p.flight != kFlightNames[f] || p.integrator != i || !is_drawn(p)) continue;
+      s.x.push_back(cost_of(p));
+      s.y.push_back(p.error_m);
+      if (i == Integrator::kGuarded) s.notes.push_back(fmt::format("{:.3g} ms", step_ms_of(p)));
+    }
+    series.push_back(std::move(s));
+  }
+  draw_curves(canvas, box, std::string(kWords[f].title) + ": over cost",
+              "us of one core a second of flight", cost_of, series, knee(t, kFlightNames[f]));
+}
+
+// What the default gives on every flight, over the step's length.
+void draw_steps(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
+  std::vector<Series> series;
+  for (std::size_t f = 0; f < std::size(kFlightNames); ++f) {
+    Series s{kWords[f].title, kSeriesColors[f], {}, {}, {}};
+    for (const PhysicsPoint& p : t.points) {
+      if (p.flight != kFlightNames[f] || p.integrator != Integrator::kGuarded || !is_drawn(p))
+        continue;
+      s.x.push_back(step_ms_of(p));
+      s.y.push_back(p.error_m);
+    }
+    series.push_back(std::move(s));
+  }
+  draw_curves(canvas, box, "guarded, every flight: over the step", "step, ms", step_ms_of, series,
+              nullptr, true);
+}
+
+// 240 Hz, with the steps that touch in parts.
+void draw_parts(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
+  std::vector<Series> series;
+  for (const std::size_t f : {std::size_t{2}, std::size_t{3}}) {
+    Series s{kWords[f].title, kSeriesColors[f], {}, {}, {}};
+    for (const PhysicsPoint& p : t.parts) {
+      if (p.flight != kFlightNames[f] || !is_drawn(p)) continue;
+      s.x.push_back(cost_of(p));
+      s.y.push_back(p.error_m);
+      s.notes.push_back(fmt::format("{} parts", p.contact_parts));
+    }
+    series.push_back(std::move(s));
+  }
+  draw_curves(canvas, box, "240 Hz, guarded, steps that touch in parts: over cost",
+              "us of one core a second of flight", cost_of, series, nullptr);
 }
 
 ImageU8 physics_plot(const PhysicsTradeoff& t) {
   constexpr double kWide = 900, kHigh = 520, kHead = 64;
   sonar::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                       static_cast<std::uint32_t>(kHead + 2 * kHigh), kPaper);
+                       static_cast<std::uint32_t>(kHead + 3 * kHigh), kPaper);
   canvas.text(24, 34, 18, "Vehicle physics: error against cost", kInk, sonar::Align::kLeft, 2.2);
   canvas.text(24, 54, 10,
-              fmt::format("{:g} s round a square in a current, recorded commands; truth: adaptive "
-                          "extrapolation of order 16, within {:.0e} m",
-                          t.flight_s, t.reference_error_m),
+              fmt::format("{:g} s of recorded commands, round a square in a current or set down on "
+                          "sand and driven against a wall; truth: extrapolation of order 16, among "
+                          "things steps of 31 us",
+                          t.flight_s),
               kInk.with_alpha(0.7f));
-  for (std::size_t row = 0; row < 2; ++row) {
-    const double top = kHead + kHigh * static_cast<double>(row);
-    const std::string with = row == 0 ? "without thruster lag" : "with third-order thruster lag";
-    draw_physics(
-        canvas, {0, top, kWide, top + kHigh}, t, kVehicles[row], with + ": over cost",
-        "us of one core a second of flight", [](const PhysicsPoint& p) { return p.us_a_second; },
-        true);
-    draw_physics(
-        canvas, {kWide, top, 2 * kWide, top + kHigh}, t, kVehicles[row], with + ": over the step",
-        "step, ms", [](const PhysicsPoint& p) { return 1e3 * p.step_s; }, false);
-  }
+  const auto box = [&](int column, int row) {
+    const double left = kWide * column, top = kHead + kHigh * row;
+    return Box{left, top, left + kWide, top + kHigh};
+  };
+  for (int f = 0; f < 4; ++f)
+    draw_flight(canvas, box(f % 2, f / 2), t, static_cast<std::size_t>(f));
+  draw_steps(canvas, box(0, 2), t);
+  draw_parts(canvas, box(1, 2), t);
   return canvas.take();
 }
 

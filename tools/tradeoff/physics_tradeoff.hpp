@@ -1,10 +1,12 @@
-// `neritic tradeoff physics`: how far each integrator of the vehicle's motion strays from an
-// adaptive one of high order, and what it costs, over step sizes from 1 to 50 ms, with and without
-// the thrusters' lag. One thread.
+// `neritic tradeoff physics`: how far each integrator of the vehicle's motion strays from the true
+// path, and what it costs, over step sizes from 1 to 50 ms, with and without the thrusters' lag, in
+// open water and among things that it touches; and a bouncing ball against its closed form. One
+// thread.
 #pragma once
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,10 +21,15 @@ struct PhysicsTradeoffOptions {
 };
 std::uint64_t steps(const PhysicsTradeoffOptions& options);
 
+// What is flown (physics_flights.hpp), in this order.
+inline constexpr const char* kFlightNames[] = {"no lag", "lag", "contact, no lag", "contact, lag",
+                                               "bounce"};
+
 struct PhysicsPoint {
-  std::string vehicle;  // "lag" or "no lag"
+  std::string flight;
   rov::Integrator integrator = rov::Integrator::kGuarded;
   double step_s = 0.0;
+  int contact_parts = 1;  // of a step in which something is touched
   // The largest over the flight, at every change of the commands. Not finite: it diverged.
   double error_m = 0.0, error_rad = 0.0;
   double us_a_second = 0.0;  // of one core, a second of flight
@@ -31,15 +38,18 @@ struct PhysicsPoint {
 
 struct PhysicsTradeoff {
   double flight_s = 0.0;
-  double reference_error_m = 0.0;  // between two tolerances of the reference
+  std::map<std::string, double> truth_error_m;  // how sure each flight's truth is
   std::vector<PhysicsPoint> points;
+  // At 240 Hz by the recommended integrator: more and more parts of a step that touches.
+  std::vector<PhysicsPoint> parts;
 };
 Result<PhysicsTradeoff> run_physics_tradeoff(const PhysicsTradeoffOptions& options);
 
 // The knee of the front of all integrators (no other is both cheaper and better), both axes
 // logarithmic.
-const PhysicsPoint* knee(const PhysicsTradeoff& tradeoff, const std::string& vehicle);
-// The cheapest whose error is at most max_error_m with and without lag; the one with lag is given.
+const PhysicsPoint* knee(const PhysicsTradeoff& tradeoff, const std::string& flight);
+// The cheapest whose error is at most max_error_m in open water with and without lag; the one with
+// lag is given.
 const PhysicsPoint* cheapest(const PhysicsTradeoff& tradeoff, double max_error_m);
 
 // physics.csv, physics.md, physics.json, physics.png in the folder.

@@ -1,0 +1,201 @@
+#include "tools/tradeoff/physics_flights.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rov/bluerov2.hpp"
+#include "rov/closed_loop.hpp"
+#include "rov/guidance.hpp"
+#include "tools/tradeoff/extrapolation.hpp"
+
+namespace neritic::tools {
+namespace {
+
+constexpr double kTolerance = 1e-12;
+// Steps a hold of the truth among things: 31 us.
+constexpr int kFinest = 1600;
+
+std::size_t holds_of(double seconds) {
+  return static_cast<std::size_t>(std::llround(seconds / kHold_s));
+}
+
+// Flies by the controller at 20 Hz, steps a hold as fine as asked, and keeps its commands.
+void record_commands(Flight& flight, double seconds, int count, const rov::Guide& guide,
+                     const Vec3& current_ned_m_s) {
+  rov::ControlGains gains = rov::default_gains();
+  gains.period_s = kHold_s;
+  const rov::Allocator allocator(flight.vehicle);
+  rov::State state = flight.start;
+  rov::ControlState control;
+  for (std::size_t k = 0; k < holds_of(seconds); ++k) {
+    rov::Inputs inputs =
+        rov::control_inputs(flight.vehicle, allocator, gains,
+                            guide(state, static_cast<double>(k) * kHold_s), state, control);
+    inputs.current_ned_m_s = current_ned_m_s;
+    flight.inputs.push_back(inputs);
+    for (int i = 0; i < count; ++i) state = flight.step(state, inputs, kHold_s / count, {});
+  }
+}
+
+Vector vector_of(const rov::State& s, std::size_t thrusters) {
+  Vector y{s.position_ned_m.x, s.position_ned_m.y, s.position_ned_m.z, s.attitude.w,
+           s.attitude.x,       s.attitude.y,       s.attitude.z};
+  y.insert(y.end(), s.velocity.v.begin(), s.velocity.v.end());
+  for (std::size_t i = 0; i < thrusters; ++i) y.insert(y.end(), s.lag[i].begin(), s.lag[i].end());
+  return y;
+}
+
+rov::State state_of(const Vector& y, std::size_t thrusters) {
+  rov::State s;
+  s.position_ned_m = {y[0], y[1], y[2]};
+  s.attitude = {y[3], y[4], y[5], y[6]};
+  std::copy_n(y.begin() + 7, 6, s.velocity.v.begin());
+  for (std::size_t i = 0; i < thrusters; ++i) std::copy_n(&y[13 + 3 * i], 3, s.lag[i].begin());
+  return s;
+}
+
+// The state at the end of every hold, by the equation in absolute velocity.
+Result<std::vector<rov::State>> extrapolated(const Flight& flight, double tolerance) {
+  const std::size_t n = flight.vehicle.thruster_count;
+  std::vector<rov::State> out;
+  Vector y = vector_of(flight.start, n);
+  for (const rov::Inputs& inputs : flight.inputs) {
+    const Slope slope = [&](double, const Vector& at) {
+      const rov::StateRate rate = rov::derivative(flight.vehicle, state_of(at, n), inputs);
+      rov::State as_state;
+      as_state.position_ned_m = rate.position_m_s;
+      as_state.attitude = rate.attitude;
+      as_state.velocity = rate.velocity;
+      as_state.lag = rate.lag;
+      return vector_of(as_state, n);
+    };
+    Extrapolated next = extrapolate(slope, 0.0, kHold_s, y, tolerance);
+    if (!next.converged)
+      return failure(ErrorCode::kUnsupported, "tradeoff physics: the reference does not converge");
+    y = std::move(next.y);
+    const double length = std::sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6]);
+    for (std::size_t i = 3; i < 7; ++i) y[i] /= length;
+    out.push_back(state_of(y, n));
+  }
+  return out;
+}
+
+std::vector<rov::State> stepped(const Flight& flight, int count) {
+  std::vector<rov::State> out;
+  rov::State state = flight.start;
+  for (const rov::Inputs& inputs : flight.inputs) {
+    for (int i = 0; i < count; ++i) state = flight.step(state, inputs, kHold_s / count, {});
+    out.push_back(state);
+  }
+  return out;
+}
+
+double most_apart_m(const std::vector<rov::State>& a, const std::vector<rov::State>& b) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    most = std::max(most, glm::distance(a[k].position_ned_m, b[k].position_ned_m));
+  return most;
+}
+
+rov::Vehicle vehicle_of(rov::VehicleParameters parameters, bool lag) {
+  if (!lag) parameters.lag.kind = rov::ThrusterLag::Kind::kNone;
+  return rov::make_vehicle(parameters).value();
+}
+
+// A plane at y = 0 of 40 m, and where asked a wall across its north side.
+std::unique_ptr<const sim::StaticWorld> sand(const sim::Surface& surface, bool wall) {
+  sim::StaticWorldBuilder builder;
+  const std::vector<float> heights_m(41 * 41, 0.0f);
+  builder.place(builder.add_heights(41, 41, 1.0, heights_m, "sand").value(), {}, surface);
+  if (wall) {
+    // 2 m north, turned by 35 degrees.
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 8; ++i)
+      corners.push_back({i & 1 ? 8.0 : -8.0, i & 2 ? 2.0 : -1.0, i & 4 ? -1.0 : 0.0});
+    builder.place(builder.add_hull(corners, "wall").value(),
+                  {{{0.0, 0.0, -2.0}, glm::angleAxis(radians(35.0), Vec3(0.0, 1.0, 0.0))}, 1.0},
+                  surface);
+  }
+  return std::make_unique<const sim::StaticWorld>(builder.build());
+}
+
+}  // namespace
+
+Result<Flight> square_flight(bool lag, double seconds) {
+  Flight flight{.name = lag ? "lag" : "no lag", .vehicle = vehicle_of(rov::bluerov2_heavy(), lag)};
+  flight.start.position_ned_m.z = 10.0;
+  rov::WaypointFollower follower(
+      {{{3, 0, 10}, 0.0}, {{3, 3, 11}, kPi / 2}, {{0, 3, 11.5}, kPi}, {{0, 0, 10}, -kPi / 2}});
+  record_commands(flight, seconds, 10,
+                  [&](const rov::State& s, double) { return follower.update(s); }, {0.2, 0.1, 0.0});
+  NERITIC_TRY(flight.truth, extrapolated(flight, kTolerance));
+  NERITIC_TRY(const auto looser, extrapolated(flight, 10.0 * kTolerance));
+  flight.truth_error_m = most_apart_m(flight.truth, looser);
+  return flight;
+}
+
+Flight contact_flight(bool lag, double seconds) {
+  Flight flight{.name = lag ? "contact, lag" : "contact, no lag",
+                .vehicle = vehicle_of(rov::bluerov2_heavy_manual(rov::kFreshDensity), lag)};
+  flight.body = solid_body(flight.vehicle);
+  flight.body.shape.add_box({}, {0.2285, 0.127, 0.2875});
+  flight.solid = sand({.friction = 0.5}, true);
+  rov::teleport(flight.start, {0.0, 0.0, -0.5}, glm::angleAxis(0.15, Vec3(0.6, 0.8, 0.0)));
+  record_commands(
+      flight, seconds, 400,
+      [&](const rov::State&, double t_s) {
+        rov::Setpoint s = rov::stay(flight.start);
+        if (t_s < 3.0)
+          s.position_ned_m = {0.3, 0.1, 0.2};  // down, into the sand
+        else if (t_s < 8.0)
+          s.position_ned_m = {1.0, 0.3, 0.1};  // along it
+        else if (t_s < 10.0)
+          s.position_ned_m = {0.7, 0.0, -1.2};  // up
+        else if (t_s < 14.0)
+          s.position_ned_m = {3.0, -0.5, -1.0};  // into the wall, a corner first
+        else if (t_s < 17.0)
+          s.position_ned_m = {2.5, 1.0, -1.3};  // along it
+        else
+          s.position_ned_m = {0.0, 0.0, -1.0};  // away
+        s.attitude = rov::heading_attitude(0.0);
+        return s;
+      },
+      Vec3(0.0));
+  flight.truth = stepped(flight, kFinest);
+  flight.truth_error_m = most_apart_m(flight.truth, stepped(flight, kFinest / 2));
+  return flight;
+}
+
+Flight bounce_flight(double seconds) {
+  constexpr double kRadius_m = 0.15, kFall_m = 1.0, kBounce = 0.6, kMass_kg = 10.0, kAdded_kg = 5.0;
+  constexpr double kWeight_n = 15.0;  // in water: 1 m/s^2
+  rov::VehicleParameters p;
+  p.mass_kg = kMass_kg;
+  p.weight_n = kWeight_n;
+  p.inertia_kg_m2 = Mat3(0.4 * kMass_kg * kRadius_m * kRadius_m);
+  for (std::size_t i = 0; i < 3; ++i) p.added_mass(i, i) = kAdded_kg;
+  Flight flight{.name = "bounce", .vehicle = rov::make_vehicle(p).value()};
+  flight.body = solid_body(flight.vehicle);
+  flight.body.shape.add_sphere(Vec3(0.0), kRadius_m);
+  flight.solid = sand({.friction = 0.0, .restitution = kBounce}, false);
+  flight.start.position_ned_m.z = -(kRadius_m + kFall_m);
+  flight.inputs.assign(holds_of(seconds), {});
+  // From each touch with its speed on: up and down again takes 2 v / a.
+  const double a = kWeight_n / (kMass_kg + kAdded_kg);
+  for (std::size_t k = 1; k <= flight.inputs.size(); ++k) {
+    double since_s = static_cast<double>(k) * kHold_s - std::sqrt(2.0 * kFall_m / a);
+    double up_m_s = kBounce * std::sqrt(2.0 * a * kFall_m);
+    rov::State at = flight.start;
+    if (since_s < 0.0) {
+      const double t = static_cast<double>(k) * kHold_s;
+      at.position_ned_m.z += 0.5 * a * t * t;
+    } else {
+      for (; since_s > 2.0 * up_m_s / a; up_m_s *= kBounce) since_s -= 2.0 * up_m_s / a;
+      at.position_ned_m.z = -(kRadius_m + up_m_s * since_s - 0.5 * a * since_s * since_s);
+    }
+    flight.truth.push_back(at);
+  }
+  return flight;
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,44 @@
+// The flights on which integrators are measured: recorded commands, the true path, and what stands
+// in the way. Body and world axes of rov/ (north, east, down). One thread.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/physics/body_step.hpp"
+
+namespace neritic::tools {
+
+// Commands change so often: the longest step.
+inline constexpr double kHold_s = 0.05;
+
+struct Flight {
+  std::string name;
+  rov::Vehicle vehicle;
+  SolidBody body;
+  std::unique_ptr<const sim::StaticWorld> solid;  // nothing: open water
+  rov::State start;
+  std::vector<rov::Inputs> inputs;  // held for kHold_s each
+  // The state at the end of each hold, and how sure that is.
+  std::vector<rov::State> truth;
+  double truth_error_m = 0.0;
+
+  rov::State step(const rov::State& state, const rov::Inputs& held, double dt_s,
+                  const StepMethod& method) const {
+    return solid ? step_among(*solid, body, vehicle, state, held, dt_s, method)
+                 : rov::step(vehicle, state, held, dt_s, method.integrator);
+  }
+};
+
+// A BlueROV2 Heavy round a square of three metres in a current, as its controller flies it; the
+// truth is an adaptive extrapolation of high order.
+Result<Flight> square_flight(bool lag, double seconds);
+// The same vehicle set down on sand, from 3 s on driven along it, lifted, from 10 s on driven
+// against a wall, along that, and away; the truth is the recommended integrator at a step so short
+// that it errs least.
+Flight contact_flight(bool lag, double seconds);
+// A ball that falls onto a plane and bounces, without drag; the truth is the closed form.
+Flight bounce_flight(double seconds);
+
+}  // namespace neritic::tools
