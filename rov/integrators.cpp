@@ -128,7 +128,7 @@ double change_rate(const Vehicle& v, const WaterMotion& motion, const WaterMotio
 void semi_implicit(const StepTask& task, int substeps, bool implicit_coriolis, WaterMotion& motion,
                    LagStates& lag) {
   const double h = task.dt_s / substeps;
-  const LagPropagator whole(task.vehicle.lag, h);
+  const LagPropagator whole = propagator(task.vehicle, h);
   for (int i = 0; i < substeps; ++i) {
     advance(task, whole, lag);
     const Vec6 wrench = task.wrench_at((i + 1) * h) + thrust(task, lag) +
@@ -177,7 +177,7 @@ void rk4(const StepTask& task, WaterMotion& motion, LagStates& lag) {
 
 void split_rk4(const StepTask& task, int substeps, WaterMotion& motion, LagStates& lag) {
   const double h = task.dt_s / substeps;
-  const LagPropagator half(task.vehicle.lag, 0.5 * h);
+  const LagPropagator half = propagator(task.vehicle, 0.5 * h);
   const auto rate = [&](double at, const WaterMotion& m) {
     return motion_rate(task.vehicle, m, task.wrench_at(at), task.inputs);
   };

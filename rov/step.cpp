@@ -71,7 +71,7 @@ int substeps_for(const StepTask& task, const State& state) {
   const WaterMotion rate =
       motion_rate(task.vehicle, motion, task.wrench_at(0.0) + thrust, task.inputs);
   const double wanted = std::max(change_rate(task.vehicle, motion, rate) * task.dt_s / kGuard,
-                                 0.5 * fastest_rate(task.vehicle.lag) * task.dt_s / kLagGuard);
+                                 0.5 * task.vehicle.lag.fastest * task.dt_s / kLagGuard);
   if (!(wanted <= kMostSubsteps)) return 0;
   return std::max(1, static_cast<int>(std::ceil(wanted)));
 }

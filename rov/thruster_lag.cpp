@@ -1,5 +1,6 @@
 #include "rov/thruster_lag.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace neritic::rov {
@@ -16,8 +17,8 @@ Matrix3 product(const Matrix3& a, const Matrix3& b) {
 }
 
 // The companion matrix in the scaled state of LagState.
-Matrix3 companion(const ThrusterLag& lag) {
-  const double r = std::cbrt(lag.a0);
+Matrix3 companion(const PreparedLag& lag) {
+  const double r = lag.root;
   return {0.0, r, 0.0, 0.0, 0.0, r, -r, -lag.a1 / r, -lag.a2};
 }
 
@@ -40,7 +41,22 @@ Matrix3 exponential(Matrix3 a) {
   return sum;
 }
 
+double fastest_rate(const ThrusterLag& lag) {
+  switch (lag.kind) {
+    case ThrusterLag::Kind::kNone:
+      break;
+    case ThrusterLag::Kind::kFirstOrder:
+      return 1.0 / lag.time_s;
+    case ThrusterLag::Kind::kThirdOrder:  // Fujiwara's bound of a polynomial's roots
+      return 2.0 * std::max({lag.a2, std::sqrt(lag.a1), std::cbrt(lag.a0 / 2.0)});
+  }
+  return 0.0;
+}
+
 }  // namespace
+
+PreparedLag::PreparedLag(const ThrusterLag& lag)
+    : ThrusterLag(lag), root(std::cbrt(lag.a0)), fastest(fastest_rate(lag)) {}
 
 Status check_lag(const ThrusterLag& lag) {
   if (lag.kind == ThrusterLag::Kind::kFirstOrder && !(lag.time_s >= 1e-6 && lag.time_s <= 1e6))
@@ -57,26 +73,26 @@ Status check_lag(const ThrusterLag& lag) {
   return {};
 }
 
-double force_of(const ThrusterLag& lag, const LagState& state, double command_n) {
+double force_of(const PreparedLag& lag, const LagState& state, double command_n) {
   switch (lag.kind) {
     case ThrusterLag::Kind::kNone:
       break;
     case ThrusterLag::Kind::kFirstOrder:
       return state[0];
     case ThrusterLag::Kind::kThirdOrder:  // b0 z1 + b1 z1', b0 = a0
-      return state[0] + lag.b1 * std::cbrt(lag.a0) / lag.a0 * state[1];
+      return state[0] + lag.b1 * lag.root / lag.a0 * state[1];
   }
   return command_n;
 }
 
-LagState lag_rate(const ThrusterLag& lag, const LagState& state, double command_n) {
+LagState lag_rate(const PreparedLag& lag, const LagState& state, double command_n) {
   switch (lag.kind) {
     case ThrusterLag::Kind::kNone:
       break;
     case ThrusterLag::Kind::kFirstOrder:
       return {(command_n - state[0]) / lag.time_s, 0.0, 0.0};
     case ThrusterLag::Kind::kThirdOrder: {
-      const double r = std::cbrt(lag.a0);
+      const double r = lag.root;
       return {r * state[1], r * state[2],
               r * (command_n - state[0]) - lag.a1 / r * state[1] - lag.a2 * state[2]};
     }
@@ -84,14 +100,14 @@ LagState lag_rate(const ThrusterLag& lag, const LagState& state, double command_
   return {};
 }
 
-double impulse_of(const ThrusterLag& lag, const LagState& before, const LagState& after,
+double impulse_of(const PreparedLag& lag, const LagState& before, const LagState& after,
                   double command_n, double h_s) {
   double impulse = command_n * h_s;
   if (lag.kind == ThrusterLag::Kind::kFirstOrder) impulse -= lag.time_s * (after[0] - before[0]);
   if (lag.kind == ThrusterLag::Kind::kThirdOrder) {
     // lag_rate() integrated: r times the integrals of the second and third state are the changes of
     // the first and second.
-    const double r = std::cbrt(lag.a0);
+    const double r = lag.root;
     const double d0 = after[0] - before[0], d1 = after[1] - before[1], d2 = after[2] - before[2];
     impulse -= (d2 + lag.a1 / (r * r) * d0 + lag.a2 / r * d1) / r;
     impulse += lag.b1 / lag.a0 * d0;
@@ -103,19 +119,7 @@ LagState settled(const ThrusterLag& lag, double command_n) {
   return {lag.kind == ThrusterLag::Kind::kNone ? 0.0 : command_n, 0.0, 0.0};
 }
 
-double fastest_rate(const ThrusterLag& lag) {
-  switch (lag.kind) {
-    case ThrusterLag::Kind::kNone:
-      break;
-    case ThrusterLag::Kind::kFirstOrder:
-      return 1.0 / lag.time_s;
-    case ThrusterLag::Kind::kThirdOrder:  // Fujiwara's bound of a polynomial's roots
-      return 2.0 * std::max({lag.a2, std::sqrt(lag.a1), std::cbrt(lag.a0 / 2.0)});
-  }
-  return 0.0;
-}
-
-LagPropagator::LagPropagator(const ThrusterLag& lag, double h_s) : lag_(lag) {
+LagPropagator::LagPropagator(const PreparedLag& lag, double h_s) : kind_(lag.kind), h_s_(h_s) {
   if (lag.kind == ThrusterLag::Kind::kFirstOrder) decay_ = std::exp(-h_s / lag.time_s);
   if (lag.kind != ThrusterLag::Kind::kThirdOrder) return;
   p_ = companion(lag);
@@ -125,7 +129,7 @@ LagPropagator::LagPropagator(const ThrusterLag& lag, double h_s) : lag_(lag) {
 
 LagState LagPropagator::advance(const LagState& state, double command_n) const {
   const double off = state[0] - command_n;
-  switch (lag_.kind) {
+  switch (kind_) {
     case ThrusterLag::Kind::kNone:
       break;
     case ThrusterLag::Kind::kFirstOrder:

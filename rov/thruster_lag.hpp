@@ -21,30 +21,40 @@ struct ThrusterLag {
 // the canonical state z1, z1' / r, z1'' / r^2 with r = cbrt(a0), so that all three are of one size.
 using LagState = std::array<double, 3>;
 
+// With what its formulas need computed once.
+struct PreparedLag : ThrusterLag {
+  double root = 0.0;     // r = cbrt(a0)
+  double fastest = 0.0;  // the fastest pole's rate, an upper bound, 1/s; 0 without lag
+
+  PreparedLag() : PreparedLag(ThrusterLag{}) {}
+  PreparedLag(const ThrusterLag& lag);
+};
+
 // Errors: times that are not positive, poles that are not stable (Routh-Hurwitz).
 Status check_lag(const ThrusterLag& lag);
 
 // The force that the thruster gives.
-double force_of(const ThrusterLag& lag, const LagState& state, double command_n);
+double force_of(const PreparedLag& lag, const LagState& state, double command_n);
 // d state / dt.
-LagState lag_rate(const ThrusterLag& lag, const LagState& state, double command_n);
+LagState lag_rate(const PreparedLag& lag, const LagState& state, double command_n);
 // The integral of the force, N s, over a time h at constant command in which the state went from
 // before to after: exact, since the state's own equation gives it from the differences.
-double impulse_of(const ThrusterLag& lag, const LagState& before, const LagState& after,
+double impulse_of(const PreparedLag& lag, const LagState& before, const LagState& after,
                   double command_n, double h_s);
 // The state in which a constant command has settled.
 LagState settled(const ThrusterLag& lag, double command_n);
-// The fastest pole's rate, an upper bound, 1/s; 0 without lag.
-double fastest_rate(const ThrusterLag& lag);
 
 // The exact map over a time h at constant command: state(h) = settled + P (state(0) - settled).
 class LagPropagator {
  public:
-  LagPropagator(const ThrusterLag& lag, double h_s);
+  LagPropagator() = default;
+  LagPropagator(const PreparedLag& lag, double h_s);
   LagState advance(const LagState& state, double command_n) const;
+  double h_s() const { return h_s_; }
 
  private:
-  ThrusterLag lag_;
+  ThrusterLag::Kind kind_ = ThrusterLag::Kind::kNone;
+  double h_s_ = 0.0;
   double decay_ = 0.0;         // of a first-order lag
   std::array<double, 9> p_{};  // of a third-order one, rows first
 };

@@ -144,4 +144,24 @@ Result<Vehicle> make_vehicle(const VehicleParameters& p) {
   return v;
 }
 
+void prepare_steps(Vehicle& vehicle, std::span<const double> steps_s) {
+  // A step is whole, or of substeps of two halves each.
+  constexpr int kSubsteps = 4;
+  std::size_t next = 0;
+  vehicle.prepared = {};
+  const auto add = [&](double h_s) {
+    if (next < kMaxPrepared) vehicle.prepared[next++] = LagPropagator(vehicle.lag, h_s);
+  };
+  for (const double step_s : steps_s) {
+    add(step_s);
+    for (int count = 1; count <= kSubsteps; ++count) add(0.5 * (step_s / count));
+  }
+}
+
+LagPropagator propagator(const Vehicle& vehicle, double h_s) {
+  for (const LagPropagator& prepared : vehicle.prepared)
+    if (prepared.h_s() == h_s) return prepared;
+  return {vehicle.lag, h_s};
+}
+
 }  // namespace neritic::rov

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,9 @@ struct VehicleParameters {
   std::optional<Tether> tether;
 };
 
+// Lengths of time for which the lag's exact map is at hand.
+inline constexpr std::size_t kMaxPrepared = 16;
+
 // Checked and prepared. Trivially destructible: steps only read it.
 struct Vehicle {
   double mass_kg = 0.0, weight_n = 0.0, buoyancy_n = 0.0;
@@ -56,8 +60,10 @@ struct Vehicle {
   std::uint32_t thruster_count = 0;
   std::array<Thruster, kMaxThrusters> thrusters;
   std::array<Vec6, kMaxThrusters> thruster_wrench;  // of one newton each: the columns of B
-  ThrusterLag lag;
+  PreparedLag lag;
   std::optional<Tether> tether;
+  // Of steps that are to be quick (prepare_steps()); others compute theirs.
+  std::array<LagPropagator, kMaxPrepared> prepared;
   // Bounds of how fast things change, for the choice of substeps (step.cpp).
   double damping_rate = 0.0;   // 1/s, of linear damping
   Vec6 quadratic_rate;         // 1/s a m/s or rad/s, of quadratic damping
@@ -69,6 +75,12 @@ struct Vehicle {
 // Errors name the parameter, what was found and what is accepted: masses are positive, matrices
 // positive definite (damping: semidefinite), everything finite.
 Result<Vehicle> make_vehicle(const VehicleParameters& parameters);
+
+// Computes once what steps of these lengths compute again and again, so that they take less time
+// and keep their bits. Up to three lengths.
+void prepare_steps(Vehicle& vehicle, std::span<const double> steps_s);
+// The lag's exact map over h_s.
+LagPropagator propagator(const Vehicle& vehicle, double h_s);
 
 // M_RB of Fossen 2011, eq. 3.44: the rigid body's own mass matrix about the body's origin.
 Mat6 rigid_mass_matrix(double mass_kg, const Vec3& gravity_centre_m, const Mat3& inertia_kg_m2);

@@ -29,6 +29,7 @@ constexpr std::string_view kVehicleKeys[] = {"name",
                                              "thrust_table",
                                              "voltage_v",
                                              "tether",
+                                             "outline",
                                              "control",
                                              "imu",
                                              "dvl",
@@ -169,6 +170,7 @@ Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name
   if (root["control"].present()) read_gains(root["control"], out.gains);
   out.voltage_v = root["voltage_v"].number(16.0, 1.0, 1000.0);
   out.sensors = read_sensors(root);
+  out.outline = read_outline(root["outline"]);
   const std::string curve = root["thrust_table"].text();
   if (file.failed()) return file.error();
   if (!curve.empty()) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "rov/controller.hpp"
+#include "rov/outline.hpp"
 #include "rov/sensor_set.hpp"
 #include "rov/thrust_curve.hpp"
 #include "rov/vehicle.hpp"
@@ -19,6 +20,7 @@ struct VehicleFile {
   std::optional<ThrustCurve> curve;
   double voltage_v = 16.0;
   SensorSet sensors;
+  std::vector<OutlinePart> outline;  // none: what is drawn of it says it
 };
 
 // Errors in one line: file:line, key, what was found, what is accepted. Buoyancy is that of the

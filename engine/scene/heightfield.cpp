@@ -160,7 +160,9 @@ Model make_terrain(const Heightfield& field, double texture_m) {
         add_triangle(primitive, nw, se, ne);
       }
     }
-  return model_of_primitive(std::move(primitive), "terrain");
+  Model model = model_of_primitive(std::move(primitive), "terrain");
+  model.heights = field;
+  return model;
 }
 
 }  // namespace neritic::scene

@@ -144,6 +144,13 @@ struct Clip {
   std::vector<Channel> channels;
 };
 
+// Heights in metres above the datum (y up), NaN where there is no data.
+struct Heightfield {
+  std::uint32_t columns = 0, rows = 0;  // samples along x and z
+  double cell_m = 1.0;
+  std::vector<float> heights_m;  // [rows][columns]; row 0 is north (-z)
+};
+
 struct Model {
   std::string name;  // the file's path as given
   std::vector<Mesh> meshes;
@@ -158,6 +165,7 @@ struct Model {
   std::vector<int> roots;
   std::vector<Skin> skins;
   std::vector<Clip> clips;
+  std::optional<Heightfield> heights;  // of a terrain: what it was made of
   std::vector<std::string> notes;  // what was ignored, one line each, said once to the user
 };
 

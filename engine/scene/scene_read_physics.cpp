@@ -105,8 +105,10 @@ class VehiclePhysicsReader {
     }
     Dynamics dynamics;
     dynamics.file = reader_.file("dynamics");
-    for (const Key key : {"track", "scatter", "copies", "copies_file", "on", "collision"})
+    for (const Key key : {"track", "scatter", "copies", "copies_file", "on"})
       if (reader_.has(key)) reader_.refuse(key, "no such key beside dynamics");
+    if (reader_.has("collision") && object_.object.collision != Collision::kHull)
+      reader_.refuse("collision", "\"hull\", beside dynamics");
     if (!object_.request)
       reader_.refuse("dynamics", "no such key for what is not drawn: what is drawn is its shape");
     if (reader_.has("failed_thrusters")) dynamics.failed_thrusters = read_failed();

@@ -29,12 +29,6 @@ std::size_t triangle_count(const Model& model);
 inline constexpr std::size_t kMaxHeightfieldSamples = std::size_t{1} << 24;
 inline constexpr float kMaxHeight_m = 1e6f;
 
-// Heights in metres above the datum (y up), NaN where there is no data.
-struct Heightfield {
-  std::uint32_t columns = 0, rows = 0;  // samples along x and z
-  double cell_m = 1.0;
-  std::vector<float> heights_m;  // [rows][columns]; row 0 is north (-z)
-};
 // .asc (ESRI grid), .npy [rows, columns] or 16-bit PNG. scale multiplies the stored number, then
 // offset is added; negative scale turns positive-down depths into heights. cell_m <= 0: the file's
 // own (an error for files without one).
@@ -46,7 +40,8 @@ Result<Heightfield> read_heightfield(const std::filesystem::path& path,
 // The text of an .asc file already in memory; name stands in messages. Stored numbers, unscaled.
 // cell_m is 0 where the text names none.
 Result<Heightfield> parse_asc(std::string_view text, const std::string& name);
-// Centred on the origin in x and z; triangles with a NaN corner are left out; smooth normals.
+// Centred on the origin in x and z; triangles with a NaN corner are left out; smooth normals. The
+// model keeps the heights.
 Model make_terrain(const Heightfield& field, double texture_m = 2.5);
 
 }  // namespace neritic::scene

@@ -122,7 +122,7 @@ TEST(PhysicsWorld, WhatCannotBeEndsInOneLine) {
   for (int i = 0; i < 5; ++i)
     many += rov_text(fmt::format("position_m = [{}, -5, 0]\n", 2 * i), fmt::format("rov{}", i));
   const WrongScene cases[] = {
-      {kPhysics + wreck + rov_text("position_m = [0.2, -10.1, 0]\n"), "dive.toml: rov: starts 2.0"},
+      {kPhysics + wreck + rov_text("position_m = [0.2, -10.1, 0]\n"), "dive.toml: rov: starts 1.9"},
       {kPhysics + wreck + rov_text("position_m = [0.2, -10.1, 0]\n"),
        "m deep in wreck; accepted: a place in the water"},
       {many, "dive.toml: 5 vehicles with dynamics; accepted: at most 4"},
@@ -290,6 +290,37 @@ roll_deg = 45
   EXPECT_NEAR(top(0, 30), -20.0 + std::sqrt(0.5), 1e-5);
   const auto hit = world->cast({20, 0, 0}, {0, -1, 0}, 100.0);
   EXPECT_EQ(hit->label, scene->objects[0].instance + 2u);
+}
+
+// A terrain is a grid of heights: what is below it is inside.
+TEST(StaticScene, ATerrainIsSolidBelowAsItIsDrawn) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_text(folder / "slope.asc",
+                         "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n"
+                         "0 1 2\n0 1 2\n0 1 2\n")
+                  .ok());
+  for (const char* scale : {"", "scale = [2, 3, 2]\n", "scale = [2, 3, 1]\n"}) {
+    auto scene = load_text(
+        fmt::format("[physics]\n[[objects]]\nname = 'sand'\nclass = 'seabed'\nterrain = '{}'\n"
+                    "position_m = [0, -20, 0]\n{}",
+                    (folder / "slope.asc").string(), scale));
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const auto world = static_world_of(*scene);
+    ASSERT_TRUE(world.ok()) << world.error().message;
+    EXPECT_EQ(world->counts().triangles, 8u) << scale;
+    const double steep = *scale ? 1.5 : 1.0;
+    const auto hit = world->cast({5.0, 0.0, 1.0}, {0, -1, 0}, 100.0);
+    ASSERT_TRUE(hit.has_value()) << scale;
+    EXPECT_NEAR(-hit->distance_m, -20.0 + (*scale ? 3.0 : 1.0) + 0.1 * steep * 5.0, 1e-5) << scale;
+    // Three metres down: inside, but under a mesh, which it is where its cells are not square.
+    sim::BodyShape ball;
+    ball.add_sphere(Vec3(0.0), 0.1);
+    std::vector<sim::Contact> contacts;
+    world->contacts(ball, {{5.0, -22.0, 1.0}, Quat(1, 0, 0, 0)}, 0.01, contacts);
+    const bool square = std::string_view(scale) != "scale = [2, 3, 1]\n";
+    ASSERT_EQ(contacts.size(), square ? 1u : 0u) << scale;
+    EXPECT_EQ(square, !contacts.empty() && contacts[0].inside) << scale;
+  }
 }
 
 }  // namespace

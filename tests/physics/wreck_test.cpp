@@ -1,5 +1,5 @@
 // The default mission round the wreck, and vehicles driven into it: an oracle of its own counts the
-// wreck's triangles that come into the vehicle's box.
+// wreck's triangles that come into the vehicle's parts.
 #include <algorithm>
 
 #include "engine/scene/animation.hpp"
@@ -53,25 +53,28 @@ bool meets_box(const Corners& t, const Vec3& half) {
   return true;
 }
 
-// Says how many triangles are in a box of a vehicle's.
+// Says how many triangles are in the boxes about a vehicle's parts.
 class Oracle {
  public:
-  Oracle(const scene::Scene& scene, const std::string& solid, const std::string& vehicle)
+  Oracle(const scene::Scene& scene, const std::string& solid)
       : triangles_(triangles_of(scene, solid)) {
-    for (const scene::Object& object : scene.objects) {
-      if (object.name != vehicle) continue;
-      const scene::Model& model = *scene.models[static_cast<std::size_t>(object.model)];
-      const auto bounds = scene::model_bounds(model, scene::evaluate_pose(model, -1, 0.0));
-      middle_ = 0.5 * (bounds.min + bounds.max);
-      half_ = 0.5 * (bounds.max - bounds.min);
-    }
     EXPECT_GT(triangles_.size(), 10000u);
   }
-  // The box made smaller by so much all round.
-  std::size_t inside(const Pose& world_from_body, double smaller_m) const {
-    const Pose box_from_world = inverse(world_from_body * Pose{middle_, Quat(1, 0, 0, 0)});
-    const Vec3 centre = world_from_body * middle_;
-    const double reach = glm::length(half_ - Vec3(smaller_m));
+  // The boxes made smaller by so much all round.
+  std::size_t inside(const sim::BodyShape& shape, const Pose& world_from_body,
+                     double smaller_m) const {
+    std::size_t count = 0;
+    for (const sim::ConvexPart& part : shape.parts()) {
+      const Vec3 middle = part.centre_m + part.axes * (0.5 * (part.low_m + part.high_m));
+      count += inside_box(world_from_body * Pose{middle, glm::quat_cast(part.axes)},
+                          0.5 * (part.high_m - part.low_m) - Vec3(smaller_m));
+    }
+    return count;
+  }
+  std::size_t inside_box(const Pose& world_from_box, const Vec3& half) const {
+    const Pose box_from_world = inverse(world_from_box);
+    const Vec3 centre = world_from_box.position_m;
+    const double reach = glm::length(half);
     std::size_t count = 0;
     for (const Corners& t : triangles_) {
       bool near = true;
@@ -80,27 +83,29 @@ class Oracle {
                std::max({t[0][i], t[1][i], t[2][i]}) > centre[i] - reach;
       if (!near) continue;
       const Corners local{box_from_world * t[0], box_from_world * t[1], box_from_world * t[2]};
-      if (meets_box(local, half_ - Vec3(smaller_m))) ++count;
+      if (meets_box(local, half)) ++count;
     }
     return count;
   }
 
  private:
   std::vector<Corners> triangles_;
-  Vec3 middle_{0.0}, half_{0.0};
 };
 
 const Oracle& wreck_oracle() {
-  static const Oracle oracle(mission_scene(), "submarine", "rov");
+  static const Oracle oracle(mission_scene(), "submarine");
   return oracle;
 }
 
 TEST(WreckMission, AllWaypointsAreReachedAndNothingIsTouched) {
   TestDive dive = dive_of(mission_scene());
-  EXPECT_GT(wreck_oracle().inside({{0.0, -15.0, 0.0}, Quat(1, 0, 0, 0)}, -2.0), 0u);
+  EXPECT_GT(wreck_oracle().inside_box({{0.0, -15.0, 0.0}, Quat(1, 0, 0, 0)}, Vec3(2.0)), 0u);
+  const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
+  EXPECT_GT(shape.parts().size(), 1u);
   dive.run(230.0, [&] {
     if (dive.simulation->newest().step % 24 == 0) {
-      ASSERT_EQ(wreck_oracle().inside(dive.pose(), -0.5), 0u) << dive.time_s();  // half a metre off
+      ASSERT_EQ(wreck_oracle().inside(shape, dive.pose(), -0.5), 0u)
+          << dive.time_s();  // half a metre off
     }
   });
   const auto& vehicle = dive.world->vehicles()[0];
@@ -130,7 +135,7 @@ TEST(WreckMission, FarFromTheOriginItFliesTheSame) {
 class WreckRamming : public testing::TestWithParam<int> {};
 
 // At full thrust against the wreck's flank, deck and bow for a minute each: never more than a few
-// millimetres of the vehicle's box in any of its triangles.
+// millimetres of the vehicle's parts in any of its triangles.
 TEST_P(WreckRamming, NobodyGetsIntoTheWreck) {
   struct Ram {
     Vec3 from_m;
@@ -157,9 +162,10 @@ TEST_P(WreckRamming, NobodyGetsIntoTheWreck) {
   inputs.piloted = 1;
   inputs.pilot = ram.thrust;
   dive.simulation->push({0, inputs});
+  const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
   dive.run(60.0, [&] {
     if (dive.simulation->newest().step % 12 == 0) {
-      ASSERT_EQ(wreck_oracle().inside(dive.pose(), 0.006), 0u) << dive.time_s();
+      ASSERT_EQ(wreck_oracle().inside(shape, dive.pose(), 0.006), 0u) << dive.time_s();
     }
   });
   EXPECT_GT(dive.vehicle().contact.touched_steps, 1000u);
@@ -187,9 +193,10 @@ TEST(WreckMission, DroppedOnSandItComesToRest) {
   EXPECT_LT(fastest_m_s, 1e-3);
   EXPECT_LT(farthest_m, 1e-3);
   EXPECT_LT(dive.vehicle().contact.deepest_m, 0.005);
-  const Oracle sand(dive.scene, "seabed", "rov");
-  EXPECT_EQ(sand.inside(dive.pose(), 0.006), 0u);
-  EXPECT_GT(sand.inside(dive.pose(), -0.006), 0u);
+  const Oracle sand(dive.scene, "seabed");
+  const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
+  EXPECT_EQ(sand.inside(shape, dive.pose(), 0.006), 0u);
+  EXPECT_GT(sand.inside(shape, dive.pose(), -0.006), 0u);
 }
 
 }  // namespace

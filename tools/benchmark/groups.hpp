@@ -11,10 +11,10 @@
 
 namespace neritic::bench {
 
-// The first two need no device.
-inline constexpr std::string_view kGroups[] = {"physics",     "contacts",    "sonar_binning",
-                                               "sonar_frame", "sonar_terms", "camera_frame",
-                                               "sweep",       "start",       "threads"};
+// The last two need no device.
+inline constexpr std::string_view kGroups[] = {"sonar_binning", "sonar_frame", "sonar_terms",
+                                               "camera_frame",  "sweep",       "start",
+                                               "threads",       "physics",     "contacts"};
 inline constexpr std::size_t kGroupsWithoutDevice = 2;
 
 Status bench_physics(Suite& suite);                             // vehicles, hand-off of states

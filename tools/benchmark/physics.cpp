@@ -1,5 +1,6 @@
 // Speed of the vehicles' physics, without a device: one ROV with all its sensors, a thousand of
 // them on one thread and on two, the hand-off of a state, and what the machine's arithmetic allows.
+#include <algorithm>
 #include <thread>
 
 #include "engine/core/clock.hpp"
@@ -70,7 +71,9 @@ class Fleet {
       : vehicle_(rov::make_vehicle(rov::bluerov2_heavy()).value()),
         allocator_(vehicle_),
         gains_(rov::default_gains()),
-        members_(count) {}
+        members_(count) {
+    rov::prepare_steps(vehicle_, std::array{kStep_s});
+  }
 
   void start() {
     for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -189,13 +192,16 @@ Status bench_physics(Suite& suite) {
         {{"operations", 2.0 * kLanes * kProducts}}}},
       15));
   suite.must_agree("physics/1000_rovs_and_control", "physics/1000_rovs_and_control_2_threads");
-  suite.aim_ms("a second of one ROV, all sensors (1 % of a core)", "physics/rov_all_sensors_240_hz",
-               10.0);
+  // Of processor time: what other programs take of the core is not the ROV's.
+  if (const Measured* m = suite.find("physics/rov_all_sensors_240_hz"))
+    suite.aim_most("one ROV with all sensors, share of a core", "%",
+                   0.1 * median(m->cpu_ms) / kSeconds, 1.0);
   suite.aim_ms("a second of 1000 ROVs, two threads", "physics/1000_rovs_and_control_2_threads",
                1000.0);
   suite.aim_ms("1000 hand-offs of a dive's state", "physics/1000_hand_offs", 1.0);
   if (const Measured* m = suite.find("physics/arithmetic"))
-    suite.note("gflop_a_second_of_a_core", 2e-6 * kLanes * kProducts / m->min_ms());
+    suite.note("gflop_a_second_of_a_core",
+               2e-6 * kLanes * kProducts / *std::ranges::min_element(m->cpu_ms));
   return {};
 }
 

@@ -136,6 +136,11 @@ void Suite::aim_ms(const std::string& what, const std::string& result, double li
     aims_.push_back({what, "ms", m->median_ms(), limit_ms, true});
 }
 
+void Suite::aim_most(const std::string& what, const std::string& unit, double reached,
+                     double at_most) {
+  aims_.push_back({what, unit, reached, at_most, true});
+}
+
 void Suite::aim_ratio(const std::string& what, const std::string& ratio, double at_least) {
   if (const auto at = ratios_.find(ratio); at != ratios_.end())
     aims_.push_back({what, "times", at->second.of_least, at_least, false});

@@ -77,8 +77,9 @@ class Suite {
   void must_agree(const std::string& a, const std::string& b);
   void fail(const std::string& what) { failures_.push_back(what); }
   // Aims: printed with what was reached; no failures, since they depend on the machine. For the
-  // median of a result, and for a ratio of this run.
+  // median of a result, for any figure, and for a ratio of this run.
   void aim_ms(const std::string& what, const std::string& result, double limit_ms);
+  void aim_most(const std::string& what, const std::string& unit, double reached, double at_most);
   void aim_ratio(const std::string& what, const std::string& ratio, double at_least);
 
   // A fact of the whole run, beside the ratios.

@@ -1,34 +1,20 @@
 // What is read and checked once: the vehicles, what is solid, the current (physics_world.hpp).
 #include "tools/physics/physics_world.hpp"
 
+#include <array>
 #include <bit>
 #include <cmath>
 
-#include "engine/scene/animation.hpp"
 #include "rov/frames.hpp"
 #include "rov/step_choice.hpp"
 #include "tools/physics/static_scene.hpp"
+#include "tools/physics/vehicle_shape.hpp"
 
 namespace neritic::tools {
 namespace {
 
 // A vehicle that starts deeper than this in something solid is a mistake of the scene's.
 constexpr double kMostStartDepth_m = 0.02;
-
-// The box about what is drawn of an object at rest, in model axes.
-Status give_shape(const scene::Scene& scene, const scene::Object& object, PhysicsVehicle& vehicle) {
-  const scene::Model& model = *scene.models[static_cast<std::size_t>(object.model)];
-  const scene::Bounds bounds = scene::model_bounds(model, scene::evaluate_pose(model, -1, 0.0));
-  const Vec3 low = object.scale * bounds.min, high = object.scale * bounds.max;
-  const Vec3 half = 0.5 * (high - low);
-  if (bounds.empty() || !(half.x > 0.0 && half.y > 0.0 && half.z > 0.0) || !is_finite(half))
-    return bad_input("{}: {}: what is drawn of it has no volume; accepted: a solid vehicle",
-                     scene.path, object.name);
-  vehicle.solid.shape.add_box({0.5 * (low + high), Quat(1.0, 0.0, 0.0, 0.0)}, half);
-  vehicle.top_m = high.y;
-  vehicle.bottom_m = low.y;
-  return {};
-}
 
 Status check_thrusters(const scene::Scene& scene, const scene::Object& object,
                        const rov::Vehicle& vehicle) {
@@ -128,7 +114,8 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
   const scene::Object& object = scene.objects[index];
   const scene::Dynamics& dynamics = *object.dynamics;
   NERITIC_TRY(rov::VehicleFile file, rov::read_vehicle(dynamics.file, scene.physics->water_kg_m3));
-  NERITIC_TRY(const rov::Vehicle vehicle, rov::make_vehicle(file.parameters));
+  NERITIC_TRY(rov::Vehicle vehicle, rov::make_vehicle(file.parameters));
+  rov::prepare_steps(vehicle, std::array{step_s_, step_s_ / method_.contact_parts});
   NERITIC_TRY_STATUS(check_thrusters(scene, object, vehicle));
   NERITIC_TRY_STATUS(check_anchor(scene, object, vehicle.tether.has_value()));
   PhysicsVehicle out{.name = object.name,
@@ -143,7 +130,11 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
   if (dynamics.tether_anchor_m)
     out.tether_anchor_ned_m = rov::ned_from_world(*dynamics.tether_anchor_m);
   out.solid = solid_body(vehicle);
-  NERITIC_TRY_STATUS(give_shape(scene, object, out));
+  Result<VehicleShape> shape = vehicle_shape(scene, object, out.file.outline);
+  if (!shape.ok()) return bad_input("{}: {}: {}", scene.path, object.name, shape.error().message);
+  out.solid.shape = std::move(shape->body);
+  out.top_m = shape->top_m;
+  out.bottom_m = shape->bottom_m;
   const Pose at = scene.world_from(object.mount, 0.0);
   rov::teleport(out.start, rov::ned_from_world(at.position_m), rov::ned_from_world(at.rotation));
   NERITIC_TRY_STATUS(check_start(scene, out));

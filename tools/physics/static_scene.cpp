@@ -134,12 +134,25 @@ class StaticSceneBuilder {
 
   Result<std::uint32_t> make(const scene::Object& object, const Mat4& thing_from_model) {
     const Model& model = *scene_.models[static_cast<std::size_t>(object.model)];
-    const ThingMesh mesh = RestMesh(model, thing_from_model).take();
     const std::string name = fmt::format("{}: object {}", scene_.path, object.name);
+    if (object.collision == Collision::kMesh && is_seabed(model, thing_from_model))
+      return make_seabed(*model.heights, thing_from_model, name);
+    const ThingMesh mesh = RestMesh(model, thing_from_model).take();
     if (object.collision == Collision::kMesh)
       return builder_.add_mesh(mesh.vertices_m, mesh.indices, name);
     const std::vector<Vec3> points(mesh.vertices_m.begin(), mesh.vertices_m.end());
     return builder_.add_hull(points, name);
+  }
+
+  // A terrain is a grid of heights, solid below, unless it is scaled otherwise in x than in z.
+  static bool is_seabed(const Model& model, const Mat4& m) {
+    return model.heights && m == scaling(Vec3(m[0][0], m[1][1], m[0][0])) && m[0][0] > 0.0;
+  }
+  Result<std::uint32_t> make_seabed(const scene::Heightfield& field, const Mat4& m,
+                                    const std::string& name) {
+    std::vector<float> heights_m(field.heights_m);
+    for (float& height_m : heights_m) height_m = static_cast<float>(height_m * m[1][1]);
+    return builder_.add_heights(field.columns, field.rows, field.cell_m * m[0][0], heights_m, name);
   }
 
   // One shape for all that look alike.
@@ -164,6 +177,11 @@ bool stands_still(const scene::Scene& scene, const scene::Mount& mount) {
   if (mount.object < 0) return true;
   const scene::Object& carrier = scene.objects[static_cast<std::size_t>(mount.object)];
   return !carrier.dynamics && stands_still(scene, carrier.mount);
+}
+
+std::vector<Vec3> rest_points(const scene::Model& model, const Vec3& scale) {
+  const ThingMesh mesh = RestMesh(model, scaling(scale)).take();
+  return {mesh.vertices_m.begin(), mesh.vertices_m.end()};
 }
 
 Result<sim::StaticWorld> static_world_of(const scene::Scene& scene) {

@@ -1,6 +1,7 @@
 #include "tools/tradeoff/physics_tradeoff.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <limits>
@@ -60,12 +61,14 @@ double least_cpu_us(const Flight& flight, const Way& way, int repeats) {
   return least;
 }
 
-PhysicsPoint measure(const Flight& flight, const Way& way, bool quick) {
+PhysicsPoint measure(Flight& flight, const Way& way, bool quick) {
+  const double step_s = kHold_s / way.count;
+  rov::prepare_steps(flight.vehicle, std::array{step_s, step_s / way.method.contact_parts});
   PhysicsPoint point;
   point.flight = flight.name;
   point.integrator = way.method.integrator;
   point.contact_parts = way.method.contact_parts;
-  point.step_s = kHold_s / way.count;
+  point.step_s = step_s;
   fly_all(flight, way, [&](std::size_t k, const rov::State& state) {
     const rov::State& truth = flight.truth[k];
     const double off = glm::distance(state.position_ned_m, truth.position_ned_m);
@@ -94,8 +97,7 @@ Result<Flight> flight_of(std::size_t index, double seconds) {
   }
 }
 
-void measure_flight(const Flight& flight, const PhysicsTradeoffOptions& options,
-                    PhysicsTradeoff& out) {
+void measure_flight(Flight& flight, const PhysicsTradeoffOptions& options, PhysicsTradeoff& out) {
   for (const Integrator integrator : kIntegrators)
     for (const int count : kCounts) {
       PhysicsPoint point = measure(flight, {count, {integrator}}, options.quick);
@@ -121,7 +123,7 @@ Result<PhysicsTradeoff> run_physics_tradeoff(const PhysicsTradeoffOptions& optio
   PhysicsTradeoff out;
   out.flight_s = options.quick ? 2.0 : 20.0;
   for (std::size_t i = 0; i < kFlights; ++i) {
-    NERITIC_TRY(const Flight flight, flight_of(i, out.flight_s));
+    NERITIC_TRY(Flight flight, flight_of(i, out.flight_s));
     out.truth_error_m[flight.name] = flight.truth_error_m;
     options.step();
     measure_flight(flight, options, out);
