@@ -14,10 +14,12 @@ Member member_of(std::string name) {
   for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   const auto begins = [&](std::string_view with) { return name.starts_with(with); };
   if (begins("ph")) return name.find("deg") == name.npos ? Member::kPhase : Member::kPhaseDeg;
-  if (begins("axis") || begins("dof")) return Member::kAxis;
+  if (begins("axis") || begins("dof") || begins("index")) return Member::kAxis;
   if (begins("amp") || begins("tau") || name == "a") return Member::kAmplitude;
+  // Before frequencies: one may be given in rad/s.
+  if (begins("omega") || begins("w_") || name == "w" || name.find("rad") != name.npos)
+    return Member::kRadS;
   if (begins("f") || name.find("hz") != name.npos) return Member::kHertz;
-  if (begins("omega") || begins("rad") || name == "w") return Member::kRadS;
   if (begins("period") || name == "t" || name == "t_s") return Member::kPeriod;
   if (begins("doc") || begins("note")) return Member::kNote;
   return Member::kUnknown;

@@ -3,7 +3,7 @@
 // Written as an object, or a list of objects whose sum counts. A member's meaning is what its name
 // begins with (in any case of letters):
 //   amp..., A, tau...: the amplitude, six numbers, or one with axis: 0 to 5, or X Y Z K M N
-//   omega..., w, rad...: rad/s; or f..., ...hz: Hz; or period..., T: s. One number, or six
+//   omega..., w, ...rad...: rad/s; or f..., ...hz: Hz; or period..., T: s. One number, or six
 //   ph...: phase, rad, or degrees where the name says deg. One number, or six [0]
 // or as rows [axis, amplitude, omega, phase], or as six rows [amplitude, omega, phase], phase [0].
 #pragma once

@@ -174,6 +174,26 @@ TEST_P(WreckRamming, NobodyGetsIntoTheWreck) {
 
 INSTANTIATE_TEST_SUITE_P(From, WreckRamming, testing::Range(0, 6));
 
+// Five metres a second of water press it against the flank and along it.
+TEST(WreckMission, NoCurrentPushesItIntoTheWreck) {
+  scene::Scene scene = mission_scene();
+  scene.current =
+      scene::Current{.kind = scene::Current::Kind::kUniform, .velocity_m_s = Vec3(-5.0, 0.0, 0.3)};
+  scene::Object& rov = *std::ranges::find(scene.objects, "rov", &scene::Object::name);
+  rov.mount.pose = {{6.0, -15.5, 6.0}, from_yaw_pitch_roll(radians(20.0), 0.0, 0.0)};
+  TestDive dive = dive_of(std::move(scene));
+  const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
+  dive.run(20.0, [&] {
+    ASSERT_LT(dive.speed_m_s(), 6.0);
+    if (dive.simulation->newest().step % 12 == 0) {
+      ASSERT_EQ(wreck_oracle().inside(shape, dive.pose(), 0.006), 0u) << dive.time_s();
+    }
+  });
+  EXPECT_GT(dive.vehicle().contact.touched_steps, 100u);
+  EXPECT_LT(dive.vehicle().contact.deepest_m, 0.006);
+  EXPECT_EQ(dive.simulation->refused_states(), 0u);
+}
+
 TEST(WreckMission, DroppedOnSandItComesToRest) {
   scene::Scene scene = mission_scene();
   scene.physics->water_kg_m3 = 990.0;  // so that it sinks, with 2.3 N

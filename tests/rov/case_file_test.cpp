@@ -69,6 +69,7 @@ TEST(RovCaseFile, SinesAreReadInEveryForm) {
       R"({"amplitude": [3, 0, 0, 0, 0, 0], "omega": 2, "phase": 0.5})",
       R"({"A": 3, "axis": "X", "w": 2, "phi": 0.5})",
       R"({"amp_N": 3, "axis": 0, "freq_hz": 0.3183098861837907, "phase_deg": 28.64788975654116})",
+      R"({"amplitude_N": 3, "index": 0, "frequency_rad_s": 2, "phase_rad": 0.5})",
       R"([{"amp": [3, 0, 0, 0, 0, 0], "period_s": 3.141592653589793, "phase_rad": 0.5}])",
       R"([["X", 3, 2, 0.5]])",
       R"([[3, 2, 0.5], [0, 1], [0, 1], [0, 1], [0, 1], [0, 1]])"};

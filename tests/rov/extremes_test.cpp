@@ -147,6 +147,34 @@ TEST(RovExtremes, InputsThatAreNoNumbersAreRefusedCountedAndHeld) {
   }
 }
 
+// A planner's setpoint is an input too: the last good commands are held, and then it flies on.
+TEST(RovExtremes, SetpointsThatAreNoNumbersAreRefusedAndItFliesOn) {
+  const Vehicle vehicle = heavy_vehicle();
+  for (const Saturation saturation : {Saturation::kScale, Saturation::kRedistribute}) {
+    ControlGains gains = default_gains();
+    gains.saturation = saturation;
+    Setpoint home;
+    home.position_ned_m = {1.0, -1.0, 10.0};
+    State start;
+    start.position_ned_m.z = 9.5;
+    const LoopRun run = fly(
+        vehicle, gains, start,
+        [&](const State&, double t_s) {
+          Setpoint s = home;
+          if (t_s > 1.0 && t_s < 1.5) s.position_ned_m.x = kNan;
+          if (t_s > 2.0 && t_s < 2.5) s.attitude.w = kInf;
+          if (t_s > 3.0 && t_s < 3.5) s.velocity_ned_m_s.y = kNan;
+          if (t_s > 4.0 && t_s < 4.5) s.pilot[2] = kInf;
+          return s;
+        },
+        30.0);
+    for (const State& state : run.states) ASSERT_TRUE(all_finite(state));
+    EXPECT_GT(run.states.back().refused_inputs, 100u);
+    EXPECT_LT(glm::distance(run.states.back().position_ned_m, home.position_ned_m), 0.01);
+    EXPECT_LT(glm::length(run.states.back().velocity.linear()), 0.01);
+  }
+}
+
 TEST(RovExtremes, TeleportsToRestAndRefusesNowhere) {
   const Vehicle vehicle = heavy_vehicle();
   Inputs inputs;

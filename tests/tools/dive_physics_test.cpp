@@ -148,6 +148,34 @@ TEST_F(DivePhysics, DrawsItsPlotAndKeepsTheRateOfItsRows) {
   EXPECT_EQ(image->height, 1200u);
 }
 
+// The vehicle's file is refused before anything moves.
+TEST_F(DivePhysics, AParameterFileThatIsNoVehicleEndsInOneLine) {
+  const struct {
+    const char *parameters, *message;
+  } files[] = {
+      {"mass_kg = -13.5\ninertia_kg_m2 = [0.3, 0.2, 0.4]\n", "mass_kg: -13.5 found"},
+      {"mass_kg = 13.5\ninertia_kg_m2 = [0.3, 0, 0.4]\n",
+       "the mass matrix is not positive definite"},
+      {"mass_kg = 13.5\ninertia_kg_m2 = [0.3, 0.2, 0.4]\nadded_mass = [[-13.5, 0, 0, 0, 0, 0], "
+       "[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], "
+       "[0, 0, 0, 0, 0, 0]]\n",
+       "added_mass: with the rigid body's the matrix is singular"},
+      {"mass_kg = nan\ninertia_kg_m2 = [0.3, 0.2, 0.4]\n", "mass_kg: \"nan\" found"}};
+  for (const auto& file : files) {
+    ASSERT_TRUE(write_text(scratch_ / "wrong.toml", file.parameters).ok());
+    ASSERT_TRUE(write_text(scratch_ / "wrong_dive.toml",
+                           "[physics]\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\n"
+                           "dynamics = \"wrong.toml\"\nposition_m = [0, -6, 0]\n")
+                    .ok());
+    const Outcome outcome = dive("--headless --seconds 1", "wrong_dive.toml");
+    EXPECT_EQ(outcome.status, 2) << file.message;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find("wrong.toml: "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(file.message), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+}
+
 TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
   const struct {
     std::string arguments, scene, message;

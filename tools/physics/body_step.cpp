@@ -5,24 +5,29 @@
 namespace neritic::tools {
 namespace {
 
-sim::Twist twist_of(const rov::Vec6& velocity) {
-  return {rov::world_from_ned(velocity.linear()), rov::world_from_ned(velocity.angular())};
+// Coulomb's, of a vehicle on another: that of a scene's things.
+constexpr double kVehicleFriction = sim::Surface{}.friction;
+
+sim::BodyMotion motion_of(const rov::State& state) {
+  return {rov::world_pose(state.position_ned_m, state.attitude),
+          {rov::world_from_ned(state.velocity.linear()),
+           rov::world_from_ned(state.velocity.angular())}};
 }
 
-rov::State step_once(const sim::StaticWorld& solid, const SolidBody& body,
-                     const rov::Vehicle& vehicle, const rov::State& before,
-                     const rov::Inputs& inputs, double dt_s, rov::Integrator integrator,
-                     sim::MotionReport& report) {
-  rov::State after = rov::step(vehicle, before, inputs, dt_s, integrator);
+void set_motion(const sim::BodyMotion& motion, rov::State& state) {
+  state.position_ned_m = rov::ned_from_world(motion.world_from_body.position_m);
+  state.attitude = rov::ned_from_world(motion.world_from_body.rotation);
+  state.velocity = rov::vec6(rov::ned_from_world(motion.velocity.linear),
+                             rov::ned_from_world(motion.velocity.angular));
+}
+
+rov::State step_once(const sim::StaticWorld& solid, const SolidBody& body, const rov::State& before,
+                     rov::State free, double dt_s, sim::MotionReport& report) {
   const sim::BodyMotion moved = sim::move_body(
       solid, body.shape, body.inverse_mass, rov::world_pose(before.position_ned_m, before.attitude),
-      {rov::world_pose(after.position_ned_m, after.attitude), twist_of(after.velocity)}, dt_s,
-      &report);
-  after.position_ned_m = rov::ned_from_world(moved.world_from_body.position_m);
-  after.attitude = rov::ned_from_world(moved.world_from_body.rotation);
-  after.velocity = rov::vec6(rov::ned_from_world(moved.velocity.linear),
-                             rov::ned_from_world(moved.velocity.angular));
-  return after;
+      motion_of(free), dt_s, &report);
+  set_motion(moved, free);
+  return free;
 }
 
 // As one step's: the depth is that at its start.
@@ -40,20 +45,39 @@ SolidBody solid_body(const rov::Vehicle& vehicle) {
   return {{}, rov::world_from_ned(vehicle.inverse_mass).m};
 }
 
-rov::State step_among(const sim::StaticWorld& solid, const SolidBody& body,
-                      const rov::Vehicle& vehicle, const rov::State& before,
-                      const rov::Inputs& inputs, double dt_s, const StepMethod& method,
-                      sim::MotionReport* report) {
+rov::State free_step(const VehicleStep& step) {
+  return rov::step(step.vehicle, step.before, step.inputs, step.dt_s, step.method.integrator);
+}
+
+bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& b,
+                   rov::State& free_b) {
+  const auto pair_body = [](const VehicleStep& step, const rov::State& free) {
+    return sim::PairBody{step.body.shape, step.body.inverse_mass,
+                         rov::world_pose(step.before.position_ned_m, step.before.attitude),
+                         motion_of(free)};
+  };
+  sim::PairBody pair_a = pair_body(a, free_a), pair_b = pair_body(b, free_b);
+  if (!sim::part_bodies(pair_a, pair_b, kVehicleFriction, a.dt_s)) return false;
+  set_motion(pair_a.free, free_a);
+  set_motion(pair_b.free, free_b);
+  return true;
+}
+
+rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
+                      const rov::State& free, bool parted, sim::MotionReport* report) {
   sim::MotionReport told;
-  rov::State after = step_once(solid, body, vehicle, before, inputs, dt_s, method.integrator, told);
-  if (told.touched && method.contact_parts > 1) {
-    const double depth_m = told.deepest_m;
+  rov::State after = step_once(solid, step.body, step.before, free, step.dt_s, told);
+  if (told.touched && !parted && step.method.contact_parts > 1) {
+    const double depth_m = told.deepest_m, part_s = step.dt_s / step.method.contact_parts;
     told = {.pieces = 0, .touched = true, .deepest_m = depth_m};
-    after = before;
-    for (int i = 0; i < method.contact_parts; ++i) {
+    after = step.before;
+    for (int i = 0; i < step.method.contact_parts; ++i) {
+      const rov::State before = after;
       sim::MotionReport part;
-      after = step_once(solid, body, vehicle, after, inputs, dt_s / method.contact_parts,
-                        method.integrator, part);
+      after =
+          step_once(solid, step.body, before,
+                    free_step({step.body, step.vehicle, before, step.inputs, part_s, step.method}),
+                    part_s, part);
       add_part(part, told);
     }
   }

@@ -1,9 +1,9 @@
 // One step of one vehicle through the water and along what is solid: rov::step, then
-// sim::move_body with the vehicle's own mass matrix, added mass included. A pure function; any
-// thread.
+// sim::move_body with the vehicle's own mass matrix, added mass included; in between what other
+// vehicles do to it. Pure functions; any thread.
 #pragma once
 
-#include "engine/sim/motion.hpp"
+#include "engine/sim/body_pair.hpp"
 #include "rov/step.hpp"
 
 namespace neritic::tools {
@@ -24,11 +24,24 @@ struct StepMethod {
   int contact_parts = 1;
 };
 
-// The axes of both sides differ by exchanged components alone, so the way there and back keeps
-// every bit of what is not touched.
-rov::State step_among(const sim::StaticWorld& solid, const SolidBody& body,
-                      const rov::Vehicle& vehicle, const rov::State& before,
-                      const rov::Inputs& inputs, double dt_s, const StepMethod& method = {},
+struct VehicleStep {
+  const SolidBody& body;
+  const rov::Vehicle& vehicle;
+  const rov::State& before;
+  const rov::Inputs& inputs;
+  double dt_s;
+  const StepMethod& method;
+};
+
+// As if the water were empty.
+rov::State free_step(const VehicleStep& step);
+// Whether two vehicles touched: their free steps then part.
+bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& b,
+                   rov::State& free_b);
+// Along what is solid. The axes of both sides differ by exchanged components alone, so the way
+// there and back keeps every bit of what is not touched. parted: it is not taken in parts.
+rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
+                      const rov::State& free, bool parted = false,
                       sim::MotionReport* report = nullptr);
 
 }  // namespace neritic::tools

@@ -20,6 +20,13 @@ constexpr int kCell_px = 3;
 // Height above the lowest ground that is seen at which it is darkest.
 constexpr double kDarkest_m = 8.0;
 
+// One a thruster, eight that tell apart (Okabe and Ito 2008, darkened for lines on paper), then
+// again, paler.
+constexpr sonar::Color kThrusterColors[] = {
+    {0.0f, 0.447f, 0.698f},   {0.835f, 0.369f, 0.0f}, {0.0f, 0.62f, 0.451f}, {0.8f, 0.475f, 0.655f},
+    {0.337f, 0.706f, 0.914f}, {0.72f, 0.58f, 0.0f},   {0.35f, 0.35f, 0.35f}, {0.5f, 0.2f, 0.15f}};
+constexpr sonar::Color kGround{0.62f, 0.53f, 0.38f};
+
 using Value = std::function<double(const DiveRow&)>;
 
 Series series_of(const std::vector<DiveRow>& rows, std::size_t vehicle, const std::string& name,
@@ -34,6 +41,22 @@ Series series_of(const std::vector<DiveRow>& rows, std::size_t vehicle, const st
     if (row.vehicle != vehicle || (seen++ % every != 0 && seen != count)) continue;
     series.x.push_back(x(row));
     series.y.push_back(y(row));
+  }
+  return series;
+}
+
+// Where the vehicle came to its waypoints, by their numbers.
+Series arrivals_of(const std::vector<DiveRow>& rows, std::size_t vehicle, const Value& x,
+                   const Value& y) {
+  Series series{"waypoints", kInk, {}, {}};
+  series.joined = false;
+  std::uint64_t arrived = 0;
+  for (const DiveRow& row : rows) {
+    if (row.vehicle != vehicle || row.arrived == arrived) continue;
+    arrived = row.arrived;
+    series.x.push_back(x(row));
+    series.y.push_back(y(row));
+    series.notes.push_back(fmt::format("{}", arrived));
   }
   return series;
 }
@@ -111,10 +134,11 @@ void draw_path(sonar::Canvas& canvas, const Box& box, const PhysicsWorld& world,
   Series wanted = series_of(
       rows, 0, "wanted", kSeriesColors[4], [](const DiveRow& r) { return r.wanted.position_m.x; },
       [](const DiveRow& r) { return -r.wanted.position_m.z; });
-  wanted.joined = false;
-  wanted.marked = true;
   lines.insert(lines.begin(), wanted);
-  draw_lines(canvas, box, "Path from above, over what is solid", x, y, lines);
+  if (Series met = arrivals_of(rows, 0, east_of, north_of); !met.x.empty())
+    lines.push_back(std::move(met));
+  draw_lines(canvas, box, "Path from above, over what is solid (the higher, the darker)", x, y,
+             lines);
 }
 
 void draw_over_time(sonar::Canvas& canvas, const Box& box, const std::string& title,
@@ -123,13 +147,38 @@ void draw_over_time(sonar::Canvas& canvas, const Box& box, const std::string& ti
   draw_lines(canvas, box, title, x, roomy_axis(label, lines, &Series::y, least_span), lines);
 }
 
+double height_of(const DiveRow& row) {
+  return row.world_from_body.position_m.y;
+}
+
+// What is solid straight below the vehicle; nothing where nothing is.
+Series ground_line(const PhysicsWorld& world, const std::vector<DiveRow>& rows) {
+  constexpr double kDeepest_m = 12000.0;
+  Series line = series_of(rows, 0, "ground below", kGround, time_of, [&](const DiveRow& row) {
+    const auto hit =
+        world.solid().cast(row.world_from_body.position_m, {0.0, -1.0, 0.0}, kDeepest_m);
+    return hit ? height_of(row) - hit->distance_m : std::numeric_limits<double>::quiet_NaN();
+  });
+  Series out{line.name, line.color, {}, {}};
+  out.marked = false;
+  for (std::size_t i = 0; i < line.x.size(); ++i) {
+    if (std::isnan(line.y[i])) continue;
+    out.x.push_back(line.x[i]);
+    out.y.push_back(line.y[i]);
+  }
+  return out;
+}
+
 std::vector<Series> depth_lines(const PhysicsWorld& world, const std::vector<DiveRow>& rows) {
   std::vector<Series> lines{series_of(rows, 0, "wanted", kSeriesColors[4], time_of,
                                       [](const DiveRow& r) { return r.wanted.position_m.y; })};
   for (std::size_t i = 0; i < world.vehicles().size(); ++i)
     lines.push_back(series_of(rows, i, world.vehicles()[i].name,
-                              kSeriesColors[i % std::size(kSeriesColors)], time_of,
-                              [](const DiveRow& r) { return r.world_from_body.position_m.y; }));
+                              kSeriesColors[i % std::size(kSeriesColors)], time_of, height_of));
+  if (Series ground = ground_line(world, rows); !ground.x.empty())
+    lines.push_back(std::move(ground));
+  if (Series met = arrivals_of(rows, 0, time_of, height_of); !met.x.empty())
+    lines.push_back(std::move(met));
   return lines;
 }
 
@@ -137,8 +186,8 @@ std::vector<Series> thrust_lines(const PhysicsWorld& world, const std::vector<Di
   std::vector<Series> lines;
   for (std::size_t i = 0; i < world.vehicles()[0].vehicle.thruster_count; ++i)
     lines.push_back(series_of(rows, 0, fmt::format("{}", i + 1),
-                              kSeriesColors[i % std::size(kSeriesColors)].with_alpha(
-                                  i < std::size(kSeriesColors) ? 1.0f : 0.5f),
+                              kThrusterColors[i % std::size(kThrusterColors)].with_alpha(
+                                  i < std::size(kThrusterColors) ? 1.0f : 0.5f),
                               time_of, [i](const DiveRow& r) { return r.force_n[i]; }));
   return lines;
 }
@@ -159,8 +208,9 @@ Status write_dive_plot(const std::filesystem::path& path, const PhysicsWorld& wo
   sonar::Canvas canvas(kWidth, kHeight, kPaper);
   const std::string& first = world.vehicles()[0].name;
   draw_path(canvas, {10, 10, kMiddleX, kMiddleY}, world, rows);
-  draw_over_time(canvas, {kMiddleX, 10, kWidth - 10.0, kMiddleY}, "Height over the surface", "m",
-                 depth_lines(world, rows), 0.5);
+  draw_over_time(canvas, {kMiddleX, 10, kWidth - 10.0, kMiddleY},
+                 "Height over the surface, and the ground below", "m", depth_lines(world, rows),
+                 0.5);
   draw_over_time(canvas, {10, kMiddleY, kMiddleX, kHeight - 10.0},
                  "Thrust of " + first + "'s thrusters", "N", thrust_lines(world, rows), 1.0);
   draw_over_time(canvas, {kMiddleX, kMiddleY, kWidth - 10.0, kHeight - 10.0},

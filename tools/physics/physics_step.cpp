@@ -1,5 +1,6 @@
 // The step (physics_world.hpp).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -78,9 +79,30 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
   PhysicsState next = state;
   ++next.step;
   const double time_s = static_cast<double>(state.step) * dt_s;
-  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+  const std::size_t count = vehicles_.size();
+  std::array<rov::Inputs, kMaxVehicles> acting;
+  std::array<rov::State, kMaxVehicles> free;
+  std::array<bool, kMaxVehicles> parted{};
+  const auto step_of = [&](std::size_t i) {
+    return VehicleStep{
+        vehicles_[i].solid, vehicles_[i].vehicle, state.vehicles[i].body, acting[i], dt_s, method_};
+  };
+  for (std::size_t i = 0; i < count; ++i) {
     if (control_due(i, state.step)) steer(i, state, inputs.vehicles[i], time_s, next.vehicles[i]);
-    move(vehicles_[i], inputs.vehicles[i], time_s, dt_s, next.vehicles[i]);
+    acting[i] = acting_on(vehicles_[i], inputs.vehicles[i], next.vehicles[i], time_s);
+    free[i] = free_step(step_of(i));
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count; ++j)
+      if (part_vehicles(step_of(i), free[i], step_of(j), free[j])) parted[i] = parted[j] = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    sim::MotionReport report;
+    VehicleState& after = next.vehicles[i];
+    after.body = step_among(solid_, step_of(i), free[i], parted[i], &report);
+    after.contact.near_points = static_cast<std::uint64_t>(report.contacts);
+    after.contact.touched_steps += report.touched || parted[i] ? 1 : 0;
+    after.contact.deepest_m = std::max(after.contact.deepest_m, report.deepest_m);
+    after.contact.impulse_n_s = report.impulse_n_s;
   }
   return next;
 }
@@ -115,23 +137,16 @@ void PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const Vehic
   state.integral = control.integral;
 }
 
-// One step through the water and along what is solid.
-void PhysicsWorld::move(const PhysicsVehicle& vehicle, const VehicleInputs& inputs, double time_s,
-                        double dt_s, VehicleState& state) const {
-  const rov::State before = state.body;
+// What pushes it in the step to come.
+rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
+                                    const VehicleState& state, double time_s) const {
   rov::Inputs acting;
   acting.thruster_n = state.command_n;
-  acting.current_ned_m_s = current_ned_m_s(before.position_ned_m, time_s);
+  acting.current_ned_m_s = current_ned_m_s(state.body.position_ned_m, time_s);
   acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
   acting.failed_thrusters = inputs.failed_thrusters;
-  apply_surface(vehicle.vehicle, vehicle.top_m, vehicle.bottom_m, before, acting);
-  sim::MotionReport report;
-  state.body =
-      step_among(solid_, vehicle.solid, vehicle.vehicle, before, acting, dt_s, method_, &report);
-  state.contact.near_points = static_cast<std::uint64_t>(report.contacts);
-  state.contact.touched_steps += report.touched ? 1 : 0;
-  state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);
-  state.contact.impulse_n_s = report.impulse_n_s;
+  apply_surface(vehicle.vehicle, vehicle.top_m, vehicle.bottom_m, state.body, acting);
+  return acting;
 }
 
 std::unique_ptr<PhysicsSimulation> PhysicsWorld::simulation(sim::SimulationOptions options) const {

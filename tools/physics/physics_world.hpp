@@ -66,8 +66,8 @@ class PhysicsWorld {
   Status check_start(const scene::Scene& scene, const PhysicsVehicle& vehicle) const;
   void steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
              VehicleState& state) const;
-  void move(const PhysicsVehicle& vehicle, const VehicleInputs& inputs, double time_s, double dt_s,
-            VehicleState& state) const;
+  rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
+                        const VehicleState& state, double time_s) const;
 
   double step_s_ = 1.0 / 240.0;
   std::uint64_t seed_ = 0;

@@ -26,8 +26,9 @@ struct Flight {
 
   rov::State step(const rov::State& state, const rov::Inputs& held, double dt_s,
                   const StepMethod& method) const {
-    return solid ? step_among(*solid, body, vehicle, state, held, dt_s, method)
-                 : rov::step(vehicle, state, held, dt_s, method.integrator);
+    const VehicleStep step{body, vehicle, state, held, dt_s, method};
+    const rov::State free = free_step(step);
+    return solid ? step_among(*solid, step, free) : free;
   }
 };
 

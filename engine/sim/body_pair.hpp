@@ -1,0 +1,25 @@
+// Two moving bodies that meet: each against its own mass matrix, before what stands still has its
+// say (motion.hpp). Pure functions; any thread.
+//
+//   v_a' = v_a + M_a^-1 J_a^T lambda,  v_b' = v_b - M_b^-1 J_b^T lambda,
+//   0 <= lambda_n  _|_  n . (v_a,c' - v_b,c') >= -gap / dt,   |lambda_t| <= mu lambda_n
+//
+// by projected Gauss-Seidel (Catto 2005), at the nearest points of each pair of parts; a hit does
+// not bounce. Depth is undone by a velocity that moves both in this step only.
+#pragma once
+
+#include "engine/sim/motion.hpp"
+
+namespace neritic::sim {
+
+struct PairBody {
+  const BodyShape& shape;
+  const InverseMass& inverse_mass;
+  Pose before;
+  BodyMotion free;  // its step as if alone; changed where the other is in the way
+};
+
+// Whether they touched; where not, both keep their bits. friction: Coulomb's coefficient.
+bool part_bodies(PairBody& a, PairBody& b, double friction, double dt_s);
+
+}  // namespace neritic::sim
