@@ -5,7 +5,8 @@
 //   0 <= lambda_n  _|_  n . (v_a,c' - v_b,c') >= -gap / dt,   |lambda_t| <= mu lambda_n
 //
 // by projected Gauss-Seidel (Catto 2005), at the nearest points of each pair of parts; a hit does
-// not bounce. Depth is undone by a velocity that moves both in this step only.
+// not bounce. Depth is undone by a velocity that moves both in this step only. To first order in
+// the step's way: bodies that move by many times their size in one step may pass each other.
 #pragma once
 
 #include "engine/sim/motion.hpp"
