@@ -1,5 +1,6 @@
 // Reads a [[sonars]] table's own keys: kind, limits, bins, and what quality it is made with. Its
 // terms, tables each, are read in scene_read_sonar_terms.cpp.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/scene/scene_draft.hpp"
@@ -84,12 +85,15 @@ void read_apertures(TableReader& reader, Sonar& sonar) {
   // A scanner's azimuth bins are its steps.
   constexpr double kMaxStep_deg = 90.0;
   const bool counted = sonar.kind == SonarKind::kMechanical && reader.has("bins");
-  const double step_deg = counted ? azimuth_deg / sonar.bins_azimuth : 1.0;
+  const double step_deg = counted ? azimuth_deg / sonar.bins_azimuth : std::min(azimuth_deg, 1.0);
   sonar.step_rad = radians(angle_of_kind(reader, sonar, "step_deg", SonarKind::kMechanical,
                                          step_deg, {0, kMaxStep_deg, true, false, "degrees"}));
   if (sonar.step_rad > radians(kMaxStep_deg))
     reader.refuse(
         "bins", fmt::format("azimuth bins that make steps of at most {:g} degrees", kMaxStep_deg));
+  if (sonar.kind == SonarKind::kMechanical && sonar.step_rad > sonar.azimuth_rad * (1.0 + 1e-9))
+    reader.refuse("step_deg", fmt::format("at most azimuth_deg, {:g}: steps lie within the sector",
+                                          azimuth_deg));
 }
 
 void read_quality(TableReader& reader, Sonar& sonar) {
@@ -115,6 +119,16 @@ void check_detection(TableReader& reader, const Sonar& sonar) {
     reader.refuse("detection", "pings of kind \"sidescan\" only");
 }
 
+// A cone is one beam with one pattern about its axis, there and back.
+void check_cone_beam(TableReader& reader, const SonarBeam& beam) {
+  if (beam.azimuth && beam.elevation)
+    reader.refuse("beam", "azimuth or elevation, not both, of kind \"echosounder\"");
+  if (beam.two_way)
+    reader.refuse("beam", "two_way of other kinds than \"echosounder\", which sends through it");
+  if (beam.samples != SonarBeam{}.samples)
+    reader.refuse("beam", "samples of other kinds than \"echosounder\", whose bins sample it");
+}
+
 // What a beam's pattern needs of the kind.
 void check_beam(TableReader& reader, const Sonar& sonar) {
   const SonarBeam& beam = sonar.terms.beam;
@@ -123,6 +137,7 @@ void check_beam(TableReader& reader, const Sonar& sonar) {
   };
   if ((is_disc(beam.azimuth) || is_disc(beam.elevation)) && sonar.kind != SonarKind::kEchoSounder)
     reader.refuse("beam", "piston, a disc, of kind \"echosounder\" only");
+  if (sonar.kind == SonarKind::kEchoSounder) check_cone_beam(reader, beam);
   if (beam.steering == SonarBeam::Steering::kNone) return;
   if (sonar.kind != SonarKind::kImaging && sonar.kind != SonarKind::kProfiling)
     reader.refuse("beam", "steering of kinds \"imaging\" and \"profiling\" only");
@@ -146,6 +161,9 @@ void read_sonar(TableReader& reader, Sonar& sonar) {
   read_sonar_terms(reader, sonar.terms);
   check_beam(reader, sonar);
   check_detection(reader, sonar);
+  // Shadow lies between rows that end on two surfaces: a beam without a footprint has no edges.
+  if (sonar.gather == "nearest" && sonar.terms.labels.energy)
+    reader.refuse("gather", "plane beside labels.energy: shadow needs a beam's footprint");
 }
 
 }  // namespace neritic::scene

@@ -217,7 +217,9 @@ SonarMotion read_motion(TableReader& reader) {
 }
 
 SonarLabels read_labels(TableReader& reader) {
-  return {reader.flag("energy", false), reader.flag("coco", false)};
+  const SonarLabels labels{reader.flag("energy", false), reader.flag("coco", false)};
+  if (!labels.energy) refuse_beside(reader, "coco", "without energy = true, whose masks it holds");
+  return labels;
 }
 
 SonarOutput read_output(TableReader& reader) {

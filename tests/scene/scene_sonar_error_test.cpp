@@ -114,6 +114,20 @@ INSTANTIATE_TEST_SUITE_P(
              ".beam: found a table; accepted: steering = \"flat\" of at most 170 degrees of azimuth"},
         WrongKeys{"beam = {elevation = 'piston'}",
              ".beam: found a table; accepted: piston, a disc, of kind \"echosounder\" only"},
+        WrongKeys{"beam = {elevation = 'piston', azimuth = 'sinc'}\nkind = 'echosounder'",
+             ".beam: found a table; accepted: azimuth or elevation, not both, of kind "
+             "\"echosounder\""},
+        WrongKeys{"beam = {azimuth = 'piston', two_way = true}\nkind = 'echosounder'",
+             ".beam: found a table; accepted: two_way of other kinds than \"echosounder\", which "
+             "sends through it"},
+        WrongKeys{"beam = {elevation = 'piston', samples = 3}\nkind = 'echosounder'",
+             ".beam: found a table; accepted: samples of other kinds than \"echosounder\", whose "
+             "bins sample it"},
+        WrongKeys{"step_deg = 60\nazimuth_deg = 10\nkind = 'mechanical'",
+             ".step_deg: found 60; accepted: at most azimuth_deg, 10: steps lie within the sector"},
+        WrongKeys{"gather = 'nearest'\nlabels = {energy = true}",
+             ".gather: found \"nearest\"; accepted: plane beside labels.energy: shadow needs a "
+             "beam's footprint"},
         WrongKeys{"range_spread = {window = 'hamming'}",
              ".range_spread.window: found \"hamming\"; accepted: one of none, hann"}),
     wrong_keys_name);
@@ -162,6 +176,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongKeys{"motion = {doppler = true}",
              ".motion: found a table; accepted: doppler beside range_spread or bandwidth_hz: it "
              "shifts the pulse"},
+        WrongKeys{"labels = {coco = true}",
+             ".labels.coco: found true; accepted: no such key without energy = true, whose masks it "
+             "holds"},
         WrongKeys{"labels = {cocoa = true}", ".labels.cocoa: unknown key; nearest known key: coco"},
         WrongKeys{"output = {bits = 12}", ".output.bits: found 12; accepted: 0 (floats), 8 or 16"},
         WrongKeys{"output = {bits = 8}",

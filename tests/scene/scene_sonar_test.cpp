@@ -182,6 +182,10 @@ TEST(SceneSonar, KindsHaveTheirAngles) {
       radians(0.9));
   EXPECT_DOUBLE_EQ(sonar_of(scratch, "kind = 'mechanical'\nazimuth_deg = 360").step_rad,
                    radians(1.0));
+  EXPECT_DOUBLE_EQ(sonar_of(scratch, "kind = 'mechanical'\nazimuth_deg = 0.5").step_rad,
+                   radians(0.5));
+  EXPECT_DOUBLE_EQ(sonar_of(scratch, "kind = 'mechanical'\nazimuth_deg = 9\nstep_deg = 9").step_rad,
+                   radians(9.0));
 }
 
 TEST(SceneSonar, ADevicesBandwidthNamesItsRangeSpread) {

@@ -48,7 +48,7 @@ scene::Sonar sensor_of(const std::string& keys) {
 
 TEST(SonarTermsJson, ReadsBackAsTheSameSensor) {
   for (const char* keys :
-       {"", "quality = 'draft'\nlabels = {coco = true}",
+       {"", "quality = 'draft'\nlabels = {energy = true, coco = true}",
         "kind = 'profiling'\nfrequency_hz = 4e5\nbandwidth_hz = 3e4\nelevation_deg = 0.7\n"
         "water = {temperature_c = 4, ph = 7.9, depth_m = 30, sound_speed_m_s = 1475}\n"
         "level = {source_level_db = 215, absorption = 0.1, tvg = 30, gain_db = -3}\n"
