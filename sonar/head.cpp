@@ -47,8 +47,8 @@ bool full_turn(const BeamGrid& grid) {
 std::uint32_t rows_beyond(double half_rad, double step_rad, double reach_rad, std::uint32_t bins) {
   constexpr double kMostApertures = 4.0;
   const double most = std::floor((kMaxElevation_rad / 2.0 - half_rad) / step_rad + 1e-6);
-  const double rows = std::min({std::ceil((reach_rad - half_rad) / step_rad - 1e-6), most,
-                                kMostApertures * bins});
+  const double rows =
+      std::min({std::ceil((reach_rad - half_rad) / step_rad - 1e-6), most, kMostApertures * bins});
   return static_cast<std::uint32_t>(std::max(rows, 0.0));
 }
 
@@ -233,14 +233,16 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
 double scan_heading_rad(const scene::Sonar& sonar, std::uint32_t ping) {
   if (sonar.kind != SonarKind::kMechanical) return 0.0;
   const bool round = sonar.azimuth_rad > 2.0 * kPi - 1e-9;
+  // Those of a sector lie within it; a turn's last may overlap its first by half a step.
+  const double fit = sonar.azimuth_rad / sonar.step_rad;
   const auto steps =
-      std::max(1u, static_cast<std::uint32_t>(std::lround(sonar.azimuth_rad / sonar.step_rad)));
+      static_cast<std::uint32_t>(std::max(1.0, round ? std::round(fit) : std::floor(fit + 1e-6)));
   std::uint32_t at = ping % steps;
   if (!round && steps > 1) {
     at = ping % (2 * (steps - 1));
     if (at >= steps) at = 2 * (steps - 1) - at;
   }
-  return -sonar.azimuth_rad / 2.0 + (at + 0.5) * sonar.step_rad;
+  return (at + 0.5 - 0.5 * steps) * sonar.step_rad;
 }
 
 std::vector<float> gamma_quantiles(double shape, std::uint32_t count) {

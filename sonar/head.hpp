@@ -31,8 +31,8 @@ struct Head {
 Result<std::vector<Head>> plan_heads(const scene::Sonar& sonar);
 
 // Where a mechanical scanner's beam points at its ping-th ping: azimuth in sonar axes, positive to
-// starboard. From full port in steps; a full turn goes on round, a sector is swept to and fro. 0
-// for other kinds.
+// starboard. From full port in steps; a full turn goes on round, a sector is swept to and fro by as
+// many whole steps as fit, in its middle. 0 for other kinds.
 double scan_heading_rad(const scene::Sonar& sonar, std::uint32_t ping);
 
 // The quantiles of a gamma distribution of mean 1 and that shape (variance 1 / shape), count of

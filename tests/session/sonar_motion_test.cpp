@@ -80,6 +80,27 @@ TEST_F(SonarMotion, AScannerStepsRoundOrToAndFro) {
   EXPECT_EQ(heading(4), -30);
 }
 
+TEST_F(SonarMotion, AScannersStepsLieInTheMiddleOfItsSector) {
+  scene::Sonar sonar;
+  sonar.kind = scene::SonarKind::kMechanical;
+  for (const auto& [azimuth_deg, step_deg] :
+       {std::pair(10.0, 4.0), std::pair(10.0, 10.0), std::pair(10.0, 3.0), std::pair(90.0, 0.7)}) {
+    sonar.azimuth_rad = radians(azimuth_deg);
+    sonar.step_rad = radians(step_deg);
+    double lowest = kPi, highest = -kPi;
+    for (std::uint32_t ping = 0; ping < 300; ++ping) {
+      const double heading = sonar::scan_heading_rad(sonar, ping);
+      lowest = std::min(lowest, heading);
+      highest = std::max(highest, heading);
+    }
+    EXPECT_NEAR(lowest, -highest, 1e-12) << azimuth_deg << " by " << step_deg;
+    // No half beam outside, no room for another step inside.
+    const double covered = highest - lowest + sonar.step_rad;
+    EXPECT_LE(covered, sonar.azimuth_rad + 1e-9) << azimuth_deg << " by " << step_deg;
+    EXPECT_GT(covered, sonar.azimuth_rad - sonar.step_rad) << azimuth_deg << " by " << step_deg;
+  }
+}
+
 TEST_F(SonarMotion, AScannersBeamHearsWhereItPoints) {
   scene::Sonar sonar = sonar_of(2.0, 8.0, 60);
   sonar.kind = scene::SonarKind::kMechanical;
