@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/check.hpp"
+#include "sonar/levels.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -103,10 +104,8 @@ std::vector<BottomDetection> detect_bottom(const BeamGrid& grid, std::span<const
   for (std::size_t from = 0; from < beams; from += kBlock) {
     const std::size_t count = std::min(kBlock, beams - from);
     for (std::size_t row = 0; row < rows; ++row)
-      for (std::size_t k = 0; k < count; ++k) {
-        const float v = intensity[row * beams + from + k];
-        block[k * rows + row] = v > 0.0f && std::isfinite(v) ? v : 0.0;
-      }
+      for (std::size_t k = 0; k < count; ++k)
+        block[k * rows + row] = heard(intensity[row * beams + from + k]);
     for (std::size_t k = 0; k < count; ++k)
       if (auto found =
               detect(grid, std::span<const double>(block).subspan(k * rows, rows), options)) {

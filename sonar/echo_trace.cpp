@@ -18,10 +18,6 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-float heard(float v) {
-  return v > 0.0f && std::isfinite(v) ? v : 0.0f;
-}
-
 // Between bins, in bins from the first bin's beginning.
 std::optional<double> strongest_bins(std::span<const float> profile, double floor) {
   const auto peak = std::max_element(profile.begin(), profile.end());

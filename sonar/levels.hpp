@@ -2,6 +2,7 @@
 // receiver's band, and the receiver's gain over range. Pure functions of plain values; any thread.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,11 @@ double receiver_gain_db(const scene::SonarLevel& level, double range_m, double a
 // A receiver holds no more than this (300 dB re 1 uPa, far above any water's): sums of thousands of
 // such bins stay finite floats.
 inline constexpr double kLargestPower = 1e30;
+
+// An intensity from anywhere: what is not finite or negative is silence.
+inline float heard(float intensity) {
+  return intensity > 0.0f && std::isfinite(intensity) ? intensity : 0.0f;
+}
 
 // intensity [range][columns] without what is below its row's floor (none: as it is).
 std::vector<float> above_floor(std::span<const float> intensity, std::span<const float> floor);

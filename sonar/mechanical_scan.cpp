@@ -10,6 +10,7 @@
 #include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
+#include "sonar/levels.hpp"
 #include "sonar/panel.hpp"
 
 namespace neritic::sonar {
@@ -154,7 +155,7 @@ MechanicalScan::MechanicalScan(const MechanicalScanOptions& options) : options_(
 void MechanicalScan::append(std::span<const float> intensity, const ScanStep& step) {
   NERITIC_CHECK(intensity.size() == options_.n_range, "{} values for {} bins", intensity.size(),
                 options_.n_range);
-  for (const float v : intensity) profiles_.push_back(v > 0.0f && std::isfinite(v) ? v : 0.0f);
+  for (const float v : intensity) profiles_.push_back(heard(v));
   steps_.push_back(step);
 }
 
@@ -246,10 +247,9 @@ Status write_mechanical_scan(const std::filesystem::path& folder, const Mechanic
   NERITIC_TRY_STATUS(write_text(folder / "mechanical_steps.csv", csv_of(scan)));
   const DeviceImage device = device_image(scan);
   NERITIC_TRY_STATUS(scene::write_png8(
-      folder / "mechanical.png",
-      draw_panel(device.grid, device.image,
-                 {.title = "SCANNING SONAR   AS THE DEVICE SHOWS IT",
-                  .span_db = o.levels ? kScanShown_db : 0.0})));
+      folder / "mechanical.png", draw_panel(device.grid, device.image,
+                                            {.title = "SCANNING SONAR   AS THE DEVICE SHOWS IT",
+                                             .span_db = o.levels ? kScanShown_db : 0.0})));
   NERITIC_TRY_STATUS(write_npy(folder / "mechanical_world.npy",
                                std::span<const float>(mosaic.intensity),
                                {std::size_t{mosaic.rows}, std::size_t{mosaic.columns}}));

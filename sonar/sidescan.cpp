@@ -19,14 +19,10 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-float heard(float v) {
-  return v > 0.0f && std::isfinite(v) ? v : 0.0f;
-}
-
 // Leading edge of the bottom in bins from the first bin's beginning; NaN where there is none. The
 // bin's filled part is its value over the next one's.
-double bottom_bins(std::span<const float> heard, const SidescanOptions& o) {
-  const std::vector<float> profile = above_floor(heard, o.floor_by_bin);
+double bottom_bins(std::span<const float> line, const SidescanOptions& o) {
+  const std::vector<float> profile = above_floor(line, o.floor_by_bin);
   float strongest = 0.0f;
   for (const float v : profile) strongest = std::max(strongest, v);
   if (!(strongest > o.floor)) return kNone;
