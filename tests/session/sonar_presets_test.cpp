@@ -39,7 +39,7 @@ std::vector<double> altitudes_of(gpu::Device& device, const scene::Scene& scene)
     request.time_s = request.frame * 0.2;
     auto result = (*session)->render(request);
     EXPECT_TRUE(result.ok()) << result.error().message;
-    const Status added = survey.add(*result, request.time_s);
+    const Status added = survey.add(*result, request.frame, request.time_s);
     EXPECT_TRUE(added.ok()) << (added.ok() ? "" : added.error().message);
   }
   const test::ScratchFolder out;

@@ -80,7 +80,7 @@ TEST_F(SurveyTest, ALawnMowerTrackChartsTheRealBottom) {
   request.capture.geometry = false;
   for (request.frame = 0; request.time_s < end_s; ++request.frame) {
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
-    ASSERT_TRUE(survey.add(result, request.time_s).ok());
+    ASSERT_TRUE(survey.add(result, request.frame, request.time_s).ok());
     request.time_s += 0.5;
   }
   const test::ScratchFolder out;
@@ -122,7 +122,7 @@ TEST_F(SurveyTest, NoiseIsNoBottom) {
   double loudest_beyond = 0.0;
   for (request.frame = 0; request.frame < 20; ++request.frame) {
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
-    ASSERT_TRUE(survey.add(result, request.time_s).ok());
+    ASSERT_TRUE(survey.add(result, request.frame, request.time_s).ok());
     const auto& image = result.sonars[0].image.intensity;
     for (std::size_t i = 300 * 128; i < image.size(); ++i)
       loudest_beyond = std::max<double>(loudest_beyond, image[i]);
@@ -162,7 +162,7 @@ TEST_F(SurveyTest, AnEchoSounderComesDownAtFiveMetresAMinute) {
   for (request.frame = 0; request.frame < 120; ++request.frame) {
     request.time_s = request.frame * 2.0;
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
-    ASSERT_TRUE(survey.add(result, request.time_s).ok());
+    ASSERT_TRUE(survey.add(result, request.frame, request.time_s).ok());
   }
   const test::ScratchFolder out;
   ASSERT_TRUE(survey.write(out.path(), {}).ok());
@@ -218,7 +218,7 @@ TEST_F(SurveyTest, ASideScanPassesAnObjectAndItsShadow) {
   for (request.frame = 0; request.frame < 40; ++request.frame) {
     request.time_s = request.frame * 0.25;
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
-    ASSERT_TRUE(survey.add(result, request.time_s).ok());
+    ASSERT_TRUE(survey.add(result, request.frame, request.time_s).ok());
     if (request.frame == 20) abeam = result.sonars[1].image.intensity;
   }
   // Abeam: bottom at 10 m below, the box's near face at hypot(14, 8..10) m, its shadow from its far

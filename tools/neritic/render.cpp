@@ -125,7 +125,7 @@ Status write_frame(const fs::path& folder, const FrameResult& result, const Fram
       NERITIC_TRY_STATUS(write_view(folder / name, camera.eyes[e], facts));
     }
   for (const SonarFrame& sonar : result.sonars)
-    NERITIC_TRY_STATUS(write_sonar(folder / sonar.name, sonar, facts));
+    NERITIC_TRY_STATUS(write_sonar(folder / sonar_folder(sonar), sonar, facts));
   return {};
 }
 
@@ -151,9 +151,9 @@ Status dump_graph(const RenderFlags& flags, const Session& session) {
 void warn_of_leftovers(const RenderFlags& flags, bool wrote_track) {
   const fs::path out = flags.out;
   std::error_code ignored;
-  const bool more = fs::is_directory(out / fmt::format("frame_{:04}", flags.frames), ignored);
+  const bool more = fs::is_directory(out / frame_folder(flags.frames), ignored);
   if (!flags.track_only && more)
-    log_warn("{}: frame_{:04} and what follows are an earlier run's", flags.out, flags.frames);
+    log_warn("{}: {} and what follows are an earlier run's", flags.out, frame_folder(flags.frames));
   if (!wrote_track && fs::is_directory(out / "track", ignored))
     log_warn("{}: track is an earlier run's", flags.out);
 }
@@ -221,9 +221,8 @@ Result<std::string> run_render(const RenderFlags& flags) {
     facts = {request.time_s,      session->scene().seed, flags.scene,
              device->info().name, result.passes,         result.frame_ms};
     if (!flags.track_only)
-      NERITIC_TRY_STATUS(
-          write_frame(fs::path(flags.out) / fmt::format("frame_{:04}", i), result, facts));
-    if (flags.frames > 1) NERITIC_TRY_STATUS(survey.add(result, request.time_s));
+      NERITIC_TRY_STATUS(write_frame(fs::path(flags.out) / frame_folder(i), result, facts));
+    if (flags.frames > 1) NERITIC_TRY_STATUS(survey.add(result, i, request.time_s));
     if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result));
     if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
     progress.step();

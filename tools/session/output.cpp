@@ -55,6 +55,15 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
 
 }  // namespace
 
+std::string frame_folder(std::uint32_t number) {
+  return fmt::format("frame_{:04}", number);
+}
+
+std::filesystem::path sonar_folder(const SonarFrame& frame) {
+  const std::filesystem::path sensor = frame.name;
+  return frame.head.empty() ? sensor : sensor / frame.head;
+}
+
 Status write_view(const std::filesystem::path& folder, const ViewImages& view,
                   const FrameFacts& facts) {
   NERITIC_TRY_STATUS(make_folder(folder));
@@ -80,9 +89,8 @@ sonar::SonarFiles sonar_files(const SonarFrame& frame) {
           frame.level, frame.terms.output, frame.label_energy ? &*frame.label_energy : nullptr};
 }
 
-Status write_sonar(const std::filesystem::path& parent, const SonarFrame& frame,
+Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
                    const FrameFacts& facts) {
-  const std::filesystem::path folder = frame.head.empty() ? parent : parent / frame.head;
   NERITIC_TRY_STATUS(make_folder(folder));
   for (std::size_t i = 0; i < frame.sectors.size(); ++i)
     NERITIC_TRY_STATUS(

@@ -1,6 +1,7 @@
 // Writes what a frame gave, in the layout of the file contract: DIR/frame_0000/SENSOR/...
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -18,6 +19,11 @@ struct FrameFacts {
   std::vector<gpu::PassTime> passes;
   double frame_ms = 0.0;
 };
+
+// "frame_0000" of OUT.
+std::string frame_folder(std::uint32_t number);
+// Of a frame's folder: SENSOR, of a sonar with several heads SENSOR/HEAD.
+std::filesystem::path sonar_folder(const SonarFrame& frame);
 
 // depth.npy, normals.npy, labels.npy, instances.npy, meta.json; for a camera color.png and
 // motion.npy.

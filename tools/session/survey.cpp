@@ -4,15 +4,12 @@
 
 #include "engine/core/files.hpp"
 #include "engine/scene/scene_surface.hpp"
-#include "sonar/acoustics.hpp"
 #include "sonar/bathymetry.hpp"
-#include "sonar/bottom_detection.hpp"
 #include "sonar/coco.hpp"
-#include "sonar/echo_trace.hpp"
-#include "sonar/levels.hpp"
+#include "sonar/detection.hpp"
 #include "sonar/mechanical_scan.hpp"
 #include "sonar/point_cloud.hpp"
-#include "sonar/sidescan.hpp"
+#include "sonar/quality.hpp"
 #include "sonar/sidescan_from_image.hpp"
 #include "sonar/terms_json.hpp"
 #include "sonar/terrain_error.hpp"
@@ -20,10 +17,10 @@
 namespace neritic::tools {
 namespace {
 
+namespace fs = std::filesystem;
 using scene::SonarKind;
 
 constexpr double kNadir_rad = radians(5.0);
-constexpr double kFalseAlarms = 1e-7;    // a bin
 constexpr double kStraightDown = 0.966;  // cosine: 15 degrees of roll and pitch
 constexpr std::uint16_t kSeabedClass = scene::kClasses[0].id;
 
@@ -60,21 +57,22 @@ sonar::TrueDepth true_depth(const scene::Scene& scene) {
   };
 }
 
-// What a range row must exceed to be a return: floor_db above the noise's mean, or what noise alone
-// (its power is exponentially distributed) reaches but once in ten million: a constant false alarm
-// rate, whatever the gain does with range. Empty without noise.
 std::vector<float> floor_of(const SonarFrame& frame) {
-  const auto& floor_db = frame.terms.detection.floor_db;
-  const double above = floor_db ? sonar::power_from_db(*floor_db) : -std::log(kFalseAlarms);
-  std::vector<float> floor;
-  for (const float noise : frame.noise_power) floor.push_back(static_cast<float>(above * noise));
-  return floor;
+  return sonar::detection_floor(frame.terms.detection, frame.noise_power);
+}
+
+// As it pings: what a quality level makes of the settings.
+scene::Sonar as_sampled(scene::Sonar sonar) {
+  const Status applied = sonar::apply_quality(sonar);
+  NERITIC_CHECK(applied.ok(), "a sonar that has pinged: {}", applied.error().message);
+  return sonar;
 }
 
 }  // namespace
 
 struct Survey::Record {
-  const scene::Sonar* sonar = nullptr;
+  explicit Record(const scene::Sonar& settings) : sonar(as_sampled(settings)) {}
+  const scene::Sonar sonar;
   std::size_t pings = 0;
   // Of a profiling sonar.
   sonar::PointCloud cloud;
@@ -88,12 +86,12 @@ struct Survey::Record {
   std::unique_ptr<sonar::CocoFile> coco;
 
   bool accumulates() const { return bathymetry || trace || sidescan || scan || coco; }
-  void add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s);
+  void add(const SonarFrame& frame, std::uint32_t number, const Pose& world_from_sonar,
+           double time_s);
   void add_profile(const SonarFrame& frame);
   Status add_picture(const FrameResult& result, const Pose& world_from_sonar, double time_s);
-  Status write(const std::filesystem::path& folder, const scene::Scene& scene,
-               const FrameFacts& facts) const;
-  Status write_bathymetry(const std::filesystem::path& folder, const scene::Scene& scene,
+  Status write(const fs::path& folder, const scene::Scene& scene, const FrameFacts& facts) const;
+  Status write_bathymetry(const fs::path& folder, const scene::Scene& scene,
                           nlohmann::json json) const;
 };
 
@@ -104,47 +102,32 @@ Survey::~Survey() = default;
 Survey::Record& Survey::record_of(const SonarFrame& frame) {
   std::unique_ptr<Record>& slot = records_[frame.name];
   if (slot) return *slot;
-  slot = std::make_unique<Record>();
+  const auto settings = std::ranges::find(scene_.sonars, frame.name, &scene::Sonar::name);
+  NERITIC_CHECK(settings != scene_.sonars.end(), "{} is no sonar of the scene", frame.name);
+  slot = std::make_unique<Record>(*settings);
   Record& r = *slot;
-  for (const scene::Sonar& sonar : scene_.sonars)
-    if (sonar.name == frame.name) r.sonar = &sonar;
   const sonar::Limits& l = frame.grid.limits;
-  const std::uint32_t bins = frame.grid.bins.range;
-  const scene::SonarDetection& detection = frame.terms.detection;
-  const std::vector<float> floor = floor_of(frame);
+  const scene::SonarTerms& terms = frame.terms;
   if (frame.kind == SonarKind::kProfiling)
     r.bathymetry = std::make_unique<sonar::Bathymetry>(chart_cell_m_ > 0.0 ? chart_cell_m_
                                                                            : l.range_max_m / 50.0);
   if (frame.kind == SonarKind::kEchoSounder)
-    r.trace = std::make_unique<sonar::EchoTrace>(sonar::EchoTraceOptions{
-        .n_range = bins,
-        .range_min_m = l.range_min_m,
-        .range_max_m = l.range_max_m,
-        .relative_threshold =
-            detection.threshold.value_or(sonar::EchoTraceOptions{}.relative_threshold),
-        .floor_by_bin = floor});
+    r.trace = std::make_unique<sonar::EchoTrace>(
+        sonar::echo_trace_options(frame.grid, terms.detection, floor_of(frame)));
   if (frame.kind == SonarKind::kSideScan)
-    r.sidescan = std::make_unique<sonar::SidescanRecord>(sonar::SidescanOptions{
-        .n_range = bins,
-        .range_min_m = l.range_min_m,
-        .range_max_m = l.range_max_m,
-        .relative_threshold =
-            detection.threshold.value_or(sonar::SidescanOptions{}.relative_threshold),
-        .floor_by_bin = floor,
-        .tracking_pings = detection.pings,
-        .levels = frame.terms.level.has_value()});
-  if (!r.sonar->picture_camera.empty())
-    r.from_pictures =
-        std::make_unique<sonar::SidescanRecord>(brightness_of(r.sidescan->options()));
+    r.sidescan = std::make_unique<sonar::SidescanRecord>(
+        sonar::sidescan_options(frame.grid, terms, floor_of(frame)));
+  if (!r.sonar.picture_camera.empty())
+    r.from_pictures = std::make_unique<sonar::SidescanRecord>(brightness_of(r.sidescan->options()));
   if (frame.kind == SonarKind::kMechanical)
     r.scan = std::make_unique<sonar::MechanicalScan>(sonar::MechanicalScanOptions{
-        .n_range = bins,
+        .n_range = frame.grid.bins.range,
         .range_min_m = l.range_min_m,
         .range_max_m = l.range_max_m,
-        .beam_rad = std::max(r.sonar->step_rad, l.azimuth_max_rad - l.azimuth_min_rad),
-        .elevation_rad = r.sonar->elevation_rad,
-        .levels = frame.terms.level.has_value()});
-  if (frame.terms.labels.coco) {
+        .beam_rad = std::max(r.sonar.step_rad, l.azimuth_max_rad - l.azimuth_min_rad),
+        .elevation_rad = r.sonar.elevation_rad,
+        .levels = terms.level.has_value()});
+  if (terms.labels.coco) {
     std::map<std::uint16_t, std::string> names = scene_.class_names;
     for (const scene::ClassName& known : scene::kClasses) names.emplace(known.id, known.name);
     r.coco = std::make_unique<sonar::CocoFile>(std::move(names));
@@ -152,11 +135,11 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
   return r;
 }
 
-Status Survey::add(const FrameResult& result, double time_s) {
+Status Survey::add(const FrameResult& result, std::uint32_t number, double time_s) {
   for (const SonarFrame& frame : result.sonars) {
     Record& record = record_of(frame);
-    const Pose world_from_sonar = scene_.world_from(record.sonar->mount, time_s);
-    record.add(frame, world_from_sonar, time_s);
+    const Pose world_from_sonar = scene_.world_from(record.sonar.mount, time_s);
+    record.add(frame, number, world_from_sonar, time_s);
     if (record.from_pictures && frame.head == "port")
       NERITIC_TRY_STATUS(record.add_picture(result, world_from_sonar, time_s));
   }
@@ -168,18 +151,18 @@ Status Survey::Record::add_picture(const FrameResult& result, const Pose& world_
                                    double time_s) {
   const ViewImages* eye = nullptr;
   for (const CameraFrame& camera : result.cameras)
-    if (camera.name == sonar->picture_camera) eye = &camera.eyes.front();
+    if (camera.name == sonar.picture_camera) eye = &camera.eyes.front();
   if (!eye || eye->color.empty() || eye->depth.empty())
     return bad_input(
         "sonar {}: picture_camera: {} found, a camera of the scene with its picture "
         "and depth is accepted",
-        sonar->name, sonar->picture_camera);
+        sonar.name, sonar.picture_camera);
   const Vec3 down = eye->world_from_view.rotation * Vec3(0, 0, -1);
   if (down.y > -kStraightDown)
     return bad_input(
         "sonar {}: picture_camera {}: it looks {:.0f} degrees off straight down, at "
         "most {:.0f} are accepted",
-        sonar->name, sonar->picture_camera, degrees(std::acos(-down.y)),
+        sonar.name, sonar.picture_camera, degrees(std::acos(-down.y)),
         degrees(std::acos(kStraightDown)));
   const sonar::SeabedPicture picture{
       sonar::brightness_of(eye->color),
@@ -190,12 +173,13 @@ Status Survey::Record::add_picture(const FrameResult& result, const Pose& world_
               sonar::sidescan_from_picture(picture, {.n_range = o.n_range,
                                                      .range_min_m = o.range_min_m,
                                                      .range_max_m = o.range_max_m,
-                                                     .beam_along_rad = sonar->azimuth_rad}));
+                                                     .beam_along_rad = sonar.azimuth_rad}));
   from_pictures->append(line.port, line.starboard, world_from_sonar, time_s);
   return {};
 }
 
-void Survey::Record::add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s) {
+void Survey::Record::add(const SonarFrame& frame, std::uint32_t number,
+                         const Pose& world_from_sonar, double time_s) {
   if (frame.head != "port") ++pings;
   const std::vector<float>& heard = frame.image.intensity;
   if (bathymetry) add_profile(frame);
@@ -205,16 +189,13 @@ void Survey::Record::add(const SonarFrame& frame, const Pose& world_from_sonar, 
   if (sidescan && frame.head == "starboard")
     sidescan->append(port.image.intensity, heard, world_from_sonar, time_s);
   if (coco && frame.label_energy)
-    coco->add(fmt::format("frame_{:04}/{}/sonar.png", pings - 1, frame.name), *frame.label_energy);
+    coco->add((fs::path(frame_folder(number)) / sonar_folder(frame) / "sonar.png").generic_string(),
+              *frame.label_energy);
 }
 
 void Survey::Record::add_profile(const SonarFrame& frame) {
-  const scene::SonarDetection& settings = frame.terms.detection;
-  sonar::BottomDetectionOptions options;
-  options.relative_threshold = settings.threshold.value_or(options.relative_threshold);
-  options.least_quality = settings.quality;
-  const auto heard = sonar::above_floor(frame.image.intensity, floor_of(frame));
-  const auto detections = sonar::detect_bottom(frame.grid, heard, options);
+  const auto detections = sonar::detect_bottom(frame.grid, frame.image.intensity,
+                                               frame.terms.detection, floor_of(frame));
   sonar::append(cloud, frame.grid, detections, frame.world_from_head);
   for (const sonar::BottomDetection& d : detections)
     bathymetry->add(frame.world_from_head * sonar::detection_point(frame.grid, d));
@@ -223,8 +204,8 @@ void Survey::Record::add_profile(const SonarFrame& frame) {
     nadir.push_back(frame.world_from_head * sonar::detection_point(frame.grid, d));
 }
 
-Status Survey::Record::write_bathymetry(const std::filesystem::path& folder,
-                                        const scene::Scene& scene, nlohmann::json json) const {
+Status Survey::Record::write_bathymetry(const fs::path& folder, const scene::Scene& scene,
+                                        nlohmann::json json) const {
   NERITIC_TRY_STATUS(sonar::write_cloud_npy(folder / "cloud.npy", cloud));
   NERITIC_TRY_STATUS(sonar::write_pcd(folder / "cloud.pcd", cloud));
   NERITIC_TRY(const sonar::BathymetryGrid grid, bathymetry->grid());
@@ -236,14 +217,14 @@ Status Survey::Record::write_bathymetry(const std::filesystem::path& folder,
        sonar::to_json(grid_error(grid, truth, sonar::CompareAt::kCellCentre))},
       {"grid_at_soundings", sonar::to_json(grid_error(grid, truth, sonar::CompareAt::kCentroid))},
       {"nadir_soundings", sonar::to_json(sonar::point_error(nadir, truth))},
-      {"range_bin_m", (sonar->range_max_m - sonar->range_min_m) / sonar->bins_range}};
+      {"range_bin_m", (sonar.range_max_m - sonar.range_min_m) / sonar.bins_range}};
   return sonar::write_bathymetry(folder, grid, json);
 }
 
-Status Survey::Record::write(const std::filesystem::path& folder, const scene::Scene& scene,
+Status Survey::Record::write(const fs::path& folder, const scene::Scene& scene,
                              const FrameFacts& facts) const {
   nlohmann::json json = facts_json(facts, pings);
-  json["sensor"] = sonar::sensor_json(*sonar);
+  json["sensor"] = sonar::sensor_json(sonar);
   NERITIC_TRY_STATUS(make_folder(folder));
   if (bathymetry) NERITIC_TRY_STATUS(write_bathymetry(folder, scene, json));
   if (trace) NERITIC_TRY_STATUS(sonar::write_echo_trace(folder, *trace, json));
@@ -259,7 +240,7 @@ Status Survey::Record::write(const std::filesystem::path& folder, const scene::S
   return {};
 }
 
-Result<bool> Survey::write(const std::filesystem::path& out, const FrameFacts& facts) const {
+Result<bool> Survey::write(const fs::path& out, const FrameFacts& facts) const {
   bool wrote = false;
   for (const auto& [name, record] : records_) {
     if (!record->accumulates()) continue;

@@ -3,6 +3,7 @@
 // of a mechanical scanner, COCO boxes. Fed frame by frame; written once. One thread.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -21,8 +22,9 @@ class Survey {
   explicit Survey(const scene::Scene& scene, double chart_cell_m = 0.0);
   ~Survey();
 
-  // kBadInput where a side-scan's picture camera is not in the frame or does not suit it.
-  Status add(const FrameResult& result, double time_s);
+  // number: of the frame, as its folder is named (frame_folder). kBadInput where a side-scan's
+  // picture camera is not in the frame or does not suit it.
+  Status add(const FrameResult& result, std::uint32_t number, double time_s);
   // OUT/track/SONAR/ for each sonar that has something to say of a track; whether any had.
   Result<bool> write(const std::filesystem::path& out, const FrameFacts& facts) const;
 
