@@ -121,6 +121,84 @@ TEST_F(SonarFolder, MakesFramesAgainWhoseImagesAreNewer) {
   EXPECT_EQ(run_facts()["made"], 1);
 }
 
+TEST_F(SonarFolder, FilesOfTheSameNamesElsewhereAreOtherFiles) {
+  write_frames(3);
+  expect_done(words());
+  const std::string before = read_text(result(1) / "sonar.npy").value();
+  // The same names, sizes and times in another tree, but other depths.
+  fs::rename(folder_ / "d", folder_ / "first");
+  fs::create_directory(folder_ / "d");
+  const std::vector<float> depth(kWidth * kHeight, 3.0f);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(write_npy(depth_file(i), std::span<const float>(depth), {kHeight, kWidth}).ok());
+    fs::last_write_time(depth_file(i),
+                        fs::last_write_time(folder_ / "first" / depth_file(i).filename()));
+  }
+  fs::rename(folder_ / "d", folder_ / "second");
+  Words all = words();
+  all[2] = (folder_ / "second").string();
+  expect_done(all);
+  EXPECT_EQ(run_facts()["made"], 3);
+  EXPECT_NE(read_text(result(1) / "sonar.npy").value(), before);
+  expect_done(all);
+  EXPECT_EQ(run_facts()["made"], 0);
+}
+
+TEST_F(SonarFolder, MakesFramesAgainThatAreOlderButNotTheSame) {
+  write_frames(3);
+  expect_done(words());
+  fs::last_write_time(depth_file(1), fs::last_write_time(depth_file(1)) - std::chrono::hours(5));
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 1);
+}
+
+TEST_F(SonarFolder, AResultGoesWithTheImageThatCannotBeReadAnyMore) {
+  write_frames(3);
+  expect_done(words());
+  ASSERT_TRUE(write_text(depth_file(1), "junk").ok());
+  fs::remove(normal_file(2));
+  expect_done(words());
+  EXPECT_EQ(run_facts()["skipped"], 2);
+  EXPECT_TRUE(fs::exists(result(0) / "sonar.json"));
+  for (const int i : {1, 2}) EXPECT_FALSE(fs::exists(result(i))) << i;
+}
+
+TEST_F(SonarFolder, ADamagedResultIsMadeAgain) {
+  write_frames(4);
+  expect_done(words());
+  const std::string whole = read_text(result(1) / "sonar.npy").value();
+  const std::string facts = read_text(result(1) / "sonar.json").value();
+  ASSERT_TRUE(write_text(result(0) / "sonar.json", "").ok());
+  ASSERT_TRUE(write_text(result(1) / "sonar.json", facts.substr(0, facts.size() / 2)).ok());
+  fs::remove(result(2) / "sonar.npy");
+  fs::remove(result(3) / "sonar.json");
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 4);
+  EXPECT_EQ(read_text(result(1) / "sonar.npy").value(), whole);
+}
+
+TEST_F(SonarFolder, EachFrameHasNoiseOfItsOwn) {
+  if (!test::have_device()) GTEST_SKIP() << "no Vulkan device";
+  const std::vector<float> depth(kWidth * kHeight, 2.0f);
+  for (const char* frame : {"frame_0", "frame_1"}) {
+    ASSERT_TRUE(make_folder(folder_ / frame / "camera").ok());
+    ASSERT_TRUE(write_npy(folder_ / frame / "camera" / "depth.npy", std::span<const float>(depth),
+                          {kHeight, kWidth})
+                    .ok());
+  }
+  ASSERT_TRUE(write_text(folder_ / "sensor.toml",
+                         "range_m = [1, 4]\nazimuth_deg = 40\nelevation_deg = 20\n"
+                         "bins = [32, 16, 16]\nlevel = {}\nnoise = { level_db = 90 }\n")
+                  .ok());
+  expect_done({"imaging", "--depth", (folder_ / "frame_*" / "camera" / "depth.npy").string(),
+               "--intrinsics", "20,20,16,12", "--sensor", (folder_ / "sensor.toml").string(),
+               "--out", (folder_ / "out").string()});
+  const auto a = numbers_of(folder_ / "out" / "0" / "sonar.npy"),
+             b = numbers_of(folder_ / "out" / "1" / "sonar.npy");
+  ASSERT_EQ(a.size(), 32u * 16u);
+  EXPECT_NE(a, b);
+}
+
 TEST_F(SonarFolder, OtherSettingsAreRefusedUnlessToOverwrite) {
   write_frames(3);
   expect_done(words());

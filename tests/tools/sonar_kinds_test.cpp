@@ -243,6 +243,41 @@ output = { bits = 8 }
   EXPECT_EQ(image(all + Words{"--bins", "60,30,20"}).size(), 60u * 30u);
 }
 
+// Half the view is empty: what is heard there is noise, and noise is no return.
+TEST_F(Wall, NoiseIsNoReturnAndDetectionSaysWhatIs) {
+  std::vector<float> half(kWidth * kHeight, static_cast<float>(kDepth_m));
+  for (std::uint32_t i = 0; i < half.size(); ++i)
+    if (i % kWidth < kWidth / 2) half[i] = std::numeric_limits<float>::infinity();
+  const std::vector<float> nothing(half.size(), std::numeric_limits<float>::infinity());
+  ASSERT_TRUE(write_npy(folder_ / "half.npy", half, {kHeight, kWidth}).ok());
+  ASSERT_TRUE(write_npy(folder_ / "none.npy", nothing, {kHeight, kWidth}).ok());
+  const std::string terms =
+      "range_m = [1, 4]\nlevel = { source_level_db = 200 }\nnoise = { level_db = 60 }\n";
+  const auto points = [&](const std::string& detection) {
+    const std::string device =
+        sensor("kind = \"profiling\"\nazimuth_deg = 40\nelevation_deg = 1\nbins = [300, 64, 8]\n" +
+               terms + detection);
+    image(Words{"profiling", "--out", file("out"), "--sensor", device, "--depth", file("half.npy"),
+                "--normals", file("z.npy"), "--intrinsics", "60,60,32,24"});
+    return numbers_of(folder_ / "out" / "cloud.npy");
+  };
+  for (const char* detection : {"", "detection = { threshold = 0.9, floor_db = 40 }\n"}) {
+    const auto cloud = points(detection);
+    EXPECT_NEAR(double(cloud.size()) / 3, 32.0, 1.0) << detection;
+    for (std::size_t i = 0; i < cloud.size(); i += 3) EXPECT_NEAR(cloud[i + 2], -kDepth_m, 0.03);
+  }
+  EXPECT_TRUE(points("detection = { floor_db = 120 }\n").empty());
+  const auto first_return = [&](const char* depth) {
+    image(
+        Words{"echosounder", "--out", file("out"), "--sensor",
+              sensor("kind = \"echosounder\"\nsemi_angle_deg = 10\nbins = [300, 32, 32]\n" + terms),
+              "--depth", file(depth), "--normals", file("z.npy"), "--intrinsics", "60,60,32,24"});
+    return facts()["echo"]["first_return_m"];
+  };
+  EXPECT_NEAR(first_return("half.npy").get<double>(), kDepth_m, 0.02);
+  EXPECT_TRUE(first_return("none.npy").is_null());
+}
+
 TEST_F(Wall, WhatImagesCannotGiveIsRefusedByName) {
   const std::string base = "kind = \"imaging\"\nbandwidth_hz = 30e3\n";
   const auto with = [&](const std::string& kind, const std::string& text) {
@@ -250,13 +285,16 @@ TEST_F(Wall, WhatImagesCannotGiveIsRefusedByName) {
   };
   expect_refused(with("imaging", base + "ghosts = { surface = true }\n"), "ghosts");
   expect_refused(with("imaging", base + "motion = { within_ping = true }\n"), "motion");
-  expect_refused(with("imaging", base + "labels = { coco = true }\n"), "coco");
+  expect_refused(with("imaging", base + "labels = { energy = true, coco = true }\n"), "coco");
   expect_refused(with("imaging", base + "position_m = [0, 1, 0]\n"), "position_m");
   expect_refused(with("imaging", base + "rangem = [0, 1]\n"), "range_m");
   expect_refused(with("profiling", base), "kind");
   expect_refused(with("imaging", "kind = \"mechanical\"\n"), "mechanical");
   expect_refused(with("imaging", base) + Words{"--method", "reference"}, "--method");
   expect_refused(with("imaging", base) + Words{"--gather", "published"}, "--gather");
+  expect_refused(
+      with("imaging", base + "labels = { energy = true }\n") + Words{"--gather", "nearest"},
+      "labels.energy");
   expect_refused(with("imaging", base) + Words{"--azimuth", "-10,30"}, "--azimuth");
   expect_refused(command("mechanical", images()), "mechanical");
   expect_refused(command("echosounder", images() + Words{"--azimuth", "20", "--elevation", "10"}),

@@ -8,7 +8,9 @@ namespace {
 
 Status run_one(const SonarJob& job) {
   const SonarFlags& flags = job.flags;
-  const sonar::FrameFiles files{"", {flags.depth, flags.normals, flags.labels, flags.picture}};
+  const std::filesystem::path lead = flags.method == "image" ? flags.picture : flags.depth;
+  const sonar::FrameFiles files{sonar::frame_names(std::span(&lead, 1)).front(),
+                                {flags.depth, flags.normals, flags.labels, flags.picture}};
   SonarNotes notes;
   if (flags.method == "image") {
     NERITIC_TRY(PictureLine line, load_picture_line(job, files, notes));

@@ -85,12 +85,14 @@ struct Run {
   std::size_t workers;
 };
 
-// What is wrong with one frame's files leaves it out; anything else ends the run.
+// What is wrong with one frame's files leaves it out, and what an earlier run made of it goes;
+// anything else ends the run.
 template <class T>
 Result<std::optional<T>> or_skip(const Run& run, std::size_t frame, Result<T> made) {
   if (made.ok()) return std::optional<T>(std::move(*made));
   if (made.error().code != ErrorCode::kBadInput) return made.error();
   run.skipped.add(frame, made.error().message);
+  NERITIC_TRY_STATUS(drop_result(run.job.flags.out, run.frames[frame].name));
   return std::optional<T>();
 }
 
@@ -104,7 +106,10 @@ Status run_frames(const Run& run, const M& maker) {
     const FrameFiles& frame = run.frames[run.todo[i]];
     if (const Status all = complete(run.job, frame); !all.ok())
       return or_skip(run, run.todo[i], Result<typename M::Loaded>(all.error()));
-    return or_skip(run, run.todo[i], maker.load(frame));
+    const nlohmann::json stamps = file_stamps(frame);  // before they are read
+    Result<typename M::Loaded> loaded = maker.load(frame);
+    if (loaded.ok()) loaded->facts["files"] = stamps;
+    return or_skip(run, run.todo[i], std::move(loaded));
   };
   steps.process = [&](std::size_t i, typename M::Loaded loaded) {
     return or_skip(run, run.todo[i], maker.hear(std::move(loaded)));
@@ -113,7 +118,6 @@ Status run_frames(const Run& run, const M& maker) {
     if (!heard) return {};
     const FrameFiles& frame = run.frames[run.todo[i]];
     heard->facts["settings"] = run.job.settings;
-    heard->facts["files"] = file_names(frame);
     return write_whole(run.job.flags.out, frame.name, [&](const fs::path& folder) {
       return maker.write(folder, std::move(*heard));
     });

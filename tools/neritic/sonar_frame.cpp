@@ -4,7 +4,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"
-#include "sonar/echo_trace.hpp"
+#include "sonar/detection.hpp"
 #include "sonar/point_cloud.hpp"
 #include "sonar/terms_json.hpp"
 #include "sonar/write_sonar.hpp"
@@ -44,11 +44,10 @@ nlohmann::json facts_of(const SonarJob& job, const sonar::FrameFiles& files,
   return json;
 }
 
-// Noise is drawn anew for each image, and for the same image the same.
+// Noise is drawn anew for each frame, and for the same frame the same.
 std::uint32_t ping_number(const sonar::FrameFiles& files) {
-  const std::string name = files.paths[kDepthGroup].filename().string();
   Hash64 hash;
-  hash.add_bytes(name.data(), name.size());
+  hash.add_bytes(files.name.data(), files.name.size());
   return static_cast<std::uint32_t>(hash.value() >> 32);
 }
 
@@ -62,17 +61,18 @@ bool same_shape(const sonar::SonarInput& a, const sonar::SonarInput& b) {
 Status add_findings(const SonarJob& job, const fs::path& folder, const sonar::SonarImage& image,
                     nlohmann::json& facts) {
   const sonar::BeamGrid& grid = job.head.beams;
+  const scene::SonarDetection& detection = job.sonar.terms.detection;
   if (job.sonar.kind == scene::SonarKind::kProfiling) {
     sonar::PointCloud cloud;
-    sonar::append(cloud, grid, sonar::detect_bottom(grid, image.intensity), Pose{});
+    sonar::append(cloud, grid,
+                  sonar::detect_bottom(grid, image.intensity, detection, job.detection_floor),
+                  Pose{});
     NERITIC_TRY_STATUS(sonar::write_cloud_npy(folder / "cloud.npy", cloud));
     NERITIC_TRY_STATUS(sonar::write_pcd(folder / "cloud.pcd", cloud));
     facts["detections"] = {{"points", cloud.size()}, {"axes", "x starboard, y up, z backwards"}};
   }
   if (job.sonar.kind == scene::SonarKind::kEchoSounder) {
-    const sonar::Limits& l = grid.limits;
-    sonar::EchoTrace trace(
-        {.n_range = grid.bins.range, .range_min_m = l.range_min_m, .range_max_m = l.range_max_m});
+    sonar::EchoTrace trace(sonar::echo_trace_options(grid, detection, job.detection_floor));
     trace.append(image.intensity, 0.0, 0.0);
     const sonar::EchoPing& ping = trace.pings().front();  // NaN, no return, becomes null
     facts["echo"] = {{"first_return_m", ping.first_m}, {"strongest_return_m", ping.strongest_m}};

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "engine/scene/sonar_file.hpp"
+#include "sonar/detection.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/session/session.hpp"
 
@@ -232,8 +233,16 @@ Result<SonarJob> plan_job(const SonarFlags& flags) {
   if (job.gather == sonar::Gather::kPublished && !job.plain())
     return bad_input("--gather: published found, plane or nearest is accepted for {}",
                      flags.sensor.empty() ? "kind " + flags.kind : "a sensor with terms");
+  if (job.gather == sonar::Gather::kNearest && job.sonar.terms.labels.energy)
+    return bad_input(
+        "--gather: nearest found, plane is accepted beside labels.energy: shadow needs a beam's "
+        "footprint");
   NERITIC_TRY(job.options, options_of(flags));
   NERITIC_TRY(job.state, state_of(job));
+  if (job.sonar.terms.noise)
+    job.detection_floor =
+        sonar::detection_floor(job.sonar.terms.detection,
+                               sonar::noise_by_row(sonar::ping_of(job.sonar, job.head, job.state)));
   NERITIC_TRY(job.settings, settings_of(job));
   return job;
 }

@@ -47,6 +47,12 @@ std::string pair(double from, double to) {
   return text(from) + "," + text(to);
 }
 
+// Threshold, floor, quality; "-" where the kind's own holds.
+std::string detection_text(const scene::SonarDetection& d) {
+  const auto or_own = [](const auto& value) { return value ? text(*value) : std::string("-"); };
+  return or_own(d.threshold) + "," + or_own(d.floor_db) + "," + text(d.quality);
+}
+
 }  // namespace
 
 Result<nlohmann::json> settings_of(const SonarJob& job) {
@@ -77,6 +83,8 @@ Result<nlohmann::json> settings_of(const SonarJob& job) {
     hash.add_bytes(text.data(), text.size());
     json["intrinsics"] = std::filesystem::path(f.intrinsics).filename().string() + " " + hash.hex();
   }
+  if (job.sonar.terms.detection != scene::SonarDetection{})
+    json["detection"] = detection_text(job.sonar.terms.detection);
   if (f.method == "gpu") json["gather"] = sonar::name_of(job.gather);
   if (f.method == "image") {
     json["altitude"] = f.altitude.empty() ? "from depth images" : f.altitude;

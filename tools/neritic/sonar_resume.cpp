@@ -1,5 +1,7 @@
 #include "tools/neritic/sonar_resume.hpp"
 
+#include <algorithm>
+
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
@@ -13,14 +15,52 @@ using sonar::FrameFiles;
 
 constexpr const char* kFacts = "sonar.json";
 
-// The result of an earlier run over a folder; null where there is none.
-json earlier_result(const fs::path& folder) {
+// What a result may hold.
+constexpr const char* kResultFiles[] = {kFacts,
+                                        "sonar.npy",
+                                        "sonar_labels.npy",
+                                        "sonar_instances.npy",
+                                        "sonar_counts.npy",
+                                        "sonar_label_fraction.npy",
+                                        "sonar.png",
+                                        "cloud.npy",
+                                        "cloud.pcd"};
+
+json facts_in(const fs::path& folder) {
   const auto text = read_text(folder / kFacts);
   if (!text.ok()) return nullptr;
   const auto facts = parse_json(*text);
-  const bool ours = facts.ok() && facts->is_object() && facts->contains("settings") &&
-                    (*facts)["settings"].is_object();
-  return ours ? *facts : json(nullptr);
+  return facts.ok() ? *facts : json(nullptr);
+}
+
+bool is_result(const json& facts) {
+  return facts.is_object() && facts.contains("settings") && facts["settings"].is_object();
+}
+
+// The facts of a whole result of an earlier run over a folder; null where there is none.
+json earlier_result(const fs::path& folder) {
+  json facts = facts_in(folder);
+  std::error_code error;
+  return is_result(facts) && fs::exists(folder / "sonar.npy", error) ? facts : json(nullptr);
+}
+
+// Whether the folder holds nothing, a result, or what is left of one: facts that cannot be read,
+// and files of a result's names alone.
+bool may_replace(const fs::path& folder) {
+  const json facts = facts_in(folder);
+  if (!facts.is_null()) return is_result(facts);
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (std::ranges::find(kResultFiles, name) == std::end(kResultFiles)) return false;
+  }
+  return true;
+}
+
+Status check_replaceable(const fs::path& folder) {
+  if (may_replace(folder)) return {};
+  return bad_input("{}: files of something else found there, another --out is accepted",
+                   folder.string());
 }
 
 Status same_settings(const json& found, const json& asked, const fs::path& path) {
@@ -37,12 +77,17 @@ Status same_settings(const json& found, const json& asked, const fs::path& path)
                    path.string(), key, in(found, key), in(asked, key));
 }
 
-bool newer_than(const FrameFiles& frame, const fs::path& result) {
+json stamp_of(const fs::path& path) {
+  if (path.empty()) return nullptr;
   std::error_code error;
-  const auto made = fs::last_write_time(result, error);
-  for (const fs::path& path : frame.paths)
-    if (!path.empty() && fs::last_write_time(path, error) > made) return true;
-  return false;
+  fs::path whole = fs::canonical(path, error);
+  if (error) whole = fs::absolute(path, error);
+  const auto bytes = fs::file_size(path, error);
+  const auto changed = fs::last_write_time(path, error).time_since_epoch();
+  // As text: however a file writes numbers, these come back as they are.
+  return {{"path", whole.string()},
+          {"bytes", fmt::format("{}", bytes)},
+          {"changed", fmt::format("{}", changed.count())}};
 }
 
 std::string quoted(const std::string& text) {
@@ -53,10 +98,10 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-json file_names(const FrameFiles& frame) {
-  json names = json::array();
-  for (const fs::path& path : frame.paths) names.push_back(path.filename().string());
-  return names;
+json file_stamps(const FrameFiles& frame) {
+  json stamps = json::array();
+  for (const fs::path& path : frame.paths) stamps.push_back(stamp_of(path));
+  return stamps;
 }
 
 Result<std::vector<std::size_t>> frames_to_do(const SonarJob& job,
@@ -64,11 +109,11 @@ Result<std::vector<std::size_t>> frames_to_do(const SonarJob& job,
   std::vector<std::size_t> todo;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const fs::path folder = job.flags.out / frames[i].name;
+    NERITIC_TRY_STATUS(check_replaceable(folder));
     const json facts = job.flags.overwrite ? json(nullptr) : earlier_result(folder);
     if (!facts.is_null())
       NERITIC_TRY_STATUS(same_settings(facts["settings"], job.settings, folder / kFacts));
-    const bool made = !facts.is_null() && facts.value("files", json()) == file_names(frames[i]) &&
-                      !newer_than(frames[i], folder / kFacts);
+    const bool made = !facts.is_null() && facts.value("files", json()) == file_stamps(frames[i]);
     if (!made) todo.push_back(i);
   }
   return todo;
@@ -77,16 +122,24 @@ Result<std::vector<std::size_t>> frames_to_do(const SonarJob& job,
 Status write_whole(const fs::path& out, const std::string& name,
                    const std::function<Status(const fs::path&)>& write) {
   const fs::path folder = out / name, partial = out / ("." + name + ".partial");
+  NERITIC_TRY_STATUS(check_replaceable(folder));
   std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_empty(folder, error) && earlier_result(folder).is_null())
-    return bad_input("{}: files of something else found there, another --out is accepted",
-                     folder.string());
   fs::remove_all(partial, error);  // of a run that was stopped
   NERITIC_TRY_STATUS(write(partial));
   fs::remove_all(folder, error);
   fs::rename(partial, folder, error);
   if (error)
     return failure(ErrorCode::kIo, "{}: cannot be written: {}", folder.string(), error.message());
+  return {};
+}
+
+Status drop_result(const fs::path& out, const std::string& name) {
+  const fs::path folder = out / name;
+  if (!may_replace(folder)) return {};
+  std::error_code error;
+  fs::remove_all(folder, error);
+  if (error)
+    return failure(ErrorCode::kIo, "{}: cannot be removed: {}", folder.string(), error.message());
   return {};
 }
 

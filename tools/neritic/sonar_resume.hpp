@@ -10,19 +10,24 @@
 
 namespace neritic::tools {
 
-// The names of a frame's images, as sonar.json tells them.
-nlohmann::json file_names(const sonar::FrameFiles& frame);
+// What tells a frame's images from others, for sonar.json: of each its whole path, links followed,
+// its size and when it was last changed. Of the files as they are now.
+nlohmann::json file_stamps(const sonar::FrameFiles& frame);
 
-// The numbers of the frames without a result of the same settings and files, or whose images are
-// newer; with --overwrite of all. kBadInput where a result has other settings, and names one.
+// The numbers of the frames without a result of the same settings and the same files as they are
+// now; with --overwrite of all. A result that cannot be read is none. kBadInput where a result has
+// other settings, or something else lies in its place, and names one.
 Result<std::vector<std::size_t>> frames_to_do(const SonarJob& job,
                                               const std::vector<sonar::FrameFiles>& frames);
 
 // Runs write on a hidden folder beside OUT/name, which then takes its place. kBadInput where a
-// folder of that name is there that holds no earlier result: nobody's files are removed. Any
-// thread.
+// folder of that name is there that holds something else than a result: nobody's files are removed.
+// Any thread.
 Status write_whole(const std::filesystem::path& out, const std::string& name,
                    const std::function<Status(const std::filesystem::path&)>& write);
+// Removes an earlier result of that name, if there is one: of a frame that can no longer be made.
+// Anything else stays. Any thread.
+Status drop_result(const std::filesystem::path& out, const std::string& name);
 
 // Frames left out, with their reasons. Any thread.
 class SkippedFrames {
