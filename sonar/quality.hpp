@@ -1,6 +1,6 @@
 // How finely a sonar is sampled for the error that a user accepts. Three named levels a kind, each
-// the cheapest setting that `neritic tradeoff sonar` measured under 5, 2 and 1 % (sonar/README.md,
-// section Trade: scene, machine and what the error is). Pure functions; any thread.
+// the cheapest setting that `neritic tradeoff sonar` measured under 5, 2 and 1 % (sonar/TRADE.md:
+// scene, machine and what the error is). Pure functions; any thread.
 //
 // A level is kept as densities, so that it holds for sensors of other apertures and beams: gathered
 // columns a half-power width of the azimuth pattern, gathered rows a resolution cell of range

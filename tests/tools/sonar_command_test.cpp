@@ -29,7 +29,7 @@ Status sonar(std::vector<std::string> words) {
   return {};
 }
 
-// The data sets' conventions, as sonar/README.md lists them. Paths are below shared/data/rgbd.
+// The data sets' conventions, as sonar/OFFLINE.md lists them. Paths are below shared/data/rgbd.
 struct DataSet {
   const char* name;
   std::vector<std::string> words;
