@@ -123,6 +123,25 @@ double BeamPattern::two_way_power(double theta_rad) const {
   return a * a * a * a;
 }
 
+double BeamPattern::half_power_width_rad() const {
+  if (kind_ != BeamKind::kTable)
+    return 2.0 * std::asin(std::min(1.0, half_power_u(kind_) / length_));
+  const double half_db = interpolate(table_, 0.0) - 10.0 * std::log10(2.0);
+  // To one side of the axis, from row to row outwards, until the line between two falls through.
+  const auto edge = [&](double side) {
+    TableRow inner{0.0, interpolate(table_, 0.0)};
+    for (std::size_t i = 0; i < table_.size(); ++i) {
+      const TableRow& outer = side > 0.0 ? table_[i] : table_[table_.size() - 1 - i];
+      if (!(outer.x * side > 0.0)) continue;
+      if (outer.y <= half_db)
+        return std::abs(inner.x + (outer.x - inner.x) * (inner.y - half_db) / (inner.y - outer.y));
+      inner = outer;
+    }
+    return std::abs(inner.x);
+  };
+  return edge(1.0) + edge(-1.0);
+}
+
 double BeamPattern::second_null_rad() const {
   if (kind_ == BeamKind::kTable) return std::max(-table_.front().x, table_.back().x);
   // In u: a line's is 2; Hamming's main lobe ends at 2, its first side lobe at 2.598; a piston's is

@@ -40,6 +40,9 @@ class BeamPattern {
   double two_way_power(double theta_rad) const;
 
   BeamKind kind() const { return kind_; }
+  // Both sides together, how far off the axis one way keeps half the power that it has on it; of a
+  // table at most to its ends.
+  double half_power_width_rad() const;
   // Off the axis, where the first side lobe ends: the second null of a closed form, at most pi/2; a
   // table's farthest angle.
   double second_null_rad() const;

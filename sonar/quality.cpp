@@ -69,15 +69,25 @@ Result<const QualityLevel*> level_of(const scene::Sonar& sonar) {
                    sonar.name, sonar.max_error, levels.back().error, scene::name_of(sonar.kind));
 }
 
-std::uint32_t columns_for(const scene::Sonar& sonar, const QualityLevel& level) {
-  const auto& pattern = sonar.terms.beam.azimuth;
-  if (!pattern) return static_cast<std::uint32_t>(std::ceil(level.columns));
-  const double beam_rad = sonar.kind == SonarKind::kMechanical ? sonar.step_rad
-                          : sonar.kind == SonarKind::kSideScan
-                              ? sonar.azimuth_rad
-                              : sonar.azimuth_rad / sonar.bins_azimuth;
-  const double columns = level.columns * beam_rad / pattern->half_power_rad;
-  return static_cast<std::uint32_t>(std::max(1.0, std::ceil(columns - 1e-6)));
+Result<double> half_power_width_rad(const scene::Sonar& sonar) {
+  const scene::SonarPattern& pattern = *sonar.terms.beam.azimuth;
+  if (pattern.shape != scene::SonarPattern::Shape::kTable) return pattern.half_power_rad;
+  const auto patterns = head_patterns(sonar);
+  if (!patterns.ok()) return bad_input("sonar {}: beam: {}", sonar.name, patterns.error().message);
+  return patterns->azimuth->half_power_width_rad();
+}
+
+Result<std::uint32_t> columns_for(const scene::Sonar& sonar, const QualityLevel& level) {
+  double columns = level.columns;
+  if (sonar.kind != SonarKind::kEchoSounder && sonar.terms.beam.azimuth) {
+    const double beam_rad = sonar.kind == SonarKind::kMechanical ? sonar.step_rad
+                            : sonar.kind == SonarKind::kSideScan
+                                ? sonar.azimuth_rad
+                                : sonar.azimuth_rad / sonar.bins_azimuth;
+    NERITIC_TRY(const double width_rad, half_power_width_rad(sonar));
+    columns *= beam_rad / width_rad;
+  }
+  return static_cast<std::uint32_t>(std::clamp(std::ceil(columns - 1e-6), 1.0, double{kMostBins}));
 }
 
 }  // namespace
@@ -118,10 +128,8 @@ Status apply_quality(scene::Sonar& sonar) {
   const double rows = rows_are_counts(sonar.kind) ? level->rows : level->rows * span_m / cell_m;
   sonar.bins_elevation =
       static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMostBins}));
-  if (sonar.kind == SonarKind::kEchoSounder)
-    sonar.bins_azimuth = columns_for(sonar, *level);
-  else
-    sonar.terms.beam.samples = columns_for(sonar, *level);
+  NERITIC_TRY(const std::uint32_t columns, columns_for(sonar, *level));
+  (sonar.kind == SonarKind::kEchoSounder ? sonar.bins_azimuth : sonar.terms.beam.samples) = columns;
   return {};
 }
 

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "engine/scene/sonar_file.hpp"
+#include "sonar/beam_pattern.hpp"
 #include "sonar/head.hpp"
 #include "tests/support/support.hpp"
 
@@ -80,6 +82,62 @@ TEST(SonarQuality, ALevelWinsAndASecondTimeChangesNothing) {
     const scene::Sonar once = sonar;
     ASSERT_TRUE(apply_quality(sonar).ok());
     EXPECT_TRUE(scene::same_settings(once, sonar)) << scene::name_of(kind);
+  }
+}
+
+// A one-way pattern of that half-power width as a table of decibels, by its closed form.
+scene::SonarPattern table_of(double half_power_rad) {
+  const auto line = BeamPattern::of_half_power_width(BeamKind::kSinc, half_power_rad);
+  EXPECT_TRUE(line.ok());
+  scene::SonarPattern pattern{.shape = scene::SonarPattern::Shape::kTable, .table = {}};
+  for (int i = 0; i <= 40; ++i) {
+    const double theta = i / 40.0 * half_power_rad;
+    pattern.table.push_back({theta, 20.0 * std::log10(line->amplitude(theta))});
+  }
+  return pattern;
+}
+
+TEST(SonarQuality, ASecondTimeChangesNothingWhateverThePattern) {
+  using Shape = scene::SonarPattern::Shape;
+  for (const SonarKind kind : kKinds)
+    for (const QualityLevel& level : quality_levels(kind))
+      for (const double width_deg : {0.3, 2.0, 40.0})
+        for (const Shape shape :
+             {Shape::kUniform, Shape::kHamming, Shape::kPiston, Shape::kTable}) {
+          scene::Sonar sonar = sonar_of(kind);
+          sonar.quality = level.name;
+          sonar.terms.beam.azimuth =
+              shape == Shape::kTable
+                  ? table_of(radians(width_deg))
+                  : scene::SonarPattern{
+                        .shape = shape, .half_power_rad = radians(width_deg), .table = {}};
+          ASSERT_TRUE(apply_quality(sonar).ok());
+          const scene::Sonar once = sonar;
+          ASSERT_TRUE(apply_quality(sonar).ok());
+          EXPECT_TRUE(scene::same_settings(once, sonar))
+              << scene::name_of(kind) << " " << level.name << " " << width_deg;
+        }
+}
+
+TEST(SonarQuality, AConesColumnsAreThoseOfItsKindWhicheverPlaneNamesThePattern) {
+  for (const QualityLevel& level : quality_levels(SonarKind::kEchoSounder)) {
+    scene::Sonar sonar = sonar_of(SonarKind::kEchoSounder);
+    sonar.quality = level.name;
+    sonar.terms.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(12.0)};
+    ASSERT_TRUE(apply_quality(sonar).ok());
+    EXPECT_EQ(sonar.bins_azimuth, static_cast<std::uint32_t>(level.columns));
+  }
+}
+
+TEST(SonarQuality, ATablesOwnWidthDecidesItsColumns) {
+  for (const double width_deg : {0.2, 2.0}) {
+    scene::Sonar closed = sonar_of(SonarKind::kMechanical), table = closed;
+    closed.terms.beam.azimuth->half_power_rad = radians(width_deg);
+    table.terms.beam.azimuth = table_of(radians(width_deg));
+    closed.quality = table.quality = "standard";
+    ASSERT_TRUE(apply_quality(closed).ok());
+    ASSERT_TRUE(apply_quality(table).ok());
+    EXPECT_EQ(table.terms.beam.samples, closed.terms.beam.samples) << width_deg;
   }
 }
 
