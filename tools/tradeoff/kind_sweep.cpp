@@ -1,15 +1,14 @@
 #include "tools/tradeoff/kind_sweep.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 
+#include "tools/tradeoff/joint_search.hpp"
 #include "tools/tradeoff/kind_bench.hpp"
 #include "tools/tradeoff/kind_terms.hpp"
+#include "tools/tradeoff/kind_truth.hpp"
 #include "tools/tradeoff/term_judges.hpp"
-#include "tools/tradeoff/term_truth.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -47,9 +46,6 @@ std::vector<std::uint32_t> rows_of(const KindSetting& kind, bool quick) {
     out.push_back(std::max(1u, static_cast<std::uint32_t>(kind.middle.rows * factor)));
   return out;
 }
-
-// What the levels stay under.
-constexpr double kBounds[] = {0.05, 0.02, 0.01};
 
 // Without the point spread: what the cells themselves hold.
 Sonar cells_of(Sonar sonar) {
@@ -150,27 +146,13 @@ class KindSweep {
     const std::vector<Want> wants = wanted();
     std::vector<Sonar> sonars;
     for (const Want& want : wants) sonars.push_back(want.sonar);
-    double off = 0.0, all = 0.0;
     NERITIC_TRY(const Measured poses, bench_.render(sonars.front(), 0));
-    for (const KindBench::Placed& placed : bench_.placed()) {
-      TruthView view;
-      view.origin_m = placed.world_from_head.position_m - place_.position_m;
-      view.world_from_head = glm::mat3_cast(placed.world_from_head.rotation);
-      view.depth_m = -placed.world_from_head.position_m.y;
-      view.velocity_m_s = kTrackVelocity_m_s;
-      view.yaw_rate_rad_s = kTrackYaw_rad_s * view.world_from_head[1].y;
-      NERITIC_TRY(const auto truths, trace_terms(world_, view, sonars, placed.head, rays()));
-      for (std::size_t i = 0; i < wants.size(); ++i) {
-        std::vector<double>& into = truths_[wants[i].key];
-        into.insert(into.end(), truths[i].image.begin(), truths[i].image.end());
-      }
-      for (std::size_t i = 0; i < truths[0].image.size(); ++i) {
-        off += std::abs(truths[0].uncertain[i]);
-        all += truths[0].image[i];
-      }
-      rays_ += truths[0].rays;
-    }
-    uncertain_ = all > 0.0 ? off / all : 0.0;
+    NERITIC_TRY(KindTruth truth,
+                trace_kind(world_, place_.position_m, bench_.placed(), sonars, rays()));
+    for (std::size_t i = 0; i < wants.size(); ++i)
+      truths_[wants[i].key] = std::move(truth.images[i]);
+    uncertain_ = truth.uncertain;
+    rays_ = truth.rays;
     options_.step();
     return {};
   }
@@ -241,20 +223,6 @@ class KindSweep {
   }
 
   // ---- All knobs together ---------------------------------------------------------------------
-  // A setting as its place on each knob's ladder, coarse to fine: range bins, pixels a cell,
-  // columns, rows.
-  using Place = std::array<std::size_t, 4>;
-  static constexpr std::size_t kRowsKnob = 3;
-
-  struct Ladders {
-    std::vector<std::uint32_t> bins;
-    std::vector<double> scales;
-    std::vector<std::uint32_t> columns, rows;
-    Place finest() const {
-      return {bins.size() - 1, scales.size() - 1, columns.size() - 1, rows.size() - 1};
-    }
-  };
-
   Ladders ladders() const {
     const std::uint32_t bins = kind_.base.bins_range;
     Ladders out{
@@ -270,9 +238,7 @@ class KindSweep {
     return out;
   }
 
-  Result<KindPoint> measure(const Ladders& l, const Place& place, int repeats) {
-    Knobs knobs{l.scales[place[1]], l.columns[place[2]], l.rows[place[3]], "plane",
-                l.bins[place[0]]};
+  Result<KindPoint> measure(const Knobs& knobs, int repeats) {
     Sonar sonar = kind_.base;
     sonar.bins_range = knobs.bins_range;
     const bool own = sonar.bins_range == kind_.base.bins_range;
@@ -284,54 +250,10 @@ class KindSweep {
     return p;
   }
 
-  Result<KindPoint> at(const Ladders& l, const Place& place) {
-    if (const auto found = joint_.find(place); found != joint_.end()) return found->second;
-    NERITIC_TRY(const KindPoint p, measure(l, place, 1));
-    joint_[place] = p;
-    return p;
-  }
-
-  // From the finest with so many rows down: of the other knobs that can go a step coarser, the one
-  // that leaves the cheapest ping within the bound.
-  Status descend(const Ladders& l, double bound, std::size_t rows) {
-    Place here = l.finest();
-    here[kRowsKnob] = rows;
-    NERITIC_TRY(KindPoint best, at(l, here));
-    while (best.error <= bound) {
-      std::optional<Place> next;
-      for (std::size_t knob = 0; knob < kRowsKnob; ++knob) {
-        if (here[knob] == 0) continue;
-        Place coarser = here;
-        --coarser[knob];
-        NERITIC_TRY(const KindPoint p, at(l, coarser));
-        if (p.error > bound || (next && p.ms() >= best.ms())) continue;
-        next = coarser;
-        best = p;
-      }
-      if (!next) break;
-      here = *next;
-    }
-    return {};
-  }
-
-  // Rows are tried one by one, since the error does not fall evenly with them: where a row is
-  // taller than a bin it is shared out, where it is less tall it is a sample. The cheapest found
-  // is measured as often as the knobs are.
   Status sweep_joint(KindResult& out) {
-    const Ladders l = ladders();
-    for (const double bound : kBounds) {
-      for (std::size_t rows = 0; rows < l.rows.size(); ++rows)
-        NERITIC_TRY_STATUS(descend(l, bound, rows));
-      const std::pair<const Place, KindPoint>* best = nullptr;
-      for (const auto& found : joint_)
-        if (found.second.error <= bound && (!best || found.second.ms() < best->second.ms()))
-          best = &found;
-      if (best) {
-        const Place place = best->first;
-        NERITIC_TRY(joint_[place], measure(l, place, repeats()));
-      }
-    }
-    for (const auto& [place, p] : joint_) out.points.push_back(p);
+    const auto measured = [this](const Knobs& knobs, int times) { return measure(knobs, times); };
+    NERITIC_TRY(const auto found, search_joint(ladders(), measured, repeats()));
+    out.points.insert(out.points.end(), found.begin(), found.end());
     options_.step();
     return {};
   }
@@ -343,7 +265,6 @@ class KindSweep {
   const KindSweepOptions& options_;
   std::vector<TermCase> cases_;
   std::map<std::string, std::vector<double>> truths_;
-  std::map<Place, KindPoint> joint_;
   double uncertain_ = 0.0, rays_ = 0.0;
 };
 
