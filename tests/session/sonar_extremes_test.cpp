@@ -1,86 +1,18 @@
 // Sonars at the ends of what they accept, every kind with every term: finite, never negative, right
-// where a closed form exists, and the same bits at every run on any number of driver threads.
+// where a closed form exists.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
-#include "engine/core/files.hpp"
-#include "engine/core/hash.hpp"
 #include "engine/scene/shapes.hpp"
 #include "sonar/acoustics.hpp"
-#include "tests/session/sonar_pings.hpp"
-#include "tools/session/session.hpp"
+#include "tests/session/sonar_sea.hpp"
 
 namespace neritic::tools {
 namespace {
 
 using scene::SonarKind;
 using SonarExtremes = test::GpuTest;
-
-constexpr SonarKind kKinds[] = {SonarKind::kImaging, SonarKind::kProfiling, SonarKind::kEchoSounder,
-                                SonarKind::kSideScan, SonarKind::kMechanical};
-
-void add_object(scene::Scene& scene, scene::Model model, const Vec3& at, std::uint16_t class_id) {
-  scene.models.push_back(std::make_shared<scene::Model>(std::move(model)));
-  scene::Object object;
-  object.name = fmt::format("object_{}", scene.objects.size());
-  object.model = static_cast<int>(scene.models.size()) - 1;
-  object.mount.pose.position_m = at;
-  object.class_id = class_id;
-  object.instance = static_cast<std::uint16_t>(scene.objects.size() + 1);
-  scene.objects.push_back(object);
-}
-
-scene::Sonar small_sonar(SonarKind kind = SonarKind::kImaging) {
-  scene::Sonar sonar;
-  sonar.name = "sonar";
-  sonar.kind = kind;
-  sonar.range_min_m = 0.5;
-  sonar.range_max_m = 12.0;
-  sonar.azimuth_rad = radians(60.0);
-  sonar.elevation_rad = radians(40.0);
-  sonar.bins_range = 100;
-  sonar.bins_azimuth = 32;
-  sonar.bins_elevation = 48;
-  return sonar;
-}
-
-scene::SonarTerms every_term() {
-  scene::SonarTerms t;
-  t.frequency_hz = 450e3;
-  t.level = scene::SonarLevel{.tvg_log = 30.0, .tvg_absorption = true};
-  t.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(4.0)};
-  t.beam.elevation = scene::SonarPattern{.shape = scene::SonarPattern::Shape::kHamming,
-                                         .half_power_rad = radians(30.0)};
-  t.beam.samples = 2;
-  t.range_spread = scene::SonarRangeSpread{};
-  t.speckle = scene::SonarSpeckle{.shape = 2.0};
-  t.noise = scene::SonarNoise{};
-  t.ghosts = scene::SonarGhosts{.surface = true, .bottom_m = 9.0};
-  t.profile = scene::SonarProfile{{{0.0, 1520.0}, {4.0, 1490.0}, {50.0, 1480.0}}, true};
-  t.motion = scene::SonarMotion{.within_ping = true, .doppler = true};
-  t.labels.energy = true;
-  return t;
-}
-
-// A sonar 4 m under the surface, underway and turning, a sphere before it and a floor below.
-scene::Scene some_sea(scene::Sonar sonar) {
-  scene::Scene scene;
-  scene.path = "test";
-  add_object(scene, scene::make_sphere(1.0, 48), {0.5, -4.0, -5.0}, 12);
-  add_object(scene, scene::make_box({80.0, 1.0, 80.0}), {0.0, -8.5, 0.0}, 1);
-  add_object(scene, scene::make_sphere(0.7, 48), {6.0, -6.0, 0.0}, 2);
-  scene::Track track;
-  for (const double t : {-1.0, 1.0}) {
-    track.places.push_back({t, Vec3(0.4 * t, -4.0, -1.5 * t)});
-    track.attitudes.push_back({t, glm::angleAxis(0.2 * t, Vec3(0, 1, 0))});
-  }
-  sonar.mount.pose.position_m = {0.0, -4.0, 0.0};
-  sonar.mount.track = track;
-  scene.sonars = {std::move(sonar)};
-  return scene;
-}
 
 // What must hold of any sonar whatever: returns the total.
 double expect_sane(const std::vector<SonarFrame>& frames, const std::string& of) {
@@ -116,7 +48,7 @@ scene::Scene wall_at(double distance_m, scene::Sonar sonar) {
 }
 
 TEST_F(SonarExtremes, EveryKindWithEveryTermIsFinite) {
-  for (const SonarKind kind : kKinds) {
+  for (const SonarKind kind : kSonarKinds) {
     scene::Sonar sonar = small_sonar(kind);
     sonar.terms = every_term();
     EXPECT_GT(expect_sane(pings(device(), some_sea(sonar), 3), scene::name_of(kind)), 0.0);
@@ -124,7 +56,7 @@ TEST_F(SonarExtremes, EveryKindWithEveryTermIsFinite) {
 }
 
 TEST_F(SonarExtremes, TheLoudestThatIsAcceptedIsAFiniteFloat) {
-  for (const SonarKind kind : kKinds)
+  for (const SonarKind kind : kSonarKinds)
     for (const bool speckle : {false, true})
       for (const double absorption : {0.0, 1000.0}) {
         scene::Sonar sonar = small_sonar(kind);
@@ -169,7 +101,7 @@ TEST_F(SonarExtremes, FromFiveCentimetresToTenKilometres) {
 }
 
 TEST_F(SonarExtremes, AperturesOfATenthDegreeAndAFullTurn) {
-  for (const SonarKind kind : kKinds)
+  for (const SonarKind kind : kSonarKinds)
     for (const double aperture_deg : {0.1, 360.0}) {
       scene::Sonar sonar = small_sonar(kind);
       sonar.azimuth_rad = radians(aperture_deg);
@@ -253,7 +185,7 @@ TEST_F(SonarExtremes, AbsorptionFromOneHertzToTenMegahertz) {
 }
 
 TEST_F(SonarExtremes, NoReturnAtAllIsSilenceOrNoise) {
-  for (const SonarKind kind : kKinds) {
+  for (const SonarKind kind : kSonarKinds) {
     scene::Sonar sonar = small_sonar(kind);
     scene::Scene empty;
     sonar.terms = every_term();
@@ -319,7 +251,7 @@ TEST_F(SonarExtremes, AFloorSeenAtAHundredthOfADegree) {
 }
 
 TEST_F(SonarExtremes, AHundredKilometresFromTheOriginItSoundsTheSame) {
-  for (const SonarKind kind : kKinds) {
+  for (const SonarKind kind : kSonarKinds) {
     scene::Sonar sonar = small_sonar(kind);
     sonar.terms = every_term();
     expect_sane(pings(device(), some_sea(sonar)), scene::name_of(kind));
@@ -341,63 +273,6 @@ TEST_F(SonarExtremes, AHundredKilometresFromTheOriginItSoundsTheSame) {
     there.sonars[0].terms = every_term();
     expect_sane(pings(device(), there), fmt::format("{} far away", scene::name_of(kind)));
   }
-}
-
-// Where another run of this program shall leave its hash, to be compared.
-constexpr const char* kHashFile = "NERITIC_TEST_SONAR_HASH_FILE";
-
-std::string hash_of(const std::vector<SonarFrame>& frames) {
-  Hash64 hash;
-  for (const SonarFrame& frame : frames) {
-    hash.add_span(std::span<const float>(frame.image.intensity));
-    hash.add_span(std::span<const std::uint16_t>(frame.image.labels));
-    if (frame.label_energy) {
-      hash.add_span(std::span<const std::uint16_t>(frame.label_energy->classes));
-      hash.add_span(std::span<const float>(frame.label_energy->fraction));
-    }
-  }
-  return hash.hex();
-}
-
-TEST_F(SonarExtremes, TwentyRunsOfEveryTermGiveTheSameBits) {
-  std::string all;
-  for (const SonarKind kind : kKinds) {
-    scene::Sonar sonar = small_sonar(kind);
-    sonar.terms = every_term();
-    NERITIC_ASSERT_OK(const auto session, Session::create(device(), some_sea(sonar)));
-    FrameRequest request;
-    request.sonars = {0};
-    request.frame = 5;
-    request.capture.geometry = false;
-    std::string first;
-    for (int run = 0; run < 20; ++run) {
-      NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
-      const std::string hash = hash_of(result.sonars);
-      if (run == 0) first = hash;
-      ASSERT_EQ(hash, first) << scene::name_of(kind) << ", run " << run;
-    }
-    all += first + " ";
-  }
-  if (const char* file = std::getenv(kHashFile)) NERITIC_ASSERT_STATUS(write_text(file, all));
-}
-
-TEST_F(SonarExtremes, OneAndTwoThreadsOfTheDriverGiveTheSameBits) {
-  if (device().info().name.find("llvmpipe") == std::string::npos)
-    GTEST_SKIP() << "the number of threads is llvmpipe's switch";
-  const test::ScratchFolder folder;
-  std::string hashes[2];
-  for (int i = 0; i < 2; ++i) {
-    // The driver reads its switch when a device is made: each in a program of its own.
-    const std::filesystem::path file = folder / fmt::format("{}", i + 1);
-    const std::string command = fmt::format(
-        "LP_NUM_THREADS={} {}={} {} --gtest_filter=SonarExtremes.TwentyRuns* > {} 2>&1", i + 1,
-        kHashFile, file.string(), std::filesystem::read_symlink("/proc/self/exe").string(),
-        (folder / "said").string());
-    ASSERT_EQ(std::system(command.c_str()), 0) << read_text(folder / "said").value();
-    NERITIC_ASSERT_OK(hashes[i], read_text(file));
-  }
-  EXPECT_FALSE(hashes[0].empty());
-  EXPECT_EQ(hashes[0], hashes[1]);
 }
 
 }  // namespace
