@@ -23,8 +23,8 @@ struct RangeCorrection {
 // where no ray comes within a thousandth of the range (a shadow zone) the straight path's time
 // stands. What a bent ray passes through on its way is not looked at: what hides what is as with
 // straight rays. A profile that the settings' reader has accepted.
-// Sizes, at least 2 each: what the default's interpolation is off by is in the errors of the profile
-// rows of sonar/TRADE.md.
+// Sizes, at least 2 each: what interpolation in them is off by say the rows "profile's table" of
+// sonar/TRADE.md.
 struct RangeCorrectionSize {
   std::uint32_t ranges = 33, sines = 65;
 };

@@ -43,9 +43,20 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
   const std::string out = " --out " + (folder / "out").string();
   std::ofstream(folder / "garbage.toml") << "\x01\x02 not a [scene";
   std::ofstream(folder / "unknown.toml") << "[watr]\ntype = \"II\"\n";
+  const auto with_sonar = [&](const std::string& name, const std::string& keys) {
+    std::ofstream(folder / name) << "[[sonars]]\nname = \"ears\"\n" << keys;
+    return "render " + (folder / name).string() + out;
+  };
   const struct {
     std::string arguments, names;
   } cases[] = {
+      // What only the sonar itself can tell names file, sonar and key too.
+      {with_sonar("pulse.toml", "bandwidth_hz = 10\n"), "pulse.toml: sonar ears: range_spread"},
+      {with_sonar("gather.toml", "gather = \"published\"\nlevel = {}\n"),
+       "gather.toml: sonar ears: gather: published found"},
+      {with_sonar("quality.toml", "max_error = 1e-5\n"), "quality.toml: sonar ears: max_error"},
+      {with_sonar("samples.toml", "bins = [10, 8192, 10]\nbeam = { samples = 64 }\n"),
+       "samples.toml: sonar ears: with 64 samples a beam"},
       {"render nothere.toml" + out, "nothere.toml"},
       {"render " + (folder / "garbage.toml").string() + out, "garbage.toml"},
       {"render " + (folder / "unknown.toml").string() + out, "water"},  // the nearest known key

@@ -13,6 +13,7 @@
 #include "tools/physics/dive_record.hpp"
 #include "tools/session/output.hpp"
 #include "tools/session/ping_schedule.hpp"
+#include "tools/session/sonar_check.hpp"
 #include "tools/session/session.hpp"
 #include "tools/session/survey.hpp"
 
@@ -69,7 +70,7 @@ Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& sc
   for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
     known.push_back(scene.sonars[i].name);
     if (!wanted(flags, known.back())) continue;
-    NERITIC_TRY_STATUS(check_sonar(scene.sonars[i]));
+    NERITIC_TRY_STATUS(check_sonar(scene, scene.sonars[i]));
     request.sonars.push_back(i);
   }
   for (const std::string& name : flags.sensors)

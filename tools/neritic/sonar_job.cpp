@@ -142,8 +142,12 @@ Result<scene::Sonar> sensor_of(const SonarFlags& flags, SonarKind kind) {
 // The head of the sensor; its grids as asked where edges are not symmetric.
 Result<sonar::Head> head_of(const scene::Sonar& sonar, const sonar::BeamGrid& grid,
                             const SonarFlags& flags) {
-  NERITIC_TRY(std::vector<sonar::Head> heads, sonar::plan_heads(sonar));
-  sonar::Head head = std::move(heads[heads.size() > 1 && flags.side == "starboard" ? 1 : 0]);
+  auto heads = sonar::plan_heads(sonar);
+  if (!heads.ok())
+    return flags.sensor.empty()
+               ? heads.error()
+               : bad_input("{}: {}", flags.sensor.string(), heads.error().message);
+  sonar::Head head = std::move((*heads)[heads->size() > 1 && flags.side == "starboard" ? 1 : 0]);
   const sonar::Limits& l = grid.limits;
   const bool symmetric =
       l.azimuth_min_rad == -l.azimuth_max_rad && l.elevation_min_rad == -l.elevation_max_rad;

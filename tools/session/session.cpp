@@ -8,6 +8,7 @@
 #include "engine/render/lighting.hpp"
 #include "tools/session/decode.hpp"
 #include "tools/session/session_work.hpp"
+#include "tools/session/sonar_check.hpp"
 #include "tools/session/sonar_station.hpp"
 
 namespace neritic::tools {
@@ -176,9 +177,11 @@ Status Session::declare_sensors(graph::FrameGraph& graph, const FrameRequest& re
     work.sonars.push_back(std::make_unique<SonarWork>());
     work.sonars.back()->index = request.sonars[i];
     const std::uint32_t ping = request.pings.empty() ? request.frame : request.pings[i];
-    NERITIC_TRY_STATUS(sonars_->declare({graph, *renderer_, *gpu_scene_, work.state, deformed,
-                                         readback_, request.capture, request.time_s, ping},
-                                        *work.sonars.back()));
+    const Status declared = sonars_->declare({graph, *renderer_, *gpu_scene_, work.state, deformed,
+                                              readback_, request.capture, request.time_s, ping},
+                                             *work.sonars.back());
+    if (!declared.ok())
+      return of_sonar(scene_, scene_.sonars[request.sonars[i]], declared.error());
   }
   return {};
 }

@@ -171,9 +171,6 @@ class Session {
 inline constexpr double kDefaultGBufferScale = 0.5;
 inline constexpr const char* kDefaultGather = "plane";
 
-// What a sonar of the scene cannot be; kBadInput as sonar::plan_heads says.
-Status check_sonar(const scene::Sonar& sonar);
-
 // The views of a camera of the scene: one, or two for a stereo pair, half the baseline to each
 // side; where it is at time_s and, for motion, at next_time_s.
 render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera,

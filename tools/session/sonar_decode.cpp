@@ -57,9 +57,4 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
   return frames;
 }
 
-Status check_sonar(const scene::Sonar& sonar) {
-  const auto heads = sonar::plan_heads(sonar);
-  return heads.ok() ? Status() : Status(heads.error());
-}
-
 }  // namespace neritic::tools
