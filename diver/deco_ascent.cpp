@@ -192,7 +192,7 @@ class Ascent {
     const double minutes = end - state_.run_min, p = pressure(state_.depth_m);
     const bool even = settings_.model.saturation == 1.0 && settings_.model.desaturation == 1.0;
     state_.tissues = even && std::abs(minutes - q) < kSame
-                         ? load(settings_.model, settings_.quantum, state_.tissues, p, mix())
+                         ? load(settings_.model, settings_.quantum, state_.tissues, p, p, mix())
                          : load(settings_.model, state_.tissues, p, p, minutes, mix());
     state_.run_min = end;
   }

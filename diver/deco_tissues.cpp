@@ -77,22 +77,30 @@ TissueState load(const Buehlmann& model, const TissueState& before, double from_
 
 StepFactors step_factors(const Buehlmann& model, double minutes) {
   StepFactors factors{minutes, {}, {}};
-  for (std::size_t i = 0; i < kCompartments; ++i) {
-    factors.n2[i] = std::exp(-model.n2.rate_min[i] * minutes);
-    factors.he[i] = std::exp(-model.he.rate_min[i] * minutes);
-  }
+  const auto fill = [&](const InertGas& gas, StepFactors::Gas& out) {
+    for (std::size_t i = 0; i < kCompartments; ++i) {
+      const double x = gas.rate_min[i] * minutes;
+      out.gone[i] = -std::expm1(-x);
+      out.ramp[i] = x > 0.0 ? 1.0 - out.gone[i] / x : 0.0;
+    }
+  };
+  fill(model.n2, factors.n2);
+  fill(model.he, factors.he);
   return factors;
 }
 
 TissueState load(const Buehlmann& model, const StepFactors& factors, const TissueState& before,
-                 double pressure_bar, const GasMix& gas) {
-  const double lungs = pressure_bar - model.water_vapour_bar;
-  const double n2 = gas.nitrogen() * lungs, he = gas.helium * lungs;
+                 double from_bar, double to_bar, const GasMix& gas) {
+  const double lungs = from_bar - model.water_vapour_bar, change = to_bar - from_bar;
   TissueState after;
-  for (std::size_t i = 0; i < kCompartments; ++i) {
-    after.n2_bar[i] = n2 - (n2 - before.n2_bar[i]) * factors.n2[i];
-    after.he_bar[i] = he - (he - before.he_bar[i]) * factors.he[i];
-  }
+  const auto step = [&](const StepFactors::Gas& f, const Compartments& old, double share,
+                        Compartments& out) {
+    const double alveolar = share * lungs, rise = share * change;
+    for (std::size_t i = 0; i < kCompartments; ++i)
+      out[i] = old[i] + (alveolar - old[i]) * f.gone[i] + rise * f.ramp[i];
+  };
+  step(factors.n2, before.n2_bar, gas.nitrogen(), after.n2_bar);
+  step(factors.he, before.he_bar, gas.helium, after.he_bar);
   return after;
 }
 

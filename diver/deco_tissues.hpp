@@ -30,15 +30,20 @@ TissueState saturated(const Buehlmann& model, double pressure_bar, double n2);
 TissueState load(const Buehlmann& model, const TissueState& before, double from_bar, double to_bar,
                  double minutes, const GasMix& gas);
 
-// load() at a constant pressure many times for the same time: what can be known before.
+// load() many times for the same time: what can be known before, so that no step needs an
+// exponential.
 struct StepFactors {
   double minutes = 0.0;
-  Compartments n2{}, he{};  // e^(-k t)
+  struct Gas {
+    Compartments gone{};  // 1 - e^(-k t)
+    Compartments ramp{};  // 1 - gone / (k t): of the change of pressure
+  };
+  Gas n2, he;
 };
 StepFactors step_factors(const Buehlmann& model, double minutes);
 // Precondition: factors are the model's, and its saturation and desaturation are 1.
 TissueState load(const Buehlmann& model, const StepFactors& factors, const TissueState& before,
-                 double pressure_bar, const GasMix& gas);
+                 double from_bar, double to_bar, const GasMix& gas);
 
 // Least pressure that a compartment tolerates, of all the gradient from ambient pressure to the
 // M-value gf of it (E. C. Baker, Clearing up the confusion about deep stops, 1998):

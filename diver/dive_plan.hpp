@@ -31,7 +31,7 @@ struct PlanLevel {
 struct DivePlanRequest {
   DecoConventions conventions;
   double gf_low = 0.3, gf_high = 0.85;
-  std::vector<PlanGas> gases{PlanGas{}};
+  std::vector<PlanGas> gases = std::vector<PlanGas>(1);  // air
   std::vector<PlanLevel> levels;
   std::optional<TissueState> start;  // absent: one who has not dived
   // A last stop deeper than the step holds also where the first stop would be shallower. Off: such

@@ -110,11 +110,15 @@ TEST(DecoTissues, SaturationMultipliersObeyTheirEquation) {
 
 TEST(DecoTissues, ManyTimesTheSameStepIsTheSameAsEach) {
   const Buehlmann model = model_b();
-  const StepFactors factors = step_factors(model, 1.0);
   const TissueState start = tissues_of(2.0, 0.5);
-  EXPECT_LT(difference(load(model, factors, start, 3.0, {0.5, 0.1}),
-                       load(model, start, 3.0, 3.0, 1.0, {0.5, 0.1})),
-            1e-14);
+  for (const double minutes : {0.0, 1e-9, 1.0 / 60.0, 1.0, 1e4}) {
+    const StepFactors factors = step_factors(model, minutes);
+    for (const double to_bar : {3.0, 1.0, 6.0})
+      EXPECT_LT(difference(load(model, factors, start, 3.0, to_bar, {0.5, 0.1}),
+                           load(model, start, 3.0, to_bar, minutes, {0.5, 0.1})),
+                1e-14)
+          << minutes;
+  }
 }
 
 TEST(DecoTissues, NoTimeChangesNothingAndAllTimeSaturates) {

@@ -24,7 +24,8 @@ Status bench_sonar_frame(Suite& suite, gpu::Device& device);    // whole frames,
 Status bench_sonar_terms(Suite& suite, gpu::Device& device);    // a frame with each term named
 Status bench_camera_frame(Suite& suite, gpu::Device& device);   // pictures, many instances
 Status bench_sweeps(Suite& suite, gpu::Device& device);         // cost against sizes
-Status bench_start(Suite& suite, gpu::Device& device);          // process start to picture
+Status bench_deco(Suite& suite);  // plans, views, tissues of many divers; no GPU
+Status bench_start(Suite& suite, gpu::Device& device);               // process start to picture
 Status bench_threads(Suite& suite, const std::string& device_name);  // same bits on 1 and 2 threads
 
 // A scene of assets/scenes in a session.

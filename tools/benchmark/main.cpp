@@ -53,6 +53,7 @@ Status run_on_device(Suite& suite, std::string& name) {
   NERITIC_TRY_STATUS(bench_sonar_terms(suite, *device));
   NERITIC_TRY_STATUS(bench_camera_frame(suite, *device));
   NERITIC_TRY_STATUS(bench_sweeps(suite, *device));
+  NERITIC_TRY_STATUS(bench_deco(suite));
   if (!suite.options().once) NERITIC_TRY_STATUS(bench_start(suite, *device));
   name = device->info().name;
   return bench_threads(suite, name);
@@ -85,7 +86,7 @@ constexpr Flag kFlags[] = {
     {"--json", "also write the results to this file", &Options::json},
     {"--filter",
      "only groups whose name holds this: sonar_binning, sonar_frame, sonar_terms, camera_frame,\n"
-     "             sweep, start, threads, physics, contacts; or one GROUP/NAME",
+     "             sweep, deco, start, threads, physics, contacts; or one GROUP/NAME",
      &Options::filter},
     {"--device", "Vulkan device: index or part of its name", &Options::device},
     {"--assets", "the folder that holds scenes/", &Options::assets},

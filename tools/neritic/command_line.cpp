@@ -200,7 +200,7 @@ void add_tradeoff(CLI::App& app, Run& run) {
   auto flags = std::make_shared<TradeoffFlags>();
   CLI::App* command =
       app.add_subcommand("tradeoff", "error against cost of one model, with its curve");
-  command->add_option("what", flags->what, "sonar, physics, swim or physiology")->required();
+  command->add_option("what", flags->what, "sonar, physics, swim, deco or physiology")->required();
   command->add_option("--out", flags->out, "folder for tables (.csv, .md), pictures and levels")
       ->required()
       ->check(named);

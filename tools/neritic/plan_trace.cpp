@@ -13,7 +13,6 @@ namespace {
 using diver::DiveComputer;
 using diver::DiveComputerState;
 
-constexpr double kSample_s = 10.0;
 constexpr std::size_t kMostViews = 20000;
 
 void add_row(DiveTrace& trace, const DiveComputer& computer, const DiveComputerState& state,
@@ -49,7 +48,8 @@ DiveTrace trace_plan(const diver::DivePlanRequest& request, const diver::DivePla
   for (const diver::PlanSegment& s : plan.segments) {
     // The switch takes no time.
     state = computer->step(state, {s.from_m, s.gas}, 0.0);
-    const int parts = std::max(static_cast<int>(std::ceil(60.0 * s.minutes / kSample_s)), 1);
+    const int parts =
+        std::max(static_cast<int>(std::ceil(60.0 * s.minutes / diver::kTissueStep_s)), 1);
     for (int i = 1; i <= parts; ++i) {
       const double depth = s.from_m + (s.to_m - s.from_m) * i / parts;
       state = computer->step(state, {depth, s.gas}, 60.0 * s.minutes / parts);

@@ -31,7 +31,7 @@ struct DiveTrace {
   double most_ceiling_m = 0.0, fast_min = 0.0;
 };
 
-// Samples every 10 s and where the plan changes.
+// Samples every kTissueStep_s and where the plan changes.
 DiveTrace trace_plan(const diver::DivePlanRequest& request, const diver::DivePlan& plan);
 // Every sample is stepped; views are at most 20 000, evenly spread.
 DiveTrace trace_log(const diver::DiveComputer& computer, const diver::TissueState& start,

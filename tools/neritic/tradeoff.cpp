@@ -6,6 +6,7 @@
 
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/tradeoff/deco_tradeoff.hpp"
 #include "tools/tradeoff/physics_tradeoff.hpp"
 #include "tools/tradeoff/physiology_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
@@ -50,6 +51,17 @@ Result<std::string> trade_physiology(const TradeoffFlags& flags) {
   return flags.out.string() + ": physiology.csv, .md, .json, .png";
 }
 
+Result<std::string> trade_deco(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return bad_input("tradeoff: kind '{}' found, none is accepted for deco", flags.kind);
+  DecoTradeoffOptions options;
+  options.quick = flags.quick;
+  Progress progress("tradeoff deco", steps(options));
+  options.step = [&] { progress.step(); };
+  NERITIC_TRY_STATUS(write_deco_tradeoff(flags.out, run_deco_tradeoff(options)));
+  return flags.out.string() + ": deco.csv, .md, .json, .png";
+}
+
 Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   SonarTradeoffOptions options;
   options.scene = flags.scene == "none" ? "" : flags.scene;
@@ -83,7 +95,8 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "physics") return trade_physics(flags);
   if (flags.what == "swim") return trade_swim(flags);
   if (flags.what == "physiology") return trade_physiology(flags);
-  return bad_input("tradeoff: '{}' found, sonar, physics, swim or physiology is accepted",
+  if (flags.what == "deco") return trade_deco(flags);
+  return bad_input("tradeoff: '{}' found, sonar, physics, swim, deco or physiology is accepted",
                    flags.what);
 }
 

@@ -1,0 +1,51 @@
+// `neritic tradeoff deco`: what the curves say, and that the default lies on their knee.
+#include "tools/tradeoff/deco_tradeoff.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diver/deco_live.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using enum TissueMethod;
+
+DecoPoint point_of(const std::vector<DecoPoint>& points, TissueMethod method, double step_s) {
+  for (const DecoPoint& p : points)
+    if (p.method == method && p.step_s == step_s) return p;
+  ADD_FAILURE() << name_of(method) << " " << step_s;
+  return {};
+}
+
+TEST(DecoTradeoff, ErrorsFallWithTheStepByTheMethodsOrderAndTheDefaultIsOnTheKnee) {
+  const DecoTradeoff measured = run_deco_tradeoff({.quick = true});
+  EXPECT_EQ(measured.points.size(), 3u * 9u * 5u);
+  const std::vector<DecoPoint> worst = worst_of(measured);
+  for (const TissueMethod method : {kEuler, kHeld, kMean, kSchreiner, kFactors}) {
+    const double order = std::log10(point_of(worst, method, 10.0).error_bar /
+                                    point_of(worst, method, 1.0).error_bar);
+    EXPECT_NEAR(order, method == kEuler || method == kHeld ? 1.0 : 2.0, 0.25) << name_of(method);
+  }
+  for (const double step_s : {1.0, 5.0, 10.0, 30.0, 60.0}) {
+    const DecoPoint exact = point_of(worst, kSchreiner, step_s);
+    EXPECT_LE(exact.error_bar, point_of(worst, kMean, step_s).error_bar);
+    EXPECT_LT(exact.error_bar, 0.5 * point_of(worst, kHeld, step_s).error_bar);
+    EXPECT_NEAR(exact.error_bar, point_of(worst, kFactors, step_s).error_bar, 1e-12);
+  }
+  EXPECT_LT(point_of(worst, kFactors, diver::kTissueStep_s).error_bar, 2e-3);
+  EXPECT_LT(point_of(worst, kFactors, diver::kTissueStep_s).ceiling_error_m, 0.02);
+  const DecoPoint best = knee(measured);
+  EXPECT_GE(best.step_s, 5.0);
+  EXPECT_LE(best.step_s, 20.0);
+
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_deco_tradeoff(folder / "out", measured).ok());
+  for (const char* name : {"deco.csv", "deco.md", "deco.json", "deco.png"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
+}
+
+}  // namespace
+}  // namespace neritic::tools

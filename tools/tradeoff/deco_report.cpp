@@ -1,0 +1,135 @@
+// What `neritic tradeoff deco` writes (deco_tradeoff.hpp).
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tools/common/plot.hpp"
+#include "tools/tradeoff/deco_tradeoff.hpp"
+
+namespace neritic::tools {
+namespace {
+
+constexpr TissueMethod kTissueMethods[] = {TissueMethod::kEuler, TissueMethod::kHeld,
+                                           TissueMethod::kMean, TissueMethod::kSchreiner,
+                                           TissueMethod::kFactors};
+
+std::string deco_csv(const DecoTradeoff& t) {
+  std::string out = "dive,method,step_s,error_bar,ceiling_error_m,us_an_hour\n";
+  for (const DecoPoint& p : t.points)
+    out += fmt::format("\"{}\",{},{:g},{:.4g},{:.4g},{:.4g}\n", p.dive, name_of(p.method), p.step_s,
+                       p.error_bar, p.ceiling_error_m, p.us_an_hour);
+  return out;
+}
+
+void append_table(std::string& out, const std::string& title,
+                  const std::vector<DecoPoint>& points) {
+  out += "\n## " + title + "\n\n| step, s |";
+  for (const TissueMethod m : kTissueMethods) out += fmt::format(" {}, bar | m | us |", name_of(m));
+  out += "\n|---|";
+  for (std::size_t i = 0; i < 3 * std::size(kTissueMethods); ++i) out += "---|";
+  out += "\n";
+  for (const DecoPoint& row : points) {
+    if (row.method != kTissueMethods[0]) continue;
+    out += fmt::format("| {:g} |", row.step_s);
+    for (const DecoPoint& p : points)
+      if (p.step_s == row.step_s)
+        out += fmt::format(" {:.1e} | {:.2g} | {:.3g} |", p.error_bar, p.ceiling_error_m,
+                           p.us_an_hour);
+    out += "\n";
+  }
+}
+
+std::string deco_md(const DecoTradeoff& t) {
+  const DecoPoint best = knee(t);
+  std::string out = fmt::format(
+      "# Decompression: error against cost\n\nA dive known by samples, against the exact solution "
+      "of "
+      "its linear depth changes: the largest error of a tissue (bar) and of the ceiling of GF 30 "
+      "(m) "
+      "over all samples, and microseconds of one core an hour of diving. What is left of the exact "
+      "methods' error is what happens between two samples: a corner.\n\nKnee: {}, "
+      "{:g} s, {:.1e} bar, {:.2g} m, {:.3g} us.\n",
+      name_of(best.method), best.step_s, best.error_bar, best.ceiling_error_m, best.us_an_hour);
+  append_table(out, "The worst of all dives", worst_of(t));
+  for (const std::string& dive : t.dives) {
+    std::vector<DecoPoint> points;
+    for (const DecoPoint& p : t.points)
+      if (p.dive == dive) points.push_back(p);
+    append_table(out, dive, points);
+  }
+  return out;
+}
+
+nlohmann::json deco_json(const DecoTradeoff& t) {
+  const auto point_json = [](const DecoPoint& p) {
+    return nlohmann::json{{"dive", p.dive},
+                          {"method", name_of(p.method)},
+                          {"step_s", p.step_s},
+                          {"error_bar", p.error_bar},
+                          {"ceiling_error_m", p.ceiling_error_m},
+                          {"us_an_hour", p.us_an_hour}};
+  };
+  nlohmann::json json{{"knee", point_json(knee(t))}, {"points", nlohmann::json::array()}};
+  for (const DecoPoint& p : t.points) json["points"].push_back(point_json(p));
+  return json;
+}
+
+// Curves of the worst of all dives over x: what(point).
+void draw_deco(sonar::Canvas& canvas, const Box& box, const DecoTradeoff& t,
+               const std::string& title, const std::string& label, double (*what)(const DecoPoint&),
+               bool noted) {
+  std::vector<Series> series;
+  std::vector<double> xs, ys;
+  for (const TissueMethod m : kTissueMethods) {
+    Series s{name_of(m), kSeriesColors[series.size()], {}, {}, {}};
+    for (const DecoPoint& p : worst_of(t)) {
+      if (p.method != m || !(p.error_bar > 0.0) || p.error_bar > 10.0) continue;
+      s.x.push_back(what(p));
+      s.y.push_back(p.error_bar);
+      if (noted && m == TissueMethod::kFactors)
+        s.notes.push_back(fmt::format("{:g} s", p.step_s));
+    }
+    xs.insert(xs.end(), s.x.begin(), s.x.end());
+    ys.insert(ys.end(), s.y.begin(), s.y.end());
+    series.push_back(std::move(s));
+  }
+  const Axis x = axis_for(label, xs, true);
+  Axis y = axis_for("largest error of a tissue, bar", ys, true);
+  y.max *= 3.0;  // room for its label
+  draw_lines(canvas, box, title, x, y, series, !noted);
+  const DecoPoint best = knee(t);
+  draw_mark(canvas, box, x, y, what(best), best.error_bar, "knee");
+}
+
+ImageU8 deco_plot(const DecoTradeoff& t) {
+  constexpr double kWide = 900, kHigh = 620, kHead = 64;
+  sonar::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
+                       static_cast<std::uint32_t>(kHead + kHigh), kPaper);
+  canvas.text(24, 34, 18, "Decompression: error against cost", kInk, sonar::Align::kLeft, 2.2);
+  canvas.text(24, 54, 10,
+              "dives known by samples whose corners lie between them, the worst of three; truth: "
+              "Schreiner's equation from corner to corner",
+              kInk.with_alpha(0.7f));
+  draw_deco(
+      canvas, {0, kHead, kWide, kHead + kHigh}, t, "over the step", "step, s",
+      [](const DecoPoint& p) { return p.step_s; }, false);
+  draw_deco(
+      canvas, {kWide, kHead, 2 * kWide, kHead + kHigh}, t, "over cost",
+      "us of one core an hour of diving", [](const DecoPoint& p) { return p.us_an_hour; }, true);
+  return canvas.take();
+}
+
+}  // namespace
+
+Status write_deco_tradeoff(const std::filesystem::path& folder, const DecoTradeoff& tradeoff) {
+  NERITIC_TRY_STATUS(make_folder(folder));
+  NERITIC_TRY_STATUS(write_text(folder / "deco.csv", deco_csv(tradeoff)));
+  NERITIC_TRY_STATUS(write_text(folder / "deco.md", deco_md(tradeoff)));
+  NERITIC_TRY_STATUS(scene::write_png8(folder / "deco.png", deco_plot(tradeoff)));
+  return write_json(folder / "deco.json", deco_json(tradeoff));
+}
+
+}  // namespace neritic::tools
