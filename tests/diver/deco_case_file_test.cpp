@@ -1,0 +1,133 @@
+// Files of cases of decompression: defaults of what is left out, and one line that says what is
+// wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/json.hpp"
+#include "tests/diver/deco_cases.hpp"
+
+namespace neritic::diver {
+namespace {
+
+using Json = nlohmann::json;
+using ::testing::HasSubstr;
+
+Json smallest_dive() {
+  return parse_json(R"({"profiles": [{"id": "small", "model": "ZH-L16B-GF",
+    "parameters": {"gf_low": 0.3, "gf_high": 0.85}, "gases": [{"o2": 21}],
+    "profile": {"depth_m": 30, "bottom_runtime_min": 25},
+    "reference": {"stops": [[12, 1], [9, 1], [6, 2], [3, 5]]}}]})")
+      .value();
+}
+
+std::string fault_of(const Json& json) {
+  const auto read = read_deco_cases(json_text(json), "dives.json");
+  return read.ok() ? "read" : read.error().message;
+}
+
+// The line for a dive of which `path` is something else.
+std::string fault_with(const char* path, const Json& value) {
+  Json json = smallest_dive();
+  json["profiles"][0][Json::json_pointer(path)] = value;
+  return fault_of(json);
+}
+
+TEST(DecoCaseFile, WhatIsLeftOutHasItsDefault) {
+  const auto read = read_deco_cases(json_text(smallest_dive()), "dives.json");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const DecoConventions& c = read->dives[0].request.conventions;
+  EXPECT_EQ(c.environment.surface_bar, 1.01325);
+  EXPECT_EQ(c.environment.bar_per_m, 0.09985);
+  EXPECT_EQ(c.first_compartment, FirstCompartment::k5Min);
+  EXPECT_EQ(c.start_n2, 0.7902);
+  EXPECT_EQ(c.last_stop_m, 3.0);
+  EXPECT_TRUE(check_deco(*read)[0].ok());
+}
+
+TEST(DecoCaseFile, AltitudeAndWaterAreMadeIntoPressures) {
+  Json json = smallest_dive();
+  json["profiles"][0]["parameters"]["altitude_m"] = 1500;
+  json["profiles"][0]["parameters"]["water_density_kg_m3"] = 1000;
+  json["profiles"][0]["model"] = "ZH-L16C";
+  const auto read = read_deco_cases(json_text(json), "dives.json");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const DecoConventions& c = read->dives[0].request.conventions;
+  EXPECT_NEAR(c.environment.surface_bar, 0.845560048, 1e-9);
+  EXPECT_NEAR(c.environment.bar_per_m, 0.0980665, 1e-12);
+  EXPECT_EQ(c.first_compartment, FirstCompartment::k4Min);
+}
+
+TEST(DecoCaseFile, ARowOfSegmentsIsReadByTheNamesOfItsColumns) {
+  Json json = smallest_dive();
+  json["profiles"][0]["segments"] = {{"columns", {"minutes", "phase", "to_m", "from_m"}},
+                                     {"rows", Json::array({Json::array({1.5, "down", 30, 0})})}};
+  const auto read = read_deco_cases(json_text(json), "dives.json");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->dives[0].segments[0].to_m, 30.0);
+  EXPECT_EQ(read->dives[0].segments[0].minutes, 1.5);
+  EXPECT_EQ(read->dives[0].segments[0].mix, kAir);
+}
+
+// A history that is not told in words still has the tissues that it left.
+TEST(DecoCaseFile, WhatIsNotKnownIsLeftAlone) {
+  Json json = smallest_dive();
+  json["author"] = "someone";
+  json["profiles"][0]["parameters"]["suit"] = "dry";
+  EXPECT_EQ(fault_of(json), "read");
+}
+
+TEST(DecoCaseFile, WhatIsWrongIsSaidInOneLine) {
+  const std::string small = "dives.json: case 'small': ";
+  EXPECT_EQ(fault_of(Json::array()), "dives.json: a JSON object is accepted, none found");
+  EXPECT_EQ(fault_of(Json::object()),
+            "dives.json: profiles: no case found, a list of dives, or of ndl_tables, is accepted");
+  EXPECT_EQ(fault_with("/model", "VPM"),
+            small + "profiles[0].model: \"VPM\" found, a text with 16B or 16C is accepted");
+  EXPECT_EQ(fault_with("/model", nullptr), small + "profiles[0].model: not found, but needed");
+  EXPECT_EQ(fault_with("/parameters/gf_low", nullptr),
+            small + "profiles[0].parameters.gf_low: not found, but needed");
+  EXPECT_THAT(fault_with("/parameters/gf_low", "low"),
+              HasSubstr("\"low\" found, a number is accepted"));
+  EXPECT_THAT(fault_with("/parameters/gf_low", 2.0), HasSubstr("gradient factors 2/0.85 found"));
+  EXPECT_THAT(fault_with("/parameters/bar_per_metre", 0), HasSubstr("0 bar a metre found"));
+  EXPECT_THAT(fault_with("/parameters/last_stop_m", 5), HasSubstr("a multiple of 3 m"));
+  EXPECT_THAT(fault_with("/gases", Json::array()), HasSubstr("0 gases found"));
+  EXPECT_THAT(fault_with("/gases/0/o2", 0.21), HasSubstr("a number in [1, 100]"));
+  EXPECT_THAT(fault_with("/gases/0/he", 90), HasSubstr("100 in all are accepted"));
+  EXPECT_THAT(fault_with("/gases/0/n2", 78), HasSubstr("what is left of 100"));
+  EXPECT_THAT(fault_with("/gases/0/role", "spare"), HasSubstr("travel, bottom or deco"));
+  EXPECT_THAT(fault_with("/gases/0/role", "deco"), HasSubstr("0 bottom gases found"));
+  EXPECT_THAT(fault_with("/profile/depth_m", -3), HasSubstr("-3 found, a number in [0.01, 2000]"));
+  EXPECT_THAT(fault_with("/profile/kind", "wavy"), HasSubstr("square or multilevel"));
+  EXPECT_THAT(fault_with("/profile/kind", "multilevel"), HasSubstr("at least one level"));
+  EXPECT_THAT(fault_with("/profile/bottom_runtime_min", 1), HasSubstr("is reached after 1.5 min"));
+  EXPECT_THAT(fault_with("/initial_tissues", Json::array({1, 2})),
+              HasSubstr("16 rows of 2 numbers"));
+  EXPECT_THAT(fault_with("/reference/stops", 3), HasSubstr("a list is accepted"));
+  EXPECT_THAT(fault_with("/segments/rows", Json::array()),
+              HasSubstr("segments.columns: not found"));
+  EXPECT_THAT(fault_with("/repetitive/gap", 60), HasSubstr("no dive found; first_dive"));
+  EXPECT_THAT(fault_with("/repetitive/first_dive/depth_m", 20),
+              HasSubstr("first_dive.bottom_runtime_min: not found"));
+  EXPECT_THAT(
+      fault_with("/repetitive", Json::array({Json{{"depth_m", 20}, {"bottom_runtime_min", 20}}})),
+      HasSubstr("surface_interval_min: not found"));
+  Json twice = smallest_dive();
+  twice["profiles"].push_back(twice["profiles"][0]);
+  EXPECT_THAT(fault_of(twice), HasSubstr("'small' is there twice"));
+}
+
+TEST(DecoCaseFile, ACaseWithNothingToCompareDoesNotHold) {
+  Json json = smallest_dive();
+  json["profiles"][0].erase("reference");
+  const auto read = read_deco_cases(json_text(json), "dives.json");
+  ASSERT_TRUE(read.ok());
+  const CaseResult result = check_deco(*read)[0];
+  EXPECT_FALSE(result.ok());
+  EXPECT_EQ(result.worst().what, "nothing to compare");
+}
+
+}  // namespace
+}  // namespace neritic::diver

@@ -1,0 +1,169 @@
+// `neritic plan` and `neritic check deco`: what they print, write and refuse. The program itself is
+// run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct PlanSaid {
+  int status = -1;
+  std::string out, error;
+};
+
+PlanSaid said_by(const std::string& arguments) {
+  const test::ScratchFolder folder;
+  const std::string command = NERITIC_BINARY_DIR "/tools/neritic " + arguments + " > " +
+                              (folder / "out").string() + " 2> " + (folder / "error").string();
+  PlanSaid said;
+  const int raw = std::system(command.c_str());
+  said.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
+  said.out = read_text(folder / "out").value();
+  said.error = read_text(folder / "error").value();
+  return said;
+}
+
+std::string deco_file(const char* name) {
+  return (test::source_dir() / "tests/diver/data" / name).string();
+}
+
+TEST(PlanCommand, APlanIsPrintedAsADiverExpectsIt) {
+  const PlanSaid said = said_by("plan --gas 18/45 ean50 o2 --depth 60 --time 25 --gf 30/80");
+  EXPECT_EQ(said.status, 0) << said.error;
+  EXPECT_THAT(said.out, HasSubstr("60 m until 25 min on 18/45, EAN50 from 21 m, O2 from 6 m\n"));
+  EXPECT_THAT(said.out, HasSubstr("stop        33 m    1:00   28:42  18/45    0.78"));
+  EXPECT_THAT(said.out, HasSubstr("stop         3 m   14:00   73:42  O2       1.31"));
+  EXPECT_THAT(said.out, HasSubstr("stops 43:00 min, ascent 49:00 min, run time 74:00 min"));
+  EXPECT_THAT(said.out, HasSubstr("CNS 51 %, OTU 97, highest pO2 1.61 bar"));
+  EXPECT_THAT(said.out, HasSubstr("MOD of EAN50: 21.9 m at 1.6 bar"));
+  EXPECT_THAT(said.out, HasSubstr("WARNING: gas density 5.6 g/L on 18/45 at 60 m"));
+  EXPECT_THAT(said_by("plan --depth 18 --time 40").out,
+              HasSubstr("no stops are needed\nwithout stops: until 47 min"));
+}
+
+TEST(PlanCommand, FlagsChangeWhatTheyName) {
+  const auto stop_min = [](const std::string& with) {
+    const PlanSaid said = said_by("plan --depth 45 --time 25 --json " + with);
+    EXPECT_EQ(said.status, 0) << with << said.error;
+    const auto json = parse_json(said.out);
+    return json.ok() ? (*json)["total_stop_time_min"].get<double>() : -1.0;
+  };
+  EXPECT_EQ(stop_min(""), 37.0);
+  EXPECT_EQ(stop_min("--water salt"), 38.0);
+  EXPECT_EQ(stop_min("--water fresh"), 34.0);
+  EXPECT_EQ(stop_min("--water 1019.716"), 37.0);
+  EXPECT_EQ(stop_min("--surface 1.0"), 37.0);
+  EXPECT_EQ(stop_min("--table c"), 42.0);
+  EXPECT_EQ(stop_min("--last-stop 6"), 45.0);
+  EXPECT_EQ(stop_min("--descent-rate 18"), 36.0);
+  EXPECT_EQ(stop_min("--ascent-rate 9"), 37.0);
+  EXPECT_EQ(stop_min("--gf 100/100"), 20.0);
+  EXPECT_EQ(stop_min("--gf 30/70"), 56.0);
+  EXPECT_EQ(stop_min("--gas air ean50@24 --last-stop 6"), 22.0);
+  EXPECT_GT(stop_min("--altitude 2500"), 37.0);
+  EXPECT_GT(stop_min("--saturation 110/90"), 40.0);
+  EXPECT_GT(stop_min("--after 30,25,60"), 37.0);
+  EXPECT_GT(stop_min("--after 30,25,60 --after 30,25,60,ean32"),
+            stop_min("--after 30,25,60,ean32"));
+  EXPECT_GT(stop_min("--level 20,60"), 37.0);
+  EXPECT_NEAR(stop_min("--convention run-minutes"), 44.0, 4.0);
+}
+
+TEST(PlanCommand, JsonAndPicturesAreWritten) {
+  const test::ScratchFolder folder;
+  const PlanSaid said =
+      said_by("plan --gas 21/35 ean50 --depth 50 --time 25 --out " + (folder / "plan").string() +
+              " --plot " + (folder / "p.png").string());
+  EXPECT_EQ(said.status, 0) << said.error;
+  EXPECT_GT(std::filesystem::file_size(folder / "plan/plan.png"), 20000u);
+  EXPECT_GT(std::filesystem::file_size(folder / "p.png"), 20000u);
+  const auto json = parse_json(read_text(folder / "plan/plan.json").value()).value();
+  EXPECT_EQ(json["stops"].size(), 8u);
+  EXPECT_EQ(json["stops"][1]["gas"], "EAN50");
+  EXPECT_EQ(json["end_of_bottom"]["tissues_n2_he_bar"].size(), 16u);
+  EXPECT_NEAR(json["ndl_runtime_min"].get<double>(), 5.56838, 1e-5);
+}
+
+TEST(PlanCommand, ALogIsReplayedSampleBySample) {
+  const test::ScratchFolder folder;
+  std::string log = "time_s,depth_m,gas\n";
+  for (int s = 0; s <= 1800; s += 10)
+    log += fmt::format("{},{},ean32\n", s,
+                       s == 600 ? "nan"
+                       : s < 90 ? fmt::format("{}", s / 3)
+                                : "30");
+  ASSERT_TRUE(write_text(folder / "dive.csv", log).ok());
+  const PlanSaid said = said_by("plan --json --log " + (folder / "dive.csv").string() + " --out " +
+                                (folder / "out").string());
+  EXPECT_EQ(said.status, 0) << said.error;
+  const auto json = parse_json(said.out).value();
+  EXPECT_EQ(json["samples"], 181);
+  EXPECT_EQ(json["refused"], 1);
+  EXPECT_EQ(json["deepest_m"], 30.0);
+  EXPECT_GT(json["ceiling_m"].get<double>(), 0.0);
+  EXPECT_EQ(std::ranges::count(read_text(folder / "out/log.csv").value(), '\n'), 182);
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/log.png"));
+}
+
+TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
+  for (const auto& [arguments, error] :
+       {std::pair{"plan", "plan: --depth 0 and --time 0 found, both are needed (or --log)"},
+        {"plan --depth 30 --time 1", "30 m is reached after 1.5 min, but to be left at 1"},
+        {"plan --depth nan --time 20", "nan m until 20 min found"},
+        {"plan --depth 30 --time 20 --gas water", "gas 'water' found; air, o2, ean32"},
+        {"plan --depth 30 --time 20 --gas air ean50@deep", "--gas: 'deep' found, a number"},
+        {"plan --depth 30 --time 20 --gf 30", "--gf: '30' found, two percentages"},
+        {"plan --depth 30 --time 20 --gf 90/30", "gradient factors 0.9/0.3 found"},
+        {"plan --depth 30 --time 20 --convention best", "convention 'best' found; stop-minutes"},
+        {"plan --depth 30 --time 20 --water beer", "--water: 'beer' found; fresh, salt"},
+        {"plan --depth 30 --time 20 --altitude 90000", "--altitude 90000 found"},
+        {"plan --depth 30 --time 20 --last-stop 4", "last stop 4 m found, a multiple of 3 m"},
+        {"plan --depth 30 --time 20 --after 30,25", "--after: 2 numbers in '30,25' found"},
+        {"plan --depth 30 --time 20 --table z", "--table: 'z' found, b or c"},
+        {"plan --log nowhere.csv", "nowhere.csv: no such file"}}) {
+    const PlanSaid said = said_by(arguments);
+    EXPECT_EQ(said.status, 2) << arguments;
+    EXPECT_THAT(said.error, HasSubstr(error)) << arguments;
+    EXPECT_EQ(std::ranges::count(said.error, '\n'), 1) << arguments;
+    EXPECT_EQ(said.out, "") << arguments;
+  }
+}
+
+TEST(CheckDeco, ALineACaseAndItsStatus) {
+  const PlanSaid all = said_by("check deco " + deco_file("deco_vectors.json"));
+  EXPECT_EQ(all.status, 0) << all.error;
+  EXPECT_EQ(std::ranges::count(all.out, '\n'), 50);
+  EXPECT_EQ(said_by("check deco " + deco_file("deco_more.json")).status, 0);
+
+  const test::ScratchFolder folder;
+  nlohmann::json json = parse_json(read_text(deco_file("deco_vectors.json")).value()).value();
+  json["profiles"][3]["reference"]["stops"][5]["minutes"] = 23;
+  json["ndl_tables"] = {json["ndl_tables"][0]};
+  ASSERT_TRUE(write_json(folder / "wrong.json", json).ok());
+  const PlanSaid wrong = said_by("check deco --json " + (folder / "wrong.json").string());
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_THAT(wrong.error, HasSubstr("wrong.json: 1 of 27 cases do not hold"));
+  const auto result = parse_json(wrong.out).value();
+  EXPECT_EQ(result["failed"], 1);
+  EXPECT_EQ(result["cases"][3]["ok"], false);
+  EXPECT_EQ(result["cases"][3]["worst"]["what"], "stops");
+  EXPECT_NEAR(result["cases"][3]["worst"]["error"].get<double>(), 1.0, 1e-9);
+
+  ASSERT_TRUE(write_text(folder / "bad.json", "{\"profiles\": 3}").ok());
+  const PlanSaid bad = said_by("check deco " + (folder / "bad.json").string());
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.error, HasSubstr("bad.json: profiles: 3 found, a list is accepted\n"));
+}
+
+}  // namespace
+}  // namespace neritic::tools
