@@ -87,6 +87,13 @@ double read_interval(const CaseField& entry, const CaseField& around, std::size_
   return interval.number(0.0, 0.0, 1e9);
 }
 
+// What was dived before an earlier dive.
+void add_before(const CaseField& repetitive, const DivePlanRequest& base,
+                std::vector<EarlierCase>& out) {
+  const std::vector<EarlierCase> before = read_earlier(repetitive, base);
+  out.insert(out.end(), before.begin(), before.end());
+}
+
 // Dives by their ordinal names, with what is said beside them.
 std::vector<EarlierCase> read_ordinals(const CaseField& field, const DivePlanRequest& base) {
   constexpr std::array<const char*, 6> kOrdinals{"first_",  "second_", "third_",
@@ -96,6 +103,7 @@ std::vector<EarlierCase> read_ordinals(const CaseField& field, const DivePlanReq
     const std::string prefix = std::string(kOrdinals[i]) + "dive_";
     const CaseField dive = field[prefix.substr(0, prefix.size() - 1)];
     if (!dive.present()) break;
+    add_before(dive["repetitive"], base, out);
     out.push_back(read_earlier_dive(dive, field, prefix, base));
     out.back().earlier.surface_min = read_interval(dive, field, i);
     out.back().earlier.surface_gas = read_surface_gas(one_of(field["surface_interval_gas"], i));
@@ -126,8 +134,9 @@ std::vector<EarlierCase> read_list(const CaseField& list, const CaseField& aroun
       out.insert(out.end(), more.begin(), more.end());
       continue;
     }
-    const CaseField inner = entry["dive"];
-    EarlierCase one = read_earlier_dive(inner.present() ? inner : entry, entry, "", base);
+    const CaseField inner = entry["dive"], dive = inner.present() ? inner : entry;
+    add_before(dive["repetitive"], base, out);
+    EarlierCase one = read_earlier_dive(dive, entry, "", base);
     one.earlier.surface_min = read_interval(entry, around, i);
     const CaseField gas = entry["surface_interval_gas"];
     one.earlier.surface_gas =
@@ -170,7 +179,8 @@ std::vector<EarlierCase> read_earlier(const CaseField& repetitive, const DivePla
     // A list has nothing around it.
     return read_list(repetitive, repetitive.at(repetitive.size()), base);
   }
-  if (repetitive["first_dive"].present()) return read_ordinals(repetitive, base);
+  const CaseField first = repetitive["first_dive"];
+  if (first.present() && !first.is_array()) return read_ordinals(repetitive, base);
   for (const std::string& name : repetitive.keys())
     if (repetitive[name].is_array() && repetitive[name].at(0).is_object())
       return read_list(repetitive[name], repetitive, base);

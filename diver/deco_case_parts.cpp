@@ -1,7 +1,7 @@
 // Parameters, gases, levels (deco_case_parts.hpp).
 #include "diver/deco_case_parts.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 namespace neritic::diver {
@@ -30,9 +30,12 @@ void read_model(const CaseField& model, const CaseField& table, DecoConventions&
   const bool b = name.find("16B") != name.npos, c = name.find("16C") != name.npos;
   if (b == c) model.refuse("a text with 16B or 16C is");
   conventions.table = c ? BuehlmannTable::kC : BuehlmannTable::kB;
-  const std::string words = table.text();
-  const bool slow = words.find("compartment 1b") != words.npos || words.find("1b =") != words.npos;
-  const bool quick = words.find("compartment 1 ") != words.npos;
+  // "compartment 1b" or "compartment 1 ", and not "compartment 12".
+  const std::string words = table.text() + " ";
+  const std::string about = "compartment 1";
+  const std::size_t at = words.find(about);
+  const char next = at == words.npos ? '?' : words[at + about.size()];
+  const bool slow = next == 'b', quick = next == ' ' || next == ',' || next == ':' || next == '=';
   conventions.first_compartment =
       slow || (b && !quick) ? FirstCompartment::k5Min : FirstCompartment::k4Min;
 }
@@ -94,10 +97,17 @@ std::vector<PlanGas> read_gases(const CaseField& gases) {
 
 GasMix read_surface_gas(const CaseField& field) {
   const std::string text = field.text("air");
-  const std::string word = text.substr(0, text.find_first_of(" (,;"));
-  const auto mix = parse_mix(word);
-  if (!mix.ok()) field.refuse("a text that begins with air, O2, EAN32 or O2/He is");
-  return mix.ok() ? *mix : kAir;
+  // The first word that is a gas and no bare number.
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(" (),;", at), text.size());
+    const std::string_view word = std::string_view(text).substr(at, end - at);
+    const bool is_count = word.find_first_not_of("0123456789.") == word.npos;
+    const auto mix = parse_mix(word);
+    if (mix.ok() && !is_count) return *mix;
+    at = end + 1;
+  }
+  field.refuse("a text with air, O2, EAN32 or O2/He is");
+  return kAir;
 }
 
 std::vector<PlanLevel> read_levels(const CaseField& profile) {

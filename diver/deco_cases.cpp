@@ -101,6 +101,8 @@ Result<DecoCases> read_deco_cases(std::string_view text, std::string name) {
   DecoCases out;
   out.tissues_bar = root["tolerances"]["tissues_bar"].number(out.tissues_bar, 0.0, 1.0);
   out.ndl_min = root["tolerances"]["ndl_continuous_min"].number(out.ndl_min, 0.0, 10.0);
+  const CaseField stops = root["tolerances"]["stop_minutes"];
+  if (stops.is_number()) out.stop_min = stops.number(out.stop_min, 0.0, 1e6);
   const CaseField profiles = root["profiles"], tables = root["ndl_tables"];
   if (profiles.size() + tables.size() == 0 && !file.failed())
     profiles.fail("no case found, a list of dives, or of ndl_tables, is accepted");

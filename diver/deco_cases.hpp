@@ -3,7 +3,7 @@
 //
 // The form, as such files document it (JSON; bar, m, min; what is optional has its default in
 // brackets; what is not named here is ignored; of all that is expected, what is there is compared):
-//   tolerances: tissues_bar [1e-6], ndl_continuous_min [1e-3]
+//   tolerances: tissues_bar [1e-6], ndl_continuous_min [1e-3], stop_minutes [exact: 1e-3]
 //   profiles: a list of
 //     id; model: a text with 16B or 16C; coefficient_table: a text with "compartment 1b" or
 //       "compartment 1 " [1b for B, 1 for C]
@@ -23,7 +23,7 @@
 //       first_dive_runtime_min, tissues_at_surfacing, tissues_after_interval. Several: second_dive,
 //       third_dive, and so on likewise with surface_interval_min a list; or a list of dives, oldest
 //       first, as repetitive, or in it under any name, each with its own surface_interval_min and
-//       with stops, runtime_min and the tissues expected of it
+//       with stops, runtime_min and the tissues expected of it; or a dive has its own repetitive
 //     segments: columns (from_m, to_m, minutes, o2_percent, he_percent, phase) and rows: replayed
 //     reference: end_of_bottom, first_stop, stops, surfacing, and so on: expected
 //       (DecoExpected). A first stop shallower than last_stop_m stands for a planner that made it
@@ -116,7 +116,8 @@ struct NdlTable {
 };
 
 struct DecoCases {
-  double tissues_bar = 1e-6, ndl_min = 1e-3;  // tolerances
+  // Tolerances. Stops are exact where they differ by less than this.
+  double tissues_bar = 1e-6, ndl_min = 1e-3, stop_min = 1e-3;
   std::vector<DecoCase> dives;
   std::vector<NdlTable> tables;
 };

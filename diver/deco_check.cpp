@@ -102,7 +102,8 @@ class DiveCheck {
         return false;
       }
       if (one.stops)
-        errors_.add("earlier stops", "min", stop_error(plans[0].stops, *one.stops), kSameStop_min);
+        errors_.add("earlier stops", "min", stop_error(plans[0].stops, *one.stops),
+                    tolerances_.stop_min);
       errors_.add("earlier run time", "min", plans[0].run_min(), one.run_min, kRunTime_min);
       tissues("tissues at earlier surfacing", plans[0].surfacing.tissues, one.surfacing);
       tissues("tissues after the interval", *after, one.after_interval);
@@ -161,7 +162,7 @@ class DiveCheck {
     const DecoExpected& e = one_.expected;
     if (e.no_stops) errors_.add("no stops", "", plan.no_stops ? 1.0 : 0.0, e.no_stops, 0.5);
     if (!e.stops) return;
-    errors_.add("stops", "min", stop_error(plan.stops, *e.stops), kSameStop_min);
+    errors_.add("stops", "min", stop_error(plan.stops, *e.stops), tolerances_.stop_min);
     for (std::size_t i = 0; i < std::min(plan.stops.size(), e.stops->size()); ++i) {
       const PlanStop& found = plan.stops[i];
       const ExpectedStop& expected = (*e.stops)[i];
@@ -178,7 +179,7 @@ class DiveCheck {
 
   void check_times(const DivePlanRequest&, const DivePlan& plan) {
     const DecoExpected& e = one_.expected;
-    errors_.add("stops", "min", plan.stop_min(), e.stop_min, kSameStop_min);
+    errors_.add("stops", "min", plan.stop_min(), e.stop_min, tolerances_.stop_min);
     errors_.add("run time", "min", plan.ascent_min(), e.ascent_min, kRunTime_min);
     errors_.add("run time", "min", plan.run_min(), e.run_min, kRunTime_min);
     // Files sum over steps of 1 s, here it is in closed form; they differ most where the limit is

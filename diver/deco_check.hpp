@@ -8,9 +8,6 @@
 
 namespace neritic::diver {
 
-// Stops are exact where they differ by less than this.
-inline constexpr double kSameStop_min = 1e-3;
-
 // A result a case: the dives, then the tables of times without stops.
 std::vector<CaseResult> check_deco(const DecoCases& cases);
 

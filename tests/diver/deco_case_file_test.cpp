@@ -78,6 +78,67 @@ TEST(DecoCaseFile, WhatIsNotKnownIsLeftAlone) {
   EXPECT_EQ(fault_of(json), "read");
 }
 
+// Ways to say the same three dives before a fourth; deco_more.json has four more.
+TEST(DecoCaseFile, EarlierDivesAreToldInManyWays) {
+  const Json more = parse_json(deco_text("deco_more.json")).value();
+  Json dive;
+  for (const Json& one : more["profiles"])
+    if (one["id"] == "three_earlier_air_list") dive = one;
+  const Json list = dive["repetitive"];
+  ASSERT_EQ(list.size(), 3u);
+  Json nested = {{"first_dive", list[2]}};
+  nested["first_dive"]["repetitive"] = {{"first_dive", list[1]}};
+  nested["first_dive"]["repetitive"]["first_dive"]["repetitive"] = {{"first_dive", list[0]}};
+  Json entries = Json::array();
+  for (const Json& one : list)
+    entries.push_back({{"dive", one}, {"surface_interval_min", one["surface_interval_min"]}});
+  for (const Json& told : {Json{{"first_dive", list}}, Json{{"history", entries}}, nested}) {
+    dive["repetitive"] = told;
+    dive.erase("initial_tissues");
+    const auto read = read_deco_cases(json_text({{"profiles", {dive}}}), "dives.json");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->dives[0].earlier.size(), 3u);
+    const CaseResult result = check_deco(*read)[0];
+    EXPECT_TRUE(result.ok()) << told << ": " << result.worst().what;
+    Json later = dive;  // and the intervals count
+    later["repetitive"] = told;
+    const Json::json_pointer interval(
+        told.contains("history")        ? "/history/1/surface_interval_min"
+        : told["first_dive"].is_array() ? "/first_dive/0/surface_interval_min"
+                                        : "/first_dive/repetitive/first_dive/surface_interval_min");
+    ASSERT_TRUE(later["repetitive"].contains(interval));
+    later["repetitive"][interval] = 5;
+    const auto wrong = read_deco_cases(json_text({{"profiles", {later}}}), "dives.json");
+    EXPECT_FALSE(check_deco(*wrong)[0].ok());
+  }
+}
+
+TEST(DecoCaseFile, GasesOfAnIntervalAndTheFirstCompartmentAreFoundInWords) {
+  const auto gas_of = [](const char* words) {
+    Json json = smallest_dive();
+    json["profiles"][0]["repetitive"] = {
+        {"first_dive", {{"depth_m", 20}, {"bottom_runtime_min", 30}}},
+        {"surface_interval_min", 60},
+        {"surface_interval_gas", words}};
+    const auto read = read_deco_cases(json_text(json), "dives.json");
+    EXPECT_TRUE(read.ok()) << read.error().message;
+    return read.ok() ? read->dives[0].earlier[0].earlier.surface_gas : GasMix{0.0, 0.0};
+  };
+  EXPECT_EQ(gas_of("air 21/0 (N2 0.79), surface pressure, Schreiner with R=0"), kAir);
+  EXPECT_EQ(gas_of("60 min of oxygen"), (GasMix{1.0, 0.0}));
+  EXPECT_EQ(gas_of("50/0"), (GasMix{0.5, 0.0}));
+  const auto first_of = [](const char* words) {
+    Json json = smallest_dive();
+    json["profiles"][0]["coefficient_table"] = words;
+    return read_deco_cases(json_text(json), "dives.json")
+        ->dives[0]
+        .request.conventions.first_compartment;
+  };
+  EXPECT_EQ(first_of("N2 a column B, compartment 1b = 5.0/1.88 min"), FirstCompartment::k5Min);
+  EXPECT_EQ(first_of("N2 a column B, compartment 1 = 4.0/1.51 min"), FirstCompartment::k4Min);
+  EXPECT_EQ(first_of("see compartment 12"), FirstCompartment::k5Min);
+}
+
 TEST(DecoCaseFile, WhatIsWrongIsSaidInOneLine) {
   const std::string small = "dives.json: case 'small': ";
   EXPECT_EQ(fault_of(Json::array()), "dives.json: a JSON object is accepted, none found");

@@ -12,9 +12,9 @@
 namespace neritic::bench {
 
 // The last two need no device.
-inline constexpr std::string_view kGroups[] = {"sonar_binning", "sonar_frame", "sonar_terms",
-                                               "camera_frame",  "sweep",       "start",
-                                               "threads",       "physics",     "contacts"};
+inline constexpr std::string_view kGroups[] = {
+    "sonar_binning", "sonar_frame", "sonar_terms", "camera_frame", "sweep",
+    "deco",          "start",       "threads",     "physics",      "contacts"};
 inline constexpr std::size_t kGroupsWithoutDevice = 2;
 
 Status bench_physics(Suite& suite);                             // vehicles, hand-off of states

@@ -102,6 +102,29 @@ std::string table_text(const PlanReport& r) {
   return out;
 }
 
+// The deepest moment, and what is breathed there.
+struct DeepestMoment {
+  double depth_m = 0.0;
+  diver::GasMix mix;
+};
+DeepestMoment deepest_of(const PlanReport& r) {
+  DeepestMoment deepest;
+  for (const PlanSegment& s : r.plan.segments)
+    if (s.to_m > deepest.depth_m) deepest = {s.to_m, r.request.gases[s.gas].mix};
+  return deepest;
+}
+
+std::string depth_text(const PlanReport& r) {
+  const auto [depth, mix] = deepest_of(r);
+  const diver::DecoEnvironment& where = r.request.conventions.environment;
+  const double air = diver::air_depth_m(mix, depth, where);
+  std::string out = fmt::format("at {:g} m: gas density {:.1f} g/L, END {:.1f} m", depth,
+                                diver::gas_density_g_l(mix, where.pressure_bar(depth)),
+                                diver::narcotic_depth_m(mix, depth, where));
+  if (mix.helium > 0.0) return out + fmt::format(" ({:.1f} by nitrogen alone)\n", air);
+  return mix == diver::kAir ? out + "\n" : out + fmt::format(", EAD {:.1f} m\n", air);
+}
+
 std::string sums_text(const PlanReport& r) {
   const DivePlan& plan = r.plan;
   std::string out = "\n";
@@ -124,6 +147,7 @@ std::string sums_text(const PlanReport& r) {
       plan.oxygen.cns_percent, plan.oxygen.otu, plan.max_po2_bar,
       100.0 * diver::gradient_share(r.request.conventions.model(), plan.surfacing.tissues,
                                     r.request.conventions.environment.surface_bar));
+  out += depth_text(r);
   for (const diver::PlanGas& gas : r.request.gases) {
     const bool deco = gas.role == diver::GasRole::kDeco;
     const double limit = deco ? 1.6 : 1.4;
@@ -216,6 +240,13 @@ std::string plan_json(const PlanReport& r) {
   json["cns_percent"] = plan.oxygen.cns_percent;
   json["otu"] = plan.oxygen.otu;
   json["max_po2_bar"] = plan.max_po2_bar;
+  const auto [depth, mix] = deepest_of(r);
+  const diver::DecoEnvironment& where = r.request.conventions.environment;
+  json["deepest"] = {{"depth_m", depth},
+                     {"gas", diver::name_of(mix)},
+                     {"gas_density_g_l", diver::gas_density_g_l(mix, where.pressure_bar(depth))},
+                     {"end_m", diver::narcotic_depth_m(mix, depth, where)},
+                     {"end_n2_m", diver::air_depth_m(mix, depth, where)}};
   json["ndl_runtime_min"] = nullptr;  // none, or without limit
   if (r.without_stops_min >= 0.0 && r.without_stops_min < diver::kNoLimit_min)
     json["ndl_runtime_min"] = r.without_stops_min;
