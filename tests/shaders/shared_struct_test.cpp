@@ -106,7 +106,7 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(SonarEcho, columns_per_rad),
         MEMBER(SonarEcho, solid_angle),
         MEMBER(SonarEcho, cell_per_range),
-        MEMBER(SonarEcho, cell_largest_m)}},
+        MEMBER(SonarEcho, tan_half_column)}},
       {"SonarRecord",
        {MEMBER(SonarRecord, bin), MEMBER(SonarRecord, counts), MEMBER(SonarRecord, label),
         MEMBER(SonarRecord, ends)}},
