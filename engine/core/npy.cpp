@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/core/files.hpp"
+#include "engine/core/text.hpp"
 
 namespace neritic {
 namespace {
@@ -178,7 +179,7 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
                                 [&](const TypeRow& r) { return type_name == r.name; });
   if (row == kTypes.end())
     return bad_input("{}: element type {}; <f4 <f8 |u1 <u2 <u4 <i2 <i4 <i8 |b1 are accepted", name,
-                     quoted_start(descr));
+                     neritic::printable(quoted_start(descr)));
   array.type = row->type;
   if (!value_of(header, "fortran_order").starts_with("False"))
     return bad_input("{}: Fortran order; save it with numpy.ascontiguousarray", name);
