@@ -20,7 +20,7 @@ constexpr double kMetre_pa = 1e4;  // of sea water, as tables for divers count
 // and 6.2 g/L (Anthony and Mitchell 2016), severe a third above. Breaths a minute: above 25 a sign
 // of panic.
 constexpr double kCo2_mmhg[] = {45.0, 50.0, 60.0};
-constexpr double kNarcotic_m[] = {30.0, 40.0, 60.0};
+constexpr double kNarcoticDepths_m[] = {30.0, 40.0, 60.0};
 constexpr double kDensity_kg_m3[] = {5.2, 6.2, 8.3};
 constexpr double kFastBreath_bpm[] = {25.0, 30.0, 40.0};
 constexpr double kPause_s[] = {5.0, 15.0, 30.0};  // skip breathing: pauses from 5 s
@@ -77,7 +77,7 @@ RiskProxies assess_risk(const RiskProxies& before, const RiskInput& in) {
   out.narcotic_depth_m =
       std::max(0.0, (in.ambient_pa * (1.0 - in.helium) - in.surface_pa) / kMetre_pa);
   out.co2 = level_of(out.co2_mmhg, kCo2_mmhg);
-  out.narcosis = level_of(out.narcotic_depth_m, kNarcotic_m);
+  out.narcosis = level_of(out.narcotic_depth_m, kNarcoticDepths_m);
   out.gas_density = level_of(in.gas_density_kg_m3, kDensity_kg_m3);
   out.breathing =
       std::max(level_of(in.breath_rate_bpm, kFastBreath_bpm), level_of(in.pause_s, kPause_s));

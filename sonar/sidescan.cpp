@@ -17,7 +17,7 @@
 namespace neritic::sonar {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoGround = std::numeric_limits<double>::quiet_NaN();
 
 // Leading edge of the bottom in bins from the first bin's beginning; NaN where there is none. The
 // bin's filled part is its value over the next one's.
@@ -25,11 +25,11 @@ double bottom_bins(std::span<const float> line, const SidescanOptions& o) {
   const std::vector<float> profile = above_floor(line, o.floor_by_bin);
   float strongest = 0.0f;
   for (const float v : profile) strongest = std::max(strongest, v);
-  if (!(strongest > o.floor)) return kNone;
+  if (!(strongest > o.floor)) return kNoGround;
   const double level = std::max(o.relative_threshold * percentile_of_heard(profile, 0.95), o.floor);
   const auto at =
       std::find_if(profile.begin(), profile.end(), [&](float v) { return v > 0.0f && v >= level; });
-  if (at == profile.end()) return kNone;
+  if (at == profile.end()) return kNoGround;
   const double start = static_cast<double>(at - profile.begin());
   if (at + 1 == profile.end() || !(*(at + 1) > 0.0f)) return start + 0.5;
   return start + 1.0 - std::min(1.0, double{*at} / double{*(at + 1)});
@@ -38,7 +38,7 @@ double bottom_bins(std::span<const float> line, const SidescanOptions& o) {
 // Median of those that are numbers, the lower of two; NaN for none.
 double median(std::vector<double> values) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
-  if (values.empty()) return kNone;
+  if (values.empty()) return kNoGround;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

@@ -8,14 +8,14 @@
 namespace neritic::sonar {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoTerrain = std::numeric_limits<double>::quiet_NaN();
 
 // errors is reordered.
 TerrainError summary(std::vector<double>& errors) {
   TerrainError out;
   out.count = errors.size();
   if (errors.empty()) {
-    out.rms_m = out.mean_m = out.p95_m = out.max_m = kNone;
+    out.rms_m = out.mean_m = out.p95_m = out.max_m = kNoTerrain;
     return out;
   }
   const double n = static_cast<double>(errors.size());
@@ -56,7 +56,7 @@ TrueDepth true_depth(std::shared_ptr<const scene::Heightfield> field, const Vec3
                  row = (z_m - position_m.z) / field->cell_m + 0.5 * (field->rows - 1.0);
     if (!(column >= 0.0 && row >= 0.0 && column <= field->columns - 1.0 &&
           row <= field->rows - 1.0))
-      return kNone;
+      return kNoTerrain;
     const auto c = std::min(static_cast<std::size_t>(column), std::size_t{field->columns} - 2),
                r = std::min(static_cast<std::size_t>(row), std::size_t{field->rows} - 2);
     const auto height = [&](std::size_t dc, std::size_t dr) {

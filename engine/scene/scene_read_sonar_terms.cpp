@@ -16,7 +16,7 @@ constexpr Interval kGain{-120, 120, false, false, "decibels"};
 // From a tenth of deep water's least in 1 Hz to a ship at arm's length.
 constexpr Interval kNoiseLevel{-60, 200, false, false, "decibels"};
 constexpr Interval kSpeed{100, 10000, false, false, "m/s"};
-constexpr Interval kFraction{0, 1};
+constexpr Interval kTermFraction{0, 1};
 
 constexpr TableFormat kGainTable{
     "range_m, db", {0, 1e6, false, false, "metres"}, {-120, 200, false, false, "decibels"}};
@@ -39,7 +39,7 @@ void refuse_beside(TableReader& reader, Key key, std::string_view what) {
   if (reader.has(key)) reader.refuse(key, fmt::format("no such key {}", what));
 }
 
-SonarWater read_water(TableReader& reader) {
+SonarWater read_sonar_water(TableReader& reader) {
   SonarWater water;
   water.temperature_c = reader.number("temperature_c", water.temperature_c,
                                       {-4, 60, false, false, "degrees Celsius"});
@@ -175,7 +175,7 @@ SonarNoise read_noise(TableReader& reader) {
     return noise;
   }
   noise.wind_m_s = reader.number("wind_m_s", noise.wind_m_s, {0, 60, false, false, "m/s"});
-  noise.shipping = reader.number("shipping", noise.shipping, kFraction);
+  noise.shipping = reader.number("shipping", noise.shipping, kTermFraction);
   if (reader.has("self_db")) noise.self_db = reader.number("self_db", 0.0, kNoiseLevel);
   return noise;
 }
@@ -186,9 +186,9 @@ SonarGhosts read_ghosts(TableReader& reader) {
   if (reader.has("bottom_m"))
     ghosts.bottom_m = reader.number("bottom_m", 0.0, {0, 12000, true, false, "metres"});
   ghosts.surface_reflection =
-      reader.number("surface_reflection", ghosts.surface_reflection, kFraction);
+      reader.number("surface_reflection", ghosts.surface_reflection, kTermFraction);
   ghosts.bottom_reflection =
-      reader.number("bottom_reflection", ghosts.bottom_reflection, kFraction);
+      reader.number("bottom_reflection", ghosts.bottom_reflection, kTermFraction);
   if (!ghosts.surface) refuse_beside(reader, "surface_reflection", "without surface = true");
   if (!ghosts.bottom_m) refuse_beside(reader, "bottom_reflection", "without bottom_m");
   if (!ghosts.surface && !ghosts.bottom_m)
@@ -240,7 +240,7 @@ SonarDetection read_detection(TableReader& reader) {
     detection.threshold = reader.number("threshold", 0.0, {0, 1, true, false});
   if (reader.has("floor_db"))
     detection.floor_db = reader.number("floor_db", 0.0, {-60, 120, false, false, "decibels"});
-  detection.quality = reader.number("quality", detection.quality, kFraction);
+  detection.quality = reader.number("quality", detection.quality, kTermFraction);
   detection.pings = static_cast<std::uint32_t>(reader.whole("pings", detection.pings, 1, 999));
   if (detection.pings % 2 == 0) reader.refuse("pings", "an odd number");
   return detection;
@@ -265,7 +265,7 @@ void check_together(TableReader& reader, const SonarTerms& terms) {
 void read_sonar_terms(TableReader& reader, SonarTerms& terms) {
   terms.frequency_hz = reader.number("frequency_hz", terms.frequency_hz, kFrequency);
   terms.water =
-      read_term<SonarWater>(reader, "water", kSonarWaterKeys, read_water).value_or(SonarWater{});
+      read_term<SonarWater>(reader, "water", kSonarWaterKeys, read_sonar_water).value_or(SonarWater{});
   terms.level = read_term<SonarLevel>(reader, "level", kSonarLevelKeys, read_level);
   terms.beam =
       read_term<SonarBeam>(reader, "beam", kSonarBeamKeys, read_beam).value_or(SonarBeam{});

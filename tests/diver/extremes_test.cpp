@@ -13,7 +13,7 @@
 namespace neritic::diver {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 const Quat kLevel(1.0, 0.0, 0.0, 0.0);
 
@@ -183,7 +183,7 @@ TEST(DiverExtremes, ABurstOfButtonPresses) {
 
 TEST(DiverExtremes, WhatIsNoNumberIsRefusedCountedAndHeld) {
   const Body body = body_with(Gear{});
-  for (const double bad : {kNan, kInf, -kInf, 1e300}) {
+  for (const double bad : {kNotANumber, kInf, -kInf, 1e300}) {
     HumanState state = start_in(body, 15.0);
     HumanInputs good;
     good.joints = rotations_of(streamlined(body));
@@ -213,13 +213,13 @@ TEST(DiverExtremes, WhatIsNoNumberIsRefusedCountedAndHeld) {
 TEST(DiverExtremes, StepsThatAreNoneMoveNothing) {
   const Body body = body_with(Gear{});
   const HumanState state = start_in(body, 15.0);
-  for (const double dt : {0.0, -1.0, kNan, kInf, 11.0}) {
+  for (const double dt : {0.0, -1.0, kNotANumber, kInf, 11.0}) {
     const HumanState next = step(body, state, state.held, dt);
     EXPECT_EQ(next.refused_inputs, 1u);
     EXPECT_EQ(next.root.position_ned_m, state.root.position_ned_m);
   }
   HumanState moved = state;
-  EXPECT_FALSE(teleport(moved, {kNan, 0.0, 0.0}, kLevel));
+  EXPECT_FALSE(teleport(moved, {kNotANumber, 0.0, 0.0}, kLevel));
   EXPECT_FALSE(teleport(moved, {0.0, 0.0, 0.0}, Quat(0.0, 0.0, 0.0, 0.0)));
   EXPECT_TRUE(sim::same_bits(moved, state));
 }
