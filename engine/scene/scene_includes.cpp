@@ -113,7 +113,7 @@ class Includer {
     std::error_code error;
     if (!fs::is_regular_file(path, error))
       return bad_input("{}: include: {}: {}", source_.place(written.where),
-                       printable(path.empty() ? written.text : path.string(), 300),
+                       printable(path.string(), 300),
                        fs::exists(path, error) ? "not a plain file" : "no such file");
     for (const fs::path& open : chain_)
       if (fs::equivalent(open, path, error)) return loop(written, path);

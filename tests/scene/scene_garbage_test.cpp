@@ -29,7 +29,7 @@ TEST(SceneInclude, AWrongKeyInAnIncludedFileIsToldWithThatFilesLine) {
 TEST(SceneInclude, WhatIsNoFileIsRefused) {
   const test::ScratchFolder scratch;
   EXPECT_EQ(message_of(scratch, "include = 'no.toml'"), "s.toml:1: include: no.toml: no such file");
-  EXPECT_EQ(message_of(scratch, "include = '.'"), "s.toml:1: include: .: not a plain file");
+  EXPECT_EQ(message_of(scratch, "include = '.'"), "s.toml:1: include: : not a plain file");
   EXPECT_EQ(message_of(scratch, "include = 3"),
             "s.toml:1: include: found 3; accepted: the path of a TOML file, or a list of such");
   EXPECT_EQ(message_of(scratch, "include = [3]"),
