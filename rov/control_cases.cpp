@@ -137,6 +137,8 @@ void read_plant(const CaseField& loop, LoopCase& out) {
   out.min_n = -number_after(plant, "/-", -kT200Min16V);
   if (!(out.lag_s > 0.0) || !(out.max_n > 0.0) || !(out.min_n < 0.0))
     loop["plant"].refuse("\"... lag 0.1 s, force limits +51.436/-39.908 N\" is");
+  const std::string map = loop["map"].text("tau=M_RB*u");
+  if (map.find("M_RB*u") == map.npos) loop["map"].refuse("\"tau=M_RB*u, F=scale(pinv tau)\" is");
 }
 
 // "surge_2m", "depth_+1m", "yaw_90deg"

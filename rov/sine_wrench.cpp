@@ -7,6 +7,8 @@ namespace neritic::rov {
 namespace {
 
 constexpr std::string_view kAxes = "XYZKMN";
+constexpr double kMostSine = 1e9;      // N, N m
+constexpr double kMostSineRate = 1e6;  // rad/s
 
 enum class Member { kAmplitude, kAxis, kRadS, kHertz, kPeriod, kPhase, kPhaseDeg, kNote, kUnknown };
 
@@ -109,14 +111,20 @@ SineWrench read_row(const CaseField& row, std::optional<std::size_t> axis) {
   return out;
 }
 
-}  // namespace
+// [amplitude, omega, phase]: six numbers first, then six each or one for all.
+SineWrench read_columns(const CaseField& field) {
+  SineWrench out;
+  out.amplitude = six(field.at(0), 1.0);
+  out.rad_s = six(field.at(1), 1.0);
+  if (field.size() > 2) out.phase_rad = six(field.at(2), 1.0);
+  return out;
+}
 
-std::vector<SineWrench> read_sines(const CaseField& field) {
-  if (!field.present()) return {};
-  if (field.is_object()) return {read_object(field)};
-  if (!field.is_array()) field.refuse("an object, or a list of them, is");
+std::vector<SineWrench> read_list(const CaseField& field) {
   std::vector<SineWrench> out;
-  const std::size_t count = field.size();  // fails where it is no list
+  const std::size_t count = field.size();
+  if ((count == 2 || count == 3) && field.at(0).is_array() && field.at(0).size() == 6)
+    return {read_columns(field)};
   bool rows_of_axes = count == 6;
   for (std::size_t i = 0; i < count; ++i)
     rows_of_axes = rows_of_axes && field.at(i).is_array() && field.at(i).size() <= 3;
@@ -127,6 +135,20 @@ std::vector<SineWrench> read_sines(const CaseField& field) {
     else
       out.push_back(read_row(item, rows_of_axes ? std::optional(i) : std::nullopt));
   }
+  return out;
+}
+
+}  // namespace
+
+std::vector<SineWrench> read_sines(const CaseField& field) {
+  if (!field.present()) return {};
+  if (!field.is_object() && !field.is_array()) field.refuse("an object, or a list of them, is");
+  const std::vector<SineWrench> out =
+      field.is_object() ? std::vector{read_object(field)} : read_list(field);
+  for (const SineWrench& sine : out)
+    for (std::size_t i = 0; i < 6; ++i)
+      if (!(std::abs(sine.amplitude[i]) <= kMostSine && std::abs(sine.rad_s[i]) <= kMostSineRate))
+        field.refuse("amplitudes up to 1e9 and frequencies up to 1e6 rad/s are");
   return out;
 }
 

@@ -5,7 +5,8 @@
 //   amp..., A, tau...: the amplitude, six numbers, or one with axis: 0 to 5, or X Y Z K M N
 //   omega..., w, ...rad...: rad/s; or f..., ...hz: Hz; or period..., T: s. One number, or six
 //   ph...: phase, rad, or degrees where the name says deg. One number, or six [0]
-// or as rows [axis, amplitude, omega, phase], or as six rows [amplitude, omega, phase], phase [0].
+// or as rows [axis, amplitude, omega, phase], as six rows [amplitude, omega, phase], or as columns
+// [amplitudes, omega, phase] of six numbers; phase [0].
 #pragma once
 
 #include <vector>

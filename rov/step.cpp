@@ -8,10 +8,8 @@
 namespace neritic::rov {
 namespace {
 
-constexpr double kMostForce = 1e9;      // N, N m
-constexpr double kMostCurrent = 100.0;  // m/s
-constexpr double kMostDistance = 1e9;   // m
-constexpr double kLongestStep = 10.0;   // s
+constexpr double kMostDistance = 1e9;  // m
+constexpr double kLongestStep = 10.0;  // s
 
 // Rate times substep at which RK4 errs by about 1e-6 of a motion (measured by `tradeoff physics`);
 // the lag is exact and only has to be sampled.
@@ -46,7 +44,8 @@ void take_inputs(const Inputs& in, State& state) {
   take(good(in.wrench), in.wrench, held.wrench, refused);
   for (std::size_t i = 0; i < kMaxThrusters; ++i)
     take(std::abs(in.thruster_n[i]) <= kMostForce, in.thruster_n[i], held.thruster_n[i], refused);
-  take(good(in.current_ned_m_s, kMostCurrent), in.current_ned_m_s, held.current_ned_m_s, refused);
+  take(good(in.current_ned_m_s, kMostCurrent_m_s), in.current_ned_m_s, held.current_ned_m_s,
+       refused);
   take(good(in.tether_anchor_ned_m, kMostDistance), in.tether_anchor_ned_m,
        held.tether_anchor_ned_m, refused);
   held.failed_thrusters = in.failed_thrusters;

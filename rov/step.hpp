@@ -35,9 +35,13 @@ struct VaryingWrench {
   const void* context = nullptr;
 };
 
-// Inputs that are not finite, or beyond any vehicle's (forces 1e9, currents 100 m/s), are refused:
-// the last good value is held (at first zero) and state.refused_inputs counts it. So is a dt
-// outside (0, 10] s: then nothing moves. What is returned is finite if the state was.
+// No vehicle's inputs are larger.
+inline constexpr double kMostForce = 1e9;  // N, N m
+inline constexpr double kMostCurrent_m_s = 100.0;
+
+// Inputs that are not finite, or larger than these, are refused: the last good value is held (at
+// first zero) and state.refused_inputs counts it. So is a dt outside (0, 10] s: then nothing moves.
+// What is returned is finite if the state was.
 State step(const Vehicle& vehicle, const State& state, const Inputs& inputs, double dt_s,
            Integrator integrator = Integrator::kGuarded, const VaryingWrench& varying = {});
 

@@ -1,10 +1,13 @@
 #include "rov/trajectory_cases.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include "rov/bluerov2.hpp"
+#include "rov/step.hpp"
 #include "rov/thrust_curve.hpp"
 
 namespace neritic::rov {
@@ -12,12 +15,26 @@ namespace {
 
 constexpr double kDefaultLag = 0.1;  // s, that of the closed loops of control_vectors.json
 constexpr double kLongest = 1e5;     // s
+constexpr double kMostSpeed = 1e3;   // m/s, rad/s
 
-Vec6 vec6_of(const CaseField& field) {
+// step() would refuse an input beyond most, and the case tell of another flight.
+void within(const CaseField& field, std::span<const double> values, double most) {
+  if (!std::ranges::all_of(values, [&](double x) { return std::abs(x) <= most; }))
+    field.refuse(fmt::format("numbers in [-{0:g}, {0:g}] are", most));
+}
+
+Vec6 vec6_of(const CaseField& field, double most) {
   const std::vector<double> v = field.numbers(6);
+  within(field, v, most);
   Vec6 out;
   std::copy(v.begin(), v.end(), out.v.begin());
   return out;
+}
+
+Vec3 vec3_of(const CaseField& field, double most) {
+  const Vec3 v = field.vec3(Vec3(0.0));
+  within(field, std::array{v.x, v.y, v.z}, most);
+  return v;
 }
 
 Mat6 matrix6(const CaseField& field) {
@@ -41,7 +58,7 @@ VehicleParameters read_parameters(const CaseField& field) {
   p.buoyancy_n = field["B_N"].number(p.weight_n);
   p.added_mass = matrix6(field["M_A"]);
   p.linear_damping = matrix6(field["D_L"]);
-  p.quadratic_damping = vec6_of(field["D_Q_diag"]);
+  p.quadratic_damping = vec6_of(field["D_Q_diag"], kMostForce);
   return p;
 }
 
@@ -54,23 +71,23 @@ std::vector<Thruster> read_thrusters(const CaseField& field) {
   const auto positions = field.required("position_frd_m").rows(0, 3);
   const auto directions = field.required("direction_frd").rows(positions.size(), 3);
   std::vector<Thruster> out;
-  for (std::size_t i = 0; i < directions.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(positions.size(), directions.size()); ++i) {
     const auto &p = positions[i], &d = directions[i];
     out.push_back({{p[0], p[1], p[2]}, {d[0], d[1], d[2]}});
   }
   return out;
 }
 
-// A number whose name says that it is a lag's time constant.
+// A number whose name says that it is a lag's time constant. Texts about a lag are notes.
 std::optional<double> find_lag_time(const CaseField& place) {
   for (const std::string& key : place.keys()) {
     const CaseField field = place[key];
-    const bool named = key == "T" || key == "T_s" || key.ends_with("_T") || key.ends_with("_T_s") ||
-                       key.find("lag") != key.npos || key.find("time_const") != key.npos;
-    if (!named) continue;
-    if (field.is_number()) return field.number(kDefaultLag, 1e-6, 1e6);
-    if (field.is_object())
-      if (const auto inner = find_lag_time(field)) return inner;
+    const bool is_time =
+        key == "T" || key.starts_with("T_") || key.ends_with("_T") || key.ends_with("_T_s");
+    const bool about_lag = key.find("lag") != key.npos || key.find("time_const") != key.npos;
+    if (!field.present() || !(is_time || (about_lag && !field.is_text()))) continue;
+    if (!field.is_object()) return field.number(kDefaultLag, 1e-6, 1e6);
+    if (const auto inner = find_lag_time(field)) return inner;
   }
   return std::nullopt;
 }
@@ -98,7 +115,11 @@ bool read_mode(const CaseField& scenario, const CaseField& thrusters, ThrusterLa
 std::vector<double> read_forces(const CaseField& scenario, std::size_t segment, std::size_t count,
                                 const std::filesystem::path& folder) {
   const CaseField given = scenario["input_segments"].at(segment)["thruster_force_cmd_N"];
-  if (given.present()) return given.numbers(count);
+  if (given.present()) {
+    const std::vector<double> forces = given.numbers(count);
+    within(given, forces, kMostForce);
+    return forces;
+  }
   if (const CaseField volts = scenario["input_normalised_V"]; volts.present()) {
     std::vector<double> forces = volts.at(segment).required_numbers(count);
     std::ranges::transform(forces, forces.begin(), von_benzon_thrust_n);
@@ -127,7 +148,7 @@ void read_segments(const CaseField& scenario, bool thrust, const std::filesystem
     if (!(segment.t1_s > segment.t0_s)) at["t1"].refuse("a time after t0 is");
     if (!out.segments.empty() && segment.t0_s < out.segments.back().t1_s)
       at["t0"].refuse("a time not before the last segment's t1 is");
-    segment.wrench = vec6_of(at["tau_body"]);
+    segment.wrench = vec6_of(at["tau_body"], kMostForce);
     segment.sines = read_sines(at["tau_sin"]);
     const auto forces = read_forces(scenario, i, out.vehicle.thruster_count, folder);
     if (thrust) std::ranges::copy(forces, segment.thruster_n.begin());
@@ -157,7 +178,7 @@ void read_samples(const CaseField& scenario, TrajectoryCase& out) {
       at["t"].refuse("a time after the last sample's is");
     if (at["p_ned"].present()) sample.position_ned_m = at["p_ned"].vec3(Vec3(0.0));
     sample.attitude = read_attitude(at["q_wxyz"]);
-    if (at["nu_frd"].present()) sample.velocity = vec6_of(at["nu_frd"]);
+    if (at["nu_frd"].present()) sample.velocity = vec6_of(at["nu_frd"], kMostForce);
     sample.thruster_n = at["thruster_force_N"].present()
                             ? at["thruster_force_N"].numbers(out.vehicle.thruster_count)
                             : std::vector<double>();
@@ -197,11 +218,11 @@ TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseFi
     return out;
   }
   out.vehicle = *vehicle;
-  out.current_ned_m_s = scenario["current_ned_mps"].vec3(Vec3(0.0));
+  out.current_ned_m_s = vec3_of(scenario["current_ned_mps"], kMostCurrent_m_s);
   const CaseField initial = scenario["initial"];
-  out.position_ned_m = initial["p_ned"].vec3(Vec3(0.0));
+  out.position_ned_m = vec3_of(initial["p_ned"], kMostForce);
   out.attitude = read_attitude(initial["q_wxyz"]).value_or(Quat(1.0, 0.0, 0.0, 0.0));
-  out.velocity = vec6_of(initial["nu_frd"]);
+  out.velocity = vec6_of(initial["nu_frd"], kMostSpeed);
   out.sines = read_sines(scenario["tau_sin"]);
   read_segments(scenario, thrust, folder, out);
   read_samples(scenario, out);

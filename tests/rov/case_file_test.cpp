@@ -60,6 +60,12 @@ TEST(RovCaseFile, Lag1FindsItsTimeConstant) {
   one["params"].erase("lag1_T_s");
   json["thrusters"]["lag1_T_s"] = 0.4;
   EXPECT_EQ(time_of(json), 0.4);
+  json["thrusters"]["lag1"] = "dF/dt=(F_cmd-F)/T, F(0)=0";  // a note, not a time
+  EXPECT_EQ(time_of(json), 0.4);
+  one["T_thruster"] = 0.5;
+  EXPECT_EQ(time_of(json), 0.5);
+  one["T"] = "quick";  // not passed over
+  EXPECT_THAT(fault(json), HasSubstr("scenarios[0].T: \"quick\" found, a number in"));
   one["T"] = -1.0;
   EXPECT_THAT(fault(json), HasSubstr("case 'small': scenarios[0].T: -1.0 found"));
 }
@@ -72,7 +78,9 @@ TEST(RovCaseFile, SinesAreReadInEveryForm) {
       R"({"amplitude_N": 3, "index": 0, "frequency_rad_s": 2, "phase_rad": 0.5})",
       R"([{"amp": [3, 0, 0, 0, 0, 0], "period_s": 3.141592653589793, "phase_rad": 0.5}])",
       R"([["X", 3, 2, 0.5]])",
-      R"([[3, 2, 0.5], [0, 1], [0, 1], [0, 1], [0, 1], [0, 1]])"};
+      R"([[3, 2, 0.5], [0, 1], [0, 1], [0, 1], [0, 1], [0, 1]])",
+      R"([[3, 0, 0, 0, 0, 0], [2, 1, 1, 1, 1, 1], [0.5, 0, 0, 0, 0, 0]])",
+      R"([[3, 0, 0, 0, 0, 0], 2, 0.5])"};
   for (const char* form : forms) {
     Json json = smallest();
     json["scenarios"][0]["tau_sin"] = parse_json(form).value();
@@ -135,6 +143,18 @@ TEST(RovCaseFile, FaultsAreSaidInOneLine) {
       {"/scenarios/0/tau_sin", "{\"amp\": [1, 1, 1, 1, 1, 1]}", "tau_sin: no frequency found"},
       {"/scenarios/0/tau_sin", "{\"omega\": 1, \"colour\": 1}", "tau_sin.colour: not known"},
       {"/scenarios/0/input_segments", "[{\"t0\": 1, \"t1\": 1}]", "[0].t1: 1 found, a time after"},
+      {"/scenarios/0/tau_sin", "7", "tau_sin: 7 found, an object, or a list of them, is"},
+      {"/scenarios/0/tau_sin", "[[\"X\", 1e10, 1]]", "amplitudes up to 1e9 and frequencies up"},
+      {"/scenarios/0/input_segments",
+       "[{\"t0\": 0, \"t1\": 1, \"tau_body\": [0, 2e9, 0, 0, 0, 0]}]",
+       "tau_body: [0,2000000000.0,0,0,0,0] found, numbers in [-1e+09, 1e+09] are accepted"},
+      {"/scenarios/0/current_ned_mps", "[0, 101, 0]", "[0,101,0] found, numbers in [-100, 100]"},
+      {"/thrusters", "{\"direction_frd\": [[0, 0, 1]]}",
+       "thrusters.position_frd_m: not found, but"},
+      {"/thrusters", "{\"position_frd_m\": 5, \"direction_frd\": [[0, 0, 1]]}",
+       "thrusters.position_frd_m: 5 found"},
+      {"/thrusters", "{\"position_frd_m\": [[0, 0, 0]], \"direction_frd\": []}",
+       "thrusters.direction_frd: [] found, 1 rows of 3 numbers"},
       {"/thrusters", "{\"position_frd_m\": [[0, 0, 0]], \"direction_frd\": [[0, 0, 0]]}",
        "thrusters[0].direction: (0, 0, 0) found, a unit vector is accepted"}};
   for (const Fault& f : faults) {
@@ -159,6 +179,7 @@ TEST(RovCaseFile, FaultsOfControlAreSaidInOneLine) {
       {"/allocation/B_6x8", "[[1]]", "allocation.B_6x8: [[1]] found, 6 rows of 1 numbers"},
       {"/allocation/fmax", "-1", "allocation.fmax: -1 found, a number in [0, 1000000000] is"},
       {"/allocation/cases/2/tau", "[1]", "case 'allocation/2': allocation.cases[2].tau: [1] fou"},
+      {"/closed_loop/map", "\"tau=M*u\"", "closed_loop.map: \"tau=M*u\" found, \"tau=M_RB*u, F"},
       {"/closed_loop/gains/KP", "[1]", "closed_loop.gains.KP: [1] found, a list of six numbers"},
       {"/closed_loop/results", "{\"mars/surge_2m\": {\"t90\": 1}}", "a name that begins with neu"},
       {"/closed_loop/results", "{\"sea/dance\": {\"t90\": 1}}", "case 'sea/dance'"},
