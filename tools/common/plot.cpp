@@ -132,7 +132,9 @@ void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const 
     draw_notes(canvas, in, s, x, y, taken);
     const double width = Canvas::text_width(kTextPx, s.name);
     canvas.text(in.right - 4 - width, legend_y + 4, kTextPx, s.name, kInk);
-    canvas.segment(in.right - 38 - width, legend_y, in.right - 14 - width, legend_y, 2.4, s.color);
+    const double mark = in.right - (s.joined ? 38.0 : 26.0) - width;
+    canvas.segment(mark, legend_y, s.joined ? in.right - 14 - width : mark, legend_y,
+                   s.joined ? 2.4 : 4.0, s.color);
     legend_y += 18;
   }
 }

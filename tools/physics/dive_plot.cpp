@@ -17,8 +17,8 @@ constexpr double kMiddleX = 800.0, kMiddleY = 640.0;
 constexpr std::size_t kMostPoints = 1500;
 // The ground's shading is of cells so wide.
 constexpr int kCell_px = 3;
-// Height above the lowest ground that is seen at which it is darkest.
-constexpr double kDarkest_m = 8.0;
+// The ground is darkest at the highest of what is seen, but not where that is lower than this.
+constexpr double kLeastRelief_m = 2.0;
 
 // One a thruster, eight that tell apart (Okabe and Ito 2008, darkened for lines on paper), then
 // again, paler.
@@ -102,7 +102,7 @@ void draw_ground(sonar::Canvas& canvas, const Box& in, const Axis& x, const Axis
     double left, top, height_m;
   };
   std::vector<Cell> cells;
-  double lowest_m = std::numeric_limits<double>::infinity();
+  double lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m;
   for (double top = in.top; top < in.bottom; top += kCell_px)
     for (double left = in.left; left < in.right; left += kCell_px) {
       const double east = x.min + (left - in.left) / (in.right - in.left) * (x.max - x.min);
@@ -111,12 +111,14 @@ void draw_ground(sonar::Canvas& canvas, const Box& in, const Axis& x, const Axis
       if (!hit) continue;
       cells.push_back({left, top, kAbove_m - hit->distance_m});
       lowest_m = std::min(lowest_m, cells.back().height_m);
+      highest_m = std::max(highest_m, cells.back().height_m);
     }
+  const double relief_m = std::max(highest_m - lowest_m, kLeastRelief_m);
   for (const Cell& cell : cells) {
-    const double dark = std::clamp((cell.height_m - lowest_m) / kDarkest_m, 0.0, 1.0);
+    const double dark = (cell.height_m - lowest_m) / relief_m;
     canvas.fill_rectangle(cell.left, cell.top, std::min(cell.left + kCell_px, in.right),
                           std::min(cell.top + kCell_px, in.bottom),
-                          kInk.with_alpha(static_cast<float>(0.04 + 0.4 * dark)));
+                          kInk.with_alpha(static_cast<float>(0.03 + 0.6 * dark)));
   }
 }
 
