@@ -12,7 +12,7 @@ namespace neritic::rov {
 struct MeasuredRate {
   double hz;           // of kGuarded, which stays stable where plain RK4 would not
   double error_m;      // the largest distance from the true path, with and without lag
-  double us_a_second;  // of one core (two shared Xeon cores), lag included
+  double us_a_second;  // of one core (a shared Xeon core), lag included
 };
 // From the cheapest to the best. Below 80 Hz the guard takes as many substeps and nothing is saved.
 std::span<const MeasuredRate> measured_rates();

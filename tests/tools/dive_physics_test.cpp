@@ -51,9 +51,10 @@ mission = { waypoints = [ { position_m = [0, -6, -2] }, { position_m = [1, -7, -
     ASSERT_TRUE(write_text(scratch_ / "still.toml", "[[objects]]\nshape = \"box\"\n").ok());
   }
 
-  Outcome dive(const std::string& arguments, const std::string& name = "dive.toml") {
+  Outcome dive(const std::string& arguments, const std::string& name = "dive.toml",
+               const std::string& under = kNoDevice) {
     const int raw =
-        std::system(fmt::format("{} '{}/tools/neritic' dive '{}' {} > '{}' 2> '{}'", kNoDevice,
+        std::system(fmt::format("{} '{}/tools/neritic' dive '{}' {} > '{}' 2> '{}'", under,
                                 NERITIC_BINARY_DIR, (scratch_ / name).string(), arguments,
                                 (scratch_ / "out").string(), (scratch_ / "err").string())
                         .c_str());
@@ -137,6 +138,25 @@ TEST_F(DivePhysics, KeepsTheClocksPaceWhenToldTo) {
   EXPECT_GT((*json)["wall_s"].get<double>(), 0.98);
 }
 
+// Ctrl-C, and what `kill` sends: what was flown until then is written, and replays.
+TEST_F(DivePhysics, InterruptedItWritesWhatItHas) {
+  for (const char* signal : {"INT", "TERM"}) {
+    const Outcome outcome =
+        dive("--headless --realtime --seconds 600 --log " + file("a.csv") + " --record " +
+                 file("a.log") + " --plot " + file("a.png"),
+             "dive.toml", fmt::format("timeout --preserve-status -s {} 1.5", signal));
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_EQ(outcome.err.rfind("neritic: interrupted after 1.", 0), 0u) << outcome.err;
+    EXPECT_NE(outcome.err.find(" s of 600; all until then is written\n"), std::string::npos);
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_NE(outcome.out.find("hash "), std::string::npos) << outcome.out;
+    const auto columns = table("a.csv");
+    EXPECT_GT(columns.at("time_s").size(), 25u);
+    EXPECT_TRUE(scene::read_image8(scratch_ / "a.png", 3).ok());
+    EXPECT_EQ(dive("--headless --replay " + file("a.log")).status, 0);
+  }
+}
+
 TEST_F(DivePhysics, DrawsItsPlotAndKeepsTheRateOfItsRows) {
   const Outcome outcome = dive("--headless --seconds 4 --log-rate 10 --log " + file("a.csv") +
                                " --plot " + file("a.png"));
@@ -186,7 +206,9 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
        "--json: accepted with --headless and without flags of pictures"},
       {"--headless --replay none.log", "dive.toml", "none.log"},
       {"--headless --replay a.log --log x.csv", "dive.toml",
-       "--replay: accepted without --log, --plot, --record, --realtime, --json"},
+       "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --realtime, "},
+      {"--headless --replay a.log --seconds 10", "dive.toml",
+       "--replay: accepted without --seconds"},
       {"--headless --seconds 1e7", "dive.toml", "--seconds: 10000000; up to 1e+06 is accepted"},
       {"--headless --log-rate -1", "dive.toml",
        "--log-rate: -1; a number from 0 to 10000 is accepted"}};

@@ -7,6 +7,7 @@
 #include "engine/core/json.hpp"
 #include "rov/frames.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/neritic/interrupts.hpp"
 #include "tools/physics/dive_plot.hpp"
 #include "tools/physics/dive_record.hpp"
 
@@ -37,12 +38,14 @@ std::string physics_flag(const DiveFlags& flags) {
 struct Pace {
   double wall_s = 0.0;
   std::uint64_t dropped = 0;
+  bool interrupted = false;
 };
 
 // As fast as it can, or each step when it is due.
 Pace run_steps(PhysicsSimulation& simulation, DiveRecorder& recorder, const DiveFlags& flags,
-               double seconds, double step_s) {
-  constexpr int kCatchUp = 4;  // as the live program's
+               double seconds, double step_s, const Interrupts& interrupts) {
+  constexpr int kCatchUp = 4;                  // as the live program's
+  constexpr std::uint64_t kStepsUnasked = 32;  // under a millisecond of work
   const auto steps = static_cast<std::uint64_t>(std::ceil(seconds / step_s - 1e-9));
   sim::HostClock clock;
   const TimeNs begun_ns = clock.now();
@@ -50,7 +53,10 @@ Pace run_steps(PhysicsSimulation& simulation, DiveRecorder& recorder, const Dive
   Progress progress("second", static_cast<std::uint64_t>(std::ceil(seconds)));
   double told_s = 0.0;
   recorder.add(simulation.newest());
+  Pace pace;
   for (std::uint64_t done = 0; done < steps;) {
+    if (flags.realtime || done % kStepsUnasked == 0) pace.interrupted = interrupts.came();
+    if (pace.interrupted) break;
     std::uint64_t now = 1;
     if (flags.realtime) {
       clock.wait_until(pacer.next_ns());
@@ -63,7 +69,9 @@ Pace run_steps(PhysicsSimulation& simulation, DiveRecorder& recorder, const Dive
     }
     for (; told_s + 1.0 <= simulation.newest().time_s; told_s += 1.0) progress.step();
   }
-  return {static_cast<double>(clock.now() - begun_ns) * 1e-9, pacer.counts().dropped};
+  pace.wall_s = static_cast<double>(clock.now() - begun_ns) * 1e-9;
+  pace.dropped = pacer.counts().dropped;
+  return pace;
 }
 
 std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& state,
@@ -167,9 +175,12 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
                      flags.scene);
   if (!flags.headless || draws(flags))
     return bad_input("{}: accepted with --headless and without flags of pictures", flag);
-  if (!flags.replay.empty() && (!flags.log.empty() || !flags.record.empty() || flags.realtime ||
-                                !flags.plot.empty() || flags.json))
-    return bad_input("--replay: accepted without --log, --plot, --record, --realtime, --json");
+  if (!flags.replay.empty() &&
+      (!flags.log.empty() || !flags.record.empty() || flags.realtime || !flags.plot.empty() ||
+       flags.json || flags.seconds > 0.0 || flags.log_rate_hz > 0.0))
+    return bad_input(
+        "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --realtime, "
+        "--json; it runs as long as the recording");
   return {};
 }
 
@@ -182,13 +193,18 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
   const auto simulation = world->simulation({.readers = 0, .log = true, .seed = scene.seed});
   DiveRecorder recorder(*world, {.rows = !flags.log.empty() || !flags.plot.empty(),
                                  .row_rate_hz = flags.log_rate_hz});
-  const Pace pace = run_steps(*simulation, recorder, flags, seconds, world->step_s());
+  const Interrupts interrupts;
+  const Pace pace = run_steps(*simulation, recorder, flags, seconds, world->step_s(), interrupts);
   if (!flags.log.empty())
     NERITIC_TRY_STATUS(write_text(flags.log, csv_of(*world, recorder.rows())));
   if (!flags.plot.empty()) NERITIC_TRY_STATUS(write_dive_plot(flags.plot, *world, recorder.rows()));
   if (!flags.record.empty())
     NERITIC_TRY_STATUS(sim::write_input_log(flags.record, simulation->log()));
   print_summary(flags, *world, *simulation, recorder, pace);
+  if (pace.interrupted)
+    return failure(ErrorCode::kUnsupported,
+                   "interrupted after {:.4g} s of {:g}; all until then is written",
+                   simulation->newest().time_s, seconds);
   return {};
 }
 
