@@ -20,6 +20,7 @@ struct Seen {
   Mat4 origin_from_primitive;
   std::uint32_t deformed;
   bool mirrored;
+  bool hides_back_faces;
   double order_m;
 };
 
@@ -37,6 +38,27 @@ constexpr std::uint32_t kLeastSaved = 3 * 256;  // indices
 // the centre. By the centre alone the seabed under the eye would come last, or first.
 double nearness(double center_m, double radius_m) {
   return std::max(0.0, center_m - radius_m) + 1e-3 * center_m;
+}
+
+// True where no near plane's corner of any view comes to the box of a closed primitive.
+bool all_eyes_outside(const ViewSet& views, const GpuPrimitive& primitive,
+                      const Mat4& origin_from_primitive) {
+  const Mat4 primitive_from_origin = glm::inverse(origin_from_primitive);
+  const double shrink = largest_scale(primitive_from_origin);
+  const double size_m =
+      glm::length(Vec3(origin_from_primitive[3])) +
+      largest_scale(origin_from_primitive) * (glm::length(primitive.center_m) + primitive.radius_m);
+  return std::all_of(views.views.begin(), views.views.end(), [&](const ViewDesc& view) {
+    const Vec3 eye_m = view.world_from_view.position_m - views.origin_m();
+    const FrustumTangents& t = view.tangents;
+    const Vec3 corner(std::max(std::abs(t.left), std::abs(t.right)),
+                      std::max(std::abs(t.bottom), std::abs(t.top)), 1.0);
+    const double reach_m =
+        view.near_m * glm::length(corner) + kFloatError * (size_m + glm::length(eye_m));
+    const Vec3 at = Vec3(primitive_from_origin * Vec4(eye_m, 1.0)) - primitive.center_m;
+    const Vec3 beyond = glm::max(glm::abs(at) - primitive.half_m, Vec3(0.0));
+    return glm::length(beyond) > reach_m * shrink;  // NaN, of a flattened one, is not
+  });
 }
 
 class DrawListBuilder {
@@ -114,7 +136,9 @@ class DrawListBuilder {
       // The Frobenius norm of a turn without scale is sqrt(3): near enough for an order.
       const double order_m =
           blend ? center_m : nearness(center_m, primitive.radius_m * stretch / std::sqrt(3.0));
-      seen.push_back({&a, m, deformed, glm::determinant(glm::dmat3(m)) < 0.0, order_m});
+      const bool hides =
+          options_.hide_back_faces && primitive.closed && all_eyes_outside(views_, primitive, m);
+      seen.push_back({&a, m, deformed, glm::determinant(glm::dmat3(m)) < 0.0, hides, order_m});
     }
     return seen;
   }
@@ -132,9 +156,10 @@ class DrawListBuilder {
         if (!part) out_.ranges.push_back({primitive.first_index, primitive.index_count});
         draws.push_back({&primitive, static_cast<std::uint32_t>(out_.instances.size()), 0,
                          first_range, static_cast<std::uint32_t>(out_.ranges.size()) - first_range,
-                         s.deformed, s.mirrored, order_m});
+                         s.deformed, s.mirrored, true, order_m});
       }
       joins = !part;
+      draws.back().hides_back_faces &= s.hides_back_faces;
       ++draws.back().instance_count;
       add_instance(primitive, s);
       if (primitive.topology != scene::Topology::kTriangles) continue;

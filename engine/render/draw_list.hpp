@@ -16,7 +16,8 @@ struct Draw {
   std::uint32_t first_range = 0, range_count = 0;  // of DrawList::ranges
   std::uint32_t deformed = kNone;                  // first vertex in the deformed stream
   bool mirrored = false;                           // negative determinant: front faces turn round
-  double order_m = 0.0;  // see nearness(); of blended ones the centre's distance
+  bool hides_back_faces = false;  // closed, and every eye is outside: see closed_surface.hpp
+  double order_m = 0.0;           // see nearness(); of blended ones the centre's distance
 };
 
 struct DrawList {
@@ -31,6 +32,9 @@ struct DrawList {
 
 struct DrawListOptions {
   bool clusters = true;  // false: every instance whole, for comparison; no bit of a picture differs
+  // false: solids' back faces too, for comparison; pixels at their outlines differ, where rounding
+  // puts a back before its front.
+  bool hide_back_faces = true;
   // Objects of this class are left out; 0: none are.
   std::uint16_t without_class = 0;
 };

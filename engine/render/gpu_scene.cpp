@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/render/closed_surface.hpp"
 #include "engine/render/gpu_scene_geometry.hpp"
 #include "engine/render/gpu_scene_materials.hpp"
 
@@ -51,6 +52,10 @@ class GpuSceneBuilder {
           NERITIC_TRY(const std::uint32_t material,
                       materials.material_of(m, p.material, !p.colors.empty()));
           out_.groups_.push_back({geometry.add(p, material), {}});
+          GpuPrimitive& added = out_.groups_.back().primitive;
+          added.closed = shows_both_sides(*scene_.models[m], p) && !added.deforms() &&
+                         added.topology == scene::Topology::kTriangles &&
+                         is_closed(p.positions, p.indices);
         }
       }
     }
@@ -74,6 +79,12 @@ class GpuSceneBuilder {
   }
 
  private:
+  // To a sonar everything does.
+  bool shows_both_sides(const scene::Model& model, const scene::Primitive& p) const {
+    return !scene_.sonars.empty() ||
+           (p.material >= 0 && model.materials[static_cast<std::size_t>(p.material)].double_sided);
+  }
+
   void add_node(std::size_t object_index, const scene::Object& object, const scene::Model& model,
                 int n) {
     const scene::Node& node = model.nodes[static_cast<std::size_t>(n)];

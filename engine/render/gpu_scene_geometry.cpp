@@ -81,7 +81,8 @@ GpuPrimitive GeometryBuilder::add(const scene::Primitive& p, std::uint32_t mater
   add_morphs(g, p);
   if (!p.bounds.empty()) {
     g.center_m = (p.bounds.min + p.bounds.max) * 0.5;
-    g.radius_m = glm::length(p.bounds.max - p.bounds.min) * 0.5;
+    g.half_m = (p.bounds.max - p.bounds.min) * 0.5;
+    g.radius_m = glm::length(g.half_m);
   }
   return g;
 }

@@ -84,8 +84,10 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
                                  motion && stage != RasterStage::kGeometry,
                                  emissive && stage == RasterStage::kSurface, view_mask,
                                  stage == RasterStage::kGeometry ? 0u : material.flags}));
-    // A sonar hears both sides of a sheet; a camera culls as the material says.
-    const bool both_sides = kind == GBufferKind::kGeometry || material.double_sided;
+    // A sonar hears both sides of a sheet, a camera sees those that the material has; a solid's
+    // back is behind its front, unless that lets light through.
+    const bool solid = draw.hides_back_faces && !material.mask && !forward;
+    const bool both_sides = !solid && (kind == GBufferKind::kGeometry || material.double_sided);
     prepared.draws.push_back({draw,
                               std::span(list.ranges).subspan(draw.first_range, draw.range_count),
                               pipeline, stage != RasterStage::kGeometry, both_sides, &material});
