@@ -57,7 +57,7 @@ void set_flutter(JointAngles& joints, const Body& body, const FlutterKick& kick,
 
 JointAngles streamlined(const Body& body) {
   JointAngles joints{};
-  joints[joint_of(kHead)].y = radians(30.0);
+  joints[joint_of(kHead)].y = radians(40.0);
   for (const Segment foot : {kLeftFoot, kRightFoot})
     joints[joint_of(foot)].y = -(0.5 * kPi - tip_angle(body));
   return joints;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "diver/deco_live.hpp"
 #include "diver/jacket.hpp"
 #include "diver/lungs.hpp"
 #include "diver/motion.hpp"
@@ -41,6 +42,9 @@ struct LifeState {
   double jacket_moles = 0.0;
   double limb_power_w = 0.0;  // mechanical, over the last second or so
   double limb_work_j = 0.0;   // so far
+  // Tissues and oxygen, as a dive computer of the same breath and depth has them; step() carries
+  // them along, and who has the computer steps them (deco_live.hpp).
+  DiveComputerState computer;
 
   static void fields(auto&& field, auto& self) {
     field("lungs", self.lungs);
@@ -48,6 +52,7 @@ struct LifeState {
     field("jacket_moles", self.jacket_moles);
     field("limb_power_w", self.limb_power_w);
     field("limb_work_j", self.limb_work_j);
+    field("computer", self.computer);
   }
 };
 

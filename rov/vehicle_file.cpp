@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/case_toml.hpp"
 #include "engine/core/files.hpp"
 #include "rov/bluerov2.hpp"
 #include "rov/sensor_file.hpp"
-#include "rov/vehicle_toml.hpp"
 
 namespace neritic::rov {
 namespace {
@@ -37,6 +37,7 @@ constexpr std::string_view kVehicleKeys[] = {"name",
                                              "compass",
                                              "altimeter",
                                              "usbl"};
+constexpr std::string_view kPathKeys[] = {"thrust_table"};
 constexpr std::string_view kLagKeys[] = {"kind", "time_s", "a2", "a1", "a0", "b1"};
 constexpr std::string_view kThrusterKeys[] = {"name", "position_m", "direction", "min_n", "max_n"};
 constexpr std::string_view kTetherKeys[] = {"attachment_m",   "length_m",        "diameter_m",
@@ -157,7 +158,7 @@ void read_gains(const CaseField& field, ControlGains& gains) {
 
 Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name,
                                   const std::filesystem::path& folder, double water_kg_m3) {
-  NERITIC_TRY(CaseFile file, parse_vehicle_toml(text, name, folder));
+  NERITIC_TRY(CaseFile file, parse_case_toml(text, name, folder, kPathKeys));
   const CaseField root = file.root();
   root.allow(kVehicleKeys);
   VehicleFile out;

@@ -12,6 +12,7 @@ namespace neritic::render {
 namespace {
 
 scene::ModelPose pose_of(const scene::Object& object, const scene::Model& model, double time_s) {
+  if (object.node_motion) return scene::evaluate_pose(model, *object.node_motion, time_s);
   return scene::evaluate_pose(model, object.clip, object.clip_offset_s + time_s * object.clip_rate);
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "engine/scene/node_motion.hpp"
+
 namespace neritic::scene {
 namespace {
 
@@ -180,25 +182,24 @@ void add_node(const Model& model, const ModelPose& pose, int index, std::size_t&
   }
 }
 
-}  // namespace
-
-ModelPose evaluate_pose(const Model& model, int clip, double time_s, bool loop) {
+// All nodes as the file has them.
+std::vector<LocalPose> rest_pose(const Model& model, std::vector<std::vector<float>>& weights) {
   const std::size_t n = model.nodes.size();
-  ModelPose pose;
-  pose.morph_weights.resize(n);
+  weights.resize(n);
   std::vector<LocalPose> locals(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Node& node = model.nodes[i];
     locals[i] = {node.translation_m, node.scale, node.rotation};
     if (node.mesh >= 0)
-      pose.morph_weights[i] = node.weights.empty() ? model.meshes[node.mesh].weights : node.weights;
+      weights[i] = node.weights.empty() ? model.meshes[node.mesh].weights : node.weights;
   }
-  if (clip >= 0 && static_cast<std::size_t>(clip) < model.clips.size()) {
-    const Clip& chosen = model.clips[clip];
-    apply_clip(chosen, clip_time(time_s, chosen.duration_s, loop), locals, pose.morph_weights);
-  }
+  return locals;
+}
+
+std::vector<Mat4> matrices_of(const Model& model, const std::vector<LocalPose>& locals) {
+  const std::size_t n = model.nodes.size();
   // Parents before children, without recursion: hierarchies may be thousands deep.
-  pose.model_from_node.resize(n);
+  std::vector<Mat4> model_from_node(n);
   std::vector<int> open;
   for (std::size_t i = 0; i < n; ++i)
     if (model.nodes[i].parent < 0) open.push_back(static_cast<int>(i));
@@ -207,9 +208,35 @@ ModelPose evaluate_pose(const Model& model, int clip, double time_s, bool loop) 
     open.pop_back();
     const Node& node = model.nodes[i];
     const Mat4 local = node.matrix ? *node.matrix : matrix_of(locals[i]);
-    pose.model_from_node[i] = node.parent < 0 ? local : pose.model_from_node[node.parent] * local;
+    model_from_node[i] = node.parent < 0 ? local : model_from_node[node.parent] * local;
     open.insert(open.end(), node.children.begin(), node.children.end());
   }
+  return model_from_node;
+}
+
+}  // namespace
+
+ModelPose evaluate_pose(const Model& model, int clip, double time_s, bool loop) {
+  ModelPose pose;
+  std::vector<LocalPose> locals = rest_pose(model, pose.morph_weights);
+  if (clip >= 0 && static_cast<std::size_t>(clip) < model.clips.size()) {
+    const Clip& chosen = model.clips[clip];
+    apply_clip(chosen, clip_time(time_s, chosen.duration_s, loop), locals, pose.morph_weights);
+  }
+  pose.model_from_node = matrices_of(model, locals);
+  return pose;
+}
+
+ModelPose evaluate_pose(const Model& model, const NodeMotion& motion, double time_s) {
+  ModelPose pose;
+  std::vector<LocalPose> locals = rest_pose(model, pose.morph_weights);
+  const NodeMotion::Key key = key_at(motion, time_s);
+  for (std::size_t i = 0; i < motion.nodes.size(); ++i) {
+    LocalPose& local = locals[static_cast<std::size_t>(motion.nodes[i])];
+    local.rotation = key.rotations[i];
+    local.scale = key.scales[i];
+  }
+  pose.model_from_node = matrices_of(model, locals);
   return pose;
 }
 

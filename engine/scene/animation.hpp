@@ -14,9 +14,13 @@ struct ModelPose {
   std::vector<std::vector<float>> morph_weights;  // one a node; empty where its mesh has no targets
 };
 
+struct NodeMotion;
+
 // The pose at time_s of clip (an index, or -1 for the rest pose). Time wraps at the clip's duration
 // where loop, else it is clamped. A NaN time counts as 0.
 ModelPose evaluate_pose(const Model& model, int clip, double time_s, bool loop = true);
+// The pose at time_s of nodes that something else moves, the others at rest.
+ModelPose evaluate_pose(const Model& model, const NodeMotion& motion, double time_s);
 
 // The clip of that name; -1 where there is none.
 int find_clip(const Model& model, std::string_view name);

@@ -81,6 +81,21 @@ struct Dynamics {
   std::optional<Vec3> tether_anchor_m;
 };
 
+// Where a diver swims: from point to point, each counting as reached within acceptance_m. At the last
+// one, unless it repeats, the diver stays.
+struct SwimPlan {
+  std::vector<Vec3> waypoints_m;
+  double speed_m_s = 0.4;  // through the water
+  double acceptance_m = 1.5;
+  bool repeat = false;
+};
+
+// What makes an object a diver who swims by moving limbs.
+struct Human {
+  std::filesystem::path file;    // body and gear
+  std::optional<SwimPlan> swim;  // absent: hovers
+};
+
 // Whether vehicles can touch an object, and as what.
 enum class Collision { kNone, kMesh, kHull };
 

@@ -66,6 +66,8 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "mission",
                                                         "failed_thrusters",
                                                         "tether_anchor_m",
+                                                        "human",
+                                                        "swim",
                                                         "cameras",
                                                         "sonars",
                                                         "lamps"});
@@ -89,6 +91,8 @@ inline constexpr auto kMissionWaypointKeys =
 inline constexpr auto kOrbitKeys =
     std::to_array<Key>({"object", "point_m", "radius_m", "speed_m_s"});
 inline constexpr auto kFollowKeys = std::to_array<Key>({"object", "offset_m"});
+inline constexpr auto kSwimKeys =
+    std::to_array<Key>({"waypoints_m", "speed_m_s", "acceptance_m", "repeat"});
 inline constexpr auto kStandBetweenKeys = std::to_array<Key>({"a", "b", "distance_m"});
 
 inline constexpr auto kScatterKeys =

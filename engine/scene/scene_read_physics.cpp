@@ -16,8 +16,8 @@ constexpr Interval kAnySeconds{-1e9, 1e9, false, false, "seconds"};
 // As many as vehicles can have.
 constexpr std::size_t kMaxFailedThruster = 16;
 
-constexpr Key kPhysicsOnly[] = {"collision", "dynamics", "mission", "failed_thrusters",
-                                "tether_anchor_m"};
+constexpr Key kPhysicsOnly[] = {"collision",       "dynamics", "mission", "failed_thrusters",
+                                "tether_anchor_m", "human",    "swim"};
 constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m"};
 // What vehicles cannot pass, where nothing else is said.
 constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
@@ -98,6 +98,7 @@ class VehiclePhysicsReader {
       return reader_.status();
     }
     read_collision();
+    read_human();
     if (!reader_.has("dynamics")) {
       for (const Key key : kDynamicsOnly)
         if (reader_.has(key)) reader_.refuse(key, "no such key without dynamics");
@@ -144,6 +145,36 @@ class VehiclePhysicsReader {
       reader_.refuse("collision", "no such key for what is not drawn");
     if (object.collision != Collision::kNone && !still)
       reader_.refuse("collision", "false, since what has a track or a clip is not solid");
+  }
+
+  void read_human() {
+    if (!reader_.has("human")) {
+      if (reader_.has("swim")) reader_.refuse("swim", "no such key without human");
+      return;
+    }
+    Human human;
+    human.file = reader_.file("human");
+    for (const Key key :
+         {"track", "scatter", "copies", "copies_file", "on", "collision", "dynamics"})
+      if (reader_.has(key)) reader_.refuse(key, "no such key beside human");
+    if (!object_.request)
+      reader_.refuse("human", "no such key for what is not drawn: its joints are moved");
+    if (const TomlValue* table = reader_.table("swim")) human.swim = read_swim(*table);
+    object_.object.human = std::move(human);
+  }
+
+  SwimPlan read_swim(const TomlValue& table) {
+    TableReader swim(reader_.source(), table, reader_.path("swim"), kSwimKeys);
+    SwimPlan plan;
+    for (const auto& p : swim.rows("waypoints_m", {3}, kAnyMetres))
+      plan.waypoints_m.push_back({p[0], p[1], p[2]});
+    if (plan.waypoints_m.empty()) swim.refuse("waypoints_m", "a list of points [x, y, z]");
+    plan.speed_m_s = swim.number("speed_m_s", plan.speed_m_s, {0, 1.2, true, false, "m/s"});
+    plan.acceptance_m =
+        swim.number("acceptance_m", plan.acceptance_m, {0, 100, true, false, "metres"});
+    plan.repeat = swim.flag("repeat", false);
+    if (const Status status = swim.status(); !status.ok()) reader_.fail(status.error());
+    return plan;
   }
 
   std::uint64_t read_failed() {

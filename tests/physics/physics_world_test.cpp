@@ -235,7 +235,7 @@ mission = { waypoints = [ { position_m = [3, -8, -2] } ] }
     EXPECT_LT(glm::distance(rov::world_from_ned(read.usbl.value.position_ned_m), pose.position_m),
               1e-6);
   }
-  const std::string csv = csv_of(*dive.world, recorder.rows());
+  const std::string csv = csv_of(*dive.world, recorder.rows(), {});
   for (const char* column : {",gyro_yaw_deg_s", ",dvl_altitude_m", ",pressure_depth_m",
                              ",compass_deg", ",altimeter_m", ",usbl_z_m"})
     EXPECT_NE(csv.find(column), std::string::npos) << column;

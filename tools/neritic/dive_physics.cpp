@@ -94,6 +94,49 @@ std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& stat
   return line + "\n";
 }
 
+std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
+                       const HumanFigures& figures) {
+  const diver::GasReading gas = diver::read_gas(human.body, state.human);
+  const diver::DiveComputerView deco = human.computer->view(state.human.life.computer);
+  std::string line = human.name + ": ";
+  if (!human.waypoints_ned_m.empty())
+    line += fmt::format("{} of {} waypoints, ", state.arrived, human.waypoints_ned_m.size());
+  line += fmt::format(
+      "{:.2f} m of way, up to {:.2f} m/s, {:.1f} to {:.1f} m deep, {:.0f} bar left, {:.0f} l/min, ",
+      figures.path_m, figures.largest_speed_m_s, figures.shallowest_m, figures.deepest_m,
+      1e-5 * gas.tank_pa, gas.ventilation_l_min);
+  line += deco.ceiling_m > 0.0 ? fmt::format("ceiling {:.1f} m, ", deco.ceiling_m)
+                               : fmt::format("{:.0f} min without stops, ", deco.no_stop_min);
+  line += state.contact.touched_steps == 0
+              ? "touched nothing"
+              : fmt::format("touched something in {} steps", state.contact.touched_steps);
+  if (state.human.refused_inputs > 0)
+    line += fmt::format(", {} inputs refused", state.human.refused_inputs);
+  return line + "\n";
+}
+
+nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
+                          const HumanFigures& figures) {
+  const diver::GasReading gas = diver::read_gas(human.body, state.human);
+  const diver::DiveComputerView deco = human.computer->view(state.human.life.computer);
+  const Vec3 p = rov::world_from_ned(state.human.root.position_ned_m);
+  return {{"name", human.name},
+          {"waypoints", human.waypoints_ned_m.size()},
+          {"arrived", state.arrived},
+          {"way_m", figures.path_m},
+          {"largest_speed_m_s", figures.largest_speed_m_s},
+          {"shallowest_m", figures.shallowest_m},
+          {"deepest_m", figures.deepest_m},
+          {"tank_bar", 1e-5 * gas.tank_pa},
+          {"ventilation_l_min", gas.ventilation_l_min},
+          {"limb_work_j", state.human.life.limb_work_j},
+          {"ceiling_m", deco.ceiling_m},
+          {"no_stop_min", deco.no_stop_min},
+          {"touched_steps", state.contact.touched_steps},
+          {"refused_inputs", state.human.refused_inputs},
+          {"end", {{"position_m", {p.x, p.y, p.z}}}}};
+}
+
 nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& state,
                             const DiveFigures& figures) {
   const Pose end = rov::world_pose(state.body.position_ned_m, state.body.attitude);
@@ -132,12 +175,19 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
     for (std::size_t i = 0; i < world.vehicles().size(); ++i)
       json["vehicles"].push_back(
           vehicle_json(world.vehicles()[i], newest.state.vehicles[i], recorder.figures()[i]));
+    json["humans"] = nlohmann::json::array();
+    for (std::size_t i = 0; i < world.humans().size(); ++i)
+      json["humans"].push_back(
+          human_json(world.humans()[i], newest.state.humans[i], recorder.humans().figures()[i]));
     fmt::print("{}\n", json_text(json));
     return;
   }
   for (std::size_t i = 0; i < world.vehicles().size(); ++i)
     fmt::print("{}",
                vehicle_line(world.vehicles()[i], newest.state.vehicles[i], recorder.figures()[i]));
+  for (std::size_t i = 0; i < world.humans().size(); ++i)
+    fmt::print("{}", human_line(world.humans()[i], newest.state.humans[i],
+                                recorder.humans().figures()[i]));
   fmt::print("{:g} s in {} steps, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",
              newest.time_s, newest.step, speed, pace.dropped, hash);
 }
@@ -171,8 +221,8 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
     return bad_input("--log-rate: {}; a number from 0 to 10000 is accepted", flags.log_rate_hz);
   if (flag.empty()) return {};
   if (!PhysicsWorld::needed(scene))
-    return bad_input("{}: accepted where a vehicle has dynamics; in {} none has", flag,
-                     flags.scene);
+    return bad_input("{}: accepted where a vehicle has dynamics or a diver swims; in {} none does",
+                     flag, flags.scene);
   if (!flags.headless || draws(flags))
     return bad_input("{}: accepted with --headless and without flags of pictures", flag);
   if (!flags.replay.empty() &&
@@ -196,8 +246,11 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
   const Interrupts interrupts;
   const Pace pace = run_steps(*simulation, recorder, flags, seconds, world->step_s(), interrupts);
   if (!flags.log.empty())
-    NERITIC_TRY_STATUS(write_text(flags.log, csv_of(*world, recorder.rows())));
-  if (!flags.plot.empty()) NERITIC_TRY_STATUS(write_dive_plot(flags.plot, *world, recorder.rows()));
+    NERITIC_TRY_STATUS(
+        write_text(flags.log, csv_of(*world, recorder.rows(), recorder.humans().rows())));
+  if (!flags.plot.empty())
+    NERITIC_TRY_STATUS(
+        write_dive_plot(flags.plot, *world, recorder.rows(), recorder.humans().rows()));
   if (!flags.record.empty())
     NERITIC_TRY_STATUS(sim::write_input_log(flags.record, simulation->log()));
   print_summary(flags, *world, *simulation, recorder, pace);

@@ -37,6 +37,25 @@ void append_numbers(std::string& out, std::initializer_list<double> numbers) {
   for (const double number : numbers) fmt::format_to(std::back_inserter(out), ",{:.9g}", number);
 }
 
+constexpr const char* kHumanColumns =
+    ",tank,tank_bar,remaining_min,ventilation_l_min,breaths_min,lungs_l,jacket_l,net_weight_n,"
+    "buttons,kick_hz,limb_power_w,oxygen_l_min,ceiling_m,no_stop_min,stop_m,stop_min,"
+    "to_surface_min,po2_bar,gas_density_g_l,cns_percent,otu,ascent_m_min,ascent_alarm";
+
+// What is not finite (no end of breath in sight) is an empty cell.
+void append_cells(std::string& out, std::initializer_list<double> numbers) {
+  for (const double number : numbers)
+    out += std::isfinite(number) ? fmt::format(",{:.9g}", number) : std::string(",");
+}
+
+void append_empty(std::string& out, std::ptrdiff_t cells) {
+  out.append(static_cast<std::size_t>(cells), ',');
+}
+
+std::ptrdiff_t cells_of(const char* names) {
+  return std::count(names, names + std::strlen(names), ',');
+}
+
 // A sensor's columns: each name with a comma before it, and its newest reading's numbers.
 struct SensorColumns {
   const char* names;
@@ -99,7 +118,7 @@ bool any_has(const PhysicsWorld& world, const SensorColumns& sensor) {
 
 // Empty cells where there is no reading.
 void append_readings(std::string& out, const SensorColumns& sensor, const Readings* readings) {
-  const auto columns = std::count(sensor.names, sensor.names + std::strlen(sensor.names), ',');
+  const auto columns = cells_of(sensor.names);
   const bool any = readings && sensor.count(*readings) > 0;
   const Numbers numbers =
       any ? sensor.numbers(*readings) : Numbers(static_cast<std::size_t>(columns), kNotHeard);
@@ -152,12 +171,78 @@ void append_row(std::string& out, const PhysicsWorld& world, const DiveRow& row,
   for (const SensorColumns& sensor : kSensorColumns)
     if (any_has(world, sensor))
       append_readings(out, sensor, sensor.has(vehicle.file.sensors) ? &row.readings : nullptr);
+  if (!world.humans().empty()) append_empty(out, cells_of(kHumanColumns));
+  fmt::format_to(std::back_inserter(out), ",{:016x}\n", row.hash);
+}
+
+void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& row,
+                  std::size_t thrusters) {
+  const Vec3& p = row.world_from_body.position_m;
+  const Quat& q = row.world_from_body.rotation;
+  const auto [heading, pitch, roll] = euler_of(rov::ned_from_world(q));
+  const Vec6& v = row.velocity;
+  const Vec3 wanted = rov::world_from_ned(row.goal.target_ned_m), &c = row.current_m_s;
+  fmt::format_to(std::back_inserter(out), "{:.9g},{}", row.time_s, world.humans()[row.human].name);
+  append_numbers(out, {p.x,
+                       p.y,
+                       p.z,
+                       -p.y,
+                       q.w,
+                       q.x,
+                       q.y,
+                       q.z,
+                       compass_deg(heading),
+                       degrees(pitch),
+                       degrees(roll),
+                       v[0],
+                       v[1],
+                       v[2],
+                       degrees(v[3]),
+                       degrees(v[4]),
+                       degrees(v[5]),
+                       c.x,
+                       c.y,
+                       c.z,
+                       wanted.x,
+                       wanted.y,
+                       wanted.z});
+  fmt::format_to(std::back_inserter(out), ",,{:.9g},{},{},{},{}", glm::distance(p, wanted),
+                 row.arrived, row.arrived, row.near_points, row.touched_steps);
+  append_empty(out, static_cast<std::ptrdiff_t>(2 * thrusters));
+  for (const SensorColumns& sensor : kSensorColumns)
+    if (any_has(world, sensor)) append_empty(out, cells_of(sensor.names));
+  const diver::GasReading& gas = row.gas;
+  const diver::DiveComputerView& deco = row.computer;
+  append_cells(out, {static_cast<double>(row.tank),
+                     1e-5 * gas.tank_pa,
+                     gas.remaining_s / 60.0,
+                     gas.ventilation_l_min,
+                     gas.breaths_min,
+                     1e3 * row.lungs_m3,
+                     1e3 * gas.jacket_m3,
+                     row.net_weight_n,
+                     static_cast<double>(row.buttons),
+                     row.kick_hz,
+                     row.limb_power_w,
+                     row.oxygen_l_min,
+                     deco.ceiling_m,
+                     deco.no_stop_min,
+                     deco.stop_m,
+                     deco.stop_min,
+                     deco.to_surface_min,
+                     deco.po2_bar,
+                     deco.density_g_l,
+                     row.cns_percent,
+                     row.otu,
+                     deco.ascent_m_min,
+                     static_cast<double>(deco.alarm)});
   fmt::format_to(std::back_inserter(out), ",{:016x}\n", row.hash);
 }
 
 }  // namespace
 
-std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows) {
+std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows,
+                   const std::vector<HumanRow>& human_rows) {
   std::size_t thrusters = 0;
   for (const PhysicsVehicle& vehicle : world.vehicles())
     thrusters = std::max<std::size_t>(thrusters, vehicle.vehicle.thruster_count);
@@ -166,8 +251,18 @@ std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows) 
     out += fmt::format(",command_{}_n,thrust_{}_n", i, i);
   for (const SensorColumns& sensor : kSensorColumns)
     if (any_has(world, sensor)) out += sensor.names;
+  if (!world.humans().empty()) out += kHumanColumns;
   out += ",hash\n";
-  for (const DiveRow& row : rows) append_row(out, world, row, thrusters);
+  std::size_t human = 0;
+  const auto humans_until = [&](double time_s) {
+    for (; human < human_rows.size() && human_rows[human].time_s < time_s; ++human)
+      append_human(out, world, human_rows[human], thrusters);
+  };
+  for (const DiveRow& row : rows) {
+    humans_until(row.time_s);
+    append_row(out, world, row, thrusters);
+  }
+  humans_until(std::numeric_limits<double>::infinity());
   return out;
 }
 

@@ -6,15 +6,14 @@
 #include <limits>
 
 #include "engine/scene/image_file.hpp"
-#include "tools/common/plot.hpp"
+#include "tools/physics/human_plot.hpp"
+#include "tools/physics/plot_series.hpp"
 
 namespace neritic::tools {
 namespace {
 
 constexpr std::uint32_t kWidth = 1600, kHeight = 1200;
 constexpr double kMiddleX = 800.0, kMiddleY = 640.0;
-// More points than this a line are not told apart.
-constexpr std::size_t kMostPoints = 1500;
 // The ground's shading is of cells so wide.
 constexpr int kCell_px = 3;
 // The ground is darkest at the highest of what is seen, but not where that is lower than this.
@@ -31,18 +30,8 @@ using Value = std::function<double(const DiveRow&)>;
 
 Series series_of(const std::vector<DiveRow>& rows, std::size_t vehicle, const std::string& name,
                  const sonar::Color& color, const Value& x, const Value& y) {
-  Series series{name, color, {}, {}};
-  series.marked = false;
-  std::size_t count = 0;
-  for (const DiveRow& row : rows) count += row.vehicle == vehicle ? 1 : 0;
-  const std::size_t every = count / kMostPoints + 1;
-  std::size_t seen = 0;
-  for (const DiveRow& row : rows) {
-    if (row.vehicle != vehicle || (seen++ % every != 0 && seen != count)) continue;
-    series.x.push_back(x(row));
-    series.y.push_back(y(row));
-  }
-  return series;
+  return series_from<DiveRow>(
+      rows, [vehicle](const DiveRow& row) { return row.vehicle == vehicle; }, name, color, x, y);
 }
 
 // Where the vehicle came to its waypoints, by their numbers.
@@ -69,16 +58,6 @@ double east_of(const DiveRow& row) {
 }
 double north_of(const DiveRow& row) {
   return -row.world_from_body.position_m.z;
-}
-
-// Axes that hold all values, with some room.
-Axis roomy_axis(const std::string& label, const std::vector<Series>& all,
-                const std::vector<double> Series::*values, double least_span) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Series& s : all)
-    for (const double v : s.*values) low = std::min(low, v), high = std::max(high, v);
-  const double middle = 0.5 * (low + high), span = std::max(1.15 * (high - low), least_span);
-  return {label, middle - 0.5 * span, middle + 0.5 * span};
 }
 
 // One scale for both axes: metres are as long to the east as to the north.
@@ -123,16 +102,21 @@ void draw_ground(sonar::Canvas& canvas, const Box& in, const Axis& x, const Axis
 }
 
 void draw_path(sonar::Canvas& canvas, const Box& box, const PhysicsWorld& world,
-               const std::vector<DiveRow>& rows) {
+               const std::vector<DiveRow>& rows, const std::vector<HumanRow>& human_rows) {
   std::vector<Series> lines;
   for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
     lines.push_back(series_of(rows, i, world.vehicles()[i].name,
                               kSeriesColors[i % std::size(kSeriesColors)], east_of, north_of));
   }
+  for (Series& line : human_paths(world, human_rows)) lines.push_back(std::move(line));
   Axis x = roomy_axis("east, m", lines, &Series::x, 1.0);
   Axis y = roomy_axis("north, m", lines, &Series::y, 1.0);
   make_square(x, y, inside(box));
   draw_ground(canvas, inside(box), x, y, world.solid());
+  if (world.vehicles().empty()) {
+    draw_lines(canvas, box, "Path from above, over what is solid", x, y, lines);
+    return;
+  }
   Series wanted = series_of(
       rows, 0, "wanted", kSeriesColors[4], [](const DiveRow& r) { return r.wanted.position_m.x; },
       [](const DiveRow& r) { return -r.wanted.position_m.z; });
@@ -141,12 +125,6 @@ void draw_path(sonar::Canvas& canvas, const Box& box, const PhysicsWorld& world,
     lines.push_back(std::move(met));
   draw_lines(canvas, box, "Path from above, over what is solid (the higher, the darker)", x, y,
              lines);
-}
-
-void draw_over_time(sonar::Canvas& canvas, const Box& box, const std::string& title,
-                    const std::string& label, const std::vector<Series>& lines, double least_span) {
-  const Axis x = roomy_axis("time, s", lines, &Series::x, 1e-3);
-  draw_lines(canvas, box, title, x, roomy_axis(label, lines, &Series::y, least_span), lines);
 }
 
 double height_of(const DiveRow& row) {
@@ -171,12 +149,17 @@ Series ground_line(const PhysicsWorld& world, const std::vector<DiveRow>& rows) 
   return out;
 }
 
-std::vector<Series> depth_lines(const PhysicsWorld& world, const std::vector<DiveRow>& rows) {
-  std::vector<Series> lines{series_of(rows, 0, "wanted", kSeriesColors[4], time_of,
-                                      [](const DiveRow& r) { return r.wanted.position_m.y; })};
+std::vector<Series> depth_lines(const PhysicsWorld& world, const std::vector<DiveRow>& rows,
+                                const std::vector<HumanRow>& human_rows) {
+  std::vector<Series> lines;
+  if (!world.vehicles().empty())
+    lines.push_back(series_of(rows, 0, "wanted", kSeriesColors[4], time_of,
+                              [](const DiveRow& r) { return r.wanted.position_m.y; }));
   for (std::size_t i = 0; i < world.vehicles().size(); ++i)
     lines.push_back(series_of(rows, i, world.vehicles()[i].name,
                               kSeriesColors[i % std::size(kSeriesColors)], time_of, height_of));
+  for (Series& line : human_heights(world, human_rows)) lines.push_back(std::move(line));
+  if (world.vehicles().empty()) return lines;
   if (Series ground = ground_line(world, rows); !ground.x.empty())
     lines.push_back(std::move(ground));
   if (Series met = arrivals_of(rows, 0, time_of, height_of); !met.x.empty())
@@ -205,18 +188,44 @@ std::vector<Series> error_lines(const std::vector<DiveRow>& rows) {
 
 }  // namespace
 
+Axis roomy_axis(const std::string& label, const std::vector<Series>& all,
+                const std::vector<double> Series::*values, double least_span) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Series& s : all)
+    for (const double v : s.*values)
+      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+  if (low > high) low = high = 0.0;
+  const double middle = 0.5 * (low + high), span = std::max(1.15 * (high - low), least_span);
+  return {label, middle - 0.5 * span, middle + 0.5 * span};
+}
+
+void draw_over_time(sonar::Canvas& canvas, const Box& box, const std::string& title,
+                    const std::string& label, const std::vector<Series>& lines, double least_span,
+                    double headroom) {
+  const Axis x = roomy_axis("time, s", lines, &Series::x, 1e-3);
+  Axis y = roomy_axis(label, lines, &Series::y, least_span);
+  y.max += headroom * (y.max - y.min);
+  draw_lines(canvas, box, title, x, y, lines);
+}
+
 Status write_dive_plot(const std::filesystem::path& path, const PhysicsWorld& world,
-                       const std::vector<DiveRow>& rows) {
-  sonar::Canvas canvas(kWidth, kHeight, kPaper);
-  const std::string& first = world.vehicles()[0].name;
-  draw_path(canvas, {10, 10, kMiddleX, kMiddleY}, world, rows);
+                       const std::vector<DiveRow>& rows, const std::vector<HumanRow>& human_rows) {
+  const bool vehicles = !world.vehicles().empty(), humans = !world.humans().empty();
+  const double high = vehicles ? kHeight : kMiddleY;
+  sonar::Canvas canvas(kWidth, static_cast<std::uint32_t>(high + (humans ? kHumanPanels_px : 0.0)),
+                       kPaper);
+  draw_path(canvas, {10, 10, kMiddleX, kMiddleY}, world, rows, human_rows);
   draw_over_time(canvas, {kMiddleX, 10, kWidth - 10.0, kMiddleY},
-                 "Height over the surface, and the ground below", "m", depth_lines(world, rows),
-                 0.5);
-  draw_over_time(canvas, {10, kMiddleY, kMiddleX, kHeight - 10.0},
-                 "Thrust of " + first + "'s thrusters", "N", thrust_lines(world, rows), 1.0);
-  draw_over_time(canvas, {kMiddleX, kMiddleY, kWidth - 10.0, kHeight - 10.0},
-                 "Error and speed of " + first, "m, m/s", error_lines(rows), 0.05);
+                 "Height over the surface, and the ground below", "m",
+                 depth_lines(world, rows, human_rows), 0.5);
+  if (vehicles) {
+    const std::string& first = world.vehicles()[0].name;
+    draw_over_time(canvas, {10, kMiddleY, kMiddleX, kHeight - 10.0},
+                   "Thrust of " + first + "'s thrusters", "N", thrust_lines(world, rows), 1.0);
+    draw_over_time(canvas, {kMiddleX, kMiddleY, kWidth - 10.0, kHeight - 10.0},
+                   "Error and speed of " + first, "m, m/s", error_lines(rows), 0.05);
+  }
+  if (humans) draw_human_panels(canvas, kWidth, high, world, human_rows);
   return scene::write_png8(path, canvas.take());
 }
 

@@ -10,6 +10,6 @@ namespace neritic::tools {
 
 // .png. Precondition: rows as a DiveRecorder kept them.
 Status write_dive_plot(const std::filesystem::path& path, const PhysicsWorld& world,
-                       const std::vector<DiveRow>& rows);
+                       const std::vector<DiveRow>& rows, const std::vector<HumanRow>& human_rows);
 
 }  // namespace neritic::tools

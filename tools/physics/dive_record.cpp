@@ -22,6 +22,17 @@ double tilt_of(const Quat& q) {
 constexpr double kMostPoses = 2e6;
 // More than the gap between two poses that are kept, at any accepted rate of steps.
 constexpr double kMostPoseGap_s = 1.0;
+// Postures kept of a diver, some 100 MB.
+constexpr double kMostPostures = 1e5;
+constexpr double kHumanRows_hz = 10.0;
+
+// Whether a row falls into the step that ends here.
+bool due(double rows_a_step, std::uint64_t step) {
+  const auto rows = [&](std::uint64_t steps) {
+    return std::floor(static_cast<double>(steps) * rows_a_step + 1e-9);
+  };
+  return step == 0 || rows(step) != rows(step - 1);
+}
 
 }  // namespace
 
@@ -30,15 +41,17 @@ DiveRecorder::DiveRecorder(const PhysicsWorld& world, const RecordOptions& optio
       options_(options),
       figures_(world.vehicles().size()),
       tracks_(world.vehicles().size()),
-      readings_(world.vehicles().size()) {}
+      readings_(world.vehicles().size()),
+      humans_(world, options.joints_s) {}
 
 bool DiveRecorder::row_due(std::size_t vehicle, std::uint64_t step) const {
   if (options_.row_rate_hz == 0.0) return world_.control_due(vehicle, step);
-  const double rows_a_step = options_.row_rate_hz * world_.step_s();
-  const auto rows = [&](std::uint64_t steps) {
-    return std::floor(static_cast<double>(steps) * rows_a_step + 1e-9);
-  };
-  return step == 0 || rows(step) != rows(step - 1);
+  return due(options_.row_rate_hz * world_.step_s(), step);
+}
+
+bool DiveRecorder::human_row_due(std::uint64_t step) const {
+  const double hz = options_.row_rate_hz == 0.0 ? kHumanRows_hz : options_.row_rate_hz;
+  return due(hz * world_.step_s(), step);
 }
 
 bool DiveRecorder::track_due(const sim::Snapshot<PhysicsState>& snapshot) const {
@@ -93,6 +106,7 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
     }
     if (options_.rows && row_due(i, snapshot.step)) rows_.push_back(row_of(i, snapshot));
   }
+  humans_.add(snapshot, options_.rows && human_row_due(snapshot.step), track_due(snapshot));
   last_ = snapshot.state;
 }
 
@@ -110,8 +124,10 @@ Status fly_ahead(scene::Scene& scene, const Flight& flight) {
   const double from_s = flight.from_s - kMostPoseGap_s;
   const double steps = std::max(flight.until_s - from_s, 0.0) / world->step_s();
   const auto track_steps = static_cast<std::uint64_t>(std::ceil(std::max(steps / kMostPoses, 1.0)));
-  DiveRecorder recorder(*world,
-                        {.tracks = true, .tracks_from_s = from_s, .track_steps = track_steps});
+  const double joints_s = std::max(kJoints_s, (flight.until_s - from_s) / kMostPostures);
+  DiveRecorder recorder(
+      *world,
+      {.tracks = true, .tracks_from_s = from_s, .track_steps = track_steps, .joints_s = joints_s});
   recorder.add(simulation->newest());
   double second_s = 1.0;
   while (simulation->newest().time_s < flight.until_s + world->step_s() * double(track_steps - 1)) {
@@ -123,11 +139,14 @@ Status fly_ahead(scene::Scene& scene, const Flight& flight) {
   }
   for (std::size_t i = 0; i < world->vehicles().size(); ++i)
     scene.objects[world->vehicles()[i].object].mount.track = std::move(recorder.tracks()[i]);
+  recorder.humans().give_tracks(scene);
   log_info(
-      "physics: {} solid things of {} triangles built in {:.0f} ms; {} vehicles flown for "
-      "{:g} s in {:.0f} ms",
+      "physics: {} solid things of {} triangles built in {:.0f} ms; {} vehicles and {} divers "
+      "moved "
+      "for {:g} s in {:.0f} ms",
       world->solid().counts().things, world->solid().counts().triangles, to_ms(built_ns - begun_ns),
-      world->vehicles().size(), simulation->newest().time_s, to_ms(now_ns() - built_ns));
+      world->vehicles().size(), world->humans().size(), simulation->newest().time_s,
+      to_ms(now_ns() - built_ns));
   return {};
 }
 

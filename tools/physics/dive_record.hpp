@@ -8,16 +8,18 @@
 #include <vector>
 
 #include "engine/scene/track.hpp"
+#include "tools/physics/human_record.hpp"
 #include "tools/physics/physics_world.hpp"
 
 namespace neritic::tools {
 
 struct RecordOptions {
   bool rows = false;         // keep rows
-  double row_rate_hz = 0.0;  // 0: one each control period
+  double row_rate_hz = 0.0;  // 0: one each control period, of divers ten a second
   bool tracks = false;       // keep the paths, every track_steps-th step from tracks_from_s on
   double tracks_from_s = 0.0;
   std::uint64_t track_steps = 1;
+  double joints_s = kJoints_s;  // between two postures of a diver
 };
 
 // A vehicle at an instant.
@@ -51,10 +53,13 @@ class DiveRecorder {
   const std::vector<DiveFigures>& figures() const { return figures_; }
   // One a vehicle.
   std::vector<scene::Track>& tracks() { return tracks_; }
+  HumanRecorder& humans() { return humans_; }
+  const HumanRecorder& humans() const { return humans_; }
 
  private:
   bool track_due(const sim::Snapshot<PhysicsState>& snapshot) const;
   bool row_due(std::size_t vehicle, std::uint64_t step) const;
+  bool human_row_due(std::uint64_t step) const;
   DiveRow row_of(std::size_t vehicle, const sim::Snapshot<PhysicsState>& snapshot) const;
 
   const PhysicsWorld& world_;
@@ -64,16 +69,19 @@ class DiveRecorder {
   std::vector<scene::Track> tracks_;
   std::vector<rov::SensorReadings> readings_;
   PhysicsState last_;
+  HumanRecorder humans_;
 };
 
-// Rows as a table with a heading; world axes, degrees, body axes forward, starboard, down. It has
-// the thrusters of the vehicle with most, and the sensors that any vehicle has; what a vehicle has
-// not, or has not heard yet, is empty.
-std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows);
+// Rows as a table with a heading, in the order of time; world axes, degrees, body axes forward,
+// starboard, down. It has the thrusters of the vehicle with most, and the sensors that any vehicle
+// has; what a vehicle has not, or has not heard yet, is empty. Divers have columns of their own:
+// gas, breath, jacket, effort, tissues.
+std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows,
+                   const std::vector<HumanRow>& human_rows);
 
-// Simulates from 0 to until_s and gives the vehicles of the scene their paths from from_s on as
-// tracks; no path is needed before the first picture. second: called after each second flown.
-// kBadInput beyond kLongestFlight_s. Of long paths only every so many steps' poses are kept.
+// Simulates from 0 to until_s and gives the vehicles and divers of the scene their paths from
+// from_s on as tracks; no path is needed before the first picture. second: called after each second
+// flown. kBadInput beyond kLongestFlight_s. Of long paths only every so many steps' poses are kept.
 inline constexpr double kLongestFlight_s = 24.0 * 3600.0;
 struct Flight {
   double from_s = 0.0, until_s = 0.0;

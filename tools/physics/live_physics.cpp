@@ -15,6 +15,19 @@ PhysicsState blend_states(const PhysicsState& older, const PhysicsState& newer, 
     out.vehicles[i].body.position_ned_m = pose.position_m;
     out.vehicles[i].body.attitude = pose.rotation;
   }
+  for (std::size_t i = 0; i < kMaxHumans; ++i) {
+    const diver::HumanState &a = older.humans[i].human, &b = newer.humans[i].human;
+    const Pose pose = sim::blend_pose({a.root.position_ned_m, a.root.attitude},
+                                      {b.root.position_ned_m, b.root.attitude}, share);
+    out.humans[i].human.root.position_ned_m = pose.position_m;
+    out.humans[i].human.root.attitude = pose.rotation;
+    for (std::size_t k = 0; k < diver::kJoints; ++k) {
+      const Quat& from = a.limbs.rotation[k];
+      const Quat to =
+          glm::dot(from, b.limbs.rotation[k]) < 0.0 ? -b.limbs.rotation[k] : b.limbs.rotation[k];
+      out.humans[i].human.limbs.rotation[k] = glm::normalize(from * (1.0 - share) + to * share);
+    }
+  }
   return out;
 }
 
@@ -52,10 +65,17 @@ void LivePhysics::place(scene::Scene& scene, TimeNs display_ns, double time_s) {
     mount.track.reset();
     mount.pose = pose(i);
   }
+  for (std::size_t i = 0; i < world_->humans().size(); ++i) {
+    const PhysicsHuman& human = world_->humans()[i];
+    scene::Object& object = scene.objects[human.object];
+    object.mount.track.reset();
+    object.mount.pose = drawn_pose(shown_.humans[i]);
+    object.node_motion = {human.nodes, {drawn_joints(human, shown_.humans[i], 0.0)}};
+  }
 }
 
 bool LivePhysics::steer(std::size_t vehicle, const VehicleInputs& inputs) {
-  return simulation_->push({vehicle, inputs});
+  return simulation_->push({.vehicle = vehicle, .inputs = inputs});
 }
 
 Pose LivePhysics::pose(std::size_t vehicle) const {

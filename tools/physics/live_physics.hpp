@@ -19,8 +19,8 @@ class LivePhysics {
 
   // Time 0 is now.
   void start();
-  // Puts the vehicles of the scene where they are at that time: the host clock's, or, in lock-step,
-  // seconds since start().
+  // Puts the vehicles and divers of the scene where they are at that time: the host clock's, or, in
+  // lock-step, seconds since start().
   void place(scene::Scene& scene, TimeNs display_ns, double time_s);
   // Of a pilot, from the next step on. False where a number is not finite.
   bool steer(std::size_t vehicle, const VehicleInputs& inputs);

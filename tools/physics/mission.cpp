@@ -13,7 +13,7 @@ constexpr double kLeastWay = 0.01;
 }  // namespace
 
 MissionGuide::MissionGuide(const scene::Scene& scene, const scene::Mission& mission,
-                           const std::vector<int>& vehicle_of_object)
+                           const Movers& movers)
     : kind_(mission.kind),
       acceptance_m_(mission.acceptance_m),
       speed_m_s_(mission.speed_m_s),
@@ -21,19 +21,19 @@ MissionGuide::MissionGuide(const scene::Scene& scene, const scene::Mission& miss
       distance_m_(mission.distance_m),
       repeat_(mission.repeat),
       offset_frd_m_(rov::ned_from_world(mission.offset_m)),
-      face_(face_of(scene, mission.facing, vehicle_of_object)),
-      target_(scene, mission.target, vehicle_of_object),
-      a_(scene, mission.between_a, vehicle_of_object),
-      b_(scene, mission.between_b, vehicle_of_object) {
+      face_(face_of(scene, mission.facing, movers)),
+      target_(scene, mission.target, movers),
+      a_(scene, mission.between_a, movers),
+      b_(scene, mission.between_b, movers) {
   for (const scene::MissionWaypoint& waypoint : mission.waypoints)
     waypoints_.push_back({rov::ned_from_world(waypoint.position_m),
-                          face_of(scene, waypoint.facing, vehicle_of_object), waypoint.hold_s});
+                          face_of(scene, waypoint.facing, movers), waypoint.hold_s});
 }
 
 MissionGuide::Face MissionGuide::face_of(const scene::Scene& scene, const scene::Facing& facing,
-                                         const std::vector<int>& vehicle_of_object) const {
+                                         const Movers& movers) const {
   Face face{facing.heading_rad, std::nullopt, facing.tilt};
-  if (facing.look_at) face.look_at.emplace(scene, *facing.look_at, vehicle_of_object);
+  if (facing.look_at) face.look_at.emplace(scene, *facing.look_at, movers);
   return face;
 }
 
@@ -103,7 +103,8 @@ rov::Setpoint MissionGuide::update(const PhysicsState& all, const rov::State& bo
     const Pose target = target_.at(all, time_s);
     way = rov::ned_from_world(target_.velocity_m_s(all, time_s));
     setpoint = rov::follow({}, rov::ned_from_world(target.position_m), way,
-                           rov::heading_of(rov::ned_from_world(target.rotation)), offset_frd_m_);
+                           rov::heading_of(rov::ned_from_world(target_.facing(all, time_s))),
+                           offset_frd_m_);
   } else {
     setpoint = rov::stand_between({}, rov::ned_from_world(a_.at(all, time_s).position_m),
                                   rov::ned_from_world(b_.at(all, time_s).position_m), distance_m_);

@@ -12,8 +12,7 @@ namespace neritic::tools {
 
 class MissionGuide {
  public:
-  MissionGuide(const scene::Scene& scene, const scene::Mission& mission,
-               const std::vector<int>& vehicle_of_object);
+  MissionGuide(const scene::Scene& scene, const scene::Mission& mission, const Movers& movers);
 
   // Where to be now. all: the states before this step; the mission's own state is advanced.
   rov::Setpoint update(const PhysicsState& all, const rov::State& body, double time_s,
@@ -37,8 +36,7 @@ class MissionGuide {
     Face face;
     double hold_s = 0.0;
   };
-  Face face_of(const scene::Scene& scene, const scene::Facing& facing,
-               const std::vector<int>& vehicle_of_object) const;
+  Face face_of(const scene::Scene& scene, const scene::Facing& facing, const Movers& movers) const;
   rov::Setpoint to_waypoint(const rov::State& body, double time_s, MissionState& mission) const;
   void turn(rov::Setpoint& setpoint, const Face& face, const Vec3& way_ned, const PhysicsState& all,
             double time_s, const MissionState& mission) const;

@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdint>
 
+#include "diver/human_step.hpp"
+#include "diver/swimmer.hpp"
 #include "engine/sim/simulation.hpp"
 #include "rov/dynamics.hpp"
 
@@ -13,6 +15,7 @@ namespace neritic::tools {
 
 // So that a state can be copied as bytes.
 inline constexpr std::size_t kMaxVehicles = 4;
+inline constexpr std::size_t kMaxHumans = 2;
 
 // How far a mission is.
 struct MissionState {
@@ -65,13 +68,32 @@ struct VehicleState {
   }
 };
 
+// A diver who swims by moving limbs.
+struct HumanPhysics {
+  diver::HumanState human;
+  diver::SwimmerState swimmer;  // what moves the limbs where nobody wears a suit
+  std::uint64_t arrived = 0;    // waypoints, all rounds together
+  Vec3 leg_from_ned_m{0.0};     // where the way to the next one begins, or where it stays
+  ContactState contact;
+
+  static void fields(auto&& field, auto& self) {
+    field("human", self.human);
+    field("swimmer", self.swimmer);
+    field("arrived", self.arrived);
+    field("leg_from_ned_m", self.leg_from_ned_m);
+    field("contact", self.contact);
+  }
+};
+
 struct PhysicsState {
   std::uint64_t step = 0;
   std::array<VehicleState, kMaxVehicles> vehicles;
+  std::array<HumanPhysics, kMaxHumans> humans;
 
   static void fields(auto&& field, auto& self) {
     field("step", self.step);
     field("vehicles", self.vehicles);
+    field("humans", self.humans);
   }
 };
 
@@ -90,20 +112,41 @@ struct VehicleInputs {
   }
 };
 
-struct PhysicsInputs {
-  std::array<VehicleInputs, kMaxVehicles> vehicles;
+// From outside, for one diver.
+struct HumanSteering {
+  // Joints, breath, buttons and tank of a person; while none is worn, joints, breath and buttons
+  // are the swimmer's own. Currents are the scene's.
+  diver::HumanInputs human;
+  std::uint64_t worn = 0;  // 0 or 1
 
-  static void fields(auto&& field, auto& self) { field("vehicles", self.vehicles); }
+  static void fields(auto&& field, auto& self) {
+    field("human", self.human);
+    field("worn", self.worn);
+  }
 };
 
-// New inputs of one vehicle; of none where its number is too high.
+struct PhysicsInputs {
+  std::array<VehicleInputs, kMaxVehicles> vehicles;
+  std::array<HumanSteering, kMaxHumans> humans;
+
+  static void fields(auto&& field, auto& self) {
+    field("vehicles", self.vehicles);
+    field("humans", self.humans);
+  }
+};
+
+// New inputs of one vehicle, or of one diver; of none where its number is too high.
 struct PhysicsMessage {
   std::uint64_t vehicle = 0;
   VehicleInputs inputs;
+  std::uint64_t is_human = 0;  // 1: then the number is a diver's, and what follows counts
+  HumanSteering steering;
 
   static void fields(auto&& field, auto& self) {
     field("vehicle", self.vehicle);
     field("inputs", self.inputs);
+    field("is_human", self.is_human);
+    field("steering", self.steering);
   }
 };
 

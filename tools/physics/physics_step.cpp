@@ -44,6 +44,7 @@ PhysicsState PhysicsWorld::start() const {
     state.vehicles[i].body = vehicles_[i].start;
     state.vehicles[i].mission = mission_start(vehicles_[i].start);
   }
+  for (std::size_t i = 0; i < humans_.size(); ++i) state.humans[i] = humans_[i].start;
   return state;
 }
 
@@ -55,7 +56,11 @@ PhysicsInputs PhysicsWorld::start_inputs() const {
 }
 
 void PhysicsWorld::apply(PhysicsInputs& inputs, const PhysicsMessage& message) {
-  if (message.vehicle < kMaxVehicles) inputs.vehicles[message.vehicle] = message.inputs;
+  if (message.is_human != 0) {
+    if (message.vehicle < kMaxHumans) inputs.humans[message.vehicle] = message.steering;
+  } else if (message.vehicle < kMaxVehicles) {
+    inputs.vehicles[message.vehicle] = message.inputs;
+  }
 }
 
 Vec3 PhysicsWorld::current_ned_m_s(const Vec3& position_ned_m, double time_s) const {
@@ -104,6 +109,11 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
     after.contact.deepest_m = std::max(after.contact.deepest_m, report.deepest_m);
     after.contact.impulse_n_s = report.impulse_n_s;
   }
+  for (std::size_t i = 0; i < humans_.size(); ++i)
+    step_human(
+        humans_[i], solid_, inputs.humans[i],
+        rov::world_from_ned(current_ned_m_s(state.humans[i].human.root.position_ned_m, time_s)),
+        state.step, dt_s, next.humans[i]);
   return next;
 }
 

@@ -70,7 +70,7 @@ Result<sim::Current> current_of(const scene::Current& current) {
 
 bool PhysicsWorld::needed(const scene::Scene& scene) {
   for (const scene::Object& object : scene.objects)
-    if (object.dynamics) return true;
+    if (object.dynamics || object.human) return true;
   return false;
 }
 
@@ -82,16 +82,23 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   }
   NERITIC_TRY(world->solid_, static_world_of(scene));
   NERITIC_TRY_STATUS(world->choose_step(scene));
-  std::vector<int> vehicle_of_object(scene.objects.size(), -1);
-  int vehicles = 0;
-  for (std::size_t i = 0; i < scene.objects.size(); ++i)
-    if (scene.objects[i].dynamics) vehicle_of_object[i] = vehicles++;
+  Movers movers{std::vector<int>(scene.objects.size(), -1),
+                std::vector<int>(scene.objects.size(), -1)};
+  int vehicles = 0, humans = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].dynamics) movers.vehicle_of_object[i] = vehicles++;
+    if (scene.objects[i].human) movers.human_of_object[i] = humans++;
+  }
   if (vehicles > static_cast<int>(kMaxVehicles))
     return bad_input("{}: {} vehicles with dynamics; accepted: at most {}", scene.path, vehicles,
                      kMaxVehicles);
-  for (std::size_t i = 0; i < scene.objects.size(); ++i)
-    if (scene.objects[i].dynamics)
-      NERITIC_TRY_STATUS(world->add_vehicle(scene, i, vehicle_of_object));
+  if (humans > static_cast<int>(kMaxHumans))
+    return bad_input("{}: {} divers who swim; accepted: at most {}", scene.path, humans,
+                     kMaxHumans);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i, movers));
+    if (scene.objects[i].human) NERITIC_TRY_STATUS(world->add_human(scene, i));
+  }
   return std::unique_ptr<const PhysicsWorld>(std::move(world));
 }
 
@@ -110,7 +117,7 @@ Status PhysicsWorld::choose_step(const scene::Scene& scene) {
 }
 
 Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
-                                 const std::vector<int>& vehicle_of_object) {
+                                 const Movers& movers) {
   const scene::Object& object = scene.objects[index];
   const scene::Dynamics& dynamics = *object.dynamics;
   NERITIC_TRY(rov::VehicleFile file, rov::read_vehicle(dynamics.file, scene.physics->water_kg_m3));
@@ -126,7 +133,7 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
                      .allocator = rov::Allocator(vehicle, dynamics.failed_thrusters)};
   // A controller cannot act more often than the physics step.
   out.file.gains.period_s = std::max(out.file.gains.period_s, step_s_);
-  if (dynamics.mission) out.mission.emplace(scene, *dynamics.mission, vehicle_of_object);
+  if (dynamics.mission) out.mission.emplace(scene, *dynamics.mission, movers);
   if (dynamics.tether_anchor_m)
     out.tether_anchor_ned_m = rov::ned_from_world(*dynamics.tether_anchor_m);
   out.solid = solid_body(vehicle);
@@ -137,20 +144,29 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
   out.bottom_m = shape->bottom_m;
   const Pose at = scene.world_from(object.mount, 0.0);
   rov::teleport(out.start, rov::ned_from_world(at.position_m), rov::ned_from_world(at.rotation));
-  NERITIC_TRY_STATUS(check_start(scene, out));
+  NERITIC_TRY_STATUS(check_start(scene, out.name, out.solid.shape,
+                                 rov::world_pose(out.start.position_ned_m, out.start.attitude)));
   vehicles_.push_back(std::move(out));
   return {};
 }
 
-Status PhysicsWorld::check_start(const scene::Scene& scene, const PhysicsVehicle& vehicle) const {
+Status PhysicsWorld::add_human(const scene::Scene& scene, std::size_t index) {
+  NERITIC_TRY(PhysicsHuman human, physics_human(scene, index));
+  const diver::RootState& root = human.start.human.root;
+  NERITIC_TRY_STATUS(check_start(scene, human.name, human.shape,
+                                 rov::world_pose(root.position_ned_m, root.attitude)));
+  humans_.push_back(std::move(human));
+  return {};
+}
+
+Status PhysicsWorld::check_start(const scene::Scene& scene, const std::string& name,
+                                 const sim::BodyShape& shape, const Pose& start) const {
   std::vector<sim::Contact> contacts;
-  solid_.contacts(vehicle.solid.shape,
-                  rov::world_pose(vehicle.start.position_ned_m, vehicle.start.attitude), 0.0,
-                  contacts);
+  solid_.contacts(shape, start, 0.0, contacts);
   for (const sim::Contact& contact : contacts)
     if (contact.inside || contact.gap_m < -kMostStartDepth_m)
       return bad_input("{}: {}: starts {:.2f} m deep in {}; accepted: a place in the water",
-                       scene.path, vehicle.name, -contact.gap_m,
+                       scene.path, name, -contact.gap_m,
                        name_of_label(scene, contact.surface.label));
   return {};
 }

@@ -1,6 +1,6 @@
-// The physics of a scene: its vehicles, what is in their way, the current, and the step that a
-// simulation takes. Built once from a scene, which may change or go afterwards; then only read, so
-// that any thread may step. The step is pure: the same bits for the same arguments.
+// The physics of a scene: its vehicles and divers, what is in their way, the current, and the step
+// that a simulation takes. Built once from a scene, which may change or go afterwards; then only
+// read, so that any thread may step. The step is pure: the same bits for the same arguments.
 #pragma once
 
 #include <memory>
@@ -12,6 +12,7 @@
 #include "engine/sim/current.hpp"
 #include "rov/vehicle_file.hpp"
 #include "tools/physics/body_step.hpp"
+#include "tools/physics/human_world.hpp"
 #include "tools/physics/mission.hpp"
 
 namespace neritic::tools {
@@ -40,6 +41,7 @@ class PhysicsWorld {
   static Result<std::unique_ptr<const PhysicsWorld>> create(const scene::Scene& scene);
 
   const std::vector<PhysicsVehicle>& vehicles() const { return vehicles_; }
+  const std::vector<PhysicsHuman>& humans() const { return humans_; }
   std::uint64_t seed() const { return seed_; }  // of the scene, for sensors
   const sim::StaticWorld& solid() const { return solid_; }
   double step_s() const { return step_s_; }
@@ -61,9 +63,10 @@ class PhysicsWorld {
  private:
   PhysicsWorld() = default;
   Status choose_step(const scene::Scene& scene);
-  Status add_vehicle(const scene::Scene& scene, std::size_t object,
-                     const std::vector<int>& vehicle_of_object);
-  Status check_start(const scene::Scene& scene, const PhysicsVehicle& vehicle) const;
+  Status add_vehicle(const scene::Scene& scene, std::size_t object, const Movers& movers);
+  Status add_human(const scene::Scene& scene, std::size_t object);
+  Status check_start(const scene::Scene& scene, const std::string& name,
+                     const sim::BodyShape& shape, const Pose& start) const;
   void steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
              VehicleState& state) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
@@ -75,6 +78,7 @@ class PhysicsWorld {
   std::optional<sim::Current> current_;
   sim::StaticWorld solid_;
   std::vector<PhysicsVehicle> vehicles_;
+  std::vector<PhysicsHuman> humans_;
 };
 
 // What the scene says of the current, its grid read.

@@ -1,5 +1,5 @@
-// See vehicle_toml.hpp.
-#include "rov/vehicle_toml.hpp"
+// See case_toml.hpp.
+#include "engine/core/case_toml.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -7,13 +7,13 @@
 #include "engine/core/files.hpp"
 #include "engine/core/toml.hpp"
 
-namespace neritic::rov {
+namespace neritic {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 20;
 constexpr int kMostIncludes = 8;
 
-nlohmann::json tree_of(const TomlValue& value) {
+nlohmann::json json_of(const TomlValue& value) {
   switch (value.kind) {
     case TomlValue::Kind::kBool:
       return value.boolean;
@@ -28,14 +28,14 @@ nlohmann::json tree_of(const TomlValue& value) {
       return "a date or time";
     case TomlValue::Kind::kArray: {
       nlohmann::json out = nlohmann::json::array();
-      for (const TomlValue& item : value.items) out.push_back(tree_of(item));
+      for (const TomlValue& item : value.items) out.push_back(json_of(item));
       return out;
     }
     case TomlValue::Kind::kTable:
       break;
   }
   nlohmann::json out = nlohmann::json::object();
-  for (const TomlEntry& entry : value.entries) out[entry.key] = tree_of(entry.value);
+  for (const TomlEntry& entry : value.entries) out[entry.key] = json_of(entry.value);
   return out;
 }
 
@@ -52,15 +52,16 @@ void merge(nlohmann::json& under, const nlohmann::json& over) {
 
 // The file's tree over that of the file it includes, and so on.
 Result<nlohmann::json> read_tree(std::string_view text, const std::string& name,
-                                 const std::filesystem::path& folder, int depth) {
+                                 const std::filesystem::path& folder,
+                                 std::span<const std::string_view> paths, int depth) {
   if (text.size() > kMostBytes)
-    return bad_input("{}: {} bytes; accepted: a vehicle of at most {}", name, text.size(),
-                     kMostBytes);
+    return bad_input("{}: {} bytes; accepted: at most {}", name, text.size(), kMostBytes);
   NERITIC_TRY(const TomlValue parsed, parse_toml(text, name, 0));
-  nlohmann::json own = tree_of(parsed);
+  nlohmann::json own = json_of(parsed);
   // Paths are relative to the file that they are written in.
-  if (const auto table = own.find("thrust_table"); table != own.end() && table->is_string())
-    *table = (folder / table->get<std::string>()).string();
+  for (const std::string_view key : paths)
+    if (const auto file = own.find(std::string(key)); file != own.end() && file->is_string())
+      *file = (folder / file->get<std::string>()).string();
   const auto include = own.find("include");
   if (include == own.end()) return own;
   if (!include->is_string()) return bad_input("{}: include: the name of a file is accepted", name);
@@ -69,17 +70,19 @@ Result<nlohmann::json> read_tree(std::string_view text, const std::string& name,
   const std::filesystem::path path = folder / include->get<std::string>();
   own.erase(include);
   NERITIC_TRY(const std::string base, read_text(path));
-  NERITIC_TRY(nlohmann::json under, read_tree(base, path.string(), path.parent_path(), depth + 1));
+  NERITIC_TRY(nlohmann::json under,
+              read_tree(base, path.string(), path.parent_path(), paths, depth + 1));
   merge(under, own);
   return under;
 }
 
 }  // namespace
 
-Result<CaseFile> parse_vehicle_toml(std::string_view text, const std::string& name,
-                                    const std::filesystem::path& folder) {
-  NERITIC_TRY(nlohmann::json tree, read_tree(text, name, folder, 0));
+Result<CaseFile> parse_case_toml(std::string_view text, const std::string& name,
+                                 const std::filesystem::path& folder,
+                                 std::span<const std::string_view> paths) {
+  NERITIC_TRY(nlohmann::json tree, read_tree(text, name, folder, paths, 0));
   return CaseFile(std::move(tree), name);
 }
 
-}  // namespace neritic::rov
+}  // namespace neritic

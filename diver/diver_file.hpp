@@ -1,0 +1,28 @@
+// A diver from a TOML file: body, gear, kick and dive computer. The keys are in diver/README.md.
+// Any thread.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "diver/deco_live.hpp"
+#include "diver/swimmer.hpp"
+
+namespace neritic::diver {
+
+struct DiverFile {
+  std::string name;
+  BodyParameters parameters;
+  SwimmerSettings swimmer;
+  DiveComputerSettings computer;  // its gases are the tanks', in their order
+};
+
+// include: a file whose keys come first. Errors: file and key, what was found and is accepted; what
+// make_body and DiveComputer::create refuse.
+Result<DiverFile> read_diver(const std::filesystem::path& path, double water_kg_m3);
+// The same of text in memory; folder is what an include is relative to.
+Result<DiverFile> parse_diver(std::string_view text, const std::string& name,
+                              const std::filesystem::path& folder, double water_kg_m3);
+
+}  // namespace neritic::diver

@@ -1,0 +1,94 @@
+// Divers from files: what is said arrives, what is not has its default, mistakes are told.
+#include "diver/diver_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/core/files.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::diver {
+namespace {
+
+using testing::HasSubstr;
+
+DiverFile diver_of(const std::string& text) {
+  auto file = parse_diver(text, "d.toml", test::source_dir() / "assets/divers", 1025.0);
+  EXPECT_TRUE(file.ok()) << file.error().message;
+  return file.ok() ? std::move(file).value() : DiverFile();
+}
+std::string diver_fault(const std::string& text) {
+  const auto file = parse_diver(text, "d.toml", test::source_dir() / "assets/divers", 1025.0);
+  return file.ok() ? "" : file.error().message;
+}
+
+TEST(DiverFile, NothingSaidIsTheDefaultDiver) {
+  const DiverFile file = diver_of("");
+  const BodyParameters& p = file.parameters;
+  EXPECT_EQ(p.build.height_m, 1.78);
+  EXPECT_EQ(p.strips_a_segment, BodyParameters{}.strips_a_segment);
+  ASSERT_TRUE(p.gear.suit && p.gear.fins && p.gear.jacket);
+  EXPECT_NEAR(p.gear.suit->thickness_m, 0.005, 1e-15);
+  ASSERT_EQ(p.gear.tanks.size(), 1u);
+  EXPECT_NEAR(p.gear.tanks[0].pressure_pa, 200e5, 1e-6);
+  EXPECT_FALSE(p.gear.lead_kg.has_value());
+  ASSERT_EQ(file.computer.gases.size(), 1u);
+  EXPECT_EQ(file.computer.gases[0].mix, kAir);
+}
+
+TEST(DiverFile, WhatIsSaidArrives) {
+  const DiverFile file = diver_of(R"(
+name = "Ada"
+sex = "female"
+height_m = 1.67
+mass_kg = 62
+model = "planar"
+strips_a_segment = 6
+suit_mm = 7
+fins = false
+lead_kg = 4.5
+jacket = { capacity_l = 15 }
+tanks = [ { volume_l = 12, pressure_bar = 232, oxygen = 0.32 }, { oxygen = 0.5, volume_l = 7 } ]
+kick = { amplitude_m = 0.2, most_hz = 1.1 }
+computer = { gf_low = 0.4, gf_high = 0.8 }
+)");
+  const BodyParameters& p = file.parameters;
+  EXPECT_EQ(file.name, "Ada");
+  EXPECT_EQ(p.build.sex, Sex::kFemale);
+  EXPECT_EQ(p.model, Model::kPlanar);
+  EXPECT_EQ(p.strips_a_segment, 6);
+  EXPECT_NEAR(p.gear.suit->thickness_m, 0.007, 1e-15);
+  EXPECT_FALSE(p.gear.fins.has_value());
+  EXPECT_EQ(p.gear.lead_kg, 4.5);
+  EXPECT_NEAR(p.gear.jacket->capacity_m3, 0.015, 1e-15);
+  ASSERT_EQ(p.gear.tanks.size(), 2u);
+  EXPECT_NEAR(p.gear.tanks[0].pressure_pa, 232e5, 1e-3);
+  EXPECT_EQ(file.swimmer.kick.amplitude_m, 0.2);
+  EXPECT_EQ(file.swimmer.most_frequency_hz, 1.1);
+  EXPECT_EQ(file.computer.gf_high, 0.8);
+  ASSERT_EQ(file.computer.gases.size(), 2u);
+  EXPECT_EQ(file.computer.gases[1].mix.oxygen, 0.5);
+  EXPECT_EQ(file.computer.gases[1].switch_depth_m, 21.0);  // 1.6 bar
+}
+
+TEST(DiverFile, TheShippedOneReads) {
+  const auto file = read_diver(test::source_dir() / "assets/divers/recreational.toml", 1028.0);
+  ASSERT_TRUE(file.ok()) << file.error().message;
+  EXPECT_EQ(file->parameters.water_kg_m3, 1028.0);
+  EXPECT_EQ(diver_of("include = \"recreational.toml\"\nmass_kg = 90").parameters.build.mass_kg, 90);
+}
+
+TEST(DiverFile, MistakesNameTheFileAndTheKey) {
+  EXPECT_THAT(diver_fault("hight_m = 1.8"), HasSubstr("height_m"));
+  EXPECT_THAT(diver_fault("sex = \"other\""), HasSubstr("male or female"));
+  EXPECT_THAT(diver_fault("height_m = 9"), HasSubstr("d.toml: height_m: 9 found"));
+  EXPECT_THAT(diver_fault("suit_mm = 90"), HasSubstr("suit"));
+  EXPECT_THAT(diver_fault("[[tanks]]\noxygen = 2"), HasSubstr("oxygen"));
+  EXPECT_THAT(diver_fault("[computer]\ngf_low = 0.9\ngf_high = 0.2"), HasSubstr("computer"));
+  EXPECT_THAT(diver_fault("[computer]\nconventions = \"mine\""), HasSubstr("mine"));
+  EXPECT_THAT(diver_fault("fins = 3"), HasSubstr("fins"));
+  EXPECT_THAT(diver_fault("height_m = nan"), HasSubstr("height_m"));
+}
+
+}  // namespace
+}  // namespace neritic::diver

@@ -1,0 +1,224 @@
+// Divers in scenes: they swim where they are told, a vehicle keeps beside, nothing is swum through,
+// and what is drawn is the body that the physics has.
+#include "diver/frames.hpp"
+#include "engine/scene/animation.hpp"
+#include "tests/physics/dives.hpp"
+#include "tools/physics/dive_record.hpp"
+#include "tools/physics/live_physics.hpp"
+
+namespace neritic::tools {
+namespace {
+
+std::string diver_text(const std::string& keys) {
+  const std::string assets = (test::source_dir() / "assets").string();
+  return "[[objects]]\nname = \"diver\"\nclass = \"diver\"\nmodel = \"" + assets +
+         "/models/diver.glb\"\nhuman = \"" + assets + "/divers/recreational.toml\"\n" + keys;
+}
+
+// Prone, facing north.
+constexpr const char* kProne = "pitch_deg = -90\n";
+constexpr const char* kStillWater = "title = \"still water\"\n[physics]\n";
+
+Pose swimmer_pose(const TestDive& dive) {
+  const diver::RootState& root = dive.state().humans[0].human.root;
+  return world_pose(root.position_ned_m, root.attitude);
+}
+
+TEST(HumanDive, SwimsFromPointToPointAndHoversAtTheLast) {
+  TestDive dive =
+      dive_of(kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne + R"(
+[objects.swim]
+speed_m_s = 0.45
+waypoints_m = [[0, -12, -10], [8, -11, -16]]
+)"));
+  std::uint64_t arrived = 0;
+  dive.run(70.0, [&] {
+    const HumanPhysics& human = dive.state().humans[0];
+    if (human.arrived == arrived) return;
+    ++arrived;
+    ASSERT_EQ(human.arrived, arrived);
+  });
+  EXPECT_EQ(arrived, 2u);
+  EXPECT_LT(glm::distance(swimmer_pose(dive).position_m, Vec3(8, -11, -16)), 6.0);
+  EXPECT_LT(glm::length(dive.state().humans[0].human.root.velocity.linear()), 0.25);
+  const diver::LifeState& life = dive.state().humans[0].human.life;
+  EXPECT_LT(diver::tank_pressure(dive.world->humans()[0].body, life.tanks, 0), 199e5);
+  // Tissues take up gas.
+  EXPECT_NEAR(life.computer.dive_min, 70.0 / 60.0, 0.02);
+  EXPECT_GT(life.computer.tissues.n2_bar[0],
+            dive.world->humans()[0].start.human.life.computer.tissues.n2_bar[0]);
+}
+
+TEST(HumanDive, AVehicleKeepsBesideADiver) {
+  TestDive dive = dive_of(kStillWater +
+                          diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
+                                     "swim = { waypoints_m = [[0, -12, -40]] }\n") +
+                          rov_text(R"(
+position_m = [2.5, -12, 0]
+mission = { follow = { object = "diver", offset_m = [2.5, 0.3, 0] }, look_at = "diver" }
+)"));
+  double least = 1e9, most = 0.0, facing = 1.0;
+  dive.run(40.0, [&] {
+    if (dive.time_s() < 10.0) return;
+    const Vec3 way = swimmer_pose(dive).position_m - dive.pose().position_m;
+    least = std::min(least, glm::length(way));
+    most = std::max(most, glm::length(way));
+    facing = std::min(facing, glm::dot(dive.pose().rotation * Vec3(0, 0, -1), glm::normalize(way)));
+  });
+  EXPECT_GT(least, 2.2);
+  EXPECT_LT(most, 2.9);
+  EXPECT_GT(facing, 0.9);
+  EXPECT_GT(dive.vehicle().body.position_ned_m.x, 10.0);
+}
+
+TEST(HumanDive, IsStoppedByAWallAndComesBackFromIt) {
+  TestDive dive = dive_of(kStillWater + std::string(R"(
+[[objects]]
+name = "wall"
+class = "structure"
+shape = "box"
+size_m = [40, 40, 1]
+position_m = [0, -12, -5.5]
+)") + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne + R"(
+[objects.swim]
+speed_m_s = 0.6
+waypoints_m = [[0, -12, -20]]
+)"));
+  double farthest = 0.0;
+  dive.run(40.0, [&] { farthest = std::min(farthest, swimmer_pose(dive).position_m.z); });
+  const HumanPhysics& human = dive.state().humans[0];
+  EXPECT_GT(human.contact.touched_steps, 10u);
+  EXPECT_LT(human.contact.deepest_m, 0.05);
+  EXPECT_GT(farthest, -5.0);  // the hips; the head is .8 m before them
+  EXPECT_TRUE(sim::all_finite(dive.state()));
+}
+
+TEST(HumanDive, WhatIsDrawnIsTheBodyOfThePhysics) {
+  TestDive dive =
+      dive_of(kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
+                                       "swim = { waypoints_m = [[20, -12, -10]] }\n"));
+  const PhysicsHuman& human = dive.world->humans()[0];
+  const scene::Model& model =
+      *dive.scene.models[static_cast<std::size_t>(dive.scene.objects[human.object].model)];
+  double moved_m = 0.0, breath = 0.0;
+  Vec3 first_foot(0.0);
+  for (int i = 0; i < 30; ++i) {
+    dive.run(0.21);
+    const HumanPhysics& state = dive.state().humans[0];
+    const scene::NodeMotion motion{human.nodes, {drawn_joints(human, state, 0.0)}};
+    const scene::ModelPose pose = scene::evaluate_pose(model, motion, 0.0);
+    const Pose world_from_model = drawn_pose(state);
+    const diver::Posture posture =
+        diver::posture_of(human.body, state.human.limbs.rotation, state.human.limbs.rate);
+    const diver::RootState& root = state.human.root;
+    for (const diver::Segment joint :
+         {diver::kPelvis, diver::kHead, diver::kLeftForearm, diver::kRightHand,
+          diver::kLeftLowerLeg, diver::kRightLowerLeg, diver::kLeftFoot, diver::kRightFoot}) {
+      const Vec3 drawn =
+          world_from_model *
+          Vec3(pose.model_from_node[static_cast<std::size_t>(human.nodes[joint])][3]);
+      const Vec3 there =
+          world_from_ned(root.position_ned_m + root.attitude * posture[joint].origin_m);
+      // The model's hips, knees and ankles are some centimetres from the tables'.
+      EXPECT_LT(glm::distance(drawn, there), 0.05) << diver::kSegmentNames[joint] << " " << i;
+      if (joint != diver::kLeftFoot) continue;
+      const Vec3 in_model = inverse(world_from_model) * drawn;
+      if (i == 0) first_foot = in_model;
+      moved_m = std::max(moved_m, glm::distance(in_model, first_foot));
+    }
+    const Vec3 scale = motion.keys[0].scales[diver::kAbdomen];
+    breath = std::max(breath, scale.z - 1.0);
+  }
+  EXPECT_GT(moved_m, 0.15);
+  EXPECT_GT(breath, 0.02);
+  EXPECT_LT(breath, 0.15);
+}
+
+TEST(HumanDive, RunsAndReplaysWithTheSameHashes) {
+  const std::string text =
+      kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
+                               "swim = { waypoints_m = [[3, -12, -6], [0, -11, 0]] }\n");
+  TestDive a = dive_of(text), b = dive_of(text);
+  a.run(4.0);
+  HumanSteering steering;
+  steering.worn = 1;
+  steering.human.buttons = diver::kInflate;
+  steering.human.joints = diver::rotations_of(diver::streamlined(a.world->humans()[0].body));
+  ASSERT_TRUE(a.simulation->push({.vehicle = 0, .is_human = 1, .steering = steering}));
+  ASSERT_TRUE(a.simulation->push({.vehicle = 9, .is_human = 1, .steering = steering}));  // nobody
+  a.run(3.0);
+  b.run(4.0);
+  const auto& hashes = a.simulation->log().hashes;
+  for (std::size_t i = 0; i <= 960; ++i) ASSERT_EQ(hashes[i], b.simulation->log().hashes[i]) << i;
+  EXPECT_GT(a.state().humans[0].human.life.jacket_moles,
+            b.state().humans[0].human.life.jacket_moles);
+  const auto report = sim::replay(a.simulation->log(), a.world->start(),
+                                  [&](const PhysicsState& s, const PhysicsInputs& in, double dt) {
+                                    return a.world->step(s, in, dt);
+                                  });
+  EXPECT_FALSE(report.first_difference.has_value());
+  EXPECT_EQ(report.steps, a.simulation->log().steps());
+}
+
+TEST(HumanDive, RowsSayGasAndTissues) {
+  TestDive dive =
+      dive_of(kStillWater + diver_text(std::string("position_m = [0, -18, 0]\n") + kProne) +
+              rov_text("position_m = [3, -18, 0]\n"));
+  DiveRecorder recorder(*dive.world, {.rows = true, .tracks = true});
+  recorder.add(dive.simulation->newest());
+  dive.run(3.0, [&] { recorder.add(dive.simulation->newest()); });
+  const auto& rows = recorder.humans().rows();
+  ASSERT_NEAR(static_cast<double>(rows.size()), 31.0, 1.0);
+  for (const HumanRow& row : rows) {
+    EXPECT_NEAR(row.gas.ambient_pa, 101325.0 + 1028.0 * 9.80665 * 18.0, 3e3);
+    EXPECT_GT(row.computer.no_stop_min, 20.0);
+    EXPECT_LT(row.computer.no_stop_min, 120.0);
+    EXPECT_NEAR(row.computer.po2_bar, 0.59, 0.03);
+  }
+  const std::string csv = csv_of(*dive.world, recorder.rows(), rows);
+  const auto lines = std::count(csv.begin(), csv.end(), '\n');
+  EXPECT_EQ(lines, static_cast<std::ptrdiff_t>(1 + rows.size() + recorder.rows().size()));
+  const auto commas =
+      std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(csv.find('\n')), ',');
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), commas * lines);
+  EXPECT_NE(csv.find("no_stop_min"), csv.npos);
+  scene::Scene drawn = dive.scene;
+  recorder.humans().give_tracks(drawn);
+  ASSERT_TRUE(drawn.objects[0].node_motion.has_value());
+  EXPECT_NEAR(static_cast<double>(drawn.objects[0].node_motion->keys.size()), 181.0, 2.0);
+}
+
+std::string fault_of(const std::string& text) {
+  const test::ScratchFolder scratch;
+  EXPECT_TRUE(write_text(scratch / "s.toml", text).ok());
+  const auto scene = scene::load_scene(scratch / "s.toml");
+  if (!scene.ok()) return scene.error().message;
+  const auto world = PhysicsWorld::create(*scene);
+  return world.ok() ? "" : world.error().message;
+}
+
+TEST(HumanDive, MistakesAreToldInOneLine) {
+  const std::string box = "[[objects]]\nname = \"box\"\nshape = \"box\"\nhuman = \"" +
+                          (test::source_dir() / "assets/divers/recreational.toml").string() +
+                          "\"\n";
+  EXPECT_NE(fault_of(std::string("[physics]\n") + box).find("without the node 'pelvis'"),
+            std::string::npos);
+  EXPECT_NE(fault_of(box).find("in a scene without [physics]"), std::string::npos);
+  EXPECT_NE(
+      fault_of(kStillWater + diver_text("swim = { speed_m_s = 0.4 }\n")).find("a list of points"),
+      std::string::npos);
+  EXPECT_NE(
+      fault_of(kStillWater + diver_text("swim = { waypoints_m = [[0, 0, 0]], speed_m_s = 9 }\n"))
+          .find("(0, 1.2]"),
+      std::string::npos);
+  std::string three;
+  for (int i = 0; i < 3; ++i) {
+    std::string one = diver_text(fmt::format("position_m = [{}, -10, 0]\n", 4 * i));
+    one.replace(one.find("\"diver\""), 7, fmt::format("\"d{}\"", i));
+    three += one;
+  }
+  EXPECT_NE(fault_of(kStillWater + three).find("at most 2"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace neritic::tools

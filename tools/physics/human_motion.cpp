@@ -1,0 +1,117 @@
+// The step of a diver, and what is drawn of it (human_world.hpp).
+#include <algorithm>
+#include <cmath>
+
+#include "diver/frames.hpp"
+#include "engine/sim/motion.hpp"
+#include "tools/physics/human_world.hpp"
+
+namespace neritic::tools {
+namespace {
+
+// Tissues change over minutes: a dive computer's sample each tenth of a second.
+constexpr double kComputer_s = 0.1;
+// Beyond a waypoint, so many times nearer than wanted is near enough.
+constexpr double kPassed = 3.0;
+
+std::size_t waypoint_index(const PhysicsHuman& human, const HumanPhysics& state) {
+  const std::size_t count = human.waypoints_ned_m.size();
+  return human.repeat ? state.arrived % count : std::min<std::size_t>(state.arrived, count - 1);
+}
+
+bool swims_on(const PhysicsHuman& human, const HumanPhysics& state) {
+  return !human.waypoints_ned_m.empty() &&
+         (human.repeat || state.arrived < human.waypoints_ned_m.size());
+}
+
+void follow_plan(const PhysicsHuman& human, HumanPhysics& state) {
+  if (!swims_on(human, state)) return;
+  const Vec3& to = human.waypoints_ned_m[waypoint_index(human, state)];
+  const Vec3 off = state.human.root.position_ned_m - to, leg = to - state.leg_from_ned_m;
+  const double distance = glm::length(off);
+  const bool passed = glm::dot(off, leg) > 0.0 && distance < kPassed * human.acceptance_m;
+  if (distance >= human.acceptance_m && !passed) return;
+  ++state.arrived;
+  state.leg_from_ned_m = to;
+}
+
+// The free step made into one among what is solid, as of the vehicles (body_step.hpp).
+void keep_out(const PhysicsHuman& human, const sim::StaticWorld& solid,
+              const diver::RootState& before, double dt_s, HumanPhysics& state) {
+  diver::RootState& after = state.human.root;
+  const Mat6 mass = diver::matrix_of(
+      diver::momentum_of(human.body, diver::posture_of(human.body, state.human.limbs.rotation, {}),
+                         diver::gas_load(human.body, state.human))
+          .mass);
+  sim::MotionReport report;
+  const sim::BodyMotion moved = sim::move_body(
+      solid, human.shape, world_from_ned(inverse(mass)).m,
+      world_pose(before.position_ned_m, before.attitude),
+      {world_pose(after.position_ned_m, after.attitude),
+       {world_from_ned(after.velocity.linear()), world_from_ned(after.velocity.angular())}},
+      dt_s, &report);
+  after.position_ned_m = ned_from_world(moved.world_from_body.position_m);
+  after.attitude = ned_from_world(moved.world_from_body.rotation);
+  after.velocity =
+      vec6(ned_from_world(moved.velocity.linear), ned_from_world(moved.velocity.angular));
+  state.contact.near_points = static_cast<std::uint64_t>(report.contacts);
+  state.contact.touched_steps += report.touched ? 1 : 0;
+  state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);
+  state.contact.impulse_n_s = report.impulse_n_s;
+}
+
+bool computer_due(std::uint64_t step, double dt_s) {
+  const auto samples = [&](std::uint64_t steps) {
+    return std::floor(static_cast<double>(steps) * dt_s / kComputer_s + 1e-9);
+  };
+  return samples(step + 1) != samples(step);
+}
+
+}  // namespace
+
+diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) {
+  if (swims_on(human, state))
+    return {human.waypoints_ned_m[waypoint_index(human, state)], human.speed_m_s};
+  return {state.leg_from_ned_m, 0.0};
+}
+
+void step_human(const PhysicsHuman& human, const sim::StaticWorld& solid,
+                const HumanSteering& inputs, const Vec3& current_m_s, std::uint64_t step,
+                double dt_s, HumanPhysics& state) {
+  diver::HumanInputs acting = inputs.human;
+  acting.current_ned_m_s = ned_from_world(current_m_s);
+  follow_plan(human, state);
+  if (inputs.worn == 0)  // nobody wears the suit: swims by itself
+    diver::swim(human.body, human.file.swimmer, swim_goal(human, state), state.human, state.swimmer,
+                dt_s, acting);
+  const diver::RootState before = state.human.root;
+  state.human = diver::step(human.body, state.human, acting, dt_s);
+  keep_out(human, solid, before, dt_s, state);
+  if (computer_due(step, dt_s)) {
+    const diver::DiveSample sample{state.human.root.position_ned_m.z, state.human.held.tank};
+    state.human.life.computer =
+        human.computer->step(state.human.life.computer, sample, kComputer_s);
+  }
+}
+
+Pose drawn_pose(const HumanPhysics& state) {
+  return diver::standing_pose(state.human.root.position_ned_m, state.human.root.attitude);
+}
+
+scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
+                                    double time_s) {
+  const auto joints = diver::standing_joints(state.human.limbs.rotation, human.arms_spread_rad);
+  scene::NodeMotion::Key key{time_s, {Quat(1.0, 0.0, 0.0, 0.0)}, {}};
+  for (const Quat& joint : joints) key.rotations.push_back(joint);
+  key.scales.assign(diver::kSegments, Vec3(1.0));
+  // A breath of a litre makes the chest some 2.5 % wider and 5 % deeper (Konno and Mead 1967, J.
+  // Appl. Physiol. 22, 407), the belly likewise; what hangs on the chest keeps its size.
+  const double litres = 1e3 * (state.human.life.lungs.volume_m3 - human.body.lungs.rest_m3);
+  const Vec3 wider(1.0 + 0.025 * litres, 1.0, 1.0 + 0.05 * litres);
+  key.scales[diver::kAbdomen] = wider;
+  for (const diver::Segment on_chest : {diver::kHead, diver::kLeftUpperArm, diver::kRightUpperArm})
+    key.scales[on_chest] = 1.0 / wider;
+  return key;
+}
+
+}  // namespace neritic::tools

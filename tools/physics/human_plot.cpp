@@ -1,0 +1,96 @@
+#include "tools/physics/human_plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace neritic::tools {
+namespace {
+
+constexpr double kHeadroom = 0.25;
+
+using HumanValue = std::function<double(const HumanRow&)>;
+
+double human_time(const HumanRow& row) {
+  return row.time_s;
+}
+
+Series of_human(const std::vector<HumanRow>& rows, std::size_t human, const std::string& name,
+                std::size_t color, const HumanValue& x, const HumanValue& y) {
+  return series_from<HumanRow>(
+      rows, [human](const HumanRow& row) { return row.human == human; }, name,
+      kSeriesColors[color % std::size(kSeriesColors)], x, y);
+}
+
+Series first_over_time(const std::vector<HumanRow>& rows, const std::string& name,
+                       std::size_t color, const HumanValue& y) {
+  return of_human(rows, 0, name, color, human_time, y);
+}
+
+// Vehicles have the first colours.
+std::size_t color_of(const PhysicsWorld& world, std::size_t human) {
+  return world.vehicles().size() + human;
+}
+
+}  // namespace
+
+std::vector<Series> human_paths(const PhysicsWorld& world, const std::vector<HumanRow>& rows) {
+  std::vector<Series> lines;
+  for (std::size_t i = 0; i < world.humans().size(); ++i)
+    lines.push_back(of_human(
+        rows, i, world.humans()[i].name, color_of(world, i),
+        [](const HumanRow& r) { return r.world_from_body.position_m.x; },
+        [](const HumanRow& r) { return -r.world_from_body.position_m.z; }));
+  return lines;
+}
+
+std::vector<Series> human_heights(const PhysicsWorld& world, const std::vector<HumanRow>& rows) {
+  std::vector<Series> lines;
+  for (std::size_t i = 0; i < world.humans().size(); ++i)
+    lines.push_back(of_human(rows, i, world.humans()[i].name, color_of(world, i), human_time,
+                             [](const HumanRow& r) { return r.world_from_body.position_m.y; }));
+  return lines;
+}
+
+void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
+                       const PhysicsWorld& world, const std::vector<HumanRow>& rows) {
+  const std::string& name = world.humans()[0].name;
+  const double middle_x = 0.5 * width_px, middle_y = top_px + 0.5 * kHumanPanels_px;
+  const double bottom = top_px + kHumanPanels_px - 10.0;
+  draw_over_time(
+      canvas, {10, top_px, middle_x, middle_y}, "Pace of " + name, "m/s, beats/s",
+      {first_over_time(rows, "speed, m/s", 0,
+                       [](const HumanRow& r) { return glm::length(r.velocity.linear()); }),
+       first_over_time(rows, "kick, beats/s", 1, [](const HumanRow& r) { return r.kick_hz; })},
+      0.2, kHeadroom);
+  draw_over_time(canvas, {middle_x, top_px, width_px - 10.0, middle_y}, "Gas of " + name,
+                 "bar, l/min, min",
+                 {first_over_time(rows, "tank, bar", 0,
+                                  [](const HumanRow& r) { return 1e-5 * r.gas.tank_pa; }),
+                  first_over_time(rows, "ventilation, l/min", 1,
+                                  [](const HumanRow& r) { return r.gas.ventilation_l_min; }),
+                  first_over_time(
+                      rows, "left to 50 bar, min", 2,
+                      [](const HumanRow& r) { return std::min(r.gas.remaining_s / 60.0, 300.0); })},
+                 5.0, kHeadroom);
+  draw_over_time(
+      canvas, {10, middle_y, middle_x, bottom}, "Decompression of " + name, "m, min",
+      {first_over_time(rows, "no-stop time, min", 0,
+                       [](const HumanRow& r) { return std::min(r.computer.no_stop_min, 300.0); }),
+       first_over_time(rows, "ceiling, m", 1,
+                       [](const HumanRow& r) { return r.computer.ceiling_m; }),
+       first_over_time(
+           rows, "to the surface, min", 2,
+           [](const HumanRow& r) { return std::min(r.computer.to_surface_min, 300.0); })},
+      1.0, kHeadroom);
+  draw_over_time(
+      canvas, {middle_x, middle_y, width_px - 10.0, bottom}, "Lungs, jacket and balance of " + name,
+      "litres, N",
+      {first_over_time(rows, "lungs, l", 0, [](const HumanRow& r) { return 1e3 * r.lungs_m3; }),
+       first_over_time(rows, "jacket, l", 1,
+                       [](const HumanRow& r) { return 1e3 * r.gas.jacket_m3; }),
+       first_over_time(rows, "weight less lift, N", 2,
+                       [](const HumanRow& r) { return r.net_weight_n; })},
+      1.0, kHeadroom);
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,62 @@
+// What divers went through, kept as it goes: rows of numbers, their paths and joints as tracks for
+// pictures, and figures of the whole. One thread: the one that steps.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/scene/node_motion.hpp"
+#include "engine/scene/track.hpp"
+#include "tools/physics/physics_world.hpp"
+
+namespace neritic::tools {
+
+// A diver at an instant.
+struct HumanRow {
+  double time_s = 0.0;
+  std::size_t human = 0;
+  Pose world_from_body;  // model axes of who swims: starboard, up, back
+  Vec6 velocity;         // over ground; body axes forward, starboard, down
+  Vec3 current_m_s{0.0};
+  diver::SwimGoal goal;
+  std::uint64_t arrived = 0, near_points = 0, touched_steps = 0, buttons = 0, tank = 0, refused = 0;
+  double kick_hz = 0.0, limb_power_w = 0.0, oxygen_l_min = 0.0, lungs_m3 = 0.0, net_weight_n = 0.0;
+  diver::GasReading gas;
+  diver::DiveComputerView computer;
+  double cns_percent = 0.0, otu = 0.0;
+  std::uint64_t hash = 0;  // of the whole state
+};
+
+struct HumanFigures {
+  double path_m = 0.0, largest_speed_m_s = 0.0, deepest_m = 0.0, shallowest_m = 1e9;
+};
+
+// Between two postures that are kept, where nothing else is said: as pictures need.
+inline constexpr double kJoints_s = 1.0 / 60.0;
+
+class HumanRecorder {
+ public:
+  HumanRecorder(const PhysicsWorld& world, double joints_s);
+
+  // Each step's result in turn, the start first; row: whether to keep one; tracks: whether to keep
+  // the pose, and the posture where one is due.
+  void add(const sim::Snapshot<PhysicsState>& snapshot, bool row, bool tracks);
+
+  const std::vector<HumanRow>& rows() const { return rows_; }
+  const std::vector<HumanFigures>& figures() const { return figures_; }
+  // Puts what was kept into the scene: the divers' tracks and joints.
+  void give_tracks(scene::Scene& scene);
+
+ private:
+  HumanRow row_of(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot) const;
+
+  const PhysicsWorld& world_;
+  double joints_s_;
+  std::vector<HumanRow> rows_;
+  std::vector<HumanFigures> figures_;
+  std::vector<scene::Track> tracks_;
+  std::vector<scene::NodeMotion> joints_;
+  std::vector<Vec3> last_ned_m_;
+};
+
+}  // namespace neritic::tools

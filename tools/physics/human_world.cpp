@@ -1,0 +1,73 @@
+// What is read and checked once (human_world.hpp).
+#include "tools/physics/human_world.hpp"
+
+#include <cmath>
+
+#include "diver/frames.hpp"
+
+namespace neritic::tools {
+namespace {
+
+// For contacts, of a body of 1.78 m: trunk with tank and arms, and legs with fins.
+void set_shape(PhysicsHuman& human) {
+  const double s = human.body.height_m / 1.78;
+  const bool worn = human.body.tank_count > 0;
+  const Quat level(1.0, 0.0, 0.0, 0.0);
+  human.shape.add_box({s * Vec3(0.0, worn ? 0.09 : 0.0, -0.36), level},
+                      s * Vec3(0.24, worn ? 0.23 : 0.13, 0.46));
+  human.shape.add_box({s * Vec3(0.0, 0.0, 0.62), level}, s * Vec3(0.18, 0.12, 0.52));
+}
+
+int node_named(const scene::Model& model, std::string_view name) {
+  for (std::size_t i = 0; i < model.nodes.size(); ++i)
+    if (model.nodes[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+// The model's joints, and how far its arms are spread: the way from shoulder to elbow.
+Status find_nodes(const scene::Scene& scene, const scene::Object& object, PhysicsHuman& human) {
+  const scene::Model& model = *scene.models[static_cast<std::size_t>(object.model)];
+  for (const std::string_view name : diver::kSegmentNames) {
+    human.nodes.push_back(node_named(model, name));
+    if (human.nodes.back() < 0)
+      return bad_input("{}: {}: human: a model without the node '{}' found; accepted: nodes of {}",
+                       scene.path, object.name, name, "the 16 segments' names");
+  }
+  const auto elbow = static_cast<std::size_t>(human.nodes[diver::kRightForearm]);
+  const Vec3& arm = model.nodes[elbow].translation_m;
+  human.arms_spread_rad = std::atan2(arm.x, -arm.y);
+  return {};
+}
+
+}  // namespace
+
+Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index) {
+  const scene::Object& object = scene.objects[index];
+  PhysicsHuman human;
+  human.name = object.name;
+  human.object = index;
+  NERITIC_TRY(human.file, diver::read_diver(object.human->file, scene.physics->water_kg_m3));
+  NERITIC_TRY(human.body, diver::make_body(human.file.parameters));
+  NERITIC_TRY(diver::DiveComputer computer, diver::DiveComputer::create(human.file.computer));
+  human.computer = std::make_unique<const diver::DiveComputer>(std::move(computer));
+  if (object.human->swim) {
+    const scene::SwimPlan& plan = *object.human->swim;
+    for (const Vec3& p : plan.waypoints_m) human.waypoints_ned_m.push_back(ned_from_world(p));
+    human.speed_m_s = plan.speed_m_s;
+    human.acceptance_m = plan.acceptance_m;
+    human.repeat = plan.repeat;
+  }
+  set_shape(human);
+  NERITIC_TRY_STATUS(find_nodes(scene, object, human));
+  const Pose at = scene.world_from(object.mount, 0.0);
+  human.start.human = diver::start_at(human.body, ned_from_world(at.position_m),
+                                      diver::ned_from_standing(at.rotation),
+                                      diver::rotations_of(diver::streamlined(human.body)));
+  // Put there from the surface this moment.
+  human.start.human.life.computer = human.computer->step(
+      human.computer->start(), {human.start.human.root.position_ned_m.z, 0}, 0.0);
+  human.start.leg_from_ned_m = human.start.human.root.position_ned_m;
+  return human;
+}
+
+}  // namespace neritic::tools

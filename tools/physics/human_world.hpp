@@ -1,0 +1,52 @@
+// The divers of a scene who swim by moving limbs: read and checked once, then only read; and their
+// step through the water and along what is solid, a pure function. World of the diver north, east,
+// down; body forward (to the head), starboard, down.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diver/diver_file.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/sim/body_shape.hpp"
+#include "engine/sim/static_world.hpp"
+#include "tools/physics/physics_state.hpp"
+
+namespace neritic::tools {
+
+// A diver of the scene, prepared.
+struct PhysicsHuman {
+  std::string name;
+  std::size_t object = 0;  // index into Scene::objects
+  diver::DiverFile file;
+  diver::Body body;
+  std::unique_ptr<const diver::DiveComputer> computer;
+  // Where to swim; no points: hovers.
+  std::vector<Vec3> waypoints_ned_m;
+  double speed_m_s = 0.0, acceptance_m = 1.0;
+  bool repeat = false;
+  sim::BodyShape shape;  // for contacts: model axes (starboard, up, back) of who swims
+  // The joints of what is drawn: nodes of its model, one a segment, and how its arms are spread.
+  std::vector<int> nodes;
+  double arms_spread_rad = 0.0;
+  HumanPhysics start;
+};
+
+// Errors in one line: files that do not read, models without the segments' nodes.
+Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t object);
+
+// What the diver swims to now.
+diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state);
+
+// dt_s later. current: of the diver's place, world axes.
+void step_human(const PhysicsHuman& human, const sim::StaticWorld& solid,
+                const HumanSteering& inputs, const Vec3& current_m_s, std::uint64_t step,
+                double dt_s, HumanPhysics& state);
+
+// What is drawn: where the model stands, and its nodes' rotations and scales (breath).
+Pose drawn_pose(const HumanPhysics& state);
+scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
+                                    double time_s);
+
+}  // namespace neritic::tools
