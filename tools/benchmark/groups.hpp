@@ -11,14 +11,15 @@
 
 namespace neritic::bench {
 
-// The last two need no device.
+// The last three need no device.
 inline constexpr std::string_view kGroups[] = {
     "sonar_binning", "sonar_frame", "sonar_terms", "camera_frame", "sweep",
-    "deco",          "start",       "threads",     "physics",      "contacts"};
-inline constexpr std::size_t kGroupsWithoutDevice = 2;
+    "deco",          "start",       "threads",     "physics",      "contacts", "diver"};
+inline constexpr std::size_t kGroupsWithoutDevice = 3;
 
 Status bench_physics(Suite& suite);                             // vehicles, hand-off of states
 Status bench_contacts(Suite& suite);                            // contacts against triangles
+Status bench_diver(Suite& suite);                               // a swimming diver
 Status bench_sonar_binning(Suite& suite, gpu::Device& device);  // the gather against the volume
 Status bench_sonar_frame(Suite& suite, gpu::Device& device);    // whole frames, one sonar and ten
 Status bench_sonar_terms(Suite& suite, gpu::Device& device);    // a frame with each term named

@@ -35,6 +35,7 @@ Status check_filter(const Suite& suite) {
 Status run_without_device(Suite& suite) {
   if (suite.options().once) return {};
   NERITIC_TRY_STATUS(bench_physics(suite));
+  NERITIC_TRY_STATUS(bench_diver(suite));
   return bench_contacts(suite);
 }
 
@@ -86,7 +87,7 @@ constexpr Flag kFlags[] = {
     {"--json", "also write the results to this file", &Options::json},
     {"--filter",
      "only groups whose name holds this: sonar_binning, sonar_frame, sonar_terms, camera_frame,\n"
-     "             sweep, deco, start, threads, physics, contacts; or one GROUP/NAME",
+     "             sweep, deco, start, threads, physics, contacts, diver; or one GROUP/NAME",
      &Options::filter},
     {"--device", "Vulkan device: index or part of its name", &Options::device},
     {"--assets", "the folder that holds scenes/", &Options::assets},
