@@ -34,6 +34,25 @@ waypoints = [
   EXPECT_TRUE(dive.world->vehicles()[0].mission->done(dive.vehicle().mission));
 }
 
+// Without a speed it goes as fast as it can: level, since moments come before the push.
+TEST(Mission, WithoutASpeedItFliesLevelAtFullThrust) {
+  TestDive dive = dive_of(kStill + rov_text(R"(
+position_m = [0, -20, 0]
+mission = { waypoints = [ { position_m = [0, -20, -30] }, { position_m = [20, -10, -30] } ] }
+)"));
+  double most_tilt_rad = 0.0, fastest_m_s = 0.0, largest_n = 0.0;
+  dive.run(75.0, [&] {
+    const Vec3 up = dive.pose().rotation * Vec3(0.0, 1.0, 0.0);
+    most_tilt_rad = std::max(most_tilt_rad, std::acos(std::min(1.0, up.y)));
+    fastest_m_s = std::max(fastest_m_s, dive.speed_m_s());
+    for (const double n : dive.vehicle().command_n) largest_n = std::max(largest_n, std::abs(n));
+  });
+  EXPECT_EQ(dive.vehicle().mission.arrived, 2u);
+  EXPECT_LT(degrees(most_tilt_rad), 10.0);  // 56 and 62 without either
+  EXPECT_GT(fastest_m_s, 0.8);
+  EXPECT_GT(largest_n, 39.0);
+}
+
 TEST(Mission, AStopIsHeldForItsTime) {
   TestDive dive = dive_of(kStill + rov_text(R"(
 position_m = [0, -10, 0]
@@ -86,7 +105,7 @@ waypoints = [
 ]
 )"));
   const auto until_left = [&](std::uint64_t count) {
-    while (dive.vehicle().mission.left < count && dive.time_s() < 100.0) dive.run(0.1);
+    while (dive.vehicle().mission.left < count && dive.time_s() < 100.0) dive.run(1.0 / 240.0);
   };
   until_left(1);
   EXPECT_LT(apart_deg(heading_deg(dive.pose()), 0.0), 1.0);  // along its way, north

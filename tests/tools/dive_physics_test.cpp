@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -115,6 +116,10 @@ TEST_F(DivePhysics, RunsAlikeAndReplaysWhatItRecorded) {
   EXPECT_EQ((*a)["steps"], 1920);
   EXPECT_EQ((*a)["vehicles"][0]["name"], "rov");
   EXPECT_EQ((*a)["vehicles"][0]["touched_steps"], 0);
+  // How deep it dived, and how deep in something solid it was.
+  EXPECT_NEAR((*a)["vehicles"][0]["deepest_m"].get<double>(), 7.0, 0.1);
+  EXPECT_NEAR((*a)["vehicles"][0]["shallowest_m"].get<double>(), 6.0, 0.1);
+  EXPECT_EQ((*a)["vehicles"][0]["deepest_contact_m"], 0.0);
   const Outcome replay = dive("--headless --replay " + file("a.log"));
   EXPECT_EQ(replay.status, 0) << replay.err;
   EXPECT_NE(replay.out.find("1920 steps, each with the hash that was recorded"), std::string::npos)
@@ -168,6 +173,42 @@ TEST_F(DivePhysics, DrawsItsPlotAndKeepsTheRateOfItsRows) {
   EXPECT_EQ(image->height, 1200u);
 }
 
+// The shipped dive: the diver swims, the vehicle keeps beside, and what is said is what was logged.
+TEST_F(DivePhysics, ADiverSwimsAndIsLogged) {
+  const std::string scene = (test::source_dir() / "assets/scenes/dive.toml").string();
+  const int raw = std::system(
+      fmt::format("{} '{}/tools/neritic' -q dive '{}' --headless --seconds 20 --json --log {} "
+                  "--plot {} > {} 2> {}",
+                  kNoDevice, NERITIC_BINARY_DIR, scene, file("d.csv"), file("d.png"), file("out"),
+                  file("err"))
+          .c_str());
+  ASSERT_EQ(WEXITSTATUS(raw), 0) << read_text(scratch_ / "err").value();
+  const auto json = parse_json(read_text(scratch_ / "out").value());
+  ASSERT_TRUE(json.ok());
+  const auto& said = (*json)["humans"][0];
+  EXPECT_EQ(said["name"], "diver");
+  EXPECT_EQ(said["touched_steps"], 0);
+  EXPECT_EQ(said["refused_inputs"], 0);
+  EXPECT_GT(said["way_m"].get<double>(), 6.0);
+  EXPECT_LT(said["tank_bar"].get<double>(), 199.5);
+  auto columns = table("d.csv");
+  std::vector<double> depths;
+  for (std::size_t i = 0; i < columns["vehicle"].size(); ++i) {
+    if (columns["vehicle"][i] != "diver") {
+      EXPECT_EQ(columns["tank_bar"][i], "");  // a vehicle has no tank
+      continue;
+    }
+    depths.push_back(std::stod(columns["depth_m"][i]));
+    EXPECT_EQ(columns["thrust_1_n"][i], "");  // nor a diver thrusters
+  }
+  ASSERT_EQ(depths.size(), 201u);  // ten a second, and the start
+  EXPECT_NEAR(*std::ranges::max_element(depths), said["deepest_m"].get<double>(), 0.02);
+  EXPECT_NEAR(*std::ranges::min_element(depths), said["shallowest_m"].get<double>(), 0.02);
+  const auto image = scene::read_image8(scratch_ / "d.png", 3);
+  ASSERT_TRUE(image.ok()) << image.error().message;
+  EXPECT_GT(image->height, 1200u);  // with the diver's panels
+}
+
 // The vehicle's file is refused before anything moves.
 TEST_F(DivePhysics, AParameterFileThatIsNoVehicleEndsInOneLine) {
   const struct {
@@ -200,7 +241,8 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
   const struct {
     std::string arguments, scene, message;
   } cases[] = {
-      {"--headless --log x.csv", "still.toml", "--log: accepted where a vehicle has dynamics; in "},
+      {"--headless --log x.csv", "still.toml",
+       "--log: accepted where a vehicle has dynamics or a diver swims; in "},
       {"--log x.csv", "dive.toml", "--log: accepted with --headless and without flags of pictures"},
       {"--headless --frames 3 --json", "dive.toml",
        "--json: accepted with --headless and without flags of pictures"},

@@ -84,8 +84,10 @@ std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& stat
       line += fmt::format(" (the last after {:.1f} s)", figures.arrivals_s.back());
     line += ", ";
   }
-  line += fmt::format("{:.2f} m of way, up to {:.2f} m/s, tilted up to {:.1f} degrees, ",
-                      figures.path_m, figures.largest_speed_m_s, degrees(figures.largest_tilt_rad));
+  line += fmt::format(
+      "{:.2f} m of way, up to {:.2f} m/s, {:.1f} to {:.1f} m deep, tilted up to {:.1f} degrees, ",
+      figures.path_m, figures.largest_speed_m_s, figures.shallowest_m, figures.deepest_m,
+      degrees(figures.largest_tilt_rad));
   line += state.contact.touched_steps == 0
               ? "touched nothing"
               : fmt::format("touched something in {} steps", state.contact.touched_steps);
@@ -133,6 +135,7 @@ nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
           {"ceiling_m", deco.ceiling_m},
           {"no_stop_min", deco.no_stop_min},
           {"touched_steps", state.contact.touched_steps},
+          {"deepest_contact_m", state.contact.deepest_m},
           {"refused_inputs", state.human.refused_inputs},
           {"end", {{"position_m", {p.x, p.y, p.z}}}}};
 }
@@ -150,7 +153,9 @@ nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& s
           {"largest_speed_m_s", figures.largest_speed_m_s},
           {"largest_tilt_deg", degrees(figures.largest_tilt_rad)},
           {"touched_steps", state.contact.touched_steps},
-          {"deepest_m", state.contact.deepest_m},
+          {"deepest_contact_m", state.contact.deepest_m},
+          {"shallowest_m", figures.shallowest_m},
+          {"deepest_m", figures.deepest_m},
           {"refused_inputs", state.body.refused_inputs},
           {"end", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}}};
 }

@@ -92,6 +92,8 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
     }
     figures.largest_speed_m_s =
         std::max(figures.largest_speed_m_s, glm::length(now.body.velocity.linear()));
+    figures.shallowest_m = std::min(figures.shallowest_m, now.body.position_ned_m.z);
+    figures.deepest_m = std::max(figures.deepest_m, now.body.position_ned_m.z);
     figures.largest_tilt_rad = std::max(figures.largest_tilt_rad, tilt_of(now.body.attitude));
     if (track_due(snapshot)) {
       const Pose pose = world_pose_of(now.body);

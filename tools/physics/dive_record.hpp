@@ -39,7 +39,8 @@ struct DiveRow {
 
 struct DiveFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, largest_tilt_rad = 0.0;
-  std::vector<double> arrivals_s;  // of its waypoints
+  double shallowest_m = 1e9, deepest_m = -1e9;  // of its origin, below the still surface
+  std::vector<double> arrivals_s;               // of its waypoints
 };
 
 class DiveRecorder {

@@ -11,20 +11,31 @@
 namespace neritic::tools {
 namespace {
 
-// Of the pilot's wrench the share for which the thrusters have room beside what holds the vehicle
+// Of a wrench that pushes the share for which the thrusters have room beside what holds the vehicle
 // level: at full thrust they would have none left, and it would overturn.
 rov::Vec6 with_room(const rov::Vehicle& vehicle, const rov::Allocator& allocator,
-                    const rov::Vec6& holding, const rov::Vec6& pilot) {
+                    const rov::Vec6& holding, const rov::Vec6& push) {
   const auto held_n = allocator.allocate(holding).wanted_n;
-  const auto pilot_n = allocator.allocate(pilot).wanted_n;
+  const auto push_n = allocator.allocate(push).wanted_n;
   double share = 1.0;
   for (std::size_t i = 0; i < vehicle.thruster_count; ++i) {
-    if (pilot_n[i] == 0.0) continue;
+    if (push_n[i] == 0.0) continue;
     const double limit_n =
-        pilot_n[i] > 0.0 ? vehicle.thrusters[i].max_n : vehicle.thrusters[i].min_n;
-    share = std::min(share, (limit_n - held_n[i]) / pilot_n[i]);
+        push_n[i] > 0.0 ? vehicle.thrusters[i].max_n : vehicle.thrusters[i].min_n;
+    share = std::min(share, (limit_n - held_n[i]) / push_n[i]);
   }
-  return std::max(0.0, share) * pilot;
+  return std::max(0.0, share) * push;
+}
+
+// What a mission's push leaves of the thrusters is little where the setpoint is far away, and
+// moving fast the water turns a vehicle broadside (the Munk moment, v x M_A v; Fossen 2011,
+// eq. 6.43) more than its gains hold: cut like all the rest, its moments would not keep it off its
+// nose. So they come first, the Munk moment given on top.
+rov::Vec6 level_first(const rov::Vehicle& vehicle, const rov::Allocator& allocator,
+                      const rov::Vec6& wrench, const rov::State& body) {
+  const Vec3 munk = glm::cross(body.velocity.linear(), (vehicle.mass * body.velocity).linear());
+  const rov::Vec6 moments = rov::vec6(Vec3(0.0), wrench.angular() + munk);
+  return moments + with_room(vehicle, allocator, moments, rov::vec6(wrench.linear(), Vec3(0.0)));
 }
 
 }  // namespace
@@ -135,7 +146,8 @@ void PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const Vehic
   rov::Inputs commands;
   const auto allocate = [&](const rov::Allocator& allocator) {
     const rov::Vec6 wrench =
-        piloted ? holding + with_room(vehicle.vehicle, allocator, holding, inputs.pilot) : holding;
+        piloted ? holding + with_room(vehicle.vehicle, allocator, holding, inputs.pilot)
+                : level_first(vehicle.vehicle, allocator, holding, state.body);
     commands.thruster_n = allocator.allocate(wrench, vehicle.file.gains.saturation).force_n;
   };
   if (inputs.failed_thrusters == vehicle.failed_thrusters)
