@@ -22,15 +22,6 @@ struct BreathSettings {
 // kBadInput: blocks of .5 to 60 s, windows of a block to 300 s.
 Status check_breath_settings(const BreathSettings& settings);
 
-// What a snapshot holds of the breath. Always finite.
-struct BreathState {
-  double time_s = 0.0;  // of the newest sample analysed
-  BreathEstimate estimate;
-  double quiet_s = 0.0;  // since the last burst of sound: a pause
-  std::uint64_t blocks = 0, refused = 0;
-  std::uint64_t lost_blocks = 0;  // recorded while the one before was still being analysed
-};
-
 // The analysis. One owner, one thread.
 class BreathAnalyser {
  public:

@@ -214,7 +214,7 @@ BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const Breath
   if (estimator == BreathEstimator::kMultiBand) by_autocorrelation(lively, out);
   // The spectrum always answers, as published.
   const bool sure = estimator == BreathEstimator::kSpectrum || out.confidence >= kLeastConfidence;
-  out.breathing = out.rate_bpm > 0.0 && sure;
+  out.breathing = out.rate_bpm > 0.0 && sure ? 1 : 0;
   if (!out.breathing) out.rate_bpm = 0.0;
   return out;
 }

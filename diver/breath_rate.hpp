@@ -27,8 +27,34 @@ struct BreathEstimate {
   double rate_bpm = 0.0;    // 0: no breath
   double confidence = 0.0;  // 0 to 1: how alike a breath is to the one before
   double depth_db = 0.0;    // how far the level goes up and down
-  bool breathing = false;
+  std::uint64_t breathing = 0;  // 1: there is breath
+
+  static void fields(auto&& field, auto& self) {
+    field("rate_bpm", self.rate_bpm);
+    field("confidence", self.confidence);
+    field("depth_db", self.depth_db);
+    field("breathing", self.breathing);
+  }
 };
+
+// What a snapshot holds of the breath (breath_monitor.hpp). Always finite.
+struct BreathState {
+  double time_s = 0.0;  // of the newest sample analysed
+  BreathEstimate estimate;
+  double quiet_s = 0.0;  // since the last burst of sound: a pause
+  std::uint64_t blocks = 0, refused = 0;
+  std::uint64_t lost_blocks = 0;  // recorded while the one before was still being analysed
+
+  static void fields(auto&& field, auto& self) {
+    field("time_s", self.time_s);
+    field("estimate", self.estimate);
+    field("quiet_s", self.quiet_s);
+    field("blocks", self.blocks);
+    field("refused", self.refused);
+    field("lost_blocks", self.lost_blocks);
+  }
+};
+
 // Of a window of frames; front says which bands there are. A window without breath (steady noise,
 // silence, less than four seconds) says so.
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
+#include "diver/deco_check_errors.hpp"
 #include "diver/deco_ndl.hpp"
 
 namespace neritic::diver {
@@ -12,36 +12,6 @@ namespace {
 
 // Numbers of files are rounded to so many digits.
 constexpr double kRunTime_min = 1e-3, kGf = 1e-6, kDepth_m = 1e-5, kPo2_bar = 1e-4;
-
-// The worst error a quantity, in the order in which they were first compared.
-class Errors {
- public:
-  explicit Errors(std::string id) : result_{std::move(id), {}} {}
-
-  void add(const std::string& what, const std::string& unit, double error, double tolerance) {
-    auto at = std::ranges::find(result_.errors, what, &CheckedError::what);
-    if (at == result_.errors.end()) {
-      result_.errors.push_back({what, unit, 0.0, tolerance});
-      at = result_.errors.end() - 1;
-    }
-    at->error = std::isnan(error) ? error : std::max(at->error, std::abs(error));
-  }
-  void add(const std::string& what, const std::string& unit, double found, const Expected& expected,
-           double tolerance) {
-    if (expected) add(what, unit, found - *expected, tolerance);
-  }
-  // What could not be planned at all.
-  void add_failure(const std::string& what) {
-    add(what, "", std::numeric_limits<double>::infinity(), 1.0);
-  }
-  CaseResult take() {
-    if (result_.errors.empty()) add_failure("nothing to compare");
-    return std::move(result_);
-  }
-
- private:
-  CaseResult result_;
-};
 
 double tissue_error(const TissueState& a, const TissueState& b) {
   double worst = 0.0;
@@ -270,7 +240,7 @@ class DiveCheck {
 
   const DecoCase& one_;
   const DecoCases& tolerances_;
-  Errors errors_;
+  DecoErrors errors_;
 };
 
 }  // namespace
@@ -280,7 +250,7 @@ CaseResult check_dive(const DecoCase& one, const DecoCases& tolerances) {
 }
 
 CaseResult check_table(const NdlTable& table, const DecoCases& tolerances) {
-  Errors errors(table.id);
+  DecoErrors errors(table.id);
   const DecoConventions& c = table.request.conventions;
   const GasMix& mix = table.request.gases[0].mix;
   for (const NdlRow& row : table.rows) {

@@ -13,7 +13,7 @@
 namespace neritic::diver {
 
 enum class GazeMethod : std::uint8_t { kVelocity, kDispersion };
-enum class GazeClass : std::uint8_t { kLost, kFixation, kSaccade };
+enum class GazeClass : std::uint64_t { kLost, kFixation, kSaccade };
 
 // Neither method knows smooth pursuit; what says so.
 inline constexpr const char* kPursuitNote =
@@ -66,6 +66,20 @@ struct GazeState {
   double last_amplitude_rad = 0.0, last_peak_rad_s = 0.0;
   std::uint64_t fixations = 0, saccades = 0;
   std::uint64_t refused = 0;  // not finite, no direction, or not after the one before
+
+  static void fields(auto&& field, auto& self) {
+    field("time_s", self.time_s);
+    field("direction", self.direction);
+    field("velocity_rad_s", self.velocity_rad_s);
+    field("now", self.now);
+    field("fixated_s", self.fixated_s);
+    field("fixation", self.fixation);
+    field("last_amplitude_rad", self.last_amplitude_rad);
+    field("last_peak_rad_s", self.last_peak_rad_s);
+    field("fixations", self.fixations);
+    field("saccades", self.saccades);
+    field("refused", self.refused);
+  }
 };
 
 struct GazeEvents {

@@ -9,7 +9,7 @@
 
 namespace neritic::diver {
 
-enum class SignalQuality : std::uint8_t {
+enum class SignalQuality : std::uint64_t {
   kNone,      // nothing yet, or no change: electrode off, saturated
   kLearning,  // too little seen to tell
   kPoor,      // heard, but noise is nearly as large: the numbers may be wrong
@@ -26,6 +26,19 @@ struct HeartState {
   HeartSpectrum spectrum;
   SignalQuality quality = SignalQuality::kNone;
   std::uint64_t beats = 0, ectopic = 0, refused = 0, gaps = 0;
+
+  static void fields(auto&& field, auto& self) {
+    field("time_s", self.time_s);
+    field("last_beat_s", self.last_beat_s);
+    field("rate_bpm", self.rate_bpm);
+    field("over_five_minutes", self.over_five_minutes);
+    field("spectrum", self.spectrum);
+    field("quality", self.quality);
+    field("beats", self.beats);
+    field("ectopic", self.ectopic);
+    field("refused", self.refused);
+    field("gaps", self.gaps);
+  }
 };
 
 class HeartMonitor {

@@ -148,8 +148,8 @@ Variability variability(std::span<const Interval> intervals, bool across_gaps) {
     last = &i;
   }
   Variability out;
-  out.intervals = static_cast<int>(lengths.size());
-  out.pairs = static_cast<int>(differences.size());
+  out.intervals = std::ssize(lengths);
+  out.pairs = std::ssize(differences);
   if (lengths.empty()) return out;
   for (const double l : lengths) out.mean_rr_ms += l / static_cast<double>(lengths.size());
   out.mean_rate_bpm = 60e3 / out.mean_rr_ms;
@@ -196,7 +196,7 @@ HeartSpectrum heart_spectrum(std::span<const Interval> intervals) {
   if (pieces == 0) return {};
   for (double* power : {&sum.vlf_ms2, &sum.lf_ms2, &sum.hf_ms2}) *power /= pieces;
   sum.lf_over_hf = sum.hf_ms2 > 0.0 ? sum.lf_ms2 / sum.hf_ms2 : 0.0;
-  sum.valid = true;
+  sum.valid = 1;
   return sum;
 }
 

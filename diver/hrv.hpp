@@ -46,13 +46,26 @@ class IntervalJudge {
 std::vector<Interval> intervals_of(std::span<const Beat> beats);
 
 struct Variability {
-  int intervals = 0;
+  std::int64_t intervals = 0;
   double mean_rr_ms = 0.0, mean_rate_bpm = 0.0;
   double sdnn_ms = 0.0;   // sample deviation (n - 1)
   double rmssd_ms = 0.0;  // over pairs of intervals that follow one another
-  int nn50 = 0, pairs = 0;
+  std::int64_t nn50 = 0, pairs = 0;
   double pnn50_percent = 0.0;         // of pairs; a difference of exactly 50 ms does not count
   double sd1_ms = 0.0, sd2_ms = 0.0;  // Poincare: across and along
+
+  static void fields(auto&& field, auto& self) {
+    field("intervals", self.intervals);
+    field("mean_rr_ms", self.mean_rr_ms);
+    field("mean_rate_bpm", self.mean_rate_bpm);
+    field("sdnn_ms", self.sdnn_ms);
+    field("rmssd_ms", self.rmssd_ms);
+    field("nn50", self.nn50);
+    field("pairs", self.pairs);
+    field("pnn50_percent", self.pnn50_percent);
+    field("sd1_ms", self.sd1_ms);
+    field("sd2_ms", self.sd2_ms);
+  }
 };
 // Of normal intervals alone. Pairs that something came between count only where across_gaps says
 // so. Fewer than two intervals, or pairs: their figures are 0.
@@ -62,7 +75,15 @@ Variability variability(std::span<const Interval> intervals, bool across_gaps = 
 struct HeartSpectrum {
   double vlf_ms2 = 0.0, lf_ms2 = 0.0, hf_ms2 = 0.0;
   double lf_over_hf = 0.0;  // 0 where HF is 0
-  bool valid = false;       // two minutes or more, half of them normal intervals
+  std::uint64_t valid = 0;  // 1: two minutes or more, half of them normal intervals
+
+  static void fields(auto&& field, auto& self) {
+    field("vlf_ms2", self.vlf_ms2);
+    field("lf_ms2", self.lf_ms2);
+    field("hf_ms2", self.hf_ms2);
+    field("lf_over_hf", self.lf_over_hf);
+    field("valid", self.valid);
+  }
 };
 // By Lomb (1976, Astrophys. Space Sci. 39, 447) and Scargle (1982, Astrophys. J. 263, 835): beats
 // are not evenly spaced, and this asks for no resampling, which would take power from HF and invent

@@ -1,5 +1,5 @@
 // The state of a diver as one struct, x = [j, p, l]: joints and their rates, the body's place and
-// motion, and what lives (breath and gas). Plain bytes that list their fields, so that states can
+// motion, and what lives (breath and gas, heart and gaze, tissues, risk). Plain bytes that list their fields, so that states can
 // be copied, hashed and replayed. And what acts on a diver from outside. Any thread.
 #pragma once
 
@@ -7,8 +7,8 @@
 
 #include "diver/deco_live.hpp"
 #include "diver/jacket.hpp"
-#include "diver/lungs.hpp"
 #include "diver/motion.hpp"
+#include "diver/vitals.hpp"
 
 namespace neritic::diver {
 
@@ -22,6 +22,7 @@ struct HumanInputs {
   std::uint64_t hold_breath = 0;   // 1: held
   std::uint64_t buttons = 0;       // kInflate, kDeflate, kDump
   std::uint64_t tank = 0;          // that is breathed from
+  Instruments instruments;         // on the body
 
   static void fields(auto&& field, auto& self) {
     field("joints", self.joints);
@@ -32,6 +33,7 @@ struct HumanInputs {
     field("hold_breath", self.hold_breath);
     field("buttons", self.buttons);
     field("tank", self.tank);
+    field("instruments", self.instruments);
   }
 };
 
@@ -45,6 +47,7 @@ struct LifeState {
   // Tissues and oxygen, as a dive computer of the same breath and depth has them; step() carries
   // them along, and who has the computer steps them (deco_live.hpp).
   DiveComputerState computer;
+  VitalState vitals;  // heart, breath, gaze, risk
 
   static void fields(auto&& field, auto& self) {
     field("lungs", self.lungs);
@@ -53,6 +56,7 @@ struct LifeState {
     field("limb_power_w", self.limb_power_w);
     field("limb_work_j", self.limb_work_j);
     field("computer", self.computer);
+    field("vitals", self.vitals);
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace neritic::diver {
 namespace {
@@ -54,6 +55,44 @@ void take_inputs(const HumanInputs& in, HumanState& state) {
   take(in.hold_breath <= 1, in.hold_breath, held.hold_breath, refused);
   take(in.buttons <= kAllButtons, in.buttons, held.buttons, refused);
   take(in.tank < kMaxTanks, in.tank, held.tank, refused);
+  refused += static_cast<std::uint64_t>(take_instruments(in.instruments, held.instruments));
+}
+
+// Eyes look ahead: out of the face.
+Vec3 face_ned(const HumanState& state) {
+  Quat q = state.root.attitude;
+  for (const Segment segment : {kAbdomen, kThorax, kHead})
+    q = q * state.limbs.rotation[joint_of(segment)];
+  return glm::normalize(q * Vec3(0.0, 0.0, 1.0));
+}
+
+const GasMix& breathed_mix(const Body& body, const HumanState& state) {
+  return state.held.tank < body.tank_count ? body.tanks[state.held.tank].mix : kAir;
+}
+
+// Litres and breaths a minute; none while the breath is held.
+struct Breathing {
+  double minute_l = 0.0, breaths_min = 0.0;
+};
+Breathing breathing_of(const Body& body, const HumanState& state, double ambient_pa) {
+  if (state.held.hold_breath != 0) return {};
+  const double minute_l = state.held.ventilation_l_min > 0.0
+                              ? state.held.ventilation_l_min
+                              : ventilation_l_min(body, state.life.lungs.oxygen_l_min,
+                                                  breathed_mix(body, state), ambient_pa);
+  return {minute_l, 1e-3 * minute_l / tidal_volume(body, minute_l)};
+}
+
+void live(const Body& body, HumanState& state, double dt_s) {
+  VitalInputs in;
+  in.oxygen_l_min = state.life.lungs.oxygen_l_min;
+  in.mix = breathed_mix(body, state);
+  in.ambient_pa = pressure_at(body, state.root.position_ned_m.z);
+  const Breathing breathing = breathing_of(body, state, in.ambient_pa);
+  in.ventilation_l_min = breathing.minute_l;
+  in.breath_bpm = breathing.breaths_min;
+  in.face_ned = face_ned(state);
+  step_vitals(state.held.instruments, in, dt_s, state.life.vitals);
 }
 
 void substep(const Body& body, HumanState& state, double dt_s) {
@@ -93,6 +132,7 @@ HumanState step(const Body& body, const HumanState& state, const HumanInputs& in
   // A step that is as long as a substep, but for rounding, is one.
   const double count = std::ceil(dt_s / longest_substep_s - 1e-9);
   for (int i = 0; i < static_cast<int>(count); ++i) substep(body, next, dt_s / count);
+  live(body, next, dt_s);
   return next;
 }
 
@@ -109,6 +149,7 @@ HumanState start_at(const Body& body, const Vec3& position_ned_m, const Quat& ne
   const double missing_m3 = net_weight_n(body, state) / (body.water_kg_m3 * kGravity_m_s2);
   if (missing_m3 > 0.0)
     state.life.jacket_moles = jacket_moles(body, missing_m3, thorax_place(body, state));
+  live(body, state, std::numeric_limits<double>::infinity());  // has been there for long
   return state;
 }
 
@@ -156,13 +197,9 @@ GasReading read_gas(const Body& body, const HumanState& state) {
   const std::size_t tank = state.held.tank;
   out.ambient_pa = pressure_at(body, state.root.position_ned_m.z);
   out.tank_pa = tank_pressure(body, state.life.tanks, tank);
-  out.ventilation_l_min =
-      state.held.ventilation_l_min > 0.0
-          ? state.held.ventilation_l_min
-          : ventilation_l_min(body, state.life.lungs.oxygen_l_min,
-                              tank < body.tank_count ? body.tanks[tank].mix : kAir, out.ambient_pa);
-  out.breaths_min = 1e-3 * out.ventilation_l_min / tidal_volume(body, out.ventilation_l_min);
-  if (state.held.hold_breath != 0) out.breaths_min = out.ventilation_l_min = 0.0;
+  const Breathing breathing = breathing_of(body, state, out.ambient_pa);
+  out.ventilation_l_min = breathing.minute_l;
+  out.breaths_min = breathing.breaths_min;
   out.remaining_s =
       remaining_s(body, state.life.tanks, tank, out.ventilation_l_min, out.ambient_pa, kReserve_pa);
   out.jacket_m3 = jacket_gas(body, state.life.jacket_moles, thorax_place(body, state)).volume_m3;

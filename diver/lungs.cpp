@@ -10,7 +10,6 @@ namespace {
 constexpr double kAirHeat = kGasConstant * kTankTemperature_k;
 // Uptake follows demand within a minute (Whipp and Wasserman 1972, J. Appl. Physiol. 33, 351).
 constexpr double kOxygenLag_s = 35.0;
-constexpr double kMostOxygen_l_min = 4.5;
 constexpr double kEquivalent = 25.0;
 // Of a man of 75 kg at the surface, for minutes.
 constexpr double kMostVentilation_l_min = 110.0;

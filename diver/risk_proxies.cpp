@@ -25,6 +25,9 @@ constexpr double kDensity_kg_m3[] = {5.2, 6.2, 8.3};
 constexpr double kFastBreath_bpm[] = {25.0, 30.0, 40.0};
 constexpr double kPause_s[] = {5.0, 15.0, 30.0};  // skip breathing: pauses from 5 s
 constexpr double kMostCo2_mmhg = 200.0;
+// Litres of CO2 that raise its pressure by a mmHg: without breathing it rises by 3.8 mmHg a minute
+// of some .2 l a minute given off (Eger and Severinghaus 1961, Anesthesiology 22, 419).
+constexpr double kCo2Store_l_mmhg = 0.2 / 3.8;
 
 RiskLevel level_of(double value, const double (&limits)[3]) {
   int level = 0;
@@ -40,7 +43,19 @@ bool is_possible(const RiskInput& in) {
          within(in.oxygen, 0.0, 1.0) && within(in.helium, 0.0, 1.0) &&
          in.oxygen + in.helium <= 1.0 && within(in.gas_density_kg_m3, 0.0, 400.0) &&
          within(in.oxygen_uptake_l_min, 0.0, 8.0) && within(in.ventilation_l_min, 0.0, 300.0) &&
-         within(in.breath_rate_bpm, 0.0, 120.0) && within(in.pause_s, 0.0, 1e7);
+         within(in.breath_rate_bpm, 0.0, 120.0) && within(in.pause_s, 0.0, 1e7) && in.over_s > 0.0;
+}
+
+// P' = (VCO2 - VA P / 863) / store, exactly over the time; the steady state where that is endless.
+double co2_after(double before_mmhg, double co2_l_min, double alveolar_l_min, double over_s) {
+  const double minutes = over_s / 60.0;
+  const double rate = alveolar_l_min / (863.0 * kCo2Store_l_mmhg);  // a minute
+  if (rate < 1e-9) {  // no breath: it only rises
+    const double rise = co2_l_min > 0.0 ? co2_l_min / kCo2Store_l_mmhg * minutes : 0.0;
+    return std::min(before_mmhg + rise, kMostCo2_mmhg);
+  }
+  const double steady = std::min(arterial_co2_mmhg(co2_l_min, alveolar_l_min), kMostCo2_mmhg);
+  return steady + (before_mmhg - steady) * std::exp(-rate * minutes);
 }
 
 }  // namespace
@@ -71,8 +86,7 @@ RiskProxies assess_risk(const RiskProxies& before, const RiskInput& in) {
   }
   const double alveolar = alveolar_ventilation(in.ventilation_l_min, kDeadSpaceShare);
   const double co2 = kRespiratoryQuotient * in.oxygen_uptake_l_min;
-  out.co2_mmhg =
-      alveolar > 0.0 ? std::min(arterial_co2_mmhg(co2, alveolar), kMostCo2_mmhg) : kMostCo2_mmhg;
+  out.co2_mmhg = co2_after(before.co2_mmhg, co2, alveolar, in.over_s);
   // (D + 10)(1 - fHe) - 10, by pressure: as narcotic as air of that pressure.
   out.narcotic_depth_m =
       std::max(0.0, (in.ambient_pa * (1.0 - in.helium) - in.surface_pa) / kMetre_pa);

@@ -4,13 +4,13 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <limits>
 
 namespace neritic::diver {
 
 inline constexpr const char* kRiskNote = "risk proxy, not a measurement";
 
-enum class RiskLevel : std::uint8_t { kLow, kRaised, kHigh, kSevere };
+enum class RiskLevel : std::uint64_t { kLow, kRaised, kHigh, kSevere };
 const char* name_of(RiskLevel level);
 
 // Arterial CO2 in mmHg in the steady state: 863 VCO2 / VA, VCO2 in litres a minute STPD, VA (the
@@ -32,6 +32,9 @@ struct RiskInput {
   double ventilation_l_min = 8.0;    // at depth; measured, or breath rate times tidal volume
   double breath_rate_bpm = 0.0;      // 0: not known
   double pause_s = 0.0;              // since the last breath
+  // So long after what was before: CO2 follows as the body's stores fill or empty. Infinite: the
+  // steady state.
+  double over_s = std::numeric_limits<double>::infinity();
 };
 
 struct RiskProxies {
@@ -40,6 +43,16 @@ struct RiskProxies {
   RiskLevel co2 = RiskLevel::kLow, narcosis = RiskLevel::kLow, gas_density = RiskLevel::kLow,
             breathing = RiskLevel::kLow;
   std::uint64_t refused = 0;
+
+  static void fields(auto&& field, auto& self) {
+    field("co2_mmhg", self.co2_mmhg);
+    field("narcotic_depth_m", self.narcotic_depth_m);
+    field("co2", self.co2);
+    field("narcosis", self.narcosis);
+    field("gas_density", self.gas_density);
+    field("breathing", self.breathing);
+    field("refused", self.refused);
+  }
 };
 
 // Holds the last good proxies: input that is no number, or that no diver has, is refused and

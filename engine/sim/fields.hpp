@@ -7,9 +7,9 @@
 //       field("goal_m", self.goal_m);
 //     }
 //   };
-// Fields are numbers of 32 or 64 bits, vectors, quaternions, poses, arrays of those, and structs
-// that say theirs. No bool, enum or smaller number: they would leave padding, whose bytes mean
-// nothing.
+// Fields are numbers of 32 or 64 bits, enums of such, vectors, quaternions, poses, arrays of those,
+// and structs that say theirs. No bool or smaller number: they would leave padding, whose bytes
+// mean nothing.
 #pragma once
 
 #include <fmt/format.h>
@@ -58,11 +58,22 @@ void for_each_part(T& value, Part&& part) {
   }
 }
 
+// Calls visit(number) with an enum's number, and takes back what becomes of it.
+template <class T, class Visit>
+void visit_enum(T& value, Visit&& visit) {
+  auto number = static_cast<std::underlying_type_t<std::remove_const_t<T>>>(value);
+  static_assert(Scalar<decltype(number)>);
+  visit(number);
+  if constexpr (!std::is_const_v<T>) value = static_cast<T>(number);
+}
+
 // Calls visit(scalar) for every number in value, in the order of declaration.
 template <class T, class Visit>
 void for_each_scalar(T& value, Visit&& visit) {
   if constexpr (Scalar<std::remove_const_t<T>>)
     visit(value);
+  else if constexpr (std::is_enum_v<T>)
+    visit_enum(value, visit);
   else
     for_each_part(value, [&](const auto&, auto& piece) { for_each_scalar(piece, visit); });
 }
@@ -72,6 +83,8 @@ template <class T, class Visit>
 void for_each_named_scalar(T& value, Visit&& visit, const std::string& name = {}) {
   if constexpr (Scalar<std::remove_const_t<T>>)
     visit(name, value);
+  else if constexpr (std::is_enum_v<T>)
+    visit_enum(value, [&](auto& number) { visit(name, number); });
   else
     for_each_part(value, [&](const auto& piece_name, auto& piece) {
       const std::string last = fmt::format("{}", piece_name);

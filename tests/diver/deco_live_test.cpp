@@ -6,8 +6,7 @@
 
 #include <random>
 
-#include "engine/sim/fields.hpp"
-#include "engine/sim/state_hash.hpp"
+#include "engine/sim/simulation.hpp"
 #include "tests/diver/deco_cases.hpp"
 
 namespace neritic::diver {
@@ -181,6 +180,30 @@ TEST(DecoLive, AHundredRunsHaveTheSameHash) {
   const auto hash = [&] { return sim::state_hash(dive(computer, plan, 3.0, [](const auto&) {})); };
   const auto first = hash();
   for (int i = 0; i < 100; ++i) ASSERT_EQ(hash(), first);
+}
+
+TEST(DecoLive, ASimulationOfAComputerReplaysToTheSameBits) {
+  DivePlanRequest request = square_dive(40.0, 20.0);
+  request.gases.push_back({{0.5, 0.0}, 21.0, GasRole::kDeco});
+  const DiveComputer computer = computer_for(request);
+  const auto step = [&](const DiveComputerState& state, const DiveSample& sample, double dt_s) {
+    return computer.step(state, sample, dt_s);
+  };
+  sim::Simulation<DiveComputerState, DiveSample> simulation({.step_s = 0.05}, computer.start(), {},
+                                                            step);
+  std::mt19937 random(9);
+  for (int second = 0; second < 600; ++second) {
+    const double depth_m =
+        std::max(40.0 * std::sin(second / 200.0), 0.0) + 1e-4 * (random() % 1000);
+    EXPECT_TRUE(simulation.push({depth_m, depth_m < 21.0 && second > 300 ? 1u : 0u}));
+    EXPECT_FALSE(simulation.push({kNan, 0}));
+    simulation.advance(20);
+  }
+  EXPECT_GT(simulation.newest().state.deepest_m, 39.0);
+  EXPECT_EQ(simulation.newest().state.last.gas, 1u);
+  const sim::ReplayReport again = sim::replay(simulation.log(), computer.start(), step);
+  EXPECT_EQ(again.steps, 12000u);
+  EXPECT_FALSE(again.first_difference.has_value());
 }
 
 TEST(DecoLive, StatesArePlainBytesWithoutPadding) {

@@ -174,6 +174,8 @@ TEST(HumanDive, RowsSayGasAndTissues) {
     EXPECT_GT(row.computer.no_stop_min, 20.0);
     EXPECT_LT(row.computer.no_stop_min, 120.0);
     EXPECT_NEAR(row.computer.po2_bar, 0.59, 0.03);
+    EXPECT_NEAR(row.vitals.heart_bpm, 65.0, 5.0);
+    EXPECT_NEAR(row.vitals.risk.narcotic_depth_m, 18.0, 1.0);
   }
   const std::string csv = csv_of(*dive.world, recorder.rows(), rows);
   const auto lines = std::count(csv.begin(), csv.end(), '\n');
@@ -181,7 +183,8 @@ TEST(HumanDive, RowsSayGasAndTissues) {
   const auto commas =
       std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(csv.find('\n')), ',');
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), commas * lines);
-  EXPECT_NE(csv.find("no_stop_min"), csv.npos);
+  for (const char* column : {",no_stop_min,", ",heart_bpm,", ",co2_proxy_mmhg,", ",tank_bar,"})
+    EXPECT_NE(csv.find(column), csv.npos) << column;
   scene::Scene drawn = dive.scene;
   recorder.humans().give_tracks(drawn);
   ASSERT_TRUE(drawn.objects[0].node_motion.has_value());

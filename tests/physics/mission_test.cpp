@@ -114,7 +114,7 @@ waypoints = [
   until_left(3);
   EXPECT_LT(apart_deg(heading_deg(dive.pose()), degrees(std::atan2(10.0, 0.5))), 1.0);
   EXPECT_LT(std::abs((dive.pose().rotation * Vec3(0, 0, -1)).y), 0.02);
-  dive.run(15.0);
+  dive.run(25.0);
   const Vec3 ahead = dive.pose().rotation * Vec3(0, 0, -1);
   EXPECT_GT(glm::dot(ahead, glm::normalize(Vec3(10, 4, 0))), std::cos(radians(1.5)));
 }

@@ -30,6 +30,15 @@ struct Robot {
     field("ticks", self.ticks);
   }
 };
+enum class Mood : std::int64_t { kCalm, kWild };
+struct Fish {
+  double length_m = 0.2;
+  Mood mood = Mood::kWild;
+  static void fields(auto&& field, auto& self) {
+    field("length_m", self.length_m);
+    field("mood", self.mood);
+  }
+};
 struct Forgetful {
   double kept = 0.0, forgotten = 0.0;
   static void fields(auto&& field, auto& self) { field("kept", self.kept); }
@@ -50,6 +59,22 @@ TEST(Fields, NamesFollowTheNesting) {
 TEST(Fields, CoverEveryByteOrStop) {
   check_fields_cover(Robot{});
   EXPECT_DEATH(check_fields_cover(Forgetful{}), "fields name 8 bytes of 16");
+}
+
+TEST(Fields, AnEnumIsItsNumber) {
+  Fish fish;
+  check_fields_cover(fish);
+  const std::uint64_t wild = state_hash(fish);
+  std::vector<std::string> names;
+  for_each_named_scalar(fish, [&](const std::string& name, auto& number) {
+    names.push_back(name);
+    if (name == "mood") number = 0;
+  });
+  EXPECT_EQ(names, (std::vector<std::string>{"length_m", "mood"}));
+  EXPECT_EQ(fish.mood, Mood::kCalm);
+  EXPECT_NE(state_hash(fish), wild);
+  for_each_scalar(fish, [](auto& number) { number = 1; });
+  EXPECT_EQ(fish.mood, Mood::kWild);
 }
 
 TEST(Fields, OneNumberThatIsNotFiniteIsFound) {

@@ -90,7 +90,7 @@ json report_json(const PhysioFlags& flags, const BreathReport& r) {
   for (const diver::BreathState& s : r.states)
     out["estimates"].push_back({{"time_s", s.time_s},
                                 {"rate_bpm", s.estimate.rate_bpm},
-                                {"breathing", s.estimate.breathing},
+                                {"breathing", s.estimate.breathing != 0},
                                 {"confidence", s.estimate.confidence},
                                 {"depth_db", s.estimate.depth_db},
                                 {"quiet_s", s.quiet_s}});

@@ -40,7 +40,9 @@ void append_numbers(std::string& out, std::initializer_list<double> numbers) {
 constexpr const char* kHumanColumns =
     ",tank,tank_bar,remaining_min,ventilation_l_min,breaths_min,lungs_l,jacket_l,net_weight_n,"
     "buttons,kick_hz,limb_power_w,oxygen_l_min,ceiling_m,no_stop_min,stop_m,stop_min,"
-    "to_surface_min,po2_bar,gas_density_g_l,cns_percent,otu,ascent_m_min,ascent_alarm";
+    "to_surface_min,po2_bar,gas_density_g_l,cns_percent,otu,ascent_m_min,ascent_alarm,heart_bpm,"
+    "pause_s,gaze_x,gaze_y,gaze_z,measured,co2_proxy_mmhg,narcosis_proxy_m,co2_risk,narcosis_risk,"
+    "density_risk,breathing_risk";
 
 // What is not finite (no end of breath in sight) is an empty cell.
 void append_cells(std::string& out, std::initializer_list<double> numbers) {
@@ -213,6 +215,9 @@ void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& r
     if (any_has(world, sensor)) append_empty(out, cells_of(sensor.names));
   const diver::GasReading& gas = row.gas;
   const diver::DiveComputerView& deco = row.computer;
+  const diver::VitalState& vitals = row.vitals;
+  const diver::RiskProxies& risk = vitals.risk;
+  const Vec3 gaze = rov::world_from_ned(vitals.gaze_ned);
   append_cells(out, {static_cast<double>(row.tank),
                      1e-5 * gas.tank_pa,
                      gas.remaining_s / 60.0,
@@ -235,7 +240,19 @@ void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& r
                      row.cns_percent,
                      row.otu,
                      deco.ascent_m_min,
-                     static_cast<double>(deco.alarm)});
+                     static_cast<double>(deco.alarm),
+                     vitals.heart_bpm,
+                     vitals.pause_s,
+                     gaze.x,
+                     gaze.y,
+                     gaze.z,
+                     static_cast<double>(vitals.measured),
+                     risk.co2_mmhg,
+                     risk.narcotic_depth_m,
+                     static_cast<double>(risk.co2),
+                     static_cast<double>(risk.narcosis),
+                     static_cast<double>(risk.gas_density),
+                     static_cast<double>(risk.breathing)});
   fmt::format_to(std::back_inserter(out), ",{:016x}\n", row.hash);
 }
 

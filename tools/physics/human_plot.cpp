@@ -54,7 +54,8 @@ std::vector<Series> human_heights(const PhysicsWorld& world, const std::vector<H
 void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
                        const PhysicsWorld& world, const std::vector<HumanRow>& rows) {
   const std::string& name = world.humans()[0].name;
-  const double middle_x = 0.5 * width_px, middle_y = top_px + 0.5 * kHumanPanels_px;
+  const double middle_x = 0.5 * width_px, row_px = kHumanPanels_px / 3.0;
+  const double middle_y = top_px + row_px, last_y = top_px + 2.0 * row_px;
   const double bottom = top_px + kHumanPanels_px - 10.0;
   draw_over_time(
       canvas, {10, top_px, middle_x, middle_y}, "Pace of " + name, "m/s, beats/s",
@@ -73,7 +74,7 @@ void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
                       [](const HumanRow& r) { return std::min(r.gas.remaining_s / 60.0, 300.0); })},
                  5.0, kHeadroom);
   draw_over_time(
-      canvas, {10, middle_y, middle_x, bottom}, "Decompression of " + name, "m, min",
+      canvas, {10, middle_y, middle_x, last_y}, "Decompression of " + name, "m, min",
       {first_over_time(rows, "no-stop time, min", 0,
                        [](const HumanRow& r) { return std::min(r.computer.no_stop_min, 300.0); }),
        first_over_time(rows, "ceiling, m", 1,
@@ -83,7 +84,7 @@ void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
            [](const HumanRow& r) { return std::min(r.computer.to_surface_min, 300.0); })},
       1.0, kHeadroom);
   draw_over_time(
-      canvas, {middle_x, middle_y, width_px - 10.0, bottom}, "Lungs, jacket and balance of " + name,
+      canvas, {middle_x, middle_y, width_px - 10.0, last_y}, "Lungs, jacket and balance of " + name,
       "litres, N",
       {first_over_time(rows, "lungs, l", 0, [](const HumanRow& r) { return 1e3 * r.lungs_m3; }),
        first_over_time(rows, "jacket, l", 1,
@@ -91,6 +92,23 @@ void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
        first_over_time(rows, "weight less lift, N", 2,
                        [](const HumanRow& r) { return r.net_weight_n; })},
       1.0, kHeadroom);
+  draw_over_time(canvas, {10, last_y, middle_x, bottom}, "Heart and breath of " + name, "a minute",
+                 {first_over_time(rows, "heart, beats/min", 0,
+                                  [](const HumanRow& r) { return r.vitals.heart_bpm; }),
+                  first_over_time(rows, "breaths/min", 1,
+                                  [](const HumanRow& r) { return r.vitals.breath_bpm; }),
+                  first_over_time(rows, "oxygen, dl/min", 2,
+                                  [](const HumanRow& r) { return 10.0 * r.oxygen_l_min; })},
+                 1.0, kHeadroom);
+  draw_over_time(canvas, {middle_x, last_y, width_px - 10.0, bottom},
+                 fmt::format("Risk of {} ({})", name, diver::kRiskNote), "mmHg, m, g/l",
+                 {first_over_time(rows, "CO2 proxy, mmHg", 0,
+                                  [](const HumanRow& r) { return r.vitals.risk.co2_mmhg; }),
+                  first_over_time(rows, "narcotic depth, m", 1,
+                                  [](const HumanRow& r) { return r.vitals.risk.narcotic_depth_m; }),
+                  first_over_time(rows, "gas density, g/l", 2,
+                                  [](const HumanRow& r) { return r.computer.density_g_l; })},
+                 1.0, kHeadroom);
 }
 
 }  // namespace neritic::tools

@@ -43,6 +43,7 @@ HumanRow HumanRecorder::row_of(std::size_t index,
   row.computer = human.computer->view(state.human.life.computer);
   row.cns_percent = state.human.life.computer.oxygen.cns_percent;
   row.otu = state.human.life.computer.oxygen.otu;
+  row.vitals = state.human.life.vitals;
   row.hash = snapshot.hash;
   return row;
 }

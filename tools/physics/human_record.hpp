@@ -24,6 +24,7 @@ struct HumanRow {
   diver::GasReading gas;
   diver::DiveComputerView computer;
   double cns_percent = 0.0, otu = 0.0;
+  diver::VitalState vitals;
   std::uint64_t hash = 0;  // of the whole state
 };
 
