@@ -201,6 +201,7 @@ double ThrustCurve::pwm_us(double thrust_n, double volts) const {
 }
 
 double ThrustCurve::realised_n(double commanded_n, double volts) const {
+  if (!std::isfinite(commanded_n)) return commanded_n;
   return thrust_n(std::round(pwm_us(commanded_n, volts)), volts);
 }
 

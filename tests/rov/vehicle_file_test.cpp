@@ -224,6 +224,11 @@ TEST(RovThrustCurve, CommandsGoThroughDeadBandAndSaturation) {
   EXPECT_NEAR(inputs.thruster_n[2], 10.0, 0.06);
   EXPECT_EQ(inputs.thruster_n[3], file.curve->most_n(16.0));
   EXPECT_EQ(inputs.thruster_n[4], file.curve->least_n(16.0));
+  // What is no number gets through to the step, which refuses, counts and holds.
+  inputs.thruster_n[0] = std::numeric_limits<double>::quiet_NaN();
+  inputs.thruster_n[1] = -std::numeric_limits<double>::infinity();
+  drive(file, inputs);
+  EXPECT_EQ(step(make_vehicle(file.parameters).value(), {}, inputs, 0.01).refused_inputs, 2u);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // no bit of the physics.
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "engine/core/files.hpp"
 #include "rov/frames.hpp"
 #include "tests/support/gpu_fixture.hpp"
@@ -106,6 +108,36 @@ TEST_F(PhysicsRender, DrawingChangesNoBitOfThePhysics) {
     EXPECT_EQ(simulation->newest().hash, drawn.hash) << i;
   }
   EXPECT_GT(simulation->newest().step, 400u);
+}
+
+// With the renderer on and off in turn, a hundred times, beside busy cores.
+TEST_F(PhysicsRender, AHundredRunsDrawnAndNotHaveTheSameHashes) {
+  std::vector<std::jthread> load;
+  for (int i = 0; i < 2; ++i)
+    load.emplace_back([](const std::stop_token& stop) {
+      for (volatile double x = 1.0; !stop.stop_requested();) x = x * 1.0000001;
+    });
+  scene::Scene scene = scene_of_wall();
+  auto session = Session::create(device(), scene);
+  ASSERT_TRUE(session.ok()) << session.error().message;
+  std::uint64_t first = 0;
+  for (int run = 0; run < 100; ++run) {
+    auto live = LivePhysics::create(scene, LivePhysics::Pace::kPicture);
+    ASSERT_TRUE(live.ok());
+    (*live)->start();
+    for (int i = 0; i <= 4; ++i) {
+      FrameRequest request;
+      request.time_s = request.next_time_s = 0.25 * i;
+      request.cameras = request.sonars = {0};
+      (*live)->place((*session)->scene(), 0, request.time_s);
+      if (run % 2 == 1) {
+        ASSERT_TRUE((*session)->render(request).ok());
+      }
+    }
+    ASSERT_GT((*live)->newest().step, 200u);
+    if (run == 0) first = (*live)->newest().hash;
+    ASSERT_EQ((*live)->newest().hash, first) << run;
+  }
 }
 
 }  // namespace

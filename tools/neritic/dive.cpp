@@ -89,6 +89,9 @@ Status dive_offscreen(const DiveFlags& flags, gpu::Device& device, Session& sess
   NERITIC_TRY_STATUS(dive.run());
   fmt::print("{}, {} x {}\n{}", device.info().name, offscreen.width, offscreen.height,
              dive.times().summary(dive.frames_drawn(), dive.seconds()));
+  if (options.physics)  // as a dive of the physics alone says it, to be held against it
+    fmt::print("physics: {} steps, hash {:016x}\n", options.physics->newest().step,
+               options.physics->newest().hash);
   return {};
 }
 

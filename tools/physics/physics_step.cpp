@@ -98,13 +98,14 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
   const std::size_t count = vehicles_.size();
   std::array<rov::Inputs, kMaxVehicles> acting;
   std::array<rov::State, kMaxVehicles> free;
-  std::array<bool, kMaxVehicles> parted{};
+  std::array<bool, kMaxVehicles> parted{}, refused{};
   const auto step_of = [&](std::size_t i) {
     return VehicleStep{
         vehicles_[i].solid, vehicles_[i].vehicle, state.vehicles[i].body, acting[i], dt_s, method_};
   };
   for (std::size_t i = 0; i < count; ++i) {
-    if (control_due(i, state.step)) steer(i, state, inputs.vehicles[i], time_s, next.vehicles[i]);
+    if (control_due(i, state.step))
+      refused[i] = !steer(i, state, inputs.vehicles[i], time_s, next.vehicles[i]);
     acting[i] = acting_on(vehicles_[i], inputs.vehicles[i], next.vehicles[i], time_s);
     free[i] = free_step(step_of(i));
   }
@@ -115,6 +116,7 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
     sim::MotionReport report;
     VehicleState& after = next.vehicles[i];
     after.body = step_among(solid_, step_of(i), free[i], parted[i], &report);
+    after.body.refused_inputs += refused[i] ? 1 : 0;
     after.contact.near_points = static_cast<std::uint64_t>(report.contacts);
     after.contact.touched_steps += report.touched || parted[i] ? 1 : 0;
     after.contact.deepest_m = std::max(after.contact.deepest_m, report.deepest_m);
@@ -128,14 +130,15 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
   return next;
 }
 
-// New commands for the thrusters.
-void PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs,
+// New commands for the thrusters. False where the inputs are no numbers: the last commands hold.
+bool PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs,
                          double time_s, VehicleState& state) const {
+  if (!sim::all_finite(inputs)) return false;
   const PhysicsVehicle& vehicle = vehicles_[index];
   const bool piloted = inputs.piloted != 0;
   if (!piloted && !vehicle.mission) {
     state.command_n = {};
-    return;
+    return true;
   }
   const rov::Setpoint setpoint =
       piloted ? piloted_setpoint(inputs, state.body, state.mission)
@@ -155,8 +158,10 @@ void PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const Vehic
   else
     allocate(rov::Allocator(vehicle.vehicle, inputs.failed_thrusters));
   rov::drive(vehicle.file, commands);
+  if (!sim::all_finite(commands)) return false;
   state.command_n = commands.thruster_n;
   state.integral = control.integral;
+  return true;
 }
 
 // What pushes it in the step to come.

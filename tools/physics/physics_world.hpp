@@ -67,7 +67,7 @@ class PhysicsWorld {
   Status add_human(const scene::Scene& scene, std::size_t object);
   Status check_start(const scene::Scene& scene, const std::string& name,
                      const sim::BodyShape& shape, const Pose& start) const;
-  void steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
+  bool steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
              VehicleState& state) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
                         const VehicleState& state, double time_s) const;
