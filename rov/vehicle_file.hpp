@@ -1,4 +1,4 @@
-// A vehicle's physics from its TOML file (rov/README.md lists the keys). One thread.
+// A vehicle's physics from its TOML file (rov/VEHICLES.md lists the keys). One thread.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,6 @@
 // The same scene gives the same states: on many runs, in lock-step and on a thread, under load, and
 // from a recorded log; and another pilot gives others.
+#include <cmath>
 #include <thread>
 
 #include "tests/physics/dives.hpp"
@@ -80,6 +81,42 @@ TEST(PhysicsDeterminism, AThreadUnderLoadStepsAsLockStepDoes) {
   const auto& hashes = threaded.simulation->log().hashes;
   locked.simulation->advance(threaded.simulation->log().steps());
   EXPECT_EQ(hashes, locked.simulation->log().hashes);
+}
+
+// One thread pilots, one steps, one reads: what was recorded replays to the same bits.
+TEST(PhysicsDeterminism, APilotAndAReaderBesideTheThreadThatSteps) {
+  const TestDive dive = dive_of(busy_text());
+  sim::SimulatedClock clock;
+  auto reader = dive.simulation->reader();
+  dive.simulation->start(clock);
+  std::jthread pilot([&](const std::stop_token& stop) {
+    for (std::uint64_t i = 0; !stop.stop_requested(); ++i) {
+      VehicleInputs inputs;
+      inputs.piloted = i % 3 == 0 ? 0 : 1;
+      inputs.pilot[i % 6] = i % 17 == 0 ? std::nan("") : 5.0 * std::sin(0.1 * double(i));
+      dive.simulation->push({i % 2, inputs});
+      std::this_thread::yield();
+    }
+  });
+  std::uint64_t seen = 0;
+  while (seen < 1200) {
+    if (!reader.update()) continue;
+    ASSERT_GE(reader.newest().step, seen);
+    seen = reader.newest().step;
+    ASSERT_TRUE(sim::all_finite(reader.newest().state));
+  }
+  pilot.request_stop();
+  pilot.join();
+  dive.simulation->stop();
+  EXPECT_GT(dive.simulation->inbox_counts().refused, 0u);
+  EXPECT_GT(dive.simulation->log().entries.size(), 1u);
+  const auto report =
+      sim::replay(dive.simulation->log(), dive.world->start(),
+                  [&](const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) {
+                    return dive.world->step(state, inputs, dt_s);
+                  });
+  EXPECT_GE(report.steps, 1200u);
+  EXPECT_FALSE(report.first_difference.has_value());
 }
 
 TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
