@@ -145,13 +145,18 @@ std::map<std::string, Figure> figures_of(const LoopCase& one, const LoopRun& run
 }
 
 CheckedError figure_error(const std::string& what, double found, double expected, double finest,
-                          const char* unit) {
+                          const char* unit, const ControlCheck& options) {
+  const bool euler = options.integrator == Integrator::kSemiImplicit;
   return {what, unit, std::abs(found - expected),
-          std::max(finest, kFigureBar * std::abs(expected))};
+          std::max(finest, (euler ? kEulerFigureBar : kFigureBar) * std::abs(expected))};
 }
 
-void compare_end(const LoopCase& one, const State& state, CaseResult& result) {
+void compare_end(const LoopCase& one, const State& state, const ControlCheck& options,
+                 CaseResult& result) {
   if (one.end_state.empty()) return;
+  const bool euler = options.integrator == Integrator::kSemiImplicit;
+  const double bar = euler ? kEulerEndBar * std::max(1.0, 240.0 / options.hz)
+                           : kEndBar * std::pow(std::max(1.0, 120.0 / options.hz), 4.0);
   const auto& e = one.end_state;
   const Vec3 p(e[0], e[1], e[2]);
   const Quat q(e[3], e[4], e[5], e[6]);
@@ -159,10 +164,10 @@ void compare_end(const LoopCase& one, const State& state, CaseResult& result) {
   for (std::size_t i = 0; i < 6; ++i)
     velocity = std::max(velocity, std::abs(state.velocity[i] - e[7 + i]));
   const Quat &a = state.attitude, minus = a - q, plus = a + q;
-  result.errors.push_back({"end position", "m", glm::distance(state.position_ned_m, p), kEndBar});
+  result.errors.push_back({"end position", "m", glm::distance(state.position_ned_m, p), bar});
   result.errors.push_back(
-      {"end attitude", "", std::min(glm::length(minus), glm::length(plus)), kEndBar});
-  result.errors.push_back({"end velocity", "m/s", velocity, kEndBar});
+      {"end attitude", "", std::min(glm::length(minus), glm::length(plus)), bar});
+  result.errors.push_back({"end velocity", "m/s", velocity, euler ? bar : 10.0 * bar});
 }
 
 CaseResult check_loop(const LoopCase& one, const ControlCheck& options) {
@@ -184,14 +189,14 @@ CaseResult check_loop(const LoopCase& one, const ControlCheck& options) {
   for (const auto& [what, expected] : one.figures) {
     const auto at = found.find(what);
     if (at == found.end()) continue;
-    result.errors.push_back(
-        figure_error(what, at->second.value, expected, at->second.finest, at->second.unit));
+    result.errors.push_back(figure_error(what, at->second.value, expected, at->second.finest,
+                                         at->second.unit, options));
   }
   for (std::size_t i = 0; i < one.arrivals_s.size(); ++i)
     result.errors.push_back(figure_error(fmt::format("arrival {}", i + 1),
                                          i < arrivals.size() ? arrivals[i] : NAN, one.arrivals_s[i],
-                                         run.period_s * 1.001, "s"));
-  compare_end(one, run.states.back(), result);
+                                         run.period_s * 1.001, "s", options));
+  compare_end(one, run.states.back(), options, result);
   return result;
 }
 

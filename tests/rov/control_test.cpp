@@ -44,9 +44,9 @@ TEST(RovControl, AWrongCaseDoesNotHold) {
   wrong.allocation->cases[6].force_n[3] += 1e-6;
   wrong.allocation->singular_values[2] += 1e-6;
   for (LoopCase& loop : wrong.loops) {
-    if (loop.id == "sea/surge_2m") loop.figures["t90"] *= 1.06;
-    if (loop.id == "neutral/sway_1m") loop.end_state[1] += 2e-3;
-    if (loop.id == "sea/square") loop.arrivals_s[2] *= 0.94;
+    if (loop.id == "sea/surge_2m") loop.figures["t90"] += 0.03;
+    if (loop.id == "neutral/sway_1m") loop.end_state[1] += 2e-6;
+    if (loop.id == "sea/square") loop.arrivals_s[2] -= 0.1;
   }
   std::vector<std::string> failed;
   for (const CaseResult& one : check_control(wrong))
