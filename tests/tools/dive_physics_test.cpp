@@ -162,6 +162,20 @@ TEST_F(DivePhysics, InterruptedItWritesWhatItHas) {
   }
 }
 
+TEST_F(DivePhysics, WhatCannotBeWrittenIsSaidBeforeItFliesAndTheRestIsWritten) {
+  for (const std::string& file : {file("none/a.csv"), "'" + scratch_.path().string() + "'"}) {
+    const Outcome early = dive("--headless --realtime --seconds 600 --log " + file);
+    EXPECT_EQ(early.status, 1);
+    EXPECT_NE(early.err.find(": cannot be written\n"), std::string::npos) << early.err;
+    EXPECT_EQ(early.out, "");
+  }
+  const Outcome full = dive("--headless --seconds 1 --record /dev/full --log " + file("a.csv"));
+  EXPECT_EQ(full.status, 1);
+  EXPECT_NE(full.err.find("/dev/full: cannot be written whole"), std::string::npos) << full.err;
+  EXPECT_EQ(table("a.csv").at("time_s").size(), 51u);
+  EXPECT_NE(full.out.find("hash "), std::string::npos) << full.out;
+}
+
 TEST_F(DivePhysics, DrawsItsPlotAndKeepsTheRateOfItsRows) {
   const Outcome outcome = dive("--headless --seconds 4 --log-rate 10 --log " + file("a.csv") +
                                " --plot " + file("a.png"));

@@ -1,6 +1,9 @@
 #include "tools/neritic/dive_physics.hpp"
 
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
@@ -204,6 +207,34 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
              newest.time_s, newest.step, speed, pace.dropped, hash);
 }
 
+// Where a result of hours could not be written is better known before them.
+Status check_writable(const std::filesystem::path& path) {
+  if (path.empty()) return {};
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(status) && std::filesystem::is_other(status)) return {};
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::is_directory(status) && ::access(folder.c_str(), W_OK | X_OK) == 0)
+    return {};
+  return failure(ErrorCode::kIo, "{}: cannot be written", path.string());
+}
+
+// All that was asked for, also where one of them fails; the first failure.
+Status write_results(const DiveFlags& flags, const PhysicsWorld& world,
+                     const PhysicsSimulation& simulation, const DiveRecorder& recorder) {
+  std::vector<Status> written;
+  if (!flags.record.empty())
+    written.push_back(sim::write_input_log(flags.record, simulation.log()));
+  if (!flags.log.empty())
+    written.push_back(
+        write_text(flags.log, csv_of(world, recorder.rows(), recorder.humans().rows())));
+  if (!flags.plot.empty())
+    written.push_back(
+        write_dive_plot(flags.plot, world, recorder.rows(), recorder.humans().rows()));
+  for (const Status& status : written) NERITIC_TRY_STATUS(status);
+  return {};
+}
+
 Status replay_dive(const DiveFlags& flags, const PhysicsWorld& world) {
   NERITIC_TRY(const auto log, sim::read_input_log<PhysicsInputs>(flags.replay));
   if (log.step_s != world.step_s())
@@ -252,20 +283,16 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
     return bad_input("--seconds: {}; up to {:g} is accepted", seconds, kMostPhysicsSeconds);
   NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
   if (!flags.replay.empty()) return replay_dive(flags, *world);
+  for (const std::string& file : {flags.log, flags.plot, flags.record})
+    NERITIC_TRY_STATUS(check_writable(file));
   const auto simulation = world->simulation({.readers = 0, .log = true, .seed = scene.seed});
   DiveRecorder recorder(*world, {.rows = !flags.log.empty() || !flags.plot.empty(),
                                  .row_rate_hz = flags.log_rate_hz});
   const Interrupts interrupts;
   const Pace pace = run_steps(*simulation, recorder, flags, seconds, world->step_s(), interrupts);
-  if (!flags.log.empty())
-    NERITIC_TRY_STATUS(
-        write_text(flags.log, csv_of(*world, recorder.rows(), recorder.humans().rows())));
-  if (!flags.plot.empty())
-    NERITIC_TRY_STATUS(
-        write_dive_plot(flags.plot, *world, recorder.rows(), recorder.humans().rows()));
-  if (!flags.record.empty())
-    NERITIC_TRY_STATUS(sim::write_input_log(flags.record, simulation->log()));
+  const Status written = write_results(flags, *world, *simulation, recorder);
   print_summary(flags, *world, *simulation, recorder, pace);
+  NERITIC_TRY_STATUS(written);
   if (pace.interrupted)
     return failure(ErrorCode::kUnsupported,
                    "interrupted after {:.4g} s of {:g}; all until then is written",
