@@ -96,6 +96,25 @@ void draw_notes(Canvas& canvas, const Box& in, const Series& s, const Axis& x, c
   }
 }
 
+// Over the lines, so that none runs through a name.
+void draw_legend(Canvas& canvas, const Box& in, const std::vector<Series>& series, bool below) {
+  constexpr double kLine_px = 18.0;
+  const double high = kLine_px * static_cast<double>(series.size());
+  double wide = 0.0;
+  for (const Series& s : series) wide = std::max(wide, Canvas::text_width(kTextPx, s.name));
+  double y = below ? in.bottom - high : in.top + 8.0;
+  canvas.fill_rectangle(in.right - 42 - wide, y - 9, in.right, y - 9 + high,
+                        kPaper.with_alpha(0.8f));
+  for (const Series& s : series) {
+    const double width = Canvas::text_width(kTextPx, s.name);
+    canvas.text(in.right - 4 - width, y + 4, kTextPx, s.name, kInk);
+    const double mark = in.right - (s.joined ? 38.0 : 26.0) - width;
+    canvas.segment(mark, y, s.joined ? in.right - 14 - width : mark, y, s.joined ? 2.4 : 4.0,
+                   s.color);
+    y += kLine_px;
+  }
+}
+
 }  // namespace
 
 Axis axis_for(const std::string& label, const std::vector<double>& values, bool log) {
@@ -117,8 +136,6 @@ void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const 
   draw_axes(canvas, box, title, x, y, true);
   const Box in = inside(box);
   std::vector<Box> taken;
-  double legend_y =
-      legend_below ? in.bottom - 18.0 * static_cast<double>(series.size()) : in.top + 8;
   for (const Series& s : series) {
     for (std::size_t i = 0; i < s.x.size(); ++i) {
       const double px = place(x, s.x[i], in.left, in.right),
@@ -130,13 +147,8 @@ void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const 
       if (s.marked) canvas.segment(px, py, px, py, s.joined ? 7.0 : 4.0, s.color);
     }
     draw_notes(canvas, in, s, x, y, taken);
-    const double width = Canvas::text_width(kTextPx, s.name);
-    canvas.text(in.right - 4 - width, legend_y + 4, kTextPx, s.name, kInk);
-    const double mark = in.right - (s.joined ? 38.0 : 26.0) - width;
-    canvas.segment(mark, legend_y, s.joined ? in.right - 14 - width : mark, legend_y,
-                   s.joined ? 2.4 : 4.0, s.color);
-    legend_y += 18;
   }
+  draw_legend(canvas, in, series, legend_below);
 }
 
 void draw_mark(Canvas& canvas, const Box& box, const Axis& x, const Axis& y, double at_x,

@@ -101,6 +101,11 @@ void draw_ground(sonar::Canvas& canvas, const Box& in, const Axis& x, const Axis
   }
 }
 
+// What drifts wants nothing.
+bool is_steered(const PhysicsWorld& world) {
+  return !world.vehicles().empty() && world.vehicles()[0].mission;
+}
+
 void draw_path(sonar::Canvas& canvas, const Box& box, const PhysicsWorld& world,
                const std::vector<DiveRow>& rows, const std::vector<HumanRow>& human_rows) {
   std::vector<Series> lines;
@@ -117,10 +122,11 @@ void draw_path(sonar::Canvas& canvas, const Box& box, const PhysicsWorld& world,
     draw_lines(canvas, box, "Path from above, over what is solid", x, y, lines);
     return;
   }
-  Series wanted = series_of(
-      rows, 0, "wanted", kSeriesColors[4], [](const DiveRow& r) { return r.wanted.position_m.x; },
-      [](const DiveRow& r) { return -r.wanted.position_m.z; });
-  lines.insert(lines.begin(), wanted);
+  if (is_steered(world))
+    lines.insert(lines.begin(), series_of(
+                                    rows, 0, "wanted", kSeriesColors[4],
+                                    [](const DiveRow& r) { return r.wanted.position_m.x; },
+                                    [](const DiveRow& r) { return -r.wanted.position_m.z; }));
   if (Series met = arrivals_of(rows, 0, east_of, north_of); !met.x.empty())
     lines.push_back(std::move(met));
   draw_lines(canvas, box, "Path from above, over what is solid (the higher, the darker)", x, y,
@@ -152,7 +158,7 @@ Series ground_line(const PhysicsWorld& world, const std::vector<DiveRow>& rows) 
 std::vector<Series> depth_lines(const PhysicsWorld& world, const std::vector<DiveRow>& rows,
                                 const std::vector<HumanRow>& human_rows) {
   std::vector<Series> lines;
-  if (!world.vehicles().empty())
+  if (is_steered(world))
     lines.push_back(series_of(rows, 0, "wanted", kSeriesColors[4], time_of,
                               [](const DiveRow& r) { return r.wanted.position_m.y; }));
   for (std::size_t i = 0; i < world.vehicles().size(); ++i)
@@ -177,13 +183,16 @@ std::vector<Series> thrust_lines(const PhysicsWorld& world, const std::vector<Di
   return lines;
 }
 
-std::vector<Series> error_lines(const std::vector<DiveRow>& rows) {
-  return {series_of(rows, 0, "off the setpoint, m", kSeriesColors[1], time_of,
-                    [](const DiveRow& r) {
-                      return glm::distance(r.world_from_body.position_m, r.wanted.position_m);
-                    }),
-          series_of(rows, 0, "speed, m/s", kSeriesColors[0], time_of,
-                    [](const DiveRow& r) { return glm::length(r.velocity.linear()); })};
+std::vector<Series> error_lines(const PhysicsWorld& world, const std::vector<DiveRow>& rows) {
+  std::vector<Series> lines{
+      series_of(rows, 0, "speed, m/s", kSeriesColors[0], time_of,
+                [](const DiveRow& r) { return glm::length(r.velocity.linear()); })};
+  if (is_steered(world))
+    lines.push_back(
+        series_of(rows, 0, "off the setpoint, m", kSeriesColors[1], time_of, [](const DiveRow& r) {
+          return glm::distance(r.world_from_body.position_m, r.wanted.position_m);
+        }));
+  return lines;
 }
 
 }  // namespace
@@ -223,7 +232,7 @@ Status write_dive_plot(const std::filesystem::path& path, const PhysicsWorld& wo
     draw_over_time(canvas, {10, kMiddleY, kMiddleX, kHeight - 10.0},
                    "Thrust of " + first + "'s thrusters", "N", thrust_lines(world, rows), 1.0);
     draw_over_time(canvas, {kMiddleX, kMiddleY, kWidth - 10.0, kHeight - 10.0},
-                   "Error and speed of " + first, "m, m/s", error_lines(rows), 0.05);
+                   "Error and speed of " + first, "m, m/s", error_lines(world, rows), 0.05);
   }
   if (humans) draw_human_panels(canvas, kWidth, high, world, human_rows);
   return scene::write_png8(path, canvas.take());
