@@ -107,8 +107,7 @@ Result<std::uint32_t> choose_device(std::span<const DeviceInfo> devices,
   };
   if (const auto found = best(devices, true, named)) return *found;
   if (const auto found = best(devices, false, named)) return lacks(devices[*found]);
-  return failure(ErrorCode::kNoDevice, "no Vulkan device '{}'; there is {}", wanted,
-                 device_names(devices));
+  return bad_input("no Vulkan device '{}'; there is {}", wanted, device_names(devices));
 }
 
 }  // namespace neritic::gpu

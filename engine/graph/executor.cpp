@@ -151,6 +151,13 @@ struct Executor::Impl {
   // Objects for the entry, which runs now, in memory for the largest of the graphs in use.
   Status realise(Entry& entry) {
     entry.last_run = ++runs;
+    const Status made = make_realisation(entry);
+    // In use it would make every later graph ask for memory of its size.
+    if (!made.ok()) entry.last_run = 0;
+    return made;
+  }
+
+  Status make_realisation(Entry& entry) {
     bool changed = !entry.realisation;
     for (const auto& other : entries) {
       if (!other->realisation || in_use(*other)) continue;

@@ -38,60 +38,81 @@ std::vector<Corners> triangles_of(std::span<const std::uint32_t> place,
   return triangles;
 }
 
-// Edges by their lower vertex: the higher one and which way the edge is passed.
-struct EdgeWay {
-  std::uint32_t high = 0;
-  int way = 0;
-  bool operator<(const EdgeWay& other) const { return high < other.high; }
+// An edge of a triangle, kept with its lower vertex.
+struct Edge {
+  std::uint32_t high = 0, triangle = 0;
+  bool rising = false;  // passed from the lower vertex to the higher
+  bool operator<(const Edge& other) const {
+    return std::tuple(high, rising) < std::tuple(other.high, other.rising);
+  }
 };
 
-bool edges_cancel(const std::vector<Corners>& triangles, std::size_t vertices) {
-  std::vector<std::size_t> first(vertices + 1, 0);
+// The edges of all triangles, by their lower vertex: those of vertex v from first[v] on.
+struct Edges {
+  std::vector<std::size_t> first;
+  std::vector<Edge> all;
+};
+
+Edges edges_of(const std::vector<Corners>& triangles, std::size_t vertices) {
+  Edges edges{std::vector<std::size_t>(vertices + 1, 0), std::vector<Edge>(3 * triangles.size())};
   for (const Corners& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) ++first[std::min(t[k], t[(k + 1) % 3]) + 1];
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<EdgeWay> edges(first.back());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for (const Corners& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++edges.first[std::min(t[k], t[(k + 1) % 3]) + 1];
+  std::partial_sum(edges.first.begin(), edges.first.end(), edges.first.begin());
+  std::vector<std::size_t> next(edges.first.begin(), edges.first.end() - 1);
+  for (std::uint32_t i = 0; i < triangles.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      edges[next[std::min(a, b)]++] = {std::max(a, b), a < b ? 1 : -1};
+      const std::uint32_t a = triangles[i][k], b = triangles[i][(k + 1) % 3];
+      edges.all[next[std::min(a, b)]++] = {std::max(a, b), i, a < b};
     }
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const auto begin = edges.begin() + static_cast<std::ptrdiff_t>(first[v]);
-    const auto end = edges.begin() + static_cast<std::ptrdiff_t>(first[v + 1]);
-    std::sort(begin, end);
-    int sum = 0;
-    for (auto e = begin; e != end; ++e) {
-      sum += e->way;
-      if ((e + 1 == end || (e + 1)->high != e->high) && sum != 0) return false;
+  return edges;
+}
+
+// Triangles that hang together by edges have one root.
+class Parts {
+ public:
+  explicit Parts(std::size_t triangles) : parent_(triangles) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
+  std::uint32_t root(std::uint32_t t) {
+    while (parent_[t] != t) t = parent_[t] = parent_[parent_[t]];
+    return t;
+  }
+  void join(std::uint32_t a, std::uint32_t b) { parent_[root(a)] = root(b); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+// Joins the two triangles of each edge; false where an edge has not just one either way.
+bool join_over_edges(Edges& edges, Parts& parts) {
+  for (std::size_t v = 0; v + 1 < edges.first.size(); ++v) {
+    const std::size_t end = edges.first[v + 1];
+    std::sort(edges.all.begin() + static_cast<std::ptrdiff_t>(edges.first[v]),
+              edges.all.begin() + static_cast<std::ptrdiff_t>(end));
+    for (std::size_t e = edges.first[v]; e < end; e += 2) {
+      if (e + 1 == end) return false;
+      const Edge &one = edges.all[e], &other = edges.all[e + 1];
+      const bool third = e + 2 < end && edges.all[e + 2].high == one.high;
+      if (one.high != other.high || one.rising == other.rising || third) return false;
+      parts.join(one.triangle, other.triangle);
     }
   }
   return true;
 }
 
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
-bool parts_face_outwards(std::span<const Vec3f> positions, const std::vector<Corners>& triangles) {
-  std::vector<std::uint32_t> parent(positions.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  for (const Corners& t : triangles)
-    for (const std::uint32_t v : {t[1], t[2]}) parent[root_of(parent, v)] = root_of(parent, t[0]);
-  std::vector<double> volume(positions.size(), 0.0);
-  std::vector<bool> is_part(positions.size(), false);
-  for (const Corners& t : triangles) {
-    const std::uint32_t part = root_of(parent, t[0]);
-    const Vec3 from(positions[part]);  // near the part, so that its volume keeps its digits
-    is_part[part] = true;
-    volume[part] +=
+bool face_outwards(std::span<const Vec3f> positions, const std::vector<Corners>& triangles,
+                   Parts& parts) {
+  std::vector<double> volume(triangles.size(), 0.0);
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t root = parts.root(i);
+    const Vec3 from(positions[triangles[root][0]]);  // on the part: its volume keeps its digits
+    const Corners& t = triangles[i];
+    volume[root] +=
         glm::dot(Vec3(positions[t[0]]) - from,
                  glm::cross(Vec3(positions[t[1]]) - from, Vec3(positions[t[2]]) - from));
   }
-  for (std::size_t v = 0; v < volume.size(); ++v)
-    if (is_part[v] && !(volume[v] > 0.0)) return false;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i)
+    if (parts.root(i) == i && !(volume[i] > 0.0)) return false;
   return true;
 }
 
@@ -101,8 +122,10 @@ bool is_closed(std::span<const Vec3f> positions, std::span<const std::uint32_t> 
   for (const Vec3f& p : positions)
     if (!is_finite(Vec3(p))) return false;
   const std::vector<Corners> triangles = triangles_of(welded(positions), indices);
-  return !triangles.empty() && edges_cancel(triangles, positions.size()) &&
-         parts_face_outwards(positions, triangles);
+  if (triangles.empty()) return false;
+  Edges edges = edges_of(triangles, positions.size());
+  Parts parts(triangles.size());
+  return join_over_edges(edges, parts) && face_outwards(positions, triangles, parts);
 }
 
 }  // namespace neritic::render

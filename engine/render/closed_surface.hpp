@@ -1,6 +1,5 @@
-// Whether a mesh is the skin of a solid: then nobody outside it ever sees a back face, and a pass
-// that draws both sides of sheets need not draw this mesh's. Mesh frame, metres. Pure function; any
-// thread.
+// Whether a mesh is the skin of solids: a pass that draws both sides of sheets need not draw its
+// back faces for an eye outside it. Mesh frame, metres. Pure function; any thread.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +9,11 @@
 
 namespace neritic::render {
 
-// indices: three a triangle. True where every edge is passed as often one way as the other
-// (vertices at the same place are one, triangles without area are none) and each connected part is
-// wound outwards, its signed volume above 0. False where a position is not finite, and for no
-// triangles at all.
+// indices: three a triangle. True where every edge has two triangles that pass it opposite ways
+// (vertices at the same place are one, triangles without area are none) and each part that hangs
+// together by edges is wound outwards, its signed volume above 0. False where a position is not
+// finite, and for no triangles at all. A part that crosses itself may still show backs to the
+// outside: ask only where the material has one side.
 bool is_closed(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices);
 
 }  // namespace neritic::render

@@ -53,7 +53,7 @@ class GpuSceneBuilder {
                       materials.material_of(m, p.material, !p.colors.empty()));
           out_.groups_.push_back({geometry.add(p, material), {}});
           GpuPrimitive& added = out_.groups_.back().primitive;
-          added.closed = shows_both_sides(*scene_.models[m], p) && !added.deforms() &&
+          added.closed = !scene_.sonars.empty() && !added.deforms() &&
                          added.topology == scene::Topology::kTriangles &&
                          is_closed(p.positions, p.indices);
         }
@@ -79,12 +79,6 @@ class GpuSceneBuilder {
   }
 
  private:
-  // To a sonar everything does.
-  bool shows_both_sides(const scene::Model& model, const scene::Primitive& p) const {
-    return !scene_.sonars.empty() ||
-           (p.material >= 0 && model.materials[static_cast<std::size_t>(p.material)].double_sided);
-  }
-
   void add_node(std::size_t object_index, const scene::Object& object, const scene::Model& model,
                 int n) {
     const scene::Node& node = model.nodes[static_cast<std::size_t>(n)];

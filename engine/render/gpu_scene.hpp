@@ -34,9 +34,10 @@ struct GpuPrimitive {
   std::uint32_t first_morph = 0, morph_targets = 0;
   Vec3 center_m{0.0};  // bounding sphere in the mesh's frame, rest shape
   double radius_m = 0.0;
-  Vec3 half_m{0.0};  // of the bounding box round the same centre
+  Vec3 half_m{0.0};                   // of the bounding box round the same centre
   std::vector<ClusterNode> clusters;  // empty: drawn whole
-  bool closed = false;  // rigid, and nobody outside it sees a back face; only told where somebody may see both sides
+  bool closed =
+      false;  // rigid, and nobody outside it sees a back face; only told in scenes with sonars
   bool deforms() const { return first_skin != kNone || morph_targets > 0; }
 };
 

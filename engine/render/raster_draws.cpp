@@ -84,10 +84,10 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
                                  motion && stage != RasterStage::kGeometry,
                                  emissive && stage == RasterStage::kSurface, view_mask,
                                  stage == RasterStage::kGeometry ? 0u : material.flags}));
-    // A sonar hears both sides of a sheet, a camera sees those that the material has; a solid's
-    // back is behind its front, unless that lets light through.
-    const bool solid = draw.hides_back_faces && !material.mask && !forward;
-    const bool both_sides = !solid && (kind == GBufferKind::kGeometry || material.double_sided);
+    // A camera sees the sides that the material has. A sonar hears both sides of a sheet, but of a
+    // solid with one side it needs no backs: see closed_surface.hpp.
+    const bool solid = draw.hides_back_faces && !material.mask;
+    const bool both_sides = material.double_sided || (kind == GBufferKind::kGeometry && !solid);
     prepared.draws.push_back({draw,
                               std::span(list.ranges).subspan(draw.first_range, draw.range_count),
                               pipeline, stage != RasterStage::kGeometry, both_sides, &material});

@@ -2,6 +2,7 @@
 // on parents; a look_at hangs on the target's position only, so two things may face each other; of
 // what moves, the position at time 0. A chain that returns to itself is refused. One thread.
 #include <map>
+#include <set>
 
 #include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
@@ -43,16 +44,27 @@ class Placer {
   }
 
   Status check_sensor_names() const {
-    std::map<std::string, bool> views, lamps;  // a view's name is a folder's
-    for (const auto& camera : draft_.cameras)
-      if (!views.emplace(camera.sensor.name, true).second)
-        return twice(camera.place, camera.sensor.name);
+    std::set<std::string> views, eyes, lamps;  // a view's name is a folder's
+    for (const auto& camera : draft_.cameras) {
+      if (!views.insert(camera.sensor.name).second) return twice(camera.place, camera.sensor.name);
+      if (camera.sensor.stereo_baseline_m > 0.0)
+        for (const char* side : {"_left", "_right"}) eyes.insert(camera.sensor.name + side);
+    }
     for (const auto& sonar : draft_.sonars)
-      if (!views.emplace(sonar.sensor.name, true).second)
-        return twice(sonar.place, sonar.sensor.name);
+      if (!views.insert(sonar.sensor.name).second) return twice(sonar.place, sonar.sensor.name);
+    for (const auto& camera : draft_.cameras) NERITIC_TRY_STATUS(no_eye(eyes, camera));
+    for (const auto& sonar : draft_.sonars) NERITIC_TRY_STATUS(no_eye(eyes, sonar));
     for (const auto& lamp : draft_.lamps)
-      if (!lamps.emplace(lamp.sensor.name, true).second) return twice(lamp.place, lamp.sensor.name);
+      if (!lamps.insert(lamp.sensor.name).second) return twice(lamp.place, lamp.sensor.name);
     return {};
+  }
+
+  // What a stereo camera writes of its eyes has their names.
+  template <class Sensor>
+  static Status no_eye(const std::set<std::string>& eyes, const MountedDraft<Sensor>& view) {
+    if (!eyes.contains(view.sensor.name)) return {};
+    return bad_input("{}: found \"{}\", the name of a stereo camera's eye; accepted: another",
+                     view.place, view.sensor.name);
   }
 
   Result<int> find(const std::string& name, const std::string& place) const {

@@ -63,18 +63,34 @@ void write_picture(const std::string& file, const ImageU8& image) {
   NERITIC_ASSERT_STATUS(scene::write_png8(folder / file, image));
 }
 
-// Intensity as grey: 1/16 and more is white, with a square root so that weak echoes show.
-ImageU8 grey_sonar(const sonar::SonarImage& image) {
+// As grey: of a level its decibels, 1.5 a grey level up to 140 dB re 1 uPa; of the plain cosine
+// 1/16 and more is white, with a square root so that weak echoes show.
+ImageU8 grey_sonar(const SonarFrame& frame) {
+  const sonar::SonarImage& image = frame.image;
   ImageU8 out(image.n_azimuth, image.n_range, 1);
-  for (std::size_t i = 0; i < out.data.size(); ++i)
-    out.data[i] = static_cast<std::uint8_t>(
-        std::lround(255.0 * std::sqrt(std::min(16.0f * image.intensity[i], 1.0f))));
+  for (std::size_t i = 0; i < out.data.size(); ++i) {
+    const double power = image.intensity[i];
+    const double part = !frame.level  ? std::sqrt(std::min(16.0 * power, 1.0))
+                        : power > 0.0 ? std::clamp(10.0 * std::log10(power) / 140.0, 0.0, 1.0)
+                                      : 0.0;
+    out.data[i] = static_cast<std::uint8_t>(std::lround(255.0 * part));
+  }
   return out;
+}
+
+// A picture of so few values would be matched by nearly anything.
+void expect_shades(const ImageU8& grey, const std::string& name) {
+  EXPECT_GE(std::set<std::uint8_t>(grey.data.begin(), grey.data.end()).size(), 8u) << name;
+}
+
+bool update_goldens() {
+  const char* update = std::getenv("NERITIC_UPDATE_GOLDEN");
+  return update && std::string(update) == "1";
 }
 
 void expect_like_golden(const ImageU8& actual, const std::string& name, const Case& c) {
   const fs::path golden_path = kFolder / (name + ".png");
-  if (std::getenv("NERITIC_UPDATE_GOLDEN")) {
+  if (update_goldens()) {
     NERITIC_ASSERT_STATUS(scene::write_png8(golden_path, actual));
     return;
   }
@@ -143,9 +159,13 @@ TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
   for (const CameraFrame& camera : result.cameras)
     for (std::size_t e = 0; e < camera.eyes.size(); ++e)
       expect_like_golden(camera.eyes[e].color, c.name + "." + camera.name + (e ? ".right" : ""), c);
-  for (const SonarFrame& sonar : result.sonars)
-    expect_like_golden(grey_sonar(sonar.image),
-                       c.name + "." + sonar.name + (sonar.head.empty() ? "" : "." + sonar.head), c);
+  for (const SonarFrame& sonar : result.sonars) {
+    const std::string name =
+        c.name + "." + sonar.name + (sonar.head.empty() ? "" : "." + sonar.head);
+    const ImageU8 grey = grey_sonar(sonar);
+    expect_shades(grey, name);
+    expect_like_golden(grey, name, c);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Golden, ::testing::ValuesIn(read_cases()),

@@ -100,7 +100,7 @@ TEST_F(DeviceTest, AnUnknownNameIsAnErrorThatListsTheDevices) {
   options.device = "no such card";
   const auto made = Device::create(options);
   ASSERT_FALSE(made.ok());
-  EXPECT_EQ(made.error().code, ErrorCode::kNoDevice);
+  EXPECT_EQ(made.error().code, ErrorCode::kBadInput);
   EXPECT_THAT(made.error().message, HasSubstr(device().info().name));
 }
 

@@ -74,6 +74,21 @@ TEST(ClosedSurface, EveryPartCounts) {
   EXPECT_FALSE(mesh.closed());
 }
 
+TEST(ClosedSurface, APartThatOnlyTouchesAnotherCountsToo) {
+  Solid mesh = cube();
+  add_faces(mesh, Vec3f(1.5f), 0.5f, true);  // a corner at the cube's corner
+  EXPECT_FALSE(mesh.closed());
+  Solid touching = cube();
+  add_faces(touching, Vec3f(1.5f), 0.5f);
+  EXPECT_TRUE(touching.closed());
+}
+
+TEST(ClosedSurface, AnEdgeOfFourTrianglesIsNoSkin) {
+  Solid mesh = cube();
+  add_faces(mesh, Vec3f(2.0f, 2.0f, 0.0f), 1.0f);
+  EXPECT_FALSE(mesh.closed());
+}
+
 TEST(ClosedSurface, FarFromTheMeshsOriginToo) {
   Solid mesh;
   add_faces(mesh, Vec3f(65536.0f), 0.5f);

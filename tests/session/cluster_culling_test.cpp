@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
+#include <ranges>
 
 #include "engine/render/lighting.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/scene/shapes.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
 #include "tools/session/readback.hpp"
@@ -214,6 +216,43 @@ TEST_F(ClusterCullingTest, BackFacesOfSolidsAreSeenAtOutlinesAtMost) {
     }
     EXPECT_LT(double(differ), 1e-4 * double(a.size()));
   }
+}
+
+// Whether a sonar's G-buffer leaves out the back faces of a sphere of 1 m, seen from so far.
+bool hides_backs(gpu::Device& device, double distance_m, double scale, bool flipped) {
+  scene::Scene scene;
+  scene.path = "test";
+  scene::Model sphere = scene::make_sphere(1.0);
+  if (flipped)
+    for (auto& indices = sphere.meshes[0].primitives[0].indices;
+         const std::size_t i : std::views::iota(std::size_t{0}, indices.size() / 3))
+      std::swap(indices[3 * i], indices[3 * i + 1]);
+  scene.models.push_back(std::make_shared<scene::Model>(std::move(sphere)));
+  scene.objects.emplace_back().model = 0;
+  scene.objects[0].scale = Vec3(scale);
+  scene.sonars.emplace_back();
+  auto studio = Studio::create(device, std::move(scene));
+  EXPECT_TRUE(studio.ok());
+  render::ViewSet views;
+  views.width = views.height = 16;
+  views.views.emplace_back();
+  views.views[0].near_m = 0.1;
+  views.views[0].world_from_view.position_m = {0.0, 0.0, distance_m};
+  auto drawn = (*studio)->draw(views, GBufferKind::kGeometry, {});
+  EXPECT_TRUE(drawn.ok());
+  return drawn.ok() && drawn->solids == 1;
+}
+
+TEST_F(ClusterCullingTest, BackFacesAreLeftOutOnlyOutsideAndBeyondTheNearPlane) {
+  EXPECT_TRUE(hides_backs(device(), 3.0, 1.0, false));
+  // The near plane's corners are .173 m away; of how a matrix stretches a bound is taken, sqrt(3)
+  // times.
+  EXPECT_TRUE(hides_backs(device(), 1.31, 1.0, false));
+  EXPECT_FALSE(hides_backs(device(), 1.17, 1.0, false));
+  EXPECT_FALSE(hides_backs(device(), 0.5, 1.0, false));
+  EXPECT_TRUE(hides_backs(device(), 0.6, 0.2, false));
+  EXPECT_FALSE(hides_backs(device(), 3.0, 0.0, false));  // flattened to a point
+  EXPECT_FALSE(hides_backs(device(), 3.0, 1.0, true));   // wound inwards
 }
 
 TEST_F(ClusterCullingTest, DeformingMoreThanTheDeviceTakesIsAnError) {

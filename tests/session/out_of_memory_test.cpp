@@ -1,8 +1,11 @@
-// A frame that the device has no memory for is refused by what a person knows of it: the camera, its
-// size, and what would do.
+// A frame that the device has no memory for is refused by what a person knows of it: the camera,
+// its size, and what would do.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "engine/core/memory.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tools/session/session.hpp"
 
@@ -12,21 +15,25 @@ namespace {
 using ::testing::HasSubstr;
 using OutOfMemory = test::GpuTest;
 
-// The driver's answer while it lives.
-class WithoutMemory {
+// The driver's answer to more than so many bytes at once, while it lives.
+class LittleMemory {
  public:
-  WithoutMemory() {
+  explicit LittleMemory(VkDeviceSize most_bytes) {
     real_ = vkAllocateMemory;
+    most_bytes_ = most_bytes;
     vkAllocateMemory = refuse;
   }
-  ~WithoutMemory() { vkAllocateMemory = real_; }
+  ~LittleMemory() { vkAllocateMemory = real_; }
 
  private:
-  static VKAPI_ATTR VkResult VKAPI_CALL refuse(VkDevice, const VkMemoryAllocateInfo*,
-                                               const VkAllocationCallbacks*, VkDeviceMemory*) {
-    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  static VKAPI_ATTR VkResult VKAPI_CALL refuse(VkDevice device, const VkMemoryAllocateInfo* info,
+                                               const VkAllocationCallbacks* callbacks,
+                                               VkDeviceMemory* memory) {
+    if (info->allocationSize > most_bytes_) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    return real_(device, info, callbacks, memory);
   }
-  PFN_vkAllocateMemory real_ = nullptr;
+  static inline PFN_vkAllocateMemory real_ = nullptr;
+  static inline VkDeviceSize most_bytes_ = 0;
 };
 
 TEST_F(OutOfMemory, NamesTheLargestCameraAndWhatWouldDo) {
@@ -43,7 +50,7 @@ TEST_F(OutOfMemory, NamesTheLargestCameraAndWhatWouldDo) {
   FrameRequest request;
   request.cameras = {0, 1, 2};
   {
-    const WithoutMemory fake;
+    const LittleMemory none(0);
     const auto result = session->render(request);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::kOutOfMemory);
@@ -54,6 +61,51 @@ TEST_F(OutOfMemory, NamesTheLargestCameraAndWhatWouldDo) {
   // With memory again, the same session renders.
   NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
   EXPECT_EQ(result.cameras[1].eyes[0].width, 2500u);
+}
+
+// Read-backs fit, the G-buffer does not; then frames that do fit are drawn as if nothing had been.
+TEST_F(OutOfMemory, AFrameTooLargeIsInNobodysWay) {
+  scene::Scene scene;
+  scene.path = "test";
+  for (const std::uint32_t width : {100u, 200u, 4000u}) {
+    scene::Camera camera;
+    camera.name = "camera_" + std::to_string(width);
+    camera.width = width;
+    camera.height = width;
+    scene.cameras.push_back(camera);
+  }
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+  FrameRequest request;
+  request.capture = {true, false, false};
+  const LittleMemory little(VkDeviceSize{200} << 20);
+  request.cameras = {2};
+  const auto result = session->render(request);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::kOutOfMemory);
+  EXPECT_THAT(result.error().message, HasSubstr("camera camera_4000 of 4000x4000"));
+  for (const std::size_t camera : {0u, 1u, 0u}) {
+    request.cameras = {camera};
+    const auto small = session->render(request);
+    ASSERT_TRUE(small.ok()) << small.error().message;
+  }
+}
+
+// Before anything is allocated: a CPU's driver promises what the machine does not have.
+TEST_F(OutOfMemory, MoreThanTheMachineHasIsRefusedBeforeItIsUsed) {
+  scene::Scene scene;
+  scene.path = "test";
+  const auto pixels = static_cast<double>(available_memory_bytes()) / 60.0;
+  const auto side = static_cast<std::uint32_t>(std::sqrt(pixels));
+  scene.cameras.emplace_back().name = "giant";
+  scene.cameras[0].width = scene.cameras[0].height = side;
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+  FrameRequest request;
+  request.cameras = {0};
+  const auto result = session->render(request);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::kOutOfMemory);
+  EXPECT_THAT(result.error().message, HasSubstr("camera giant of"));
+  EXPECT_THAT(result.error().message, HasSubstr("the machine has"));
 }
 
 }  // namespace

@@ -143,7 +143,8 @@ TEST_F(SonarExtremes, FromOneBeamTo4096) {
     sonar.bins_range = 64;
     sonar.bins_elevation = 32;
     sonar.gbuffer_scale = beams == 1 ? 16.0 : 0.25;
-    plain[i] = expect_sane(pings(device(), some_sea(sonar)), fmt::format("{} beams", beams)) / beams;
+    plain[i] =
+        expect_sane(pings(device(), some_sea(sonar)), fmt::format("{} beams", beams)) / beams;
     sonar.terms.beam.samples = beams == 1 ? 128 : 1;
     spread[i] =
         expect_sane(pings(device(), some_sea(sonar)), fmt::format("{} beams", beams)) / beams;

@@ -104,9 +104,8 @@ std::vector<std::size_t> compare_motion(const scene::Scene& scene, const ViewIma
         // Infinitely far: only the view's turn moves it.
         const Vec3 ray((x + 0.5 - eye.intrinsics.cx) / eye.intrinsics.fx,
                        (eye.intrinsics.cy - y - 0.5) / eye.intrinsics.fy, -1.0);
-        const glm::dvec2 next =
-            pixel_of(eye.intrinsics,
-                     next_view_from_world.rotation * (world_from_view.rotation * ray));
+        const glm::dvec2 next = pixel_of(
+            eye.intrinsics, next_view_from_world.rotation * (world_from_view.rotation * ray));
         EXPECT_NEAR(eye.motion.at(x, y, 0), next.x - x - 0.5, 0.02) << x << ' ' << y;
         EXPECT_NEAR(eye.motion.at(x, y, 1), next.y - y - 0.5, 0.02) << x << ' ' << y;
         ++compared[0];

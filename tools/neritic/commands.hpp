@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,7 @@ struct DiveFlags {
   std::string scene, size, device, screenshot;
   std::vector<std::string> sensors;
   std::uint64_t frames = 0;
-  double seconds = 0.0;
+  std::optional<double> seconds;
   bool headless = false, fast = false, panels = false, validation = false;
   // Of scenes with physics, headless.
   std::string log, plot, record, replay;

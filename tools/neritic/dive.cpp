@@ -107,8 +107,8 @@ Status dive_window(xr::Window& window, gpu::Device& device, Session& session,
 }  // namespace
 
 Status run_dive(const DiveFlags& flags) {
-  if (!std::isfinite(flags.seconds) || flags.seconds < 0.0)
-    return bad_input("--seconds: {}; a number from 0 is accepted", flags.seconds);
+  if (flags.seconds && !(std::isfinite(*flags.seconds) && *flags.seconds > 0.0))
+    return bad_input("--seconds: {}; a number above 0 is accepted", *flags.seconds);
   if (flags.fast && !flags.headless)
     return bad_input("--fast: accepted with --headless (a window follows its screen)");
   if (flags.panels && !flags.headless)
@@ -126,7 +126,7 @@ Status run_dive(const DiveFlags& flags) {
     options.physics = physics.get();
   }
   options.frames = flags.frames;
-  options.seconds = flags.seconds;
+  options.seconds = flags.seconds.value_or(0.0);
   options.screenshot = flags.screenshot;
   NERITIC_TRY_STATUS(choose_sensors(flags, scene, options));
 

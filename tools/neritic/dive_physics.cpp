@@ -270,7 +270,7 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
     return bad_input("{}: accepted with --headless and without flags of pictures", flag);
   if (!flags.replay.empty() &&
       (!flags.log.empty() || !flags.record.empty() || flags.realtime || !flags.plot.empty() ||
-       flags.json || flags.seconds > 0.0 || flags.log_rate_hz > 0.0))
+       flags.json || flags.seconds || flags.log_rate_hz > 0.0))
     return bad_input(
         "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --realtime, "
         "--json; it runs as long as the recording");
@@ -278,7 +278,7 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
 }
 
 Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
-  const double seconds = flags.seconds > 0.0 ? flags.seconds : kPhysicsSeconds;
+  const double seconds = flags.seconds.value_or(kPhysicsSeconds);
   if (seconds > kMostPhysicsSeconds)
     return bad_input("--seconds: {}; up to {:g} is accepted", seconds, kMostPhysicsSeconds);
   NERITIC_TRY(const auto world, PhysicsWorld::create(scene));

@@ -9,6 +9,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/memory.hpp"
 #include "engine/gpu/device_select.hpp"
 #include "engine/gpu/frames.hpp"
 #include "tools/neritic/doctor.hpp"
@@ -66,18 +67,6 @@ Status examine_vulkan(const std::string& wanted, Machine& machine) {
   NERITIC_TRY_STATUS(try_device(*device));
   machine.device_start_ms = to_ms(now_ns() - start);
   return {};
-}
-
-// MemAvailable of /proc/meminfo (proc(5)), in bytes; 0 where there is none.
-std::uint64_t available_memory() {
-  std::FILE* file = std::fopen("/proc/meminfo", "r");
-  if (!file) return 0;
-  std::array<char, 256> line{};
-  unsigned long long kib = 0;
-  while (std::fgets(line.data(), line.size(), file))
-    if (std::sscanf(line.data(), "MemAvailable: %llu kB", &kib) == 1) break;
-  std::fclose(file);
-  return std::uint64_t{kib} * 1024;
 }
 
 // Wayland's socket is a path or lies in $XDG_RUNTIME_DIR (wl_display_connect); X11's local display
@@ -141,7 +130,7 @@ Machine examine_machine(const std::string& wanted_device) {
   const long pages = ::sysconf(_SC_PHYS_PAGES), page = ::sysconf(_SC_PAGE_SIZE);
   if (pages > 0 && page > 0)
     machine.memory_bytes = static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page);
-  machine.memory_available_bytes = available_memory();
+  machine.memory_available_bytes = available_memory_bytes();
   return machine;
 }
 

@@ -1,6 +1,7 @@
 // `neritic render SCENE --out DIR`: offscreen pictures and sensor data of a scene or a model.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
@@ -13,8 +14,8 @@
 #include "tools/physics/dive_record.hpp"
 #include "tools/session/output.hpp"
 #include "tools/session/ping_schedule.hpp"
-#include "tools/session/sonar_check.hpp"
 #include "tools/session/session.hpp"
+#include "tools/session/sonar_check.hpp"
 #include "tools/session/survey.hpp"
 
 namespace neritic::tools {
@@ -24,6 +25,9 @@ namespace fs = std::filesystem;
 
 // Vehicles fly on for so long after the last frame: sensors ask how they move then.
 constexpr double kFlownBeyond_s = 0.1;
+
+// Thirty years: frames are still told apart to a tenth of a microsecond.
+constexpr double kLatestTime_s = 1e9;
 
 Result<scene::Scene> load(const RenderFlags& flags) {
   scene::SceneOptions options;
@@ -118,15 +122,20 @@ void warn_of_rates(const scene::Scene& scene, const FrameRequest& request, doubl
   }
 }
 
-Status write_frame(const fs::path& folder, const FrameResult& result, const FrameFacts& facts) {
+// Appends the folders that were written to.
+Status write_frame(const fs::path& folder, const FrameResult& result, const FrameFacts& facts,
+                   std::set<fs::path>& written) {
   for (const CameraFrame& camera : result.cameras)
     for (std::size_t e = 0; e < camera.eyes.size(); ++e) {
       const std::string name =
           camera.eyes.size() == 1 ? camera.name : camera.name + (e == 0 ? "_left" : "_right");
       NERITIC_TRY_STATUS(write_view(folder / name, camera.eyes[e], facts));
+      written.insert(folder / name);
     }
-  for (const SonarFrame& sonar : result.sonars)
+  for (const SonarFrame& sonar : result.sonars) {
     NERITIC_TRY_STATUS(write_sonar(folder / sonar_folder(sonar), sonar, facts));
+    written.insert(folder / sonar.name);
+  }
   return {};
 }
 
@@ -149,12 +158,25 @@ Status dump_graph(const RenderFlags& flags, const Session& session) {
 }
 
 // What an earlier run left in the folder stays; say so where it could be taken for this one's.
-void warn_of_leftovers(const RenderFlags& flags, bool wrote_track) {
+void warn_of_leftovers(const RenderFlags& flags, bool wrote_track,
+                       const std::set<fs::path>& written) {
   const fs::path out = flags.out;
   std::error_code ignored;
+  std::set<std::string> earlier;  // sensors' folders
+  for (std::uint32_t i = 0; i < flags.frames && !flags.track_only; ++i)
+    for (const auto& entry : fs::directory_iterator(out / frame_folder(i), ignored))
+      if (entry.is_directory(ignored) && !written.contains(entry.path()))
+        earlier.insert(entry.path().filename().string());
+  // With rates of their own sensors skip frames: what they wrote to others is this run's.
+  for (const fs::path& folder : written) earlier.erase(folder.filename().string());
+  if (!earlier.empty())
+    log_warn("{}: {} in the frames' folders {} an earlier run's", flags.out,
+             fmt::join(earlier, ", "), earlier.size() == 1 ? "is" : "are");
   const bool more = fs::is_directory(out / frame_folder(flags.frames), ignored);
   if (!flags.track_only && more)
     log_warn("{}: {} and what follows are an earlier run's", flags.out, frame_folder(flags.frames));
+  if (!flags.sheet && fs::is_regular_file(out / "sheet.png", ignored))
+    log_warn("{}: sheet.png is an earlier run's", flags.out);
   if (!wrote_track && fs::is_directory(out / "track", ignored))
     log_warn("{}: track is an earlier run's", flags.out);
 }
@@ -176,8 +198,9 @@ std::string summary(const RenderFlags& flags, const scene::Scene& scene,
 }  // namespace
 
 Result<std::string> run_render(const RenderFlags& flags) {
-  if (!std::isfinite(flags.time_s))
-    return bad_input("--time: {} s; a finite number is accepted", flags.time_s);
+  if (!(std::abs(flags.time_s) <= kLatestTime_s))
+    return bad_input("--time: {} s; a number from {:g} to {:g} is accepted", flags.time_s,
+                     -kLatestTime_s, kLatestTime_s);
   const TimeNs start = now_ns();
   NERITIC_TRY(scene::Scene scene, load(flags));
   NERITIC_TRY(FrameRequest request, request_of(flags, scene));
@@ -212,6 +235,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
   }
   Survey survey(session->scene(), flags.chart_cell_m);
   FrameFacts facts;
+  std::set<fs::path> written;  // sensors' folders
   Progress progress("frame", flags.frames);
   for (std::uint32_t i = 0; i < flags.frames; ++i) {
     request.time_s = flags.time_s + i * step_s;
@@ -222,7 +246,8 @@ Result<std::string> run_render(const RenderFlags& flags) {
     facts = {request.time_s,      session->scene().seed, flags.scene,
              device->info().name, result.passes,         result.frame_ms};
     if (!flags.track_only)
-      NERITIC_TRY_STATUS(write_frame(fs::path(flags.out) / frame_folder(i), result, facts));
+      NERITIC_TRY_STATUS(
+          write_frame(fs::path(flags.out) / frame_folder(i), result, facts, written));
     if (flags.frames > 1) NERITIC_TRY_STATUS(survey.add(result, i, request.time_s));
     if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result));
     if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
@@ -232,7 +257,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
   if (flags.frames > 1) {
     NERITIC_TRY(wrote_track, survey.write(flags.out, facts));
   }
-  warn_of_leftovers(flags, wrote_track);
+  warn_of_leftovers(flags, wrote_track, written);
   device->wait_idle();
   for (const std::string& message : device->validation_log().messages)
     log_warn("validation: {}", message);

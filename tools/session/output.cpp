@@ -7,6 +7,7 @@
 #include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
+#include "shared/raster.h"
 #include "sonar/terms_json.hpp"
 
 namespace neritic::tools {
@@ -53,6 +54,27 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
           {"passes_ms", passes_of(facts)}};
 }
 
+// An earlier run's arrays must not be taken for this one's. meta.json goes first and is written
+// last: where one is, it describes the arrays beside it.
+Status remove_earlier_view(const std::filesystem::path& folder) {
+  for (const char* name : {"meta.json", "depth.npy", "normals.npy", "labels.npy", "instances.npy",
+                           "motion.npy", "color.png"})
+    NERITIC_TRY_STATUS(remove_file(folder / name));
+  return {};
+}
+
+// Views of a wedge that took more or fewer of them.
+Status remove_earlier_sectors(const std::filesystem::path& folder) {
+  NERITIC_TRY_STATUS(remove_earlier_view(folder));
+  for (std::size_t i = 0; i < shared::kMaxViews; ++i) {
+    const std::filesystem::path sector = folder / fmt::format("sector_{}", i);
+    NERITIC_TRY_STATUS(remove_earlier_view(sector));
+    std::error_code not_empty;
+    std::filesystem::remove(sector, not_empty);  // unless there is more in it, of somebody else
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string frame_folder(std::uint32_t number) {
@@ -67,8 +89,7 @@ std::filesystem::path sonar_folder(const SonarFrame& frame) {
 Status write_view(const std::filesystem::path& folder, const ViewImages& view,
                   const FrameFacts& facts) {
   NERITIC_TRY_STATUS(make_folder(folder));
-  // Written last, so removed first: where one is, it describes the arrays beside it.
-  NERITIC_TRY_STATUS(remove_file(folder / "meta.json"));
+  NERITIC_TRY_STATUS(remove_earlier_view(folder));
   const std::size_t w = view.width, h = view.height;
   if (!view.depth.empty())
     NERITIC_TRY_STATUS(write_npy(folder / "depth.npy", view.depth.data, {h, w}));
@@ -92,6 +113,7 @@ sonar::SonarFiles sonar_files(const SonarFrame& frame) {
 Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
                    const FrameFacts& facts) {
   NERITIC_TRY_STATUS(make_folder(folder));
+  NERITIC_TRY_STATUS(remove_earlier_sectors(folder));
   for (std::size_t i = 0; i < frame.sectors.size(); ++i)
     NERITIC_TRY_STATUS(
         write_view(frame.sectors.size() == 1 ? folder : folder / fmt::format("sector_{}", i),

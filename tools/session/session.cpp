@@ -5,6 +5,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/clock.hpp"
+#include "engine/core/memory.hpp"
 #include "engine/render/lighting.hpp"
 #include "tools/session/decode.hpp"
 #include "tools/session/session_work.hpp"
@@ -180,8 +181,7 @@ Status Session::declare_sensors(graph::FrameGraph& graph, const FrameRequest& re
     const Status declared = sonars_->declare({graph, *renderer_, *gpu_scene_, work.state, deformed,
                                               readback_, request.capture, request.time_s, ping},
                                              *work.sonars.back());
-    if (!declared.ok())
-      return of_sonar(scene_, scene_.sonars[request.sonars[i]], declared.error());
+    if (!declared.ok()) return of_sonar(scene_, scene_.sonars[request.sonars[i]], declared.error());
   }
   return {};
 }
@@ -227,7 +227,30 @@ Error Session::advised(const Error& error, const FrameRequest& request) const {
                  error.message, others > 0 ? " or fewer sensors at once" : "");
 }
 
+// A CPU's driver promises memory that the machine does not have, and the system ends who uses it.
+Status Session::check_memory(const FrameRequest& request) {
+  // Measured, a pixel: the device's images and read-backs; the host's arrays and their files.
+  constexpr std::uint64_t kDevice_bytes = 36, kHost_bytes = 66, kHostColor_bytes = 16;
+  const std::uint64_t pixel_bytes =
+      (device_.info().kind == "CPU" ? kDevice_bytes : 0) +
+      (request.capture.geometry || request.capture.motion ? kHost_bytes : kHostColor_bytes);
+  std::uint64_t bytes = 0;
+  for (const std::size_t i : request.cameras) {
+    const scene::Camera& camera = scene_.cameras[i];
+    bytes += std::uint64_t{camera.width} * camera.height * pixel_bytes *
+             (camera.stereo_baseline_m > 0.0 ? 2 : 1);
+  }
+  const std::uint64_t available = available_memory_bytes();
+  if (bytes <= room_found_bytes_ || available == 0) return {};
+  if (bytes > available)
+    return failure(ErrorCode::kOutOfMemory, "{:.1f} GB are needed, the machine has {:.1f} left",
+                   double(bytes) * 1e-9, double(available) * 1e-9);
+  room_found_bytes_ = bytes;
+  return {};
+}
+
 Result<FrameResult> Session::render(const FrameRequest& request) {
+  if (const Status room = check_memory(request); !room.ok()) return advised(room.error(), request);
   auto result = render_frame(request);
   if (!result.ok()) return advised(result.error(), request);
   return result;

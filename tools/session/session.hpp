@@ -149,6 +149,7 @@ class Session {
  private:
   explicit Session(gpu::Device& device);
   Result<FrameResult> render_frame(const FrameRequest& request);
+  Status check_memory(const FrameRequest& request);
   Error advised(const Error& error, const FrameRequest& request) const;
   gpu::Device& device_;
   scene::Scene scene_;
@@ -165,6 +166,7 @@ class Session {
   ReadbackPool readback_;
   std::string plan_text_, plan_graphviz_;
   bool keep_dump_ = false;
+  std::uint64_t room_found_bytes_ = 0;  // for what the largest frame so far needs of the machine
 };
 
 // The documented defaults of a sonar (sonar/README.md: the knee of `neritic tradeoff sonar`).
