@@ -65,6 +65,7 @@ Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height) {
   camera.width = width;
   camera.height = height;
   camera.vertical_fov_rad = kVerticalFov_rad;
+  camera.antialias = true;
   const Bounds bounds = bounds_to_frame(model, object.clip);
   const Vec3 centre = 0.5 * (bounds.min + bounds.max);
   // Three-quarter view: glTF's models face +Z; from the front, their left and above.
