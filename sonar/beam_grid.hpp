@@ -11,13 +11,14 @@
 #include "engine/core/image.hpp"
 #include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
+#include "engine/scene/sonar_settings.hpp"
 
 namespace neritic::sonar {
 
 // Widest apertures: a full turn, and 120 degrees of elevation (a pinhole's tangents stay sane).
 inline constexpr double kMaxAzimuth_rad = 2.0 * kPi;
 inline constexpr double kMaxElevation_rad = radians(120.0);
-inline constexpr std::uint32_t kMaxBins = 16384;
+inline constexpr std::uint32_t kMaxBins = scene::kMaxSonarBins;
 
 struct Limits {
   double range_min_m = 1.0, range_max_m = 5.0;

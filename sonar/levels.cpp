@@ -39,8 +39,9 @@ double noise_level_db(const scene::SonarTerms& terms) {
   const scene::SonarNoise& noise = *terms.noise;
   if (noise.level_db) return *noise.level_db;
   const double bandwidth_hz = terms.range_spread.value_or(scene::SonarRangeSpread{}).bandwidth_hz;
-  std::vector<double> levels_db{band_level_db(
-      ambient_noise_db(terms.frequency_hz, noise.wind_m_s, noise.shipping), bandwidth_hz)};
+  const double ambient_db =
+      ambient_noise_db(terms.frequency_hz, noise.wind_m_s, noise.shipping) - noise.directivity_db;
+  std::vector<double> levels_db{band_level_db(ambient_db, bandwidth_hz)};
   if (noise.self_db) levels_db.push_back(*noise.self_db);
   return incoherent_sum_db(levels_db);
 }

@@ -40,8 +40,7 @@ constexpr QualityLevel kMechanical[] = {
     {"reference", 1.4, 35.6, 6.45, 2, 0.0091, 52.4},
 };
 
-constexpr std::uint32_t kMostBins = 8192;  // as scenes accept
-constexpr double kMostFiner = 1e4;         // keeps a forged ratio from overflowing
+constexpr double kMostFiner = 1e4;  // keeps a forged ratio from overflowing
 
 bool rows_are_counts(SonarKind kind) {
   return kind == SonarKind::kProfiling || kind == SonarKind::kEchoSounder;
@@ -52,21 +51,6 @@ double range_cell_m(const scene::Sonar& s) {
   const auto& spread = s.terms.range_spread;
   if (!spread) return (s.range_max_m - s.range_min_m) / s.bins_range;
   return range_resolution_m(sound_speed_of(s.terms.water, 0.0), spread->bandwidth_hz);
-}
-
-Result<const QualityLevel*> level_of(const scene::Sonar& sonar) {
-  const auto levels = quality_levels(sonar.kind);
-  if (!sonar.quality.empty()) {
-    for (const QualityLevel& level : levels)
-      if (sonar.quality == level.name) return &level;
-    return bad_input("sonar {}: quality '{}' found, draft, standard or reference is accepted",
-                     sonar.name, sonar.quality);
-  }
-  // Levels rise in cost as they fall in error.
-  for (const QualityLevel& level : levels)
-    if (level.error <= sonar.max_error) return &level;
-  return bad_input("sonar {}: max_error {:g} found, at least {:g} is accepted for kind {}",
-                   sonar.name, sonar.max_error, levels.back().error, scene::name_of(sonar.kind));
 }
 
 Result<double> half_power_width_rad(const scene::Sonar& sonar) {
@@ -87,7 +71,7 @@ Result<std::uint32_t> columns_for(const scene::Sonar& sonar, const QualityLevel&
     NERITIC_TRY(const double width_rad, half_power_width_rad(sonar));
     columns *= beam_rad / width_rad;
   }
-  return static_cast<std::uint32_t>(std::clamp(std::ceil(columns - 1e-6), 1.0, double{kMostBins}));
+  return static_cast<std::uint32_t>(std::clamp(std::ceil(columns - 1e-6), 1.0, double{kMaxBins}));
 }
 
 }  // namespace
@@ -108,26 +92,42 @@ std::span<const QualityLevel> quality_levels(SonarKind kind) {
   return {};
 }
 
-Status apply_quality(scene::Sonar& sonar) {
-  if (sonar.quality.empty() && !(sonar.max_error > 0.0)) return {};
+Result<const QualityLevel*> quality_level(const scene::Sonar& sonar) {
+  if (sonar.quality.empty() && !(sonar.max_error > 0.0)) return nullptr;
   if (!sonar.quality.empty() && sonar.max_error > 0.0)
     return bad_input("sonar {}: quality '{}' and max_error {:g} found, one of them is accepted",
                      sonar.name, sonar.quality, sonar.max_error);
-  NERITIC_TRY(const QualityLevel* level, level_of(sonar));
+  const auto levels = quality_levels(sonar.kind);
+  if (!sonar.quality.empty()) {
+    for (const QualityLevel& level : levels)
+      if (sonar.quality == level.name) return &level;
+    return bad_input("sonar {}: quality '{}' found, draft, standard or reference is accepted",
+                     sonar.name, sonar.quality);
+  }
+  // Levels rise in cost as they fall in error.
+  for (const QualityLevel& level : levels)
+    if (level.error <= sonar.max_error) return &level;
+  return bad_input("sonar {}: max_error {:g} found, at least {:g} is accepted for kind {}",
+                   sonar.name, sonar.max_error, levels.back().error, scene::name_of(sonar.kind));
+}
+
+Status apply_quality(scene::Sonar& sonar) {
+  NERITIC_TRY(const QualityLevel* level, quality_level(sonar));
+  if (level == nullptr) return {};
   const double span_m = sonar.range_max_m - sonar.range_min_m, cell_m = range_cell_m(sonar);
   const double least_bins = level->bins_a_cell * span_m / cell_m;
   // The last of a measured sensor's bins may be a fraction.
   if (sonar.terms.range_spread)
     sonar.bins_range *= static_cast<std::uint32_t>(
         std::clamp(std::ceil(0.99 * least_bins / sonar.bins_range), 1.0, kMostFiner));
-  if (sonar.bins_range > kMostBins)
+  if (sonar.bins_range > kMaxBins)
     return bad_input(
         "sonar {}: quality {} over {:g} m needs {} range bins, at most {} are accepted", sonar.name,
-        level->name, span_m, sonar.bins_range, kMostBins);
+        level->name, span_m, sonar.bins_range, kMaxBins);
   sonar.gbuffer_scale = level->gbuffer_scale;
   const double rows = rows_are_counts(sonar.kind) ? level->rows : level->rows * span_m / cell_m;
   sonar.bins_elevation =
-      static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMostBins}));
+      static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMaxBins}));
   NERITIC_TRY(const std::uint32_t columns, columns_for(sonar, *level));
   (sonar.kind == SonarKind::kEchoSounder ? sonar.bins_azimuth : sonar.terms.beam.samples) = columns;
   return {};

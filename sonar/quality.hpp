@@ -26,12 +26,16 @@ struct QualityLevel {
 // From draft to reference.
 std::span<const QualityLevel> quality_levels(scene::SonarKind kind);
 
+// The level that a sonar's `quality` or `max_error` comes to; nullptr where it names neither.
+// kBadInput as apply_quality's.
+Result<const QualityLevel*> quality_level(const scene::Sonar& sonar);
+
 // Samples a sonar as its `quality` or `max_error` asks for: sets gbuffer_scale, elevation bins and
 // beam samples (of an echo sounder its azimuth bins), whatever they were, and multiplies its range
 // bins by the least whole number that makes them fine enough, so that bins of the device's own can
 // be summed from them. max_error takes the cheapest level whose measured error is at most that.
-// Without either it changes nothing; a second time it changes nothing more. kBadInput where no level
-// is that good, where both are named, or where the level is not known.
+// Without either it changes nothing; a second time it changes nothing more. kBadInput where no
+// level is that good, where both are named, or where the level is not known.
 Status apply_quality(scene::Sonar& sonar);
 
 }  // namespace neritic::sonar

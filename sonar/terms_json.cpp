@@ -86,6 +86,7 @@ json speckle_json(const scene::SonarSpeckle& speckle) {
 json noise_json(const scene::SonarNoise& noise) {
   if (noise.level_db) return {{"level_db", *noise.level_db}};
   json out{{"wind_m_s", noise.wind_m_s}, {"shipping", noise.shipping}};
+  if (noise.directivity_db > 0.0) out["directivity_db"] = noise.directivity_db;
   if (noise.self_db) out["self_db"] = *noise.self_db;
   return out;
 }
@@ -165,6 +166,12 @@ json sensor_json(const scene::Sonar& s) {
   if (!s.gather.empty()) out["gather"] = s.gather;
   if (!s.quality.empty()) out["quality"] = s.quality;
   if (s.max_error > 0.0) out["max_error"] = s.max_error;
+  return out;
+}
+
+json quality_json(const QualityLevel& level, double max_error) {
+  json out{{"level", level.name}, {"measured_error", level.error}};
+  if (max_error > 0.0) out["max_error"] = max_error;
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "engine/scene/scene.hpp"
+#include "sonar/quality.hpp"
 
 namespace neritic::sonar {
 
@@ -13,5 +14,9 @@ nlohmann::json terms_json(const scene::SonarTerms& terms);
 
 // All of it but name, mount and track.
 nlohmann::json sensor_json(const scene::Sonar& sonar);
+
+// What a sonar is sampled by: the level, its measured error, the max_error that asked for it (0:
+// its name did).
+nlohmann::json quality_json(const QualityLevel& level, double max_error);
 
 }  // namespace neritic::sonar

@@ -79,7 +79,8 @@ inline constexpr auto kLawnMowerKeys =
     std::to_array<Key>({"area_m", "depth_m", "spacing_m", "legs"});
 
 // Of what is simulated.
-inline constexpr auto kPhysicsKeys = std::to_array<Key>({"rate_hz", "integrator", "max_error_m", "water_kg_m3"});
+inline constexpr auto kPhysicsKeys =
+    std::to_array<Key>({"rate_hz", "integrator", "max_error_m", "water_kg_m3"});
 inline constexpr auto kCurrentKeys =
     std::to_array<Key>({"kind", "velocity_m_s", "deep_velocity_m_s", "depth_m", "exponent", "file",
                         "origin_m", "spacing_m", "start_s", "interval_s"});
@@ -120,28 +121,26 @@ inline constexpr auto kCameraKeys = std::to_array<Key>({"name",
                                                         "exposure_compensation_ev"});
 
 inline constexpr auto kSonarKeys = std::to_array<Key>(
-    {"name",           "include",        "on",       "track",         "position_m",
-     "yaw_deg",        "pitch_deg",      "roll_deg", "rotation_xyzw", "look_at_m",
-     "look_at",        "kind",           "range_m",  "azimuth_deg",   "elevation_deg",
-     "semi_angle_deg", "depression_deg", "step_deg", "bins",          "rate_hz",
-     "gbuffer_scale",  "gather",         "near_m",   "quality",       "max_error",
-     "picture_camera",
-     "frequency_hz",   "bandwidth_hz",   "water",    "level",         "beam",
-     "range_spread",   "speckle",        "noise",    "ghosts",        "sound_speed",
-     "motion",         "labels",         "output",   "detection"});
+    {"name",           "include",        "on",           "track",         "position_m",
+     "yaw_deg",        "pitch_deg",      "roll_deg",     "rotation_xyzw", "look_at_m",
+     "look_at",        "kind",           "range_m",      "azimuth_deg",   "elevation_deg",
+     "semi_angle_deg", "depression_deg", "step_deg",     "bins",          "rate_hz",
+     "gbuffer_scale",  "gather",         "near_m",       "quality",       "max_error",
+     "picture_camera", "frequency_hz",   "bandwidth_hz", "water",         "level",
+     "beam",           "range_spread",   "speckle",      "noise",         "ghosts",
+     "sound_speed",    "motion",         "labels",       "output",        "detection"});
 
 // The terms of a sonar, each a table.
 inline constexpr auto kSonarWaterKeys =
     std::to_array<Key>({"temperature_c", "salinity_psu", "ph", "depth_m", "sound_speed_m_s"});
 inline constexpr auto kSonarLevelKeys = std::to_array<Key>(
     {"source_level_db", "absorption", "spreading", "tvg", "tvg_absorption", "gain_db"});
-inline constexpr auto kSonarBeamKeys =
-    std::to_array<Key>({"azimuth", "azimuth_deg", "elevation", "elevation_deg", "samples",
-                        "steering", "two_way"});
+inline constexpr auto kSonarBeamKeys = std::to_array<Key>(
+    {"azimuth", "azimuth_deg", "elevation", "elevation_deg", "samples", "steering", "two_way"});
 inline constexpr auto kSonarRangeSpreadKeys = std::to_array<Key>({"bandwidth_hz", "window"});
 inline constexpr auto kSonarSpeckleKeys = std::to_array<Key>({"scatterer_m", "shape", "texture_m"});
 inline constexpr auto kSonarNoiseKeys =
-    std::to_array<Key>({"level_db", "wind_m_s", "shipping", "self_db"});
+    std::to_array<Key>({"level_db", "wind_m_s", "shipping", "directivity_db", "self_db"});
 inline constexpr auto kSonarGhostKeys =
     std::to_array<Key>({"surface", "bottom_m", "surface_reflection", "bottom_reflection"});
 inline constexpr auto kSonarSoundSpeedKeys = std::to_array<Key>({"profile", "rays"});

@@ -15,7 +15,6 @@ constexpr auto kKinds =
 constexpr auto kGathers = std::to_array<Key>({"plane", "nearest", "published"});
 constexpr auto kQualities = std::to_array<Key>({"draft", "standard", "reference"});
 
-constexpr std::uint64_t kMaxBins = 8192;
 constexpr double kMaxSonarRange_m = 20000.0;
 
 void read_kind(TableReader& reader, Sonar& sonar) {
@@ -37,7 +36,7 @@ void read_ranges(TableReader& reader, Sonar& sonar) {
 }
 
 void read_bins(TableReader& reader, Sonar& sonar) {
-  const Interval bin_count{1, static_cast<double>(kMaxBins)};
+  const Interval bin_count{1, double{kMaxSonarBins}};
   const std::vector<double> bins = reader.numbers("bins", {3}, bin_count);
   if (bins.size() != 3) return;
   for (const double n : bins)

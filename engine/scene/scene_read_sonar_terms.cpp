@@ -170,12 +170,13 @@ SonarNoise read_noise(TableReader& reader) {
   SonarNoise noise;
   if (reader.has("level_db")) {
     noise.level_db = reader.number("level_db", 0.0, kNoiseLevel);
-    for (const Key key : {"wind_m_s", "shipping", "self_db"})
+    for (const Key key : {"wind_m_s", "shipping", "directivity_db", "self_db"})
       refuse_beside(reader, key, "beside level_db, which is all the noise");
     return noise;
   }
   noise.wind_m_s = reader.number("wind_m_s", noise.wind_m_s, {0, 60, false, false, "m/s"});
   noise.shipping = reader.number("shipping", noise.shipping, kTermFraction);
+  noise.directivity_db = reader.number("directivity_db", 0.0, {0, 60, false, false, "dB"});
   if (reader.has("self_db")) noise.self_db = reader.number("self_db", 0.0, kNoiseLevel);
   return noise;
 }
@@ -264,8 +265,8 @@ void check_together(TableReader& reader, const SonarTerms& terms) {
 
 void read_sonar_terms(TableReader& reader, SonarTerms& terms) {
   terms.frequency_hz = reader.number("frequency_hz", terms.frequency_hz, kFrequency);
-  terms.water =
-      read_term<SonarWater>(reader, "water", kSonarWaterKeys, read_sonar_water).value_or(SonarWater{});
+  terms.water = read_term<SonarWater>(reader, "water", kSonarWaterKeys, read_sonar_water)
+                    .value_or(SonarWater{});
   terms.level = read_term<SonarLevel>(reader, "level", kSonarLevelKeys, read_level);
   terms.beam =
       read_term<SonarBeam>(reader, "beam", kSonarBeamKeys, read_beam).value_or(SonarBeam{});

@@ -13,6 +13,9 @@
 
 namespace neritic::scene {
 
+// Bins in each of range, azimuth and elevation: of scenes, sensors, flags and quality levels.
+inline constexpr std::uint32_t kMaxSonarBins = 16384;
+
 enum class SonarKind { kImaging, kProfiling, kEchoSounder, kSideScan, kMechanical };
 // "imaging", "profiling", "echosounder", "sidescan", "mechanical".
 const char* name_of(SonarKind kind);
@@ -88,6 +91,7 @@ struct SonarNoise {
   std::optional<double> level_db;  // all of it; else the powers of the following, added:
   // Ambient: Wenz's 1962 curves in Coates's form of 1990 at the sonar's frequency, over its band.
   double wind_m_s = 5.0, shipping = 0.5;
+  double directivity_db = 0.0;    // of the receiver, which ambient noise is less by
   std::optional<double> self_db;  // of the vehicle and the receiver
   bool operator==(const SonarNoise&) const = default;
 };

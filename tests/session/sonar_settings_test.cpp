@@ -9,6 +9,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/shapes.hpp"
+#include "sonar/quality.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
 #include "tools/session/output.hpp"
@@ -123,6 +124,30 @@ TEST_F(SonarSettings, FileSaysWhichPixelsACellWereAskedForAndUsed) {
   EXPECT_EQ(gbuffer["pixels_per_cell"]["requested"], 10.0);
   EXPECT_LT(gbuffer["pixels_per_cell"]["used"][0].get<double>(), 9.0);
   EXPECT_NEAR(gbuffer["pixels_per_cell"]["used"][1].get<double>(), 10.0, 1.0);
+}
+
+TEST_F(SonarSettings, FileSaysWhichQualityTheSonarIsSampledBy) {
+  scene::Scene scene =
+      sphere_and_sonars({small_sonar("named"), small_sonar("bounded"), small_sonar("plain")});
+  scene.sonars[0].quality = "draft";
+  scene.sonars[1].max_error = 0.02;
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
+  NERITIC_ASSERT_OK(const FrameResult result, session->render(all_sonars(scene)));
+  const test::ScratchFolder scratch;
+  std::vector<nlohmann::json> said;
+  for (const SonarFrame& frame : result.sonars) {
+    ASSERT_TRUE(write_sonar(scratch / frame.name, frame, FrameFacts{}).ok());
+    NERITIC_ASSERT_OK(const auto text, read_text(scratch / frame.name / "sonar.json"));
+    said.push_back(parse_json(text).value()["model"]);
+  }
+  const auto levels = sonar::quality_levels(scene::SonarKind::kImaging);
+  EXPECT_EQ(said[0]["quality"]["level"], "draft");
+  EXPECT_EQ(said[0]["quality"]["measured_error"], levels[0].error);
+  EXPECT_FALSE(said[0]["quality"].contains("max_error"));
+  EXPECT_EQ(said[1]["quality"]["level"], "standard");
+  EXPECT_EQ(said[1]["quality"]["measured_error"], levels[1].error);
+  EXPECT_EQ(said[1]["quality"]["max_error"], 0.02);
+  EXPECT_FALSE(said[2].contains("quality"));
 }
 
 }  // namespace

@@ -212,6 +212,9 @@ TEST(SonarLevels, NoiseIsWhatIsNamedOrAmbientAndSelfAdded) {
   EXPECT_NEAR(sonar::noise_level_db(terms), 77.2139, 0.002);
   terms.noise->self_db = 77.2139;
   EXPECT_NEAR(sonar::noise_level_db(terms), 80.2242, 0.002);
+  // A receiver hears less of what comes from all around, and all of its own.
+  terms.noise->directivity_db = 20.0;
+  EXPECT_NEAR(sonar::noise_level_db(terms), 77.2139 + 0.0432, 0.002);
 }
 
 TEST(SonarLevels, WhatIsBelowItsRowsFloorIsSilence) {

@@ -153,27 +153,31 @@ TEST(SonarQuality, RangeBinsGrowByAWholeNumberUntilTheyResolveThePulse) {
   EXPECT_LE(sonar.bins_range, 1.05 * wanted + 70);
 }
 
-// Every device that comes with the program can be had at every level, if need be over less range.
+// Every device that comes with the program can be had at every level, over all its range.
 TEST(SonarQuality, EveryPresetTakesEveryLevel) {
   for (const auto& entry :
        std::filesystem::directory_iterator(test::source_dir() / "assets" / "sensors")) {
     if (entry.path().extension() != ".toml") continue;
-    auto loaded = scene::load_sonar(entry.path());
+    const auto loaded = scene::load_sonar(entry.path());
     ASSERT_TRUE(loaded.ok()) << loaded.error().message;
     for (const char* level : {"draft", "standard", "reference"}) {
       scene::Sonar sonar = *loaded;
       sonar.quality = level;
-      const Status whole = apply_quality(sonar);
-      if (whole.ok()) continue;
-      EXPECT_NE(whole.error().message.find("at most 8192"), std::string::npos)
-          << whole.error().message;
-      sonar = *loaded;
-      sonar.quality = level;
-      sonar.range_max_m = sonar.range_min_m + 0.4 * (sonar.range_max_m - sonar.range_min_m);
-      const Status part = apply_quality(sonar);
-      EXPECT_TRUE(part.ok()) << part.error().message;
+      const Status applied = apply_quality(sonar);
+      EXPECT_TRUE(applied.ok()) << applied.error().message;
+      EXPECT_TRUE(plan_heads(sonar).ok()) << sonar.name << " " << level;
     }
   }
+}
+
+TEST(SonarQuality, MoreRangeThanBinsCanSampleIsRefused) {
+  scene::Sonar sonar = sonar_of(SonarKind::kMechanical);
+  sonar.quality = "reference";
+  sonar.range_max_m = 5000.0;
+  const Status applied = apply_quality(sonar);
+  ASSERT_FALSE(applied.ok());
+  EXPECT_NE(applied.error().message.find("at most 16384 are accepted"), std::string::npos)
+      << applied.error().message;
 }
 
 TEST(SonarQuality, ColumnsFollowTheBeamsWidth) {

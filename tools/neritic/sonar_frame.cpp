@@ -6,6 +6,7 @@
 #include "engine/core/log.hpp"
 #include "sonar/detection.hpp"
 #include "sonar/point_cloud.hpp"
+#include "sonar/quality.hpp"
 #include "sonar/terms_json.hpp"
 #include "sonar/write_sonar.hpp"
 #include "tools/neritic/flags.hpp"
@@ -40,6 +41,8 @@ nlohmann::json facts_of(const SonarJob& job, const sonar::FrameFiles& files,
   if (job.plain()) return json;
   json["terms"] = sonar::terms_json(job.sonar.terms);
   json["seed"] = flags.seed;
+  if (const auto level = sonar::quality_level(job.sonar); level.ok() && *level != nullptr)
+    json["quality"] = sonar::quality_json(**level, job.sonar.max_error);
   if (job.sonar.terms.level) json["backscatter_db"] = std::stod(flags.backscatter_db);
   return json;
 }

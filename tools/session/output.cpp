@@ -140,6 +140,8 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
       {"scene", facts.scene},
       {"device", facts.device},
       {"timings_ms", {{"frame", to_microsecond(facts.frame_ms)}, {"passes", passes_of(facts)}}}};
+  if (frame.quality != nullptr)
+    more["model"]["quality"] = sonar::quality_json(*frame.quality, frame.max_error);
   if (!frame.head.empty()) more["head"] = frame.head;
   if (frame.sound_speed_m_s > 0.0) {
     more["model"]["sound_speed_m_s"] = frame.sound_speed_m_s;

@@ -18,6 +18,7 @@
 #include "engine/scene/scene.hpp"
 #include "sonar/beam_grid.hpp"
 #include "sonar/label_energy.hpp"
+#include "sonar/quality.hpp"
 #include "sonar/reference.hpp"
 #include "tools/session/readback.hpp"
 
@@ -58,6 +59,8 @@ struct SonarFrame {
   double heading_rad = 0.0;  // of a mechanical scanner's beam, sonar axes, positive to starboard
   double sound_speed_m_s = 0.0, absorption_db_per_m = 0.0;  // with terms
   std::vector<float> noise_power;  // mean of the noise in each range row; empty: none is named
+  const sonar::QualityLevel* quality = nullptr;  // that it is sampled by, if any
+  double max_error = 0.0;                        // what asked for it; 0: its name
   double fixed_scale = 1.0;
   std::uint32_t gbuffer_width = 1, gbuffer_height = 1;  // of one sector
   double pixels_per_cell = 1.0;                         // asked for, linear

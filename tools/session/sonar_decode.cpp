@@ -16,6 +16,8 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
     frame.grid = state.head.beams;
     frame.level = sonar.terms.level.has_value();
     frame.terms = sonar.terms;
+    if (const auto level = sonar::quality_level(sonar); level.ok()) frame.quality = *level;
+    frame.max_error = sonar.max_error;
     frame.heading_rad = head->heading_rad;
     frame.world_from_head =
         head->views.views.front().world_from_view *
