@@ -5,6 +5,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
+#include "sonar/beam_pattern.hpp"
 #include "sonar/head.hpp"
 #include "tests/session/sonar_pings.hpp"
 #include "tools/session/survey.hpp"
@@ -63,6 +64,55 @@ TEST_F(SonarPresets, ASideScansAltitudeIsTheBottomsHeight) {
     const auto altitudes = altitudes_of(device(), scene);
     ASSERT_EQ(altitudes.size(), 5u);
     for (const double altitude : altitudes) EXPECT_NEAR(altitude, 10.0, 0.1) << terms;
+  }
+}
+
+// Half a metre above a floor it is met at a degree. Rows that are too coarse lose parts of it,
+// which then look like shadows. Decibels over the closed form, up to a constant of the beam's own:
+// least and most over all beams and ranges from nearest_m on.
+std::pair<double, double> spread_over_closed_form_db(const SonarFrame& frame, double height_m,
+                                                     double nearest_m) {
+  const auto pattern = sonar::BeamPattern::of_half_power_width(
+      sonar::BeamKind::kSinc, frame.terms.beam.elevation->half_power_rad);
+  EXPECT_TRUE(pattern.ok());
+  const sonar::SonarImage& image = frame.image;
+  double least = 1e9, most = -1e9;
+  constexpr std::uint32_t kAveraged = 16;
+  for (std::uint32_t row = 0; row + kAveraged <= image.n_range; row += kAveraged) {
+    const double r = (frame.grid.range_m(row) + frame.grid.range_m(row + kAveraged - 1)) / 2.0;
+    if (r < nearest_m) continue;
+    // Lambert's mu cos^2(i) dA of a ring's piece r dr dphi, over r^4 and the water, there and back
+    // through the pattern.
+    const double down = height_m / r, beam = pattern->amplitude(std::asin(down));
+    const double closed = std::pow(beam, 4) * down * down / (r * r * r) *
+                          std::pow(10.0, -0.2 * frame.absorption_db_per_m * r);
+    for (std::uint32_t c = 0; c < image.n_azimuth; ++c) {
+      double sum = 0.0;
+      for (std::uint32_t i = 0; i < kAveraged; ++i)
+        sum += image.intensity[std::size_t{row + i} * image.n_azimuth + c];
+      const double db = 10.0 * std::log10(sum / kAveraged / closed);
+      least = std::min(least, db);
+      most = std::max(most, db);
+    }
+  }
+  return {least, most};
+}
+
+TEST_F(SonarPresets, HalfAMetreAboveAFloorItIsWholeAndAsLoudAsItsClosedForm) {
+  const test::ScratchFolder scratch;
+  for (const char* name :
+       {"oculus_m750d", "oculus_m750d_high", "oculus_m1200d", "oculus_m1200d_high", "gemini_720is",
+        "blueview_p900_45", "aris_explorer_3000", "aris_explorer_3000_low", "ping360"}) {
+    NERITIC_ASSERT_OK(
+        const scene::Scene scene,
+        over_a_flat_bottom(scratch.path(), name, 5.5, "level = { source_level_db = 210 }"));
+    const auto frames = pings(device(), scene);
+    ASSERT_EQ(frames.size(), 1u);
+    // Within the half-power width, where the pattern is smooth over sixteen bins.
+    const double nearest_m =
+        0.5 / std::sin(frames[0].terms.beam.elevation->half_power_rad / 2.0) + 0.5;
+    const auto [least, most] = spread_over_closed_form_db(frames[0], 0.5, nearest_m);
+    EXPECT_LT(most - least, 1.0) << name << ": " << least << " to " << most << " dB";
   }
 }
 

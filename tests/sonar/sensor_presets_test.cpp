@@ -104,7 +104,7 @@ TEST(SonarPresets, ArePhysicallyPossible) {
     EXPECT_LT(nearest_m, farthest_m);
     // An echo is back before the next ping.
     EXPECT_LE(preset.number("rate_hz"), kSoundSpeed_m_s / (2 * farthest_m));
-    EXPECT_LE(preset.bins(0), 8192u);
+    EXPECT_LE(preset.bins(0), scene::kMaxSonarBins);
     EXPECT_LE(preset.bins(1), 512u);
     EXPECT_LE(preset.bins(2), 256u);
     const double frequency_hz = preset.number("frequency_hz");
@@ -136,7 +136,7 @@ TEST(SonarPresets, HearBeyondHalfPowerAndKeepThePulsesEnergy) {
       EXPECT_NEAR(patterns->upright()->two_way_power(own.elevation_max_rad), 0.25, 1e-6);
       EXPECT_NEAR(head.samples.elevation_step_rad(), own.elevation_max_rad * 2 / preset.bins(2),
                   1e-12);
-      EXPECT_LE(head.samples.bins.elevation, 700u);
+      EXPECT_LE(head.samples.bins.elevation, 1400u);
     }
     const double resolution_m =
         sonar::range_resolution_m(kSoundSpeed_m_s, preset.number("bandwidth_hz"));
