@@ -49,9 +49,7 @@ Status write_array(const std::filesystem::path& path, const SonarFiles& files,
 // What stays of an earlier image must not be taken for this one's: the .json goes first, so that
 // none ever describes other arrays, however far the writing comes.
 Status remove_earlier(const std::filesystem::path& folder) {
-  for (const char* name : {"sonar.json", "sonar.npy", "sonar_labels.npy", "sonar_instances.npy",
-                           "sonar_label_fraction.npy", "sonar_counts.npy", "sonar.png"})
-    NERITIC_TRY_STATUS(remove_file(folder / name));
+  for (const char* name : kSonarFiles) NERITIC_TRY_STATUS(remove_file(folder / name));
   return {};
 }
 

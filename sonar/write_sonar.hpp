@@ -31,6 +31,15 @@ PanelOptions panel_options(scene::SonarKind kind, bool level);
 // The picture: polar, or for a single beam the echo over range.
 ImageU8 draw_sonar(const SonarFiles& files);
 
+// What write_sonar leaves in a folder, the .json first.
+inline constexpr const char* kSonarFiles[] = {"sonar.json",
+                                              "sonar.npy",
+                                              "sonar_labels.npy",
+                                              "sonar_instances.npy",
+                                              "sonar_label_fraction.npy",
+                                              "sonar_counts.npy",
+                                              "sonar.png"};
+
 // facts: what else sonar.json shall say (options, device, timings); limits, bins and units are
 // added. sonar.npy is [n_range, n_azimuth], of a single beam (no imaging or profiling sonar)
 // [n_range]. With label_energy also sonar_instances.npy and sonar_label_fraction.npy, with bits

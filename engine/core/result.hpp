@@ -19,8 +19,9 @@ enum class ErrorCode {
   kUnsupported,  // the device lacks something that was asked for
   kOutOfMemory,
   kDeviceLost,
-  kIo,        // could not write, disk full
-  kInternal,  // a bug of ours that is returned instead of aborting
+  kIo,           // could not write, disk full
+  kInterrupted,  // the user stopped it: exit status 130, as shells have it
+  kInternal,     // a bug of ours that is returned instead of aborting
 };
 
 struct Error {
@@ -30,8 +31,10 @@ struct Error {
   std::string message;
 };
 
-// The program's exit status for an error: 2 for bad input or usage, 1 for everything else.
+// The program's exit status for an error: 2 for bad input or usage, 130 for what the user stopped,
+// 1 for everything else.
 inline int exit_status(ErrorCode code) {
+  if (code == ErrorCode::kInterrupted) return 130;
   return code == ErrorCode::kBadInput ? 2 : 1;
 }
 

@@ -47,6 +47,25 @@ struct Sums {
   }
 };
 
+TEST(SonarPipeline, AStopLetsWhatIsUnderWayThroughAndReadsNoMore) {
+  for (const std::size_t workers : {1u, 2u, 7u}) {
+    Sums run;
+    std::atomic<int> read{0};
+    Numbers::Steps steps = run.steps();
+    steps.read = [&read, inner = steps.read](std::size_t i) {
+      ++read;
+      return inner(i);
+    };
+    steps.stopped = [&read] { return read >= 100; };
+    ASSERT_TRUE(Numbers({Sums::kFrames, workers, 5}, steps).run().ok());
+    EXPECT_GE(read, 100);
+    EXPECT_LT(read, 110);
+    EXPECT_EQ(run.finished, read);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(read); ++i)
+      ASSERT_EQ(run.written[i], static_cast<int>(i * Sums::kSize)) << workers;
+  }
+}
+
 TEST(SonarPipeline, EveryFrameGoesThroughOnceWithAnyNumberOfWorkers) {
   for (const std::size_t workers : {1u, 2u, 7u}) {
     for (const std::size_t bound : {1u, 3u, 16u}) {

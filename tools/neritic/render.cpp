@@ -9,6 +9,7 @@
 #include "engine/render/water_optics.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/render_sheet.hpp"
 #include "tools/physics/dive_record.hpp"
@@ -195,6 +196,21 @@ std::string summary(const RenderFlags& flags, const scene::Scene& scene,
   return fmt::format("{}: {}", flags.out, fmt::join(parts, "; "));
 }
 
+// Of a run that the user stopped after so many frames.
+Error stopped_render(const RenderFlags& flags, std::uint32_t frames, double step_s,
+                     bool wrote_track) {
+  std::string there;
+  if (!flags.track_only)
+    there += fmt::format(" as {} to {}", frame_folder(0), frame_folder(frames - 1));
+  if (wrote_track)
+    there += fmt::format("{}track, of these frames", there.empty() ? " as " : " and ");
+  return {ErrorCode::kInterrupted,
+          fmt::format("interrupted: {} of {} frames are in {}{}; --time {:.10g} --frames {} with "
+                      "another --out makes the others",
+                      frames, flags.frames, flags.out, there, flags.time_s + frames * step_s,
+                      flags.frames - frames)};
+}
+
 }  // namespace
 
 Result<std::string> run_render(const RenderFlags& flags) {
@@ -237,7 +253,9 @@ Result<std::string> run_render(const RenderFlags& flags) {
   FrameFacts facts;
   std::set<fs::path> written;  // sensors' folders
   Progress progress("frame", flags.frames);
-  for (std::uint32_t i = 0; i < flags.frames; ++i) {
+  const Interrupt interrupt;
+  std::uint32_t made = 0;
+  for (std::uint32_t i = 0; i < flags.frames && !interrupt.requested(); ++i) {
     request.time_s = flags.time_s + i * step_s;
     request.next_time_s = request.time_s + step_s;
     request.frame = i;
@@ -252,11 +270,14 @@ Result<std::string> run_render(const RenderFlags& flags) {
     if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result));
     if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
     progress.step();
+    ++made;
   }
+  if (made == 0) return Error{ErrorCode::kInterrupted, "interrupted before the first frame"};
   bool wrote_track = false;
   if (flags.frames > 1) {
     NERITIC_TRY(wrote_track, survey.write(flags.out, facts));
   }
+  if (made < flags.frames) return stopped_render(flags, made, step_s, wrote_track);
   warn_of_leftovers(flags, wrote_track, written);
   device->wait_idle();
   for (const std::string& message : device->validation_log().messages)

@@ -2,6 +2,7 @@
 #include "engine/core/log.hpp"
 #include "tools/neritic/sonar_folder.hpp"
 #include "tools/neritic/sonar_picture.hpp"
+#include "tools/neritic/sonar_resume.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -32,9 +33,7 @@ Result<std::string> run_sonar(const SonarFlags& flags) {
     log_warn("no --normals: estimated from the depth image");
   if (is_folder_job(job)) return run_folder(job);
   NERITIC_TRY_STATUS(run_one(job));
-  const bool picture = !flags.no_pictures && flags.method != "image";
-  return fmt::format("{}: sonar.npy, {}sonar.json", flags.out.string(),
-                     picture ? "sonar.png, " : "");
+  return fmt::format("{}: {}", flags.out.string(), fmt::join(result_files(flags.out), ", "));
 }
 
 }  // namespace neritic::tools

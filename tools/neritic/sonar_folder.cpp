@@ -2,10 +2,13 @@
 
 #include <malloc.h>
 
+#include <atomic>
+
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/sonar_picture.hpp"
 #include "tools/neritic/sonar_pipeline.hpp"
 #include "tools/neritic/sonar_resume.hpp"
@@ -83,6 +86,8 @@ struct Run {
   const std::vector<std::size_t>& todo;
   SkippedFrames& skipped;
   std::size_t workers;
+  const Interrupt& interrupt;
+  std::atomic<std::size_t>& written;
 };
 
 // What is wrong with one frame's files leaves it out, and what an earlier run made of it goes;
@@ -118,11 +123,14 @@ Status run_frames(const Run& run, const M& maker) {
     if (!heard) return {};
     const FrameFiles& frame = run.frames[run.todo[i]];
     heard->facts["settings"] = run.job.settings;
-    return write_whole(run.job.flags.out, frame.name, [&](const fs::path& folder) {
+    NERITIC_TRY_STATUS(write_whole(run.job.flags.out, frame.name, [&](const fs::path& folder) {
       return maker.write(folder, std::move(*heard));
-    });
+    }));
+    ++run.written;
+    return {};
   };
   steps.finished = [&] { progress.step(); };
+  steps.stopped = [&] { return run.interrupt.requested(); };
   return Frames({run.todo.size(), run.workers, run.workers + 2}, std::move(steps)).run();
 }
 
@@ -156,9 +164,17 @@ Status run_kind(const Run& run) {
                         [&](LoadedFrame frame) { return ear->hear(std::move(frame)); }, write});
 }
 
+// Of the first frame that there is: all have the same.
+std::string files_of_a_result(const Run& run) {
+  for (const FrameFiles& frame : run.frames)
+    if (const auto names = result_files(run.job.flags.out / frame.name); !names.empty())
+      return fmt::format("{}", fmt::join(names, ", "));
+  return "";
+}
+
 // How it went, in one line and in OUT/run.json.
 Result<std::string> report(const Run& run, double seconds) {
-  const std::size_t skipped = run.skipped.size(), made = run.todo.size() - skipped;
+  const std::size_t skipped = run.skipped.size(), made = run.written;
   const std::size_t there = run.frames.size() - run.todo.size();
   const double per_s = static_cast<double>(made) / std::max(seconds, 1e-9);
   const std::string out = run.job.flags.out.string();
@@ -167,11 +183,22 @@ Result<std::string> report(const Run& run, double seconds) {
                             {"seconds", seconds},          {"frames_per_s", per_s},
                             {"workers", run.workers},      {"settings", run.job.settings}};
   NERITIC_TRY_STATUS(write_json(run.job.flags.out / "run.json", json));
-  std::string line =
-      fmt::format("{}: {} frames in {:.1f} s, {:.1f} frames/s", out, made, seconds, per_s);
+  const std::string rate =
+      made > 0 ? fmt::format(" in {:.1f} s, {:.1f} frames/s", seconds, per_s) : "";
+  std::string line = fmt::format("{}: {} frames{}", out, made, rate);
   if (there > 0) line += fmt::format("; {} were there already", there);
   if (skipped > 0) line += fmt::format("; {} skipped, see {}/skipped.csv", skipped, out);
+  if (const auto files = files_of_a_result(run); !files.empty())
+    line += fmt::format("; in each folder {}", files);
   return line;
+}
+
+Error stopped_folder(const Run& run) {
+  const std::size_t there = run.frames.size() - run.todo.size() + run.written;
+  return {ErrorCode::kInterrupted,
+          fmt::format("interrupted: {} of {} frames are whole in {}, {} of them by this run; the "
+                      "same command goes on from there",
+                      there, run.frames.size(), run.job.flags.out.string(), run.written.load())};
 }
 
 }  // namespace
@@ -189,13 +216,17 @@ Result<std::string> run_folder(const SonarJob& job) {
   NERITIC_TRY_STATUS(make_folder(job.flags.out));
   SkippedFrames skipped;
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-  const Run run{job, frames, todo, skipped, job.flags.workers > 0 ? job.flags.workers : cores};
+  const Interrupt interrupt;
+  std::atomic<std::size_t> written = 0;
+  const Run run{job,       frames, todo, skipped, job.flags.workers > 0 ? job.flags.workers : cores,
+                interrupt, written};
   const TimeNs start = now_ns();
   keep_memory();
   if (!todo.empty()) NERITIC_TRY_STATUS(run_kind(run));
   const double seconds = to_ms(now_ns() - start) / 1000.0;
   const FrameGroup lead = job.flags.method == "image" ? kPictureGroup : kDepthGroup;
   NERITIC_TRY_STATUS(skipped.write(job.flags.out / "skipped.csv", frames, lead));
+  if (written + skipped.size() < todo.size()) return stopped_folder(run);
   if (skipped.size() == frames.size())
     return bad_input("none of {} frames could be made; the first: {}", frames.size(),
                      skipped.first());

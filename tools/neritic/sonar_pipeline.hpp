@@ -40,11 +40,14 @@ class Pipeline {
     std::function<Status(std::size_t frame, Output output)> write;
     // After each frame that is written or left out, one call at a time, from any thread.
     std::function<void()> finished;
+    // Once it says true it must go on doing so: no more frames are read, those under way go
+    // through.
+    std::function<bool()> stopped = [] { return false; };
   };
 
   Pipeline(PipelineOptions options, Steps steps) : options_(options), steps_(std::move(steps)) {}
 
-  // Returns when every frame is through, or at the first error, when the steps under way are.
+  // Returns when every frame is through, at a stop or at the first error when what is under way is.
   Status run() {
     std::vector<std::jthread> workers;
     try {
@@ -61,9 +64,13 @@ class Pipeline {
  private:
   using Lock = std::unique_lock<std::mutex>;
 
-  bool ended() const { return error_.has_value() || finished_ == options_.frames; }
+  bool ended() const {
+    return error_.has_value() || finished_ == options_.frames ||
+           (in_flight_ == 0 && steps_.stopped());
+  }
   bool may_read() const {
-    return next_ < options_.frames && in_flight_ < options_.in_flight && !error_;
+    return next_ < options_.frames && in_flight_ < options_.in_flight && !error_ &&
+           !steps_.stopped();
   }
 
   // What a step returns, or what it throws (memory, a library) as an error of its own.

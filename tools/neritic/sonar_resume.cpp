@@ -5,6 +5,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "sonar/write_sonar.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -15,16 +16,14 @@ using sonar::FrameFiles;
 
 constexpr const char* kFacts = "sonar.json";
 
-// What a result may hold.
-constexpr const char* kResultFiles[] = {kFacts,
-                                        "sonar.npy",
-                                        "sonar_labels.npy",
-                                        "sonar_instances.npy",
-                                        "sonar_counts.npy",
-                                        "sonar_label_fraction.npy",
-                                        "sonar.png",
-                                        "cloud.npy",
-                                        "cloud.pcd"};
+// What a profiling sonar's result holds beside sonar::kSonarFiles.
+constexpr const char* kCloudFiles[] = {"cloud.npy", "cloud.pcd"};
+
+// Whether a file of that name may be part of a result.
+bool is_result_file(const std::string& name) {
+  return std::ranges::find(sonar::kSonarFiles, name) != std::end(sonar::kSonarFiles) ||
+         std::ranges::find(kCloudFiles, name) != std::end(kCloudFiles);
+}
 
 json facts_in(const fs::path& folder) {
   const auto text = read_text(folder / kFacts);
@@ -51,8 +50,7 @@ bool may_replace(const fs::path& folder) {
   if (!facts.is_null()) return is_result(facts);
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-    const std::string name = at->path().filename().string();
-    if (std::ranges::find(kResultFiles, name) == std::end(kResultFiles)) return false;
+    if (!is_result_file(at->path().filename().string())) return false;
   }
   return true;
 }
@@ -141,6 +139,17 @@ Status drop_result(const fs::path& out, const std::string& name) {
   if (error)
     return failure(ErrorCode::kIo, "{}: cannot be removed: {}", folder.string(), error.message());
   return {};
+}
+
+std::vector<std::string> result_files(const fs::path& folder) {
+  std::vector<std::string> all(std::begin(sonar::kSonarFiles), std::end(sonar::kSonarFiles));
+  all.insert(all.end(), std::begin(kCloudFiles), std::end(kCloudFiles));
+  std::rotate(all.begin(), all.begin() + 1, all.end());  // the .json, which is written last, last
+  std::vector<std::string> out;
+  std::error_code error;
+  for (const std::string& name : all)
+    if (fs::exists(folder / name, error)) out.push_back(name);
+  return out;
 }
 
 void SkippedFrames::add(std::size_t frame, std::string reason) {

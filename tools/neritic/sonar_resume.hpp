@@ -29,6 +29,9 @@ Status write_whole(const std::filesystem::path& out, const std::string& name,
 // Anything else stays. Any thread.
 Status drop_result(const std::filesystem::path& out, const std::string& name);
 
+// Names of what lies in a result's folder, arrays first; empty where none is.
+std::vector<std::string> result_files(const std::filesystem::path& folder);
+
 // Frames left out, with their reasons. Any thread.
 class SkippedFrames {
  public:
