@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sonar/panel.hpp"
 #include "sonar/sidescan.hpp"
 #include "sonar/waterfall_panel.hpp"
 
@@ -28,44 +29,54 @@ Layout lay_out(const SidescanPictureOptions& options, double box_height_per_widt
   return out;
 }
 
-double full_scale_of(std::span<const float> values, const SidescanPictureOptions& options) {
-  return options.full_scale > 0.0 ? options.full_scale : percentile_of_heard(values, 0.99);
+// How values become brightness: by decibels where they are levels, else by the power of gamma.
+struct Display {
+  double full_scale, gamma;
+  bool levels;
+
+  void shade(ImageF32& image) const {
+    const PanelOptions options{.gamma = gamma, .span_db = levels ? kSidescanShown_db : 0.0};
+    for (float& v : image.data)
+      if (!std::isnan(v)) v = static_cast<float>(panel_brightness(v, full_scale, options));
+  }
+  double full_db() const { return 10.0 * std::log10(full_scale); }
+  std::string text() const {
+    return levels ? fmt::format("{:.0f} to {:.0f} dB re 1 uPa", full_db() - kSidescanShown_db,
+                                full_db())
+                  : fmt::format("full scale {:.2g}, gamma {:g}", full_scale, gamma);
+  }
+};
+
+Display display_of(const SidescanRecord& record, std::span<const float> values,
+                   const SidescanPictureOptions& options) {
+  const double full_scale =
+      options.full_scale > 0.0 ? options.full_scale : percentile_of_heard(values, 0.99);
+  return {full_scale, options.gamma, record.options().levels};
 }
 
-void to_shades(ImageF32& image, double full_scale, double gamma) {
-  for (float& v : image.data)
-    if (!std::isnan(v))
-      v = static_cast<float>(std::pow(std::clamp(v / full_scale, 0.0, 1.0), gamma));
-}
-
-std::string scale_text(const SidescanOptions& o, double full_scale) {
-  return o.levels ? fmt::format("{:.0f} dB", 10.0 * std::log10(full_scale))
-                  : fmt::format("{:.2g}", full_scale);
-}
-
-std::string subtitle(const SidescanRecord& record, double full_scale, double gamma) {
+std::string subtitle(const SidescanRecord& record, const Display& display) {
   const SidescanOptions& o = record.options();
   const std::vector<double> along = record.along_track_m();
-  return fmt::format(
-      "{} pings over {:.4g} m   range {} to {} m a side   full scale {}, gamma {:g}",
-      record.pings(), along.empty() ? 0.0 : along.back(), number_text(o.range_min_m),
-      number_text(o.range_max_m), scale_text(o, full_scale), gamma);
+  return fmt::format("{} pings over {:.4g} m   range {} to {} m a side   {}", record.pings(),
+                     along.empty() ? 0.0 : along.back(), number_text(o.range_min_m),
+                     number_text(o.range_max_m), display.text());
 }
 
-void finish(Canvas& canvas, const Layout& layout, const std::string& full_scale, double gamma) {
+void finish(Canvas& canvas, const Layout& layout, const Display& display) {
   draw_frame(canvas, layout.box, layout.unit);
   const double bar = layout.width - 82 * layout.unit, top = layout.box.top;
+  const PlotBox at{bar, top, bar + 14 * layout.unit, top + 220 * layout.unit};
+  const double full_db = display.full_db();
   // The bar is even in brightness: value = full scale * shade^(1 / gamma).
-  draw_legend(canvas, {bar, top, bar + 14 * layout.unit, top + 220 * layout.unit}, Palette::kBronze,
-              0.0, 100.0, "display, %", layout.unit);
+  if (display.levels)
+    draw_legend(canvas, at, Palette::kBronze, full_db - kSidescanShown_db, full_db, "dB",
+                layout.unit);
+  else
+    draw_legend(canvas, at, Palette::kBronze, 0.0, 100.0, "display, %", layout.unit);
   canvas.text(layout.box.left + 14 * layout.unit, layout.box.top - 9 * layout.unit,
               10 * layout.unit, "PORT", kPlotText);
   canvas.text(layout.box.right, layout.box.top - 9 * layout.unit, 10 * layout.unit, "STARBOARD",
               kPlotText, Align::kRight);
-  canvas.text(layout.width - 110 * layout.unit + 12 * layout.unit, top + 250 * layout.unit,
-              8 * layout.unit, fmt::format("100%: {}", full_scale), kPlotText.with_alpha(0.7f));
-  canvas.text(layout.width - 110 * layout.unit + 12 * layout.unit, top + 268 * layout.unit,
-              8 * layout.unit, fmt::format("gamma {:g}", gamma), kPlotText.with_alpha(0.7f));
 }
 
 // Rows in reverse: the newest line on top.
@@ -137,15 +148,14 @@ ImageU8 draw_slant(const SidescanRecord& record, const FirstReturns& bottom,
   // As the device: a line a ping, some two pixels high, whatever the speed was.
   const Layout layout = lay_out(options, 2.0 * static_cast<double>(pings) / options.width_px);
   Canvas canvas(layout.width, layout.height, kPlotBackground);
-  const double full_scale = full_scale_of(record.slant_image(), options);
-  draw_title(canvas, options.title + "   SLANT RANGE", subtitle(record, full_scale, options.gamma),
-             layout.unit);
+  const Display display = display_of(record, record.slant_image(), options);
+  draw_title(canvas, options.title + "   SLANT RANGE", subtitle(record, display), layout.unit);
   if (pings > 0) {
     ImageF32 shades =
         resample_area(newest_first(record.slant_image(), pings), pings, 2 * std::size_t{o.n_range},
                       static_cast<std::uint32_t>(layout.box.width()),
                       static_cast<std::uint32_t>(layout.box.height()));
-    to_shades(shades, full_scale, options.gamma);
+    display.shade(shades);
     draw_shades(canvas, layout.box, shades, Palette::kBronze);
     draw_bottom(canvas, layout, o, bottom.port_m, -1.0);
     draw_bottom(canvas, layout, o, bottom.starboard_m, 1.0);
@@ -153,7 +163,7 @@ ImageU8 draw_slant(const SidescanRecord& record, const FirstReturns& bottom,
   }
   draw_ranges(canvas, layout, o.range_min_m, o.range_max_m,
               "slant range, m   (newest ping on top; blue: first bottom return)");
-  finish(canvas, layout, scale_text(o, full_scale), options.gamma);
+  finish(canvas, layout, display);
   return canvas.take();
 }
 
@@ -163,9 +173,8 @@ ImageU8 draw_ground(const SidescanRecord& record, const GroundImage& ground,
   const double length_m = along.empty() ? 0.0 : along.back();
   const Layout layout = lay_out(options, length_m / (2.0 * ground.ground_max_m));
   Canvas canvas(layout.width, layout.height, kPlotBackground);
-  const double full_scale = full_scale_of(ground.intensity, options);
-  draw_title(canvas, options.title + "   GROUND RANGE", subtitle(record, full_scale, options.gamma),
-             layout.unit);
+  const Display display = display_of(record, ground.intensity, options);
+  draw_title(canvas, options.title + "   GROUND RANGE", subtitle(record, display), layout.unit);
   const double px_per_m = layout.box.width() / (2.0 * ground.ground_max_m);
   // A track too long for the picture is shown to scale from its beginning.
   const double shown_m = std::min(length_m, layout.box.height() / px_per_m);
@@ -182,14 +191,14 @@ ImageU8 draw_ground(const SidescanRecord& record, const GroundImage& ground,
                   ground.intensity.begin() + static_cast<std::ptrdiff_t>((pings[y] + 1) * width));
     ImageF32 shades =
         resample_area(rows, height, width, static_cast<std::uint32_t>(layout.box.width()), height);
-    to_shades(shades, full_scale, options.gamma);
+    display.shade(shades);
     draw_shades(canvas, layout.box, shades, Palette::kBronze);
     draw_left_axis(canvas, layout.box, shown_m, 0.0, "along, m", layout.unit);
     draw_scale_bar(canvas, layout.box.left + 14 * layout.unit, layout.box.bottom - 18 * layout.unit,
                    px_per_m, 0.2 * layout.box.width(), layout.unit);
   }
   draw_ranges(canvas, layout, 0.0, ground.ground_max_m, "ground range, m   (ahead is up)");
-  finish(canvas, layout, scale_text(record.options(), full_scale), options.gamma);
+  finish(canvas, layout, display);
   return canvas.take();
 }
 

@@ -53,6 +53,25 @@ TEST(SonarNotes, AnEmptyImageIsTold) {
   EXPECT_THAT(note_of(grid, wall(0.0)), HasSubstr("no pixel has a depth"));
 }
 
+TEST(SonarNotes, AWedgeWiderThanTheImageIsToldWithWhatTheImageCovers) {
+  const sonar::BeamGrid wide =
+      sonar::symmetric_grid(1.0, 5.0, radians(130.0), radians(20.0), {10, 20, 10});
+  const std::string note = note_of(wide, wall(2.0), false);
+  // 90 of 130 degrees across; upwards all of it, but that edges bend.
+  EXPECT_THAT(note, HasSubstr("the images cover 69 % of the wedge of 130 x 20 degrees"));
+  EXPECT_THAT(note, HasSubstr("they look -45 to 45 degrees across and -45 to 45 upwards"));
+  // As much as the image covers is no note, nor are the corners of a cone.
+  const sonar::BeamGrid cone =
+      sonar::symmetric_grid(1.0, 5.0, radians(90.0), radians(70.0), {10, 20, 10});
+  EXPECT_EQ(note_of(cone, wall(2.0), false), "");
+  // An image that looks elsewhere than ahead covers less.
+  sonar::SonarInput aside = wall(2.0);
+  aside.intrinsics.cx = 0.0;
+  const sonar::BeamGrid grid =
+      sonar::symmetric_grid(1.0, 5.0, radians(90.0), radians(20.0), {10, 20, 10});
+  EXPECT_THAT(note_of(grid, aside, false), HasSubstr("cover 50 %"));
+}
+
 TEST(SonarNotes, FewPixelsACellAreToldForThePublishedGatherOnly) {
   const sonar::BeamGrid grid;  // 500 x 500 cells
   EXPECT_THAT(note_of(grid, wall(2.0)), HasSubstr("--gather plane"));

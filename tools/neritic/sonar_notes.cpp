@@ -3,6 +3,31 @@
 #include <cmath>
 
 namespace neritic::tools {
+namespace {
+
+// Whether the image looks where the wedge does, of a fine grid of the wedge's directions.
+bool covers(const sonar::SonarInput& in, double azimuth_rad, double elevation_rad) {
+  const Vec3 d(std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad),
+               -std::cos(elevation_rad) * std::cos(azimuth_rad));
+  if (!(d.z < 0.0)) return false;
+  const sonar::Intrinsics& k = in.intrinsics;
+  const double u = k.cx + k.fx * d.x / -d.z, v = k.cy - k.fy * d.y / -d.z;
+  // Half a pixel is no gap: pinholes given for pixel centres at integers end there.
+  return u >= -0.5 && v >= -0.5 && u <= in.width + 0.5 && v <= in.height + 0.5;
+}
+
+double covered_part(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
+  constexpr int kSteps = 64;
+  const sonar::Limits& l = grid.limits;
+  int inside = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j)
+      inside += covers(in, glm::mix(l.azimuth_min_rad, l.azimuth_max_rad, (i + 0.5) / kSteps),
+                       glm::mix(l.elevation_min_rad, l.elevation_max_rad, (j + 0.5) / kSteps));
+  return static_cast<double>(inside) / (kSteps * kSteps);
+}
+
+}  // namespace
 
 Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
   const sonar::Limits& l = grid.limits;
@@ -24,13 +49,19 @@ Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
     }
   out.pixels_per_cell = static_cast<double>(out.in_aperture) /
                         (static_cast<double>(grid.bins.azimuth) * grid.bins.elevation);
+  const sonar::Intrinsics& k = in.intrinsics;
+  out.of_wedge = covered_part(grid, in);
+  out.azimuth_rad = {std::atan(-k.cx / k.fx), std::atan((in.width - k.cx) / k.fx)};
+  out.elevation_rad = {std::atan((k.cy - in.height) / k.fy), std::atan(k.cy / k.fy)};
   return out;
 }
 
 std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Coverage& coverage,
                                          bool published) {
   const sonar::Limits& l = grid.limits;
-  if (coverage.farthest_m == 0.0) return "no pixel has a depth (0, NaN, infinity and negative numbers are none), so the sonar hears nothing";
+  if (coverage.farthest_m == 0.0)
+    return "no pixel has a depth (0, NaN, infinity and negative numbers are none), so the sonar "
+           "hears nothing";
   if (coverage.in_aperture == 0)
     return "no pixel with a depth lies within --azimuth and --elevation, so the sonar hears "
            "nothing";
@@ -39,6 +70,16 @@ std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Cove
         "nothing lies between {:g} and {:g} m, so the sonar hears nothing: the image holds ranges "
         "of {:.3g} to {:.3g} m (--range, --depth-scale)",
         l.range_min_m, l.range_max_m, coverage.nearest_m, coverage.farthest_m);
+  // A cone's corners, and a few pixels at the edges, are no matter.
+  if (coverage.of_wedge < 0.95)
+    return fmt::format(
+        "the images cover {:.0f} % of the wedge of {:.3g} x {:.3g} degrees that is asked for: they "
+        "look {:.3g} to {:.3g} degrees across and {:.3g} to {:.3g} upwards, and beyond that the "
+        "sonar hears nothing (--azimuth, --elevation)",
+        100.0 * coverage.of_wedge, degrees(l.azimuth_max_rad - l.azimuth_min_rad),
+        degrees(l.elevation_max_rad - l.elevation_min_rad), degrees(coverage.azimuth_rad[0]),
+        degrees(coverage.azimuth_rad[1]), degrees(coverage.elevation_rad[0]),
+        degrees(coverage.elevation_rad[1]));
   // Pixels do not fall evenly: below two a cell some cells have none.
   if (published && coverage.pixels_per_cell < 2.0)
     return fmt::format(
