@@ -1,5 +1,6 @@
 // The rays that `neritic tradeoff sonar` holds every term against, against closed forms, and the
 // tables it writes of a kind.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,6 +17,10 @@
 
 namespace neritic::tools {
 namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::unique_ptr<RayWorld> world_of(scene::Model model, const Vec3& at, double backscatter_db) {
   scene::Scene scene;
@@ -148,9 +153,19 @@ TEST(TradeoffSonar, WritesAKindsKnobsTermsAndPicture) {
   options.kind = "echosounder";
   std::uint64_t done = 0;
   options.step = [&] { ++done; };
+  std::vector<std::string> doing, parts;
+  options.now = [&](const std::string& what) { doing.push_back(what); };
+  const test::ScratchFolder folder;
+  options.part_done = [&](const std::string& part, const SonarTradeoff& so_far) {
+    parts.push_back(part);
+    return write_last_kind(folder.path(), so_far);
+  };
   const auto tradeoff = run_sonar_tradeoff(options);
   ASSERT_TRUE(tradeoff.ok()) << tradeoff.error().message;
   EXPECT_EQ(done, steps(options));
+  EXPECT_EQ(parts, std::vector<std::string>{"echosounder"});
+  EXPECT_THAT(doing, Contains(HasSubstr("echosounder, gbuffer_scale 0.25")));
+  EXPECT_THAT(doing, Contains(HasSubstr("search for the levels")));
   ASSERT_EQ(tradeoff->kinds.size(), 1u);
   for (const KindPoint& p : tradeoff->kinds[0].points) {
     EXPECT_LT(p.error, 0.2) << p.sweep << " " << p.setting;
@@ -160,11 +175,15 @@ TEST(TradeoffSonar, WritesAKindsKnobsTermsAndPicture) {
     if (p.term == "range spread" || p.term == "elevation pattern" || p.term == "level") {
       EXPECT_LT(p.error_with, 0.3 * p.error_without) << p.term;
     }
-  const test::ScratchFolder folder;
-  ASSERT_TRUE(write_sonar_tradeoff(folder.path(), *tradeoff).ok());
   for (const char* name : {"echosounder.csv", "echosounder_terms.csv", "echosounder.png",
                            "quality.json", "tradeoff.md"})
     EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  // A quick run names no levels, and says why.
+  const auto text = read_text(folder / "tradeoff.md"), levels = read_text(folder / "quality.json");
+  ASSERT_TRUE(text.ok() && levels.ok());
+  EXPECT_THAT(*text, HasSubstr("Made with --quick"));
+  EXPECT_THAT(*text, Not(HasSubstr("none")));
+  EXPECT_THAT(*levels, Not(HasSubstr("draft")));
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST(TradeoffSonar, WritesTableCurveAndSummary) {
   ASSERT_TRUE(tradeoff.ok()) << tradeoff.error().message;
   EXPECT_EQ(done, steps(options));
   const test::ScratchFolder folder;
-  ASSERT_TRUE(write_sonar_tradeoff(folder.path(), *tradeoff).ok());
+  ASSERT_TRUE(write_plain(folder.path(), *tradeoff).ok());
   for (const char* name : {"tradeoff.csv", "tradeoff.png", "tradeoff.json"})
     EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
 }

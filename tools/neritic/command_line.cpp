@@ -213,7 +213,9 @@ void add_tradeoff(CLI::App& app, Run& run) {
   command->add_option("--recordings", flags->recordings,
                       "physiology: a folder of paced breath too (.wav, ..._12bpm_...)");
   command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
-  command->add_flag("--quick", flags->quick, "fewer rays, bins and points");
+  command->add_flag(
+      "--quick", flags->quick,
+      "fewer rays, bins and points: to see that it works; sonar names no quality levels");
   command->callback([flags, &run] { run = [flags] { return run_tradeoff(*flags); }; });
 }
 

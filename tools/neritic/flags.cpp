@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "engine/core/image.hpp"
+#include "engine/core/log.hpp"
 
 namespace neritic::tools {
 
@@ -53,7 +54,26 @@ Progress::Progress(std::string what, std::uint64_t total)
 
 void Progress::step() {
   ++done_;
-  if (shown_) fmt::print(stderr, "\r{} {} of {}", what_, done_, total_), std::fflush(stderr);
+  show();
+}
+
+void Progress::now(std::string doing) {
+  doing_ = std::move(doing);
+  show();
+}
+
+void Progress::say(const std::string& line) {
+  if (shown_) fmt::print(stderr, "\r\033[K");
+  log_line(LogLevel::kWarnings, line);
+  show();
+}
+
+void Progress::show() {
+  if (!shown_) return;
+  fmt::print(stderr, "\r{} {} of {}", what_, done_, total_);
+  // A line that was longer leaves nothing behind.
+  if (!doing_.empty()) fmt::print(stderr, ": {}\033[K", doing_);
+  std::fflush(stderr);
 }
 
 Progress::~Progress() {

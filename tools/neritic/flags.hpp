@@ -25,9 +25,14 @@ class Progress {
   Progress(std::string what, std::uint64_t total);
   ~Progress();
   void step();
+  // What is being done now, after the count.
+  void now(std::string doing);
+  // A line of its own that stays, also where no count is shown.
+  void say(const std::string& line);
 
  private:
-  std::string what_;
+  void show();
+  std::string what_, doing_;
   std::uint64_t total_, done_ = 0;
   bool shown_;
 };

@@ -83,9 +83,22 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   }
   Progress progress("tradeoff sonar", steps(options));
   options.step = [&] { progress.step(); };
+  options.now = [&](const std::string& doing) { progress.now(doing); };
+  // What is done stays done, however far the rest comes.
+  options.part_done = [&](const std::string& part, const SonarTradeoff& so_far) -> Status {
+    const std::string name = part == "plain" ? "tradeoff" : part;
+    NERITIC_TRY_STATUS(part == "plain" ? write_plain(flags.out, so_far)
+                                       : write_last_kind(flags.out, so_far));
+    progress.say(fmt::format("{}: {}/{}.csv, .png", part, flags.out.string(), name));
+    return {};
+  };
   NERITIC_TRY(const SonarTradeoff tradeoff, run_sonar_tradeoff(options));
-  NERITIC_TRY_STATUS(write_sonar_tradeoff(flags.out, tradeoff));
-  return flags.out.string() + ": tables (.csv, .md), pictures";
+  std::string files = tradeoff.points.empty() ? "" : "tradeoff.csv, .png, .json";
+  for (const KindResult& kind : tradeoff.kinds)
+    files += fmt::format("{}{}.csv, _terms.csv, .png", files.empty() ? "" : "; ", kind.kind);
+  if (!tradeoff.kinds.empty()) files += "; tradeoff.md and quality.json of all";
+  if (tradeoff.quick) files += "; --quick tells no quality levels";
+  return fmt::format("{}: {}", flags.out.string(), files);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ Axis axis_over(const std::string& label, const std::vector<Series>& series, bool
 }
 
 // What each setting of the joint sweep gives, the knobs' own curves over it, and the levels.
-void draw_cost(Canvas& canvas, const Box& box, const KindResult& k) {
+void draw_cost(Canvas& canvas, const Box& box, const KindResult& k, bool levels) {
   const std::vector<Series> series{
       series_of(k, "joint", "all settings", Color{0.72f, 0.72f, 0.72f}, false),
       series_of(k, "gbuffer_scale", "pixels a cell", kSeriesColors[0], true),
@@ -57,7 +57,7 @@ void draw_cost(Canvas& canvas, const Box& box, const KindResult& k) {
     const double py = place(y, kErrorLevels[i].max_error, in.bottom, in.top);
     canvas.segment(in.left, py, in.right, py, 1.0, kRing.with_alpha(0.5f));
     const KindPoint* p = cheapest(k, kErrorLevels[i].max_error);
-    if (p == nullptr) continue;
+    if (p == nullptr || !levels) continue;
     canvas.arc(place(x, p->ms(), in.left, in.right), place(y, p->error, in.bottom, in.top),
                8.0 + 3.0 * double(i), -3.1416, 3.1416, 1.8, kRing);
   }
@@ -158,7 +158,8 @@ void draw_terms(Canvas& canvas, double top, const KindResult& k) {
 
 }  // namespace
 
-ImageU8 draw_kind(const KindResult& k, const std::string& device, const std::string& scene) {
+ImageU8 draw_kind(const KindResult& k, const std::string& device, const std::string& scene,
+                  bool levels) {
   const double terms_top = kTop + kCurves + 130;
   const double height = terms_top + kRow * static_cast<double>(k.terms.size()) + 40;
   Canvas canvas(static_cast<std::uint32_t>(kWidth), static_cast<std::uint32_t>(height), kPaper);
@@ -168,10 +169,13 @@ ImageU8 draw_kind(const KindResult& k, const std::string& device, const std::str
               fmt::format("{}; scene {}; truth: {:.2g} rays, themselves off by {:.2f} %", device,
                           scene, k.rays, 100.0 * k.uncertain),
               kInk.with_alpha(0.7f));
-  draw_cost(canvas, {0, kTop, 660, kTop + kCurves}, k);
+  draw_cost(canvas, {0, kTop, 660, kTop + kCurves}, k, levels);
   draw_resolution(canvas, {660, kTop, 1130, kTop + kCurves}, k);
   draw_other_knobs(canvas, {1130, kTop, kWidth, kTop + kCurves}, k);
-  draw_levels(canvas, kTop + kCurves + 26, k);
+  if (levels)
+    draw_levels(canvas, kTop + kCurves + 26, k);
+  else
+    canvas.text(84, kTop + kCurves + 26, 10, "--quick is too coarse to tell levels by", kInk);
   draw_terms(canvas, terms_top, k);
   return canvas.take();
 }

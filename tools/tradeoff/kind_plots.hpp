@@ -7,6 +7,8 @@
 
 namespace neritic::tools {
 
-ImageU8 draw_kind(const KindResult& result, const std::string& device, const std::string& scene);
+// levels: false where the sweep was too coarse to tell them.
+ImageU8 draw_kind(const KindResult& result, const std::string& device, const std::string& scene,
+                  bool levels);
 
 }  // namespace neritic::tools

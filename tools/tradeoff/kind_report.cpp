@@ -2,6 +2,7 @@
 // kind_plots'.
 #include <nlohmann/json.hpp>
 
+#include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
@@ -49,6 +50,7 @@ nlohmann::json json_of(const KindPoint& p) {
 nlohmann::json summary(const SonarTradeoff& t) {
   nlohmann::json json{
       {"device", t.device},
+      {"quick", t.quick},
       {"scene", t.kinds_scene},
       {"error",
        "mean relative error of a cell of the image with the sensor's point spread, weighted by the "
@@ -59,6 +61,7 @@ nlohmann::json summary(const SonarTradeoff& t) {
     nlohmann::json& kind = json["kinds"][k.kind];
     kind["rays"] = k.rays;
     kind["error_of_the_rays"] = k.uncertain;
+    if (t.quick) continue;  // its few coarse settings name no level
     for (const ErrorLevel& level : kErrorLevels)
       if (const KindPoint* p = cheapest(k, level.max_error)) kind[level.name] = json_of(*p);
   }
@@ -69,11 +72,18 @@ std::string percent(double v) {
   return v < 0.0 ? "" : fmt::format("{:.2f} %", 100.0 * v);
 }
 
-// For a person: what the levels are, what each knob and term costs and buys.
-std::string markdown(const SonarTradeoff& t) {
-  std::string out = fmt::format("Scene {}, on {}.\n", t.kinds_scene, t.device);
-  out +=
-      "\n| kind | level | pixels a cell | columns | rows | range bins | error | ms |\n"
+constexpr const char* kQuickNote =
+    "Made with --quick: coarser sensors, one shot, few rays, one or two settings a knob, each "
+    "timed "
+    "once. It tells that everything runs and how knobs compare; it cannot tell a setting's error "
+    "to "
+    "a per cent, what a ping costs, or the cheapest settings within 5, 2 and 1 %: no quality "
+    "levels "
+    "are named.";
+
+std::string levels_table(const SonarTradeoff& t) {
+  std::string out =
+      "| kind | level | pixels a cell | columns | rows | range bins | error | ms |\n"
       "|---|---|---|---|---|---|---|---|\n";
   for (const KindResult& k : t.kinds)
     for (const ErrorLevel& level : kErrorLevels) {
@@ -83,6 +93,13 @@ std::string markdown(const SonarTradeoff& t) {
                              p->bins_range, percent(p->error), p->ms())
                : fmt::format("| {} | {} | none | | | | | |\n", k.kind, level.name);
     }
+  return out;
+}
+
+// For a person: what the levels are, what each knob and term costs and buys.
+std::string markdown(const SonarTradeoff& t) {
+  std::string out = fmt::format("Scene {}, on {}.\n\n{}", t.kinds_scene, t.device,
+                                t.quick ? std::string(kQuickNote) + "\n" : levels_table(t));
   for (const KindResult& k : t.kinds) {
     out += fmt::format(
         "\n## {}\n\n{:.2g} rays, whose own image is off by {}.\n\n"
@@ -104,14 +121,15 @@ std::string markdown(const SonarTradeoff& t) {
 
 }  // namespace
 
-Status write_kinds(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
-  if (tradeoff.kinds.empty()) return {};
-  for (const KindResult& k : tradeoff.kinds) {
-    NERITIC_TRY_STATUS(write_text(folder / (k.kind + ".csv"), knobs_csv(k)));
-    NERITIC_TRY_STATUS(write_text(folder / (k.kind + "_terms.csv"), terms_csv(k)));
-    NERITIC_TRY_STATUS(scene::write_png8(folder / (k.kind + ".png"),
-                                         draw_kind(k, tradeoff.device, tradeoff.kinds_scene)));
-  }
+Status write_last_kind(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
+  NERITIC_CHECK(!tradeoff.kinds.empty(), "no kind is measured");
+  NERITIC_TRY_STATUS(make_folder(folder));
+  const KindResult& k = tradeoff.kinds.back();
+  NERITIC_TRY_STATUS(write_text(folder / (k.kind + ".csv"), knobs_csv(k)));
+  NERITIC_TRY_STATUS(write_text(folder / (k.kind + "_terms.csv"), terms_csv(k)));
+  NERITIC_TRY_STATUS(
+      scene::write_png8(folder / (k.kind + ".png"),
+                        draw_kind(k, tradeoff.device, tradeoff.kinds_scene, !tradeoff.quick)));
   NERITIC_TRY_STATUS(write_text(folder / "tradeoff.md", markdown(tradeoff)));
   return write_json(folder / "quality.json", summary(tradeoff));
 }

@@ -147,6 +147,7 @@ class KindSweep {
     std::vector<Sonar> sonars;
     for (const Want& want : wants) sonars.push_back(want.sonar);
     NERITIC_TRY(const Measured poses, bench_.render(sonars.front(), 0));
+    say(fmt::format("{} images by rays", wants.size()));
     NERITIC_TRY(KindTruth truth,
                 trace_kind(world_, place_.position_m, bench_.placed(), sonars, rays()));
     for (std::size_t i = 0; i < wants.size(); ++i)
@@ -157,6 +158,9 @@ class KindSweep {
     return {};
   }
 
+  void say(const std::string& what) const {
+    options_.now(fmt::format("{}, {}", scene::name_of(kind_.base.kind), what));
+  }
   int repeats() const { return options_.quick ? 1 : kind_.shots.size() > 1 ? 3 : 6; }
 
   // ---- Knobs ----------------------------------------------------------------------------------
@@ -183,6 +187,7 @@ class KindSweep {
 
   Status add(KindResult& out, const char* sweep, std::string setting, const Sonar& base,
              const std::string& truth, const Knobs& knobs) {
+    say(fmt::format("{} {}", sweep, setting));
     NERITIC_TRY(KindPoint p, point(base, truth, knobs, true, repeats()));
     p.sweep = sweep;
     p.setting = std::move(setting);
@@ -251,7 +256,11 @@ class KindSweep {
   }
 
   Status sweep_joint(KindResult& out) {
-    const auto measured = [this](const Knobs& knobs, int times) { return measure(knobs, times); };
+    int tried = 0;
+    const auto measured = [&](const Knobs& knobs, int times) {
+      say(fmt::format("search for the levels, setting {}", ++tried));
+      return measure(knobs, times);
+    };
     NERITIC_TRY(const auto found, search_joint(ladders(), measured, repeats()));
     out.points.insert(out.points.end(), found.begin(), found.end());
     options_.step();

@@ -46,6 +46,8 @@ struct KindResult {
 struct KindSweepOptions {
   bool quick = false;
   std::function<void()> step = [] {};
+  // What comes next, in words: some steps take a minute.
+  std::function<void(const std::string&)> now = [](const std::string&) {};
 };
 // How often step is called for a kind.
 std::uint64_t kind_steps(scene::SonarKind kind, bool quick);

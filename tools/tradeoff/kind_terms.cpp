@@ -12,6 +12,13 @@ using scene::Sonar;
 using scene::SonarKind;
 using Measured = KindBench::Measured;
 
+// What the rays take from the sonar, so that they cannot tell whether it is right.
+const char* taken_by_the_rays(const scene::SonarTerms& terms) {
+  if (terms.ghosts) return "the rays take the mirrors' places as given";
+  if (terms.profile && terms.profile->bent) return "the rays take the bent rays' table as given";
+  return "";
+}
+
 class TermSweep {
  public:
   explicit TermSweep(const TermSweepInputs& in)
@@ -36,6 +43,7 @@ class TermSweep {
         const auto& truth = truths_.at(c.name);
         p.error_with = difference(with.image, truth).l1;
         p.error_without = difference(without.image, truth, c.judge == Judge::kShape).l1;
+        p.note = taken_by_the_rays(c.with.terms);
       } else if (c.judge == Judge::kSpeckle) {
         NERITIC_TRY_STATUS(judge_speckle(c, p));
       } else if (c.judge == Judge::kNoise) {

@@ -169,10 +169,8 @@ ImageU8 plot_of(const SonarTradeoff& t, const std::vector<std::string>& scenes) 
 
 }  // namespace
 
-Status write_sonar_tradeoff(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
+Status write_plain(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
   NERITIC_TRY_STATUS(make_folder(folder));
-  NERITIC_TRY_STATUS(write_kinds(folder, tradeoff));
-  if (tradeoff.points.empty()) return {};
   std::vector<std::string> scenes;
   for (const Point& p : tradeoff.points)
     if (std::find(scenes.begin(), scenes.end(), p.scene) == scenes.end()) scenes.push_back(p.scene);

@@ -221,9 +221,10 @@ Status measure_kinds(gpu::Device& device, const scene::Scene& scene,
   for (KindSetting& kind : kind_settings(scene, altitude_m)) {
     if (!options.kind.empty() && options.kind != scene::name_of(kind.base.kind)) continue;
     if (options.quick) make_small(kind);
-    NERITIC_TRY(KindResult result,
-                sweep_kind(device, scene, *world, kind, {options.quick, options.step}));
+    NERITIC_TRY(KindResult result, sweep_kind(device, scene, *world, kind,
+                                              {options.quick, options.step, options.now}));
     out.kinds.push_back(std::move(result));
+    NERITIC_TRY_STATUS(options.part_done(out.kinds.back().kind, out));
   }
   return {};
 }
@@ -271,8 +272,13 @@ Result<SonarTradeoff> run_sonar_tradeoff(const SonarTradeoffOptions& options) {
   NERITIC_TRY(const auto device, gpu::Device::create(device_options));
   SonarTradeoff out;
   out.device = device->info().name;
+  out.quick = options.quick;
   out.rays_a_cell = options.quick ? 16 : 64;
-  if (options.kind.empty()) NERITIC_TRY_STATUS(measure_plain(*device, options, out));
+  if (options.kind.empty()) {
+    options.now("the plain cosine");
+    NERITIC_TRY_STATUS(measure_plain(*device, options, out));
+    NERITIC_TRY_STATUS(options.part_done("plain", out));
+  }
   if (!options.scene.empty()) {
     NERITIC_TRY(const scene::Scene scene, scene::load_scene(options.scene));
     if (scene.sonars.empty())

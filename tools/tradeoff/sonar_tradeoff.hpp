@@ -17,10 +17,15 @@ struct SonarTradeoffOptions {
   std::string kind;                    // only this one; empty: all, and the plain cosine
   bool quick = false;                  // fewer rays, bins and points: to see that it works
   std::function<void()> step = [] {};  // after each of steps(options)
+  std::function<void(const std::string&)> now = [](const std::string&) {};  // what comes next
+  // After the plain cosine ("plain") and each kind, with all that is measured until then.
+  std::function<Status(const std::string& part, const struct SonarTradeoff& so_far)> part_done =
+      [](const std::string&, const struct SonarTradeoff&) { return Status(); };
 };
 std::uint64_t steps(const SonarTradeoffOptions& options);
 
 struct SonarTradeoff {
+  bool quick = false;  // too coarse to tell levels by
   std::string device;
   std::uint32_t rays_a_cell = 0;
   std::vector<Point> points;
@@ -29,9 +34,9 @@ struct SonarTradeoff {
 };
 Result<SonarTradeoff> run_sonar_tradeoff(const SonarTradeoffOptions& options);
 
-// tradeoff.csv, tradeoff.png, tradeoff.json of the plain cosine; KIND.csv, KIND_terms.csv, KIND.png
-// of each kind, quality.json and tradeoff.md in the folder.
-Status write_kinds(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
-Status write_sonar_tradeoff(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
+// In the folder: tradeoff.csv, tradeoff.png, tradeoff.json of the plain cosine.
+Status write_plain(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
+// KIND.csv, KIND_terms.csv, KIND.png of the last of the kinds; tradeoff.md and quality.json of all.
+Status write_last_kind(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
 
 }  // namespace neritic::tools
