@@ -150,7 +150,7 @@ TEST_F(DivePhysics, InterruptedItWritesWhatItHas) {
         dive("--headless --realtime --seconds 600 --log " + file("a.csv") + " --record " +
                  file("a.log") + " --plot " + file("a.png"),
              "dive.toml", fmt::format("timeout --preserve-status -s {} 1.5", signal));
-    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_EQ(outcome.status, 130) << outcome.err;
     EXPECT_EQ(outcome.err.rfind("neritic: interrupted after 1.", 0), 0u) << outcome.err;
     EXPECT_NE(outcome.err.find(" s of 600; all until then is written\n"), std::string::npos);
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;

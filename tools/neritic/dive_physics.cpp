@@ -10,7 +10,7 @@
 #include "engine/core/json.hpp"
 #include "rov/frames.hpp"
 #include "tools/neritic/flags.hpp"
-#include "tools/neritic/interrupts.hpp"
+#include "tools/neritic/interrupt.hpp"
 #include "tools/physics/dive_plot.hpp"
 #include "tools/physics/dive_record.hpp"
 
@@ -46,9 +46,8 @@ struct Pace {
 
 // As fast as it can, or each step when it is due.
 Pace run_steps(PhysicsSimulation& simulation, DiveRecorder& recorder, const DiveFlags& flags,
-               double seconds, double step_s, const Interrupts& interrupts) {
-  constexpr int kCatchUp = 4;                  // as the live program's
-  constexpr std::uint64_t kStepsUnasked = 32;  // under a millisecond of work
+               double seconds, double step_s, const Interrupt& interrupt) {
+  constexpr int kCatchUp = 4;  // as the live program's
   const auto steps = static_cast<std::uint64_t>(std::ceil(seconds / step_s - 1e-9));
   sim::HostClock clock;
   const TimeNs begun_ns = clock.now();
@@ -58,7 +57,7 @@ Pace run_steps(PhysicsSimulation& simulation, DiveRecorder& recorder, const Dive
   recorder.add(simulation.newest());
   Pace pace;
   for (std::uint64_t done = 0; done < steps;) {
-    if (flags.realtime || done % kStepsUnasked == 0) pace.interrupted = interrupts.came();
+    pace.interrupted = interrupt.requested();
     if (pace.interrupted) break;
     std::uint64_t now = 1;
     if (flags.realtime) {
@@ -288,13 +287,13 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
   const auto simulation = world->simulation({.readers = 0, .log = true, .seed = scene.seed});
   DiveRecorder recorder(*world, {.rows = !flags.log.empty() || !flags.plot.empty(),
                                  .row_rate_hz = flags.log_rate_hz});
-  const Interrupts interrupts;
-  const Pace pace = run_steps(*simulation, recorder, flags, seconds, world->step_s(), interrupts);
+  const Interrupt interrupt;
+  const Pace pace = run_steps(*simulation, recorder, flags, seconds, world->step_s(), interrupt);
   const Status written = write_results(flags, *world, *simulation, recorder);
   print_summary(flags, *world, *simulation, recorder, pace);
   NERITIC_TRY_STATUS(written);
   if (pace.interrupted)
-    return failure(ErrorCode::kUnsupported,
+    return failure(ErrorCode::kInterrupted,
                    "interrupted after {:.4g} s of {:g}; all until then is written",
                    simulation->newest().time_s, seconds);
   return {};
