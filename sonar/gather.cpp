@@ -57,9 +57,12 @@ Status SonarGather::check(const gpu::Device& device) const {
     return bad_input(
         "gather published: it is the plain cosine; with terms, plane or nearest is accepted");
   if (sums_bytes() > limits.maxStorageBufferRange)
-    return failure(ErrorCode::kUnsupported,
-                   "sonar image of {} x {} bins: {} bytes, the device allows {}", grid_.bins.range,
-                   grid_.bins.azimuth, sums_bytes(), limits.maxStorageBufferRange);
+    return failure(
+        ErrorCode::kUnsupported,
+        "sonar image of {} x {} bins: {} bytes, the device allows {}; {:.2f} of its "
+        "range, or fewer range bins, beams or samples of a beam, fit",
+        grid_.bins.range, grid_.bins.azimuth, sums_bytes(), limits.maxStorageBufferRange,
+        static_cast<double>(limits.maxStorageBufferRange) / static_cast<double>(sums_bytes()));
   if (options_.echo && options_.echo->records && records_bytes() > limits.maxStorageBufferRange)
     return failure(ErrorCode::kUnsupported,
                    "sonar labels.energy of {} columns x {} bins of elevation: {} bytes of records, "

@@ -87,14 +87,11 @@ struct GroundImage {
 GroundImage ground_image(const SidescanRecord& record, const FirstReturns& bottom,
                          std::uint32_t n_ground);
 
-// Of levels, pictures show so many decibels below full scale.
-inline constexpr double kSidescanShown_db = 40.0;
-
 struct SidescanPictureOptions {
   std::string title = "SIDE-SCAN SONAR";
   std::uint32_t width_px = 1200, max_height_px = 2400;
   double full_scale = 0.0;  // value in full brightness; 0: the 99th percentile of what is heard
-  double gamma = 0.5;       // of what is no level
+  double gamma = 0.5;
 };
 // The waterfall: a line a ping, the newest on top, the tracked bottom as a thin line. RGB.
 ImageU8 draw_slant(const SidescanRecord& record, const FirstReturns& bottom,

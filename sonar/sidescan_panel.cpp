@@ -29,23 +29,36 @@ Layout lay_out(const SidescanPictureOptions& options, double box_height_per_widt
   return out;
 }
 
-// How values become brightness: by decibels where they are levels, else by the power of gamma.
+// How values become brightness: as the power of gamma, an amplitude's as the devices draw it.
 struct Display {
   double full_scale, gamma;
   bool levels;
 
   void shade(ImageF32& image) const {
-    const PanelOptions options{.gamma = gamma, .span_db = levels ? kSidescanShown_db : 0.0};
+    const PanelOptions options{.gamma = gamma};
     for (float& v : image.data)
       if (!std::isnan(v)) v = static_cast<float>(panel_brightness(v, full_scale, options));
   }
   double full_db() const { return 10.0 * std::log10(full_scale); }
   std::string text() const {
-    return levels ? fmt::format("{:.0f} to {:.0f} dB re 1 uPa", full_db() - kSidescanShown_db,
-                                full_db())
+    return levels ? fmt::format("full scale {:.0f} dB re 1 uPa, gamma {:g}", full_db(), gamma)
                   : fmt::format("full scale {:.2g}, gamma {:g}", full_scale, gamma);
   }
 };
+
+// Multiples of 5 dB where they are in brightness, until they lie too close to be told apart.
+std::vector<LegendMark> marks_in_db(const Display& display) {
+  constexpr double kStep_db = 5.0, kDarkest = 0.06;
+  constexpr int kMost = 8;
+  const double loudest_db = std::floor(display.full_db() / kStep_db) * kStep_db;
+  std::vector<LegendMark> marks;
+  for (int i = 0; i < kMost; ++i) {
+    const double db = loudest_db - i * kStep_db;
+    const double at = std::pow(10.0, display.gamma * (db - display.full_db()) / 10.0);
+    if (at >= kDarkest) marks.push_back({at, number_text(db)});
+  }
+  return marks;
+}
 
 Display display_of(const SidescanRecord& record, std::span<const float> values,
                    const SidescanPictureOptions& options) {
@@ -66,11 +79,9 @@ void finish(Canvas& canvas, const Layout& layout, const Display& display) {
   draw_frame(canvas, layout.box, layout.unit);
   const double bar = layout.width - 82 * layout.unit, top = layout.box.top;
   const PlotBox at{bar, top, bar + 14 * layout.unit, top + 220 * layout.unit};
-  const double full_db = display.full_db();
   // The bar is even in brightness: value = full scale * shade^(1 / gamma).
   if (display.levels)
-    draw_legend(canvas, at, Palette::kBronze, full_db - kSidescanShown_db, full_db, "dB",
-                layout.unit);
+    draw_legend(canvas, at, Palette::kBronze, marks_in_db(display), "dB", layout.unit);
   else
     draw_legend(canvas, at, Palette::kBronze, 0.0, 100.0, "display, %", layout.unit);
   canvas.text(layout.box.left + 14 * layout.unit, layout.box.top - 9 * layout.unit,

@@ -189,16 +189,24 @@ void draw_frame(Canvas& canvas, const PlotBox& box, double unit) {
 
 void draw_legend(Canvas& canvas, const PlotBox& bar, Palette palette, double at_bottom,
                  double at_top, const std::string& label, double unit) {
+  std::vector<LegendMark> marks;
+  for (const double tick : nice_ticks(at_bottom, at_top, bar.height() / (42.0 * unit)))
+    marks.push_back({(tick - at_bottom) / (at_top - at_bottom), number_text(tick)});
+  draw_legend(canvas, bar, palette, marks, label, unit);
+}
+
+void draw_legend(Canvas& canvas, const PlotBox& bar, Palette palette,
+                 std::span<const LegendMark> marks, const std::string& label, double unit) {
   const int steps = std::max(1, static_cast<int>(bar.height()));
   for (int i = 0; i < steps; ++i)
     canvas.fill_rectangle(bar.left, bar.bottom - (i + 1) * bar.height() / steps, bar.right,
                           bar.bottom - i * bar.height() / steps,
                           palette_color(palette, (i + 0.5) / steps));
-  for (const double tick : nice_ticks(at_bottom, at_top, bar.height() / (42.0 * unit))) {
-    const double y = bar.bottom - (tick - at_bottom) / (at_top - at_bottom) * bar.height();
+  for (const LegendMark& mark : marks) {
+    const double y = bar.bottom - mark.at * bar.height();
     canvas.segment(bar.right + unit, y, bar.right + 5 * unit, y, 1.2 * unit,
                    kPlotText.with_alpha(0.8f));
-    canvas.text(bar.right + 12 * unit, y + 4 * unit, 9 * unit, number_text(tick),
+    canvas.text(bar.right + 12 * unit, y + 4 * unit, 9 * unit, mark.text,
                 kPlotText.with_alpha(0.85f));
   }
   canvas.text(bar.left, bar.top - 14 * unit, 9 * unit, label, kPlotText.with_alpha(0.7f));

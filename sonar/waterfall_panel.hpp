@@ -60,6 +60,13 @@ void draw_frame(Canvas& canvas, const PlotBox& box, double unit);
 // A vertical colour bar; the palette's 0 is at its bottom. Numbers at its right.
 void draw_legend(Canvas& canvas, const PlotBox& bar, Palette palette, double at_bottom,
                  double at_top, const std::string& label, double unit);
+// The same with marks where they are told, 0 at its bottom to 1.
+struct LegendMark {
+  double at;
+  std::string text;
+};
+void draw_legend(Canvas& canvas, const PlotBox& bar, Palette palette,
+                 std::span<const LegendMark> marks, const std::string& label, double unit);
 // A bar of a round length in metres, at most max_px long, its left end at (x, y).
 void draw_scale_bar(Canvas& canvas, double x, double y, double px_per_m, double max_px,
                     double unit);

@@ -303,6 +303,19 @@ TEST_F(SonarGpu, ImagesOfNoPixelsAreRefused) {
   EXPECT_EQ(made.error().code, ErrorCode::kBadInput);
 }
 
+TEST_F(SonarGpu, AnImageThatNoBufferHoldsIsRefusedWithWhatFits) {
+  const BeamGrid grid =
+      sonar::symmetric_grid(1, 5, radians(90), radians(28), {sonar::kMaxBins, sonar::kMaxBins, 4});
+  sonar::GatherOptions options;
+  options.echo = sonar::EchoOptions{};
+  const auto made =
+      sonar::SonarGather::create(device(), grid, sonar::plan_sectors(grid), {}, options);
+  if (made.ok()) GTEST_SKIP() << "this device holds it";
+  EXPECT_EQ(made.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(made.error().message.find("of its range, or fewer range bins"), std::string::npos)
+      << made.error().message;
+}
+
 TEST_F(SonarGpu, RecordsThatNoDeviceHoldsAreRefusedByName) {
   const BeamGrid grid = sonar::symmetric_grid(1, 5, radians(90), radians(28),
                                               {4, sonar::kMaxBins, sonar::kMaxBins});  // 4 GiB

@@ -72,6 +72,17 @@ TEST(SonarNotes, AWedgeWiderThanTheImageIsToldWithWhatTheImageCovers) {
   EXPECT_THAT(note_of(grid, aside, false), HasSubstr("cover 50 %"));
 }
 
+TEST(SonarNotes, ASwathThinnerThanAPixelIsSilentForThePublishedGatherOnly) {
+  const sonar::BeamGrid thin =
+      sonar::symmetric_grid(1.0, 5.0, radians(80.0), radians(0.5), {10, 20, 2});
+  EXPECT_THAT(note_of(thin, wall(2.0)), HasSubstr("hears nothing"));
+  EXPECT_EQ(note_of(thin, wall(2.0), false), "");
+  sonar::BeamGrid above = thin;
+  above.limits.elevation_min_rad = radians(60.0);
+  above.limits.elevation_max_rad = radians(60.5);
+  EXPECT_THAT(note_of(above, wall(2.0), false), HasSubstr("hears nothing"));
+}
+
 TEST(SonarNotes, FewPixelsACellAreToldForThePublishedGatherOnly) {
   const sonar::BeamGrid grid;  // 500 x 500 cells
   EXPECT_THAT(note_of(grid, wall(2.0)), HasSubstr("--gather plane"));

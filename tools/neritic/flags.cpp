@@ -65,6 +65,7 @@ void Progress::now(std::string doing) {
 void Progress::say(const std::string& line) {
   if (shown_) fmt::print(stderr, "\r\033[K");
   log_line(LogLevel::kWarnings, line);
+  doing_.clear();
   show();
 }
 

@@ -62,10 +62,11 @@ std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Cove
   if (coverage.farthest_m == 0.0)
     return "no pixel has a depth (0, NaN, infinity and negative numbers are none), so the sonar "
            "hears nothing";
-  if (coverage.in_aperture == 0)
+  // Cells that look into the image find pixels beside a swath that is thinner than one.
+  if (coverage.of_wedge == 0.0 || (published && coverage.in_aperture == 0))
     return "no pixel with a depth lies within --azimuth and --elevation, so the sonar hears "
            "nothing";
-  if (coverage.in_wedge == 0)
+  if (coverage.in_wedge == 0 && coverage.in_aperture > 0)
     return fmt::format(
         "nothing lies between {:g} and {:g} m, so the sonar hears nothing: the image holds ranges "
         "of {:.3g} to {:.3g} m (--range, --depth-scale)",
