@@ -82,9 +82,10 @@ struct Dynamics {
 };
 
 // Where a diver swims: from point to point, each counting as reached within acceptance_m. At the last
-// one, unless it repeats, the diver stays.
+// one, unless it repeats, the diver stays. Or how the limbs move, recorded, wherever that leads.
 struct SwimPlan {
   std::vector<Vec3> waypoints_m;
+  std::filesystem::path motion;  // instead of waypoints; empty: none
   double speed_m_s = 0.4;  // through the water
   double acceptance_m = 1.5;
   bool repeat = false;

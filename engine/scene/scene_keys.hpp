@@ -93,7 +93,7 @@ inline constexpr auto kOrbitKeys =
     std::to_array<Key>({"object", "point_m", "radius_m", "speed_m_s"});
 inline constexpr auto kFollowKeys = std::to_array<Key>({"object", "offset_m"});
 inline constexpr auto kSwimKeys =
-    std::to_array<Key>({"waypoints_m", "speed_m_s", "acceptance_m", "repeat"});
+    std::to_array<Key>({"waypoints_m", "speed_m_s", "acceptance_m", "repeat", "motion"});
 inline constexpr auto kStandBetweenKeys = std::to_array<Key>({"a", "b", "distance_m"});
 
 inline constexpr auto kScatterKeys =

@@ -166,13 +166,20 @@ class VehiclePhysicsReader {
   SwimPlan read_swim(const TomlValue& table) {
     TableReader swim(reader_.source(), table, reader_.path("swim"), kSwimKeys);
     SwimPlan plan;
+    plan.repeat = swim.flag("repeat", false);
+    if (swim.has("motion")) {
+      plan.motion = swim.file("motion");
+      for (const Key key : {"waypoints_m", "speed_m_s", "acceptance_m"})
+        if (swim.has(key)) swim.refuse(key, "no such key beside motion");
+      if (const Status status = swim.status(); !status.ok()) reader_.fail(status.error());
+      return plan;
+    }
     for (const auto& p : swim.rows("waypoints_m", {3}, kAnyMetres))
       plan.waypoints_m.push_back({p[0], p[1], p[2]});
     if (plan.waypoints_m.empty()) swim.refuse("waypoints_m", "a list of points [x, y, z]");
     plan.speed_m_s = swim.number("speed_m_s", plan.speed_m_s, {0, 1.2, true, false, "m/s"});
     plan.acceptance_m =
         swim.number("acceptance_m", plan.acceptance_m, {0, 100, true, false, "metres"});
-    plan.repeat = swim.flag("repeat", false);
     if (const Status status = swim.status(); !status.ok()) reader_.fail(status.error());
     return plan;
   }

@@ -92,6 +92,17 @@ void for_each_named_scalar(T& value, Visit&& visit, const std::string& name = {}
     });
 }
 
+// The same of what is in use, where value has room for more than it holds (seats that nobody took
+// stay as they were made) and says so beside fields(): in_use(field, self).
+template <class T, class Visit>
+void for_each_scalar_in_use(T& value, Visit&& visit) {
+  const auto each = [&](const auto&, auto& piece) { for_each_scalar(piece, visit); };
+  if constexpr (requires { std::remove_const_t<T>::in_use(each, value); })
+    std::remove_const_t<T>::in_use(each, value);
+  else
+    for_each_scalar(value, visit);
+}
+
 // Bytes of all numbers in value.
 template <class T>
 std::size_t scalar_bytes(const T& value) {
@@ -111,7 +122,7 @@ void check_fields_cover(const T& value) {
 template <class T>
 bool all_finite(const T& value) {
   bool finite = true;
-  for_each_scalar(value, [&](const auto& scalar) {
+  for_each_scalar_in_use(value, [&](const auto& scalar) {
     if constexpr (std::is_floating_point_v<std::remove_cvref_t<decltype(scalar)>>)
       finite = finite && std::isfinite(scalar);
   });

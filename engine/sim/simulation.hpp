@@ -53,15 +53,15 @@ class Simulation {
     check_fields_cover(state);
     check_fields_cover(inputs);
     NERITIC_CHECK(all_finite(state) && all_finite(inputs), "the start is not finite");
-    newest_.state = state;
-    newest_.hash = state_hash(state);
+    pair_.newest.state = state;
+    pair_.newest.hash = state_hash(state);
     for (int i = 0; i < options.readers; ++i)
-      outlets_.push_back(std::make_unique<Outlet>(SnapshotPair<State>{newest_, newest_}));
+      outlets_.push_back(std::make_unique<Outlet>(SnapshotPair<State>{pair_.newest, pair_.newest}));
     log_.step_s = options.step_s;
     log_.seed = options.seed;
     if (options.log) {
       log_.entries.push_back({0, inputs_});
-      log_.hashes.push_back(newest_.hash);
+      log_.hashes.push_back(pair_.newest.hash);
     }
   }
   // Messages that are whole inputs replace them.
@@ -83,7 +83,7 @@ class Simulation {
   void advance(std::uint64_t steps) {
     check_idle();
     for (std::uint64_t i = 0; i < steps; ++i)
-      step_once(std::llround(static_cast<double>(newest_.step + 1) * options_.step_s * 1e9));
+      step_once(std::llround(static_cast<double>(pair_.newest.step + 1) * options_.step_s * 1e9));
   }
 
   // Steps on a thread of its own until stop(); the clock outlives that.
@@ -92,8 +92,8 @@ class Simulation {
     const double rate_hz = 1.0 / options_.step_s;
     NERITIC_CHECK(rate_hz > kMinRate_hz * 0.999999 && rate_hz < kMaxRate_hz * 1.000001, "{} Hz",
                   rate_hz);
-    newest_.due_ns = clock.now();  // blending starts from here
-    const StepPacer pacer(rate_hz, options_.max_catch_up, newest_.due_ns);
+    pair_.newest.due_ns = clock.now();  // blending starts from here
+    const StepPacer pacer(rate_hz, options_.max_catch_up, pair_.newest.due_ns);
     thread_ =
         std::make_unique<StepThread>(clock, pacer, [this](TimeNs due_ns) { step_once(due_ns); });
   }
@@ -110,7 +110,7 @@ class Simulation {
   // What follows: not while the thread runs (readers get snapshots instead).
   const Snapshot<State>& newest() const {
     check_idle();
-    return newest_;
+    return pair_.newest;
   }
   const InputLog<Inputs>& log() const {
     check_idle();
@@ -139,35 +139,35 @@ class Simulation {
     }
     if (!options_.log || same_bits(before, inputs_)) return;
     // The start's entry stands for step 0 until the first step is taken.
-    if (log_.entries.back().step == newest_.step)
+    if (log_.entries.back().step == pair_.newest.step)
       log_.entries.back().inputs = inputs_;
     else
-      log_.entries.push_back({newest_.step, inputs_});
+      log_.entries.push_back({pair_.newest.step, inputs_});
   }
 
   void step_once(TimeNs due_ns) {
     take_messages();
-    const Snapshot<State> previous = newest_;
-    const State next = step_(previous.state, inputs_, options_.step_s);
+    Snapshot<State>& newest = pair_.newest;
+    const State next = step_(newest.state, inputs_, options_.step_s);
+    if (!outlets_.empty()) pair_.previous = newest;
     if (all_finite(next)) {
-      newest_.state = next;
-      newest_.hash = state_hash(next);
+      newest.state = next;
+      newest.hash = state_hash(next);
     } else {
       ++refused_states_;
     }
-    newest_.step = previous.step + 1;
-    newest_.time_s = static_cast<double>(newest_.step) * options_.step_s;
-    newest_.due_ns = due_ns;
-    if (options_.log) log_.hashes.push_back(newest_.hash);
-    const SnapshotPair<State> pair{previous, newest_};
-    for (const auto& outlet : outlets_) outlet->publish(pair);
+    ++newest.step;
+    newest.time_s = static_cast<double>(newest.step) * options_.step_s;
+    newest.due_ns = due_ns;
+    if (options_.log) log_.hashes.push_back(newest.hash);
+    for (const auto& outlet : outlets_) outlet->publish(pair_);
   }
 
   SimulationOptions options_;
   Step step_;
   Apply apply_;
   Inputs inputs_;
-  Snapshot<State> newest_;
+  SnapshotPair<State> pair_;  // the previous one: where there are readers
   Inbox<Message> inbox_;
   std::vector<Message> messages_;  // drained, memory kept
   InputLog<Inputs> log_;

@@ -28,7 +28,7 @@ std::uint64_t canonical_bits(T value) {
 template <class State>
 std::uint64_t state_hash(const State& state) {
   Hash64 hash;
-  for_each_scalar(state, [&](const auto& scalar) { hash.add(canonical_bits(scalar)); });
+  for_each_scalar_in_use(state, [&](const auto& scalar) { hash.add(canonical_bits(scalar)); });
   return hash.value();
 }
 

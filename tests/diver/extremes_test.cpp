@@ -164,6 +164,28 @@ TEST(DiverExtremes, TanksOfNothingAndOf350Bar) {
   }
 }
 
+// A hundred bar around, and a tank of oxygen: breathed for what it is, told by the risk proxies.
+TEST(DiverExtremes, AKilometreDownOnPureOxygen) {
+  Gear gear;
+  gear.tanks[0].mix = {1.0, 0.0};
+  const Body body = body_with(gear);
+  for (const double dt : {1.0 / 240.0, 1.0}) {
+    HumanState state = start_in(body, 1000.0);
+    HumanInputs inputs;
+    inputs.joints = rotations_of(streamlined(body));
+    inputs.buttons = kInflate;
+    for (double t = 0.0; t < 60.0; t += dt) {
+      state = step(body, state, inputs, dt);
+      state.root.position_ned_m.z = 1000.0;
+      ASSERT_TRUE(sim::all_finite(state)) << dt;
+    }
+    EXPECT_GE(state.life.tanks.moles[0], 0.0);
+    EXPECT_EQ(state.life.vitals.risk.gas_density, RiskLevel::kSevere);
+    EXPECT_EQ(state.life.vitals.risk.refused, 0u);
+    ASSERT_NO_FATAL_FAILURE(expect_recovers(body, state)) << dt;
+  }
+}
+
 TEST(DiverExtremes, ABurstOfButtonPresses) {
   const Body body = body_with(Gear{});
   HumanState state = start_in(body, 15.0);

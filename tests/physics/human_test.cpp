@@ -134,6 +134,39 @@ TEST(HumanDive, WhatIsDrawnIsTheBodyOfThePhysics) {
   EXPECT_LT(breath, 0.15);
 }
 
+// A kick as a table of joint angles, one beat that repeats, swims as the swimmer's own kick does.
+TEST(HumanDive, RecordedLimbsSwim) {
+  const test::ScratchFolder scratch;
+  const TestDive hovering =
+      dive_of(kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne));
+  const diver::Body& body = hovering.world->humans()[0].body;
+  std::string csv = "t_s";
+  for (std::size_t joint = 0; joint < diver::kJoints; ++joint)
+    csv +=
+        fmt::format(",{0}_x_deg,{0}_y_deg,{0}_z_deg", diver::kSegmentNames[diver::child_of(joint)]);
+  constexpr int kRows = 60;
+  for (int i = 0; i <= kRows; ++i) {
+    diver::JointAngles joints = diver::streamlined(body);
+    diver::set_flutter(joints, body, {}, 2.0 * kPi * i / kRows);
+    csv += fmt::format("\n{}", i / double{kRows});
+    for (const Vec3& angle : joints)
+      csv += fmt::format(",{},{},{}", degrees(angle.x), degrees(angle.y), degrees(angle.z));
+  }
+  ASSERT_TRUE(write_text(scratch / "kick.csv", csv).ok());
+  const std::string swim =
+      fmt::format("swim = {{ motion = \"{}\", repeat = true }}\n", (scratch / "kick.csv").string());
+  TestDive dive =
+      dive_of(kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne + swim));
+  dive.run(5.0);
+  const Vec3 from = swimmer_pose(dive).position_m;
+  dive.run(5.0);
+  const double speed_m_s = glm::distance(swimmer_pose(dive).position_m, from) / 5.0;
+  EXPECT_GT(speed_m_s, 0.4);  // .54 m a beat
+  EXPECT_LT(speed_m_s, 0.7);
+  EXPECT_EQ(dive.state().humans[0].human.far_joints, 0u);
+  EXPECT_LT(dive.state().humans[0].human.life.limb_power_w, 300.0);
+}
+
 TEST(HumanDive, RunsAndReplaysWithTheSameHashes) {
   const std::string text =
       kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
@@ -213,6 +246,13 @@ TEST(HumanDive, MistakesAreToldInOneLine) {
   EXPECT_NE(
       fault_of(kStillWater + diver_text("swim = { waypoints_m = [[0, 0, 0]], speed_m_s = 9 }\n"))
           .find("(0, 1.2]"),
+      std::string::npos);
+  EXPECT_NE(
+      fault_of(kStillWater + diver_text("swim = { motion = \"none.csv\" }\n")).find("none.csv"),
+      std::string::npos);
+  EXPECT_NE(
+      fault_of(kStillWater + diver_text("swim = { motion = \"none.csv\", speed_m_s = 0.4 }\n"))
+          .find("no such key beside motion"),
       std::string::npos);
   std::string three;
   for (int i = 0; i < 3; ++i) {

@@ -81,7 +81,9 @@ void step_human(const PhysicsHuman& human, const sim::StaticWorld& solid,
   diver::HumanInputs acting = inputs.human;
   acting.current_ned_m_s = ned_from_world(current_m_s);
   follow_plan(human, state);
-  if (inputs.worn == 0)  // nobody wears the suit: swims by itself
+  if (inputs.worn == 0 && human.recording)
+    acting.joints = human.recording->at(static_cast<double>(step) * dt_s, human.repeat);
+  else if (inputs.worn == 0)  // nobody wears the suit: swims by itself
     diver::swim(human.body, human.file.swimmer, swim_goal(human, state), state.human, state.swimmer,
                 dt_s, acting);
   const diver::RootState before = state.human.root;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diver/frames.hpp"
+#include "engine/core/files.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -56,13 +57,18 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
     human.speed_m_s = plan.speed_m_s;
     human.acceptance_m = plan.acceptance_m;
     human.repeat = plan.repeat;
+    if (!plan.motion.empty()) {
+      NERITIC_TRY(const std::string text, read_text(plan.motion));
+      NERITIC_TRY(human.recording, diver::read_limb_recording(text, plan.motion.string()));
+    }
   }
   set_shape(human);
   NERITIC_TRY_STATUS(find_nodes(scene, object, human));
   const Pose at = scene.world_from(object.mount, 0.0);
-  human.start.human = diver::start_at(human.body, ned_from_world(at.position_m),
-                                      diver::ned_from_standing(at.rotation),
-                                      diver::rotations_of(diver::streamlined(human.body)));
+  human.start.human = diver::start_at(
+      human.body, ned_from_world(at.position_m), diver::ned_from_standing(at.rotation),
+      human.recording ? human.recording->joints.front()
+                      : diver::rotations_of(diver::streamlined(human.body)));
   // Put there from the surface this moment.
   human.start.human.life.computer = human.computer->step(
       human.computer->start(), {human.start.human.root.position_ned_m.z, 0}, 0.0);

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "diver/diver_file.hpp"
+#include "diver/limb_recording.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/sim/body_shape.hpp"
 #include "engine/sim/static_world.hpp"
@@ -26,6 +28,7 @@ struct PhysicsHuman {
   std::vector<Vec3> waypoints_ned_m;
   double speed_m_s = 0.0, acceptance_m = 1.0;
   bool repeat = false;
+  std::optional<diver::LimbRecording> recording;  // moves the limbs instead
   sim::BodyShape shape;  // for contacts: model axes (starboard, up, back) of who swims
   // The joints of what is drawn: nodes of its model, one a segment, and how its arms are spread.
   std::vector<int> nodes;

@@ -87,13 +87,24 @@ struct HumanPhysics {
 
 struct PhysicsState {
   std::uint64_t step = 0;
+  std::uint64_t vehicle_count = 0, human_count = 0;  // that the scene has
   std::array<VehicleState, kMaxVehicles> vehicles;
   std::array<HumanPhysics, kMaxHumans> humans;
 
   static void fields(auto&& field, auto& self) {
     field("step", self.step);
+    field("vehicle_count", self.vehicle_count);
+    field("human_count", self.human_count);
     field("vehicles", self.vehicles);
     field("humans", self.humans);
+  }
+  // Who is not there costs nothing.
+  static void in_use(auto&& field, auto& self) {
+    field("step", self.step);
+    field("vehicle_count", self.vehicle_count);
+    field("human_count", self.human_count);
+    for (std::size_t i = 0; i < self.vehicle_count; ++i) field("vehicles", self.vehicles[i]);
+    for (std::size_t i = 0; i < self.human_count; ++i) field("humans", self.humans[i]);
   }
 };
 

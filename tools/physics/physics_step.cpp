@@ -51,6 +51,8 @@ bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
 
 PhysicsState PhysicsWorld::start() const {
   PhysicsState state;
+  state.vehicle_count = vehicles_.size();
+  state.human_count = humans_.size();
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     state.vehicles[i].body = vehicles_[i].start;
     state.vehicles[i].mission = mission_start(vehicles_[i].start);
