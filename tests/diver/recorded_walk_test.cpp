@@ -238,7 +238,7 @@ TEST_F(RecordedWalk, BonesKeepTheirLengthAndTheFootOnTheGroundItsPlace) {
 }
 
 TEST_F(RecordedWalk, InAirItsLimbsChangeNoMomentum) {
-  const Body body = walker(walk_, 0.0);
+  const Body body = without_drag(walker(walk_, 0.0));
   const double kg = dry_mass(body);
   RootState root;
   LimbState limbs;
