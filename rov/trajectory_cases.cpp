@@ -227,6 +227,7 @@ TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseFi
   read_segments(scenario, thrust, folder, out);
   read_samples(scenario, out);
   read_promises(scenario["fixed_step_end_error"], out);
+  out.reference_error = scenario["reference_error_estimate"].number(0.0, 0.0, 1.0);
   return out;
 }
 

@@ -18,6 +18,7 @@
 //       (sine_wrench.hpp) [none]
 //     samples: t, and of p_ned, q_wxyz, nu_frd, thruster_force_N what is compared
 //     fixed_step_end_error: {rk4_60Hz: [position, velocity], ...} [none]
+//     reference_error_estimate: how wrong the samples are, in any of their numbers [0]
 // Other members (doc, closed_form, ...) are notes and are passed over.
 #pragma once
 
@@ -64,6 +65,7 @@ struct TrajectoryCase {
   std::vector<SineWrench> sines;
   std::vector<TrajectorySample> samples;  // rising
   std::vector<PromisedError> promised;
+  double reference_error = 0.0;
 };
 
 // Errors in one line: file, case, field, what was found, what is accepted. folder: the file's.

@@ -159,7 +159,8 @@ CaseResult check_trajectory(const TrajectoryCase& one, const TrajectoryCheck& op
   const PromisedError promise = promised(one, options);
   const bool euler = options.integrator == Integrator::kSemiImplicit;
   const Bars bars = euler ? euler_bars(options.hz) : rk4_bars(options, promise.hz > 0.0);
-  const double position = 2.0 * promise.position_m, velocity = 2.0 * promise.velocity;
+  const double position = std::max(2.0 * promise.position_m, one.reference_error),
+               velocity = std::max(2.0 * promise.velocity, one.reference_error);
   CaseResult result{one.id,
                     {{"position", "m", 0.0, std::max(bars.position, position)},
                      {"attitude", "", 0.0, std::max({bars.attitude, position, velocity})},
