@@ -48,7 +48,7 @@ struct Display {
 
 // Multiples of 5 dB where they are in brightness, until they lie too close to be told apart.
 std::vector<LegendMark> marks_in_db(const Display& display) {
-  constexpr double kStep_db = 5.0, kDarkest = 0.06;
+  constexpr double kStep_db = 5.0, kDarkest = 0.1;
   constexpr int kMost = 8;
   const double loudest_db = std::floor(display.full_db() / kStep_db) * kStep_db;
   std::vector<LegendMark> marks;
