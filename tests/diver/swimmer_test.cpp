@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <ctime>
 #include <thread>
 
@@ -145,6 +146,52 @@ TEST(DiverDeterminism, AReplayOfItsInputsGivesTheSameHashes) {
   EXPECT_FALSE(sim::replay(simulation.log(), start, pure).first_difference.has_value());
   EXPECT_EQ(simulation.refused_states(), 0u);
   EXPECT_GT(simulation.newest().state.root.position_ned_m.x, 1.0);
+}
+
+// The diver on the physics thread, a suit that sends and two who read: what the thread made of it
+// replays.
+TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
+  const Body body = body_with(Gear{});
+  const auto pure = [&](const HumanState& s, const HumanInputs& in, double dt) {
+    return step(body, s, in, dt);
+  };
+  const HumanState start = begin(body, {0.0, 0.0, 15.0}, 0.0).state;
+  sim::Simulation<HumanState, HumanInputs> simulation({.step_s = 1.0 / 240.0, .readers = 2}, start,
+                                                      {}, pure);
+  std::atomic<bool> stop{false};
+  std::atomic<std::uint64_t> seen{0};
+  std::vector<std::thread> others;
+  for (int reader = 0; reader < 2; ++reader)
+    others.emplace_back([&, reader] {
+      auto snapshots = simulation.reader(reader);
+      while (!stop)
+        if (snapshots.update()) {
+          if (!sim::all_finite(snapshots.newest().state)) ADD_FAILURE() << "not finite";
+          if (reader == 0) seen = snapshots.newest().step;
+        }
+    });
+  others.emplace_back([&] {
+    HumanDraws draws(12);
+    HumanInputs inputs;
+    while (!stop) {
+      inputs.joints = rotations_of(draws.angles(0.5));
+      inputs.buttons = static_cast<std::uint64_t>(draws.uniform(0.0, 8.0));
+      inputs.instruments.heart.time_s += 1.0;
+      inputs.instruments.heart.rate_bpm = draws.uniform(50.0, 180.0);
+      simulation.push(inputs);
+      std::this_thread::yield();
+    }
+  });
+  sim::SimulatedClock clock;
+  simulation.start(clock);
+  while (seen < 480) std::this_thread::yield();
+  simulation.stop();
+  stop = true;
+  for (std::thread& thread : others) thread.join();
+  EXPECT_FALSE(sim::replay(simulation.log(), start, pure).first_difference.has_value());
+  EXPECT_GT(simulation.log().entries.size(), 2u);
+  EXPECT_EQ(simulation.newest().state.life.vitals.measured, kHeartMeasured);
+  EXPECT_EQ(simulation.refused_states(), 0u);
 }
 
 // One diver with everything at 240 Hz is to take under 1 % of a core, 10 ms a second; with room for
