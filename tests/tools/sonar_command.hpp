@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/core/npy.hpp"
+#include "engine/gpu/device.hpp"
 #include "tests/support/device_gate.hpp"
 #include "tools/neritic/commands.hpp"
 
@@ -14,6 +17,9 @@ using Words = std::vector<std::string>;
 // As a user types it after `neritic sonar`.
 inline Status sonar_command(Words words) {
   words.insert(words.begin(), "sonar");
+  const bool on_gpu = std::ranges::none_of(
+      words, [](const std::string& w) { return w == "reference" || w == "image"; });
+  if (on_gpu && gpu::validation_layer_present()) words.push_back("--validate");
   NERITIC_TRY(const tools::CommandLine line, tools::parse_command_line(words));
   const auto done = line.run();
   return done.ok() ? Status() : Status(done.error());

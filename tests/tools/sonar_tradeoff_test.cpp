@@ -27,7 +27,7 @@ std::vector<sonar::SonarInput> images_of(const RayWorld& world, const sonar::Bea
 
 TEST(SonarAgainstRays, TheGpuIsNoWorseThanTheReferenceWhereEveryCellHasAPixel) {
   if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
-  const auto device = gpu::Device::create({});
+  const auto device = gpu::Device::create({.validation = gpu::validation_layer_present()});
   ASSERT_TRUE(device.ok()) << device.error().message;
   const auto world = make_analytic_world();
   const sonar::BeamGrid grid = grid_of(200);
@@ -45,7 +45,7 @@ TEST(SonarAgainstRays, TheGpuIsNoWorseThanTheReferenceWhereEveryCellHasAPixel) {
 
 TEST(SonarAgainstRays, ThePlaneGatherNeedsHalfTheResolution) {
   if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
-  const auto device = gpu::Device::create({});
+  const auto device = gpu::Device::create({.validation = gpu::validation_layer_present()});
   ASSERT_TRUE(device.ok()) << device.error().message;
   const auto world = make_analytic_world();
   const sonar::BeamGrid grid = grid_of(250);

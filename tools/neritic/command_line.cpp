@@ -130,7 +130,9 @@ void add_sonar_device(CLI::App& command, SonarFlags& flags) {
       .add_option("--backscatter-db", flags.backscatter_db,
                   "Lambert strength of all surfaces, for sensors with a level")
       ->capture_default_str();
-  command.add_option("--seed", flags.seed, "of speckle and noise")->capture_default_str();
+  command.add_option("--seed", flags.seed, "of speckle and noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command.add_option("--picture", flags.picture,
                      "with --method image: the picture from straight above, or a folder");
   command.add_option("--altitude", flags.altitude,
@@ -147,6 +149,8 @@ void add_sonar(CLI::App& app, Run& run) {
   add_sonar_images(*command, *flags);
   add_sonar_device(*command, *flags);
   command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
+  command->add_flag("--validate", flags->validation,
+                    "run with Vulkan validation; any message is a failure");
   command->add_flag("--no-pictures", flags->no_pictures, "without sonar.png, which takes longest");
   command->add_flag("--overwrite", flags->overwrite,
                     "of folders: make frames again that OUT has already");

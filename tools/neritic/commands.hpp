@@ -42,7 +42,7 @@ struct SonarFlags {
   std::string quality;  // of a sensor with terms; empty: as its file says
   std::uint64_t seed = 1;
   std::uint32_t workers = 0;  // 0: as many as cores
-  bool no_pictures = false, overwrite = false, incidence = false;
+  bool no_pictures = false, overwrite = false, incidence = false, validation = false;
 };
 Result<std::string> run_sonar(const SonarFlags& flags);
 

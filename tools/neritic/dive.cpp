@@ -11,6 +11,7 @@
 #include "tools/neritic/dive_physics.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/load_scene.hpp"
+#include "tools/session/validation.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -64,14 +65,6 @@ Result<std::unique_ptr<gpu::Device>> make_device(const DiveFlags& flags, const x
   options.present = window != nullptr;
   if (window) options.instance_extensions = window->instance_extensions();
   return gpu::Device::create(options);
-}
-
-Status check_validation(const gpu::Device& device) {
-  device.wait_idle();
-  const auto& messages = device.validation_log().messages;
-  for (const std::string& message : messages) log_warn("validation: {}", message);
-  if (messages.empty()) return {};
-  return failure(ErrorCode::kUnsupported, "validation reported {} messages", messages.size());
 }
 
 Status dive_offscreen(const DiveFlags& flags, gpu::Device& device, Session& session,

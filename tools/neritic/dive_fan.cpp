@@ -170,8 +170,8 @@ Status SonarFans::declare(graph::FrameGraph& graph, const std::string& name,
                 builder.read(scale, graph::Access::kStorageReadCompute);
                 data.picture = builder.write(picture, graph::Access::kStorageWriteCompute);
               },
-              [this, push = push_of(fan->shape, ping.grid, ping.is_float)](const Data& data,
-                                                                      graph::PassContext& context) {
+              [this, push = push_of(fan->shape, ping.grid, ping.is_float)](
+                  const Data& data, graph::PassContext& context) {
                 gpu::Commands& commands = context.commands;
                 commands.bind_pipeline(draw_);
                 commands.bind(

@@ -32,7 +32,7 @@ class SonarFans {
   Status declare(graph::FrameGraph& graph, const std::string& name, const LiveFrame::Sonar& ping);
   // The newest picture for this frame's passes to read (kSampledFragment); empty before the first.
   graph::ImageHandle picture(graph::FrameGraph& graph, std::size_t sonar);
-  const FanShape* shape(std::size_t sonar) const;         // nullptr before the first
+  const FanShape* shape(std::size_t sonar) const;        // nullptr before the first
   const sonar::BeamGrid* grid(std::size_t sonar) const;  // the same
 
  private:

@@ -18,6 +18,7 @@
 #include "tools/session/session.hpp"
 #include "tools/session/sonar_check.hpp"
 #include "tools/session/survey.hpp"
+#include "tools/session/validation.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -279,12 +280,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
   }
   if (made < flags.frames) return stopped_render(flags, made, step_s, wrote_track);
   warn_of_leftovers(flags, wrote_track, written);
-  device->wait_idle();
-  for (const std::string& message : device->validation_log().messages)
-    log_warn("validation: {}", message);
-  if (!device->validation_log().messages.empty())
-    return failure(ErrorCode::kUnsupported, "validation reported {} messages",
-                   device->validation_log().messages.size());
+  NERITIC_TRY_STATUS(check_validation(*device));
   return summary(flags, session->scene(), all, wrote_track);
 }
 

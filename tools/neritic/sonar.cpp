@@ -3,6 +3,7 @@
 #include "tools/neritic/sonar_folder.hpp"
 #include "tools/neritic/sonar_picture.hpp"
 #include "tools/neritic/sonar_resume.hpp"
+#include "tools/session/validation.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -22,6 +23,7 @@ Status run_one(const SonarJob& job) {
     return write_frame(job, flags.out, hear_by_reference(job, std::move(frame)));
   NERITIC_TRY(const std::unique_ptr<SonarEar> ear, SonarEar::create(job));
   NERITIC_TRY(HeardFrame heard, ear->hear(std::move(frame)));
+  NERITIC_TRY_STATUS(check_validation(ear->device()));
   return write_frame(job, flags.out, std::move(heard));
 }
 
@@ -29,10 +31,15 @@ Status run_one(const SonarJob& job) {
 
 Result<std::string> run_sonar(const SonarFlags& flags) {
   NERITIC_TRY(const SonarJob job, plan_job(flags));
-  if (flags.normals.empty() && flags.method != "image")
-    log_warn("no --normals: estimated from the depth image");
-  if (is_folder_job(job)) return run_folder(job);
+  const bool estimated = flags.normals.empty() && flags.method != "image";
+  if (is_folder_job(job)) {
+    if (estimated) log_warn("no --normals: estimated from the depth images");
+    return run_folder(job);
+  }
+  if (flags.overwrite || flags.workers > 0)
+    return bad_input("--overwrite, --workers: found, accepted with folders of frames");
   NERITIC_TRY_STATUS(run_one(job));
+  if (estimated) log_warn("no --normals: estimated from the depth image");
   return fmt::format("{}: {}", flags.out.string(), fmt::join(result_files(flags.out), ", "));
 }
 

@@ -12,6 +12,7 @@
 #include "tools/neritic/sonar_picture.hpp"
 #include "tools/neritic/sonar_pipeline.hpp"
 #include "tools/neritic/sonar_resume.hpp"
+#include "tools/session/validation.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -158,10 +159,11 @@ Status run_kind(const Run& run) {
                           },
                           [](HeardFrame frame) -> Result<HeardFrame> { return frame; }, write});
   NERITIC_TRY(const std::unique_ptr<SonarEar> ear, SonarEar::create(job));
-  return run_frames(run,
-                    Maker<LoadedFrame, HeardFrame>{
-                        [&](const FrameFiles& f) { return load_frame(job, f, notes); },
-                        [&](LoadedFrame frame) { return ear->hear(std::move(frame)); }, write});
+  NERITIC_TRY_STATUS(
+      run_frames(run, Maker<LoadedFrame, HeardFrame>{
+                          [&](const FrameFiles& f) { return load_frame(job, f, notes); },
+                          [&](LoadedFrame frame) { return ear->hear(std::move(frame)); }, write}));
+  return check_validation(ear->device());
 }
 
 // Of the first frame that there is: all have the same.

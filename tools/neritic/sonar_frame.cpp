@@ -127,6 +127,9 @@ Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& fil
   std::optional<sonar::MapFile> normals, labels;
   if (!files.paths[kNormalGroup].empty()) {
     NERITIC_TRY(normals, sonar::read_map(files.paths[kNormalGroup]));
+    if (normals->coding == sonar::MapFile::Coding::kNumbers && job.options.gamma != 1.0)
+      return bad_input("--gamma: {:g} found, 1 is accepted: {} holds numbers, not codes",
+                       job.options.gamma, normals->path);
   }
   if (!files.paths[kLabelGroup].empty()) {
     NERITIC_TRY(labels, sonar::read_map(files.paths[kLabelGroup]));
@@ -155,6 +158,7 @@ Result<std::unique_ptr<SonarEar>> SonarEar::create(const SonarJob& job) {
   std::unique_ptr<SonarEar> made(new SonarEar(job));
   gpu::DeviceOptions options;
   options.device = job.flags.device;
+  options.validation = job.flags.validation;
   options.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(made->device_, gpu::Device::create(options));
   return made;

@@ -49,6 +49,7 @@ class SonarEar {
   static Result<std::unique_ptr<SonarEar>> create(const SonarJob& job);
   // kBadInput where the frame cannot be taken; any other error is the device's.
   Result<HeardFrame> hear(LoadedFrame frame);
+  const gpu::Device& device() const { return *device_; }
 
  private:
   explicit SonarEar(const SonarJob& job) : job_(job) {}

@@ -144,9 +144,8 @@ Result<sonar::Head> head_of(const scene::Sonar& sonar, const sonar::BeamGrid& gr
                             const SonarFlags& flags) {
   auto heads = sonar::plan_heads(sonar);
   if (!heads.ok())
-    return flags.sensor.empty()
-               ? heads.error()
-               : bad_input("{}: {}", flags.sensor.string(), heads.error().message);
+    return flags.sensor.empty() ? heads.error()
+                                : bad_input("{}: {}", flags.sensor.string(), heads.error().message);
   sonar::Head head = std::move((*heads)[heads->size() > 1 && flags.side == "starboard" ? 1 : 0]);
   const sonar::Limits& l = grid.limits;
   const bool symmetric =
@@ -171,6 +170,11 @@ Status check_method(const SonarFlags& flags, bool plain) {
   if (flags.method == "reference" && !plain)
     return bad_input("--method: reference found, gpu is accepted for {}",
                      flags.sensor.empty() ? "kind " + flags.kind : "a sensor with terms");
+  if (flags.method != "gpu" && (!flags.device.empty() || flags.validation))
+    return bad_input("--device, --validate: found, accepted with --method gpu");
+  if (flags.method == "reference" && !flags.gather.empty() && flags.gather != "published")
+    return bad_input("--gather: {} found, published is accepted with --method reference",
+                     flags.gather);
   if (flags.method != "image") {
     if (flags.depth.empty()) return bad_input("--depth: none found, a depth image is accepted");
     if (!flags.picture.empty() || !flags.altitude.empty() || flags.incidence)

@@ -21,7 +21,7 @@ struct SonarJob {
   sonar::OfflineOptions options;
   sonar::PingState state;
   std::vector<float> detection_floor;  // by range row; empty without noise
-  nlohmann::json settings;  // all that decides a result but the images
+  nlohmann::json settings;             // all that decides a result but the images
 
   bool plain() const { return !head.echo; }  // the published plain cosine
 };

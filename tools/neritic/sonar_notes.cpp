@@ -85,7 +85,8 @@ std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Cove
   if (published && coverage.pixels_per_cell < 2.0)
     return fmt::format(
         "{:.2g} pixels a cell of {} x {} (azimuth, elevation): cells without a pixel stay silent, "
-        "as in the published algorithm; --gather plane fills them, fewer --bins avoid them",
+        "as in the published algorithm; --gather plane (--method gpu) fills them, fewer --bins "
+        "avoid them",
         coverage.pixels_per_cell, grid.bins.azimuth, grid.bins.elevation);
   return std::nullopt;
 }
