@@ -62,7 +62,7 @@ TEST(ChooseDevice, OfSeveralNamedTakesTheBestUsable) {
 TEST(ChooseDevice, AnUnknownNameListsWhatThereIs) {
   const auto chosen = choose_device(kAll, "voodoo");
   ASSERT_FALSE(chosen.ok());
-  EXPECT_EQ(chosen.error().code, ErrorCode::kNoDevice);
+  EXPECT_EQ(chosen.error().code, ErrorCode::kBadInput);
   for (const DeviceInfo& info : kAll) EXPECT_THAT(chosen.error().message, HasSubstr(info.name));
   EXPECT_THAT(chosen.error().message, HasSubstr("voodoo"));
 }
