@@ -47,6 +47,7 @@ inline scene::SonarTerms every_term() {
   t.profile = scene::SonarProfile{{{0.0, 1520.0}, {4.0, 1490.0}, {50.0, 1480.0}}, true};
   t.motion = scene::SonarMotion{.within_ping = true, .doppler = true};
   t.labels.energy = true;
+  t.output.bits = 16;
   return t;
 }
 
