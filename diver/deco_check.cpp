@@ -16,8 +16,8 @@ constexpr double kRunTime_min = 1e-3, kGf = 1e-6, kDepth_m = 1e-5, kPo2_bar = 1e
 double tissue_error(const TissueState& a, const TissueState& b) {
   double worst = 0.0;
   for (std::size_t i = 0; i < kCompartments; ++i)
-    worst =
-        std::max({worst, std::abs(a.n2_bar[i] - b.n2_bar[i]), std::abs(a.he_bar[i] - b.he_bar[i])});
+    worst = larger(
+        worst, larger(std::abs(a.n2_bar[i] - b.n2_bar[i]), std::abs(a.he_bar[i] - b.he_bar[i])));
   return worst;
 }
 
@@ -27,7 +27,7 @@ double stop_error(const std::vector<PlanStop>& found, const std::vector<Expected
   for (const PlanStop& stop : found) off[std::llround(1e3 * stop.depth_m)] += stop.minutes;
   for (const ExpectedStop& stop : expected) off[std::llround(1e3 * stop.depth_m)] -= stop.minutes;
   double worst = 0.0;
-  for (const auto& [depth, minutes] : off) worst = std::max(worst, std::abs(minutes));
+  for (const auto& [depth, minutes] : off) worst = larger(worst, std::abs(minutes));
   return worst;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "diver/oxygen_exposure.hpp"
 #include "engine/core/case_toml.hpp"
 #include "engine/core/files.hpp"
 
@@ -21,7 +22,8 @@ constexpr std::string_view kTankKeys[] = {"volume_l", "pressure_bar", "oxygen",
 constexpr std::string_view kJacketKeys[] = {"capacity_l", "mass_kg", "volume_l"};
 constexpr std::string_view kKickKeys[] = {"amplitude_m", "wavelength_m", "exponent",
                                           "knee_deg",    "pointed_deg",  "most_hz"};
-constexpr std::string_view kComputerKeys[] = {"conventions", "gf_low", "gf_high"};
+constexpr std::string_view kComputerKeys[] = {"conventions", "gf_low",     "gf_high",
+                                              "last_stop_m", "saturation", "desaturation"};
 
 // false: not worn. What is absent is worn as it is by default.
 bool taken_off(const CaseField& field) {
@@ -112,19 +114,20 @@ void read_kick(const CaseField& field, SwimmerSettings& swimmer) {
   swimmer.most_frequency_hz = field["most_hz"].number(swimmer.most_frequency_hz, 0.3, 3.0);
 }
 
-// Where its oxygen is 1.6 bar in sea water, in whole metres.
-double deepest_m(const GasMix& mix) {
-  constexpr double kMost_bar = 1.6, kSurface_bar = 1.01325, kBarAMetre = 0.1005;
-  return std::max(0.0,
-                  std::floor((kMost_bar / std::max(mix.oxygen, 0.01) - kSurface_bar) / kBarAMetre));
-}
-
-Status read_computer(const CaseField& root, const Gear& gear, DiveComputerSettings& computer) {
+// The computer measures the pressure that the water has, whatever its conventions take a metre for.
+Status read_computer(const CaseField& root, const BodyParameters& diver,
+                     DiveComputerSettings& computer) {
+  const Gear& gear = diver.gear;
   const CaseField field = root["computer"];
   field.allow(kComputerKeys);
   if (field["conventions"].present()) {
     NERITIC_TRY(computer.conventions, conventions_of(field["conventions"].text()));
   }
+  DecoConventions& c = computer.conventions;
+  c.environment = {kStandardSurface_bar, bar_per_m_of(diver.water_kg_m3)};
+  c.last_stop_m = field["last_stop_m"].number(c.last_stop_m, 1.0, 30.0);
+  c.saturation = field["saturation"].number(c.saturation, 0.1, 10.0);
+  c.desaturation = field["desaturation"].number(c.desaturation, 0.1, 10.0);
   computer.gf_low = field["gf_low"].number(computer.gf_low, 0.0, 1.0);
   computer.gf_high = field["gf_high"].number(computer.gf_high, 0.0, 1.0);
   if (gear.tanks.empty()) return {};
@@ -134,8 +137,8 @@ Status read_computer(const CaseField& root, const Gear& gear, DiveComputerSettin
     gas.mix = gear.tanks[i].mix;
     if (i > 0) {
       gas.role = GasRole::kDeco;
-      gas.switch_depth_m =
-          root["tanks"].at(i)["switch_depth_m"].number(deepest_m(gas.mix), 0.0, 300.0);
+      gas.switch_depth_m = root["tanks"].at(i)["switch_depth_m"].number(
+          std::min(usual_switch_depth_m(gas.mix), 300.0), 0.0, 300.0);
     }
     computer.gases.push_back(gas);
   }
@@ -155,7 +158,7 @@ Result<DiverFile> parse_diver(std::string_view text, const std::string& name,
   read_person(root, out.parameters);
   read_gear(root, out.parameters.gear);
   read_kick(root["kick"], out.swimmer);
-  const Status computer = read_computer(root, out.parameters.gear, out.computer);
+  const Status computer = read_computer(root, out.parameters, out.computer);
   if (file.failed()) return file.error();
   if (!computer.ok()) return bad_input("{}: computer: {}", name, computer.error().message);
   const auto body = make_body(out.parameters);

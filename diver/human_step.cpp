@@ -70,12 +70,12 @@ const GasMix& breathed_mix(const Body& body, const HumanState& state) {
   return state.held.tank < body.tank_count ? body.tanks[state.held.tank].mix : kAir;
 }
 
-// Litres and breaths a minute; none while the breath is held.
+// Litres and breaths a minute; none while the breath is held, or nothing comes to breathe.
 struct Breathing {
   double minute_l = 0.0, breaths_min = 0.0;
 };
 Breathing breathing_of(const Body& body, const HumanState& state, double ambient_pa) {
-  if (state.held.hold_breath != 0) return {};
+  if (state.held.hold_breath != 0 || state.life.lungs.unfed_s > 0.0) return {};
   const double minute_l = state.held.ventilation_l_min > 0.0
                               ? state.held.ventilation_l_min
                               : ventilation_l_min(body, state.life.lungs.oxygen_l_min,

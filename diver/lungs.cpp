@@ -37,6 +37,11 @@ void hold_breath(const Body& body, LungState& lungs, double ambient_pa, double d
   lungs.volume_m3 = std::min(lungs.held_moles * kAirHeat / ambient_pa, body.lungs.total_m3);
 }
 
+void count_fed(LungState& lungs, bool fed, double dt_s) {
+  lungs.unfed_s = fed ? 0.0 : lungs.unfed_s + dt_s;
+  if (!fed) lungs.starved_s += dt_s;
+}
+
 }  // namespace
 
 double oxygen_demand_l_min(double limb_power_w) {
@@ -84,21 +89,21 @@ void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const Brea
       std::clamp(wanted - lungs.volume_m3, -kMostFlow_m3_s * dt_s, kMostFlow_m3_s * dt_s);
   if (change <= 0.0) {
     lungs.volume_m3 += change;  // breathed out into the water
+    if (lungs.unfed_s > 0.0) lungs.unfed_s += dt_s;
     return;
   }
   // Without a tank there is only what is above the water.
   if (body.tank_count == 0) {
-    if (ambient_pa <= kSurfacePressure_pa)
-      lungs.volume_m3 += change;
-    else
-      lungs.starved_s += dt_s;
+    const bool above = ambient_pa <= kSurfacePressure_pa;
+    if (above) lungs.volume_m3 += change;
+    count_fed(lungs, above, dt_s);
     return;
   }
   const double moles = change * ambient_pa / kAirHeat;
   const double given = breathe_from(body, tanks, in.tank, moles, ambient_pa, dt_s);
   lungs.volume_m3 += given * kAirHeat / ambient_pa;
   lungs.breathed_moles += given;
-  if (given < 0.5 * moles) lungs.starved_s += dt_s;
+  count_fed(lungs, given >= 0.5 * moles, dt_s);
 }
 
 double remaining_s(const Body& body, const TankState& tanks, std::size_t tank,
@@ -107,8 +112,9 @@ double remaining_s(const Body& body, const TankState& tanks, std::size_t tank,
   const TankPlace& place = body.tanks[tank];
   const double floor = moles_in(place.mix, place.water_volume_m3, std::max(reserve_pa, ambient_pa));
   const double moles_s = 1e-3 * ventilation_l_min / 60.0 * ambient_pa / kAirHeat;
-  if (!(moles_s > 0.0)) return std::numeric_limits<double>::infinity();
-  return std::max(0.0, tanks.moles[tank] - floor) / moles_s;
+  const double left = std::max(0.0, tanks.moles[tank] - floor);
+  if (left > 0.0 && !(moles_s > 0.0)) return std::numeric_limits<double>::infinity();
+  return left > 0.0 ? left / moles_s : 0.0;
 }
 
 }  // namespace neritic::diver

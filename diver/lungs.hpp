@@ -16,6 +16,7 @@ struct LungState {
   // Seconds in which the lungs were stretched beyond what they bear, a breath held on ascent: a
   // risk of barotrauma, not an injury. And seconds without enough to breathe.
   double overstretched_s = 0.0, starved_s = 0.0;
+  double unfed_s = 0.0;         // since nothing came to breathe; 0 while it does
   double breathed_moles = 0.0;  // from tanks, so far
 
   static void fields(auto&& field, auto& self) {
@@ -25,6 +26,7 @@ struct LungState {
     field("oxygen_l_min", self.oxygen_l_min);
     field("overstretched_s", self.overstretched_s);
     field("starved_s", self.starved_s);
+    field("unfed_s", self.unfed_s);
     field("breathed_moles", self.breathed_moles);
   }
 };

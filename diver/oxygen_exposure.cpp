@@ -83,6 +83,12 @@ double max_operating_depth_m(const GasMix& mix, double po2_bar, const DecoEnviro
   return where.depth_m(po2_bar / mix.oxygen);
 }
 
+double usual_switch_depth_m(const GasMix& mix) {
+  constexpr double kPo2_bar = 1.6;
+  const double depth_m = max_operating_depth_m(mix, kPo2_bar, kTenMetresABar);
+  return std::max(3.0 * std::floor(depth_m / 3.0 + 1e-9), 0.0);
+}
+
 double narcotic_depth_m(const GasMix& mix, double depth_m, const DecoEnvironment& where) {
   return where.depth_m(where.pressure_bar(depth_m) * (1.0 - mix.helium));
 }

@@ -37,6 +37,9 @@ double cns_after(double cns_percent, double minutes);
 
 // Deepest for a partial pressure of oxygen.
 double max_operating_depth_m(const GasMix& mix, double po2_bar, const DecoEnvironment& where);
+// Where a deco gas is switched to unless told: the deepest multiple of 3 m (10 m a bar) with 1.6
+// bar of oxygen.
+double usual_switch_depth_m(const GasMix& mix);
 // Equivalent narcotic depth on air where oxygen narcotises as nitrogen does.
 double narcotic_depth_m(const GasMix& mix, double depth_m, const DecoEnvironment& where);
 // Depth on air with as much nitrogen: the equivalent air depth of nitrox, and the narcotic depth

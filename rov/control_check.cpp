@@ -14,7 +14,7 @@ template <class Found>
 double difference(const Found& found, const std::vector<double>& expected) {
   double largest = 0.0, size = 1.0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    largest = std::max(largest, std::abs(found[i] - expected[i]));
+    largest = larger(largest, std::abs(found[i] - expected[i]));
     size = std::max(size, std::abs(expected[i]));
   }
   return largest / size;
@@ -50,7 +50,7 @@ CaseResult check_matrix(const AllocationTable& table, const Allocator& allocator
   const PseudoInverse& inverse = allocator.inverse();
   double off = 0.0;
   for (std::size_t k = 0; k < table.inverse.size(); ++k)
-    off = std::max(off, difference(inverse.rows[k], table.inverse[k]));
+    off = larger(off, difference(inverse.rows[k], table.inverse[k]));
   result.errors.push_back(exact("pseudo-inverse", off));
   if (table.rank) result.errors.push_back(exact("rank", std::abs(*table.rank - inverse.rank)));
   result.errors.push_back(
@@ -162,7 +162,7 @@ void compare_end(const LoopCase& one, const State& state, const ControlCheck& op
   const Quat q(e[3], e[4], e[5], e[6]);
   double velocity = 0.0;
   for (std::size_t i = 0; i < 6; ++i)
-    velocity = std::max(velocity, std::abs(state.velocity[i] - e[7 + i]));
+    velocity = larger(velocity, std::abs(state.velocity[i] - e[7 + i]));
   const Quat &a = state.attitude, minus = a - q, plus = a + q;
   result.errors.push_back({"end position", "m", glm::distance(state.position_ned_m, p), bar});
   result.errors.push_back(

@@ -82,8 +82,9 @@ std::vector<Thruster> read_thrusters(const CaseField& field) {
 std::optional<double> find_lag_time(const CaseField& place) {
   for (const std::string& key : place.keys()) {
     const CaseField field = place[key];
-    const bool is_time =
-        key == "T" || key.starts_with("T_") || key.ends_with("_T") || key.ends_with("_T_s");
+    const bool is_time = key == "T" || key.starts_with("T_") || key.ends_with("_T") ||
+                         key.ends_with("_T_s") || key == "tau_s" || key.ends_with("_tau") ||
+                         key.ends_with("_tau_s");
     const bool about_lag = key.find("lag") != key.npos || key.find("time_const") != key.npos;
     if (!field.present() || !(is_time || (about_lag && !field.is_text()))) continue;
     if (!field.is_object()) return field.number(kDefaultLag, 1e-6, 1e6);

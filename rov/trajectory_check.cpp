@@ -95,17 +95,18 @@ Bars euler_bars(double hz) {
 }
 
 void keep_worst(CheckedError& kept, double error, double t_s) {
-  if (error <= kept.error) return;
+  if (std::isnan(kept.error) || error <= kept.error) return;
   kept.error = error;
   kept.time_s = t_s;
 }
 
 double attitude_error(const Quat& a, const Quat& b) {
   const auto largest = [&](double sign) {
-    return std::max({std::abs(a.w - sign * b.w), std::abs(a.x - sign * b.x),
-                     std::abs(a.y - sign * b.y), std::abs(a.z - sign * b.z)});
+    return larger(larger(std::abs(a.w - sign * b.w), std::abs(a.x - sign * b.x)),
+                  larger(std::abs(a.y - sign * b.y), std::abs(a.z - sign * b.z)));
   };
-  return std::min(largest(1.0), largest(-1.0));
+  const double plus = largest(1.0), minus = largest(-1.0);
+  return std::isnan(plus) || plus <= minus ? plus : minus;
 }
 
 // position, attitude, velocity, force

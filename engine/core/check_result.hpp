@@ -2,10 +2,16 @@
 // stay under. Plain values; any thread.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 namespace neritic {
+
+// The larger; no number where either is none (std::max would drop it).
+inline double larger(double a, double b) {
+  return std::isnan(a) || a >= b ? a : b;
+}
 
 struct CheckedError {
   std::string what, unit;

@@ -154,6 +154,8 @@ TEST(DiverExtremes, TanksOfNothingAndOf350Bar) {
       if (bar == 0.0) {
         EXPECT_EQ(state.life.lungs.breathed_moles, 0.0);
         EXPECT_GT(state.life.lungs.starved_s, 5.0);
+        EXPECT_GT(state.life.lungs.unfed_s, 50.0);
+        EXPECT_EQ(gas.ventilation_l_min, 0.0);
         EXPECT_EQ(gas.tank_pa, 0.0);
         EXPECT_EQ(gas.remaining_s, 0.0);
       } else {

@@ -160,6 +160,18 @@ TEST(VitalRisk, Co2RisesWithoutBreathAndSettlesWithIt) {
   EXPECT_EQ(state.life.vitals.risk.breathing, RiskLevel::kLow);
 }
 
+TEST(VitalRisk, AnEmptyTankIsNoBreath) {
+  Gear gear;
+  gear.tanks[0].pressure_pa = 0.0;
+  const Body body = body_with(gear);
+  HumanState state = diver_at(body, 30.0);
+  live_for(body, state, still_inputs(body), 90.0);
+  EXPECT_GT(state.life.lungs.unfed_s, 75.0);
+  EXPECT_GT(state.life.vitals.pause_s, 75.0);
+  EXPECT_GT(state.life.vitals.risk.co2_mmhg, 46.0);
+  EXPECT_EQ(state.life.vitals.risk.breathing, RiskLevel::kSevere);
+}
+
 TEST(VitalRisk, WorkInDenseGasIsMoreCo2AndDepthIsMoreNarcosis) {
   const auto working = [](double depth_m, const GasMix& mix) {
     Gear gear;

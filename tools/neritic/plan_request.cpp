@@ -15,9 +15,6 @@ using diver::DivePlanRequest;
 using diver::GasRole;
 using diver::PlanGas;
 
-// Oxygen at which deco gas is taken where no depth is said, and water for which labels say so.
-constexpr double kSwitchPo2_bar = 1.6;
-
 Result<double> plan_number(const std::string& flag, std::string_view text) {
   double value = 0.0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -36,12 +33,6 @@ Result<std::pair<double, double>> percent_pair(const std::string& flag, const st
   return std::pair{first / 100.0, second / 100.0};
 }
 
-// The deepest multiple of 3 m at which a gas has that much oxygen.
-double switch_depth_of(const diver::GasMix& mix) {
-  const double depth = diver::max_operating_depth_m(mix, kSwitchPo2_bar, diver::kTenMetresABar);
-  return std::max(3.0 * std::floor(depth / 3.0 + 1e-9), 0.0);
-}
-
 // "18/45", "ean50@21".
 Result<PlanGas> gas_of(const std::string& text, GasRole role) {
   const std::size_t at = text.find('@');
@@ -50,7 +41,7 @@ Result<PlanGas> gas_of(const std::string& text, GasRole role) {
   if (at != text.npos) {
     NERITIC_TRY(gas.switch_depth_m, plan_number("gas", text.substr(at + 1)));
   } else if (role == GasRole::kDeco) {
-    gas.switch_depth_m = switch_depth_of(mix);
+    gas.switch_depth_m = diver::usual_switch_depth_m(mix);
   }
   return gas;
 }
@@ -173,8 +164,8 @@ Result<diver::DiveComputerSettings> log_settings(const PlanFlags& flags,
   settings.gf_high = request.gf_high;
   settings.gases.clear();
   for (const diver::GasMix& mix : log.gases)
-    settings.gases.push_back(
-        {mix, switch_depth_of(mix), settings.gases.empty() ? GasRole::kBottom : GasRole::kDeco});
+    settings.gases.push_back({mix, diver::usual_switch_depth_m(mix),
+                              settings.gases.empty() ? GasRole::kBottom : GasRole::kDeco});
   for (const PlanGas& gas : request.gases) {
     const bool known = std::ranges::any_of(
         settings.gases, [&](const PlanGas& other) { return other.mix == gas.mix; });
