@@ -32,9 +32,9 @@ struct DrawList {
 
 struct DrawListOptions {
   bool clusters = true;  // false: every instance whole, for comparison; no bit of a picture differs
-  // false: solids' back faces too, for comparison; pixels at their outlines differ, where rounding
-  // puts a back before its front.
-  bool hide_back_faces = true;
+  // Of closed meshes that every eye is outside of, front faces alone: for views that else draw both
+  // sides, as sonars do. Pixels at outlines differ, where rounding puts a back before its front.
+  bool hide_back_faces = false;
   // Objects of this class are left out; 0: none are.
   std::uint16_t without_class = 0;
 };

@@ -53,13 +53,22 @@ class GpuSceneBuilder {
                       materials.material_of(m, p.material, !p.colors.empty()));
           out_.groups_.push_back({geometry.add(p, material), {}});
           GpuPrimitive& added = out_.groups_.back().primitive;
-          added.closed = !scene_.sonars.empty() && !added.deforms() &&
-                         added.topology == scene::Topology::kTriangles &&
+          added.closed = may_be_closed(scene_.models[m]->materials, p.material, added) &&
                          is_closed(p.positions, p.indices);
         }
       }
     }
     return {};
+  }
+
+  // Of what no sonar hears, or hears from both sides anyhow, nobody asks whether it is closed.
+  bool may_be_closed(std::span<const scene::Material> materials, int material,
+                     const GpuPrimitive& primitive) const {
+    if (scene_.sonars.empty() || primitive.deforms()) return false;
+    if (primitive.topology != scene::Topology::kTriangles) return false;
+    if (material < 0) return true;
+    const scene::Material& m = materials[static_cast<std::size_t>(material)];
+    return !m.double_sided && m.alpha_mode != scene::AlphaMode::kMask;
   }
 
   void add_appearances() {

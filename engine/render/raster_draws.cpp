@@ -86,8 +86,8 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
                                  stage == RasterStage::kGeometry ? 0u : material.flags}));
     // A camera sees the sides that the material has. A sonar hears both sides of a sheet, but of a
     // solid with one side it needs no backs: see closed_surface.hpp.
-    const bool solid = draw.hides_back_faces && !material.mask;
-    const bool both_sides = material.double_sided || (kind == GBufferKind::kGeometry && !solid);
+    const bool both_sides =
+        material.double_sided || (kind == GBufferKind::kGeometry && !draw.hides_back_faces);
     prepared.draws.push_back({draw,
                               std::span(list.ranges).subspan(draw.first_range, draw.range_count),
                               pipeline, stage != RasterStage::kGeometry, both_sides, &material});

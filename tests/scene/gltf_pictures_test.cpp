@@ -98,7 +98,7 @@ TEST(GltfPictures, SizesInHeadersAreThoseOfTheDecodedPictures) {
   const PictureSize size = peek_size(std::as_bytes(std::span(png)));
   EXPECT_EQ(size.width, 37u);
   EXPECT_EQ(size.height, 37u);
-  const auto jpeg = read_file(test::source_dir() / "assets/terrain/sand_color.jpg");
+  const auto jpeg = read_file(test::source_dir() / "assets/textures/sand_color.jpg");
   ASSERT_TRUE(jpeg.ok());
   const auto decoded = decode_image8(*jpeg, "sand", 4);
   ASSERT_TRUE(decoded.ok());

@@ -130,8 +130,9 @@ class ClusterCullingTest : public test::GpuTest {
   double expect_same_bits(const render::ViewSet& views) {
     double share = 0.0;
     for (const GBufferKind kind : {GBufferKind::kSurface, GBufferKind::kGeometry}) {
-      auto with = studio_->draw(views, kind, {}),
-           without = studio_->draw(views, kind, {.clusters = false});
+      const bool sonar = kind == GBufferKind::kGeometry;
+      auto with = studio_->draw(views, kind, {.hide_back_faces = sonar}),
+           without = studio_->draw(views, kind, {.clusters = false, .hide_back_faces = sonar});
       EXPECT_TRUE(with.ok() && without.ok());
       if (!with.ok() || !without.ok()) return 1.0;
       EXPECT_EQ(with->images.size(), kind == GBufferKind::kSurface ? 5u : 3u);
@@ -197,9 +198,9 @@ TEST_F(ClusterCullingTest, BackFacesOfSolidsAreSeenAtOutlinesAtMost) {
   ASSERT_NO_FATAL_FAILURE(open(Vec3(0.0)));
   for (const Vec3& eye : {Vec3(6.0, -15.0, -8.0), Vec3(-0.2, -17.0, 0.0), Vec3(3.0, -18.4, -6.0)}) {
     const auto views = views_at(look_at(eye, {1.0, -17.0, -2.0}));
-    NERITIC_ASSERT_OK(auto with, studio_->draw(views, GBufferKind::kGeometry, {}));
-    NERITIC_ASSERT_OK(auto without,
-                      studio_->draw(views, GBufferKind::kGeometry, {.hide_back_faces = false}));
+    NERITIC_ASSERT_OK(auto with,
+                      studio_->draw(views, GBufferKind::kGeometry, {.hide_back_faces = true}));
+    NERITIC_ASSERT_OK(auto without, studio_->draw(views, GBufferKind::kGeometry, {}));
     const auto depths = [](const Drawn& d) {
       const std::vector<std::byte>& bytes = d.images.at("depth");
       std::vector<float> out(bytes.size() / sizeof(float));
@@ -238,7 +239,7 @@ bool hides_backs(gpu::Device& device, double distance_m, double scale, bool flip
   views.views.emplace_back();
   views.views[0].near_m = 0.1;
   views.views[0].world_from_view.position_m = {0.0, 0.0, distance_m};
-  auto drawn = (*studio)->draw(views, GBufferKind::kGeometry, {});
+  auto drawn = (*studio)->draw(views, GBufferKind::kGeometry, {.hide_back_faces = true});
   EXPECT_TRUE(drawn.ok());
   return drawn.ok() && drawn->solids == 1;
 }

@@ -36,17 +36,22 @@ class LittleMemory {
   static inline VkDeviceSize most_bytes_ = 0;
 };
 
-TEST_F(OutOfMemory, NamesTheLargestCameraAndWhatWouldDo) {
+// Nothing but cameras of these widths and heights.
+scene::Scene cameras_of(std::initializer_list<std::pair<std::uint32_t, std::uint32_t>> sizes) {
   scene::Scene scene;
   scene.path = "test";
-  for (const std::uint32_t width : {100u, 2500u, 300u}) {
-    scene::Camera camera;
+  for (const auto& [width, height] : sizes) {
+    scene::Camera& camera = scene.cameras.emplace_back();
     camera.name = "camera_" + std::to_string(width);
     camera.width = width;
-    camera.height = 1000;
-    scene.cameras.push_back(camera);
+    camera.height = height;
   }
-  NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+  return scene;
+}
+
+TEST_F(OutOfMemory, NamesTheLargestCameraAndWhatWouldDo) {
+  NERITIC_ASSERT_OK(const auto session,
+                    Session::create(device(), cameras_of({{100, 1000}, {2500, 1000}, {300, 1000}})));
   FrameRequest request;
   request.cameras = {0, 1, 2};
   {
@@ -65,16 +70,8 @@ TEST_F(OutOfMemory, NamesTheLargestCameraAndWhatWouldDo) {
 
 // Read-backs fit, the G-buffer does not; then frames that do fit are drawn as if nothing had been.
 TEST_F(OutOfMemory, AFrameTooLargeIsInNobodysWay) {
-  scene::Scene scene;
-  scene.path = "test";
-  for (const std::uint32_t width : {100u, 200u, 4000u}) {
-    scene::Camera camera;
-    camera.name = "camera_" + std::to_string(width);
-    camera.width = width;
-    camera.height = width;
-    scene.cameras.push_back(camera);
-  }
-  NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+  NERITIC_ASSERT_OK(const auto session,
+                    Session::create(device(), cameras_of({{100, 100}, {200, 200}, {4000, 4000}})));
   FrameRequest request;
   request.capture = {true, false, false};
   const LittleMemory little(VkDeviceSize{200} << 20);

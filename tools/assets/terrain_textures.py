@@ -1,6 +1,6 @@
 """Takes the sand's colour and normal pictures out of seabed.glb for terrains made of heightfields.
 
-Writes assets/terrain/sand_color.jpg and sand_normal.jpg (a repeat every 2.5 m).
+Writes assets/textures/sand_color.jpg and sand_normal.jpg (a repeat every 2.5 m).
 """
 import json
 import struct
@@ -23,7 +23,7 @@ def images(glb):
 def main():
     for name, data in images((ASSETS / "models" / "seabed.glb").read_bytes()):
         if name.startswith("sand_"):
-            (ASSETS / "terrain" / f"{name}.jpg").write_bytes(data)
+            (ASSETS / "textures" / f"{name}.jpg").write_bytes(data)
 
 
 if __name__ == "__main__":

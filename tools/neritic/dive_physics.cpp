@@ -76,6 +76,10 @@ Pace run_steps(PhysicsSimulation& simulation, DiveRecorder& recorder, const Dive
   return pace;
 }
 
+std::string touch_words(std::uint64_t steps) {
+  return steps == 0 ? "touched nothing" : fmt::format("touched something in {} steps", steps);
+}
+
 std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& state,
                          const DiveFigures& figures) {
   std::string line = vehicle.name + ": ";
@@ -90,9 +94,7 @@ std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& stat
       "{:.2f} m of way, up to {:.2f} m/s, {:.1f} to {:.1f} m deep, tilted up to {:.1f} degrees, ",
       figures.path_m, figures.largest_speed_m_s, figures.shallowest_m, figures.deepest_m,
       degrees(figures.largest_tilt_rad));
-  line += state.contact.touched_steps == 0
-              ? "touched nothing"
-              : fmt::format("touched something in {} steps", state.contact.touched_steps);
+  line += touch_words(state.contact.touched_steps);
   if (state.body.refused_inputs > 0)
     line += fmt::format(", {} inputs refused", state.body.refused_inputs);
   return line + "\n";
@@ -111,9 +113,7 @@ std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
       1e-5 * gas.tank_pa, gas.ventilation_l_min);
   line += deco.ceiling_m > 0.0 ? fmt::format("ceiling {:.1f} m, ", deco.ceiling_m)
                                : fmt::format("{:.0f} min without stops, ", deco.no_stop_min);
-  line += state.contact.touched_steps == 0
-              ? "touched nothing"
-              : fmt::format("touched something in {} steps", state.contact.touched_steps);
+  line += touch_words(state.contact.touched_steps);
   if (state.human.refused_inputs > 0)
     line += fmt::format(", {} inputs refused", state.human.refused_inputs);
   return line + "\n";

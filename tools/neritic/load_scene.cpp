@@ -13,7 +13,10 @@ Result<scene::Scene> load(const std::filesystem::path& path, const scene::SceneO
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".gltf" && extension != ".glb") return scene::load_scene(path, options);
+  if (extension == ".toml" || extension.empty()) return scene::load_scene(path, options);
+  if (extension != ".gltf" && extension != ".glb")
+    return bad_input("{}: a {} file; accepted: a scene (.toml) or a model (.gltf, .glb)",
+                     path.string(), extension.substr(1));
   NERITIC_TRY(scene::Model model, scene::load_gltf(path));
   scene::Scene scene = scene::scene_of_model(std::move(model), 1280, 720);
   scene.path = path.string();

@@ -81,6 +81,11 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
       return bad_input("tradeoff: kind '{}' without a scene found, a scene is accepted",
                        flags.kind);
   }
+  std::error_code none;
+  if (flags.scene == TradeoffFlags().scene && !std::filesystem::exists(flags.scene, none))
+    return bad_input(
+        "tradeoff: no {} here; accepted: to start in the project's folder, or --scene FILE, or none",
+        flags.scene);
   Progress progress("tradeoff sonar", steps(options));
   options.step = [&] { progress.step(); };
   options.now = [&](const std::string& doing) { progress.now(doing); };

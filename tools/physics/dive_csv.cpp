@@ -128,40 +128,28 @@ void append_readings(std::string& out, const SensorColumns& sensor, const Readin
     out += std::isnan(number) ? std::string(",") : fmt::format(",{:.9g}", number);
 }
 
+// Columns x_m to wanted_z_m. Velocity: body axes forward, starboard, down; the rest: world axes.
+void append_motion(std::string& out, const Pose& world_from_body, const Vec6& velocity,
+                   const Vec3& current_m_s, const Vec3& wanted_m) {
+  const Vec3& p = world_from_body.position_m;
+  const Quat& q = world_from_body.rotation;
+  const auto [heading, pitch, roll] = euler_of(rov::ned_from_world(q));
+  append_numbers(out, {p.x, p.y, p.z, -p.y, q.w, q.x, q.y, q.z});
+  append_numbers(out, {compass_deg(heading), degrees(pitch), degrees(roll)});
+  append_numbers(out, {velocity[0], velocity[1], velocity[2]});
+  append_numbers(out, {degrees(velocity[3]), degrees(velocity[4]), degrees(velocity[5])});
+  append_numbers(out, {current_m_s.x, current_m_s.y, current_m_s.z});
+  append_numbers(out, {wanted_m.x, wanted_m.y, wanted_m.z});
+}
+
 void append_row(std::string& out, const PhysicsWorld& world, const DiveRow& row,
                 std::size_t thrusters) {
   const PhysicsVehicle& vehicle = world.vehicles()[row.vehicle];
   const Vec3& p = row.world_from_body.position_m;
-  const Quat& q = row.world_from_body.rotation;
-  const auto [heading, pitch, roll] = euler_of(rov::ned_from_world(q));
-  const rov::Vec6& v = row.velocity;
-  const Vec3 &wanted = row.wanted.position_m, &c = row.current_m_s;
   fmt::format_to(std::back_inserter(out), "{:.9g},{}", row.time_s, vehicle.name);
-  append_numbers(out, {p.x,
-                       p.y,
-                       p.z,
-                       -p.y,
-                       q.w,
-                       q.x,
-                       q.y,
-                       q.z,
-                       compass_deg(heading),
-                       degrees(pitch),
-                       degrees(roll),
-                       v[0],
-                       v[1],
-                       v[2],
-                       degrees(v[3]),
-                       degrees(v[4]),
-                       degrees(v[5]),
-                       c.x,
-                       c.y,
-                       c.z,
-                       wanted.x,
-                       wanted.y,
-                       wanted.z,
-                       compass_deg(rov::heading_of(rov::ned_from_world(row.wanted.rotation))),
-                       glm::distance(p, wanted)});
+  append_motion(out, row.world_from_body, row.velocity, row.current_m_s, row.wanted.position_m);
+  append_numbers(out, {compass_deg(rov::heading_of(rov::ned_from_world(row.wanted.rotation))),
+                       glm::distance(p, row.wanted.position_m)});
   fmt::format_to(std::back_inserter(out), ",{},{},{},{}", row.waypoint, row.arrived,
                  row.near_points, row.touched_steps);
   for (std::size_t i = 0; i < thrusters; ++i) {
@@ -180,34 +168,9 @@ void append_row(std::string& out, const PhysicsWorld& world, const DiveRow& row,
 void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& row,
                   std::size_t thrusters) {
   const Vec3& p = row.world_from_body.position_m;
-  const Quat& q = row.world_from_body.rotation;
-  const auto [heading, pitch, roll] = euler_of(rov::ned_from_world(q));
-  const Vec6& v = row.velocity;
-  const Vec3 wanted = rov::world_from_ned(row.goal.target_ned_m), &c = row.current_m_s;
+  const Vec3 wanted = rov::world_from_ned(row.goal.target_ned_m);
   fmt::format_to(std::back_inserter(out), "{:.9g},{}", row.time_s, world.humans()[row.human].name);
-  append_numbers(out, {p.x,
-                       p.y,
-                       p.z,
-                       -p.y,
-                       q.w,
-                       q.x,
-                       q.y,
-                       q.z,
-                       compass_deg(heading),
-                       degrees(pitch),
-                       degrees(roll),
-                       v[0],
-                       v[1],
-                       v[2],
-                       degrees(v[3]),
-                       degrees(v[4]),
-                       degrees(v[5]),
-                       c.x,
-                       c.y,
-                       c.z,
-                       wanted.x,
-                       wanted.y,
-                       wanted.z});
+  append_motion(out, row.world_from_body, row.velocity, row.current_m_s, wanted);
   fmt::format_to(std::back_inserter(out), ",,{:.9g},{},{},{},{}", glm::distance(p, wanted),
                  row.arrived, row.arrived, row.near_points, row.touched_steps);
   append_empty(out, static_cast<std::ptrdiff_t>(2 * thrusters));

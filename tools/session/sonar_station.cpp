@@ -180,7 +180,8 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
       scene_.world_from(sonar.mount, frame.time_s) * turned * state.head.sonar_from_head;
   head.index = work.index;
   head.views = head_views(sonar, state, world_from_head);
-  head.draws = render::build_draw_list(scene_, frame.gpu_scene, frame.state, head.views);
+  head.draws = render::build_draw_list(scene_, frame.gpu_scene, frame.state, head.views,
+                                       {.hide_back_faces = true});
   const std::string prefix = name_of(sonar, state) + " ";
   NERITIC_TRY(const render::GBuffer g,
               frame.renderer.declare_gbuffer(frame.graph, prefix, render::GBufferKind::kGeometry,
@@ -245,8 +246,9 @@ Status SonarStation::declare_ghosts(const Frame& frame, const SonarWork& work, H
     const Pose pose = sonar::mirrored(mirror, direct_ping.world_from_sonar);
     ghost.view.views = head_views(sonar, state, pose);
     // A bottom that mirrors does not stand in its own way.
-    const render::DrawListOptions draw{.without_class = mirror.water_below ? std::uint16_t{0}
-                                                                           : scene::kClasses[0].id};
+    const render::DrawListOptions draw{
+        .hide_back_faces = true,
+        .without_class = mirror.water_below ? std::uint16_t{0} : scene::kClasses[0].id};
     ghost.view.draws =
         render::build_draw_list(scene_, frame.gpu_scene, frame.state, ghost.view.views, draw);
     const std::string prefix =

@@ -1,4 +1,4 @@
-// What sonar/SHOWN.md names as a test is one: a test that is renamed takes its line along.
+// What the pages of claims name as a test is one: a test that is renamed takes its line along.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -22,8 +22,12 @@ std::string test_sources() {
   return all;
 }
 
-TEST(SonarShown, EveryTestThatIsNamedIsThere) {
-  NERITIC_ASSERT_OK(const std::string page, read_text(test::source_dir() / "sonar/SHOWN.md"));
+class ShownPage : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Pages, ShownPage,
+                         ::testing::Values("engine/SHOWN.md", "sonar/SHOWN.md", "diver/CHECKS.md"));
+
+TEST_P(ShownPage, NamesTestsThatAreThere) {
+  NERITIC_ASSERT_OK(const std::string page, read_text(test::source_dir() / GetParam()));
   const std::string sources = test_sources();
   // `Suite.Name`, `Sonar/Suite.Name`, or `.Name` of the suite before it. A name that ends in dots
   // or a star stands for all that begin so.
