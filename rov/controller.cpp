@@ -78,7 +78,11 @@ Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Set
     u[i] = pid_step(gains.axes[i], control.integral[i], error[i], rate[i], gains.period_s);
   Vec6 wrench = vehicle.rigid_mass * u + s.pilot;
   if (gains.feed_forward)
-    wrench = wrench - static_wrench(vehicle, {state.position_ned_m, q, state.velocity}, state.held);
+    wrench = wrench - static_wrench(vehicle,
+                                    {state.position_ned_m, q,
+                                     through_water(q, state.velocity, state.held.current_ned_m_s),
+                                     state.held.current_ned_m_s},
+                                    state.held);
   const Vec6 moving = vec6(setpoint_velocity, Vec3(0.0));
   wrench = wrench + vehicle.linear_damping * moving;
   for (std::size_t i = 0; i < 6; ++i)

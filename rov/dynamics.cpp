@@ -40,11 +40,21 @@ Vec6 static_wrench(const Vehicle& v, const WaterMotion& motion, const Inputs& in
   const Vec3 at = motion.position_ned_m + motion.attitude * arm;
   const Vec3 velocity =
       motion.attitude * (motion.velocity.linear() + glm::cross(motion.velocity.angular(), arm)) +
-      inputs.current_ned_m_s;
+      motion.current_ned_m_s;
   const Vec3 pull =
       glm::conjugate(motion.attitude) *
-      tether_force_n(*v.tether, inputs.tether_anchor_ned_m, at, velocity, inputs.current_ned_m_s);
+      tether_force_n(*v.tether, inputs.tether_anchor_ned_m, at, velocity, motion.current_ned_m_s);
   return out + vec6(pull, glm::cross(arm, pull));
+}
+
+Vec6 water_wrench(const Vehicle& v, const Quat& attitude, const Inputs& inputs) {
+  const Vec3 &a_ned = inputs.water_acceleration_ned_m_s2, &b_ned = inputs.current_change_ned_m_s2;
+  if (a_ned == Vec3(0.0) && b_ned == Vec3(0.0)) return {};
+  const Quat body_from_ned = glm::conjugate(attitude);
+  const Vec3 a = body_from_ned * a_ned, pull = v.displaced_kg * a;
+  // M_A a - M b = M (a - b) - M_RB a.
+  return v.mass * vec6(a - body_from_ned * b_ned, Vec3(0.0)) - v.rigid_mass * vec6(a, Vec3(0.0)) +
+         vec6(pull, glm::cross(v.buoyancy_centre_m, pull));
 }
 
 WaterMotion motion_rate(const Vehicle& v, const WaterMotion& motion, const Vec6& wrench,
@@ -53,12 +63,14 @@ WaterMotion motion_rate(const Vehicle& v, const WaterMotion& motion, const Vec6&
   const Vec6 momentum = v.mass * nu;
   const Vec3 linear = nu.linear(), angular = nu.angular();
   Vec6 force =
-      wrench + static_wrench(v, motion, inputs) - v.linear_damping * nu -
+      wrench + static_wrench(v, motion, inputs) + water_wrench(v, motion.attitude, inputs) -
+      v.linear_damping * nu -
       vec6(glm::cross(angular, momentum.linear()),
            glm::cross(angular, momentum.angular()) + glm::cross(linear, momentum.linear()));
   for (std::size_t i = 0; i < 6; ++i) force[i] -= v.quadratic_damping[i] * std::abs(nu[i]) * nu[i];
-  return {motion.attitude * linear + inputs.current_ned_m_s,
-          attitude_rate(motion.attitude, angular), v.inverse_mass * force};
+  return {motion.attitude * linear + motion.current_ned_m_s,
+          attitude_rate(motion.attitude, angular), v.inverse_mass * force,
+          inputs.current_change_ned_m_s2};
 }
 
 double followed_command(const Vehicle& vehicle, const Inputs& inputs, std::size_t i) {
@@ -83,14 +95,17 @@ Vec6 thruster_wrench(const Vehicle& vehicle, const std::array<double, kMaxThrust
 
 StateRate derivative(const Vehicle& vehicle, const State& state, const Inputs& inputs) {
   const WaterMotion motion{state.position_ned_m, state.attitude,
-                           through_water(state.attitude, state.velocity, inputs.current_ned_m_s)};
+                           through_water(state.attitude, state.velocity, inputs.current_ned_m_s),
+                           inputs.current_ned_m_s};
   const Vec6 wrench =
       inputs.wrench + thruster_wrench(vehicle, thruster_forces(vehicle, state, inputs));
   const WaterMotion rate = motion_rate(vehicle, motion, wrench, inputs);
   StateRate out{rate.position_ned_m, rate.attitude, rate.velocity};
-  // nu = nu_r + R^T v_c, and (R^T v_c)' = -w x R^T v_c.
-  const Vec3 current = glm::conjugate(state.attitude) * inputs.current_ned_m_s;
-  out.velocity = out.velocity - vec6(glm::cross(state.velocity.angular(), current), Vec3(0.0));
+  // nu = nu_r + R^T v_c, and (R^T v_c)' = R^T v_c' - w x R^T v_c.
+  const Quat body_from_ned = glm::conjugate(state.attitude);
+  const Vec3 current = body_from_ned * inputs.current_ned_m_s;
+  out.velocity = out.velocity - vec6(glm::cross(state.velocity.angular(), current), Vec3(0.0)) +
+                 vec6(body_from_ned * inputs.current_change_ned_m_s2, Vec3(0.0));
   for (std::size_t i = 0; i < vehicle.thruster_count; ++i)
     out.lag[i] = lag_rate(vehicle.lag, state.lag[i], followed_command(vehicle, inputs, i));
   return out;

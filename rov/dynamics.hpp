@@ -9,6 +9,14 @@
 // [P; L] = M nu_r, M = M_RB + M_A, Kirchhoff's equations give
 //   M nu_r' = tau - D(nu_r) nu_r - g(q) - [w x P; w x L + v_r x P]
 // which is the above exactly, the Munk moment and M_A nu_c' in a current included.
+//
+// Water that speeds up pulls along what floats in it: its acceleration a = Du/Dt adds to tau
+//   M_A [R^T a; 0] + rho V [R^T a; r_b x R^T a],
+// as on a sphere in any slowly varying flow (Auton, Hunt, Prud'homme 1988, J. Fluid Mech. 197, eq.
+// 3.1, without the lift of its vorticity), so that what is neutrally buoyant and drifts goes with
+// the water. nu_r then is in axes that gather speed as the current on the vehicle's way does, b =
+// du/dt + (v grad) u, which takes M [R^T b; 0] off. Water that turns or shears about the vehicle
+// gives no moment.
 #pragma once
 
 #include <array>
@@ -23,7 +31,10 @@ namespace neritic::rov {
 struct Inputs {
   Vec6 wrench;  // tau beside the thrusters', body axes, N and N m
   std::array<double, kMaxThrusters> thruster_n{};  // commands; before lag, limits and failure
-  Vec3 current_ned_m_s{0.0};  // steady during the step, of all the water around the vehicle
+  Vec3 current_ned_m_s{0.0};  // at the step's start, of all the water around the vehicle
+  // How that changes where the vehicle is, as it moves: b.
+  Vec3 current_change_ned_m_s2{0.0};
+  Vec3 water_acceleration_ned_m_s2{0.0};  // of the water itself, Du/Dt: a
   Vec3 tether_anchor_ned_m{0.0};
   std::uint64_t failed_thrusters = 0;  // bit i: thruster i gives nothing, its lag runs out
 
@@ -31,6 +42,8 @@ struct Inputs {
     field("wrench", self.wrench);
     field("thruster_n", self.thruster_n);
     field("current_ned_m_s", self.current_ned_m_s);
+    field("current_change_ned_m_s2", self.current_change_ned_m_s2);
+    field("water_acceleration_ned_m_s2", self.water_acceleration_ned_m_s2);
     field("tether_anchor_ned_m", self.tether_anchor_ned_m);
     field("failed_thrusters", self.failed_thrusters);
   }
@@ -87,11 +100,15 @@ struct WaterMotion {
   Vec3 position_ned_m{0.0};
   Quat attitude{1.0, 0.0, 0.0, 0.0};
   Vec6 velocity;  // nu_r
+  Vec3 current_ned_m_s{0.0};
 };
-// wrench: everything but drag, weight, buoyancy and tether. Returns the three rates in its members.
+// wrench: everything but drag, weight, buoyancy, tether and accelerating water. Returns the rates
+// in its members.
 WaterMotion motion_rate(const Vehicle& vehicle, const WaterMotion& motion, const Vec6& wrench,
                         const Inputs& inputs);
 // Weight, buoyancy and tether: -g(q) and the tether's pull, body axes.
 Vec6 static_wrench(const Vehicle& vehicle, const WaterMotion& motion, const Inputs& inputs);
+// What accelerating water adds to the rate of M nu_r, body axes; 0 in a steady, uniform current.
+Vec6 water_wrench(const Vehicle& vehicle, const Quat& attitude, const Inputs& inputs);
 
 }  // namespace neritic::rov

@@ -6,13 +6,13 @@
 
 namespace neritic::rov {
 
-ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state,
+ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, const Vec6& contact,
                     const NoiseSource& noise, std::uint64_t sample) {
-  const StateRate rate = derivative(vehicle, state, state.held);
-  const Vec3 w = state.velocity.angular(), turning = rate.velocity.angular();
+  const Vec6 rate = derivative(vehicle, state, state.held).velocity + contact;
+  const Vec3 w = state.velocity.angular(), turning = rate.angular();
   const Vec3 r = imu.mount.position_m;
   // Of the point r, in body axes: the origin's, which turn, and what turning adds there.
-  const Vec3 acceleration = rate.velocity.linear() + glm::cross(w, state.velocity.linear()) +
+  const Vec3 acceleration = rate.linear() + glm::cross(w, state.velocity.linear()) +
                             glm::cross(turning, r) + glm::cross(w, glm::cross(w, r));
   const Vec3 gravity = glm::conjugate(state.attitude) * Vec3(0.0, 0.0, imu.gravity_m_s2);
   const Quat sensor_from_body = glm::conjugate(imu.mount.rotation);

@@ -28,7 +28,9 @@ struct ImuReading {
     field("specific_force_m_s2", self.specific_force_m_s2);
   }
 };
-ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state,
+// contact: the rate of the velocity that contacts make, linear and angular, body axes; beside what
+// water, weight and thrusters do at the state, which follow from it.
+ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, const Vec6& contact,
                     const NoiseSource& noise, std::uint64_t sample);
 
 struct PressureSensor {

@@ -9,7 +9,7 @@ namespace {
 // a + h * rate; the attitude is a sum, not of unit length.
 WaterMotion moved(const WaterMotion& a, double h, const WaterMotion& rate) {
   return {a.position_ned_m + h * rate.position_ned_m, a.attitude + h * rate.attitude,
-          a.velocity + h * rate.velocity};
+          a.velocity + h * rate.velocity, a.current_ned_m_s + h * rate.current_ned_m_s};
 }
 
 // (k1 + 2 k2 + 2 k3 + k4) / 6
@@ -18,7 +18,8 @@ WaterMotion mean(const WaterMotion& k1, const WaterMotion& k2, const WaterMotion
   WaterMotion sum = moved(k1, 2.0, k2);
   sum = moved(sum, 2.0, k3);
   sum = moved(sum, 1.0, k4);
-  return {sum.position_ned_m / 6.0, sum.attitude / 6.0, (1.0 / 6.0) * sum.velocity};
+  return {sum.position_ned_m / 6.0, sum.attitude / 6.0, (1.0 / 6.0) * sum.velocity,
+          sum.current_ned_m_s / 6.0};
 }
 
 // The wrench of all thrusters with this memory.
@@ -132,11 +133,13 @@ void semi_implicit(const StepTask& task, int substeps, bool implicit_coriolis, W
   for (int i = 0; i < substeps; ++i) {
     advance(task, whole, lag);
     const Vec6 wrench = task.wrench_at((i + 1) * h) + thrust(task, lag) +
-                        static_wrench(task.vehicle, motion, task.inputs);
+                        static_wrench(task.vehicle, motion, task.inputs) +
+                        water_wrench(task.vehicle, motion.attitude, task.inputs);
     motion.velocity =
         implicit_velocity(task.vehicle, motion.velocity, wrench, h, implicit_coriolis);
+    motion.current_ned_m_s += h * task.inputs.current_change_ned_m_s2;
     motion.position_ned_m +=
-        h * (motion.attitude * motion.velocity.linear() + task.inputs.current_ned_m_s);
+        h * (motion.attitude * motion.velocity.linear() + motion.current_ned_m_s);
     motion.attitude = turned(motion.attitude, motion.velocity.angular(), h);
     normalise(motion.attitude);
   }

@@ -38,6 +38,9 @@ struct SensorReadings {
   Reading<double> heading_rad;
   Reading<AltimeterReading> altimeter;
   Reading<UsblReading> usbl;
+  // What contacts did to the velocity since the inertial unit's last reading, and in what time.
+  Vec6 contact_change;
+  double contact_s = 0.0;
   static void fields(auto&& field, auto& self) {
     field("imu", self.imu);
     field("dvl", self.dvl);
@@ -45,6 +48,8 @@ struct SensorReadings {
     field("heading_rad", self.heading_rad);
     field("altimeter", self.altimeter);
     field("usbl", self.usbl);
+    field("contact_change", self.contact_change);
+    field("contact_s", self.contact_s);
   }
 };
 
@@ -55,7 +60,10 @@ struct SensorWorld {
 };
 
 // Replaces the readings of the sensors that are due in (from_s, to_s], of the state at to_s.
+// contact: the rate of the velocity by contacts in that time, body axes. The inertial unit reads
+// its mean since its last sample, so that no hit is missed or felt twice, whatever its rate.
 void update_readings(const SensorSet& sensors, const SensorWorld& world, const Vehicle& vehicle,
-                     const State& state, double from_s, double to_s, SensorReadings& readings);
+                     const State& state, const Vec6& contact, double from_s, double to_s,
+                     SensorReadings& readings);
 
 }  // namespace neritic::rov

@@ -46,6 +46,10 @@ void take_inputs(const Inputs& in, State& state) {
     take(std::abs(in.thruster_n[i]) <= kMostForce, in.thruster_n[i], held.thruster_n[i], refused);
   take(good(in.current_ned_m_s, kMostCurrent_m_s), in.current_ned_m_s, held.current_ned_m_s,
        refused);
+  for (const auto acceleration :
+       {&Inputs::current_change_ned_m_s2, &Inputs::water_acceleration_ned_m_s2})
+    take(good(in.*acceleration, kMostWaterAcceleration_m_s2), in.*acceleration, held.*acceleration,
+         refused);
   take(good(in.tether_anchor_ned_m, kMostDistance), in.tether_anchor_ned_m,
        held.tether_anchor_ned_m, refused);
   held.failed_thrusters = in.failed_thrusters;
@@ -60,7 +64,8 @@ bool is_sane(const WaterMotion& m) {
 
 WaterMotion motion_of(const State& state) {
   return {state.position_ned_m, state.attitude,
-          through_water(state.attitude, state.velocity, state.held.current_ned_m_s)};
+          through_water(state.attitude, state.velocity, state.held.current_ned_m_s),
+          state.held.current_ned_m_s};
 }
 
 int substeps_for(const StepTask& task, const State& state) {
@@ -125,7 +130,7 @@ State step(const Vehicle& vehicle, const State& state, const Inputs& inputs, dou
   if (!is_sane(motion)) return next;
   next.position_ned_m = motion.position_ned_m;
   next.attitude = motion.attitude;
-  next.velocity = over_ground(motion.attitude, motion.velocity, next.held.current_ned_m_s);
+  next.velocity = over_ground(motion.attitude, motion.velocity, motion.current_ned_m_s);
   next.lag = lag;
   return next;
 }

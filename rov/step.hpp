@@ -38,6 +38,7 @@ struct VaryingWrench {
 // No vehicle's inputs are larger.
 inline constexpr double kMostForce = 1e9;  // N, N m
 inline constexpr double kMostCurrent_m_s = 100.0;
+inline constexpr double kMostWaterAcceleration_m_s2 = 100.0;  // in each axis
 
 // Inputs that are not finite, or larger than these, are refused: the last good value is held (at
 // first zero) and state.refused_inputs counts it. So is a dt outside (0, 10] s: then nothing moves.

@@ -121,6 +121,7 @@ Result<Vehicle> make_vehicle(const VehicleParameters& p) {
   v.mass_kg = p.mass_kg;
   v.weight_n = p.weight_n;
   v.buoyancy_n = p.buoyancy_n;
+  v.displaced_kg = p.weight_n > 0.0 ? p.mass_kg * (p.buoyancy_n / p.weight_n) : p.mass_kg;
   v.gravity_centre_m = p.gravity_centre_m;
   v.buoyancy_centre_m = p.buoyancy_centre_m;
   v.rigid_mass = rigid_mass_matrix(p.mass_kg, p.gravity_centre_m, p.inertia_kg_m2);

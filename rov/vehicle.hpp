@@ -51,6 +51,7 @@ inline constexpr std::size_t kMaxPrepared = 16;
 // Checked and prepared. Trivially destructible: steps only read it.
 struct Vehicle {
   double mass_kg = 0.0, weight_n = 0.0, buoyancy_n = 0.0;
+  double displaced_kg = 0.0;  // rho V, m B / W; the mass where nothing has weight
   Vec3 gravity_centre_m{0.0}, buoyancy_centre_m{0.0};
   Mat6 rigid_mass;    // M_RB
   Mat6 mass;          // M = M_RB + M_A

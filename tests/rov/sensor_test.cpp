@@ -28,7 +28,7 @@ TEST(RovSensor, ImuAtRestFeelsGravityAlone) {
   State state;
   state.attitude = glm::angleAxis(kPi / 2.0, Vec3(1, 0, 0));  // rolled to starboard
   p.buoyancy_centre_m = Vec3(0.0);
-  const ImuReading read = read_imu({}, make_vehicle(p).value(), state, {}, 0);
+  const ImuReading read = read_imu({}, make_vehicle(p).value(), state, {}, {}, 0);
   EXPECT_LT(glm::length(read.specific_force_m_s2 - Vec3(0.0, -9.82, 0.0)), 1e-12);
   EXPECT_EQ(read.angular_rad_s, Vec3(0.0));
 }
@@ -52,7 +52,7 @@ TEST(RovSensor, ImuIsTheSecondDerivativeOfItsPlace) {
   const Vec3 acceleration = (place(after) - 2.0 * place(now) + place(before)) / (h * h);
   const Quat sensor_from_ned = glm::conjugate(imu.mount.rotation) * glm::conjugate(now.attitude);
   const Vec3 expected = sensor_from_ned * (acceleration - Vec3(0.0, 0.0, 9.82));
-  const ImuReading read = read_imu(imu, vehicle, now, {}, 0);
+  const ImuReading read = read_imu(imu, vehicle, now, {}, {}, 0);
   EXPECT_LT(glm::length(read.specific_force_m_s2 - expected), 1e-4);
   EXPECT_LT(glm::length(imu.mount.rotation * read.angular_rad_s - now.velocity.angular()), 1e-12);
 }
@@ -229,7 +229,7 @@ TEST(RovSensorSet, SamplesAtItsRatesAndTheSameWithAnyStep) {
   const auto after_ten_seconds = [&](int hz) {
     SensorReadings readings;
     for (int i = 0; i < 10 * hz; ++i)
-      update_readings(sensors, world, vehicle, state, i / double(hz), (i + 1) / double(hz),
+      update_readings(sensors, world, vehicle, state, {}, i / double(hz), (i + 1) / double(hz),
                       readings);
     return readings;
   };
@@ -246,11 +246,11 @@ TEST(RovSensorSet, SamplesAtItsRatesAndTheSameWithAnyStep) {
   EXPECT_EQ(fast.usbl.time_s, 10.0);
   // Another vehicle has other noise.
   SensorReadings other;
-  update_readings(sensors, {bottom.query(), 99, 4}, vehicle, state, 9.999, 10.0, other);
+  update_readings(sensors, {bottom.query(), 99, 4}, vehicle, state, {}, 9.999, 10.0, other);
   EXPECT_NE(other.imu.value.angular_rad_s, fast.imu.value.angular_rad_s);
   // Nothing named, nothing said.
   SensorReadings none;
-  update_readings({}, world, vehicle, state, 0.0, 10.0, none);
+  update_readings({}, world, vehicle, state, {}, 0.0, 10.0, none);
   EXPECT_EQ(none.imu.count + none.dvl.count + none.pressure.count, 0u);
 }
 

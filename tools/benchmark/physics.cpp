@@ -53,6 +53,7 @@ Sample survey(const Surveyor& surveyor, int seconds) {
     const auto& newest = simulation->newest();
     rov::update_readings(surveyor.sensors, {world.rays(), world.seed(), 0},
                          world.vehicles()[0].vehicle, newest.state.vehicles[0].body,
+                         newest.state.vehicles[0].contact.acceleration,
                          newest.time_s - world.step_s(), newest.time_s, readings);
     of_sensors += now_ns() - stepped;
     of_steps += stepped - begin;

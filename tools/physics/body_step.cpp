@@ -22,27 +22,36 @@ void set_motion(const sim::BodyMotion& motion, rov::State& state) {
 }
 
 rov::State step_once(const sim::StaticWorld& solid, const SolidBody& body, const rov::State& before,
-                     rov::State free, double dt_s, sim::MotionReport& report) {
+                     rov::State free, double dt_s, ContactReport& report) {
   const sim::BodyMotion moved = sim::move_body(
       solid, body.shape, body.inverse_mass, rov::world_pose(before.position_ned_m, before.attitude),
-      motion_of(free), dt_s, &report);
+      motion_of(free), dt_s, &report.motion);
+  if (!report.motion.touched) return free;
+  const rov::Vec6 without = velocity_ned(free);
   set_motion(moved, free);
+  report.change_ned = velocity_ned(free) - without;
   return free;
 }
 
 // As one step's: the depth is that at its start.
-void add_part(const sim::MotionReport& part, sim::MotionReport& whole) {
-  whole.contacts = part.contacts;
-  whole.pieces += part.pieces;
-  whole.converged = whole.converged && part.converged;
-  whole.lost_s += part.lost_s;
-  whole.impulse_n_s += part.impulse_n_s;
+void add_part(const ContactReport& part, ContactReport& whole) {
+  whole.motion.contacts = part.motion.contacts;
+  whole.motion.pieces += part.motion.pieces;
+  whole.motion.converged = whole.motion.converged && part.motion.converged;
+  whole.motion.lost_s += part.motion.lost_s;
+  whole.motion.impulse_n_s += part.motion.impulse_n_s;
+  whole.change_ned = whole.change_ned + part.change_ned;
 }
 
 }  // namespace
 
 SolidBody solid_body(const rov::Vehicle& vehicle) {
   return {{}, rov::world_from_ned(vehicle.inverse_mass).m};
+}
+
+rov::Vec6 velocity_ned(const rov::State& state) {
+  return rov::vec6(state.attitude * state.velocity.linear(),
+                   state.attitude * state.velocity.angular());
 }
 
 rov::State free_step(const VehicleStep& step) {
@@ -64,21 +73,22 @@ bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& 
 }
 
 rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
-                      const rov::State& free, bool parted, sim::MotionReport* report) {
-  sim::MotionReport told;
+                      const rov::State& free, bool parted, ContactReport* report) {
+  ContactReport told;
   rov::State after = step_once(solid, step.body, step.before, free, step.dt_s, told);
-  if (told.touched && !parted && step.method.contact_parts > 1) {
-    const double depth_m = told.deepest_m, part_s = step.dt_s / step.method.contact_parts;
-    told = {.pieces = 0, .touched = true, .deepest_m = depth_m};
+  if (told.motion.touched && !parted && step.method.contact_parts > 1) {
+    const double depth_m = told.motion.deepest_m, part_s = step.dt_s / step.method.contact_parts;
+    told = {{.pieces = 0, .touched = true, .deepest_m = depth_m}, {}};
     after = step.before;
+    rov::Inputs inputs = step.inputs;
     for (int i = 0; i < step.method.contact_parts; ++i) {
       const rov::State before = after;
-      sim::MotionReport part;
-      after =
-          step_once(solid, step.body, before,
-                    free_step({step.body, step.vehicle, before, step.inputs, part_s, step.method}),
-                    part_s, part);
+      ContactReport part;
+      after = step_once(solid, step.body, before,
+                        free_step({step.body, step.vehicle, before, inputs, part_s, step.method}),
+                        part_s, part);
       add_part(part, told);
+      inputs.current_ned_m_s += part_s * inputs.current_change_ned_m_s2;
     }
   }
   if (report) *report = told;

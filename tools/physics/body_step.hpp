@@ -33,6 +33,15 @@ struct VehicleStep {
   const StepMethod& method;
 };
 
+// What contacts did in a step.
+struct ContactReport {
+  sim::MotionReport motion;
+  // Change of velocity that nothing else made: linear and angular, NED axes, m/s and rad/s.
+  rov::Vec6 change_ned;
+};
+
+// Linear and angular, NED axes.
+rov::Vec6 velocity_ned(const rov::State& state);
 // As if the water were empty.
 rov::State free_step(const VehicleStep& step);
 // Whether two vehicles touched: their free steps then part.
@@ -41,7 +50,6 @@ bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& 
 // Along what is solid. The axes of both sides differ by exchanged components alone, so the way
 // there and back keeps every bit of what is not touched. parted: it is not taken in parts.
 rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
-                      const rov::State& free, bool parted = false,
-                      sim::MotionReport* report = nullptr);
+                      const rov::State& free, bool parted = false, ContactReport* report = nullptr);
 
 }  // namespace neritic::tools

@@ -103,8 +103,8 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
     if (options_.rows) {
       const double from_s = snapshot.step == 0 ? -1.0 : snapshot.time_s - world_.step_s();
       rov::update_readings(world_.vehicles()[i].file.sensors, {world_.rays(), world_.seed(), i},
-                           world_.vehicles()[i].vehicle, now.body, from_s, snapshot.time_s,
-                           readings_[i]);
+                           world_.vehicles()[i].vehicle, now.body, now.contact.acceleration, from_s,
+                           snapshot.time_s, readings_[i]);
     }
     if (options_.rows && row_due(i, snapshot.step)) rows_.push_back(row_of(i, snapshot));
   }

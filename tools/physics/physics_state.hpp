@@ -43,12 +43,15 @@ struct ContactState {
   std::uint64_t touched_steps = 0;  // so far
   double deepest_m = 0.0;           // so far
   Vec3 impulse_n_s{0.0};            // of the last step, world axes
+  // Rate of the velocity by contacts alone, mean of the last step; a vehicle's, body axes.
+  rov::Vec6 acceleration;
 
   static void fields(auto&& field, auto& self) {
     field("near_points", self.near_points);
     field("touched_steps", self.touched_steps);
     field("deepest_m", self.deepest_m);
     field("impulse_n_s", self.impulse_n_s);
+    field("acceleration", self.acceleration);
   }
 };
 

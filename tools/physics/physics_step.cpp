@@ -38,6 +38,16 @@ rov::Vec6 level_first(const rov::Vehicle& vehicle, const rov::Allocator& allocat
   return moments + with_room(vehicle, allocator, moments, rov::vec6(wrench.linear(), Vec3(0.0)));
 }
 
+void add_contact(const ContactReport& report, double dt_s, VehicleState& state) {
+  const Quat body_from_ned = glm::conjugate(state.body.attitude);
+  ContactState& contact = state.contact;
+  contact.near_points = static_cast<std::uint64_t>(report.motion.contacts);
+  contact.deepest_m = std::max(contact.deepest_m, report.motion.deepest_m);
+  contact.impulse_n_s = report.motion.impulse_n_s;
+  contact.acceleration = (1.0 / dt_s) * rov::vec6(body_from_ned * report.change_ned.linear(),
+                                                  body_from_ned * report.change_ned.angular());
+}
+
 }  // namespace
 
 bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
@@ -82,6 +92,27 @@ Vec3 PhysicsWorld::current_ned_m_s(const Vec3& position_ned_m, double time_s) co
       sim::sample(*current_, rov::world_from_ned(position_ned_m), time_s).velocity_m_s);
 }
 
+// The current where the vehicle will be half way through the step, how that changes on its way, and
+// the water's own acceleration: to second order in the step. A grid may jump within the vehicle's
+// own length: that is no acceleration of all the water around.
+void PhysicsWorld::set_water(const rov::State& body, double time_s, double dt_s,
+                             rov::Inputs& acting) const {
+  if (!current_) return;
+  const Vec3 velocity_m_s = rov::world_from_ned(body.attitude * body.velocity.linear());
+  const sim::CurrentSample water =
+      sim::sample(*current_, rov::world_from_ned(body.position_ned_m) + 0.5 * dt_s * velocity_m_s,
+                  time_s + 0.5 * dt_s);
+  const auto change_along = [&](const Vec3& way_m_s) {
+    constexpr double kMost = rov::kMostWaterAcceleration_m_s2;
+    return rov::ned_from_world(
+        glm::clamp(water.rate_m_s2 + water.gradient_per_s * way_m_s, Vec3(-kMost), Vec3(kMost)));
+  };
+  acting.water_acceleration_ned_m_s2 = change_along(water.velocity_m_s);
+  acting.current_change_ned_m_s2 = change_along(velocity_m_s);
+  acting.current_ned_m_s =
+      rov::ned_from_world(water.velocity_m_s) - 0.5 * dt_s * acting.current_change_ned_m_s2;
+}
+
 rov::RayQuery PhysicsWorld::rays() const {
   const auto cast = [](const void* solid, const Vec3& origin_ned_m, const Vec3& direction_ned,
                        double most_m) {
@@ -101,6 +132,7 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
   std::array<rov::Inputs, kMaxVehicles> acting;
   std::array<rov::State, kMaxVehicles> free;
   std::array<bool, kMaxVehicles> parted{}, refused{};
+  std::array<rov::Vec6, kMaxVehicles> alone_ned;  // velocities as if there were no other vehicle
   const auto step_of = [&](std::size_t i) {
     return VehicleStep{
         vehicles_[i].solid, vehicles_[i].vehicle, state.vehicles[i].body, acting[i], dt_s, method_};
@@ -108,21 +140,21 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
   for (std::size_t i = 0; i < count; ++i) {
     if (control_due(i, state.step))
       refused[i] = !steer(i, state, inputs.vehicles[i], time_s, next.vehicles[i]);
-    acting[i] = acting_on(vehicles_[i], inputs.vehicles[i], next.vehicles[i], time_s);
+    acting[i] = acting_on(vehicles_[i], inputs.vehicles[i], next.vehicles[i], time_s, dt_s);
     free[i] = free_step(step_of(i));
+    alone_ned[i] = velocity_ned(free[i]);
   }
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = i + 1; j < count; ++j)
       if (part_vehicles(step_of(i), free[i], step_of(j), free[j])) parted[i] = parted[j] = true;
   for (std::size_t i = 0; i < count; ++i) {
-    sim::MotionReport report;
+    ContactReport report;
     VehicleState& after = next.vehicles[i];
     after.body = step_among(solid_, step_of(i), free[i], parted[i], &report);
     after.body.refused_inputs += refused[i] ? 1 : 0;
-    after.contact.near_points = static_cast<std::uint64_t>(report.contacts);
-    after.contact.touched_steps += report.touched || parted[i] ? 1 : 0;
-    after.contact.deepest_m = std::max(after.contact.deepest_m, report.deepest_m);
-    after.contact.impulse_n_s = report.impulse_n_s;
+    if (parted[i]) report.change_ned = report.change_ned + velocity_ned(free[i]) - alone_ned[i];
+    add_contact(report, dt_s, after);
+    after.contact.touched_steps += report.motion.touched || parted[i] ? 1 : 0;
   }
   for (std::size_t i = 0; i < humans_.size(); ++i)
     step_human(
@@ -168,10 +200,10 @@ bool PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const Vehic
 
 // What pushes it in the step to come.
 rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
-                                    const VehicleState& state, double time_s) const {
+                                    const VehicleState& state, double time_s, double dt_s) const {
   rov::Inputs acting;
   acting.thruster_n = state.command_n;
-  acting.current_ned_m_s = current_ned_m_s(state.body.position_ned_m, time_s);
+  set_water(state.body, time_s, dt_s, acting);
   acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
   acting.failed_thrusters = inputs.failed_thrusters;
   apply_surface(vehicle.vehicle, vehicle.top_m, vehicle.bottom_m, state.body, acting);

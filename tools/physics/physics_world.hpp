@@ -69,8 +69,9 @@ class PhysicsWorld {
                      const sim::BodyShape& shape, const Pose& start) const;
   bool steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
              VehicleState& state) const;
+  void set_water(const rov::State& body, double time_s, double dt_s, rov::Inputs& acting) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
-                        const VehicleState& state, double time_s) const;
+                        const VehicleState& state, double time_s, double dt_s) const;
 
   double step_s_ = 1.0 / 240.0;
   std::uint64_t seed_ = 0;

@@ -6,9 +6,10 @@
 
 namespace neritic::tools {
 
-// Takes the buoyancy of what is above the water off inputs.wrench, in proportion to its share of
-// the height from bottom_m to top_m above the origin (an upright box), at the centre of buoyancy.
-// Below, inputs stay as they are. top_m > bottom_m.
+// Takes the buoyancy of what is above the water, and what accelerating water would pull it with,
+// off inputs.wrench, in proportion to its share of the height from bottom_m to top_m above the
+// origin (an upright box), at the centre of buoyancy. Below, inputs stay as they are. top_m >
+// bottom_m.
 void apply_surface(const rov::Vehicle& vehicle, double top_m, double bottom_m,
                    const rov::State& state, rov::Inputs& inputs);
 
