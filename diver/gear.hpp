@@ -7,6 +7,7 @@
 
 #include "diver/gas_mix.hpp"
 #include "engine/core/math.hpp"
+#include "engine/core/result.hpp"
 
 namespace neritic::diver {
 
@@ -75,6 +76,9 @@ struct Gear {
   // jacket, nothing without (body.cpp).
   std::optional<double> drag_area_m2;
 };
+
+// The first thing that nobody wears: its name, what was found, what is accepted.
+Status check_gear(const Gear& gear);
 
 // A swimmer in trunks.
 inline Gear no_gear() {
