@@ -24,6 +24,8 @@ layout(set = 0, binding = kSonarBindWeights) uniform texture2D weights;
 layout(set = 0, binding = kSonarBindCorrection, scalar) readonly buffer Corrections { float corrections[]; };
 layout(set = 0, binding = kSonarBindTexture) uniform texture2D gamma_quantiles;
 layout(set = 0, binding = kSonarBindRecords, scalar) writeonly buffer Records { SonarRecord records[]; };
+layout(set = 0, binding = kSonarBindDirectDepth) uniform texture2DArray direct_depth;
+layout(set = 0, binding = kSonarBindDirectLabel) uniform utexture2DArray direct_label;
 
 // The largest power of one beam that 32 bits of counts hold. A ghost's may be above 1.
 const float kLargestPower = 15.0;
@@ -39,98 +41,7 @@ float correction_at(float range_m, float sine) {
              part.y);
 }
 
-// A run of beams of one column that meet one scatterer: their power is summed, then its amplitude is added
-// once. A scatterer is what a range bin cuts out of a cell of the world, so it is the same at every visit.
-// A cell is narrower than a column where it is heard: it is halved as often as that takes. Its centre says
-// which column hears it: so no two columns and no two bins share one, their fields are independent, and
-// whatever the taps of pattern and pulse add has the mean power that the smooth image has; and as the sonar
-// moves on across, a scatterer passes from column to column and stays what it is.
-struct Run {
-  ivec3 cell;
-  uint halvings;
-  float power;
-  int bin;
-};
-// A row is sampled at so many places across, over two columns: cells whose centres are in the column are met
-// by some.
-const int kAcross = 4;
-
-uint halvings_at(float range_m) {
-  return uint(clamp(ceil(-log2(range_m * echo.cell_per_range * echo.cells_per_m)), 0.0, 20.0));
-}
-
-ivec3 cell_at(vec3 point, uint halvings) {
-  return ivec3(floor((point * echo.cells_per_m + echo.cell_fraction) * float(1u << halvings)));
-}
-
-vec3 center_of(ivec3 cell, uint halvings) {
-  return ((vec3(cell) + 0.5) / float(1u << halvings) - echo.cell_fraction) / echo.cells_per_m;
-}
-
-// A bin's amplitudes fit 31 bits but by a chance below e^-64 (gather.cpp), or where a texture's patch is
-// brighter still: then it is at its limit.
-const float kMostCounts = 1073741824.0;
-int saturated_sum(int a, int b) {
-  int sum = a + b;
-  if (((a ^ sum) & (b ^ sum)) < 0) return a < 0 ? -2147483647 : 2147483647;
-  return sum;
-}
-
-void flush(Run run, uint column) {
-  if (!(run.power > 0.0)) return;
-  uvec3 world_cell = uvec3(run.cell) + (echo.origin_cell << run.halvings);
-  uvec4 bits = hash_of(uvec4(world_cell, echo.seed + 0x9e3779b9u * run.halvings + 0x85ebca6bu * uint(run.bin)));
-  float power = run.power;
-  vec3 center = center_of(run.cell, run.halvings);
-  if (kTextured != 0) {
-    uvec3 patch_cell = uvec3(ivec3(floor(center * echo.patches_per_m + echo.patch_fraction))) + echo.origin_patch;
-    uint entries = uint(textureSize(gamma_quantiles, 0).x);
-    uint entry = hash_of(uvec4(patch_cell, echo.seed + 1u)).x % entries;
-    power *= texelFetch(gamma_quantiles, ivec2(entry, 0), 0).r;
-  }
-  float path_m = length(center);
-  if (kGhost != 0) path_m = 0.5 * (path_m + length(center - echo.ghost_source));
-  vec2 z = sqrt(power) * complex_normal(bits.xy, fract(echo.turns_per_m * path_m));
-  ivec2 counts = ivec2(round(clamp(z * echo.sum_scale, vec2(-kMostCounts), vec2(kMostCounts))));
-  uint cell = 2 * (uint(run.bin) * c.n_azimuth + column);
-  sums[cell] = uint(saturated_sum(int(sums[cell]), counts.x));
-  sums[cell + 1] = uint(saturated_sum(int(sums[cell + 1]), counts.y));
-}
-
-void add_to_run(inout Run run, uint column, ivec3 cell, uint halvings, int bin, float power) {
-  if (cell != run.cell || halvings != run.halvings || bin != run.bin) {
-    flush(run, column);
-    run = Run(cell, halvings, 0.0, bin);
-  }
-  run.power += power;
-}
-
-// A row's power at a point of the column's middle, to the scatterers beside it: each as its part of the places
-// across, all together the whole.
-void scatter(SonarColumn s, uint column, vec3 point, int bin, float power, inout Run runs[kAcross]) {
-  uint halvings = halvings_at(length(point));
-  vec3 ahead = normalize(s.beam_base), right = cross(ahead, s.up);
-  float half_column_m = dot(point, ahead) * echo.tan_half_column;
-  ivec3 cells[kAcross];
-  float parts[kAcross];
-  float all = 0.0;
-  for (int i = 0; i < kAcross; ++i) {
-    cells[i] = cell_at(point + right * (half_column_m * (float(i) - 1.5)), halvings);
-    vec3 center = center_of(cells[i], halvings);
-    float edge_m = dot(center, ahead) * echo.tan_half_column, across_m = dot(center, right);
-    parts[i] = across_m >= -edge_m && across_m < edge_m ? 1.0 : 0.0;
-    all += parts[i];
-  }
-  if (all == 0.0) {  // of cells that lie askew both neighbours' centres may be outside
-    parts[1] = 1.0;
-    all = 1.0;
-  }
-  for (int i = 0; i < kAcross; ++i) {
-    // What lies in one cell is one scatterer's.
-    if (i + 1 < kAcross && cells[i + 1] == cells[i]) parts[i + 1] += parts[i];
-    else if (parts[i] > 0.0) add_to_run(runs[i], column, cells[i], halvings, bin, power * parts[i] / all);
-  }
-}
+#include "shared/sonar_speckle.glsl"
 
 void add_power(uint cell, uint counts) {
   if (kLanes == 1) {
@@ -156,17 +67,42 @@ void add_key(uint cell, float power, uint label) {
   else if (key > keys[cell]) keys[cell] = key;
 }
 
-// What the pattern lets through one way in a direction from the sonar; 0 beyond what the head gathers.
-float pattern_towards(vec3 direction) {
+// Column and row of the head (not of its mirror image) in a direction from the sonar; negative: beyond what it
+// gathers.
+ivec2 beam_of(vec3 direction) {
   float azimuth = atan(dot(direction, echo.head_right), -dot(direction, echo.head_back));
   float elevation = asin(clamp(dot(direction, echo.head_up), -1.0, 1.0));
   // A full turn's columns are a ring: its last bearing may round over.
   float column = (azimuth - echo.azimuth_min_rad) * echo.columns_per_rad;
   float row = (elevation - echo.elevation_min_rad) * echo.rows_per_rad;
-  if (column < 0.0 || row < 0.0 || column > float(c.n_azimuth) || row >= float(c.n_elevation)) return 0.0;
-  // The eye's rows are the head's turned over, and so is the table.
-  ivec2 at = ivec2(min(uint(column), c.n_azimuth - 1), c.n_elevation - 1 - uint(row));
-  return kWeighted != 0 ? texelFetch(weights, at, 0).r : 1.0;
+  if (column < 0.0 || row < 0.0 || column > float(c.n_azimuth) || row >= float(c.n_elevation)) return ivec2(-1);
+  return ivec2(min(uint(column), c.n_azimuth - 1), row);
+}
+
+// What the pattern lets through one way. The eye's rows are the head's turned over, and so is the table.
+float pattern_of(ivec2 beam) {
+  if (beam.x < 0) return 0.0;
+  return kWeighted != 0 ? texelFetch(weights, ivec2(beam.x, int(c.n_elevation) - 1 - beam.y), 0).r : 1.0;
+}
+
+// Something hides a leg where it is nearer by more than this part of it, and by two bins.
+const float kHidesBy = 1.0 / 64.0;
+
+// Whether the sonar sees as far as a leg's end: in one of three pixels, since the end is a surface's point.
+bool is_clear(ivec2 beam, vec3 direction, float leg_m, uint through_class) {
+  SonarColumn s = columns[beam.x];  // pixels and layers are the head's as they are its mirror image's
+  if (s.pixel < 0) return true;
+  float up = dot(direction, echo.head_up);
+  float v = floor(c.cy - c.fy * s.sec_theta * up * inversesqrt(max(1.0 - up * up, 1e-12)));
+  float nearest_m = leg_m * (1.0 - kHidesBy) - 2.0 / c.bins_per_m;
+  for (int i = -1; i <= 1; ++i) {
+    ivec3 at = ivec3(s.pixel, clamp(int(v) + i, 0, int(c.height) - 1), s.layer);
+    float ty = (c.cy - (float(at.y) + 0.5)) / c.fy;
+    float range_m = planar_metres(texelFetch(direct_depth, at, 0).r) * sqrt(s.pixel_square + ty * ty);
+    if (!(range_m > 0.0) || range_m > nearest_m) return true;
+    if (through_class != 0 && texelFetch(direct_label, at, 0).x == through_class) return true;
+  }
+  return false;
 }
 
 // A mirror's path: back by the mirror, forth directly (and the other way round). The eye is the sonar's
@@ -178,9 +114,10 @@ struct GhostPath {
   vec3 launch;     // unit, from the sonar to where the mirror shows the point
 };
 
-// And what it adds, the mean of both ways round. The beam's solid
-// angle covers a patch of area range^2 / cos(in), which Lambert's law sends on with cos(in) cos(out), so
-// cos(out) alone is left. Each leg passes the pattern once.
+// And what it adds, the mean of both ways round. The beam's solid angle covers a patch of area range^2 / cos(in),
+// which Lambert's law sends on with cos(in) cos(out), so cos(out) alone is left. Each leg passes the pattern once.
+// What the mirror shows is free on the way from the mirror; whether the ways from the sonar to the mirror and to the
+// point are, the sonar's own view tells.
 GhostPath ghost_path(vec3 direction, uint row, BeamHit hit, out float power) {
   GhostPath none = GhostPath(0.0, 0.0, vec3(0.0), vec3(0.0));
   power = 0.0;
@@ -194,13 +131,19 @@ GhostPath ghost_path(vec3 direction, uint row, BeamHit hit, out float power) {
   float cosine = -dot(n, leg) / direct_m;
   if (!(hit.strength > 0.0 && cosine > 0.0)) return none;  // turned away from the mirror or from the sonar
   float mean_m = 0.5 * (direct_m + hit.range_m);
-  power = min(cosine, 1.0) * echo.ghost_weight * pattern_towards(leg / direct_m);
+  ivec2 direct_beam = beam_of(leg / direct_m);
+  power = min(cosine, 1.0) * echo.ghost_weight * pattern_of(direct_beam);
+  if (!(power > 0.0) || !is_clear(direct_beam, leg / direct_m, direct_m, 0)) return none;
+  vec3 launch = direction - 2.0 * dot(direction, echo.world_up) * echo.world_up;
+  ivec2 launch_beam = beam_of(launch);
+  float mirror_m = echo.water_level_m / dot(direction, echo.world_up);
+  if (launch_beam.x >= 0 && !is_clear(launch_beam, launch, mirror_m, echo.mirror_class)) return none;
   if (echo.solid_angle != 0) power /= texelFetch(rows, ivec2(row, 0), 0).y;
   float spread = 1.0;
   if (echo.ghost_spreading == kSonarGhostSpreading) spread = mean_m / max(direct_m, 1e-3 * mean_m);
   if (echo.ghost_spreading == kSonarGhostNoSpreading) spread = hit.range_m / mean_m;
   power *= spread * spread;
-  return GhostPath(mean_m, direct_m, leg / direct_m, direction - 2.0 * dot(direction, echo.world_up) * echo.world_up);
+  return GhostPath(mean_m, direct_m, leg / direct_m, launch);
 }
 
 // Of a range in a direction from the sonar: what the speed of sound makes of it.
@@ -217,7 +160,7 @@ struct RowEcho {
   uint label;
 };
 
-// The surface's point at a bin, on the line between the row's ends.
+// The surface's point at a heard range, on the line between the row's ends, as far off as it is heard.
 vec3 point_at(SonarColumn s, uint row, BeamHit hit, RowEcho e, float bin_range_m) {
   vec3 near = beam_towards(s, hit.ends_tan.x) * hit.ends_m.x, far = beam_towards(s, hit.ends_tan.y) * hit.ends_m.y;
   float span = e.ends_m.y - e.ends_m.x;
@@ -226,7 +169,9 @@ vec3 point_at(SonarColumn s, uint row, BeamHit hit, RowEcho e, float bin_range_m
 
 // Shares a row's power out over bins and scatterers, in the order in which rows go on: so that what two
 // rows have of a scatterer is one run.
-void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, inout Run runs[kAcross]) {
+void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, float heard, inout Cell here,
+                        inout Run run) {
+  float drawn_out = e.range_m / hit.range_m;
   vec2 ends = e.ends_m;
   int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
   int first = max(low, 0), last = min(high, int(c.n_range) - 1);
@@ -236,8 +181,10 @@ void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEc
     float below = bin == low ? 0.0 : part_below(ends, range_at(bin));
     float upto = bin == high ? 1.0 : part_below(ends, range_at(bin + 1));
     float power = e.power * max(upto - below, 0.0);
-    float middle_m = 0.5 * (max(range_at(bin), ends.x) + min(range_at(bin + 1), ends.y));
-    if (power > 0.0) scatter(s, column, point_at(s, row, hit, e, middle_m), bin, power, runs);
+    vec2 within_m = vec2(max(range_at(bin), ends.x), min(range_at(bin + 1), ends.y));
+    vec3 point = point_at(s, row, hit, e, 0.5 * (within_m.x + within_m.y)) / drawn_out;
+    vec2 within = vec2(bin_at(within_m.x), bin_at(within_m.y));
+    if (power > 0.0) scatter(s, column, point, heard, within, bin, !rising, power, here, run);
     add_key(uint(bin) * c.n_azimuth + column, power, e.label);
   }
 }
@@ -282,8 +229,8 @@ void main() {
   if (column >= c.n_azimuth) return;
   SonarColumn s = columns[column];
   if (s.pixel < 0 && kRecords == 0) return;
-  Run runs[kAcross];
-  for (int i = 0; i < kAcross; ++i) runs[i] = Run(ivec3(0), 0, 0.0, 0);
+  Cell here = Cell(ivec3(0), kNoLevel, vec3(0.0), 0.0);
+  Run run = Run(here, 0, 0, vec2(0.0));
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
   for (uint row = first; row < c.n_elevation; row += kLanes) {
     BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
@@ -319,14 +266,15 @@ void main() {
     if (kRecords != 0) tell(column, row, e, heard, label.x | label.y << 16);
     if (!heard) continue;
     if (kFootprint != kSonarFootprintNone) {
-      if (kCoherent != 0) share_out_coherent(s, column, row, hit, e, runs);
+      if (kCoherent != 0) share_out_coherent(s, column, row, hit, e, heard_m / range_m, here, run);
       else share_out(column, e);
       continue;
     }
     uint cell = uint(e.bin) * c.n_azimuth + column;
-    if (kCoherent != 0) scatter(s, column, eye * hit.range_m, int(e.bin), e.power, runs);
+    if (kCoherent != 0)
+      scatter(s, column, eye * hit.range_m, heard_m / range_m, vec2(e.bin), int(e.bin), false, e.power, here, run);
     else add_power(cell, uint(e.power * echo.sum_scale + 0.5));
     add_key(cell, e.power, e.label);
   }
-  for (int i = 0; kCoherent != 0 && i < kAcross; ++i) flush(runs[i], column);
+  if (kCoherent != 0) flush(s, column, run);
 }

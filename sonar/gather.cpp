@@ -132,6 +132,9 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
   using graph::Access;
   NERITIC_CHECK(inputs.labels || (!options_.labels && !options_.reflectivity),
                 "a gather with labels or reflectivities needs the label image");
+  const bool ghost = options_.echo && options_.echo->ghost;
+  NERITIC_CHECK(!ghost || (inputs.direct_depth && inputs.direct_labels),
+                "ghosts need what the sonar itself sees");
   struct Cleared {
     graph::BufferHandle sums, keys, stamps;
   };
@@ -162,7 +165,9 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
     pass.in.echo.sum_scale = static_cast<float>(fixed_scale_);
     builder.read(inputs.depth, Access::kSampledCompute);
     builder.read(inputs.normals, Access::kSampledCompute);
-    if (inputs.labels) builder.read(inputs.labels, Access::kSampledCompute);
+    for (const graph::ImageHandle image :
+         {inputs.labels, inputs.direct_depth, inputs.direct_labels})
+      if (image) builder.read(image, Access::kSampledCompute);
     if (inputs.reflectivity) builder.read(inputs.reflectivity, Access::kStorageReadCompute);
     pass.out.sums = builder.write(cleared.sums, Access::kStorageWriteCompute);
     if (cleared.keys) pass.out.keys = builder.write(cleared.keys, Access::kStorageWriteCompute);
@@ -234,7 +239,13 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
          gpu::bound_buffer(shared::kSonarBindCorrection, correction.buffer, correction.offset,
                            correction.size),
          gpu::bound_texel_image(shared::kSonarBindTexture, image_or_rows(gamma_quantiles_)),
-         gpu::bound_buffer(shared::kSonarBindRecords, buffer_or_none(pass.out.records))});
+         gpu::bound_buffer(shared::kSonarBindRecords, buffer_or_none(pass.out.records)),
+         gpu::bound_texel_image(
+             shared::kSonarBindDirectDepth,
+             context.image(pass.in.direct_depth ? pass.in.direct_depth : pass.in.depth).view()),
+         gpu::bound_texel_image(shared::kSonarBindDirectLabel,
+                                pass.in.direct_labels ? context.image(pass.in.direct_labels).view()
+                                                      : no_labels_.view())});
   }
   commands.bind_pipeline(pipeline_);
   commands.bind(pipeline_, bound);

@@ -77,6 +77,8 @@ class SonarGather {
     graph::ImageHandle labels;         // R16G16_UINT class, instance; may be absent
     graph::BufferHandle reflectivity;  // floats by instance label; may be absent
     std::uint32_t reflectivities = 0;
+    // Ghosts: what the sonar itself sees, of the same sizes; CHECKed to be there.
+    graph::ImageHandle direct_depth, direct_labels;
     // Sonar axes from the axes that the normals are in (world axes of a scene's G-buffer).
     Mat3 sonar_from_gbuffer{1.0};
     // Where to write; absent: transient buffers of the frame. An imported host-readable buffer
@@ -131,10 +133,10 @@ class SonarGather {
 };
 
 // What a gather does with the ranges that a row's height spans (kSonarFootprint...): it shares
-// counts out over them, so that a surface at grazing is no comb of single bins, and tells records of
-// beams the span. Where a row may be wider than a range bin (its arc at the farthest range) the
-// span ends where the neighbouring rows' begin. Of the plane gather only: the others do not know the
-// surface.
+// counts out over them, so that a surface at grazing is no comb of single bins, and tells records
+// of beams the span. Where a row may be wider than a range bin (its arc at the farthest range) the
+// span ends where the neighbouring rows' begin. Of the plane gather only: the others do not know
+// the surface.
 std::uint32_t footprint_of(const BeamGrid& grid, const GatherOptions& options);
 
 // The tables of the pass, for tests. Columns depend on where the normals' axes are.

@@ -10,7 +10,7 @@
 namespace neritic::sonar {
 namespace {
 
-constexpr std::array<gpu::BindingDesc, 14> kBindings{
+constexpr std::array<gpu::BindingDesc, 16> kBindings{
     {{shared::kSonarBindColumns, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindRows, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
@@ -25,7 +25,9 @@ constexpr std::array<gpu::BindingDesc, 14> kBindings{
      {shared::kSonarBindWeights, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindCorrection, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindTexture, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
-     {shared::kSonarBindRecords, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1}}};
+     {shared::kSonarBindRecords, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+     {shared::kSonarBindDirectDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
+     {shared::kSonarBindDirectLabel, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1}}};
 constexpr std::size_t kPlainBindings = 9;
 
 struct TableSize {

@@ -28,9 +28,12 @@ double receiver_gain(const scene::Sonar& sonar, double r, double absorption_db_p
   return std::min(power_from_db(db), kLargestPower / std::max(largest, 1.0));
 }
 
-// Of a column: the widest a scatterer's cell may be. So wide, a cell's centre is within half a column
-// of every point of it (cells are cubes that lie as they please).
-constexpr double kWidestCell = 0.7;
+// A cell of scatterers is no smaller than so many bins, columns and rows: what moves on by a part
+// of one stays in its cell, mostly, and a row misses none.
+constexpr double kCellBins = 4.0, kCellColumns = 4.0, kCellRows = 2.0;
+
+// The lattice's walls lie beside round coordinates, where a scene's flat surfaces are.
+constexpr double kLatticeOffset = 0.3183;
 
 std::uint32_t cell_index(double cell) {
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(cell));
@@ -39,7 +42,7 @@ std::uint32_t cell_index(double cell) {
 // Where the eye lies in a lattice of cells fixed to the world.
 void place_in_lattice(const Vec3& eye_m, double cell_m, glm::vec3& fraction, glm::uvec3& cell,
                       float& cells_per_m) {
-  const Vec3 in_cells = eye_m / cell_m;
+  const Vec3 in_cells = eye_m / cell_m + kLatticeOffset;
   const Vec3 low = glm::floor(in_cells);
   fraction = glm::vec3(in_cells - low);
   cell = {cell_index(low.x), cell_index(low.y), cell_index(low.z)};
@@ -55,11 +58,12 @@ void add_speckle(Ping& ping, const scene::Sonar& sonar, const Head& head, const 
                    ping.echo.cells_per_m);
   place_in_lattice(eye_m, speckle.texture_m, ping.echo.patch_fraction, ping.echo.origin_patch,
                    ping.echo.patches_per_m);
-  const Limits& l = head.samples.limits;
-  const double steepest = std::max(std::abs(l.elevation_min_rad), std::abs(l.elevation_max_rad));
   const double column_rad = head.samples.azimuth_step_rad();
-  ping.echo.cell_per_range = static_cast<float>(kWidestCell * column_rad * std::cos(steepest));
-  ping.echo.tan_half_column = static_cast<float>(std::tan(column_rad / 2.0));
+  const double sampled_rad =
+      std::max(kCellColumns * column_rad, kCellRows * head.samples.elevation_step_rad());
+  ping.echo.cells_per_range = static_cast<float>(sampled_rad / cell_m);
+  ping.echo.least_cells = static_cast<float>(kCellBins * head.beams.range_step_m() / cell_m);
+  ping.echo.column_rad = static_cast<float>(column_rad);
   ping.echo.turns_per_m = static_cast<float>(2.0 * sonar.terms.frequency_hz / ping.sound_speed_m_s);
   ping.echo.seed = static_cast<std::uint32_t>(seed ^ (seed >> 32));
 }
@@ -96,6 +100,7 @@ void add_mirror(Ping& ping, const Mirror& mirror, const scene::Sonar& sonar, con
   echo.ghost_source = glm::vec3(state.world_from_sonar.position_m - eye_m);
   echo.water_level_m = static_cast<float>(mirror.height_m - eye_m.y);
   echo.water_sign = mirror.water_below ? 1.0f : -1.0f;
+  echo.mirror_class = mirror.water_below ? 0u : scene::kClasses[0].id;
   // Out by the mirror and back directly, and the other way round: by reciprocity both have the same
   // length, the same phase and the same amplitude at every scatterer, so that amplitudes add.
   echo.ghost_weight =

@@ -80,7 +80,7 @@ struct SonarRangeSpread {
 };
 
 struct SonarSpeckle {
-  double scatterer_m = 0.0;  // size of the world's cells, each one scatterer; 0: the range step
+  double scatterer_m = 0.0;  // the world's finest cells of scatterers; 0: the range step
   double shape = 0.0;        // K distribution's nu; 0: Rayleigh
   double texture_m = 0.5;    // size of the patches that share one draw of the gamma texture
   bool operator==(const SonarSpeckle&) const = default;

@@ -13,7 +13,7 @@ struct SonarEcho {
   float sum_scale;     // power 1 (amplitude 1 where coherent) in counts
   vec3 doppler;        // metres
   float turns_per_m;   // phase of an echo: 2 f / c times its range
-  vec3 cell_fraction;  // where the eye lies in its scatterer cell, 0 to 1
+  vec3 cell_fraction;  // where the eye lies in its cell of the finest lattice of scatterers, 0 to 1
   float cells_per_m;
   uvec3 origin_cell;  // that cell, modulo 2^32
   uint seed;
@@ -40,8 +40,10 @@ struct SonarEcho {
   float azimuth_min_rad;
   float columns_per_rad;
   uint solid_angle;  // ghosts: a beam's cosine of elevation counts
-  float cell_per_range;  // scatterers: the widest cell a metre of range
-  float tan_half_column;
+  float cells_per_range;  // scatterers: the least width of a cell a metre of range, in finest cells
+  float least_cells;      // and at any range
+  float column_rad;
+  uint mirror_class;  // ghosts: of what the mirror is a part, and does not hide itself; 0: of nothing
 };
 NERITIC_CONST uint kSonarGhostPlain = 0u;        // no range counts
 NERITIC_CONST uint kSonarGhostSpreading = 1u;    // 1 / r^2 of the direct leg
@@ -66,6 +68,8 @@ NERITIC_CONST uint kSonarBindWeights = 10;     // R32 [n_elevation][n_azimuth]: 
 NERITIC_CONST uint kSonarBindCorrection = 11;  // floats [sine][range]: heard over true range
 NERITIC_CONST uint kSonarBindTexture = 12;     // R32 quantiles of the gamma texture, mean 1
 NERITIC_CONST uint kSonarBindRecords = 13;
+NERITIC_CONST uint kSonarBindDirectDepth = 14;  // ghosts: what the sonar itself sees
+NERITIC_CONST uint kSonarBindDirectLabel = 15;
 // Specialisation constants, after those of sonar.h.
 NERITIC_CONST uint kSonarSpecCoherent = 8;
 NERITIC_CONST uint kSonarSpecWeighted = 9;

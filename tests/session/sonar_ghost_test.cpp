@@ -114,5 +114,26 @@ TEST_F(SonarGhost, WhatTurnsItsBackGivesNone) {
   EXPECT_EQ(ping(device(), scene).image.intensity, direct.image.intensity);
 }
 
+// By the mirror the sphere is seen, but the way back is not free; or it is not the way to the
+// mirror.
+TEST_F(SonarGhost, NoneComesWhereSomethingStandsInEitherLegsWay) {
+  const Vec3 halfway(0.0, -kDepth_m, -kRange_m / 2.0);        // on the direct leg
+  const Vec3 upwards(0.0, -kDepth_m / 2.0, -kRange_m / 4.0);  // on the way to the mirror
+  const auto added = [&](scene::Scene scene) {                // by the ghosts
+    const double direct = total(ping(device(), scene));
+    scene.sonars[0].terms.ghosts = scene::SonarGhosts{.surface = true};
+    return total(ping(device(), scene)) - direct;
+  };
+  for (const Vec3& at : {halfway, upwards}) {
+    scene::Scene scene = sphere_below_surface();
+    const double alone = added(scene);
+    scene.objects.push_back(object_of(scene, scene::make_box(Vec3(0.6, 0.3, 0.02)), at));
+    EXPECT_EQ(added(scene), 0.0) << at.y;
+    // A little aside it hides nothing.
+    scene.objects.back().mount.pose.position_m.y -= 0.5;
+    EXPECT_NEAR(added(scene) / alone, 1.0, 1e-3) << at.y;
+  }
+}
+
 }  // namespace
 }  // namespace neritic::tools

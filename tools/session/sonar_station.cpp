@@ -265,6 +265,8 @@ Status SonarStation::declare_ghosts(const Frame& frame, const SonarWork& work, H
     inputs.depth = g.depth;
     inputs.normals = g.normal;
     inputs.labels = g.label;
+    inputs.direct_depth = direct.depth;
+    inputs.direct_labels = direct.labels;
     inputs.sonar_from_gbuffer = glm::mat3_cast(glm::conjugate(pose.rotation));
     inputs.sums_so_far = out.sums;
     inputs.keys_so_far = out.keys;
