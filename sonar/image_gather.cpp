@@ -269,7 +269,7 @@ Result<SonarImage> ImageGather::run(const PingState& state) {
            {power.begin(), power.end()},
            beam_labels(head_, keys)};
     if (records_.size() > 0)
-      label_energy_ = beam_energies(head_, {records_.mapped<shared::SonarRecord>()});
+      label_energy_ = beam_energies(head_, ping, {records_.mapped<shared::SonarRecord>()});
   } else {
     out = gather_->to_image(sums_.mapped<std::uint32_t>(), keys);
   }

@@ -27,18 +27,28 @@ class BeamBlock {
         samples_(samples),
         cells_(std::size_t{n_range} * beams),
         hidden_((std::size_t{n_range} + 1) * beams),
+        ended_(cells_.size()),
+        surface_(cells_.size()),
+        rays_(beams),
         below_(std::size_t{beams} * samples) {}
 
   void clear() {
     std::fill(cells_.begin(), cells_.end(), Heard{});
     std::fill(hidden_.begin(), hidden_.end(), 0);
+    std::fill(ended_.begin(), ended_.end(), 0);
+    std::fill(rays_.begin(), rays_.end(), 0);
+    std::fill(surface_.begin(), surface_.end(), 0);
     std::fill(below_.begin(), below_.end(), Span{});
     more_.clear();
   }
 
   // The next row's record of a column.
-  void add(std::uint32_t beam, std::uint32_t sample, const EnergyRecord& r) {
-    if (r.class_id != kGhost) hide_between(beam, below_[beam * samples_ + sample], r);
+  void add(std::uint32_t beam, std::uint32_t sample, const EnergyRecord& r, std::uint32_t weight) {
+    if (r.class_id != kGhost) {
+      hide_between(beam, below_[beam * samples_ + sample], r);
+      rays_[beam] += weight;
+      if (r.bin != kNoReturn) end_ray(beam, r, weight);
+    }
     if (r.counts == 0) return;
     if (r.bin != kShared) {
       if (r.bin < n_range_) hear(beam, r.bin, key_of(r), r.counts);
@@ -53,11 +63,13 @@ class BeamBlock {
   // Writes the block's columns, from_column on, of the image.
   void resolve(std::uint32_t beams, std::uint32_t from_column, LabelImage& out) const {
     std::vector<std::int32_t> hidden(beams);
+    std::vector<std::uint64_t> ended(beams);  // rays that end nearer than the row
     for (std::uint32_t row = 0; row < n_range_; ++row)
       for (std::uint32_t beam = 0; beam < beams; ++beam) {
         hidden[beam] += hidden_[std::size_t{beam} * (n_range_ + 1) + row];
-        resolve_bin(beam, row, hidden[beam], std::size_t{row} * out.n_beams + from_column + beam,
-                    out);
+        const std::size_t at = std::size_t{row} * out.n_beams + from_column + beam;
+        resolve_bin(beam, row, hidden_part(beam, row, hidden[beam], ended[beam]), at, out);
+        ended[beam] += ended_[std::size_t{beam} * n_range_ + row];
       }
   }
 
@@ -67,6 +79,14 @@ class BeamBlock {
     bool ended = false;
     int nearest = 0, farthest = 0;
   };
+
+  void end_ray(std::uint32_t beam, const EnergyRecord& r, std::uint32_t weight) {
+    const std::size_t first = std::size_t{beam} * n_range_;
+    if (r.nearest < n_range_) surface_[first + r.nearest] = 1;
+    if (r.farthest >= n_range_) return;
+    surface_[first + r.farthest] = 1;
+    ended_[first + r.farthest] += weight;
+  }
 
   void hide_between(std::uint32_t beam, Span& below, const EnergyRecord& r) {
     const Span here{r.bin != kNoReturn, r.nearest, r.farthest};
@@ -93,14 +113,25 @@ class BeamBlock {
       add_to_chain(first, key, counts);
   }
 
-  // hidden: columns of the beam that something nearer hides the bin from.
-  void resolve_bin(std::uint32_t beam, std::uint32_t row, std::int32_t hidden, std::size_t at,
+  // What part of a beam something nearer hides a bin from; 0: too little for a shadow. columns:
+  // that have a jump about it. ended: of its rays, nearer.
+  float hidden_part(std::uint32_t beam, std::uint32_t row, std::int32_t columns,
+                    std::uint64_t ended) const {
+    const float of_columns = static_cast<float>(columns) / static_cast<float>(samples_);
+    const bool most = 2 * ended > rays_[beam] && surface_[std::size_t{beam} * n_range_ + row] == 0;
+    const float of_rays =
+        most ? static_cast<float>(static_cast<double>(ended) / static_cast<double>(rays_[beam]))
+             : 0.0f;
+    return std::min(1.0f, std::max(of_columns, of_rays));
+  }
+
+  void resolve_bin(std::uint32_t beam, std::uint32_t row, float hidden, std::size_t at,
                    LabelImage& out) const {
     const Heard& first = cells_[std::size_t{beam} * n_range_ + row];
     if (first.sum == 0) {
-      if (hidden == 0) return;
+      if (hidden == 0.0f) return;
       out.classes[at] = kShadow;
-      out.fraction[at] = std::min(1.0f, static_cast<float>(hidden) / static_cast<float>(samples_));
+      out.fraction[at] = hidden;
       return;
     }
     Heard most = first;
@@ -128,16 +159,20 @@ class BeamBlock {
   }
 
   std::uint32_t n_range_, samples_;
-  std::vector<Heard> cells_;          // [beams][n_range]
-  std::vector<std::int32_t> hidden_;  // [beams][n_range + 1]: what each bin has more than the last
-  std::vector<Span> below_;           // the last row's, by column
-  std::vector<Heard> more_;           // the rest of the chains
+  std::vector<Heard> cells_;           // [beams][n_range]
+  std::vector<std::int32_t> hidden_;   // [beams][n_range + 1]: what each bin has more than the last
+  std::vector<std::uint32_t> ended_;   // [beams][n_range]: weight of the rays that end there
+  std::vector<std::uint8_t> surface_;  // [beams][n_range]: whether a ray's height ends there
+  std::vector<std::uint64_t> rays_;    // weight of all
+  std::vector<Span> below_;            // the last row's, by column
+  std::vector<Heard> more_;            // the rest of the chains
 };
 
 }  // namespace
 
 LabelImage label_by_energy(std::span<const EnergyRecord> records, std::uint32_t n_range,
-                           std::uint32_t n_beams, std::uint32_t samples_per_beam) {
+                           std::uint32_t n_beams, std::uint32_t samples_per_beam,
+                           std::span<const std::uint8_t> weights) {
   const std::size_t columns = std::size_t{n_beams} * samples_per_beam;
   NERITIC_CHECK(n_range > 0 && columns > 0 && records.size() % columns == 0,
                 "{} records for {} beams of {} samples, {} bins", records.size(), n_beams,
@@ -151,9 +186,10 @@ LabelImage label_by_energy(std::span<const EnergyRecord> records, std::uint32_t 
     const std::uint32_t beams = std::min(kBeams, n_beams - from);
     block.clear();
     for (std::size_t row = 0; row < rows; ++row) {
-      const EnergyRecord* r = &records[row * columns + std::size_t{from} * samples_per_beam];
+      std::size_t at = row * columns + std::size_t{from} * samples_per_beam;
       for (std::uint32_t beam = 0; beam < beams; ++beam)
-        for (std::uint32_t k = 0; k < samples_per_beam; ++k) block.add(beam, k, *r++);
+        for (std::uint32_t k = 0; k < samples_per_beam; ++k, ++at)
+          block.add(beam, k, records[at], at < weights.size() ? weights[at] : 1u);
     }
     block.resolve(beams, from, out);
   }

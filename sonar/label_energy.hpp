@@ -33,8 +33,8 @@ struct LabelImage {
   // [n_range][n_beams], row 0 nearest, column 0 full port.
   std::vector<std::uint16_t> classes;
   std::vector<std::uint16_t> instances;
-  // Of the bin's energy, above 0 to 1; in shadow the part of the beam's columns that are hidden; 0
-  // in water.
+  // Of the bin's energy, above 0 to 1; in shadow the part of the beam's columns, or of its rays,
+  // that is hidden; 0 in water.
   std::vector<float> fraction;
 };
 
@@ -43,12 +43,16 @@ struct LabelImage {
 // leave (CHECKed to divide evenly). Further rows may be ghosts'. Ties go to the smaller class, then
 // instance.
 //
-// Shadow: two neighbouring rows of a column that end on surfaces with a jump of range between what
-// they span hide what lies between, on the farther surface's continuation: a silent bin there is
-// kShadow. Where a neighbour ends on nothing, nothing is known to be hidden. A jump is one of more
-// than a bin and a quarter of both rows' spans: less is curvature.
-// Cost: one pass over the records; a bin that hears k different (class, instance) compares k keys.
+// Shadow is a silent bin that something nearer hides, in one of two ways. Two neighbouring rows of
+// a column that end on surfaces with a jump of range between what they span hide what lies between,
+// on the farther surface's continuation. (A jump is one of more than a bin and a quarter of both
+// rows' spans: less is curvature.) And where more than half of what a beam hears by ended nearer
+// than the bin, counted by weight, and none ends in it, it is hidden with nothing behind it to
+// tell: behind what fills a beam all is shadow to the end of the range, beside a rope in open water
+// all is water. weights: of the rays of the rows that are no ghosts', in the records' order; empty:
+// all alike.
 LabelImage label_by_energy(std::span<const EnergyRecord> records, std::uint32_t n_range,
-                           std::uint32_t n_beams, std::uint32_t samples_per_beam = 1);
+                           std::uint32_t n_beams, std::uint32_t samples_per_beam = 1,
+                           std::span<const std::uint8_t> weights = {});
 
 }  // namespace neritic::sonar

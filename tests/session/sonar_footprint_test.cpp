@@ -128,17 +128,67 @@ TEST_F(SonarFootprint, ASphereOnAxisHidesTheWaterBehindItUpToTheWall) {
   for (const double r : {3.3, 5.0, 6.0, 6.9}) EXPECT_EQ(at(r, 4), sonar::kWater) << r;  // beside it
 }
 
-// Without a wall behind it, nothing is there to be hidden.
-TEST_F(SonarFootprint, ASphereInOpenWaterHidesNothing) {
+// In open water there is no wall to tell by: behind the sphere is shadow to the end of the range
+// where most of a beam's rays ended on it, water where most pass it by. Both from the angle that
+// the sphere fills.
+TEST_F(SonarFootprint, ASphereInOpenWaterHidesWhatMostOfABeamWouldHear) {
+  constexpr double kRadius_m = 0.4, kRange_m = 4.0;
   scene::Sonar sonar = sonar_of(2.0, 8.0, 300);
+  sonar.gbuffer_scale = 2.0;
   sonar.terms.labels.energy = true;
   scene::Scene scene;
-  scene.objects.push_back(object_of(scene, scene::make_sphere(0.4, 128), {0.0, 0.0, -4.0}));
+  scene.objects.push_back(
+      object_of(scene, scene::make_sphere(kRadius_m, 128), {0.0, 0.0, -kRange_m}));
   scene.sonars = {sonar};
   const SonarFrame frame = ping(device(), scene);
   ASSERT_TRUE(frame.label_energy);
-  const auto& classes = frame.label_energy->classes;
-  EXPECT_EQ(std::count(classes.begin(), classes.end(), sonar::kShadow), 0);
+  const auto row_of = [&](double range_m) {
+    return static_cast<std::uint32_t>((range_m - 2.0) / frame.grid.range_step_m());
+  };
+  int shadows = 0, waters = 0;
+  for (std::uint32_t column = 0; column < 128; ++column) {
+    const double cosine = std::sqrt(1.0 - std::pow(kRadius_m / kRange_m, 2)) /
+                          std::cos(frame.grid.azimuth_rad(column));
+    const double filled_rad = cosine < 1.0 ? 2.0 * std::acos(cosine) : 0.0;
+    const double part = filled_rad / radians(20.0);
+    if (std::abs(part - 0.5) < 0.02) continue;  // a row or two
+    for (const std::uint32_t row : {row_of(4.1), row_of(6.0), 299u}) {
+      const std::size_t at = std::size_t{row} * 128 + column;
+      EXPECT_EQ(frame.label_energy->classes[at], part > 0.5 ? sonar::kShadow : sonar::kWater)
+          << column << ", row " << row;
+      EXPECT_NEAR(frame.label_energy->fraction[at], part > 0.5 ? part : 0.0, 0.02);
+    }
+    ++(part > 0.5 ? shadows : waters);
+  }
+  EXPECT_GT(shadows, 20);
+  EXPECT_GT(waters, 60);
+}
+
+// A pile from the floor to above the sonar: no ray goes over it to the floor behind.
+TEST_F(SonarFootprint, APileThatReachesAboveTheSonarHidesTheFloorBehindItToTheEnd) {
+  constexpr double kNear_m = 8.0, kAbove_m = 0.5;
+  scene::Scene scene = floor_below(512);
+  const double tall_m = kHeight_m + kAbove_m;  // seen to 3.6 degrees above the horizon
+  scene.objects.push_back(object_of(scene, scene::make_box(Vec3(0.7, tall_m, 0.4)),
+                                    {0.0, tall_m / 2.0 - kHeight_m, -kNear_m - 0.2}));
+  for (const double pitch_rad : {radians(-8.0), radians(-2.0)}) {  // up to 2 and to 8 degrees
+    scene.sonars[0].mount.pose.rotation = glm::angleAxis(pitch_rad, Vec3(1, 0, 0));
+    scene.sonars[0].terms.labels.energy = true;
+    const SonarFrame frame = ping(device(), scene);
+    ASSERT_TRUE(frame.label_energy);
+    for (std::uint32_t column = 0; column < kBeams; ++column) {
+      const bool behind = std::abs(std::tan(frame.grid.azimuth_rad(column))) * kNear_m < 0.3;
+      const bool beside =
+          std::abs(std::tan(frame.grid.azimuth_rad(column))) * (kNear_m + 0.4) > 0.4;
+      for (std::uint32_t row = 0; row < kBins && (behind || beside); ++row) {
+        const std::uint16_t found = frame.label_energy->classes[std::size_t{row} * kBeams + column];
+        // The pile's farthest ray goes down to its foot, or up over its edge.
+        if (frame.grid.range_m(row) > std::hypot(kNear_m + 0.4, kHeight_m) + 0.1)
+          EXPECT_EQ(found == sonar::kShadow, behind) << column << ", " << frame.grid.range_m(row);
+        if (beside) EXPECT_NE(found, sonar::kShadow) << column << ", " << frame.grid.range_m(row);
+      }
+    }
+  }
 }
 
 }  // namespace

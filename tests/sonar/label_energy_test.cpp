@@ -48,7 +48,7 @@ LabelImage plain_labels(const std::vector<EnergyRecord>& records, std::uint32_t 
                         std::uint32_t n_beams, std::uint32_t samples) {
   const std::size_t cells = std::size_t{n_range} * n_beams, width = std::size_t{n_beams} * samples;
   std::vector<std::map<std::pair<int, int>, std::uint64_t>> heard(cells);
-  std::vector<int> hidden(cells);
+  std::vector<int> hidden(cells), ended(cells), surface(cells), rays(n_beams);
   std::vector<const EnergyRecord*> below(width);
   for (std::size_t i = 0; i < records.size(); ++i) {
     const EnergyRecord& r = records[i];
@@ -63,6 +63,11 @@ LabelImage plain_labels(const std::vector<EnergyRecord>& records, std::uint32_t 
           heard[row * n_beams + beam][{r.class_id, r.instance}] += r.counts;
       }
     if (r.class_id == sonar::kGhost) continue;
+    ++rays[beam];
+    for (std::uint32_t row = 0; row < n_range && r.bin != sonar::kNoReturn; ++row) {
+      ended[row * n_beams + beam] += r.farthest < row;
+      surface[row * n_beams + beam] |= r.farthest == row || r.nearest == row;
+    }
     if (below[i % width]) {
       const auto [from, to] = hidden_rows(*below[i % width], r);
       for (int row = from; row < std::min(to, int(n_range)); ++row)
@@ -73,9 +78,13 @@ LabelImage plain_labels(const std::vector<EnergyRecord>& records, std::uint32_t 
   LabelImage out{n_range, n_beams, std::vector<std::uint16_t>(cells),
                  std::vector<std::uint16_t>(cells), std::vector<float>(cells)};
   for (std::size_t i = 0; i < cells; ++i) {
-    if (heard[i].empty() && hidden[i] > 0) {
+    const int all_rays = rays[i % n_beams];
+    const bool ended_nearer = 2 * ended[i] > all_rays && !surface[i];
+    if (heard[i].empty() && (hidden[i] > 0 || ended_nearer)) {
       out.classes[i] = sonar::kShadow;
-      out.fraction[i] = std::min(1.0f, float(hidden[i]) / float(samples));
+      out.fraction[i] = std::min(
+          1.0f, std::max(float(hidden[i]) / float(samples),
+                         ended_nearer ? float(double(ended[i]) / double(all_rays)) : 0.0f));
     }
     std::uint64_t all = 0, most = 0;
     for (const auto& [key, sum] : heard[i]) {
@@ -142,8 +151,10 @@ TEST(LabelEnergy, ShadowLiesBetweenAnEdgeAndWhatIsSeenPastIt) {
                                           ray(10, 70, 1, 1, 9, 11), nothing()};
   const LabelImage labels = sonar::label_by_energy(records, 14, 1);
   const std::uint16_t s = sonar::kShadow;
-  // Row 3, 9 and 11 are of rays whose energy lies beside; nothing is known of what is beyond.
-  EXPECT_EQ(labels.classes, (std::vector<std::uint16_t>{0, 1, 1, 0, 5, s, s, s, s, 0, 1, 0, 0, 0}));
+  // Row 3, 9 and 11 are of rays whose energy lies beside. Of six rays five ended nearer than what
+  // is beyond.
+  EXPECT_EQ(labels.classes, (std::vector<std::uint16_t>{0, 1, 1, 0, 5, s, s, s, s, 0, 1, 0, s, s}));
+  EXPECT_EQ(labels.fraction[13], 5.0f / 6.0f);
   EXPECT_EQ(labels.instances[4], 7);
   EXPECT_EQ(labels.fraction[4], 1.0f);
   EXPECT_EQ(labels.instances[5], 0);
@@ -160,7 +171,7 @@ TEST(LabelEnergy, ASharedRaySoundsInAllItsRowsAndLeavesNoShadow) {
 TEST(LabelEnergy, AShadowTellsHowManyOfItsBeamsColumnsAreHidden) {
   // Two columns; past the first one's edge something beyond the range, the second sees no edge.
   const std::vector<EnergyRecord> records{ray(1, 9, 2, 1), ray(1, 9, 2, 1), ray(80, 0, 1, 1),
-                                          ray(2, 9, 2, 1)};
+                                          ray(2, 9, 2, 1), nothing(),       nothing()};
   const LabelImage labels = sonar::label_by_energy(records, 5, 1, 2);
   EXPECT_EQ(labels.classes, (std::vector<std::uint16_t>{0, 2, 2, sonar::kShadow, sonar::kShadow}));
   EXPECT_EQ(labels.fraction[3], 0.5f);
@@ -171,10 +182,27 @@ TEST(LabelEnergy, AGhostIsHeardButCastsNoShadow) {
                                           ray(2, 10, sonar::kGhost, 0),
                                           ray(5, 10, sonar::kGhost, 0)};
   const LabelImage labels = sonar::label_by_energy(records, 8, 1);
-  EXPECT_EQ(labels.classes,
-            (std::vector<std::uint16_t>{0, 0, sonar::kGhost, 0, 0, sonar::kGhost, 2, 0}));
+  EXPECT_EQ(labels.classes, (std::vector<std::uint16_t>{0, 0, sonar::kGhost, 0, 0, sonar::kGhost, 2,
+                                                        sonar::kShadow}));
   EXPECT_EQ(labels.instances[6], 5);  // a tie: the smaller class
   EXPECT_EQ(labels.fraction[6], 0.5f);
+}
+
+TEST(LabelEnergy, WhereMostRaysEndedNearerThereIsShadow) {
+  // Of four rays two, then three end in open water: half is not most.
+  std::vector<EnergyRecord> records{ray(1, 9, 2, 1), ray(1, 9, 2, 1), nothing(), nothing()};
+  const auto classes = [&](std::span<const std::uint8_t> weights) {
+    return sonar::label_by_energy(records, 4, 1, 1, weights).classes;
+  };
+  const std::uint16_t s = sonar::kShadow;
+  const std::vector<std::uint16_t> open{0, 2, 0, 0}, hidden{0, 2, s, s};
+  EXPECT_EQ(classes({}), open);
+  records[2] = ray(1, 9, 2, 1);
+  EXPECT_EQ(classes({}), hidden);
+  EXPECT_EQ(sonar::label_by_energy(records, 4, 1).fraction[3], 0.75f);
+  // By weight: what the pattern hears little of counts little.
+  EXPECT_EQ(classes(std::vector<std::uint8_t>{10, 10, 10, 255}), open);
+  EXPECT_EQ(classes(std::vector<std::uint8_t>{10, 255, 10, 10}), hidden);
 }
 
 TEST(LabelEnergy, AFrameTakesMilliseconds) {

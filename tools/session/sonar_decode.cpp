@@ -48,7 +48,7 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
             state.records.mapped<shared::SonarRecord>()};
         for (const gpu::Buffer& ghost : state.ghost_records)
           layers.push_back(ghost.mapped<shared::SonarRecord>());
-        frame.label_energy = sonar::beam_energies(state.head, layers);
+        frame.label_energy = sonar::beam_energies(state.head, head->ping, layers);
       }
     } else {
       frame.image = state.gather->to_image(state.sums.mapped<std::uint32_t>(), keys);

@@ -1,0 +1,42 @@
+// Labels by energy after beam pattern and pulse: the energy of each (class, instance) is spread by
+// the same taps as the field, at the host. Pure function; any thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sonar/label_energy.hpp"
+
+namespace neritic::sonar {
+
+// Of powers; weights[k] weighs what lies first + k away. Empty: each value stays where it is.
+struct PowerTaps {
+  int first = 0;
+  std::vector<float> weights;  // [kernels][size]: beam b's is the b-th, or the last
+  std::uint32_t kernels = 1;
+  int size() const { return static_cast<int>(weights.size() / kernels); }
+};
+
+struct LabelSpread {
+  std::uint32_t n_range = 0, n_beams = 0, n_columns = 0;  // of the gather: margins counted
+  std::uint32_t stride = 1;  // beam b's kernel across is counted from column b * stride
+  bool wrap = false;         // a full turn: the columns are a ring
+  PowerTaps across, range;   // across without taps: column b is beam b
+  std::vector<float> gain;   // of power, a range bin
+  double first_shift = 0.0,
+         shift = 0.0;  // columns that bearings turn until row 0, and from row to row
+};
+
+// What lies so far under a kernel's peak (30 dB) fills no bin: a bin in a bright thing's far side
+// lobes stays water or shadow.
+inline constexpr float kLeastPart = 1e-3f;
+
+// records: [rows][n_columns], of the direct rays and each mirror's. labels: what
+// label_by_energy made of the same rays; every bin that the spread fills is written anew: the
+// (class, instance) of most energy, ties to the smaller, and its part of all. Cost: a few
+// operations a bin that an instance fills, beam that hears it and tap.
+void spread_labels(std::span<const EnergyRecord> records, const LabelSpread& spread,
+                   LabelImage& labels);
+
+}  // namespace neritic::sonar
