@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sonar/acoustics.hpp"
+#include "sonar/head.hpp"
 #include "sonar/levels.hpp"
 
 namespace neritic::sonar {
@@ -37,13 +38,15 @@ std::vector<BottomDetection> detect_bottom(const BeamGrid& grid, std::span<const
   return detect_bottom(grid, above_floor(intensity, floor), options);
 }
 
-EchoTraceOptions echo_trace_options(const BeamGrid& grid, const scene::SonarDetection& detection,
+EchoTraceOptions echo_trace_options(const BeamGrid& grid, const scene::SonarTerms& terms,
                                     std::vector<float> floor) {
   EchoTraceOptions options{.n_range = grid.bins.range,
                            .range_min_m = grid.limits.range_min_m,
                            .range_max_m = grid.limits.range_max_m,
                            .floor_by_bin = std::move(floor)};
-  options.relative_threshold = detection.threshold.value_or(options.relative_threshold);
+  options.relative_threshold = terms.detection.threshold.value_or(options.relative_threshold);
+  if (const auto taps = pulse_taps(terms, grid); taps.ok() && !taps->energy.empty())
+    options.pulse_bins = 1.0 / taps->energy[taps->reach];  // they sum to 1
   return options;
 }
 

@@ -27,7 +27,7 @@ std::vector<float> detection_floor(const scene::SonarDetection& detection,
 std::vector<BottomDetection> detect_bottom(const BeamGrid& grid, std::span<const float> intensity,
                                            const scene::SonarDetection& detection,
                                            std::span<const float> floor);
-EchoTraceOptions echo_trace_options(const BeamGrid& grid, const scene::SonarDetection& detection,
+EchoTraceOptions echo_trace_options(const BeamGrid& grid, const scene::SonarTerms& terms,
                                     std::vector<float> floor);
 SidescanOptions sidescan_options(const BeamGrid& grid, const scene::SonarTerms& terms,
                                  std::vector<float> floor);

@@ -18,13 +18,24 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// Between bins, in bins from the first bin's beginning.
-std::optional<double> strongest_bins(std::span<const float> profile, double floor) {
-  const auto peak = std::max_element(profile.begin(), profile.end());
-  if (!(*peak > std::max(floor, 0.0))) return std::nullopt;
-  const double before = peak == profile.begin() ? 0.0 : *(peak - 1),
-               after = peak + 1 == profile.end() ? 0.0 : *(peak + 1);
-  return static_cast<double>(peak - profile.begin()) + 0.5 + sub_bin_offset(before, *peak, after);
+// Half as much again as the pulse: what a return may be long and be a point's.
+constexpr double kPointLength = 1.5;
+
+// Where the return begins whose flank holds a bin.
+double return_bins(std::span<const float> profile, std::size_t at, double pulse_bins) {
+  const auto value = [&](std::size_t i) {
+    return i < profile.size() ? double{heard(profile[i])} : 0.0;
+  };
+  while (value(at + 1) > value(at)) ++at;
+  const double peak = value(at);
+  double before = 0.0, after = 0.0;
+  for (std::size_t i = at; i > 0 && value(i - 1) > 0.0 && value(i - 1) <= value(i); --i)
+    before += value(i - 1) / peak;
+  for (std::size_t i = at; value(i + 1) > 0.0 && value(i + 1) <= value(i); ++i)
+    after += value(i + 1) / peak;
+  const auto bin = static_cast<double>(at);
+  if (1.0 + before + after > kPointLength * pulse_bins) return bin - before;
+  return bin + 0.5 + sub_bin_offset(at > 0 ? value(at - 1) : 0.0, peak, value(at + 1));
 }
 
 std::string csv_number(double v) {
@@ -58,6 +69,8 @@ Status validate(const EchoTraceOptions& o) {
                      o.relative_threshold);
   if (!(o.floor >= 0.0) || !std::isfinite(o.floor))
     return bad_input("echo trace: floor {}; accepted: 0 or more", o.floor);
+  if (!(o.pulse_bins >= 1.0) || !std::isfinite(o.pulse_bins))
+    return bad_input("echo trace: a pulse of {} bins; accepted: 1 or more", o.pulse_bins);
   if (!o.floor_by_bin.empty() && o.floor_by_bin.size() != o.n_range)
     return bad_input("echo trace: a floor of {} bins; accepted: none, or {}", o.floor_by_bin.size(),
                      o.n_range);
@@ -98,22 +111,23 @@ std::optional<LineFit> fit_line(std::span<const double> x, std::span<const doubl
 }
 
 std::optional<double> first_return_bins(std::span<const float> profile, double relative_threshold,
-                                        double floor) {
-  if (profile.empty()) return std::nullopt;
+                                        double floor, double pulse_bins) {
   double strongest = 0.0;
   for (const float v : profile) strongest = std::max(strongest, double{heard(v)});
   if (!(strongest > std::max(floor, 0.0))) return std::nullopt;
   const double level = std::max(relative_threshold * strongest, floor);
   std::size_t i = 0;
   while (heard(profile[i]) < level) ++i;
-  const double here = heard(profile[i]),
-               next = i + 1 < profile.size() ? heard(profile[i + 1]) : 0.0,
-               before = i > 0 ? heard(profile[i - 1]) : 0.0;
-  if (next < level) return static_cast<double>(i) + 0.5;
-  // The bin before may hold a part too small for the threshold; it counts where this one is full.
-  const double filled = std::min(1.0, here / next);
-  const double earlier = filled == 1.0 ? std::min(1.0, before / here) : 0.0;
-  return static_cast<double>(i + 1) - filled - earlier;
+  return return_bins(profile, i, pulse_bins);
+}
+
+std::optional<double> strongest_return_bins(std::span<const float> profile, double floor,
+                                            double pulse_bins) {
+  std::size_t peak = 0;
+  for (std::size_t i = 1; i < profile.size(); ++i)
+    if (heard(profile[i]) > heard(profile[peak])) peak = i;
+  if (profile.empty() || !(heard(profile[peak]) > std::max(floor, 0.0))) return std::nullopt;
+  return return_bins(profile, peak, pulse_bins);
 }
 
 EchoTrace::EchoTrace(const EchoTraceOptions& options) : options_(options) {
@@ -132,8 +146,9 @@ void EchoTrace::append(std::span<const float> intensity, double time_s, double s
     return bins ? options_.range_min_m + *bins * options_.range_step_m() : kNone;
   };
   pings_.push_back({time_s, sonar_depth_m,
-                    range(first_return_bins(profile, options_.relative_threshold, options_.floor)),
-                    range(strongest_bins(profile, options_.floor))});
+                    range(first_return_bins(profile, options_.relative_threshold, options_.floor,
+                                            options_.pulse_bins)),
+                    range(strongest_return_bins(profile, options_.floor, options_.pulse_bins))});
 }
 
 std::optional<LineFit> EchoTrace::first_return_slope() const {
@@ -157,7 +172,9 @@ Status write_echo_trace(const std::filesystem::path& folder, const EchoTrace& tr
   json["range_m"] = {o.range_min_m, o.range_max_m};
   json["bins"] = o.n_range;
   json["pings"] = trace.pings().size();
-  json["detection"] = {{"relative_threshold", o.relative_threshold}, {"floor", o.floor}};
+  json["detection"] = {{"relative_threshold", o.relative_threshold},
+                       {"floor", o.floor},
+                       {"pulse_bins", o.pulse_bins}};
   json["layout"] = "echo_trace.npy [ping, range]: linear intensity, column 0 nearest";
   if (const auto fit = trace.first_return_slope())
     json["first_return_fit"] = {{"slope_m_s", fit->slope},

@@ -22,6 +22,8 @@ struct EchoTraceOptions {
   double relative_threshold = 0.2;  // above 0, at most 1
   double floor = 0.0;               // a ping whose strongest bin is not above it has no return
   std::vector<float> floor_by_bin;  // [n_range], what a bin must exceed as well; empty: nothing
+  // The pulse's length in bins, as its energy over its strongest bin's; 1: one of no length.
+  double pulse_bins = 1.0;
 
   double range_step_m() const { return (range_max_m - range_min_m) / n_range; }
 };
@@ -31,8 +33,8 @@ Status validate(const EchoTraceOptions& options);
 // Ranges are slant ranges from the sonar, NaN where there is no return.
 struct EchoPing {
   double time_s = 0.0, sonar_depth_m = 0.0;
-  double first_m = 0.0;      // leading edge of the first return
-  double strongest_m = 0.0;  // the strongest bin, between bins
+  double first_m = 0.0;      // where the first return begins
+  double strongest_m = 0.0;  // where the return that has the strongest bin begins
 
   // Of a bottom under a sonar that looks straight down.
   double first_depth_m() const { return sonar_depth_m + first_m; }
@@ -68,12 +70,16 @@ class EchoTrace {
   std::vector<float> intensity_;
 };
 
-// Leading edge of a profile's first return in bins from the first bin's beginning; nothing where it
-// has none. Of a return that goes on into the next bin, the first bin is filled in part, from where
-// the echo begins to the bin's end: the part is its value over the next one's. A return of one bin
-// lies at that bin's centre.
+// Where a return of a profile begins, in bins from the first bin's beginning: the first that
+// reaches the threshold, or the one that has the strongest bin; nothing where there is none. A
+// pulse draws a return's edge out to either side alike, and a bin's edge fills the first bin in
+// part: so what lies on the flank before the return's peak, over the peak's value, is how much of
+// the flank the return fills, and it begins so far before the peak's bin. A return no longer than
+// the pulse (half as much again) is a point's and lies at its peak, between bins.
 std::optional<double> first_return_bins(std::span<const float> intensity, double relative_threshold,
-                                        double floor);
+                                        double floor, double pulse_bins = 1.0);
+std::optional<double> strongest_return_bins(std::span<const float> intensity, double floor,
+                                            double pulse_bins = 1.0);
 
 struct EchoPictureOptions {
   std::string title = "ECHO SOUNDER";

@@ -113,16 +113,8 @@ std::vector<float> beam_weights(const scene::Sonar& sonar, const Head& head,
 
 // What spreads along range. Calibrated levels keep a point's peak; else its energy is kept.
 Result<Taps> range_taps(const scene::Sonar& sonar, const BeamGrid& grid, bool coherent) {
-  const auto& spread = sonar.terms.range_spread;
-  if (!spread) return Taps{};
-  using Window = scene::SonarRangeSpread::Window;
-  const PulseShape shape = spread->window == Window::kHann ? PulseShape::kHann : PulseShape::kFlat;
-  const double resolution =
-      range_resolution_m(sound_speed_of(sonar.terms.water, 0.0), spread->bandwidth_hz);
-  // A Hann pulse's tails are short, a sinc's are not: leaving out 1 % costs its echo as much error.
-  const double truncated = shape == PulseShape::kHann ? 1e-3 : 1e-2;
-  NERITIC_TRY(const RangeSpread kernel,
-              range_spread(shape, resolution, grid.range_step_m(), truncated));
+  if (!sonar.terms.range_spread) return Taps{};
+  NERITIC_TRY(const RangeSpread kernel, pulse_taps(sonar.terms, grid));
   const double peak = sonar.terms.level ? kernel.energy[kernel.reach] : 1.0;
   Taps taps{-static_cast<int>(kernel.reach), {}};
   for (std::size_t i = 0; i < kernel.energy.size(); ++i)
@@ -139,8 +131,8 @@ std::vector<float> beam_kernel(const scene::Sonar& sonar, const Head& head,
   const double column = head.samples.azimuth_step_rad();
   std::vector<double> amplitude(samples + 2 * reach, 1.0);
   for (std::size_t i = 0; i < amplitude.size() && !head.folded; ++i)
-    amplitude[i] =
-        patterns.across_column((double(i) - reach - (samples - 1) / 2.0) * column, axis_rad, column);
+    amplitude[i] = patterns.across_column((double(i) - reach - (samples - 1) / 2.0) * column,
+                                          axis_rad, column);
   // Calibrated levels count all that a beam hears; else the taps share the energy out.
   const bool counts_all = sonar.terms.level || head.folded;
   double total = 0.0;
@@ -229,6 +221,17 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
 }
 
 }  // namespace
+
+Result<RangeSpread> pulse_taps(const scene::SonarTerms& terms, const BeamGrid& grid) {
+  if (!terms.range_spread) return RangeSpread{};
+  using Window = scene::SonarRangeSpread::Window;
+  const bool hann = terms.range_spread->window == Window::kHann;
+  const double resolution =
+      range_resolution_m(sound_speed_of(terms.water, 0.0), terms.range_spread->bandwidth_hz);
+  // A Hann pulse's tails are short, a sinc's are not: leaving out 1 % costs its echo as much error.
+  return range_spread(hann ? PulseShape::kHann : PulseShape::kFlat, resolution, grid.range_step_m(),
+                      hann ? 1e-3 : 1e-2);
+}
 
 double scan_heading_rad(const scene::Sonar& sonar, std::uint32_t ping) {
   if (sonar.kind != SonarKind::kMechanical) return 0.0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/scene/scene.hpp"
+#include "sonar/acoustics_pulse.hpp"
 #include "sonar/beam_grid.hpp"
 #include "sonar/gather.hpp"
 #include "sonar/receiver.hpp"
@@ -29,6 +30,9 @@ struct Head {
 
 // kBadInput that names the setting.
 Result<std::vector<Head>> plan_heads(const scene::Sonar& sonar);
+
+// What the pulse that the terms name makes of a point over the grid's bins; without one, empty.
+Result<RangeSpread> pulse_taps(const scene::SonarTerms& terms, const BeamGrid& grid);
 
 // Where a mechanical scanner's beam points at its ping-th ping: azimuth in sonar axes, positive to
 // starboard. From full port in steps; a full turn goes on round, a sector is swept to and fro by as

@@ -6,6 +6,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
 #include "sonar/beam_pattern.hpp"
+#include "sonar/detection.hpp"
 #include "sonar/head.hpp"
 #include "tests/session/sonar_pings.hpp"
 #include "tools/session/survey.hpp"
@@ -48,6 +49,57 @@ std::vector<double> altitudes_of(gpu::Device& device, const scene::Scene& scene)
   auto npy = read_npy(out / "track" / "sonar" / "sidescan_altitude.npy");
   EXPECT_TRUE(npy.ok()) << npy.error().message;
   return npy->to_doubles();
+}
+
+// Down on the bottom at 5 m/min, by the device's own bins, pattern and pulse, in noise: the most
+// that first and strongest return are off the true depth, in bins.
+std::pair<double, double> most_off_on_the_way_down(gpu::Device& device, const scene::Scene& flat) {
+  scene::Scene scene = flat;
+  constexpr double kRate = 5.0 / 60.0, kBottom_m = 30.0;
+  const Quat down = glm::angleAxis(-kPi / 2.0, Vec3(1, 0, 0));
+  scene.sonars[0].mount.track = scene::Track{
+      scene::places_of({{Vec3(0, -5.0, 0), Vec3(0, -25.0, 0)}, kRate, 0.0}), {{0.0, down}}};
+  auto session = Session::create(device, scene);
+  EXPECT_TRUE(session.ok()) << session.error().message;
+  FrameRequest request;
+  request.sonars = {0};
+  request.capture.geometry = false;
+  double first = 0.0, strongest = 0.0;
+  for (request.frame = 0; request.frame < 60; ++request.frame) {
+    request.time_s = request.frame * 3.7;
+    auto result = (*session)->render(request);
+    EXPECT_TRUE(result.ok()) << result.error().message;
+    const SonarFrame& frame = result->sonars[0];
+    sonar::EchoTrace trace(sonar::echo_trace_options(
+        frame.grid, frame.terms, sonar::detection_floor(frame.terms.detection, frame.noise_power)));
+    trace.append(frame.image.intensity, request.time_s, 0.0);
+    const double truth = kBottom_m - 5.0 - kRate * request.time_s, bin = frame.grid.range_step_m();
+    first = std::max(first, std::abs(trace.pings()[0].first_m - truth) / bin);
+    strongest = std::max(strongest, std::abs(trace.pings()[0].strongest_m - truth) / bin);
+  }
+  return {first, strongest};
+}
+
+TEST_F(SonarPresets, AnEchoSounderComesDownWithinABinByPatternAndPulseInNoise) {
+  const test::ScratchFolder scratch;
+  for (const char* terms : {"", "level = { source_level_db = 200 }\nnoise = { level_db = 60 }",
+                            "level = { source_level_db = 200 }\nnoise = { level_db = 60 }\n"
+                            "bins = [600, 32, 32]"}) {
+    NERITIC_ASSERT_OK(const scene::Scene scene,
+                      over_a_flat_bottom(scratch.path(), "ping2", 30.0, terms));
+    const auto [first, strongest] = most_off_on_the_way_down(device(), scene);
+    EXPECT_LT(first, 1.0) << terms;
+    EXPECT_LT(strongest, 1.0) << terms;
+  }
+  // Speckle's draws are loud and faint bins: what holds at every ping is three bins or so.
+  NERITIC_ASSERT_OK(
+      const scene::Scene scene,
+      over_a_flat_bottom(
+          scratch.path(), "ping2", 30.0,
+          "level = { source_level_db = 200 }\nnoise = { level_db = 60 }\nspeckle = {}"));
+  const auto [first, strongest] = most_off_on_the_way_down(device(), scene);
+  EXPECT_LT(first, 3.0);
+  EXPECT_LT(strongest, 4.0);
 }
 
 TEST_F(SonarPresets, ASideScansAltitudeIsTheBottomsHeight) {

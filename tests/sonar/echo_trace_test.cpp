@@ -11,6 +11,7 @@
 #include "engine/core/math.hpp"
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
+#include "sonar/acoustics_pulse.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic {
@@ -53,8 +54,7 @@ TEST(EchoTrace, ADescentAtFiveMetresAMinuteHasThatSlopeAndItsDepthAtEveryPing) {
     const double bin = trace.options().range_step_m();
     for (const auto& ping : trace.pings()) {
       EXPECT_NEAR(ping.first_depth_m(), 13.0, bin) << psi_deg << " deg at " << ping.time_s;
-      // The echo of a flat bottom is a plateau: its strongest bin is the first full one.
-      EXPECT_NEAR(ping.strongest_depth_m(), 13.0, 2.0 * bin) << psi_deg << " deg";
+      EXPECT_NEAR(ping.strongest_depth_m(), 13.0, bin) << psi_deg << " deg";
     }
     if (psi_deg == 15.0) {  // a long echo shows where in the first bin it begins
       EXPECT_LT(fit->rms, 0.1 * bin);
@@ -79,6 +79,34 @@ TEST(EchoTrace, TheLeadingEdgeIsFoundWithinItsBin) {
   EXPECT_FALSE(sonar::first_return_bins(std::vector<float>{0, 0.5f, 0}, 0.2, 0.5));
 }
 
+// The same bottom through a pulse that is longer than a bin: the edge that it draws out has its
+// middle where the bottom is, and a cone so narrow that the bottom is a point has its peak there.
+TEST(EchoTrace, ThePulseMovesNoBottom) {
+  EchoTraceOptions o{.n_range = 500, .range_min_m = 0.2, .range_max_m = 12.0};
+  const auto kernel = sonar::range_spread(sonar::PulseShape::kHann, 0.05, o.range_step_m());
+  ASSERT_TRUE(kernel.ok());
+  o.pulse_bins = 1.0 / kernel->energy[kernel->reach];
+  EXPECT_GT(o.pulse_bins, 2.0);
+  const int reach = static_cast<int>(kernel->reach);
+  for (const double psi_deg : {0.5, 5.0, 12.5}) {
+    EchoTrace trace(o);
+    for (int i = 0; i < 200; ++i) {
+      const auto profile = cone_profile(o, 4.0 + 0.0173 * i, radians(psi_deg));
+      std::vector<float> heard(o.n_range);
+      for (int row = reach; row < 500 - reach; ++row)
+        for (int k = -reach; k <= reach; ++k)
+          heard[static_cast<std::size_t>(row)] +=
+              static_cast<float>(kernel->energy[static_cast<std::size_t>(k + reach)]) *
+              profile[static_cast<std::size_t>(row + k)];
+      trace.append(heard, i, 0.0);
+      const double bins = psi_deg > 1.0 ? std::max(1.0, 0.7 * o.pulse_bins) : 1.0;
+      const auto& ping = trace.pings().back();
+      EXPECT_NEAR(ping.first_m, 4.0 + 0.0173 * i, bins * o.range_step_m()) << psi_deg;
+      EXPECT_NEAR(ping.strongest_m, 4.0 + 0.0173 * i, bins * o.range_step_m()) << psi_deg;
+    }
+  }
+}
+
 TEST(EchoTrace, FirstAndStrongestAreToldApart) {
   EchoTrace trace({.n_range = 100, .range_min_m = 0.0, .range_max_m = 10.0});
   std::vector<float> profile(100);
@@ -88,7 +116,7 @@ TEST(EchoTrace, FirstAndStrongestAreToldApart) {
   trace.append(profile, 0.0, 4.0);
   trace.append(std::vector<float>(100), 1.0, 4.0);
   EXPECT_NEAR(trace.pings()[0].first_depth_m(), 4.0 + 3.05, 1e-9);
-  EXPECT_NEAR(trace.pings()[0].strongest_depth_m(), 4.0 + 7.1, 1e-9);
+  EXPECT_NEAR(trace.pings()[0].strongest_depth_m(), 4.0 + 7.0, 1e-9);  // where it begins
   EXPECT_TRUE(std::isnan(trace.pings()[1].first_m));
   EXPECT_TRUE(std::isnan(trace.pings()[1].strongest_m));
   EXPECT_FALSE(trace.first_return_slope());
@@ -154,7 +182,7 @@ TEST(EchoTrace, OptionsThatCannotBeAreNamed) {
   for (const EchoTraceOptions& bad :
        {EchoTraceOptions{.n_range = 0}, EchoTraceOptions{.range_min_m = 60},
         EchoTraceOptions{.relative_threshold = 2}, EchoTraceOptions{.floor = -1},
-        EchoTraceOptions{.floor_by_bin = {1.0f}}}) {
+        EchoTraceOptions{.floor_by_bin = {1.0f}}, EchoTraceOptions{.pulse_bins = 0.5}}) {
     const Status status = sonar::validate(bad);
     ASSERT_FALSE(status.ok());
     EXPECT_NE(status.error().message.find("accepted"), std::string::npos);

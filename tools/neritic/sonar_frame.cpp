@@ -75,7 +75,7 @@ Status add_findings(const SonarJob& job, const fs::path& folder, const sonar::So
     facts["detections"] = {{"points", cloud.size()}, {"axes", "x starboard, y up, z backwards"}};
   }
   if (job.sonar.kind == scene::SonarKind::kEchoSounder) {
-    sonar::EchoTrace trace(sonar::echo_trace_options(grid, detection, job.detection_floor));
+    sonar::EchoTrace trace(sonar::echo_trace_options(grid, job.sonar.terms, job.detection_floor));
     trace.append(image.intensity, 0.0, 0.0);
     const sonar::EchoPing& ping = trace.pings().front();  // NaN, no return, becomes null
     facts["echo"] = {{"first_return_m", ping.first_m}, {"strongest_return_m", ping.strongest_m}};

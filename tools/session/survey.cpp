@@ -113,7 +113,7 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
                                                                            : l.range_max_m / 50.0);
   if (frame.kind == SonarKind::kEchoSounder)
     r.trace = std::make_unique<sonar::EchoTrace>(
-        sonar::echo_trace_options(frame.grid, terms.detection, floor_of(frame)));
+        sonar::echo_trace_options(frame.grid, terms, floor_of(frame)));
   if (frame.kind == SonarKind::kSideScan)
     r.sidescan = std::make_unique<sonar::SidescanRecord>(
         sonar::sidescan_options(frame.grid, terms, floor_of(frame)));
