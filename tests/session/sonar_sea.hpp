@@ -51,6 +51,24 @@ inline scene::SonarTerms every_term() {
   return t;
 }
 
+// Those again in the other shapes that patterns, steering and gain can have, each with a kind that
+// takes it.
+inline std::vector<std::pair<scene::SonarKind, scene::SonarTerms>> other_shapes() {
+  using Shape = scene::SonarPattern::Shape;
+  scene::SonarTerms flat = every_term();
+  flat.beam.steering = scene::SonarBeam::Steering::kFlat;
+  flat.level->tvg_log = 0.0;
+  flat.level->tvg_table = {{0.5, 0.0}, {3.0, 18.0}, {12.0, 30.0}};
+  scene::SonarTerms table = every_term();
+  table.beam.azimuth->shape = Shape::kTable;
+  table.beam.azimuth->table = {{0.0, 0.0}, {0.05, -3.0}, {0.12, -20.0}, {0.2, -50.0}};
+  scene::SonarTerms piston = every_term();
+  piston.beam.elevation->shape = Shape::kPiston;
+  return {{scene::SonarKind::kImaging, flat},
+          {scene::SonarKind::kMechanical, table},
+          {scene::SonarKind::kEchoSounder, piston}};
+}
+
 // A sonar 4 m under the surface, underway and turning, a sphere before it and a floor below.
 inline scene::Scene some_sea(scene::Sonar sonar) {
   scene::Scene scene;
