@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "rov/bluerov2.hpp"
 
@@ -120,22 +121,22 @@ AllocationTable read_allocation(const CaseField& field, CaseFile& file) {
   return out;
 }
 
-// The number behind the last mention of a word in a text.
-double number_after(const std::string& text, std::string_view word, double fallback) {
+// The number behind the first mention of a word in a text; no number where there is none.
+double number_after(const std::string& text, std::string_view word) {
   const auto at = text.find(word);
-  if (at == text.npos) return fallback;
-  double value = fallback;
-  const char* from = text.data() + at + word.size();
-  std::from_chars(from, text.data() + text.size(), value);
+  double value = NAN;
+  if (at != text.npos)
+    std::from_chars(text.data() + at + word.size(), text.data() + text.size(), value);
   return value;
 }
 
 void read_plant(const CaseField& loop, LoopCase& out) {
-  const std::string plant = loop["plant"].text();
-  out.lag_s = number_after(plant, "lag ", 0.1);
-  out.max_n = number_after(plant, "limits +", kT200Max16V);
-  out.min_n = -number_after(plant, "/-", -kT200Min16V);
-  if (!(out.lag_s > 0.0) || !(out.max_n > 0.0) || !(out.min_n < 0.0))
+  const std::string plant = loop.required("plant").text();
+  out.lag_s = number_after(plant, "lag ");
+  out.max_n = number_after(plant, "limits +");
+  out.min_n = -number_after(plant, "/-");
+  const auto fits = [](double x) { return x >= 1e-6 && x <= 1e6; };
+  if (!fits(out.lag_s) || !fits(out.max_n) || !fits(-out.min_n))
     loop["plant"].refuse("\"... lag 0.1 s, force limits +51.436/-39.908 N\" is");
   const std::string map = loop["map"].text("tau=M_RB*u");
   if (map.find("M_RB*u") == map.npos) loop["map"].refuse("\"tau=M_RB*u, F=scale(pinv tau)\" is");

@@ -7,8 +7,8 @@
 //   allocation: B_6xN; of pinv_Nx6, rank, singular_values, cond, cond_length_0p2 what is compared;
 //     fmax, fmin: a number, or one a thruster; cases: tau, and of f_pinv, scale, f_scaled,
 //     tau_achieved what is compared
-//   closed_loop: gains as above, six axes; control_hz [50]; plant: a text, of which "lag T s" [0.1]
-//     and "limits +MAX/-MIN N" [51.436, 39.908] count; map: a text with "M_RB*u", the only one;
+//   closed_loop: gains as above, six axes; control_hz [50]; plant: a text, of which "lag T s"
+//     and "limits +MAX/-MIN N" count, both needed; map: a text with "M_RB*u", the only one;
 //     results: by "PLANT/MANOEUVRE", PLANT
 //     neutral, fresh or sea (the BlueROV2 Heavy's buoyancy), MANOEUVRE surge_2m, sway_1m,
 //     depth_+1m, roll_, pitch_, yaw_90deg and so on, or any name with waypoints (p, yaw) and

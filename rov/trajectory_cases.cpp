@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <span>
 
+#include "engine/core/text.hpp"
 #include "rov/bluerov2.hpp"
 #include "rov/step.hpp"
 #include "rov/thrust_curve.hpp"
@@ -13,9 +15,8 @@
 namespace neritic::rov {
 namespace {
 
-constexpr double kDefaultLag = 0.1;  // s, that of the closed loops of control_vectors.json
-constexpr double kLongest = 1e5;     // s
-constexpr double kMostSpeed = 1e3;   // m/s, rad/s
+constexpr double kLongest = 1e5;    // s
+constexpr double kMostSpeed = 1e3;  // m/s, rad/s
 
 // step() would refuse an input beyond most, and the case tell of another flight.
 void within(const CaseField& field, std::span<const double> values, double most) {
@@ -78,19 +79,65 @@ std::vector<Thruster> read_thrusters(const CaseField& field) {
   return out;
 }
 
+// Whether a member's name says that it is a lag's time constant, or about a lag.
+bool is_time_name(std::string_view key) {
+  return key == "T" || key.starts_with("T_") || key.ends_with("_T") || key.ends_with("_T_s") ||
+         key == "tau_s" || key.ends_with("_tau") || key.ends_with("_tau_s");
+}
+bool is_lag_name(std::string_view key) {
+  return key.find("lag") != key.npos || key.find("time_const") != key.npos;
+}
+
 // A number whose name says that it is a lag's time constant. Texts about a lag are notes.
 std::optional<double> find_lag_time(const CaseField& place) {
   for (const std::string& key : place.keys()) {
     const CaseField field = place[key];
-    const bool is_time = key == "T" || key.starts_with("T_") || key.ends_with("_T") ||
-                         key.ends_with("_T_s") || key == "tau_s" || key.ends_with("_tau") ||
-                         key.ends_with("_tau_s");
-    const bool about_lag = key.find("lag") != key.npos || key.find("time_const") != key.npos;
-    if (!field.present() || !(is_time || (about_lag && !field.is_text()))) continue;
-    if (!field.is_object()) return field.number(kDefaultLag, 1e-6, 1e6);
+    if (!field.present() || !(is_time_name(key) || (is_lag_name(key) && !field.is_text())))
+      continue;
+    if (!field.is_object()) return field.number(1.0, 1e-6, 1e6);
     if (const auto inner = find_lag_time(field)) return inner;
   }
   return std::nullopt;
+}
+
+// "..., T = 0.1 s": the number behind a T that stands for itself.
+std::optional<double> told_lag_time(const CaseField& note) {
+  const std::string text = note.is_text() ? note.text() : "";
+  const auto is_word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+  };
+  for (std::size_t at = text.find('T'); at != text.npos; at = text.find('T', at + 1)) {
+    if (at > 0 && is_word(text[at - 1])) continue;
+    const auto equals = text.find_first_not_of(' ', at + 1);
+    if (equals == text.npos || text[equals] != '=') continue;
+    const auto number = text.find_first_not_of(' ', equals + 1);
+    double value = 0.0;
+    if (number == text.npos ||
+        std::from_chars(text.data() + number, text.data() + text.size(), value).ec != std::errc())
+      continue;
+    if (value >= 1e-6 && value <= 1e6) return value;
+    note.refuse("T from 1e-6 to 1e6 s is");
+  }
+  return std::nullopt;
+}
+
+std::optional<double> lag_time(const CaseField& scenario, const CaseField& thrusters) {
+  for (const CaseField& place : {scenario, scenario["thrusters"], scenario["params"], thrusters})
+    if (const auto time = find_lag_time(place)) return time;
+  for (const CaseField& note : {scenario["doc"], thrusters["lag1"]})
+    if (const auto time = told_lag_time(note)) return time;
+  return std::nullopt;
+}
+
+// Members that are none of these, nor a note, would be passed over: a misspelt one is an error.
+void refuse_unknown(const CaseField& field, std::span<const std::string_view> names) {
+  for (const std::string& key : field.keys()) {
+    const CaseField member = field[key];
+    if (!member.present() || member.is_text() || is_time_name(key) || is_lag_name(key) ||
+        std::ranges::find(names, key) != names.end())
+      continue;
+    member.fail(fmt::format("not known; the nearest is {}", nearest(key, names)));
+  }
 }
 
 // Of the case: thrusters push, and how they follow their commands.
@@ -98,12 +145,10 @@ bool read_mode(const CaseField& scenario, const CaseField& thrusters, ThrusterLa
   const std::string mode = scenario["thruster_mode"].text("none");
   if (mode == "lag1") {
     lag.kind = ThrusterLag::Kind::kFirstOrder;
-    lag.time_s = kDefaultLag;
-    for (const CaseField& place : {scenario, scenario["thrusters"], scenario["params"], thrusters})
-      if (const auto time = find_lag_time(place)) {
-        lag.time_s = *time;
-        break;
-      }
+    if (const auto time = lag_time(scenario, thrusters))
+      lag.time_s = *time;
+    else
+      scenario["lag1_T_s"].fail("not found, but needed: the T of thruster_mode lag1, in seconds");
   } else if (mode == "vb3") {
     lag.kind = ThrusterLag::Kind::kThirdOrder;
   } else if (mode != "none" && mode != "force" && mode != "vb_poly" && mode != "t200_16V") {
@@ -140,9 +185,12 @@ std::vector<double> read_forces(const CaseField& scenario, std::size_t segment, 
 
 void read_segments(const CaseField& scenario, bool thrust, const std::filesystem::path& folder,
                    TrajectoryCase& out) {
+  constexpr std::string_view kSegment[] = {"t0", "t1", "tau_body", "tau_sin",
+                                           "thruster_force_cmd_N"};
   const CaseField list = scenario["input_segments"];
   for (std::size_t i = 0; i < list.size(); ++i) {
     const CaseField at = list.at(i);
+    refuse_unknown(at, kSegment);
     InputSegment segment;
     segment.t0_s = at.required("t0").number(0.0, 0.0, kLongest);
     segment.t1_s = at.required("t1").number(0.0, 0.0, kLongest);
@@ -207,7 +255,12 @@ void read_promises(const CaseField& field, TrajectoryCase& out) {
 
 TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseField& thrusters,
                          const std::filesystem::path& folder) {
+  constexpr std::string_view kParameters[] = {"m_kg", "I_CO_kgm2", "r_g_m", "r_b_m",   "W_N",
+                                              "B_N",  "M_A",       "D_L",   "D_Q_diag"};
+  constexpr std::string_view kInitial[] = {"p_ned", "q_wxyz", "nu_frd"};
   TrajectoryCase out;
+  refuse_unknown(scenario["params"], kParameters);
+  refuse_unknown(scenario["initial"], kInitial);
   VehicleParameters parameters = read_parameters(scenario.required("params"));
   const bool thrust = read_mode(scenario, thrusters, parameters.lag);
   const CaseField own = scenario["thrusters"];

@@ -9,7 +9,9 @@
 //       [0], D_Q_diag [0], W_N [9.82 m], B_N [W]
 //     current_ned_mps [0]; initial: p_ned [0], q_wxyz [1, 0, 0, 0], nu_frd [0]
 //     thruster_mode: none, force (at once), lag1, vb3 [none]; vb_poly and t200_16V are force too
-//     lag1_T_s, or T, in the case or in thrusters [0.1 s]: T of lag1
+//     lag1_T_s, or T, in the case, its params or in thrusters: T of lag1, s; or "T = 0.1" in the
+//     text
+//       of thrusters.lag1 or doc
 //     input_segments: t0, t1, tau_body [0], thruster_force_cmd_N [0]; outside of all: 0
 //     input_normalised_V, input_pwm_us: a row a segment, where no force is given: F of vb_poly, or
 //       by the column thrust_N_16V of t200_thrust.csv beside the file
@@ -19,7 +21,8 @@
 //     samples: t, and of p_ned, q_wxyz, nu_frd, thruster_force_N what is compared
 //     fixed_step_end_error: {rk4_60Hz: [position, velocity], ...} [none]
 //     reference_error_estimate: how wrong the samples are, in any of their numbers [0]
-// Other members (doc, closed_form, ...) are notes and are passed over.
+// Other members (doc, closed_form, ...) are notes and are passed over; in params, initial and
+// input_segments texts alone are, and others are errors.
 #pragma once
 
 #include <array>

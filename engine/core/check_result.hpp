@@ -25,6 +25,7 @@ struct CheckedError {
 struct CaseResult {
   std::string id;
   std::vector<CheckedError> errors;  // at least one
+  std::string note;                  // what of the case does not count as it stands; mostly empty
 
   bool ok() const {
     for (const CheckedError& e : errors)

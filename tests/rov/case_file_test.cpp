@@ -51,7 +51,16 @@ TEST(RovCaseFile, Lag1FindsItsTimeConstant) {
   Json json = smallest();
   Json& one = json["scenarios"][0];
   one["thruster_mode"] = "lag1";
-  EXPECT_EQ(time_of(json), 0.1);
+  EXPECT_THAT(fault(json), HasSubstr("case 'small': scenarios[0].lag1_T_s: not found, but needed: "
+                                     "the T of thruster_mode lag1"));
+  one["doc"] = "a lag with DT=3 and T = 0.15 s";
+  EXPECT_EQ(time_of(json), 0.15);
+  one["doc"] = "a lag with T = 0 s";
+  EXPECT_THAT(fault(json),
+              HasSubstr("scenarios[0].doc: \"a lag with T = 0 s\" found, T from 1e-6"));
+  one.erase("doc");
+  json["thrusters"]["lag1"] = "dF/dt=(F_cmd-F)/T, T=0.25, F(0)=0";
+  EXPECT_EQ(time_of(json), 0.25);
   one["T"] = 0.2;
   EXPECT_EQ(time_of(json), 0.2);
   one.erase("T");
@@ -68,6 +77,35 @@ TEST(RovCaseFile, Lag1FindsItsTimeConstant) {
   EXPECT_THAT(fault(json), HasSubstr("scenarios[0].T: \"quick\" found, a number in"));
   one["T"] = -1.0;
   EXPECT_THAT(fault(json), HasSubstr("case 'small': scenarios[0].T: -1.0 found"));
+}
+
+TEST(RovCaseFile, NotesArePassedOver) {
+  Json json = smallest();
+  Json& one = json["scenarios"][0];
+  one["closed_form"] = parse_json("{\"u_ss\": 3}").value();
+  one["params"]["name"] = "small";
+  one["params"]["note"] = "a note";
+  EXPECT_EQ(fault(json), "");
+}
+
+// A file that claims to know nothing does not hold for anything.
+TEST(RovCaseFile, WhatAFileClaimsOfItsErrorsIsBounded) {
+  Json json = smallest();
+  Json& one = json["scenarios"][0];
+  one["samples"][0]["p_ned"] = {0.0, 0.001, 0.0};  // it stays at 0
+  const auto result_of = [](const Json& of) {
+    return check_trajectory(read_trajectories(json_text(of), "cases.json").value().front());
+  };
+  EXPECT_FALSE(result_of(json).ok());
+  EXPECT_EQ(result_of(json).note, "");
+  one["reference_error_estimate"] = 0.5;
+  EXPECT_FALSE(result_of(json).ok());
+  EXPECT_EQ(result_of(json).note, "reference_error_estimate 0.5 counts as 1e-05");
+  one["reference_error_estimate"] = 0.0;
+  one["samples"][0]["p_ned"] = {0.0, 0.01, 0.0};
+  one["fixed_step_end_error"] = parse_json("{\"rk4_240Hz\": [1e6, 1e6]}").value();
+  EXPECT_FALSE(result_of(json).ok());
+  EXPECT_EQ(result_of(json).note, "fixed_step_end_error 1e+06 counts as 0.001");
 }
 
 TEST(RovCaseFile, SinesAreReadInEveryForm) {
@@ -143,6 +181,15 @@ TEST(RovCaseFile, FaultsAreSaidInOneLine) {
       {"/scenarios/0/tau_sin", "{\"amp\": [1, 1, 1, 1, 1, 1]}", "tau_sin: no frequency found"},
       {"/scenarios/0/tau_sin", "{\"omega\": 1, \"colour\": 1}", "tau_sin.colour: not known"},
       {"/scenarios/0/input_segments", "[{\"t0\": 1, \"t1\": 1}]", "[0].t1: 1 found, a time after"},
+      {"/scenarios/0/params/D_Q", "[1, 0, 0, 0, 0, 0]",
+       "params.D_Q: not known; the nearest is D_L"},
+      {"/scenarios/0/params/W_n", "98",
+       "case 'small': scenarios[0].params.W_n: not known; the neare"},
+      {"/scenarios/0/initial", "{\"nu\": [1, 0, 0, 0, 0, 0]}",
+       "scenarios[0].initial.nu: not known"},
+      {"/scenarios/0/input_segments", "[{\"t0\": 0, \"t1\": 1, \"tau\": [1, 0, 0, 0, 0, 0]}]",
+       "input_segments[0].tau: not known; the nearest is "},
+      {"/scenarios/0/reference_error_estimate", "2", "reference_error_estimate: 2 found, a number"},
       {"/scenarios/0/tau_sin", "7", "tau_sin: 7 found, an object, or a list of them, is"},
       {"/scenarios/0/tau_sin", "[[\"X\", 1e10, 1]]", "amplitudes up to 1e9 and frequencies up"},
       {"/scenarios/0/input_segments",
@@ -180,6 +227,12 @@ TEST(RovCaseFile, FaultsOfControlAreSaidInOneLine) {
       {"/allocation/fmax", "-1", "allocation.fmax: -1 found, a number in [0, 1000000000] is"},
       {"/allocation/cases/2/tau", "[1]", "case 'allocation/2': allocation.cases[2].tau: [1] fou"},
       {"/closed_loop/map", "\"tau=M*u\"", "closed_loop.map: \"tau=M*u\" found, \"tau=M_RB*u, F"},
+      {"/closed_loop/plant", "null", "closed_loop.plant: not found, but needed"},
+      {"/closed_loop/plant", "\"Fossen + limits +51/-39 N\"",
+       "+51/-39 N\" found, \"... lag 0.1 s, f"},
+      {"/closed_loop/plant", "\"Fossen + lag 0.1 s\"",
+       "found, \"... lag 0.1 s, force limits +51.4"},
+      {"/closed_loop/plant", "\"lag 0 s, limits +51/-39 N\"", "found, \"... lag 0.1 s, force li"},
       {"/closed_loop/gains/KP", "[1]", "closed_loop.gains.KP: [1] found, a list of six numbers"},
       {"/closed_loop/results", "{\"mars/surge_2m\": {\"t90\": 1}}", "a name that begins with neu"},
       {"/closed_loop/results", "{\"sea/dance\": {\"t90\": 1}}", "case 'sea/dance'"},

@@ -69,6 +69,20 @@ TEST(CheckCommand, Status1AndTheCaseWhereOneDoesNotHold) {
   EXPECT_EQ((*result)["cases"][0]["ok"], true);
 }
 
+TEST(CheckCommand, TheLineSaysWhatDoesNotCountAsItStands) {
+  const test::ScratchFolder folder;
+  nlohmann::json json = parse_json(read_text(data("trajectories.json")).value()).value();
+  json["scenarios"][1]["samples"][4]["p_ned"][0] = 0.5;
+  json["scenarios"][1]["reference_error_estimate"] = 0.9;
+  ASSERT_TRUE(write_json(folder / "claims.json", json).ok());
+  const Said said = checked("rov " + (folder / "claims.json").string());
+  EXPECT_EQ(said.status, 1);
+  EXPECT_THAT(said.out, HasSubstr("; reference_error_estimate 0.9 counts as 1e-05\n"));
+  const Said for_programs = checked("rov --json " + (folder / "claims.json").string());
+  EXPECT_EQ((*parse_json(for_programs.out))["cases"][1]["note"],
+            "reference_error_estimate 0.9 counts as 1e-05");
+}
+
 TEST(CheckCommand, Status2AndOneLineWhereThereIsNothingToCheck) {
   const test::ScratchFolder folder;
   ASSERT_TRUE(write_text(folder / "bad.json", "{\"scenarios\": [{\"id\": \"a\"}]}").ok());
@@ -76,7 +90,8 @@ TEST(CheckCommand, Status2AndOneLineWhereThereIsNothingToCheck) {
   for (const auto& [arguments, error] :
        {std::pair{"rov " + bad, bad + ": case 'a': scenarios[0].params: not found, but needed\n"},
         {std::string("rov nowhere.json"), std::string("nowhere.json: no such file\n")},
-        {std::string("diver x"), std::string("check: 'diver' found, rov, control or deco is accepted\n")},
+        {std::string("diver x"),
+         std::string("check: 'diver' found, rov, control or deco is accepted\n")},
         {"rov --hz 0 " + bad, std::string("check: --hz 0 found, 1 to 100000 is accepted\n")},
         {"rov --integrator euler " + bad,
          std::string("integrator 'euler' found, semi_euler, rk4 or guarded is accepted\n")}}) {

@@ -48,9 +48,10 @@ std::string line_of(const CaseResult& one, std::size_t id_width) {
   const CheckedError& worst = one.worst();
   const std::string unit = worst.unit.empty() ? "" : " " + worst.unit;
   const std::string when = worst.time_s > 0.0 ? fmt::format(", at {:g} s", worst.time_s) : "";
-  return fmt::format("{:<{}}  {:<6}  worst {:.2e}{} of {:.2e}{} in {}{}\n", name_of_case(one),
+  const std::string note = one.note.empty() ? "" : "; " + one.note;
+  return fmt::format("{:<{}}  {:<6}  worst {:.2e}{} of {:.2e}{} in {}{}{}\n", name_of_case(one),
                      id_width, one.ok() ? "ok" : "not ok", worst.error, unit, worst.tolerance, unit,
-                     worst.what, when);
+                     worst.what, when, note);
 }
 
 std::string text_of(const std::vector<CaseResult>& results) {
@@ -79,6 +80,7 @@ std::string json_of(const CheckFlags& flags, const std::vector<CaseResult>& resu
   json["failed"] = failed;
   for (const CaseResult& one : results) {
     nlohmann::json entry{{"id", one.id}, {"ok", one.ok()}, {"worst", error_json(one.worst())}};
+    if (!one.note.empty()) entry["note"] = one.note;
     for (const CheckedError& error : one.errors) entry["errors"].push_back(error_json(error));
     json["cases"].push_back(std::move(entry));
   }
