@@ -10,6 +10,7 @@ SolverRow::SolverRow(const Vec3& point_m, const Vec3& direction, const InverseMa
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j < 6; ++j) response[i] += inverse_mass[6 * i + j] * jacobian[j];
   mobility = dot_of(jacobian, response);
+  inertia = mobility > 0.0 ? 1.0 / mobility : 0.0;
 }
 
 SolverContact::SolverContact(const BodyContact& contact, const Vec3& side_, const Vec3& other_,
@@ -24,6 +25,7 @@ SolverContact::SolverContact(const BodyContact& contact, const Vec3& side_, cons
   const double apart = 0.5 * (side.mobility - other.mobility);
   const double mixed = dot_of(side.jacobian, other.response);
   slip_mobility = mean + std::sqrt(apart * apart + mixed * mixed);
+  slip_inertia = slip_mobility > 0.0 ? 1.0 / slip_mobility : 0.0;
 }
 
 SolverContact solver_contact(const BodyContact& contact, const InverseMass& inverse_mass) {
@@ -35,7 +37,7 @@ double solve_normal(SolverContact& contact, double target_m_s, Six& velocity) {
   const double mobility = contact.normal.mobility;
   if (!(mobility > 0.0)) return 0.0;
   const double wrong_m_s = dot_of(contact.normal.jacobian, velocity) - target_m_s;
-  const double impulse = std::max(contact.impulse.x - wrong_m_s / mobility, 0.0);
+  const double impulse = std::max(contact.impulse.x - wrong_m_s * contact.normal.inertia, 0.0);
   const double change = impulse - contact.impulse.x;
   contact.impulse.x = impulse;
   add_scaled(velocity, contact.normal.response, change);
@@ -46,11 +48,11 @@ double solve_friction(SolverContact& contact, Six& velocity) {
   if (!(contact.slip_mobility > 0.0) || contact.friction == 0.0) return 0.0;
   Vec2 impulse(contact.impulse.y, contact.impulse.z);
   impulse -=
-      Vec2(dot_of(contact.side.jacobian, velocity), dot_of(contact.other.jacobian, velocity)) /
-      contact.slip_mobility;
+      Vec2(dot_of(contact.side.jacobian, velocity), dot_of(contact.other.jacobian, velocity)) *
+      contact.slip_inertia;
   const double most = contact.friction_bound.value_or(contact.friction * contact.impulse.x);
-  const double size = glm::length(impulse);
-  if (size > most) impulse *= most / size;
+  const double size_2 = glm::dot(impulse, impulse);
+  if (size_2 > most * most) impulse *= most / std::sqrt(size_2);  // what sticks needs no root
   const Vec2 change = impulse - Vec2(contact.impulse.y, contact.impulse.z);
   contact.impulse.y = impulse.x;
   contact.impulse.z = impulse.y;

@@ -20,10 +20,9 @@ inline Six six_of(const Twist& twist) {
 inline Twist twist_of(const Six& v) {
   return {Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
 }
+// In pairs: a round is one chain of these, and waits for each sum.
 inline double dot_of(const Six& a, const Six& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < 6; ++i) sum += a[i] * b[i];
-  return sum;
+  return (a[0] * b[0] + a[1] * b[1]) + ((a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5]));
 }
 inline void add_scaled(Six& v, const Six& by, double scale) {
   for (std::size_t i = 0; i < 6; ++i) v[i] += by[i] * scale;
@@ -33,6 +32,7 @@ inline void add_scaled(Six& v, const Six& by, double scale) {
 struct SolverRow {
   Six jacobian{}, response{};
   double mobility = 0.0;  // J M^-1 J^T
+  double inertia = 0.0;   // its inverse; 0 where nothing moves
 
   SolverRow(const Vec3& point_m, const Vec3& direction, const InverseMass& inverse_mass);
 };
@@ -43,6 +43,7 @@ struct SolverContact {
   double friction = 0.0;
   double target_m_s = 0.0;
   double slip_mobility = 0.0;  // the largest over the directions across the normal
+  double slip_inertia = 0.0;   // its inverse; 0 where nothing moves
   Vec3 impulse{0.0};           // along normal, side, other
   // Most friction where it is not to follow the normal impulse.
   std::optional<double> friction_bound;
