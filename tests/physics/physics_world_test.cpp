@@ -183,11 +183,11 @@ TEST(PhysicsWorld, AnErrorChoosesTheStep) {
   const auto among = world_of("1e-3", wall);
   ASSERT_TRUE(among.ok());
   EXPECT_NEAR((*among)->step_s(), 1.0 / 80.0, 1e-12);
-  EXPECT_EQ((*among)->method().contact_parts, 24);
+  EXPECT_EQ((*among)->method().contact_parts, 32);
   const auto too_good = world_of("1e-6", wall);
   ASSERT_FALSE(too_good.ok());
   EXPECT_NE(
-      too_good.error().message.find("a number from 0.00024 is accepted where something solid"),
+      too_good.error().message.find("a number from 0.00044 is accepted where something solid"),
       std::string::npos)
       << too_good.error().message;
 }

@@ -10,6 +10,7 @@
 #include "rov/step_choice.hpp"
 #include "tests/support/support.hpp"
 #include "tools/tradeoff/extrapolation.hpp"
+#include "tools/tradeoff/physics_flights.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -60,7 +61,7 @@ TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
   const auto measured = run_physics_tradeoff({.quick = true});
   ASSERT_TRUE(measured.ok()) << measured.error().message;
   const PhysicsTradeoff& t = *measured;
-  EXPECT_EQ(t.points.size(), 135u);
+  EXPECT_EQ(t.points.size(), 189u);
   EXPECT_LT(t.truth_error_m.at("lag"), 1e-9);
   EXPECT_LT(t.truth_error_m.at("no lag"), 1e-9);
   for (const char* vehicle : {"lag", "no lag"}) {
@@ -79,7 +80,7 @@ TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
     EXPECT_LT(at_1_ms, 5e-3) << flight;
     EXPECT_GT(point(t, flight, Integrator::kGuarded, 25.0).error_m, 5.0 * at_1_ms) << flight;
   }
-  ASSERT_EQ(t.parts.size(), 12u);
+  ASSERT_EQ(t.parts.size(), 30u);
   EXPECT_LT(t.parts[5].error_m, 0.2 * t.parts[0].error_m);
   const PhysicsPoint* best = cheapest(t, 1e-5);
   ASSERT_NE(best, nullptr);
@@ -93,11 +94,46 @@ TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
 }
 
+// Coulomb's law: what slides stops where it says, half a step's way off, and a ball rolls with 5/7
+// of its speed, turned as far as that takes. Nothing of the solver is in these truths.
+TEST(PhysicsTradeoff, SlidingAndRollingEndWhereTheirClosedFormsSay) {
+  const Flight slide = slide_flight(5.0), roll = roll_flight(5.0);
+  EXPECT_NEAR(slide.truth.back().position_ned_m.x, 1.0 / 0.6, 1e-12);
+  EXPECT_NEAR(roll.truth.back().position_ned_m.x - roll.truth[79].position_ned_m.x, 5.0 / 7.0,
+              1e-12);  // the last second's way
+  for (const double step_s : {0.001, 0.01, 0.05}) {
+    const FlownError slid = flown_error(slide, step_s, {}), rolled = flown_error(roll, step_s, {});
+    EXPECT_NEAR(slid.m, 0.5 * step_s, 0.01 * step_s) << step_s;
+    EXPECT_LT(slid.rad, 1e-9) << step_s;
+    EXPECT_LT(rolled.m, 0.15 * step_s) << step_s;
+    EXPECT_LT(rolled.rad, 2.5 * step_s) << step_s;
+  }
+}
+
+// What max_error_m gets, flown: every flight stays within what was asked for.
+TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnEveryFlight) {
+  std::vector<Flight> flights;
+  flights.push_back(square_flight(true, 5.0).value());
+  flights.push_back(contact_flight(true, 13.0));  // on the sand, along it, off, against the wall
+  flights.push_back(bounce_flight(5.0));
+  flights.push_back(slide_flight(5.0));
+  flights.push_back(roll_flight(5.0));
+  for (const double asked_m : {3.5e-2, 1e-2, 3e-3, 1e-3, 4.5e-4}) {
+    const auto choice = rov::cheapest_step(asked_m, true);
+    ASSERT_TRUE(choice.ok()) << choice.error().message;
+    for (const Flight& flight : flights)
+      EXPECT_LE(
+          flown_error(flight, 1.0 / choice->hz, {Integrator::kGuarded, choice->contact_parts}).m,
+          asked_m)
+          << flight.name;
+  }
+}
+
 TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
   EXPECT_EQ(rov::cheapest_step(1e-3, false)->hz, 80.0);
   EXPECT_EQ(rov::cheapest_step(1e-6, false)->hz, 200.0);
   EXPECT_EQ(rov::cheapest_step(2e-9, false)->hz, 1000.0);
-  EXPECT_EQ(rov::cheapest_step(1e-2, true)->contact_parts, 3);
+  EXPECT_EQ(rov::cheapest_step(1e-2, true)->contact_parts, 4);
   EXPECT_EQ(rov::cheapest_step(1e-2, false)->contact_parts, 1);
   EXPECT_FALSE(rov::cheapest_step(1e-12, false).ok());
   EXPECT_FALSE(rov::cheapest_step(1e-6, true).ok());

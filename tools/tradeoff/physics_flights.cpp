@@ -119,6 +119,45 @@ std::unique_ptr<const sim::StaticWorld> sand(const sim::Surface& surface, bool w
   return std::make_unique<const sim::StaticWorld>(builder.build());
 }
 
+// What falls, slides and rolls: of so much mass and weight in water, on sand with this friction.
+constexpr double kSlideMass_kg = 10.0, kSlideWeight_n = 15.0, kSlideFriction = 0.3;
+constexpr double kBallRadius_m = 0.15, kSlideSpeed_m_s = 1.0;
+
+rov::VehicleParameters dragless(double added_kg) {
+  rov::VehicleParameters p;
+  p.mass_kg = kSlideMass_kg;
+  p.weight_n = kSlideWeight_n;
+  for (std::size_t i = 0; i < 3; ++i) p.added_mass(i, i) = added_kg;
+  return p;
+}
+
+Flight ball_flight(const char* name, double added_kg, double seconds) {
+  rov::VehicleParameters p = dragless(added_kg);
+  p.inertia_kg_m2 = Mat3(0.4 * kSlideMass_kg * kBallRadius_m * kBallRadius_m);
+  Flight flight{.name = name, .vehicle = rov::make_vehicle(p).value()};
+  flight.body = solid_body(flight.vehicle);
+  flight.body.shape.add_sphere(Vec3(0.0), kBallRadius_m);
+  flight.inputs.assign(holds_of(seconds), {});
+  return flight;
+}
+
+// On sand from the start, north at kSlideSpeed_m_s: slowed, and turned forward, evenly for so long,
+// then steady.
+void slide_north(Flight& flight, double height_m, double slowing_m_s2, double turning_rad_s2,
+                 double slowed_s) {
+  flight.solid = sand({.friction = kSlideFriction}, false);
+  flight.start.position_ned_m.z = -height_m;
+  flight.start.velocity[0] = kSlideSpeed_m_s;
+  for (std::size_t k = 1; k <= flight.inputs.size(); ++k) {
+    const double t = static_cast<double>(k) * kHold_s, slowing = std::min(t, slowed_s);
+    rov::State at = flight.start;
+    const double by_now = slowing * (t - 0.5 * slowing);
+    at.position_ned_m.x = kSlideSpeed_m_s * t - slowing_m_s2 * by_now;
+    at.attitude = glm::angleAxis(-turning_rad_s2 * by_now, Vec3(0.0, 1.0, 0.0));
+    flight.truth.push_back(at);
+  }
+}
+
 }  // namespace
 
 Result<Flight> square_flight(bool lag, double seconds) {
@@ -167,21 +206,12 @@ Flight contact_flight(bool lag, double seconds) {
 }
 
 Flight bounce_flight(double seconds) {
-  constexpr double kRadius_m = 0.15, kFall_m = 1.0, kBounce = 0.6, kMass_kg = 10.0, kAdded_kg = 5.0;
-  constexpr double kWeight_n = 15.0;  // in water: 1 m/s^2
-  rov::VehicleParameters p;
-  p.mass_kg = kMass_kg;
-  p.weight_n = kWeight_n;
-  p.inertia_kg_m2 = Mat3(0.4 * kMass_kg * kRadius_m * kRadius_m);
-  for (std::size_t i = 0; i < 3; ++i) p.added_mass(i, i) = kAdded_kg;
-  Flight flight{.name = "bounce", .vehicle = rov::make_vehicle(p).value()};
-  flight.body = solid_body(flight.vehicle);
-  flight.body.shape.add_sphere(Vec3(0.0), kRadius_m);
+  constexpr double kFall_m = 1.0, kBounce = 0.6, kAdded_kg = 5.0;
+  Flight flight = ball_flight("bounce", kAdded_kg, seconds);
   flight.solid = sand({.friction = 0.0, .restitution = kBounce}, false);
-  flight.start.position_ned_m.z = -(kRadius_m + kFall_m);
-  flight.inputs.assign(holds_of(seconds), {});
+  flight.start.position_ned_m.z = -(kBallRadius_m + kFall_m);
   // From each touch with its speed on: up and down again takes 2 v / a.
-  const double a = kWeight_n / (kMass_kg + kAdded_kg);
+  const double a = kSlideWeight_n / (kSlideMass_kg + kAdded_kg);
   for (std::size_t k = 1; k <= flight.inputs.size(); ++k) {
     double since_s = static_cast<double>(k) * kHold_s - std::sqrt(2.0 * kFall_m / a);
     double up_m_s = kBounce * std::sqrt(2.0 * a * kFall_m);
@@ -191,10 +221,33 @@ Flight bounce_flight(double seconds) {
       at.position_ned_m.z += 0.5 * a * t * t;
     } else {
       for (; since_s > 2.0 * up_m_s / a; up_m_s *= kBounce) since_s -= 2.0 * up_m_s / a;
-      at.position_ned_m.z = -(kRadius_m + up_m_s * since_s - 0.5 * a * since_s * since_s);
+      at.position_ned_m.z = -(kBallRadius_m + up_m_s * since_s - 0.5 * a * since_s * since_s);
     }
     flight.truth.push_back(at);
   }
+  return flight;
+}
+
+// Coulomb: mu W against the mass that moves, added mass included.
+Flight slide_flight(double seconds) {
+  constexpr double kAdded_kg = 5.0, kHeight_m = 0.1;
+  rov::VehicleParameters p = dragless(kAdded_kg);
+  p.inertia_kg_m2 = Mat3(0.4);
+  Flight flight{.name = "slide", .vehicle = rov::make_vehicle(p).value()};
+  flight.body = solid_body(flight.vehicle);
+  flight.body.shape.add_box({}, {0.2, kHeight_m, 0.3});
+  flight.inputs.assign(holds_of(seconds), {});
+  const double slowing_m_s2 = kSlideFriction * kSlideWeight_n / (kSlideMass_kg + kAdded_kg);
+  slide_north(flight, kHeight_m, slowing_m_s2, 0.0, kSlideSpeed_m_s / slowing_m_s2);
+  return flight;
+}
+
+// Friction slows the ball and turns it until both fit: with I = 2/5 m r^2, at 5/7 of its speed.
+Flight roll_flight(double seconds) {
+  Flight flight = ball_flight("roll", 0.0, seconds);
+  const double slowing_m_s2 = kSlideFriction * kSlideWeight_n / kSlideMass_kg;
+  slide_north(flight, kBallRadius_m, slowing_m_s2, 2.5 * slowing_m_s2 / kBallRadius_m,
+              2.0 / 7.0 * kSlideSpeed_m_s / slowing_m_s2);
   return flight;
 }
 

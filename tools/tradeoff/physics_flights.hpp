@@ -39,7 +39,11 @@ Result<Flight> square_flight(bool lag, double seconds);
 // against a wall, along that, and away; the truth is the recommended integrator at a step so short
 // that it errs least.
 Flight contact_flight(bool lag, double seconds);
-// A ball that falls onto a plane and bounces, without drag; the truth is the closed form.
+// Without drag, onto and along a plane; the truth is the closed form. A ball that falls and
+// bounces; a block that slides until friction has stopped it; a ball that slides until it rolls,
+// with 5/7 of its speed.
 Flight bounce_flight(double seconds);
+Flight slide_flight(double seconds);
+Flight roll_flight(double seconds);
 
 }  // namespace neritic::tools

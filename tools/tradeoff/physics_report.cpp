@@ -15,6 +15,10 @@ namespace {
 using rov::Integrator;
 
 constexpr Integrator kDrawn[] = {Integrator::kSemiImplicit, Integrator::kRk4, Integrator::kGuarded};
+// A flight each.
+constexpr sonar::Color kFlightColors[] = {
+    {0.0f, 0.447f, 0.698f}, {0.835f, 0.369f, 0.0f}, {0.0f, 0.62f, 0.451f}, {0.8f, 0.475f, 0.655f},
+    {0.35f, 0.35f, 0.35f},  {0.34f, 0.71f, 0.91f},  {0.72f, 0.58f, 0.0f}};
 constexpr double kLevels_m[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 
 // What flights are called in tables and plots, in the order of kFlightNames.
@@ -29,7 +33,11 @@ constexpr FlightWords kWords[] = {
      "A BlueROV2 Heavy is set down on sand, driven along it, lifted, driven against a wall corner "
      "first, along it and away, {:g} s, by the same recorded commands."},
     {"contact, lag", "The same with lag."},
-    {"a ball that bounces", "Restitution 0.6, no drag: the closed form is the truth."}};
+    {"a ball that bounces", "Restitution 0.6, no drag: the closed form is the truth."},
+    {"a block that slides",
+     "At 1 m/s onto sand with friction 0.3, no drag: by Coulomb's law it stops after 1.67 m."},
+    {"a ball that slides, then rolls",
+     "At 1 m/s onto sand with friction 0.3, no drag: it rolls from 0.64 s on, at 5/7 of that."}};
 
 std::string physics_csv(const PhysicsTradeoff& t) {
   std::string out = "flight,integrator,step_ms,contact_parts,error_m,error_rad,us_a_second,order\n";
@@ -46,10 +54,14 @@ std::string number_text(double value) {
 }
 
 std::string parts_md(const PhysicsTradeoff& t) {
-  std::string out =
-      "\n## Steps of 240 Hz, those that touch in parts (guarded)\n\n| parts | no lag, m | us | "
-      "lag, m "
-      "| us |\n|---|---|---|---|---|\n";
+  std::string out = "\n## Steps of 240 Hz, those that touch in parts (guarded)\n\n| parts |",
+              rule = "\n|---|";
+  for (std::size_t f = 0; f < std::size(kFlightNames); ++f)
+    if (std::ranges::count(t.parts, kFlightNames[f], &PhysicsPoint::flight) > 0) {
+      out += fmt::format(" {}, m | us |", kWords[f].title);
+      rule += "---|---|";
+    }
+  out += rule + "\n";
   for (const PhysicsPoint& row : t.parts) {
     if (row.flight != t.parts.front().flight) continue;
     out += fmt::format("| {} |", row.contact_parts);
@@ -162,7 +174,7 @@ void draw_flight(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t
 void draw_steps(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
   std::vector<Series> series;
   for (std::size_t f = 0; f < std::size(kFlightNames); ++f) {
-    Series s{kWords[f].title, kSeriesColors[f], {}, {}, {}};
+    Series s{kWords[f].title, kFlightColors[f], {}, {}, {}};
     for (const PhysicsPoint& p : t.points) {
       if (p.flight != kFlightNames[f] || p.integrator != Integrator::kGuarded || !is_drawn(p))
         continue;
@@ -178,8 +190,8 @@ void draw_steps(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t)
 // 240 Hz, with the steps that touch in parts.
 void draw_parts(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
   std::vector<Series> series;
-  for (const std::size_t f : {std::size_t{2}, std::size_t{3}}) {
-    Series s{kWords[f].title, kSeriesColors[f], {}, {}, {}};
+  for (std::size_t f = 2; f < std::size(kFlightNames); ++f) {
+    Series s{kWords[f].title, kFlightColors[f], {}, {}, {}};
     for (const PhysicsPoint& p : t.parts) {
       if (p.flight != kFlightNames[f] || !is_drawn(p)) continue;
       s.x.push_back(cost_of(p));

@@ -21,8 +21,8 @@ constexpr Integrator kIntegrators[] = {Integrator::kSemiImplicit, Integrator::kR
 // Of a step that touches, at 240 Hz.
 constexpr int kParts[] = {1, 2, 4, 8, 16, 32};
 constexpr int kPartsCount = 12;
-// Later its bounces are too low to count as such.
-constexpr double kBounces_s = 5.0;
+// Later the ball's bounces are too low to count as such, and what slides has stopped.
+constexpr double kClosedForms_s = 5.0;
 constexpr std::size_t kFlights = std::size(kFlightNames);
 
 double angle_between(const Quat& a, const Quat& b) {
@@ -69,13 +69,9 @@ PhysicsPoint measure(Flight& flight, const Way& way, bool quick) {
   point.integrator = way.method.integrator;
   point.contact_parts = way.method.contact_parts;
   point.step_s = step_s;
-  fly_all(flight, way, [&](std::size_t k, const rov::State& state) {
-    const rov::State& truth = flight.truth[k];
-    const double off = glm::distance(state.position_ned_m, truth.position_ned_m);
-    point.error_m = off <= point.error_m ? point.error_m : off;
-    point.error_rad = std::max(point.error_rad, angle_between(state.attitude, truth.attitude));
-  });
-  if (!(point.error_m < 100.0)) point.error_m = std::numeric_limits<double>::infinity();
+  const FlownError error = flown_error(flight, step_s, way.method);
+  point.error_m = error.m;
+  point.error_rad = error.rad;
   // What touches takes tens of times as long: fewer are as sure.
   const int repeats = quick ? 1 : flight.solid ? 3 : 15;
   point.us_a_second =
@@ -92,8 +88,12 @@ Result<Flight> flight_of(std::size_t index, double seconds) {
     case 2:
     case 3:
       return contact_flight(index == 3, seconds);
+    case 4:
+      return bounce_flight(std::min(seconds, kClosedForms_s));
+    case 5:
+      return slide_flight(std::min(seconds, kClosedForms_s));
     default:
-      return bounce_flight(std::min(seconds, kBounces_s));
+      return roll_flight(std::min(seconds, kClosedForms_s));
   }
 }
 
@@ -107,13 +107,26 @@ void measure_flight(Flight& flight, const PhysicsTradeoffOptions& options, Physi
       out.points.push_back(std::move(point));
       options.step();
     }
-  if (!flight.solid || flight.name == kFlightNames[kFlights - 1]) return;
+  if (!flight.solid) return;
   for (const int parts : kParts)
     out.parts.push_back(
         measure(flight, {kPartsCount, {Integrator::kGuarded, parts}}, options.quick));
 }
 
 }  // namespace
+
+FlownError flown_error(const Flight& flight, double step_s, const StepMethod& method) {
+  FlownError out;
+  const int count = static_cast<int>(std::lround(kHold_s / step_s));
+  fly_all(flight, {count, method}, [&](std::size_t k, const rov::State& state) {
+    const rov::State& truth = flight.truth[k];
+    const double off = glm::distance(state.position_ned_m, truth.position_ned_m);
+    out.m = off <= out.m ? out.m : off;
+    out.rad = std::max(out.rad, angle_between(state.attitude, truth.attitude));
+  });
+  if (!(out.m < 100.0)) out.m = std::numeric_limits<double>::infinity();
+  return out;
+}
 
 std::uint64_t steps(const PhysicsTradeoffOptions&) {
   return kFlights * (1 + std::size(kIntegrators) * std::size(kCounts));

@@ -1,7 +1,7 @@
 // `neritic tradeoff physics`: how far each integrator of the vehicle's motion strays from the true
 // path, and what it costs, over step sizes from 1 to 50 ms, with and without the thrusters' lag, in
-// open water and among things that it touches; and a bouncing ball against its closed form. One
-// thread.
+// open water and among things that it touches; and what bounces, slides and rolls against closed
+// forms. One thread.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/core/result.hpp"
-#include "rov/step.hpp"
+#include "tools/physics/body_step.hpp"
 
 namespace neritic::tools {
 
@@ -22,8 +22,8 @@ struct PhysicsTradeoffOptions {
 std::uint64_t steps(const PhysicsTradeoffOptions& options);
 
 // What is flown (physics_flights.hpp), in this order.
-inline constexpr const char* kFlightNames[] = {"no lag", "lag", "contact, no lag", "contact, lag",
-                                               "bounce"};
+inline constexpr const char* kFlightNames[] = {
+    "no lag", "lag", "contact, no lag", "contact, lag", "bounce", "slide", "roll"};
 
 struct PhysicsPoint {
   std::string flight;
@@ -40,9 +40,16 @@ struct PhysicsTradeoff {
   double flight_s = 0.0;
   std::map<std::string, double> truth_error_m;  // how sure each flight's truth is
   std::vector<PhysicsPoint> points;
-  // At 240 Hz by the recommended integrator: more and more parts of a step that touches.
+  // At 240 Hz by the recommended integrator, of all that touches: more and more parts of a step
+  // that does.
   std::vector<PhysicsPoint> parts;
 };
+// The farthest from the truth, by one way to step. Not finite: it diverged.
+struct Flight;
+struct FlownError {
+  double m = 0.0, rad = 0.0;
+};
+FlownError flown_error(const Flight& flight, double step_s, const StepMethod& method);
 Result<PhysicsTradeoff> run_physics_tradeoff(const PhysicsTradeoffOptions& options);
 
 // The knee of the front of all integrators (no other is both cheaper and better), both axes
