@@ -39,6 +39,7 @@ double solve_normal(SolverContact& contact, double target_m_s, Six& velocity) {
   const double wrong_m_s = dot_of(contact.normal.jacobian, velocity) - target_m_s;
   const double impulse = std::max(contact.impulse.x - wrong_m_s * contact.normal.inertia, 0.0);
   const double change = impulse - contact.impulse.x;
+  if (change == 0.0) return 0.0;
   contact.impulse.x = impulse;
   add_scaled(velocity, contact.normal.response, change);
   return std::abs(change) * mobility;
@@ -46,11 +47,12 @@ double solve_normal(SolverContact& contact, double target_m_s, Six& velocity) {
 
 double solve_friction(SolverContact& contact, Six& velocity) {
   if (!(contact.slip_mobility > 0.0) || contact.friction == 0.0) return 0.0;
+  const double most = contact.friction_bound.value_or(contact.friction * contact.impulse.x);
   Vec2 impulse(contact.impulse.y, contact.impulse.z);
+  if (most == 0.0 && impulse == Vec2(0.0)) return 0.0;  // nothing presses there
   impulse -=
       Vec2(dot_of(contact.side.jacobian, velocity), dot_of(contact.other.jacobian, velocity)) *
       contact.slip_inertia;
-  const double most = contact.friction_bound.value_or(contact.friction * contact.impulse.x);
   const double size_2 = glm::dot(impulse, impulse);
   if (size_2 > most * most) impulse *= most / std::sqrt(size_2);  // what sticks needs no root
   const Vec2 change = impulse - Vec2(contact.impulse.y, contact.impulse.z);
