@@ -10,6 +10,7 @@
 #include "rov/guidance.hpp"
 #include "rov/sensor_set.hpp"
 #include "tests/rov/random_vehicle.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::rov {
 namespace {
@@ -88,7 +89,9 @@ TEST(RovSpeed, AVehicleWithAllItsSensorsTakesUnderAHundredthOfACore) {
     ASSERT_EQ(readings.imu.count, 480u);
   }
   RecordProperty("ms_a_second", fmt::format("{:.3f}", best_ms));
-  EXPECT_LT(best_ms, 10.0);
+  if (neritic::test::kFast) {
+    EXPECT_LT(best_ms, 10.0);
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "engine/core/hash.hpp"
 #include "engine/core/random.hpp"
 #include "tests/sim/bodies.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::sim {
 namespace {
@@ -39,12 +40,8 @@ StaticWorld bumpy_seabed() {
   return builder.build();
 }
 
-// Sanitizers take thirty times as long.
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-constexpr int kTenMinutes_s = 20, kMinute_s = 3;
-#else
-constexpr int kTenMinutes_s = 600, kMinute_s = 60;
-#endif
+constexpr int kTenMinutes_s = neritic::test::kFast ? 600 : 20,
+              kMinute_s = neritic::test::kFast ? 60 : 3;
 
 // Dropped; at rest after ten seconds; then no move for so long.
 void expect_rest(const StaticWorld& world, Body body, int duration_s) {

@@ -9,6 +9,13 @@
 
 namespace neritic::test {
 
+// Whether this build's times say anything: sanitizers take thirty times as long.
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+inline constexpr bool kFast = false;
+#else
+inline constexpr bool kFast = true;
+#endif
+
 // The repository's root.
 std::filesystem::path source_dir();
 
