@@ -11,10 +11,11 @@
 namespace neritic::diver {
 
 inline constexpr double kBreathFrames_hz = 20.0;
-// Octaves from 75 Hz: chest and throat below, a regulator's hiss above 1 kHz. Those that do not fit
-// under half the sampling rate are left out.
-inline constexpr int kMostBreathBands = 6;
-inline constexpr double kLowestBreathBand_hz = 75.0;
+// Octaves from 9.4 Hz: what moves with the chest below 75 Hz (some stethoscopes tell breaths apart
+// only there), chest and throat above, a regulator's hiss above 1 kHz. Those that do not fit under
+// half the sampling rate are left out.
+inline constexpr int kMostBreathBands = 9;
+inline constexpr double kLowestBreathBand_hz = 9.375;
 inline constexpr double kLeastSoundRate_hz = 500.0, kMostSoundRate_hz = 1e6;
 Status check_sound_rate(double rate_hz);
 

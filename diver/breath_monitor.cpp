@@ -29,7 +29,7 @@ const BreathState& BreathAnalyser::take(std::span<const float> sound) {
     frames_.erase(frames_.begin(), frames_.end() - static_cast<std::ptrdiff_t>(most));
   state_.time_s = static_cast<double>(samples_) / rate_hz_ + lost_s_;
   state_.estimate = estimate_breath(frames_, bands_, settings_.estimator);
-  state_.quiet_s = quiet_for(frames_);
+  state_.quiet_s = quiet_for(frames_, bands_);
   state_.refused = bands_.refused();
   ++state_.blocks;
   return state_;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 
+#include "diver/breath_rhythm.hpp"
 #include "engine/core/math.hpp"
 
 namespace neritic::diver {
@@ -21,8 +21,9 @@ constexpr double kOverNoise = 4.0;
 // And bands that vary by less than half a decibel are not breathed in.
 constexpr double kLeastDeviation = 0.115;  // nepers of power
 constexpr double kSilence = 1e-12;         // full scale squared: -120 dB
-// Measured: of windows of 30 s above it 70 % are right, below it 40 %.
-constexpr double kLeastConfidence = 0.25;
+// Breaths that were missed: a rate says that none was. Breathing that is paced pauses for half a
+// breath at most but once in 87 windows.
+constexpr double kMostPause = 1.25;
 // The first peak so near the highest: twice a breath is like a breath too. Measured on recordings
 // of paced breathing; between .8 and .9 nothing changes much.
 constexpr double kFirstPeak = 0.85;
@@ -30,8 +31,6 @@ constexpr double kFirstPeak = 0.85;
 constexpr double kReach = 0.15;
 constexpr double kMostDeviations = 1.5;                // of a level, from its mean
 constexpr double kDecibelsANeper = 4.342944819032518;  // of power
-
-using Levels = std::vector<double>;
 
 Levels smoothed(const Levels& in) {
   std::array<double, kSmoothFrames + 1> window{};
@@ -62,28 +61,20 @@ double center(Levels& levels) {
   return std::sqrt(squares / static_cast<double>(levels.size()));
 }
 
-// Of all levels together, lag frames apart.
-double correlation(const std::vector<Levels>& all, std::size_t lag) {
+double correlation(const Levels& levels, std::size_t lag) {
   double ab = 0.0, aa = 0.0, bb = 0.0;
-  for (const Levels& levels : all)
-    for (std::size_t i = lag; i < levels.size(); ++i) {
-      ab += levels[i] * levels[i - lag];
-      aa += levels[i] * levels[i];
-      bb += levels[i - lag] * levels[i - lag];
-    }
+  for (std::size_t i = lag; i < levels.size(); ++i) {
+    ab += levels[i] * levels[i - lag];
+    aa += levels[i] * levels[i];
+    bb += levels[i - lag] * levels[i - lag];
+  }
   const double size = std::sqrt(aa * bb);
   return size > 0.0 ? ab / size : 0.0;
 }
 
-// The top of a parabola through three values: its place, from -.5 to .5.
-double between(double before, double here, double after) {
-  const double bend = before - 2.0 * here + after;
-  return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
-}
-
-// Fills rate and confidence by the autocorrelation of the levels, each centred.
-void by_autocorrelation(const std::vector<Levels>& all, BreathEstimate& out) {
-  const auto frames = static_cast<int>(all[0].size());
+// Fills rate and confidence by the autocorrelation of the envelope, centred.
+void by_autocorrelation(const Levels& envelope, BreathEstimate& out) {
+  const auto frames = static_cast<int>(envelope.size());
   const int shortest = static_cast<int>(kBreathFrames_hz / kFastestBreath_hz);
   const int last = frames - static_cast<int>(kLeastOverlap_s * kBreathFrames_hz);
   const int longest = std::min(static_cast<int>(kBreathFrames_hz / kSlowestBreath_hz), last);
@@ -92,13 +83,13 @@ void by_autocorrelation(const std::vector<Levels>& all, BreathEstimate& out) {
                         std::numeric_limits<double>::quiet_NaN());
   const auto at = [&](int lag) {
     double& value = r[static_cast<std::size_t>(lag)];
-    if (std::isnan(value)) value = correlation(all, static_cast<std::size_t>(lag));
+    if (std::isnan(value)) value = correlation(envelope, static_cast<std::size_t>(lag));
     return value;
   };
   const auto is_top = [&](int lag) {
     return at(lag) > 0.0 && at(lag) >= at(lag - 1) && at(lag) > at(lag + 1);
   };
-  const auto exact = [&](int lag) { return lag + between(at(lag - 1), at(lag), at(lag + 1)); };
+  const auto exact = [&](int lag) { return lag + parabola_top(at(lag - 1), at(lag), at(lag + 1)); };
   double highest = 0.0;
   for (int lag = shortest; lag <= longest; ++lag)
     if (is_top(lag)) highest = std::max(highest, at(lag));
@@ -123,39 +114,28 @@ void by_autocorrelation(const std::vector<Levels>& all, BreathEstimate& out) {
 void by_spectrum(const Levels& envelope, BreathEstimate& out) {
   const auto n = static_cast<double>(envelope.size());
   const double step_hz = kBreathFrames_hz / n / 8.0;
-  // Each frame's share under Hann's window, and its angle, turned on by one step a line.
-  struct Turn {
-    double share;
-    std::complex<double> angle, step;
-  };
-  std::vector<Turn> turns;
+  Levels windowed = envelope;
   double all = 0.0;
   for (std::size_t i = 0; i < envelope.size(); ++i) {
-    const double at = static_cast<double>(i);
-    const double radians_a_hz = 2.0 * kPi * at / kBreathFrames_hz;
-    turns.push_back({envelope[i] * (0.5 - 0.5 * std::cos(2.0 * kPi * (at + 0.5) / n)),
-                     std::polar(1.0, radians_a_hz * (kSlowestBreath_hz - step_hz)),
-                     std::polar(1.0, radians_a_hz * step_hz)});
+    windowed[i] *= 0.5 - 0.5 * std::cos(2.0 * kPi * (static_cast<double>(i) + 0.5) / n);
     all += envelope[i] * envelope[i];
   }
-  std::vector<double> power;
-  for (double hz = kSlowestBreath_hz - step_hz; hz <= kFastestBreath_hz + step_hz; hz += step_hz) {
-    std::complex<double> sum = 0.0;
-    for (Turn& turn : turns) {
-      sum += turn.share * turn.angle;
-      turn.angle = {turn.angle.real() * turn.step.real() - turn.angle.imag() * turn.step.imag(),
-                    turn.angle.real() * turn.step.imag() + turn.angle.imag() * turn.step.real()};
-    }
-    power.push_back(std::norm(sum));
-  }
-  std::size_t best = 1;
-  for (std::size_t i = 1; i + 1 < power.size(); ++i)
+  const auto slowest = static_cast<std::size_t>(std::ceil(kSlowestBreath_hz / step_hz));
+  const auto fastest = static_cast<std::size_t>(std::floor(kFastestBreath_hz / step_hz));
+  const auto power = line_powers(windowed, step_hz, fastest + 2);
+  std::size_t best = slowest;
+  for (std::size_t i = slowest; i <= fastest; ++i)
     if (power[i] > power[best]) best = i;
-  out.rate_bpm = 60.0 * (kSlowestBreath_hz +
-                         step_hz * (static_cast<double>(best) - 1.0 +
-                                    between(power[best - 1], power[best], power[best + 1])));
+  const double top = parabola_top(power[best - 1], power[best], power[best + 1]);
+  out.rate_bpm = 60.0 * step_hz * (static_cast<double>(best) + top);
   // A pure line under a Hann window has n/8 of all squares.
   out.confidence = std::min(1.0, all > 0.0 ? power[best] / (all * n / 8.0) : 0.0);
+}
+
+void by_rhythm(const std::vector<Levels>& bands, BreathEstimate& out) {
+  const Rhythm rhythm = common_rhythm(bands);
+  out.rate_bpm = 60.0 * rhythm.rate_hz;
+  out.confidence = rhythm.confidence;
 }
 
 Levels log_levels(std::span<const BreathFrame> frames, std::size_t band) {
@@ -164,6 +144,38 @@ Levels log_levels(std::span<const BreathFrame> frames, std::size_t band) {
   levels = smoothed(levels);
   for (double& l : levels) l = std::log(l + kSilence);
   return levels;
+}
+
+// Whether it goes up and down by more than noise does.
+bool is_lively(double deviation, double width_hz) {
+  const double noise = 1.0 / (width_hz * kSmooth_s);
+  return deviation * deviation >= kOverNoise * noise && deviation >= kLeastDeviation;
+}
+
+// Which frames are louder in any lively band than half way between its softest and its loudest
+// twentieth, in decibels; none where nothing stands out by 6 dB.
+std::vector<bool> loud_frames(std::span<const BreathFrame> frames, const BreathBands& front) {
+  std::vector<bool> loud(frames.size(), false);
+  if (frames.empty()) return loud;
+  for (int band = 0; band < front.bands(); ++band) {
+    Levels levels = log_levels(frames, static_cast<std::size_t>(band));
+    if (!is_lively(center(levels), front.width_hz(band))) continue;
+    Levels sorted = levels;
+    std::ranges::sort(sorted);
+    const double low = sorted[sorted.size() / 20],
+                 high = sorted[sorted.size() - 1 - sorted.size() / 20];
+    if (high - low < 2.0 * std::log(2.0)) continue;
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      if (levels[i] > 0.5 * (low + high)) loud[i] = true;
+  }
+  return loud;
+}
+
+double longest_pause_s(std::span<const BreathFrame> frames, const BreathBands& front) {
+  int longest = 0, now = 0;
+  for (const bool loud : loud_frames(frames, front))
+    longest = std::max(longest, now = loud ? 0 : now + 1);
+  return longest / kBreathFrames_hz;
 }
 
 }  // namespace
@@ -180,6 +192,18 @@ const char* name_of(BreathEstimator estimator) {
   return "";
 }
 
+double confidence_asked(BreathEstimator estimator) {
+  switch (estimator) {
+    case BreathEstimator::kSpectrum:
+      return 0.0;
+    case BreathEstimator::kAutocorrelation:
+      return 0.25;
+    case BreathEstimator::kMultiBand:
+      return 0.9;
+  }
+  return 0.0;
+}
+
 Result<BreathEstimator> breath_estimator_of(const std::string& name) {
   using enum BreathEstimator;
   for (const BreathEstimator e : {kSpectrum, kAutocorrelation, kMultiBand})
@@ -189,50 +213,47 @@ Result<BreathEstimator> breath_estimator_of(const std::string& name) {
 }
 
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
-                               BreathEstimator estimator) {
+                               BreathEstimator estimator, double least_confidence) {
   BreathEstimate out;
   if (static_cast<double>(frames.size()) < kLeastWindow_s * kBreathFrames_hz) return out;
-  std::vector<Levels> lively;
+  std::vector<Levels> bands;
   for (int band = 0; band < front.bands(); ++band) {
     Levels levels = log_levels(frames, static_cast<std::size_t>(band));
     const double deviation = center(levels);
-    const double noise = 1.0 / (front.width_hz(band) * kSmooth_s);
-    if (deviation * deviation < kOverNoise * noise || deviation < kLeastDeviation) continue;
-    out.depth_db = std::max(out.depth_db, kDecibelsANeper * deviation);
+    if (deviation <= 0.0) continue;
+    if (is_lively(deviation, front.width_hz(band)))
+      out.depth_db = std::max(out.depth_db, kDecibelsANeper * deviation);
     // A band counts as much as the next, and a knock no more than a breath.
     for (double& l : levels) l = std::clamp(l / deviation, -kMostDeviations, kMostDeviations);
     center(levels);
-    lively.push_back(std::move(levels));
+    bands.push_back(std::move(levels));
   }
-  if (lively.empty()) return out;
+  // No band goes up and down by more than noise does.
+  if (out.depth_db <= 0.0) return out;
   Levels envelope;
   for (const BreathFrame& f : frames) envelope.push_back(f.envelope);
   envelope = smoothed(envelope);
   center(envelope);
   if (estimator == BreathEstimator::kSpectrum) by_spectrum(envelope, out);
-  if (estimator == BreathEstimator::kAutocorrelation) by_autocorrelation({envelope}, out);
-  if (estimator == BreathEstimator::kMultiBand) by_autocorrelation(lively, out);
-  // The spectrum always answers, as published.
-  const bool sure = estimator == BreathEstimator::kSpectrum || out.confidence >= kLeastConfidence;
+  if (estimator == BreathEstimator::kAutocorrelation) by_autocorrelation(envelope, out);
+  if (estimator == BreathEstimator::kMultiBand) by_rhythm(bands, out);
+  const bool missed = estimator != BreathEstimator::kSpectrum &&
+                      longest_pause_s(frames, front) * out.rate_bpm / 60.0 >= kMostPause;
+  const bool sure = out.confidence >= least_confidence && !missed;
   out.breathing = out.rate_bpm > 0.0 && sure ? 1 : 0;
   if (!out.breathing) out.rate_bpm = 0.0;
   return out;
 }
 
-double quiet_for(std::span<const BreathFrame> frames) {
-  Levels levels;
-  for (const BreathFrame& f : frames) levels.push_back(f.envelope * f.envelope);
-  const double all_s = static_cast<double>(levels.size()) / kBreathFrames_hz;
-  if (levels.empty()) return 0.0;
-  levels = smoothed(levels);
-  for (double& l : levels) l = std::log(l + kSilence);
-  const auto [low, high] = std::ranges::minmax(levels);
-  // A burst stands out by 6 dB at least.
-  if (high - low < 2.0 * std::log(2.0)) return all_s;
-  for (std::size_t i = levels.size(); i > 0; --i)
-    if (levels[i - 1] > 0.5 * (low + high))
-      return static_cast<double>(levels.size() - i) / kBreathFrames_hz;
-  return all_s;
+BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
+                               BreathEstimator estimator) {
+  return estimate_breath(frames, front, estimator, confidence_asked(estimator));
+}
+
+double quiet_for(std::span<const BreathFrame> frames, const BreathBands& front) {
+  const std::vector<bool> loud = loud_frames(frames, front);
+  const auto last = std::find(loud.rbegin(), loud.rend(), true);
+  return static_cast<double>(last - loud.rbegin()) / kBreathFrames_hz;
 }
 
 }  // namespace neritic::diver

@@ -16,17 +16,23 @@ enum class BreathEstimator : std::uint8_t {
   kSpectrum,
   // The envelope's autocorrelation: the same trap, a finer scale.
   kAutocorrelation,
-  // The mean autocorrelation of the bands' levels in decibels: in and out differ in colour, so that
-  // only a whole breath is like the one before. The default.
+  // The line that loudness and colour of all bands share (breath_rhythm.hpp): in and out differ in
+  // colour, so that only a whole breath is like the one before. The default.
   kMultiBand,
 };
 const char* name_of(BreathEstimator estimator);
 Result<BreathEstimator> breath_estimator_of(const std::string& name);
 
+// The confidence below which it says that it knows no rate: .9, .25 and, as published, none.
+double confidence_asked(BreathEstimator estimator);
+
 struct BreathEstimate {
-  double rate_bpm = 0.0;    // 0: no breath
-  double confidence = 0.0;  // 0 to 1: how alike a breath is to the one before
-  double depth_db = 0.0;    // how far the level goes up and down
+  double rate_bpm = 0.0;  // 0: no breath
+  // 0 to 1. kMultiBand: the share of sounds without rhythm that would look less like breath;
+  // kAutocorrelation: how alike a breath is to the one before; kSpectrum: the line's share of all
+  // power.
+  double confidence = 0.0;
+  double depth_db = 0.0;        // how far the level goes up and down
   std::uint64_t breathing = 0;  // 1: there is breath
 
   static void fields(auto&& field, auto& self) {
@@ -55,13 +61,16 @@ struct BreathState {
   }
 };
 
-// Of a window of frames; front says which bands there are. A window without breath (steady noise,
-// silence, less than four seconds) says so.
+// Of a window of frames; front says which bands there are. A window without breath says so: steady
+// noise, silence, less than four seconds, less confidence than asked and, for all but kSpectrum, a
+// rate that a pause contradicts, 1.25 of its breaths long.
+BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
+                               BreathEstimator estimator, double least_confidence);
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
                                BreathEstimator estimator);
 
 // Since when no burst was heard, in seconds, at the window's end: a pause. The whole window where
 // there is none.
-double quiet_for(std::span<const BreathFrame> frames);
+double quiet_for(std::span<const BreathFrame> frames, const BreathBands& front);
 
 }  // namespace neritic::diver

@@ -46,6 +46,28 @@ std::string breath_table(const PhysiologyTradeoff& t, const std::string& signals
   return rows > 0 ? out : std::string();
 }
 
+// "recorded", each sensor of it, "made".
+std::vector<std::string> signals_of(const PhysiologyTradeoff& t) {
+  std::vector<std::string> out;
+  for (const BreathPoint& p : t.breath)
+    if (std::ranges::find(out, p.signals) == out.end()) out.push_back(p.signals);
+  return out;
+}
+
+std::string coverage_table(const PhysiologyTradeoff& t) {
+  if (t.coverage.empty()) return {};
+  std::string out =
+      "\n## Error against what is refused (multiband)\n\n| sounds | confidence asked | answered | "
+      "right of these | error in the middle, worst | answered without rhythm "
+      "|\n|---|---|---|---|---|---|\n";
+  for (const BreathCoverage& c : t.coverage)
+    out += fmt::format("| {} | {:g} | {:.0f} % | {:.0f} % | {:.2f}, {:.1f} | {:.0f} % |\n",
+                       c.signals, c.least_confidence, 100.0 * c.answered,
+                       100.0 * c.right / std::max(c.answered, 1e-9), c.median_bpm, c.worst_bpm,
+                       100.0 * c.without_rhythm);
+  return out;
+}
+
 std::string physiology_md(const PhysiologyTradeoff& t) {
   std::string out =
       "# Heart and breath: error over latency and cost\n\nAn estimate over a window is as late as "
@@ -53,7 +75,8 @@ std::string physiology_md(const PhysiologyTradeoff& t) {
       "window is long. Shares are of all windows; an estimate that says it does not know is no "
       "wrong "
       "one.\n";
-  out += breath_table(t, "recorded") + breath_table(t, "made");
+  for (const std::string& signals : signals_of(t)) out += breath_table(t, signals);
+  out += coverage_table(t);
   out +=
       "\n## Heart rate, from rest over effort and back, with extra beats, 6 dB of noise\n\n| "
       "estimator "
@@ -98,9 +121,17 @@ nlohmann::json physiology_json(const PhysiologyTradeoff& t) {
                                 {"missed", p.missed},
                                 {"timing_ms", p.timing_ms},
                                 {"us_a_second", p.us_a_second}});
-  for (const char* signals : {"made", "recorded"})
+  for (const BreathCoverage& c : t.coverage)
+    json["coverage"].push_back({{"signals", c.signals},
+                                {"least_confidence", c.least_confidence},
+                                {"answered", c.answered},
+                                {"right", c.right},
+                                {"median_error_bpm", c.median_bpm},
+                                {"worst_error_bpm", c.worst_bpm},
+                                {"answered_without_rhythm", c.without_rhythm}});
+  for (const std::string& signals : signals_of(t))
     if (const BreathPoint* p = breath_knee(t, signals))
-      json["knees"]["breath_" + std::string(signals)] = {{"window_s", p->window_s}};
+      json["knees"]["breath_" + signals] = {{"window_s", p->window_s}};
   if (const HeartPoint* p = heart_choice(t))
     json["knees"]["heart_median"] = {{"intervals", p->intervals}};
   return json;
@@ -173,8 +204,9 @@ void draw_heart(sonar::Canvas& canvas, const Box& rate_box, const Box& detector_
 
 ImageU8 physiology_plot(const PhysiologyTradeoff& t) {
   constexpr double kWide = 900, kHigh = 480, kTop = 44;
-  const bool recorded = breath_knee(t, "recorded") != nullptr;
-  const int rows = recorded ? 3 : 2;
+  std::vector<std::string> rows_of = signals_of(t);
+  if (rows_of.size() > 2) std::erase(rows_of, "recorded");  // its sensors say it
+  const auto rows = static_cast<int>(rows_of.size()) + 1;
   sonar::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
                        static_cast<std::uint32_t>(kTop + rows * kHigh), kPaper);
   canvas.text(24, 34, 18, "Heart and breath: error over latency and cost", kInk,
@@ -184,8 +216,7 @@ ImageU8 physiology_plot(const PhysiologyTradeoff& t) {
     const double top = kTop + kHigh * row++;
     return std::pair{Box{0, top, kWide, top + kHigh}, Box{kWide, top, 2 * kWide, top + kHigh}};
   };
-  for (const char* signals : {"recorded", "made"}) {
-    if (!breath_knee(t, signals)) continue;
+  for (const std::string& signals : rows_of) {
     const auto [left, right] = boxes();
     draw_breath(canvas, left, right, t, signals);
   }

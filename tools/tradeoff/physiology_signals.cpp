@@ -4,11 +4,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "diver/breath_bands.hpp"
 #include "diver/physio_wav.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/math.hpp"
-#include "engine/core/random.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -155,11 +153,32 @@ Result<std::vector<BreathSound>> read_breath(const std::filesystem::path& folder
     NERITIC_TRY(const auto bytes, read_file(path));
     NERITIC_TRY(diver::Recording sound, diver::parse_wav(bytes, path.string(), 0));
     NERITIC_TRY_STATUS(diver::check_sound_rate(sound.rate_hz));
-    out.push_back({"recorded", rate_in_name(path.filename().string()), std::move(sound)});
+    const std::string name = path.filename().string();
+    out.push_back({name.substr(0, name.find('_')), rate_in_name(name), std::move(sound)});
   }
   if (out.empty())
     return bad_input("{}: no recordings found, .wav files named like breath_12bpm.wav are accepted",
                      folder.string());
+  return out;
+}
+
+std::vector<diver::BreathFrame> in_pieces(const std::vector<diver::BreathFrame>& frames,
+                                          const RandomKey& key) {
+  std::vector<std::pair<std::size_t, std::size_t>> pieces;
+  std::uint64_t draw = 0;
+  for (std::size_t from = 0; from < frames.size(); from = pieces.back().second) {
+    const double seconds = 0.3 + 2.7 * random_uniform(key, draw++);
+    const auto long_frames = static_cast<std::size_t>(seconds * diver::kBreathFrames_hz);
+    pieces.emplace_back(from, std::min(frames.size(), from + long_frames));
+  }
+  for (std::size_t i = pieces.size(); i > 1; --i)
+    std::swap(
+        pieces[i - 1],
+        pieces[static_cast<std::size_t>(random_uniform(key, draw++) * static_cast<double>(i))]);
+  std::vector<diver::BreathFrame> out;
+  for (const auto& [from, to] : pieces)
+    out.insert(out.end(), frames.begin() + static_cast<std::ptrdiff_t>(from),
+               frames.begin() + static_cast<std::ptrdiff_t>(to));
   return out;
 }
 

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "diver/breath_bands.hpp"
 #include "diver/physio_recording.hpp"
+#include "engine/core/random.hpp"
 
 namespace neritic::tools {
 
@@ -22,7 +24,7 @@ std::vector<double> make_ecg(const std::vector<double>& beats_s, double rate_hz,
                              double snr_db, std::uint64_t seed);
 
 struct BreathSound {
-  std::string kind;  // "chest", "regulator", "alike" or "recorded"
+  std::string kind;  // "chest", "regulator", "alike"; recorded: the sensor, as files are named
   double true_bpm = 0.0;
   diver::Recording sound;
 };
@@ -30,7 +32,10 @@ struct BreathSound {
 // bubbles; alike: in and out are the same, and only breaths' lengths tell. Breaths vary by 5 %.
 std::vector<BreathSound> make_breath(const std::vector<double>& rates_bpm, double seconds,
                                      std::uint64_t seed);
-// The .wav files of a folder and those below it whose names hold a rate (..._12bpm_...).
+// The .wav files of a folder and those below it whose names hold a rate (SENSOR_12bpm_...).
 Result<std::vector<BreathSound>> read_breath(const std::filesystem::path& folder);
+// Pieces of .3 to 3 s in random order: as loud, as colourful, without rhythm.
+std::vector<diver::BreathFrame> in_pieces(const std::vector<diver::BreathFrame>& frames,
+                                          const RandomKey& key);
 
 }  // namespace neritic::tools

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <map>
 
 #include "diver/breath_monitor.hpp"
 #include "diver/heart_score.hpp"
-#include "engine/core/clock.hpp"
 #include "tools/tradeoff/physiology_signals.hpp"
 
 namespace neritic::tools {
@@ -21,10 +22,18 @@ constexpr int kRateIntervals[] = {1, 2, 4, 8, 16, 32, 64};
 constexpr double kDetectorRates_hz[] = {50.0, 100.0, 130.16, 250.0, 360.0, 500.0, 1000.0, 2000.0};
 constexpr double kRightWithin_bpm = 2.0, kDoubledAbove = 1.6;
 constexpr double kHop_s = 5.0;
+constexpr double kConfidences[] = {0.0, 0.5, 0.8, 0.9, 0.95};
+constexpr int kPieceRounds = 8;
 constexpr double kHeartSeconds = 300.0, kHeartRate_hz = 360.0, kSnr_db = 6.0;
+
+// Processor time of this thread: others at work do not count.
+double cpu_us() {
+  return 1e6 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 // The frames of every sound: bands are cut once for all windows and estimators.
 struct FramedSound {
+  std::string kind;
   double true_bpm = 0.0;
   diver::BreathBands bands;
   std::vector<diver::BreathFrame> frames;
@@ -33,7 +42,7 @@ struct FramedSound {
 std::vector<FramedSound> frames_of(const std::vector<BreathSound>& sounds) {
   std::vector<FramedSound> out;
   for (const BreathSound& s : sounds) {
-    out.push_back({s.true_bpm, diver::BreathBands(s.sound.rate_hz), {}});
+    out.push_back({s.kind, s.true_bpm, diver::BreathBands(s.sound.rate_hz), {}});
     for (const double sample : s.sound.samples) out.back().bands.push(sample, out.back().frames);
   }
   return out;
@@ -45,7 +54,7 @@ BreathPoint measure_breath(const std::vector<FramedSound>& sounds, const std::st
   std::vector<double> sizes;
   const auto window = static_cast<std::size_t>(window_s * diver::kBreathFrames_hz);
   const auto hop = static_cast<std::size_t>(kHop_s * diver::kBreathFrames_hz);
-  const TimeNs start = now_ns();
+  const double start_us = cpu_us();
   for (const FramedSound& s : sounds)
     for (std::size_t from = 0; from + window <= s.frames.size(); from += hop) {
       ++point.windows;
@@ -58,11 +67,48 @@ BreathPoint measure_breath(const std::vector<FramedSound>& sounds, const std::st
       point.doubled += estimate.rate_bpm > kDoubledAbove * s.true_bpm;
     }
   if (point.windows == 0) return point;
-  point.us = 1e-3 * static_cast<double>(now_ns() - start) / point.windows;
+  point.us = (cpu_us() - start_us) / point.windows;
   for (double* share : {&point.answered, &point.right, &point.doubled}) *share /= point.windows;
   std::ranges::sort(sizes);
   if (!sizes.empty()) point.median_bpm = sizes[sizes.size() / 2];
   return point;
+}
+
+std::size_t frames_in(double seconds) {
+  return static_cast<std::size_t>(seconds * diver::kBreathFrames_hz);
+}
+
+BreathCoverage measure_coverage(const std::vector<FramedSound>& sounds, const std::string& signals,
+                                double least_confidence) {
+  BreathCoverage out{signals, least_confidence};
+  const std::size_t window = frames_in(diver::BreathSettings{}.window_s);
+  std::vector<double> sizes;
+  double windows = 0.0, pieces = 0.0;
+  for (const FramedSound& s : sounds) {
+    const auto estimate = [&](const std::vector<diver::BreathFrame>& frames, std::size_t from) {
+      return diver::estimate_breath(std::span(frames).subspan(from, window), s.bands,
+                                    BreathEstimator::kMultiBand, least_confidence);
+    };
+    for (std::size_t from = 0; from + window <= s.frames.size(); from += frames_in(kHop_s)) {
+      ++windows;
+      const auto heard = estimate(s.frames, from);
+      if (heard.breathing) sizes.push_back(std::abs(heard.rate_bpm - s.true_bpm));
+    }
+    for (int round = 0; round < kPieceRounds; ++round) {
+      const auto frames = in_pieces(s.frames, {13, static_cast<std::uint64_t>(round), 0});
+      for (std::size_t from = 0; from + window <= frames.size(); from += window, ++pieces)
+        out.without_rhythm += static_cast<double>(estimate(frames, from).breathing);
+    }
+  }
+  if (windows == 0.0) return out;
+  out.without_rhythm /= pieces;
+  out.answered = static_cast<double>(sizes.size()) / windows;
+  out.right = static_cast<double>(
+                  std::ranges::count_if(sizes, [](double e) { return e <= kRightWithin_bpm; })) /
+              windows;
+  std::ranges::sort(sizes);
+  if (!sizes.empty()) out.median_bpm = sizes[sizes.size() / 2], out.worst_bpm = sizes.back();
+  return out;
 }
 
 // The rate by the last n intervals before beat i; 0: too few.
@@ -115,10 +161,10 @@ HeartPoint measure_rate(const MadeHeart& heart, const std::vector<diver::Interva
 
 DetectorPoint measure_detector(const MadeHeart& heart, double rate_hz) {
   const auto ecg = make_ecg(heart.beats_s, rate_hz, kHeartSeconds, kSnr_db, 5);
-  const TimeNs start = now_ns();
+  const double start_us = cpu_us();
   const auto beats = diver::find_beats(rate_hz, ecg);
   DetectorPoint point{rate_hz};
-  point.us_a_second = 1e-3 * static_cast<double>(now_ns() - start) / kHeartSeconds;
+  point.us_a_second = (cpu_us() - start_us) / kHeartSeconds;
   std::vector<diver::BeatAnnotation> marks;
   for (const double t : heart.beats_s) marks.push_back({t, 1});
   const auto score = diver::score_beats(marks, diver::intervals_of(beats));
@@ -159,13 +205,13 @@ const char* name_of(RateOver estimator) {
 
 std::uint64_t steps(const PhysiologyTradeoffOptions& options) {
   const std::uint64_t breath = std::size(kBreathEstimators) * std::size(kBreathWindows_s);
-  return breath * (options.recordings.empty() ? 1 : 2) + std::size(kDetectorRates_hz) + 1;
+  return breath * (options.recordings.empty() ? 1 : 2) + (options.recordings.empty() ? 0 : 1) +
+         std::size(kDetectorRates_hz) + 1;
 }
 
 Result<PhysiologyTradeoff> run_physiology_tradeoff(const PhysiologyTradeoffOptions& options) {
   PhysiologyTradeoff out;
-  const auto measure = [&](const std::vector<BreathSound>& sounds, const std::string& signals) {
-    const auto framed = frames_of(sounds);
+  const auto measure = [&](const std::vector<FramedSound>& framed, const std::string& signals) {
     for (const BreathEstimator estimator : kBreathEstimators)
       for (const double window_s : kBreathWindows_s) {
         const BreathPoint point = measure_breath(framed, signals, estimator, window_s);
@@ -175,9 +221,21 @@ Result<PhysiologyTradeoff> run_physiology_tradeoff(const PhysiologyTradeoffOptio
   };
   if (!options.recordings.empty()) {
     NERITIC_TRY(const auto sounds, read_breath(options.recordings));
-    measure(sounds, "recorded");
+    const auto framed = frames_of(sounds);
+    measure(framed, "recorded");
+    std::map<std::string, std::vector<FramedSound>> sensors;
+    for (const FramedSound& sound : framed) sensors[sound.kind].push_back(sound);
+    for (const auto& [sensor, heard] : sensors) {
+      for (const BreathEstimator estimator : kBreathEstimators)
+        for (const double window_s : kBreathWindows_s)
+          out.breath.push_back(measure_breath(heard, sensor, estimator, window_s));
+      for (const double confidence : kConfidences)
+        out.coverage.push_back(measure_coverage(heard, sensor, confidence));
+    }
+    options.step();
   }
-  measure(make_breath(breath_rates(options.quick), options.quick ? 65.0 : 90.0, 11), "made");
+  measure(frames_of(make_breath(breath_rates(options.quick), options.quick ? 65.0 : 90.0, 11)),
+          "made");
   const MadeHeart heart = make_heart(kHeartSeconds, 3);
   const auto ecg = make_ecg(heart.beats_s, kHeartRate_hz, kHeartSeconds, kSnr_db, 4);
   const auto beats = diver::intervals_of(diver::find_beats(kHeartRate_hz, ecg));
@@ -208,12 +266,10 @@ const BreathPoint* breath_knee(const PhysiologyTradeoff& tradeoff, const std::st
   std::vector<const BreathPoint*> points;
   std::vector<double> x, y;
   for (const BreathPoint& p : tradeoff.breath) {
-    if (p.signals != signals || p.estimator != BreathEstimator::kMultiBand || p.answered < 0.5 ||
-        p.right < 0.3)
-      continue;
+    if (p.signals != signals || p.estimator != BreathEstimator::kMultiBand) continue;
     points.push_back(&p);
     x.push_back(p.window_s);
-    y.push_back(p.median_bpm);
+    y.push_back(1.0 - p.right);
   }
   return points.empty() ? nullptr : points[knee_of(x, y)];
 }

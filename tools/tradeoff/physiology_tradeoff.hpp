@@ -20,13 +20,22 @@ struct PhysiologyTradeoffOptions {
 std::uint64_t steps(const PhysiologyTradeoffOptions& options);
 
 struct BreathPoint {
-  std::string signals;  // "made" or "recorded"
+  std::string signals;  // "made" or "recorded"; of a sensor: its name
   diver::BreathEstimator estimator = diver::BreathEstimator::kMultiBand;
   double window_s = 0.0;
   int windows = 0;
   double answered = 0.0, right = 0.0, doubled = 0.0;  // shares of all windows; right: within 2
   double median_bpm = 0.0;                            // size of the error, of those answered
   double us = 0.0;                                    // of one core, an estimate
+};
+
+// What asking for more confidence gives and costs: multiband, windows of BreathSettings::window_s.
+struct BreathCoverage {
+  std::string signals;
+  double least_confidence = 0.0;
+  double answered = 0.0, right = 0.0;  // shares of all windows; right: within 2
+  double median_bpm = 0.0, worst_bpm = 0.0;
+  double without_rhythm = 0.0;  // answered, of the same sounds in pieces in random order
 };
 
 enum class RateOver : std::uint8_t { kCount, kMean, kMedian };  // beats in a time, or intervals
@@ -48,6 +57,7 @@ struct DetectorPoint {
 
 struct PhysiologyTradeoff {
   std::vector<BreathPoint> breath;
+  std::vector<BreathCoverage> coverage;  // of recordings, by sensor
   std::vector<HeartPoint> heart;
   std::vector<DetectorPoint> detector;
 };
@@ -56,7 +66,7 @@ Result<PhysiologyTradeoff> run_physiology_tradeoff(const PhysiologyTradeoffOptio
 // The knee of a falling curve: the point farthest below the line between its ends. x rises. Fewer
 // than three points: the last.
 std::size_t knee_of(const std::vector<double>& x, const std::vector<double>& y);
-// That of multiband's error, of the windows that mostly answer at all, and as a rule not wrongly.
+// That of multiband's share of windows that are answered wrongly or not.
 const BreathPoint* breath_knee(const PhysiologyTradeoff& tradeoff, const std::string& signals);
 // The median over the most intervals whose error is within 5 % of the least: more of them ride over
 // a missed beat.

@@ -1,0 +1,29 @@
+// The rhythm that the levels of several bands share: where loudness alone is alike in and out, the
+// colour of the sound is not. Pure functions; any thread.
+#pragma once
+
+#include <vector>
+
+namespace neritic::diver {
+
+using Levels = std::vector<double>;  // kBreathFrames_hz of them a second
+
+// |sum of x e^{-i 2 pi f t}|^2 at f = 0, step_hz, 2 step_hz, ... up to count of them; t in frames
+// of kBreathFrames_hz.
+std::vector<double> line_powers(const Levels& x, double step_hz, std::size_t count);
+
+// The top of a parabola through three values, one apart: its place, from -.5 to .5; 0: no top.
+double parabola_top(double before, double here, double after);
+
+struct Rhythm {
+  double rate_hz = 0.0;     // 0: no line in kSlowestBreath_hz to kFastestBreath_hz
+  double confidence = 0.0;  // the share of sounds without rhythm whose best line is weaker
+};
+
+// Of levels as long as each other, each with mean 0 and deviation about 1. Principal components of
+// all bands, each scaled to the same power: the first is how loud it is, the next its colour, which
+// tells breathing in from breathing out. Of their spectra together the line that has most with half
+// of what its double has: a breath's halves are never quite alike, and never quite unlike.
+Rhythm common_rhythm(const std::vector<Levels>& bands);
+
+}  // namespace neritic::diver
