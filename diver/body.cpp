@@ -99,6 +99,7 @@ class BodyMaker {
     body_.model = in_.model;
     body_.height_m = in_.build.height_m;
     body_.water_kg_m3 = in_.water_kg_m3;
+    body_.surface_pa = in_.surface_pa;
     place_joints();
     for (std::size_t i = 0; i < kSegments; ++i) add_segment(static_cast<Segment>(i));
     add_feet();
@@ -408,12 +409,13 @@ Result<Body> make_body(const BodyParameters& parameters) {
   NERITIC_TRY_STATUS(check_limits(
       {{"water density", parameters.water_kg_m3, 0.0, 1300.0},
        {"strips a segment", static_cast<double>(parameters.strips_a_segment), 1, 64}}));
+  NERITIC_TRY_STATUS(check_limits({{"pressure at the surface", parameters.surface_pa, 2e4, 5e5}}));
   NERITIC_TRY_STATUS(check_gear(parameters.gear));
   return BodyMaker(parameters, measures).make();
 }
 
 double pressure_at(const Body& body, double depth_m) {
-  return kSurfacePressure_pa + body.water_kg_m3 * kGravity_m_s2 * std::max(depth_m, 0.0);
+  return body.surface_pa + body.water_kg_m3 * kGravity_m_s2 * std::max(depth_m, 0.0);
 }
 
 double dry_mass(const Body& body) {

@@ -29,6 +29,7 @@ struct BodyParameters {
   Model model = Model::kFull;
   int strips_a_segment = 4;  // 1 to 64; `neritic tradeoff swim`
   double water_kg_m3 = kSeaWater_kg_m3;
+  double surface_pa = kSurfacePressure_pa;  // of the air over it
 };
 
 // A piece of the body that water flows past: straight, of one section along its length, cut into
@@ -99,6 +100,7 @@ struct Body {
   Jacket jacket;         // scaled to the body; capacity 0: none
   Model model = Model::kFull;
   double height_m = 0.0, water_kg_m3 = 0.0;
+  double surface_pa = kSurfacePressure_pa;
   double lead_kg = 0.0;
   // Whether a segment moves by itself; else it is part of the one it hangs on.
   std::array<bool, kSegments> moves{};

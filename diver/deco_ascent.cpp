@@ -83,6 +83,7 @@ class Ascent {
     for (std::size_t i = 0; i < settings_.gases.size(); ++i) {
       const PlanGas& gas = settings_.gases[i];
       if (gas.role != GasRole::kDeco || i == state_.gas) continue;
+      if ((settings_.without >> i & 1) != 0) continue;
       if (now.role == GasRole::kDeco && gas.switch_depth_m >= now.switch_depth_m) continue;
       if (best == settings_.gases.size() ||
           gas.switch_depth_m > settings_.gases[best].switch_depth_m)
@@ -246,7 +247,7 @@ class Ascent {
 AscentSettings ascent_settings(const DecoConventions& conventions, double gf_low, double gf_high,
                                std::span<const PlanGas> gases, bool last_stop_always) {
   AscentSettings settings{conventions, conventions.model(), gf_low, gf_high,
-                          gases,       last_stop_always,    {}};
+                          gases,       last_stop_always,    {},     0};
   settings.quantum = step_factors(settings.model, conventions.stop_quantum_min);
   return settings;
 }

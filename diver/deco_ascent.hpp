@@ -17,6 +17,8 @@ struct AscentSettings {
   std::span<const PlanGas> gases;
   bool last_stop_always = true;
   StepFactors quantum;  // of the stop quantum
+  // Bits of gases that are carried, but not there to switch to.
+  std::uint64_t without = 0;
 };
 AscentSettings ascent_settings(const DecoConventions& conventions, double gf_low, double gf_high,
                                std::span<const PlanGas> gases, bool last_stop_always = true);

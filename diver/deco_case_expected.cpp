@@ -48,11 +48,14 @@ SecondOpinion read_opinion(const CaseField& field, const std::string& program) {
   opinion.program = program;
   opinion.stop_min = expected_number(field["total_stop_time_min"]);
   opinion.leave_last_min = expected_number(field["runtime_leaving_last_stop_min"]);
-  double stops = opinion.stop_min.value_or(0.0);
+  // A program that gives no sum gives stops whose minutes include the ways between them.
   const auto rows = read_stops(field["stops"]);
-  if (!opinion.stop_min && rows)
-    for (const ExpectedStop& stop : *rows) stops += stop.minutes;
-  opinion.band_min = std::max(3.0, 0.15 * stops);
+  if (!opinion.stop_min && rows && !rows->empty()) {
+    opinion.stops_and_ways_min = 0.0;
+    for (const ExpectedStop& stop : *rows) *opinion.stops_and_ways_min += stop.minutes;
+  }
+  opinion.band_min =
+      std::max(3.0, 0.15 * opinion.stop_min.value_or(opinion.stops_and_ways_min.value_or(0.0)));
   return opinion;
 }
 

@@ -74,9 +74,10 @@ NdlTable read_table(const CaseField& table, std::string id) {
   read_model(table.required("model"), table["coefficient_table"], request.conventions);
   request.gf_low = table["gf_high"].number(request.gf_high, 0.01, 1.5);
   read_parameters(table, request);
-  request.gases = {PlanGas{
-      mix_of_percent(table["o2"].number(21.0, 1.0, 100.0), table["he"].number(0.0, 0.0, 99.0)), 0.0,
-      GasRole::kBottom}};
+  request.gases = {
+      PlanGas{mix_of_percent(table["o2"].number(21.0, 1.0, 100.0), 0.0), 0.0, GasRole::kBottom}};
+  if (table["he"].present() && table["he"].number(0.0) != 0.0)
+    table["he"].refuse("0 (the closed form is nitrogen's) is");
   const CaseField rows = table.required("rows");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const CaseField row = rows.at(i);

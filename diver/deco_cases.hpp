@@ -28,11 +28,11 @@
 //     reference: end_of_bottom, first_stop, stops, surfacing, and so on: expected
 //       (DecoExpected). A first stop shallower than last_stop_m stands for a planner that made it
 //     oxygen_exposure: cns_percent, otu, max_po2_bar: expected
-//     second_opinions: by program, each with total_stop_time_min or runtime_leaving_last_stop_min,
-//     and
-//       stops: expected within 15 % or 3 min of the stops, of the set of conventions that is
-//       nearest to the program's
-//   ndl_tables: a list of model, gf_high, o2, surface_pressure_bar, bar_per_metre,
+//     second_opinions: by program, each with total_stop_time_min, or stops whose minutes include
+//     the
+//       ways between them, or runtime_leaving_last_stop_min: expected within 15 % or 3 min of total
+//       stop time, as such files say, of the set of conventions that is nearest to the program's
+//   ndl_tables: a list of model, gf_high, o2 (he: none), surface_pressure_bar, bar_per_metre,
 //     descent_rate_m_min, ascent_rate_m_min, rows: depth_m, decotengu_runtime_min,
 //     decotengu_runtime_whole_min, closed_form_time_at_depth_min, controlling_compartment
 #pragma once
@@ -71,7 +71,7 @@ struct ExpectedNdl {
 
 struct SecondOpinion {
   std::string program;
-  Expected stop_min, leave_last_min;
+  Expected stop_min, stops_and_ways_min, leave_last_min;  // what the program gives of these
   double band_min = 0.0;
 };
 

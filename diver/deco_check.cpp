@@ -233,6 +233,9 @@ class DiveCheck {
     const std::string what = "stop time beside " + opinion.program;
     if (!plan.ok()) return errors_.add_failure(what + ": " + plan.error().message);
     errors_.add(what, "min", plan->stop_min(), opinion.stop_min, opinion.band_min);
+    if (opinion.stops_and_ways_min && plan->first_stop && !plan->stops.empty())
+      errors_.add(what, "min", plan->stops.back().leave_min - plan->first_stop->run_min,
+                  opinion.stops_and_ways_min, opinion.band_min);
     if (opinion.leave_last_min && !plan->stops.empty())
       errors_.add(what, "min", plan->stops.back().leave_min, opinion.leave_last_min,
                   opinion.band_min);

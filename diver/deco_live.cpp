@@ -29,7 +29,8 @@ class NextStop : public AscentSink {
 };
 
 bool is_good(const DiveSample& sample, std::size_t gases) {
-  return sample.depth_m >= kHighestSample_m && sample.depth_m <= kDeepestSample_m && sample.gas < gases;
+  return sample.depth_m >= kHighestSample_m && sample.depth_m <= kDeepestSample_m &&
+         sample.gas < gases;
 }
 
 }  // namespace
@@ -145,7 +146,7 @@ double DiveComputer::ceiling_m(const DiveComputerState& state) const {
   return deep;
 }
 
-DiveComputerView DiveComputer::view(const DiveComputerState& state) const {
+DiveComputerView DiveComputer::view(const DiveComputerState& state, std::uint64_t without) const {
   const DecoConventions& c = settings_.conventions;
   const GasMix& mix = settings_.gases[state.last.gas].mix;
   const double depth = state.last.depth_m, p = c.environment.pressure_bar(depth);
@@ -162,7 +163,9 @@ DiveComputerView DiveComputer::view(const DiveComputerState& state) const {
   if (left < 0.0) view.ceiling_m = ceiling_m(state);
   AscentState up{state.tissues, 0.0, depth, state.last.gas, state.anchor_m};
   NextStop next;
-  const bool clears = ascend(ascent_, up, next) != AscentEnd::kNeverClears;
+  AscentSettings ascent = ascent_;
+  ascent.without = without;
+  const bool clears = ascend(ascent, up, next) != AscentEnd::kNeverClears;
   view.to_surface_min = clears ? next.minutes : std::numeric_limits<double>::infinity();
   if (next.found) {
     view.stop_m = next.depth_m;

@@ -10,10 +10,10 @@
 
 namespace neritic::diver {
 
-// How often tissues are stepped where nobody asks for more: the fine end of the knee of `neritic
-// tradeoff deco` (10 to 20 s). The corners of a dive that are cut off between samples make 1.3e-3 bar
-// there, a centimetre of ceiling.
-inline constexpr double kTissueStep_s = 10.0;
+// How often a computer samples, as those on wrists do. The corners of a dive that are cut off
+// between samples make 1.4e-5 bar (`neritic tradeoff deco`; a tenth of a millimetre of ceiling);
+// the knee is at 10 s, 1.3e-3 bar, but the alarm of the ascent's rate fits a line through 10 s.
+inline constexpr double kComputerSample_s = 1.0;
 
 struct DiveComputerSettings {
   DecoConventions conventions;
@@ -83,7 +83,8 @@ class DiveComputer {
   // the last good sample held. Above the surface is at it.
   DiveComputerState step(const DiveComputerState& before, const DiveSample& sample,
                          double dt_s) const;
-  DiveComputerView view(const DiveComputerState& state) const;
+  // without: bits of gases whose tanks are empty or shut: the ascent does not switch to them.
+  DiveComputerView view(const DiveComputerState& state, std::uint64_t without = 0) const;
 
  private:
   explicit DiveComputer(DiveComputerSettings settings);

@@ -124,7 +124,7 @@ Status read_computer(const CaseField& root, const BodyParameters& diver,
     NERITIC_TRY(computer.conventions, conventions_of(field["conventions"].text()));
   }
   DecoConventions& c = computer.conventions;
-  c.environment = {kStandardSurface_bar, bar_per_m_of(diver.water_kg_m3)};
+  c.environment = {1e-5 * diver.surface_pa, bar_per_m_of(diver.water_kg_m3)};
   c.last_stop_m = field["last_stop_m"].number(c.last_stop_m, 1.0, 30.0);
   c.saturation = field["saturation"].number(c.saturation, 0.1, 10.0);
   c.desaturation = field["desaturation"].number(c.desaturation, 0.1, 10.0);
@@ -148,13 +148,15 @@ Status read_computer(const CaseField& root, const BodyParameters& diver,
 }  // namespace
 
 Result<DiverFile> parse_diver(std::string_view text, const std::string& name,
-                              const std::filesystem::path& folder, double water_kg_m3) {
+                              const std::filesystem::path& folder, double water_kg_m3,
+                              double surface_pa) {
   NERITIC_TRY(CaseFile file, parse_case_toml(text, name, folder, {}));
   const CaseField root = file.root();
   root.allow(kDiverKeys);
   DiverFile out;
   out.name = root["name"].text();
   out.parameters.water_kg_m3 = water_kg_m3;
+  out.parameters.surface_pa = surface_pa;
   read_person(root, out.parameters);
   read_gear(root, out.parameters.gear);
   read_kick(root["kick"], out.swimmer);
@@ -168,9 +170,10 @@ Result<DiverFile> parse_diver(std::string_view text, const std::string& name,
   return out;
 }
 
-Result<DiverFile> read_diver(const std::filesystem::path& path, double water_kg_m3) {
+Result<DiverFile> read_diver(const std::filesystem::path& path, double water_kg_m3,
+                             double surface_pa) {
   NERITIC_TRY(const std::string text, read_text(path));
-  return parse_diver(text, path.string(), path.parent_path(), water_kg_m3);
+  return parse_diver(text, path.string(), path.parent_path(), water_kg_m3, surface_pa);
 }
 
 }  // namespace neritic::diver

@@ -18,11 +18,14 @@ struct DiverFile {
   DiveComputerSettings computer;  // its gases are the tanks', in their order
 };
 
+// water_kg_m3 and surface_pa are the scene's: its water and the air over it.
 // include: a file whose keys come first. Errors: file and key, what was found and is accepted; what
 // make_body and DiveComputer::create refuse.
-Result<DiverFile> read_diver(const std::filesystem::path& path, double water_kg_m3);
+Result<DiverFile> read_diver(const std::filesystem::path& path, double water_kg_m3,
+                             double surface_pa = kSurfacePressure_pa);
 // The same of text in memory; folder is what an include is relative to.
 Result<DiverFile> parse_diver(std::string_view text, const std::string& name,
-                              const std::filesystem::path& folder, double water_kg_m3);
+                              const std::filesystem::path& folder, double water_kg_m3,
+                              double surface_pa = kSurfacePressure_pa);
 
 }  // namespace neritic::diver

@@ -88,6 +88,8 @@ void live(const Body& body, HumanState& state, double dt_s) {
   in.oxygen_l_min = state.life.lungs.oxygen_l_min;
   in.mix = breathed_mix(body, state);
   in.ambient_pa = pressure_at(body, state.root.position_ned_m.z);
+  in.surface_pa = body.surface_pa;
+  in.cns_percent = state.life.computer.oxygen.cns_percent;
   const Breathing breathing = breathing_of(body, state, in.ambient_pa);
   in.ventilation_l_min = breathing.minute_l;
   in.breath_bpm = breathing.breaths_min;

@@ -94,7 +94,7 @@ void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const Brea
   }
   // Without a tank there is only what is above the water.
   if (body.tank_count == 0) {
-    const bool above = ambient_pa <= kSurfacePressure_pa;
+    const bool above = ambient_pa <= body.surface_pa;
     if (above) lungs.volume_m3 += change;
     count_fed(lungs, above, dt_s);
     return;

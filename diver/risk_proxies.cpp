@@ -23,7 +23,13 @@ constexpr double kCo2_mmhg[] = {45.0, 50.0, 60.0};
 constexpr double kNarcoticDepths_m[] = {30.0, 40.0, 60.0};
 constexpr double kDensity_kg_m3[] = {5.2, 6.2, 8.3};
 constexpr double kFastBreath_bpm[] = {25.0, 30.0, 40.0};
-constexpr double kPause_s[] = {5.0, 15.0, 30.0};  // skip breathing: pauses from 5 s
+// Oxygen: 1.4 bar is the limit by plan, 1.6 that at rest (NOAA Diving Manual, 4th ed., 2001), above
+// which no time is tabled; of the CNS limit 80 % is the most by plan. Below .18 bar too little,
+// below .16 thought suffers, below .10 consciousness goes.
+constexpr double kOxygen_bar[] = {1.4, 1.6, 1.8};
+constexpr double kCnsLevels_percent[] = {80.0, 100.0, 150.0};
+constexpr double kLittleOxygen_bar[] = {-0.18, -0.16, -0.10};  // of its negative
+constexpr double kPause_s[] = {5.0, 15.0, 30.0};               // skip breathing: pauses from 5 s
 constexpr double kMostCo2_mmhg = 200.0;
 // Litres of CO2 that raise its pressure by a mmHg: without breathing it rises by 3.8 mmHg a minute
 // of some .2 l a minute given off (Eger and Severinghaus 1961, Anesthesiology 22, 419).
@@ -43,14 +49,15 @@ bool is_possible(const RiskInput& in) {
          within(in.oxygen, 0.0, 1.0) && within(in.helium, 0.0, 1.0) &&
          in.oxygen + in.helium <= 1.0 && within(in.gas_density_kg_m3, 0.0, 400.0) &&
          within(in.oxygen_uptake_l_min, 0.0, 8.0) && within(in.ventilation_l_min, 0.0, 300.0) &&
-         within(in.breath_rate_bpm, 0.0, 120.0) && within(in.pause_s, 0.0, 1e7) && in.over_s > 0.0;
+         within(in.cns_percent, 0.0, 1e9) && within(in.breath_rate_bpm, 0.0, 120.0) &&
+         within(in.pause_s, 0.0, 1e7) && in.over_s > 0.0;
 }
 
 // P' = (VCO2 - VA P / 863) / store, exactly over the time; the steady state where that is endless.
 double co2_after(double before_mmhg, double co2_l_min, double alveolar_l_min, double over_s) {
   const double minutes = over_s / 60.0;
   const double rate = alveolar_l_min / (863.0 * kCo2Store_l_mmhg);  // a minute
-  if (rate < 1e-9) {  // no breath: it only rises
+  if (rate < 1e-9) {                                                // no breath: it only rises
     const double rise = co2_l_min > 0.0 ? co2_l_min / kCo2Store_l_mmhg * minutes : 0.0;
     return std::min(before_mmhg + rise, kMostCo2_mmhg);
   }
@@ -92,6 +99,10 @@ RiskProxies assess_risk(const RiskProxies& before, const RiskInput& in) {
       std::max(0.0, (in.ambient_pa * (1.0 - in.helium) - in.surface_pa) / kMetre_pa);
   out.co2 = level_of(out.co2_mmhg, kCo2_mmhg);
   out.narcosis = level_of(out.narcotic_depth_m, kNarcoticDepths_m);
+  out.oxygen_bar = 1e-5 * in.oxygen * in.ambient_pa;
+  out.oxygen =
+      std::max({level_of(out.oxygen_bar, kOxygen_bar), level_of(in.cns_percent, kCnsLevels_percent),
+                level_of(-out.oxygen_bar, kLittleOxygen_bar)});
   out.gas_density = level_of(in.gas_density_kg_m3, kDensity_kg_m3);
   out.breathing =
       std::max(level_of(in.breath_rate_bpm, kFastBreath_bpm), level_of(in.pause_s, kPause_s));

@@ -1,6 +1,6 @@
-// Numbers a robot can be careful by: carbon dioxide and narcosis. RISK PROXIES, NOT MEASUREMENTS
-// and not a diagnosis: no validated algorithm exists, whatever shows them says so (kRiskNote). Pure
-// functions; any thread.
+// Numbers a robot can be careful by: carbon dioxide, narcosis, oxygen. RISK PROXIES, NOT
+// MEASUREMENTS and not a diagnosis: no validated algorithm exists, whatever shows them says so
+// (kRiskNote). Pure functions; any thread.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,7 @@ struct RiskInput {
   double gas_density_kg_m3 = 1.2;    // of the gas breathed, at depth
   double oxygen_uptake_l_min = 0.3;  // by effort (rest: .25 to .3)
   double ventilation_l_min = 8.0;    // at depth; measured, or breath rate times tidal volume
+  double cns_percent = 0.0;          // of the limit for the central nervous system
   double breath_rate_bpm = 0.0;      // 0: not known
   double pause_s = 0.0;              // since the last breath
   // So long after what was before: CO2 follows as the body's stores fill or empty. Infinite: the
@@ -40,17 +41,21 @@ struct RiskInput {
 struct RiskProxies {
   double co2_mmhg = 40.0;
   double narcotic_depth_m = 0.0;  // the depth of air that would be as narcotic, O2 counted as N2
+  double oxygen_bar = 0.21;       // partial pressure of what is breathed
   RiskLevel co2 = RiskLevel::kLow, narcosis = RiskLevel::kLow, gas_density = RiskLevel::kLow,
             breathing = RiskLevel::kLow;
+  RiskLevel oxygen = RiskLevel::kLow;  // too much now or so far, or too little
   std::uint64_t refused = 0;
 
   static void fields(auto&& field, auto& self) {
     field("co2_mmhg", self.co2_mmhg);
     field("narcotic_depth_m", self.narcotic_depth_m);
+    field("oxygen_bar", self.oxygen_bar);
     field("co2", self.co2);
     field("narcosis", self.narcosis);
     field("gas_density", self.gas_density);
     field("breathing", self.breathing);
+    field("oxygen", self.oxygen);
     field("refused", self.refused);
   }
 };

@@ -58,6 +58,14 @@ double flow_from(const Body& body, TankState& tanks, std::size_t tank, double ar
   return given;
 }
 
+std::uint64_t empty_tanks(const Body& body, const TankState& tanks,
+                          std::span<const double> ambient_pa) {
+  std::uint64_t out = 0;
+  for (std::size_t i = 0; i < std::min(body.tank_count, ambient_pa.size()); ++i)
+    if (tank_pressure(body, tanks, i) < ambient_pa[i] + kWeakTank_pa) out |= std::uint64_t{1} << i;
+  return out;
+}
+
 double orifice_moles_s(const GasMix& mix, double area_m2, double from_pa, double to_pa) {
   if (!(from_pa > to_pa)) return 0.0;
   const double ratio = to_pa / from_pa;

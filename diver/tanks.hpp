@@ -1,6 +1,8 @@
 // Gas that is left and how it leaves: tanks, regulator. Pure functions; any thread.
 #pragma once
 
+#include <span>
+
 #include "diver/body.hpp"
 #include "diver/real_gas.hpp"
 
@@ -27,6 +29,10 @@ double breathe_from(const Body& body, TankState& tanks, std::size_t tank, double
 // The same by way of an opening of an effective area behind the first stage, into back_pa.
 double flow_from(const Body& body, TankState& tanks, std::size_t tank, double area_m2,
                  double back_pa, double dt_s);
+
+// Bits of tanks whose regulator gives no full breath at that depth's pressure, one a tank.
+std::uint64_t empty_tanks(const Body& body, const TankState& tanks,
+                          std::span<const double> ambient_pa);
 
 // Moles a second through an opening, from one pressure into a lower one; choked where the ratio
 // says so (ideal gas of two atoms; Shapiro 1953, ch. 4).

@@ -81,7 +81,8 @@ void step_vitals(const Instruments& said, const VitalInputs& in, double dt_s, Vi
 
   RiskInput risk;
   risk.ambient_pa = in.ambient_pa;
-  risk.surface_pa = kSurfacePressure_pa;
+  risk.surface_pa = in.surface_pa;
+  risk.cns_percent = in.cns_percent;
   risk.oxygen = in.mix.oxygen;
   risk.helium = in.mix.helium;
   risk.gas_density_kg_m3 = gas_density_g_l(in.mix, 1e-5 * in.ambient_pa);

@@ -66,7 +66,8 @@ double effort_heart_bpm(double oxygen_l_min);
 // What moves and breathes meanwhile.
 struct VitalInputs {
   GasMix mix;
-  double ambient_pa = 0.0;
+  double ambient_pa = 0.0, surface_pa = kSurfacePressure_pa;
+  double cns_percent = 0.0;  // as the dive computer has it
   double oxygen_l_min = kRestingOxygen_l_min;
   double ventilation_l_min = 0.0, breath_bpm = 0.0;  // 0 while the breath is held
   Vec3 face_ned{1.0, 0.0, 0.0};

@@ -19,6 +19,7 @@ struct Physics {
   std::string integrator = "guarded";  // guarded, rk4, semi_euler
   double max_error_m = 0.0;            // over 0: the cheapest rate that holds it, in place of both
   double water_kg_m3 = 1028.0;         // of sea water (von Benzon et al. 2022)
+  double altitude_m = 0.0;             // of the water's surface above the sea
 };
 
 // [current]: absent, the water rests.
@@ -81,12 +82,13 @@ struct Dynamics {
   std::optional<Vec3> tether_anchor_m;
 };
 
-// Where a diver swims: from point to point, each counting as reached within acceptance_m. At the last
-// one, unless it repeats, the diver stays. Or how the limbs move, recorded, wherever that leads.
+// Where a diver swims: from point to point, each counting as reached within acceptance_m. At the
+// last one, unless it repeats, the diver stays. Or how the limbs move, recorded, wherever that
+// leads.
 struct SwimPlan {
   std::vector<Vec3> waypoints_m;
   std::filesystem::path motion;  // instead of waypoints; empty: none
-  double speed_m_s = 0.4;  // through the water
+  double speed_m_s = 0.4;        // through the water
   double acceptance_m = 1.5;
   bool repeat = false;
 };

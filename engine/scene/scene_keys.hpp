@@ -80,7 +80,7 @@ inline constexpr auto kLawnMowerKeys =
 
 // Of what is simulated.
 inline constexpr auto kPhysicsKeys =
-    std::to_array<Key>({"rate_hz", "integrator", "max_error_m", "water_kg_m3"});
+    std::to_array<Key>({"rate_hz", "integrator", "max_error_m", "water_kg_m3", "altitude_m"});
 inline constexpr auto kCurrentKeys =
     std::to_array<Key>({"kind", "velocity_m_s", "deep_velocity_m_s", "depth_m", "exponent", "file",
                         "origin_m", "spacing_m", "start_s", "interval_s"});

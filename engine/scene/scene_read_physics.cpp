@@ -45,6 +45,8 @@ Result<Physics> read_physics_table(const SceneSource& source, const TomlValue& t
       reader.refuse(key, "no such key beside max_error_m");
   physics.water_kg_m3 =
       reader.number("water_kg_m3", physics.water_kg_m3, {900, 1300, false, false, "kg/m^3"});
+  physics.altitude_m =
+      reader.number("altitude_m", physics.altitude_m, {-500, 9000, false, false, "m"});
   NERITIC_TRY_STATUS(reader.status());
   return physics;
 }

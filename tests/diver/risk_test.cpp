@@ -64,6 +64,31 @@ TEST(RiskProxies, DenseGasAndBreathHaveTheirPublishedLimits) {
   EXPECT_EQ(assess_risk({}, in).breathing, RiskLevel::kHigh);
 }
 
+// 1.4 and 1.6 bar, 80 and 100 % of the CNS limit; and too little: air at 4 500 m of altitude has
+// .121 bar, a hypoxic 10/70 at the surface .10.
+TEST(RiskProxies, OxygenHasItsLimitsBothWays) {
+  const auto at = [](double oxygen, double ambient_bar, double cns_percent = 0.0) {
+    RiskInput in;
+    in.oxygen = oxygen;
+    in.ambient_pa = 1e5 * ambient_bar;
+    in.cns_percent = cns_percent;
+    const RiskProxies risk = assess_risk({}, in);
+    EXPECT_NEAR(risk.oxygen_bar, oxygen * ambient_bar, 1e-12);
+    return risk.oxygen;
+  };
+  EXPECT_EQ(at(0.32, 4.3), RiskLevel::kLow);     // 1.376 bar
+  EXPECT_EQ(at(0.32, 4.5), RiskLevel::kRaised);  // 1.44
+  EXPECT_EQ(at(1.0, 1.61), RiskLevel::kHigh);
+  EXPECT_EQ(at(1.0, 2.5), RiskLevel::kSevere);
+  EXPECT_EQ(at(0.21, 1.0, 79.0), RiskLevel::kLow);
+  EXPECT_EQ(at(0.21, 1.0, 81.0), RiskLevel::kRaised);
+  EXPECT_EQ(at(0.21, 1.0, 101.0), RiskLevel::kHigh);
+  EXPECT_EQ(at(0.21, 1.0, 151.0), RiskLevel::kSevere);
+  EXPECT_EQ(at(0.21, 0.80), RiskLevel::kRaised);  // .168
+  EXPECT_EQ(at(0.21, 0.577), RiskLevel::kHigh);
+  EXPECT_EQ(at(0.10, 0.99), RiskLevel::kSevere);
+}
+
 TEST(RiskProxies, WhatNoDiverHasIsRefusedCountedAndTheLastGoodOnesHeld) {
   RiskInput good;
   good.ambient_pa = 4e5;
@@ -77,6 +102,7 @@ TEST(RiskProxies, WhatNoDiverHasIsRefusedCountedAndTheLastGoodOnesHeld) {
                                         &RiskInput::gas_density_kg_m3,
                                         &RiskInput::oxygen_uptake_l_min,
                                         &RiskInput::ventilation_l_min,
+                                        &RiskInput::cns_percent,
                                         &RiskInput::breath_rate_bpm,
                                         &RiskInput::pause_s};
   for (double RiskInput::*const field : kFields)

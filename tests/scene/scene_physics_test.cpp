@@ -71,6 +71,7 @@ TEST_F(ScenePhysics, AMissionArrivesWithNamesResolvedAndOffsetsAdded) {
 rate_hz = 480
 integrator = "rk4"
 water_kg_m3 = 1000
+altitude_m = 1500
 [current]
 kind = "power_law"
 velocity_m_s = [0.5, 0, -0.1]
@@ -102,6 +103,7 @@ waypoints = [
   EXPECT_EQ(scene.physics->rate_hz, 480.0);
   EXPECT_EQ(scene.physics->integrator, "rk4");
   EXPECT_EQ(scene.physics->water_kg_m3, 1000.0);
+  EXPECT_EQ(scene.physics->altitude_m, 1500.0);
   EXPECT_EQ(scene.current->kind, Current::Kind::kPowerLaw);
   expect_near(scene.current->velocity_m_s, {0.5, 0, -0.1});
   EXPECT_EQ(scene.current->exponent, 0.2);

@@ -117,13 +117,17 @@ TEST(PlanCommand, ALogIsReplayedSampleBySample) {
 
 TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
   for (const auto& [arguments, error] :
-       {std::pair{"plan", "plan: --depth 0 and --time 0 found, both are needed (or --log)"},
+       {std::pair{"plan", "plan: no --depth and --time found; how deep (m) and how long"},
+        {"plan --depth 30", "plan: no --time found; how deep"},
+        {"plan --time 30", "plan: no --depth found; how deep"},
+        {"plan --depth 30 --time 20 --gf 0/85", "--gf: 0/85 found; 1 to 150 percent"},
         {"plan --depth 30 --time 1", "30 m is reached after 1.5 min, but to be left at 1"},
         {"plan --depth nan --time 20", "nan m until 20 min found"},
         {"plan --depth 30 --time 20 --gas water", "gas 'water' found; air, o2, ean32"},
         {"plan --depth 30 --time 20 --gas air ean50@deep", "--gas: 'deep' found, a number"},
         {"plan --depth 30 --time 20 --gf 30", "--gf: '30' found, two percentages"},
-        {"plan --depth 30 --time 20 --gf 90/30", "gradient factors 0.9/0.3 found"},
+        {"plan --depth 30 --time 20 --gf 90/30",
+         "--gf: 90/30 found; 1 to 150 percent, the first not above"},
         {"plan --depth 30 --time 20 --convention best", "convention 'best' found; stop-minutes"},
         {"plan --depth 30 --time 20 --water beer", "--water: 'beer' found; fresh, salt"},
         {"plan --depth 30 --time 20 --altitude 90000", "--altitude 90000 found"},

@@ -103,6 +103,10 @@ Result<DivePlanRequest> bare_request(const PlanFlags& flags) {
   DivePlanRequest request;
   NERITIC_TRY(request.conventions, conventions_asked(flags));
   NERITIC_TRY(const auto gf, percent_pair("gf", flags.gf));
+  if (!(gf.first >= 0.01 && gf.first <= gf.second && gf.second <= 1.5))
+    return bad_input(
+        "--gf: {} found; 1 to 150 percent, the first not above the second, as 30/85 is accepted",
+        flags.gf);
   request.gf_low = gf.first;
   request.gf_high = gf.second;
   NERITIC_TRY(request.gases, gases_of(flags));
@@ -143,9 +147,16 @@ Status add_earlier(const PlanFlags& flags, DivePlanRequest& request) {
 
 Result<DivePlanRequest> plan_request(const PlanFlags& flags) {
   NERITIC_TRY(DivePlanRequest request, bare_request(flags));
-  if (flags.depth_m == 0.0 || flags.time_min == 0.0)
-    return bad_input("plan: --depth {} and --time {} found, both are needed (or --log)",
-                     flags.depth_m, flags.time_min);
+  const auto missing = [](double value) { return value == 0.0; };
+  if (missing(flags.depth_m) || missing(flags.time_min)) {
+    const char* what = !missing(flags.depth_m)   ? "--time"
+                       : missing(flags.time_min) ? "--depth and --time"
+                                                 : "--depth";
+    return bad_input(
+        "plan: no {} found; how deep (m) and how long (min, the way down included) is accepted, as "
+        "--depth 30 --time 25; or --log FILE of a dive that was",
+        what);
+  }
   request.levels = {{flags.depth_m, flags.time_min}};
   for (const std::string& text : flags.levels) {
     NERITIC_TRY(const auto level, parse_numbers("level", text, 2, 2));

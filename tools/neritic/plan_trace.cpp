@@ -48,8 +48,7 @@ DiveTrace trace_plan(const diver::DivePlanRequest& request, const diver::DivePla
   for (const diver::PlanSegment& s : plan.segments) {
     // The switch takes no time.
     state = computer->step(state, {s.from_m, s.gas}, 0.0);
-    const int parts =
-        std::max(static_cast<int>(std::ceil(60.0 * s.minutes / diver::kTissueStep_s)), 1);
+    const int parts = std::max(static_cast<int>(std::ceil(60.0 * s.minutes / kTraceRow_s)), 1);
     for (int i = 1; i <= parts; ++i) {
       const double depth = s.from_m + (s.to_m - s.from_m) * i / parts;
       state = computer->step(state, {depth, s.gas}, 60.0 * s.minutes / parts);

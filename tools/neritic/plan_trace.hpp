@@ -31,7 +31,10 @@ struct DiveTrace {
   double most_ceiling_m = 0.0, fast_min = 0.0;
 };
 
-// Samples every kTissueStep_s and where the plan changes.
+// Between rows of a plan; its segments are straight lines, so that tissues are exact at any.
+inline constexpr double kTraceRow_s = 10.0;
+
+// Rows every kTraceRow_s and where the plan changes.
 DiveTrace trace_plan(const diver::DivePlanRequest& request, const diver::DivePlan& plan);
 // Every sample is stepped; views are at most 20 000, evenly spread.
 DiveTrace trace_log(const diver::DiveComputer& computer, const diver::TissueState& start,

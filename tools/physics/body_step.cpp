@@ -14,13 +14,6 @@ sim::BodyMotion motion_of(const rov::State& state) {
            rov::world_from_ned(state.velocity.angular())}};
 }
 
-void set_motion(const sim::BodyMotion& motion, rov::State& state) {
-  state.position_ned_m = rov::ned_from_world(motion.world_from_body.position_m);
-  state.attitude = rov::ned_from_world(motion.world_from_body.rotation);
-  state.velocity = rov::vec6(rov::ned_from_world(motion.velocity.linear),
-                             rov::ned_from_world(motion.velocity.angular));
-}
-
 rov::State step_once(const sim::StaticWorld& solid, const SolidBody& body, const rov::State& before,
                      rov::State free, double dt_s, ContactReport& report) {
   const sim::BodyMotion moved = sim::move_body(
@@ -58,13 +51,20 @@ rov::State free_step(const VehicleStep& step) {
   return rov::step(step.vehicle, step.before, step.inputs, step.dt_s, step.method.integrator);
 }
 
+sim::PairBody pair_body(const VehicleStep& step, const rov::State& free) {
+  return {step.body.shape, step.body.inverse_mass,
+          rov::world_pose(step.before.position_ned_m, step.before.attitude), motion_of(free)};
+}
+
+void set_motion(const sim::BodyMotion& motion, rov::State& state) {
+  state.position_ned_m = rov::ned_from_world(motion.world_from_body.position_m);
+  state.attitude = rov::ned_from_world(motion.world_from_body.rotation);
+  state.velocity = rov::vec6(rov::ned_from_world(motion.velocity.linear),
+                             rov::ned_from_world(motion.velocity.angular));
+}
+
 bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& b,
                    rov::State& free_b) {
-  const auto pair_body = [](const VehicleStep& step, const rov::State& free) {
-    return sim::PairBody{step.body.shape, step.body.inverse_mass,
-                         rov::world_pose(step.before.position_ned_m, step.before.attitude),
-                         motion_of(free)};
-  };
   sim::PairBody pair_a = pair_body(a, free_a), pair_b = pair_body(b, free_b);
   if (!sim::part_bodies(pair_a, pair_b, kVehicleFriction, a.dt_s)) return false;
   set_motion(pair_a.free, free_a);

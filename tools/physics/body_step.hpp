@@ -44,6 +44,9 @@ struct ContactReport {
 rov::Vec6 velocity_ned(const rov::State& state);
 // As if the water were empty.
 rov::State free_step(const VehicleStep& step);
+// For what else it meets; and what that made of it.
+sim::PairBody pair_body(const VehicleStep& step, const rov::State& free);
+void set_motion(const sim::BodyMotion& motion, rov::State& state);
 // Whether two vehicles touched: their free steps then part.
 bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& b,
                    rov::State& free_b);

@@ -42,7 +42,7 @@ constexpr const char* kHumanColumns =
     "buttons,kick_hz,limb_power_w,oxygen_l_min,ceiling_m,no_stop_min,stop_m,stop_min,"
     "to_surface_min,po2_bar,gas_density_g_l,cns_percent,otu,ascent_m_min,ascent_alarm,heart_bpm,"
     "pause_s,gaze_x,gaze_y,gaze_z,measured,co2_proxy_mmhg,narcosis_proxy_m,co2_risk,narcosis_risk,"
-    "density_risk,breathing_risk";
+    "density_risk,breathing_risk,oxygen_risk,out_of_gas_s";
 
 // What is not finite (no end of breath in sight) is an empty cell.
 void append_cells(std::string& out, std::initializer_list<double> numbers) {
@@ -215,7 +215,9 @@ void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& r
                      static_cast<double>(risk.co2),
                      static_cast<double>(risk.narcosis),
                      static_cast<double>(risk.gas_density),
-                     static_cast<double>(risk.breathing)});
+                     static_cast<double>(risk.breathing),
+                     static_cast<double>(risk.oxygen),
+                     row.out_of_gas_s});
   fmt::format_to(std::back_inserter(out), ",{:016x}\n", row.hash);
 }
 

@@ -9,8 +9,6 @@
 namespace neritic::tools {
 namespace {
 
-// Tissues change over minutes: a dive computer's sample each tenth of a second.
-constexpr double kComputer_s = 0.1;
 // Beyond a waypoint, so many times nearer than wanted is near enough.
 constexpr double kPassed = 3.0;
 
@@ -35,34 +33,16 @@ void follow_plan(const PhysicsHuman& human, HumanPhysics& state) {
   state.leg_from_ned_m = to;
 }
 
-// The free step made into one among what is solid, as of the vehicles (body_step.hpp).
-void keep_out(const PhysicsHuman& human, const sim::StaticWorld& solid,
-              const diver::RootState& before, double dt_s, HumanPhysics& state) {
-  diver::RootState& after = state.human.root;
-  const Mat6 mass = diver::matrix_of(
-      diver::momentum_of(human.body, diver::posture_of(human.body, state.human.limbs.rotation, {}),
-                         diver::gas_load(human.body, state.human))
-          .mass);
-  sim::MotionReport report;
-  const sim::BodyMotion moved = sim::move_body(
-      solid, human.shape, world_from_ned(inverse(mass)).m,
-      world_pose(before.position_ned_m, before.attitude),
-      {world_pose(after.position_ned_m, after.attitude),
-       {world_from_ned(after.velocity.linear()), world_from_ned(after.velocity.angular())}},
-      dt_s, &report);
-  after.position_ned_m = ned_from_world(moved.world_from_body.position_m);
-  after.attitude = ned_from_world(moved.world_from_body.rotation);
-  after.velocity =
-      vec6(ned_from_world(moved.velocity.linear), ned_from_world(moved.velocity.angular));
-  state.contact.near_points = static_cast<std::uint64_t>(report.contacts);
-  state.contact.touched_steps += report.touched ? 1 : 0;
-  state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);
-  state.contact.impulse_n_s = report.impulse_n_s;
+// Coulomb's, of a diver on a vehicle: that of a scene's things.
+constexpr double kHumanFriction = sim::Surface{}.friction;
+
+sim::PairBody pair_body(const PhysicsHuman& human, const HumanStep& moving) {
+  return {human.shape, moving.inverse_mass, moving.before, moving.free};
 }
 
 bool computer_due(std::uint64_t step, double dt_s) {
   const auto samples = [&](std::uint64_t steps) {
-    return std::floor(static_cast<double>(steps) * dt_s / kComputer_s + 1e-9);
+    return std::floor(static_cast<double>(steps) * dt_s / diver::kComputerSample_s + 1e-9);
   };
   return samples(step + 1) != samples(step);
 }
@@ -75,9 +55,9 @@ diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) 
   return {state.leg_from_ned_m, 0.0};
 }
 
-void step_human(const PhysicsHuman& human, const sim::StaticWorld& solid,
-                const HumanSteering& inputs, const Vec3& current_m_s, std::uint64_t step,
-                double dt_s, HumanPhysics& state) {
+HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
+                     const Vec3& current_m_s, std::uint64_t step, double dt_s,
+                     HumanPhysics& state) {
   diver::HumanInputs acting = inputs.human;
   acting.current_ned_m_s = ned_from_world(current_m_s);
   follow_plan(human, state);
@@ -88,12 +68,53 @@ void step_human(const PhysicsHuman& human, const sim::StaticWorld& solid,
                 dt_s, acting);
   const diver::RootState before = state.human.root;
   state.human = diver::step(human.body, state.human, acting, dt_s);
-  keep_out(human, solid, before, dt_s, state);
-  if (computer_due(step, dt_s)) {
-    const diver::DiveSample sample{state.human.root.position_ned_m.z, state.human.held.tank};
-    state.human.life.computer =
-        human.computer->step(state.human.life.computer, sample, kComputer_s);
-  }
+  const diver::RootState& after = state.human.root;
+  const Mat6 mass = diver::matrix_of(
+      diver::momentum_of(human.body, diver::posture_of(human.body, state.human.limbs.rotation, {}),
+                         diver::gas_load(human.body, state.human))
+          .mass);
+  return {world_from_ned(inverse(mass)).m,
+          world_pose(before.position_ned_m, before.attitude),
+          {world_pose(after.position_ned_m, after.attitude),
+           {world_from_ned(after.velocity.linear()), world_from_ned(after.velocity.angular())}}};
+}
+
+bool part_from_vehicle(const PhysicsHuman& human, HumanStep& moving, const VehicleStep& vehicle,
+                       rov::State& free) {
+  sim::PairBody a = pair_body(vehicle, free), b = pair_body(human, moving);
+  if (!sim::part_bodies(a, b, kHumanFriction, vehicle.dt_s)) return false;
+  set_motion(a.free, free);
+  moving.free = b.free;
+  return true;
+}
+
+bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman& b,
+                 HumanStep& moving_b, double dt_s) {
+  sim::PairBody pair_a = pair_body(a, moving_a), pair_b = pair_body(b, moving_b);
+  if (!sim::part_bodies(pair_a, pair_b, kHumanFriction, dt_s)) return false;
+  moving_a.free = pair_a.free;
+  moving_b.free = pair_b.free;
+  return true;
+}
+
+void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
+               bool parted, std::uint64_t step, double dt_s, HumanPhysics& state) {
+  sim::MotionReport report;
+  const sim::BodyMotion moved = sim::move_body(solid, human.shape, moving.inverse_mass,
+                                               moving.before, moving.free, dt_s, &report);
+  diver::RootState& after = state.human.root;
+  after.position_ned_m = ned_from_world(moved.world_from_body.position_m);
+  after.attitude = ned_from_world(moved.world_from_body.rotation);
+  after.velocity =
+      vec6(ned_from_world(moved.velocity.linear), ned_from_world(moved.velocity.angular));
+  state.contact.near_points = static_cast<std::uint64_t>(report.contacts);
+  state.contact.touched_steps += report.touched || parted ? 1 : 0;
+  state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);
+  state.contact.impulse_n_s = report.impulse_n_s;
+  if (!computer_due(step, dt_s)) return;
+  const diver::DiveSample sample{after.position_ned_m.z, state.human.held.tank};
+  state.human.life.computer =
+      human.computer->step(state.human.life.computer, sample, diver::kComputerSample_s);
 }
 
 Pose drawn_pose(const HumanPhysics& state) {

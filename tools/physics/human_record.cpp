@@ -6,6 +6,19 @@
 #include "diver/frames.hpp"
 
 namespace neritic::tools {
+namespace {
+
+// Deco gas counts while its tank still gives a full breath where it is switched to.
+std::uint64_t gases_used_up(const PhysicsHuman& human, const diver::HumanState& state) {
+  std::array<double, diver::kMaxTanks> ambient_pa{};
+  const auto& gases = human.computer->settings().gases;
+  for (std::size_t i = 0; i < std::min(gases.size(), ambient_pa.size()); ++i)
+    ambient_pa[i] = diver::pressure_at(human.body, gases[i].switch_depth_m);
+  return diver::empty_tanks(human.body, state.life.tanks, ambient_pa);
+}
+
+}  // namespace
+
 HumanRecorder::HumanRecorder(const PhysicsWorld& world, double joints_s)
     : world_(world),
       joints_s_(joints_s),
@@ -39,8 +52,9 @@ HumanRow HumanRecorder::row_of(std::size_t index,
   row.oxygen_l_min = state.human.life.lungs.oxygen_l_min;
   row.lungs_m3 = state.human.life.lungs.volume_m3;
   row.net_weight_n = diver::net_weight_n(human.body, state.human);
+  row.out_of_gas_s = state.human.life.lungs.unfed_s;
   row.gas = diver::read_gas(human.body, state.human);
-  row.computer = human.computer->view(state.human.life.computer);
+  row.computer = human.computer->view(state.human.life.computer, gases_used_up(human, state.human));
   row.cns_percent = state.human.life.computer.oxygen.cns_percent;
   row.otu = state.human.life.computer.oxygen.otu;
   row.vitals = state.human.life.vitals;

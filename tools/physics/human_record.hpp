@@ -22,6 +22,7 @@ struct HumanRow {
   std::uint64_t arrived = 0, near_points = 0, touched_steps = 0, buttons = 0, tank = 0, refused = 0;
   double kick_hz = 0.0, limb_power_w = 0.0, oxygen_l_min = 0.0, lungs_m3 = 0.0, net_weight_n = 0.0;
   diver::GasReading gas;
+  double out_of_gas_s = 0.0;  // since nothing came to breathe; 0 while it does
   diver::DiveComputerView computer;
   double cns_percent = 0.0, otu = 0.0;
   diver::VitalState vitals;

@@ -47,7 +47,9 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
   PhysicsHuman human;
   human.name = object.name;
   human.object = index;
-  NERITIC_TRY(human.file, diver::read_diver(object.human->file, scene.physics->water_kg_m3));
+  NERITIC_TRY(human.file,
+              diver::read_diver(object.human->file, scene.physics->water_kg_m3,
+                                1e5 * diver::surface_bar_at(scene.physics->altitude_m)));
   NERITIC_TRY(human.body, diver::make_body(human.file.parameters));
   NERITIC_TRY(diver::DiveComputer computer, diver::DiveComputer::create(human.file.computer));
   human.computer = std::make_unique<const diver::DiveComputer>(std::move(computer));

@@ -13,6 +13,7 @@
 #include "engine/scene/scene.hpp"
 #include "engine/sim/body_shape.hpp"
 #include "engine/sim/static_world.hpp"
+#include "tools/physics/body_step.hpp"
 #include "tools/physics/physics_state.hpp"
 
 namespace neritic::tools {
@@ -42,10 +43,24 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t object
 // What the diver swims to now.
 diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state);
 
-// dt_s later. current: of the diver's place, world axes.
-void step_human(const PhysicsHuman& human, const sim::StaticWorld& solid,
-                const HumanSteering& inputs, const Vec3& current_m_s, std::uint64_t step,
-                double dt_s, HumanPhysics& state);
+// A diver on the way through a step, for what touches: world axes.
+struct HumanStep {
+  sim::InverseMass inverse_mass{};
+  Pose before;
+  sim::BodyMotion free;  // as if alone; what it meets changes it
+};
+// dt_s later, as if the water were empty. current: of the diver's place, world axes.
+HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
+                     const Vec3& current_m_s, std::uint64_t step, double dt_s, HumanPhysics& state);
+// Whether a diver touched a vehicle, or another diver: the free steps of both then part, by equal
+// and opposite impulses.
+bool part_from_vehicle(const PhysicsHuman& human, HumanStep& moving, const VehicleStep& vehicle,
+                       rov::State& free);
+bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman& b,
+                 HumanStep& moving_b, double dt_s);
+// Along what is solid, and the dive computer's sample. parted: touched one that moves.
+void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
+               bool parted, std::uint64_t step, double dt_s, HumanPhysics& state);
 
 // What is drawn: where the model stands, and its nodes' rotations and scales (breath).
 Pose drawn_pose(const HumanPhysics& state);

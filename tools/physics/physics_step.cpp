@@ -132,7 +132,8 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
   std::array<rov::Inputs, kMaxVehicles> acting;
   std::array<rov::State, kMaxVehicles> free;
   std::array<bool, kMaxVehicles> parted{}, refused{};
-  std::array<rov::Vec6, kMaxVehicles> alone_ned;  // velocities as if there were no other vehicle
+  std::array<rov::Vec6, kMaxVehicles>
+      alone_ned;  // velocities as if there were no other vehicle or diver
   const auto step_of = [&](std::size_t i) {
     return VehicleStep{
         vehicles_[i].solid, vehicles_[i].vehicle, state.vehicles[i].body, acting[i], dt_s, method_};
@@ -147,6 +148,22 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = i + 1; j < count; ++j)
       if (part_vehicles(step_of(i), free[i], step_of(j), free[j])) parted[i] = parted[j] = true;
+  std::array<HumanStep, kMaxHumans> moving;
+  std::array<bool, kMaxHumans> human_parted{};
+  const std::size_t humans = humans_.size();
+  for (std::size_t k = 0; k < humans; ++k)
+    moving[k] = free_human(
+        humans_[k], inputs.humans[k],
+        rov::world_from_ned(current_ned_m_s(state.humans[k].human.root.position_ned_m, time_s)),
+        state.step, dt_s, next.humans[k]);
+  for (std::size_t k = 0; k < humans; ++k) {
+    for (std::size_t i = 0; i < count; ++i)
+      if (part_from_vehicle(humans_[k], moving[k], step_of(i), free[i]))
+        parted[i] = human_parted[k] = true;
+    for (std::size_t m = k + 1; m < humans; ++m)
+      if (part_humans(humans_[k], moving[k], humans_[m], moving[m], dt_s))
+        human_parted[k] = human_parted[m] = true;
+  }
   for (std::size_t i = 0; i < count; ++i) {
     ContactReport report;
     VehicleState& after = next.vehicles[i];
@@ -156,11 +173,8 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
     add_contact(report, dt_s, after);
     after.contact.touched_steps += report.motion.touched || parted[i] ? 1 : 0;
   }
-  for (std::size_t i = 0; i < humans_.size(); ++i)
-    step_human(
-        humans_[i], solid_, inputs.humans[i],
-        rov::world_from_ned(current_ned_m_s(state.humans[i].human.root.position_ned_m, time_s)),
-        state.step, dt_s, next.humans[i]);
+  for (std::size_t k = 0; k < humans; ++k)
+    end_human(humans_[k], solid_, moving[k], human_parted[k], state.step, dt_s, next.humans[k]);
   return next;
 }
 
