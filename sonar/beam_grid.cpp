@@ -109,6 +109,30 @@ PixelSize gbuffer_size(const BeamGrid& grid, const Sector& sector, double pixels
           extent(t.top - t.bottom, grid.elevation_step_rad())};
 }
 
+LeaningView leaning_view(const BeamGrid& grid, const Sector& sector, double pixels_per_cell,
+                         std::uint32_t max_extent) {
+  // Shifts of 1 / (n + 0.618...) pixels a row: after n rows they begin to fill each other's gaps.
+  // Beyond n = 4 things that lean by a fraction of a pixel a row are hit or missed whole as upright
+  // ones were.
+  constexpr double kGolden = 0.6180339887498949, kLeastRows = 4.0;
+  constexpr double kMostWider = 0.25, kLeastWider_px = 4.0;
+  const FrustumTangents& t = sector.tangents;
+  LeaningView out;
+  out.size = gbuffer_size(grid, sector, pixels_per_cell, max_extent);
+  const double height = out.size.height;
+  const double room_px = std::max(kMostWider * out.size.width, kLeastWider_px);
+  const double shift_px =
+      1.0 / (std::max(kLeastRows, std::ceil(height / room_px - kGolden)) + kGolden);
+  const double wider_px = shift_px * height;
+  out.size.width =
+      std::min(max_extent, static_cast<std::uint32_t>(std::ceil(out.size.width + wider_px - 1e-9)));
+  const double fx = (out.size.width - wider_px) / (t.right - t.left),
+               fy = height / (t.top - t.bottom);
+  out.lean = shift_px * fy / fx;
+  out.tangents = {t.left - out.lean * t.top, t.right - out.lean * t.bottom, t.bottom, t.top};
+  return out;
+}
+
 Intrinsics intrinsics_of(const FrustumTangents& t, std::uint32_t width, std::uint32_t height) {
   const double fx = width / (t.right - t.left), fy = height / (t.top - t.bottom);
   return {fx, fy, -t.left * fx, t.top * fy};

@@ -103,6 +103,18 @@ struct PixelSize {
 PixelSize gbuffer_size(const BeamGrid& grid, const Sector& sector, double pixels_per_cell,
                        std::uint32_t max_extent = kMaxPictureSide);
 
+// The same for what beams sample: sides that lean (render::ViewDesc), so that each row of pixels is
+// shifted against the next by an irrational part of a pixel. A thing narrower than a pixel then
+// falls between some rows' pixels, not between all or none: its energy is right on average over its
+// height. The view is at most a quarter, or four pixels, wider for it.
+struct LeaningView {
+  FrustumTangents tangents;  // of the leaning sides
+  double lean = 0.0;         // in tangents
+  PixelSize size;
+};
+LeaningView leaning_view(const BeamGrid& grid, const Sector& sector, double pixels_per_cell,
+                         std::uint32_t max_extent = kMaxPictureSide);
+
 // A pinhole in pixels, pixel centres at +0.5, row 0 on top.
 struct Intrinsics {
   double fx = 1.0, fy = 1.0, cx = 0.0, cy = 0.0;

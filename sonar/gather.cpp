@@ -56,6 +56,8 @@ Status SonarGather::check(const gpu::Device& device) const {
   if (options_.gather == Gather::kPublished && options_.echo)
     return bad_input(
         "gather published: it is the plain cosine; with terms, plane or nearest is accepted");
+  NERITIC_CHECK(options_.gather != Gather::kPublished || layout_.lean == 0.0,
+                "the published gather takes upright images");
   if (sums_bytes() > limits.maxStorageBufferRange)
     return failure(
         ErrorCode::kUnsupported,
@@ -210,7 +212,9 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
                                .bins_per_m = static_cast<float>(1.0 / grid_.range_step_m()),
                                .fixed_scale = static_cast<float>(fixed_scale_),
                                .edge_bias_bins = kEdgeBias_bins,
-                               .reflectivities = reflects ? pass.in.reflectivities : 0u};
+                               .reflectivities = reflects ? pass.in.reflectivities : 0u,
+                               .lean = static_cast<float>(layout_.lean),
+                               .azimuth_step_rad = static_cast<float>(grid_.azimuth_step_rad())};
   std::vector<gpu::BoundResource> bound{
       gpu::bound_buffer(shared::kSonarBindColumns, column_slice.buffer, column_slice.offset,
                         column_slice.size),

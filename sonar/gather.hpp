@@ -42,6 +42,9 @@ struct GBufferLayout {
   double near_m = 0.02;
   bool octahedral = true;  // normals R16G16_SNORM octahedral, else unit x, y, z (4 floats)
   bool normals_face_sensor = true;
+  // Not 0: the images' sides lean so (render::ViewDesc::lean), and beams look all over their
+  // columns' width. Plane and nearest only.
+  double lean = 0.0;
 };
 
 // The terms of a gather beyond the plain cosine; each costs only where it is named.

@@ -83,7 +83,8 @@ Status SonarGather::make_pipeline(gpu::Device& device) {
                     {shared::kSonarSpecFacing, layout_.normals_face_sensor},
                     {shared::kSonarSpecReflect, options_.reflectivity},
                     {shared::kSonarSpecLabels, options_.labels},
-                    {shared::kSonarSpecFootprint, footprint_of(grid_, options_)}};
+                    {shared::kSonarSpecFootprint, footprint_of(grid_, options_)},
+                    {shared::kSonarSpecLeaning, layout_.lean != 0.0}};
   if (echo)
     for (const auto& [constant, on] : std::initializer_list<std::pair<std::uint32_t, bool>>{
              {shared::kSonarSpecCoherent, echo->coherent},

@@ -47,10 +47,13 @@ std::vector<shared::SonarColumn> column_table(const BeamGrid& grid, std::span<co
           first_pixel_from(grid.limits.azimuth_min_rad + (c + 1) * step - sector.yaw_rad, layout);
       const double theta = grid.azimuth_rad(c) - sector.yaw_rad;
       if (!(std::cos(theta) > 1e-6)) continue;
-      const double u = std::floor(k.cx + k.fx * std::tan(theta));
+      // Where the sides lean, each row finds its own pixel.
+      double u = std::floor(k.cx + k.fx * std::tan(theta));
+      if (layout.lean != 0.0) u = std::clamp(u, 0.0, layout.width - 1.0);
       if (!(u >= 0.0 && u < layout.width)) continue;
       const double tx = (u + 0.5 - k.cx) / k.fx;
       column.pixel = static_cast<int>(u);
+      column.tan_theta = static_cast<float>(std::tan(theta));
       column.beam_base = put(std::tan(theta), 0, -1);
       column.sec_theta = static_cast<float>(1.0 / std::cos(theta));
       column.pixel_base = put(tx, 0, -1);

@@ -17,8 +17,8 @@ ClusterCulling::ClusterCulling(const ViewSet& set) {
     const Quat& turn = desc.world_from_view.rotation;
     const Vec3 eye_m = desc.world_from_view.position_m - set.origin_m();
     const FrustumTangents& t = desc.tangents;
-    const Vec3 inward[kPlanes] = {{-1.0, 0.0, -t.right},
-                                  {1.0, 0.0, t.left},
+    const Vec3 inward[kPlanes] = {{-1.0, desc.lean, -t.right},
+                                  {1.0, -desc.lean, t.left},
                                   {0.0, -1.0, -t.top},
                                   {0.0, 1.0, t.bottom},
                                   {0.0, 0.0, -1.0}};

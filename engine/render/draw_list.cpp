@@ -51,8 +51,9 @@ bool all_eyes_outside(const ViewSet& views, const GpuPrimitive& primitive,
   return std::all_of(views.views.begin(), views.views.end(), [&](const ViewDesc& view) {
     const Vec3 eye_m = view.world_from_view.position_m - views.origin_m();
     const FrustumTangents& t = view.tangents;
-    const Vec3 corner(std::max(std::abs(t.left), std::abs(t.right)),
-                      std::max(std::abs(t.bottom), std::abs(t.top)), 1.0);
+    const double high = std::max(std::abs(t.bottom), std::abs(t.top));
+    const Vec3 corner(std::max(std::abs(t.left), std::abs(t.right)) + std::abs(view.lean) * high,
+                      high, 1.0);
     const double reach_m =
         view.near_m * glm::length(corner) + kFloatError * (size_m + glm::length(eye_m));
     const Vec3 at = Vec3(primitive_from_origin * Vec4(eye_m, 1.0)) - primitive.center_m;

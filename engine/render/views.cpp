@@ -5,11 +5,13 @@
 namespace neritic::render {
 namespace {
 
-Mat4 clip_from_origin(const Pose& world_from_view, const FrustumTangents& tangents, double near_m,
-                      const Vec3& origin_m) {
+Mat4 clip_from_origin(const Pose& world_from_view, const ViewDesc& view, const Vec3& origin_m) {
   Pose origin_from_view = world_from_view;
   origin_from_view.position_m -= origin_m;
-  return reversed_z_projection(tangents, near_m) * to_matrix(inverse(origin_from_view));
+  Mat4 upright_from_view(1.0);
+  upright_from_view[1][0] = -view.lean;
+  return reversed_z_projection(view.tangents, view.near_m) * upright_from_view *
+         to_matrix(inverse(origin_from_view));
 }
 
 }  // namespace
@@ -30,17 +32,16 @@ std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set) {
   const Vec3 origin = set.origin_m();
   for (const ViewDesc& view : set.views) {
     shared::View v{};
-    v.clip_from_origin =
-        Mat4f(clip_from_origin(view.world_from_view, view.tangents, view.near_m, origin));
-    v.next_clip_from_origin =
-        Mat4f(clip_from_origin(view.next_world_from_view, view.tangents, view.near_m, origin));
+    v.clip_from_origin = Mat4f(clip_from_origin(view.world_from_view, view, origin));
+    v.next_clip_from_origin = Mat4f(clip_from_origin(view.next_world_from_view, view, origin));
     v.eye = Vec3f(view.world_from_view.position_m - origin);
     v.near_m = static_cast<float>(view.near_m);
     const FrustumTangents& t = view.tangents;
     const Quat& q = view.world_from_view.rotation;
-    v.ray_corner = Vec3f(q * Vec3(t.left, t.top, -1.0));
+    v.ray_corner = Vec3f(q * Vec3(t.left + view.lean * t.top, t.top, -1.0));
     v.ray_dx = Vec3f(q * Vec3((t.right - t.left) / set.width, 0.0, 0.0));
-    v.ray_dy = Vec3f(q * Vec3(0.0, -(t.top - t.bottom) / set.height, 0.0));
+    const double dy = -(t.top - t.bottom) / set.height;
+    v.ray_dy = Vec3f(q * Vec3(view.lean * dy, dy, 0.0));
     out[filled++] = v;
   }
   return out;
@@ -55,12 +56,13 @@ bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double 
     const Vec3 p = inverse(origin_from_view) * center_from_origin_m;
     const FrustumTangents& t = view.tangents;
     // Signed distances to the side planes through the eye and to the near plane.
-    const auto outside = [&](double a, double b, double tangent) {
-      return (a + b * tangent) / std::sqrt(1.0 + tangent * tangent) > radius_m;
+    const auto outside = [&](double a, double b, double tangent, double lean) {
+      return (a + b * tangent) / std::sqrt(1.0 + tangent * tangent + lean * lean) > radius_m;
     };
     if (p.z - radius_m > -view.near_m) continue;
-    if (outside(p.x, p.z, t.right) || outside(-p.x, p.z, -t.left)) continue;
-    if (outside(p.y, p.z, t.top) || outside(-p.y, p.z, -t.bottom)) continue;
+    const double x = p.x - view.lean * p.y;
+    if (outside(x, p.z, t.right, view.lean) || outside(-x, p.z, -t.left, view.lean)) continue;
+    if (outside(p.y, p.z, t.top, 0.0) || outside(-p.y, p.z, -t.bottom, 0.0)) continue;
     return true;
   }
   return false;

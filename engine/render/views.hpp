@@ -16,6 +16,10 @@ struct ViewDesc {
   Pose world_from_view;
   FrustumTangents tangents;
   double near_m = 0.05;
+  // The sides lean: a point at (x, y) of unit distance lies between them where left <= x - lean y
+  // <= right, so that each row of pixels is shifted against the one above by the same part of a
+  // pixel. Of sonars only.
+  double lean = 0.0;
   Pose next_world_from_view;  // at the next frame's time, for motion
 };
 

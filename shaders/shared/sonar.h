@@ -22,6 +22,7 @@ struct SonarColumn {
   uint layer;          // of the G-buffer images
   int first_pixel;     // published gather: pixels whose centres lie in the column
   int end_pixel;
+  float tan_theta;  // of the azimuth off the view's axis
 };
 
 // One elevation row is one texel of a 1-texel-high image: tangent and 1 / cos of its centre,
@@ -43,6 +44,8 @@ struct SonarPush {
   float fixed_scale;  // intensity 1 in counts
   float edge_bias_bins;
   uint reflectivities;  // entries of the table by instance label; others reflect fully
+  float lean;           // of a view whose sides lean (kSonarSpecLeaning), in tangents
+  float azimuth_step_rad;
 };
 
 NERITIC_CONST uint kSonarBindColumns = 0;
@@ -60,14 +63,17 @@ NERITIC_CONST uint kSonarSpecColumns = 0;    // columns a workgroup (its x size)
 NERITIC_CONST uint kSonarSpecLanes = 1;      // threads a column (its y size)
 NERITIC_CONST uint kSonarSpecPlane = 2;      // beam meets the plane of the pixel's point and normal
 NERITIC_CONST uint kSonarSpecReversedZ = 3;  // else the depth image holds planar metres
-NERITIC_CONST uint kSonarSpecOctahedral = 4;   // else the normal image holds x, y, z
-NERITIC_CONST uint kSonarSpecFacing = 5;       // else the normals' signs are unknown
-NERITIC_CONST uint kSonarSpecReflect = 6;      // multiply by the reflectivity of the instance
-NERITIC_CONST uint kSonarSpecLabels = 7;       // keep the label of the strongest return
-NERITIC_CONST uint kSonarSpecFootprint = 15;    // what is done with the ranges that a row spans:
-NERITIC_CONST uint kSonarFootprintNone = 0;     // nothing, its centre counts
-NERITIC_CONST uint kSonarFootprintShared = 1;   // its counts are shared out over them, evenly
-NERITIC_CONST uint kSonarFootprintBounded = 2;  // by incidence, and end where the neighbouring rows' begin
+NERITIC_CONST uint kSonarSpecOctahedral = 4;  // else the normal image holds x, y, z
+NERITIC_CONST uint kSonarSpecFacing = 5;      // else the normals' signs are unknown
+NERITIC_CONST uint kSonarSpecReflect = 6;     // multiply by the reflectivity of the instance
+NERITIC_CONST uint kSonarSpecLabels = 7;      // keep the label of the strongest return
+// The view's sides lean (render::ViewDesc), and a column's rows look for surfaces all over its width.
+NERITIC_CONST uint kSonarSpecLeaning = 16;
+NERITIC_CONST uint kSonarSpecFootprint = 15;   // what is done with the ranges that a row spans:
+NERITIC_CONST uint kSonarFootprintNone = 0;    // nothing, its centre counts
+NERITIC_CONST uint kSonarFootprintShared = 1;  // its counts are shared out over them, evenly
+NERITIC_CONST uint kSonarFootprintBounded =
+    2;  // by incidence, and end where the neighbouring rows' begin
 
 NERITIC_SHARED_END
 #endif

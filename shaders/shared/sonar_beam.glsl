@@ -1,6 +1,11 @@
-// One beam of the gather: the G-buffer pixel that a (theta, phi) cell centre hits, its range and
+// One beam of the gather: the G-buffer pixel that a (theta, phi) cell's beam hits, its range and
 // incidence. kPlane: the beam meets the plane through the pixel's point and normal, else the pixel's own
 // range counts. Used after sonar_common.glsl.
+//
+// A beam is the middle of its cell. Where the view leans (kLeaning) the pixel that tells which surface is there
+// lies at a place of the column's width that differs from row to row. With pixels that are shifted from row to
+// row too, an upright pole narrower than a pixel is met by as many rows as its width is of one, instead of by
+// all or by none. What is wider keeps the range of the cell's middle: rows' footprints abut.
 
 // How far the plane may carry the range from the pixel's own, as a factor: beyond, the plane is seen
 // so grazing that the neighbouring pixel sees something else, and the pixel's range counts, the row's edges
@@ -19,12 +24,42 @@ struct BeamHit {
 // on a curved surface's limb the plane goes on, the surface does not.
 const float kLopsided = 2.0;
 
-// Range of what the pixel at another row's centre sees; 0: nothing, or it is the same pixel.
+// Half of 1 / p of p = 1.3247..., p^3 = p + 1, in 2^-32: rows spread evenly over a column's width, and over the
+// shifts of the pixels' rows too, which go by the golden ratio. Rows as far above the middle one as below it
+// look as far to either side, so that all together look at the column's middle.
+const uint kHalfRowPlace = 1621087445u;
+// A single column may be wider than a view.
+const float kWidestPlace_rad = 1.0;
+
+// The column at the place where its row looks for a surface.
+SonarColumn column_at(SonarColumn s, uint row) {
+  float place = float(int((2u * row + 1u - c.n_elevation) * kHalfRowPlace)) / 4294967296.0;
+  float angle = clamp(place * c.azimuth_step_rad, -kWidestPlace_rad, kWidestPlace_rad);
+  float square = angle * angle;
+  float turn = angle * (1.0 + square * (1.0 / 3.0 + square * (2.0 / 15.0)));  // its tangent
+  s.tan_theta = (s.tan_theta + turn) / max(1.0 - s.tan_theta * turn, 0.25);
+  s.sec_theta = sqrt(1.0 + s.tan_theta * s.tan_theta);
+  return s;
+}
+
+// The pixel of a row of pixels that the direction of tangent t of elevation meets. Half a column may lie
+// beside the view.
+SonarColumn at_pixel(SonarColumn s, int v, float t) {
+  float u = floor(c.cx + c.fx * (s.tan_theta - c.lean * s.sec_theta * t));
+  s.pixel = int(clamp(u, 0.0, float(c.width - 1)));
+  float tx = (float(s.pixel) + 0.5 - c.cx) / c.fx + c.lean * (c.cy - (float(v) + 0.5)) / c.fy;
+  s.pixel_base = s.forward + tx * cross(s.forward, s.up);
+  s.pixel_square = 1.0 + tx * tx;
+  return s;
+}
+
+// Range of what the pixel at another row's centre sees; 0: nothing, or it is the same row of pixels.
 float neighbour_range(SonarColumn s, int row, int v) {
   if (row < 0 || row >= int(c.n_elevation)) return 0.0;
   float t = texelFetch(rows, ivec2(row, 0), 0).x;
   int other = int(floor(c.cy - c.fy * s.sec_theta * t));
   if (other == v || other < 0 || other >= int(c.height)) return 0.0;
+  if (kLeaning != 0) s = at_pixel(s, other, t);
   float ty = (c.cy - (float(other) + 0.5)) / c.fy;
   return planar_metres(texelFetch(depth_image, ivec3(s.pixel, other, s.layer), 0).r) * sqrt(s.pixel_square + ty * ty);
 }
@@ -100,6 +135,14 @@ BeamHit beam_hit(SonarColumn s, uint row) {
   BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
   vec4 e = texelFetch(rows, ivec2(row, 0), 0);  // tan, sec, tan of the edges
   int v = int(floor(c.cy - c.fy * s.sec_theta * e.x));
+  if (kLeaning != 0) {
+    SonarColumn look = column_at(s, row);
+    v = int(clamp(floor(c.cy - c.fy * look.sec_theta * e.x), 0.0, float(c.height - 1)));
+    look = at_pixel(look, v, e.x);
+    s.pixel = look.pixel;
+    s.pixel_base = look.pixel_base;
+    s.pixel_square = look.pixel_square;
+  }
   if (v < 0 || v >= int(c.height)) return hit;
   hit.at = ivec3(s.pixel, v, s.layer);
   float planar = planar_metres(texelFetch(depth_image, hit.at, 0).r);

@@ -12,6 +12,7 @@ layout(constant_id = kSonarSpecFacing) const uint kFacing = 1;
 layout(constant_id = kSonarSpecReflect) const uint kReflect = 0;
 layout(constant_id = kSonarSpecLabels) const uint kLabels = 1;
 layout(constant_id = kSonarSpecFootprint) const uint kFootprint = 0;
+layout(constant_id = kSonarSpecLeaning) const uint kLeaning = 0;
 layout(local_size_x_id = kSonarSpecColumns, local_size_y_id = kSonarSpecLanes) in;
 
 layout(set = 0, binding = kSonarBindColumns, scalar) readonly buffer Columns { SonarColumn columns[]; };

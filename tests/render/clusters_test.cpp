@@ -63,7 +63,7 @@ ViewSet views_of(const std::vector<Pose>& poses, const FrustumTangents& tangents
   ViewSet set;
   set.width = 320;
   set.height = 180;
-  for (const Pose& pose : poses) set.views.push_back({pose, tangents, near_m, pose});
+  for (const Pose& pose : poses) set.views.push_back({pose, tangents, near_m, 0.0, pose});
   return set;
 }
 

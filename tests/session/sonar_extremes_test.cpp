@@ -77,7 +77,7 @@ TEST_F(SonarExtremes, TheLoudestThatIsAcceptedIsAFiniteFloat) {
 }
 
 TEST_F(SonarExtremes, FromFiveCentimetresToTenKilometres) {
-  for (const double distance_m : {0.05, 9000.0}) {
+  for (const double distance_m : {0.05, 10000.0}) {
     scene::Sonar sonar = small_sonar();
     sonar.range_min_m = 0.8 * distance_m;
     sonar.range_max_m = distance_m / 0.9;
@@ -114,6 +114,22 @@ TEST_F(SonarExtremes, AperturesOfATenthDegreeAndAFullTurn) {
       expect_sane(pings(device(), some_sea(sonar)),
                   fmt::format("{} {} degrees", scene::name_of(kind), aperture_deg));
     }
+  // A tenth of a degree across a wall: one beam's solid angle, mu dOmega / r^2, at its range.
+  {
+    scene::Sonar narrow = small_sonar();
+    narrow.range_min_m = 4.0;
+    narrow.range_max_m = 6.0;
+    narrow.bins_range = 512;
+    narrow.terms.level = scene::SonarLevel{.absorption = scene::SonarLevel::Absorption::kFixed,
+                                           .absorption_db_per_m = 0.1};
+    scene::Scene wall = wall_at(5.0, narrow);
+    wall.sonars[0].azimuth_rad = wall.sonars[0].elevation_rad = radians(0.1);
+    const auto heard = pings(device(), wall);
+    const double db = 10.0 * std::log10(radians(0.1) * 2.0 * std::sin(radians(0.05))) - 27.0 -
+                      20.0 * std::log10(5.0) - 2.0 * 0.1 * 5.0 + 200.0;
+    EXPECT_NEAR(10.0 * std::log10(total(heard.at(0))), db, 0.02);
+    EXPECT_NEAR(mean_range_m(heard[0]), 5.0, 2.0 / 512.0);
+  }
   // Inside a ball every beam of a full turn hears the same.
   scene::Sonar sonar = small_sonar();
   sonar.azimuth_rad = 2.0 * kPi;

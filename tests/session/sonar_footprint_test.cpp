@@ -152,7 +152,8 @@ TEST_F(SonarFootprint, ASphereInOpenWaterHidesWhatMostOfABeamWouldHear) {
     const double filled_rad = cosine < 1.0 ? 2.0 * std::acos(cosine) : 0.0;
     const double part = filled_rad / radians(20.0);
     if (std::abs(part - 0.5) < 0.02) continue;  // a row or two
-    for (const std::uint32_t row : {row_of(4.1), row_of(6.0), 299u}) {
+    // The limb's plane is carried by up to a pixel and half a cell: it ends later than the sphere.
+    for (const std::uint32_t row : {row_of(5.1), row_of(6.0), 299u}) {
       const std::size_t at = std::size_t{row} * 128 + column;
       EXPECT_EQ(frame.label_energy->classes[at], part > 0.5 ? sonar::kShadow : sonar::kWater)
           << column << ", row " << row;
@@ -178,8 +179,9 @@ TEST_F(SonarFootprint, APileThatReachesAboveTheSonarHidesTheFloorBehindItToTheEn
     ASSERT_TRUE(frame.label_energy);
     for (std::uint32_t column = 0; column < kBeams; ++column) {
       const bool behind = std::abs(std::tan(frame.grid.azimuth_rad(column))) * kNear_m < 0.3;
+      // Some rows of the column at its edge meet it.
       const bool beside =
-          std::abs(std::tan(frame.grid.azimuth_rad(column))) * (kNear_m + 0.4) > 0.4;
+          std::abs(std::tan(frame.grid.azimuth_rad(column))) * (kNear_m + 0.4) > 0.45;
       for (std::uint32_t row = 0; row < kBins && (behind || beside); ++row) {
         const std::uint16_t found = frame.label_energy->classes[std::size_t{row} * kBeams + column];
         // The pile's farthest ray goes down to its foot, or up over its edge.

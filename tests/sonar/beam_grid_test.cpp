@@ -88,6 +88,45 @@ TEST(SonarSectors, APixelACellIsAsFineAsTheCellOnTheAxis) {
   EXPECT_EQ(sonar::gbuffer_size(grid, sector, 1e6, 4096).width, 4096u);
 }
 
+// All of the wedge lies within leaning sides, at the same pixels a cell, and rows are shifted by
+// parts of a pixel that never come close to repeating.
+TEST(SonarSectors, ALeaningViewCoversTheWedgeAndItsRowsFillEachOthersGaps) {
+  for (const BeamGrid& grid :
+       {sonar::symmetric_grid(1, 5, radians(90), radians(28), {5, 500, 500}),
+        sonar::symmetric_grid(1, 5, radians(360), radians(20), {5, 900, 64}),
+        sonar::symmetric_grid(1, 5, radians(90), radians(1), {5, 512, 8}),
+        sonar::symmetric_grid(1, 5, radians(1), radians(60), {5, 4, 2000}),
+        BeamGrid{{1, 5, radians(-20), radians(70), radians(-60), radians(-20)}, {5, 90, 200}}}) {
+    const auto sector = sonar::plan_sectors(grid).at(0);
+    const FrustumTangents& t = sector.tangents;
+    for (const double scale : {0.5, 1.4}) {
+      const auto upright = sonar::gbuffer_size(grid, sector, scale);
+      const auto leaning = sonar::leaning_view(grid, sector, scale);
+      for (const double x : {t.left, t.right})
+        for (const double y : {t.bottom, t.top}) {
+          EXPECT_GE(x - leaning.lean * y, leaning.tangents.left - 1e-12);
+          EXPECT_LE(x - leaning.lean * y, leaning.tangents.right + 1e-12);
+        }
+      EXPECT_EQ(leaning.size.height, upright.height);
+      EXPECT_LE(leaning.size.width, 1.25 * upright.width + 6.0);
+      const auto k =
+          sonar::intrinsics_of(leaning.tangents, leaning.size.width, leaning.size.height);
+      const double fx = upright.width / (t.right - t.left);
+      EXPECT_GE(k.fx / fx, 1.0 - 1e-12);
+      EXPECT_LE(k.fx / fx, 1.0 + 1.0 / upright.width);
+      // Shifts of the first rows, in order: no gap is much wider than the mean.
+      const double shift = k.fx * leaning.lean / k.fy;
+      const auto rows = static_cast<int>(std::ceil(8.0 / shift));
+      std::vector<double> shifts;
+      for (int row = 0; row < rows; ++row) shifts.push_back(std::fmod(row * shift, 1.0));
+      std::sort(shifts.begin(), shifts.end());
+      double widest = 1.0 - shifts.back();
+      for (int i = 1; i < rows; ++i) widest = std::max(widest, shifts[i] - shifts[i - 1]);
+      EXPECT_LT(widest * rows, 2.7 / shift / 4.0) << shift;
+    }
+  }
+}
+
 TEST(SonarLimits, ThatCannotBeAreRefusedByName) {
   auto grid = sonar::symmetric_grid(1, 5, radians(90), radians(28), {500, 500, 500});
   EXPECT_TRUE(sonar::validate(grid).ok());

@@ -308,18 +308,17 @@ TEST_F(SonarFolder, AThousandFramesGoThrough) {
   const char *asked = std::getenv("NERITIC_FRAMES"), *size = std::getenv("NERITIC_FRAME_SIZE");
   const int count = asked != nullptr ? std::atoi(asked) : 1000;
   const bool large = size != nullptr && std::string(size) == "large";
-  write_frames(count, large ? 640 : kWidth, large ? 480 : kHeight);
+  write_frames(count, large ? 640 : 160, large ? 480 : 120);
   Words all = words({"--no-pictures"});
-  if (large) {
-    *(std::find(all.begin(), all.end(), "--bins") + 1) = "512,500,500";
-    *(std::find(all.begin(), all.end(), "--intrinsics") + 1) = "320,320,320,240";
-  }
+  *(std::find(all.begin(), all.end(), "--bins") + 1) = large ? "512,500,500" : "128,64,64";
+  *(std::find(all.begin(), all.end(), "--intrinsics") + 1) =
+      large ? "320,320,320,240" : "80,80,80,60";
   expect_done(all);
   const nlohmann::json facts = run_facts();
   EXPECT_EQ(facts["made"], count);
   for (int i = 0; i < count; ++i) ASSERT_TRUE(fs::exists(result(i) / "sonar.json")) << i;
   fmt::print("{} frames of {} pixels: {:.0f} frames/s with {} workers\n", count,
-             large ? "640 x 480" : "32 x 24", facts["frames_per_s"].get<double>(),
+             large ? "640 x 480" : "160 x 120", facts["frames_per_s"].get<double>(),
              facts["workers"].get<int>());
 }
 

@@ -51,14 +51,17 @@ TEST_P(QualityTruth, EachLevelStaysUnderItsBound) {
   }
   NERITIC_ASSERT_OK(const KindTruth truth,
                     trace_kind(*world, origin_m, bench.placed(), sonars, GetParam().rays));
-  // uncertain is by how much two halves of the rays differ; both together are off by half of it,
-  // which adds to what is found.
-  EXPECT_LT(truth.uncertain, 0.025);
+  // The rays' own error, from their two halves, is small beside what they are to tell.
+  EXPECT_LT(truth.uncertain, 0.003);
   for (std::size_t i = 0; i < sonars.size(); ++i) {
     const ErrorLevel& level = kErrorLevels[i];
     const ImageDifference found = difference(images[i], truth.images[i]);
-    EXPECT_LT(found.l1, level.max_error + 0.5 * truth.uncertain) << level.name;
+    fmt::print("{} {}: error {:.4f}, of the rays {:.4f}\n", scene::name_of(kind.base.kind),
+               level.name, found.l1, truth.uncertain);
+    EXPECT_LT(found.l1, level.max_error) << level.name;
     EXPECT_LT(std::abs(found.energy), level.max_error) << level.name;
+    // A profiler's nearest pixels differ from its cells' middles by less than its bins.
+    if (kind.base.kind == scene::SonarKind::kProfiling) continue;
     // A sensor without the levels' sampling would be far off: the bound is no matter of course.
     scene::Sonar coarse = sonars[i];
     coarse.gather = "nearest";
@@ -69,11 +72,11 @@ TEST_P(QualityTruth, EachLevelStaysUnderItsBound) {
 
 INSTANTIATE_TEST_SUITE_P(
     Sonar, QualityTruth,
-    ::testing::Values(QualityCase{scene::SonarKind::kImaging, 1, {6.0, 12.0, 2000}},
+    ::testing::Values(QualityCase{scene::SonarKind::kImaging, 1, {6.0, 16.0, 2500}},
                       QualityCase{scene::SonarKind::kProfiling, 1, {8.0, 24.0, 256}},
                       QualityCase{scene::SonarKind::kEchoSounder, 6, {8.0, 24.0, 1024}},
                       QualityCase{scene::SonarKind::kSideScan, 2, {8.0, 16.0, 8000}},
-                      QualityCase{scene::SonarKind::kMechanical, 2, {24.0, 24.0, 12000}}),
+                      QualityCase{scene::SonarKind::kMechanical, 2, {48.0, 48.0, 8000}}),
     [](const auto& info) { return std::string(scene::name_of(info.param.kind)); });
 
 }  // namespace

@@ -121,6 +121,10 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
   const nlohmann::json gbuffer{
       {"width", frame.gbuffer_width},
       {"height", frame.gbuffer_height},
+      {"sampled",
+       {{"width", frame.sampled_width},
+        {"height", frame.sampled_height},
+        {"shift_px_a_row", frame.shift_px}}},
       {"pixels_per_cell",
        {{"requested", frame.pixels_per_cell},
         {"used", {frame.pixels_per_cell_used.x, frame.pixels_per_cell_used.y}}}}};

@@ -62,8 +62,12 @@ struct SonarFrame {
   const sonar::QualityLevel* quality = nullptr;  // that it is sampled by, if any
   double max_error = 0.0;                        // what asked for it; 0: its name
   double fixed_scale = 1.0;
-  std::uint32_t gbuffer_width = 1, gbuffer_height = 1;  // of one sector
-  double pixels_per_cell = 1.0;                         // asked for, linear
+  std::uint32_t gbuffer_width = 1, gbuffer_height = 1;  // of one sector's arrays
+  // Of the view that it was gathered from: rows of pixels each shifted by so much against the next
+  // (sonar::leaning_view), by the published gather not.
+  std::uint32_t sampled_width = 1, sampled_height = 1;
+  double shift_px = 0.0;
+  double pixels_per_cell = 1.0;          // asked for, linear
   glm::dvec2 pixels_per_cell_used{1.0};  // azimuth, elevation; less where the device's images end
   bool reflectivity = true;              // by object; false: all are 1
   std::vector<ViewImages> sectors;       // geometry only; one for apertures up to 100 degrees

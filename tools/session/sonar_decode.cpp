@@ -20,16 +20,22 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
     frame.max_error = sonar.max_error;
     frame.heading_rad = head->heading_rad;
     frame.world_from_head =
-        head->views.views.front().world_from_view *
+        head->sampled.views.views.front().world_from_view *
         Pose{Vec3(0.0), glm::angleAxis(state.sectors.front().yaw_rad, Vec3(0, 1, 0))};
     frame.fixed_scale = state.gather->fixed_scale();
-    frame.gbuffer_width = state.size.width;
-    frame.gbuffer_height = state.size.height;
+    frame.gbuffer_width = state.upright.size.width;
+    frame.gbuffer_height = state.upright.size.height;
+    const sonar::PixelSize& sampled = state.sampled.size;
+    const FrustumTangents& leaning = state.sampled.tangents;
+    frame.sampled_width = sampled.width;
+    frame.sampled_height = sampled.height;
+    frame.shift_px = state.sampled.lean * sampled.width / (leaning.right - leaning.left) *
+                     (leaning.top - leaning.bottom) / sampled.height;
     frame.pixels_per_cell = work.state->pixels_per_cell;
-    const FrustumTangents& t = state.sectors.front().tangents;
+    const FrustumTangents& t = state.upright.tangents;
     frame.pixels_per_cell_used = {
-        state.size.width * state.head.samples.azimuth_step_rad() / (t.right - t.left),
-        state.size.height * state.head.samples.elevation_step_rad() / (t.top - t.bottom)};
+        state.upright.size.width * state.head.samples.azimuth_step_rad() / (t.right - t.left),
+        state.upright.size.height * state.head.samples.elevation_step_rad() / (t.top - t.bottom)};
     frame.reflectivity = table_of(sonar) != nullptr;
     const auto keys = state.keys.mapped<std::uint32_t>();
     if (state.receiver) {

@@ -9,14 +9,16 @@
 namespace neritic::tools {
 namespace {
 
+// A view a sector; all are of one pinhole.
 render::ViewSet head_views(const scene::Sonar& sonar, const HeadState& head,
-                           const Pose& world_from_head) {
+                           const sonar::LeaningView& pinhole, const Pose& world_from_head) {
   render::ViewSet set;
-  set.width = head.size.width;
-  set.height = head.size.height;
+  set.width = pinhole.size.width;
+  set.height = pinhole.size.height;
   for (const sonar::Sector& sector : head.sectors) {
     render::ViewDesc view;
-    view.tangents = sector.tangents;
+    view.tangents = pinhole.tangents;
+    view.lean = pinhole.lean;
     view.near_m = sonar.near_m;
     view.world_from_view =
         world_from_head * Pose{Vec3(0.0), glm::angleAxis(-sector.yaw_rad, Vec3(0, 1, 0))};
@@ -72,12 +74,20 @@ Result<std::unique_ptr<HeadState>> SonarStation::make_head(const scene::Sonar& s
   HeadState& h = *made;
   h.head = std::move(head);
   h.sectors = sonar::plan_sectors(h.head.samples);
-  h.size = sonar::gbuffer_size(h.head.samples, h.sectors.front(), state.pixels_per_cell,
-                               device_.limits().maxImageDimension2D);
+  h.upright = {h.sectors.front().tangents, 0.0,
+               sonar::gbuffer_size(h.head.samples, h.sectors.front(), state.pixels_per_cell,
+                                   device_.limits().maxImageDimension2D)};
+  // The published gather takes whole pixels of cells; a cone looks at a bottom, smooth beside its
+  // cells, which upright pixels in their middles tell best.
+  h.sampled = state.mode == sonar::Gather::kPublished || h.head.folded
+                  ? h.upright
+                  : sonar::leaning_view(h.head.samples, h.sectors.front(), state.pixels_per_cell,
+                                        device_.limits().maxImageDimension2D);
   sonar::GBufferLayout layout;
-  layout.width = h.size.width;
-  layout.height = h.size.height;
-  layout.intrinsics = sonar::intrinsics_of(h.sectors.front().tangents, layout.width, layout.height);
+  layout.width = h.sampled.size.width;
+  layout.height = h.sampled.size.height;
+  layout.intrinsics = sonar::intrinsics_of(h.sampled.tangents, layout.width, layout.height);
+  layout.lean = h.sampled.lean;
   layout.near_m = sonar.near_m;
   sonar::GatherOptions options{state.mode, true, table_of(sonar) != nullptr, {}, h.head.echo};
   const auto gather = [&]() -> Result<std::unique_ptr<sonar::SonarGather>> {
@@ -179,14 +189,17 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
   const Pose world_from_head =
       scene_.world_from(sonar.mount, frame.time_s) * turned * state.head.sonar_from_head;
   head.index = work.index;
-  head.views = head_views(sonar, state, world_from_head);
-  head.draws = render::build_draw_list(scene_, frame.gpu_scene, frame.state, head.views,
-                                       {.hide_back_faces = true});
   const std::string prefix = name_of(sonar, state) + " ";
-  NERITIC_TRY(const render::GBuffer g,
-              frame.renderer.declare_gbuffer(frame.graph, prefix, render::GBufferKind::kGeometry,
-                                             frame.gpu_scene, frame.state, frame.deformed,
-                                             head.views, head.draws));
+  const auto gbuffer_of = [&](ViewWork& view, const std::string& of,
+                              const sonar::LeaningView& hole) {
+    view.views = head_views(sonar, state, hole, world_from_head);
+    view.draws = render::build_draw_list(scene_, frame.gpu_scene, frame.state, view.views,
+                                         {.hide_back_faces = true});
+    return frame.renderer.declare_gbuffer(frame.graph, of, render::GBufferKind::kGeometry,
+                                          frame.gpu_scene, frame.state, frame.deformed, view.views,
+                                          view.draws);
+  };
+  NERITIC_TRY(const render::GBuffer g, gbuffer_of(head.sampled, prefix, state.sampled));
   const sonar::PingState ping = ping_state(frame, head, world_from_head);
   sonar::SonarGather::Inputs inputs;
   inputs.prefix = prefix;
@@ -221,14 +234,20 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
   if (!host) return {};
   frame.graph.output(state.receiver ? head.power : head.sums, graph::Access::kHostRead);
   frame.graph.output(out.keys, graph::Access::kHostRead);
+  head.views = head_views(sonar, state, state.upright, world_from_head);
   if (!frame.capture.geometry) return {};
+  // Who reads arrays expects a plain pinhole.
+  render::GBuffer arrays = g;
+  if (state.sampled.lean != 0.0) {
+    NERITIC_TRY(arrays, gbuffer_of(head, prefix + "arrays ", state.upright));
+  }
   const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
-    return frame.readback.declare(frame.graph, device_, prefix + name, image, format, g.width,
-                                  g.height, g.layers);
+    return frame.readback.declare(frame.graph, device_, prefix + name, image, format, arrays.width,
+                                  arrays.height, arrays.layers);
   };
-  NERITIC_TRY(head.depth, bring("depth", g.depth, render::kDepthFormat));
-  NERITIC_TRY(head.normal, bring("normal", g.normal, render::kNormalFormat));
-  NERITIC_TRY(head.label, bring("label", g.label, render::kLabelFormat));
+  NERITIC_TRY(head.depth, bring("depth", arrays.depth, render::kDepthFormat));
+  NERITIC_TRY(head.normal, bring("normal", arrays.normal, render::kNormalFormat));
+  NERITIC_TRY(head.label, bring("label", arrays.label, render::kLabelFormat));
   return {};
 }
 
@@ -244,7 +263,7 @@ Status SonarStation::declare_ghosts(const Frame& frame, const SonarWork& work, H
     head.ghosts.push_back(std::make_unique<HeadWork::Ghost>());
     HeadWork::Ghost& ghost = *head.ghosts.back();
     const Pose pose = sonar::mirrored(mirror, direct_ping.world_from_sonar);
-    ghost.view.views = head_views(sonar, state, pose);
+    ghost.view.views = head_views(sonar, state, state.sampled, pose);
     // A bottom that mirrors does not stand in its own way.
     const render::DrawListOptions draw{
         .hide_back_faces = true,

@@ -22,7 +22,8 @@ struct HeadState {
   std::vector<sonar::Sector> sectors;
   sonar::RangeCorrections corrections;
   std::vector<sonar::RangeCorrections> ghost_corrections;  // by mirror
-  sonar::PixelSize size;
+  sonar::LeaningView upright;                              // a plain pinhole: of the arrays
+  sonar::LeaningView sampled;  // what is gathered from: leaning, but of cones and by the published gather
   std::unique_ptr<sonar::SonarGather> gather, ghosts;  // ghosts: where mirrors are named
   std::unique_ptr<sonar::Receiver> receiver;           // where terms are named
   gpu::Buffer sums, keys, power, records;              // host-readable, those that are wanted
@@ -48,6 +49,7 @@ struct HeadWork : ViewWork {
     ViewWork view;
   };
   std::vector<std::unique_ptr<Ghost>> ghosts;
+  ViewWork sampled;  // what is gathered from
   graph::BufferHandle sums, power;
 };
 

@@ -1,5 +1,8 @@
 #include "tools/tradeoff/kind_bench.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace neritic::tools {
 namespace {
 
@@ -19,13 +22,19 @@ KindBench::Measured times_of(const FrameResult& frame) {
   return out;
 }
 
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 Status KindBench::open(gpu::Device& device, const scene::Scene& scene) {
   scene::Scene own = scene;
   scene::Sonar first = with_knobs(kind_.base, kind_.middle);
   first.terms.level = scene::SonarLevel{};  // so that the session knows what objects scatter
-  own.sonars = {first};
+  own.sonars = {first, first};              // the second is what a price is told against
   own.cameras.clear();
   NERITIC_TRY(session_, Session::create(device, std::move(own)));
   session_->frames().enable_timing(true);
@@ -62,6 +71,39 @@ Result<KindBench::Measured> KindBench::render(const scene::Sonar& sonar, int rep
     out.gather_ms += least.gather_ms * share;
     out.receive_ms += least.receive_ms * share;
   }
+  return out;
+}
+
+Result<KindBench::Price> KindBench::price(const scene::Sonar& with, const scene::Sonar& without,
+                                          int pairs) {
+  Price out;
+  double variance = 0.0;
+  for (const Shot& shot : kind_.shots) {
+    auto& sonars = session_->scene().sonars;
+    sonars[0] = with;
+    sonars[1] = without;
+    for (scene::Sonar& sonar : sonars) sonar.mount = moving_mount(shot.world_from_sonar);
+    FrameRequest request;
+    request.frame = shot.frame;
+    request.capture.geometry = false;
+    std::vector<double> more_ms;
+    for (int i = -1; i < pairs; ++i) {  // the first also compile
+      double ms[2];
+      for (const std::size_t k : {std::size_t(i & 1), std::size_t(~i & 1)}) {
+        request.sonars = {k};
+        NERITIC_TRY(const FrameResult frame, session_->render(request));
+        ms[k] = times_of(frame).ms();
+      }
+      if (i >= 0) more_ms.push_back(ms[0] - ms[1]);
+    }
+    const double middle_ms = median_of(more_ms), n = static_cast<double>(more_ms.size());
+    for (double& ms : more_ms) ms = std::abs(ms - middle_ms);
+    // Of a median of n normal values, whose deviation is 1.48 times the median distance from it.
+    const double error_ms = 1.2533 * 1.4826 * median_of(more_ms) / std::sqrt(n);
+    out.ms += middle_ms / static_cast<double>(kind_.shots.size());
+    variance += error_ms * error_ms;
+  }
+  out.resolution_ms = std::sqrt(variance) / static_cast<double>(kind_.shots.size());
   return out;
 }
 

@@ -131,7 +131,7 @@ void draw_terms(Canvas& canvas, double top, const KindResult& k) {
                {"error with it, %", 680, 230, 1e-9, kSeriesColors[2]},
                {"error without it, %", 1030, 230, 1e-9, kSeriesColors[1]}};
   const auto value = [](const TermPoint& t, int lane) {
-    return lane == 0 ? t.ms : 100.0 * (lane == 1 ? t.error_with : t.error_without);
+    return lane == 0 ? std::max(t.ms, 0.0) : 100.0 * (lane == 1 ? t.error_with : t.error_without);
   };
   const auto shown = [](const TermPoint& t, int lane) {
     return lane == 0 || (lane == 1 ? t.error_with : t.error_without) >= 0.0;

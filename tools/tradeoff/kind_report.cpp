@@ -1,5 +1,6 @@
 // Tables of `neritic tradeoff sonar` for each kind (sonar_tradeoff.hpp); the pictures are
 // kind_plots'.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/check.hpp"
@@ -30,10 +31,10 @@ std::string number(double v) {
 }
 
 std::string terms_csv(const KindResult& k) {
-  std::string out = "term,ms,error_with,error_without,note\n";
+  std::string out = "term,ms,resolution_ms,error_with,error_without,note\n";
   for (const TermPoint& t : k.terms)
-    out += fmt::format("\"{}\",{:.3f},{},{},\"{}\"\n", t.term, t.ms, number(t.error_with),
-                       number(t.error_without), t.note);
+    out += fmt::format("\"{}\",{:.3f},{:.3f},{},{},\"{}\"\n", t.term, t.ms, t.resolution_ms,
+                       number(t.error_with), number(t.error_without), t.note);
   return out;
 }
 
@@ -66,6 +67,14 @@ nlohmann::json summary(const SonarTradeoff& t) {
       if (const KindPoint* p = cheapest(k, level.max_error)) kind[level.name] = json_of(*p);
   }
   return json;
+}
+
+// A price that is within twice its own error of nothing is only bounded.
+std::string price(const TermPoint& t) {
+  const double least_ms = t.ms - 2.0 * t.resolution_ms;
+  if (t.resolution_ms > 0.0 && least_ms <= 0.0)
+    return fmt::format("< {:.1f}", std::max(0.1, std::max(t.ms, 0.0) + 2.0 * t.resolution_ms));
+  return fmt::format("{:+.1f}", t.ms);
 }
 
 std::string percent(double v) {
@@ -113,7 +122,7 @@ std::string markdown(const SonarTradeoff& t) {
                            p.receive_ms);
     out += "\n| term | ms | error with it | error without it | |\n|---|---|---|---|---|\n";
     for (const TermPoint& p : k.terms)
-      out += fmt::format("| {} | {:+.1f} | {} | {} | {} |\n", p.term, p.ms, percent(p.error_with),
+      out += fmt::format("| {} | {} | {} | {} | {} |\n", p.term, price(p), percent(p.error_with),
                          percent(p.error_without), p.note);
   }
   return out;

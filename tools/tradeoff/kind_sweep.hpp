@@ -28,7 +28,8 @@ struct KindPoint {
 
 struct TermPoint {
   std::string term;
-  double ms = 0.0;                                 // that it adds to a ping
+  double ms = 0.0;             // that it adds to a ping
+  double resolution_ms = 0.0;  // standard error of that; 0: no difference of two
   double error_with = -1.0, error_without = -1.0;  // -1: nothing to compare
   std::string note;
 };

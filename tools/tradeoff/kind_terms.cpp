@@ -12,6 +12,11 @@ using scene::Sonar;
 using scene::SonarKind;
 using Measured = KindBench::Measured;
 
+// How often a term's price is taken.
+constexpr int kPairs = 11;
+// An image that a term changes by less tells nothing of it.
+constexpr double kUnheard = 1e-4;
+
 // What the rays take from the sonar, so that they cannot tell whether it is right.
 const char* taken_by_the_rays(const scene::SonarTerms& terms) {
   if (terms.ghosts) return "the rays take the mirrors' places as given";
@@ -34,16 +39,22 @@ class TermSweep {
       using Judge = TermCase::Judge;
       Sonar changed = c.with;
       if (c.judge == Judge::kNoise) changed.terms.noise->level_db = a_tenth_db(c);
-      NERITIC_TRY(const Measured with, bench_.render(changed, repeats_));
-      NERITIC_TRY(const Measured without, bench_.render(c.without, repeats_));
+      NERITIC_TRY(const Measured with, bench_.render(changed, 0));
+      NERITIC_TRY(const Measured without, bench_.render(c.without, 0));
+      NERITIC_TRY(const KindBench::Price price,
+                  bench_.price(changed, c.without, options_.quick ? 3 : kPairs));
       TermPoint p;
       p.term = c.name;
-      p.ms = with.ms() - without.ms();
+      p.ms = price.ms;
+      p.resolution_ms = price.resolution_ms;
       if (c.judge == Judge::kImage || c.judge == Judge::kShape) {
         const auto& truth = truths_.at(c.name);
         p.error_with = difference(with.image, truth).l1;
         p.error_without = difference(without.image, truth, c.judge == Judge::kShape).l1;
-        p.note = taken_by_the_rays(c.with.terms);
+        const std::vector<double> before(without.image.begin(), without.image.end());
+        p.note = difference(with.image, before).l1 < kUnheard
+                     ? "nothing of it is heard here: the image is the same without"
+                     : taken_by_the_rays(c.with.terms);
       } else if (c.judge == Judge::kSpeckle) {
         NERITIC_TRY_STATUS(judge_speckle(c, p));
       } else if (c.judge == Judge::kNoise) {

@@ -12,6 +12,7 @@ namespace {
 struct Column {
   double azimuth_rad, width_rad;
   bool fine;
+  int half;  // neighbours lie in different halves, so that what those differ by is the rays' error
 };
 
 // Outside the aperture a pattern hears little: its columns are so much wider.
@@ -34,18 +35,21 @@ std::vector<Column> columns_of(const sonar::BeamGrid& grid, const scene::Sonar& 
   const int columns = a_step * static_cast<int>(grid.bins.azimuth);
   std::vector<Column> out;
   for (int i = 0; i < columns; ++i)
-    out.push_back({grid.limits.azimuth_min_rad + (i + 0.5) * width, width, true});
+    out.push_back({grid.limits.azimuth_min_rad + (i + 0.5) * width, width, true, i % 2});
   if (!wide) return out;
   const double room = std::min(kPi / 2.0, (2.0 * kPi - span) / 2.0);
   const double fine = std::min(room, kFineWidths * half_power);
   for (const double side : {-1.0, 1.0}) {
     const double edge = side < 0.0 ? grid.limits.azimuth_min_rad : grid.limits.azimuth_max_rad;
     double from = 0.0;
+    int half = side < 0.0 ? 1 : columns % 2;
     const auto fill = [&](double to, double w, bool is_fine) {
       const auto n = static_cast<int>(std::ceil((to - from) / w - 1e-9));
-      for (int i = 0; i < n; ++i)
+      for (int i = 0; i < n; ++i) {
         out.push_back(
-            {edge + side * (from + (i + 0.5) * (to - from) / n), (to - from) / n, is_fine});
+            {edge + side * (from + (i + 0.5) * (to - from) / n), (to - from) / n, is_fine, half});
+        half = 1 - half;
+      }
       from = to;
     };
     fill(fine, width, true);
@@ -64,30 +68,69 @@ class Tracer {
         head_(head),
         patterns_(patterns),
         mirrors_(mirrors),
-        images_(images) {}
+        images_(images) {
+    for (const TermImage& image : images)
+      finest_m_ = std::min(finest_m_, image.grid().range_step_m());
+  }
+  std::uint64_t cast() const { return cast_; }
 
   void trace(const Column& column, int index, std::uint32_t rays) {
     for (TermImage& image : images_) image.begin_column(column.azimuth_rad, column.width_rad);
     const sonar::Limits& l = head_.samples.limits;
     const double width = (l.elevation_max_rad - l.elevation_min_rad) / rays;
     // Each column's rays lie at other elevations, by the golden ratio, so that neighbours fill
-    // each other's gaps.
+    // each other's gaps; and each ray at another place of the column's width, by 1 / 1.3247..., so
+    // that an upright edge is met by as many rays as it should be.
     const double offset = std::fmod((index + 1) * 0.6180339887498949, 1.0);
-    for (std::uint32_t i = 0; i < rays; ++i) {
-      TruthRay ray;
-      ray.elevation_rad = l.elevation_min_rad + (i + offset) * width;
-      ray.elevation_width_rad = width;
-      const Vec3 d = sonar::direction(column.azimuth_rad, ray.elevation_rad);
-      ray.off_axis_rad = std::acos(std::clamp(-d.z, -1.0, 1.0));
-      ray.inside = !head_.folded || ray.off_axis_rad <= patterns_.cone_rad;
-      ray.direction = view_.world_from_head * d;
-      ray.pattern = patterns_.power(column.azimuth_rad, ray.elevation_rad);
-      cast(ray);
-    }
-    for (TermImage& image : images_) image.end_column(index % 2);
+    for (std::uint32_t i = 0; i < rays; ++i)
+      stratum(column, l.elevation_min_rad + i * width, width, offset);
+    for (TermImage& image : images_) image.end_column(column.half);
   }
 
  private:
+  // One ray for a piece of elevation, or, where that spans many bins of range (a floor far away),
+  // one for each half a bin of it.
+  void stratum(const Column& column, double from_rad, double width_rad, double offset) {
+    const TruthRay ray = ray_at(column, from_rad + offset * width_rad, width_rad, offset);
+    const RayHit hit = hit_of(ray);
+    const int pieces = pieces_of(ray, hit);
+    if (pieces == 1) return add(ray, hit);
+    for (int k = 0; k < pieces; ++k) {
+      const double part_rad = width_rad / pieces;
+      const TruthRay finer = ray_at(column, from_rad + (k + offset) * part_rad, part_rad, offset);
+      add(finer, hit_of(finer));
+    }
+  }
+
+  TruthRay ray_at(const Column& column, double elevation_rad, double width_rad, double offset) {
+    TruthRay ray;
+    ray.elevation_rad = elevation_rad;
+    ray.elevation_width_rad = width_rad;
+    const double place = std::fmod(offset + static_cast<double>(cast_) * 0.7548776662466927, 1.0);
+    const double azimuth_rad = column.azimuth_rad + (place - 0.5) * column.width_rad;
+    const Vec3 d = sonar::direction(azimuth_rad, elevation_rad);
+    ray.off_axis_rad = std::acos(std::clamp(-d.z, -1.0, 1.0));
+    ray.inside = !head_.folded || ray.off_axis_rad <= patterns_.cone_rad;
+    ray.direction = view_.world_from_head * d;
+    ray.pattern = patterns_.power(azimuth_rad, elevation_rad);
+    ++cast_;
+    return ray;
+  }
+
+  RayHit hit_of(const TruthRay& ray) const {
+    return ray.inside ? world_.cast_from(view_.origin_m, ray.direction) : RayHit{};
+  }
+
+  int pieces_of(const TruthRay& ray, const RayHit& hit) const {
+    if (!(hit.t > 0.0)) return 1;
+    constexpr double kMost = 32.0, kLeastCosine = 1e-3;
+    const double cosine =
+        std::clamp(std::abs(glm::dot(Vec3(hit.normal), ray.direction)), kLeastCosine, 1.0);
+    const double span_m =
+        ray.elevation_width_rad * hit.t * std::sqrt(1.0 - cosine * cosine) / cosine;
+    return static_cast<int>(std::clamp(std::ceil(span_m / (0.5 * finest_m_)), 1.0, kMost));
+  }
+
   // A ray's pattern counts for an image whose settings name one (of a cone, either).
   static TruthRay seen_by(const TermImage& image, const TruthRay& ray) {
     const scene::Sonar& sonar = image.settings();
@@ -104,9 +147,8 @@ class Tracer {
     return out;
   }
 
-  void cast(const TruthRay& ray) {
+  void add(const TruthRay& ray, const RayHit& hit) {
     if (!ray.inside) return;
-    const RayHit hit = world_.cast_from(view_.origin_m, ray.direction);
     TruthEcho echo;
     if (hit.t > 0.0) {
       echo.out_m = echo.back_m = hit.t;
@@ -191,6 +233,8 @@ class Tracer {
   const sonar::HeadPatterns& patterns_;
   const std::vector<sonar::Mirror>& mirrors_;
   std::vector<TermImage>& images_;
+  double finest_m_ = 1e9;  // range bin
+  std::uint64_t cast_ = 0;
 };
 
 Result<std::vector<TermImage>> images_of(std::span<const scene::Sonar> sonars, std::size_t head,
@@ -219,22 +263,23 @@ Result<std::vector<TermTruth>> trace_terms(const RayWorld& world, const TruthVie
     if (mirrors.empty()) mirrors = sonar::mirrors_of(sonar);
   NERITIC_TRY(std::vector<TermImage> images, images_of(sonars, head, view));
   std::vector<TermImage> others = images;
+  std::uint64_t cast[2] = {0, 0};
   const auto work = [&](std::vector<TermImage>& into, std::size_t thread) {
     Tracer tracer(world, view, plan, patterns, mirrors, into);
     // Pairs of columns in turns: each half of the columns goes to both threads.
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (i / 2 % 2 == thread)
         tracer.trace(columns[i], static_cast<int>(i), columns[i].fine ? rays.rays : rays.rays / 4);
+    cast[thread] = tracer.cast();
   };
   std::thread other([&] { work(others, 1); });
   work(images, 0);
   other.join();
-  double cast = 0.0;
-  for (const Column& column : columns) cast += column.fine ? rays.rays : rays.rays / 4;
   std::vector<TermTruth> out;
   for (std::size_t i = 0; i < images.size(); ++i) {
     images[i].merge(others[i]);
-    out.push_back({images[i].grid(), images[i].image(), images[i].half_difference(), cast});
+    out.push_back({images[i].grid(), images[i].image(), images[i].half_difference(),
+                   static_cast<double>(cast[0] + cast[1])});
   }
   return out;
 }
