@@ -133,7 +133,9 @@ TEST_F(SurveyTest, NoiseIsNoBottom) {
   const auto json = read_json(out / "track" / "multibeam" / "bathymetry.json");
   // The floor spans 43.6 of the 90 degrees: 62 of 128 beams.
   EXPECT_NEAR(json["soundings"].get<double>() / 20, 62.0, 3.0);
-  ASSERT_EQ(json["error"]["all_soundings"]["count"], json["soundings"]);
+  // A beam that hears the floor's end with a part of its width may look past it: one on each side.
+  EXPECT_NEAR(json["error"]["all_soundings"]["count"].get<double>(),
+              json["soundings"].get<double>(), 2.0 * 20.0);
   EXPECT_LT(json["error"]["all_soundings"]["max_abs_m"], 0.3);
 }
 
