@@ -15,7 +15,7 @@ namespace neritic::diver {
 
 struct BreathSettings {
   BreathEstimator estimator = BreathEstimator::kMultiBand;
-  double block_s = 10.0;   // of sound, handed over at once: an estimate each
+  double block_s = 10.0;  // of sound, handed over at once: an estimate each
   // That an estimate looks back over: two blocks, the knee of `tradeoff physiology`.
   double window_s = 20.0;
 };

@@ -1,6 +1,7 @@
 // The state of a diver as one struct, x = [j, p, l]: joints and their rates, the body's place and
-// motion, and what lives (breath and gas, heart and gaze, tissues, risk). Plain bytes that list their fields, so that states can
-// be copied, hashed and replayed. And what acts on a diver from outside. Any thread.
+// motion, and what lives (breath and gas, heart and gaze, tissues, risk). Plain bytes that list
+// their fields, so that states can be copied, hashed and replayed. And what acts on a diver from
+// outside. Any thread.
 #pragma once
 
 #include <cstdint>

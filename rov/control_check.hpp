@@ -10,8 +10,8 @@ namespace neritic::rov {
 // Steps and allocations are compared to kExactBar, relative to the largest number of what is
 // compared (absolute where that is below 1). Figures of closed loops: 5 %, and no finer than a
 // control period or the last digit that they are given with. The state at the end: kEndBar, ten
-// times that in velocity, wider below 120 Hz as RK4 errs; semi-implicit Euler's: kEulerEndBar, wider
-// below 240 Hz.
+// times that in velocity, wider below 120 Hz as RK4 errs; semi-implicit Euler's: kEulerEndBar,
+// wider below 240 Hz.
 inline constexpr double kExactBar = 1e-9;
 inline constexpr double kFigureBar = 0.005;
 inline constexpr double kEulerFigureBar = 0.05;

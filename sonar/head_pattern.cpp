@@ -24,7 +24,8 @@ Result<BeamPattern> pattern_of(const scene::SonarPattern& pattern) {
                                           pattern.half_power_rad);
 }
 
-// Places at which a pattern is looked at over a width: one, but where it has lobes narrower than that.
+// Places at which a pattern is looked at over a width: one, but where it has lobes narrower than
+// that.
 int places_over(const BeamPattern& pattern, double width_rad) {
   constexpr double kMostPlaces = 256.0;
   const double widths = width_rad / pattern.second_null_rad();

@@ -44,8 +44,8 @@ RangeCorrection range_correction(const scene::SonarProfile& profile, double laun
 inline constexpr std::size_t kMostRows = 256;
 scene::SonarTable simplified(const scene::SonarTable& profile, double tolerance_m_s = 0.01);
 
-// The tables of a head (and of one mirror, where named), which go by its depth alone: made anew only where that changes by
-// kDepthStep_m (whatever the order of pings, a depth has one table).
+// The tables of a head (and of one mirror, where named), which go by its depth alone: made anew
+// only where that changes by kDepthStep_m (whatever the order of pings, a depth has one table).
 class RangeCorrections {
  public:
   static constexpr double kDepthStep_m = 0.05;

@@ -81,9 +81,10 @@ nlohmann::json facts_of(const SidescanRecord& record, const GroundImage& ground)
           {"track_length_m", along.empty() ? 0.0 : along.back()},
           {"layout",
            "[ping, 2 n]: columns n-1 to 0 are port from the nearest bin on, n to 2n-1 starboard"},
-          {"units", o.levels ? "power re 1 uPa^2 (10 log10 gives dB re 1 uPa); ground bins hold the sum of "
-                               "what their slant bins heard"
-                             : "linear energy a bin; ground bins hold what their slant bins heard"}};
+          {"units",
+           o.levels ? "power re 1 uPa^2 (10 log10 gives dB re 1 uPa); ground bins hold the sum of "
+                      "what their slant bins heard"
+                    : "linear energy a bin; ground bins hold what their slant bins heard"}};
 }
 
 }  // namespace

@@ -44,8 +44,7 @@ ImageU8 draw_trace(const BeamGrid& grid, std::span<const float> intensity,
                 kPlotText.with_alpha(0.85f), Align::kRight);
   }
   canvas.text(left, top - 12 * unit, 10 * unit,
-              options.span_db > 0.0 ? "dB re 1 uPa" : "mean cosine",
-              kPlotText.with_alpha(0.7f));
+              options.span_db > 0.0 ? "dB re 1 uPa" : "mean cosine", kPlotText.with_alpha(0.7f));
   PanelOptions linear = options;
   linear.gamma = 1.0;
   double last_x = left, last_y = bottom;

@@ -166,7 +166,7 @@ struct Model {
   std::vector<Skin> skins;
   std::vector<Clip> clips;
   std::optional<Heightfield> heights;  // of a terrain: what it was made of
-  std::vector<std::string> notes;  // what was ignored, one line each, said once to the user
+  std::vector<std::string> notes;      // what was ignored, one line each, said once to the user
 };
 
 }  // namespace neritic::scene

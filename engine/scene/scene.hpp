@@ -52,10 +52,10 @@ struct Object {
   std::optional<double> backscatter_db;  // Lambert's strength of the surface, 10 log mu
   int clip = -1;                         // of the model; -1: rest pose
   double clip_offset_s = 0.0, clip_rate = 1.0;
-  std::optional<NodeMotion> node_motion;  // instead of the clip
+  std::optional<NodeMotion> node_motion;   // instead of the clip
   Collision collision = Collision::kNone;  // without [physics]: none
   std::optional<Dynamics> dynamics;  // it moves by physics, from its mount's pose at time 0 on
-  std::optional<Human> human;              // likewise, by its limbs
+  std::optional<Human> human;        // likewise, by its limbs
   // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
   std::vector<Mat4> copies;
   std::size_t instance_count() const { return copies.empty() ? 1 : copies.size(); }

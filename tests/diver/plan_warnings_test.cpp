@@ -29,7 +29,8 @@ TEST(PlanWarnings, AreGivenWhereALimitIsPassed) {
   EXPECT_EQ(kinds_of(square_dive(28.0, 15.0, {0.32, 0.0})), Kinds{});
   EXPECT_EQ(kinds_of(square_dive(39.0, 10.0)), (Kinds{kDensityMost, kNarcosis}));
   EXPECT_EQ(kinds_of(square_dive(35.0, 10.0)), (Kinds{kDensityAdvised, kNarcosis}));
-  EXPECT_EQ(kinds_of(square_dive(30.0, 15.0, {0.5, 0.0})), (Kinds{kOxygenHigh, kDensityAdvised, kCns}));
+  EXPECT_EQ(kinds_of(square_dive(30.0, 15.0, {0.5, 0.0})),
+            (Kinds{kOxygenHigh, kDensityAdvised, kCns}));
   EXPECT_EQ(kinds_of(square_dive(20.0, 15.0, {0.10, 0.5})), Kinds{kOxygenLow});
   DivePlanRequest trimix = square_dive(60.0, 25.0, {0.18, 0.45});
   trimix.gases.push_back({{0.5, 0.0}, 21.0, GasRole::kDeco});

@@ -9,7 +9,6 @@ namespace {
 
 using testing::ElementsAre;
 
-
 TEST(Cull, KeepsOnlyWhatAnOutputNeeds) {
   // [make] -> (a1) -> [use]   -> (b1) -> output
   //             \---> [waste] -> (c1)

@@ -83,7 +83,8 @@ void every_bit_is_missed(Mask mask, const std::function<bool(const Cut&)>& expec
       const Barrier whole = *barrier;
       for (std::uint64_t left = whole.*mask; left; left &= left - 1) {
         const Cut cut{spoilt, whole, left & ~(left - 1)};
-        // A first use waits for every earlier owner of its memory, though the last would do (barriers.cpp).
+        // A first use waits for every earlier owner of its memory, though the last would do
+        // (barriers.cpp).
         if (whole.discards || expected(cut)) continue;
         barrier->*mask = whole.*mask & ~cut.bit;
         ++tried;

@@ -50,8 +50,9 @@ scene::Scene cameras_of(std::initializer_list<std::pair<std::uint32_t, std::uint
 }
 
 TEST_F(OutOfMemory, NamesTheLargestCameraAndWhatWouldDo) {
-  NERITIC_ASSERT_OK(const auto session,
-                    Session::create(device(), cameras_of({{100, 1000}, {2500, 1000}, {300, 1000}})));
+  NERITIC_ASSERT_OK(
+      const auto session,
+      Session::create(device(), cameras_of({{100, 1000}, {2500, 1000}, {300, 1000}})));
   FrameRequest request;
   request.cameras = {0, 1, 2};
   {

@@ -40,7 +40,8 @@ TEST(Hit, IsTheSameWhereverInTheStepItFalls) {
   }
 }
 
-// Heights over time by the closed form, to first order in the step: up and down again takes 2 v / g, each time e v.
+// Heights over time by the closed form, to first order in the step: up and down again takes 2 v /
+// g, each time e v.
 TEST(Hit, ABallBouncesInTheClosedFormsTime) {
   constexpr double kBounce = 0.6, kFall_m = 1.0, kRadius_m = 0.1;
   const StaticWorld floor = test::flat_seabed({.friction = 0.0, .restitution = kBounce});

@@ -1,7 +1,5 @@
 // The shape of what is written, by the sonar's kind: the file contract gives imaging sonars two
 // axes, however few azimuth bins they have.
-#include "sonar/write_sonar.hpp"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +7,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
+#include "sonar/write_sonar.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic::sonar {

@@ -12,8 +12,8 @@
 #include <string>
 
 #include "engine/gpu/device.hpp"
-#include "tests/support/device_gate.hpp"
 #include "engine/gpu/frames.hpp"
+#include "tests/support/device_gate.hpp"
 
 namespace neritic::test {
 

@@ -46,7 +46,8 @@ TEST(CommandLine, AnEmptyFolderForTheResultsIsRefused) {
 }
 
 TEST(CommandLine, AWrongSubcommandListsThem) {
-  EXPECT_THAT(said({"rendre"}), HasSubstr("render, sonar, dive, tradeoff, check, plan, physio, doctor"));
+  EXPECT_THAT(said({"rendre"}),
+              HasSubstr("render, sonar, dive, tradeoff, check, plan, physio, doctor"));
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace neritic::bench {
 
 // The last three need no device.
 inline constexpr std::string_view kGroups[] = {
-    "sonar_binning", "sonar_frame", "sonar_terms", "camera_frame", "sweep",
-    "deco",          "start",       "threads",     "physics",      "contacts", "diver"};
+    "sonar_binning", "sonar_frame", "sonar_terms", "camera_frame", "sweep", "deco",
+    "start",         "threads",     "physics",     "contacts",     "diver"};
 inline constexpr std::size_t kGroupsWithoutDevice = 3;
 
 Status bench_physics(Suite& suite);                             // vehicles, hand-off of states

@@ -84,7 +84,8 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   std::error_code none;
   if (flags.scene == TradeoffFlags().scene && !std::filesystem::exists(flags.scene, none))
     return bad_input(
-        "tradeoff: no {} here; accepted: to start in the project's folder, or --scene FILE, or none",
+        "tradeoff: no {} here; accepted: to start in the project's folder, or --scene FILE, or "
+        "none",
         flags.scene);
   Progress progress("tradeoff sonar", steps(options));
   options.step = [&] { progress.step(); };

@@ -13,8 +13,8 @@ void decode_depth(std::span<const float> texels, ViewImages& out);
 void decode_normals(std::span<const std::uint32_t> texels, ViewImages& out);
 void decode_labels(std::span<const std::uint32_t> texels, ViewImages& out);
 void decode_color(std::span<const std::uint32_t> texels, ViewImages& out);
-// next_from_view: the view's turn from now to the next frame's time. Where depth_texels hit nothing,
-// what is infinitely far moves by it alone; what would be behind the view then is NaN.
+// next_from_view: the view's turn from now to the next frame's time. Where depth_texels hit
+// nothing, what is infinitely far moves by it alone; what would be behind the view then is NaN.
 void decode_motion(std::span<const float> texels, std::span<const float> depth_texels,
                    const Quat& next_from_view, ViewImages& out);
 

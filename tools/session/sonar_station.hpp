@@ -23,7 +23,8 @@ struct HeadState {
   sonar::RangeCorrections corrections;
   std::vector<sonar::RangeCorrections> ghost_corrections;  // by mirror
   sonar::LeaningView upright;                              // a plain pinhole: of the arrays
-  sonar::LeaningView sampled;  // what is gathered from: leaning, but of cones and by the published gather
+  sonar::LeaningView
+      sampled;  // what is gathered from: leaning, but of cones and by the published gather
   std::unique_ptr<sonar::SonarGather> gather, ghosts;  // ghosts: where mirrors are named
   std::unique_ptr<sonar::Receiver> receiver;           // where terms are named
   gpu::Buffer sums, keys, power, records;              // host-readable, those that are wanted

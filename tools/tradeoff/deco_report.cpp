@@ -89,8 +89,7 @@ void draw_deco(sonar::Canvas& canvas, const Box& box, const DecoTradeoff& t,
       if (p.method != m || !(p.error_bar > 0.0) || p.error_bar > 10.0) continue;
       s.x.push_back(what(p));
       s.y.push_back(p.error_bar);
-      if (noted && m == TissueMethod::kFactors)
-        s.notes.push_back(fmt::format("{:g} s", p.step_s));
+      if (noted && m == TissueMethod::kFactors) s.notes.push_back(fmt::format("{:g} s", p.step_s));
     }
     xs.insert(xs.end(), s.x.begin(), s.x.end());
     ys.insert(ys.end(), s.y.begin(), s.y.end());

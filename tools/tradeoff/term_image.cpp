@@ -134,26 +134,27 @@ double TermImage::bent_m(const TruthRay& ray, const TruthEcho& echo) const {
   const auto leg = [&](double range_m, double sine) {
     return range_m * factor_of(bent_ghosts_, range_m / (2.0 * range_max_m), sine);
   };
-  return 0.5 * (leg(echo.out_m, ray.direction.y) +
-                leg(echo.back_m, echo.target_m.y / echo.back_m));
+  return 0.5 * (leg(echo.out_m, ray.direction.y) + leg(echo.back_m, echo.target_m.y / echo.back_m));
 }
 
 double TermImage::heard_range_m(const TruthRay& ray, const TruthEcho& echo) const {
   const double mean_m = 0.5 * (echo.out_m + echo.back_m), c = sound_speed_m_s_;
   double heard = mean_m;
-  if (profile_)
-    heard = bent_.width > 0 ? bent_m(ray, echo) : 0.5 * c * echo.seconds;
+  if (profile_) heard = bent_.width > 0 ? bent_m(ray, echo) : 0.5 * c * echo.seconds;
   const auto& motion = sonar_->terms.motion;
   if (!motion) return heard;
-  // A ghost goes either way round: back directly, or by the mirror, which shows the target elsewhere.
+  // A ghost goes either way round: back directly, or by the mirror, which shows the target
+  // elsewhere.
   const Vec3 shown_m = ray.direction * echo.out_m, v = view_.velocity_m_s;
   if (motion->within_ping)
-    heard += 0.25 * c * (return_s(echo.target_m, v, echo.out_m / c, c) +
-                         return_s(shown_m, v, echo.back_m / c, c)) - mean_m;
+    heard += 0.25 * c *
+                 (return_s(echo.target_m, v, echo.out_m / c, c) +
+                  return_s(shown_m, v, echo.back_m / c, c)) -
+             mean_m;
   if (motion->doppler && sonar_->terms.range_spread)
     heard -= 0.5 * glm::dot(v, ray.direction + echo.target_m / echo.back_m) *
-             sonar_->terms.frequency_hz *
-             motion->pulse_s / sonar_->terms.range_spread->bandwidth_hz;
+             sonar_->terms.frequency_hz * motion->pulse_s /
+             sonar_->terms.range_spread->bandwidth_hz;
   return heard;
 }
 

@@ -32,8 +32,8 @@ struct TruthRay {
   double elevation_rad = 0.0;
   double elevation_width_rad = 0.0;  // what it stands for
   double off_axis_rad = 0.0;
-  double pattern = 1.0;              // elevation pattern (a cone's own), power there and back
-  bool inside = true;                // heard at all: of a cone, of an aperture
+  double pattern = 1.0;  // elevation pattern (a cone's own), power there and back
+  bool inside = true;    // heard at all: of a cone, of an aperture
 };
 
 // What came back: out along `out_m` in one or two legs, back along one straight leg.
