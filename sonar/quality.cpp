@@ -14,31 +14,31 @@ using scene::SonarKind;
 
 // name, pixels a cell, columns, rows, range bins a resolution cell, error, ms: from
 // `neritic tradeoff sonar` in assets/scenes/harbour.toml, llvmpipe on two cores of an AMD EPYC; the
-// error since rows of pixels are shifted, as Sonar/QualityTruth finds it.
+// error is the larger of the sweep's and of what Sonar/QualityTruth finds.
 constexpr QualityLevel kImaging[] = {
-    {"draft", 0.5, 7.96, 0.42, 1, 0.0326, 89.4},
-    {"standard", 0.7, 11.94, 0.83, 2, 0.0163, 216.7},
-    {"reference", 1, 23.88, 3.33, 2, 0.0092, 535.2},
+    {"draft", 0.5, 7.96, 0.42, 1, 0.0410, 61.8},
+    {"standard", 0.7, 11.94, 0.83, 2, 0.0166, 149.9},
+    {"reference", 1, 23.88, 3.33, 2, 0.0092, 411.0},
 };
 constexpr QualityLevel kProfiling[] = {
-    {"draft", 0.7, 1.99, 16, 4, 0.0488, 20.8},
-    {"standard", 0.7, 7.96, 8, 4, 0.0197, 69.1},
-    {"reference", 0.7, 7.96, 16, 8, 0.0083, 188.4},
+    {"draft", 0.7, 1.99, 16, 4, 0.0488, 12.7},
+    {"standard", 0.7, 7.96, 8, 4, 0.0197, 43.6},
+    {"reference", 0.7, 7.96, 16, 8, 0.0083, 117.8},
 };
 constexpr QualityLevel kEchoSounder[] = {
-    {"draft", 1, 16, 32, 2, 0.0459, 3.5},
-    {"standard", 1, 24, 64, 4, 0.0188, 6.0},
-    {"reference", 1.4, 64, 64, 4, 0.0087, 11.6},
+    {"draft", 1, 16, 32, 2, 0.0463, 2.3},
+    {"standard", 1, 24, 64, 4, 0.0188, 3.4},
+    {"reference", 1.4, 64, 64, 4, 0.0087, 7.0},
 };
 constexpr QualityLevel kSideScan[] = {
     {"draft", 0.5, 2, 0.81, 1, 0.0420, 6.5},
-    {"standard", 0.5, 4, 1.61, 1, 0.0182, 8.9},
-    {"reference", 1.4, 6, 0.81, 2, 0.0091, 15.8},
+    {"standard", 0.5, 4, 1.61, 1, 0.0199, 6.6},
+    {"reference", 1.4, 6, 0.81, 2, 0.0096, 12.3},
 };
 constexpr QualityLevel kMechanical[] = {
     {"draft", 1.4, 17.8, 1.61, 1, 0.0243, 14},
-    {"standard", 1.4, 35.6, 1.61, 2, 0.0138, 38.0},
-    {"reference", 1.4, 35.6, 6.45, 2, 0.0085, 52.4},
+    {"standard", 1.4, 35.6, 1.61, 2, 0.0138, 26.6},
+    {"reference", 1.4, 35.6, 6.45, 2, 0.0085, 50.6},
 };
 
 constexpr double kMostFiner = 1e4;  // keeps a forged ratio from overflowing
