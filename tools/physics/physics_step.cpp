@@ -44,8 +44,10 @@ void add_contact(const ContactReport& report, double dt_s, VehicleState& state) 
   contact.near_points = static_cast<std::uint64_t>(report.motion.contacts);
   contact.deepest_m = std::max(contact.deepest_m, report.motion.deepest_m);
   contact.impulse_n_s = report.motion.impulse_n_s;
-  contact.acceleration = (1.0 / dt_s) * rov::vec6(body_from_ned * report.change_ned.linear(),
-                                                  body_from_ned * report.change_ned.angular());
+  const double per_s =
+      dt_s > 0.0 ? 1.0 / dt_s : 0.0;  // a step of no time is refused: nothing moves
+  contact.acceleration = per_s * rov::vec6(body_from_ned * report.change_ned.linear(),
+                                           body_from_ned * report.change_ned.angular());
 }
 
 }  // namespace
