@@ -132,7 +132,7 @@ TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnEveryFlight) {
 TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
   EXPECT_EQ(rov::cheapest_step(1e-3, false)->hz, 80.0);
   EXPECT_EQ(rov::cheapest_step(1e-6, false)->hz, 200.0);
-  EXPECT_EQ(rov::cheapest_step(2e-9, false)->hz, 1000.0);
+  EXPECT_EQ(rov::cheapest_step(1.2e-8, false)->hz, 1000.0);
   EXPECT_EQ(rov::cheapest_step(1e-2, true)->contact_parts, 4);
   EXPECT_EQ(rov::cheapest_step(1e-2, false)->contact_parts, 1);
   EXPECT_FALSE(rov::cheapest_step(1e-12, false).ok());
