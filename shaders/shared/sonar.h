@@ -67,7 +67,8 @@ NERITIC_CONST uint kSonarSpecOctahedral = 4;  // else the normal image holds x, 
 NERITIC_CONST uint kSonarSpecFacing = 5;      // else the normals' signs are unknown
 NERITIC_CONST uint kSonarSpecReflect = 6;     // multiply by the reflectivity of the instance
 NERITIC_CONST uint kSonarSpecLabels = 7;      // keep the label of the strongest return
-// The view's sides lean (render::ViewDesc), and a column's rows look for surfaces all over its width.
+// The view's sides lean (render::ViewDesc), and a column's rows look for surfaces all over its
+// width.
 NERITIC_CONST uint kSonarSpecLeaning = 16;
 NERITIC_CONST uint kSonarSpecFootprint = 15;   // what is done with the ranges that a row spans:
 NERITIC_CONST uint kSonarFootprintNone = 0;    // nothing, its centre counts

@@ -39,11 +39,12 @@ struct SonarEcho {
   vec3 head_back;
   float azimuth_min_rad;
   float columns_per_rad;
-  uint solid_angle;  // ghosts: a beam's cosine of elevation counts
+  uint solid_angle;       // ghosts: a beam's cosine of elevation counts
   float cells_per_range;  // scatterers: the least width of a cell a metre of range, in finest cells
   float least_cells;      // and at any range
   float column_rad;
-  uint mirror_class;  // ghosts: of what the mirror is a part, and does not hide itself; 0: of nothing
+  uint mirror_class;  // ghosts: of what the mirror is a part, and does not hide itself; 0: of
+                      // nothing
 };
 NERITIC_CONST uint kSonarGhostPlain = 0u;        // no range counts
 NERITIC_CONST uint kSonarGhostSpreading = 1u;    // 1 / r^2 of the direct leg
