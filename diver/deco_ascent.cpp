@@ -16,7 +16,7 @@ class Ascent {
       : settings_(settings), c_(settings.conventions), state_(state), sink_(sink) {}
 
   AscentEnd run() {
-    if (c_.direct_ascent && direct_ascent_holds()) {
+    if (c_.direct_ascent && !state_.stop_owed && direct_ascent_holds()) {
       move(0.0, PlanPhase::kAscent);
       return AscentEnd::kDirect;
     }
@@ -202,8 +202,8 @@ class Ascent {
   // every stop has at least one quantum; one that a computer finds the diver at is under way.
   bool leave_stop(double next_m) {
     const double arrived = state_.run_min;
-    bool owed = receding() && !joined_;
-    joined_ = false;
+    bool owed = state_.stop_owed || (receding() && !joined_);
+    joined_ = state_.stop_owed = false;
     place_anchor();
     int quanta = 0;
     for (; owed || !may_leave(next_m, gf_at(next_m)); owed = false) {

@@ -29,6 +29,8 @@ struct AscentState {
   std::size_t gas = 0;
   // Where GF low was used up in an ascent that is already under way; 0: none yet.
   double anchor_m = 0.0;
+  // The stop at depth_m is yet to be made: it has at least one quantum, also in such an ascent.
+  bool stop_owed = false;
 };
 
 // Is told what the ascent consists of, in its order.

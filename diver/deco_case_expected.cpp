@@ -48,6 +48,11 @@ SecondOpinion read_opinion(const CaseField& field, const std::string& program) {
   opinion.program = program;
   opinion.stop_min = expected_number(field["total_stop_time_min"]);
   opinion.leave_last_min = expected_number(field["runtime_leaving_last_stop_min"]);
+  opinion.run_min = expected_number(field["total_runtime_min"]);
+  opinion.zone_m = expected_number(field["start_of_deco_zone_m"]);
+  opinion.cns_percent = expected_number(field["cns_percent"]);
+  opinion.otu = expected_number(field["otu"]);
+  opinion.tissues = read_tissues(field["end_of_bottom_tissues_n2_he_bar"]);
   // A program that gives no sum gives stops whose minutes include the ways between them.
   const auto rows = read_stops(field["stops"]);
   if (!opinion.stop_min && rows && !rows->empty()) {

@@ -71,7 +71,10 @@ struct ExpectedNdl {
 
 struct SecondOpinion {
   std::string program;
-  Expected stop_min, stops_and_ways_min, leave_last_min;  // what the program gives of these
+  // What the program gives of these.
+  Expected stop_min, stops_and_ways_min, leave_last_min, run_min;
+  Expected zone_m, cns_percent, otu;
+  std::optional<TissueState> tissues;  // at the end of the bottom
   double band_min = 0.0;
 };
 

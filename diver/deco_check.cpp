@@ -10,6 +10,8 @@
 namespace neritic::diver {
 namespace {
 
+// Of second opinions: their sets of conventions are near, not the same (integer mbar, REAL*4).
+constexpr double kOpinionTissues_bar = 0.01, kOpinionZone_m = 0.5;
 // Numbers of files are rounded to so many digits.
 constexpr double kRunTime_min = 1e-3, kGf = 1e-6, kDepth_m = 1e-5, kPo2_bar = 1e-4;
 
@@ -230,7 +232,7 @@ class DiveCheck {
       if (start.ok()) request.start = *start;
     }
     const auto plan = plan_dive(request);
-    const std::string what = "stop time beside " + opinion.program;
+    const std::string beside = " beside " + opinion.program, what = "stop time" + beside;
     if (!plan.ok()) return errors_.add_failure(what + ": " + plan.error().message);
     errors_.add(what, "min", plan->stop_min(), opinion.stop_min, opinion.band_min);
     if (opinion.stops_and_ways_min && plan->first_stop && !plan->stops.empty())
@@ -239,6 +241,43 @@ class DiveCheck {
     if (opinion.leave_last_min && !plan->stops.empty())
       errors_.add(what, "min", plan->stops.back().leave_min, opinion.leave_last_min,
                   opinion.band_min);
+    errors_.add("run time" + beside, "min", plan->run_min(), opinion.run_min, opinion.band_min);
+    if (opinion.tissues)
+      errors_.add("tissues" + beside, "bar",
+                  tissue_error(plan->end_of_bottom.tissues, *opinion.tissues), kOpinionTissues_bar);
+    errors_.add("deco zone" + beside, "m", zone_m(request, *plan), opinion.zone_m, kOpinionZone_m);
+    if (opinion.cns_percent)
+      errors_.add("CNS" + beside, "%", plan->oxygen.cns_percent, opinion.cns_percent,
+                  1.0 + 0.15 * *opinion.cns_percent);
+    if (opinion.otu)
+      errors_.add("OTU" + beside, "", plan->oxygen.otu, opinion.otu, 1.0 + 0.15 * *opinion.otu);
+  }
+
+  // Where the first compartment holds as much inert gas as presses on it, on the direct way up.
+  static double zone_m(const DivePlanRequest& request, const DivePlan& plan) {
+    const DecoConventions& c = request.conventions;
+    const DecoEnvironment& where = c.environment;
+    const PlanPoint& bottom = plan.end_of_bottom;
+    std::size_t gas = 0;
+    for (const PlanSegment& s : plan.segments)
+      if (s.phase == PlanPhase::kBottom || s.phase == PlanPhase::kDescent) gas = s.gas;
+    const GasMix& mix = request.gases[gas].mix;
+    const auto above = [&](double depth_m) {
+      const TissueState up =
+          load(c.model(), bottom.tissues, where.pressure_bar(bottom.depth_m),
+               where.pressure_bar(depth_m), (bottom.depth_m - depth_m) / c.ascent_m_min, mix);
+      double most = 0.0;
+      for (std::size_t i = 0; i < kCompartments; ++i)
+        most = larger(most, up.n2_bar[i] + up.he_bar[i]);
+      return most > where.pressure_bar(depth_m);
+    };
+    double shallow = 0.0, deep = bottom.depth_m;
+    if (!above(shallow)) return 0.0;
+    while (deep - shallow > 1e-6) {
+      const double middle = 0.5 * (shallow + deep);
+      (above(middle) ? shallow : deep) = middle;
+    }
+    return deep;
   }
 
   const DecoCase& one_;

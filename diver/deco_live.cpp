@@ -52,6 +52,9 @@ Result<DiveComputer> DiveComputer::create(DiveComputerSettings settings) {
                           {{10.0, 200.0}},
                           {},
                           true};
+  // A diver says which gas is breathed on the way down: travel gases are gases.
+  for (PlanGas& gas : request.gases)
+    if (gas.role == GasRole::kTravel) gas.role = GasRole::kDeco;
   NERITIC_TRY_STATUS(check_request(request));
   return DiveComputer(std::move(settings));
 }
@@ -146,6 +149,45 @@ double DiveComputer::ceiling_m(const DiveComputerState& state) const {
   return deep;
 }
 
+// A deco gas is not taken below its switch depth: of those that reach the stop the one for the
+// shallowest use, else the bottom's.
+std::size_t DiveComputer::gas_for_stop(std::size_t breathed, double depth_m,
+                                       std::uint64_t without) const {
+  const std::vector<PlanGas>& gases = settings_.gases;
+  const auto reaches = [&](const PlanGas& gas) {
+    return gas.role != GasRole::kDeco || gas.switch_depth_m >= depth_m - 1e-9;
+  };
+  if (reaches(gases[breathed])) return breathed;
+  std::size_t best = breathed;
+  for (std::size_t i = 0; i < gases.size(); ++i) {
+    if (gases[i].role == GasRole::kTravel || (without >> i & 1) != 0 || !reaches(gases[i]))
+      continue;
+    const bool deco = gases[i].role == GasRole::kDeco;
+    if (best == breathed || (deco && (gases[best].role != GasRole::kDeco ||
+                                      gases[i].switch_depth_m < gases[best].switch_depth_m)))
+      best = i;
+  }
+  return best;
+}
+
+AscentState DiveComputer::ascent_start(const DiveComputerState& state, const DiveComputerView& view,
+                                       std::uint64_t without) const {
+  const DecoConventions& c = settings_.conventions;
+  AscentState up{state.tissues, 0.0, state.last.depth_m, state.last.gas, state.anchor_m};
+  const double owed_m = view.ceiling_violated ? view.ceiling_m : view.ceiling_m - kCeilingSlack_m;
+  if (owed_m <= 0.0) return up;
+  const double stop =
+      std::max(std::ceil(owed_m / c.stop_step_m - 1e-9) * c.stop_step_m, c.last_stop_m);
+  if (stop <= up.depth_m) return up;
+  up.gas = gas_for_stop(up.gas, stop, without);
+  up.run_min = (stop - up.depth_m) / c.descent_m_min;
+  up.tissues = load(ascent_.model, up.tissues, c.environment.pressure_bar(up.depth_m),
+                    c.environment.pressure_bar(stop), up.run_min, settings_.gases[up.gas].mix);
+  up.depth_m = stop;
+  up.stop_owed = view.ceiling_violated;
+  return up;
+}
+
 DiveComputerView DiveComputer::view(const DiveComputerState& state, std::uint64_t without) const {
   const DecoConventions& c = settings_.conventions;
   const GasMix& mix = settings_.gases[state.last.gas].mix;
@@ -161,8 +203,10 @@ DiveComputerView DiveComputer::view(const DiveComputerState& state, std::uint64_
   const double left = minutes_without_stops(ascent_, state.tissues, depth, mix);
   view.no_stop_min = std::max(left, 0.0);
   if (left < 0.0) view.ceiling_m = ceiling_m(state);
-  AscentState up{state.tissues, 0.0, depth, state.last.gas, state.anchor_m};
+  view.ceiling_violated = depth < view.ceiling_m - kCeilingSlack_m;
+  AscentState up = ascent_start(state, view, without);
   NextStop next;
+  next.minutes = up.run_min;  // the way down
   AscentSettings ascent = ascent_;
   ascent.without = without;
   const bool clears = ascend(ascent, up, next) != AscentEnd::kNeverClears;

@@ -55,9 +55,16 @@ struct DiveComputerState {
   }
 };
 
-// What a computer's display has.
+// Shallower than the ceiling by more is a violation; less is a sensor's noise, and what sets of
+// conventions differ by in the gradient factor at a stop.
+inline constexpr double kCeilingSlack_m = 0.3;
+
+// What a computer's display has. Above a ceiling the stops begin at or below it, not where the
+// diver is: the next stop is then deeper than the diver, at the surface too, and the way down to it
+// is part of the time to the surface.
 struct DiveComputerView {
   double ceiling_m = 0.0;               // of the gradient factor that holds there; 0: none
+  bool ceiling_violated = false;        // the diver is above it by more than kCeilingSlack_m
   double no_stop_min = 0.0;             // left without stops; 0 with a ceiling
   double stop_m = 0.0, stop_min = 0.0;  // the next stop; 0: none
   double to_surface_min = 0.0;          // infinite where the ceiling never clears
@@ -91,6 +98,11 @@ class DiveComputer {
   void move_anchor(DiveComputerState& state) const;
   double gf_at(const DiveComputerState& state, double depth_m) const;
   double ceiling_m(const DiveComputerState& state) const;
+  // Where the ascent that is shown begins: where the diver is, or at the stop below a ceiling that
+  // the diver is above, after the way down to it.
+  AscentState ascent_start(const DiveComputerState& state, const DiveComputerView& view,
+                           std::uint64_t without) const;
+  std::size_t gas_for_stop(std::size_t breathed, double depth_m, std::uint64_t without) const;
 
   DiveComputerSettings settings_;
   AscentSettings ascent_;  // borrows settings_

@@ -121,6 +121,28 @@ std::size_t gas_down_to(const std::vector<PlanGas>& gases, double depth_m) {
   return best == gases.size() ? shallowest : best;
 }
 
+// The bottom gas is what is breathed at the deepest level: what a diver would take for the plan of
+// one gas must not be that of another.
+Status check_bottom_gas(const DivePlanRequest& r) {
+  const PlanGas& bottom = *std::ranges::find(r.gases, GasRole::kBottom, &PlanGas::role);
+  for (const PlanGas& gas : r.gases)
+    if (gas.role == GasRole::kTravel && gas.switch_depth_m == bottom.switch_depth_m)
+      return bad_input(
+          "bottom gas {} and travel gas {} both from {:g} m found; another depth from which the "
+          "bottom gas is breathed (as {}@40) is accepted",
+          name_of(bottom.mix), name_of(gas.mix), gas.switch_depth_m, name_of(bottom.mix));
+  const double deepest_m = std::ranges::max_element(r.levels, {}, &PlanLevel::depth_m)->depth_m;
+  const PlanGas& breathed = r.gases[gas_down_to(r.gases, deepest_m)];
+  if (breathed.role != GasRole::kBottom)
+    return bad_input(
+        "bottom gas {} from {:g} m found, while {} is breathed at {:g} m, the deepest; a depth "
+        "from "
+        "{:g} to {:g} m is accepted",
+        name_of(bottom.mix), bottom.switch_depth_m, name_of(breathed.mix), deepest_m,
+        breathed.switch_depth_m, deepest_m);
+  return {};
+}
+
 // The way down and the levels.
 class WayDown {
  public:
@@ -201,7 +223,7 @@ double DivePlan::stop_min() const {
 
 Status check_request(const DivePlanRequest& request) {
   const auto end = end_of_levels(request);
-  return end.ok() ? Status{} : Status{end.error()};
+  return end.ok() ? check_bottom_gas(request) : Status{end.error()};
 }
 
 Result<PlanPoint> end_of_levels(const DivePlanRequest& request) {
@@ -216,6 +238,7 @@ Result<PlanPoint> end_of_levels(const DivePlanRequest& request) {
 
 Result<DivePlan> plan_dive(const DivePlanRequest& request) {
   NERITIC_TRY_STATUS(check_numbers(request));
+  NERITIC_TRY_STATUS(check_bottom_gas(request));
   const AscentSettings settings = settings_of(request);
   AscentState state = start_of(request, settings);
   DivePlan plan;
@@ -246,6 +269,27 @@ Result<TissueState> tissues_after(const std::vector<EarlierDive>& dives,
   }
   if (!tissues) return bad_input("no earlier dive found, at least one is accepted");
   return *tissues;
+}
+
+OxygenExposure oxygen_after(const std::vector<EarlierDive>& dives,
+                            const std::vector<DivePlan>& plans) {
+  constexpr double kDay_min = 24.0 * 60.0;
+  OxygenExposure left;
+  double ago_min = 0.0;  // since the end of a dive, from the newest back
+  for (std::size_t i = dives.size(); i-- > 0;) {
+    ago_min += dives[i].surface_min;
+    if (ago_min <= kDay_min) left.otu += plans[i].oxygen.otu;
+    ago_min += plans[i].run_min();
+  }
+  for (std::size_t i = 0; i < dives.size(); ++i) {
+    const DecoConventions& c = dives[i].dive.conventions;
+    const double po2 = dives[i].surface_gas.oxygen * c.environment.surface_bar;
+    const OxygenExposure up = oxygen_exposure(po2, po2, dives[i].surface_min, c.cns_from_bar);
+    left.otu += up.otu;
+    left.cns_percent += plans[i].oxygen.cns_percent + up.cns_percent;
+    if (up.cns_percent == 0.0) left.cns_percent = cns_after(left.cns_percent, dives[i].surface_min);
+  }
+  return left;
 }
 
 }  // namespace neritic::diver

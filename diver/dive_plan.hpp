@@ -16,7 +16,8 @@ namespace neritic::diver {
 enum class GasRole { kTravel, kBottom, kDeco };
 
 // A gas that the diver carries. switch_depth_m: travel and bottom gas are breathed from there on
-// the way down (the first of them from the surface), deco gas from there on the way up.
+// the way down (the first of them from the surface; the bottom gas at the deepest level), deco gas
+// from there on the way up.
 struct PlanGas {
   GasMix mix;
   double switch_depth_m = 0.0;
@@ -37,6 +38,9 @@ struct DivePlanRequest {
   // A last stop deeper than the step holds also where the first stop would be shallower. Off: such
   // a dive stops at the step, as one program does by mistake.
   bool last_stop_always = true;
+  // What earlier dives left of CNS, and the day's OTU. A plan has its own dive's alone; warnings
+  // and computers count both.
+  OxygenExposure oxygen_before;
 };
 
 enum class PlanPhase { kDescent, kBottom, kAscent, kStop };
@@ -75,7 +79,8 @@ struct DivePlan {
   double ascent_min() const { return surfacing.run_min - end_of_bottom.run_min; }
 };
 
-// What of a request is wrong, a level that is to be left before it is reached included.
+// What of a request is wrong, a level that is to be left before it is reached included, and a
+// travel gas that is breathed where the bottom gas should be.
 Status check_request(const DivePlanRequest& request);
 // Errors as check_request's, or the depth at which a ceiling never clears.
 Result<DivePlan> plan_dive(const DivePlanRequest& request);
@@ -91,5 +96,9 @@ struct EarlierDive {
 // Tissues after the dives, oldest first. plans: if not null, each dive's plan is put there.
 Result<TissueState> tissues_after(const std::vector<EarlierDive>& dives,
                                   std::vector<DivePlan>* plans = nullptr);
+// What is left of the oxygen of dives that were planned so: CNS declines at the surface (cns_after)
+// while it is not gained there; OTU is that of the last 24 hours. As large as the dives.
+OxygenExposure oxygen_after(const std::vector<EarlierDive>& dives,
+                            const std::vector<DivePlan>& plans);
 
 }  // namespace neritic::diver

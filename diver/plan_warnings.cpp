@@ -31,10 +31,10 @@ class Warnings {
       if (i > 0) switched(plan_.segments[i - 1], s, run_min);
       run_min += s.minutes;
     }
-    const OxygenExposure& oxygen = plan_.oxygen;
+    const OxygenExposure &oxygen = plan_.oxygen, &before = request_.oxygen_before;
     const double end = plan_.run_min();
-    over(kCns, {}, end, 0.0, oxygen.cns_percent, kCns_percent);
-    over(kOtu, {}, end, 0.0, oxygen.otu, kOtuLimit);
+    over(kCns, {}, end, 0.0, oxygen.cns_percent + before.cns_percent, kCns_percent);
+    over(kOtu, {}, end, 0.0, oxygen.otu + before.otu, kOtuLimit);
     for (PlanWarning& w : found_) w.text = text_of(w);
     return std::move(found_);
   }
@@ -84,6 +84,10 @@ class Warnings {
 
   std::string text_of(const PlanWarning& w) const {
     const std::string gas = name_of(request_.gases[w.gas].mix);
+    const OxygenExposure& before = request_.oxygen_before;
+    const auto earlier = [](double value) {
+      return value > 0.0 ? fmt::format(", {:.0f} of earlier dives", value) : std::string();
+    };
     const std::string place =
         fmt::format("on {} at {:.4g} m, {:.0f} min", gas, w.depth_m, w.run_min);
     switch (w.kind) {
@@ -101,9 +105,11 @@ class Warnings {
       case kNarcosis:
         return fmt::format("narcotic depth {:.0f} m {}: above {:g}", w.value, place, w.limit);
       case kCns:
-        return fmt::format("CNS {:.0f} % at the end: above {:g}", w.value, w.limit);
+        return fmt::format("CNS {:.0f} % at the end{}: above {:g}", w.value,
+                           earlier(before.cns_percent), w.limit);
       case kOtu:
-        return fmt::format("OTU {:.0f} at the end: above {:g}", w.value, w.limit);
+        return fmt::format("OTU {:.0f} at the end{}: above {:g}", w.value, earlier(before.otu),
+                           w.limit);
       case kCounterdiffusion:
         return fmt::format(
             "switch to {} at {:.4g} m: nitrogen rises by {:.2f} of helium's fall, above "

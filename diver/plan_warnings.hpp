@@ -14,8 +14,8 @@ enum class PlanWarningKind {
   kDensityAdvised,    // gas above 5.2 g/L
   kDensityMost,       // above 6.2
   kNarcosis,          // narcotic depth above 30 m
-  kCns,               // above 80 %
-  kOtu,               // above 300 in a dive
+  kCns,               // above 80 %, what earlier dives left included
+  kOtu,               // above 300 in a day
   kCounterdiffusion,  // nitrogen up by more than a fifth of helium's fall at a switch
 };
 

@@ -126,6 +126,71 @@ TEST(DecoLive, FollowingAPlanTheTimeToTheSurfaceCountsDownAndNoCeilingIsBroken) 
   }
 }
 
+// What computers on wrists do with one who is above the ceiling: the stops begin below, the way
+// down to them counts, and it is said.
+TEST(DecoLive, AboveABrokenCeilingTheStopsBeginBelowItAndItIsSaid) {
+  for (const char* set : {"stop-minutes", "run-minutes", "msw"}) {
+    DivePlanRequest request = square_dive(45.0, 30.0, kAir, set);
+    request.gases.push_back({{1.0, 0.0}, 6.0, GasRole::kDeco});
+    const DiveComputer computer = computer_for(request);
+    const DecoConventions& c = request.conventions;
+    DiveComputerState state = computer.start();
+    const auto go = [&](double to_m, double minutes, std::uint64_t gas) {
+      const double from_m = state.last.depth_m;
+      const int samples = static_cast<int>(60.0 * minutes);
+      for (int i = 1; i <= samples; ++i)
+        state = computer.step(state, {from_m + (to_m - from_m) * i / samples, gas}, 1.0);
+      return computer.view(state);
+    };
+    go(45.0, 2.25, 0);
+    go(45.0, 27.75, 0);
+    const DiveComputerView kept = go(18.0, 2.7, 0);
+    EXPECT_FALSE(kept.ceiling_violated) << set;
+    for (const bool oxygen : {false, true}) {
+      const DiveComputerView broken = go(5.0, oxygen ? 1.0 : 1.3, oxygen ? 1 : 0);
+      EXPECT_TRUE(broken.ceiling_violated) << set;
+      EXPECT_GT(broken.ceiling_m, 6.0) << set;
+      EXPECT_GE(broken.stop_m, broken.ceiling_m) << set;
+      EXPECT_LT(broken.stop_m, broken.ceiling_m + 3.0) << set;
+      EXPECT_GT(broken.stop_min, 0.0) << set;
+      // As it is for one who goes down there at once, on the gas that may be breathed there.
+      DiveComputerState down = computer.step(state, {5.0, 0}, 0.0);
+      const double way_min = (broken.stop_m - 5.0) / c.descent_m_min;
+      down = computer.step(down, {broken.stop_m, 0}, 60.0 * way_min);
+      const DiveComputerView there = computer.view(down);
+      EXPECT_FALSE(there.ceiling_violated) << set;
+      EXPECT_NEAR(broken.to_surface_min, way_min + there.to_surface_min, 1.001) << set;
+    }
+    // The surface does not end it.
+    const DiveComputerView up = go(0.0, 0.5, 0);
+    EXPECT_TRUE(up.ceiling_violated) << set;
+    EXPECT_GE(up.stop_m, up.ceiling_m) << set;
+    EXPECT_GT(up.stop_min, 0.0) << set;
+    EXPECT_GT(up.to_surface_min, 20.0) << set;
+    const DiveComputerView later = go(0.0, 24.0 * 60.0, 0);
+    EXPECT_FALSE(later.ceiling_violated) << set;
+    EXPECT_EQ(later.stop_m, 0.0) << set;
+    EXPECT_EQ(later.to_surface_min, 0.0) << set;
+  }
+}
+
+// A hand's breadth above a stop is no violation, and the stop stays where stops are.
+TEST(DecoLive, ALittleAboveAStopTheStopStaysWhereItIs) {
+  const DivePlanRequest request = square_dive(45.0, 30.0);
+  const DiveComputer computer = computer_for(request);
+  DivePlan plan = plan_dive(request).value();
+  const double stop_m = plan.stops.back().depth_m;
+  plan.segments.resize(plan.segments.size() - 2);  // as far as the last stop
+  const DiveComputerState state = dive(computer, plan, 1.0, [](const auto&) {});
+  ASSERT_EQ(state.last.depth_m, stop_m);
+  const DiveComputerView at_stop = computer.view(state);
+  const DiveComputerView above = computer.view(computer.step(state, {stop_m - 0.2, 0}, 0.0));
+  EXPECT_FALSE(above.ceiling_violated);
+  EXPECT_EQ(at_stop.stop_m, stop_m);
+  EXPECT_EQ(above.stop_m, stop_m);
+  EXPECT_NEAR(above.to_surface_min, at_stop.to_surface_min, 0.5);
+}
+
 TEST(DecoLive, WhatMakesNoSenseIsRefusedCountedAndTheLastGoodHeld) {
   const DiveComputer computer = computer_for(square_dive(40.0, 20.0));
   DiveComputerState good = computer.start(), bad = computer.start();

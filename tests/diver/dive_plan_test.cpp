@@ -126,6 +126,22 @@ TEST(DivePlan, TravelGasIsBreathedUntilTheBottomGasBegins) {
     EXPECT_EQ(stop.gas, stop.depth_m <= 21.0 ? 3u : 0u) << stop.depth_m;
 }
 
+// What is planned for one gas is not that of another.
+TEST(DivePlan, ABottomGasThatIsNotBreathedAtTheBottomIsRefused) {
+  DivePlanRequest r = square_dive(60.0, 20.0, {0.10, 0.70});
+  r.gases.push_back({{0.32, 0.0}, 0.0, GasRole::kTravel});
+  EXPECT_FALSE(plan_dive(r).ok());
+  EXPECT_FALSE(check_request(r).ok());
+  std::swap(r.gases[0], r.gases[1]);  // in any order
+  EXPECT_FALSE(plan_dive(r).ok());
+  r.gases[1].switch_depth_m = 61.0;
+  EXPECT_FALSE(plan_dive(r).ok());
+  r.gases[1].switch_depth_m = 60.0;
+  EXPECT_TRUE(plan_dive(r).ok());
+  r.levels = {{20.0, 10.0}, {60.0, 20.0}, {30.0, 40.0}};  // it is the deepest that counts
+  EXPECT_TRUE(plan_dive(r).ok());
+}
+
 TEST(DivePlan, ExtremesArePlannedOrRefused) {
   // A kilometre down on heliox: days of stops, and no tissue is infinite.
   DivePlanRequest deep = square_dive(1000.0, 70.0, {0.01, 0.97});
