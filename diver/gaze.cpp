@@ -1,6 +1,7 @@
 #include "diver/gaze.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace neritic::diver {
 
@@ -9,6 +10,9 @@ double angle_between(const Vec3& a, const Vec3& b) {
 }
 
 Vec3 direction_of_angles(double x_rad, double y_rad) {
+  constexpr double kMost_rad = radians(90.0);
+  if (!(std::abs(x_rad) < kMost_rad && std::abs(y_rad) < kMost_rad))
+    return Vec3(std::numeric_limits<double>::quiet_NaN());
   return glm::normalize(Vec3(std::tan(x_rad), std::tan(y_rad), -1.0));
 }
 

@@ -13,6 +13,7 @@ namespace neritic::diver {
 double angle_between(const Vec3& a, const Vec3& b);
 
 // Screen angles as eye trackers write them (x to the right, y up), as a direction in a view's axes.
+// No number where an angle is 90 degrees or more either way: no screen is there.
 Vec3 direction_of_angles(double x_rad, double y_rad);
 
 // A camera without distortion. Pixel centres at +.5, row 0 on top.

@@ -49,7 +49,8 @@ Result<GazeRecording> parse_gaze_csv(std::string_view text, const std::string& n
     sample.time_s = time ? time_scale * table.columns[*time][i] : static_cast<double>(i) / rate;
     sample.direction = has_angles ? direction_of_angles(scale * (*x)[i], scale * (*y)[i])
                                   : Vec3((*dx)[i], (*dy)[i], (*dz)[i]);
-    sample.valid = !status || (*status)[i] != 0.0;
+    // What is not said was not seen.
+    sample.valid = !status || (std::isfinite((*status)[i]) && (*status)[i] != 0.0);
     out.samples.push_back(sample);
     if (!marks) continue;
     const double mark = (*marks)[i];

@@ -15,7 +15,9 @@ struct GazeRecording {
   std::vector<int> marks;
 };
 // Columns: time (t_s, or a rate in a comment), then x_deg and y_deg (or x_rad, y_rad: angles on a
-// screen, y up), or dx, dy, dz (a direction); 'status' 0 or 'valid' 0: the eye was not seen.
+// screen, y up; of 90 degrees or more they are no direction, and refused), or dx, dy, dz (any
+// direction, as of a headset in the world); 'status' or 'valid' 0, false or empty: the eye was not
+// seen.
 Result<GazeRecording> parse_gaze_csv(std::string_view text, const std::string& name,
                                      double rate_hz);
 

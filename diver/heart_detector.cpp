@@ -185,6 +185,18 @@ double BeatDetector::mean_interval() const {
   return interval_count_ > 0 ? sum / interval_count_ : 0.0;
 }
 
+double BeatDetector::band_kurtosis() const {
+  const auto memory = static_cast<std::int64_t>(kMemory_s * place_hz_) - 1;
+  const std::int64_t end = newest_ - half_taps_, from = std::max(fresh_, newest_ - memory);
+  double sum2 = 0.0, sum4 = 0.0;  // the band has no mean
+  for (std::int64_t i = from; i <= end; ++i) {
+    const double square = place(i).band * place(i).band;
+    sum2 += square;
+    sum4 += square * square;
+  }
+  return sum2 > 0.0 ? sum4 / (sum2 * sum2) * static_cast<double>(end - from + 1) : 0.0;
+}
+
 void BeatDetector::accept(const Peak& found, double share, std::vector<Beat>& out) {
   const Peak peak = found;  // which may lie among those that are dropped here
   signal_level_ = share * peak.energy + (1.0 - share) * signal_level_;
@@ -205,6 +217,7 @@ void BeatDetector::accept(const Peak& found, double share, std::vector<Beat>& ou
   passed_count_ = kept;
   last_beat_ = peak;
   last_look_ = peak.at;
+  peakedness_ = band_kurtosis();
   out.push_back(locate(peak));
   after_gap_ = false;
 }

@@ -21,6 +21,13 @@ constexpr double kMostSkip_s = 3600.0;
 constexpr int kRateOver = 4;
 // Energy of beats over that of noise; below, Pan's thresholds lie in the noise.
 constexpr double kPoorBelow = 4.0;
+// Noise has peaks as well, which Pan's levels part into beats and noise: but it is flat (4.2 at
+// most in an hour of white noise), and its peaks keep no time. A heart that is as flat beats so
+// fast that the band has no pause, and keeps time.
+constexpr double kFlatBelow = 4.5, kLeastNormal = 0.75;
+constexpr int kFewestIntervals = 8, kJudgedIntervals = 16;
+// Of the samples of the last seconds.
+constexpr double kMissing_s = 4.0, kMostMissing = 0.25;
 
 static_assert(std::is_trivially_copyable_v<HeartState>);
 
@@ -48,7 +55,10 @@ void HeartMonitor::push(std::span<const double> samples) {
   NERITIC_CHECK(detector_.has_value(), "a monitor of intervals has no ECG");
   for (const double sample : samples) {
     found_.clear();
+    const std::uint64_t refused = detector_->counts().refused;
     detector_->push(sample, found_);
+    const double missed = detector_->counts().refused > refused ? 1.0 : 0.0;
+    missing_share_ += (missed - missing_share_) / (kMissing_s * rate_hz_);
     for (const Beat& beat : found_) take(judge_.take(beat.time_s, beat.after_gap));
   }
   const EcgCounts& counts = detector_->counts();
@@ -56,11 +66,23 @@ void HeartMonitor::push(std::span<const double> samples) {
   state_.refused = counts.refused;
   state_.gaps = counts.gaps;
   using enum SignalQuality;
-  state_.quality = counts.samples == counts.refused || detector_->flat() ? kNone
-                   : detector_->learning()                               ? kLearning
-                   : detector_->signal_over_noise() < kPoorBelow         ? kPoor
-                                                                         : kGood;
+  state_.quality =
+      counts.samples == counts.refused || detector_->flat() ? kNone
+      : detector_->learning()                               ? kLearning
+      : detector_->signal_over_noise() < kPoorBelow || missing_share_ > kMostMissing || like_noise()
+          ? kPoor
+          : kGood;
   forget();
+}
+
+bool HeartMonitor::like_noise() const {
+  if (detector_->peakedness() >= kFlatBelow) return false;
+  int judged = 0, normal = 0;
+  for (auto i = intervals_.rbegin(); i != intervals_.rend() && judged < kJudgedIntervals; ++i) {
+    ++judged;
+    normal += i->kind == IntervalKind::kNormal;
+  }
+  return judged < kFewestIntervals || normal < kLeastNormal * judged;
 }
 
 void HeartMonitor::push_interval(double length_s) {

@@ -12,7 +12,7 @@ namespace neritic::diver {
 enum class SignalQuality : std::uint64_t {
   kNone,      // nothing yet, or no change: electrode off, saturated
   kLearning,  // too little seen to tell
-  kPoor,      // heard, but noise is nearly as large: the numbers may be wrong
+  kPoor,      // noise is nearly as large, or is all there is, or much is missing: may be wrong
   kGood,
 };
 const char* name_of(SignalQuality quality);
@@ -60,9 +60,11 @@ class HeartMonitor {
  private:
   void take(const Interval& interval);
   void forget();
+  bool like_noise() const;
 
   std::optional<BeatDetector> detector_;
   double rate_hz_ = 0.0;
+  double missing_share_ = 0.0;  // of the samples of late
   IntervalJudge judge_;
   std::vector<Beat> found_;          // scratch
   std::vector<Interval> intervals_;  // the last five minutes, oldest first

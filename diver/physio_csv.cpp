@@ -9,10 +9,15 @@ namespace neritic::diver {
 namespace {
 
 constexpr std::size_t kMostCsvColumns = 64;
-// A step so much longer than usual is a gap.
-constexpr double kGapSteps = 1.5;
-// A stamp so much after its place is the next place's: a missing sample makes it one.
-constexpr double kLateSteps = 0.75;
+constexpr double kMostTime_s = 1e12;
+// A step so much longer than usual is a gap, and more where steps scatter.
+constexpr double kGapSteps = 1.5, kGapDeviations = 6.0;
+// A stamp so much after its place is the next place's: a missing sample makes it one. More where
+// stamps jitter.
+constexpr double kLateSteps = 0.75, kLateDeviations = 4.0;
+// A stamp so much before the one before it jitters; more is a clock that went back.
+constexpr double kBackSteps = 0.75;
+constexpr double kDeviationOfMedian = 1.4826;  // of a normal distribution
 // A few rows with a clock that leaps must not fill the memory with what is missing.
 constexpr double kMostMissing = 1e6, kMostMissingARow = 100.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
@@ -23,10 +28,10 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
 }
 
-std::vector<std::string_view> csv_cells(std::string_view line) {
+std::vector<std::string_view> csv_cells(std::string_view line, const char* separators) {
   std::vector<std::string_view> cells;
   while (true) {
-    const auto end = std::min(line.find_first_of(",;"), line.size());
+    const auto end = std::min(line.find_first_of(separators), line.size());
     cells.push_back(trimmed(line.substr(0, end)));
     if (end == line.size()) return cells;
     line.remove_prefix(end + 1);
@@ -38,6 +43,52 @@ double cell_number(std::string_view cell) {
   const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   const bool whole = read.ec == std::errc() && read.ptr == cell.data() + cell.size();
   return whole && std::isfinite(value) ? value : kNothing;
+}
+
+// Of "time_ms", "time (ms)", "time [ms]", "time ms"; seconds where there is no unit.
+double seconds_of_unit(std::string_view name) {
+  const auto last = name.find_last_not_of(" )]");
+  name = name.substr(0, last == name.npos ? 0 : last + 1);
+  const auto before = name.find_last_of(" _([");
+  const std::string_view unit = before == name.npos ? "" : name.substr(before + 1);
+  constexpr std::pair<std::string_view, double> kUnits[] = {
+      {"ms", 1e-3},      {"msec", 1e-3}, {"milliseconds", 1e-3}, {"us", 1e-6},
+      {"\u00b5s", 1e-6}, {"ns", 1e-9},   {"min", 60.0},          {"minutes", 60.0}};
+  for (const auto& [text, seconds] : kUnits)
+    if (unit == text) return seconds;
+  return 1.0;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
+// Of a column of flags: 1, 0, or nothing where there is no word.
+std::optional<double> cell_flag(std::string_view cell) {
+  constexpr std::string_view kYes[] = {"true", "yes", "valid", "ok", "y", "t"};
+  constexpr std::string_view kNo[] = {"false", "no", "invalid", "lost", "n", "f"};
+  const std::string word = lower_case(cell);
+  if (std::ranges::find(kYes, word) != std::end(kYes)) return 1.0;
+  if (std::ranges::find(kNo, word) != std::end(kNo)) return 0.0;
+  if (word.empty() || word == "nan") return kNothing;
+  const double number = cell_number(cell);
+  return std::isnan(number) ? std::nullopt : std::optional(number);
+}
+
+bool is_flag(std::string_view column) {
+  return column == "status" || column == "valid";
+}
+
+// A column that counts its rows is not what was measured.
+bool counts_rows(const std::string& name, const std::vector<double>& values) {
+  constexpr std::string_view kNames[] = {"",  "sample", "samples", "index", "idx", "i",  "n",
+                                         "#", "no",     "nr",      "row",   "id",  "seq"};
+  if (std::ranges::find(kNames, name) == std::end(kNames)) return false;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (!(values[i] - values[i - 1] == 1.0)) return false;
+  return true;
 }
 
 // "... fs_hz=1000 ..." in a comment.
@@ -52,12 +103,6 @@ std::optional<double> rate_in(std::string_view comment) {
   return std::nullopt;
 }
 
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
-}
-
 Status take_heading(const std::vector<std::string_view>& cells, const std::string& where,
                     SampleTable& table) {
   if (cells.size() > kMostCsvColumns)
@@ -70,44 +115,105 @@ Status take_heading(const std::vector<std::string_view>& cells, const std::strin
   return {};
 }
 
-// Seconds a usual step: the mean of those that are no gap.
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// A step that most others are whole multiples of, if `base` is nearly one: where samples are
+// missing at random, few steps are of the usual length.
+double common_step(const std::vector<double>& steps, double base, double clean) {
+  constexpr double kMostClean = 0.9, kLeastSingle = 0.1, kLongest = 8.5;
+  for (int refined = 0; refined < 3; ++refined) {
+    double sum = 0.0, places = 0.0, clean_steps = 0.0, single = 0.0;
+    for (const double step : steps) {
+      const double ratio = step / base, whole = std::round(ratio);
+      if (ratio > kLongest) continue;
+      sum += step;
+      places += whole;
+      clean_steps += std::abs(ratio - whole) < clean;
+      single += whole == 1.0;
+    }
+    const double all = static_cast<double>(steps.size());
+    if (clean_steps < kMostClean * all || single < kLeastSingle * all) return 0.0;
+    base = sum / places;
+  }
+  return base;
+}
+
+// Of those upwards, in seconds; 0: none.
+double median_step(const std::vector<double>& stamps) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    if (stamps[i] > stamps[i - 1]) steps.push_back(stamps[i] - stamps[i - 1]);
+  return steps.empty() ? 0.0 : median_of(std::move(steps));
+}
+
+// Seconds from one place to the next: of steps that are whole multiples of one, that one; else the
+// mean of all but gaps, so that what jitters around an even clock comes out even.
 double usual_step(const std::vector<double>& time_s) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
   if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  const double median = *middle;
+  const double median = median_of(steps);
+  for (int part = 1; part <= 4; ++part)
+    if (const double base = common_step(steps, median / part, part == 1 ? 0.15 : 0.05); base > 0.0)
+      return base;
+  std::vector<double> off;
+  for (const double step : steps) off.push_back(std::abs(step - median));
+  const double longest =
+      kGapSteps * median + kGapDeviations * kDeviationOfMedian * median_of(std::move(off));
   double sum = 0.0, count = 0.0;
   for (const double step : steps)
-    if (step < kGapSteps * median) sum += step, count += 1.0;
+    if (step < longest) sum += step, count += 1.0;
   return sum / count;
 }
 
-// Values at rising times, on an even grid. A sample goes to the next place, unless the time has
-// leapt or the clock has drifted off by more than a step.
+// How much later than its place a stamp may be, in steps.
+double late_steps(const std::vector<double>& time_s, double step_s) {
+  std::vector<double> off;
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    const double steps = (time_s[i] - time_s[i - 1]) / step_s;
+    off.push_back(std::abs(steps - std::round(steps)));
+  }
+  if (off.empty()) return kLateSteps;
+  // A step has the jitter of two stamps.
+  const double jitter = kDeviationOfMedian * median_of(std::move(off)) / std::sqrt(2.0);
+  return std::max(kLateSteps, kLateDeviations * jitter);
+}
+
+// Values at times, on an even grid. A sample goes to the next place, unless the time has leapt or
+// the clock has drifted off by more than a step. Samples of one time came in one packet: the first
+// has the packet's place, and what arrives unevenly stays within half a packet of it.
 Status spread_evenly(const std::vector<double>& time_s, const std::vector<double>& values,
                      const std::string& name, Recording& out) {
   double next_s = time_s.front();
   const double step_s = 1.0 / out.rate_hz;
-  double missing = 0.0;
+  double stamps = 1.0, missing = 0.0;
+  for (std::size_t i = 1; i < time_s.size(); ++i) stamps += time_s[i] != time_s[i - 1];
+  const double packet = static_cast<double>(time_s.size()) / stamps;
+  const double late =
+      packet > 1.0 ? std::max(kLateSteps, 0.5 * packet) : late_steps(time_s, step_s);
   for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool has_place = i == 0 || time_s[i] != time_s[i - 1];
     const double ahead = (time_s[i] - next_s) / step_s;
-    if (ahead > kLateSteps) {
+    if (has_place && ahead > late) {
       const double most =
           std::max(kMostMissing, kMostMissingARow * static_cast<double>(values.size()));
       if ((missing += ahead) > most)
         return bad_input(
             "{}: {:.0f} missing samples up to {:g} s found, at most {:.0f} are accepted", name,
             missing, time_s[i], most);
-      out.samples.resize(out.samples.size() + static_cast<std::size_t>(std::lround(ahead)),
-                         kNothing);
+      const auto places = static_cast<std::size_t>(std::lround(ahead));
+      out.samples.resize(out.samples.size() + places, kNothing);
+      out.missing += places;
       next_s = time_s[i];
     }
     out.samples.push_back(values[i]);
     // The grid follows the stamps slowly: what jitters stays put, what drifts is followed.
+    if (has_place) next_s += 0.02 * (time_s[i] - next_s);
     next_s += step_s;
-    next_s += 0.02 * (time_s[i] + step_s - next_s);
   }
   return {};
 }
@@ -123,8 +229,9 @@ std::optional<std::size_t> SampleTable::find(std::string_view name) const {
 std::optional<std::size_t> SampleTable::time_column(double& scale) const {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string& n = names[i];
-    if (n != "t" && !n.starts_with("t_") && !n.starts_with("time")) continue;
-    scale = n.ends_with("_ms") ? 1e-3 : n.ends_with("_us") ? 1e-6 : n.ends_with("_ns") ? 1e-9 : 1.0;
+    const bool is_t = n.starts_with("t") && (n.size() == 1 || n.find_first_of("_ ([") == 1);
+    if (!is_t && !n.starts_with("time")) continue;
+    scale = seconds_of_unit(n);
     return i;
   }
   return std::nullopt;
@@ -132,15 +239,18 @@ std::optional<std::size_t> SampleTable::time_column(double& scale) const {
 
 Result<SampleTable> parse_sample_table(std::string_view text, const std::string& name) {
   SampleTable table;
+  const char* separators = ",;";
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // as spreadsheets begin a file
   for (int line_number = 1; !text.empty(); ++line_number) {
     const auto end = std::min(text.find('\n'), text.size());
-    const std::string_view line = trimmed(text.substr(0, end));
+    const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.empty() || line.starts_with('#')) {
+    if (trimmed(line).empty() || trimmed(line).starts_with('#')) {
       if (!table.rate_hz) table.rate_hz = rate_in(line);
       continue;
     }
-    const auto cells = csv_cells(line);
+    if (table.names.empty() && line.find_first_of(",;") == line.npos) separators = "\t";
+    const auto cells = csv_cells(line, separators);
     const auto where = [&] { return fmt::format("{}:{}", name, line_number); };
     if (table.names.empty()) {
       NERITIC_TRY_STATUS(take_heading(cells, where(), table));
@@ -152,8 +262,14 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
     if (table.columns[0].size() == kMostSamples / table.names.size())
       return bad_input("{}: more rows than {} found, fewer are accepted", where(),
                        table.columns[0].size());
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      table.columns[i].push_back(cell_number(cells[i]));
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto value =
+          is_flag(table.names[i]) ? cell_flag(cells[i]) : std::optional(cell_number(cells[i]));
+      if (!value)
+        return bad_input("{}: {} '{}' found, true, false or a number is accepted", where(),
+                         table.names[i], cells[i].substr(0, 40));
+      table.columns[i].push_back(*value);
+    }
   }
   if (table.names.empty() || table.columns[0].empty())
     return bad_input("{}: no row found, a heading and one row or more are accepted", name);
@@ -165,29 +281,44 @@ Result<Recording> parse_csv(std::string_view text, const std::string& name,
   NERITIC_TRY(SampleTable table, parse_sample_table(text, name));
   double scale = 1.0;
   const auto time = table.time_column(scale);
-  std::optional<std::size_t> column = table.find(channel.column);
+  std::optional<std::size_t> column;
+  if (!channel.column.empty()) column = table.find(channel.column);
   if (channel.column.empty())
     for (std::size_t i = 0; i < table.names.size() && !column; ++i)
-      if (i != time) column = i;
+      if (i != time && !counts_rows(table.names[i], table.columns[i])) column = i;
   if (!column)
     return bad_input("{}: no column '{}' found, {} is accepted", name, channel.column,
                      fmt::join(table.names, ", "));
   Recording out{table.names[*column]};
   std::vector<double> time_s, values;
   if (time) {
-    for (std::size_t i = 0; i < table.columns[0].size(); ++i) {
-      const double at_s = scale * table.columns[*time][i];
-      if (!(std::abs(at_s) < 1e12) || (!time_s.empty() && !(at_s > time_s.back()))) {
+    std::vector<double>& stamps = table.columns[*time];
+    for (double& stamp : stamps) stamp *= scale;
+    const double back_s = kBackSteps * median_step(stamps);
+    for (std::size_t i = 0; i < stamps.size(); ++i) {
+      // Where the rate is known, several samples may have come at one time; stamps that jitter may
+      // overtake one another.
+      const bool on = time_s.empty() || stamps[i] > time_s.back() - back_s;
+      const bool again = !time_s.empty() && stamps[i] == time_s.back() && channel.rate_hz <= 0.0;
+      if (!(std::abs(stamps[i]) < kMostTime_s) || !on || again) {
         ++out.refused;
         continue;
       }
-      time_s.push_back(at_s);
+      time_s.push_back(stamps[i]);
       values.push_back(table.columns[*column][i]);
     }
+    if (time_s.empty())
+      return bad_input(
+          "{}: no time in column '{}' found, seconds up to {:g} (or _ms, _us) are accepted", name,
+          table.names[*time], kMostTime_s);
   }
   out.rate_hz = channel.rate_hz > 0.0 ? channel.rate_hz : table.rate_hz.value_or(0.0);
   const double step_s = usual_step(time_s);
-  if (step_s > 0.0 && channel.rate_hz <= 0.0) out.rate_hz = 1.0 / step_s;
+  // Stamps are rounded: the rate is to six digits.
+  if (step_s > 0.0 && channel.rate_hz <= 0.0) {
+    const double scale = std::pow(10.0, 5.0 - std::floor(std::log10(1.0 / step_s)));
+    out.rate_hz = std::round(scale / step_s) / scale;
+  }
   if (!(out.rate_hz >= kLeastRate_hz && out.rate_hz <= kMostRate_hz))
     return bad_input(
         "{}: no rate of {:g} to {:g} Hz found, a column of time with two rows or more, a comment "

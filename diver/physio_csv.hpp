@@ -8,28 +8,31 @@
 
 namespace neritic::diver {
 
-// Columns by name; an empty cell, or one without a number, is NaN. '#' starts a comment; one that
-// says fs_hz=1000 (or rate_hz=) gives the rate.
+// Columns by name, parted by commas, semicolons or tabs; an empty cell, or one without a number, is
+// NaN. '#' starts a comment; one that says fs_hz=1000 (or rate_hz=) gives the rate. In columns
+// 'status' and 'valid' words count: true, yes, valid, ok are 1, false, no, invalid, lost are 0, and
+// any other is an error.
 struct SampleTable {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;  // all of one length
   std::optional<double> rate_hz;
 
   std::optional<std::size_t> find(std::string_view name) const;
-  // The column of time: 't' or a word that starts with time or t_; scale gives seconds (of _ms, _us
-  // and _ns too).
+  // The column of time: 't' (t_s, "t (s)") or a word that starts with time; scale gives seconds (of
+  // ms, us, ns and min too: time_ms, "time (ms)", "time [ms]").
   std::optional<std::size_t> time_column(double& scale) const;
 };
 // kBadInput names file and line. At least one row; a heading is required.
 Result<SampleTable> parse_sample_table(std::string_view text, const std::string& name);
 
 struct CsvChannel {
-  std::string column;    // empty: the first that is not time
+  std::string column;    // empty: the first that is not time, and does not count rows
   double rate_hz = 0.0;  // 0: from the column of time, else from the comment
 };
-// One column, evenly spaced. The rate is that of the steps of usual length; where the time leaps,
-// the samples between are missing; rows whose time stands still or goes back are refused and
-// counted.
+// One column, evenly spaced. The rate is that of the steps of usual length, to six digits; stamps
+// may jitter. Where the time leaps, the samples between are missing and counted; rows whose time
+// goes back by most of a step or more are refused and counted, and so are rows whose time stands
+// still, unless the rate is given: then they are of one packet.
 Result<Recording> parse_csv(std::string_view text, const std::string& name,
                             const CsvChannel& channel);
 

@@ -25,6 +25,7 @@ struct Recording {
   double start_s = 0.0;         // the time of the first sample, by the file's own clock
   std::vector<double> samples;  // NaN: missing
   std::uint64_t refused = 0;    // rows that the reader could not use: time stood still or went back
+  std::uint64_t missing = 0;    // of samples: where the file's times leap
   double seconds() const { return static_cast<double>(samples.size()) / rate_hz; }
 };
 

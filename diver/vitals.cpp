@@ -14,6 +14,8 @@ constexpr double kMostHeard_bpm = 300.0, kMostBreaths_bpm = 120.0;
 // second, breath is analysed in blocks of ten seconds, eyes are seen many times a second.
 constexpr double kHeartSilence_s = 10.0, kBreathSilence_s = 30.0, kGazeSilence_s = 1.0;
 constexpr double kMostTime_s = 1e12;
+// Without a burst of sound for so long a diver pauses; between breaths at six a minute it is less.
+constexpr double kPauseHeard_s = 5.0;
 
 bool possible(const HeartState& heart) {
   return sim::all_finite(heart) && std::abs(heart.time_s) <= kMostTime_s && heart.rate_bpm >= 0.0 &&
@@ -63,9 +65,11 @@ double effort_heart_bpm(double oxygen_l_min) {
 void step_vitals(const Instruments& said, const VitalInputs& in, double dt_s, VitalState& vitals) {
   const bool heart = speaks(said.heart.time_s, kHeartSilence_s, dt_s, vitals.heart_time_s,
                             vitals.heart_silent_s) &&
-                     said.heart.rate_bpm > 0.0;
+                     said.heart.rate_bpm > 0.0 && said.heart.quality == SignalQuality::kGood;
+  // No rate known is not no breath.
   const bool breath = speaks(said.breath.time_s, kBreathSilence_s, dt_s, vitals.breath_time_s,
-                             vitals.breath_silent_s);
+                             vitals.breath_silent_s) &&
+                      (said.breath.estimate.breathing != 0 || said.breath.quiet_s >= kPauseHeard_s);
   const bool gaze =
       speaks(said.gaze.time_s, kGazeSilence_s, dt_s, vitals.gaze_time_s, vitals.gaze_silent_s) &&
       said.gaze.now != GazeClass::kLost;

@@ -36,7 +36,9 @@ struct VitalState {
   double heart_bpm = 0.0, breath_bpm = 0.0;
   double pause_s = 0.0;  // since the last breath, where it is held or not heard
   Vec3 gaze_ned{1.0, 0.0, 0.0};
-  std::uint64_t measured = 0;  // which of the three are an instrument's
+  // Which of the three are an instrument's: the heart where its signal is good, the breath where a
+  // rate is known or a pause of five seconds is heard (0 breaths a minute then).
+  std::uint64_t measured = 0;
   RiskProxies risk;
   // Since each instrument said something new; and the time of its last word.
   double heart_silent_s = 0.0, breath_silent_s = 0.0, gaze_silent_s = 0.0;

@@ -1,4 +1,5 @@
 // Gaze: angles, pixels, fixations and saccades, against closed forms and a person's marks.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -114,6 +115,37 @@ TEST(GazeByVelocity, PursuitIsOneFixationThatIsMarked) {
   GazeSettings dispersion;
   dispersion.method = GazeMethod::kDispersion;
   EXPECT_NE(find_gaze_events(samples, dispersion).fixations.size(), 1u);
+}
+
+// An eye that the tracker did not see is no gaze, in whatever words it says so.
+TEST(GazeCsv, WordsOfAStatusAreReadAndOthersRefused) {
+  const auto valid = [](const char* word) {
+    const auto gaze =
+        parse_gaze_csv(fmt::format("t_s,x_deg,y_deg,status\n0,1,1,{}\n", word), "a.csv", 0.0);
+    EXPECT_TRUE(gaze.ok()) << gaze.error().message;
+    return gaze->samples[0].valid;
+  };
+  for (const char* word : {"1", "true", "True", "yes", "VALID", "2"})
+    EXPECT_TRUE(valid(word)) << word;
+  for (const char* word : {"0", "false", "False", "no", "Invalid", "", "nan"})
+    EXPECT_FALSE(valid(word)) << word;
+  EXPECT_THAT(
+      parse_gaze_csv("t_s,x_deg,y_deg,valid\n0,1,1,1\n1,1,1,blink\n", "a.csv", 0.0).error().message,
+      testing::HasSubstr("a.csv:3: valid 'blink' found, true, false or a number is accepted"));
+}
+
+// A screen ends before the side: such angles are no other direction.
+TEST(GazeCsv, AnglesThatNoScreenHasAreRefusedAndCounted) {
+  const auto gaze = parse_gaze_csv(
+      "t_s,x_deg,y_deg\n0,89,0\n0.01,90,0\n0.02,135,0\n0.03,-100,0\n0.04,0,91\n0.05,180,0\n",
+      "a.csv", 0.0);
+  ASSERT_TRUE(gaze.ok());
+  GazeMonitor monitor{GazeSettings{}};
+  GazeEvents events;
+  for (const GazeSample& sample : gaze->samples) monitor.push(sample, events);
+  EXPECT_EQ(monitor.state().refused, 5u);
+  EXPECT_NEAR(degrees(std::atan2(monitor.state().direction.x, -monitor.state().direction.z)), 89.0,
+              1e-9);
 }
 
 TEST(GazeMonitor, WhatIsNoGazeIsRefusedCountedAndTheLastGoodOneHeld) {

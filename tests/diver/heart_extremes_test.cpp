@@ -157,6 +157,38 @@ TEST(HeartExtremes, AnExtraBeatIsFlaggedAndKeptOutOfTheFigures) {
   EXPECT_NEAR(v.mean_rate_bpm, 75.0, 0.1);
 }
 
+// The levels of Pan and Tompkins part noise into beats and noise, too. A heart is not as flat, or
+// it keeps time.
+TEST(HeartMonitor, NoiseAloneIsNoGoodSignalAndAHeartIs) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    const RandomKey key = RandomKey{seed};
+    HeartMonitor monitor(360.0);
+    int good = 0, asked = 0;
+    for (std::uint64_t i = 0; i < 360 * 120; ++i) {
+      const double sample = 0.3 * test::gauss(key, i);
+      monitor.push({&sample, 1});
+      if (i % 360 != 0 || i < 360 * 5) continue;
+      ++asked;
+      good += monitor.state().quality == SignalQuality::kGood;
+    }
+    EXPECT_LE(good, asked / 50) << seed;
+  }
+  for (const double bpm : {40.0, 75.0, 120.0, 180.0, 200.0})
+    for (const double noise : {0.0, 0.1, 0.2}) {
+      std::vector<double> ecg = test::ecg_of(test::even_beats(60.0 / bpm, 30.0), 250.0, 30.0);
+      for (std::size_t i = 0; i < ecg.size(); ++i) ecg[i] += noise * test::gauss(RandomKey{9}, i);
+      EXPECT_EQ(monitored(250.0, ecg).quality, SignalQuality::kGood) << bpm << " " << noise;
+    }
+}
+
+TEST(HeartMonitor, WhereMuchIsMissingTheSignalIsPoor) {
+  std::vector<double> ecg = test::ecg_of(test::even_beats(0.75, 30.0), 250.0, 30.0);
+  const HeartState whole = monitored(250.0, ecg);
+  EXPECT_EQ(whole.quality, SignalQuality::kGood);
+  for (std::size_t i = 0; i < ecg.size(); i += 3) ecg[i] = ecg[i + 1] = kNoEcg;
+  EXPECT_EQ(monitored(250.0, ecg).quality, SignalQuality::kPoor);
+}
+
 TEST(HeartMonitor, AStrapsIntervalsAreTakenAsTheyAre) {
   HeartMonitor monitor;
   for (const double rr_ms : {800, 810, 790, 860, 780, 805, 795, 850})

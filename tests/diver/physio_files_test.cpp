@@ -2,12 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
+#include "diver/heart_detector.hpp"
 #include "diver/physio_csv.hpp"
 #include "diver/physio_wav.hpp"
 #include "diver/physio_wfdb.hpp"
 #include "engine/core/files.hpp"
+#include "tests/diver/physio_signals.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic::diver {
@@ -151,6 +154,75 @@ TEST(SignalCsv, AStrapsClockThatDriftsIsFollowed) {
   ASSERT_TRUE(csv.ok());
   EXPECT_NEAR(csv->rate_hz, 130.16, 0.05);
   EXPECT_EQ(csv->samples.size(), 2000u);
+}
+
+// Stamps that are rounded, jitter, miss rows: the rate is that of the clock behind them.
+TEST(SignalCsv, TheRateIsThatOfTheClock) {
+  const RandomKey key = RandomKey{7};
+  const auto read = [&](double rate_hz, const auto& stamp_s, const auto& kept) {
+    std::string text = "time_s,ecg\n";
+    for (std::uint64_t i = 0; i < 20000; ++i)
+      if (kept(i))
+        text += fmt::format("{:.6f},{}\n", stamp_s(static_cast<double>(i) / rate_hz, i), i);
+    const auto csv = parse_csv(text, "a.csv", {});
+    EXPECT_TRUE(csv.ok()) << csv.error().message;
+    return csv.ok() ? *csv : Recording{};
+  };
+  const auto all = [](std::uint64_t) { return true; };
+  const auto exact = [](double t, std::uint64_t) { return t; };
+  for (const double rate_hz : {50.0, 130.0, 250.0, 360.0, 1000.0, 0.1}) {
+    EXPECT_EQ(read(rate_hz, exact, all).rate_hz, rate_hz);
+    EXPECT_TRUE(rate_hz < 50.0 || check_ecg_rate(read(rate_hz, exact, all).rate_hz).ok());
+  }
+  const auto whole_ms = [](double t, std::uint64_t) { return 1e-3 * std::round(1e3 * t); };
+  EXPECT_NEAR(read(360.0, whole_ms, all).rate_hz, 360.0, 0.01);
+  const auto jitters = [&](double t, std::uint64_t i) { return t + 0.8e-3 * test::gauss(key, i); };
+  const Recording jittered = read(360.0, jitters, all);
+  EXPECT_NEAR(jittered.rate_hz, 360.0, 0.05);
+  EXPECT_LT(jittered.missing, 40u);
+  EXPECT_NEAR(static_cast<double>(jittered.samples.size()), 20000.0 - jittered.refused, 40.0);
+  const Recording halved =
+      read(360.0, exact, [&](std::uint64_t i) { return random_uniform(key, i) < 0.5; });
+  EXPECT_NEAR(halved.rate_hz, 360.0, 0.01);
+  EXPECT_NEAR(static_cast<double>(halved.missing), 10000.0, 300.0);
+  EXPECT_NEAR(static_cast<double>(halved.samples.size()), 20000.0, 20.0);
+  EXPECT_EQ(halved.refused, 0u);
+}
+
+// As heart straps send: all samples of a packet have one time, and packets come unevenly or not.
+TEST(SignalCsv, APacketsSamplesShareATimeWhereTheRateIsKnown) {
+  std::string text = "time_s,ecg\n";
+  for (int packet = 0; packet < 100; ++packet)
+    for (int i = 0; i < 72 && packet != 50; ++i)
+      text += fmt::format("{:.3f},{}\n", 0.2 * packet + 0.03 * (packet % 3), 72 * packet + i);
+  const auto csv = parse_csv(text, "a.csv", {"", 360.0});
+  ASSERT_TRUE(csv.ok());
+  EXPECT_EQ(csv->refused, 0u);
+  EXPECT_NEAR(static_cast<double>(csv->missing), 72.0, 16.0);
+  EXPECT_NEAR(static_cast<double>(csv->samples.size()), 7200.0, 16.0);
+  EXPECT_EQ(csv->samples[72 * 49 + 71], 72.0 * 49 + 71);
+}
+
+// As spreadsheets and recorders write them.
+TEST(SignalCsv, HeadingsAreTakenAsTheyCome) {
+  for (const char* text :
+       {"\xEF\xBB\xBFtime_s,ecg\n0,5\n0.01,6\n0.02,7\n",
+        "time_s\tecg\r\n0\t5\r\n0.01\t6\r\n0.02\t7\r\n", "Time (ms);ECG\n0;5\n10;6\n20;7\n",
+        "\"t [ms]\",\"ecg\"\n0,5\n10,6\n20,7\n",
+        "sample,Time [us],ecg\n0,0,5\n1,10000,6\n2,20000,7\n",
+        ",timestamp_ms,ecg\n0,1700000000000,5\n1,1700000000010,6\n2,1700000000020,7\n"}) {
+    const auto csv = parse_csv(text, "a.csv", {});
+    ASSERT_TRUE(csv.ok()) << text << csv.error().message;
+    EXPECT_NEAR(csv->rate_hz, 100.0, 1e-9) << text;
+    EXPECT_EQ(csv->samples, (std::vector<double>{5.0, 6.0, 7.0})) << text;
+  }
+  // What counts rows is no signal, unless it is asked for.
+  const char* counted = "index,ecg\n0,5\n1,6\n2,5\n";
+  EXPECT_EQ(parse_csv(counted, "a.csv", {"", 100.0})->channel, "ecg");
+  EXPECT_EQ(parse_csv(counted, "a.csv", {"index", 100.0})->channel, "index");
+  EXPECT_THAT(
+      parse_csv("time,ecg\n1700000000000000,1\n1700000000010000,2\n", "a.csv", {}).error().message,
+      HasSubstr("no time in column 'time' found"));
 }
 
 TEST(SignalCsv, WhatIsNoneIsAnErrorInWords) {

@@ -179,6 +179,7 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
       inputs.buttons = static_cast<std::uint64_t>(draws.uniform(0.0, 8.0));
       inputs.instruments.heart.time_s += 1.0;
       inputs.instruments.heart.rate_bpm = draws.uniform(50.0, 180.0);
+      inputs.instruments.heart.quality = SignalQuality::kGood;
       simulation.push(inputs);
       std::this_thread::yield();
     }

@@ -87,6 +87,31 @@ TEST(Vitals, WhatAnInstrumentSaysIsTakenUntilItFallsSilent) {
   EXPECT_EQ(state.life.vitals.measured, 0u);
 }
 
+// An instrument that hears nothing it knows says nothing of the diver: a robot is not told of one
+// who does not breathe, nor of noise as a heart.
+TEST(Vitals, AnInstrumentThatKnowsNothingMeasuresNothing) {
+  const Body body = body_with(Gear{});
+  HumanState state = diver_at(body, 10.0);
+  HumanInputs inputs = still_inputs(body);
+  inputs.instruments.breath.time_s = 10.0;
+  inputs.instruments.breath.estimate = {0.0, 0.5, 6.0, 0};
+  inputs.instruments.breath.quiet_s = 2.0;
+  inputs.instruments.heart.time_s = 10.0;
+  inputs.instruments.heart.rate_bpm = 186.0;
+  inputs.instruments.heart.quality = SignalQuality::kPoor;
+  live_for(body, state, inputs, 5.0);
+  EXPECT_EQ(state.life.vitals.measured, 0u);
+  EXPECT_GT(state.life.vitals.breath_bpm, 5.0);
+  EXPECT_NEAR(state.life.vitals.heart_bpm, 65.0, 5.0);
+  EXPECT_EQ(state.life.vitals.pause_s, 0.0);
+  inputs.instruments.breath.time_s = 20.0;
+  inputs.instruments.breath.quiet_s = 8.0;  // a pause is something known
+  state = step(body, state, inputs, kVitalStep_s);
+  EXPECT_EQ(state.life.vitals.measured, kBreathMeasured);
+  EXPECT_EQ(state.life.vitals.breath_bpm, 0.0);
+  EXPECT_EQ(state.life.vitals.pause_s, 8.0);
+}
+
 TEST(Vitals, ASwimmerLooksAheadAndTheHeadTurnsTheGaze) {
   const Body body = body_with(Gear{});
   HumanState state = diver_at(body, 10.0);
@@ -109,6 +134,7 @@ TEST(Vitals, WhatIsNoNumberIsRefusedCountedAndTheLastGoodWordHeld) {
   HumanInputs good = still_inputs(body);
   good.instruments.heart.time_s = 4.0;
   good.instruments.heart.rate_bpm = 90.0;
+  good.instruments.heart.quality = SignalQuality::kGood;
   const HumanState before = step(body, diver_at(body, 10.0), good, kVitalStep_s);
   ASSERT_EQ(before.refused_inputs, 0u);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
