@@ -23,6 +23,17 @@ nlohmann::json json_in(const std::filesystem::path& path) {
   return parse_json(read_text(path).value()).value();
 }
 
+// As numpy, spreadsheets and data frames take it: the heading is the first line, all else is rows.
+void expect_plain_table(const std::filesystem::path& path, const std::string& heading,
+                        std::size_t rows) {
+  const std::string table = read_text(path).value();
+  EXPECT_TRUE(table.starts_with(heading)) << table.substr(0, 200);
+  EXPECT_EQ(table.find('#'), table.npos);
+  EXPECT_EQ(std::ranges::count(table, '\n'), static_cast<std::ptrdiff_t>(rows) + 1);
+  EXPECT_EQ(std::ranges::count(table, ','),
+            std::ranges::count(heading, ',') * (static_cast<std::ptrdiff_t>(rows) + 1));
+}
+
 TEST(PhysioCommand, AnEcgBecomesBeatsAsTableJsonAndPicture) {
   const test::ScratchFolder folder;
   std::vector<double> beats_s;
@@ -44,8 +55,7 @@ TEST(PhysioCommand, AnEcgBecomesBeatsAsTableJsonAndPicture) {
   EXPECT_EQ(json["beats"].size(), beats_s.size());
   EXPECT_NEAR(json["variability"]["mean_rate_bpm"].get<double>(), 80.0, 0.1);
   EXPECT_TRUE(json["spectrum"].is_null());  // half a minute is too short
-  const std::string table = read_text(folder / "out/ecg.csv").value();
-  EXPECT_THAT(table, HasSubstr("time_s,rr_ms,kind,amplitude\n"));
+  expect_plain_table(folder / "out/ecg.csv", "time_s,rr_ms,kind,amplitude\n", beats_s.size());
   EXPECT_EQ(scene::read_image8(folder / "heart.png")->width, 1600u);
 }
 
@@ -83,9 +93,49 @@ TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
     const nlohmann::json json = json_in(folder / "out/gaze.json");
     EXPECT_THAT(json["note"].get<std::string>(), HasSubstr("pursuit"));
     ASSERT_EQ(json["fixations"].size(), 2u) << method;
+    expect_plain_table(folder / "out/gaze.csv",
+                       "kind,start_s,end_s,duration_ms,x_deg,y_deg,spread_deg,amplitude_deg,"
+                       "peak_deg_s,pursuit,u_px,v_px\n",
+                       json["fixations"].size() + json["saccades"].size());
     EXPECT_NEAR(json["fixations"][0]["pixel"][0].get<double>(), 50.0, 1e-6);
     EXPECT_NEAR(json["fixations"][1]["pixel"][0].get<double>(), 150.0, 1.5);
   }
+}
+
+TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
+  const test::ScratchFolder folder;
+  std::string gaze = "# fs_hz=500\nx_deg,y_deg\n", sound = "# fs_hz=1000\nsound\n";
+  for (int i = 0; i < 400; ++i) gaze += i < 200 ? "0,0\n" : "10,0\n";
+  for (int i = 0; i < 20000; ++i)
+    sound += fmt::format("{:.4f}\n", std::sin(0.7 * i) * (1.0 + std::sin(0.002 * i)));
+  ASSERT_TRUE(write_text(folder / "g.csv", gaze).ok());
+  ASSERT_TRUE(write_text(folder / "s.csv", sound).ok());
+  PhysioFlags flags;
+  flags.what = "breath";
+  flags.file = (folder / "s.csv").string();
+  flags.out = folder / "out";
+  EXPECT_TRUE(run_physio(flags).ok());
+  expect_plain_table(folder / "out/breath.csv",
+                     "time_s,rate_bpm,breathing,confidence,depth_db,quiet_s,refused\n", 2);
+  for (const double window_s : {0.0, -1.0, std::nan(""), 301.0}) {
+    flags.window_s = window_s;
+    EXPECT_THAT(run_physio(flags).error().message, HasSubstr("--window: ")) << window_s;
+  }
+  flags.window_s.reset();
+  for (const double rate : {0.0, -5.0, std::nan("")}) {
+    flags.reference_bpm = rate;
+    EXPECT_THAT(run_physio(flags).error().message, HasSubstr("--reference: ")) << rate;
+  }
+  // A headset's durations are those of I-DT.
+  PhysioFlags eyes;
+  eyes.what = "gaze";
+  eyes.file = (folder / "g.csv").string();
+  eyes.out = folder / "eyes";
+  eyes.headset = true;
+  ASSERT_TRUE(run_physio(eyes).ok());
+  EXPECT_EQ(json_in(folder / "eyes/gaze.json")["method"], "idt");
+  eyes.method = "ivt";
+  EXPECT_THAT(run_physio(eyes).error().message, HasSubstr("--headset: --method ivt found"));
 }
 
 TEST(PhysioCommand, FilesThatAreNoneAreErrorsInWords) {

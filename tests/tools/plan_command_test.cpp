@@ -79,6 +79,36 @@ TEST(PlanCommand, FlagsChangeWhatTheyName) {
   EXPECT_NEAR(stop_min("--convention run-minutes"), 44.0, 4.0);
 }
 
+// Sea level is not what this set takes for it.
+TEST(PlanCommand, AnAltitudeOfNothingIsSeaLevel) {
+  EXPECT_THAT(said_by("plan --depth 30 --time 20 --convention msw").out,
+              HasSubstr("surface 1.0000 bar"));
+  EXPECT_THAT(said_by("plan --depth 30 --time 20 --convention msw --altitude 0").out,
+              HasSubstr("surface 1.0132 bar"));
+}
+
+// Each earlier dive is the same as this one: what it left halves in 90 min.
+TEST(PlanCommand, OxygenOfEarlierDivesCounts) {
+  const auto planned = [](const std::string& after) {
+    return parse_json(said_by("plan --gas ean36 --depth 30 --time 60 --json " + after).out).value();
+  };
+  const nlohmann::json fresh = planned(""), later = planned("--after 30,60,90,ean36"),
+                       third = planned("--after 30,60,90,ean36 --after 30,60,0,ean36");
+  const double cns = fresh["cns_percent"], otu = fresh["otu"];
+  EXPECT_GT(cns, 40.0);
+  EXPECT_EQ(fresh["cns_percent_before"], 0.0);
+  EXPECT_NEAR(later["cns_percent_before"].get<double>(), 0.5 * cns, 1e-9);
+  EXPECT_NEAR(later["otu_before"].get<double>(), otu, 1e-9);
+  EXPECT_NEAR(later["cns_percent"].get<double>(), 1.5 * cns, 3.0);  // its stops are longer
+  EXPECT_NEAR(third["cns_percent_before"].get<double>(), later["cns_percent"].get<double>(), 1e-9);
+  EXPECT_NEAR(third["otu_before"].get<double>(), later["otu"].get<double>(), 1e-9);
+  EXPECT_EQ(planned("--after 30,60,1500,ean36")["otu_before"], 0.0);
+  const std::string said =
+      said_by("plan --gas ean36 --depth 30 --time 60 --after 30,60,10,ean36").out;
+  EXPECT_THAT(said, HasSubstr(" (of earlier dives 42 %"));
+  EXPECT_THAT(said, HasSubstr("WARNING: CNS "));
+}
+
 TEST(PlanCommand, JsonAndPicturesAreWritten) {
   const test::ScratchFolder folder;
   const PlanSaid said =
@@ -134,6 +164,19 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
         {"plan --depth 30 --time 20 --last-stop 4", "last stop 4 m found, a multiple of 3 m"},
         {"plan --depth 30 --time 20 --after 30,25", "--after: 2 numbers in '30,25' found"},
         {"plan --depth 30 --time 20 --table z", "--table: 'z' found, b or c"},
+        {"plan --depth 30 --time 20 --ascent-rate 0", "0 up found, 0.1 to 1000 m/min"},
+        {"plan --depth 30 --time 20 --descent-rate 0", "rates of 0 down"},
+        {"plan --depth 30 --time 20 --last-stop 0", "last stop 0 m found"},
+        {"plan --depth 30 --time 20 --surface 0", "surface pressure 0 bar found"},
+        {"plan --depth 0 --time 20", "0 m until 20 min found"},
+        {"plan --gas 10/70 --depth 100 --time 15 --travel ean32",
+         "bottom gas 10/70 and travel gas EAN32 both from 0 m found"},
+        {"plan --gas 10/70 --depth 100 --time 15 --travel ean32@0 21/35@30",
+         "bottom gas 10/70 and travel gas EAN32 both from 0 m found"},
+        {"plan --gas 10/70@40 --depth 30 --time 15 --travel ean32",
+         "bottom gas 10/70 from 40 m found, while EAN32 is breathed at 30 m"},
+        {"plan --gas 10/70@20 --depth 60 --time 15 --travel ean32 21/35@30",
+         "bottom gas 10/70 from 20 m found, while 21/35 is breathed at 60 m"},
         {"plan --log nowhere.csv", "nowhere.csv: no such file"}}) {
     const PlanSaid said = said_by(arguments);
     EXPECT_EQ(said.status, 2) << arguments;

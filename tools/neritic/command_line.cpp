@@ -319,9 +319,9 @@ void add_physio(CLI::App& app, Run& run) {
                       "breath: the known rate (else of a name like ..._12bpm_...)");
   command->add_flag("--realtime", flags->realtime,
                     "breath: at the recording's own pace, recorded and analysed on two threads");
-  command->add_option("--method", flags->method, "gaze: ivt (30 deg/s) or idt (1 deg, 100 ms)")
-      ->capture_default_str();
-  command->add_flag("--headset", flags->headset, "gaze: idt with a headset's 250 ms");
+  command->add_option("--method", flags->method,
+                      "gaze: ivt (30 deg/s; the default) or idt (1 deg, 100 ms)");
+  command->add_flag("--headset", flags->headset, "gaze: idt, with a headset's 250 ms");
   command->add_option("--intrinsics", flags->intrinsics,
                       "gaze: fx,fy,cx,cy of a camera at the eye: fixations in its pixels too");
   command->add_option("--out", flags->out, "folder for the table and the JSON");

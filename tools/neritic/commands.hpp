@@ -75,10 +75,10 @@ Status run_check(const CheckFlags& flags);
 
 struct PlanFlags {
   std::vector<std::string> gases{"air"}, travel, levels, after;
-  double depth_m = 0.0, time_min = 0.0;  // 0: not given
+  std::optional<double> depth_m, time_min;
   std::string gf = "30/85", convention = "stop-minutes", table, water, saturation, log;
-  double altitude_m = 0.0, surface_bar = 0.0, last_stop_m = 0.0;  // 0: the convention's
-  double ascent_m_min = 0.0, descent_m_min = 0.0;
+  // Not given: the convention's.
+  std::optional<double> altitude_m, surface_bar, last_stop_m, ascent_m_min, descent_m_min;
   std::filesystem::path out, plot;
   bool json = false;
 };
@@ -87,9 +87,11 @@ Result<std::string> run_plan(const PlanFlags& flags);
 // file: .csv, .wav or a WFDB record.
 struct PhysioFlags {
   std::string what, file, channel, annotations, intrinsics;
-  std::string estimator = "multiband", method = "ivt";
+  std::string estimator = "multiband";
+  std::string method;  // of gaze: empty for the default
   std::filesystem::path out, plot;
-  double rate_hz = 0.0, window_s = 0.0, reference_bpm = 0.0;  // 0: the file's, the default, none
+  double rate_hz = 0.0;                           // 0: the file's
+  std::optional<double> window_s, reference_bpm;  // not given: the default; none
   bool json = false, headset = false, realtime = false;
 };
 Result<std::string> run_physio(const PhysioFlags& flags);

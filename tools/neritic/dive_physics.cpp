@@ -113,6 +113,7 @@ std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
       1e-5 * gas.tank_pa, gas.ventilation_l_min);
   line += deco.ceiling_m > 0.0 ? fmt::format("ceiling {:.1f} m, ", deco.ceiling_m)
                                : fmt::format("{:.0f} min without stops, ", deco.no_stop_min);
+  if (deco.ceiling_violated) line += "which is violated, ";
   line += touch_words(state.contact.touched_steps);
   if (state.human.refused_inputs > 0)
     line += fmt::format(", {} inputs refused", state.human.refused_inputs);
@@ -142,6 +143,7 @@ nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
             {"narcotic_depth_m", state.human.life.vitals.risk.narcotic_depth_m},
             {"narcosis", name_of(state.human.life.vitals.risk.narcosis)}}},
           {"ceiling_m", deco.ceiling_m},
+          {"ceiling_violated", deco.ceiling_violated},
           {"no_stop_min", deco.no_stop_min},
           {"touched_steps", state.contact.touched_steps},
           {"deepest_contact_m", state.contact.deepest_m},

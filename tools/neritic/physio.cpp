@@ -41,7 +41,7 @@ Result<diver::Recording> load_record(const PhysioFlags& flags) {
 template <class Report>
 Result<std::string> show(const PhysioFlags& flags, const Report& report) {
   const std::string json = json_text(report_json(flags, report)) + "\n";
-  const std::string table = report_text(flags, report);
+  const ReportText text = report_text(flags, report);
   std::string where;
   if (!flags.out.empty()) {
     NERITIC_TRY_STATUS(make_folder(flags.out));
@@ -51,14 +51,14 @@ Result<std::string> show(const PhysioFlags& flags, const Report& report) {
           "--out: '{}' found, where the table would replace the recording; another "
           "folder is accepted",
           flags.out.string());
-    NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".csv"), table));
+    NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".csv"), text.table));
     NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".json"), json));
     where = flags.out.string() + fmt::format(": {0}.csv, {0}.json", flags.what);
   }
   if (!flags.plot.empty())
     NERITIC_TRY_STATUS(scene::write_png8(flags.plot, report_plot(flags, report)));
   if (flags.out.empty() || flags.json) {
-    fmt::print("{}", flags.json ? json : table);
+    fmt::print("{}", flags.json ? json : text.summary + text.table);
     std::fflush(stdout);
     return std::string();
   }

@@ -14,7 +14,7 @@ namespace {
 
 // --reference, or a rate in the file's name: ..._12bpm_...
 std::optional<double> known_rate(const PhysioFlags& flags) {
-  if (flags.reference_bpm > 0.0) return flags.reference_bpm;
+  if (flags.reference_bpm) return flags.reference_bpm;
   const std::string name = std::filesystem::path(flags.file).filename().string();
   const auto at = name.find("bpm");
   if (at == name.npos) return std::nullopt;
@@ -30,7 +30,12 @@ std::optional<double> known_rate(const PhysioFlags& flags) {
 Result<diver::BreathSettings> breath_settings(const PhysioFlags& flags) {
   diver::BreathSettings settings;
   NERITIC_TRY(settings.estimator, diver::breath_estimator_of(flags.estimator));
-  if (flags.window_s > 0.0) settings.window_s = flags.window_s;
+  if (flags.reference_bpm && !(*flags.reference_bpm > 0.0 && *flags.reference_bpm <= 120.0))
+    return bad_input("--reference: {} found, above 0 to 120 breaths a minute is accepted",
+                     *flags.reference_bpm);
+  settings.window_s = flags.window_s.value_or(settings.window_s);
+  if (!(settings.window_s >= 0.5 && settings.window_s <= 300.0))
+    return bad_input("--window: {} found, 0.5 to 300 s is accepted", settings.window_s);
   settings.block_s = std::min(settings.block_s, settings.window_s);
   NERITIC_TRY_STATUS(diver::check_breath_settings(settings));
   return settings;
@@ -132,7 +137,7 @@ Status play_sound(const PhysioFlags& flags) {
   return {};
 }
 
-std::string report_text(const PhysioFlags& flags, const BreathReport& r) {
+ReportText report_text(const PhysioFlags& flags, const BreathReport& r) {
   std::string out =
       fmt::format("# {}: {:g} Hz, {:.1f} s; {} over {:g} s, an estimate every {:g} s\n", flags.file,
                   r.sound.rate_hz, r.sound.seconds(), diver::name_of(r.settings.estimator),
@@ -148,9 +153,9 @@ std::string report_text(const PhysioFlags& flags, const BreathReport& r) {
                        rate_errors(r.plain, *r.true_bpm, r.settings.block_s));
   }
   out += fmt::format("# {:.0f} us of one core a second of sound\n", r.us_a_second);
-  out += kBreathHeading;
-  for (const diver::BreathState& s : r.states) out += breath_row(s);
-  return out;
+  std::string table = kBreathHeading;
+  for (const diver::BreathState& s : r.states) table += breath_row(s);
+  return {std::move(out), std::move(table)};
 }
 
 }  // namespace neritic::tools

@@ -58,13 +58,13 @@ Result<EcgReport> analyse_ecg(const PhysioFlags& flags) {
   return report;
 }
 
-std::string report_text(const PhysioFlags& flags, const EcgReport& r) {
+ReportText report_text(const PhysioFlags& flags, const EcgReport& r) {
   const auto ectopic =
       std::ranges::count(r.intervals, diver::IntervalKind::kEctopic, &diver::Interval::kind);
   std::string out = fmt::format(
-      "# {}: {} at {:g} Hz, {:.1f} s; {} samples refused, {} gaps, signal {}\n", flags.file,
-      r.ecg.channel.empty() ? "ECG" : r.ecg.channel, r.ecg.rate_hz, r.ecg.seconds(),
-      r.counts.refused + r.ecg.refused, r.counts.gaps, diver::name_of(r.state.quality));
+      "# {}: {} at {:g} Hz, {:.1f} s; {} samples refused, {} missing, {} gaps, signal {}\n",
+      flags.file, r.ecg.channel.empty() ? "ECG" : r.ecg.channel, r.ecg.rate_hz, r.ecg.seconds(),
+      r.refused(), r.ecg.missing, r.counts.gaps, diver::name_of(r.state.quality));
   const diver::Variability& v = r.variability;
   out += fmt::format("# {} beats, {} ectopic; mean {:.1f} bpm, at the end {:.1f} bpm\n",
                      r.beats.size(), ectopic, v.mean_rate_bpm, r.state.rate_bpm);
@@ -90,12 +90,12 @@ std::string report_text(const PhysioFlags& flags, const EcgReport& r) {
                        s.ectopic_flagged, s.ectopic_both);
   }
   out += fmt::format("# {:.0f} us of one core a second of ECG\n", r.us_a_second);
-  out += "time_s,rr_ms,kind,amplitude\n";
+  std::string table = "time_s,rr_ms,kind,amplitude\n";
   for (std::size_t i = 0; i < r.beats.size(); ++i)
-    out += fmt::format("{:.4f},{:.1f},{},{:.6g}\n", r.ecg.start_s + r.beats[i].time_s,
-                       1e3 * r.intervals[i].length_s, name_of(r.intervals[i].kind),
-                       r.beats[i].amplitude);
-  return out;
+    table += fmt::format("{:.4f},{:.1f},{},{:.6g}\n", r.ecg.start_s + r.beats[i].time_s,
+                         1e3 * r.intervals[i].length_s, name_of(r.intervals[i].kind),
+                         r.beats[i].amplitude);
+  return {std::move(out), std::move(table)};
 }
 
 }  // namespace neritic::tools

@@ -10,10 +10,12 @@ namespace neritic::tools {
 namespace {
 
 Result<diver::GazeSettings> gaze_settings(const PhysioFlags& flags) {
-  if (flags.method != "ivt" && flags.method != "idt")
-    return bad_input("--method: '{}' found, ivt or idt is accepted", flags.method);
-  const auto method =
-      flags.method == "ivt" ? diver::GazeMethod::kVelocity : diver::GazeMethod::kDispersion;
+  const std::string name = !flags.method.empty() ? flags.method : flags.headset ? "idt" : "ivt";
+  if (name != "ivt" && name != "idt")
+    return bad_input("--method: '{}' found, ivt or idt is accepted", name);
+  const auto method = name == "ivt" ? diver::GazeMethod::kVelocity : diver::GazeMethod::kDispersion;
+  if (flags.headset && method == diver::GazeMethod::kVelocity)
+    return bad_input("--headset: --method ivt found, idt is accepted");
   if (flags.headset) return diver::headset_gaze(method);
   diver::GazeSettings settings;
   settings.method = method;
@@ -84,14 +86,14 @@ Result<GazeReport> analyse_gaze(const PhysioFlags& flags) {
   return report;
 }
 
-std::string report_text(const PhysioFlags& flags, const GazeReport& r) {
-  std::string out = fmt::format(
-      "# {}: {} samples, {} refused; {} {}\n", flags.file, r.recording.samples.size(),
-      r.state.refused, flags.method == "ivt" ? "I-VT" : "I-DT",
-      flags.method == "ivt"
-          ? fmt::format("above {:g} deg/s", degrees(r.settings.velocity_rad_s))
-          : fmt::format("within {:g} deg for {:g} ms or more", degrees(r.settings.dispersion_rad),
-                        1e3 * r.settings.dispersion_s));
+ReportText report_text(const PhysioFlags& flags, const GazeReport& r) {
+  std::string out =
+      fmt::format("# {}: {} samples, {} refused; {} {}\n", flags.file, r.recording.samples.size(),
+                  r.state.refused, r.velocity() ? "I-VT" : "I-DT",
+                  r.velocity() ? fmt::format("above {:g} deg/s", degrees(r.settings.velocity_rad_s))
+                               : fmt::format("within {:g} deg for {:g} ms or more",
+                                             degrees(r.settings.dispersion_rad),
+                                             1e3 * r.settings.dispersion_s));
   out += fmt::format("# {} fixations, {} saccades\n# {}\n", r.events.fixations.size(),
                      r.events.saccades.size(), diver::kPursuitNote);
   if (r.kappa)
@@ -99,18 +101,19 @@ std::string report_text(const PhysioFlags& flags, const GazeReport& r) {
         "# against marks, saccade or none: kappa {:.3f}; from sample to sample alone {:.3f}\n",
         *r.kappa, *r.simple_kappa);
   out += fmt::format("# {:.0f} us of one core a second of gaze\n", r.us_a_second);
-  out += "kind,start_s,end_s,duration_ms,x_deg,y_deg,spread_deg,amplitude_deg,peak_deg_s,pursuit";
-  out += r.camera ? ",u_px,v_px\n" : "\n";
+  std::string table =
+      "kind,start_s,end_s,duration_ms,x_deg,y_deg,spread_deg,amplitude_deg,peak_deg_s,pursuit";
+  table += r.camera ? ",u_px,v_px\n" : "\n";
   for (const diver::Fixation& f : r.events.fixations)
-    out += fmt::format("fixation,{:.4f},{:.4f},{:.1f},{:.3f},{:.3f},{:.3f},{:.3f},,{}{}\n",
-                       f.start_s, f.end_s, 1e3 * (f.end_s - f.start_s), screen_x_deg(f.direction),
-                       screen_y_deg(f.direction), degrees(f.spread_rad), degrees(f.drift_rad),
-                       f.may_be_pursuit ? "maybe" : "no", pixel_cells(r, f.direction));
+    table += fmt::format("fixation,{:.4f},{:.4f},{:.1f},{:.3f},{:.3f},{:.3f},{:.3f},,{}{}\n",
+                         f.start_s, f.end_s, 1e3 * (f.end_s - f.start_s), screen_x_deg(f.direction),
+                         screen_y_deg(f.direction), degrees(f.spread_rad), degrees(f.drift_rad),
+                         f.may_be_pursuit ? "maybe" : "no", pixel_cells(r, f.direction));
   for (const diver::Saccade& s : r.events.saccades)
-    out += fmt::format("saccade,{:.4f},{:.4f},{:.1f},,,,{:.3f},{:.1f},{}\n", s.start_s, s.end_s,
-                       1e3 * (s.end_s - s.start_s), degrees(s.amplitude_rad), degrees(s.peak_rad_s),
-                       r.camera ? ",," : "");
-  return out;
+    table += fmt::format("saccade,{:.4f},{:.4f},{:.1f},,,,{:.3f},{:.1f},{}\n", s.start_s, s.end_s,
+                         1e3 * (s.end_s - s.start_s), degrees(s.amplitude_rad),
+                         degrees(s.peak_rad_s), r.camera ? ",," : "");
+  return {std::move(out), std::move(table)};
 }
 
 }  // namespace neritic::tools

@@ -39,7 +39,8 @@ json report_json(const PhysioFlags& flags, const EcgReport& r) {
            {"signal", r.ecg.channel},
            {"rate_hz", r.ecg.rate_hz},
            {"seconds", r.ecg.seconds()},
-           {"refused", r.counts.refused + r.ecg.refused},
+           {"refused", r.refused()},
+           {"missing", r.ecg.missing},
            {"gaps", r.counts.gaps},
            {"relearned", r.counts.relearned},
            {"quality", diver::name_of(r.state.quality)},
@@ -106,7 +107,7 @@ json report_json(const PhysioFlags& flags, const BreathReport& r) {
 }
 
 json report_json(const PhysioFlags& flags, const GazeReport& r) {
-  json out{{"file", flags.file},          {"method", flags.method},
+  json out{{"file", flags.file},          {"method", r.velocity() ? "ivt" : "idt"},
            {"note", diver::kPursuitNote}, {"samples", r.recording.samples.size()},
            {"refused", r.state.refused},  {"us_a_second", r.us_a_second},
            {"fixations", json::array()},  {"saccades", json::array()}};

@@ -168,9 +168,8 @@ ImageU8 report_plot(const PhysioFlags& flags, const BreathReport& r) {
 }
 
 ImageU8 report_plot(const PhysioFlags& flags, const GazeReport& r) {
-  std::string under =
-      fmt::format("{}: {} fixations, {} saccades", flags.method == "ivt" ? "I-VT" : "I-DT",
-                  r.events.fixations.size(), r.events.saccades.size());
+  std::string under = fmt::format("{}: {} fixations, {} saccades", r.velocity() ? "I-VT" : "I-DT",
+                                  r.events.fixations.size(), r.events.saccades.size());
   if (r.kappa) under += fmt::format("; kappa {:.2f} against a person's marks", *r.kappa);
   sonar::Canvas canvas =
       titled("Gaze: " + name_only(flags.file), under + "; smooth pursuit is unsupported");

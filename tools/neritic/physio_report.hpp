@@ -29,6 +29,8 @@ struct EcgReport {
   std::string reference;  // the file of marked beats; empty: none
   std::optional<diver::HeartScore> score;
   double us_a_second = 0.0;  // of one core, a second of ECG
+  // Rows and samples that say nothing; what is missing between rows is no sample.
+  std::uint64_t refused() const { return ecg.refused + counts.refused - ecg.missing; }
 };
 Result<EcgReport> analyse_ecg(const PhysioFlags& flags);
 
@@ -63,16 +65,21 @@ struct GazeReport {
   // from one sample to the next.
   std::optional<double> kappa, simple_kappa;
   double us_a_second = 0.0;
+  bool velocity() const { return settings.method == diver::GazeMethod::kVelocity; }
 };
 Result<GazeReport> analyse_gaze(const PhysioFlags& flags);
 // The screen angles of a direction, degrees.
 double screen_x_deg(const Vec3& direction);
 double screen_y_deg(const Vec3& direction);
 
-// Lines with '#' for people, then the table.
-std::string report_text(const PhysioFlags& flags, const EcgReport& report);
-std::string report_text(const PhysioFlags& flags, const BreathReport& report);
-std::string report_text(const PhysioFlags& flags, const GazeReport& report);
+// Lines with '#' for people; and the table, a heading and its rows alone, as every reader of .csv
+// takes it.
+struct ReportText {
+  std::string summary, table;
+};
+ReportText report_text(const PhysioFlags& flags, const EcgReport& report);
+ReportText report_text(const PhysioFlags& flags, const BreathReport& report);
+ReportText report_text(const PhysioFlags& flags, const GazeReport& report);
 nlohmann::json report_json(const PhysioFlags& flags, const EcgReport& report);
 nlohmann::json report_json(const PhysioFlags& flags, const BreathReport& report);
 nlohmann::json report_json(const PhysioFlags& flags, const GazeReport& report);

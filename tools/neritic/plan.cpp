@@ -42,12 +42,12 @@ Result<std::string> plan_a_dive(const PlanFlags& flags) {
     NERITIC_TRY_STATUS(write_text(flags.out / "plan.json", plan_json(report)));
   }
   PlanPicture picture{
-      fmt::format("{:g} m, {:g} min on {}", flags.depth_m, flags.time_min,
+      fmt::format("{:g} m, {:g} min on {}", *flags.depth_m, *flags.time_min,
                   diver::name_of(request.gases[0].mix)),
       fmt::format("{}, {}; run time {:.1f} min, stops {:.1f} min, CNS {:.0f} %, OTU "
                   "{:.0f}; for planning with judgement, no substitute for training",
                   gf_text(request.gf_low, request.gf_high), flags.convention, report.plan.run_min(),
-                  report.plan.stop_min(), report.plan.oxygen.cns_percent, report.plan.oxygen.otu),
+                  report.plan.stop_min(), report.oxygen().cns_percent, report.oxygen().otu),
       request.conventions,
       request.gf_low,
       request.gf_high,
@@ -77,6 +77,7 @@ std::string log_text(const PlanFlags& flags, const diver::DepthLog& log, const D
   if (view.stop_m > 0.0)
     out += fmt::format("; next stop {:g} m {:g} min, {:.0f} min to the surface", view.stop_m,
                        view.stop_min, view.to_surface_min);
+  if (view.ceiling_violated) out += "; THE CEILING IS VIOLATED";
   return out + "\n";
 }
 
@@ -84,8 +85,8 @@ Result<std::string> replay_a_log(const PlanFlags& flags) {
   NERITIC_TRY(const std::string text, read_text(flags.log));
   NERITIC_TRY(const diver::DepthLog log, diver::read_depth_log(text, flags.log));
   NERITIC_TRY(diver::DiveComputerSettings settings, log_settings(flags, log));
-  NERITIC_TRY(const diver::TissueState start, log_start(flags));
   NERITIC_TRY(const diver::DiveComputer computer, diver::DiveComputer::create(std::move(settings)));
+  NERITIC_TRY(const diver::DiveComputerState start, log_start(flags, computer));
   const DiveTrace trace = trace_log(computer, start, log);
   const diver::DiveComputerSettings& s = computer.settings();
   if (!flags.out.empty()) {

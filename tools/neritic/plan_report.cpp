@@ -141,10 +141,16 @@ std::string sums_text(const PlanReport& r) {
   else
     out += fmt::format("without stops: until {:.0f} min of run time\n",
                        std::floor(r.without_stops_min));
+  const diver::OxygenExposure oxygen = r.oxygen(), &before = r.request.oxygen_before;
+  const bool repetitive = before.cns_percent > 0.0 || before.otu > 0.0;
   out += fmt::format(
-      "CNS {:.0f} %, OTU {:.0f}, highest pO2 {:.2f} bar; surfacing at {:.0f} % of the "
+      "CNS {:.0f} %, OTU {:.0f}{}, highest pO2 {:.2f} bar; surfacing at {:.0f} % of the "
       "M-value\n",
-      plan.oxygen.cns_percent, plan.oxygen.otu, plan.max_po2_bar,
+      oxygen.cns_percent, oxygen.otu,
+      repetitive
+          ? fmt::format(" (of earlier dives {:.0f} %, {:.0f})", before.cns_percent, before.otu)
+          : "",
+      plan.max_po2_bar,
       100.0 * diver::gradient_share(r.request.conventions.model(), plan.surfacing.tissues,
                                     r.request.conventions.environment.surface_bar));
   out += depth_text(r);
@@ -237,8 +243,10 @@ std::string plan_json(const PlanReport& r) {
   json["end_of_bottom"] = plan_point_json(plan.end_of_bottom);
   json["surfacing"] = plan_point_json(plan.surfacing);
   if (plan.first_stop) json["first_stop"] = plan_point_json(*plan.first_stop);
-  json["cns_percent"] = plan.oxygen.cns_percent;
-  json["otu"] = plan.oxygen.otu;
+  json["cns_percent"] = r.oxygen().cns_percent;
+  json["otu"] = r.oxygen().otu;
+  json["cns_percent_before"] = r.request.oxygen_before.cns_percent;
+  json["otu_before"] = r.request.oxygen_before.otu;
   json["max_po2_bar"] = plan.max_po2_bar;
   const auto [depth, mix] = deepest_of(r);
   const diver::DecoEnvironment& where = r.request.conventions.environment;
@@ -275,6 +283,7 @@ std::string log_json(const std::string& file, const diver::DepthLog& log, const 
                             {"otu", end.oxygen.otu},
                             {"depth_m", end.last.depth_m},
                             {"ceiling_m", view.ceiling_m},
+                            {"ceiling_violated", view.ceiling_violated},
                             {"no_stop_min", view.no_stop_min},
                             {"stop_m", view.stop_m},
                             {"stop_min", view.stop_min},

@@ -14,6 +14,11 @@ struct PlanReport {
   diver::DivePlan plan;
   std::vector<diver::PlanWarning> warnings;
   double without_stops_min = 0.0;  // largest run time; negative: none
+  // Of this dive, and what earlier ones left.
+  diver::OxygenExposure oxygen() const {
+    return {plan.oxygen.cns_percent + request.oxygen_before.cns_percent,
+            plan.oxygen.otu + request.oxygen_before.otu};
+  }
 };
 Result<PlanReport> make_plan_report(const std::string& convention,
                                     const diver::DivePlanRequest& request);

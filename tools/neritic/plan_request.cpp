@@ -74,12 +74,12 @@ Result<double> bar_per_m_of_water(const std::string& water) {
 
 Result<DecoConventions> conventions_asked(const PlanFlags& flags) {
   NERITIC_TRY(DecoConventions c, diver::conventions_of(flags.convention));
-  if (flags.altitude_m != 0.0) {
-    if (!(flags.altitude_m >= -500.0 && flags.altitude_m <= 9000.0))
-      return bad_input("--altitude {} found, -500 to 9000 m is accepted", flags.altitude_m);
-    c.environment.surface_bar = diver::surface_bar_at(flags.altitude_m);
+  if (flags.altitude_m) {
+    if (!(*flags.altitude_m >= -500.0 && *flags.altitude_m <= 9000.0))
+      return bad_input("--altitude {} found, -500 to 9000 m is accepted", *flags.altitude_m);
+    c.environment.surface_bar = diver::surface_bar_at(*flags.altitude_m);
   }
-  if (flags.surface_bar != 0.0) c.environment.surface_bar = flags.surface_bar;
+  c.environment.surface_bar = flags.surface_bar.value_or(c.environment.surface_bar);
   if (!flags.water.empty()) {
     NERITIC_TRY(c.environment.bar_per_m, bar_per_m_of_water(flags.water));
   }
@@ -87,9 +87,9 @@ Result<DecoConventions> conventions_asked(const PlanFlags& flags) {
     c.table = flags.table == "b" ? diver::BuehlmannTable::kB : diver::BuehlmannTable::kC;
   else if (!flags.table.empty())
     return bad_input("--table: '{}' found, b or c is accepted", flags.table);
-  if (flags.last_stop_m != 0.0) c.last_stop_m = flags.last_stop_m;
-  if (flags.ascent_m_min != 0.0) c.ascent_m_min = flags.ascent_m_min;
-  if (flags.descent_m_min != 0.0) c.descent_m_min = flags.descent_m_min;
+  c.last_stop_m = flags.last_stop_m.value_or(c.last_stop_m);
+  c.ascent_m_min = flags.ascent_m_min.value_or(c.ascent_m_min);
+  c.descent_m_min = flags.descent_m_min.value_or(c.descent_m_min);
   if (!flags.saturation.empty()) {
     NERITIC_TRY(const auto speeds, percent_pair("saturation", flags.saturation));
     c.saturation = speeds.first;
@@ -139,7 +139,9 @@ Status add_earlier(const PlanFlags& flags, DivePlanRequest& request) {
     NERITIC_TRY(diver::EarlierDive dive, earlier_dive(text, request));
     dives.push_back(std::move(dive));
   }
-  NERITIC_TRY(request.start, diver::tissues_after(dives));
+  std::vector<diver::DivePlan> plans;
+  NERITIC_TRY(request.start, diver::tissues_after(dives, &plans));
+  request.oxygen_before = diver::oxygen_after(dives, plans);
   return {};
 }
 
@@ -147,17 +149,14 @@ Status add_earlier(const PlanFlags& flags, DivePlanRequest& request) {
 
 Result<DivePlanRequest> plan_request(const PlanFlags& flags) {
   NERITIC_TRY(DivePlanRequest request, bare_request(flags));
-  const auto missing = [](double value) { return value == 0.0; };
-  if (missing(flags.depth_m) || missing(flags.time_min)) {
-    const char* what = !missing(flags.depth_m)   ? "--time"
-                       : missing(flags.time_min) ? "--depth and --time"
-                                                 : "--depth";
+  if (!flags.depth_m || !flags.time_min) {
+    const char* what = flags.depth_m ? "--time" : flags.time_min ? "--depth" : "--depth and --time";
     return bad_input(
         "plan: no {} found; how deep (m) and how long (min, the way down included) is accepted, as "
         "--depth 30 --time 25; or --log FILE of a dive that was",
         what);
   }
-  request.levels = {{flags.depth_m, flags.time_min}};
+  request.levels = {{*flags.depth_m, *flags.time_min}};
   for (const std::string& text : flags.levels) {
     NERITIC_TRY(const auto level, parse_numbers("level", text, 2, 2));
     request.levels.push_back({level[0], level[1]});
@@ -188,11 +187,14 @@ Result<diver::DiveComputerSettings> log_settings(const PlanFlags& flags,
   return settings;
 }
 
-Result<diver::TissueState> log_start(const PlanFlags& flags) {
+Result<diver::DiveComputerState> log_start(const PlanFlags& flags,
+                                           const diver::DiveComputer& computer) {
   NERITIC_TRY(DivePlanRequest request, bare_request(flags));
   NERITIC_TRY_STATUS(add_earlier(flags, request));
-  const DecoConventions& c = request.conventions;
-  return request.start.value_or(diver::saturated(c.model(), c.environment.surface_bar, c.start_n2));
+  diver::DiveComputerState state =
+      request.start ? computer.start(*request.start) : computer.start();
+  state.oxygen = request.oxygen_before;
+  return state;
 }
 
 }  // namespace neritic::tools

@@ -16,6 +16,7 @@ Result<diver::DivePlanRequest> plan_request(const PlanFlags& flags);
 Result<diver::DiveComputerSettings> log_settings(const PlanFlags& flags,
                                                  const diver::DepthLog& log);
 // At the start of a log: never dived, or after earlier dives.
-Result<diver::TissueState> log_start(const PlanFlags& flags);
+Result<diver::DiveComputerState> log_start(const PlanFlags& flags,
+                                           const diver::DiveComputer& computer);
 
 }  // namespace neritic::tools

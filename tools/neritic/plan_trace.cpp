@@ -23,8 +23,7 @@ void add_row(DiveTrace& trace, const DiveComputer& computer, const DiveComputerS
   trace.most_ceiling_m = std::max(trace.most_ceiling_m, view.ceiling_m);
   if (trace.rows.size() < 2) return;
   const double minutes = run_min - trace.rows[trace.rows.size() - 2].run_min;
-  // A sensor's noise is no ascent past the ceiling.
-  if (state.last.depth_m < view.ceiling_m - 0.3) trace.above_ceiling_min += minutes;
+  if (view.ceiling_violated) trace.above_ceiling_min += minutes;
   if (view.alarm != diver::AscentAlarm::kNone) trace.fast_min += minutes;
 }
 
@@ -42,6 +41,7 @@ DiveTrace trace_plan(const diver::DivePlanRequest& request, const diver::DivePla
   NERITIC_CHECK(computer.ok(), "planned, but refused: {}", computer.error().message);
   DiveTrace trace;
   DiveComputerState state = computer->start(plan.start.tissues);
+  state.oxygen = request.oxygen_before;
   double run_min = 0.0;
   state.last.gas = plan.segments.empty() ? 0 : plan.segments[0].gas;
   add_row(trace, *computer, state, run_min);
@@ -66,10 +66,10 @@ DiveTrace trace_plan(const diver::DivePlanRequest& request, const diver::DivePla
   return trace;
 }
 
-DiveTrace trace_log(const DiveComputer& computer, const diver::TissueState& start,
+DiveTrace trace_log(const DiveComputer& computer, const diver::DiveComputerState& start,
                     const diver::DepthLog& log) {
   DiveTrace trace;
-  DiveComputerState state = computer.start(start);
+  DiveComputerState state = start;
   const double first_s = log.samples.front().time_s;
   double time_s = first_s, deepest_m = -1.0;
   const std::size_t every = log.samples.size() / kMostViews + 1;
@@ -95,16 +95,16 @@ DiveTrace trace_log(const DiveComputer& computer, const diver::TissueState& star
 std::string trace_csv(const DiveTrace& trace, const std::vector<diver::PlanGas>& gases) {
   std::string out =
       "time_s,depth_m,gas,ceiling_m,no_stop_min,stop_m,stop_min,to_surface_min,po2_bar,density_g_l,"
-      "narcotic_m,gradient,surface_gradient,ascent_m_min,alarm,cns_percent,otu\n";
+      "narcotic_m,gradient,surface_gradient,ascent_m_min,alarm,ceiling_violated,cns_percent,otu\n";
   for (const TraceRow& row : trace.rows) {
     const diver::DiveComputerView& v = row.view;
     fmt::format_to(std::back_inserter(out),
                    "{:.9g},{:.6g},{},{:.4g},{:.6g},{:g},{:.6g},{:.6g},{:.5g},{:.4g},{:.4g},{:.5g},"
-                   "{:.5g},{:.4g},{},{:.5g},{:.5g}\n",
+                   "{:.5g},{:.4g},{},{},{:.5g},{:.5g}\n",
                    60.0 * row.run_min, row.depth_m, diver::name_of(gases[row.gas].mix), v.ceiling_m,
                    v.no_stop_min, v.stop_m, v.stop_min, v.to_surface_min, v.po2_bar, v.density_g_l,
                    v.narcotic_m, v.gradient, v.surface_gradient, v.ascent_m_min,
-                   static_cast<int>(v.alarm), row.cns_percent, row.otu);
+                   static_cast<int>(v.alarm), v.ceiling_violated ? 1 : 0, row.cns_percent, row.otu);
   }
   return out;
 }

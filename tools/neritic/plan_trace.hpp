@@ -27,7 +27,7 @@ struct DiveTrace {
   std::vector<TraceRow> rows;
   std::vector<TraceMoment> moments;
   diver::DiveComputerState end;
-  double above_ceiling_min = 0.0;  // of samples shallower than their ceiling
+  double above_ceiling_min = 0.0;  // of samples that violate their ceiling
   double most_ceiling_m = 0.0, fast_min = 0.0;
 };
 
@@ -37,7 +37,7 @@ inline constexpr double kTraceRow_s = 10.0;
 // Rows every kTraceRow_s and where the plan changes.
 DiveTrace trace_plan(const diver::DivePlanRequest& request, const diver::DivePlan& plan);
 // Every sample is stepped; views are at most 20 000, evenly spread.
-DiveTrace trace_log(const diver::DiveComputer& computer, const diver::TissueState& start,
+DiveTrace trace_log(const diver::DiveComputer& computer, const diver::DiveComputerState& start,
                     const diver::DepthLog& log);
 
 std::string trace_csv(const DiveTrace& trace, const std::vector<diver::PlanGas>& gases);

@@ -40,7 +40,9 @@ void append_numbers(std::string& out, std::initializer_list<double> numbers) {
 constexpr const char* kHumanColumns =
     ",tank,tank_bar,remaining_min,ventilation_l_min,breaths_min,lungs_l,jacket_l,net_weight_n,"
     "buttons,kick_hz,limb_power_w,oxygen_l_min,ceiling_m,no_stop_min,stop_m,stop_min,"
-    "to_surface_min,po2_bar,gas_density_g_l,cns_percent,otu,ascent_m_min,ascent_alarm,heart_bpm,"
+    "to_surface_min,po2_bar,gas_density_g_l,cns_percent,otu,ascent_m_min,ascent_alarm,ceiling_"
+    "violated,"
+    "heart_bpm,"
     "pause_s,gaze_x,gaze_y,gaze_z,measured,co2_proxy_mmhg,narcosis_proxy_m,co2_risk,narcosis_risk,"
     "density_risk,breathing_risk,oxygen_risk,out_of_gas_s";
 
@@ -204,6 +206,7 @@ void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& r
                      row.otu,
                      deco.ascent_m_min,
                      static_cast<double>(deco.alarm),
+                     deco.ceiling_violated ? 1.0 : 0.0,
                      vitals.heart_bpm,
                      vitals.pause_s,
                      gaze.x,
