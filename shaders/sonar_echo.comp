@@ -176,10 +176,11 @@ void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEc
   int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
   int first = max(low, 0), last = min(high, int(c.n_range) - 1);
   bool rising = hit.ends_tan.x <= hit.ends_tan.y;
+  float scale = share_scale(ends);
   for (int i = first; i <= last; ++i) {
     int bin = rising ? i : first + last - i;
-    float below = bin == low ? 0.0 : part_below(ends, range_at(bin));
-    float upto = bin == high ? 1.0 : part_below(ends, range_at(bin + 1));
+    float below = bin == low ? 0.0 : part_below(ends, scale, 1.0, range_at(bin));
+    float upto = bin == high ? 1.0 : part_below(ends, scale, 1.0, range_at(bin + 1));
     float power = e.power * max(upto - below, 0.0);
     vec2 within_m = vec2(max(range_at(bin), ends.x), min(range_at(bin + 1), ends.y));
     vec3 point = point_at(s, row, hit, e, 0.5 * (within_m.x + within_m.y)) / drawn_out;
@@ -196,10 +197,11 @@ void share_out(uint column, RowEcho e) {
   int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
   int first = max(low, 0), last = min(high, int(c.n_range) - 1);
   uint counts = uint(e.power * echo.sum_scale + 0.5);
-  float below = first > low ? part_below(ends, range_at(first)) : 0.0;
+  float scale = share_scale(ends);
+  float below = first > low ? part_below(ends, scale, 1.0, range_at(first)) : 0.0;
   uint before = uint(below * float(counts) + 0.5);
   for (int bin = first; bin <= last; ++bin) {
-    float upto = bin == high ? 1.0 : part_below(ends, range_at(bin + 1));
+    float upto = bin == high ? 1.0 : part_below(ends, scale, 1.0, range_at(bin + 1));
     float power = e.power * max(upto - below, 0.0);
     uint cell = uint(bin) * c.n_azimuth + column;
     uint until = bin == high ? counts : max(before, min(counts, uint(upto * float(counts) + 0.5)));
@@ -234,7 +236,7 @@ void main() {
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
   for (uint row = first; row < c.n_elevation; row += kLanes) {
     BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
-    if (s.pixel >= 0) hit = beam_hit(s, row);
+    if (s.pixel >= 0) hit = beam_hit(look_at(s, row), row);
     float power = hit.strength;
     uvec2 label = uvec2(0);
     float range_m = hit.range_m;

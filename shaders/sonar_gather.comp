@@ -17,13 +17,25 @@ void share_out(uint column, BeamHit hit) {
   float strength = reflected(hit.strength, hit.at, label);
   float counts = floor(strength * c.fixed_scale + 0.5);
   int first = max(low, 0), last = min(high, int(c.n_range) - 1);
-  uint before = first > low ? uint(part_below(ends, range_at(first)) * counts + 0.5) : 0;
+  float scale = share_scale(ends) * counts;
+  int before = first > low ? int(part_below(ends, scale, counts, range_at(first)) + 0.5) : 0;
   for (int bin = first; bin <= last; ++bin) {
-    uint until = uint(bin == high ? counts : part_below(ends, range_at(bin + 1)) * counts + 0.5);
-    until = max(before, min(until, uint(counts)));
-    add_counts(uint(bin) * c.n_azimuth + column, until - before, float(until - before) / c.fixed_scale, label.x);
+    int until = int((bin == high ? counts : part_below(ends, scale, counts, range_at(bin + 1))) + 0.5);
+    until = max(before, until);
+    add_counts(uint(bin) * c.n_azimuth + column, uint(until - before), float(until - before) / c.fixed_scale, label.x);
     before = until;
   }
+}
+
+void gather(uint column, BeamHit hit) {
+  if (!(hit.range_m > 0.0 && hit.strength > 0.0)) return;  // zero normals give strength 0
+  if (kFootprint != kSonarFootprintNone) {
+    share_out(column, hit);
+    return;
+  }
+  float bin = bin_at(hit.range_m);
+  if (bin >= 0.0 && bin < float(c.n_range))  // NaN fails all comparisons
+    add_return(uint(bin) * c.n_azimuth + column, hit.strength, hit.at);
 }
 
 void main() {
@@ -32,15 +44,10 @@ void main() {
   SonarColumn s = columns[column];
   if (s.pixel < 0) return;
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
-  for (uint row = first; row < c.n_elevation; row += kLanes) {
-    BeamHit hit = beam_hit(s, row);
-    if (kFootprint != kSonarFootprintNone) {
-      if (hit.range_m > 0.0 && hit.strength > 0.0) share_out(column, hit);
-      continue;
-    }
-    float bin = (hit.range_m - c.range_min_m) * c.bins_per_m + c.edge_bias_bins;
-    // A zero normal gives strength 0; NaN fails all comparisons.
-    if (hit.range_m > 0.0 && hit.strength > 0.0 && bin >= 0.0 && bin < float(c.n_range))
-      add_return(uint(bin) * c.n_azimuth + column, hit.strength, hit.at);
+  // Two rows a turn, whose fetches wait for memory together.
+  for (uint row = first; row < c.n_elevation; row += 2 * kLanes) {
+    Look here = look_at(s, row), next = look_at(s, min(row + kLanes, c.n_elevation - 1));
+    gather(column, beam_hit(here, row));
+    if (row + kLanes < c.n_elevation) gather(column, beam_hit(next, row + kLanes));
   }
 }

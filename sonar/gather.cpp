@@ -210,6 +210,7 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
                                .near_m = static_cast<float>(layout_.near_m),
                                .range_min_m = static_cast<float>(grid_.limits.range_min_m),
                                .bins_per_m = static_cast<float>(1.0 / grid_.range_step_m()),
+                               .bin_m = static_cast<float>(grid_.range_step_m()),
                                .fixed_scale = static_cast<float>(fixed_scale_),
                                .edge_bias_bins = kEdgeBias_bins,
                                .reflectivities = reflects ? pass.in.reflectivities : 0u,

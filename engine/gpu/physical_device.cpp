@@ -41,6 +41,9 @@ constexpr std::array kRequired13{
         &VkPhysicalDeviceVulkan13Features::dynamicRendering, "dynamicRendering"},
     FeatureRow<VkPhysicalDeviceVulkan13Features>{
         &VkPhysicalDeviceVulkan13Features::synchronization2, "synchronization2"},
+    // A texel fetched beside an image is zero: who looks there need not ask first.
+    FeatureRow<VkPhysicalDeviceVulkan13Features>{
+        &VkPhysicalDeviceVulkan13Features::robustImageAccess, "robustImageAccess"},
     FeatureRow<VkPhysicalDeviceVulkan13Features>{&VkPhysicalDeviceVulkan13Features::maintenance4,
                                                  "maintenance4"},
 };

@@ -41,6 +41,7 @@ struct SonarPush {
   float near_m;  // reversed-Z: planar metres = near_m / depth
   float range_min_m;
   float bins_per_m;
+  float bin_m;
   float fixed_scale;  // intensity 1 in counts
   float edge_bias_bins;
   uint reflectivities;  // entries of the table by instance label; others reflect fully

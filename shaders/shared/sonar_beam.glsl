@@ -105,48 +105,72 @@ void find_ends(SonarColumn s, uint row, int v, vec2 edges, float planar, vec2 al
   hit.ends_tan = rising ? edges : edges.yx;
 }
 
-// Part of a row's energy that comes from below a range: seen at grazing, elevation goes with 1 / range, and
-// so does the incidence.
-float part_below(vec2 ends_m, float range_m) {
-  if (kFootprint == kSonarFootprintShared)  // so short that it is even
-    return clamp((range_m - ends_m.x) / (ends_m.y - ends_m.x), 0.0, 1.0);
+// For part_below, times the whole; the same for all bins of a row.
+float share_scale(vec2 ends_m) {
+  float inverse_m = 1.0 / (ends_m.y - ends_m.x);
+  return kFootprint == kSonarFootprintShared ? inverse_m : inverse_m * ends_m.y * ends_m.y / (ends_m.y + ends_m.x);
+}
+
+// What of a row's whole comes from below a range. It is even where the row is lower than a bin; else, seen at
+// grazing, elevation goes with 1 / range, and so does the incidence.
+float part_below(vec2 ends_m, float scale, float whole, float range_m) {
+  if (kFootprint == kSonarFootprintShared) return clamp((range_m - ends_m.x) * scale, 0.0, whole);
   float r = clamp(range_m, ends_m.x, ends_m.y);
-  float part = (r - ends_m.x) * (r + ends_m.x) / (r * r);
-  float all = (ends_m.y - ends_m.x) * (ends_m.y + ends_m.x) / (ends_m.y * ends_m.y);
-  return clamp(part / all, 0.0, 1.0);
+  return clamp((r - ends_m.x) * (r + ends_m.x) / (r * r) * scale, 0.0, whole);
 }
 
 // A footprint is shared out over no more bins to either side of its centre: what one row may cost.
 const float kFarthestShare_bins = 2048.0;
 
 float bin_at(float range_m) { return (range_m - c.range_min_m) * c.bins_per_m + c.edge_bias_bins; }
-float range_at(int bin) { return (float(bin) - c.edge_bias_bins) / c.bins_per_m + c.range_min_m; }
+float range_at(int bin) { return (float(bin) - c.edge_bias_bins) * c.bin_m + c.range_min_m; }
 
 // A footprint of a part of a bin, which is shared out as its centre.
 const float kShortest_bins = 0.25;
 
 vec2 shared_ends(vec2 ends_m, float range_m) {
   if ((ends_m.y - ends_m.x) * c.bins_per_m < kShortest_bins) return vec2(range_m);
-  float most = kFarthestShare_bins / c.bins_per_m;
+  if (kFootprint == kSonarFootprintShared) return ends_m;  // no farther than kSteepest goes
+  float most = kFarthestShare_bins * c.bin_m;
   return clamp(ends_m, vec2(range_m - most), vec2(range_m + most));
 }
 
-BeamHit beam_hit(SonarColumn s, uint row) {
-  BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
-  vec4 e = texelFetch(rows, ivec2(row, 0), 0);  // tan, sec, tan of the edges
-  int v = int(floor(c.cy - c.fy * s.sec_theta * e.x));
+// What a beam's pixel holds. Apart from what follows from it, so that two rows' are fetched together.
+struct Look {
+  SonarColumn column;  // as the row looks, where the view leans
+  vec4 row;            // tan, sec, tan of the edges
+  int v;               // row of pixels; beside the view nothing is seen, for a texel there is zero
+  float depth;         // the image's
+  vec4 normal;         // the image's
+};
+
+Look look_at(SonarColumn s, uint row) {
+  Look look;
+  look.column = s;
+  look.row = texelFetch(rows, ivec2(row, 0), 0);
+  look.v = int(floor(c.cy - c.fy * s.sec_theta * look.row.x));
   if (kLeaning != 0) {
-    SonarColumn look = column_at(s, row);
-    v = int(clamp(floor(c.cy - c.fy * look.sec_theta * e.x), 0.0, float(c.height - 1)));
-    look = at_pixel(look, v, e.x);
-    s.pixel = look.pixel;
-    s.pixel_base = look.pixel_base;
-    s.pixel_square = look.pixel_square;
+    SonarColumn aside = column_at(s, row);
+    look.v = int(clamp(floor(c.cy - c.fy * aside.sec_theta * look.row.x), 0.0, float(c.height - 1)));
+    aside = at_pixel(aside, look.v, look.row.x);
+    look.column.pixel = aside.pixel;
+    look.column.pixel_base = aside.pixel_base;
+    look.column.pixel_square = aside.pixel_square;
   }
-  if (v < 0 || v >= int(c.height)) return hit;
+  ivec3 at = ivec3(look.column.pixel, look.v, s.layer);
+  look.depth = texelFetch(depth_image, at, 0).r;
+  look.normal = texelFetch(normal_image, at, 0);
+  return look;
+}
+
+BeamHit beam_hit(Look look, uint row) {
+  BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
+  SonarColumn s = look.column;
+  vec4 e = look.row;
+  int v = look.v;
   hit.at = ivec3(s.pixel, v, s.layer);
-  float planar = planar_metres(texelFetch(depth_image, hit.at, 0).r);
-  vec3 n = normal_of(hit.at);
+  float planar = planar_metres(look.depth);
+  vec3 n = normal_of(look.normal);
   float ty = (c.cy - (float(v) + 0.5)) / c.fy;
   float along_up = dot(n, s.up);
   float along_pixel = dot(n, s.pixel_base) + ty * along_up;

@@ -34,10 +34,11 @@ float planar_metres(float texel) {
 }
 
 // Unit normal; zero length where the image says that it is unknown.
-vec3 normal_of(ivec3 at) {
-  vec4 texel = texelFetch(normal_image, at, 0);
+vec3 normal_of(vec4 texel) {
   return kOctahedral != 0 ? octahedral_decode(texel.xy) : texel.xyz;
 }
+
+vec3 normal_of(ivec3 at) { return normal_of(texelFetch(normal_image, at, 0)); }
 
 float facing(float cosine) { return kFacing != 0 ? max(cosine, 0.0) : abs(cosine); }
 
