@@ -102,10 +102,30 @@ void add_before(const CaseField& repetitive, const DivePlanRequest& base,
   out.insert(out.end(), before.begin(), before.end());
 }
 
+constexpr std::array<const char*, 6> kOrdinals{"first_",  "second_", "third_",
+                                               "fourth_", "fifth_",  "sixth_"};
+
+// A dive under a name that is nearly an ordinal's, or after one that is not there, would not count.
+void refuse_misspelt_dives(const CaseField& field) {
+  std::vector<std::string> names;
+  for (const char* ordinal : kOrdinals) names.push_back(std::string(ordinal) + "dive");
+  const std::size_t dives = static_cast<std::size_t>(
+      std::ranges::find_if(names, [&](const std::string& n) { return !field[n].present(); }) -
+      names.begin());
+  for (const std::string& key : field.keys()) {
+    const CaseField member = field[key];
+    const bool is_dive =
+        member.is_object() &&
+        (member["depth_m"].present() || member["levels"].present() || member["profile"].present());
+    const auto known = std::ranges::find(names, key);
+    if (is_dive && known - names.begin() >= static_cast<std::ptrdiff_t>(dives))
+      member.fail(fmt::format("{} dives found before it, {} is accepted", dives,
+                              names[std::min(dives, names.size() - 1)]));
+  }
+}
+
 // Dives by their ordinal names, with what is said beside them.
 std::vector<EarlierCase> read_ordinals(const CaseField& field, const DivePlanRequest& base) {
-  constexpr std::array<const char*, 6> kOrdinals{"first_",  "second_", "third_",
-                                                 "fourth_", "fifth_",  "sixth_"};
   std::vector<EarlierCase> out;
   for (std::size_t i = 0; i < kOrdinals.size(); ++i) {
     const std::string prefix = std::string(kOrdinals[i]) + "dive_";
@@ -117,6 +137,11 @@ std::vector<EarlierCase> read_ordinals(const CaseField& field, const DivePlanReq
     out.back().earlier.surface_gas = read_surface_gas(one_of(field["surface_interval_gas"], i));
   }
   if (out.empty()) field.fail("no dive found; first_dive, or a list of dives, is accepted");
+  const CaseField intervals = field["surface_interval_min"];
+  if (intervals.is_array() && intervals.size() != out.size())
+    intervals.fail(fmt::format("{} minutes at the surface for {} dives found, as many are accepted",
+                               intervals.size(), out.size()));
+  refuse_misspelt_dives(field);
   // Tables: of the last dive, or one a dive.
   const auto table = [&](const char* key, std::size_t i) -> std::optional<TissueState> {
     const CaseField all = field[key];

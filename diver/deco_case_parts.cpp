@@ -41,6 +41,12 @@ void read_model(const CaseField& model, const CaseField& table, DecoConventions&
 }
 
 void read_parameters(const CaseField& parameters, DivePlanRequest& request) {
+  constexpr std::string_view kNames[] = {
+      "gf_low",       "gf_high",           "altitude_m",        "surface_pressure_bar",
+      "gravity_m_s2", "bar_per_metre",     "stop_step_m",       "water_density_kg_m3",
+      "last_stop_m",  "stop_quantum_min",  "saturation",        "water_vapour_pressure_bar",
+      "desaturation", "start_n2_fraction", "ascent_rate_m_min", "descent_rate_m_min"};
+  parameters.refuse_misspelt(kNames);
   DecoConventions& c = request.conventions;
   const auto take = [&](const char* key, double& value) { value = parameters[key].number(value); };
   take("gf_low", request.gf_low);

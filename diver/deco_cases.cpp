@@ -1,5 +1,6 @@
 #include "diver/deco_cases.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "diver/deco_case_parts.hpp"
@@ -61,6 +62,9 @@ DecoCase read_case(const CaseField& profile, std::string id) {
   if (one.expected.stops && !one.expected.stops->empty())
     request.last_stop_always =
         one.expected.stops->front().depth_m >= request.conventions.last_stop_m;
+  else if (one.expected.first_stop && one.expected.first_stop->depth_m)
+    request.last_stop_always =
+        *one.expected.first_stop->depth_m >= request.conventions.last_stop_m - 1e-6;
   check_read(profile, request);
   for (const EarlierCase& earlier : one.earlier)
     check_read(profile["repetitive"], earlier.earlier.dive);
@@ -87,6 +91,12 @@ NdlTable read_table(const CaseField& table, std::string id) {
     one.whole_min = expected_number(row["decotengu_runtime_whole_min"]);
     one.closed_min = expected_number(row["closed_form_time_at_depth_min"]);
     one.compartment = expected_number(row["controlling_compartment"]);
+    const std::vector<std::string> keys = row.keys();
+    const auto is_null = [&](const char* key) {
+      return std::ranges::find(keys, key) != keys.end() && !row[key].present();
+    };
+    one.no_run_limit = is_null("decotengu_runtime_min");
+    one.no_closed_limit = is_null("closed_form_time_at_depth_min");
     out.rows.push_back(one);
   }
   request.levels = {{out.rows.empty() ? 10.0 : out.rows[0].depth_m, 1e6}};

@@ -2,7 +2,9 @@
 // same conventions found, and tables of times without stops. Any thread.
 //
 // The form, as such files document it (JSON; bar, m, min; what is optional has its default in
-// brackets; what is not named here is ignored; of all that is expected, what is there is compared):
+// brackets; what is not named here is ignored, but a parameter, and what is said of earlier dives,
+// that is one of these but for capitals, or begins or goes on as one, is an error; of all that is
+// expected, what is there is compared):
 //   tolerances: tissues_bar [1e-6], ndl_continuous_min [1e-3], stop_minutes [exact: 1e-3]
 //   profiles: a list of
 //     id; model: a text with 16B or 16C; coefficient_table: a text with "compartment 1b" or
@@ -10,7 +12,8 @@
 //     parameters: gf_low, gf_high; surface_pressure_bar [of altitude_m]; bar_per_metre [of
 //       water_density_kg_m3 and gravity_m_s2]; water_vapour_pressure_bar [.0627],
 //       start_n2_fraction [.7902], descent_rate_m_min [20], ascent_rate_m_min [10], stop_step_m
-//       [3], stop_quantum_min [1], last_stop_m [stop_step_m], saturation, desaturation [1]
+//       [3], stop_quantum_min [1], last_stop_m [stop_step_m], saturation, desaturation [1: times
+//       the speed at which gas goes in and out]
 //     gases: a list of o2, he [0], n2 (percent), switch_depth_m [0], role travel, bottom, deco
 //       [bottom for the first, deco for the rest]
 //     profile: kind square with depth_m, bottom_runtime_min; or multilevel with levels: a list of
@@ -26,15 +29,18 @@
 //       with stops, runtime_min and the tissues expected of it; or a dive has its own repetitive
 //     segments: columns (from_m, to_m, minutes, o2_percent, he_percent, phase) and rows: replayed
 //     reference: end_of_bottom, first_stop, stops, surfacing, and so on: expected
-//       (DecoExpected). A first stop shallower than last_stop_m stands for a planner that made it
+//       (DecoExpected). A first stop shallower than last_stop_m, in stops or in first_stop, stands
+//       for a planner that made it
 //     oxygen_exposure: cns_percent, otu, max_po2_bar: expected
 //     second_opinions: by program, each with total_stop_time_min, or stops whose minutes include
-//     the
-//       ways between them, or runtime_leaving_last_stop_min: expected within 15 % or 3 min of total
-//       stop time, as such files say, of the set of conventions that is nearest to the program's
+//       the ways between them, or runtime_leaving_last_stop_min, total_runtime_min: expected within
+//       15 % or 3 min of total stop time, as such files say, of the set of conventions that is
+//       nearest to the program's; end_of_bottom_tissues_n2_he_bar within .005 bar,
+//       start_of_deco_zone_m within .2 m, cns_percent within 15 % and 1, otu within 5 % and .5
 //   ndl_tables: a list of model, gf_high, o2 (he: none), surface_pressure_bar, bar_per_metre,
 //     descent_rate_m_min, ascent_rate_m_min, rows: depth_m, decotengu_runtime_min,
-//     decotengu_runtime_whole_min, closed_form_time_at_depth_min, controlling_compartment
+//     decotengu_runtime_whole_min, closed_form_time_at_depth_min, controlling_compartment; null is
+//     no limit
 #pragma once
 
 #include <map>
@@ -111,6 +117,9 @@ struct DecoCase {
 struct NdlRow {
   double depth_m = 0.0;
   Expected run_min, whole_min, closed_min, compartment;
+  // Null is said of the run time, or of the time in closed form: there is no limit, or none without
+  // stops.
+  bool no_run_limit = false, no_closed_limit = false;
 };
 struct NdlTable {
   std::string id;

@@ -11,7 +11,7 @@ namespace neritic::diver {
 namespace {
 
 // Of second opinions: their sets of conventions are near, not the same (integer mbar, REAL*4).
-constexpr double kOpinionTissues_bar = 0.01, kOpinionZone_m = 0.5;
+constexpr double kOpinionTissues_bar = 0.005, kOpinionZone_m = 0.2;
 // Numbers of files are rounded to so many digits.
 constexpr double kRunTime_min = 1e-3, kGf = 1e-6, kDepth_m = 1e-5, kPo2_bar = 1e-4;
 
@@ -250,7 +250,7 @@ class DiveCheck {
       errors_.add("CNS" + beside, "%", plan->oxygen.cns_percent, opinion.cns_percent,
                   1.0 + 0.15 * *opinion.cns_percent);
     if (opinion.otu)
-      errors_.add("OTU" + beside, "", plan->oxygen.otu, opinion.otu, 1.0 + 0.15 * *opinion.otu);
+      errors_.add("OTU" + beside, "", plan->oxygen.otu, opinion.otu, 0.5 + 0.05 * *opinion.otu);
   }
 
   // Where the first compartment holds as much inert gas as presses on it, on the direct way up.
@@ -308,8 +308,12 @@ CaseResult check_table(const NdlTable& table, const DecoCases& tolerances) {
       if (row.whole_min)
         errors.add("whole run time", "min", std::floor(**found), row.whole_min, 0.5);
     }
+    const bool limited = found->has_value() && **found < kNoLimit_min;
+    if (row.no_run_limit) errors.add("no limit", "", limited ? 1.0 : 0.0, 0.5);
     const ClosedNdl closed =
         closed_form_ndl(c.model(), c.environment, c.start_n2, row.depth_m, mix, request.gf_high);
+    if (row.no_closed_limit)
+      errors.add("no limit", "", closed.minutes < kNoLimit_min ? 1.0 : 0.0, 0.5);
     errors.add("closed form", "min", closed.minutes, row.closed_min, tolerances.ndl_min);
     errors.add("controlling compartment", "", static_cast<double>(closed.compartment + 1),
                row.compartment, 0.5);

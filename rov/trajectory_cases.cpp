@@ -129,15 +129,6 @@ std::optional<double> lag_time(const CaseField& scenario, const CaseField& thrus
   return std::nullopt;
 }
 
-// One of the names but for capitals, or its beginning.
-bool is_misspelt(std::string_view key, std::string_view name) {
-  const std::size_t n = std::min(key.size(), name.size());
-  return n >= 2 && std::equal(key.begin(), key.begin() + static_cast<std::ptrdiff_t>(n),
-                              name.begin(), [](unsigned char x, unsigned char y) {
-                                return std::tolower(x) == std::tolower(y);
-                              });
-}
-
 // Members that are none of these would be passed over: a misspelt one is an error. What a file
 // says besides (rho, g) is its own.
 void refuse_unknown(const CaseField& field, std::span<const std::string_view> names) {

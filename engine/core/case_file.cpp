@@ -185,6 +185,18 @@ void CaseField::allow(std::span<const std::string_view> names) const {
   }
 }
 
+void CaseField::refuse_misspelt(std::span<const std::string_view> names) const {
+  for (const std::string& key : keys()) {
+    const CaseField member = (*this)[key];
+    if (!member.present() || member.is_text() || std::ranges::find(names, key) != names.end())
+      continue;
+    std::vector<std::string_view> like;
+    for (const std::string_view name : names)
+      if (is_misspelt(key, name)) like.push_back(name);
+    if (!like.empty()) member.fail(fmt::format("not known; the nearest is {}", nearest(key, like)));
+  }
+}
+
 void CaseField::refuse(std::string_view accepted) const {
   if (!file_->failed()) fail(fmt::format("{} found, {} accepted", found(), accepted));
 }

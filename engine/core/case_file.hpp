@@ -85,6 +85,9 @@ class CaseField {
   std::vector<std::vector<double>> square(std::size_t n) const;
   // Fails where a member has none of these names, and tells the nearest.
   void allow(std::span<const std::string_view> names) const;
+  // Fails where a member that is no text is a misspelt one of these names (is_misspelt); what a
+  // file says besides is its own.
+  void refuse_misspelt(std::span<const std::string_view> names) const;
 
   // "field: found ..., accepted"
   void refuse(std::string_view accepted) const;

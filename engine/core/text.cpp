@@ -57,6 +57,11 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+bool is_misspelt(std::string_view word, std::string_view name) {
+  const std::size_t n = std::min(word.size(), name.size());
+  return n >= 2 && word != name && lower_case(word.substr(0, n)) == lower_case(name.substr(0, n));
+}
+
 std::string printable(std::string_view text, std::size_t max_bytes) {
   std::string out;
   while (!text.empty()) {

@@ -46,6 +46,54 @@ TEST(DecoCaseFile, WhatIsLeftOutHasItsDefault) {
   EXPECT_TRUE(check_deco(*read)[0].ok());
 }
 
+TEST(DecoCaseFile, AllThatASecondOpinionSaysIsCompared) {
+  const Json all = parse_json(deco_text("deco_vectors.json")).value();
+  const auto holds = [&](const char* program, const char* field, const Json& value) {
+    Json json;
+    for (const Json& profile : all["profiles"])
+      if (profile["id"] == "air_30m_25") json["profiles"] = Json::array({profile});
+    if (*field) json["profiles"][0]["second_opinions"][program][Json::json_pointer(field)] = value;
+    return check_deco(read_deco_cases(json_text(json), "t.json").value())[0].ok();
+  };
+  EXPECT_TRUE(holds("", "", {}));
+  EXPECT_FALSE(holds("subsurface", "/end_of_bottom_tissues_n2_he_bar/4/0", 1.85));
+  EXPECT_FALSE(holds("subsurface", "/total_runtime_min", 30.0));
+  EXPECT_FALSE(holds("baker_gfdeco", "/start_of_deco_zone_m", 19.5));
+  EXPECT_FALSE(holds("baker_gfdeco", "/cns_percent", 9.0));
+  EXPECT_FALSE(holds("baker_gfdeco", "/otu", 21.5));
+}
+
+// A planner that stopped above the last stop is known by its first stop alone, too.
+TEST(DecoCaseFile, AFirstStopAboveTheLastOneIsKnownWithoutStops) {
+  const auto always = [](double depth_m) {
+    Json json = smallest_dive();
+    json["profiles"][0]["parameters"]["last_stop_m"] = 6;
+    json["profiles"][0]["reference"] = {{"first_stop", {{"depth_m", depth_m}}}};
+    return read_deco_cases(json_text(json), "dives.json").value().dives[0].request.last_stop_always;
+  };
+  EXPECT_FALSE(always(3.0));
+  EXPECT_TRUE(always(6.0));
+  EXPECT_TRUE(always(12.0));
+}
+
+// Null is what a program says that finds no limit: where there is one, it does not hold.
+TEST(DecoCaseFile, ARowOfNullsIsNoLimit) {
+  const auto holds = [](double depth_m, const char* said) {
+    const auto read = read_deco_cases(
+        fmt::format(R"({{"ndl_tables": [{{"model": "ZH-L16B-GF", "gf_high": 1.0, "o2": 21,
+            "rows": [{{"depth_m": {}, {}}}]}}]}})",
+                    depth_m, said),
+        "t.json");
+    EXPECT_TRUE(read.ok()) << read.error().message;
+    return check_deco(*read)[0].ok();
+  };
+  for (const char* said :
+       {R"("decotengu_runtime_min": null)", R"("closed_form_time_at_depth_min": null)"}) {
+    EXPECT_TRUE(holds(5.0, said)) << said;
+    EXPECT_FALSE(holds(30.0, said)) << said;
+  }
+}
+
 // The tables' closed form is of nitrogen alone: helium is refused by its name.
 TEST(DecoCaseFile, ATableWithHeliumIsRefused) {
   const auto read = [](const char* he) {
@@ -95,6 +143,38 @@ TEST(DecoCaseFile, WhatIsNotKnownIsLeftAlone) {
 }
 
 // Ways to say the same three dives before a fourth; deco_more.json has four more.
+// A parameter that is nearly one would leave the dive with another setting than the file says.
+TEST(DecoCaseFile, AMisspeltParameterIsRefused) {
+  for (const auto& [key, nearest] : {std::pair{"last_stop", "last_stop_m"},
+                                     {"saturation_multiplier", "saturation"},
+                                     {"Gf_Low", "gf_low"},
+                                     {"surface_pressure", "surface_pressure_bar"},
+                                     {"gravity", "gravity_m_s2"}})
+    EXPECT_EQ(fault_with((std::string("/parameters/") + key).c_str(), 6),
+              fmt::format("dives.json: case 'small': profiles[0].parameters.{}: not known; the "
+                          "nearest is {}",
+                          key, nearest));
+  EXPECT_EQ(fault_with("/parameters/comment", "no setting"), "read");
+  EXPECT_EQ(fault_with("/parameters/planner_version", 3), "read");
+}
+
+TEST(DecoCaseFile, EarlierDivesThatWouldNotCountAreRefused) {
+  const Json dive = {{"depth_m", 30}, {"bottom_runtime_min", 25}};
+  const auto fault = [&](const char* second, const Json& intervals) {
+    Json repetitive = {{"first_dive", dive}, {"surface_interval_min", intervals}};
+    if (*second) repetitive[second] = dive;
+    return fault_with("/repetitive", repetitive);
+  };
+  EXPECT_EQ(fault("", 60), "read");
+  EXPECT_EQ(fault("second_dive", {60, 90}), "read");
+  EXPECT_THAT(fault("", {60, 90}),
+              HasSubstr("surface_interval_min: 2 minutes at the surface for 1"));
+  EXPECT_THAT(fault("second_div", {60}),
+              HasSubstr("second_div: 1 dives found before it, second_dive"));
+  EXPECT_THAT(fault("third_dive", {60}),
+              HasSubstr("third_dive: 1 dives found before it, second_dive"));
+}
+
 TEST(DecoCaseFile, EarlierDivesAreToldInManyWays) {
   const Json more = parse_json(deco_text("deco_more.json")).value();
   Json dive;
