@@ -38,10 +38,10 @@ double line_fit_m_min(const AscentRateState& s, double window_s) {
   return spread > 0.0 ? -60.0 * (td - t * d / n) / spread : 0.0;
 }
 
-// The time since which the rate is above a limit.
-double since(double before_s, bool above, double now_s) {
+// The time since which the rate is above a limit: the way from the sample before counts.
+double since(double before_s, bool above, double last_s) {
   if (!above) return -1.0;
-  return before_s < 0.0 ? now_s : before_s;
+  return before_s < 0.0 ? last_s : before_s;
 }
 
 }  // namespace
@@ -59,8 +59,9 @@ AscentRateState observe(const AscentRateState& before, double depth_m, double dt
   s.sum_depth_m += depth_m;
   ++s.samples;
   s.rate_m_min = line_fit_m_min(s, std::clamp(limits.window_s, 2.0, 14.0));
-  s.fast_since_s = since(s.fast_since_s, s.rate_m_min > limits.fast_m_min, s.now_s);
-  s.dangerous_since_s = since(s.dangerous_since_s, s.rate_m_min > limits.dangerous_m_min, s.now_s);
+  s.fast_since_s = since(s.fast_since_s, s.rate_m_min > limits.fast_m_min, before.now_s);
+  s.dangerous_since_s =
+      since(s.dangerous_since_s, s.rate_m_min > limits.dangerous_m_min, before.now_s);
   return s;
 }
 

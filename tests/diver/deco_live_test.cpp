@@ -334,6 +334,20 @@ TEST(AscentRate, IsThePublishedLine) {
   EXPECT_NEAR(state.rate_m_min, 18.0, 1e-9);
 }
 
+// Two samples far apart that lie a rise apart are a rise that lasted as long.
+TEST(AscentRate, ARiseBetweenTwoSamplesIsOne) {
+  const AscentRateLimits limits;
+  const auto alarm_after = [&](double rise_m, double dt_s) {
+    AscentRateState state;
+    for (int i = 0; i < 3; ++i) state = observe(state, 40.0, i > 0 ? 60.0 : 0.0, limits);
+    return alarm_of(observe(state, 40.0 - rise_m, dt_s, limits), limits);
+  };
+  EXPECT_EQ(alarm_after(40.0, 60.0), AscentAlarm::kDangerous);
+  EXPECT_EQ(alarm_after(12.0, 60.0), AscentAlarm::kFast);
+  EXPECT_EQ(alarm_after(8.0, 60.0), AscentAlarm::kNone);
+  EXPECT_EQ(alarm_after(0.6, 2.0), AscentAlarm::kNone);  // too short to be said
+}
+
 // 5 cm of noise: by the line's theory .286 m/min at 1 Hz over eleven samples; two points have 4.2.
 TEST(AscentRate, NoiseDoesNotAlarmAndARiseDoes) {
   std::mt19937 random(3);
