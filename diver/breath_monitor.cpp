@@ -46,9 +46,10 @@ std::vector<BreathState> analyse_breath(const Recording& sound, const BreathSett
   const auto block = static_cast<std::size_t>(std::lround(settings.block_s * sound.rate_hz));
   std::vector<BreathState> out;
   std::vector<float> part;
-  for (std::size_t from = 0; from + block <= sound.samples.size(); from += block) {
+  for (std::size_t from = 0; from < sound.samples.size(); from += block) {
+    const std::size_t count = std::min(block, sound.samples.size() - from);
     const auto begin = sound.samples.begin() + static_cast<std::ptrdiff_t>(from);
-    part.assign(begin, begin + static_cast<std::ptrdiff_t>(block));
+    part.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
     out.push_back(analyser.take(part));
   }
   return out;

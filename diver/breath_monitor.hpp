@@ -42,7 +42,7 @@ class BreathAnalyser {
   BreathState state_;
 };
 
-// Every block of a recording, one after the other.
+// Every block of a recording, one after the other; the last one may be shorter.
 std::vector<BreathState> analyse_breath(const Recording& sound, const BreathSettings& settings);
 
 // The two threads. record() is called by whoever has the microphone, state() by whoever reads, each

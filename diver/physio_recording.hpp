@@ -22,6 +22,7 @@ inline constexpr std::size_t kMostSamples = std::size_t{1} << 28;
 struct Recording {
   std::string channel;  // its name, where the file gives one
   double rate_hz = 0.0;
+  double frame_hz = 0.0;        // of a WFDB record: its annotations count frames
   double start_s = 0.0;         // the time of the first sample, by the file's own clock
   std::vector<double> samples;  // NaN: missing
   std::uint64_t refused = 0;    // rows that the reader could not use: time stood still or went back

@@ -10,6 +10,8 @@ namespace neritic::diver {
 namespace {
 
 constexpr std::size_t kMostSignals = 64;
+constexpr std::array kFormats{8, 16, 24, 32, 61, 80, 160, 212, 310, 311};
+constexpr int kMostInAFrame = 1000;
 
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
@@ -87,14 +89,21 @@ Result<WfdbSignal> signal_line(const std::vector<std::string_view>& words,
   WfdbSignal signal;
   signal.file = words[0];
   std::string_view format = words[1];
-  bool known = take_number(format, signal.format) && (signal.format == 212 || signal.format == 16);
+  bool known = take_number(format, signal.format) &&
+               std::ranges::find(kFormats, signal.format) != kFormats.end();
+  if (known && format.starts_with('x')) {
+    format.remove_prefix(1);
+    known = take_number(format, signal.frame_samples) && signal.frame_samples >= 1 &&
+            signal.frame_samples <= kMostInAFrame;
+  }
   if (known && format.starts_with('+')) {
     format.remove_prefix(1);
     known = take_number(format, signal.offset) && signal.offset >= 0;
   }
   if (!known || !format.empty())
-    return bad_input("{}: format '{}' found, 212 or 16 (one sample a frame, no skew) is accepted",
-                     where, words[1]);
+    return bad_input(
+        "{}: format '{}' found, {} (perhaps x samples a frame, without skew) is accepted", where,
+        words[1], fmt::join(kFormats, ", "));
   bool has_baseline = false;
   if (words.size() > 2 && !take_gain(words[2], signal, has_baseline))
     return bad_input("{}: a gain of '{}' found, one like 200, 200(1024) or 200/mV is accepted",
@@ -103,6 +112,8 @@ Result<WfdbSignal> signal_line(const std::vector<std::string_view>& words,
   if (words.size() > 4 && !whole_number(words[4], zero))
     return bad_input("{}: a zero of '{}' found, a number is accepted", where, words[4]);
   if (!has_baseline) signal.baseline = zero;
+  if (words.size() > 5 && !whole_number(words[5], signal.first))
+    return bad_input("{}: a first value of '{}' found, a number is accepted", where, words[5]);
   signal.has_checksum = words.size() > 6;
   if (signal.has_checksum && !whole_number(words[6], signal.checksum))
     return bad_input("{}: a checksum of '{}' found, a number is accepted", where, words[6]);
@@ -110,27 +121,65 @@ Result<WfdbSignal> signal_line(const std::vector<std::string_view>& words,
   return signal;
 }
 
-// Sample i of the file; the lowest number stands for a missing one.
-int raw_sample(std::span<const std::byte> bytes, int format, std::size_t i, bool& missing) {
-  const auto byte = [&](std::size_t at) { return std::to_integer<int>(bytes[at]); };
-  int value = 0;
-  if (format == 16) {
-    value = static_cast<std::int16_t>(byte(2 * i) | byte(2 * i + 1) << 8);
-    missing = value == std::numeric_limits<std::int16_t>::min();
-    return value;
+// Bits of a sample, and the bytes that some samples fill together.
+struct SampleLayout {
+  int bits = 16;
+  std::size_t bytes = 2, samples = 1;
+};
+SampleLayout layout_of(int format) {
+  switch (format) {
+    case 8:
+    case 80:
+      return {8, 1, 1};
+    case 24:
+      return {24, 3, 1};
+    case 32:
+      return {32, 4, 1};
+    case 212:
+      return {12, 3, 2};
+    case 310:
+    case 311:
+      return {10, 4, 3};
+    default:
+      return {16, 2, 1};
   }
-  // Two samples in three bytes: the second byte holds the high halves.
-  const std::size_t at = i / 2 * 3;
-  value = i % 2 == 0 ? byte(at) | (byte(at + 1) & 0x0F) << 8
-                     : byte(at + 2) | (byte(at + 1) & 0xF0) << 4;
-  if (value >= 2048) value -= 4096;
-  missing = value == -2048;
-  return value;
+}
+
+// Sample i of the file, as signal(5) packs it; the lowest number stands for a missing one, but in
+// format 8, whose samples are differences.
+std::int32_t raw_sample(std::span<const std::byte> bytes, int format, std::size_t i,
+                        bool& missing) {
+  const SampleLayout layout = layout_of(format);
+  const std::size_t at = i / layout.samples * layout.bytes, which = i % layout.samples;
+  const auto byte = [&](std::size_t k) { return std::to_integer<std::uint32_t>(bytes[at + k]); };
+  const auto pair = [&](std::size_t k) { return byte(k) | byte(k + 1) << 8; };
+  std::uint32_t bits = 0;
+  if (format == 212)  // the second byte holds the high halves
+    bits = which == 0 ? byte(0) | (byte(1) & 0x0F) << 8 : byte(2) | (byte(1) & 0xF0) << 4;
+  else if (format ==
+           310)  // ten bits above the lowest of each pair; the third in their highest five
+    bits = which < 2 ? pair(2 * which) >> 1 & 0x3FF : pair(0) >> 11 | pair(2) >> 11 << 5;
+  else if (format == 311)
+    bits = which == 0 ? pair(0) & 0x3FF : (pair(0) | pair(2) << 16) >> (10 * which) & 0x3FF;
+  else if (format == 61)
+    bits = byte(0) << 8 | byte(1);
+  else
+    for (std::size_t k = 0; k < layout.bytes; ++k) bits |= byte(k) << (8 * k);
+  const std::int64_t half = std::int64_t{1} << (layout.bits - 1);
+  const bool offset_binary = format == 80 || format == 160;
+  const std::int64_t value = offset_binary               ? std::int64_t{bits} - half
+                             : std::int64_t{bits} < half ? std::int64_t{bits}
+                                                         : std::int64_t{bits} - 2 * half;
+  missing = format != 8 && value == -half;
+  return static_cast<std::int32_t>(value);
 }
 
 std::size_t whole_samples(std::size_t bytes, int format) {
-  if (format == 16) return bytes / 2;
-  return bytes / 3 * 2 + (bytes % 3 == 2 ? 1 : 0);
+  const SampleLayout layout = layout_of(format);
+  // Of a group that is cut off, those whose bits are all there.
+  const std::size_t rest = bytes % layout.bytes;
+  const std::size_t more = layout.samples == 1 ? 0 : format == 212 ? rest / 2 : rest >= 2 ? 1 : 0;
+  return bytes / layout.bytes * layout.samples + more;
 }
 
 // Codes of annot(5) beside beats.
@@ -177,7 +226,7 @@ Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t chan
     return bad_input("{}: channel {} found, 0 to {} is accepted", name, channel,
                      header.signals.size() - 1);
   const WfdbSignal& signal = header.signals[channel];
-  // Signals of one file lie sample by sample side by side.
+  // Signals of one file lie frame by frame side by side.
   std::size_t side_by_side = 0, place = 0;
   for (std::size_t i = 0; i < header.signals.size(); ++i) {
     if (header.signals[i].file != signal.file) continue;
@@ -185,21 +234,26 @@ Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t chan
       return bad_input("{}: formats {} and {} in one file found, one is accepted", name,
                        header.signals[i].format, signal.format);
     if (i == channel) place = side_by_side;
-    ++side_by_side;
+    side_by_side += static_cast<std::size_t>(header.signals[i].frame_samples);
   }
   bytes =
       bytes.subspan(std::min<std::size_t>(static_cast<std::size_t>(signal.offset), bytes.size()));
+  const auto in_frame = static_cast<std::size_t>(signal.frame_samples);
   const std::size_t there = whole_samples(bytes.size(), signal.format) / side_by_side;
   const std::size_t count = header.samples > 0 ? header.samples : there;
-  if (count == 0 || count > there)
+  if (count == 0 || count > there || count * in_frame > kMostSamples)
     return bad_input("{}: {} samples found, {} are required", name, there,
                      std::max<std::size_t>(count, 1));
-  Recording out{signal.name, header.rate_hz};
-  out.samples.reserve(count);
+  Recording out{signal.name, header.rate_hz * signal.frame_samples};
+  out.frame_hz = header.rate_hz;
+  out.samples.reserve(count * in_frame);
   std::uint32_t sum = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  std::int32_t before = signal.first;
+  for (std::size_t i = 0; i < count * in_frame; ++i) {
     bool missing = false;
-    const int raw = raw_sample(bytes, signal.format, i * side_by_side + place, missing);
+    std::int32_t raw = raw_sample(bytes, signal.format,
+                                  i / in_frame * side_by_side + place + i % in_frame, missing);
+    if (signal.format == 8) raw = before += raw;
     sum += static_cast<std::uint32_t>(raw);
     out.samples.push_back(missing ? std::numeric_limits<double>::quiet_NaN()
                                   : (raw - signal.baseline) / signal.gain);

@@ -1,6 +1,6 @@
-// PhysioNet's WFDB records: header (.hea), signals of format 212 and 16 (.dat), annotations (.atr).
-// Pure functions of the bytes; any thread. Source: WFDB Applications Guide, header(5), signal(5),
-// annot(5) (Moody 2022).
+// PhysioNet's WFDB records: header (.hea), signals (.dat) of formats 8, 16, 24, 32, 61, 80, 160,
+// 212, 310 and 311, also of several samples a frame, annotations (.atr). Pure functions of the
+// bytes; any thread. Source: WFDB Applications Guide, header(5), signal(5), annot(5) (Moody 2022).
 #pragma once
 
 #include "diver/physio_recording.hpp"
@@ -10,7 +10,9 @@ namespace neritic::diver {
 struct WfdbSignal {
   std::string file, name;
   int format = 212;
-  double gain = 200.0;  // units of the converter to a unit of the signal
+  int frame_samples = 1;  // in each frame; the header's rate is that of frames
+  int first = 0;          // its first value, from which format 8 counts
+  double gain = 200.0;    // units of the converter to a unit of the signal
   double baseline = 0.0;
   std::string unit = "mV";
   std::int64_t offset = 0;  // bytes before the first sample

@@ -106,6 +106,73 @@ TEST(WfdbFile, SignalsOfFormat212And16AreThoseOfTheirBits) {
             (std::vector{-1.0}));
 }
 
+// The same five numbers in every packing of signal(5), and the mark of a missing one.
+TEST(WfdbFile, EveryFormatGivesTheSameSignal) {
+  const std::vector<std::int64_t> values{5, -7, 120, -120, 33};
+  const auto word = [](std::int64_t value, std::size_t bytes) {
+    return number(static_cast<std::uint64_t>(value) & ((std::uint64_t{1} << (8 * bytes)) - 1),
+                  bytes);
+  };
+  const auto simple = [&](std::size_t bytes, std::int64_t offset) {
+    std::string out;
+    for (const std::int64_t value : values) out += word(value + offset, bytes);
+    return out + word(offset - (std::int64_t{1} << (8 * bytes - 1)), bytes);
+  };
+  std::string big_endian, differences, packed310, packed311;
+  for (const std::int64_t value : values) {
+    const std::string little = word(value, 2);
+    big_endian += {little[1], little[0]};
+    differences += word(value - (value == 5 ? 0 : values[differences.size() - 1]), 1);
+  }
+  big_endian += std::string("\x80\0", 2);
+  const std::int64_t six[] = {5, -7, 120, -120, 33, -512};
+  for (int group = 0; group < 2; ++group) {
+    std::uint64_t ten[3];
+    for (int k = 0; k < 3; ++k) ten[k] = static_cast<std::uint64_t>(six[3 * group + k]) & 0x3FF;
+    packed310 += number(ten[0] << 1 | (ten[2] & 0x1F) << 11, 2) +
+                 number(ten[1] << 1 | (ten[2] >> 5) << 11, 2);
+    packed311 += number(ten[0] | ten[1] << 10 | ten[2] << 20, 4);
+  }
+  for (const auto& [format, bytes] : {std::pair{16, simple(2, 0)},
+                                      {24, simple(3, 0)},
+                                      {32, simple(4, 0)},
+                                      {80, simple(1, 128)},
+                                      {160, simple(2, 32768)},
+                                      {61, big_endian},
+                                      {310, packed310},
+                                      {311, packed311}}) {
+    const auto header = parse_wfdb_header(fmt::format("r 1 100\nr.dat {} 1\n", format), "r.hea");
+    ASSERT_TRUE(header.ok()) << header.error().message;
+    const auto read = parse_wfdb_signal(*header, 0, bytes_of(bytes), "r.dat");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    ASSERT_EQ(read->samples.size(), 6u) << format;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      EXPECT_EQ(read->samples[i], static_cast<double>(values[i])) << format;
+    EXPECT_TRUE(std::isnan(read->samples[5])) << format;
+  }
+  const auto header = parse_wfdb_header("r 1 100\nr.dat 8 1 8 0 0\n", "r.hea");
+  ASSERT_TRUE(header.ok()) << header.error().message;
+  const auto counted = parse_wfdb_signal(*header, 0, bytes_of(differences), "r.dat");
+  ASSERT_EQ(counted->samples.size(), 5u);
+  EXPECT_EQ(counted->samples[1], -7.0);
+}
+
+TEST(WfdbFile, SignalsOfSeveralSamplesAFrameHaveTheirOwnRate) {
+  const auto header = parse_wfdb_header("r 2 100 2\nr.dat 16x3 1\nr.dat 16 1\n", "r.hea");
+  ASSERT_TRUE(header.ok()) << header.error().message;
+  std::string bytes;
+  for (const int value : {1, 2, 3, 10, 4, 5, 6, 20})
+    bytes += number(static_cast<std::uint64_t>(value), 2);
+  const auto fast = parse_wfdb_signal(*header, 0, bytes_of(bytes), "r.dat");
+  const auto slow = parse_wfdb_signal(*header, 1, bytes_of(bytes), "r.dat");
+  ASSERT_TRUE(fast.ok() && slow.ok());
+  EXPECT_EQ(fast->rate_hz, 300.0);
+  EXPECT_EQ(fast->frame_hz, 100.0);
+  EXPECT_EQ(fast->samples, (std::vector<double>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(slow->rate_hz, 100.0);
+  EXPECT_EQ(slow->samples, (std::vector<double>{10, 20}));
+}
+
 TEST(WfdbFile, HeadersThatAreNoneSayTheLine) {
   const auto message = [](const char* text) {
     return parse_wfdb_header(text, "r.hea").error().message;
@@ -113,7 +180,9 @@ TEST(WfdbFile, HeadersThatAreNoneSayTheLine) {
   EXPECT_THAT(message(""), HasSubstr("no record line"));
   EXPECT_THAT(message("r 1 nan\nr.dat 16\n"), HasSubstr("r.hea:1: a rate of 'nan'"));
   EXPECT_THAT(message("r 2 360\nr.dat 16\n"), HasSubstr("1 of 2 signals"));
-  EXPECT_THAT(message("# note\nr 1 360\nr.dat 80\n"), HasSubstr("r.hea:3: format '80'"));
+  EXPECT_THAT(message("# note\nr 1 360\nr.dat 22\n"), HasSubstr("r.hea:3: format '22'"));
+  EXPECT_THAT(message("r 1 360\nr.dat 16x0\n"), HasSubstr("format '16x0'"));
+  EXPECT_THAT(message("r 1 360\nr.dat 16:4\n"), HasSubstr("format '16:4'"));
   EXPECT_THAT(message("r/3 1 360\n"), HasSubstr("several segments"));
 }
 

@@ -71,6 +71,12 @@ TEST(PhysioCommand, ARecordIsScoredAgainstItsOwnMarks) {
   EXPECT_EQ(score["found"], 2273);
   EXPECT_EQ(score["extra"], 0);
   EXPECT_EQ(score["missed"], 0);
+  flags.channel = "V5";
+  ASSERT_TRUE(run_physio(flags).ok());
+  EXPECT_EQ(json_in(folder / "ecg.json")["signal"], "V5");
+  flags.channel = "V6";
+  EXPECT_THAT(run_physio(flags).error().message,
+              HasSubstr("'V6' found, MLII, V5 or a number from 0 is accepted"));
 }
 
 TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
@@ -100,6 +106,33 @@ TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
     EXPECT_NEAR(json["fixations"][0]["pixel"][0].get<double>(), 50.0, 1e-6);
     EXPECT_NEAR(json["fixations"][1]["pixel"][0].get<double>(), 150.0, 1.5);
   }
+}
+
+// What is left at the end is heard, too.
+TEST(PhysioCommand, SoundIsHeardUpToItsEnd) {
+  const test::ScratchFolder folder;
+  const auto times = [&](int seconds) {
+    std::string sound = "# fs_hz=1000\nsound\n";
+    for (int i = 0; i < 1000 * seconds; ++i) sound += fmt::format("{:.4f}\n", std::sin(0.7 * i));
+    EXPECT_TRUE(write_text(folder / "s.csv", sound).ok());
+    PhysioFlags flags;
+    flags.what = "breath";
+    flags.file = (folder / "s.csv").string();
+    flags.out = folder / "out";
+    const auto said = run_physio(flags);
+    std::vector<double> out;
+    if (!said.ok()) {
+      EXPECT_THAT(said.error().message, HasSubstr("3.0 s found, 4 s or more is accepted"));
+      return out;
+    }
+    const nlohmann::json json = json_in(folder / "out/breath.json");
+    for (const auto& one : json["estimates"]) out.push_back(one["time_s"]);
+    return out;
+  };
+  EXPECT_EQ(times(3), std::vector<double>());
+  EXPECT_EQ(times(5), (std::vector{5.0}));
+  EXPECT_EQ(times(19), (std::vector{10.0, 19.0}));
+  EXPECT_EQ(times(20), (std::vector{10.0, 20.0}));
 }
 
 TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {

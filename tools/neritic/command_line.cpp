@@ -305,7 +305,7 @@ void add_physio(CLI::App& app, Run& run) {
   command->add_option("what", flags->what, "ecg, breath or gaze")->required();
   command->add_option("file", flags->file, ".csv, .wav or a WFDB record (.hea, .dat)")->required();
   command->add_option("--channel", flags->channel,
-                      "of several: its number from 0, or the column's name (.csv)");
+                      "of several: its number from 0, or its name (.csv, WFDB)");
   command->add_option("--rate", flags->rate_hz, "samples a second, where a .csv does not say")
       ->check(CLI::Range(0.1, 1e6));
   command->add_option("--annotations", flags->annotations,

@@ -1,4 +1,5 @@
 // `neritic physio ecg|breath|gaze FILE`: a recording of a diver, analysed; table, JSON and picture.
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -7,6 +8,7 @@
 #include "diver/physio_wfdb.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/text.hpp"
 #include "engine/scene/image_file.hpp"
 #include "tools/neritic/physio_report.hpp"
 
@@ -29,7 +31,20 @@ Result<diver::Recording> load_record(const PhysioFlags& flags) {
   header_path.replace_extension(".hea");
   NERITIC_TRY(const std::string text, read_text(header_path));
   NERITIC_TRY(const diver::WfdbHeader header, diver::parse_wfdb_header(text, header_path.string()));
-  NERITIC_TRY(std::uint32_t channel, channel_number(flags));
+  const auto named = std::ranges::find_if(header.signals, [&](const diver::WfdbSignal& signal) {
+    return !signal.name.empty() && signal.name == flags.channel;
+  });
+  auto channel = static_cast<std::uint32_t>(named - header.signals.begin());
+  if (named == header.signals.end()) {
+    const auto number = channel_number(flags);
+    if (!number.ok()) {
+      std::vector<std::string_view> names;
+      for (const diver::WfdbSignal& signal : header.signals) names.push_back(signal.name);
+      return bad_input("--channel: '{}' found, {} or a number from 0 is accepted", flags.channel,
+                       join(names));
+    }
+    channel = *number;
+  }
   if (channel >= header.signals.size())
     return bad_input("{}: channel {} found, 0 to {} is accepted", header_path.string(), channel,
                      header.signals.size() - 1);

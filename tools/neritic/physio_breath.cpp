@@ -12,6 +12,9 @@
 namespace neritic::tools {
 namespace {
 
+// Of less no estimate is made (breath_rate.hpp).
+constexpr double kLeastSound_s = 4.0;
+
 // --reference, or a rate in the file's name: ..._12bpm_...
 std::optional<double> known_rate(const PhysioFlags& flags) {
   if (flags.reference_bpm) return flags.reference_bpm;
@@ -94,9 +97,10 @@ Result<BreathReport> analyse_sound(const PhysioFlags& flags) {
   BreathReport report;
   NERITIC_TRY(report.settings, breath_settings(flags));
   NERITIC_TRY(report.sound, load_sound(flags));
-  if (report.sound.seconds() < report.settings.block_s)
+  const double least_s = std::min(report.settings.block_s, kLeastSound_s);
+  if (report.sound.seconds() < least_s)
     return bad_input("{}: {:.1f} s found, {:g} s or more is accepted", flags.file,
-                     report.sound.seconds(), report.settings.block_s);
+                     report.sound.seconds(), least_s);
   report.true_bpm = known_rate(flags);
   const TimeNs start = now_ns();
   report.states = diver::analyse_breath(report.sound, report.settings);

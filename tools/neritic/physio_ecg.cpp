@@ -52,7 +52,9 @@ Result<EcgReport> analyse_ecg(const PhysioFlags& flags) {
   if (marks_file.empty()) return report;
   NERITIC_TRY(const auto bytes, read_file(marks_file));
   NERITIC_TRY(const auto marks,
-              diver::parse_wfdb_beats(bytes, report.ecg.rate_hz, marks_file.string()));
+              diver::parse_wfdb_beats(
+                  bytes, report.ecg.frame_hz > 0.0 ? report.ecg.frame_hz : report.ecg.rate_hz,
+                  marks_file.string()));
   report.reference = marks_file.string();
   report.score = diver::score_beats(marks, report.intervals);
   return report;
