@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -17,15 +18,16 @@ struct TypeRow {
   const char* name;
   std::size_t size;
 };
-constexpr std::array<TypeRow, 9> kTypes{{{NpyType::kFloat32, "<f4", 4},
-                                         {NpyType::kFloat64, "<f8", 8},
-                                         {NpyType::kUint8, "|u1", 1},
-                                         {NpyType::kUint16, "<u2", 2},
-                                         {NpyType::kUint32, "<u4", 4},
-                                         {NpyType::kInt16, "<i2", 2},
-                                         {NpyType::kInt32, "<i4", 4},
-                                         {NpyType::kInt64, "<i8", 8},
-                                         {NpyType::kBool, "|b1", 1}}};
+constexpr std::array<TypeRow, 10> kTypes{{{NpyType::kFloat16, "<f2", 2},
+                                          {NpyType::kFloat32, "<f4", 4},
+                                          {NpyType::kFloat64, "<f8", 8},
+                                          {NpyType::kUint8, "|u1", 1},
+                                          {NpyType::kUint16, "<u2", 2},
+                                          {NpyType::kUint32, "<u4", 4},
+                                          {NpyType::kInt16, "<i2", 2},
+                                          {NpyType::kInt32, "<i4", 4},
+                                          {NpyType::kInt64, "<i8", 8},
+                                          {NpyType::kBool, "|b1", 1}}};
 
 constexpr const char* kMagic = "\x93NUMPY";
 constexpr std::size_t kMaxDimensions = 32;  // NumPy's own limit
@@ -91,7 +93,28 @@ void append_as_doubles(std::span<const std::byte> bytes, std::vector<double>& ou
   }
 }
 
+// IEEE 754 half precision: 1 bit of sign, 5 of exponent (bias 15), 10 of fraction.
+double from_half(std::uint16_t bits) {
+  const double sign = (bits & 0x8000) != 0 ? -1.0 : 1.0;
+  const int exponent = bits >> 10 & 0x1f, fraction = bits & 0x3ff;
+  if (exponent == 0x1f)
+    return fraction != 0 ? std::numeric_limits<double>::quiet_NaN()
+                         : sign * std::numeric_limits<double>::infinity();
+  if (exponent == 0) return sign * std::ldexp(fraction, -24);
+  return sign * std::ldexp(0x400 + fraction, exponent - 25);
+}
+
+void append_halves(std::span<const std::byte> bytes, std::vector<double>& out) {
+  for (std::size_t i = 0; i + 2 <= bytes.size(); i += 2)
+    out.push_back(from_half(static_cast<std::uint16_t>(
+        std::to_integer<unsigned>(bytes[i]) | std::to_integer<unsigned>(bytes[i + 1]) << 8)));
+}
+
 }  // namespace
+
+bool is_float(NpyType type) {
+  return type == NpyType::kFloat16 || type == NpyType::kFloat32 || type == NpyType::kFloat64;
+}
 
 std::size_t npy_type_size(NpyType type) {
   return std::find_if(kTypes.begin(), kTypes.end(),
@@ -115,6 +138,9 @@ std::vector<double> NpyArray::to_doubles() const {
   std::vector<double> out;
   out.reserve(count());
   switch (type) {
+    case NpyType::kFloat16:
+      append_halves(bytes, out);
+      break;
     case NpyType::kFloat32:
       append_as_doubles<float>(bytes, out);
       break;
@@ -169,7 +195,8 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
   const std::string_view descr = value_of(header, "descr");
   if (descr.size() < 5) return bad_input("{}: the .npy header has no descr", name);
   std::string type_name(descr.substr(1, 3));
-  if (type_name[0] == '=' || type_name[0] == '|' || type_name[0] == '<') {
+  const bool big_endian = type_name[0] == '>';
+  if (big_endian || type_name[0] == '=' || type_name[0] == '|' || type_name[0] == '<') {
     const bool one_byte = type_name[2] == '1';
     type_name[0] = one_byte ? '|' : '<';
   }
@@ -178,7 +205,7 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
   const auto row = std::find_if(kTypes.begin(), kTypes.end(),
                                 [&](const TypeRow& r) { return type_name == r.name; });
   if (row == kTypes.end())
-    return bad_input("{}: element type {}; <f4 <f8 |u1 <u2 <u4 <i2 <i4 <i8 |b1 are accepted", name,
+    return bad_input("{}: element type {}; f2 f4 f8 u1 u2 u4 i2 i4 i8 b1 are accepted", name,
                      neritic::printable(quoted_start(descr)));
   array.type = row->type;
   if (!value_of(header, "fortran_order").starts_with("False"))
@@ -196,6 +223,10 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
     return bad_input("{}: {} bytes of elements, the shape needs {}", name, present, expected);
   const auto data = bytes.subspan(prefix + length, expected);
   array.bytes.assign(data.begin(), data.end());
+  if (big_endian)
+    for (std::size_t i = 0; i < array.bytes.size(); i += row->size)
+      std::reverse(array.bytes.begin() + std::ptrdiff_t(i),
+                   array.bytes.begin() + std::ptrdiff_t(i + row->size));
   return array;
 }
 

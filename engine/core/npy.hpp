@@ -1,6 +1,6 @@
-// NumPy's .npy files (format 1.0 to 3.0), little-endian, C order. Writing: any of the element types
-// below. Reading: those and their numeric relatives, converted to what the caller asks for; Fortran
-// order, big-endian and object arrays are refused by name. Source: NumPy Enhancement Proposal 1.
+// NumPy's .npy files (format 1.0 to 3.0), C order. Writing: any of the element types below,
+// little-endian. Reading: those of either byte order, converted to what the caller asks for;
+// Fortran order and object arrays are refused by name. Source: NumPy Enhancement Proposal 1.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,18 @@
 
 namespace neritic {
 
-enum class NpyType { kFloat32, kFloat64, kUint8, kUint16, kUint32, kInt16, kInt32, kInt64, kBool };
+enum class NpyType {
+  kFloat16,
+  kFloat32,
+  kFloat64,
+  kUint8,
+  kUint16,
+  kUint32,
+  kInt16,
+  kInt32,
+  kInt64,
+  kBool
+};
 
 struct NpyArray {
   NpyType type = NpyType::kFloat32;
@@ -26,6 +37,7 @@ struct NpyArray {
 };
 
 std::size_t npy_type_size(NpyType type);
+bool is_float(NpyType type);
 // "<f4" and so on.
 std::string npy_type_name(NpyType type);
 

@@ -27,6 +27,11 @@ Result<ImageU8> read_image8(const std::filesystem::path& path, std::uint32_t cha
   return decode_image8(bytes, path.string(), channels);
 }
 
+Result<PngNumbers> read_png_numbers(const std::filesystem::path& path) {
+  NERITIC_TRY(const auto bytes, read_file(path));
+  return decode_png_numbers(bytes, path.string());
+}
+
 Result<ImageU16> decode_image16(std::span<const std::byte> bytes, const std::string& name) {
   return decode_png16(bytes, name);
 }

@@ -24,13 +24,23 @@ struct PictureSize {
   std::uint32_t width = 0, height = 0;
 };
 PictureSize peek_size(std::span<const std::byte> bytes);
+// A PNG of at most 8 bits whose numbers mean something (classes, distances), as stored: 1, 2 and 4
+// bits unstretched, of a palette the indices and not the colours.
+struct PngNumbers {
+  ImageU8 image;
+  bool palette = false;
+};
+Result<PngNumbers> read_png_numbers(const std::filesystem::path& path);
+Result<PngNumbers> decode_png_numbers(std::span<const std::byte> bytes, const std::string& name);
 // 16-bit PNG as stored (an 8-bit file is an error that says so).
 Result<ImageU16> read_image16(const std::filesystem::path& path);
 Result<ImageU16> decode_image16(std::span<const std::byte> bytes, const std::string& name);
 // True where the file is a PNG with 16 bits a channel.
 bool is_png16(const std::filesystem::path& path);
-// OpenEXR (half, float or uint channels) to float; names gives the channels in order of the result:
-// R,G,B(,A) or X,Y,Z where the file has those, else alphabetical.
+// OpenEXR (half, float or uint channels) to float, as large as its display window: 0 where the data
+// window (an automatic crop) does not reach, and what lies beyond (overscan) left out; names gives
+// the channels in order of the result: R,G,B(,A) or X,Y,Z where the file has those, else
+// alphabetical.
 struct ExrImage {
   ImageF32 image;
   std::vector<std::string> names;

@@ -20,6 +20,7 @@ namespace {
 // a header is forged.
 constexpr std::uint64_t kMaxRatio = 4096, kRatioSlackBytes = 1 << 20;
 constexpr std::size_t kMaxChannels = 64;
+constexpr std::uint64_t kMaxCroppedValues = std::uint64_t{1} << 28;  // 1 GiB of floats
 
 // OpenEXR reads from this instead of a file. Throws as OpenEXR wants it.
 class MemoryStream : public Imf::IStream {
@@ -61,16 +62,58 @@ void sort_channels(std::vector<std::string>& names) {
                    [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
 }
 
+// The display window's part of what the data window holds, 0 elsewhere: a cropped picture keeps its
+// place, so that a pinhole of the whole picture still fits.
+ImageF32 in_display(const ImageF32& data, const Imath::Box2i& window, const Imath::Box2i& display) {
+  const auto width = static_cast<std::uint32_t>(display.max.x - display.min.x + 1);
+  const auto height = static_cast<std::uint32_t>(display.max.y - display.min.y + 1);
+  ImageF32 out(width, height, data.channels);
+  const int left = std::max(window.min.x, display.min.x),
+            right = std::min(window.max.x, display.max.x);
+  const int top = std::max(window.min.y, display.min.y),
+            bottom = std::min(window.max.y, display.max.y);
+  for (int y = top; y <= bottom && left <= right; ++y) {
+    const auto at = [&](const ImageF32& image, const Imath::Box2i& box) {
+      return (static_cast<std::size_t>(y - box.min.y) * image.width +
+              static_cast<std::size_t>(left - box.min.x)) *
+             image.channels;
+    };
+    const std::size_t n = static_cast<std::size_t>(right - left + 1) * data.channels;
+    std::copy_n(data.data.begin() + std::ptrdiff_t(at(data, window)), n,
+                out.data.begin() + std::ptrdiff_t(at(out, display)));
+  }
+  return out;
+}
+
+struct WindowSize {
+  std::int64_t width, height;
+};
+WindowSize size_of(const Imath::Box2i& window) {
+  return {std::int64_t{window.max.x} - window.min.x + 1,
+          std::int64_t{window.max.y} - window.min.y + 1};
+}
+
+Status check_window(const std::string& name, const WindowSize& size) {
+  if (size.width < 1 || size.height < 1 || size.width > kMaxImageSide ||
+      size.height > kMaxImageSide ||
+      static_cast<std::uint64_t>(size.width * size.height) > kMaxImagePixels)
+    return bad_input("{}: {} x {} pixels, at most {} x {} and 2^28 in all are accepted", name,
+                     size.width, size.height, kMaxImageSide, kMaxImageSide);
+  return {};
+}
+
 Result<ExrImage> read_channels(std::span<const std::byte> bytes, const std::string& name) {
   MemoryStream stream(bytes, name);
   Imf::InputFile file(stream, 0);  // 0: no threads of its own
   const Imath::Box2i window = file.header().dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide ||
-      static_cast<std::uint64_t>(width * height) > kMaxImagePixels)
-    return bad_input("{}: {} x {} pixels, at most {} x {} and 2^28 in all are accepted", name,
-                     width, height, kMaxImageSide, kMaxImageSide);
+  const Imath::Box2i display = file.header().displayWindow();
+  const auto [width, height] = size_of(window);
+  const WindowSize whole = size_of(display);
+  NERITIC_TRY_STATUS(check_window(name, {width, height}));
+  NERITIC_TRY_STATUS(check_window(name, whole));
+  if (!window.intersects(display))
+    return bad_input("{}: none of its pixels lie in its display window of {} x {}", name,
+                     whole.width, whole.height);
   ExrImage out;
   const Imf::ChannelList& channels = file.header().channels();
   for (auto it = channels.begin(); it != channels.end(); ++it) {
@@ -82,6 +125,13 @@ Result<ExrImage> read_channels(std::span<const std::byte> bytes, const std::stri
   const std::uint64_t n_channels = out.names.size();
   if (n_channels < 1 || n_channels > kMaxChannels)
     return bad_input("{}: {} channels, 1 to {} are accepted", name, n_channels, kMaxChannels);
+  // A crop to almost nothing is usual, so the file's size says nothing of the display window.
+  if (window != display &&
+      static_cast<std::uint64_t>(whole.width * whole.height) * n_channels > kMaxCroppedValues)
+    return bad_input(
+        "{}: a display window of {} x {} x {} values, at most 2^28 are accepted where the data "
+        "window is another",
+        name, whole.width, whole.height, n_channels);
   const std::uint64_t n_bytes =
       static_cast<std::uint64_t>(width * height) * n_channels * sizeof(float);
   if (n_bytes > bytes.size() * kMaxRatio + kRatioSlackBytes)
@@ -97,6 +147,7 @@ Result<ExrImage> read_channels(std::span<const std::byte> bytes, const std::stri
                                   n_channels * sizeof(float), n_channels * sizeof(float) * width));
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
+  if (window != display) out.image = in_display(out.image, window, display);
   return out;
 }
 

@@ -17,6 +17,10 @@ constexpr std::uint64_t kMaxDeflateRatio = 1032;
 // Text and profiles that nobody here reads need not be larger.
 constexpr png_alloc_size_t kMaxChunkBytes = 8 << 20;
 constexpr png_uint_32 kMaxKeptChunks = 1000;
+constexpr std::size_t kBitsAt = 24, kColorTypeAt = 25;  // in the file, of the IHDR chunk
+
+// What becomes of palettes, of fewer than 8 bits and of colours that mean transparent.
+enum class Expand { kToColors, kNever };
 
 struct Source {
   std::span<const std::byte> bytes;
@@ -59,9 +63,10 @@ class PngReader {
     return true;
   }
   // Arranges that rows come out with so many channels (0: as stored) of 8 or 16 bits.
-  bool set_layout(std::uint32_t channels, int bits) {
+  bool set_layout(std::uint32_t channels, int bits, Expand expand) {
     if (setjmp(png_jmpbuf(png_))) return false;
-    png_set_expand(png_);  // palettes, fewer than 8 bits, colours that mean transparent
+    if (expand == Expand::kToColors) png_set_expand(png_);
+    png_set_packing(png_);  // numbers of fewer than 8 bits, where they stay: one a byte
     if (bits == 8) png_set_scale_16(png_);
     if (bits == 16) png_set_swap(png_);  // PNG is big-endian
     const bool gray = (png_get_color_type(png_, info_) & PNG_COLOR_MASK_COLOR) == 0;
@@ -95,7 +100,7 @@ class PngReader {
 
 template <class T>
 Result<Raster<T>> decode_png(std::span<const std::byte> bytes, const std::string& name,
-                             std::uint32_t channels) {
+                             std::uint32_t channels, Expand expand) {
   const auto broken = [&](const Source& source) {
     return bad_input("{}: a broken PNG ({})", name, source.reason);
   };
@@ -110,7 +115,7 @@ Result<Raster<T>> decode_png(std::span<const std::byte> bytes, const std::string
   if (std::uint64_t{reader.row_bytes()} * reader.height() > bytes.size() * kMaxDeflateRatio)
     return bad_input("{}: {} x {} pixels cannot come from {} bytes", name, reader.width(),
                      reader.height(), bytes.size());
-  if (!reader.set_layout(channels, 8 * sizeof(T))) return broken(source);
+  if (!reader.set_layout(channels, 8 * sizeof(T), expand)) return broken(source);
   note_if_heavy(name, reader.width(), reader.height());
   Raster<T> image(reader.width(), reader.height(), reader.channels());
   if (reader.row_bytes() * reader.height() != image.data.size() * sizeof(T))
@@ -145,7 +150,7 @@ bool is_png(std::span<const std::byte> bytes) {
 }
 
 int png_bits(std::span<const std::byte> bytes) {
-  return std::to_integer<int>(bytes[24]);
+  return std::to_integer<int>(bytes[kBitsAt]);
 }
 
 PictureSize png_size(std::span<const std::byte> bytes) {
@@ -155,7 +160,17 @@ PictureSize png_size(std::span<const std::byte> bytes) {
 Result<ImageU8> decode_png8(std::span<const std::byte> bytes, const std::string& name,
                             std::uint32_t channels) {
   NERITIC_TRY_STATUS(check_size(bytes, name));
-  return decode_png<std::uint8_t>(bytes, name, channels);
+  return decode_png<std::uint8_t>(bytes, name, channels, Expand::kToColors);
+}
+
+Result<PngNumbers> decode_png_numbers(std::span<const std::byte> bytes, const std::string& name) {
+  NERITIC_TRY_STATUS(check_size(bytes, name));
+  if (png_bits(bytes) > 8)
+    return bad_input("{}: {} bits a channel found, at most 8 are accepted", name, png_bits(bytes));
+  PngNumbers out;
+  NERITIC_TRY(out.image, decode_png<std::uint8_t>(bytes, name, 0, Expand::kNever));
+  out.palette = std::to_integer<int>(bytes[kColorTypeAt]) == PNG_COLOR_TYPE_PALETTE;
+  return out;
 }
 
 Result<ImageU16> decode_png16(std::span<const std::byte> bytes, const std::string& name) {
@@ -163,7 +178,7 @@ Result<ImageU16> decode_png16(std::span<const std::byte> bytes, const std::strin
   if (png_bits(bytes) != 16)
     return bad_input("{}: {} bits a channel found, a 16-bit PNG is accepted", name,
                      png_bits(bytes));
-  return decode_png<std::uint16_t>(bytes, name, 0);
+  return decode_png<std::uint16_t>(bytes, name, 0, Expand::kToColors);
 }
 
 }  // namespace neritic::scene

@@ -29,17 +29,42 @@ TEST(Npy, DataStartsOnAMultipleOf64Bytes) {
   EXPECT_EQ((bytes->size() - 14) % 64, 0u);
 }
 
-TEST(Npy, AnElementTypeThatIsNotReadIsQuotedAlone) {
+Result<NpyArray> parsed(const std::string& type, const std::string& shape, std::string_view data) {
   std::string text = "\x93NUMPY\x01";
   text += '\0';
-  const std::string header = "{'descr': '>f4', 'fortran_order': False, 'shape': (1,), }\n";
+  const std::string header =
+      "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }\n";
   text += static_cast<char>(header.size());
   text += '\0';
-  text += header + "1234";
-  const auto array = parse_npy(std::as_bytes(std::span(text.data(), text.size())), "a.npy");
+  text += header;
+  text += data;
+  return parse_npy(std::as_bytes(std::span(text.data(), text.size())), "a.npy");
+}
+
+TEST(Npy, AnElementTypeThatIsNotReadIsQuotedAlone) {
+  const auto array = parsed("<c8", "(1,)", "12345678");
   ASSERT_FALSE(array.ok());
-  EXPECT_NE(array.error().message.find("element type >f4;"), std::string::npos)
+  EXPECT_NE(array.error().message.find("element type <c8;"), std::string::npos)
       << array.error().message;
+}
+
+// Bytes as NumPy writes them.
+TEST(Npy, HalvesAndBigEndianNumbersAreRead) {
+  using namespace std::string_view_literals;
+  const auto halves =
+      parsed("<f2", "(7,)", "\x00\x3c\x00\xc1\x55\x35\xff\x7b\x01\x00\x00\x7c\x00\x80"sv);
+  ASSERT_TRUE(halves.ok()) << halves.error().message;
+  EXPECT_EQ(halves->to_doubles(),
+            (std::vector<double>{1.0, -2.5, 0.333251953125, 65504.0, 0x1p-24,
+                                 std::numeric_limits<double>::infinity(), -0.0}));
+  EXPECT_TRUE(std::isnan(parsed("<f2", "(1,)", "\x01\x7e"sv)->to_doubles()[0]));
+  EXPECT_EQ(parsed(">f2", "(1,)", "\xc1\x00"sv)->to_doubles(), std::vector<double>{-2.5});
+  EXPECT_EQ(parsed(">f4", "(2,)", "\x3f\x80\x00\x00\xc0\x20\x00\x00"sv)->to_doubles(),
+            (std::vector<double>{1.0, -2.5}));
+  EXPECT_EQ(parsed(">u2", "(1,)", "\x07\xee"sv)->to_doubles(), std::vector<double>{2030.0});
+  EXPECT_EQ(parsed(">i8", "(1,)", "\xff\xff\xff\xff\xff\xff\xff\xfe"sv)->to_doubles(),
+            std::vector<double>{-2.0});
+  EXPECT_FALSE(parsed("<f2", "(2,)", "\x00\x3c\x00"sv).ok());
 }
 
 TEST(Npy, EveryTruncationIsRefusedWithTheFileName) {

@@ -49,6 +49,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     check_picture(*image, 4);
   else
     check_error(image.error());
+  if (const auto numbers = scene::decode_png_numbers(bytes, "fuzz.png"); numbers.ok())
+    check_picture(numbers->image, 0);
+  else
+    check_error(numbers.error());
   if (const auto image = scene::decode_image16(bytes, "fuzz.png"); image.ok())
     check_picture(*image, 0);
   else

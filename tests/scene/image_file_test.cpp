@@ -7,6 +7,7 @@
 #include <ImfOutputFile.h>
 #include <gtest/gtest.h>
 #include <half.h>
+#include <zlib.h>
 
 #include <cmath>
 #include <cstring>
@@ -191,7 +192,7 @@ TEST(ImageFile, JpegsReadInEveryLayoutAndCutOnesAreErrors) {
     EXPECT_FALSE(decode_image8(std::span(bytes).first(length), "cut.jpg").ok()) << length;
 }
 
-// Channels of every type, a data window that starts elsewhere, names in need of order.
+// Channels of every type, a window that starts elsewhere, names in need of order.
 TEST(ImageFile, OpenExrChannelsComeInOrderAndAsFloats) {
   const test::ScratchFolder folder;
   const auto path = folder / "a.exr";
@@ -204,7 +205,7 @@ TEST(ImageFile, OpenExrChannelsComeInOrderAndAsFloats) {
     r[i] = i + 0.25f, g[i] = half(i * 0.5f), b[i] = -i, id[i] = 1000u + i;
   }
   {
-    Imf::Header header(Imath::Box2i({0, 0}, {99, 99}), window);
+    Imf::Header header(window, window);
     header.channels().insert("layer.B", Imf::Channel(Imf::FLOAT));
     header.channels().insert("layer.G", Imf::Channel(Imf::HALF));
     header.channels().insert("layer.R", Imf::Channel(Imf::FLOAT));
@@ -242,6 +243,97 @@ TEST(ImageFile, OpenExrChannelsComeInOrderAndAsFloats) {
     EXPECT_EQ(cut.error().message.rfind("cut.exr: ", 0), 0u) << cut.error().message;
   }
   EXPECT_FALSE(decode_exr(std::span(bytes).first(bytes.size() / 2), "cut.exr").ok());
+}
+
+// One channel, 1, 2, 3, ... by rows of its data window.
+std::filesystem::path write_counting_exr(const test::ScratchFolder& folder,
+                                         const Imath::Box2i& display, const Imath::Box2i& window) {
+  const auto path = folder / "crop.exr";
+  const std::size_t width = window.max.x - window.min.x + 1,
+                    height = window.max.y - window.min.y + 1;
+  std::vector<float> values(width * height);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i + 1);
+  Imf::Header header(display, window);
+  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  Imf::OutputFile file(path.c_str(), header);
+  Imf::FrameBuffer frame;
+  frame.insert("Z", Imf::Slice::Make(Imf::FLOAT, values.data(), window, 4, 4 * width));
+  file.setFrameBuffer(frame);
+  file.writePixels(static_cast<int>(height));
+  return path;
+}
+
+// A crop keeps its place in the picture, overscan goes.
+TEST(ImageFile, AnOpenExrIsAsLargeAsItsDisplayWindow) {
+  const test::ScratchFolder folder;
+  const auto crop = read_exr(write_counting_exr(folder, {{-2, 10}, {5, 13}}, {{1, 11}, {2, 12}}));
+  ASSERT_TRUE(crop.ok()) << crop.error().message;
+  EXPECT_EQ(crop->image.data, (std::vector<float>{0, 0, 0, 0, 0, 0, 0, 0,  //
+                                                  0, 0, 0, 1, 2, 0, 0, 0,  //
+                                                  0, 0, 0, 3, 4, 0, 0, 0,  //
+                                                  0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(crop->image.width, 8u);
+  const auto over = read_exr(write_counting_exr(folder, {{0, 0}, {2, 1}}, {{-1, -1}, {1, 2}}));
+  ASSERT_TRUE(over.ok()) << over.error().message;
+  EXPECT_EQ(over->image.data, (std::vector<float>{5, 6, 0, 8, 9, 0}));
+  EXPECT_FALSE(read_exr(write_counting_exr(folder, {{0, 0}, {2, 1}}, {{5, 5}, {6, 6}})).ok());
+  // One pixel is left of an empty picture; a forged display window asks for no memory.
+  EXPECT_TRUE(read_exr(write_counting_exr(folder, {{0, 0}, {3999, 1999}}, {{7, 7}, {7, 7}})).ok());
+  EXPECT_FALSE(
+      read_exr(write_counting_exr(folder, {{0, 0}, {32767, 32767}}, {{7, 7}, {7, 7}})).ok());
+}
+
+// The chunk with its length and checksum.
+void append_chunk(std::vector<unsigned char>& out, const std::string& name,
+                  const std::vector<unsigned char>& data) {
+  std::vector<unsigned char> body(name.begin(), name.end());
+  body.insert(body.end(), data.begin(), data.end());
+  const auto put = [&out](std::size_t v) {
+    for (int shift = 24; shift >= 0; shift -= 8)
+      out.push_back(static_cast<unsigned char>(v >> shift));
+  };
+  put(data.size());
+  out.insert(out.end(), body.begin(), body.end());
+  put(crc32(0, body.data(), static_cast<uInt>(body.size())));
+}
+
+// rows: one byte of filter, then the packed pixels. palette: where the colour type is 3.
+std::vector<unsigned char> png_of(unsigned char width, unsigned char height, unsigned char bits,
+                                  unsigned char color_type, const std::vector<unsigned char>& rows,
+                                  const std::vector<unsigned char>& palette = {}) {
+  std::vector<unsigned char> out{0x89, 'P', 'N', 'G', 13, 10, 26, 10};
+  append_chunk(out, "IHDR", {0, 0, 0, width, 0, 0, 0, height, bits, color_type, 0, 0, 0});
+  if (!palette.empty()) append_chunk(out, "PLTE", palette);
+  uLongf size = compressBound(rows.size());
+  std::vector<unsigned char> packed(size);
+  compress(packed.data(), &size, rows.data(), rows.size());
+  packed.resize(size);
+  append_chunk(out, "IDAT", packed);
+  append_chunk(out, "IEND", {});
+  return out;
+}
+
+// As masks of classes are exported: indices with colours to look at, and few bits.
+TEST(ImageFile, NumbersOfAPngAreThoseStored) {
+  const std::vector<unsigned char> colors{0, 0, 0, 128, 0, 0, 0, 128, 0, 128, 128, 0};
+  const auto indices = png_of(2, 2, 8, 3, {0, 0, 1, 0, 2, 3}, colors);
+  const auto packed = png_of(4, 1, 2, 3, {0, 0b00'01'10'11}, colors);
+  for (const auto& bytes : {indices, packed}) {
+    const auto read = decode_png_numbers(bytes_of(bytes), "a.png");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_TRUE(read->palette);
+    EXPECT_EQ(read->image.channels, 1u);
+    EXPECT_EQ(read->image.data, (std::vector<std::uint8_t>{0, 1, 2, 3}));
+  }
+  const auto bit = decode_png_numbers(bytes_of(png_of(8, 1, 1, 0, {0, 0b01100101})), "a.png");
+  ASSERT_TRUE(bit.ok()) << bit.error().message;
+  EXPECT_FALSE(bit->palette);
+  EXPECT_EQ(bit->image.data, (std::vector<std::uint8_t>{0, 1, 1, 0, 0, 1, 0, 1}));
+  const auto four = decode_png_numbers(bytes_of(png_of(3, 1, 4, 0, {0, 0x3f, 0x70})), "a.png");
+  EXPECT_EQ(four->image.data, (std::vector<std::uint8_t>{3, 15, 7}));
+  // As a picture the same are colours.
+  EXPECT_EQ(decode_image8(bytes_of(indices), "a.png")->at(1, 0, 0), 128);
+  EXPECT_EQ(decode_image8(bytes_of(png_of(3, 1, 4, 0, {0, 0x3f, 0x70})), "a.png")->at(0, 0), 51);
 }
 
 TEST(ImageFile, RealDepthAndNormalMapsReadAsTheirChannels) {
