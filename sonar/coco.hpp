@@ -30,7 +30,7 @@ class CocoFile {
   explicit CocoFile(std::map<std::uint16_t, std::string> class_names);
 
   // One annotation for each (class, instance) in the image whose class has a name, in that order.
-  // file_name: of what the labels belong to.
+  // file_name: of the picture that the labels belong to, n_beams wide and n_range high.
   void add(const std::string& file_name, const LabelImage& labels);
 
   nlohmann::json json() const;

@@ -33,7 +33,8 @@ Result<scene::Scene> over_a_flat_bottom(const std::filesystem::path& folder,
 std::vector<double> altitudes_of(gpu::Device& device, const scene::Scene& scene) {
   auto session = Session::create(device, scene);
   EXPECT_TRUE(session.ok()) << session.error().message;
-  Survey survey((*session)->scene());
+  const test::ScratchFolder out;
+  Survey survey((*session)->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
   request.capture.geometry = false;
@@ -44,8 +45,7 @@ std::vector<double> altitudes_of(gpu::Device& device, const scene::Scene& scene)
     const Status added = survey.add(*result, request.frame, request.time_s);
     EXPECT_TRUE(added.ok()) << (added.ok() ? "" : added.error().message);
   }
-  const test::ScratchFolder out;
-  EXPECT_TRUE(survey.write(out.path(), {}).ok());
+  EXPECT_TRUE(survey.write({}).ok());
   auto npy = read_npy(out / "track" / "sonar" / "sidescan_altitude.npy");
   EXPECT_TRUE(npy.ok()) << npy.error().message;
   return npy->to_doubles();

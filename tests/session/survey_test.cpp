@@ -74,7 +74,8 @@ TEST_F(SurveyTest, ALawnMowerTrackChartsTheRealBottom) {
   const double end_s = scene.objects[0].mount.track->places.back().time_s;
 
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
-  Survey survey(session->scene());
+  const test::ScratchFolder out;
+  Survey survey(session->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
   request.capture.geometry = false;
@@ -83,8 +84,7 @@ TEST_F(SurveyTest, ALawnMowerTrackChartsTheRealBottom) {
     ASSERT_TRUE(survey.add(result, request.frame, request.time_s).ok());
     request.time_s += 0.5;
   }
-  const test::ScratchFolder out;
-  ASSERT_TRUE(survey.write(out.path(), {}).ok());
+  ASSERT_TRUE(survey.write({}).ok());
   const auto folder = out / "track" / "multibeam";
   const auto error = read_json(folder / "bathymetry.json")["error"];
   EXPECT_GT(error["nadir_soundings"]["count"], 1000);
@@ -115,7 +115,8 @@ TEST_F(SurveyTest, NoiseIsNoBottom) {
   scene.objects[1].mount.pose.position_m = {0.0, -20.0, 0.0};
   scene.sonars = {sonar};
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
-  Survey survey(session->scene());
+  const test::ScratchFolder out;
+  Survey survey(session->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
   request.capture.geometry = false;
@@ -128,8 +129,7 @@ TEST_F(SurveyTest, NoiseIsNoBottom) {
       loudest_beyond = std::max<double>(loudest_beyond, image[i]);
   }
   EXPECT_GT(loudest_beyond, 0.0);  // there is noise behind the floor
-  const test::ScratchFolder out;
-  ASSERT_TRUE(survey.write(out.path(), {}).ok());
+  ASSERT_TRUE(survey.write({}).ok());
   const auto json = read_json(out / "track" / "multibeam" / "bathymetry.json");
   // The floor spans 43.6 of the 90 degrees: 62 of 128 beams.
   EXPECT_NEAR(json["soundings"].get<double>() / 20, 62.0, 3.0);
@@ -157,7 +157,8 @@ TEST_F(SurveyTest, AnEchoSounderComesDownAtFiveMetresAMinute) {
   scene.objects[0].mount.track =
       scene::track_of(scene::places_of({{Vec3(0, -35.0, 0), Vec3(0, -55.0, 0)}, kRate, 0.0}), {});
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
-  Survey survey(session->scene());
+  const test::ScratchFolder out;
+  Survey survey(session->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
   request.capture.geometry = false;
@@ -166,8 +167,7 @@ TEST_F(SurveyTest, AnEchoSounderComesDownAtFiveMetresAMinute) {
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
     ASSERT_TRUE(survey.add(result, request.frame, request.time_s).ok());
   }
-  const test::ScratchFolder out;
-  ASSERT_TRUE(survey.write(out.path(), {}).ok());
+  ASSERT_TRUE(survey.write({}).ok());
   NERITIC_ASSERT_OK(const auto table, read_text(out / "track" / "sounder" / "echo_trace.csv"));
   std::istringstream lines(table);
   std::string line;
@@ -212,7 +212,8 @@ TEST_F(SurveyTest, ASideScanPassesAnObjectAndItsShadow) {
   scene.objects[0].mount.track =
       scene::track_of(scene::places_of({{Vec3(0, -10, 10), Vec3(0, -10, -10)}, 2.0, 0.0}), {});
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
-  Survey survey(session->scene());
+  const test::ScratchFolder out;
+  Survey survey(session->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
   request.capture.geometry = false;
@@ -233,8 +234,7 @@ TEST_F(SurveyTest, ASideScanPassesAnObjectAndItsShadow) {
   EXPECT_GT(at(16.5), 3.0f * at(15.5));
   for (const double range : {18.5, 20.0, 21.5}) EXPECT_EQ(at(range), 0.0f) << range;
   EXPECT_GT(at(23.0), 0.0f);
-  const test::ScratchFolder out;
-  ASSERT_TRUE(survey.write(out.path(), {}).ok());
+  ASSERT_TRUE(survey.write({}).ok());
   EXPECT_TRUE(std::filesystem::exists(out / "track" / "sidescan" / "sidescan_slant.png"));
 }
 

@@ -6,7 +6,10 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/npy.hpp"
+#include "engine/scene/image_file.hpp"
 #include "tests/support/device_gate.hpp"
+#include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
 #include "tools/neritic/commands.hpp"
 
@@ -45,8 +48,16 @@ class RenderTrack : public ::testing::Test {
     for (const auto& image : coco.at("images")) names.push_back(image["file_name"]);
     return names;
   }
-  void expect_all_there(const std::vector<std::string>& names) {
-    for (const std::string& name : names) EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+  // Beside coco.json each picture is as large as it says, so that boxes lie where they belong.
+  void expect_pictures(const std::string& sonar) {
+    const nlohmann::json coco = json_of("track/" + sonar + "/coco.json");
+    for (const auto& image : coco.at("images")) {
+      const std::string name = image["file_name"];
+      NERITIC_ASSERT_OK(const ImageU8 picture,
+                        scene::read_image8(folder_ / "out" / "track" / sonar / name));
+      EXPECT_EQ(picture.width, image["width"]) << name;
+      EXPECT_EQ(picture.height, image["height"]) << name;
+    }
   }
   test::ScratchFolder folder_;
 };
@@ -59,9 +70,58 @@ TEST_F(RenderTrack, BoxesOfASideScanNameBothSidesOfEachFrame) {
   render(kSideScan, {"--frames", "2"});
   const auto names = coco_files("s");
   EXPECT_EQ(names, (std::vector<std::string>{
-                       "frame_0000/s/port/sonar.png", "frame_0000/s/starboard/sonar.png",
-                       "frame_0001/s/port/sonar.png", "frame_0001/s/starboard/sonar.png"}));
-  expect_all_there(names);
+                       "coco/frame_0000_port.png", "coco/frame_0000_starboard.png",
+                       "coco/frame_0001_port.png", "coco/frame_0001_starboard.png"}));
+  expect_pictures("s");
+}
+
+// Boxes, masks and picture of one frame, of which no other track is made: what is heard in a box is
+// bright in the picture there, and shadow has a category of its own.
+TEST_F(RenderTrack, BoxesOfOneFrameLieOverItsPicture) {
+  render(
+      "[[objects]]\nname = \"ball\"\nshape = \"sphere\"\nradius_m = 0.5\nclass = \"target\"\n"
+      "position_m = [2, -14.5, -6]\n"
+      "[[sonars]]\nname = \"s\"\nposition_m = [0, -10, 0]\npitch_deg = -35\nrange_m = [1, 20]\n"
+      "azimuth_deg = 60\nelevation_deg = 40\nbins = [200, 64, 64]\n"
+      "labels = { energy = true, coco = true }\n"
+      "[[sonars]]\nname = \"m\"\nkind = \"profiling\"\nposition_m = [0, -10, 0]\npitch_deg = -90\n"
+      "range_m = [1, 11]\nazimuth_deg = 40\nelevation_deg = 1\nbins = [100, 16, 8]\n",
+      {});
+  expect_pictures("s");
+  EXPECT_FALSE(fs::exists(folder_ / "out/track/m"));
+  const nlohmann::json coco = json_of("track/s/coco.json");
+  NERITIC_ASSERT_OK(const ImageU8 picture,
+                    scene::read_image8(folder_ / "out/track/s/coco/frame_0000.png"));
+  NERITIC_ASSERT_OK(const NpyArray array, read_npy(folder_ / "out/frame_0000/s/sonar.npy"));
+  const std::vector<double> heard = array.to_doubles();
+  ASSERT_EQ(heard.size(), picture.data.size());
+  const double most = *std::max_element(heard.begin(), heard.end());
+  for (std::size_t i = 0; i < heard.size(); ++i) {
+    if (heard[i] == 0.0) EXPECT_EQ(picture.data[i], 0) << i;
+    if (heard[i] > 0.1 * most) EXPECT_GT(picture.data[i], 50) << i;
+  }
+  std::set<std::string> found;
+  for (const auto& a : coco.at("annotations"))
+    for (const auto& category : coco.at("categories"))
+      if (category["id"] == a["category_id"]) found.insert(category["name"]);
+  EXPECT_TRUE(found.contains("target") && found.contains("shadow") && found.contains("seabed"))
+      << coco.at("annotations").size();
+  for (const auto& a : coco.at("annotations")) {
+    if (a["category_id"] != 12) continue;  // the target, to starboard and above the bottom
+    EXPECT_GT(a["bbox"][0], 32);
+    std::uint8_t brightest = 0;
+    const std::uint32_t x0 = a["bbox"][0], y0 = a["bbox"][1], w = a["bbox"][2], h = a["bbox"][3];
+    for (std::uint32_t y = y0; y < y0 + h; ++y)
+      for (std::uint32_t x = x0; x < x0 + w; ++x) brightest = std::max(brightest, picture.at(x, y));
+    EXPECT_GT(brightest, 100);
+  }
+}
+
+TEST_F(RenderTrack, BoxesHaveTheirPicturesWithoutFramesToo) {
+  render(kSideScan, {"--frames", "2", "--track-only"});
+  EXPECT_FALSE(fs::exists(folder_ / "out/frame_0000"));
+  EXPECT_EQ(coco_files("s").size(), 4u);
+  expect_pictures("s");
 }
 
 TEST_F(RenderTrack, BoxesOfASonarAtItsOwnRateNameTheFramesItIsIn) {
@@ -74,12 +134,11 @@ TEST_F(RenderTrack, BoxesOfASonarAtItsOwnRateNameTheFramesItIsIn) {
   };
   render(imaging("quick", 10) + imaging("slow", 2), {"--frames", "11", "--own-rates"});
   const auto names = coco_files("slow");
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"frame_0000/slow/sonar.png", "frame_0005/slow/sonar.png",
-                                      "frame_0010/slow/sonar.png"}));
-  expect_all_there(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"coco/frame_0000.png", "coco/frame_0005.png",
+                                             "coco/frame_0010.png"}));
+  expect_pictures("slow");
   EXPECT_EQ(coco_files("quick").size(), 11u);
-  expect_all_there(coco_files("quick"));
+  expect_pictures("quick");
 }
 
 TEST_F(RenderTrack, AChartTellsTheBinsThatWerePinged) {

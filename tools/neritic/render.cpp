@@ -250,7 +250,9 @@ Result<std::string> run_render(const RenderFlags& flags) {
         std::any_of(request.sonars.begin(), request.sonars.end(),
                     [&](std::size_t i) { return !sonars[i].picture_camera.empty(); });
   }
-  Survey survey(session->scene(), flags.chart_cell_m);
+  // Of one frame no track is made, but its boxes are.
+  const bool tracks = flags.frames > 1 || flags.track_only;
+  Survey survey(session->scene(), flags.out, {flags.chart_cell_m, tracks});
   FrameFacts facts;
   std::set<fs::path> written;  // sensors' folders
   Progress progress("frame", flags.frames);
@@ -267,17 +269,14 @@ Result<std::string> run_render(const RenderFlags& flags) {
     if (!flags.track_only)
       NERITIC_TRY_STATUS(
           write_frame(fs::path(flags.out) / frame_folder(i), result, facts, written));
-    if (flags.frames > 1) NERITIC_TRY_STATUS(survey.add(result, i, request.time_s));
+    NERITIC_TRY_STATUS(survey.add(result, i, request.time_s));
     if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result));
     if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
     progress.step();
     ++made;
   }
   if (made == 0) return Error{ErrorCode::kInterrupted, "interrupted before the first frame"};
-  bool wrote_track = false;
-  if (flags.frames > 1) {
-    NERITIC_TRY(wrote_track, survey.write(flags.out, facts));
-  }
+  NERITIC_TRY(const bool wrote_track, survey.write(facts));
   if (made < flags.frames) return stopped_render(flags, made, step_s, wrote_track);
   warn_of_leftovers(flags, wrote_track, written);
   NERITIC_TRY_STATUS(check_validation(*device));

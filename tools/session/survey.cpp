@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/scene/image_file.hpp"
 #include "engine/scene/scene_surface.hpp"
 #include "sonar/bathymetry.hpp"
 #include "sonar/coco.hpp"
@@ -86,8 +87,8 @@ struct Survey::Record {
   std::unique_ptr<sonar::CocoFile> coco;
 
   bool accumulates() const { return bathymetry || trace || sidescan || scan || coco; }
-  void add(const SonarFrame& frame, std::uint32_t number, const Pose& world_from_sonar,
-           double time_s);
+  void add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s);
+  Status add_boxes(const fs::path& folder, const SonarFrame& frame, std::uint32_t number);
   void add_profile(const SonarFrame& frame);
   Status add_picture(const FrameResult& result, const Pose& world_from_sonar, double time_s);
   Status write(const fs::path& folder, const scene::Scene& scene, const FrameFacts& facts) const;
@@ -95,8 +96,8 @@ struct Survey::Record {
                           nlohmann::json json) const;
 };
 
-Survey::Survey(const scene::Scene& scene, double chart_cell_m)
-    : scene_(scene), chart_cell_m_(chart_cell_m) {}
+Survey::Survey(const scene::Scene& scene, fs::path out, const SurveyOptions& options)
+    : scene_(scene), out_(std::move(out)), options_(options) {}
 Survey::~Survey() = default;
 
 Survey::Record& Survey::record_of(const SonarFrame& frame) {
@@ -108,9 +109,17 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
   Record& r = *slot;
   const sonar::Limits& l = frame.grid.limits;
   const scene::SonarTerms& terms = frame.terms;
+  if (terms.labels.coco) {
+    std::map<std::uint16_t, std::string> names = scene_.class_names;
+    for (const scene::ClassName& known : scene::kClasses) names.emplace(known.id, known.name);
+    names.emplace(sonar::kShadow, "shadow");
+    names.emplace(sonar::kGhost, "ghost");
+    r.coco = std::make_unique<sonar::CocoFile>(std::move(names));
+  }
+  if (!options_.tracks) return r;
   if (frame.kind == SonarKind::kProfiling)
-    r.bathymetry = std::make_unique<sonar::Bathymetry>(chart_cell_m_ > 0.0 ? chart_cell_m_
-                                                                           : l.range_max_m / 50.0);
+    r.bathymetry = std::make_unique<sonar::Bathymetry>(
+        options_.chart_cell_m > 0.0 ? options_.chart_cell_m : l.range_max_m / 50.0);
   if (frame.kind == SonarKind::kEchoSounder)
     r.trace = std::make_unique<sonar::EchoTrace>(
         sonar::echo_trace_options(frame.grid, terms, floor_of(frame)));
@@ -127,11 +136,6 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
         .beam_rad = std::max(r.sonar.step_rad, l.azimuth_max_rad - l.azimuth_min_rad),
         .elevation_rad = r.sonar.elevation_rad,
         .levels = terms.level.has_value()});
-  if (terms.labels.coco) {
-    std::map<std::uint16_t, std::string> names = scene_.class_names;
-    for (const scene::ClassName& known : scene::kClasses) names.emplace(known.id, known.name);
-    r.coco = std::make_unique<sonar::CocoFile>(std::move(names));
-  }
   return r;
 }
 
@@ -139,7 +143,9 @@ Status Survey::add(const FrameResult& result, std::uint32_t number, double time_
   for (const SonarFrame& frame : result.sonars) {
     Record& record = record_of(frame);
     const Pose world_from_sonar = scene_.world_from(record.sonar.mount, time_s);
-    record.add(frame, number, world_from_sonar, time_s);
+    record.add(frame, world_from_sonar, time_s);
+    if (record.coco && frame.label_energy)
+      NERITIC_TRY_STATUS(record.add_boxes(out_ / "track" / frame.name, frame, number));
     if (record.from_pictures && frame.head == "port")
       NERITIC_TRY_STATUS(record.add_picture(result, world_from_sonar, time_s));
   }
@@ -178,8 +184,7 @@ Status Survey::Record::add_picture(const FrameResult& result, const Pose& world_
   return {};
 }
 
-void Survey::Record::add(const SonarFrame& frame, std::uint32_t number,
-                         const Pose& world_from_sonar, double time_s) {
+void Survey::Record::add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s) {
   if (frame.head != "port") ++pings;
   const std::vector<float>& heard = frame.image.intensity;
   if (bathymetry) add_profile(frame);
@@ -188,9 +193,18 @@ void Survey::Record::add(const SonarFrame& frame, std::uint32_t number,
   if (sidescan && frame.head == "port") port = frame;
   if (sidescan && frame.head == "starboard")
     sidescan->append(port.image.intensity, heard, world_from_sonar, time_s);
-  if (coco && frame.label_energy)
-    coco->add((fs::path(frame_folder(number)) / sonar_folder(frame) / "sonar.png").generic_string(),
-              *frame.label_energy);
+}
+
+// The picture beside coco.json, which names it from there.
+Status Survey::Record::add_boxes(const fs::path& folder, const SonarFrame& frame,
+                                 std::uint32_t number) {
+  const std::string head = frame.head.empty() ? "" : "_" + frame.head;
+  const fs::path picture = fs::path("coco") / (frame_folder(number) + head + ".png");
+  coco->add(picture.generic_string(), *frame.label_energy);
+  NERITIC_TRY_STATUS(make_folder(folder / "coco"));
+  return scene::write_png8(
+      folder / picture,
+      sonar::draw_bins(frame.image, sonar::panel_options(frame.kind, frame.level)));
 }
 
 void Survey::Record::add_profile(const SonarFrame& frame) {
@@ -240,11 +254,11 @@ Status Survey::Record::write(const fs::path& folder, const scene::Scene& scene,
   return {};
 }
 
-Result<bool> Survey::write(const fs::path& out, const FrameFacts& facts) const {
+Result<bool> Survey::write(const FrameFacts& facts) const {
   bool wrote = false;
   for (const auto& [name, record] : records_) {
     if (!record->accumulates()) continue;
-    NERITIC_TRY_STATUS(record->write(out / "track" / name, scene_, facts));
+    NERITIC_TRY_STATUS(record->write(out_ / "track" / name, scene_, facts));
     wrote = true;
   }
   return wrote;

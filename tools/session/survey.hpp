@@ -1,6 +1,7 @@
 // What accumulates while a sonar moves along a track: point cloud and bathymetric grid of a
 // profiling sonar, the range-time record of an echo sounder, the waterfall of a side-scan, the turn
-// of a mechanical scanner, COCO boxes. Fed frame by frame; written once. One thread.
+// of a mechanical scanner, COCO boxes with their pictures. Fed frame by frame; written once. One
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -14,25 +15,32 @@
 
 namespace neritic::tools {
 
+struct SurveyOptions {
+  double chart_cell_m = 0.0;  // of bathymetric grids; 0: a fiftieth of the sonar's farthest range
+  bool tracks = true;         // false: boxes alone, which one frame has too
+};
+
 class Survey {
  public:
   // The scene tells the sonars' kinds, the classes' names and where the true bottom lies (its
-  // objects of class seabed). Must outlive it.
-  // chart_cell_m: of bathymetric grids; 0: a fiftieth of the sonar's farthest range.
-  explicit Survey(const scene::Scene& scene, double chart_cell_m = 0.0);
+  // objects of class seabed). Must outlive it. out: where OUT/track/SONAR/ is written for each
+  // sonar that has something to say of a track.
+  Survey(const scene::Scene& scene, std::filesystem::path out, const SurveyOptions& options = {});
   ~Survey();
 
-  // number: of the frame, as its folder is named (frame_folder). kBadInput where a side-scan's
-  // picture camera is not in the frame or does not suit it.
+  // number: of the frame, as its folder is named (frame_folder). Writes the picture that COCO boxes
+  // lie over, OUT/track/SONAR/coco/FRAME.png (FRAME_HEAD.png of a side-scan): one grey pixel a bin.
+  // kBadInput where a side-scan's picture camera is not in the frame or does not suit it.
   Status add(const FrameResult& result, std::uint32_t number, double time_s);
-  // OUT/track/SONAR/ for each sonar that has something to say of a track; whether any had.
-  Result<bool> write(const std::filesystem::path& out, const FrameFacts& facts) const;
+  // All else; whether any sonar had something to say.
+  Result<bool> write(const FrameFacts& facts) const;
 
  private:
   struct Record;
   Record& record_of(const SonarFrame& frame);
   const scene::Scene& scene_;
-  const double chart_cell_m_;
+  const std::filesystem::path out_;
+  const SurveyOptions options_;
   std::map<std::string, std::unique_ptr<Record>> records_;
 };
 
