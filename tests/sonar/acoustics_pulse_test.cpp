@@ -27,6 +27,8 @@ TEST(SonarPulse, ResolutionAndSideLobesAreTheTextbooks) {
   EXPECT_NEAR(peak_db(PulseShape::kFlat, 1.0, 2.0), -13.26, 0.005);
   EXPECT_NEAR(peak_db(PulseShape::kHann, 2.0, 3.0), -31.47, 0.005);
   EXPECT_NEAR(sonar::pulse_envelope(PulseShape::kFlat, 0.44295, 1.0), std::sqrt(0.5), 1e-5);
+  // Hann's is 1.44 times c / 2B from half power to half power (Harris 1978, table 1: 1.44 bins).
+  EXPECT_NEAR(sonar::pulse_envelope(PulseShape::kHann, 0.7203, 1.0), std::sqrt(0.5), 1e-4);
   EXPECT_NEAR(sonar::pulse_envelope(PulseShape::kFlat, 0.025, 0.025), 0.0, 1e-15);
   EXPECT_NEAR(sonar::pulse_envelope(PulseShape::kHann, 2.0, 1.0), 0.0, 1e-15);
   EXPECT_NEAR(sonar::pulse_envelope(PulseShape::kHann, 1.0, 1.0), 0.5, 1e-12);
