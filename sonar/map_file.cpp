@@ -19,7 +19,13 @@ std::string lower_extension(const std::filesystem::path& path) {
 template <class T>
 MapFile from_raster(const std::filesystem::path& path, const Raster<T>& raster,
                     MapFile::Coding coding) {
-  MapFile map{path.string(), raster.width, raster.height, raster.channels, coding, {}, {}};
+  MapFile map;
+  map.path = path.string();
+  map.width = raster.width;
+  map.height = raster.height;
+  map.channels = raster.channels;
+  map.coding = coding;
+  map.whole_numbers = coding != MapFile::Coding::kNumbers;
   map.values.assign(raster.data.begin(), raster.data.end());
   return map;
 }
@@ -42,13 +48,14 @@ Result<MapFile> read_npy_map(const std::filesystem::path& path) {
   map.channels = static_cast<std::uint32_t>(channels);
   if (array.type == NpyType::kUint8) map.coding = MapFile::Coding::kCoded8;
   if (array.type == NpyType::kUint16) map.coding = MapFile::Coding::kCoded16;
+  map.whole_numbers = !is_float(array.type);
   map.values = array.to_doubles();
   return map;
 }
 
 }  // namespace
 
-Result<MapFile> read_map(const std::filesystem::path& path) {
+Result<MapFile> read_map(const std::filesystem::path& path, MapUse use) {
   const std::string extension = lower_extension(path);
   MapFile map;
   if (extension == ".npy") {
@@ -60,6 +67,10 @@ Result<MapFile> read_map(const std::filesystem::path& path) {
   } else if (extension == ".png" && scene::is_png16(path)) {
     NERITIC_TRY(const ImageU16 image, scene::read_image16(path));
     map = from_raster(path, image, MapFile::Coding::kCoded16);
+  } else if (extension == ".png" && use == MapUse::kNumbers) {
+    NERITIC_TRY(const scene::PngNumbers numbers, scene::read_png_numbers(path));
+    map = from_raster(path, numbers.image, MapFile::Coding::kCoded8);
+    map.palette = numbers.palette;
   } else if (extension == ".png") {
     NERITIC_TRY(const ImageU8 image, scene::read_image8(path));
     map = from_raster(path, image, MapFile::Coding::kCoded8);

@@ -1,4 +1,4 @@
-// Depth, normal and label maps from files of any kind that people keep them in: .npy, PNG (8 and 16
+// Depth, normal and label maps from files of any kind that people keep them in: .npy, PNG (1 to 16
 // bit) and OpenEXR. Values as stored, in double, so that nothing is lost. Any thread.
 #pragma once
 
@@ -15,6 +15,8 @@ struct MapFile {
   std::string path;
   std::uint32_t width = 0, height = 0, channels = 1;
   Coding coding = Coding::kNumbers;
+  bool whole_numbers = false;              // held as integers of any size
+  bool palette = false;                    // indices of a PNG's palette
   std::vector<double> values;              // [height][width][channels]
   std::vector<std::string> channel_names;  // of an EXR; else empty
 
@@ -24,7 +26,10 @@ struct MapFile {
   std::size_t pixels() const { return std::size_t{width} * height; }
 };
 
+// Of a PNG with a palette the numbers are its indices, as masks of classes are kept.
+enum class MapUse { kNumbers, kColors };
+
 // kBadInput with the path, what was found and what is accepted.
-Result<MapFile> read_map(const std::filesystem::path& path);
+Result<MapFile> read_map(const std::filesystem::path& path, MapUse use = MapUse::kNumbers);
 
 }  // namespace neritic::sonar

@@ -7,6 +7,24 @@
 namespace neritic::sonar {
 namespace {
 
+// "ViewLayer.Depth.Z" is channel Z of the layer "ViewLayer.Depth".
+std::string layer_of(const std::string& channel) {
+  const std::size_t dot = channel.rfind('.');
+  return dot == std::string::npos ? "" : channel.substr(0, dot);
+}
+std::string proper_name_of(const std::string& channel) {
+  return channel.substr(channel.rfind('.') + 1);
+}
+
+// The channel of that name in that layer.
+std::optional<std::uint32_t> channel_in(const MapFile& map, const std::string& layer,
+                                        const std::string& name) {
+  const std::string whole = layer.empty() ? name : layer + "." + name;
+  const auto at = std::find(map.channel_names.begin(), map.channel_names.end(), whole);
+  if (at == map.channel_names.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(at - map.channel_names.begin());
+}
+
 // Is it grey, kept as colour? Alpha does not count.
 bool is_grey(const MapFile& map) {
   if (map.channels == 2) return map.coding != MapFile::Coding::kNumbers;
@@ -18,19 +36,49 @@ bool is_grey(const MapFile& map) {
   return true;
 }
 
-// The channel that holds depth: named so in an EXR, else the first of a grey image.
+// The channel that holds depth: named so in an EXR, in whatever layer (not beside an X: that is a
+// vector's), else the first of a grey image.
 Result<std::uint32_t> depth_channel(const MapFile& map) {
-  for (const char* name : {"Z", "depth", "Y"}) {
-    const auto at = std::find(map.channel_names.begin(), map.channel_names.end(), name);
-    if (at != map.channel_names.end())
-      return static_cast<std::uint32_t>(at - map.channel_names.begin());
+  if (map.palette)
+    return bad_input("{}: a palette's indices found, grey numbers are accepted as depth", map.path);
+  for (const char* name : {"Z", "depth", "V", "Y"}) {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t c = 0; c < map.channel_names.size(); ++c)
+      if (proper_name_of(map.channel_names[c]) == name &&
+          !channel_in(map, layer_of(map.channel_names[c]), "X"))
+        found.push_back(c);
+    if (found.size() > 1)
+      return bad_input("{}: channels {} and {} found, one channel of depth is accepted", map.path,
+                       map.channel_names[found[0]], map.channel_names[found[1]]);
+    if (!found.empty()) return found[0];
   }
   if (map.channels > 1 && !is_grey(map))
     return bad_input(
         "{}: {} channels that differ found, one channel of depth is accepted (of an EXR also Z, "
-        "depth or Y)",
+        "depth, V or Y of any layer)",
         map.path, map.channels);
   return 0u;
+}
+
+// The channels that hold a vector: of an EXR the layer of X, Y and Z, else the one of R, G and B;
+// else the first three.
+Result<std::array<std::uint32_t, 3>> normal_channels(const MapFile& map) {
+  if (map.channels < 3)
+    return bad_input("{}: {} channels found, x, y and z are accepted", map.path, map.channels);
+  for (const auto& names : {std::array{"X", "Y", "Z"}, {"R", "G", "B"}}) {
+    std::vector<std::array<std::uint32_t, 3>> found;
+    for (std::uint32_t c = 0; c < map.channel_names.size(); ++c) {
+      if (proper_name_of(map.channel_names[c]) != names[0]) continue;
+      const std::string layer = layer_of(map.channel_names[c]);
+      const auto y = channel_in(map, layer, names[1]), z = channel_in(map, layer, names[2]);
+      if (y && z) found.push_back({c, *y, *z});
+    }
+    if (found.size() > 1)
+      return bad_input("{}: vectors {} and {} found, one is accepted", map.path,
+                       map.channel_names[found[0][0]], map.channel_names[found[1][0]]);
+    if (!found.empty()) return found[0];
+  }
+  return std::array{0u, 1u, 2u};
 }
 
 Status check_size(const MapFile& depth, const MapFile& other) {
@@ -61,11 +109,12 @@ std::vector<double> decode_table(MapFile::Coding coding, double gamma) {
   return table;
 }
 
-std::vector<double> normals_of(const MapFile& map, const OfflineOptions& options) {
+std::vector<double> normals_of(const MapFile& map, const std::array<std::uint32_t, 3>& channels,
+                               const OfflineOptions& options) {
   std::vector<double> out(3 * map.pixels());
   const std::vector<double> table = decode_table(map.coding, options.gamma);
   for (std::size_t i = 0; i < map.pixels(); ++i) {
-    Vec3 n(map.at(i, 0), map.at(i, 1), map.at(i, 2));
+    Vec3 n(map.at(i, channels[0]), map.at(i, channels[1]), map.at(i, channels[2]));
     if (!table.empty())
       for (int k = 0; k < 3; ++k) n[k] = table[static_cast<std::size_t>(n[k])];
     // A marker of "unknown" stays one in any axes.
@@ -76,13 +125,19 @@ std::vector<double> normals_of(const MapFile& map, const OfflineOptions& options
 }
 
 Result<std::vector<std::uint16_t>> labels_of(const MapFile& map) {
+  if (map.channels > 1 && !is_grey(map))
+    return bad_input(
+        "{}: {} channels that differ found, one channel of class numbers is accepted (a PNG's "
+        "palette gives its indices)",
+        map.path, map.channels);
   std::vector<std::uint16_t> out(map.pixels());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double value = map.at(i, 0);
-    if (!(value >= 0.0 && value <= 65535.0))
-      return bad_input("{}: label {:g} at column {}, row {} found, 0 to 65535 is accepted",
-                       map.path, value, i % map.width, i / map.width);
-    out[i] = static_cast<std::uint16_t>(std::lround(value));
+    if (!(value >= 0.0 && value <= 65535.0 && value == std::floor(value)))
+      return bad_input(
+          "{}: label {:g} at column {}, row {} found, a whole number from 0 to 65535 is accepted",
+          map.path, value, i % map.width, i / map.width);
+    out[i] = static_cast<std::uint16_t>(value);
   }
   return out;
 }
@@ -145,10 +200,8 @@ Result<SonarInput> make_input(const MapFile& depth, const MapFile* normals, cons
     in.depth[i] = depth.at(i, channel) * options.depth_scale;
   if (normals != nullptr) {
     NERITIC_TRY_STATUS(check_size(depth, *normals));
-    if (normals->channels < 3)
-      return bad_input("{}: {} channels found, x, y and z are accepted", normals->path,
-                       normals->channels);
-    in.normals = normals_of(*normals, options);
+    NERITIC_TRY(const auto channels, normal_channels(*normals));
+    in.normals = normals_of(*normals, channels, options);
   } else {
     in.normals = normals_from_depth(in);
     in.normals_face_sensor = true;

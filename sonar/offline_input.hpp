@@ -26,8 +26,10 @@ struct OfflineOptions {
 // Where the normals came from.
 enum class NormalSource { kFile, kDepth };
 
-// normals absent: estimated from the depth. Sizes must match. kBadInput too where the depth has
-// several channels that differ: a picture or normals, given in its place.
+// normals absent: estimated from the depth. Sizes must match. Of an EXR with many channels the
+// depth is Z (depth, V, Y) and the normal X, Y, Z or R, G, B, in whatever layer. kBadInput too
+// where depth or labels have several channels that differ: a picture or normals, given in their
+// place.
 Result<SonarInput> make_input(const MapFile& depth, const MapFile* normals, const MapFile* labels,
                               const Intrinsics& intrinsics, const OfflineOptions& options);
 
@@ -41,10 +43,12 @@ double decode_normal(double code, double max, double gamma);
 // where no neighbour is there.
 std::vector<double> normals_from_depth(const SonarInput& input);
 
-// A pinhole from a JSON file: fx, fy, cx, cy at the top or in "intrinsics"; "intrinsic_matrix" of
-// nine numbers, column by column (Open3D); or "frames", a list with "id"s, of which the one that
-// the depth file's path contains is taken (the only one where there is one). A width and height in
-// it must be the image's.
+// A pinhole from a JSON file: fx, fy, cx, cy at the top or in "intrinsics"; a matrix
+// ("intrinsic_matrix", "camera_matrix", "K") of nine numbers, by rows or by columns, which its
+// zeros tell, or of three rows; or "frames", a list with "id"s, of which the one that stands in the
+// depth file's name, else in its folders, is taken (the only one where there is one): whole, so
+// that 1 is not found in 10. A width and height in it must be the image's. kBadInput where two ids
+// fit, the matrix has a skew, or the file tells of a lens that is no pinhole.
 Result<Intrinsics> read_intrinsics(const std::filesystem::path& path, const MapFile& depth);
 
 }  // namespace neritic::sonar

@@ -46,13 +46,6 @@ Status write_array(const std::filesystem::path& path, const SonarFiles& files,
   return write_npy(path, std::span<const T>(values), {image.n_range, image.n_azimuth});
 }
 
-// What stays of an earlier image must not be taken for this one's: the .json goes first, so that
-// none ever describes other arrays, however far the writing comes.
-Status remove_earlier(const std::filesystem::path& folder) {
-  for (const char* name : kSonarFiles) NERITIC_TRY_STATUS(remove_file(folder / name));
-  return {};
-}
-
 Status write_counts(const std::filesystem::path& folder, const SonarFiles& files) {
   const std::vector<std::uint16_t> counts = quantize(files.image.intensity, files.output);
   if (files.output.bits == 16) return write_array(folder / "sonar_counts.npy", files, counts);
@@ -73,6 +66,21 @@ nlohmann::json grid_facts(const BeamGrid& grid) {
 }
 
 }  // namespace
+
+Status remove_earlier_sonar(const std::filesystem::path& folder) {
+  for (const char* name : kSonarFiles) NERITIC_TRY_STATUS(remove_file(folder / name));
+  return {};
+}
+
+nlohmann::json sonar_file_sizes(const std::filesystem::path& folder) {
+  nlohmann::json sizes = nlohmann::json::object();
+  for (const char* name : std::span(kSonarFiles).subspan(1)) {
+    std::error_code absent;
+    const auto bytes = std::filesystem::file_size(folder / name, absent);
+    if (!absent) sizes[name] = bytes;
+  }
+  return sizes;
+}
 
 std::vector<std::uint16_t> quantize(std::span<const float> power,
                                     const scene::SonarOutput& output) {
@@ -103,7 +111,7 @@ ImageU8 draw_sonar(const SonarFiles& files) {
 Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
                    const nlohmann::json& facts) {
   NERITIC_TRY_STATUS(make_folder(folder));
-  NERITIC_TRY_STATUS(remove_earlier(folder));
+  NERITIC_TRY_STATUS(remove_earlier_sonar(folder));
   const SonarImage& image = files.image;
   NERITIC_TRY_STATUS(write_array(folder / "sonar.npy", files, image.intensity));
   const LabelImage* energy = files.label_energy;
@@ -114,6 +122,10 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
     NERITIC_TRY_STATUS(write_array(folder / "sonar_label_fraction.npy", files, energy->fraction));
   }
   if (files.output.bits > 0) NERITIC_TRY_STATUS(write_counts(folder, files));
+  if (files.cloud != nullptr) {
+    NERITIC_TRY_STATUS(write_cloud_npy(folder / "cloud.npy", *files.cloud));
+    NERITIC_TRY_STATUS(write_pcd(folder / "cloud.pcd", *files.cloud));
+  }
   if (files.picture) NERITIC_TRY_STATUS(scene::write_png8(folder / "sonar.png", draw_sonar(files)));
   nlohmann::json json = facts;
   json.update(grid_facts(files.grid));
@@ -135,6 +147,7 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
   json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"gamma", panel.gamma}};
   if (panel.span_db > 0.0)
     json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"span_db", panel.span_db}};
+  json["bytes"] = sonar_file_sizes(folder);
   return write_json(folder / "sonar.json", json);
 }
 

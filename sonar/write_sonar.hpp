@@ -8,6 +8,7 @@
 #include "engine/scene/sonar_settings.hpp"
 #include "sonar/label_energy.hpp"
 #include "sonar/panel.hpp"
+#include "sonar/point_cloud.hpp"
 
 namespace neritic::sonar {
 
@@ -20,6 +21,7 @@ struct SonarFiles {
   const LabelImage* label_energy = nullptr;  // nullptr: labels of the strongest return
   bool picture = true;                       // sonar.png too, which takes longest
   const PolarPanel* panel = nullptr;         // of grid and panel_options, for many images; or none
+  const PointCloud* cloud = nullptr;  // what one ping sounds, for cloud.npy and .pcd; or none
 };
 
 // Counts of what leaves a receiver of 8 or 16 bits: 0 at floor_db and below, the largest count at
@@ -31,20 +33,28 @@ PanelOptions panel_options(scene::SonarKind kind, bool level);
 // The picture: polar, or for a single beam the echo over range.
 ImageU8 draw_sonar(const SonarFiles& files);
 
-// What write_sonar leaves in a folder, the .json first.
+// What write_sonar may leave in a folder, the .json first.
 inline constexpr const char* kSonarFiles[] = {"sonar.json",
                                               "sonar.npy",
                                               "sonar_labels.npy",
                                               "sonar_instances.npy",
                                               "sonar_label_fraction.npy",
                                               "sonar_counts.npy",
+                                              "cloud.npy",
+                                              "cloud.pcd",
                                               "sonar.png"};
+// An earlier image's files go, of whatever kind, so that none is taken for another's: the .json
+// first, so that none ever describes other arrays, however far the removing comes.
+Status remove_earlier_sonar(const std::filesystem::path& folder);
+// The size in bytes of each of them that is there beside the .json, by name: what the .json says
+// under "bytes", so that a cut or missing file is told.
+nlohmann::json sonar_file_sizes(const std::filesystem::path& folder);
 
 // facts: what else sonar.json shall say (options, device, timings); limits, bins and units are
 // added. sonar.npy is [n_range, n_azimuth], of a single beam (no imaging or profiling sonar)
 // [n_range]. With label_energy also sonar_instances.npy and sonar_label_fraction.npy, with bits
-// sonar_counts.npy. An earlier image's files are removed, its .json first, and the new .json is
-// written last: where one is, the others are whole and its own.
+// sonar_counts.npy. An earlier image's files are removed, and the new .json is written last: where
+// one is, the others are whole and its own.
 Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
                    const nlohmann::json& facts);
 

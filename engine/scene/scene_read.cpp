@@ -9,6 +9,9 @@
 namespace neritic::scene {
 namespace {
 
+// Above it stand the numbers by which labels of sonars say ghost, shadow (sonar/label_energy.hpp).
+constexpr std::int64_t kMaxClass = 65532;
+
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
@@ -23,9 +26,9 @@ Status read_classes(Scene& scene, const SceneSource& source, const TomlValue* ta
     if (!is_name(entry.key))
       return bad_input("{}: a name of 1 to 64 letters, digits, _ and - is accepted", place);
     const TomlValue& id = entry.value;
-    if (id.kind != TomlValue::Kind::kInteger || id.integer < 1 || id.integer > 65535)
-      return bad_input("{}: found {}; accepted: a whole number from 1 to 65535", place,
-                       describe(id));
+    if (id.kind != TomlValue::Kind::kInteger || id.integer < 1 || id.integer > kMaxClass)
+      return bad_input("{}: found {}; accepted: a whole number from 1 to {}", place, describe(id),
+                       kMaxClass);
     for (const auto& [other_id, other_name] : scene.class_names)
       if (other_id == id.integer || other_name == entry.key)
         return bad_input("{}: found {}; accepted: a name and number of its own (class {} is {})",

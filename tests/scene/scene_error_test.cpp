@@ -65,7 +65,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongLine{"[water]\nsurfaces = true",
                   "s.toml:2: water.surfaces: unknown key; nearest known key: surface"},
         WrongLine{"[classes]\nnet = 0",
-                  "s.toml:2: classes.net: found 0; accepted: a whole number from 1 to 65535"},
+                  "s.toml:2: classes.net: found 0; accepted: a whole number from 1 to 65532"},
+        WrongLine{"[classes]\nnet = 65534",
+                  "s.toml:2: classes.net: found 65534; accepted: a whole number from 1 to 65532"},
         WrongLine{
             "[classes]\nnet = 4",
             "s.toml:2: classes.net: found 4; accepted: a name and number of its own (class diver "

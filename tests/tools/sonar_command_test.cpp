@@ -3,6 +3,7 @@
 #include "tests/tools/sonar_command.hpp"
 
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <nlohmann/json.hpp>
 
@@ -10,6 +11,7 @@
 #include "engine/core/json.hpp"
 #include "engine/core/math.hpp"
 #include "engine/scene/image_file.hpp"
+#include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic {
@@ -252,16 +254,74 @@ TEST_F(SmallImages, GammaCodedNormalsAreUndone) {
   EXPECT_NEAR(energy(), expected, 1e-3 * expected);
 }
 
+// A normal of its own in every pixel, so that no axis can be turned or left without a cell telling.
 TEST_F(SmallImages, AxesAreTurnedToTheSonars) {
-  ASSERT_TRUE(sonar(words()).ok());
-  const double expected = energy();
-  for (const auto& [axes, n] : {std::pair{"opencv", Vec3(0, 0, -1)}, {"ros", Vec3(-1, 0, 0)}}) {
-    for (std::uint32_t i = 0; i < kWidth * kHeight; ++i)
+  std::vector<Vec3> normals;  // x right, y up, z backwards
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i)
+    normals.push_back(
+        glm::normalize(Vec3(0.9 * std::sin(1.0 + 0.7 * i), 0.9 * std::sin(2.0 + 1.3 * i), 1.0)));
+  const auto heard = [&](const char* axes, auto turned) {
+    for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+      const Vec3 n = turned(normals[i]);
       for (int k = 0; k < 3; ++k) normals_[3 * i + k] = static_cast<float>(n[k]);
+    }
     write(depth_, normals_);
-    ASSERT_TRUE(sonar(words({"--axes", axes})).ok());
-    EXPECT_DOUBLE_EQ(energy(), expected) << axes;
+    EXPECT_TRUE(sonar(words({"--axes", axes})).ok());
+    return numbers_of(folder_ / "out" / "sonar.npy");
+  };
+  const auto expected = heard("opengl", [](const Vec3& n) { return n; });
+  // OpenCV: x right, y down, z forwards. ROS (REP 103): x forwards, y left, z up.
+  const auto opencv = heard("opencv", [](const Vec3& n) { return Vec3(n.x, -n.y, -n.z); });
+  const auto ros = heard("ros", [](const Vec3& n) { return Vec3(-n.z, -n.x, n.y); });
+  ASSERT_GT(sum(expected), 0.5);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(opencv[i], expected[i], 1e-7) << i;
+    EXPECT_NEAR(ros[i], expected[i], 1e-7) << i;
   }
+}
+
+// As masks of classes are exported: a PNG of indices, with colours to look at.
+TEST_F(SmallImages, LabelsOfAPaletteAreItsIndices) {
+  std::vector<unsigned char> pixels(kWidth * kHeight, 2);
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = kWidth;
+  png.height = kHeight;
+  png.format = PNG_FORMAT_RGB_COLORMAP;
+  png.colormap_entries = 4;
+  const unsigned char colors[] = {0, 0, 0, 128, 0, 0, 0, 128, 0, 128, 128, 0};
+  const auto path = (folder_ / "classes.png").string();
+  ASSERT_TRUE(png_image_write_to_file(&png, path.c_str(), 0, pixels.data(), 0, colors));
+  ASSERT_TRUE(sonar(words({"--labels", path})).ok());
+  const auto labels = numbers_of(folder_ / "out" / "sonar_labels.npy");
+  EXPECT_EQ(*std::max_element(labels.begin(), labels.end()), 2.0);
+  // Colours in their stead are no classes, nor indices distances.
+  ImageU8 colored(kWidth, kHeight, 3);
+  for (std::size_t i = 0; i < colored.data.size(); ++i) colored.data[i] = i % 3 == 1 ? 128 : 0;
+  ASSERT_TRUE(scene::write_png8(folder_ / "colors.png", colored).ok());
+  expect_refused(words({"--labels", (folder_ / "colors.png").string()}), "colors.png: 3 channels");
+  expect_refused(with("--depth", path), "classes.png: a palette");
+  const std::vector<float> halves(kWidth * kHeight, 1.5f);
+  ASSERT_TRUE(write_npy(folder_ / "halves.npy", halves, {kHeight, kWidth}).ok());
+  expect_refused(words({"--labels", (folder_ / "halves.npy").string()}), "label 1.5");
+}
+
+TEST_F(SmallImages, AnotherKindsResultDoesNotStay) {
+  ASSERT_TRUE(sonar(words()).ok());
+  for (const char* name : {"cloud.npy", "cloud.pcd", "sonar_counts.npy"})
+    ASSERT_TRUE(write_text(folder_ / "out" / name, "of a profiling sonar").ok());
+  ASSERT_TRUE(sonar(words()).ok());
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "cloud.npy"));
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "cloud.pcd"));
+  // Nor beside a side-scan's line from a picture.
+  ASSERT_TRUE(write_text(folder_ / "out" / "cloud.npy", "of a profiling sonar").ok());
+  ASSERT_TRUE(scene::write_png8(folder_ / "p.png", ImageU8(kWidth, kHeight, 1)).ok());
+  NERITIC_ASSERT_STATUS(test::sonar_command(
+      {"sidescan", "--method", "image", "--picture", (folder_ / "p.png").string(), "--altitude",
+       "5", "--intrinsics", "10,10,8,6", "--out", (folder_ / "out").string()}));
+  for (const char* name : {"cloud.npy", "sonar_labels.npy", "sonar.png"})
+    EXPECT_FALSE(fs::exists(folder_ / "out" / name)) << name;
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "sonar.npy"));
 }
 
 TEST_F(SmallImages, NormalsAreEstimatedFromTheDepthAndSaidSo) {
@@ -305,6 +365,22 @@ TEST_F(SmallImages, WrongFlagsAreRefusedByName) {
   expect_refused(words({"--gamma", "0"}), "--gamma");
   expect_refused(words({"--axes", "maya"}), "--axes");
   expect_refused(words({"--method", "magic"}), "--method");
+  expect_refused(with("--intrinsics", "calib.yaml"), "fx,fy,cx,cy or a .json file is accepted");
+  expect_refused(words({"--seed", "-1"}), "0 to 18446744073709551615");
+  expect_refused(words({"--seed", "99999999999999999999999"}), "0 to 18446744073709551615");
+}
+
+TEST_F(SmallImages, FlagsWithoutEffectAreRefused) {
+  expect_refused(words({"--seed", "2"}), "--seed: found, accepted with --sensor");
+  expect_refused(words({"--backscatter-db", "-30"}), "--backscatter-db: found");
+  expect_refused(words({"--side", "port"}), "--side: found");
+  for (const auto& [flag, value] :
+       {std::pair{"--gamma", "1"}, {"--axes", "opencv"}, {"--normals-sign", "unknown"}}) {
+    auto all = words({flag, value});
+    const auto at = std::find(all.begin(), all.end(), "--normals");
+    all.erase(at, at + 2);
+    expect_refused(all, std::string(flag) + ": found, accepted with --normals");
+  }
 }
 
 TEST_F(SmallImages, WrongFilesAreRefusedByName) {

@@ -177,6 +177,21 @@ TEST_F(SonarFolder, ADamagedResultIsMadeAgain) {
   EXPECT_EQ(read_text(result(1) / "sonar.npy").value(), whole);
 }
 
+TEST_F(SonarFolder, AResultOfWhichAFileIsCutOrMissingIsMadeAgain) {
+  write_frames(4);
+  expect_done(words());
+  const std::string whole = read_text(result(0) / "sonar.npy").value();
+  fs::resize_file(result(0) / "sonar.npy", 100);
+  fs::remove(result(1) / "sonar_labels.npy");
+  fs::resize_file(result(2) / "sonar.png", fs::file_size(result(2) / "sonar.png") - 1);
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 3);
+  EXPECT_EQ(read_text(result(0) / "sonar.npy").value(), whole);
+  EXPECT_TRUE(fs::exists(result(1) / "sonar_labels.npy"));
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 0);
+}
+
 TEST_F(SonarFolder, EachFrameHasNoiseOfItsOwn) {
   if (!test::have_device()) GTEST_SKIP() << "no Vulkan device";
   const std::vector<float> depth(kWidth * kHeight, 2.0f);
@@ -231,6 +246,18 @@ TEST_F(SonarFolder, LeavesOutAndListsWhatItCannotRead) {
   expect_done(words());
   EXPECT_EQ(skipped(), "");
   EXPECT_TRUE(fs::exists(result(4) / "sonar.json"));
+}
+
+TEST_F(SonarFolder, ListsFilesThatAreNoFrames) {
+  write_frames(4);
+  fs::remove(depth_file(2));
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 3);
+  EXPECT_EQ(run_facts()["skipped"], 0);
+  EXPECT_NE(skipped().find(normal_file(2).string()), std::string::npos) << skipped();
+  EXPECT_NE(skipped().find("--depth"), std::string::npos) << skipped();
+  const std::string list = skipped();
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 2);
 }
 
 TEST_F(SonarFolder, NothingReadableIsBadInput) {

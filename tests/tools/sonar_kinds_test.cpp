@@ -1,5 +1,10 @@
 // Every kind of sonar on images of others: the real sets, every convention, sensors with terms, and
 // what images alone cannot give.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
@@ -147,6 +152,22 @@ class Wall : public ::testing::Test {
   nlohmann::json facts() {
     return parse_json(read_text(folder_ / "out" / "sonar.json").value()).value();
   }
+  // Floats, [height][width][channels].
+  void write_exr(const std::string& name, const std::vector<const char*>& channels,
+                 const std::vector<float>& values) {
+    Imf::Header header(kWidth, kHeight);
+    Imf::FrameBuffer frame;
+    const std::size_t stride = sizeof(float) * channels.size();
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      header.channels().insert(channels[c], Imf::Channel(Imf::FLOAT));
+      frame.insert(channels[c],
+                   Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(&values[c])),
+                              stride, stride * kWidth));
+    }
+    Imf::OutputFile out(file(name).c_str(), header);
+    out.setFrameBuffer(frame);
+    out.writePixels(kHeight);
+  }
   std::string sensor(const std::string& text) {
     EXPECT_TRUE(write_text(folder_ / "sensor.toml", text).ok());
     return file("sensor.toml");
@@ -194,6 +215,49 @@ TEST_F(Wall, SoundsTheSameInEveryConvention) {
       ASSERT_EQ(found.size(), expected.size());
       EXPECT_NEAR(sum(found) / sum(expected), 1.0, 0.02) << kind << " " << convention[1];
     }
+  }
+}
+
+// Oblique normals, another in every pixel, so that an axis that is turned wrongly is heard: bin by
+// bin, from files of every kind.
+TEST_F(Wall, OfObliqueNormalsSoundsTheSameInEveryConvention) {
+  std::vector<float> opengl, opencv, ros;
+  ImageU8 coded(kWidth, kHeight, 3);
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    const Vec3 n = glm::normalize(
+        Vec3(0.7 * std::sin(0.3 * (i % kWidth)), 0.7 * std::sin(1.0 + 0.4 * (i / kWidth)), 1.0));
+    const auto x = static_cast<float>(n.x), y = static_cast<float>(n.y),
+               z = static_cast<float>(n.z);
+    opengl.insert(opengl.end(), {x, y, z});
+    opencv.insert(opencv.end(), {x, -y, -z});
+    ros.insert(ros.end(), {-z, -x, y});
+    for (int k = 0; k < 3; ++k)
+      coded.data[3 * i + k] = static_cast<std::uint8_t>(std::lround(255.0 * (n[k] + 1.0) / 2.0));
+  }
+  const std::vector<float> planar(kWidth * kHeight, static_cast<float>(kDepth_m));
+  ASSERT_TRUE(write_npy(folder_ / "opengl.npy", opengl, {kHeight, kWidth, 3}).ok());
+  ASSERT_TRUE(write_npy(folder_ / "opencv.npy", opencv, {kHeight, kWidth, 3}).ok());
+  ASSERT_TRUE(write_npy(folder_ / "ros.npy", ros, {kHeight, kWidth, 3}).ok());
+  ASSERT_TRUE(scene::write_png8(folder_ / "oblique.png", coded).ok());
+  write_exr("depth.exr", {"Z"}, planar);
+  write_exr("opencv.exr", {"X", "Y", "Z"}, opencv);
+  const auto words = [&](const char* depth, const char* normals, const char* axes) {
+    return Words{"--depth", file(depth), "--normals",    file(normals),
+                 "--axes",  axes,        "--intrinsics", "60,60,32,24"};
+  };
+  for (const char* kind : kKinds) {
+    const auto expected = image(command(kind, words("planar.npy", "opengl.npy", "opengl")));
+    ASSERT_GT(sum(expected), 0.0) << kind;
+    const auto differs = [&](const Words& all) {
+      const std::vector<double> found = image(command(kind, all));
+      double moved = 0.0;
+      for (std::size_t i = 0; i < expected.size(); ++i) moved += std::abs(found[i] - expected[i]);
+      return moved / sum(expected);
+    };
+    EXPECT_LT(differs(words("planar.npy", "opencv.npy", "opencv")), 1e-6) << kind;
+    EXPECT_LT(differs(words("planar.npy", "ros.npy", "ros")), 1e-6) << kind;
+    EXPECT_LT(differs(words("depth.exr", "opencv.exr", "opencv")), 1e-6) << kind;
+    EXPECT_LT(differs(words("planar.npy", "oblique.png", "opengl")), 0.03) << kind;  // 8 bits
   }
 }
 
@@ -288,6 +352,8 @@ TEST_F(Wall, WhatImagesCannotGiveIsRefusedByName) {
   expect_refused(with("imaging", base + "labels = { energy = true, coco = true }\n"), "coco");
   expect_refused(with("imaging", base + "position_m = [0, 1, 0]\n"), "position_m");
   expect_refused(with("imaging", base + "rangem = [0, 1]\n"), "range_m");
+  expect_refused(with("imaging", base + "foo = 1\n"), "nearest known key: name");
+  expect_refused(with("imaging", base + "gather = \"published\"\n"), "sensor.toml: gather");
   expect_refused(with("profiling", base), "kind");
   expect_refused(with("imaging", "kind = \"mechanical\"\n"), "mechanical");
   expect_refused(with("imaging", base) + Words{"--method", "reference"}, "--method");
@@ -322,6 +388,15 @@ TEST_F(Wall, EnergyLabelsNameTheClassOfThePixels) {
   const auto labels = numbers_of(folder_ / "out" / "sonar_labels.npy");
   EXPECT_GT(std::count(labels.begin(), labels.end(), 7.0), 50);
   EXPECT_EQ(sum(numbers_of(folder_ / "out" / "sonar_instances.npy")), 0.0);
+  // What stands for shadow there is no class.
+  const std::vector<std::uint16_t> shadows(kWidth * kHeight, std::uint16_t{65534});
+  ASSERT_TRUE(
+      write_npy(folder_ / "labels.npy", std::span<const std::uint16_t>(shadows), {kHeight, kWidth})
+          .ok());
+  expect_refused(Words{"imaging", "--out", file("out"), "--sensor", file_name, "--labels",
+                       file("labels.npy")} +
+                     images(),
+                 "class 65534");
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "engine/core/files.hpp"
 #include "sonar/offline_input.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic {
 namespace {
@@ -89,6 +91,54 @@ TEST(SonarNotes, FewPixelsACellAreToldForThePublishedGatherOnly) {
   EXPECT_EQ(note_of(grid, wall(2.0), false), "");
 }
 
+// A panorama of two rows: they fall between the directions that are looked at, and sound.
+TEST(SonarNotes, AnImageOfFewRowsIsNotSilent) {
+  sonar::SonarInput line;
+  line.width = 4096;
+  line.height = 2;
+  line.intrinsics = {2048.0, 2048.0, 2048.0, 1.0};
+  line.depth.assign(std::size_t{line.width} * line.height, 2.0);
+  const sonar::BeamGrid grid =
+      sonar::symmetric_grid(1.0, 5.0, radians(80.0), radians(28.0), {10, 20, 10});
+  ASSERT_GT(tools::coverage_of(grid, line).in_wedge, 1000u);
+  EXPECT_THAT(note_of(grid, line), HasSubstr("the images cover less than 1 % of the wedge"));
+}
+
+std::string normals_note_of(const sonar::SonarInput& in, bool estimated = false) {
+  const sonar::BeamGrid grid =
+      sonar::symmetric_grid(1.0, 5.0, radians(80.0), radians(60.0), {10, 20, 10});
+  return tools::normals_note(tools::coverage_of(grid, in), estimated).value_or("");
+}
+
+sonar::SonarInput wall_of_normals(const Vec3& normal) {
+  sonar::SonarInput in = wall(2.0);
+  for (std::size_t i = 0; i < in.depth.size(); ++i)
+    in.normals.insert(in.normals.end(), {normal.x, normal.y, normal.z});
+  return in;
+}
+
+TEST(SonarNotes, NormalsThatFaceAwayAreTold) {
+  EXPECT_EQ(normals_note_of(wall_of_normals({0, 0, 1})), "");
+  // OpenCV's of this wall, read as ours; ROS's, of which half face away.
+  EXPECT_THAT(normals_note_of(wall_of_normals({0, 0, -1})), HasSubstr("100 % of the pixels"));
+  EXPECT_THAT(normals_note_of(wall_of_normals({0, 0, -1})), HasSubstr("--axes"));
+  EXPECT_THAT(normals_note_of(wall_of_normals({-1, 0, 0})), HasSubstr("50 % of the pixels"));
+  sonar::SonarInput unsigned_in = wall_of_normals({0, 0, -1});
+  unsigned_in.normals_face_sensor = false;
+  EXPECT_EQ(normals_note_of(unsigned_in), "");
+}
+
+TEST(SonarNotes, NormalsThatAreMissingAreTold) {
+  EXPECT_THAT(normals_note_of(wall_of_normals({0, 0, 0})), HasSubstr("have no normal"));
+  EXPECT_THAT(normals_note_of(wall_of_normals({-1, -1, -1})), HasSubstr("have no normal"));
+  sonar::SonarInput row = wall(2.0);
+  row.height = 1;
+  row.depth.resize(row.width);
+  row.intrinsics.cy = 0.5;
+  row.normals = sonar::normals_from_depth(row);
+  EXPECT_THAT(normals_note_of(row, true), HasSubstr("no normal could be estimated for 100 %"));
+}
+
 sonar::MapFile depth_map(std::uint32_t channels, std::vector<double> values,
                          std::vector<std::string> names = {}) {
   sonar::MapFile map;
@@ -119,6 +169,106 @@ TEST(OfflineInput, GreyKeptAsColourAndNamedChannelsAreDepth) {
   const auto named = input_of(depth_map(3, {1, 2, 7, 3, 4, 8}, {"A", "B", "Z"}));
   ASSERT_TRUE(named.ok());
   EXPECT_EQ(named->depth, (std::vector<double>{7, 8}));
+  // As Blender writes its layers; a vector's Z is no depth.
+  const auto layers = input_of(
+      depth_map(3, {1, 2, 7, 3, 4, 8}, {"View.Combined.R", "View.Combined.G", "View.Depth.Z"}));
+  ASSERT_TRUE(layers.ok()) << layers.error().message;
+  EXPECT_EQ(layers->depth, (std::vector<double>{7, 8}));
+  EXPECT_FALSE(input_of(depth_map(3, {1, 2, 7, 3, 4, 8}, {"N.X", "N.Y", "N.Z"})).ok());
+  EXPECT_FALSE(input_of(depth_map(2, {1, 2, 3, 4}, {"Left.Z", "Right.Z"})).ok());
+}
+
+TEST(OfflineInput, TheNormalOfAnExrIsItsVector) {
+  const sonar::MapFile depth = depth_map(1, {3, 3});
+  const auto normals_in = [&](std::vector<std::string> names) {
+    std::vector<double> values(2 * names.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = static_cast<double>(i % names.size());
+    const auto channels = static_cast<std::uint32_t>(names.size());
+    const sonar::MapFile map = depth_map(channels, values, std::move(names));
+    const auto made = sonar::make_input(depth, &map, nullptr, {1.0, 1.0, 1.0, 0.5}, {});
+    if (!made.ok()) return std::vector<double>();
+    return std::vector<double>(made->normals.begin(), made->normals.begin() + 3);
+  };
+  using Normal = std::vector<double>;
+  EXPECT_EQ(normals_in({"R", "G", "B"}), (Normal{0, 1, 2}));
+  EXPECT_EQ(normals_in({"V.Combined.R", "V.Combined.G", "V.Combined.B", "V.Normal.X", "V.Normal.Y",
+                        "V.Normal.Z", "V.Depth.Z"}),
+            (Normal{3, 4, 5}));
+  EXPECT_EQ(normals_in({"A.X", "B.X", "A.Y", "B.Y", "A.Z", "B.Z"}), Normal());  // two vectors
+  EXPECT_EQ(normals_in({"nx", "ny", "nz"}), (Normal{0, 1, 2}));
+}
+
+// Pinholes from JSON, of a 64 x 48 image of that path.
+class Pinholes : public ::testing::Test {
+ protected:
+  Result<sonar::Intrinsics> read(const std::string& json, const std::string& depth = "depth.png") {
+    EXPECT_TRUE(write_text(folder_ / "k.json", json).ok());
+    sonar::MapFile map;
+    map.path = depth;
+    map.width = 64;
+    map.height = 48;
+    return sonar::read_intrinsics(folder_ / "k.json", map);
+  }
+  void expect_refused(const std::string& json, const std::string& named) {
+    const auto k = read(json);
+    ASSERT_FALSE(k.ok()) << json;
+    EXPECT_THAT(k.error().message, HasSubstr(named));
+  }
+  test::ScratchFolder folder_;
+};
+
+TEST_F(Pinholes, AMatrixIsReadByRowsAndByColumns) {
+  for (const char* json :
+       {R"({"intrinsic_matrix": [40, 0, 25.5, 0, 38, 17.5, 0, 0, 1]})",
+        R"({"intrinsic_matrix": [40, 0, 0, 0, 38, 0, 25.5, 17.5, 1]})",
+        R"({"K": [40, 0, 25.5, 0, 38, 17.5, 0, 0, 1], "D": [0, 0, 0, 0, 0]})",
+        R"({"camera_matrix": [[40, 0, 25.5], [0, 38, 17.5], [0, 0, 1]]})",
+        R"({"camera_matrix": {"rows": 3, "data": [40, 0, 25.5, 0, 38, 17.5, 0, 0, 1]}})",
+        R"({"fx": 40, "fy": 38, "cx": 25.5, "cy": 17.5, "model": "PINHOLE"})"}) {
+    const auto k = read(json);
+    ASSERT_TRUE(k.ok()) << json << k.error().message;
+    EXPECT_EQ(k->fx, 40.0) << json;
+    EXPECT_EQ(k->fy, 38.0) << json;
+    EXPECT_EQ(k->cx, 25.5) << json;
+    EXPECT_EQ(k->cy, 17.5) << json;
+  }
+  expect_refused(R"({"K": [40, 0.5, 25.5, 0, 38, 17.5, 0, 0, 1]})", "\"K\"");  // a skew
+  expect_refused(R"({"K": [40, 0, 25.5, 0, 38, 17.5, 3, 4, 1]})", "\"K\"");    // neither
+  expect_refused(R"({"K": [40, 0, 25.5, 0, 38, 17.5, 0, 0, 2]})", "\"K\"");
+  expect_refused(R"({"K": [40, 0, 25.5]})", "nine numbers");
+}
+
+TEST_F(Pinholes, ALensThatBendsLinesIsRefused) {
+  const std::string plain = R"({"fx": 1, "fy": 1, "cx": 1, "cy": 1, )";
+  expect_refused(plain + R"("distortion": [0.1, 0, 0, 0]})", "distortion");
+  expect_refused(plain + R"("k1": -0.2})", "k1");
+  expect_refused(plain + R"("model": "fisheye"})", "model");
+  EXPECT_TRUE(read(plain + R"("distortion": [0, 0, 0, 0], "distortion_model": "plumb_bob"})").ok());
+}
+
+TEST_F(Pinholes, AFramesIsTheOneThatItsFileNames) {
+  const auto frames = [](const std::vector<std::string>& ids) {
+    std::string text;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      text += fmt::format(R"({}{{"id": "{}", "fx": {}, "fy": 1, "cx": 1, "cy": 1}})",
+                          i > 0 ? ", " : "", ids[i], i + 1);
+    return "{\"frames\": [" + text + "]}";
+  };
+  // The number of the frame that is taken, from 1 on; 0: refused.
+  const auto taken = [&](const std::vector<std::string>& ids, const std::string& depth) {
+    const auto k = read(frames(ids), depth);
+    return k.ok() ? k->fx : 0.0;
+  };
+  EXPECT_EQ(taken({"10", "1"}, "d/frame_10.png"), 1.0);
+  EXPECT_EQ(taken({"1", "10"}, "set10/frame_1.png"), 1.0);
+  EXPECT_EQ(taken({"1", "10"}, "set10/frame_10.png"), 2.0);
+  EXPECT_EQ(taken({"1", "10"}, "d/frame_0001.png"), 0.0);
+  EXPECT_EQ(taken({"left", "left_2"}, "d/left_2_depth.npy"), 2.0);
+  EXPECT_EQ(taken({"real/007", "synthetic/007"}, "x/synthetic/007-depth.exr"), 2.0);
+  EXPECT_EQ(taken({"frame_0001", "frame_0002"}, "out/frame_0002/camera/depth.npy"), 2.0);
+  EXPECT_EQ(taken({"1", "2"}, "d/1_2.png"), 0.0);
+  EXPECT_EQ(taken({"5", "5"}, "d/5.png"), 0.0);
 }
 
 }  // namespace

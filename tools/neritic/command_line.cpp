@@ -2,6 +2,7 @@
 // parser, since it takes long to compile.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <memory>
 
 #include "engine/core/text.hpp"
@@ -22,6 +23,14 @@ Result<std::string> nothing_to_say(const Status& status) {
 // An empty name would be the working folder, by chance.
 std::string named(const std::string& folder) {
   return folder.empty() ? "'' found; a folder's name is accepted" : "";
+}
+
+// The parser takes the largest number for any that is larger.
+std::string seed_number(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole ? "" : text + " found; a whole number from 0 to 18446744073709551615 is accepted";
 }
 
 void add_quality(CLI::App& command, std::string& quality) {
@@ -131,7 +140,7 @@ void add_sonar_device(CLI::App& command, SonarFlags& flags) {
                   "Lambert strength of all surfaces, for sensors with a level")
       ->capture_default_str();
   command.add_option("--seed", flags.seed, "of speckle and noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check(seed_number)
       ->capture_default_str();
   command.add_option("--picture", flags.picture,
                      "with --method image: the picture from straight above, or a folder");
@@ -161,7 +170,11 @@ void add_sonar(CLI::App& app, Run& run) {
                    "folder for sonar.npy, .png, .json; of a folder, one folder a frame")
       ->required()
       ->check(named);
-  command->callback([flags, &run] { run = [flags] { return run_sonar(*flags); }; });
+  command->callback([command, flags, &run] {
+    for (const CLI::Option* option : command->get_options())
+      if (option->count() > 0) flags->given.insert(option->get_name());
+    run = [flags] { return run_sonar(*flags); };
+  });
 }
 
 void add_dive(CLI::App& app, Run& run) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,7 @@ struct SonarFlags {
   std::uint64_t seed = 1;
   std::uint32_t workers = 0;  // 0: as many as cores
   bool no_pictures = false, overwrite = false, incidence = false, validation = false;
+  std::set<std::string> given;  // flags that the user wrote, "--gamma"
 };
 Result<std::string> run_sonar(const SonarFlags& flags);
 

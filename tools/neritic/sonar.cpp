@@ -8,12 +8,11 @@
 namespace neritic::tools {
 namespace {
 
-Status run_one(const SonarJob& job) {
+Status run_one(const SonarJob& job, SonarNotes& notes) {
   const SonarFlags& flags = job.flags;
   const std::filesystem::path lead = flags.method == "image" ? flags.picture : flags.depth;
   const sonar::FrameFiles files{sonar::frame_names(std::span(&lead, 1)).front(),
                                 {flags.depth, flags.normals, flags.labels, flags.picture}};
-  SonarNotes notes;
   if (flags.method == "image") {
     NERITIC_TRY(PictureLine line, load_picture_line(job, files, notes));
     return write_picture_line(job, flags.out, std::move(line));
@@ -33,12 +32,15 @@ Result<std::string> run_sonar(const SonarFlags& flags) {
   NERITIC_TRY(const SonarJob job, plan_job(flags));
   const bool estimated = flags.normals.empty() && flags.method != "image";
   if (is_folder_job(job)) {
+    NERITIC_TRY(std::string done, run_folder(job));
     if (estimated) log_warn("no --normals: estimated from the depth images");
-    return run_folder(job);
+    return done;
   }
   if (flags.overwrite || flags.workers > 0)
     return bad_input("--overwrite, --workers: found, accepted with folders of frames");
-  NERITIC_TRY_STATUS(run_one(job));
+  SonarNotes notes;
+  NERITIC_TRY_STATUS(run_one(job, notes));
+  notes.release();
   if (estimated) log_warn("no --normals: estimated from the depth image");
   return fmt::format("{}: {}", flags.out.string(), fmt::join(result_files(flags.out), ", "));
 }

@@ -3,6 +3,7 @@
 #include <malloc.h>
 
 #include <atomic>
+#include <set>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
@@ -35,8 +36,20 @@ std::vector<Group> groups_of(const SonarFlags& flags) {
           {kPictureGroup, "picture", flags.picture}};
 }
 
+// Files of the other groups that no frame has taken.
+void list_unpaired(const SonarJob& job, const std::vector<std::vector<fs::path>>& files,
+                   const std::vector<FrameFiles>& frames, FrameGroup lead, SkippedFrames& skipped) {
+  const std::vector<Group> groups = groups_of(job.flags);
+  std::set<fs::path> taken;
+  for (const FrameFiles& frame : frames) taken.insert(frame.paths.begin(), frame.paths.end());
+  for (const Group& g : groups)
+    for (const fs::path& file : files[g.group])
+      if (!taken.contains(file))
+        skipped.add_file(file, fmt::format("no file in --{} belongs to it", groups[lead].flag));
+}
+
 // The frames, their paths by FrameGroup whatever group leads.
-Result<std::vector<FrameFiles>> frames_of(const SonarJob& job) {
+Result<std::vector<FrameFiles>> frames_of(const SonarJob& job, SkippedFrames& skipped) {
   const FrameGroup lead = job.flags.method == "image" ? kPictureGroup : kDepthGroup;
   std::vector<std::vector<fs::path>> files(kGroups);
   for (const Group& g : groups_of(job.flags)) {
@@ -51,6 +64,8 @@ Result<std::vector<FrameFiles>> frames_of(const SonarJob& job) {
   std::swap(files[0], files[lead]);
   NERITIC_TRY(std::vector<FrameFiles> frames, sonar::pair_frames(files));
   for (FrameFiles& frame : frames) std::swap(frame.paths[0], frame.paths[lead]);
+  std::swap(files[0], files[lead]);
+  list_unpaired(job, files, frames, lead, skipped);
   return frames;
 }
 
@@ -103,7 +118,7 @@ Result<std::optional<T>> or_skip(const Run& run, std::size_t frame, Result<T> ma
 }
 
 template <class M>
-Status run_frames(const Run& run, const M& maker) {
+Status run_frames(const Run& run, SonarNotes& notes, const M& maker) {
   using Heard = typename M::Heard;
   using Frames = Pipeline<typename M::Loaded, std::optional<Heard>>;
   Progress progress("frame", run.todo.size());
@@ -128,6 +143,7 @@ Status run_frames(const Run& run, const M& maker) {
       return maker.write(folder, std::move(*heard));
     }));
     ++run.written;
+    notes.release();  // not before: a run that makes nothing says why and no more
     return {};
   };
   steps.finished = [&] { progress.step(); };
@@ -139,7 +155,7 @@ Status run_kind(const Run& run) {
   const SonarJob& job = run.job;
   SonarNotes notes;
   if (job.flags.method == "image")
-    return run_frames(run,
+    return run_frames(run, notes,
                       Maker<PictureLine, PictureLine>{
                           [&](const FrameFiles& f) { return load_picture_line(job, f, notes); },
                           [](PictureLine line) -> Result<PictureLine> { return line; },
@@ -151,7 +167,7 @@ Status run_kind(const Run& run) {
     return write_frame(job, folder, std::move(frame), panel.get());
   };
   if (job.flags.method == "reference")
-    return run_frames(run,
+    return run_frames(run, notes,
                       Maker<HeardFrame, HeardFrame>{
                           [&](const FrameFiles& f) -> Result<HeardFrame> {
                             NERITIC_TRY(LoadedFrame frame, load_frame(job, f, notes));
@@ -159,10 +175,11 @@ Status run_kind(const Run& run) {
                           },
                           [](HeardFrame frame) -> Result<HeardFrame> { return frame; }, write});
   NERITIC_TRY(const std::unique_ptr<SonarEar> ear, SonarEar::create(job));
-  NERITIC_TRY_STATUS(
-      run_frames(run, Maker<LoadedFrame, HeardFrame>{
-                          [&](const FrameFiles& f) { return load_frame(job, f, notes); },
-                          [&](LoadedFrame frame) { return ear->hear(std::move(frame)); }, write}));
+  NERITIC_TRY_STATUS(run_frames(
+      run, notes,
+      Maker<LoadedFrame, HeardFrame>{[&](const FrameFiles& f) { return load_frame(job, f, notes); },
+                                     [&](LoadedFrame frame) { return ear->hear(std::move(frame)); },
+                                     write}));
   return check_validation(ear->device());
 }
 
@@ -190,6 +207,8 @@ Result<std::string> report(const Run& run, double seconds) {
   std::string line = fmt::format("{}: {} frames{}", out, made, rate);
   if (there > 0) line += fmt::format("; {} were there already", there);
   if (skipped > 0) line += fmt::format("; {} skipped, see {}/skipped.csv", skipped, out);
+  if (const auto files = run.skipped.files(); files > 0)
+    line += fmt::format("; {} files are no frame's, see {}/skipped.csv", files, out);
   if (const auto files = files_of_a_result(run); !files.empty())
     line += fmt::format("; in each folder {}", files);
   return line;
@@ -213,10 +232,10 @@ bool is_folder_job(const SonarJob& job) {
 }
 
 Result<std::string> run_folder(const SonarJob& job) {
-  NERITIC_TRY(const std::vector<FrameFiles> frames, frames_of(job));
+  SkippedFrames skipped;
+  NERITIC_TRY(const std::vector<FrameFiles> frames, frames_of(job, skipped));
   NERITIC_TRY(const std::vector<std::size_t> todo, frames_to_do(job, frames));
   NERITIC_TRY_STATUS(make_folder(job.flags.out));
-  SkippedFrames skipped;
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   const Interrupt interrupt;
   std::atomic<std::size_t> written = 0;

@@ -5,12 +5,10 @@
 #include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"
 #include "sonar/detection.hpp"
-#include "sonar/point_cloud.hpp"
 #include "sonar/quality.hpp"
 #include "sonar/terms_json.hpp"
 #include "sonar/write_sonar.hpp"
 #include "tools/neritic/flags.hpp"
-#include "tools/neritic/sonar_notes.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -60,19 +58,18 @@ bool same_shape(const sonar::SonarInput& a, const sonar::SonarInput& b) {
          k.cx == l.cx && k.cy == l.cy && a.normals_face_sensor == b.normals_face_sensor;
 }
 
-// What a kind of sonar says of one ping beside its image.
-Status add_findings(const SonarJob& job, const fs::path& folder, const sonar::SonarImage& image,
-                    nlohmann::json& facts) {
+// What a kind of sonar says of one ping beside its image; the cloud of a profiling one.
+std::optional<sonar::PointCloud> add_findings(const SonarJob& job, const sonar::SonarImage& image,
+                                              nlohmann::json& facts) {
   const sonar::BeamGrid& grid = job.head.beams;
   const scene::SonarDetection& detection = job.sonar.terms.detection;
+  std::optional<sonar::PointCloud> cloud;
   if (job.sonar.kind == scene::SonarKind::kProfiling) {
-    sonar::PointCloud cloud;
-    sonar::append(cloud, grid,
+    cloud.emplace();
+    sonar::append(*cloud, grid,
                   sonar::detect_bottom(grid, image.intensity, detection, job.detection_floor),
                   Pose{});
-    NERITIC_TRY_STATUS(sonar::write_cloud_npy(folder / "cloud.npy", cloud));
-    NERITIC_TRY_STATUS(sonar::write_pcd(folder / "cloud.pcd", cloud));
-    facts["detections"] = {{"points", cloud.size()}, {"axes", "x starboard, y up, z backwards"}};
+    facts["detections"] = {{"points", cloud->size()}, {"axes", "x starboard, y up, z backwards"}};
   }
   if (job.sonar.kind == scene::SonarKind::kEchoSounder) {
     sonar::EchoTrace trace(sonar::echo_trace_options(grid, job.sonar.terms, job.detection_floor));
@@ -80,27 +77,42 @@ Status add_findings(const SonarJob& job, const fs::path& folder, const sonar::So
     const sonar::EchoPing& ping = trace.pings().front();  // NaN, no return, becomes null
     facts["echo"] = {{"first_return_m", ping.first_m}, {"strongest_return_m", ping.strongest_m}};
   }
-  return {};
+  return cloud;
 }
 
 // Of the first frame: what the images leave of the sonar's wedge.
 void note_coverage(const SonarJob& job, const sonar::SonarInput& in, SonarNotes& notes) {
-  if (notes.coverage.exchange(true)) return;
+  if (!notes.first(SonarNotes::About::kCoverage)) return;
   const bool published = job.flags.method == "reference" || job.gather == sonar::Gather::kPublished;
   const sonar::BeamGrid& grid = job.head.beams;
-  if (const auto note = coverage_note(grid, coverage_of(grid, in), published))
-    log_warn("{}", *note);
+  const Coverage coverage = coverage_of(grid, in);
+  if (const auto note = coverage_note(grid, coverage, published)) notes.say(*note);
+  if (const auto note = normals_note(coverage, job.flags.normals.empty())) notes.say(*note);
+}
+
+// Energy labels say shadow and ghost by two numbers, which no class may have beside them.
+Status check_classes(const sonar::SonarInput& in, const sonar::MapFile& labels) {
+  for (const std::uint16_t label : in.labels)
+    if (label == sonar::kShadow || label == sonar::kGhost)
+      return bad_input(
+          "{}: class {} found, any but {} and {} is accepted beside labels.energy, where they mean "
+          "ghost and shadow",
+          labels.path, label, sonar::kGhost, sonar::kShadow);
+  return {};
 }
 
 }  // namespace
 
 Result<sonar::Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFile& image) {
   sonar::Intrinsics k;
-  if (fs::path(flags.intrinsics).extension() == ".json") {
+  if (is_json_name(flags.intrinsics)) {
     NERITIC_TRY(k, sonar::read_intrinsics(flags.intrinsics, image));
   } else {
-    NERITIC_TRY(const auto values, parse_numbers("intrinsics", flags.intrinsics, 4, 4));
-    k = {values[0], values[1], values[2], values[3]};
+    const auto values = parse_numbers("intrinsics", flags.intrinsics, 4, 4);
+    if (!values.ok())
+      return bad_input("--intrinsics: '{}' found, fx,fy,cx,cy or a .json file is accepted",
+                       flags.intrinsics);
+    k = {(*values)[0], (*values)[1], (*values)[2], (*values)[3]};
   }
   if (!(k.fx > 0.0 && k.fy > 0.0))
     return bad_input("--intrinsics: fx {:g}, fy {:g} found, positive numbers are accepted", k.fx,
@@ -113,9 +125,10 @@ Result<sonar::Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar:
 }
 
 void note_whole_metres(const SonarJob& job, const sonar::MapFile& depth, SonarNotes& notes) {
-  if (depth.coding != sonar::MapFile::Coding::kNumbers && job.options.depth_scale == 1.0 &&
-      !notes.whole_metres.exchange(true))
-    log_warn("{}: whole numbers taken as metres (--depth-scale 0.001 for millimetres)", depth.path);
+  if (depth.whole_numbers && job.options.depth_scale == 1.0 &&
+      notes.first(SonarNotes::About::kWholeMetres))
+    notes.say(fmt::format("{}: whole numbers taken as metres (--depth-scale 0.001 for millimetres)",
+                          depth.path));
 }
 
 Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& files,
@@ -126,7 +139,7 @@ Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& fil
   note_whole_metres(job, depth, notes);
   std::optional<sonar::MapFile> normals, labels;
   if (!files.paths[kNormalGroup].empty()) {
-    NERITIC_TRY(normals, sonar::read_map(files.paths[kNormalGroup]));
+    NERITIC_TRY(normals, sonar::read_map(files.paths[kNormalGroup], sonar::MapUse::kColors));
     if (normals->coding == sonar::MapFile::Coding::kNumbers && job.options.gamma != 1.0)
       return bad_input("--gamma: {:g} found, 1 is accepted: {} holds numbers, not codes",
                        job.options.gamma, normals->path);
@@ -137,6 +150,7 @@ Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& fil
   LoadedFrame frame;
   NERITIC_TRY(frame.in, sonar::make_input(depth, normals ? &*normals : nullptr,
                                           labels ? &*labels : nullptr, intrinsics, job.options));
+  if (labels && job.sonar.terms.labels.energy) NERITIC_TRY_STATUS(check_classes(frame.in, *labels));
   note_coverage(job, frame.in, notes);
   frame.files = files;
   frame.facts = facts_of(job, files, frame.in);
@@ -209,8 +223,7 @@ std::unique_ptr<sonar::PolarPanel> panel_of(const SonarJob& job) {
 
 Status write_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame,
                    const sonar::PolarPanel* panel) {
-  NERITIC_TRY_STATUS(make_folder(folder));
-  NERITIC_TRY_STATUS(add_findings(job, folder, frame.image, frame.facts));
+  const auto cloud = add_findings(job, frame.image, frame.facts);
   return sonar::write_sonar(folder,
                             {.grid = job.head.beams,
                              .image = frame.image,
@@ -219,7 +232,8 @@ Status write_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame
                              .output = job.sonar.terms.output,
                              .label_energy = frame.label_energy ? &*frame.label_energy : nullptr,
                              .picture = !job.flags.no_pictures,
-                             .panel = panel},
+                             .panel = panel,
+                             .cloud = cloud ? &*cloud : nullptr},
                             frame.facts);
 }
 

@@ -2,7 +2,6 @@
 // and writing may run on any thread, several frames at once.
 #pragma once
 
-#include <atomic>
 #include <memory>
 
 #include "engine/gpu/device.hpp"
@@ -10,16 +9,13 @@
 #include "sonar/offline_frames.hpp"
 #include "sonar/panel.hpp"
 #include "tools/neritic/sonar_job.hpp"
+#include "tools/neritic/sonar_notes.hpp"
 
 namespace neritic::tools {
 
 // Where a group of images stands in FrameFiles::paths.
 enum FrameGroup : std::size_t { kDepthGroup, kNormalGroup, kLabelGroup, kPictureGroup, kGroups };
 
-// What is said once in a run, however many frames it concerns.
-struct SonarNotes {
-  std::atomic<bool> whole_metres = false, coverage = false;
-};
 // Says once that whole numbers are taken as metres, where the map holds some and no scale is given.
 void note_whole_metres(const SonarJob& job, const sonar::MapFile& depth, SonarNotes& notes);
 

@@ -192,6 +192,30 @@ Status check_method(const SonarFlags& flags, bool plain) {
   return {};
 }
 
+// A flag that would change nothing is a mistake somewhere.
+Status check_effects(const SonarFlags& flags, const SonarJob& job) {
+  const auto refuse = [&flags](std::initializer_list<const char*> names, const char* where) {
+    for (const char* name : names)
+      if (flags.given.contains(name))
+        return Status(bad_input("{}: found, accepted {}", name, where));
+    return Status();
+  };
+  if (flags.method == "image")
+    NERITIC_TRY_STATUS(
+        refuse({"--normals", "--labels", "--gather", "--elevation"}, "without --method image"));
+  if (flags.normals.empty())
+    NERITIC_TRY_STATUS(refuse({"--axes", "--normals-sign", "--gamma"}, "with --normals"));
+  if (flags.depth.empty())
+    NERITIC_TRY_STATUS(refuse({"--depth-kind", "--depth-scale"}, "with --depth"));
+  if (flags.kind != "sidescan" || flags.method == "image")
+    NERITIC_TRY_STATUS(refuse({"--side"}, "for the acoustic kind sidescan"));
+  if (!job.sonar.terms.level)
+    NERITIC_TRY_STATUS(refuse({"--backscatter-db"}, "with --sensor of a device with a level"));
+  if (!job.sonar.terms.speckle && !job.sonar.terms.noise)
+    NERITIC_TRY_STATUS(refuse({"--seed"}, "with --sensor of a device with speckle or noise"));
+  return {};
+}
+
 Result<sonar::OfflineOptions> options_of(const SonarFlags& flags) {
   sonar::OfflineOptions options;
   options.depth_is_range = flags.depth_kind == "range";
@@ -238,13 +262,18 @@ Result<SonarJob> plan_job(const SonarFlags& flags) {
   NERITIC_TRY(job.head, head_of(job.sonar, grid, flags));
   NERITIC_TRY_STATUS(check_method(flags, job.plain()));
   NERITIC_TRY(job.gather, gather_of(flags, job.sonar, job.plain()));
+  const std::string gather = flags.gather.empty() && !flags.sensor.empty()
+                                 ? flags.sensor.string() + ": gather"
+                                 : std::string("--gather");
   if (job.gather == sonar::Gather::kPublished && !job.plain())
-    return bad_input("--gather: published found, plane or nearest is accepted for {}",
+    return bad_input("{}: published found, plane or nearest is accepted for {}", gather,
                      flags.sensor.empty() ? "kind " + flags.kind : "a sensor with terms");
   if (job.gather == sonar::Gather::kNearest && job.sonar.terms.labels.energy)
     return bad_input(
-        "--gather: nearest found, plane is accepted beside labels.energy: shadow needs a beam's "
-        "footprint");
+        "{}: nearest found, plane is accepted beside labels.energy: shadow needs a beam's "
+        "footprint",
+        gather);
+  NERITIC_TRY_STATUS(check_effects(flags, job));
   NERITIC_TRY(job.options, options_of(flags));
   NERITIC_TRY(job.state, state_of(job));
   if (job.sonar.terms.noise)

@@ -29,6 +29,9 @@ struct SonarJob {
 // kBadInput that names the flag, or the sensor's file and key.
 Result<SonarJob> plan_job(const SonarFlags& flags);
 
+// Whether --intrinsics names a JSON file, rather than giving numbers.
+bool is_json_name(const std::string& intrinsics);
+
 // job.settings; plan_job has set everything else. kBadInput where the intrinsics' file is not
 // there.
 Result<nlohmann::json> settings_of(const SonarJob& job);

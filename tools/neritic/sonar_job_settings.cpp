@@ -1,5 +1,7 @@
 // The settings of a `neritic sonar` run as they stand in its results, so that a later run can tell
 // whether a result would be its own.
+#include <cctype>
+
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
 #include "sonar/terms_json.hpp"
@@ -55,6 +57,12 @@ std::string detection_text(const scene::SonarDetection& d) {
 
 }  // namespace
 
+bool is_json_name(const std::string& intrinsics) {
+  std::string extension = std::filesystem::path(intrinsics).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".json";
+}
+
 Result<nlohmann::json> settings_of(const SonarJob& job) {
   const SonarFlags& f = job.flags;
   const sonar::Limits& l = job.head.beams.limits;
@@ -77,7 +85,7 @@ Result<nlohmann::json> settings_of(const SonarJob& job) {
       {"intrinsics", f.intrinsics},
       {"pixel_centers", f.pixel_centers},
       {"pictures", !f.no_pictures}};
-  if (std::filesystem::path(f.intrinsics).extension() == ".json") {
+  if (is_json_name(f.intrinsics)) {
     NERITIC_TRY(const std::string text, read_text(f.intrinsics));
     Hash64 hash;
     hash.add_bytes(text.data(), text.size());

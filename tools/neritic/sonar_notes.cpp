@@ -1,6 +1,9 @@
 #include "tools/neritic/sonar_notes.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "engine/core/log.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -27,6 +30,10 @@ double covered_part(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
   return static_cast<double>(inside) / (kSteps * kSteps);
 }
 
+std::string percent(double part) {
+  return part < 0.005 ? "less than 1" : fmt::format("{:.0f}", 100.0 * part);
+}
+
 }  // namespace
 
 Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
@@ -45,7 +52,13 @@ Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
           elevation_rad < l.elevation_min_rad || elevation_rad > l.elevation_max_rad)
         continue;
       ++out.in_aperture;
-      if (range_m >= l.range_min_m && range_m < l.range_max_m) ++out.in_wedge;
+      if (!(range_m >= l.range_min_m && range_m < l.range_max_m)) continue;
+      ++out.in_wedge;
+      if (in.normals.empty()) continue;
+      const double* n = &in.normals[3 * (std::size_t{v} * in.width + u)];
+      const auto cosine = sonar::incidence({n[0], n[1], n[2]}, *p, in.normals_face_sensor);
+      out.no_normal += !cosine;
+      out.facing_away += cosine && *cosine == 0.0;
     }
   out.pixels_per_cell = static_cast<double>(out.in_aperture) /
                         (static_cast<double>(grid.bins.azimuth) * grid.bins.elevation);
@@ -63,7 +76,7 @@ std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Cove
     return "no pixel has a depth (0, NaN, infinity and negative numbers are none), so the sonar "
            "hears nothing";
   // Cells that look into the image find pixels beside a swath that is thinner than one.
-  if (coverage.of_wedge == 0.0 || (published && coverage.in_aperture == 0))
+  if (coverage.in_aperture == 0 && (published || coverage.of_wedge == 0.0))
     return "no pixel with a depth lies within --azimuth and --elevation, so the sonar hears "
            "nothing";
   if (coverage.in_wedge == 0 && coverage.in_aperture > 0)
@@ -74,10 +87,10 @@ std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Cove
   // A cone's corners, and a few pixels at the edges, are no matter.
   if (coverage.of_wedge < 0.95)
     return fmt::format(
-        "the images cover {:.0f} % of the wedge of {:.3g} x {:.3g} degrees that is asked for: they "
+        "the images cover {} % of the wedge of {:.3g} x {:.3g} degrees that is asked for: they "
         "look {:.3g} to {:.3g} degrees across and {:.3g} to {:.3g} upwards, and beyond that the "
         "sonar hears nothing (--azimuth, --elevation)",
-        100.0 * coverage.of_wedge, degrees(l.azimuth_max_rad - l.azimuth_min_rad),
+        percent(coverage.of_wedge), degrees(l.azimuth_max_rad - l.azimuth_min_rad),
         degrees(l.elevation_max_rad - l.elevation_min_rad), degrees(coverage.azimuth_rad[0]),
         degrees(coverage.azimuth_rad[1]), degrees(coverage.elevation_rad[0]),
         degrees(coverage.elevation_rad[1]));
@@ -89,6 +102,52 @@ std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Cove
         "avoid them",
         coverage.pixels_per_cell, grid.bins.azimuth, grid.bins.elevation);
   return std::nullopt;
+}
+
+std::optional<std::string> normals_note(const Coverage& coverage, bool estimated) {
+  // Axes that are swapped turn half of a scene away; real maps' noise and outlines a few percent.
+  constexpr double kMany = 0.25;
+  const double all = static_cast<double>(coverage.in_wedge);
+  const double away = static_cast<double>(coverage.facing_away) / std::max(all, 1.0);
+  const double none = static_cast<double>(coverage.no_normal) / std::max(all, 1.0);
+  if (away > kMany)
+    return fmt::format(
+        "{} % of the pixels in the wedge have normals that face away from the sensor, so they are "
+        "silent (--axes, --normals-sign unknown)",
+        percent(away));
+  if (none <= kMany) return std::nullopt;
+  if (estimated)
+    return fmt::format(
+        "no normal could be estimated for {} % of the pixels in the wedge, which have no neighbour "
+        "across or above, so they are silent (--normals)",
+        percent(none));
+  return fmt::format(
+      "{} % of the pixels in the wedge have no normal (zero, NaN or -1,-1,-1), so they are silent "
+      "(without --normals they are estimated from the depth)",
+      percent(none));
+}
+
+bool SonarNotes::first(About about) {
+  const std::lock_guard lock(mutex_);
+  const unsigned bit = 1u << static_cast<unsigned>(about);
+  const bool is_first = (said_ & bit) == 0;
+  said_ |= bit;
+  return is_first;
+}
+
+void SonarNotes::say(std::string line) {
+  const std::lock_guard lock(mutex_);
+  if (!hold_)
+    log_warn("{}", line);
+  else
+    held_.push_back(std::move(line));
+}
+
+void SonarNotes::release() {
+  const std::lock_guard lock(mutex_);
+  for (const std::string& line : held_) log_warn("{}", line);
+  held_.clear();
+  hold_ = false;
 }
 
 }  // namespace neritic::tools

@@ -1,11 +1,13 @@
 // What a user should know about one sonar image made from images: whether anything lies in the
-// wedge, and whether the images are fine enough for its cells. Pure functions; any thread.
+// wedge, and whether the images are fine enough for its cells. Any thread.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sonar/reference.hpp"
 
@@ -14,6 +16,8 @@ namespace neritic::tools {
 struct Coverage {
   std::size_t in_wedge = 0;     // pixels with a depth, within the limits of range and both angles
   std::size_t in_aperture = 0;  // pixels within both angles, whatever their depth
+  std::size_t facing_away = 0;  // of in_wedge, those that are silent since their normals face away
+  std::size_t no_normal = 0;    // of in_wedge, those that are silent for want of a normal
   double nearest_m = 0.0, farthest_m = 0.0;  // ranges found in the image; 0, 0 where none has any
   double of_wedge = 1.0;  // the part of the wedge's directions that the image looks in
   // Where its edges are, straight across and straight up from the middle.
@@ -25,5 +29,25 @@ Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in);
 // The line that tells the user what is amiss, if anything. published: each pixel adds to one cell.
 std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Coverage& coverage,
                                          bool published);
+// Where a good part of what lies in the wedge is silent by its normals. estimated: from the depth.
+std::optional<std::string> normals_note(const Coverage& coverage, bool estimated);
+
+// What is said once in a run, however many frames it concerns. Any thread.
+class SonarNotes {
+ public:
+  enum class About : unsigned { kWholeMetres, kCoverage };
+
+  // Whether nothing was said about it yet; true once.
+  bool first(About about);
+  // Held until release(), so that a run which fails says why and no more; from then on said at once.
+  void say(std::string line);
+  void release();
+
+ private:
+  std::mutex mutex_;
+  bool hold_ = true;
+  unsigned said_ = 0;  // a bit an About
+  std::vector<std::string> held_;
+};
 
 }  // namespace neritic::tools

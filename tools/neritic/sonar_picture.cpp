@@ -6,6 +6,7 @@
 #include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/sidescan.hpp"
+#include "sonar/write_sonar.hpp"
 #include "tools/neritic/flags.hpp"
 
 namespace neritic::tools {
@@ -77,6 +78,7 @@ Result<PictureLine> load_picture_line(const SonarJob& job, const sonar::FrameFil
 
 Status write_picture_line(const SonarJob& job, const fs::path& folder, PictureLine line) {
   NERITIC_TRY_STATUS(make_folder(folder));
+  NERITIC_TRY_STATUS(sonar::remove_earlier_sonar(folder));
   const sonar::PictureLineOptions o = line_options(job);
   std::vector<float> both = line.line.port;
   both.insert(both.end(), line.line.starboard.begin(), line.line.starboard.end());
@@ -88,6 +90,7 @@ Status write_picture_line(const SonarJob& job, const fs::path& folder, PictureLi
                             ? "the picture's linear brightness times the cosine of incidence"
                             : "the picture's linear brightness";
   line.facts["layout"] = "sonar.npy [side, range]: 0 port, 1 starboard; 0 nearest";
+  line.facts["bytes"] = sonar::sonar_file_sizes(folder);
   return write_json(folder / "sonar.json", line.facts);
 }
 

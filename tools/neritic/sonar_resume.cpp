@@ -16,13 +16,9 @@ using sonar::FrameFiles;
 
 constexpr const char* kFacts = "sonar.json";
 
-// What a profiling sonar's result holds beside sonar::kSonarFiles.
-constexpr const char* kCloudFiles[] = {"cloud.npy", "cloud.pcd"};
-
 // Whether a file of that name may be part of a result.
 bool is_result_file(const std::string& name) {
-  return std::ranges::find(sonar::kSonarFiles, name) != std::end(sonar::kSonarFiles) ||
-         std::ranges::find(kCloudFiles, name) != std::end(kCloudFiles);
+  return std::ranges::find(sonar::kSonarFiles, name) != std::end(sonar::kSonarFiles);
 }
 
 json facts_in(const fs::path& folder) {
@@ -36,11 +32,13 @@ bool is_result(const json& facts) {
   return facts.is_object() && facts.contains("settings") && facts["settings"].is_object();
 }
 
-// The facts of a whole result of an earlier run over a folder; null where there is none.
+// The facts of a whole result of an earlier run over a folder, each of its files there and as large
+// as it was written; null where there is none.
 json earlier_result(const fs::path& folder) {
   json facts = facts_in(folder);
-  std::error_code error;
-  return is_result(facts) && fs::exists(folder / "sonar.npy", error) ? facts : json(nullptr);
+  const bool whole = is_result(facts) && facts.contains("bytes") && facts["bytes"].is_object() &&
+                     facts["bytes"] == sonar::sonar_file_sizes(folder);
+  return whole ? facts : json(nullptr);
 }
 
 // Whether the folder holds nothing, a result, or what is left of one: facts that cannot be read,
@@ -143,7 +141,6 @@ Status drop_result(const fs::path& out, const std::string& name) {
 
 std::vector<std::string> result_files(const fs::path& folder) {
   std::vector<std::string> all(std::begin(sonar::kSonarFiles), std::end(sonar::kSonarFiles));
-  all.insert(all.end(), std::begin(kCloudFiles), std::end(kCloudFiles));
   std::rotate(all.begin(), all.begin() + 1, all.end());  // the .json, which is written last, last
   std::vector<std::string> out;
   std::error_code error;
@@ -157,9 +154,19 @@ void SkippedFrames::add(std::size_t frame, std::string reason) {
   reasons_.emplace(frame, std::move(reason));
 }
 
+void SkippedFrames::add_file(const fs::path& path, std::string reason) {
+  const std::lock_guard lock(mutex_);
+  files_.emplace_back(path, std::move(reason));
+}
+
 std::size_t SkippedFrames::size() const {
   const std::lock_guard lock(mutex_);
   return reasons_.size();
+}
+
+std::size_t SkippedFrames::files() const {
+  const std::lock_guard lock(mutex_);
+  return files_.size();
 }
 
 std::string SkippedFrames::first() const {
@@ -171,7 +178,7 @@ std::string SkippedFrames::first() const {
 Status SkippedFrames::write(const fs::path& path, const std::vector<FrameFiles>& frames,
                             FrameGroup lead) const {
   const std::lock_guard lock(mutex_);
-  if (reasons_.empty()) {
+  if (reasons_.empty() && files_.empty()) {
     std::error_code error;
     fs::remove(path, error);
     return {};
@@ -179,6 +186,8 @@ Status SkippedFrames::write(const fs::path& path, const std::vector<FrameFiles>&
   std::string text = "file,reason\n";
   for (const auto& [frame, reason] : reasons_)
     text += quoted(frames[frame].paths[lead].string()) + "," + quoted(reason) + "\n";
+  for (const auto& [file, reason] : files_)
+    text += quoted(file.string()) + "," + quoted(reason) + "\n";
   return write_text(path, text);
 }
 

@@ -36,16 +36,20 @@ std::vector<std::string> result_files(const std::filesystem::path& folder);
 class SkippedFrames {
  public:
   void add(std::size_t frame, std::string reason);
-  std::size_t size() const;
+  // A file that is no frame's, below the frames in the list.
+  void add_file(const std::filesystem::path& path, std::string reason);
+  std::size_t size() const;   // of frames
+  std::size_t files() const;  // of such files
   std::string first() const;  // reason of the first frame left out; CHECKed
-  // file,reason, in order of frames; removes an older list where none was left out. The file is the
-  // leading group's.
+  // file,reason, in order of frames; removes an older list where nothing was left out. The file is
+  // the leading group's.
   Status write(const std::filesystem::path& path, const std::vector<sonar::FrameFiles>& frames,
                FrameGroup lead) const;
 
  private:
   mutable std::mutex mutex_;
   std::map<std::size_t, std::string> reasons_;
+  std::vector<std::pair<std::filesystem::path, std::string>> files_;
 };
 
 }  // namespace neritic::tools
