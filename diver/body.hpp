@@ -27,7 +27,7 @@ struct BodyParameters {
   Build build;
   Gear gear;
   Model model = Model::kFull;
-  int strips_a_segment = 4;  // 1 to 64; `neritic tradeoff swim`
+  int strips_a_segment = 6;  // 1 to 64; `neritic tradeoff swim`
   double water_kg_m3 = kSeaWater_kg_m3;
   double surface_pa = kSurfacePressure_pa;  // of the air over it
 };

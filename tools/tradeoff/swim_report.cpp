@@ -13,7 +13,7 @@ namespace {
 
 using diver::Model;
 
-constexpr const char* kSwimNames[] = {"straight", "turning"};
+constexpr const char* kSwimNames[] = {"straight", "turning", "ascent"};
 
 std::string model_name(Model model) {
   return model == Model::kFull ? "full" : "planar";
@@ -23,11 +23,12 @@ std::string variant_name(const SwimPoint& p) {
 }
 
 std::string swim_csv(const SwimTradeoff& t) {
-  std::string out = "swim,model,strips,step_ms,error_m,way_error,us_a_second,default\n";
+  std::string out =
+      "swim,model,strips,step_ms,error_m,way_error,strips_a_second,us_a_second,default\n";
   for (const SwimPoint& p : t.points)
-    out += fmt::format("{},{},{},{:.6g},{:.4g},{:.4g},{:.4g},{}\n", p.swim, model_name(p.model),
-                       p.strips, 1e3 * p.step_s, p.error_m, p.way_error, p.us_a_second,
-                       is_default(p) ? 1 : 0);
+    out += fmt::format("{},{},{},{:.6g},{:.4g},{:.4g},{:.6g},{:.4g},{}\n", p.swim,
+                       model_name(p.model), p.strips, 1e3 * p.step_s, p.error_m, p.way_error,
+                       p.strips_a_second, p.us_a_second, is_default(p) ? 1 : 0);
   return out;
 }
 
@@ -37,6 +38,11 @@ std::vector<std::string> variants_of(const SwimTradeoff& t) {
   for (const SwimPoint& p : t.points)
     if (std::ranges::find(out, variant_name(p)) == out.end()) out.push_back(variant_name(p));
   return out;
+}
+
+std::string point_words(const SwimPoint& p) {
+  return fmt::format("{} at {:.3g} ms, {:.1e} m, {:.0f} strips a second, {:.0f} us",
+                     variant_name(p), 1e3 * p.step_s, p.error_m, p.strips_a_second, p.us_a_second);
 }
 
 std::string swim_md(const SwimTradeoff& t) {
@@ -61,24 +67,38 @@ std::string swim_md(const SwimTradeoff& t) {
                              p.us_a_second);
       out += "\n";
     }
-    if (const SwimPoint* p = knee(t, swim))
-      out += fmt::format("\nThe knee: {} at {:.3g} ms, {:.1e} m, {:.0f} us.\n", variant_name(*p),
-                         1e3 * p->step_s, p->error_m, p->us_a_second);
+    if (const SwimPoint* p = knee(t.points, swim))
+      out += fmt::format("\nThe knee: {}.\n", point_words(*p));
   }
+  const std::vector<SwimPoint> worst = worst_of_all(t);
+  out += "\n## The worst of all swims\n\n";
+  if (const SwimPoint* p = knee(worst, kAllSwims))
+    out += fmt::format("The knee: {}.\n", point_words(*p));
+  for (const double share : {0.01, 0.005, kWithinShare, 0.001})
+    if (const SwimPoint* p = cheapest_within(worst, kAllSwims, share * t.way_m))
+      out += fmt::format("The cheapest within {:g} % of the way ({:.1e} m): {}.\n", 100.0 * share,
+                         share * t.way_m, point_words(*p));
   return out;
 }
 
 nlohmann::json swim_point_json(const SwimPoint& p) {
   return {{"model", model_name(p.model)}, {"strips", p.strips},
           {"step_ms", 1e3 * p.step_s},    {"error_m", p.error_m},
-          {"way_error", p.way_error},     {"us_a_second", p.us_a_second}};
+          {"way_error", p.way_error},     {"strips_a_second", p.strips_a_second},
+          {"us_a_second", p.us_a_second}};
 }
 
 nlohmann::json swim_json(const SwimTradeoff& t) {
   nlohmann::json json{
       {"swim_s", t.swim_s}, {"way_m", t.way_m}, {"reference_error_m", t.reference_error_m}};
   for (const char* swim : kSwimNames)
-    if (const SwimPoint* p = knee(t, swim)) json["knees"][swim] = swim_point_json(*p);
+    if (const SwimPoint* p = knee(t.points, swim)) json["knees"][swim] = swim_point_json(*p);
+  const std::vector<SwimPoint> worst = worst_of_all(t);
+  if (const SwimPoint* p = knee(worst, kAllSwims)) json["knees"][kAllSwims] = swim_point_json(*p);
+  if (const SwimPoint* p = cheapest_within(worst, kAllSwims, kWithinShare * t.way_m)) {
+    json["cheapest_within"] = swim_point_json(*p);
+    json["cheapest_within"]["share_of_way"] = kWithinShare;
+  }
   for (const SwimPoint& p : t.points)
     if (is_default(p)) json["default"][p.swim] = swim_point_json(p);
   return json;
@@ -88,7 +108,8 @@ nlohmann::json swim_json(const SwimTradeoff& t) {
 void draw_swim(sonar::Canvas& canvas, const Box& box, const SwimTradeoff& t,
                const std::string& swim, const std::string& title, const std::string& label,
                double (*what)(const SwimPoint&), bool noted) {
-  const char* const drawn[] = {"1 strips", "2 strips", "4 strips", "16 strips", "planar"};
+  const char* const drawn[] = {"1 strips", "2 strips",  "4 strips",
+                               "6 strips", "16 strips", "planar"};
   std::vector<Series> series;
   std::vector<double> xs, ys;
   for (const char* name : drawn) {
@@ -98,7 +119,7 @@ void draw_swim(sonar::Canvas& canvas, const Box& box, const SwimTradeoff& t,
         continue;
       s.x.push_back(what(p));
       s.y.push_back(p.error_m);
-      if (noted && variant_name(p) == drawn[2])
+      if (noted && variant_name(p) == drawn[3])
         s.notes.push_back(fmt::format("{:.3g} ms", 1e3 * p.step_s));
     }
     xs.insert(xs.end(), s.x.begin(), s.x.end());
@@ -115,16 +136,16 @@ void draw_swim(sonar::Canvas& canvas, const Box& box, const SwimTradeoff& t,
 }
 
 ImageU8 swim_plot(const SwimTradeoff& t) {
-  constexpr double kWide = 900, kHigh = 520, kHead = 64;
+  constexpr double kWide = 900, kHigh = 460, kHead = 64;
   sonar::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                       static_cast<std::uint32_t>(kHead + 2 * kHigh), kPaper);
+                       static_cast<std::uint32_t>(kHead + 3 * kHigh), kPaper);
   canvas.text(24, 34, 18, "Swimming by moving limbs: error against cost", kInk, sonar::Align::kLeft,
               2.2);
   canvas.text(24, 54, 10,
               fmt::format("{:g} s of flutter kick, {:.1f} m; truth: 64 strips a segment, .25 ms",
                           t.swim_s, t.way_m),
               kInk.with_alpha(0.7f));
-  for (std::size_t row = 0; row < 2; ++row) {
+  for (std::size_t row = 0; row < std::size(kSwimNames); ++row) {
     const double top = kHead + kHigh * static_cast<double>(row);
     const std::string swim = kSwimNames[row];
     draw_swim(

@@ -13,13 +13,10 @@ namespace {
 
 using diver::Model;
 
-constexpr double kStepsMs[] = {1, 2, 1e3 / 240, 8, 12.5, 20, 25, 50};
-constexpr int kStrips[] = {1, 2, 3, 4, 6, 8, 16};
 constexpr int kTruthStrips = 64;
-constexpr double kTruthStep_s = 0.25e-3;
 // All swims are looked at so often: a whole number of every step but 1/240 s, which is met within.
 constexpr double kLook_s = 0.1;
-constexpr const char* kSwims[] = {"straight", "turning"};
+constexpr const char* kSwims[] = {"straight", "turning", "ascent"};
 
 diver::Body body_of(Model model, int strips) {
   diver::BodyParameters p;
@@ -40,11 +37,21 @@ diver::JointRotations joints_at(const diver::Body& body, const std::string& swim
   return diver::rotations_of(joints);
 }
 
+Vec3 place_from(const std::string& swim) {
+  return {0.0, 0.0, swim == "ascent" ? 25.0 : 15.0};
+}
+
+diver::HumanState start_of(const diver::Body& body, const std::string& swim) {
+  const double up_rad = swim == "ascent" ? radians(45.0) : 0.0;
+  return diver::start_at(body, place_from(swim),
+                         {std::cos(0.5 * up_rad), 0.0, std::sin(0.5 * up_rad), 0.0},
+                         joints_at(body, swim, 0.0));
+}
+
 // Places at every look.
 std::vector<Vec3> swim_all(const diver::Body& body, const std::string& swim, double seconds,
                            double step_s) {
-  diver::HumanState state =
-      diver::start_at(body, {0.0, 0.0, 15.0}, {1.0, 0.0, 0.0, 0.0}, joints_at(body, swim, 0.0));
+  diver::HumanState state = start_of(body, swim);
   diver::HumanInputs inputs;
   std::vector<Vec3> places;
   const int looks = static_cast<int>(std::lround(seconds / kLook_s));
@@ -80,8 +87,7 @@ double least_swim_cpu_us(const diver::Body& body, const std::string& swim, doubl
     inputs[static_cast<std::size_t>(i)].joints = joints_at(body, swim, (i + 1) * step_s);
   double least = 1e300, farthest = 0.0;
   for (int repeat = 0; repeat < repeats; ++repeat) {
-    diver::HumanState state =
-        diver::start_at(body, {0.0, 0.0, 15.0}, {1.0, 0.0, 0.0, 0.0}, inputs[0].joints);
+    diver::HumanState state = start_of(body, swim);
     const std::clock_t begin = std::clock();
     for (const diver::HumanInputs& in : inputs)
       state = diver::step(body, state, in, step_s, step_s);
@@ -92,45 +98,58 @@ double least_swim_cpu_us(const diver::Body& body, const std::string& swim, doubl
   return least;
 }
 
+double strips_a_second(const diver::Body& body, double step_s) {
+  double strips = kStepInStrips;
+  for (std::size_t i = 0; i < body.part_count; ++i) strips += body.parts[i].strips;
+  return strips / step_s;
+}
+
 struct Variant {
   Model model;
   int strips;
 };
-std::vector<Variant> variants() {
+std::vector<Variant> variants(const SwimTradeoffOptions& options) {
   std::vector<Variant> out;
-  for (const int strips : kStrips) out.push_back({Model::kFull, strips});
+  for (const int strips : options.strips) out.push_back({Model::kFull, strips});
   out.push_back({Model::kPlanar, diver::BodyParameters{}.strips_a_segment});
   return out;
 }
 
+// Whether a point of the full model counts among those of a swim.
+bool counts(const SwimPoint& p, const std::string& swim) {
+  return p.swim == swim && p.model == Model::kFull && std::isfinite(p.error_m);
+}
+
 }  // namespace
 
-std::uint64_t steps(const SwimTradeoffOptions&) {
-  return std::size(kSwims) * (2 + std::size(kStepsMs) * variants().size());
+std::uint64_t steps(const SwimTradeoffOptions& options) {
+  return std::size(kSwims) * (2 + options.steps_ms.size() * variants(options).size());
 }
 
 SwimTradeoff run_swim_tradeoff(const SwimTradeoffOptions& options) {
   SwimTradeoff out;
-  out.swim_s = options.quick ? 2.0 : 20.0;
+  out.swim_s = options.quick ? 2.0 : options.swim_s;
   for (const std::string swim : kSwims) {
+    const Vec3 from = place_from(swim);
     const diver::Body finest = body_of(Model::kFull, kTruthStrips);
-    const auto truth = swim_all(finest, swim, out.swim_s, kTruthStep_s);
+    const auto truth = swim_all(finest, swim, out.swim_s, options.truth_step_s);
     options.step();
-    const auto looser = swim_all(finest, swim, out.swim_s, 2.0 * kTruthStep_s);
+    const auto looser = swim_all(finest, swim, out.swim_s, 2.0 * options.truth_step_s);
     options.step();
     out.reference_error_m = std::max(out.reference_error_m, largest_distance(truth, looser));
-    const double way_m = glm::distance(truth.back(), Vec3(0.0, 0.0, 15.0));
+    const double way_m = glm::distance(truth.back(), from);
     if (swim == kSwims[0]) out.way_m = way_m;
-    for (const Variant& variant : variants()) {
+    for (const Variant& variant : variants(options)) {
       const diver::Body body = body_of(variant.model, variant.strips);
-      for (const double step_ms : kStepsMs) {
+      for (const double step_ms : options.steps_ms) {
         const double step_s = 1e-3 * step_ms;
         const auto places = swim_all(body, swim, out.swim_s, step_s);
         SwimPoint point{swim, variant.model, variant.strips, step_s};
         point.error_m = largest_distance(places, truth);
-        point.way_error =
-            std::abs(glm::distance(places.back(), Vec3(0.0, 0.0, 15.0)) - way_m) / way_m;
-        point.us_a_second = least_swim_cpu_us(body, swim, step_s, options.quick ? 1 : 7);
+        point.way_error = std::abs(glm::distance(places.back(), from) - way_m) / way_m;
+        point.strips_a_second = strips_a_second(body, step_s);
+        if (options.timed)
+          point.us_a_second = least_swim_cpu_us(body, swim, step_s, options.quick ? 1 : 7);
         out.points.push_back(point);
         options.step();
       }
@@ -144,22 +163,48 @@ bool is_default(const SwimPoint& p) {
          std::abs(p.step_s - 1.0 / 240.0) < 1e-6;
 }
 
-const SwimPoint* knee(const SwimTradeoff& tradeoff, const std::string& swim) {
+std::vector<SwimPoint> worst_of_all(const SwimTradeoff& tradeoff) {
+  std::vector<SwimPoint> out;
+  for (const SwimPoint& p : tradeoff.points) {
+    const auto same = std::ranges::find_if(out, [&](const SwimPoint& q) {
+      return q.model == p.model && q.strips == p.strips && q.step_s == p.step_s;
+    });
+    if (same == out.end()) {
+      out.push_back(p);
+      out.back().swim = kAllSwims;
+      continue;
+    }
+    same->error_m = std::max(same->error_m, p.error_m);
+    same->way_error = std::max(same->way_error, p.way_error);
+    same->us_a_second = std::max(same->us_a_second, p.us_a_second);
+  }
+  return out;
+}
+
+const SwimPoint* knee(std::span<const SwimPoint> points, const std::string& swim) {
   std::vector<const SwimPoint*> front;
   std::vector<double> cost, error;
-  for (const SwimPoint& p : tradeoff.points) {
-    const auto counts = [&](const SwimPoint& q) {
-      return q.swim == swim && q.model == Model::kFull && std::isfinite(q.error_m);
-    };
-    const bool beaten = std::ranges::any_of(tradeoff.points, [&](const SwimPoint& other) {
-      return counts(other) && other.us_a_second < p.us_a_second && other.error_m <= p.error_m;
+  for (const SwimPoint& p : points) {
+    const bool beaten = std::ranges::any_of(points, [&](const SwimPoint& other) {
+      return counts(other, swim) && other.strips_a_second < p.strips_a_second &&
+             other.error_m <= p.error_m;
     });
-    if (!counts(p) || beaten) continue;
+    if (!counts(p, swim) || beaten) continue;
     front.push_back(&p);
-    cost.push_back(std::log(p.us_a_second));
+    cost.push_back(std::log(p.strips_a_second));
     error.push_back(std::log(p.error_m + 1e-12));
   }
   return front.empty() ? nullptr : front[knee_of(cost, error)];
+}
+
+const SwimPoint* cheapest_within(std::span<const SwimPoint> points, const std::string& swim,
+                                 double error_m) {
+  const SwimPoint* best = nullptr;
+  for (const SwimPoint& p : points)
+    if (counts(p, swim) && p.error_m <= error_m &&
+        (best == nullptr || p.strips_a_second < best->strips_a_second))
+      best = &p;
+  return best;
 }
 
 }  // namespace neritic::tools

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,13 +14,22 @@
 namespace neritic::tools {
 
 struct SwimTradeoffOptions {
-  bool quick = false;                  // a shorter swim, timed once: to see that it works
+  bool quick = false;             // a shorter swim, timed once: to see that it works
+  bool timed = true;              // or errors and counted costs alone
+  double swim_s = 20.0;           // of each swim; quick: 2 s
+  double truth_step_s = 0.25e-3;  // and twice that, to see what it leaves
+  std::vector<int> strips = {1, 2, 3, 4, 5, 6, 8, 16};  // a segment
+  std::vector<double> steps_ms = {1, 2, 1e3 / 240, 8, 12.5, 20, 25, 50};
   std::function<void()> step = [] {};  // after each of steps(options)
 };
 std::uint64_t steps(const SwimTradeoffOptions& options);
 
+// What a step costs whatever its strips, in strips: 10.9 us over 17 ns, measured over 1 to 64
+// strips a segment. So costs are counted, the same on any machine.
+inline constexpr double kStepInStrips = 600.0;
+
 // "straight" keeps to the body's plane, as far as beating legs do; "turning" also bends the spine
-// to the sides.
+// to the sides; "ascent" sets out 45 degrees up, while suit and jacket expand.
 struct SwimPoint {
   std::string swim;
   diver::Model model = diver::Model::kFull;
@@ -27,7 +37,8 @@ struct SwimPoint {
   double step_s = 0.0;
   // Largest distance from the truth, and of the way at the end, over the swim.
   double error_m = 0.0, way_error = 0.0;
-  double us_a_second = 0.0;  // of one core, a second of the swim
+  double strips_a_second = 0.0;  // counted cost: the body's, and kStepInStrips, each step
+  double us_a_second = 0.0;      // of one core, a second of the swim; 0: not timed
 };
 
 struct SwimTradeoff {
@@ -40,9 +51,17 @@ SwimTradeoff run_swim_tradeoff(const SwimTradeoffOptions& options);
 
 // What is used where nothing is said (240 Hz and BodyParameters).
 bool is_default(const SwimPoint& point);
-// The knee of the front of the full model (no other is both cheaper and better), both axes
-// logarithmic.
-const SwimPoint* knee(const SwimTradeoff& tradeoff, const std::string& swim);
+// Of each model, strips and step the largest errors over all swims, called "all".
+inline constexpr const char* kAllSwims = "all";
+std::vector<SwimPoint> worst_of_all(const SwimTradeoff& tradeoff);
+// The default is the cheapest, of what is measured, whose error in any swim is within this share of
+// the way straight ahead.
+inline constexpr double kWithinShare = 0.0025;
+// Points of the full model, by counted cost; null where there is none. The knee of the front (no
+// other is both cheaper and better), both axes logarithmic; and the cheapest within an error.
+const SwimPoint* knee(std::span<const SwimPoint> points, const std::string& swim);
+const SwimPoint* cheapest_within(std::span<const SwimPoint> points, const std::string& swim,
+                                 double error_m);
 
 // swim.csv, swim.md, swim.json, swim.png in the folder.
 Status write_swim_tradeoff(const std::filesystem::path& folder, const SwimTradeoff& tradeoff);
