@@ -17,7 +17,12 @@ constexpr double kNewDive_min = 10.0;
 // The next stop and the sum of all times.
 class NextStop : public AscentSink {
  public:
-  void segment(const PlanSegment& s) override { minutes += s.minutes; }
+  explicit NextStop(const DecoEnvironment& where) : where_(where) {}
+  void segment(const PlanSegment& s) override {
+    minutes += s.minutes;
+    if (s.gas < bar_min.size())
+      bar_min[s.gas] += s.minutes * where_.pressure_bar(0.5 * (s.from_m + s.to_m));
+  }
   void stop(const PlanStop& s) override {
     if (found) return;
     found = true;
@@ -26,6 +31,10 @@ class NextStop : public AscentSink {
   }
   bool found = false;
   double depth_m = 0.0, stop_min = 0.0, minutes = 0.0;
+  std::array<double, kToldGases> bar_min{};
+
+ private:
+  const DecoEnvironment& where_;
 };
 
 bool is_good(const DiveSample& sample, std::size_t gases) {
@@ -205,12 +214,13 @@ DiveComputerView DiveComputer::view(const DiveComputerState& state, std::uint64_
   if (left < 0.0) view.ceiling_m = ceiling_m(state);
   view.ceiling_violated = depth < view.ceiling_m - kCeilingSlack_m;
   AscentState up = ascent_start(state, view, without);
-  NextStop next;
-  next.minutes = up.run_min;  // the way down
+  NextStop next(c.environment);
+  next.segment({depth, up.depth_m, up.run_min, up.gas});  // the way down
   AscentSettings ascent = ascent_;
   ascent.without = without;
   const bool clears = ascend(ascent, up, next) != AscentEnd::kNeverClears;
   view.to_surface_min = clears ? next.minutes : std::numeric_limits<double>::infinity();
+  view.to_surface_bar_min = next.bar_min;
   if (next.found) {
     view.stop_m = next.depth_m;
     view.stop_min = next.stop_min;

@@ -3,6 +3,7 @@
 // tens: a simulation steps at its own rate and asks for the view once a second.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "diver/deco_ascent.hpp"
@@ -62,12 +63,18 @@ inline constexpr double kCeilingSlack_m = 0.3;
 // What a computer's display has. Above a ceiling the stops begin at or below it, not where the
 // diver is: the next stop is then deeper than the diver, at the surface too, and the way down to it
 // is part of the time to the surface.
+// Gases whose share of the way up is told: the first ones of the settings.
+inline constexpr std::size_t kToldGases = 4;
+
+// What a computer's display has.
 struct DiveComputerView {
   double ceiling_m = 0.0;               // of the gradient factor that holds there; 0: none
   bool ceiling_violated = false;        // the diver is above it by more than kCeilingSlack_m
   double no_stop_min = 0.0;             // left without stops; 0 with a ceiling
   double stop_m = 0.0, stop_min = 0.0;  // the next stop; 0: none
   double to_surface_min = 0.0;          // infinite where the ceiling never clears
+  // Of that, pressure times time on each gas: times litres a minute, what the way up takes.
+  std::array<double, kToldGases> to_surface_bar_min{};
   double po2_bar = 0.0, density_g_l = 0.0, narcotic_m = 0.0;
   double gradient = 0.0, surface_gradient = 0.0;  // of the M-value, here and if at the surface
   double ascent_m_min = 0.0;

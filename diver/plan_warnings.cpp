@@ -115,6 +115,9 @@ class Warnings {
             "switch to {} at {:.4g} m: nitrogen rises by {:.2f} of helium's fall, above "
             "a fifth",
             gas, w.depth_m, w.value);
+      case kTankTooSmall:
+      case kMinimumGas:
+        break;  // gas_plan.cpp finds and words these
     }
     return {};
   }

@@ -17,6 +17,8 @@ enum class PlanWarningKind {
   kCns,               // above 80 %, what earlier dives left included
   kOtu,               // above 300 in a day
   kCounterdiffusion,  // nitrogen up by more than a fifth of helium's fall at a switch
+  kTankTooSmall,      // a tank does not hold what the plan takes: gas_plan.hpp
+  kMinimumGas,        // nor what two divers need to go up with
 };
 
 struct PlanWarning {

@@ -10,9 +10,8 @@ constexpr double kGamma = 1.4;
 constexpr double kChoked = 0.5282817877;      // (2 / (gamma + 1))^(gamma / (gamma - 1))
 constexpr double kChokedFlow = 0.6847314564;  // sqrt(gamma) (2 / (gamma + 1))^3
 // A demand valve gives 5 litres of ambient pressure a second (EN 250: peaks of 62.5 l/min of
-// ventilation are 3.3), less as the tank comes within this of ambient.
+// ventilation are 3.3), less as the tank comes within kWeakTank_pa of ambient.
 constexpr double kDemand_m3_s = 5e-3;
-constexpr double kWeakTank_pa = 5e5;
 
 // What can leave before the tank is at that pressure.
 double moles_above(const Body& body, const TankState& tanks, std::size_t tank, double pressure_pa) {

@@ -21,6 +21,8 @@ double tank_pressure(const Body& body, const TankState& tanks, std::size_t tank)
 
 // A first stage holds its hose so far over ambient, while the tank has it.
 inline constexpr double kHosePressure_pa = 9.5e5;
+// A tank that is less than this over ambient gives no full breath.
+inline constexpr double kWeakTank_pa = 5e5;
 
 // Takes up to wanted moles by way of a regulator's demand valve within dt_s, and returns what came:
 // none where the tank is at ambient pressure, less than a hard breath where it is near.

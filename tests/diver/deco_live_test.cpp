@@ -99,6 +99,18 @@ TEST(DecoLive, GasesThatAreUsedUpDoNotShortenTheAscent) {
     if (!plan.stops.empty()) {
       EXPECT_GT(without_min, with_min + 1.0) << one.id;
     }
+    // Pressure times time of the way up, as the plan has it, on each gas.
+    const DiveComputerView view = computer.view(state);
+    double run_min = 0.0;
+    std::array<double, kToldGases> bar_min{};
+    for (const PlanSegment& s : plan.segments) {
+      if (run_min > plan.end_of_bottom.run_min - 1e-9 && s.gas < kToldGases)
+        bar_min[s.gas] +=
+            s.minutes * one.request.conventions.environment.pressure_bar(0.5 * (s.from_m + s.to_m));
+      run_min += s.minutes;
+    }
+    for (std::size_t i = 0; i < kToldGases; ++i)
+      EXPECT_NEAR(view.to_surface_bar_min[i], bar_min[i], 1e-9) << one.id;
     // What is breathed now is: its bit changes nothing.
     EXPECT_EQ(computer.view(state, bottom).to_surface_min, with_min) << one.id;
     ++shown;

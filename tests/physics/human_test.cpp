@@ -204,10 +204,10 @@ TEST(HumanDive, RowsSayGasAndTissues) {
   ASSERT_NEAR(static_cast<double>(rows.size()), 31.0, 1.0);
   for (const HumanRow& row : rows) {
     EXPECT_NEAR(row.gas.ambient_pa, 101325.0 + 1028.0 * 9.80665 * 18.0, 3e3);
-    EXPECT_GT(row.computer.no_stop_min, 20.0);
-    EXPECT_LT(row.computer.no_stop_min, 120.0);
+    EXPECT_GT(row.ascent.view.no_stop_min, 20.0);
+    EXPECT_LT(row.ascent.view.no_stop_min, 120.0);
     // The computer sampled up to a second ago.
-    EXPECT_NEAR(row.computer.po2_bar, 0.21e-5 * row.gas.ambient_pa, 3e-3);
+    EXPECT_NEAR(row.ascent.view.po2_bar, 0.21e-5 * row.gas.ambient_pa, 3e-3);
     EXPECT_NEAR(row.vitals.heart_bpm, 65.0, 5.0);
     EXPECT_NEAR(row.vitals.risk.narcotic_depth_m, 18.0, 1.0);
   }
@@ -217,8 +217,9 @@ TEST(HumanDive, RowsSayGasAndTissues) {
   const auto commas =
       std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(csv.find('\n')), ',');
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), commas * lines);
-  for (const char* column : {",no_stop_min,", ",heart_bpm,", ",co2_proxy_mmhg,", ",tank_bar,",
-                             ",oxygen_risk,", ",out_of_gas_s,"})
+  for (const char* column :
+       {",no_stop_min,", ",heart_bpm,", ",co2_proxy_mmhg,", ",tank_bar,", ",oxygen_risk,",
+        ",out_of_gas_s,", ",ascent_gas_l,", ",ascent_gas_there_l,", ",tanks_too_small"})
     EXPECT_NE(csv.find(column), csv.npos) << column;
   scene::Scene drawn = dive.scene;
   recorder.humans().give_tracks(drawn);
@@ -251,11 +252,22 @@ TEST(HumanDive, OnlyGasThatIsThereShortensTheWayUp) {
   };
   const HumanRow full = row_of(200.0, kStillWater), empty = row_of(3.0, kStillWater),
                  high = row_of(200.0, "title = \"a lake\"\n[physics]\naltitude_m = 2000\n");
-  EXPECT_GT(full.computer.stop_min, 0.0);
-  EXPECT_GT(empty.computer.to_surface_min, full.computer.to_surface_min + 5.0);
-  EXPECT_GT(high.computer.to_surface_min, full.computer.to_surface_min);
+  EXPECT_GT(full.ascent.view.stop_min, 0.0);
+  EXPECT_GT(empty.ascent.view.to_surface_min, full.ascent.view.to_surface_min + 5.0);
+  EXPECT_GT(high.ascent.view.to_surface_min, full.ascent.view.to_surface_min);
   EXPECT_NEAR(full.gas.ambient_pa - high.gas.ambient_pa, 101325.0 - 79495.0, 50.0);
   EXPECT_EQ(full.out_of_gas_s, 0.0);
+  // A bottle that gives a full breath but not all its stops is not counted on either; and who has
+  // too little to come up with is told how much is missing.
+  const HumanRow little = row_of(30.0, kStillWater);
+  EXPECT_EQ(full.ascent.too_small, 0u);
+  EXPECT_EQ(little.ascent.too_small, 2u);
+  EXPECT_EQ(little.ascent.view.to_surface_min, empty.ascent.view.to_surface_min);
+  EXPECT_TRUE(full.ascent.enough());
+  EXPECT_GT(little.ascent.needed_l, full.ascent.needed_l + 5.0 * 17.0);
+  const double there_l = 24.0 * (200.0 / diver::compressibility(diver::kAir, 200e5) -
+                                 6.01325 / diver::compressibility(diver::kAir, 6.01325e5));
+  EXPECT_NEAR(full.ascent.there_l, there_l, 1.0);
 }
 
 std::string fault_of(const std::string& text) {

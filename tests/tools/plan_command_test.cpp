@@ -71,6 +71,9 @@ TEST(PlanCommand, FlagsChangeWhatTheyName) {
   EXPECT_EQ(stop_min("--gf 30/70"), 56.0);
   EXPECT_EQ(stop_min("--gas air ean50@24 --last-stop 6"), 22.0);
   EXPECT_GT(stop_min("--altitude 2500"), 37.0);
+  // The sea's own air is 1.01325 bar, which is not what every convention has over it.
+  EXPECT_EQ(stop_min("--convention msw --altitude 0"),
+            stop_min("--convention msw --surface 1.01325"));
   EXPECT_GT(stop_min("--saturation 110/90"), 40.0);
   EXPECT_GT(stop_min("--after 30,25,60"), 37.0);
   EXPECT_GT(stop_min("--after 30,25,60 --after 30,25,60,ean32"),
@@ -122,6 +125,34 @@ TEST(PlanCommand, JsonAndPicturesAreWritten) {
   EXPECT_EQ(json["stops"][1]["gas"], "EAN50");
   EXPECT_EQ(json["end_of_bottom"]["tissues_n2_he_bar"].size(), 16u);
   EXPECT_NEAR(json["ndl_runtime_min"].get<double>(), 5.56838, 1e-5);
+}
+
+TEST(PlanCommand, GasIsReckonedForEachTank) {
+  const PlanSaid said =
+      said_by("plan --depth 30 --time 20 --rmv 18,15 --minimum-gas 2,1.5,1 --tank air=15,230");
+  EXPECT_EQ(said.status, 0) << said.error;
+  EXPECT_THAT(said.out, HasSubstr("END  litres\n"));
+  EXPECT_THAT(said.out,
+              HasSubstr("bottom      30 m   18:30   20:00  air      0.84   5.2  30 m    1335\n"));
+  EXPECT_THAT(said.out, HasSubstr("gas at 18 L/min, 15 from the ascent on"));
+  EXPECT_THAT(said.out, HasSubstr("L, 15 L at 230 bar end at "));
+  EXPECT_THAT(said.out, HasSubstr("; minimum gas at 30 m, 20 min: "));
+  EXPECT_THAT(said.out, testing::Not(HasSubstr("WARNING: tank")));
+  const auto gas = [](const std::string& with) {
+    return parse_json(said_by("plan --depth 30 --time 20 --json " + with).out).value()["gas"];
+  };
+  const auto json = gas("--tank air=24,230");
+  EXPECT_EQ(json["rmv_l_min"], 20.0);
+  EXPECT_EQ(json["gases"][0]["tank"]["enough"], true);
+  EXPECT_GT(json["gases"][0]["tank"]["then_bar"].get<double>(),
+            json["gases"][0]["tank"]["minimum_bar"].get<double>());
+  EXPECT_EQ(gas("--tank air=7,200")["gases"][0]["tank"]["enough"], false);
+  EXPECT_TRUE(gas("--tank air=7,200")["gases"][0]["tank"].contains("used_up_at"));
+  EXPECT_NEAR(gas("--sac 40")["gases"][0]["used_l"].get<double>() /
+                  gas("--sac 20")["gases"][0]["used_l"].get<double>(),
+              2.0, 1e-9);
+  EXPECT_THAT(said_by("plan --depth 30 --time 20 --tank air=7,200").out,
+              HasSubstr("WARNING: tank of air, 7 L at 200 bar: used up at 30 m, "));
 }
 
 TEST(PlanCommand, ALogIsReplayedSampleBySample) {
@@ -177,6 +208,10 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
          "bottom gas 10/70 from 40 m found, while EAN32 is breathed at 30 m"},
         {"plan --gas 10/70@20 --depth 60 --time 15 --travel ean32 21/35@30",
          "bottom gas 10/70 from 20 m found, while 21/35 is breathed at 60 m"},
+        {"plan --depth 30 --time 20 --tank air=12", "--tank: 1 numbers in '12' found"},
+        {"plan --depth 30 --time 20 --tank 12,200", "--tank: '12,200' found, GAS=LITRES,BAR"},
+        {"plan --depth 30 --time 20 --tank o2=12,200", "a tank of O2 found, which is none of"},
+        {"plan --depth 30 --time 20 --rmv 0", "litres a minute: 0 found, 1 to 200"},
         {"plan --log nowhere.csv", "nowhere.csv: no such file"}}) {
     const PlanSaid said = said_by(arguments);
     EXPECT_EQ(said.status, 2) << arguments;

@@ -299,6 +299,21 @@ void add_plan(CLI::App& app, Run& run) {
   command->add_option("--descent-rate", flags->descent_m_min, "m/min");
   command->add_option("--saturation", flags->saturation,
                       "110/90: percent of the speed at which gas goes in and out");
+  command
+      ->add_option("--rmv,--sac", flags->rmv,
+                   "litres breathed a minute at the pressure there: at the bottom, and from the "
+                   "ascent on; or one for both")
+      ->capture_default_str();
+  command
+      ->add_option("--minimum-gas", flags->minimum_gas,
+                   "DIVERS,TIMES,MIN: who goes up on what is left, how many times --rmv each "
+                   "breathes, and how long until they leave")
+      ->capture_default_str();
+  command
+      ->add_option("--tank", flags->tanks,
+                   "GAS=LITRES,BAR: what is carried of a gas, as 18/45=24,232; twins as their sum")
+      ->expected(1)
+      ->take_all();
   command->add_option(
       "--log", flags->log,
       "depths of a dive (.csv: time_s, depth_m, perhaps gas) instead of a plan: what a "

@@ -76,9 +76,10 @@ struct CheckFlags {
 Status run_check(const CheckFlags& flags);
 
 struct PlanFlags {
-  std::vector<std::string> gases{"air"}, travel, levels, after;
+  std::vector<std::string> gases{"air"}, travel, levels, after, tanks;
   std::optional<double> depth_m, time_min;
   std::string gf = "30/85", convention = "stop-minutes", table, water, saturation, log;
+  std::string rmv = "20,17", minimum_gas = "2,2,4";
   // Not given: the convention's.
   std::optional<double> altitude_m, surface_bar, last_stop_m, ascent_m_min, descent_m_min;
   std::filesystem::path out, plot;

@@ -103,7 +103,8 @@ std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& stat
 std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
                        const HumanFigures& figures) {
   const diver::GasReading gas = diver::read_gas(human.body, state.human);
-  const diver::DiveComputerView deco = human.computer->view(state.human.life.computer);
+  const diver::AscentGas ascent = gas_for_ascent(human, state);
+  const diver::DiveComputerView& deco = ascent.view;
   std::string line = human.name + ": ";
   if (!human.waypoints_ned_m.empty())
     line += fmt::format("{} of {} waypoints, ", state.arrived, human.waypoints_ned_m.size());
@@ -114,6 +115,9 @@ std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
   line += deco.ceiling_m > 0.0 ? fmt::format("ceiling {:.1f} m, ", deco.ceiling_m)
                                : fmt::format("{:.0f} min without stops, ", deco.no_stop_min);
   if (deco.ceiling_violated) line += "which is violated, ";
+  if (!ascent.enough())
+    line += fmt::format("NOT ENOUGH GAS: the way up takes {:.0f} l of this tank's {:.0f}, ",
+                        ascent.needed_l, ascent.there_l);
   line += touch_words(state.contact.touched_steps);
   if (state.human.refused_inputs > 0)
     line += fmt::format(", {} inputs refused", state.human.refused_inputs);
@@ -123,7 +127,8 @@ std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
 nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
                           const HumanFigures& figures) {
   const diver::GasReading gas = diver::read_gas(human.body, state.human);
-  const diver::DiveComputerView deco = human.computer->view(state.human.life.computer);
+  const diver::AscentGas ascent = gas_for_ascent(human, state);
+  const diver::DiveComputerView& deco = ascent.view;
   const Vec3 p = rov::world_from_ned(state.human.root.position_ned_m);
   return {{"name", human.name},
           {"waypoints", human.waypoints_ned_m.size()},
@@ -134,6 +139,9 @@ nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
           {"deepest_m", figures.deepest_m},
           {"tank_bar", 1e-5 * gas.tank_pa},
           {"ventilation_l_min", gas.ventilation_l_min},
+          {"ascent_gas_l", ascent.needed_l},
+          {"ascent_gas_there_l", ascent.there_l},
+          {"ascent_gas_enough", ascent.enough()},
           {"limb_work_j", state.human.life.limb_work_j},
           {"heart_bpm", state.human.life.vitals.heart_bpm},
           {"risk_proxies",

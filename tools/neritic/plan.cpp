@@ -17,6 +17,35 @@ std::string gf_text(double low, double high) {
   return fmt::format("GF {:g}/{:g}", 100.0 * low, 100.0 * high);
 }
 
+// Litres of each gas, or bar of its tank, over run time.
+std::vector<GasCurve> gas_curves(const PlanReport& report) {
+  std::vector<GasCurve> out;
+  for (std::size_t i = 0; i < report.gas.size(); ++i) {
+    const diver::PlanGasUse& use = report.gas[i];
+    const diver::GasMix& mix = report.request.gases[i].mix;
+    GasCurve curve{diver::name_of(mix), i, use.tank.has_value(), {}, {}, {}, {}};
+    double run_min = 0.0, used_l = 0.0;
+    const auto add = [&](double minutes) {
+      curve.run_min.push_back(minutes);
+      curve.value.push_back(use.tank ? diver::tank_bar(mix, use.tank->tank, used_l) : used_l);
+    };
+    add(0.0);
+    for (const diver::PlanSegment& s : report.plan.segments) {
+      const double litres =
+          diver::segment_litres(report.request, report.plan, report.breathing, s, run_min);
+      run_min += s.minutes;
+      if (s.gas == i) used_l += litres;
+      add(run_min);
+    }
+    if (use.tank && use.minimum_l > 0.0) {
+      curve.minimum_run_min = use.minimum_run_min;
+      curve.minimum = use.tank->minimum_bar;
+    }
+    out.push_back(std::move(curve));
+  }
+  return out;
+}
+
 // --plot's file, and the one in --out's folder.
 Status write_pictures(const PlanFlags& flags, const char* name, const PlanPicture& picture,
                       const DiveTrace& trace) {
@@ -36,7 +65,9 @@ std::string written(const PlanFlags& flags, const char* names) {
 
 Result<std::string> plan_a_dive(const PlanFlags& flags) {
   NERITIC_TRY(const diver::DivePlanRequest request, plan_request(flags));
-  NERITIC_TRY(const PlanReport report, make_plan_report(flags.convention, request));
+  NERITIC_TRY(const PlanGasFlags gas, plan_gas(flags, request));
+  NERITIC_TRY(const PlanReport report,
+              make_plan_report(flags.convention, request, gas.breathing, gas.tanks));
   if (!flags.out.empty()) {
     NERITIC_TRY_STATUS(make_folder(flags.out));
     NERITIC_TRY_STATUS(write_text(flags.out / "plan.json", plan_json(report)));
@@ -52,7 +83,8 @@ Result<std::string> plan_a_dive(const PlanFlags& flags) {
       request.gf_low,
       request.gf_high,
       request.gases,
-      report.plan.stops};
+      report.plan.stops,
+      gas_curves(report)};
   if (!flags.plot.empty() || !flags.out.empty())
     NERITIC_TRY_STATUS(
         write_pictures(flags, "plan.png", picture, trace_plan(request, report.plan)));
@@ -103,6 +135,7 @@ Result<std::string> replay_a_log(const PlanFlags& flags) {
                       s.gf_low,
                       s.gf_high,
                       s.gases,
+                      {},
                       {}},
                      trace));
   fmt::print("{}", flags.json ? log_json(flags.log, log, trace) : log_text(flags, log, trace));

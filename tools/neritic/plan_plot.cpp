@@ -13,7 +13,8 @@ using sonar::Align;
 using sonar::Canvas;
 using sonar::Color;
 
-constexpr double kPlanWide = 1500.0, kPlanHigh = 1080.0, kHead = 70.0, kSplit = 690.0;
+constexpr double kPlanWide = 1500.0, kPlanHigh = 1080.0, kHead = 70.0, kSplit = 690.0,
+                 kGasHigh = 230.0;
 constexpr double kLabel_px = 9.0;
 constexpr Color kCeilingColor{0.75f, 0.10f, 0.10f}, kN2Color{0.0f, 0.447f, 0.698f},
     kHeColor{0.90f, 0.62f, 0.0f};
@@ -134,6 +135,30 @@ void draw_tissues(Canvas& canvas, const Box& box, const PlanPicture& picture,
   canvas.segment(in.left, height(ambient), in.right, height(ambient), 1.6, kInk.with_alpha(0.6f));
 }
 
+// What is left of each gas, or used of it where its tank is not known.
+void draw_gas(Canvas& canvas, const Box& box, const Axis& x, const std::vector<GasCurve>& gas) {
+  std::vector<Series> series;
+  const bool bar = std::ranges::any_of(gas, &GasCurve::bar);
+  double most = 1.0;
+  for (const GasCurve& curve : gas) {
+    if (curve.bar != bar) continue;
+    series.push_back(
+        {curve.name, gas_color(curve.gas), curve.run_min, curve.value, {}, true, false});
+    for (const double value : curve.value) most = std::max(most, value);
+    if (curve.minimum) most = std::max(most, *curve.minimum);
+  }
+  // Room for the ring's words.
+  const Axis y{"", 0.0, 1.5 * most};
+  draw_lines(canvas, box,
+             bar ? "Bar in the tanks; ring: minimum gas, which must be there then"
+                 : "Litres used, at 1 bar",
+             x, y, series, false);
+  for (const GasCurve& curve : gas)
+    if (curve.bar && curve.minimum)
+      draw_mark(canvas, box, x, y, *curve.minimum_run_min, *curve.minimum,
+                fmt::format("{:.0f} bar", *curve.minimum));
+}
+
 void draw_legend(Canvas& canvas, double left, double top, const PlanPicture& picture) {
   const auto item = [&](const Color& color, const std::string& words, double width) {
     canvas.segment(left, top - 4.0, left + 22.0, top - 4.0, 3.0, color);
@@ -151,8 +176,9 @@ void draw_legend(Canvas& canvas, double left, double top, const PlanPicture& pic
 }  // namespace
 
 ImageU8 draw_dive(const PlanPicture& picture, const DiveTrace& trace) {
-  Canvas canvas(static_cast<std::uint32_t>(kPlanWide), static_cast<std::uint32_t>(kPlanHigh),
-                kPaper);
+  const double gas_high = picture.gas.empty() ? 0.0 : kGasHigh;
+  const double high = kPlanHigh + gas_high, split = kSplit + gas_high;
+  Canvas canvas(static_cast<std::uint32_t>(kPlanWide), static_cast<std::uint32_t>(high), kPaper);
   canvas.text(24, 34, 16, picture.title, kInk, Align::kLeft, 2.0);
   canvas.text(24, 56, 10, picture.below, kInk.with_alpha(0.75f));
   std::vector<const TraceRow*> rows;
@@ -167,12 +193,13 @@ ImageU8 draw_dive(const PlanPicture& picture, const DiveTrace& trace) {
   draw_ceiling(canvas, in, x, y, rows);
   draw_profile(canvas, in, x, y, rows, picture);
   name_stops(canvas, in, x, y, picture);
+  if (!picture.gas.empty()) draw_gas(canvas, {10, kSplit, kPlanWide - 10.0, split}, x, picture.gas);
   const double wide = (kPlanWide - 20.0) / static_cast<double>(trace.moments.size());
   for (std::size_t i = 0; i < trace.moments.size(); ++i) {
     const double left = 10.0 + wide * static_cast<double>(i);
-    draw_tissues(canvas, {left, kSplit, left + wide, kPlanHigh - 30.0}, picture, trace.moments[i]);
+    draw_tissues(canvas, {left, split, left + wide, high - 30.0}, picture, trace.moments[i]);
   }
-  draw_legend(canvas, 90.0, kPlanHigh - 12.0, picture);
+  draw_legend(canvas, 90.0, high - 12.0, picture);
   return canvas.take();
 }
 

@@ -2,10 +2,21 @@
 // that matter.
 #pragma once
 
+#include <optional>
+
 #include "engine/core/image.hpp"
 #include "tools/neritic/plan_trace.hpp"
 
 namespace neritic::tools {
+
+// Of one gas over run time: what its tank shows, bar, or where none is given the litres used.
+struct GasCurve {
+  std::string name;
+  std::size_t gas = 0;
+  bool bar = false;
+  std::vector<double> run_min, value;
+  std::optional<double> minimum_run_min, minimum;  // the minimum gas, bar
+};
 
 struct PlanPicture {
   std::string title, below;  // two lines of words
@@ -13,6 +24,7 @@ struct PlanPicture {
   double gf_low = 0.3, gf_high = 0.85;
   std::vector<diver::PlanGas> gases;
   std::vector<diver::PlanStop> stops;  // named beside the line; none of a log
+  std::vector<GasCurve> gas;           // below it; none of a log
 };
 ImageU8 draw_dive(const PlanPicture& picture, const DiveTrace& trace);
 

@@ -36,17 +36,24 @@ const char* phase_name(PlanPhase phase) {
   return "";
 }
 
+struct PlanLine : PlanSegment {
+  double litres = 0.0;
+};
 // Segments of one kind on one gas are one line.
-std::vector<PlanSegment> merged(const std::vector<PlanSegment>& segments) {
-  std::vector<PlanSegment> out;
-  for (const PlanSegment& s : segments) {
+std::vector<PlanLine> merged(const PlanReport& r) {
+  std::vector<PlanLine> out;
+  double run_min = 0.0;
+  for (const PlanSegment& s : r.plan.segments) {
+    const double litres = diver::segment_litres(r.request, r.plan, r.breathing, s, run_min);
+    run_min += s.minutes;
     const bool same = !out.empty() && out.back().phase == s.phase && out.back().gas == s.gas &&
                       s.phase != PlanPhase::kStop;
     if (same && (s.phase != PlanPhase::kBottom || out.back().to_m == s.to_m)) {
       out.back().to_m = s.to_m;
       out.back().minutes += s.minutes;
+      out.back().litres += litres;
     } else {
-      out.push_back(s);
+      out.push_back({s, litres});
     }
   }
   return out;
@@ -78,26 +85,32 @@ std::string head_text(const PlanReport& r) {
   return out;
 }
 
-// The table that goes onto a slate. Ascents between stops are in the run time alone.
+// The table that goes onto a slate. Ascents between stops are in run time and litres of the stop
+// after them.
 std::string table_text(const PlanReport& r) {
-  std::string out = "\n           depth    time     run  gas       pO2   g/L   END\n";
-  double run_min = 0.0;
+  std::string out = "\n           depth    time     run  gas       pO2   g/L   END  litres\n";
+  double run_min = 0.0, between_l = 0.0;
   const diver::DecoEnvironment& where = r.request.conventions.environment;
-  const std::vector<PlanSegment> segments = merged(r.plan.segments);
+  const std::vector<PlanLine> segments = merged(r);
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const PlanSegment& s = segments[i];
+    const PlanLine& s = segments[i];
     run_min += s.minutes;
     const auto is_stop = [&](std::size_t at) {
       return at < segments.size() && segments[at].phase == PlanPhase::kStop;
     };
-    if (s.phase == PlanPhase::kAscent && i > 0 && is_stop(i - 1) && is_stop(i + 1)) continue;
+    if (s.phase == PlanPhase::kAscent && i > 0 && is_stop(i - 1) && is_stop(i + 1)) {
+      between_l += s.litres;
+      continue;
+    }
     const diver::GasMix& mix = r.request.gases[s.gas].mix;
     // Where it is deepest, that counts.
     const double depth = std::max(s.from_m, s.to_m), p = where.pressure_bar(depth);
-    out += fmt::format("{:<9} {:>4.0f} m  {:>6}  {:>6}  {:<7}  {:.2f}  {:>4.1f}  {:>2.0f} m\n",
-                       phase_name(s.phase), s.to_m, clock_text(s.minutes), clock_text(run_min),
-                       diver::name_of(mix), mix.oxygen * p, diver::gas_density_g_l(mix, p),
-                       std::max(diver::narcotic_depth_m(mix, depth, where), 0.0));
+    out += fmt::format(
+        "{:<9} {:>4.0f} m  {:>6}  {:>6}  {:<7}  {:.2f}  {:>4.1f}  {:>2.0f} m  {:>6.0f}\n",
+        phase_name(s.phase), s.to_m, clock_text(s.minutes), clock_text(run_min),
+        diver::name_of(mix), mix.oxygen * p, diver::gas_density_g_l(mix, p),
+        std::max(diver::narcotic_depth_m(mix, depth, where), 0.0), s.litres + between_l);
+    between_l = 0.0;
   }
   return out;
 }
@@ -123,6 +136,34 @@ std::string depth_text(const PlanReport& r) {
                                 diver::narcotic_depth_m(mix, depth, where));
   if (mix.helium > 0.0) return out + fmt::format(" ({:.1f} by nitrogen alone)\n", air);
   return mix == diver::kAir ? out + "\n" : out + fmt::format(", EAD {:.1f} m\n", air);
+}
+
+// What is taken of each gas, and what its tank has then.
+std::string gas_text(const PlanReport& r) {
+  const diver::PlanBreathing& b = r.breathing;
+  std::string out = fmt::format("gas at {:g} L/min, {:g} from the ascent on, in litres at 1 bar\n",
+                                b.bottom_l_min, b.ascent_l_min);
+  for (std::size_t i = 0; i < r.gas.size(); ++i) {
+    const diver::PlanGasUse& use = r.gas[i];
+    out += fmt::format("  {}: {:.0f} L", diver::name_of(r.request.gases[i].mix), use.used_l);
+    if (use.tank && !use.tank->empty_min)
+      out += fmt::format(", {:g} L at {:g} bar end at {:.0f} bar", use.tank->tank.volume_l,
+                         use.tank->tank.pressure_bar, use.tank->end_bar);
+    else if (use.tank)
+      out += fmt::format(", more than {:g} L at {:g} bar", use.tank->tank.volume_l,
+                         use.tank->tank.pressure_bar);
+    if (use.minimum_l > 0.0)
+      out += fmt::format("; minimum gas at {:g} m, {:.0f} min: {:.0f} L", use.minimum_depth_m,
+                         use.minimum_run_min, use.minimum_l);
+    if (use.tank && use.minimum_l > 0.0)
+      out += fmt::format(", {:.0f} bar of the {:.0f} there", use.tank->minimum_bar,
+                         use.tank->then_bar);
+    out += "\n";
+  }
+  return out + fmt::format(
+                   "  (minimum gas: {:g} divers, {:g} times {:g} L/min each, {:g} min "
+                   "there, then up to the next gas)\n",
+                   b.divers, b.stress, b.bottom_l_min, b.problem_min);
 }
 
 std::string sums_text(const PlanReport& r) {
@@ -161,6 +202,7 @@ std::string sums_text(const PlanReport& r) {
         "MOD of {}: {:.1f} m at {:g} bar\n", diver::name_of(gas.mix),
         diver::max_operating_depth_m(gas.mix, limit, r.request.conventions.environment), limit);
   }
+  out += gas_text(r);
   for (const diver::PlanWarning& w : r.warnings) out += "WARNING: " + w.text + "\n";
   return out;
 }
@@ -175,6 +217,39 @@ nlohmann::json plan_point_json(const diver::PlanPoint& p) {
   return {{"run_min", p.run_min},
           {"depth_m", p.depth_m},
           {"tissues_n2_he_bar", tissues_json(p.tissues)}};
+}
+
+nlohmann::json gas_json(const PlanReport& r) {
+  const diver::PlanBreathing& b = r.breathing;
+  nlohmann::json json{
+      {"rmv_l_min", b.bottom_l_min},
+      {"rmv_ascent_l_min", b.ascent_l_min},
+      {"minimum_gas", {{"divers", b.divers}, {"times_rmv", b.stress}, {"minutes", b.problem_min}}},
+      {"gases", nlohmann::json::array()}};
+  for (std::size_t i = 0; i < r.gas.size(); ++i) {
+    const diver::PlanGasUse& use = r.gas[i];
+    nlohmann::json gas{{"name", diver::name_of(r.request.gases[i].mix)}, {"used_l", use.used_l}};
+    if (use.minimum_l > 0.0) {
+      gas["minimum_l"] = use.minimum_l;
+      gas["minimum_at"] = {{"runtime_min", use.minimum_run_min}, {"depth_m", use.minimum_depth_m}};
+    }
+    if (use.tank) {
+      const diver::PlanTankUse& t = *use.tank;
+      gas["tank"] = {{"volume_l", t.tank.volume_l},
+                     {"start_bar", t.tank.pressure_bar},
+                     {"enough", !t.empty_min && t.then_bar >= t.minimum_bar}};
+      if (t.empty_min)
+        gas["tank"]["used_up_at"] = {{"runtime_min", *t.empty_min}, {"depth_m", *t.empty_m}};
+      else
+        gas["tank"]["end_bar"] = t.end_bar;
+      if (use.minimum_l > 0.0) {
+        gas["tank"]["minimum_bar"] = t.minimum_bar;
+        gas["tank"]["then_bar"] = t.then_bar;
+      }
+    }
+    json["gases"].push_back(gas);
+  }
+  return json;
 }
 
 nlohmann::json request_json(const PlanReport& r) {
@@ -205,10 +280,15 @@ nlohmann::json request_json(const PlanReport& r) {
 
 }  // namespace
 
-Result<PlanReport> make_plan_report(const std::string& convention, const DivePlanRequest& request) {
-  PlanReport report{convention, request, {}, {}, -1.0};
+Result<PlanReport> make_plan_report(const std::string& convention, const DivePlanRequest& request,
+                                    const diver::PlanBreathing& breathing,
+                                    const std::vector<diver::PlanTank>& tanks) {
+  PlanReport report{convention, request, {}, {}, -1.0, breathing, {}};
   NERITIC_TRY(report.plan, diver::plan_dive(request));
   report.warnings = diver::plan_warnings(request, report.plan);
+  NERITIC_TRY(report.gas, diver::gas_use(request, report.plan, breathing, tanks));
+  for (diver::PlanWarning& w : diver::gas_warnings(request, report.gas))
+    report.warnings.push_back(std::move(w));
   NERITIC_TRY(const auto without, diver::run_time_without_stops(request));
   report.without_stops_min = without.value_or(-1.0);
   return report;
@@ -222,12 +302,16 @@ std::string plan_json(const PlanReport& r) {
   const DivePlan& plan = r.plan;
   nlohmann::json json = request_json(r);
   json["segments"] = {
-      {"columns", {"from_m", "to_m", "minutes", "o2_percent", "he_percent", "phase"}},
+      {"columns",
+       {"from_m", "to_m", "minutes", "o2_percent", "he_percent", "phase", "litres_at_1_bar"}},
       {"rows", nlohmann::json::array()}};
+  double run_min = 0.0;
   for (const PlanSegment& s : plan.segments) {
     const diver::GasMix& mix = r.request.gases[s.gas].mix;
     json["segments"]["rows"].push_back(
-        {s.from_m, s.to_m, s.minutes, 100.0 * mix.oxygen, 100.0 * mix.helium, phase_name(s.phase)});
+        {s.from_m, s.to_m, s.minutes, 100.0 * mix.oxygen, 100.0 * mix.helium, phase_name(s.phase),
+         diver::segment_litres(r.request, plan, r.breathing, s, run_min)});
+    run_min += s.minutes;
   }
   json["stops"] = nlohmann::json::array();
   for (const diver::PlanStop& s : plan.stops)
@@ -258,6 +342,7 @@ std::string plan_json(const PlanReport& r) {
   json["ndl_runtime_min"] = nullptr;  // none, or without limit
   if (r.without_stops_min >= 0.0 && r.without_stops_min < diver::kNoLimit_min)
     json["ndl_runtime_min"] = r.without_stops_min;
+  json["gas"] = gas_json(r);
   json["warnings"] = nlohmann::json::array();
   for (const diver::PlanWarning& w : r.warnings)
     json["warnings"].push_back({{"text", w.text},

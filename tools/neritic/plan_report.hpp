@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "diver/plan_warnings.hpp"
+#include "diver/gas_plan.hpp"
 #include "tools/neritic/plan_trace.hpp"
 
 namespace neritic::tools {
@@ -19,9 +19,13 @@ struct PlanReport {
     return {plan.oxygen.cns_percent + request.oxygen_before.cns_percent,
             plan.oxygen.otu + request.oxygen_before.otu};
   }
+  diver::PlanBreathing breathing;
+  std::vector<diver::PlanGasUse> gas;  // of each of the request
 };
 Result<PlanReport> make_plan_report(const std::string& convention,
-                                    const diver::DivePlanRequest& request);
+                                    const diver::DivePlanRequest& request,
+                                    const diver::PlanBreathing& breathing,
+                                    const std::vector<diver::PlanTank>& tanks);
 
 std::string plan_text(const PlanReport& report);
 std::string plan_json(const PlanReport& report);

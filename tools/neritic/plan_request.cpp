@@ -98,6 +98,19 @@ Result<DecoConventions> conventions_asked(const PlanFlags& flags) {
   return c;
 }
 
+// "18/45=24,232".
+Result<diver::PlanTank> tank_of(const std::string& text, const DivePlanRequest& request) {
+  const std::size_t equals = text.find('=');
+  if (equals == text.npos)
+    return bad_input("--tank: '{}' found, GAS=LITRES,BAR as 18/45=24,232 is accepted", text);
+  NERITIC_TRY(const diver::GasMix mix, diver::parse_mix(text.substr(0, equals)));
+  NERITIC_TRY(const auto sizes, parse_numbers("tank", text.substr(equals + 1), 2, 2));
+  for (std::size_t i = 0; i < request.gases.size(); ++i)
+    if (request.gases[i].mix == mix) return diver::PlanTank{i, sizes[0], sizes[1]};
+  return bad_input("--tank: a tank of {} found, which is none of the plan's gases",
+                   diver::name_of(mix));
+}
+
 // Conventions, gradient factors and gases.
 Result<DivePlanRequest> bare_request(const PlanFlags& flags) {
   DivePlanRequest request;
@@ -163,6 +176,22 @@ Result<DivePlanRequest> plan_request(const PlanFlags& flags) {
   }
   NERITIC_TRY_STATUS(add_earlier(flags, request));
   return request;
+}
+
+Result<PlanGasFlags> plan_gas(const PlanFlags& flags, const DivePlanRequest& request) {
+  PlanGasFlags out;
+  NERITIC_TRY(const auto rmv, parse_numbers("rmv", flags.rmv, 1, 2));
+  out.breathing.bottom_l_min = rmv[0];
+  out.breathing.ascent_l_min = rmv.back();
+  NERITIC_TRY(const auto minimum, parse_numbers("minimum-gas", flags.minimum_gas, 3, 3));
+  out.breathing.divers = minimum[0];
+  out.breathing.stress = minimum[1];
+  out.breathing.problem_min = minimum[2];
+  for (const std::string& text : flags.tanks) {
+    NERITIC_TRY(const diver::PlanTank tank, tank_of(text, request));
+    out.tanks.push_back(tank);
+  }
+  return out;
 }
 
 Result<diver::DiveComputerSettings> log_settings(const PlanFlags& flags,

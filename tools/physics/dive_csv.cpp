@@ -44,7 +44,8 @@ constexpr const char* kHumanColumns =
     "violated,"
     "heart_bpm,"
     "pause_s,gaze_x,gaze_y,gaze_z,measured,co2_proxy_mmhg,narcosis_proxy_m,co2_risk,narcosis_risk,"
-    "density_risk,breathing_risk,oxygen_risk,out_of_gas_s";
+    "density_risk,breathing_risk,oxygen_risk,out_of_gas_s,ascent_gas_l,ascent_gas_there_l,tanks_"
+    "too_small";
 
 // What is not finite (no end of breath in sight) is an empty cell.
 void append_cells(std::string& out, std::initializer_list<double> numbers) {
@@ -179,7 +180,7 @@ void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& r
   for (const SensorColumns& sensor : kSensorColumns)
     if (any_has(world, sensor)) append_empty(out, cells_of(sensor.names));
   const diver::GasReading& gas = row.gas;
-  const diver::DiveComputerView& deco = row.computer;
+  const diver::DiveComputerView& deco = row.ascent.view;
   const diver::VitalState& vitals = row.vitals;
   const diver::RiskProxies& risk = vitals.risk;
   const Vec3 gaze = rov::world_from_ned(vitals.gaze_ned);
@@ -220,7 +221,10 @@ void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& r
                      static_cast<double>(risk.gas_density),
                      static_cast<double>(risk.breathing),
                      static_cast<double>(risk.oxygen),
-                     row.out_of_gas_s});
+                     row.out_of_gas_s,
+                     row.ascent.needed_l,
+                     row.ascent.there_l,
+                     static_cast<double>(row.ascent.too_small)});
   fmt::format_to(std::back_inserter(out), ",{:016x}\n", row.hash);
 }
 

@@ -6,19 +6,6 @@
 #include "diver/frames.hpp"
 
 namespace neritic::tools {
-namespace {
-
-// Deco gas counts while its tank still gives a full breath where it is switched to.
-std::uint64_t gases_used_up(const PhysicsHuman& human, const diver::HumanState& state) {
-  std::array<double, diver::kMaxTanks> ambient_pa{};
-  const auto& gases = human.computer->settings().gases;
-  for (std::size_t i = 0; i < std::min(gases.size(), ambient_pa.size()); ++i)
-    ambient_pa[i] = diver::pressure_at(human.body, gases[i].switch_depth_m);
-  return diver::empty_tanks(human.body, state.life.tanks, ambient_pa);
-}
-
-}  // namespace
-
 HumanRecorder::HumanRecorder(const PhysicsWorld& world, double joints_s)
     : world_(world),
       joints_s_(joints_s),
@@ -54,12 +41,19 @@ HumanRow HumanRecorder::row_of(std::size_t index,
   row.net_weight_n = diver::net_weight_n(human.body, state.human);
   row.out_of_gas_s = state.human.life.lungs.unfed_s;
   row.gas = diver::read_gas(human.body, state.human);
-  row.computer = human.computer->view(state.human.life.computer, gases_used_up(human, state.human));
+  row.ascent = gas_for_ascent(human, state);
   row.cns_percent = state.human.life.computer.oxygen.cns_percent;
   row.otu = state.human.life.computer.oxygen.otu;
   row.vitals = state.human.life.vitals;
   row.hash = snapshot.hash;
   return row;
+}
+
+diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& state) {
+  const double now_l_min = diver::read_gas(human.body, state.human).ventilation_l_min;
+  return diver::ascent_gas(*human.computer, state.human.life.computer, human.body,
+                           state.human.life.tanks,
+                           std::max(now_l_min, diver::PlanBreathing{}.ascent_l_min));
 }
 
 void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row, bool tracks) {

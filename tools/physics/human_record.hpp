@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "diver/ascent_gas.hpp"
+#include "diver/gas_plan.hpp"
 #include "engine/scene/node_motion.hpp"
 #include "engine/scene/track.hpp"
 #include "tools/physics/physics_world.hpp"
@@ -23,11 +25,14 @@ struct HumanRow {
   double kick_hz = 0.0, limb_power_w = 0.0, oxygen_l_min = 0.0, lungs_m3 = 0.0, net_weight_n = 0.0;
   diver::GasReading gas;
   double out_of_gas_s = 0.0;  // since nothing came to breathe; 0 while it does
-  diver::DiveComputerView computer;
+  diver::AscentGas ascent;    // with the dive computer's view
   double cns_percent = 0.0, otu = 0.0;
   diver::VitalState vitals;
   std::uint64_t hash = 0;  // of the whole state
 };
+
+// What the way up takes as the diver breathes now, though no less than plans reckon with.
+diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& state);
 
 struct HumanFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, deepest_m = 0.0, shallowest_m = 1e9;
