@@ -16,7 +16,9 @@ namespace neritic::diver {
 // What a step is given; held until it changes.
 struct HumanInputs {
   JointRotations joints = straight_joints();  // where the limbs are wanted or measured
-  Vec3 current_ned_m_s{0.0};
+  // The water around the diver (WaterFlow, motion.hpp): at the step's start, how that changes where
+  // the diver is, and the water's own acceleration.
+  Vec3 current_ned_m_s{0.0}, current_change_ned_m_s2{0.0}, water_acceleration_ned_m_s2{0.0};
   double other_power_w = 0.0;      // work beside what limbs do to the water
   double ventilation_l_min = 0.0;  // as measured; 0: by effort
   double breath_bias_m3 = 0.0;     // around so much more air than at rest
@@ -28,6 +30,8 @@ struct HumanInputs {
   static void fields(auto&& field, auto& self) {
     field("joints", self.joints);
     field("current_ned_m_s", self.current_ned_m_s);
+    field("current_change_ned_m_s2", self.current_change_ned_m_s2);
+    field("water_acceleration_ned_m_s2", self.water_acceleration_ned_m_s2);
     field("other_power_w", self.other_power_w);
     field("ventilation_l_min", self.ventilation_l_min);
     field("breath_bias_m3", self.breath_bias_m3);

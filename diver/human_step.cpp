@@ -47,6 +47,10 @@ void take_inputs(const HumanInputs& in, HumanState& state) {
     if (!take_rotation(in.joints[i], held.joints[i])) ++refused;
   take(within(in.current_ned_m_s, kMostCurrent_m_s), in.current_ned_m_s, held.current_ned_m_s,
        refused);
+  for (const auto acceleration :
+       {&HumanInputs::current_change_ned_m_s2, &HumanInputs::water_acceleration_ned_m_s2})
+    take(within(in.*acceleration, kMostWaterAcceleration_m_s2), in.*acceleration,
+         held.*acceleration, refused);
   take(in.other_power_w >= 0.0 && in.other_power_w <= kMostPower_w, in.other_power_w,
        held.other_power_w, refused);
   take(in.ventilation_l_min >= 0.0 && in.ventilation_l_min <= kMostVentilation,
@@ -97,7 +101,8 @@ void live(const Body& body, HumanState& state, double dt_s) {
   step_vitals(state.held.instruments, in, dt_s, state.life.vitals);
 }
 
-void substep(const Body& body, HumanState& state, double dt_s) {
+// into_s: of the step, when this part of it begins.
+void substep(const Body& body, HumanState& state, double into_s, double dt_s) {
   const HumanInputs& in = state.held;
   LifeState& life = state.life;
   // Gas where the body is now, then motion with that gas.
@@ -114,7 +119,9 @@ void substep(const Body& body, HumanState& state, double dt_s) {
   const LimbState before = state.limbs;
   state.far_joints += static_cast<std::uint64_t>(follow_limbs(state.limbs, in.joints, dt_s));
   const LimbWork work = move_root(body, state.root, before, state.limbs, gas_load(body, state),
-                                  in.current_ned_m_s, dt_s);
+                                  {in.current_ned_m_s + into_s * in.current_change_ned_m_s2,
+                                   in.current_change_ned_m_s2, in.water_acceleration_ned_m_s2},
+                                  dt_s);
   // Muscles that brake take no work back.
   const double power_w = std::clamp(work.power_w, 0.0, kMostPower_w);
   life.limb_work_j += power_w * dt_s;
@@ -133,7 +140,8 @@ HumanState step(const Body& body, const HumanState& state, const HumanInputs& in
   }
   // A step that is as long as a substep, but for rounding, is one.
   const double count = std::ceil(dt_s / longest_substep_s - 1e-9);
-  for (int i = 0; i < static_cast<int>(count); ++i) substep(body, next, dt_s / count);
+  for (int i = 0; i < static_cast<int>(count); ++i)
+    substep(body, next, i * (dt_s / count), dt_s / count);
   live(body, next, dt_s);
   return next;
 }

@@ -11,6 +11,9 @@ namespace neritic::diver {
 // Longer steps are cut into equal ones no longer than this; `neritic tradeoff swim`.
 inline constexpr double kLongestSubstep_s = 1.0 / 60.0;
 
+// No water speeds up by more, in any axis.
+inline constexpr double kMostWaterAcceleration_m_s2 = 100.0;
+
 // Inputs that are not finite or beyond any diver's are refused: the last good value is held, and
 // state.refused_inputs counts it (each joint for itself). So is a dt_s outside (0, 10] s: then
 // nothing moves. What is returned is finite if the state was.

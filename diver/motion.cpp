@@ -19,8 +19,16 @@ Quat turned(const Quat& attitude, const Vec3& rotation_body) {
   return glm::normalize(attitude * turn);
 }
 
-Immersion immersion_of(const RootState& root) {
-  return {glm::conjugate(root.attitude) * Vec3(0.0, 0.0, 1.0), root.position_ned_m.z};
+Immersion immersion_of(const RootState& root, const WaterFlow& water) {
+  const Quat body_from_ned = glm::conjugate(root.attitude);
+  return {body_from_ned * Vec3(0.0, 0.0, 1.0), root.position_ned_m.z,
+          body_from_ned * water.acceleration_m_s2};
+}
+
+// Momentum of the body about its origin, body axes.
+Vec6 momentum_at(const BodyMomentum& m, const Vec6& velocity) {
+  const Vec3 v = velocity.linear(), w = velocity.angular();
+  return vec6(m.mass.a * v + m.mass.b * w + m.linear, v * m.mass.b + m.mass.c * w + m.angular);
 }
 
 // All forces on the body and what they give to it.
@@ -29,18 +37,20 @@ struct AllForces {
   Mat6 drag;
   double power_w;
 };
-AllForces forces_on(const Body& body, const Posture& posture, const RootState& root,
-                    const Vec6& velocity, const GasLoad& load) {
-  const Immersion immersion = immersion_of(root);
+AllForces forces_on(const Body& body, const Posture& posture, const BodyMomentum& mass,
+                    const RootState& root, const Vec6& velocity, const GasLoad& load,
+                    const WaterFlow& flow) {
+  const Immersion immersion = immersion_of(root, flow);
   const WaterForces water = water_forces(body, posture, velocity, immersion);
   const StaticForces still = static_forces(body, posture, velocity, immersion, load);
-  return {water.wrench + still.wrench, water.drag, water.power_w + still.power_w};
-}
-
-// Momentum of the body about its origin, body axes.
-Vec6 momentum_at(const BodyMomentum& m, const Vec6& velocity) {
-  const Vec3 v = velocity.linear(), w = velocity.angular();
-  return vec6(m.mass.a * v + m.mass.b * w + m.linear, v * m.mass.b + m.mass.c * w + m.angular);
+  AllForces out{water.wrench + still.wrench, water.drag, water.power_w + still.power_w};
+  // Where the body meets other water on its way than that which speeds up.
+  const Vec3 between = glm::conjugate(root.attitude) * (flow.acceleration_m_s2 - flow.change_m_s2);
+  if (between != Vec3(0.0)) {
+    out.wrench = out.wrench + vec6(mass.mass.a * between, between * mass.mass.b);
+    out.power_w += glm::dot(momentum_at(mass, velocity).linear(), between);
+  }
+  return out;
 }
 
 double energy_at(const BodyMomentum& m, const Vec6& velocity) {
@@ -83,17 +93,17 @@ Vec6 in_body(const Quat& attitude, const Vec6& v) {
 }  // namespace
 
 LimbWork move_root(const Body& body, RootState& root, const LimbState& before,
-                   const LimbState& after, const GasLoad& load, const Vec3& current_ned_m_s,
+                   const LimbState& after, const GasLoad& load, const WaterFlow& water,
                    double dt_s) {
   // Axes that move with the water are as good as any.
-  const Vec6 current = vec6(current_ned_m_s, Vec3(0.0));
+  const Vec6 current = vec6(water.current_m_s, Vec3(0.0));
   const RootState start = root;
   const Vec6 velocity = root.velocity - in_body(root.attitude, current);
   const Posture old_posture = posture_of(body, before.rotation, before.rate);
   const Posture posture = posture_of(body, after.rotation, after.rate);
   const BodyMomentum old_mass = momentum_of(body, old_posture, load);
   const BodyMomentum mass = momentum_of(body, posture, load);
-  const AllForces old_forces = forces_on(body, old_posture, start, velocity, load);
+  const AllForces old_forces = forces_on(body, old_posture, old_mass, start, velocity, load, water);
   const Mat6 mass_matrix = matrix_of(mass.mass);
 
   const double rate = drag_rate(mass_matrix, old_forces.drag) * dt_s;
@@ -109,8 +119,9 @@ LimbWork move_root(const Body& body, RootState& root, const LimbState& before,
     root.attitude = turned(start.attitude, 0.5 * dt_s * (velocity.angular() + next.angular()));
     const Vec3 way =
         0.5 * dt_s * (start.attitude * velocity.linear() + root.attitude * next.linear());
-    root.position_ned_m = start.position_ned_m + way + dt_s * current_ned_m_s;
-    forces = forces_on(body, posture, root, next, load);
+    root.position_ned_m =
+        start.position_ned_m + way + dt_s * (water.current_m_s + 0.5 * dt_s * water.change_m_s2);
+    forces = forces_on(body, posture, mass, root, next, load, water);
     // Moments are about the origin, which went that way.
     const Vec3 mean = 0.5 * (old_momentum.linear() + momentum.linear());
     Vec6 known = old_momentum + ((1.0 - implicit) * dt_s) * old_wrench -
@@ -124,7 +135,8 @@ LimbWork move_root(const Body& body, RootState& root, const LimbState& before,
     next = limited(solved);
     momentum = in_world(root.attitude, momentum_at(mass, next));
   }
-  root.velocity = next + in_body(root.attitude, current);
+  root.velocity =
+      next + in_body(root.attitude, vec6(water.current_m_s + dt_s * water.change_m_s2, Vec3(0.0)));
   const double gained = energy_at(mass, next) - energy_at(old_mass, velocity);
   return {gained / dt_s - (1.0 - implicit) * old_forces.power_w - implicit * forces.power_w};
 }

@@ -25,6 +25,19 @@ struct RootState {
   }
 };
 
+// The water around the body, north, east, down: what moves at one speed everywhere (a current that
+// changes with time) has both accelerations alike.
+struct WaterFlow {
+  Vec3 current_m_s{0.0};        // at the step's start
+  Vec3 change_m_s2{0.0};        // of the current where the body is, as it moves
+  Vec3 acceleration_m_s2{0.0};  // of the water itself, Du/Dt
+
+  WaterFlow() = default;
+  WaterFlow(const Vec3& steady_m_s) : current_m_s(steady_m_s) {}
+  WaterFlow(const Vec3& current, const Vec3& change, const Vec3& acceleration)
+      : current_m_s(current), change_m_s2(change), acceleration_m_s2(acceleration) {}
+};
+
 // What limbs did in a step.
 struct LimbWork {
   double power_w = 0.0;  // mean mechanical power of all joints; negative: the water moved them
@@ -32,9 +45,11 @@ struct LimbWork {
 
 // One step: limbs go from before to after, the root follows. Trapezoidal in time where drag is
 // slow, more implicit as it gets stiffer, so that no step overshoots; of second order while dt_s
-// times the drag's rate is below 2. Everything is finite if it was.
+// times the drag's rate is below 2. Everything is finite if it was. Water that speeds up pulls by
+// (rho V + M_A) Du/Dt: in the momentum through the water, M (a - b) + (rho V - M_RB) a, with a the
+// water's own acceleration and b the current's change where the body is.
 LimbWork move_root(const Body& body, RootState& root, const LimbState& before,
-                   const LimbState& after, const GasLoad& load, const Vec3& current_ned_m_s,
+                   const LimbState& after, const GasLoad& load, const WaterFlow& water,
                    double dt_s);
 
 // Momentum of everything, water that moves along included, about a fixed point of the world: what

@@ -224,10 +224,10 @@ StaticForces static_forces(const Body& body, const Posture& posture, const Vec6&
   for (std::size_t i = 0; i < body.tank_count; ++i)
     add(kGravity_m_s2 * load.tank_kg[i], thorax, body.tanks[i].position_m);
 
-  const Vec3 force = force_sum * immersion.down, moment = glm::cross(arm_sum, immersion.down);
+  const Vec3 leaning = immersion.down - immersion.water_m_s2 / kGravity_m_s2;
   StaticForces out;
-  out.wrench = vec6(force, moment);
-  out.power_w = dot(out.wrench, velocity) + glm::dot(limb_sum, immersion.down);
+  out.wrench = vec6(force_sum * leaning, glm::cross(arm_sum, leaning));
+  out.power_w = dot(out.wrench, velocity) + glm::dot(limb_sum, leaning);
   return out;
 }
 

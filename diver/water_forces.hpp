@@ -19,6 +19,8 @@ namespace neritic::diver {
 struct Immersion {
   Vec3 down{0.0, 0.0, 1.0};  // unit, body axes
   double depth_m = 0.0;      // of the body's origin
+  // Of the water itself, Du/Dt, body axes: it pulls at what is in it as if gravity leaned.
+  Vec3 water_m_s2{0.0};
 };
 
 // Gas that is not part of the body.
@@ -39,6 +41,9 @@ struct WaterForces {
 WaterForces water_forces(const Body& body, const Posture& posture, const Vec6& velocity,
                          const Immersion& immersion);
 
+// Weight and buoyancy, as seen from axes that go along with accelerating water: both lean by
+// -water_m_s2, so that what has the water's density feels neither (the pull rho V Du/Dt of Froude
+// and Krylov, less the body's own inertia).
 struct StaticForces {
   Vec6 wrench;
   double power_w = 0.0;

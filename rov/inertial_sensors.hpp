@@ -2,6 +2,8 @@
 // north, east, down; body axes forward, starboard, down. Pure functions; any thread.
 #pragma once
 
+#include <optional>
+
 #include "rov/dynamics.hpp"
 #include "rov/sensor_noise.hpp"
 
@@ -38,7 +40,10 @@ struct PressureSensor {
   double rate_hz = 20.0;
   Noise noise;                 // Pa
   double resolution_pa = 0.0;  // 0: none
-  double surface_pa = 101325.0, water_kg_m3 = 1025.0, gravity_m_s2 = 9.82;
+  double air_pa = 101325.0;    // over the water: the scene's, by its altitude
+  // What depth is counted from, as the sensor was zeroed; nothing: the air over the water.
+  std::optional<double> surface_pa;
+  double water_kg_m3 = 1025.0, gravity_m_s2 = 9.82;
 };
 struct PressureReading {
   double pressure_pa = 0.0;

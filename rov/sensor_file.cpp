@@ -74,7 +74,7 @@ PressureSensor read_pressure_table(const CaseField& field) {
   p.rate_hz = rate_of(field, p.rate_hz);
   p.noise = noise_of(field["noise_pa"]);
   p.resolution_pa = field["resolution_pa"].number(0.0, 0.0, 1e6);
-  p.surface_pa = field["surface_pa"].number(p.surface_pa, 0.0, 1e6);
+  if (field["surface_pa"].present()) p.surface_pa = field["surface_pa"].number(0.0, 0.0, 1e6);
   p.water_kg_m3 = field["water_kg_m3"].number(p.water_kg_m3, 1.0, 2000.0);
   p.gravity_m_s2 = field["gravity_m_s2"].number(p.gravity_m_s2, 0.1, 100.0);
   return p;

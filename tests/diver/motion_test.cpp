@@ -153,8 +153,8 @@ TEST(Symmetry, LeftAndRightExchangedIsTheMirrorImage) {
     const JointRotations wanted = swinging(6, i * dt);
     follow_limbs(left, wanted, dt);
     follow_limbs(right, mirrored(wanted), dt);
-    move_root(body, a, old_left, left, load, {0.2, 0.1, 0.0}, dt);
-    move_root(body, b, old_right, right, load, {0.2, -0.1, 0.0}, dt);
+    move_root(body, a, old_left, left, load, Vec3(0.2, 0.1, 0.0), dt);
+    move_root(body, b, old_right, right, load, Vec3(0.2, -0.1, 0.0), dt);
   }
   EXPECT_GT(glm::length(a.position_ned_m - Vec3(0.0, 1.0, 12.0)), 0.1);
   EXPECT_NEAR(a.position_ned_m.x, b.position_ned_m.x, 1e-9);

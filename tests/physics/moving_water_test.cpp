@@ -49,6 +49,27 @@ TEST(MovingWater, AVehicleGoesWithATideThatSetsIn) {
   EXPECT_EQ(dive.simulation->refused_states(), 0u);
 }
 
+// A diver who hovers goes along likewise, as nearly as breath and lead leave the density of water:
+// drag alone would leave them behind by a third.
+TEST(MovingWater, ADiverGoesWithATideThatSetsIn) {
+  const Vec3 rate(0.05, 0.0, -0.02);
+  const std::string assets = (test::source_dir() / "assets").string();
+  TestDive dive = dive_in_grid([&](const Vec3&, double t) { return rate * t; },
+                               "position_m = [-20, -10, 0]\n[[objects]]\nname = \"diver\"\n"
+                               "class = \"diver\"\nmodel = \"" +
+                                   assets + "/models/diver.glb\"\nhuman = \"" + assets +
+                                   "/divers/recreational.toml\"\nposition_m = [0, -12, 0]\n"
+                                   "pitch_deg = -90\n");
+  const Vec3 from = rov::world_from_ned(dive.state().humans[0].human.root.position_ned_m);
+  dive.run(10.0, [&] {
+    const double t = dive.time_s();
+    const Vec3 way = rov::world_from_ned(dive.state().humans[0].human.root.position_ned_m) - from;
+    ASSERT_LT(glm::length(Vec3(way.x, 0.0, way.z) - rate * (0.5 * t * t)),
+              0.02 + 0.06 * glm::length(rate) * t * t)
+        << t;
+  });
+}
+
 // Where the water turns about a point, u = w x r, what moves with it stays on its circle: the
 // water's own acceleration, w x (w x r), holds it there. Without it drag alone would, and let it
 // out.

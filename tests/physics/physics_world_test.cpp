@@ -203,6 +203,7 @@ TEST(PhysicsWorld, SensorsWithoutNoiseSayWhatIsSo) {
                              "rate_hz = 240\n[imu]\n")
                   .ok());
   ASSERT_TRUE(write_text(scratch / "dive.toml", R"([physics]
+altitude_m = 2000
 [[objects]]
 name = "sand"
 class = "seabed"
@@ -228,6 +229,8 @@ mission = { waypoints = [ { position_m = [3, -8, -2] } ] }
     ASSERT_TRUE(read.dvl.value.locked());
     EXPECT_LT(glm::distance(read.dvl.value.velocity_m_s, row.velocity.linear()), 1e-9);
     EXPECT_NEAR(read.pressure.value.depth_m, -pose.position_m.y, 1e-9);
+    // A lake at 2000 m: the standard atmosphere's 79.5 kPa over it.
+    EXPECT_NEAR(read.pressure.value.pressure_pa, 79495.0 - 1028.0 * 9.82 * pose.position_m.y, 2.0);
     EXPECT_NEAR(std::remainder(degrees(read.heading_rad.value) - heading_deg(pose), 360.0), 0.0,
                 1e-9);
     const double down = (pose.rotation * Vec3(0, 1, 0)).y;

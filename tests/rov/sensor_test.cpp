@@ -70,6 +70,21 @@ TEST(RovSensor, PressureIsThatOfItsDepth) {
   EXPECT_EQ(std::fmod(read_pressure(sensor, state, {}, 0).pressure_pa, 20.0), 0.0);
 }
 
+// A lake at 2000 m: zeroed there it reads its depth, zeroed at the sea .22 bar too little.
+TEST(RovSensor, PressureCountsFromTheAirOverTheWater) {
+  PressureSensor sensor;
+  sensor.air_pa = 79495.0;
+  State state;
+  state.position_ned_m.z = 10.0;
+  const double water_pa = 1025.0 * 9.82 * 10.0;
+  EXPECT_NEAR(read_pressure(sensor, state, {}, 0).pressure_pa, 79495.0 + water_pa, 1e-6);
+  EXPECT_NEAR(read_pressure(sensor, state, {}, 0).depth_m, 10.0, 1e-9);
+  sensor.surface_pa = 101325.0;
+  EXPECT_NEAR(read_pressure(sensor, state, {}, 0).pressure_pa, 79495.0 + water_pa, 1e-6);
+  EXPECT_NEAR(read_pressure(sensor, state, {}, 0).depth_m,
+              10.0 + (79495.0 - 101325.0) / (1025.0 * 9.82), 1e-9);
+}
+
 TEST(RovSensor, CompassReadsTheMagneticHeading) {
   Compass compass;
   compass.declination_rad = radians(3.0);

@@ -56,10 +56,12 @@ diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) 
 }
 
 HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
-                     const Vec3& current_m_s, std::uint64_t step, double dt_s,
+                     const diver::WaterFlow& water, std::uint64_t step, double dt_s,
                      HumanPhysics& state) {
   diver::HumanInputs acting = inputs.human;
-  acting.current_ned_m_s = ned_from_world(current_m_s);
+  acting.current_ned_m_s = water.current_m_s;
+  acting.current_change_ned_m_s2 = water.change_m_s2;
+  acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
   follow_plan(human, state);
   if (inputs.worn == 0 && human.recording)
     acting.joints = human.recording->at(static_cast<double>(step) * dt_s, human.repeat);

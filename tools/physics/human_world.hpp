@@ -49,9 +49,10 @@ struct HumanStep {
   Pose before;
   sim::BodyMotion free;  // as if alone; what it meets changes it
 };
-// dt_s later, as if the water were empty. current: of the diver's place, world axes.
+// dt_s later, as if the water were empty.
 HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
-                     const Vec3& current_m_s, std::uint64_t step, double dt_s, HumanPhysics& state);
+                     const diver::WaterFlow& water, std::uint64_t step, double dt_s,
+                     HumanPhysics& state);
 // Whether a diver touched a vehicle, or another diver: the free steps of both then part, by equal
 // and opposite impulses.
 bool part_from_vehicle(const PhysicsHuman& human, HumanStep& moving, const VehicleStep& vehicle,

@@ -94,25 +94,25 @@ Vec3 PhysicsWorld::current_ned_m_s(const Vec3& position_ned_m, double time_s) co
       sim::sample(*current_, rov::world_from_ned(position_ned_m), time_s).velocity_m_s);
 }
 
-// The current where the vehicle will be half way through the step, how that changes on its way, and
-// the water's own acceleration: to second order in the step. A grid may jump within the vehicle's
-// own length: that is no acceleration of all the water around.
-void PhysicsWorld::set_water(const rov::State& body, double time_s, double dt_s,
-                             rov::Inputs& acting) const {
-  if (!current_) return;
-  const Vec3 velocity_m_s = rov::world_from_ned(body.attitude * body.velocity.linear());
+// The current where the thing will be half way through the step, how that changes on its way, and
+// the water's own acceleration: to second order in the step. A grid may jump within the thing's own
+// length: that is no acceleration of all the water around.
+diver::WaterFlow PhysicsWorld::water_along(const Vec3& position_ned_m, const Vec3& velocity_ned_m_s,
+                                           double time_s, double dt_s) const {
+  if (!current_) return {};
+  const Vec3 velocity_m_s = rov::world_from_ned(velocity_ned_m_s);
   const sim::CurrentSample water =
-      sim::sample(*current_, rov::world_from_ned(body.position_ned_m) + 0.5 * dt_s * velocity_m_s,
+      sim::sample(*current_, rov::world_from_ned(position_ned_m) + 0.5 * dt_s * velocity_m_s,
                   time_s + 0.5 * dt_s);
   const auto change_along = [&](const Vec3& way_m_s) {
+    static_assert(rov::kMostWaterAcceleration_m_s2 == diver::kMostWaterAcceleration_m_s2);
     constexpr double kMost = rov::kMostWaterAcceleration_m_s2;
     return rov::ned_from_world(
         glm::clamp(water.rate_m_s2 + water.gradient_per_s * way_m_s, Vec3(-kMost), Vec3(kMost)));
   };
-  acting.water_acceleration_ned_m_s2 = change_along(water.velocity_m_s);
-  acting.current_change_ned_m_s2 = change_along(velocity_m_s);
-  acting.current_ned_m_s =
-      rov::ned_from_world(water.velocity_m_s) - 0.5 * dt_s * acting.current_change_ned_m_s2;
+  const Vec3 change = change_along(velocity_m_s);
+  return {rov::ned_from_world(water.velocity_m_s) - 0.5 * dt_s * change, change,
+          change_along(water.velocity_m_s)};
 }
 
 rov::RayQuery PhysicsWorld::rays() const {
@@ -153,11 +153,12 @@ PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& 
   std::array<HumanStep, kMaxHumans> moving;
   std::array<bool, kMaxHumans> human_parted{};
   const std::size_t humans = humans_.size();
-  for (std::size_t k = 0; k < humans; ++k)
-    moving[k] = free_human(
-        humans_[k], inputs.humans[k],
-        rov::world_from_ned(current_ned_m_s(state.humans[k].human.root.position_ned_m, time_s)),
-        state.step, dt_s, next.humans[k]);
+  for (std::size_t k = 0; k < humans; ++k) {
+    const diver::RootState& root = state.humans[k].human.root;
+    const diver::WaterFlow water =
+        water_along(root.position_ned_m, root.attitude * root.velocity.linear(), time_s, dt_s);
+    moving[k] = free_human(humans_[k], inputs.humans[k], water, state.step, dt_s, next.humans[k]);
+  }
   for (std::size_t k = 0; k < humans; ++k) {
     for (std::size_t i = 0; i < count; ++i)
       if (part_from_vehicle(humans_[k], moving[k], step_of(i), free[i]))
@@ -219,7 +220,11 @@ rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const Vehicle
                                     const VehicleState& state, double time_s, double dt_s) const {
   rov::Inputs acting;
   acting.thruster_n = state.command_n;
-  set_water(state.body, time_s, dt_s, acting);
+  const diver::WaterFlow water = water_along(
+      state.body.position_ned_m, state.body.attitude * state.body.velocity.linear(), time_s, dt_s);
+  acting.current_ned_m_s = water.current_m_s;
+  acting.current_change_ned_m_s2 = water.change_m_s2;
+  acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
   acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
   acting.failed_thrusters = inputs.failed_thrusters;
   apply_surface(vehicle.vehicle, vehicle.top_m, vehicle.bottom_m, state.body, acting);

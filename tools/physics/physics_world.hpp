@@ -69,7 +69,9 @@ class PhysicsWorld {
                      const sim::BodyShape& shape, const Pose& start) const;
   bool steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
              VehicleState& state) const;
-  void set_water(const rov::State& body, double time_s, double dt_s, rov::Inputs& acting) const;
+  // Where something that moves so is, during a step.
+  diver::WaterFlow water_along(const Vec3& position_ned_m, const Vec3& velocity_ned_m_s,
+                               double time_s, double dt_s) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
                         const VehicleState& state, double time_s, double dt_s) const;
 
