@@ -228,7 +228,7 @@ class BodyMaker {
         const double l2 = fins.length_m * fins.length_m / 12.0,
                      w2 = fins.width_m * fins.width_m / 12.0;
         add_mass(foot, fins.mass_kg, middle,
-                 fins.mass_kg * blade.segment_from_part * diagonal_matrix(w2, l2, l2 + w2) *
+                 fins.mass_kg * blade.segment_from_part * diagonal_matrix(w2, l2 + w2, l2) *
                      glm::transpose(blade.segment_from_part));
         last = body_.part_count;
         add_part(blade);

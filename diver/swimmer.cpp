@@ -26,6 +26,19 @@ void follow(double& value, double wanted, double lag_s, double dt_s) {
   value += (wanted - value) * -std::expm1(-dt_s / lag_s);
 }
 
+// The value without what of it beats at that frequency. Trapezoidal state-variable filter
+// (Zavalishin 2012, "The Art of VA Filter Design", 4.5): steady values pass whole.
+double between_beats(BeatNotch& notch, double value, double hz, double dt_s) {
+  constexpr double kDamping = 0.5;  // wide: beats change their pace
+  const double g = std::tan(std::min(kPi * hz * dt_s, 1.2));
+  const double first =
+      (notch.first + g * (value - notch.second)) / (1.0 + g * (g + 2.0 * kDamping));
+  const double second = notch.second + g * first;
+  notch.first = 2.0 * first - notch.first;
+  notch.second = 2.0 * second - notch.second;
+  return value - 2.0 * kDamping * first;
+}
+
 // How hard to kick for that speed.
 void pace(const SwimmerSettings& settings, double speed_m_s, double wanted_m_s,
           SwimmerState& swimmer, double dt_s) {
@@ -79,13 +92,19 @@ double wanted_heading(const SwimGoal& goal, const HumanState& state, double head
 // Spine and legs, for the head to come round by turn (to starboard) and nose_up, without rolling.
 void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
            SwimmerState& swimmer, double dt_s) {
-  const double yaw = std::clamp(1.5 * std::clamp(turn, -0.5, 0.5) - 2.0 * velocity[5], -1.0, 1.0);
+  // Rolling with each beat is the kick's: legs that worked against it would take from its thrust.
+  const double hz = std::max(swimmer.frequency_hz, 0.25);
+  const double roll = between_beats(swimmer.roll, roll_rad, hz, dt_s);
+  const double roll_rate = between_beats(swimmer.roll_rate, velocity[3], hz, dt_s);
+  const double pitch_rate = velocity[4];
+  const double yaw_rate = velocity[5];
+  const double yaw = std::clamp(1.5 * std::clamp(turn, -0.5, 0.5) - 2.0 * yaw_rate, -1.0, 1.0);
   follow(swimmer.bend_rad, yaw * kMostBend_rad, kSteeringLag_s, dt_s);
   follow(swimmer.left_more, yaw * kMostLeftMore, kSteeringLag_s, dt_s);
   swimmer.pitch_sum = std::clamp(swimmer.pitch_sum + nose_up * dt_s, -2.5, 2.5);
-  const double pitch = 2.5 * nose_up - 3.0 * velocity[4] + 0.15 * swimmer.pitch_sum;
+  const double pitch = 2.5 * nose_up - 3.0 * pitch_rate + 0.15 * swimmer.pitch_sum;
   follow(swimmer.lift_rad, std::clamp(-pitch, -1.0, 1.0) * kMostLift_rad, kSteeringLag_s, dt_s);
-  const double level = std::clamp(-2.0 * roll_rad - 1.0 * velocity[3], -1.0, 1.0);
+  const double level = std::clamp(-2.0 * roll - 1.0 * roll_rate, -1.0, 1.0);
   follow(swimmer.twist_rad, level * kMostTwist_rad, kSteeringLag_s, dt_s);
 }
 

@@ -19,6 +19,16 @@ struct SwimmerSettings {
   double gliding_speed_m_s = 0.05;  // below: legs rest
 };
 
+// A second-order filter that stops one frequency: a kick's own rolling. Plain bytes.
+struct BeatNotch {
+  double first = 0.0, second = 0.0;
+
+  static void fields(auto&& field, auto& self) {
+    field("first", self.first);
+    field("second", self.second);
+  }
+};
+
 struct SwimmerState {
   double phase_rad = 0.0, frequency_hz = 0.0;
   double effort = 0.0;     // kick amplitude, 0 to 1 of the settings': grows within a second
@@ -27,6 +37,8 @@ struct SwimmerState {
   double pitch_sum = 0.0;  // rad s: too low so far
   double lift_sum = 0.0;   // litres times seconds of breath that was wanted
   double lift_rad = 0.0, twist_rad = 0.0, left_more = 0.0, bend_rad = 0.0;
+  // What the swimmer feels of roll and rates between the beats.
+  BeatNotch roll, roll_rate, pitch_rate, yaw_rate;
   double button_s = 0.0;  // since a button was last let go; negative: still to be pressed
 
   static void fields(auto&& field, auto& self) {
@@ -41,6 +53,10 @@ struct SwimmerState {
     field("twist_rad", self.twist_rad);
     field("left_more", self.left_more);
     field("bend_rad", self.bend_rad);
+    field("roll", self.roll);
+    field("roll_rate", self.roll_rate);
+    field("pitch_rate", self.pitch_rate);
+    field("yaw_rate", self.yaw_rate);
     field("button_s", self.button_s);
   }
 };

@@ -184,5 +184,22 @@ TEST(Drag, FallingFlatItIsTheWidthOfTheBody) {
   EXPECT_NEAR(drag_area(diver, streamlined(diver), 90.0), 0.77, 0.12);
 }
 
+// A blade turns hardest about its normal, easiest about its length: m/12 of the squares across.
+TEST(Body, AFinsOwnInertiaIsThatOfAPlate) {
+  Gear light = fins_only(), heavy = fins_only();
+  heavy.fins->mass_kg = light.fins->mass_kg + 1.0;
+  const Body a = body_with(light), b = body_with(heavy);
+  const Part& blade = b.parts[b.edges[0].part];
+  const Vec3 at = blade.start_m + 0.3 * blade.length_m * blade.segment_from_part[0];
+  // A kilogram more, about the ankle; less what a point there has.
+  Mat3 own = b.segments[kLeftFoot].rigid.c - a.segments[kLeftFoot].rigid.c -
+             (glm::dot(at, at) * Mat3(1.0) - glm::outerProduct(at, at));
+  own = glm::transpose(blade.segment_from_part) * own * blade.segment_from_part;
+  const double l = heavy.fins->length_m, w = heavy.fins->width_m;
+  EXPECT_NEAR(own[0][0], w * w / 12.0, 1e-9);
+  EXPECT_NEAR(own[1][1], (l * l + w * w) / 12.0, 1e-9);
+  EXPECT_NEAR(own[2][2], l * l / 12.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace neritic::diver
