@@ -23,6 +23,8 @@ constexpr std::array kRequired{
     FeatureRow<VkPhysicalDeviceFeatures>{
         &VkPhysicalDeviceFeatures::shaderStorageImageExtendedFormats,  // rg32f, in sonar shaders
         "shaderStorageImageExtendedFormats"},
+    FeatureRow<VkPhysicalDeviceFeatures>{&VkPhysicalDeviceFeatures::shaderClipDistance,
+                                         "shaderClipDistance"},
 };
 constexpr std::array kRequired11{
     FeatureRow<VkPhysicalDeviceVulkan11Features>{&VkPhysicalDeviceVulkan11Features::multiview,

@@ -214,7 +214,9 @@ class DrawListBuilder {
 DrawList build_draw_list(const scene::Scene& scene, const GpuScene& gpu_scene,
                          const FrameState& state, const ViewSet& views,
                          const DrawListOptions& options) {
-  return DrawListBuilder(scene, gpu_scene, state, views, options).build();
+  DrawList list = DrawListBuilder(scene, gpu_scene, state, views, options).build();
+  list.clipped = views.within.has_value();
+  return list;
 }
 
 }  // namespace neritic::render

@@ -26,6 +26,7 @@ struct DrawList {
   std::vector<IndexRange> ranges;
   std::vector<Draw> opaque;         // front to back
   std::vector<Draw> blended;        // back to front, one instance a draw
+  bool clipped = false;             // at the plane of ViewSet::within
   std::uint64_t triangles = 0;      // drawn
   std::uint64_t all_triangles = 0;  // of the scene's rigid and deforming meshes, every appearance
 };

@@ -79,11 +79,12 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
     RasterStage stage = forward ? RasterStage::kForward : RasterStage::kSurface;
     if (kind == GBufferKind::kGeometry)
       stage = material.mask ? RasterStage::kGeometryMasked : RasterStage::kGeometry;
-    NERITIC_TRY(const gpu::Pipeline* pipeline,
-                raster_pipeline({stage, vk_topology(draw.primitive->topology),
-                                 motion && stage != RasterStage::kGeometry,
-                                 emissive && stage == RasterStage::kSurface, view_mask,
-                                 stage == RasterStage::kGeometry ? 0u : material.flags}));
+    NERITIC_TRY(
+        const gpu::Pipeline* pipeline,
+        raster_pipeline({stage, vk_topology(draw.primitive->topology),
+                         motion && stage != RasterStage::kGeometry,
+                         emissive && stage == RasterStage::kSurface, list.clipped, view_mask,
+                         stage == RasterStage::kGeometry ? 0u : material.flags}));
     // A camera sees the sides that the material has. A sonar hears both sides of a sheet, but of a
     // solid with one side it needs no backs: see closed_surface.hpp.
     const bool both_sides =

@@ -52,11 +52,16 @@ std::span<const std::uint32_t> gbuffer_fragment(bool emissive, bool motion) {
   return motion ? shaders::kGbufferMotionFrag : shaders::kGbufferFrag;
 }
 
+std::span<const std::uint32_t> vertex_code(bool plain, bool clipped) {
+  if (plain) return clipped ? shaders::kGeometryClippedVert : shaders::kGeometryVert;
+  return clipped ? shaders::kGbufferClippedVert : shaders::kGbufferVert;
+}
+
 }  // namespace
 
 Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   if (const auto found = raster_.find(key); found != raster_.end()) return &found->second;
-  const auto& [stage, topology, motion, emissive, view_mask, material_flags] = key;
+  const auto& [stage, topology, motion, emissive, clipped, view_mask, material_flags] = key;
   const bool forward = stage == RasterStage::kForward;
   const bool surface = stage == RasterStage::kSurface;
   const bool plain = stage == RasterStage::kGeometry;
@@ -65,7 +70,7 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
               : stage == RasterStage::kGeometryMasked ? "geometry masked"
               : surface                               ? "gbuffer"
                                                       : "forward";
-  desc.vertex_code = plain ? shaders::kGeometryVert : shaders::kGbufferVert;
+  desc.vertex_code = vertex_code(plain, clipped);
   desc.fragment_code = plain     ? shaders::kGeometryFrag
                        : surface ? gbuffer_fragment(emissive, motion)
                        : forward ? shaders::kForwardFrag

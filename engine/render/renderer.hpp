@@ -107,9 +107,9 @@ class Renderer {
                                             graph::ImageHandle in, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
   enum class RasterStage { kGeometry, kGeometryMasked, kSurface, kForward };
-  // stage, topology, motion, emissive, view mask, the material's flags.
+  // stage, topology, motion, emissive, clipped, view mask, the material's flags.
   using RasterKey =
-      std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, std::uint32_t, std::uint32_t>;
+      std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, bool, std::uint32_t, std::uint32_t>;
   explicit Renderer(gpu::Device& device) : device_(device) {}
   Result<const gpu::Pipeline*> raster_pipeline(const RasterKey& key);
   // The pipelines that a list of draws needs, made before the pass records.

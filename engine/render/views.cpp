@@ -42,6 +42,10 @@ std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set) {
     v.ray_dx = Vec3f(q * Vec3((t.right - t.left) / set.width, 0.0, 0.0));
     const double dy = -(t.top - t.bottom) / set.height;
     v.ray_dy = Vec3f(q * Vec3(view.lean * dy, dy, 0.0));
+    if (set.within) {
+      const Vec3& n = set.within->normal;
+      v.within = Vec4f(Vec3f(n), static_cast<float>(glm::dot(n, origin) + set.within->offset_m));
+    }
     out[filled++] = v;
   }
   return out;
@@ -50,6 +54,10 @@ std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set) {
 bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double radius_m) {
   if (!(radius_m < 1e9)) return true;
   const Vec3 origin = set.origin_m();
+  if (set.within &&
+      glm::dot(set.within->normal, center_from_origin_m + origin) + set.within->offset_m <
+          -radius_m)
+    return false;
   for (const ViewDesc& view : set.views) {
     Pose origin_from_view = view.world_from_view;
     origin_from_view.position_m -= origin;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/core/math.hpp"
@@ -23,9 +24,16 @@ struct ViewDesc {
   Pose next_world_from_view;  // at the next frame's time, for motion
 };
 
+// Points of the world with dot(normal, point) + offset_m >= 0. normal: unit.
+struct HalfSpace {
+  Vec3 normal{0.0, 1.0, 0.0};
+  double offset_m = 0.0;
+};
+
 struct ViewSet {
   std::uint32_t width = 1, height = 1;  // pixels, each view's
   std::vector<ViewDesc> views;          // 1 to shared::kMaxViews
+  std::optional<HalfSpace> within;      // nothing else is seen: of what a mirror shows
   Vec3 origin_m() const { return views.front().world_from_view.position_m; }
   std::uint32_t layers() const { return static_cast<std::uint32_t>(views.size()); }
 };

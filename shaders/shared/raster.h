@@ -18,6 +18,7 @@ struct View {
   vec3 ray_corner;
   vec3 ray_dx;
   vec3 ray_dy;
+  vec4 within;  // seen is where its dot with (position from the origin, 1) is not negative
 };
 
 // One instance, as a vertex stream that steps once an instance: a processor's driver fetches

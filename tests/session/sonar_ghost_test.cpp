@@ -135,5 +135,42 @@ TEST_F(SonarGhost, NoneComesWhereSomethingStandsInEitherLegsWay) {
   }
 }
 
+// What the mirror's image of the sonar looks through on its own side is no part of the water.
+TEST_F(SonarGhost, WhatStandsBeyondTheMirrorHidesNone) {
+  const auto added = [&](scene::Scene scene) {
+    const double direct = total(ping(device(), scene));
+    scene.sonars[0].terms.ghosts = scene::SonarGhosts{.surface = true};
+    return total(ping(device(), scene)) - direct;
+  };
+  scene::Scene scene = sphere_below_surface();
+  const double alone = added(scene);
+  EXPECT_GT(alone, 0.0);
+  // The line from the mirror's image of the sonar to the sphere is 1 m above the water here.
+  scene.objects.push_back(
+      object_of(scene, scene::make_box(Vec3(3.0, 0.3, 0.1)), {0.0, 1.0, -kRange_m / 4.0}));
+  EXPECT_DOUBLE_EQ(added(scene), alone);
+  // A pile that stands 20 cm deep, and the sound goes 1 m deep here.
+  scene.objects.back() =
+      object_of(scene, scene::make_box(Vec3(0.6, 1.7, 0.1)), {0.0, 0.65, -kRange_m / 4.0});
+  EXPECT_NEAR(added(scene) / alone, 1.0, 1e-3);
+}
+
+TEST_F(SonarGhost, WhatIsBuriedUnderTheBottomHidesNone) {
+  constexpr double kBottom_m = 10.0;
+  const auto added = [&](scene::Scene scene) {
+    const double direct = total(ping(device(), scene));
+    scene.sonars[0].terms.ghosts = scene::SonarGhosts{.bottom_m = kBottom_m};
+    return total(ping(device(), scene)) - direct;
+  };
+  scene::Scene scene = sphere_below_surface();
+  scene.sonars[0].mount.pose.position_m.y = scene.objects[0].mount.pose.position_m.y =
+      kDepth_m - kBottom_m;
+  const double alone = added(scene);
+  EXPECT_GT(alone, 0.0);
+  scene.objects.push_back(object_of(scene, scene::make_box(Vec3(3.0, 0.3, 0.1)),
+                                    {0.0, -kBottom_m - 1.0, -kRange_m / 4.0}));
+  EXPECT_DOUBLE_EQ(added(scene), alone);
+}
+
 }  // namespace
 }  // namespace neritic::tools

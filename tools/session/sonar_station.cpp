@@ -264,10 +264,13 @@ Status SonarStation::declare_ghosts(const Frame& frame, const SonarWork& work, H
     HeadWork::Ghost& ghost = *head.ghosts.back();
     const Pose pose = sonar::mirrored(mirror, direct_ping.world_from_sonar);
     ghost.view.views = head_views(sonar, state, state.sampled, pose);
+    // What stands beyond the mirror is not what it shows. Cut open there, solids show their backs,
+    // which echo nothing.
+    const double inward = mirror.water_below ? -1.0 : 1.0;
+    ghost.view.views.within = render::HalfSpace{{0.0, inward, 0.0}, -inward * mirror.height_m};
     // A bottom that mirrors does not stand in its own way.
-    const render::DrawListOptions draw{
-        .hide_back_faces = true,
-        .without_class = mirror.water_below ? std::uint16_t{0} : scene::kClasses[0].id};
+    const render::DrawListOptions draw{.without_class = mirror.water_below ? std::uint16_t{0}
+                                                                           : scene::kClasses[0].id};
     ghost.view.draws =
         render::build_draw_list(scene_, frame.gpu_scene, frame.state, ghost.view.views, draw);
     const std::string prefix =
