@@ -61,6 +61,42 @@ TEST_F(SonarMotion, ATurningSonarHearsLateEchoesOnTurnedBearings) {
   EXPECT_NEAR(weighted / sum, kTurn * 2.0 * 29.5 / 1500.0, radians(0.1));
 }
 
+// A side-scan that looks 60 degrees down turns its bearings by half of what its vehicle yaws.
+TEST_F(SonarMotion, ASideScanTurnsByItsShareOfAYaw) {
+  const auto heard = [&](double depression_rad, double yaw_rate_rad_s) {
+    scene::Sonar sonar = sonar_of(25.0, 35.0, 100);
+    sonar.kind = scene::SonarKind::kSideScan;
+    sonar.azimuth_rad = radians(2.0);
+    sonar.elevation_rad = radians(20.0);
+    sonar.depression_rad = depression_rad;
+    sonar.bins_azimuth = 1;
+    sonar.bins_elevation = 512;
+    sonar.terms.beam.samples = 32;
+    sonar.terms.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(1.0)};
+    sonar.terms.water.sound_speed_m_s = 1500.0;
+    sonar.terms.motion = scene::SonarMotion{.within_ping = true};
+    scene::Scene scene;
+    const Vec3 to_port(-std::cos(depression_rad), -std::sin(depression_rad), 0.0);
+    scene.objects.push_back(object_of(scene, scene::make_sphere(0.1, 64), 30.0 * to_port));
+    scene.sonars = {sonar};
+    const auto yawed = [&](double time_s) {
+      return glm::angleAxis(yaw_rate_rad_s * time_s, Vec3(0, 1, 0));
+    };
+    scene.sonars[0].mount.track =
+        scene::Track{{{0.0, Vec3(0.0)}}, {{-1.0, yawed(-1.0)}, {1.0, yawed(1.0)}}};
+    return total(ping(device(), scene));
+  };
+  const double echo_s = 2.0 * 30.0 / 1500.0;
+  for (const double turned_deg : {0.3, 0.5}) {
+    const double rate = radians(turned_deg) / echo_s;
+    const double level = heard(0.0, rate) / heard(0.0, 0.0);
+    EXPECT_LT(level, 0.9) << turned_deg;
+    EXPECT_GT(level, 0.1) << turned_deg;
+    EXPECT_NEAR(heard(radians(60.0), 2.0 * rate) / heard(radians(60.0), 0.0), level, 0.02)
+        << turned_deg;
+  }
+}
+
 TEST_F(SonarMotion, AScannerStepsRoundOrToAndFro) {
   scene::Sonar sonar;
   sonar.kind = scene::SonarKind::kMechanical;

@@ -9,6 +9,12 @@
 namespace neritic::tools {
 namespace {
 
+// A small rotation as a vector: its axis times its angle.
+Vec3 turn_of(const Quat& q) {
+  const Quat shorter = q.w < 0.0 ? -q : q;
+  return glm::axis(shorter) * glm::angle(shorter);
+}
+
 // A view a sector; all are of one pinhole.
 render::ViewSet head_views(const scene::Sonar& sonar, const HeadState& head,
                            const sonar::LeaningView& pinhole, const Pose& world_from_head) {
@@ -159,8 +165,10 @@ sonar::PingState SonarStation::ping_state(const Frame& frame, const HeadWork& he
   sonar::PingState ping;
   ping.world_from_sonar = world_from_head;
   ping.velocity_m_s = (after.position_m - before.position_m) / kMotionStep_s;
-  const Quat turn = glm::conjugate(before.rotation) * after.rotation;
-  ping.yaw_rate_rad_s = 2.0 * std::atan2(turn.y, turn.w) / kMotionStep_s;
+  // About the head's own y: a side-scan looks down, and so turns its bearings by a part of a yaw.
+  const Vec3 turn = glm::conjugate(world_from_head.rotation) *
+                    turn_of(after.rotation * glm::conjugate(before.rotation));
+  ping.yaw_rate_rad_s = turn.y / kMotionStep_s;
   ping.seed = scene_.seed;
   ping.stream = static_cast<std::uint32_t>(head.index * 2 + head.place);
   ping.ping = frame.ping;
