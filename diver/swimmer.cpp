@@ -11,6 +11,8 @@ constexpr double kMetresABeat = 0.52;
 constexpr double kMostLift_rad = radians(18.0), kMostTwist_rad = radians(14.0);
 constexpr double kMostLeftMore = 0.5;
 constexpr double kMostBend_rad = radians(18.0);
+// Nobody swims for minutes with more: a person's limit, not the water's.
+constexpr double kMostKick_w = 300.0;
 constexpr double kMostPitch_rad = radians(30.0);
 constexpr double kMostSink_m_s = 0.15;  // 9 m a minute
 constexpr double kMostBreathBias_m3 = 0.6e-3;
@@ -39,17 +41,20 @@ double between_beats(BeatNotch& notch, double value, double hz, double dt_s) {
   return value - 2.0 * kDamping * first;
 }
 
-// How hard to kick for that speed.
-void pace(const SwimmerSettings& settings, double speed_m_s, double wanted_m_s,
+// How hard to kick for that speed, within what legs give: their power goes with the cube of beats.
+void pace(const SwimmerSettings& settings, double speed_m_s, double wanted_m_s, double power_w,
           SwimmerState& swimmer, double dt_s) {
   const bool kicks = wanted_m_s > settings.gliding_speed_m_s;
   follow(swimmer.effort, kicks ? 1.0 : 0.0, 1.0, dt_s);
   const double error = wanted_m_s - speed_m_s;
   if (kicks) swimmer.speed_sum = std::clamp(swimmer.speed_sum + error * dt_s, -3.0, 3.0);
+  const double strong_hz =
+      std::max(swimmer.frequency_hz, 0.1) * std::cbrt(kMostKick_w / std::max(power_w, 1.0));
   const double wanted_hz =
       std::clamp((wanted_m_s + 0.3 * error + 0.15 * swimmer.speed_sum) / kMetresABeat, 0.25,
                  settings.most_frequency_hz);
-  follow(swimmer.frequency_hz, wanted_hz, 1.0, dt_s);
+  const double asked_hz = std::min(wanted_hz, strong_hz);
+  follow(swimmer.frequency_hz, asked_hz, 1.0, dt_s);
   swimmer.phase_rad =
       std::fmod(swimmer.phase_rad + 2.0 * kPi * swimmer.frequency_hz * dt_s, 2.0 * kPi);
 }
@@ -144,7 +149,7 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& goa
   const double too_much_m_s = velocity_ned.z - sink_m_s;
   const bool swims = goal.speed_m_s > settings.gliding_speed_m_s;
   swimmer.climb_sum = swims ? std::clamp(swimmer.climb_sum + too_much_m_s * dt_s, -3.0, 3.0) : 0.0;
-  pace(settings, ahead_m_s, goal.speed_m_s, swimmer, dt_s);
+  pace(settings, ahead_m_s, goal.speed_m_s, state.life.limb_power_w, swimmer, dt_s);
   balance(body, too_much_m_s, attitude.pitch_rad, state, swimmer, dt_s, inputs);
 
   double turn = 0.0, pitch = 0.0;

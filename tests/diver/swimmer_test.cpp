@@ -106,6 +106,24 @@ TEST(Swimmer, ItsKickGivesWhatIsPublishedWithFinsAndBare) {
   }
 }
 
+// A wide kick as fast as it may be would take kilowatts: the swimmer beats more slowly.
+TEST(Swimmer, KicksNoHarderThanAPersonCan) {
+  const Body body = body_with(Gear{});
+  SwimmerSettings settings;
+  settings.kick.amplitude_m = 0.6;
+  settings.most_frequency_hz = 3.0;
+  Swim s = begin(body, {0.0, 0.0, 15.0}, 0.0);
+  double most_w = 0.0, half_j = 0.0;
+  for (int i = 0; i < 60 * 240; ++i) {
+    swim(body, settings, {{1000.0, 0.0, 15.0}, 1.2}, s.state, s.swimmer, 1.0 / 240.0, s.inputs);
+    s.state = step(body, s.state, s.inputs, 1.0 / 240.0);
+    if (i == 30 * 240) half_j = s.state.life.limb_work_j;
+    if (i > 10 * 240) most_w = std::max(most_w, s.state.life.limb_power_w);
+  }
+  EXPECT_NEAR((s.state.life.limb_work_j - half_j) / 30.0, 300.0, 20.0);
+  EXPECT_LT(most_w, 450.0);
+}
+
 TEST(Swimmer, TurnsAndDivesToItsGoal) {
   const Body body = body_with(Gear{});
   for (const Vec3 goal : {Vec3(0.0, 14.0, 12.0), Vec3(-12.0, 3.0, 18.0), Vec3(10.0, -10.0, 16.0)}) {
