@@ -5,7 +5,8 @@
 
 // The gather with terms: each beam's power is weighted by the beam's pattern, its range is the one that
 // the sonar hears (sound speed, motion), and what it adds is power (64 bits) or, where speckle is named,
-// the complex amplitude of the world's scatterers. Two integers a bin either way.
+// the complex amplitude of the world's scatterers, made of the power once all rows are summed. Two integers a bin
+// either way.
 #include "shared/sonar_common.glsl"
 #include "shared/sonar_echo.h"
 #include "shared/random.glsl"
@@ -40,8 +41,6 @@ float correction_at(float range_m, float sine) {
   return mix(mix(corrections[at], corrections[at + 1], part.x), mix(corrections[above], corrections[above + 1], part.x),
              part.y);
 }
-
-#include "shared/sonar_speckle.glsl"
 
 void add_power(uint cell, uint counts) {
   if (kLanes == 1) {
@@ -151,6 +150,38 @@ float corrected(float range_m, vec3 direction) {
   return range_m * correction_at(range_m, dot(direction, echo.world_up));
 }
 
+// The way of an echo: there and back, directions from the sonar. Without a ghost both are the eye's.
+struct Legs {
+  vec3 there, back;
+  float there_m, back_m;
+};
+
+// The range that is heard, of the mean of both legs.
+float heard_of(Legs legs, float path_m) {
+  float heard_m = path_m;
+  vec3 direction = legs.there;  // the sonar's motion counts on either leg
+  if (kCorrected != 0) heard_m = corrected(legs.there_m, legs.there);
+  if (kGhost != 0) {
+    if (kCorrected != 0) heard_m = 0.5 * (heard_m + corrected(legs.back_m, legs.back));
+    direction = 0.5 * (legs.there + legs.back);
+  }
+  if (kMoving != 0) heard_m += path_m * dot(echo.motion, direction) + dot(echo.doppler, direction);
+  return heard_m;
+}
+
+// The legs of a path seen in a direction from the eye, and how far off its end is from there.
+Legs legs_of_path(vec3 eye, float path_m, out float range_m) {
+  range_m = path_m;
+  if (kGhost == 0) return Legs(eye, eye, path_m, path_m);
+  vec3 g = echo.ghost_source;
+  range_m = max((4.0 * path_m * path_m - dot(g, g)) / (4.0 * path_m - 2.0 * dot(g, eye)), 0.0);
+  vec3 leg = eye * range_m - g;
+  float direct_m = max(length(leg), 1e-6);
+  return Legs(eye - 2.0 * dot(eye, echo.world_up) * echo.world_up, leg / direct_m, range_m, direct_m);
+}
+
+#include "shared/sonar_speckle.glsl"
+
 // One row's echo: its power by bins, heard over true range, and where its ends lie.
 struct RowEcho {
   float power;
@@ -160,32 +191,35 @@ struct RowEcho {
   uint label;
 };
 
-// The surface's point at a heard range, on the line between the row's ends, as far off as it is heard.
-vec3 point_at(SonarColumn s, uint row, BeamHit hit, RowEcho e, float bin_range_m) {
+// The surface's point at a heard range, on the line between the row's ends, as far off as it is heard; part: of the
+// way from the nearer end.
+vec3 point_at(SonarColumn s, BeamHit hit, RowEcho e, float bin_range_m, out float part) {
   vec3 near = beam_towards(s, hit.ends_tan.x) * hit.ends_m.x, far = beam_towards(s, hit.ends_tan.y) * hit.ends_m.y;
   float span = e.ends_m.y - e.ends_m.x;
-  return mix(near, far, span > 0.0 ? clamp((bin_range_m - e.ends_m.x) / span, 0.0, 1.0) : 0.5);
+  part = span > 0.0 ? clamp((bin_range_m - e.ends_m.x) / span, 0.0, 1.0) : 0.5;
+  return mix(near, far, part);
 }
 
-// Shares a row's power out over bins and scatterers, in the order in which rows go on: so that what two
-// rows have of a scatterer is one run.
-void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, float heard, inout Cell here,
-                        inout Run run) {
+// Notes a row's power in the bins that its height spans, for the scatterers there.
+void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, float heard, inout ivec2 noted) {
   float drawn_out = e.range_m / hit.range_m;
   vec2 ends = e.ends_m;
   int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
   int first = max(low, 0), last = min(high, int(c.n_range) - 1);
+  noted = ivec2(min(noted.x, first), max(noted.y, last));
   bool rising = hit.ends_tan.x <= hit.ends_tan.y;
   float scale = share_scale(ends);
-  for (int i = first; i <= last; ++i) {
-    int bin = rising ? i : first + last - i;
-    float below = bin == low ? 0.0 : part_below(ends, scale, 1.0, range_at(bin));
+  float below = first > low ? part_below(ends, scale, 1.0, range_at(first)) : 0.0;
+  for (int bin = first; bin <= last; ++bin) {
     float upto = bin == high ? 1.0 : part_below(ends, scale, 1.0, range_at(bin + 1));
     float power = e.power * max(upto - below, 0.0);
+    below = upto;
     vec2 within_m = vec2(max(range_at(bin), ends.x), min(range_at(bin + 1), ends.y));
-    vec3 point = point_at(s, row, hit, e, 0.5 * (within_m.x + within_m.y)) / drawn_out;
+    float part;
+    vec3 point = point_at(s, hit, e, 0.5 * (within_m.x + within_m.y), part) / drawn_out;
     vec2 within = vec2(bin_at(within_m.x), bin_at(within_m.y));
-    if (power > 0.0) scatter(s, column, point, heard, within, bin, !rising, power, here, run);
+    float place = float(row) + (rising ? part : 1.0 - part);
+    if (power > 0.0) note(column, point, place, heard, within, bin, power);
     add_key(uint(bin) * c.n_azimuth + column, power, e.label);
   }
 }
@@ -231,8 +265,7 @@ void main() {
   if (column >= c.n_azimuth) return;
   SonarColumn s = columns[column];
   if (s.pixel < 0 && kRecords == 0) return;
-  Cell here = Cell(ivec3(0), kNoLevel, vec3(0.0), 0.0);
-  Run run = Run(here, 0, 0, vec2(0.0));
+  ivec2 noted = ivec2(int(c.n_range), -1);  // coherent: the first and the last bin with power
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
   for (uint row = first; row < c.n_elevation; row += kLanes) {
     BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
@@ -242,23 +275,18 @@ void main() {
     float range_m = hit.range_m;
     vec3 eye = vec3(0.0);
     if (kCorrected != 0 || kGhost != 0 || kMoving != 0 || kCoherent != 0) eye = beam_direction(s, row);
-    vec3 direction = eye;
-    float heard_m = range_m;
+    Legs legs = Legs(eye, eye, range_m, range_m);
     if (kGhost != 0) {
       GhostPath ghost = GhostPath(0.0, 0.0, vec3(0.0), vec3(0.0));
       if (range_m > 0.0) ghost = ghost_path(eye, row, hit, power);
-      heard_m = range_m = ghost.mean_m;
-      if (kCorrected != 0)
-        heard_m = 0.5 * (corrected(hit.range_m, ghost.launch) + corrected(ghost.direct_m, ghost.direct));
-      direction = 0.5 * (ghost.launch + ghost.direct);  // the sonar's motion counts on either leg's way back
-    } else if (kCorrected != 0) {
-      heard_m = corrected(range_m, direction);
+      legs = Legs(ghost.launch, ghost.direct, range_m, ghost.direct_m);
+      range_m = ghost.mean_m;
     }
+    float heard_m = heard_of(legs, range_m);
     if (kWeighted != 0) power *= texelFetch(weights, ivec2(column, row), 0).r;
     if (kReflect != 0 || kLabels != 0 || kRecords != 0) label = texelFetch(label_image, hit.at, 0).xy;
     if (kReflect != 0) power *= label.y < c.reflectivities ? reflectivity[label.y] : 1.0;
     if (kGhost != 0) label.x = kSonarGhostClass;
-    if (kMoving != 0) heard_m += range_m * dot(echo.motion, direction) + dot(echo.doppler, direction);
     RowEcho e = RowEcho(min(power, kLargestPower), bin_at(heard_m), vec2(heard_m), heard_m, label.x);
     if (kFootprint != 0 && range_m > 0.0) e.ends_m = shared_ends(hit.ends_m * (heard_m / hit.range_m), heard_m);
     bool echoes = range_m > 0.0 && e.power > 0.0;
@@ -268,15 +296,19 @@ void main() {
     if (kRecords != 0) tell(column, row, e, heard, label.x | label.y << 16);
     if (!heard) continue;
     if (kFootprint != kSonarFootprintNone) {
-      if (kCoherent != 0) share_out_coherent(s, column, row, hit, e, heard_m / range_m, here, run);
+      if (kCoherent != 0) share_out_coherent(s, column, row, hit, e, heard_m / range_m, noted);
       else share_out(column, e);
       continue;
     }
     uint cell = uint(e.bin) * c.n_azimuth + column;
-    if (kCoherent != 0)
-      scatter(s, column, eye * hit.range_m, heard_m / range_m, vec2(e.bin), int(e.bin), false, e.power, here, run);
-    else add_power(cell, uint(e.power * echo.sum_scale + 0.5));
+    if (kCoherent != 0) {
+      int bin = int(e.bin);
+      note(column, eye * hit.range_m, float(row) + 0.5, heard_m / range_m, vec2(e.bin), bin, e.power);
+      noted = ivec2(min(noted.x, bin), max(noted.y, bin));
+    } else {
+      add_power(cell, uint(e.power * echo.sum_scale + 0.5));
+    }
     add_key(cell, e.power, e.label);
   }
-  if (kCoherent != 0) flush(s, column, run);
+  if (kCoherent != 0) sound_column(s, column, noted.x, noted.y);
 }

@@ -8,6 +8,9 @@
 // last pixel's value. One thread owns a column (kLanes is 1), so nothing races.
 #include "shared/sonar_common.glsl"
 
+// [n_range][n_azimuth]: 1 + the row that counted there last.
+layout(set = 0, binding = kSonarBindScratch, scalar) buffer Stamps { uint stamps[]; };
+
 // First pixel row below the direction of elevation tan_phi at the pixel column whose distance from the
 // axis is 1 / cos = sec. Neighbouring cells share the expression, so no pixel is lost or counted twice.
 int first_row_below(float tan_phi, float sec) {

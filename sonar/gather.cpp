@@ -101,6 +101,11 @@ std::uint64_t SonarGather::sums_bytes() const {
   return keys_bytes() * (options_.echo ? 2 : 1);
 }
 
+std::uint64_t SonarGather::scratch_bytes() const {
+  if (options_.echo && options_.echo->coherent) return sums_bytes();
+  return options_.gather == Gather::kPublished ? keys_bytes() : 0;
+}
+
 std::uint64_t SonarGather::records_bytes() const {
   return std::uint64_t{grid_.bins.elevation} * grid_.bins.azimuth * sizeof(shared::SonarRecord);
 }
@@ -127,7 +132,7 @@ SonarImage SonarGather::to_image(std::span<const std::uint32_t> sums,
 struct SonarGather::Pass {
   Inputs in;
   Outputs out;
-  graph::BufferHandle stamps;
+  graph::BufferHandle scratch;
 };
 
 SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs& inputs) const {
@@ -138,7 +143,7 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
   NERITIC_CHECK(!ghost || (inputs.direct_depth && inputs.direct_labels),
                 "ghosts need what the sonar itself sees");
   struct Cleared {
-    graph::BufferHandle sums, keys, stamps;
+    graph::BufferHandle sums, keys, scratch;
   };
   const auto clear = [&]() -> const Cleared& {
     return graph.add_pass<Cleared>(
@@ -149,19 +154,24 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
                 target ? target : builder.create_buffer(inputs.prefix + name, bytes),
                 Access::kTransferWrite);
           };
-          pass.sums = make(inputs.sums_target, "sonar sums", sums_bytes());
-          if (options_.labels) pass.keys = make(inputs.keys_target, "sonar keys", keys_bytes());
-          if (options_.gather == Gather::kPublished)
-            pass.stamps = make({}, "sonar stamps", keys_bytes());
+          if (!inputs.sums_so_far) {
+            pass.sums = make(inputs.sums_target, "sonar sums", sums_bytes());
+            if (options_.labels) pass.keys = make(inputs.keys_target, "sonar keys", keys_bytes());
+          }
+          if (scratch_bytes() > 0) pass.scratch = make({}, "sonar scratch", scratch_bytes());
         },
         [](const Cleared& pass, graph::PassContext& context) {
-          for (const graph::BufferHandle buffer : {pass.sums, pass.keys, pass.stamps})
+          for (const graph::BufferHandle buffer : {pass.sums, pass.keys, pass.scratch})
             if (buffer)
               vkCmdFillBuffer(context.cmd(), context.buffer(buffer).handle(), 0, VK_WHOLE_SIZE, 0);
         });
   };
-  const Cleared cleared =
-      inputs.sums_so_far ? Cleared{inputs.sums_so_far, inputs.keys_so_far, {}} : clear();
+  Cleared cleared;
+  if (!inputs.sums_so_far || scratch_bytes() > 0) cleared = clear();
+  if (inputs.sums_so_far) {
+    cleared.sums = inputs.sums_so_far;
+    cleared.keys = inputs.keys_so_far;
+  }
   const auto setup = [&](graph::PassBuilder& builder, Pass& pass) {
     pass.in = inputs;
     pass.in.echo.sum_scale = static_cast<float>(fixed_scale_);
@@ -173,7 +183,8 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
     if (inputs.reflectivity) builder.read(inputs.reflectivity, Access::kStorageReadCompute);
     pass.out.sums = builder.write(cleared.sums, Access::kStorageWriteCompute);
     if (cleared.keys) pass.out.keys = builder.write(cleared.keys, Access::kStorageWriteCompute);
-    if (cleared.stamps) pass.stamps = builder.write(cleared.stamps, Access::kStorageWriteCompute);
+    if (cleared.scratch)
+      pass.scratch = builder.write(cleared.scratch, Access::kStorageWriteCompute);
     if (options_.echo && options_.echo->records)
       pass.out.records = builder.write(
           inputs.records_target
@@ -228,7 +239,7 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
       gpu::bound_buffer(shared::kSonarBindReflectivity, buffer_or_none(pass.in.reflectivity)),
       gpu::bound_buffer(shared::kSonarBindSums, buffer_or_none(pass.out.sums)),
       gpu::bound_buffer(shared::kSonarBindKeys, buffer_or_none(pass.out.keys)),
-      gpu::bound_buffer(shared::kSonarBindStamps, buffer_or_none(pass.stamps))};
+      gpu::bound_buffer(shared::kSonarBindScratch, buffer_or_none(pass.scratch))};
   if (options_.echo) {
     const gpu::UploadSlice echo = commands.upload(&pass.in.echo, sizeof pass.in.echo);
     const gpu::UploadSlice correction =

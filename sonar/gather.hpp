@@ -122,6 +122,7 @@ class SonarGather {
   Status check(const gpu::Device& device) const;
   Status make_pipeline(gpu::Device& device);
   Status make_tables(gpu::Device& device);
+  std::uint64_t scratch_bytes() const;
   void record(const Pass& pass, graph::PassContext& context) const;
 
   BeamGrid grid_;

@@ -19,7 +19,7 @@ constexpr std::array<gpu::BindingDesc, 16> kBindings{
      {shared::kSonarBindReflectivity, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindSums, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindKeys, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindStamps, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+     {shared::kSonarBindScratch, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      // Of a gather with terms only.
      {shared::kSonarBindEcho, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
      {shared::kSonarBindWeights, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},

@@ -22,7 +22,7 @@ constexpr std::array kNeededLimits{
                 "maxFragmentOutputAttachments"},
     NeededLimit{&VkPhysicalDeviceLimits::maxFragmentCombinedOutputResources, 6,
                 "maxFragmentCombinedOutputResources"},
-    // The deform pass, and sonar echoes: sums, keys, stamps, columns, reflectivity and two more.
+    // The deform pass, and sonar echoes: sums, keys, scratch, columns, reflectivity and two more.
     NeededLimit{&VkPhysicalDeviceLimits::maxPerStageDescriptorStorageBuffers, 7,
                 "maxPerStageDescriptorStorageBuffers"},
 };

@@ -57,7 +57,7 @@ NERITIC_CONST uint kSonarBindLabel = 4;
 NERITIC_CONST uint kSonarBindReflectivity = 5;
 NERITIC_CONST uint kSonarBindSums = 6;
 NERITIC_CONST uint kSonarBindKeys = 7;
-NERITIC_CONST uint kSonarBindStamps = 8;
+NERITIC_CONST uint kSonarBindScratch = 8;  // of one gather, cleared before: stamps, or powers
 
 // Specialisation constants.
 NERITIC_CONST uint kSonarSpecColumns = 0;    // columns a workgroup (its x size)

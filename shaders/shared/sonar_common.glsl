@@ -24,7 +24,6 @@ layout(set = 0, binding = kSonarBindReflectivity, scalar) readonly buffer Reflec
 // All [n_range][n_azimuth], cleared before.
 layout(set = 0, binding = kSonarBindSums, scalar) buffer Sums { uint sums[]; };
 layout(set = 0, binding = kSonarBindKeys, scalar) buffer Keys { uint keys[]; };
-layout(set = 0, binding = kSonarBindStamps, scalar) buffer Stamps { uint stamps[]; };
 layout(push_constant, scalar) uniform Push { SonarPush c; };
 
 // Planar metres of a depth texel; 0 where nothing is hit (cleared, NaN, infinite, negative).

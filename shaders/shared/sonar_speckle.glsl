@@ -1,12 +1,16 @@
-// Speckle: what a column's beams add to the world's scatterers, and what those add to bins. Used after the echo's
+// Speckle: what a column's powers, bin by bin, become: amplitudes of the world's scatterers. Used after the echo's
 // uniform and the bins' geometry (sonar_beam.glsl).
 
 // Scatterers are parts of cells of a lattice of the world, each with amplitudes that are its own for ever. A
 // cell is as large as what beams sample there asks for. Seen from the sonar it is cut into slices, counted from
-// its centre, so that they are the world's too: a bin deep along range, a column wide across.
+// its centre, so that they are the world's too: a bin deep along range, a column wide across. A bin's edge cuts
+// a slice in two, so a bin hears an even and an odd one.
+// Rows only sum power (note): a slice may be met by rows far apart, between which others are met, and amplitudes
+// of its own number summed row by row would add up to more than their power. Amplitudes come after all rows, once
+// a slice (sound_column).
 // No two columns and no two bins share an amplitude (else the taps of pattern and pulse would add N of them to
 // N^2 power): a slice's centre says which column hears it; and one that a bin's edge cuts gives either bin a
-// part of its own (flush). So as the sonar moves, the picture of speckle moves with the world, along range and
+// part of its own (parts_of). So as the sonar moves, the picture of speckle moves with the world, along range and
 // across.
 struct Cell {
   ivec3 world;  // its index in the world's lattice of its level, modulo 2^32
@@ -15,13 +19,10 @@ struct Cell {
   float bin;    // of the centre, as heard
 };
 const uint kNoLevel = 0xffffffffu;
-// Of one column: the slice whose power is being summed, row by row, in a bin and the next.
-struct Run {
-  Cell cell;
-  int slice;
-  int bin;
-  vec2 power;
-};
+
+// [n_range][n_azimuth], a bin's power while rows are summed: the float's bits, then two parts of 65535: of what odd slices gave, and of
+// the rows' number of the place where it comes from, on average.
+layout(set = 0, binding = kSonarBindScratch, scalar) buffer Powers { uvec2 powers[]; };
 
 uint level_at(float range_m) {
   return uint(clamp(ceil(log2(max(echo.least_cells, range_m * echo.cells_per_range))), 0.0, 24.0));
@@ -42,6 +43,13 @@ float path_to(vec3 point) {
   return kGhost != 0 ? 0.5 * (path_m + length(point - echo.ghost_source)) : path_m;
 }
 
+Cell cell_of(vec3 point, float heard_over_path) {
+  uint level = level_at(length(point));
+  ivec3 world = cell_at(point, level);
+  vec3 center = center_of(world, level);
+  return Cell(world, level, center, bin_at(heard_over_path * path_to(center)));
+}
+
 // A bin's amplitudes fit 31 bits but by a chance below e^-64 (gather.cpp), or where a texture's patch is
 // brighter still: then it is at its limit.
 const float kMostCounts = 1073741824.0;
@@ -58,18 +66,47 @@ void add_amplitude(int bin, uint column, vec2 z) {
   sums[cell + 1] = uint(saturated_sum(int(sums[cell + 1]), counts.y));
 }
 
+// A row's power that lies in one bin, at a point of the column's middle. place: of the point, in rows. ends: in
+// bins. heard_over_path: of ranges.
+void note(uint column, vec3 point, float place, float heard_over_path, vec2 ends, int bin, float power) {
+  float center = cell_of(point, heard_over_path).bin;
+  float from = ends.x - center + 0.5, upto = ends.y - center + 0.5;
+  float high = floor(upto);
+  float nearer = high > floor(from) ? clamp((high - from) / (upto - from), 0.0, 1.0) : 0.0;
+  float odd = (int(high) & 1) != 0 ? 1.0 - nearer : nearer;
+  uint cell = uint(bin) * c.n_azimuth + column;
+  uvec2 before = powers[cell];
+  vec2 mean = unpackUnorm2x16(before.y);
+  float sum = uintBitsToFloat(before.x) + power;
+  mean += (vec2(odd, place / float(c.n_elevation)) - mean) * (power / sum);
+  powers[cell] = uvec2(floatBitsToUint(sum), packUnorm2x16(mean));
+}
+
+// The cell that a bin's power comes from, of a part of all rows.
+Cell cell_heard(SonarColumn s, int bin, float place) {
+  place *= float(c.n_elevation);
+  float row = clamp(floor(place), 0.0, float(c.n_elevation - 1));
+  vec2 edges = texelFetch(rows, ivec2(row, 0), 0).zw;
+  vec3 eye = beam_towards(s, mix(edges.x, edges.y, place - row));
+  float heard_m = range_at(bin) + 0.5 / c.bins_per_m, path_m = heard_m, range_m = heard_m;
+  float heard_over_path = 1.0;
+  // Heard over true range changes so little with range that twice is enough.
+  for (int i = 0; i < (kCorrected != 0 || kMoving != 0 ? 2 : 0); ++i) {
+    Legs legs = legs_of_path(eye, path_m, range_m);
+    heard_over_path = max(heard_of(legs, path_m) / path_m, 1e-3);
+    path_m = heard_m / heard_over_path;
+  }
+  legs_of_path(eye, path_m, range_m);
+  return cell_of(eye * range_m, heard_over_path);
+}
+
 // Of either axis, directions across that are told apart: some 5 degrees.
 const float kAsides = 12.0;
 
-// Adds a run's slice. Where it lies in one bin its amplitude is z. Where a bin's edge leaves the part q on the
-// near side, the parts are those of a Brownian path from 0 to z, which has q z + sqrt(q (1 - q)) w there: of powers
-// q and 1 - q, uncorrelated, together z.
-void flush(SonarColumn s, uint column, Run run) {
-  float all = run.power.x + run.power.y;
-  if (!(all > 0.0)) return;
+// Two numbers of a slice, complex normal, of mean power 1 (but for the texture).
+void numbers_of(SonarColumn s, Cell cell, int slice, out vec2 z, out vec2 w) {
   vec3 ahead = normalize(s.beam_base), right = cross(ahead, s.up);
-  vec3 center = run.cell.center;
-  vec2 root = sqrt(run.power / all);
+  vec3 center = cell.center;
   vec2 flat_m = vec2(dot(center, right), dot(center, ahead));
   // Of the cell's centre, in columns from this one's middle, and of the slice that is heard here.
   float across = atan(flat_m.x, flat_m.y) / echo.column_rad;
@@ -77,52 +114,52 @@ void flush(SonarColumn s, uint column, Run run) {
   // It lies so far across from the centre: along a direction of the world, which the path's phase is counted by.
   vec3 aside = normalize(round(kAsides * normalize(flat_m.y * right - flat_m.x * ahead)));
   vec3 point = center + aside * (float(place) * echo.column_rad * length(flat_m));
-  point *= 1.0 + float(run.slice) / (c.bins_per_m * max(length(center), 1e-6));
+  point *= 1.0 + float(slice) / (c.bins_per_m * max(length(center), 1e-6));
+  float amplitude = 1.0;
   if (kTextured != 0) {
     uvec3 patch_cell = uvec3(ivec3(floor(point * echo.patches_per_m + echo.patch_fraction))) + echo.origin_patch;
     uint entries = uint(textureSize(gamma_quantiles, 0).x);
     uint entry = hash_of(uvec4(patch_cell, echo.seed + 1u)).x % entries;
-    all *= texelFetch(gamma_quantiles, ivec2(entry, 0), 0).r;
+    amplitude = sqrt(texelFetch(gamma_quantiles, ivec2(entry, 0), 0).r);
   }
-  uint part = 0x9e3779b9u * run.cell.level + 0x85ebca6bu * uint(run.slice) + 0xc2b2ae35u * uint(place);
-  uvec4 bits = hash_of(uvec4(uvec3(run.cell.world), echo.seed + part));
-  float turns = fract(echo.turns_per_m * path_to(point)), amplitude = sqrt(all);
-  vec2 near = amplitude * complex_normal(bits.xy, turns);
-  if (run.power.y > 0.0) {
-    vec2 z = near, w = amplitude * complex_normal(bits.zw, turns);
-    near = root.x * (root.x * z + root.y * w);
-    add_amplitude(run.bin + 1, column, root.y * (root.y * z - root.x * w));
-  }
-  add_amplitude(run.bin, column, near);
+  uint part = 0x9e3779b9u * cell.level + 0x85ebca6bu * uint(slice) + 0xc2b2ae35u * uint(place);
+  uvec4 bits = hash_of(uvec4(uvec3(cell.world), echo.seed + part));
+  float turns = fract(echo.turns_per_m * path_to(point));
+  z = amplitude * complex_normal(bits.xy, turns);
+  w = amplitude * complex_normal(bits.zw, turns);
 }
 
-// A row's power that lies in one bin, at a point of the column's middle, to the slices that it spans. ends: in bins.
-// heard: heard over true range. falling: rows go on towards the sonar.
-void scatter(SonarColumn s, uint column, vec3 point, float heard, vec2 ends, int bin, bool falling, float power,
-             inout Cell here, inout Run run) {
-  uint level = level_at(length(point));
-  ivec3 world = cell_at(point, level);
-  if (world != here.world || level != here.level) {
-    vec3 center = center_of(world, level);
-    here = Cell(world, level, center, bin_at(heard * path_to(center)));
-  }
-  float from = ends.x - here.bin + 0.5, upto = ends.y - here.bin + 0.5;
-  int low = int(floor(from)), high = max(int(floor(upto)), low);
-  float nearer = high > low ? (float(high) - from) / (upto - from) : 1.0;
-  // The nearer slice, then the farther one, or the other way round.
-  for (int i = 0; i <= min(high - low, 1); ++i) {
-    bool far = (i == 1) != falling && high > low;
-    int slice = far ? high : low;
-    float part = power * (far ? 1.0 - nearer : nearer);
-    bool same = slice == run.slice && here.world == run.cell.world && here.level == run.cell.level;
-    bool before = bin == run.bin - 1 && run.power.y == 0.0;
-    if (!same || !(bin == run.bin || bin == run.bin + 1 || before)) {
-      flush(s, column, run);
-      run = Run(here, slice, bin, vec2(0.0));
-    } else if (before) {
-      run = Run(here, slice, bin, run.power.yx);
+// Amplitudes of a column's bins first to last, whose power is known, added to those that are there. A slice begins
+// in one bin and ends in the next, if that hears the same cell. Whole its amplitude is z. Where the edge leaves the
+// part q on the near side, the parts are those of a Brownian path from 0 to z, which has q z + sqrt(q (1 - q)) w
+// there: of powers q and 1 - q, uncorrelated, together z.
+void sound_column(SonarColumn s, uint column, int first, int last) {
+  Cell before = Cell(ivec3(0), kNoLevel, vec3(0.0), 0.0);
+  int slice = 0;         // that begins in the bin before
+  float begun = 0.0;     // its power there
+  vec2 sum = vec2(0.0);  // the bin before's amplitude but for that slice's
+  for (int bin = first; bin <= last + 1; ++bin) {
+    uvec2 noted = bin <= last ? powers[uint(bin) * c.n_azimuth + column] : uvec2(0);
+    float power = uintBitsToFloat(noted.x);
+    vec2 mean = unpackUnorm2x16(noted.y);
+    Cell cell = cell_heard(s, bin, mean.y);
+    bool goes_on = power > 0.0 && cell.world == before.world && cell.level == before.level;
+    vec2 z, w;
+    if (!goes_on) {
+      numbers_of(s, before, slice, z, w);
+      if (begun > 0.0) sum += sqrt(begun) * z;
+      begun = 0.0;
     }
-    if (bin == run.bin) run.power.x += part;
-    else run.power.y += part;
+    int ending = goes_on ? slice : int(floor(float(bin) - cell.bin + 0.5));
+    float odd = power * mean.x;
+    float ended = (ending & 1) != 0 ? odd : power - odd;
+    numbers_of(s, cell, ending, z, w);
+    vec2 root = sqrt(vec2(begun, ended) / max(begun + ended, 1e-30));
+    if (begun > 0.0) sum += sqrt(begun) * (root.x * z + root.y * w);
+    if (sum != vec2(0.0)) add_amplitude(bin - 1, column, sum);
+    sum = ended > 0.0 ? sqrt(ended) * (root.y * z - root.x * w) : vec2(0.0);
+    before = cell;
+    slice = ending + 1;
+    begun = power - ended;
   }
 }
