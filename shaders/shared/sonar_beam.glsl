@@ -11,6 +11,10 @@
 // so grazing that the neighbouring pixel sees something else, and the pixel's range counts, the row's edges
 // being carried so far at most. At half a pixel of .1 degrees it is reached at a grazing angle of .2 degrees.
 const float kLargestStretch = 1.25;
+// Of what faces sideways more than up or down: a floor goes on, the flank of a pole or of a ball bends away, and
+// would have horns of echoes before and behind it.
+const float kLargestFlankStretch = 1.005;
+const float kSteepestFlank = 8.0;
 
 struct BeamHit {
   ivec3 at;        // pixel and layer
@@ -81,23 +85,24 @@ const float kSteepest = 64.0;
 const float kFarCarried = 0.05;
 
 // Where the plane meets the edges of a row that is lower than a bin: by the plane's slope at its centre.
-void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, float stretch, inout BeamHit hit) {
+void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, bool flank, float stretch,
+                     inout BeamHit hit) {
   float half_tan = 0.5 * (edges.y - edges.x) * s.sec_theta;
   float slope = abs(along_up / along);
-  bool limb = slope > kSteepest || abs(stretch - 1.0) > kFarCarried;
+  bool limb = slope > (flank ? kSteepestFlank : kSteepest) || abs(stretch - 1.0) > kFarCarried;
   float reach = !limb ? hit.range_m * min(half_tan * slope, kLargestStretch - 1.0) : 0.0;
   hit.ends_m = hit.range_m + vec2(-reach, reach);
   hit.ends_tan = along * along_up <= 0.0 ? edges : edges.yx;
 }
 
 // Where the plane meets the lower and the upper edge of the row.
-void find_ends(SonarColumn s, uint row, int v, vec2 edges, float planar, vec2 along_edges, float along_pixel,
+void find_ends(SonarColumn s, uint row, int v, vec2 edges, bool limb, float planar, vec2 along_edges, float along_pixel,
                inout BeamHit hit) {
   float low = edge_reach(s, edges.x, planar, along_edges.x, along_pixel, hit.range_m,
                          neighbour_range(s, int(row) - 1, v));
   float high = edge_reach(s, edges.y, planar, along_edges.y, along_pixel, hit.range_m,
                           neighbour_range(s, int(row) + 1, v));
-  float most = kLopsided * min(abs(low), abs(high));
+  float most = limb ? 0.0 : kLopsided * min(abs(low), abs(high));
   low = clamp(low, -most, most);
   high = clamp(high, -most, most);
   bool rising = low <= high;
@@ -179,10 +184,14 @@ BeamHit beam_hit(Look look, uint row) {
   float plane = planar;  // of the pixel
   bool meets = false;
   float carried = 1.0;
+  // Unit normals that lean to the side by more than up or down.
+  float ahead = dot(n, s.forward);
+  bool flank = kPlane != 0 && 1.0 - ahead * ahead > 2.0 * along_up * along_up;
   if (kPlane != 0) {
     float along_beam = dot(n, s.beam_base) + e.x * s.sec_theta * along_up;
     float stretch = along_pixel / along_beam;
-    meets = stretch < kLargestStretch && stretch * kLargestStretch > 1.0;
+    float largest = flank ? kLargestFlankStretch : kLargestStretch;
+    meets = stretch < largest && stretch * largest > 1.0;
     if (meets) {
       carried = stretch;
       planar *= stretch;
@@ -193,9 +202,9 @@ BeamHit beam_hit(Look look, uint row) {
   hit.strength = min(facing(-along / length_of), 1.0);
   hit.range_m = planar * length_of;
   if (kFootprint == kSonarFootprintShared)
-    find_close_ends(s, e.zw, along, along_up, carried, hit);
+    find_close_ends(s, e.zw, along, along_up, flank, carried, hit);
   if (kFootprint == kSonarFootprintBounded)
-    find_ends(s, row, v, e.zw, plane, dot(n, s.beam_base) + e.zw * s.sec_theta * along_up, along_pixel, hit);
+    find_ends(s, row, v, e.zw, flank && abs(along_up / along) > kSteepestFlank, plane, dot(n, s.beam_base) + e.zw * s.sec_theta * along_up, along_pixel, hit);
   return hit;
 }
 

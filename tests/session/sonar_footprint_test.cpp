@@ -193,5 +193,28 @@ TEST_F(SonarFootprint, APileThatReachesAboveTheSonarHidesTheFloorBehindItToTheEn
   }
 }
 
+// At a round flank the plane of a pixel goes on where the surface bends away: an upright pole, seen
+// by a sonar that looks down, has no echoes before its front.
+TEST_F(SonarFootprint, APoleHasNoHorns) {
+  constexpr double kDistance_m = 10.0, kPole_m = 0.15;
+  scene::Sonar sonar = sonar_of(5.0, 15.0, 1000);
+  sonar.azimuth_rad = radians(70.0);
+  sonar.bins_azimuth = 256;
+  sonar.bins_elevation = 256;
+  scene::Scene scene;
+  scene.objects.push_back(
+      object_of(scene, scene::make_cylinder(kPole_m, 8.0, 128), {0.31, 0.0, -kDistance_m}));
+  scene.sonars = {sonar};
+  scene.sonars[0].mount.pose.rotation = glm::angleAxis(radians(-12.0), Vec3(1, 0, 0));
+  const SonarFrame frame = ping(device(), scene);
+  const double front_m = std::hypot(kDistance_m, 0.31) - kPole_m;
+  double before = 0.0;
+  for (std::size_t i = 0; i < frame.image.intensity.size(); ++i) {
+    const auto row = static_cast<std::uint32_t>(i / frame.grid.bins.azimuth);
+    if (frame.grid.range_m(row) < front_m - 0.05) before += frame.image.intensity[i];
+  }
+  EXPECT_LT(before / total(frame), 1e-5);
+}
+
 }  // namespace
 }  // namespace neritic::tools

@@ -29,8 +29,8 @@ const std::map<std::string, Offsets>& shared_structs() {
   static const std::map<std::string, Offsets> structs{
       {"View",
        {MEMBER(View, clip_from_origin), MEMBER(View, next_clip_from_origin), MEMBER(View, eye),
-        MEMBER(View, near_m), MEMBER(View, ray_corner), MEMBER(View, ray_dx),
-        MEMBER(View, ray_dy)}},
+        MEMBER(View, near_m), MEMBER(View, ray_corner), MEMBER(View, ray_dx), MEMBER(View, ray_dy),
+        MEMBER(View, within)}},
 
       {"VertexPosition", {MEMBER(VertexPosition, position), MEMBER(VertexPosition, normal)}},
       {"TextureMapping",
@@ -75,7 +75,7 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(SonarPush, width), MEMBER(SonarPush, height), MEMBER(SonarPush, fx),
         MEMBER(SonarPush, fy), MEMBER(SonarPush, cx), MEMBER(SonarPush, cy),
         MEMBER(SonarPush, near_m), MEMBER(SonarPush, range_min_m), MEMBER(SonarPush, bins_per_m),
-        MEMBER(SonarPush, fixed_scale), MEMBER(SonarPush, edge_bias_bins),
+        MEMBER(SonarPush, bin_m), MEMBER(SonarPush, fixed_scale), MEMBER(SonarPush, edge_bias_bins),
         MEMBER(SonarPush, reflectivities), MEMBER(SonarPush, lean),
         MEMBER(SonarPush, azimuth_step_rad)}},
       {"SonarEcho",
