@@ -87,7 +87,7 @@ void CocoFile::add(const std::string& file_name, const LabelImage& labels) {
          {"image_id", image_id},
          {"category_id", key >> 16},
          {"instance", key & 0xffff},
-         {"iscrowd", 0},
+         {"iscrowd", (key & 0xffff) == 0 ? 1 : 0},  // of many things, whose box tells nothing
          {"area", mask.area},
          {"bbox", {mask.left, mask.top, mask.right - mask.left + 1, mask.bottom - mask.top + 1}},
          {"segmentation", {{"size", {height, width}}, {"counts", mask.runs}}}});

@@ -75,6 +75,8 @@ Result<MapFile> read_map(const std::filesystem::path& path, MapUse use) {
     NERITIC_TRY(const ImageU8 image, scene::read_image8(path));
     map = from_raster(path, image, MapFile::Coding::kCoded8);
   } else {
+    if (!std::filesystem::exists(path))
+      return bad_input("{}: no such file or folder", path.string());
     return bad_input("{}: a file named '{}' found, .npy, .png or .exr is accepted", path.string(),
                      extension);
   }

@@ -249,6 +249,9 @@ SonarDetection read_detection(TableReader& reader) {
 
 // What one term needs of another.
 void check_together(TableReader& reader, const SonarTerms& terms) {
+  if (terms.range_spread && terms.range_spread->bandwidth_hz > 2.0 * terms.frequency_hz)
+    reader.refuse("frequency_hz", fmt::format("at least half of the bandwidth, {:g} Hz: in hertz",
+                                              terms.range_spread->bandwidth_hz));
   if (terms.noise && !terms.level)
     reader.refuse("noise", "noise beside level: its decibels are the level's");
   if (terms.noise && !terms.noise->level_db && !terms.range_spread)

@@ -65,6 +65,10 @@ INSTANTIATE_TEST_SUITE_P(
                   ".max_error: found 0.1; accepted: no such key beside quality"},
         WrongKeys{"frequency_hz = 0.5", ".frequency_hz: found 0.5; " HZ},
         WrongKeys{"bandwidth_hz = 0", ".bandwidth_hz: found 0; " HZ},
+        WrongKeys{
+            "frequency_hz = 750\nbandwidth_hz = 187500",
+            ".frequency_hz: found 750; accepted: at least half of the bandwidth, 187500 Hz: in "
+            "hertz"},
         WrongKeys{"water = {salinty_psu = 3}",
                   ".water.salinty_psu: unknown key; nearest known key: salinity_psu"},
         WrongKeys{"water = {ph = 5}", ".water.ph: found 5; accepted: a number in [6, 10]"},

@@ -58,6 +58,8 @@ TEST(Coco, MasksAndBoxesAreThoseOfEveryInstance) {
   EXPECT_EQ(json["images"][0]["width"], width);
   EXPECT_EQ(json["categories"].size(), 3u);
   ASSERT_EQ(json["annotations"].size(), 12u);  // of 3 and 8, three instances each, two images
+  for (const auto& annotation : json["annotations"])
+    EXPECT_EQ(annotation["iscrowd"], annotation["instance"] == 0 ? 1 : 0);
   for (std::size_t k = 0; k < 12; ++k) {
     const auto& a = json["annotations"][k];
     EXPECT_EQ(a["id"], k + 1);

@@ -46,7 +46,11 @@ void add_render(CLI::App& app, Run& run) {
       "render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
   command->add_option("scene", flags->scene, "scene or model file")->required();
   command->add_option("--out", flags->out, "folder for the results")->required()->check(named);
-  command->add_option("--frames", flags->frames, "number of frames")->check(CLI::Range(1, 1000000));
+  command
+      ->add_option("--frames", flags->frames,
+                   "number of frames, apart by the rate_hz of the first camera, else of the first "
+                   "sonar; of the quickest sensor with --own-rates")
+      ->check(CLI::Range(1, 1000000));
   command->add_option("--size", flags->size, "WxH of every camera, pixels");
   command->add_option(
       "--time", flags->time_s,

@@ -231,9 +231,11 @@ Result<std::string> run_render(const RenderFlags& flags) {
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(const auto device, gpu::Device::create(options));
-  // Frames follow the first camera's rate, or the first sonar's.
+  // Frames follow the first camera's rate, or the first sonar's; or the fastest, where each has its
+  // own.
   const std::vector<double> rates_hz = rates_of(scene, request);
-  const double step_s = 1.0 / rates_hz.front();
+  const double step_s =
+      1.0 / (flags.own_rates ? *std::ranges::max_element(rates_hz) : rates_hz.front());
   PingSchedule schedule(rates_hz);
   const FrameRequest all = request;
   NERITIC_TRY_STATUS(fly(scene, flags.time_s, flags.time_s + flags.frames * step_s));
