@@ -59,7 +59,7 @@ struct Jacket {
   Vec3 hose_root_m{0.14, -0.09, -0.20};  // left shoulder
   double hose_m = 0.30;                  // the mouth is lifted so far above its root
   Vec3 dump_m{0.13, 0.09, -0.203};       // right shoulder
-  Vec3 relief_at_m{-0.20, 0.14, -0.16};  // low on the back
+  Vec3 relief_at_m{-0.20, 0.14, -0.16};  // low on the back; its cord dumps too
 };
 
 struct Gear {

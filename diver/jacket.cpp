@@ -44,6 +44,11 @@ double valve_flow(const Body& body, const JacketGas& gas, double area_m2, double
   return orifice_moles_s(kAir, area_m2, gas.pressure_pa, ambient_above(body, place, mouth_m));
 }
 
+// Of the higher one of both, over the thorax's origin.
+double dump_height(const Jacket& jacket, const ThoraxPlace& place) {
+  return std::max(glm::dot(place.up, jacket.dump_m), glm::dot(place.up, jacket.relief_at_m));
+}
+
 }  // namespace
 
 JacketGas jacket_gas(const Body& body, double moles, const ThoraxPlace& place) {
@@ -75,6 +80,10 @@ JacketGas jacket_gas(const Body& body, double moles, const ThoraxPlace& place) {
   return gas;
 }
 
+bool gas_at_dump(const Body& body, double moles, const ThoraxPlace& place) {
+  return moles > 0.0 && jacket_gas(body, moles, place).bottom_m < dump_height(body.jacket, place);
+}
+
 void step_jacket(const Body& body, double& moles, TankState& tanks, std::uint64_t buttons,
                  const ThoraxPlace& place, double dt_s) {
   const Jacket& jacket = body.jacket;
@@ -93,7 +102,7 @@ void step_jacket(const Body& body, double& moles, TankState& tanks, std::uint64_
   }
   if (buttons & kDump) {
     const JacketGas gas = jacket_gas(body, moles, place);
-    const double at_m = glm::dot(place.up, jacket.dump_m);
+    const double at_m = dump_height(jacket, place);
     if (gas.bottom_m < at_m)
       let_out(moles, valve_flow(body, gas, jacket.dump_m2, at_m, place), dt_s);
   }

@@ -9,7 +9,8 @@
 
 namespace neritic::diver {
 
-// Buttons that are pressed: bits.
+// Buttons that are pressed: bits. Dump is the cord of the higher one of two valves, at the shoulder
+// and low on the back (where the relief valve is): a diver pulls the one that the gas lies at.
 inline constexpr std::uint64_t kInflate = 1, kDeflate = 2, kDump = 4;
 inline constexpr std::uint64_t kAllButtons = kInflate | kDeflate | kDump;
 
@@ -28,6 +29,9 @@ struct JacketGas {
   double bottom_m = 0.0;     // its lower side above the thorax's origin
 };
 JacketGas jacket_gas(const Body& body, double moles, const ThoraxPlace& place);
+
+// Whether there is gas that a dump would let out.
+bool gas_at_dump(const Body& body, double moles, const ThoraxPlace& place);
 
 // The gas changes by what the pressed buttons let through and the relief valve lets out. What comes
 // in is taken from the first tank; dump wins over inflate.

@@ -16,16 +16,36 @@ constexpr double kMostKick_w = 300.0;
 constexpr double kMostPitch_rad = radians(30.0);
 constexpr double kMostSink_m_s = 0.15;  // 9 m a minute
 constexpr double kMostBreathBias_m3 = 0.6e-3;
+// Who hovers bends the back as far as this in each of two joints: that shifts the jacket's gas,
+// which else runs to the higher end and turns the diver on his head.
+constexpr double kHoverBend = 1.0;  // of the legs' lift; 0.25 while swimming
+// And the arms, to the front: their weight lowers the head.
+constexpr double kHoverArms = 4.0;  // of the legs' lift towards the belly
+// Who hovers has no fins to hold the depth: breath answers so much more.
+constexpr double kHoverBreath = 1.5;
+// And the knees, which brings the fins' weight forward: the nose rises.
+constexpr double kHoverKnees = 3.5;  // of the legs' lift towards the back
+// Who hovers swims back to the place from so far away, or righting from such a tilt, and rests
+// again from so near.
+constexpr double kAdrift_m = 1.5, kNear_m = 0.7, kTilted_rad = radians(20.0);
+// So fast in still water; more than kStill_m_s is a current: aims so far upstream of the place, and
+// swims so much faster for each metre off it.
+constexpr double kBackSpeed_m_s = 0.35, kMostBackSpeed_m_s = 0.8;
+constexpr double kStill_m_s = 0.06, kAimAhead_m = 4.0, kBack_1_s = 0.15;
 // Nobody moves a joint from one side to the other within less.
 constexpr double kSteeringLag_s = 0.4;
 // Buttons are pressed for a moment, after so much want of breath, and then waited for.
 constexpr double kPress_s = 0.25, kWait_s = 3.0, kSure_l_s = 4.0;
-// Gas leaves at the shoulders: the head goes up for that, at most so long.
-constexpr double kVent_s = 6.0, kVentPress_s = 0.15, kVentFrom_rad = radians(6.0),
-                 kVentPitch_rad = radians(14.0);
+// Gas leaves at the higher end of the trunk: the head goes up for that, at most so long.
+constexpr double kVent_s = 6.0, kVentPress_s = 0.08, kVentPitch_rad = radians(14.0);
 
 void follow(double& value, double wanted, double lag_s, double dt_s) {
   value += (wanted - value) * -std::expm1(-dt_s / lag_s);
+}
+
+// 1 of who rests, 0 of who kicks.
+double resting(const SwimmerState& swimmer) {
+  return 1.0 - swimmer.effort;
 }
 
 // The value without what of it beats at that frequency. Trapezoidal state-variable filter
@@ -60,18 +80,20 @@ void pace(const SwimmerSettings& settings, double speed_m_s, double wanted_m_s, 
 }
 
 // Rises and sinks by breath first, by the jacket where breath does not do.
-void balance(const Body& body, double sink_too_much_m_s, double pitch_rad, const HumanState& state,
+void balance(const Body& body, double sink_too_much_m_s, const HumanState& state,
              SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
+  const bool at_valve = gas_at_dump(body, state.life.jacket_moles, thorax_place(body, state));
   // Who has to point the nose down to stay down is too light.
-  const double want_l = 1.6 * sink_too_much_m_s + 0.1 * swimmer.climb_sum;
-  swimmer.lift_sum = std::clamp(swimmer.lift_sum + want_l * dt_s, -12.0, 12.0);
+  const double rests = resting(swimmer);
+  const double usual_l = 1.6 * sink_too_much_m_s + 0.1 * swimmer.climb_sum;
+  const double want_l = (1.0 + kHoverBreath * rests) * usual_l;
+  swimmer.lift_sum = std::clamp(swimmer.lift_sum + usual_l * dt_s, -12.0, 12.0);
   inputs.breath_bias_m3 = std::clamp(1e-3 * (want_l + 0.08 * swimmer.lift_sum), -kMostBreathBias_m3,
                                      kMostBreathBias_m3);
   swimmer.button_s += dt_s;
   const bool more = swimmer.lift_sum > 0.0;
   const double press_s = more ? kPress_s : kVentPress_s;
-  if (swimmer.button_s < -press_s && (more || pitch_rad > kVentFrom_rad))
-    swimmer.button_s = -press_s;
+  if (swimmer.button_s < -press_s && (more || at_valve)) swimmer.button_s = -press_s;
   inputs.buttons = 0;
   if (swimmer.button_s < 0.0) {
     if (swimmer.button_s >= -press_s) inputs.buttons = more ? kInflate : kDump;
@@ -94,9 +116,36 @@ double wanted_heading(const SwimGoal& goal, const HumanState& state, double head
   return std::atan2(way.y, way.x) - crab;
 }
 
+// The goal of who hovers: rest, and the way back once drifted off, or tilted more than a posture
+// rights: fins right a body that has way. In a current the head stays into it.
+SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimmer) {
+  const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
+  const Vec3& drift = state.held.current_ned_m_s;
+  const double drift_m_s = std::hypot(drift.x, drift.y);
+  const bool current = drift_m_s > kStill_m_s;
+  double off_m = std::hypot(way.x, way.y), near_m = kNear_m;
+  if (current) {
+    const Vec3 against = Vec3(-drift.x, -drift.y, 0.0) / drift_m_s;
+    const double aside_m = std::abs(way.x * against.y - way.y * against.x);
+    off_m = way.x * against.x + way.y * against.y + aside_m;
+    near_m = -kNear_m;  // somewhat upstream
+    goal.target_ned_m += kAimAhead_m * against;
+  }
+  const double tilt_rad = std::abs(attitude_of(state.root.attitude).pitch_rad);
+  if (off_m > kAdrift_m || tilt_rad > kTilted_rad) swimmer.goes_back = 1;
+  if (off_m < near_m && tilt_rad < 0.5 * kTilted_rad) swimmer.goes_back = 0;
+  if (swimmer.goes_back != 0)
+    goal.speed_m_s =
+        std::min(kBackSpeed_m_s + (current ? drift_m_s + kBack_1_s * std::max(off_m, 0.0) : 0.0),
+                 kMostBackSpeed_m_s);
+  return goal;
+}
+
 // Spine and legs, for the head to come round by turn (to starboard) and nose_up, without rolling.
 void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
            SwimmerState& swimmer, double dt_s) {
+  // Without way there is no flow over the legs that rights the body: firmer then.
+  const double rests = resting(swimmer);
   // Rolling with each beat is the kick's: legs that worked against it would take from its thrust.
   const double hz = std::max(swimmer.frequency_hz, 0.25);
   const double roll = between_beats(swimmer.roll, roll_rad, hz, dt_s);
@@ -107,7 +156,8 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   follow(swimmer.bend_rad, yaw * kMostBend_rad, kSteeringLag_s, dt_s);
   follow(swimmer.left_more, yaw * kMostLeftMore, kSteeringLag_s, dt_s);
   swimmer.pitch_sum = std::clamp(swimmer.pitch_sum + nose_up * dt_s, -2.5, 2.5);
-  const double pitch = 2.5 * nose_up - 3.0 * pitch_rate + 0.15 * swimmer.pitch_sum;
+  const double pitch = (2.5 + 3.5 * rests) * nose_up - (3.0 + 3.0 * rests) * pitch_rate +
+                       (0.15 + 0.35 * rests) * swimmer.pitch_sum;
   follow(swimmer.lift_rad, std::clamp(-pitch, -1.0, 1.0) * kMostLift_rad, kSteeringLag_s, dt_s);
   const double level = std::clamp(-2.0 * roll - 1.0 * roll_rate, -1.0, 1.0);
   follow(swimmer.twist_rad, level * kMostTwist_rad, kSteeringLag_s, dt_s);
@@ -115,6 +165,7 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
 
 JointRotations posture_for(const Body& body, const SwimmerSettings& settings,
                            const SwimmerState& swimmer) {
+  const double rests = resting(swimmer);
   JointAngles joints = streamlined(body);
   FlutterKick kick = settings.kick;
   kick.amplitude_m *= swimmer.effort;
@@ -123,9 +174,13 @@ JointRotations posture_for(const Body& body, const SwimmerSettings& settings,
   kick.left_more = swimmer.left_more;
   set_flutter(joints, body, kick, swimmer.phase_rad);
   for (const Segment spine : {kAbdomen, kThorax}) {
-    joints[joint_of(spine)].y = -0.25 * swimmer.lift_rad;
+    joints[joint_of(spine)].y = -(0.25 + (kHoverBend - 0.25) * rests) * swimmer.lift_rad;
     joints[joint_of(spine)].z = 0.5 * swimmer.bend_rad;
   }
+  const double knees_rad = kHoverKnees * rests * std::min(swimmer.lift_rad, 0.0);
+  for (const Segment shin : {kLeftLowerLeg, kRightLowerLeg}) joints[joint_of(shin)].y += knees_rad;
+  for (const Segment arm : {kLeftUpperArm, kRightUpperArm})
+    joints[joint_of(arm)].y = kHoverArms * rests * std::max(swimmer.lift_rad, 0.0);
   joints[joint_of(kHead)].z = 0.8 * swimmer.bend_rad;
   return rotations_of(joints);
 }
@@ -138,19 +193,22 @@ HumanAttitude attitude_of(const Quat& q) {
           std::atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))};
 }
 
-void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& goal,
+void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& asked,
           const HumanState& state, SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
+  const bool hovers = asked.speed_m_s <= settings.gliding_speed_m_s;
+  if (!hovers) swimmer.goes_back = 0;
+  const SwimGoal goal = hovers ? hover_goal(asked, state, swimmer) : asked;
   const HumanAttitude attitude = attitude_of(state.root.attitude);
   const Vec3 velocity_ned = state.root.attitude * state.root.velocity.linear();
   const Vec3 ahead_ned = state.root.attitude * Vec3(1.0, 0.0, 0.0);
   const double ahead_m_s = glm::dot(velocity_ned - state.held.current_ned_m_s, ahead_ned);
-  const double deeper_m = goal.target_ned_m.z - state.root.position_ned_m.z;
-  const double sink_m_s = std::clamp(0.1 * deeper_m, -kMostSink_m_s, kMostSink_m_s);
-  const double too_much_m_s = velocity_ned.z - sink_m_s;
   const bool swims = goal.speed_m_s > settings.gliding_speed_m_s;
+  const double deeper_m = goal.target_ned_m.z - state.root.position_ned_m.z;
+  const double sink_m_s = std::clamp((swims ? 0.1 : 0.2) * deeper_m, -kMostSink_m_s, kMostSink_m_s);
+  const double too_much_m_s = velocity_ned.z - sink_m_s;
   swimmer.climb_sum = swims ? std::clamp(swimmer.climb_sum + too_much_m_s * dt_s, -3.0, 3.0) : 0.0;
   pace(settings, ahead_m_s, goal.speed_m_s, state.life.limb_power_w, swimmer, dt_s);
-  balance(body, too_much_m_s, attitude.pitch_rad, state, swimmer, dt_s, inputs);
+  balance(body, too_much_m_s, state, swimmer, dt_s, inputs);
 
   double turn = 0.0, pitch = 0.0;
   if (swims) {

@@ -10,7 +10,8 @@ namespace neritic::diver {
 
 struct SwimGoal {
   Vec3 target_ned_m{0.0};
-  double speed_m_s = 0.5;  // through the water; 0: stays where it is, at the target's depth
+  // Through the water; 0: hovers there, level, and swims back when a current took the diver away.
+  double speed_m_s = 0.5;
 };
 
 struct SwimmerSettings {
@@ -40,6 +41,7 @@ struct SwimmerState {
   // What the swimmer feels of roll and rates between the beats.
   BeatNotch roll, roll_rate, pitch_rate, yaw_rate;
   double button_s = 0.0;  // since a button was last let go; negative: still to be pressed
+  std::uint64_t goes_back = 0;  // 1: who is to hover was adrift and swims back
 
   static void fields(auto&& field, auto& self) {
     field("phase_rad", self.phase_rad);
@@ -58,6 +60,7 @@ struct SwimmerState {
     field("pitch_rate", self.pitch_rate);
     field("yaw_rate", self.yaw_rate);
     field("button_s", self.button_s);
+    field("goes_back", self.goes_back);
   }
 };
 

@@ -159,6 +159,47 @@ TEST(Swimmer, HoversByBreathAndButtons) {
   EXPECT_LT(std::hypot(s.state.root.position_ned_m.x, s.state.root.position_ned_m.y), 3.0);
 }
 
+// The farthest from the depth, of the pitch and from the place, from a minute after arriving on.
+struct Hover {
+  double off_depth_m = 0.0, pitch_deg = 0.0, away_m = 0.0;
+};
+Hover hover_after_a_swim(double depth_m, double current_m_s, double seconds) {
+  const Body body = body_with(Gear{});
+  Swim s = begin(body, {-12.0, 0.0, depth_m}, 0.0);
+  s.inputs.current_ned_m_s = {current_m_s, 0.0, 0.0};
+  const auto nothing = [](const HumanState&) {};
+  swim_for(body, s, {{0.0, 0.0, depth_m}, 0.4}, 28.0, nothing);
+  const SwimGoal here{{0.0, 0.0, depth_m}, 0.0};
+  swim_for(body, s, here, 60.0, nothing);
+  Hover out;
+  swim_for(body, s, here, seconds, [&](const HumanState& state) {
+    const Vec3& p = state.root.position_ned_m;
+    const double pitch_deg = degrees(attitude_of(state.root.attitude).pitch_rad);
+    out.off_depth_m = std::max(out.off_depth_m, std::abs(p.z - depth_m));
+    out.pitch_deg = std::max(out.pitch_deg, std::abs(pitch_deg));
+    out.away_m = std::max(out.away_m, std::hypot(p.x, p.y));
+  });
+  return out;
+}
+
+// The jacket's gas runs to the higher end and would stand a resting diver on his head; a tank that
+// empties would carry him up. Back, knees and arms keep him level, either dump valve lets gas out,
+// and fins bring him back to the place.
+TEST(Swimmer, HoversLevelAtItsPlaceWhileTheTankEmpties) {
+  for (const double depth_m : {6.0, 15.0}) {
+    const Hover hover = hover_after_a_swim(depth_m, 0.0, 900.0);
+    EXPECT_LT(hover.off_depth_m, 0.5) << depth_m;
+    EXPECT_LT(hover.pitch_deg, 20.0) << depth_m;
+    EXPECT_LT(hover.away_m, 9.0) << depth_m;
+  }
+  for (const double current_m_s : {-0.11, 0.3}) {
+    const Hover hover = hover_after_a_swim(15.0, current_m_s, 600.0);
+    EXPECT_LT(hover.off_depth_m, 0.5) << current_m_s;
+    EXPECT_LT(hover.pitch_deg, 15.0) << current_m_s;
+    EXPECT_LT(hover.away_m, 9.0) << current_m_s;
+  }
+}
+
 TEST(Swimmer, FollowsADepthThatChanges) {
   // Down by five metres and up again, each within a minute and a half, filling and emptying the
   // jacket on the way.
