@@ -97,7 +97,7 @@ bool is_clear(ivec2 beam, vec3 direction, float leg_m, uint through_class) {
   for (int i = -1; i <= 1; ++i) {
     ivec3 at = ivec3(s.pixel, clamp(int(v) + i, 0, int(c.height) - 1), s.layer);
     float ty = (c.cy - (float(at.y) + 0.5)) / c.fy;
-    float range_m = planar_metres(texelFetch(direct_depth, at, 0).r) * sqrt(s.pixel_square + ty * ty);
+    float range_m = planar_metres(texelFetch(direct_depth, at, 0).r) * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
     if (!(range_m > 0.0) || range_m > nearest_m) return true;
     if (through_class != 0 && texelFetch(direct_label, at, 0).x == through_class) return true;
   }

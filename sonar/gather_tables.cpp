@@ -56,8 +56,8 @@ std::vector<shared::SonarColumn> column_table(const BeamGrid& grid, std::span<co
       column.tan_theta = static_cast<float>(std::tan(theta));
       column.beam_base = put(std::tan(theta), 0, -1);
       column.sec_theta = static_cast<float>(1.0 / std::cos(theta));
-      column.pixel_base = put(tx, 0, -1);
-      column.pixel_square = static_cast<float>(1.0 + tx * tx);
+      column.right = put(1, 0, 0);
+      column.pixel_tan = static_cast<float>(tx);
     }
   }
   return table;

@@ -10,12 +10,12 @@ NERITIC_SHARED_BEGIN
 // One azimuth column of the sonar. A column is a vertical plane through the sonar, which a level
 // pinhole sees as one column of pixels; the beam at elevation phi is beam_base + tan(phi) *
 // sec_theta
-// * up, a pixel centre pixel_base + (cy - v - 0.5) / fy * up.
+// * up, a pixel centre forward + pixel_tan * right + (cy - v - 0.5) / fy * up.
 struct SonarColumn {
   vec3 beam_base;      // (tan theta, 0, -1) of the view
   float sec_theta;     // 1 / cos of the azimuth off the view's axis
-  vec3 pixel_base;     // ((u + 0.5 - cx) / fx, 0, -1) of the view
-  float pixel_square;  // |pixel_base|^2
+  vec3 right;          // the view's x
+  float pixel_tan;     // (u + 0.5 - cx) / fx
   vec3 up;             // the view's y
   vec3 forward;        // the view's -z
   int pixel;           // u, or -1: no view sees the column

@@ -51,9 +51,7 @@ SonarColumn column_at(SonarColumn s, uint row) {
 SonarColumn at_pixel(SonarColumn s, int v, float t) {
   float u = floor(c.cx + c.fx * (s.tan_theta - c.lean * s.sec_theta * t));
   s.pixel = int(clamp(u, 0.0, float(c.width - 1)));
-  float tx = (float(s.pixel) + 0.5 - c.cx) / c.fx + c.lean * (c.cy - (float(v) + 0.5)) / c.fy;
-  s.pixel_base = s.forward + tx * cross(s.forward, s.up);
-  s.pixel_square = 1.0 + tx * tx;
+  s.pixel_tan = (float(s.pixel) + 0.5 - c.cx) / c.fx + c.lean * (c.cy - (float(v) + 0.5)) / c.fy;
   return s;
 }
 
@@ -65,7 +63,7 @@ float neighbour_range(SonarColumn s, int row, int v) {
   if (other == v || other < 0 || other >= int(c.height)) return 0.0;
   if (kLeaning != 0) s = at_pixel(s, other, t);
   float ty = (c.cy - (float(other) + 0.5)) / c.fy;
-  return planar_metres(texelFetch(depth_image, ivec3(s.pixel, other, s.layer), 0).r) * sqrt(s.pixel_square + ty * ty);
+  return planar_metres(texelFetch(depth_image, ivec3(s.pixel, other, s.layer), 0).r) * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
 }
 
 // How far from the centre's range the plane is at the row's edge of tangent t: no farther than the
@@ -159,8 +157,7 @@ Look look_at(SonarColumn s, uint row) {
     look.v = int(clamp(floor(c.cy - c.fy * aside.sec_theta * look.row.x), 0.0, float(c.height - 1)));
     aside = at_pixel(aside, look.v, look.row.x);
     look.column.pixel = aside.pixel;
-    look.column.pixel_base = aside.pixel_base;
-    look.column.pixel_square = aside.pixel_square;
+    look.column.pixel_tan = aside.pixel_tan;
   }
   ivec3 at = ivec3(look.column.pixel, look.v, s.layer);
   look.depth = texelFetch(depth_image, at, 0).r;
@@ -178,17 +175,16 @@ BeamHit beam_hit(Look look, uint row) {
   vec3 n = normal_of(look.normal);
   float ty = (c.cy - (float(v) + 0.5)) / c.fy;
   float along_up = dot(n, s.up);
-  float along_pixel = dot(n, s.pixel_base) + ty * along_up;
-  float length_of = sqrt(s.pixel_square + ty * ty);
+  float ahead = dot(n, s.forward), sideways = dot(n, s.right);
+  float along_pixel = ahead + s.pixel_tan * sideways + ty * along_up;
+  float length_of = sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
   float along = along_pixel;
   float plane = planar;  // of the pixel
   bool meets = false;
   float carried = 1.0;
-  // Unit normals that lean to the side by more than up or down.
-  float ahead = dot(n, s.forward);
-  bool flank = kPlane != 0 && 1.0 - ahead * ahead > 2.0 * along_up * along_up;
+  bool flank = abs(sideways) > abs(along_up);
   if (kPlane != 0) {
-    float along_beam = dot(n, s.beam_base) + e.x * s.sec_theta * along_up;
+    float along_beam = ahead + s.tan_theta * sideways + e.x * s.sec_theta * along_up;
     float stretch = along_pixel / along_beam;
     float largest = flank ? kLargestFlankStretch : kLargestStretch;
     meets = stretch < largest && stretch * largest > 1.0;
@@ -204,7 +200,8 @@ BeamHit beam_hit(Look look, uint row) {
   if (kFootprint == kSonarFootprintShared)
     find_close_ends(s, e.zw, along, along_up, flank, carried, hit);
   if (kFootprint == kSonarFootprintBounded)
-    find_ends(s, row, v, e.zw, flank && abs(along_up / along) > kSteepestFlank, plane, dot(n, s.beam_base) + e.zw * s.sec_theta * along_up, along_pixel, hit);
+    find_ends(s, row, v, e.zw, flank && abs(along_up) > kSteepestFlank * abs(along), plane,
+              ahead + s.tan_theta * sideways + e.zw * s.sec_theta * along_up, along_pixel, hit);
   return hit;
 }
 

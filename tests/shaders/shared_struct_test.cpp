@@ -66,7 +66,7 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(Lighting, lamps)}},
       {"SonarColumn",
        {MEMBER(SonarColumn, beam_base), MEMBER(SonarColumn, sec_theta),
-        MEMBER(SonarColumn, pixel_base), MEMBER(SonarColumn, pixel_square), MEMBER(SonarColumn, up),
+        MEMBER(SonarColumn, right), MEMBER(SonarColumn, pixel_tan), MEMBER(SonarColumn, up),
         MEMBER(SonarColumn, forward), MEMBER(SonarColumn, pixel), MEMBER(SonarColumn, layer),
         MEMBER(SonarColumn, first_pixel), MEMBER(SonarColumn, end_pixel),
         MEMBER(SonarColumn, tan_theta)}},
