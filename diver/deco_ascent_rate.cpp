@@ -65,6 +65,11 @@ AscentRateState observe(const AscentRateState& before, double depth_m, double dt
   return s;
 }
 
+const char* name_of(AscentAlarm alarm) {
+  constexpr const char* kNames[] = {"none", "fast", "dangerous"};
+  return kNames[static_cast<std::size_t>(alarm)];
+}
+
 AscentAlarm alarm_of(const AscentRateState& state, const AscentRateLimits& limits) {
   const auto lasts = [&](double since_s) {
     return since_s >= 0.0 && state.now_s - since_s >= limits.persists_s - 1e-9;

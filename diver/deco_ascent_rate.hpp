@@ -46,6 +46,7 @@ AscentRateState observe(const AscentRateState& before, double depth_m, double dt
                         const AscentRateLimits& limits);
 
 enum class AscentAlarm { kNone, kFast, kDangerous };
+const char* name_of(AscentAlarm alarm);  // "none", "fast", "dangerous"
 AscentAlarm alarm_of(const AscentRateState& state, const AscentRateLimits& limits);
 
 }  // namespace neritic::diver

@@ -210,7 +210,8 @@ DiveComputerView DiveComputer::view(const DiveComputerState& state, std::uint64_
   view.ascent_m_min = state.ascent.rate_m_min;
   view.alarm = alarm_of(state.ascent, settings_.ascent);
   const double left = minutes_without_stops(ascent_, state.tissues, depth, mix);
-  view.no_stop_min = std::max(left, 0.0);
+  view.no_stop_min =
+      left < kNoLimit_min ? std::max(left, 0.0) : std::numeric_limits<double>::infinity();
   if (left < 0.0) view.ceiling_m = ceiling_m(state);
   view.ceiling_violated = depth < view.ceiling_m - kCeilingSlack_m;
   AscentState up = ascent_start(state, view, without);

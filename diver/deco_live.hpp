@@ -70,7 +70,7 @@ inline constexpr std::size_t kToldGases = 4;
 struct DiveComputerView {
   double ceiling_m = 0.0;               // of the gradient factor that holds there; 0: none
   bool ceiling_violated = false;        // the diver is above it by more than kCeilingSlack_m
-  double no_stop_min = 0.0;             // left without stops; 0 with a ceiling
+  double no_stop_min = 0.0;             // left without stops; 0 with a ceiling; infinite: no limit
   double stop_m = 0.0, stop_min = 0.0;  // the next stop; 0: none
   double to_surface_min = 0.0;          // infinite where the ceiling never clears
   // Of that, pressure times time on each gas: times litres a minute, what the way up takes.

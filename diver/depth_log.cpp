@@ -11,6 +11,7 @@ namespace neritic::diver {
 namespace {
 
 constexpr std::size_t kMostSamples = 10'000'000;
+constexpr std::size_t kMostVehicles = 8;  // that are named
 
 std::string_view trimmed(std::string_view text) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\r' || c == '"'; };
@@ -44,7 +45,7 @@ std::string shown(std::string_view cell) {
 
 class LogReader {
  public:
-  explicit LogReader(const std::string& name) : name_(name) {}
+  LogReader(const std::string& name, std::string_view vehicle) : name_(name), vehicle_(vehicle) {}
 
   Result<DepthLog> read(std::string_view text) {
     while (!text.empty()) {
@@ -57,6 +58,13 @@ class LogReader {
     }
     if (width_ == 0)
       return bad_input("{}: no row of names found, time_s and depth_m are accepted", name_);
+    if (vehicles_.size() > 1 && vehicle_.empty())
+      return bad_input("{}: rows of {} found, one is accepted: choose by --vehicle", name_,
+                       fmt::join(vehicles_, ", "));
+    if (!vehicle_.empty() && log_.samples.empty())
+      return bad_input("{}: --vehicle: '{}' found; {} is accepted", name_, vehicle_,
+                       vehicles_.empty() ? std::string("a file with a column vehicle")
+                                         : fmt::format("{}", fmt::join(vehicles_, ", ")));
     if (log_.samples.empty())
       return bad_input("{}: no sample found, at least one is accepted", name_);
     return std::move(log_);
@@ -76,6 +84,7 @@ class LogReader {
     }
     depth_ = find("depth_m");
     gas_ = find("gas");
+    of_ = find("vehicle");
     if (time_ == width_ || depth_ == width_)
       return bad_input("{}: line {}: columns '{}' found, time_s or time_min and depth_m are needed",
                        name_, line_, shown(line));
@@ -87,6 +96,11 @@ class LogReader {
     if (cells.size() != width_)
       return bad_input("{}: line {}: {} cells found, {} are accepted", name_, line_, cells.size(),
                        width_);
+    const std::string_view whose = of_ < width_ ? cells[of_] : std::string_view();
+    if (of_ < width_ && vehicles_.size() < kMostVehicles &&
+        std::ranges::find(vehicles_, shown(whose)) == vehicles_.end())
+      vehicles_.push_back(shown(whose));
+    if (!vehicle_.empty() && whose != vehicle_) return {};
     DepthSample sample;
     if (!read_cell(cells[time_], sample.time_s) || !std::isfinite(sample.time_s) ||
         std::abs(sample.time_s) > 1e12)
@@ -129,15 +143,18 @@ class LogReader {
   }
 
   const std::string& name_;
-  std::size_t line_ = 0, width_ = 0, time_ = 0, depth_ = 0, gas_ = 0;
+  std::string_view vehicle_;
+  std::vector<std::string> vehicles_;  // that there are
+  std::size_t line_ = 0, width_ = 0, time_ = 0, depth_ = 0, gas_ = 0, of_ = 0;
   double unit_s_ = 1.0;
   DepthLog log_;
 };
 
 }  // namespace
 
-Result<DepthLog> read_depth_log(std::string_view text, const std::string& name) {
-  return LogReader(name).read(text);
+Result<DepthLog> read_depth_log(std::string_view text, const std::string& name,
+                                std::string_view vehicle) {
+  return LogReader(name, vehicle).read(text);
 }
 
 }  // namespace neritic::diver

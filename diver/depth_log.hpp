@@ -1,7 +1,8 @@
 // A diver's recorded depths, from a table as computers and simulations write them. Any thread.
 //
 // The form: text, a row a line, columns by comma, semicolon or tab. The first row names them, in
-// any order: time_s or time_min; depth_m; gas (air, ean32, 18/45), if there is one. Other columns
+// any order: time_s or time_min; depth_m; gas (air, ean32, 18/45), if there is one; vehicle, whose
+// row it is, where several dive. Other columns
 // are left alone, and so are empty lines and lines that begin with #. A depth that is "nan" or
 // empty is a sample that failed; times may not go back.
 #pragma once
@@ -26,6 +27,8 @@ struct DepthLog {
 };
 
 // name stands in messages. Errors name the line, what was found, what is accepted.
-Result<DepthLog> read_depth_log(std::string_view text, const std::string& name);
+// vehicle: whose rows are taken, where the column vehicle names several; empty: all are one's.
+Result<DepthLog> read_depth_log(std::string_view text, const std::string& name,
+                                std::string_view vehicle = {});
 
 }  // namespace neritic::diver

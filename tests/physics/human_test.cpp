@@ -9,10 +9,11 @@
 namespace neritic::tools {
 namespace {
 
-std::string diver_text(const std::string& keys) {
+std::string diver_text(const std::string& keys, std::string human = {}) {
   const std::string assets = (test::source_dir() / "assets").string();
+  if (human.empty()) human = assets + "/divers/recreational.toml";
   return "[[objects]]\nname = \"diver\"\nclass = \"diver\"\nmodel = \"" + assets +
-         "/models/diver.glb\"\nhuman = \"" + assets + "/divers/recreational.toml\"\n" + keys;
+         "/models/diver.glb\"\nhuman = \"" + human + "\"\n" + keys;
 }
 
 // Prone, facing north.
@@ -225,6 +226,34 @@ TEST(HumanDive, RowsSayGasAndTissues) {
   recorder.humans().give_tracks(drawn);
   ASSERT_TRUE(drawn.objects[0].node_motion.has_value());
   EXPECT_NEAR(static_cast<double>(drawn.objects[0].node_motion->keys.size()), 181.0, 2.0);
+}
+
+// A tank of a litre at 40 m, then a jacket that carries the diver up: what endangered the diver is
+// told of the whole dive, not of its end.
+TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
+  const test::ScratchFolder folder;
+  const std::string file = (folder / "small.toml").string();
+  ASSERT_TRUE(
+      write_text(file, "tanks = [ { volume_l = 1, pressure_bar = 60, oxygen = 0.5 } ]\n").ok());
+  TestDive dive =
+      dive_of(kStillWater + diver_text(std::string("position_m = [0, -40, 0]\n") + kProne, file));
+  DiveRecorder recorder(*dive.world, {});
+  recorder.add(dive.simulation->newest());
+  double unfed_s = 0.0, first_s = 0.0;
+  dive.run(60.0, [&] {
+    recorder.add(dive.simulation->newest());
+    const double now_s = dive.state().humans[0].human.life.lungs.unfed_s;
+    if (now_s > 0.0 && first_s == 0.0) first_s = dive.time_s();
+    unfed_s = std::max(unfed_s, now_s);
+  });
+  const HumanFigures& f = recorder.humans().figures()[0];
+  ASSERT_GT(unfed_s, 5.0);
+  EXPECT_NEAR(f.out_of_gas_s, unfed_s, 1.01);
+  EXPECT_GE(f.out_of_gas_from_s, first_s - 0.1);
+  EXPECT_EQ(f.out_of_gas_tank, 0u);
+  EXPECT_EQ(f.oxygen, diver::RiskLevel::kSevere);  // .5 of 5 bar
+  EXPECT_NEAR(f.most_po2_bar, 0.5 * 1e-5 * (101325.0 + 1028.0 * 9.80665 * f.deepest_m), 0.05);
+  EXPECT_EQ(f.above_ceiling_m, 0.0);
 }
 
 // Oxygen is carried for the stops: while its bottle is full it shortens the way up, and not when it

@@ -176,6 +176,25 @@ TEST(PlanCommand, ALogIsReplayedSampleBySample) {
   EXPECT_TRUE(std::filesystem::exists(folder / "out/log.png"));
 }
 
+TEST(PlanCommand, ALogOfSeveralVehiclesIsOneOfThem) {
+  const test::ScratchFolder folder;
+  std::string log = "time_s,vehicle,depth_m\n";
+  for (int s = 0; s <= 600; s += 10) log += fmt::format("{0},rov,15\n{0},diver,3\n", s);
+  ASSERT_TRUE(write_text(folder / "dive.csv", log).ok());
+  const std::string of_log = "plan --json --log " + (folder / "dive.csv").string();
+  const PlanSaid both = said_by(of_log);
+  EXPECT_EQ(both.status, 2);
+  EXPECT_THAT(both.error, HasSubstr("rows of rov, diver found, one is accepted: choose by --vehi"));
+  EXPECT_EQ(std::ranges::count(both.error, '\n'), 1);
+  EXPECT_THAT(said_by(of_log + " --vehicle cat").error, HasSubstr("'cat' found; rov, diver is"));
+  const PlanSaid one = said_by(of_log + " --vehicle diver");
+  EXPECT_EQ(one.status, 0) << one.error;
+  const auto json = parse_json(one.out).value();
+  EXPECT_EQ(json["samples"], 61);
+  EXPECT_EQ(json["deepest_m"], 3.0);
+  EXPECT_TRUE(json["no_stop_min"].is_null());  // no limit at 3 m
+}
+
 TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
   for (const auto& [arguments, error] :
        {std::pair{"plan", "plan: no --depth and --time found; how deep (m) and how long"},
@@ -212,6 +231,10 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
         {"plan --depth 30 --time 20 --tank 12,200", "--tank: '12,200' found, GAS=LITRES,BAR"},
         {"plan --depth 30 --time 20 --tank o2=12,200", "a tank of O2 found, which is none of"},
         {"plan --depth 30 --time 20 --rmv 0", "litres a minute: 0 found, 1 to 200"},
+        {"plan --log nowhere.csv --depth 40", "--log: found with --depth, --time or --level"},
+        {"plan --depth 30 --time 20 --altitude 2000 --surface 1.0",
+         "--altitude and --surface: both found, one of them is accepted"},
+        {"plan --depth 30 --time 20 --vehicle diver", "--vehicle: found without --log"},
         {"plan --log nowhere.csv", "nowhere.csv: no such file"}}) {
     const PlanSaid said = said_by(arguments);
     EXPECT_EQ(said.status, 2) << arguments;

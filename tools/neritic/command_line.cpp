@@ -322,6 +322,8 @@ void add_plan(CLI::App& app, Run& run) {
       "--log", flags->log,
       "depths of a dive (.csv: time_s, depth_m, perhaps gas) instead of a plan: what a "
       "dive computer would have shown");
+  command->add_option("--vehicle", flags->vehicle,
+                      "whose rows of --log: of a column vehicle that names several");
   command->add_option("--plot", flags->plot, "a picture (.png)");
   command
       ->add_option("--out", flags->out, "folder for plan.json and plan.png, or log.csv and log.png")

@@ -78,7 +78,7 @@ Status run_check(const CheckFlags& flags);
 struct PlanFlags {
   std::vector<std::string> gases{"air"}, travel, levels, after, tanks;
   std::optional<double> depth_m, time_min;
-  std::string gf = "30/85", convention = "stop-minutes", table, water, saturation, log;
+  std::string gf = "30/85", convention = "stop-minutes", table, water, saturation, log, vehicle;
   std::string rmv = "20,17", minimum_gas = "2,2,4";
   // Not given: the convention's.
   std::optional<double> altitude_m, surface_bar, last_stop_m, ascent_m_min, descent_m_min;

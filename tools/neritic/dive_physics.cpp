@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "diver/gas_label.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "rov/frames.hpp"
@@ -100,12 +101,67 @@ std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& stat
   return line + "\n";
 }
 
+std::string tank_words(const PhysicsHuman& human, std::uint64_t tank) {
+  if (tank >= human.body.tank_count) return "no tank";
+  return fmt::format("tank {} ({})", tank + 1, diver::name_of(human.body.tanks[tank].mix));
+}
+
+std::string gas_words(const PhysicsHuman& human, const HumanFigures& figures) {
+  if (!(figures.out_of_gas_s > 0.0)) return {};
+  return fmt::format("NO GAS from {} from {:.0f} s on, for {:.0f} s; ",
+                     tank_words(human, figures.out_of_gas_tank), figures.out_of_gas_from_s,
+                     figures.out_of_gas_s);
+}
+
+// One line for each danger that there was.
+std::string warning_lines(const PhysicsHuman& human, const HumanFigures& figures) {
+  std::string lines;
+  if (figures.ascent_alarm != diver::AscentAlarm::kNone)
+    lines += fmt::format("{}: ASCENT TOO FAST, {:.0f} m/min at {:.0f} s: {} alarm for {:.0f} s\n",
+                         human.name, figures.fastest_ascent_m_min, figures.fastest_ascent_at_s,
+                         name_of(figures.ascent_alarm), figures.ascent_alarm_s);
+  if (figures.above_ceiling_m > 0.0)
+    lines += fmt::format("{}: CEILING VIOLATED from {:.0f} s on, by up to {:.1f} m\n", human.name,
+                         figures.above_ceiling_from_s, figures.above_ceiling_m);
+  if (figures.oxygen >= diver::RiskLevel::kHigh)
+    lines += fmt::format("{}: OXYGEN RISK {} from {:.0f} s on: {:.2f} to {:.2f} bar breathed\n",
+                         human.name, name_of(figures.oxygen), figures.oxygen_from_s,
+                         figures.least_po2_bar, figures.most_po2_bar);
+  return lines;
+}
+
+// The same as JSON: null where it did not happen.
+nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figures) {
+  nlohmann::json json{{"out_of_gas", nullptr},
+                      {"fastest_ascent_m_min", figures.fastest_ascent_m_min},
+                      {"ascent_alarm", nullptr},
+                      {"ceiling_violation", nullptr},
+                      {"oxygen_risk", nullptr}};
+  if (figures.out_of_gas_s > 0.0)
+    json["out_of_gas"] = {{"tank", tank_words(human, figures.out_of_gas_tank)},
+                          {"from_s", figures.out_of_gas_from_s},
+                          {"seconds", figures.out_of_gas_s}};
+  if (figures.ascent_alarm != diver::AscentAlarm::kNone)
+    json["ascent_alarm"] = {{"worst", name_of(figures.ascent_alarm)},
+                            {"seconds", figures.ascent_alarm_s},
+                            {"fastest_at_s", figures.fastest_ascent_at_s}};
+  if (figures.above_ceiling_m > 0.0)
+    json["ceiling_violation"] = {{"from_s", figures.above_ceiling_from_s},
+                                 {"worst_m", figures.above_ceiling_m}};
+  if (figures.oxygen >= diver::RiskLevel::kHigh)
+    json["oxygen_risk"] = {{"worst", name_of(figures.oxygen)},
+                           {"from_s", figures.oxygen_from_s},
+                           {"least_po2_bar", figures.least_po2_bar},
+                           {"most_po2_bar", figures.most_po2_bar}};
+  return json;
+}
+
 std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
                        const HumanFigures& figures) {
   const diver::GasReading gas = diver::read_gas(human.body, state.human);
   const diver::AscentGas ascent = gas_for_ascent(human, state);
   const diver::DiveComputerView& deco = ascent.view;
-  std::string line = human.name + ": ";
+  std::string line = human.name + ": " + gas_words(human, figures);
   if (!human.waypoints_ned_m.empty())
     line += fmt::format("{} of {} waypoints, ", state.arrived, human.waypoints_ned_m.size());
   line += fmt::format(
@@ -113,15 +169,17 @@ std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
       figures.path_m, figures.largest_speed_m_s, figures.shallowest_m, figures.deepest_m,
       1e-5 * gas.tank_pa, gas.ventilation_l_min);
   line += deco.ceiling_m > 0.0 ? fmt::format("ceiling {:.1f} m, ", deco.ceiling_m)
-                               : fmt::format("{:.0f} min without stops, ", deco.no_stop_min);
+          : std::isfinite(deco.no_stop_min)
+              ? fmt::format("{:.0f} min without stops, ", deco.no_stop_min)
+              : std::string("no limit to the time without stops, ");
   if (deco.ceiling_violated) line += "which is violated, ";
   if (!ascent.enough())
-    line += fmt::format("NOT ENOUGH GAS: the way up takes {:.0f} l of this tank's {:.0f}, ",
-                        ascent.needed_l, ascent.there_l);
+    line += fmt::format("NOT ENOUGH GAS: the way up takes {:.0f} l of {}'s {:.0f}, ",
+                        ascent.needed_l, tank_words(human, state.human.held.tank), ascent.there_l);
   line += touch_words(state.contact.touched_steps);
   if (state.human.refused_inputs > 0)
     line += fmt::format(", {} inputs refused", state.human.refused_inputs);
-  return line + "\n";
+  return line + "\n" + warning_lines(human, figures);
 }
 
 nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
@@ -153,6 +211,7 @@ nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
           {"ceiling_m", deco.ceiling_m},
           {"ceiling_violated", deco.ceiling_violated},
           {"no_stop_min", deco.no_stop_min},
+          {"dangers", dangers_json(human, figures)},
           {"touched_steps", state.contact.touched_steps},
           {"deepest_contact_m", state.contact.deepest_m},
           {"refused_inputs", state.human.refused_inputs},

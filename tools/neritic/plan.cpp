@@ -64,6 +64,7 @@ std::string written(const PlanFlags& flags, const char* names) {
 }
 
 Result<std::string> plan_a_dive(const PlanFlags& flags) {
+  if (!flags.vehicle.empty()) return bad_input("--vehicle: found without --log");
   NERITIC_TRY(const diver::DivePlanRequest request, plan_request(flags));
   NERITIC_TRY(const PlanGasFlags gas, plan_gas(flags, request));
   NERITIC_TRY(const PlanReport report,
@@ -114,8 +115,10 @@ std::string log_text(const PlanFlags& flags, const diver::DepthLog& log, const D
 }
 
 Result<std::string> replay_a_log(const PlanFlags& flags) {
+  if (flags.depth_m || flags.time_min || !flags.levels.empty())
+    return bad_input("--log: found with --depth, --time or --level; a log has its own depths");
   NERITIC_TRY(const std::string text, read_text(flags.log));
-  NERITIC_TRY(const diver::DepthLog log, diver::read_depth_log(text, flags.log));
+  NERITIC_TRY(const diver::DepthLog log, diver::read_depth_log(text, flags.log, flags.vehicle));
   NERITIC_TRY(diver::DiveComputerSettings settings, log_settings(flags, log));
   NERITIC_TRY(const diver::DiveComputer computer, diver::DiveComputer::create(std::move(settings)));
   NERITIC_TRY(const diver::DiveComputerState start, log_start(flags, computer));

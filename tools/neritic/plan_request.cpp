@@ -74,6 +74,8 @@ Result<double> bar_per_m_of_water(const std::string& water) {
 
 Result<DecoConventions> conventions_asked(const PlanFlags& flags) {
   NERITIC_TRY(DecoConventions c, diver::conventions_of(flags.convention));
+  if (flags.altitude_m && flags.surface_bar)
+    return bad_input("--altitude and --surface: both found, one of them is accepted");
   if (flags.altitude_m) {
     if (!(*flags.altitude_m >= -500.0 && *flags.altitude_m <= 9000.0))
       return bad_input("--altitude {} found, -500 to 9000 m is accepted", *flags.altitude_m);

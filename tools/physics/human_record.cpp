@@ -56,7 +56,43 @@ diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& s
                            std::max(now_l_min, diver::PlanBreathing{}.ascent_l_min));
 }
 
+void HumanRecorder::note_dangers(std::size_t index, const sim::Snapshot<PhysicsState>& snapshot) {
+  const PhysicsHuman& human = world_.humans()[index];
+  const diver::HumanState& state = snapshot.state.humans[index].human;
+  const double now_s = snapshot.time_s;
+  HumanFigures& f = figures_[index];
+  if (state.life.lungs.unfed_s > f.out_of_gas_s) {
+    f.out_of_gas_s = state.life.lungs.unfed_s;
+    f.out_of_gas_from_s = now_s - f.out_of_gas_s;
+    f.out_of_gas_tank = state.held.tank;
+  }
+  const diver::DiveComputerView view = human.computer->view(state.life.computer);
+  if (view.ascent_m_min > f.fastest_ascent_m_min) {
+    f.fastest_ascent_m_min = view.ascent_m_min;
+    f.fastest_ascent_at_s = now_s;
+  }
+  f.ascent_alarm = std::max(f.ascent_alarm, view.alarm);
+  if (view.alarm != diver::AscentAlarm::kNone) f.ascent_alarm_s += diver::kComputerSample_s;
+  if (view.ceiling_violated) {
+    if (f.above_ceiling_m == 0.0) f.above_ceiling_from_s = now_s;
+    f.above_ceiling_m =
+        std::max(f.above_ceiling_m, view.ceiling_m - state.life.computer.last.depth_m);
+  }
+  const diver::RiskLevel oxygen = state.life.vitals.risk.oxygen;
+  f.oxygen = std::max(f.oxygen, oxygen);
+  if (oxygen < diver::RiskLevel::kHigh) return;
+  const double po2_bar = state.life.vitals.risk.oxygen_bar;
+  if (f.most_po2_bar == 0.0) {
+    f.oxygen_from_s = now_s;
+    f.least_po2_bar = po2_bar;
+  }
+  f.least_po2_bar = std::min(f.least_po2_bar, po2_bar);
+  f.most_po2_bar = std::max(f.most_po2_bar, po2_bar);
+}
+
 void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row, bool tracks) {
+  const bool sample = snapshot.time_s >= next_sample_s_ - 1e-9;
+  if (sample) next_sample_s_ += diver::kComputerSample_s;
   for (std::size_t i = 0; i < figures_.size(); ++i) {
     const HumanPhysics& state = snapshot.state.humans[i];
     const diver::RootState& root = state.human.root;
@@ -67,6 +103,7 @@ void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row, b
         std::max(figures.largest_speed_m_s, glm::length(root.velocity.linear()));
     figures.deepest_m = std::max(figures.deepest_m, root.position_ned_m.z);
     figures.shallowest_m = std::min(figures.shallowest_m, root.position_ned_m.z);
+    if (sample) note_dangers(i, snapshot);
     if (tracks) {
       const Pose pose = drawn_pose(state);
       tracks_[i].places.push_back({snapshot.time_s, pose.position_m});

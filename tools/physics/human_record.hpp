@@ -36,6 +36,18 @@ diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& s
 
 struct HumanFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, deepest_m = 0.0, shallowest_m = 1e9;
+  // What endangered the diver, over the dive. The longest time that nothing came to breathe, and of
+  // which tank; 0: none.
+  double out_of_gas_s = 0.0, out_of_gas_from_s = 0.0;
+  std::uint64_t out_of_gas_tank = 0;
+  // By the dive computer, once a second: rate, the worst alarm and how long any lasted, and how far
+  // above a ceiling.
+  double fastest_ascent_m_min = 0.0, fastest_ascent_at_s = 0.0, ascent_alarm_s = 0.0;
+  diver::AscentAlarm ascent_alarm = diver::AscentAlarm::kNone;
+  double above_ceiling_m = 0.0, above_ceiling_from_s = 0.0;
+  // The worst level; since when, and between which pressures, it was high or worse.
+  diver::RiskLevel oxygen = diver::RiskLevel::kLow;
+  double oxygen_from_s = 0.0, least_po2_bar = 0.0, most_po2_bar = 0.0;
 };
 
 // Between two postures that are kept, where nothing else is said: as pictures need.
@@ -55,6 +67,7 @@ class HumanRecorder {
   void give_tracks(scene::Scene& scene);
 
  private:
+  void note_dangers(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot);
   HumanRow row_of(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot) const;
 
   const PhysicsWorld& world_;
@@ -64,6 +77,7 @@ class HumanRecorder {
   std::vector<scene::Track> tracks_;
   std::vector<scene::NodeMotion> joints_;
   std::vector<Vec3> last_ned_m_;
+  double next_sample_s_ = 0.0;  // of the divers' computers
 };
 
 }  // namespace neritic::tools
