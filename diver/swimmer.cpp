@@ -21,10 +21,10 @@ constexpr double kMostBreathBias_m3 = 0.6e-3;
 constexpr double kHoverBend = 1.0;  // of the legs' lift; 0.25 while swimming
 // And the arms, to the front: their weight lowers the head.
 constexpr double kHoverArms = 4.0;  // of the legs' lift towards the belly
-// Who hovers has no fins to hold the depth: breath answers so much more.
-constexpr double kHoverBreath = 1.5;
 // And the knees, which brings the fins' weight forward: the nose rises.
 constexpr double kHoverKnees = 3.5;  // of the legs' lift towards the back
+// Who hovers has no fins to hold the depth: breath answers so much more.
+constexpr double kHoverBreath = 1.5;
 // Who hovers swims back to the place from so far away, or righting from such a tilt, and rests
 // again from so near.
 constexpr double kAdrift_m = 1.5, kNear_m = 0.7, kTilted_rad = radians(20.0);

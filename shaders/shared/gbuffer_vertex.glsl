@@ -1,36 +1,23 @@
 // Vertex stage of the full G-buffer and of the forward pass for blended materials.
-// NERITIC_CLIPPED: of views of one side of a plane.
-#include "shared/octahedral.h"
-#include "shared/raster.h"
-#include "shared/affine.glsl"
+#include "shared/raster_vertex.glsl"
 
 layout(constant_id = kSpecMotion) const bool kMotion = false;
 layout(constant_id = kSpecMaterial) const uint kMaterialFlags = ~0u;
 
-layout(constant_id = kSpecMultiview) const bool kMultiview = true;
-
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec2 normal;
 layout(location = 2) in vec2 uv0;
 layout(location = 3) in vec2 uv1;
 layout(location = 4) in uint tangent;
 layout(location = 5) in vec4 color;
-layout(location = kInstanceRow0) in vec4 row0;
-layout(location = kInstanceRow1) in vec4 row1;
-layout(location = kInstanceRow2) in vec4 row2;
 layout(location = kInstanceLabel) in uvec2 label_deformed;
 // Fed in the pipelines with motion only; without it the shader never reads them.
 layout(location = kNextInstanceRow0) in vec4 next_row0;
 layout(location = kNextInstanceRow1) in vec4 next_row1;
 layout(location = kNextInstanceRow2) in vec4 next_row2;
 
-layout(set = 0, binding = kRasterViews, scalar) uniform Views { View views[kMaxViews]; };
 layout(set = 0, binding = kRasterNextPositions, scalar) readonly buffer NextPositions {
   vec3 next_positions[];
 };
 
-layout(location = 0) out vec3 out_normal;
-layout(location = 1) flat out uint out_label;
 layout(location = 2) out vec4 out_uv;
 layout(location = 3) out vec4 out_tangent;
 layout(location = 4) out vec4 out_color;
@@ -38,22 +25,9 @@ layout(location = 5) out vec3 out_position;
 layout(location = 6) out vec4 out_clip;
 layout(location = 7) out vec4 out_next_clip;
 
-#ifdef NERITIC_CLIPPED
-out float gl_ClipDistance[1];
-#endif
-
 void main() {
-  int view = kMultiview ? gl_ViewIndex : 0;
-  vec4 p = vec4(position, 1.0);
-  vec3 at = vec3(dot(row0, p), dot(row1, p), dot(row2, p));
-  gl_Position = views[view].clip_from_origin * vec4(at, 1.0);
-#ifdef NERITIC_CLIPPED
-  gl_ClipDistance[0] = dot(views[view].within, vec4(at, 1.0));
-#endif
-  gl_PointSize = 1.0;
-  vec3 r0 = row0.xyz, r1 = row1.xyz, r2 = row2.xyz;
-  vec3 n = octahedral_decode(normal);
-  vec4 turned = turned_normal(r0, r1, r2, n);
+  vec3 at = place_vertex();
+  vec4 turned = placed_normal();
   out_normal = turned.xyz;
   out_label = label_deformed.x;
   out_uv = vec4(uv0, uv1);
@@ -63,15 +37,16 @@ void main() {
   if ((kMaterialFlags & kMaterialNormalTexture) != 0u) {
     vec2 e = vec2(float(tangent & 0xffffu), float(tangent >> 17)) / vec2(65535.0, 32767.0) * 2.0 - 1.0;
     vec3 t = octahedral_decode(e);
-    out_tangent = vec4(dot(r0, t), dot(r1, t), dot(r2, t), ((tangent & 0x10000u) != 0u ? 1.0 : -1.0) * turned.w);
+    float sign = (tangent & 0x10000u) != 0u ? 1.0 : -1.0;
+    out_tangent = vec4(dot(row0.xyz, t), dot(row1.xyz, t), dot(row2.xyz, t), sign * turned.w);
   }
   if (kMotion) {
-    vec4 q = p;
+    vec4 q = vec4(position, 1.0);
     if (label_deformed.y != 0xffffffffu)
       q.xyz = next_positions[label_deformed.y + gl_VertexIndex];
     vec3 next_at = vec3(dot(next_row0, q), dot(next_row1, q), dot(next_row2, q));
     out_clip = gl_Position;
-    out_next_clip = views[view].next_clip_from_origin * vec4(next_at, 1.0);
+    out_next_clip = views[view_index()].next_clip_from_origin * vec4(next_at, 1.0);
   } else {
     out_clip = vec4(0.0);
     out_next_clip = vec4(0.0);

@@ -12,15 +12,15 @@ NERITIC_SHARED_BEGIN
 // sec_theta
 // * up, a pixel centre forward + pixel_tan * right + (cy - v - 0.5) / fy * up.
 struct SonarColumn {
-  vec3 beam_base;      // (tan theta, 0, -1) of the view
-  float sec_theta;     // 1 / cos of the azimuth off the view's axis
-  vec3 right;          // the view's x
-  float pixel_tan;     // (u + 0.5 - cx) / fx
-  vec3 up;             // the view's y
-  vec3 forward;        // the view's -z
-  int pixel;           // u, or -1: no view sees the column
-  uint layer;          // of the G-buffer images
-  int first_pixel;     // published gather: pixels whose centres lie in the column
+  vec3 beam_base;   // (tan theta, 0, -1) of the view
+  float sec_theta;  // 1 / cos of the azimuth off the view's axis
+  vec3 right;       // the view's x
+  float pixel_tan;  // (u + 0.5 - cx) / fx
+  vec3 up;          // the view's y
+  vec3 forward;     // the view's -z
+  int pixel;        // u, or -1: no view sees the column
+  uint layer;       // of the G-buffer images
+  int first_pixel;  // published gather: pixels whose centres lie in the column
   int end_pixel;
   float tan_theta;  // of the azimuth off the view's axis
 };

@@ -63,7 +63,8 @@ float neighbour_range(SonarColumn s, int row, int v) {
   if (other == v || other < 0 || other >= int(c.height)) return 0.0;
   if (kLeaning != 0) s = at_pixel(s, other, t);
   float ty = (c.cy - (float(other) + 0.5)) / c.fy;
-  return planar_metres(texelFetch(depth_image, ivec3(s.pixel, other, s.layer), 0).r) * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
+  float planar = planar_metres(texelFetch(depth_image, ivec3(s.pixel, other, s.layer), 0).r);
+  return planar * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
 }
 
 // How far from the centre's range the plane is at the row's edge of tangent t: no farther than the
@@ -94,8 +95,8 @@ void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, boo
 }
 
 // Where the plane meets the lower and the upper edge of the row.
-void find_ends(SonarColumn s, uint row, int v, vec2 edges, bool limb, float planar, vec2 along_edges, float along_pixel,
-               inout BeamHit hit) {
+void find_ends(SonarColumn s, uint row, int v, vec2 edges, bool limb, float planar, vec2 along_edges,
+               float along_pixel, inout BeamHit hit) {
   float low = edge_reach(s, edges.x, planar, along_edges.x, along_pixel, hit.range_m,
                          neighbour_range(s, int(row) - 1, v));
   float high = edge_reach(s, edges.y, planar, along_edges.y, along_pixel, hit.range_m,

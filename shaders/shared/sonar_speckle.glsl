@@ -20,8 +20,8 @@ struct Cell {
 };
 const uint kNoLevel = 0xffffffffu;
 
-// [n_range][n_azimuth], a bin's power while rows are summed: the float's bits, then two parts of 65535: of what odd slices gave, and of
-// the rows' number of the place where it comes from, on average.
+// [n_range][n_azimuth], a bin's power while rows are summed: the float's bits, then two parts of 65535: of what odd
+// slices gave, and of the rows' number of the place where it comes from, on average.
 layout(set = 0, binding = kSonarBindScratch, scalar) buffer Powers { uvec2 powers[]; };
 
 uint level_at(float range_m) {

@@ -39,7 +39,8 @@ class SonarNotes {
 
   // Whether nothing was said about it yet; true once.
   bool first(About about);
-  // Held until release(), so that a run which fails says why and no more; from then on said at once.
+  // Held until release(), so that a run which fails says why and no more; from then on said at
+  // once.
   void say(std::string line);
   void release();
 
