@@ -39,7 +39,7 @@ class NextStop : public AscentSink {
 
 bool is_good(const DiveSample& sample, std::size_t gases) {
   return sample.depth_m >= kHighestSample_m && sample.depth_m <= kDeepestSample_m &&
-         sample.gas < gases;
+         sample.gas < gases && sample.breathed <= 1;
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ DiveComputerState DiveComputer::step(const DiveComputerState& before, const Dive
     return state;
   }
   if (is_good(sample, settings_.gases.size()))
-    state.last = {std::max(sample.depth_m, 0.0), sample.gas};
+    state.last = {std::max(sample.depth_m, 0.0), sample.gas, sample.breathed};
   else
     ++state.refused;
   const DecoConventions& c = settings_.conventions;
@@ -96,11 +96,13 @@ DiveComputerState DiveComputer::step(const DiveComputerState& before, const Dive
                to = c.environment.pressure_bar(state.last.depth_m);
   // A new gas is breathed from the sample on that says so.
   const GasMix& mix = settings_.gases[before.last.gas].mix;
-  state.tissues = load(ascent_.model, before.tissues, from, to, minutes, mix);
-  const OxygenExposure more =
-      oxygen_exposure(mix.oxygen * from, mix.oxygen * to, minutes, c.cns_from_bar);
-  state.oxygen.cns_percent += more.cns_percent;
-  state.oxygen.otu += more.otu;
+  if (before.last.breathed != 0) {
+    state.tissues = load(ascent_.model, before.tissues, from, to, minutes, mix);
+    const OxygenExposure more =
+        oxygen_exposure(mix.oxygen * from, mix.oxygen * to, minutes, c.cns_from_bar);
+    state.oxygen.cns_percent += more.cns_percent;
+    state.oxygen.otu += more.otu;
+  }
   state.ascent = observe(before.ascent, state.last.depth_m, dt_s, settings_.ascent);
   if (std::max(before.last.depth_m, state.last.depth_m) > kSubmerged_m) {
     if (state.surface_min >= kNewDive_min) state.dive_min = state.deepest_m = 0.0;

@@ -25,11 +25,13 @@ struct DiveComputerSettings {
 
 struct DiveSample {
   double depth_m = 0.0;
-  std::uint64_t gas = 0;  // of the settings
+  std::uint64_t gas = 0;       // of the settings
+  std::uint64_t breathed = 1;  // 0: nothing came to breathe; tissues and oxygen stay as they are
 
   static void fields(auto&& field, auto& self) {
     field("depth_m", self.depth_m);
     field("gas", self.gas);
+    field("breathed", self.breathed);
   }
 };
 
@@ -60,13 +62,12 @@ struct DiveComputerState {
 // conventions differ by in the gradient factor at a stop.
 inline constexpr double kCeilingSlack_m = 0.3;
 
-// What a computer's display has. Above a ceiling the stops begin at or below it, not where the
-// diver is: the next stop is then deeper than the diver, at the surface too, and the way down to it
-// is part of the time to the surface.
 // Gases whose share of the way up is told: the first ones of the settings.
 inline constexpr std::size_t kToldGases = 4;
 
-// What a computer's display has.
+// What a computer's display has. Above a ceiling the stops begin at or below it, not where the
+// diver is: the next stop is then deeper than the diver, at the surface too, and the way down to it
+// is part of the time to the surface. The way up is reckoned as breathed.
 struct DiveComputerView {
   double ceiling_m = 0.0;               // of the gradient factor that holds there; 0: none
   bool ceiling_violated = false;        // the diver is above it by more than kCeilingSlack_m
@@ -92,9 +93,11 @@ class DiveComputer {
   // At the surface, never dived; or with these tissues.
   DiveComputerState start() const;
   DiveComputerState start(const TissueState& tissues) const;
-  // dt_s after the last sample; the depth changed linearly. What is no number, out of bounds (-10
-  // to 2000 m, a gas that there is none of, dt_s below 0 or endless) is refused and counted, and
-  // the last good sample held. Above the surface is at it.
+  // dt_s after the last sample; the depth changed linearly, and what the last sample breathes was
+  // breathed. Where that was nothing, no gas comes to the lungs or leaves them: tissues, CNS and
+  // OTU stay. What is no number, out of bounds (-10 to 2000 m, a gas that there is none of,
+  // breathed above 1, dt_s below 0 or endless) is refused and counted, and the last good sample
+  // held. Above the surface is at it.
   DiveComputerState step(const DiveComputerState& before, const DiveSample& sample,
                          double dt_s) const;
   // without: bits of gases whose tanks are empty or shut: the ascent does not switch to them.

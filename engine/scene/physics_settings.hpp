@@ -97,6 +97,8 @@ struct SwimPlan {
 struct Human {
   std::filesystem::path file;    // body and gear
   std::optional<SwimPlan> swim;  // absent: hovers
+  // The jacket's buttons over time: from its first row on they are pressed so. Empty: none.
+  std::filesystem::path jacket_buttons;
 };
 
 // Whether vehicles can touch an object, and as what.

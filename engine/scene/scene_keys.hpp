@@ -68,6 +68,7 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "tether_anchor_m",
                                                         "human",
                                                         "swim",
+                                                        "jacket_buttons",
                                                         "cameras",
                                                         "sonars",
                                                         "lamps"});

@@ -17,7 +17,7 @@ constexpr Interval kAnySeconds{-1e9, 1e9, false, false, "seconds"};
 constexpr std::size_t kMaxFailedThruster = 16;
 
 constexpr Key kPhysicsOnly[] = {"collision",       "dynamics", "mission", "failed_thrusters",
-                                "tether_anchor_m", "human",    "swim"};
+                                "tether_anchor_m", "human",    "swim",    "jacket_buttons"};
 constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m"};
 // What vehicles cannot pass, where nothing else is said.
 constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
@@ -151,7 +151,8 @@ class VehiclePhysicsReader {
 
   void read_human() {
     if (!reader_.has("human")) {
-      if (reader_.has("swim")) reader_.refuse("swim", "no such key without human");
+      for (const Key key : {"swim", "jacket_buttons"})
+        if (reader_.has(key)) reader_.refuse(key, "no such key without human");
       return;
     }
     Human human;
@@ -162,6 +163,7 @@ class VehiclePhysicsReader {
     if (!object_.request)
       reader_.refuse("human", "no such key for what is not drawn: its joints are moved");
     if (const TomlValue* table = reader_.table("swim")) human.swim = read_swim(*table);
+    if (reader_.has("jacket_buttons")) human.jacket_buttons = reader_.file("jacket_buttons");
     object_.object.human = std::move(human);
   }
 

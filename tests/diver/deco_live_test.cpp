@@ -203,6 +203,25 @@ TEST(DecoLive, ALittleAboveAStopTheStopStaysWhereItIs) {
   EXPECT_NEAR(above.to_surface_min, at_stop.to_surface_min, 0.5);
 }
 
+// Nothing comes to breathe for ten minutes at 40 m, then gas again: as if these were not.
+TEST(DecoLive, WithoutGasTissuesAndOxygenStayAsTheyAre) {
+  const DiveComputer computer = computer_for(square_dive(40.0, 20.0));
+  const DiveComputerState bottom = computer.step(computer.start(), {40.0, 0, 0}, 0.0);
+  EXPECT_EQ(bottom.refused, 0u);
+  DiveComputerState unfed = bottom;
+  for (int i = 0; i < 600; ++i) unfed = computer.step(unfed, {40.0, 0, 0}, 1.0);
+  EXPECT_TRUE(sim::same_bits(unfed.tissues, bottom.tissues));
+  EXPECT_TRUE(sim::same_bits(unfed.oxygen, bottom.oxygen));
+  EXPECT_NEAR(unfed.dive_min, 10.0, 1e-9);  // time and depth go on
+  const DiveComputerState fed =
+      computer.step(computer.step(unfed, {40.0, 0, 1}, 0.0), {40.0, 0, 1}, 600.0);
+  const DiveComputerState usual =
+      computer.step(computer.step(bottom, {40.0, 0, 1}, 0.0), {40.0, 0, 1}, 600.0);
+  EXPECT_TRUE(sim::same_bits(fed.tissues, usual.tissues));
+  EXPECT_GT(fed.tissues.n2_bar[0], unfed.tissues.n2_bar[0] + 1.0);
+  EXPECT_GT(fed.oxygen.cns_percent, unfed.oxygen.cns_percent);
+}
+
 TEST(DecoLive, WhatMakesNoSenseIsRefusedCountedAndTheLastGoodHeld) {
   const DiveComputer computer = computer_for(square_dive(40.0, 20.0));
   DiveComputerState good = computer.start(), bad = computer.start();
@@ -210,7 +229,7 @@ TEST(DecoLive, WhatMakesNoSenseIsRefusedCountedAndTheLastGoodHeld) {
   bad = computer.step(bad, {40.0, 0}, 120.0);
   std::uint64_t refused = 0;
   for (const DiveSample& sample :
-       {DiveSample{kNan, 0}, {-1e9, 0}, {HUGE_VAL, 0}, {3000.0, 0}, {5.0, 7}}) {
+       {DiveSample{kNan, 0}, {-1e9, 0}, {HUGE_VAL, 0}, {3000.0, 0}, {5.0, 7}, {5.0, 0, 2}}) {
     good = computer.step(good, {40.0, 0}, 10.0);
     bad = computer.step(bad, sample, 10.0);
     EXPECT_EQ(bad.refused, ++refused);

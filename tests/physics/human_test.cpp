@@ -240,11 +240,18 @@ TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
   DiveRecorder recorder(*dive.world, {});
   recorder.add(dive.simulation->newest());
   double unfed_s = 0.0, first_s = 0.0;
+  diver::TissueState unfed;
   dive.run(60.0, [&] {
     recorder.add(dive.simulation->newest());
-    const double now_s = dive.state().humans[0].human.life.lungs.unfed_s;
+    const diver::LifeState& life = dive.state().humans[0].human.life;
+    const double now_s = life.lungs.unfed_s;
     if (now_s > 0.0 && first_s == 0.0) first_s = dive.time_s();
+    if (now_s > 1.1 && unfed_s <= 1.1) unfed = life.computer.tissues;
     unfed_s = std::max(unfed_s, now_s);
+    // What is not breathed loads no tissue.
+    if (now_s > 1.1) {
+      ASSERT_TRUE(sim::same_bits(life.computer.tissues, unfed)) << now_s;
+    }
   });
   const HumanFigures& f = recorder.humans().figures()[0];
   ASSERT_GT(unfed_s, 5.0);
@@ -254,6 +261,54 @@ TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
   EXPECT_EQ(f.oxygen, diver::RiskLevel::kSevere);  // .5 of 5 bar
   EXPECT_NEAR(f.most_po2_bar, 0.5 * 1e-5 * (101325.0 + 1028.0 * 9.80665 * f.deepest_m), 0.05);
   EXPECT_EQ(f.above_ceiling_m, 0.0);
+}
+
+// An hour at 30 m, then an inflator that freezes open: up at many times the rate allowed, through
+// the ceiling, and nothing stops it. What is told is what depth and ceiling were, second by second.
+TEST(HumanDive, AnInflatorThatFreezesOpenIsAnUncontrolledAscentAndIsTold) {
+  const test::ScratchFolder folder;
+  const std::string file = (folder / "frozen.csv").string();
+  ASSERT_TRUE(write_text(file, "t_s,inflate\n8,1\n").ok());
+  const TestDive dive =
+      dive_of(kStillWater + diver_text(std::string("position_m = [0, -30, 0]\n") + kProne +
+                                       "jacket_buttons = \"" + file + "\"\n"));
+  const PhysicsHuman& human = dive.world->humans()[0];
+  sim::Snapshot<PhysicsState> now = dive.simulation->newest();
+  auto& computer = now.state.humans[0].human.life.computer;
+  for (int i = 0; i < 60; ++i) computer = human.computer->step(computer, {30.0, 0}, 60.0);
+  DiveRecorder recorder(*dive.world, {});
+  recorder.add(now);
+  std::vector<double> depths_m;
+  double above_m = 0.0, above_s = 0.0;
+  const double dt_s = dive.world->step_s();
+  for (int i = 1; i <= 75 * 240; ++i) {
+    now.state = dive.world->step(now.state, {}, dt_s);
+    now.step = static_cast<std::uint64_t>(i);
+    now.time_s = i * dt_s;
+    recorder.add(now);
+    const HumanPhysics& state = now.state.humans[0];
+    const double depth_m = state.human.root.position_ned_m.z;
+    EXPECT_EQ((state.human.held.buttons & diver::kInflate) != 0, i > 8 * 240) << now.time_s;
+    if (i % 240 != 0) continue;
+    depths_m.push_back(depth_m);
+    const double over_m = human.computer->view(computer).ceiling_m - std::max(depth_m, 0.0);
+    if (over_m > diver::kCeilingSlack_m && above_s == 0.0) above_s = now.time_s;
+    above_m = std::max(above_m, over_m);
+  }
+  double fastest_m_min = 0.0;  // of ten seconds, the least that it can be
+  for (std::size_t i = 10; i < depths_m.size(); ++i)
+    fastest_m_min = std::max(fastest_m_min, 6.0 * (depths_m[i - 10] - depths_m[i]));
+  const HumanFigures& f = recorder.humans().figures()[0];
+  EXPECT_NEAR(depths_m[6], 30.0, 1.0);
+  EXPECT_LT(depths_m.back(), 1.0);
+  ASSERT_GT(fastest_m_min, 36.0);
+  EXPECT_EQ(f.ascent_alarm, diver::AscentAlarm::kDangerous);
+  EXPECT_GE(f.fastest_ascent_m_min, 0.98 * fastest_m_min);
+  EXPECT_LT(f.fastest_ascent_m_min, 1.3 * fastest_m_min);
+  EXPECT_GT(f.ascent_alarm_s, 10.0);
+  ASSERT_GT(above_m, 3.0);
+  EXPECT_NEAR(f.above_ceiling_m, above_m, 0.01);
+  EXPECT_NEAR(f.above_ceiling_from_s, above_s, 1.01);
 }
 
 // Oxygen is carried for the stops: while its bottle is full it shortens the way up, and not when it
@@ -321,6 +376,16 @@ TEST(HumanDive, MistakesAreToldInOneLine) {
             std::string::npos);
   EXPECT_NE(fault_of(kStillWater + diver_text("swim = { motion = \"" + any_file + "\" }\n"))
                 .find("recreational.toml"),
+            std::string::npos);
+  const test::ScratchFolder scratch;
+  const std::string bare = (scratch / "bare.toml").string(),
+                    buttons = (scratch / "buttons.csv").string();
+  ASSERT_TRUE(write_text(bare, "jacket = false\n").ok());
+  ASSERT_TRUE(write_text(buttons, "t_s,inflate\n0,1\n").ok());
+  const std::string pressed = "jacket_buttons = \"" + buttons + "\"\n";
+  EXPECT_NE(fault_of(kStillWater + diver_text(pressed, bare)).find("a diver without a jacket"),
+            std::string::npos);
+  EXPECT_NE(fault_of(kStillWater + rov_text(pressed)).find("no such key without human"),
             std::string::npos);
   std::string three;
   for (int i = 0; i < 3; ++i) {

@@ -63,11 +63,14 @@ HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
   acting.current_change_ned_m_s2 = water.change_m_s2;
   acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
   follow_plan(human, state);
+  const double now_s = static_cast<double>(step) * dt_s;
   if (inputs.worn == 0 && human.recording)
-    acting.joints = human.recording->at(static_cast<double>(step) * dt_s, human.repeat);
+    acting.joints = human.recording->at(now_s, human.repeat);
   else if (inputs.worn == 0)  // nobody wears the suit: swims by itself
     diver::swim(human.body, human.file.swimmer, swim_goal(human, state), state.human, state.swimmer,
                 dt_s, acting);
+  if (inputs.worn == 0 && human.buttons)
+    acting.buttons = human.buttons->at(now_s).value_or(acting.buttons);
   const diver::RootState before = state.human.root;
   state.human = diver::step(human.body, state.human, acting, dt_s);
   const diver::RootState& after = state.human.root;
@@ -114,7 +117,8 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
   state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);
   state.contact.impulse_n_s = report.impulse_n_s;
   if (!computer_due(step, dt_s)) return;
-  const diver::DiveSample sample{after.position_ned_m.z, state.human.held.tank};
+  const diver::DiveSample sample{after.position_ned_m.z, state.human.held.tank,
+                                 state.human.life.lungs.unfed_s > 0.0 ? 0U : 1U};
   state.human.life.computer =
       human.computer->step(state.human.life.computer, sample, diver::kComputerSample_s);
 }

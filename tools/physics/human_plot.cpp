@@ -73,17 +73,19 @@ void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
                       rows, "left to 50 bar, min", 2,
                       [](const HumanRow& r) { return std::min(r.gas.remaining_s / 60.0, 300.0); })},
                  5.0, kHeadroom);
-  draw_over_time(canvas, {10, middle_y, middle_x, last_y}, "Decompression of " + name, "m, min",
-                 {first_over_time(
-                      rows, "no-stop time, min", 0,
-                      [](const HumanRow& r) { return std::min(r.ascent.view.no_stop_min, 300.0); }),
-                  first_over_time(rows, "ceiling, m", 1,
-                                  [](const HumanRow& r) { return r.ascent.view.ceiling_m; }),
-                  first_over_time(rows, "to the surface, min", 2,
-                                  [](const HumanRow& r) {
-                                    return std::min(r.ascent.view.to_surface_min, 300.0);
-                                  })},
-                 1.0, kHeadroom);
+  draw_over_time(
+      canvas, {10, middle_y, middle_x, last_y}, "Decompression of " + name, "m, min, m/min",
+      {first_over_time(
+           rows, "no-stop time, min", 0,
+           [](const HumanRow& r) { return std::min(r.ascent.view.no_stop_min, 300.0); }),
+       first_over_time(rows, "ceiling, m", 1,
+                       [](const HumanRow& r) { return r.ascent.view.ceiling_m; }),
+       first_over_time(
+           rows, "to the surface, min", 2,
+           [](const HumanRow& r) { return std::min(r.ascent.view.to_surface_min, 300.0); }),
+       first_over_time(rows, "ascent, m/min", 3,
+                       [](const HumanRow& r) { return r.ascent.view.ascent_m_min; })},
+      1.0, kHeadroom);
   draw_over_time(
       canvas, {middle_x, middle_y, width_px - 10.0, last_y}, "Lungs, jacket and balance of " + name,
       "litres, N",

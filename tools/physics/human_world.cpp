@@ -64,6 +64,13 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
       NERITIC_TRY(human.recording, diver::read_limb_recording(text, plan.motion.string()));
     }
   }
+  if (const auto& path = object.human->jacket_buttons; !path.empty()) {
+    if (human.body.jacket.capacity_m3 == 0.0)
+      return bad_input("{}: {}: jacket_buttons: no such key for a diver without a jacket ({})",
+                       scene.path, object.name, object.human->file.string());
+    NERITIC_TRY(const std::string text, read_text(path));
+    NERITIC_TRY(human.buttons, diver::read_button_recording(text, path.string()));
+  }
   set_shape(human);
   NERITIC_TRY_STATUS(find_nodes(scene, object, human));
   const Pose at = scene.world_from(object.mount, 0.0);

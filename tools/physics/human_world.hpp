@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "diver/button_recording.hpp"
 #include "diver/diver_file.hpp"
 #include "diver/limb_recording.hpp"
 #include "engine/scene/scene.hpp"
@@ -30,6 +31,8 @@ struct PhysicsHuman {
   double speed_m_s = 0.0, acceptance_m = 1.0;
   bool repeat = false;
   std::optional<diver::LimbRecording> recording;  // moves the limbs instead
+  // Presses the jacket's buttons from its first row on, instead of who swims.
+  std::optional<diver::ButtonRecording> buttons;
   sim::BodyShape shape;  // for contacts: model axes (starboard, up, back) of who swims
   // The joints of what is drawn: nodes of its model, one a segment, and how its arms are spread.
   std::vector<int> nodes;
