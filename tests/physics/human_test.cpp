@@ -239,13 +239,14 @@ TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
       dive_of(kStillWater + diver_text(std::string("position_m = [0, -40, 0]\n") + kProne, file));
   DiveRecorder recorder(*dive.world, {});
   recorder.add(dive.simulation->newest());
-  double unfed_s = 0.0, first_s = 0.0;
+  double unfed_s = 0.0, first_s = 0.0, dark_s = 0.0;
   diver::TissueState unfed;
   dive.run(60.0, [&] {
     recorder.add(dive.simulation->newest());
     const diver::LifeState& life = dive.state().humans[0].human.life;
     const double now_s = life.lungs.unfed_s;
     if (now_s > 0.0 && first_s == 0.0) first_s = dive.time_s();
+    if (now_s > 0.0) dark_s += dive.world->step_s();
     if (now_s > 1.1 && unfed_s <= 1.1) unfed = life.computer.tissues;
     unfed_s = std::max(unfed_s, now_s);
     // What is not breathed loads no tissue.
@@ -255,7 +256,8 @@ TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
   });
   const HumanFigures& f = recorder.humans().figures()[0];
   ASSERT_GT(unfed_s, 5.0);
-  EXPECT_NEAR(f.out_of_gas_s, unfed_s, 1.01);
+  EXPECT_NEAR(f.out_of_gas_longest_s, unfed_s, 1.01);
+  EXPECT_NEAR(f.out_of_gas_s, dark_s, 2.0);
   EXPECT_GE(f.out_of_gas_from_s, first_s - 0.1);
   EXPECT_EQ(f.out_of_gas_tank, 0u);
   EXPECT_EQ(f.oxygen, diver::RiskLevel::kSevere);  // .5 of 5 bar

@@ -108,9 +108,9 @@ std::string tank_words(const PhysicsHuman& human, std::uint64_t tank) {
 
 std::string gas_words(const PhysicsHuman& human, const HumanFigures& figures) {
   if (!(figures.out_of_gas_s > 0.0)) return {};
-  return fmt::format("NO GAS from {} from {:.0f} s on, for {:.0f} s; ",
-                     tank_words(human, figures.out_of_gas_tank), figures.out_of_gas_from_s,
-                     figures.out_of_gas_s);
+  return fmt::format("NO GAS for {:.0f} s, from {:.0f} s on, out of {} ({:.0f} s at a stretch); ",
+                     figures.out_of_gas_s, figures.out_of_gas_from_s,
+                     tank_words(human, figures.out_of_gas_tank), figures.out_of_gas_longest_s);
 }
 
 // One line for each danger that there was.
@@ -140,7 +140,8 @@ nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figur
   if (figures.out_of_gas_s > 0.0)
     json["out_of_gas"] = {{"tank", tank_words(human, figures.out_of_gas_tank)},
                           {"from_s", figures.out_of_gas_from_s},
-                          {"seconds", figures.out_of_gas_s}};
+                          {"seconds", figures.out_of_gas_s},
+                          {"longest_s", figures.out_of_gas_longest_s}};
   if (figures.ascent_alarm != diver::AscentAlarm::kNone)
     json["ascent_alarm"] = {{"worst", name_of(figures.ascent_alarm)},
                             {"seconds", figures.ascent_alarm_s},
@@ -207,7 +208,11 @@ nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
             {"co2_mmhg", state.human.life.vitals.risk.co2_mmhg},
             {"co2", name_of(state.human.life.vitals.risk.co2)},
             {"narcotic_depth_m", state.human.life.vitals.risk.narcotic_depth_m},
-            {"narcosis", name_of(state.human.life.vitals.risk.narcosis)}}},
+            {"narcosis", name_of(state.human.life.vitals.risk.narcosis)},
+            {"gas_density", name_of(state.human.life.vitals.risk.gas_density)},
+            {"breathing", name_of(state.human.life.vitals.risk.breathing)},
+            {"oxygen_bar", state.human.life.vitals.risk.oxygen_bar},
+            {"oxygen", name_of(state.human.life.vitals.risk.oxygen)}}},
           {"ceiling_m", deco.ceiling_m},
           {"ceiling_violated", deco.ceiling_violated},
           {"no_stop_min", deco.no_stop_min},

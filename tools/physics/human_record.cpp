@@ -61,10 +61,13 @@ void HumanRecorder::note_dangers(std::size_t index, const sim::Snapshot<PhysicsS
   const diver::HumanState& state = snapshot.state.humans[index].human;
   const double now_s = snapshot.time_s;
   HumanFigures& f = figures_[index];
-  if (state.life.lungs.unfed_s > f.out_of_gas_s) {
-    f.out_of_gas_s = state.life.lungs.unfed_s;
-    f.out_of_gas_from_s = now_s - f.out_of_gas_s;
-    f.out_of_gas_tank = state.held.tank;
+  if (const double unfed_s = state.life.lungs.unfed_s; unfed_s > 0.0) {
+    if (f.out_of_gas_s == 0.0) {
+      f.out_of_gas_from_s = now_s - unfed_s;
+      f.out_of_gas_tank = state.held.tank;
+    }
+    f.out_of_gas_s += diver::kComputerSample_s;
+    f.out_of_gas_longest_s = std::max(f.out_of_gas_longest_s, unfed_s);
   }
   const diver::DiveComputerView view = human.computer->view(state.life.computer);
   if (view.ascent_m_min > f.fastest_ascent_m_min) {

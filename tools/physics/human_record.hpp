@@ -36,11 +36,11 @@ diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& s
 
 struct HumanFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, deepest_m = 0.0, shallowest_m = 1e9;
-  // What endangered the diver, over the dive. The longest time that nothing came to breathe, and of
-  // which tank; 0: none.
-  double out_of_gas_s = 0.0, out_of_gas_from_s = 0.0;
+  // What endangered the diver, over the dive, noted once a second. How long nothing came to
+  // breathe, all together and at a stretch, since when and of which tank at first; 0: never.
+  double out_of_gas_s = 0.0, out_of_gas_longest_s = 0.0, out_of_gas_from_s = 0.0;
   std::uint64_t out_of_gas_tank = 0;
-  // By the dive computer, once a second: rate, the worst alarm and how long any lasted, and how far
+  // By the dive computer: rate, the worst alarm and how long any lasted, and how far
   // above a ceiling.
   double fastest_ascent_m_min = 0.0, fastest_ascent_at_s = 0.0, ascent_alarm_s = 0.0;
   diver::AscentAlarm ascent_alarm = diver::AscentAlarm::kNone;

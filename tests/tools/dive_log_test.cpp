@@ -1,0 +1,111 @@
+// tools/physics/LOG.md against what `neritic dive` writes: the page has every column of the log and
+// every key of --json, and no other. The program itself is run.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic {
+namespace {
+
+using Words = std::set<std::string>;
+
+// What stands in backticks in a table's rows, of the page from one heading to the next; of their
+// first cells alone where so asked.
+Words words_of(const std::string& page, const std::string& from, const std::string& to,
+               bool first_cells) {
+  const std::size_t begin = page.find(from), end = page.find(to, begin);
+  EXPECT_NE(begin, page.npos) << from;
+  std::istringstream lines(page.substr(begin, end - begin));
+  Words words;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("| `")) continue;
+    if (first_cells) line.resize(line.find('|', 2));
+    for (std::size_t at = 0; (at = line.find('`', at)) != line.npos;) {
+      const std::size_t close = line.find('`', at + 1);
+      words.insert(line.substr(at + 1, close - at - 1));
+      at = close + 1;
+    }
+  }
+  return words;
+}
+
+void gather_keys(const nlohmann::json& json, Words& keys) {
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_object()) keys.insert(key);
+    if (value.is_structured()) gather_keys(value, keys);
+  }
+}
+
+// A vehicle with every sensor, and a diver to whom all befalls: too deep on a small tank of air, an
+// inflator that freezes open.
+class DiveLog : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string assets = (test::source_dir() / "assets").string();
+    ASSERT_TRUE(write_text(folder_ / "b.csv", "t_s,inflate\n20,1\n").ok());
+    ASSERT_TRUE(write_text(folder_ / "d.toml",
+                           "tanks = [ { volume_l = 3, pressure_bar = 200 } ]\n"
+                           "[computer]\ngf_low = 0.1\ngf_high = 0.2\n")
+                    .ok());
+    ASSERT_TRUE(write_text(folder_ / "s.toml", R"(title = "all"
+[physics]
+[[objects]]
+name = "diver"
+model = ")" + assets + R"(/models/diver.glb"
+human = "d.toml"
+jacket_buttons = "b.csv"
+position_m = [0, -150, 0]
+pitch_deg = -90
+[[vehicles]]
+name = "rov"
+shape = "box"
+size_m = [0.57, 0.26, 0.46]
+dynamics = ")" + assets + R"(/vehicles/bluerov2_heavy_survey_dynamics.toml"
+position_m = [3, -150, 0]
+mission = { waypoints = [ { position_m = [3, -150, -1] } ] }
+)")
+                    .ok());
+    const std::string command = fmt::format(
+        "{}/tools/neritic dive {} --headless --seconds 300 --log-rate 0.1 --json --log {} > {}",
+        NERITIC_BINARY_DIR, (folder_ / "s.toml").string(), (folder_ / "log.csv").string(),
+        (folder_ / "out.json").string());
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    page_ = read_text(test::source_dir() / "tools/physics/LOG.md").value();
+  }
+
+  test::ScratchFolder folder_;
+  std::string page_;
+};
+
+TEST_F(DiveLog, ThePageHasEveryColumnAndNoOther) {
+  const std::string log = read_text(folder_ / "log.csv").value();
+  std::istringstream heading(log.substr(0, log.find('\n')));
+  Words columns;
+  for (std::string name; std::getline(heading, name, ',');) {
+    EXPECT_TRUE(columns.insert(name).second) << "twice: " << name;
+    for (const char* kind : {"command_", "thrust_"})
+      if (name.starts_with(kind) && name.ends_with("_n")) columns.erase(name);
+  }
+  columns.insert({"command_N_n", "thrust_N_n"});
+  EXPECT_EQ(words_of(page_, "## The log", "## The summary", true), columns);
+}
+
+TEST_F(DiveLog, ThePageHasEveryKeyAndNoOther) {
+  const auto json = parse_json(read_text(folder_ / "out.json").value());
+  ASSERT_TRUE(json.ok()) << json.error().message;
+  const auto& dangers = (*json)["humans"][0]["dangers"];
+  for (const auto& [danger, what] : dangers.items()) EXPECT_FALSE(what.is_null()) << danger;
+  Words keys;
+  gather_keys(*json, keys);
+  EXPECT_EQ(words_of(page_, "## The summary", "\n## ", false), keys);
+}
+
+}  // namespace
+}  // namespace neritic
