@@ -135,6 +135,44 @@ TEST(HumanDive, WhatIsDrawnIsTheBodyOfThePhysics) {
   EXPECT_LT(breath, 0.15);
 }
 
+// What is drawn is as tall as the diver, and wears what the diver's file says and nothing else.
+TEST(HumanDive, IsDrawnAtItsHeightWithItsGear) {
+  const test::ScratchFolder folder;
+  const auto bounds_of = [&](const std::string& file, double* crown_m) {
+    EXPECT_TRUE(write_text(folder / "d.toml", file).ok());
+    // Stands, so that the pose is the model's but for what is drawn otherwise.
+    const TestDive dive = dive_of(
+        kStillWater + diver_text("position_m = [0, -12, 0]\n", (folder / "d.toml").string()));
+    const PhysicsHuman& human = dive.world->humans()[0];
+    const scene::Model& model =
+        *dive.scene.models[static_cast<std::size_t>(dive.scene.objects[human.object].model)];
+    scene::NodeMotion::Key key = drawn_joints(human, human.start, 0.0);
+    for (Quat& turn : key.rotations) turn = Quat(1.0, 0.0, 0.0, 0.0);  // as it was built
+    const scene::ModelPose pose = scene::evaluate_pose(model, {human.nodes, {key}}, 0.0);
+    // Head to foot, which no gear lengthens.
+    const auto at = [&](diver::Segment s) {
+      return Vec3(pose.model_from_node[static_cast<std::size_t>(human.nodes[s])][3]);
+    };
+    *crown_m = at(diver::kHead).y - at(diver::kRightFoot).y;
+    return scene::model_bounds(model, pose);
+  };
+  double usual_m = 0.0, small_m = 0.0, tall_m = 0.0;
+  const auto usual = bounds_of("height_m = 1.80\n", &usual_m);
+  const auto bare =
+      bounds_of("height_m = 1.45\ntanks = []\nfins = false\njacket = false\n", &small_m);
+  const auto tall =
+      bounds_of("height_m = 2.05\nfins = { length_m = 0.8, width_m = 0.2 }\n", &tall_m);
+  EXPECT_NEAR(small_m / usual_m, 1.45 / 1.80, 0.01);
+  EXPECT_NEAR(tall_m / usual_m, 2.05 / 1.80, 0.01);
+  // The model's own: the tank behind the back to .36 m, blades before the toes to .58 m.
+  EXPECT_NEAR(usual.max.z, 0.36, 0.02);
+  EXPECT_NEAR(usual.min.z, -0.58, 0.02);
+  EXPECT_LT(bare.max.z, 0.20);          // no tank
+  EXPECT_GT(bare.min.z, -0.22);         // no fins: toes and mask
+  EXPECT_LT(tall.min.z, -0.165 - 0.8);  // blades of .8 m
+  EXPECT_GT(tall.min.z, -0.22 * 2.05 / 1.80 - 0.82);
+}
+
 // A kick as a table of joint angles, one beat that repeats, swims as the swimmer's own kick does.
 TEST(HumanDive, RecordedLimbsSwim) {
   const test::ScratchFolder scratch;

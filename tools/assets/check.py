@@ -19,6 +19,8 @@ WIDTH = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 SEGMENTS = {"pelvis", "abdomen", "thorax", "head"} | {
     f"{n}_{s}" for s in "lr" for n in ("upper_arm", "forearm", "hand", "upper_leg", "lower_leg", "foot")
 }
+GEAR = {"tank", "regulator"} | {f"jacket_{n}" for n in ("pelvis", "abdomen", "thorax", "head")}
+GEAR |= {f"{n}_{s}" for s in "lr" for n in ("fin", "blade")}
 
 
 class Model:
@@ -121,8 +123,8 @@ def check(path):
         if any(s & (s - 1) or s > 1024 for s in size):
             bad.append(f"image {i['name']}: {size}")
     joints = [d["nodes"][j]["name"] for j in d["skins"][0]["joints"]] if "skins" in d else []
-    if path.stem == "diver" and set(joints) != SEGMENTS:
-        bad.append("diver: joints are not the 16 segments")
+    if path.stem == "diver" and set(joints) != SEGMENTS | GEAR:
+        bad.append("diver: joints are not the 16 segments and the gear's")
     if path.stem == "rov" and sum(n["name"].startswith(("thruster_", "propeller_")) for n in d["nodes"]) != 16:
         bad.append("rov: thruster or propeller nodes are missing")
     mb = path.stat().st_size / 1e6

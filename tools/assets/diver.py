@@ -10,7 +10,7 @@ import numpy as np
 
 import diver_textures as T
 import sdf as S
-from diver_body import ANKLE, JOINTS, NAMES, WRIST, arm, body, chart_coords, chart_uv, fold, hand, rigid, skin, torso
+from diver_body import ANKLE, BOUND, GEAR, JOINTS, NAMES, WRIST, arm, body, chart_coords, chart_uv, fold, hand, rigid, skin, torso
 from diver_gear import gear
 from glb import Glb, qmul, quat
 from mesh import join, Part
@@ -166,7 +166,10 @@ def main():
     for name, (parent, at) in JOINTS.items():
         base = np.zeros(3) if parent is None else np.asarray(JOINTS[parent][1], float)
         node[name] = g.node(name, at=np.asarray(at, float) - base, parent=None if parent is None else node[parent])
-    skin_id = g.skin("diver", [node[n] for n in NAMES], [JOINTS[n][1] for n in NAMES])
+    places = JOINTS | GEAR
+    for name, (parent, at) in GEAR.items():
+        node[name] = g.node(name, at=at - np.asarray(places[parent][1], float), parent=node[parent])
+    skin_id = g.skin("diver", [node[n] for n in BOUND], [places[n][1] for n in BOUND])
     g.node("diver", mesh, skin=skin_id)
     clips(g, node)
     g.save(OUT / "diver.glb")

@@ -33,6 +33,22 @@ for _s, _m in (("l", -1), ("r", 1)):
     JOINTS[f"foot_{_s}"] = (f"lower_leg_{_s}", ANKLE * _f)
 NAMES = list(JOINTS)
 
+# What is worn hangs on joints of its own, at rest on the segment's (the blade's where the pocket ends): a
+# scale of 0 takes it off, into the body.
+GEAR = {
+    "tank": ("thorax", CHEST * np.array([0, 1.0, 0])),
+    "regulator": ("head", np.array([0, NECK, 0.005])),
+    "jacket_pelvis": ("pelvis", np.zeros(3)),
+    "jacket_abdomen": ("abdomen", WAIST * np.array([0, 1.0, 0])),
+    "jacket_thorax": ("thorax", CHEST * np.array([0, 1.0, 0])),
+    "jacket_head": ("head", np.array([0, NECK, 0.005])),
+}
+for _s, _m in (("l", -1), ("r", 1)):
+    _f = np.array([_m, 1, 1])
+    GEAR[f"fin_{_s}"] = (f"foot_{_s}", ANKLE * _f)
+    GEAR[f"blade_{_s}"] = (f"fin_{_s}", np.array([ANKLE[0] + 0.004, -0.912, -0.165]) * _f)
+BOUND = NAMES + list(GEAR)
+
 # height: half width, half depth, centre z
 TORSO = np.array(
     [
@@ -164,7 +180,7 @@ def pack(w):
 
 
 def rigid(part, name):
-    part.joints = np.tile([NAMES.index(name), 0, 0, 0], (len(part.pos), 1))
+    part.joints = np.tile([BOUND.index(name), 0, 0, 0], (len(part.pos), 1))
     part.weights = np.tile([1.0, 0, 0, 0], (len(part.pos), 1))
     return part
 

@@ -6,15 +6,17 @@ import numpy as np
 
 import noise as N
 import sdf as S
-from diver_body import NAMES, fold, rigid, skin, torso
+from diver_body import BOUND, NAMES, fold, rigid, skin, torso
 from diver_trim import BLACK, DARK, ORANGE, YELLOW, belt, extras, fins, mask
 from mesh import box_uv, shade
 from shapes import box, curve, cylinder, revolve, ring_band, tube
 
 
 def worn(p):
-    """Binds a worn part like the suit beneath it, without the arms and legs."""
+    """Binds the jacket like the suit beneath it, without the arms and legs, to the jacket's own joints."""
     j, w = skin(p.pos, arm_gate=np.zeros(len(p.pos)))
+    for name in {NAMES[k] for k in j[w > 0]}:
+        j[(j == NAMES.index(name)) & (w > 0)] = BOUND.index(f"jacket_{name}")
     p.joints, p.weights = j, w
     return p
 
@@ -65,7 +67,7 @@ def bcd():
 
 def plate():
     back = box(0.24, 0.44, 0.05, 0.02, 1).at(0, 0.33, 0.150)
-    return rigid(box_uv(shade(back).colored(BLACK), 0.16), "thorax")
+    return rigid(box_uv(shade(back).colored(BLACK), 0.16), "tank")
 
 
 def tank():
@@ -119,15 +121,15 @@ def tank():
     )
     rub = [body.tiled(0.3).colored(YELLOW), boot.tiled(0.3).colored(BLACK), knob.tiled(0.3).colored(BLACK)]
     rub += [b.tiled(0.3).colored(BLACK) for b in bands] + [b.tiled(0.3).colored(DARK) for b in buckles]
-    return [rigid(shade(p), "thorax") for p in rub], [rigid(shade(p.tiled(0.3)), "thorax") for p in metal]
+    return [rigid(shade(p), "tank") for p in rub], [rigid(shade(p.tiled(0.3)), "tank") for p in metal]
 
 
-def hose(points, r, color, follow=("thorax", "thorax"), n=22):
+def hose(points, r, color, follow=("tank", "tank"), n=22):
     """A hose whose weights slide from one joint to the other along its length."""
     path = curve(points, n)
     p = shade(tube(path, r, 6).tiled(0.3).colored(color))
     s = N.smooth(0.45, 0.95, np.argmin(((p.pos[:, None] - path[None]) ** 2).sum(2), 1) / (n - 1))
-    a, b = (NAMES.index(f) for f in follow)
+    a, b = (BOUND.index(f) for f in follow)
     p.joints = np.tile([a, b, 0, 0], (len(s), 1))
     if a == b:
         return rigid(p, follow[0])
@@ -149,7 +151,7 @@ def hoses():
         ],
         0.0068,
         BLACK,
-        ("thorax", "head"),
+        ("tank", "regulator"),
     )
     octo = hose(
         [
@@ -199,17 +201,17 @@ def hoses():
         76,
     )
     fold_r = 0.0145 + 0.0028 * np.sin(np.arange(76) * np.pi / 2)
-    corr = rigid(shade(tube(path, fold_r, 8).tiled(0.3).colored(BLACK), 70), "thorax")
-    valve = rigid(shade(box(0.036, 0.085, 0.04, 0.012, 1).at(-0.14, 0.30, -0.172).tiled(0.3).colored(DARK)), "thorax")
+    corr = rigid(shade(tube(path, fold_r, 8).tiled(0.3).colored(BLACK), 70), "jacket_thorax")
+    valve = rigid(shade(box(0.036, 0.085, 0.04, 0.012, 1).at(-0.14, 0.30, -0.172).tiled(0.3).colored(DARK)), "jacket_thorax")
     dial = rigid(
-        shade(cylinder(0.034, 0.03, 18).rot("x", -15).at(-0.165, 0.19, -0.185).tiled(0.3).colored(DARK)), "abdomen"
+        shade(cylinder(0.034, 0.03, 18).rot("x", -15).at(-0.165, 0.19, -0.185).tiled(0.3).colored(DARK)), "tank"
     )
     second = (
         revolve([(0.012, 0.022), (0.030, 0.018), (0.036, 0.004), (0.034, -0.018), (0.020, -0.024)], 18)
         .rot("x", -12)
         .at(0.15, 0.36, -0.190)
     )
-    return [first, octo, low, gauge, corr, valve, dial, rigid(shade(second.tiled(0.3).colored(YELLOW)), "thorax")]
+    return [first, octo, low, gauge, corr, valve, dial, rigid(shade(second.tiled(0.3).colored(YELLOW)), "tank")]
 
 
 def gear():

@@ -53,6 +53,7 @@ def mask():
         strap.append(pts[4:37] + [0, dy, 0])
     outer = loft([np.array([a, b, b * [0.97, 1, 0.97], a * [0.97, 1, 0.97]]) for a, b in zip(*strap)])
     rub.append(outer.colored(BLACK))
+    second = []
     reg = revolve(
         [
             (0.010, -0.030),
@@ -66,8 +67,8 @@ def mask():
         ],
         22,
     )
-    rub.append(reg.rot("x", -8).at(0, 0.695, -0.149).colored(DARK))
-    rub.append(
+    second.append(reg.rot("x", -8).at(0, 0.695, -0.149).colored(DARK))
+    second.append(
         loft(
             [
                 np.column_stack([round_rect(w, 0.026, 0.010, 3) + [0, 0.656], np.full(16, z)])
@@ -89,8 +90,8 @@ def mask():
     )
     rub.append(tube(snork[:22], 0.0125, 10).colored(BLACK))
     rub.append(tube(snork[21:], 0.0140, 10).colored(ORANGE))
-    head_bound = lambda ps: [rigid(shade(p.tiled(0.3)), "head") for p in ps]
-    return head_bound(rub), head_bound(glass), head_bound(metal)
+    bound = lambda ps, name: [rigid(shade(p.tiled(0.3)), name) for p in ps]
+    return bound(rub, "head") + bound(second, "regulator"), bound(glass, "head"), bound(metal, "regulator")
 
 
 def belt():
@@ -172,9 +173,9 @@ def fins():
     )
     parts.append(tube(strap, 0.011, 6, flat=0.5).colored(DARK))
     out = []
-    for p in parts:
+    for p, name in zip(parts, ("fin", "blade", "blade", "blade", "fin")):
         p = shade(p.tiled(0.3), 45)
-        out += [rigid(p, "foot_r"), rigid(p.mirrored(), "foot_l")]
+        out += [rigid(p, f"{name}_r"), rigid(p.mirrored(), f"{name}_l")]
     return out
 
 

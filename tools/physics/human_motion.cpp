@@ -133,6 +133,7 @@ scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysic
   scene::NodeMotion::Key key{time_s, {Quat(1.0, 0.0, 0.0, 0.0)}, {}};
   for (const Quat& joint : joints) key.rotations.push_back(joint);
   key.scales.assign(diver::kSegments, Vec3(1.0));
+  key.scales[diver::kPelvis] = Vec3(human.scale);
   // A breath of a litre makes the chest some 2.5 % wider and 5 % deeper (Konno and Mead 1967, J.
   // Appl. Physiol. 22, 407), the belly likewise; what hangs on the chest keeps its size.
   const double litres = 1e3 * (state.human.life.lungs.volume_m3 - human.body.lungs.rest_m3);
@@ -140,6 +141,10 @@ scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysic
   key.scales[diver::kAbdomen] = wider;
   for (const diver::Segment on_chest : {diver::kHead, diver::kLeftUpperArm, diver::kRightUpperArm})
     key.scales[on_chest] = 1.0 / wider;
+  for (const Vec3& gear : human.gear_scales) {
+    key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
+    key.scales.push_back(gear);
+  }
   return key;
 }
 

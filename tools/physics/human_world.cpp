@@ -25,6 +25,39 @@ int node_named(const scene::Model& model, std::string_view name) {
   return -1;
 }
 
+// How much larger than the model the diver is: trunk, thigh and shank, from joint to joint.
+double drawn_scale(const scene::Model& model, const PhysicsHuman& human) {
+  double drawn_m = 0.0, body_m = 0.0;
+  for (const diver::Segment segment :
+       {diver::kAbdomen, diver::kThorax, diver::kHead, diver::kRightLowerLeg, diver::kRightFoot}) {
+    const auto node = static_cast<std::size_t>(human.nodes[segment]);
+    drawn_m += glm::length(model.nodes[node].translation_m);
+    body_m += glm::length(human.body.segments[segment].joint_m);
+  }
+  return drawn_m > 0.0 ? body_m / drawn_m : 1.0;
+}
+
+// Gear that the model has on nodes of its own (tools/assets/README.md), as this diver wears it: a
+// blade as long and wide as his fins, of any size of body.
+void find_gear(const scene::Model& model, PhysicsHuman& human) {
+  const diver::Gear& gear = human.file.parameters.gear;
+  const auto worn = [&](const char* name, const Vec3& scale) {
+    const int node = node_named(model, name);
+    if (node < 0) return;
+    human.nodes.push_back(node);
+    human.gear_scales.push_back(scale);
+  };
+  const Vec3 tank(gear.tanks.empty() ? 0.0 : 1.0), jacket(gear.jacket ? 1.0 : 0.0);
+  for (const char* name : {"tank", "regulator"}) worn(name, tank);
+  for (const char* name : {"jacket_pelvis", "jacket_abdomen", "jacket_thorax", "jacket_head"})
+    worn(name, jacket);
+  const diver::Fins usual, fins = gear.fins.value_or(usual);
+  const Vec3 blade(fins.width_m / usual.width_m / human.scale, 1.0,
+                   fins.length_m / usual.length_m / human.scale);
+  for (const char* name : {"fin_l", "fin_r"}) worn(name, Vec3(gear.fins ? 1.0 : 0.0));
+  for (const char* name : {"blade_l", "blade_r"}) worn(name, blade);
+}
+
 // The model's joints, and how far its arms are spread: the way from shoulder to elbow.
 Status find_nodes(const scene::Scene& scene, const scene::Object& object, PhysicsHuman& human) {
   const scene::Model& model = *scene.models[static_cast<std::size_t>(object.model)];
@@ -37,6 +70,8 @@ Status find_nodes(const scene::Scene& scene, const scene::Object& object, Physic
   const auto elbow = static_cast<std::size_t>(human.nodes[diver::kRightForearm]);
   const Vec3& arm = model.nodes[elbow].translation_m;
   human.arms_spread_rad = std::atan2(arm.x, -arm.y);
+  human.scale = drawn_scale(model, human);
+  find_gear(model, human);
   return {};
 }
 

@@ -34,9 +34,12 @@ struct PhysicsHuman {
   // Presses the jacket's buttons from its first row on, instead of who swims.
   std::optional<diver::ButtonRecording> buttons;
   sim::BodyShape shape;  // for contacts: model axes (starboard, up, back) of who swims
-  // The joints of what is drawn: nodes of its model, one a segment, and how its arms are spread.
+  // The joints of what is drawn: nodes of its model, one a segment, then those of gear that it has;
+  // how its arms are spread, how much larger than the model the diver is, and the scale of each
+  // node of gear: 0 takes off what this diver has not.
   std::vector<int> nodes;
-  double arms_spread_rad = 0.0;
+  double arms_spread_rad = 0.0, scale = 1.0;
+  std::vector<Vec3> gear_scales;
   HumanPhysics start;
 };
 
