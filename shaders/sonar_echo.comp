@@ -44,12 +44,12 @@ float correction_at(float range_m, float sine) {
 
 void add_power(uint cell, uint counts) {
   if (kLanes == 1) {
-    uint before = sums[2 * cell];
-    sums[2 * cell] = before + counts;
-    if (before + counts < before) sums[2 * cell + 1] += 1;
+    uint before = imageLoad(sums, int(2 * cell)).x;
+    imageStore(sums, int(2 * cell), uvec4(before + counts));
+    if (before + counts < before) imageStore(sums, int(2 * cell + 1), uvec4(imageLoad(sums, int(2 * cell + 1)).x + 1));
   } else {
-    uint before = atomicAdd(sums[2 * cell], counts);
-    if (before + counts < before) atomicAdd(sums[2 * cell + 1], 1);
+    uint before = imageAtomicAdd(sums, int(2 * cell), counts);
+    if (before + counts < before) imageAtomicAdd(sums, int(2 * cell + 1), 1);
   }
 }
 
@@ -61,9 +61,7 @@ uint power_key(float power, uint label) {
 
 void add_key(uint cell, float power, uint label) {
   if (kLabels == 0 || !(power > 0.0)) return;
-  uint key = power_key(power, label);
-  if (kLanes > 1) atomicMax(keys[cell], key);
-  else if (key > keys[cell]) keys[cell] = key;
+  add_to_key(cell, power_key(power, label));
 }
 
 // Column and row of the head (not of its mirror image) in a direction from the sonar; negative: beyond what it

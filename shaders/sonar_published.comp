@@ -9,7 +9,7 @@
 #include "shared/sonar_common.glsl"
 
 // [n_range][n_azimuth]: 1 + the row that counted there last.
-layout(set = 0, binding = kSonarBindScratch, scalar) buffer Stamps { uint stamps[]; };
+layout(set = 0, binding = kSonarBindScratch, r32ui) uniform uimageBuffer stamps;
 
 // First pixel row below the direction of elevation tan_phi at the pixel column whose distance from the
 // axis is 1 / cos = sec. Neighbouring cells share the expression, so no pixel is lost or counted twice.
@@ -35,8 +35,8 @@ void add_pixel(ivec3 at, SonarColumn s, uint column, uint stamp) {
   float bin = (planar * length_of - c.range_min_m) * c.bins_per_m;
   if (!(bin >= 0.0 && bin < float(c.n_range))) return;
   uint cell = uint(bin) * c.n_azimuth + column;
-  if (stamps[cell] == stamp) return;  // a later pixel has that cell of the volume
-  stamps[cell] = stamp;
+  if (imageLoad(stamps, int(cell)).x == stamp) return;  // a later pixel has that cell of the volume
+  imageStore(stamps, int(cell), uvec4(stamp));
   float strength = min(facing(-along / length_of), 1.0);
   if (strength > 0.0) add_return(cell, strength, at);
 }

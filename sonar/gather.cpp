@@ -58,13 +58,15 @@ Status SonarGather::check(const gpu::Device& device) const {
         "gather published: it is the plain cosine; with terms, plane or nearest is accepted");
   NERITIC_CHECK(options_.gather != Gather::kPublished || layout_.lean == 0.0,
                 "the published gather takes upright images");
-  if (sums_bytes() > limits.maxStorageBufferRange)
-    return failure(
-        ErrorCode::kUnsupported,
-        "sonar image of {} x {} bins: {} bytes, the device allows {}; {:.2f} of its "
-        "range, or fewer range bins, beams or samples of a beam, fit",
-        grid_.bins.range, grid_.bins.azimuth, sums_bytes(), limits.maxStorageBufferRange,
-        static_cast<double>(limits.maxStorageBufferRange) / static_cast<double>(sums_bytes()));
+  const std::uint64_t most_bytes =
+      std::min<std::uint64_t>(limits.maxStorageBufferRange,
+                              std::uint64_t{limits.maxTexelBufferElements} * sizeof(std::uint32_t));
+  if (sums_bytes() > most_bytes)
+    return failure(ErrorCode::kUnsupported,
+                   "sonar image of {} x {} bins: {} bytes, the device allows {}; {:.2f} of its "
+                   "range, or fewer range bins, beams or samples of a beam, fit",
+                   grid_.bins.range, grid_.bins.azimuth, sums_bytes(), most_bytes,
+                   static_cast<double>(most_bytes) / static_cast<double>(sums_bytes()));
   if (options_.echo && options_.echo->records && records_bytes() > limits.maxStorageBufferRange)
     return failure(ErrorCode::kUnsupported,
                    "sonar labels.energy of {} columns x {} bins of elevation: {} bytes of records, "
@@ -181,10 +183,9 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
          {inputs.labels, inputs.direct_depth, inputs.direct_labels})
       if (image) builder.read(image, Access::kSampledCompute);
     if (inputs.reflectivity) builder.read(inputs.reflectivity, Access::kStorageReadCompute);
-    pass.out.sums = builder.write(cleared.sums, Access::kStorageWriteCompute);
-    if (cleared.keys) pass.out.keys = builder.write(cleared.keys, Access::kStorageWriteCompute);
-    if (cleared.scratch)
-      pass.scratch = builder.write(cleared.scratch, Access::kStorageWriteCompute);
+    pass.out.sums = builder.write(cleared.sums, Access::kTexelWriteCompute);
+    if (cleared.keys) pass.out.keys = builder.write(cleared.keys, Access::kTexelWriteCompute);
+    if (cleared.scratch) pass.scratch = builder.write(cleared.scratch, Access::kTexelWriteCompute);
     if (options_.echo && options_.echo->records)
       pass.out.records = builder.write(
           inputs.records_target
@@ -207,6 +208,9 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
   const bool reflects = options_.reflectivity && pass.in.labels && pass.in.reflectivity;
   const auto buffer_or_none = [&](graph::BufferHandle handle) {
     return handle ? context.buffer(handle).handle() : no_buffer_.handle();
+  };
+  const auto texels_or_none = [&](graph::BufferHandle handle) {
+    return handle ? context.buffer(handle).texels() : no_buffer_.texels();
   };
   const Intrinsics& k = layout_.intrinsics;
   const shared::SonarPush push{.n_range = grid_.bins.range,
@@ -237,9 +241,9 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
                                                           ? context.image(pass.in.labels).view()
                                                           : no_labels_.view()),
       gpu::bound_buffer(shared::kSonarBindReflectivity, buffer_or_none(pass.in.reflectivity)),
-      gpu::bound_buffer(shared::kSonarBindSums, buffer_or_none(pass.out.sums)),
-      gpu::bound_buffer(shared::kSonarBindKeys, buffer_or_none(pass.out.keys)),
-      gpu::bound_buffer(shared::kSonarBindScratch, buffer_or_none(pass.scratch))};
+      gpu::bound_texel_buffer(shared::kSonarBindSums, texels_or_none(pass.out.sums)),
+      gpu::bound_texel_buffer(shared::kSonarBindKeys, texels_or_none(pass.out.keys)),
+      gpu::bound_texel_buffer(shared::kSonarBindScratch, texels_or_none(pass.scratch))};
   if (options_.echo) {
     const gpu::UploadSlice echo = commands.upload(&pass.in.echo, sizeof pass.in.echo);
     const gpu::UploadSlice correction =

@@ -98,6 +98,11 @@ class SonarGather {
     graph::BufferHandle keys;     // uint32 [n_range][n_azimuth]; absent without labels
     graph::BufferHandle records;  // shared::SonarRecord [n_elevation][n_azimuth]; absent without
   };
+  // Of buffers that are targets: of sums and keys, and of records.
+  static constexpr VkBufferUsageFlags kRecordsUsage =
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  static constexpr VkBufferUsageFlags kSumsUsage =
+      kRecordsUsage | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
   // Adds the passes PREFIX"sonar clear" and PREFIX"sonar gather". The object must outlive the
   // graph's run.
   Outputs declare(graph::FrameGraph& graph, const Inputs& inputs) const;

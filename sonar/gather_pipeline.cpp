@@ -17,9 +17,9 @@ constexpr std::array<gpu::BindingDesc, 16> kBindings{
      {shared::kSonarBindNormal, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindLabel, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindReflectivity, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindSums, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindKeys, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindScratch, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+     {shared::kSonarBindSums, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
+     {shared::kSonarBindKeys, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
+     {shared::kSonarBindScratch, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
      // Of a gather with terms only.
      {shared::kSonarBindEcho, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
      {shared::kSonarBindWeights, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
@@ -123,7 +123,8 @@ Status SonarGather::make_tables(gpu::Device& device) {
                                       zero, /*array=*/true));
   NERITIC_TRY(no_buffer_,
               gpu::Buffer::create(device, {.name = "sonar no buffer",
-                                           .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
+                                           .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                                    VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT}));
   return {};
 }
 

@@ -183,18 +183,17 @@ Status ImageGather::make_images(const SonarInput& in, std::uint32_t layers) {
 }
 
 Status ImageGather::make_buffers() {
-  const auto result = [&](const char* name, std::uint64_t bytes) {
+  const auto result = [&](const char* name, std::uint64_t bytes,
+                          VkBufferUsageFlags usage = SonarGather::kRecordsUsage) {
     return gpu::Buffer::create(
-        *device_, {.name = name,
-                   .size = bytes,
-                   .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                   .memory = gpu::MemoryUse::kReadback});
+        *device_,
+        {.name = name, .size = bytes, .usage = usage, .memory = gpu::MemoryUse::kReadback});
   };
   if (labels_) {
-    NERITIC_TRY(keys_, result("sonar keys", gather_->keys_bytes()));
+    NERITIC_TRY(keys_, result("sonar keys", gather_->keys_bytes(), SonarGather::kSumsUsage));
   }
   if (!receiver_) {
-    NERITIC_TRY(sums_, result("sonar sums", gather_->sums_bytes()));
+    NERITIC_TRY(sums_, result("sonar sums", gather_->sums_bytes(), SonarGather::kSumsUsage));
     return {};
   }
   NERITIC_TRY(power_, result("sonar power", receiver_->power_bytes()));

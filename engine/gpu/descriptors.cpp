@@ -20,11 +20,21 @@ constexpr std::array kPoolSizes{
     VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8 * kSetsPerPool},
     VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 8 * kSetsPerPool},
     VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 4 * kSetsPerPool},
+    VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 2 * kSetsPerPool},
     VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_SAMPLER, 2 * kSetsPerPool},
 };
 
-bool is_buffer(VkDescriptorType type) {
-  return type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER || type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+enum class Kind { kBuffer, kTexels, kImage };
+
+Kind kind_of(VkDescriptorType type) {
+  if (type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER || type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER)
+    return Kind::kBuffer;
+  return type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER ? Kind::kTexels : Kind::kImage;
+}
+
+Kind kind_of(const BoundResource& resource) {
+  if (resource.buffer.buffer != VK_NULL_HANDLE) return Kind::kBuffer;
+  return resource.texels != VK_NULL_HANDLE ? Kind::kTexels : Kind::kImage;
 }
 
 Result<VkDescriptorPool> make_pool(const Device& device, const std::string& name) {
@@ -130,19 +140,26 @@ void DescriptorArena::reset() {
 
 BoundResource bound_buffer(std::uint32_t binding, VkBuffer buffer, VkDeviceSize offset,
                            VkDeviceSize size) {
-  return {binding, {buffer, offset, size}, {}};
+  return {binding, {buffer, offset, size}, {}, VK_NULL_HANDLE};
+}
+
+BoundResource bound_texel_buffer(std::uint32_t binding, VkBufferView texels) {
+  return {binding, {}, {}, texels};
 }
 
 BoundResource bound_storage_image(std::uint32_t binding, VkImageView view) {
-  return {binding, {}, {VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_GENERAL}};
+  return {binding, {}, {VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_GENERAL}, VK_NULL_HANDLE};
 }
 
 BoundResource bound_texture(std::uint32_t binding, VkImageView view, VkSampler sampler) {
-  return {binding, {}, {sampler, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}};
+  return {binding, {}, {sampler, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}, VK_NULL_HANDLE};
 }
 
 BoundResource bound_texel_image(std::uint32_t binding, VkImageView view) {
-  return {binding, {}, {VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}};
+  return {binding,
+          {},
+          {VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+          VK_NULL_HANDLE};
 }
 
 void write_descriptors(const Device& device, VkDescriptorSet set,
@@ -157,7 +174,7 @@ void write_descriptors(const Device& device, VkDescriptorSet set,
     });
     NERITIC_CHECK(at != bindings.end(), "binding {} is not declared", resource.binding);
     std::uint32_t& element = given[static_cast<std::size_t>(at - bindings.begin())];
-    NERITIC_CHECK((resource.buffer.buffer != VK_NULL_HANDLE) == is_buffer(at->type),
+    NERITIC_CHECK(kind_of(resource) == kind_of(at->type),
                   "binding {} of type {} is given the wrong kind of resource", at->binding,
                   static_cast<int>(at->type));
     NERITIC_CHECK(element < at->count, "binding {} is given more than {} times", at->binding,
@@ -170,6 +187,7 @@ void write_descriptors(const Device& device, VkDescriptorSet set,
     write.descriptorType = at->type;
     write.pBufferInfo = &resource.buffer;
     write.pImageInfo = &resource.image;
+    write.pTexelBufferView = &resource.texels;
     writes.push_back(write);
   }
   for (std::size_t i = 0; i < bindings.size(); ++i)

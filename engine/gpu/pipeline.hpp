@@ -136,9 +136,11 @@ struct BoundResource {
   std::uint32_t binding = 0;
   VkDescriptorBufferInfo buffer{};
   VkDescriptorImageInfo image{};
+  VkBufferView texels = VK_NULL_HANDLE;
 };
 BoundResource bound_buffer(std::uint32_t binding, VkBuffer buffer, VkDeviceSize offset = 0,
                            VkDeviceSize size = VK_WHOLE_SIZE);
+BoundResource bound_texel_buffer(std::uint32_t binding, VkBufferView texels);
 BoundResource bound_storage_image(std::uint32_t binding, VkImageView view);  // layout GENERAL
 BoundResource bound_texture(std::uint32_t binding, VkImageView view,
                             VkSampler sampler);  // SHADER_READ_ONLY_OPTIMAL

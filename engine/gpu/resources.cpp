@@ -88,6 +88,24 @@ Result<VkImageView> make_view(const Device& device, VkImage image, const ImageDe
   return view;
 }
 
+Result<VkBufferView> make_texel_view(const Device& device, const Buffer& buffer,
+                                     const BufferDesc& desc) {
+  const VkDeviceSize texels = buffer.size() / sizeof(std::uint32_t);
+  const std::uint32_t most = device.limits().maxTexelBufferElements;
+  if (texels > most)
+    return failure(ErrorCode::kUnsupported, "buffer {}: {} texels, this device takes up to {}",
+                   desc.name, texels, most);
+  VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+  info.buffer = buffer.handle();
+  info.format = VK_FORMAT_R32_UINT;
+  info.range = VK_WHOLE_SIZE;
+  VkBufferView view = VK_NULL_HANDLE;
+  NERITIC_TRY_VK("vkCreateBufferView (" + desc.name + ")",
+                 vkCreateBufferView(device.handle(), &info, nullptr, &view));
+  device.name_object(VK_OBJECT_TYPE_BUFFER_VIEW, view, desc.name);
+  return view;
+}
+
 }  // namespace
 
 // --- Buffer -----------------------------------------------------------------------------------
@@ -114,6 +132,9 @@ Result<Buffer> Buffer::create_at(const Device& device, const BufferDesc& desc,
   device.name_object(VK_OBJECT_TYPE_BUFFER, buffer.handle_, desc.name);
   NERITIC_TRY_VK("vkBindBufferMemory (" + desc.name + ")",
                  vkBindBufferMemory(device.handle(), buffer.handle_, memory, offset));
+  if (desc.usage & VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT) {
+    NERITIC_TRY(buffer.texels_, make_texel_view(device, buffer, desc));
+  }
   return buffer;
 }
 
@@ -124,12 +145,14 @@ Buffer::Buffer(Buffer&& other) noexcept {
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
   std::swap(device_, other.device_);
   std::swap(handle_, other.handle_);
+  std::swap(texels_, other.texels_);
   std::swap(size_, other.size_);
   std::swap(allocation_, other.allocation_);
   return *this;
 }
 
 Buffer::~Buffer() {
+  if (texels_ != VK_NULL_HANDLE) vkDestroyBufferView(device_, texels_, nullptr);
   if (handle_ != VK_NULL_HANDLE) vkDestroyBuffer(device_, handle_, nullptr);
 }
 

@@ -23,7 +23,7 @@ constexpr VkAccessFlags2 kStorageReadWrite =
 
 // In the order of enum Access. Depth layouts are the combined ones: they are valid for depth-only
 // formats and need no feature (separateDepthStencilLayouts).
-constexpr std::array<AccessInfo, 16> kTable = {{
+constexpr std::array<AccessInfo, 17> kTable = {{
     {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, kColorReadWrite,
      VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0, true,
      "color attachment"},
@@ -43,6 +43,8 @@ constexpr std::array<AccessInfo, 16> kTable = {{
      "storage read compute"},
     {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, kStorageReadWrite, VK_IMAGE_LAYOUT_GENERAL,
      VK_IMAGE_USAGE_STORAGE_BIT, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, true, "storage write compute"},
+    {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, kStorageReadWrite, VK_IMAGE_LAYOUT_UNDEFINED, 0,
+     VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT, true, "texel write compute"},
     {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
      VK_IMAGE_LAYOUT_UNDEFINED, 0, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, false,
      "storage read vertex"},

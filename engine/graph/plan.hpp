@@ -27,6 +27,7 @@ enum class Access {
   kSampledCompute,
   kStorageReadCompute,   // buffer or image
   kStorageWriteCompute,  // write; earlier contents may be read (atomics)
+  kTexelWriteCompute,    // the same of a buffer's texels (gpu::Buffer::texels)
   kStorageReadVertex,    // buffers in vertex shaders
   kStorageReadFragment,
   kVertexBuffer,

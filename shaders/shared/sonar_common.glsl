@@ -22,8 +22,9 @@ layout(set = 0, binding = kSonarBindNormal) uniform texture2DArray normal_image;
 layout(set = 0, binding = kSonarBindLabel) uniform utexture2DArray label_image;
 layout(set = 0, binding = kSonarBindReflectivity, scalar) readonly buffer Reflectivity { float reflectivity[]; };
 // All [n_range][n_azimuth], cleared before.
-layout(set = 0, binding = kSonarBindSums, scalar) buffer Sums { uint sums[]; };
-layout(set = 0, binding = kSonarBindKeys, scalar) buffer Keys { uint keys[]; };
+// (Texels, because a processor's driver reads a buffer lane by lane, through memory.)
+layout(set = 0, binding = kSonarBindSums, r32ui) uniform uimageBuffer sums;
+layout(set = 0, binding = kSonarBindKeys, r32ui) uniform uimageBuffer keys;
 layout(push_constant, scalar) uniform Push { SonarPush c; };
 
 // Planar metres of a depth texel; 0 where nothing is hit (cleared, NaN, infinite, negative).
@@ -55,16 +56,18 @@ float reflected(float strength, ivec3 at, out uvec2 label) {
   return strength * clamp(reflects, 0.0, 1.0);
 }
 
+// The greater of two keys stays.
+void add_to_key(uint cell, uint key) {
+  if (kLanes > 1) imageAtomicMax(keys, int(cell), key);
+  else if (key > imageLoad(keys, int(cell)).x) imageStore(keys, int(cell), uvec4(key));
+}
+
 // Adds to a cell of the image. Where one thread owns a column no other writes there, and a processor is
 // spared its slow atomics.
 void add_counts(uint cell, uint counts, float strength, uint label) {
-  if (kLanes == 1) sums[cell] += counts;
-  else atomicAdd(sums[cell], counts);
-  if (kLabels != 0 && strength > 0.0) {
-    uint key = label_key(strength, label);
-    if (kLanes > 1) atomicMax(keys[cell], key);
-    else if (key > keys[cell]) keys[cell] = key;
-  }
+  if (kLanes == 1) imageStore(sums, int(cell), uvec4(imageLoad(sums, int(cell)).x + counts));
+  else imageAtomicAdd(sums, int(cell), counts);
+  if (kLabels != 0 && strength > 0.0) add_to_key(cell, label_key(strength, label));
 }
 
 void add_return(uint cell, float strength, ivec3 at) {

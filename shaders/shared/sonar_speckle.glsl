@@ -22,7 +22,7 @@ const uint kNoLevel = 0xffffffffu;
 
 // [n_range][n_azimuth], a bin's power while rows are summed: the float's bits, then two parts of 65535: of what odd
 // slices gave, and of the rows' number of the place where it comes from, on average.
-layout(set = 0, binding = kSonarBindScratch, scalar) buffer Powers { uvec2 powers[]; };
+layout(set = 0, binding = kSonarBindScratch, r32ui) uniform uimageBuffer powers;
 
 uint level_at(float range_m) {
   return uint(clamp(ceil(log2(max(echo.least_cells, range_m * echo.cells_per_range))), 0.0, 24.0));
@@ -62,8 +62,8 @@ int saturated_sum(int a, int b) {
 void add_amplitude(int bin, uint column, vec2 z) {
   ivec2 counts = ivec2(round(clamp(z * echo.sum_scale, vec2(-kMostCounts), vec2(kMostCounts))));
   uint cell = 2 * (uint(bin) * c.n_azimuth + column);
-  sums[cell] = uint(saturated_sum(int(sums[cell]), counts.x));
-  sums[cell + 1] = uint(saturated_sum(int(sums[cell + 1]), counts.y));
+  imageStore(sums, int(cell), uvec4(uint(saturated_sum(int(imageLoad(sums, int(cell)).x), counts.x))));
+  imageStore(sums, int(cell + 1), uvec4(uint(saturated_sum(int(imageLoad(sums, int(cell + 1)).x), counts.y))));
 }
 
 // A row's power that lies in one bin, at a point of the column's middle. place: of the point, in rows. ends: in
@@ -74,12 +74,13 @@ void note(uint column, vec3 point, float place, float heard_over_path, vec2 ends
   float high = floor(upto);
   float nearer = high > floor(from) ? clamp((high - from) / (upto - from), 0.0, 1.0) : 0.0;
   float odd = (int(high) & 1) != 0 ? 1.0 - nearer : nearer;
-  uint cell = uint(bin) * c.n_azimuth + column;
-  uvec2 before = powers[cell];
+  uint cell = 2 * (uint(bin) * c.n_azimuth + column);
+  uvec2 before = uvec2(imageLoad(powers, int(cell)).x, imageLoad(powers, int(cell + 1)).x);
   vec2 mean = unpackUnorm2x16(before.y);
   float sum = uintBitsToFloat(before.x) + power;
   mean += (vec2(odd, place / float(c.n_elevation)) - mean) * (power / sum);
-  powers[cell] = uvec2(floatBitsToUint(sum), packUnorm2x16(mean));
+  imageStore(powers, int(cell), uvec4(floatBitsToUint(sum)));
+  imageStore(powers, int(cell + 1), uvec4(packUnorm2x16(mean)));
 }
 
 // The cell that a bin's power comes from, of a part of all rows.
@@ -139,9 +140,9 @@ void sound_column(SonarColumn s, uint column, int first, int last) {
   float begun = 0.0;     // its power there
   vec2 sum = vec2(0.0);  // the bin before's amplitude but for that slice's
   for (int bin = first; bin <= last + 1; ++bin) {
-    uvec2 noted = bin <= last ? powers[uint(bin) * c.n_azimuth + column] : uvec2(0);
-    float power = uintBitsToFloat(noted.x);
-    vec2 mean = unpackUnorm2x16(noted.y);
+    uint cell_at = 2 * (uint(min(bin, last)) * c.n_azimuth + column);
+    float power = bin <= last ? uintBitsToFloat(imageLoad(powers, int(cell_at)).x) : 0.0;
+    vec2 mean = unpackUnorm2x16(imageLoad(powers, int(cell_at + 1)).x);
     Cell cell = cell_heard(s, bin, mean.y);
     bool goes_on = power > 0.0 && cell.world == before.world && cell.level == before.level;
     vec2 z, w;

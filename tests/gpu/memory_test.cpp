@@ -105,6 +105,20 @@ TEST_F(MemoryTest, AnEmptyBufferCanStillBeBound) {
   EXPECT_EQ(empty.size(), 16u);
 }
 
+TEST_F(MemoryTest, TexelsAreAsManyAsTheDeviceTakes) {
+  BufferDesc desc{.name = "counts", .size = 400, .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+  NERITIC_ASSERT_OK(const Buffer without, Buffer::create(device(), desc));
+  EXPECT_EQ(without.texels(), VkBufferView{VK_NULL_HANDLE});
+  desc.usage = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
+  NERITIC_ASSERT_OK(const Buffer with, Buffer::create(device(), desc));
+  EXPECT_NE(with.texels(), VkBufferView{VK_NULL_HANDLE});
+  desc.size = 4 * (VkDeviceSize{device().limits().maxTexelBufferElements} + 1);
+  const Result<Buffer> too_large = Buffer::create(device(), desc);
+  ASSERT_FALSE(too_large.ok());
+  EXPECT_NE(too_large.error().message.find("buffer counts"), std::string::npos)
+      << too_large.error().message;
+}
+
 TEST_F(MemoryTest, MovingLeavesOneOwner) {
   device().allocator().trim();
   NERITIC_ASSERT_OK(Buffer first, buffer(64));

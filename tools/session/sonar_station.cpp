@@ -103,15 +103,14 @@ Result<std::unique_ptr<HeadState>> SonarStation::make_head(const scene::Sonar& s
   };
   NERITIC_TRY(h.gather, gather());
   const std::string name = name_of(sonar, h);
-  const auto readable = [&](const std::string& what, std::uint64_t bytes) {
-    return gpu::Buffer::create(
-        device_, {name + " " + what, bytes,
-                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                  gpu::MemoryUse::kReadback});
+  const auto readable = [&](const std::string& what, std::uint64_t bytes,
+                            VkBufferUsageFlags usage = sonar::SonarGather::kRecordsUsage) {
+    return gpu::Buffer::create(device_,
+                               {name + " " + what, bytes, usage, gpu::MemoryUse::kReadback});
   };
-  NERITIC_TRY(h.keys, readable("keys", h.gather->keys_bytes()));
+  NERITIC_TRY(h.keys, readable("keys", h.gather->keys_bytes(), sonar::SonarGather::kSumsUsage));
   if (!h.head.echo) {
-    NERITIC_TRY(h.sums, readable("sums", h.gather->sums_bytes()));
+    NERITIC_TRY(h.sums, readable("sums", h.gather->sums_bytes(), sonar::SonarGather::kSumsUsage));
     return made;
   }
   sonar::ReceiverDesc desc = h.head.receiver;
