@@ -183,10 +183,13 @@ std::vector<PlanWarning> gas_warnings(const DivePlanRequest& request,
                                          t.tank.volume_l, t.tank.pressure_bar);
     if (t.empty_min) {
       const double held = litres_in(mix, t.tank, t.tank.pressure_bar);
+      const double least_bar =
+          request.conventions.environment.pressure_bar(*t.empty_m) + 1e-5 * kWeakTank_pa;
+      const double weak = litres_in(mix, t.tank, std::min(least_bar, t.tank.pressure_bar));
       out.push_back({PlanWarningKind::kTankTooSmall, *t.empty_min, *t.empty_m, u.used_l, held, gas,
                      fmt::format("{}: used up at {:.0f} m, {:.0f} min; the plan takes {:.0f} L, "
-                                 "it holds {:.0f}",
-                                 tank, *t.empty_m, *t.empty_min, u.used_l, held)});
+                                 "it holds {:.0f}, of which {:.0f} give no full breath there",
+                                 tank, *t.empty_m, *t.empty_min, u.used_l, held, weak)});
     } else if (u.minimum_l > 0.0 && t.then_bar < t.minimum_bar - 1e-6) {
       out.push_back(
           {PlanWarningKind::kMinimumGas, u.minimum_run_min, u.minimum_depth_m, t.then_bar,

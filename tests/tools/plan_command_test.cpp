@@ -9,6 +9,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/scene/image_file.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic::tools {
@@ -49,6 +50,43 @@ TEST(PlanCommand, APlanIsPrintedAsADiverExpectsIt) {
   EXPECT_THAT(said.out, HasSubstr("WARNING: gas density 5.6 g/L on 18/45 at 60 m"));
   EXPECT_THAT(said_by("plan --depth 18 --time 40").out,
               HasSubstr("no stops are needed\nwithout stops: until 47 min"));
+}
+
+// What is warned of stands on the picture too, a red line each, above the panels.
+TEST(PlanCommand, WarningsStandOnThePicture) {
+  const test::ScratchFolder folder;
+  struct Drawn {
+    std::uint32_t height = 0, red_rows = 0;
+    std::ptrdiff_t warnings = 0;
+  };
+  const auto drawn = [&](const std::string& tank) {
+    const std::string file = (folder / "p.png").string();
+    const PlanSaid said =
+        said_by("plan --depth 18 --time 40 --tank air=" + tank + " --altitude 1500 --plot " + file);
+    EXPECT_EQ(said.status, 0) << said.error;
+    const auto image = scene::read_image8(file, 3);
+    EXPECT_TRUE(image.ok());
+    Drawn out;
+    out.height = image->height;
+    std::size_t at = 0;
+    while ((at = said.out.find("WARNING: ", at) + 1) != 0) ++out.warnings;
+    for (std::uint32_t y = 0; y < 200; ++y) {
+      bool red = false;
+      for (std::uint32_t x = 24; x < 300; ++x) {
+        const std::uint8_t* rgb = &image->data[3 * (std::size_t{y} * image->width + x)];
+        red = red || (rgb[0] > 150 && rgb[1] < 90 && rgb[2] < 90);
+      }
+      out.red_rows += red ? 1 : 0;
+    }
+    return out;
+  };
+  const Drawn much = drawn("24,232"), little = drawn("12,200");
+  EXPECT_EQ(much.warnings, 0);
+  EXPECT_EQ(much.red_rows, 0u);
+  EXPECT_EQ(little.warnings, 1);
+  EXPECT_EQ(little.height, much.height + 20u);
+  EXPECT_GE(little.red_rows, 9u);
+  EXPECT_LE(little.red_rows, 20u);
 }
 
 TEST(PlanCommand, FlagsChangeWhatTheyName) {

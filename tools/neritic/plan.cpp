@@ -23,7 +23,7 @@ std::vector<GasCurve> gas_curves(const PlanReport& report) {
   for (std::size_t i = 0; i < report.gas.size(); ++i) {
     const diver::PlanGasUse& use = report.gas[i];
     const diver::GasMix& mix = report.request.gases[i].mix;
-    GasCurve curve{diver::name_of(mix), i, use.tank.has_value(), {}, {}, {}, {}};
+    GasCurve curve{diver::name_of(mix), i, use.tank.has_value(), {}, {}, {}, {}, {}};
     double run_min = 0.0, used_l = 0.0;
     const auto add = [&](double minutes) {
       curve.run_min.push_back(minutes);
@@ -40,9 +40,21 @@ std::vector<GasCurve> gas_curves(const PlanReport& report) {
     if (use.tank && use.minimum_l > 0.0) {
       curve.minimum_run_min = use.minimum_run_min;
       curve.minimum = use.tank->minimum_bar;
+      curve.then = use.tank->then_bar;
     }
     out.push_back(std::move(curve));
   }
+  return out;
+}
+
+// The water and the air over it, and earlier dives.
+std::string conditions(const PlanFlags& flags, const diver::DecoEnvironment& where) {
+  std::string out = fmt::format("surface {:.4g} bar", where.surface_bar);
+  if (flags.altitude_m) out += fmt::format(", {:g} m above the sea", *flags.altitude_m);
+  out += fmt::format("; {}water, {:.4g} bar a metre", flags.water.empty() ? "" : flags.water + " ",
+                     where.bar_per_m);
+  for (const std::string& dive : flags.after)
+    out += "; after a dive of " + dive + " (m, min, min at the surface)";
   return out;
 }
 
@@ -80,12 +92,16 @@ Result<std::string> plan_a_dive(const PlanFlags& flags) {
                   "{:.0f}; for planning with judgement, no substitute for training",
                   gf_text(request.gf_low, request.gf_high), flags.convention, report.plan.run_min(),
                   report.plan.stop_min(), report.oxygen().cns_percent, report.oxygen().otu),
+      conditions(flags, request.conventions.environment),
+      {},
       request.conventions,
       request.gf_low,
       request.gf_high,
       request.gases,
       report.plan.stops,
       gas_curves(report)};
+  for (const diver::PlanWarning& warning : report.warnings)
+    picture.warnings.push_back(warning.text);
   if (!flags.plot.empty() || !flags.out.empty())
     NERITIC_TRY_STATUS(
         write_pictures(flags, "plan.png", picture, trace_plan(request, report.plan)));
@@ -114,6 +130,15 @@ std::string log_text(const PlanFlags& flags, const diver::DepthLog& log, const D
   return out + "\n";
 }
 
+std::vector<std::string> log_warnings(const DiveTrace& trace) {
+  std::vector<std::string> out;
+  if (trace.above_ceiling_min > 0.0)
+    out.push_back(fmt::format("{:.1f} min above the ceiling", trace.above_ceiling_min));
+  if (trace.fast_min > 0.0)
+    out.push_back(fmt::format("{:.1f} min of ascent alarm", trace.fast_min));
+  return out;
+}
+
 Result<std::string> replay_a_log(const PlanFlags& flags) {
   if (flags.depth_m || flags.time_min || !flags.levels.empty())
     return bad_input("--log: found with --depth, --time or --level; a log has its own depths");
@@ -134,6 +159,8 @@ Result<std::string> replay_a_log(const PlanFlags& flags) {
                       fmt::format("{}, {}; {} samples, {} refused, deepest ceiling {:.1f} m",
                                   gf_text(s.gf_low, s.gf_high), flags.convention,
                                   log.samples.size(), trace.end.refused, trace.most_ceiling_m),
+                      conditions(flags, s.conventions.environment),
+                      log_warnings(trace),
                       s.conventions,
                       s.gf_low,
                       s.gf_high,

@@ -13,9 +13,8 @@ using sonar::Align;
 using sonar::Canvas;
 using sonar::Color;
 
-constexpr double kPlanWide = 1500.0, kPlanHigh = 1080.0, kHead = 70.0, kSplit = 690.0,
-                 kGasHigh = 230.0;
-constexpr double kLabel_px = 9.0;
+constexpr double kPlanWide = 1500.0, kProfileHigh = 620.0, kGasHigh = 230.0, kTissuesHigh = 390.0;
+constexpr double kLabel_px = 9.0, kLegend_px = 110.0;  // that a panel's legend is wide
 constexpr Color kCeilingColor{0.75f, 0.10f, 0.10f}, kN2Color{0.0f, 0.447f, 0.698f},
     kHeColor{0.90f, 0.62f, 0.0f};
 // More points than this are not told apart.
@@ -53,29 +52,39 @@ void draw_ceiling(Canvas& canvas, const Box& in, const Axis& x, const Axis& y,
 }
 
 void draw_profile(Canvas& canvas, const Box& in, const Axis& x, const Axis& y,
-                  const std::vector<const TraceRow*>& rows, const PlanPicture& picture) {
+                  const std::vector<const TraceRow*>& rows) {
   for (std::size_t i = 1; i < rows.size(); ++i)
     canvas.segment(place(x, rows[i - 1]->run_min, in.left, in.right),
                    place(y, rows[i - 1]->depth_m, in.bottom, in.top),
                    place(x, rows[i]->run_min, in.left, in.right),
                    place(y, rows[i]->depth_m, in.bottom, in.top), 2.6, gas_color(rows[i]->gas));
-  // Each gas is named where it begins, the first half-way down.
-  double half = 0.0;
-  for (const TraceRow* row : rows) half = std::max(half, 0.5 * row->depth_m);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i]->gas == rows[i - 1]->gas) continue;
+    const double px = place(x, rows[i - 1]->run_min, in.left, in.right),
+                 py = place(y, rows[i - 1]->depth_m, in.bottom, in.top);
+    canvas.segment(px, py, px, py, 8.0, gas_color(rows[i]->gas));
+  }
+}
+
+// Beside the panel's title, from the right: each gas in its colour, and the depth at which it is
+// first breathed; nothing lies over a curve there.
+void name_gases(Canvas& canvas, const Box& box, const std::vector<const TraceRow*>& rows,
+                const PlanPicture& picture) {
+  std::vector<std::size_t> seen;
+  std::vector<std::string> words;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i > 0 && rows[i]->gas == rows[i - 1]->gas) continue;
-    std::size_t at = i > 0 ? i - 1 : 0;
-    while (i == 0 && at + 1 < rows.size() && rows[at]->depth_m < half) ++at;
-    const double px = place(x, rows[at]->run_min, in.left, in.right),
-                 py = place(y, rows[at]->depth_m, in.bottom, in.top);
-    const Color color = gas_color(rows[i]->gas);
-    const std::string name = diver::name_of(picture.gases[rows[i]->gas].mix);
-    if (i == 0) {
-      canvas.text(px + 14.0, py, kLabel_px + 1.0, name, color, Align::kLeft, 1.6);
-      continue;
-    }
-    canvas.segment(px, py, px, py, 8.0, color);
-    canvas.text(px - 10.0, py + 14.0, kLabel_px + 1.0, name, color, Align::kRight, 1.6);
+    if (std::ranges::find(seen, rows[i]->gas) != seen.end()) continue;
+    seen.push_back(rows[i]->gas);
+    words.push_back(diver::name_of(picture.gases[rows[i]->gas].mix));
+    if (i > 0) words.back() += fmt::format(" from {:.3g} m", rows[i - 1]->depth_m);
+  }
+  double right = inside(box).right;
+  for (std::size_t i = seen.size(); i-- > 0;) {
+    const double top = box.top + 18.0, wide = Canvas::text_width(kLabel_px, words[i]);
+    const Color color = gas_color(seen[i]);
+    canvas.text(right - wide, top, kLabel_px, words[i], color, Align::kLeft, 1.6);
+    canvas.segment(right - wide - 28.0, top - 4.0, right - wide - 8.0, top - 4.0, 3.0, color);
+    right -= wide + 50.0;
   }
 }
 
@@ -135,28 +144,50 @@ void draw_tissues(Canvas& canvas, const Box& box, const PlanPicture& picture,
   canvas.segment(in.left, height(ambient), in.right, height(ambient), 1.6, kInk.with_alpha(0.6f));
 }
 
-// What is left of each gas, or used of it where its tank is not known.
+// The minimum gas: a ring in the gas's colour, joined to what its tank has then; where it is more
+// than the panel holds, at its upper edge. Its words stand above the curves, in a row of their own.
+void draw_minimum(Canvas& canvas, const Box& in, const Axis& x, const Axis& y,
+                  const GasCurve& curve, int row) {
+  const double px = place(x, *curve.minimum_run_min, in.left, in.right),
+               there = place(y, *curve.then, in.bottom, in.top),
+               words_y = in.top + 10.0 + 14.0 * row,
+               py = std::max(place(y, *curve.minimum, in.bottom, in.top), words_y);
+  const Color color = gas_color(curve.gas);
+  canvas.segment(px, words_y, px, there, 1.2, color.with_alpha(0.6f));
+  canvas.arc(px, py, 8.0, -3.1416, 3.1416, 2.0, color);
+  const bool enough = *curve.minimum <= *curve.then;
+  const std::string words =
+      fmt::format("{}: {:.0f} bar{}", curve.name, *curve.minimum,
+                  enough ? "" : fmt::format(", more than the {:.0f} there", *curve.then));
+  const bool fits = px + 18.0 + Canvas::text_width(kLabel_px, words) < in.right - kLegend_px;
+  canvas.text(fits ? px + 18.0 : px - 18.0, words_y + 4.0, kLabel_px, words,
+              enough ? color : kCeilingColor, fits ? Align::kLeft : Align::kRight);
+}
+
+// What is left of each gas, or used of it where no tank is known.
 void draw_gas(Canvas& canvas, const Box& box, const Axis& x, const std::vector<GasCurve>& gas) {
   std::vector<Series> series;
+  std::string without;
   const bool bar = std::ranges::any_of(gas, &GasCurve::bar);
   double most = 1.0;
   for (const GasCurve& curve : gas) {
-    if (curve.bar != bar) continue;
+    if (curve.bar != bar) {
+      without += (without.empty() ? "; no tank told: " : ", ") + curve.name;
+      continue;
+    }
     series.push_back(
         {curve.name, gas_color(curve.gas), curve.run_min, curve.value, {}, true, false});
     for (const double value : curve.value) most = std::max(most, value);
-    if (curve.minimum) most = std::max(most, *curve.minimum);
   }
-  // Room for the ring's words.
-  const Axis y{"", 0.0, 1.5 * most};
+  // Room for rings and their words.
+  const Axis y{"", 0.0, 1.4 * most};
   draw_lines(canvas, box,
-             bar ? "Bar in the tanks; ring: minimum gas, which must be there then"
-                 : "Litres used, at 1 bar",
+             bar ? "Bar in the tanks; ring: minimum gas, which must be there then" + without
+                 : std::string("Litres used, at 1 bar"),
              x, y, series, false);
+  int row = 0;
   for (const GasCurve& curve : gas)
-    if (curve.bar && curve.minimum)
-      draw_mark(canvas, box, x, y, *curve.minimum_run_min, *curve.minimum,
-                fmt::format("{:.0f} bar", *curve.minimum));
+    if (curve.bar && curve.minimum) draw_minimum(canvas, inside(box), x, y, curve, row++);
 }
 
 void draw_legend(Canvas& canvas, double left, double top, const PlanPicture& picture) {
@@ -165,35 +196,56 @@ void draw_legend(Canvas& canvas, double left, double top, const PlanPicture& pic
     canvas.text(left + 30.0, top, kLabel_px, words, kInk);
     left += width;
   };
-  item(kCeilingColor, "ceiling; M-value here", 230.0);
+  item(kCeilingColor, "ceiling; M-value of what gives off gas here", 420.0);
   item(kN2Color, "nitrogen", 130.0);
-  item(kHeColor, "helium", 110.0);
+  if (std::ranges::any_of(picture.gases, [](const auto& gas) { return gas.mix.helium > 0.0; }))
+    item(kHeColor, "helium", 110.0);
   item(kInk, fmt::format("GF high, {:g} % of the way to the M-value", 100.0 * picture.gf_high),
        410.0);
   item(kInk.with_alpha(0.6f), "across: the water's pressure", 10.0);
 }
 
+// Words above the panels; returns where these begin. Long lines are set smaller.
+double draw_head(Canvas* canvas, const PlanPicture& picture) {
+  const auto line = [&](double y, double size_px, const std::string& words, const Color& color) {
+    if (!canvas) return;
+    const double most = kPlanWide - 48.0, wide = Canvas::text_width(size_px, words);
+    canvas->text(24, y, wide > most ? size_px * most / wide : size_px, words, color, Align::kLeft,
+                 size_px > 12.0 ? 2.0 : 0.0);
+  };
+  line(34, 16, picture.title, kInk);
+  line(56, 10, picture.below, kInk.with_alpha(0.75f));
+  double y = 56.0;
+  if (!picture.where.empty()) line(y += 20.0, 10, picture.where, kInk.with_alpha(0.75f));
+  for (const std::string& warning : picture.warnings)
+    line(y += 20.0, 10, "WARNING: " + warning, kCeilingColor);
+  return y + 14.0;
+}
+
 }  // namespace
 
 ImageU8 draw_dive(const PlanPicture& picture, const DiveTrace& trace) {
+  const double head = draw_head(nullptr, picture);
   const double gas_high = picture.gas.empty() ? 0.0 : kGasHigh;
-  const double high = kPlanHigh + gas_high, split = kSplit + gas_high;
+  const double profile = head + kProfileHigh, split = profile + gas_high,
+               high = split + kTissuesHigh;
   Canvas canvas(static_cast<std::uint32_t>(kPlanWide), static_cast<std::uint32_t>(high), kPaper);
-  canvas.text(24, 34, 16, picture.title, kInk, Align::kLeft, 2.0);
-  canvas.text(24, 56, 10, picture.below, kInk.with_alpha(0.75f));
+  draw_head(&canvas, picture);
   std::vector<const TraceRow*> rows;
   const std::size_t every = trace.rows.size() / kMostDrawn + 1;
   for (std::size_t i = 0; i < trace.rows.size(); ++i)
     if (i % every == 0 || i + 1 == trace.rows.size()) rows.push_back(&trace.rows[i]);
-  const Box box{10, kHead, kPlanWide - 10.0, kSplit};
+  const Box box{10, head, kPlanWide - 10.0, profile};
   const Axis x{"run time, min", 0.0, std::max(1.09 * trace.rows.back().run_min, 1e-3)};
   const Axis y = depth_axis(trace);
   draw_lines(canvas, box, "Depth in metres; red: above the ceiling", x, y, {});
+  name_gases(canvas, box, rows, picture);
   const Box in = inside(box);
   draw_ceiling(canvas, in, x, y, rows);
-  draw_profile(canvas, in, x, y, rows, picture);
+  draw_profile(canvas, in, x, y, rows);
   name_stops(canvas, in, x, y, picture);
-  if (!picture.gas.empty()) draw_gas(canvas, {10, kSplit, kPlanWide - 10.0, split}, x, picture.gas);
+  if (!picture.gas.empty())
+    draw_gas(canvas, {10, profile, kPlanWide - 10.0, split}, x, picture.gas);
   const double wide = (kPlanWide - 20.0) / static_cast<double>(trace.moments.size());
   for (std::size_t i = 0; i < trace.moments.size(); ++i) {
     const double left = 10.0 + wide * static_cast<double>(i);

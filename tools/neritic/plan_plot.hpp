@@ -15,11 +15,13 @@ struct GasCurve {
   std::size_t gas = 0;
   bool bar = false;
   std::vector<double> run_min, value;
-  std::optional<double> minimum_run_min, minimum;  // the minimum gas, bar
+  // The minimum gas in bar, and what the tank has at that moment.
+  std::optional<double> minimum_run_min, minimum, then;
 };
 
 struct PlanPicture {
-  std::string title, below;  // two lines of words
+  std::string title, below, where;    // three lines of words
+  std::vector<std::string> warnings;  // a line each
   diver::DecoConventions conventions;
   double gf_low = 0.3, gf_high = 0.85;
   std::vector<diver::PlanGas> gases;
