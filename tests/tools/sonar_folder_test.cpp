@@ -66,10 +66,11 @@ class SonarFolder : public ::testing::Test {
   nlohmann::json run_facts() {
     return parse_json(read_text(folder_ / "out" / "run.json").value()).value();
   }
-  std::string skipped() {
-    const auto text = read_text(folder_ / "out" / "skipped.csv");
+  std::string list_of(const char* name) {
+    const auto text = read_text(folder_ / "out" / name);
     return text.ok() ? *text : "";
   }
+  std::string skipped() { return list_of("skipped.csv"); }
   test::ScratchFolder folder_;
 };
 
@@ -246,6 +247,55 @@ TEST_F(SonarFolder, LeavesOutAndListsWhatItCannotRead) {
   expect_done(words());
   EXPECT_EQ(skipped(), "");
   EXPECT_TRUE(fs::exists(result(4) / "sonar.json"));
+}
+
+// Frames that are readable and hold nothing to hear are made, and listed with the reason; a run
+// that goes on lists those that were there; put right, they leave the list.
+TEST_F(SonarFolder, ListsSilentFramesWithTheirReasons) {
+  write_frames(6);
+  const std::size_t pixels = read_npy(depth_file(0))->to_doubles().size();
+  NERITIC_ASSERT_OK(const NpyArray depth, read_npy(depth_file(0)));
+  const auto put = [&](int i, float value) {
+    ASSERT_TRUE(write_npy(depth_file(i), std::vector<float>(pixels, value),
+                          {depth.shape[0], depth.shape[1]})
+                    .ok());
+  };
+  put(1, std::numeric_limits<float>::quiet_NaN());
+  put(4, 1e4f);
+  for (const int made : {6, 1}) {  // the second run goes on
+    expect_done(words());
+    EXPECT_EQ(run_facts()["made"], made);
+    EXPECT_EQ(run_facts()["silent"], 2);
+    EXPECT_EQ(run_facts()["skipped"], 0);
+    const std::string list = list_of("silent.csv");
+    EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 3) << list;
+    EXPECT_NE(list.find(depth_file(1).string() + "\",\"no pixel has a depth"), std::string::npos);
+    EXPECT_NE(list.find(depth_file(4).string() + "\",\"nothing lies between"), std::string::npos);
+    fs::remove_all(result(2));
+  }
+  write_frames(6);
+  expect_done(words());
+  EXPECT_EQ(run_facts()["silent"], 0);
+  EXPECT_EQ(list_of("silent.csv"), "");
+}
+
+// Noise hides silence from the bins, not from the list.
+TEST_F(SonarFolder, ListsSilentFramesBehindNoise) {
+  if (!test::have_device()) GTEST_SKIP() << "no Vulkan device";
+  write_frames(3);
+  NERITIC_ASSERT_OK(const NpyArray depth, read_npy(depth_file(0)));
+  ASSERT_TRUE(write_npy(depth_file(1), std::vector<float>(depth.to_doubles().size(), -1.0f),
+                        {depth.shape[0], depth.shape[1]})
+                  .ok());
+  ASSERT_TRUE(write_text(folder_ / "noisy.toml",
+                         "range_m = [0.5, 3]\nazimuth_deg = 60\nelevation_deg = 40\nlevel = {}\n"
+                         "noise = { level_db = 60 }\n")
+                  .ok());
+  expect_done(words({"--sensor", (folder_ / "noisy.toml").string()}));
+  const std::vector<double> heard = numbers_of(result(1) / "sonar.npy");
+  EXPECT_GT(*std::max_element(heard.begin(), heard.end()), 0.0);
+  EXPECT_EQ(run_facts()["silent"], 1);
+  EXPECT_NE(list_of("silent.csv").find(depth_file(1).string()), std::string::npos);
 }
 
 TEST_F(SonarFolder, ListsFilesThatAreNoFrames) {

@@ -38,7 +38,7 @@ std::vector<Group> groups_of(const SonarFlags& flags) {
 
 // Files of the other groups that no frame has taken.
 void list_unpaired(const SonarJob& job, const std::vector<std::vector<fs::path>>& files,
-                   const std::vector<FrameFiles>& frames, FrameGroup lead, SkippedFrames& skipped) {
+                   const std::vector<FrameFiles>& frames, FrameGroup lead, FrameList& skipped) {
   const std::vector<Group> groups = groups_of(job.flags);
   std::set<fs::path> taken;
   for (const FrameFiles& frame : frames) taken.insert(frame.paths.begin(), frame.paths.end());
@@ -49,7 +49,7 @@ void list_unpaired(const SonarJob& job, const std::vector<std::vector<fs::path>>
 }
 
 // The frames, their paths by FrameGroup whatever group leads.
-Result<std::vector<FrameFiles>> frames_of(const SonarJob& job, SkippedFrames& skipped) {
+Result<std::vector<FrameFiles>> frames_of(const SonarJob& job, FrameList& skipped) {
   const FrameGroup lead = job.flags.method == "image" ? kPictureGroup : kDepthGroup;
   std::vector<std::vector<fs::path>> files(kGroups);
   for (const Group& g : groups_of(job.flags)) {
@@ -100,7 +100,7 @@ struct Run {
   const SonarJob& job;
   const std::vector<FrameFiles>& frames;
   const std::vector<std::size_t>& todo;
-  SkippedFrames& skipped;
+  FrameList &skipped, &silent;
   std::size_t workers;
   const Interrupt& interrupt;
   std::atomic<std::size_t>& written;
@@ -139,10 +139,12 @@ Status run_frames(const Run& run, SonarNotes& notes, const M& maker) {
     if (!heard) return {};
     const FrameFiles& frame = run.frames[run.todo[i]];
     heard->facts["settings"] = run.job.settings;
+    const std::string silence = heard->facts.value("silent", "");
     NERITIC_TRY_STATUS(write_whole(run.job.flags.out, frame.name, [&](const fs::path& folder) {
       return maker.write(folder, std::move(*heard));
     }));
     ++run.written;
+    if (!silence.empty()) run.silent.add(run.todo[i], silence);
     notes.release();  // not before: a run that makes nothing says why and no more
     return {};
   };
@@ -199,13 +201,16 @@ Result<std::string> report(const Run& run, double seconds) {
   const std::string out = run.job.flags.out.string();
   const nlohmann::json json{{"frames", run.frames.size()}, {"made", made},
                             {"already_there", there},      {"skipped", skipped},
-                            {"seconds", seconds},          {"frames_per_s", per_s},
-                            {"workers", run.workers},      {"settings", run.job.settings}};
+                            {"silent", run.silent.size()}, {"seconds", seconds},
+                            {"frames_per_s", per_s},       {"workers", run.workers},
+                            {"settings", run.job.settings}};
   NERITIC_TRY_STATUS(write_json(run.job.flags.out / "run.json", json));
   const std::string rate =
       made > 0 ? fmt::format(" in {:.1f} s, {:.1f} frames/s", seconds, per_s) : "";
   std::string line = fmt::format("{}: {} frames{}", out, made, rate);
   if (there > 0) line += fmt::format("; {} were there already", there);
+  if (const auto silent = run.silent.size(); silent > 0)
+    line += fmt::format("; {} of them silent, see {}/silent.csv", silent, out);
   if (skipped > 0) line += fmt::format("; {} skipped, see {}/skipped.csv", skipped, out);
   if (const auto files = run.skipped.files(); files > 0)
     line += fmt::format("; {} files are no frame's, see {}/skipped.csv", files, out);
@@ -232,14 +237,15 @@ bool is_folder_job(const SonarJob& job) {
 }
 
 Result<std::string> run_folder(const SonarJob& job) {
-  SkippedFrames skipped;
+  FrameList skipped, silent;
   NERITIC_TRY(const std::vector<FrameFiles> frames, frames_of(job, skipped));
-  NERITIC_TRY(const std::vector<std::size_t> todo, frames_to_do(job, frames));
+  NERITIC_TRY(const std::vector<std::size_t> todo, frames_to_do(job, frames, silent));
   NERITIC_TRY_STATUS(make_folder(job.flags.out));
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   const Interrupt interrupt;
   std::atomic<std::size_t> written = 0;
-  const Run run{job,       frames, todo, skipped, job.flags.workers > 0 ? job.flags.workers : cores,
+  const Run run{job,       frames, todo,
+                skipped,   silent, job.flags.workers > 0 ? job.flags.workers : cores,
                 interrupt, written};
   const TimeNs start = now_ns();
   keep_memory();
@@ -247,6 +253,7 @@ Result<std::string> run_folder(const SonarJob& job) {
   const double seconds = to_ms(now_ns() - start) / 1000.0;
   const FrameGroup lead = job.flags.method == "image" ? kPictureGroup : kDepthGroup;
   NERITIC_TRY_STATUS(skipped.write(job.flags.out / "skipped.csv", frames, lead));
+  NERITIC_TRY_STATUS(silent.write(job.flags.out / "silent.csv", frames, lead));
   if (written + skipped.size() < todo.size()) return stopped_folder(run);
   if (skipped.size() == frames.size())
     return bad_input("none of {} frames could be made; the first: {}", frames.size(),

@@ -1,5 +1,8 @@
 #include "tools/neritic/sonar_frame.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
@@ -90,6 +93,47 @@ void note_coverage(const SonarJob& job, const sonar::SonarInput& in, SonarNotes&
   if (const auto note = normals_note(coverage, job.flags.normals.empty())) notes.say(*note);
 }
 
+// Whether any pixel could be heard: within the beams that are gathered, with a normal that faces
+// the sensor. Mostly the first that it looks at.
+bool can_be_heard(const SonarJob& job, const sonar::SonarInput& in) {
+  const sonar::Limits& l = job.head.samples.limits;
+  if (in.normals.empty()) return false;
+  for (std::uint32_t v = 0; v < in.height; ++v)
+    for (std::uint32_t u = 0; u < in.width; ++u) {
+      const std::optional<Vec3> p = sonar::point_of(in, u, v);
+      if (!p) continue;
+      const double range_m = glm::length(*p);
+      const double azimuth_rad = std::atan2(p->x, -p->z), elevation_rad = std::asin(p->y / range_m);
+      if (range_m < l.range_min_m || range_m >= l.range_max_m || azimuth_rad < l.azimuth_min_rad ||
+          azimuth_rad > l.azimuth_max_rad || elevation_rad < l.elevation_min_rad ||
+          elevation_rad > l.elevation_max_rad)
+        continue;
+      const double* n = &in.normals[3 * (std::size_t{v} * in.width + u)];
+      const auto cosine = sonar::incidence({n[0], n[1], n[2]}, *p, in.normals_face_sensor);
+      if (cosine && *cosine > 0.0) return true;
+    }
+  return false;
+}
+
+// Why an image holds nothing; empty where it does. Behind noise no bin tells it, but the pixels do.
+std::string silence_of(const SonarJob& job, const sonar::SonarInput& in,
+                       const sonar::SonarImage& image) {
+  const bool heard =
+      job.sonar.terms.noise
+          ? can_be_heard(job, in)
+          : std::ranges::any_of(image.intensity, [](float power) { return power > 0.0f; });
+  if (heard) return "";
+  const Coverage coverage = coverage_of(job.head.beams, in);
+  if (const auto note = coverage_note(job.head.beams, coverage, false)) return *note;
+  if (const auto note = normals_note(coverage, job.flags.normals.empty())) return *note;
+  return "no pixel in the wedge is heard";
+}
+
+void say_silence(const SonarJob& job, const sonar::SonarInput& in, HeardFrame& heard) {
+  if (const std::string why = silence_of(job, in, heard.image); !why.empty())
+    heard.facts["silent"] = why;
+}
+
 // Energy labels say shadow and ghost by two numbers, which no class may have beside them.
 Status check_classes(const sonar::SonarInput& in, const sonar::MapFile& labels) {
   for (const std::uint16_t label : in.labels)
@@ -164,6 +208,7 @@ HeardFrame hear_by_reference(const SonarJob& job, LoadedFrame frame) {
   heard.image = sonar::reference_image(job.head.beams, std::span(&frame.in, 1));
   heard.facts = std::move(frame.facts);
   heard.facts["timings_ms"]["sonar"] = to_ms(now_ns() - begin);
+  say_silence(job, frame.in, heard);
   heard.facts["device"] = "CPU, double precision";
   return heard;
 }
@@ -207,6 +252,7 @@ Result<HeardFrame> SonarEar::hear(LoadedFrame frame) {
     std::fill(heard.label_energy->instances.begin(), heard.label_energy->instances.end(),
               std::uint16_t{0});
   heard.facts = std::move(frame.facts);
+  say_silence(job_, frame.in, heard);
   heard.facts["gather"] = sonar::name_of(job_.gather);
   heard.facts["device"] = device_->info().name;
   heard.facts["timings_ms"]["sonar"] = gather_->wall_ms();
@@ -218,7 +264,8 @@ Result<HeardFrame> SonarEar::hear(LoadedFrame frame) {
 std::unique_ptr<sonar::PolarPanel> panel_of(const SonarJob& job) {
   if (job.flags.no_pictures || job.head.beams.bins.azimuth == 1) return nullptr;
   return std::make_unique<sonar::PolarPanel>(
-      job.head.beams, sonar::panel_options(job.sonar.kind, job.sonar.terms.level.has_value()));
+      job.head.beams, sonar::panel_options(job.sonar.kind, job.sonar.terms.level.has_value(),
+                                           job.sonar.terms.output));
 }
 
 Status write_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame,

@@ -1,5 +1,7 @@
 #include "tools/neritic/sonar_picture.hpp"
 
+#include <algorithm>
+
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
@@ -73,6 +75,10 @@ Result<PictureLine> load_picture_line(const SonarJob& job, const sonar::FrameFil
                {"image", {image.width, image.height}},
                {"intrinsics", {{"fx", k.fx}, {"fy", k.fy}, {"cx", k.cx}, {"cy", k.cy}}},
                {"timings_ms", {{"sonar", to_ms(now_ns() - start)}}}};
+  const auto is_dark = [](float v) { return !(v > 0.0f); };
+  if (std::ranges::all_of(out.line.port, is_dark) &&
+      std::ranges::all_of(out.line.starboard, is_dark))
+    out.facts["silent"] = "the picture is black, or shows nothing, where the sonar hears";
   return out;
 }
 

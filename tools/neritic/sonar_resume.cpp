@@ -79,11 +79,11 @@ json stamp_of(const fs::path& path) {
   fs::path whole = fs::canonical(path, error);
   if (error) whole = fs::absolute(path, error);
   const auto bytes = fs::file_size(path, error);
-  const auto changed = fs::last_write_time(path, error).time_since_epoch();
+  const auto changed = std::chrono::file_clock::to_sys(fs::last_write_time(path, error));
   // As text: however a file writes numbers, these come back as they are.
   return {{"path", whole.string()},
           {"bytes", fmt::format("{}", bytes)},
-          {"changed", fmt::format("{}", changed.count())}};
+          {"changed_unix_ns", fmt::format("{}", changed.time_since_epoch().count())}};
 }
 
 std::string quoted(const std::string& text) {
@@ -101,7 +101,8 @@ json file_stamps(const FrameFiles& frame) {
 }
 
 Result<std::vector<std::size_t>> frames_to_do(const SonarJob& job,
-                                              const std::vector<FrameFiles>& frames) {
+                                              const std::vector<FrameFiles>& frames,
+                                              FrameList& silent) {
   std::vector<std::size_t> todo;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const fs::path folder = job.flags.out / frames[i].name;
@@ -110,7 +111,10 @@ Result<std::vector<std::size_t>> frames_to_do(const SonarJob& job,
     if (!facts.is_null())
       NERITIC_TRY_STATUS(same_settings(facts["settings"], job.settings, folder / kFacts));
     const bool made = !facts.is_null() && facts.value("files", json()) == file_stamps(frames[i]);
-    if (!made) todo.push_back(i);
+    if (!made)
+      todo.push_back(i);
+    else if (const auto why = facts.find("silent"); why != facts.end() && why->is_string())
+      silent.add(i, *why);
   }
   return todo;
 }
@@ -149,34 +153,34 @@ std::vector<std::string> result_files(const fs::path& folder) {
   return out;
 }
 
-void SkippedFrames::add(std::size_t frame, std::string reason) {
+void FrameList::add(std::size_t frame, std::string reason) {
   const std::lock_guard lock(mutex_);
   reasons_.emplace(frame, std::move(reason));
 }
 
-void SkippedFrames::add_file(const fs::path& path, std::string reason) {
+void FrameList::add_file(const fs::path& path, std::string reason) {
   const std::lock_guard lock(mutex_);
   files_.emplace_back(path, std::move(reason));
 }
 
-std::size_t SkippedFrames::size() const {
+std::size_t FrameList::size() const {
   const std::lock_guard lock(mutex_);
   return reasons_.size();
 }
 
-std::size_t SkippedFrames::files() const {
+std::size_t FrameList::files() const {
   const std::lock_guard lock(mutex_);
   return files_.size();
 }
 
-std::string SkippedFrames::first() const {
+std::string FrameList::first() const {
   const std::lock_guard lock(mutex_);
-  NERITIC_CHECK(!reasons_.empty(), "no frame was left out");
+  NERITIC_CHECK(!reasons_.empty(), "no frame is in the list");
   return reasons_.begin()->second;
 }
 
-Status SkippedFrames::write(const fs::path& path, const std::vector<FrameFiles>& frames,
-                            FrameGroup lead) const {
+Status FrameList::write(const fs::path& path, const std::vector<FrameFiles>& frames,
+                        FrameGroup lead) const {
   const std::lock_guard lock(mutex_);
   if (reasons_.empty() && files_.empty()) {
     std::error_code error;

@@ -16,9 +16,12 @@ nlohmann::json file_stamps(const sonar::FrameFiles& frame);
 
 // The numbers of the frames without a result of the same settings and the same files as they are
 // now; with --overwrite of all. A result that cannot be read is none. kBadInput where a result has
-// other settings, or something else lies in its place, and names one.
+// other settings, or something else lies in its place, and names one. silent: gets those of the
+// others whose sonar.json says that they are.
+class FrameList;
 Result<std::vector<std::size_t>> frames_to_do(const SonarJob& job,
-                                              const std::vector<sonar::FrameFiles>& frames);
+                                              const std::vector<sonar::FrameFiles>& frames,
+                                              FrameList& silent);
 
 // Runs write on a hidden folder beside OUT/name, which then takes its place. kBadInput where a
 // folder of that name is there that holds something else than a result: nobody's files are removed.
@@ -32,16 +35,16 @@ Status drop_result(const std::filesystem::path& out, const std::string& name);
 // Names of what lies in a result's folder, arrays first; empty where none is.
 std::vector<std::string> result_files(const std::filesystem::path& folder);
 
-// Frames left out, with their reasons. Any thread.
-class SkippedFrames {
+// Frames that were left out, or are silent, with the reasons. Any thread.
+class FrameList {
  public:
   void add(std::size_t frame, std::string reason);
   // A file that is no frame's, below the frames in the list.
   void add_file(const std::filesystem::path& path, std::string reason);
   std::size_t size() const;   // of frames
   std::size_t files() const;  // of such files
-  std::string first() const;  // reason of the first frame left out; CHECKed
-  // file,reason, in order of frames; removes an older list where nothing was left out. The file is
+  std::string first() const;  // reason of the first frame; CHECKed
+  // file,reason, in order of frames; removes an older list where there is none. The file is
   // the leading group's.
   Status write(const std::filesystem::path& path, const std::vector<sonar::FrameFiles>& frames,
                FrameGroup lead) const;
