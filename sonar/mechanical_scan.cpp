@@ -179,7 +179,7 @@ DeviceImage device_image(const MechanicalScan& scan) {
                      .azimuth_max_rad = turn.to_rad,
                      .elevation_min_rad = -o.elevation_rad / 2.0,
                      .elevation_max_rad = o.elevation_rad / 2.0};
-  out.grid.bins = {o.n_range, columns, 1};
+  out.grid.bins = {o.n_range, columns, o.bins_elevation};
   const std::size_t cells = std::size_t{o.n_range} * columns;
   out.image = {o.n_range, columns, std::vector<float>(cells), std::vector<std::uint16_t>(cells)};
   const double width = (turn.to_rad - turn.from_rad) / columns,

@@ -21,7 +21,8 @@ struct MechanicalScanOptions {
   std::uint32_t n_range = 500;
   double range_min_m = 0.5, range_max_m = 20.0;
   double beam_rad = radians(1.0);  // what a step paints: the larger of the beam and the head's step
-  double elevation_rad = radians(25.0);  // full height of the beam, for the panel's words
+  double elevation_rad = radians(25.0);  // full height of the beam, and its bins: for the
+  std::uint32_t bins_elevation = 1;      // panel's words
   // Intensities are powers re 1 uPa^2: pictures are in decibels, else in parts of their full scale.
   bool levels = false;
 

@@ -28,6 +28,7 @@ struct Margins {
   double top, bottom, left, right;  // in 900 px of height
 };
 constexpr Margins kWithWords{106, 66, 64, 118}, kWithoutWords{24, 24, 24, 24};
+constexpr double kBearingsBelow = 26;  // more at the bottom, where a sector's bearings end there
 
 // The colour scale lies in a corner that no fan reaches.
 struct ScaleBox {
@@ -36,6 +37,16 @@ struct ScaleBox {
 ScaleBox scale_box(const Canvas& canvas, double unit) {
   const double right = canvas.width() - 26 * unit;
   return {right - 12 * unit, right, 30 * unit, 210 * unit};
+}
+
+// Where the colour scale and its numbers are.
+bool meets_scale(const Canvas& canvas, double unit, double right, double y) {
+  const ScaleBox box = scale_box(canvas, unit);
+  return right > box.left - 60 * unit && y < box.bottom + 20 * unit;
+}
+
+bool is_full_turn(const Limits& l) {
+  return l.azimuth_max_rad - l.azimuth_min_rad > radians(350.0);
 }
 
 }  // namespace
@@ -53,8 +64,11 @@ Color panel_color(double value) {
 }
 
 PanelLayout lay_out(const BeamGrid& grid, std::uint32_t height_px, bool words) {
-  const Margins& margins = words ? kWithWords : kWithoutWords;
+  Margins margins = words ? kWithWords : kWithoutWords;
   const Limits& l = grid.limits;
+  // Of a full turn the lowest number stands in the middle, clear of the lines of text.
+  if (words && !is_full_turn(l) && std::max(-l.azimuth_min_rad, l.azimuth_max_rad) > kPi / 2.0)
+    margins.bottom += kBearingsBelow;
   // The fan's box for a radius of 1, bearings clockwise from up.
   double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
   for (int i = 0; i <= 513; ++i) {
@@ -83,17 +97,30 @@ void draw_rings(Canvas& canvas, const PanelLayout& layout, const Limits& l, doub
     canvas.arc(layout.apex_x, layout.apex_y, range_m * layout.scale, l.azimuth_min_rad,
                l.azimuth_max_rad, width, kLine.with_alpha(alpha));
   };
-  const bool full_turn = l.azimuth_max_rad - l.azimuth_min_rad > radians(350.0);
+  const bool full_turn = is_full_turn(l);
   const double step = nice_step(l.range_max_m, 5.0);
-  const double edge = full_turn ? 0.0 : l.azimuth_max_rad;
+  // Beside the starboard edge, a little off along the edge's normal, away from the fan; beside the
+  // port edge where the colour scale is.
   const auto label = [&](double range_m) {
     if (!words) return;
-    const double x = layout.apex_x + range_m * layout.scale * std::sin(edge);
-    const double y = layout.apex_y - range_m * layout.scale * std::cos(edge);
-    // Beside the starboard edge, a little off along the edge's normal.
-    const double off = 11.0 * unit;
-    canvas.text(x + off * std::max(0.35, std::cos(edge)), y + off * std::sin(edge) + 4.0 * unit,
-                10.5 * unit, range_text(range_m), kText.with_alpha(0.85f));
+    const std::string text = range_text(range_m);
+    const double size = 10.5 * unit, off = 11.0 * unit, width = canvas.text_width(size, text);
+    for (const double side : {1.0, -1.0}) {
+      const double edge = full_turn ? 0.0 : side > 0.0 ? l.azimuth_max_rad : -l.azimuth_min_rad;
+      // Past abeam the outside is inboard.
+      const bool outboard = std::cos(edge) >= 0.0;
+      const double push =
+          outboard ? std::max(0.35, std::cos(edge)) : std::min(-0.35, std::cos(edge));
+      const double x =
+          layout.apex_x + side * (range_m * layout.scale * std::sin(edge) + off * push);
+      const double y = layout.apex_y - range_m * layout.scale * std::cos(edge) +
+                       off * std::sin(edge) + 4.0 * unit;
+      const bool rightwards = outboard == (side > 0.0);
+      if (side > 0.0 && meets_scale(canvas, unit, rightwards ? x + width : x, y)) continue;
+      canvas.text(x, y, size, text, kText.with_alpha(0.85f),
+                  rightwards ? Align::kLeft : Align::kRight);
+      return;
+    }
   };
   for (double r = step; r < l.range_max_m - 0.35 * step; r += step)
     if (r > l.range_min_m) {
@@ -118,7 +145,13 @@ void draw_bearings(Canvas& canvas, const PanelLayout& layout, const Limits& l, d
                    kLine.with_alpha(alpha));
   };
   const double span = degrees(l.azimuth_max_rad - l.azimuth_min_rad);
-  const double step = span > 200.0 ? 30.0 : span > 50.0 ? 15.0 : nice_step(span, 6.0);
+  // Numbers of a narrow fan would meet.
+  constexpr double kApart = 46.0;
+  const double least = degrees(kApart * unit / (l.range_max_m * layout.scale));
+  const double step = span > 200.0  ? 30.0
+                      : span > 50.0 ? 15.0
+                      : words       ? nice_step(std::max(span / 6.0, least), 1.0)
+                                    : nice_step(span, 6.0);
   for (double b = std::ceil(degrees(l.azimuth_min_rad) / step - 1e-6) * step;
        b <= degrees(l.azimuth_max_rad) + 1e-6; b += step) {
     if (span > 359.0 && b < -179.0) continue;  // the same line as +180

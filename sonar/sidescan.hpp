@@ -96,7 +96,8 @@ struct SidescanPictureOptions {
 // The waterfall: a line a ping, the newest on top, the tracked bottom as a thin line. RGB.
 ImageU8 draw_slant(const SidescanRecord& record, const FirstReturns& bottom,
                    const SidescanPictureOptions& options = {});
-// The ground-range picture in true proportion along and across the track, ahead up.
+// The ground-range picture in true proportion along and across the track, ahead up; where that
+// takes less than a quarter of the width, the track's beginning, which the picture says.
 ImageU8 draw_ground(const SidescanRecord& record, const GroundImage& ground,
                     const SidescanPictureOptions& options = {});
 

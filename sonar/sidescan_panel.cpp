@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "sonar/panel.hpp"
 #include "sonar/sidescan.hpp"
@@ -16,14 +17,19 @@ struct Layout {
   PlotBox box;
   std::uint32_t width, height;
 };
-Layout lay_out(const SidescanPictureOptions& options, double box_height_per_width) {
+// narrowest: the part of the width to which what is too high may shrink.
+Layout lay_out(const SidescanPictureOptions& options, double box_height_per_width,
+               double narrowest = 1.0) {
   const double unit = options.width_px / 1200.0;
   Layout out{unit, {}, options.width_px, 0};
   const double left = std::round(78 * unit), right = std::round(options.width_px - 110 * unit),
                top = std::round(96 * unit), below = std::round(64 * unit);
-  const double high = std::clamp(std::round((right - left) * box_height_per_width), 1.0,
-                                 std::max(1.0, options.max_height_px - top - below));
-  out.box = {left, top, right, top + high};
+  const double room = right - left, highest = std::max(1.0, options.max_height_px - top - below);
+  const double wide = std::round(
+      room * std::clamp(highest / std::max(1e-9, room * box_height_per_width), narrowest, 1.0));
+  const double high = std::clamp(std::round(wide * box_height_per_width), 1.0, highest);
+  const double at = left + std::floor(0.5 * (room - wide));
+  out.box = {at, top, at + wide, top + high};
   // High enough for the legend at least.
   out.height = static_cast<std::uint32_t>(top + std::max(high, 240 * unit) + below);
   return out;
@@ -67,12 +73,15 @@ Display display_of(const SidescanRecord& record, std::span<const float> values,
   return {full_scale, options.gamma, record.options().levels};
 }
 
-std::string subtitle(const SidescanRecord& record, const Display& display) {
+// shown_m: of the track, where it is not all.
+std::string subtitle(const SidescanRecord& record, const Display& display,
+                     std::optional<double> shown_m = {}) {
   const SidescanOptions& o = record.options();
   const std::vector<double> along = record.along_track_m();
-  return fmt::format("{} pings over {:.4g} m   range {} to {} m a side   {}", record.pings(),
-                     along.empty() ? 0.0 : along.back(), number_text(o.range_min_m),
-                     number_text(o.range_max_m), display.text());
+  return fmt::format("{} pings over {:.4g} m{}   range {} to {} m a side   {}", record.pings(),
+                     along.empty() ? 0.0 : along.back(),
+                     shown_m ? fmt::format(", the first {:.4g} m shown", *shown_m) : "",
+                     number_text(o.range_min_m), number_text(o.range_max_m), display.text());
 }
 
 void finish(Canvas& canvas, const Layout& layout, const Display& display) {
@@ -182,13 +191,16 @@ ImageU8 draw_ground(const SidescanRecord& record, const GroundImage& ground,
                     const SidescanPictureOptions& options) {
   const std::vector<double> along = record.along_track_m();
   const double length_m = along.empty() ? 0.0 : along.back();
-  const Layout layout = lay_out(options, length_m / (2.0 * ground.ground_max_m));
+  // A long track is shown to a smaller scale, down to a quarter; of a longer one the beginning.
+  const Layout layout = lay_out(options, length_m / (2.0 * ground.ground_max_m), 0.25);
   Canvas canvas(layout.width, layout.height, kPlotBackground);
   const Display display = display_of(record, ground.intensity, options);
-  draw_title(canvas, options.title + "   GROUND RANGE", subtitle(record, display), layout.unit);
   const double px_per_m = layout.box.width() / (2.0 * ground.ground_max_m);
-  // A track too long for the picture is shown to scale from its beginning.
-  const double shown_m = std::min(length_m, layout.box.height() / px_per_m);
+  const double room_m = layout.box.height() / px_per_m;
+  const bool cut = room_m < 0.99 * length_m;  // not by the pixels' rounding
+  const double shown_m = cut ? room_m : length_m;
+  draw_title(canvas, options.title + "   GROUND RANGE",
+             subtitle(record, display, cut ? std::optional(shown_m) : std::nullopt), layout.unit);
   if (length_m > 0.0) {
     const auto height = static_cast<std::uint32_t>(layout.box.height());
     const std::size_t width = 2 * std::size_t{ground.n_ground};
