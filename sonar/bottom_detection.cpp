@@ -120,6 +120,24 @@ Vec3 detection_point(const BeamGrid& grid, const BottomDetection& detection) {
   return detection.range_m * direction(grid.azimuth_rad(detection.beam), 0.0);
 }
 
+std::uint16_t detected_class(const BeamGrid& grid, std::span<const std::uint16_t> labels,
+                             const BottomDetection& detection) {
+  const std::int64_t bins = grid.bins.range;
+  NERITIC_CHECK(labels.size() == static_cast<std::size_t>(bins) * grid.bins.azimuth,
+                "{} labels for {} x {} bins", labels.size(), bins, grid.bins.azimuth);
+  const double step_m = (grid.limits.range_max_m - grid.limits.range_min_m) / grid.bins.range;
+  const auto middle =
+      static_cast<std::int64_t>(std::floor((detection.range_m - grid.limits.range_min_m) / step_m));
+  for (std::int64_t off = 0; off <= detection.echo_bins / 2 + 1; ++off)
+    for (const std::int64_t bin : {middle - off, middle + off})
+      if (bin >= 0 && bin < bins)
+        if (const std::uint16_t label =
+                labels[static_cast<std::size_t>(bin) * grid.bins.azimuth + detection.beam];
+            label != 0)
+          return label;
+  return 0;
+}
+
 std::vector<BottomDetection> nadir_detections(const BeamGrid& grid,
                                               std::span<const BottomDetection> detections,
                                               const Pose& world_from_sonar, double half_angle_rad) {

@@ -49,6 +49,11 @@ std::vector<BottomDetection> detect_bottom(const BeamGrid& grid, std::span<const
 // The detection in sonar axes.
 Vec3 detection_point(const BeamGrid& grid, const BottomDetection& detection);
 
+// The class of what is strongest nearest to the detection within its echo, of an image's labels
+// [range][azimuth] (CHECKed); 0 where none of it has one.
+std::uint16_t detected_class(const BeamGrid& grid, std::span<const std::uint16_t> labels,
+                             const BottomDetection& detection);
+
 // Those whose beam points within half_angle_rad of straight down in the world.
 std::vector<BottomDetection> nadir_detections(const BeamGrid& grid,
                                               std::span<const BottomDetection> detections,

@@ -21,23 +21,33 @@ namespace neritic::sonar {
 std::vector<std::uint32_t> run_lengths(std::span<const std::uint8_t> mask, std::uint32_t height,
                                        std::uint32_t width);
 
-// A picture's width is its beams, its height its range bins: x counts beams from full port, y bins
-// from the nearest.
+// Where range grows in a picture: down its columns (x counts beams from full port, y bins from the
+// nearest), or along its rows from the middle outwards (a side-scan's: y counts pings).
+enum class RangeAxis { kDown, kOutwards };
+
 class CocoFile {
  public:
   // class_names: the categories, by class. Water is none. kShadow and kGhost are categories where
   // they are named.
-  explicit CocoFile(std::map<std::uint16_t, std::string> class_names);
+  explicit CocoFile(std::map<std::uint16_t, std::string> class_names,
+                    RangeAxis range = RangeAxis::kDown);
 
   // One annotation for each (class, instance) in the image whose class has a name, in that order.
+  // Of shadow one for each connected part (by sides and corners) of at least kLeastShadow bins,
+  // with the annotation of what casts it as "cast_by": the instance that most of its beams show
+  // next nearer, where one is; smaller parts are a crowd together. Instance 0 and the seabed are
+  // crowds.
   // file_name: of the picture that the labels belong to, n_beams wide and n_range high.
+  static constexpr std::size_t kLeastShadow = 8;
   void add(const std::string& file_name, const LabelImage& labels);
 
-  nlohmann::json json() const;
-  Status write(const std::filesystem::path& path) const;
+  // scale: what the pictures' greys mean (CocoPictures::scale), for "info".
+  nlohmann::json json(const nlohmann::json& scale = nlohmann::json::object()) const;
+  Status write(const std::filesystem::path& path, const nlohmann::json& scale) const;
 
  private:
   std::map<std::uint16_t, std::string> class_names_;
+  RangeAxis range_;
   nlohmann::json images_ = nlohmann::json::array(), annotations_ = nlohmann::json::array();
 };
 

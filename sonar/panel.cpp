@@ -118,15 +118,6 @@ ImageU8 PolarPanel::draw(const SonarImage& image) const {
   return out;
 }
 
-ImageU8 draw_bins(const SonarImage& image, const PanelOptions& options) {
-  const double full_scale = panel_full_scale(image, options);
-  ImageU8 out(image.n_azimuth, image.n_range, 1);
-  for (std::size_t i = 0; i < out.data.size(); ++i)
-    out.data[i] = static_cast<std::uint8_t>(
-        255.0 * panel_brightness(image.intensity[i], full_scale, options) + 0.5);
-  return out;
-}
-
 ImageU8 draw_panel(const BeamGrid& grid, const SonarImage& image, const PanelOptions& options) {
   return PolarPanel(grid, options).draw(image);
 }

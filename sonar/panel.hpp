@@ -50,10 +50,6 @@ class PolarPanel {
 
 ImageU8 draw_panel(const BeamGrid& grid, const SonarImage& image, const PanelOptions& options = {});
 
-// The image as it is, a pixel a bin: grey [n_range][n_azimuth], row 0 nearest, column 0 full port,
-// as bright as the panel. What boxes and masks of bins lie over.
-ImageU8 draw_bins(const SonarImage& image, const PanelOptions& options = {});
-
 // The panel's full scale for an image (PanelOptions::full_scale or the automatic one; 1 for
 // silence).
 double panel_full_scale(const SonarImage& image, const PanelOptions& options);

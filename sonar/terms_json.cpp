@@ -135,7 +135,7 @@ json terms_json(const scene::SonarTerms& t) {
   if (t.motion) out["motion"] = motion_json(*t.motion);
   if (t.labels.energy || t.labels.coco)
     out["labels"] = {{"energy", t.labels.energy}, {"coco", t.labels.coco}};
-  if (t.output.bits > 0)
+  if (t.output.named)
     out["output"] = {
         {"bits", t.output.bits}, {"floor_db", t.output.floor_db}, {"span_db", t.output.span_db}};
   if (json detection = detection_json(t.detection); !detection.empty())

@@ -94,16 +94,20 @@ std::vector<std::uint16_t> quantize(std::span<const float> power,
   return counts;
 }
 
-PanelOptions panel_options(scene::SonarKind kind, bool level) {
+PanelOptions panel_options(scene::SonarKind kind, bool level, const scene::SonarOutput& output) {
   PanelOptions options;
   options.title = title_of(kind);
   if (level) options.span_db = kShown_db;
+  if (level && output.named) {
+    options.full_scale = std::pow(10.0, 0.1 * (output.floor_db + output.span_db));
+    options.span_db = output.span_db;
+  }
   return options;
 }
 
 ImageU8 draw_sonar(const SonarFiles& files) {
   if (files.panel != nullptr) return files.panel->draw(files.image);
-  const PanelOptions options = panel_options(files.kind, files.level);
+  const PanelOptions options = panel_options(files.kind, files.level, files.output);
   if (files.image.n_azimuth > 1) return draw_panel(files.grid, files.image, options);
   return draw_trace(files.grid, files.image.intensity, options);
 }
@@ -143,7 +147,7 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
     json["counts"] = {{"bits", files.output.bits},
                       {"floor_db", files.output.floor_db},
                       {"span_db", files.output.span_db}};
-  const PanelOptions panel = panel_options(files.kind, files.level);
+  const PanelOptions panel = panel_options(files.kind, files.level, files.output);
   json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"gamma", panel.gamma}};
   if (panel.span_db > 0.0)
     json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"span_db", panel.span_db}};

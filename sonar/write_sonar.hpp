@@ -16,8 +16,8 @@ struct SonarFiles {
   const BeamGrid& grid;
   const SonarImage& image;
   scene::SonarKind kind = scene::SonarKind::kImaging;
-  bool level = false;                        // the image is power, 1 being 1 uPa^2
-  scene::SonarOutput output;                 // bits: 0, or counts of decibels (level only)
+  bool level = false;         // the image is power, 1 being 1 uPa^2
+  scene::SonarOutput output;  // bits: 0, or counts of decibels; named: the picture's scale (level)
   const LabelImage* label_energy = nullptr;  // nullptr: labels of the strongest return
   bool picture = true;                       // sonar.png too, which takes longest
   const PolarPanel* panel = nullptr;         // of grid and panel_options, for many images; or none
@@ -28,8 +28,8 @@ struct SonarFiles {
 // floor_db + span_db and above, decibels in between.
 std::vector<std::uint16_t> quantize(std::span<const float> power, const scene::SonarOutput& output);
 
-// How the picture shows it: decibels where it is a level.
-PanelOptions panel_options(scene::SonarKind kind, bool level);
+// How the picture shows it: decibels where it is a level, those of the output where it is named.
+PanelOptions panel_options(scene::SonarKind kind, bool level, const scene::SonarOutput& output);
 // The picture: polar, or for a single beam the echo over range.
 ImageU8 draw_sonar(const SonarFiles& files);
 

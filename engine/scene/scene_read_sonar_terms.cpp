@@ -230,8 +230,7 @@ SonarOutput read_output(TableReader& reader) {
     reader.refuse("bits", "0 (floats), 8 or 16");
   output.floor_db = reader.number("floor_db", output.floor_db, kLevel);
   output.span_db = reader.number("span_db", output.span_db, {0, 600, true, false, "decibels"});
-  if (output.bits == 0)
-    for (const Key key : {"floor_db", "span_db"}) refuse_beside(reader, key, "without bits");
+  output.named = output.bits != 0 || reader.has("floor_db") || reader.has("span_db");
   return output;
 }
 
@@ -258,8 +257,8 @@ void check_together(TableReader& reader, const SonarTerms& terms) {
     reader.refuse("noise", "level_db, or bandwidth_hz of the sonar: ambient noise fills a band");
   if (terms.detection.floor_db && !terms.noise)
     reader.refuse("detection", "floor_db beside noise: its decibels are above it");
-  if (terms.output.bits != 0 && !terms.level)
-    reader.refuse("output", "bits beside level: its floor is in decibels");
+  if (terms.output.named && !terms.level)
+    reader.refuse("output", "output beside level: its floor is in decibels");
   if (terms.motion && terms.motion->doppler && !terms.range_spread)
     reader.refuse("motion", "doppler beside range_spread or bandwidth_hz: it shifts the pulse");
 }

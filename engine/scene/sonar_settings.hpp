@@ -128,6 +128,7 @@ struct SonarLabels {
 struct SonarOutput {
   std::uint32_t bits = 0;
   double floor_db = 40.0, span_db = 80.0;
+  bool named = false;  // by any key: then pictures too show floor_db to floor_db + span_db
   bool operator==(const SonarOutput&) const = default;
 };
 

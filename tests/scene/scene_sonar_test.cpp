@@ -113,7 +113,7 @@ floor_db = 12
   t.profile = SonarProfile{{{0, 1520}, {100, 1490.5}}, true};
   t.motion = SonarMotion{true, true, 2e-3};
   t.labels = {true, true};
-  t.output = {16, 20, 96};
+  t.output = {16, 20, 96, true};
   t.detection.threshold = 0.3;
   t.detection.floor_db = 12;
   EXPECT_EQ(sonar.terms, t);

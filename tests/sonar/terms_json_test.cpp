@@ -66,6 +66,7 @@ TEST(SonarTermsJson, ReadsBackAsTheSameSensor) {
         "50}",
         "kind = 'sidescan'\ndepression_deg = 31\nrange_spread = {window = 'none'}\n"
         "level = {absorption = 'none', spreading = false, tvg = 20, tvg_absorption = true}\n"
+        "output = {floor_db = 90, span_db = 60}\n"
         "detection = {pings = 9}\nmax_error = 0.03\ngather = 'nearest'\npicture_camera = 'eye'",
         "kind = 'mechanical'\nazimuth_deg = 270\nstep_deg = 1.8\ngbuffer_scale = 2\nrate_hz = 7\n"
         "speckle = {}"}) {
@@ -77,6 +78,7 @@ TEST(SonarTermsJson, ReadsBackAsTheSameSensor) {
     EXPECT_EQ(again.terms.noise, sensor.terms.noise) << keys;
     EXPECT_EQ(again.terms.water, sensor.terms.water) << keys;
     EXPECT_EQ(again.terms.ghosts, sensor.terms.ghosts) << keys;
+    EXPECT_EQ(again.terms.output, sensor.terms.output) << keys;
     EXPECT_EQ(again.terms.detection, sensor.terms.detection) << keys;
     EXPECT_EQ(again.terms.output, sensor.terms.output) << keys;
     EXPECT_EQ(again.picture_camera, sensor.picture_camera) << keys;

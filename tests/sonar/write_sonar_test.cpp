@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
@@ -46,6 +47,7 @@ TEST(WriteSonar, WhatAnEarlierImageLeftIsGone) {
   energy.fraction.assign(first.labels.size(), 1.0f);
   scene::SonarOutput counts;
   counts.bits = 8;
+  counts.named = true;
   NERITIC_ASSERT_STATUS(sonar::write_sonar(
       folder.path(),
       {.grid = tall, .image = first, .level = true, .output = counts, .label_energy = &energy},
@@ -54,6 +56,10 @@ TEST(WriteSonar, WhatAnEarlierImageLeftIsGone) {
             (std::set<std::string>{"sonar.json", "sonar.npy", "sonar.png", "sonar_counts.npy",
                                    "sonar_instances.npy", "sonar_label_fraction.npy",
                                    "sonar_labels.npy"}));
+  // The picture shows what the counts do, whatever is in it.
+  const auto json = nlohmann::json::parse(read_text(folder / "sonar.json").value());
+  EXPECT_NEAR(json["display"]["full_scale"].get<double>(), 1e12, 1.0);  // 40 + 80 dB
+  EXPECT_EQ(json["display"]["span_db"], 80.0);
   NERITIC_ASSERT_STATUS(sonar::write_sonar(
       folder.path(), {.grid = low, .image = second, .picture = false}, nlohmann::json::object()));
   EXPECT_EQ(names_in(folder.path()),

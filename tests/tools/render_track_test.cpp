@@ -66,13 +66,38 @@ constexpr const char* kSideScan =
     "[[sonars]]\nname = \"s\"\nkind = \"sidescan\"\nposition_m = [0, -10, 0]\nrange_m = [1, 20]\n"
     "bins = [100, 1, 64]\nlabels = { energy = true, coco = true }\n";
 
-TEST_F(RenderTrack, BoxesOfASideScanNameBothSidesOfEachFrame) {
-  render(kSideScan, {"--frames", "2"});
-  const auto names = coco_files("s");
-  EXPECT_EQ(names, (std::vector<std::string>{
-                       "coco/frame_0000_port.png", "coco/frame_0000_starboard.png",
-                       "coco/frame_0001_port.png", "coco/frame_0001_starboard.png"}));
+// A side-scan's pings lie side by side, in the picture as in the labels and the waterfall: nothing
+// is a bin wide.
+TEST_F(RenderTrack, BoxesOfASideScanLieOverItsWaterfall) {
+  render(kSideScan, {"--frames", "3"});
+  EXPECT_EQ(coco_files("s"), (std::vector<std::string>{"coco/pings_00000.png"}));
   expect_pictures("s");
+  const auto values_of = [&](const std::string& name, std::vector<std::size_t> shape) {
+    const auto array = read_npy(folder_ / "out" / name);
+    EXPECT_TRUE(array.ok() && array->shape == shape) << name;
+    return array.ok() ? array->to_doubles() : std::vector<double>();
+  };
+  const auto labels = values_of("track/s/sidescan_labels.npy", {3, 200});
+  const auto heard = values_of("track/s/sidescan_slant.npy", {3, 200});
+  ASSERT_EQ(labels.size(), heard.size());
+  for (std::size_t ping = 0; ping < 3; ++ping)
+    for (const char* side : {"port", "starboard"}) {
+      const auto frame =
+          values_of(fmt::format("frame_{:04}/s/{}/sonar_labels.npy", ping, side), {100});
+      for (std::size_t i = 0; i < frame.size(); ++i)
+        EXPECT_EQ(labels[ping * 200 + (side[0] == 'p' ? 99 - i : 100 + i)], frame[i]);
+    }
+  NERITIC_ASSERT_OK(const ImageU8 picture,
+                    scene::read_image8(folder_ / "out/track/s/coco/pings_00000.png"));
+  ASSERT_EQ(picture.width, 200u);
+  ASSERT_EQ(picture.height, 3u);
+  const auto info = json_of("track/s/coco.json")["info"];
+  const double floor_db = info["floor_db"], full_db = info["full_scale_db"];
+  for (std::size_t i = 0; i < heard.size(); ++i) {
+    const double db = heard[i] > 0.0 ? 10.0 * std::log10(heard[i]) : -1e9;
+    EXPECT_NEAR(picture.data[i],
+                255.0 * std::clamp((db - floor_db) / (full_db - floor_db), 0.0, 1.0), 0.51);
+  }
 }
 
 // Boxes, masks and picture of one frame, of which no other track is made: what is heard in a box is
@@ -120,7 +145,7 @@ TEST_F(RenderTrack, BoxesOfOneFrameLieOverItsPicture) {
 TEST_F(RenderTrack, BoxesHaveTheirPicturesWithoutFramesToo) {
   render(kSideScan, {"--frames", "2", "--track-only"});
   EXPECT_FALSE(fs::exists(folder_ / "out/frame_0000"));
-  EXPECT_EQ(coco_files("s").size(), 4u);
+  EXPECT_EQ(coco_files("s").size(), 1u);
   expect_pictures("s");
 }
 

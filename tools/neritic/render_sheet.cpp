@@ -45,7 +45,7 @@ void add_geometry(std::vector<Picture>& out, const CameraFrame& camera) {
 // On a sheet no word of a sonar's own picture could be read, so the caption says the range.
 Tile sonar_tile(const SonarFrame& sonar, const std::string& name) {
   const sonar::Limits& l = sonar.grid.limits;
-  sonar::PanelOptions options = sonar::panel_options(sonar.kind, sonar.level);
+  sonar::PanelOptions options = sonar::panel_options(sonar.kind, sonar.level, sonar.terms.output);
   options.words = false;
   if (sonar.image.n_azimuth == 1) return {sonar::draw_sonar(sonar_files(sonar)), name};
   return {sonar::draw_panel(sonar.grid, sonar.image, options),

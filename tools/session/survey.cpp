@@ -9,6 +9,7 @@
 #include "sonar/coco.hpp"
 #include "sonar/detection.hpp"
 #include "sonar/mechanical_scan.hpp"
+#include "sonar/ping_labels.hpp"
 #include "sonar/point_cloud.hpp"
 #include "sonar/quality.hpp"
 #include "sonar/sidescan_from_image.hpp"
@@ -62,6 +63,23 @@ std::vector<float> floor_of(const SonarFrame& frame) {
   return sonar::detection_floor(frame.terms.detection, frame.noise_power);
 }
 
+bool is_single_beam(SonarKind kind) {
+  return kind != SonarKind::kImaging && kind != SonarKind::kProfiling;
+}
+
+// Whether a sounding's class is of something that stands on the bottom; what has no class is taken
+// for the bottom.
+bool is_object(std::uint16_t class_id) {
+  return class_id != sonar::kWater && class_id != kSeabedClass;
+}
+
+// Of the files that a single beam accumulates.
+const char* prefix_of(SonarKind kind) {
+  return kind == SonarKind::kSideScan     ? "sidescan"
+         : kind == SonarKind::kMechanical ? "mechanical"
+                                          : "echo_trace";
+}
+
 // As it pings: what a quality level makes of the settings.
 scene::Sonar as_sampled(scene::Sonar sonar) {
   const Status applied = sonar::apply_quality(sonar);
@@ -78,17 +96,23 @@ struct Survey::Record {
   // Of a profiling sonar.
   sonar::PointCloud cloud;
   std::unique_ptr<sonar::Bathymetry> bathymetry;
-  std::vector<Vec3> nadir;
+  // What the chart's error is taken of: soundings of the bottom, and not of what stands on it.
+  std::unique_ptr<sonar::Bathymetry> terrain;
+  std::vector<Vec3> terrain_points, nadir;
   std::unique_ptr<sonar::EchoTrace> trace;
   std::unique_ptr<sonar::SidescanRecord> sidescan;
   std::unique_ptr<sonar::SidescanRecord> from_pictures;  // of the side-scan's picture camera
   SonarFrame port;  // kept until the starboard side of the same ping comes
   std::unique_ptr<sonar::MechanicalScan> scan;
+  std::unique_ptr<sonar::PingLabels> labels;  // of a single beam
+  sonar::PingLine port_labels;
   std::unique_ptr<sonar::CocoFile> coco;
+  std::unique_ptr<sonar::CocoPictures> pictures;
 
-  bool accumulates() const { return bathymetry || trace || sidescan || scan || coco; }
+  bool accumulates() const { return bathymetry || trace || sidescan || scan || labels || coco; }
   void add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s);
-  Status add_boxes(const fs::path& folder, const SonarFrame& frame, std::uint32_t number);
+  Status add_labels(const SonarFrame& frame, std::uint32_t number);
+  Status write_labels(const fs::path& folder) const;
   void add_profile(const SonarFrame& frame);
   Status add_picture(const FrameResult& result, const Pose& world_from_sonar, double time_s);
   Status write(const fs::path& folder, const scene::Scene& scene, const FrameFacts& facts) const;
@@ -114,12 +138,21 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
     for (const scene::ClassName& known : scene::kClasses) names.emplace(known.id, known.name);
     names.emplace(sonar::kShadow, "shadow");
     names.emplace(sonar::kGhost, "ghost");
-    r.coco = std::make_unique<sonar::CocoFile>(std::move(names));
+    r.coco = std::make_unique<sonar::CocoFile>(std::move(names), frame.kind == SonarKind::kSideScan
+                                                                     ? sonar::RangeAxis::kOutwards
+                                                                     : sonar::RangeAxis::kDown);
+    r.pictures = std::make_unique<sonar::CocoPictures>(out_ / "track" / frame.name, frame.level,
+                                                       terms.output);
   }
+  if (is_single_beam(frame.kind) && terms.labels.energy && (options_.tracks || r.coco))
+    r.labels = std::make_unique<sonar::PingLabels>();
   if (!options_.tracks) return r;
-  if (frame.kind == SonarKind::kProfiling)
-    r.bathymetry = std::make_unique<sonar::Bathymetry>(
-        options_.chart_cell_m > 0.0 ? options_.chart_cell_m : l.range_max_m / 50.0);
+  if (frame.kind == SonarKind::kProfiling) {
+    const double cell_m =
+        options_.chart_cell_m > 0.0 ? options_.chart_cell_m : l.range_max_m / 50.0;
+    r.bathymetry = std::make_unique<sonar::Bathymetry>(cell_m);
+    r.terrain = std::make_unique<sonar::Bathymetry>(cell_m);
+  }
   if (frame.kind == SonarKind::kEchoSounder)
     r.trace = std::make_unique<sonar::EchoTrace>(
         sonar::echo_trace_options(frame.grid, terms, floor_of(frame)));
@@ -135,6 +168,7 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
         .range_max_m = l.range_max_m,
         .beam_rad = std::max(r.sonar.step_rad, l.azimuth_max_rad - l.azimuth_min_rad),
         .elevation_rad = r.sonar.elevation_rad,
+        .bins_elevation = r.sonar.bins_elevation,
         .levels = terms.level.has_value()});
   return r;
 }
@@ -144,8 +178,7 @@ Status Survey::add(const FrameResult& result, std::uint32_t number, double time_
     Record& record = record_of(frame);
     const Pose world_from_sonar = scene_.world_from(record.sonar.mount, time_s);
     record.add(frame, world_from_sonar, time_s);
-    if (record.coco && frame.label_energy)
-      NERITIC_TRY_STATUS(record.add_boxes(out_ / "track" / frame.name, frame, number));
+    if (frame.label_energy) NERITIC_TRY_STATUS(record.add_labels(frame, number));
     if (record.from_pictures && frame.head == "port")
       NERITIC_TRY_STATUS(record.add_picture(result, world_from_sonar, time_s));
   }
@@ -195,26 +228,55 @@ void Survey::Record::add(const SonarFrame& frame, const Pose& world_from_sonar, 
     sidescan->append(port.image.intensity, heard, world_from_sonar, time_s);
 }
 
-// The picture beside coco.json, which names it from there.
-Status Survey::Record::add_boxes(const fs::path& folder, const SonarFrame& frame,
-                                 std::uint32_t number) {
-  const std::string head = frame.head.empty() ? "" : "_" + frame.head;
-  const fs::path picture = fs::path("coco") / (frame_folder(number) + head + ".png");
-  coco->add(picture.generic_string(), *frame.label_energy);
-  NERITIC_TRY_STATUS(make_folder(folder / "coco"));
-  return scene::write_png8(
-      folder / picture,
-      sonar::draw_bins(frame.image, sonar::panel_options(frame.kind, frame.level)));
+// A single beam's lines are laid side by side until the end; else a picture beside coco.json, which
+// names it from there.
+Status Survey::Record::add_labels(const SonarFrame& frame, std::uint32_t number) {
+  if (labels) {
+    sonar::PingLine line = sonar::ping_line(*frame.label_energy, frame.image.intensity);
+    if (frame.head == "port")
+      port_labels = std::move(line);
+    else
+      labels->append(frame.head.empty() ? line : sonar::ping_line(port_labels, line));
+    return {};
+  }
+  if (!coco) return {};
+  const std::string name = "coco/" + frame_folder(number) + ".png";
+  coco->add(name, *frame.label_energy);
+  return pictures->add(name, frame.image);
+}
+
+Status Survey::Record::write_labels(const fs::path& folder) const {
+  using sonar::PingsAlong;
+  if (labels) {
+    const bool across = sonar.kind == SonarKind::kMechanical;  // as its mechanical.npy
+    NERITIC_TRY_STATUS(labels->write(folder, prefix_of(sonar.kind),
+                                     across ? PingsAlong::kColumns : PingsAlong::kRows));
+    // In pictures range grows downwards, a side-scan's outwards.
+    if (coco)
+      NERITIC_TRY_STATUS(labels->add_to(
+          *coco, *pictures,
+          sonar.kind == SonarKind::kSideScan ? PingsAlong::kRows : PingsAlong::kColumns));
+  }
+  if (!coco) return {};
+  NERITIC_TRY_STATUS(pictures->finish());
+  return coco->write(folder / "coco.json", pictures->scale());
 }
 
 void Survey::Record::add_profile(const SonarFrame& frame) {
   const auto detections = sonar::detect_bottom(frame.grid, frame.image.intensity,
                                                frame.terms.detection, floor_of(frame));
   sonar::append(cloud, frame.grid, detections, frame.world_from_head);
-  for (const sonar::BottomDetection& d : detections)
-    bathymetry->add(frame.world_from_head * sonar::detection_point(frame.grid, d));
+  std::vector<sonar::BottomDetection> of_terrain;
+  for (const sonar::BottomDetection& d : detections) {
+    const Vec3 point = frame.world_from_head * sonar::detection_point(frame.grid, d);
+    bathymetry->add(point);
+    if (is_object(sonar::detected_class(frame.grid, frame.image.labels, d))) continue;
+    of_terrain.push_back(d);
+    terrain->add(point);
+    terrain_points.push_back(point);
+  }
   for (const sonar::BottomDetection& d :
-       sonar::nadir_detections(frame.grid, detections, frame.world_from_head, kNadir_rad))
+       sonar::nadir_detections(frame.grid, of_terrain, frame.world_from_head, kNadir_rad))
     nadir.push_back(frame.world_from_head * sonar::detection_point(frame.grid, d));
 }
 
@@ -223,13 +285,16 @@ Status Survey::Record::write_bathymetry(const fs::path& folder, const scene::Sce
   NERITIC_TRY_STATUS(sonar::write_cloud_npy(folder / "cloud.npy", cloud));
   NERITIC_TRY_STATUS(sonar::write_pcd(folder / "cloud.pcd", cloud));
   NERITIC_TRY(const sonar::BathymetryGrid grid, bathymetry->grid());
+  NERITIC_TRY(const sonar::BathymetryGrid bottom, terrain->grid());
   const sonar::TrueDepth truth = true_depth(scene);
   json["soundings"] = cloud.size();
   json["error"] = {
-      {"all_soundings", sonar::to_json(sonar::point_error(cloud.positions_m, truth))},
+      {"of", "soundings of the seabed; those on objects are in the chart and the cloud alone"},
+      {"soundings_on_objects", cloud.size() - terrain_points.size()},
+      {"terrain_soundings", sonar::to_json(sonar::point_error(terrain_points, truth))},
       {"grid_at_cell_centres",
-       sonar::to_json(grid_error(grid, truth, sonar::CompareAt::kCellCentre))},
-      {"grid_at_soundings", sonar::to_json(grid_error(grid, truth, sonar::CompareAt::kCentroid))},
+       sonar::to_json(grid_error(bottom, truth, sonar::CompareAt::kCellCentre))},
+      {"grid_at_soundings", sonar::to_json(grid_error(bottom, truth, sonar::CompareAt::kCentroid))},
       {"nadir_soundings", sonar::to_json(sonar::point_error(nadir, truth))},
       {"range_bin_m", (sonar.range_max_m - sonar.range_min_m) / sonar.bins_range}};
   return sonar::write_bathymetry(folder, grid, json);
@@ -250,8 +315,7 @@ Status Survey::Record::write(const fs::path& folder, const scene::Scene& scene,
   if (scan)
     NERITIC_TRY_STATUS(sonar::write_mechanical_scan(
         folder, *scan, std::max(4.0 * scan->options().range_step_m(), 0.01), json));
-  if (coco) NERITIC_TRY_STATUS(coco->write(folder / "coco.json"));
-  return {};
+  return write_labels(folder);
 }
 
 Result<bool> Survey::write(const FrameFacts& facts) const {

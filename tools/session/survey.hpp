@@ -29,8 +29,9 @@ class Survey {
   ~Survey();
 
   // number: of the frame, as its folder is named (frame_folder). Writes the picture that COCO boxes
-  // lie over, OUT/track/SONAR/coco/FRAME.png (FRAME_HEAD.png of a side-scan): one grey pixel a bin.
-  // kBadInput where a side-scan's picture camera is not in the frame or does not suit it.
+  // lie over, OUT/track/SONAR/coco/FRAME.png: one grey pixel a bin. Those of single beams, which
+  // lie side by side, come with all else (coco/pings_FIRST.png). kBadInput where a side-scan's
+  // picture camera is not in the frame or does not suit it.
   Status add(const FrameResult& result, std::uint32_t number, double time_s);
   // All else; whether any sonar had something to say.
   Result<bool> write(const FrameFacts& facts) const;
