@@ -150,6 +150,24 @@ inline constexpr auto kSonarLabelKeys = std::to_array<Key>({"energy", "coco"});
 inline constexpr auto kSonarDetectionKeys =
     std::to_array<Key>({"threshold", "floor_db", "quality", "pings"});
 inline constexpr auto kSonarOutputKeys = std::to_array<Key>({"bits", "floor_db", "span_db"});
+// Where a key belongs that is written a table too high.
+struct KeyTable {
+  Key name;
+  KeyList keys;
+};
+inline constexpr auto kSonarTables =
+    std::to_array<KeyTable>({{"water", kSonarWaterKeys},
+                             {"level", kSonarLevelKeys},
+                             {"beam", kSonarBeamKeys},
+                             {"range_spread", kSonarRangeSpreadKeys},
+                             {"speckle", kSonarSpeckleKeys},
+                             {"noise", kSonarNoiseKeys},
+                             {"ghosts", kSonarGhostKeys},
+                             {"sound_speed", kSonarSoundSpeedKeys},
+                             {"motion", kSonarMotionKeys},
+                             {"labels", kSonarLabelKeys},
+                             {"detection", kSonarDetectionKeys},
+                             {"output", kSonarOutputKeys}});
 
 inline constexpr auto kLampKeys = std::to_array<Key>(
     {"name", "include", "on", "track", "position_m", "yaw_deg", "pitch_deg", "roll_deg",

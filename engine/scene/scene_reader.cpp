@@ -18,6 +18,16 @@ std::string counts_text(const std::vector<std::size_t>& counts) {
   return out;
 }
 
+// What an unknown key may be meant as: the same a table deeper, else the one spelt most alike.
+std::string meant_key(std::string_view key, KeyList keys) {
+  const auto has = [](KeyList list, Key wanted) {
+    return std::ranges::find(list, wanted) != list.end();
+  };
+  for (const KeyTable& table : kSonarTables)
+    if (has(keys, table.name) && has(table.keys, key)) return fmt::format("{}.{}", table.name, key);
+  return std::string(nearest(key, keys));
+}
+
 }  // namespace
 
 bool Interval::holds(double value) const {
@@ -36,7 +46,7 @@ TableReader::TableReader(const SceneSource& source, const TomlValue& table, std:
   for (const TomlEntry& entry : table.entries) {
     if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
     fail(bad_input("{}: {}: unknown key; nearest known key: {}", source.place(entry.where),
-                   this->path(printable(entry.key)), nearest(entry.key, keys)));
+                   this->path(printable(entry.key)), meant_key(entry.key, keys)));
     return;
   }
 }

@@ -64,6 +64,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongKeys{"max_error = 0.1\nquality = 'draft'",
                   ".max_error: found 0.1; accepted: no such key beside quality"},
         WrongKeys{"frequency_hz = 0.5", ".frequency_hz: found 0.5; " HZ},
+        WrongKeys{"source_level_db = 200",
+                  ".source_level_db: unknown key; nearest known key: level.source_level_db"},
         WrongKeys{"bandwidth_hz = 0", ".bandwidth_hz: found 0; " HZ},
         WrongKeys{
             "frequency_hz = 750\nbandwidth_hz = 187500",
@@ -205,8 +207,9 @@ INSTANTIATE_TEST_SUITE_P(
             "holds"},
         WrongKeys{"labels = {cocoa = true}", ".labels.cocoa: unknown key; nearest known key: coco"},
         WrongKeys{"output = {bits = 12}", ".output.bits: found 12; accepted: 0 (floats), 8 or 16"},
-        WrongKeys{"output = {bits = 8}",
-                  ".output: found a table; accepted: output beside level: its floor is in decibels"},
+        WrongKeys{
+            "output = {bits = 8}",
+            ".output: found a table; accepted: output beside level: its floor is in decibels"},
         WrongKeys{
             "output = {span_db = 8}",
             ".output: found a table; accepted: output beside level: its floor is in decibels"}),

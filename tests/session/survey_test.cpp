@@ -86,6 +86,8 @@ TEST_F(SurveyTest, ALawnMowerTrackChartsTheRealBottom) {
     request.time_s += 0.5;
   }
   ASSERT_TRUE(survey.write({}).ok());
+  // A metre apart, on cells of a fiftieth of 35 m.
+  EXPECT_NE(survey.hint().value_or("").find("--chart-cell 1"), std::string::npos);
   const auto folder = out / "track" / "multibeam";
   const auto error = read_json(folder / "bathymetry.json")["error"];
   EXPECT_GT(error["nadir_soundings"]["count"], 1000);
@@ -143,7 +145,8 @@ TEST_F(SurveyTest, WhatStandsOnTheBottomIsChartedAndCountedApart) {
   EXPECT_LT(json["error"]["terrain_soundings"]["rms_m"], 0.05);
   EXPECT_LT(json["error"]["nadir_soundings"]["rms_m"], 0.025);
   EXPECT_LT(json["error"]["grid_at_soundings"]["rms_m"], 0.05);
-  // Half a metre a ping over 4 m: 8 or 9 pings; 8 m above it the box is 28.1 degrees wide, 56 beams.
+  // Half a metre a ping over 4 m: 8 or 9 pings; 8 m above it the box is 28.1 degrees wide, 56
+  // beams.
   EXPECT_NEAR(on_box, 8.5 * 56, 40);
   NERITIC_ASSERT_OK(const NpyArray chart, read_npy(folder / "bathymetry.npy"));
   double shallowest = 1e9;

@@ -279,6 +279,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
   }
   if (made == 0) return Error{ErrorCode::kInterrupted, "interrupted before the first frame"};
   NERITIC_TRY(const bool wrote_track, survey.write(facts));
+  if (const auto hint = survey.hint()) log_warn("{}", *hint);
   if (made < flags.frames) return stopped_render(flags, made, step_s, wrote_track);
   warn_of_leftovers(flags, wrote_track, written);
   NERITIC_TRY_STATUS(check_validation(*device));

@@ -96,9 +96,11 @@ struct Survey::Record {
   // Of a profiling sonar.
   sonar::PointCloud cloud;
   std::unique_ptr<sonar::Bathymetry> bathymetry;
+  double cell_m = 0.0;
   // What the chart's error is taken of: soundings of the bottom, and not of what stands on it.
   std::unique_ptr<sonar::Bathymetry> terrain;
   std::vector<Vec3> terrain_points, nadir;
+  std::vector<Vec3> places;  // of each ping
   std::unique_ptr<sonar::EchoTrace> trace;
   std::unique_ptr<sonar::SidescanRecord> sidescan;
   std::unique_ptr<sonar::SidescanRecord> from_pictures;  // of the side-scan's picture camera
@@ -152,6 +154,7 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
         options_.chart_cell_m > 0.0 ? options_.chart_cell_m : l.range_max_m / 50.0;
     r.bathymetry = std::make_unique<sonar::Bathymetry>(cell_m);
     r.terrain = std::make_unique<sonar::Bathymetry>(cell_m);
+    r.cell_m = cell_m;
   }
   if (frame.kind == SonarKind::kEchoSounder)
     r.trace = std::make_unique<sonar::EchoTrace>(
@@ -266,6 +269,7 @@ void Survey::Record::add_profile(const SonarFrame& frame) {
   const auto detections = sonar::detect_bottom(frame.grid, frame.image.intensity,
                                                frame.terms.detection, floor_of(frame));
   sonar::append(cloud, frame.grid, detections, frame.world_from_head);
+  places.push_back(frame.world_from_head.position_m);
   std::vector<sonar::BottomDetection> of_terrain;
   for (const sonar::BottomDetection& d : detections) {
     const Vec3 point = frame.world_from_head * sonar::detection_point(frame.grid, d);
@@ -326,6 +330,24 @@ Result<bool> Survey::write(const FrameFacts& facts) const {
     wrote = true;
   }
   return wrote;
+}
+
+std::optional<std::string> Survey::hint() const {
+  if (options_.chart_cell_m > 0.0) return std::nullopt;
+  for (const auto& [name, record] : records_) {
+    const std::vector<Vec3>& places = record->places;
+    if (places.size() < 2) continue;
+    double way_m = 0.0;
+    for (std::size_t i = 1; i < places.size(); ++i)
+      way_m += std::hypot(places[i].x - places[i - 1].x, places[i].z - places[i - 1].z);
+    const double apart_m = way_m / static_cast<double>(places.size() - 1), cell_m = record->cell_m;
+    if (apart_m > 1.2 * cell_m)
+      return fmt::format(
+          "{}: pings are {:.2g} m apart on the chart's cells of {:.2g} m, which leaves stripes "
+          "(--chart-cell {:.2g})",
+          name, apart_m, cell_m, std::ceil(20.0 * apart_m) / 20.0);
+  }
+  return std::nullopt;
 }
 
 }  // namespace neritic::tools

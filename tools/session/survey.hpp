@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "tools/session/output.hpp"
@@ -35,6 +36,8 @@ class Survey {
   Status add(const FrameResult& result, std::uint32_t number, double time_s);
   // All else; whether any sonar had something to say.
   Result<bool> write(const FrameFacts& facts) const;
+  // Where a chart's cells, as nobody named them, are finer than its pings lie: what to name.
+  std::optional<std::string> hint() const;
 
  private:
   struct Record;
