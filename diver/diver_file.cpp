@@ -25,9 +25,26 @@ constexpr std::string_view kKickKeys[] = {"amplitude_m", "wavelength_m", "expone
 constexpr std::string_view kComputerKeys[] = {"conventions", "gf_low",     "gf_high",
                                               "last_stop_m", "saturation", "desaturation"};
 
+constexpr double kLitre_m3 = 1e-3, kBar_pa = 1e5;
+constexpr double kThinnestSuit_m = 0.5e-3;
+
 // false: not worn. What is absent is worn as it is by default.
 bool taken_off(const CaseField& field) {
   return field.present() && !field.is_object() && !field.is_array() && !field.boolean(false);
+}
+
+// In the file's unit, of which one is so many of ours; what is absent stays.
+void read_bounded(const CaseField& field, double unit, const Bounds& in, double& value) {
+  if (!field.present()) return;
+  const auto said = [&](double si) { return std::round(si / unit * 1e6) / 1e6; };
+  value = unit * field.number(said(value), said(in.low), said(in.high));
+}
+
+int whole_number(const CaseField& field, int fallback, int least, int most) {
+  const double value = field.number(fallback);
+  if (value == std::floor(value) && value >= least && value <= most) return static_cast<int>(value);
+  field.refuse(fmt::format("a whole number from {} to {} is", least, most));
+  return fallback;
 }
 
 void read_person(const CaseField& file, BodyParameters& p) {
@@ -43,8 +60,7 @@ void read_person(const CaseField& file, BodyParameters& p) {
     p.model = Model::kPlanar;
   else if (model != "full")
     file["model"].refuse("full or planar is");
-  p.strips_a_segment =
-      static_cast<int>(file["strips_a_segment"].number(p.strips_a_segment, 1.0, 64.0));
+  p.strips_a_segment = whole_number(file["strips_a_segment"], p.strips_a_segment, 1, 64);
 }
 
 void read_fins(const CaseField& field, std::optional<Fins>& fins) {
@@ -53,24 +69,27 @@ void read_fins(const CaseField& field, std::optional<Fins>& fins) {
     return;
   }
   field.allow(kFinKeys);
-  fins->length_m = field["length_m"].number(fins->length_m);
-  fins->width_m = field["width_m"].number(fins->width_m);
-  fins->angle_rad = radians(field["angle_deg"].number(degrees(fins->angle_rad)));
-  fins->mass_kg = field["mass_kg"].number(fins->mass_kg);
-  fins->volume_m3 = 1e-3 * field["volume_l"].number(1e3 * fins->volume_m3);
+  read_bounded(field["length_m"], 1.0, kFinLength_m, fins->length_m);
+  read_bounded(field["width_m"], 1.0, kFinWidth_m, fins->width_m);
+  read_bounded(field["angle_deg"], radians(1.0), kFinAngle_rad, fins->angle_rad);
+  read_bounded(field["mass_kg"], 1.0, kFinMass_kg, fins->mass_kg);
+  read_bounded(field["volume_l"], kLitre_m3, kFinVolume_m3, fins->volume_m3);
 }
 
 Tank read_tank(const CaseField& field) {
   field.allow(kTankKeys);
   Tank tank;
-  tank.water_volume_m3 = 1e-3 * field["volume_l"].number(1e3 * tank.water_volume_m3);
-  tank.pressure_pa = 1e5 * field["pressure_bar"].number(1e-5 * tank.pressure_pa);
+  read_bounded(field["volume_l"], kLitre_m3, kTankVolume_m3, tank.water_volume_m3);
+  read_bounded(field["pressure_bar"], kBar_pa, kTankPressure_pa, tank.pressure_pa);
   tank.mix.oxygen = field["oxygen"].number(tank.mix.oxygen, 0.0, 1.0);
   tank.mix.helium = field["helium"].number(tank.mix.helium, 0.0, 1.0);
-  tank.empty_mass_kg = field["empty_kg"].number(tank.empty_mass_kg);
-  tank.outer_volume_m3 = 1e-3 * field["outer_l"].number(1e3 * tank.outer_volume_m3);
-  tank.radius_m = field["radius_m"].number(tank.radius_m);
-  tank.length_m = field["length_m"].number(tank.length_m);
+  if (!is_mix(tank.mix))
+    field["helium"].fail(fmt::format("{} beside {} of oxygen found, shares of 1 are accepted",
+                                     tank.mix.helium, tank.mix.oxygen));
+  read_bounded(field["empty_kg"], 1.0, kTankMass_kg, tank.empty_mass_kg);
+  read_bounded(field["outer_l"], kLitre_m3, kTankOuterVolume_m3, tank.outer_volume_m3);
+  read_bounded(field["radius_m"], 1.0, kTankRadius_m, tank.radius_m);
+  read_bounded(field["length_m"], 1.0, kTankLength_m, tank.length_m);
   return tank;
 }
 
@@ -80,27 +99,41 @@ void read_jacket(const CaseField& field, std::optional<Jacket>& jacket) {
     return;
   }
   field.allow(kJacketKeys);
-  jacket->capacity_m3 = 1e-3 * field["capacity_l"].number(1e3 * jacket->capacity_m3);
-  jacket->mass_kg = field["mass_kg"].number(jacket->mass_kg);
-  jacket->volume_m3 = 1e-3 * field["volume_l"].number(1e3 * jacket->volume_m3);
+  read_bounded(field["capacity_l"], kLitre_m3, kJacketCapacity_m3, jacket->capacity_m3);
+  read_bounded(field["mass_kg"], 1.0, kJacketMass_kg, jacket->mass_kg);
+  jacket->volume_m3 = kLitre_m3 * field["volume_l"].number(1e3 * jacket->volume_m3);
+}
+
+void read_suit(const CaseField& field, std::optional<Suit>& suit) {
+  read_bounded(field, 1e-3, kSuitThickness_m, suit->thickness_m);
+  if (suit->thickness_m == 0.0)
+    suit.reset();
+  else if (suit->thickness_m < kThinnestSuit_m)  // metres, taken for millimetres
+    field.refuse("0 or 0.5 to 12 millimetres are");
 }
 
 void read_gear(const CaseField& file, Gear& gear) {
-  gear.suit->thickness_m = 1e-3 * file["suit_mm"].number(1e3 * gear.suit->thickness_m);
-  if (gear.suit->thickness_m == 0.0) gear.suit.reset();
+  read_suit(file["suit_mm"], gear.suit);
   read_fins(file["fins"], gear.fins);
   read_jacket(file["jacket"], gear.jacket);
   if (file["tanks"].present()) {
     gear.tanks.clear();
-    for (std::size_t i = 0; i < file["tanks"].size(); ++i)
+    const std::size_t count = file["tanks"].size();
+    if (count > kMaxTanks)
+      file["tanks"].fail(fmt::format("{} found, up to {} are accepted", count, kMaxTanks));
+    for (std::size_t i = 0; i < std::min(count, kMaxTanks); ++i)
       gear.tanks.push_back(read_tank(file["tanks"].at(i)));
   }
-  const std::pair<const char*, std::optional<double> Gear::*> chosen[] = {
-      {"lead_kg", &Gear::lead_kg},
-      {"lead_at_shoulders", &Gear::lead_at_shoulders},
-      {"drag_area_m2", &Gear::drag_area_m2}};
-  for (const auto& [key, member] : chosen)
-    if (file[key].present()) gear.*member = file[key].number(0.0);
+  const struct {
+    const char* key;
+    std::optional<double> Gear::*member;
+    Bounds in;
+  } chosen[] = {{"lead_kg", &Gear::lead_kg, kLead_kg},
+                {"lead_at_shoulders", &Gear::lead_at_shoulders, kLeadShare},
+                {"drag_area_m2", &Gear::drag_area_m2, kGearDragArea_m2}};
+  for (const auto& one : chosen)
+    if (file[one.key].present())
+      read_bounded(file[one.key], 1.0, one.in, (gear.*one.member).emplace(one.in.low));
 }
 
 void read_kick(const CaseField& field, SwimmerSettings& swimmer) {
@@ -128,8 +161,8 @@ Status read_computer(const CaseField& root, const BodyParameters& diver,
   c.last_stop_m = field["last_stop_m"].number(c.last_stop_m, 1.0, 30.0);
   c.saturation = field["saturation"].number(c.saturation, 0.1, 10.0);
   c.desaturation = field["desaturation"].number(c.desaturation, 0.1, 10.0);
-  computer.gf_low = field["gf_low"].number(computer.gf_low, 0.0, 1.0);
-  computer.gf_high = field["gf_high"].number(computer.gf_high, 0.0, 1.0);
+  computer.gf_low = field["gf_low"].number(computer.gf_low, 0.01, 1.5);
+  computer.gf_high = field["gf_high"].number(computer.gf_high, 0.01, 1.5);
   if (gear.tanks.empty()) return {};
   computer.gases.clear();
   for (std::size_t i = 0; i < gear.tanks.size(); ++i) {
@@ -143,6 +176,15 @@ Status read_computer(const CaseField& root, const BodyParameters& diver,
     computer.gases.push_back(gas);
   }
   return {};
+}
+
+// A message that begins with a key of the file, at that key.
+void fail_at_its_key(const CaseField& root, const std::string& message) {
+  const std::string key = message.substr(0, message.find(": "));
+  if (std::ranges::find(kDiverKeys, key) == std::end(kDiverKeys) || key == message)
+    root.fail(message);
+  else
+    root[key].fail(message.substr(key.size() + 2));
 }
 
 }  // namespace
@@ -161,12 +203,13 @@ Result<DiverFile> parse_diver(std::string_view text, const std::string& name,
   read_gear(root, out.parameters.gear);
   read_kick(root["kick"], out.swimmer);
   const Status computer = read_computer(root, out.parameters, out.computer);
+  if (!file.failed() && !computer.ok()) root["computer"].fail(computer.error().message);
   if (file.failed()) return file.error();
-  if (!computer.ok()) return bad_input("{}: computer: {}", name, computer.error().message);
-  const auto body = make_body(out.parameters);
-  if (!body.ok()) return bad_input("{}: {}", name, body.error().message);
-  const auto made = DiveComputer::create(out.computer);
-  if (!made.ok()) return bad_input("{}: computer: {}", name, made.error().message);
+  if (const auto body = make_body(out.parameters); !body.ok())
+    fail_at_its_key(root, body.error().message);
+  else if (const auto made = DiveComputer::create(out.computer); !made.ok())
+    root["computer"].fail(made.error().message);
+  if (file.failed()) return file.error();
   return out;
 }
 

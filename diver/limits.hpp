@@ -7,15 +7,19 @@
 
 namespace neritic::diver {
 
+struct Bounds {
+  double low, high;
+};
 struct Limit {
   const char* name;  // as the error says it
-  double value, low, high;
+  double value;
+  Bounds in;
 };
 // An error of the first value that is outside, or no number: what was found, what is accepted.
 inline Status check_limits(std::initializer_list<Limit> limits) {
   for (const Limit& l : limits)
-    if (!(l.value >= l.low && l.value <= l.high))
-      return bad_input("{}: {} found, {} to {} is accepted", l.name, l.value, l.low, l.high);
+    if (!(l.value >= l.in.low && l.value <= l.in.high))
+      return bad_input("{}: {} found, {} to {} is accepted", l.name, l.value, l.in.low, l.in.high);
   return {};
 }
 

@@ -10,8 +10,11 @@
 
 namespace neritic {
 
-CaseFile::CaseFile(nlohmann::json&& object, std::string name)
-    : name_(std::move(name)), json_(std::make_unique<nlohmann::json>(std::move(object))) {}
+CaseFile::CaseFile(nlohmann::json&& object, std::string name,
+                   std::map<std::string, std::string> places)
+    : name_(std::move(name)),
+      places_(std::move(places)),
+      json_(std::make_unique<nlohmann::json>(std::move(object))) {}
 CaseFile::CaseFile(CaseFile&&) noexcept = default;
 CaseFile& CaseFile::operator=(CaseFile&&) noexcept = default;
 CaseFile::~CaseFile() = default;
@@ -30,10 +33,19 @@ CaseField CaseFile::root() {
 
 void CaseFile::fail(const std::string& field, const std::string& message) {
   if (error_) return;
-  std::string text = name_ + ": ";
+  std::string text = place_of(field) + ": ";
   if (!case_.empty()) text += "case '" + printable(case_, 60) + "': ";
   if (!field.empty()) text += printable(field, 100) + ": ";
   error_ = bad_input("{}{}", text, printable(message, 300));
+}
+
+std::string CaseFile::place_of(std::string field) const {
+  for (;;) {
+    if (const auto at = places_.find(field); at != places_.end()) return at->second;
+    const std::size_t end = field.find_last_of(".[");
+    if (end == field.npos) return name_;
+    field.resize(end);
+  }
 }
 
 bool CaseField::present() const {

@@ -1,9 +1,10 @@
 // Checked reading of files of cases (JSON) and of vehicles (TOML): every getter says what it
 // accepts and records the first thing that is wrong, as "file: case 'id': field: ... found, ...
-// accepted". Later getters return their fallbacks, so that a reader reads on and asks once whether
-// it failed. One thread.
+// accepted", of TOML with the line, "file:line: field: ...". Later getters return their fallbacks,
+// so that a reader reads on and asks once whether it failed. One thread.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -24,7 +25,10 @@ class CaseFile {
  public:
   // name stands in messages. Errors: no JSON object.
   static Result<CaseFile> parse(std::string_view text, std::string name);
-  CaseFile(nlohmann::json&& object, std::string name);
+  // places: where fields are, as "file:line" by path; of a field that is not there, where what
+  // holds it is.
+  CaseFile(nlohmann::json&& object, std::string name,
+           std::map<std::string, std::string> places = {});
   CaseFile(CaseFile&&) noexcept;
   CaseFile& operator=(CaseFile&&) noexcept;
   ~CaseFile();
@@ -39,7 +43,10 @@ class CaseFile {
   void fail(const std::string& field, const std::string& message);
 
  private:
+  std::string place_of(std::string field) const;
+
   std::string name_, case_;
+  std::map<std::string, std::string> places_;
   std::unique_ptr<nlohmann::json> json_;
   std::optional<Error> error_;
 };

@@ -39,6 +39,23 @@ nlohmann::json json_of(const TomlValue& value) {
   return out;
 }
 
+// Where each key and each table of a list is, by its path.
+using Places = std::map<std::string, std::string>;
+void add_places(const TomlValue& value, const std::string& path, const std::string& name,
+                Places& places) {
+  for (const TomlEntry& entry : value.entries) {
+    const std::string at = path.empty() ? entry.key : path + "." + entry.key;
+    places[at] = fmt::format("{}:{}", name, entry.where.line);
+    add_places(entry.value, at, name, places);
+  }
+  if (!value.is_table_array()) return;
+  for (std::size_t i = 0; i < value.items.size(); ++i) {
+    const std::string at = fmt::format("{}[{}]", path, i);
+    places[at] = fmt::format("{}:{}", name, value.items[i].where.line);
+    add_places(value.items[i], at, name, places);
+  }
+}
+
 // Keys of over win; tables are merged key by key.
 void merge(nlohmann::json& under, const nlohmann::json& over) {
   for (auto it = over.begin(); it != over.end(); ++it) {
@@ -53,11 +70,16 @@ void merge(nlohmann::json& under, const nlohmann::json& over) {
 // The file's tree over that of the file it includes, and so on.
 Result<nlohmann::json> read_tree(std::string_view text, const std::string& name,
                                  const std::filesystem::path& folder,
-                                 std::span<const std::string_view> paths, int depth) {
+                                 std::span<const std::string_view> paths, int depth,
+                                 Places& places) {
   if (text.size() > kMostBytes)
     return bad_input("{}: {} bytes; accepted: at most {}", name, text.size(), kMostBytes);
   NERITIC_TRY(const TomlValue parsed, parse_toml(text, name, 0));
   nlohmann::json own = json_of(parsed);
+  Places own_places;
+  add_places(parsed, "", name, own_places);
+  // What includes was there first: its places stay.
+  places.insert(own_places.begin(), own_places.end());
   // Paths are relative to the file that they are written in.
   for (const std::string_view key : paths)
     if (const auto file = own.find(std::string(key)); file != own.end() && file->is_string())
@@ -71,7 +93,7 @@ Result<nlohmann::json> read_tree(std::string_view text, const std::string& name,
   own.erase(include);
   NERITIC_TRY(const std::string base, read_text(path));
   NERITIC_TRY(nlohmann::json under,
-              read_tree(base, path.string(), path.parent_path(), paths, depth + 1));
+              read_tree(base, path.string(), path.parent_path(), paths, depth + 1, places));
   merge(under, own);
   return under;
 }
@@ -81,8 +103,9 @@ Result<nlohmann::json> read_tree(std::string_view text, const std::string& name,
 Result<CaseFile> parse_case_toml(std::string_view text, const std::string& name,
                                  const std::filesystem::path& folder,
                                  std::span<const std::string_view> paths) {
-  NERITIC_TRY(nlohmann::json tree, read_tree(text, name, folder, paths, 0));
-  return CaseFile(std::move(tree), name);
+  Places places;
+  NERITIC_TRY(nlohmann::json tree, read_tree(text, name, folder, paths, 0, places));
+  return CaseFile(std::move(tree), name, std::move(places));
 }
 
 }  // namespace neritic

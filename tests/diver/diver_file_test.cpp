@@ -102,13 +102,39 @@ TEST(DiverFile, TheAirOverTheWaterIsTheScenes) {
 TEST(DiverFile, MistakesNameTheFileAndTheKey) {
   EXPECT_THAT(diver_fault("hight_m = 1.8"), HasSubstr("height_m"));
   EXPECT_THAT(diver_fault("sex = \"other\""), HasSubstr("male or female"));
-  EXPECT_THAT(diver_fault("height_m = 9"), HasSubstr("d.toml: height_m: 9 found"));
+  EXPECT_THAT(diver_fault("height_m = 9"), HasSubstr("d.toml:1: height_m: 9 found"));
   EXPECT_THAT(diver_fault("suit_mm = 90"), HasSubstr("suit"));
   EXPECT_THAT(diver_fault("[[tanks]]\noxygen = 2"), HasSubstr("oxygen"));
   EXPECT_THAT(diver_fault("[computer]\ngf_low = 0.9\ngf_high = 0.2"), HasSubstr("computer"));
   EXPECT_THAT(diver_fault("[computer]\nconventions = \"mine\""), HasSubstr("mine"));
   EXPECT_THAT(diver_fault("fins = 3"), HasSubstr("fins"));
   EXPECT_THAT(diver_fault("height_m = nan"), HasSubstr("height_m"));
+}
+
+// In the file's own units, by its own keys, and where it is.
+TEST(DiverFile, MistakesAreSaidInTheFilesUnitsAndWithTheirLine) {
+  EXPECT_EQ(diver_fault("height_m = 1.8\n[[tanks]]\n[[tanks]]\nvolume_l = 7\npressure_bar = 351\n"),
+            "d.toml:5: tanks[1].pressure_bar: 351 found, a number in [0, 350] is accepted");
+  EXPECT_EQ(diver_fault("\nsuit_mm = -1"),
+            "d.toml:2: suit_mm: -1 found, a number in [0, 12] is accepted");
+  EXPECT_EQ(diver_fault("suit_mm = 0.005"),
+            "d.toml:1: suit_mm: 0.005 found, 0 or 0.5 to 12 millimetres are accepted");
+  EXPECT_EQ(diver_fault("strips_a_segment = 4.5"),
+            "d.toml:1: strips_a_segment: 4.5 found, a whole number from 1 to 64 is accepted");
+  EXPECT_EQ(diver_fault("# a comment\nfins = { length_m = 0.4, width_m = 3 }"),
+            "d.toml:2: fins.width_m: 3 found, a number in [0.02, 1] is accepted");
+  EXPECT_EQ(diver_fault("jacket = { capacity_l = 0.2 }"),
+            "d.toml:1: jacket.capacity_l: 0.2 found, a number in [1, 60] is accepted");
+  EXPECT_EQ(diver_fault("[[tanks]]\noxygen = 0.6\nhelium = 0.5"),
+            "d.toml:3: tanks[0].helium: 0.5 beside 0.6 of oxygen found, shares of 1 are accepted");
+  EXPECT_EQ(diver_fault("\n\nheigth_m = 1.8"),
+            "d.toml:3: heigth_m: not known; the nearest is height_m");
+  EXPECT_THAT(diver_fault("height_m = 1.8\nmass_kg = 31"),
+              HasSubstr("d.toml:2: mass_kg: 31 at a height of 1.8 m found"));
+  EXPECT_THAT(diver_fault("[computer]\ngf_high = 3"),
+              HasSubstr("d.toml:2: computer.gf_high: 3 found, a number in [0.01, 1.5]"));
+  EXPECT_THAT(diver_fault("\n[computer]\ngf_low = 0.9\ngf_high = 0.2"),
+              HasSubstr("d.toml:2: computer: "));
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(RovVehicleFile, FaultsNameTheKeyWhatWasFoundAndWhatIsAccepted) {
   const std::string good = "mass_kg = 10\ninertia_kg_m2 = [0.2, 0.2, 0.3]\n";
   EXPECT_EQ(vehicle_fault(good), "");
   EXPECT_THAT(vehicle_fault("mass_kg = -3\ninertia_kg_m2 = [1, 1, 1]"),
-              HasSubstr("v.toml: mass_kg: -3 found, a number in"));
+              HasSubstr("v.toml:1: mass_kg: -3 found, a number in"));
   EXPECT_THAT(vehicle_fault("mass_kg = nan\ninertia_kg_m2 = [1, 1, 1]"),
               HasSubstr("mass_kg: \"nan\" fo"));
   EXPECT_THAT(vehicle_fault("inertia_kg_m2 = [1, 1, 1]"),

@@ -32,6 +32,16 @@ TEST(CommandLine, AWrongFlagPointsAtTheSubcommandsHelp) {
   EXPECT_THAT(said({"--colour"}), HasSubstr("(see neritic --help)"));
 }
 
+TEST(CommandLine, AFlagSaysWhatItWantsAndAMisspeltOneTheNearest) {
+  EXPECT_EQ(said({"plan", "--depth", "30ft", "--time", "20"}),
+            "--depth: '30ft' found; a number is accepted: metres (see neritic plan --help)");
+  EXPECT_THAT(said({"plan", "--depth=deep"}), HasSubstr("--depth: 'deep' found; a number"));
+  EXPECT_EQ(said({"plan", "--dept", "30", "--time", "20"}),
+            "--dept: no such flag; the nearest is --depth (see neritic plan --help)");
+  EXPECT_THAT(said({"dive", "a.toml", "--headles"}), HasSubstr("nearest is --headless"));
+  EXPECT_THAT(said({"dive", "a.toml", "--verbos"}), HasSubstr("nearest is --verbose"));
+}
+
 TEST(CommandLine, AnEmptyFolderForTheResultsIsRefused) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"render", "a.toml", "--out", ""},

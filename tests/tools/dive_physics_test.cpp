@@ -245,7 +245,7 @@ TEST_F(DivePhysics, AParameterFileThatIsNoVehicleEndsInOneLine) {
     const Outcome outcome = dive("--headless --seconds 1", "wrong_dive.toml");
     EXPECT_EQ(outcome.status, 2) << file.message;
     EXPECT_EQ(outcome.out, "");
-    EXPECT_NE(outcome.err.find("wrong.toml: "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("wrong.toml:"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find(file.message), std::string::npos) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   }

@@ -374,6 +374,34 @@ void add_doctor(CLI::App& app, Run& run) {
       [flags, &run] { run = [flags] { return nothing_to_say(run_doctor(*flags)); }; });
 }
 
+// The parser's words, but where it says less than is known: what a flag wants that was given
+// something else, and the flag that is nearest to one that there is not.
+std::string what_was_wrong(const CLI::App& app, const CLI::App& command,
+                           const std::vector<std::string>& arguments,
+                           const CLI::ParseError& error) {
+  const std::string said = error.what(), unconverted = "Could not convert: ";
+  if (const std::size_t value = said.find(" = ");
+      said.starts_with(unconverted) && value != said.npos) {
+    const std::string name = said.substr(unconverted.size(), value - unconverted.size());
+    if (const CLI::Option* option = command.get_option_no_throw(name))
+      return fmt::format("{}: '{}' found; a number is accepted: {}", name,
+                         printable(said.substr(value + 3)), option->get_description());
+  }
+  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return said;
+  std::vector<std::string> names;
+  for (const CLI::App* of : {&command, &app})
+    for (const CLI::Option* option : of->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const std::string& argument : arguments) {
+    const std::string name = argument.substr(0, argument.find('='));
+    if (!name.starts_with("--") || name == "--" || std::ranges::find(names, name) != names.end())
+      continue;
+    return fmt::format("{}: no such flag; the nearest is {}", printable(name),
+                       nearest(name, std::vector<std::string_view>(names.begin(), names.end())));
+  }
+  return said;
+}
+
 }  // namespace
 
 Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments) {
@@ -408,8 +436,9 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
       return bad_input("'{}' is no command; {} are", arguments[0], names);
     }
     const auto chosen = app.get_subcommands();
-    return bad_input("{} (see neritic {}--help)", error.what(),
-                     chosen.empty() ? "" : chosen.front()->get_name() + " ");
+    const CLI::App& command = chosen.empty() ? app : *chosen.front();
+    return bad_input("{} (see neritic {}--help)", what_was_wrong(app, command, arguments, error),
+                     chosen.empty() ? "" : command.get_name() + " ");
   }
   return line;
 }
