@@ -19,6 +19,7 @@ layout(constant_id = kSonarSpecTextured) const uint kTextured = 0;
 layout(constant_id = kSonarSpecRecords) const uint kRecords = 0;
 layout(constant_id = kSonarSpecGhost) const uint kGhost = 0;
 layout(constant_id = kSonarSpecMoving) const uint kMoving = 0;
+layout(constant_id = kSonarSpecBent) const uint kBent = 0;
 
 layout(set = 0, binding = kSonarBindEcho, scalar) uniform Echo { SonarEcho echo; };
 layout(set = 0, binding = kSonarBindWeights) uniform texture2D weights;
@@ -31,13 +32,13 @@ layout(set = 0, binding = kSonarBindDirectLabel) uniform utexture2DArray direct_
 // The largest power of one beam that 32 bits of counts hold. A ghost's may be above 1.
 const float kLargestPower = 15.0;
 
-// Heard over true range, of the table: linear in range and in the sine of the elevation.
-float correction_at(float range_m, float sine) {
+// Of a table: linear in range and in the sine of the elevation. from: its first entry.
+float correction_at(float range_m, float sine, uint from) {
   float x = min(range_m / echo.correction_range_m, 1.0) * float(echo.correction_width - 1);
   float y = (clamp(sine, -1.0, 1.0) * 0.5 + 0.5) * float(echo.correction_height - 1);
   uvec2 low = uvec2(min(x, float(echo.correction_width - 2)), min(y, float(echo.correction_height - 2)));
   vec2 part = vec2(x, y) - vec2(low);
-  uint at = low.y * echo.correction_width + low.x, above = at + echo.correction_width;
+  uint at = from + low.y * echo.correction_width + low.x, above = at + echo.correction_width;
   return mix(mix(corrections[at], corrections[at + 1], part.x), mix(corrections[above], corrections[above + 1], part.x),
              part.y);
 }
@@ -74,6 +75,42 @@ ivec2 beam_of(vec3 direction) {
   float row = (elevation - echo.elevation_min_rad) * echo.rows_per_rad;
   if (column < 0.0 || row < 0.0 || column > float(c.n_azimuth) || row >= float(c.n_elevation)) return ivec2(-1);
   return ivec2(min(uint(column), c.n_azimuth - 1), row);
+}
+
+// Where a bent ray leaves the sonar that ends at a range in a direction, in the same upright plane.
+vec3 launched(float range_m, vec3 direction) {
+  float sine = dot(direction, echo.world_up);
+  vec3 level = direction - sine * echo.world_up;
+  float cosine = length(level);
+  if (!(cosine > 1e-6)) return direction;  // straight up or down no ray bends
+  float bend = correction_at(range_m, sine, echo.correction_width * echo.correction_height);
+  vec2 turn = vec2(cos(bend), sin(bend));
+  return level * ((cosine * turn.x - sine * turn.y) / cosine) +
+         echo.world_up * (sine * turn.x + cosine * turn.y);
+}
+
+// Of the weights' table in a direction from the sonar, linear between rows; none beyond them. Columns beyond the
+// last are as it: only a cone's differ, and fall off to its edge.
+float weight_towards(vec3 direction, bool turned_over) {
+  float azimuth = atan(dot(direction, echo.head_right), -dot(direction, echo.head_back));
+  float elevation = asin(clamp(dot(direction, echo.head_up), -1.0, 1.0));
+  float row = (elevation - echo.elevation_min_rad) * echo.rows_per_rad;
+  if (row < 0.0 || row >= float(c.n_elevation)) return 0.0;
+  if (turned_over) row = float(c.n_elevation) - row;
+  float place = clamp(row - 0.5, 0.0, float(c.n_elevation - 1));
+  int column = clamp(int((azimuth - echo.azimuth_min_rad) * echo.columns_per_rad), 0, int(c.n_azimuth) - 1);
+  int low = int(place), high = min(low + 1, int(c.n_elevation) - 1);
+  return mix(texelFetch(weights, ivec2(column, low), 0).r, texelFetch(weights, ivec2(column, high), 0).r,
+             place - float(low));
+}
+
+// A row's weight by where its ray leaves; the solid angle stays the row's own.
+float bent_weight(float range_m, vec3 direction, uint row) {
+  vec3 leaves = launched(range_m, direction);
+  float weight = weight_towards(leaves, kGhost != 0);
+  if (kGhost != 0 || echo.solid_angle == 0) return weight;
+  float up = dot(leaves, echo.head_up);
+  return weight * inversesqrt(max(1.0 - up * up, 1e-6)) / texelFetch(rows, ivec2(row, 0), 0).y;
 }
 
 // What the pattern lets through one way. The eye's rows are the head's turned over, and so is the table.
@@ -129,7 +166,9 @@ GhostPath ghost_path(vec3 direction, uint row, BeamHit hit, out float power) {
   if (!(hit.strength > 0.0 && cosine > 0.0)) return none;  // turned away from the mirror or from the sonar
   float mean_m = 0.5 * (direct_m + hit.range_m);
   ivec2 direct_beam = beam_of(leg / direct_m);
-  power = min(cosine, 1.0) * echo.ghost_weight * pattern_of(direct_beam);
+  float through =
+      kBent != 0 ? weight_towards(launched(direct_m, leg / direct_m), true) : pattern_of(direct_beam);
+  power = min(cosine, 1.0) * echo.ghost_weight * through;
   if (!(power > 0.0) || !is_clear(direct_beam, leg / direct_m, direct_m, 0)) return none;
   vec3 launch = direction - 2.0 * dot(direction, echo.world_up) * echo.world_up;
   ivec2 launch_beam = beam_of(launch);
@@ -145,7 +184,7 @@ GhostPath ghost_path(vec3 direction, uint row, BeamHit hit, out float power) {
 
 // Of a range in a direction from the sonar: what the speed of sound makes of it.
 float corrected(float range_m, vec3 direction) {
-  return range_m * correction_at(range_m, dot(direction, echo.world_up));
+  return range_m * correction_at(range_m, dot(direction, echo.world_up), 0);
 }
 
 // The way of an echo: there and back, directions from the sonar. Without a ghost both are the eye's.
@@ -281,12 +320,18 @@ void main() {
       range_m = ghost.mean_m;
     }
     float heard_m = heard_of(legs, range_m);
-    if (kWeighted != 0) power *= texelFetch(weights, ivec2(column, row), 0).r;
+    bool leaves = true;  // within the beam
+    if (kBent != 0) {
+      float weight = range_m > 0.0 ? bent_weight(legs.there_m, legs.there, row) : 0.0;
+      power *= weight;
+      leaves = weight > 0.0;
+    } else if (kWeighted != 0) power *= texelFetch(weights, ivec2(column, row), 0).r;
     if (kReflect != 0 || kLabels != 0 || kRecords != 0) label = texelFetch(label_image, hit.at, 0).xy;
     if (kReflect != 0) power *= label.y < c.reflectivities ? reflectivity[label.y] : 1.0;
     if (kGhost != 0) label.x = kSonarGhostClass;
     RowEcho e = RowEcho(min(power, kLargestPower), bin_at(heard_m), vec2(heard_m), heard_m, label.x);
     if (kFootprint != 0 && range_m > 0.0) e.ends_m = shared_ends(hit.ends_m * (heard_m / hit.range_m), heard_m);
+    if (kBent != 0 && !leaves) e.range_m = 0.0;  // no ray, so no shadow of what it would end on
     bool echoes = range_m > 0.0 && e.power > 0.0;
     bool heard = echoes && e.bin >= 0.0 && e.bin < float(c.n_range);
     if (kFootprint != kSonarFootprintNone)

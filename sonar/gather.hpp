@@ -51,6 +51,7 @@ struct GBufferLayout {
 struct EchoOptions {
   bool coherent = false;               // sum the world's scatterers as complex amplitudes (speckle)
   bool corrected = false;              // a table of range factors will be given
+  bool bent = false;                   // and, after it, one of where rays leave; takes weights
   bool moving = false;                 // ranges change by motion within the ping or Doppler
   bool records = false;                // keep what each beam returned
   bool ghost = false;                  // the view is from the sonar's mirror image
@@ -89,8 +90,9 @@ class SonarGather {
     graph::BufferHandle sums_target, keys_target, records_target;
     // Sums, keys and nothing else of an earlier gather of this frame: this one adds to them.
     graph::BufferHandle sums_so_far, keys_so_far;
-    shared::SonarEcho echo{};                // with terms: of this ping; sum_scale is filled in
-    std::span<const float> correction = {};  // [correction_height][correction_width], until the run
+    shared::SonarEcho echo{};  // with terms: of this ping; sum_scale is filled in
+    std::span<const float> correction =
+        {};  // [correction_height][correction_width], until the run; of bent rays twice
     std::string prefix = "";  // of the names of passes and transients: which sonar's they are
   };
   struct Outputs {

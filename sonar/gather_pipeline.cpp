@@ -90,6 +90,7 @@ Status SonarGather::make_pipeline(gpu::Device& device) {
              {shared::kSonarSpecCoherent, echo->coherent},
              {shared::kSonarSpecWeighted, !echo->weights.empty()},
              {shared::kSonarSpecCorrected, echo->corrected},
+             {shared::kSonarSpecBent, echo->bent},
              {shared::kSonarSpecTextured, !echo->gamma_quantiles.empty()},
              {shared::kSonarSpecRecords, echo->records},
              {shared::kSonarSpecGhost, echo->ghost},

@@ -6,6 +6,7 @@
 #include "sonar/acoustics_pulse.hpp"
 #include "sonar/head_pattern.hpp"
 #include "sonar/quality.hpp"
+#include "sonar/range_correction.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -55,6 +56,7 @@ std::uint32_t rows_beyond(double half_rad, double step_rad, double reach_rad, st
 // Where the rows beyond would make more than this, all rows grow instead: what is heard there is
 // never cut off, and nobody pays for more rows than these or those asked for.
 constexpr std::uint32_t kMostWidened = 1536;
+constexpr std::uint32_t kMostBent = 768;  // the same of rows as far as rays bend
 
 // An elevation pattern is heard beyond the aperture that its half power names: as far as its second
 // null. What lies straight below a side-scan, or the surface above a flat beam, comes in there.
@@ -72,6 +74,22 @@ void widen_elevation(Head& head, const HeadPatterns& patterns) {
   widen(l.elevation_min_rad, l.elevation_max_rad, g.elevation_step_rad(), g.bins.elevation);
   if (patterns.cone)
     widen(l.azimuth_min_rad, l.azimuth_max_rad, g.azimuth_step_rad(), g.bins.azimuth);
+}
+
+// What leaves within the beam may end beyond it: rows (a cone's columns too) as far as rays bend.
+void widen_for_bends(Head& head, const scene::SonarProfile& profile, bool cone) {
+  BeamGrid& g = head.samples;
+  Limits& l = g.limits;
+  const double bend_rad = most_bend_rad(profile, l.range_max_m);
+  const auto widen = [&](double& min_rad, double& max_rad, double step_rad, std::uint32_t& bins) {
+    const double most = std::floor((kMaxElevation_rad / 2.0 - max_rad) / step_rad + 1e-6);
+    const double rows = std::max(0.0, std::min(std::ceil(bend_rad / step_rad - 1e-6), most));
+    bins = std::min(bins + 2 * static_cast<std::uint32_t>(rows), std::max(bins, kMostBent));
+    min_rad -= rows * step_rad;
+    max_rad += rows * step_rad;
+  };
+  widen(l.elevation_min_rad, l.elevation_max_rad, g.elevation_step_rad(), g.bins.elevation);
+  if (cone) widen(l.azimuth_min_rad, l.azimuth_max_rad, g.azimuth_step_rad(), g.bins.azimuth);
 }
 
 // Makes head.samples from head.beams: columns a beam, and as many beyond the edges as the pattern
@@ -97,7 +115,8 @@ Status plan_samples(Head& head, std::uint32_t samples, std::uint32_t reach) {
 // where powers are physical, and a cone's edge. Empty: all are 1.
 std::vector<float> beam_weights(const scene::Sonar& sonar, const Head& head,
                                 const HeadPatterns& patterns) {
-  if (!sonar.terms.level && !patterns.elevation && !patterns.cone) return {};
+  const bool bent = sonar.terms.profile && sonar.terms.profile->bent;
+  if (!sonar.terms.level && !patterns.elevation && !patterns.cone && !bent) return {};
   const BeamGrid& grid = head.samples;
   std::vector<float> weights(std::size_t{grid.bins.azimuth} * grid.bins.elevation);
   for (std::uint32_t row = 0; row < grid.bins.elevation; ++row)
@@ -106,6 +125,7 @@ std::vector<float> beam_weights(const scene::Sonar& sonar, const Head& head,
       double weight = patterns.power_of_cell(grid, column, row);
       if (sonar.terms.level || patterns.cone) weight *= std::cos(phi);
       if (patterns.cone) weight *= cone_share(grid, column, row, patterns.cone_rad);
+      if (std::abs(phi) > head.heard_up_rad) weight = 0.0;
       weights[std::size_t{row} * grid.bins.azimuth + column] = static_cast<float>(weight);
     }
   return weights;
@@ -183,6 +203,8 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
   if (!made.ok()) return bad_input("sonar {}: beam: {}", sonar.name, made.error().message);
   const HeadPatterns& patterns = *made;
   widen_elevation(head, patterns);
+  head.heard_up_rad = head.samples.limits.elevation_max_rad;
+  if (t.profile && t.profile->bent) widen_for_bends(head, *t.profile, patterns.cone);
   // Side-scans and scanners hear one beam: their azimuth bins sample it.
   const std::uint32_t samples = sonar.kind == SonarKind::kSideScan
                                     ? std::max(sonar.bins_azimuth, t.beam.samples)
@@ -198,6 +220,7 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
   EchoOptions echo;
   echo.coherent = t.speckle.has_value();
   echo.corrected = t.profile.has_value();
+  echo.bent = t.profile && t.profile->bent;
   echo.moving = t.motion.has_value();
   echo.records = t.labels.energy;
   echo.weights = beam_weights(sonar, head, patterns);

@@ -19,6 +19,9 @@ struct Head {
   Pose sonar_from_head;  // a head looks along its -z
   BeamGrid beams;        // of what leaves: [range][beams]
   BeamGrid samples;      // of what is gathered: samples_per_beam columns a beam, and a margin
+  // What of the elevations gathered is heard: less than all where rays are bent, whose ends are
+  // looked at from beyond.
+  double heard_up_rad = 0.0;                       // to either side
   std::uint32_t samples_per_beam = 1, margin = 0;  // columns
   bool folded = false;  // all columns are one beam: an echo sounder's cone
   // Absent: the plain cosine, whose 32-bit sums are the image.

@@ -94,6 +94,20 @@ bool counts_solid_angle(const scene::Sonar& sonar) {
   return sonar.terms.level || sonar.kind == scene::SonarKind::kEchoSounder;
 }
 
+// Where directions lie in the head's tables. axes: the head's, as columns, in those of the normals.
+void add_head(shared::SonarEcho& echo, const scene::Sonar& sonar, const Head& head,
+              const Mat3& axes) {
+  echo.solid_angle = counts_solid_angle(sonar);
+  echo.head_right = glm::vec3(axes[0]);
+  echo.head_up = glm::vec3(axes[1]);
+  echo.head_back = glm::vec3(axes[2]);
+  const BeamGrid& g = head.samples;
+  echo.elevation_min_rad = static_cast<float>(g.limits.elevation_min_rad);
+  echo.rows_per_rad = static_cast<float>(1.0 / g.elevation_step_rad());
+  echo.azimuth_min_rad = static_cast<float>(g.limits.azimuth_min_rad);
+  echo.columns_per_rad = static_cast<float>(1.0 / g.azimuth_step_rad());
+}
+
 void add_mirror(Ping& ping, const Mirror& mirror, const scene::Sonar& sonar, const Head& head,
                 const PingState& state, const Vec3& eye_m) {
   shared::SonarEcho& echo = ping.echo;
@@ -109,16 +123,7 @@ void add_mirror(Ping& ping, const Mirror& mirror, const scene::Sonar& sonar, con
   echo.ghost_spreading = !level             ? shared::kSonarGhostPlain
                          : level->spreading ? shared::kSonarGhostSpreading
                                             : shared::kSonarGhostNoSpreading;
-  echo.solid_angle = counts_solid_angle(sonar);
-  const Mat3 axes = glm::mat3_cast(state.world_from_sonar.rotation);
-  echo.head_right = glm::vec3(axes[0]);
-  echo.head_up = glm::vec3(axes[1]);
-  echo.head_back = glm::vec3(axes[2]);
-  const BeamGrid& g = head.samples;
-  echo.elevation_min_rad = static_cast<float>(g.limits.elevation_min_rad);
-  echo.rows_per_rad = static_cast<float>(1.0 / g.elevation_step_rad());
-  echo.azimuth_min_rad = static_cast<float>(g.limits.azimuth_min_rad);
-  echo.columns_per_rad = static_cast<float>(1.0 / g.azimuth_step_rad());
+  add_head(echo, sonar, head, glm::mat3_cast(state.world_from_sonar.rotation));
 }
 
 }  // namespace
@@ -196,6 +201,11 @@ Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state
     ping.echo.correction_range_m = static_cast<float>(range_max_m);
     for (const float factor : table.factors)
       ping.correction.push_back(static_cast<float>(factor * ping.sound_speed_m_s));
+    ping.correction.insert(ping.correction.end(), table.bends.begin(), table.bends.end());
+    if (sonar.terms.profile->bent)
+      add_head(ping.echo, sonar, head,
+               state.gbuffer_in_world_axes ? glm::mat3_cast(state.world_from_sonar.rotation)
+                                           : Mat3(1.0));
   }
   if (mirror) add_mirror(ping, *mirror, sonar, head, state, eye_m);
   return ping;

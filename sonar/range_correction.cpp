@@ -10,9 +10,12 @@
 namespace neritic::sonar {
 namespace {
 
-// Travel time of the bent ray from the launch to a point at range r and elevation (straight).
-double bent_time_s(const SoundSpeedProfile& profile, double launch_depth_m, double elevation_rad,
-                   double r) {
+// The bent ray from the launch to a point at range r and elevation (straight).
+struct BentRay {
+  double time_s, launch_rad;
+};
+BentRay bent_ray(const SoundSpeedProfile& profile, double launch_depth_m, double elevation_rad,
+                 double r) {
   const double straight_s = profile.straight_time_s(launch_depth_m, elevation_rad, r);
   double launch_rad = elevation_rad, time_s = straight_s;
   constexpr double kHalf = kPi / 2.0;
@@ -21,14 +24,15 @@ double bent_time_s(const SoundSpeedProfile& profile, double launch_depth_m, doub
     const double up = launch_depth_m - at.depth_m;
     const double reached = std::hypot(at.horizontal_m, up);
     const double off_rad = elevation_rad - std::atan2(up, at.horizontal_m);
-    if (std::abs(off_rad) < 1e-9 && std::abs(reached - r) < 1e-9 * r) return time_s;
+    if (std::abs(off_rad) < 1e-9 && std::abs(reached - r) < 1e-9 * r) return {time_s, launch_rad};
     launch_rad = std::clamp(launch_rad + off_rad, -kHalf, kHalf);
     time_s *= r / std::max(reached, 0.1 * r);
   }
   const RayPoint at = profile.bent(launch_depth_m, launch_rad, time_s);
   const double miss = std::hypot(at.horizontal_m - r * std::cos(elevation_rad),
                                  launch_depth_m - at.depth_m - r * std::sin(elevation_rad));
-  return miss < 1e-3 * r ? time_s : straight_s;
+  if (miss < 1e-3 * r) return {time_s, launch_rad};
+  return {straight_s, elevation_rad};
 }
 
 // Indices of rows kept between first and last, both of which are: the farthest from the chord stays
@@ -54,6 +58,20 @@ void keep_rows(const scene::SonarTable& rows, double tolerance_m_s, std::vector<
 }
 
 }  // namespace
+
+double most_bend_rad(const scene::SonarProfile& profile, double range_max_m) {
+  const scene::SonarTable& rows = profile.table;
+  double steepest_s = 0.0, slowest = rows[0][1], fastest = rows[0][1];
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    steepest_s = std::max(steepest_s,
+                          std::abs((rows[i][1] - rows[i - 1][1]) / (rows[i][0] - rows[i - 1][0])));
+    slowest = std::min(slowest, rows[i][1]);
+    fastest = std::max(fastest, rows[i][1]);
+  }
+  // A curve of at most that curvature leaves its chord by at most an arc's half angle.
+  const double half_turn = std::asin(std::min(1.0, 0.5 * range_max_m * steepest_s / slowest));
+  return std::min(half_turn, 2.0 * std::acos(slowest / fastest));
+}
 
 scene::SonarTable simplified(const scene::SonarTable& profile, double tolerance_m_s) {
   if (profile.size() < 3) return profile;
@@ -93,14 +111,18 @@ RangeCorrection range_correction(const scene::SonarProfile& settings, double lau
   NERITIC_CHECK(made.ok(), "sound speed profile: {}", made.ok() ? "" : made.error().message);
   const SoundSpeedProfile profile =
       mirror ? made->beyond_mirror(mirror->depth_m, mirror->water_below) : *made;
-  RangeCorrection out{size.ranges, size.sines, {}};
+  RangeCorrection out{size.ranges, size.sines, {}, {}};
   for (std::uint32_t j = 0; j < size.sines; ++j) {
     const double elevation = std::asin(std::clamp(-1.0 + 2.0 * j / (size.sines - 1), -1.0, 1.0));
     for (std::uint32_t i = 0; i < size.ranges; ++i) {
       const double r = std::max(range_max_m * i / (size.ranges - 1), 1e-6 * range_max_m);
-      const double time_s = settings.bent ? bent_time_s(profile, launch_depth_m, elevation, r)
-                                          : profile.straight_time_s(launch_depth_m, elevation, r);
-      out.factors.push_back(static_cast<float>(assumed_speed_m_s * time_s / r));
+      BentRay ray{0.0, elevation};
+      if (settings.bent)
+        ray = bent_ray(profile, launch_depth_m, elevation, r);
+      else
+        ray.time_s = profile.straight_time_s(launch_depth_m, elevation, r);
+      out.factors.push_back(static_cast<float>(assumed_speed_m_s * ray.time_s / r));
+      if (settings.bent) out.bends.push_back(static_cast<float>(ray.launch_rad - elevation));
     }
   }
   return out;

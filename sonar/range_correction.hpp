@@ -1,6 +1,6 @@
-// Heard over true range where sound speed varies with depth: a table over true range and the sine
-// of the elevation above the horizon, which the gather interpolates. Any thread; a cache has one
-// owner.
+// Heard over true range where sound speed varies with depth, and where a bent ray leaves: tables
+// over true range and the sine of the elevation above the horizon, which the gather interpolates.
+// Any thread; a cache has one owner.
 #pragma once
 
 #include <optional>
@@ -16,15 +16,16 @@ struct RangeCorrection {
   // the longest.
   std::uint32_t width = 0, height = 0;
   std::vector<float> factors;
+  // Bent rays alone: by how much higher than straight at the point its ray leaves, radians.
+  std::vector<float> bends;
 };
 
 // assumed_speed_m_s: what the sonar turns time to range with. Straight rays: the exact time along
 // the straight path. Bent rays: along the ray that ends at the same point, found by iteration;
 // where no ray comes within a thousandth of the range (a shadow zone) the straight path's time
-// stands. What a bent ray passes through on its way is not looked at: what hides what is as with
-// straight rays. A profile that the settings' reader has accepted.
-// Sizes, at least 2 each: what interpolation in them is off by say the rows "profile's table" of
-// sonar/TRADE.md.
+// stands, and no bend. What a bent ray passes through on its way is not looked at: what hides what
+// is as with straight rays. A profile that the settings' reader has accepted. Sizes, at least 2
+// each: what interpolation in them is off by say the rows "profile's table" of sonar/TRADE.md.
 struct RangeCorrectionSize {
   std::uint32_t ranges = 33, sines = 65;
 };
@@ -38,6 +39,10 @@ RangeCorrection range_correction(const scene::SonarProfile& profile, double laun
                                  double range_max_m, double assumed_speed_m_s,
                                  RangeCorrectionSize size = {},
                                  const std::optional<ProfileMirror>& mirror = {});
+
+// No ray of the profile leaves by more beside the straight line to a point within range_max_m: by
+// the curvature, and by what Snell's law lets a direction change at all.
+double most_bend_rad(const scene::SonarProfile& profile, double range_max_m);
 
 // The profile with only the rows it takes to be within tolerance_m_s of all of them (Douglas and
 // Peucker 1973), and with at most kMostRows: the tolerance doubles until it is so.

@@ -32,14 +32,14 @@ struct SonarEcho {
   // Ghosts: what the direct leg's spreading makes of the gain, which counts the mean leg's:
   // kSonarGhost.
   uint ghost_spreading;
-  vec3 head_right;  // ghosts: the head's axes, for the direct leg's place in its pattern
+  vec3 head_right;  // ghosts, bent rays: the head's axes, for a leg's place in its pattern
   float elevation_min_rad;
   vec3 head_up;
   float rows_per_rad;
   vec3 head_back;
   float azimuth_min_rad;
   float columns_per_rad;
-  uint solid_angle;       // ghosts: a beam's cosine of elevation counts
+  uint solid_angle;       // ghosts, bent rays: a beam's cosine of elevation counts
   float cells_per_range;  // scatterers: the least width of a cell a metre of range, in finest cells
   float least_cells;      // and at any range
   float column_rad;
@@ -65,9 +65,10 @@ NERITIC_CONST uint kSonarGhostClass = 65533u;
 
 // Bindings of the gather with terms, after those of sonar.h.
 NERITIC_CONST uint kSonarBindEcho = 9;
-NERITIC_CONST uint kSonarBindWeights = 10;     // R32 [n_elevation][n_azimuth]: 0 to 1 of each beam
-NERITIC_CONST uint kSonarBindCorrection = 11;  // floats [sine][range]: heard over true range
-NERITIC_CONST uint kSonarBindTexture = 12;     // R32 quantiles of the gamma texture, mean 1
+NERITIC_CONST uint kSonarBindWeights = 10;  // R32 [n_elevation][n_azimuth]: 0 to 1 of each beam
+// Floats [sine][range]: heard over true range; of bent rays then how much higher they leave, rad.
+NERITIC_CONST uint kSonarBindCorrection = 11;
+NERITIC_CONST uint kSonarBindTexture = 12;  // R32 quantiles of the gamma texture, mean 1
 NERITIC_CONST uint kSonarBindRecords = 13;
 NERITIC_CONST uint kSonarBindDirectDepth = 14;  // ghosts: what the sonar itself sees
 NERITIC_CONST uint kSonarBindDirectLabel = 15;
@@ -79,6 +80,7 @@ NERITIC_CONST uint kSonarSpecTextured = 11;
 NERITIC_CONST uint kSonarSpecRecords = 12;
 NERITIC_CONST uint kSonarSpecGhost = 13;
 NERITIC_CONST uint kSonarSpecMoving = 14;
+NERITIC_CONST uint kSonarSpecBent = 17;  // weights are those of where a bent ray leaves
 
 // The receiver: sums to a field (resolve), spread along range and across beams (spread), noise and
 // gain (receive). Fields are RG32F images [n_range][columns]: (power, 0), or real and imaginary

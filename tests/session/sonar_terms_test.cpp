@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "sonar/beam_pattern.hpp"
 #include "tests/session/sonar_pings.hpp"
 
 namespace neritic::tools {
@@ -74,6 +75,90 @@ TEST_F(SonarTerms, AConstantProfileScalesRanges) {
   EXPECT_NEAR(mean_range_m(ping(device(), scene)) / before, 1500.0 / 1530.0, 2e-4);
   scene.sonars[0].terms.profile->bent = true;
   EXPECT_NEAR(mean_range_m(ping(device(), scene)) / before, 1500.0 / 1530.0, 2e-4);
+}
+
+// A plate 80 m off, wider than the sonar hears, its middle so far above it, 100 m deep in water
+// whose speed rises by 2.5 m/s a metre and is 1500 m/s there.
+constexpr double kPlateOff_m = 80.0;
+scene::Scene in_a_gradient(double height_m, double above_m, scene::Sonar sonar, bool bent) {
+  sonar.terms.water.sound_speed_m_s = 1500.0;
+  sonar.terms.profile = scene::SonarProfile{{{0.0, 1250.0}, {200.0, 1750.0}}, bent};
+  sonar.mount.pose.position_m = {0.0, -100.0, 0.0};
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_box(Vec3(20.0, height_m, 0.2)),
+                                    {0.0, -100.0 + above_m, -kPlateOff_m - 0.1}));
+  scene.sonars = {std::move(sonar)};
+  return scene;
+}
+
+// Rays are arcs of circles about points at the depth where the speed would be 0: the circle through
+// sonar and point says how high its ray leaves.
+double leaves_rad(double above_m) {
+  const double radius_m = 1500.0 / 2.5;  // of a level ray
+  const double centre_m =
+      (kPlateOff_m * kPlateOff_m + std::pow(radius_m - above_m, 2) - radius_m * radius_m) /
+      (2.0 * kPlateOff_m);
+  return -std::atan(centre_m / radius_m);
+}
+
+scene::Sonar narrow_sonar(double elevation_rad) {
+  scene::Sonar sonar = sonar_of(70.0, 90.0, 100);
+  sonar.azimuth_rad = radians(4.0);
+  sonar.elevation_rad = elevation_rad;
+  sonar.bins_azimuth = 96;
+  sonar.bins_elevation = 512;
+  sonar.terms.level = plain_level();
+  sonar.terms.level->absorption_db_per_m = 0.0;
+  return sonar;
+}
+
+double heard_db(gpu::Device& device, const scene::Scene& scene) {
+  return 10.0 * std::log10(std::max(total(ping(device, scene)), 1e-30));
+}
+
+// A beam lets an echo through by where its ray leaves: what is level with the sonar by its flank,
+// and whole where the sonar is tilted by as much. Straight rays know nothing of it.
+TEST_F(SonarTerms, ABentRaysPatternIsThatOfWhereItLeaves) {
+  scene::Sonar sonar = narrow_sonar(radians(10.0));
+  const double half_power_rad = radians(7.0), height_m = 4.0, tilt_rad = leaves_rad(0.0);
+  EXPECT_NEAR(tilt_rad, -std::atan(kPlateOff_m * 2.5 / 3000.0), 1e-12);
+  sonar.terms.beam.elevation = scene::SonarPattern{.half_power_rad = half_power_rad};
+  NERITIC_ASSERT_OK(const auto pattern, sonar::BeamPattern::of_half_power_width(
+                                            sonar::BeamKind::kSinc, half_power_rad));
+  const auto mean_db = [&](bool bent, double axis_rad) {
+    double sum = 0.0;
+    constexpr int kSteps = 200;
+    for (int i = 0; i < kSteps; ++i) {
+      const double above_m = ((i + 0.5) / kSteps - 0.5) * height_m;
+      const double up_rad = bent ? leaves_rad(above_m) : std::atan(above_m / kPlateOff_m);
+      sum += pattern.two_way_power(up_rad - axis_rad);
+    }
+    return 10.0 * std::log10(sum / kSteps);
+  };
+  const auto heard = [&](bool bent) {
+    return heard_db(device(), in_a_gradient(height_m, 0.0, sonar, bent));
+  };
+  const double all_db = heard(false) - mean_db(false, 0.0);
+  ASSERT_LT(mean_db(true, 0.0), -5.0);
+  EXPECT_NEAR(heard(true) - mean_db(true, 0.0), all_db, 0.1);
+  sonar.mount.pose.rotation = glm::angleAxis(tilt_rad, Vec3(1, 0, 0));
+  EXPECT_NEAR(heard(true) - mean_db(true, tilt_rad), all_db, 0.1);
+  EXPECT_NEAR(heard(false) - mean_db(false, tilt_rad), all_db, 0.1);
+}
+
+// Without a pattern the aperture is what rays leave within: what is above it is heard by a ray from
+// within, and what is within it and would take a ray from below is not.
+TEST_F(SonarTerms, ABentRayLeavesWithinTheAperture) {
+  const scene::Sonar sonar = narrow_sonar(radians(4.0));
+  const double above_m = kPlateOff_m * std::tan(-leaves_rad(0.0));
+  const auto heard = [&](double at_m, bool bent) {
+    return heard_db(device(), in_a_gradient(2.0, at_m, sonar, bent));
+  };
+  const double straight_db = heard(0.0, false);
+  // At 80.18 m, heard at 80.53 m, obliquely: 0.10 dB less.
+  EXPECT_NEAR(heard(above_m, true), straight_db - 0.10, 0.1);
+  EXPECT_LT(heard(above_m, false), straight_db - 100.0);
+  EXPECT_LT(heard(0.0, true), straight_db - 100.0);
 }
 
 // A pattern much narrower than what samples it is averaged, not missed: a beam hears a wall as loud

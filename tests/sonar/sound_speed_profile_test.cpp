@@ -227,6 +227,37 @@ scene::SonarTable many_rows() {
   return rows;
 }
 
+// In a constant gradient a ray is an arc of a circle about a point at the depth where the speed
+// would be 0: that circle through both ends says how it leaves.
+TEST(SonarRangeCorrection, BentRaysLeaveAlongTheirCircle) {
+  const double launch_m = 1000.0, reach_m = 400.0;
+  for (const double gradient_s : {-2.0, -0.05, 0.017, 0.5, 2.0}) {
+    const double c0 = 3000.0, centre_m = launch_m - c0 / gradient_s;
+    const scene::SonarProfile profile{
+        {{0.0, c0 - gradient_s * launch_m}, {2.0 * launch_m, c0 + gradient_s * launch_m}}, true};
+    const auto table = sonar::range_correction(profile, launch_m, reach_m, c0);
+    ASSERT_EQ(table.bends.size(), table.factors.size());
+    double most_rad = 0.0;
+    for (std::uint32_t j = 1; j + 1 < table.height; ++j)
+      for (std::uint32_t i = 1; i < table.width; ++i) {
+        const double sine = -1.0 + 2.0 * j / (table.height - 1);
+        const double r = reach_m * i / (table.width - 1);
+        const double x = r * std::sqrt(1.0 - sine * sine), z = launch_m - r * sine;
+        const double centre_x = (x * x + (z - centre_m) * (z - centre_m) -
+                                 (launch_m - centre_m) * (launch_m - centre_m)) /
+                                (2.0 * x);
+        const double leaves_rad = -std::atan(centre_x * gradient_s / c0);
+        const double bend_rad = table.bends[std::size_t{j} * table.width + i];
+        EXPECT_NEAR(std::asin(sine) + bend_rad, leaves_rad, 2e-6) << gradient_s << ' ' << r;
+        most_rad = std::max(most_rad, std::abs(bend_rad));
+      }
+    const double bound_rad = sonar::most_bend_rad(profile, reach_m);
+    EXPECT_GE(bound_rad, most_rad);
+    EXPECT_LT(bound_rad, 3.5 * most_rad);
+  }
+  EXPECT_TRUE(sonar::range_correction({{{0, 1500}, {9, 1600}}, false}, 1, 9, 1500).bends.empty());
+}
+
 TEST(SonarRangeCorrection, ManyRowsAreThinnedWithinTheirTolerance) {
   const scene::SonarTable rows = many_rows(), few = sonar::simplified(rows);
   EXPECT_LT(few.size(), 120u);

@@ -134,6 +134,28 @@ TEST(TermTruth, HeardRangesFollowTheProfileAndTheMotion) {
   EXPECT_NEAR(mean_range_m(trace(*world, sonar, view)) / still, 1500.0 / 1515.0, 1e-4);
 }
 
+// A ray's pattern counts where it leaves, atan(r g / 2 c) below the line to a point level with the
+// sonar in a gradient g.
+TEST(TermTruth, ABentRaysPatternIsThatOfWhereItLeaves) {
+  const auto world = world_of(scene::make_sphere(0.4, 64), {0.0, 0.0, -80.0}, -27.0);
+  scene::Sonar sonar = sonar_of(70.0, 90.0, 100);
+  sonar.azimuth_rad = radians(4.0);
+  sonar.terms.beam.elevation = scene::SonarPattern{.half_power_rad = radians(7.0)};
+  sonar.terms.profile = scene::SonarProfile{{{0.0, 1250.0}, {200.0, 1750.0}}, false};
+  TruthView view;
+  view.depth_m = 100.0;
+  const double straight = total(trace(*world, sonar, view));
+  sonar.terms.profile->bent = true;
+  const double leaves_rad = std::atan(80.0 * 2.5 / 3000.0);
+  const auto pattern =
+      sonar::BeamPattern::of_half_power_width(sonar::BeamKind::kSinc, radians(7.0));
+  ASSERT_TRUE(pattern.ok());
+  EXPECT_NEAR(total(trace(*world, sonar, view)) / straight, pattern->two_way_power(leaves_rad),
+              0.03 * pattern->two_way_power(leaves_rad));
+  view.world_from_head = glm::mat3_cast(glm::angleAxis(-leaves_rad, Vec3(1, 0, 0)));
+  EXPECT_NEAR(total(trace(*world, sonar, view)) / straight, 1.0, 0.03);
+}
+
 TEST(TermJudges, SpeckleMomentsOfAnExponentialAreRayleighs) {
   std::vector<float> smooth(20000, 2.0f), speckled;
   for (std::size_t i = 0; i < smooth.size(); ++i)  // its quantiles

@@ -32,14 +32,15 @@ double return_s(const Vec3& target_m, const Vec3& velocity_m_s, double out_s, do
 }
 
 // Of a table, at a share of its longest range and a sine of the elevation.
-double factor_of(const sonar::RangeCorrection& table, double share, double sine) {
+double entry_of(const sonar::RangeCorrection& table, const std::vector<float>& entries,
+                double share, double sine) {
   const double x = std::clamp(share, 0.0, 1.0) * (table.width - 1);
   const double y = (std::clamp(sine, -1.0, 1.0) * 0.5 + 0.5) * (table.height - 1);
   const auto i = std::min(static_cast<std::uint32_t>(x), table.width - 2),
              j = std::min(static_cast<std::uint32_t>(y), table.height - 2);
   const double u = x - i, v = y - j;
   const auto at = [&](std::uint32_t k, std::uint32_t l) {
-    return double{table.factors[std::size_t{l} * table.width + k]};
+    return double{entries[std::size_t{l} * table.width + k]};
   };
   return (1 - v) * ((1 - u) * at(i, j) + u * at(i + 1, j)) +
          v * ((1 - u) * at(i, j + 1) + u * at(i + 1, j + 1));
@@ -130,11 +131,20 @@ double TermImage::power(const TruthRay& ray, const TruthEcho& echo) const {
 // Heard along bent rays: out and back, of a ghost each leg by its own.
 double TermImage::bent_m(const TruthRay& ray, const TruthEcho& echo) const {
   const double range_max_m = grid_.limits.range_max_m;
-  if (!echo.ghost) return echo.out_m * factor_of(bent_, echo.out_m / range_max_m, ray.direction.y);
+  if (!echo.ghost)
+    return echo.out_m * entry_of(bent_, bent_.factors, echo.out_m / range_max_m, ray.direction.y);
   const auto leg = [&](double range_m, double sine) {
-    return range_m * factor_of(bent_ghosts_, range_m / (2.0 * range_max_m), sine);
+    return range_m *
+           entry_of(bent_ghosts_, bent_ghosts_.factors, range_m / (2.0 * range_max_m), sine);
   };
   return 0.5 * (leg(echo.out_m, ray.direction.y) + leg(echo.back_m, echo.target_m.y / echo.back_m));
+}
+
+double TermImage::bend_rad(double range_m, double sine, bool ghost) const {
+  if (bent_.bends.empty()) return 0.0;
+  const double longest_m = grid_.limits.range_max_m * (ghost ? 2.0 : 1.0);
+  const sonar::RangeCorrection& table = ghost ? bent_ghosts_ : bent_;
+  return entry_of(table, table.bends, range_m / longest_m, sine);
 }
 
 double TermImage::heard_range_m(const TruthRay& ray, const TruthEcho& echo) const {

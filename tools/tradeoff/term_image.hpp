@@ -68,6 +68,9 @@ class TermImage {
   const scene::Sonar& settings() const { return *sonar_; }
   bool wants_ghosts() const { return sonar_->terms.ghosts.has_value(); }
   const std::optional<sonar::SoundSpeedProfile>& profile() const { return profile_; }
+  // By how much higher than straight the ray leaves that ends so far off in a direction of that
+  // sine above the horizon; 0 where rays are straight.
+  double bend_rad(double range_m, double sine, bool ghost) const;
   double sound_speed_m_s() const { return sound_speed_m_s_; }
 
  private:

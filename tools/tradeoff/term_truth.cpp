@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "sonar/ping.hpp"
+#include "sonar/range_correction.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -69,8 +70,13 @@ class Tracer {
         patterns_(patterns),
         mirrors_(mirrors),
         images_(images) {
-    for (const TermImage& image : images)
+    for (const TermImage& image : images) {
       finest_m_ = std::min(finest_m_, image.grid().range_step_m());
+      const auto& profile = image.settings().terms.profile;
+      if (profile && profile->bent)
+        most_bend_rad_ = std::max(most_bend_rad_,
+                                  sonar::most_bend_rad(*profile, image.grid().limits.range_max_m));
+    }
   }
   std::uint64_t cast() const { return cast_; }
 
@@ -118,7 +124,38 @@ class Tracer {
   }
 
   RayHit hit_of(const TruthRay& ray) const {
-    return ray.inside ? world_.cast_from(view_.origin_m, ray.direction) : RayHit{};
+    return is_cast(ray) ? world_.cast_from(view_.origin_m, ray.direction) : RayHit{};
+  }
+
+  // What lies beyond a cone may still be where a ray ends that leaves within it.
+  bool is_cast(const TruthRay& ray) const {
+    return !head_.folded || ray.off_axis_rad <= patterns_.cone_rad + most_bend_rad_;
+  }
+
+  // As an image's pattern counts a ray that ends so far off in its direction: by where it leaves.
+  // The piece of elevation that it stands for stays that of the direction.
+  TruthRay leaving(const TermImage& image, const TruthRay& ray, double range_m, bool ghost) const {
+    const double bend_rad = image.bend_rad(range_m, ray.direction.y, ghost);
+    const Vec3 level(ray.direction.x, 0.0, ray.direction.z);
+    const double cosine = glm::length(level);
+    if (bend_rad == 0.0 || cosine < 1e-9) return seen_by(image, ray);
+    const double up_rad = std::atan2(ray.direction.y, cosine) + bend_rad;
+    const Vec3 leaves = level * (std::cos(up_rad) / cosine) + Vec3(0, std::sin(up_rad), 0);
+    TruthRay out = seen_by(image, towards(ray, leaves));
+    out.elevation_rad = ray.elevation_rad;
+    return out;
+  }
+
+  // The same ray with the place in the patterns of another direction of the world.
+  TruthRay towards(const TruthRay& ray, const Vec3& direction) const {
+    const Vec3 d = glm::transpose(view_.world_from_head) * direction;
+    TruthRay out = ray;
+    out.elevation_rad = std::asin(std::clamp(d.y, -1.0, 1.0));
+    out.off_axis_rad = std::acos(std::clamp(-d.z, -1.0, 1.0));
+    out.inside = head_.folded ? out.off_axis_rad <= patterns_.cone_rad
+                              : std::abs(out.elevation_rad) <= head_.heard_up_rad;
+    out.pattern = patterns_.power(std::atan2(d.x, -d.z), out.elevation_rad);
+    return out;
   }
 
   int pieces_of(const TruthRay& ray, const RayHit& hit) const {
@@ -148,7 +185,7 @@ class Tracer {
   }
 
   void add(const TruthRay& ray, const RayHit& hit) {
-    if (!ray.inside) return;
+    if (!is_cast(ray)) return;
     TruthEcho echo;
     if (hit.t > 0.0) {
       echo.out_m = echo.back_m = hit.t;
@@ -158,11 +195,10 @@ class Tracer {
       echo.backscatter = hit.backscatter;
     }
     for (TermImage& image : images_) {
-      const TruthRay seen = seen_by(image, ray);
-      image.add_solid_angle(seen);
+      image.add_solid_angle(seen_by(image, ray));
       if (!(hit.t > 0.0)) continue;
       if (image.profile()) echo.seconds = 2.0 * leg_s(*image.profile(), Vec3(0.0), echo.target_m);
-      image.add(seen, echo);
+      image.add(leaving(image, ray, hit.t, false), echo);
     }
     for (const sonar::Mirror& mirror : mirrors_) bounce(ray, hit, mirror);
   }
@@ -205,23 +241,17 @@ class Tracer {
         echo.seconds = leg_s(*image.profile(), Vec3(0.0), at) +
                        leg_s(*image.profile(), at, echo.target_m) +
                        leg_s(*image.profile(), echo.target_m, Vec3(0.0));
-      image.add(both_legs(image, ray, -back), echo);
+      image.add(both_legs(image, ray, echo, -back), echo);
     }
   }
 
   // A ghost passes the pattern once along either leg, and hears nothing along a leg beyond it.
-  TruthRay both_legs(const TermImage& image, const TruthRay& mirrored, const Vec3& direct) const {
-    const Vec3 d = glm::transpose(view_.world_from_head) * direct;
-    TruthRay other = mirrored;
-    other.elevation_rad = std::asin(std::clamp(d.y, -1.0, 1.0));
-    other.off_axis_rad = std::acos(std::clamp(-d.z, -1.0, 1.0));
-    const sonar::Limits& l = head_.samples.limits;
-    other.inside = head_.folded ? other.off_axis_rad <= patterns_.cone_rad
-                                : other.elevation_rad >= l.elevation_min_rad &&
-                                      other.elevation_rad < l.elevation_max_rad;
-    other.pattern = patterns_.power(std::atan2(d.x, -d.z), other.elevation_rad);
-    TruthRay out = seen_by(image, mirrored);
-    other = seen_by(image, other);
+  TruthRay both_legs(const TermImage& image, const TruthRay& mirrored, const TruthEcho& echo,
+                     const Vec3& direct) const {
+    TruthRay other = towards(mirrored, direct);
+    other.direction = direct;
+    TruthRay out = leaving(image, mirrored, echo.out_m, true);
+    other = leaving(image, other, echo.back_m, true);
     out.inside = out.inside && other.inside;
     out.pattern = std::sqrt(out.pattern * other.pattern);
     return out;
@@ -233,7 +263,8 @@ class Tracer {
   const sonar::HeadPatterns& patterns_;
   const std::vector<sonar::Mirror>& mirrors_;
   std::vector<TermImage>& images_;
-  double finest_m_ = 1e9;  // range bin
+  double finest_m_ = 1e9;       // range bin
+  double most_bend_rad_ = 0.0;  // of any image's rays
   std::uint64_t cast_ = 0;
 };
 
