@@ -88,7 +88,10 @@ void GazeMonitor::push(const GazeSample& sample, GazeEvents& out) {
     if (sample.time_s - last_seen_s_ > settings_.bridge_s) state_.now = GazeClass::kLost;
     return;
   }
-  if (has_seen_ && sample.time_s - last_seen_s_ > settings_.bridge_s) break_off(out);
+  if (has_seen_ && sample.time_s - last_seen_s_ > settings_.bridge_s) {
+    note_loss(last_seen_s_, sample.time_s, out);
+    break_off(out);
+  }
   has_seen_ = true;
   last_seen_s_ = sample.time_s;
   state_.direction = sample.direction / length;
@@ -189,6 +192,7 @@ void GazeMonitor::classify(const Seen& seen, GazeClass is, double velocity_rad_s
   out.classes.push_back(is);
   state_.velocity_rad_s = velocity_rad_s;
   state_.now = is;
+  if (seen.lost_before > 0 && has_before_) note_loss(before_.time_s, seen.time_s, out);
   if (is == GazeClass::kFixation) {
     if (in_saccade_) {
       saccade_.end_s = seen.time_s;
@@ -252,11 +256,46 @@ void GazeMonitor::emit(GazeEvents& out) {
   }
   has_held_ = false;
   if (!has_saccade_) return;
+  const bool too_fast =
+      settings_.method == GazeMethod::kVelocity && saccade_.peak_rad_s > kFastestEye_rad_s;
+  if (too_fast || at_loss(saccade_)) {
+    add_blink(saccade_, out);
+    has_saccade_ = false;
+    return;
+  }
   out.saccades.push_back(saccade_);
   ++state_.saccades;
   state_.last_amplitude_rad = saccade_.amplitude_rad;
   state_.last_peak_rad_s = saccade_.peak_rad_s;
   has_saccade_ = false;
+}
+
+// What was taken for a saccade just before was the lid.
+void GazeMonitor::note_loss(double from_s, double to_s, GazeEvents& out) {
+  loss_from_s_ = from_s;
+  loss_to_s_ = to_s;
+  while (!out.saccades.empty() && at_loss(out.saccades.back())) {
+    add_blink(out.saccades.back(), out);
+    out.saccades.pop_back();
+    --state_.saccades;
+  }
+}
+
+bool GazeMonitor::at_loss(const Saccade& saccade) const {
+  return saccade.end_s >= loss_from_s_ - kLid_s && saccade.start_s <= loss_to_s_ + kLid_s;
+}
+
+// One loss is one blink, the lid's way down and up.
+void GazeMonitor::add_blink(const Saccade& blink, GazeEvents& out) const {
+  if (out.blinks.empty() || !at_loss(out.blinks.back()) || !at_loss(blink)) {
+    out.blinks.push_back(blink);
+    return;
+  }
+  Saccade& last = out.blinks.back();
+  last.start_s = std::min(last.start_s, blink.start_s);
+  last.end_s = std::max(last.end_s, blink.end_s);
+  last.amplitude_rad = std::max(last.amplitude_rad, blink.amplitude_rad);
+  last.peak_rad_s = std::max(last.peak_rad_s, blink.peak_rad_s);
 }
 
 // The eye was lost for long: nothing goes on across.

@@ -50,6 +50,12 @@ struct Fixation {
   bool may_be_pursuit = false;  // it wandered by more than two degrees
 };
 
+// The lid moves what a tracker takes for the eye: before the eye is lost and after it is found
+// again, so long (a lid closes in some 70 ms, VanderWerf 2003, J. Neurophysiol. 89, 2784; half of
+// that hides the pupil). Faster than that no eye turns (Nystrom and Holmqvist 2010, Behav. Res.
+// Methods 42, 188).
+inline constexpr double kLid_s = 0.050, kFastestEye_rad_s = radians(1000.0);
+
 struct Saccade {
   double start_s = 0.0, end_s = 0.0;
   double amplitude_rad = 0.0, peak_rad_s = 0.0;
@@ -64,7 +70,7 @@ struct GazeState {
   double fixated_s = 0.0;  // for so long
   Vec3 fixation{0.0, 0.0, -1.0};
   double last_amplitude_rad = 0.0, last_peak_rad_s = 0.0;
-  std::uint64_t fixations = 0, saccades = 0;
+  std::uint64_t fixations = 0, saccades = 0;  // blinks are none
   std::uint64_t refused = 0;  // not finite, no direction, or not after the one before
 
   static void fields(auto&& field, auto& self) {
@@ -85,6 +91,9 @@ struct GazeState {
 struct GazeEvents {
   std::vector<Fixation> fixations;
   std::vector<Saccade> saccades;
+  // What moved like saccades where the eye was lost, or (I-VT, which measures it) faster than eyes
+  // turn: blinks, and no eye.
+  std::vector<Saccade> blinks;
   // Of every sample that was pushed, in order, as the method alone says, before anything is merged
   // or dropped. What was refused is lost.
   std::vector<GazeClass> classes;
@@ -132,6 +141,9 @@ class GazeMonitor {
   void end_fixation(GazeEvents& out);
   void emit(GazeEvents& out);
   void break_off(GazeEvents& out);
+  void note_loss(double from_s, double to_s, GazeEvents& out);
+  bool at_loss(const Saccade& saccade) const;
+  void add_blink(const Saccade& blink, GazeEvents& out) const;
 
   GazeSettings settings_;
   std::vector<Seen> waiting_;  // oldest first: not all settled yet
@@ -139,7 +151,8 @@ class GazeMonitor {
   std::uint32_t lost_ = 0;
   bool in_fixation_ = false;  // I-DT: the window has become one, this large
   Extent extent_;
-  double last_time_s_ = 0.0, last_seen_s_ = 0.0;  // of any sample, of a valid one
+  double last_time_s_ = 0.0, last_seen_s_ = 0.0;      // of any sample, of a valid one
+  double loss_from_s_ = -1e300, loss_to_s_ = -1e300;  // the last one: seen before, seen after
   bool has_time_ = false, has_seen_ = false;
   int late_in_a_row_ = 0;
   Growing growing_;

@@ -1,6 +1,7 @@
 #include "diver/heart_monitor.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <type_traits>
 
@@ -26,6 +27,12 @@ constexpr double kPoorBelow = 4.0;
 // fast that the band has no pause, and keeps time.
 constexpr double kFlatBelow = 4.5, kLeastNormal = 0.75;
 constexpr int kFewestIntervals = 8, kJudgedIntervals = 16;
+// Where not even half of the last intervals keep time there is no rate to tell, be it another
+// signal than a heart's (breath, gaze) or a heart that flutters; and of a few beats nothing is
+// known.
+constexpr double kNoTime = 0.5;
+constexpr int kTooFewIntervals = 5;
+constexpr double kMostOtherWay = 0.25;  // of beats, as extra ones may
 // Of the samples of the last seconds.
 constexpr double kMissing_s = 4.0, kMostMissing = 0.25;
 
@@ -59,30 +66,44 @@ void HeartMonitor::push(std::span<const double> samples) {
     detector_->push(sample, found_);
     const double missed = detector_->counts().refused > refused ? 1.0 : 0.0;
     missing_share_ += (missed - missing_share_) / (kMissing_s * rate_hz_);
-    for (const Beat& beat : found_) take(judge_.take(beat.time_s, beat.after_gap));
+    for (const Beat& beat : found_) {
+      downward_ = downward_ << 1 | (beat.amplitude < 0.0 ? 1u : 0u);
+      take(judge_.take(beat.time_s, beat.after_gap));
+    }
   }
   const EcgCounts& counts = detector_->counts();
   state_.time_s = static_cast<double>(counts.samples) / rate_hz_;
   state_.refused = counts.refused;
   state_.gaps = counts.gaps;
   using enum SignalQuality;
+  const Timekeeping beats = timekeeping();
+  const bool noise =
+      detector_->peakedness() < kFlatBelow &&
+      (beats.judged < kFewestIntervals || beats.normal < kLeastNormal * beats.judged);
   state_.quality =
       counts.samples == counts.refused || detector_->flat() ? kNone
       : detector_->learning()                               ? kLearning
-      : detector_->signal_over_noise() < kPoorBelow || missing_share_ > kMostMissing || like_noise()
+      : detector_->signal_over_noise() < kPoorBelow || missing_share_ > kMostMissing || noise
           ? kPoor
-          : kGood;
+      : beats.judged < kTooFewIntervals                                  ? kLearning
+      : beats.normal < kNoTime * beats.judged || both_ways(beats.judged) ? kPoor
+                                                                         : kGood;
   forget();
 }
 
-bool HeartMonitor::like_noise() const {
-  if (detector_->peakedness() >= kFlatBelow) return false;
-  int judged = 0, normal = 0;
-  for (auto i = intervals_.rbegin(); i != intervals_.rend() && judged < kJudgedIntervals; ++i) {
-    ++judged;
-    normal += i->kind == IntervalKind::kNormal;
+// A heart's beats all point up, or all down; what goes both ways is an eye, a limb, a wave.
+bool HeartMonitor::both_ways(int of) const {
+  const int down = std::popcount(downward_ & ((std::uint64_t{1} << of) - 1));
+  return std::min(down, of - down) > kMostOtherWay * of;
+}
+
+HeartMonitor::Timekeeping HeartMonitor::timekeeping() const {
+  Timekeeping out;
+  for (auto i = intervals_.rbegin(); i != intervals_.rend() && out.judged < kJudgedIntervals; ++i) {
+    ++out.judged;
+    out.normal += i->kind == IntervalKind::kNormal;
   }
-  return judged < kFewestIntervals || normal < kLeastNormal * judged;
+  return out;
 }
 
 void HeartMonitor::push_interval(double length_s) {

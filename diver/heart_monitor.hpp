@@ -12,7 +12,8 @@ namespace neritic::diver {
 enum class SignalQuality : std::uint64_t {
   kNone,      // nothing yet, or no change: electrode off, saturated
   kLearning,  // too little seen to tell
-  kPoor,      // noise is nearly as large, or is all there is, or much is missing: may be wrong
+  kPoor,      // noise is nearly as large, or is all there is, or much is missing, or the beats keep
+              // no time or point both ways, as of breath or gaze taken for a heart: may be wrong
   kGood,
 };
 const char* name_of(SignalQuality quality);
@@ -60,11 +61,17 @@ class HeartMonitor {
  private:
   void take(const Interval& interval);
   void forget();
-  bool like_noise() const;
+  // Of the last intervals.
+  struct Timekeeping {
+    int judged = 0, normal = 0;
+  };
+  Timekeeping timekeeping() const;
+  bool both_ways(int of) const;
 
   std::optional<BeatDetector> detector_;
   double rate_hz_ = 0.0;
   double missing_share_ = 0.0;  // of the samples of late
+  std::uint64_t downward_ = 0;  // bits of the last beats, the newest lowest
   IntervalJudge judge_;
   std::vector<Beat> found_;          // scratch
   std::vector<Interval> intervals_;  // the last five minutes, oldest first

@@ -14,8 +14,6 @@ constexpr double kMostHeard_bpm = 300.0, kMostBreaths_bpm = 120.0;
 // second, breath is analysed in blocks of ten seconds, eyes are seen many times a second.
 constexpr double kHeartSilence_s = 10.0, kBreathSilence_s = 30.0, kGazeSilence_s = 1.0;
 constexpr double kMostTime_s = 1e12;
-// Without a burst of sound for so long a diver pauses; between breaths at six a minute it is less.
-constexpr double kPauseHeard_s = 5.0;
 
 bool possible(const HeartState& heart) {
   return sim::all_finite(heart) && std::abs(heart.time_s) <= kMostTime_s && heart.rate_bpm >= 0.0 &&

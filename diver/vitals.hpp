@@ -32,6 +32,9 @@ int take_instruments(const Instruments& said, Instruments& held);
 // Bits of VitalState::measured.
 inline constexpr std::uint64_t kHeartMeasured = 1, kBreathMeasured = 2, kGazeMeasured = 4;
 
+// Without a burst of sound for so long a diver pauses; between breaths at six a minute it is less.
+inline constexpr double kPauseHeard_s = 5.0;
+
 struct VitalState {
   double heart_bpm = 0.0, breath_bpm = 0.0;
   double pause_s = 0.0;  // since the last breath, where it is held or not heard

@@ -76,6 +76,20 @@ TEST(GazeByVelocity, OneSaccadeBetweenTwoFixations) {
   EXPECT_EQ(usual.saccades.size(), 1u);
 }
 
+// A tracker that does not say when it lost the eye: the lid's spike is faster than any eye.
+TEST(GazeByVelocity, WhatIsFasterThanAnyEyeIsABlink) {
+  std::vector<GazeSample> samples = ten_degrees();
+  for (int i = 100; i < 160; ++i) {
+    const double share = std::min({1.0, (i - 100) / 8.0, (160 - i) / 8.0});
+    samples[static_cast<std::size_t>(i)].direction =
+        direction_of_angles(0.0, radians(-14.0 * share));
+  }
+  const GazeEvents events = find_gaze_events(samples, {});
+  ASSERT_EQ(events.saccades.size(), 1u);
+  EXPECT_NEAR(degrees(events.saccades[0].amplitude_rad), 10.0, 0.5);
+  EXPECT_EQ(events.blinks.size(), 2u);  // down and up
+}
+
 TEST(GazeByDispersion, OneSaccadeBetweenTwoFixations) {
   for (GazeSettings settings :
        {headset_gaze(GazeMethod::kDispersion), GazeSettings{.method = GazeMethod::kDispersion}}) {
@@ -223,6 +237,20 @@ TEST(EyeRecording, SaccadesAgreeWithAPersonsMarksAsWellAsPlainVelocityDoes) {
   std::vector<bool> found;
   for (const GazeClass c : events.classes) found.push_back(c == GazeClass::kSaccade);
   EXPECT_GE(saccade_kappa(marked, found), 0.71);
+  // The person marked eight blinks; saccades are where the person saw some, or the eye settle.
+  EXPECT_EQ(events.blinks.size(), 8u);
+  for (const Saccade& s : events.saccades) {
+    bool eye = false;
+    for (std::size_t i = 0; i < marked.size(); ++i) {
+      const double t = recording->samples[i].time_s;
+      if (t < s.start_s || t > s.end_s) continue;
+      eye = eye || recording->marks[i] == 2 || recording->marks[i] == 3;
+      EXPECT_NE(recording->marks[i], 5) << t;
+    }
+    EXPECT_TRUE(eye) << s.start_s;
+    // Bahill 1975: of 30 degrees some 550 deg/s, with a spread of half as much again.
+    EXPECT_LT(degrees(s.peak_rad_s), 700.0);
+  }
   // A person who looks at points does so for a few hundred milliseconds each.
   EXPECT_GT(events.fixations.size(), 30u);
   EXPECT_LT(events.fixations.size(), 90u);

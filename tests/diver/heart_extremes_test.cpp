@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <random>
 
 #include "diver/heart_monitor.hpp"
 #include "tests/diver/physio_signals.hpp"
@@ -56,6 +57,30 @@ TEST(HeartExtremes, ZerosAndAnAmplifierAtItsLimitAreNoHeart) {
     EXPECT_EQ(s.rate_bpm, 0.0);
     EXPECT_EQ(s.quality, SignalQuality::kNone);
   }
+}
+
+// Other instruments' signals, taken for an ECG: an eye that leaps from point to point each second
+// and a half, as regularly as a heart, either way; noise that swells with each breath; a few steps.
+TEST(HeartExtremes, AnEyeAndABreathAreNoGoodSignal) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise;
+  std::vector<double> gaze, breath;
+  double at = 0.0, wanted = 0.0;
+  for (int i = 0; i < 500 * 60; ++i) {
+    if (i % 750 == 749) wanted = 10.0 * noise(random);
+    at += 0.06 * (wanted - at);
+    gaze.push_back(at + 0.01 * noise(random));
+  }
+  double low = 0.0;
+  for (int i = 0; i < 1000 * 60; ++i) {
+    const double swell = std::max(0.0, std::sin(2.0 * kPi * 0.25 * 1e-3 * i));
+    low += 0.05 * (noise(random) - low);
+    breath.push_back(swell * swell * low);
+  }
+  EXPECT_NE(monitored(500.0, gaze).quality, SignalQuality::kGood);
+  EXPECT_NE(monitored(1000.0, breath).quality, SignalQuality::kGood);
+  gaze.resize(500 * 6);
+  EXPECT_NE(monitored(500.0, gaze).quality, SignalQuality::kGood);
 }
 
 TEST(HeartExtremes, ClippedAndUpsideDownBeatsAreStillBeats) {

@@ -102,7 +102,7 @@ TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
     expect_plain_table(folder / "out/gaze.csv",
                        "kind,start_s,end_s,duration_ms,x_deg,y_deg,spread_deg,amplitude_deg,"
                        "peak_deg_s,pursuit,u_px,v_px\n",
-                       json["fixations"].size() + json["saccades"].size());
+                       json["fixations"].size() + json["saccades"].size() + json["blinks"].size());
     EXPECT_NEAR(json["fixations"][0]["pixel"][0].get<double>(), 50.0, 1e-6);
     EXPECT_NEAR(json["fixations"][1]["pixel"][0].get<double>(), 150.0, 1.5);
   }

@@ -99,13 +99,15 @@ void draw_notes(Canvas& canvas, const Box& in, const Series& s, const Axis& x, c
 // Over the lines, so that none runs through a name.
 void draw_legend(Canvas& canvas, const Box& in, const std::vector<Series>& series, bool below) {
   constexpr double kLine_px = 18.0;
-  const double high = kLine_px * static_cast<double>(series.size());
+  const double high = kLine_px * static_cast<double>(std::ranges::count_if(
+                                     series, [](const Series& s) { return !s.name.empty(); }));
   double wide = 0.0;
   for (const Series& s : series) wide = std::max(wide, Canvas::text_width(kTextPx, s.name));
   double y = below ? in.bottom - high : in.top + 8.0;
   canvas.fill_rectangle(in.right - 42 - wide, y - 9, in.right, y - 9 + high,
                         kPaper.with_alpha(0.8f));
   for (const Series& s : series) {
+    if (s.name.empty()) continue;
     const double width = Canvas::text_width(kTextPx, s.name);
     canvas.text(in.right - 4 - width, y + 4, kTextPx, s.name, kInk);
     const double mark = in.right - (s.joined ? 38.0 : 26.0) - width;

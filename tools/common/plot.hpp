@@ -16,7 +16,7 @@ struct Axis {
 };
 
 struct Series {
-  std::string name;
+  std::string name;  // empty: not in the legend
   sonar::Color color;
   std::vector<double> x, y;
   std::vector<std::string> notes = {};  // beside the points; empty: none

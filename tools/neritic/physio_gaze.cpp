@@ -94,8 +94,9 @@ ReportText report_text(const PhysioFlags& flags, const GazeReport& r) {
                                : fmt::format("within {:g} deg for {:g} ms or more",
                                              degrees(r.settings.dispersion_rad),
                                              1e3 * r.settings.dispersion_s));
-  out += fmt::format("# {} fixations, {} saccades\n# {}\n", r.events.fixations.size(),
-                     r.events.saccades.size(), diver::kPursuitNote);
+  out += fmt::format("# {} fixations, {} saccades, {} blinks (no eye's movement)\n# {}\n",
+                     r.events.fixations.size(), r.events.saccades.size(), r.events.blinks.size(),
+                     diver::kPursuitNote);
   if (r.kappa)
     out += fmt::format(
         "# against marks, saccade or none: kappa {:.3f}; from sample to sample alone {:.3f}\n",
@@ -109,10 +110,14 @@ ReportText report_text(const PhysioFlags& flags, const GazeReport& r) {
                          f.start_s, f.end_s, 1e3 * (f.end_s - f.start_s), screen_x_deg(f.direction),
                          screen_y_deg(f.direction), degrees(f.spread_rad), degrees(f.drift_rad),
                          f.may_be_pursuit ? "maybe" : "no", pixel_cells(r, f.direction));
-  for (const diver::Saccade& s : r.events.saccades)
-    table += fmt::format("saccade,{:.4f},{:.4f},{:.1f},,,,{:.3f},{:.1f},{}\n", s.start_s, s.end_s,
-                         1e3 * (s.end_s - s.start_s), degrees(s.amplitude_rad),
-                         degrees(s.peak_rad_s), r.camera ? ",," : "");
+  const auto add_rows = [&](const char* kind, const std::vector<diver::Saccade>& events) {
+    for (const diver::Saccade& s : events)
+      table += fmt::format("{},{:.4f},{:.4f},{:.1f},,,,{:.3f},{:.1f},{}\n", kind, s.start_s,
+                           s.end_s, 1e3 * (s.end_s - s.start_s), degrees(s.amplitude_rad),
+                           degrees(s.peak_rad_s), r.camera ? ",," : "");
+  };
+  add_rows("saccade", r.events.saccades);
+  add_rows("blink", r.events.blinks);
   return {std::move(out), std::move(table)};
 }
 

@@ -110,7 +110,8 @@ json report_json(const PhysioFlags& flags, const GazeReport& r) {
   json out{{"file", flags.file},          {"method", r.velocity() ? "ivt" : "idt"},
            {"note", diver::kPursuitNote}, {"samples", r.recording.samples.size()},
            {"refused", r.state.refused},  {"us_a_second", r.us_a_second},
-           {"fixations", json::array()},  {"saccades", json::array()}};
+           {"fixations", json::array()},  {"saccades", json::array()},
+           {"blinks", json::array()}};
   for (const diver::Fixation& f : r.events.fixations) {
     json one{{"start_s", f.start_s},
              {"end_s", f.end_s},
@@ -123,11 +124,15 @@ json report_json(const PhysioFlags& flags, const GazeReport& r) {
     if (r.camera) one["pixel"] = pixel_json(r, f.direction);
     out["fixations"].push_back(std::move(one));
   }
-  for (const diver::Saccade& s : r.events.saccades)
-    out["saccades"].push_back({{"start_s", s.start_s},
-                               {"end_s", s.end_s},
-                               {"amplitude_deg", degrees(s.amplitude_rad)},
-                               {"peak_deg_s", degrees(s.peak_rad_s)}});
+  const auto add = [&](const char* kind, const std::vector<diver::Saccade>& events) {
+    for (const diver::Saccade& s : events)
+      out[kind].push_back({{"start_s", s.start_s},
+                           {"end_s", s.end_s},
+                           {"amplitude_deg", degrees(s.amplitude_rad)},
+                           {"peak_deg_s", degrees(s.peak_rad_s)}});
+  };
+  add("saccades", r.events.saccades);
+  add("blinks", r.events.blinks);
   if (r.kappa) out["score"] = {{"kappa", *r.kappa}, {"simple_kappa", *r.simple_kappa}};
   return out;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diver/vitals.hpp"
 #include "tools/common/plot.hpp"
 #include "tools/neritic/physio_report.hpp"
 
@@ -99,6 +100,47 @@ std::pair<std::vector<Series>, std::vector<Series>> interval_series(const EcgRep
   return {{normal, odd}, {pairs}};
 }
 
+// Estimates in a row, a line each: where no rate is known there is a gap. The first has the name.
+std::vector<Series> rate_lines(const std::vector<diver::BreathState>& states, const Series& like) {
+  std::vector<Series> out{like};
+  bool joined = true;
+  for (const diver::BreathState& s : states) {
+    const bool known = s.estimate.breathing != 0;
+    if (known && !joined) {
+      out.push_back(like);
+      out.back().name.clear();
+    }
+    if (known) {
+      out.back().x.push_back(s.time_s);
+      out.back().y.push_back(s.estimate.rate_bpm);
+    }
+    joined = known;
+  }
+  return out;
+}
+
+// Where an estimate is no rate: no breath since when, or not sure of one.
+void mark_silence(sonar::Canvas& canvas, const Box& box, const Axis& x, const BreathReport& r) {
+  const Box in = inside(box);
+  double before_s = 0.0;
+  std::string before;
+  for (const diver::BreathState& s : r.states) {
+    const bool quiet = s.quiet_s >= diver::kPauseHeard_s;
+    const std::string words = s.estimate.breathing != 0 ? "" : quiet ? "no breath" : "no rate";
+    if (!words.empty()) {
+      const bool anew = words != before;
+      const double from_s = quiet && anew ? s.time_s - s.quiet_s : before_s;
+      const double left = place(x, std::max(from_s, 0.0), in.left, in.right),
+                   end = place(x, s.time_s, in.left, in.right);
+      const sonar::Color color = quiet ? sonar::Color{0.75f, 0.1f, 0.1f} : kInk;
+      canvas.fill_rectangle(left, in.top, end, in.bottom, color.with_alpha(quiet ? 0.14f : 0.06f));
+      if (anew) canvas.text(left + 4.0, in.bottom - 8.0, 8.0, words, color);
+    }
+    before_s = s.time_s;
+    before = words;
+  }
+}
+
 }  // namespace
 
 ImageU8 report_plot(const PhysioFlags& flags, const EcgReport& r) {
@@ -152,24 +194,26 @@ ImageU8 report_plot(const PhysioFlags& flags, const BreathReport& r) {
   Series found = line(diver::name_of(r.settings.estimator), 0, true),
          plain = line(fmt::format("plain spectrum, {:g} s", r.settings.block_s), 1, true),
          truth = line("reference", 2);
-  for (const diver::BreathState& s : r.states)
-    if (s.estimate.breathing) found.x.push_back(s.time_s), found.y.push_back(s.estimate.rate_bpm);
-  for (const diver::BreathState& s : r.plain)
-    if (s.estimate.breathing) plain.x.push_back(s.time_s), plain.y.push_back(s.estimate.rate_bpm);
-  std::vector<Series> rates{found, plain};
+  std::vector<Series> rates = rate_lines(r.states, found);
+  const std::vector<Series> plain_lines = rate_lines(r.plain, plain);
+  rates.insert(rates.end(), plain_lines.begin(), plain_lines.end());
   if (r.true_bpm) {
     truth.x = {0.0, r.sound.seconds()};
     truth.y = {*r.true_bpm, *r.true_bpm};
     rates.push_back(truth);
   }
-  draw_lines(canvas, {kMargin, half, right, kPlotHeight - kMargin}, "Breaths a minute",
-             {"time, s", 0.0, std::max(r.sound.seconds(), 1.0)}, {"breaths/min", 0.0, 45.0}, rates);
+  const Box box{kMargin, half, right, kPlotHeight - kMargin};
+  const Axis x{"time, s", 0.0, std::max(r.sound.seconds(), 1.0)};
+  draw_lines(canvas, box, "Breaths a minute; shaded: no breath heard, or no rate known", x,
+             {"breaths/min", 0.0, 45.0}, rates);
+  mark_silence(canvas, box, x, r);
   return canvas.take();
 }
 
 ImageU8 report_plot(const PhysioFlags& flags, const GazeReport& r) {
-  std::string under = fmt::format("{}: {} fixations, {} saccades", r.velocity() ? "I-VT" : "I-DT",
-                                  r.events.fixations.size(), r.events.saccades.size());
+  std::string under =
+      fmt::format("{}: {} fixations, {} saccades, {} blinks", r.velocity() ? "I-VT" : "I-DT",
+                  r.events.fixations.size(), r.events.saccades.size(), r.events.blinks.size());
   if (r.kappa) under += fmt::format("; kappa {:.2f} against a person's marks", *r.kappa);
   sonar::Canvas canvas =
       titled("Gaze: " + name_only(flags.file), under + "; smooth pursuit is unsupported");
