@@ -214,6 +214,8 @@ Result<ScanMosaic> scan_mosaic(const MechanicalScan& scan, double cell_m) {
     const Box box = box_of(beams.back(), scan.options());
     all.add(box.low);
     all.add(box.high);
+    const Vec3& at = step.world_from_sonar.position_m;
+    all.add(Vec2(at.x, at.z));
   }
   const Vec2 first = glm::floor(all.low / cell_m), last = glm::floor(all.high / cell_m);
   const Vec2 size = last - first + 1.0;

@@ -72,8 +72,8 @@ DeviceImage device_image(const MechanicalScan& scan);
 
 // Motion taken out: a map in x and z (north is -z, row 0), each cell the mean of the steps whose
 // beams cover its centre at the time (near the sonar a beam is as wide as a cell), at ranges
-// projected onto the plane. NaN: no beam. Cell (0, 0) has its corner at (first_column, first_row) *
-// cell_m.
+// projected onto the plane; as large as the beams and the sonar's track need. NaN: no beam. Cell
+// (0, 0) has its corner at (first_column, first_row) * cell_m.
 struct ScanMosaic {
   double cell_m = 0.1;
   std::int64_t first_column = 0, first_row = 0;

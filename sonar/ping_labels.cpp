@@ -72,6 +72,14 @@ Status PingLabels::write(const std::filesystem::path& folder, const std::string&
   return write("_instances.npy", instances_);
 }
 
+ImageU16 PingLabels::classes(PingsAlong along) const {
+  ImageU16 out;
+  out.width = static_cast<std::uint32_t>(along == PingsAlong::kRows ? bins_ : pings_);
+  out.height = static_cast<std::uint32_t>(along == PingsAlong::kRows ? pings_ : bins_);
+  out.data = laid(classes_, 0, pings_, along);
+  return out;
+}
+
 Status PingLabels::add_to(CocoFile& coco, CocoPictures& pictures, PingsAlong along) const {
   for (std::size_t first = 0; first < pings_; first += kPingsAPicture) {
     const std::size_t count = std::min(kPingsAPicture, pings_ - first);

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/image.hpp"
 #include "sonar/coco.hpp"
 #include "sonar/coco_pictures.hpp"
 
@@ -34,6 +35,7 @@ class PingLabels {
   // PREFIX_labels.npy, PREFIX_instances.npy uint16.
   Status write(const std::filesystem::path& folder, const std::string& prefix,
                PingsAlong along) const;
+  ImageU16 classes(PingsAlong along) const;
   // Pictures coco/pings_FIRST.png of at most kPingsAPicture each with their annotations.
   static constexpr std::size_t kPingsAPicture = 2048;
   Status add_to(CocoFile& coco, CocoPictures& pictures, PingsAlong along) const;

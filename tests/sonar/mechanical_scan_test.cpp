@@ -83,6 +83,22 @@ TEST(MechanicalScan, TheWorldMapOfAMovingVehicleHasTheWallWhereItIs) {
   }
 }
 
+TEST(MechanicalScan, TheWorldMapHoldsTheTrackOfASectorThatLooksAway) {
+  MechanicalScanOptions far = kOptions;
+  far.range_min_m = 5.0;
+  MechanicalScan scan(far);
+  for (const double x : {0.0, 1.5})
+    scan.append(std::vector<float>(400, 1.0f),
+                {.world_from_sonar = {Vec3(x, 0, 3), Quat(1, 0, 0, 0)}});
+  const auto map = sonar::scan_mosaic(scan, 0.1).value();
+  const double west = static_cast<double>(map.first_column) * 0.1,
+               north = static_cast<double>(map.first_row) * 0.1;
+  EXPECT_LE(west, 0.0);
+  EXPECT_GE(west + map.columns * 0.1, 1.5);
+  EXPECT_LE(north, -2.0);
+  EXPECT_GE(north + map.rows * 0.1, 3.0);
+}
+
 TEST(MechanicalScan, TheDevicesPictureIsSmearedByMotionAndOnlyByIt) {
   const auto gap = [](const MechanicalScan& scan) {  // of the wall's range where the turn closes
     const auto device = sonar::device_image(scan);

@@ -78,6 +78,7 @@ TEST_F(RenderTrack, BoxesOfASideScanLieOverItsWaterfall) {
     return array.ok() ? array->to_doubles() : std::vector<double>();
   };
   const auto labels = values_of("track/s/sidescan_labels.npy", {3, 200});
+  EXPECT_TRUE(fs::exists(folder_ / "out/track/s/sidescan_labels.png"));
   const auto heard = values_of("track/s/sidescan_slant.npy", {3, 200});
   ASSERT_EQ(labels.size(), heard.size());
   for (std::size_t ping = 0; ping < 3; ++ping)

@@ -15,6 +15,7 @@
 #include "sonar/sidescan_from_image.hpp"
 #include "sonar/terms_json.hpp"
 #include "sonar/terrain_error.hpp"
+#include "tools/session/pictures.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -252,8 +253,11 @@ Status Survey::Record::write_labels(const fs::path& folder) const {
   using sonar::PingsAlong;
   if (labels) {
     const bool across = sonar.kind == SonarKind::kMechanical;  // as its mechanical.npy
-    NERITIC_TRY_STATUS(labels->write(folder, prefix_of(sonar.kind),
-                                     across ? PingsAlong::kColumns : PingsAlong::kRows));
+    const PingsAlong along = across ? PingsAlong::kColumns : PingsAlong::kRows;
+    const std::string prefix = prefix_of(sonar.kind);
+    NERITIC_TRY_STATUS(labels->write(folder, prefix, along));
+    NERITIC_TRY_STATUS(scene::write_png8(folder / (prefix + "_labels.png"),
+                                         labels_picture(labels->classes(along))));
     // In pictures range grows downwards, a side-scan's outwards.
     if (coco)
       NERITIC_TRY_STATUS(labels->add_to(
