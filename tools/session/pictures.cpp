@@ -62,8 +62,13 @@ ImageU8 normals_picture(const ImageF32& normals) {
 ImageU8 labels_picture(const ImageU16& labels) {
   ImageU8 out(labels.width, labels.height, 3);
   for (std::size_t i = 0; i < labels.data.size(); ++i)
+    if (labels.data[i] == sonar::kShadow)
+      set_rgb(out, i, 0.22, 0.22, 0.26);
+    else if (labels.data[i] == sonar::kGhost)
+      set_rgb(out, i, 0.8, 0.8, 0.8);
     // Steps of the golden ratio round the colour circle keep neighbours in number apart in hue.
-    if (labels.data[i]) set_hue(out, i, std::fmod(labels.data[i] * 0.61803398875, 1.0), 0.65, 0.9);
+    else if (labels.data[i])
+      set_hue(out, i, std::fmod(labels.data[i] * 0.61803398875, 1.0), 0.65, 0.9);
   return out;
 }
 

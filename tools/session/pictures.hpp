@@ -11,8 +11,9 @@ namespace neritic::tools {
 
 ImageU8 depth_picture(
     const ImageF32& depth_m);  // near bright, far dark, logarithmic; black: nothing
-ImageU8 normals_picture(const ImageF32& normals);   // 0.5 + 0.5 n
-ImageU8 labels_picture(const ImageU16& labels);     // a colour a label
+ImageU8 normals_picture(const ImageF32& normals);  // 0.5 + 0.5 n
+// A colour a label; a sonar's shadow dark grey, its ghosts light.
+ImageU8 labels_picture(const ImageU16& labels);
 ImageU8 motion_picture(const ImageF32& motion_px);  // hue: direction, brightness: length
 
 // Shrinks by averaging whole source pixels to the size given (never enlarges detail).
