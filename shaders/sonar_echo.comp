@@ -89,19 +89,22 @@ vec3 launched(float range_m, vec3 direction) {
          echo.world_up * (sine * turn.x + cosine * turn.y);
 }
 
-// Of the weights' table in a direction from the sonar, linear between rows; none beyond them. Columns beyond the
-// last are as it: only a cone's differ, and fall off to its edge.
+// Of the weights' table in a direction from the sonar, linear between rows and columns; none beyond the rows.
+// Columns beyond the last are as it: only a cone's differ, and fall off to its edge.
 float weight_towards(vec3 direction, bool turned_over) {
   float azimuth = atan(dot(direction, echo.head_right), -dot(direction, echo.head_back));
   float elevation = asin(clamp(dot(direction, echo.head_up), -1.0, 1.0));
   float row = (elevation - echo.elevation_min_rad) * echo.rows_per_rad;
   if (row < 0.0 || row >= float(c.n_elevation)) return 0.0;
   if (turned_over) row = float(c.n_elevation) - row;
-  float place = clamp(row - 0.5, 0.0, float(c.n_elevation - 1));
-  int column = clamp(int((azimuth - echo.azimuth_min_rad) * echo.columns_per_rad), 0, int(c.n_azimuth) - 1);
-  int low = int(place), high = min(low + 1, int(c.n_elevation) - 1);
-  return mix(texelFetch(weights, ivec2(column, low), 0).r, texelFetch(weights, ivec2(column, high), 0).r,
-             place - float(low));
+  ivec2 last = ivec2(c.n_azimuth, c.n_elevation) - 1;
+  vec2 place = clamp(vec2((azimuth - echo.azimuth_min_rad) * echo.columns_per_rad, row) - 0.5, vec2(0.0), vec2(last));
+  ivec2 low = ivec2(place), high = min(low + 1, last);
+  vec2 part = place - vec2(low);
+  vec2 lower = vec2(texelFetch(weights, low, 0).r, texelFetch(weights, ivec2(high.x, low.y), 0).r);
+  vec2 upper = vec2(texelFetch(weights, ivec2(low.x, high.y), 0).r, texelFetch(weights, high, 0).r);
+  vec2 weight = mix(lower, upper, part.y);
+  return mix(weight.x, weight.y, part.x);
 }
 
 // A row's weight by where its ray leaves; the solid angle stays the row's own.

@@ -198,6 +198,7 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
     return bad_input("sonar {}: {}", sonar.name, valid.error().message);
   const SonarTerms& t = sonar.terms;
   head.samples = head.beams;
+  head.heard_up_rad = head.beams.limits.elevation_max_rad;
   if (!has_terms(sonar)) return head;
   auto made = head_patterns(sonar);
   if (!made.ok()) return bad_input("sonar {}: beam: {}", sonar.name, made.error().message);

@@ -116,7 +116,8 @@ class Tracer {
     const double azimuth_rad = column.azimuth_rad + (place - 0.5) * column.width_rad;
     const Vec3 d = sonar::direction(azimuth_rad, elevation_rad);
     ray.off_axis_rad = std::acos(std::clamp(-d.z, -1.0, 1.0));
-    ray.inside = !head_.folded || ray.off_axis_rad <= patterns_.cone_rad;
+    ray.inside = head_.folded ? ray.off_axis_rad <= patterns_.cone_rad
+                              : std::abs(elevation_rad) <= head_.heard_up_rad;
     ray.direction = view_.world_from_head * d;
     ray.pattern = patterns_.power(azimuth_rad, elevation_rad);
     ++cast_;
@@ -285,7 +286,21 @@ Result<std::vector<TermTruth>> trace_terms(const RayWorld& world, const TruthVie
                                            std::span<const scene::Sonar> sonars, std::size_t head,
                                            const TruthRays& rays) {
   NERITIC_TRY(const auto heads, sonar::plan_heads(sonars.front()));
-  const sonar::Head& plan = heads.at(head);
+  sonar::Head plan = heads.at(head);
+  // One whose rays bend looks farther up and down, beyond what it hears: by as many rays more.
+  double taller = 1.0;
+  for (const scene::Sonar& sonar : sonars) {
+    if (!sonar.terms.profile || !sonar.terms.profile->bent) continue;
+    NERITIC_TRY(const auto bent, sonar::plan_heads(sonar));
+    const double up_rad = bent.at(head).samples.limits.elevation_max_rad,
+                 front_up_rad = heads.at(head).samples.limits.elevation_max_rad;
+    if (up_rad <= taller * front_up_rad) continue;
+    plan = bent.at(head);
+    taller = up_rad / front_up_rad;
+  }
+  const auto rays_of = [&](const Column& column) {
+    return static_cast<std::uint32_t>(taller * (column.fine ? rays.rays : rays.rays / 4));
+  };
   NERITIC_TRY(const sonar::HeadPatterns patterns, sonar::head_patterns(sonars.front()));
   const auto columns =
       columns_of(plan.folded ? plan.samples : plan.beams, sonars.front(), plan.folded, rays);
@@ -299,8 +314,7 @@ Result<std::vector<TermTruth>> trace_terms(const RayWorld& world, const TruthVie
     Tracer tracer(world, view, plan, patterns, mirrors, into);
     // Pairs of columns in turns: each half of the columns goes to both threads.
     for (std::size_t i = 0; i < columns.size(); ++i)
-      if (i / 2 % 2 == thread)
-        tracer.trace(columns[i], static_cast<int>(i), columns[i].fine ? rays.rays : rays.rays / 4);
+      if (i / 2 % 2 == thread) tracer.trace(columns[i], static_cast<int>(i), rays_of(columns[i]));
     cast[thread] = tracer.cast();
   };
   std::thread other([&] { work(others, 1); });
