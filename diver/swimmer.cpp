@@ -27,11 +27,17 @@ constexpr double kHoverKnees = 3.5;  // of the legs' lift towards the back
 constexpr double kHoverBreath = 1.5;
 // Who hovers swims back to the place from so far away, or righting from such a tilt, and rests
 // again from so near.
-constexpr double kAdrift_m = 1.5, kNear_m = 0.7, kTilted_rad = radians(20.0);
-// So fast in still water; more than kStill_m_s is a current: aims so far upstream of the place, and
-// swims so much faster for each metre off it.
-constexpr double kBackSpeed_m_s = 0.35, kMostBackSpeed_m_s = 0.8;
-constexpr double kStill_m_s = 0.06, kAimAhead_m = 4.0, kBack_1_s = 0.15;
+constexpr double kAdrift_m = 3.0, kNear_m = 0.7, kTilted_rad = radians(20.0);
+// More than kStill_m_s is a current: aims so far upstream of the place.
+constexpr double kStill_m_s = 0.06, kAimAhead_m = 4.0;
+// So fast in still water, and so much faster for each metre off the place. Back to the place no
+// faster than who keeps beside can follow, and turning as slowly: so far off, at most, the heading
+// counts. Who rights himself needs way.
+struct WayBack {
+  double speed_m_s, each_metre_1_s, most_m_s, turn_rad;
+};
+constexpr WayBack kBack{0.15, 0.01, 0.5, 0.4}, kRighting{0.35, 0.15, 0.8, kPi};
+constexpr std::uint64_t kGoesBack = 1, kRightsHimself = 2;
 // Nobody moves a joint from one side to the other within less.
 constexpr double kSteeringLag_s = 0.4;
 // Buttons are pressed for a moment, after so much want of breath, and then waited for.
@@ -116,6 +122,10 @@ double wanted_heading(const SwimGoal& goal, const HumanState& state, double head
   return std::atan2(way.y, way.x) - crab;
 }
 
+const WayBack& way_back_of(const SwimmerState& swimmer) {
+  return swimmer.goes_back == kRightsHimself ? kRighting : kBack;
+}
+
 // The goal of who hovers: rest, and the way back once drifted off, or tilted more than a posture
 // rights: fins right a body that has way. In a current the head stays into it.
 SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimmer) {
@@ -132,12 +142,16 @@ SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimme
     goal.target_ned_m += kAimAhead_m * against;
   }
   const double tilt_rad = std::abs(attitude_of(state.root.attitude).pitch_rad);
-  if (off_m > kAdrift_m || tilt_rad > kTilted_rad) swimmer.goes_back = 1;
+  if (tilt_rad > kTilted_rad)
+    swimmer.goes_back = kRightsHimself;
+  else if (off_m > kAdrift_m && swimmer.goes_back == 0)
+    swimmer.goes_back = kGoesBack;
   if (off_m < near_m && tilt_rad < 0.5 * kTilted_rad) swimmer.goes_back = 0;
-  if (swimmer.goes_back != 0)
-    goal.speed_m_s =
-        std::min(kBackSpeed_m_s + (current ? drift_m_s + kBack_1_s * std::max(off_m, 0.0) : 0.0),
-                 kMostBackSpeed_m_s);
+  if (swimmer.goes_back == 0) return goal;
+  const WayBack& way_back = way_back_of(swimmer);
+  const double upstream_m_s =
+      current ? drift_m_s + way_back.each_metre_1_s * std::max(off_m, 0.0) : 0.0;
+  goal.speed_m_s = std::min(way_back.speed_m_s + upstream_m_s, way_back.most_m_s);
   return goal;
 }
 
@@ -214,6 +228,10 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
   if (swims) {
     turn = std::remainder(wanted_heading(goal, state, attitude.heading_rad) - attitude.heading_rad,
                           2.0 * kPi);
+    if (hovers) {
+      const double most = way_back_of(swimmer).turn_rad;
+      turn = std::clamp(turn, -most, most);
+    }
     const double climb_m_s = -sink_m_s + 0.3 * too_much_m_s + 0.04 * swimmer.climb_sum;
     pitch = std::clamp(climb_m_s / std::max(goal.speed_m_s, 0.2), -kMostPitch_rad, kMostPitch_rad);
   }

@@ -40,8 +40,9 @@ struct SwimmerState {
   double lift_rad = 0.0, twist_rad = 0.0, left_more = 0.0, bend_rad = 0.0;
   // What the swimmer feels of roll and rates between the beats.
   BeatNotch roll, roll_rate, pitch_rate, yaw_rate;
-  double button_s = 0.0;        // since a button was last let go; negative: still to be pressed
-  std::uint64_t goes_back = 0;  // 1: who is to hover was adrift and swims back
+  double button_s = 0.0;  // since a button was last let go; negative: still to be pressed
+  // Who is to hover: 1: was adrift and swims back; 2: tilts, and swims to right himself.
+  std::uint64_t goes_back = 0;
 
   static void fields(auto&& field, auto& self) {
     field("phase_rad", self.phase_rad);

@@ -200,6 +200,48 @@ TEST(Swimmer, HoversLevelAtItsPlaceWhileTheTankEmpties) {
   }
 }
 
+// Who hovers in a current comes back without haste: a place 2.4 m beside moves no faster than a
+// vehicle that keeps there flies, and three metres of drift are left alone.
+TEST(Swimmer, ComesBackNoFasterThanWhoKeepsBesideCanFollow) {
+  const Body body = body_with(Gear{});
+  for (const Vec3& current_m_s : {Vec3(0.085, 0.02, 0.0), Vec3(-0.11, 0.0, 0.0)}) {
+    Swim s = begin(body, {-12.0, 0.0, 14.4}, 0.0);
+    s.inputs.current_ned_m_s = current_m_s;
+    swim_for(body, s, {{0.0, 0.0, 14.4}, 0.4}, 28.0, [](const HumanState&) {});
+    std::vector<Vec3> beside;  // each two seconds
+    double away_m = 0.0;
+    int steps = 0;
+    swim_for(body, s, {{0.0, 0.0, 14.4}, 0.0}, 480.0, [&](const HumanState& state) {
+      const Vec3& p = state.root.position_ned_m;
+      const double heading = attitude_of(state.root.attitude).heading_rad;
+      if (steps++ % 480 == 0)
+        beside.push_back(p + 2.4 * Vec3(-std::sin(heading), std::cos(heading), 0.0));
+      if (steps > 60 * 240) away_m = std::max(away_m, std::hypot(p.x, p.y));
+    });
+    double fastest_m_s = 0.0;
+    for (std::size_t i = 1; i < beside.size(); ++i)
+      fastest_m_s = std::max(fastest_m_s, glm::distance(beside[i], beside[i - 1]) / 2.0);
+    EXPECT_LT(fastest_m_s, 0.8) << current_m_s.y;
+    EXPECT_LT(away_m, 4.5) << current_m_s.y;
+  }
+}
+
+// Oxygen of who fins along, by the work of the limbs: Pendergast's line (2003, average fins),
+// within a fifth at a diver's pace. Faster it takes more than people do.
+TEST(Swimmer, AtADiversPaceItTakesTheOxygenThatIsPublished) {
+  const Body body = body_with(Gear{});
+  for (const double speed_m_s : {0.35, 0.4, 0.45}) {
+    Swim s = begin(body, {0.0, 0.0, 12.0}, 0.0);
+    const SwimGoal goal{{1000.0, 0.0, 12.0}, speed_m_s};
+    swim_for(body, s, goal, 180.0, [](const HumanState&) {});
+    double way_m = 0.0;
+    swim_for(body, s, goal, 20.0,
+             [&](const HumanState& state) { way_m += state.root.velocity[0] / 240.0; });
+    const double published_l_min = swimming_oxygen_l_min(way_m / 20.0);
+    EXPECT_NEAR(s.state.life.lungs.oxygen_l_min / published_l_min, 1.0, 0.2) << speed_m_s;
+  }
+}
+
 TEST(Swimmer, FollowsADepthThatChanges) {
   // Down by five metres and up again, each within a minute and a half, filling and emptying the
   // jacket on the way.
