@@ -45,12 +45,12 @@ float correction_at(float range_m, float sine, uint from) {
 
 void add_power(uint cell, uint counts) {
   if (kLanes == 1) {
-    uint before = imageLoad(sums, int(2 * cell)).x;
-    imageStore(sums, int(2 * cell), uvec4(before + counts));
-    if (before + counts < before) imageStore(sums, int(2 * cell + 1), uvec4(imageLoad(sums, int(2 * cell + 1)).x + 1));
+    uint before = sum_at(2 * cell);
+    set_sum(2 * cell, before + counts);
+    if (before + counts < before) set_sum(2 * cell + 1, sum_at(2 * cell + 1) + 1);
   } else {
-    uint before = imageAtomicAdd(sums, int(2 * cell), counts);
-    if (before + counts < before) imageAtomicAdd(sums, int(2 * cell + 1), 1);
+    uint before = atomicAdd(sums[2 * cell], counts);
+    if (before + counts < before) atomicAdd(sums[2 * cell + 1], 1);
   }
 }
 

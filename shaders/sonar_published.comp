@@ -8,8 +8,7 @@
 // last pixel's value. One thread owns a column (kLanes is 1), so nothing races.
 #include "shared/sonar_common.glsl"
 
-// [n_range][n_azimuth]: 1 + the row that counted there last.
-layout(set = 0, binding = kSonarBindScratch, r32ui) uniform uimageBuffer stamps;
+// Scratch: 1 + the row that counted there last.
 
 // First pixel row below the direction of elevation tan_phi at the pixel column whose distance from the
 // axis is 1 / cos = sec. Neighbouring cells share the expression, so no pixel is lost or counted twice.
@@ -35,8 +34,8 @@ void add_pixel(ivec3 at, SonarColumn s, uint column, uint stamp) {
   float bin = (planar * length_of - c.range_min_m) * c.bins_per_m;
   if (!(bin >= 0.0 && bin < float(c.n_range))) return;
   uint cell = uint(bin) * c.n_azimuth + column;
-  if (imageLoad(stamps, int(cell)).x == stamp) return;  // a later pixel has that cell of the volume
-  imageStore(stamps, int(cell), uvec4(stamp));
+  if (scratch_at(cell) == stamp) return;  // a later pixel has that cell of the volume
+  set_scratch(cell, stamp);
   float strength = min(facing(-along / length_of), 1.0);
   if (strength > 0.0) add_return(cell, strength, at);
 }

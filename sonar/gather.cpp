@@ -1,6 +1,7 @@
 #include "sonar/gather.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/check.hpp"
 #include "engine/gpu/device.hpp"
@@ -58,15 +59,13 @@ Status SonarGather::check(const gpu::Device& device) const {
         "gather published: it is the plain cosine; with terms, plane or nearest is accepted");
   NERITIC_CHECK(options_.gather != Gather::kPublished || layout_.lean == 0.0,
                 "the published gather takes upright images");
-  const std::uint64_t most_bytes =
-      std::min<std::uint64_t>(limits.maxStorageBufferRange,
-                              std::uint64_t{limits.maxTexelBufferElements} * sizeof(std::uint32_t));
-  if (sums_bytes() > most_bytes)
-    return failure(ErrorCode::kUnsupported,
-                   "sonar image of {} x {} bins: {} bytes, the device allows {}; {:.2f} of its "
-                   "range, or fewer range bins, beams or samples of a beam, fit",
-                   grid_.bins.range, grid_.bins.azimuth, sums_bytes(), most_bytes,
-                   static_cast<double>(most_bytes) / static_cast<double>(sums_bytes()));
+  if (const std::uint64_t most = limits.maxStorageBufferRange; sums_bytes() > most)
+    return failure(
+        ErrorCode::kUnsupported,
+        "sonar image of {} x {} bins: {} bytes, the device allows {}; {:.2f} of these range bins "
+        "(or, where a quality sets them, of its range), or fewer beams or samples of a beam, fit",
+        grid_.bins.range, grid_.bins.azimuth, sums_bytes(), most,
+        std::floor(100.0 * static_cast<double>(most) / static_cast<double>(sums_bytes())) / 100.0);
   if (options_.echo && options_.echo->records && records_bytes() > limits.maxStorageBufferRange)
     return failure(ErrorCode::kUnsupported,
                    "sonar labels.energy of {} columns x {} bins of elevation: {} bytes of records, "
@@ -97,6 +96,13 @@ Result<SonarGather> SonarGather::create(gpu::Device& device, const BeamGrid& gri
 
 std::uint64_t SonarGather::keys_bytes() const {
   return std::uint64_t{grid_.bins.range} * grid_.bins.azimuth * sizeof(std::uint32_t);
+}
+
+VkBufferUsageFlags SonarGather::sums_usage() const {
+  constexpr VkBufferUsageFlags kWords = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                        VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+  return texels_ ? kWords | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT : kWords;
 }
 
 std::uint64_t SonarGather::sums_bytes() const {
@@ -174,6 +180,7 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
     cleared.sums = inputs.sums_so_far;
     cleared.keys = inputs.keys_so_far;
   }
+  const Access words_access = texels_ ? Access::kTexelWriteCompute : Access::kStorageWriteCompute;
   const auto setup = [&](graph::PassBuilder& builder, Pass& pass) {
     pass.in = inputs;
     pass.in.echo.sum_scale = static_cast<float>(fixed_scale_);
@@ -183,9 +190,9 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
          {inputs.labels, inputs.direct_depth, inputs.direct_labels})
       if (image) builder.read(image, Access::kSampledCompute);
     if (inputs.reflectivity) builder.read(inputs.reflectivity, Access::kStorageReadCompute);
-    pass.out.sums = builder.write(cleared.sums, Access::kTexelWriteCompute);
-    if (cleared.keys) pass.out.keys = builder.write(cleared.keys, Access::kTexelWriteCompute);
-    if (cleared.scratch) pass.scratch = builder.write(cleared.scratch, Access::kTexelWriteCompute);
+    pass.out.sums = builder.write(cleared.sums, words_access);
+    if (cleared.keys) pass.out.keys = builder.write(cleared.keys, words_access);
+    if (cleared.scratch) pass.scratch = builder.write(cleared.scratch, words_access);
     if (options_.echo && options_.echo->records)
       pass.out.records = builder.write(
           inputs.records_target
@@ -210,7 +217,10 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
     return handle ? context.buffer(handle).handle() : no_buffer_.handle();
   };
   const auto texels_or_none = [&](graph::BufferHandle handle) {
-    return handle ? context.buffer(handle).texels() : no_buffer_.texels();
+    return handle && texels_ ? context.buffer(handle).texels() : no_buffer_.texels();
+  };
+  const auto words_or_none = [&](graph::BufferHandle handle) {
+    return buffer_or_none(texels_ ? graph::BufferHandle{} : handle);
   };
   const Intrinsics& k = layout_.intrinsics;
   const shared::SonarPush push{.n_range = grid_.bins.range,
@@ -241,9 +251,12 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
                                                           ? context.image(pass.in.labels).view()
                                                           : no_labels_.view()),
       gpu::bound_buffer(shared::kSonarBindReflectivity, buffer_or_none(pass.in.reflectivity)),
-      gpu::bound_texel_buffer(shared::kSonarBindSums, texels_or_none(pass.out.sums)),
-      gpu::bound_texel_buffer(shared::kSonarBindKeys, texels_or_none(pass.out.keys)),
-      gpu::bound_texel_buffer(shared::kSonarBindScratch, texels_or_none(pass.scratch))};
+      gpu::bound_buffer(shared::kSonarBindSums, words_or_none(pass.out.sums)),
+      gpu::bound_buffer(shared::kSonarBindKeys, words_or_none(pass.out.keys)),
+      gpu::bound_buffer(shared::kSonarBindScratch, words_or_none(pass.scratch)),
+      gpu::bound_texel_buffer(shared::kSonarBindSumTexels, texels_or_none(pass.out.sums)),
+      gpu::bound_texel_buffer(shared::kSonarBindKeyTexels, texels_or_none(pass.out.keys)),
+      gpu::bound_texel_buffer(shared::kSonarBindScratchTexels, texels_or_none(pass.scratch))};
   if (options_.echo) {
     const gpu::UploadSlice echo = commands.upload(&pass.in.echo, sizeof pass.in.echo);
     const gpu::UploadSlice correction =

@@ -59,13 +59,21 @@ struct EchoOptions {
   std::vector<float> gamma_quantiles;  // of a texture of mean 1; empty: none
 };
 
+// How a device's threads share the work. The bits are the same.
+struct GatherThreads {
+  // A workgroup a column whose threads add by atomics (graphics hardware), or a thread a column
+  // (processors). Absent: what suits the device.
+  std::optional<bool> atomics;
+  // A thread a column sums into texel buffers if the device's are large enough: processors are
+  // faster at it.
+  bool texels = true;
+};
+
 struct GatherOptions {
   Gather gather = Gather::kPlane;
   bool labels = true;        // keep the class of each cell's strongest return
   bool reflectivity = true;  // a table by instance label will be given
-  // A workgroup a column whose threads add by atomics (graphics hardware), or a thread a column
-  // (processors). Absent: what suits the device. The bits are the same.
-  std::optional<bool> atomics;
+  GatherThreads threads;
   std::optional<EchoOptions> echo;
 };
 
@@ -86,7 +94,8 @@ class SonarGather {
     // Sonar axes from the axes that the normals are in (world axes of a scene's G-buffer).
     Mat3 sonar_from_gbuffer{1.0};
     // Where to write; absent: transient buffers of the frame. An imported host-readable buffer
-    // saves a copy on devices that share memory with the host.
+    // saves a copy on devices that share memory with the host (DeviceInfo::shared_memory);
+    // elsewhere every sum would cross the bus.
     graph::BufferHandle sums_target, keys_target, records_target;
     // Sums, keys and nothing else of an earlier gather of this frame: this one adds to them.
     graph::BufferHandle sums_so_far, keys_so_far;
@@ -100,15 +109,12 @@ class SonarGather {
     graph::BufferHandle keys;     // uint32 [n_range][n_azimuth]; absent without labels
     graph::BufferHandle records;  // shared::SonarRecord [n_elevation][n_azimuth]; absent without
   };
-  // Of buffers that are targets: of sums and keys, and of records.
-  static constexpr VkBufferUsageFlags kRecordsUsage =
-      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-  static constexpr VkBufferUsageFlags kSumsUsage =
-      kRecordsUsage | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
   // Adds the passes PREFIX"sonar clear" and PREFIX"sonar gather". The object must outlive the
   // graph's run.
   Outputs declare(graph::FrameGraph& graph, const Inputs& inputs) const;
 
+  // What a buffer is made for that is a target of sums or keys.
+  VkBufferUsageFlags sums_usage() const;
   std::uint64_t sums_bytes() const;
   std::uint64_t keys_bytes() const;
   std::uint64_t records_bytes() const;
@@ -138,6 +144,7 @@ class SonarGather {
   GatherOptions options_;
   std::uint32_t groups_ = 1;
   double fixed_scale_ = 1.0;
+  bool texels_ = false;  // sums, keys and scratch are texel buffers
   gpu::Pipeline pipeline_;
   gpu::Image rows_, no_labels_, weights_, gamma_quantiles_;
   gpu::Buffer no_buffer_;

@@ -10,16 +10,19 @@
 namespace neritic::sonar {
 namespace {
 
-constexpr std::array<gpu::BindingDesc, 16> kBindings{
+constexpr std::array<gpu::BindingDesc, 19> kBindings{
     {{shared::kSonarBindColumns, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindRows, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindNormal, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindLabel, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindReflectivity, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-     {shared::kSonarBindSums, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
-     {shared::kSonarBindKeys, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
-     {shared::kSonarBindScratch, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
+     {shared::kSonarBindSums, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+     {shared::kSonarBindKeys, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+     {shared::kSonarBindScratch, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+     {shared::kSonarBindSumTexels, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
+     {shared::kSonarBindKeyTexels, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
+     {shared::kSonarBindScratchTexels, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
      // Of a gather with terms only.
      {shared::kSonarBindEcho, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
      {shared::kSonarBindWeights, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
@@ -28,7 +31,7 @@ constexpr std::array<gpu::BindingDesc, 16> kBindings{
      {shared::kSonarBindRecords, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindDirectDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindDirectLabel, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1}}};
-constexpr std::size_t kPlainBindings = 9;
+constexpr std::size_t kPlainBindings = 12;
 
 struct TableSize {
   std::uint32_t width = 1, height = 1;
@@ -64,8 +67,11 @@ Status SonarGather::make_pipeline(gpu::Device& device) {
   // column: no atomics. Graphics hardware wants many threads: a workgroup a column, its rows shared
   // out. Runs of beams that meet one scatterer want their column's rows in order.
   const bool own_columns = published || (echo && echo->coherent) ||
-                           !options_.atomics.value_or(device.info().kind != "CPU");
+                           !options_.threads.atomics.value_or(device.info().kind != "CPU");
   const std::uint32_t columns = own_columns ? 8 : 1, lanes = own_columns ? 1 : 64;
+  const std::uint64_t most_texels = device.limits().maxTexelBufferElements;
+  texels_ =
+      own_columns && options_.threads.texels && sums_bytes() / sizeof(std::uint32_t) <= most_texels;
   groups_ = (grid_.bins.azimuth + columns - 1) / columns;
 
   gpu::ComputePipelineDesc desc;
@@ -84,6 +90,7 @@ Status SonarGather::make_pipeline(gpu::Device& device) {
                     {shared::kSonarSpecReflect, options_.reflectivity},
                     {shared::kSonarSpecLabels, options_.labels},
                     {shared::kSonarSpecFootprint, footprint_of(grid_, options_)},
+                    {shared::kSonarSpecTexels, texels_},
                     {shared::kSonarSpecLeaning, layout_.lean != 0.0}};
   if (echo)
     for (const auto& [constant, on] : std::initializer_list<std::pair<std::uint32_t, bool>>{

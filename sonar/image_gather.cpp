@@ -97,6 +97,9 @@ Result<gpu::Image> image_like(gpu::Device& device, const std::string& name, VkFo
                              .array_view = true});
 }
 
+constexpr VkBufferUsageFlags kReadableUsage =
+    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+
 graph::FrameGraph::ImportState readable() {
   return {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -110,22 +113,21 @@ ImageGather::~ImageGather() {
 
 Result<std::unique_ptr<ImageGather>> ImageGather::create(gpu::Device& device, const BeamGrid& grid,
                                                          std::span<const SonarInput> inputs,
-                                                         Gather gather,
-                                                         std::optional<bool> atomics) {
+                                                         Gather gather, GatherThreads threads) {
   std::unique_ptr<ImageGather> made(new ImageGather);
-  NERITIC_TRY_STATUS(made->prepare(device, grid, inputs, {.gather = gather, .atomics = atomics}));
+  NERITIC_TRY_STATUS(made->prepare(device, grid, inputs, {.gather = gather, .threads = threads}));
   return made;
 }
 
 Result<std::unique_ptr<ImageGather>> ImageGather::create(gpu::Device& device,
                                                          const scene::Sonar& sonar,
                                                          const Head& head, const SonarInput& input,
-                                                         Gather gather) {
+                                                         Gather gather, GatherThreads threads) {
   std::unique_ptr<ImageGather> made(new ImageGather);
   made->sonar_ = sonar;
   made->head_ = head;
   NERITIC_TRY_STATUS(made->prepare(device, head.samples, std::span(&input, 1),
-                                   {.gather = gather, .echo = head.echo}));
+                                   {.gather = gather, .threads = threads, .echo = head.echo}));
   if (!head.echo) return made;
   ReceiverDesc desc = head.receiver;
   desc.sum_scale = made->gather_->fixed_scale();
@@ -184,16 +186,16 @@ Status ImageGather::make_images(const SonarInput& in, std::uint32_t layers) {
 
 Status ImageGather::make_buffers() {
   const auto result = [&](const char* name, std::uint64_t bytes,
-                          VkBufferUsageFlags usage = SonarGather::kRecordsUsage) {
+                          VkBufferUsageFlags usage = kReadableUsage) {
     return gpu::Buffer::create(
         *device_,
         {.name = name, .size = bytes, .usage = usage, .memory = gpu::MemoryUse::kReadback});
   };
   if (labels_) {
-    NERITIC_TRY(keys_, result("sonar keys", gather_->keys_bytes(), SonarGather::kSumsUsage));
+    NERITIC_TRY(keys_, result("sonar keys", gather_->keys_bytes(), gather_->sums_usage()));
   }
   if (!receiver_) {
-    NERITIC_TRY(sums_, result("sonar sums", gather_->sums_bytes(), SonarGather::kSumsUsage));
+    NERITIC_TRY(sums_, result("sonar sums", gather_->sums_bytes(), gather_->sums_usage()));
     return {};
   }
   NERITIC_TRY(power_, result("sonar power", receiver_->power_bytes()));
@@ -235,8 +237,9 @@ Result<SonarImage> ImageGather::run(const PingState& state) {
     inputs.reflectivity = graph.import_buffer("sonar reflectivity", reflectivity_);
     inputs.reflectivities = kReflectivitySteps;
   }
-  if (!receiver_) inputs.sums_target = graph.import_buffer("sonar sums", sums_);
-  if (labels_) inputs.keys_target = graph.import_buffer("sonar keys", keys_);
+  const bool in_place = device_->info().shared_memory;
+  if (in_place && !receiver_) inputs.sums_target = graph.import_buffer("sonar sums", sums_);
+  if (in_place && labels_) inputs.keys_target = graph.import_buffer("sonar keys", keys_);
   if (records_.size() > 0) inputs.records_target = graph.import_buffer("sonar records", records_);
   Ping ping;
   if (receiver_) {
@@ -246,7 +249,11 @@ Result<SonarImage> ImageGather::run(const PingState& state) {
     inputs.echo = ping.echo;
     inputs.correction = ping.correction;
   }
-  const SonarGather::Outputs outputs = gather_->declare(graph, inputs);
+  SonarGather::Outputs outputs = gather_->declare(graph, inputs);
+  if (!in_place && !receiver_)
+    outputs.sums = copy_buffer(graph, "sonar sums to host", outputs.sums, "sonar sums", sums_);
+  if (!in_place && labels_)
+    outputs.keys = copy_buffer(graph, "sonar keys to host", outputs.keys, "sonar keys", keys_);
   if (labels_) graph.output(outputs.keys, graph::Access::kHostRead);
   if (outputs.records) graph.output(outputs.records, graph::Access::kHostRead);
   graph.output(receiver_ ? receiver_->declare(graph, outputs.sums, ping.receiver(),

@@ -23,13 +23,12 @@ class ImageGather {
   // Inputs: one view, or the sectors that plan_sectors(grid) gives, all of one size and pinhole.
   static Result<std::unique_ptr<ImageGather>> create(gpu::Device& device, const BeamGrid& grid,
                                                      std::span<const SonarInput> inputs,
-                                                     Gather gather,
-                                                     std::optional<bool> atomics = {});
+                                                     Gather gather, GatherThreads threads = {});
   // A sensor with its terms on one view whose axis is the sonar's. Reflectivities a pixel count as
   // strengths of strength_scale at 1 where the sensor has a level.
   static Result<std::unique_ptr<ImageGather>> create(gpu::Device& device, const scene::Sonar& sonar,
                                                      const Head& head, const SonarInput& input,
-                                                     Gather gather);
+                                                     Gather gather, GatherThreads threads = {});
   ~ImageGather();
   // Other images of the same size, pinhole and kind (labels, reflectivities or none).
   Status upload(std::span<const SonarInput> inputs);

@@ -20,7 +20,7 @@ constexpr std::array kPoolSizes{
     VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8 * kSetsPerPool},
     VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 8 * kSetsPerPool},
     VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 4 * kSetsPerPool},
-    VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 2 * kSetsPerPool},
+    VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 3 * kSetsPerPool},
     VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_SAMPLER, 2 * kSetsPerPool},
 };
 

@@ -87,6 +87,7 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
   device->info_ = infos[chosen];
   log_info("device {} of {}: {}, {} {}", chosen, devices.size(), device->info_.name,
            device->info_.kind, device->info_.driver);
+  device->info_.shared_memory = options.shared_memory.value_or(device->info_.shared_memory);
   device->info_.quirks = options.quirks.value_or(device->info_.quirks);
   device->wait_limit_ns_ =
       options.wait_limit_ns.value_or(device->info_.kind == "CPU" ? UINT64_MAX : kWaitLimit_ns);
@@ -119,6 +120,10 @@ Status Device::create_device(const DeviceOptions& options) {
                      info_.name, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   }
+  // Named by its text: its declarations are still provisional. Where it is offered it must be asked
+  // for.
+  constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";
+  if (has_device_extension(physical_, kPortabilitySubset)) extensions.push_back(kPortabilitySubset);
   const float priority = 1.0f;
   VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
   queue_info.queueFamilyIndex = queue_family_;

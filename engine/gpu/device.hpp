@@ -32,7 +32,8 @@ struct DeviceOptions {
   // How long one submission may take before the device counts as lost; absent: a minute, and no
   // limit on CPUs, which are only slow.
   std::optional<std::uint64_t> wait_limit_ns;
-  std::optional<Quirks> quirks;  // instead of those that the driver is known to have
+  std::optional<Quirks> quirks;       // instead of those that the driver is known to have
+  std::optional<bool> shared_memory;  // instead of what the device has
   // Borrowed, may be nullptr: gets every validation message too, those about objects that still
   // live when the Device goes away included. Without it those are printed as notes.
   ValidationLog* validation_sink = nullptr;

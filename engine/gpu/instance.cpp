@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/core/log.hpp"
+#include "engine/gpu/device_select.hpp"
 #include "engine/gpu/error.hpp"
 
 namespace neritic::gpu {
@@ -57,12 +58,6 @@ Status load_loader() {
                  "mesa-vulkan-drivers");
 }
 
-Error no_driver() {
-  return failure(
-      ErrorCode::kNoDevice,
-      "no Vulkan device: install the Debian package mesa-vulkan-drivers (with libvulkan1)");
-}
-
 }  // namespace
 
 bool validation_layer_present() {
@@ -100,12 +95,17 @@ Result<InstanceHandles> create_instance(const DeviceOptions& options, Validation
     extensions.push_back(name);
   }
 
+  // Drivers that are not wholly Vulkan (MoltenVK) are listed only to who asks.
+  const bool portability = has(present, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+  if (portability) extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.pApplicationName = "neritic";
   application.pEngineName = "neritic";
   application.apiVersion = VK_API_VERSION_1_3;
   VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
   info.pApplicationInfo = &application;
+  if (portability) info.flags |= VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR;
 
   // Synchronization validation is off by default in the layer; the messenger in pNext hears of the
   // instance's own creation and destruction.
@@ -128,7 +128,7 @@ Result<InstanceHandles> create_instance(const DeviceOptions& options, Validation
   info.ppEnabledExtensionNames = extensions.data();
 
   const VkResult result = vkCreateInstance(&info, nullptr, &handles.instance);
-  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return no_driver();
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return no_device();
   if (result != VK_SUCCESS) return vulkan_error(result, "vkCreateInstance");
   // Trampolines fit any instance; only surface functions need the extensions that present brings.
   if (volkGetLoadedInstance() == VK_NULL_HANDLE || !options.instance_extensions.empty())

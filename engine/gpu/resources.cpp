@@ -90,11 +90,6 @@ Result<VkImageView> make_view(const Device& device, VkImage image, const ImageDe
 
 Result<VkBufferView> make_texel_view(const Device& device, const Buffer& buffer,
                                      const BufferDesc& desc) {
-  const VkDeviceSize texels = buffer.size() / sizeof(std::uint32_t);
-  const std::uint32_t most = device.limits().maxTexelBufferElements;
-  if (texels > most)
-    return failure(ErrorCode::kUnsupported, "buffer {}: {} texels, this device takes up to {}",
-                   desc.name, texels, most);
   VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
   info.buffer = buffer.handle();
   info.format = VK_FORMAT_R32_UINT;
@@ -106,6 +101,14 @@ Result<VkBufferView> make_texel_view(const Device& device, const Buffer& buffer,
   return view;
 }
 
+Result<Allocation> memory_for(const Device& device, const std::string& name,
+                              const VkMemoryRequirements& needs, MemoryUse use, bool linear) {
+  auto allocation = device.allocator().allocate(needs, use, linear);
+  if (!allocation.ok())
+    return Error{allocation.error().code, name + ": " + allocation.error().message};
+  return allocation;
+}
+
 }  // namespace
 
 // --- Buffer -----------------------------------------------------------------------------------
@@ -114,8 +117,14 @@ Result<Buffer> Buffer::create(const Device& device, const BufferDesc& desc) {
   if (desc.size > device.max_buffer_bytes())
     return failure(ErrorCode::kOutOfMemory, "buffer {}: {} bytes, this device takes up to {}",
                    desc.name, desc.size, device.max_buffer_bytes());
+  const VkDeviceSize texels = desc.size / sizeof(std::uint32_t);
+  const std::uint32_t most_texels = device.limits().maxTexelBufferElements;
+  if ((desc.usage & VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT) != 0 && texels > most_texels)
+    return failure(ErrorCode::kUnsupported, "buffer {}: {} texels, this device takes up to {}",
+                   desc.name, texels, most_texels);
   const VkMemoryRequirements needs = buffer_requirements(device, desc);
-  NERITIC_TRY(Allocation allocation, device.allocator().allocate(needs, desc.memory, true));
+  NERITIC_TRY(Allocation allocation,
+              memory_for(device, "buffer " + desc.name, needs, desc.memory, true));
   NERITIC_TRY(Buffer buffer, create_at(device, desc, allocation.memory(), allocation.offset()));
   buffer.allocation_ = std::move(allocation);
   return buffer;
@@ -127,6 +136,7 @@ Result<Buffer> Buffer::create_at(const Device& device, const BufferDesc& desc,
   Buffer buffer;
   buffer.device_ = device.handle();
   buffer.size_ = info.size;
+  buffer.usage_ = info.usage;
   NERITIC_TRY_VK("vkCreateBuffer (" + desc.name + ")",
                  vkCreateBuffer(device.handle(), &info, nullptr, &buffer.handle_));
   device.name_object(VK_OBJECT_TYPE_BUFFER, buffer.handle_, desc.name);
@@ -147,6 +157,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
   std::swap(handle_, other.handle_);
   std::swap(texels_, other.texels_);
   std::swap(size_, other.size_);
+  std::swap(usage_, other.usage_);
   std::swap(allocation_, other.allocation_);
   return *this;
 }
@@ -175,7 +186,8 @@ Result<Image> Image::create(const Device& device, const ImageDesc& desc) {
     return failure(ErrorCode::kOutOfMemory,
                    "image {}: {} x {} with {} layers is more than {} holds", desc.name, desc.width,
                    desc.height, desc.layers, device.info().name);
-  NERITIC_TRY(Allocation allocation, device.allocator().allocate(needs, MemoryUse::kDevice, false));
+  NERITIC_TRY(Allocation allocation,
+              memory_for(device, "image " + desc.name, needs, MemoryUse::kDevice, false));
   NERITIC_TRY(Image image, create_at(device, desc, allocation.memory(), allocation.offset()));
   image.allocation_ = std::move(allocation);
   return image;

@@ -17,12 +17,9 @@ class Device;
 struct BufferDesc {
   std::string name;
   VkDeviceSize size = 0;  // bytes; 0 becomes 16 so that an empty scene still has something to bind
-  VkBufferUsageFlags usage = 0;
+  VkBufferUsageFlags usage = 0;  // with STORAGE_TEXEL_BUFFER it has a view of 32-bit integers too
   MemoryUse memory = MemoryUse::kDevice;
 };
-// With VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT a buffer has a view of 32-bit integers too, which a
-// processor's driver reads many times faster than a storage buffer where each thread has a place of
-// its own.
 
 class Buffer {
  public:
@@ -38,6 +35,7 @@ class Buffer {
   VkBuffer handle() const { return handle_; }
   VkBufferView texels() const { return texels_; }  // R32_UINT, all of it; null without the usage
   VkDeviceSize size() const { return size_; }
+  VkBufferUsageFlags usage() const { return usage_; }
   explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
   // Host-visible memory as elements; empty for MemoryUse::kDevice.
   template <class T>
@@ -51,6 +49,7 @@ class Buffer {
   VkBuffer handle_ = VK_NULL_HANDLE;
   VkBufferView texels_ = VK_NULL_HANDLE;
   VkDeviceSize size_ = 0;
+  VkBufferUsageFlags usage_ = 0;
   Allocation allocation_;
 };
 

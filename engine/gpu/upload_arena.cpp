@@ -15,8 +15,7 @@ UploadArena::UploadArena(const Device& device, std::string name)
     : device_(&device),
       name_(std::move(name)),
       alignment_(std::max({kSmallestAlignment, device.limits().minStorageBufferOffsetAlignment,
-                           device.limits().minUniformBufferOffsetAlignment,
-                           device.limits().minTexelBufferOffsetAlignment})) {}
+                           device.limits().minUniformBufferOffsetAlignment})) {}
 
 Status UploadArena::add_chunk(VkDeviceSize size) {
   BufferDesc desc;

@@ -19,7 +19,7 @@ class UploadArena {
     VkDeviceSize offset = 0;
     std::byte* mapped = nullptr;
   };
-  // Offsets fit storage, uniform, texel and copy use.
+  // Offsets fit storage, uniform and copy use.
   Result<Place> allocate(VkDeviceSize size);
   // Every place becomes invalid; the GPU must be done with them.
   Status reset();

@@ -92,8 +92,10 @@ bool only_as_output(Access access) {
 bool subsumes(Access write, Access read) {
   if (write == Access::kDepthAttachment && read == Access::kDepthTest) return true;
   const AccessInfo &w = access_info(write), &r = access_info(read);
-  return w.write && w.layout == r.layout && (r.stages & ~w.stages) == 0 &&
-         (r.access & ~w.access) == 0;
+  // What only buffers can be used for has no layout.
+  const bool one_layout = w.layout == r.layout || w.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
+                          r.layout == VK_IMAGE_LAYOUT_UNDEFINED;
+  return w.write && one_layout && (r.stages & ~w.stages) == 0 && (r.access & ~w.access) == 0;
 }
 
 void combine_uses(const GraphDecl& graph, std::span<const Use> uses,

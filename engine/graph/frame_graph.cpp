@@ -133,6 +133,7 @@ BufferHandle FrameGraph::import_buffer(const std::string& name, const gpu::Buffe
   resource.kind = ResourceKind::kBuffer;
   resource.imported = true;
   resource.size_bytes = buffer.size();
+  resource.buffer_usage = buffer.usage();
   resource.initial_stages = state.stages;
   resource.initial_access = state.access;
   return {add_resource(std::move(resource), nullptr, &buffer), 0, id_};
@@ -149,6 +150,27 @@ PassBuilder FrameGraph::begin_pass(const std::string& name) {
   declaration_.passes.push_back({name, {}, false});
   records_.emplace_back();
   return PassBuilder(*this, static_cast<std::uint32_t>(declaration_.passes.size() - 1));
+}
+
+BufferHandle copy_buffer(FrameGraph& graph, const std::string& pass, BufferHandle from,
+                         const std::string& name, const gpu::Buffer& to) {
+  struct Copy {
+    BufferHandle from, to;
+  };
+  return graph
+      .add_pass<Copy>(
+          pass,
+          [&](PassBuilder& builder, Copy& copy) {
+            copy.from = from;
+            builder.read(from, Access::kTransferRead);
+            copy.to = builder.write(graph.import_buffer(name, to), Access::kTransferWrite);
+          },
+          [](const Copy& copy, PassContext& context) {
+            const gpu::Buffer &in = context.buffer(copy.from), &out = context.buffer(copy.to);
+            const VkBufferCopy all{0, 0, in.size()};
+            vkCmdCopyBuffer(context.cmd(), in.handle(), out.handle(), 1, &all);
+          })
+      .to;
 }
 
 }  // namespace neritic::graph

@@ -156,4 +156,9 @@ class Executor {
   std::unique_ptr<Impl> impl_;
 };
 
+// Adds a pass that copies a buffer into one that lives outside the frame and is as large at least,
+// and imports that under a name. Gives the written handle.
+BufferHandle copy_buffer(FrameGraph& graph, const std::string& pass, BufferHandle from,
+                         const std::string& name, const gpu::Buffer& to);
+
 }  // namespace neritic::graph

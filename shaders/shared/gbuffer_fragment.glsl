@@ -35,7 +35,6 @@ layout(location = 4) out vec2 out_motion;
 
 void main() {
   vec4 base = material_base_color(uv, color);
-  if (material_has(kMaterialMask) && base.a < material.alpha_cutoff) discard;
   out_normal = octahedral_encode(fragment_normal(normal, tangent, uv));
   out_label = uvec2(label & 0xffffu, label >> 16);
   vec3 m = fragment_material(uv);
@@ -51,4 +50,6 @@ void main() {
   vec2 next = next_clip.w > 0.0 ? next_clip.xy / next_clip.w : vec2(uintBitsToFloat(0x7fc00000u));
   out_motion = (next - now) * 0.5 * push.target_size;
 #endif
+  // Last: what is discarded no longer helps its neighbours to their textures' derivatives.
+  if (material_has(kMaterialMask) && base.a < material.alpha_cutoff) discard;
 }

@@ -21,11 +21,9 @@ layout(set = 0, binding = kSonarBindDepth) uniform texture2DArray depth_image;
 layout(set = 0, binding = kSonarBindNormal) uniform texture2DArray normal_image;
 layout(set = 0, binding = kSonarBindLabel) uniform utexture2DArray label_image;
 layout(set = 0, binding = kSonarBindReflectivity, scalar) readonly buffer Reflectivity { float reflectivity[]; };
-// All [n_range][n_azimuth], cleared before.
-// (Texels, because a processor's driver reads a buffer lane by lane, through memory.)
-layout(set = 0, binding = kSonarBindSums, r32ui) uniform uimageBuffer sums;
-layout(set = 0, binding = kSonarBindKeys, r32ui) uniform uimageBuffer keys;
 layout(push_constant, scalar) uniform Push { SonarPush c; };
+
+#include "shared/sonar_words.glsl"
 
 // Planar metres of a depth texel; 0 where nothing is hit (cleared, NaN, infinite, negative).
 float planar_metres(float texel) {
@@ -58,15 +56,15 @@ float reflected(float strength, ivec3 at, out uvec2 label) {
 
 // The greater of two keys stays.
 void add_to_key(uint cell, uint key) {
-  if (kLanes > 1) imageAtomicMax(keys, int(cell), key);
-  else if (key > imageLoad(keys, int(cell)).x) imageStore(keys, int(cell), uvec4(key));
+  if (kLanes > 1) atomicMax(keys[cell], key);
+  else if (key > key_at(cell)) set_key(cell, key);
 }
 
 // Adds to a cell of the image. Where one thread owns a column no other writes there, and a processor is
 // spared its slow atomics.
 void add_counts(uint cell, uint counts, float strength, uint label) {
-  if (kLanes == 1) imageStore(sums, int(cell), uvec4(imageLoad(sums, int(cell)).x + counts));
-  else imageAtomicAdd(sums, int(cell), counts);
+  if (kLanes == 1) set_sum(cell, sum_at(cell) + counts);
+  else atomicAdd(sums[cell], counts);
   if (kLabels != 0 && strength > 0.0) add_to_key(cell, label_key(strength, label));
 }
 

@@ -20,9 +20,8 @@ struct Cell {
 };
 const uint kNoLevel = 0xffffffffu;
 
-// [n_range][n_azimuth], a bin's power while rows are summed: the float's bits, then two parts of 65535: of what odd
-// slices gave, and of the rows' number of the place where it comes from, on average.
-layout(set = 0, binding = kSonarBindScratch, r32ui) uniform uimageBuffer powers;
+// Scratch is [n_range][n_azimuth][2], a bin's power while rows are summed: the float's bits, then two parts of 65535: of
+// what odd slices gave, and of the rows' number of the place where it comes from, on average.
 
 uint level_at(float range_m) {
   return uint(clamp(ceil(log2(max(echo.least_cells, range_m * echo.cells_per_range))), 0.0, 24.0));
@@ -62,8 +61,8 @@ int saturated_sum(int a, int b) {
 void add_amplitude(int bin, uint column, vec2 z) {
   ivec2 counts = ivec2(round(clamp(z * echo.sum_scale, vec2(-kMostCounts), vec2(kMostCounts))));
   uint cell = 2 * (uint(bin) * c.n_azimuth + column);
-  imageStore(sums, int(cell), uvec4(uint(saturated_sum(int(imageLoad(sums, int(cell)).x), counts.x))));
-  imageStore(sums, int(cell + 1), uvec4(uint(saturated_sum(int(imageLoad(sums, int(cell + 1)).x), counts.y))));
+  set_sum(cell, uint(saturated_sum(int(sum_at(cell)), counts.x)));
+  set_sum(cell + 1, uint(saturated_sum(int(sum_at(cell + 1)), counts.y)));
 }
 
 // A row's power that lies in one bin, at a point of the column's middle. place: of the point, in rows. ends: in
@@ -75,12 +74,12 @@ void note(uint column, vec3 point, float place, float heard_over_path, vec2 ends
   float nearer = high > floor(from) ? clamp((high - from) / (upto - from), 0.0, 1.0) : 0.0;
   float odd = (int(high) & 1) != 0 ? 1.0 - nearer : nearer;
   uint cell = 2 * (uint(bin) * c.n_azimuth + column);
-  uvec2 before = uvec2(imageLoad(powers, int(cell)).x, imageLoad(powers, int(cell + 1)).x);
+  uvec2 before = uvec2(scratch_at(cell), scratch_at(cell + 1));
   vec2 mean = unpackUnorm2x16(before.y);
   float sum = uintBitsToFloat(before.x) + power;
   mean += (vec2(odd, place / float(c.n_elevation)) - mean) * (power / sum);
-  imageStore(powers, int(cell), uvec4(floatBitsToUint(sum)));
-  imageStore(powers, int(cell + 1), uvec4(packUnorm2x16(mean)));
+  set_scratch(cell, floatBitsToUint(sum));
+  set_scratch(cell + 1, packUnorm2x16(mean));
 }
 
 // The cell that a bin's power comes from, of a part of all rows.
@@ -140,9 +139,9 @@ void sound_column(SonarColumn s, uint column, int first, int last) {
   float begun = 0.0;     // its power there
   vec2 sum = vec2(0.0);  // the bin before's amplitude but for that slice's
   for (int bin = first; bin <= last + 1; ++bin) {
-    uint cell_at = 2 * (uint(min(bin, last)) * c.n_azimuth + column);
-    float power = bin <= last ? uintBitsToFloat(imageLoad(powers, int(cell_at)).x) : 0.0;
-    vec2 mean = unpackUnorm2x16(imageLoad(powers, int(cell_at + 1)).x);
+    uint noted_at = 2 * (uint(min(bin, last)) * c.n_azimuth + column);
+    float power = bin <= last ? uintBitsToFloat(scratch_at(noted_at)) : 0.0;
+    vec2 mean = unpackUnorm2x16(scratch_at(noted_at + 1));
     Cell cell = cell_heard(s, bin, mean.y);
     bool goes_on = power > 0.0 && cell.world == before.world && cell.level == before.level;
     vec2 z, w;

@@ -115,7 +115,7 @@ TEST_F(MemoryTest, TexelsAreAsManyAsTheDeviceTakes) {
   desc.size = 4 * (VkDeviceSize{device().limits().maxTexelBufferElements} + 1);
   const Result<Buffer> too_large = Buffer::create(device(), desc);
   ASSERT_FALSE(too_large.ok());
-  EXPECT_NE(too_large.error().message.find("buffer counts"), std::string::npos)
+  EXPECT_NE(too_large.error().message.find("texels"), std::string::npos)
       << too_large.error().message;
 }
 

@@ -17,7 +17,8 @@ constexpr Access kBufferReads[] = {Access::kStorageReadCompute,  Access::kStorag
                                    Access::kStorageReadFragment, Access::kVertexBuffer,
                                    Access::kIndexBuffer,         Access::kIndirectBuffer,
                                    Access::kTransferRead};
-constexpr Access kBufferWrites[] = {Access::kStorageWriteCompute, Access::kTransferWrite};
+constexpr Access kBufferWrites[] = {Access::kStorageWriteCompute, Access::kTexelWriteCompute,
+                                    Access::kTransferWrite};
 
 struct Import {
   VkPipelineStageFlags2 stages;

@@ -95,7 +95,8 @@ Result<std::unique_ptr<HeadState>> SonarStation::make_head(const scene::Sonar& s
   layout.intrinsics = sonar::intrinsics_of(h.sampled.tangents, layout.width, layout.height);
   layout.lean = h.sampled.lean;
   layout.near_m = sonar.near_m;
-  sonar::GatherOptions options{state.mode, true, table_of(sonar) != nullptr, {}, h.head.echo};
+  sonar::GatherOptions options{
+      .gather = state.mode, .reflectivity = table_of(sonar) != nullptr, .echo = h.head.echo};
   const auto gather = [&]() -> Result<std::unique_ptr<sonar::SonarGather>> {
     NERITIC_TRY(auto g,
                 sonar::SonarGather::create(device_, h.head.samples, h.sectors, layout, options));
@@ -104,13 +105,14 @@ Result<std::unique_ptr<HeadState>> SonarStation::make_head(const scene::Sonar& s
   NERITIC_TRY(h.gather, gather());
   const std::string name = name_of(sonar, h);
   const auto readable = [&](const std::string& what, std::uint64_t bytes,
-                            VkBufferUsageFlags usage = sonar::SonarGather::kRecordsUsage) {
+                            VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                                       VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     return gpu::Buffer::create(device_,
                                {name + " " + what, bytes, usage, gpu::MemoryUse::kReadback});
   };
-  NERITIC_TRY(h.keys, readable("keys", h.gather->keys_bytes(), sonar::SonarGather::kSumsUsage));
+  NERITIC_TRY(h.keys, readable("keys", h.gather->keys_bytes(), h.gather->sums_usage()));
   if (!h.head.echo) {
-    NERITIC_TRY(h.sums, readable("sums", h.gather->sums_bytes(), sonar::SonarGather::kSumsUsage));
+    NERITIC_TRY(h.sums, readable("sums", h.gather->sums_bytes(), h.gather->sums_usage()));
     return made;
   }
   sonar::ReceiverDesc desc = h.head.receiver;
@@ -223,8 +225,11 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
     return host && buffer.size() > 0 ? frame.graph.import_buffer(prefix + name, buffer)
                                      : graph::BufferHandle{};
   };
-  inputs.sums_target = target(state.sums, "sums");
-  inputs.keys_target = target(state.keys, "keys");
+  const bool in_place = device_.info().shared_memory;
+  if (in_place) {
+    inputs.sums_target = target(state.sums, "sums");
+    inputs.keys_target = target(state.keys, "keys");
+  }
   inputs.records_target = target(state.records, "records");
   if (state.head.echo) {
     head.ping = sonar::ping_of(sonar, state.head, ping);
@@ -239,8 +244,14 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
     head.power = state.receiver->declare(frame.graph, out.sums, head.ping.receiver(),
                                          target(state.power, "power"), prefix);
   if (!host) return {};
-  frame.graph.output(state.receiver ? head.power : head.sums, graph::Access::kHostRead);
-  frame.graph.output(out.keys, graph::Access::kHostRead);
+  const auto at_host = [&](graph::BufferHandle from, const gpu::Buffer& to, const char* name) {
+    return in_place ? from
+                    : graph::copy_buffer(frame.graph, prefix + name + " to host", from,
+                                         prefix + name, to);
+  };
+  frame.graph.output(state.receiver ? head.power : at_host(head.sums, state.sums, "sums"),
+                     graph::Access::kHostRead);
+  frame.graph.output(at_host(out.keys, state.keys, "keys"), graph::Access::kHostRead);
   head.views = head_views(sonar, state, state.upright, world_from_head);
   if (!frame.capture.geometry) return {};
   // Who reads arrays expects a plain pinhole.
