@@ -308,7 +308,7 @@ void main() {
   ivec2 noted = ivec2(int(c.n_range), -1);  // coherent: the first and the last bin with power
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
   for (uint row = first; row < c.n_elevation; row += kLanes) {
-    BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
+    BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0), false);
     if (s.pixel >= 0) hit = beam_hit(look_at(s, row), row);
     float power = hit.strength;
     uvec2 label = uvec2(0);

@@ -44,10 +44,21 @@ void main() {
   SonarColumn s = columns[column];
   if (s.pixel < 0) return;
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
-  // Two rows a turn, whose fetches wait for memory together.
+  // Two rows a turn, whose fetches wait for memory together. Rows that are doubtful come after all others: integers
+  // are summed, so that the order is free, and a loop within would cost a processor a fifth.
+  uvec2 doubtful = uvec2(c.n_elevation, 0);  // rows, from and until
   for (uint row = first; row < c.n_elevation; row += 2 * kLanes) {
-    Look here = look_at(s, row), next = look_at(s, min(row + kLanes, c.n_elevation - 1));
-    gather(column, beam_hit(here, row));
-    if (row + kLanes < c.n_elevation) gather(column, beam_hit(next, row + kLanes));
+    uint next = min(row + kLanes, c.n_elevation - 1);
+    Look look = look_at(s, row), next_look = look_at(s, next);
+    BeamHit hit = hit_of(look, row, false), next_hit = hit_of(next_look, next, false);
+    bool two = row + kLanes < c.n_elevation;
+    if (hit.doubtful) doubtful = uvec2(min(doubtful.x, row), row + 1);
+    if (two && next_hit.doubtful) doubtful = uvec2(min(doubtful.x, next), next + 1);
+    if (!hit.doubtful) gather(column, hit);
+    if (two && !next_hit.doubtful) gather(column, next_hit);
+  }
+  for (uint row = doubtful.x; row < doubtful.y; row += kLanes) {
+    BeamHit hit = hit_of(look_at(s, row), row, true);
+    if (hit.doubtful) gather(column, hit);
   }
 }

@@ -7,9 +7,8 @@
 // row too, an upright pole narrower than a pixel is met by as many rows as its width is of one, instead of by
 // all or by none. What is wider keeps the range of the cell's middle: rows' footprints abut.
 
-// How far the plane may carry the range from the pixel's own, as a factor: beyond, the plane is seen
-// so grazing that the neighbouring pixel sees something else, and the pixel's range counts, the row's edges
-// being carried so far at most. At half a pixel of .1 degrees it is reached at a grazing angle of .2 degrees.
+// How far the plane may carry the range from the pixel's own, as a factor: beyond, the pixel's range counts, and the
+// row's edges are carried so far at most. At half a pixel of .1 degrees it is reached at a grazing angle of .2 degrees.
 const float kLargestStretch = 1.25;
 // Of what faces sideways more than up or down: a floor goes on, the flank of a pole or of a ball bends away, and
 // would have horns of echoes before and behind it.
@@ -22,6 +21,7 @@ struct BeamHit {
   float strength;  // incidence term, 0 to 1
   vec2 ends_m;     // nearest and farthest range of the row's height (kFootprint)
   vec2 ends_tan;   // tangents of the elevations there
+  bool doubtful;   // the plane may be a limb's: look_again
 };
 
 // A footprint reaches this much farther to one side of the row's centre than to the other, at most:
@@ -78,18 +78,39 @@ float edge_reach(SonarColumn s, float t, float planar, float along_edge, float a
   return reach > 0.0 ? min(reach, limit) : max(reach, limit);
 }
 
-// Seen more grazing than this (range over height; 89.1 degrees of incidence), or carried so far from the pixel's
-// own range, a plane may be a limb's: it goes on where the surface does not, so the row's centre counts.
-const float kSteepest = 64.0;
-const float kFarCarried = 0.05;
+// Seen more grazing than this (range over height; 86.4 degrees of incidence), or carried farther than this from the
+// pixel's own range, a plane may be a limb's, where the surface does not go on: the neighbouring pixel tells.
+const float kGrazing = 16.0;
+const float kFarCarried = 0.005;
+const float kFarthest_m = 1e9;
+
+// How far the pixel beside this one lies from it, in planar metres and in range, if no farther than the plane of this one
+// says or half as much again: else something else is there, and it is 0.
+vec2 step_to(SonarColumn s, int v, ivec2 beside, float planar, float range_m, vec3 normal, float along_pixel) {
+  ivec2 other = ivec2(s.pixel, v) + beside;
+  float ty = (c.cy - (float(other.y) + 0.5)) / c.fy;
+  float tx = s.pixel_tan + float(beside.x) / c.fx - c.lean * float(beside.y) / c.fy;
+  float there = planar_metres(texelFetch(depth_image, ivec3(other, s.layer), 0).r);
+  float expected = planar * along_pixel / (normal.z + tx * normal.x + ty * normal.y);
+  if (!(there > 0.0 && abs(there - planar) <= 1.5 * abs(expected - planar))) return vec2(0.0);
+  return abs(vec2(there - planar, there * sqrt(1.0 + tx * tx + ty * ty) - range_m));
+}
+
+// So far a plane seen at grazing may go on beyond its pixel on the beam's side: to the next pixel, or where that shows
+// something else, as far as a quarter of a pixel goes on the other side.
+vec2 farthest_step(SonarColumn s, int v, ivec2 beside, float planar, float range_m, vec3 normal, float along_pixel) {
+  ivec2 other = ivec2(s.pixel, v) + beside, size = ivec2(c.width, c.height);
+  if (any(lessThan(other, ivec2(0))) || any(greaterThanEqual(other, size))) beside = -beside;
+  vec2 to_next = step_to(s, v, beside, planar, range_m, normal, along_pixel);
+  vec2 behind = step_to(s, v, -beside, planar, range_m, normal, along_pixel);
+  return to_next.x > 0.0 ? to_next : 0.25 * behind;
+}
 
 // Where the plane meets the edges of a row that is lower than a bin: by the plane's slope at its centre.
-void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, bool flank, float stretch,
-                     inout BeamHit hit) {
+void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, float most_m, inout BeamHit hit) {
   float half_tan = 0.5 * (edges.y - edges.x) * s.sec_theta;
   float slope = abs(along_up / along);
-  bool limb = slope > (flank ? kSteepestFlank : kSteepest) || abs(stretch - 1.0) > kFarCarried;
-  float reach = !limb ? hit.range_m * min(half_tan * slope, kLargestStretch - 1.0) : 0.0;
+  float reach = min(hit.range_m * min(half_tan * slope, kLargestStretch - 1.0), most_m);
   hit.ends_m = hit.range_m + vec2(-reach, reach);
   hit.ends_tan = along * along_up <= 0.0 ? edges : edges.yx;
 }
@@ -134,7 +155,7 @@ const float kShortest_bins = 0.25;
 
 vec2 shared_ends(vec2 ends_m, float range_m) {
   if ((ends_m.y - ends_m.x) * c.bins_per_m < kShortest_bins) return vec2(range_m);
-  if (kFootprint == kSonarFootprintShared) return ends_m;  // no farther than kSteepest goes
+  if (kFootprint == kSonarFootprintShared) return ends_m;  // no farther than kLargestStretch goes
   float most = kFarthestShare_bins * c.bin_m;
   return clamp(ends_m, vec2(range_m - most), vec2(range_m + most));
 }
@@ -166,8 +187,9 @@ Look look_at(SonarColumn s, uint row) {
   return look;
 }
 
-BeamHit beam_hit(Look look, uint row) {
-  BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0));
+// again: where it is doubtful the neighbouring pixel is asked.
+BeamHit hit_of(Look look, uint row, bool again) {
+  BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0), false);
   SonarColumn s = look.column;
   vec4 e = look.row;
   int v = look.v;
@@ -181,16 +203,27 @@ BeamHit beam_hit(Look look, uint row) {
   float length_of = sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
   float along = along_pixel;
   float plane = planar;  // of the pixel
-  bool meets = false;
-  float carried = 1.0;
   bool flank = abs(sideways) > abs(along_up);
+  float most_m = kFarthest_m;  // that the row's ends may lie from its centre; 0 of a limb
   if (kPlane != 0) {
     float along_beam = ahead + s.tan_theta * sideways + e.x * s.sec_theta * along_up;
     float stretch = along_pixel / along_beam;
     float largest = flank ? kLargestFlankStretch : kLargestStretch;
-    meets = stretch < largest && stretch * largest > 1.0;
+    bool meets = stretch < largest && stretch * largest > 1.0;
+    bool grazing = abs(along_up) > (flank ? kSteepestFlank : kGrazing) * abs(along_pixel);
+    if (grazing && (flank || !meets)) most_m = 0.0;
+    hit.doubtful = meets && !flank && (grazing || abs(stretch - 1.0) > kFarCarried);
+    if (again && hit.doubtful) {
+      vec3 normal = vec3(sideways, along_up, ahead);
+      ivec2 along_row = ivec2(s.tan_theta > s.pixel_tan ? 1 : -1, 0);
+      ivec2 along_column = ivec2(0, e.x * s.sec_theta > ty ? -1 : 1);
+      vec2 across = farthest_step(s, v, along_row, planar, planar * length_of, normal, along_pixel);
+      vec2 up = farthest_step(s, v, along_column, planar, planar * length_of, normal, along_pixel);
+      float most = (across.x + up.x) / planar;
+      stretch = clamp(stretch, 1.0 - most, 1.0 + most);
+      most_m = up.y;
+    }
     if (meets) {
-      carried = stretch;
       planar *= stretch;
       along = along_beam;
       length_of = s.sec_theta * e.y;
@@ -199,10 +232,17 @@ BeamHit beam_hit(Look look, uint row) {
   hit.strength = min(facing(-along / length_of), 1.0);
   hit.range_m = planar * length_of;
   if (kFootprint == kSonarFootprintShared)
-    find_close_ends(s, e.zw, along, along_up, flank, carried, hit);
+    find_close_ends(s, e.zw, along, along_up, most_m, hit);
   if (kFootprint == kSonarFootprintBounded)
-    find_ends(s, row, v, e.zw, flank && abs(along_up) > kSteepestFlank * abs(along), plane,
+    find_ends(s, row, v, e.zw, most_m == 0.0, plane,
               ahead + s.tan_theta * sideways + e.zw * s.sec_theta * along_up, along_pixel, hit);
+  return hit;
+}
+
+BeamHit beam_hit(Look look, uint row) {
+  BeamHit hit = hit_of(look, row, false);
+  // A loop, since a processor's driver skips one that no lane enters.
+  for (bool again = hit.doubtful; again; again = false) hit = hit_of(look, row, true);
   return hit;
 }
 

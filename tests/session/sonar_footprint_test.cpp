@@ -216,5 +216,52 @@ TEST_F(SonarFootprint, APoleHasNoHorns) {
   EXPECT_LT(before / total(frame), 1e-5);
 }
 
+// A ball of 25 cm at 3 m anywhere in the wedge is heard from its front, 2.75 m, to where it ends
+// from sight, 2.99 m, and a pixel's step beyond: its top and bottom are no floors that go on.
+TEST_F(SonarFootprint, ABallHasNoEchoesBeforeItAndFewBehind) {
+  scene::Sonar sonar;
+  sonar.range_min_m = 1.0;
+  sonar.range_max_m = 5.0;
+  sonar.azimuth_rad = radians(90.0);
+  sonar.elevation_rad = radians(28.0);
+  sonar.bins_range = sonar.bins_azimuth = sonar.bins_elevation = 500;
+  for (const double bearing_deg : {0.0, 10.0, 30.0, 40.0})
+    for (const double up_deg : {0.0, 8.0}) {
+      SCOPED_TRACE(fmt::format("{} {}", bearing_deg, up_deg));
+      const double b = radians(bearing_deg), e = radians(up_deg);
+      scene::Scene scene;
+      const Vec3 at =
+          3.0 * Vec3(std::sin(b) * std::cos(e), std::sin(e), -std::cos(b) * std::cos(e));
+      scene.objects.push_back(object_of(scene, scene::make_sphere(0.25, 512), at));
+      scene.sonars = {sonar};
+      const SonarFrame frame = ping(device(), scene);
+      int first = 500, last = 0;
+      for (std::size_t i = 0; i < frame.image.intensity.size(); ++i) {
+        if (frame.image.intensity[i] == 0.0f) continue;
+        first = std::min(first, static_cast<int>(i / 500));
+        last = std::max(last, static_cast<int>(i / 500));
+      }
+      EXPECT_NEAR(first, 218, 1);
+      EXPECT_GE(last, 247);
+      EXPECT_LE(last, 262);
+    }
+}
+
+// Half a metre above a floor it is met at half a degree: rings of single bins, if its rows were not
+// shared out where the plane of a pixel could be a limb's, too.
+TEST_F(SonarFootprint, AFloorAtHalfADegreeIsHeardInEveryBin) {
+  scene::Sonar sonar = sonar_of(1.0, 50.0, 500);
+  sonar.azimuth_rad = radians(90.0);
+  sonar.elevation_rad = radians(28.0);
+  sonar.bins_azimuth = 20;
+  sonar.bins_elevation = 500;
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_plane(1000.0, 1000.0), {0.0, -0.5, 0.0}));
+  scene.sonars = {sonar};
+  const SonarFrame frame = ping(device(), scene);
+  for (std::uint32_t row = 12; row < 500; ++row)
+    EXPECT_GT(frame.image.intensity[row * 20 + 10], 0.0f) << row;
+}
+
 }  // namespace
 }  // namespace neritic::tools
