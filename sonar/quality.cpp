@@ -16,29 +16,29 @@ using scene::SonarKind;
 // `neritic tradeoff sonar` in assets/scenes/harbour.toml, llvmpipe on two cores of an AMD EPYC; the
 // error is the larger of the sweep's and of what Sonar/QualityTruth finds.
 constexpr QualityLevel kImaging[] = {
-    {"draft", 0.5, 7.96, 0.42, 1, 0.0410, 61.8},
-    {"standard", 0.7, 11.94, 0.83, 2, 0.0166, 149.9},
-    {"reference", 1, 23.88, 3.33, 2, 0.0092, 411.0},
+    {"draft", 1, 3.98, 0.83, 1, 0.0452, 48.6},
+    {"standard", 0.7, 11.94, 0.83, 2, 0.0165, 151.4},
+    {"reference", 1, 23.88, 3.33, 2, 0.0092, 355.2},
 };
 constexpr QualityLevel kProfiling[] = {
-    {"draft", 0.7, 1.99, 16, 4, 0.0488, 12.7},
-    {"standard", 0.7, 7.96, 8, 4, 0.0197, 43.6},
-    {"reference", 0.7, 7.96, 16, 8, 0.0083, 117.8},
+    {"draft", 0.5, 1.99, 32, 4, 0.0485, 12.0},
+    {"standard", 0.7, 7.96, 8, 4, 0.0197, 41.5},
+    {"reference", 1, 7.96, 8, 8, 0.0096, 109.2},
 };
 constexpr QualityLevel kEchoSounder[] = {
-    {"draft", 1, 16, 32, 2, 0.0463, 2.3},
-    {"standard", 1, 24, 64, 4, 0.0188, 3.4},
-    {"reference", 1.4, 64, 64, 4, 0.0087, 7.0},
+    {"draft", 1, 16, 64, 2, 0.0418, 2.3},
+    {"standard", 1, 16, 128, 4, 0.0170, 3.6},
+    {"reference", 1, 64, 64, 4, 0.0076, 6.9},
 };
 constexpr QualityLevel kSideScan[] = {
-    {"draft", 0.5, 2, 0.81, 1, 0.0420, 6.5},
-    {"standard", 0.5, 4, 1.61, 1, 0.0199, 6.6},
-    {"reference", 1.4, 6, 0.81, 2, 0.0096, 12.3},
+    {"draft", 1.4, 2, 0.41, 1, 0.0268, 4.8},
+    {"standard", 1.4, 4, 0.41, 1, 0.0197, 5.8},
+    {"reference", 1.4, 6, 0.81, 2, 0.0095, 11.5},
 };
 constexpr QualityLevel kMechanical[] = {
-    {"draft", 1.4, 17.8, 1.61, 1, 0.0243, 14},
-    {"standard", 1.4, 35.6, 1.61, 2, 0.0138, 26.6},
-    {"reference", 1.4, 35.6, 6.45, 2, 0.0085, 50.6},
+    {"draft", 0.7, 13.35, 3.23, 1, 0.0460, 8.5},
+    {"standard", 1, 22.25, 3.23, 2, 0.0172, 20.1},
+    {"reference", 1.4, 35.6, 6.45, 2, 0.0085, 56.2},
 };
 
 constexpr double kMostFiner = 1e4;  // keeps a forged ratio from overflowing
