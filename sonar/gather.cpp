@@ -32,6 +32,27 @@ double scale_for(const GatherOptions& options, std::uint32_t n_elevation) {
   return options.echo->coherent ? amplitude_scale(n_elevation) : double(shared::kSonarRecordScale);
 }
 
+// For the frame graph's dump.
+std::string names_of_terms(const GatherOptions& options) {
+  std::string names = name_of(options.gather);
+  const auto add = [&](bool on, const char* name) {
+    if (on) names += std::string(", ") + name;
+  };
+  add(options.labels, "labels");
+  add(options.reflectivity, "reflectivity");
+  if (!options.echo) return names;
+  const EchoOptions& echo = *options.echo;
+  add(true, "level");
+  add(!echo.weights.empty(), "beam pattern");
+  add(echo.coherent, "speckle");
+  add(!echo.gamma_quantiles.empty(), "texture");
+  add(echo.corrected, echo.bent ? "sound speed profile, bent rays" : "sound speed profile");
+  add(echo.moving, "motion");
+  add(echo.records, "labels by energy");
+  add(echo.ghost, "ghost");
+  return names;
+}
+
 }  // namespace
 
 const char* name_of(Gather gather) {
@@ -182,6 +203,7 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
   }
   const Access words_access = texels_ ? Access::kTexelWriteCompute : Access::kStorageWriteCompute;
   const auto setup = [&](graph::PassBuilder& builder, Pass& pass) {
+    builder.terms(names_of_terms(options_));
     pass.in = inputs;
     pass.in.echo.sum_scale = static_cast<float>(fixed_scale_);
     builder.read(inputs.depth, Access::kSampledCompute);

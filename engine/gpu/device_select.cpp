@@ -102,6 +102,9 @@ Result<std::uint32_t> choose_device(std::span<const DeviceInfo> devices,
       return static_cast<std::uint32_t>(at - devices.begin());
     }
   }
+  // Names are full of small numbers (of versions, of bits); a model's has four digits (4090).
+  if (parse_index(wanted) && wanted.size() < 4)
+    return bad_input("no Vulkan device '{}'; there is {}", wanted, device_names(devices));
   const auto named = [needle = lower(wanted)](const DeviceInfo& d) {
     return lower(d.name).find(needle) != std::string::npos;
   };

@@ -79,6 +79,7 @@ std::string dump_text(const Plan& plan) {
     const PassDecl& pass = graph.passes[plan.order[position]];
     fmt::format_to(out, "  {:>2}  {}{}\n", position, pass.name,
                    pass.side_effect ? " (side effect)" : "");
+    if (!pass.terms.empty()) fmt::format_to(out, "      terms  {}\n", pass.terms);
     for (const Barrier& barrier : plan.barriers.before[position]) dump_barrier(out, graph, barrier);
     dump_uses(out, graph, pass);
   }

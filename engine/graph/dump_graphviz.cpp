@@ -46,7 +46,8 @@ class DotWriter {
     if (plan_.kept[p]) {
       std::size_t position = 0;
       while (plan_.order[position] != p) ++position;
-      line("  p{} [shape=box, label=\"{}: {}\\n{} barriers\"];", p, position, escaped(pass.name),
+      line("  p{} [shape=box, label=\"{}: {}{}{}\\n{} barriers\"];", p, position,
+           escaped(pass.name), pass.terms.empty() ? "" : "\\n", escaped(pass.terms),
            plan_.barriers.before[position].size());
     } else {
       line("  p{} [shape=box, style=dashed, color=gray, label=\"{}\\nculled\"];", p,

@@ -57,6 +57,7 @@ std::uint64_t hash_of(const GraphDecl& graph) {
     add_text(hash, pass.name);
     add_uses(hash, pass.uses);
     hash.add(pass.side_effect);
+    add_text(hash, pass.terms);
   }
   add_uses(hash, graph.outputs);
   return hash.value();

@@ -54,6 +54,9 @@ BufferHandle PassBuilder::write(BufferHandle buffer, Access access) {
 void PassBuilder::side_effect() {
   graph_.declaration_.passes[pass_].side_effect = true;
 }
+void PassBuilder::terms(std::string names) {
+  graph_.declaration_.passes[pass_].terms = std::move(names);
+}
 
 // --- PassContext --------------------------------------------------------------------------------
 

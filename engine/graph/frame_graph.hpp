@@ -48,6 +48,8 @@ class PassBuilder {
   [[nodiscard]] BufferHandle write(BufferHandle buffer, Access access);
   // Kept although no output needs it.
   void side_effect();
+  // What of its options the pass computes, for who reads a dump.
+  void terms(std::string names);
 
  private:
   friend class FrameGraph;

@@ -85,6 +85,7 @@ struct PassDecl {
   std::string name;
   std::vector<Use> uses;
   bool side_effect = false;  // kept although nobody reads what it writes
+  std::string terms;         // what of its options it computes, for who reads a dump
 
   bool operator==(const PassDecl&) const = default;
 };

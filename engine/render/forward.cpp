@@ -1,4 +1,5 @@
 // Renderer: the forward pass, blended materials over the shaded picture.
+#include "engine/render/lighting.hpp"
 #include "engine/render/raster_draws.hpp"
 #include "engine/render/renderer.hpp"
 
@@ -21,6 +22,7 @@ Result<graph::ImageHandle> Renderer::declare_forward(
   const Data& pass = graph.add_pass<Data>(
       prefix + "forward",
       [&](graph::PassBuilder& builder, Data& data) {
+        builder.terms(names_of_terms(lighting));
         data.hdr = builder.write(hdr, graph::Access::kColorAttachment);
         builder.read(gbuffer.depth, graph::Access::kDepthTest);
         if (deformed.positions) builder.read(deformed.positions, graph::Access::kVertexBuffer);

@@ -202,4 +202,21 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
   return light;
 }
 
+std::string names_of_terms(const shared::Lighting& lighting) {
+  constexpr std::pair<std::uint32_t, const char*> kNames[] = {
+      {shared::kLightSun, "sun"},
+      {shared::kLightWater, "water"},
+      {shared::kLightScattering, "scattering"},
+      {shared::kLightSurface, "surface"},
+      {shared::kLightEmissive, "emission"},
+      {shared::kLightGlow, "glow of lamps"}};
+  std::vector<std::string> names;
+  for (const auto& [bit, name] : kNames)
+    if (lighting.terms & bit) names.emplace_back(name);
+  if (lighting.lamp_count > 0)
+    names.push_back(
+        fmt::format("{} lamp{}", lighting.lamp_count, lighting.lamp_count == 1 ? "" : "s"));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 }  // namespace neritic::render

@@ -1,6 +1,8 @@
 // Sun, lamps and water of a scene as the shaders see them, relative to a view set's origin.
 #pragma once
 
+#include <string>
+
 #include "engine/core/result.hpp"
 #include "engine/render/frame_state.hpp"
 #include "engine/scene/scene.hpp"
@@ -19,5 +21,8 @@ inline constexpr double kSunShare = 0.85;
 Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameState& state,
                                        const Vec3& origin_m, const scene::Exposure& exposure,
                                        bool has_emission);
+
+// What a shading of it computes, for the frame graph's dump: "sun, water, scattering, 2 lamps".
+std::string names_of_terms(const shared::Lighting& lighting);
 
 }  // namespace neritic::render

@@ -1,4 +1,5 @@
 // Renderer: creation, and the compute passes on the G-buffer: shade and tonemap.
+#include "engine/render/lighting.hpp"
 #include "engine/render/renderer.hpp"
 #include "shaders.hpp"
 
@@ -48,6 +49,7 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   const Data& pass = graph.add_pass<Data>(
       prefix + "shade",
       [&](graph::PassBuilder& builder, Data& data) {
+        builder.terms(names_of_terms(lighting));
         for (const graph::ImageHandle handle :
              {gbuffer.depth, gbuffer.normal, gbuffer.albedo, gbuffer.material, gbuffer.emissive})
           if (handle) builder.read(handle, graph::Access::kSampledCompute);

@@ -49,7 +49,8 @@ TEST(ChooseDevice, FindsAPartOfTheNameInAnyCase) {
 
 TEST(ChooseDevice, TakesAnIndexBeforeAName) {
   EXPECT_EQ(*choose_device(kAll, "3"), 3u);
-  EXPECT_EQ(*choose_device(kAll, "4090"), 2u);  // no such index, but such a name
+  EXPECT_EQ(*choose_device(kAll, "4090"), 2u);   // no such index, but such a name
+  EXPECT_FALSE(choose_device(kAll, "15").ok());  // of a version, in llvmpipe's name
 }
 
 TEST(ChooseDevice, OfSeveralNamedTakesTheBestUsable) {

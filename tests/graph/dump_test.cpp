@@ -20,6 +20,7 @@ Plan small_plan() {
   m.pass("gbuffer", {use(depth, 0, Access::kDepthAttachment)});
   m.pass("shade",
          {use(depth, 1, Access::kSampledCompute), use(color, 0, Access::kStorageWriteCompute)});
+  m.graph.passes.back().terms = "sun, water";
   m.pass("unwanted", {use(depth, 1, Access::kSampledFragment)});
   m.pass("count",
          {use(color, 1, Access::kSampledCompute), use(answers, 0, Access::kStorageWriteCompute)});
@@ -34,6 +35,7 @@ TEST(DumpText, SaysWhatRunsWhatWaitsAndWhatItTakes) {
   EXPECT_THAT(text, HasSubstr("writes answers 0->1 (storage write compute)"));
   EXPECT_THAT(text, HasSubstr("barrier depth: early-depth+late-depth -> compute, layout depth -> "
                               "shader-read, access depth-write -> sampled-read"));
+  EXPECT_THAT(text, HasSubstr("shade\n      terms  sun, water\n"));
   EXPECT_THAT(text, HasSubstr("culled\n  unwanted\n"));
   EXPECT_THAT(text, HasSubstr("D32_SFLOAT 64x32"));
   EXPECT_THAT(text, HasSubstr("transient memory: 16384 bytes"));

@@ -31,6 +31,17 @@ TEST(Lighting, TermsAreExactlyWhatTheSceneNames) {
   }
 }
 
+TEST(Lighting, TermsHaveNamesForTheDump) {
+  scene::Scene scene;
+  EXPECT_EQ(names_of_terms(light_of(scene)), "");
+  scene.water = scene::Water{.type = "II", .scattering = true, .surface = false};
+  scene.lamps.resize(2);
+  EXPECT_EQ(names_of_terms(light_of(scene)), "water, scattering, glow of lamps, 2 lamps");
+  scene.water->scattering = false;
+  scene.lamps.resize(1);
+  EXPECT_EQ(names_of_terms(light_of(scene)), "water, 1 lamp");
+}
+
 TEST(Lighting, LampsAreCountedAndOneTooManyIsBadInput) {
   scene::Scene scene;
   for (std::uint32_t n = 1; n <= shared::kMaxLamps; ++n) {

@@ -95,6 +95,12 @@ TEST_F(SonarSettings, ReflectivityIsATableOnlyWhereAnObjectHasOne) {
     session->keep_plan_dump(true);
     NERITIC_ASSERT_OK(const FrameResult result, session->render(all_sonars(scene)));
     EXPECT_EQ(session->plan_text().find("reflectivity") != std::string::npos, reflectivity != 1.0f);
+    // Who gathers the frame's arrays again has it from here, by instance label.
+    const std::vector<float>& table = result.sonars[0].reflectivity;
+    ASSERT_EQ(table.empty(), reflectivity == 1.0f);
+    if (!table.empty()) {
+      EXPECT_EQ(table.at(scene.objects[0].instance), reflectivity);
+    }
     const auto& image = result.sonars[0].image.intensity;
     const float most = *std::max_element(image.begin(), image.end());
     ASSERT_GT(most, 0.0f);

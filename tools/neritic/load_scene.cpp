@@ -9,7 +9,10 @@
 namespace neritic::tools {
 namespace {
 
-Result<scene::Scene> load(const std::filesystem::path& path, const scene::SceneOptions& options) {
+using Extent = std::pair<std::uint32_t, std::uint32_t>;  // pixels across, down
+
+Result<scene::Scene> load(const std::filesystem::path& path, const Extent& model_extent,
+                          const scene::SceneOptions& options) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
@@ -18,7 +21,8 @@ Result<scene::Scene> load(const std::filesystem::path& path, const scene::SceneO
     return bad_input("{}: a {} file; accepted: a scene (.toml) or a model (.gltf, .glb)",
                      path.string(), extension.substr(1));
   NERITIC_TRY(scene::Model model, scene::load_gltf(path));
-  scene::Scene scene = scene::scene_of_model(std::move(model), 1280, 720);
+  scene::Scene scene =
+      scene::scene_of_model(std::move(model), model_extent.first, model_extent.second);
   scene.path = path.string();
   scene.title = path.filename().string();
   for (scene::Object& object : scene.objects) object.mount.pose.position_m += options.offset_m;
@@ -30,9 +34,12 @@ Result<scene::Scene> load(const std::filesystem::path& path, const scene::SceneO
 
 Result<scene::Scene> load_scene_or_model(const std::string& path, const std::string& size,
                                          const scene::SceneOptions& options) {
-  NERITIC_TRY(scene::Scene scene, load(path, options));
+  Extent extent{1280, 720};
+  if (!size.empty()) {
+    NERITIC_TRY(extent, parse_size("--size", size));
+  }
+  NERITIC_TRY(scene::Scene scene, load(path, extent, options));
   if (size.empty()) return scene;
-  NERITIC_TRY(const auto extent, parse_size("--size", size));
   for (scene::Camera& camera : scene.cameras)
     camera.width = extent.first, camera.height = extent.second;
   return scene;

@@ -224,6 +224,9 @@ Result<std::string> run_render(const RenderFlags& flags) {
   for (const std::string& note : scene.notes) log_warn("{}", note);
   if (!request.cameras.empty() && !scene.sun && scene.lamps.empty() && scene.model_lights.empty())
     log_warn("{}: no sun and no lamps, so only what glows by itself is seen", flags.scene);
+  if (const fs::path folder = fs::path(flags.dump_graph).parent_path();
+      !folder.empty() && !fs::is_directory(folder))
+    return bad_input("--dump-graph: {}: no folder {}", flags.dump_graph, folder.string());
   log_info("scene read in {:.0f} ms: {} models, {} objects", to_ms(now_ns() - start),
            scene.models.size(), scene.objects.size());
   gpu::DeviceOptions options;

@@ -39,18 +39,25 @@ std::string percent(double part) {
 Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
   const sonar::Limits& l = grid.limits;
   Coverage out;
+  const auto in_angles = [&](const Vec3& d) {
+    const double azimuth_rad = std::atan2(d.x, -d.z),
+                 elevation_rad = std::asin(d.y / glm::length(d));
+    return azimuth_rad >= l.azimuth_min_rad && azimuth_rad <= l.azimuth_max_rad &&
+           elevation_rad >= l.elevation_min_rad && elevation_rad <= l.elevation_max_rad;
+  };
+  const sonar::Intrinsics& k = in.intrinsics;
+  std::size_t directions = 0;
   for (std::uint32_t v = 0; v < in.height; ++v)
     for (std::uint32_t u = 0; u < in.width; ++u) {
+      // Open water is seen too.
+      directions += in_angles({(u + 0.5 - k.cx) / k.fx, (k.cy - v - 0.5) / k.fy, -1.0});
       const std::optional<Vec3> p = sonar::point_of(in, u, v);
       if (!p) continue;
       const double range_m = glm::length(*p);
       const bool first = out.farthest_m == 0.0;
       out.nearest_m = first ? range_m : std::min(out.nearest_m, range_m);
       out.farthest_m = std::max(out.farthest_m, range_m);
-      const double azimuth_rad = std::atan2(p->x, -p->z), elevation_rad = std::asin(p->y / range_m);
-      if (azimuth_rad < l.azimuth_min_rad || azimuth_rad > l.azimuth_max_rad ||
-          elevation_rad < l.elevation_min_rad || elevation_rad > l.elevation_max_rad)
-        continue;
+      if (!in_angles(*p)) continue;
       ++out.in_aperture;
       if (!(range_m >= l.range_min_m && range_m < l.range_max_m)) continue;
       ++out.in_wedge;
@@ -60,9 +67,8 @@ Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
       out.no_normal += !cosine;
       out.facing_away += cosine && *cosine == 0.0;
     }
-  out.pixels_per_cell = static_cast<double>(out.in_aperture) /
+  out.pixels_per_cell = static_cast<double>(directions) /
                         (static_cast<double>(grid.bins.azimuth) * grid.bins.elevation);
-  const sonar::Intrinsics& k = in.intrinsics;
   out.of_wedge = covered_part(grid, in);
   out.azimuth_rad = {std::atan(-k.cx / k.fx), std::atan((in.width - k.cx) / k.fx)};
   out.elevation_rad = {std::atan((k.cy - in.height) / k.fy), std::atan(k.cy / k.fy)};

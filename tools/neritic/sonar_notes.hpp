@@ -15,14 +15,14 @@ namespace neritic::tools {
 
 struct Coverage {
   std::size_t in_wedge = 0;     // pixels with a depth, within the limits of range and both angles
-  std::size_t in_aperture = 0;  // pixels within both angles, whatever their depth
+  std::size_t in_aperture = 0;  // pixels with a depth within both angles
   std::size_t facing_away = 0;  // of in_wedge, those that are silent since their normals face away
   std::size_t no_normal = 0;    // of in_wedge, those that are silent for want of a normal
   double nearest_m = 0.0, farthest_m = 0.0;  // ranges found in the image; 0, 0 where none has any
   double of_wedge = 1.0;  // the part of the wedge's directions that the image looks in
   // Where its edges are, straight across and straight up from the middle.
   std::array<double, 2> azimuth_rad{}, elevation_rad{};
-  double pixels_per_cell = 0.0;  // in_aperture over cells of azimuth times elevation
+  double pixels_per_cell = 0.0;  // of the image, over cells of azimuth times elevation
 };
 Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in);
 

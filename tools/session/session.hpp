@@ -69,7 +69,8 @@ struct SonarFrame {
   double shift_px = 0.0;
   double pixels_per_cell = 1.0;          // asked for, linear
   glm::dvec2 pixels_per_cell_used{1.0};  // azimuth, elevation; less where the device's images end
-  bool reflectivity = true;              // by object; false: all are 1
+  // The incidence is multiplied by, by instance label; empty: all are 1, or a level has its own.
+  std::vector<float> reflectivity;
   std::vector<ViewImages> sectors;       // geometry only; one for apertures up to 100 degrees
 };
 
