@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/scene/gltf_audit.hpp"
 #include "engine/scene/gltf_container.hpp"
 #include "engine/scene/gltf_stages.hpp"
 
@@ -90,6 +91,7 @@ Result<Model> parse_gltf_bytes(std::span<const std::byte> bytes, const std::stri
     Loading loading{root, report, resources, images, model};
     read_model(loading);
     if (report.failed()) return report.error();
+    note_broken_rules(document, report);
     model.notes = report.take_notes();
     return model;
   } catch (const std::bad_alloc&) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/json.hpp"
@@ -42,6 +44,15 @@ struct GltfBuilder {
                      {"type", type},
                      {"count", values.size() / components}};
     if (normalized) accessor["normalized"] = true;
+    std::vector<double> least(components, 0.0), most(components, 0.0);  // numbers only
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double value = std::isfinite(double(values[i])) ? double(values[i]) : 0.0;
+      const std::size_t c = i % components;
+      least[c] = i < components ? value : std::min(least[c], value);
+      most[c] = i < components ? value : std::max(most[c], value);
+    }
+    accessor["min"] = least;
+    accessor["max"] = most;
     json["accessors"].push_back(accessor);
     return static_cast<int>(json["accessors"].size()) - 1;
   }

@@ -13,6 +13,7 @@ TEST(GltfLoader, TextureTransformIsTheExtensionsOwnExample) {
   b.quad();
   const Json transform = {
       {"offset", {0, 1}}, {"rotation", kPi / 2}, {"scale", {0.5, 0.5}}, {"texCoord", 1}};
+  b.json["extensionsUsed"] = {"KHR_texture_transform"};
   b.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};
   b.json["textures"] = {{{"source", 0}}};
   b.json["materials"] = {
