@@ -42,8 +42,7 @@ std::string names_of_terms(const GatherOptions& options) {
   add(options.reflectivity, "reflectivity");
   if (!options.echo) return names;
   const EchoOptions& echo = *options.echo;
-  add(true, "level");
-  add(!echo.weights.empty(), "beam pattern");
+  add(!echo.weights.empty(), "beam weights");
   add(echo.coherent, "speckle");
   add(!echo.gamma_quantiles.empty(), "texture");
   add(echo.corrected, echo.bent ? "sound speed profile, bent rays" : "sound speed profile");

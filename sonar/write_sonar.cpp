@@ -133,11 +133,11 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
   if (files.picture) NERITIC_TRY_STATUS(scene::write_png8(folder / "sonar.png", draw_sonar(files)));
   nlohmann::json json = facts;
   json.update(grid_facts(files.grid));
-  json["units"] = files.level
-                      ? "power after the receiver's gains, 1 is 1 uPa^2 (10 log10: dB re 1 uPa)"
-                  : files.kind == scene::SonarKind::kEchoSounder
-                      ? "mean over the cone of the cosine of incidence times reflectivity, 0 to 1"
-                      : "mean over elevation bins of the cosine of incidence times reflectivity, 0 to 1 a bin";
+  json["units"] =
+      files.level ? "power after the receiver's gains, 1 is 1 uPa^2 (10 log10: dB re 1 uPa)"
+      : files.kind == scene::SonarKind::kEchoSounder
+          ? "mean over the cone of the cosine of incidence times reflectivity, 0 to 1"
+          : "mean over elevation bins of the cosine of incidence times reflectivity, 0 to 1 a bin";
   json["layout"] = has_azimuth(files)
                        ? "sonar.npy [range, azimuth]: row 0 nearest, column 0 full port"
                        : "sonar.npy [range]: 0 nearest";

@@ -57,7 +57,7 @@ NERITIC_CONST uint kSonarBindLabel = 4;
 NERITIC_CONST uint kSonarBindReflectivity = 5;
 NERITIC_CONST uint kSonarBindSums = 6;
 NERITIC_CONST uint kSonarBindKeys = 7;
-NERITIC_CONST uint kSonarBindScratch = 8;  // of one gather, cleared before: stamps, or powers
+NERITIC_CONST uint kSonarBindScratch = 8;     // of one gather, cleared before: stamps, or powers
 NERITIC_CONST uint kSonarBindSumTexels = 16;  // the same three as texels, with kSonarSpecTexels
 NERITIC_CONST uint kSonarBindKeyTexels = 17;
 NERITIC_CONST uint kSonarBindScratchTexels = 18;
@@ -74,7 +74,7 @@ NERITIC_CONST uint kSonarSpecLabels = 7;      // keep the label of the strongest
 // The view's sides lean (render::ViewDesc), and a column's rows look for surfaces all over its
 // width.
 NERITIC_CONST uint kSonarSpecLeaning = 16;
-NERITIC_CONST uint kSonarSpecTexels = 18;     // sums, keys and scratch are texel buffers
+NERITIC_CONST uint kSonarSpecTexels = 18;      // sums, keys and scratch are texel buffers
 NERITIC_CONST uint kSonarSpecFootprint = 15;   // what is done with the ranges that a row spans:
 NERITIC_CONST uint kSonarFootprintNone = 0;    // nothing, its centre counts
 NERITIC_CONST uint kSonarFootprintShared = 1;  // its counts are shared out over them, evenly

@@ -21,7 +21,7 @@ struct BeamHit {
   float strength;  // incidence term, 0 to 1
   vec2 ends_m;     // nearest and farthest range of the row's height (kFootprint)
   vec2 ends_tan;   // tangents of the elevations there
-  bool doubtful;   // the plane may be a limb's: look_again
+  bool doubtful;   // the plane may be a limb's: hit_of asks again
 };
 
 // A footprint reaches this much farther to one side of the row's centre than to the other, at most:

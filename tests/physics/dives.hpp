@@ -60,6 +60,18 @@ inline std::string rov_text(const std::string& keys, const std::string& name = "
          "dynamics = \"" + vehicles_folder() + "/" + dynamics + "\"\n" + keys;
 }
 
+// An object that is a diver, of a diver's file or the shipped one; keys follow.
+inline std::string diver_text(const std::string& keys, std::string human = {}) {
+  const std::string assets = (test::source_dir() / "assets").string();
+  if (human.empty()) human = assets + "/divers/recreational.toml";
+  return "[[objects]]\nname = \"diver\"\nclass = \"diver\"\nmodel = \"" + assets +
+         "/models/diver.glb\"\nhuman = \"" + human + "\"\n" + keys;
+}
+
+// Prone, facing north.
+inline constexpr const char* kProne = "pitch_deg = -90\n";
+inline constexpr const char* kStillWater = "title = \"still water\"\n[physics]\n";
+
 inline Result<scene::Scene> load_text(const std::string& text) {
   const test::ScratchFolder scratch;
   EXPECT_TRUE(write_text(scratch / "dive.toml", text).ok());

@@ -52,23 +52,28 @@ Result<scene::Heightfield> real_bottom(const std::filesystem::path& shared) {
   return crop;
 }
 
-TEST_F(SurveyTest, ALawnMowerTrackChartsTheRealBottom) {
-  NERITIC_REQUIRE_SHARED(shared);
-  NERITIC_ASSERT_OK(const scene::Heightfield field, real_bottom(shared));
-  scene::Scene scene = scene_with_bottom(scene::make_terrain(field));
+// Looks down from the first object, from 5 m on, by 300 range bins.
+scene::Sonar multibeam(double range_max_m, std::uint32_t beams, std::uint32_t rows) {
   scene::Sonar sonar;
   sonar.name = "multibeam";
   sonar.kind = scene::SonarKind::kProfiling;
   sonar.range_min_m = 5.0;
-  sonar.range_max_m = 35.0;
+  sonar.range_max_m = range_max_m;
   sonar.azimuth_rad = radians(90.0);
   sonar.elevation_rad = radians(0.5);
-  sonar.bins_range = 300;  // 0.1 m
-  sonar.bins_azimuth = 256;
-  sonar.bins_elevation = 8;
+  sonar.bins_range = 300;
+  sonar.bins_azimuth = beams;
+  sonar.bins_elevation = rows;
   sonar.mount.object = 0;
-  sonar.mount.pose.rotation = glm::angleAxis(-kPi / 2.0, Vec3(1, 0, 0));  // looks down
-  scene.sonars = {sonar};
+  sonar.mount.pose.rotation = glm::angleAxis(-kPi / 2.0, Vec3(1, 0, 0));
+  return sonar;
+}
+
+TEST_F(SurveyTest, ALawnMowerTrackChartsTheRealBottom) {
+  NERITIC_REQUIRE_SHARED(shared);
+  NERITIC_ASSERT_OK(const scene::Heightfield field, real_bottom(shared));
+  scene::Scene scene = scene_with_bottom(scene::make_terrain(field));
+  scene.sonars = {multibeam(35.0, 256, 8)};  // bins of 0.1 m
   const scene::LawnMower mower{-40.0, -40.0, 40.0, 40.0, 36.0, 25.0, true};
   const scene::Waypoints course{scene::waypoints_of(mower), 2.0, 0.0};
   scene.objects[0].mount.track = scene::track_of(scene::places_of(course), {});
@@ -111,19 +116,7 @@ TEST_F(SurveyTest, WhatStandsOnTheBottomIsChartedAndCountedApart) {
   box.mount.pose.position_m = {0.0, -19.0, 0.0};
   scene.models.push_back(std::make_shared<scene::Model>(scene::make_box({4.0, 2.0, 4.0})));
   scene.objects.push_back(box);
-  scene::Sonar sonar;
-  sonar.name = "multibeam";
-  sonar.kind = scene::SonarKind::kProfiling;
-  sonar.range_min_m = 5.0;
-  sonar.range_max_m = 20.0;
-  sonar.azimuth_rad = radians(90.0);
-  sonar.elevation_rad = radians(0.5);
-  sonar.bins_range = 300;  // 5 cm
-  sonar.bins_azimuth = 181;
-  sonar.bins_elevation = 16;
-  sonar.mount.object = 0;
-  sonar.mount.pose.rotation = glm::angleAxis(-kPi / 2.0, Vec3(1, 0, 0));
-  scene.sonars = {sonar};
+  scene.sonars = {multibeam(20.0, 181, 16)};  // bins of 5 cm
   const scene::Waypoints course{{Vec3(0, -10, 6), Vec3(0, -10, -6)}, 2.0, 0.0};
   scene.objects[0].mount.track = scene::track_of(scene::places_of(course), {});
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));

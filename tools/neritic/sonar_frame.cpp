@@ -1,7 +1,6 @@
 #include "tools/neritic/sonar_frame.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
@@ -103,11 +102,7 @@ bool can_be_heard(const SonarJob& job, const sonar::SonarInput& in) {
       const std::optional<Vec3> p = sonar::point_of(in, u, v);
       if (!p) continue;
       const double range_m = glm::length(*p);
-      const double azimuth_rad = std::atan2(p->x, -p->z), elevation_rad = std::asin(p->y / range_m);
-      if (range_m < l.range_min_m || range_m >= l.range_max_m || azimuth_rad < l.azimuth_min_rad ||
-          azimuth_rad > l.azimuth_max_rad || elevation_rad < l.elevation_min_rad ||
-          elevation_rad > l.elevation_max_rad)
-        continue;
+      if (range_m < l.range_min_m || range_m >= l.range_max_m || !in_aperture(l, *p)) continue;
       const double* n = &in.normals[3 * (std::size_t{v} * in.width + u)];
       const auto cosine = sonar::incidence({n[0], n[1], n[2]}, *p, in.normals_face_sensor);
       if (cosine && *cosine > 0.0) return true;

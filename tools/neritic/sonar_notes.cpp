@@ -36,28 +36,29 @@ std::string percent(double part) {
 
 }  // namespace
 
+bool in_aperture(const sonar::Limits& limits, const Vec3& direction) {
+  const double azimuth_rad = std::atan2(direction.x, -direction.z),
+               elevation_rad = std::asin(direction.y / glm::length(direction));
+  return azimuth_rad >= limits.azimuth_min_rad && azimuth_rad <= limits.azimuth_max_rad &&
+         elevation_rad >= limits.elevation_min_rad && elevation_rad <= limits.elevation_max_rad;
+}
+
 Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
   const sonar::Limits& l = grid.limits;
   Coverage out;
-  const auto in_angles = [&](const Vec3& d) {
-    const double azimuth_rad = std::atan2(d.x, -d.z),
-                 elevation_rad = std::asin(d.y / glm::length(d));
-    return azimuth_rad >= l.azimuth_min_rad && azimuth_rad <= l.azimuth_max_rad &&
-           elevation_rad >= l.elevation_min_rad && elevation_rad <= l.elevation_max_rad;
-  };
   const sonar::Intrinsics& k = in.intrinsics;
   std::size_t directions = 0;
   for (std::uint32_t v = 0; v < in.height; ++v)
     for (std::uint32_t u = 0; u < in.width; ++u) {
       // Open water is seen too.
-      directions += in_angles({(u + 0.5 - k.cx) / k.fx, (k.cy - v - 0.5) / k.fy, -1.0});
+      directions += in_aperture(l, {(u + 0.5 - k.cx) / k.fx, (k.cy - v - 0.5) / k.fy, -1.0});
       const std::optional<Vec3> p = sonar::point_of(in, u, v);
       if (!p) continue;
       const double range_m = glm::length(*p);
       const bool first = out.farthest_m == 0.0;
       out.nearest_m = first ? range_m : std::min(out.nearest_m, range_m);
       out.farthest_m = std::max(out.farthest_m, range_m);
-      if (!in_angles(*p)) continue;
+      if (!in_aperture(l, *p)) continue;
       ++out.in_aperture;
       if (!(range_m >= l.range_min_m && range_m < l.range_max_m)) continue;
       ++out.in_wedge;

@@ -24,6 +24,8 @@ struct Coverage {
   std::array<double, 2> azimuth_rad{}, elevation_rad{};
   double pixels_per_cell = 0.0;  // of the image, over cells of azimuth times elevation
 };
+// Whether a direction from the sonar, of any length, lies within both angles.
+bool in_aperture(const sonar::Limits& limits, const Vec3& direction);
 Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in);
 
 // The line that tells the user what is amiss, if anything. published: each pixel adds to one cell.

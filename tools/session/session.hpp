@@ -71,7 +71,7 @@ struct SonarFrame {
   glm::dvec2 pixels_per_cell_used{1.0};  // azimuth, elevation; less where the device's images end
   // The incidence is multiplied by, by instance label; empty: all are 1, or a level has its own.
   std::vector<float> reflectivity;
-  std::vector<ViewImages> sectors;       // geometry only; one for apertures up to 100 degrees
+  std::vector<ViewImages> sectors;  // geometry only; one for apertures up to 100 degrees
 };
 
 struct Capture {

@@ -1,5 +1,4 @@
 // What a sonar's heads heard, from the buffers that the host reads.
-#include "sonar/backscatter.hpp"
 #include "sonar/head_decode.hpp"
 #include "tools/session/sonar_station.hpp"
 
@@ -37,7 +36,7 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
     frame.pixels_per_cell_used = {
         state.upright.size.width * state.head.samples.azimuth_step_rad() / (t.right - t.left),
         state.upright.size.height * state.head.samples.elevation_step_rad() / (t.top - t.bottom)};
-    if (!sonar.terms.level) frame.reflectivity = sonar::reflectivity_table(scene_);
+    if (!sonar.terms.level) frame.reflectivity = reflectivities_;
     const auto keys = state.keys.mapped<std::uint32_t>();
     if (state.receiver) {
       const auto power = state.power.mapped<float>();

@@ -58,8 +58,8 @@ Result<std::unique_ptr<SonarStation>> SonarStation::create(gpu::Device& device,
                                                            const scene::Scene& scene) {
   std::unique_ptr<SonarStation> made(new SonarStation(device, scene));
   if (scene.sonars.empty()) return made;
-  NERITIC_TRY(made->reflectivity_,
-              table_buffer(device, "reflectivity", sonar::reflectivity_table(scene)));
+  made->reflectivities_ = sonar::reflectivity_table(scene);
+  NERITIC_TRY(made->reflectivity_, table_buffer(device, "reflectivity", made->reflectivities_));
   if (std::ranges::any_of(scene.sonars, [](const auto& s) { return s.terms.level.has_value(); })) {
     const sonar::BackscatterTable table = sonar::backscatter_table(scene);
     made->backscatter_scale_ = table.scale;

@@ -97,6 +97,7 @@ class SonarStation {
 
   gpu::Device& device_;
   const scene::Scene& scene_;
+  std::vector<float> reflectivities_;       // by instance label; empty: all are 1
   gpu::Buffer reflectivity_, backscatter_;  // by instance label; empty where nothing needs them
   double backscatter_scale_ = 1.0;
   std::map<std::size_t, std::unique_ptr<SonarState>> sonars_;
