@@ -158,7 +158,11 @@ bool Resources::charge_picture(std::size_t bytes, std::size_t file_bytes) {
 
 bool Resources::resolve(Field reference, std::string_view shapes, Elements& out) {
   const Field field = accessor(reference);
-  if (!field.present()) return false;
+  return field.present() && locate(field, reference, shapes, out) &&
+         charge(out.count * size_of(out.component) * out.components, field);
+}
+
+bool Resources::locate(Field field, Field reference, std::string_view shapes, Elements& out) {
   const std::string type = field["type"].text();
   out.components = components_of(type);
   if (out.components == 0 || shapes.find(type) == shapes.npos) {
@@ -196,7 +200,6 @@ bool Resources::resolve(Field reference, std::string_view shapes, Elements& out)
     }
     out.data = bytes.data() + offset;
   }
-  if (!charge(out.count * element_bytes, field)) return false;
   const Field sparse = field["sparse"];
   return !sparse.present() || resolve_sparse(sparse, out);
 }

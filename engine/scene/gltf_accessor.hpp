@@ -43,6 +43,19 @@ class Resources {
   // Components of every element in a row, whatever the type is, and how many there are an element.
   std::vector<float> any(Field reference, int& components);
 
+  // Of an accessor's values as stored, a component each: the smallest and the largest, numbers that
+  // are not finite left out (min > max where none is). Empty where it has no bytes, after a failure
+  // and where the file's accessors together ask for several times its bytes to be looked at:
+  // examined_all() is false from then on.
+  struct Extremes {
+    std::vector<double> min, max;
+    double type_max = 0.0;  // the largest of the component's type
+  };
+  Extremes extremes(Field accessor);
+  // Fails where the accessor is wrong or its elements are not in their bytes.
+  void check(Field accessor);
+  bool examined_all() const { return examined_all_; }
+
   // Counts bytes that the model will hold against a limit in proportion to the file, so that a
   // small file cannot ask for all memory by naming one accessor often. Fails at `where` when
   // exceeded.
@@ -75,8 +88,10 @@ class Resources {
   std::span<const std::byte> buffer(int i);
   std::span<const std::byte> view_at(int i);
   Field accessor(Field reference) const;
-  // False where absent or wrong. shapes: accepted types, as "VEC3" or "VEC3 VEC4".
+  // False where absent or wrong. shapes: accepted types, as "VEC3" or "VEC3 VEC4". resolve() also
+  // charges what the elements take; locate() has the accessor itself, said at `reference`.
   bool resolve(Field reference, std::string_view shapes, Elements& out);
+  bool locate(Field accessor, Field reference, std::string_view shapes, Elements& out);
   bool resolve_sparse(Field sparse, Elements& out);
   void decode(const Elements& elements, Integers integers, int out_components, float* out,
               Field reference);
@@ -91,7 +106,8 @@ class Resources {
   std::span<const std::byte> bin_;
   std::filesystem::path folder_;
   std::vector<Buffer> buffers_;
-  std::size_t source_bytes_ = 0, charged_bytes_ = 0, picture_bytes_ = 0;
+  std::size_t source_bytes_ = 0, charged_bytes_ = 0, picture_bytes_ = 0, examined_bytes_ = 0;
+  bool examined_all_ = true;
 };
 
 }  // namespace neritic::scene::gltf

@@ -1,4 +1,4 @@
-// See gltf_audit.hpp. The rules are those of glTF 2.0's specification (Khronos), by its sections.
+// See gltf_audit.hpp: the rules of the JSON. They are those of glTF 2.0's specification (Khronos).
 #include "engine/scene/gltf_audit.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ class Audit {
  public:
   Audit(const Json& document, Report& report) : document_(document), report_(report) {}
 
-  void run() {
+  std::set<std::string> run() {
     for (const Json& name : list("extensionsUsed"))
       if (name.is_string()) declared_.insert(name.get<std::string>());
     walk(document_, "", 0);
@@ -82,12 +82,17 @@ class Audit {
     each("meshes", [this](const Json& mesh, const std::string& path) { check_mesh(mesh, path); });
     each("animations",
          [this](const Json& clip, const std::string& path) { check_animation(clip, path); });
+    each("skins", [this](const Json& skin, const std::string&) {
+      check_packed(skin, "inverseBindMatrices");
+    });
     check_required();
+    return std::move(told_);
   }
 
  private:
   template <class... Args>
   void say(const std::string& path, fmt::format_string<Args...> format, Args&&... args) {
+    told_.insert(path.substr(0, path.find(']') + 1));
     if (report_.takes_notes())
       report_.note(path + ": " + fmt::format(format, std::forward<Args>(args)...));
   }
@@ -198,6 +203,8 @@ class Audit {
     if (stride != kNoNumber && stride < component * components)
       say(path, "elements of {} bytes found, its view's byteStride is {}", component * components,
           stride);
+    if (accessor.contains("byteOffset") && !accessor.contains("bufferView"))
+      say(path + ".byteOffset", "found without a bufferView, which it is for");
     const Json* sparse = member_of(accessor, "sparse");
     if (!sparse) return;
     const std::uint64_t count = whole_of(*sparse, "count", 0);
@@ -212,6 +219,10 @@ class Audit {
     for (const char* key : {"skin", "weights"})
       if (node.contains(key) && !node.contains("mesh"))
         say(path + "." + key, "found without a mesh, which it is for");
+    const Json* extensions = member_of(node, "extensions");
+    const Json* light = extensions ? member_of(*extensions, "KHR_lights_punctual") : nullptr;
+    if (light && light->is_object() && !light->contains("light"))
+      say(path + ".extensions.KHR_lights_punctual", "no light found, one is needed");
   }
 
   void check_camera(const Json& camera, const std::string& path) {
@@ -229,6 +240,15 @@ class Audit {
     return !a.is_object() || (a.contains("min") && a.contains("max"));
   }
 
+  // Elements of all but vertex attributes lie one behind another.
+  void check_packed(const Json& owner, const char* key) {
+    const Json& accessor = element("accessors", whole_of(owner, key, kNoNumber));
+    const std::uint64_t view = whole_of(accessor, "bufferView", kNoNumber);
+    if (element("bufferViews", view).contains("byteStride"))
+      say(fmt::format("bufferViews[{}].byteStride", view), "found, but the {} in it have no stride",
+          key);
+  }
+
   void check_mesh(const Json& mesh, const std::string& path) {
     const Json* primitives = member_of(mesh, "primitives");
     if (!primitives || !primitives->is_array()) return;
@@ -236,6 +256,7 @@ class Audit {
       const std::string at = fmt::format("{}.primitives[{}]", path, i);
       if (const Json* attributes = member_of((*primitives)[i], "attributes"))
         check_attributes(*attributes, at + ".attributes");
+      check_packed((*primitives)[i], "indices");
       const Json* targets = member_of((*primitives)[i], "targets");
       for (std::size_t t = 0; targets && targets->is_array() && t < targets->size(); ++t)
         check_attributes((*targets)[t], fmt::format("{}.targets[{}]", at, t));
@@ -261,10 +282,13 @@ class Audit {
 
   void check_animation(const Json& clip, const std::string& path) {
     const Json* samplers = member_of(clip, "samplers");
-    for (std::size_t i = 0; samplers && samplers->is_array() && i < samplers->size(); ++i)
+    for (std::size_t i = 0; samplers && samplers->is_array() && i < samplers->size(); ++i) {
+      check_packed((*samplers)[i], "input");
+      check_packed((*samplers)[i], "output");
       if (!has_bounds(whole_of((*samplers)[i], "input", kNoNumber)))
         say(fmt::format("{}.samplers[{}].input", path, i),
             "an accessor without min and max found, both are needed");
+    }
     const Json* channels = member_of(clip, "channels");
     std::set<std::pair<std::uint64_t, std::string>> moved;
     for (std::size_t i = 0; channels && channels->is_array() && i < channels->size(); ++i) {
@@ -285,13 +309,13 @@ class Audit {
 
   const Json& document_;
   Report& report_;
-  std::set<std::string> declared_;
+  std::set<std::string> declared_, told_;
 };
 
 }  // namespace
 
-void note_broken_rules(const Json& document, Report& report) {
-  Audit(document, report).run();
+std::set<std::string> note_broken_rules(const Json& document, Report& report) {
+  return Audit(document, report).run();
 }
 
 }  // namespace neritic::scene::gltf

@@ -3,13 +3,22 @@
 // refused.
 #pragma once
 
-#include "engine/scene/gltf_json.hpp"
+#include <set>
+#include <string>
+
+#include "engine/scene/gltf_stages.hpp"
 
 namespace neritic::scene::gltf {
 
 // Of the JSON alone: references, sizes, strides and alignment, members that exclude or need one
 // another, empty lists, extensions in the wrong place or not declared. Takes any document; notes
-// into the report.
-void note_broken_rules(const Json& document, Report& report);
+// into the report. Returns the elements of the file's lists that something was said of, as
+// "accessors[3]".
+std::set<std::string> note_broken_rules(const Json& document, Report& report);
+
+// Of values, once the model is whole: bounds that accessors do not keep, accessors and pictures
+// that nothing is drawn with and that cannot be read, indices that would restart a primitive,
+// inverse bind matrices, joints beside the shown scene. Leaves out what was `told` of before.
+void note_broken_values(Loading& loading, const std::set<std::string>& told);
 
 }  // namespace neritic::scene::gltf

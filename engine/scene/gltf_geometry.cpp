@@ -180,13 +180,15 @@ void make_flat_normals(Primitive& p) {
   }
 }
 
-void repair_normals(Primitive& p) {
+std::size_t repair_normals(Primitive& p) {
   bool any_zero = false;
+  std::size_t n_off = 0;
   for (Vec3f& normal : p.normals) {
+    n_off += !(std::abs(glm::dot(Vec3(normal), Vec3(normal)) - 1.0) < 0.02);
     normal = Vec3f(unit_or_zero(Vec3(normal)));
     any_zero = any_zero || normal == Vec3f(0);
   }
-  if (!any_zero) return;
+  if (!any_zero) return n_off;
   std::vector<Vec3> from_faces(p.normals.size(), Vec3(0.0));
   for (std::size_t i = 0; p.topology == Topology::kTriangles && i < p.indices.size(); i += 3) {
     const std::uint32_t* v = &p.indices[i];
@@ -199,6 +201,7 @@ void repair_normals(Primitive& p) {
     const Vec3 n = unit_or_zero(from_faces[i]);
     p.normals[i] = is_zero(n) ? Vec3f(0, 1, 0) : Vec3f(n);
   }
+  return n_off;
 }
 
 void repair_tangents(Primitive& p) {

@@ -32,8 +32,9 @@ void gather_vertices(Primitive& primitive, std::span<const std::uint32_t> old_of
 // targets' normal displacements to match. Triangles only.
 void make_flat_normals(Primitive& primitive);
 
-// Unit normals; where one has no direction, the faces around it give it.
-void repair_normals(Primitive& primitive);
+// Unit normals; where one has no direction, the faces around it give it. Returns how many were off
+// by more than a hundredth, which is beyond the rounding of normals stored in bytes.
+std::size_t repair_normals(Primitive& primitive);
 // Unit tangents perpendicular to the normals, handedness +1 or -1.
 void repair_tangents(Primitive& primitive);
 

@@ -40,13 +40,16 @@ std::string one_line(std::string_view text, std::size_t max_length) {
 }
 
 Error Report::error() const {
-  return *error_;
+  return bad_input("{}: {}", one_line(file_, 4096), *failure_);
 }
 
 void Report::fail(std::string_view path, std::string_view message) {
-  if (error_) return;
-  const std::string where = path.empty() ? "" : one_line(path) + ": ";
-  error_ = bad_input("{}: {}{}", one_line(file_, 4096), where, one_line(message));
+  if (failure_) return;
+  failure_ = (path.empty() ? "" : one_line(path) + ": ") + one_line(message);
+}
+
+void Report::note_failure() {
+  if (failure_) note(*std::exchange(failure_, std::nullopt));
 }
 
 void Report::note(std::string line) {

@@ -25,20 +25,22 @@ class Report {
  public:
   explicit Report(std::string file) : file_(std::move(file)) {}
   const std::string& file() const { return file_; }
-  bool failed() const { return error_.has_value(); }
+  bool failed() const { return failure_.has_value(); }
   // Precondition: failed().
   Error error() const;
   // Only the first failure counts: what follows it is mostly its echo.
   void fail(std::string_view path, std::string_view message);
   // After kMaxNotes the rest is summed up in one line.
   void note(std::string line);
+  // What failed becomes a note: for what a model does without.
+  void note_failure();
   bool takes_notes() const { return notes_.size() < kMaxNotes; }
   std::vector<std::string> take_notes() { return std::move(notes_); }
 
  private:
   static constexpr std::size_t kMaxNotes = 32;
   std::string file_;
-  std::optional<Error> error_;
+  std::optional<std::string> failure_;  // with its path, without the file
   std::vector<std::string> notes_;
   std::set<std::string> said_;
 };

@@ -91,7 +91,7 @@ Result<Model> parse_gltf_bytes(std::span<const std::byte> bytes, const std::stri
     Loading loading{root, report, resources, images, model};
     read_model(loading);
     if (report.failed()) return report.error();
-    note_broken_rules(document, report);
+    note_broken_values(loading, note_broken_rules(document, report));
     model.notes = report.take_notes();
     return model;
   } catch (const std::bad_alloc&) {

@@ -129,10 +129,12 @@ void load_indices(Loading& loading, Field field, Mode mode, Primitive& out) {
 }
 
 // Normals and tangents as the material needs them; the primitive is whole before.
-void complete(const Material* material, Primitive& p) {
+void complete(const Material* material, Field normals, Primitive& p) {
   const bool triangles = p.topology == Topology::kTriangles;
   if (!p.normals.empty()) {
-    repair_normals(p);
+    if (const std::size_t n_off = repair_normals(p); n_off > 0)
+      normals.note_with("{} of {} normals are not of length 1, they are made so", n_off,
+                        p.normals.size());
   } else if (triangles) {
     make_flat_normals(p);
   } else {
@@ -164,7 +166,8 @@ bool load_primitive(Loading& loading, Field field, Primitive& out) {
   // Strips become up to three times as many indices, flat normals up to six vertices an index.
   if (!loading.report.failed()) loading.resources.charge(out.indices.size() * 64, field);
   if (loading.report.failed()) return false;
-  complete(out.material < 0 ? nullptr : &loading.model.materials[out.material], out);
+  complete(out.material < 0 ? nullptr : &loading.model.materials[out.material],
+           attributes["NORMAL"], out);
   return true;
 }
 

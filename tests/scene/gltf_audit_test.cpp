@@ -1,4 +1,5 @@
 // What breaks glTF's rules beside what a model needs is said, and the model is shown.
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -82,6 +83,21 @@ TEST(GltfAudit, EachBrokenRuleIsANoteWithItsPath) {
          j["extensionsUsed"] = {"KHR_materials_unlit"};
          j["nodes"][0]["extensions"]["KHR_materials_unlit"] = Json::object();
        }},
+      {"byteOffset: found without a bufferView",
+       [](Json& j) {
+         j["accessors"].push_back(
+             {{"byteOffset", 0}, {"componentType", 5126}, {"count", 1}, {"type", "SCALAR"}});
+       }},
+      {"bufferViews[1].byteStride: found, but the indices in it have no stride",
+       [](Json& j) {
+         j["bufferViews"][1]["byteStride"] = 4;
+         j["accessors"][1]["count"] = 3;
+       }},
+      {"nodes[0].extensions.KHR_lights_punctual: no light found",
+       [](Json& j) {
+         j["extensionsUsed"] = {"KHR_lights_punctual"};
+         j["nodes"][0]["extensions"]["KHR_lights_punctual"] = Json::object();
+       }},
       {"EXT_secret found, extensionsUsed does not name it",
        [](Json& j) { j["nodes"][0]["extensions"]["EXT_secret"]["a"] = 1; }},
       {"extensionsRequired does not name it",
@@ -99,6 +115,149 @@ TEST(GltfAudit, EachBrokenRuleIsANoteWithItsPath) {
     for (const std::string& note : model->notes) all += note + "\n";
     EXPECT_NE(all.find(rule.words), std::string::npos) << all;
   }
+}
+
+struct BrokenValue {
+  std::string words;  // of its only note; empty: there is none
+  std::function<void(Builder&)> make;
+};
+
+TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
+  const auto skin = [](Builder& b, const std::vector<float>& last_rows) {
+    std::vector<float> matrices(32, 0.0f);
+    for (int k = 0; k < 8; ++k) matrices[4 * k + k % 4] = 1.0f;
+    for (int k = 0; k < 8; ++k) matrices[4 * k + 3] = last_rows[k];
+    auto& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] =
+        b.accessor<std::uint8_t>("VEC4", 4, {0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0});
+    attributes["WEIGHTS_0"] =
+        b.accessor<float>("VEC4", 4, {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    b.json["skins"] = {
+        {{"joints", {1, 2}}, {"inverseBindMatrices", b.accessor("MAT4", 16, matrices)}}};
+    b.json["nodes"][0]["skin"] = 0;
+    b.json["nodes"].push_back({{"children", {2}}});
+    b.json["nodes"].push_back(Json::object());
+    b.json["scenes"][0]["nodes"] = {0, 1};
+  };
+  const auto normals = [](Builder& b, float length) {
+    b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        b.vec3({0, 0, length, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  };
+  const std::vector<BrokenValue> values = {
+      {"accessors[0].min[1]: -0.5 found, the least value is 0",
+       [](Builder& b) { b.json["accessors"][0]["min"][1] = -0.5; }},
+      {"accessors[0].max[0]: 0.99 found, the largest value is 1",
+       [](Builder& b) { b.json["accessors"][0]["max"][0] = 0.99; }},
+      {"accessors[1].max: 2 numbers found, 1 are accepted",
+       [](Builder& b) {
+         b.json["accessors"][1]["max"] = {3, 3};
+       }},
+      {"accessors[0].min[2]: \"low\" found, a number is accepted",
+       [](Builder& b) { b.json["accessors"][0]["min"][2] = "low"; }},
+      // Seven digits, as some exporters write them.
+      {"",
+       [](Builder& b) {
+         b.json["accessors"][b.vec3({0, 0, 0, 1.0f / 3, 0, 0})]["max"][0] = 0.3333333;
+       }},
+      {"accessors[2].min[0]: 1 found, the least value is -7",
+       [](Builder& b) {
+         b.json["accessors"][b.accessor<std::int8_t>("VEC3", 3, {-7, 2, 3, 4, 5, 6})]["min"][0] = 1;
+       }},
+      {"accessors[2]: 9 elements need 108 bytes from 0, but bufferViews[2] has 12",
+       [](Builder& b) {
+         Json& accessor = b.json["accessors"][b.vec3({0, 0, 0})];
+         accessor["count"] = 9;
+         accessor.erase("min");
+         accessor.erase("max");
+       }},
+      // A sparse value takes the place of the one that was the least.
+      {"",
+       [](Builder& b) {
+         const int at = b.view(std::vector<std::uint16_t>{0});
+         const int by = b.view(std::vector<float>{4});
+         Json& accessor = b.json["accessors"][b.accessor<float>("SCALAR", 1, {-9, 5, 6})];
+         accessor["min"] = {4};
+         accessor["sparse"] = {{"count", 1},
+                               {"indices", {{"bufferView", at}, {"componentType", 5123}}},
+                               {"values", {{"bufferView", by}}}};
+       }},
+      // Zeros where there is no view, but for one.
+      {"accessors[2].min[0]: 4 found, the least value is 0",
+       [](Builder& b) {
+         const int at = b.view(std::vector<std::uint16_t>{0});
+         const int by = b.view(std::vector<float>{4});
+         Json& accessor = b.json["accessors"][b.accessor<float>("SCALAR", 1, {4, 4})];
+         accessor.erase("bufferView");
+         accessor["sparse"] = {{"count", 1},
+                               {"indices", {{"bufferView", at}, {"componentType", 5123}}},
+                               {"values", {{"bufferView", by}}}};
+       }},
+      {"meshes[0].primitives[0].indices: 255 found, the largest value of its type is no index",
+       [](Builder& b) {
+         auto& primitive = b.json["meshes"][0]["primitives"][0];
+         primitive["attributes"]["POSITION"] = b.vec3(std::vector<float>(3 * 256, 0.0f));
+         primitive["indices"] = b.accessor<std::uint8_t>("SCALAR", 1, {0, 1, 255});
+         b.json["accessors"].back().erase("min");
+         b.json["accessors"].back().erase("max");
+       }},
+      {"images[0].uri: ./none.png: no such file",
+       [](Builder& b) {
+         b.json["images"] = {{{"uri", "none.png"}}};
+       }},
+      {"images[0].uri: a data URI with characters that are not base64",
+       [](Builder& b) {
+         b.json["images"] = {{{"uri", "data:image/png;base64,`"}}};
+       }},
+      {"images[0]: no PNG or JPEG picture (3 bytes)",
+       [](Builder& b) {
+         b.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};
+       }},
+      {"the extension EXT_texture_webp is not supported and ignored",
+       [](Builder& b) {
+         b.json["images"] = {{{"uri", "data:image/webp;base64,AAAA"}}};
+         b.json["extensionsUsed"] = {"EXT_texture_webp"};
+       }},
+      {"",
+       [&](Builder& b) {
+         skin(b, {0, 0, 0, 1, 0, 0, 0, 1});
+       }},
+      {"skins[0].inverseBindMatrices: a last row of 0, 0, 0, 4 found in matrix 1, 0, 0, 0, 1 is "
+       "accepted",
+       [&](Builder& b) {
+         skin(b, {0, 0, 0, 1, 0, 0, 0, 4});
+       }},
+      {"nodes[0].skin: its joint, node 1, is not in the shown scene",
+       [&](Builder& b) {
+         skin(b, {0, 0, 0, 1, 0, 0, 0, 1});
+         b.json["scenes"][0]["nodes"] = {0};
+       }},
+      {"", [&](Builder& b) { normals(b, 0.995f); }},
+      {"meshes[0].primitives[0].attributes.NORMAL: 1 of 4 normals are not of length 1, they are "
+       "made so",
+       [&](Builder& b) { normals(b, 3.0f); }},
+  };
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    SCOPED_TRACE(fmt::format("{}: {}", i, values[i].words));
+    Builder b;
+    b.quad();
+    values[i].make(b);
+    const auto model = b.load(".");
+    ASSERT_TRUE(model.ok()) << model.error().message;
+    EXPECT_EQ(fmt::format("{}", fmt::join(model->notes, "\n")), values[i].words);
+  }
+}
+
+// Accessors without end over the same bytes: the look at them has one.
+TEST(GltfAudit, BytesAreNotLookedAtAgainAndAgain) {
+  Builder b;
+  b.quad();
+  Json big = b.json["accessors"]
+                   [b.accessor<std::uint8_t>("SCALAR", 1, std::vector<std::uint8_t>(1 << 20, 7))];
+  for (int i = 0; i < 100; ++i) b.json["accessors"].push_back(big);
+  const auto model = b.load();
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  ASSERT_EQ(model->notes.size(), 1u);
+  EXPECT_NE(model->notes[0].find("lie over one another"), std::string::npos) << model->notes[0];
 }
 
 // What is no object, no list or no number where one belongs is no fault of the audit's reading.
