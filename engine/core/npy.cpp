@@ -84,6 +84,25 @@ Result<std::vector<std::size_t>> parse_shape(std::string_view text, const std::s
   return shape;
 }
 
+// Elements whose first index runs fastest, rearranged so that the last one does.
+std::vector<std::byte> to_c_order(std::span<const std::byte> from,
+                                  const std::vector<std::size_t>& shape, std::size_t size) {
+  std::vector<std::byte> out(from.size());
+  std::vector<std::size_t> at(shape.size(), 0), stride(shape.size(), 1);  // of from, in elements
+  for (std::size_t k = 1; k < shape.size(); ++k) stride[k] = stride[k - 1] * shape[k - 1];
+  std::size_t element = 0;
+  for (std::size_t to = 0; to < out.size(); to += size) {
+    std::memcpy(out.data() + to, from.data() + element * size, size);
+    for (std::size_t k = shape.size(); k-- > 0;) {
+      element += stride[k];
+      if (++at[k] < shape[k]) break;
+      element -= stride[k] * shape[k];
+      at[k] = 0;
+    }
+  }
+  return out;
+}
+
 template <class T>
 void append_as_doubles(std::span<const std::byte> bytes, std::vector<double>& out) {
   for (std::size_t i = 0; i + sizeof(T) <= bytes.size(); i += sizeof(T)) {
@@ -200,16 +219,17 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
     const bool one_byte = type_name[2] == '1';
     type_name[0] = one_byte ? '|' : '<';
   }
-  if (type_name == "|i1")
-    return bad_input("{}: int8 elements; float, uint and int of 16 bits up are accepted", name);
   const auto row = std::find_if(kTypes.begin(), kTypes.end(),
                                 [&](const TypeRow& r) { return type_name == r.name; });
   if (row == kTypes.end())
-    return bad_input("{}: element type {}; f2 f4 f8 u1 u2 u4 i2 i4 i8 b1 are accepted", name,
+    return bad_input("{}: element type {} found, f2 f4 f8 u1 u2 u4 i2 i4 i8 b1 are accepted", name,
                      neritic::printable(quoted_start(descr)));
   array.type = row->type;
-  if (!value_of(header, "fortran_order").starts_with("False"))
-    return bad_input("{}: Fortran order; save it with numpy.ascontiguousarray", name);
+  const std::string_view order = value_of(header, "fortran_order");
+  const bool fortran = order.starts_with("True");
+  if (!fortran && !order.starts_with("False"))
+    return bad_input("{}: fortran_order {} found, True or False is accepted", name,
+                     order.empty() ? "nothing" : quoted_start(order));
   NERITIC_TRY(array.shape, parse_shape(value_of(header, "shape"), name));
 
   std::size_t expected = row->size;
@@ -227,6 +247,7 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
     for (std::size_t i = 0; i < array.bytes.size(); i += row->size)
       std::reverse(array.bytes.begin() + std::ptrdiff_t(i),
                    array.bytes.begin() + std::ptrdiff_t(i + row->size));
+  if (fortran) array.bytes = to_c_order(array.bytes, array.shape, row->size);
   return array;
 }
 

@@ -1,6 +1,7 @@
-// NumPy's .npy files (format 1.0 to 3.0), C order. Writing: any of the element types below,
-// little-endian. Reading: those of either byte order, converted to what the caller asks for;
-// Fortran order and object arrays are refused by name. Source: NumPy Enhancement Proposal 1.
+// NumPy's .npy files (format 1.0 to 3.0). Writing: any of the element types below, little-endian,
+// C order. Reading: those of either byte order, in C or Fortran order (which a transposed array is
+// saved in), converted to C order and to what the caller asks for; other element types are refused
+// by name. Source: NumPy Enhancement Proposal 1.
 #pragma once
 
 #include <cstdint>
