@@ -21,14 +21,14 @@ Status check_sizes(const Plan& plan) {
 
 }  // namespace
 
-Result<Plan> compile(GraphDecl graph, std::span<const MemoryNeed> needs) {
-  NERITIC_CHECK(needs.size() == graph.resources.size(), "{} needs for {} resources", needs.size(),
-                graph.resources.size());
+Result<Plan> compile(GraphDecl graph, const NeedsOf& needs_of) {
   NERITIC_TRY_STATUS(validate(graph));
   gather_usage(graph);
   Plan plan;
   plan.graph = std::move(graph);
-  plan.needs.assign(needs.begin(), needs.end());
+  plan.needs = needs_of(plan.graph);
+  NERITIC_CHECK(plan.needs.size() == plan.graph.resources.size(), "{} needs for {} resources",
+                plan.needs.size(), plan.graph.resources.size());
   plan.kept = cull(plan.graph);
   plan.order = order(plan.graph, plan.kept);
   plan.lifetimes = lifetimes(plan.graph, plan.order);

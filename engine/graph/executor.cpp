@@ -120,14 +120,13 @@ struct Executor::Impl {
       entry->last_use = ++clock;
       return entry.get();
     }
-    NERITIC_TRY_STATUS(validate(declaration));
     auto entry = std::make_unique<Entry>();
     entry->hash = hash;
     entry->declaration = declaration;
-    GraphDecl with_usage = declaration;
-    gather_usage(with_usage);
-    const std::vector<MemoryNeed> needs = memory_needs(frames.device(), with_usage, entry->classes);
-    NERITIC_TRY(entry->plan, graph::compile(std::move(with_usage), needs));
+    const auto needs_of = [&](const GraphDecl& graph) {
+      return memory_needs(frames.device(), graph, entry->classes);
+    };
+    NERITIC_TRY(entry->plan, graph::compile(declaration, needs_of));
     entry->last_use = ++clock;
     log_info("frame graph {}: {} of {} passes kept, {:.1f} MiB of transient memory", entries.size(),
              entry->plan.order.size(), declaration.passes.size(),

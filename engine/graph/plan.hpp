@@ -7,6 +7,7 @@
 #include <volk.h>
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -166,9 +167,12 @@ struct Plan {
 // Fills usage flags of every resource from the accesses declared on it.
 void gather_usage(GraphDecl& graph);
 
-// All stages. needs: what each resource takes (the device says; tests invent it). kOutOfMemory
-// names a transient that is larger than a block.
-Result<Plan> compile(GraphDecl graph, std::span<const MemoryNeed> needs);
+// What each resource of a valid graph, whose usage flags are gathered, takes. The device says;
+// tests invent it.
+using NeedsOf = std::function<std::vector<MemoryNeed>(const GraphDecl& graph)>;
+
+// All stages. kOutOfMemory names a transient that is larger than a block.
+Result<Plan> compile(GraphDecl graph, const NeedsOf& needs_of);
 
 // --- Looking at it ----------------------------------------------------------------------------
 std::string dump_text(const Plan& plan);

@@ -6,6 +6,7 @@
 #include "engine/graph/realisation.hpp"
 #include "engine/graph/transient_heaps.hpp"
 #include "executor_fixture.hpp"
+#include "graph_maker.hpp"
 
 namespace neritic::graph {
 namespace {
@@ -176,7 +177,7 @@ TEST_F(ExecutorTest, MemoryInBlocksHoldsWhatThePlanPlacedThere) {
   ASSERT_EQ(classes.size(), 1u);
   classes[0].block_bytes = 4096;  // a buffer is of 4000 bytes
   for (MemoryNeed& need : needs) need.block_bytes = 4096;
-  const Plan plan = take(compile(std::move(graph), needs));
+  const Plan plan = take(plan_with(graph, needs));
   ASSERT_GT(plan.placement.heap_size[0], 4096u);  // two live at the same time
   std::vector<TransientHeaps::Need> heap_needs;
   TransientHeaps::add(heap_needs, classes[0], plan.placement.heap_size[0]);

@@ -57,7 +57,7 @@ TEST(Place, ChainNeedsTwoNeighboursAtATime) {
 
 TEST(Place, HonoursAlignment) {
   const GraphMaker m = chain();
-  const Result<Plan> plan = compile(m.graph, m.needs(64));
+  const Result<Plan> plan = plan_with(m.graph, m.needs(64));
   ASSERT_TRUE(plan.ok());
   for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(plan->placement.offset[r] % 64, 0u);
   EXPECT_EQ(plan->placement.bytes_with_aliasing, 128u + 60u);
@@ -67,7 +67,7 @@ TEST(Place, ClassesNeverShare) {
   const GraphMaker m = chain();
   std::vector<MemoryNeed> needs = m.needs();
   for (std::uint32_t r = 0; r < 4; ++r) needs[r].memory_class = r;
-  const Result<Plan> plan = compile(m.graph, needs);
+  const Result<Plan> plan = plan_with(m.graph, needs);
   ASSERT_TRUE(plan.ok());
   EXPECT_THAT(plan->placement.heap_size, testing::ElementsAre(100, 60, 90, 10));
   EXPECT_EQ(plan->placement.bytes_with_aliasing, plan->placement.bytes_without);
@@ -98,7 +98,7 @@ TEST(Place, InBlocksNoneLiesAcrossAnEnd) {
   m.pass("p", {use(a, 0, kWrite), use(b, 0, kWrite), use(c, 0, kWrite)}, true);
   std::vector<MemoryNeed> needs = m.needs(4);
   for (MemoryNeed& need : needs) need.block_bytes = 128;
-  const Result<Plan> plan = compile(m.graph, needs);
+  const Result<Plan> plan = plan_with(m.graph, needs);
   ASSERT_TRUE(plan.ok());
   EXPECT_EQ(plan->placement.offset[a], 0u);
   EXPECT_EQ(plan->placement.offset[b], 128u);
@@ -110,9 +110,9 @@ TEST(Place, WhatIsLargerThanABlockIsRefusedByName) {
   const GraphMaker m = chain();
   std::vector<MemoryNeed> needs = m.needs();
   for (MemoryNeed& need : needs) need.block_bytes = 100;
-  EXPECT_TRUE(compile(m.graph, needs).ok());
+  EXPECT_TRUE(plan_with(m.graph, needs).ok());
   needs[0].block_bytes = 99;
-  const Result<Plan> plan = compile(m.graph, needs);
+  const Result<Plan> plan = plan_with(m.graph, needs);
   ASSERT_FALSE(plan.ok());
   EXPECT_EQ(plan.error().code, ErrorCode::kOutOfMemory);
   EXPECT_EQ(plan.error().message, "a takes 100 bytes, the device gives at most 99 in one piece");

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kGraphs = 4000;
 
 Plan plan_of(const RandomGraph& random) {
-  Result<Plan> plan = compile(random.maker.graph, random.needs);
+  Result<Plan> plan = plan_with(random.maker.graph, random.needs);
   EXPECT_TRUE(plan.ok()) << (plan.ok() ? "" : plan.error().message);
   return std::move(plan).value();
 }

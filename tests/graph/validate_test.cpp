@@ -38,6 +38,26 @@ TEST(Validate, StaleHandleIsRefused) {
                                HasSubstr("\"refine\"")));
 }
 
+TEST(Compile, AsksWhatAValidGraphTakesOnceWithItsUsage) {
+  int n_asked = 0;
+  VkImageUsageFlags usage = 0;
+  const NeedsOf needs_of = [&](const GraphDecl& graph) {
+    ++n_asked;
+    usage = graph.resources[0].image_usage;
+    return std::vector<MemoryNeed>(graph.resources.size());
+  };
+  GraphMaker m;
+  const auto a = m.image("alga");
+  m.pass("reader", {use(a, 0, kRead)}, true);
+  EXPECT_FALSE(compile(m.graph, needs_of).ok());
+  EXPECT_EQ(n_asked, 0);
+  m.graph.passes.clear();
+  m.pass("writer", {use(a, 0, kWrite)}, true);
+  EXPECT_TRUE(compile(m.graph, needs_of).ok());
+  EXPECT_EQ(n_asked, 1);
+  EXPECT_EQ(usage, VkImageUsageFlags{VK_IMAGE_USAGE_STORAGE_BIT});
+}
+
 // A graph is declared by the program, so its user is not told of bad input (status 2).
 TEST(Validate, RefusalsAreBugsOfOursNotBadInput) {
   GraphMaker m;
