@@ -4,8 +4,11 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <optional>
 #include <string_view>
+
+#include "engine/core/text.hpp"
 
 namespace neritic::gpu {
 namespace {
@@ -75,9 +78,16 @@ std::string device_names(std::span<const DeviceInfo> devices) {
 }
 
 Error no_device() {
+  // Where one is set the loader looks at the drivers that it names and at no other.
+  for (const char* name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"})
+    if (const char* files = std::getenv(name); files && *files)
+      return failure(ErrorCode::kNoDevice,
+                     "no Vulkan device: {} is '{}', and no other driver is looked for; unset it "
+                     "(the Debian package mesa-vulkan-drivers brings a driver)",
+                     name, printable(files, 200));
   return failure(ErrorCode::kNoDevice,
                  "no Vulkan device: install the Debian package mesa-vulkan-drivers; where it is "
-                 "installed, its driver does not load (ulimit -v too small? VK_DRIVER_FILES set?)");
+                 "installed, its driver does not load (ulimit -v too small?)");
 }
 
 Result<std::uint32_t> choose_device(std::span<const DeviceInfo> devices,

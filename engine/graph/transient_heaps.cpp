@@ -64,9 +64,11 @@ Status TransientHeaps::allocate(gpu::Allocator& allocator, const std::vector<Nee
       wanted.size = c.block_bytes == 0 ? left : std::min(left, c.block_bytes);
       wanted.alignment = c.alignment;
       wanted.memoryTypeBits = c.memory_type_bits;
-      NERITIC_TRY(gpu::Allocation block, allocator.allocate(wanted, gpu::MemoryUse::kDevice,
-                                                            c.kind == ResourceKind::kBuffer));
-      heap.blocks.push_back(std::move(block));
+      auto block =
+          allocator.allocate(wanted, gpu::MemoryUse::kDevice, c.kind == ResourceKind::kBuffer);
+      if (!block.ok())
+        return Error{block.error().code, "transient memory of frames: " + block.error().message};
+      heap.blocks.push_back(std::move(*block));
       left -= wanted.size;
     }
     heaps_.push_back(std::move(heap));

@@ -257,6 +257,7 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
   } cases[] = {
       {"--headless --log x.csv", "still.toml",
        "--log: accepted where a vehicle has dynamics or a diver swims; in "},
+      {"--headless --log-rate 0", "still.toml", "--log-rate: accepted where a vehicle"},
       {"--log x.csv", "dive.toml", "--log: accepted with --headless and without flags of pictures"},
       {"--headless --frames 3 --json", "dive.toml",
        "--json: accepted with --headless and without flags of pictures"},

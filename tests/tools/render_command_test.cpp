@@ -70,6 +70,10 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
       {"render " + scene("pool.toml") + out + " --sensor camera --sensor nobody", "camera, sonar"},
       {"render " + scene("pool.toml") + out + " --water 4X", "4X"},
       {"render " + scene("pool.toml") + out + " --colour red", "neritic render --help"},
+      {"render " + scene("pool.toml") + out + " --frames abc",
+       "--frames: 'abc' found, 1 to 1000000 is accepted"},
+      {"render " + scene("pool.toml") + out + " --chart-cell 2000",
+       "--chart-cell: '2000' found, 0.001 to 1000 is accepted"},
       {"rendre " + scene("pool.toml"), "rendre"},
       {"render", "scene"}};
   for (const auto& c : cases) {
@@ -99,6 +103,8 @@ TEST(RenderCommand, WithoutADeviceOneLineNamesThePackage) {
               "VK_ICD_FILENAMES=/nonexistent.json VK_DRIVER_FILES=/nonexistent.json");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.said.find("mesa-vulkan-drivers"), std::string::npos) << outcome.said;
+  EXPECT_NE(outcome.said.find("VK_DRIVER_FILES is '/nonexistent.json'"), std::string::npos)
+      << outcome.said;
   EXPECT_EQ(std::count(outcome.said.begin(), outcome.said.end(), '\n'), 1);
 }
 

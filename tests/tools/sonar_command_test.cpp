@@ -365,6 +365,9 @@ TEST_F(SmallImages, WrongFlagsAreRefusedByName) {
   expect_refused(words({"--gamma", "0"}), "--gamma");
   expect_refused(words({"--axes", "maya"}), "--axes");
   expect_refused(words({"--method", "magic"}), "--method");
+  expect_refused(words({"--azimuth", "-90"}),
+                 "--azimuth: -90 degrees found, more than 0 or two edges are accepted");
+  expect_refused(words({"--elevation", "0"}), "--elevation: 0 degrees found, more than 0");
   expect_refused(with("--intrinsics", "calib.yaml"), "fx,fy,cx,cy or a .json file is accepted");
   expect_refused(words({"--seed", "-1"}), "0 to 18446744073709551615");
   expect_refused(words({"--seed", "99999999999999999999999"}), "0 to 18446744073709551615");

@@ -33,6 +33,19 @@ std::string seed_number(const std::string& text) {
   return whole ? "" : text + " found; a whole number from 0 to 18446744073709551615 is accepted";
 }
 
+// Numbers from least to most, in the words of every other refusal.
+template <class T>
+CLI::Validator between(T least, T most) {
+  const auto check = [=](const std::string& text) -> std::string {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good =
+        error == std::errc() && end == text.data() + text.size() && value >= least && value <= most;
+    return good ? "" : fmt::format("'{}' found, {} to {} is accepted", text, least, most);
+  };
+  return CLI::Validator(check, fmt::format("in [{} - {}]", least, most));
+}
+
 void add_quality(CLI::App& command, std::string& quality) {
   command
       .add_option("--quality", quality,
@@ -50,7 +63,7 @@ void add_render(CLI::App& app, Run& run) {
       ->add_option("--frames", flags->frames,
                    "number of frames, apart by the rate_hz of the first camera, else of the first "
                    "sonar; of the quickest sensor with --own-rates")
-      ->check(CLI::Range(1, 1000000));
+      ->check(between(1, 1000000));
   command->add_option("--size", flags->size, "WxH of every camera, pixels");
   command->add_option(
       "--time", flags->time_s,
@@ -70,7 +83,7 @@ void add_render(CLI::App& app, Run& run) {
   command
       ->add_option("--chart-cell", flags->chart_cell_m,
                    "metres a cell of charts that profiling sonars sound")
-      ->check(CLI::Range(0.001, 1000.0));
+      ->check(between(0.001, 1000.0));
   add_quality(*command, flags->quality);
   command->add_flag("--track-only", flags->track_only,
                     "no frame folders: only what sonars accumulate over the frames (OUT/track)");
@@ -168,7 +181,7 @@ void add_sonar(CLI::App& app, Run& run) {
   command->add_flag("--overwrite", flags->overwrite,
                     "of folders: make frames again that OUT has already");
   command->add_option("--workers", flags->workers, "of folders: threads that read and write")
-      ->check(CLI::Range(1, 256));
+      ->check(between(1, 256));
   command
       ->add_option("--out", flags->out,
                    "folder for sonar.npy, .png, .json; of a folder, one folder a frame")
@@ -341,7 +354,7 @@ void add_physio(CLI::App& app, Run& run) {
   command->add_option("--channel", flags->channel,
                       "of several: its number from 0, or its name (.csv, WFDB)");
   command->add_option("--rate", flags->rate_hz, "samples a second, where a .csv does not say")
-      ->check(CLI::Range(0.1, 1e6));
+      ->check(between(0.1, 1e6));
   command->add_option("--annotations", flags->annotations,
                       "ecg: marked beats (.atr); a record's own beside it is found");
   command

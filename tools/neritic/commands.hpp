@@ -56,7 +56,7 @@ struct DiveFlags {
   bool headless = false, fast = false, panels = false, validation = false;
   // Of scenes with physics, headless.
   std::string log, plot, record, replay;
-  double log_rate_hz = 0.0;  // 0: the controllers'
+  std::optional<double> log_rate_hz;  // absent or 0: the controllers'
   bool realtime = false, json = false;
 };
 Status run_dive(const DiveFlags& flags);

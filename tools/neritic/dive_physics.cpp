@@ -30,7 +30,7 @@ bool draws(const DiveFlags& flags) {
 // The first flag that only a dive of physics alone takes; empty: none.
 std::string physics_flag(const DiveFlags& flags) {
   if (!flags.log.empty()) return "--log";
-  if (flags.log_rate_hz > 0.0) return "--log-rate";
+  if (flags.log_rate_hz) return "--log-rate";
   if (!flags.plot.empty()) return "--plot";
   if (!flags.record.empty()) return "--record";
   if (!flags.replay.empty()) return "--replay";
@@ -333,8 +333,9 @@ bool asks_for_physics_alone(const DiveFlags& flags, const scene::Scene& scene) {
 
 Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   const std::string flag = physics_flag(flags);
-  if (!(flags.log_rate_hz >= 0.0 && flags.log_rate_hz <= 1e4))
-    return bad_input("--log-rate: {}; a number from 0 to 10000 is accepted", flags.log_rate_hz);
+  const double log_rate_hz = flags.log_rate_hz.value_or(0.0);
+  if (!(log_rate_hz >= 0.0 && log_rate_hz <= 1e4))
+    return bad_input("--log-rate: {}; a number from 0 to 10000 is accepted", log_rate_hz);
   if (flag.empty()) return {};
   if (!PhysicsWorld::needed(scene))
     return bad_input("{}: accepted where a vehicle has dynamics or a diver swims; in {} none does",
@@ -343,7 +344,7 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
     return bad_input("{}: accepted with --headless and without flags of pictures", flag);
   if (!flags.replay.empty() &&
       (!flags.log.empty() || !flags.record.empty() || flags.realtime || !flags.plot.empty() ||
-       flags.json || flags.seconds || flags.log_rate_hz > 0.0))
+       flags.json || flags.seconds || flags.log_rate_hz))
     return bad_input(
         "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --realtime, "
         "--json; it runs as long as the recording");
@@ -360,7 +361,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
     NERITIC_TRY_STATUS(check_writable(file));
   const auto simulation = world->simulation({.readers = 0, .log = true, .seed = scene.seed});
   DiveRecorder recorder(*world, {.rows = !flags.log.empty() || !flags.plot.empty(),
-                                 .row_rate_hz = flags.log_rate_hz});
+                                 .row_rate_hz = flags.log_rate_hz.value_or(0.0)});
   const Interrupt interrupt;
   const Pace pace = run_steps(*simulation, recorder, flags, seconds, world->step_s(), interrupt);
   const Status written = write_results(flags, *world, *simulation, recorder);

@@ -54,6 +54,7 @@ std::string DiveTimes::summary(std::uint64_t frames, double seconds) const {
   for (const TimeRow& row : passes_) widest = std::max(widest, row.name.size());
   text += fmt::format("{:{}}  {:>9}  {:>9}  {:>6}\n", "ms", widest, "median", "max", "runs");
   const auto line = [&](const TimeRow& row) {
+    if (row.samples_ms.empty()) return;  // a single frame has none before it
     text += fmt::format("{:{}}  {:9.3f}  {:9.3f}  {:6}\n", row.name, widest, row.median_ms(),
                         row.max_ms(), row.samples_ms.size());
   };

@@ -1,6 +1,7 @@
 #include "tools/neritic/render_sheet.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "engine/core/files.hpp"
 #include "engine/scene/image_file.hpp"
@@ -29,39 +30,64 @@ void add_camera(std::vector<Picture>& out, const CameraFrame& camera) {
   }
 }
 
-void add_geometry(std::vector<Picture>& out, const CameraFrame& camera) {
+// The classes in the picture, the largest in it first.
+std::vector<std::pair<Rgb, std::string>> key_of(const ImageU16& labels, const ClassNames& names) {
+  std::map<std::uint16_t, std::size_t> pixels;
+  for (const std::uint16_t label : labels.data)
+    if (label != 0) ++pixels[label];
+  std::vector<std::pair<std::uint16_t, std::size_t>> order(pixels.begin(), pixels.end());
+  std::ranges::stable_sort(order, std::greater<>(), &std::pair<std::uint16_t, std::size_t>::second);
+  std::vector<std::pair<Rgb, std::string>> key;
+  for (const auto& [label, count] : order) {
+    const auto name = names.find(label);
+    key.emplace_back(label_color(label),
+                     name != names.end() ? name->second : fmt::format("class {}", label));
+  }
+  return key;
+}
+
+void add_geometry(std::vector<Picture>& out, const CameraFrame& camera, const ClassNames& names) {
   const ViewImages& view = camera.eyes.front();
   const auto add = [&](ImageU8 picture, const std::string& what, const std::string& legend = "") {
     out.push_back(
         {{std::move(picture), camera.name + ": " + what + legend}, camera.name + "_" + what});
   };
-  if (!view.depth.empty()) add(depth_picture(view.depth), "depth");
+  if (const auto span = depth_span(view.depth))
+    add(depth_picture(view.depth), "depth",
+        fmt::format(", {:.3g} m (bright) to {:.3g} m", span->first, span->second));
+  else if (!view.depth.empty())
+    add(depth_picture(view.depth), "depth", ": nothing");
   if (!view.normals.empty()) add(normals_picture(view.normals), "normals");
-  if (!view.labels.empty()) add(labels_picture(view.labels), "labels");
+  if (!view.labels.empty()) {
+    add(labels_picture(view.labels), "labels");
+    out.back().tile.key = key_of(view.labels, names);
+  }
   if (!view.instances.empty()) add(labels_picture(view.instances), "instances");
   if (moves(view.motion)) add(motion_picture(view.motion), "motion", " (black: still)");
 }
 
-// On a sheet no word of a sonar's own picture could be read, so the caption says the range.
+// On a sheet no word of a sonar's own picture could be read, so the caption says what they do.
 Tile sonar_tile(const SonarFrame& sonar, const std::string& name) {
   const sonar::Limits& l = sonar.grid.limits;
   sonar::PanelOptions options = sonar::panel_options(sonar.kind, sonar.level, sonar.terms.output);
   options.words = false;
   if (sonar.image.n_azimuth == 1) return {sonar::draw_sonar(sonar_files(sonar)), name};
   return {sonar::draw_panel(sonar.grid, sonar.image, options),
-          fmt::format("{}: {:g} to {:g} m", name, l.range_min_m, l.range_max_m)};
+          fmt::format("{}: {:g} to {:g} m, {:.3g}\u00b0 wide", name, l.range_min_m, l.range_max_m,
+                      degrees(l.azimuth_max_rad - l.azimuth_min_rad))};
 }
 
 }  // namespace
 
-Status write_sheet(const std::filesystem::path& out, const FrameResult& result) {
+Status write_sheet(const std::filesystem::path& out, const FrameResult& result,
+                   const ClassNames& names) {
   std::vector<Picture> pictures;
   for (const CameraFrame& camera : result.cameras) add_camera(pictures, camera);
   for (const SonarFrame& sonar : result.sonars) {
     const std::string name = sonar.head.empty() ? sonar.name : sonar.name + "_" + sonar.head;
     pictures.push_back({sonar_tile(sonar, name), name + "_sonar"});
   }
-  if (!result.cameras.empty()) add_geometry(pictures, result.cameras.front());
+  if (!result.cameras.empty()) add_geometry(pictures, result.cameras.front(), names);
   NERITIC_TRY_STATUS(make_folder(out / "sheet"));
   std::vector<Tile> tiles;
   for (Picture& picture : pictures) {

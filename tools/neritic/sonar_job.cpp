@@ -46,6 +46,9 @@ Result<SonarKind> kind_of(const std::string& name) {
 Result<std::pair<double, double>> aperture(const char* flag, const std::string& text) {
   NERITIC_TRY(const auto values, parse_numbers(flag, text, 1, 2));
   if (values.size() == 2) return std::pair{radians(values[0]), radians(values[1])};
+  if (!(values[0] > 0.0))
+    return bad_input("--{}: {:g} degrees found, more than 0 or two edges are accepted", flag,
+                     values[0]);
   return std::pair{-radians(values[0]) / 2.0, radians(values[0]) / 2.0};
 }
 

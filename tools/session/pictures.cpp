@@ -12,39 +12,50 @@ std::uint8_t byte_of(double unit) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(unit, 0.0, 1.0) * 255.0));
 }
 
-void set_rgb(ImageU8& image, std::size_t pixel, double r, double g, double b) {
-  image.data[3 * pixel] = byte_of(r);
-  image.data[3 * pixel + 1] = byte_of(g);
-  image.data[3 * pixel + 2] = byte_of(b);
+void set_rgb(ImageU8& image, std::size_t pixel, const Rgb& color) {
+  std::copy(color.begin(), color.end(), image.data.begin() + std::ptrdiff_t(3 * pixel));
 }
 
-// Hue in turns, full saturation, value.
-void set_hue(ImageU8& image, std::size_t pixel, double hue, double saturation, double value) {
+Rgb rgb(double r, double g, double b) {
+  return {byte_of(r), byte_of(g), byte_of(b)};
+}
+
+// Hue in turns, saturation, value.
+Rgb of_hue(double hue, double saturation, double value) {
   const auto channel = [&](double shift) {
     const double h = std::fmod(hue + shift, 1.0) * 6.0;
     const double ramp = std::clamp(std::abs(h - 3.0) - 1.0, 0.0, 1.0);
     return value * (1.0 - saturation + saturation * ramp);
   };
-  set_rgb(image, pixel, channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0));
+  return rgb(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0));
 }
 
 }  // namespace
 
-ImageU8 depth_picture(const ImageF32& depth_m) {
-  ImageU8 out(depth_m.width, depth_m.height, 3);
+std::optional<std::pair<double, double>> depth_span(const ImageF32& depth_m) {
   double nearest = INFINITY, farthest = 0.0;
   for (const float d : depth_m.data)
     if (std::isfinite(d) && d > 0.0f) {
       nearest = std::min<double>(nearest, d);
       farthest = std::max<double>(farthest, d);
     }
+  if (farthest == 0.0) return std::nullopt;
+  return std::pair{nearest, farthest};
+}
+
+ImageU8 depth_picture(const ImageF32& depth_m) {
+  ImageU8 out(depth_m.width, depth_m.height, 3);
+  const auto shown = depth_span(depth_m);
+  if (!shown) return out;
+  const auto [nearest, farthest] = *shown;
   const double span = std::max(std::log(farthest / nearest), 1e-6);
   for (std::size_t i = 0; i < depth_m.data.size(); ++i) {
     const double d = depth_m.data[i];
     if (!std::isfinite(d) || d <= 0.0) continue;
     const double t = 1.0 - std::log(d / nearest) / span;
-    set_rgb(out, i, 0.08 + 0.92 * t * t, 0.10 + 0.80 * t,
-            0.25 + 0.50 * std::sqrt(t) * (1.2 - 0.6 * t));
+    set_rgb(
+        out, i,
+        rgb(0.08 + 0.92 * t * t, 0.10 + 0.80 * t, 0.25 + 0.50 * std::sqrt(t) * (1.2 - 0.6 * t)));
   }
   return out;
 }
@@ -54,21 +65,23 @@ ImageU8 normals_picture(const ImageF32& normals) {
   for (std::size_t i = 0; i < out.data.size() / 3; ++i) {
     const float* n = &normals.data[3 * i];
     if (n[0] == 0.0f && n[1] == 0.0f && n[2] == 0.0f) continue;
-    set_rgb(out, i, 0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2]);
+    set_rgb(out, i, rgb(0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2]));
   }
   return out;
+}
+
+Rgb label_color(std::uint16_t label) {
+  if (label == 0) return {0, 0, 0};
+  if (label == sonar::kShadow) return rgb(0.22, 0.22, 0.26);
+  if (label == sonar::kGhost) return rgb(0.8, 0.8, 0.8);
+  // Steps of the golden ratio round the colour circle keep neighbours in number apart in hue.
+  return of_hue(std::fmod(label * 0.61803398875, 1.0), 0.65, 0.9);
 }
 
 ImageU8 labels_picture(const ImageU16& labels) {
   ImageU8 out(labels.width, labels.height, 3);
   for (std::size_t i = 0; i < labels.data.size(); ++i)
-    if (labels.data[i] == sonar::kShadow)
-      set_rgb(out, i, 0.22, 0.22, 0.26);
-    else if (labels.data[i] == sonar::kGhost)
-      set_rgb(out, i, 0.8, 0.8, 0.8);
-    // Steps of the golden ratio round the colour circle keep neighbours in number apart in hue.
-    else if (labels.data[i])
-      set_hue(out, i, std::fmod(labels.data[i] * 0.61803398875, 1.0), 0.65, 0.9);
+    if (labels.data[i]) set_rgb(out, i, label_color(labels.data[i]));
   return out;
 }
 
@@ -81,7 +94,7 @@ ImageU8 motion_picture(const ImageF32& motion_px) {
     const double x = motion_px.data[2 * i], y = motion_px.data[2 * i + 1];
     if (!std::isfinite(x + y)) continue;
     const double turn = std::atan2(y, x) / (2.0 * kPi) + 0.5;
-    set_hue(out, i, turn, 0.8, std::sqrt(std::hypot(x, y) / longest));
+    set_rgb(out, i, of_hue(turn, 0.8, std::sqrt(std::hypot(x, y) / longest)));
   }
   return out;
 }

@@ -1,5 +1,6 @@
 // Contact sheets: captioned pictures beside each other.
 #include <algorithm>
+#include <cmath>
 
 #include "sonar/canvas.hpp"
 #include "tools/session/pictures.hpp"
@@ -31,12 +32,28 @@ void place(ImageU8& out, const Tile& tile, const Slot& slot) {
                 &out.data[(std::size_t{top + v} * out.width + left) * 3]);
 }
 
+// The caption, and behind it the colours of its key while they fit.
+void write_caption(sonar::Canvas& canvas, const Tile& tile, const Slot& slot) {
+  constexpr double kWord_px = 9.0, kSwatch_px = 11.0, kSpace_px = 4.0, kAfter_px = 9.0;
+  const double y = slot.y + kCaptionBand_px - 9.0;
+  double x = slot.x + 2.0;
+  canvas.text(x, y, kCaption_px, tile.caption, kInk);
+  x += sonar::Canvas::text_width(kCaption_px, tile.caption) + 2.0 * kAfter_px;
+  for (const auto& [color, word] : tile.key) {
+    const double width = kSwatch_px + kSpace_px + sonar::Canvas::text_width(kWord_px, word);
+    if (x + width > slot.x + slot.width) return;
+    x = std::round(x);
+    canvas.fill_rectangle(x, y - kSwatch_px, x + kSwatch_px, y,
+                          {color[0] / 255.0f, color[1] / 255.0f, color[2] / 255.0f});
+    canvas.text(x + kSwatch_px + kSpace_px, y - 1.0, kWord_px, word, kInk);
+    x += width + kAfter_px;
+  }
+}
+
 ImageU8 draw(std::uint32_t width, std::uint32_t height, const std::vector<Tile>& tiles,
              const std::vector<Slot>& slots) {
   sonar::Canvas canvas(width, height, kPaper);
-  for (std::size_t i = 0; i < tiles.size(); ++i)
-    canvas.text(slots[i].x + 2.0, slots[i].y + kCaptionBand_px - 9.0, kCaption_px, tiles[i].caption,
-                kInk);
+  for (std::size_t i = 0; i < tiles.size(); ++i) write_caption(canvas, tiles[i], slots[i]);
   ImageU8 out = canvas.take();
   for (std::size_t i = 0; i < tiles.size(); ++i) place(out, tiles[i], slots[i]);
   return out;
