@@ -101,7 +101,7 @@ void read_jacket(const CaseField& field, std::optional<Jacket>& jacket) {
   field.allow(kJacketKeys);
   read_bounded(field["capacity_l"], kLitre_m3, kJacketCapacity_m3, jacket->capacity_m3);
   read_bounded(field["mass_kg"], 1.0, kJacketMass_kg, jacket->mass_kg);
-  jacket->volume_m3 = kLitre_m3 * field["volume_l"].number(1e3 * jacket->volume_m3);
+  read_bounded(field["volume_l"], kLitre_m3, kJacketVolume_m3, jacket->volume_m3);
 }
 
 void read_suit(const CaseField& field, std::optional<Suit>& suit) {

@@ -28,7 +28,15 @@ Status check_gear(const Gear& gear) {
   if (gear.jacket)
     NERITIC_TRY_STATUS(
         check_limits({{"jacket capacity", gear.jacket->capacity_m3, kJacketCapacity_m3},
-                      {"jacket mass", gear.jacket->mass_kg, kJacketMass_kg}}));
+                      {"jacket mass", gear.jacket->mass_kg, kJacketMass_kg},
+                      {"jacket volume", gear.jacket->volume_m3, kJacketVolume_m3},
+                      {"jacket inflator", gear.jacket->inflator_m2, kValveArea_m2},
+                      {"jacket deflator", gear.jacket->deflator_m2, kValveArea_m2},
+                      {"jacket dump valve", gear.jacket->dump_m2, kValveArea_m2},
+                      {"jacket relief valve", gear.jacket->relief_m2, kValveArea_m2},
+                      {"jacket relief", gear.jacket->relief_pa, kJacketRelief_pa},
+                      {"jacket hose", gear.jacket->hose_m, kJacketHose_m},
+                      {"jacket sideways", gear.jacket->sideways, kJacketSideways}}));
   if (gear.lead_kg) NERITIC_TRY_STATUS(check_limits({{"lead", *gear.lead_kg, kLead_kg}}));
   if (gear.lead_at_shoulders)
     NERITIC_TRY_STATUS(

@@ -85,7 +85,9 @@ inline constexpr Bounds kFinLength_m{0.01, 1.2}, kFinWidth_m{0.02, 1.0}, kFinAng
 inline constexpr Bounds kTankVolume_m3{1e-4, 0.05}, kTankMass_kg{0.1, 100.0},
     kTankOuterVolume_m3{1e-4, 0.1}, kTankRadius_m{0.01, 0.3}, kTankLength_m{0.05, 1.5},
     kTankPressure_pa{0.0, 350e5};
-inline constexpr Bounds kJacketCapacity_m3{1e-3, 0.06}, kJacketMass_kg{0.0, 20.0};
+inline constexpr Bounds kJacketCapacity_m3{1e-3, 0.06}, kJacketMass_kg{0.0, 20.0},
+    kJacketVolume_m3{0.0, 0.02}, kValveArea_m2{0.0, 1e-2}, kJacketRelief_pa{0.0, 1e6},
+    kJacketHose_m{0.0, 1.0}, kJacketSideways{0.0, 1.0};
 inline constexpr Bounds kLead_kg{0.0, 60.0}, kLeadShare{0.0, 1.0}, kGearDragArea_m2{0.0, 5.0};
 
 // The first thing that nobody wears: its name, what was found, what is accepted.

@@ -125,6 +125,10 @@ TEST(DiverFile, MistakesAreSaidInTheFilesUnitsAndWithTheirLine) {
             "d.toml:2: fins.width_m: 3 found, a number in [0.02, 1] is accepted");
   EXPECT_EQ(diver_fault("jacket = { capacity_l = 0.2 }"),
             "d.toml:1: jacket.capacity_l: 0.2 found, a number in [1, 60] is accepted");
+  for (const char* litres : {"-50", "1000", "21"})
+    EXPECT_EQ(diver_fault(std::string("jacket = { volume_l = ") + litres + " }"),
+              fmt::format("d.toml:1: jacket.volume_l: {:g} found, a number in [0, 20] is accepted",
+                          std::stod(litres)));
   EXPECT_EQ(diver_fault("[[tanks]]\noxygen = 0.6\nhelium = 0.5"),
             "d.toml:3: tanks[0].helium: 0.5 beside 0.6 of oxygen found, shares of 1 are accepted");
   EXPECT_EQ(diver_fault("\n\nheigth_m = 1.8"),
