@@ -175,6 +175,36 @@ TEST(HumanDiveExtremes, AWildSuitIsBoundedAndTheDiverSwimsOn) {
   EXPECT_LT(glm::length(after.human.root.velocity.angular()), 1.0);
 }
 
+// Who breathes from a tank that is not there gets no gas, and has a computer that goes on.
+TEST(HumanDiveExtremes, ATankThatIsNoneHoldsTissuesAndNotTheComputer) {
+  TestDive dive = dive_of(busy_diver_text());
+  dive.run(3.0);
+  HumanSteering steering;
+  steering.worn = 1;
+  steering.human.joints = diver::rotations_of(diver::streamlined(dive.world->humans()[0].body));
+  steering.human.buttons = diver::kInflate;
+  steering.human.tank = 3;
+  ASSERT_TRUE(dive.simulation->push({.is_human = 1, .steering = steering}));
+  dive.run(1.5);
+  const diver::DiveComputerState before = human_of(dive).human.life.computer;
+  dive.run(20.0);
+  const diver::HumanState& human = human_of(dive).human;
+  const diver::DiveComputerState& computer = human.life.computer;
+  EXPECT_GT(before.last.depth_m, human.root.position_ned_m.z + 4.0);  // it has risen
+  EXPECT_NEAR(computer.last.depth_m, human.root.position_ned_m.z, 1.5);
+  EXPECT_EQ(computer.refused, 0u);
+  EXPECT_GT(computer.dive_min, before.dive_min + 0.3);
+  EXPECT_EQ(computer.last.gas, 0u);
+  EXPECT_EQ(computer.last.breathed, 0u);
+  EXPECT_TRUE(sim::same_bits(computer.tissues, before.tissues));
+  EXPECT_TRUE(sim::same_bits(computer.oxygen, before.oxygen));
+  steering.human.tank = 0;
+  ASSERT_TRUE(dive.simulation->push({.is_human = 1, .steering = steering}));
+  dive.run(15.0);
+  EXPECT_EQ(human_of(dive).human.life.computer.last.breathed, 1u);
+  EXPECT_FALSE(sim::same_bits(human_of(dive).human.life.computer.tissues, before.tissues));
+}
+
 TEST(HumanDiveExtremes, MessagesThatAreNoNumbersNeverComeIn) {
   TestDive dive = dive_of(busy_diver_text()), untouched = dive_of(busy_diver_text());
   std::uint64_t pushed = 0;

@@ -117,10 +117,15 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
   state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);
   state.contact.impulse_n_s = report.impulse_n_s;
   if (!computer_due(step, dt_s)) return;
-  const diver::DiveSample sample{after.position_ned_m.z, state.human.held.tank,
-                                 state.human.life.lungs.unfed_s > 0.0 ? 0U : 1U};
-  state.human.life.computer =
-      human.computer->step(state.human.life.computer, sample, diver::kComputerSample_s);
+  diver::DiveComputerState& computer = state.human.life.computer;
+  // Out of a tank that the diver has not got nothing comes; without any there is the air above.
+  const std::uint64_t tank = state.human.held.tank;
+  const bool none = human.body.tank_count > 0 && tank >= human.body.tank_count;
+  const bool known = tank < human.computer->settings().gases.size();
+  const bool unfed = none || state.human.life.lungs.unfed_s > 0.0;
+  computer = human.computer->step(
+      computer, {after.position_ned_m.z, known ? tank : computer.last.gas, unfed ? 0U : 1U},
+      diver::kComputerSample_s);
 }
 
 Pose drawn_pose(const HumanPhysics& state) {
