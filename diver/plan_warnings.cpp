@@ -9,7 +9,8 @@ namespace {
 
 using enum PlanWarningKind;
 
-// R. W. Hamilton's and agencies' working and deco limits; hypoxia as agencies teach it.
+// R. W. Hamilton's and agencies' working and deco limits; hypoxia as agencies teach it, where air
+// at the surface has more: who dives in the mountains is used to theirs.
 constexpr double kBottomPo2_bar = 1.4, kDecoPo2_bar = 1.6, kLeastPo2_bar = 0.16;
 constexpr double kNarcotic_m = 30.0, kCns_percent = 80.0, kOtuLimit = 300.0;
 constexpr double kSlack = 1e-6;  // limits may be met
@@ -46,8 +47,8 @@ class Warnings {
     const bool deco = gas.role == GasRole::kDeco;
     over(kOxygenHigh, s.gas, run_min, depth_m, po2, deco ? kDecoPo2_bar : kBottomPo2_bar,
          deco ? kDecoSlack_bar : kSlack);
-    if (po2 < kLeastPo2_bar - kSlack)
-      keep({kOxygenLow, run_min, depth_m, po2, kLeastPo2_bar, s.gas, {}});
+    const double least = std::min(kLeastPo2_bar, kAir.oxygen * where_.surface_bar);
+    if (po2 < least - kSlack) keep({kOxygenLow, run_min, depth_m, po2, least, s.gas, {}});
     const double density = gas_density_g_l(gas.mix, p);
     const bool most = density > kMostDensity_g_l;
     over(most ? kDensityMost : kDensityAdvised, s.gas, run_min, depth_m, density,
@@ -95,7 +96,7 @@ class Warnings {
         return fmt::format("pO2 {:.2f} bar {}: above {:g} (MOD {:.1f} m)", w.value, place, w.limit,
                            max_operating_depth_m(request_.gases[w.gas].mix, w.limit, where_));
       case kOxygenLow:
-        return fmt::format("pO2 {:.2f} bar {}: below {:g}, hypoxic", w.value, place, w.limit);
+        return fmt::format("pO2 {:.3f} bar {}: below {:.3g}, hypoxic", w.value, place, w.limit);
       case kDensityAdvised:
         return fmt::format("gas density {:.1f} g/L {}: above {:g}, advised", w.value, place,
                            w.limit);

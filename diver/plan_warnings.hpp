@@ -10,7 +10,7 @@ namespace neritic::diver {
 
 enum class PlanWarningKind {
   kOxygenHigh,        // pO2 above 1.4 bar at the bottom, 1.6 at deco
-  kOxygenLow,         // pO2 below 0.16 bar
+  kOxygenLow,         // pO2 below 0.16 bar, or the air's at the surface where that is less
   kDensityAdvised,    // gas above 5.2 g/L
   kDensityMost,       // above 6.2
   kNarcosis,          // narcotic depth above 30 m

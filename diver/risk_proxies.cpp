@@ -4,6 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "diver/gas_mix.hpp"
+
 namespace neritic::diver {
 namespace {
 
@@ -25,15 +27,25 @@ constexpr double kDensity_kg_m3[] = {5.2, 6.2, 8.3};
 constexpr double kFastBreath_bpm[] = {25.0, 30.0, 40.0};
 // Oxygen: 1.4 bar is the limit by plan, 1.6 that at rest (NOAA Diving Manual, 4th ed., 2001), above
 // which no time is tabled; of the CNS limit 80 % is the most by plan. Below .18 bar too little,
-// below .16 thought suffers, below .10 consciousness goes.
+// below .16 thought suffers, below .10 consciousness goes; who is in the mountains is used to what
+// the air there has of it, down to the last.
 constexpr double kOxygen_bar[] = {1.4, 1.6, 1.8};
 constexpr double kCnsLevels_percent[] = {80.0, 100.0, 150.0};
-constexpr double kLittleOxygen_bar[] = {-0.18, -0.16, -0.10};  // of its negative
-constexpr double kPause_s[] = {5.0, 15.0, 30.0};               // skip breathing: pauses from 5 s
+constexpr double kLittleOxygen_bar[] = {0.18, 0.16, 0.10};
+constexpr double kPause_s[] = {5.0, 15.0, 30.0};  // skip breathing: pauses from 5 s
 constexpr double kMostCo2_mmhg = 200.0;
 // Litres of CO2 that raise its pressure by a mmHg: without breathing it rises by 3.8 mmHg a minute
 // of some .2 l a minute given off (Eger and Severinghaus 1961, Anesthesiology 22, 419).
 constexpr double kCo2Store_l_mmhg = 0.2 / 3.8;
+
+RiskLevel little_oxygen(double oxygen_bar, double surface_pa) {
+  const double air_bar = 1e-5 * kAir.oxygen * surface_pa;
+  const bool severe = oxygen_bar < kLittleOxygen_bar[2];
+  if (severe || oxygen_bar >= air_bar) return severe ? RiskLevel::kSevere : RiskLevel::kLow;
+  return oxygen_bar < kLittleOxygen_bar[1]   ? RiskLevel::kHigh
+         : oxygen_bar < kLittleOxygen_bar[0] ? RiskLevel::kRaised
+                                             : RiskLevel::kLow;
+}
 
 RiskLevel level_of(double value, const double (&limits)[3]) {
   int level = 0;
@@ -45,12 +57,12 @@ bool is_possible(const RiskInput& in) {
   const auto within = [](double value, double low, double high) {
     return value >= low && value <= high;
   };
-  return within(in.ambient_pa, 1e3, 2e7) && within(in.surface_pa, 1e4, 1.2e5) &&
+  return within(in.ambient_pa, 1e3, 2e7) && within(in.surface_pa, 1e4, 5e5) &&
          within(in.oxygen, 0.0, 1.0) && within(in.helium, 0.0, 1.0) &&
          in.oxygen + in.helium <= 1.0 && within(in.gas_density_kg_m3, 0.0, 400.0) &&
          within(in.oxygen_uptake_l_min, 0.0, 8.0) && within(in.ventilation_l_min, 0.0, 300.0) &&
          within(in.cns_percent, 0.0, 1e9) && within(in.breath_rate_bpm, 0.0, 120.0) &&
-         within(in.pause_s, 0.0, 1e7) && in.over_s > 0.0;
+         within(in.pause_s, 0.0, 1e12) && in.over_s > 0.0;
 }
 
 // P' = (VCO2 - VA P / 863) / store, exactly over the time; the steady state where that is endless.
@@ -102,7 +114,7 @@ RiskProxies assess_risk(const RiskProxies& before, const RiskInput& in) {
   out.oxygen_bar = 1e-5 * in.oxygen * in.ambient_pa;
   out.oxygen =
       std::max({level_of(out.oxygen_bar, kOxygen_bar), level_of(in.cns_percent, kCnsLevels_percent),
-                level_of(-out.oxygen_bar, kLittleOxygen_bar)});
+                little_oxygen(out.oxygen_bar, in.surface_pa)});
   out.gas_density = level_of(in.gas_density_kg_m3, kDensity_kg_m3);
   out.breathing =
       std::max(level_of(in.breath_rate_bpm, kFastBreath_bpm), level_of(in.pause_s, kPause_s));

@@ -42,6 +42,16 @@ TEST(PlanWarnings, AreGivenWhereALimitIsPassed) {
   EXPECT_TRUE(kinds_of(square_dive(20.0, 300.0, {0.5, 0.0})).contains(kOtu));
 }
 
+TEST(PlanWarnings, AirInTheMountainsIsNotHypoxic) {
+  DivePlanRequest lake = square_dive(18.0, 20.0);
+  lake.conventions.environment.surface_bar = surface_bar_at(2500.0);
+  EXPECT_EQ(kinds_of(lake), Kinds{});
+  lake.gases[0].mix = {0.20, 0.3};
+  const auto warnings = plan_warnings(lake, plan_dive(lake).value());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].text, "pO2 0.149 bar on 20/30 at 0 m, 0 min: below 0.157, hypoxic");
+}
+
 TEST(PlanWarnings, TellTheWorstAndWhere) {
   const DivePlanRequest request = square_dive(45.0, 10.0);
   const auto warnings = plan_warnings(request, plan_dive(request).value());

@@ -89,6 +89,20 @@ TEST(RiskProxies, OxygenHasItsLimitsBothWays) {
   EXPECT_EQ(at(0.10, 0.99), RiskLevel::kSevere);
 }
 
+// Who stands by a lake at 3000 m breathes what all breathe there; a hypoxic gas is one there too.
+TEST(RiskProxies, AirInTheMountainsIsNoRisk) {
+  RiskInput in;
+  in.ambient_pa = in.surface_pa = 70.1e3;
+  EXPECT_EQ(assess_risk({}, in).oxygen, RiskLevel::kLow);
+  in.oxygen = 0.20;
+  EXPECT_EQ(assess_risk({}, in).oxygen, RiskLevel::kHigh);
+  in.oxygen = 0.14;
+  EXPECT_EQ(assess_risk({}, in).oxygen, RiskLevel::kSevere);
+  in.surface_pa = 101325.0;  // flown there
+  in.oxygen = 0.21;
+  EXPECT_EQ(assess_risk({}, in).oxygen, RiskLevel::kHigh);
+}
+
 TEST(RiskProxies, WhatNoDiverHasIsRefusedCountedAndTheLastGoodOnesHeld) {
   RiskInput good;
   good.ambient_pa = 4e5;
