@@ -71,6 +71,26 @@ TEST(WavFile, ChannelsAreToldApart) {
   EXPECT_THAT(parse_wav(bytes, "a.wav", 2).error().message, HasSubstr("0 to 1 is accepted"));
 }
 
+// A recorder that was cut off has left both lengths as it wrote them at first: 0, the heading's, or
+// all ones. An empty recording that says so is empty, whatever follows it.
+TEST(WavFile, ARecorderThatWasCutOffGivesWhatIsThere) {
+  const std::string data = number(0x4000, 2) + number(0xC000, 2);
+  std::string file = wav_of(1, 1, 16, data);
+  const std::size_t length_at = file.size() - data.size() - 4;
+  for (const std::uint64_t riff : {0u, 36u, 0xFFFFFFFFu})
+    for (const std::uint64_t length : {0u, 0xFFFFFFFFu}) {
+      if (riff == 0xFFFFFFFFu && length == 0) continue;  // no recorder
+      file.replace(4, 4, number(riff, 4));
+      file.replace(length_at, 4, number(length, 4));
+      const auto wav = parse_wav(bytes_of(file), "a.wav", 0);
+      ASSERT_TRUE(wav.ok()) << riff << " " << length << wav.error().message;
+      EXPECT_EQ(wav->samples, (std::vector{0.5, -0.5}));
+    }
+  std::string empty = wav_of(1, 1, 16, "") + "LIST" + number(4, 4) + "INFO";
+  empty.replace(4, 4, number(empty.size() - 8, 4));
+  EXPECT_THAT(parse_wav(bytes_of(empty), "a.wav", 0).error().message, HasSubstr("no samples"));
+}
+
 TEST(WavFile, WhatIsNoneIsAnErrorInWords) {
   EXPECT_THAT(parse_wav({}, "a.wav", 0).error().message, HasSubstr("a.wav: no RIFF"));
   EXPECT_THAT(parse_wav(bytes_of(wav_of(2, 1, 4, "abcd")), "a.wav", 0).error().message,
