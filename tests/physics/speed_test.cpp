@@ -52,6 +52,29 @@ TEST(PhysicsSpeed, AVehicleWithItsRaysTakesUnderAHundredthOfACore) {
   }
 }
 
+// A diver who hovers over the wreck with all there is: contacts, dive computer, vitals, snapshots
+// and hashes; the computer's view once a second, as the log asks for it.
+TEST(PhysicsSpeed, ADiverWithEverythingOnTakesUnderAHundredthOfACore) {
+  TestDive dive =
+      dive_of(std::string(kStillWater) +
+              diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
+                         "swim = { speed_m_s = 0.45, waypoints_m = [[0, -12, -90]] }\n"));
+  dive.run(5.0);
+  double least_ms = 1e9, shown_min = 0.0;
+  for (int second = 0; second < 9; ++second) {
+    const std::clock_t begin = std::clock();
+    dive.simulation->advance(240);
+    const PhysicsHuman& human = dive.world->humans()[0];
+    shown_min += human.computer->view(dive.state().humans[0].human.life.computer).no_stop_min;
+    least_ms = std::min(least_ms, 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  EXPECT_GT(shown_min, 0.0);
+  RecordProperty("ms_a_second", fmt::format("{:.2f}", least_ms));
+  if (test::kFast) {
+    EXPECT_LT(least_ms, 10.0);
+  }
+}
+
 // At rest on the sand and on the wreck's deck, every step in contact with meshes of 25 000
 // triangles and more, sensors at their devices' rates. The aim is the same (tools/benchmark/
 // README.md has the figures); here with room for slow machines.
