@@ -96,22 +96,21 @@ DiveComputerState DiveComputer::step(const DiveComputerState& before, const Dive
                to = c.environment.pressure_bar(state.last.depth_m);
   // A new gas is breathed from the sample on that says so.
   const GasMix& mix = settings_.gases[before.last.gas].mix;
+  OxygenExposure more;
   if (before.last.breathed != 0) {
     state.tissues = load(ascent_.model, before.tissues, from, to, minutes, mix);
-    const OxygenExposure more =
-        oxygen_exposure(mix.oxygen * from, mix.oxygen * to, minutes, c.cns_from_bar);
-    state.oxygen.cns_percent += more.cns_percent;
-    state.oxygen.otu += more.otu;
+    more = oxygen_exposure(mix.oxygen * from, mix.oxygen * to, minutes, c.cns_from_bar);
   }
+  const bool submerged = std::max(before.last.depth_m, state.last.depth_m) > kSubmerged_m;
+  state.oxygen = exposure_after(before.oxygen, more, submerged ? 0.0 : minutes);
   state.ascent = observe(before.ascent, state.last.depth_m, dt_s, settings_.ascent);
-  if (std::max(before.last.depth_m, state.last.depth_m) > kSubmerged_m) {
+  if (submerged) {
     if (state.surface_min >= kNewDive_min) state.dive_min = state.deepest_m = 0.0;
     state.surface_min = 0.0;
     state.dive_min += minutes;
     state.deepest_m = std::max(state.deepest_m, state.last.depth_m);
   } else {
     state.surface_min += minutes;
-    state.oxygen.cns_percent = cns_after(state.oxygen.cns_percent, minutes);
   }
   move_anchor(state);
   return state;

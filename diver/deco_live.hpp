@@ -37,7 +37,7 @@ struct DiveSample {
 
 struct DiveComputerState {
   TissueState tissues;
-  OxygenExposure oxygen;  // the share of CNS declines at the surface
+  OxygenExposure oxygen;  // exposure_after; OTU since the computer was started, of any day
   AscentRateState ascent;
   DiveSample last;                           // that was good
   double dive_min = 0.0, surface_min = 0.0;  // since the way down; since the way up

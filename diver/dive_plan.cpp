@@ -9,7 +9,7 @@
 namespace neritic::diver {
 namespace {
 
-constexpr double kSameMinute = 1e-9;
+constexpr double kSameMinute = 1e-9, kSameDepth_m = 1e-9;
 constexpr double kDeepestPlan_m = 2000.0;
 
 bool within(double value, double least, double most) {
@@ -150,14 +150,17 @@ class WayDown {
           AscentSink& sink)
       : request_(request), settings_(settings), state_(state), sink_(sink) {}
 
-  Status run() {
+  Status run(std::size_t levels) {
     state_.gas = gas_down_to(request_.gases, 0.0);
-    for (const PlanLevel& level : request_.levels) {
+    for (std::size_t i = 0; i < levels; ++i) {
+      const PlanLevel& level = request_.levels[i];
+      const AscentState before = state_;
       if (level.depth_m > state_.depth_m)
         descend(level.depth_m);
       else
         move(level.depth_m, (state_.depth_m - level.depth_m) / request_.conventions.ascent_m_min,
              PlanPhase::kAscent);
+      if (!above_) watch_ceiling(i, before);
       const double minutes = level.leave_min - state_.run_min;
       if (minutes < -kSameMinute)
         return bad_input("{:g} m is reached after {:.4g} min, but to be left at {:g}",
@@ -167,15 +170,20 @@ class WayDown {
     }
     return {};
   }
+  const std::optional<LevelAboveCeiling>& above_ceiling() const { return above_; }
 
  private:
   void move(double to_m, double minutes, PlanPhase phase) {
-    const DecoEnvironment& where = request_.conventions.environment;
-    state_.tissues = load(settings_.model, state_.tissues, where.pressure_bar(state_.depth_m),
-                          where.pressure_bar(to_m), minutes, request_.gases[state_.gas].mix);
+    state_.tissues = moved(state_, to_m, minutes);
     sink_.segment({state_.depth_m, to_m, minutes, state_.gas, phase});
     state_.depth_m = to_m;
     state_.run_min += minutes;
+  }
+
+  TissueState moved(const AscentState& from, double to_m, double minutes) const {
+    const DecoEnvironment& where = request_.conventions.environment;
+    return load(settings_.model, from.tissues, where.pressure_bar(from.depth_m),
+                where.pressure_bar(to_m), minutes, request_.gases[from.gas].mix);
   }
 
   void descend(double to_m) {
@@ -191,10 +199,56 @@ class WayDown {
     }
   }
 
+  // Of GF low, which holds until stops begin.
+  double ceiling_m(const TissueState& tissues) const {
+    return request_.conventions.environment.depth_m(
+        ceiling(settings_.model, tissues, settings_.gf_low).pressure_bar);
+  }
+
+  // No ceiling holds for who may still come up at once.
+  bool tolerated(const TissueState& tissues, double depth_m, std::size_t gas) const {
+    if (ceiling_m(tissues) <= depth_m + kSameDepth_m) return true;
+    if (!request_.conventions.direct_ascent) return false;
+    const TissueState up =
+        after_direct_ascent(settings_, tissues, depth_m, request_.gases[gas].mix);
+    return ceiling(settings_.model, up, settings_.gf_high).pressure_bar <=
+           request_.conventions.environment.surface_bar;
+  }
+
+  // At a depth on the way from where the diver was.
+  bool tolerated_on_the_way(const AscentState& before, double depth_m) const {
+    const DecoConventions& c = request_.conventions;
+    const double off_m = depth_m - before.depth_m;
+    const double minutes = off_m > 0.0 ? off_m / c.descent_m_min : -off_m / c.ascent_m_min;
+    return tolerated(moved(before, depth_m, minutes), depth_m, before.gas);
+  }
+
+  // Upwards each metre of the way counts. At one depth tissues only come nearer to what is
+  // breathed, which it tolerates: what holds at arrival holds until the level is left.
+  void watch_ceiling(std::size_t level, const AscentState& before) {
+    double good_m = before.depth_m, bad_m = -1.0;
+    if (state_.depth_m <= before.depth_m) {
+      while (bad_m < 0.0 && good_m > state_.depth_m) {
+        const double next_m = std::max(good_m - 1.0, state_.depth_m);
+        (tolerated_on_the_way(before, next_m) ? good_m : bad_m) = next_m;
+      }
+    } else if (!tolerated(state_.tissues, state_.depth_m, state_.gas)) {
+      good_m = bad_m = state_.depth_m;
+      while (!tolerated_on_the_way(before, good_m) && good_m < kDeepestPlan_m) good_m += 1.0;
+    }
+    if (bad_m < 0.0) return;
+    while (good_m - bad_m > 1e-3) {
+      const double middle_m = 0.5 * (good_m + bad_m);
+      (tolerated_on_the_way(before, middle_m) ? good_m : bad_m) = middle_m;
+    }
+    above_ = {level, good_m};
+  }
+
   const DivePlanRequest& request_;
   const AscentSettings& settings_;
   AscentState& state_;
   AscentSink& sink_;
+  std::optional<LevelAboveCeiling> above_;
 };
 
 PlanPoint point_of(const AscentState& s) {
@@ -232,11 +286,15 @@ Result<PlanPoint> end_of_levels(const DivePlanRequest& request) {
   AscentState state = start_of(request, settings);
   DivePlan plan;
   PlanWriter writer(request, plan);
-  NERITIC_TRY_STATUS(WayDown(request, settings, state, writer).run());
+  NERITIC_TRY_STATUS(WayDown(request, settings, state, writer).run(request.levels.size()));
   return point_of(state);
 }
 
 Result<DivePlan> plan_dive(const DivePlanRequest& request) {
+  return plan_dive(request, request.levels.size());
+}
+
+Result<DivePlan> plan_dive(const DivePlanRequest& request, std::size_t levels) {
   NERITIC_TRY_STATUS(check_numbers(request));
   NERITIC_TRY_STATUS(check_bottom_gas(request));
   const AscentSettings settings = settings_of(request);
@@ -244,7 +302,9 @@ Result<DivePlan> plan_dive(const DivePlanRequest& request) {
   DivePlan plan;
   plan.start = point_of(state);
   PlanWriter writer(request, plan);
-  NERITIC_TRY_STATUS(WayDown(request, settings, state, writer).run());
+  WayDown down(request, settings, state, writer);
+  NERITIC_TRY_STATUS(down.run(std::min(levels, request.levels.size())));
+  plan.above_ceiling = down.above_ceiling();
   plan.end_of_bottom = point_of(state);
   const AscentEnd end = ascend(settings, state, writer);
   if (end == AscentEnd::kNeverClears)
@@ -253,6 +313,17 @@ Result<DivePlan> plan_dive(const DivePlanRequest& request) {
   plan.no_stops = end == AscentEnd::kDirect;
   plan.surfacing = point_of(state);
   return plan;
+}
+
+Status check_ceilings(const DivePlanRequest& request, const DivePlan& plan) {
+  if (!plan.above_ceiling) return {};
+  const LevelAboveCeiling& above = *plan.above_ceiling;
+  const PlanLevel& level = request.levels[above.level];
+  return bad_input(
+      "{:g} m until {:g} min found, above the ceiling, which is at {:.1f} m on the way there; "
+      "{:.1f} "
+      "m or deeper is accepted",
+      level.depth_m, level.leave_min, above.least_m, std::ceil(10.0 * above.least_m) / 10.0);
 }
 
 Result<TissueState> tissues_after(const std::vector<EarlierDive>& dives,
@@ -285,9 +356,8 @@ OxygenExposure oxygen_after(const std::vector<EarlierDive>& dives,
     const DecoConventions& c = dives[i].dive.conventions;
     const double po2 = dives[i].surface_gas.oxygen * c.environment.surface_bar;
     const OxygenExposure up = oxygen_exposure(po2, po2, dives[i].surface_min, c.cns_from_bar);
-    left.otu += up.otu;
-    left.cns_percent += plans[i].oxygen.cns_percent + up.cns_percent;
-    if (up.cns_percent == 0.0) left.cns_percent = cns_after(left.cns_percent, dives[i].surface_min);
+    left.cns_percent += plans[i].oxygen.cns_percent;
+    left = exposure_after(left, up, dives[i].surface_min);
   }
   return left;
 }

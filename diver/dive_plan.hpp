@@ -64,6 +64,13 @@ struct PlanPoint {
   TissueState tissues;
 };
 
+// A level above the ceiling of GF low that holds when it is reached, where a direct ascent would
+// not do: the stops below it have been left out.
+struct LevelAboveCeiling {
+  std::size_t level = 0;
+  double least_m = 0.0;  // the shallowest on the way there that is tolerated
+};
+
 struct DivePlan {
   std::vector<PlanSegment> segments;
   std::vector<PlanStop> stops;
@@ -71,7 +78,8 @@ struct DivePlan {
   std::optional<PlanPoint> first_stop;  // at arrival
   OxygenExposure oxygen;
   double max_po2_bar = 0.0;
-  bool no_stops = false;  // a direct ascent was within GF high
+  bool no_stops = false;                           // a direct ascent was within GF high
+  std::optional<LevelAboveCeiling> above_ceiling;  // the first level that is
 
   double stop_min() const;
   double run_min() const { return surfacing.run_min; }
@@ -82,8 +90,13 @@ struct DivePlan {
 // What of a request is wrong, a level that is to be left before it is reached included, and a
 // travel gas that is breathed where the bottom gas should be.
 Status check_request(const DivePlanRequest& request);
-// Errors as check_request's, or the depth at which a ceiling never clears.
+// Errors as check_request's, or the depth at which a ceiling never clears. Levels are dived as they
+// are asked for, also above a ceiling: DivePlan::above_ceiling.
 Result<DivePlan> plan_dive(const DivePlanRequest& request);
+// Of one who leaves for the surface at the end of the first so many levels.
+Result<DivePlan> plan_dive(const DivePlanRequest& request, std::size_t levels);
+// That no level is above its ceiling: what a plan for a diver must keep.
+Status check_ceilings(const DivePlanRequest& request, const DivePlan& plan);
 // The end of the last level, without an ascent.
 Result<PlanPoint> end_of_levels(const DivePlanRequest& request);
 

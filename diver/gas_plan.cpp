@@ -20,6 +20,10 @@ double bar_of(const GasMix& mix, const PlanTank& tank, double litres) {
   return 1e-5 * pressure_of(mix, 1e-3 * tank.volume_l, std::max(litres, 0.0) / kLitresAMole);
 }
 
+const GasMix& mix_of(const DivePlanRequest& request, std::size_t gas) {
+  return request.gases[gas].mix;
+}
+
 Status check_tanks(const DivePlanRequest& request, const PlanBreathing& b,
                    const std::vector<PlanTank>& tanks) {
   NERITIC_TRY_STATUS(check_limits({{"litres a minute", b.bottom_l_min, 1.0, 200.0},
@@ -34,9 +38,9 @@ Status check_tanks(const DivePlanRequest& request, const PlanBreathing& b,
     NERITIC_TRY_STATUS(check_limits({{"a tank's litres", tank.volume_l, 0.1, 200.0},
                                      {"a tank's bar", tank.pressure_bar, 1.0, 350.0}}));
     for (std::size_t k = 0; k < i; ++k)
-      if (tanks[k].gas == tank.gas)
+      if (mix_of(request, tanks[k].gas) == mix_of(request, tank.gas))
         return bad_input("two tanks of {} found, one a gas is accepted: twins as their sum",
-                         name_of(request.gases[tank.gas].mix));
+                         name_of(mix_of(request, tank.gas)));
   }
   return {};
 }
@@ -68,7 +72,7 @@ MinimumGas minimum_gas(const DivePlanRequest& request, const DivePlan& plan,
       continue;
     }
     up = true;
-    if (s.gas != out.gas) break;
+    if (mix_of(request, s.gas) != mix_of(request, out.gas)) break;
     sum += bar_min(where, s);
     out.until_m = s.to_m;
   }
@@ -76,13 +80,14 @@ MinimumGas minimum_gas(const DivePlanRequest& request, const DivePlan& plan,
   return out;
 }
 
-// Litres of a gas until a run time.
+// Litres of a mix until a run time.
 double used_until(const DivePlanRequest& request, const DivePlan& plan,
-                  const PlanBreathing& breathing, std::size_t gas, double until_min) {
+                  const PlanBreathing& breathing, const GasMix& mix, double until_min) {
   double run_min = 0.0, litres = 0.0;
   for (const PlanSegment& s : plan.segments) {
     if (run_min >= until_min - 1e-9) break;
-    if (s.gas == gas) litres += segment_litres(request, plan, breathing, s, run_min);
+    if (mix_of(request, s.gas) == mix)
+      litres += segment_litres(request, plan, breathing, s, run_min);
     run_min += s.minutes;
   }
   return litres;
@@ -91,7 +96,7 @@ double used_until(const DivePlanRequest& request, const DivePlan& plan,
 // Where the tank gives no full breath any more.
 void find_empty(const DivePlanRequest& request, const DivePlan& plan,
                 const PlanBreathing& breathing, PlanTankUse& use) {
-  const GasMix& mix = request.gases[use.tank.gas].mix;
+  const GasMix& mix = mix_of(request, use.tank.gas);
   const DecoEnvironment& where = request.conventions.environment;
   double left = litres_in(mix, use.tank, use.tank.pressure_bar), run_min = 0.0;
   for (const PlanSegment& s : plan.segments) {
@@ -102,7 +107,7 @@ void find_empty(const DivePlanRequest& request, const DivePlan& plan,
       const double least = where.pressure_bar(depth) + 1e-5 * kWeakTank_pa;
       return left - a_bar_min * bar_min(where, s, share) >= litres_in(mix, use.tank, least);
     };
-    if (s.gas == use.tank.gas) {
+    if (mix_of(request, s.gas) == mix) {
       if (!lasts(0.0) || !lasts(1.0)) {
         double good = 0.0, bad = lasts(0.0) ? 1.0 : 0.0;
         for (int i = 0; i < 40; ++i) {
@@ -137,35 +142,44 @@ Result<std::vector<PlanGasUse>> gas_use(const DivePlanRequest& request, const Di
                                         const PlanBreathing& breathing,
                                         const std::vector<PlanTank>& tanks) {
   NERITIC_TRY_STATUS(check_tanks(request, breathing, tanks));
-  std::vector<PlanGasUse> out(request.gases.size());
+  std::vector<PlanGasUse> out;
+  for (std::size_t gas = 0; gas < request.gases.size(); ++gas) {
+    const GasMix& mix = mix_of(request, gas);
+    const auto same = [&](const PlanGasUse& use) { return mix_of(request, use.gas) == mix; };
+    if (std::ranges::any_of(out, same)) continue;
+    out.push_back({gas});
+    out.back().used_l = used_until(request, plan, breathing, mix, plan.run_min());
+  }
+  const auto index_of = [&](std::size_t gas) {
+    std::size_t i = 0;
+    while (mix_of(request, out[i].gas) != mix_of(request, gas)) ++i;
+    return i;
+  };
   std::vector<double> until_m(out.size(), 0.0);
-  for (std::size_t gas = 0; gas < out.size(); ++gas)
-    out[gas].used_l = used_until(request, plan, breathing, gas, plan.run_min());
   for (std::size_t i = 0; i < request.levels.size(); ++i) {
-    DivePlanRequest part = request;
-    part.levels.resize(i + 1);
-    NERITIC_TRY(const DivePlan up, plan_dive(part));
-    const MinimumGas minimum = minimum_gas(part, up, breathing);
-    const double before =
-        used_until(request, plan, breathing, minimum.gas, up.end_of_bottom.run_min);
-    PlanGasUse& use = out[minimum.gas];
+    NERITIC_TRY(const DivePlan up, plan_dive(request, i + 1));
+    const MinimumGas minimum = minimum_gas(request, up, breathing);
+    const double before = used_until(request, plan, breathing, mix_of(request, minimum.gas),
+                                     up.end_of_bottom.run_min);
+    PlanGasUse& use = out[index_of(minimum.gas)];
     if (before + minimum.litres <= use.used_before_l + use.minimum_l) continue;
     use.minimum_l = minimum.litres;
     use.minimum_run_min = up.end_of_bottom.run_min;
     use.minimum_depth_m = up.end_of_bottom.depth_m;
     use.used_before_l = before;
-    until_m[minimum.gas] = minimum.until_m;
+    until_m[index_of(minimum.gas)] = minimum.until_m;
   }
   for (const PlanTank& tank : tanks) {
-    const GasMix& mix = request.gases[tank.gas].mix;
-    PlanGasUse& use = out[tank.gas];
+    const GasMix& mix = mix_of(request, tank.gas);
+    const std::size_t at = index_of(tank.gas);
+    PlanGasUse& use = out[at];
     use.tank = PlanTankUse{tank};
     find_empty(request, plan, breathing, *use.tank);
     const double held = litres_in(mix, tank, tank.pressure_bar);
     use.tank->then_bar = bar_of(mix, tank, held - use.used_before_l);
     if (use.minimum_l <= 0.0) continue;
     const double least =
-        request.conventions.environment.pressure_bar(until_m[tank.gas]) + 1e-5 * kWeakTank_pa;
+        request.conventions.environment.pressure_bar(until_m[at]) + 1e-5 * kWeakTank_pa;
     use.tank->minimum_bar = bar_of(mix, tank, litres_in(mix, tank, least) + use.minimum_l);
   }
   return out;
@@ -174,11 +188,10 @@ Result<std::vector<PlanGasUse>> gas_use(const DivePlanRequest& request, const Di
 std::vector<PlanWarning> gas_warnings(const DivePlanRequest& request,
                                       const std::vector<PlanGasUse>& use) {
   std::vector<PlanWarning> out;
-  for (std::size_t gas = 0; gas < use.size(); ++gas) {
-    if (!use[gas].tank) continue;
-    const PlanGasUse& u = use[gas];
+  for (const PlanGasUse& u : use) {
+    if (!u.tank) continue;
     const PlanTankUse& t = *u.tank;
-    const GasMix& mix = request.gases[gas].mix;
+    const GasMix& mix = mix_of(request, u.gas);
     const std::string tank = fmt::format("tank of {}, {:g} L at {:g} bar", name_of(mix),
                                          t.tank.volume_l, t.tank.pressure_bar);
     if (t.empty_min) {
@@ -186,14 +199,15 @@ std::vector<PlanWarning> gas_warnings(const DivePlanRequest& request,
       const double least_bar =
           request.conventions.environment.pressure_bar(*t.empty_m) + 1e-5 * kWeakTank_pa;
       const double weak = litres_in(mix, t.tank, std::min(least_bar, t.tank.pressure_bar));
-      out.push_back({PlanWarningKind::kTankTooSmall, *t.empty_min, *t.empty_m, u.used_l, held, gas,
+      out.push_back({PlanWarningKind::kTankTooSmall, *t.empty_min, *t.empty_m, u.used_l, held,
+                     u.gas,
                      fmt::format("{}: used up at {:.0f} m, {:.0f} min; the plan takes {:.0f} L, "
                                  "it holds {:.0f}, of which {:.0f} give no full breath there",
                                  tank, *t.empty_m, *t.empty_min, u.used_l, held, weak)});
     } else if (u.minimum_l > 0.0 && t.then_bar < t.minimum_bar - 1e-6) {
       out.push_back(
           {PlanWarningKind::kMinimumGas, u.minimum_run_min, u.minimum_depth_m, t.then_bar,
-           t.minimum_bar, gas,
+           t.minimum_bar, u.gas,
            fmt::format("{}: {:.0f} bar left at {:g} m, {:.0f} min; minimum gas to go up "
                        "with is {:.0f}",
                        tank, t.then_bar, u.minimum_depth_m, u.minimum_run_min, t.minimum_bar)});

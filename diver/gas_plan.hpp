@@ -22,9 +22,10 @@ struct PlanBreathing {
   double emergency_l_min() const { return divers * stress * bottom_l_min; }
 };
 
-// All that is carried of a gas: twins are one tank of their sum.
+// All that is carried of a mix: twins are one tank of their sum, and what is breathed to travel and
+// on the way up again comes out of the same one.
 struct PlanTank {
-  std::size_t gas = 0;  // of the request
+  std::size_t gas = 0;  // of the request: any of this mix
   double volume_l = 0.0, pressure_bar = 0.0;
 };
 
@@ -38,8 +39,9 @@ struct PlanTankUse {
   std::optional<double> empty_min, empty_m;
 };
 
-// Of one gas over the plan.
+// Of one mix over the plan, whatever it is carried for.
 struct PlanGasUse {
+  std::size_t gas = 0;  // the first of this mix of the request
   double used_l = 0.0;  // by one diver
   // To go up with from the end of the level where it and what was used before are most; 0 for gases
   // that no level ends on.
@@ -48,7 +50,7 @@ struct PlanGasUse {
   std::optional<PlanTankUse> tank;
 };
 
-// One a gas of the request, in its order. Errors: breathing or tanks out of bounds, a gas with two
+// One a mix of the request, in its order. Errors: breathing or tanks out of bounds, a mix with two
 // tanks; what plan_dive says of an ascent from a level before the last.
 Result<std::vector<PlanGasUse>> gas_use(const DivePlanRequest& request, const DivePlan& plan,
                                         const PlanBreathing& breathing,

@@ -79,6 +79,12 @@ double cns_after(double cns_percent, double minutes) {
   return cns_percent * std::exp2(-minutes / 90.0);
 }
 
+OxygenExposure exposure_after(const OxygenExposure& before, const OxygenExposure& added,
+                              double surface_min) {
+  const double cns = before.cns_percent + added.cns_percent;
+  return {added.cns_percent > 0.0 ? cns : cns_after(cns, surface_min), before.otu + added.otu};
+}
+
 double max_operating_depth_m(const GasMix& mix, double po2_bar, const DecoEnvironment& where) {
   return where.depth_m(po2_bar / mix.oxygen);
 }

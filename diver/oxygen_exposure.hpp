@@ -34,6 +34,10 @@ OxygenExposure oxygen_exposure(double from_po2_bar, double to_po2_bar, double mi
 
 // What is left of a CNS share after minutes without: halves in 90 (Hamilton 1989).
 double cns_after(double cns_percent, double minutes);
+// With what is added meanwhile, so many minutes of it at the surface: there the share of CNS
+// declines, unless some is gained (on oxygen). Planner and dive computer count so.
+OxygenExposure exposure_after(const OxygenExposure& before, const OxygenExposure& added,
+                              double surface_min);
 
 // Deepest for a partial pressure of oxygen.
 double max_operating_depth_m(const GasMix& mix, double po2_bar, const DecoEnvironment& where);

@@ -7,6 +7,7 @@
 
 #include <random>
 
+#include "diver/deco_live.hpp"
 #include "diver/deco_ndl.hpp"
 #include "tests/diver/deco_cases.hpp"
 
@@ -69,6 +70,81 @@ TEST(DivePlan, EveryPlanKeepsItsCeilingsAndItsSums) {
     EXPECT_LE(ceiling(model, now, r.gf_high).pressure_bar, where.surface_bar + 1e-9) << set.name;
     EXPECT_GE(plan.oxygen.otu, 0.0);
   }
+}
+
+// Random levels, deep and shallow, under each set: a plan that is accepted is not above its ceiling
+// for a second, as the dive computer sees it; one that is not says a level that is accepted
+// instead.
+TEST(DivePlan, LevelsAboveTheirCeilingAreRefusedAndAllOthersKeepIt) {
+  std::mt19937 random(23);
+  const auto number = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  int refused = 0, kept_stops = 0;
+  for (int i = 0; i < 240; ++i) {
+    DivePlanRequest r = square_dive(number(25.0, 70.0), number(8.0, 35.0), {0.21, i % 2 ? 0.3 : 0});
+    r.conventions = convention_sets()[static_cast<std::size_t>(i) % 3].conventions;
+    if (i % 4 == 0) r.gases.push_back({{0.5, 0.0}, 21.0, GasRole::kDeco});
+    for (int k = 0; k < 2; ++k)
+      r.levels.push_back({number(4.0, 45.0), r.levels.back().leave_min + number(8.0, 25.0)});
+    DivePlan plan = planned(r);
+    for (int tries = 0; plan.above_ceiling && tries < 3; ++tries, ++refused) {
+      const LevelAboveCeiling above = *plan.above_ceiling;
+      PlanLevel& level = r.levels[above.level];
+      EXPECT_FALSE(check_ceilings(r, plan).ok());
+      EXPECT_GT(above.least_m, level.depth_m) << i;
+      // A hand above what is accepted is not.
+      level.depth_m = above.least_m - 0.05;
+      const DivePlan nearly = planned(r);
+      ASSERT_TRUE(nearly.above_ceiling.has_value()) << i;
+      EXPECT_EQ(nearly.above_ceiling->level, above.level) << i;
+      level.depth_m = above.least_m;
+      plan = planned(r);
+    }
+    ASSERT_TRUE(check_ceilings(r, plan).ok()) << i;
+    auto computer = DiveComputer::create({r.conventions, r.gf_low, r.gf_high, r.gases, {}});
+    ASSERT_TRUE(computer.ok());
+    DiveComputerState state = computer->start();
+    double run_min = 0.0;
+    for (const PlanSegment& s : plan.segments) {
+      state = computer->step(state, {s.from_m, s.gas}, 0.0);
+      const int parts = static_cast<int>(std::ceil(6.0 * s.minutes));
+      for (int k = 1; k <= parts && run_min < plan.end_of_bottom.run_min - 1e-6; ++k) {
+        state = computer->step(state, {s.from_m + (s.to_m - s.from_m) * k / parts, s.gas},
+                               60.0 * s.minutes / parts);
+        const DiveComputerView view = computer->view(state);
+        EXPECT_FALSE(view.ceiling_violated)
+            << i << " at " << state.last.depth_m << " m, " << view.ceiling_m;
+      }
+      run_min += s.minutes;
+    }
+    kept_stops += plan.no_stops ? 0 : 1;
+  }
+  EXPECT_GT(refused, 40);
+  EXPECT_GT(kept_stops, 150);
+}
+
+// Up to 3 m out of 60, where the ceiling is ten storeys below; and down to 3 m out of the boat with
+// tissues that are still full.
+TEST(DivePlan, ALevelAboveItsCeilingIsOneLine) {
+  DivePlanRequest r = square_dive(60.0, 30.0);
+  r.levels.push_back({3.0, 60.0});
+  DivePlan plan = planned(r);
+  EXPECT_EQ(
+      check_ceilings(r, plan).error().message,
+      "3 m until 60 min found, above the ceiling, which is at 29.4 m on the way there; 29.4 m or "
+      "deeper is accepted");
+  r.start = plan.end_of_bottom.tissues;
+  r.levels = {{5.0, 30.0}};
+  plan = planned(r);
+  ASSERT_TRUE(plan.above_ceiling.has_value());
+  r.levels[0].depth_m = plan.above_ceiling->least_m;
+  EXPECT_FALSE(planned(r).above_ceiling.has_value());
+  // Within the time without stops any level may be come up to.
+  r = square_dive(30.0, 8.0);
+  r.gf_low = 0.05;
+  r.levels.push_back({2.0, 20.0});
+  EXPECT_TRUE(check_ceilings(r, planned(r)).ok());
 }
 
 TEST(DivePlan, TheLastStopIsWhereItIsAskedFor) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "diver/deco_live.hpp"
 #include "diver/gas_label.hpp"
+#include "tests/diver/deco_cases.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -56,6 +58,33 @@ TEST(OxygenExposure, ClosedFormsAreWhatSumsTendTo) {
     }
   }
   EXPECT_EQ(oxygen_exposure(1.4, 1.4, 0.0).cns_percent, 0.0);
+}
+
+// Oxygen after a dive: what is gained counts, and nothing declines meanwhile; then air halves it in
+// 90 min. The planner's sum over dives and the computer's over samples are one.
+TEST(OxygenExposure, AtTheSurfaceTheComputerCountsAsThePlannerDoes) {
+  EarlierDive earlier{square_dive(28.0, 60.0, {0.36, 0.0}), 60.0, {1.0, 0.0}};
+  std::vector<DivePlan> plans;
+  ASSERT_TRUE(tissues_after({earlier}, &plans).ok());
+  const OxygenExposure left = oxygen_after({earlier}, plans);
+  EXPECT_NEAR(left.cns_percent, plans[0].oxygen.cns_percent + 100.0 * 60.0 / cns_limit_min(1.01325),
+              1e-9);
+  auto gases = earlier.dive.gases;
+  gases.push_back({{1.0, 0.0}, 6.0, GasRole::kDeco});
+  const auto computer = DiveComputer::create(
+      {earlier.dive.conventions, earlier.dive.gf_low, earlier.dive.gf_high, gases, {}});
+  ASSERT_TRUE(computer.ok());
+  for (const double step_s : {1.0, 60.0, 3600.0}) {
+    DiveComputerState state = computer->start();
+    state.oxygen = plans[0].oxygen;
+    state = computer->step(state, {0.0, 1}, 0.0);
+    for (double s = 0.0; s < 3600.0; s += step_s) state = computer->step(state, {0.0, 1}, step_s);
+    EXPECT_NEAR(state.oxygen.cns_percent, left.cns_percent, 1e-9) << step_s;
+    EXPECT_NEAR(state.oxygen.otu, left.otu, 1e-9) << step_s;
+    state = computer->step(state, {0.0, 0}, 0.0);
+    for (double s = 0.0; s < 5400.0; s += 60.0) state = computer->step(state, {0.0, 0}, 60.0);
+    EXPECT_NEAR(state.oxygen.cns_percent, 0.5 * left.cns_percent, 1e-9) << step_s;
+  }
 }
 
 TEST(GasLimits, AreThePublishedOnes) {

@@ -193,6 +193,23 @@ TEST(PlanCommand, GasIsReckonedForEachTank) {
               HasSubstr("WARNING: tank of air, 7 L at 200 bar: used up at 30 m, "));
 }
 
+// One bottle, whatever it is breathed for; and a first level on the travel gas is a dive like
+// others.
+TEST(PlanCommand, ATravelGasThatIsTheDecoGasIsOneTank) {
+  const std::string dive = "plan --depth 60 --time 20 --gas 15/55@30 ean50@21 --travel ean50 ";
+  const auto gas =
+      parse_json(said_by(dive + "--json --tank ean50=11,200").out).value()["gas"]["gases"];
+  ASSERT_EQ(gas.size(), 2u);
+  EXPECT_EQ(gas[1]["name"], "EAN50");
+  EXPECT_TRUE(gas[1].contains("tank"));
+  const std::string said = said_by(dive + "--tank ean50=11,200").out;
+  const std::size_t at = said.find("  EAN50: ");
+  ASSERT_NE(at, said.npos);
+  EXPECT_EQ(said.find("  EAN50: ", at + 1), said.npos);
+  EXPECT_EQ(said_by("plan --gas 15/55@30 --travel ean32 --depth 20 --time 5 --level 60,25").status,
+            0);
+}
+
 TEST(PlanCommand, ALogIsReplayedSampleBySample) {
   const test::ScratchFolder folder;
   std::string log = "time_s,depth_m,gas\n";
@@ -212,6 +229,33 @@ TEST(PlanCommand, ALogIsReplayedSampleBySample) {
   EXPECT_GT(json["ceiling_m"].get<double>(), 0.0);
   EXPECT_EQ(std::ranges::count(read_text(folder / "out/log.csv").value(), '\n'), 182);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/log.png"));
+}
+
+// The depth of a flag holds whether the diver has switched by then or not; and a log that begins on
+// the travel gas has the bottom gas that is named.
+TEST(PlanCommand, FlagsSayFromWhereAGasOfTheLogIsBreathed) {
+  const test::ScratchFolder folder;
+  const auto log_of = [&](const char* name, const char* first) {
+    std::string log = "time_s,depth_m,gas\n";
+    for (int s = 0; s <= 1800; s += 10)
+      log += fmt::format("{},{},{}\n", s, std::min(s / 3.0, 50.0), s < 60 ? first : "18/45");
+    EXPECT_TRUE(write_text(folder / name, log).ok());
+  };
+  const auto up_min = [&](const char* name, const std::string& flags) {
+    const PlanSaid said =
+        said_by("plan --json --log " + (folder / name).string() + " --gas " + flags);
+    EXPECT_EQ(said.status, 0) << said.error;
+    return parse_json(said.out).value()["time_to_surface_min"].get<double>();
+  };
+  log_of("before.csv", "18/45");
+  log_of("travel.csv", "ean50");
+  double last = 0.0;
+  for (const std::string at : {"21", "12", "6"}) {
+    const double before = up_min("before.csv", "18/45 ean50@" + at);
+    EXPECT_GT(before, last + 2.0) << at;
+    EXPECT_NEAR(up_min("travel.csv", "18/45 ean50@" + at), before, 1.5) << at;
+    last = before;
+  }
 }
 
 TEST(PlanCommand, ALogOfSeveralVehiclesIsOneOfThem) {
@@ -265,6 +309,8 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
          "bottom gas 10/70 from 40 m found, while EAN32 is breathed at 30 m"},
         {"plan --gas 10/70@20 --depth 60 --time 15 --travel ean32 21/35@30",
          "bottom gas 10/70 from 20 m found, while 21/35 is breathed at 60 m"},
+        {"plan --depth 60 --time 30 --level 3,60",
+         "3 m until 60 min found, above the ceiling, which is at 29.4 m on the way there; 29.4 m"},
         {"plan --depth 30 --time 20 --tank air=12", "--tank: 1 numbers in '12' found"},
         {"plan --depth 30 --time 20 --tank 12,200", "--tank: '12,200' found, GAS=LITRES,BAR"},
         {"plan --depth 30 --time 20 --tank o2=12,200", "a tank of O2 found, which is none of"},

@@ -76,7 +76,8 @@ struct CheckFlags {
 Status run_check(const CheckFlags& flags);
 
 struct PlanFlags {
-  std::vector<std::string> gases{"air"}, travel, levels, after, tanks;
+  std::vector<std::string> gases;  // none: air
+  std::vector<std::string> travel, levels, after, tanks;
   std::optional<double> depth_m, time_min;
   std::string gf = "30/85", convention = "stop-minutes", table, water, saturation, log, vehicle;
   std::string rmv = "20,17", minimum_gas = "2,2,4";

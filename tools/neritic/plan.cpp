@@ -20,10 +20,9 @@ std::string gf_text(double low, double high) {
 // Litres of each gas, or bar of its tank, over run time.
 std::vector<GasCurve> gas_curves(const PlanReport& report) {
   std::vector<GasCurve> out;
-  for (std::size_t i = 0; i < report.gas.size(); ++i) {
-    const diver::PlanGasUse& use = report.gas[i];
-    const diver::GasMix& mix = report.request.gases[i].mix;
-    GasCurve curve{diver::name_of(mix), i, use.tank.has_value(), {}, {}, {}, {}, {}};
+  for (const diver::PlanGasUse& use : report.gas) {
+    const diver::GasMix& mix = report.request.gases[use.gas].mix;
+    GasCurve curve{diver::name_of(mix), use.gas, use.tank.has_value(), {}, {}, {}, {}, {}};
     double run_min = 0.0, used_l = 0.0;
     const auto add = [&](double minutes) {
       curve.run_min.push_back(minutes);
@@ -34,7 +33,7 @@ std::vector<GasCurve> gas_curves(const PlanReport& report) {
       const double litres =
           diver::segment_litres(report.request, report.plan, report.breathing, s, run_min);
       run_min += s.minutes;
-      if (s.gas == i) used_l += litres;
+      if (report.request.gases[s.gas].mix == mix) used_l += litres;
       add(run_min);
     }
     if (use.tank && use.minimum_l > 0.0) {

@@ -143,9 +143,8 @@ std::string gas_text(const PlanReport& r) {
   const diver::PlanBreathing& b = r.breathing;
   std::string out = fmt::format("gas at {:g} L/min, {:g} from the ascent on, in litres at 1 bar\n",
                                 b.bottom_l_min, b.ascent_l_min);
-  for (std::size_t i = 0; i < r.gas.size(); ++i) {
-    const diver::PlanGasUse& use = r.gas[i];
-    out += fmt::format("  {}: {:.0f} L", diver::name_of(r.request.gases[i].mix), use.used_l);
+  for (const diver::PlanGasUse& use : r.gas) {
+    out += fmt::format("  {}: {:.0f} L", diver::name_of(r.request.gases[use.gas].mix), use.used_l);
     if (use.tank && !use.tank->empty_min)
       out += fmt::format(", {:g} L at {:g} bar end at {:.0f} bar", use.tank->tank.volume_l,
                          use.tank->tank.pressure_bar, use.tank->end_bar);
@@ -226,9 +225,9 @@ nlohmann::json gas_json(const PlanReport& r) {
       {"rmv_ascent_l_min", b.ascent_l_min},
       {"minimum_gas", {{"divers", b.divers}, {"times_rmv", b.stress}, {"minutes", b.problem_min}}},
       {"gases", nlohmann::json::array()}};
-  for (std::size_t i = 0; i < r.gas.size(); ++i) {
-    const diver::PlanGasUse& use = r.gas[i];
-    nlohmann::json gas{{"name", diver::name_of(r.request.gases[i].mix)}, {"used_l", use.used_l}};
+  for (const diver::PlanGasUse& use : r.gas) {
+    nlohmann::json gas{{"name", diver::name_of(r.request.gases[use.gas].mix)},
+                       {"used_l", use.used_l}};
     if (use.minimum_l > 0.0) {
       gas["minimum_l"] = use.minimum_l;
       gas["minimum_at"] = {{"runtime_min", use.minimum_run_min}, {"depth_m", use.minimum_depth_m}};
@@ -285,6 +284,7 @@ Result<PlanReport> make_plan_report(const std::string& convention, const DivePla
                                     const std::vector<diver::PlanTank>& tanks) {
   PlanReport report{convention, request, {}, {}, -1.0, breathing, {}};
   NERITIC_TRY(report.plan, diver::plan_dive(request));
+  NERITIC_TRY_STATUS(diver::check_ceilings(request, report.plan));
   report.warnings = diver::plan_warnings(request, report.plan);
   NERITIC_TRY(report.gas, diver::gas_use(request, report.plan, breathing, tanks));
   for (diver::PlanWarning& w : diver::gas_warnings(request, report.gas))

@@ -20,7 +20,7 @@ struct PlanReport {
             plan.oxygen.otu + request.oxygen_before.otu};
   }
   diver::PlanBreathing breathing;
-  std::vector<diver::PlanGasUse> gas;  // of each of the request
+  std::vector<diver::PlanGasUse> gas;  // of each mix of the request
 };
 Result<PlanReport> make_plan_report(const std::string& convention,
                                     const diver::DivePlanRequest& request,

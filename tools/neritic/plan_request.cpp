@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "diver/gas_label.hpp"
 #include "tools/neritic/flags.hpp"
@@ -52,6 +54,7 @@ Result<std::vector<PlanGas>> gases_of(const PlanFlags& flags) {
     NERITIC_TRY(const PlanGas gas, gas_of(text, gases.empty() ? GasRole::kBottom : GasRole::kDeco));
     gases.push_back(gas);
   }
+  if (gases.empty()) gases.emplace_back();
   for (const std::string& text : flags.travel) {
     NERITIC_TRY(const PlanGas gas, gas_of(text, GasRole::kTravel));
     gases.push_back(gas);
@@ -204,15 +207,26 @@ Result<diver::DiveComputerSettings> log_settings(const PlanFlags& flags,
   settings.gf_low = request.gf_low;
   settings.gf_high = request.gf_high;
   settings.gases.clear();
-  for (const diver::GasMix& mix : log.gases)
-    settings.gases.push_back({mix, diver::usual_switch_depth_m(mix),
-                              settings.gases.empty() ? GasRole::kBottom : GasRole::kDeco});
+  // Where a flag names a gas of the log, its depth and what it is for are the flag's.
+  const std::span asked = std::span(request.gases).subspan(flags.gases.empty() ? 1 : 0);
+  std::optional<std::size_t> unnamed;
+  for (const diver::GasMix& mix : log.gases) {
+    const auto named = std::ranges::find(asked, mix, &PlanGas::mix);
+    if (named == asked.end() && !unnamed) unnamed = settings.gases.size();
+    settings.gases.push_back(named != asked.end()
+                                 ? *named
+                                 : PlanGas{mix, diver::usual_switch_depth_m(mix), GasRole::kDeco});
+  }
+  const auto has_bottom = [&] {
+    return std::ranges::find(settings.gases, GasRole::kBottom, &PlanGas::role) !=
+           settings.gases.end();
+  };
+  // Else the log's first gas is the bottom's, and the flags' nobody has breathed.
+  if (!has_bottom() && unnamed) settings.gases[*unnamed].role = GasRole::kBottom;
   for (const PlanGas& gas : request.gases) {
-    const bool known = std::ranges::any_of(
-        settings.gases, [&](const PlanGas& other) { return other.mix == gas.mix; });
-    if (known) continue;
-    // The log's first gas is the bottom's: the flags' is one more then, if it was asked for at all.
-    if (gas.role == GasRole::kBottom && !settings.gases.empty()) continue;
+    const bool known =
+        std::ranges::find(settings.gases, gas.mix, &PlanGas::mix) != settings.gases.end();
+    if (known || (gas.role == GasRole::kBottom && has_bottom())) continue;
     settings.gases.push_back(gas);
   }
   return settings;
