@@ -111,6 +111,7 @@ Status Device::create_device(const DeviceOptions& options) {
 
   FeatureChain features;
   select_features(physical_, features);
+  if (!options.clip_distance) features.core.features.shaderClipDistance = VK_FALSE;
   features_ = features.core.features;
 
   std::vector<const char*> extensions;

@@ -34,6 +34,7 @@ struct DeviceOptions {
   std::optional<std::uint64_t> wait_limit_ns;
   std::optional<Quirks> quirks;       // instead of those that the driver is known to have
   std::optional<bool> shared_memory;  // instead of what the device has
+  bool clip_distance = true;          // false: shaderClipDistance stays off
   // Borrowed, may be nullptr: gets every validation message too, those about objects that still
   // live when the Device goes away included. Without it those are printed as notes.
   ValidationLog* validation_sink = nullptr;

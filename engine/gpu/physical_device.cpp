@@ -23,8 +23,6 @@ constexpr std::array kRequired{
     FeatureRow<VkPhysicalDeviceFeatures>{
         &VkPhysicalDeviceFeatures::shaderStorageImageExtendedFormats,  // rg32f, in sonar shaders
         "shaderStorageImageExtendedFormats"},
-    FeatureRow<VkPhysicalDeviceFeatures>{&VkPhysicalDeviceFeatures::shaderClipDistance,
-                                         "shaderClipDistance"},
 };
 constexpr std::array kRequired11{
     FeatureRow<VkPhysicalDeviceVulkan11Features>{&VkPhysicalDeviceVulkan11Features::multiview,
@@ -53,8 +51,8 @@ constexpr std::array kRequired13{
 // Turned on where the device has them: who uses one asks Device::features(), or the limit that it
 // raises (maxDrawIndexedIndexValue).
 constexpr std::array kOptional{
-    &VkPhysicalDeviceFeatures::independentBlend,
-    &VkPhysicalDeviceFeatures::fullDrawIndexUint32,
+    &VkPhysicalDeviceFeatures::independentBlend, &VkPhysicalDeviceFeatures::fullDrawIndexUint32,
+    &VkPhysicalDeviceFeatures::shaderClipDistance,  // of what a mirror shows, for sonars' ghosts
 };
 
 // Adds the names of the required features that have lacks, comma-separated.

@@ -172,5 +172,27 @@ TEST_F(SonarGhost, WhatIsBuriedUnderTheBottomHidesNone) {
   EXPECT_DOUBLE_EQ(added(scene), alone);
 }
 
+// A device that cannot clip draws all the rest, camera and sonar, and validation has nothing to
+// say.
+TEST_F(SonarGhost, ADeviceThatCannotClipLacksThemAlone) {
+  gpu::DeviceOptions options;
+  options.validation = true;
+  options.clip_distance = false;
+  NERITIC_ASSERT_OK(const auto other, gpu::Device::create(options));
+  scene::Scene scene = sphere_below_surface();
+  EXPECT_EQ(total(ping(*other, scene)), total(ping(device(), scene)));
+  scene.sonars[0].terms.ghosts = scene::SonarGhosts{.surface = true};
+  NERITIC_ASSERT_OK(const auto session, Session::create(*other, scene));
+  FrameRequest request;
+  request.sonars = {0};
+  const auto result = session->render(request);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(result.error().message.find("ghosts: " + other->info().name + " has no shaderClip"),
+            std::string::npos)
+      << result.error().message;
+  EXPECT_TRUE(other->validation_log().messages.empty());
+}
+
 }  // namespace
 }  // namespace neritic::tools

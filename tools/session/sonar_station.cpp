@@ -146,6 +146,10 @@ Result<SonarState*> SonarStation::state_of(std::size_t index) {
   NERITIC_TRY(state->mode, sonar::gather_of(sonar.gather.empty() ? kDefaultGather : sonar.gather));
   state->pixels_per_cell = sonar.gbuffer_scale > 0.0 ? sonar.gbuffer_scale : kDefaultGBufferScale;
   state->mirrors = sonar::mirrors_of(sonar);
+  if (!state->mirrors.empty() && !device_.features().shaderClipDistance)
+    return failure(ErrorCode::kUnsupported,
+                   "ghosts: {} has no shaderClipDistance, which a mirror's view is cut by",
+                   device_.info().name);
   NERITIC_TRY(std::vector<sonar::Head> heads, sonar::plan_heads(sonar));
   for (sonar::Head& head : heads) {
     auto made = make_head(sonar, *state, std::move(head));
