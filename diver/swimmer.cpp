@@ -16,13 +16,22 @@ constexpr double kMostKick_w = 300.0;
 constexpr double kMostPitch_rad = radians(30.0);
 constexpr double kMostSink_m_s = 0.15;  // 9 m a minute
 constexpr double kMostBreathBias_m3 = 0.6e-3;
+// So fast through the water legs steer; slower, posture does.
+constexpr double kWay_m_s = 0.25;
+// To that side at most who turns by leaning.
+constexpr double kMostBank_rad = radians(20.0);
+// A place farther round than this lies behind.
+constexpr double kBehind_rad = radians(140.0);
 // Who hovers bends the back as far as this in each of two joints: that shifts the jacket's gas,
 // which else runs to the higher end and turns the diver on his head.
 constexpr double kHoverBend = 1.0;  // of the legs' lift; 0.25 while swimming
 // And the arms, to the front: their weight lowers the head.
 constexpr double kHoverArms = 4.0;  // of the legs' lift towards the belly
-// And the knees, which brings the fins' weight forward: the nose rises.
-constexpr double kHoverKnees = 3.5;  // of the legs' lift towards the back
+// Where that is hardly enough, shins beat in turn, so far and so often: fins that move hold on to
+// the water, which slows tilting, and push a little.
+constexpr double kTread_rad = radians(5.0), kTread_hz = 1.0;
+// Up to that share of what steering may ask for, posture alone holds the pitch.
+constexpr double kTreads = 0.3;
 // Who hovers has no fins to hold the depth: breath answers so much more.
 constexpr double kHoverBreath = 1.5;
 // Who hovers swims back to the place from so far away, or righting from such a tilt, and rests
@@ -31,15 +40,14 @@ constexpr double kAdrift_m = 3.0, kNear_m = 0.7, kTilted_rad = radians(20.0);
 // More than kStill_m_s is a current: aims so far upstream of the place.
 constexpr double kStill_m_s = 0.06, kAimAhead_m = 4.0;
 // So fast in still water, and so much faster for each metre off the place. Back to the place no
-// faster than who keeps beside can follow, and turning as slowly: so far off, at most, the heading
-// counts. Who rights himself needs way.
+// faster than who keeps beside can follow. Who rights himself needs way.
 struct WayBack {
-  double speed_m_s, each_metre_1_s, most_m_s, turn_rad;
+  double speed_m_s, each_metre_1_s, most_m_s;
 };
-constexpr WayBack kBack{0.15, 0.01, 0.5, 0.4}, kRighting{0.35, 0.15, 0.8, kPi};
+constexpr WayBack kBack{0.15, 0.01, 0.5}, kRighting{0.35, 0.15, 0.8};
 constexpr std::uint64_t kGoesBack = 1, kRightsHimself = 2;
-// Nobody moves a joint from one side to the other within less.
-constexpr double kSteeringLag_s = 0.4;
+// Nobody moves a joint from one side to the other within less, nor breathes otherwise.
+constexpr double kSteeringLag_s = 0.4, kBreathLag_s = 0.7;
 // Buttons are pressed for a moment, after so much want of breath, and then waited for.
 constexpr double kPress_s = 0.25, kWait_s = 3.0, kSure_l_s = 4.0;
 // Gas leaves at the higher end of the trunk: the head goes up for that, at most so long.
@@ -47,11 +55,6 @@ constexpr double kVent_s = 6.0, kVentPress_s = 0.08, kVentPitch_rad = radians(14
 
 void follow(double& value, double wanted, double lag_s, double dt_s) {
   value += (wanted - value) * -std::expm1(-dt_s / lag_s);
-}
-
-// 1 of who rests, 0 of who kicks.
-double resting(const SwimmerState& swimmer) {
-  return 1.0 - swimmer.effort;
 }
 
 // The value without what of it beats at that frequency. Trapezoidal state-variable filter
@@ -90,12 +93,14 @@ void balance(const Body& body, double sink_too_much_m_s, const HumanState& state
              SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
   const bool at_valve = gas_at_dump(body, state.life.jacket_moles, thorax_place(body, state));
   // Who has to point the nose down to stay down is too light.
-  const double rests = resting(swimmer);
+  const double rests = swimmer.rests;
   const double usual_l = 1.6 * sink_too_much_m_s + 0.1 * swimmer.climb_sum;
   const double want_l = (1.0 + kHoverBreath * rests) * usual_l;
   swimmer.lift_sum = std::clamp(swimmer.lift_sum + usual_l * dt_s, -12.0, 12.0);
-  inputs.breath_bias_m3 = std::clamp(1e-3 * (want_l + 0.08 * swimmer.lift_sum), -kMostBreathBias_m3,
-                                     kMostBreathBias_m3);
+  const double breath_m3 = std::clamp(1e-3 * (want_l + 0.08 * swimmer.lift_sum),
+                                      -kMostBreathBias_m3, kMostBreathBias_m3);
+  follow(swimmer.breath_bias_m3, breath_m3, kBreathLag_s, dt_s);
+  inputs.breath_bias_m3 = swimmer.breath_bias_m3;
   swimmer.button_s += dt_s;
   const bool more = swimmer.lift_sum > 0.0;
   const double press_s = more ? kPress_s : kVentPress_s;
@@ -122,10 +127,6 @@ double wanted_heading(const SwimGoal& goal, const HumanState& state, double head
   return std::atan2(way.y, way.x) - crab;
 }
 
-const WayBack& way_back_of(const SwimmerState& swimmer) {
-  return swimmer.goes_back == kRightsHimself ? kRighting : kBack;
-}
-
 // The goal of who hovers: rest, and the way back once drifted off, or tilted more than a posture
 // rights: fins right a body that has way. In a current the head stays into it.
 SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimmer) {
@@ -148,7 +149,7 @@ SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimme
     swimmer.goes_back = kGoesBack;
   if (off_m < near_m && tilt_rad < 0.5 * kTilted_rad) swimmer.goes_back = 0;
   if (swimmer.goes_back == 0) return goal;
-  const WayBack& way_back = way_back_of(swimmer);
+  const WayBack& way_back = swimmer.goes_back == kRightsHimself ? kRighting : kBack;
   const double upstream_m_s =
       current ? drift_m_s + way_back.each_metre_1_s * std::max(off_m, 0.0) : 0.0;
   goal.speed_m_s = std::min(way_back.speed_m_s + upstream_m_s, way_back.most_m_s);
@@ -159,7 +160,7 @@ SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimme
 void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
            SwimmerState& swimmer, double dt_s) {
   // Without way there is no flow over the legs that rights the body: firmer then.
-  const double rests = resting(swimmer);
+  const double rests = swimmer.rests;
   // Rolling with each beat is the kick's: legs that worked against it would take from its thrust.
   const double hz = std::max(swimmer.frequency_hz, 0.25);
   const double roll = between_beats(swimmer.roll, roll_rad, hz, dt_s);
@@ -167,19 +168,28 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   const double pitch_rate = velocity[4];
   const double yaw_rate = velocity[5];
   const double yaw = std::clamp(1.5 * std::clamp(turn, -0.5, 0.5) - 2.0 * yaw_rate, -1.0, 1.0);
-  follow(swimmer.bend_rad, yaw * kMostBend_rad, kSteeringLag_s, dt_s);
-  follow(swimmer.left_more, yaw * kMostLeftMore, kSteeringLag_s, dt_s);
+  // Who has little way and holds his nose up turns by leaning: what holds it up leans along.
+  const double leans =
+      std::min(1.0, 2.5 * rests) * std::clamp(-2.0 * swimmer.lift_rad / kMostLift_rad, 0.0, 1.0);
+  const double tilt =
+      std::clamp(2.0 * (roll - leans * yaw * kMostBank_rad) + 1.0 * roll_rate, -1.0, 1.0);
+  follow(swimmer.bend_rad, (yaw * (1.0 - leans) + tilt * leans) * kMostBend_rad, kSteeringLag_s,
+         dt_s);
+  follow(swimmer.left_more, yaw * kMostLeftMore * (1.0 + rests), kSteeringLag_s, dt_s);
   swimmer.pitch_sum = std::clamp(swimmer.pitch_sum + nose_up * dt_s, -2.5, 2.5);
   const double pitch = (2.5 + 3.5 * rests) * nose_up - (3.0 + 3.0 * rests) * pitch_rate +
                        (0.15 + 0.35 * rests) * swimmer.pitch_sum;
   follow(swimmer.lift_rad, std::clamp(-pitch, -1.0, 1.0) * kMostLift_rad, kSteeringLag_s, dt_s);
-  const double level = std::clamp(-2.0 * roll - 1.0 * roll_rate, -1.0, 1.0);
-  follow(swimmer.twist_rad, level * kMostTwist_rad, kSteeringLag_s, dt_s);
+  const double treads = std::clamp((std::abs(pitch) - kTreads) / (1.0 - kTreads), 0.0, 1.0);
+  follow(swimmer.tread, rests * treads, kSteeringLag_s, dt_s);
+  swimmer.tread_phase_rad =
+      std::fmod(swimmer.tread_phase_rad + 2.0 * kPi * kTread_hz * dt_s, 2.0 * kPi);
+  follow(swimmer.twist_rad, -tilt * kMostTwist_rad, kSteeringLag_s, dt_s);
 }
 
 JointRotations posture_for(const Body& body, const SwimmerSettings& settings,
                            const SwimmerState& swimmer) {
-  const double rests = resting(swimmer);
+  const double rests = swimmer.rests;
   JointAngles joints = streamlined(body);
   FlutterKick kick = settings.kick;
   kick.amplitude_m *= swimmer.effort;
@@ -191,8 +201,11 @@ JointRotations posture_for(const Body& body, const SwimmerSettings& settings,
     joints[joint_of(spine)].y = -(0.25 + (kHoverBend - 0.25) * rests) * swimmer.lift_rad;
     joints[joint_of(spine)].z = 0.5 * swimmer.bend_rad;
   }
-  const double knees_rad = kHoverKnees * rests * std::min(swimmer.lift_rad, 0.0);
-  for (const Segment shin : {kLeftLowerLeg, kRightLowerLeg}) joints[joint_of(shin)].y += knees_rad;
+  // Drag goes with the square of the beat.
+  const double tread_rad =
+      kTread_rad * std::sqrt(swimmer.tread) * std::sin(swimmer.tread_phase_rad);
+  joints[joint_of(kLeftLowerLeg)].y += tread_rad;
+  joints[joint_of(kRightLowerLeg)].y -= tread_rad;
   for (const Segment arm : {kLeftUpperArm, kRightUpperArm})
     joints[joint_of(arm)].y = kHoverArms * rests * std::max(swimmer.lift_rad, 0.0);
   joints[joint_of(kHead)].z = 0.8 * swimmer.bend_rad;
@@ -221,6 +234,8 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
   const double sink_m_s = std::clamp((swims ? 0.1 : 0.2) * deeper_m, -kMostSink_m_s, kMostSink_m_s);
   const double too_much_m_s = velocity_ned.z - sink_m_s;
   swimmer.climb_sum = swims ? std::clamp(swimmer.climb_sum + too_much_m_s * dt_s, -3.0, 3.0) : 0.0;
+  const double way = std::clamp(ahead_m_s / kWay_m_s, 0.0, 1.0);
+  follow(swimmer.rests, 1.0 - swimmer.effort * way, 0.5, dt_s);
   pace(settings, ahead_m_s, goal.speed_m_s, state.life.limb_power_w, swimmer, dt_s);
   balance(body, too_much_m_s, state, swimmer, dt_s, inputs);
 
@@ -228,10 +243,10 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
   if (swims) {
     turn = std::remainder(wanted_heading(goal, state, attitude.heading_rad) - attitude.heading_rad,
                           2.0 * kPi);
-    if (hovers) {
-      const double most = way_back_of(swimmer).turn_rad;
-      turn = std::clamp(turn, -most, most);
-    }
+    // Right behind: on round the same side, whichever is the nearer just now.
+    if (std::abs(turn) < kBehind_rad || swimmer.turn_side == 0.0)
+      swimmer.turn_side = std::copysign(1.0, turn);
+    turn = std::copysign(turn, swimmer.turn_side);
     const double climb_m_s = -sink_m_s + 0.3 * too_much_m_s + 0.04 * swimmer.climb_sum;
     pitch = std::clamp(climb_m_s / std::max(goal.speed_m_s, 0.2), -kMostPitch_rad, kMostPitch_rad);
   }

@@ -37,9 +37,13 @@ struct SwimmerState {
   double climb_sum = 0.0;  // m: sunk too much so far
   double pitch_sum = 0.0;  // rad s: too low so far
   double lift_sum = 0.0;   // litres times seconds of breath that was wanted
+  double breath_bias_m3 = 0.0;
   double lift_rad = 0.0, twist_rad = 0.0, left_more = 0.0, bend_rad = 0.0;
+  double tread = 0.0, tread_phase_rad = 0.0;  // of who rests: shins beat, 0 to 1
+  double turn_side = 0.0;                     // 1: comes round to starboard, -1: to port
   // What the swimmer feels of roll and rates between the beats.
   BeatNotch roll, roll_rate, pitch_rate, yaw_rate;
+  double rests = 1.0;     // 1: lies still in the water, 0: has way
   double button_s = 0.0;  // since a button was last let go; negative: still to be pressed
   // Who is to hover: 1: was adrift and swims back; 2: tilts, and swims to right himself.
   std::uint64_t goes_back = 0;
@@ -52,14 +56,19 @@ struct SwimmerState {
     field("climb_sum", self.climb_sum);
     field("pitch_sum", self.pitch_sum);
     field("lift_sum", self.lift_sum);
+    field("breath_bias_m3", self.breath_bias_m3);
     field("lift_rad", self.lift_rad);
     field("twist_rad", self.twist_rad);
     field("left_more", self.left_more);
     field("bend_rad", self.bend_rad);
+    field("tread", self.tread);
+    field("tread_phase_rad", self.tread_phase_rad);
+    field("turn_side", self.turn_side);
     field("roll", self.roll);
     field("roll_rate", self.roll_rate);
     field("pitch_rate", self.pitch_rate);
     field("yaw_rate", self.yaw_rate);
+    field("rests", self.rests);
     field("button_s", self.button_s);
     field("goes_back", self.goes_back);
   }

@@ -156,7 +156,7 @@ TEST(Swimmer, HoversByBreathAndButtons) {
     farthest = std::max(farthest, std::abs(state.root.position_ned_m.z - 12.0));
   });
   EXPECT_LT(farthest, 0.8);
-  EXPECT_LT(std::hypot(s.state.root.position_ned_m.x, s.state.root.position_ned_m.y), 3.0);
+  EXPECT_LT(std::hypot(s.state.root.position_ned_m.x, s.state.root.position_ned_m.y), 4.0);
 }
 
 // The farthest from the depth, of the pitch and from the place, from a minute after arriving on.
@@ -183,20 +183,32 @@ Hover hover_after_a_swim(double depth_m, double current_m_s, double seconds) {
 }
 
 // The jacket's gas runs to the higher end and would stand a resting diver on his head; a tank that
-// empties would carry him up. Back, knees and arms keep him level, either dump valve lets gas out,
-// and fins bring him back to the place.
+// empties would carry him up. Back, arms and treading fins keep him level, either dump valve lets
+// gas out, and fins bring him back to the place.
 TEST(Swimmer, HoversLevelAtItsPlaceWhileTheTankEmpties) {
-  for (const double depth_m : {6.0, 15.0}) {
+  for (const double depth_m : {6.0, 15.0, 30.0}) {
     const Hover hover = hover_after_a_swim(depth_m, 0.0, 900.0);
-    EXPECT_LT(hover.off_depth_m, 0.5) << depth_m;
-    EXPECT_LT(hover.pitch_deg, 20.0) << depth_m;
-    EXPECT_LT(hover.away_m, 9.0) << depth_m;
+    EXPECT_LT(hover.off_depth_m, 0.35) << depth_m;
+    EXPECT_LT(hover.pitch_deg, 15.0) << depth_m;
+    EXPECT_LT(hover.away_m, 12.0) << depth_m;
   }
   for (const double current_m_s : {-0.11, 0.3}) {
     const Hover hover = hover_after_a_swim(15.0, current_m_s, 600.0);
-    EXPECT_LT(hover.off_depth_m, 0.5) << current_m_s;
-    EXPECT_LT(hover.pitch_deg, 15.0) << current_m_s;
-    EXPECT_LT(hover.away_m, 9.0) << current_m_s;
+    EXPECT_LT(hover.off_depth_m, 0.4) << current_m_s;
+    EXPECT_LT(hover.pitch_deg, 10.0) << current_m_s;
+    EXPECT_LT(hover.away_m, 6.0) << current_m_s;
+  }
+}
+
+// Little pressure: the suit lifts hips and legs, so that the jacket has to lift less at the chest.
+// At 5 m that turns a straight body head down by 4 N m, as much as the back's bend can hold.
+TEST(Swimmer, HoversLevelInShallowWaterWithAFullTank) {
+  for (const auto& [depth_m, current_m_s] :
+       {std::pair{5.0, 0.0}, {5.0, 0.1}, {5.0, -0.15}, {5.0, 0.2}, {3.0, 0.15}}) {
+    const Hover hover = hover_after_a_swim(depth_m, current_m_s, 300.0);
+    EXPECT_LT(hover.off_depth_m, 0.4) << depth_m << " " << current_m_s;
+    EXPECT_LT(hover.pitch_deg, 10.0) << depth_m << " " << current_m_s;
+    EXPECT_LT(hover.away_m, 12.0) << depth_m << " " << current_m_s;
   }
 }
 

@@ -164,7 +164,7 @@ TEST(HumanDiveExtremes, AWildSuitIsBoundedAndTheDiverSwimsOn) {
   // The suit is taken off, its buttons have emptied the jacket: where it goes on from once that is
   // made good, and how far it comes.
   ASSERT_TRUE(dive.simulation->push({.is_human = 1, .steering = {}}));
-  dive.run(45.0);
+  dive.run(60.0);
   const Vec3 from = human_of(dive).human.root.position_ned_m;
   const double to_go = glm::distance(from, dive.world->humans()[0].waypoints_ned_m[0]);
   dive.run(15.0);

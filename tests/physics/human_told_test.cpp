@@ -52,7 +52,7 @@ TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
   recorder.add(dive.simulation->newest());
   double unfed_s = 0.0, first_s = 0.0, dark_s = 0.0;
   diver::TissueState unfed;
-  dive.run(60.0, [&] {
+  dive.run(90.0, [&] {
     recorder.add(dive.simulation->newest());
     const diver::LifeState& life = dive.state().humans[0].human.life;
     const double now_s = life.lungs.unfed_s;
