@@ -8,6 +8,7 @@
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
 #include "tools/tradeoff/flatten.hpp"
+#include "tools/tradeoff/kind_bench.hpp"
 #include "tools/tradeoff/kind_sweep.hpp"
 
 namespace neritic::tools {

@@ -17,15 +17,6 @@ double place(const Axis& axis, double value, double from, double to) {
   return from + t * (to - from);
 }
 
-namespace {
-
-using sonar::Align;
-using sonar::Canvas;
-using sonar::Color;
-
-constexpr double kTextPx = 10.0, kTitlePx = 13.0;
-
-// Numbers at the axis: 1, 2, 5 times powers of ten.
 std::vector<double> ticks(const Axis& axis) {
   std::vector<double> out;
   if (axis.log) {
@@ -35,7 +26,7 @@ std::vector<double> ticks(const Axis& axis) {
         const double v = m * std::pow(10.0, e);
         if (v >= axis.min * 0.999 && v <= axis.max * 1.001) out.push_back(v);
       }
-    return out;
+    return out.size() >= 3 ? out : ticks({axis.label, axis.min, axis.max});
   }
   if (axis.max < axis.min) return ticks({axis.label, axis.max, axis.min});
   const double raw = (axis.max - axis.min) / 6.0,
@@ -47,6 +38,14 @@ std::vector<double> ticks(const Axis& axis) {
     out.push_back(std::abs(v) < 1e-9 * step ? 0.0 : v);
   return out;
 }
+
+namespace {
+
+using sonar::Align;
+using sonar::Canvas;
+using sonar::Color;
+
+constexpr double kTextPx = 10.0, kTitlePx = 13.0;
 
 void draw_axes(Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
                const Axis& y, bool x_ticks) {

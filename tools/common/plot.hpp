@@ -47,6 +47,9 @@ Axis axis_for(const std::string& label, const std::vector<double>& values, bool 
 
 void draw_lines(sonar::Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
                 const Axis& y, const std::vector<Series>& series, bool legend_below = false);
+// The numbers at an axis: 1, 2, 5 times powers of ten; of a logarithmic one that holds fewer than
+// three of these, equal steps.
+std::vector<double> ticks(const Axis& axis);
 // A number's place on an axis that runs from one pixel to another.
 double place(const Axis& axis, double value, double from, double to);
 // The rectangle inside the axes of a plot.
