@@ -43,9 +43,37 @@ ExpectedNdl read_ndl(const CaseField& field) {
   return ndl;
 }
 
+// The set of conventions that is nearest to a program's.
+std::string set_of(const std::string& program, const std::string& conventions) {
+  if (program == "subsurface") return "run-minutes";
+  if (program == "baker_gfdeco") return "msw";
+  for (const NamedConventions& set : convention_sets())
+    if (conventions.find(set.name) != conventions.npos) return std::string(set.name);
+  return {};
+}
+
+// The column of ZH-L16 that a text names: a word that is B or C, or ends so as 16C does.
+std::optional<BuehlmannTable> table_of(const std::string& text) {
+  const auto is_word = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+  };
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const bool last = at + 1 == text.size() || !is_word(text[at + 1]);
+    const bool first = at == 0 || !is_word(text[at - 1]) || (at >= 2 && text[at - 1] == '6');
+    if (!first || !last || (text[at] != 'B' && text[at] != 'C')) continue;
+    return text[at] == 'B' ? BuehlmannTable::kB : BuehlmannTable::kC;
+  }
+  return {};
+}
+
 SecondOpinion read_opinion(const CaseField& field, const std::string& program) {
   SecondOpinion opinion;
   opinion.program = program;
+  const auto words = [&](const char* key) {
+    return field[key].is_text() ? field[key].text() : std::string();
+  };
+  opinion.set = set_of(program, words("conventions"));
+  opinion.table = table_of(words("table"));
   opinion.stop_min = expected_number(field["total_stop_time_min"]);
   opinion.leave_last_min = expected_number(field["runtime_leaving_last_stop_min"]);
   opinion.run_min = expected_number(field["total_runtime_min"]);
@@ -186,6 +214,16 @@ std::vector<EarlierCase> read_list(const CaseField& list, const CaseField& aroun
 DecoExpected read_expected(const CaseField& profile) {
   DecoExpected expected;
   const CaseField reference = profile["reference"];
+  constexpr std::string_view kNames[] = {"end_of_bottom",
+                                         "first_stop",
+                                         "surfacing",
+                                         "stops",
+                                         "no_deco",
+                                         "total_stop_time_min",
+                                         "time_to_surface_min",
+                                         "total_runtime_min",
+                                         "ndl_bottom_gas_runtime_min"};
+  reference.refuse_misspelt(kNames);
   expected.end_of_bottom = read_point(reference["end_of_bottom"]);
   expected.first_stop = read_point(reference["first_stop"]);
   expected.surfacing = read_point(reference["surfacing"]);

@@ -2,9 +2,9 @@
 // same conventions found, and tables of times without stops. Any thread.
 //
 // The form, as such files document it (JSON; bar, m, min; what is optional has its default in
-// brackets; what is not named here is ignored, but a parameter, and what is said of earlier dives,
-// that is one of these but for capitals, or begins or goes on as one, is an error; of all that is
-// expected, what is there is compared):
+// brackets; what is not named here is ignored, but a parameter, a member of reference, and what is
+// said of earlier dives, that is one of these but for capitals, or begins or goes on as one, is an
+// error; of all that is expected, what is there is compared):
 //   tolerances: tissues_bar [1e-6], ndl_continuous_min [1e-3], stop_minutes [exact: 1e-3]
 //   profiles: a list of
 //     id; model: a text with 16B or 16C; coefficient_table: a text with "compartment 1b" or
@@ -35,7 +35,9 @@
 //     second_opinions: by program, each with total_stop_time_min, or stops whose minutes include
 //       the ways between them, or runtime_leaving_last_stop_min, total_runtime_min: expected within
 //       15 % or 3 min of total stop time, as such files say, of the set of conventions that is
-//       nearest to the program's; end_of_bottom_tissues_n2_he_bar within .005 bar,
+//       nearest to the program's (subsurface: run-minutes, baker_gfdeco: msw; of others the set
+//       that their conventions name, else the case's own), on the column of ZH-L16 that their table
+//       names (a text with B or C); end_of_bottom_tissues_n2_he_bar within .005 bar,
 //       start_of_deco_zone_m within .2 m, cns_percent within 15 % and 1, otu within 5 % and .5
 //   ndl_tables: a list of model, gf_high, o2 (he: none), surface_pressure_bar, bar_per_metre,
 //     descent_rate_m_min, ascent_rate_m_min, rows: depth_m, decotengu_runtime_min,
@@ -77,6 +79,8 @@ struct ExpectedNdl {
 
 struct SecondOpinion {
   std::string program;
+  std::string set;  // of conventions; empty: the case's own
+  std::optional<BuehlmannTable> table;
   // What the program gives of these.
   Expected stop_min, stops_and_ways_min, leave_last_min, run_min;
   Expected zone_m, cns_percent, otu;

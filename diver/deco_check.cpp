@@ -33,6 +33,14 @@ double stop_error(const std::vector<PlanStop>& found, const std::vector<Expected
   return worst;
 }
 
+// Tissues that are not those of the surface's air.
+bool has_dived(const DecoConventions& conventions, const std::optional<TissueState>& start) {
+  constexpr double kFresh_bar = 1e-3;
+  return start &&
+         tissue_error(*start, saturated(conventions.model(), conventions.environment.surface_bar,
+                                        conventions.start_n2)) > kFresh_bar;
+}
+
 class DiveCheck {
  public:
   DiveCheck(const DecoCase& one, const DecoCases& tolerances)
@@ -206,20 +214,21 @@ class DiveCheck {
 
   // The case under the set of conventions that is nearest to the program's.
   void check_opinion(const SecondOpinion& opinion) {
-    const std::string set = opinion.program == "subsurface"     ? "run-minutes"
-                            : opinion.program == "baker_gfdeco" ? "msw"
-                                                                : "stop-minutes";
-    const auto named = conventions_of(set);
+    const auto named = conventions_of(opinion.set);
     DivePlanRequest request = one_.request;
     const auto adopt = [&](DivePlanRequest& r) {
       const DecoConventions own = r.conventions;
-      r.conventions = *named;
-      if (set != "msw") r.conventions.environment = own.environment;
-      r.conventions.descent_m_min = own.descent_m_min;
-      r.conventions.ascent_m_min = own.ascent_m_min;
-      r.conventions.last_stop_m = own.last_stop_m;
-      r.last_stop_always = true;
-      r.start.reset();
+      if (named.ok()) {
+        r.conventions = *named;
+        if (opinion.set != "msw") r.conventions.environment = own.environment;
+        r.conventions.descent_m_min = own.descent_m_min;
+        r.conventions.ascent_m_min = own.ascent_m_min;
+        r.conventions.last_stop_m = own.last_stop_m;
+        r.last_stop_always = true;
+      }
+      r.conventions.table = opinion.table.value_or(r.conventions.table);
+      // Who has not dived has so by each program's own air; other tissues are what they are.
+      if (!has_dived(own, r.start)) r.start.reset();
     };
     adopt(request);
     std::vector<EarlierDive> dives;
@@ -242,9 +251,16 @@ class DiveCheck {
       errors_.add(what, "min", plan->stops.back().leave_min, opinion.leave_last_min,
                   opinion.band_min);
     errors_.add("run time" + beside, "min", plan->run_min(), opinion.run_min, opinion.band_min);
+    // Tissues that the case gives come of its own air, which the slow ones remember.
+    const DecoConventions& own = one_.request.conventions;
+    const double air_bar =
+        one_.earlier.empty() && request.start
+            ? std::abs(own.start_n2 - request.conventions.start_n2) * own.environment.surface_bar
+            : 0.0;
     if (opinion.tissues)
       errors_.add("tissues" + beside, "bar",
-                  tissue_error(plan->end_of_bottom.tissues, *opinion.tissues), kOpinionTissues_bar);
+                  tissue_error(plan->end_of_bottom.tissues, *opinion.tissues),
+                  kOpinionTissues_bar + air_bar);
     errors_.add("deco zone" + beside, "m", zone_m(request, *plan), opinion.zone_m, kOpinionZone_m);
     if (opinion.cns_percent)
       errors_.add("CNS" + beside, "%", plan->oxygen.cns_percent, opinion.cns_percent,

@@ -63,6 +63,57 @@ TEST(DecoCaseFile, AllThatASecondOpinionSaysIsCompared) {
   EXPECT_FALSE(holds("baker_gfdeco", "/otu", 21.5));
 }
 
+// Tissues at the start are those of second opinions too, whether the dives before are told or not.
+TEST(DecoCaseFile, InitialTissuesAloneAreThoseOfSecondOpinionsToo) {
+  const Json all = parse_json(deco_text("deco_vectors.json")).value();
+  Json json;
+  for (const Json& profile : all["profiles"])
+    if (profile["id"] == "air_repet_30m_25_si60") json["profiles"] = Json::array({profile});
+  ASSERT_EQ(json["profiles"].size(), 1u);
+  ASSERT_TRUE(json["profiles"][0]["second_opinions"].contains("subsurface"));
+  json["profiles"][0].erase("repetitive");
+  const auto result = check_deco(read_deco_cases(json_text(json), "t.json").value())[0];
+  EXPECT_TRUE(result.ok());
+  const auto beside =
+      std::ranges::find(result.errors, "stop time beside subsurface", &CheckedError::what);
+  ASSERT_NE(beside, result.errors.end());
+  EXPECT_LT(beside->error, 1.0);
+}
+
+// What another program says is held against its own table and conventions, else against the case's.
+TEST(DecoCaseFile, OtherProgramsAreHeldAgainstWhatTheirEntrySays) {
+  // 45 m for 40 min: table C has eleven minutes more.
+  const auto stop_min = [](BuehlmannTable table, const char* set) {
+    DivePlanRequest request = square_dive(45.0, 40.0, kAir, set);
+    request.conventions.table = table;
+    request.conventions.environment = {};
+    return plan_dive(request).value().stop_min();
+  };
+  const double b = stop_min(BuehlmannTable::kB, "stop-minutes"),
+               c = stop_min(BuehlmannTable::kC, "stop-minutes"),
+               run = stop_min(BuehlmannTable::kC, "run-minutes");
+  ASSERT_GT(c, b + 5.0);
+  const auto error = [](const char* model, const Json& opinion) {
+    Json json = smallest_dive();
+    Json& profile = json["profiles"][0];
+    profile["model"] = model;
+    profile["coefficient_table"] = "compartment 1b";
+    profile["profile"] = {{"depth_m", 45}, {"bottom_runtime_min", 40}};
+    profile["reference"] = Json::object();
+    profile["second_opinions"]["gasplanner"] = opinion;
+    return check_deco(read_deco_cases(json_text(json), "t.json").value())[0].errors.at(0).error;
+  };
+  EXPECT_EQ(error("ZH-L16B-GF", {{"total_stop_time_min", b}}), 0.0);
+  EXPECT_EQ(error("ZH-L16C-GF", {{"total_stop_time_min", c}}), 0.0);
+  EXPECT_EQ(error("ZH-L16B-GF", {{"total_stop_time_min", c}, {"table", "ZH-L16C with 1b"}}), 0.0);
+  EXPECT_EQ(error("ZH-L16C-GF", {{"total_stop_time_min", b}, {"table", "column B"}}), 0.0);
+  EXPECT_NEAR(error("ZH-L16B-GF", {{"total_stop_time_min", run},
+                                   {"table", "C"},
+                                   {"conventions", "run-minutes, but for the rates"}}),
+              0.0, 1e-9);
+  EXPECT_GT(error("ZH-L16B-GF", {{"total_stop_time_min", c}}), 5.0);
+}
+
 // A planner that stopped above the last stop is known by its first stop alone, too.
 TEST(DecoCaseFile, AFirstStopAboveTheLastOneIsKnownWithoutStops) {
   const auto always = [](double depth_m) {
@@ -154,6 +205,10 @@ TEST(DecoCaseFile, AMisspeltParameterIsRefused) {
               fmt::format("dives.json: case 'small': profiles[0].parameters.{}: not known; the "
                           "nearest is {}",
                           key, nearest));
+  EXPECT_EQ(
+      fault_with("/reference/total_stop_time", 9),
+      "dives.json: case 'small': profiles[0].reference.total_stop_time: not known; the nearest "
+      "is total_stop_time_min");
   EXPECT_EQ(fault_with("/parameters/comment", "no setting"), "read");
   EXPECT_EQ(fault_with("/parameters/planner_version", 3), "read");
 }
