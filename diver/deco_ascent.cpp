@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace neritic::diver {
 namespace {
@@ -9,6 +10,11 @@ namespace {
 // Depths and run times that differ by less are the same: they are sums of thirds and tenths.
 constexpr double kSame = 1e-9;
 constexpr int kMostQuanta = 200000;  // 139 days of whole minutes
+
+class NoSink : public AscentSink {
+ public:
+  void segment(const PlanSegment&) override {}
+};
 
 class Ascent {
  public:
@@ -27,6 +33,17 @@ class Ascent {
       if (!leave_stop(next_depth())) return AscentEnd::kNeverClears;
     }
     return AscentEnd::kStops;
+  }
+
+  std::optional<double> first_stop_anchor() {
+    place_anchor();
+    const double next_m = next_depth();
+    const bool goes_on = receding()
+                             ? stop_below(ceiling_m(settings_.gf_low)) < state_.depth_m - kSame
+                             : may_leave(next_m, gf_at(next_m));
+    if (goes_on) return {};
+    begin_stops();
+    return state_.anchor_m;
   }
 
  private:
@@ -158,16 +175,7 @@ class Ascent {
     }
   }
 
-  // Between GF low at the anchor and GF high at the surface.
-  double gf_at(double depth_m) const {
-    const double low = settings_.gf_low, high = settings_.gf_high;
-    if (state_.anchor_m == 0.0) return low;
-    if (c_.gf_anchor == GfAnchor::kFirstStop) {
-      const double count = steps(state_.anchor_m);
-      return low + (high - low) / count * std::max(count - steps(depth_m), 0.0);
-    }
-    return std::max(low, high - (high - low) * depth_m / state_.anchor_m);
-  }
+  double gf_at(double depth_m) const { return diver::gf_at(settings_, state_.anchor_m, depth_m); }
 
   // The ceiling moves until the first stop begins.
   void place_anchor() {
@@ -250,6 +258,23 @@ AscentSettings ascent_settings(const DecoConventions& conventions, double gf_low
                           gases,       last_stop_always,    {},     0};
   settings.quantum = step_factors(settings.model, conventions.stop_quantum_min);
   return settings;
+}
+
+double gf_at(const AscentSettings& settings, double anchor_m, double depth_m) {
+  const double low = settings.gf_low, high = settings.gf_high;
+  if (anchor_m <= 0.0) return low;
+  const DecoConventions& c = settings.conventions;
+  // A first stop that lies between the steps counts as the one below it.
+  const double deepest_m = c.gf_anchor == GfAnchor::kFirstStop
+                               ? std::ceil(anchor_m / c.stop_step_m - kSame) * c.stop_step_m
+                               : anchor_m;
+  return std::clamp(high - (high - low) * depth_m / deepest_m, low, high);
+}
+
+std::optional<double> first_stop_anchor(const AscentSettings& settings, const AscentState& state) {
+  AscentState here = state;
+  NoSink nobody;
+  return Ascent(settings, here, nobody).first_stop_anchor();
 }
 
 TissueState after_direct_ascent(const AscentSettings& settings, const TissueState& tissues,

@@ -47,6 +47,13 @@ enum class AscentEnd { kDirect, kStops, kNeverClears };
 // Runs state to the surface, or to the depth that is never left (after 200 000 quanta).
 AscentEnd ascend(const AscentSettings& settings, AscentState& state, AscentSink& sink);
 
+// The gradient factor at a depth: GF low at the anchor and below, GF high at the surface, straight
+// between. anchor_m 0: no stop has begun.
+double gf_at(const AscentSettings& settings, double anchor_m, double depth_m);
+// Where GF low is used up (GfAnchor) if the ascent makes its first stop at this depth; nothing
+// where it goes on to the next.
+std::optional<double> first_stop_anchor(const AscentSettings& settings, const AscentState& state);
+
 // Tissues after a direct ascent on one gas.
 TissueState after_direct_ascent(const AscentSettings& settings, const TissueState& tissues,
                                 double depth_m, const GasMix& gas);

@@ -116,37 +116,38 @@ DiveComputerState DiveComputer::step(const DiveComputerState& before, const Dive
   return state;
 }
 
-// The first stop is where the ceiling of GF low is when the diver comes to it; it is kept while
-// there is a ceiling, and the diver does not go far below again.
+// Stops begin where the planner's would, within a hand that holds its depth. The anchor is kept
+// while there is a ceiling, and the diver does not go far below again.
 void DiveComputer::move_anchor(DiveComputerState& state) const {
+  constexpr double kArrived_m = 0.5;
   const DecoConventions& c = settings_.conventions;
   const auto depth_of = [&](double gf) {
     return c.environment.depth_m(ceiling(ascent_.model, state.tissues, gf).pressure_bar);
   };
-  const double low_m = depth_of(settings_.gf_low);
+  const double low_m = depth_of(settings_.gf_low), depth_m = state.last.depth_m;
   if (low_m <= 0.0 || depth_of(settings_.gf_high) <= 0.0) {
     state.anchor_m = 0.0;
     return;
   }
   const double stop =
       std::max(std::ceil(low_m / c.stop_step_m - 1e-9) * c.stop_step_m, c.last_stop_m);
-  if (state.last.depth_m > std::max(stop, state.anchor_m) + 1.5 * c.stop_step_m)
+  if (depth_m > std::max(stop, state.anchor_m) + 1.5 * c.stop_step_m) {
     state.anchor_m = 0.0;
-  else if (state.anchor_m > 0.0 || state.last.depth_m <= stop + 0.5 * c.stop_step_m)
-    state.anchor_m = std::max(state.anchor_m, stop);
-}
-
-double DiveComputer::gf_at(const DiveComputerState& state, double depth_m) const {
-  const double low = settings_.gf_low, high = settings_.gf_high;
-  if (state.anchor_m <= 0.0) return low;
-  return std::clamp(high - (high - low) * depth_m / state.anchor_m, low, high);
+  } else if (state.anchor_m > 0.0) {
+    if (c.gf_anchor == GfAnchor::kFirstStop) state.anchor_m = std::max(state.anchor_m, stop);
+  } else if (depth_m <= stop + kArrived_m) {
+    const bool step_by_step = c.first_stop == FirstStop::kStepByStep;
+    const AscentState here{state.tissues, 0.0, step_by_step ? std::min(depth_m, stop) : stop,
+                           state.last.gas};
+    state.anchor_m = first_stop_anchor(ascent_, here).value_or(0.0);
+  }
 }
 
 // The shallowest depth that is tolerated there.
 double DiveComputer::ceiling_m(const DiveComputerState& state) const {
   const DecoEnvironment& where = settings_.conventions.environment;
   const auto tolerated = [&](double depth_m) {
-    const double gf = gf_at(state, depth_m);
+    const double gf = gf_at(ascent_, state.anchor_m, depth_m);
     return ceiling(ascent_.model, state.tissues, gf).pressure_bar <= where.pressure_bar(depth_m);
   };
   double not_deep = 0.0;
@@ -183,16 +184,17 @@ std::size_t DiveComputer::gas_for_stop(std::size_t breathed, double depth_m,
 AscentState DiveComputer::ascent_start(const DiveComputerState& state, const DiveComputerView& view,
                                        std::uint64_t without) const {
   const DecoConventions& c = settings_.conventions;
-  AscentState up{state.tissues, 0.0, state.last.depth_m, state.last.gas, state.anchor_m};
+  AscentState up{state.tissues, state.dive_min, state.last.depth_m, state.last.gas, state.anchor_m};
   const double owed_m = view.ceiling_violated ? view.ceiling_m : view.ceiling_m - kCeilingSlack_m;
   if (owed_m <= 0.0) return up;
   const double stop =
       std::max(std::ceil(owed_m / c.stop_step_m - 1e-9) * c.stop_step_m, c.last_stop_m);
   if (stop <= up.depth_m) return up;
   up.gas = gas_for_stop(up.gas, stop, without);
-  up.run_min = (stop - up.depth_m) / c.descent_m_min;
+  const double way_min = (stop - up.depth_m) / c.descent_m_min;
+  up.run_min += way_min;
   up.tissues = load(ascent_.model, up.tissues, c.environment.pressure_bar(up.depth_m),
-                    c.environment.pressure_bar(stop), up.run_min, settings_.gases[up.gas].mix);
+                    c.environment.pressure_bar(stop), way_min, settings_.gases[up.gas].mix);
   up.depth_m = stop;
   up.stop_owed = view.ceiling_violated;
   return up;
@@ -217,7 +219,7 @@ DiveComputerView DiveComputer::view(const DiveComputerState& state, std::uint64_
   view.ceiling_violated = depth < view.ceiling_m - kCeilingSlack_m;
   AscentState up = ascent_start(state, view, without);
   NextStop next(c.environment);
-  next.segment({depth, up.depth_m, up.run_min, up.gas});  // the way down
+  next.segment({depth, up.depth_m, up.run_min - state.dive_min, up.gas});  // the way down
   AscentSettings ascent = ascent_;
   ascent.without = without;
   const bool clears = ascend(ascent, up, next) != AscentEnd::kNeverClears;

@@ -13,7 +13,8 @@ namespace neritic::diver {
 
 // How often a computer samples, as those on wrists do. The corners of a dive that are cut off
 // between samples make 1.4e-5 bar (`neritic tradeoff deco`; a tenth of a millimetre of ceiling);
-// the knee is at 10 s, 1.3e-3 bar, but the alarm of the ascent's rate fits a line through 10 s.
+// the knee is at 10 to 30 s, 1e-3 to 1e-2 bar, but the alarm of the ascent's rate fits a line
+// through 10 s.
 inline constexpr double kComputerSample_s = 1.0;
 
 struct DiveComputerSettings {
@@ -42,7 +43,7 @@ struct DiveComputerState {
   DiveSample last;                           // that was good
   double dive_min = 0.0, surface_min = 0.0;  // since the way down; since the way up
   double deepest_m = 0.0;
-  double anchor_m = 0.0;  // the first stop, once it is reached; 0: none
+  double anchor_m = 0.0;  // where GF low was used up (GfAnchor), once stops have begun; 0: none
   std::uint64_t refused = 0;
 
   static void fields(auto&& field, auto& self) {
@@ -106,7 +107,6 @@ class DiveComputer {
  private:
   explicit DiveComputer(DiveComputerSettings settings);
   void move_anchor(DiveComputerState& state) const;
-  double gf_at(const DiveComputerState& state, double depth_m) const;
   double ceiling_m(const DiveComputerState& state) const;
   // Where the ascent that is shown begins: where the diver is, or at the stop below a ceiling that
   // the diver is above, after the way down to it.
