@@ -229,7 +229,7 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
   const bool fortran = order.starts_with("True");
   if (!fortran && !order.starts_with("False"))
     return bad_input("{}: fortran_order {} found, True or False is accepted", name,
-                     order.empty() ? "nothing" : quoted_start(order));
+                     order.empty() ? "nothing" : neritic::printable(quoted_start(order)));
   NERITIC_TRY(array.shape, parse_shape(value_of(header, "shape"), name));
 
   std::size_t expected = row->size;

@@ -29,17 +29,21 @@ TEST(Npy, DataStartsOnAMultipleOf64Bytes) {
   EXPECT_EQ((bytes->size() - 14) % 64, 0u);
 }
 
-Result<NpyArray> parsed(const std::string& type, const std::string& shape, std::string_view data,
-                        const std::string& fortran_order = "False") {
+Result<NpyArray> with_header(const std::string& header, std::string_view data) {
   std::string text = "\x93NUMPY\x01";
   text += '\0';
-  const std::string header = "{'descr': '" + type + "', 'fortran_order': " + fortran_order +
-                             ", 'shape': " + shape + ", }\n";
   text += static_cast<char>(header.size());
   text += '\0';
   text += header;
   text += data;
   return parse_npy(std::as_bytes(std::span(text.data(), text.size())), "a.npy");
+}
+
+Result<NpyArray> parsed(const std::string& type, const std::string& shape, std::string_view data,
+                        const std::string& fortran_order = "False") {
+  return with_header("{'descr': '" + type + "', 'fortran_order': " + fortran_order +
+                         ", 'shape': " + shape + ", }\n",
+                     data);
 }
 
 TEST(Npy, WhatIsNotReadIsSaidWithWhatIs) {
@@ -52,6 +56,8 @@ TEST(Npy, WhatIsNotReadIsSaidWithWhatIs) {
   EXPECT_EQ(message(parsed("<u8", "(1,)", "12345678")), "a.npy: element type <u8" + types);
   EXPECT_EQ(message(parsed("|u1", "(1,)", "1", "'no'")),
             "a.npy: fortran_order no found, True or False is accepted");
+  EXPECT_EQ(message(with_header("{'descr': '|u1', 'shape': (1,), 'fortran_order': F\n", "1")),
+            "a.npy: fortran_order F? found, True or False is accepted");
 }
 
 // numpy.save of numpy.asfortranarray(numpy.arange(24, dtype='<u2').reshape(2, 3, 4)), in bytes.
