@@ -163,7 +163,7 @@ GhostPath ghost_path(vec3 direction, uint row, BeamHit hit, out float power) {
   if (above * echo.water_sign > 0.0) return none;  // beyond the mirror
   vec3 leg = point - echo.ghost_source;
   float direct_m = length(leg);
-  vec3 n = normal_of(hit.at);
+  vec3 n = normal_at(hit.at);
   if (kFacing == 0 && dot(n, direction) > 0.0) n = -n;
   float cosine = -dot(n, leg) / direct_m;
   if (!(hit.strength > 0.0 && cosine > 0.0)) return none;  // turned away from the mirror or from the sonar

@@ -23,9 +23,10 @@ float sec_of(int u) {
 }
 
 void add_pixel(ivec3 at, SonarColumn s, uint column, uint stamp) {
-  float planar = planar_metres(texelFetch(depth_image, at, 0).r);
+  vec4 surface = surface_at(at);
+  float planar = planar_metres(surface.w);
   if (planar <= 0.0) return;
-  vec3 n = normal_of(at);
+  vec3 n = normal_of(surface);
   if (!(dot(n, n) > 0.0)) return;
   float tx = (float(at.x) + 0.5 - c.cx) / c.fx, ty = (c.cy - (float(at.y) + 0.5)) / c.fy;
   float length_of = sqrt(1.0 + tx * tx + ty * ty);

@@ -205,7 +205,7 @@ SonarGather::Outputs SonarGather::declare(graph::FrameGraph& graph, const Inputs
     builder.terms(names_of_terms(options_));
     pass.in = inputs;
     pass.in.echo.sum_scale = static_cast<float>(fixed_scale_);
-    builder.read(inputs.depth, Access::kSampledCompute);
+    if (!layout_.packed) builder.read(inputs.depth, Access::kSampledCompute);
     builder.read(inputs.normals, Access::kSampledCompute);
     for (const graph::ImageHandle image :
          {inputs.labels, inputs.direct_depth, inputs.direct_labels})
@@ -262,11 +262,12 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
                                .reflectivities = reflects ? pass.in.reflectivities : 0u,
                                .lean = static_cast<float>(layout_.lean),
                                .azimuth_step_rad = static_cast<float>(grid_.azimuth_step_rad())};
+  const graph::ImageHandle depth = layout_.packed ? pass.in.normals : pass.in.depth;
   std::vector<gpu::BoundResource> bound{
       gpu::bound_buffer(shared::kSonarBindColumns, column_slice.buffer, column_slice.offset,
                         column_slice.size),
       gpu::bound_texel_image(shared::kSonarBindRows, rows_.view()),
-      gpu::bound_texel_image(shared::kSonarBindDepth, context.image(pass.in.depth).view()),
+      gpu::bound_texel_image(shared::kSonarBindDepth, context.image(depth).view()),
       gpu::bound_texel_image(shared::kSonarBindNormal, context.image(pass.in.normals).view()),
       gpu::bound_texel_image(shared::kSonarBindLabel, pass.in.labels
                                                           ? context.image(pass.in.labels).view()
@@ -296,7 +297,7 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
          gpu::bound_buffer(shared::kSonarBindRecords, buffer_or_none(pass.out.records)),
          gpu::bound_texel_image(
              shared::kSonarBindDirectDepth,
-             context.image(pass.in.direct_depth ? pass.in.direct_depth : pass.in.depth).view()),
+             context.image(pass.in.direct_depth ? pass.in.direct_depth : depth).view()),
          gpu::bound_texel_image(shared::kSonarBindDirectLabel,
                                 pass.in.direct_labels ? context.image(pass.in.direct_labels).view()
                                                       : no_labels_.view())});

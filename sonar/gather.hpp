@@ -38,9 +38,10 @@ Result<Gather> gather_of(const std::string& name);
 struct GBufferLayout {
   std::uint32_t width = 1, height = 1;
   Intrinsics intrinsics;
-  bool reversed_z = true;  // depth = near_m / planar metres, else planar metres (R32_SFLOAT)
+  // One image of four floats: unit normal x, y, z and planar metres. Else two: reversed-Z depth,
+  // near_m / planar metres, and octahedral R16G16_SNORM normals. One fetch is cheaper than two.
+  bool packed = false;
   double near_m = 0.02;
-  bool octahedral = true;  // normals R16G16_SNORM octahedral, else unit x, y, z (4 floats)
   bool normals_face_sensor = true;
   // Not 0: the images' sides lean so (render::ViewDesc::lean), and beams look all over their
   // columns' width. Plane and nearest only.
@@ -85,9 +86,9 @@ class SonarGather {
                                     const GatherOptions& options);
 
   struct Inputs {
-    graph::ImageHandle depth, normals;
-    graph::ImageHandle labels;         // R16G16_UINT class, instance; may be absent
-    graph::BufferHandle reflectivity;  // floats by instance label; may be absent
+    graph::ImageHandle depth, normals;  // packed: no depth
+    graph::ImageHandle labels;          // R16G16_UINT class, instance; may be absent
+    graph::BufferHandle reflectivity;   // floats by instance label; may be absent
     std::uint32_t reflectivities = 0;
     // Ghosts: what the sonar itself sees, of the same sizes; CHECKed to be there.
     graph::ImageHandle direct_depth, direct_labels;

@@ -45,22 +45,20 @@ std::vector<Sector> sectors_for(const BeamGrid& grid, std::span<const SonarInput
   return {whole};
 }
 
-std::vector<float> planar_depths(const SonarInput& in) {
-  std::vector<float> out(in.depth.size(), 0.0f);
-  for (std::uint32_t v = 0; v < in.height; ++v)
-    for (std::uint32_t u = 0; u < in.width; ++u)
-      if (const auto p = point_of(in, u, v))
-        out[std::size_t{v} * in.width + u] = static_cast<float>(-p->z);
-  return out;
-}
-
-std::vector<glm::vec4> unit_normals(const SonarInput& in) {
+// Unit normals in the sonar's axes, which the gather wants for all views, and planar metres; zero
+// where the view says nothing of the one or the other.
+std::vector<glm::vec4> surfaces(const SonarInput& in) {
+  const Mat3 turn = sonar_from_view(in.yaw_rad);
   std::vector<glm::vec4> out(in.depth.size(), glm::vec4(0.0f));
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const Vec3 n(in.normals[3 * i], in.normals[3 * i + 1], in.normals[3 * i + 2]);
-    // A direction that sees it from any side tells whether the normal means anything.
-    if (incidence(n, Vec3(0, 0, -1), false)) out[i] = glm::vec4(glm::normalize(n), 0.0);
-  }
+  for (std::uint32_t v = 0; v < in.height; ++v)
+    for (std::uint32_t u = 0; u < in.width; ++u) {
+      const std::size_t i = std::size_t{v} * in.width + u;
+      if (const auto p = point_of(in, u, v)) out[i].w = static_cast<float>(-p->z);
+      const Vec3 n(in.normals[3 * i], in.normals[3 * i + 1], in.normals[3 * i + 2]);
+      // A direction that sees it from any side tells whether the normal means anything.
+      if (incidence(n, Vec3(0, 0, -1), false))
+        out[i] = glm::vec4(glm::vec3(turn * glm::normalize(n)), out[i].w);
+    }
   return out;
 }
 
@@ -147,7 +145,7 @@ Status ImageGather::prepare(gpu::Device& device, const BeamGrid& grid,
     reflect_ |= !in.reflectivity.empty();
   }
   GBufferLayout layout{inputs[0].width, inputs[0].height, inputs[0].intrinsics};
-  layout.reversed_z = layout.octahedral = false;
+  layout.packed = true;
   layout.normals_face_sensor = inputs[0].normals_face_sensor;
   options.labels = labels_;
   options.reflectivity = reflect_;
@@ -165,9 +163,8 @@ Status ImageGather::prepare(gpu::Device& device, const BeamGrid& grid,
 }
 
 Status ImageGather::make_images(const SonarInput& in, std::uint32_t layers) {
-  NERITIC_TRY(depth_image_, image_like(*device_, "sonar depth", VK_FORMAT_R32_SFLOAT, in, layers));
-  NERITIC_TRY(normal_image_,
-              image_like(*device_, "sonar normals", VK_FORMAT_R32G32B32A32_SFLOAT, in, layers));
+  NERITIC_TRY(surface_image_, image_like(*device_, "sonar input surfaces",
+                                         VK_FORMAT_R32G32B32A32_SFLOAT, in, layers));
   if (labels_ || reflect_) {
     NERITIC_TRY(label_image_,
                 image_like(*device_, "sonar input labels", VK_FORMAT_R16G16_UINT, in, layers));
@@ -213,15 +210,7 @@ Status ImageGather::upload(std::span<const SonarInput> inputs) {
   const auto put = [&](gpu::Image& image, const auto& texels) {
     return gpu::upload_image(*device_, image, std::as_bytes(std::span(texels)));
   };
-  NERITIC_TRY_STATUS(put(depth_image_, all_layers(inputs, planar_depths)));
-  std::vector<glm::vec4> normals;
-  // Each view's normals are in its own axes; the gather wants one set of axes: the sonar's.
-  for (const SonarInput& view : inputs) {
-    const Mat3 turn = sonar_from_view(view.yaw_rad);
-    for (const glm::vec4& n : unit_normals(view))
-      normals.emplace_back(glm::vec3(turn * Vec3(n.x, n.y, n.z)), 0.0f);
-  }
-  NERITIC_TRY_STATUS(put(normal_image_, normals));
+  NERITIC_TRY_STATUS(put(surface_image_, all_layers(inputs, surfaces)));
   if (labels_ || reflect_) return put(label_image_, all_layers(inputs, label_pairs));
   return {};
 }
@@ -230,8 +219,7 @@ Result<SonarImage> ImageGather::run(const PingState& state) {
   const TimeNs start = now_ns();
   graph::FrameGraph graph;
   SonarGather::Inputs inputs;
-  inputs.depth = graph.import_image(depth_image_, readable());
-  inputs.normals = graph.import_image(normal_image_, readable());
+  inputs.normals = graph.import_image(surface_image_, readable());
   if (labels_ || reflect_) inputs.labels = graph.import_image(label_image_, readable());
   if (reflect_) {
     inputs.reflectivity = graph.import_buffer("sonar reflectivity", reflectivity_);

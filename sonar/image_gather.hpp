@@ -53,7 +53,7 @@ class ImageGather {
   Head head_;
   std::optional<LabelImage> label_energy_;
   bool labels_ = false, reflect_ = false;
-  gpu::Image depth_image_, normal_image_, label_image_;
+  gpu::Image surface_image_, label_image_;
   gpu::Buffer reflectivity_, sums_, keys_, power_, records_;
   std::unique_ptr<gpu::Frames> frames_;
   std::unique_ptr<graph::Executor> executor_;

@@ -63,14 +63,13 @@ NERITIC_CONST uint kSonarBindKeyTexels = 17;
 NERITIC_CONST uint kSonarBindScratchTexels = 18;
 
 // Specialisation constants.
-NERITIC_CONST uint kSonarSpecColumns = 0;    // columns a workgroup (its x size)
-NERITIC_CONST uint kSonarSpecLanes = 1;      // threads a column (its y size)
-NERITIC_CONST uint kSonarSpecPlane = 2;      // beam meets the plane of the pixel's point and normal
-NERITIC_CONST uint kSonarSpecReversedZ = 3;  // else the depth image holds planar metres
-NERITIC_CONST uint kSonarSpecOctahedral = 4;  // else the normal image holds x, y, z
-NERITIC_CONST uint kSonarSpecFacing = 5;      // else the normals' signs are unknown
-NERITIC_CONST uint kSonarSpecReflect = 6;     // multiply by the reflectivity of the instance
-NERITIC_CONST uint kSonarSpecLabels = 7;      // keep the label of the strongest return
+NERITIC_CONST uint kSonarSpecColumns = 0;  // columns a workgroup (its x size)
+NERITIC_CONST uint kSonarSpecLanes = 1;    // threads a column (its y size)
+NERITIC_CONST uint kSonarSpecPlane = 2;    // beam meets the plane of the pixel's point and normal
+NERITIC_CONST uint kSonarSpecPacked = 3;   // normal image: unit x, y, z and planar metres, no other
+NERITIC_CONST uint kSonarSpecFacing = 5;   // else the normals' signs are unknown
+NERITIC_CONST uint kSonarSpecReflect = 6;  // multiply by the reflectivity of the instance
+NERITIC_CONST uint kSonarSpecLabels = 7;   // keep the label of the strongest return
 // The view's sides lean (render::ViewDesc), and a column's rows look for surfaces all over its
 // width.
 NERITIC_CONST uint kSonarSpecLeaning = 16;

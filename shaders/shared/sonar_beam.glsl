@@ -63,7 +63,7 @@ float neighbour_range(SonarColumn s, int row, int v) {
   if (other == v || other < 0 || other >= int(c.height)) return 0.0;
   if (kLeaning != 0) s = at_pixel(s, other, t);
   float ty = (c.cy - (float(other) + 0.5)) / c.fy;
-  float planar = planar_metres(texelFetch(depth_image, ivec3(s.pixel, other, s.layer), 0).r);
+  float planar = planar_metres(depth_at(ivec3(s.pixel, other, s.layer)));
   return planar * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
 }
 
@@ -90,7 +90,7 @@ vec2 step_to(SonarColumn s, int v, ivec2 beside, float planar, float range_m, ve
   ivec2 other = ivec2(s.pixel, v) + beside;
   float ty = (c.cy - (float(other.y) + 0.5)) / c.fy;
   float tx = s.pixel_tan + float(beside.x) / c.fx - c.lean * float(beside.y) / c.fy;
-  float there = planar_metres(texelFetch(depth_image, ivec3(other, s.layer), 0).r);
+  float there = planar_metres(depth_at(ivec3(other, s.layer)));
   float expected = planar * along_pixel / (normal.z + tx * normal.x + ty * normal.y);
   if (!(there > 0.0 && abs(there - planar) <= 1.5 * abs(expected - planar))) return vec2(0.0);
   return abs(vec2(there - planar, there * sqrt(1.0 + tx * tx + ty * ty) - range_m));
@@ -165,8 +165,7 @@ struct Look {
   SonarColumn column;  // as the row looks, where the view leans
   vec4 row;            // tan, sec, tan of the edges
   int v;               // row of pixels; beside the view nothing is seen, for a texel there is zero
-  float depth;         // the image's
-  vec4 normal;         // the image's
+  vec4 surface;        // surface_at
 };
 
 Look look_at(SonarColumn s, uint row) {
@@ -181,9 +180,7 @@ Look look_at(SonarColumn s, uint row) {
     look.column.pixel = aside.pixel;
     look.column.pixel_tan = aside.pixel_tan;
   }
-  ivec3 at = ivec3(look.column.pixel, look.v, s.layer);
-  look.depth = texelFetch(depth_image, at, 0).r;
-  look.normal = texelFetch(normal_image, at, 0);
+  look.surface = surface_at(ivec3(look.column.pixel, look.v, s.layer));
   return look;
 }
 
@@ -194,8 +191,8 @@ BeamHit hit_of(Look look, uint row, bool again) {
   vec4 e = look.row;
   int v = look.v;
   hit.at = ivec3(s.pixel, v, s.layer);
-  float planar = planar_metres(look.depth);
-  vec3 n = normal_of(look.normal);
+  float planar = planar_metres(look.surface.w);
+  vec3 n = normal_of(look.surface);
   float ty = (c.cy - (float(v) + 0.5)) / c.fy;
   float along_up = dot(n, s.up);
   float ahead = dot(n, s.forward), sideways = dot(n, s.right);

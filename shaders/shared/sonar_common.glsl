@@ -6,8 +6,7 @@
 layout(constant_id = kSonarSpecColumns) const uint kColumns = 8;
 layout(constant_id = kSonarSpecLanes) const uint kLanes = 1;
 layout(constant_id = kSonarSpecPlane) const uint kPlane = 1;
-layout(constant_id = kSonarSpecReversedZ) const uint kReversedZ = 1;
-layout(constant_id = kSonarSpecOctahedral) const uint kOctahedral = 1;
+layout(constant_id = kSonarSpecPacked) const uint kPacked = 0;
 layout(constant_id = kSonarSpecFacing) const uint kFacing = 1;
 layout(constant_id = kSonarSpecReflect) const uint kReflect = 0;
 layout(constant_id = kSonarSpecLabels) const uint kLabels = 1;
@@ -25,18 +24,28 @@ layout(push_constant, scalar) uniform Push { SonarPush c; };
 
 #include "shared/sonar_words.glsl"
 
-// Planar metres of a depth texel; 0 where nothing is hit (cleared, NaN, infinite, negative).
-float planar_metres(float texel) {
-  float metres = kReversedZ != 0 ? c.near_m / texel : texel;
-  return texel > 0.0 && metres < 3.0e38 ? metres : 0.0;
+// What a pixel stores: of its normal x, y and z or an octahedron's two; its depth last. Zero beside the images.
+vec4 surface_at(ivec3 at) {
+  vec4 texel = texelFetch(normal_image, at, 0);
+  return kPacked != 0 ? texel : vec4(texel.xy, 0.0, texelFetch(depth_image, at, 0).r);
+}
+
+float depth_at(ivec3 at) {
+  return kPacked != 0 ? texelFetch(normal_image, at, 0).w : texelFetch(depth_image, at, 0).r;
+}
+
+// Planar metres of a stored depth; 0 where nothing is hit (cleared, NaN, infinite, negative).
+float planar_metres(float depth) {
+  float metres = kPacked != 0 ? depth : c.near_m / depth;
+  return depth > 0.0 && metres < 3.0e38 ? metres : 0.0;
 }
 
 // Unit normal; zero length where the image says that it is unknown.
-vec3 normal_of(vec4 texel) {
-  return kOctahedral != 0 ? octahedral_decode(texel.xy) : texel.xyz;
+vec3 normal_of(vec4 surface) {
+  return kPacked != 0 ? surface.xyz : octahedral_decode(surface.xy);
 }
 
-vec3 normal_of(ivec3 at) { return normal_of(texelFetch(normal_image, at, 0)); }
+vec3 normal_at(ivec3 at) { return normal_of(texelFetch(normal_image, at, 0)); }
 
 float facing(float cosine) { return kFacing != 0 ? max(cosine, 0.0) : abs(cosine); }
 
