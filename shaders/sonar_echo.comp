@@ -244,14 +244,14 @@ vec3 point_at(SonarColumn s, BeamHit hit, RowEcho e, float bin_range_m, out floa
 void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, float heard, inout ivec2 noted) {
   float drawn_out = e.range_m / hit.range_m;
   vec2 ends = e.ends_m;
-  int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
+  Share share = share_of(ends, 1.0);
+  int low = share.bins.x, high = share.bins.y;
   int first = max(low, 0), last = min(high, int(c.n_range) - 1);
   noted = ivec2(min(noted.x, first), max(noted.y, last));
   bool rising = hit.ends_tan.x <= hit.ends_tan.y;
-  float scale = share_scale(ends);
-  float below = first > low ? part_below(ends, scale, 1.0, range_at(first)) : 0.0;
+  float below = first > low ? part_below(share, first) : 0.0;
   for (int bin = first; bin <= last; ++bin) {
-    float upto = bin == high ? 1.0 : part_below(ends, scale, 1.0, range_at(bin + 1));
+    float upto = bin == high ? 1.0 : part_below(share, bin + 1);
     float power = e.power * max(upto - below, 0.0);
     below = upto;
     vec2 within_m = vec2(max(range_at(bin), ends.x), min(range_at(bin + 1), ends.y));
@@ -267,15 +267,14 @@ void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEc
 // Shares a row's power out over the bins that its height spans. Parts are rounded at the bins' edges, so
 // that their sum is the whole.
 void share_out(uint column, RowEcho e) {
-  vec2 ends = e.ends_m;
-  int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
+  Share share = share_of(e.ends_m, 1.0);
+  int low = share.bins.x, high = share.bins.y;
   int first = max(low, 0), last = min(high, int(c.n_range) - 1);
   uint counts = uint(e.power * echo.sum_scale + 0.5);
-  float scale = share_scale(ends);
-  float below = first > low ? part_below(ends, scale, 1.0, range_at(first)) : 0.0;
+  float below = first > low ? part_below(share, first) : 0.0;
   uint before = uint(below * float(counts) + 0.5);
   for (int bin = first; bin <= last; ++bin) {
-    float upto = bin == high ? 1.0 : part_below(ends, scale, 1.0, range_at(bin + 1));
+    float upto = bin == high ? 1.0 : part_below(share, bin + 1);
     float power = e.power * max(upto - below, 0.0);
     uint cell = uint(bin) * c.n_azimuth + column;
     uint until = bin == high ? counts : max(before, min(counts, uint(upto * float(counts) + 0.5)));

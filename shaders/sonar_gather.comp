@@ -11,16 +11,15 @@
 // Parts of the counts, rounded at the bins' edges, so that their sum is the whole.
 void share_out(uint column, BeamHit hit) {
   vec2 ends = shared_ends(hit.ends_m, hit.range_m);
-  int low = int(floor(bin_at(ends.x))), high = int(floor(bin_at(ends.y)));
-  if (high < 0 || low >= int(c.n_range)) return;
   uvec2 label;
   float strength = reflected(hit.strength, hit.at, label);
-  float counts = floor(strength * c.fixed_scale + 0.5);
+  Share share = share_of(ends, floor(strength * c.fixed_scale + 0.5));
+  int low = share.bins.x, high = share.bins.y;
+  if (high < 0 || low >= int(c.n_range)) return;
   int first = max(low, 0), last = min(high, int(c.n_range) - 1);
-  float scale = share_scale(ends) * counts;
-  int before = first > low ? int(part_below(ends, scale, counts, range_at(first)) + 0.5) : 0;
+  int before = first > low ? int(part_below(share, first) + 0.5) : 0;
   for (int bin = first; bin <= last; ++bin) {
-    int until = int((bin == high ? counts : part_below(ends, scale, counts, range_at(bin + 1))) + 0.5);
+    int until = int((bin == high ? share.whole : part_below(share, bin + 1)) + 0.5);
     until = max(before, until);
     add_counts(uint(bin) * c.n_azimuth + column, uint(until - before), float(until - before) / c.fixed_scale, label.x);
     before = until;

@@ -130,25 +130,36 @@ void find_ends(SonarColumn s, uint row, int v, vec2 edges, bool limb, float plan
   hit.ends_tan = rising ? edges : edges.yx;
 }
 
-// For part_below, times the whole; the same for all bins of a row.
-float share_scale(vec2 ends_m) {
-  float inverse_m = 1.0 / (ends_m.y - ends_m.x);
-  return kFootprint == kSonarFootprintShared ? inverse_m : inverse_m * ends_m.y * ends_m.y / (ends_m.y + ends_m.x);
-}
-
-// What of a row's whole comes from below a range. It is even where the row is lower than a bin; else, seen at
-// grazing, elevation goes with 1 / range, and so does the incidence.
-float part_below(vec2 ends_m, float scale, float whole, float range_m) {
-  if (kFootprint == kSonarFootprintShared) return clamp((range_m - ends_m.x) * scale, 0.0, whole);
-  float r = clamp(range_m, ends_m.x, ends_m.y);
-  return clamp((r - ends_m.x) * (r + ends_m.x) / (r * r) * scale, 0.0, whole);
-}
-
 // A footprint is shared out over no more bins to either side of its centre: what one row may cost.
 const float kFarthestShare_bins = 2048.0;
 
 float bin_at(float range_m) { return (range_m - c.range_min_m) * c.bins_per_m + c.edge_bias_bins; }
 float range_at(int bin) { return (float(bin) - c.edge_bias_bins) * c.bin_m + c.range_min_m; }
+
+// How a row's whole is shared out over the bins that it spans: evenly where the row is lower than a bin; else, seen at
+// grazing, elevation goes with 1 / range, and so does the incidence.
+struct Share {
+  vec2 ends;    // in bins where it is even, else in metres
+  ivec2 bins;   // first and last, which may lie beside the image
+  float scale;  // for part_below, the same for all bins
+  float whole;
+};
+
+Share share_of(vec2 ends_m, float whole) {
+  vec2 ends_bins = vec2(bin_at(ends_m.x), bin_at(ends_m.y));
+  Share share = Share(ends_bins, ivec2(floor(ends_bins)), whole / (ends_bins.y - ends_bins.x), whole);
+  if (kFootprint == kSonarFootprintShared) return share;
+  share.ends = ends_m;
+  share.scale = whole / (ends_m.y - ends_m.x) * ends_m.y * ends_m.y / (ends_m.y + ends_m.x);
+  return share;
+}
+
+// What of a row's whole comes from below a bin.
+float part_below(Share share, int bin) {
+  if (kFootprint == kSonarFootprintShared) return clamp((float(bin) - share.ends.x) * share.scale, 0.0, share.whole);
+  float r = clamp(range_at(bin), share.ends.x, share.ends.y);
+  return clamp((r - share.ends.x) * (r + share.ends.x) / (r * r) * share.scale, 0.0, share.whole);
+}
 
 // A footprint of a part of a bin, which is shared out as its centre.
 const float kShortest_bins = 0.25;
