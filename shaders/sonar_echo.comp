@@ -21,7 +21,8 @@ layout(constant_id = kSonarSpecGhost) const uint kGhost = 0;
 layout(constant_id = kSonarSpecMoving) const uint kMoving = 0;
 layout(constant_id = kSonarSpecBent) const uint kBent = 0;
 
-layout(set = 0, binding = kSonarBindEcho, scalar) uniform Echo { SonarEcho echo; };
+layout(set = 0, binding = kSonarBindEcho, scalar) uniform Echo { SonarEcho of_ping; };
+SonarEcho echo;  // copied as c is
 layout(set = 0, binding = kSonarBindWeights) uniform texture2D weights;
 layout(set = 0, binding = kSonarBindCorrection, scalar) readonly buffer Corrections { float corrections[]; };
 layout(set = 0, binding = kSonarBindTexture) uniform texture2D gamma_quantiles;
@@ -300,6 +301,8 @@ void tell(uint column, uint row, RowEcho e, bool heard, uint label) {
 }
 
 void main() {
+  c = pushed;
+  echo = of_ping;
   uint column = gl_GlobalInvocationID.x;
   if (column >= c.n_azimuth) return;
   SonarColumn s = columns[column];

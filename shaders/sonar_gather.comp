@@ -38,6 +38,7 @@ void gather(uint column, BeamHit hit) {
 }
 
 void main() {
+  c = pushed;
   uint column = gl_GlobalInvocationID.x;
   if (column >= c.n_azimuth) return;
   SonarColumn s = columns[column];

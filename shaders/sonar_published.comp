@@ -42,6 +42,7 @@ void add_pixel(ivec3 at, SonarColumn s, uint column, uint stamp) {
 }
 
 void main() {
+  c = pushed;
   uint column = gl_GlobalInvocationID.x;
   if (column >= c.n_azimuth) return;
   SonarColumn s = columns[column];

@@ -20,7 +20,9 @@ layout(set = 0, binding = kSonarBindDepth) uniform texture2DArray depth_image;
 layout(set = 0, binding = kSonarBindNormal) uniform texture2DArray normal_image;
 layout(set = 0, binding = kSonarBindLabel) uniform utexture2DArray label_image;
 layout(set = 0, binding = kSonarBindReflectivity, scalar) readonly buffer Reflectivity { float reflectivity[]; };
-layout(push_constant, scalar) uniform Push { SonarPush c; };
+layout(push_constant, scalar) uniform Push { SonarPush pushed; };
+// main copies it at its start: within loops a processor's driver would load it anew each time, lane by lane.
+SonarPush c;
 
 #include "shared/sonar_words.glsl"
 
