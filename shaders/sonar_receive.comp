@@ -8,14 +8,15 @@
 #include "shared/random.glsl"
 
 layout(constant_id = kReceiverSpecNoise) const uint kNoise = 0;
-layout(set = 0, binding = kReceiverIn) uniform texture2DArray field;
+layout(set = 0, binding = kReceiverIn, rg32f) readonly uniform image2DArray field;
 layout(set = 0, binding = kReceiverGains, scalar) readonly buffer Gains { vec2 gains[]; };
 layout(set = 0, binding = kReceiverOut, scalar) writeonly buffer Image { float image[]; };
 
 void main() {
+  c = pushed;
   uvec2 at = gl_GlobalInvocationID.xy;
   if (at.x >= c.out_columns || at.y >= c.rows) return;
-  vec2 value = texelFetch(field, ivec3(at, 0), 0).rg;
+  vec2 value = imageLoad(field, ivec3(at, 0)).rg;
   if (kCoherent == 0 && kNoise != 0) value.x = sqrt(max(value.x, 0.0));  // amplitude
   if (kNoise != 0) {
     uint cell = at.y * c.out_columns + at.x;

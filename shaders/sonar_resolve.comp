@@ -11,6 +11,7 @@ layout(set = 0, binding = kReceiverGains, scalar) readonly buffer Gains { vec2 g
 layout(set = 0, binding = kReceiverOut, rg32f) writeonly uniform image2DArray field;
 
 void main() {
+  c = pushed;
   uvec2 at = gl_GlobalInvocationID.xy;
   if (at.x >= c.columns || at.y >= c.rows) return;
   uvec2 sum = sums[at.y * c.columns + at.x];

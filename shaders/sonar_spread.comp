@@ -10,7 +10,7 @@
 layout(constant_id = kReceiverSpecAxis) const uint kAxis = 0;
 layout(constant_id = kReceiverSpecShift) const uint kShift = 0;
 layout(constant_id = kReceiverSpecWrap) const uint kWrap = 0;
-layout(set = 0, binding = kReceiverIn) uniform texture2DArray field;
+layout(set = 0, binding = kReceiverIn, rg32f) readonly uniform image2DArray field;
 layout(set = 0, binding = kReceiverTaps) uniform texture2D taps;
 layout(set = 0, binding = kReceiverOut, rg32f) writeonly uniform image2DArray result;
 
@@ -20,11 +20,12 @@ vec2 column_at(int column, int row) {
     column += column < 0 ? n : 0;
     column -= column >= n ? n : 0;
   }
-  vec2 value = texelFetch(field, ivec3(clamp(column, 0, n - 1), row, 0), 0).rg;
+  vec2 value = imageLoad(field, ivec3(clamp(column, 0, n - 1), row, 0)).rg;
   return column >= 0 && column < n ? value : vec2(0.0);
 }
 
 void main() {
+  c = pushed;
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   if (at.x >= int(c.out_columns) || at.y >= int(c.rows)) return;
   vec2 sum = vec2(0.0);
@@ -32,7 +33,7 @@ void main() {
   if (kAxis == 1) {
     int low = max(0, -(at.y + c.first)), high = min(int(c.taps), int(c.rows) - at.y - c.first);
     for (int k = low; k < high; ++k)
-      sum += texelFetch(taps, ivec2(k, 0), 0).r * texelFetch(field, ivec3(at.x, at.y + c.first + k, 0), 0).rg;
+      sum += texelFetch(taps, ivec2(k, 0), 0).r * imageLoad(field, ivec3(at.x, at.y + c.first + k, 0)).rg;
   } else {
     int start = at.x * int(c.stride) + c.first;
     float turned = kShift != 0 ? c.first_shift + c.shift * float(at.y) : 0.0;

@@ -68,13 +68,13 @@ Result<Receiver> Receiver::create(gpu::Device& device, ReceiverDesc desc) {
                                        {shared::kReceiverOut, kImage}},
                                       {coherent}));
   NERITIC_TRY(made.receive_, pipeline(device, "sonar receive", shaders::kSonarReceiveComp,
-                                      {{shared::kReceiverIn, kSampled},
+                                      {{shared::kReceiverIn, kImage},
                                        {shared::kReceiverGains, kBuffer},
                                        {shared::kReceiverOut, kBuffer}},
                                       {coherent, {shared::kReceiverSpecNoise, d.noise}}));
   const auto spread = [&](const char* name, std::uint32_t axis) {
     return pipeline(device, name, shaders::kSonarSpreadComp,
-                    {{shared::kReceiverIn, kSampled},
+                    {{shared::kReceiverIn, kImage},
                      {shared::kReceiverTaps, kSampled},
                      {shared::kReceiverOut, kImage}},
                     {coherent,
@@ -126,7 +126,7 @@ graph::ImageHandle Receiver::declare_spread(graph::FrameGraph& graph, const std:
           name,
           [&](graph::PassBuilder& builder, Pass& pass) {
             pass.in = field;
-            builder.read(field, Access::kSampledCompute);
+            builder.read(field, Access::kStorageReadCompute);
             pass.out = builder.write(
                 builder.create_image(name, {kFieldFormat, constants.out_columns, desc_.rows}),
                 Access::kStorageWriteCompute);
@@ -136,7 +136,7 @@ graph::ImageHandle Receiver::declare_spread(graph::FrameGraph& graph, const std:
             context.commands.bind_pipeline(pipeline);
             context.commands.bind(
                 pipeline,
-                {gpu::bound_texel_image(shared::kReceiverIn, context.image(pass.in).view()),
+                {gpu::bound_storage_image(shared::kReceiverIn, context.image(pass.in).view()),
                  gpu::bound_texel_image(shared::kReceiverTaps,
                                         (across ? across_taps_ : range_taps_).view()),
                  gpu::bound_storage_image(shared::kReceiverOut, context.image(pass.out).view())});
@@ -192,7 +192,7 @@ graph::BufferHandle Receiver::declare_receive(graph::FrameGraph& graph, const st
           prefix + "sonar receive",
           [&](graph::PassBuilder& builder, Pass& pass) {
             pass.field = field;
-            builder.read(field, Access::kSampledCompute);
+            builder.read(field, Access::kStorageReadCompute);
             pass.power = builder.write(
                 target ? target : builder.create_buffer(prefix + "sonar power", power_bytes()),
                 Access::kStorageWriteCompute);
@@ -202,7 +202,7 @@ graph::BufferHandle Receiver::declare_receive(graph::FrameGraph& graph, const st
             context.commands.bind_pipeline(receive_);
             context.commands.bind(
                 receive_,
-                {gpu::bound_texel_image(shared::kReceiverIn, context.image(pass.field).view()),
+                {gpu::bound_storage_image(shared::kReceiverIn, context.image(pass.field).view()),
                  gpu::bound_buffer(shared::kReceiverGains, slice.buffer, slice.offset, slice.size),
                  gpu::bound_buffer(shared::kReceiverOut, context.buffer(pass.power).handle())});
             context.commands.push(receive_, constants);

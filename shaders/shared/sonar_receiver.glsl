@@ -3,4 +3,5 @@
 
 layout(local_size_x = kReceiverGroup, local_size_y = kReceiverGroup) in;
 layout(constant_id = kReceiverSpecCoherent) const uint kCoherent = 0;
-layout(push_constant, scalar) uniform Push { SonarReceiverPush c; };
+layout(push_constant, scalar) uniform Push { SonarReceiverPush pushed; };
+SonarReceiverPush c;
