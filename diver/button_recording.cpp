@@ -53,14 +53,14 @@ Result<ButtonRecording> read_button_recording(std::string_view text, const std::
     const double at_s = unit_s * table.columns[*time][row];
     if (!(std::abs(at_s) <= kMostButtonTime_s) ||
         (!out.time_s.empty() && !(at_s > out.time_s.back())))
-      return bad_input("{}: row {}: time {} found; times that rise, to 1e9 s, are accepted", name,
-                       row + 1, table.columns[*time][row]);
+      return bad_input("{}:{}: time {} found; times that rise, to 1e9 s, are accepted", name,
+                       table.lines[row], table.columns[*time][row]);
     std::uint64_t pressed = 0;
     for (std::size_t i = 0; i < bits.size(); ++i) {
       const double value = table.columns[i][row];
       if (bits[i] == 0) continue;
       if (value != 0.0 && value != 1.0)  // NaN too
-        return bad_input("{}: row {}: {}: {} found; 0 and 1 are accepted", name, row + 1,
+        return bad_input("{}:{}: {}: {} found; 0 and 1 are accepted", name, table.lines[row],
                          table.names[i], value);
       if (value == 1.0) pressed |= bits[i];
     }

@@ -65,13 +65,13 @@ Result<LimbRecording> read_limb_recording(std::string_view text, const std::stri
   for (std::size_t row = 0; row < times.size(); ++row) {
     const double at_s = unit_s * (times[row] - times[0]);
     if (!std::isfinite(at_s) || (row > 0 && !(at_s > out.time_s.back())))
-      return bad_input("{}: row {}: time {} found, times that rise are accepted", name, row + 1,
+      return bad_input("{}:{}: time {} found, times that rise are accepted", name, table.lines[row],
                        times[row]);
     JointAngles angles{};
     for (const AngleColumn& column : columns) {
       const double deg = table.columns[column.column][row];
       if (!(std::abs(deg) <= kMostAngle_deg))
-        return bad_input("{}: row {}: {}: {} found, -360 to 360 is accepted", name, row + 1,
+        return bad_input("{}:{}: {}: {} found, -360 to 360 is accepted", name, table.lines[row],
                          table.names[column.column], deg);
       angles[column.joint][column.axis] = radians(deg);
     }

@@ -241,7 +241,7 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
   SampleTable table;
   const char* separators = ",;";
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // as spreadsheets begin a file
-  for (int line_number = 1; !text.empty(); ++line_number) {
+  for (std::uint32_t line_number = 1; !text.empty(); ++line_number) {
     const auto end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
@@ -270,6 +270,7 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
                          table.names[i], cells[i].substr(0, 40));
       table.columns[i].push_back(*value);
     }
+    table.lines.push_back(line_number);
   }
   if (table.names.empty() || table.columns[0].empty())
     return bad_input("{}: no row found, a heading and one row or more are accepted", name);

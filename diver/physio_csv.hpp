@@ -15,6 +15,7 @@ namespace neritic::diver {
 struct SampleTable {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;  // all of one length
+  std::vector<std::uint32_t> lines;          // of the file, from 1: where each row is
   std::optional<double> rate_hz;
 
   std::optional<std::size_t> find(std::string_view name) const;

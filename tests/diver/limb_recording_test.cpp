@@ -31,13 +31,14 @@ TEST(LimbRecording, ColumnsAreFoundByTheirSegmentsNames) {
 TEST(LimbRecording, WhatIsWrongIsSaidInOneLine) {
   const struct {
     const char *text, *message;
-  } wrong[] = {{"t_s,knee_deg\n0,1\n1,2\n", "upper_leg_l_y_deg are accepted"},
-               {"head_y_deg\n1\n2\n", "t_s and angles"},
-               {"t_s,pelvis_y_deg\n0,1\n1,2\n", "t_s and angles"},
-               {"t_s,head_y_deg\n0,1\n", "1 rows found, two or more"},
-               {"t_s,head_y_deg\n0,1\n0,2\n", "row 2: time 0 found, times that rise"},
-               {"t_s,head_y_deg\n0,1\n1,400\n", "row 2: head_y_deg: 400 found, -360 to 360"},
-               {"t_s,head_y_deg\n0,1\n1,nan\n", "head_y_deg: nan found"}};
+  } wrong[] = {
+      {"t_s,knee_deg\n0,1\n1,2\n", "upper_leg_l_y_deg are accepted"},
+      {"head_y_deg\n1\n2\n", "t_s and angles"},
+      {"t_s,pelvis_y_deg\n0,1\n1,2\n", "t_s and angles"},
+      {"t_s,head_y_deg\n0,1\n", "1 rows found, two or more"},
+      {"t_s,head_y_deg\n0,1\n0,2\n", "k.csv:3: time 0 found, times that rise"},
+      {"t_s,head_y_deg\n0,1\n1,400\n", "k.csv:3: head_y_deg: 400 found, -360 to 360"},
+      {"# a suit\nt_s,head_y_deg\n0,1\n\n# slower\n1,nan\n", "k.csv:6: head_y_deg: nan found"}};
   for (const auto& one : wrong) {
     const auto r = read_limb_recording(one.text, "k.csv");
     ASSERT_FALSE(r.ok()) << one.text;

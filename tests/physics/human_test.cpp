@@ -61,21 +61,23 @@ mission = { follow = { object = "diver", offset_m = [2.5, 0.3, 0] }, look_at = "
   EXPECT_GT(dive.vehicle().body.position_ned_m.x, 10.0);
 }
 
-// The shipped dive, and three minutes after its last waypoint: the diver comes back where the
-// current takes him off, and the vehicle stays at its station.
+// The shipped dive, and five minutes after its last waypoint: the diver comes back where the
+// current takes him off, and the vehicle stays at its station, on either side, clear of the wreck.
 TEST(HumanDive, AVehicleKeepsBesideADiverWhoComesBack) {
   auto scene = scene::load_scene(test::source_dir() / "assets/scenes/dive.toml");
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   TestDive dive = dive_of(std::move(scene).value());
   double off_m = 0.0;
-  dive.run(270.0, [&] {
+  dive.run(420.0, [&] {
     if (dive.time_s() < 10.0) return;
     const VehicleState& rov = dive.vehicle();
     off_m = std::max(off_m, glm::distance(rov.mission.wanted_ned_m, rov.body.position_ned_m));
   });
   EXPECT_EQ(dive.state().humans[0].arrived, 4u);
   EXPECT_LT(off_m, 1.5);
-  EXPECT_LT(glm::distance(swimmer_pose(dive).position_m, Vec3(3.5, -14.4, 22.0)), 5.0);
+  EXPECT_LT(glm::distance(swimmer_pose(dive).position_m, Vec3(5.5, -14.4, 24.0)), 5.0);
+  EXPECT_EQ(dive.vehicle().contact.touched_steps, 0u);
+  EXPECT_EQ(dive.state().humans[0].contact.touched_steps, 0u);
 }
 
 TEST(HumanDive, IsStoppedByAWallAndComesBackFromIt) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace neritic::tools {
 
@@ -95,28 +96,87 @@ void draw_notes(Canvas& canvas, const Box& in, const Series& s, const Axis& x, c
   }
 }
 
-// Over the lines, so that none runs through a name.
-void draw_legend(Canvas& canvas, const Box& in, const std::vector<Series>& series, bool below) {
-  constexpr double kLine_px = 18.0;
-  const double high = kLine_px * static_cast<double>(std::ranges::count_if(
-                                     series, [](const Series& s) { return !s.name.empty(); }));
-  double wide = 0.0;
-  for (const Series& s : series) wide = std::max(wide, Canvas::text_width(kTextPx, s.name));
-  double y = below ? in.bottom - high : in.top + 8.0;
-  canvas.fill_rectangle(in.right - 42 - wide, y - 9, in.right, y - 9 + high,
-                        kPaper.with_alpha(0.8f));
+constexpr double kLegendLine_px = 18.0;
+
+// Over the lines, so that none runs through a name where no place is free.
+void draw_legend(Canvas& canvas, const Box& box, const std::vector<Series>& series) {
+  canvas.fill_rectangle(box.left, box.top, box.right, box.bottom, kPaper.with_alpha(0.8f));
+  double y = box.top + 0.5 * kLegendLine_px;
   for (const Series& s : series) {
     if (s.name.empty()) continue;
     const double width = Canvas::text_width(kTextPx, s.name);
-    canvas.text(in.right - 4 - width, y + 4, kTextPx, s.name, kInk);
-    const double mark = in.right - (s.joined ? 38.0 : 26.0) - width;
-    canvas.segment(mark, y, s.joined ? in.right - 14 - width : mark, y, s.joined ? 2.4 : 4.0,
+    canvas.text(box.right - 4 - width, y + 4, kTextPx, s.name, kInk);
+    const double mark = box.right - (s.joined ? 38.0 : 26.0) - width;
+    canvas.segment(mark, y, s.joined ? box.right - 14 - width : mark, y, s.joined ? 2.4 : 4.0,
                    s.color);
-    y += kLine_px;
+    y += kLegendLine_px;
   }
 }
 
+struct PlotPoint {
+  double x = 0.0, y = 0.0;  // pixels
+};
+
+// Whether a straight line from a to b runs through a box: what is left of it after each edge has
+// cut off its own side (Liang and Barsky 1984).
+bool runs_through(const Box& box, const PlotPoint& a, const PlotPoint& b) {
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  double from = 0.0, to = 1.0;
+  for (const auto& [along, room] : {std::pair{-dx, a.x - box.left},
+                                    {dx, box.right - a.x},
+                                    {-dy, a.y - box.top},
+                                    {dy, box.bottom - a.y}}) {
+    if (along == 0.0 && room < 0.0) return false;
+    if (along < 0.0) from = std::max(from, room / along);
+    if (along > 0.0) to = std::min(to, room / along);
+  }
+  return from <= to;
+}
+
+// How many pieces of the lines lie under a box.
+std::size_t pieces_under(const Box& box, const Box& in, const Axis& x, const Axis& y,
+                         const std::vector<Series>& series) {
+  std::size_t pieces = 0;
+  for (const Series& s : series) {
+    PlotPoint before;
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+      const PlotPoint at{place(x, s.x[i], in.left, in.right), place(y, s.y[i], in.bottom, in.top)};
+      if (!s.joined || s.x.size() == 1) pieces += runs_through(box, at, at);
+      if (s.joined && i > 0) pieces += runs_through(box, before, at);
+      before = at;
+    }
+  }
+  return pieces;
+}
+
 }  // namespace
+
+Box legend_box(const Box& box, const Axis& x, const Axis& y, const std::vector<Series>& series,
+               bool below) {
+  constexpr double kMargin_px = 6.0;
+  const Box in = inside(box);
+  double wide = 42.0, high = 0.0;
+  for (const Series& s : series) {
+    if (s.name.empty()) continue;
+    wide = std::max(wide, 42.0 + Canvas::text_width(kTextPx, s.name));
+    high += kLegendLine_px;
+  }
+  const double highest = in.top + kTextPx;  // under the axis's own words
+  const double room = std::max(in.bottom - highest - high, 0.0);
+  Box best;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const double across : {1.0, 0.0, 0.5})
+    for (int step = 0; step <= 10 && least > 0; ++step) {
+      const double left = in.left + kMargin_px + across * (in.right - in.left - wide - kMargin_px);
+      const double top = highest + 0.1 * (below ? 10 - step : step) * room;
+      const Box at{left, top, left + wide, top + high};
+      const Box clear{at.left - kMargin_px, at.top - kMargin_px, at.right + kMargin_px,
+                      at.bottom + kMargin_px};
+      const std::size_t pieces = pieces_under(clear, in, x, y, series);
+      if (pieces < least) least = pieces, best = at;
+    }
+  return best;
+}
 
 Axis axis_for(const std::string& label, const std::vector<double>& values, bool log) {
   Axis axis{label, 0.0, 1.0, log};
@@ -149,7 +209,7 @@ void draw_lines(Canvas& canvas, const Box& box, const std::string& title, const 
     }
     draw_notes(canvas, in, s, x, y, taken);
   }
-  draw_legend(canvas, in, series, legend_below);
+  draw_legend(canvas, legend_box(box, x, y, series, legend_below), series);
 }
 
 void draw_mark(Canvas& canvas, const Box& box, const Axis& x, const Axis& y, double at_x,

@@ -45,11 +45,16 @@ inline constexpr sonar::Color kSeriesColors[] = {{0.0f, 0.447f, 0.698f},
 // An axis that holds all values with a little room.
 Axis axis_for(const std::string& label, const std::vector<double>& values, bool log);
 
+// The legend lies where it hides the least, nothing where a place is free.
 void draw_lines(sonar::Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
                 const Axis& y, const std::vector<Series>& series, bool legend_below = false);
 // The numbers at an axis: 1, 2, 5 times powers of ten; of a logarithmic one that holds fewer than
 // three of these, equal steps.
 std::vector<double> ticks(const Axis& axis);
+// Where that legend lies: of places at the right side, then at the left and in the middle, from the
+// top (or from below), the first that is free of lines and dots.
+Box legend_box(const Box& box, const Axis& x, const Axis& y, const std::vector<Series>& series,
+               bool below);
 // A number's place on an axis that runs from one pixel to another.
 double place(const Axis& axis, double value, double from, double to);
 // The rectangle inside the axes of a plot.
