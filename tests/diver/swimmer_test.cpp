@@ -239,7 +239,7 @@ TEST(Swimmer, ComesBackNoFasterThanWhoKeepsBesideCanFollow) {
 }
 
 // Oxygen of who fins along, by the work of the limbs: Pendergast's line (2003, average fins),
-// within a fifth at a diver's pace. Faster it takes more than people do.
+// within a fifth at a diver's pace. Faster it takes more than people do (CHECKS.md).
 TEST(Swimmer, AtADiversPaceItTakesTheOxygenThatIsPublished) {
   const Body body = body_with(Gear{});
   for (const double speed_m_s : {0.35, 0.4, 0.45}) {
@@ -252,6 +252,35 @@ TEST(Swimmer, AtADiversPaceItTakesTheOxygenThatIsPublished) {
     const double published_l_min = swimming_oxygen_l_min(way_m / 20.0);
     EXPECT_NEAR(s.state.life.lungs.oxygen_l_min / published_l_min, 1.0, 0.2) << speed_m_s;
   }
+}
+
+// Why fast swims cost more than published is not the kick: wider or narrower, of a shorter or
+// longer wave, beating more with the whole leg or with the tips, at .6 m/s none takes less.
+TEST(Swimmer, NoOtherKickTakesLessAtThatSpeed) {
+  const Body body = body_with(Gear{});
+  const auto watts = [&](const FlutterKick& kick) {
+    SwimmerSettings settings;
+    settings.kick = kick;
+    settings.most_frequency_hz = 2.5;
+    Swim s = begin(body, {0.0, 0.0, 12.0}, 0.0);
+    double half_j = 0.0, way_m = 0.0;
+    for (int i = 0; i < 60 * 240; ++i) {
+      if (i == 30 * 240) half_j = s.state.life.limb_work_j;
+      if (i % 4 == 0)
+        swim(body, settings, {{1000.0, 0.0, 12.0}, 0.6}, s.state, s.swimmer, 1.0 / 60.0, s.inputs);
+      s.state = step(body, s.state, s.inputs, 1.0 / 240.0);
+      if (i >= 30 * 240) way_m += s.state.root.velocity[0] / 240.0;
+    }
+    // As if at .6 m/s, where a kick does not get there: power goes with the cube.
+    return (s.state.life.limb_work_j - half_j) / 30.0 * std::pow(0.6 * 30.0 / way_m, 3.0);
+  };
+  const double usual_w = watts({});
+  EXPECT_NEAR(usual_w, 175.0, 10.0);
+  std::vector<FlutterKick> others(6);
+  others[0].amplitude_m = 0.18, others[1].amplitude_m = 0.32;
+  others[2].wavelength_m = 1.8, others[3].wavelength_m = 3.2;
+  others[4].exponent = 1.0, others[5].exponent = 1.6;
+  for (std::size_t i = 0; i < others.size(); ++i) EXPECT_GT(watts(others[i]), usual_w) << i;
 }
 
 TEST(Swimmer, FollowsADepthThatChanges) {
