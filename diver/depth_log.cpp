@@ -6,29 +6,14 @@
 #include <limits>
 
 #include "diver/gas_label.hpp"
+#include "diver/physio_csv.hpp"
+#include "engine/core/text.hpp"
 
 namespace neritic::diver {
 namespace {
 
 constexpr std::size_t kMostSamples = 10'000'000;
 constexpr std::size_t kMostVehicles = 8;  // that are named
-
-std::string_view trimmed(std::string_view text) {
-  const auto is_blank = [](char c) { return c == ' ' || c == '\r' || c == '"'; };
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (;;) {
-    const std::size_t end = line.find_first_of(",;\t");
-    cells.push_back(trimmed(line.substr(0, end)));
-    if (end == line.npos) return cells;
-    line.remove_prefix(end + 1);
-  }
-}
 
 bool read_cell(std::string_view cell, double& value) {
   const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -48,12 +33,13 @@ class LogReader {
   LogReader(const std::string& name, std::string_view vehicle) : name_(name), vehicle_(vehicle) {}
 
   Result<DepthLog> read(std::string_view text) {
+    text = without_mark(text);
     while (!text.empty()) {
       const std::size_t end = text.find('\n');
-      const std::string_view line = trimmed(text.substr(0, end));
+      const std::string_view line = text.substr(0, end), words = trimmed_cell(line);
       ++line_;
       text = end == text.npos ? std::string_view() : text.substr(end + 1);
-      if (line.empty() || line.front() == '#') continue;
+      if (words.empty() || words.front() == '#') continue;
       NERITIC_TRY_STATUS(width_ == 0 ? read_names(line) : read_row(line));
     }
     if (width_ == 0)
@@ -72,27 +58,27 @@ class LogReader {
 
  private:
   Status read_names(std::string_view line) {
-    const std::vector<std::string_view> names = cells_of(line);
+    separators_ = separators_of(line);
+    std::vector<std::string> names;
+    for (const std::string_view cell : csv_cells(line, separators_))
+      names.push_back(lower_case(cell));
     width_ = names.size();
     const auto find = [&](std::string_view name) {
       return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
     };
-    time_ = find("time_s");
-    if (time_ == width_) {
-      time_ = find("time_min");
-      unit_s_ = 60.0;
-    }
-    depth_ = find("depth_m");
+    time_ = time_column_of(names, unit_s_).value_or(width_);
+    for (const char* name : {"depth_m", "depth (m)", "depth [m]"})
+      if (depth_ = find(name); depth_ < width_) break;
     gas_ = find("gas");
     of_ = find("vehicle");
     if (time_ == width_ || depth_ == width_)
       return bad_input("{}: line {}: columns '{}' found, time_s or time_min and depth_m are needed",
-                       name_, line_, shown(line));
+                       name_, line_, shown(trimmed_cell(line)));
     return {};
   }
 
   Status read_row(std::string_view line) {
-    const std::vector<std::string_view> cells = cells_of(line);
+    const std::vector<std::string_view> cells = csv_cells(line, separators_);
     if (cells.size() != width_)
       return bad_input("{}: line {}: {} cells found, {} are accepted", name_, line_, cells.size(),
                        width_);
@@ -146,6 +132,7 @@ class LogReader {
   std::string_view vehicle_;
   std::vector<std::string> vehicles_;  // that there are
   std::size_t line_ = 0, width_ = 0, time_ = 0, depth_ = 0, gas_ = 0, of_ = 0;
+  const char* separators_ = ",;";
   double unit_s_ = 1.0;
   DepthLog log_;
 };

@@ -1,8 +1,8 @@
 // A diver's recorded depths, from a table as computers and simulations write them. Any thread.
 //
-// The form: text, a row a line, columns by comma, semicolon or tab. The first row names them, in
-// any order: time_s or time_min; depth_m; gas (air, ean32, 18/45), if there is one; vehicle, whose
-// row it is, where several dive. Other columns
+// The form: text, a row a line, columns as physio_csv.hpp parts them. The first row names them, in
+// any order: time_s or time_min (as SampleTable::time_column has it); depth_m, "depth (m)"; gas
+// (air, ean32, 18/45), if there is one; vehicle, whose row it is, where several dive. Other columns
 // are left alone, and so are empty lines and lines that begin with #. A depth that is "nan" or
 // empty is a sample that failed; times may not go back.
 #pragma once

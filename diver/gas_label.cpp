@@ -3,17 +3,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "engine/core/text.hpp"
+
 namespace neritic::diver {
 namespace {
 
 constexpr double kLeastO2_percent = 1.0;
-
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
 
 // The whole of text as a number of percent.
 bool read_percent(std::string_view text, double& percent) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/text.hpp"
+
 namespace neritic::diver {
 namespace {
 
@@ -21,22 +23,6 @@ constexpr double kDeviationOfMedian = 1.4826;  // of a normal distribution
 // A few rows with a clock that leaps must not fill the memory with what is missing.
 constexpr double kMostMissing = 1e6, kMostMissingARow = 100.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\"");
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-std::vector<std::string_view> csv_cells(std::string_view line, const char* separators) {
-  std::vector<std::string_view> cells;
-  while (true) {
-    const auto end = std::min(line.find_first_of(separators), line.size());
-    cells.push_back(trimmed(line.substr(0, end)));
-    if (end == line.size()) return cells;
-    line.remove_prefix(end + 1);
-  }
-}
 
 double cell_number(std::string_view cell) {
   double value = 0.0;
@@ -57,12 +43,6 @@ double seconds_of_unit(std::string_view name) {
   for (const auto& [text, seconds] : kUnits)
     if (unit == text) return seconds;
   return 1.0;
-}
-
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
 }
 
 // Of a column of flags: 1, 0, or nothing where there is no word.
@@ -220,13 +200,32 @@ Status spread_evenly(const std::vector<double>& time_s, const std::vector<double
 
 }  // namespace
 
-std::optional<std::size_t> SampleTable::find(std::string_view name) const {
-  const auto at = std::ranges::find(names, lower_case(name));
-  if (at == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - names.begin());
+std::string_view trimmed_cell(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\"");
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
 }
 
-std::optional<std::size_t> SampleTable::time_column(double& scale) const {
+std::string_view without_mark(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  return text;
+}
+
+const char* separators_of(std::string_view heading) {
+  return heading.find_first_of(",;") == heading.npos ? "\t" : ",;";
+}
+
+std::vector<std::string_view> csv_cells(std::string_view line, const char* separators) {
+  std::vector<std::string_view> cells;
+  while (true) {
+    const auto end = std::min(line.find_first_of(separators), line.size());
+    cells.push_back(trimmed_cell(line.substr(0, end)));
+    if (end == line.size()) return cells;
+    line.remove_prefix(end + 1);
+  }
+}
+
+std::optional<std::size_t> time_column_of(const std::vector<std::string>& names, double& scale) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string& n = names[i];
     const bool is_t = n.starts_with("t") && (n.size() == 1 || n.find_first_of("_ ([") == 1);
@@ -237,19 +236,29 @@ std::optional<std::size_t> SampleTable::time_column(double& scale) const {
   return std::nullopt;
 }
 
+std::optional<std::size_t> SampleTable::find(std::string_view name) const {
+  const auto at = std::ranges::find(names, lower_case(name));
+  if (at == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - names.begin());
+}
+
+std::optional<std::size_t> SampleTable::time_column(double& scale) const {
+  return time_column_of(names, scale);
+}
+
 Result<SampleTable> parse_sample_table(std::string_view text, const std::string& name) {
   SampleTable table;
   const char* separators = ",;";
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // as spreadsheets begin a file
+  text = without_mark(text);
   for (std::uint32_t line_number = 1; !text.empty(); ++line_number) {
     const auto end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (trimmed(line).empty() || trimmed(line).starts_with('#')) {
+    if (trimmed_cell(line).empty() || trimmed_cell(line).starts_with('#')) {
       if (!table.rate_hz) table.rate_hz = rate_in(line);
       continue;
     }
-    if (table.names.empty() && line.find_first_of(",;") == line.npos) separators = "\t";
+    if (table.names.empty()) separators = separators_of(line);
     const auto cells = csv_cells(line, separators);
     const auto where = [&] { return fmt::format("{}:{}", name, line_number); };
     if (table.names.empty()) {

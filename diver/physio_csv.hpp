@@ -8,6 +8,16 @@
 
 namespace neritic::diver {
 
+// What all tables of this folder share: cells of a line without blanks and quotes; a file without
+// the mark that spreadsheets begin it with; by comma or semicolon where the heading has one, else
+// tab.
+std::string_view trimmed_cell(std::string_view text);
+std::vector<std::string_view> csv_cells(std::string_view line, const char* separators);
+std::string_view without_mark(std::string_view text);
+const char* separators_of(std::string_view heading);
+// The column of time among names in small letters (SampleTable::time_column).
+std::optional<std::size_t> time_column_of(const std::vector<std::string>& names, double& scale);
+
 // Columns by name, parted by commas, semicolons or tabs; an empty cell, or one without a number, is
 // NaN. '#' starts a comment; one that says fs_hz=1000 (or rate_hz=) gives the rate. In columns
 // 'status' and 'valid' words count: true, yes, valid, ok are 1, false, no, invalid, lost are 0, and

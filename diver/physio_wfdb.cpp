@@ -253,10 +253,12 @@ Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t chan
     bool missing = false;
     std::int32_t raw = raw_sample(bytes, signal.format,
                                   i / in_frame * side_by_side + place + i % in_frame, missing);
-    if (signal.format == 8) raw = before += raw;
+    if (signal.format == 8)  // wraps where a file is no recording
+      raw = before = static_cast<std::int32_t>(static_cast<std::uint32_t>(before) +
+                                               static_cast<std::uint32_t>(raw));
     sum += static_cast<std::uint32_t>(raw);
     out.samples.push_back(missing ? std::numeric_limits<double>::quiet_NaN()
-                                  : (raw - signal.baseline) / signal.gain);
+                                  : (static_cast<double>(raw) - signal.baseline) / signal.gain);
   }
   if (signal.has_checksum &&
       static_cast<std::uint16_t>(sum) != static_cast<std::uint16_t>(signal.checksum))

@@ -28,6 +28,26 @@ TEST(DepthLog, ColumnsStandInAnyOrderBesideOthers) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(log->samples[i].gas, gases[i]);
 }
 
+// As spreadsheets write them, and as the readers of other recordings take them.
+TEST(DepthLog, HeadingsOfSpreadsheetsAreRead) {
+  for (const char* heading : {"\xEF\xBB\xBFtime_s,depth_m", "Time_s,Depth_m", "time (s),Depth (m)",
+                              "time_ms,depth_m", "\"time_min\";\"depth_m\"", "t\tdepth [m]"}) {
+    const std::string names = heading;
+    const char cut = names.find(';') != names.npos    ? ';'
+                     : names.find('\t') != names.npos ? '\t'
+                                                      : ',';
+    const double unit_s = names.find("_ms") != names.npos    ? 1e-3
+                          : names.find("_min") != names.npos ? 60.0
+                                                             : 1.0;
+    const auto log =
+        read_depth_log(fmt::format("{0}\r\n0{1}1\r\n4{1}2.5\r\n", names, cut), "d.csv");
+    ASSERT_TRUE(log.ok()) << log.error().message;
+    ASSERT_EQ(log->samples.size(), 2u);
+    EXPECT_NEAR(log->samples[1].time_s, 4.0 * unit_s, 1e-12) << names;
+    EXPECT_EQ(log->samples[1].depth_m, 2.5) << names;
+  }
+}
+
 TEST(DepthLog, WhatIsWrongIsSaidWithItsLine) {
   const auto fault = [](const char* text) {
     const auto log = read_depth_log(text, "d.csv");
@@ -36,8 +56,9 @@ TEST(DepthLog, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_EQ(fault("time_s,depth_m\n0,1\n"), "read");
   EXPECT_EQ(fault(""), "d.csv: no row of names found, time_s and depth_m are accepted");
   EXPECT_EQ(fault("time_s,depth_m\n"), "d.csv: no sample found, at least one is accepted");
-  EXPECT_EQ(fault("t,depth_m\n0,1\n"),
-            "d.csv: line 1: columns 't,depth_m' found, time_s or time_min and depth_m are needed");
+  EXPECT_EQ(
+      fault("clock,depth_m\n0,1\n"),
+      "d.csv: line 1: columns 'clock,depth_m' found, time_s or time_min and depth_m are needed");
   EXPECT_EQ(fault("time_s,depth_m\n0,1\n1\n"), "d.csv: line 3: 1 cells found, 2 are accepted");
   EXPECT_EQ(fault("time_s,depth_m\nx,1\n"), "d.csv: line 2: time 'x' found, a number is accepted");
   EXPECT_EQ(fault("time_s,depth_m\nnan,1\n"),

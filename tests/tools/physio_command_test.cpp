@@ -150,11 +150,14 @@ TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
   EXPECT_TRUE(run_physio(flags).ok());
   expect_plain_table(folder / "out/breath.csv",
                      "time_s,rate_bpm,breathing,confidence,depth_db,quiet_s,refused\n", 2);
-  for (const double window_s : {0.0, -1.0, std::nan(""), 301.0}) {
+  for (const double window_s : {0.0, -1.0, 2.0, std::nan(""), 301.0}) {
     flags.window_s = window_s;
     EXPECT_THAT(run_physio(flags).error().message, HasSubstr("--window: ")) << window_s;
   }
   flags.window_s.reset();
+  flags.realtime = true;
+  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("--realtime: found with --out; rows"));
+  flags.realtime = false;
   for (const double rate : {0.0, -5.0, std::nan("")}) {
     flags.reference_bpm = rate;
     EXPECT_THAT(run_physio(flags).error().message, HasSubstr("--reference: ")) << rate;
@@ -169,6 +172,30 @@ TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
   EXPECT_EQ(json_in(folder / "eyes/gaze.json")["method"], "idt");
   eyes.method = "ivt";
   EXPECT_THAT(run_physio(eyes).error().message, HasSubstr("--headset: --method ivt found"));
+}
+
+// What is not known is null: a heart of no beats has no rate of 0.
+TEST(PhysioCommand, WhatIsNotKnownIsNull) {
+  const test::ScratchFolder folder;
+  std::string still = "# fs_hz=1000\necg\n";
+  for (int i = 0; i < 12000; ++i) still += "0\n";
+  ASSERT_TRUE(write_text(folder / "e.CSV", still).ok());
+  PhysioFlags flags;
+  flags.what = "ecg";
+  flags.file = (folder / "e.CSV").string();
+  flags.out = folder / "out";
+  ASSERT_TRUE(run_physio(flags).ok());
+  const auto json = json_in(folder / "out/ecg.json");
+  EXPECT_TRUE(json["rate_bpm"].is_null());
+  for (const char* key : {"sdnn_ms", "rmssd_ms", "mean_rate_bpm", "pnn50_percent"})
+    EXPECT_TRUE(json["variability"][key].is_null()) << key;
+  flags.what = "breath";
+  flags.reference_bpm = 12.0;
+  ASSERT_TRUE(run_physio(flags).ok());
+  const auto breath = json_in(folder / "out/breath.json");
+  EXPECT_TRUE(breath["estimates"][0]["rate_bpm"].is_null());
+  EXPECT_EQ(breath["score"]["errors"]["answered"], 0);
+  EXPECT_TRUE(breath["score"]["errors"]["median_error_bpm"].is_null());
 }
 
 TEST(PhysioCommand, FilesThatAreNoneAreErrorsInWords) {

@@ -210,6 +210,13 @@ TEST(PlanCommand, ATravelGasThatIsTheDecoGasIsOneTank) {
             0);
 }
 
+// Of several levels, and stops between whole metres.
+TEST(PlanCommand, DepthsAndLevelsAreSaidAsTheyAre) {
+  const std::string said = said_by("plan --depth 30 --time 20 --level 18,45").out;
+  EXPECT_THAT(said, HasSubstr("min of run time at 30 m alone\n"));
+  EXPECT_THAT(said_by("plan --depth 22.5 --time 40").out, HasSubstr("bottom    22.5 m   "));
+}
+
 TEST(PlanCommand, ALogIsReplayedSampleBySample) {
   const test::ScratchFolder folder;
   std::string log = "time_s,depth_m,gas\n";
@@ -275,6 +282,11 @@ TEST(PlanCommand, ALogOfSeveralVehiclesIsOneOfThem) {
   EXPECT_EQ(json["samples"], 61);
   EXPECT_EQ(json["deepest_m"], 3.0);
   EXPECT_TRUE(json["no_stop_min"].is_null());  // no limit at 3 m
+  ASSERT_EQ(said_by(of_log + " --vehicle diver --out " + (folder / "out").string()).status, 0);
+  const std::string rows = read_text(folder / "out/log.csv").value();
+  EXPECT_THAT(rows, HasSubstr("600,3,air,0,,0,0,0.3,"));
+  EXPECT_THAT(rows, testing::Not(HasSubstr("inf")));
+  EXPECT_THAT(rows, testing::Not(HasSubstr(",-0,")));
 }
 
 TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
@@ -309,6 +321,8 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
          "bottom gas 10/70 from 40 m found, while EAN32 is breathed at 30 m"},
         {"plan --gas 10/70@20 --depth 60 --time 15 --travel ean32 21/35@30",
          "bottom gas 10/70 from 20 m found, while 21/35 is breathed at 60 m"},
+        {"plan --depth 30 --time 20 --gas ean32@50",
+         "--gas: EAN32 from 50 m found, and nothing to breathe above; EAN32, or what is"},
         {"plan --depth 60 --time 30 --level 3,60",
          "3 m until 60 min found, above the ceiling, which is at 29.4 m on the way there; 29.4 m"},
         {"plan --depth 30 --time 20 --tank air=12", "--tank: 1 numbers in '12' found"},

@@ -84,12 +84,12 @@ Result<std::string> show(const PhysioFlags& flags, const Report& report) {
 
 Result<diver::Recording> load_recording(const PhysioFlags& flags) {
   const std::filesystem::path path = flags.file;
-  const std::string kind = path.extension().string();
+  const std::string kind = lower_case(path.extension().string());
   if (kind == ".csv") {
     NERITIC_TRY(const std::string text, read_text(path));
     return diver::parse_csv(text, flags.file, {flags.channel, flags.rate_hz});
   }
-  if (kind == ".wav" || kind == ".WAV") {
+  if (kind == ".wav") {
     NERITIC_TRY(std::uint32_t channel, channel_number(flags));
     NERITIC_TRY(const auto bytes, read_file(path));
     return diver::parse_wav(bytes, flags.file, channel);
@@ -105,6 +105,15 @@ Result<std::string> run_physio(const PhysioFlags& flags) {
   }
   if (flags.what == "breath") {
     if (flags.realtime) {
+      const char* beside = !flags.out.empty()    ? "--out"
+                           : !flags.plot.empty() ? "--plot"
+                           : flags.json          ? "--json"
+                                                 : nullptr;
+      if (beside)
+        return bad_input(
+            "--realtime: found with {}; rows on standard output as they come are "
+            "accepted, or {} without it",
+            beside, beside);
       NERITIC_TRY_STATUS(play_sound(flags));
       return std::string();
     }

@@ -37,8 +37,9 @@ Result<diver::BreathSettings> breath_settings(const PhysioFlags& flags) {
     return bad_input("--reference: {} found, above 0 to 120 breaths a minute is accepted",
                      *flags.reference_bpm);
   settings.window_s = flags.window_s.value_or(settings.window_s);
-  if (!(settings.window_s >= 0.5 && settings.window_s <= 300.0))
-    return bad_input("--window: {} found, 0.5 to 300 s is accepted", settings.window_s);
+  if (!(settings.window_s >= kLeastSound_s && settings.window_s <= 300.0))
+    return bad_input("--window: {} found, {:g} to 300 s is accepted", settings.window_s,
+                     kLeastSound_s);
   settings.block_s = std::min(settings.block_s, settings.window_s);
   NERITIC_TRY_STATUS(diver::check_breath_settings(settings));
   return settings;
@@ -61,6 +62,8 @@ std::string breath_row(const diver::BreathState& s) {
 }
 
 std::string errors_line(const char* name, const RateErrors& e) {
+  if (e.answered == 0)
+    return fmt::format("# {}: no window answered, {} refused\n", name, e.refused);
   return fmt::format(
       "# {}: {} windows answered, {} refused; error {:.2f} breaths/min in the middle, {:.2f} on "
       "the "

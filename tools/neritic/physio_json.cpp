@@ -8,23 +8,33 @@ namespace {
 
 using nlohmann::json;
 
+// Null: not known.
+json known_json(bool known, double value) {
+  return known ? json(value) : json();
+}
+
 json variability_json(const diver::Variability& v) {
+  const bool some = v.intervals > 0, paired = v.pairs > 0;
   return {{"intervals", v.intervals},
-          {"mean_rr_ms", v.mean_rr_ms},
-          {"mean_rate_bpm", v.mean_rate_bpm},
-          {"sdnn_ms", v.sdnn_ms},
-          {"rmssd_ms", v.rmssd_ms},
+          {"mean_rr_ms", known_json(some, v.mean_rr_ms)},
+          {"mean_rate_bpm", known_json(some, v.mean_rate_bpm)},
+          {"sdnn_ms", known_json(some, v.sdnn_ms)},
+          {"rmssd_ms", known_json(paired, v.rmssd_ms)},
           {"nn50", v.nn50},
           {"pairs", v.pairs},
-          {"pnn50_percent", v.pnn50_percent},
-          {"sd1_ms", v.sd1_ms},
-          {"sd2_ms", v.sd2_ms}};
+          {"pnn50_percent", known_json(paired, v.pnn50_percent)},
+          {"sd1_ms", known_json(paired, v.sd1_ms)},
+          {"sd2_ms", known_json(paired, v.sd2_ms)}};
 }
 
 json errors_json(const RateErrors& e) {
-  return {{"answered", e.answered},           {"refused", e.refused},
-          {"median_error_bpm", e.median_bpm}, {"mean_error_bpm", e.mean_bpm},
-          {"within_2", e.within_2},           {"doubled", e.doubled}};
+  const bool some = e.answered > 0;
+  return {{"answered", e.answered},
+          {"refused", e.refused},
+          {"median_error_bpm", known_json(some, e.median_bpm)},
+          {"mean_error_bpm", known_json(some, e.mean_bpm)},
+          {"within_2", known_json(some, e.within_2)},
+          {"doubled", known_json(some, e.doubled)}};
 }
 
 json pixel_json(const GazeReport& r, const Vec3& direction) {
@@ -44,7 +54,7 @@ json report_json(const PhysioFlags& flags, const EcgReport& r) {
            {"gaps", r.counts.gaps},
            {"relearned", r.counts.relearned},
            {"quality", diver::name_of(r.state.quality)},
-           {"rate_bpm", r.state.rate_bpm},
+           {"rate_bpm", known_json(r.state.rate_bpm > 0.0, r.state.rate_bpm)},
            {"us_a_second", r.us_a_second}};
   out["variability"] = variability_json(r.variability);
   out["last_five_minutes"] = variability_json(r.state.over_five_minutes);
@@ -89,12 +99,13 @@ json report_json(const PhysioFlags& flags, const BreathReport& r) {
            {"us_a_second", r.us_a_second}};
   out["estimates"] = json::array();
   for (const diver::BreathState& s : r.states)
-    out["estimates"].push_back({{"time_s", s.time_s},
-                                {"rate_bpm", s.estimate.rate_bpm},
-                                {"breathing", s.estimate.breathing != 0},
-                                {"confidence", s.estimate.confidence},
-                                {"depth_db", s.estimate.depth_db},
-                                {"quiet_s", s.quiet_s}});
+    out["estimates"].push_back(
+        {{"time_s", s.time_s},
+         {"rate_bpm", known_json(s.estimate.breathing != 0, s.estimate.rate_bpm)},
+         {"breathing", s.estimate.breathing != 0},
+         {"confidence", s.estimate.confidence},
+         {"depth_db", s.estimate.depth_db},
+         {"quiet_s", s.quiet_s}});
   out["refused"] = r.states.back().refused;
   if (!r.true_bpm) return out;
   out["score"] = {

@@ -84,9 +84,12 @@ Result<std::string> plan_a_dive(const PlanFlags& flags) {
     NERITIC_TRY_STATUS(make_folder(flags.out));
     NERITIC_TRY_STATUS(write_text(flags.out / "plan.json", plan_json(report)));
   }
+  std::string levels;
+  for (const diver::PlanLevel& level : request.levels)
+    levels += fmt::format("{}{:g} m, {:g} min", levels.empty() ? "" : "; ", level.depth_m,
+                          level.leave_min);
   PlanPicture picture{
-      fmt::format("{:g} m, {:g} min on {}", *flags.depth_m, *flags.time_min,
-                  diver::name_of(request.gases[0].mix)),
+      fmt::format("{} on {}", levels, diver::name_of(request.gases[0].mix)),
       fmt::format("{}, {}; run time {:.1f} min, stops {:.1f} min, CNS {:.0f} %, OTU "
                   "{:.0f}; for planning with judgement, no substitute for training",
                   gf_text(request.gf_low, request.gf_high), flags.convention, report.plan.run_min(),
@@ -123,8 +126,10 @@ std::string log_text(const PlanFlags& flags, const diver::DepthLog& log, const D
       end.last.depth_m, view.ceiling_m, 100.0 * view.surface_gradient, end.oxygen.cns_percent,
       end.oxygen.otu);
   if (view.stop_m > 0.0)
-    out += fmt::format("; next stop {:g} m {:g} min, {:.0f} min to the surface", view.stop_m,
-                       view.stop_min, view.to_surface_min);
+    out += fmt::format("; next stop {:g} m {:g} min, {}", view.stop_m, view.stop_min,
+                       std::isfinite(view.to_surface_min)
+                           ? fmt::format("{:.0f} min to the surface", view.to_surface_min)
+                           : "and the ceiling never clears");
   if (view.ceiling_violated) out += "; THE CEILING IS VIOLATED";
   return out + "\n";
 }

@@ -106,7 +106,7 @@ std::string table_text(const PlanReport& r) {
     // Where it is deepest, that counts.
     const double depth = std::max(s.from_m, s.to_m), p = where.pressure_bar(depth);
     out += fmt::format(
-        "{:<9} {:>4.0f} m  {:>6}  {:>6}  {:<7}  {:.2f}  {:>4.1f}  {:>2.0f} m  {:>6.0f}\n",
+        "{:<9} {:>4.4g} m  {:>6}  {:>6}  {:<7}  {:.2f}  {:>4.1f}  {:>2.0f} m  {:>6.0f}\n",
         phase_name(s.phase), s.to_m, clock_text(s.minutes), clock_text(run_min),
         diver::name_of(mix), mix.oxygen * p, diver::gas_density_g_l(mix, p),
         std::max(diver::narcotic_depth_m(mix, depth, where), 0.0), s.litres + between_l);
@@ -179,8 +179,10 @@ std::string sums_text(const PlanReport& r) {
   else if (r.without_stops_min >= diver::kNoLimit_min)
     out += "without stops: any time\n";
   else
-    out += fmt::format("without stops: until {:.0f} min of run time\n",
-                       std::floor(r.without_stops_min));
+    out += fmt::format(
+        "without stops: until {:.0f} min of run time{}\n", std::floor(r.without_stops_min),
+        r.request.levels.size() > 1 ? fmt::format(" at {:g} m alone", r.request.levels[0].depth_m)
+                                    : "");
   const diver::OxygenExposure oxygen = r.oxygen(), &before = r.request.oxygen_before;
   const bool repetitive = before.cns_percent > 0.0 || before.otu > 0.0;
   out += fmt::format(

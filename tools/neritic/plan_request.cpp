@@ -174,6 +174,13 @@ Result<DivePlanRequest> plan_request(const PlanFlags& flags) {
         "--depth 30 --time 25; or --log FILE of a dive that was",
         what);
   }
+  const PlanGas& bottom = request.gases[0];
+  if (flags.travel.empty() && bottom.switch_depth_m > 0.0)
+    return bad_input(
+        "--gas: {0} from {1:g} m found, and nothing to breathe above; {0}, or what is breathed "
+        "there "
+        "by --travel, is accepted",
+        diver::name_of(bottom.mix), bottom.switch_depth_m);
   request.levels = {{*flags.depth_m, *flags.time_min}};
   for (const std::string& text : flags.levels) {
     NERITIC_TRY(const auto level, parse_numbers("level", text, 2, 2));

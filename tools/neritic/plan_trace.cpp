@@ -96,14 +96,19 @@ std::string trace_csv(const DiveTrace& trace, const std::vector<diver::PlanGas>&
   std::string out =
       "time_s,depth_m,gas,ceiling_m,no_stop_min,stop_m,stop_min,to_surface_min,po2_bar,density_g_l,"
       "narcotic_m,gradient,surface_gradient,ascent_m_min,alarm,ceiling_violated,cns_percent,otu\n";
+  // No limit, or never, is an empty cell, as in a dive's log.
+  const auto known = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
+  };
   for (const TraceRow& row : trace.rows) {
     const diver::DiveComputerView& v = row.view;
     fmt::format_to(std::back_inserter(out),
-                   "{:.9g},{:.6g},{},{:.4g},{:.6g},{:g},{:.6g},{:.6g},{:.5g},{:.4g},{:.4g},{:.5g},"
+                   "{:.9g},{:.6g},{},{:.4g},{},{:g},{:.6g},{},{:.5g},{:.4g},{:.4g},{:.5g},"
                    "{:.5g},{:.4g},{},{},{:.5g},{:.5g}\n",
                    60.0 * row.run_min, row.depth_m, diver::name_of(gases[row.gas].mix), v.ceiling_m,
-                   v.no_stop_min, v.stop_m, v.stop_min, v.to_surface_min, v.po2_bar, v.density_g_l,
-                   v.narcotic_m, v.gradient, v.surface_gradient, v.ascent_m_min,
+                   known(v.no_stop_min), v.stop_m, v.stop_min, known(v.to_surface_min), v.po2_bar,
+                   v.density_g_l, v.narcotic_m, v.gradient, v.surface_gradient,
+                   v.ascent_m_min + 0.0,  // no -0
                    static_cast<int>(v.alarm), v.ceiling_violated ? 1 : 0, row.cns_percent, row.otu);
   }
   return out;
