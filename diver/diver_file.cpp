@@ -12,9 +12,9 @@ namespace neritic::diver {
 namespace {
 
 constexpr std::string_view kDiverKeys[] = {
-    "name",         "sex",  "height_m", "mass_kg", "model",   "strips_a_segment",
-    "suit_mm",      "fins", "tanks",    "jacket",  "lead_kg", "lead_at_shoulders",
-    "drag_area_m2", "kick", "computer"};
+    "name",         "sex",  "height_m", "mass_kg",     "model",   "strips_a_segment",
+    "suit_mm",      "fins", "tanks",    "jacket",      "lead_kg", "lead_at_shoulders",
+    "drag_area_m2", "kick", "computer", "gas_switches"};
 constexpr std::string_view kFinKeys[] = {"length_m", "width_m", "angle_deg", "mass_kg", "volume_l"};
 constexpr std::string_view kTankKeys[] = {"volume_l", "pressure_bar", "oxygen",
                                           "helium",   "empty_kg",     "outer_l",
@@ -24,6 +24,8 @@ constexpr std::string_view kKickKeys[] = {"amplitude_m", "wavelength_m", "expone
                                           "knee_deg",    "pointed_deg",  "most_hz"};
 constexpr std::string_view kComputerKeys[] = {"conventions", "gf_low",     "gf_high",
                                               "last_stop_m", "saturation", "desaturation"};
+
+constexpr std::string_view kGasSwitchKeys[] = {"reaction_s"};
 
 constexpr double kLitre_m3 = 1e-3, kBar_pa = 1e5;
 constexpr double kThinnestSuit_m = 0.5e-3;
@@ -147,6 +149,13 @@ void read_kick(const CaseField& field, SwimmerSettings& swimmer) {
   swimmer.most_frequency_hz = field["most_hz"].number(swimmer.most_frequency_hz, 0.3, 3.0);
 }
 
+void read_gas_switches(const CaseField& field, GasSwitching& switching) {
+  switching.by_plan = !taken_off(field);
+  if (!switching.by_plan) return;
+  field.allow(kGasSwitchKeys);
+  switching.reaction_s = field["reaction_s"].number(switching.reaction_s, 0.0, 600.0);
+}
+
 // The computer measures the pressure that the water has, whatever its conventions take a metre for.
 Status read_computer(const CaseField& root, const BodyParameters& diver,
                      DiveComputerSettings& computer) {
@@ -202,6 +211,7 @@ Result<DiverFile> parse_diver(std::string_view text, const std::string& name,
   read_person(root, out.parameters);
   read_gear(root, out.parameters.gear);
   read_kick(root["kick"], out.swimmer);
+  read_gas_switches(root["gas_switches"], out.gas_switching);
   const Status computer = read_computer(root, out.parameters, out.computer);
   if (!file.failed() && !computer.ok()) root["computer"].fail(computer.error().message);
   if (file.failed()) return file.error();

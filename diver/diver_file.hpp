@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "diver/deco_live.hpp"
+#include "diver/gas_switch.hpp"
 #include "diver/swimmer.hpp"
 
 namespace neritic::diver {
@@ -16,6 +17,7 @@ struct DiverFile {
   BodyParameters parameters;
   SwimmerSettings swimmer;
   DiveComputerSettings computer;  // its gases are the tanks', in their order
+  GasSwitching gas_switching;
 };
 
 // water_kg_m3 and surface_pa are the scene's: its water and the air over it.

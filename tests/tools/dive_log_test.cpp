@@ -44,16 +44,18 @@ void gather_keys(const nlohmann::json& json, Words& keys) {
 }
 
 // A vehicle with every sensor, and a diver to whom all befalls: too deep on a small tank of air, an
-// inflator that freezes open.
+// inflator that freezes open; richer gas for the surface.
 class DiveLog : public testing::Test {
  protected:
   void SetUp() override {
     const std::string assets = (test::source_dir() / "assets").string();
     ASSERT_TRUE(write_text(folder_ / "b.csv", "t_s,inflate\n20,1\n").ok());
-    ASSERT_TRUE(write_text(folder_ / "d.toml",
-                           "tanks = [ { volume_l = 3, pressure_bar = 200 } ]\n"
-                           "[computer]\ngf_low = 0.1\ngf_high = 0.2\n")
-                    .ok());
+    ASSERT_TRUE(
+        write_text(
+            folder_ / "d.toml",
+            "tanks = [ { volume_l = 3, pressure_bar = 200 }, { volume_l = 1, oxygen = 0.5 } ]\n"
+            "[computer]\ngf_low = 0.1\ngf_high = 0.2\n")
+            .ok());
     ASSERT_TRUE(write_text(folder_ / "s.toml", R"(title = "all"
 [physics]
 [[objects]]

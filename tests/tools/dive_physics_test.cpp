@@ -187,6 +187,43 @@ TEST_F(DivePhysics, DrawsItsPlotAndKeepsTheRateOfItsRows) {
   EXPECT_EQ(image->height, 1200u);
 }
 
+// From 24 m up to 17 m with nitrox for 21 m: said in words, in --json and in the log.
+TEST_F(DivePhysics, AGasSwitchIsToldAndDrawn) {
+  const std::string model = (test::source_dir() / "assets/models/diver.glb").string();
+  ASSERT_TRUE(
+      write_text(scratch_ / "nitrox.toml", "tanks = [ {}, { oxygen = 0.5, volume_l = 7 } ]\n")
+          .ok());
+  ASSERT_TRUE(write_text(scratch_ / "up.toml", R"(title = "up"
+[physics]
+[[objects]]
+name = "diver"
+class = "diver"
+human = "nitrox.toml"
+position_m = [0, -24, 0]
+pitch_deg = -90
+swim = { speed_m_s = 0.45, waypoints_m = [[0, -17, -24]] }
+model = ")" + model + "\"\n")
+                  .ok());
+  const std::string flags =
+      "--headless --seconds 60 --log-rate 1 --log " + file("a.csv") + " --plot " + file("a.png");
+  const Outcome told = dive(flags, "up.toml"), json = dive(flags + " --json", "up.toml");
+  ASSERT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find("\ndiver: changes to tank 2 (EAN50) at "), std::string::npos) << told.out;
+  const auto said = parse_json(json.out).value()["humans"][0];
+  ASSERT_EQ(said["gas_switches"].size(), 1u);
+  const auto& change = said["gas_switches"][0];
+  EXPECT_EQ(change["from"], "tank 1 (air)");
+  EXPECT_EQ(change["to"], "tank 2 (EAN50)");
+  EXPECT_EQ(said["tank"], change["to"]);
+  const double at_s = change["at_s"], depth_m = change["depth_m"];
+  EXPECT_LT(depth_m, 21.0);
+  EXPECT_NEAR(change["po2_bar"].get<double>(), 0.5 * (1.01325 + 0.1008 * depth_m), 5e-3);
+  const auto columns = table("a.csv");
+  for (std::size_t i = 0; i < columns.at("tank").size(); ++i)
+    EXPECT_EQ(columns.at("tank")[i], std::stod(columns.at("time_s")[i]) < at_s ? "0" : "1") << i;
+  EXPECT_TRUE(scene::read_image8(scratch_ / "a.png", 3).ok());
+}
+
 // The shipped dive: the diver swims, the vehicle keeps beside, and what is said is what was logged.
 TEST_F(DivePhysics, ADiverSwimsAndIsLogged) {
   const std::string scene = (test::source_dir() / "assets/scenes/dive.toml").string();

@@ -130,7 +130,34 @@ std::string warning_lines(const PhysicsHuman& human, const HumanFigures& figures
   return lines;
 }
 
-// The same as JSON: null where it did not happen.
+// Which tanks were changed to, when and where; empty: none.
+std::string change_lines(const PhysicsHuman& human, const HumanFigures& figures) {
+  constexpr std::size_t kTold = 8;
+  if (figures.tank_changes.empty()) return {};
+  std::string line;
+  for (std::size_t i = 0; i < std::min(kTold, figures.tank_changes.size()); ++i) {
+    const TankChange& change = figures.tank_changes[i];
+    line += fmt::format("{} to {} at {:.0f} s, {:.1f} m deep ({:.2f} bar of oxygen)",
+                        i == 0 ? ": changes" : ",", tank_words(human, change.to), change.time_s,
+                        change.depth_m, change.po2_bar);
+  }
+  if (figures.tank_changes.size() > kTold)
+    line += fmt::format(" and {} times more", figures.tank_changes.size() - kTold);
+  return human.name + line + "\n";
+}
+
+nlohmann::json changes_json(const PhysicsHuman& human, const HumanFigures& figures) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const TankChange& change : figures.tank_changes)
+    json.push_back({{"at_s", change.time_s},
+                    {"depth_m", change.depth_m},
+                    {"from", tank_words(human, change.from)},
+                    {"to", tank_words(human, change.to)},
+                    {"po2_bar", change.po2_bar}});
+  return json;
+}
+
+// Dangers as JSON: null where it did not happen.
 nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figures) {
   nlohmann::json json{{"out_of_gas", nullptr},
                       {"fastest_ascent_m_min", figures.fastest_ascent_m_min},
@@ -180,7 +207,7 @@ std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
   line += touch_words(state.contact.touched_steps);
   if (state.human.refused_inputs > 0)
     line += fmt::format(", {} inputs refused", state.human.refused_inputs);
-  return line + "\n" + warning_lines(human, figures);
+  return line + "\n" + change_lines(human, figures) + warning_lines(human, figures);
 }
 
 nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
@@ -196,7 +223,9 @@ nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
           {"largest_speed_m_s", figures.largest_speed_m_s},
           {"shallowest_m", figures.shallowest_m},
           {"deepest_m", figures.deepest_m},
+          {"tank", tank_words(human, state.human.held.tank)},
           {"tank_bar", 1e-5 * gas.tank_pa},
+          {"gas_switches", changes_json(human, figures)},
           {"ventilation_l_min", gas.ventilation_l_min},
           {"ascent_gas_l", ascent.needed_l},
           {"ascent_gas_there_l", ascent.there_l},

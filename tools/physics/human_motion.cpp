@@ -71,6 +71,7 @@ HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
                 dt_s, acting);
   if (inputs.worn == 0 && human.buttons)
     acting.buttons = human.buttons->at(now_s).value_or(acting.buttons);
+  if (inputs.worn == 0 && human.file.gas_switching.by_plan) acting.tank = state.tank;
   const diver::RootState before = state.human.root;
   state.human = diver::step(human.body, state.human, acting, dt_s);
   const diver::RootState& after = state.human.root;
@@ -126,6 +127,11 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
   computer = human.computer->step(
       computer, {after.position_ned_m.z, known ? tank : computer.last.gas, unfed ? 0U : 1U},
       diver::kComputerSample_s);
+  const double sink_m_s = (after.attitude * after.velocity.linear()).z;
+  state.tank =
+      diver::step_gas_switch(human.file.gas_switching, human.computer->settings().gases, human.body,
+                             state.human.life.tanks, computer, tank, after.position_ned_m.z,
+                             sink_m_s, diver::kComputerSample_s, state.gas_switch);
 }
 
 Pose drawn_pose(const HumanPhysics& state) {

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diver/gas_label.hpp"
+
 namespace neritic::tools {
 namespace {
 
 constexpr double kHeadroom = 0.25;
+// Beside ventilation and time.
+constexpr sonar::Color kTankColors[diver::kMaxTanks] = {
+    kSeriesColors[0], kSeriesColors[3], kSeriesColors[4], {0.902f, 0.624f, 0.0f}};
 
 using HumanValue = std::function<double(const HumanRow&)>;
 
@@ -29,6 +34,38 @@ Series first_over_time(const std::vector<HumanRow>& rows, const std::string& nam
 // Vehicles have the first colours.
 std::size_t color_of(const PhysicsWorld& world, std::size_t human) {
   return world.vehicles().size() + human;
+}
+
+std::string tank_name(const PhysicsHuman& human, std::size_t tank) {
+  if (human.body.tank_count == 1) return "tank, bar";
+  return fmt::format("tank {}, {}, bar", tank + 1, diver::name_of(human.body.tanks[tank].mix));
+}
+
+// Each tank's pressure, and a dot where the diver changes to it.
+std::vector<Series> gas_lines(const PhysicsHuman& human, const std::vector<HumanRow>& rows) {
+  std::vector<Series> lines{
+      first_over_time(rows, "ventilation, l/min", 1,
+                      [](const HumanRow& r) { return r.gas.ventilation_l_min; }),
+      first_over_time(rows, "left to 50 bar, min", 2,
+                      [](const HumanRow& r) { return std::min(r.gas.remaining_s / 60.0, 300.0); })};
+  Series changes{"changes tank", kInk, {}, {}};
+  changes.joined = false;
+  const HumanRow* before = nullptr;
+  for (const HumanRow& row : rows) {
+    if (row.human != 0) continue;
+    if (before != nullptr && row.tank != before->tank && row.tank < human.body.tank_count) {
+      changes.x.push_back(row.time_s);
+      changes.y.push_back(1e-5 * row.tank_pa[row.tank]);
+    }
+    before = &row;
+  }
+  for (std::size_t tank = 0; tank < human.body.tank_count; ++tank) {
+    lines.push_back(first_over_time(rows, tank_name(human, tank), 0,
+                                    [tank](const HumanRow& r) { return 1e-5 * r.tank_pa[tank]; }));
+    lines.back().color = kTankColors[tank];
+  }
+  if (!changes.x.empty()) lines.push_back(changes);
+  return lines;
 }
 
 }  // namespace
@@ -64,15 +101,7 @@ void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
        first_over_time(rows, "kick, beats/s", 1, [](const HumanRow& r) { return r.kick_hz; })},
       0.2, kHeadroom);
   draw_over_time(canvas, {middle_x, top_px, width_px - 10.0, middle_y}, "Gas of " + name,
-                 "bar, l/min, min",
-                 {first_over_time(rows, "tank, bar", 0,
-                                  [](const HumanRow& r) { return 1e-5 * r.gas.tank_pa; }),
-                  first_over_time(rows, "ventilation, l/min", 1,
-                                  [](const HumanRow& r) { return r.gas.ventilation_l_min; }),
-                  first_over_time(
-                      rows, "left to 50 bar, min", 2,
-                      [](const HumanRow& r) { return std::min(r.gas.remaining_s / 60.0, 300.0); })},
-                 5.0, kHeadroom);
+                 "bar, l/min, min", gas_lines(world.humans()[0], rows), 5.0, kHeadroom);
   draw_over_time(
       canvas, {10, middle_y, middle_x, last_y}, "Decompression of " + name, "m, min, m/min",
       {first_over_time(

@@ -13,7 +13,10 @@ HumanRecorder::HumanRecorder(const PhysicsWorld& world, double joints_s)
       tracks_(world.humans().size()),
       joints_(world.humans().size()),
       last_ned_m_(world.humans().size(), Vec3(0.0)) {
-  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].nodes = world.humans()[i].nodes;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    joints_[i].nodes = world.humans()[i].nodes;
+    last_tank_.push_back(world.humans()[i].start.human.held.tank);
+  }
 }
 
 HumanRow HumanRecorder::row_of(std::size_t index,
@@ -41,6 +44,8 @@ HumanRow HumanRecorder::row_of(std::size_t index,
   row.net_weight_n = diver::net_weight_n(human.body, state.human);
   row.out_of_gas_s = state.human.life.lungs.unfed_s;
   row.gas = diver::read_gas(human.body, state.human);
+  for (std::size_t i = 0; i < human.body.tank_count; ++i)
+    row.tank_pa[i] = diver::tank_pressure(human.body, state.human.life.tanks, i);
   row.ascent = gas_for_ascent(human, state);
   row.cns_percent = state.human.life.computer.oxygen.cns_percent;
   row.otu = state.human.life.computer.oxygen.otu;
@@ -54,6 +59,18 @@ diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& s
   return diver::ascent_gas(*human.computer, state.human.life.computer, human.body,
                            state.human.life.tanks,
                            std::max(now_l_min, diver::PlanBreathing{}.ascent_l_min));
+}
+
+void HumanRecorder::note_tank(std::size_t index, const sim::Snapshot<PhysicsState>& snapshot) {
+  const diver::HumanState& state = snapshot.state.humans[index].human;
+  const std::uint64_t from = last_tank_[index], to = state.held.tank;
+  if (to == from) return;
+  last_tank_[index] = to;
+  const diver::Body& body = world_.humans()[index].body;
+  const double depth_m = state.root.position_ned_m.z;
+  const double oxygen = to < body.tank_count ? body.tanks[to].mix.oxygen : diver::kAir.oxygen;
+  figures_[index].tank_changes.push_back(
+      {snapshot.time_s, depth_m, 1e-5 * oxygen * diver::pressure_at(body, depth_m), from, to});
 }
 
 void HumanRecorder::note_dangers(std::size_t index, const sim::Snapshot<PhysicsState>& snapshot) {
@@ -106,6 +123,7 @@ void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row, b
         std::max(figures.largest_speed_m_s, glm::length(root.velocity.linear()));
     figures.deepest_m = std::max(figures.deepest_m, root.position_ned_m.z);
     figures.shallowest_m = std::min(figures.shallowest_m, root.position_ned_m.z);
+    note_tank(i, snapshot);
     if (sample) note_dangers(i, snapshot);
     if (tracks) {
       const Pose pose = drawn_pose(state);

@@ -2,6 +2,7 @@
 // pictures, and figures of the whole. One thread: the one that steps.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,9 @@ struct HumanRow {
   std::uint64_t arrived = 0, near_points = 0, touched_steps = 0, buttons = 0, tank = 0, refused = 0;
   double kick_hz = 0.0, limb_power_w = 0.0, oxygen_l_min = 0.0, lungs_m3 = 0.0, net_weight_n = 0.0;
   diver::GasReading gas;
-  double out_of_gas_s = 0.0;  // since nothing came to breathe; 0 while it does
-  diver::AscentGas ascent;    // with the dive computer's view
+  std::array<double, diver::kMaxTanks> tank_pa{};  // of each
+  double out_of_gas_s = 0.0;                       // since nothing came to breathe; 0 while it does
+  diver::AscentGas ascent;                         // with the dive computer's view
   double cns_percent = 0.0, otu = 0.0;
   diver::VitalState vitals;
   std::uint64_t hash = 0;  // of the whole state
@@ -33,6 +35,12 @@ struct HumanRow {
 
 // What the way up takes as the diver breathes now, though no less than plans reckon with.
 diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& state);
+
+// A change to another tank.
+struct TankChange {
+  double time_s = 0.0, depth_m = 0.0, po2_bar = 0.0;
+  std::uint64_t from = 0, to = 0;
+};
 
 struct HumanFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, deepest_m = 0.0, shallowest_m = 1e9;
@@ -48,6 +56,7 @@ struct HumanFigures {
   // The worst level; since when, and between which pressures, it was high or worse.
   diver::RiskLevel oxygen = diver::RiskLevel::kLow;
   double oxygen_from_s = 0.0, least_po2_bar = 0.0, most_po2_bar = 0.0;
+  std::vector<TankChange> tank_changes;
 };
 
 // Between two postures that are kept, where nothing else is said: as pictures need.
@@ -67,6 +76,7 @@ class HumanRecorder {
   void give_tracks(scene::Scene& scene);
 
  private:
+  void note_tank(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot);
   void note_dangers(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot);
   HumanRow row_of(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot) const;
 
@@ -77,6 +87,7 @@ class HumanRecorder {
   std::vector<scene::Track> tracks_;
   std::vector<scene::NodeMotion> joints_;
   std::vector<Vec3> last_ned_m_;
+  std::vector<std::uint64_t> last_tank_;
   double next_sample_s_ = 0.0;  // of the divers' computers
 };
 

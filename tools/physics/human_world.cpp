@@ -113,9 +113,16 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
       human.body, ned_from_world(at.position_m), diver::ned_from_standing(at.rotation),
       human.recording ? human.recording->joints.front()
                       : diver::rotations_of(diver::streamlined(human.body)));
+  if (human.file.gas_switching.by_plan) {
+    const double depth_m = human.start.human.root.position_ned_m.z;
+    human.start.tank =
+        diver::tank_to_breathe(human.computer->settings().gases, human.body,
+                               human.start.human.life.tanks, {0, depth_m, depth_m, depth_m, false});
+  }
+  human.start.human.held.tank = human.start.tank;
   // Put there from the surface this moment.
   human.start.human.life.computer = human.computer->step(
-      human.computer->start(), {human.start.human.root.position_ned_m.z, 0}, 0.0);
+      human.computer->start(), {human.start.human.root.position_ned_m.z, human.start.tank}, 0.0);
   human.start.leg_from_ned_m = human.start.human.root.position_ned_m;
   return human;
 }

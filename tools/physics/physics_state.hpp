@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "diver/gas_switch.hpp"
 #include "diver/human_step.hpp"
 #include "diver/swimmer.hpp"
 #include "engine/sim/simulation.hpp"
@@ -78,6 +79,9 @@ struct HumanPhysics {
   std::uint64_t arrived = 0;    // waypoints, all rounds together
   Vec3 leg_from_ned_m{0.0};     // where the way to the next one begins, or where it stays
   ContactState contact;
+  // The tank that is breathed from where nobody wears a suit, and which one is reached for.
+  std::uint64_t tank = 0;
+  diver::GasSwitchState gas_switch;
 
   static void fields(auto&& field, auto& self) {
     field("human", self.human);
@@ -85,6 +89,8 @@ struct HumanPhysics {
     field("arrived", self.arrived);
     field("leg_from_ned_m", self.leg_from_ned_m);
     field("contact", self.contact);
+    field("tank", self.tank);
+    field("gas_switch", self.gas_switch);
   }
 };
 
@@ -128,8 +134,8 @@ struct VehicleInputs {
 
 // From outside, for one diver.
 struct HumanSteering {
-  // Joints, breath, buttons and tank of a person; while none is worn, joints, breath and buttons
-  // are the swimmer's own. Currents are the scene's.
+  // Joints, breath, buttons and tank of a person; while none is worn, they are the swimmer's own,
+  // the tank only where the diver's file has gas switches by plan. Currents are the scene's.
   diver::HumanInputs human;
   std::uint64_t worn = 0;  // 0 or 1
 

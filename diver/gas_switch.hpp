@@ -1,0 +1,68 @@
+// Which tank a diver breathes from who follows the plan that his gases make: the bottom gas (the
+// first tank) on the way down, deco gas from its switch depth on the way up, another tank where one
+// is out. What stands in for the diver's own hands where nobody wears the suit. Pure functions over
+// plain bytes; any thread. Depths in m, down positive.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "diver/deco_live.hpp"
+#include "diver/tanks.hpp"
+
+namespace neritic::diver {
+
+struct GasSwitching {
+  bool by_plan = true;  // false: breathes from the tank that the inputs say
+  // From noticing to breathing from the other regulator; an assumption, a setting of diver files.
+  double reaction_s = 5.0;
+};
+
+struct GasSwitchState {
+  std::uint64_t wanted = 0;  // the tank that is reached for, while it is another than is breathed
+  double wanted_s = 0.0;     // for so long
+
+  static void fields(auto&& field, auto& self) {
+    field("wanted", self.wanted);
+    field("wanted_s", self.wanted_s);
+  }
+};
+
+// A gas is breathed between these pressures of oxygen, bar: the least that thought bears without
+// harm is .16 (risk_proxies.cpp), .18 leaves room; 1.6 is the most at rest (NOAA Diving Manual, 4th
+// ed., 2001), at 10 m of water a bar, as switch depths are reckoned. To a gas near the lower one
+// the diver changes only from .20 on, so that nobody changes to and fro. Over a lake in the
+// mountains both are its air's share of these.
+inline constexpr double kLeastOxygen_bar = 0.18, kLeastOxygenAnew_bar = 0.20;
+inline constexpr double kMostOxygen_bar = 1.6;
+// A gas that is breathed is kept so much below its depth: who hovers there does not change to and
+// fro.
+inline constexpr double kGasDepthSlack_m = 1.0;
+// A tank is left with so much more than a full breath takes, since the change takes its time; and
+// changed to by choice only with so much more that the way up does not make it one to go back to.
+inline constexpr double kSpare_pa = 5e5, kWorthSwitching_pa = 10e5;
+
+// Where a diver is who chooses, and where he will be when he has changed.
+struct GasChoice {
+  std::size_t breathed = 0;
+  double depth_m = 0.0, soon_m = 0.0;
+  double deepest_m = 0.0;  // of this dive
+  bool makes_stops = false;
+};
+// The tank to breathe from; the one breathed where none fits. Gases are the tanks', in their order:
+// the first is the bottom gas. Deco gas: where the diver was deeper than its depth before and came
+// up to it, or makes stops, and until the diver goes down anew; of several the one for the
+// shallowest use, as plans have it. Else the bottom gas. Where neither is fit to breathe or has
+// gas, what is breathed, else the richest that is. Never one with less than kLeastOxygen_bar or
+// more than kMostOxygen_bar where the diver is and soon will be, nor one without a full breath.
+std::size_t tank_to_breathe(std::span<const PlanGas> gases, const Body& body,
+                            const TankState& tanks, const GasChoice& choice);
+
+// dt_s later, while the diver moves down at sink_m_s: the tank that is breathed from then. A change
+// that is still wanted after the reaction's time is made.
+std::size_t step_gas_switch(const GasSwitching& settings, std::span<const PlanGas> gases,
+                            const Body& body, const TankState& tanks,
+                            const DiveComputerState& computer, std::size_t breathed, double depth_m,
+                            double sink_m_s, double dt_s, GasSwitchState& state);
+
+}  // namespace neritic::diver
