@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 
 #include "diver/heart_filter.hpp"
 #include "engine/core/check.hpp"
@@ -24,6 +25,12 @@ constexpr double kRounding = 1e-9;
 // No ECG is larger, in any unit; its square stays finite.
 constexpr double kMostEcg = 1e12;
 constexpr double kLeastInterval_s = 0.2, kMostInterval_s = 2.5;
+// A step so many times the usual largest of a second is no beat's (an extra beat is some three
+// times as steep as others) but an electrode's or a switch's, unless it stays so: half a QRS
+// complex is as long.
+constexpr double kLeap = 10.0, kLongestLeap_s = 0.040;
+// Usual: what three of eight seconds have, so that neither a few leaps nor a slow heart count.
+constexpr std::ptrdiff_t kUsualOf = 2;
 
 }  // namespace
 
@@ -48,10 +55,34 @@ BeatDetector::BeatDetector(double rate_hz) : rate_hz_(rate_hz) {
   ring_.resize(size);
 }
 
+// Whether a sample is so far from the last good one that no heart can have made it; what stays
+// there for longer than a leap is as the signal is now.
+bool BeatDetector::leaps(double value) {
+  if (!has_value_) return false;
+  const double step = std::abs(value - held_);
+  largest_step_ = std::max(largest_step_, step);
+  if (++stepped_ >= rate_hz_) {
+    std::ranges::move_backward(second_steps_.begin(), second_steps_.end() - 1, second_steps_.end());
+    second_steps_.front() = largest_step_;
+    largest_step_ = stepped_ = 0.0;
+    auto sorted = second_steps_;
+    std::ranges::nth_element(sorted, sorted.begin() + kUsualOf, std::greater());
+    const bool known = second_steps_.back() > 0.0;  // all eight seconds
+    usual_step_ = known ? sorted[kUsualOf] : 0.0;
+  }
+  const bool far = usual_step_ > 0.0 && step > kLeap * usual_step_;
+  leapt_ = far ? leapt_ + 1.0 : 0.0;
+  if (leapt_ <= std::max(1.0, kLongestLeap_s * rate_hz_)) return far;
+  leapt_ = 0.0;
+  return false;
+}
+
 void BeatDetector::push(double value, std::vector<Beat>& out) {
   ++counts_.samples;
-  if (!(std::abs(value) <= kMostEcg)) {
+  const bool number = std::abs(value) <= kMostEcg, leap = number && leaps(value);
+  if (!number || leap) {
     ++counts_.refused;
+    counts_.leaps += leap ? 1 : 0;
     ++missing_in_a_row_;
     value = held_;
   } else {

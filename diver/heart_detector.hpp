@@ -25,7 +25,8 @@ struct Beat {
 
 struct EcgCounts {
   std::uint64_t samples = 0;    // all, refused ones included
-  std::uint64_t refused = 0;    // not finite: the last good value was held
+  std::uint64_t refused = 0;    // not finite, or leapt: the last good value was held
+  std::uint64_t leaps = 0;      // of these, so far off for so short that no heart made them
   std::uint64_t gaps = 0;       // so many missing in a row that the signal was taken as lost
   std::uint64_t relearned = 0;  // times the levels were learnt anew, after seconds without a beat
 };
@@ -62,6 +63,8 @@ class BeatDetector {
     double energy = 0.0, slope = 0.0;
   };
 
+  bool leaps(double value);
+
   Place& place(std::int64_t i) { return ring_[static_cast<std::size_t>(i) & mask_]; }
   const Place& place(std::int64_t i) const { return ring_[static_cast<std::size_t>(i) & mask_]; }
   void take(double value, std::vector<Beat>& out);
@@ -94,6 +97,9 @@ class BeatDetector {
   double held_ = 0.0;
   bool has_value_ = false;
   std::uint64_t missing_in_a_row_ = 0;
+  std::array<double, 8> second_steps_{};  // the largest step from sample to sample, by the second
+  double largest_step_ = 0.0, usual_step_ = 0.0;  // of this second; of most before
+  double stepped_ = 0.0, leapt_ = 0.0;            // samples of this second; in a leap
 
   bool learnt_ = false, after_gap_ = true;
   double signal_level_ = 0.0, noise_level_ = 0.0;

@@ -167,6 +167,56 @@ TEST(HeartExtremes, RecoversFromAKnock) {
   EXPECT_EQ(late, marked);
 }
 
+// Single samples that no electrode gives, however large, before and between beats: not a beat is
+// lost, none is made up, and each is counted.
+TEST(HeartExtremes, LeapsOfASampleCostNoBeat) {
+  for (const double rate_hz : {50.0, 130.0, 360.0, 1000.0})
+    for (const double size : {20.0, 100.0, -1e4, 1e6, 1e11}) {
+      const auto beats = test::even_beats(0.8, 120.0);
+      std::vector<double> ecg = test::ecg_of(beats, rate_hz, 120.0);
+      std::uint64_t leaps = 0;
+      for (double t = 9.3; t < 119.0; t += 14.0, ++leaps)
+        ecg[static_cast<std::size_t>(t * rate_hz)] += size;
+      EcgCounts counts;
+      const auto found = find_beats(rate_hz, ecg, &counts);
+      EXPECT_EQ(counts.refused, leaps) << rate_hz << " " << size;
+      EXPECT_EQ(counts.leaps, leaps);
+      EXPECT_EQ(counts.relearned, 0u);
+      ASSERT_EQ(found.size(), beats.size()) << rate_hz << " " << size;
+      for (std::size_t i = 0; i < beats.size(); ++i) EXPECT_NEAR(found[i].time_s, beats[i], 0.02);
+      EXPECT_EQ(monitored(rate_hz, ecg).quality, SignalQuality::kGood);
+    }
+}
+
+// A leap before eight seconds are known costs seconds, not the recording.
+TEST(HeartExtremes, ALeapInTheFirstSecondsIsOvercome) {
+  const auto beats = test::even_beats(0.8, 60.0);
+  for (const double at_s : {0.1, 1.0, 1.9, 3.5, 7.0}) {
+    std::vector<double> ecg = test::ecg_of(beats, 360.0, 60.0);
+    ecg[static_cast<std::size_t>(at_s * 360.0)] += 1e6;
+    const auto found = find_beats(360.0, ecg);
+    const auto late = std::ranges::count_if(found, [](const Beat& b) { return b.time_s > 14.3; });
+    const auto marked = std::ranges::count_if(beats, [](double b) { return b > 14.3; });
+    EXPECT_EQ(late, marked) << at_s;
+  }
+}
+
+// What stays is the signal: another offset, or beats a hundred times as large.
+TEST(HeartExtremes, AChangeThatLastsIsNoLeap) {
+  const auto beats = test::even_beats(0.8, 60.0);
+  for (const bool offset : {true, false}) {
+    std::vector<double> ecg = test::ecg_of(beats, 360.0, 60.0);
+    for (std::size_t i = 360 * 30; i < ecg.size(); ++i)
+      ecg[i] = offset ? ecg[i] + 50.0 : 100.0 * ecg[i];
+    EcgCounts counts;
+    const auto found = find_beats(360.0, ecg, &counts);
+    const auto late = std::ranges::count_if(found, [](const Beat& b) { return b.time_s > 40.0; });
+    const auto marked = std::ranges::count_if(beats, [](double b) { return b > 40.0; });
+    EXPECT_EQ(late, marked) << offset;
+    EXPECT_LT(counts.leaps, 100u);
+  }
+}
+
 TEST(HeartExtremes, AnExtraBeatIsFlaggedAndKeptOutOfTheFigures) {
   std::vector<double> beats = test::even_beats(0.8, 60.0);
   beats[30] -= 0.3;  // and the pause after it

@@ -119,6 +119,23 @@ TEST(MitBih100, EveryBeatIsFoundAndNothingElse) {
   EXPECT_LE(s.ectopic_flagged, 36);
 }
 
+// One sample in 28 s of 20 mV and more: none of the beats is lost, none is made up.
+TEST(MitBih100, SpikesCostNoBeat) {
+  NERITIC_REQUIRE_SHARED(shared);
+  const MarkedRecord r = record_100(shared);
+  for (const double size_mv : {20.0, 100.0, 1e6}) {
+    std::vector<double> spiked = r.ecg.samples;
+    std::uint64_t spikes = 0;
+    for (std::size_t i = 28 * 360; i < spiked.size(); i += 28 * 360, ++spikes) spiked[i] = size_mv;
+    const HeartScore s = score_of(360.0, spiked, r.marks);
+    EXPECT_EQ(s.found, 2273) << size_mv;
+    EXPECT_EQ(s.extra, 0) << size_mv;
+    EcgCounts counts;
+    find_beats(360.0, spiked, &counts);
+    EXPECT_EQ(counts.leaps, spikes);
+  }
+}
+
 // By the annotations alone: intervals between two normal beats.
 TEST(MitBih100, VariabilityOfTheMarkedBeatsIsThePublishedOne) {
   NERITIC_REQUIRE_SHARED(shared);
