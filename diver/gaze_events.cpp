@@ -330,6 +330,17 @@ GazeEvents find_gaze_events(const std::vector<GazeSample>& samples, const GazeSe
   return out;
 }
 
+std::vector<bool> in_saccades(const std::vector<GazeSample>& samples,
+                              const std::vector<Saccade>& saccades) {
+  std::vector<bool> out;
+  auto next = saccades.begin();
+  for (const GazeSample& sample : samples) {
+    while (next != saccades.end() && next->end_s < sample.time_s) ++next;
+    out.push_back(next != saccades.end() && sample.time_s >= next->start_s);
+  }
+  return out;
+}
+
 double saccade_kappa(const std::vector<bool>& marked, const std::vector<bool>& found) {
   NERITIC_CHECK(marked.size() == found.size(), "{} {}", marked.size(), found.size());
   double both = 0.0, only_marked = 0.0, only_found = 0.0, neither = 0.0;

@@ -167,6 +167,11 @@ class GazeMonitor {
 
 GazeEvents find_gaze_events(const std::vector<GazeSample>& samples, const GazeSettings& settings);
 
+// Which samples lie within a saccade, its first and its last one included. Both in the order of
+// time.
+std::vector<bool> in_saccades(const std::vector<GazeSample>& samples,
+                              const std::vector<Saccade>& saccades);
+
 // Cohen's kappa of saccade or none, sample by sample; 1: agreement, 0: no more than by chance.
 double saccade_kappa(const std::vector<bool>& marked, const std::vector<bool>& found);
 

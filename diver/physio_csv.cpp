@@ -31,6 +31,15 @@ double cell_number(std::string_view cell) {
   return whole && std::isfinite(value) ? value : kNothing;
 }
 
+// Neither empty, nor how programs write that there is no number.
+bool is_word(std::string_view cell) {
+  constexpr std::string_view kNone[] = {"",    "nan",  "inf",  "infinity", "na",
+                                        "n/a", "null", "none", "-"};
+  if (cell.starts_with('-') || cell.starts_with('+')) cell.remove_prefix(1);
+  return std::isnan(cell_number(cell)) &&
+         std::ranges::find(kNone, lower_case(cell)) == std::end(kNone);
+}
+
 // Of "time_ms", "time (ms)", "time [ms]", "time ms"; seconds where there is no unit.
 double seconds_of_unit(std::string_view name) {
   const auto last = name.find_last_not_of(" )]");
@@ -92,6 +101,7 @@ Status take_heading(const std::vector<std::string_view>& cells, const std::strin
     return bad_input("{}: a number found in the heading, names of columns are accepted", where);
   for (const std::string_view cell : cells) table.names.push_back(lower_case(cell));
   table.columns.resize(cells.size());
+  table.words.resize(cells.size());
   return {};
 }
 
@@ -278,9 +288,13 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
         return bad_input("{}: {} '{}' found, true, false or a number is accepted", where(),
                          table.names[i], cells[i].substr(0, 40));
       table.columns[i].push_back(*value);
+      if (std::isnan(*value) && is_word(cells[i])) table.words[i] = true;
     }
     table.lines.push_back(line_number);
   }
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    if (std::ranges::any_of(table.columns[i], [](double v) { return !std::isnan(v); }))
+      table.words[i] = false;
   if (table.names.empty() || table.columns[0].empty())
     return bad_input("{}: no row found, a heading and one row or more are accepted", name);
   return table;
@@ -293,12 +307,16 @@ Result<Recording> parse_csv(std::string_view text, const std::string& name,
   const auto time = table.time_column(scale);
   std::optional<std::size_t> column;
   if (!channel.column.empty()) column = table.find(channel.column);
-  if (channel.column.empty())
-    for (std::size_t i = 0; i < table.names.size() && !column; ++i)
-      if (i != time && !counts_rows(table.names[i], table.columns[i])) column = i;
+  for (const bool words : {false, true})  // words only where there is nothing else
+    for (std::size_t i = 0; channel.column.empty() && i < table.names.size() && !column; ++i)
+      if (i != time && table.words[i] == words && !counts_rows(table.names[i], table.columns[i]))
+        column = i;
   if (!column)
     return bad_input("{}: no column '{}' found, {} is accepted", name, channel.column,
                      fmt::join(table.names, ", "));
+  if (table.words[*column])
+    return bad_input("{}: column '{}' of words found, numbers are accepted", name,
+                     table.names[*column]);
   Recording out{table.names[*column]};
   std::vector<double> time_s, values;
   if (time) {

@@ -26,6 +26,7 @@ struct SampleTable {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;  // all of one length
   std::vector<std::uint32_t> lines;          // of the file, from 1: where each row is
+  std::vector<bool> words;                   // of each column: no number in it, and some words
   std::optional<double> rate_hz;
 
   std::optional<std::size_t> find(std::string_view name) const;
@@ -37,13 +38,13 @@ struct SampleTable {
 Result<SampleTable> parse_sample_table(std::string_view text, const std::string& name);
 
 struct CsvChannel {
-  std::string column;    // empty: the first that is not time, and does not count rows
+  std::string column;    // empty: the first of numbers that is not time, and does not count rows
   double rate_hz = 0.0;  // 0: from the column of time, else from the comment
 };
 // One column, evenly spaced. The rate is that of the steps of usual length, to six digits; stamps
 // may jitter. Where the time leaps, the samples between are missing and counted; rows whose time
 // goes back by most of a step or more are refused and counted, and so are rows whose time stands
-// still, unless the rate is given: then they are of one packet.
+// still, unless the rate is given: then they are of one packet. A column of words is an error.
 Result<Recording> parse_csv(std::string_view text, const std::string& name,
                             const CsvChannel& channel);
 

@@ -223,7 +223,7 @@ TEST(GazeMonitor, StaysFiniteWhateverComes) {
 
 // Sample by sample against a person's marks; plain I-VT at 30 degrees a second is said to reach
 // .71.
-TEST(EyeRecording, SaccadesAgreeWithAPersonsMarksAsWellAsPlainVelocityDoes) {
+TEST(EyeRecording, SaccadesAgreeWithAPersonsMarksBetterThanPlainVelocityDoes) {
   NERITIC_REQUIRE_SHARED(shared);
   const auto path = shared / "data" / "recordings" / "eye_fixations" / "lookAtPoint_EL_S1_30s.csv";
   const auto recording = parse_gaze_csv(*read_text(path), "eye.csv", 0.0);
@@ -237,6 +237,8 @@ TEST(EyeRecording, SaccadesAgreeWithAPersonsMarksAsWellAsPlainVelocityDoes) {
   std::vector<bool> found;
   for (const GazeClass c : events.classes) found.push_back(c == GazeClass::kSaccade);
   EXPECT_GE(saccade_kappa(marked, found), 0.71);
+  // Without the blinks and the noise among them the saccades that are told agree better.
+  EXPECT_NEAR(saccade_kappa(marked, in_saccades(recording->samples, events.saccades)), 0.876, 5e-3);
   // The person marked eight blinks; saccades are where the person saw some, or the eye settle.
   EXPECT_EQ(events.blinks.size(), 8u);
   for (const Saccade& s : events.saccades) {

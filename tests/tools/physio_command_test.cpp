@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "diver/gaze_csv.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
@@ -108,6 +111,66 @@ TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
   }
 }
 
+// The score is that of the saccades that are told: from the table and the marks it comes out anew.
+TEST(PhysioCommand, TheScoreOfGazeIsThatOfItsTable) {
+  NERITIC_REQUIRE_SHARED(shared);
+  const test::ScratchFolder folder;
+  PhysioFlags flags;
+  flags.what = "gaze";
+  flags.file = (shared / "data/recordings/eye_fixations/lookAtPoint_EL_S1_30s.csv").string();
+  flags.out = folder.path();
+  ASSERT_TRUE(run_physio(flags).ok());
+  std::vector<std::pair<double, double>> saccades;
+  std::istringstream rows(read_text(folder / "gaze.csv").value());
+  for (std::string row; std::getline(rows, row);) {
+    double start_s = 0.0, end_s = 0.0;
+    if (std::sscanf(row.c_str(), "saccade,%lf,%lf", &start_s, &end_s) == 2)
+      saccades.emplace_back(start_s, end_s);
+  }
+  const auto recording =
+      diver::parse_gaze_csv(read_text(flags.file).value(), "eye.csv", 0.0).value();
+  double both = 0.0, marked = 0.0, found = 0.0, agreed = 0.0;
+  const double all = static_cast<double>(recording.samples.size());
+  for (std::size_t i = 0; i < recording.samples.size(); ++i) {
+    const double t = recording.samples[i].time_s;
+    const bool mark = recording.marks[i] == 2;
+    const bool told = std::ranges::any_of(
+        saccades, [&](const auto& s) { return t > s.first - 1e-4 && t < s.second + 1e-4; });
+    both += mark && told, marked += mark, found += told, agreed += mark == told;
+  }
+  EXPECT_GT(both, 0.0);
+  const double chance = (marked * found + (all - marked) * (all - found)) / (all * all);
+  const double kappa = (agreed / all - chance) / (1.0 - chance);
+  const nlohmann::json score = json_in(folder / "gaze.json")["score"];
+  EXPECT_NEAR(score["kappa"].get<double>(), kappa, 1e-3);
+  EXPECT_GT(kappa, 0.87);
+  EXPECT_NEAR(score["plain_kappa"].get<double>(), 0.712, 1e-3);
+}
+
+// A column of words is no recording; beside one of numbers it is passed over.
+TEST(PhysioCommand, AColumnOfWordsIsNoSignal) {
+  const test::ScratchFolder folder;
+  std::string words = "t_s,mark,ecg\n", alone = "t_s,ecg\n";
+  for (int i = 0; i < 2500; ++i) {
+    words += fmt::format("{},abc,{}\n", i / 250.0, i % 250 == 100 ? 1.0 : 0.0);
+    alone += fmt::format("{},abc\n", i / 250.0);
+  }
+  ASSERT_TRUE(write_text(folder / "words.csv", words).ok());
+  ASSERT_TRUE(write_text(folder / "alone.csv", alone).ok());
+  PhysioFlags flags;
+  flags.what = "ecg";
+  flags.out = folder / "out";
+  flags.file = (folder / "words.csv").string();
+  ASSERT_TRUE(run_physio(flags).ok());
+  EXPECT_EQ(json_in(folder / "out/ecg.json")["signal"], "ecg");
+  flags.channel = "mark";
+  EXPECT_THAT(run_physio(flags).error().message,
+              HasSubstr("words.csv: column 'mark' of words found, numbers are accepted"));
+  flags.channel.clear();
+  flags.file = (folder / "alone.csv").string();
+  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("column 'ecg' of words found"));
+}
+
 // What is left at the end is heard, too.
 TEST(PhysioCommand, SoundIsHeardUpToItsEnd) {
   const test::ScratchFolder folder;
@@ -135,6 +198,51 @@ TEST(PhysioCommand, SoundIsHeardUpToItsEnd) {
   EXPECT_EQ(times(20), (std::vector{10.0, 20.0}));
 }
 
+// At the recording's own pace the same files come as without, of the same numbers.
+TEST(PhysioCommand, PlayedInRealTimeItWritesWhatWasAskedFor) {
+  const test::ScratchFolder folder;
+  std::string sound = "# fs_hz=1000\nsound\n";
+  for (int i = 0; i < 5000; ++i)
+    sound += fmt::format("{:.4f}\n", std::sin(0.7 * i) * std::sin(2.0 * kPi * 0.4e-3 * i));
+  ASSERT_TRUE(write_text(folder / "s_24bpm.csv", sound).ok());
+  PhysioFlags flags;
+  flags.what = "breath";
+  flags.file = (folder / "s_24bpm.csv").string();
+  flags.window_s = 5.0;
+  flags.out = folder / "whole";
+  ASSERT_TRUE(run_physio(flags).ok());
+  flags.realtime = true;
+  flags.out = folder / "played";
+  flags.plot = folder / "played.png";
+  testing::internal::CaptureStdout();
+  const auto said = run_physio(flags);
+  const std::string rows = testing::internal::GetCapturedStdout();
+  ASSERT_TRUE(said.ok()) << said.error().message;
+  EXPECT_THAT(*said, HasSubstr("breath.csv, breath.json"));
+  EXPECT_EQ(scene::read_image8(folder / "played.png")->width, 1600u);
+  EXPECT_EQ(read_text(folder / "played/breath.csv").value(), rows);
+  EXPECT_EQ(rows, read_text(folder / "whole/breath.csv").value());
+  const auto whole = json_in(folder / "whole/breath.json");
+  const auto played = json_in(folder / "played/breath.json");
+  EXPECT_EQ(played["estimates"], whole["estimates"]);
+  EXPECT_EQ(played["score"], whole["score"]);
+  EXPECT_TRUE(played["us_a_second"].is_null());
+  // JSON alone on standard output.
+  flags.out.clear();
+  flags.plot.clear();
+  flags.json = true;
+  testing::internal::CaptureStdout();
+  ASSERT_TRUE(run_physio(flags).ok());
+  const auto printed = parse_json(testing::internal::GetCapturedStdout());
+  ASSERT_TRUE(printed.ok()) << printed.error().message;
+  EXPECT_EQ((*printed)["estimates"], whole["estimates"]);
+  flags.window_s.reset();
+  const auto short_one = run_physio(flags);
+  ASSERT_FALSE(short_one.ok());
+  EXPECT_THAT(short_one.error().message,
+              HasSubstr("5.0 s found, 10 s or more is accepted with --realtime"));
+}
+
 TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
   const test::ScratchFolder folder;
   std::string gaze = "# fs_hz=500\nx_deg,y_deg\n", sound = "# fs_hz=1000\nsound\n";
@@ -155,9 +263,6 @@ TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
     EXPECT_THAT(run_physio(flags).error().message, HasSubstr("--window: ")) << window_s;
   }
   flags.window_s.reset();
-  flags.realtime = true;
-  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("--realtime: found with --out; rows"));
-  flags.realtime = false;
   for (const double rate : {0.0, -5.0, std::nan("")}) {
     flags.reference_bpm = rate;
     EXPECT_THAT(run_physio(flags).error().message, HasSubstr("--reference: ")) << rate;
@@ -217,6 +322,13 @@ TEST(PhysioCommand, FilesThatAreNoneAreErrorsInWords) {
   EXPECT_THAT(message("gaze", "gaze.wav", "x"), HasSubstr("gaze as .csv"));
   EXPECT_THAT(message("ecg", "a.mp3", "x"), HasSubstr(".csv, .wav, .hea or .dat is accepted"));
   EXPECT_THAT(message("pulse", "a.csv", "x"), HasSubstr("ecg, breath or gaze is accepted"));
+  PhysioFlags flags;
+  flags.what = "ecg";
+  flags.file = folder.path().string();
+  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("a folder found"));
+  flags.plot = "a.jpg";
+  EXPECT_THAT(run_physio(flags).error().message,
+              HasSubstr("--plot: 'a.jpg' found, a .png is accepted"));
 }
 
 TEST(PhysiologyTradeoff, TheDefaultsAreTheChoiceOfTheCurves) {

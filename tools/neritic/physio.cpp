@@ -53,8 +53,9 @@ Result<diver::Recording> load_record(const PhysioFlags& flags) {
   return diver::parse_wfdb_signal(header, channel, bytes, data_path.string());
 }
 
+// played: the table is on standard output already, but with --json.
 template <class Report>
-Result<std::string> show(const PhysioFlags& flags, const Report& report) {
+Result<std::string> show(const PhysioFlags& flags, const Report& report, bool played = false) {
   const std::string json = json_text(report_json(flags, report)) + "\n";
   const ReportText text = report_text(flags, report);
   std::string where;
@@ -73,7 +74,7 @@ Result<std::string> show(const PhysioFlags& flags, const Report& report) {
   if (!flags.plot.empty())
     NERITIC_TRY_STATUS(scene::write_png8(flags.plot, report_plot(flags, report)));
   if (flags.out.empty() || flags.json) {
-    fmt::print("{}", flags.json ? json : text.summary + text.table);
+    if (flags.json || !played) fmt::print("{}", flags.json ? json : text.summary + text.table);
     std::fflush(stdout);
     return std::string();
   }
@@ -85,6 +86,10 @@ Result<std::string> show(const PhysioFlags& flags, const Report& report) {
 Result<diver::Recording> load_recording(const PhysioFlags& flags) {
   const std::filesystem::path path = flags.file;
   const std::string kind = lower_case(path.extension().string());
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none))
+    return bad_input("{}: a folder found, a file of .csv, .wav, .hea or .dat is accepted",
+                     flags.file);
   if (kind == ".csv") {
     NERITIC_TRY(const std::string text, read_text(path));
     return diver::parse_csv(text, flags.file, {flags.channel, flags.rate_hz});
@@ -99,23 +104,16 @@ Result<diver::Recording> load_recording(const PhysioFlags& flags) {
 }
 
 Result<std::string> run_physio(const PhysioFlags& flags) {
+  if (!flags.plot.empty() && flags.plot.extension() != ".png")
+    return bad_input("--plot: '{}' found, a .png is accepted", flags.plot.string());
   if (flags.what == "ecg") {
     NERITIC_TRY(const EcgReport report, analyse_ecg(flags));
     return show(flags, report);
   }
   if (flags.what == "breath") {
     if (flags.realtime) {
-      const char* beside = !flags.out.empty()    ? "--out"
-                           : !flags.plot.empty() ? "--plot"
-                           : flags.json          ? "--json"
-                                                 : nullptr;
-      if (beside)
-        return bad_input(
-            "--realtime: found with {}; rows on standard output as they come are "
-            "accepted, or {} without it",
-            beside, beside);
-      NERITIC_TRY_STATUS(play_sound(flags));
-      return std::string();
+      NERITIC_TRY(const BreathReport report, play_sound(flags));
+      return show(flags, report, true);
     }
     NERITIC_TRY(const BreathReport report, analyse_sound(flags));
     return show(flags, report);

@@ -52,6 +52,12 @@ Result<diver::Recording> load_sound(const PhysioFlags& flags) {
   return sound;
 }
 
+// What the published way makes of the same: ten seconds at a time.
+std::vector<diver::BreathState> plain_states(const BreathReport& report) {
+  const double block_s = report.settings.block_s;
+  return diver::analyse_breath(report.sound, {diver::BreathEstimator::kSpectrum, block_s, block_s});
+}
+
 constexpr const char* kBreathHeading =
     "time_s,rate_bpm,breathing,confidence,depth_db,quiet_s,refused\n";
 
@@ -108,17 +114,20 @@ Result<BreathReport> analyse_sound(const PhysioFlags& flags) {
   const TimeNs start = now_ns();
   report.states = diver::analyse_breath(report.sound, report.settings);
   report.us_a_second = 1e-3 * static_cast<double>(now_ns() - start) / report.sound.seconds();
-  // What the published way makes of the same: ten seconds at a time.
-  report.plain = diver::analyse_breath(
-      report.sound,
-      {diver::BreathEstimator::kSpectrum, report.settings.block_s, report.settings.block_s});
+  report.plain = plain_states(report);
   return report;
 }
 
-Status play_sound(const PhysioFlags& flags) {
-  NERITIC_TRY(const diver::BreathSettings settings, breath_settings(flags));
-  NERITIC_TRY(const diver::Recording sound, load_sound(flags));
-  diver::BreathMonitor monitor(sound.rate_hz, settings);
+Result<BreathReport> play_sound(const PhysioFlags& flags) {
+  BreathReport report;
+  NERITIC_TRY(report.settings, breath_settings(flags));
+  NERITIC_TRY(report.sound, load_sound(flags));
+  const diver::Recording& sound = report.sound;
+  if (sound.seconds() < report.settings.block_s)
+    return bad_input("{}: {:.1f} s found, {:g} s or more is accepted with --realtime", flags.file,
+                     sound.seconds(), report.settings.block_s);
+  report.true_bpm = known_rate(flags);
+  diver::BreathMonitor monitor(sound.rate_hz, report.settings);
   const std::vector<float> samples(sound.samples.begin(), sound.samples.end());
   // A sound card hands over some twentieth of a second at a time.
   const auto piece = static_cast<std::size_t>(std::max(1.0, 0.05 * sound.rate_hz));
@@ -128,10 +137,12 @@ Status play_sound(const PhysioFlags& flags) {
     const diver::BreathState& state = monitor.state();
     if (state.blocks == shown) return;
     shown = state.blocks;
+    report.states.push_back(state);
+    if (flags.json) return;
     fmt::print("{}", breath_row(state));
     std::fflush(stdout);
   };
-  fmt::print("{}", kBreathHeading);
+  if (!flags.json) fmt::print("{}", kBreathHeading);
   for (std::size_t from = 0; from < samples.size(); from += piece) {
     const std::size_t count = std::min(piece, samples.size() - from);
     std::this_thread::sleep_until(
@@ -141,7 +152,8 @@ Status play_sound(const PhysioFlags& flags) {
   }
   monitor.wait();
   show();
-  return {};
+  report.plain = plain_states(report);
+  return report;
 }
 
 ReportText report_text(const PhysioFlags& flags, const BreathReport& r) {
@@ -159,7 +171,8 @@ ReportText report_text(const PhysioFlags& flags, const BreathReport& r) {
     out += errors_line(fmt::format("plain spectrum over {:g} s", r.settings.block_s).c_str(),
                        rate_errors(r.plain, *r.true_bpm, r.settings.block_s));
   }
-  out += fmt::format("# {:.0f} us of one core a second of sound\n", r.us_a_second);
+  if (r.us_a_second)
+    out += fmt::format("# {:.0f} us of one core a second of sound\n", *r.us_a_second);
   std::string table = kBreathHeading;
   for (const diver::BreathState& s : r.states) table += breath_row(s);
   return {std::move(out), std::move(table)};

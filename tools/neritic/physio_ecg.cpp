@@ -18,6 +18,10 @@ std::filesystem::path marks_path(const PhysioFlags& flags) {
   return std::filesystem::exists(beside) ? beside : std::filesystem::path();
 }
 
+std::string rate_words(double bpm) {
+  return bpm > 0.0 ? fmt::format("{:.1f} bpm", bpm) : "no rate";
+}
+
 }  // namespace
 
 const char* name_of(diver::IntervalKind kind) {
@@ -64,16 +68,18 @@ ReportText report_text(const PhysioFlags& flags, const EcgReport& r) {
   const auto ectopic =
       std::ranges::count(r.intervals, diver::IntervalKind::kEctopic, &diver::Interval::kind);
   std::string out = fmt::format(
-      "# {}: {} at {:g} Hz, {:.1f} s; {} samples refused, {} missing, {} gaps, signal {}\n",
+      "# {}: {} at {:g} Hz, {:.1f} s; {} samples refused ({} leapt), {} missing, {} gaps, signal "
+      "{}\n",
       flags.file, r.ecg.channel.empty() ? "ECG" : r.ecg.channel, r.ecg.rate_hz, r.ecg.seconds(),
-      r.refused(), r.ecg.missing, r.counts.gaps, diver::name_of(r.state.quality));
+      r.refused(), r.counts.leaps, r.ecg.missing, r.counts.gaps, diver::name_of(r.state.quality));
   const diver::Variability& v = r.variability;
-  out += fmt::format("# {} beats, {} ectopic; mean {:.1f} bpm, at the end {:.1f} bpm\n",
-                     r.beats.size(), ectopic, v.mean_rate_bpm, r.state.rate_bpm);
-  out += fmt::format(
-      "# of {} normal intervals: SDNN {:.1f} ms, RMSSD {:.1f} ms, pNN50 {:.2f} %, SD1 {:.1f} ms, "
-      "SD2 {:.1f} ms\n",
-      v.intervals, v.sdnn_ms, v.rmssd_ms, v.pnn50_percent, v.sd1_ms, v.sd2_ms);
+  out += fmt::format("# {} beats, {} ectopic; {} on the mean, {} at the end\n", r.beats.size(),
+                     ectopic, rate_words(v.mean_rate_bpm), rate_words(r.state.rate_bpm));
+  if (v.pairs > 0)
+    out += fmt::format(
+        "# of {} normal intervals: SDNN {:.1f} ms, RMSSD {:.1f} ms, pNN50 {:.2f} %, SD1 {:.1f} ms, "
+        "SD2 {:.1f} ms\n",
+        v.intervals, v.sdnn_ms, v.rmssd_ms, v.pnn50_percent, v.sd1_ms, v.sd2_ms);
   if (r.spectrum.valid)
     out += fmt::format(
         "# Lomb-Scargle, 300 s: VLF {:.0f}, LF {:.0f}, HF {:.0f} ms2, LF/HF {:.2f}\n",
@@ -94,9 +100,11 @@ ReportText report_text(const PhysioFlags& flags, const EcgReport& r) {
   out += fmt::format("# {:.0f} us of one core a second of ECG\n", r.us_a_second);
   std::string table = "time_s,rr_ms,kind,amplitude\n";
   for (std::size_t i = 0; i < r.beats.size(); ++i)
-    table += fmt::format("{:.4f},{:.1f},{},{:.6g}\n", r.ecg.start_s + r.beats[i].time_s,
-                         1e3 * r.intervals[i].length_s, name_of(r.intervals[i].kind),
-                         r.beats[i].amplitude);
+    table += fmt::format("{:.4f},{},{},{:.6g}\n", r.ecg.start_s + r.beats[i].time_s,
+                         r.intervals[i].kind == diver::IntervalKind::kNone
+                             ? ""
+                             : fmt::format("{:.1f}", 1e3 * r.intervals[i].length_s),
+                         name_of(r.intervals[i].kind), r.beats[i].amplitude);
   return {std::move(out), std::move(table)};
 }
 

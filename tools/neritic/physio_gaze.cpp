@@ -31,19 +31,6 @@ Result<std::optional<diver::GazeCamera>> gaze_camera(const PhysioFlags& flags) {
   return std::optional<diver::GazeCamera>({{}, numbers[0], numbers[1], numbers[2], numbers[3]});
 }
 
-// The simplest baseline: the angle from one sample to the next, without any window.
-std::vector<bool> simple_saccades(const std::vector<diver::GazeSample>& samples,
-                                  double threshold_rad_s) {
-  std::vector<bool> out(samples.size(), false);
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    const double step_s = samples[i].time_s - samples[i - 1].time_s;
-    out[i] = step_s > 0.0 &&
-             diver::angle_between(samples[i - 1].direction, samples[i].direction) / step_s >
-                 threshold_rad_s;
-  }
-  return out;
-}
-
 std::string pixel_cells(const GazeReport& r, const Vec3& direction) {
   if (!r.camera) return "";
   const auto pixel = diver::gaze_pixel(Vec3(0.0), direction, INFINITY, *r.camera);
@@ -80,9 +67,8 @@ Result<GazeReport> analyse_gaze(const PhysioFlags& flags) {
   for (const int mark : report.recording.marks) marked.push_back(mark == 2);
   for (const diver::GazeClass c : report.events.classes)
     found.push_back(c == diver::GazeClass::kSaccade);
-  report.kappa = diver::saccade_kappa(marked, found);
-  report.simple_kappa =
-      diver::saccade_kappa(marked, simple_saccades(samples, report.settings.velocity_rad_s));
+  report.kappa = diver::saccade_kappa(marked, diver::in_saccades(samples, report.events.saccades));
+  report.plain_kappa = diver::saccade_kappa(marked, found);
   return report;
 }
 
@@ -99,8 +85,10 @@ ReportText report_text(const PhysioFlags& flags, const GazeReport& r) {
                      diver::kPursuitNote);
   if (r.kappa)
     out += fmt::format(
-        "# against marks, saccade or none: kappa {:.3f}; from sample to sample alone {:.3f}\n",
-        *r.kappa, *r.simple_kappa);
+        "# against marks, saccade or none: kappa {:.3f} of these saccades; {:.3f} of each sample "
+        "as "
+        "plain {} has it\n",
+        *r.kappa, *r.plain_kappa, r.velocity() ? "I-VT" : "I-DT");
   out += fmt::format("# {:.0f} us of one core a second of gaze\n", r.us_a_second);
   std::string table =
       "kind,start_s,end_s,duration_ms,x_deg,y_deg,spread_deg,amplitude_deg,peak_deg_s,pursuit";

@@ -52,6 +52,7 @@ json report_json(const PhysioFlags& flags, const EcgReport& r) {
            {"refused", r.refused()},
            {"missing", r.ecg.missing},
            {"gaps", r.counts.gaps},
+           {"leaps", r.counts.leaps},
            {"relearned", r.counts.relearned},
            {"quality", diver::name_of(r.state.quality)},
            {"rate_bpm", known_json(r.state.rate_bpm > 0.0, r.state.rate_bpm)},
@@ -96,7 +97,7 @@ json report_json(const PhysioFlags& flags, const BreathReport& r) {
            {"estimator", diver::name_of(r.settings.estimator)},
            {"window_s", r.settings.window_s},
            {"block_s", r.settings.block_s},
-           {"us_a_second", r.us_a_second}};
+           {"us_a_second", known_json(r.us_a_second.has_value(), r.us_a_second.value_or(0.0))}};
   out["estimates"] = json::array();
   for (const diver::BreathState& s : r.states)
     out["estimates"].push_back(
@@ -144,7 +145,7 @@ json report_json(const PhysioFlags& flags, const GazeReport& r) {
   };
   add("saccades", r.events.saccades);
   add("blinks", r.events.blinks);
-  if (r.kappa) out["score"] = {{"kappa", *r.kappa}, {"simple_kappa", *r.simple_kappa}};
+  if (r.kappa) out["score"] = {{"kappa", *r.kappa}, {"plain_kappa", *r.plain_kappa}};
   return out;
 }
 

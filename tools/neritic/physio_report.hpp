@@ -49,11 +49,12 @@ struct BreathReport {
   diver::BreathSettings settings;
   std::vector<diver::BreathState> states, plain;  // by the settings; by the spectrum alone
   std::optional<double> true_bpm;
-  double us_a_second = 0.0;
+  std::optional<double> us_a_second;  // none of what was analysed at the recording's own pace
 };
 Result<BreathReport> analyse_sound(const PhysioFlags& flags);
-// The recording at its own pace through both threads; a row as each block is done.
-Status play_sound(const PhysioFlags& flags);
+// The same of the recording at its own pace, through both threads, whole blocks alone; each row on
+// standard output as its block is done, but with --json.
+Result<BreathReport> play_sound(const PhysioFlags& flags);
 
 struct GazeReport {
   diver::GazeRecording recording;
@@ -61,9 +62,9 @@ struct GazeReport {
   diver::GazeEvents events;
   diver::GazeState state;
   std::optional<diver::GazeCamera> camera;
-  // Against a person's marks, sample by sample, saccade or none; and of the simplest way, the angle
-  // from one sample to the next.
-  std::optional<double> kappa, simple_kappa;
+  // Against a person's marks, sample by sample, saccade or none: of the saccades that are told; and
+  // of what the method alone makes of each sample, blinks and noise included.
+  std::optional<double> kappa, plain_kappa;
   double us_a_second = 0.0;
   bool velocity() const { return settings.method == diver::GazeMethod::kVelocity; }
 };
