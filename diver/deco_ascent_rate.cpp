@@ -35,7 +35,7 @@ double line_fit_m_min(const AscentRateState& s, double window_s) {
     if (-dt >= window_s - 1e-9) break;
   }
   const double spread = tt - t * t / n;
-  return spread > 0.0 ? -60.0 * (td - t * d / n) / spread : 0.0;
+  return spread > 0.0 ? 60.0 * (t * d / n - td) / spread : 0.0;  // who stays has 0, not -0
 }
 
 // The time since which the rate is above a limit: the way from the sample before counts.

@@ -80,7 +80,7 @@ void HumanRecorder::note_dangers(std::size_t index, const sim::Snapshot<PhysicsS
   HumanFigures& f = figures_[index];
   if (const double unfed_s = state.life.lungs.unfed_s; unfed_s > 0.0) {
     if (f.out_of_gas_s == 0.0) {
-      f.out_of_gas_from_s = now_s - unfed_s;
+      f.out_of_gas_from_s = 1e-6 * std::round(1e6 * (now_s - unfed_s));  // of sums of steps
       f.out_of_gas_tank = state.held.tank;
     }
     f.out_of_gas_s += diver::kComputerSample_s;
