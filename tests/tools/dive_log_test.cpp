@@ -4,44 +4,15 @@
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "tests/support/support.hpp"
+#include "tests/tools/page_words.hpp"
 
 namespace neritic {
 namespace {
-
-using Words = std::set<std::string>;
-
-// What stands in backticks in a table's rows, of the page from one heading to the next; of their
-// first cells alone where so asked.
-Words words_of(const std::string& page, const std::string& from, const std::string& to,
-               bool first_cells) {
-  const std::size_t begin = page.find(from), end = page.find(to, begin);
-  EXPECT_NE(begin, page.npos) << from;
-  std::istringstream lines(page.substr(begin, end - begin));
-  Words words;
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("| `")) continue;
-    if (first_cells) line.resize(line.find('|', 2));
-    for (std::size_t at = 0; (at = line.find('`', at)) != line.npos;) {
-      const std::size_t close = line.find('`', at + 1);
-      words.insert(line.substr(at + 1, close - at - 1));
-      at = close + 1;
-    }
-  }
-  return words;
-}
-
-void gather_keys(const nlohmann::json& json, Words& keys) {
-  for (const auto& [key, value] : json.items()) {
-    if (json.is_object()) keys.insert(key);
-    if (value.is_structured()) gather_keys(value, keys);
-  }
-}
 
 // A vehicle with every sensor, and a diver to whom all befalls: too deep on a small tank of air, an
 // inflator that freezes open; richer gas for the surface.

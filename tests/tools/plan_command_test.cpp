@@ -6,7 +6,6 @@
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
@@ -341,39 +340,6 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
     EXPECT_EQ(std::ranges::count(said.error, '\n'), 1) << arguments;
     EXPECT_EQ(said.out, "") << arguments;
   }
-}
-
-void add_keys(const nlohmann::json& json, std::set<std::string>& keys) {
-  for (const auto& [key, value] : json.items()) {
-    if (json.is_object()) keys.insert(key);
-    if (value.is_structured()) add_keys(value, keys);
-  }
-}
-
-TEST(PlanCommand, ThePageOfOutputsHasEveryKeyAndColumn) {
-  const test::ScratchFolder folder;
-  ASSERT_TRUE(write_text(folder / "dive.csv", "time_s,depth_m\n0,0\n60,20\n600,20\n").ok());
-  const std::string log = "plan --log " + (folder / "dive.csv").string();
-  std::set<std::string> keys;
-  for (const std::string& command :
-       {std::string(
-            "plan --depth 60 --time 20 --gas 18/45 ean50 --tank 18/45=24,230 ean50=2,90 --json"),
-        log + " --json", "check deco --json " + deco_file("deco_more.json")})
-    add_keys(parse_json(said_by(command).out).value(), keys);
-  ASSERT_EQ(said_by(log + " --out " + folder.path().string()).status, 0);
-  const std::string table = read_text(folder / "log.csv").value();
-  std::string column;
-  for (const char c : table.substr(0, table.find('\n') + 1)) {
-    if (c != ',' && c != '\n') {
-      column += c;
-      continue;
-    }
-    keys.insert(column);
-    column.clear();
-  }
-  EXPECT_GT(keys.size(), 80u);
-  const std::string page = read_text(test::source_dir() / "diver/OUTPUT.md").value();
-  for (const std::string& key : keys) EXPECT_THAT(page, HasSubstr("`" + key + "`")) << key;
 }
 
 TEST(CheckDeco, ALineACaseAndItsStatus) {
