@@ -7,15 +7,15 @@ namespace neritic::bench {
 namespace {
 
 Status sweep_bins(Suite& suite, gpu::Device& device, const std::string& axis,
-                  std::uint32_t sonar::Bins::*bins, const std::vector<std::uint32_t>& counts) {
+                  std::uint32_t sonar::Bins::*bins, const std::vector<std::uint32_t>& counts,
+                  sonar::Gather mode = sonar::Gather::kPlane) {
   std::vector<std::unique_ptr<sonar::ImageGather>> gathers;
   std::vector<Contender> contenders;
   for (const std::uint32_t count : counts) {
     sonar::BeamGrid grid;
     grid.bins.*bins = count;
     const sonar::SonarInput input = relief_input(grid, 500, 500);
-    NERITIC_TRY(auto gather, sonar::ImageGather::create(device, grid, std::span(&input, 1),
-                                                        sonar::Gather::kPlane));
+    NERITIC_TRY(auto gather, sonar::ImageGather::create(device, grid, std::span(&input, 1), mode));
     gathers.push_back(std::move(gather));
     sonar::ImageGather& g = *gathers.back();
     contenders.push_back({fmt::format("sweep/{}_{}", axis, count),
@@ -83,6 +83,8 @@ Status bench_sweeps(Suite& suite, gpu::Device& device) {
   if (!suite.options().sweep || !suite.wants("sweep")) return {};
   NERITIC_TRY_STATUS(
       sweep_bins(suite, device, "n_range", &sonar::Bins::range, {50, 500, 2000, 5000}));
+  NERITIC_TRY_STATUS(sweep_bins(suite, device, "n_range_nearest", &sonar::Bins::range,
+                                {50, 500, 2000, 5000}, sonar::Gather::kNearest));
   NERITIC_TRY_STATUS(
       sweep_bins(suite, device, "n_azimuth", &sonar::Bins::azimuth, {125, 250, 500, 1000, 2000}));
   NERITIC_TRY_STATUS(sweep_bins(suite, device, "n_elevation", &sonar::Bins::elevation,
