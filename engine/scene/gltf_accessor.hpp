@@ -52,7 +52,8 @@ class Resources {
     double type_max = 0.0;  // the largest of the component's type
   };
   Extremes extremes(Field accessor);
-  // Fails where the accessor is wrong or its elements are not in their bytes.
+  // Fails where the accessor is wrong or its elements are not in their bytes; within the same
+  // limit.
   void check(Field accessor);
   bool examined_all() const { return examined_all_; }
 
@@ -98,6 +99,8 @@ class Resources {
   template <class T>
   std::vector<T> vectors(Field reference, std::string_view shape, Integers integers);
 
+  bool may_examine(std::size_t bytes);  // false, and examined_all() too, beyond the limit
+  bool may_locate(Field accessor);
   static bool parse_component(Field field, Component& out);
   static std::size_t size_of(Component component);
   static std::vector<std::uint32_t> wholes(const Elements& elements);

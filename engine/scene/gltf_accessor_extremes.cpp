@@ -36,24 +36,32 @@ void widen(const std::byte* from, std::size_t stride, std::size_t count, Resourc
 
 }  // namespace
 
+bool Resources::may_examine(std::size_t bytes) {
+  const std::size_t limit = kExamineBaseBytes + kExamineFactor * source_bytes_;
+  if (bytes > limit - std::min(limit, examined_bytes_)) return examined_all_ = false;
+  examined_bytes_ += bytes;
+  return true;
+}
+
+// Asked before anything is done: sparse indices are copied as they are located. More of them than
+// the file has bytes are refused uncopied.
+bool Resources::may_locate(Field accessor) {
+  const std::size_t count = accessor["sparse"]["count"].whole(0);
+  return may_examine(std::min(count, source_bytes_) * sizeof(std::uint32_t));
+}
+
 void Resources::check(Field accessor) {
   Elements elements;
-  locate(accessor, accessor, kShapes, elements);
+  if (may_locate(accessor)) locate(accessor, accessor, kShapes, elements);
 }
 
 Resources::Extremes Resources::extremes(Field accessor) {
   Extremes out;
   Elements e;
-  if (!locate(accessor, accessor, kShapes, e)) return out;
+  if (!may_locate(accessor) || !locate(accessor, accessor, kShapes, e)) return out;
   const std::size_t element_bytes = size_of(e.component) * e.components;
   const std::size_t bytes = ((e.data ? e.count : 0) + e.sparse_count) * element_bytes;
-  if (bytes == 0) return out;
-  const std::size_t limit = kExamineBaseBytes + kExamineFactor * source_bytes_;
-  if (bytes > limit - std::min(limit, examined_bytes_)) {
-    examined_all_ = false;
-    return out;
-  }
-  examined_bytes_ += bytes;
+  if (bytes == 0 || !may_examine(bytes)) return out;
   out.min.assign(e.components, std::numeric_limits<double>::infinity());
   out.max.assign(e.components, -std::numeric_limits<double>::infinity());
   const auto look = [&](const std::byte* from, std::size_t stride, std::size_t count) {

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <functional>
 
 #include "gltf_builder.hpp"
@@ -256,6 +257,29 @@ TEST(GltfAudit, BytesAreNotLookedAtAgainAndAgain) {
   for (int i = 0; i < 100; ++i) b.json["accessors"].push_back(big);
   const auto model = b.load();
   ASSERT_TRUE(model.ok()) << model.error().message;
+  ASSERT_EQ(model->notes.size(), 1u);
+  EXPECT_NE(model->notes[0].find("lie over one another"), std::string::npos) << model->notes[0];
+}
+
+// Nor are sparse places, which are copied where they are located.
+TEST(GltfAudit, SparsePlacesAreNotCopiedAgainAndAgain) {
+  Builder b;
+  b.quad();
+  constexpr std::uint32_t kCount = 1 << 20;
+  std::vector<std::uint32_t> places(kCount);
+  for (std::uint32_t i = 0; i < kCount; ++i) places[i] = i;
+  const Json sparse = {
+      {"count", kCount},
+      {"indices", {{"bufferView", b.view<std::uint32_t>(places)}, {"componentType", 5125}}},
+      {"values", {{"bufferView", b.view<std::uint8_t>(std::vector<std::uint8_t>(kCount, 7))}}}};
+  const Json accessor = {
+      {"componentType", 5121}, {"type", "SCALAR"}, {"count", kCount}, {"sparse", sparse}};
+  for (int i = 0; i < 4000; ++i) b.json["accessors"].push_back(accessor);
+  const std::clock_t start = std::clock();
+  const auto model = b.load();
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  EXPECT_LT(seconds, 2.0);
   ASSERT_EQ(model->notes.size(), 1u);
   EXPECT_NE(model->notes[0].find("lie over one another"), std::string::npos) << model->notes[0];
 }
