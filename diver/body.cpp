@@ -40,6 +40,7 @@ constexpr double kLead_kg_m3 = 11340.0;
 constexpr double kNeutralDepth_m = 5.0, kNeutralTank_pa = 50e5;
 constexpr double kLevelDepth_m = 15.0, kLevelTank_pa = 120e5;
 constexpr double kQuietBreath_m3 = 0.5e-3;
+constexpr double kLeadAside_m = 0.17;
 
 // How a segment lies in its axes and how wide it is over how deep, with the cross section's area
 // as its volume and length give it.
@@ -262,9 +263,15 @@ class BodyMaker {
   void add_tank(const Tank& tank) {
     const std::size_t i = body_.tank_count++;
     // The back of the trunk, or beside the waist.
-    const double y = i == 0 ? 0.0 : (i == 2 ? 0.24 : -0.24 - 0.1 * (i == 3));
-    const double back_m = i == 0 ? -0.148 - tank.radius_m : 0.0;
-    const Vec3 at = scale() * Vec3(i == 0 ? -0.05 : -0.15, y, back_m);
+    const std::size_t on_back = tanks_on_back(in_.gear);
+    Vec3 at = Vec3(-0.05, 0.0, -0.148 - tank.radius_m);
+    if (i >= on_back) {
+      const std::size_t beside = i - on_back;
+      at = {-0.15, beside == 1 ? 0.24 : -0.24 - 0.1 * (beside == 2), 0.0};
+    } else if (on_back == 2) {
+      at.y = (i == 0 ? 1.0 : -1.0) * (tank.radius_m + 0.005);
+    }
+    at *= scale();
     body_.tanks[i] = {at, tank.water_volume_m3, tank.mix, tank.pressure_pa};
     const double l2 = tank.length_m * tank.length_m / 12.0, r2 = tank.radius_m * tank.radius_m;
     add_mass(kThorax, tank.empty_mass_kg, at,
@@ -307,28 +314,35 @@ class BodyMaker {
     return at;
   }
 
-  // Mass over displaced water with the lungs half full, and its moment along the body.
+  // Mass over displaced water with the lungs half full, and its moments along the body and to
+  // starboard.
   struct Balance {
-    double excess_kg = 0.0, moment_kg_m = 0.0;
-    void add(double kg, double at_m) { excess_kg += kg, moment_kg_m += kg * at_m; }
+    double excess_kg = 0.0, moment_kg_m = 0.0, aside_kg_m = 0.0;
+    void add(double kg, double at_m, double aside_m) {
+      excess_kg += kg, moment_kg_m += kg * at_m, aside_kg_m += kg * aside_m;
+    }
   };
   Balance balance_at(double depth_m, double tank_pa) const {
     Balance out;
-    for (std::size_t i = 0; i < kSegments; ++i)
-      out.add(body_.segments[i].mass_kg, origin_of(i).x + body_.segments[i].mass_centre_m.x);
+    for (std::size_t i = 0; i < kSegments; ++i) {
+      const Vec3 centre = origin_of(i) + body_.segments[i].mass_centre_m;
+      out.add(body_.segments[i].mass_kg, centre.x, centre.y);
+    }
     const double rho = in_.water_kg_m3;
     const double gas_share = kSurfacePressure_pa / pressure_at(body_, depth_m);
     for (std::size_t i = 0; i < body_.part_count; ++i) {
       const Part& p = body_.parts[i];
-      const Vec3 middle = p.start_m + 0.5 * p.length_m * p.segment_from_part[0];
-      out.add(-rho * (p.volume_m3 + gas_share * p.suit_gas_m3), origin_of(p.segment).x + middle.x);
+      const Vec3 middle =
+          origin_of(p.segment) + p.start_m + 0.5 * p.length_m * p.segment_from_part[0];
+      out.add(-rho * (p.volume_m3 + gas_share * p.suit_gas_m3), middle.x, middle.y);
     }
     const double thorax_m = origin_of(kThorax).x;
-    out.add(-rho * (body_.lungs.rest_m3 + 0.5 * kQuietBreath_m3), thorax_m + body_.lungs_at_m.x);
+    out.add(-rho * (body_.lungs.rest_m3 + 0.5 * kQuietBreath_m3), thorax_m + body_.lungs_at_m.x,
+            0.0);
     for (std::size_t i = 0; i < body_.tank_count; ++i) {
       const TankPlace& tank = body_.tanks[i];
       out.add(moles_in(tank.mix, tank.water_volume_m3, tank_pa) * molar_mass(tank.mix),
-              thorax_m + tank.position_m.x);
+              thorax_m + tank.position_m.x, tank.position_m.y);
     }
     return out;
   }
@@ -343,12 +357,15 @@ class BodyMaker {
     // Where the lead balances the rest, with what the jacket then has to lift.
     Balance level = balance_at(kLevelDepth_m, kLevelTank_pa);
     const double lift_kg = std::max(0.0, level.excess_kg + sinks * body_.lead_kg);
-    if (in_.gear.jacket) level.add(-lift_kg, thorax_m + body_.jacket.centre_m.x);
+    if (in_.gear.jacket) level.add(-lift_kg, thorax_m + body_.jacket.centre_m.x, 0.0);
     const double level_m = -level.moment_kg_m / (body_.lead_kg * sinks);
     const double share = in_.gear.lead_at_shoulders.value_or(
         std::clamp((level_m - belt_m) / (thorax_m + shoulders_m - belt_m), 0.0, 1.0));
-    put_lead(kPelvis, (1.0 - share) * body_.lead_kg, {belt_m, 0.0, 0.10});
-    put_lead(kThorax, share * body_.lead_kg, {shoulders_m, 0.0, 0.0});
+    // Against a tank that hangs at one side, to the other, as far as a belt and pockets go.
+    const double aside_m = std::clamp(-level.aside_kg_m / body_.lead_kg, -kLeadAside_m * scale(),
+                                      kLeadAside_m * scale());
+    put_lead(kPelvis, (1.0 - share) * body_.lead_kg, {belt_m, aside_m, 0.10});
+    put_lead(kThorax, share * body_.lead_kg, {shoulders_m, aside_m, 0.0});
   }
 
   void put_lead(Segment segment, double kg, const Vec3& at_m) {

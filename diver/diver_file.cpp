@@ -80,8 +80,9 @@ void read_fins(const CaseField& field, std::optional<Fins>& fins) {
 
 Tank read_tank(const CaseField& field) {
   field.allow(kTankKeys);
-  Tank tank;
-  read_bounded(field["volume_l"], kLitre_m3, kTankVolume_m3, tank.water_volume_m3);
+  double water_volume_m3 = Tank{}.water_volume_m3;
+  read_bounded(field["volume_l"], kLitre_m3, kTankVolume_m3, water_volume_m3);
+  Tank tank = tank_of(water_volume_m3);
   read_bounded(field["pressure_bar"], kBar_pa, kTankPressure_pa, tank.pressure_pa);
   tank.mix.oxygen = field["oxygen"].number(tank.mix.oxygen, 0.0, 1.0);
   tank.mix.helium = field["helium"].number(tank.mix.helium, 0.0, 1.0);

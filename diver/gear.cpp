@@ -1,6 +1,28 @@
 #include "diver/gear.hpp"
 
+#include <cmath>
+
 namespace neritic::diver {
+
+Tank tank_of(double water_volume_m3) {
+  Tank tank;
+  const double times = water_volume_m3 / tank.water_volume_m3;
+  tank.water_volume_m3 = water_volume_m3;
+  tank.empty_mass_kg *= times;
+  tank.outer_volume_m3 *= times;
+  tank.radius_m *= std::cbrt(times);
+  tank.length_m *= std::cbrt(times);
+  return tank;
+}
+
+std::size_t tanks_on_back(const Gear& gear) {
+  const auto& tanks = gear.tanks;
+  if (tanks.size() < 2) return tanks.size();
+  const bool alike = tanks[0].water_volume_m3 == tanks[1].water_volume_m3 &&
+                     tanks[0].mix.oxygen == tanks[1].mix.oxygen &&
+                     tanks[0].mix.helium == tanks[1].mix.helium;
+  return alike ? 2 : 1;
+}
 
 Status check_gear(const Gear& gear) {
   if (gear.suit)

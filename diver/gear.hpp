@@ -29,8 +29,9 @@ struct Fins {
   double volume_m3 = 0.8e-3;
 };
 
-// The first is worn on the back, the others at the sides: left, right, left. Aluminium of 80 cubic
-// feet (Luxfer S080: 14.2 kg, 11.1 litres) with valve and regulator.
+// The first is worn on the back, with the second if that is of its size and gas (a twin set: right,
+// left); the others at the sides: left, right, left. Aluminium of 80 cubic feet (Luxfer S080: 14.2
+// kg, 11.1 litres) with valve and regulator.
 struct Tank {
   double water_volume_m3 = 0.0111;  // that gas fills
   double empty_mass_kg = 15.8;
@@ -39,6 +40,9 @@ struct Tank {
   GasMix mix = kAir;
   double pressure_pa = 200e5;  // at the start
 };
+
+// One of that alloy and shape, of another size.
+Tank tank_of(double water_volume_m3);
 
 // A bladder behind the trunk, an ellipsoid when full, and its valves. Places in the thorax's axes,
 // for a body of 1.78 m.
@@ -70,13 +74,17 @@ struct Gear {
   std::optional<Jacket> jacket = Jacket{};
   // Lead; nothing said: as much as makes the diver neutral with an empty jacket, lungs half full of
   // a quiet breath, and 50 bar in the tanks, at 5 m (0 where that floats no one), split between
-  // belt and shoulders so that the body lies level at 15 m with 120 bar.
+  // belt and shoulders so that the body lies level at 15 m with 120 bar, and to that side which
+  // balances tanks that hang at the other.
   std::optional<double> lead_kg;
   std::optional<double> lead_at_shoulders;  // share, 0 to 1
   // Drag of what is worn, m^2 of C_d A along the body; nothing said: as measured with a tank and a
   // jacket, nothing without (body.cpp).
   std::optional<double> drag_area_m2;
 };
+
+// How many of its tanks are worn on the back: 0 to 2.
+std::size_t tanks_on_back(const Gear& gear);
 
 // What people wear, SI.
 inline constexpr Bounds kSuitThickness_m{0.0, 0.012};

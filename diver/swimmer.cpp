@@ -10,7 +10,7 @@ namespace {
 constexpr double kMetresABeat = 0.52;
 constexpr double kMostLift_rad = radians(18.0), kMostTwist_rad = radians(14.0);
 constexpr double kMostLeftMore = 0.5;
-constexpr double kMostBend_rad = radians(18.0);
+constexpr double kMostBend_rad = radians(18.0), kMostAside_rad = radians(25.0);
 // Nobody swims for minutes with more: a person's limit, not the water's.
 constexpr double kMostKick_w = 300.0;
 constexpr double kMostPitch_rad = radians(30.0);
@@ -37,6 +37,9 @@ constexpr double kHoverBreath = 1.5;
 // Who hovers swims back to the place from so far away, or righting from such a tilt, and rests
 // again from so near.
 constexpr double kAdrift_m = 3.0, kNear_m = 0.7, kTilted_rad = radians(20.0);
+// Steeper than this a kick would carry him up or down: who hovers stoops, so far in each of two
+// joints of the back, the legs behind him, until he is less so.
+constexpr double kSteep_rad = radians(25.0), kStoop_rad = radians(17.0), kStoopLag_s = 0.7;
 // More than kStill_m_s is a current: aims so far upstream of the place.
 constexpr double kStill_m_s = 0.06, kAimAhead_m = 4.0;
 // So fast in still water, and so much faster for each metre off the place. Back to the place no
@@ -148,12 +151,18 @@ SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimme
   else if (off_m > kAdrift_m && swimmer.goes_back == 0)
     swimmer.goes_back = kGoesBack;
   if (off_m < near_m && tilt_rad < 0.5 * kTilted_rad) swimmer.goes_back = 0;
-  if (swimmer.goes_back == 0) return goal;
+  const bool steep = swimmer.goes_back == kRightsHimself && tilt_rad > kSteep_rad;
+  if (swimmer.goes_back == 0 || steep) return goal;
   const WayBack& way_back = swimmer.goes_back == kRightsHimself ? kRighting : kBack;
   const double upstream_m_s =
       current ? drift_m_s + way_back.each_metre_1_s * std::max(off_m, 0.0) : 0.0;
   goal.speed_m_s = std::min(way_back.speed_m_s + upstream_m_s, way_back.most_m_s);
   return goal;
+}
+
+// 1: little way, legs do not steer; 0: way enough.
+double slow(const SwimmerState& swimmer) {
+  return std::min(1.0, 2.5 * swimmer.rests);
 }
 
 // Spine and legs, for the head to come round by turn (to starboard) and nose_up, without rolling.
@@ -163,18 +172,27 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   const double rests = swimmer.rests;
   // Rolling with each beat is the kick's: legs that worked against it would take from its thrust.
   const double hz = std::max(swimmer.frequency_hz, 0.25);
-  const double roll = between_beats(swimmer.roll, roll_rad, hz, dt_s);
-  const double roll_rate = between_beats(swimmer.roll_rate, velocity[3], hz, dt_s);
+  const auto felt = [&](BeatNotch& notch, double value) {  // legs that rest do not beat
+    return std::lerp(between_beats(notch, value, hz, dt_s), value, rests);
+  };
+  const double roll = felt(swimmer.roll, roll_rad);
+  const double roll_rate = felt(swimmer.roll_rate, velocity[3]);
   const double pitch_rate = velocity[4];
   const double yaw_rate = velocity[5];
   const double yaw = std::clamp(1.5 * std::clamp(turn, -0.5, 0.5) - 2.0 * yaw_rate, -1.0, 1.0);
   // Who has little way and holds his nose up turns by leaning: what holds it up leans along.
   const double leans =
-      std::min(1.0, 2.5 * rests) * std::clamp(-2.0 * swimmer.lift_rad / kMostLift_rad, 0.0, 1.0);
-  const double tilt =
-      std::clamp(2.0 * (roll - leans * yaw * kMostBank_rad) + 1.0 * roll_rate, -1.0, 1.0);
-  follow(swimmer.bend_rad, (yaw * (1.0 - leans) + tilt * leans) * kMostBend_rad, kSteeringLag_s,
-         dt_s);
+      slow(swimmer) * std::clamp(-2.0 * swimmer.lift_rad / kMostLift_rad, 0.0, 1.0);
+  swimmer.roll_sum = rests * std::clamp(swimmer.roll_sum + roll * dt_s, -1.0, 1.0);
+  const double tilt = std::clamp(
+      2.0 * (roll - leans * yaw * kMostBank_rad) + 1.0 * roll_rate + 0.5 * swimmer.roll_sum, -1.0,
+      1.0);
+  // Who rests holds the roll by bending to a side: trunk and legs are no longer under each other.
+  const double aside = tilt * std::max(leans, slow(swimmer));
+  const double turns = yaw * (1.0 - leans);
+  const double bend = turns + aside * (1.0 - std::abs(turns));
+  follow(swimmer.bend_rad, bend * kMostBend_rad, kSteeringLag_s, dt_s);
+  follow(swimmer.legs_aside_rad, aside * kMostAside_rad, kSteeringLag_s, dt_s);
   follow(swimmer.left_more, yaw * kMostLeftMore * (1.0 + rests), kSteeringLag_s, dt_s);
   swimmer.pitch_sum = std::clamp(swimmer.pitch_sum + nose_up * dt_s, -2.5, 2.5);
   const double pitch = (2.5 + 3.5 * rests) * nose_up - (3.0 + 3.0 * rests) * pitch_rate +
@@ -198,8 +216,14 @@ JointRotations posture_for(const Body& body, const SwimmerSettings& settings,
   kick.left_more = swimmer.left_more;
   set_flutter(joints, body, kick, swimmer.phase_rad);
   for (const Segment spine : {kAbdomen, kThorax}) {
-    joints[joint_of(spine)].y = -(0.25 + (kHoverBend - 0.25) * rests) * swimmer.lift_rad;
+    joints[joint_of(spine)].y =
+        -(0.25 + (kHoverBend - 0.25) * rests) * swimmer.lift_rad - rests * swimmer.stoop_rad;
     joints[joint_of(spine)].z = 0.5 * swimmer.bend_rad;
+  }
+  for (const Segment leg : {kLeftUpperLeg, kRightUpperLeg}) {
+    joints[joint_of(leg)].y -= rests * swimmer.stoop_rad;
+    // Not all of it with way: it turns.
+    joints[joint_of(leg)].z = -std::min(1.0, 1.8 * rests) * swimmer.legs_aside_rad;
   }
   // Drag goes with the square of the beat.
   const double tread_rad =
@@ -251,7 +275,12 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
     pitch = std::clamp(climb_m_s / std::max(goal.speed_m_s, 0.2), -kMostPitch_rad, kMostPitch_rad);
   }
   if (swimmer.button_s < 0.0 && swimmer.lift_sum < 0.0) pitch = std::max(pitch, kVentPitch_rad);
-  steer(turn, pitch - attitude.pitch_rad, attitude.roll_rad, state.root.velocity, swimmer, dt_s);
+  const double upright = (std::abs(attitude.pitch_rad) - kTilted_rad) / (kSteep_rad - kTilted_rad);
+  const double stoops = hovers && attitude.pitch_rad > 0.0 ? std::clamp(upright, 0.0, 1.0) : 0.0;
+  follow(swimmer.stoop_rad, stoops * kStoop_rad, kStoopLag_s, dt_s);
+  // Of who stands there is no roll.
+  const double roll_rad = attitude.roll_rad * std::cos(attitude.pitch_rad);
+  steer(turn, pitch - attitude.pitch_rad, roll_rad, state.root.velocity, swimmer, dt_s);
   inputs.joints = posture_for(body, settings, swimmer);
 }
 

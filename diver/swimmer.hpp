@@ -36,9 +36,12 @@ struct SwimmerState {
   double speed_sum = 0.0;  // m: too slow so far
   double climb_sum = 0.0;  // m: sunk too much so far
   double pitch_sum = 0.0;  // rad s: too low so far
+  double roll_sum = 0.0;   // rad s: too far to starboard so far, of who rests
   double lift_sum = 0.0;   // litres times seconds of breath that was wanted
   double breath_bias_m3 = 0.0;
   double lift_rad = 0.0, twist_rad = 0.0, left_more = 0.0, bend_rad = 0.0;
+  double legs_aside_rad = 0.0;                // of who has little way: to starboard
+  double stoop_rad = 0.0;                     // of who stands and is to hover
   double tread = 0.0, tread_phase_rad = 0.0;  // of who rests: shins beat, 0 to 1
   double turn_side = 0.0;                     // 1: comes round to starboard, -1: to port
   // What the swimmer feels of roll and rates between the beats.
@@ -55,12 +58,15 @@ struct SwimmerState {
     field("speed_sum", self.speed_sum);
     field("climb_sum", self.climb_sum);
     field("pitch_sum", self.pitch_sum);
+    field("roll_sum", self.roll_sum);
     field("lift_sum", self.lift_sum);
     field("breath_bias_m3", self.breath_bias_m3);
     field("lift_rad", self.lift_rad);
     field("twist_rad", self.twist_rad);
     field("left_more", self.left_more);
     field("bend_rad", self.bend_rad);
+    field("legs_aside_rad", self.legs_aside_rad);
+    field("stoop_rad", self.stoop_rad);
     field("tread", self.tread);
     field("tread_phase_rad", self.tread_phase_rad);
     field("turn_side", self.turn_side);

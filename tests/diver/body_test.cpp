@@ -1,6 +1,7 @@
 // The whole body: centre, inertia, density, joints; drag in trim and out of it.
 #include <gtest/gtest.h>
 
+#include "diver/water_forces.hpp"
 #include "tests/diver/bodies.hpp"
 
 namespace neritic::diver {
@@ -76,6 +77,46 @@ TEST(Body, LeadMakesNeutralAsOneChecksIt) {
     EXPECT_GT(body.lead_kg, 0.5) << suit_m;
     EXPECT_LT(body.lead_kg, 8.0) << suit_m;
   }
+}
+
+// Still, at 15 m with 120 bar in every tank: the moment of weight and buoyancy about the body's
+// length.
+double roll_moment_n_m(const Gear& gear) {
+  const Body body = body_with(gear);
+  HumanState state =
+      start_at(body, {0.0, 0.0, 15.0}, Quat(1.0, 0.0, 0.0, 0.0), rotations_of(JointAngles{}));
+  for (std::size_t i = 0; i < body.tank_count; ++i)
+    state.life.tanks.moles[i] = moles_in(body.tanks[i].mix, body.tanks[i].water_volume_m3, 120e5);
+  const Immersion still{Vec3(0.0, 0.0, 1.0), 15.0};
+  return static_forces(body, posture_of(body, state.limbs.rotation, {}), {}, still,
+                       gas_load(body, state))
+      .wrench.angular()
+      .x;
+}
+
+TEST(Body, LeadLiesWhereItBalancesTanksAtASide) {
+  Tank stage = tank_of(0.007);
+  stage.mix.oxygen = 0.5;
+  Gear gear;
+  gear.tanks = {Tank{}, stage};
+  EXPECT_NEAR(roll_moment_n_m(gear), 0.0, 1e-6);
+  stage.empty_mass_kg += 1.5;  // lead as far to the other side as a belt goes does not do
+  gear.tanks = {Tank{}, stage};
+  EXPECT_LT(roll_moment_n_m(gear), -0.1);
+}
+
+TEST(Body, TwoTanksAlikeAreATwinSet) {
+  Gear gear;
+  gear.tanks = {tank_of(0.012), tank_of(0.012), tank_of(0.007)};
+  const Body twin = body_with(gear);
+  EXPECT_EQ(tanks_on_back(gear), 2u);
+  EXPECT_NEAR(twin.tanks[0].position_m.y, gear.tanks[0].radius_m + 0.005, 1e-12);
+  EXPECT_EQ(twin.tanks[1].position_m.y, -twin.tanks[0].position_m.y);
+  EXPECT_LT(twin.tanks[2].position_m.y, -0.2);
+  gear.tanks[1].mix.oxygen = 0.5;
+  EXPECT_EQ(tanks_on_back(gear), 1u);
+  EXPECT_LT(body_with(gear).tanks[1].position_m.y, -0.2);
+  EXPECT_GT(body_with(gear).tanks[2].position_m.y, 0.2);
 }
 
 TEST(Body, ParametersBeyondAnyDiversAreRefusedByName) {

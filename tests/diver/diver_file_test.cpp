@@ -63,6 +63,10 @@ computer = { gf_low = 0.4, gf_high = 0.8 }
   EXPECT_NEAR(p.gear.jacket->capacity_m3, 0.015, 1e-15);
   ASSERT_EQ(p.gear.tanks.size(), 2u);
   EXPECT_NEAR(p.gear.tanks[0].pressure_pa, 232e5, 1e-3);
+  // As heavy for its size as that of 11.1 litres, in proportion.
+  EXPECT_NEAR(p.gear.tanks[0].empty_mass_kg, 15.8 * 12.0 / 11.1, 1e-9);
+  EXPECT_NEAR(p.gear.tanks[0].outer_volume_m3, 16.6e-3 * 12.0 / 11.1, 1e-12);
+  EXPECT_NEAR(std::pow(p.gear.tanks[0].radius_m / 0.092, 3), 12.0 / 11.1, 1e-9);
   EXPECT_EQ(file.swimmer.kick.amplitude_m, 0.2);
   EXPECT_EQ(file.swimmer.most_frequency_hz, 1.1);
   EXPECT_EQ(file.computer.gf_high, 0.8);
