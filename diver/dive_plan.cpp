@@ -223,8 +223,9 @@ class WayDown {
     return tolerated(moved(before, depth_m, minutes), depth_m, before.gas);
   }
 
-  // Upwards each metre of the way counts. At one depth tissues only come nearer to what is
-  // breathed, which it tolerates: what holds at arrival holds until the level is left.
+  // Upwards each metre of the way counts. At one depth tissues come nearer to what is breathed,
+  // which it tolerates: what holds at arrival is held to hold until the level is left. Not for some
+  // seconds where earlier dives left nitrogen and helium is breathed, which goes in faster.
   void watch_ceiling(std::size_t level, const AscentState& before) {
     double good_m = before.depth_m, bad_m = -1.0;
     if (state_.depth_m <= before.depth_m) {
@@ -320,9 +321,8 @@ Status check_ceilings(const DivePlanRequest& request, const DivePlan& plan) {
   const LevelAboveCeiling& above = *plan.above_ceiling;
   const PlanLevel& level = request.levels[above.level];
   return bad_input(
-      "{:g} m until {:g} min found, above the ceiling, which is at {:.1f} m on the way there; "
-      "{:.1f} "
-      "m or deeper is accepted",
+      "{:g} m until {:g} min found, above the ceiling, which is at {:.2f} m on the way there; "
+      "{:.1f} m or deeper is accepted",
       level.depth_m, level.leave_min, above.least_m, std::ceil(10.0 * above.least_m) / 10.0);
 }
 

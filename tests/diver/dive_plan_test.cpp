@@ -132,7 +132,7 @@ TEST(DivePlan, ALevelAboveItsCeilingIsOneLine) {
   DivePlan plan = planned(r);
   EXPECT_EQ(
       check_ceilings(r, plan).error().message,
-      "3 m until 60 min found, above the ceiling, which is at 29.4 m on the way there; 29.4 m or "
+      "3 m until 60 min found, above the ceiling, which is at 29.39 m on the way there; 29.4 m or "
       "deeper is accepted");
   r.start = plan.end_of_bottom.tissues;
   r.levels = {{5.0, 30.0}};

@@ -55,6 +55,25 @@ TEST(CommandLine, AnEmptyFolderForTheResultsIsRefused) {
   }
 }
 
+TEST(CommandLine, APictureThatIsNoPngIsRefused) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"dive", "a.toml", "--plot"},
+        std::vector<std::string>{"dive", "a.toml", "--screenshot"},
+        std::vector<std::string>{"plan", "--depth", "30", "--time", "20", "--plot"},
+        std::vector<std::string>{"physio", "ecg", "a.csv", "--plot"}}) {
+    const auto with = [&](const char* file) {
+      std::vector<std::string> all = words;
+      all.push_back(file);
+      return parse_command_line(all);
+    };
+    ASSERT_FALSE(with("p.jpg").ok()) << words[0];
+    EXPECT_EQ(exit_status(with("p.jpg").error().code), 2);
+    EXPECT_THAT(with("p.jpg").error().message, HasSubstr("'p.jpg' found; a .png is accepted"));
+    EXPECT_FALSE(with("p").ok()) << words[0];
+    EXPECT_TRUE(with("p.PNG").ok()) << words[0];
+  }
+}
+
 TEST(CommandLine, AWrongSubcommandListsThem) {
   EXPECT_THAT(said({"rendre"}),
               HasSubstr("render, sonar, dive, tradeoff, check, plan, physio, doctor"));

@@ -326,9 +326,6 @@ TEST(PhysioCommand, FilesThatAreNoneAreErrorsInWords) {
   flags.what = "ecg";
   flags.file = folder.path().string();
   EXPECT_THAT(run_physio(flags).error().message, HasSubstr("a folder found"));
-  flags.plot = "a.jpg";
-  EXPECT_THAT(run_physio(flags).error().message,
-              HasSubstr("--plot: 'a.jpg' found, a .png is accepted"));
 }
 
 TEST(PhysiologyTradeoff, TheDefaultsAreTheChoiceOfTheCurves) {

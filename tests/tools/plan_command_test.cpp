@@ -324,7 +324,7 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
         {"plan --depth 30 --time 20 --gas ean32@50",
          "--gas: EAN32 from 50 m found, and nothing to breathe above; EAN32, or what is"},
         {"plan --depth 60 --time 30 --level 3,60",
-         "3 m until 60 min found, above the ceiling, which is at 29.4 m on the way there; 29.4 m"},
+         "3 m until 60 min found, above the ceiling, which is at 29.39 m on the way there; 29.4 m"},
         {"plan --depth 30 --time 20 --tank air=12", "--tank: 1 numbers in '12' found"},
         {"plan --depth 30 --time 20 --tank 12,200", "--tank: '12,200' found, GAS=LITRES,BAR"},
         {"plan --depth 30 --time 20 --tank o2=12,200", "a tank of O2 found, which is none of"},

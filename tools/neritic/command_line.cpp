@@ -25,6 +25,12 @@ std::string named(const std::string& folder) {
   return folder.empty() ? "'' found; a folder's name is accepted" : "";
 }
 
+// Pictures are written in this form whatever the name says.
+std::string png_file(const std::string& file) {
+  const std::string kind = lower_case(std::filesystem::path(file).extension().string());
+  return kind == ".png" ? "" : fmt::format("'{}' found; a .png is accepted", file);
+}
+
 // The parser takes the largest number for any that is larger.
 std::string seed_number(const std::string& text) {
   std::uint64_t value = 0;
@@ -207,7 +213,8 @@ void add_dive(CLI::App& app, Run& run) {
       "summary of their times");
   command->add_option("--log", flags->log, "the vehicles' dive as a .csv, a row a control period");
   command->add_option("--log-rate", flags->log_rate_hz, "rows a second instead");
-  command->add_option("--plot", flags->plot, "the dive as a .png: path, depth, thrust, error");
+  command->add_option("--plot", flags->plot, "the dive as a .png: path, depth, thrust, error")
+      ->check(png_file);
   command->add_option("--record", flags->record, "inputs and state hashes, for --replay");
   command->add_option("--replay", flags->replay,
                       "runs a recorded dive again and compares each state's hash");
@@ -217,7 +224,8 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
   command->add_option("--seconds", flags->seconds, "stop after so many seconds");
   command->add_option("--frames", flags->frames, "stop after so many frames");
-  command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png");
+  command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png")
+      ->check(png_file);
   command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
   command
       ->add_option("--sensor", flags->sensors,
@@ -337,7 +345,7 @@ void add_plan(CLI::App& app, Run& run) {
       "dive computer would have shown");
   command->add_option("--vehicle", flags->vehicle,
                       "whose rows of --log: of a column vehicle that names several");
-  command->add_option("--plot", flags->plot, "a picture (.png)");
+  command->add_option("--plot", flags->plot, "a picture (.png)")->check(png_file);
   command
       ->add_option("--out", flags->out, "folder for plan.json and plan.png, or log.csv and log.png")
       ->check(named);
@@ -372,7 +380,7 @@ void add_physio(CLI::App& app, Run& run) {
   command->add_option("--intrinsics", flags->intrinsics,
                       "gaze: fx,fy,cx,cy of a camera at the eye: fixations in its pixels too");
   command->add_option("--out", flags->out, "folder for the table and the JSON");
-  command->add_option("--plot", flags->plot, "a picture (.png)");
+  command->add_option("--plot", flags->plot, "a picture (.png)")->check(png_file);
   command->add_flag("--json", flags->json, "JSON on standard output instead of the table");
   command->callback([flags, &run] { run = [flags] { return run_physio(*flags); }; });
 }

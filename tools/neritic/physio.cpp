@@ -104,8 +104,6 @@ Result<diver::Recording> load_recording(const PhysioFlags& flags) {
 }
 
 Result<std::string> run_physio(const PhysioFlags& flags) {
-  if (!flags.plot.empty() && flags.plot.extension() != ".png")
-    return bad_input("--plot: '{}' found, a .png is accepted", flags.plot.string());
   if (flags.what == "ecg") {
     NERITIC_TRY(const EcgReport report, analyse_ecg(flags));
     return show(flags, report);

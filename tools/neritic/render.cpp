@@ -275,7 +275,8 @@ Result<std::string> run_render(const RenderFlags& flags) {
       NERITIC_TRY_STATUS(
           write_frame(fs::path(flags.out) / frame_folder(i), result, facts, written));
     NERITIC_TRY_STATUS(survey.add(result, i, request.time_s));
-    if (i == 0 && flags.sheet) NERITIC_TRY_STATUS(write_sheet(flags.out, result, session->scene().class_names));
+    if (i == 0 && flags.sheet)
+      NERITIC_TRY_STATUS(write_sheet(flags.out, result, session->scene().class_names));
     if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
     progress.step();
     ++made;
