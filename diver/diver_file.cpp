@@ -154,7 +154,7 @@ void read_gas_switches(const CaseField& field, GasSwitching& switching) {
   switching.by_plan = !taken_off(field);
   if (!switching.by_plan) return;
   field.allow(kGasSwitchKeys);
-  switching.reaction_s = field["reaction_s"].number(switching.reaction_s, 0.0, 600.0);
+  switching.reaction_s = field["reaction_s"].number(switching.reaction_s, 0.0, kMostReaction_s);
 }
 
 // The computer measures the pressure that the water has, whatever its conventions take a metre for.

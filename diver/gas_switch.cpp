@@ -38,7 +38,9 @@ class Chooser {
   bool fits(std::size_t i, double down_to_m, double more_pa) const {
     const double shallow_m = std::min(choice_.depth_m, choice_.soon_m);
     const double deep_m = std::max(choice_.depth_m, choice_.soon_m);
-    if (deep_m > down_to_m + (breathed(i) ? kGasDepthSlack_m : 0.0)) return false;
+    const double kept_to_m =
+        std::min(down_to_m + kGasDepthSlack_m, richest_depth_m(gases_[i].mix) + kRichestSlack_m);
+    if (deep_m > (breathed(i) ? kept_to_m : down_to_m)) return false;
     // Who dives in a lake in the mountains is used to its air.
     const double used_to = std::min(body_.surface_pa / kSurfacePressure_pa, 1.0);
     const double least_bar = used_to * (breathed(i) ? kLeastOxygen_bar : kLeastOxygenAnew_bar);

@@ -12,10 +12,13 @@
 
 namespace neritic::diver {
 
+// Longer, and who moves at all is seldom bound for any depth for as long.
+inline constexpr double kMostReaction_s = 20.0;
+
 struct GasSwitching {
   bool by_plan = true;  // false: breathes from the tank that the inputs say
   // From noticing to breathing from the other regulator; an assumption, a setting of diver files.
-  double reaction_s = 5.0;
+  double reaction_s = 5.0;  // at most kMostReaction_s
 };
 
 struct GasSwitchState {
@@ -35,9 +38,9 @@ struct GasSwitchState {
 // mountains both are its air's share of these.
 inline constexpr double kLeastOxygen_bar = 0.18, kLeastOxygenAnew_bar = 0.20;
 inline constexpr double kMostOxygen_bar = 1.6;
-// A gas that is breathed is kept so much below its depth: who hovers there does not change to and
-// fro.
-inline constexpr double kGasDepthSlack_m = 1.0;
+// A gas that is breathed is kept so much below its switch depth, and so much at most below the
+// depth of kMostOxygen_bar (1.65 bar of oxygen there): who hovers there does not change to and fro.
+inline constexpr double kGasDepthSlack_m = 1.0, kRichestSlack_m = 0.5;
 // A tank is left with so much more than a full breath takes, since the change takes its time; and
 // changed to by choice only with so much more that the way up does not make it one to go back to.
 inline constexpr double kSpare_pa = 5e5, kWorthSwitching_pa = 10e5;
@@ -50,11 +53,12 @@ struct GasChoice {
   bool makes_stops = false;
 };
 // The tank to breathe from; the one breathed where none fits. Gases are the tanks', in their order:
-// the first is the bottom gas. Deco gas: where the diver was deeper than its depth before and came
-// up to it, or makes stops, and until the diver goes down anew; of several the one for the
-// shallowest use, as plans have it. Else the bottom gas. Where neither is fit to breathe or has
-// gas, what is breathed, else the richest that is. Never one with less than kLeastOxygen_bar or
-// more than kMostOxygen_bar where the diver is and soon will be, nor one without a full breath.
+// the first is the bottom gas. Deco gas: where the diver was deeper than its depth at any time of
+// the dive and is not below it now, or makes stops, or breathes it and was deeper than now by
+// kGasDepthSlack_m; of several the one for the shallowest use, as plans have it. Else the bottom
+// gas. Where neither is fit to breathe or has gas, what is breathed, else the richest that is.
+// Never changed to: one with less than kLeastOxygen_bar or more than kMostOxygen_bar where the
+// diver is and soon will be, nor one without a full breath.
 std::size_t tank_to_breathe(std::span<const PlanGas> gases, const Body& body,
                             const TankState& tanks, const GasChoice& choice);
 

@@ -25,10 +25,13 @@ constexpr double kRounding = 1e-9;
 // No ECG is larger, in any unit; its square stays finite.
 constexpr double kMostEcg = 1e12;
 constexpr double kLeastInterval_s = 0.2, kMostInterval_s = 2.5;
-// A step so many times the usual largest of a second is no beat's (an extra beat is some three
-// times as steep as others) but an electrode's or a switch's, unless it stays so: half a QRS
-// complex is as long.
-constexpr double kLeap = 10.0, kLongestLeap_s = 0.040;
+// A step so many times the usual of a second is no beat's (an extra beat is some three times as
+// steep as others) but an electrode's or a switch's, unless it stays so: a tenth of a QRS complex
+// is as long.
+constexpr double kLeap = 10.0, kLongestLeap_s = 0.008;
+// A second's step is the largest but for those of a few samples that leapt in and out, fewer than a
+// QRS complex has; what is usual falls by no more a second.
+constexpr double kPassedOver_s = 0.016, kFallsTo = 0.8;
 // Usual: what three of eight seconds have, so that neither a few leaps nor a slow heart count.
 constexpr std::ptrdiff_t kUsualOf = 2;
 
@@ -55,25 +58,37 @@ BeatDetector::BeatDetector(double rate_hz) : rate_hz_(rate_hz) {
   ring_.resize(size);
 }
 
+// The largest steps of this second, the largest first.
+void BeatDetector::count_step(double step) {
+  const auto at = std::ranges::find_if(largest_steps_, [&](double s) { return step > s; });
+  if (at == largest_steps_.end()) return;
+  std::ranges::move_backward(at, largest_steps_.end() - 1, largest_steps_.end());
+  *at = step;
+}
+
 // Whether a sample is so far from the last good one that no heart can have made it; what stays
-// there for longer than a leap is as the signal is now.
+// there for longer than a leap is as the signal is now. Beats after a rest begin gently: each step
+// that is taken for the signal's makes ten times as much usual.
 bool BeatDetector::leaps(double value) {
   if (!has_value_) return false;
   const double step = std::abs(value - held_);
-  largest_step_ = std::max(largest_step_, step);
+  count_step(step);
   if (++stepped_ >= rate_hz_) {
     std::ranges::move_backward(second_steps_.begin(), second_steps_.end() - 1, second_steps_.end());
-    second_steps_.front() = largest_step_;
-    largest_step_ = stepped_ = 0.0;
+    const auto over = static_cast<std::size_t>(kPassedOver_s * rate_hz_);
+    second_steps_.front() = largest_steps_[std::min(over, largest_steps_.size() - 1)];
+    largest_steps_ = {};
+    stepped_ = 0.0;
     auto sorted = second_steps_;
     std::ranges::nth_element(sorted, sorted.begin() + kUsualOf, std::greater());
     const bool known = second_steps_.back() > 0.0;  // all eight seconds
-    usual_step_ = known ? sorted[kUsualOf] : 0.0;
+    usual_step_ = known ? std::max(sorted[kUsualOf], kFallsTo * usual_step_) : 0.0;
   }
   const bool far = usual_step_ > 0.0 && step > kLeap * usual_step_;
   leapt_ = far ? leapt_ + 1.0 : 0.0;
-  if (leapt_ <= std::max(1.0, kLongestLeap_s * rate_hz_)) return far;
+  if (far && leapt_ <= std::max(1.0, kLongestLeap_s * rate_hz_)) return true;
   leapt_ = 0.0;
+  if (usual_step_ > 0.0) usual_step_ = std::max(usual_step_, step);
   return false;
 }
 

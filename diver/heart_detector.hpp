@@ -63,6 +63,7 @@ class BeatDetector {
     double energy = 0.0, slope = 0.0;
   };
 
+  void count_step(double step);
   bool leaps(double value);
 
   Place& place(std::int64_t i) { return ring_[static_cast<std::size_t>(i) & mask_]; }
@@ -97,9 +98,10 @@ class BeatDetector {
   double held_ = 0.0;
   bool has_value_ = false;
   std::uint64_t missing_in_a_row_ = 0;
-  std::array<double, 8> second_steps_{};  // the largest step from sample to sample, by the second
-  double largest_step_ = 0.0, usual_step_ = 0.0;  // of this second; of most before
-  double stepped_ = 0.0, leapt_ = 0.0;            // samples of this second; in a leap
+  std::array<double, 5> largest_steps_{};  // from sample to sample, of this second
+  std::array<double, 8> second_steps_{};   // the step of each second before, the newest first
+  double usual_step_ = 0.0;                // 0: not known
+  double stepped_ = 0.0, leapt_ = 0.0;     // samples of this second; in a leap
 
   bool learnt_ = false, after_gap_ = true;
   double signal_level_ = 0.0, noise_level_ = 0.0;

@@ -58,7 +58,8 @@ TEST(GasSwitch, BelowItsDepthNoGasIsBreathedAndNobodyChangesToAndFro) {
   const Carries diver(kThree);
   EXPECT_EQ(diver.at(1, 21.9, 60.0), 1u);
   EXPECT_EQ(diver.at(1, 22.1, 60.0), 0u);
-  EXPECT_EQ(diver.at(2, 7.1, 60.0), 1u);
+  EXPECT_EQ(diver.at(2, 6.4, 60.0), 2u);
+  EXPECT_EQ(diver.at(2, 6.6, 60.0), 1u);
   // Where he will be when he has changed counts too.
   EXPECT_EQ(tank_to_breathe(diver.gases(), diver.body, diver.tanks, {1, 20.0, 22.1, 60.0, false}),
             0u);
@@ -92,6 +93,25 @@ TEST(GasSwitch, NeverToAGasWithTooLittleOrTooMuchOxygen) {
       EXPECT_GE(bar, 0.18) << depth;
       EXPECT_LE(bar, 1.6 + 1e-9) << depth;
     }
+}
+
+// On the way down too: what is breathed is left half a metre below the depth of 1.6 bar.
+TEST(GasSwitch, WhatIsBreathedHasAtMost1650MillibarOfOxygen) {
+  const Carries plan(kThree);
+  const Carries at_limits(
+      "tanks = [ { oxygen = 0.18, helium = 0.45 }, { oxygen = 0.5, switch_depth_m = 22 }, "
+      "{ oxygen = 1.0, switch_depth_m = 6 } ]\n");
+  double most_bar = 0.0;
+  for (const Carries* diver : {&plan, &at_limits})
+    for (double depth = 0.0; depth <= 78.8; depth += 0.05)
+      for (std::size_t breathed = 0; breathed < 3; ++breathed)
+        for (const bool stops : {false, true}) {
+          const std::size_t to = diver->at(breathed, depth, std::max(60.0, depth), stops);
+          const double bar = diver->gases()[to].mix.oxygen * (1.0 + depth / 10.0);
+          most_bar = std::max(most_bar, bar);
+          ASSERT_LE(bar, to == breathed ? 1.65 + 1e-9 : 1.6 + 1e-9) << depth << " " << breathed;
+        }
+  EXPECT_GT(most_bar, 1.64);
 }
 
 // Where the air itself has .167 bar, air is no gas to flee from.
@@ -158,11 +178,14 @@ TEST(GasSwitch, FilesSayWhetherAndHowFast) {
   EXPECT_FALSE(read("gas_switches = false\n")->gas_switching.by_plan);
   EXPECT_EQ(read("[gas_switches]\nreaction_s = 20\n")->gas_switching.reaction_s, 20.0);
   for (const char* bad : {"gas_switches = 3\n", "[gas_switches]\nreaction_s = -1\n",
-                          "[gas_switches]\nafter_s = 1\n"}) {
+                          "[gas_switches]\nreaction_s = 20.1\n", "[gas_switches]\nafter_s = 1\n"}) {
     const auto file = read(bad);
     ASSERT_FALSE(file.ok()) << bad;
     EXPECT_EQ(file.error().message.rfind("d.toml", 0), 0u) << file.error().message;
   }
+  const std::string slow = read("[gas_switches]\nreaction_s = 60\n").error().message;
+  EXPECT_NE(slow.find("gas_switches.reaction_s"), std::string::npos) << slow;
+  EXPECT_NE(slow.find("20"), std::string::npos) << slow;
 }
 
 }  // namespace

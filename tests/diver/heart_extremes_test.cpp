@@ -188,6 +188,53 @@ TEST(HeartExtremes, LeapsOfASampleCostNoBeat) {
     }
 }
 
+// A heart that begins, or goes on, after nothing but noise: its first beats are no leaps.
+TEST(HeartExtremes, BeatsAfterARestAreNoLeaps) {
+  for (const double rate_hz : {250.0, 360.0, 1000.0}) {
+    const double amplitude =
+        find_beats(rate_hz, test::ecg_of(test::even_beats(0.8, 10.0), rate_hz, 10.0))[5].amplitude;
+    for (const double noise_mv : {0.0002, 0.0025, 0.02})
+      for (const double quiet_s : {6.5, 8.0, 12.0, 60.0})
+        for (const bool before : {false, true}) {
+          const double from_s = before ? 20.0 : 0.0, seconds = from_s + quiet_s + 40.0;
+          std::vector<double> beats;
+          for (double t = 0.4; t < seconds - 0.5; t += 0.8)
+            if (t < from_s - 0.5 || t > from_s + quiet_s) beats.push_back(t);
+          std::vector<double> ecg = test::ecg_of(beats, rate_hz, seconds);
+          for (std::size_t i = 0; i < ecg.size(); ++i) ecg[i] += noise_mv * test::gauss({7, 1}, i);
+          EcgCounts counts;
+          const auto found = find_beats(rate_hz, ecg, &counts);
+          SCOPED_TRACE(testing::Message() << rate_hz << " Hz, noise of " << noise_mv << " mV for "
+                                          << quiet_s << " s, beats before: " << before);
+          EXPECT_EQ(counts.leaps, 0u);
+          for (const double beat : beats) {
+            const auto at = std::ranges::find_if(
+                found, [&](const Beat& b) { return std::abs(b.time_s - beat) < 0.02; });
+            ASSERT_NE(at, found.end()) << beat;
+            EXPECT_NEAR(at->amplitude, amplitude, 0.005 + 4.0 * noise_mv) << beat;
+          }
+        }
+  }
+}
+
+// Spikes in most seconds, or in each, from the first on: some twelve seconds are lost, not the
+// recording, and they are never taken for beats for good.
+TEST(HeartExtremes, SpikesUpToTwoASecondAreNotTakenForBeats) {
+  const auto beats = test::even_beats(0.8, 120.0);
+  for (const double rate_hz : {130.0, 250.0, 360.0, 1000.0})
+    for (const double every_s : {2.0, 1.3, 1.0, 0.5}) {
+      if (rate_hz < 250.0 && every_s < 1.0) continue;
+      std::vector<double> ecg = test::ecg_of(beats, rate_hz, 120.0);
+      for (double t = 0.93; t < 119.9; t += every_s)
+        ecg[static_cast<std::size_t>(t * rate_hz)] += 30.0;
+      const auto found = find_beats(rate_hz, ecg);
+      std::ptrdiff_t late = 0;
+      for (const Beat& b : found) late += b.time_s > 16.0;
+      EXPECT_EQ(late, std::ranges::count_if(beats, [](double b) { return b > 16.0; }))
+          << rate_hz << " Hz, each " << every_s << " s";
+    }
+}
+
 // A leap before eight seconds are known costs seconds, not the recording.
 TEST(HeartExtremes, ALeapInTheFirstSecondsIsOvercome) {
   const auto beats = test::even_beats(0.8, 60.0);

@@ -64,6 +64,22 @@ TEST(HumanGas, NitroxFromItsDepthOnAndBottomGasBelow) {
   EXPECT_LT(rows.back().tank_pa[1], rows.front().tank_pa[1] - 1e5);
 }
 
+// The slowest hands that a file may ask for: the same way, the nitrox taken and left all the same.
+TEST(HumanGas, TheLongestReactionStillSwitches) {
+  GasDive d(
+      "tanks = [ {}, { oxygen = 0.5, switch_depth_m = 21 } ]\n"
+      "gas_switches = { reaction_s = 20 }\n",
+      "position_m = [0, -24, 0]\nswim = { speed_m_s = 0.45, waypoints_m = [[0, -18, -24], "
+      "[0, -18, -44], [0, -26, -70]] }\n");
+  d.run(200.0);
+  const auto& changes = d.figures().tank_changes;
+  ASSERT_EQ(changes.size(), 2u);
+  EXPECT_EQ(changes[0].to, 1u);
+  EXPECT_LT(changes[0].depth_m, 21.0);
+  EXPECT_EQ(changes[1].to, 0u);
+  EXPECT_LT(changes[1].depth_m, 24.5);  // late: each kick stirs where he will be
+}
+
 TEST(HumanGas, OnAskingNobodySwitches) {
   GasDive d("tanks = [ {}, { oxygen = 0.5 } ]\ngas_switches = false\n",
             "position_m = [0, -24, 0]\nswim = { speed_m_s = 0.45, waypoints_m = [[0, -18, -24]] "
