@@ -1,0 +1,247 @@
+#include "tools/neritic/dive_told.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "diver/gas_label.hpp"
+#include "engine/core/json.hpp"
+#include "rov/frames.hpp"
+
+namespace neritic::tools {
+namespace {
+
+std::string touch_words(std::uint64_t steps) {
+  return steps == 0 ? "touched nothing" : fmt::format("touched something in {} steps", steps);
+}
+
+std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& state,
+                         const DiveFigures& figures) {
+  std::string line = vehicle.name + ": ";
+  if (vehicle.mission && vehicle.mission->waypoint_count() > 0) {
+    line +=
+        fmt::format("{} of {} waypoints", state.mission.arrived, vehicle.mission->waypoint_count());
+    if (!figures.arrivals_s.empty())
+      line += fmt::format(" (the last after {:.1f} s)", figures.arrivals_s.back());
+    line += ", ";
+  }
+  line += fmt::format(
+      "{:.2f} m of way, up to {:.2f} m/s, {:.1f} to {:.1f} m deep, tilted up to {:.1f} degrees, ",
+      figures.path_m, figures.largest_speed_m_s, figures.shallowest_m, figures.deepest_m,
+      degrees(figures.largest_tilt_rad));
+  line += touch_words(state.contact.touched_steps);
+  if (state.body.refused_inputs > 0)
+    line += fmt::format(", {} inputs refused", state.body.refused_inputs);
+  return line + "\n";
+}
+
+std::string tank_words(const PhysicsHuman& human, std::uint64_t tank) {
+  if (tank >= human.body.tank_count) return "no tank";
+  return fmt::format("tank {} ({})", tank + 1, diver::name_of(human.body.tanks[tank].mix));
+}
+
+std::string gas_words(const PhysicsHuman& human, const HumanFigures& figures) {
+  if (!(figures.out_of_gas_s > 0.0)) return {};
+  return fmt::format("NO GAS for {:.0f} s, from {:.0f} s on, out of {} ({:.0f} s at a stretch); ",
+                     figures.out_of_gas_s, figures.out_of_gas_from_s,
+                     tank_words(human, figures.out_of_gas_tank), figures.out_of_gas_longest_s);
+}
+
+// One line for each danger that there was.
+std::string warning_lines(const PhysicsHuman& human, const HumanFigures& figures) {
+  std::string lines;
+  if (figures.ascent_alarm != diver::AscentAlarm::kNone)
+    lines += fmt::format("{}: ASCENT TOO FAST, {:.0f} m/min at {:.0f} s: {} alarm for {:.0f} s\n",
+                         human.name, figures.fastest_ascent_m_min, figures.fastest_ascent_at_s,
+                         name_of(figures.ascent_alarm), figures.ascent_alarm_s);
+  if (figures.above_ceiling_m > 0.0)
+    lines += fmt::format("{}: CEILING VIOLATED from {:.0f} s on, by up to {:.1f} m\n", human.name,
+                         figures.above_ceiling_from_s, figures.above_ceiling_m);
+  if (figures.oxygen >= diver::RiskLevel::kHigh)
+    lines += fmt::format("{}: OXYGEN RISK {} from {:.0f} s on: {:.2f} to {:.2f} bar breathed\n",
+                         human.name, name_of(figures.oxygen), figures.oxygen_from_s,
+                         figures.least_po2_bar, figures.most_po2_bar);
+  return lines;
+}
+
+// Which tanks were changed to, when and where; empty: none.
+std::string change_lines(const PhysicsHuman& human, const HumanFigures& figures) {
+  constexpr std::size_t kTold = 8;
+  if (figures.tank_changes.empty()) return {};
+  std::string line;
+  for (std::size_t i = 0; i < std::min(kTold, figures.tank_changes.size()); ++i) {
+    const TankChange& change = figures.tank_changes[i];
+    line += fmt::format("{} to {} at {:.0f} s, {:.1f} m deep ({:.2f} bar of oxygen)",
+                        i == 0 ? ": changes" : ",", tank_words(human, change.to), change.time_s,
+                        change.depth_m, change.po2_bar);
+  }
+  if (figures.tank_changes.size() > kTold)
+    line += fmt::format(" and {} times more", figures.tank_changes.size() - kTold);
+  return human.name + line + "\n";
+}
+
+nlohmann::json changes_json(const PhysicsHuman& human, const HumanFigures& figures) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const TankChange& change : figures.tank_changes)
+    json.push_back({{"at_s", change.time_s},
+                    {"depth_m", change.depth_m},
+                    {"from", tank_words(human, change.from)},
+                    {"to", tank_words(human, change.to)},
+                    {"po2_bar", change.po2_bar}});
+  return json;
+}
+
+// Dangers as JSON: null where it did not happen.
+nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figures) {
+  nlohmann::json json{{"out_of_gas", nullptr},
+                      {"fastest_ascent_m_min", figures.fastest_ascent_m_min},
+                      {"ascent_alarm", nullptr},
+                      {"ceiling_violation", nullptr},
+                      {"oxygen_risk", nullptr}};
+  if (figures.out_of_gas_s > 0.0)
+    json["out_of_gas"] = {{"tank", tank_words(human, figures.out_of_gas_tank)},
+                          {"from_s", figures.out_of_gas_from_s},
+                          {"seconds", figures.out_of_gas_s},
+                          {"longest_s", figures.out_of_gas_longest_s}};
+  if (figures.ascent_alarm != diver::AscentAlarm::kNone)
+    json["ascent_alarm"] = {{"worst", name_of(figures.ascent_alarm)},
+                            {"seconds", figures.ascent_alarm_s},
+                            {"fastest_at_s", figures.fastest_ascent_at_s}};
+  if (figures.above_ceiling_m > 0.0)
+    json["ceiling_violation"] = {{"from_s", figures.above_ceiling_from_s},
+                                 {"worst_m", figures.above_ceiling_m}};
+  if (figures.oxygen >= diver::RiskLevel::kHigh)
+    json["oxygen_risk"] = {{"worst", name_of(figures.oxygen)},
+                           {"from_s", figures.oxygen_from_s},
+                           {"least_po2_bar", figures.least_po2_bar},
+                           {"most_po2_bar", figures.most_po2_bar}};
+  return json;
+}
+
+std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
+                       const HumanFigures& figures) {
+  const diver::GasReading gas = diver::read_gas(human.body, state.human);
+  const diver::AscentGas ascent = gas_for_ascent(human, state);
+  const diver::DiveComputerView& deco = ascent.view;
+  std::string line = human.name + ": " + gas_words(human, figures);
+  if (!human.waypoints_ned_m.empty())
+    line += fmt::format("{} of {} waypoints, ", state.arrived, human.waypoints_ned_m.size());
+  line += fmt::format(
+      "{:.2f} m of way, up to {:.2f} m/s, {:.1f} to {:.1f} m deep, {:.0f} bar left, {:.0f} l/min, ",
+      figures.path_m, figures.largest_speed_m_s, figures.shallowest_m, figures.deepest_m,
+      1e-5 * gas.tank_pa, gas.ventilation_l_min);
+  line += deco.ceiling_m > 0.0 ? fmt::format("ceiling {:.1f} m, ", deco.ceiling_m)
+          : std::isfinite(deco.no_stop_min)
+              ? fmt::format("{:.0f} min without stops, ", deco.no_stop_min)
+              : std::string("no limit to the time without stops, ");
+  if (deco.ceiling_violated) line += "which is violated, ";
+  if (!ascent.enough())
+    line += fmt::format("NOT ENOUGH GAS: the way up takes {:.0f} l of {}'s {:.0f}, ",
+                        ascent.needed_l, tank_words(human, state.human.held.tank), ascent.there_l);
+  line += touch_words(state.contact.touched_steps);
+  if (state.human.refused_inputs > 0)
+    line += fmt::format(", {} inputs refused", state.human.refused_inputs);
+  return line + "\n" + change_lines(human, figures) + warning_lines(human, figures);
+}
+
+nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
+                          const HumanFigures& figures) {
+  const diver::GasReading gas = diver::read_gas(human.body, state.human);
+  const diver::AscentGas ascent = gas_for_ascent(human, state);
+  const diver::DiveComputerView& deco = ascent.view;
+  const Vec3 p = rov::world_from_ned(state.human.root.position_ned_m);
+  return {{"name", human.name},
+          {"waypoints", human.waypoints_ned_m.size()},
+          {"arrived", state.arrived},
+          {"way_m", figures.path_m},
+          {"largest_speed_m_s", figures.largest_speed_m_s},
+          {"shallowest_m", figures.shallowest_m},
+          {"deepest_m", figures.deepest_m},
+          {"tank", tank_words(human, state.human.held.tank)},
+          {"tank_bar", 1e-5 * gas.tank_pa},
+          {"gas_switches", changes_json(human, figures)},
+          {"ventilation_l_min", gas.ventilation_l_min},
+          {"ascent_gas_l", ascent.needed_l},
+          {"ascent_gas_there_l", ascent.there_l},
+          {"ascent_gas_enough", ascent.enough()},
+          {"limb_work_j", state.human.life.limb_work_j},
+          {"heart_bpm", state.human.life.vitals.heart_bpm},
+          {"risk_proxies",
+           {{"note", diver::kRiskNote},
+            {"co2_mmhg", state.human.life.vitals.risk.co2_mmhg},
+            {"co2", name_of(state.human.life.vitals.risk.co2)},
+            {"narcotic_depth_m", state.human.life.vitals.risk.narcotic_depth_m},
+            {"narcosis", name_of(state.human.life.vitals.risk.narcosis)},
+            {"gas_density", name_of(state.human.life.vitals.risk.gas_density)},
+            {"breathing", name_of(state.human.life.vitals.risk.breathing)},
+            {"oxygen_bar", state.human.life.vitals.risk.oxygen_bar},
+            {"oxygen", name_of(state.human.life.vitals.risk.oxygen)}}},
+          {"ceiling_m", deco.ceiling_m},
+          {"ceiling_violated", deco.ceiling_violated},
+          {"no_stop_min", deco.no_stop_min},
+          {"dangers", dangers_json(human, figures)},
+          {"touched_steps", state.contact.touched_steps},
+          {"deepest_contact_m", state.contact.deepest_m},
+          {"refused_inputs", state.human.refused_inputs},
+          {"end", {{"position_m", {p.x, p.y, p.z}}}}};
+}
+
+nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& state,
+                            const DiveFigures& figures) {
+  const Pose end = rov::world_pose(state.body.position_ned_m, state.body.attitude);
+  const Vec3& p = end.position_m;
+  const Quat& q = end.rotation;
+  return {{"name", vehicle.name},
+          {"waypoints", vehicle.mission ? vehicle.mission->waypoint_count() : 0},
+          {"arrived", state.mission.arrived},
+          {"arrivals_s", figures.arrivals_s},
+          {"way_m", figures.path_m},
+          {"largest_speed_m_s", figures.largest_speed_m_s},
+          {"largest_tilt_deg", degrees(figures.largest_tilt_rad)},
+          {"touched_steps", state.contact.touched_steps},
+          {"deepest_contact_m", state.contact.deepest_m},
+          {"shallowest_m", figures.shallowest_m},
+          {"deepest_m", figures.deepest_m},
+          {"refused_inputs", state.body.refused_inputs},
+          {"end", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}}};
+}
+
+}  // namespace
+
+void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
+                   const PhysicsSimulation& simulation, const DiveRecorder& recorder,
+                   const Pace& pace) {
+  const auto& newest = simulation.newest();
+  const double speed = newest.time_s / std::max(pace.wall_s, 1e-9);
+  const std::string hash = fmt::format("{:016x}", newest.hash);
+  if (flags.json) {
+    nlohmann::json json{{"scene", flags.scene},
+                        {"simulated_s", newest.time_s},
+                        {"steps", newest.step},
+                        {"step_s", world.step_s()},
+                        {"wall_s", pace.wall_s},
+                        {"speed", speed},
+                        {"dropped", pace.dropped},
+                        {"refused_states", simulation.refused_states()},
+                        {"hash", hash},
+                        {"vehicles", nlohmann::json::array()}};
+    for (std::size_t i = 0; i < world.vehicles().size(); ++i)
+      json["vehicles"].push_back(
+          vehicle_json(world.vehicles()[i], newest.state.vehicles[i], recorder.figures()[i]));
+    json["humans"] = nlohmann::json::array();
+    for (std::size_t i = 0; i < world.humans().size(); ++i)
+      json["humans"].push_back(
+          human_json(world.humans()[i], newest.state.humans[i], recorder.humans().figures()[i]));
+    fmt::print("{}\n", json_text(json));
+    return;
+  }
+  for (std::size_t i = 0; i < world.vehicles().size(); ++i)
+    fmt::print("{}",
+               vehicle_line(world.vehicles()[i], newest.state.vehicles[i], recorder.figures()[i]));
+  for (std::size_t i = 0; i < world.humans().size(); ++i)
+    fmt::print("{}", human_line(world.humans()[i], newest.state.humans[i],
+                                recorder.humans().figures()[i]));
+  fmt::print("{:g} s in {} steps, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",
+             newest.time_s, newest.step, speed, pace.dropped, hash);
+}
+
+}  // namespace neritic::tools
