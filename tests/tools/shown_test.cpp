@@ -29,9 +29,9 @@ INSTANTIATE_TEST_SUITE_P(Pages, ShownPage,
 TEST_P(ShownPage, NamesTestsThatAreThere) {
   NERITIC_ASSERT_OK(const std::string page, read_text(test::source_dir() / GetParam()));
   const std::string sources = test_sources();
-  // `Suite.Name`, `Sonar/Suite.Name`, or `.Name` of the suite before it. A name that ends in dots
-  // or a star stands for all that begin so.
-  const std::regex name(R"(`(?:\w+/)?([A-Z]\w*)?\.([A-Z]\w*|\*)(\.\.\.)?`)");
+  // `Suite.Name`, `Sonar/Suite.Name`, `test_tools Suite.Name`, or `.Name` of the suite before it.
+  // A name that ends in dots or a star stands for all that begin so.
+  const std::regex name(R"(`(?:\w+[/ ])?([A-Z]\w*)?\.([A-Z]\w*|\*)(\.\.\.)?`)");
   std::string suite;
   int found = 0;
   for (std::sregex_iterator at(page.begin(), page.end(), name), end; at != end; ++at, ++found) {
