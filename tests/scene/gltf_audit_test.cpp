@@ -261,8 +261,8 @@ TEST(GltfAudit, BytesAreNotLookedAtAgainAndAgain) {
   EXPECT_NE(model->notes[0].find("lie over one another"), std::string::npos) << model->notes[0];
 }
 
-// Nor are sparse places, which are copied where they are located.
-TEST(GltfAudit, SparsePlacesAreNotCopiedAgainAndAgain) {
+// Seconds of processor time that a load takes with accessors over the same sparse places.
+double load_of_sparse_s(int accessors) {
   Builder b;
   b.quad();
   constexpr std::uint32_t kCount = 1 << 20;
@@ -274,14 +274,20 @@ TEST(GltfAudit, SparsePlacesAreNotCopiedAgainAndAgain) {
       {"values", {{"bufferView", b.view<std::uint8_t>(std::vector<std::uint8_t>(kCount, 7))}}}};
   const Json accessor = {
       {"componentType", 5121}, {"type", "SCALAR"}, {"count", kCount}, {"sparse", sparse}};
-  for (int i = 0; i < 4000; ++i) b.json["accessors"].push_back(accessor);
+  for (int i = 0; i < accessors; ++i) b.json["accessors"].push_back(accessor);
   const std::clock_t start = std::clock();
   const auto model = b.load();
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  ASSERT_TRUE(model.ok()) << model.error().message;
-  EXPECT_LT(seconds, 2.0);
-  ASSERT_EQ(model->notes.size(), 1u);
-  EXPECT_NE(model->notes[0].find("lie over one another"), std::string::npos) << model->notes[0];
+  EXPECT_TRUE(model.ok()) << model.error().message;
+  EXPECT_EQ(model->notes.size(), 1u);
+  EXPECT_NE(model->notes.at(0).find("lie over one another"), std::string::npos);
+  return seconds;
+}
+
+// Nor are sparse places, which are copied where they are located.
+TEST(GltfAudit, SparsePlacesAreNotCopiedAgainAndAgain) {
+  const double few_s = load_of_sparse_s(20);
+  EXPECT_LT(load_of_sparse_s(2000), 20.0 * few_s) << few_s;
 }
 
 // What is no object, no list or no number where one belongs is no fault of the audit's reading.
