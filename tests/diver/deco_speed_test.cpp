@@ -2,24 +2,13 @@
 // work.
 #include <gtest/gtest.h>
 
-#include <ctime>
-#include <functional>
-
 #include "diver/deco_live.hpp"
 #include "tests/diver/deco_cases.hpp"
+#include "tests/support/cpu_time.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::diver {
 namespace {
-
-double least_ms_of(const std::function<void()>& what) {
-  double least_ms = 1e9;
-  for (int run = 0; run < 7; ++run) {
-    const std::clock_t begun = std::clock();
-    what();
-    least_ms = std::min(least_ms, 1e3 * static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC);
-  }
-  return least_ms;
-}
 
 DivePlanRequest trimix_dive() {
   DivePlanRequest request = square_dive(60.0, 25.0, {0.18, 0.45});
@@ -32,9 +21,11 @@ TEST(DiverSpeed, APlanWithTrimixAndThreeGasesTakesUnderAMillisecond) {
   const DivePlanRequest request = trimix_dive();
   constexpr int kPlans = 50;
   double run_min = 0.0;
-  const double ms = least_ms_of([&] {
-                      for (int i = 0; i < kPlans; ++i) run_min = plan_dive(request)->run_min();
-                    }) /
+  const double ms = test::least_cpu_ms(1.0 * kPlans,
+                                       [&] {
+                                         for (int i = 0; i < kPlans; ++i)
+                                           run_min = plan_dive(request)->run_min();
+                                       }) /
                     kPlans;
   EXPECT_GT(run_min, 60.0);
   RecordProperty("us_a_plan", fmt::format("{:.1f}", 1e3 * ms));
@@ -51,7 +42,7 @@ TEST(DiverSpeed, TheTissuesOfTenThousandDiversAreFasterThanRealTime) {
   ASSERT_TRUE(computer.ok());
   constexpr std::size_t kDivers = 10000;
   std::vector<DiveComputerState> divers(kDivers, computer->start());
-  const double ms = least_ms_of([&] {
+  const double ms = test::least_cpu_ms(1000.0, [&] {
     for (std::size_t i = 0; i < kDivers; ++i)
       divers[i] = computer->step(divers[i], {60.0 * static_cast<double>(i) / kDivers, 0}, 1.0);
   });

@@ -1,15 +1,13 @@
 // A diver who swims to places: on the way, at the depth, with what that costs; the same bits each
 // time; and what a step costs the machine.
-#include "diver/swimmer.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <ctime>
 #include <thread>
 
 #include "engine/sim/simulation.hpp"
-#include "tests/diver/bodies.hpp"
+#include "tests/diver/swims.hpp"
+#include "tests/support/cpu_time.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic::diver {
@@ -18,26 +16,6 @@ namespace {
 static_assert(std::is_trivially_copyable_v<HumanState> &&
               std::is_trivially_copyable_v<HumanInputs> &&
               std::is_trivially_copyable_v<SwimmerState>);
-
-struct Swim {
-  HumanState state;
-  HumanInputs inputs;
-  SwimmerState swimmer;
-};
-Swim begin(const Body& body, const Vec3& at, double heading_deg) {
-  return {start_at(body, at, glm::angleAxis(radians(heading_deg), Vec3(0, 0, 1)),
-                   rotations_of(streamlined(body))),
-          {},
-          {}};
-}
-template <class Seen>
-void swim_for(const Body& body, Swim& s, const SwimGoal& goal, double seconds, const Seen& seen) {
-  for (int i = 0; i < static_cast<int>(seconds * 240); ++i) {
-    if (i % 4 == 0) swim(body, SwimmerSettings{}, goal, s.state, s.swimmer, 1.0 / 60.0, s.inputs);
-    s.state = step(body, s.state, s.inputs, 1.0 / 240.0);
-    seen(s.state);
-  }
-}
 
 TEST(Swimmer, HoldsDepthHeadingAndPace) {
   const Body body = body_with(Gear{});
@@ -146,172 +124,6 @@ TEST(Swimmer, SwimsAcrossACurrent) {
   });
   EXPECT_LT(aside, 3.0);
   EXPECT_GT(s.state.root.position_ned_m.x, 20.0);
-}
-
-TEST(Swimmer, HoversByBreathAndButtons) {
-  const Body body = body_with(Gear{});
-  Swim s = begin(body, {0.0, 0.0, 12.0}, 0.0);
-  double farthest = 0.0;
-  swim_for(body, s, {{0.0, 0.0, 12.0}, 0.0}, 180.0, [&](const HumanState& state) {
-    farthest = std::max(farthest, std::abs(state.root.position_ned_m.z - 12.0));
-  });
-  EXPECT_LT(farthest, 0.8);
-  EXPECT_LT(std::hypot(s.state.root.position_ned_m.x, s.state.root.position_ned_m.y), 4.0);
-}
-
-// The farthest from the depth, of the pitch and from the place, from a minute after arriving on.
-struct Hover {
-  double off_depth_m = 0.0, pitch_deg = 0.0, away_m = 0.0;
-};
-Hover hover_after_a_swim(double depth_m, double current_m_s, double seconds) {
-  const Body body = body_with(Gear{});
-  Swim s = begin(body, {-12.0, 0.0, depth_m}, 0.0);
-  s.inputs.current_ned_m_s = {current_m_s, 0.0, 0.0};
-  const auto nothing = [](const HumanState&) {};
-  swim_for(body, s, {{0.0, 0.0, depth_m}, 0.4}, 28.0, nothing);
-  const SwimGoal here{{0.0, 0.0, depth_m}, 0.0};
-  swim_for(body, s, here, 60.0, nothing);
-  Hover out;
-  swim_for(body, s, here, seconds, [&](const HumanState& state) {
-    const Vec3& p = state.root.position_ned_m;
-    const double pitch_deg = degrees(attitude_of(state.root.attitude).pitch_rad);
-    out.off_depth_m = std::max(out.off_depth_m, std::abs(p.z - depth_m));
-    out.pitch_deg = std::max(out.pitch_deg, std::abs(pitch_deg));
-    out.away_m = std::max(out.away_m, std::hypot(p.x, p.y));
-  });
-  return out;
-}
-
-// The jacket's gas runs to the higher end and would stand a resting diver on his head; a tank that
-// empties would carry him up. Back, arms and treading fins keep him level, either dump valve lets
-// gas out, and fins bring him back to the place.
-TEST(Swimmer, HoversLevelAtItsPlaceWhileTheTankEmpties) {
-  for (const double depth_m : {6.0, 15.0, 30.0}) {
-    const Hover hover = hover_after_a_swim(depth_m, 0.0, 900.0);
-    EXPECT_LT(hover.off_depth_m, 0.35) << depth_m;
-    EXPECT_LT(hover.pitch_deg, 15.0) << depth_m;
-    EXPECT_LT(hover.away_m, 14.0) << depth_m;
-  }
-  for (const double current_m_s : {-0.11, 0.3}) {
-    const Hover hover = hover_after_a_swim(15.0, current_m_s, 600.0);
-    EXPECT_LT(hover.off_depth_m, 0.4) << current_m_s;
-    EXPECT_LT(hover.pitch_deg, 10.0) << current_m_s;
-    EXPECT_LT(hover.away_m, 6.0) << current_m_s;
-  }
-}
-
-// Little pressure: the suit lifts hips and legs, so that the jacket has to lift less at the chest.
-// At 5 m that turns a straight body head down by 4 N m, as much as the back's bend can hold.
-TEST(Swimmer, HoversLevelInShallowWaterWithAFullTank) {
-  for (const auto& [depth_m, current_m_s] :
-       {std::pair{5.0, 0.0}, {5.0, 0.1}, {5.0, -0.15}, {5.0, 0.2}, {3.0, 0.15}}) {
-    const Hover hover = hover_after_a_swim(depth_m, current_m_s, 300.0);
-    EXPECT_LT(hover.off_depth_m, 0.4) << depth_m << " " << current_m_s;
-    EXPECT_LT(hover.pitch_deg, 10.0) << depth_m << " " << current_m_s;
-    EXPECT_LT(hover.away_m, 12.0) << depth_m << " " << current_m_s;
-  }
-}
-
-// The shallowest and deepest of a hover, how fast it rose over six seconds as a dive computer says
-// it, how far it swam, and when it last leaned by more than 25 degrees.
-struct HoverTrack {
-  double highest_m = 0.0, deepest_m = 0.0, rise_m_min = 0.0, way_m = 0.0, leaned_s = 0.0;
-};
-HoverTrack track_hover(const Body& body, Swim& s, double depth_m, double seconds) {
-  HoverTrack out{depth_m, depth_m};
-  std::vector<double> depths_m;
-  Vec3 last = s.state.root.position_ned_m;
-  swim_for(body, s, {{0.0, 0.0, depth_m}, 0.0}, seconds, [&](const HumanState& state) {
-    const Vec3& p = state.root.position_ned_m;
-    out.highest_m = std::min(out.highest_m, p.z), out.deepest_m = std::max(out.deepest_m, p.z);
-    out.way_m += glm::distance(p, last), last = p;
-    depths_m.push_back(p.z);
-    const std::size_t before = 6 * 240, now = depths_m.size() - 1;
-    if (now >= before)
-      out.rise_m_min = std::max(out.rise_m_min, 10.0 * (depths_m[now - before] - p.z));
-    if ((state.root.attitude * Vec3(0.0, 0.0, 1.0)).z < std::cos(radians(25.0)))
-      out.leaned_s = static_cast<double>(now) / 240.0;
-  });
-  return out;
-}
-
-// A heavy tank above turns a diver over, one at the side leans him: lead goes where it balances,
-// and what is left is held by bending to a side.
-TEST(Swimmer, HoversLevelInWhateverGear) {
-  struct Case {
-    const char* name;
-    double depth_m;
-    BodyParameters diver;
-  };
-  const auto with_tanks = [](const std::vector<Tank>& tanks) {
-    BodyParameters p;
-    p.gear.tanks = tanks;
-    return p;
-  };
-  Tank large = tank_of(0.015), half_of_twin = tank_of(0.012), stage;
-  large.pressure_pa = half_of_twin.pressure_pa = 232e5;
-  stage.mix.oxygen = 0.5;
-  BodyParameters no_suit, thick_suit, small;
-  no_suit.gear.suit.reset();
-  thick_suit.gear.suit->thickness_m = 0.007;
-  small.build = {Sex::kFemale, 1.58, 50.0};
-  for (const Case& c : {Case{"15 l", 5.0, with_tanks({large})},
-                        {"15 l", 15.0, with_tanks({large})},
-                        {"twin", 30.0, with_tanks({half_of_twin, half_of_twin})},
-                        {"stage", 15.0, with_tanks({Tank{}, stage})},
-                        {"no suit", 15.0, no_suit},
-                        {"7 mm", 15.0, thick_suit},
-                        {"small", 15.0, small}}) {
-    const Body body = make_body(c.diver).value();
-    Swim s = begin(body, {0.0, 0.0, c.depth_m}, 0.0);
-    const HoverTrack hover = track_hover(body, s, c.depth_m, 300.0);
-    EXPECT_GT(hover.highest_m, c.depth_m - 0.5) << c.name;
-    EXPECT_LT(hover.deepest_m, c.depth_m + 0.5) << c.name;
-    EXPECT_LT(hover.rise_m_min, 3.0) << c.name;
-    EXPECT_LT(hover.way_m, 50.0) << c.name;
-    EXPECT_EQ(hover.leaned_s, 0.0) << c.name;
-  }
-}
-
-// Who stands stoops into trim: a kick would carry him up.
-TEST(Swimmer, WhoStandsTurnsCalmlyIntoTrim) {
-  const Body body = body_with(Gear{});
-  for (const double depth_m : {5.0, 15.0}) {
-    Swim s = begin(body, {0.0, 0.0, depth_m}, 0.0);
-    s.state = start_at(body, {0.0, 0.0, depth_m}, glm::angleAxis(0.5 * kPi, Vec3(0, 1, 0)),
-                       rotations_of(streamlined(body)));
-    const HoverTrack hover = track_hover(body, s, depth_m, 90.0);
-    EXPECT_GT(hover.highest_m, depth_m - 1.5) << depth_m;
-    EXPECT_LT(hover.deepest_m, depth_m + 1.5) << depth_m;
-    EXPECT_LT(hover.rise_m_min, 11.0) << depth_m;
-    EXPECT_LT(hover.leaned_s, 60.0) << depth_m;
-  }
-}
-
-// Who hovers in a current comes back without haste: a place 2.4 m beside moves no faster than a
-// vehicle that keeps there flies, and three metres of drift are left alone.
-TEST(Swimmer, ComesBackNoFasterThanWhoKeepsBesideCanFollow) {
-  const Body body = body_with(Gear{});
-  for (const Vec3& current_m_s : {Vec3(0.085, 0.02, 0.0), Vec3(-0.11, 0.0, 0.0)}) {
-    Swim s = begin(body, {-12.0, 0.0, 14.4}, 0.0);
-    s.inputs.current_ned_m_s = current_m_s;
-    swim_for(body, s, {{0.0, 0.0, 14.4}, 0.4}, 28.0, [](const HumanState&) {});
-    std::vector<Vec3> beside;  // each two seconds
-    double away_m = 0.0;
-    int steps = 0;
-    swim_for(body, s, {{0.0, 0.0, 14.4}, 0.0}, 480.0, [&](const HumanState& state) {
-      const Vec3& p = state.root.position_ned_m;
-      const double heading = attitude_of(state.root.attitude).heading_rad;
-      if (steps++ % 480 == 0)
-        beside.push_back(p + 2.4 * Vec3(-std::sin(heading), std::cos(heading), 0.0));
-      if (steps > 60 * 240) away_m = std::max(away_m, std::hypot(p.x, p.y));
-    });
-    double fastest_m_s = 0.0;
-    for (std::size_t i = 1; i < beside.size(); ++i)
-      fastest_m_s = std::max(fastest_m_s, glm::distance(beside[i], beside[i - 1]) / 2.0);
-    EXPECT_LT(fastest_m_s, 0.8) << current_m_s.y;
-    EXPECT_LT(away_m, 4.5) << current_m_s.y;
-  }
 }
 
 // Oxygen of who fins along, by the work of the limbs: Pendergast's line (2003, average fins),
@@ -461,13 +273,10 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
 // least of several, whoever else is at work (3.1 ms on an AMD EPYC).
 TEST(DiverSpeed, ASecondOfADiverTakesMilliseconds) {
   const Body body = body_with(Gear{});
-  double least_ms = 1e9;
-  for (int run = 0; run < 9; ++run) {
+  const double least_ms = test::least_cpu_ms(10.0, [&] {
     Swim s = begin(body, {0.0, 0.0, 15.0}, 0.0);
-    const std::clock_t begun = std::clock();
     swim_for(body, s, {{1000.0, 0.0, 15.0}, 0.5}, 1.0, [](const HumanState&) {});
-    least_ms = std::min(least_ms, 1e3 * static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC);
-  }
+  });
   RecordProperty("ms_a_second", fmt::format("{:.2f}", least_ms));
   if (test::kFast) {
     EXPECT_LT(least_ms, 10.0);

@@ -4,12 +4,12 @@
 
 #include <thread>
 
-#include "engine/core/clock.hpp"
 #include "engine/core/hash.hpp"
 #include "rov/closed_loop.hpp"
 #include "rov/guidance.hpp"
 #include "rov/sensor_set.hpp"
 #include "tests/rov/random_vehicle.hpp"
+#include "tests/support/cpu_time.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic::rov {
@@ -70,27 +70,24 @@ TEST(RovSpeed, AVehicleWithAllItsSensorsTakesUnderAHundredthOfACore) {
   sensors.altimeter = Altimeter{.rate_hz = 240.0};
   sensors.usbl = Usbl{.rate_hz = 240.0};
   const ControlGains gains = default_gains();
-  double best_ms = 1e9;
-  for (int round = 0; round < 5; ++round) {
+  const double two_seconds_ms = test::least_cpu_ms(20.0, [&] {
     State state;
     ControlState control;
     Setpoint s = stay(state);
     s.position_ned_m.x = 2.0;
     SensorReadings readings;
     Inputs inputs;
-    const TimeNs begin = now_ns();
     for (int i = 0; i < 480; ++i) {
       if (i % 5 == 0) inputs = control_inputs(vehicle, allocator, gains, s, state, control);
       state = step(vehicle, state, inputs, 1.0 / 240.0);
       update_readings(sensors, {{}, 1, 2}, vehicle, state, {}, i / 240.0, (i + 1) / 240.0,
                       readings);
     }
-    best_ms = std::min(best_ms, to_ms(now_ns() - begin) / 2.0);
-    ASSERT_EQ(readings.imu.count, 480u);
-  }
-  RecordProperty("ms_a_second", fmt::format("{:.3f}", best_ms));
+    EXPECT_EQ(readings.imu.count, 480u);
+  });
+  RecordProperty("ms_a_second", fmt::format("{:.3f}", two_seconds_ms / 2.0));
   if (neritic::test::kFast) {
-    EXPECT_LT(best_ms, 10.0);
+    EXPECT_LT(two_seconds_ms, 20.0);
   }
 }
 
