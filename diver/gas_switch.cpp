@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "diver/oxygen_exposure.hpp"
+
 namespace neritic::diver {
 namespace {
 
 static_assert(std::is_trivially_copyable_v<GasSwitchState>);
 
-// As usual switch depths are reckoned: 10 m a bar, 1 bar at the surface.
+// As usual switch depths are reckoned.
 double richest_depth_m(const GasMix& mix) {
-  return 10.0 * (kMostOxygen_bar / std::max(mix.oxygen, 1e-6) - 1.0);
+  return max_operating_depth_m(mix, kMostOxygen_bar, kTenMetresABar);
 }
 
 class Chooser {

@@ -45,7 +45,7 @@ struct SwimmerState {
   double tread = 0.0, tread_phase_rad = 0.0;  // of who rests: shins beat, 0 to 1
   double turn_side = 0.0;                     // 1: comes round to starboard, -1: to port
   // What the swimmer feels of roll and rates between the beats.
-  BeatNotch roll, roll_rate, pitch_rate, yaw_rate;
+  BeatNotch roll, roll_rate;
   double rests = 1.0;     // 1: lies still in the water, 0: has way
   double button_s = 0.0;  // since a button was last let go; negative: still to be pressed
   // Who is to hover: 1: was adrift and swims back; 2: tilts, and swims to right himself.
@@ -72,8 +72,6 @@ struct SwimmerState {
     field("turn_side", self.turn_side);
     field("roll", self.roll);
     field("roll_rate", self.roll_rate);
-    field("pitch_rate", self.pitch_rate);
-    field("yaw_rate", self.yaw_rate);
     field("rests", self.rests);
     field("button_s", self.button_s);
     field("goes_back", self.goes_back);

@@ -1,20 +1,11 @@
 #include "sonar/map_file.hpp"
 
-#include <algorithm>
-#include <cctype>
-
 #include "engine/core/npy.hpp"
+#include "engine/core/text.hpp"
 #include "engine/scene/image_file.hpp"
 
 namespace neritic::sonar {
 namespace {
-
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 template <class T>
 MapFile from_raster(const std::filesystem::path& path, const Raster<T>& raster,
@@ -56,7 +47,7 @@ Result<MapFile> read_npy_map(const std::filesystem::path& path) {
 }  // namespace
 
 Result<MapFile> read_map(const std::filesystem::path& path, MapUse use) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = lower_case(path.extension().string());
   MapFile map;
   if (extension == ".npy") {
     NERITIC_TRY(map, read_npy_map(path));

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <map>
 
+#include "engine/core/text.hpp"
+
 namespace neritic::sonar {
 namespace {
 
@@ -19,14 +21,8 @@ bool is_separator(char c) {
   return c == '/' || c == '_' || c == '-' || c == '.' || c == ' ';
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 bool ends_so(const fs::path& path, std::span<const char* const> extensions) {
-  const std::string extension = lower(path.extension().string());
+  const std::string extension = lower_case(path.extension().string());
   return std::any_of(extensions.begin(), extensions.end(),
                      [&](const char* e) { return extension == std::string(".") + e; });
 }

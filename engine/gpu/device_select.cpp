@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <optional>
@@ -20,12 +19,6 @@ constexpr std::array<std::string_view, 4> kPreference{"discrete GPU", "integrate
 std::size_t rank(const DeviceInfo& device) {
   return static_cast<std::size_t>(std::find(kPreference.begin(), kPreference.end(), device.kind) -
                                   kPreference.begin());
-}
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
 }
 
 std::optional<std::uint32_t> parse_index(std::string_view text) {
@@ -115,8 +108,8 @@ Result<std::uint32_t> choose_device(std::span<const DeviceInfo> devices,
   // Names are full of small numbers (of versions, of bits); a model's has four digits (4090).
   if (parse_index(wanted) && wanted.size() < 4)
     return bad_input("no Vulkan device '{}'; there is {}", wanted, device_names(devices));
-  const auto named = [needle = lower(wanted)](const DeviceInfo& d) {
-    return lower(d.name).find(needle) != std::string::npos;
+  const auto named = [needle = lower_case(wanted)](const DeviceInfo& d) {
+    return lower_case(d.name).find(needle) != std::string::npos;
   };
   if (const auto found = best(devices, true, named)) return *found;
   if (const auto found = best(devices, false, named)) return lacks(devices[*found]);

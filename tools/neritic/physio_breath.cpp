@@ -72,8 +72,7 @@ std::string errors_line(const char* name, const RateErrors& e) {
     return fmt::format("# {}: no window answered, {} refused\n", name, e.refused);
   return fmt::format(
       "# {}: {} windows answered, {} refused; error {:.2f} breaths/min in the middle, {:.2f} on "
-      "the "
-      "mean; {:.0f} % within 2, {:.0f} % doubled\n",
+      "the mean; {:.0f} % within 2, {:.0f} % doubled\n",
       name, e.answered, e.refused, e.median_bpm, e.mean_bpm, 100.0 * e.within_2, 100.0 * e.doubled);
 }
 

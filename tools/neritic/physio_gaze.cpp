@@ -86,8 +86,7 @@ ReportText report_text(const PhysioFlags& flags, const GazeReport& r) {
   if (r.kappa)
     out += fmt::format(
         "# against marks, saccade or none: kappa {:.3f} of these saccades; {:.3f} of each sample "
-        "as "
-        "plain {} has it\n",
+        "as plain {} has it\n",
         *r.kappa, *r.plain_kappa, r.velocity() ? "I-VT" : "I-DT");
   out += fmt::format("# {:.0f} us of one core a second of gaze\n", r.us_a_second);
   std::string table =

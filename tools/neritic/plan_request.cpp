@@ -178,8 +178,7 @@ Result<DivePlanRequest> plan_request(const PlanFlags& flags) {
   if (flags.travel.empty() && bottom.switch_depth_m > 0.0)
     return bad_input(
         "--gas: {0} from {1:g} m found, and nothing to breathe above; {0}, or what is breathed "
-        "there "
-        "by --travel, is accepted",
+        "there by --travel, is accepted",
         diver::name_of(bottom.mix), bottom.switch_depth_m);
   request.levels = {{*flags.depth_m, *flags.time_min}};
   for (const std::string& text : flags.levels) {
