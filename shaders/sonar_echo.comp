@@ -311,7 +311,7 @@ void main() {
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
   for (uint row = first; row < c.n_elevation; row += kLanes) {
     BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0), false);
-    if (s.pixel >= 0) hit = beam_hit(look_at(s, row), row);
+    if (s.pixel >= 0) hit = beam_hit(s, row);
     float power = hit.strength;
     uvec2 label = uvec2(0);
     float range_m = hit.range_m;

@@ -37,6 +37,12 @@ void gather(uint column, BeamHit hit) {
     add_return(uint(bin) * c.n_azimuth + column, hit.strength, hit.at);
 }
 
+// Ranges that bound a row's footprint: of the looks before and after it where they are at hand.
+vec2 beside(SonarColumn s, uint row, Look before, Look look, Look after) {
+  if (kInTurn) return vec2(range_beside(s, before, look.v), range_beside(s, after, look.v));
+  return neighbour_ranges(s, row, look.v);
+}
+
 void main() {
   c = pushed;
   uint column = gl_GlobalInvocationID.x;
@@ -47,10 +53,18 @@ void main() {
   // Two rows a turn, whose fetches wait for memory together. Rows that are doubtful come after all others: integers
   // are summed, so that the order is free, and a loop within would cost a processor a fifth.
   uvec2 doubtful = uvec2(c.n_elevation, 0);  // rows, from and until
+  Look before, after;  // kInTurn: the rows beside the two
+  if (kInTurn) before = after = look_at(s, 0);
   for (uint row = first; row < c.n_elevation; row += 2 * kLanes) {
     uint next = min(row + kLanes, c.n_elevation - 1);
-    Look look = look_at(s, row), next_look = look_at(s, next);
-    BeamHit hit = hit_of(look, row, false), next_hit = hit_of(next_look, next, false);
+    Look look;
+    if (kInTurn) look = after;
+    else look = look_at(s, row);
+    Look next_look = look_at(s, next);
+    if (kInTurn) after = look_at(s, min(row + 2, c.n_elevation - 1));
+    BeamHit hit = hit_of(s, look, beside(s, row, before, look, next_look), false);
+    BeamHit next_hit = hit_of(s, next_look, beside(s, next, look, next_look, after), false);
+    if (kInTurn) before = next_look;
     bool two = row + kLanes < c.n_elevation;
     if (hit.doubtful) doubtful = uvec2(min(doubtful.x, row), row + 1);
     if (two && next_hit.doubtful) doubtful = uvec2(min(doubtful.x, next), next + 1);
@@ -58,7 +72,8 @@ void main() {
     if (two && !next_hit.doubtful) gather(column, next_hit);
   }
   for (uint row = doubtful.x; row < doubtful.y; row += kLanes) {
-    BeamHit hit = hit_of(look_at(s, row), row, true);
+    Look look = look_at(s, row);
+    BeamHit hit = hit_of(s, look, neighbour_ranges(s, row, look.v), true);
     if (hit.doubtful) gather(column, hit);
   }
 }

@@ -115,13 +115,11 @@ void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, flo
   hit.ends_tan = along * along_up <= 0.0 ? edges : edges.yx;
 }
 
-// Where the plane meets the lower and the upper edge of the row.
-void find_ends(SonarColumn s, uint row, int v, vec2 edges, bool limb, float planar, vec2 along_edges,
+// Where the plane meets the lower and the upper edge of the row. neighbours_m: neighbour_range of the rows there.
+void find_ends(SonarColumn s, vec2 neighbours_m, vec2 edges, bool limb, float planar, vec2 along_edges,
                float along_pixel, inout BeamHit hit) {
-  float low = edge_reach(s, edges.x, planar, along_edges.x, along_pixel, hit.range_m,
-                         neighbour_range(s, int(row) - 1, v));
-  float high = edge_reach(s, edges.y, planar, along_edges.y, along_pixel, hit.range_m,
-                          neighbour_range(s, int(row) + 1, v));
+  float low = edge_reach(s, edges.x, planar, along_edges.x, along_pixel, hit.range_m, neighbours_m.x);
+  float high = edge_reach(s, edges.y, planar, along_edges.y, along_pixel, hit.range_m, neighbours_m.y);
   float most = limb ? 0.0 : kLopsided * min(abs(low), abs(high));
   low = clamp(low, -most, most);
   high = clamp(high, -most, most);
@@ -173,32 +171,49 @@ vec2 shared_ends(vec2 ends_m, float range_m) {
 
 // What a beam's pixel holds. Apart from what follows from it, so that two rows' are fetched together.
 struct Look {
-  SonarColumn column;  // as the row looks, where the view leans
-  vec4 row;            // tan, sec, tan of the edges
-  int v;               // row of pixels; beside the view nothing is seen, for a texel there is zero
-  vec4 surface;        // surface_at
+  vec4 row;       // tan, sec, tan of the edges
+  vec4 surface;   // surface_at
+  int pixel, v;   // beside the view nothing is seen, for a texel there is zero
+  float pixel_tan;
 };
 
 Look look_at(SonarColumn s, uint row) {
   Look look;
-  look.column = s;
   look.row = texelFetch(rows, ivec2(row, 0), 0);
   look.v = int(floor(c.cy - c.fy * s.sec_theta * look.row.x));
   if (kLeaning != 0) {
     SonarColumn aside = column_at(s, row);
     look.v = int(clamp(floor(c.cy - c.fy * aside.sec_theta * look.row.x), 0.0, float(c.height - 1)));
-    aside = at_pixel(aside, look.v, look.row.x);
-    look.column.pixel = aside.pixel;
-    look.column.pixel_tan = aside.pixel_tan;
+    s = at_pixel(aside, look.v, look.row.x);
   }
-  look.surface = surface_at(ivec3(look.column.pixel, look.v, s.layer));
+  look.pixel = s.pixel;
+  look.pixel_tan = s.pixel_tan;
+  look.surface = surface_at(ivec3(s.pixel, look.v, s.layer));
   return look;
 }
 
-// again: where it is doubtful the neighbouring pixel is asked.
-BeamHit hit_of(Look look, uint row, bool again) {
+// Of rows whose footprints are bounded by their neighbours'. Where one thread looks at all rows it has their looks at
+// hand, if they are of the same column of pixels.
+const bool kBounded = kFootprint == kSonarFootprintBounded;
+const bool kInTurn = kBounded && kLanes == 1 && kLeaning == 0;
+
+// neighbour_range, of looks at hand.
+float range_beside(SonarColumn s, Look look, int v) {
+  float ty = (c.cy - (float(look.v) + 0.5)) / c.fy;
+  float range_m = planar_metres(look.surface.w) * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
+  return look.v == v ? 0.0 : range_m;
+}
+
+vec2 neighbour_ranges(SonarColumn s, uint row, int v) {
+  return kBounded ? vec2(neighbour_range(s, int(row) - 1, v), neighbour_range(s, int(row) + 1, v)) : vec2(0.0);
+}
+
+// neighbours_m: neighbour_ranges, where footprints are bounded. again: where it is doubtful the neighbouring pixel is
+// asked.
+BeamHit hit_of(SonarColumn s, Look look, vec2 neighbours_m, bool again) {
   BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0), false);
-  SonarColumn s = look.column;
+  s.pixel = look.pixel;
+  s.pixel_tan = look.pixel_tan;
   vec4 e = look.row;
   int v = look.v;
   hit.at = ivec3(s.pixel, v, s.layer);
@@ -242,15 +257,17 @@ BeamHit hit_of(Look look, uint row, bool again) {
   if (kFootprint == kSonarFootprintShared)
     find_close_ends(s, e.zw, along, along_up, most_m, hit);
   if (kFootprint == kSonarFootprintBounded)
-    find_ends(s, row, v, e.zw, most_m == 0.0, plane,
+    find_ends(s, neighbours_m, e.zw, most_m == 0.0, plane,
               ahead + s.tan_theta * sideways + e.zw * s.sec_theta * along_up, along_pixel, hit);
   return hit;
 }
 
-BeamHit beam_hit(Look look, uint row) {
-  BeamHit hit = hit_of(look, row, false);
+BeamHit beam_hit(SonarColumn s, uint row) {
+  Look look = look_at(s, row);
+  vec2 neighbours_m = neighbour_ranges(s, row, look.v);
+  BeamHit hit = hit_of(s, look, neighbours_m, false);
   // A loop, since a processor's driver skips one that no lane enters.
-  for (bool again = hit.doubtful; again; again = false) hit = hit_of(look, row, true);
+  for (bool again = hit.doubtful; again; again = false) hit = hit_of(s, look, neighbours_m, true);
   return hit;
 }
 

@@ -1,4 +1,6 @@
 // Cost against the sizes: range, azimuth and elevation bins, G-buffer pixels, triangles drawn.
+#include <algorithm>
+
 #include "engine/scene/shapes.hpp"
 #include "sonar/image_gather.hpp"
 #include "tools/benchmark/groups.hpp"
@@ -18,6 +20,8 @@ Status sweep_bins(Suite& suite, gpu::Device& device, const std::string& axis,
     NERITIC_TRY(auto gather, sonar::ImageGather::create(device, grid, std::span(&input, 1), mode));
     gathers.push_back(std::move(gather));
     sonar::ImageGather& g = *gathers.back();
+    NERITIC_TRY(const sonar::SonarImage heard, g.run());
+    const auto cells = std::ranges::count_if(heard.intensity, [](float i) { return i > 0.0f; });
     contenders.push_back({fmt::format("sweep/{}_{}", axis, count),
                           [&g]() -> Result<Sample> {
                             NERITIC_TRY(const sonar::SonarImage image, g.run());
@@ -26,7 +30,7 @@ Status sweep_bins(Suite& suite, gpu::Device& device, const std::string& axis,
                             sample.ms = sample.parts["sonar clear"] + sample.parts["sonar gather"];
                             return sample;
                           },
-                          {{axis, double(count)}}});
+                          {{axis, double(count)}, {"heard_cells", double(cells)}}});
   }
   return suite.measure(std::move(contenders));
 }
