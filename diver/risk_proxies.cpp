@@ -16,20 +16,11 @@ constexpr double kRespiratoryQuotient = 0.85;
 // Of each breath, what reaches no alveolus: VD/VT .3 at rest, with a regulator's own space.
 constexpr double kDeadSpaceShare = 0.3;
 constexpr double kMetre_pa = 1e4;  // of sea water, as tables for divers count
-// Raised, high, severe. CO2: hypercapnia from 45 mmHg, impaired from 50, narcosis from 60 (Cherry
-// 2009, J. Appl. Physiol. 106, 316, and textbooks). Narcotic depth: 30 m is the usual limit by
-// plan, 40 m that of recreational diving, beyond 60 m air takes judgement away. Density: 5.2
-// and 6.2 g/L (Anthony and Mitchell 2016), severe a third above. Breaths a minute: above 25 a sign
-// of panic.
-constexpr double kCo2_mmhg[] = {45.0, 50.0, 60.0};
-constexpr double kNarcoticDepths_m[] = {30.0, 40.0, 60.0};
-constexpr double kDensity_kg_m3[] = {5.2, 6.2, 8.3};
+// Raised, high, severe. Breaths a minute: above 25 a sign of panic. Of the CNS limit 80 % is the
+// most by plan (NOAA). Below .18 bar too little oxygen, below .16 thought suffers, below .10
+// consciousness goes; who is in the mountains is used to what the air there has of it, down to the
+// last.
 constexpr double kFastBreath_bpm[] = {25.0, 30.0, 40.0};
-// Oxygen: 1.4 bar is the limit by plan, 1.6 that at rest (NOAA Diving Manual, 4th ed., 2001), above
-// which no time is tabled; of the CNS limit 80 % is the most by plan. Below .18 bar too little,
-// below .16 thought suffers, below .10 consciousness goes; who is in the mountains is used to what
-// the air there has of it, down to the last.
-constexpr double kOxygen_bar[] = {1.4, 1.6, 1.8};
 constexpr double kCnsLevels_percent[] = {80.0, 100.0, 150.0};
 constexpr double kLittleOxygen_bar[] = {0.18, 0.16, 0.10};
 constexpr double kPause_s[] = {5.0, 15.0, 30.0};  // skip breathing: pauses from 5 s
@@ -109,13 +100,13 @@ RiskProxies assess_risk(const RiskProxies& before, const RiskInput& in) {
   // (D + 10)(1 - fHe) - 10, by pressure: as narcotic as air of that pressure.
   out.narcotic_depth_m =
       std::max(0.0, (in.ambient_pa * (1.0 - in.helium) - in.surface_pa) / kMetre_pa);
-  out.co2 = level_of(out.co2_mmhg, kCo2_mmhg);
-  out.narcosis = level_of(out.narcotic_depth_m, kNarcoticDepths_m);
+  out.co2 = level_of(out.co2_mmhg, kCo2Levels_mmhg);
+  out.narcosis = level_of(out.narcotic_depth_m, kNarcoticLevels_m);
   out.oxygen_bar = 1e-5 * in.oxygen * in.ambient_pa;
-  out.oxygen =
-      std::max({level_of(out.oxygen_bar, kOxygen_bar), level_of(in.cns_percent, kCnsLevels_percent),
-                little_oxygen(out.oxygen_bar, in.surface_pa)});
-  out.gas_density = level_of(in.gas_density_kg_m3, kDensity_kg_m3);
+  out.oxygen = std::max({level_of(out.oxygen_bar, kOxygenLevels_bar),
+                         level_of(in.cns_percent, kCnsLevels_percent),
+                         little_oxygen(out.oxygen_bar, in.surface_pa)});
+  out.gas_density = level_of(in.gas_density_kg_m3, kDensityLevels_kg_m3);
   out.breathing =
       std::max(level_of(in.breath_rate_bpm, kFastBreath_bpm), level_of(in.pause_s, kPause_s));
   return out;

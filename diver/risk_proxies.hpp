@@ -13,6 +13,17 @@ inline constexpr const char* kRiskNote = "risk proxy, not a measurement";
 enum class RiskLevel : std::uint64_t { kLow, kRaised, kHigh, kSevere };
 const char* name_of(RiskLevel level);
 
+// From where a risk is raised, high, severe. CO2: hypercapnia from 45 mmHg, impaired from 50,
+// narcosis from 60 (Cherry 2009, J. Appl. Physiol. 106, 316, and textbooks). Narcotic depth: 30 m
+// is the usual limit by plan, 40 m that of recreational diving, beyond 60 m air takes judgement
+// away. Density: 5.2 and 6.2 g/L (Anthony and Mitchell 2016), severe a third above. Oxygen: 1.4 bar
+// is the limit by plan, 1.6 that at rest (NOAA Diving Manual, 4th ed., 2001), above which no time
+// is tabled.
+inline constexpr double kCo2Levels_mmhg[] = {45.0, 50.0, 60.0};
+inline constexpr double kNarcoticLevels_m[] = {30.0, 40.0, 60.0};
+inline constexpr double kDensityLevels_kg_m3[] = {5.2, 6.2, 8.3};
+inline constexpr double kOxygenLevels_bar[] = {1.4, 1.6, 1.8};
+
 // Arterial CO2 in mmHg in the steady state: 863 VCO2 / VA, VCO2 in litres a minute STPD, VA (the
 // alveolar ventilation) in litres a minute BTPS. Not finite for VA = 0.
 double arterial_co2_mmhg(double co2_l_min, double alveolar_l_min);

@@ -9,7 +9,6 @@ namespace neritic::tools {
 namespace {
 
 constexpr double kHeadroom = 0.25;
-// Beside ventilation and time.
 constexpr sonar::Color kTankColors[diver::kMaxTanks] = {
     kSeriesColors[0], kSeriesColors[3], kSeriesColors[4], {0.902f, 0.624f, 0.0f}};
 
@@ -37,17 +36,13 @@ std::size_t color_of(const PhysicsWorld& world, std::size_t human) {
 }
 
 std::string tank_name(const PhysicsHuman& human, std::size_t tank) {
-  if (human.body.tank_count == 1) return "tank, bar";
-  return fmt::format("tank {}, {}, bar", tank + 1, diver::name_of(human.body.tanks[tank].mix));
+  const std::string mix = diver::name_of(human.body.tanks[tank].mix);
+  return human.body.tank_count == 1 ? "tank, " + mix : fmt::format("tank {}, {}", tank + 1, mix);
 }
 
 // Each tank's pressure, and a dot where the diver changes to it.
-std::vector<Series> gas_lines(const PhysicsHuman& human, const std::vector<HumanRow>& rows) {
-  std::vector<Series> lines{
-      first_over_time(rows, "ventilation, l/min", 1,
-                      [](const HumanRow& r) { return r.gas.ventilation_l_min; }),
-      first_over_time(rows, "left to 50 bar, min", 2,
-                      [](const HumanRow& r) { return std::min(r.gas.remaining_s / 60.0, 300.0); })};
+std::vector<Series> tank_lines(const PhysicsHuman& human, const std::vector<HumanRow>& rows) {
+  std::vector<Series> lines;
   Series changes{"changes tank", kInk, {}, {}};
   changes.joined = false;
   const HumanRow* before = nullptr;
@@ -66,6 +61,112 @@ std::vector<Series> gas_lines(const PhysicsHuman& human, const std::vector<Human
   }
   if (!changes.x.empty()) lines.push_back(changes);
   return lines;
+}
+
+using diver::AscentAlarm;
+using diver::RiskLevel;
+
+// What endangers a diver, where on the line of depth it does.
+struct Danger {
+  const char* name;
+  sonar::Color color;
+  bool (*is)(const HumanRow&);
+};
+constexpr Danger kDangers[] = {
+    {"rises fast",
+     {0.902f, 0.624f, 0.0f},
+     [](const HumanRow& r) { return r.ascent.view.alarm == AscentAlarm::kFast; }},
+    {"rises dangerously fast",
+     {0.8f, 0.0f, 0.1f},
+     [](const HumanRow& r) { return r.ascent.view.alarm == AscentAlarm::kDangerous; }},
+    {"above the ceiling",
+     {0.55f, 0.1f, 0.55f},
+     [](const HumanRow& r) { return r.ascent.view.ceiling_violated; }},
+    {"oxygen too high or low",
+     {0.0f, 0.62f, 0.451f},
+     [](const HumanRow& r) { return r.vitals.risk.oxygen >= RiskLevel::kHigh; }},
+    {"nothing to breathe", kInk, [](const HumanRow& r) { return r.out_of_gas_s > 0.0; }}};
+
+double depth_of(const HumanRow& row) {
+  return -row.world_from_body.position_m.y;
+}
+
+// Of all dangers that are met, dots on a line over time.
+void add_dangers(std::vector<Series>& lines, const std::vector<HumanRow>& rows,
+                 const HumanValue& y) {
+  for (const Danger& danger : kDangers) {
+    Series dots = series_from<HumanRow>(
+        rows, [&](const HumanRow& row) { return row.human == 0 && danger.is(row); }, danger.name,
+        danger.color, human_time, y);
+    dots.joined = false;
+    dots.marked = true;
+    if (!dots.x.empty()) lines.push_back(std::move(dots));
+  }
+}
+
+// As a dive computer's profile: the surface at the top.
+void draw_profile(sonar::Canvas& canvas, const Box& box, const std::string& name,
+                  const std::vector<HumanRow>& rows) {
+  std::vector<Series> lines{first_over_time(rows, "depth", 0, depth_of)};
+  for (const Series& line :
+       {first_over_time(rows, "ceiling", 1,
+                        [](const HumanRow& r) { return r.ascent.view.ceiling_m; }),
+        first_over_time(rows, "next stop", 3,
+                        [](const HumanRow& r) { return r.ascent.view.stop_m; })})
+    if (std::ranges::any_of(line.y, [](double m) { return m > 0.0; })) lines.push_back(line);
+  add_dangers(lines, rows, depth_of);
+  const Axis x = roomy_axis("time, s", lines, &Series::x, 1e-3);
+  const Axis y = roomy_axis("m", lines, &Series::y, 1.0);
+  draw_lines(canvas, box, "Depth, ceiling and dangers of " + name, x, {y.label, y.max, y.min},
+             lines);
+}
+
+std::vector<Series> rate_lines(const PhysicsHuman& human, const std::vector<HumanRow>& rows) {
+  std::vector<Series> lines{first_over_time(
+      rows, "upwards", 0, [](const HumanRow& r) { return r.ascent.view.ascent_m_min; })};
+  const diver::AscentRateLimits& limits = human.computer->settings().ascent;
+  const double most = lines[0].y.empty() ? 0.0 : std::ranges::max(lines[0].y);
+  // A limit is drawn where it is near.
+  if (most > 0.5 * limits.fast_m_min)
+    lines.push_back(
+        first_over_time(rows, "fast", 1, [&](const HumanRow&) { return limits.fast_m_min; }));
+  if (most > 0.7 * limits.dangerous_m_min)
+    lines.push_back(first_over_time(rows, "dangerous", 3,
+                                    [&](const HumanRow&) { return limits.dangerous_m_min; }));
+  return lines;
+}
+
+// Longer than this a diver need not reckon with.
+constexpr double kLongest_min = 300.0;
+
+std::vector<Series> minute_lines(const std::vector<HumanRow>& rows) {
+  const auto line = [&](const char* what, std::size_t color, double (*minutes)(const HumanRow&)) {
+    return first_over_time(rows, what, color, [minutes](const HumanRow& r) {
+      return std::min(minutes(r), kLongest_min);
+    });
+  };
+  return {
+      line("without stops", 0, [](const HumanRow& r) { return r.ascent.view.no_stop_min; }),
+      line("to the surface", 1, [](const HumanRow& r) { return r.ascent.view.to_surface_min; }),
+      line("gas left to 50 bar", 2, [](const HumanRow& r) { return r.gas.remaining_s / 60.0; })};
+}
+
+// Each as a share of where it counts as raised.
+std::vector<Series> risk_lines(const std::vector<HumanRow>& rows) {
+  const auto line = [&](const char* what, std::size_t color, double raised,
+                        double (*value)(const HumanRow&)) {
+    return first_over_time(rows, what, color, [raised, value](const HumanRow& r) {
+      return 100.0 * value(r) / raised;
+    });
+  };
+  return {line("CO2 proxy", 0, diver::kCo2Levels_mmhg[0],
+               [](const HumanRow& r) { return r.vitals.risk.co2_mmhg; }),
+          line("narcotic depth", 1, diver::kNarcoticLevels_m[0],
+               [](const HumanRow& r) { return r.vitals.risk.narcotic_depth_m; }),
+          line("gas density", 2, diver::kDensityLevels_kg_m3[0],
+               [](const HumanRow& r) { return r.ascent.view.density_g_l; }),
+          line("oxygen pressure", 3, diver::kOxygenLevels_bar[0],
+               [](const HumanRow& r) { return r.vitals.risk.oxygen_bar; })};
 }
 
 }  // namespace
@@ -90,57 +191,44 @@ std::vector<Series> human_heights(const PhysicsWorld& world, const std::vector<H
 
 void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
                        const PhysicsWorld& world, const std::vector<HumanRow>& rows) {
-  const std::string& name = world.humans()[0].name;
-  const double middle_x = 0.5 * width_px, row_px = kHumanPanels_px / 3.0;
-  const double middle_y = top_px + row_px, last_y = top_px + 2.0 * row_px;
-  const double bottom = top_px + kHumanPanels_px - 10.0;
-  draw_over_time(
-      canvas, {10, top_px, middle_x, middle_y}, "Pace of " + name, "m/s, beats/s",
-      {first_over_time(rows, "speed, m/s", 0,
-                       [](const HumanRow& r) { return glm::length(r.velocity.linear()); }),
-       first_over_time(rows, "kick, beats/s", 1, [](const HumanRow& r) { return r.kick_hz; })},
-      0.2, kHeadroom);
-  draw_over_time(canvas, {middle_x, top_px, width_px - 10.0, middle_y}, "Gas of " + name,
-                 "bar, l/min, min", gas_lines(world.humans()[0], rows), 5.0, kHeadroom);
-  draw_over_time(
-      canvas, {10, middle_y, middle_x, last_y}, "Decompression of " + name, "m, min, m/min",
-      {first_over_time(
-           rows, "no-stop time, min", 0,
-           [](const HumanRow& r) { return std::min(r.ascent.view.no_stop_min, 300.0); }),
-       first_over_time(rows, "ceiling, m", 1,
-                       [](const HumanRow& r) { return r.ascent.view.ceiling_m; }),
-       first_over_time(
-           rows, "to the surface, min", 2,
-           [](const HumanRow& r) { return std::min(r.ascent.view.to_surface_min, 300.0); }),
-       first_over_time(rows, "ascent, m/min", 3,
-                       [](const HumanRow& r) { return r.ascent.view.ascent_m_min; })},
-      1.0, kHeadroom);
-  draw_over_time(
-      canvas, {middle_x, middle_y, width_px - 10.0, last_y}, "Lungs, jacket and balance of " + name,
-      "litres, N",
-      {first_over_time(rows, "lungs, l", 0, [](const HumanRow& r) { return 1e3 * r.lungs_m3; }),
-       first_over_time(rows, "jacket, l", 1,
-                       [](const HumanRow& r) { return 1e3 * r.gas.jacket_m3; }),
-       first_over_time(rows, "weight less lift, N", 2,
-                       [](const HumanRow& r) { return r.net_weight_n; })},
-      1.0, kHeadroom);
-  draw_over_time(canvas, {10, last_y, middle_x, bottom}, "Heart and breath of " + name, "a minute",
-                 {first_over_time(rows, "heart, beats/min", 0,
-                                  [](const HumanRow& r) { return r.vitals.heart_bpm; }),
-                  first_over_time(rows, "breaths/min", 1,
-                                  [](const HumanRow& r) { return r.vitals.breath_bpm; }),
-                  first_over_time(rows, "oxygen, dl/min", 2,
-                                  [](const HumanRow& r) { return 10.0 * r.oxygen_l_min; })},
-                 1.0, kHeadroom);
-  draw_over_time(canvas, {middle_x, last_y, width_px - 10.0, bottom},
-                 fmt::format("Risk of {} ({})", name, diver::kRiskNote), "mmHg, m, g/l",
-                 {first_over_time(rows, "CO2 proxy, mmHg", 0,
-                                  [](const HumanRow& r) { return r.vitals.risk.co2_mmhg; }),
-                  first_over_time(rows, "narcotic depth, m", 1,
-                                  [](const HumanRow& r) { return r.vitals.risk.narcotic_depth_m; }),
-                  first_over_time(rows, "gas density, g/l", 2,
-                                  [](const HumanRow& r) { return r.ascent.view.density_g_l; })},
-                 1.0, kHeadroom);
+  const PhysicsHuman& human = world.humans()[0];
+  const std::string& name = human.name;
+  std::size_t panel = 0;
+  const auto next_box = [&] {
+    const double left = panel % 2 == 0 ? 10.0 : 0.5 * width_px;
+    const double right = panel % 2 == 0 ? 0.5 * width_px : width_px - 10.0;
+    const double top = top_px + static_cast<double>(panel++ / 2) * kHumanPanel_px;
+    return Box{left, top, right, top + kHumanPanel_px - 10.0};
+  };
+  const auto over_time = [&](const std::string& title, const char* unit,
+                             const std::vector<Series>& lines, double least_span = 1.0) {
+    draw_over_time(canvas, next_box(), title, unit, lines, least_span, kHeadroom);
+  };
+  const auto line = [&](const char* what, std::size_t color, HumanValue value) {
+    return first_over_time(rows, what, color, std::move(value));
+  };
+  draw_profile(canvas, next_box(), name, rows);
+  over_time("Rate of ascent of " + name, "m/min", rate_lines(human, rows));
+  over_time("Minutes that " + name + " has and needs", "min", minute_lines(rows));
+  over_time("Tanks of " + name, "bar", tank_lines(human, rows), 5.0);
+  over_time(
+      "Pace of " + name, "m/s, beats/s",
+      {line("speed, m/s", 0, [](const HumanRow& r) { return glm::length(r.velocity.linear()); }),
+       line("kick, beats/s", 1, [](const HumanRow& r) { return r.kick_hz; })},
+      0.2);
+  over_time("Gas that " + name + " breathes", "l/min",
+            {line("ventilation", 0, [](const HumanRow& r) { return r.gas.ventilation_l_min; }),
+             line("oxygen taken up", 1, [](const HumanRow& r) { return r.oxygen_l_min; })});
+  over_time("Heart and breath of " + name, "a minute",
+            {line("heartbeats", 0, [](const HumanRow& r) { return r.vitals.heart_bpm; }),
+             line("breaths", 1, [](const HumanRow& r) { return r.vitals.breath_bpm; })});
+  over_time("Gas within " + name + " and jacket", "litres",
+            {line("lungs", 0, [](const HumanRow& r) { return 1e3 * r.lungs_m3; }),
+             line("jacket", 1, [](const HumanRow& r) { return 1e3 * r.gas.jacket_m3; })});
+  over_time("Weight less lift of " + name, "N",
+            {line("", 0, [](const HumanRow& r) { return r.net_weight_n; })});
+  over_time(fmt::format("Risk of {} ({})", name, diver::kRiskNote), "% of where it is raised",
+            risk_lines(rows));
 }
 
 }  // namespace neritic::tools

@@ -1,4 +1,5 @@
-// A diver's part of the plot of a dive: pace, gas, decompression, breath. Pure functions; any
+// A diver's part of the plot of a dive: depth with its dangers, rates, times, gas,
+// pace, breath, risks. Pure functions; any
 // thread.
 #pragma once
 
@@ -7,14 +8,14 @@
 
 namespace neritic::tools {
 
-// Height of the panels.
-inline constexpr double kHumanPanels_px = 1560.0;
+// Heights of a panel, and of all five rows of them.
+inline constexpr double kHumanPanel_px = 450.0, kHumanPanels_px = 5.0 * kHumanPanel_px;
 
 // Of each diver, a line: east and north, or time and height over the surface.
 std::vector<Series> human_paths(const PhysicsWorld& world, const std::vector<HumanRow>& rows);
 std::vector<Series> human_heights(const PhysicsWorld& world, const std::vector<HumanRow>& rows);
 
-// Six panels of the first diver, as wide as the canvas from top on.
+// Ten panels of the first diver, as wide as the canvas from top on; each has one unit.
 void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
                        const PhysicsWorld& world, const std::vector<HumanRow>& rows);
 
