@@ -37,12 +37,6 @@ void gather(uint column, BeamHit hit) {
     add_return(uint(bin) * c.n_azimuth + column, hit.strength, hit.at);
 }
 
-// Ranges that bound a row's footprint: of the looks before and after it where they are at hand.
-vec2 beside(SonarColumn s, uint row, Look before, Look look, Look after) {
-  if (kInTurn) return vec2(range_beside(s, before, look.v), range_beside(s, after, look.v));
-  return neighbour_ranges(s, row, look.v);
-}
-
 void main() {
   c = pushed;
   uint column = gl_GlobalInvocationID.x;

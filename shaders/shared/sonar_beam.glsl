@@ -55,16 +55,22 @@ SonarColumn at_pixel(SonarColumn s, int v, float t) {
   return s;
 }
 
-// Range of what the pixel at another row's centre sees; 0: nothing, or it is the same row of pixels.
+// Range of what the pixel at a row's centre sees, of tangent t of elevation, and its row of pixels; 0: nothing.
+float centre_range(SonarColumn s, float t, out int v) {
+  v = int(floor(c.cy - c.fy * s.sec_theta * t));
+  if (v < 0 || v >= int(c.height)) return 0.0;
+  if (kLeaning != 0) s = at_pixel(s, v, t);
+  float ty = (c.cy - (float(v) + 0.5)) / c.fy;
+  float planar = planar_metres(depth_at(ivec3(s.pixel, v, s.layer)));
+  return planar * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
+}
+
+// Of another row; 0 also: it is the same row of pixels.
 float neighbour_range(SonarColumn s, int row, int v) {
   if (row < 0 || row >= int(c.n_elevation)) return 0.0;
-  float t = texelFetch(rows, ivec2(row, 0), 0).x;
-  int other = int(floor(c.cy - c.fy * s.sec_theta * t));
-  if (other == v || other < 0 || other >= int(c.height)) return 0.0;
-  if (kLeaning != 0) s = at_pixel(s, other, t);
-  float ty = (c.cy - (float(other) + 0.5)) / c.fy;
-  float planar = planar_metres(depth_at(ivec3(s.pixel, other, s.layer)));
-  return planar * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
+  int other;
+  float range_m = centre_range(s, texelFetch(rows, ivec2(row, 0), 0).x, other);
+  return other == v ? 0.0 : range_m;
 }
 
 // How far from the centre's range the plane is at the row's edge of tangent t: no farther than the
@@ -175,10 +181,18 @@ struct Look {
   vec4 surface;   // surface_at
   int pixel, v;   // beside the view nothing is seen, for a texel there is zero
   float pixel_tan;
+  int centre_v;   // kInTurn: centre_range
+  float centre_m;
 };
+
+// Of rows whose footprints are bounded by their neighbours'. A thread that looks at all of them in turn has the
+// neighbours' ranges at hand.
+const bool kBounded = kFootprint == kSonarFootprintBounded;
+const bool kInTurn = kBounded && kLanes == 1;
 
 Look look_at(SonarColumn s, uint row) {
   Look look;
+  SonarColumn upright = s;
   look.row = texelFetch(rows, ivec2(row, 0), 0);
   look.v = int(floor(c.cy - c.fy * s.sec_theta * look.row.x));
   if (kLeaning != 0) {
@@ -189,23 +203,24 @@ Look look_at(SonarColumn s, uint row) {
   look.pixel = s.pixel;
   look.pixel_tan = s.pixel_tan;
   look.surface = surface_at(ivec3(s.pixel, look.v, s.layer));
+  if (kInTurn && kLeaning != 0) {
+    look.centre_m = centre_range(upright, look.row.x, look.centre_v);
+  } else if (kInTurn) {
+    float ty = (c.cy - (float(look.v) + 0.5)) / c.fy;
+    look.centre_m = planar_metres(look.surface.w) * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
+    look.centre_v = look.v;
+  }
   return look;
-}
-
-// Of rows whose footprints are bounded by their neighbours'. Where one thread looks at all rows it has their looks at
-// hand, if they are of the same column of pixels.
-const bool kBounded = kFootprint == kSonarFootprintBounded;
-const bool kInTurn = kBounded && kLanes == 1 && kLeaning == 0;
-
-// neighbour_range, of looks at hand.
-float range_beside(SonarColumn s, Look look, int v) {
-  float ty = (c.cy - (float(look.v) + 0.5)) / c.fy;
-  float range_m = planar_metres(look.surface.w) * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
-  return look.v == v ? 0.0 : range_m;
 }
 
 vec2 neighbour_ranges(SonarColumn s, uint row, int v) {
   return kBounded ? vec2(neighbour_range(s, int(row) - 1, v), neighbour_range(s, int(row) + 1, v)) : vec2(0.0);
+}
+
+// The same, of the looks before and after it where they are at hand.
+vec2 beside(SonarColumn s, uint row, Look before, Look look, Look after) {
+  if (!kInTurn) return neighbour_ranges(s, row, look.v);
+  return vec2(before.centre_v == look.v ? 0.0 : before.centre_m, after.centre_v == look.v ? 0.0 : after.centre_m);
 }
 
 // neighbours_m: neighbour_ranges, where footprints are bounded. again: where it is doubtful the neighbouring pixel is
@@ -262,9 +277,7 @@ BeamHit hit_of(SonarColumn s, Look look, vec2 neighbours_m, bool again) {
   return hit;
 }
 
-BeamHit beam_hit(SonarColumn s, uint row) {
-  Look look = look_at(s, row);
-  vec2 neighbours_m = neighbour_ranges(s, row, look.v);
+BeamHit beam_hit(SonarColumn s, Look look, vec2 neighbours_m) {
   BeamHit hit = hit_of(s, look, neighbours_m, false);
   // A loop, since a processor's driver skips one that no lane enters.
   for (bool again = hit.doubtful; again; again = false) hit = hit_of(s, look, neighbours_m, true);

@@ -207,32 +207,38 @@ TEST_F(SonarGpu, HoweverThreadsShareTheWorkTermsGiveTheSameBits) {
   scene::Sonar sonar;
   sonar.azimuth_rad = radians(60.0);
   sonar.elevation_rad = radians(28.0);
-  sonar.bins_range = 200;
   sonar.bins_azimuth = 64;
-  sonar.bins_elevation = 300;
   sonar.terms.level = scene::SonarLevel{};
-  for (const bool speckle : {false, true}) {
-    SCOPED_TRACE(speckle);
-    if (speckle) sonar.terms.speckle = scene::SonarSpeckle{};
-    NERITIC_ASSERT_OK(const auto heads, sonar::plan_heads(sonar));
-    const sonar::Head& head = heads.front();
-    // A bin's power of all rows overflows 32 bits: what is carried counts too.
-    ASSERT_GT(head.samples.bins.elevation, 2 * 16u);
-    const auto inputs = test::sector_images(head.samples, test::sphere(Vec3(0.0), 3.004, 4), 1.0);
-    std::vector<SonarImage> images;
-    for (const sonar::GatherThreads& threads : kWaysToSum) {
-      NERITIC_ASSERT_OK(
-          const auto made,
-          sonar::ImageGather::create(device(), sonar, head, inputs[0], Gather::kPlane, threads));
-      NERITIC_ASSERT_OK(SonarImage image, made->run());
-      images.push_back(std::move(image));
+  // Rows that are lower than a range bin, then taller.
+  for (const bool tall : {false, true})
+    for (const bool speckle : {false, true}) {
+      SCOPED_TRACE(fmt::format("tall {} speckle {}", tall, speckle));
+      sonar.bins_range = tall ? 1500 : 200;
+      sonar.bins_elevation = tall ? 60 : 300;
+      sonar.terms.speckle.reset();
+      if (speckle) sonar.terms.speckle = scene::SonarSpeckle{};
+      NERITIC_ASSERT_OK(const auto heads, sonar::plan_heads(sonar));
+      const sonar::Head& head = heads.front();
+      EXPECT_EQ(sonar::footprint_of(head.samples, {}),
+                tall ? shared::kSonarFootprintBounded : shared::kSonarFootprintShared);
+      // A bin's power of all rows overflows 32 bits: what is carried counts too.
+      ASSERT_GT(head.samples.bins.elevation, 2 * 16u);
+      const auto seen = tall ? seabed_with_two_spheres() : test::sphere(Vec3(0.0), 3.004, 4);
+      const auto inputs = test::sector_images(head.samples, seen, 1.0);
+      std::vector<SonarImage> images;
+      for (const sonar::GatherThreads& threads : kWaysToSum) {
+        NERITIC_ASSERT_OK(
+            const auto made,
+            sonar::ImageGather::create(device(), sonar, head, inputs[0], Gather::kPlane, threads));
+        NERITIC_ASSERT_OK(SonarImage image, made->run());
+        images.push_back(std::move(image));
+      }
+      EXPECT_GT(total(images[0]), 0.0);
+      for (std::size_t i = 1; i < images.size(); ++i) {
+        EXPECT_EQ(images[0].intensity, images[i].intensity) << i;
+        EXPECT_EQ(images[0].labels, images[i].labels) << i;
+      }
     }
-    EXPECT_GT(total(images[0]), 0.0);
-    for (std::size_t i = 1; i < images.size(); ++i) {
-      EXPECT_EQ(images[0].intensity, images[i].intensity) << i;
-      EXPECT_EQ(images[0].labels, images[i].labels) << i;
-    }
-  }
 }
 
 TEST_F(SonarGpu, ADeviceWithMemoryOfItsOwnGivesTheSameBits) {
