@@ -152,9 +152,7 @@ HumanState start_at(const Body& body, const Vec3& position_ned_m, const Quat& ne
   teleport(state, position_ned_m, ned_from_body);
   state.limbs.rotation = state.held.joints = joints;
   state.life.tanks = full_tanks(body);
-  const double minute_l =
-      ventilation_l_min(body, kRestingOxygen_l_min, kAir, pressure_at(body, position_ned_m.z));
-  state.life.lungs.volume_m3 = body.lungs.rest_m3 + 0.5 * tidal_volume(body, minute_l);
+  state.life.lungs.volume_m3 = middle_of_quiet_breath(body);
   state.life.lungs.phase_rad = 0.5 * kPi;  // half full, breathing in
   const double missing_m3 = net_weight_n(body, state) / (body.water_kg_m3 * kGravity_m_s2);
   if (missing_m3 > 0.0)

@@ -61,6 +61,10 @@ double tidal_volume(const Body& body, double ventilation_l_min) {
   return 1e-3 * litres * size_of(body);
 }
 
+double middle_of_quiet_breath(const Body& body) {
+  return body.lungs.rest_m3 + 0.5 * tidal_volume(body, kEquivalent * kRestingOxygen_l_min);
+}
+
 void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const BreathInputs& in,
                 double ambient_pa, double dt_s) {
   const double demand = std::min(oxygen_demand_l_min(in.limb_power_w), kMostOxygen_l_min);
@@ -79,8 +83,7 @@ void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const Brea
   lungs.phase_rad = std::fmod(lungs.phase_rad + 2.0 * kPi * turns_s * dt_s, 2.0 * kPi);
   // Deeper breaths begin lower, so that the middle stays (Babb et al. 1991, J. Appl. Physiol. 70,
   // 722).
-  const double quiet_m3 = tidal_volume(body, kEquivalent * kRestingOxygen_l_min);
-  const double middle = body.lungs.rest_m3 + 0.5 * quiet_m3 + in.bias_m3;
+  const double middle = middle_of_quiet_breath(body) + in.bias_m3;
   const double lowest =
       std::clamp(middle - 0.5 * tidal_m3, body.lungs.residual_m3,
                  std::max(body.lungs.residual_m3, body.lungs.total_m3 - tidal_m3));

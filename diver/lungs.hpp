@@ -49,6 +49,9 @@ double ventilation_l_min(const Body& body, double oxygen_l_min, const GasMix& mi
 // Volume of one breath for that ventilation; breaths are slower and deeper under water.
 double tidal_volume(const Body& body, double ventilation_l_min);
 
+// Gas in the lungs half way through a breath at rest, m^3.
+double middle_of_quiet_breath(const Body& body);
+
 struct BreathInputs {
   double limb_power_w = 0.0;       // mean mechanical power just now
   double ventilation_l_min = 0.0;  // as measured; 0: follows from oxygen

@@ -15,6 +15,13 @@ constexpr double kMostBend_rad = radians(18.0), kMostAside_rad = radians(25.0);
 constexpr double kMostKick_w = 300.0;
 constexpr double kMostPitch_rad = radians(30.0);
 constexpr double kMostSink_m_s = 0.15;  // 9 m a minute
+// Who is to rise by so much does it by less than the 9 m a minute that agencies teach, at first
+// slower still (a share of it, seconds): until so near.
+constexpr double kMostRise_m_s = 0.12, kRiseBegin = 0.2, kRiseLag_s = 12.0;
+constexpr double kWellAbove_m = 1.3, kHardlyAbove_m = 0.2;
+// The pitch holds that rate so much more firmly than a depth; and no sharp turn, which would bring
+// the head up.
+constexpr double kRiseFirm = 2.0, kRiseTurn_rad = 0.2;
 constexpr double kMostBreathBias_m3 = 0.6e-3;
 // So fast through the water legs steer; slower, posture does.
 constexpr double kWay_m_s = 0.25;
@@ -53,6 +60,13 @@ constexpr std::uint64_t kGoesBack = 1, kRightsHimself = 2;
 constexpr double kSteeringLag_s = 0.4, kBreathLag_s = 0.7;
 // Buttons are pressed for a moment, after so much want of breath, and then waited for.
 constexpr double kPress_s = 0.25, kWait_s = 3.0, kSure_l_s = 4.0;
+// Who rises lets out what lifts so much more than it should, and in where so much is missing: the
+// second figures end it. What breath makes up for is bounded then.
+constexpr double kVentAt_l = 0.2, kVentTo_l = 0.0, kVentWait_s = 2.0;
+constexpr double kFillAt_l = -0.8, kFillTo_l = -0.5;
+constexpr double kRiseSum_l_s = 2.0;
+// Jackets that hold fewer moles are empty; tanks below that pressure fill none.
+constexpr double kEmptyJacket_mol = 1e-3, kFillsJacket_pa = 5e5;
 // Gas leaves at the higher end of the trunk: the head goes up for that, at most so long.
 constexpr double kVent_s = 6.0, kVentPress_s = 0.08, kVentPitch_rad = radians(14.0);
 
@@ -91,6 +105,38 @@ void pace(const SwimmerSettings& settings, double speed_m_s, double wanted_m_s, 
       std::fmod(swimmer.phase_rad + 2.0 * kPi * swimmer.frequency_hz * dt_s, 2.0 * kPi);
 }
 
+// Litres by which the diver floats in the middle of a quiet breath: what jacket and suit lift too
+// much. People feel it by what breath and fins have to hold.
+double lifted_l(const Body& body, const HumanState& state) {
+  const double weight_m3 = net_weight_n(body, state) / (body.water_kg_m3 * kGravity_m_s2);
+  return 1e3 * (middle_of_quiet_breath(body) - state.life.lungs.volume_m3 - weight_m3);
+}
+
+bool can_fill(const Body& body, const HumanState& state) {
+  return tank_pressure(body, state.life.tanks, 0) > kFillsJacket_pa;
+}
+
+// What jacket and suit hold grows on the way up, the faster the shallower: who rises lets it out as
+// it does, so that fins alone make the rate. A button is held until enough is out, or let go at
+// kVent_s.
+void vent(const Body& body, const HumanState& state, bool at_valve, SwimmerState& swimmer,
+          HumanInputs& inputs) {
+  swimmer.lift_sum = std::clamp(swimmer.lift_sum, -kRiseSum_l_s, kRiseSum_l_s);
+  const double lifted = lifted_l(body, state);
+  const bool goes_on = swimmer.button_s < 0.0;
+  const bool lets_out =
+      state.life.jacket_moles > kEmptyJacket_mol &&
+      (goes_on ? lifted > kVentTo_l : lifted > kVentAt_l && swimmer.button_s > kVentWait_s);
+  const bool lets_in =
+      can_fill(body, state) &&
+      (goes_on ? lifted < kFillTo_l : lifted < kFillAt_l && swimmer.button_s > kWait_s);
+  if (!lets_out && !lets_in)
+    swimmer.button_s = std::max(swimmer.button_s, 0.0);
+  else if (!goes_on)
+    swimmer.button_s = -kVent_s;
+  inputs.buttons = lets_in ? kInflate : lets_out && at_valve ? kDump : 0;
+}
+
 // Rises and sinks by breath first, by the jacket where breath does not do.
 void balance(const Body& body, double sink_too_much_m_s, const HumanState& state,
              SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
@@ -105,6 +151,7 @@ void balance(const Body& body, double sink_too_much_m_s, const HumanState& state
   follow(swimmer.breath_bias_m3, breath_m3, kBreathLag_s, dt_s);
   inputs.breath_bias_m3 = swimmer.breath_bias_m3;
   swimmer.button_s += dt_s;
+  if (swimmer.rises > 0.0) return vent(body, state, at_valve, swimmer, inputs);
   const bool more = swimmer.lift_sum > 0.0;
   const double press_s = more ? kPress_s : kVentPress_s;
   if (swimmer.button_s < -press_s && (more || at_valve)) swimmer.button_s = -press_s;
@@ -113,7 +160,7 @@ void balance(const Body& body, double sink_too_much_m_s, const HumanState& state
     if (swimmer.button_s >= -press_s) inputs.buttons = more ? kInflate : kDump;
   } else if (swimmer.button_s > kWait_s && std::abs(swimmer.lift_sum) > kSure_l_s) {
     // There is nothing to let out of an empty jacket.
-    if (more ? tank_pressure(body, state.life.tanks, 0) > 5e5 : state.life.jacket_moles > 1e-3)
+    if (more ? can_fill(body, state) : state.life.jacket_moles > kEmptyJacket_mol)
       swimmer.button_s = more ? -kPress_s : -kVent_s;
     swimmer.lift_sum *= 0.6;
   }
@@ -158,6 +205,21 @@ SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimme
       current ? drift_m_s + way_back.each_metre_1_s * std::max(off_m, 0.0) : 0.0;
   goal.speed_m_s = std::min(way_back.speed_m_s + upstream_m_s, way_back.most_m_s);
   return goal;
+}
+
+// Metres a second down to that depth. A place well above is risen to at a rate of its own, in
+// which the swimmer comes slowly.
+double wanted_sink(double deeper_m, bool swims, SwimmerState& swimmer, double dt_s) {
+  if (deeper_m > -kHardlyAbove_m)
+    swimmer.rises = 0.0;
+  else if (deeper_m < -kWellAbove_m && swimmer.rises == 0.0)
+    swimmer.rises = kRiseBegin;
+  double most_rise_m_s = kMostSink_m_s;
+  if (swimmer.rises > 0.0) {
+    follow(swimmer.rises, 1.0, kRiseLag_s, dt_s);
+    most_rise_m_s = kMostRise_m_s * swimmer.rises;
+  }
+  return std::clamp((swims ? 0.1 : 0.2) * deeper_m, -most_rise_m_s, kMostSink_m_s);
 }
 
 // 1: little way, legs do not steer; 0: way enough.
@@ -255,7 +317,7 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
   const double ahead_m_s = glm::dot(velocity_ned - state.held.current_ned_m_s, ahead_ned);
   const bool swims = goal.speed_m_s > settings.gliding_speed_m_s;
   const double deeper_m = goal.target_ned_m.z - state.root.position_ned_m.z;
-  const double sink_m_s = std::clamp((swims ? 0.1 : 0.2) * deeper_m, -kMostSink_m_s, kMostSink_m_s);
+  const double sink_m_s = wanted_sink(deeper_m, swims, swimmer, dt_s);
   const double too_much_m_s = velocity_ned.z - sink_m_s;
   swimmer.climb_sum = swims ? std::clamp(swimmer.climb_sum + too_much_m_s * dt_s, -3.0, 3.0) : 0.0;
   const double way = std::clamp(ahead_m_s / kWay_m_s, 0.0, 1.0);
@@ -271,7 +333,11 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
     if (std::abs(turn) < kBehind_rad || swimmer.turn_side == 0.0)
       swimmer.turn_side = std::copysign(1.0, turn);
     turn = std::copysign(turn, swimmer.turn_side);
-    const double climb_m_s = -sink_m_s + 0.3 * too_much_m_s + 0.04 * swimmer.climb_sum;
+    const bool rises = swimmer.rises > 0.0;
+    if (rises) turn = std::clamp(turn, -kRiseTurn_rad, kRiseTurn_rad);
+    const double firm = rises ? kRiseFirm : 1.0;
+    const double climb_m_s =
+        -sink_m_s + firm * 0.3 * too_much_m_s + firm * 0.04 * swimmer.climb_sum;
     pitch = std::clamp(climb_m_s / std::max(goal.speed_m_s, 0.2), -kMostPitch_rad, kMostPitch_rad);
   }
   if (swimmer.button_s < 0.0 && swimmer.lift_sum < 0.0) pitch = std::max(pitch, kVentPitch_rad);

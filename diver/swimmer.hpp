@@ -48,6 +48,7 @@ struct SwimmerState {
   BeatNotch roll, roll_rate;
   double rests = 1.0;     // 1: lies still in the water, 0: has way
   double button_s = 0.0;  // since a button was last let go; negative: still to be pressed
+  double rises = 0.0;  // to a place well above: the share of its rate that is wanted; 0: does not
   // Who is to hover: 1: was adrift and swims back; 2: tilts, and swims to right himself.
   std::uint64_t goes_back = 0;
 
@@ -74,6 +75,7 @@ struct SwimmerState {
     field("roll_rate", self.roll_rate);
     field("rests", self.rests);
     field("button_s", self.button_s);
+    field("rises", self.rises);
     field("goes_back", self.goes_back);
   }
 };
