@@ -15,12 +15,12 @@ constexpr double kMostBend_rad = radians(18.0), kMostAside_rad = radians(25.0);
 constexpr double kMostKick_w = 300.0;
 constexpr double kMostPitch_rad = radians(30.0);
 constexpr double kMostSink_m_s = 0.15;  // 9 m a minute
-// Who is to rise by so much does it by less than the 9 m a minute that agencies teach, at first
-// slower still (a share of it, seconds): until so near.
+// Who is to rise by so much does it more slowly than the 9 m a minute that is taught (30 feet: NOAA
+// Diving Manual), until so near; and begins with that share of the rate, for which pitch and jacket
+// have seconds to come.
 constexpr double kMostRise_m_s = 0.12, kRiseBegin = 0.2, kRiseLag_s = 12.0;
 constexpr double kWellAbove_m = 1.3, kHardlyAbove_m = 0.2;
-// The pitch holds that rate so much more firmly than a depth; and no sharp turn, which would bring
-// the head up.
+// The pitch holds that rate so much more firmly than a depth. Sharp turns would bring the head up.
 constexpr double kRiseFirm = 2.0, kRiseTurn_rad = 0.2;
 constexpr double kMostBreathBias_m3 = 0.6e-3;
 // So fast through the water legs steer; slower, posture does.
@@ -60,8 +60,8 @@ constexpr std::uint64_t kGoesBack = 1, kRightsHimself = 2;
 constexpr double kSteeringLag_s = 0.4, kBreathLag_s = 0.7;
 // Buttons are pressed for a moment, after so much want of breath, and then waited for.
 constexpr double kPress_s = 0.25, kWait_s = 3.0, kSure_l_s = 4.0;
-// Who rises lets out what lifts so much more than it should, and in where so much is missing: the
-// second figures end it. What breath makes up for is bounded then.
+// Who rises lets gas out where so much too much lifts, down to so much, and in where so much is
+// missing. Breath holds the rest: so much want of it is remembered.
 constexpr double kVentAt_l = 0.2, kVentTo_l = 0.0, kVentWait_s = 2.0;
 constexpr double kFillAt_l = -0.8, kFillTo_l = -0.5;
 constexpr double kRiseSum_l_s = 2.0;

@@ -9,6 +9,7 @@
 namespace neritic::diver {
 
 struct SwimGoal {
+  // Well above: is risen to by less than 9 m a minute, in wide turns where it lies straight above.
   Vec3 target_ned_m{0.0};
   // Through the water; 0: hovers there, level, and swims back when a current took the diver away.
   double speed_m_s = 0.5;

@@ -21,7 +21,7 @@ struct Rise {
   double alarm_s = 0.0;                     // so long it said so
   double over_m = 0.0;                      // above the place
   double risen_s = -1.0, arrived_s = -1.0;  // within .5 m of the depth, within 1 m of the place
-  // From a minute after arriving on, for two.
+  // From a minute after arriving on, for another.
   double off_depth_m = 0.0, pitch_deg = 0.0;
 };
 
@@ -55,7 +55,7 @@ Rise rise_of(const RiseCase& c) {
   out.arrived_s = now_s;
   swim_for(body, s, {place, 0.0}, 60.0, see);
   calm = true;
-  swim_for(body, s, {place, 0.0}, 120.0, see);
+  swim_for(body, s, {place, 0.0}, 60.0, see);
   return out;
 }
 
@@ -107,6 +107,21 @@ TEST(Swimmer, RisesNoFasterThanTaughtAndStopsAtThePlace) {
     EXPECT_LT(rise.off_depth_m, 0.35) << c.name;
     EXPECT_LT(rise.pitch_deg, 15.0) << c.name;
   }
+}
+
+// A jacket that lifts too little is filled, as far as fins and breath hold the rest.
+TEST(Swimmer, WhoIsTooHeavyFillsTheJacketToRise) {
+  const Body body = body_with(Gear{});
+  Swim s = begin(body, {0.0, 0.0, 20.0}, 0.0);
+  const double neutral_moles = s.state.life.jacket_moles;
+  s.state.life.jacket_moles = 0.0;
+  const auto nothing = [](const HumanState&) {};
+  swim_for(body, s, {{100.0, 0.0, 5.0}, 0.4}, 30.0, nothing);
+  EXPECT_GT(s.state.life.jacket_moles, 0.7 * neutral_moles);
+  const double then_m = s.state.root.position_ned_m.z;
+  EXPECT_LT(then_m, 19.0);
+  swim_for(body, s, {{100.0, 0.0, 5.0}, 0.4}, 60.0, nothing);
+  EXPECT_NEAR(then_m - s.state.root.position_ned_m.z, 7.5, 1.0);
 }
 
 }  // namespace
