@@ -210,10 +210,12 @@ SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimme
 // Metres a second down to that depth. A place well above is risen to at a rate of its own, in
 // which the swimmer comes slowly.
 double wanted_sink(double deeper_m, bool swims, SwimmerState& swimmer, double dt_s) {
-  if (deeper_m > -kHardlyAbove_m)
+  if (deeper_m > -kHardlyAbove_m && swimmer.rises > 0.0) {
     swimmer.rises = 0.0;
-  else if (deeper_m < -kWellAbove_m && swimmer.rises == 0.0)
+    swimmer.button_s = std::max(swimmer.button_s, 0.0);  // lets go of what was held for the rise
+  } else if (deeper_m < -kWellAbove_m && swimmer.rises == 0.0) {
     swimmer.rises = kRiseBegin;
+  }
   double most_rise_m_s = kMostSink_m_s;
   if (swimmer.rises > 0.0) {
     follow(swimmer.rises, 1.0, kRiseLag_s, dt_s);
