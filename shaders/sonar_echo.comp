@@ -309,18 +309,16 @@ void main() {
   if (s.pixel < 0 && kRecords == 0) return;
   ivec2 noted = ivec2(int(c.n_range), -1);  // coherent: the first and the last bin with power
   uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
-  SonarColumn seen = s;
-  seen.pixel = max(s.pixel, 0);
   Look before, look, after;  // kInTurn: the rows beside each
-  if (kInTurn) look = after = look_at(seen, 0);
+  if (kInTurn) look = after = look_at(s, 0);
   for (uint row = first; row < c.n_elevation; row += kLanes) {
     if (kInTurn) {
       before = look;
       look = after;
-      after = look_at(seen, min(row + 1, c.n_elevation - 1));
-    } else look = look_at(seen, row);
+      after = look_at(s, min(row + 1, c.n_elevation - 1));
+    } else look = look_at(s, row);
     BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0), false);
-    if (s.pixel >= 0) hit = beam_hit(s, look, beside(s, row, before, look, after));
+    if (s.pixel >= 0) hit = beam_hit(s, look, ranges_beside(s, row, before, look, after));
     float power = hit.strength;
     uvec2 label = uvec2(0);
     float range_m = hit.range_m;

@@ -56,8 +56,8 @@ void main() {
     else look = look_at(s, row);
     Look next_look = look_at(s, next);
     if (kInTurn) after = look_at(s, min(row + 2, c.n_elevation - 1));
-    BeamHit hit = hit_of(s, look, beside(s, row, before, look, next_look), false);
-    BeamHit next_hit = hit_of(s, next_look, beside(s, next, look, next_look, after), false);
+    BeamHit hit = hit_of(s, look, ranges_beside(s, row, before, look, next_look), false);
+    BeamHit next_hit = hit_of(s, next_look, ranges_beside(s, next, look, next_look, after), false);
     if (kInTurn) before = next_look;
     bool two = row + kLanes < c.n_elevation;
     if (hit.doubtful) doubtful = uvec2(min(doubtful.x, row), row + 1);

@@ -181,7 +181,7 @@ struct Look {
   vec4 surface;   // surface_at
   int pixel, v;   // beside the view nothing is seen, for a texel there is zero
   float pixel_tan;
-  int centre_v;   // kInTurn: centre_range
+  int centre_v;   // kInTurn: what centre_range tells of the row
   float centre_m;
 };
 
@@ -217,10 +217,13 @@ vec2 neighbour_ranges(SonarColumn s, uint row, int v) {
   return kBounded ? vec2(neighbour_range(s, int(row) - 1, v), neighbour_range(s, int(row) + 1, v)) : vec2(0.0);
 }
 
-// The same, of the looks before and after it where they are at hand.
-vec2 beside(SonarColumn s, uint row, Look before, Look look, Look after) {
+// neighbour_ranges, of the looks before and after the row's where they are at hand; beyond the first and the last row
+// any look will do.
+vec2 ranges_beside(SonarColumn s, uint row, Look before, Look look, Look after) {
   if (!kInTurn) return neighbour_ranges(s, row, look.v);
-  return vec2(before.centre_v == look.v ? 0.0 : before.centre_m, after.centre_v == look.v ? 0.0 : after.centre_m);
+  bool below = row > 0 && before.centre_v != look.v;
+  bool above = row + 1 < c.n_elevation && after.centre_v != look.v;
+  return vec2(below ? before.centre_m : 0.0, above ? after.centre_m : 0.0);
 }
 
 // neighbours_m: neighbour_ranges, where footprints are bounded. again: where it is doubtful the neighbouring pixel is

@@ -57,6 +57,11 @@ inline Shape nearest_of(std::vector<Shape> shapes) {
   };
 }
 
+inline Shape seabed_with_two_spheres() {
+  return nearest_of({sphere(Vec3(.4, .1, -3), .35, 4), sphere(Vec3(-1, -.2, -3.5), .2, 5),
+                     plane(Vec3(0, -1, 0), .6, 1)});
+}
+
 // The images that a perfect rasterizer gives for a pinhole whose axis has azimuth yaw_rad.
 inline sonar::SonarInput images_of(const Shape& shape, std::uint32_t width, std::uint32_t height,
                                    const sonar::Intrinsics& k, double yaw_rad = 0.0) {

@@ -12,20 +12,10 @@ using sonar::BeamGrid;
 using sonar::Gather;
 using sonar::SonarImage;
 using sonar::SonarInput;
+using test::seabed_with_two_spheres;
+using test::total;
 
 class SonarGpu : public test::SonarGpuTest {};
-
-test::Shape seabed_with_two_spheres() {
-  return test::nearest_of({test::sphere(Vec3(.4, .1, -3), .35, 4),
-                           test::sphere(Vec3(-1, -.2, -3.5), .2, 5),
-                           test::plane(Vec3(0, -1, 0), .6, 1)});
-}
-
-double total(const SonarImage& image) {
-  double sum = 0.0;
-  for (const float value : image.intensity) sum += value;
-  return sum;
-}
 
 // Share of a's energy that has a partner in b within one range row and one column: what b's cells
 // can take up when each may move by one bin.
@@ -174,71 +164,6 @@ TEST_F(SonarGpu, GivesTheSameBitsEveryRun) {
       EXPECT_EQ(hash.value(), first) << name_of(gather);
     }
   }
-}
-
-// A thread a column in texel buffers, in storage buffers, and a workgroup a column with atomics.
-constexpr sonar::GatherThreads kWaysToSum[] = {
-    {.atomics = false}, {.atomics = false, .texels = false}, {.atomics = true}};
-
-TEST_F(SonarGpu, HoweverThreadsShareTheWorkTheBitsAreTheSame) {
-  // The second with rows that are taller than a range bin.
-  for (const auto& bins : {sonar::Bins{300, 301, 199}, sonar::Bins{900, 301, 40}}) {
-    const BeamGrid grid = sonar::symmetric_grid(1, 5, radians(90), radians(28), bins);
-    const auto inputs = test::sector_images(grid, seabed_with_two_spheres(), 0.7);
-    for (const Gather gather : {Gather::kNearest, Gather::kPlane}) {
-      std::vector<SonarImage> images;
-      for (const sonar::GatherThreads& threads : kWaysToSum) {
-        auto made = sonar::ImageGather::create(device(), grid, inputs, gather, threads);
-        ASSERT_TRUE(made.ok()) << made.error().message;
-        auto image = (*made)->run();
-        ASSERT_TRUE(image.ok());
-        images.push_back(std::move(*image));
-      }
-      EXPECT_GT(total(images[0]), 1.0);
-      for (std::size_t i = 1; i < images.size(); ++i) {
-        EXPECT_EQ(images[0].intensity, images[i].intensity) << i;
-        EXPECT_EQ(images[0].labels, images[i].labels) << i;
-      }
-    }
-  }
-}
-
-TEST_F(SonarGpu, HoweverThreadsShareTheWorkTermsGiveTheSameBits) {
-  scene::Sonar sonar;
-  sonar.azimuth_rad = radians(60.0);
-  sonar.elevation_rad = radians(28.0);
-  sonar.bins_azimuth = 64;
-  sonar.terms.level = scene::SonarLevel{};
-  // Rows that are lower than a range bin, then taller.
-  for (const bool tall : {false, true})
-    for (const bool speckle : {false, true}) {
-      SCOPED_TRACE(fmt::format("tall {} speckle {}", tall, speckle));
-      sonar.bins_range = tall ? 1500 : 200;
-      sonar.bins_elevation = tall ? 60 : 300;
-      sonar.terms.speckle.reset();
-      if (speckle) sonar.terms.speckle = scene::SonarSpeckle{};
-      NERITIC_ASSERT_OK(const auto heads, sonar::plan_heads(sonar));
-      const sonar::Head& head = heads.front();
-      EXPECT_EQ(sonar::footprint_of(head.samples, {}),
-                tall ? shared::kSonarFootprintBounded : shared::kSonarFootprintShared);
-      // A bin's power of all rows overflows 32 bits: what is carried counts too.
-      ASSERT_GT(head.samples.bins.elevation, 2 * 16u);
-      const auto seen = tall ? seabed_with_two_spheres() : test::sphere(Vec3(0.0), 3.004, 4);
-      const auto inputs = test::sector_images(head.samples, seen, 1.0);
-      std::vector<SonarImage> images;
-      for (const sonar::GatherThreads& threads : kWaysToSum) {
-        NERITIC_ASSERT_OK(
-            const auto made,
-            sonar::ImageGather::create(device(), sonar, head, inputs[0], Gather::kPlane, threads));
-        NERITIC_ASSERT_OK(SonarImage image, made->run());
-        images.push_back(std::move(image));
-      }
-      EXPECT_GT(total(images[0]), 0.0);
-      for (std::size_t i = 1; i < images.size(); ++i) {
-        EXPECT_EQ(images[0].intensity, images[i].intensity) << i;
-        EXPECT_EQ(images[0].labels, images[i].labels) << i;
-      }
-    }
 }
 
 TEST_F(SonarGpu, ADeviceWithMemoryOfItsOwnGivesTheSameBits) {

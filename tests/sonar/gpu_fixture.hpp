@@ -6,6 +6,12 @@
 
 namespace neritic::test {
 
+inline double total(const sonar::SonarImage& image) {
+  double sum = 0.0;
+  for (const float value : image.intensity) sum += value;
+  return sum;
+}
+
 class SonarGpuTest : public GpuTest {
  protected:
   // Silence, and a failed test, where it cannot be made.
