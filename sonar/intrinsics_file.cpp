@@ -4,6 +4,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/text.hpp"
 #include "sonar/offline_input.hpp"
 
 namespace neritic::sonar {
@@ -138,8 +139,7 @@ Status check_pinhole(const Json& json, const std::string& path) {
   for (const char* key : {"model", "camera_model", "projection"}) {
     const auto at = json.find(key);
     if (at == json.end() || !at->is_string()) continue;
-    std::string name = at->get<std::string>();
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string name = lower_case(at->get<std::string>());
     if (name.find("pinhole") == name.npos && name.find("perspective") == name.npos)
       return bad_input("{}: \"{}\" is {}, a pinhole is accepted", path, key, quoted_json(*at));
   }

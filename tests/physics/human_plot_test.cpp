@@ -1,4 +1,4 @@
-// The plot of a diver's dive: what endangers is marked where it did, and nothing else is.
+// The plot of a diver's dive: what endangers is marked where it did, and is not where it did not.
 #include "tools/physics/human_plot.hpp"
 
 #include <gtest/gtest.h>

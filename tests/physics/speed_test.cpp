@@ -55,7 +55,7 @@ TEST(PhysicsSpeed, ADiverWithEverythingOnTakesUnderAHundredthOfACore) {
   TestDive dive =
       dive_of(std::string(kStillWater) +
               diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
-                         "swim = { speed_m_s = 0.45, waypoints_m = [[0, -12, -90]] }\n"));
+                         "swim = { speed_m_s = 0.45, waypoints_m = [[0, -12, -2000]] }\n"));
   dive.run(5.0);
   double shown_min = 0.0;
   const double least_ms = test::least_cpu_ms(10.0, [&] {

@@ -221,8 +221,8 @@ TEST(LabelEnergy, AFrameTakesMilliseconds) {
     EXPECT_EQ(labels.n_beams, 512u);
   });
   fmt::print("512 x 512 records, 500 bins: {:.2f} ms\n", least_ms);
-  EXPECT_LT(least_ms,
-            100.0);  // 3 ms and less on one core; sanitizers and busy machines take longer
+  // 3 ms and less on one core; sanitizers and busy machines take longer.
+  EXPECT_LT(least_ms, 100.0);
 }
 
 }  // namespace

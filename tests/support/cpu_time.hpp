@@ -1,6 +1,5 @@
-// Processor time of what a test repeats. Other guests of a machine can slow it threefold for
-// seconds, and their time is counted too: so it is repeated until it is quick enough or the trying
-// has taken long.
+// Processor time of what a test repeats, until it is quick enough or the trying has taken long:
+// what else a machine does slows it, too.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +7,8 @@
 
 namespace neritic::test {
 
-// The least milliseconds of all threads that one call takes: of at least five, then of as many as
-// it takes to be under `enough_ms`, for ten seconds at most.
+// The least milliseconds of all threads that one call takes: of five calls, then of as many as it
+// takes to be under `enough_ms` until ten seconds are spent.
 template <class Run>
 double least_cpu_ms(double enough_ms, const Run& run) {
   double least_ms = 1e9, all_ms = 0.0;

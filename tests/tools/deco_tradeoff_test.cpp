@@ -21,10 +21,10 @@ DecoPoint point_of(const std::vector<DecoPoint>& points, TissueMethod method, do
 }
 
 // What a sample costs by count instead of time, so that the knee is the same on any machine: one
-// pass over the tissues, and as much again where each takes an exponential.
+// pass over the tissues, six where each takes exponentials (diver/TRADE.md).
 DecoTradeoff counted(DecoTradeoff measured) {
   for (DecoPoint& p : measured.points)
-    p.us_an_hour = 3600.0 / p.step_s * (p.method == kEuler || p.method == kFactors ? 1.0 : 2.0);
+    p.us_an_hour = 3600.0 / p.step_s * (p.method == kSchreiner ? 6.0 : 1.0);
   return measured;
 }
 

@@ -35,8 +35,8 @@ TEST(SwimTradeoff, ErrorsFallWithStepsAndStripsAndThePlanarModelIsFarther) {
   EXPECT_LT(error(4, 1.0), 0.5 * error(1, 1.0));
   EXPECT_LT(error(16, 1.0), error(4, 1.0));
   EXPECT_GT(point_of(t, "turning", diver::Model::kPlanar, 6, 1.0).error_m, error(4, 1.0));
-  EXPECT_GT(point_of(t, "straight", diver::Model::kFull, 4, 1.0).us_a_second,
-            2.0 * point_of(t, "straight", diver::Model::kFull, 4, 12.5).us_a_second);
+  EXPECT_GT(point_of(t, "straight", diver::Model::kFull, 4, 1.0).strips_a_second,
+            12.0 * point_of(t, "straight", diver::Model::kFull, 4, 12.5).strips_a_second);
   EXPECT_EQ(std::ranges::count_if(t.points, is_default), 3);
   ASSERT_NE(knee(t.points, "ascent"), nullptr);
   EXPECT_EQ(knee(t.points, "ascent")->model, diver::Model::kFull);

@@ -1,8 +1,6 @@
 #include "tools/neritic/load_scene.hpp"
 
-#include <algorithm>
-#include <cctype>
-
+#include "engine/core/text.hpp"
 #include "engine/scene/gltf_loader.hpp"
 #include "tools/neritic/flags.hpp"
 
@@ -13,9 +11,7 @@ using Extent = std::pair<std::uint32_t, std::uint32_t>;  // pixels across, down
 
 Result<scene::Scene> load(const std::filesystem::path& path, const Extent& model_extent,
                           const scene::SceneOptions& options) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_case(path.extension().string());
   if (extension == ".toml" || extension.empty()) return scene::load_scene(path, options);
   if (extension != ".gltf" && extension != ".glb")
     return bad_input("{}: a {} file; accepted: a scene (.toml) or a model (.gltf, .glb)",

@@ -1,9 +1,8 @@
 // The settings of a `neritic sonar` run as they stand in its results, so that a later run can tell
 // whether a result would be its own.
-#include <cctype>
-
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
+#include "engine/core/text.hpp"
 #include "sonar/terms_json.hpp"
 #include "tools/neritic/sonar_job.hpp"
 
@@ -58,9 +57,7 @@ std::string detection_text(const scene::SonarDetection& d) {
 }  // namespace
 
 bool is_json_name(const std::string& intrinsics) {
-  std::string extension = std::filesystem::path(intrinsics).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".json";
+  return lower_case(std::filesystem::path(intrinsics).extension().string()) == ".json";
 }
 
 Result<nlohmann::json> settings_of(const SonarJob& job) {

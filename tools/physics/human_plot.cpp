@@ -66,15 +66,22 @@ std::vector<Series> tank_lines(const PhysicsHuman& human, const std::vector<Huma
 using diver::AscentAlarm;
 using diver::RiskLevel;
 
-// What endangers a diver, where on the line of depth it does.
+// What endangers a diver, the gravest last.
 struct Danger {
   const char* name;
   sonar::Color color;
   bool (*is)(const HumanRow&);
 };
 constexpr Danger kDangers[] = {
-    {"rises fast",
+    {"gas or breath of high risk",
      {0.902f, 0.624f, 0.0f},
+     [](const HumanRow& r) {
+       const diver::RiskProxies& risk = r.vitals.risk;
+       return std::max({risk.co2, risk.narcosis, risk.gas_density, risk.breathing}) >=
+              RiskLevel::kHigh;
+     }},
+    {"rises fast",
+     {0.95f, 0.45f, 0.45f},
      [](const HumanRow& r) { return r.ascent.view.alarm == AscentAlarm::kFast; }},
     {"rises dangerously fast",
      {0.8f, 0.0f, 0.1f},
@@ -82,25 +89,31 @@ constexpr Danger kDangers[] = {
     {"above the ceiling",
      {0.55f, 0.1f, 0.55f},
      [](const HumanRow& r) { return r.ascent.view.ceiling_violated; }},
-    {"oxygen too high or low",
-     {0.0f, 0.62f, 0.451f},
+    {"too much or too little oxygen",
+     {0.0f, 0.5f, 0.35f},
      [](const HumanRow& r) { return r.vitals.risk.oxygen >= RiskLevel::kHigh; }},
     {"nothing to breathe", kInk, [](const HumanRow& r) { return r.out_of_gas_s > 0.0; }}};
+// Each below the one before, in shares of the depths that are drawn.
+constexpr double kDangersApart = 0.02;
 
 double depth_of(const HumanRow& row) {
   return -row.world_from_body.position_m.y;
 }
 
-// Of all dangers that are met, dots on a line over time.
-void add_dangers(std::vector<Series>& lines, const std::vector<HumanRow>& rows,
-                 const HumanValue& y) {
+// Of all dangers that are met, dots along the line of depth, side by side.
+void add_dangers(std::vector<Series>& lines, const std::vector<HumanRow>& rows) {
+  const Axis depths = roomy_axis("", lines, &Series::y, 1.0);
+  const double apart_m = kDangersApart * (depths.max - depths.min);
+  double below_m = 0.0;
   for (const Danger& danger : kDangers) {
     Series dots = series_from<HumanRow>(
         rows, [&](const HumanRow& row) { return row.human == 0 && danger.is(row); }, danger.name,
-        danger.color, human_time, y);
+        danger.color, human_time, [&](const HumanRow& row) { return depth_of(row) + below_m; });
+    if (dots.x.empty()) continue;
     dots.joined = false;
     dots.marked = true;
-    if (!dots.x.empty()) lines.push_back(std::move(dots));
+    lines.push_back(std::move(dots));
+    below_m += apart_m;
   }
 }
 
@@ -114,7 +127,7 @@ void draw_profile(sonar::Canvas& canvas, const Box& box, const std::string& name
         first_over_time(rows, "next stop", 3,
                         [](const HumanRow& r) { return r.ascent.view.stop_m; })})
     if (std::ranges::any_of(line.y, [](double m) { return m > 0.0; })) lines.push_back(line);
-  add_dangers(lines, rows, depth_of);
+  add_dangers(lines, rows);
   const Axis x = roomy_axis("time, s", lines, &Series::x, 1e-3);
   const Axis y = roomy_axis("m", lines, &Series::y, 1.0);
   draw_lines(canvas, box, "Depth, ceiling and dangers of " + name, x, {y.label, y.max, y.min},
@@ -126,11 +139,11 @@ std::vector<Series> rate_lines(const PhysicsHuman& human, const std::vector<Huma
       rows, "upwards", 0, [](const HumanRow& r) { return r.ascent.view.ascent_m_min; })};
   const diver::AscentRateLimits& limits = human.computer->settings().ascent;
   const double most = lines[0].y.empty() ? 0.0 : std::ranges::max(lines[0].y);
-  // A limit is drawn where it is near.
+  // A limit is drawn where half of it is reached.
   if (most > 0.5 * limits.fast_m_min)
     lines.push_back(
         first_over_time(rows, "fast", 1, [&](const HumanRow&) { return limits.fast_m_min; }));
-  if (most > 0.7 * limits.dangerous_m_min)
+  if (most > 0.5 * limits.dangerous_m_min)
     lines.push_back(first_over_time(rows, "dangerous", 3,
                                     [&](const HumanRow&) { return limits.dangerous_m_min; }));
   return lines;
@@ -211,11 +224,12 @@ void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
   over_time("Rate of ascent of " + name, "m/min", rate_lines(human, rows));
   over_time("Minutes that " + name + " has and needs", "min", minute_lines(rows));
   over_time("Tanks of " + name, "bar", tank_lines(human, rows), 5.0);
-  over_time(
-      "Pace of " + name, "m/s, beats/s",
-      {line("speed, m/s", 0, [](const HumanRow& r) { return glm::length(r.velocity.linear()); }),
-       line("kick, beats/s", 1, [](const HumanRow& r) { return r.kick_hz; })},
-      0.2);
+  over_time("Speed over ground of " + name, "m/s",
+            {line("", 0, [](const HumanRow& r) { return glm::length(r.velocity.linear()); })}, 0.2);
+  over_time("Kicks of " + name, "beats/s",
+            {line("", 0, [](const HumanRow& r) { return r.kick_hz; })}, 0.2);
+  over_time("What the limbs of " + name + " give the water", "W",
+            {line("", 0, [](const HumanRow& r) { return r.limb_power_w; })});
   over_time("Gas that " + name + " breathes", "l/min",
             {line("ventilation", 0, [](const HumanRow& r) { return r.gas.ventilation_l_min; }),
              line("oxygen taken up", 1, [](const HumanRow& r) { return r.oxygen_l_min; })});

@@ -1,6 +1,5 @@
-// A diver's part of the plot of a dive: depth with its dangers, rates, times, gas,
-// pace, breath, risks. Pure functions; any
-// thread.
+// A diver's part of the plot of a dive: depth with its dangers, rates, times, tanks, pace, gas,
+// heart, balance, risks. Pure functions; any thread.
 #pragma once
 
 #include "tools/physics/human_record.hpp"
@@ -8,14 +7,14 @@
 
 namespace neritic::tools {
 
-// Heights of a panel, and of all five rows of them.
-inline constexpr double kHumanPanel_px = 450.0, kHumanPanels_px = 5.0 * kHumanPanel_px;
+// Heights of a panel, and of all six rows of them.
+inline constexpr double kHumanPanel_px = 420.0, kHumanPanels_px = 6.0 * kHumanPanel_px;
 
 // Of each diver, a line: east and north, or time and height over the surface.
 std::vector<Series> human_paths(const PhysicsWorld& world, const std::vector<HumanRow>& rows);
 std::vector<Series> human_heights(const PhysicsWorld& world, const std::vector<HumanRow>& rows);
 
-// Ten panels of the first diver, as wide as the canvas from top on; each has one unit.
+// Twelve panels of the first diver, as wide as the canvas from top on; each has one unit.
 void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
                        const PhysicsWorld& world, const std::vector<HumanRow>& rows);
 

@@ -241,7 +241,8 @@ DecoPoint knee(const DecoTradeoff& tradeoff) {
   std::vector<double> cost, error;
   for (const DecoPoint& p : worst) {
     const bool beaten = std::ranges::any_of(worst, [&](const DecoPoint& other) {
-      return other.us_an_hour < p.us_an_hour && other.error_bar <= p.error_bar;
+      return other.us_an_hour <= p.us_an_hour && other.error_bar <= p.error_bar &&
+             (other.us_an_hour < p.us_an_hour || other.error_bar < p.error_bar);
     });
     if (beaten || !std::isfinite(p.error_bar)) continue;
     front.push_back(p);
