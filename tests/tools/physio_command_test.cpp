@@ -112,6 +112,25 @@ TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
 }
 
 // The score is that of the saccades that are told: from the table and the marks it comes out anew.
+TEST(PhysioCommand, GazeTooSlowForSaccadesIsRefused) {
+  const test::ScratchFolder folder;
+  PhysioFlags flags;
+  flags.what = "gaze";
+  flags.out = folder / "out";
+  flags.file = (folder / "slow.csv").string();
+  for (const double hz : {10.0, 20.0}) {
+    std::string text = "t_s,x_deg,y_deg\n";
+    for (int i = 0; i < 200; ++i) text += fmt::format("{},{},0\n", i / hz, i / int(hz) % 2 * 5);
+    ASSERT_TRUE(write_text(flags.file, text).ok());
+    const auto done = run_physio(flags);
+    EXPECT_EQ(done.ok(), hz == 20.0);
+    if (!done.ok()) {
+      EXPECT_EQ(done.error().message,
+                flags.file + ": gaze at 10 Hz found, 20 Hz or more is accepted");
+    }
+  }
+}
+
 TEST(PhysioCommand, TheScoreOfGazeIsThatOfItsTable) {
   NERITIC_REQUIRE_SHARED(shared);
   const test::ScratchFolder folder;

@@ -1,5 +1,7 @@
 // `neritic physio gaze`: fixations and saccades.
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
@@ -37,6 +39,21 @@ std::string pixel_cells(const GazeReport& r, const Vec3& direction) {
   return pixel ? fmt::format(",{:.1f},{:.1f}", pixel->x, pixel->y) : ",,";
 }
 
+// A saccade of some 50 ms must not lie between two samples.
+constexpr double kLeastGaze_hz = 20.0;
+
+// Of the times in the middle, whatever a few of them are. Nothing of fewer than three samples.
+std::optional<double> sampling_hz(const std::vector<diver::GazeSample>& samples) {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    if (const double step_s = samples[i].time_s - samples[i - 1].time_s; step_s > 0.0)
+      steps_s.push_back(step_s);
+  if (steps_s.size() < 2) return std::nullopt;
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::ranges::nth_element(steps_s, middle);
+  return 1.0 / *middle;
+}
+
 }  // namespace
 
 double screen_x_deg(const Vec3& direction) {
@@ -55,6 +72,9 @@ Result<GazeReport> analyse_gaze(const PhysioFlags& flags) {
   NERITIC_TRY(const std::string text, read_text(flags.file));
   NERITIC_TRY(report.recording, diver::parse_gaze_csv(text, flags.file, flags.rate_hz));
   const auto& samples = report.recording.samples;
+  if (const auto hz = sampling_hz(samples); hz && *hz < 0.98 * kLeastGaze_hz)
+    return bad_input("{}: gaze at {:.3g} Hz found, {:g} Hz or more is accepted", flags.file, *hz,
+                     kLeastGaze_hz);
   const TimeNs start = now_ns();
   diver::GazeMonitor monitor(report.settings);
   for (const diver::GazeSample& sample : samples) monitor.push(sample, report.events);

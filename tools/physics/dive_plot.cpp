@@ -219,10 +219,10 @@ void draw_over_time(sonar::Canvas& canvas, const Box& box, const std::string& ti
 
 Status write_dive_plot(const std::filesystem::path& path, const PhysicsWorld& world,
                        const std::vector<DiveRow>& rows, const std::vector<HumanRow>& human_rows) {
-  const bool vehicles = !world.vehicles().empty(), humans = !world.humans().empty();
+  const bool vehicles = !world.vehicles().empty();
+  const auto humans = static_cast<double>(world.humans().size());
   const double high = vehicles ? kHeight : kMiddleY;
-  sonar::Canvas canvas(kWidth, static_cast<std::uint32_t>(high + (humans ? kHumanPanels_px : 0.0)),
-                       kPaper);
+  sonar::Canvas canvas(kWidth, static_cast<std::uint32_t>(high + humans * kHumanPanels_px), kPaper);
   draw_path(canvas, {10, 10, kMiddleX, kMiddleY}, world, rows, human_rows);
   draw_over_time(canvas, {kMiddleX, 10, kWidth - 10.0, kMiddleY},
                  "Height over the surface, and the ground below", "m",
@@ -234,7 +234,9 @@ Status write_dive_plot(const std::filesystem::path& path, const PhysicsWorld& wo
     draw_over_time(canvas, {kMiddleX, kMiddleY, kWidth - 10.0, kHeight - 10.0},
                    "Error and speed of " + first, "m, m/s", error_lines(world, rows), 0.05);
   }
-  if (humans) draw_human_panels(canvas, kWidth, high, world, human_rows);
+  for (std::size_t i = 0; i < world.humans().size(); ++i)
+    draw_human_panels(canvas, kWidth, high + static_cast<double>(i) * kHumanPanels_px,
+                      world.humans()[i], i, human_rows);
   return scene::write_png8(path, canvas.take());
 }
 

@@ -14,8 +14,10 @@ inline constexpr double kHumanPanel_px = 420.0, kHumanPanels_px = 6.0 * kHumanPa
 std::vector<Series> human_paths(const PhysicsWorld& world, const std::vector<HumanRow>& rows);
 std::vector<Series> human_heights(const PhysicsWorld& world, const std::vector<HumanRow>& rows);
 
-// Twelve panels of the first diver, as wide as the canvas from top on; each has one unit.
+// Twelve panels of a diver, the world's index-th, as wide as the canvas from top on; each has one
+// unit. Who has no tank has no panel of tanks.
 void draw_human_panels(sonar::Canvas& canvas, double width_px, double top_px,
-                       const PhysicsWorld& world, const std::vector<HumanRow>& rows);
+                       const PhysicsHuman& human, std::size_t index,
+                       const std::vector<HumanRow>& rows);
 
 }  // namespace neritic::tools

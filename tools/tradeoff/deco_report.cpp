@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "diver/deco_live.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
@@ -101,6 +102,9 @@ void draw_deco(sonar::Canvas& canvas, const Box& box, const DecoTradeoff& t,
   draw_lines(canvas, box, title, x, y, series, !noted);
   const DecoPoint best = knee(t);
   draw_mark(canvas, box, x, y, what(best), best.error_bar, "knee");
+  for (const DecoPoint& p : worst_of(t))
+    if (p.method == TissueMethod::kFactors && p.step_s == diver::kComputerSample_s)
+      draw_mark(canvas, box, x, y, what(p), p.error_bar, "default");
 }
 
 ImageU8 deco_plot(const DecoTradeoff& t) {

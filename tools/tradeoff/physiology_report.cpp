@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "diver/breath_monitor.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
@@ -163,8 +164,17 @@ void draw_breath(sonar::Canvas& canvas, const Box& error_box, const Box& right_b
   Axis y = axis_for("error in the middle, breaths/min", ys, true);
   y.max *= 4.0;
   draw_lines(canvas, error_box, "Breath, " + signals + " sounds: error", x, y, errors);
-  if (const BreathPoint* p = breath_knee(t, signals))
-    draw_mark(canvas, error_box, x, y, p->window_s, std::max(p->median_bpm, 0.01), "knee");
+  const BreathPoint* knee = breath_knee(t, signals);
+  for (const BreathPoint& p : t.breath) {
+    if (p.signals != signals || p.estimator != diver::BreathEstimator::kMultiBand) continue;
+    const bool at_knee = knee != nullptr && p.window_s == knee->window_s;
+    const bool chosen = p.window_s == diver::BreathSettings{}.window_s;
+    if (at_knee || chosen)
+      draw_mark(canvas, error_box, x, y, p.window_s, std::max(p.median_bpm, 0.01),
+                at_knee && chosen ? "knee, default"
+                : at_knee         ? "knee"
+                                  : "default");
+  }
   draw_lines(canvas, right_box, "Breath, " + signals + " sounds: right within 2", x,
              {"% of all windows", 0.0, 125.0}, rights);
 }
