@@ -2,9 +2,10 @@
 // same conventions found, and tables of times without stops. Any thread.
 //
 // The form, as such files document it (JSON; bar, m, min; what is optional has its default in
-// brackets; what is not named here is ignored, but a parameter, a member of reference, and what is
-// said of earlier dives, that is one of these but for capitals, or begins or goes on as one, is an
-// error; of all that is expected, what is there is compared):
+// brackets; what is not named here is ignored, but a parameter, a member of reference, of its
+// points, of oxygen_exposure, that is one of these but for capitals, or begins or goes on as one,
+// is an error, and so is all but a text that is said of earlier dives under a name that is not
+// here; of all that is expected, what is there is compared):
 //   tolerances: tissues_bar [1e-6], ndl_continuous_min [1e-3], stop_minutes [exact: 1e-3]
 //   profiles: a list of
 //     id; model: a text with 16B or 16C; coefficient_table: a text with "compartment 1b" or
@@ -24,9 +25,13 @@
 //       gases [the case's]; parameters that differ), surface_interval_min, surface_interval_gas
 //       ["air" or "O2/He"], and expected: first_dive_stops (rows of depth, minutes),
 //       first_dive_runtime_min, tissues_at_surfacing, tissues_after_interval. Several: second_dive,
-//       third_dive, and so on likewise with surface_interval_min a list; or a list of dives, oldest
-//       first, as repetitive, or in it under any name, each with its own surface_interval_min and
-//       with stops, runtime_min and the tissues expected of it; or a dive has its own repetitive
+//       third_dive, to the sixth, likewise with surface_interval_min a list; or a list of dives,
+//       oldest first, as repetitive, or in it under any name, each with its own
+//       surface_interval_min and with stops, runtime_min and the tissues expected of it; or a dive
+//       has its own repetitive, of what was dived before it. stops, runtime_min,
+//       tissues_at_surfacing, tissues_after_interval may stand in a dive, or beside it after its
+//       ordinal (second_dive_tissues_at_surfacing), once; tissues with no ordinal are those of the
+//       last of the dives that they stand beside, or a list of one table a dive
 //     segments: columns (from_m, to_m, minutes, o2_percent, he_percent, phase) and rows: replayed
 //     reference: end_of_bottom, first_stop, stops, surfacing, and so on: expected
 //       (DecoExpected). A first stop shallower than last_stop_m, in stops or in first_stop, stands

@@ -193,7 +193,6 @@ TEST(DecoCaseFile, WhatIsNotKnownIsLeftAlone) {
   EXPECT_EQ(fault_of(json), "read");
 }
 
-// Ways to say the same three dives before a fourth; deco_more.json has four more.
 // A parameter that is nearly one would leave the dive with another setting than the file says.
 TEST(DecoCaseFile, AMisspeltParameterIsRefused) {
   for (const auto& [key, nearest] : {std::pair{"last_stop", "last_stop_m"},
@@ -209,59 +208,11 @@ TEST(DecoCaseFile, AMisspeltParameterIsRefused) {
       fault_with("/reference/total_stop_time", 9),
       "dives.json: case 'small': profiles[0].reference.total_stop_time: not known; the nearest "
       "is total_stop_time_min");
+  EXPECT_THAT(fault_with("/oxygen_exposure/cns", 4), HasSubstr("nearest is cns_percent"));
+  EXPECT_THAT(fault_with("/reference/surfacing/tissues", 1),
+              HasSubstr("nearest is tissues_n2_he_bar"));
   EXPECT_EQ(fault_with("/parameters/comment", "no setting"), "read");
   EXPECT_EQ(fault_with("/parameters/planner_version", 3), "read");
-}
-
-TEST(DecoCaseFile, EarlierDivesThatWouldNotCountAreRefused) {
-  const Json dive = {{"depth_m", 30}, {"bottom_runtime_min", 25}};
-  const auto fault = [&](const char* second, const Json& intervals) {
-    Json repetitive = {{"first_dive", dive}, {"surface_interval_min", intervals}};
-    if (*second) repetitive[second] = dive;
-    return fault_with("/repetitive", repetitive);
-  };
-  EXPECT_EQ(fault("", 60), "read");
-  EXPECT_EQ(fault("second_dive", {60, 90}), "read");
-  EXPECT_THAT(fault("", {60, 90}),
-              HasSubstr("surface_interval_min: 2 minutes at the surface for 1"));
-  EXPECT_THAT(fault("second_div", {60}),
-              HasSubstr("second_div: 1 dives found before it, second_dive"));
-  EXPECT_THAT(fault("third_dive", {60}),
-              HasSubstr("third_dive: 1 dives found before it, second_dive"));
-}
-
-TEST(DecoCaseFile, EarlierDivesAreToldInManyWays) {
-  const Json more = parse_json(deco_text("deco_more.json")).value();
-  Json dive;
-  for (const Json& one : more["profiles"])
-    if (one["id"] == "three_earlier_air_list") dive = one;
-  const Json list = dive["repetitive"];
-  ASSERT_EQ(list.size(), 3u);
-  Json nested = {{"first_dive", list[2]}};
-  nested["first_dive"]["repetitive"] = {{"first_dive", list[1]}};
-  nested["first_dive"]["repetitive"]["first_dive"]["repetitive"] = {{"first_dive", list[0]}};
-  Json entries = Json::array();
-  for (const Json& one : list)
-    entries.push_back({{"dive", one}, {"surface_interval_min", one["surface_interval_min"]}});
-  for (const Json& told : {Json{{"first_dive", list}}, Json{{"history", entries}}, nested}) {
-    dive["repetitive"] = told;
-    dive.erase("initial_tissues");
-    const auto read = read_deco_cases(json_text({{"profiles", {dive}}}), "dives.json");
-    ASSERT_TRUE(read.ok()) << read.error().message;
-    EXPECT_EQ(read->dives[0].earlier.size(), 3u);
-    const CaseResult result = check_deco(*read)[0];
-    EXPECT_TRUE(result.ok()) << told << ": " << result.worst().what;
-    Json later = dive;  // and the intervals count
-    later["repetitive"] = told;
-    const Json::json_pointer interval(
-        told.contains("history")        ? "/history/1/surface_interval_min"
-        : told["first_dive"].is_array() ? "/first_dive/0/surface_interval_min"
-                                        : "/first_dive/repetitive/first_dive/surface_interval_min");
-    ASSERT_TRUE(later["repetitive"].contains(interval));
-    later["repetitive"][interval] = 5;
-    const auto wrong = read_deco_cases(json_text({{"profiles", {later}}}), "dives.json");
-    EXPECT_FALSE(check_deco(*wrong)[0].ok());
-  }
 }
 
 TEST(DecoCaseFile, GasesOfAnIntervalAndTheFirstCompartmentAreFoundInWords) {
