@@ -77,17 +77,21 @@ void BreathMonitor::record(std::span<const float> sound) {
                       sound.begin() + static_cast<std::ptrdiff_t>(some));
     sound = sound.subspan(some);
     if (recording_.size() < block_samples_) return;
-    if (full_.load(std::memory_order_acquire)) {
+    if (full_.load(std::memory_order_acquire))
       ++lost_;
-    } else {
-      recording_.swap(handed_);
-      handed_lost_ = lost_;
-      lost_ = 0;
-      full_.store(true, std::memory_order_release);
-      work_.release();
-    }
+    else
+      hand_over();
     recording_.clear();
   }
+}
+
+// Precondition: not full_.
+void BreathMonitor::hand_over() {
+  recording_.swap(handed_);
+  handed_lost_ = lost_;
+  lost_ = 0;
+  full_.store(true, std::memory_order_release);
+  work_.release();
 }
 
 void BreathMonitor::analyse() {
@@ -106,6 +110,14 @@ void BreathMonitor::analyse() {
 
 void BreathMonitor::wait() {
   full_.wait(true, std::memory_order_acquire);
+}
+
+void BreathMonitor::finish() {
+  wait();
+  if (recording_.empty()) return;
+  hand_over();
+  recording_.clear();
+  wait();
 }
 
 const BreathState& BreathMonitor::state() {

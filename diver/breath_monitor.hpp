@@ -58,11 +58,15 @@ class BreathMonitor {
   void record(std::span<const float> sound);
   // Recorder's thread: waits until what was handed over is analysed.
   void wait();
+  // Recorder's thread: the sound is over. The last block, shorter than the others, is analysed too;
+  // waits for it.
+  void finish();
   // Reader's thread.
   const BreathState& state();
 
  private:
   void analyse();
+  void hand_over();
 
   double rate_hz_;
   std::size_t block_samples_;

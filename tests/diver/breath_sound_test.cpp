@@ -104,7 +104,7 @@ TEST(BreathSound, WhatIsNoNumberIsRefusedAndCounted) {
 }
 
 TEST(BreathMonitor, TwoThreadsGiveWhatOneDoes) {
-  const std::vector<float> sound = bursts(1.0, 0.4, 100.0, 1000.0);
+  const std::vector<float> sound = bursts(1.0, 0.4, 101.1, 1000.0);  // half a block is left over
   const BreathSettings settings{BreathEstimator::kMultiBand, 2.0, 20.0};
   Recording recording{"", 1000.0};
   recording.samples.assign(sound.begin(), sound.end());
@@ -123,7 +123,11 @@ TEST(BreathMonitor, TwoThreadsGiveWhatOneDoes) {
     EXPECT_EQ(state.time_s, expected[seen - 1].time_s);
     EXPECT_EQ(state.lost_blocks, 0u);
   }
-  EXPECT_EQ(seen, expected.size());
+  EXPECT_EQ(seen + 1, expected.size());
+  monitor.finish();
+  EXPECT_EQ(monitor.state().blocks, expected.size());
+  EXPECT_EQ(monitor.state().time_s, expected.back().time_s);
+  EXPECT_EQ(monitor.state().estimate.rate_bpm, expected.back().estimate.rate_bpm);
   EXPECT_NEAR(expected.back().estimate.rate_bpm, 15.0, 0.5);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -221,7 +222,8 @@ TEST(PhysioCommand, SoundIsHeardUpToItsEnd) {
 TEST(PhysioCommand, PlayedInRealTimeItWritesWhatWasAskedFor) {
   const test::ScratchFolder folder;
   std::string sound = "# fs_hz=1000\nsound\n";
-  for (int i = 0; i < 5000; ++i)
+  // One block, and a tenth of a second that is none.
+  for (int i = 0; i < 5100; ++i)
     sound += fmt::format("{:.4f}\n", std::sin(0.7 * i) * std::sin(2.0 * kPi * 0.4e-3 * i));
   ASSERT_TRUE(write_text(folder / "s_24bpm.csv", sound).ok());
   PhysioFlags flags;
@@ -241,6 +243,8 @@ TEST(PhysioCommand, PlayedInRealTimeItWritesWhatWasAskedFor) {
   EXPECT_EQ(scene::read_image8(folder / "played.png")->width, 1600u);
   EXPECT_EQ(read_text(folder / "played/breath.csv").value(), rows);
   EXPECT_EQ(rows, read_text(folder / "whole/breath.csv").value());
+  EXPECT_EQ(std::ranges::count(rows, '\n'), 3);
+  EXPECT_THAT(rows, HasSubstr("\n5.10,"));
   const auto whole = json_in(folder / "whole/breath.json");
   const auto played = json_in(folder / "played/breath.json");
   EXPECT_EQ(played["estimates"], whole["estimates"]);
@@ -259,7 +263,7 @@ TEST(PhysioCommand, PlayedInRealTimeItWritesWhatWasAskedFor) {
   const auto short_one = run_physio(flags);
   ASSERT_FALSE(short_one.ok());
   EXPECT_THAT(short_one.error().message,
-              HasSubstr("5.0 s found, 10 s or more is accepted with --realtime"));
+              HasSubstr("5.1 s found, 10 s or more is accepted with --realtime"));
 }
 
 TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {

@@ -151,6 +151,8 @@ Result<BreathReport> play_sound(const PhysioFlags& flags) {
   }
   monitor.wait();
   show();
+  monitor.finish();
+  show();
   report.plain = plain_states(report);
   return report;
 }
