@@ -25,6 +25,7 @@ struct OxygenExposure {
 
 inline constexpr double kCnsFrom_bar = 0.5;       // as E. C. Baker and most programs count
 inline constexpr double kCnsFromTable_bar = 0.6;  // where NOAA's printed table begins
+inline constexpr double kCnsToTable_bar = 1.6;    // and ends
 
 // Of minutes at a partial pressure that changes linearly, in closed form: CNS 100 / limit, from
 // cns_from_bar on; OTU ((pO2 - 0.5) / 0.5)^(5/6) a minute above 0.5 (J. M. Clark and C. J.

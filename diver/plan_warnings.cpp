@@ -34,6 +34,7 @@ class Warnings {
     }
     const OxygenExposure &oxygen = plan_.oxygen, &before = request_.oxygen_before;
     const double end = plan_.run_min();
+    beyond_table();
     over(kCns, {}, end, 0.0, oxygen.cns_percent + before.cns_percent, kCns_percent);
     over(kOtu, {}, end, 0.0, oxygen.otu + before.otu, kOtuLimit);
     for (PlanWarning& w : found_) w.text = text_of(w);
@@ -55,6 +56,30 @@ class Warnings {
          most ? kMostDensity_g_l : kAdvisedDensity_g_l);
     over(kNarcosis, s.gas, run_min, depth_m, narcotic_depth_m(gas.mix, depth_m, where_),
          kNarcotic_m, 0.05);
+  }
+
+  // The plan's minutes above the last pressure for which there is a limit, and the most of them.
+  void beyond_table() {
+    PlanWarning w{kCnsBeyondTable, 0.0, 0.0, 0.0, kCnsToTable_bar, {}, {}};
+    double run_min = 0.0;
+    for (const PlanSegment& s : plan_.segments) {
+      const auto po2 = [&](double depth_m) {
+        return request_.gases[s.gas].mix.oxygen * where_.pressure_bar(depth_m);
+      };
+      const double from = po2(s.from_m), to = po2(s.to_m), most = std::max(from, to),
+                   least = std::min(from, to);
+      const double above = most - std::clamp(kCnsToTable_bar, least, most);
+      beyond_min_ += s.minutes *
+                     (most > least ? above / (most - least) : (most > kCnsToTable_bar ? 1.0 : 0.0));
+      if (most > w.value + kSlack) {
+        w.value = most;
+        w.gas = s.gas;
+        w.depth_m = from > to ? s.from_m : s.to_m;
+        w.run_min = from > to ? run_min : run_min + s.minutes;
+      }
+      run_min += s.minutes;
+    }
+    if (w.value > kCnsToTable_bar + kDecoSlack_bar) keep(w);
   }
 
   // The rule of fifths (S. Burton, isobaric counter diffusion).
@@ -108,6 +133,12 @@ class Warnings {
       case kCns:
         return fmt::format("CNS {:.0f} % at the end{}: above {:g}", w.value,
                            earlier(before.cns_percent), w.limit);
+      case kCnsBeyondTable:
+        return fmt::format(
+            "CNS: {:.1f} min above {:g} bar, up to {:.2f} {}, where NOAA's table ends; reckoned "
+            "there by its last limit run on to nothing at 1.7 bar, never below a minute: a warning "
+            "and no figure",
+            beyond_min_, w.limit, w.value, place);
       case kOtu:
         return fmt::format("OTU {:.0f} at the end{}: above {:g}", w.value, earlier(before.otu),
                            w.limit);
@@ -127,6 +158,7 @@ class Warnings {
   const DivePlan& plan_;
   const DecoEnvironment& where_;
   std::vector<PlanWarning> found_;
+  double beyond_min_ = 0.0;
 };
 
 }  // namespace

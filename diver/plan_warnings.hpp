@@ -15,6 +15,7 @@ enum class PlanWarningKind {
   kDensityMost,       // above 6.2
   kNarcosis,          // narcotic depth above 30 m
   kCns,               // above 80 %, what earlier dives left included
+  kCnsBeyondTable,    // pO2 above 1.6 bar, where NOAA's table of CNS ends
   kOtu,               // above 300 in a day
   kCounterdiffusion,  // nitrogen up by more than a fifth of helium's fall at a switch
   kTankTooSmall,      // a tank does not hold what the plan takes: gas_plan.hpp

@@ -30,7 +30,7 @@ TEST(PlanWarnings, AreGivenWhereALimitIsPassed) {
   EXPECT_EQ(kinds_of(square_dive(39.0, 10.0)), (Kinds{kDensityMost, kNarcosis}));
   EXPECT_EQ(kinds_of(square_dive(35.0, 10.0)), (Kinds{kDensityAdvised, kNarcosis}));
   EXPECT_EQ(kinds_of(square_dive(30.0, 15.0, {0.5, 0.0})),
-            (Kinds{kOxygenHigh, kDensityAdvised, kCns}));
+            (Kinds{kOxygenHigh, kDensityAdvised, kCns, kCnsBeyondTable}));
   EXPECT_EQ(kinds_of(square_dive(20.0, 15.0, {0.10, 0.5})), Kinds{kOxygenLow});
   DivePlanRequest trimix = square_dive(60.0, 25.0, {0.18, 0.45});
   trimix.gases.push_back({{0.5, 0.0}, 21.0, GasRole::kDeco});
@@ -40,6 +40,31 @@ TEST(PlanWarnings, AreGivenWhereALimitIsPassed) {
   EXPECT_TRUE(kinds_of(trimix).contains(kOxygenHigh));
   EXPECT_TRUE(kinds_of(square_dive(20.0, 300.0, {0.5, 0.0})).contains(kCns));
   EXPECT_TRUE(kinds_of(square_dive(20.0, 300.0, {0.5, 0.0})).contains(kOtu));
+}
+
+// NOAA's table ends at 1.6 bar: what is reckoned beyond it is said to be.
+TEST(PlanWarnings, OxygenBeyondTheTableOfCnsIsSaid) {
+  const auto line_of = [](const DivePlanRequest& request) {
+    for (const PlanWarning& w : plan_warnings(request, plan_dive(request).value()))
+      if (w.kind == kCnsBeyondTable) return w.text;
+    return std::string();
+  };
+  DivePlanRequest request = square_dive(30.0, 25.0, {0.5, 0.0});
+  request.conventions.environment = {1.0, 0.1};
+  // 1.6 bar is at 22 m: 1.1 min down at 20 m/min, from 1.5 min on at 2 bar, and .8 min up at 10.
+  EXPECT_EQ(line_of(request),
+            "CNS: 24.7 min above 1.6 bar, up to 2.00 on EAN50 at 30 m, 2 min, where NOAA's table "
+            "ends; reckoned there by its last limit run on to nothing at 1.7 bar, never below a "
+            "minute: a warning and no figure");
+  // The whole time at the bottom counts alike where the depth does not change.
+  request.levels[0].leave_min = 35.0;
+  EXPECT_EQ(line_of(request).substr(0, 13), "CNS: 34.7 min");
+  // On oxygen at 6 m 1.6 bar is met, as a table's end may be.
+  DivePlanRequest deco = square_dive(45.0, 25.0);
+  deco.gases.push_back({{1.0, 0.0}, 6.0, GasRole::kDeco});
+  EXPECT_EQ(line_of(deco), "");
+  deco.gases[1].switch_depth_m = 9.0;
+  EXPECT_NE(line_of(deco).find("up to 1.91 on O2 at 9 m"), std::string::npos) << line_of(deco);
 }
 
 TEST(PlanWarnings, AirInTheMountainsIsNotHypoxic) {
