@@ -4,13 +4,17 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "diver/tanks.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
 #include "tests/support/support.hpp"
+#include "tools/neritic/plan_gas_curves.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -195,6 +199,35 @@ TEST(PlanCommand, GasIsReckonedForEachTank) {
 
 // One bottle, whatever it is breathed for; and a first level on the travel gas is a dive like
 // others.
+// The line of a tank ends where the text says that it is used up, with what gives no full breath.
+TEST(PlanCommand, ATanksLineEndsWhereItIsUsedUp) {
+  diver::DivePlanRequest request;
+  request.conventions = diver::conventions_of("stop-minutes").value();
+  request.gases = {{diver::kAir, 0.0, diver::GasRole::kBottom}};
+  request.levels = {{40.0, 30.0}};
+  const auto report = make_plan_report("stop-minutes", request, {}, {{0, 12.0, 200.0}});
+  ASSERT_TRUE(report.ok()) << report.error().message;
+  const diver::PlanTankUse& tank = *report->gas.at(0).tank;
+  ASSERT_TRUE(tank.empty_min.has_value());
+  const GasCurve curve = gas_curves(*report).at(0);
+  EXPECT_TRUE(curve.used_up);
+  EXPECT_DOUBLE_EQ(curve.run_min.back(), *tank.empty_min);
+  const double least_bar =
+      request.conventions.environment.pressure_bar(40.0) + 1e-5 * diver::kWeakTank_pa;
+  EXPECT_NEAR(curve.value.back(), least_bar, 1e-6);
+  EXPECT_TRUE(std::ranges::is_sorted(curve.run_min));
+  EXPECT_TRUE(std::ranges::is_sorted(curve.value, std::greater<>()));
+  const PlanSaid said = said_by("plan --gas air --depth 40 --time 30 --tank air=12,200");
+  EXPECT_THAT(said.out,
+              HasSubstr(fmt::format("used up at 40 m, {:.0f} min", curve.run_min.back())));
+  // One that lasts is drawn to the end.
+  const auto lasts = make_plan_report("stop-minutes", request, {}, {{0, 40.0, 200.0}});
+  const GasCurve whole = gas_curves(*lasts).at(0);
+  EXPECT_FALSE(whole.used_up);
+  EXPECT_NEAR(whole.run_min.back(), lasts->plan.run_min(), 1e-9);
+  EXPECT_NEAR(whole.value.back(), lasts->gas[0].tank->end_bar, 1e-6);
+}
+
 TEST(PlanCommand, ATravelGasThatIsTheDecoGasIsOneTank) {
   const std::string dive = "plan --depth 60 --time 20 --gas 15/55@30 ean50@21 --travel ean50 ";
   const auto gas =

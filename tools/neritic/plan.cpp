@@ -17,35 +17,6 @@ std::string gf_text(double low, double high) {
   return fmt::format("GF {:g}/{:g}", 100.0 * low, 100.0 * high);
 }
 
-// Litres of each gas, or bar of its tank, over run time.
-std::vector<GasCurve> gas_curves(const PlanReport& report) {
-  std::vector<GasCurve> out;
-  for (const diver::PlanGasUse& use : report.gas) {
-    const diver::GasMix& mix = report.request.gases[use.gas].mix;
-    GasCurve curve{diver::name_of(mix), use.gas, use.tank.has_value(), {}, {}, {}, {}, {}};
-    double run_min = 0.0, used_l = 0.0;
-    const auto add = [&](double minutes) {
-      curve.run_min.push_back(minutes);
-      curve.value.push_back(use.tank ? diver::tank_bar(mix, use.tank->tank, used_l) : used_l);
-    };
-    add(0.0);
-    for (const diver::PlanSegment& s : report.plan.segments) {
-      const double litres =
-          diver::segment_litres(report.request, report.plan, report.breathing, s, run_min);
-      run_min += s.minutes;
-      if (report.request.gases[s.gas].mix == mix) used_l += litres;
-      add(run_min);
-    }
-    if (use.tank && use.minimum_l > 0.0) {
-      curve.minimum_run_min = use.minimum_run_min;
-      curve.minimum = use.tank->minimum_bar;
-      curve.then = use.tank->then_bar;
-    }
-    out.push_back(std::move(curve));
-  }
-  return out;
-}
-
 // The water and the air over it, and earlier dives.
 std::string conditions(const PlanFlags& flags, const diver::DecoEnvironment& where) {
   std::string out = fmt::format("surface {:.4g} bar", where.surface_bar);

@@ -164,6 +164,22 @@ void draw_minimum(Canvas& canvas, const Box& in, const Axis& x, const Axis& y,
               enough ? color : kCeilingColor, fits ? Align::kLeft : Align::kRight);
 }
 
+// A cross where a tank gives no full breath any more, and in a row above the curves when that is.
+void draw_used_up(Canvas& canvas, const Box& in, const Axis& x, const Axis& y,
+                  const GasCurve& curve, int row) {
+  const double px = place(x, curve.run_min.back(), in.left, in.right),
+               py = place(y, curve.value.back(), in.bottom, in.top),
+               words_y = in.top + 10.0 + 14.0 * row;
+  const std::string words =
+      fmt::format("{}: used up at {:.0f} min", curve.name, curve.run_min.back());
+  canvas.segment(px, words_y, px, py, 1.2, kCeilingColor.with_alpha(0.6f));
+  for (const double slope : {-6.0, 6.0})
+    canvas.segment(px - 6.0, py - slope, px + 6.0, py + slope, 2.2, kCeilingColor);
+  const bool fits = px - 12.0 - Canvas::text_width(kLabel_px, words) > in.left;
+  canvas.text(fits ? px - 12.0 : px + 12.0, words_y + 4.0, kLabel_px, words, kCeilingColor,
+              fits ? Align::kRight : Align::kLeft);
+}
+
 // What is left of each gas, or used of it where no tank is known.
 void draw_gas(Canvas& canvas, const Box& box, const Axis& x, const std::vector<GasCurve>& gas) {
   std::vector<Series> series;
@@ -188,6 +204,8 @@ void draw_gas(Canvas& canvas, const Box& box, const Axis& x, const std::vector<G
   int row = 0;
   for (const GasCurve& curve : gas)
     if (curve.bar && curve.minimum) draw_minimum(canvas, inside(box), x, y, curve, row++);
+  for (const GasCurve& curve : gas)
+    if (curve.used_up) draw_used_up(canvas, inside(box), x, y, curve, row++);
 }
 
 void draw_legend(Canvas& canvas, double left, double top, const PlanPicture& picture) {

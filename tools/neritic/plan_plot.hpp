@@ -2,22 +2,11 @@
 // that matter.
 #pragma once
 
-#include <optional>
-
 #include "engine/core/image.hpp"
+#include "tools/neritic/plan_gas_curves.hpp"
 #include "tools/neritic/plan_trace.hpp"
 
 namespace neritic::tools {
-
-// Of one gas over run time: what its tank shows, bar, or where none is given the litres used.
-struct GasCurve {
-  std::string name;
-  std::size_t gas = 0;
-  bool bar = false;
-  std::vector<double> run_min, value;
-  // The minimum gas in bar, and what the tank has at that moment.
-  std::optional<double> minimum_run_min, minimum, then;
-};
 
 struct PlanPicture {
   std::string title, below, where;    // three lines of words
