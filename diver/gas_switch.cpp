@@ -28,6 +28,7 @@ class Chooser {
     if (best == none()) best = richest(kWorthSwitching_pa);
     if (best == none() && breathable(choice_.breathed, 0.0)) best = choice_.breathed;
     if (best == none()) best = richest(0.0);
+    if (best == none() && !gives_breath(choice_.breathed)) best = least_bad();
     return best == none() ? choice_.breathed : best;
   }
 
@@ -47,6 +48,11 @@ class Chooser {
     const double used_to = std::min(body_.surface_pa / kSurfacePressure_pa, 1.0);
     const double least_bar = used_to * (breathed(i) ? kLeastOxygen_bar : kLeastOxygenAnew_bar);
     if (gases_[i].mix.oxygen * 1e-5 * pressure_at(body_, shallow_m) < least_bar) return false;
+    return gives_breath(i, more_pa);
+  }
+
+  bool gives_breath(std::size_t i, double more_pa = 0.0) const {
+    const double deep_m = std::max(choice_.depth_m, choice_.soon_m);
     return tank_pressure(body_, tanks_, i) >= pressure_at(body_, deep_m) + kWeakTank_pa + more_pa;
   }
 
@@ -78,6 +84,19 @@ class Chooser {
       if (breathable(i, more_pa) &&
           (best == none() || gases_[i].mix.oxygen > gases_[best].mix.oxygen))
         best = i;
+    return best;
+  }
+
+  // For who has nothing else: the least oxygen that keeps thinking.
+  std::size_t least_bad() const {
+    const double ambient_pa = pressure_at(body_, std::min(choice_.depth_m, choice_.soon_m));
+    const double used_to = std::min(body_.surface_pa / kSurfacePressure_pa, 1.0);
+    std::size_t best = none();
+    for (std::size_t i = 0; i < gases_.size(); ++i) {
+      const double oxygen = gases_[i].mix.oxygen;
+      if (!gives_breath(i) || oxygen * 1e-5 * ambient_pa < used_to * kThinks_bar) continue;
+      if (best == none() || oxygen < gases_[best].mix.oxygen) best = i;
+    }
     return best;
   }
 

@@ -38,6 +38,8 @@ struct GasSwitchState {
 // mountains both are its air's share of these.
 inline constexpr double kLeastOxygen_bar = 0.18, kLeastOxygenAnew_bar = 0.20;
 inline constexpr double kMostOxygen_bar = 1.6;
+// Who can breathe nothing else breathes what has so much, or more than kMostOxygen_bar.
+inline constexpr double kThinks_bar = 0.16;
 // A gas that is breathed is kept so much below its switch depth, and so much at most below the
 // depth of kMostOxygen_bar (1.65 bar of oxygen there): who hovers there does not change to and fro.
 inline constexpr double kGasDepthSlack_m = 1.0, kRichestSlack_m = 0.5;
@@ -58,7 +60,8 @@ struct GasChoice {
 // kGasDepthSlack_m; of several the one for the shallowest use, as plans have it. Else the bottom
 // gas. Where neither is fit to breathe or has gas, what is breathed, else the richest that is.
 // Never changed to: one with less than kLeastOxygen_bar or more than kMostOxygen_bar where the
-// diver is and soon will be, nor one without a full breath.
+// diver is and soon will be, nor one without a full breath. But who gets no full breath and has no
+// such tank takes, of those that give one and have kThinks_bar, the one with the least oxygen.
 std::size_t tank_to_breathe(std::span<const PlanGas> gases, const Body& body,
                             const TankState& tanks, const GasChoice& choice);
 

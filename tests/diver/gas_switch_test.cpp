@@ -91,6 +91,7 @@ TEST(GasSwitch, NeverToAGasWithTooLittleOrTooMuchOxygen) {
       if (to == breathed) continue;
       const double bar = diver.gases()[to].mix.oxygen * (1.0 + depth / 10.0);
       EXPECT_GE(bar, 0.18) << depth;
+      if (breathed == 0 && depth < 60.0) continue;  // who gets nothing there takes what there is
       EXPECT_LE(bar, 1.6 + 1e-9) << depth;
     }
 }
@@ -135,7 +136,10 @@ TEST(GasSwitch, AnEmptyTankIsLeftForOneThatCanBeBreathedThere) {
   EXPECT_EQ(diver.at(0, 25.0, 25.0), 1u);
   EXPECT_EQ(diver.at(1, 25.0, 25.0), 1u);
   EXPECT_EQ(diver.at(0, 15.0, 25.0), 2u);  // the plan's, and the richer one
-  EXPECT_EQ(diver.at(0, 45.0, 45.0), 0u);  // too deep for both
+  EXPECT_EQ(diver.at(0, 45.0, 45.0), 1u);  // too deep for both, but nothing else gives a breath
+  diver.leave(0, 10.6);
+  EXPECT_EQ(diver.at(0, 45.0, 45.0), 0u);
+  diver.leave(0, 8.4);
   // On the way up the empty one gives a breath again; it is not gone back to.
   EXPECT_EQ(diver.at(1, 22.0, 25.0), 1u);
   // What little another holds is taken only where nothing else is left.
@@ -145,6 +149,24 @@ TEST(GasSwitch, AnEmptyTankIsLeftForOneThatCanBeBreathedThere) {
   EXPECT_EQ(diver.at(0, 25.0, 25.0), 0u);
   for (std::size_t tank = 0; tank < 3; ++tank) diver.leave(tank, 1.0);
   for (std::size_t tank = 0; tank < 3; ++tank) EXPECT_EQ(diver.at(tank, 5.0, 25.0), tank);
+}
+
+// Too much oxygen is breathed rather than nothing: the least of it.
+TEST(GasSwitch, WhoGetsNothingElseTakesTheLeastOxygenAtAnyDepth) {
+  Carries twin("tanks = [ {}, {}, { oxygen = 0.5 } ]\n");
+  EXPECT_EQ(twin.at(0, 70.0, 70.0), 0u);
+  twin.leave(0, 5.0);
+  for (const double depth : {60.0, 66.0, 70.0, 90.0}) {
+    EXPECT_EQ(twin.at(0, depth, depth), 1u) << depth;
+    EXPECT_EQ(twin.at(1, depth, depth), 1u) << depth;
+  }
+  twin.leave(1, 5.0);
+  EXPECT_EQ(twin.at(0, 70.0, 70.0), 2u);
+  // 10/70 has .14 bar at 4 m: no help; at 7 m .17 is.
+  Carries shallow("tanks = [ {}, { oxygen = 0.1, helium = 0.7 } ]\n");
+  shallow.leave(0, 1.0);
+  EXPECT_EQ(shallow.at(0, 4.0, 40.0), 0u);
+  EXPECT_EQ(shallow.at(0, 7.0, 40.0), 1u);
 }
 
 TEST(GasSwitch, AReactionGoesBeforeTheChangeAndSettingsTurnItOff) {
