@@ -15,13 +15,13 @@ constexpr double kMostBend_rad = radians(18.0), kMostAside_rad = radians(25.0);
 constexpr double kMostKick_w = 300.0;
 constexpr double kMostPitch_rad = radians(30.0);
 constexpr double kMostSink_m_s = 0.15;  // 9 m a minute
-// Who is to rise by so much does it more slowly than the 9 m a minute that is taught (30 feet: NOAA
-// Diving Manual), until so near; and begins with that share of the rate, for which pitch and jacket
-// have seconds to come.
-constexpr double kMostRise_m_s = 0.12, kRiseBegin = 0.2, kRiseLag_s = 12.0;
-constexpr double kWellAbove_m = 1.3, kHardlyAbove_m = 0.2;
+// Who is to change depth by so much holds the jacket neutral on the way, until so near; and begins
+// with that share of the rate, for which pitch and jacket have seconds to come. Up it goes more
+// slowly than the 9 m a minute that is taught (30 feet: NOAA Diving Manual).
+constexpr double kMostRise_m_s = 0.12, kChangeBegin = 0.2, kChangeLag_s = 12.0;
+constexpr double kWellOff_m = 1.3, kHardlyOff_m = 0.2;
 // The pitch holds that rate so much more firmly than a depth. Sharp turns would bring the head up.
-constexpr double kRiseFirm = 2.0, kRiseTurn_rad = 0.2;
+constexpr double kChangeFirm = 2.0, kChangeTurn_rad = 0.2;
 constexpr double kMostBreathBias_m3 = 0.6e-3;
 // So fast through the water legs steer; slower, posture does.
 constexpr double kWay_m_s = 0.25;
@@ -60,11 +60,14 @@ constexpr std::uint64_t kGoesBack = 1, kRightsHimself = 2;
 constexpr double kSteeringLag_s = 0.4, kBreathLag_s = 0.7;
 // Buttons are pressed for a moment, after so much want of breath, and then waited for.
 constexpr double kPress_s = 0.25, kWait_s = 3.0, kSure_l_s = 4.0;
+// So much too much or too little lift is most of what breath can hold: a button is pressed without
+// waiting for the want to add up.
+constexpr double kBreathHolds_l = 0.5;
 // Who rises lets gas out where so much too much lifts, down to so much, and in where so much is
-// missing. Breath holds the rest: so much want of it is remembered.
-constexpr double kVentAt_l = 0.2, kVentTo_l = 0.0, kVentWait_s = 2.0;
-constexpr double kFillAt_l = -0.8, kFillTo_l = -0.5;
-constexpr double kRiseSum_l_s = 2.0;
+// missing; who sinks the other way round. Breath holds the rest: so much want of it is remembered.
+constexpr double kUsualAt_l = 0.2, kUsualTo_l = 0.0, kUsualWait_s = 2.0;
+constexpr double kUnusualAt_l = -0.8, kUnusualTo_l = -0.5;
+constexpr double kChangeSum_l_s = 2.0;
 // Jackets that hold fewer moles are empty; tanks below that pressure fill none.
 constexpr double kEmptyJacket_mol = 1e-3, kFillsJacket_pa = 5e5;
 // Gas leaves at the higher end of the trunk: the head goes up for that, at most so long.
@@ -116,20 +119,22 @@ bool can_fill(const Body& body, const HumanState& state) {
   return tank_pressure(body, state.life.tanks, 0) > kFillsJacket_pa;
 }
 
-// What jacket and suit hold grows on the way up, the faster the shallower: who rises lets it out as
-// it does, so that fins alone make the rate. A button is held until enough is out, or let go at
-// kVent_s.
-void vent(const Body& body, const HumanState& state, bool at_valve, SwimmerState& swimmer,
-          HumanInputs& inputs) {
-  swimmer.lift_sum = std::clamp(swimmer.lift_sum, -kRiseSum_l_s, kRiseSum_l_s);
-  const double lifted = lifted_l(body, state);
+// What jacket and suit hold grows on the way up and shrinks on the way down, the faster the
+// shallower: who changes depth lets gas out, or in, as it does, so that fins alone make the rate. A
+// button is held until enough is out or in, or let go at kVent_s.
+void hold_neutral(const Body& body, const HumanState& state, bool at_valve, SwimmerState& swimmer,
+                  HumanInputs& inputs) {
+  swimmer.lift_sum = std::clamp(swimmer.lift_sum, -kChangeSum_l_s, kChangeSum_l_s);
+  const bool rises = swimmer.rises > 0.0;
+  // What the way brings: too much lift going up, too little going down.
+  const double brought_l = rises ? lifted_l(body, state) : -lifted_l(body, state);
   const bool goes_on = swimmer.button_s < 0.0;
-  const bool lets_out =
-      state.life.jacket_moles > kEmptyJacket_mol &&
-      (goes_on ? lifted > kVentTo_l : lifted > kVentAt_l && swimmer.button_s > kVentWait_s);
-  const bool lets_in =
-      can_fill(body, state) &&
-      (goes_on ? lifted < kFillTo_l : lifted < kFillAt_l && swimmer.button_s > kWait_s);
+  const bool usual =
+      goes_on ? brought_l > kUsualTo_l : brought_l > kUsualAt_l && swimmer.button_s > kUsualWait_s;
+  const bool unusual =
+      goes_on ? brought_l < kUnusualTo_l : brought_l < kUnusualAt_l && swimmer.button_s > kWait_s;
+  const bool lets_out = (rises ? usual : unusual) && state.life.jacket_moles > kEmptyJacket_mol;
+  const bool lets_in = (rises ? unusual : usual) && can_fill(body, state);
   if (!lets_out && !lets_in)
     swimmer.button_s = std::max(swimmer.button_s, 0.0);
   else if (!goes_on)
@@ -151,7 +156,11 @@ void balance(const Body& body, double sink_too_much_m_s, const HumanState& state
   follow(swimmer.breath_bias_m3, breath_m3, kBreathLag_s, dt_s);
   inputs.breath_bias_m3 = swimmer.breath_bias_m3;
   swimmer.button_s += dt_s;
-  if (swimmer.rises > 0.0) return vent(body, state, at_valve, swimmer, inputs);
+  if (swimmer.rises != 0.0) return hold_neutral(body, state, at_valve, swimmer, inputs);
+  const double lifted = lifted_l(body, state);
+  if (swimmer.button_s > kWait_s && std::abs(lifted) > kBreathHolds_l)
+    swimmer.lift_sum =
+        std::copysign(std::max(std::abs(swimmer.lift_sum), 1.01 * kSure_l_s), -lifted);
   const bool more = swimmer.lift_sum > 0.0;
   const double press_s = more ? kPress_s : kVentPress_s;
   if (swimmer.button_s < -press_s && (more || at_valve)) swimmer.button_s = -press_s;
@@ -207,21 +216,22 @@ SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimme
   return goal;
 }
 
-// Metres a second down to that depth. A place well above is risen to at a rate of its own, in
-// which the swimmer comes slowly.
+// Metres a second down to that depth. A place well above or below is come to at a rate of its own,
+// in which the swimmer comes slowly.
 double wanted_sink(double deeper_m, bool swims, SwimmerState& swimmer, double dt_s) {
-  if (deeper_m > -kHardlyAbove_m && swimmer.rises > 0.0) {
+  const double to_go_m = std::copysign(1.0, -swimmer.rises) * deeper_m;
+  if (swimmer.rises != 0.0 && to_go_m < kHardlyOff_m) {
     swimmer.rises = 0.0;
-    swimmer.button_s = std::max(swimmer.button_s, 0.0);  // lets go of what was held for the rise
-  } else if (deeper_m < -kWellAbove_m && swimmer.rises == 0.0) {
-    swimmer.rises = kRiseBegin;
+    swimmer.button_s = std::max(swimmer.button_s, 0.0);  // lets go of what was held on the way
+  } else if (swimmer.rises == 0.0 && std::abs(deeper_m) > kWellOff_m) {
+    swimmer.rises = std::copysign(kChangeBegin, -deeper_m);
   }
-  double most_rise_m_s = kMostSink_m_s;
-  if (swimmer.rises > 0.0) {
-    follow(swimmer.rises, 1.0, kRiseLag_s, dt_s);
-    most_rise_m_s = kMostRise_m_s * swimmer.rises;
-  }
-  return std::clamp((swims ? 0.1 : 0.2) * deeper_m, -most_rise_m_s, kMostSink_m_s);
+  double most_rise_m_s = kMostSink_m_s, most_sink_m_s = kMostSink_m_s;
+  if (swimmer.rises != 0.0)
+    follow(swimmer.rises, std::copysign(1.0, swimmer.rises), kChangeLag_s, dt_s);
+  if (swimmer.rises > 0.0) most_rise_m_s = kMostRise_m_s * swimmer.rises;
+  if (swimmer.rises < 0.0) most_sink_m_s *= -swimmer.rises;
+  return std::clamp((swims ? 0.1 : 0.2) * deeper_m, -most_rise_m_s, most_sink_m_s);
 }
 
 // 1: little way, legs do not steer; 0: way enough.
@@ -335,14 +345,16 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
     if (std::abs(turn) < kBehind_rad || swimmer.turn_side == 0.0)
       swimmer.turn_side = std::copysign(1.0, turn);
     turn = std::copysign(turn, swimmer.turn_side);
-    const bool rises = swimmer.rises > 0.0;
-    if (rises) turn = std::clamp(turn, -kRiseTurn_rad, kRiseTurn_rad);
-    const double firm = rises ? kRiseFirm : 1.0;
+    const bool changes = swimmer.rises != 0.0;
+    if (changes) turn = std::clamp(turn, -kChangeTurn_rad, kChangeTurn_rad);
+    const double firm = changes ? kChangeFirm : 1.0;
     const double climb_m_s =
         -sink_m_s + firm * 0.3 * too_much_m_s + firm * 0.04 * swimmer.climb_sum;
     pitch = std::clamp(climb_m_s / std::max(goal.speed_m_s, 0.2), -kMostPitch_rad, kMostPitch_rad);
   }
-  if (swimmer.button_s < 0.0 && swimmer.lift_sum < 0.0) pitch = std::max(pitch, kVentPitch_rad);
+  const bool fills = (inputs.buttons & kInflate) != 0;
+  if (swimmer.button_s < 0.0 && swimmer.lift_sum < 0.0 && !fills)
+    pitch = std::max(pitch, kVentPitch_rad);
   const double upright = (std::abs(attitude.pitch_rad) - kTilted_rad) / (kSteep_rad - kTilted_rad);
   const double stoops = hovers && attitude.pitch_rad > 0.0 ? std::clamp(upright, 0.0, 1.0) : 0.0;
   follow(swimmer.stoop_rad, stoops * kStoop_rad, kStoopLag_s, dt_s);

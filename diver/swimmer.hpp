@@ -9,7 +9,8 @@
 namespace neritic::diver {
 
 struct SwimGoal {
-  // Well above: is risen to by less than 9 m a minute, in wide turns where it lies straight above.
+  // Well above: is risen to by less than 9 m a minute, in wide turns where it lies straight above;
+  // well below: is sunk to likewise, by 9 m a minute at most.
   Vec3 target_ned_m{0.0};
   // Through the water; 0: hovers there, level, and swims back when a current took the diver away.
   double speed_m_s = 0.5;
@@ -49,7 +50,9 @@ struct SwimmerState {
   BeatNotch roll, roll_rate;
   double rests = 1.0;     // 1: lies still in the water, 0: has way
   double button_s = 0.0;  // since a button was last let go; negative: still to be pressed
-  double rises = 0.0;  // to a place well above: the share of its rate that is wanted; 0: does not
+  // To a place well above: the share of its rate that is wanted; negative: sinks to one well below;
+  // 0: neither.
+  double rises = 0.0;
   // Who is to hover: 1: was adrift and swims back; 2: tilts, and swims to right himself.
   std::uint64_t goes_back = 0;
 
