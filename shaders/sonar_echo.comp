@@ -308,10 +308,10 @@ void main() {
   SonarColumn s = columns[column];
   if (s.pixel < 0 && kRecords == 0) return;
   ivec2 noted = ivec2(int(c.n_range), -1);  // coherent: the first and the last bin with power
-  uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
+  uint first = c.first_row + (kLanes == 1 ? 0 : gl_LocalInvocationID.y);
   Look before, look, after;  // kInTurn: the rows beside each
-  if (kInTurn) look = after = look_at(s, 0);
-  for (uint row = first; row < c.n_elevation; row += kLanes) {
+  if (kInTurn) look = look_at(s, max(first, 1) - 1), after = look_at(s, first);
+  for (uint row = first; row < c.end_row; row += kLanes) {
     if (kInTurn) {
       before = look;
       look = after;

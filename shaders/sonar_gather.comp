@@ -43,13 +43,13 @@ void main() {
   if (column >= c.n_azimuth) return;
   SonarColumn s = columns[column];
   if (s.pixel < 0) return;
-  uint first = kLanes == 1 ? 0 : gl_LocalInvocationID.y;
+  uint first = c.first_row + (kLanes == 1 ? 0 : gl_LocalInvocationID.y);
   // Two rows a turn, whose fetches wait for memory together. Rows that are doubtful come after all others: integers
   // are summed, so that the order is free, and a loop within would cost a processor a fifth.
   uvec2 doubtful = uvec2(c.n_elevation, 0);  // rows, from and until
   Look before, after;  // kInTurn: the rows beside the two
-  if (kInTurn) before = after = look_at(s, 0);
-  for (uint row = first; row < c.n_elevation; row += 2 * kLanes) {
+  if (kInTurn) before = look_at(s, max(first, 1) - 1), after = look_at(s, first);
+  for (uint row = first; row < c.end_row; row += 2 * kLanes) {
     uint next = min(row + kLanes, c.n_elevation - 1);
     Look look;
     if (kInTurn) look = after;
@@ -59,7 +59,7 @@ void main() {
     BeamHit hit = hit_of(s, look, ranges_beside(s, row, before, look, next_look), false);
     BeamHit next_hit = hit_of(s, next_look, ranges_beside(s, next, look, next_look, after), false);
     if (kInTurn) before = next_look;
-    bool two = row + kLanes < c.n_elevation;
+    bool two = row + kLanes < c.end_row;
     if (hit.doubtful) doubtful = uvec2(min(doubtful.x, row), row + 1);
     if (two && next_hit.doubtful) doubtful = uvec2(min(doubtful.x, next), next + 1);
     if (!hit.doubtful) gather(column, hit);

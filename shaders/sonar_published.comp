@@ -46,15 +46,15 @@ void main() {
   uint column = gl_GlobalInvocationID.x;
   if (column >= c.n_azimuth) return;
   SonarColumn s = columns[column];
-  for (uint row = 0; row < c.n_elevation && s.first_pixel < s.end_pixel; ++row) {
+  for (uint row = c.first_row; row < c.end_row && s.first_pixel < s.end_pixel; ++row) {
     vec2 edges = texelFetch(rows, ivec2(row, 0), 0).zw;
     float low = edges.x, high = edges.y;
     // The cell's rows in its outermost and innermost pixel columns bound those in between.
     float sec_a = sec_of(s.first_pixel), sec_b = sec_of(s.end_pixel - 1);
     float sec_in = s.first_pixel < int(c.cx) && s.end_pixel > int(c.cx) ? 1.0 : min(sec_a, sec_b);
     float sec_out = max(sec_a, sec_b);
-    int v_first = min(first_row_below(high, sec_in), first_row_below(high, sec_out));
-    int v_end = max(first_row_below(low, sec_in), first_row_below(low, sec_out));
+    int v_first = max(min(first_row_below(high, sec_in), first_row_below(high, sec_out)), int(c.first_v));
+    int v_end = min(max(first_row_below(low, sec_in), first_row_below(low, sec_out)), int(c.end_v));
     for (int v = v_end - 1; v >= v_first; --v)
       for (int u = s.end_pixel - 1; u >= s.first_pixel; --u) {
         float sec = sec_of(u);

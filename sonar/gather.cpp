@@ -108,6 +108,7 @@ Result<SonarGather> SonarGather::create(gpu::Device& device, const BeamGrid& gri
   made.layout_ = layout;
   made.options_ = options;
   made.fixed_scale_ = scale_for(options, grid.bins.elevation);
+  made.parts_ = gather_parts(made.grid_, made.sectors_, layout, options);
   NERITIC_TRY_STATUS(made.check(device));
   NERITIC_TRY_STATUS(made.make_pipeline(device));
   NERITIC_TRY_STATUS(made.make_tables(device));
@@ -244,24 +245,24 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
     return buffer_or_none(texels_ ? graph::BufferHandle{} : handle);
   };
   const Intrinsics& k = layout_.intrinsics;
-  const shared::SonarPush push{.n_range = grid_.bins.range,
-                               .n_azimuth = grid_.bins.azimuth,
-                               .n_elevation = grid_.bins.elevation,
-                               .width = layout_.width,
-                               .height = layout_.height,
-                               .fx = static_cast<float>(k.fx),
-                               .fy = static_cast<float>(k.fy),
-                               .cx = static_cast<float>(k.cx),
-                               .cy = static_cast<float>(k.cy),
-                               .near_m = static_cast<float>(layout_.near_m),
-                               .range_min_m = static_cast<float>(grid_.limits.range_min_m),
-                               .bins_per_m = static_cast<float>(1.0 / grid_.range_step_m()),
-                               .bin_m = static_cast<float>(grid_.range_step_m()),
-                               .fixed_scale = static_cast<float>(fixed_scale_),
-                               .edge_bias_bins = kEdgeBias_bins,
-                               .reflectivities = reflects ? pass.in.reflectivities : 0u,
-                               .lean = static_cast<float>(layout_.lean),
-                               .azimuth_step_rad = static_cast<float>(grid_.azimuth_step_rad())};
+  shared::SonarPush push{.n_range = grid_.bins.range,
+                         .n_azimuth = grid_.bins.azimuth,
+                         .n_elevation = grid_.bins.elevation,
+                         .width = layout_.width,
+                         .height = layout_.height,
+                         .fx = static_cast<float>(k.fx),
+                         .fy = static_cast<float>(k.fy),
+                         .cx = static_cast<float>(k.cx),
+                         .cy = static_cast<float>(k.cy),
+                         .near_m = static_cast<float>(layout_.near_m),
+                         .range_min_m = static_cast<float>(grid_.limits.range_min_m),
+                         .bins_per_m = static_cast<float>(1.0 / grid_.range_step_m()),
+                         .bin_m = static_cast<float>(grid_.range_step_m()),
+                         .fixed_scale = static_cast<float>(fixed_scale_),
+                         .edge_bias_bins = kEdgeBias_bins,
+                         .reflectivities = reflects ? pass.in.reflectivities : 0u,
+                         .lean = static_cast<float>(layout_.lean),
+                         .azimuth_step_rad = static_cast<float>(grid_.azimuth_step_rad())};
   const graph::ImageHandle depth = layout_.packed ? pass.in.normals : pass.in.depth;
   std::vector<gpu::BoundResource> bound{
       gpu::bound_buffer(shared::kSonarBindColumns, column_slice.buffer, column_slice.offset,
@@ -304,8 +305,15 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
   }
   commands.bind_pipeline(pipeline_);
   commands.bind(pipeline_, bound);
-  commands.push(pipeline_, push);
-  commands.dispatch(groups_);
+  for (const GatherPart& part : parts_) {
+    if (&part != &parts_.front()) commands.wait_for_dispatch();
+    push.first_row = part.first_row;
+    push.end_row = part.end_row;
+    push.first_v = part.first_v;
+    push.end_v = part.end_v;
+    commands.push(pipeline_, push);
+    commands.dispatch(groups_);
+  }
 }
 
 }  // namespace neritic::sonar

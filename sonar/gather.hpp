@@ -78,6 +78,11 @@ struct GatherOptions {
   std::optional<EchoOptions> echo;
 };
 
+// What one dispatch gathers: rows of cells, and (published) of them these rows of pixels.
+struct GatherPart {
+  std::uint32_t first_row = 0, end_row = 0, first_v = 0, end_v = 0;
+};
+
 class SonarGather {
  public:
   // kUnsupported where the device's limits do not allow it.
@@ -143,6 +148,7 @@ class SonarGather {
   std::vector<Sector> sectors_;
   GBufferLayout layout_;
   GatherOptions options_;
+  std::vector<GatherPart> parts_;
   std::uint32_t groups_ = 1;
   double fixed_scale_ = 1.0;
   bool texels_ = false;  // sums, keys and scratch are texel buffers
@@ -157,6 +163,10 @@ class SonarGather {
 // span ends where the neighbouring rows' begin. Of the plane gather only: the others do not know
 // the surface.
 std::uint32_t footprint_of(const BeamGrid& grid, const GatherOptions& options);
+
+// The parts that a gather takes, in turn: one, but for large images and very many bins.
+std::vector<GatherPart> gather_parts(const BeamGrid& grid, std::span<const Sector> sectors,
+                                     const GBufferLayout& layout, const GatherOptions& options);
 
 // The tables of the pass, for tests. Columns depend on where the normals' axes are.
 std::vector<shared::SonarColumn> column_table(const BeamGrid& grid, std::span<const Sector> sectors,

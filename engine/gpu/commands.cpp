@@ -33,6 +33,17 @@ void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   vkCmdDispatch(handle_, x, y, z);
 }
 
+void Commands::wait_for_dispatch() {
+  VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  memory.srcStageMask = memory.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  memory.srcAccessMask = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_READ_BIT;
+  memory.dstAccessMask = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_READ_BIT;
+  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  dependency.memoryBarrierCount = 1;
+  dependency.pMemoryBarriers = &memory;
+  vkCmdPipelineBarrier2(handle_, &dependency);
+}
+
 UploadSlice Commands::upload(const void* data, VkDeviceSize size) {
   return frames_->frame_upload(data, size);
 }

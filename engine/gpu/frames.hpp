@@ -45,6 +45,9 @@ class Commands {
   }
   void push_bytes(const Pipeline& pipeline, const void* data, std::uint32_t size);
   void dispatch(std::uint32_t x, std::uint32_t y = 1, std::uint32_t z = 1);
+  // Between two dispatches of one pass: the second reads and writes what the first wrote. (Between
+  // passes the frame graph does that.)
+  void wait_for_dispatch();
 
   // Copies bytes into this frame's upload buffer (aligned for storage and uniform use); it stays
   // valid until the GPU is done with the frame.

@@ -47,6 +47,10 @@ struct SonarPush {
   uint reflectivities;  // entries of the table by instance label; others reflect fully
   float lean;           // of a view whose sides lean (kSonarSpecLeaning), in tangents
   float azimuth_step_rad;
+  uint first_row;  // of cells, in this dispatch
+  uint end_row;
+  uint first_v;  // published: of pixels, in this dispatch
+  uint end_v;
 };
 
 NERITIC_CONST uint kSonarBindColumns = 0;
