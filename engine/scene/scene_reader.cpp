@@ -18,13 +18,18 @@ std::string counts_text(const std::vector<std::size_t>& counts) {
   return out;
 }
 
-// What an unknown key may be meant as: the same a table deeper, else the one spelt most alike.
+// What an unknown key may be meant as: the same a table deeper, else one that begins with it, else
+// the one spelt most alike.
 std::string meant_key(std::string_view key, KeyList keys) {
   const auto has = [](KeyList list, Key wanted) {
     return std::ranges::find(list, wanted) != list.end();
   };
   for (const KeyTable& table : kSonarTables)
     if (has(keys, table.name) && has(table.keys, key)) return fmt::format("{}.{}", table.name, key);
+  constexpr std::size_t kBeginning = 3;
+  if (key.size() >= kBeginning)
+    for (const Key known : keys)
+      if (std::string_view(known).starts_with(key)) return std::string(std::string_view(known));
   return std::string(nearest(key, keys));
 }
 

@@ -66,6 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongKeys{"frequency_hz = 0.5", ".frequency_hz: found 0.5; " HZ},
         WrongKeys{"source_level_db = 200",
                   ".source_level_db: unknown key; nearest known key: level.source_level_db"},
+        WrongKeys{"rang = [1, 5]", ".rang: unknown key; nearest known key: range_m"},
         WrongKeys{"bandwidth_hz = 0", ".bandwidth_hz: found 0; " HZ},
         WrongKeys{
             "frequency_hz = 750\nbandwidth_hz = 187500",

@@ -106,7 +106,7 @@ TEST(TradeoffSonar, WritesTableCurveAndSummary) {
   EXPECT_EQ(done, steps(options));
   const test::ScratchFolder folder;
   ASSERT_TRUE(write_plain(folder.path(), *tradeoff).ok());
-  for (const char* name : {"tradeoff.csv", "tradeoff.png", "tradeoff.json"})
+  for (const char* name : {"tradeoff.csv", "tradeoff.png", "tradeoff.json", "plain.md"})
     EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
 }
 

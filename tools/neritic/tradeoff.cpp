@@ -99,7 +99,7 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
     return {};
   };
   NERITIC_TRY(const SonarTradeoff tradeoff, run_sonar_tradeoff(options));
-  std::string files = tradeoff.points.empty() ? "" : "tradeoff.csv, .png, .json";
+  std::string files = tradeoff.points.empty() ? "" : "tradeoff.csv, .png, .json and plain.md";
   for (const KindResult& kind : tradeoff.kinds)
     files += fmt::format("{}{}.csv, _terms.csv, .png", files.empty() ? "" : "; ", kind.kind);
   if (!tradeoff.kinds.empty()) files += "; tradeoff.md and quality.json of all";

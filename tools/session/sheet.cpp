@@ -32,16 +32,23 @@ void place(ImageU8& out, const Tile& tile, const Slot& slot) {
                 &out.data[(std::size_t{top + v} * out.width + left) * 3]);
 }
 
-// The caption, and behind it the colours of its key while they fit.
+// The caption, and behind it the colours of its key while they fit, then how many do not.
 void write_caption(sonar::Canvas& canvas, const Tile& tile, const Slot& slot) {
   constexpr double kWord_px = 9.0, kSwatch_px = 11.0, kSpace_px = 4.0, kAfter_px = 9.0;
   const double y = slot.y + kCaptionBand_px - 9.0;
   double x = slot.x + 2.0;
   canvas.text(x, y, kCaption_px, tile.caption, kInk);
   x += sonar::Canvas::text_width(kCaption_px, tile.caption) + 2.0 * kAfter_px;
-  for (const auto& [color, word] : tile.key) {
+  for (std::size_t i = 0; i < tile.key.size(); ++i) {
+    const auto& [color, word] = tile.key[i];
     const double width = kSwatch_px + kSpace_px + sonar::Canvas::text_width(kWord_px, word);
-    if (x + width > slot.x + slot.width) return;
+    const std::string others = fmt::format("+{}", tile.key.size() - i);
+    const double after =
+        i + 1 == tile.key.size() ? 0.0 : kAfter_px + sonar::Canvas::text_width(kWord_px, others);
+    if (x + width + after > slot.x + slot.width) {
+      canvas.text(x, y - 1.0, kWord_px, others, kInk);
+      return;
+    }
     x = std::round(x);
     canvas.fill_rectangle(x, y - kSwatch_px, x + kSwatch_px, y,
                           {color[0] / 255.0f, color[1] / 255.0f, color[2] / 255.0f});

@@ -35,6 +35,23 @@ std::string csv_of(const SonarTradeoff& t) {
   return out;
 }
 
+// For people, what tradeoff.csv says.
+std::string table_of(const SonarTradeoff& t, const std::string& scene) {
+  std::string out = fmt::format(
+      "## {}\n\n| sweep | gather | normals | pixels a cell | bins | energy | sum of differences | "
+      "range, mm | gather, ms | raster, ms |\n|---|---|---|---|---|---|---|---|---|---|\n",
+      scene);
+  for (const Point& p : t.points)
+    if (p.scene == scene)
+      out += fmt::format(
+          "| {} | {} | {} | {:g} | {} x {} x {} | {:.2f} % | {:.2f} % | {:.2f} | "
+          "{:.2f} | {} |\n",
+          p.sweep, p.gather, p.normals, p.scale, p.bins.range, p.bins.azimuth, p.bins.elevation,
+          100.0 * p.error.energy, 100.0 * p.error.l1, p.error.shift_mm, p.gather_ms,
+          p.raster_ms > 0.0 ? fmt::format("{:.2f}", p.raster_ms) : "");
+  return out;
+}
+
 // The knee of a gather's curve over resolution: error by l1, cost in milliseconds. A finer G-buffer
 // cannot cost less than a coarser one: where it seems so, something else slowed the coarser down.
 const Point* knee(const SonarTradeoff& t, const std::string& scene, const std::string& gather) {
@@ -167,6 +184,20 @@ ImageU8 plot_of(const SonarTradeoff& t, const std::vector<std::string>& scenes) 
   return canvas.take();
 }
 
+std::string plain_markdown(const SonarTradeoff& t, const std::vector<std::string>& scenes) {
+  std::string out = fmt::format(
+      "# Imaging sonar, the plain cosine: error against cost\n\n{}; truth: {} rays a cell of the "
+      "finest bins. Energy: over the truth's, less 1. Range: how far energy must move.\n\n",
+      t.device, t.rays_a_cell);
+  for (const std::string& scene : scenes) {
+    out += table_of(t, scene);
+    if (const Point* p = knee(t, scene, "plane"))
+      out += fmt::format("\nThe plane gather's knee: {:g} pixels a cell.\n\n", p->scale);
+  }
+  return out +
+         fmt::format("The default: plane, {:g} pixels a cell.\n", scene::Sonar{}.gbuffer_scale);
+}
+
 }  // namespace
 
 Status write_plain(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
@@ -175,6 +206,7 @@ Status write_plain(const std::filesystem::path& folder, const SonarTradeoff& tra
   for (const Point& p : tradeoff.points)
     if (std::find(scenes.begin(), scenes.end(), p.scene) == scenes.end()) scenes.push_back(p.scene);
   NERITIC_TRY_STATUS(write_text(folder / "tradeoff.csv", csv_of(tradeoff)));
+  NERITIC_TRY_STATUS(write_text(folder / "plain.md", plain_markdown(tradeoff, scenes)));
   NERITIC_TRY_STATUS(scene::write_png8(folder / "tradeoff.png", plot_of(tradeoff, scenes)));
   return write_json(folder / "tradeoff.json", summary_of(tradeoff, scenes));
 }

@@ -34,7 +34,7 @@ struct SonarTradeoff {
 };
 Result<SonarTradeoff> run_sonar_tradeoff(const SonarTradeoffOptions& options);
 
-// In the folder: tradeoff.csv, tradeoff.png, tradeoff.json of the plain cosine.
+// In the folder: tradeoff.csv, tradeoff.png, tradeoff.json and plain.md of the plain cosine.
 Status write_plain(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
 // KIND.csv, KIND_terms.csv, KIND.png of the last of the kinds; tradeoff.md and quality.json of all.
 Status write_last_kind(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
