@@ -103,13 +103,24 @@ TEST(HumanGas, AnEmptyTankBesideAFullOneIsLeft) {
   }
 }
 
-// Nothing else that can be breathed there: as before, and it is told.
+// Nothing else that can be breathed there, for it has too little oxygen: as before, and it is told.
 TEST(HumanGas, NothingThatFitsLeavesTheDiverWhereHeIs) {
-  GasDive d("tanks = [ { volume_l = 1, pressure_bar = 30 }, { oxygen = 1.0 } ]\n",
-            "position_m = [0, -25, 0]\n");
+  GasDive d("tanks = [ { volume_l = 1, pressure_bar = 10 }, { oxygen = 0.1, helium = 0.7 } ]\n",
+            "position_m = [0, -4, 0]\n");
   d.run(60.0);
   EXPECT_TRUE(d.figures().tank_changes.empty());
   EXPECT_GT(d.figures().out_of_gas_s, 5.0);
+}
+
+// Too much oxygen is better than nothing to breathe, and it is told.
+TEST(HumanGas, WhoHasNothingElseBreathesTooMuchOxygen) {
+  GasDive d("tanks = [ { volume_l = 1, pressure_bar = 30 }, { oxygen = 1.0 } ]\n",
+            "position_m = [0, -25, 0]\n");
+  d.run(60.0);
+  ASSERT_EQ(d.figures().tank_changes.size(), 1u);
+  EXPECT_EQ(d.figures().tank_changes[0].to, 1u);
+  EXPECT_EQ(d.figures().out_of_gas_s, 0.0);
+  EXPECT_EQ(d.figures().oxygen, diver::RiskLevel::kSevere);
 }
 
 // Trimix that nobody can live on at the surface is not what a dive begins with there.

@@ -21,8 +21,8 @@ double ms_a_second(TestDive& dive, const rov::SensorSet& sensors, double enough_
                            dive.time_s() - dive.world->step_s(), dive.time_s(), readings);
     }
   });
-  EXPECT_GT(readings.dvl.count, 40u);
-  EXPECT_GT(readings.altimeter.count, 40u);
+  EXPECT_GT(readings.dvl.count, 30u);
+  EXPECT_GT(readings.altimeter.count, 30u);
   return least_ms;
 }
 
