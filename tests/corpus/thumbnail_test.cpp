@@ -11,12 +11,13 @@
 #include "engine/core/files.hpp"
 #include "engine/scene/gltf_loader.hpp"
 #include "engine/scene/image_file.hpp"
+#include "testbed/output/pictures.hpp"
+#include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
-#include "tools/session/pictures.hpp"
-#include "tools/session/session.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 namespace fs = std::filesystem;

@@ -11,11 +11,12 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
+#include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
-#include "tools/session/session.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 namespace fs = std::filesystem;

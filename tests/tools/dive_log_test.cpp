@@ -1,5 +1,5 @@
-// tools/physics/LOG.md against what `neritic dive` writes: the page has every column of the log and
-// every key of --json, and no other. The program itself is run.
+// testbed/record/LOG.md against what `neritic dive` writes: the page has every column of the log
+// and every key of --json, and no other. The program itself is run.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -50,7 +50,7 @@ mission = { waypoints = [ { position_m = [3, -150, -1] } ] }
         NERITIC_BINARY_DIR, (folder_ / "s.toml").string(), (folder_ / "log.csv").string(),
         (folder_ / "out.json").string());
     ASSERT_EQ(std::system(command.c_str()), 0);
-    page_ = read_text(test::source_dir() / "tools/physics/LOG.md").value();
+    page_ = read_text(test::source_dir() / "testbed/record/LOG.md").value();
   }
 
   test::ScratchFolder folder_;

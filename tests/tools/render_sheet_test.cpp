@@ -6,10 +6,11 @@
 #include <set>
 
 #include "engine/scene/image_file.hpp"
+#include "testbed/output/pictures.hpp"
 #include "tests/support/support.hpp"
-#include "tools/session/pictures.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,7 +12,7 @@ void add(Hash64& hash, const std::vector<T>& values) {
   hash.add_span(std::span<const T>(values));
 }
 
-void add(Hash64& hash, const tools::ViewImages& view) {
+void add(Hash64& hash, const testbed::ViewImages& view) {
   add(hash, view.depth.data);
   add(hash, view.normals.data);
   add(hash, view.labels.data);
@@ -23,10 +23,10 @@ void add(Hash64& hash, const tools::ViewImages& view) {
 
 }  // namespace
 
-Result<std::unique_ptr<tools::Session>> open_scene(const Suite& suite, gpu::Device& device,
-                                                   const std::string& file) {
+Result<std::unique_ptr<testbed::Session>> open_scene(const Suite& suite, gpu::Device& device,
+                                                     const std::string& file) {
   NERITIC_TRY(scene::Scene scene, scene::load_scene(suite.options().assets + "/scenes/" + file));
-  return tools::Session::create(device, std::move(scene));
+  return testbed::Session::create(device, std::move(scene));
 }
 
 std::string hash_of(const sonar::SonarImage& image) {
@@ -36,14 +36,14 @@ std::string hash_of(const sonar::SonarImage& image) {
   return hash.hex();
 }
 
-std::string hash_of(const tools::FrameResult& result) {
+std::string hash_of(const testbed::FrameResult& result) {
   Hash64 hash;
-  for (const tools::CameraFrame& camera : result.cameras)
-    for (const tools::ViewImages& eye : camera.eyes) add(hash, eye);
-  for (const tools::SonarFrame& sonar : result.sonars) {
+  for (const testbed::CameraFrame& camera : result.cameras)
+    for (const testbed::ViewImages& eye : camera.eyes) add(hash, eye);
+  for (const testbed::SonarFrame& sonar : result.sonars) {
     add(hash, sonar.image.intensity);
     add(hash, sonar.image.labels);
-    for (const tools::ViewImages& view : sonar.sectors) add(hash, view);
+    for (const testbed::ViewImages& view : sonar.sectors) add(hash, view);
   }
   return hash.hex();
 }
@@ -54,10 +54,11 @@ std::map<std::string, double> parts_of(const std::vector<gpu::PassTime>& passes)
   return parts;
 }
 
-Contender frames_of(const std::string& name, tools::Session& session, tools::FrameRequest request) {
+Contender frames_of(const std::string& name, testbed::Session& session,
+                    testbed::FrameRequest request) {
   return {name, [&session, request]() -> Result<Sample> {
             const TimeNs start = now_ns();
-            NERITIC_TRY(const tools::FrameResult result, session.render(request));
+            NERITIC_TRY(const testbed::FrameResult result, session.render(request));
             const double ms = to_ms(now_ns() - start);
             Sample sample{ms, parts_of(result.passes), hash_of(result)};
             double known = 0.0;

@@ -6,8 +6,8 @@
 #include "diver/swimmer.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/sim/state_hash.hpp"
+#include "testbed/simulation/physics_world.hpp"
 #include "tools/benchmark/groups.hpp"
-#include "tools/physics/physics_world.hpp"
 
 namespace neritic::bench {
 namespace {
@@ -44,7 +44,7 @@ Contender swimming(const std::string& name, diver::Model model, int strips) {
 
 // Five seconds of the dive along the wreck as `neritic dive` steps it: the diver and the vehicle
 // beside, contacts, current, snapshots and hashes; the sample is the time of one.
-Contender diving(const tools::PhysicsWorld& world) {
+Contender diving(const testbed::PhysicsWorld& world) {
   return {"diver/scene_second_with_a_vehicle", [&world]() -> Result<Sample> {
             const auto simulation = world.simulation({.readers = 0});
             const auto steps = static_cast<std::uint64_t>(std::llround(1.0 / world.step_s()));
@@ -61,7 +61,7 @@ Status bench_diver(Suite& suite) {
   if (!suite.wants("diver")) return {};
   NERITIC_TRY(const scene::Scene scene,
               scene::load_scene(suite.options().assets + "/scenes/dive.toml"));
-  NERITIC_TRY(const auto world, tools::PhysicsWorld::create(scene));
+  NERITIC_TRY(const auto world, testbed::PhysicsWorld::create(scene));
   const int strips = diver::BodyParameters{}.strips_a_segment;
   NERITIC_TRY_STATUS(suite.measure(
       {swimming("second_at_240_hz", diver::Model::kFull, strips),

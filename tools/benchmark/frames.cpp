@@ -7,8 +7,8 @@
 namespace neritic::bench {
 namespace {
 
-using tools::FrameRequest;
-using tools::Session;
+using testbed::FrameRequest;
+using testbed::Session;
 
 FrameRequest request_of(std::vector<std::size_t> cameras, std::vector<std::size_t> sonars,
                         bool color, bool geometry, bool motion) {
@@ -32,7 +32,7 @@ Contender cpu_costs(const std::string& name, Session& session) {
             const TimeNs evaluated = now_ns();
             const render::DrawList draws = render::build_draw_list(
                 session.scene(), session.gpu_scene(), state,
-                tools::camera_views(session.scene(), session.scene().cameras[0]));
+                testbed::camera_views(session.scene(), session.scene().cameras[0]));
             const TimeNs listed = now_ns();
             return Sample{
                 to_ms(listed - start),
@@ -76,7 +76,7 @@ Status bench_sonar_frame(Suite& suite, gpu::Device& device) {
   const std::string expected = hash_of(a.sonars[0].image);
   if (hash_of(b.sonars[0].image) != expected)
     suite.fail("the sonar image differs when the G-buffer is read back too");
-  for (const tools::SonarFrame& frame : c.sonars)
+  for (const testbed::SonarFrame& frame : c.sonars)
     if (hash_of(frame.image) != expected)
       suite.fail("one of ten equal sonars gives another image: " + frame.name);
   suite.ratio("ten_sonars_vs_one", "sonar_frame/23k_ten_sonars", "sonar_frame/23k");

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "engine/gpu/device.hpp"
+#include "testbed/sensors/session.hpp"
 #include "tools/benchmark/suite.hpp"
-#include "tools/session/session.hpp"
 
 namespace neritic::bench {
 
@@ -30,16 +30,17 @@ Status bench_start(Suite& suite, gpu::Device& device);               // process 
 Status bench_threads(Suite& suite, const std::string& device_name);  // same bits on 1 and 2 threads
 
 // A scene of assets/scenes in a session.
-Result<std::unique_ptr<tools::Session>> open_scene(const Suite& suite, gpu::Device& device,
-                                                   const std::string& file);
+Result<std::unique_ptr<testbed::Session>> open_scene(const Suite& suite, gpu::Device& device,
+                                                     const std::string& file);
 
 std::string hash_of(const sonar::SonarImage& image);
-std::string hash_of(const tools::FrameResult& result);
+std::string hash_of(const testbed::FrameResult& result);
 std::map<std::string, double> parts_of(const std::vector<gpu::PassTime>& passes);
 
 // Frames of a session as a contender; the session must outlive it. Wall time of Session::render:
 // evaluate, draw lists, graph, record, run, arrays at the host.
-Contender frames_of(const std::string& name, tools::Session& session, tools::FrameRequest request);
+Contender frames_of(const std::string& name, testbed::Session& session,
+                    testbed::FrameRequest request);
 
 // Depth and normals of a wavy wall 2 to 4 m away that fills a wedge: every pixel counts.
 sonar::SonarInput relief_input(const sonar::BeamGrid& grid, std::uint32_t width,

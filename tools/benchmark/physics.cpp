@@ -7,8 +7,8 @@
 #include "engine/core/hash.hpp"
 #include "rov/bluerov2.hpp"
 #include "rov/closed_loop.hpp"
+#include "testbed/simulation/physics_world.hpp"
 #include "tools/benchmark/groups.hpp"
-#include "tools/physics/physics_world.hpp"
 
 namespace neritic::bench {
 namespace {
@@ -20,7 +20,7 @@ constexpr int kStepsAControl = 5;  // 48 Hz
 // One ROV of the mission scene with every sensor that there is, each at every step.
 struct Surveyor {
   scene::Scene scene;
-  std::unique_ptr<const tools::PhysicsWorld> world;
+  std::unique_ptr<const testbed::PhysicsWorld> world;
   rov::SensorSet sensors;
 };
 
@@ -31,7 +31,7 @@ Result<Surveyor> make_surveyor(const Suite& suite) {
     if (object.dynamics)
       object.dynamics->file =
           suite.options().assets + "/vehicles/bluerov2_heavy_survey_dynamics.toml";
-  NERITIC_TRY(out.world, tools::PhysicsWorld::create(out.scene));
+  NERITIC_TRY(out.world, testbed::PhysicsWorld::create(out.scene));
   out.sensors = out.world->vehicles()[0].file.sensors;
   const double hz = 1.0 / out.world->step_s();
   out.sensors.imu->rate_hz = out.sensors.dvl->rate_hz = out.sensors.pressure->rate_hz = hz;
@@ -42,7 +42,7 @@ Result<Surveyor> make_surveyor(const Suite& suite) {
 // Seconds of its mission round the wreck: control, thrusters, current, contacts, snapshots, hashes,
 // and what its sensors say. parts: what a second took of it.
 Sample survey(const Surveyor& surveyor, int seconds) {
-  const tools::PhysicsWorld& world = *surveyor.world;
+  const testbed::PhysicsWorld& world = *surveyor.world;
   const auto simulation = world.simulation({});
   rov::SensorReadings readings;
   TimeNs of_steps = 0, of_sensors = 0;
@@ -136,12 +136,12 @@ Contender fleet_second(const std::string& name, Fleet& fleet, bool controlled, u
 }
 
 // A thousand hand-offs of the dive's state, so that milliseconds are microseconds each.
-Sample hand_over(const tools::PhysicsState& state) {
-  using Pair = sim::SnapshotPair<tools::PhysicsState>;
-  sim::Snapshot<tools::PhysicsState> snapshot;
+Sample hand_over(const testbed::PhysicsState& state) {
+  using Pair = sim::SnapshotPair<testbed::PhysicsState>;
+  sim::Snapshot<testbed::PhysicsState> snapshot;
   snapshot.state = state;
   sim::TripleBuffer<Pair> buffer(Pair{snapshot, snapshot});
-  sim::SnapshotReader<tools::PhysicsState> reader(buffer);
+  sim::SnapshotReader<testbed::PhysicsState> reader(buffer);
   Pair pair{snapshot, snapshot};
   std::uint64_t seen = 0;
   const TimeNs begin = now_ns();
@@ -185,7 +185,7 @@ Status bench_physics(Suite& suite) {
   constexpr int kSeconds = 10;
   NERITIC_TRY(const Surveyor surveyor, make_surveyor(suite));
   Fleet fleet(1000);
-  const tools::PhysicsState state = surveyor.world->start();
+  const testbed::PhysicsState state = surveyor.world->start();
   NERITIC_TRY_STATUS(suite.measure(
       {{"physics/rov_all_sensors_240_hz",
         [&]() -> Result<Sample> { return survey(surveyor, kSeconds); },
@@ -195,7 +195,7 @@ Status bench_physics(Suite& suite) {
        fleet_second("physics/1000_rovs_and_control_2_threads", fleet, true, 2),
        {"physics/1000_hand_offs",
         [&]() -> Result<Sample> { return hand_over(state); },
-        {{"bytes", static_cast<double>(sizeof(sim::SnapshotPair<tools::PhysicsState>))}}},
+        {{"bytes", static_cast<double>(sizeof(sim::SnapshotPair<testbed::PhysicsState>))}}},
        {"physics/arithmetic",
         []() -> Result<Sample> { return multiply_and_add(); },
         {{"operations", 4.0 * kChains * kProducts}}}},

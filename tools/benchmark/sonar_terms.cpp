@@ -96,9 +96,9 @@ Status bench_sonar_terms(Suite& suite, gpu::Device& device) {
   if (!suite.wants("sonar_terms")) return {};
   NERITIC_TRY(const scene::Scene base,
               scene::load_scene(suite.options().assets + "/scenes/benchmark_23k.toml"));
-  std::vector<std::unique_ptr<tools::Session>> sessions;
+  std::vector<std::unique_ptr<testbed::Session>> sessions;
   std::vector<Contender> contenders;
-  tools::FrameRequest request;
+  testbed::FrameRequest request;
   request.sonars = {0};
   request.capture = {.color = false, .geometry = false, .motion = false};
   for (const auto& [name, terms] : one_by_one()) {
@@ -106,7 +106,7 @@ Status bench_sonar_terms(Suite& suite, gpu::Device& device) {
     scene.sonars.at(0).terms = terms;
     // Under way and turning, or there is no motion to pay for.
     if (terms.motion) scene.sonars[0].mount.track = course_of(scene.sonars[0].mount.pose);
-    NERITIC_TRY(auto session, tools::Session::create(device, std::move(scene)));
+    NERITIC_TRY(auto session, testbed::Session::create(device, std::move(scene)));
     sessions.push_back(std::move(session));
     contenders.push_back(frames_of("sonar_terms/" + name, *sessions.back(), request));
   }

@@ -36,12 +36,12 @@ Status sweep_bins(Suite& suite, gpu::Device& device, const std::string& axis,
 }
 
 Status sweep_pixels(Suite& suite, gpu::Device& device) {
-  std::vector<std::unique_ptr<tools::Session>> sessions;
+  std::vector<std::unique_ptr<testbed::Session>> sessions;
   std::vector<Contender> contenders;
   for (const double scale : {0.25, 0.5, 1.0, 2.0}) {
     NERITIC_TRY(auto session, open_scene(suite, device, "benchmark_23k.toml"));
     session->scene().sonars[0].gbuffer_scale = scale;
-    tools::FrameRequest request;
+    testbed::FrameRequest request;
     request.sonars = {0};
     request.capture = {false, false, false};
     contenders.push_back(
@@ -54,7 +54,7 @@ Status sweep_pixels(Suite& suite, gpu::Device& device) {
 
 // A sphere ahead of a sonar, of more and more triangles.
 Status sweep_triangles(Suite& suite, gpu::Device& device) {
-  std::vector<std::unique_ptr<tools::Session>> sessions;
+  std::vector<std::unique_ptr<testbed::Session>> sessions;
   std::vector<Contender> contenders;
   for (const int segments : {16, 50, 100, 160, 320, 500}) {
     scene::Scene scene;
@@ -69,8 +69,8 @@ Status sweep_triangles(Suite& suite, gpu::Device& device) {
     sonar.name = "sonar";
     scene.sonars.push_back(sonar);
     const std::size_t triangles = scene::triangle_count(*scene.models[0]);
-    NERITIC_TRY(auto session, tools::Session::create(device, std::move(scene)));
-    tools::FrameRequest request;
+    NERITIC_TRY(auto session, testbed::Session::create(device, std::move(scene)));
+    testbed::FrameRequest request;
     request.sonars = {0};
     request.capture = {false, false, false};
     contenders.push_back(

@@ -6,14 +6,15 @@
 #include "engine/core/log.hpp"
 #include "engine/xr/desktop.hpp"
 #include "engine/xr/offscreen.hpp"
+#include "testbed/loop/dive_loop.hpp"
+#include "testbed/sensors/validation.hpp"
 #include "tools/neritic/commands.hpp"
-#include "tools/neritic/dive_loop.hpp"
 #include "tools/neritic/dive_physics.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/load_scene.hpp"
-#include "tools/session/validation.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 namespace fs = std::filesystem;

@@ -6,13 +6,14 @@
 #include <filesystem>
 
 #include "engine/core/files.hpp"
+#include "testbed/record/dive_record.hpp"
+#include "tools/common/dive_plot.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/interrupt.hpp"
-#include "tools/physics/dive_plot.hpp"
-#include "tools/physics/dive_record.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 constexpr double kPhysicsSeconds = 60.0;  // where --seconds is not given

@@ -4,10 +4,11 @@
 
 #include <cstdint>
 
+#include "testbed/record/dive_record.hpp"
 #include "tools/neritic/commands.hpp"
-#include "tools/physics/dive_record.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 
 // How the steps went.
 struct Pace {

@@ -7,20 +7,21 @@
 #include "engine/core/files.hpp"
 #include "engine/core/log.hpp"
 #include "engine/render/water_optics.hpp"
+#include "testbed/output/output.hpp"
+#include "testbed/output/survey.hpp"
+#include "testbed/record/dive_record.hpp"
+#include "testbed/sensors/ping_schedule.hpp"
+#include "testbed/sensors/session.hpp"
+#include "testbed/sensors/sonar_check.hpp"
+#include "testbed/sensors/validation.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/render_sheet.hpp"
-#include "tools/physics/dive_record.hpp"
-#include "tools/session/output.hpp"
-#include "tools/session/ping_schedule.hpp"
-#include "tools/session/session.hpp"
-#include "tools/session/sonar_check.hpp"
-#include "tools/session/survey.hpp"
-#include "tools/session/validation.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 namespace fs = std::filesystem;

@@ -6,10 +6,11 @@
 #include "engine/core/files.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/write_sonar.hpp"
-#include "tools/session/output.hpp"
-#include "tools/session/pictures.hpp"
+#include "testbed/output/output.hpp"
+#include "testbed/output/pictures.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 struct Picture {

@@ -6,9 +6,10 @@
 #include <map>
 #include <string>
 
-#include "tools/session/session.hpp"
+#include "testbed/sensors/session.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 
 using ClassNames = std::map<std::uint16_t, std::string>;  // by class
 

@@ -1,11 +1,12 @@
 // `neritic sonar`: sonar images from depth and normal images of anyone's making, no scene.
 #include "engine/core/log.hpp"
+#include "testbed/sensors/validation.hpp"
 #include "tools/neritic/sonar_folder.hpp"
 #include "tools/neritic/sonar_picture.hpp"
 #include "tools/neritic/sonar_resume.hpp"
-#include "tools/session/validation.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 Status run_one(const SonarJob& job, SonarNotes& notes) {

@@ -8,14 +8,15 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "testbed/sensors/validation.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/sonar_picture.hpp"
 #include "tools/neritic/sonar_pipeline.hpp"
 #include "tools/neritic/sonar_resume.hpp"
-#include "tools/session/validation.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 namespace fs = std::filesystem;

@@ -5,10 +5,11 @@
 
 #include "engine/scene/sonar_file.hpp"
 #include "sonar/detection.hpp"
+#include "testbed/sensors/session.hpp"
 #include "tools/neritic/flags.hpp"
-#include "tools/session/session.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 using scene::SonarKind;

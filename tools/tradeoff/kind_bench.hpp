@@ -5,10 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include "tools/session/session.hpp"
+#include "testbed/sensors/session.hpp"
 #include "tools/tradeoff/kinds.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 
 class KindBench {
  public:

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/physics/body_step.hpp"
+#include "testbed/simulation/body_step.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 
 // Commands change so often: the longest step.
 inline constexpr double kHold_s = 0.05;

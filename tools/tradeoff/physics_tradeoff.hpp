@@ -11,9 +11,10 @@
 #include <vector>
 
 #include "engine/core/result.hpp"
-#include "tools/physics/body_step.hpp"
+#include "testbed/simulation/body_step.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 
 struct PhysicsTradeoffOptions {
   bool quick = false;                  // a shorter flight, timed once: to see that it works

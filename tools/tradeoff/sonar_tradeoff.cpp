@@ -4,9 +4,10 @@
 #include <map>
 
 #include "engine/scene/scene.hpp"
-#include "tools/session/session.hpp"
+#include "testbed/sensors/session.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 using sonar::Gather;

@@ -1,0 +1,43 @@
+// What `dive` draws over the picture: compass and depth, facts and timings, the live sonars, the
+// keys. Dear ImGui calls between Overlay::begin and Overlay::declare. Rendering thread.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+#include <vector>
+
+#include "sonar/beam_grid.hpp"
+#include "testbed/loop/dive_camera.hpp"
+#include "testbed/loop/dive_fan.hpp"
+#include "testbed/loop/dive_times.hpp"
+
+namespace neritic::testbed {
+
+struct SonarPanel {
+  std::string name;
+  ImTextureID picture{};
+  FanShape shape;
+  sonar::BeamGrid grid;
+  double rate_hz = 0.0;
+};
+
+struct PanelFacts {
+  std::string title, device, water;  // water empty: none
+  std::uint32_t width = 0, height = 0;
+  double time_s = 0.0;
+  std::vector<SonarPanel> sonars;
+  std::vector<std::string> vehicles;  // a line each
+};
+
+// The camera's picture behind everything.
+void draw_background(ImTextureID picture);
+void draw_readout(const FreeCamera& camera, float scale);
+void draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTimes& times,
+                 TimeNs now_ns, float scale);
+void draw_sonars(const PanelFacts& facts, float scale);
+void draw_help(float scale);
+// One line at the lower edge.
+void draw_hint(const std::string& text, float scale);
+
+}  // namespace neritic::testbed

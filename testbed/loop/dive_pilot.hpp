@@ -1,0 +1,32 @@
+// Who flies a vehicle by hand in the live program: keys to a wrench, and a view that rides along.
+// Rendering thread.
+#pragma once
+
+#include <string>
+
+#include "engine/xr/window.hpp"
+#include "testbed/loop/live_physics.hpp"
+
+namespace neritic::testbed {
+
+class DivePilot {
+ public:
+  // physics may be nullptr: nothing to fly. view: the mount of the camera that is flown.
+  DivePilot(LivePhysics* physics, const scene::Mount& view);
+
+  // Keys of this frame. True while a vehicle is flown: the camera is not then.
+  bool take(const xr::DesktopInput& input);
+  // The riding view; precondition: take() said true.
+  Pose world_from_view() const;
+  // A line a vehicle, for the panels.
+  std::vector<std::string> lines() const;
+
+ private:
+  LivePhysics* physics_;
+  std::size_t vehicle_ = 0;  // the one that the view is on, else the first
+  Pose vehicle_from_view_;
+  bool flying_ = false;
+  VehicleInputs told_;
+};
+
+}  // namespace neritic::testbed

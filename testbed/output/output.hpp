@@ -1,0 +1,40 @@
+// Writes what a frame gave, in the layout of the file contract: DIR/frame_0000/SENSOR/...
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "engine/core/result.hpp"
+#include "sonar/write_sonar.hpp"
+#include "testbed/sensors/session.hpp"
+
+namespace neritic::testbed {
+
+// What meta.json says besides the view itself.
+struct FrameFacts {
+  double time_s = 0.0;
+  std::uint64_t seed = 0;
+  std::string scene, device;
+  std::vector<gpu::PassTime> passes;
+  double frame_ms = 0.0;
+};
+
+// "frame_0000" of OUT.
+std::string frame_folder(std::uint32_t number);
+// Of a frame's folder: SENSOR, of a sonar with several heads SENSOR/HEAD.
+std::filesystem::path sonar_folder(const SonarFrame& frame);
+
+// depth.npy, normals.npy, labels.npy, instances.npy, meta.json; for a camera color.png and
+// motion.npy.
+Status write_view(const std::filesystem::path& folder, const ViewImages& view,
+                  const FrameFacts& facts);
+
+// sonar.npy, sonar_labels.npy, sonar.png, sonar.json, and its view beside them (sector_0, sector_1,
+// ... where the wedge took several).
+// What sonar/write_sonar.hpp draws and writes of it.
+sonar::SonarFiles sonar_files(const SonarFrame& frame);
+Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
+                   const FrameFacts& facts);
+
+}  // namespace neritic::testbed

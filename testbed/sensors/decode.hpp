@@ -1,0 +1,21 @@
+// From G-buffer texels to the arrays of the file contract. Pure functions.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "testbed/sensors/session.hpp"
+
+namespace neritic::testbed {
+
+// texels: one layer of the image. Depth before normals, which need its hits.
+void decode_depth(std::span<const float> texels, ViewImages& out);
+void decode_normals(std::span<const std::uint32_t> texels, ViewImages& out);
+void decode_labels(std::span<const std::uint32_t> texels, ViewImages& out);
+void decode_color(std::span<const std::uint32_t> texels, ViewImages& out);
+// next_from_view: the view's turn from now to the next frame's time. Where depth_texels hit
+// nothing, what is infinitely far moves by it alone; what would be behind the view then is NaN.
+void decode_motion(std::span<const float> texels, std::span<const float> depth_texels,
+                   const Quat& next_from_view, ViewImages& out);
+
+}  // namespace neritic::testbed

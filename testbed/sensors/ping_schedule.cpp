@@ -1,0 +1,29 @@
+#include "testbed/sensors/ping_schedule.hpp"
+
+#include <algorithm>
+
+namespace neritic::testbed {
+namespace {
+
+// Of a period: frames whose times are sums of fractions may come this much early.
+constexpr double kEarly = 1e-6;
+
+}  // namespace
+
+PingSchedule::PingSchedule(const std::vector<double>& rates_hz) {
+  for (const double rate_hz : rates_hz) sensors_.push_back({1.0 / rate_hz});
+}
+
+std::vector<PingSchedule::Due> PingSchedule::due(double time_s) {
+  std::vector<Due> out;
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    Sensor& s = sensors_[i];
+    if (s.pings == 0) s.next_s = time_s;
+    if (time_s < s.next_s - kEarly * s.period_s) continue;
+    out.push_back({i, s.pings++});
+    s.next_s = std::max(s.next_s + s.period_s, time_s + 0.5 * s.period_s);
+  }
+  return out;
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,29 @@
+// When sensors that run at rates of their own are due, frame by frame. Plain data; one thread.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace neritic::testbed {
+
+class PingSchedule {
+ public:
+  explicit PingSchedule(const std::vector<double>& rates_hz);
+
+  struct Due {
+    std::size_t sensor = 0;    // by place in the rates
+    std::uint32_t number = 0;  // of its ping: 0, 1, 2, ...
+  };
+  // Those whose time has come: at the first call all, then each a period after its last, kept to
+  // its own beat. One that is late pings once, not for every ping missed. Times do not fall.
+  std::vector<Due> due(double time_s);
+
+ private:
+  struct Sensor {
+    double period_s = 0.0, next_s = 0.0;
+    std::uint32_t pings = 0;
+  };
+  std::vector<Sensor> sensors_;
+};
+
+}  // namespace neritic::testbed

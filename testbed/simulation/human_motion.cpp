@@ -1,0 +1,162 @@
+// The step of a diver, and what is drawn of it (human_world.hpp).
+#include <algorithm>
+#include <cmath>
+
+#include "diver/frames.hpp"
+#include "engine/sim/motion.hpp"
+#include "testbed/simulation/human_world.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// Beyond a waypoint, so many times nearer than wanted is near enough.
+constexpr double kPassed = 3.0;
+
+std::size_t waypoint_index(const PhysicsHuman& human, const HumanPhysics& state) {
+  const std::size_t count = human.waypoints_ned_m.size();
+  return human.repeat ? state.arrived % count : std::min<std::size_t>(state.arrived, count - 1);
+}
+
+bool swims_on(const PhysicsHuman& human, const HumanPhysics& state) {
+  return !human.waypoints_ned_m.empty() &&
+         (human.repeat || state.arrived < human.waypoints_ned_m.size());
+}
+
+void follow_plan(const PhysicsHuman& human, HumanPhysics& state) {
+  if (!swims_on(human, state)) return;
+  const Vec3& to = human.waypoints_ned_m[waypoint_index(human, state)];
+  const Vec3 off = state.human.root.position_ned_m - to, leg = to - state.leg_from_ned_m;
+  const double distance = glm::length(off);
+  const bool passed = glm::dot(off, leg) > 0.0 && distance < kPassed * human.acceptance_m;
+  if (distance >= human.acceptance_m && !passed) return;
+  ++state.arrived;
+  state.leg_from_ned_m = to;
+}
+
+// Coulomb's, of a diver on a vehicle: that of a scene's things.
+constexpr double kHumanFriction = sim::Surface{}.friction;
+
+sim::PairBody pair_body(const PhysicsHuman& human, const HumanStep& moving) {
+  return {human.shape, moving.inverse_mass, moving.before, moving.free};
+}
+
+bool computer_due(std::uint64_t step, double dt_s) {
+  const auto samples = [&](std::uint64_t steps) {
+    return std::floor(static_cast<double>(steps) * dt_s / diver::kComputerSample_s + 1e-9);
+  };
+  return samples(step + 1) != samples(step);
+}
+
+}  // namespace
+
+diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) {
+  if (swims_on(human, state))
+    return {human.waypoints_ned_m[waypoint_index(human, state)], human.speed_m_s};
+  return {state.leg_from_ned_m, 0.0};
+}
+
+HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
+                     const diver::WaterFlow& water, std::uint64_t step, double dt_s,
+                     HumanPhysics& state) {
+  diver::HumanInputs acting = inputs.human;
+  acting.current_ned_m_s = water.current_m_s;
+  acting.current_change_ned_m_s2 = water.change_m_s2;
+  acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
+  follow_plan(human, state);
+  const double now_s = static_cast<double>(step) * dt_s;
+  if (inputs.worn == 0 && human.recording)
+    acting.joints = human.recording->at(now_s, human.repeat);
+  else if (inputs.worn == 0)  // nobody wears the suit: swims by itself
+    diver::swim(human.body, human.file.swimmer, swim_goal(human, state), state.human, state.swimmer,
+                dt_s, acting);
+  if (inputs.worn == 0 && human.buttons)
+    acting.buttons = human.buttons->at(now_s).value_or(acting.buttons);
+  if (inputs.worn == 0 && human.file.gas_switching.by_plan) acting.tank = state.tank;
+  const diver::RootState before = state.human.root;
+  state.human = diver::step(human.body, state.human, acting, dt_s);
+  const diver::RootState& after = state.human.root;
+  const Mat6 mass = diver::matrix_of(
+      diver::momentum_of(human.body, diver::posture_of(human.body, state.human.limbs.rotation, {}),
+                         diver::gas_load(human.body, state.human))
+          .mass);
+  return {world_from_ned(inverse(mass)).m,
+          world_pose(before.position_ned_m, before.attitude),
+          {world_pose(after.position_ned_m, after.attitude),
+           {world_from_ned(after.velocity.linear()), world_from_ned(after.velocity.angular())}}};
+}
+
+bool part_from_vehicle(const PhysicsHuman& human, HumanStep& moving, const VehicleStep& vehicle,
+                       rov::State& free) {
+  sim::PairBody a = pair_body(vehicle, free), b = pair_body(human, moving);
+  if (!sim::part_bodies(a, b, kHumanFriction, vehicle.dt_s)) return false;
+  set_motion(a.free, free);
+  moving.free = b.free;
+  return true;
+}
+
+bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman& b,
+                 HumanStep& moving_b, double dt_s) {
+  sim::PairBody pair_a = pair_body(a, moving_a), pair_b = pair_body(b, moving_b);
+  if (!sim::part_bodies(pair_a, pair_b, kHumanFriction, dt_s)) return false;
+  moving_a.free = pair_a.free;
+  moving_b.free = pair_b.free;
+  return true;
+}
+
+void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
+               bool parted, std::uint64_t step, double dt_s, HumanPhysics& state) {
+  sim::MotionReport report;
+  const sim::BodyMotion moved = sim::move_body(solid, human.shape, moving.inverse_mass,
+                                               moving.before, moving.free, dt_s, &report);
+  diver::RootState& after = state.human.root;
+  after.position_ned_m = ned_from_world(moved.world_from_body.position_m);
+  after.attitude = ned_from_world(moved.world_from_body.rotation);
+  after.velocity =
+      vec6(ned_from_world(moved.velocity.linear), ned_from_world(moved.velocity.angular));
+  state.contact.near_points = static_cast<std::uint64_t>(report.contacts);
+  state.contact.touched_steps += report.touched || parted ? 1 : 0;
+  state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);
+  state.contact.impulse_n_s = report.impulse_n_s;
+  if (!computer_due(step, dt_s)) return;
+  diver::DiveComputerState& computer = state.human.life.computer;
+  // Out of a tank that the diver has not got nothing comes; without any there is the air above.
+  const std::uint64_t tank = state.human.held.tank;
+  const bool none = human.body.tank_count > 0 && tank >= human.body.tank_count;
+  const bool known = tank < human.computer->settings().gases.size();
+  const bool unfed = none || state.human.life.lungs.unfed_s > 0.0;
+  computer = human.computer->step(
+      computer, {after.position_ned_m.z, known ? tank : computer.last.gas, unfed ? 0U : 1U},
+      diver::kComputerSample_s);
+  const double sink_m_s = (after.attitude * after.velocity.linear()).z;
+  state.tank =
+      diver::step_gas_switch(human.file.gas_switching, human.computer->settings().gases, human.body,
+                             state.human.life.tanks, computer, tank, after.position_ned_m.z,
+                             sink_m_s, diver::kComputerSample_s, state.gas_switch);
+}
+
+Pose drawn_pose(const HumanPhysics& state) {
+  return diver::standing_pose(state.human.root.position_ned_m, state.human.root.attitude);
+}
+
+scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
+                                    double time_s) {
+  const auto joints = diver::standing_joints(state.human.limbs.rotation, human.arms_spread_rad);
+  scene::NodeMotion::Key key{time_s, {Quat(1.0, 0.0, 0.0, 0.0)}, {}};
+  for (const Quat& joint : joints) key.rotations.push_back(joint);
+  key.scales.assign(diver::kSegments, Vec3(1.0));
+  key.scales[diver::kPelvis] = Vec3(human.scale);
+  // A breath of a litre makes the chest some 2.5 % wider and 5 % deeper (Konno and Mead 1967, J.
+  // Appl. Physiol. 22, 407), the belly likewise; what hangs on the chest keeps its size.
+  const double litres = 1e3 * (state.human.life.lungs.volume_m3 - human.body.lungs.rest_m3);
+  const Vec3 wider(1.0 + 0.025 * litres, 1.0, 1.0 + 0.05 * litres);
+  key.scales[diver::kAbdomen] = wider;
+  for (const diver::Segment on_chest : {diver::kHead, diver::kLeftUpperArm, diver::kRightUpperArm})
+    key.scales[on_chest] = 1.0 / wider;
+  for (const Vec3& gear : human.gear_scales) {
+    key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
+    key.scales.push_back(gear);
+  }
+  return key;
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,77 @@
+// The divers of a scene who swim by moving limbs: read and checked once, then only read; and their
+// step through the water and along what is solid, a pure function. World of the diver north, east,
+// down; body forward (to the head), starboard, down.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diver/button_recording.hpp"
+#include "diver/diver_file.hpp"
+#include "diver/limb_recording.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/sim/body_shape.hpp"
+#include "engine/sim/static_world.hpp"
+#include "testbed/simulation/body_step.hpp"
+#include "testbed/simulation/physics_state.hpp"
+
+namespace neritic::testbed {
+
+// A diver of the scene, prepared.
+struct PhysicsHuman {
+  std::string name;
+  std::size_t object = 0;  // index into Scene::objects
+  diver::DiverFile file;
+  diver::Body body;
+  std::unique_ptr<const diver::DiveComputer> computer;
+  // Where to swim; no points: hovers.
+  std::vector<Vec3> waypoints_ned_m;
+  double speed_m_s = 0.0, acceptance_m = 1.0;
+  bool repeat = false;
+  std::optional<diver::LimbRecording> recording;  // moves the limbs instead
+  // Presses the jacket's buttons from its first row on, instead of who swims.
+  std::optional<diver::ButtonRecording> buttons;
+  sim::BodyShape shape;  // for contacts: model axes (starboard, up, back) of who swims
+  // The joints of what is drawn: nodes of its model, one a segment, then those of gear that it has;
+  // how its arms are spread, how much larger than the model the diver is, and the scale of each
+  // node of gear: 0 takes off what this diver has not.
+  std::vector<int> nodes;
+  double arms_spread_rad = 0.0, scale = 1.0;
+  std::vector<Vec3> gear_scales;
+  HumanPhysics start;
+};
+
+// Errors in one line: files that do not read, models without the segments' nodes.
+Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t object);
+
+// What the diver swims to now.
+diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state);
+
+// A diver on the way through a step, for what touches: world axes.
+struct HumanStep {
+  sim::InverseMass inverse_mass{};
+  Pose before;
+  sim::BodyMotion free;  // as if alone; what it meets changes it
+};
+// dt_s later, as if the water were empty.
+HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
+                     const diver::WaterFlow& water, std::uint64_t step, double dt_s,
+                     HumanPhysics& state);
+// Whether a diver touched a vehicle, or another diver: the free steps of both then part, by equal
+// and opposite impulses.
+bool part_from_vehicle(const PhysicsHuman& human, HumanStep& moving, const VehicleStep& vehicle,
+                       rov::State& free);
+bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman& b,
+                 HumanStep& moving_b, double dt_s);
+// Along what is solid, and the dive computer's sample. parted: touched one that moves.
+void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
+               bool parted, std::uint64_t step, double dt_s, HumanPhysics& state);
+
+// What is drawn: where the model stands, and its nodes' rotations and scales (breath).
+Pose drawn_pose(const HumanPhysics& state);
+scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
+                                    double time_s);
+
+}  // namespace neritic::testbed

@@ -1,0 +1,145 @@
+#include "testbed/simulation/mission.hpp"
+
+#include <algorithm>
+
+#include "rov/frames.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// Below, a way has no direction to face along.
+constexpr double kLeastWay = 0.01;
+
+}  // namespace
+
+MissionGuide::MissionGuide(const scene::Scene& scene, const scene::Mission& mission,
+                           const Movers& movers)
+    : kind_(mission.kind),
+      acceptance_m_(mission.acceptance_m),
+      speed_m_s_(mission.speed_m_s),
+      radius_m_(mission.radius_m),
+      distance_m_(mission.distance_m),
+      repeat_(mission.repeat),
+      offset_frd_m_(rov::ned_from_world(mission.offset_m)),
+      face_(face_of(scene, mission.facing, movers)),
+      target_(scene, mission.target, movers),
+      a_(scene, mission.between_a, movers),
+      b_(scene, mission.between_b, movers) {
+  for (const scene::MissionWaypoint& waypoint : mission.waypoints)
+    waypoints_.push_back({rov::ned_from_world(waypoint.position_m),
+                          face_of(scene, waypoint.facing, movers), waypoint.hold_s});
+}
+
+MissionGuide::Face MissionGuide::face_of(const scene::Scene& scene, const scene::Facing& facing,
+                                         const Movers& movers) const {
+  Face face{facing.heading_rad, std::nullopt, facing.tilt};
+  if (facing.look_at) face.look_at.emplace(scene, *facing.look_at, movers);
+  return face;
+}
+
+std::size_t MissionGuide::waypoint_index(const MissionState& mission) const {
+  if (waypoints_.empty()) return 0;
+  if (repeat_) return mission.left % waypoints_.size();
+  return std::min<std::size_t>(mission.left, waypoints_.size() - 1);
+}
+
+bool MissionGuide::done(const MissionState& mission) const {
+  return !repeat_ && mission.arrived >= waypoints_.size();
+}
+
+rov::Setpoint MissionGuide::to_waypoint(const rov::State& body, double time_s,
+                                        MissionState& mission) const {
+  const bool last = !repeat_ && mission.left + 1 >= waypoints_.size();
+  const Stop* stop = &waypoints_[waypoint_index(mission)];
+  if (mission.arrived == mission.left && !done(mission) &&
+      glm::distance(body.position_ned_m, stop->position_ned_m) < acceptance_m_) {
+    ++mission.arrived;
+    mission.arrived_s = time_s;
+  }
+  if (mission.arrived > mission.left && !last && time_s - mission.arrived_s >= stop->hold_s) {
+    ++mission.left;
+    mission.leg_from_ned_m = stop->position_ned_m;
+    stop = &waypoints_[waypoint_index(mission)];
+  }
+  const bool holds = mission.arrived > mission.left;
+  if (holds || speed_m_s_ == 0.0) return rov::go_to({}, stop->position_ned_m);
+  return rov::go_to({}, body, mission.leg_from_ned_m, stop->position_ned_m, speed_m_s_);
+}
+
+void MissionGuide::turn(rov::Setpoint& setpoint, const Face& face, const Vec3& way_ned,
+                        const PhysicsState& all, double time_s, const MissionState& mission) const {
+  setpoint.attitude = rov::heading_attitude(rov::heading_of(mission.wanted_attitude));
+  if (face.heading_rad)
+    setpoint = rov::at_heading(setpoint, *face.heading_rad);
+  else if (face.look_at)
+    setpoint = rov::look_at(setpoint, rov::ned_from_world(face.look_at->at(all, time_s).position_m),
+                            face.tilt);
+  else if (std::hypot(way_ned.x, way_ned.y) > kLeastWay)
+    setpoint = rov::at_heading(setpoint, std::atan2(way_ned.y, way_ned.x));
+}
+
+rov::Setpoint MissionGuide::update(const PhysicsState& all, const rov::State& body, double time_s,
+                                   MissionState& mission) const {
+  using Kind = scene::Mission::Kind;
+  if (mission.piloted != 0) {  // the pilot gave it back somewhere else
+    mission.piloted = 0;
+    mission.leg_from_ned_m = body.position_ned_m;
+  }
+  rov::Setpoint setpoint;
+  Vec3 way(0.0);
+  const Face* face = &face_;
+  if (kind_ == Kind::kStation) {
+    setpoint.position_ned_m = mission.leg_from_ned_m;
+  } else if (kind_ == Kind::kWaypoints) {
+    setpoint = to_waypoint(body, time_s, mission);
+    const Stop& stop = waypoints_[waypoint_index(mission)];
+    if (stop.face.said()) face = &stop.face;
+    if (mission.arrived == mission.left) way = stop.position_ned_m - mission.leg_from_ned_m;
+  } else if (kind_ == Kind::kOrbit) {
+    const Vec3 centre = rov::ned_from_world(target_.at(all, time_s).position_m);
+    setpoint = rov::orbit({}, body, centre, radius_m_, speed_m_s_);
+    way = setpoint.velocity_ned_m_s;
+  } else if (kind_ == Kind::kFollow) {
+    const Pose target = target_.at(all, time_s);
+    way = rov::ned_from_world(target_.velocity_m_s(all, time_s));
+    setpoint = rov::follow({}, rov::ned_from_world(target.position_m), way,
+                           rov::heading_of(rov::ned_from_world(target_.facing(all, time_s))),
+                           offset_frd_m_);
+  } else {
+    setpoint = rov::stand_between({}, rov::ned_from_world(a_.at(all, time_s).position_m),
+                                  rov::ned_from_world(b_.at(all, time_s).position_m), distance_m_);
+  }
+  if (kind_ != Kind::kStandBetween) turn(setpoint, *face, way, all, time_s, mission);
+  mission.wanted_ned_m = setpoint.position_ned_m;
+  mission.wanted_attitude = setpoint.attitude;
+  return setpoint;
+}
+
+rov::Setpoint piloted_setpoint(const VehicleInputs& inputs, const rov::State& body,
+                               MissionState& mission) {
+  const bool begins = mission.piloted == 0;
+  mission.piloted = 1;
+  const double depth_m =
+      begins || inputs.pilot[2] != 0.0 ? body.position_ned_m.z : mission.wanted_ned_m.z;
+  const bool heading_free = begins || inputs.pilot[5] != 0.0;
+  const double heading_rad =
+      rov::heading_of(heading_free ? body.attitude : mission.wanted_attitude);
+  rov::Setpoint setpoint;
+  setpoint.position_ned_m = {body.position_ned_m.x, body.position_ned_m.y, depth_m};
+  setpoint.attitude = rov::heading_attitude(heading_rad);
+  setpoint.hold_north = setpoint.hold_east = false;
+  setpoint.hold_depth = inputs.pilot[2] == 0.0;
+  setpoint.hold_heading = inputs.pilot[5] == 0.0;
+  mission.wanted_ned_m = setpoint.position_ned_m;
+  mission.wanted_attitude = setpoint.attitude;
+  return setpoint;
+}
+
+MissionState mission_start(const rov::State& body) {
+  MissionState mission;
+  mission.leg_from_ned_m = mission.wanted_ned_m = body.position_ned_m;
+  mission.wanted_attitude = rov::heading_attitude(rov::heading_of(body.attitude));
+  return mission;
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,61 @@
+// A vehicle's mission as setpoints: what the scene says, composed of the blocks of rov/guidance.hpp
+// once a control period. Built once, then only read; any thread. North, east, down.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "rov/guidance.hpp"
+#include "testbed/simulation/places.hpp"
+
+namespace neritic::testbed {
+
+class MissionGuide {
+ public:
+  MissionGuide(const scene::Scene& scene, const scene::Mission& mission, const Movers& movers);
+
+  // Where to be now. all: the states before this step; the mission's own state is advanced.
+  rov::Setpoint update(const PhysicsState& all, const rov::State& body, double time_s,
+                       MissionState& mission) const;
+  // 0 where it has none.
+  std::size_t waypoint_count() const { return waypoints_.size(); }
+  // Of the waypoint that it flies to or holds at.
+  std::size_t waypoint_index(const MissionState& mission) const;
+  // All waypoints reached, of a mission that does not repeat.
+  bool done(const MissionState& mission) const;
+
+ private:
+  struct Face {
+    std::optional<double> heading_rad;
+    std::optional<Place> look_at;
+    bool tilt = false;
+    bool said() const { return heading_rad || look_at; }
+  };
+  struct Stop {
+    Vec3 position_ned_m{0.0};
+    Face face;
+    double hold_s = 0.0;
+  };
+  Face face_of(const scene::Scene& scene, const scene::Facing& facing, const Movers& movers) const;
+  rov::Setpoint to_waypoint(const rov::State& body, double time_s, MissionState& mission) const;
+  void turn(rov::Setpoint& setpoint, const Face& face, const Vec3& way_ned, const PhysicsState& all,
+            double time_s, const MissionState& mission) const;
+
+  scene::Mission::Kind kind_;
+  double acceptance_m_, speed_m_s_, radius_m_, distance_m_;
+  bool repeat_;
+  Vec3 offset_frd_m_;
+  Face face_;
+  std::vector<Stop> waypoints_;
+  Place target_, a_, b_;
+};
+
+// While a pilot flies: depth and heading held where they are since the pilot let go of them, level
+// always. The pilot's wrench comes on top.
+rov::Setpoint piloted_setpoint(const VehicleInputs& inputs, const rov::State& body,
+                               MissionState& mission);
+
+// At the start: nothing reached, and held is where the body is.
+MissionState mission_start(const rov::State& body);
+
+}  // namespace neritic::testbed

@@ -1,0 +1,176 @@
+// What is read and checked once: the vehicles, what is solid, the current (physics_world.hpp).
+#include "testbed/simulation/physics_world.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "rov/frames.hpp"
+#include "rov/step_choice.hpp"
+#include "testbed/simulation/static_scene.hpp"
+#include "testbed/simulation/vehicle_shape.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// A vehicle that starts deeper than this in something solid is a mistake of the scene's.
+constexpr double kMostStartDepth_m = 0.02;
+
+Status check_thrusters(const scene::Scene& scene, const scene::Object& object,
+                       const rov::Vehicle& vehicle) {
+  const std::uint64_t failed = object.dynamics->failed_thrusters;
+  if ((failed >> vehicle.thruster_count) == 0) return {};
+  return bad_input("{}: {}: failed_thrusters: thruster {} found; accepted: 1 to {}, as {} has",
+                   scene.path, object.name, std::bit_width(failed), vehicle.thruster_count,
+                   object.dynamics->file.string());
+}
+
+Status check_anchor(const scene::Scene& scene, const scene::Object& object, bool tethered) {
+  if (tethered == object.dynamics->tether_anchor_m.has_value()) return {};
+  if (tethered)
+    return bad_input(
+        "{}: {}: tether_anchor_m: nothing found; accepted: [x, y, z], since {} has a "
+        "tether",
+        scene.path, object.name, object.dynamics->file.string());
+  return bad_input("{}: {}: tether_anchor_m found; accepted: no such key, since {} has no tether",
+                   scene.path, object.name, object.dynamics->file.string());
+}
+
+std::string name_of_label(const scene::Scene& scene, std::uint32_t label) {
+  for (const scene::Object& object : scene.objects)
+    if (label >= object.instance && label < object.instance + object.instance_count())
+      return object.name;
+  return "something";
+}
+
+}  // namespace
+
+Result<sim::Current> current_of(const scene::Current& current) {
+  sim::Current out;
+  switch (current.kind) {
+    case scene::Current::Kind::kUniform:
+      out = sim::UniformCurrent{current.velocity_m_s};
+      break;
+    case scene::Current::Kind::kPowerLaw:
+      out = sim::PowerLawCurrent{current.velocity_m_s, current.depth_m, current.exponent};
+      break;
+    case scene::Current::Kind::kLinear:
+      out = sim::LinearCurrent{current.velocity_m_s, current.deep_velocity_m_s, current.depth_m};
+      break;
+    case scene::Current::Kind::kGrid: {
+      NERITIC_TRY(out, sim::read_grid_current(current.file, {current.origin_m, current.spacing_m,
+                                                             current.start_s, current.interval_s}));
+      break;
+    }
+  }
+  if (const Status checked = sim::check_current(out); !checked.ok())
+    return bad_input("current: {}", checked.error().message);
+  return out;
+}
+
+bool PhysicsWorld::needed(const scene::Scene& scene) {
+  for (const scene::Object& object : scene.objects)
+    if (object.dynamics || object.human) return true;
+  return false;
+}
+
+Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Scene& scene) {
+  std::unique_ptr<PhysicsWorld> world(new PhysicsWorld);
+  world->seed_ = scene.seed;
+  if (scene.current) {
+    NERITIC_TRY(world->current_, current_of(*scene.current));
+  }
+  NERITIC_TRY(world->solid_, static_world_of(scene));
+  NERITIC_TRY_STATUS(world->choose_step(scene));
+  Movers movers{std::vector<int>(scene.objects.size(), -1),
+                std::vector<int>(scene.objects.size(), -1)};
+  int vehicles = 0, humans = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].dynamics) movers.vehicle_of_object[i] = vehicles++;
+    if (scene.objects[i].human) movers.human_of_object[i] = humans++;
+  }
+  if (vehicles > static_cast<int>(kMaxVehicles))
+    return bad_input("{}: {} vehicles with dynamics; accepted: at most {}", scene.path, vehicles,
+                     kMaxVehicles);
+  if (humans > static_cast<int>(kMaxHumans))
+    return bad_input("{}: {} divers who swim; accepted: at most {}", scene.path, humans,
+                     kMaxHumans);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i, movers));
+    if (scene.objects[i].human) NERITIC_TRY_STATUS(world->add_human(scene, i));
+  }
+  return std::unique_ptr<const PhysicsWorld>(std::move(world));
+}
+
+Status PhysicsWorld::choose_step(const scene::Scene& scene) {
+  const scene::Physics& physics = *scene.physics;
+  if (physics.max_error_m == 0.0) {
+    step_s_ = 1.0 / physics.rate_hz;
+    NERITIC_TRY(method_.integrator, rov::integrator_of(physics.integrator));
+    return {};
+  }
+  const auto choice = rov::cheapest_step(physics.max_error_m, solid_.counts().things > 0);
+  if (!choice.ok()) return bad_input("{}: physics.{}", scene.path, choice.error().message);
+  step_s_ = 1.0 / choice->hz;
+  method_ = {rov::Integrator::kGuarded, choice->contact_parts};
+  return {};
+}
+
+Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
+                                 const Movers& movers) {
+  const scene::Object& object = scene.objects[index];
+  const scene::Dynamics& dynamics = *object.dynamics;
+  NERITIC_TRY(rov::VehicleFile file, rov::read_vehicle(dynamics.file, scene.physics->water_kg_m3));
+  if (file.sensors.pressure)
+    file.sensors.pressure->air_pa = 1e5 * diver::surface_bar_at(scene.physics->altitude_m);
+  NERITIC_TRY(rov::Vehicle vehicle, rov::make_vehicle(file.parameters));
+  rov::prepare_steps(vehicle, std::array{step_s_, step_s_ / method_.contact_parts});
+  NERITIC_TRY_STATUS(check_thrusters(scene, object, vehicle));
+  NERITIC_TRY_STATUS(check_anchor(scene, object, vehicle.tether.has_value()));
+  PhysicsVehicle out{.name = object.name,
+                     .object = index,
+                     .file = std::move(file),
+                     .vehicle = vehicle,
+                     .failed_thrusters = dynamics.failed_thrusters,
+                     .allocator = rov::Allocator(vehicle, dynamics.failed_thrusters)};
+  // A controller cannot act more often than the physics step.
+  out.file.gains.period_s = std::max(out.file.gains.period_s, step_s_);
+  if (dynamics.mission) out.mission.emplace(scene, *dynamics.mission, movers);
+  if (dynamics.tether_anchor_m)
+    out.tether_anchor_ned_m = rov::ned_from_world(*dynamics.tether_anchor_m);
+  out.solid = solid_body(vehicle);
+  Result<VehicleShape> shape = vehicle_shape(scene, object, out.file.outline);
+  if (!shape.ok()) return bad_input("{}: {}: {}", scene.path, object.name, shape.error().message);
+  out.solid.shape = std::move(shape->body);
+  out.top_m = shape->top_m;
+  out.bottom_m = shape->bottom_m;
+  const Pose at = scene.world_from(object.mount, 0.0);
+  rov::teleport(out.start, rov::ned_from_world(at.position_m), rov::ned_from_world(at.rotation));
+  NERITIC_TRY_STATUS(check_start(scene, out.name, out.solid.shape,
+                                 rov::world_pose(out.start.position_ned_m, out.start.attitude)));
+  vehicles_.push_back(std::move(out));
+  return {};
+}
+
+Status PhysicsWorld::add_human(const scene::Scene& scene, std::size_t index) {
+  NERITIC_TRY(PhysicsHuman human, physics_human(scene, index));
+  const diver::RootState& root = human.start.human.root;
+  NERITIC_TRY_STATUS(check_start(scene, human.name, human.shape,
+                                 rov::world_pose(root.position_ned_m, root.attitude)));
+  humans_.push_back(std::move(human));
+  return {};
+}
+
+Status PhysicsWorld::check_start(const scene::Scene& scene, const std::string& name,
+                                 const sim::BodyShape& shape, const Pose& start) const {
+  std::vector<sim::Contact> contacts;
+  solid_.contacts(shape, start, 0.0, contacts);
+  for (const sim::Contact& contact : contacts)
+    if (contact.inside || contact.gap_m < -kMostStartDepth_m)
+      return bad_input("{}: {}: starts {:.2f} m deep in {}; accepted: a place in the water",
+                       scene.path, name, -contact.gap_m,
+                       name_of_label(scene, contact.surface.label));
+  return {};
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,90 @@
+// The physics of a scene: its vehicles and divers, what is in their way, the current, and the step
+// that a simulation takes. Built once from a scene, which may change or go afterwards; then only
+// read, so that any thread may step. The step is pure: the same bits for the same arguments.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.hpp"
+#include "engine/sim/current.hpp"
+#include "rov/vehicle_file.hpp"
+#include "testbed/simulation/body_step.hpp"
+#include "testbed/simulation/human_world.hpp"
+#include "testbed/simulation/mission.hpp"
+
+namespace neritic::testbed {
+
+// A vehicle of the scene, prepared.
+struct PhysicsVehicle {
+  std::string name;
+  std::size_t object = 0;  // index into Scene::objects
+  rov::VehicleFile file;
+  rov::Vehicle vehicle;
+  std::uint64_t failed_thrusters = 0;  // at the start
+  rov::Allocator allocator;            // without those
+  std::optional<MissionGuide> mission;
+  Vec3 tether_anchor_ned_m{0.0};
+  SolidBody solid;
+  double top_m = 0.0, bottom_m = 0.0;  // of the shape, above the origin
+  rov::State start;
+};
+
+class PhysicsWorld {
+ public:
+  // Whether anything of the scene moves by physics.
+  static bool needed(const scene::Scene& scene);
+  // Precondition: needed(scene). Errors in one line: files that do not read, vehicles that start in
+  // something solid.
+  static Result<std::unique_ptr<const PhysicsWorld>> create(const scene::Scene& scene);
+
+  const std::vector<PhysicsVehicle>& vehicles() const { return vehicles_; }
+  const std::vector<PhysicsHuman>& humans() const { return humans_; }
+  std::uint64_t seed() const { return seed_; }  // of the scene, for sensors
+  const sim::StaticWorld& solid() const { return solid_; }
+  double step_s() const { return step_s_; }
+  const StepMethod& method() const { return method_; }
+  // Whether vehicle's controller acts in the step that begins at this state.
+  bool control_due(std::size_t vehicle, std::uint64_t step) const;
+
+  PhysicsState start() const;
+  PhysicsInputs start_inputs() const;
+  PhysicsState step(const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) const;
+  static void apply(PhysicsInputs& inputs, const PhysicsMessage& message);
+  Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
+  // What sensors hear: the first solid thing along a ray.
+  rov::RayQuery rays() const;
+
+  // Borrows the world.
+  std::unique_ptr<PhysicsSimulation> simulation(sim::SimulationOptions options) const;
+
+ private:
+  PhysicsWorld() = default;
+  Status choose_step(const scene::Scene& scene);
+  Status add_vehicle(const scene::Scene& scene, std::size_t object, const Movers& movers);
+  Status add_human(const scene::Scene& scene, std::size_t object);
+  Status check_start(const scene::Scene& scene, const std::string& name,
+                     const sim::BodyShape& shape, const Pose& start) const;
+  bool steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
+             VehicleState& state) const;
+  // Where something that moves so is, during a step.
+  diver::WaterFlow water_along(const Vec3& position_ned_m, const Vec3& velocity_ned_m_s,
+                               double time_s, double dt_s) const;
+  rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
+                        const VehicleState& state, double time_s, double dt_s) const;
+
+  double step_s_ = 1.0 / 240.0;
+  std::uint64_t seed_ = 0;
+  StepMethod method_;
+  std::optional<sim::Current> current_;
+  sim::StaticWorld solid_;
+  std::vector<PhysicsVehicle> vehicles_;
+  std::vector<PhysicsHuman> humans_;
+};
+
+// What the scene says of the current, its grid read.
+Result<sim::Current> current_of(const scene::Current& current);
+
+}  // namespace neritic::testbed

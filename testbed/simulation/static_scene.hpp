@@ -1,0 +1,20 @@
+// What of a scene is in the way of vehicles: objects with a collision, as they stand. World frame.
+// Pure function; any thread.
+#pragma once
+
+#include "engine/scene/scene.hpp"
+#include "engine/sim/static_world.hpp"
+
+namespace neritic::testbed {
+
+// Whether it has neither a track nor dynamics, nor hangs on what has one.
+bool stands_still(const scene::Scene& scene, const scene::Mount& mount);
+
+// Every vertex of a model at rest, times the scale.
+std::vector<Vec3> rest_points(const scene::Model& model, const Vec3& scale);
+
+// Each copy's label is its instance's. What does not stand still is left out. Errors name the
+// object.
+Result<sim::StaticWorld> static_world_of(const scene::Scene& scene);
+
+}  // namespace neritic::testbed

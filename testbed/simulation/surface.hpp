@@ -1,0 +1,16 @@
+// The water's surface for a vehicle: what rises out of it is not buoyed up, and thrusters above it
+// push nothing. Flat at depth 0; no waves, and drag stays the water's. Pure function; any thread.
+#pragma once
+
+#include "rov/dynamics.hpp"
+
+namespace neritic::testbed {
+
+// Takes the buoyancy of what is above the water, and what accelerating water would pull it with,
+// off inputs.wrench, in proportion to its share of the height from bottom_m to top_m above the
+// origin (an upright box), at the centre of buoyancy. Below, inputs stay as they are. top_m >
+// bottom_m.
+void apply_surface(const rov::Vehicle& vehicle, double top_m, double bottom_m,
+                   const rov::State& state, rov::Inputs& inputs);
+
+}  // namespace neritic::testbed

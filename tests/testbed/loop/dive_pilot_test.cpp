@@ -1,0 +1,108 @@
+// A vehicle flown by keys in the live program: it takes over, goes where the keys say, and gives
+// back; the view rides along.
+#include "testbed/loop/dive_pilot.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/files.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+class DivePilotTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const test::ScratchFolder scratch;
+    const std::string dynamics =
+        (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string();
+    ASSERT_TRUE(write_text(scratch / "s.toml", R"([physics]
+[[vehicles]]
+name = "rov"
+shape = "box"
+dynamics = ")" + dynamics + R"("
+position_m = [0, -6, 0]
+mission = { hold = "station" }
+[[vehicles.cameras]]
+name = "eye"
+position_m = [0, 0.1, -0.4]
+)")
+                    .ok());
+    scene_ = scene::load_scene(scratch / "s.toml").value();
+    physics_ = LivePhysics::create(scene_, LivePhysics::Pace::kPicture).value();
+    physics_->start();
+  }
+  void fly(DivePilot& pilot, xr::DesktopInput input, double seconds, bool expected = true) {
+    for (const double end_s = time_s_ + seconds; time_s_ < end_s; time_s_ += 0.05) {
+      EXPECT_EQ(pilot.take(input), expected);
+      input.toggle_pilot = false;
+      physics_->place(scene_, 0, time_s_);
+    }
+  }
+
+  scene::Scene scene_;
+  std::unique_ptr<LivePhysics> physics_;
+  double time_s_ = 0.0;
+};
+
+TEST_F(DivePilotTest, KeysMoveItAheadAsideUpAndRound) {
+  DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
+  xr::DesktopInput input;
+  fly(pilot, input, 1.0, false);
+  EXPECT_LT(glm::distance(physics_->pose(0).position_m, Vec3(0, -6, 0)), 0.02);
+  input.toggle_pilot = true;
+  input.move = {0, 0, -1};  // W
+  fly(pilot, input, 3.0);
+  EXPECT_LT(physics_->pose(0).position_m.z, -0.7);
+  input = {};
+  input.move = {1, 1, 0};  // D and E
+  const Vec3 before = physics_->pose(0).position_m;
+  fly(pilot, input, 3.0);
+  EXPECT_GT(physics_->pose(0).position_m.x - before.x, 0.5);
+  EXPECT_GT(physics_->pose(0).position_m.y - before.y, 0.5);
+  input = {};
+  input.turn = 1.0;  // Right
+  fly(pilot, input, 1.0);
+  const Vec3 ahead = physics_->pose(0).rotation * Vec3(0, 0, -1);
+  EXPECT_GT(ahead.x, 0.2);
+  EXPECT_EQ(scene_.objects[0].mount.pose.position_m, physics_->pose(0).position_m);
+}
+
+TEST_F(DivePilotTest, AtFullThrustItStaysUpright) {
+  DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
+  xr::DesktopInput input;
+  input.toggle_pilot = input.fast = true;
+  input.move = {0, 0, -1};
+  fly(pilot, input, 10.0);
+  EXPECT_LT(physics_->pose(0).position_m.z, -4.0);
+  EXPECT_GT((physics_->pose(0).rotation * Vec3(0, 1, 0)).y, 0.9);
+}
+
+TEST_F(DivePilotTest, TheViewRidesOnTheCamerasMountAndTheMissionComesBack) {
+  DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
+  xr::DesktopInput input;
+  input.toggle_pilot = true;
+  input.move = {0, 0, -1};
+  fly(pilot, input, 2.0);
+  EXPECT_LT(
+      glm::distance(pilot.world_from_view().position_m, physics_->pose(0) * Vec3(0, 0.1, -0.4)),
+      1e-9);
+  ASSERT_EQ(pilot.lines().size(), 1u);
+  EXPECT_NE(pilot.lines()[0].find("piloted"), std::string::npos) << pilot.lines()[0];
+  input = {};
+  input.toggle_pilot = true;
+  fly(pilot, input, 8.0, false);
+  EXPECT_EQ(pilot.lines()[0].find("piloted"), std::string::npos) << pilot.lines()[0];
+  EXPECT_LT(glm::length(physics_->shown().vehicles[0].body.velocity.linear()), 0.02);
+}
+
+TEST_F(DivePilotTest, WithoutPhysicsNothingIsFlown) {
+  DivePilot pilot(nullptr, scene_.cameras[0].mount);
+  xr::DesktopInput input;
+  input.toggle_pilot = true;
+  EXPECT_FALSE(pilot.take(input));
+  EXPECT_TRUE(pilot.lines().empty());
+}
+
+}  // namespace
+}  // namespace neritic::testbed

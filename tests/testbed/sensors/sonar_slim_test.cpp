@@ -1,0 +1,153 @@
+// Slim things return energy as their area, wherever they stand and however they lean: poles of 2
+// and 20 mm against their closed form, at the default and at the named quality levels.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/testbed/sensors/sonar_pings.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+using SonarSlim = test::GpuTest;
+
+constexpr double kDistance_m = 2.0, kThin_m = 0.001, kThick_m = 0.010;  // radii
+
+// Where a pole is seen, and how far it leans to port.
+struct PolePlace {
+  double bearing_rad, lean_rad;
+};
+
+std::vector<PolePlace> upright_poles(int count) {
+  std::vector<PolePlace> out;
+  for (int i = 0; i < count; ++i)
+    out.push_back({radians(-4.0 + 8.0 * std::fmod(0.37 + i * 0.6180339887, 1.0)), 0.0});
+  return out;
+}
+
+std::vector<PolePlace> leaning_poles() {
+  std::vector<PolePlace> out;
+  for (const double lean_deg : {-0.7, 1.3, 3.0, -6.0, 9.0, -14.0, 20.0, -31.0, 45.0})
+    out.push_back({radians(0.1 * lean_deg - 1.0), radians(lean_deg)});
+  return out;
+}
+
+// The imaging sonar's default bins and sampling over a part of its azimuth, with pattern and pulse.
+scene::Sonar slim_sonar(const std::string& quality, std::uint32_t beams) {
+  scene::Sonar sonar;
+  sonar.name = "sonar";
+  sonar.azimuth_rad = beams * radians(0.18);
+  sonar.elevation_rad = radians(28.0);
+  sonar.range_min_m = 1.0;
+  sonar.range_max_m = 5.0;
+  sonar.bins_range = sonar.bins_elevation = 500;
+  sonar.bins_azimuth = beams;
+  sonar.quality = quality;
+  sonar.terms.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(0.6)};
+  sonar.terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 60e3};
+  return sonar;
+}
+
+// The plain cosine's sum over all bins: azimuth in beams, elevation in apertures. Of a piece of the
+// pole at h from its nearest point, d away, at range r: solid angle 2 a dh (d / r) / r^2; mean
+// cosine of incidence over its width (pi / 4) (d / r).
+double pole_energy(const scene::Sonar& s, double radius_m, double lean_rad) {
+  constexpr int kSteps = 20000;
+  constexpr double kHalf_m = 2.0, kStep_m = 2.0 * kHalf_m / kSteps;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double h = -kHalf_m + (i + 0.5) * kStep_m, r = std::hypot(h, kDistance_m);
+    const double elevation = std::asin(h * std::cos(lean_rad) / r);
+    if (std::abs(elevation) > s.elevation_rad / 2.0) continue;
+    const double sine = kDistance_m / r;
+    sum += 2.0 * radius_m * kStep_m * sine / (r * r) * (kPi / 4.0) * sine / std::cos(elevation);
+  }
+  return sum / (s.azimuth_rad / s.bins_azimuth) / s.elevation_rad;
+}
+
+struct SlimErrors {
+  double mean = 0.0, deviation = 0.0, worst = 0.0;  // of energy over the closed form, less 1
+};
+
+SlimErrors pole_errors(gpu::Device& device, const scene::Sonar& sonar, double radius_m,
+                       const std::vector<PolePlace>& places) {
+  scene::Scene scene;
+  scene.objects.push_back(
+      object_of(scene, scene::make_cylinder(radius_m, 6.0, 96), {0.0, 0.0, -kDistance_m}));
+  scene.sonars = {sonar};
+  SlimErrors out;
+  auto session = Session::create(device, scene);
+  if (!session.ok()) {
+    ADD_FAILURE() << session.error().message;
+    return out;
+  }
+  FrameRequest request;
+  request.sonars = {0};
+  request.capture.geometry = false;
+  double squares = 0.0;
+  for (const PolePlace& at : places) {
+    (*session)->scene().objects[0].mount.pose.rotation = glm::angleAxis(at.lean_rad, Vec3(0, 0, 1));
+    (*session)->scene().sonars[0].mount.pose.rotation =
+        glm::angleAxis(at.bearing_rad, Vec3(0, 1, 0));
+    const auto frame = (*session)->render(request);
+    if (!frame.ok()) {
+      ADD_FAILURE() << frame.error().message;
+      return out;
+    }
+    const double off = total(frame->sonars[0]) / pole_energy(sonar, radius_m, at.lean_rad) - 1.0;
+    out.mean += off / static_cast<double>(places.size());
+    squares += off * off / static_cast<double>(places.size());
+    out.worst = std::max(out.worst, std::abs(off));
+  }
+  out.deviation = std::sqrt(std::max(0.0, squares - out.mean * out.mean));
+  fmt::print("{:>9}, {:2.0f} mm, {} poles: mean {:+.3f}, deviation {:.3f}, worst {:.3f}\n",
+             sonar.quality.empty() ? "default" : sonar.quality, 2000.0 * radius_m, places.size(),
+             out.mean, out.deviation, out.worst);
+  return out;
+}
+
+TEST_F(SonarSlim, PolesReturnEnergyAsTheirArea) {
+  struct Bound {
+    const char* quality;
+    int poles;
+    double mean, worst;
+  };
+  for (const Bound& bound :
+       {Bound{"", 12, 0.02, 0.1}, Bound{"draft", 12, 0.02, 0.1}, Bound{"standard", 12, 0.01, 0.05},
+        Bound{"reference", 4, 0.01, 0.02}}) {
+    const scene::Sonar sonar = slim_sonar(bound.quality, 80);
+    const auto places = upright_poles(bound.poles);
+    const SlimErrors thin = pole_errors(device(), sonar, kThin_m, places),
+                     thick = pole_errors(device(), sonar, kThick_m, places);
+    for (const SlimErrors& found : {thin, thick}) {
+      EXPECT_LT(std::abs(found.mean), bound.mean) << bound.quality;
+      EXPECT_LT(found.worst, bound.worst) << bound.quality;
+    }
+    EXPECT_NEAR((1.0 + thick.mean) / (1.0 + thin.mean), 1.0, bound.mean) << bound.quality;
+  }
+}
+
+TEST_F(SonarSlim, LeaningPolesToo) {
+  for (const char* quality : {"", "standard"})
+    for (const double radius_m : {kThin_m, kThick_m}) {
+      const SlimErrors found =
+          pole_errors(device(), slim_sonar(quality, 222), radius_m, leaning_poles());
+      EXPECT_LT(std::abs(found.mean), 0.05) << quality;
+      EXPECT_LT(found.worst, *quality == 0 ? 0.3 : 0.05) << quality;
+    }
+}
+
+// Without terms too, where a cell holds one sample a row.
+TEST_F(SonarSlim, ThePlainCosineToo) {
+  scene::Sonar sonar = slim_sonar("", 80);
+  sonar.terms = {};
+  for (const double radius_m : {kThin_m, kThick_m}) {
+    const SlimErrors found = pole_errors(device(), sonar, radius_m, upright_poles(12));
+    EXPECT_LT(std::abs(found.mean), 0.02);
+    EXPECT_LT(found.worst, 0.15);
+  }
+}
+
+}  // namespace
+}  // namespace neritic::testbed

@@ -1,0 +1,200 @@
+// The same scene gives the same states: on many runs, in lock-step and on a thread, under load, and
+// from a recorded log; and another pilot gives others.
+#include <cmath>
+#include <thread>
+
+#include "testbed/record/dive_record.hpp"
+#include "tests/testbed/simulation/dives.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// Current, contacts, a mission and a lost thruster: all that a step does.
+std::string busy_text() {
+  return std::string(R"([physics]
+[current]
+kind = "power_law"
+velocity_m_s = [0.3, 0, 0.1]
+depth_m = 12
+[[objects]]
+name = "sand"
+class = "seabed"
+shape = "plane"
+size_m = [40, 40]
+position_m = [0, -12, 0]
+[[objects]]
+name = "wall"
+class = "structure"
+shape = "box"
+size_m = [6, 4, 0.5]
+position_m = [0, -10, -3]
+)") + rov_text(R"(
+position_m = [0, -11, 0]
+failed_thrusters = [3]
+mission = { waypoints = [ { position_m = [0, -10.5, -4] }, { position_m = [2, -8, 1] } ] }
+)") + rov_text("position_m = [3, -11.5, 1]\nroll_deg = 30\n", "adrift");
+}
+
+std::vector<std::uint64_t> hashes_of(TestDive& dive, double seconds) {
+  dive.run(seconds);
+  return dive.simulation->log().hashes;
+}
+
+TEST(PhysicsDeterminism, AHundredRunsHaveTheSameHashes) {
+  const TestDive first = dive_of(busy_text());
+  const auto run = [&] {
+    const auto simulation = first.world->simulation({});
+    simulation->advance(5 * 240);
+    return simulation->log().hashes;
+  };
+  const std::vector<std::uint64_t> expected = run();
+  ASSERT_EQ(expected.size(), 1201u);
+  EXPECT_NE(expected.front(), expected.back());
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(run(), expected) << i;
+}
+
+TEST(PhysicsDeterminism, ASceneReadAgainGivesTheSameHashes) {
+  TestDive a = dive_of(busy_text()), b = dive_of(busy_text());
+  EXPECT_EQ(hashes_of(a, 10.0), hashes_of(b, 10.0));
+  EXPECT_GT(a.vehicle(0).contact.touched_steps, 0u);  // the wall was met
+}
+
+TEST(PhysicsDeterminism, AThreadUnderLoadStepsAsLockStepDoes) {
+  TestDive locked = dive_of(busy_text());
+  const TestDive threaded = dive_of(busy_text());
+  std::atomic<bool> stop{false};
+  std::vector<std::thread> load;
+  for (int i = 0; i < 3; ++i)
+    load.emplace_back([&stop] {
+      for (volatile double x = 1.0; !stop;) x = x * 1.0000001;
+    });
+  sim::SimulatedClock clock;
+  auto reader = threaded.simulation->reader();
+  threaded.simulation->start(clock);
+  std::uint64_t seen = 0;
+  while (seen < 1200) {
+    if (reader.update()) seen = reader.newest().step;
+  }
+  threaded.simulation->stop();
+  stop = true;
+  for (std::thread& thread : load) thread.join();
+  const auto& hashes = threaded.simulation->log().hashes;
+  locked.simulation->advance(threaded.simulation->log().steps());
+  EXPECT_EQ(hashes, locked.simulation->log().hashes);
+}
+
+// One thread pilots, one steps, one reads: what was recorded replays to the same bits.
+TEST(PhysicsDeterminism, APilotAndAReaderBesideTheThreadThatSteps) {
+  const TestDive dive = dive_of(busy_text());
+  sim::SimulatedClock clock;
+  auto reader = dive.simulation->reader();
+  dive.simulation->start(clock);
+  std::jthread pilot([&](const std::stop_token& stop) {
+    for (std::uint64_t i = 0; !stop.stop_requested(); ++i) {
+      VehicleInputs inputs;
+      inputs.piloted = i % 3 == 0 ? 0 : 1;
+      inputs.pilot[i % 6] = i % 17 == 0 ? std::nan("") : 5.0 * std::sin(0.1 * double(i));
+      dive.simulation->push({i % 2, inputs});
+      std::this_thread::yield();
+    }
+  });
+  std::uint64_t seen = 0;
+  while (seen < 1200) {
+    if (!reader.update()) continue;
+    ASSERT_GE(reader.newest().step, seen);
+    seen = reader.newest().step;
+    ASSERT_TRUE(sim::all_finite(reader.newest().state));
+  }
+  pilot.request_stop();
+  pilot.join();
+  dive.simulation->stop();
+  EXPECT_GT(dive.simulation->inbox_counts().refused, 0u);
+  EXPECT_GT(dive.simulation->log().entries.size(), 1u);
+  const auto report =
+      sim::replay(dive.simulation->log(), dive.world->start(),
+                  [&](const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) {
+                    return dive.world->step(state, inputs, dt_s);
+                  });
+  EXPECT_GE(report.steps, 1200u);
+  EXPECT_FALSE(report.first_difference.has_value());
+}
+
+TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
+  const test::ScratchFolder scratch;
+  TestDive dive = dive_of(busy_text());
+  dive.run(1.0);
+  VehicleInputs inputs;
+  inputs.piloted = 1;
+  inputs.pilot[0] = 30.0;
+  inputs.failed_thrusters = 2;
+  dive.simulation->push({0, inputs});
+  dive.run(2.0);
+  inputs.pilot[5] = -4.0;
+  dive.simulation->push({1, inputs});
+  dive.simulation->push({7, inputs});  // of nobody
+  dive.run(2.0);
+  ASSERT_TRUE(sim::write_input_log(scratch / "dive.log", dive.simulation->log()).ok());
+  auto log = sim::read_input_log<PhysicsInputs>(scratch / "dive.log");
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const auto step = [&](const PhysicsState& state, const PhysicsInputs& in, double dt_s) {
+    return dive.world->step(state, in, dt_s);
+  };
+  const auto report = sim::replay(*log, dive.world->start(), step);
+  EXPECT_EQ(report.steps, 1200u);
+  EXPECT_FALSE(report.first_difference.has_value());
+  log->entries[1].inputs.vehicles[0].pilot[0] = 35.0;
+  const auto other = sim::replay(*log, dive.world->start(), step);
+  ASSERT_TRUE(other.first_difference.has_value());
+  EXPECT_GT(*other.first_difference, 240u);
+  EXPECT_LT(*other.first_difference, 260u);
+}
+
+// A path recorded for pictures is the path of the simulation, at every step and between.
+TEST(PhysicsDeterminism, TracksForPicturesAreThePathFlown) {
+  auto scene = load_text(busy_text());
+  ASSERT_TRUE(scene.ok());
+  TestDive dive = dive_of(*scene);
+  ASSERT_TRUE(fly_ahead(*scene, {.until_s = 6.0}).ok());
+  const scene::Mount& mount = scene->objects.at(2).mount;
+  ASSERT_TRUE(mount.track.has_value());
+  EXPECT_FALSE(scene->objects.at(0).mount.track.has_value());
+  dive.run(5.0, [&] {
+    const Pose drawn = scene->world_from(mount, dive.time_s());
+    ASSERT_LT(glm::distance(drawn.position_m, dive.pose().position_m), 1e-12);
+    ASSERT_GT(std::abs(glm::dot(drawn.rotation, dive.pose().rotation)), 1.0 - 1e-12);
+  });
+}
+
+// What comes before the first picture is flown but not kept.
+TEST(PhysicsDeterminism, TracksForLatePicturesBeginBeforeThem) {
+  auto whole = load_text(busy_text()), late = load_text(busy_text());
+  ASSERT_TRUE(whole.ok() && late.ok());
+  int seconds = 0;
+  ASSERT_TRUE(fly_ahead(*whole, {.until_s = 6.0}).ok());
+  ASSERT_TRUE(fly_ahead(*late, {.from_s = 4.0, .until_s = 6.0, .second = [&] { ++seconds; }}).ok());
+  EXPECT_EQ(seconds, 6);
+  const scene::Track &all = *whole->objects.at(2).mount.track,
+                     &kept = *late->objects.at(2).mount.track;
+  EXPECT_GT(kept.places.front().time_s, 2.0);
+  EXPECT_LT(kept.places.front().time_s, 4.0);
+  for (double t = 4.0; t <= 6.0; t += 0.0137)
+    ASSERT_EQ(pose_at(kept, t).position_m, pose_at(all, t).position_m) << t;
+}
+
+TEST(PhysicsDeterminism, AFlightOfMoreThanADayIsRefused) {
+  auto scene = load_text(busy_text());
+  ASSERT_TRUE(scene.ok());
+  const Status flown = fly_ahead(*scene, {.until_s = 86500.0});
+  ASSERT_FALSE(flown.ok());
+  EXPECT_EQ(flown.error().code, ErrorCode::kBadInput);
+  EXPECT_NE(flown.error().message.find("86400"), std::string::npos) << flown.error().message;
+}
+
+TEST(PhysicsDeterminism, TheStateNamesEveryByte) {
+  sim::check_fields_cover(PhysicsState{});
+  sim::check_fields_cover(PhysicsInputs{});
+  sim::check_fields_cover(PhysicsMessage{});
+}
+
+}  // namespace
+}  // namespace neritic::testbed
