@@ -33,7 +33,7 @@ layout(set = 0, binding = kSonarBindDirectLabel) uniform utexture2DArray direct_
 // The largest power of one beam that 32 bits of counts hold. A ghost's may be above 1.
 const float kLargestPower = 15.0;
 
-// Of a table: linear in range and in the sine of the elevation. from: its first entry.
+// A table's value: linear in range and in the sine of the elevation. from: its first entry.
 float correction_at(float range_m, float sine, uint from) {
   float x = min(range_m / echo.correction_range_m, 1.0) * float(echo.correction_width - 1);
   float y = (clamp(sine, -1.0, 1.0) * 0.5 + 0.5) * float(echo.correction_height - 1);
@@ -90,7 +90,7 @@ vec3 launched(float range_m, vec3 direction) {
          echo.world_up * (sine * turn.x + cosine * turn.y);
 }
 
-// Of the weights' table in a direction from the sonar, linear between rows and columns; none beyond the rows.
+// The weight in a direction from the sonar, linear between rows and columns; none beyond the rows.
 // Columns beyond the last are as it: only a cone's differ, and fall off to its edge.
 float weight_towards(vec3 direction, bool turned_over) {
   float azimuth = atan(dot(direction, echo.head_right), -dot(direction, echo.head_back));
@@ -117,7 +117,7 @@ float bent_weight(float range_m, vec3 direction, uint row) {
   return weight * inversesqrt(max(1.0 - up * up, 1e-6)) / texelFetch(rows, ivec2(row, 0), 0).y;
 }
 
-// What the pattern lets through one way. The eye's rows are the head's turned over, and so is the table.
+// The pattern's one-way weight. The eye's rows are the head's turned over, and so is the table.
 float pattern_of(ivec2 beam) {
   if (beam.x < 0) return 0.0;
   return kWeighted != 0 ? texelFetch(weights, ivec2(beam.x, int(c.n_elevation) - 1 - beam.y), 0).r : 1.0;
@@ -186,7 +186,7 @@ GhostPath ghost_path(vec3 direction, uint row, BeamHit hit, out float power) {
   return GhostPath(mean_m, direct_m, leg / direct_m, launch);
 }
 
-// Of a range in a direction from the sonar: what the speed of sound makes of it.
+// The range that is heard, by the speed of sound, for a range in a direction from the sonar.
 float corrected(float range_m, vec3 direction) {
   return range_m * correction_at(range_m, dot(direction, echo.world_up), 0);
 }

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// What leaves the receiver: power with noise, times the gain of its range.
+// The receiver's output: power with noise, times the gain of its range.
 #include "shared/sonar_receiver.glsl"
 #include "shared/random.glsl"
 

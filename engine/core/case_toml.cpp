@@ -78,7 +78,7 @@ Result<nlohmann::json> read_tree(std::string_view text, const std::string& name,
   nlohmann::json own = json_of(parsed);
   Places own_places;
   add_places(parsed, "", name, own_places);
-  // What includes was there first: its places stay.
+  // Keys that includes brought keep their places.
   places.insert(own_places.begin(), own_places.end());
   // Paths are relative to the file that they are written in.
   for (const std::string_view key : paths)

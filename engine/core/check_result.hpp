@@ -1,4 +1,4 @@
-// What a check of a case found: each quantity's worst error beside the tolerance that it has to
+// The result of checking a case: each quantity's worst error beside the tolerance that it has to
 // stay under. Plain values; any thread.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What memory the machine has left. Any thread.
+// The machine's available memory. Any thread.
 #pragma once
 
 #include <cstdint>

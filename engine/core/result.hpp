@@ -38,7 +38,7 @@ inline int exit_status(ErrorCode code) {
   return code == ErrorCode::kBadInput ? 2 : 1;
 }
 
-// What a Result ends the program with where its preconditions are broken.
+// Ends the program if a precondition of Result is broken.
 [[noreturn]] inline void value_of_error(const Error& error) {
   check_failed(__FILE__, __LINE__, "Result has a value", error.message);
 }
@@ -54,7 +54,7 @@ class [[nodiscard]] Result {
 
   bool ok() const { return state_.index() == 0; }
   explicit operator bool() const { return ok(); }
-  // Precondition of value(): ok(). Of error(): !ok().
+  // Preconditions: ok() for value(), !ok() for error().
   T& value() & {
     check_value();
     return *std::get_if<0>(&state_);

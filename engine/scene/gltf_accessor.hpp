@@ -43,7 +43,7 @@ class Resources {
   // Components of every element in a row, whatever the type is, and how many there are an element.
   std::vector<float> any(Field reference, int& components);
 
-  // Of an accessor's values as stored, a component each: the smallest and the largest, numbers that
+  // The smallest and largest stored value of each component of an accessor, numbers that
   // are not finite left out (min > max where none is). Empty where it has no bytes, after a failure
   // and where the file's accessors together ask for several times its bytes to be looked at:
   // examined_all() is false from then on.

@@ -80,7 +80,7 @@ Resources::Extremes Resources::extremes(Field accessor) {
         return widen<float>(from, stride, count, out);
     }
   };
-  // What sparse values replace does not count: the runs between their places do.
+  // Values that sparse ones replace do not count: the runs between their places do.
   std::vector<std::uint32_t> replaced = e.sparse_indices;
   std::ranges::sort(replaced);
   replaced.erase(std::unique(replaced.begin(), replaced.end()), replaced.end());

@@ -1,6 +1,6 @@
-// What breaks glTF's rules where the model does not need it: said as notes, since a file that is
-// wrong in one place may be wrong in another. What a model needs is checked where it is read, and
-// refused.
+// Notes about broken glTF rules that the model does not depend on, since a file that is
+// wrong in one place may be wrong in another. Values that a model needs are checked where they are
+// read, and refused.
 #pragma once
 
 #include <set>
@@ -10,15 +10,16 @@
 
 namespace neritic::scene::gltf {
 
-// Of the JSON alone: references, sizes, strides and alignment, members that exclude or need one
-// another, empty lists, extensions in the wrong place or not declared. Takes any document; notes
-// into the report. Returns the elements of the file's lists that something was said of, as
+// Checks of the JSON alone: references, sizes, strides and alignment, members that exclude or need
+// one another, empty lists, extensions in the wrong place or not declared. Takes any document;
+// notes into the report. Returns the elements of the file's lists that something was said of, as
 // "accessors[3]".
 std::set<std::string> note_broken_rules(const Json& document, Report& report);
 
-// Of values, once the model is whole: bounds that accessors do not keep, accessors and pictures
-// that nothing is drawn with and that cannot be read, indices that would restart a primitive,
-// inverse bind matrices, joints beside the shown scene. Leaves out what was `told` of before.
+// Checks of values, once the model is whole: bounds that accessors do not keep, accessors and
+// pictures that nothing is drawn with and that cannot be read, indices that would restart a
+// primitive, inverse bind matrices, joints beside the shown scene. Leaves out what was `told` of
+// before.
 void note_broken_values(Loading& loading, const std::set<std::string>& told);
 
 }  // namespace neritic::scene::gltf

@@ -11,7 +11,7 @@
 namespace neritic::scene::gltf {
 namespace {
 
-// Of pictures that nothing is drawn with, files of so many bytes together are read.
+// The total size of files that are read for pictures that no material draws.
 constexpr std::size_t kMaxIdlePictureBytes = std::size_t{256} << 20;
 
 class ValueAudit {

@@ -1,4 +1,4 @@
-// What surrounds the JSON of a glTF file: the chunks of a .glb and the URIs of buffers and images.
+// The container of a glTF file's JSON: the chunks of a .glb and the URIs of buffers and images.
 // Pure functions apart from reading the named file. Source: Khronos glTF 2.0, sections 2.8 and 4.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the loader makes of a primitive's raw lists: topology as lists, normals and tangents where
+// The loader's result for a primitive's raw lists: topology as lists, normals and tangents where
 // the file has none, unit lengths. Pure functions on one primitive; indices must be in range.
 #pragma once
 

@@ -20,7 +20,7 @@ namespace neritic::scene::gltf {
 
 using Json = nlohmann::json;
 
-// What is said about one file: its first error, and notes for the user (each once).
+// The messages about one file: its first error, and notes for the user (each once).
 class Report {
  public:
   explicit Report(std::string file) : file_(std::move(file)) {}
@@ -32,7 +32,7 @@ class Report {
   void fail(std::string_view path, std::string_view message);
   // After kMaxNotes the rest is summed up in one line.
   void note(std::string line);
-  // What failed becomes a note: for what a model does without.
+  // Turns a failure into a note, for data that a model does not need.
   void note_failure();
   bool takes_notes() const { return notes_.size() < kMaxNotes; }
   std::vector<std::string> take_notes() { return std::move(notes_); }

@@ -13,7 +13,7 @@
 
 namespace neritic::scene::gltf {
 
-// What the stages share.
+// Shared by the stages.
 struct Loading {
   Field root;
   Report& report;

@@ -19,7 +19,7 @@ namespace neritic::scene {
 Result<ImageU8> read_image8(const std::filesystem::path& path, std::uint32_t channels = 0);
 Result<ImageU8> decode_image8(std::span<const std::byte> bytes, const std::string& name,
                               std::uint32_t channels = 0);
-// What the header says of a picture for decode_image8, unchecked; 0 x 0 where there is none.
+// The size in the header of a picture for decode_image8, unchecked; 0 x 0 if there is none.
 struct PictureSize {
   std::uint32_t width = 0, height = 0;
 };

@@ -1,4 +1,4 @@
-// What every picture reader accepts: larger sides or more pixels are a mistake or a forged header.
+// Limits of every picture reader: larger sides or more pixels are a mistake or a forged header.
 #pragma once
 
 #include <cstdint>

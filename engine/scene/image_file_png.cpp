@@ -19,7 +19,7 @@ constexpr png_alloc_size_t kMaxChunkBytes = 8 << 20;
 constexpr png_uint_32 kMaxKeptChunks = 1000;
 constexpr std::size_t kBitsAt = 24, kColorTypeAt = 25;  // in the file, of the IHDR chunk
 
-// What becomes of palettes, of fewer than 8 bits and of colours that mean transparent.
+// The treatment of palettes, of fewer than 8 bits and of colours that mean transparent.
 enum class Expand { kToColors, kNever };
 
 struct Source {

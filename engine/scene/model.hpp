@@ -161,7 +161,7 @@ struct Model {
   std::vector<ImageU8> images;
   std::vector<Light> lights;
   std::vector<Node> nodes;
-  // Of the default scene, else of the first; all parentless nodes where the file has no scenes.
+  // Roots of the default scene, else of the first; all parentless nodes if the file has no scenes.
   std::vector<int> roots;
   std::vector<Skin> skins;
   std::vector<Clip> clips;

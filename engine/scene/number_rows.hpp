@@ -11,7 +11,7 @@
 
 namespace neritic::scene {
 
-// What rows may hold. columns: what is accepted, in words, for messages.
+// The values that rows may hold. columns: the accepted form, in words, for messages.
 struct RowFormat {
   std::size_t min_columns = 2, max_columns = 2;
   double max_number = 4e7;  // absolute

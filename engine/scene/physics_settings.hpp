@@ -1,4 +1,4 @@
-// What a scene says of physics: the step, the current, what drives a vehicle and where it is to go,
+// A scene's physics settings: the step, the current, what drives a vehicle and where it is to go,
 // what is solid. Plain data: engine/scene knows neither the simulation nor vehicles. World frame: Y
 // up, metres, seconds; headings in radians from north (-z) towards east (+x). Any thread.
 #pragma once
@@ -74,7 +74,7 @@ struct Mission {
   double distance_m = -1.0;
 };
 
-// What makes an object a vehicle that moves by its own physics.
+// Settings of an object that is a vehicle with its own physics.
 struct Dynamics {
   std::filesystem::path file;          // its parameters
   std::optional<Mission> mission;      // absent: nobody steers
@@ -93,7 +93,7 @@ struct SwimPlan {
   bool repeat = false;
 };
 
-// What makes an object a diver who swims by moving limbs.
+// Settings of an object that is a diver who swims by moving limbs.
 struct Human {
   std::filesystem::path file;    // body and gear
   std::optional<SwimPlan> swim;  // absent: hovers

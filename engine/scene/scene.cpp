@@ -49,7 +49,7 @@ Status number_instances(SceneDraft& draft) {
   return {};
 }
 
-// What a vehicle is told in world coordinates.
+// Vehicle settings in world coordinates.
 void move_out(Dynamics& dynamics, const Vec3& offset_m) {
   if (dynamics.tether_anchor_m) *dynamics.tether_anchor_m += offset_m;
   if (!dynamics.mission) return;

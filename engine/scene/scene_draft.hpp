@@ -37,7 +37,7 @@ struct Look {
   double texture_m = 1.0;
 };
 
-// What an object draws. Two requests with the same identity() are the same model.
+// The model that an object draws. Two requests with the same identity() are the same model.
 struct ModelRequest {
   enum class Kind { kFile, kShape, kTerrain };
   Kind kind = Kind::kFile;

@@ -15,8 +15,8 @@ constexpr double kMargin = 1.12;  // the model fills about nine tenths of the pi
 // Exposure is set for no less light than this: a candela at a kilometre.
 constexpr double kDarkest_lx = 1e-6;
 
-// What the camera must show. Nothing drawn, or bounds that are not numbers: a metre around the
-// origin.
+// The bounds that the camera must show. Nothing drawn, or bounds that are not numbers: a metre
+// around the origin.
 Bounds bounds_to_frame(const Model& model, int clip) {
   Bounds bounds = model_bounds(model, evaluate_pose(model, clip, 0.0));
   if (bounds.empty() || !is_finite(bounds.min) || !is_finite(bounds.max))

@@ -19,7 +19,7 @@ inline constexpr auto kSunKeys = std::to_array<Key>({"elevation_deg", "azimuth_d
 
 inline constexpr auto kWaterKeys = std::to_array<Key>({"type", "scattering", "surface"});
 
-// Of [[objects]] and [[vehicles]].
+// Keys of [[objects]] and [[vehicles]].
 inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "include",
                                                         "track",
@@ -73,13 +73,13 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "sonars",
                                                         "lamps"});
 
-// Of what moves.
+// Keys of things that move.
 inline constexpr auto kTrackKeys = std::to_array<Key>(
     {"waypoints_m", "lawn_mower", "file", "speed_m_s", "start_s", "heading", "turn_m"});
 inline constexpr auto kLawnMowerKeys =
     std::to_array<Key>({"area_m", "depth_m", "spacing_m", "legs"});
 
-// Of what is simulated.
+// Keys of things that are simulated.
 inline constexpr auto kPhysicsKeys =
     std::to_array<Key>({"rate_hz", "integrator", "max_error_m", "water_kg_m3", "altitude_m"});
 inline constexpr auto kCurrentKeys =

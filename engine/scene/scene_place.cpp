@@ -59,7 +59,7 @@ class Placer {
     return {};
   }
 
-  // What a stereo camera writes of its eyes has their names.
+  // A stereo camera's outputs carry the names of its eyes.
   template <class Sensor>
   static Status no_eye(const std::set<std::string>& eyes, const MountedDraft<Sensor>& view) {
     if (!eyes.contains(view.sensor.name)) return {};

@@ -145,7 +145,7 @@ std::uint16_t read_class(TableReader& reader, const Scene& scene, std::uint16_t 
   return otherwise;
 }
 
-// What the surface gives back in decibels: by its material, or as a number.
+// The surface's backscatter in decibels: by its material, or as a number.
 void read_acoustics(TableReader& reader, Object& object) {
   object.reflectivity = static_cast<float>(reader.number("reflectivity", 1.0, kFraction));
   object.material = reader.text("material", "");

@@ -19,7 +19,7 @@ constexpr std::size_t kMaxFailedThruster = 16;
 constexpr Key kPhysicsOnly[] = {"collision",       "dynamics", "mission", "failed_thrusters",
                                 "tether_anchor_m", "human",    "swim",    "jacket_buttons"};
 constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m"};
-// What vehicles cannot pass, where nothing else is said.
+// The default classes that vehicles cannot pass.
 constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
 
 struct CurrentKeysOf {

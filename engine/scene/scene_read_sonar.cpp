@@ -128,7 +128,7 @@ void check_cone_beam(TableReader& reader, const SonarBeam& beam) {
     reader.refuse("beam", "samples of other kinds than \"echosounder\", whose bins sample it");
 }
 
-// What a beam's pattern needs of the kind.
+// Requirements of a beam pattern on the sonar's kind.
 void check_beam(TableReader& reader, const Sonar& sonar) {
   const SonarBeam& beam = sonar.terms.beam;
   const auto is_disc = [](const auto& pattern) {

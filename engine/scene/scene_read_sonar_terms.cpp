@@ -246,7 +246,7 @@ SonarDetection read_detection(TableReader& reader) {
   return detection;
 }
 
-// What one term needs of another.
+// Requirements of one term on another.
 void check_together(TableReader& reader, const SonarTerms& terms) {
   if (terms.range_spread && terms.range_spread->bandwidth_hz > 2.0 * terms.frequency_hz)
     reader.refuse("frequency_hz", fmt::format("at least half of the bandwidth, {:g} Hz: in hertz",

@@ -18,8 +18,8 @@ std::string counts_text(const std::vector<std::size_t>& counts) {
   return out;
 }
 
-// What an unknown key may be meant as: the same a table deeper, else one that begins with it, else
-// the one spelt most alike.
+// The key that an unknown key may stand for: the same a table deeper, else one that begins with it,
+// else the one spelt most alike.
 std::string meant_key(std::string_view key, KeyList keys) {
   const auto has = [](KeyList list, Key wanted) {
     return std::ranges::find(list, wanted) != list.end();

@@ -26,7 +26,7 @@ struct Interval {
 };
 
 inline constexpr Interval kAnyMetres{-kFarthest_m, kFarthest_m, false, false, "metres"};
-// What cameras and sonars both have.
+// Keys that cameras and sonars share.
 inline constexpr Interval kRate{0, 1000, true, false, "hertz"};
 inline constexpr Interval kNear{0, 10, true, false, "metres"};
 inline constexpr Interval kAnyTurn{-360.0, 360.0, false, false, "degrees"};

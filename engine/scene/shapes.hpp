@@ -22,7 +22,7 @@ Model make_cylinder(double radius_m, double height_m, int segments = 48);  // ax
 Model model_of_primitive(Primitive primitive, std::string name);
 // Turns every face and normal round: what was seen from outside is then seen from inside.
 void turn_inside_out(Model& model);
-// Of all meshes, each counted once.
+// The sum over all meshes, each counted once.
 std::size_t triangle_count(const Model& model);
 
 // Limits of a heightfield: 4096 x 4096 samples are some 800 MB of mesh; no sea is 1000 km deep.

@@ -1,5 +1,5 @@
-// What a scene (or a command line) says of an acoustic sensor. Everything optional is a term of the
-// sonar's physics that is neither modelled nor paid for unless it is named. Plain values, SI,
+// An acoustic sensor's settings in a scene or on a command line. Everything optional is a term of
+// the sonar's physics that is neither modelled nor paid for unless it is named. Plain values, SI,
 // angles in radians, levels in decibels; any thread.
 #pragma once
 
@@ -124,7 +124,7 @@ struct SonarLabels {
   bool operator==(const SonarLabels&) const = default;
 };
 
-// What leaves the receiver. bits 0: floats; else 8 or 16-bit counts, 0 at floor_db.
+// The receiver's output. bits 0: floats; else 8 or 16-bit counts, 0 at floor_db.
 struct SonarOutput {
   std::uint32_t bits = 0;
   double floor_db = 40.0, span_db = 80.0;

@@ -1,4 +1,4 @@
-// What a moving body is for collisions: convex parts in body axes (any right-handed axes of the
+// A moving body's shape for collisions: convex parts in body axes (any right-handed axes of the
 // caller's, about any origin). A part is the hull of its core points, rounded by a radius: a sphere
 // is one point, a capsule two. Boxes and hulls keep their size: their cores lie a little inside,
 // and that much of their edges is round. Built once, then only read; any thread.

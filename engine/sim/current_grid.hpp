@@ -1,4 +1,4 @@
-// What current.cpp needs of the grid's kind. World frame; pure functions, any thread.
+// The grid kind's part of current.cpp. World frame; pure functions, any thread.
 #pragma once
 
 #include "engine/sim/current.hpp"

@@ -151,7 +151,7 @@ bool add_edge(const PlacedPart& part, const Vec3& a, const Vec3& b, const Vec3& 
   return true;
 }
 
-// Which corners of the triangle span the feature that the point lies on: bit i for corner i.
+// The corners of the triangle that span the feature with the point: bit i for corner i.
 unsigned feature_of(const Triangle& triangle, const Vec3& point) {
   const auto& [a, b, c] = triangle.corner;
   const Vec3 normal = triangle.area_normal();

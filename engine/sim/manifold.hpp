@@ -49,8 +49,8 @@ Separation box_separation(const PlacedPart& part, const Triangle& triangle);
 // The widest.
 Separation widest_separation(const PlacedPart& part, const Triangle& triangle);
 
-// Of points with the same normal a few suffice: the deepest, and the outermost in eight directions.
-// Keeps the order; points[from] on are thinned.
+// Among points with the same normal a few suffice: the deepest, and the outermost in eight
+// directions. Keeps the order; points[from] on are thinned.
 void thin_touch_points(std::vector<TouchPoint>& points, std::size_t from);
 
 }  // namespace neritic::sim

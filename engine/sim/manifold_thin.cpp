@@ -48,7 +48,7 @@ void keep_outermost(std::span<const TouchPoint> points, std::span<const std::siz
   if (points[deepest].gap_m < deepest_kept_m - kDeeper_m) keep[deepest] = true;
 }
 
-// Of points at one place with all but the same normal, as where surfaces overlap, the deepest
+// Among points at one place with all but the same normal, as where surfaces overlap, the deepest
 // stays: more would say the same and only slow the solver down.
 void drop_doubles(std::span<const TouchPoint> points, std::vector<bool>& keep) {
   constexpr double kSamePlace_m = 1e-3, kAlike = 1e-4;  // 14 mrad

@@ -17,7 +17,7 @@ constexpr int kMostPieces = 64;
 constexpr int kMostHits = 8;
 // Two poses say a turn of less than half a circle.
 constexpr double kMostTurn_rad = 1.0;
-// What is farther than this has no part in a contact.
+// Things farther away than this are in no contact.
 constexpr double kMostMargin_m = 0.05;
 // Longer ways are swept: contacts hold to first order in the way, so that a turn takes corners a
 // little into what they touch.
@@ -181,7 +181,8 @@ class Mover {
     const double turn_rad_s = glm::length(velocity.angular);
     way_s_ = std::min(duration_s, kMostTurn_rad / turn_rad_s);
     if (!passable_.empty()) {
-      // What it is deep in is not swept against: no farther than that nothing thick is passed.
+      // Things that it penetrates deeply are not swept against: no farther than that nothing thick
+      // is passed.
       const double speed_m_s = glm::length(velocity.linear) + turn_rad_s * shape_.reach_m();
       way_s_ = std::min(way_s_, 0.25 * shape_.thinnest_m() / speed_m_s);
     }

@@ -1,4 +1,4 @@
-// What becomes of a body's free motion when things are in the way. The vehicle steps as if the
+// A body's motion when things are in its way. The vehicle steps as if the
 // water were empty; then move_body() takes the pose before and the motion after that step, and
 // returns the motion with contacts: the same bits where nothing was touched. Nothing is passed
 // through, whatever the speed and the step. Pure functions; any thread.

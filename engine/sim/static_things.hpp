@@ -1,4 +1,4 @@
-// What a static world holds, for the sources that query it.
+// The contents of a static world, for the sources that query it.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// What does not move and is in the way: the seabed, meshes, convex parts. Built once from plain
-// vertices, indices and heights, then immutable: any number of threads may ask. World frame: Y up,
-// metres, any distance from the origin; every query works in coordinates near the body.
+// Things that do not move and block the way: the seabed, meshes, convex parts. Built once from
+// plain vertices, indices and heights, then immutable: any number of threads may ask. World frame:
+// Y up, metres, any distance from the origin; every query works in coordinates near the body.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace neritic::sim {
 
-// Of what something is made, for contacts; of a pair the static side's counts.
+// Surface properties for contacts; in a pair those of the static side count.
 struct Surface {
   double friction = 0.5;     // Coulomb's coefficient
   double restitution = 0.0;  // 0 to 1

@@ -1,4 +1,4 @@
-// Which steps a clock asks for: a step every 1 / rate, a few at once after a delay, and beyond
+// The steps that a clock asks for: a step every 1 / rate, a few at once after a delay, and beyond
 // those time is dropped and counted, so that a slow machine slows the simulation down and never
 // piles up work. Pure arithmetic on times that the caller reads; one thread.
 #pragma once

@@ -28,7 +28,7 @@ struct Triangle {
   }
 };
 
-// Of the triangle's points the closest to p (Ericson 2005, 5.1.5).
+// The triangle's point closest to p (Ericson 2005, 5.1.5).
 Vec3 closest_on_triangle(const Triangle& triangle, const Vec3& p);
 
 // Distance along the unit direction to the triangle, 0 to max; nothing where it is missed. Either

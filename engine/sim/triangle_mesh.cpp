@@ -29,7 +29,7 @@ std::optional<TriangleMesh::Hit> TriangleMesh::cast(const Vec3& origin, const Ve
   tree_.along(origin, origin + direction * max_distance, [&](std::uint32_t index) {
     const double limit = nearest ? nearest->distance : max_distance;
     const auto distance = ray_distance(triangle(index, 1.0, -origin), Vec3(0.0), direction, limit);
-    // Of triangles at the same distance the lower index, whatever the tree's order.
+    // Among triangles at the same distance the lowest index wins, whatever the tree's order.
     if (distance && (!nearest || *distance < limit || index < nearest->triangle))
       nearest = Hit{index, *distance};
   });

@@ -46,7 +46,7 @@ void main() {
 #endif
 #ifdef NERITIC_MOTION
   vec2 now = clip.xy / clip.w;
-  // What will be level with the eye or behind it is nowhere in the next picture: NaN.
+  // A point level with the eye or behind it has no place in the next picture: NaN.
   vec2 next = next_clip.w > 0.0 ? next_clip.xy / next_clip.w : vec2(uintBitsToFloat(0x7fc00000u));
   out_motion = (next - now) * 0.5 * push.target_size;
 #endif

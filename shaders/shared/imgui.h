@@ -1,4 +1,4 @@
-// What the overlay's pass and its shaders share: Dear ImGui's triangles in pixels, one texture a
+// Shared by the overlay's pass and its shaders: Dear ImGui's triangles in pixels, one texture a
 // draw.
 #ifndef NERITIC_SHARED_IMGUI_H
 #define NERITIC_SHARED_IMGUI_H

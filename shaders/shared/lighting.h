@@ -15,7 +15,7 @@ NERITIC_CONST uint kLightEmissive = 16;  // the G-buffer has an emissive image
 NERITIC_CONST uint kLightGlow = 32;
 // Refractive index of sea water against air, in the visible (1.33 to 1.34, Mobley 1994).
 NERITIC_CONST float kWaterIndex = 1.333f;
-// Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance .066).
+// Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance 0.066).
 NERITIC_CONST float kSkyTransmittance = 0.934f;
 // A sight that passes a lamp at distance d gathers about I b 0.05 m / d of its light. It is seen
 // where that exceeds 0.002 of white, so up to this times I b exposure from the lamp.

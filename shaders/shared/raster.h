@@ -1,4 +1,4 @@
-// What the passes that rasterise share: views, instances, materials, vertex streams, bindings.
+// Shared by the passes that rasterise: views, instances, materials, vertex streams, bindings.
 // All positions on the GPU are metres relative to the view set's origin (the first camera's place),
 // in world axes, so a scene 100 km away loses nothing.
 #ifndef NERITIC_SHARED_RASTER_H

@@ -1,4 +1,4 @@
-// What all vertex stages of the raster passes share: the streams that place a vertex, the views, and its place.
+// Shared by all vertex stages of the raster passes: the streams that place a vertex, the views, and its place.
 // NERITIC_CLIPPED: of views of one side of a plane.
 #include "shared/octahedral.h"
 #include "shared/raster.h"

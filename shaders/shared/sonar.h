@@ -1,4 +1,4 @@
-// What the sonar's gather passes and their host share: tables, constants, bindings. Directions are
+// Shared by the sonar's gather passes and their host: tables, constants, bindings. Directions are
 // in the axes of the G-buffer's normals (G-buffer axes), lengths per unit of planar depth of the
 // view.
 #ifndef NERITIC_SHARED_SONAR_H

@@ -5,12 +5,12 @@
 // A beam is the middle of its cell. Where the view leans (kLeaning) the pixel that tells which surface is there
 // lies at a place of the column's width that differs from row to row. With pixels that are shifted from row to
 // row too, an upright pole narrower than a pixel is met by as many rows as its width is of one, instead of by
-// all or by none. What is wider keeps the range of the cell's middle: rows' footprints abut.
+// all or by none. A wider pixel keeps the range of the cell's middle: rows' footprints abut.
 
 // How far the plane may carry the range from the pixel's own, as a factor: beyond, the pixel's range counts, and the
-// row's edges are carried so far at most. At half a pixel of .1 degrees it is reached at a grazing angle of .2 degrees.
+// row's edges are carried so far at most. At half a pixel of 0.1 degrees it is reached at a grazing angle of 0.2 degrees.
 const float kLargestStretch = 1.25;
-// Of what faces sideways more than up or down: a floor goes on, the flank of a pole or of a ball bends away, and
+// For surfaces that face sideways more than up or down: a floor goes on, the flank of a pole or of a ball bends away, and
 // would have horns of echoes before and behind it.
 const float kLargestFlankStretch = 1.005;
 const float kSteepestFlank = 8.0;
@@ -65,7 +65,7 @@ float centre_range(SonarColumn s, float t, out int v) {
   return planar * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
 }
 
-// Of another row; 0 also: it is the same row of pixels.
+// The offset of another row; 0 also means: it is the same row of pixels.
 float neighbour_range(SonarColumn s, int row, int v) {
   if (row < 0 || row >= int(c.n_elevation)) return 0.0;
   int other;
@@ -158,7 +158,7 @@ Share share_of(vec2 ends_m, float whole) {
   return share;
 }
 
-// What of a row's whole comes from below a bin.
+// The part of a row's total that comes from below a bin.
 float part_below(Share share, int bin) {
   if (kFootprint == kSonarFootprintShared) return clamp((float(bin) - share.ends.x) * share.scale, 0.0, share.whole);
   float r = clamp(range_at(bin), share.ends.x, share.ends.y);
@@ -175,7 +175,7 @@ vec2 shared_ends(vec2 ends_m, float range_m) {
   return clamp(ends_m, vec2(range_m - most), vec2(range_m + most));
 }
 
-// What a beam's pixel holds. Apart from what follows from it, so that two rows' are fetched together.
+// The contents of a beam's pixel. Apart from what follows from it, so that two rows' are fetched together.
 struct Look {
   vec4 row;       // tan, sec, tan of the edges
   vec4 surface;   // surface_at
@@ -185,7 +185,7 @@ struct Look {
   float centre_m;
 };
 
-// Of rows whose footprints are bounded by their neighbours'. A thread that looks at all of them in turn has the
+// For rows whose footprints are bounded by their neighbours'. A thread that looks at all of them in turn has the
 // neighbours' ranges at hand.
 const bool kBounded = kFootprint == kSonarFootprintBounded;
 const bool kInTurn = kBounded && kLanes == 1;

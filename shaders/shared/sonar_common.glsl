@@ -1,4 +1,4 @@
-// What both sonar gathers do alike: read a pixel of the G-buffer, sum into a column's range bins.
+// Shared by both sonar gathers: read a pixel of the G-buffer, sum into a column's range bins.
 // Integers only are summed, so the order of addition cannot change a bit.
 #include "shared/octahedral.h"
 #include "shared/sonar.h"
@@ -26,7 +26,7 @@ SonarPush c;
 
 #include "shared/sonar_words.glsl"
 
-// What a pixel stores: of its normal x, y and z or an octahedron's two; its depth last. Zero beside the images.
+// The contents of a pixel: its normal (x, y, z, or two of an octahedron), then its depth. Zero beside the images.
 vec4 surface_at(ivec3 at) {
   vec4 texel = texelFetch(normal_image, at, 0);
   return kPacked != 0 ? texel : vec4(texel.xy, 0.0, texelFetch(depth_image, at, 0).r);

@@ -1,4 +1,4 @@
-// What the sonar's passes beyond the plain cosine and their host share: the gather with terms, and
+// Shared by the sonar's passes beyond the plain cosine and their host: the gather with terms, and
 // the receiver's passes. Fields and powers are in units of the gather's scale; gains turn them to
 // what leaves.
 #ifndef NERITIC_SHARED_SONAR_ECHO_H
@@ -7,7 +7,7 @@
 
 NERITIC_SHARED_BEGIN
 
-// Of one ping. Directions and lengths in the axes of the G-buffer's normals, about the view's eye.
+// Constants of one ping. Directions and lengths in the axes of the G-buffer's normals, about the view's eye.
 struct SonarEcho {
   vec3 motion;         // heard range = r + r * dot(motion, d) + dot(doppler, d)
   float sum_scale;     // power 1 (amplitude 1 where coherent) in counts
@@ -50,7 +50,7 @@ NERITIC_CONST uint kSonarGhostPlain = 0u;        // no range counts
 NERITIC_CONST uint kSonarGhostSpreading = 1u;    // 1 / r^2 of the direct leg
 NERITIC_CONST uint kSonarGhostNoSpreading = 2u;  // the patch that a beam's solid angle covers
 
-// What one gathered beam returned, for labels by energy. bin: row of the range, or kSonarNoReturn.
+// The return of one gathered beam, for labels by energy. bin: row of the range, or kSonarNoReturn.
 struct SonarRecord {
   uint bin;
   uint counts;  // of its power, 2^-28 each

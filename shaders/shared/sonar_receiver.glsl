@@ -1,4 +1,4 @@
-// What the receiver's passes share.
+// Shared by the receiver's passes.
 #include "shared/sonar_echo.h"
 
 layout(local_size_x = kReceiverGroup, local_size_y = kReceiverGroup) in;

@@ -100,7 +100,7 @@ Cell cell_heard(SonarColumn s, int bin, float place) {
   return cell_of(eye * range_m, heard_over_path);
 }
 
-// Of either axis, directions across that are told apart: some 5 degrees.
+// Directions across either axis that count as different: about 5 degrees.
 const float kAsides = 12.0;
 
 // Two numbers of a slice, complex normal, of mean power 1 (but for the texture).
@@ -108,7 +108,7 @@ void numbers_of(SonarColumn s, Cell cell, int slice, out vec2 z, out vec2 w) {
   vec3 ahead = normalize(s.beam_base), right = cross(ahead, s.up);
   vec3 center = cell.center;
   vec2 flat_m = vec2(dot(center, right), dot(center, ahead));
-  // Of the cell's centre, in columns from this one's middle, and of the slice that is heard here.
+  // The cell's centre, in columns from this column's middle, and the slice that is heard here.
   float across = atan(flat_m.x, flat_m.y) / echo.column_rad;
   int place = int(ceil(-0.5 - across));
   // It lies so far across from the centre: along a direction of the world, which the path's phase is counted by.

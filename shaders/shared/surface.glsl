@@ -13,17 +13,17 @@ struct Surface {
   float occlusion;
 };
 
-// Reflectance of a dielectric (n = 1.5) at normal incidence: in air .04, in water (n = 1.333) .0035, which
+// Reflectance of a dielectric (n = 1.5) at normal incidence: in air 0.04, in water (n = 1.333) 0.0035, which
 // is why wet things look dull under water (Fresnel).
 float dielectric_f0() { return light_has(kLightWater) ? 0.0035 : 0.04; }
 
 // Share of even light that GGX sends on where its Fresnel term is 1 (single scattering, mean over all
-// directions): .96 at roughness 0.1, .60 at 0.8, .41 at 1, by quadrature. That of 0.8 stands for all, since
+// directions): 0.96 at roughness 0.1, 0.60 at 0.8, 0.41 at 1, by quadrature. That of 0.8 stands for all, since
 // what lies under water is rough.
 const float kEvenReflectance = 0.6;
 // Share of the light from above that comes back from below. In water an irradiance reflectance of some
-// percent (Jerlov 1976), in shallow places the sand's; in air the albedo of dry, light ground (soils .05 to
-// .40, deserts .20 to .45: Oke 1987, Boundary Layer Climates, table 1.1).
+// percent (Jerlov 1976), in shallow places the sand's; in air the albedo of dry, light ground (soils 0.05 to
+// 0.40, deserts 0.20 to 0.45: Oke 1987, Boundary Layer Climates, table 1.1).
 const float kWaterFromBelow = 0.08, kGroundFromBelow = 0.35;
 
 // BRDF times cosine. spread: half-angle of the source in radians; a highlight is no narrower.

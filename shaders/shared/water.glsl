@@ -1,6 +1,6 @@
 // Light in water. Sources: Mobley, "Light and Water" (1994), ch. 5 (single scattering), Henyey and
 // Greenstein (1941), Morel (1974) for the phase function of pure sea water. GLSL only.
-// Who includes this has declared `light`, a uniform block of type Lighting (no parameter: the copy of a
+// The including file declares `light`, a uniform block of type Lighting (no parameter: the copy of a
 // struct with all its lamps is paid for by every pixel on drivers that do not see through it), and
 // light_has(term) and lamp_count(), from constants where the pipeline knows them.
 #ifndef NERITIC_WATER_GLSL
@@ -62,7 +62,7 @@ float water_length(float from_depth_m, float to_depth_m, float length_m) {
   return low_m <= 0.0 ? 0.0 : length_m * low_m / (low_m - high_m);
 }
 
-// What a length of sight does: radiance arriving = transmittance * radiance at its end + added.
+// The effect of a length of sight: radiance arriving = transmittance * radiance at its end + added.
 struct Sight {
   vec3 transmittance;
   vec3 added;
@@ -107,7 +107,7 @@ vec3 beyond(float depth_m, vec3 direction) {
   float sine_air = kWaterIndex * sqrt(max(0.0, 1.0 - direction.y * direction.y));
   vec3 mirrored = vec3(0.0);
   if (light_has(kLightScattering) && light_has(kLightSun)) {
-    // What look_through(0, ..., kForever_m) adds on the way down from the surface.
+    // The light that look_through(0, ..., kForever_m) adds on the way down from the surface.
     vec3 down = vec3(direction.x, -direction.y, direction.z);
     vec3 rate = light.beam_attenuation - light.diffuse_attenuation * down.y;
     mirrored = scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);

@@ -52,7 +52,7 @@ std::string folder_of(const std::string& include) {
   return include.substr(0, include.find('/', first + 1));
 }
 
-// What a line includes in quotes; empty where it includes nothing so.
+// The path that a line includes in quotes; empty if there is none.
 std::string included(const std::string& line) {
   const std::string word = "#include \"";
   const auto at = line.find_first_not_of(" \t");

@@ -1,4 +1,4 @@
-// What a Result promises where it holds a value, an error, or is asked for the other.
+// The promises of a Result that holds a value or an error, and of one that is asked for the other.
 #include "engine/core/result.hpp"
 
 #include <gtest/gtest.h>

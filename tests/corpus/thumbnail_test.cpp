@@ -35,7 +35,7 @@ std::vector<fs::path> inside(const fs::path& folder) {
   return paths;
 }
 
-// Of these a plane says too little, or something else than the thumbnail's.
+// For these a plane shows too little, or something other than the thumbnail.
 bool is_judged(const std::string& name) {
   static const std::set<std::string> others{
       // Points and lines, a pixel wide.
@@ -48,7 +48,7 @@ bool is_judged(const std::string& name) {
       "Material_MetallicRoughness_03", "Material_MetallicRoughness_06",
       "Material_MetallicRoughness_07", "Material_MetallicRoughness_08",
       "Material_MetallicRoughness_10", "Material_MetallicRoughness_11"};
-  // What moves is no plane, and where the thumbnail's eye is counts.
+  // Moving models are no planes, and the thumbnail's viewpoint matters.
   return !name.starts_with("Animation_") && !others.contains(name);
 }
 

@@ -1,4 +1,4 @@
-// What breaks glTF's rules beside what a model needs is said, and the model is shown.
+// A broken glTF rule that the model does not depend on becomes a note, and the model is shown.
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
@@ -290,7 +290,7 @@ TEST(GltfAudit, SparsePlacesAreNotCopiedAgainAndAgain) {
   EXPECT_LT(load_of_sparse_s(2000), 20.0 * few_s) << few_s;
 }
 
-// What is no object, no list or no number where one belongs is no fault of the audit's reading.
+// A value of the wrong JSON type does not stop the audit.
 TEST(GltfAudit, AnyShapeIsTaken) {
   const Json odd[] = {nullptr, 1, -1, 1.5, "x", Json::array(), Json::object(), {{"a", {1, 2}}}};
   for (const char* key : {"cameras", "images", "textures", "samplers"})

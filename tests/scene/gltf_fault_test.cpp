@@ -1,4 +1,4 @@
-// What the glTF loader refuses, and that it says where.
+// Files that the glTF loader refuses, and the place that its error names.
 #include "engine/core/files.hpp"
 #include "tests/scene/gltf_builder.hpp"
 #include "tests/support/support.hpp"

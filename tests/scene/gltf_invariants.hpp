@@ -1,4 +1,4 @@
-// What model.hpp promises of every loaded model, checked: used by the loader's tests on real,
+// Checks every promise of model.hpp on a loaded model: used by the loader's tests on real,
 // broken and fuzzed files. Returns the first broken promise in words, nothing where all hold.
 #pragma once
 

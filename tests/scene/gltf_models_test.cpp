@@ -76,7 +76,7 @@ const std::map<std::string, std::string> kRefused = {
 // Its one error is an extension's, which is noted as not supported.
 constexpr const char* kErrorOfAnExtension = "khronos/ClearCoatTest/glTF-Binary/ClearCoatTest.glb";
 
-// What is said of a file's rules and values.
+// The notes about a file's rules and values.
 std::string told(const scene::Model& model) {
   std::string out;
   for (const std::string& note : model.notes)

@@ -1,4 +1,4 @@
-// Which lights of models shine: the brightest that there is room for, each copy's own.
+// The lights of models that shine: the brightest that there is room for, each copy's own.
 #include "engine/scene/model_lights.hpp"
 
 #include <gtest/gtest.h>

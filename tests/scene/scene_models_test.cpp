@@ -97,7 +97,7 @@ TEST(SceneModels, AFileThatDoesNotLoadIsNamedWithTheLineThatAsksForIt) {
       << scene.error().message;
 }
 
-// What the picture of a scene_of_model shows of the bounds: the largest |x|, |y| in the picture's
+// The bounds in the picture of a scene_of_model: the largest |x|, |y| in the picture's
 // halves, and whether all lies ahead of the near plane.
 struct Framing {
   double reach = 0.0;

@@ -10,7 +10,7 @@ namespace neritic::sim::test {
 
 using Mass = std::array<double, 36>;
 
-// Of a body with its centre of mass at the origin of its axes.
+// The mass matrix of a body with its centre of mass at the origin of its axes.
 Mass mass_of(double mass_kg, const Vec3& inertia_kg_m2, const Vec3& added_kg = Vec3(0.0),
              const Vec3& added_kg_m2 = Vec3(0.0));
 // Inverse by elimination.

@@ -94,7 +94,7 @@ TEST(BodyPair, WhatIsApartKeepsItsBits) {
   EXPECT_EQ(pa.free.velocity.linear, before.velocity.linear);
 }
 
-// Of any mass, attitude, spin and speed, in one step: no momentum comes or goes, no energy comes.
+// For any mass, attitude, spin and speed, one step keeps the momentum and adds no energy.
 TEST(BodyPair, MomentumStaysAndEnergyNeverGrows) {
   int met = 0;
   for (std::uint64_t index = 0; index < 400; ++index) {

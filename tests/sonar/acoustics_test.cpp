@@ -205,7 +205,7 @@ TEST(SonarLevels, NoiseIsWhatIsNamedOrAmbientAndSelfAdded) {
   terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 20e3};
   terms.noise = scene::SonarNoise{.level_db = 71.0};
   EXPECT_EQ(sonar::noise_level_db(terms), 71.0);
-  // Wind of 10 m/s and shipping .5 at 100 kHz, by hand: 17 - 60 = -43; 40 + 52 - 120.01 = -28.01;
+  // Wind of 10 m/s and shipping 0.5 at 100 kHz, by hand: 17 - 60 = -43; 40 + 52 - 120.01 = -28.01;
   // 50 + 23.717 + 40 - 80.069 = 33.648; thermal 25; together 34.204 dB re 1 uPa^2/Hz; 20 kHz of it
   // 43.010 dB more.
   terms.noise = scene::SonarNoise{.wind_m_s = 10.0, .shipping = 0.5};

@@ -75,7 +75,7 @@ TEST(SonarBeamPattern, AWidthIsWhereHalfThePowerIsLeft) {
   // -3.0103 dB lies 1 + 0.0103 / 3 degrees out to the right, 3.0103 / 6 * 4 to the left.
   const auto lopsided = *BeamPattern::of_table({{-4, -6}, {0, 0}, {1, -3}, {2, -6}, {9, 0}});
   EXPECT_NEAR(degrees(lopsided.half_power_width_rad()), 1.00343 + 2.00687, 1e-4);
-  // What never falls so far ends with its table; levels count from the axis.
+  // A pattern that never falls so far ends with its table; levels count from the axis.
   EXPECT_NEAR(degrees(BeamPattern::of_table({{-5, -1}, {5, -1}})->half_power_width_rad()), 10.0,
               1e-9);
   EXPECT_NEAR(degrees(BeamPattern::of_table({{0, -20}, {6, -26.0206}})->half_power_width_rad()),

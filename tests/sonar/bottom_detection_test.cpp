@@ -60,7 +60,8 @@ TEST(BottomDetection, ATiltedPlaneIsWithinHalfABinWhereItIsMetStraightOn) {
         const double error = d.range_m - truth;
         sum += error;
         ++oblique;
-        // What the beam's width and the bins leave open, from a beam met straight on to 75 degrees.
+        // The error that the beam's width and the bins allow, from a beam met straight on to 75
+        // degrees.
         EXPECT_NEAR(error, 0.0, 0.5 * bin + 0.002 * distance_m)
             << tilt_deg << " deg, beam " << d.beam;
         if (std::abs(incidence) < radians(2.0)) {

@@ -20,7 +20,7 @@ namespace {
 using sonar::EchoTrace;
 using sonar::EchoTraceOptions;
 
-// What a cone of semi-angle psi hears of a flat bottom h below it: of the cone's solid angle, the
+// The echo of a flat bottom h below a cone of semi-angle psi: of the cone's solid angle, the
 // part between ranges r1 and r2 is proportional to h/r1 - h/r2, its cosine of incidence h/r; hence
 // per bin the integral of (h/r) d(-h/r) = (h/r1)^2 - (h/r2)^2, over 2.
 std::vector<float> cone_profile(const EchoTraceOptions& o, double h, double psi_rad) {

@@ -235,7 +235,7 @@ TEST_F(SonarGpu, ExtremesOfRangeApertureAndBins) {
 
 TEST_F(SonarGpu, AGrazingPlaneLosesNoEnergyAndStaysInItsRows) {
   // A seabed 10 cm below: 1.1 degrees grazing at 5 m. The plane gather must find the rows that the
-  // closed form gives: elevation phi hits at .1 / sin(-phi). A row is all of its elevations.
+  // closed form gives: elevation phi hits at 0.1 / sin(-phi). A row is all of its elevations.
   const BeamGrid grid = sonar::symmetric_grid(0.5, 5, radians(60), radians(28), {450, 60, 400});
   const auto inputs = test::sector_images(grid, test::plane(Vec3(0, -1, 0), 0.1), 0.5);
   const SonarImage image = run(grid, inputs, Gather::kPlane);

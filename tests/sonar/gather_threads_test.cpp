@@ -17,7 +17,7 @@ using test::total;
 
 class SonarThreads : public test::SonarGpuTest {
  protected:
-  // Of images as they are, taken for a view with leaning sides.
+  // Upright images, taken for a view with leaning sides.
   Result<std::vector<std::uint32_t>> leaning_sums(const BeamGrid& grid,
                                                   const sonar::GatherOptions& options);
 };

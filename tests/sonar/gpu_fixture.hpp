@@ -1,4 +1,4 @@
-// What tests of the sonar's GPU passes share: one gather of images on the shared device.
+// Shared by tests of the sonar's GPU passes: one gather of images on the shared device.
 #pragma once
 
 #include "sonar/image_gather.hpp"

@@ -134,7 +134,7 @@ TEST(LabelEnergy, EveryBinHasTheLabelThatGaveMost) {
     EXPECT_EQ(labels.classes, plain.classes);
     EXPECT_EQ(labels.instances, plain.instances);
     EXPECT_EQ(labels.fraction, plain.fraction);
-    // Which edge of the aperture the rows begin at changes nothing.
+    // The edge of the aperture at which the rows begin does not matter.
     const std::size_t width = std::size_t{c.beams} * c.samples;
     for (std::uint32_t row = 0; row < c.elevations / 2; ++row)
       std::swap_ranges(records.begin() + row * width, records.begin() + (row + 1) * width,
@@ -152,7 +152,7 @@ TEST(LabelEnergy, ShadowLiesBetweenAnEdgeAndWhatIsSeenPastIt) {
                                           ray(10, 70, 1, 1, 9, 11), nothing()};
   const LabelImage labels = sonar::label_by_energy(records, 14, 1);
   const std::uint16_t s = sonar::kShadow;
-  // Row 3, 9 and 11 are of rays whose energy lies beside. Of six rays five ended nearer than what
+  // Row 3, 9 and 11 are of rays whose energy lies beside. Five of six rays ended nearer than what
   // is beyond.
   EXPECT_EQ(labels.classes, (std::vector<std::uint16_t>{0, 1, 1, 0, 5, s, s, s, s, 0, 1, 0, s, s}));
   EXPECT_EQ(labels.fraction[13], 5.0f / 6.0f);
@@ -190,7 +190,7 @@ TEST(LabelEnergy, AGhostIsHeardButCastsNoShadow) {
 }
 
 TEST(LabelEnergy, WhereMostRaysEndedNearerThereIsShadow) {
-  // Of four rays two, then three end in open water: half is not most.
+  // Two, then three of four rays end in open water: half is not most.
   std::vector<EnergyRecord> records{ray(1, 9, 2, 1), ray(1, 9, 2, 1), nothing(), nothing()};
   const auto classes = [&](std::span<const std::uint8_t> weights) {
     return sonar::label_by_energy(records, 4, 1, 1, weights).classes;

@@ -125,7 +125,7 @@ TEST(SonarReference, ASphereAroundTheSonarFillsAFullTurn) {
 }
 
 TEST(SonarReference, ASmallSphereIsWhereTheClosedFormSays) {
-  // Radius .25 m at 3 m: nearest point 2.75 m (bin 218.75), seen under +-asin(.25 / 3) = 9.56
+  // Radius 0.25 m at 3 m: nearest point 2.75 m (bin 218.75), seen under +-asin(0.25 / 3) = 9.56
   // degrees of the wedge's 90: 53.1 columns each... of 500 bins a side, 2 * 4.78 / 90 * 500 = 53.1.
   const BeamGrid grid = default_grid();
   const auto inputs = test::sector_images(grid, test::sphere(Vec3(0, 0, -3.0), 0.25), 1.3);
@@ -162,7 +162,7 @@ TEST(SonarReference, AWallAheadLiesOnTheHyperbolaOfTheClosedForm) {
         highest = std::max(highest, grid.range_m(r));
       }
     }
-    // A column is .45 degrees wide: its edges differ by 3 sin/cos^2 * .00785 / 2 in range.
+    // A column is 0.45 degrees wide: its edges differ by 3 sin/cos^2 * 0.00785 / 2 in range.
     const double slack =
         0.02 + 3.0 * std::abs(std::sin(theta)) / std::pow(std::cos(theta), 2) * 0.004;
     EXPECT_NEAR(lowest, first, slack) << c;

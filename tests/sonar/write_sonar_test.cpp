@@ -69,7 +69,7 @@ TEST(WriteSonar, WhatAnEarlierImageLeftIsGone) {
 }
 
 TEST(WriteSonar, WhereWritingFailsNoJsonDescribesTheArrays) {
-  // What fails comes after the arrays, among them, or before the first.
+  // The failing write comes after the arrays, among them, or before the first.
   for (const char* name : {"sonar.png", "sonar_labels.npy", "sonar.npy"}) {
     const test::ScratchFolder folder;
     const BeamGrid tall = grid_of(8), low = grid_of(3);

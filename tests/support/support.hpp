@@ -1,4 +1,4 @@
-// What every test program shares: where the source tree and the shared real data lie, scratch
+// Shared by every test program: where the source tree and the shared real data lie, scratch
 // folders.
 #pragma once
 
