@@ -26,6 +26,7 @@ const std::map<std::string, std::set<std::string>>& allowed() {
       {"diver", {"engine/core", "engine/sim", "engine/net"}},
       {"rov", {"engine/core", "engine/sim", "engine/net"}},
       {"hud", {"engine/core", "engine/gpu", "engine/graph", "engine/xr", "diver", "rov"}},
+      {"testbed/samples", {"engine/core", "engine/sim", "rov", "diver"}},
       {"testbed/simulation", {"engine/core", "engine/scene", "engine/sim", "rov", "diver"}},
       {"testbed/record",
        {"engine/core", "engine/scene", "engine/sim", "rov", "diver", "testbed/simulation"}},

@@ -1,0 +1,67 @@
+#include "testbed/samples/group_inputs.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// Copies the payload where the sample is of that kind.
+template <class T>
+void take(const Sample& sample, T& value) {
+  if (const T* said = std::get_if<T>(&sample.payload)) value = *said;
+}
+
+template <class Inputs>
+bool apply_event(Inputs& inputs, const Event& event) {
+  return event.kind == EventKind::kSetAuthority && event.group < inputs.control.size() &&
+         set_authority(inputs.control[event.group], event.authority, event.source);
+}
+
+// Whether the sample's own group listens to its source.
+template <class Inputs>
+bool heard(Inputs& inputs, const Sample& sample, std::uint64_t step) {
+  const auto group = group_of(sample.kind());
+  return group && hear(inputs.control.at(*group), sample.header.source, step);
+}
+
+template <class Inputs, std::size_t n>
+Inputs all_autopilot(const std::array<double, n>& hold_s) {
+  Inputs inputs;
+  for (std::size_t i = 0; i < n; ++i) inputs.control[i].hold_s = hold_s[i];
+  return inputs;
+}
+
+}  // namespace
+
+DiverInputs autopilot_diver() {
+  return all_autopilot<DiverInputs>(kDiverHold_s);
+}
+VehicleInputs autopilot_vehicle() {
+  return all_autopilot<VehicleInputs>(kVehicleHold_s);
+}
+
+bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step) {
+  if (const Event* event = std::get_if<Event>(&sample.payload)) return apply_event(inputs, *event);
+  if (!heard(inputs, sample, step)) return false;
+  take(sample, inputs.body);
+  take(sample, inputs.hands);
+  take(sample, inputs.hand_poses);
+  take(sample, inputs.head);
+  take(sample, inputs.gaze);
+  take(sample, inputs.buttons);
+  take(sample, inputs.breath);
+  take(sample, inputs.heart);
+  take(sample, inputs.gas);
+  if (sample.kind() == PayloadKind::kHandJoints) inputs.hands_by_pose = 0;
+  if (sample.kind() == PayloadKind::kHandPoses) inputs.hands_by_pose = 1;
+  return true;
+}
+
+bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step) {
+  if (const Event* event = std::get_if<Event>(&sample.payload)) return apply_event(inputs, *event);
+  if (!heard(inputs, sample, step)) return false;
+  take(sample, inputs.wrench);
+  take(sample, inputs.setpoint);
+  take(sample, inputs.fault);
+  return true;
+}
+
+}  // namespace neritic::testbed

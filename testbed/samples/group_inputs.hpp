@@ -1,0 +1,70 @@
+// The inputs of one participant as groups, each with its authority and its newest value. Samples
+// change one group and leave the others. Plain bytes, pure functions; the stepping thread.
+#pragma once
+
+#include "testbed/samples/authority.hpp"
+
+namespace neritic::testbed {
+
+struct DiverInputs {
+  std::array<GroupControl, kDiverGroups> control;
+  BodyJoints body;
+  HandJoints hands;
+  HandPoses hand_poses;
+  std::uint64_t hands_by_pose = 0;  // 1: the newest sample of the hands is a pose
+  HeadPose head;
+  Gaze gaze;
+  JacketButtons buttons;
+  Breath breath;
+  Heart heart;
+  GasSupply gas;
+
+  const GroupControl& of(DiverGroup group) const {
+    return control[static_cast<std::size_t>(group)];
+  }
+  GroupControl& of(DiverGroup group) { return control[static_cast<std::size_t>(group)]; }
+
+  static void fields(auto&& field, auto& self) {
+    field("control", self.control);
+    field("body", self.body);
+    field("hands", self.hands);
+    field("hand_poses", self.hand_poses);
+    field("hands_by_pose", self.hands_by_pose);
+    field("head", self.head);
+    field("gaze", self.gaze);
+    field("buttons", self.buttons);
+    field("breath", self.breath);
+    field("heart", self.heart);
+    field("gas", self.gas);
+  }
+};
+
+struct VehicleInputs {
+  std::array<GroupControl, kVehicleGroups> control;
+  VehicleWrench wrench;
+  VehicleSetpoint setpoint;
+  ThrusterFault fault;
+
+  const GroupControl& of(VehicleGroup group) const {
+    return control[static_cast<std::size_t>(group)];
+  }
+  GroupControl& of(VehicleGroup group) { return control[static_cast<std::size_t>(group)]; }
+
+  static void fields(auto&& field, auto& self) {
+    field("control", self.control);
+    field("wrench", self.wrench);
+    field("setpoint", self.setpoint);
+    field("fault", self.fault);
+  }
+};
+
+// Everything under the autopilot, with each group's own hold time.
+DiverInputs autopilot_diver();
+VehicleInputs autopilot_vehicle();
+
+// A sample that arrived before `step`: into its group if its source has the authority. An event
+// sets an authority. False where it changed nothing, which is counted.
+bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step);
+bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step);
+
+}  // namespace neritic::testbed

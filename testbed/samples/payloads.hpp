@@ -1,0 +1,238 @@
+// What a sample carries: one small plain struct a kind, which lists its fields
+// (engine/sim/fields.hpp) so that it can be checked, logged and replayed. World frame unless said
+// otherwise: x east, y up, z south, metres. Body axes are marine: forward, starboard, down (a
+// diver's forward points from the hips to the head). Vehicle readings and instrument states are the
+// structs of rov/ and diver/, in the axes that those say. Any thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "diver/segments.hpp"
+#include "diver/vitals.hpp"
+#include "rov/sensor_set.hpp"
+#include "rov/vector6.hpp"
+
+namespace neritic::testbed {
+
+// Inputs of a diver.
+
+// Where the limbs are measured or wanted: parent_from_child of each joint (diver/segments.hpp).
+struct BodyJoints {
+  diver::JointRotations joints = diver::straight_joints();
+  double other_power_w = 0.0;  // work of the body beside what the limbs do to the water
+
+  static void fields(auto&& field, auto& self) {
+    field("joints", self.joints);
+    field("other_power_w", self.other_power_w);
+  }
+};
+
+// Left, then right.
+struct HandJoints {
+  std::array<Quat, 2> wrist{Quat(1.0, 0.0, 0.0, 0.0),
+                            Quat(1.0, 0.0, 0.0, 0.0)};  // parent_from_child
+  // Thumb to little finger, left hand first: 0 straight. The water does not act on fingers.
+  std::array<double, 10> flexion_rad{};
+
+  static void fields(auto&& field, auto& self) {
+    field("wrist", self.wrist);
+    field("flexion_rad", self.flexion_rad);
+  }
+};
+
+// Left, then right, as a headset tracks them: x to the right of the back of the hand, y along its
+// normal, z from the fingers to the wrist.
+struct HandPoses {
+  std::array<Pose, 2> world_from_hand{};
+  std::uint64_t tracked = 0;  // bit 0 left, bit 1 right: the others' poses mean nothing
+
+  static void fields(auto&& field, auto& self) {
+    field("world_from_hand", self.world_from_hand);
+    field("tracked", self.tracked);
+  }
+};
+
+// View axes: x right, y up, z backwards.
+struct HeadPose {
+  Pose world_from_head;
+
+  static void fields(auto&& field, auto& self) { field("world_from_head", self.world_from_head); }
+};
+
+struct Gaze {
+  diver::GazeState state;  // directions in the world frame
+
+  static void fields(auto&& field, auto& self) { field("state", self.state); }
+};
+
+struct JacketButtons {
+  std::uint64_t pressed = 0;  // diver::kInflate, kDeflate, kDump
+
+  static void fields(auto&& field, auto& self) { field("pressed", self.pressed); }
+};
+
+struct Breath {
+  double ventilation_l_min = 0.0;  // measured, at ambient pressure; 0: by effort
+  double bias_m3 = 0.0;            // the breath swings around this much more air than at rest
+  std::uint64_t hold = 0;          // 1: held
+  diver::BreathState monitor;      // what a breath monitor made of the sound
+
+  static void fields(auto&& field, auto& self) {
+    field("ventilation_l_min", self.ventilation_l_min);
+    field("bias_m3", self.bias_m3);
+    field("hold", self.hold);
+    field("monitor", self.monitor);
+  }
+};
+
+struct Heart {
+  diver::HeartState state;
+
+  static void fields(auto&& field, auto& self) { field("state", self.state); }
+};
+
+// Regulator: which tank is breathed from, 0 is the first of the diver's file.
+struct GasSupply {
+  std::uint64_t tank = 0;
+
+  static void fields(auto&& field, auto& self) { field("tank", self.tank); }
+};
+
+// Inputs of a vehicle.
+
+// Body axes, N and N m, as far as the thrusters have room for it. Depth and heading are held while
+// the wrench leaves them alone.
+struct VehicleWrench {
+  rov::Vec6 wrench;
+
+  static void fields(auto&& field, auto& self) { field("wrench", self.wrench); }
+};
+
+// Where the vehicle is to be, level.
+struct VehicleSetpoint {
+  Vec3 position_m{0.0};
+  Vec3 velocity_m_s{0.0};    // of the setpoint itself
+  double heading_rad = 0.0;  // from north (-z) towards east (+x)
+
+  static void fields(auto&& field, auto& self) {
+    field("position_m", self.position_m);
+    field("velocity_m_s", self.velocity_m_s);
+    field("heading_rad", self.heading_rad);
+  }
+};
+
+struct ThrusterFault {
+  std::uint64_t failed = 0;  // bit i: the file's thruster i + 1
+
+  static void fields(auto&& field, auto& self) { field("failed", self.failed); }
+};
+
+// An object that something outside moves.
+struct ObjectPose {
+  Pose world_from_object;
+  Vec3 velocity_m_s{0.0}, angular_rad_s{0.0};
+
+  static void fields(auto&& field, auto& self) {
+    field("world_from_object", self.world_from_object);
+    field("velocity_m_s", self.velocity_m_s);
+    field("angular_rad_s", self.angular_rad_s);
+  }
+};
+
+// Something that happens once.
+enum class EventKind : std::uint64_t {
+  kSetAuthority,  // in: `group` is from now on under `authority`, a live one of `source`
+  kSourceLost,    // out: `group` heard nothing from `source` for its hold time
+  kSourceBack,    // out: and hears it again
+};
+inline constexpr std::uint64_t kEventKinds = 3;
+struct Event {
+  EventKind kind = EventKind::kSetAuthority;
+  std::uint64_t group = 0;      // DiverGroup or VehicleGroup of the stream's owner (authority.hpp)
+  std::uint64_t authority = 0;  // Authority
+  std::uint64_t source = 0;
+
+  static void fields(auto&& field, auto& self) {
+    field("kind", self.kind);
+    field("group", self.group);
+    field("authority", self.authority);
+    field("source", self.source);
+  }
+};
+
+// Readings of a vehicle. A compass says an angle only.
+struct CompassReading {
+  double heading_rad = 0.0;  // magnetic, 0 to 2 pi from north towards east
+
+  static void fields(auto&& field, auto& self) { field("heading_rad", self.heading_rad); }
+};
+
+struct Collision {
+  Vec3 impulse_n_s{0.0};     // on the body, over one step
+  std::uint64_t points = 0;  // in contact
+  double depth_m = 0.0;      // of the deepest, into the other thing
+
+  static void fields(auto&& field, auto& self) {
+    field("impulse_n_s", self.impulse_n_s);
+    field("points", self.points);
+    field("depth_m", self.depth_m);
+  }
+};
+
+// Outputs of a diver.
+struct DiverMotion {
+  Pose world_from_body;                        // model axes: starboard, up, back
+  Vec3 velocity_m_s{0.0}, angular_rad_s{0.0};  // over ground, body axes
+  double heart_bpm = 0.0, breath_bpm = 0.0;
+  double tank_pa = 0.0, jacket_m3 = 0.0, lungs_m3 = 0.0;
+
+  static void fields(auto&& field, auto& self) {
+    field("world_from_body", self.world_from_body);
+    field("velocity_m_s", self.velocity_m_s);
+    field("angular_rad_s", self.angular_rad_s);
+    field("heart_bpm", self.heart_bpm);
+    field("breath_bpm", self.breath_bpm);
+    field("tank_pa", self.tank_pa);
+    field("jacket_m3", self.jacket_m3);
+    field("lungs_m3", self.lungs_m3);
+  }
+};
+
+// What a dive computer shows; -1 where there is no limit or no end.
+struct ComputerReading {
+  double depth_m = 0.0, ceiling_m = 0.0, stop_m = 0.0;
+  double no_stop_min = 0.0, stop_min = 0.0, to_surface_min = 0.0;
+  double po2_bar = 0.0, ascent_m_min = 0.0, cns_percent = 0.0;
+  std::uint64_t gas = 0, alarm = 0;  // diver::AscentAlarm
+
+  static void fields(auto&& field, auto& self) {
+    field("depth_m", self.depth_m);
+    field("ceiling_m", self.ceiling_m);
+    field("stop_m", self.stop_m);
+    field("no_stop_min", self.no_stop_min);
+    field("stop_min", self.stop_min);
+    field("to_surface_min", self.to_surface_min);
+    field("po2_bar", self.po2_bar);
+    field("ascent_m_min", self.ascent_m_min);
+    field("cns_percent", self.cns_percent);
+    field("gas", self.gas);
+    field("alarm", self.alarm);
+  }
+};
+
+// A camera's or sonar's image stays in the ring of its sensor: the sample says which one it is. Its
+// slot may be read once the sensor's completion value reached `completion`.
+struct ImageHandle {
+  std::uint64_t slot = 0, completion = 0;
+  std::uint32_t width = 0, height = 0;  // pixels; of a sonar azimuth and range bins
+
+  static void fields(auto&& field, auto& self) {
+    field("slot", self.slot);
+    field("completion", self.completion);
+    field("width", self.width);
+    field("height", self.height);
+  }
+};
+
+}  // namespace neritic::testbed

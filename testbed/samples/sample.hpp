@@ -1,0 +1,91 @@
+// A sample: a header that says whose it is and when it was taken, and one payload. Plain bytes; any
+// thread. A device, a client, a recording or the simulation sends it (README.md).
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+
+#include "engine/core/clock.hpp"
+#include "engine/core/result.hpp"
+#include "testbed/samples/payloads.hpp"
+
+namespace neritic::testbed {
+
+using StreamId = std::uint32_t;  // index into the scene's StreamTable
+using SourceId = std::uint32_t;  // given by the inbox; 0 is the simulation
+
+inline constexpr SourceId kSimulation = 0;
+
+struct SampleHeader {
+  StreamId stream = 0;
+  SourceId source = kSimulation;
+  std::uint64_t sequence = 0;  // rises by one a sample of this source and stream
+  // Host clock. Captured: when it was measured, mapped from the sender's clock; arrived: when the
+  // inbox got it, 0 until then.
+  TimeNs captured_ns = 0, arrived_ns = 0;
+
+  static void fields(auto&& field, auto& self) {
+    field("stream", self.stream);
+    field("source", self.source);
+    field("sequence", self.sequence);
+    field("captured_ns", self.captured_ns);
+    field("arrived_ns", self.arrived_ns);
+  }
+};
+
+// The order is that of PayloadKind.
+using Payload =
+    std::variant<BodyJoints, HandJoints, HandPoses, HeadPose, Gaze, JacketButtons, Breath, Heart,
+                 GasSupply, VehicleWrench, VehicleSetpoint, ThrusterFault, ObjectPose, Event,
+                 rov::ImuReading, rov::DvlReading, rov::PressureReading, CompassReading,
+                 rov::AltimeterReading, rov::UsblReading, Collision, DiverMotion, ComputerReading,
+                 ImageHandle>;
+
+enum class PayloadKind : std::uint32_t {
+  kBodyJoints,
+  kHandJoints,
+  kHandPoses,
+  kHeadPose,
+  kGaze,
+  kButtons,
+  kBreath,
+  kHeart,
+  kGas,
+  kWrench,
+  kSetpoint,
+  kFault,
+  kObjectPose,
+  kEvent,
+  kImu,
+  kDvl,
+  kPressure,
+  kCompass,
+  kAltimeter,
+  kUsbl,
+  kCollision,
+  kMotion,
+  kComputer,
+  kImage,
+};
+inline constexpr std::size_t kPayloadKinds = std::variant_size_v<Payload>;
+static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kImage) + 1);
+
+// The last part of a stream's name: "joints", "imu".
+std::string_view name_of(PayloadKind kind);
+
+struct Sample {
+  SampleHeader header;
+  Payload payload;
+
+  PayloadKind kind() const { return static_cast<PayloadKind>(payload.index()); }
+};
+static_assert(std::is_trivially_copyable_v<Sample>);
+
+// A payload of that kind as it begins.
+Payload empty_payload(PayloadKind kind);
+// Every number is finite.
+bool all_finite(const Payload& payload);
+
+}  // namespace neritic::testbed

@@ -1,0 +1,29 @@
+#include "testbed/samples/sequence_track.hpp"
+
+namespace neritic::testbed {
+
+SequenceTrack::Found SequenceTrack::take(std::uint64_t sequence, TimeNs captured_ns) {
+  constexpr std::uint64_t kWindow = 64;
+  if (seen_ == 0) {
+    first_ = newest_ = sequence;
+    seen_ = 1;
+    captured_ns_ = captured_ns;
+    return {};
+  }
+  if (sequence <= newest_) {
+    const std::uint64_t back = newest_ - sequence;
+    if (back >= kWindow) return {SampleVerdict::kOutOfOrder, 0, false};
+    const std::uint64_t bit = std::uint64_t{1} << back;
+    if ((seen_ & bit) != 0) return {SampleVerdict::kRepeated, 0, false};
+    seen_ |= bit;
+    return {SampleVerdict::kOutOfOrder, 0, sequence > first_};
+  }
+  const std::uint64_t ahead = sequence - newest_;
+  seen_ = ahead < kWindow ? seen_ << ahead | 1 : 1;
+  newest_ = sequence;
+  const bool in_order = captured_ns >= captured_ns_;
+  if (in_order) captured_ns_ = captured_ns;
+  return {in_order ? SampleVerdict::kAccepted : SampleVerdict::kOutOfOrder, ahead - 1, false};
+}
+
+}  // namespace neritic::testbed

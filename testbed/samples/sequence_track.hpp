@@ -1,0 +1,37 @@
+// The sequence numbers of one source in one stream: which are new, repeated, out of order or
+// missing. Remembers the newest 64. Plain value; the inbox owns it.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/core/clock.hpp"
+
+namespace neritic::testbed {
+
+// What became of a sample that came in.
+enum class SampleVerdict {
+  kAccepted,
+  kRepeated,       // its sequence number came before
+  kOutOfOrder,     // older than what came before, by number or by capture time
+  kLate,           // captured too long ago, or after it arrived
+  kNotFinite,      // a number is NaN or infinite
+  kNotOfStream,    // no such stream, or another kind of payload than the stream's
+  kUnknownSource,  // the source was never opened
+};
+
+class SequenceTrack {
+ public:
+  struct Found {
+    SampleVerdict verdict = SampleVerdict::kAccepted;
+    std::uint64_t missing = 0;  // numbers between the newest and this one
+    bool was_missing = false;   // out of order, and counted as missing until now
+  };
+  Found take(std::uint64_t sequence, TimeNs captured_ns);
+
+ private:
+  std::uint64_t first_ = 0, newest_ = 0;
+  std::uint64_t seen_ = 0;  // bit i: newest_ - i came; 0: nothing came yet
+  TimeNs captured_ns_ = 0;
+};
+
+}  // namespace neritic::testbed

@@ -1,0 +1,63 @@
+#include "testbed/samples/stream_table.hpp"
+
+namespace neritic::testbed {
+
+void StreamTable::add(OwnerSort sort, std::uint32_t owner, const std::string& name,
+                      std::span<const PayloadKind> kinds) {
+  auto& first = first_[static_cast<std::size_t>(sort)];
+  if (owner == first.size()) first.push_back(static_cast<StreamId>(streams_.size()));
+  for (const PayloadKind kind : kinds) {
+    Stream stream{fmt::format("{}/{}", name, name_of(kind)), kind, sort, owner};
+    const bool added = ids_.emplace(stream.name, static_cast<StreamId>(streams_.size())).second;
+    NERITIC_CHECK(added, "two streams have the name {}", stream.name);
+    streams_.push_back(std::move(stream));
+  }
+}
+
+void StreamTable::add_diver(const std::string& name) {
+  using enum PayloadKind;
+  const auto owner = static_cast<std::uint32_t>(first_[0].size());
+  add(OwnerSort::kDiver, owner, name,
+      std::to_array({kBodyJoints, kHandJoints, kHandPoses, kHeadPose, kGaze, kButtons, kBreath,
+                     kHeart, kGas, kEvent, kMotion, kComputer, kCollision}));
+}
+
+void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sensors) {
+  using enum PayloadKind;
+  std::vector<PayloadKind> kinds{kWrench, kSetpoint, kFault, kEvent, kCollision};
+  if (sensors.imu) kinds.push_back(kImu);
+  if (sensors.dvl) kinds.push_back(kDvl);
+  if (sensors.pressure) kinds.push_back(kPressure);
+  if (sensors.compass) kinds.push_back(kCompass);
+  if (sensors.altimeter) kinds.push_back(kAltimeter);
+  if (sensors.usbl) kinds.push_back(kUsbl);
+  add(OwnerSort::kVehicle, static_cast<std::uint32_t>(first_[1].size()), name, kinds);
+}
+
+void StreamTable::add_object(const std::string& name) {
+  add(OwnerSort::kObject, static_cast<std::uint32_t>(first_[2].size()), name,
+      std::to_array({PayloadKind::kObjectPose}));
+}
+
+void StreamTable::add_sensor(const std::string& name) {
+  add(OwnerSort::kSensor, static_cast<std::uint32_t>(first_[3].size()), name,
+      std::to_array({PayloadKind::kImage}));
+}
+
+std::optional<StreamId> StreamTable::find(const std::string& name) const {
+  const auto at = ids_.find(name);
+  if (at == ids_.end()) return std::nullopt;
+  return at->second;
+}
+
+StreamId StreamTable::id(OwnerSort sort, std::uint32_t owner, PayloadKind kind) const {
+  for (StreamId id = first_[static_cast<std::size_t>(sort)].at(owner); id < streams_.size(); ++id) {
+    const Stream& stream = streams_[id];
+    if (stream.sort != sort || stream.owner != owner) break;
+    if (stream.kind == kind) return id;
+  }
+  check_failed(__FILE__, __LINE__, "the owner has the stream",
+               fmt::format("owner {} has no {}", owner, name_of(kind)));
+}
+
+}  // namespace neritic::testbed

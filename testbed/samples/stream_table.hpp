@@ -1,0 +1,52 @@
+// The streams of a scene, computed once: each has a name ("diver/joints", "rov/imu"), a kind of
+// payload and an owner. A stream's id is its place here. Read only afterwards; any thread.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "testbed/samples/sample.hpp"
+
+namespace neritic::testbed {
+
+// Numbers of owners count from 0 in the order of the scene, each sort by itself.
+enum class OwnerSort : std::uint32_t { kDiver, kVehicle, kObject, kSensor };
+
+struct Stream {
+  std::string name;
+  PayloadKind kind = PayloadKind::kEvent;
+  OwnerSort sort = OwnerSort::kDiver;
+  std::uint32_t owner = 0;
+};
+
+class StreamTable {
+ public:
+  // Of the scene's next diver: inputs, motion, dive computer, collisions, events.
+  void add_diver(const std::string& name);
+  // Of its next vehicle: inputs, the sensors that it has, collisions, events.
+  void add_vehicle(const std::string& name, const rov::SensorSet& sensors);
+  // Of its next object that something outside moves.
+  void add_object(const std::string& name);
+  // Of its next camera or sonar.
+  void add_sensor(const std::string& name);
+
+  std::span<const Stream> streams() const { return streams_; }
+  std::size_t size() const { return streams_.size(); }
+  const Stream& operator[](StreamId id) const { return streams_.at(id); }
+  std::optional<StreamId> find(const std::string& name) const;
+  // Precondition: the owner has such a stream.
+  StreamId id(OwnerSort sort, std::uint32_t owner, PayloadKind kind) const;
+
+ private:
+  void add(OwnerSort sort, std::uint32_t owner, const std::string& name,
+           std::span<const PayloadKind> kinds);
+
+  std::vector<Stream> streams_;
+  std::unordered_map<std::string, StreamId> ids_;
+  std::vector<StreamId> first_[4];  // of each owner, by sort
+};
+
+}  // namespace neritic::testbed
