@@ -155,11 +155,8 @@ BoundResource bound_texture(std::uint32_t binding, VkImageView view, VkSampler s
   return {binding, {}, {sampler, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}, VK_NULL_HANDLE};
 }
 
-BoundResource bound_texel_image(std::uint32_t binding, VkImageView view) {
-  return {binding,
-          {},
-          {VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
-          VK_NULL_HANDLE};
+BoundResource bound_texel_image(std::uint32_t binding, VkImageView view, VkImageLayout layout) {
+  return {binding, {}, {VK_NULL_HANDLE, view, layout}, VK_NULL_HANDLE};
 }
 
 void write_descriptors(const Device& device, VkDescriptorSet set,

@@ -144,7 +144,9 @@ BoundResource bound_texel_buffer(std::uint32_t binding, VkBufferView texels);
 BoundResource bound_storage_image(std::uint32_t binding, VkImageView view);  // layout GENERAL
 BoundResource bound_texture(std::uint32_t binding, VkImageView view,
                             VkSampler sampler);  // SHADER_READ_ONLY_OPTIMAL
-BoundResource bound_texel_image(std::uint32_t binding, VkImageView view);  // SAMPLED_IMAGE, same
+// A SAMPLED_IMAGE. layout: how the image is while the shader reads it.
+BoundResource bound_texel_image(std::uint32_t binding, VkImageView view,
+                                VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
 void write_descriptors(const Device& device, VkDescriptorSet set,
                        std::span<const BindingDesc> bindings,

@@ -6,8 +6,10 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/core/result.hpp"
+#include "engine/gpu/image_range.hpp"
 #include "engine/gpu/memory.hpp"
 
 namespace neritic::gpu {
@@ -76,14 +78,22 @@ class Image {
 
   VkImage handle() const { return handle_; }
   VkImageView view() const { return view_; }  // all mips and layers
+  // A view of some mips and layers, of the same type as view(). Made at the first call, then kept
+  // as long as the image. The image's usage must allow views. Rendering thread only.
+  Result<VkImageView> view_of(const ImageRange& range) const;
   const ImageDesc& desc() const { return desc_; }
   VkImageAspectFlags aspect() const;
   explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 
  private:
-  VkDevice device_ = VK_NULL_HANDLE;
+  struct PartView {
+    ImageRange range;
+    VkImageView view;
+  };
+  const Device* device_ = nullptr;
   VkImage handle_ = VK_NULL_HANDLE;
   VkImageView view_ = VK_NULL_HANDLE;
+  mutable std::vector<PartView> part_views_;  // a cache: what view_of gave
   ImageDesc desc_;
   bool borrowed_ = false;
   Allocation allocation_;

@@ -23,7 +23,7 @@ constexpr VkAccessFlags2 kStorageReadWrite =
 
 // In the order of enum Access. Depth layouts are the combined ones: they are valid for depth-only
 // formats and need no feature (separateDepthStencilLayouts).
-constexpr std::array<AccessInfo, 17> kTable = {{
+constexpr std::array<AccessInfo, 18> kTable = {{
     {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, kColorReadWrite,
      VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0, true,
      "color attachment"},
@@ -32,6 +32,11 @@ constexpr std::array<AccessInfo, 17> kTable = {{
     {kDepthStages, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
      VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
      0, false, "depth test"},
+    {kDepthStages | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+     VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+     VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, 0, false,
+     "depth test and sampled"},
     {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT, 0, false,
      "sampled fragment"},
@@ -98,25 +103,13 @@ bool subsumes(Access write, Access read) {
   return w.write && one_layout && (r.stages & ~w.stages) == 0 && (r.access & ~w.access) == 0;
 }
 
-void combine_uses(const GraphDecl& graph, std::span<const Use> uses,
-                  std::vector<CombinedUse>& out) {
-  out.clear();
-  for (const Use& use : uses) {
-    const AccessInfo& info = access_info(use.access);
-    const bool image = graph.resources[use.resource].kind == ResourceKind::kImage;
-    const VkImageLayout layout = image ? info.layout : VK_IMAGE_LAYOUT_UNDEFINED;
-    CombinedUse* same = nullptr;
-    for (CombinedUse& other : out)
-      if (other.resource == use.resource) same = &other;
-    if (!same) {
-      out.push_back({use.resource, info.stages, info.access, layout, info.write});
-      continue;
-    }
-    same->stages |= info.stages;
-    same->access |= info.access;
-    if (info.write) same->layout = layout;  // a write's layout serves the reads it subsumes
-    same->write |= info.write;
-  }
+ImageRange range_of(const GraphDecl& graph, const Use& use) {
+  const ResourceDecl& resource = graph.resources[use.resource];
+  return use.range.within(resource.mips, resource.layers);
+}
+
+bool uses_meet(const GraphDecl& graph, const Use& a, const Use& b) {
+  return a.resource == b.resource && range_of(graph, a).overlaps(range_of(graph, b));
 }
 
 void gather_usage(GraphDecl& graph) {

@@ -2,9 +2,6 @@
 // Pure functions on plain data; any thread.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "engine/graph/plan.hpp"
 
 namespace neritic::graph {
@@ -23,15 +20,9 @@ bool only_as_output(Access access);
 // stages, access and layout include the read's.
 bool subsumes(Access write, Access read);
 
-// All uses of one resource by one pass as one.
-struct CombinedUse {
-  std::uint32_t resource = 0;
-  VkPipelineStageFlags2 stages = 0;
-  VkAccessFlags2 access = 0;
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  // UNDEFINED for buffers
-  bool write = false;
-};
-// Replaces out by the combined uses, in the order of first mention. The uses must be valid.
-void combine_uses(const GraphDecl& graph, std::span<const Use> uses, std::vector<CombinedUse>& out);
+// The mips and layers of a use, with concrete counts. The resource index must be valid.
+ImageRange range_of(const GraphDecl& graph, const Use& use);
+// Whether both touch a common part of one resource.
+bool uses_meet(const GraphDecl& graph, const Use& a, const Use& b);
 
 }  // namespace neritic::graph

@@ -1,7 +1,6 @@
-// Sixth stage: the barriers between the passes. The uses of each resource, in order, fall into
-// epochs: one write, or a run of reads in one layout. A barrier stands before the first use of each
-// epoch; it waits for the whole epoch before and serves the whole epoch after, so later reads of
-// the same run need none. Pure; any thread.
+// Sixth stage: the barriers between the passes. A barrier stands before the first use of each epoch
+// (epochs.hpp) of a part of a resource; it waits for the whole epoch before and serves the whole
+// epoch after, so later reads of the same run need none. Pure; any thread.
 //
 // Why one step back is enough: an epoch's barrier waits for the stages of the epoch before, whose
 // own barrier waited for the one before that (an execution dependency chain, Vulkan 1.3
@@ -12,51 +11,16 @@
 // transients chain to it, which orders them after the memory's last use in the frame before.
 #include <algorithm>
 
-#include "engine/graph/access.hpp"
+#include "engine/graph/epochs.hpp"
 #include "engine/graph/plan.hpp"
 
 namespace neritic::graph {
 namespace {
 
-struct Epoch {
-  std::uint32_t position = 0;  // of its first use; the order's size for outputs
-  VkPipelineStageFlags2 stages = 0;
-  VkAccessFlags2 access = 0;
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  bool write = false;
-  VkAccessFlags2 written() const { return write ? access & kWriteAccess : 0; }
-};
-
-using Epochs = std::vector<std::vector<Epoch>>;  // by resource
-
-void append(std::vector<Epoch>& epochs, const CombinedUse& use, std::uint32_t position) {
-  if (!use.write && !epochs.empty()) {
-    Epoch& last = epochs.back();
-    if (!last.write && last.layout == use.layout) {
-      last.stages |= use.stages;
-      last.access |= use.access;
-      return;
-    }
-  }
-  epochs.push_back({position, use.stages, use.access, use.layout, use.write});
-}
-
-Epochs find_epochs(const GraphDecl& graph, std::span<const std::uint32_t> order) {
-  Epochs epochs(graph.resources.size());
-  std::vector<CombinedUse> uses;
-  for (std::uint32_t position = 0; position < order.size(); ++position) {
-    combine_uses(graph, graph.passes[order[position]].uses, uses);
-    for (const CombinedUse& use : uses) append(epochs[use.resource], use, position);
-  }
-  combine_uses(graph, graph.outputs, uses);
-  for (const CombinedUse& use : uses)
-    append(epochs[use.resource], use, static_cast<std::uint32_t>(order.size()));
-  return epochs;
-}
-
-Barrier between(std::uint32_t resource, const Epoch& before, const Epoch& after) {
+Barrier between(const Part& part, const Epoch& before, const Epoch& after) {
   Barrier barrier;
-  barrier.resource = resource;
+  barrier.resource = part.resource;
+  barrier.range = part.range;
   barrier.src_stages = before.stages;
   barrier.src_access = before.written();
   barrier.dst_stages = after.stages;
@@ -117,6 +81,37 @@ class Takeover {
   std::vector<std::uint32_t> transients_;
 };
 
+// Grows a by b if both do the same to neighbouring mips or layers.
+bool merged(Barrier& a, const Barrier& b) {
+  Barrier same = b;
+  same.range = a.range;
+  if (!(same == a)) return false;
+  ImageRange& r = a.range;
+  if (r.mip == b.range.mip && r.mips == b.range.mips && r.layer + r.layers == b.range.layer) {
+    r.layers += b.range.layers;
+    return true;
+  }
+  if (r.layer == b.range.layer && r.layers == b.range.layers && r.mip + r.mips == b.range.mip) {
+    r.mips += b.range.mips;
+    return true;
+  }
+  return false;
+}
+
+// One barrier for all parts of a resource that change alike. Parts come in order of mips, then
+// layers, so that rows of layers grow first.
+void merge_parts(std::vector<Barrier>& list) {
+  for (bool again = true; again;) {
+    again = false;
+    for (std::size_t i = 0; i < list.size(); ++i)
+      for (std::size_t j = i + 1; j < list.size(); ++j)
+        if (list[i].resource == list[j].resource && merged(list[i], list[j])) {
+          list.erase(list.begin() + static_cast<std::ptrdiff_t>(j--));
+          again = true;
+        }
+  }
+}
+
 }  // namespace
 
 BarrierPlan barriers(const GraphDecl& graph, std::span<const std::uint32_t> order,
@@ -127,41 +122,55 @@ BarrierPlan barriers(const GraphDecl& graph, std::span<const std::uint32_t> orde
   const auto emit = [&](const Barrier& barrier, std::uint32_t position) {
     (position < order.size() ? plan.before[position] : plan.at_end).push_back(barrier);
   };
-  const Epochs epochs = find_epochs(graph, order);
+  const std::vector<Part> parts = find_parts(graph, order);
+  // How each resource is left: by resource, the last epochs of all its parts.
+  std::vector<Epoch> left(graph.resources.size());
+  for (const Part& part : parts) {
+    if (part.epochs.empty()) continue;
+    const Epoch& last = part.epochs.back();
+    left[part.resource].stages |= last.stages;
+    left[part.resource].access |= last.written();
+    left[part.resource].write |= last.write;
+  }
   const Takeover takeover(graph, lifetimes, needs, placement);
   std::vector<std::uint32_t> owners;
 
-  for (std::uint32_t r = 0; r < graph.resources.size(); ++r) {
-    if (epochs[r].empty()) continue;
-    const ResourceDecl& resource = graph.resources[r];
-    const Epoch& first = epochs[r].front();
+  bool in_parts = false;
+  for (const Part& part : parts) {
+    if (part.epochs.empty()) continue;
+    const ResourceDecl& resource = graph.resources[part.resource];
+    in_parts |= part.range != ImageRange{0, resource.mips, 0, resource.layers};
+    const Epoch& first = part.epochs.front();
     if (resource.imported) {
       const Epoch initial = initial_epoch(resource);
       if (!ready(initial, first)) {
-        Barrier barrier = between(r, initial, first);
+        Barrier barrier = between(part, initial, first);
         barrier.discards =
             resource.kind == ResourceKind::kImage && initial.layout == VK_IMAGE_LAYOUT_UNDEFINED;
         emit(barrier, first.position);
       }
     } else {
       Epoch before;  // whatever had the memory before
-      takeover.previous_owners(r, owners);
+      takeover.previous_owners(part.resource, owners);
       for (const std::uint32_t owner : owners) {
-        const Epoch& last = epochs[owner].back();
-        before.stages |= last.stages;
-        before.access |= last.written();
-        before.write |= last.write;
+        before.stages |= left[owner].stages;
+        before.access |= left[owner].access;
+        before.write |= left[owner].write;
       }
       // Nobody did in this frame: the layout change chains to the barrier that opens the frame.
       if (owners.empty()) before.stages = first.stages;
       if (!owners.empty() || resource.kind == ResourceKind::kImage) {
-        Barrier barrier = between(r, before, first);
+        Barrier barrier = between(part, before, first);
         barrier.discards = true;
         emit(barrier, first.position);
       }
     }
-    for (std::size_t e = 1; e < epochs[r].size(); ++e)
-      emit(between(r, epochs[r][e - 1], epochs[r][e]), epochs[r][e].position);
+    for (std::size_t e = 1; e < part.epochs.size(); ++e)
+      emit(between(part, part.epochs[e - 1], part.epochs[e]), part.epochs[e].position);
+  }
+  if (in_parts) {
+    for (std::vector<Barrier>& list : plan.before) merge_parts(list);
+    merge_parts(plan.at_end);
   }
   return plan;
 }

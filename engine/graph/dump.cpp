@@ -13,10 +13,18 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
+// "depth", or "depth [mip 1, layer 0]" for a part.
+std::string name_of(const GraphDecl& graph, std::uint32_t r, const ImageRange& range) {
+  const ResourceDecl& resource = graph.resources[r];
+  const ImageRange part = range.within(resource.mips, resource.layers);
+  if (part == ImageRange{0, resource.mips, 0, resource.layers}) return resource.name;
+  return fmt::format("{} [{}]", resource.name, range_name(part));
+}
+
 void dump_uses(Out out, const GraphDecl& graph, const PassDecl& pass) {
   for (const Use& use : pass.uses) {
     const AccessInfo& info = access_info(use.access);
-    const std::string& name = graph.resources[use.resource].name;
+    const std::string name = name_of(graph, use.resource, use.range);
     if (info.write) {
       fmt::format_to(out, "      writes {} {}->{} ({})\n", name, use.version, use.version + 1,
                      info.name);
@@ -27,9 +35,8 @@ void dump_uses(Out out, const GraphDecl& graph, const PassDecl& pass) {
 }
 
 void dump_barrier(Out out, const GraphDecl& graph, const Barrier& barrier) {
-  const ResourceDecl& resource = graph.resources[barrier.resource];
-  fmt::format_to(out, "      barrier {}: {} -> {}", resource.name, stage_names(barrier.src_stages),
-                 stage_names(barrier.dst_stages));
+  fmt::format_to(out, "      barrier {}: {} -> {}", name_of(graph, barrier.resource, barrier.range),
+                 stage_names(barrier.src_stages), stage_names(barrier.dst_stages));
   if (barrier.old_layout != barrier.new_layout) {
     fmt::format_to(out, ", layout {} -> {}", layout_name(barrier.old_layout),
                    layout_name(barrier.new_layout));
@@ -40,8 +47,9 @@ void dump_barrier(Out out, const GraphDecl& graph, const Barrier& barrier) {
 
 std::string shape(const ResourceDecl& resource) {
   if (resource.kind == ResourceKind::kBuffer) return "buffer";
-  return fmt::format("{} {}x{}{}", format_name(resource.format), resource.width, resource.height,
-                     resource.layers > 1 ? fmt::format("x{}", resource.layers) : "");
+  return fmt::format("{} {}x{}{}{}", format_name(resource.format), resource.width, resource.height,
+                     resource.layers > 1 ? fmt::format("x{}", resource.layers) : "",
+                     resource.mips > 1 ? fmt::format(", {} mips", resource.mips) : "");
 }
 
 void dump_transients(Out out, const Plan& plan) {
@@ -86,7 +94,7 @@ std::string dump_text(const Plan& plan) {
   fmt::format_to(out, "at the end\n");
   for (const Barrier& barrier : plan.barriers.at_end) dump_barrier(out, graph, barrier);
   for (const Use& output : graph.outputs)
-    fmt::format_to(out, "      output {} {} ({})\n", graph.resources[output.resource].name,
+    fmt::format_to(out, "      output {} {} ({})\n", name_of(graph, output.resource, output.range),
                    output.version, access_info(output.access).name);
   fmt::format_to(out, "culled\n");
   for (std::size_t p = 0; p < graph.passes.size(); ++p)

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "engine/graph/access.hpp"
+#include "engine/graph/names.hpp"
 #include "engine/graph/plan.hpp"
 
 namespace neritic::graph {
@@ -56,6 +58,7 @@ class DotWriter {
     const char* style = plan_.kept[p] ? "solid" : "dashed";
     for (const Use& use : pass.uses) {
       const AccessInfo& info = access_info(use.access);
+      const std::string label = info.name + part_of(use);
       if (info.write) {
         add_version(use.resource, use.version + 1);
         // A write over an earlier version keeps its contents: it is an input as well.
@@ -64,13 +67,21 @@ class DotWriter {
           line("  r{}_{} -> p{} [style={}];", use.resource, use.version, p, style);
         }
         line("  p{} -> r{}_{} [style={}, label=\"{}\"];", p, use.resource, use.version + 1, style,
-             info.name);
+             label);
       } else {
         add_version(use.resource, use.version);
         line("  r{}_{} -> p{} [style={}, label=\"{}\"];", use.resource, use.version, p, style,
-             info.name);
+             label);
       }
     }
+  }
+
+  // "\nmip 1, layer 0" of a use of a part.
+  std::string part_of(const Use& use) const {
+    const ResourceDecl& resource = plan_.graph.resources[use.resource];
+    const ImageRange part = range_of(plan_.graph, use);
+    if (part == ImageRange{0, resource.mips, 0, resource.layers}) return "";
+    return "\\n" + range_name(part);
   }
 
   void add_version(std::uint32_t resource, std::uint32_t version) {

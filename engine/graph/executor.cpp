@@ -33,6 +33,8 @@ void add_uses(Hash64& hash, const std::vector<Use>& uses) {
   for (const Use& use : uses) {
     hash.add(std::uint64_t{use.resource} << 32 | use.version);
     hash.add(static_cast<std::uint64_t>(use.access));
+    hash.add(std::uint64_t{use.range.mip} << 32 | use.range.mips);
+    hash.add(std::uint64_t{use.range.layer} << 32 | use.range.layers);
   }
 }
 
@@ -45,7 +47,8 @@ std::uint64_t hash_of(const GraphDecl& graph) {
                                    r.imported,
                                    static_cast<std::uint64_t>(r.format),
                                    std::uint64_t{r.width} << 32 | r.height,
-                                   std::uint64_t{r.layers} << 32 | r.image_usage,
+                                   std::uint64_t{r.layers} << 32 | r.mips,
+                                   r.image_usage,
                                    r.size_bytes,
                                    r.buffer_usage,
                                    r.initial_stages,
@@ -196,6 +199,17 @@ struct Executor::Impl {
     }
   }
 
+  // The views of parts that the kept passes name, so that recording cannot fail.
+  Status make_part_views(const Plan& plan) {
+    constexpr VkImageUsageFlags kCopies =
+        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    for (const std::uint32_t pass : plan.order)
+      for (const Use& use : plan.graph.passes[pass].uses)
+        if (images[use.resource] && (access_info(use.access).image_usage & ~kCopies) != 0)
+          NERITIC_TRY_STATUS(images[use.resource]->view_of(use.range));
+    return {};
+  }
+
   void record(FrameGraph& graph, const Plan& plan, gpu::Commands& commands) {
     const VkCommandBuffer cmd = commands.handle();
     record_frame_barrier(cmd);
@@ -226,6 +240,7 @@ Result<const Plan*> Executor::run(FrameGraph& graph, gpu::Commands& commands) {
   NERITIC_TRY(Impl::Entry* const entry, impl_->find_or_compile(graph.declaration()));
   NERITIC_TRY_STATUS(impl_->realise(*entry));
   impl_->resolve(graph, *entry->realisation);
+  NERITIC_TRY_STATUS(impl_->make_part_views(entry->plan));
   const Plan* plan = &entry->plan;
   if (impl_->spoil) {
     impl_->spoiled = *plan;

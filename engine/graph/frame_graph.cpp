@@ -3,8 +3,10 @@
 #include "engine/graph/frame_graph.hpp"
 
 #include <atomic>
+#include <type_traits>
 
 #include "engine/core/check.hpp"
+#include "engine/graph/names.hpp"
 
 namespace neritic::graph {
 
@@ -18,7 +20,8 @@ ImageHandle PassBuilder::create_image(const std::string& name, const TransientIm
   resource.width = desc.width;
   resource.height = desc.height;
   resource.layers = desc.layers;
-  return {graph_.add_resource(std::move(resource), nullptr, nullptr), 0, graph_.id_};
+  resource.mips = desc.mips;
+  return {graph_.add_resource(std::move(resource), nullptr, nullptr), 0, graph_.id_, {}};
 }
 
 BufferHandle PassBuilder::create_buffer(const std::string& name, std::uint64_t size_bytes) {
@@ -45,7 +48,7 @@ void PassBuilder::read(BufferHandle buffer, Access access) {
 }
 ImageHandle PassBuilder::write(ImageHandle image, Access access) {
   use(image, access, true);
-  return {image.resource, image.version + 1, image.graph};
+  return {image.resource, image.version + 1, image.graph, image.range};
 }
 BufferHandle PassBuilder::write(BufferHandle buffer, Access access) {
   use(buffer, access, true);
@@ -76,6 +79,19 @@ const gpu::Image& PassContext::image(ImageHandle handle) const {
   return *image;
 }
 
+VkImageView PassContext::view(ImageHandle handle) const {
+  const gpu::Image& whole = image(handle);
+  const auto concrete = [&whole](const ImageRange& range) {
+    return range.within(whole.desc().mips, whole.desc().layers);
+  };
+  const ImageRange wanted = concrete(handle.range);
+  for (const Use& use : pass_.uses)
+    if (use.resource == handle.resource && concrete(use.range) == wanted)
+      return whole.view_of(wanted).value();  // Executor::run has made it
+  NERITIC_CHECK(false, "pass \"{}\" asks for {} of \"{}\", which it did not declare", pass_.name,
+                range_name(wanted), whole.desc().name);
+}
+
 const gpu::Buffer& PassContext::buffer(BufferHandle handle) const {
   check_declared(handle.resource, handle.graph);
   const gpu::Buffer* buffer = buffers_[handle.resource];
@@ -96,7 +112,9 @@ Use FrameGraph::use_of(const Handle& handle, Access access, const std::string& w
   NERITIC_CHECK(!handle || handle.graph == id_,
                 "{} of graph {} uses a handle of graph {}: kept from an earlier frame?", who, id_,
                 handle.graph);
-  return {handle.resource, handle.version, access};
+  Use use{handle.resource, handle.version, access, {}};
+  if constexpr (std::is_same_v<Handle, ImageHandle>) use.range = handle.range;
+  return use;
 }
 
 std::uint32_t FrameGraph::add_resource(ResourceDecl&& resource, const gpu::Image* image,
@@ -110,7 +128,7 @@ std::uint32_t FrameGraph::add_resource(ResourceDecl&& resource, const gpu::Image
 ImageHandle FrameGraph::import_image(const gpu::Image& image, const ImportState& state) {
   // One image is one resource, however often it is imported: two would hide each other's hazards.
   for (std::uint32_t r = 0; r < imported_images_.size(); ++r)
-    if (imported_images_[r] == &image) return {r, 0, id_};
+    if (imported_images_[r] == &image) return {r, 0, id_, {}};
   const gpu::ImageDesc& desc = image.desc();
   ResourceDecl resource;
   resource.name = desc.name;
@@ -120,11 +138,12 @@ ImageHandle FrameGraph::import_image(const gpu::Image& image, const ImportState&
   resource.width = desc.width;
   resource.height = desc.height;
   resource.layers = desc.layers;
+  resource.mips = desc.mips;
   resource.image_usage = desc.usage;
   resource.initial_stages = state.stages;
   resource.initial_access = state.access;
   resource.initial_layout = state.layout;
-  return {add_resource(std::move(resource), &image, nullptr), 0, id_};
+  return {add_resource(std::move(resource), &image, nullptr), 0, id_, {}};
 }
 
 BufferHandle FrameGraph::import_buffer(const std::string& name, const gpu::Buffer& buffer,

@@ -18,12 +18,25 @@ namespace neritic::graph {
 
 inline constexpr std::uint32_t kNoResource = ~0u;
 
-// Good in the graph that gave it only (graph: which, by FrameGraph's count), so in one frame: one
-// that was kept from an earlier frame stops the program.
+// One version of an image, or of the part of it that range names. Valid only in the graph that
+// returned it (graph: its number), so only in one frame: using one from an earlier frame stops the
+// program.
 struct ImageHandle {
   std::uint32_t resource = kNoResource, version = 0;
   std::uint64_t graph = 0;
+  ImageRange range;
   explicit operator bool() const { return resource != kNoResource; }
+
+  // The same version of other mips or layers, counted from the image's first.
+  ImageHandle mip(std::uint32_t index) const { return mip_range(index, 1); }
+  ImageHandle layer(std::uint32_t index) const { return layer_range(index, 1); }
+  ImageHandle mip_range(std::uint32_t first, std::uint32_t count) const {
+    return {resource, version, graph, {first, count, range.layer, range.layers}};
+  }
+  ImageHandle layer_range(std::uint32_t first, std::uint32_t count) const {
+    return {resource, version, graph, {range.mip, range.mips, first, count}};
+  }
+  ImageHandle whole() const { return {resource, version, graph, {}}; }
 };
 struct BufferHandle {
   std::uint32_t resource = kNoResource, version = 0;
@@ -33,7 +46,7 @@ struct BufferHandle {
 
 struct TransientImage {
   VkFormat format = VK_FORMAT_UNDEFINED;
-  std::uint32_t width = 1, height = 1, layers = 1;
+  std::uint32_t width = 1, height = 1, layers = 1, mips = 1;
 };
 
 class FrameGraph;
@@ -44,11 +57,12 @@ class PassBuilder {
   BufferHandle create_buffer(const std::string& name, std::uint64_t size_bytes);
   void read(ImageHandle image, Access access);
   void read(BufferHandle buffer, Access access);
+  // The returned handle names the same part. One pass may write several parts of an image.
   [[nodiscard]] ImageHandle write(ImageHandle image, Access access);
   [[nodiscard]] BufferHandle write(BufferHandle buffer, Access access);
-  // Kept although no output needs it.
+  // Keeps the pass although no output needs it.
   void side_effect();
-  // What of its options the pass computes, for who reads a dump.
+  // Names the options that the pass computes, for the dump.
   void terms(std::string names);
 
  private:
@@ -60,13 +74,15 @@ class PassBuilder {
   std::uint32_t pass_;
 };
 
-// What a pass sees while it records: the real objects behind its handles. Only what the pass
-// declared may be asked for.
+// The real objects behind a pass's handles while it records. A pass may ask only for what it
+// declared.
 class PassContext {
  public:
   gpu::Commands& commands;
   VkCommandBuffer cmd() const { return commands.handle(); }
   const gpu::Image& image(ImageHandle handle) const;
+  // A view of the mips and layers that the handle names; a 2D_ARRAY one of transients.
+  VkImageView view(ImageHandle handle) const;
   const gpu::Buffer& buffer(BufferHandle handle) const;
 
  private:

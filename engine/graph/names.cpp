@@ -120,6 +120,13 @@ std::string access_names(VkAccessFlags2 access) {
 std::string layout_name(VkImageLayout layout) {
   return find_value(static_cast<std::uint64_t>(layout), kLayouts);
 }
+std::string range_name(const gpu::ImageRange& range) {
+  const auto part = [](const char* what, std::uint32_t first, std::uint32_t count) {
+    return count == 1 ? fmt::format("{} {}", what, first)
+                      : fmt::format("{}s {} to {}", what, first, first + count - 1);
+  };
+  return part("mip", range.mip, range.mips) + ", " + part("layer", range.layer, range.layers);
+}
 std::string format_name(VkFormat format) {
   return find_value(static_cast<std::uint64_t>(format), kFormats);
 }

@@ -1,11 +1,12 @@
 // Third stage: an order of the kept passes in which every read comes after its writer and before
-// whoever overwrites it. Kahn's algorithm (1962); among the passes that are free the one declared
-// first goes first. Pure; any thread.
+// the next pass that writes over it. Kahn's algorithm (1962); among the passes that are free the
+// one declared first goes first. Pure; any thread.
 #include <algorithm>
 #include <functional>
 #include <queue>
 
 #include "engine/core/check.hpp"
+#include "engine/graph/access.hpp"
 #include "engine/graph/plan.hpp"
 #include "engine/graph/versions.hpp"
 
@@ -17,20 +18,21 @@ struct Edge {
   auto operator<=>(const Edge&) const = default;
 };
 
-// read-after-write and write-after-write: the version's writer comes first; write-after-read: who
-// replaces the version comes after its readers.
+// Read after write and write after write: the writers of what a use finds come first. Write after
+// read: the writers that replace what a use reads come after it.
 std::vector<Edge> dependencies(const GraphDecl& graph, const std::vector<bool>& kept) {
   const Versions versions(graph);
   std::vector<Edge> edges;
   const auto add = [&](std::uint32_t before, std::uint32_t after) {
-    if (before != kNoPass && after != kNoPass && before != after && kept[before] && kept[after])
-      edges.push_back({before, after});
+    if (before != after && kept[before] && kept[after]) edges.push_back({before, after});
   };
   for (std::uint32_t p = 0; p < graph.passes.size(); ++p) {
     if (!kept[p]) continue;
     for (const Use& use : graph.passes[p].uses) {
-      add(versions.writer(use.resource, use.version), p);
-      if (!access_info(use.access).write) add(p, versions.writer(use.resource, use.version + 1));
+      const ImageRange range = range_of(graph, use);
+      versions.visit_makers(use, range, [&](std::uint32_t maker) { add(maker, p); });
+      if (!access_info(use.access).write)
+        versions.visit_replacers(use, range, [&](std::uint32_t replacer) { add(p, replacer); });
     }
   }
   std::sort(edges.begin(), edges.end());

@@ -13,18 +13,20 @@
 #include <vector>
 
 #include "engine/core/result.hpp"
+#include "engine/gpu/image_range.hpp"
 
 namespace neritic::graph {
 
-// How a pass uses a resource. Each means one stage mask, access mask and image layout
-// (access_info); access.cpp has the table. Attachments and descriptors take their layout from
-// there: access_info(Access::kDepthTest).layout. A read-only depth attachment needs storeOp NONE:
+// How a pass uses a resource. Each access has one stage mask, access mask and image layout
+// (access_info, table in access.cpp). Attachments and descriptors take their layout from there:
+// access_info(Access::kDepthTest).layout. A read-only depth attachment needs storeOp NONE, because
 // STORE counts as a write.
 enum class Access {
-  kColorAttachment,  // write
-  kDepthAttachment,  // write (and test)
-  kDepthTest,        // read-only depth test
-  kSampledFragment,  // read by texture or texelFetch
+  kColorAttachment,      // write
+  kDepthAttachment,      // write (and test)
+  kDepthTest,            // read-only depth attachment
+  kDepthTestAndSampled,  // read-only depth attachment that the fragment shader also samples
+  kSampledFragment,      // read by texture or texelFetch
   kSampledCompute,
   kStorageReadCompute,   // buffer or image
   kStorageWriteCompute,  // write; earlier contents may be read (atomics)
@@ -53,13 +55,16 @@ const AccessInfo& access_info(Access access);
 
 enum class ResourceKind { kImage, kBuffer };
 
+// The mips and layers of an image that a use touches; everything by default. Of a buffer: all.
+using gpu::ImageRange;
+
 struct ResourceDecl {
   std::string name;
   ResourceKind kind = ResourceKind::kImage;
   bool imported = false;  // lives outside the frame; contents defined at its start
-  // Images. usage flags of both are gathered from the declared accesses by gather_usage.
+  // Images. gather_usage collects the usage flags of both kinds from the declared accesses.
   VkFormat format = VK_FORMAT_UNDEFINED;
-  std::uint32_t width = 0, height = 0, layers = 1;
+  std::uint32_t width = 0, height = 0, layers = 1, mips = 1;
   VkImageUsageFlags image_usage = 0;
   // Buffers.
   std::uint64_t size_bytes = 0;
@@ -72,12 +77,14 @@ struct ResourceDecl {
   bool operator==(const ResourceDecl&) const = default;
 };
 
-// A use of one version of a resource. Reading version v needs its writer; writing turns v into v
-// + 1.
+// A use of one version of a resource, or of a part of an image. A write of version v makes v + 1 of
+// the whole resource: the named part changes, the rest stays. A read of a part at version v needs
+// the last writers of that part up to v, and stays valid until a later write touches the part.
 struct Use {
   std::uint32_t resource = 0;
   std::uint32_t version = 0;  // the version read, or the version that the write replaces
   Access access = Access::kSampledCompute;
+  ImageRange range;
 
   bool operator==(const Use&) const = default;
 };
@@ -139,10 +146,13 @@ Placement place(const GraphDecl& graph, std::span<const Lifetime> lifetimes,
 
 struct Barrier {
   std::uint32_t resource = 0;
+  ImageRange range;  // concrete: counts are those of the resource
   VkPipelineStageFlags2 src_stages = 0, dst_stages = 0;
   VkAccessFlags2 src_access = 0, dst_access = 0;
   VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED, new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   bool discards = false;  // contents are not kept (first use, or memory taken over from another)
+
+  bool operator==(const Barrier&) const = default;
 };
 struct BarrierPlan {
   std::vector<std::vector<Barrier>> before;  // one list a position in the order

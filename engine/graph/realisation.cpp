@@ -16,6 +16,7 @@ gpu::ImageDesc image_desc(const ResourceDecl& resource) {
   desc.width = resource.width;
   desc.height = resource.height;
   desc.layers = resource.layers;
+  desc.mips = resource.mips;
   desc.usage = resource.image_usage;
   desc.array_view = true;
   return desc;

@@ -17,8 +17,8 @@ VkImageMemoryBarrier2 image_barrier(const Barrier& barrier, const gpu::Image& im
   info.newLayout = barrier.new_layout;
   info.srcQueueFamilyIndex = info.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   info.image = image.handle();
-  info.subresourceRange = {image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0,
-                           VK_REMAINING_ARRAY_LAYERS};
+  info.subresourceRange = {image.aspect(), barrier.range.mip, barrier.range.mips,
+                           barrier.range.layer, barrier.range.layers};
   return info;
 }
 

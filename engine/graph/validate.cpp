@@ -1,19 +1,24 @@
 // First stage: refuses a declaration that has no single meaning. Handles only go forward: a pass
-// may read or replace the newest version that the passes declared before it made, so declaration
-// order is always one valid order, and each later stage can rely on that. Pure; any thread.
+// writes over the newest version, and reads what no pass declared before it has replaced, so
+// declaration order is always one valid order, and each later stage can rely on that. Pure; any
+// thread.
+#include <algorithm>
+#include <bit>
+
 #include "engine/graph/access.hpp"
+#include "engine/graph/names.hpp"
 #include "engine/graph/plan.hpp"
 
 namespace neritic::graph {
 namespace {
 
-// Which version of a resource is the newest so far, and who made it.
-struct Newest {
-  std::uint32_t version = 0;
-  std::uint32_t writer = 0;  // only meaningful where version > 0
+// One write of a resource, by a pass declared so far. Write v made version v + 1.
+struct Write {
+  std::uint32_t pass = 0;
+  ImageRange range;
 };
 
-// A declaration is ours, never the user's.
+// A wrong declaration is our bug, never the user's.
 template <class... Args>
 Error graph_bug(fmt::format_string<Args...> format, Args&&... args) {
   return failure(ErrorCode::kInternal, "frame graph: {}",
@@ -22,7 +27,7 @@ Error graph_bug(fmt::format_string<Args...> format, Args&&... args) {
 
 class Validator {
  public:
-  explicit Validator(const GraphDecl& graph) : graph_(graph), newest_(graph.resources.size()) {}
+  explicit Validator(const GraphDecl& graph) : graph_(graph), writes_(graph.resources.size()) {}
 
   Status run() {
     for (const ResourceDecl& resource : graph_.resources) {
@@ -39,9 +44,15 @@ class Validator {
     if (resource.kind == ResourceKind::kBuffer) return {};
     if (resource.format == VK_FORMAT_UNDEFINED)
       return graph_bug("image \"{}\" has no format", resource.name);
-    if (resource.width == 0 || resource.height == 0 || resource.layers == 0)
-      return graph_bug("image \"{}\" is {}x{} with {} layers, all must be at least 1",
-                       resource.name, resource.width, resource.height, resource.layers);
+    if (resource.width == 0 || resource.height == 0 || resource.layers == 0 || resource.mips == 0)
+      return graph_bug("image \"{}\" is {}x{} with {} layers and {} mips, all must be at least 1",
+                       resource.name, resource.width, resource.height, resource.layers,
+                       resource.mips);
+    const auto most =
+        static_cast<std::uint32_t>(std::bit_width(std::max(resource.width, resource.height)));
+    if (resource.mips > most)
+      return graph_bug("image \"{}\" of {}x{} has {} mips, at most {} are possible", resource.name,
+                       resource.width, resource.height, resource.mips, most);
     return {};
   }
 
@@ -56,11 +67,13 @@ class Validator {
     }
     NERITIC_TRY_STATUS(check_combination(pass));
     for (const Use& use : pass.uses) {
-      NERITIC_TRY_STATUS(access_info(use.access).write ? check_write(who, use)
-                                                       : check_read(who, use));
+      if (!access_info(use.access).write) NERITIC_TRY_STATUS(check_read(who, use));
     }
-    for (const Use& use : pass.uses)
-      if (access_info(use.access).write) newest_[use.resource] = {use.version + 1, p};
+    for (const Use& use : pass.uses) {
+      if (!access_info(use.access).write) continue;
+      NERITIC_TRY_STATUS(check_write(who, use));
+      writes_[use.resource].push_back({p, range_of(graph_, use)});
+    }
     return {};
   }
 
@@ -79,6 +92,11 @@ class Validator {
     if (resource.imported && made_for != 0 && (wanted & ~made_for) != 0)
       return graph_bug("{} uses imported \"{}\" for {}, which it was not made for", who,
                        resource.name, info.name);
+    const ImageRange range = range_of(graph_, use);
+    const ImageRange all{0, resource.mips, 0, resource.layers};
+    if (range.mips == 0 || range.layers == 0 || !all.contains(range))
+      return graph_bug("{} uses {} of \"{}\", which has {}", who, range_name(range), resource.name,
+                       range_name(all));
     return {};
   }
 
@@ -88,35 +106,57 @@ class Validator {
                                  resource.initial_layout != VK_IMAGE_LAYOUT_UNDEFINED);
   }
 
+  // Whether every mip and layer of the range was imported with contents or written before version.
+  bool filled(const Use& use, const ImageRange& range) const {
+    if (has_contents(graph_.resources[use.resource])) return true;
+    const auto before = std::span(writes_[use.resource]).first(use.version);
+    const auto written = [&](const ImageRange& part) {
+      return std::any_of(before.begin(), before.end(),
+                         [&](const Write& write) { return write.range.contains(part); });
+    };
+    if (written(range)) return true;
+    for (std::uint32_t m = range.mip; m < range.mip + range.mips; ++m)
+      for (std::uint32_t l = range.layer; l < range.layer + range.layers; ++l)
+        if (!written({m, 1, l, 1})) return false;
+    return true;
+  }
+
   Status check_read(const std::string& who, const Use& use) const {
-    const Newest& now = newest_[use.resource];
-    if (use.version < now.version)
-      return graph_bug(
-          "{} reads version {} of \"{}\", a stale handle: pass \"{}\" has already "
-          "replaced it",
-          who, use.version, name(use), writer_of_next(use));
-    if (use.version > now.version)
+    const std::vector<Write>& writes = writes_[use.resource];
+    if (use.version > writes.size())
       return graph_bug(
           "{} reads version {} of \"{}\" before any pass has written it "
           "(newest is {})",
-          who, use.version, name(use), now.version);
-    if (use.version == 0 && !has_contents(graph_.resources[use.resource]))
-      return graph_bug("{} reads \"{}\" before any pass has written it", who, name(use));
+          who, use.version, name(use), writes.size());
+    const ImageRange range = range_of(graph_, use);
+    for (const Write& later : std::span(writes).subspan(use.version))
+      if (later.range.overlaps(range))
+        return graph_bug(
+            "{} reads version {} of \"{}\", a stale handle: pass \"{}\" has already "
+            "replaced it",
+            who, use.version, name(use), graph_.passes[later.pass].name);
+    if (!filled(use, range)) {
+      const ResourceDecl& resource = graph_.resources[use.resource];
+      const bool whole = range == ImageRange{0, resource.mips, 0, resource.layers};
+      return graph_bug("{} reads {}\"{}\" before any pass has written {}", who,
+                       whole ? "" : range_name(range) + " of ", name(use),
+                       use.version == 0 ? "it" : "all of it");
+    }
     return {};
   }
 
   Status check_write(const std::string& who, const Use& use) const {
-    const Newest& now = newest_[use.resource];
-    if (use.version < now.version)
+    const std::vector<Write>& writes = writes_[use.resource];
+    if (use.version < writes.size())
       return graph_bug(
           "two writers of version {} of \"{}\": pass \"{}\" and {} (write to the "
           "handle that the first write returned)",
-          use.version, name(use), writer_of_next(use), who);
-    if (use.version > now.version)
+          use.version, name(use), graph_.passes[writes[use.version].pass].name, who);
+    if (use.version > writes.size())
       return graph_bug(
           "{} writes over version {} of \"{}\" before any pass has written that "
           "(newest is {})",
-          who, use.version, name(use), now.version);
+          who, use.version, name(use), writes.size());
     return {};
   }
 
@@ -136,7 +176,9 @@ class Validator {
 
   Status check_pair(const PassDecl& pass, const Use& a, const Use& b) const {
     const AccessInfo &ia = access_info(a.access), &ib = access_info(b.access);
+    const bool meet = uses_meet(graph_, a, b);
     if (ia.write && ib.write) {
+      if (!meet && a.version != b.version) return {};
       if (a.version == b.version)
         return graph_bug("two writers of version {} of \"{}\": both are pass \"{}\"", a.version,
                          name(a), pass.name);
@@ -148,12 +190,12 @@ class Validator {
       if (read.version == write.version + 1)
         return graph_bug("pass \"{}\" reads version {} of \"{}\", which it writes", pass.name,
                          read.version, name(read));
-      if (!subsumes(write.access, read.access))
+      if (meet && !subsumes(write.access, read.access))
         return graph_bug("pass \"{}\" cannot both read (as {}) and write (as {}) \"{}\"", pass.name,
                          access_info(read.access).name, access_info(write.access).name, name(read));
       return {};
     }
-    if (graph_.resources[a.resource].kind == ResourceKind::kImage && ia.layout != ib.layout)
+    if (meet && graph_.resources[a.resource].kind == ResourceKind::kImage && ia.layout != ib.layout)
       return graph_bug("pass \"{}\" needs image \"{}\" in two layouts ({} and {})", pass.name,
                        name(a), ia.name, ib.name);
     return {};
@@ -166,7 +208,7 @@ class Validator {
       NERITIC_TRY_STATUS(check_read("an output", use));
       for (std::size_t j = 0; j < i; ++j) {
         const Use& other = graph_.outputs[j];
-        if (other.resource != use.resource) continue;
+        if (!uses_meet(graph_, other, use)) continue;
         const AccessInfo &ia = access_info(other.access), &ib = access_info(use.access);
         if ((ia.write || ib.write || ia.layout != ib.layout) && other.access != use.access &&
             (ia.write || ib.write || graph_.resources[use.resource].kind == ResourceKind::kImage))
@@ -179,18 +221,8 @@ class Validator {
 
   const std::string& name(const Use& use) const { return graph_.resources[use.resource].name; }
 
-  // The pass that turned use.version into the next one. Only for messages, hence the plain search.
-  std::string writer_of_next(const Use& use) const {
-    for (const PassDecl& pass : graph_.passes)
-      for (const Use& other : pass.uses)
-        if (other.resource == use.resource && other.version == use.version &&
-            access_info(other.access).write)
-          return pass.name;
-    return "?";
-  }
-
   const GraphDecl& graph_;
-  std::vector<Newest> newest_;
+  std::vector<std::vector<Write>> writes_;  // by resource
 };
 
 }  // namespace

@@ -15,8 +15,15 @@ namespace neritic::graph {
 inline constexpr Access kWrite = Access::kStorageWriteCompute;
 inline constexpr Access kRead = Access::kStorageReadCompute;
 
-inline Use use(std::uint32_t resource, std::uint32_t version, Access access) {
-  return {resource, version, access};
+inline Use use(std::uint32_t resource, std::uint32_t version, Access access,
+               const ImageRange& range = {}) {
+  return {resource, version, access, range};
+}
+inline ImageRange mip(std::uint32_t index) {
+  return {.mip = index, .mips = 1};
+}
+inline ImageRange layer(std::uint32_t index) {
+  return {.layer = index, .layers = 1};
 }
 
 // The plan on a device whose needs are these.

@@ -8,9 +8,10 @@
 namespace neritic::graph {
 namespace {
 
-constexpr Access kImageReads[] = {Access::kDepthTest,           Access::kSampledFragment,
-                                  Access::kSampledCompute,      Access::kStorageReadCompute,
-                                  Access::kStorageReadFragment, Access::kTransferRead};
+constexpr Access kImageReads[] = {Access::kDepthTest,          Access::kDepthTestAndSampled,
+                                  Access::kSampledFragment,    Access::kSampledCompute,
+                                  Access::kStorageReadCompute, Access::kStorageReadFragment,
+                                  Access::kTransferRead};
 constexpr Access kImageWrites[] = {Access::kColorAttachment, Access::kDepthAttachment,
                                    Access::kStorageWriteCompute, Access::kTransferWrite};
 constexpr Access kBufferReads[] = {Access::kStorageReadCompute,  Access::kStorageReadVertex,
@@ -73,8 +74,13 @@ class Draw {
     } else {
       is_image ? maker.image(name) : maker.buffer(name);
     }
+    if (is_image && chance(15)) {
+      maker.graph.resources[r].mips = 1 + below(2);
+      maker.graph.resources[r].layers = 1 + below(2);
+    }
     version_.push_back(0);
-    filled_.push_back(imported && (!is_image || import.layout != VK_IMAGE_LAYOUT_UNDEFINED));
+    const bool filled = imported && (!is_image || import.layout != VK_IMAGE_LAYOUT_UNDEFINED);
+    changed_.push_back(std::vector<int>(decl(r).mips * decl(r).layers, filled ? 0 : kEmpty));
     result_.needs.push_back({1 + below(5000), std::uint64_t{1} << below(9),
                              (is_image ? 2u : 0u) + (chance(20) ? 1u : 0u)});
   }
@@ -92,31 +98,67 @@ class Draw {
     for (const Use& u : pass.uses) {
       if (!access_info(u.access).write) continue;
       ++version_[u.resource];
-      filled_[u.resource] = true;
+      visit(u.resource, u.range, [&](int& at) { at = static_cast<int>(version_[u.resource]); });
     }
     result_.maker.graph.passes.push_back(std::move(pass));
   }
 
+  template <class F>
+  void visit(std::uint32_t r, const ImageRange& range, F&& f) {
+    const ImageRange part = range.within(decl(r).mips, decl(r).layers);
+    for (std::uint32_t m = part.mip; m < part.mip + part.mips; ++m)
+      for (std::uint32_t l = part.layer; l < part.layer + part.layers; ++l)
+        f(changed_[r][m * decl(r).layers + l]);
+  }
+
+  // The newest version in which something of the part changed; kEmpty where some of it is empty.
+  int newest_change(std::uint32_t r, const ImageRange& range) {
+    int newest = 0;
+    bool empty = false;
+    visit(r, range, [&](int& at) {
+      empty |= at == kEmpty;
+      newest = std::max(newest, at);
+    });
+    return empty ? kEmpty : newest;
+  }
+
+  ImageRange some_part(std::uint32_t r) {
+    ImageRange part;
+    if (decl(r).mips > 1 && chance(60)) part.mip = below(decl(r).mips), part.mips = 1;
+    if (decl(r).layers > 1 && chance(60)) part.layer = below(decl(r).layers), part.layers = 1;
+    return part.within(decl(r).mips, decl(r).layers);
+  }
+
   void add_uses(PassDecl& pass, std::uint32_t r) {
-    const std::uint32_t v = version_[r];
-    if (filled_[r] && chance(60)) {
-      const Access access = image(r) ? pick(kImageReads) : pick(kBufferReads);
-      pass.uses.push_back({r, v, access});
-      // A second read in the same pass, where the layout allows.
-      const Access second = image(r) ? pick(kImageReads) : pick(kBufferReads);
-      if (chance(30) && (!image(r) || access_info(second).layout == access_info(access).layout))
-        pass.uses.push_back({r, v, second});
+    const ImageRange part = some_part(r);
+    const int newest = newest_change(r, part);
+    if (newest == kEmpty || !chance(60)) {
+      add_write(pass, r, part);
       return;
     }
+    // Any version since the part changed will do.
+    const auto since = static_cast<std::uint32_t>(newest);
+    const std::uint32_t v = since + below(version_[r] - since + 1);
+    const Access access = image(r) ? pick(kImageReads) : pick(kBufferReads);
+    pass.uses.push_back({r, v, access, part});
+    // A second read in the same pass, where the layout allows.
+    const Access second = image(r) ? pick(kImageReads) : pick(kBufferReads);
+    if (chance(30) && (!image(r) || access_info(second).layout == access_info(access).layout))
+      pass.uses.push_back({r, v, second, part});
+    const ImageRange other = some_part(r);
+    if (!other.overlaps(part) && chance(60)) add_write(pass, r, other);
+  }
+
+  void add_write(PassDecl& pass, std::uint32_t r, const ImageRange& part) {
     const Access access = image(r) ? pick(kImageWrites) : pick(kBufferWrites);
-    if (filled_[r] && access == Access::kStorageWriteCompute && chance(30))
-      pass.uses.push_back({r, v, Access::kStorageReadCompute});
-    pass.uses.push_back({r, v, access});
+    if (newest_change(r, part) != kEmpty && access == Access::kStorageWriteCompute && chance(30))
+      pass.uses.push_back({r, version_[r], Access::kStorageReadCompute, part});
+    pass.uses.push_back({r, version_[r], access, part});
   }
 
   void add_outputs() {
     for (std::uint32_t r = 0; r < version_.size(); ++r) {
-      if (!filled_[r] || !chance(20)) continue;
+      if (newest_change(r, {}) == kEmpty || !chance(20)) continue;
       Access access = image(r) ? pick(kImageReads) : pick(kBufferReads);
       if (chance(30)) access = image(r) ? Access::kPresent : Access::kHostRead;
       result_.maker.output(r, version_[r], access);
@@ -127,7 +169,8 @@ class Draw {
   std::uint64_t index_ = 0;
   RandomGraph result_;
   std::vector<std::uint32_t> version_;
-  std::vector<bool> filled_;
+  static constexpr int kEmpty = -1;
+  std::vector<std::vector<int>> changed_;  // by resource, mip, layer: the version that changed it
 };
 
 }  // namespace

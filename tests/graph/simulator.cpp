@@ -62,14 +62,25 @@ struct Touch {
   }
 };
 
-// A stretch of memory that only whole resources share, or one import.
+// One mip and layer of a resource.
+struct Member {
+  std::uint32_t resource, mip, layer;
+};
+
+bool touches(const Plan& plan, const ImageRange& range, const Member& member) {
+  const ResourceDecl& r = plan.graph.resources[member.resource];
+  const ImageRange part = range.within(r.mips, r.layers);
+  return member.mip - part.mip < part.mips && member.layer - part.layer < part.layers;
+}
+
+// A stretch of memory that is one mip and layer of each resource that has it, or of one import.
 class Cell {
  public:
-  Cell(const Plan& plan, std::vector<std::uint32_t> resources, std::vector<std::string>& hazards)
-      : plan_(plan), resources_(std::move(resources)), hazards_(hazards) {
-    const ResourceDecl& r = plan.graph.resources[resources_.front()];
+  Cell(const Plan& plan, std::vector<Member> members, std::vector<std::string>& hazards)
+      : plan_(plan), members_(std::move(members)), hazards_(hazards) {
+    const ResourceDecl& r = plan.graph.resources[members_.front().resource];
     if (r.imported) {
-      start_imported(resources_.front(), r);
+      start_imported(members_.front().resource, r);
     } else {
       start_transient();
     }
@@ -90,8 +101,21 @@ class Cell {
   }
 
  private:
-  bool has(std::uint32_t resource) const {
-    return std::find(resources_.begin(), resources_.end(), resource) != resources_.end();
+  bool has(std::uint32_t resource, const ImageRange& range) const {
+    return std::any_of(members_.begin(), members_.end(), [&](const Member& member) {
+      return member.resource == resource && touches(plan_, range, member);
+    });
+  }
+
+  // The newest version up to the use's in which a declared write changed this mip and layer.
+  std::uint32_t expected_version(const Use& u) const {
+    std::uint32_t newest = 0;
+    for (const PassDecl& pass : plan_.graph.passes)
+      for (const Use& w : pass.uses)
+        if (w.resource == u.resource && access_info(w.access).write && w.version < u.version &&
+            has(w.resource, w.range))
+          newest = std::max(newest, w.version + 1);
+    return newest;
   }
 
   // The frame before may have done anything here; the frame's opening barrier has covered it.
@@ -133,7 +157,7 @@ class Cell {
   }
 
   void apply(const Barrier& barrier, std::uint32_t position) {
-    if (!has(barrier.resource)) return;
+    if (!has(barrier.resource, barrier.range)) return;
     const ResourceDecl& decl = plan_.graph.resources[barrier.resource];
     const VkPipelineStageFlags2 src = expand_stages(barrier.src_stages);
     const VkPipelineStageFlags2 dst = expand_stages(barrier.dst_stages);
@@ -169,7 +193,7 @@ class Cell {
   }
 
   void access(const Use& u, const std::string& who, std::uint32_t position) {
-    if (!has(u.resource)) return;
+    if (!has(u.resource, u.range)) return;
     const ResourceDecl& decl = plan_.graph.resources[u.resource];
     const AccessInfo& info = access_info(u.access);
     check_contents(u, decl, who, info);
@@ -194,8 +218,9 @@ class Cell {
                       const AccessInfo& info) {
     if (decl.kind == ResourceKind::kImage && (owner_ != u.resource || layout_ != info.layout))
       complain("\"{}\" needs \"{}\" in layout {}, it is {}", who, decl.name, info.layout, layout_);
-    const bool starts_empty = u.version == 0 && info.write;
-    const bool there = owner_ == u.resource && version_ == static_cast<std::int64_t>(u.version);
+    const std::uint32_t expected = expected_version(u);
+    const bool starts_empty = expected == 0 && info.write;
+    const bool there = owner_ == u.resource && version_ == static_cast<std::int64_t>(expected);
     if (!there && !starts_empty)
       complain("\"{}\" expects version {} of \"{}\", which is not there", who, u.version,
                decl.name);
@@ -222,7 +247,7 @@ class Cell {
 
   static constexpr std::int64_t kGarbage = -1;
   const Plan& plan_;
-  std::vector<std::uint32_t> resources_;
+  std::vector<Member> members_;
   std::vector<std::string>& hazards_;
   std::vector<Touch> touches_;
   std::uint32_t owner_ = ~0u;
@@ -234,10 +259,25 @@ class Cell {
 
 std::vector<std::string> find_hazards(const Plan& plan) {
   std::vector<std::string> hazards;
+  // A byte of memory may be of any mip and layer of each resource that has it: every combination.
+  const auto run_cells = [&](const std::vector<std::uint32_t>& sharing) {
+    std::vector<std::vector<Member>> all{{}};
+    for (const std::uint32_t r : sharing) {
+      std::vector<std::vector<Member>> more;
+      for (const std::vector<Member>& members : all)
+        for (std::uint32_t m = 0; m < plan.graph.resources[r].mips; ++m)
+          for (std::uint32_t l = 0; l < plan.graph.resources[r].layers; ++l) {
+            more.push_back(members);
+            more.back().push_back({r, m, l});
+          }
+      all = std::move(more);
+    }
+    for (std::vector<Member>& members : all) Cell(plan, std::move(members), hazards).run();
+  };
   std::vector<std::uint32_t> transients;
   for (std::uint32_t r = 0; r < plan.graph.resources.size(); ++r) {
     if (plan.graph.resources[r].imported) {
-      Cell(plan, {r}, hazards).run();
+      run_cells({r});
     } else if (plan.lifetimes[r].used()) {
       transients.push_back(r);
     }
@@ -257,7 +297,7 @@ std::vector<std::string> find_hazards(const Plan& plan) {
           byte < begin + plan.needs[r].size)
         sharing.push_back(r);
     }
-    if (!sharing.empty()) Cell(plan, sharing, hazards).run();
+    if (!sharing.empty()) run_cells(sharing);
   }
   return hazards;
 }
