@@ -1,4 +1,4 @@
-// What a struct consists of, said once: hash, finiteness check and log read it from here.
+// The fields of a struct, listed once: hash, finiteness check and log read them from here.
 //   struct Pilot {
 //     double surge_n = 0.0;
 //     Vec3 goal_m{0.0};
@@ -7,9 +7,9 @@
 //       field("goal_m", self.goal_m);
 //     }
 //   };
-// Fields are numbers of 32 or 64 bits, enums of such, vectors, quaternions, poses, arrays of those,
-// and structs that say theirs. No bool or smaller number: they would leave padding, whose bytes
-// mean nothing.
+// Fields are numbers of 32 or 64 bits, enums of such, vectors, quaternions, poses, arrays and spans
+// of those, and structs that list theirs. No bool or smaller number: they would leave padding,
+// whose bytes mean nothing.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,6 +19,7 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <type_traits>
 
@@ -37,9 +38,13 @@ template <class T>
 struct IsStdArray : std::false_type {};
 template <class T, std::size_t n>
 struct IsStdArray<std::array<T, n>> : std::true_type {};
+template <class T>
+struct IsSpan : std::false_type {};
+template <class T>
+struct IsSpan<std::span<T>> : std::true_type {};
 }  // namespace detail
 
-// Calls part(name, piece) for each piece that value, which is no number, consists of directly.
+// Calls part(name, piece) for each direct member or item of value, which is no number.
 template <class T, class Part>
 void for_each_part(T& value, Part&& part) {
   using Plain = std::remove_const_t<T>;
@@ -51,14 +56,15 @@ void for_each_part(T& value, Part&& part) {
     part("w", value.w), part("x", value.x), part("y", value.y), part("z", value.z);
   } else if constexpr (std::same_as<Plain, Pose>) {
     part("position_m", value.position_m), part("rotation", value.rotation);
-  } else if constexpr (std::is_bounded_array_v<Plain> || detail::IsStdArray<Plain>::value) {
+  } else if constexpr (std::is_bounded_array_v<Plain> || detail::IsStdArray<Plain>::value ||
+                       detail::IsSpan<Plain>::value) {
     for (std::size_t i = 0; i < std::size(value); ++i) part(i, value[i]);
   } else {
     Plain::fields(part, value);
   }
 }
 
-// Calls visit(number) with an enum's number, and takes back what becomes of it.
+// Calls visit(number) with an enum's number, and stores what visit makes of it.
 template <class T, class Visit>
 void visit_enum(T& value, Visit&& visit) {
   auto number = static_cast<std::underlying_type_t<std::remove_const_t<T>>>(value);
@@ -92,17 +98,6 @@ void for_each_named_scalar(T& value, Visit&& visit, const std::string& name = {}
     });
 }
 
-// The same of what is in use, where value has room for more than it holds (seats that nobody took
-// stay as they were made) and says so beside fields(): in_use(field, self).
-template <class T, class Visit>
-void for_each_scalar_in_use(T& value, Visit&& visit) {
-  const auto each = [&](const auto&, auto& piece) { for_each_scalar(piece, visit); };
-  if constexpr (requires { std::remove_const_t<T>::in_use(each, value); })
-    std::remove_const_t<T>::in_use(each, value);
-  else
-    for_each_scalar(value, visit);
-}
-
 // Bytes of all numbers in value.
 template <class T>
 std::size_t scalar_bytes(const T& value) {
@@ -111,18 +106,28 @@ std::size_t scalar_bytes(const T& value) {
   return bytes;
 }
 
-// A bug where a struct has bytes that no field names: a forgotten field, or padding.
+// The memory that a value occupies: of a struct its own, of a block (block.hpp) its items'.
+template <class T>
+std::span<const std::byte> bytes_of(const T& value) {
+  if constexpr (requires { value.bytes(); }) {
+    return value.bytes();
+  } else {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return std::as_bytes(std::span(&value, 1));
+  }
+}
+
+// Aborts where the value has bytes that no field names: a forgotten field, or padding.
 template <class T>
 void check_fields_cover(const T& value) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  NERITIC_CHECK(scalar_bytes(value) == sizeof(T), "fields name {} bytes of {}", scalar_bytes(value),
-                sizeof(T));
+  NERITIC_CHECK(scalar_bytes(value) == bytes_of(value).size(), "fields name {} bytes of {}",
+                scalar_bytes(value), bytes_of(value).size());
 }
 
 template <class T>
 bool all_finite(const T& value) {
   bool finite = true;
-  for_each_scalar_in_use(value, [&](const auto& scalar) {
+  for_each_scalar(value, [&](const auto& scalar) {
     if constexpr (std::is_floating_point_v<std::remove_cvref_t<decltype(scalar)>>)
       finite = finite && std::isfinite(scalar);
   });
@@ -132,7 +137,8 @@ bool all_finite(const T& value) {
 // The same bits in every number.
 template <class T>
 bool same_bits(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof(T)) == 0;
+  const auto left = bytes_of(a), right = bytes_of(b);
+  return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size()) == 0;
 }
 
 }  // namespace neritic::sim

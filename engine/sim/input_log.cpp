@@ -15,7 +15,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie");
 
 constexpr std::string_view kLogMagic = "NRTCLOG1";
-constexpr std::size_t kMaxLogFields = 4096;
+constexpr std::size_t kMaxLogFields = 1'000'000;
 constexpr std::size_t kMaxFieldName = 255;
 
 std::size_t size_of_type(char type) {

@@ -33,7 +33,8 @@ struct InputLog {
     Inputs inputs{};
   };
   double step_s = 0.0;
-  std::uint64_t seed = 0;  // the run's, for whoever sets the run up again
+  std::uint64_t seed = 0;        // the run's, for whoever sets the run up again
+  std::uint64_t first_step = 0;  // where it begins: not 0 after a restored state
   std::vector<Entry> entries;
   std::vector<std::uint64_t> hashes;  // one more than there are steps
 
@@ -87,9 +88,12 @@ std::vector<LogField> log_fields(const Inputs& inputs) {
   return fields;
 }
 
+// Precondition: the log begins at step 0.
 template <class Inputs>
 Status write_input_log(const std::filesystem::path& path, const InputLog<Inputs>& log) {
-  RawInputLog raw{log.step_s, log.seed, log_fields(Inputs{}), {}, log.hashes};
+  NERITIC_CHECK(log.first_step == 0 && !log.entries.empty(), "the log begins at step {}",
+                log.first_step);
+  RawInputLog raw{log.step_s, log.seed, log_fields(log.entries.front().inputs), {}, log.hashes};
   for (const auto& entry : log.entries) {
     auto& out = raw.entries.emplace_back();
     out.step = entry.step;
@@ -101,14 +105,15 @@ Status write_input_log(const std::filesystem::path& path, const InputLog<Inputs>
   return write_raw_input_log(path, raw);
 }
 
+// like: inputs of the layout that the log must have.
 template <class Inputs>
-Result<InputLog<Inputs>> read_input_log(const std::filesystem::path& path) {
+Result<InputLog<Inputs>> read_input_log(const std::filesystem::path& path,
+                                        const Inputs& like = Inputs{}) {
   NERITIC_TRY(const RawInputLog raw, read_raw_input_log(path));
-  NERITIC_TRY_STATUS(check_log_fields(raw, log_fields(Inputs{}), path.string()));
-  InputLog<Inputs> log{raw.step_s, raw.seed, {}, raw.hashes};
+  NERITIC_TRY_STATUS(check_log_fields(raw, log_fields(like), path.string()));
+  InputLog<Inputs> log{raw.step_s, raw.seed, 0, {}, raw.hashes};
   for (const RawInputLog::Entry& entry : raw.entries) {
-    auto& out = log.entries.emplace_back();
-    out.step = entry.step;
+    auto& out = log.entries.emplace_back(entry.step, like);
     std::size_t at = 0;
     for_each_scalar(out.inputs, [&](auto& scalar) {
       std::memcpy(&scalar, entry.numbers.data() + at, sizeof scalar);

@@ -25,10 +25,28 @@ std::uint64_t canonical_bits(T value) {
   }
 }
 
+// Of a block (block.hpp) the counts first.
+template <class State>
+void add_state(Hash64& hash, const State& state) {
+  if constexpr (requires { state.counts(); })
+    for (const std::uint64_t count : state.counts()) hash.add(count);
+  for_each_scalar(state, [&](const auto& scalar) { hash.add(canonical_bits(scalar)); });
+}
+
+// Of values alone.
 template <class State>
 std::uint64_t state_hash(const State& state) {
   Hash64 hash;
-  for_each_scalar_in_use(state, [&](const auto& scalar) { hash.add(canonical_bits(scalar)); });
+  add_state(hash, state);
+  return hash.value();
+}
+
+// Of a state after so many steps: what a run compares.
+template <class State>
+std::uint64_t state_hash(std::uint64_t step, const State& state) {
+  Hash64 hash;
+  hash.add(step);
+  add_state(hash, state);
   return hash.value();
 }
 

@@ -1,28 +1,29 @@
 // The newest value, handed from one thread to another without waiting: of three slots the producer
 // writes one, the consumer reads one, and one lies between them; each side swaps its own with that
-// in the middle. One producer thread, one consumer thread; both wait-free.
+// in the middle. One producer thread, one consumer thread; both wait-free. A value's assignment
+// must not allocate where both sides have the same size, as of plain structs and blocks.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <type_traits>
 
 namespace neritic::sim {
 
 template <class T>
 class TripleBuffer {
-  static_assert(std::is_trivially_copyable_v<T>);
-
  public:
-  explicit TripleBuffer(const T& initial) { slots_[front_].value = initial; }
+  // All slots get the value, so that publish() finds memory of the right size.
+  explicit TripleBuffer(const T& initial) : slots_{{{initial}, {initial}, {initial}}} {}
   TripleBuffer(const TripleBuffer&) = delete;
   TripleBuffer& operator=(const TripleBuffer&) = delete;
 
-  // Producer.
+  // Producer: writes the draft, whose content is of any earlier time, and publishes it.
+  T& draft() { return slots_[back_].value; }
+  void publish() { back_ = middle_.exchange(back_ | kNew, std::memory_order_acq_rel) & kIndex; }
   void publish(const T& value) {
-    slots_[back_].value = value;
-    back_ = middle_.exchange(back_ | kNew, std::memory_order_acq_rel) & kIndex;
+    draft() = value;
+    publish();
   }
 
   // Consumer: true where something new was published since the last call; newest() is that then.

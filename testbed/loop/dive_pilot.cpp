@@ -56,7 +56,7 @@ std::vector<std::string> DivePilot::lines() const {
   if (!physics_) return out;
   const auto& vehicles = physics_->world().vehicles();
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
-    const VehicleState& state = physics_->shown().vehicles[i];
+    const VehicleState& state = physics_->shown().vehicles()[i];
     double heading_deg = degrees(rov::heading_of(state.body.attitude));
     if (heading_deg < 0.0) heading_deg += 360.0;
     std::string line = fmt::format("{}: depth {:.2f} m, heading {:03.0f}\u00b0, {:.2f} m/s",

@@ -42,6 +42,7 @@ DiveRecorder::DiveRecorder(const PhysicsWorld& world, const RecordOptions& optio
       figures_(world.vehicles().size()),
       tracks_(world.vehicles().size()),
       readings_(world.vehicles().size()),
+      last_(world.start()),
       humans_(world, options.joints_s) {}
 
 bool DiveRecorder::row_due(std::size_t vehicle, std::uint64_t step) const {
@@ -61,7 +62,7 @@ bool DiveRecorder::track_due(const sim::Snapshot<PhysicsState>& snapshot) const 
 
 DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState>& snapshot) const {
   const PhysicsVehicle& vehicle = world_.vehicles()[index];
-  const VehicleState& state = snapshot.state.vehicles[index];
+  const VehicleState& state = snapshot.state.vehicles()[index];
   DiveRow row;
   row.time_s = snapshot.time_s;
   row.vehicle = index;
@@ -83,7 +84,7 @@ DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState
 
 void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
   for (std::size_t i = 0; i < figures_.size(); ++i) {
-    const VehicleState &now = snapshot.state.vehicles[i], &before = last_.vehicles[i];
+    const VehicleState &now = snapshot.state.vehicles()[i], &before = last_.vehicles()[i];
     DiveFigures& figures = figures_[i];
     if (snapshot.step > 0) {
       figures.path_m += glm::distance(now.body.position_ned_m, before.body.position_ned_m);
@@ -121,7 +122,7 @@ Status fly_ahead(scene::Scene& scene, const Flight& flight) {
   const TimeNs begun_ns = now_ns();
   NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
   const TimeNs built_ns = now_ns();
-  const auto simulation = world->simulation({.readers = 0, .log = false});
+  const auto simulation = world->simulation({.log = false});
   // From a little earlier, so that the first picture lies between two poses.
   const double from_s = flight.from_s - kMostPoseGap_s;
   const double steps = std::max(flight.until_s - from_s, 0.0) / world->step_s();

@@ -22,7 +22,7 @@ HumanRecorder::HumanRecorder(const PhysicsWorld& world, double joints_s)
 HumanRow HumanRecorder::row_of(std::size_t index,
                                const sim::Snapshot<PhysicsState>& snapshot) const {
   const PhysicsHuman& human = world_.humans()[index];
-  const HumanPhysics& state = snapshot.state.humans[index];
+  const HumanPhysics& state = snapshot.state.humans()[index];
   const diver::RootState& root = state.human.root;
   HumanRow row;
   row.time_s = snapshot.time_s;
@@ -62,7 +62,7 @@ diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& s
 }
 
 void HumanRecorder::note_tank(std::size_t index, const sim::Snapshot<PhysicsState>& snapshot) {
-  const diver::HumanState& state = snapshot.state.humans[index].human;
+  const diver::HumanState& state = snapshot.state.humans()[index].human;
   const std::uint64_t from = last_tank_[index], to = state.held.tank;
   if (to == from) return;
   last_tank_[index] = to;
@@ -75,7 +75,7 @@ void HumanRecorder::note_tank(std::size_t index, const sim::Snapshot<PhysicsStat
 
 void HumanRecorder::note_dangers(std::size_t index, const sim::Snapshot<PhysicsState>& snapshot) {
   const PhysicsHuman& human = world_.humans()[index];
-  const diver::HumanState& state = snapshot.state.humans[index].human;
+  const diver::HumanState& state = snapshot.state.humans()[index].human;
   const double now_s = snapshot.time_s;
   HumanFigures& f = figures_[index];
   if (const double unfed_s = state.life.lungs.unfed_s; unfed_s > 0.0) {
@@ -114,7 +114,7 @@ void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row, b
   const bool sample = snapshot.time_s >= next_sample_s_ - 1e-9;
   if (sample) next_sample_s_ += diver::kComputerSample_s;
   for (std::size_t i = 0; i < figures_.size(); ++i) {
-    const HumanPhysics& state = snapshot.state.humans[i];
+    const HumanPhysics& state = snapshot.state.humans()[i];
     const diver::RootState& root = state.human.root;
     HumanFigures& figures = figures_[i];
     if (snapshot.step > 0) figures.path_m += glm::distance(root.position_ned_m, last_ned_m_[i]);

@@ -1,6 +1,6 @@
-// What changes while a scene's vehicles move, as plain bytes: the state of a simulation
-// (engine/sim/simulation.hpp), what steers it from outside, and the messages that change that. NED
-// and forward, starboard, down (rov/). Any thread.
+// What changes while a scene's vehicles and divers move: the state of a simulation
+// (engine/sim/simulation.hpp), one block of plain structs. NED and forward, starboard, down (rov/).
+// Any thread.
 #pragma once
 
 #include <array>
@@ -9,20 +9,18 @@
 #include "diver/gas_switch.hpp"
 #include "diver/human_step.hpp"
 #include "diver/swimmer.hpp"
+#include "engine/sim/block.hpp"
 #include "engine/sim/simulation.hpp"
 #include "rov/dynamics.hpp"
+#include "testbed/simulation/physics_inputs.hpp"
 
 namespace neritic::testbed {
 
-// So that a state can be copied as bytes.
-inline constexpr std::size_t kMaxVehicles = 4;
-inline constexpr std::size_t kMaxHumans = 2;
-
-// How far a mission is.
+// The progress of a mission.
 struct MissionState {
   std::uint64_t arrived = 0, left = 0;  // waypoints, all rounds together
-  double arrived_s = 0.0;               // when it came to the one where it holds
-  Vec3 leg_from_ned_m{0.0};             // where the way to the next one begins
+  double arrived_s = 0.0;               // at the waypoint where it holds
+  Vec3 leg_from_ned_m{0.0};             // where the way to the next waypoint begins
   std::uint64_t piloted = 0;            // 1: a pilot flew at the last control period
   // What the controller holds.
   Vec3 wanted_ned_m{0.0};
@@ -44,7 +42,7 @@ struct ContactState {
   std::uint64_t touched_steps = 0;  // so far
   double deepest_m = 0.0;           // so far
   Vec3 impulse_n_s{0.0};            // of the last step, world axes
-  // Rate of the velocity by contacts alone, mean of the last step; a vehicle's, body axes.
+  // Rate of the velocity by contacts alone, mean of the last step, body axes; vehicles only.
   rov::Vec6 acceleration;
 
   static void fields(auto&& field, auto& self) {
@@ -75,11 +73,11 @@ struct VehicleState {
 // A diver who swims by moving limbs.
 struct HumanPhysics {
   diver::HumanState human;
-  diver::SwimmerState swimmer;  // what moves the limbs where nobody wears a suit
+  diver::SwimmerState swimmer;  // moves the limbs where nobody wears a suit
   std::uint64_t arrived = 0;    // waypoints, all rounds together
-  Vec3 leg_from_ned_m{0.0};     // where the way to the next one begins, or where it stays
+  Vec3 leg_from_ned_m{0.0};     // where the way to the next one begins, or the place to stay at
   ContactState contact;
-  // The tank that is breathed from where nobody wears a suit, and which one is reached for.
+  // The tank breathed from where nobody wears a suit, and the switch to another one.
   std::uint64_t tank = 0;
   diver::GasSwitchState gas_switch;
 
@@ -94,79 +92,22 @@ struct HumanPhysics {
   }
 };
 
-struct PhysicsState {
-  std::uint64_t step = 0;
-  std::uint64_t vehicle_count = 0, human_count = 0;  // that the scene has
-  std::array<VehicleState, kMaxVehicles> vehicles;
-  std::array<HumanPhysics, kMaxHumans> humans;
+// The state of a scene's physics: one block, sized once from the scene (PhysicsWorld::start()).
+class PhysicsState : public sim::Block<VehicleState, HumanPhysics> {
+ public:
+  PhysicsState() = default;
+  PhysicsState(std::size_t vehicles, std::size_t humans) : Block({vehicles, humans}) {}
+
+  std::span<VehicleState> vehicles() { return part<VehicleState>(); }
+  std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
+  std::span<HumanPhysics> humans() { return part<HumanPhysics>(); }
+  std::span<const HumanPhysics> humans() const { return part<HumanPhysics>(); }
 
   static void fields(auto&& field, auto& self) {
-    field("step", self.step);
-    field("vehicle_count", self.vehicle_count);
-    field("human_count", self.human_count);
-    field("vehicles", self.vehicles);
-    field("humans", self.humans);
-  }
-  // Who is not there costs nothing.
-  static void in_use(auto&& field, auto& self) {
-    field("step", self.step);
-    field("vehicle_count", self.vehicle_count);
-    field("human_count", self.human_count);
-    for (std::size_t i = 0; i < self.vehicle_count; ++i) field("vehicles", self.vehicles[i]);
-    for (std::size_t i = 0; i < self.human_count; ++i) field("humans", self.humans[i]);
-  }
-};
-
-// From outside, for one vehicle.
-struct VehicleInputs {
-  // While piloted, instead of the mission: a wrench, body axes, as far as the thrusters have room
-  // for it; depth and heading are held where it leaves them alone.
-  rov::Vec6 pilot;
-  std::uint64_t piloted = 0;           // 0 or 1
-  std::uint64_t failed_thrusters = 0;  // bits
-
-  static void fields(auto&& field, auto& self) {
-    field("pilot", self.pilot);
-    field("piloted", self.piloted);
-    field("failed_thrusters", self.failed_thrusters);
-  }
-};
-
-// From outside, for one diver.
-struct HumanSteering {
-  // Joints, breath, buttons and tank of a person; while none is worn, they are the swimmer's own,
-  // the tank only where the diver's file has gas switches by plan. Currents are the scene's.
-  diver::HumanInputs human;
-  std::uint64_t worn = 0;  // 0 or 1
-
-  static void fields(auto&& field, auto& self) {
-    field("human", self.human);
-    field("worn", self.worn);
-  }
-};
-
-struct PhysicsInputs {
-  std::array<VehicleInputs, kMaxVehicles> vehicles;
-  std::array<HumanSteering, kMaxHumans> humans;
-
-  static void fields(auto&& field, auto& self) {
-    field("vehicles", self.vehicles);
-    field("humans", self.humans);
-  }
-};
-
-// New inputs of one vehicle, or of one diver; of none where its number is too high.
-struct PhysicsMessage {
-  std::uint64_t vehicle = 0;
-  VehicleInputs inputs;
-  std::uint64_t is_human = 0;  // 1: then the number is a diver's, and what follows counts
-  HumanSteering steering;
-
-  static void fields(auto&& field, auto& self) {
-    field("vehicle", self.vehicle);
-    field("inputs", self.inputs);
-    field("is_human", self.is_human);
-    field("steering", self.steering);
+    auto vehicles = self.vehicles();
+    auto humans = self.humans();
+    field("vehicles", vehicles);
+    field("humans", humans);
   }
 };
 

@@ -62,29 +62,28 @@ bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
 }
 
 PhysicsState PhysicsWorld::start() const {
-  PhysicsState state;
-  state.vehicle_count = vehicles_.size();
-  state.human_count = humans_.size();
+  PhysicsState state(vehicles_.size(), humans_.size());
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-    state.vehicles[i].body = vehicles_[i].start;
-    state.vehicles[i].mission = mission_start(vehicles_[i].start);
+    state.vehicles()[i].body = vehicles_[i].start;
+    state.vehicles()[i].mission = mission_start(vehicles_[i].start);
   }
-  for (std::size_t i = 0; i < humans_.size(); ++i) state.humans[i] = humans_[i].start;
+  for (std::size_t i = 0; i < humans_.size(); ++i) state.humans()[i] = humans_[i].start;
   return state;
 }
 
 PhysicsInputs PhysicsWorld::start_inputs() const {
-  PhysicsInputs inputs;
+  PhysicsInputs inputs(vehicles_.size(), humans_.size());
   for (std::size_t i = 0; i < vehicles_.size(); ++i)
-    inputs.vehicles[i].failed_thrusters = vehicles_[i].failed_thrusters;
+    inputs.vehicles()[i].failed_thrusters = vehicles_[i].failed_thrusters;
   return inputs;
 }
 
 void PhysicsWorld::apply(PhysicsInputs& inputs, const PhysicsMessage& message) {
   if (message.is_human != 0) {
-    if (message.vehicle < kMaxHumans) inputs.humans[message.vehicle] = message.steering;
-  } else if (message.vehicle < kMaxVehicles) {
-    inputs.vehicles[message.vehicle] = message.inputs;
+    if (message.vehicle < inputs.humans().size())
+      inputs.humans()[message.vehicle] = message.steering;
+  } else if (message.vehicle < inputs.vehicles().size()) {
+    inputs.vehicles()[message.vehicle] = message.inputs;
   }
 }
 
@@ -125,60 +124,79 @@ rov::RayQuery PhysicsWorld::rays() const {
   return {cast, &solid_};
 }
 
-PhysicsState PhysicsWorld::step(const PhysicsState& state, const PhysicsInputs& inputs,
-                                double dt_s) const {
-  PhysicsState next = state;
-  ++next.step;
-  const double time_s = static_cast<double>(state.step) * dt_s;
-  const std::size_t count = vehicles_.size();
-  std::array<rov::Inputs, kMaxVehicles> acting;
-  std::array<rov::State, kMaxVehicles> free;
-  std::array<bool, kMaxVehicles> parted{}, refused{};
-  std::array<rov::Vec6, kMaxVehicles>
-      alone_ned;  // velocities as if there were no other vehicle or diver
+PhysicsState PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
+                                const sim::StepTime& time) const {
+  PhysicsState after = before;
+  StepScratch scratch = this->scratch();
+  step(before, inputs, time, scratch, after);
+  return after;
+}
+
+StepScratch PhysicsWorld::scratch() const {
+  return {std::vector<VehicleScratch>(vehicles_.size()), std::vector<HumanScratch>(humans_.size())};
+}
+
+void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
+                        const sim::StepTime& time, StepScratch& scratch,
+                        PhysicsState& after) const {
+  after = before;
+  const auto vehicles = after.vehicles();
+  const auto humans = after.humans();
+  const double time_s = time.time_s(), dt_s = time.step_s;
   const auto step_of = [&](std::size_t i) {
-    return VehicleStep{
-        vehicles_[i].solid, vehicles_[i].vehicle, state.vehicles[i].body, acting[i], dt_s, method_};
+    return VehicleStep{vehicles_[i].solid,
+                       vehicles_[i].vehicle,
+                       before.vehicles()[i].body,
+                       scratch.vehicles[i].acting,
+                       dt_s,
+                       method_};
   };
-  for (std::size_t i = 0; i < count; ++i) {
-    if (control_due(i, state.step))
-      refused[i] = !steer(i, state, inputs.vehicles[i], time_s, next.vehicles[i]);
-    acting[i] = acting_on(vehicles_[i], inputs.vehicles[i], next.vehicles[i], time_s, dt_s);
-    free[i] = free_step(step_of(i));
-    alone_ned[i] = velocity_ned(free[i]);
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    VehicleScratch& own = scratch.vehicles[i];
+    own.parted = false;
+    own.refused =
+        control_due(i, time.step) && !steer(i, before, inputs.vehicles()[i], time_s, vehicles[i]);
+    own.acting = acting_on(vehicles_[i], inputs.vehicles()[i], vehicles[i], time_s, dt_s);
+    own.free = free_step(step_of(i));
+    own.alone_ned = velocity_ned(own.free);
   }
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = i + 1; j < count; ++j)
-      if (part_vehicles(step_of(i), free[i], step_of(j), free[j])) parted[i] = parted[j] = true;
-  std::array<HumanStep, kMaxHumans> moving;
-  std::array<bool, kMaxHumans> human_parted{};
-  const std::size_t humans = humans_.size();
-  for (std::size_t k = 0; k < humans; ++k) {
-    const diver::RootState& root = state.humans[k].human.root;
+  for (std::size_t k = 0; k < humans.size(); ++k) {
+    const diver::RootState& root = before.humans()[k].human.root;
     const diver::WaterFlow water =
         water_along(root.position_ned_m, root.attitude * root.velocity.linear(), time_s, dt_s);
-    moving[k] = free_human(humans_[k], inputs.humans[k], water, state.step, dt_s, next.humans[k]);
+    scratch.humans[k] = {
+        free_human(humans_[k], inputs.humans()[k], water, time.step, dt_s, humans[k]), false};
   }
-  for (std::size_t k = 0; k < humans; ++k) {
-    for (std::size_t i = 0; i < count; ++i)
-      if (part_from_vehicle(humans_[k], moving[k], step_of(i), free[i]))
-        parted[i] = human_parted[k] = true;
-    for (std::size_t m = k + 1; m < humans; ++m)
-      if (part_humans(humans_[k], moving[k], humans_[m], moving[m], dt_s))
-        human_parted[k] = human_parted[m] = true;
+  for (std::size_t i = 0; i < vehicles.size(); ++i)
+    for (std::size_t j = i + 1; j < vehicles.size(); ++j) {
+      VehicleScratch &a = scratch.vehicles[i], &b = scratch.vehicles[j];
+      if (part_vehicles(step_of(i), a.free, step_of(j), b.free)) a.parted = b.parted = true;
+    }
+  for (std::size_t k = 0; k < humans.size(); ++k) {
+    HumanScratch& own = scratch.humans[k];
+    for (std::size_t i = 0; i < vehicles.size(); ++i) {
+      VehicleScratch& vehicle = scratch.vehicles[i];
+      if (part_from_vehicle(humans_[k], own.moving, step_of(i), vehicle.free))
+        vehicle.parted = own.parted = true;
+    }
+    for (std::size_t m = k + 1; m < humans.size(); ++m) {
+      HumanScratch& other = scratch.humans[m];
+      if (part_humans(humans_[k], own.moving, humans_[m], other.moving, dt_s))
+        own.parted = other.parted = true;
+    }
   }
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const VehicleScratch& own = scratch.vehicles[i];
     ContactReport report;
-    VehicleState& after = next.vehicles[i];
-    after.body = step_among(solid_, step_of(i), free[i], parted[i], &report);
-    after.body.refused_inputs += refused[i] ? 1 : 0;
-    if (parted[i]) report.change_ned = report.change_ned + velocity_ned(free[i]) - alone_ned[i];
-    add_contact(report, dt_s, after);
-    after.contact.touched_steps += report.motion.touched || parted[i] ? 1 : 0;
+    vehicles[i].body = step_among(solid_, step_of(i), own.free, own.parted, &report);
+    vehicles[i].body.refused_inputs += own.refused ? 1 : 0;
+    if (own.parted) report.change_ned = report.change_ned + velocity_ned(own.free) - own.alone_ned;
+    add_contact(report, dt_s, vehicles[i]);
+    vehicles[i].contact.touched_steps += report.motion.touched || own.parted ? 1 : 0;
   }
-  for (std::size_t k = 0; k < humans; ++k)
-    end_human(humans_[k], solid_, moving[k], human_parted[k], state.step, dt_s, next.humans[k]);
-  return next;
+  for (std::size_t k = 0; k < humans.size(); ++k)
+    end_human(humans_[k], solid_, scratch.humans[k].moving, scratch.humans[k].parted, time.step,
+              dt_s, humans[k]);
 }
 
 // New commands for the thrusters. False where the inputs are no numbers: the last commands hold.
@@ -231,13 +249,17 @@ rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const Vehicle
   return acting;
 }
 
+PhysicsSimulation::Step PhysicsWorld::step_function() const {
+  return [this, scratch = scratch()](const PhysicsState& before, const PhysicsInputs& inputs,
+                                     const sim::StepTime& time, PhysicsState& after) mutable {
+    step(before, inputs, time, scratch, after);
+  };
+}
+
 std::unique_ptr<PhysicsSimulation> PhysicsWorld::simulation(sim::SimulationOptions options) const {
   options.step_s = step_s_;
   return std::make_unique<PhysicsSimulation>(
-      options, start(), start_inputs(),
-      [this](const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) {
-        return step(state, inputs, dt_s);
-      },
+      options, start(), start_inputs(), step_function(),
       [](PhysicsInputs& inputs, const PhysicsMessage& message) { apply(inputs, message); });
 }
 

@@ -89,12 +89,6 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
     if (scene.objects[i].dynamics) movers.vehicle_of_object[i] = vehicles++;
     if (scene.objects[i].human) movers.human_of_object[i] = humans++;
   }
-  if (vehicles > static_cast<int>(kMaxVehicles))
-    return bad_input("{}: {} vehicles with dynamics; accepted: at most {}", scene.path, vehicles,
-                     kMaxVehicles);
-  if (humans > static_cast<int>(kMaxHumans))
-    return bad_input("{}: {} divers who swim; accepted: at most {}", scene.path, humans,
-                     kMaxHumans);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i, movers));
     if (scene.objects[i].human) NERITIC_TRY_STATUS(world->add_human(scene, i));

@@ -32,6 +32,23 @@ struct PhysicsVehicle {
   rov::State start;
 };
 
+// Memory that a step works in, kept from step to step so that none allocates. Its content means
+// nothing between steps.
+struct VehicleScratch {
+  rov::Inputs acting;
+  rov::State free;      // after the step, as if the water were empty; changed by what it meets
+  rov::Vec6 alone_ned;  // its velocity then, as if there were no other vehicle or diver
+  bool parted = false, refused = false;
+};
+struct HumanScratch {
+  HumanStep moving;
+  bool parted = false;
+};
+struct StepScratch {
+  std::vector<VehicleScratch> vehicles;
+  std::vector<HumanScratch> humans;
+};
+
 class PhysicsWorld {
  public:
   // Whether anything of the scene moves by physics.
@@ -51,12 +68,21 @@ class PhysicsWorld {
 
   PhysicsState start() const;
   PhysicsInputs start_inputs() const;
-  PhysicsState step(const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) const;
+  // The step. scratch: of this world, used by one thread at a time. after: of the layout of
+  // start().
+  void step(const PhysicsState& before, const PhysicsInputs& inputs, const sim::StepTime& time,
+            StepScratch& scratch, PhysicsState& after) const;
+  StepScratch scratch() const;
+  // The same with memory of its own, for single steps.
+  PhysicsState step(const PhysicsState& before, const PhysicsInputs& inputs,
+                    const sim::StepTime& time) const;
   static void apply(PhysicsInputs& inputs, const PhysicsMessage& message);
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
   // What sensors hear: the first solid thing along a ray.
   rov::RayQuery rays() const;
 
+  // The step with memory of its own, for a simulation or a replay; borrows the world.
+  PhysicsSimulation::Step step_function() const;
   // Borrows the world.
   std::unique_ptr<PhysicsSimulation> simulation(sim::SimulationOptions options) const;
 

@@ -43,17 +43,17 @@ Pose Place::at(const PhysicsState& state, double time_s) const {
   Pose pose;
   for (const scene::Mount& mount : chain_) pose = mount.pose_at(time_s) * pose;
   if (vehicle_ >= 0)
-    return vehicle_of(state.vehicles[static_cast<std::size_t>(vehicle_)].body).world_from_object *
+    return vehicle_of(state.vehicles()[static_cast<std::size_t>(vehicle_)].body).world_from_object *
            pose;
   if (human_ >= 0)
-    return human_of(state.humans[static_cast<std::size_t>(human_)].human.root).world_from_object *
+    return human_of(state.humans()[static_cast<std::size_t>(human_)].human.root).world_from_object *
            pose;
   return pose;
 }
 
 Quat Place::facing(const PhysicsState& state, double time_s) const {
   if (human_ < 0 || !chain_.empty()) return at(state, time_s).rotation;
-  return human_of(state.humans[static_cast<std::size_t>(human_)].human.root)
+  return human_of(state.humans()[static_cast<std::size_t>(human_)].human.root)
       .world_from_body.rotation;
 }
 
@@ -63,9 +63,9 @@ Vec3 Place::velocity_m_s(const PhysicsState& state, double time_s) const {
       (at(state, time_s + kApart_s).position_m - at(state, time_s - kApart_s).position_m) /
       (2.0 * kApart_s);
   if (vehicle_ < 0 && human_ < 0) return along_track;
-  const Carrier carrier = vehicle_ >= 0
-                              ? vehicle_of(state.vehicles[static_cast<std::size_t>(vehicle_)].body)
-                              : human_of(state.humans[static_cast<std::size_t>(human_)].human.root);
+  const Carrier carrier =
+      vehicle_ >= 0 ? vehicle_of(state.vehicles()[static_cast<std::size_t>(vehicle_)].body)
+                    : human_of(state.humans()[static_cast<std::size_t>(human_)].human.root);
   const Vec3 arm_world_m = at(state, time_s).position_m - carrier.world_from_body.position_m;
   const Vec3 arm_m = glm::conjugate(carrier.ned_from_body) * ned_from_world(arm_world_m);
   const Vec3 carried = carrier.velocity.linear() + glm::cross(carrier.velocity.angular(), arm_m);

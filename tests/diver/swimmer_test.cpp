@@ -230,14 +230,13 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
     return step(body, s, in, dt);
   };
   const HumanState start = begin(body, {0.0, 0.0, 15.0}, 0.0).state;
-  sim::Simulation<HumanState, HumanInputs> simulation({.step_s = 1.0 / 240.0, .readers = 2}, start,
-                                                      {}, pure);
+  sim::Simulation<HumanState, HumanInputs> simulation({.step_s = 1.0 / 240.0}, start, {}, pure);
   std::atomic<bool> stop{false};
   std::atomic<std::uint64_t> seen{0};
   std::vector<std::thread> others;
   for (int reader = 0; reader < 2; ++reader)
     others.emplace_back([&, reader] {
-      auto snapshots = simulation.reader(reader);
+      auto snapshots = simulation.reader();
       while (!stop)
         if (snapshots.update()) {
           if (!sim::all_finite(snapshots.newest().state)) ADD_FAILURE() << "not finite";

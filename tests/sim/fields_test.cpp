@@ -39,18 +39,6 @@ struct Fish {
     field("mood", self.mood);
   }
 };
-struct Boat {
-  std::uint64_t crew_count = 1;
-  std::array<Fish, 3> crew;
-  static void fields(auto&& field, auto& self) {
-    field("crew_count", self.crew_count);
-    field("crew", self.crew);
-  }
-  static void in_use(auto&& field, auto& self) {
-    field("crew_count", self.crew_count);
-    for (std::size_t i = 0; i < self.crew_count; ++i) field("crew", self.crew[i]);
-  }
-};
 struct Forgetful {
   double kept = 0.0, forgotten = 0.0;
   static void fields(auto&& field, auto& self) { field("kept", self.kept); }
@@ -87,22 +75,6 @@ TEST(Fields, AnEnumIsItsNumber) {
   EXPECT_NE(state_hash(fish), wild);
   for_each_scalar(fish, [](auto& number) { number = 1; });
   EXPECT_EQ(fish.mood, Mood::kWild);
-}
-
-// Seats that nobody took count for bytes and logs, not for the hash.
-TEST(Fields, WhatIsNotInUseIsNotHashed) {
-  Boat boat, other;
-  check_fields_cover(boat);
-  EXPECT_EQ(scalar_bytes(boat), sizeof(Boat));
-  other.crew[2].length_m = kNan;
-  EXPECT_EQ(state_hash(boat), state_hash(other));
-  EXPECT_TRUE(all_finite(other));
-  other.crew_count = 3;
-  EXPECT_NE(state_hash(boat), state_hash(other));
-  EXPECT_FALSE(all_finite(other));
-  other = boat;
-  other.crew[0].length_m = 0.3;
-  EXPECT_NE(state_hash(boat), state_hash(other));
 }
 
 TEST(Fields, OneNumberThatIsNotFiniteIsFound) {

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+#include <vector>
+
 #include "tests/sim/spring.hpp"
 
 namespace neritic::sim {
@@ -68,7 +72,7 @@ TEST(SnapshotReader, LockStepGivesTheStatesOfEveryTimeBetweenTheNewestTwo) {
   ASSERT_TRUE(reader.update());
   EXPECT_EQ(reader.newest().step, 8u);
   EXPECT_DOUBLE_EQ(reader.newest().time_s, 8.0 / 240.0);
-  EXPECT_EQ(reader.newest().hash, state_hash(newer));
+  EXPECT_EQ(reader.newest().hash, state_hash(8, newer));
   const TimeNs from = reader.previous().due_ns, to = reader.newest().due_ns;
   EXPECT_EQ(to, 33'333'333);
   const auto exact = reader.at(from, test::blend_spring);
@@ -81,14 +85,68 @@ TEST(SnapshotReader, LockStepGivesTheStatesOfEveryTimeBetweenTheNewestTwo) {
 }
 
 TEST(SnapshotReader, EveryReaderHasItsOwnEnd) {
-  auto spring = test::make_spring({.readers = 2});
-  auto first = spring.reader(0), second = spring.reader(1);
+  auto spring = test::make_spring();
+  auto first = spring.reader(), second = spring.reader();
   spring.advance(1);
   EXPECT_TRUE(first.update());
   spring.advance(1);
   EXPECT_TRUE(second.update());
   EXPECT_EQ(first.newest().step, 1u);
   EXPECT_EQ(second.newest().step, 2u);
+}
+
+TEST(SnapshotReader, ComesWithTheNewestTwoAndLeavesTheOthersAlone) {
+  auto spring = test::make_spring();
+  spring.advance(5);
+  auto first = spring.reader();
+  EXPECT_EQ(first.newest().step, 5u);
+  EXPECT_EQ(first.previous().step, 4u);
+  EXPECT_FALSE(first.update());
+  {
+    const auto second = spring.reader();
+    spring.advance(1);
+  }
+  spring.advance(1);
+  EXPECT_TRUE(first.update());
+  EXPECT_EQ(first.newest().step, 7u);
+}
+
+// Four threads make and drop readers while a fifth steps: each sees whole, ascending snapshots.
+TEST(SnapshotReader, ComesAndGoesWhileTheThreadRuns) {
+  SimulatedClock clock;
+  auto spring = test::make_spring();
+  spring.start(clock);
+  std::atomic<std::uint64_t> faults{0};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&] {
+      std::uint64_t last = 0;
+      for (int reader_number = 0; reader_number < 200; ++reader_number) {
+        auto reader = spring.reader();
+        for (int look = 0; look < 3; ++look) {
+          const auto& newest = reader.newest();
+          if (newest.step < last || newest.hash != state_hash(newest.step, newest.state)) ++faults;
+          last = newest.step;
+          reader.update();
+        }
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  spring.stop();
+  EXPECT_EQ(faults, 0u);
+  const ReplayReport report = replay(spring.log(), test::SpringState{}, test::spring_step);
+  EXPECT_FALSE(report.first_difference.has_value());
+}
+
+TEST(SnapshotReader, LeftBehindByItsSimulationIsABug) {
+  EXPECT_DEATH(
+      {
+        auto spring = std::make_unique<test::Spring>(SimulationOptions{}, test::SpringState{},
+                                                     test::SpringInputs{}, test::spring_step);
+        auto reader = spring->reader();
+        spring.reset();
+      },
+      "readers left");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ Contender swimming(const std::string& name, diver::Model model, int strips) {
 // beside, contacts, current, snapshots and hashes; the sample is the time of one.
 Contender diving(const testbed::PhysicsWorld& world) {
   return {"diver/scene_second_with_a_vehicle", [&world]() -> Result<Sample> {
-            const auto simulation = world.simulation({.readers = 0});
+            const auto simulation = world.simulation({});
             const auto steps = static_cast<std::uint64_t>(std::llround(1.0 / world.step_s()));
             const TimeNs start = now_ns();
             simulation->advance(kSwimSeconds * steps);

@@ -52,8 +52,8 @@ Sample survey(const Surveyor& surveyor, int seconds) {
     const TimeNs stepped = now_ns();
     const auto& newest = simulation->newest();
     rov::update_readings(surveyor.sensors, {world.rays(), world.seed(), 0},
-                         world.vehicles()[0].vehicle, newest.state.vehicles[0].body,
-                         newest.state.vehicles[0].contact.acceleration,
+                         world.vehicles()[0].vehicle, newest.state.vehicles()[0].body,
+                         newest.state.vehicles()[0].contact.acceleration,
                          newest.time_s - world.step_s(), newest.time_s, readings);
     of_sensors += now_ns() - stepped;
     of_steps += stepped - begin;
@@ -137,17 +137,14 @@ Contender fleet_second(const std::string& name, Fleet& fleet, bool controlled, u
 
 // A thousand hand-offs of the dive's state, so that milliseconds are microseconds each.
 Sample hand_over(const testbed::PhysicsState& state) {
-  using Pair = sim::SnapshotPair<testbed::PhysicsState>;
-  sim::Snapshot<testbed::PhysicsState> snapshot;
-  snapshot.state = state;
-  sim::TripleBuffer<Pair> buffer(Pair{snapshot, snapshot});
-  sim::SnapshotReader<testbed::PhysicsState> reader(buffer);
-  Pair pair{snapshot, snapshot};
+  sim::SnapshotSource<testbed::PhysicsState> source({state});
+  auto reader = source.reader();
   std::uint64_t seen = 0;
   const TimeNs begin = now_ns();
   for (int i = 0; i < 1000; ++i) {
-    pair.newest.step = static_cast<std::uint64_t>(i);
-    buffer.publish(pair);
+    source.next().state = state;
+    source.next().step = static_cast<std::uint64_t>(i);
+    source.put();
     reader.update();
     seen += reader.newest().step;
   }
@@ -186,20 +183,20 @@ Status bench_physics(Suite& suite) {
   NERITIC_TRY(const Surveyor surveyor, make_surveyor(suite));
   Fleet fleet(1000);
   const testbed::PhysicsState state = surveyor.world->start();
-  NERITIC_TRY_STATUS(suite.measure(
-      {{"physics/rov_all_sensors_240_hz",
-        [&]() -> Result<Sample> { return survey(surveyor, kSeconds); },
-        {{"seconds", double{kSeconds}}}},
-       fleet_second("physics/1000_rovs_steps", fleet, false, 1),
-       fleet_second("physics/1000_rovs_and_control", fleet, true, 1),
-       fleet_second("physics/1000_rovs_and_control_2_threads", fleet, true, 2),
-       {"physics/1000_hand_offs",
-        [&]() -> Result<Sample> { return hand_over(state); },
-        {{"bytes", static_cast<double>(sizeof(sim::SnapshotPair<testbed::PhysicsState>))}}},
-       {"physics/arithmetic",
-        []() -> Result<Sample> { return multiply_and_add(); },
-        {{"operations", 4.0 * kChains * kProducts}}}},
-      15));
+  NERITIC_TRY_STATUS(
+      suite.measure({{"physics/rov_all_sensors_240_hz",
+                      [&]() -> Result<Sample> { return survey(surveyor, kSeconds); },
+                      {{"seconds", double{kSeconds}}}},
+                     fleet_second("physics/1000_rovs_steps", fleet, false, 1),
+                     fleet_second("physics/1000_rovs_and_control", fleet, true, 1),
+                     fleet_second("physics/1000_rovs_and_control_2_threads", fleet, true, 2),
+                     {"physics/1000_hand_offs",
+                      [&]() -> Result<Sample> { return hand_over(state); },
+                      {{"bytes", 2.0 * static_cast<double>(state.bytes().size())}}},
+                     {"physics/arithmetic",
+                      []() -> Result<Sample> { return multiply_and_add(); },
+                      {{"operations", 4.0 * kChains * kProducts}}}},
+                    15));
   suite.must_agree("physics/1000_rovs_and_control", "physics/1000_rovs_and_control_2_threads");
   // Of processor time: what other programs take of the core is not the ROV's.
   if (const Measured* m = suite.find("physics/rov_all_sensors_240_hz"))

@@ -98,14 +98,11 @@ Status write_results(const DiveFlags& flags, const PhysicsWorld& world,
 }
 
 Status replay_dive(const DiveFlags& flags, const PhysicsWorld& world) {
-  NERITIC_TRY(const auto log, sim::read_input_log<PhysicsInputs>(flags.replay));
+  NERITIC_TRY(const auto log, sim::read_input_log(flags.replay, world.start_inputs()));
   if (log.step_s != world.step_s())
     return bad_input("{}: steps of {} s; accepted: {} s, as in {}", flags.replay, log.step_s,
                      world.step_s(), flags.scene);
-  const auto report = sim::replay(
-      log, world.start(), [&](const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) {
-        return world.step(state, inputs, dt_s);
-      });
+  const auto report = sim::replay(log, world.start(), world.step_function());
   if (report.first_difference)
     return failure(ErrorCode::kUnsupported, "{}: another state than recorded from step {} of {} on",
                    flags.replay, *report.first_difference, log.steps());
@@ -148,7 +145,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
   if (!flags.replay.empty()) return replay_dive(flags, *world);
   for (const std::string& file : {flags.log, flags.plot, flags.record})
     NERITIC_TRY_STATUS(check_writable(file));
-  const auto simulation = world->simulation({.readers = 0, .log = true, .seed = scene.seed});
+  const auto simulation = world->simulation({.seed = scene.seed});
   DiveRecorder recorder(*world, {.rows = !flags.log.empty() || !flags.plot.empty(),
                                  .row_rate_hz = flags.log_rate_hz.value_or(0.0)});
   const Interrupt interrupt;

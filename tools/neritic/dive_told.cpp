@@ -226,19 +226,19 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                         {"vehicles", nlohmann::json::array()}};
     for (std::size_t i = 0; i < world.vehicles().size(); ++i)
       json["vehicles"].push_back(
-          vehicle_json(world.vehicles()[i], newest.state.vehicles[i], recorder.figures()[i]));
+          vehicle_json(world.vehicles()[i], newest.state.vehicles()[i], recorder.figures()[i]));
     json["humans"] = nlohmann::json::array();
     for (std::size_t i = 0; i < world.humans().size(); ++i)
       json["humans"].push_back(
-          human_json(world.humans()[i], newest.state.humans[i], recorder.humans().figures()[i]));
+          human_json(world.humans()[i], newest.state.humans()[i], recorder.humans().figures()[i]));
     fmt::print("{}\n", json_text(json));
     return;
   }
   for (std::size_t i = 0; i < world.vehicles().size(); ++i)
     fmt::print("{}",
-               vehicle_line(world.vehicles()[i], newest.state.vehicles[i], recorder.figures()[i]));
+               vehicle_line(world.vehicles()[i], newest.state.vehicles()[i], recorder.figures()[i]));
   for (std::size_t i = 0; i < world.humans().size(); ++i)
-    fmt::print("{}", human_line(world.humans()[i], newest.state.humans[i],
+    fmt::print("{}", human_line(world.humans()[i], newest.state.humans()[i],
                                 recorder.humans().figures()[i]));
   fmt::print("{:g} s in {} steps, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",
              newest.time_s, newest.step, speed, pace.dropped, hash);

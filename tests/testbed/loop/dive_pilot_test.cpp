@@ -93,7 +93,7 @@ TEST_F(DivePilotTest, TheViewRidesOnTheCamerasMountAndTheMissionComesBack) {
   input.toggle_pilot = true;
   fly(pilot, input, 8.0, false);
   EXPECT_EQ(pilot.lines()[0].find("piloted"), std::string::npos) << pilot.lines()[0];
-  EXPECT_LT(glm::length(physics_->shown().vehicles[0].body.velocity.linear()), 0.02);
+  EXPECT_LT(glm::length(physics_->shown().vehicles()[0].body.velocity.linear()), 0.02);
 }
 
 TEST_F(DivePilotTest, WithoutPhysicsNothingIsFlown) {

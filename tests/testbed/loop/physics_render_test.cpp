@@ -65,7 +65,7 @@ TEST_F(PhysicsRender, CamerasAndSonarsAreWhereTheVehicleIsAtTheTime) {
   const auto simulation = (*world)->simulation({});
   for (const double time_s : {0.0, 1.5, 3.0, 5.0}) {
     while (simulation->newest().time_s < time_s - 1e-9) simulation->advance(1);
-    const rov::State& body = simulation->newest().state.vehicles[0].body;
+    const rov::State& body = simulation->newest().state.vehicles()[0].body;
     const Pose eye = rov::world_pose(body.position_ned_m, body.attitude) *
                      Pose{{0.0, 0.0, -0.3}, Quat(1.0, 0.0, 0.0, 0.0)};
     const double ahead_m = (eye.position_m.x + 4.0) / (eye.rotation * Vec3(0, 0, 1)).x;

@@ -111,10 +111,7 @@ TEST(PhysicsDeterminism, APilotAndAReaderBesideTheThreadThatSteps) {
   EXPECT_GT(dive.simulation->inbox_counts().refused, 0u);
   EXPECT_GT(dive.simulation->log().entries.size(), 1u);
   const auto report =
-      sim::replay(dive.simulation->log(), dive.world->start(),
-                  [&](const PhysicsState& state, const PhysicsInputs& inputs, double dt_s) {
-                    return dive.world->step(state, inputs, dt_s);
-                  });
+      sim::replay(dive.simulation->log(), dive.world->start(), dive.world->step_function());
   EXPECT_GE(report.steps, 1200u);
   EXPECT_FALSE(report.first_difference.has_value());
 }
@@ -134,15 +131,13 @@ TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
   dive.simulation->push({7, inputs});  // of nobody
   dive.run(2.0);
   ASSERT_TRUE(sim::write_input_log(scratch / "dive.log", dive.simulation->log()).ok());
-  auto log = sim::read_input_log<PhysicsInputs>(scratch / "dive.log");
+  auto log = sim::read_input_log(scratch / "dive.log", dive.world->start_inputs());
   ASSERT_TRUE(log.ok()) << log.error().message;
-  const auto step = [&](const PhysicsState& state, const PhysicsInputs& in, double dt_s) {
-    return dive.world->step(state, in, dt_s);
-  };
+  const auto step = dive.world->step_function();
   const auto report = sim::replay(*log, dive.world->start(), step);
   EXPECT_EQ(report.steps, 1200u);
   EXPECT_FALSE(report.first_difference.has_value());
-  log->entries[1].inputs.vehicles[0].pilot[0] = 35.0;
+  log->entries[1].inputs.vehicles()[0].pilot[0] = 35.0;
   const auto other = sim::replay(*log, dive.world->start(), step);
   ASSERT_TRUE(other.first_difference.has_value());
   EXPECT_GT(*other.first_difference, 240u);
@@ -191,8 +186,8 @@ TEST(PhysicsDeterminism, AFlightOfMoreThanADayIsRefused) {
 }
 
 TEST(PhysicsDeterminism, TheStateNamesEveryByte) {
-  sim::check_fields_cover(PhysicsState{});
-  sim::check_fields_cover(PhysicsInputs{});
+  sim::check_fields_cover(PhysicsState(3, 2));
+  sim::check_fields_cover(PhysicsInputs(3, 2));
   sim::check_fields_cover(PhysicsMessage{});
 }
 

@@ -14,7 +14,7 @@ std::string hovering(const std::string& name, const std::string& position) {
 }
 
 Pose human_pose(const PhysicsState& state, std::size_t i) {
-  const diver::RootState& root = state.humans[i].human.root;
+  const diver::RootState& root = state.humans()[i].human.root;
   return world_pose(root.position_ned_m, root.attitude);
 }
 
@@ -54,7 +54,7 @@ TEST(DiverMeets, AVehicleAtFullThrustDoesNotGetIntoADiverAndPushes) {
   TestDive dive = meeting();
   dive.simulation->push({0, ahead_by(400.0)});
   dive.run(12.0, [&] { ASSERT_LT(rov_in_diver_m(dive), 0.02) << dive.time_s(); });
-  const HumanPhysics& human = dive.state().humans[0];
+  const HumanPhysics& human = dive.state().humans()[0];
   EXPECT_GT(human.contact.touched_steps, 50u);
   EXPECT_EQ(human.contact.touched_steps, dive.vehicle().contact.touched_steps);
   EXPECT_GT(human_pose(dive.state(), 0).position_m.x, 0.5);
@@ -66,7 +66,7 @@ TEST(DiverMeets, RunsAgree) {
     TestDive dive = meeting();
     dive.simulation->push({0, ahead_by(60.0)});
     dive.run(6.0);
-    EXPECT_GT(dive.state().humans[0].contact.touched_steps, 0u);
+    EXPECT_GT(dive.state().humans()[0].contact.touched_steps, 0u);
     return dive.simulation->log().hashes;
   };
   EXPECT_EQ(hashes(), hashes());
@@ -87,31 +87,32 @@ Blow blow_of(const Mat6& mass, const Quat& attitude, const Vec3& at_ned_m, const
 TEST(DiverMeets, WhatTheVehicleLosesTheDiverTakes) {
   TestDive dive = meeting();
   PhysicsInputs inputs = dive.world->start_inputs();
-  inputs.vehicles[0] = ahead_by(60.0);
+  inputs.vehicles()[0] = ahead_by(60.0);
   PhysicsState state = dive.world->start();
   const double dt_s = 1.0 / 240.0;
   int hits = 0;
-  for (int i = 0; i < 240 * 6; ++i) {
-    const PhysicsState next = dive.world->step(state, inputs, dt_s);
-    if (next.humans[0].contact.touched_steps > state.humans[0].contact.touched_steps) {
+  for (std::uint64_t i = 0; i < 240 * 6; ++i) {
+    const sim::StepTime time{i, dt_s};
+    const PhysicsState next = dive.world->step(state, inputs, time);
+    if (next.humans()[0].contact.touched_steps > state.humans()[0].contact.touched_steps) {
       PhysicsState no_diver = state, no_vehicle = state;
-      no_diver.humans[0].human.root.position_ned_m.x += 500.0;
-      no_vehicle.vehicles[0].body.position_ned_m.x += 500.0;
-      const PhysicsState vehicle_alone = dive.world->step(no_diver, inputs, dt_s);
-      const PhysicsState diver_alone = dive.world->step(no_vehicle, inputs, dt_s);
+      no_diver.humans()[0].human.root.position_ned_m.x += 500.0;
+      no_vehicle.vehicles()[0].body.position_ned_m.x += 500.0;
+      const PhysicsState vehicle_alone = dive.world->step(no_diver, inputs, time);
+      const PhysicsState diver_alone = dive.world->step(no_vehicle, inputs, time);
       const PhysicsHuman& human = dive.world->humans()[0];
-      const rov::State& body = vehicle_alone.vehicles[0].body;
-      const diver::HumanState& alone = diver_alone.humans[0].human;
+      const rov::State& body = vehicle_alone.vehicles()[0].body;
+      const diver::HumanState& alone = diver_alone.humans()[0].human;
       const Vec3 apart_m =
-          state.vehicles[0].body.position_ned_m - state.humans[0].human.root.position_ned_m;
+          state.vehicles()[0].body.position_ned_m - state.humans()[0].human.root.position_ned_m;
       const Blow rov = blow_of(dive.world->vehicles()[0].vehicle.mass, body.attitude, apart_m,
-                               next.vehicles[0].body.velocity - body.velocity);
+                               next.vehicles()[0].body.velocity - body.velocity);
       const Mat6 mass = diver::matrix_of(
           diver::momentum_of(human.body, diver::posture_of(human.body, alone.limbs.rotation, {}),
                              diver::gas_load(human.body, alone))
               .mass);
       const Blow diver = blow_of(mass, alone.root.attitude, Vec3(0.0),
-                                 next.humans[0].human.root.velocity - alone.root.velocity);
+                                 next.humans()[0].human.root.velocity - alone.root.velocity);
       const double size = glm::length(rov.impulse_n_s);
       if (size > 1e-3) {
         ++hits;
@@ -136,9 +137,9 @@ TEST(DiverMeets, ADiverWhoSwimsAtAnotherDoesNotGetIn) {
               0.02)
         << dive.time_s();
   });
-  EXPECT_GT(dive.state().humans[0].contact.touched_steps, 20u);
-  EXPECT_EQ(dive.state().humans[0].contact.touched_steps,
-            dive.state().humans[1].contact.touched_steps);
+  EXPECT_GT(dive.state().humans()[0].contact.touched_steps, 20u);
+  EXPECT_EQ(dive.state().humans()[0].contact.touched_steps,
+            dive.state().humans()[1].contact.touched_steps);
 }
 
 }  // namespace

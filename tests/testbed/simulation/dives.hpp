@@ -20,7 +20,7 @@ struct TestDive {
   std::unique_ptr<PhysicsSimulation> simulation;
 
   const PhysicsState& state() const { return simulation->newest().state; }
-  const VehicleState& vehicle(std::size_t i = 0) const { return state().vehicles[i]; }
+  const VehicleState& vehicle(std::size_t i = 0) const { return state().vehicles()[i]; }
   Pose pose(std::size_t i = 0) const {
     return rov::world_pose(vehicle(i).body.position_ned_m, vehicle(i).body.attitude);
   }

@@ -67,22 +67,24 @@ TEST(PhysicsExtremes, WrenchesOfAnySizeAndInputsThatAreNoNumbersLeaveFiniteState
       const TestDive dive = dive_of(scene_text());
       PhysicsState state = dive.world->start();
       PhysicsInputs inputs = dive.world->start_inputs();
-      inputs.vehicles[0].piloted = 1;
-      inputs.vehicles[0].pilot[axis] = value;
-      for (int i = 0; i < 480; ++i) {
-        state = dive.world->step(state, inputs, dive.world->step_s());
+      inputs.vehicles()[0].piloted = 1;
+      inputs.vehicles()[0].pilot[axis] = value;
+      std::uint64_t i = 0;
+      for (; i < 480; ++i) {
+        state = dive.world->step(state, inputs, {i, dive.world->step_s()});
         ASSERT_TRUE(sim::all_finite(state)) << value << " " << axis << " " << i;
       }
-      const rov::State& body = state.vehicles[0].body;
+      const rov::State& body = state.vehicles()[0].body;
       EXPECT_LT(glm::length(body.velocity.linear()), 5.0) << value << " " << axis;
       if (!std::isfinite(value)) {
         EXPECT_GT(body.refused_inputs, 0u) << value << " " << axis;
       }
       // And it comes to rest when the pilot lets go.
-      inputs.vehicles[0].pilot = {};
-      for (int i = 0; i < 10 * 240; ++i)
-        state = dive.world->step(state, inputs, dive.world->step_s());
-      EXPECT_LT(glm::length(state.vehicles[0].body.velocity.linear()), 0.3) << value << " " << axis;
+      inputs.vehicles()[0].pilot = {};
+      for (; i < 480 + 10 * 240; ++i)
+        state = dive.world->step(state, inputs, {i, dive.world->step_s()});
+      EXPECT_LT(glm::length(state.vehicles()[0].body.velocity.linear()), 0.3)
+          << value << " " << axis;
     }
 }
 
@@ -113,13 +115,14 @@ TEST(PhysicsExtremes, TenKilonewtonIntoABlockNeverGetInsideAtAnyMassAndStep) {
       const TestDive dive = dive_of(text);
       PhysicsState state = dive.world->start();
       PhysicsInputs inputs = dive.world->start_inputs();
-      inputs.vehicles[0].piloted = 1;
-      inputs.vehicles[0].pilot[0] = 1e4;  // north: into the block
+      inputs.vehicles()[0].piloted = 1;
+      inputs.vehicles()[0].pilot[0] = 1e4;  // north: into the block
       double fastest_m_s = 0.0;
+      std::uint64_t step = 0;
       for (double t_s = 0.0; t_s < 20.0; t_s += dt_s) {
-        state = dive.world->step(state, inputs, dt_s);
+        state = dive.world->step(state, inputs, {step++, dt_s});
         ASSERT_TRUE(sim::all_finite(state)) << mass_share << " " << dt_s << " " << t_s;
-        const rov::State& body = state.vehicles[0].body;
+        const rov::State& body = state.vehicles()[0].body;
         const Pose pose = rov::world_pose(body.position_ned_m, body.attitude);
         ASSERT_LT(depth_inside(pose), 0.0) << mass_share << " " << dt_s << " " << t_s;
         fastest_m_s = std::max(fastest_m_s, glm::length(body.velocity.linear()));
@@ -129,7 +132,7 @@ TEST(PhysicsExtremes, TenKilonewtonIntoABlockNeverGetInsideAtAnyMassAndStep) {
         EXPECT_GT(fastest_m_s, 1.0) << mass_share << " " << dt_s;
       }
       EXPECT_LT(fastest_m_s, 12.0) << mass_share << " " << dt_s;
-      EXPECT_GT(state.vehicles[0].contact.touched_steps, 0u) << mass_share << " " << dt_s;
+      EXPECT_GT(state.vehicles()[0].contact.touched_steps, 0u) << mass_share << " " << dt_s;
     }
 }
 
@@ -148,13 +151,13 @@ TEST(PhysicsExtremes, TeleportedAnywhereItFliesOn) {
     PhysicsState state = dive.world->start();
     const Quat attitude = glm::angleAxis(place.roll_rad, Vec3(1, 0, 0));
     ASSERT_TRUE(
-        rov::teleport(state.vehicles[0].body, rov::ned_from_world(place.world_m), attitude));
-    for (int i = 0; i < 60 * 240; ++i) {
-      state = dive.world->step(state, dive.world->start_inputs(), dive.world->step_s());
+        rov::teleport(state.vehicles()[0].body, rov::ned_from_world(place.world_m), attitude));
+    for (std::uint64_t i = 0; i < 60 * 240; ++i) {
+      state = dive.world->step(state, dive.world->start_inputs(), {i, dive.world->step_s()});
       ASSERT_TRUE(sim::all_finite(state)) << place.world_m.x << " " << i;
-      ASSERT_LT(glm::length(state.vehicles[0].body.velocity.linear()), 3.0);
+      ASSERT_LT(glm::length(state.vehicles()[0].body.velocity.linear()), 3.0);
     }
-    const Vec3 end_m = rov::world_from_ned(state.vehicles[0].body.position_ned_m);
+    const Vec3 end_m = rov::world_from_ned(state.vehicles()[0].body.position_ned_m);
     EXPECT_LT(glm::distance(end_m, Vec3(1, -10, 2)), 0.05) << place.world_m.x;
   }
 }

@@ -42,7 +42,7 @@ mission = { follow = { object = "diver", offset_m = [2.5, 0.3, 0] }, look_at = "
 }
 
 const HumanPhysics& human_of(const TestDive& dive) {
-  return dive.state().humans[0];
+  return dive.state().humans()[0];
 }
 
 // What a suit and its buttons never send, differently for each index.
@@ -89,13 +89,13 @@ TEST(HumanDiveDeterminism, AHundredRunsHaveTheSameHashes) {
 
 TEST(HumanDiveDeterminism, TheThreadUnderLoadWithReadersAndSendersReplaysInLockStep) {
   const TestDive dive = dive_of(busy_diver_text());
-  const auto simulation = dive.world->simulation({.readers = 2});
+  const auto simulation = dive.world->simulation({});
   std::atomic<bool> stop{false};
   std::atomic<std::uint64_t> seen{0};
   std::vector<std::thread> others;
   for (int reader = 0; reader < 2; ++reader)
     others.emplace_back([&, reader] {
-      auto snapshots = simulation->reader(reader);
+      auto snapshots = simulation->reader();
       while (!stop) {
         if (!snapshots.update()) continue;
         const PhysicsState& state = snapshots.newest().state;
@@ -117,10 +117,8 @@ TEST(HumanDiveDeterminism, TheThreadUnderLoadWithReadersAndSendersReplaysInLockS
   simulation->stop();
   stop = true;
   for (std::thread& thread : others) thread.join();
-  const auto report = sim::replay(simulation->log(), dive.world->start(),
-                                  [&](const PhysicsState& s, const PhysicsInputs& in, double dt) {
-                                    return dive.world->step(s, in, dt);
-                                  });
+  const auto report =
+      sim::replay(simulation->log(), dive.world->start(), dive.world->step_function());
   EXPECT_FALSE(report.first_difference.has_value());
   EXPECT_EQ(report.steps, simulation->log().steps());
   EXPECT_GT(simulation->log().entries.size(), 2u);
@@ -137,13 +135,11 @@ TEST(HumanDiveDeterminism, ARecordedDiveReplaysFromItsFile) {
     dive.run(0.1);
   }
   ASSERT_TRUE(sim::write_input_log(scratch / "dive.log", dive.simulation->log()).ok());
-  auto log = sim::read_input_log<PhysicsInputs>(scratch / "dive.log");
+  auto log = sim::read_input_log(scratch / "dive.log", dive.world->start_inputs());
   ASSERT_TRUE(log.ok()) << log.error().message;
-  const auto step = [&](const PhysicsState& state, const PhysicsInputs& in, double dt_s) {
-    return dive.world->step(state, in, dt_s);
-  };
+  const auto step = dive.world->step_function();
   EXPECT_FALSE(sim::replay(*log, dive.world->start(), step).first_difference.has_value());
-  log->entries[1].inputs.humans[0].human.joints[2] = glm::angleAxis(1.0, Vec3(0.0, 1.0, 0.0));
+  log->entries[1].inputs.humans()[0].human.joints[2] = glm::angleAxis(1.0, Vec3(0.0, 1.0, 0.0));
   EXPECT_TRUE(sim::replay(*log, dive.world->start(), step).first_difference.has_value());
 }
 

@@ -20,7 +20,7 @@ struct GasDive {
         recorder(std::make_unique<DiveRecorder>(*dive.world, RecordOptions{.rows = true})) {
     recorder->add(dive.simulation->newest());
   }
-  const HumanPhysics& human() const { return dive.state().humans[0]; }
+  const HumanPhysics& human() const { return dive.state().humans()[0]; }
   const HumanFigures& figures() const { return recorder->humans().figures()[0]; }
   void run(double seconds) {
     dive.run(seconds, [&] { recorder->add(dive.simulation->newest()); });

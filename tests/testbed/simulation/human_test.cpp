@@ -10,7 +10,7 @@ namespace neritic::testbed {
 namespace {
 
 Pose swimmer_pose(const TestDive& dive) {
-  const diver::RootState& root = dive.state().humans[0].human.root;
+  const diver::RootState& root = dive.state().humans()[0].human.root;
   return world_pose(root.position_ned_m, root.attitude);
 }
 
@@ -23,15 +23,15 @@ waypoints_m = [[0, -12, -10], [8, -11, -16]]
 )"));
   std::uint64_t arrived = 0;
   dive.run(70.0, [&] {
-    const HumanPhysics& human = dive.state().humans[0];
+    const HumanPhysics& human = dive.state().humans()[0];
     if (human.arrived == arrived) return;
     ++arrived;
     ASSERT_EQ(human.arrived, arrived);
   });
   EXPECT_EQ(arrived, 2u);
   EXPECT_LT(glm::distance(swimmer_pose(dive).position_m, Vec3(8, -11, -16)), 6.0);
-  EXPECT_LT(glm::length(dive.state().humans[0].human.root.velocity.linear()), 0.25);
-  const diver::LifeState& life = dive.state().humans[0].human.life;
+  EXPECT_LT(glm::length(dive.state().humans()[0].human.root.velocity.linear()), 0.25);
+  const diver::LifeState& life = dive.state().humans()[0].human.life;
   EXPECT_LT(diver::tank_pressure(dive.world->humans()[0].body, life.tanks, 0), 199e5);
   // Tissues take up gas.
   EXPECT_NEAR(life.computer.dive_min, 70.0 / 60.0, 0.02);
@@ -73,11 +73,11 @@ TEST(HumanDive, AVehicleKeepsBesideADiverWhoComesBack) {
     const VehicleState& rov = dive.vehicle();
     off_m = std::max(off_m, glm::distance(rov.mission.wanted_ned_m, rov.body.position_ned_m));
   });
-  EXPECT_EQ(dive.state().humans[0].arrived, 4u);
+  EXPECT_EQ(dive.state().humans()[0].arrived, 4u);
   EXPECT_LT(off_m, 1.5);
   EXPECT_LT(glm::distance(swimmer_pose(dive).position_m, Vec3(5.5, -14.4, 24.0)), 5.0);
   EXPECT_EQ(dive.vehicle().contact.touched_steps, 0u);
-  EXPECT_EQ(dive.state().humans[0].contact.touched_steps, 0u);
+  EXPECT_EQ(dive.state().humans()[0].contact.touched_steps, 0u);
 }
 
 TEST(HumanDive, IsStoppedByAWallAndComesBackFromIt) {
@@ -95,7 +95,7 @@ waypoints_m = [[0, -12, -20]]
 )"));
   double farthest = 0.0;
   dive.run(40.0, [&] { farthest = std::min(farthest, swimmer_pose(dive).position_m.z); });
-  const HumanPhysics& human = dive.state().humans[0];
+  const HumanPhysics& human = dive.state().humans()[0];
   EXPECT_GT(human.contact.touched_steps, 10u);
   EXPECT_LT(human.contact.deepest_m, 0.05);
   EXPECT_GT(farthest, -5.0);  // the hips; the head is .8 m before them
@@ -113,7 +113,7 @@ TEST(HumanDive, WhatIsDrawnIsTheBodyOfThePhysics) {
   Vec3 first_foot(0.0);
   for (int i = 0; i < 30; ++i) {
     dive.run(0.21);
-    const HumanPhysics& state = dive.state().humans[0];
+    const HumanPhysics& state = dive.state().humans()[0];
     const scene::NodeMotion motion{human.nodes, {drawn_joints(human, state, 0.0)}};
     const scene::ModelPose pose = scene::evaluate_pose(model, motion, 0.0);
     const Pose world_from_model = drawn_pose(state);
@@ -210,8 +210,8 @@ TEST(HumanDive, RecordedLimbsSwim) {
   const double speed_m_s = glm::distance(swimmer_pose(dive).position_m, from) / 5.0;
   EXPECT_GT(speed_m_s, 0.4);  // .54 m a beat
   EXPECT_LT(speed_m_s, 0.7);
-  EXPECT_EQ(dive.state().humans[0].human.far_joints, 0u);
-  EXPECT_LT(dive.state().humans[0].human.life.limb_power_w, 300.0);
+  EXPECT_EQ(dive.state().humans()[0].human.far_joints, 0u);
+  EXPECT_LT(dive.state().humans()[0].human.life.limb_power_w, 300.0);
 }
 
 TEST(HumanDive, RunsAndReplaysWithTheSameHashes) {
@@ -230,12 +230,9 @@ TEST(HumanDive, RunsAndReplaysWithTheSameHashes) {
   b.run(4.0);
   const auto& hashes = a.simulation->log().hashes;
   for (std::size_t i = 0; i <= 960; ++i) ASSERT_EQ(hashes[i], b.simulation->log().hashes[i]) << i;
-  EXPECT_GT(a.state().humans[0].human.life.jacket_moles,
-            b.state().humans[0].human.life.jacket_moles);
-  const auto report = sim::replay(a.simulation->log(), a.world->start(),
-                                  [&](const PhysicsState& s, const PhysicsInputs& in, double dt) {
-                                    return a.world->step(s, in, dt);
-                                  });
+  EXPECT_GT(a.state().humans()[0].human.life.jacket_moles,
+            b.state().humans()[0].human.life.jacket_moles);
+  const auto report = sim::replay(a.simulation->log(), a.world->start(), a.world->step_function());
   EXPECT_FALSE(report.first_difference.has_value());
   EXPECT_EQ(report.steps, a.simulation->log().steps());
 }

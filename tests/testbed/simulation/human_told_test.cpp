@@ -54,7 +54,7 @@ TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
   diver::TissueState unfed;
   dive.run(90.0, [&] {
     recorder.add(dive.simulation->newest());
-    const diver::LifeState& life = dive.state().humans[0].human.life;
+    const diver::LifeState& life = dive.state().humans()[0].human.life;
     const double now_s = life.lungs.unfed_s;
     if (now_s > 0.0 && first_s == 0.0) first_s = dive.time_s();
     if (now_s > 0.0) dark_s += dive.world->step_s();
@@ -87,7 +87,7 @@ TEST(HumanDive, AnInflatorThatFreezesOpenIsAnUncontrolledAscentAndIsTold) {
                                        "jacket_buttons = \"" + file + "\"\n"));
   const PhysicsHuman& human = dive.world->humans()[0];
   sim::Snapshot<PhysicsState> now = dive.simulation->newest();
-  auto& computer = now.state.humans[0].human.life.computer;
+  auto& computer = now.state.humans()[0].human.life.computer;
   for (int i = 0; i < 60; ++i) computer = human.computer->step(computer, {30.0, 0}, 60.0);
   DiveRecorder recorder(*dive.world, {});
   recorder.add(now);
@@ -95,11 +95,11 @@ TEST(HumanDive, AnInflatorThatFreezesOpenIsAnUncontrolledAscentAndIsTold) {
   double above_m = 0.0, above_s = 0.0;
   const double dt_s = dive.world->step_s();
   for (int i = 1; i <= 75 * 240; ++i) {
-    now.state = dive.world->step(now.state, {}, dt_s);
+    now.state = dive.world->step(now.state, dive.world->start_inputs(), {now.step, dt_s});
     now.step = static_cast<std::uint64_t>(i);
     now.time_s = i * dt_s;
     recorder.add(now);
-    const HumanPhysics& state = now.state.humans[0];
+    const HumanPhysics& state = now.state.humans()[0];
     const double depth_m = state.human.root.position_ned_m.z;
     EXPECT_EQ((state.human.held.buttons & diver::kInflate) != 0, i > 8 * 240) << now.time_s;
     if (i % 240 != 0) continue;
@@ -141,7 +141,7 @@ TEST(HumanDive, OnlyGasThatIsThereShortensTheWayUp) {
     // As after half an hour at 45 m.
     const PhysicsHuman& human = dive.world->humans()[0];
     sim::Snapshot<PhysicsState> snapshot = dive.simulation->newest();
-    auto& computer = snapshot.state.humans[0].human.life.computer;
+    auto& computer = snapshot.state.humans()[0].human.life.computer;
     for (int i = 0; i < 30; ++i) computer = human.computer->step(computer, {45.0, 0}, 60.0);
     DiveRecorder recorder(*dive.world, {.rows = true});
     recorder.add(snapshot);

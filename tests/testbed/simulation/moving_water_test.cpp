@@ -60,10 +60,10 @@ TEST(MovingWater, ADiverGoesWithATideThatSetsIn) {
                                    assets + "/models/diver.glb\"\nhuman = \"" + assets +
                                    "/divers/recreational.toml\"\nposition_m = [0, -12, 0]\n"
                                    "pitch_deg = -90\n");
-  const Vec3 from = rov::world_from_ned(dive.state().humans[0].human.root.position_ned_m);
+  const Vec3 from = rov::world_from_ned(dive.state().humans()[0].human.root.position_ned_m);
   dive.run(7.0, [&] {
     const double t = dive.time_s();
-    const Vec3 way = rov::world_from_ned(dive.state().humans[0].human.root.position_ned_m) - from;
+    const Vec3 way = rov::world_from_ned(dive.state().humans()[0].human.root.position_ned_m) - from;
     ASSERT_LT(glm::length(Vec3(way.x, 0.0, way.z) - rate * (0.5 * t * t)),
               0.02 + 0.06 * glm::length(rate) * t * t)
         << t;
@@ -78,13 +78,13 @@ TEST(MovingWater, AVehicleStaysOnTheCircleOfAnEddy) {
   const auto eddy = [&](const Vec3& p, double) { return turn_rad_s * Vec3(p.z, 0.0, -p.x); };
   TestDive dive = dive_in_grid(eddy, "position_m = [10, -10, 0]\n");
   PhysicsState state = dive.world->start();
-  state.vehicles[0].body.velocity =  // body axes, yaw 0: forward is north, -z
-      rov::vec6(glm::conjugate(state.vehicles[0].body.attitude) *
+  state.vehicles()[0].body.velocity =  // body axes, yaw 0: forward is north, -z
+      rov::vec6(glm::conjugate(state.vehicles()[0].body.attitude) *
                     rov::ned_from_world(eddy(Vec3(10, 0, 0), 0.0)),
                 Vec3(0.0));
-  for (int i = 0; i < 30 * 240; ++i) {
-    state = dive.world->step(state, dive.world->start_inputs(), dive.world->step_s());
-    const Vec3& at = state.vehicles[0].body.position_ned_m;
+  for (std::uint64_t i = 0; i < 30 * 240; ++i) {
+    state = dive.world->step(state, dive.world->start_inputs(), {i, dive.world->step_s()});
+    const Vec3& at = state.vehicles()[0].body.position_ned_m;
     ASSERT_NEAR(std::hypot(at.x, at.y), 10.0, 0.02) << i;
   }
 }

@@ -61,7 +61,7 @@ TEST(PhysicsSpeed, ADiverWithEverythingOnTakesUnderAHundredthOfACore) {
   const double least_ms = test::least_cpu_ms(10.0, [&] {
     dive.simulation->advance(240);
     const PhysicsHuman& human = dive.world->humans()[0];
-    shown_min += human.computer->view(dive.state().humans[0].human.life.computer).no_stop_min;
+    shown_min += human.computer->view(dive.state().humans()[0].human.life.computer).no_stop_min;
   });
   EXPECT_GT(shown_min, 0.0);
   RecordProperty("ms_a_second", fmt::format("{:.2f}", least_ms));

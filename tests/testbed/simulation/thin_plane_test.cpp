@@ -56,14 +56,15 @@ TEST(ThinPlane, WhoWasPutThroughItIsLedOutAndFliesOn) {
       TestDive dive = dive_of(sheet_text("position_m = [-3, -10, 0]\nyaw_deg = -90\n"));
       PhysicsState state = dive.world->start();
       PhysicsInputs inputs = dive.world->start_inputs();
-      rov::State& body = state.vehicles[0].body;
+      rov::State& body = state.vehicles()[0].body;
       ASSERT_TRUE(rov::teleport(body, rov::ned_from_world(Vec3(1.5 + off_m, -10.0, along_m)),
                                 body.attitude));
+      long step = 0;
       const auto x_after = [&](double seconds, double surge_n) {
-        inputs.vehicles[0].piloted = 1;
-        inputs.vehicles[0].pilot[0] = surge_n;
-        for (int i = 0; i < std::lround(seconds * 240); ++i) {
-          state = dive.world->step(state, inputs, dive.world->step_s());
+        inputs.vehicles()[0].piloted = 1;
+        inputs.vehicles()[0].pilot[0] = surge_n;
+        for (const auto end = step + std::lround(seconds * 240); step < end; ++step) {
+          state = dive.world->step(state, inputs, {std::uint64_t(step), dive.world->step_s()});
           EXPECT_TRUE(sim::all_finite(state));
           EXPECT_LT(glm::length(body.velocity.linear()), 2.0);
         }
