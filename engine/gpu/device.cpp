@@ -1,5 +1,6 @@
 #include "engine/gpu/device.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 
@@ -31,6 +32,27 @@ std::vector<DeviceInfo> describe_all(std::span<const VkPhysicalDevice> devices) 
   for (const VkPhysicalDevice device : devices)
     infos.push_back(describe(device, static_cast<std::uint32_t>(infos.size())));
   return infos;
+}
+
+// The device that the maker says; kUnsupported if it cannot be used, kBadInput if the user wants
+// another.
+Result<std::uint32_t> made_choice(const DeviceOptions& options, VkInstance instance,
+                                  std::span<const VkPhysicalDevice> devices,
+                                  const std::vector<DeviceInfo>& infos) {
+  VkPhysicalDevice wanted = VK_NULL_HANDLE;
+  NERITIC_TRY_VK("the display's choice of a device", options.maker.physical(instance, &wanted));
+  const auto found = std::find(devices.begin(), devices.end(), wanted);
+  if (found == devices.end())
+    return failure(ErrorCode::kNoDevice, "the display asks for a device that Vulkan does not list");
+  const auto index = static_cast<std::uint32_t>(found - devices.begin());
+  if (!infos[index].usable)
+    return failure(ErrorCode::kUnsupported, "the display's device {} lacks {}", infos[index].name,
+                   infos[index].missing);
+  if (options.device.empty()) return index;
+  NERITIC_TRY(const std::uint32_t chosen, choose_device(infos, options.device));
+  if (chosen != index)
+    return bad_input("--device {}: the display hangs on {}", options.device, infos[index].name);
+  return index;
 }
 
 template <class Function>
@@ -82,7 +104,9 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
   }
   NERITIC_TRY(const auto devices, physical_devices(device->instance_));
   const auto infos = describe_all(devices);
-  NERITIC_TRY(const std::uint32_t chosen, choose_device(infos, options.device));
+  NERITIC_TRY(const std::uint32_t chosen,
+              options.maker.physical ? made_choice(options, device->instance_, devices, infos)
+                                     : choose_device(infos, options.device));
   device->physical_ = devices[chosen];
   device->info_ = infos[chosen];
   log_info("device {} of {}: {}, {} {}", chosen, devices.size(), device->info_.name,
@@ -114,13 +138,11 @@ Status Device::create_device(const DeviceOptions& options) {
   if (!options.clip_distance) features.core.features.shaderClipDistance = VK_FALSE;
   features_ = features.core.features;
 
-  std::vector<const char*> extensions;
-  if (options.present) {
-    if (!has_device_extension(physical_, VK_KHR_SWAPCHAIN_EXTENSION_NAME))
-      return failure(ErrorCode::kUnsupported, "device {} cannot show pictures in a window (no {})",
-                     info_.name, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-    extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-  }
+  std::vector<const char*> extensions = options.device_extensions;
+  for (const char* name : extensions)
+    if (!has_device_extension(physical_, name))
+      return failure(ErrorCode::kUnsupported, "device {} cannot be used by the display (no {})",
+                     info_.name, name);
   // Named by its text: its declarations are still provisional. Where it is offered it must be asked
   // for.
   constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";
@@ -136,7 +158,8 @@ Status Device::create_device(const DeviceOptions& options) {
   info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
   NERITIC_TRY_VK("vkCreateDevice (" + info_.name + ")",
-                 vkCreateDevice(physical_, &info, nullptr, &device_));
+                 options.maker.device ? options.maker.device(physical_, info, &device_)
+                                      : vkCreateDevice(physical_, &info, nullptr, &device_));
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   // The instance is not named: it is the loader's own object, and the loader (1.3.239) hands it to
   // the driver as if it were the driver's, which writes into it or crashes. So with surfaces.

@@ -6,6 +6,7 @@
 #include <volk.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,12 +22,21 @@ class Allocator;
 struct ValidationLog;
 struct ValidationTarget;
 
+// Who makes the Vulkan objects if Vulkan's own functions must not be called (an OpenXR runtime
+// makes them itself). Empty functions: Vulkan's own.
+struct DeviceMaker {
+  std::function<VkResult(const VkInstanceCreateInfo&, VkInstance*)> instance;
+  // The device that the runtime's display hangs on; it must not contradict DeviceOptions::device.
+  std::function<VkResult(VkInstance, VkPhysicalDevice*)> physical;
+  std::function<VkResult(VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice*)> device;
+};
+
 struct DeviceOptions {
   std::string device;  // part of a name (any case) or an index; empty: discrete, integrated, CPU
   bool validation = false;  // the Khronos layer with synchronization validation
-  bool present = false;     // needs a swapchain: surface extensions are enabled
-  // Instance extensions a window system asks for (glfwGetRequiredInstanceExtensions).
-  std::vector<const char*> instance_extensions;
+  // What a display asks for (a window: surfaces and swapchains). kUnsupported if one is missing.
+  std::vector<const char*> instance_extensions, device_extensions;
+  DeviceMaker maker;
   // Where the pipeline cache is kept; empty: not kept. See default_cache_folder().
   std::filesystem::path cache_folder;
   // How long one submission may take before the device counts as lost; absent: a minute, and no

@@ -127,7 +127,9 @@ Result<InstanceHandles> create_instance(const DeviceOptions& options, Validation
   info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
 
-  const VkResult result = vkCreateInstance(&info, nullptr, &handles.instance);
+  const VkResult result = options.maker.instance
+                              ? options.maker.instance(info, &handles.instance)
+                              : vkCreateInstance(&info, nullptr, &handles.instance);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return no_device();
   if (result != VK_SUCCESS) return vulkan_error(result, "vkCreateInstance");
   // Trampolines fit any instance; only surface functions need the extensions that present brings.

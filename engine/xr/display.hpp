@@ -1,9 +1,12 @@
-// What frames are shown on: a desktop window, nothing at all (offscreen), a headset in a later
-// version. One frame is: begin_frame (waits until the display wants one, says when it will be seen
-// and through which eyes), declare and submit with the image and semaphores it gave, end_frame.
-// Rendering thread.
+// The seam between the program and what shows its frames: a desktop window, an image that nobody
+// looks at (offscreen), a headset. A frame is begin_frame, then, if the verdict is kDraw, declare
+// and the submission with sync(), then end_frame. Rendering thread.
 #pragma once
 
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "engine/core/clock.hpp"
@@ -11,50 +14,85 @@
 #include "engine/core/result.hpp"
 #include "engine/gpu/frames.hpp"
 #include "engine/graph/frame_graph.hpp"
+#include "engine/xr/actions.hpp"
 
 namespace neritic::xr {
 
-// One view of the display. head: where the wearer's or the desktop camera's eyes are between.
-struct EyeView {
-  Pose head_from_eye;
-  FrustumTangents tangents;
+struct View {
+  Pose head_from_view;
+  FrustumTangents tangents;  // asymmetric ones are the rule in a headset
+};
+
+// Views of one size, drawn by one multiview pass: a window's one, a headset's two, the outer or
+// the inner two of a headset with four.
+struct ViewGroup {
+  std::uint32_t width = 1, height = 1;  // pixels of each view's picture
+  std::vector<View> views;
 };
 
 enum class FrameVerdict {
-  kDraw,  // declare, submit, end_frame
-  kSkip,  // nobody would see it (minimised, between sizes): go round again, no end_frame
-  kQuit,  // the user closed it
+  kDraw,    // the frame will be seen
+  kHidden,  // nobody would see it (minimised, headset taken off): declare nothing for the display
+  kQuit,    // the user closed it
 };
 
 struct DisplayFrame {
-  FrameVerdict verdict = FrameVerdict::kSkip;
-  // When the picture will be seen, on the host clock: what moves is drawn where it is then.
-  TimeNs predicted_display_ns = 0;
-  std::uint32_t width = 1, height = 1;  // pixels of one eye's picture
-  std::vector<EyeView> eyes;
+  FrameVerdict verdict = FrameVerdict::kHidden;
+  TimeNs display_at_ns = 0;  // when the picture will be seen, on the host clock
+  TimeNs period_ns = 0;      // between two frames
+  // Where the display tracks its wearer's head; absent: the program's camera is the head.
+  std::optional<Pose> world_from_head;
+  std::vector<ViewGroup> groups;  // with kDraw at least one
+};
+
+// What the views of a group see.
+struct ProjectionLayer {
+  std::size_t group = 0;
+  graph::ImageHandle color;  // sRGB-encoded RGBA8, an array layer a view; any size: it is scaled
+  // Optional: reversed Z with an infinite far plane, so planar metres = near_m / depth; D32, of the
+  // group's size.
+  graph::ImageHandle depth;
+  double near_m = 0.0;
+};
+
+// A flat picture over what the layers before it show.
+struct PanelLayer {
+  enum class Lock { kHead, kWorld };
+  std::string name;
+  graph::ImageHandle image;  // sRGB-encoded RGBA8, colour multiplied by alpha
+  Lock lock = Lock::kHead;
+  Pose pose;         // of its centre in the head's frame or the world's: x right, y up, z to the
+                     // viewer
+  Vec2 size_m{1.0};  // width and height
+};
+
+using Layer = std::variant<ProjectionLayer, PanelLayer>;
+
+// What a frame shows of the first group, for a screenshot.
+struct ShownPicture {
+  graph::ImageHandle image;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  std::uint32_t width = 1, height = 1;
+  bool readable = false;  // a transfer may read it
 };
 
 class Display {
  public:
   virtual ~Display() = default;
-  virtual Result<DisplayFrame> begin_frame() = 0;
-  // The image that this frame's picture must be written to, completely; its contents are undefined
-  // before. Between begin_frame and end_frame.
-  virtual const gpu::Image& target() const = 0;
-  // How the graph must leave it: the access of the output that the caller declares.
-  virtual graph::Access target_access() const = 0;
-  // What the frame's submission has to wait for and signal.
+  // Waits until the display wants a frame. world_from_stage: where the space in which the display
+  // tracks lies in the world; displays without tracking do not use it.
+  virtual Result<DisplayFrame> begin_frame(const Pose& world_from_stage) = 0;
+  // Adds the passes that bring the layers to the display, in this order, each over the ones before.
+  // world_from_head: from where the projection layers were drawn.
+  virtual Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
+                                       std::span<const Layer> layers) = 0;
+  // What the submission of a frame with declared layers has to wait for and signal.
   virtual gpu::Frames::SubmitSync sync() const = 0;
-  // Shows the picture. After the frame was submitted.
+  // Ends the frame: shows the layers, if some were declared and submitted.
   virtual Status end_frame() = 0;
-  // Vertical field of view of displays that have none of their own.
-  virtual void set_vertical_fov(double rad) = 0;
+  // What the user did since the last call, by the table of actions that the display was made with.
+  // claims: devices that panels use now; their controls do nothing else.
+  virtual ActionValues take_actions(const InputClaims& claims) = 0;
 };
-
-// The target in the frame's graph, undefined until it is written.
-inline graph::ImageHandle import_target(graph::FrameGraph& graph, const Display& display) {
-  return graph.import_image(display.target(), {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                               VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_UNDEFINED});
-}
 
 }  // namespace neritic::xr

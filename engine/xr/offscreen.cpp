@@ -5,40 +5,75 @@
 #include <thread>
 
 namespace neritic::xr {
+namespace {
+
+constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
+
+}  // namespace
+
+ViewGroup one_view(std::uint32_t width, std::uint32_t height, double vertical_fov_rad) {
+  return {width, height, {{Pose{}, tangents_from_fov(vertical_fov_rad, double(width) / height)}}};
+}
 
 Result<std::unique_ptr<OffscreenDisplay>> OffscreenDisplay::create(
     gpu::Device& device, const OffscreenOptions& options) {
   std::unique_ptr<OffscreenDisplay> display(new OffscreenDisplay(options));
-  NERITIC_TRY(display->target_,
-              gpu::Image::create(device, {.name = "display",
-                                          .format = VK_FORMAT_R8G8B8A8_UNORM,
-                                          .width = options.width,
-                                          .height = options.height,
-                                          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
-                                                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+  NERITIC_TRY(display->compositor_, Compositor::create(device, kFormat));
+  for (std::size_t i = 0; i < options.groups.size(); ++i) {
+    const ViewGroup& group = options.groups[i];
+    NERITIC_TRY(
+        gpu::Image target,
+        gpu::Image::create(
+            device, {.name = fmt::format("display {}", i),
+                     .format = kFormat,
+                     .width = group.width,
+                     .height = group.height,
+                     .layers = static_cast<std::uint32_t>(group.views.size()),
+                     .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                              VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                     .array_view = true}));
+    display->targets_.push_back(std::move(target));
+  }
   return display;
 }
 
-Result<DisplayFrame> OffscreenDisplay::begin_frame() {
+Result<DisplayFrame> OffscreenDisplay::begin_frame(const Pose&) {
   const auto period_ns = static_cast<TimeNs>(std::llround(1e9 / options_.rate_hz));
   if (frame_ == 0) start_ns_ = next_ns_ = now_ns();
   DisplayFrame frame;
   frame.verdict = FrameVerdict::kDraw;
+  frame.period_ns = period_ns;
   if (options_.fast) {
-    frame.predicted_display_ns = start_ns_ + static_cast<TimeNs>(frame_) * period_ns;
+    frame.display_at_ns = start_ns_ + static_cast<TimeNs>(frame_) * period_ns;
   } else {
     const TimeNs now = now_ns();
     if (next_ns_ > now) std::this_thread::sleep_for(std::chrono::nanoseconds(next_ns_ - now));
     // A frame that came late does not make the next ones hurry.
     next_ns_ = std::max(next_ns_, now) + period_ns;
-    frame.predicted_display_ns = next_ns_;
+    frame.display_at_ns = next_ns_;
   }
   ++frame_;
-  frame.width = options_.width;
-  frame.height = options_.height;
-  frame.eyes = {
-      {Pose{}, tangents_from_fov(vertical_fov_rad_, double(options_.width) / options_.height)}};
+  frame.groups = options_.groups;
   return frame;
+}
+
+Result<ShownPicture> OffscreenDisplay::declare(graph::FrameGraph& graph,
+                                               const Pose& world_from_head,
+                                               std::span<const Layer> layers) {
+  ShownPicture shown{{}, kFormat, options_.groups[0].width, options_.groups[0].height, true};
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    const std::string name = i == 0 ? "display" : fmt::format("display {}", i);
+    // Earlier contents are overwritten; the frame before may still read them.
+    const graph::ImageHandle target = graph.import_image(
+        targets_[i],
+        {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_UNDEFINED});
+    NERITIC_TRY(
+        const graph::ImageHandle composed,
+        compositor_->declare(graph, name, target, options_.groups[i], i, world_from_head, layers));
+    graph.output(composed, graph::Access::kTransferRead);
+    if (i == 0) shown.image = composed;
+  }
+  return shown;
 }
 
 }  // namespace neritic::xr

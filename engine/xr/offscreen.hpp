@@ -1,38 +1,43 @@
-// A display that nobody looks at: frames go to an image of the program's own, paced by a rate or as
-// fast as they come. For machines without a display, and for tests. Rendering thread.
+// A display that nobody looks at: frames go to images of the program's own, paced by a rate or as
+// fast as they come. For machines without a screen, and for tests. Rendering thread.
 #pragma once
 
 #include <memory>
 
-#include "engine/gpu/device.hpp"
-#include "engine/xr/display.hpp"
+#include "engine/xr/compositor.hpp"
 
 namespace neritic::xr {
 
 struct OffscreenOptions {
-  std::uint32_t width = 1280, height = 720;
-  double rate_hz = 30.0;  // frames a second of the scene's time
+  std::vector<ViewGroup> groups;  // see one_view
+  double rate_hz = 30.0;          // frames a second of the scene's time
   // Frames follow each other without waiting, each 1 / rate_hz later in time than the last: the
   // same pictures on every machine.
   bool fast = false;
 };
 
+// A single view straight ahead, as of a window of that size.
+ViewGroup one_view(std::uint32_t width, std::uint32_t height, double vertical_fov_rad);
+
 class OffscreenDisplay final : public Display {
  public:
   static Result<std::unique_ptr<OffscreenDisplay>> create(gpu::Device& device,
                                                           const OffscreenOptions& options);
-  Result<DisplayFrame> begin_frame() override;
-  const gpu::Image& target() const override { return target_; }
-  graph::Access target_access() const override { return graph::Access::kTransferRead; }
+  Result<DisplayFrame> begin_frame(const Pose& world_from_stage) override;
+  Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
+                               std::span<const Layer> layers) override;
   gpu::Frames::SubmitSync sync() const override { return {}; }
   Status end_frame() override { return {}; }
-  void set_vertical_fov(double rad) override { vertical_fov_rad_ = rad; }
+  ActionValues take_actions(const InputClaims&) override { return {}; }
+  // The composed picture of a group, an array layer a view, in TRANSFER_SRC_OPTIMAL once the frame
+  // is done.
+  const gpu::Image& picture(std::size_t group) const { return targets_[group]; }
 
  private:
   explicit OffscreenDisplay(const OffscreenOptions& options) : options_(options) {}
   OffscreenOptions options_;
-  double vertical_fov_rad_ = radians(60.0);
-  gpu::Image target_;
+  std::unique_ptr<Compositor> compositor_;
+  std::vector<gpu::Image> targets_;  // by group
   TimeNs start_ns_ = 0, next_ns_ = 0;
   std::uint64_t frame_ = 0;
 };

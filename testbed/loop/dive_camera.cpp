@@ -8,6 +8,7 @@ namespace neritic::testbed {
 namespace {
 
 constexpr double kTurn_rad_per_px = 0.0025;
+constexpr double kStickTurn_rad_s = 1.5;  // of a stick held to its end
 constexpr double kFastFactor = 4.0;
 constexpr double kWheelFactor = 1.25;  // a click of the wheel
 constexpr double kMinSpeed_m_s = 0.05, kMaxSpeed_m_s = 50.0;
@@ -25,19 +26,21 @@ void FreeCamera::start_at(const Pose& world_from_view) {
   yaw_rad_ = level ? std::atan2(-ahead.x, -ahead.z) : std::atan2(-right.z, right.x);
 }
 
-void FreeCamera::update(const xr::DesktopInput& input, double elapsed_s) {
+void FreeCamera::update(const DiveInput& input, double elapsed_s) {
   speed_m_s_ =
       std::clamp(speed_m_s_ * std::pow(kWheelFactor, input.wheel), kMinSpeed_m_s, kMaxSpeed_m_s);
-  yaw_rad_ = std::remainder(yaw_rad_ - input.look_px.x * kTurn_rad_per_px, 2.0 * kPi);
-  pitch_rad_ =
-      std::clamp(pitch_rad_ - input.look_px.y * kTurn_rad_per_px, -kMaxPitch_rad, kMaxPitch_rad);
+  const double step_s = std::min(elapsed_s, kMaxStep_s);
+  const Vec2 turn_rad =
+      input.look_px * kTurn_rad_per_px + input.look_rate * (kStickTurn_rad_s * step_s);
+  yaw_rad_ = std::remainder(yaw_rad_ - turn_rad.x, 2.0 * kPi);
+  pitch_rad_ = std::clamp(pitch_rad_ - turn_rad.y, -kMaxPitch_rad, kMaxPitch_rad);
   const Quat rotation = from_yaw_pitch_roll(yaw_rad_, pitch_rad_, 0.0);
   // Ahead and aside where the camera looks; up and down in the world.
   Vec3 direction = rotation * Vec3(input.move.x, 0.0, input.move.z) + Vec3(0, input.move.y, 0);
   const double length = glm::length(direction);
   if (length < 1e-9) return;
   const double speed_m_s = speed_m_s_ * (input.fast ? kFastFactor : 1.0);
-  position_m_ += direction / length * (speed_m_s * std::min(elapsed_s, kMaxStep_s));
+  position_m_ += direction / std::max(length, 1.0) * (speed_m_s * step_s);
 }
 
 Pose FreeCamera::world_from_view() const {

@@ -3,7 +3,7 @@
 
 #include "engine/core/math.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/xr/window.hpp"
+#include "testbed/loop/dive_input.hpp"
 
 namespace neritic::testbed {
 
@@ -11,8 +11,8 @@ class FreeCamera {
  public:
   explicit FreeCamera(const Pose& world_from_view) { start_at(world_from_view); }
   void start_at(const Pose& world_from_view);
-  // Moves and turns as the keys and the mouse say, for that long.
-  void update(const xr::DesktopInput& input, double elapsed_s);
+  // Moves and turns by the controls, which were held for that long.
+  void update(const DiveInput& input, double elapsed_s);
 
   Pose world_from_view() const;
   const Vec3& position_m() const { return position_m_; }

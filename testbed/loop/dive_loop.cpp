@@ -43,15 +43,25 @@ std::vector<double> rates_of(const scene::Scene& scene, const std::vector<std::s
   return rates_hz;
 }
 
+// A panel that covers the group's first view, texel on pixel.
+xr::PanelLayer screen_panel(const xr::ViewGroup& group, graph::ImageHandle image) {
+  const FrustumTangents& t = group.views.front().tangents;
+  return {.name = "panels",
+          .image = image,
+          .lock = xr::PanelLayer::Lock::kHead,
+          .pose = group.views.front().head_from_view *
+                  Pose{{0.5 * (t.left + t.right), 0.5 * (t.bottom + t.top), -1.0}},
+          .size_m = {t.right - t.left, t.top - t.bottom}};
+}
+
 }  // namespace
 
 Dive::Dive(gpu::Device& device, Session& session, xr::Display& display, xr::Overlay* overlay,
-           xr::Window* window, const DiveOptions& options)
+           const DiveOptions& options)
     : device_(device),
       session_(session),
       display_(display),
       overlay_(overlay),
-      window_(window),
       options_(options),
       camera_(session.scene().world_from(session.scene().cameras[options.camera].mount)),
       pilot_(options.physics, session.scene().cameras[options.camera].mount),
@@ -60,16 +70,17 @@ Dive::Dive(gpu::Device& device, Session& session, xr::Display& display, xr::Over
       times_(options.summary) {}
 
 Status Dive::run() {
-  display_.set_vertical_fov(session_.scene().cameras[options_.camera].vertical_fov_rad);
   if (overlay_) {
     NERITIC_TRY(fans_, SonarFans::create(device_));
   }
   const TimeNs begun_ns = now_ns();
   for (;;) {
     seconds_ = to_s(now_ns() - begun_ns);
-    NERITIC_TRY(const xr::DisplayFrame display_frame, display_.begin_frame());
+    NERITIC_TRY(const xr::DisplayFrame display_frame,
+                display_.begin_frame(camera_.world_from_view()));
     if (display_frame.verdict == xr::FrameVerdict::kQuit) break;
-    if (display_frame.verdict == xr::FrameVerdict::kSkip) {
+    if (display_frame.verdict == xr::FrameVerdict::kHidden) {
+      NERITIC_TRY_STATUS(display_.end_frame());
       last_frame_ns_ = 0;  // a pause is no slow frame
       if (options_.seconds > 0.0 && seconds_ >= options_.seconds) break;
       continue;
@@ -77,7 +88,7 @@ Status Dive::run() {
     const bool last = (options_.frames > 0 && frames_drawn_ + 1 >= options_.frames) ||
                       (options_.seconds > 0.0 && seconds_ >= options_.seconds);
     NERITIC_TRY_STATUS(frame(display_frame, last));
-    if (last) break;
+    if (last || quit_) break;
   }
   // The frames still in flight count in the summary too.
   for (std::uint64_t behind = std::min<std::uint64_t>(frames_drawn_, 2); behind > 0; --behind) {
@@ -93,11 +104,11 @@ Status Dive::frame(const xr::DisplayFrame& display_frame, bool last) {
   elapsed_s_ = last_frame_ns_ == 0 ? 0.0 : to_s(now - last_frame_ns_);
   if (last_frame_ns_ != 0) times_.add_frame(elapsed_s_ * 1e3, now);
   last_frame_ns_ = now;
-  if (frames_drawn_ == 0) start_ns_ = display_frame.predicted_display_ns;
+  if (frames_drawn_ == 0) start_ns_ = display_frame.display_at_ns;
   if (frames_drawn_ == 0 && options_.physics) options_.physics->start();
-  time_s_ = to_s(display_frame.predicted_display_ns - start_ns_);
+  time_s_ = to_s(display_frame.display_at_ns - start_ns_);
   if (options_.physics)
-    options_.physics->place(session_.scene(), display_frame.predicted_display_ns, time_s_);
+    options_.physics->place(session_.scene(), display_frame.display_at_ns, time_s_);
   take_input(elapsed_s_);
   aim_camera(display_frame);
 
@@ -118,9 +129,9 @@ Status Dive::frame(const xr::DisplayFrame& display_frame, bool last) {
 }
 
 void Dive::take_input(double elapsed_s) {
-  if (!window_) return;
-  const xr::DesktopInput input =
-      window_->take_input(overlay_ && overlay_->wants_mouse(), overlay_ && overlay_->wants_keys());
+  const DiveInput input =
+      read_input(display_.take_actions(overlay_ ? overlay_->claims() : xr::InputClaims{}));
+  if (input.quit) quit_ = true;
   if (input.toggle_help) show_help_ = !show_help_;
   if (input.toggle_panels) show_panels_ = !show_panels_;
   if (input.screenshot) shot_wanted_ = true;
@@ -131,12 +142,14 @@ void Dive::take_input(double elapsed_s) {
     camera_.update(input, elapsed_s);
 }
 
-// The scene's camera goes where the user flies, as large as the display wants it.
+// The scene's camera goes to the display's view, in its size.
 void Dive::aim_camera(const xr::DisplayFrame& display_frame) {
+  world_from_head_ = display_frame.world_from_head.value_or(camera_.world_from_view());
+  const xr::ViewGroup& group = display_frame.groups.front();
   scene::Camera& camera = session_.scene().cameras[options_.camera];
-  camera.mount = {-1, camera_.world_from_view() * display_frame.eyes.front().head_from_eye};
-  camera.width = display_frame.width;
-  camera.height = display_frame.height;
+  camera.mount = {-1, world_from_head_ * group.views.front().head_from_view};
+  camera.width = group.width;
+  camera.height = group.height;
 }
 
 void Dive::add_due_sonars(FrameRequest& request) {
@@ -154,12 +167,10 @@ Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_f
   const bool panels = options_.panels && show_panels_;
   if (panels || !overlay_) add_due_sonars(request);
   NERITIC_TRY(live, session_.declare(graph, request));
-  const LiveFrame::Camera& view = live->cameras.front();
-  graph::ImageHandle shown = view.color;
-  gpu::ImageDesc desc{.format = render::kColorFormat, .width = view.width, .height = view.height};
-  graph::Access left_as = graph::Access::kTransferRead;
+  std::vector<xr::Layer> layers{xr::ProjectionLayer{.color = live->cameras.front().color}};
   if (overlay_) {
-    overlay_->begin(display_frame.width, display_frame.height, elapsed_s_);
+    const xr::ViewGroup& group = display_frame.groups.front();
+    overlay_->begin(group.width, group.height, elapsed_s_);
     fans_->begin_frame();
     for (const LiveFrame::Sonar& ping : live->sonars) {
       const scene::Sonar& sonar = session_.scene().sonars[ping.index];
@@ -169,19 +180,20 @@ Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_f
         graph.output(ping.image, graph::Access::kStorageReadCompute);
       }
     }
-    NERITIC_TRY(shown, declare_overlay(graph, *live));
-    desc = display_.target().desc();
-    left_as = display_.target_access();
+    if (panels || show_help_ || now_ns() < note_until_ns_) {
+      NERITIC_TRY(const graph::ImageHandle image, declare_overlay(graph, *live));
+      layers.push_back(screen_panel(group, image));
+    }
   } else {
     for (const LiveFrame::Sonar& ping : live->sonars)
       graph.output(ping.image, graph::Access::kStorageReadCompute);
   }
-  // A window may be closed at any frame, so with --screenshot each is brought to the host there.
-  const bool final_shot = !options_.screenshot.empty() && (last || window_);
+  NERITIC_TRY(const xr::ShownPicture shown, display_.declare(graph, world_from_head_, layers));
+  // If any frame may be the last, each is brought to the host for --screenshot.
+  const bool final_shot = !options_.screenshot.empty() && (last || options_.may_close);
   if (last && final_shot && shot_ && shot_->by_key) NERITIC_TRY_STATUS(write_shot(true));
   if ((final_shot || shot_wanted_) && !(shot_ && shot_->by_key))
-    NERITIC_TRY_STATUS(declare_shot(graph, shown, desc));
-  graph.output(shown, left_as);
+    NERITIC_TRY_STATUS(declare_shot(graph, shown));
   return {};
 }
 
@@ -189,7 +201,6 @@ Result<graph::ImageHandle> Dive::declare_overlay(graph::FrameGraph& graph, const
   const TimeNs now = now_ns();
   const float scale = overlay_->scale();
   const scene::Scene& scene = session_.scene();
-  draw_background(overlay_->texture(live.cameras.front().color));
   if (options_.panels && show_panels_) {
     PanelFacts facts{scene.title.empty() ? scene.path : scene.title,
                      device_.info().name,
@@ -213,14 +224,13 @@ Result<graph::ImageHandle> Dive::declare_overlay(graph::FrameGraph& graph, const
   } else if (now < note_until_ns_) {
     draw_hint(note_, scale);
   }
-  if (show_help_) draw_help(scale);
-  return overlay_->declare(graph, xr::import_target(graph, display_));
+  if (show_help_) draw_help(dive_actions(), scale);
+  return overlay_->declare(graph);
 }
 
-Status Dive::declare_shot(graph::FrameGraph& graph, graph::ImageHandle image,
-                          const gpu::ImageDesc& desc) {
+Status Dive::declare_shot(graph::FrameGraph& graph, const xr::ShownPicture& shown) {
   const bool by_key = std::exchange(shot_wanted_, false);
-  if (overlay_ && !(desc.usage & VK_IMAGE_USAGE_TRANSFER_SRC_BIT)) {
+  if (!shown.readable) {
     if (!by_key)
       return failure(ErrorCode::kUnsupported,
                      "--screenshot: the images of this window cannot be read; use --headless");
@@ -230,12 +240,12 @@ Status Dive::declare_shot(graph::FrameGraph& graph, graph::ImageHandle image,
   }
   Shot shot;
   shot.path = by_key ? free_shot_name() : options_.screenshot;
-  shot.width = desc.width;
-  shot.height = desc.height;
+  shot.width = shown.width;
+  shot.height = shown.height;
   shot.by_key = by_key;
-  shot.bgra = desc.format == VK_FORMAT_B8G8R8A8_UNORM;
-  NERITIC_TRY(shot.texels, readback_.declare(graph, device_, "screenshot", image, desc.format,
-                                             desc.width, desc.height, 1));
+  shot.bgra = shown.format == VK_FORMAT_B8G8R8A8_UNORM;
+  NERITIC_TRY(shot.texels, readback_.declare(graph, device_, "screenshot", shown.image,
+                                             shown.format, shown.width, shown.height, 1));
   shot_ = shot;
   return {};
 }

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "engine/gpu/device.hpp"
+#include "engine/xr/desktop/overlay.hpp"
 #include "engine/xr/display.hpp"
-#include "engine/xr/overlay.hpp"
-#include "engine/xr/window.hpp"
 #include "testbed/loop/dive_camera.hpp"
 #include "testbed/loop/dive_fan.hpp"
 #include "testbed/loop/dive_pilot.hpp"
@@ -30,14 +29,15 @@ struct DiveOptions {
   std::vector<std::size_t> sonars;   // of the scene, those that ping
   bool panels = true;                // draw them (else the camera's picture only)
   bool summary = false;              // keep samples for one
+  bool may_close = false;            // any frame may be the last
   LivePhysics* physics = nullptr;    // of the scene's vehicles; outlives the Dive
 };
 
 class Dive {
  public:
-  // overlay and window may be nullptr (headless); all must outlive the Dive.
+  // overlay may be nullptr: no panels. All must outlive the Dive.
   Dive(gpu::Device& device, Session& session, xr::Display& display, xr::Overlay* overlay,
-       xr::Window* window, const DiveOptions& options);
+       const DiveOptions& options);
   Status run();
 
   std::uint64_t frames_drawn() const { return frames_drawn_; }
@@ -59,26 +59,24 @@ class Dive {
   Status declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_frame, bool last,
                  std::unique_ptr<LiveFrame>& live);
   Result<graph::ImageHandle> declare_overlay(graph::FrameGraph& graph, const LiveFrame& live);
-  Status declare_shot(graph::FrameGraph& graph, graph::ImageHandle image,
-                      const gpu::ImageDesc& desc);
+  Status declare_shot(graph::FrameGraph& graph, const xr::ShownPicture& shown);
   Status write_shot(bool at_end);
 
   gpu::Device& device_;
   Session& session_;
   xr::Display& display_;
   xr::Overlay* overlay_;
-  xr::Window* window_;
   DiveOptions options_;
   FreeCamera camera_;
   DivePilot pilot_;
-  Pose first_pose_;
+  Pose first_pose_, world_from_head_;
   std::unique_ptr<SonarFans> fans_;
   PingSchedule schedule_;  // of options_.sonars
   ReadbackPool readback_;
   std::optional<Shot> shot_;
   std::string note_;
   TimeNs note_until_ns_ = 0;
-  bool show_help_ = false, show_panels_ = true, shot_wanted_ = false;
+  bool show_help_ = false, show_panels_ = true, shot_wanted_ = false, quit_ = false;
   TimeNs start_ns_ = 0, last_frame_ns_ = 0;
   double time_s_ = 0.0, elapsed_s_ = 0.0, seconds_ = 0.0;
   std::uint64_t frames_drawn_ = 0, last_submitted_ = 0;

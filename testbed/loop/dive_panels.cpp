@@ -117,6 +117,20 @@ void draw_sonar(const SonarPanel& panel, float width, float scale) {
   ImGui::Dummy(ImVec2(width, size.y + margin_y + 8.0f * scale));
 }
 
+// "W  S", "mouse wheel": the keys and the mouse's controls, without the gamepad's.
+std::string desktop_controls(const xr::ActionDesc& action) {
+  std::string text;
+  for (std::string binding : action.bindings) {
+    if (binding.starts_with('-')) binding.erase(0, 1);
+    if (binding.starts_with("pad ")) continue;
+    if (binding.starts_with("key ")) binding.erase(0, 4);
+    if (const auto at = binding.find(" while "); at != std::string::npos)
+      binding = "hold " + binding.substr(at + 7);
+    text += (text.empty() ? "" : "  ") + binding;
+  }
+  return text;
+}
+
 void timings_table(const DiveTimes& times, TimeNs now_ns, float scale) {
   double gpu_ms = 0.0;
   for (const TimeRow& pass : times.passes())
@@ -150,11 +164,6 @@ void timings_table(const DiveTimes& times, TimeNs now_ns, float scale) {
 }
 
 }  // namespace
-
-void draw_background(ImTextureID picture) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::GetBackgroundDrawList()->AddImage(picture, ImVec2(0, 0), size);
-}
 
 void draw_readout(const FreeCamera& camera, float scale) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
@@ -222,21 +231,7 @@ void draw_sonars(const PanelFacts& facts, float scale) {
   }
 }
 
-void draw_help(float scale) {
-  static constexpr const char* kKeys[][2] = {
-      {"W A S D", "ahead, port, astern, starboard"},
-      {"E or Space, Q", "up, down"},
-      {"Shift", "four times as fast"},
-      {"mouse wheel", "faster, slower"},
-      {"right mouse button", "hold to look around"},
-      {"P", "fly a vehicle that moves by physics by hand, and back"},
-      {"Left, Right", "turn it"},
-      {"Home", "back to where the dive began"},
-      {"F1", "this list"},
-      {"F2", "panels and live sonars on or off"},
-      {"F12", "screenshot to the current folder"},
-      {"Esc", "end the dive"},
-  };
+void draw_help(std::span<const xr::ActionDesc> actions, float scale) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(display.x * 0.5f, display.y * 0.5f), ImGuiCond_Always,
                           ImVec2(0.5f, 0.5f));
@@ -246,12 +241,13 @@ void draw_help(float scale) {
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse);
   if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
-    for (const auto& key : kKeys) {
+    for (const xr::ActionDesc& action : actions) {
+      if (action.help.empty()) continue;
       ImGui::TableNextRow(ImGuiTableRowFlags_None, ImGui::GetTextLineHeight() + 6.0f * scale);
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(key[0]);
+      text_line(desktop_controls(action));
       ImGui::TableNextColumn();
-      ImGui::TextDisabled("%s", key[1]);
+      ImGui::TextDisabled("%s", action.help.c_str());
     }
     ImGui::EndTable();
   }

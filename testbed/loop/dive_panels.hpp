@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,13 +31,12 @@ struct PanelFacts {
   std::vector<std::string> vehicles;  // a line each
 };
 
-// The camera's picture behind everything.
-void draw_background(ImTextureID picture);
 void draw_readout(const FreeCamera& camera, float scale);
 void draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTimes& times,
                  TimeNs now_ns, float scale);
 void draw_sonars(const PanelFacts& facts, float scale);
-void draw_help(float scale);
+// actions: whose controls are listed.
+void draw_help(std::span<const xr::ActionDesc> actions, float scale);
 // One line at the lower edge.
 void draw_hint(const std::string& text, float scale);
 

@@ -11,7 +11,7 @@ constexpr double kFullThrust_n = 1e4;
 // Behind and above a vehicle that carries no camera.
 const Pose kChase{{0.0, 0.6, 2.2}, from_yaw_pitch_roll(0.0, -0.2, 0.0)};
 
-VehicleInputs inputs_of(const xr::DesktopInput& input, std::uint64_t failed_thrusters) {
+VehicleInputs inputs_of(const DiveInput& input, std::uint64_t failed_thrusters) {
   VehicleInputs out;
   out.piloted = 1;
   out.failed_thrusters = failed_thrusters;
@@ -35,7 +35,7 @@ DivePilot::DivePilot(LivePhysics* physics, const scene::Mount& view)
   }
 }
 
-bool DivePilot::take(const xr::DesktopInput& input) {
+bool DivePilot::take(const DiveInput& input) {
   if (!physics_) return false;
   const bool was_flying = flying_;
   if (input.toggle_pilot) flying_ = !flying_;

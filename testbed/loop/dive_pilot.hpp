@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "engine/xr/window.hpp"
+#include "testbed/loop/dive_input.hpp"
 #include "testbed/loop/live_physics.hpp"
 
 namespace neritic::testbed {
@@ -15,7 +15,7 @@ class DivePilot {
   DivePilot(LivePhysics* physics, const scene::Mount& view);
 
   // Keys of this frame. True while a vehicle is flown: the camera is not then.
-  bool take(const xr::DesktopInput& input);
+  bool take(const DiveInput& input);
   // The riding view; precondition: take() said true.
   Pose world_from_view() const;
   // A line a vehicle, for the panels.

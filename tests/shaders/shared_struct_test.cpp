@@ -12,6 +12,7 @@
 #include "shaders.hpp"
 #include "shared/imgui.h"
 #include "shared/lighting.h"
+#include "shared/panel.h"
 #include "shared/raster.h"
 #include "shared/sonar.h"
 #include "shared/sonar_echo.h"
@@ -147,6 +148,8 @@ const std::map<std::string, Offsets>& shared_structs() {
        {MEMBER(SonarFanScalePush, cells), MEMBER(SonarFanScalePush, stride),
         MEMBER(SonarFanScalePush, quantile), MEMBER(SonarFanScalePush, follow),
         MEMBER(SonarFanScalePush, is_power)}},
+      {"PanelCorners",
+       {MEMBER(PanelCorners, middle), MEMBER(PanelCorners, right), MEMBER(PanelCorners, up)}},
       {"ImguiPush", {MEMBER(ImguiPush, clip_from_pixel), MEMBER(ImguiPush, layer)}}};
   return structs;
 }

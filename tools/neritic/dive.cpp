@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/core/log.hpp"
-#include "engine/xr/desktop.hpp"
+#include "engine/xr/desktop/desktop.hpp"
 #include "engine/xr/offscreen.hpp"
 #include "testbed/loop/dive_loop.hpp"
 #include "testbed/sensors/validation.hpp"
@@ -63,25 +63,27 @@ Result<std::unique_ptr<gpu::Device>> make_device(const DiveFlags& flags, const x
   options.device = flags.device;
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
-  options.present = window != nullptr;
-  if (window) options.instance_extensions = window->instance_extensions();
+  if (window) window->require(options);
   return gpu::Device::create(options);
 }
 
 Status dive_offscreen(const DiveFlags& flags, gpu::Device& device, Session& session,
                       DiveOptions options) {
   const scene::Camera& camera = session.scene().cameras[options.camera];
-  xr::OffscreenOptions offscreen{camera.width, camera.height, camera.rate_hz, flags.fast};
+  const xr::OffscreenOptions offscreen{
+      {xr::one_view(camera.width, camera.height, camera.vertical_fov_rad)},
+      camera.rate_hz,
+      flags.fast};
   if (options.frames == 0 && options.seconds == 0.0) options.seconds = kHeadlessSeconds;
   options.summary = true;
   NERITIC_TRY(const auto display, xr::OffscreenDisplay::create(device, offscreen));
   std::unique_ptr<xr::Overlay> overlay;
   if (flags.panels) {
-    NERITIC_TRY(overlay, xr::Overlay::create(device, nullptr, display->target().desc().format, 1));
+    NERITIC_TRY(overlay, xr::Overlay::create(device, nullptr, 1));
   }
-  Dive dive(device, session, *display, overlay.get(), nullptr, options);
+  Dive dive(device, session, *display, overlay.get(), options);
   NERITIC_TRY_STATUS(dive.run());
-  fmt::print("{}, {} x {}\n{}", device.info().name, offscreen.width, offscreen.height,
+  fmt::print("{}, {} x {}\n{}", device.info().name, camera.width, camera.height,
              dive.times().summary(dive.frames_drawn(), dive.seconds()));
   if (options.physics)  // as a dive of the physics alone says it, to be held against it
     fmt::print("physics: {} steps, hash {:016x}\n", options.physics->newest().step,
@@ -89,12 +91,13 @@ Status dive_offscreen(const DiveFlags& flags, gpu::Device& device, Session& sess
   return {};
 }
 
-Status dive_window(xr::Window& window, gpu::Device& device, Session& session,
-                   const DiveOptions& options) {
-  NERITIC_TRY(const auto display, xr::DesktopDisplay::create(device, window, kFramesInFlight));
-  NERITIC_TRY(const auto overlay,
-              xr::Overlay::create(device, &window, display->format(), window.content_scale()));
-  Dive dive(device, session, *display, overlay.get(), &window, options);
+Status dive_window(xr::Window& window, gpu::Device& device, Session& session, DiveOptions options) {
+  const scene::Camera& camera = session.scene().cameras[options.camera];
+  NERITIC_TRY(const auto display, xr::DesktopDisplay::create(
+                                      device, window, {kFramesInFlight, camera.vertical_fov_rad}));
+  NERITIC_TRY(const auto overlay, xr::Overlay::create(device, &window, window.content_scale()));
+  options.may_close = true;
+  Dive dive(device, session, *display, overlay.get(), options);
   return dive.run();
 }
 
@@ -127,8 +130,12 @@ Status run_dive(const DiveFlags& flags) {
   std::unique_ptr<xr::Window> window;
   const scene::Camera& camera = scene.cameras[options.camera];
   if (!flags.headless) {
-    NERITIC_TRY(window, xr::Window::create("Neritic: " + scene.title, camera.width, camera.height,
-                                           "use --headless, or neritic render for pictures"));
+    NERITIC_TRY(window,
+                xr::Window::create({.title = "Neritic: " + scene.title,
+                                    .width = camera.width,
+                                    .height = camera.height,
+                                    .actions = dive_actions(),
+                                    .hint = "use --headless, or neritic render for pictures"}));
   }
   NERITIC_TRY(const auto device, make_device(flags, window.get()));
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));

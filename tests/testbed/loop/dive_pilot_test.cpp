@@ -32,7 +32,7 @@ position_m = [0, 0.1, -0.4]
     physics_ = LivePhysics::create(scene_, LivePhysics::Pace::kPicture).value();
     physics_->start();
   }
-  void fly(DivePilot& pilot, xr::DesktopInput input, double seconds, bool expected = true) {
+  void fly(DivePilot& pilot, DiveInput input, double seconds, bool expected = true) {
     for (const double end_s = time_s_ + seconds; time_s_ < end_s; time_s_ += 0.05) {
       EXPECT_EQ(pilot.take(input), expected);
       input.toggle_pilot = false;
@@ -47,7 +47,7 @@ position_m = [0, 0.1, -0.4]
 
 TEST_F(DivePilotTest, KeysMoveItAheadAsideUpAndRound) {
   DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
-  xr::DesktopInput input;
+  DiveInput input;
   fly(pilot, input, 1.0, false);
   EXPECT_LT(glm::distance(physics_->pose(0).position_m, Vec3(0, -6, 0)), 0.02);
   input.toggle_pilot = true;
@@ -70,7 +70,7 @@ TEST_F(DivePilotTest, KeysMoveItAheadAsideUpAndRound) {
 
 TEST_F(DivePilotTest, AtFullThrustItStaysUpright) {
   DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
-  xr::DesktopInput input;
+  DiveInput input;
   input.toggle_pilot = input.fast = true;
   input.move = {0, 0, -1};
   fly(pilot, input, 10.0);
@@ -80,7 +80,7 @@ TEST_F(DivePilotTest, AtFullThrustItStaysUpright) {
 
 TEST_F(DivePilotTest, TheViewRidesOnTheCamerasMountAndTheMissionComesBack) {
   DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
-  xr::DesktopInput input;
+  DiveInput input;
   input.toggle_pilot = true;
   input.move = {0, 0, -1};
   fly(pilot, input, 2.0);
@@ -98,7 +98,7 @@ TEST_F(DivePilotTest, TheViewRidesOnTheCamerasMountAndTheMissionComesBack) {
 
 TEST_F(DivePilotTest, WithoutPhysicsNothingIsFlown) {
   DivePilot pilot(nullptr, scene_.cameras[0].mount);
-  xr::DesktopInput input;
+  DiveInput input;
   input.toggle_pilot = true;
   EXPECT_FALSE(pilot.take(input));
   EXPECT_TRUE(pilot.lines().empty());

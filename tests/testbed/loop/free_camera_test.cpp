@@ -24,7 +24,7 @@ TEST(FreeCamera, StartsWithTheEyesOfTheSceneCamera) {
 TEST(FreeCamera, AheadIsWhereItLooksAndUpIsTheWorlds) {
   const Vec3 eye(3, -2, 1), target(6, -6, 1);  // ahead (0.6, -0.8, 0)
   FreeCamera camera(look_at(eye, target));
-  xr::DesktopInput input;
+  DiveInput input;
   input.move = {0, 0, -1};
   for (int i = 0; i < 20; ++i) camera.update(input, 0.05);
   expect_near(camera.position_m(), eye + Vec3(0.6, -0.8, 0.0) * camera.speed_m_s(), 1e-9);
@@ -37,7 +37,7 @@ TEST(FreeCamera, AheadIsWhereItLooksAndUpIsTheWorlds) {
 TEST(FreeCamera, MouseToTheRightTurnsTheHeadingEastOfNorth) {
   FreeCamera camera(Pose{});  // faces -z, north
   EXPECT_NEAR(camera.heading_deg(), 0.0, 1e-9);
-  xr::DesktopInput input;
+  DiveInput input;
   input.look_px = {100, 0};
   camera.update(input, 0.01);
   EXPECT_GT(camera.heading_deg(), 5.0);
@@ -47,7 +47,7 @@ TEST(FreeCamera, MouseToTheRightTurnsTheHeadingEastOfNorth) {
 
 TEST(FreeCamera, NeverTurnsOverAndAHitchDoesNotThrowIt) {
   FreeCamera camera(Pose{});
-  xr::DesktopInput input;
+  DiveInput input;
   input.look_px = {0, -1e5};
   camera.update(input, 0.01);
   EXPECT_LT(degrees(camera.pitch_rad()), 90.0);

@@ -1,4 +1,4 @@
-#include "engine/xr/swapchain.hpp"
+#include "engine/xr/desktop/swapchain.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -91,7 +91,11 @@ Result<bool> Swapchain::recreate(std::uint32_t wanted_width, std::uint32_t wante
   if (extent.width == 0 || extent.height == 0) return false;
   device_->wait_idle();  // nothing may still draw to or show the old images
   extent_ = extent;
-  usage_ = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+  // Pictures are copied to it; only a screenshot reads it.
+  if (!(caps.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT))
+    return failure(ErrorCode::kUnsupported, "device {} cannot copy pictures to this window",
+                   device_->info().name);
+  usage_ = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
            (caps.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
   VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
   info.surface = surface_;

@@ -1,5 +1,5 @@
-// Dear ImGui on this engine: takes a window's input, and draws what was asked for between begin and
-// declare as one pass of the frame graph. Pictures of the frame (a camera's, a sonar's) are
+// Dear ImGui on this engine: reads a window's input and draws what was asked for between begin and
+// declare into a panel's image, by one pass of the frame graph. Images of the frame (a sonar's) are
 // textures like any other. One at a time, since ImGui keeps one context. Rendering thread.
 #pragma once
 
@@ -11,16 +11,14 @@
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/pipeline.hpp"
 #include "engine/graph/frame_graph.hpp"
-#include "engine/xr/window.hpp"
+#include "engine/xr/desktop/window.hpp"
 
 namespace neritic::xr {
 
 class Overlay {
  public:
-  // window: whose input it takes (before others set callbacks is too early: create it after the
-  // window); nullptr: no input. format: of the targets it will draw to. scale: of text and panels.
-  static Result<std::unique_ptr<Overlay>> create(gpu::Device& device, Window* window,
-                                                 VkFormat format, float scale);
+  // window: whose input it reads; nullptr: none. scale: of text and panels.
+  static Result<std::unique_ptr<Overlay>> create(gpu::Device& device, Window* window, float scale);
   ~Overlay();
 
   // Starts a frame of that many pixels; ImGui calls may follow.
@@ -28,11 +26,12 @@ class Overlay {
   // An image of this frame's graph for ImGui to draw with (sRGB-encoded values, a 2D array as all
   // of the graph's images). Valid until declare's pass has run.
   ImTextureID texture(graph::ImageHandle image, std::uint32_t layer = 0);
-  // Ends ImGui's frame and declares the pass that draws it over a cleared target.
-  graph::ImageHandle declare(graph::FrameGraph& graph, graph::ImageHandle target);
+  // Ends ImGui's frame and declares the pass that draws it: RGBA8 of the size given to begin,
+  // colour multiplied by alpha, clear where ImGui drew nothing.
+  graph::ImageHandle declare(graph::FrameGraph& graph);
 
-  bool wants_mouse() const;
-  bool wants_keys() const;
+  // What ImGui's panels use of the input now.
+  InputClaims claims() const;
   float scale() const { return scale_; }
 
  private:
@@ -42,7 +41,7 @@ class Overlay {
   };
   explicit Overlay(gpu::Device& device) : device_(device) {}
   Status create_font();
-  Status create_pipeline(VkFormat format);
+  Status create_pipeline();
   void record(graph::PassContext& context, graph::ImageHandle target) const;
   void draw(graph::PassContext& context, const ImDrawData& data) const;
   VkImageView bind_texture(graph::PassContext& context, ImTextureID id, std::uint32_t& layer) const;
@@ -51,6 +50,7 @@ class Overlay {
   ImGuiContext* context_ = nullptr;
   bool glfw_ = false;
   float scale_ = 1.0f;
+  std::uint32_t width_ = 1, height_ = 1;  // of this frame
   gpu::Image font_;
   gpu::Sampler sampler_;
   gpu::Pipeline pipeline_;

@@ -1,4 +1,4 @@
-#include "engine/xr/overlay.hpp"
+#include "engine/xr/desktop/overlay.hpp"
 
 #include <backends/imgui_impl_glfw.h>
 
@@ -13,6 +13,7 @@
 namespace neritic::xr {
 namespace {
 
+constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr float kFontSize_px = 13.0f;  // the built-in bitmap font is drawn for multiples of this
 
 void set_style(float scale) {
@@ -36,8 +37,7 @@ void set_style(float scale) {
 
 }  // namespace
 
-Result<std::unique_ptr<Overlay>> Overlay::create(gpu::Device& device, Window* window,
-                                                 VkFormat format, float scale) {
+Result<std::unique_ptr<Overlay>> Overlay::create(gpu::Device& device, Window* window, float scale) {
   NERITIC_CHECK(ImGui::GetCurrentContext() == nullptr, "one overlay at a time");
   IMGUI_CHECKVERSION();
   std::unique_ptr<Overlay> overlay(new Overlay(device));
@@ -50,7 +50,7 @@ Result<std::unique_ptr<Overlay>> Overlay::create(gpu::Device& device, Window* wi
   set_style(overlay->scale_);
   if (window) overlay->glfw_ = ImGui_ImplGlfw_InitForVulkan(window->handle(), true);
   NERITIC_TRY_STATUS(overlay->create_font());
-  NERITIC_TRY_STATUS(overlay->create_pipeline(format));
+  NERITIC_TRY_STATUS(overlay->create_pipeline());
   return overlay;
 }
 
@@ -79,7 +79,7 @@ Status Overlay::create_font() {
   return gpu::upload_image(device_, font_, std::as_bytes(texels));
 }
 
-Status Overlay::create_pipeline(VkFormat format) {
+Status Overlay::create_pipeline() {
   NERITIC_TRY(sampler_, gpu::Sampler::create(device_, {.name = "overlay",
                                                        .u = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                                        .v = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -94,7 +94,7 @@ Status Overlay::create_pipeline(VkFormat format) {
                    {{shared::kImguiPosition, VK_FORMAT_R32G32_SFLOAT, offsetof(ImDrawVert, pos)},
                     {shared::kImguiUv, VK_FORMAT_R32G32_SFLOAT, offsetof(ImDrawVert, uv)},
                     {shared::kImguiColor, VK_FORMAT_R8G8B8A8_UNORM, offsetof(ImDrawVert, col)}}}};
-  desc.color_formats = {format};
+  desc.color_formats = {kFormat};
   desc.blend = gpu::Blend::kAlphaOver;
   NERITIC_TRY(pipeline_, gpu::Pipeline::create(device_, desc));
   return {};
@@ -102,6 +102,8 @@ Status Overlay::create_pipeline(VkFormat format) {
 
 void Overlay::begin(std::uint32_t width, std::uint32_t height, double elapsed_s) {
   textures_.clear();
+  width_ = width;
+  height_ = height;
   ImGuiIO& io = ImGui::GetIO();
   if (glfw_) ImGui_ImplGlfw_NewFrame();
   // The window's idea of its size may be newer than the frame's.
@@ -116,7 +118,7 @@ ImTextureID Overlay::texture(graph::ImageHandle image, std::uint32_t layer) {
   return reinterpret_cast<ImTextureID>(textures_.size());
 }
 
-graph::ImageHandle Overlay::declare(graph::FrameGraph& graph, graph::ImageHandle target) {
+graph::ImageHandle Overlay::declare(graph::FrameGraph& graph) {
   ImGui::Render();
   struct Data {
     graph::ImageHandle target;
@@ -127,6 +129,8 @@ graph::ImageHandle Overlay::declare(graph::FrameGraph& graph, graph::ImageHandle
           [&](graph::PassBuilder& builder, Data& data) {
             for (const Texture& texture : textures_)
               builder.read(texture.image, graph::Access::kSampledFragment);
+            const graph::ImageHandle target =
+                builder.create_image("overlay", {kFormat, width_, height_, 1});
             data.target = builder.write(target, graph::Access::kColorAttachment);
           },
           [this](const Data& data, graph::PassContext& context) { record(context, data.target); })
@@ -140,7 +144,7 @@ void Overlay::record(graph::PassContext& context, graph::ImageHandle target) con
   color.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   color.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
   color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  color.clearValue.color = {{0.0f, 0.0f, 0.0f, 1.0f}};
+  color.clearValue.color = {{0.0f, 0.0f, 0.0f, 0.0f}};
   const VkExtent2D extent{image.desc().width, image.desc().height};
   VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
   rendering.renderArea.extent = extent;
@@ -206,11 +210,9 @@ void Overlay::draw(graph::PassContext& context, const ImDrawData& data) const {
   }
 }
 
-bool Overlay::wants_mouse() const {
-  return ImGui::GetIO().WantCaptureMouse;
-}
-bool Overlay::wants_keys() const {
-  return ImGui::GetIO().WantTextInput;
+InputClaims Overlay::claims() const {
+  const ImGuiIO& io = ImGui::GetIO();
+  return {.keys = io.WantTextInput, .mouse = io.WantCaptureMouse};
 }
 
 }  // namespace neritic::xr

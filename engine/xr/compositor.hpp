@@ -1,0 +1,45 @@
+// Brings layers to an image of a display that has no compositor of its own: a copy of the
+// projection layer, scaled to the image, then the panels as flat rectangles in perspective. Each is
+// a pass; without panels there is one only. Rendering thread.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "engine/gpu/device.hpp"
+#include "engine/gpu/pipeline.hpp"
+#include "engine/xr/display.hpp"
+
+namespace neritic::xr {
+
+// Adds a pass that copies an image, scaled where the sizes differ, and gives what it wrote.
+graph::ImageHandle copy_image(graph::FrameGraph& graph, const std::string& pass,
+                              graph::ImageHandle from, graph::ImageHandle to);
+// The same of depth images, which must be of one size.
+graph::ImageHandle copy_depth(graph::FrameGraph& graph, const std::string& pass,
+                              graph::ImageHandle from, graph::ImageHandle to);
+
+// The projection layer of a group; nullptr: none.
+const ProjectionLayer* projection_of(std::span<const Layer> layers, std::size_t group);
+
+class Compositor {
+ public:
+  // format: of the images it will compose. The device must outlive it.
+  static Result<std::unique_ptr<Compositor>> create(gpu::Device& device, VkFormat format);
+  // Adds the passes of one group; target has an array layer a view and is written completely (black
+  // without a projection layer). Gives the composed image. name: in front of the passes' names.
+  Result<graph::ImageHandle> declare(graph::FrameGraph& graph, const std::string& name,
+                                     graph::ImageHandle target, const ViewGroup& group,
+                                     std::size_t group_index, const Pose& world_from_head,
+                                     std::span<const Layer> layers);
+
+ private:
+  Compositor(gpu::Device& device, VkFormat format) : device_(device), format_(format) {}
+  Result<const gpu::Pipeline*> pipeline_for(std::uint32_t views);
+  gpu::Device& device_;
+  VkFormat format_;
+  gpu::Sampler sampler_;
+  std::map<std::uint32_t, gpu::Pipeline> pipelines_;  // by number of views
+};
+
+}  // namespace neritic::xr

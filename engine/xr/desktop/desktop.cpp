@@ -1,0 +1,96 @@
+#include "engine/xr/desktop/desktop.hpp"
+
+#include <cmath>
+#include <thread>
+
+#include "engine/xr/offscreen.hpp"
+
+namespace neritic::xr {
+namespace {
+
+// Pause before the next try if the surface gave no image, so that the loop is not busy.
+constexpr std::chrono::milliseconds kRetry{5};
+
+}  // namespace
+
+Result<std::unique_ptr<DesktopDisplay>> DesktopDisplay::create(gpu::Device& device, Window& window,
+                                                               const DesktopOptions& options) {
+  NERITIC_TRY(const VkSurfaceKHR surface, window.create_surface(device.instance()));
+  // Not named: see Device::create_device.
+  NERITIC_TRY(Swapchain swapchain, Swapchain::create(device, surface, options.frames_in_flight));
+  std::unique_ptr<DesktopDisplay> display(
+      new DesktopDisplay(window, std::move(swapchain), options));
+  NERITIC_TRY(display->compositor_, Compositor::create(device, display->swapchain_.format()));
+  return display;
+}
+
+// Acquires an image of the window's size; tries twice, since the surface may change meanwhile.
+Result<AcquireOutcome> DesktopDisplay::acquire() {
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    if (stale_ || made_for_width_ != window_.width() || made_for_height_ != window_.height()) {
+      NERITIC_TRY(const bool made, swapchain_.recreate(window_.width(), window_.height()));
+      if (!made) return AcquireOutcome::kNotYet;
+      stale_ = false;
+      made_for_width_ = window_.width();
+      made_for_height_ = window_.height();
+    }
+    NERITIC_TRY(const AcquireOutcome outcome, swapchain_.acquire());
+    if (outcome != AcquireOutcome::kOutOfDate) return outcome;
+    stale_ = true;
+  }
+  return AcquireOutcome::kOutOfDate;
+}
+
+Result<DisplayFrame> DesktopDisplay::begin_frame(const Pose&) {
+  DisplayFrame frame;
+  frame.period_ns = static_cast<TimeNs>(std::llround(1e9 / window_.refresh_hz()));
+  switch (window_.poll()) {
+    case WindowState::kClosed:
+      frame.verdict = FrameVerdict::kQuit;
+      return frame;
+    case WindowState::kHidden:
+      frame.display_at_ns = now_ns();
+      return frame;
+    case WindowState::kVisible:
+      break;
+  }
+  NERITIC_TRY(const AcquireOutcome outcome, acquire());
+  // The next refresh at the earliest; one period is the best guess without present timing.
+  frame.display_at_ns = now_ns() + frame.period_ns;
+  acquired_ = outcome == AcquireOutcome::kReady;
+  if (!acquired_) {
+    std::this_thread::sleep_for(kRetry);
+    return frame;
+  }
+  frame.verdict = FrameVerdict::kDraw;
+  group_ = one_view(swapchain_.width(), swapchain_.height(), options_.vertical_fov_rad);
+  frame.groups = {group_};
+  return frame;
+}
+
+Result<ShownPicture> DesktopDisplay::declare(graph::FrameGraph& graph, const Pose& world_from_head,
+                                             std::span<const Layer> layers) {
+  const gpu::ImageDesc& desc = swapchain_.image().desc();
+  const graph::ImageHandle target = graph.import_image(
+      swapchain_.image(),
+      {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_UNDEFINED});
+  NERITIC_TRY(const graph::ImageHandle composed,
+              compositor_->declare(graph, "display", target, group_, 0, world_from_head, layers));
+  graph.output(composed, graph::Access::kPresent);
+  return ShownPicture{composed, desc.format, desc.width, desc.height,
+                      (desc.usage & VK_IMAGE_USAGE_TRANSFER_SRC_BIT) != 0};
+}
+
+gpu::Frames::SubmitSync DesktopDisplay::sync() const {
+  return {.wait = swapchain_.image_ready(), .signal = swapchain_.drawn()};
+}
+
+Status DesktopDisplay::end_frame() {
+  if (!acquired_) return {};
+  acquired_ = false;
+  NERITIC_TRY(const PresentOutcome outcome, swapchain_.present());
+  if (outcome == PresentOutcome::kOutOfDate) stale_ = true;
+  return {};
+}
+
+}  // namespace neritic::xr

@@ -1,0 +1,24 @@
+// What the pass that draws a display's panels and its shaders share: a flat rectangle in each view
+// of a group, one texture.
+#ifndef NERITIC_SHARED_PANEL_H
+#define NERITIC_SHARED_PANEL_H
+#include "shared/types.h"
+
+NERITIC_SHARED_BEGIN
+
+// In the clip space of one view: the corner (x, y), each -1 or 1 (x right, y up), is at
+// middle + x right + y up.
+struct PanelCorners {
+  vec4 middle;
+  vec4 right;
+  vec4 up;
+};
+
+NERITIC_CONST uint kMaxPanelViews = 4;  // of one group
+
+// Bindings.
+NERITIC_CONST uint kPanelCorners = 0;  // PanelCorners[kMaxPanelViews]
+NERITIC_CONST uint kPanelTexture = 1;
+
+NERITIC_SHARED_END
+#endif
