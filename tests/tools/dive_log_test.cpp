@@ -1,8 +1,9 @@
-// testbed/record/LOG.md against what `neritic dive` writes: the page has every column of the log
-// and every key of --json, and no other. The program itself is run.
+// testbed/record/LOG.md against what `neritic dive` writes: the page has every column of the log,
+// every key of --json and of a picture's data, and no other. The program itself is run.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -46,9 +47,10 @@ mission = { waypoints = [ { position_m = [3, -150, -1] } ] }
 )")
                     .ok());
     const std::string command = fmt::format(
-        "{}/tools/neritic dive {} --headless --seconds 300 --log-rate 0.1 --json --log {} > {}",
+        "{}/tools/neritic dive {} --headless --seconds 300 --log-rate 0.1 --json --log {} "
+        "--plot {} > {}",
         NERITIC_BINARY_DIR, (folder_ / "s.toml").string(), (folder_ / "log.csv").string(),
-        (folder_ / "out.json").string());
+        (folder_ / "dive.png").string(), (folder_ / "out.json").string());
     ASSERT_EQ(std::system(command.c_str()), 0);
     page_ = read_text(test::source_dir() / "testbed/record/LOG.md").value();
   }
@@ -78,6 +80,19 @@ TEST_F(DiveLog, ThePageHasEveryKeyAndNoOther) {
   Words keys;
   gather_keys(*json, keys);
   EXPECT_EQ(words_of(page_, "## The summary", "\n## ", false), keys);
+}
+
+TEST_F(DiveLog, ThePageHasEveryKeyOfThePicturesDataAndNoOther) {
+  const auto json = parse_json(read_text(folder_ / "dive.plot.json").value());
+  ASSERT_TRUE(json.ok()) << json.error().message;
+  Words keys;
+  gather_keys(*json, keys);
+  const std::string heading = "## The picture's data";
+  const Words all = words_of(page_, heading, "\n## ", false);
+  for (const std::string& key : keys) EXPECT_TRUE(all.contains(key)) << key;
+  for (const std::string& key : words_of(page_, heading, "\n## ", true))
+    EXPECT_TRUE(keys.contains(key)) << key;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "dive.png"));
 }
 
 }  // namespace

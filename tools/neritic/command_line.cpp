@@ -213,7 +213,10 @@ void add_dive(CLI::App& app, Run& run) {
       "summary of their times");
   command->add_option("--log", flags->log, "the vehicles' dive as a .csv, a row a control period");
   command->add_option("--log-rate", flags->log_rate_hz, "rows a second instead");
-  command->add_option("--plot", flags->plot, "the dive as a .png: path, depth, thrust, error")
+  command
+      ->add_option("--plot", flags->plot,
+                   "the dive as a .png, its data beside as .plot.json; tools/setup plots installs "
+                   "what draws")
       ->check(png_file);
   command->add_option("--record", flags->record, "inputs and state hashes, for --replay");
   command->add_option("--replay", flags->replay,

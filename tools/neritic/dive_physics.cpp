@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
 #include "testbed/record/dive_record.hpp"
-#include "tools/common/dive_plot.hpp"
+#include "tools/common/picture.hpp"
+#include "tools/neritic/dive_picture.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/interrupt.hpp"
@@ -82,7 +84,7 @@ Status check_writable(const std::filesystem::path& path) {
 }
 
 // All that was asked for, also where one of them fails; the first failure.
-Status write_results(const DiveFlags& flags, const PhysicsWorld& world,
+Status write_results(const DiveFlags& flags, const std::string& title, const PhysicsWorld& world,
                      const PhysicsSimulation& simulation, const DiveRecorder& recorder) {
   std::vector<Status> written;
   if (!flags.record.empty())
@@ -90,9 +92,10 @@ Status write_results(const DiveFlags& flags, const PhysicsWorld& world,
   if (!flags.log.empty())
     written.push_back(
         write_text(flags.log, csv_of(world, recorder.rows(), recorder.humans().rows())));
-  if (!flags.plot.empty())
-    written.push_back(
-        write_dive_plot(flags.plot, world, recorder.rows(), recorder.humans().rows()));
+  if (!flags.plot.empty()) {
+    const auto drawn = write_picture(flags.plot, dive_picture_data(title, world, recorder));
+    written.push_back(drawn.ok() ? Status() : Status(drawn.error()));
+  }
   for (const Status& status : written) NERITIC_TRY_STATUS(status);
   return {};
 }
@@ -150,7 +153,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
                                  .row_rate_hz = flags.log_rate_hz.value_or(0.0)});
   const Interrupt interrupt;
   const Pace pace = run_steps(*simulation, recorder, flags, seconds, world->step_s(), interrupt);
-  const Status written = write_results(flags, *world, *simulation, recorder);
+  const Status written = write_results(flags, scene.title, *world, *simulation, recorder);
   print_summary(flags, *world, *simulation, recorder, pace);
   NERITIC_TRY_STATUS(written);
   if (pace.interrupted)

@@ -79,44 +79,6 @@ std::string change_lines(const PhysicsHuman& human, const HumanFigures& figures)
   return human.name + line + "\n";
 }
 
-nlohmann::json changes_json(const PhysicsHuman& human, const HumanFigures& figures) {
-  nlohmann::json json = nlohmann::json::array();
-  for (const TankChange& change : figures.tank_changes)
-    json.push_back({{"at_s", change.time_s},
-                    {"depth_m", change.depth_m},
-                    {"from", tank_words(human, change.from)},
-                    {"to", tank_words(human, change.to)},
-                    {"po2_bar", change.po2_bar}});
-  return json;
-}
-
-// Dangers as JSON: null where it did not happen.
-nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figures) {
-  nlohmann::json json{{"out_of_gas", nullptr},
-                      {"fastest_ascent_m_min", figures.fastest_ascent_m_min},
-                      {"ascent_alarm", nullptr},
-                      {"ceiling_violation", nullptr},
-                      {"oxygen_risk", nullptr}};
-  if (figures.out_of_gas_s > 0.0)
-    json["out_of_gas"] = {{"tank", tank_words(human, figures.out_of_gas_tank)},
-                          {"from_s", figures.out_of_gas_from_s},
-                          {"seconds", figures.out_of_gas_s},
-                          {"longest_s", figures.out_of_gas_longest_s}};
-  if (figures.ascent_alarm != diver::AscentAlarm::kNone)
-    json["ascent_alarm"] = {{"worst", name_of(figures.ascent_alarm)},
-                            {"seconds", figures.ascent_alarm_s},
-                            {"fastest_at_s", figures.fastest_ascent_at_s}};
-  if (figures.above_ceiling_m > 0.0)
-    json["ceiling_violation"] = {{"from_s", figures.above_ceiling_from_s},
-                                 {"worst_m", figures.above_ceiling_m}};
-  if (figures.oxygen >= diver::RiskLevel::kHigh)
-    json["oxygen_risk"] = {{"worst", name_of(figures.oxygen)},
-                           {"from_s", figures.oxygen_from_s},
-                           {"least_po2_bar", figures.least_po2_bar},
-                           {"most_po2_bar", figures.most_po2_bar}};
-  return json;
-}
-
 std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
                        const HumanFigures& figures) {
   const diver::GasReading gas = diver::read_gas(human.body, state.human);
@@ -206,6 +168,43 @@ nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& s
 }
 
 }  // namespace
+
+nlohmann::json changes_json(const PhysicsHuman& human, const HumanFigures& figures) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const TankChange& change : figures.tank_changes)
+    json.push_back({{"at_s", change.time_s},
+                    {"depth_m", change.depth_m},
+                    {"from", tank_words(human, change.from)},
+                    {"to", tank_words(human, change.to)},
+                    {"po2_bar", change.po2_bar}});
+  return json;
+}
+
+nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figures) {
+  nlohmann::json json{{"out_of_gas", nullptr},
+                      {"fastest_ascent_m_min", figures.fastest_ascent_m_min},
+                      {"ascent_alarm", nullptr},
+                      {"ceiling_violation", nullptr},
+                      {"oxygen_risk", nullptr}};
+  if (figures.out_of_gas_s > 0.0)
+    json["out_of_gas"] = {{"tank", tank_words(human, figures.out_of_gas_tank)},
+                          {"from_s", figures.out_of_gas_from_s},
+                          {"seconds", figures.out_of_gas_s},
+                          {"longest_s", figures.out_of_gas_longest_s}};
+  if (figures.ascent_alarm != diver::AscentAlarm::kNone)
+    json["ascent_alarm"] = {{"worst", name_of(figures.ascent_alarm)},
+                            {"seconds", figures.ascent_alarm_s},
+                            {"fastest_at_s", figures.fastest_ascent_at_s}};
+  if (figures.above_ceiling_m > 0.0)
+    json["ceiling_violation"] = {{"from_s", figures.above_ceiling_from_s},
+                                 {"worst_m", figures.above_ceiling_m}};
+  if (figures.oxygen >= diver::RiskLevel::kHigh)
+    json["oxygen_risk"] = {{"worst", name_of(figures.oxygen)},
+                           {"from_s", figures.oxygen_from_s},
+                           {"least_po2_bar", figures.least_po2_bar},
+                           {"most_po2_bar", figures.most_po2_bar}};
+  return json;
+}
 
 void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                    const PhysicsSimulation& simulation, const DiveRecorder& recorder,

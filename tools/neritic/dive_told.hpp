@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 
 #include "testbed/record/dive_record.hpp"
 #include "tools/neritic/commands.hpp"
@@ -21,5 +22,10 @@ struct Pace {
 void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                    const PhysicsSimulation& simulation, const DiveRecorder& recorder,
                    const Pace& pace);
+
+// What endangered a diver, and the changes to another tank: keys of the summary and of the
+// picture's data (testbed/record/LOG.md). Null: it did not happen.
+nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figures);
+nlohmann::json changes_json(const PhysicsHuman& human, const HumanFigures& figures);
 
 }  // namespace neritic::tools

@@ -1,0 +1,82 @@
+// Pictures that tools/plot draws from a program's data: without matplotlib the data is there and
+// one line says what to install; bad data ends in one line.
+#include "tools/common/picture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::tools {
+namespace {
+
+class Picture : public testing::Test {
+ protected:
+  // The exit status of a command line; what it says on stderr is in said().
+  int run(const std::string& command) {
+    const int raw = std::system(
+        fmt::format("{} > /dev/null 2> '{}'", command, (folder_ / "said").string()).c_str());
+    return WEXITSTATUS(raw);
+  }
+  std::string said() const { return read_text(folder_ / "said").value(); }
+  std::string file(const char* name) const { return "'" + (folder_ / name).string() + "'"; }
+
+  test::ScratchFolder folder_;
+};
+
+const std::string kModule =
+    "/usr/bin/python3 -B '" + (test::source_dir() / "tools/plot").string() + "'";
+
+TEST_F(Picture, WithoutMatplotlibTheDataIsWrittenAndOneLineSaysWhatToInstall) {
+  ASSERT_TRUE(make_folder(folder_ / "matplotlib").ok());
+  ASSERT_TRUE(write_text(folder_ / "matplotlib/__init__.py",
+                         "raise ModuleNotFoundError('none here', name='matplotlib')\n")
+                  .ok());
+  const std::string dive = fmt::format(
+      "PYTHONPATH='{}' '{}/tools/neritic' -q dive '{}' --headless --seconds 1 --plot {}",
+      folder_.path().string(), NERITIC_BINARY_DIR,
+      (test::source_dir() / "assets/scenes/mission.toml").string(), file("a.png"));
+  EXPECT_EQ(run(dive), 0) << said();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.png"));
+  EXPECT_NE(said().find("a.png: not drawn: no python3 here has matplotlib; tools/setup plots "),
+            std::string::npos)
+      << said();
+  EXPECT_NE(said().find("a.plot.json\n"), std::string::npos) << said();
+  EXPECT_EQ(std::ranges::count(said(), '\n'), 1) << said();
+  // By hand, where matplotlib is.
+  EXPECT_EQ(run(kModule + " " + file("a.plot.json")), 0) << said();
+  EXPECT_GT(std::filesystem::file_size(folder_ / "a.png"), 20000u);
+}
+
+TEST_F(Picture, BadDataEndsInOneLine) {
+  ASSERT_TRUE(write_text(folder_ / "other.json", "{\"key\": 1}\n").ok());
+  EXPECT_EQ(run(kModule + " " + file("other.json")), 2);
+  EXPECT_NE(said().find("other.json: no key \"picture\" found"), std::string::npos) << said();
+  ASSERT_TRUE(write_text(folder_ / "unknown.json", "{\"picture\": \"sunset\"}\n").ok());
+  EXPECT_EQ(run(kModule + " " + file("unknown.json")), 2);
+  EXPECT_NE(said().find("picture \"sunset\" found; dive"), std::string::npos) << said();
+  EXPECT_EQ(run(kModule + " " + file("none.json")), 2);
+  EXPECT_EQ(std::ranges::count(said(), '\n'), 1) << said();
+}
+
+TEST_F(Picture, WhatCannotBeDrawnIsAnErrorInOneLine) {
+  const auto drawn = write_picture(folder_ / "a.png", {{"picture", "sunset"}});
+  ASSERT_FALSE(drawn.ok());
+  EXPECT_NE(drawn.error().message.find("a.png: not drawn: tools/plot: "), std::string::npos)
+      << drawn.error().message;
+  EXPECT_EQ(drawn.error().message.find('\n'), std::string::npos);
+  EXPECT_FALSE(write_picture(folder_ / "none/a.png", {{"picture", "dive"}}).ok());
+}
+
+TEST(PictureData, HasSixDigitsAndLiesBesideThePicture) {
+  EXPECT_EQ(picture_data_path("out/dive.png"), "out/dive.plot.json");
+  EXPECT_EQ(six_digits(1.0 / 3.0), 0.333333);
+  EXPECT_EQ(six_digits(-123456789.0), -123457000.0);
+  EXPECT_TRUE(std::isinf(six_digits(INFINITY)));
+}
+
+}  // namespace
+}  // namespace neritic::tools

@@ -1,0 +1,26 @@
+// Pictures of curves. The program writes their data as JSON; tools/plot, a Python module, draws
+// them with matplotlib. Where Python, matplotlib or the module is missing, the data is written all
+// the same, and one line on stderr says what to install: that is no failure. One thread at a time.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+#include "engine/core/result.hpp"
+
+namespace neritic::tools {
+
+// The data lies beside its picture: dive.plot.json beside dive.png.
+std::filesystem::path picture_data_path(const std::filesystem::path& picture);
+
+// Draws a data file that has the key "picture" (tools/plot/README.md). False: nothing here can
+// draw, which has been said. kIo: the picture could not be drawn or written.
+Result<bool> draw_picture(const std::filesystem::path& data, const std::filesystem::path& picture);
+
+// Writes the data beside the picture, then draws it.
+Result<bool> write_picture(const std::filesystem::path& picture, const nlohmann::json& data);
+
+// Six significant digits, which are more than a picture shows: the data stays small.
+double six_digits(double value);
+
+}  // namespace neritic::tools
