@@ -11,11 +11,6 @@
 namespace neritic::render {
 namespace {
 
-scene::ModelPose pose_of(const scene::Object& object, const scene::Model& model, double time_s) {
-  if (object.node_motion) return scene::evaluate_pose(model, *object.node_motion, time_s);
-  return scene::evaluate_pose(model, object.clip, object.clip_offset_s + time_s * object.clip_rate);
-}
-
 void append_joints(std::vector<Mat4f>& out, const scene::Model& model, const scene::ModelPose& pose,
                    int skin) {
   for (const Mat4& m : scene::joint_matrices(model, pose, skin)) out.push_back(Mat4f(m));
@@ -56,22 +51,25 @@ std::uint32_t FrameState::deformed_at(std::uint32_t group, std::uint32_t object,
   return at->push.first_out;
 }
 
-FrameState evaluate_frame(const scene::Scene& scene, const GpuScene& gpu_scene, double time_s,
-                          double next_time_s, bool motion) {
+FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu_scene,
+                          double time_s, double next_time_s, bool motion) {
+  const scene::Scene& scene = source.scene();
   FrameState state;
   state.time_s = time_s;
   state.next_time_s = next_time_s;
   state.motion = motion;
-  for (const scene::Object& object : scene.objects) {
-    state.world_from_object.push_back(scene.world_from(object.mount, time_s));
-    state.next_world_from_object.push_back(motion ? scene.world_from(object.mount, next_time_s)
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    state.world_from_object.push_back(source.world_from_object(i, time_s));
+    state.next_world_from_object.push_back(motion ? source.world_from_object(i, next_time_s)
                                                   : state.world_from_object.back());
     const scene::Model empty;
-    const scene::Model& model =
-        object.model >= 0 ? *scene.models[static_cast<std::size_t>(object.model)] : empty;
-    state.poses.push_back(pose_of(object, model, time_s));
-    if (motion) state.next_poses.push_back(pose_of(object, model, next_time_s));
+    const int index = scene.objects[i].model;
+    const scene::Model& model = index >= 0 ? *scene.models[static_cast<std::size_t>(index)] : empty;
+    state.poses.push_back(source.model_pose(i, model, time_s));
+    if (motion) state.next_poses.push_back(source.model_pose(i, model, next_time_s));
   }
+  for (const scene::Lamp& lamp : scene.lamps)
+    state.world_from_lamp.push_back(source.world_from(lamp.mount, time_s));
 
   for (const scene::ModelLight& light : scene.model_lights)
     state.lights.push_back(placed_light(scene, state, light));

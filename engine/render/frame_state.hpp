@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "engine/render/gpu_scene.hpp"
-#include "engine/scene/animation.hpp"
-#include "engine/scene/scene.hpp"
+#include "engine/scene/motion.hpp"
 
 namespace neritic::render {
 
@@ -30,6 +29,7 @@ struct FrameState {
   std::vector<Pose> world_from_object, next_world_from_object;  // an object
   std::vector<scene::ModelPose> poses, next_poses;              // an object
   std::vector<PlacedLight> lights;                              // of models
+  std::vector<Pose> world_from_lamp;                            // of the scene's
   std::vector<Mat4f> joints;                                    // of all jobs: now, then next
   std::vector<float> weights;                                   // likewise
   std::vector<DeformJob> deforms;
@@ -39,8 +39,9 @@ struct FrameState {
   std::uint32_t deformed_at(std::uint32_t group, std::uint32_t object, std::uint32_t node) const;
 };
 
-FrameState evaluate_frame(const scene::Scene& scene, const GpuScene& gpu_scene, double time_s,
-                          double next_time_s, bool motion);
+// with_next: the next instant too, for motion.
+FrameState evaluate_frame(const scene::MotionSource& motion, const GpuScene& gpu_scene,
+                          double time_s, double next_time_s, bool with_next);
 
 // World_from_primitive of an appearance: object, copy, node (unless skinned: joints hold it),
 // instance.

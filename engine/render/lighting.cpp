@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "engine/core/check.hpp"
 #include "engine/render/water_optics.hpp"
 #include "engine/scene/model_lights.hpp"
 
@@ -185,8 +186,10 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
   if (scene.lamps.size() > shared::kMaxLamps)
     return bad_input("{}: {} lamps, at most {} are accepted", scene.path, scene.lamps.size(),
                      shared::kMaxLamps);
-  for (const scene::Lamp& lamp : scene.lamps)
-    add_lamp(light, lamp, scene.world_from(lamp.mount, state.time_s), origin_m);
+  NERITIC_CHECK(state.world_from_lamp.size() == scene.lamps.size(), "{} poses of {} lamps",
+                state.world_from_lamp.size(), scene.lamps.size());
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i)
+    add_lamp(light, scene.lamps[i], state.world_from_lamp[i], origin_m);
   for (const PlacedLight& placed : state.lights)
     if (placed.light->kind == scene::Light::Kind::kDirectional)
       add_model_sun(light, placed);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "engine/core/check.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/model_lights.hpp"
+#include "engine/scene/motion.hpp"
 #include "engine/scene/scene_copies.hpp"
 #include "engine/scene/scene_draft.hpp"
 
@@ -97,16 +97,7 @@ void move_out(SceneDraft& draft, const Vec3& offset_m) {
 }  // namespace
 
 Pose Scene::world_from(const Mount& mount, double time_s) const {
-  Pose pose = mount.pose_at(time_s);
-  std::size_t steps = 0;
-  for (int object = mount.object; object >= 0;) {
-    const auto index = static_cast<std::size_t>(object);
-    NERITIC_CHECK(index < objects.size() && steps++ < objects.size(), "object {} of {}", index,
-                  objects.size());
-    pose = objects[index].mount.pose_at(time_s) * pose;
-    object = objects[index].mount.object;
-  }
-  return pose;
+  return MotionSource(*this).world_from(mount, time_s);
 }
 
 Mat4 Scene::world_from_copy(const Object& object, std::size_t copy, double time_s) const {

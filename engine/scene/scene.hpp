@@ -15,7 +15,6 @@
 #include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
 #include "engine/scene/model.hpp"
-#include "engine/scene/node_motion.hpp"
 #include "engine/scene/physics_settings.hpp"
 #include "engine/scene/sonar_settings.hpp"
 #include "engine/scene/track.hpp"
@@ -52,7 +51,6 @@ struct Object {
   std::optional<double> backscatter_db;  // Lambert's strength of the surface, 10 log mu
   int clip = -1;                         // of the model; -1: rest pose
   double clip_offset_s = 0.0, clip_rate = 1.0;
-  std::optional<NodeMotion> node_motion;   // instead of the clip
   Collision collision = Collision::kNone;  // without [physics]: none
   std::optional<Dynamics> dynamics;  // it moves by physics, from its mount's pose at time 0 on
   std::optional<Human> human;        // likewise, by its limbs
@@ -154,7 +152,7 @@ struct Scene {
   std::vector<Sonar> sonars;
   std::vector<std::string> notes;  // what was ignored, once each
 
-  // World_from_mount at a time, with all that carries it.
+  // World_from_mount at a time by tracks, with all that carries it (motion.hpp: by physics too).
   Pose world_from(const Mount& mount, double time_s = 0.0) const;
   // World_from_model of one copy, the object's scale in it: copy < object.instance_count(). After
   // loading, scale is 1 wherever there are copies: theirs hold it.

@@ -108,7 +108,7 @@ Status Dive::frame(const xr::DisplayFrame& display_frame, bool last) {
   if (frames_drawn_ == 0 && options_.physics) options_.physics->start();
   time_s_ = to_s(display_frame.display_at_ns - start_ns_);
   if (options_.physics)
-    options_.physics->place(session_.scene(), display_frame.display_at_ns, time_s_);
+    time_s_ = options_.physics->follow(display_frame.display_at_ns, time_s_);
   take_input(elapsed_s_);
   aim_camera(display_frame);
 
@@ -163,6 +163,7 @@ Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_f
                      std::unique_ptr<LiveFrame>& live) {
   FrameRequest request;
   request.time_s = request.next_time_s = time_s_;
+  if (options_.physics) request.simulated = &options_.physics->motion();
   request.cameras = {options_.camera};
   const bool panels = options_.panels && show_panels_;
   if (panels || !overlay_) add_due_sonars(request);

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "testbed/loop/dive_input.hpp"
-#include "testbed/loop/live_physics.hpp"
+#include "testbed/motion/live_physics.hpp"
 
 namespace neritic::testbed {
 

@@ -113,7 +113,7 @@ struct Survey::Record {
   std::unique_ptr<sonar::CocoPictures> pictures;
 
   bool accumulates() const { return bathymetry || trace || sidescan || scan || labels || coco; }
-  void add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s);
+  void add(const SonarFrame& frame, double time_s);
   Status add_labels(const SonarFrame& frame, std::uint32_t number);
   Status write_labels(const fs::path& folder) const;
   void add_profile(const SonarFrame& frame);
@@ -180,8 +180,8 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
 Status Survey::add(const FrameResult& result, std::uint32_t number, double time_s) {
   for (const SonarFrame& frame : result.sonars) {
     Record& record = record_of(frame);
-    const Pose world_from_sonar = scene_.world_from(record.sonar.mount, time_s);
-    record.add(frame, world_from_sonar, time_s);
+    const Pose& world_from_sonar = frame.world_from_sonar;
+    record.add(frame, time_s);
     if (frame.label_energy) NERITIC_TRY_STATUS(record.add_labels(frame, number));
     if (record.from_pictures && frame.head == "port")
       NERITIC_TRY_STATUS(record.add_picture(result, world_from_sonar, time_s));
@@ -221,7 +221,8 @@ Status Survey::Record::add_picture(const FrameResult& result, const Pose& world_
   return {};
 }
 
-void Survey::Record::add(const SonarFrame& frame, const Pose& world_from_sonar, double time_s) {
+void Survey::Record::add(const SonarFrame& frame, double time_s) {
+  const Pose& world_from_sonar = frame.world_from_sonar;
   if (frame.head != "port") ++pings;
   const std::vector<float>& heard = frame.image.intensity;
   if (bathymetry) add_profile(frame);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/clock.hpp"
-#include "engine/core/log.hpp"
 #include "rov/frames.hpp"
 
 namespace neritic::testbed {
@@ -18,12 +16,6 @@ double tilt_of(const Quat& q) {
   return std::acos(std::clamp(1.0 - 2.0 * (q.x * q.x + q.y * q.y), -1.0, 1.0));
 }
 
-// Poses kept of a flight, some 150 MB a vehicle: a day of 200 steps a second in gaps of 45 ms.
-constexpr double kMostPoses = 2e6;
-// More than the gap between two poses that are kept, at any accepted rate of steps.
-constexpr double kMostPoseGap_s = 1.0;
-// Postures kept of a diver, some 100 MB.
-constexpr double kMostPostures = 1e5;
 constexpr double kHumanRows_hz = 10.0;
 
 // Whether a row falls into the step that ends here.
@@ -40,10 +32,9 @@ DiveRecorder::DiveRecorder(const PhysicsWorld& world, const RecordOptions& optio
     : world_(world),
       options_(options),
       figures_(world.vehicles().size()),
-      tracks_(world.vehicles().size()),
       readings_(world.vehicles().size()),
       last_(world.start()),
-      humans_(world, options.joints_s) {}
+      humans_(world) {}
 
 bool DiveRecorder::row_due(std::size_t vehicle, std::uint64_t step) const {
   if (options_.row_rate_hz == 0.0) return world_.control_due(vehicle, step);
@@ -53,11 +44,6 @@ bool DiveRecorder::row_due(std::size_t vehicle, std::uint64_t step) const {
 bool DiveRecorder::human_row_due(std::uint64_t step) const {
   const double hz = options_.row_rate_hz == 0.0 ? kHumanRows_hz : options_.row_rate_hz;
   return due(hz * world_.step_s(), step);
-}
-
-bool DiveRecorder::track_due(const sim::Snapshot<PhysicsState>& snapshot) const {
-  return options_.tracks && snapshot.time_s >= options_.tracks_from_s &&
-         snapshot.step % options_.track_steps == 0;
 }
 
 DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState>& snapshot) const {
@@ -96,11 +82,6 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
     figures.shallowest_m = std::min(figures.shallowest_m, now.body.position_ned_m.z);
     figures.deepest_m = std::max(figures.deepest_m, now.body.position_ned_m.z);
     figures.largest_tilt_rad = std::max(figures.largest_tilt_rad, tilt_of(now.body.attitude));
-    if (track_due(snapshot)) {
-      const Pose pose = world_pose_of(now.body);
-      tracks_[i].places.push_back({snapshot.time_s, pose.position_m});
-      tracks_[i].attitudes.push_back({snapshot.time_s, pose.rotation});
-    }
     if (options_.rows) {
       const double from_s = snapshot.step == 0 ? -1.0 : snapshot.time_s - world_.step_s();
       rov::update_readings(world_.vehicles()[i].file.sensors, {world_.rays(), world_.seed(), i},
@@ -109,48 +90,8 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
     }
     if (options_.rows && row_due(i, snapshot.step)) rows_.push_back(row_of(i, snapshot));
   }
-  humans_.add(snapshot, options_.rows && human_row_due(snapshot.step), track_due(snapshot));
+  humans_.add(snapshot, options_.rows && human_row_due(snapshot.step));
   last_ = snapshot.state;
-}
-
-Status fly_ahead(scene::Scene& scene, const Flight& flight) {
-  if (!PhysicsWorld::needed(scene)) return {};
-  if (!(flight.until_s <= kLongestFlight_s))
-    return bad_input(
-        "{}: physics to {:g} s of scene time, flown from 0 on; at most {:g} s are accepted",
-        scene.path, flight.until_s, kLongestFlight_s);
-  const TimeNs begun_ns = now_ns();
-  NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
-  const TimeNs built_ns = now_ns();
-  const auto simulation = world->simulation({.log = false});
-  // From a little earlier, so that the first picture lies between two poses.
-  const double from_s = flight.from_s - kMostPoseGap_s;
-  const double steps = std::max(flight.until_s - from_s, 0.0) / world->step_s();
-  const auto track_steps = static_cast<std::uint64_t>(std::ceil(std::max(steps / kMostPoses, 1.0)));
-  const double joints_s = std::max(kJoints_s, (flight.until_s - from_s) / kMostPostures);
-  DiveRecorder recorder(
-      *world,
-      {.tracks = true, .tracks_from_s = from_s, .track_steps = track_steps, .joints_s = joints_s});
-  recorder.add(simulation->newest());
-  double second_s = 1.0;
-  while (simulation->newest().time_s < flight.until_s + world->step_s() * double(track_steps - 1)) {
-    simulation->advance(1);
-    recorder.add(simulation->newest());
-    if (simulation->newest().time_s < second_s) continue;
-    flight.second();
-    second_s += 1.0;
-  }
-  for (std::size_t i = 0; i < world->vehicles().size(); ++i)
-    scene.objects[world->vehicles()[i].object].mount.track = std::move(recorder.tracks()[i]);
-  recorder.humans().give_tracks(scene);
-  log_info(
-      "physics: {} solid things of {} triangles built in {:.0f} ms; {} vehicles and {} divers "
-      "moved "
-      "for {:g} s in {:.0f} ms",
-      world->solid().counts().things, world->solid().counts().triangles, to_ms(built_ns - begun_ns),
-      world->vehicles().size(), world->humans().size(), simulation->newest().time_s,
-      to_ms(now_ns() - built_ns));
-  return {};
 }
 
 }  // namespace neritic::testbed

@@ -1,13 +1,10 @@
-// What a simulation went through, kept as it goes: a row of numbers each control period, the
-// vehicles' paths as tracks for cameras and sonars that they carry, and figures of the whole. One
-// thread: the one that steps.
+// What a simulation went through, kept as it goes: a row of numbers each control period, and
+// figures of the whole. One thread: the one that steps.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "engine/scene/track.hpp"
 #include "testbed/record/human_record.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
@@ -16,10 +13,6 @@ namespace neritic::testbed {
 struct RecordOptions {
   bool rows = false;         // keep rows
   double row_rate_hz = 0.0;  // 0: one each control period, of divers ten a second
-  bool tracks = false;       // keep the paths, every track_steps-th step from tracks_from_s on
-  double tracks_from_s = 0.0;
-  std::uint64_t track_steps = 1;
-  double joints_s = kJoints_s;  // between two postures of a diver
 };
 
 // A vehicle at an instant.
@@ -52,13 +45,9 @@ class DiveRecorder {
 
   const std::vector<DiveRow>& rows() const { return rows_; }
   const std::vector<DiveFigures>& figures() const { return figures_; }
-  // One a vehicle.
-  std::vector<scene::Track>& tracks() { return tracks_; }
-  HumanRecorder& humans() { return humans_; }
   const HumanRecorder& humans() const { return humans_; }
 
  private:
-  bool track_due(const sim::Snapshot<PhysicsState>& snapshot) const;
   bool row_due(std::size_t vehicle, std::uint64_t step) const;
   bool human_row_due(std::uint64_t step) const;
   DiveRow row_of(std::size_t vehicle, const sim::Snapshot<PhysicsState>& snapshot) const;
@@ -67,7 +56,6 @@ class DiveRecorder {
   RecordOptions options_;
   std::vector<DiveRow> rows_;
   std::vector<DiveFigures> figures_;
-  std::vector<scene::Track> tracks_;
   std::vector<rov::SensorReadings> readings_;
   PhysicsState last_;
   HumanRecorder humans_;
@@ -79,15 +67,5 @@ class DiveRecorder {
 // gas, breath, jacket, effort, tissues.
 std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows,
                    const std::vector<HumanRow>& human_rows);
-
-// Simulates from 0 to until_s and gives the vehicles and divers of the scene their paths from
-// from_s on as tracks; no path is needed before the first picture. second: called after each second
-// flown. kBadInput beyond kLongestFlight_s. Of long paths only every so many steps' poses are kept.
-inline constexpr double kLongestFlight_s = 24.0 * 3600.0;
-struct Flight {
-  double from_s = 0.0, until_s = 0.0;
-  std::function<void()> second = [] {};
-};
-Status fly_ahead(scene::Scene& scene, const Flight& flight);
 
 }  // namespace neritic::testbed

@@ -6,17 +6,13 @@
 #include "diver/frames.hpp"
 
 namespace neritic::testbed {
-HumanRecorder::HumanRecorder(const PhysicsWorld& world, double joints_s)
+
+HumanRecorder::HumanRecorder(const PhysicsWorld& world)
     : world_(world),
-      joints_s_(joints_s),
       figures_(world.humans().size()),
-      tracks_(world.humans().size()),
-      joints_(world.humans().size()),
       last_ned_m_(world.humans().size(), Vec3(0.0)) {
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    joints_[i].nodes = world.humans()[i].nodes;
-    last_tank_.push_back(world.humans()[i].start.human.held.tank);
-  }
+  for (const PhysicsHuman& human : world.humans())
+    last_tank_.push_back(human.start.human.held.tank);
 }
 
 HumanRow HumanRecorder::row_of(std::size_t index,
@@ -110,7 +106,7 @@ void HumanRecorder::note_dangers(std::size_t index, const sim::Snapshot<PhysicsS
   f.most_po2_bar = std::max(f.most_po2_bar, po2_bar);
 }
 
-void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row, bool tracks) {
+void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row) {
   const bool sample = snapshot.time_s >= next_sample_s_ - 1e-9;
   if (sample) next_sample_s_ += diver::kComputerSample_s;
   for (std::size_t i = 0; i < figures_.size(); ++i) {
@@ -125,23 +121,7 @@ void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row, b
     figures.shallowest_m = std::min(figures.shallowest_m, root.position_ned_m.z);
     note_tank(i, snapshot);
     if (sample) note_dangers(i, snapshot);
-    if (tracks) {
-      const Pose pose = drawn_pose(state);
-      tracks_[i].places.push_back({snapshot.time_s, pose.position_m});
-      tracks_[i].attitudes.push_back({snapshot.time_s, pose.rotation});
-      auto& keys = joints_[i].keys;
-      if (keys.empty() || snapshot.time_s - keys.back().time_s > joints_s_ - 1e-9)
-        keys.push_back(drawn_joints(world_.humans()[i], state, snapshot.time_s));
-    }
     if (row) rows_.push_back(row_of(i, snapshot));
-  }
-}
-
-void HumanRecorder::give_tracks(scene::Scene& scene) {
-  for (std::size_t i = 0; i < world_.humans().size(); ++i) {
-    scene::Object& object = scene.objects[world_.humans()[i].object];
-    object.mount.track = std::move(tracks_[i]);
-    object.node_motion = std::move(joints_[i]);
   }
 }
 

@@ -1,5 +1,5 @@
-// What divers went through, kept as it goes: rows of numbers, their paths and joints as tracks for
-// pictures, and figures of the whole. One thread: the one that steps.
+// What divers went through, kept as it goes: rows of numbers, and figures of the whole. One thread:
+// the one that steps.
 #pragma once
 
 #include <array>
@@ -8,8 +8,6 @@
 
 #include "diver/ascent_gas.hpp"
 #include "diver/gas_plan.hpp"
-#include "engine/scene/node_motion.hpp"
-#include "engine/scene/track.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
@@ -59,21 +57,15 @@ struct HumanFigures {
   std::vector<TankChange> tank_changes;
 };
 
-// Between two postures that are kept, where nothing else is said: as pictures need.
-inline constexpr double kJoints_s = 1.0 / 60.0;
-
 class HumanRecorder {
  public:
-  HumanRecorder(const PhysicsWorld& world, double joints_s);
+  explicit HumanRecorder(const PhysicsWorld& world);
 
-  // Each step's result in turn, the start first; row: whether to keep one; tracks: whether to keep
-  // the pose, and the posture where one is due.
-  void add(const sim::Snapshot<PhysicsState>& snapshot, bool row, bool tracks);
+  // Each step's result in turn, the start first; row: whether to keep one.
+  void add(const sim::Snapshot<PhysicsState>& snapshot, bool row);
 
   const std::vector<HumanRow>& rows() const { return rows_; }
   const std::vector<HumanFigures>& figures() const { return figures_; }
-  // Puts what was kept into the scene: the divers' tracks and joints.
-  void give_tracks(scene::Scene& scene);
 
  private:
   void note_tank(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot);
@@ -81,11 +73,8 @@ class HumanRecorder {
   HumanRow row_of(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot) const;
 
   const PhysicsWorld& world_;
-  double joints_s_;
   std::vector<HumanRow> rows_;
   std::vector<HumanFigures> figures_;
-  std::vector<scene::Track> tracks_;
-  std::vector<scene::NodeMotion> joints_;
   std::vector<Vec3> last_ned_m_;
   std::vector<std::uint64_t> last_tank_;
   double next_sample_s_ = 0.0;  // of the divers' computers

@@ -64,16 +64,16 @@ std::vector<ViewImages> decode_views(const ViewWork& work) {
   return views;
 }
 
-render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera, double time_s,
-                             double next_time_s) {
+render::ViewSet camera_views(const scene::MotionSource& motion, const scene::Camera& camera,
+                             double time_s, double next_time_s) {
   render::ViewSet set;
   set.width = camera.width;
   set.height = camera.height;
   render::ViewDesc view;
   view.tangents = tangents_from_fov(camera.vertical_fov_rad, double(camera.width) / camera.height);
   view.near_m = camera.near_m;
-  const Pose center = scene.world_from(camera.mount, time_s);
-  const Pose next_center = scene.world_from(camera.mount, next_time_s);
+  const Pose center = motion.world_from(camera.mount, time_s);
+  const Pose next_center = motion.world_from(camera.mount, next_time_s);
   const int eyes = camera.stereo_baseline_m > 0.0 ? 2 : 1;
   for (int i = 0; i < eyes; ++i) {
     const double side = eyes == 1 ? 0.0 : (i == 0 ? -0.5 : 0.5);
@@ -105,12 +105,13 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Sce
 }
 
 // Adds everything one camera needs to the graph.
-Status Session::declare_camera(graph::FrameGraph& graph, const render::FrameState& state,
+Status Session::declare_camera(graph::FrameGraph& graph, const scene::MotionSource& motion,
+                               const render::FrameState& state,
                                const render::DeformedGeometry& deformed, const Capture& capture,
                                CameraWork& work) {
   const scene::Camera& camera = scene_.cameras[work.index];
   NERITIC_TRY_STATUS(check_size("camera " + camera.name, camera.width, camera.height));
-  work.views = camera_views(scene_, camera, state.time_s, state.next_time_s);
+  work.views = camera_views(motion, camera, state.time_s, state.next_time_s);
   work.draws = render::build_draw_list(scene_, *gpu_scene_, state, work.views);
   const std::string prefix = camera.name + " ";
   const std::uint32_t w = work.views.width, h = work.views.height, layers = work.views.layers();
@@ -161,16 +162,17 @@ Status Session::check_size(const std::string& what, std::uint32_t width,
 // Adds the passes of every sensor asked for; work keeps what they borrow.
 Status Session::declare_sensors(graph::FrameGraph& graph, const FrameRequest& request,
                                 FrameWork& work) {
-  const bool motion = request.capture.motion && !request.cameras.empty() && request.capture.color;
+  const scene::MotionSource motion(scene_, request.simulated);
+  const bool next = request.capture.motion && !request.cameras.empty() && request.capture.color;
   work.state =
-      render::evaluate_frame(scene_, *gpu_scene_, request.time_s, request.next_time_s, motion);
+      render::evaluate_frame(motion, *gpu_scene_, request.time_s, request.next_time_s, next);
   NERITIC_TRY(const render::DeformedGeometry deformed,
               renderer_->declare_deform(graph, *gpu_scene_, work.state));
   for (const std::size_t index : request.cameras) {
     work.cameras.push_back(std::make_unique<CameraWork>());
     work.cameras.back()->index = index;
     NERITIC_TRY_STATUS(
-        declare_camera(graph, work.state, deformed, request.capture, *work.cameras.back()));
+        declare_camera(graph, motion, work.state, deformed, request.capture, *work.cameras.back()));
   }
   NERITIC_CHECK(request.pings.empty() || request.pings.size() == request.sonars.size(),
                 "{} pings of {} sonars", request.pings.size(), request.sonars.size());
@@ -178,9 +180,10 @@ Status Session::declare_sensors(graph::FrameGraph& graph, const FrameRequest& re
     work.sonars.push_back(std::make_unique<SonarWork>());
     work.sonars.back()->index = request.sonars[i];
     const std::uint32_t ping = request.pings.empty() ? request.frame : request.pings[i];
-    const Status declared = sonars_->declare({graph, *renderer_, *gpu_scene_, work.state, deformed,
-                                              readback_, request.capture, request.time_s, ping},
-                                             *work.sonars.back());
+    const Status declared =
+        sonars_->declare({graph, *renderer_, *gpu_scene_, motion, work.state, deformed, readback_,
+                          request.capture, request.time_s, ping},
+                         *work.sonars.back());
     if (!declared.ok()) return of_sonar(scene_, scene_.sonars[request.sonars[i]], declared.error());
   }
   return {};

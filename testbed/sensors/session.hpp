@@ -15,7 +15,7 @@
 #include "engine/gpu/frames.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/scene/scene.hpp"
+#include "engine/scene/motion.hpp"
 #include "sonar/beam_grid.hpp"
 #include "sonar/label_energy.hpp"
 #include "sonar/quality.hpp"
@@ -55,7 +55,7 @@ struct SonarFrame {
   bool level = false;
   scene::SonarTerms terms;
   std::optional<sonar::LabelImage> label_energy;  // where labels by energy are named
-  Pose world_from_head;
+  Pose world_from_sonar, world_from_head;
   double heading_rad = 0.0;  // of a mechanical scanner's beam, sonar axes, positive to starboard
   double sound_speed_m_s = 0.0, absorption_db_per_m = 0.0;  // with terms
   std::vector<float> noise_power;  // mean of the noise in each range row; empty: none is named
@@ -90,6 +90,8 @@ struct FrameRequest {
   // all the frame-th.
   std::vector<std::uint32_t> pings;
   Capture capture;
+  // What moves by physics, and where to; nullptr: all moves by tracks and clips.
+  const scene::SimulatedMotion* simulated = nullptr;
 };
 
 struct FrameResult {
@@ -166,9 +168,9 @@ class Session {
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<render::GpuScene> gpu_scene_;
   Status check_size(const std::string& what, std::uint32_t width, std::uint32_t height) const;
-  Status declare_camera(graph::FrameGraph& graph, const render::FrameState& state,
-                        const render::DeformedGeometry& deformed, const Capture& capture,
-                        CameraWork& work);
+  Status declare_camera(graph::FrameGraph& graph, const scene::MotionSource& motion,
+                        const render::FrameState& state, const render::DeformedGeometry& deformed,
+                        const Capture& capture, CameraWork& work);
   Status declare_sensors(graph::FrameGraph& graph, const FrameRequest& request, FrameWork& work);
   std::unique_ptr<SonarStation> sonars_;
   ReadbackPool readback_;
@@ -183,7 +185,7 @@ inline constexpr const char* kDefaultGather = "plane";
 
 // The views of a camera of the scene: one, or two for a stereo pair, half the baseline to each
 // side; where it is at time_s and, for motion, at next_time_s.
-render::ViewSet camera_views(const scene::Scene& scene, const scene::Camera& camera,
+render::ViewSet camera_views(const scene::MotionSource& motion, const scene::Camera& camera,
                              double time_s = 0.0, double next_time_s = 0.0);
 
 }  // namespace neritic::testbed

@@ -19,6 +19,7 @@ std::vector<SonarFrame> SonarStation::decode(const SonarWork& work) const {
     if (const auto level = sonar::quality_level(sonar); level.ok()) frame.quality = *level;
     frame.max_error = sonar.max_error;
     frame.heading_rad = head->heading_rad;
+    frame.world_from_sonar = head->world_from_sonar;
     frame.world_from_head =
         head->sampled.views.views.front().world_from_view *
         Pose{Vec3(0.0), glm::angleAxis(state.sectors.front().yaw_rad, Vec3(0, 1, 0))};

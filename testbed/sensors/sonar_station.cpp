@@ -9,12 +9,6 @@
 namespace neritic::testbed {
 namespace {
 
-// A small rotation as a vector: its axis times its angle.
-Vec3 turn_of(const Quat& q) {
-  const Quat shorter = q.w < 0.0 ? -q : q;
-  return glm::axis(shorter) * glm::angle(shorter);
-}
-
 // A view a sector; all are of one pinhole.
 render::ViewSet head_views(const scene::Sonar& sonar, const HeadState& head,
                            const sonar::LeaningView& pinhole, const Pose& world_from_head) {
@@ -44,9 +38,6 @@ Result<gpu::Buffer> table_buffer(gpu::Device& device, const char* name,
   NERITIC_TRY_STATUS(gpu::upload_buffer(device, buffer, std::as_bytes(std::span(table))));
   return buffer;
 }
-
-// The pose of a sonar at a time, and half a step before and after it.
-constexpr double kMotionStep_s = 1e-3;
 
 std::string name_of(const scene::Sonar& sonar, const HeadState& head) {
   return head.head.name.empty() ? sonar.name : sonar.name + " " + head.head.name;
@@ -162,18 +153,13 @@ Result<SonarState*> SonarStation::state_of(std::size_t index) {
 }
 
 sonar::PingState SonarStation::ping_state(const Frame& frame, const HeadWork& head,
+                                          const scene::Motion& sonar,
                                           const Pose& world_from_head) const {
-  const scene::Mount& mount = scene_.sonars[head.index].mount;
-  // How it moves on from here, while the echo comes back: at a track's beginning too.
-  const Pose before = scene_.world_from(mount, frame.time_s);
-  const Pose after = scene_.world_from(mount, frame.time_s + kMotionStep_s);
   sonar::PingState ping;
   ping.world_from_sonar = world_from_head;
-  ping.velocity_m_s = (after.position_m - before.position_m) / kMotionStep_s;
+  ping.velocity_m_s = sonar.velocity_m_s;
   // About the head's own y: a side-scan looks down, and so turns its bearings by a part of a yaw.
-  const Vec3 turn = glm::conjugate(world_from_head.rotation) *
-                    turn_of(after.rotation * glm::conjugate(before.rotation));
-  ping.yaw_rate_rad_s = turn.y / kMotionStep_s;
+  ping.yaw_rate_rad_s = (glm::conjugate(world_from_head.rotation) * sonar.angular_velocity_rad_s).y;
   ping.seed = scene_.seed;
   ping.stream = static_cast<std::uint32_t>(head.index * 2 + head.place);
   ping.ping = frame.ping;
@@ -199,8 +185,9 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
   const bool host = frame.capture.to_host;
   head.heading_rad = sonar::scan_heading_rad(sonar, frame.ping);
   const Pose turned{Vec3(0.0), glm::angleAxis(-head.heading_rad, Vec3(0, 1, 0))};
-  const Pose world_from_head =
-      scene_.world_from(sonar.mount, frame.time_s) * turned * state.head.sonar_from_head;
+  const scene::Motion motion = frame.motion.at(sonar.mount, frame.time_s).motion;
+  head.world_from_sonar = motion.pose;
+  const Pose world_from_head = motion.pose * turned * state.head.sonar_from_head;
   head.index = work.index;
   const std::string prefix = name_of(sonar, state) + " ";
   const auto gbuffer_of = [&](ViewWork& view, const std::string& of,
@@ -213,7 +200,7 @@ Status SonarStation::declare_head(const Frame& frame, const SonarWork& work, Hea
                                           view.draws);
   };
   NERITIC_TRY(const render::GBuffer g, gbuffer_of(head.sampled, prefix, state.sampled));
-  const sonar::PingState ping = ping_state(frame, head, world_from_head);
+  const sonar::PingState ping = ping_state(frame, head, motion, world_from_head);
   sonar::SonarGather::Inputs inputs;
   inputs.prefix = prefix;
   inputs.depth = g.depth;

@@ -45,6 +45,7 @@ struct HeadWork : ViewWork {
   std::size_t place = 0;  // among its sonar's heads
   sonar::Ping ping;
   double heading_rad = 0.0;
+  Pose world_from_sonar;
   struct Ghost {
     sonar::Ping ping;
     ViewWork view;
@@ -70,6 +71,7 @@ class SonarStation {
     graph::FrameGraph& graph;
     render::Renderer& renderer;
     const render::GpuScene& gpu_scene;
+    const scene::MotionSource& motion;
     const render::FrameState& state;
     const render::DeformedGeometry& deformed;
     ReadbackPool& readback;
@@ -91,7 +93,7 @@ class SonarStation {
   Status declare_ghosts(const Frame& frame, const SonarWork& work, HeadWork& head,
                         const sonar::PingState& ping, const sonar::SonarGather::Inputs& direct,
                         sonar::SonarGather::Outputs& out);
-  sonar::PingState ping_state(const Frame& frame, const HeadWork& head,
+  sonar::PingState ping_state(const Frame& frame, const HeadWork& head, const scene::Motion& sonar,
                               const Pose& world_from_head) const;
   const gpu::Buffer* table_of(const scene::Sonar& sonar) const;
 

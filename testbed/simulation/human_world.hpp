@@ -11,6 +11,7 @@
 #include "diver/button_recording.hpp"
 #include "diver/diver_file.hpp"
 #include "diver/limb_recording.hpp"
+#include "engine/scene/node_motion.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/sim/body_shape.hpp"
 #include "engine/sim/static_world.hpp"

@@ -30,6 +30,8 @@ const std::map<std::string, std::set<std::string>>& allowed() {
       {"testbed/simulation", {"engine/core", "engine/scene", "engine/sim", "rov", "diver"}},
       {"testbed/record",
        {"engine/core", "engine/scene", "engine/sim", "rov", "diver", "testbed/simulation"}},
+      {"testbed/motion",
+       {"engine/core", "engine/scene", "engine/sim", "rov", "diver", "testbed/simulation"}},
       {"testbed/sensors",
        {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "engine/render", "sonar",
         "shared"}},
@@ -38,8 +40,8 @@ const std::map<std::string, std::set<std::string>>& allowed() {
         "shared", "testbed/sensors"}},
       {"testbed/loop",
        {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "engine/render", "engine/sim",
-        "engine/xr", "sonar", "rov", "diver", "shared", "testbed/simulation", "testbed/record",
-        "testbed/sensors", "testbed/output"}},
+        "engine/xr", "sonar", "rov", "diver", "shared", "testbed/simulation", "testbed/motion",
+        "testbed/record", "testbed/sensors", "testbed/output"}},
       {"shaders/shared", {"shared"}}};
   return table;
 }

@@ -7,9 +7,9 @@
 #include "engine/core/files.hpp"
 #include "engine/core/log.hpp"
 #include "engine/render/water_optics.hpp"
+#include "testbed/motion/live_physics.hpp"
 #include "testbed/output/output.hpp"
 #include "testbed/output/survey.hpp"
-#include "testbed/record/dive_record.hpp"
 #include "testbed/sensors/ping_schedule.hpp"
 #include "testbed/sensors/session.hpp"
 #include "testbed/sensors/sonar_check.hpp"
@@ -26,8 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Vehicles fly on for so long after the last frame: sensors ask how they move then.
-constexpr double kFlownBeyond_s = 0.1;
+constexpr double kLongestFlight_s = 24.0 * 3600.0;  // of physics, from time 0 on
 
 // Thirty years: frames are still told apart to a tenth of a microsecond.
 constexpr double kLatestTime_s = 1e9;
@@ -142,13 +141,23 @@ Status write_frame(const fs::path& folder, const FrameResult& result, const Fram
   return {};
 }
 
-// To the last frame's end, with its progress.
-Status fly(scene::Scene& scene, double from_s, double until_s) {
-  Flight flight{.from_s = from_s, .until_s = until_s + kFlownBeyond_s};
-  const double seconds = std::clamp(flight.until_s, 0.0, kLongestFlight_s);
-  Progress progress("second of the dive", scene.physics ? static_cast<std::uint64_t>(seconds) : 0);
-  flight.second = [&] { progress.step(); };
-  return fly_ahead(scene, flight);
+// The scene's physics, stepped to the first frame; nullptr where nothing moves by physics.
+Result<std::unique_ptr<LivePhysics>> start_physics(const scene::Scene& scene, double first_s,
+                                                   double last_s) {
+  if (!PhysicsWorld::needed(scene)) return std::unique_ptr<LivePhysics>();
+  if (!(last_s <= kLongestFlight_s))
+    return bad_input("{}: physics to {:g} s of scene time; at most {:g} s are accepted", scene.path,
+                     last_s, kLongestFlight_s);
+  const TimeNs begun_ns = now_ns();
+  NERITIC_TRY(auto physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+  const auto counts = physics->world().solid().counts();
+  log_info(
+      "physics: {} solid things of {} triangles built in {:.0f} ms; {} vehicles and {} divers move",
+      counts.things, counts.triangles, to_ms(now_ns() - begun_ns),
+      physics->world().vehicles().size(), physics->world().humans().size());
+  Progress progress("second of the dive", static_cast<std::uint64_t>(std::max(first_s, 0.0)));
+  physics->reach(first_s, [&] { progress.step(); });
+  return physics;
 }
 
 Status dump_graph(const RenderFlags& flags, const Session& session) {
@@ -242,7 +251,9 @@ Result<std::string> run_render(const RenderFlags& flags) {
       1.0 / (flags.own_rates ? *std::ranges::max_element(rates_hz) : rates_hz.front());
   PingSchedule schedule(rates_hz);
   const FrameRequest all = request;
-  NERITIC_TRY_STATUS(fly(scene, flags.time_s, flags.time_s + flags.frames * step_s));
+  NERITIC_TRY(const auto physics,
+              start_physics(scene, flags.time_s, flags.time_s + flags.frames * step_s));
+  if (physics) request.simulated = &physics->motion();
   if (flags.frames > 1) warn_of_rates(scene, request, flags.own_rates ? 0.0 : rates_hz.front());
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
@@ -269,6 +280,10 @@ Result<std::string> run_render(const RenderFlags& flags) {
     request.next_time_s = request.time_s + step_s;
     request.frame = i;
     if (flags.own_rates) take_due(schedule, all, request);
+    if (physics) {
+      physics->reach(request.time_s);
+      physics->reach(request.next_time_s);
+    }
     NERITIC_TRY(const FrameResult result, session->render(request));
     facts = {request.time_s,      session->scene().seed, flags.scene,
              device->info().name, result.passes,         result.frame_ms};

@@ -36,7 +36,7 @@ position_m = [0, 0.1, -0.4]
     for (const double end_s = time_s_ + seconds; time_s_ < end_s; time_s_ += 0.05) {
       EXPECT_EQ(pilot.take(input), expected);
       input.toggle_pilot = false;
-      physics_->place(scene_, 0, time_s_);
+      physics_->follow(0, time_s_);
     }
   }
 
@@ -65,7 +65,6 @@ TEST_F(DivePilotTest, KeysMoveItAheadAsideUpAndRound) {
   fly(pilot, input, 1.0);
   const Vec3 ahead = physics_->pose(0).rotation * Vec3(0, 0, -1);
   EXPECT_GT(ahead.x, 0.2);
-  EXPECT_EQ(scene_.objects[0].mount.pose.position_m, physics_->pose(0).position_m);
 }
 
 TEST_F(DivePilotTest, AtFullThrustItStaysUpright) {

@@ -6,8 +6,7 @@
 
 #include "engine/core/files.hpp"
 #include "rov/frames.hpp"
-#include "testbed/loop/live_physics.hpp"
-#include "testbed/record/dive_record.hpp"
+#include "testbed/motion/live_physics.hpp"
 #include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
@@ -59,7 +58,8 @@ TEST_F(PhysicsRender, CamerasAndSonarsAreWhereTheVehicleIsAtTheTime) {
   scene::Scene scene = scene_of_wall();
   const auto world = PhysicsWorld::create(scene);
   ASSERT_TRUE(world.ok()) << world.error().message;
-  ASSERT_TRUE(fly_ahead(scene, {.until_s = 6.0}).ok());
+  auto physics = LivePhysics::create(scene, LivePhysics::Pace::kPicture);
+  ASSERT_TRUE(physics.ok());
   auto session = Session::create(device(), scene);
   ASSERT_TRUE(session.ok()) << session.error().message;
   const auto simulation = (*world)->simulation({});
@@ -73,6 +73,9 @@ TEST_F(PhysicsRender, CamerasAndSonarsAreWhereTheVehicleIsAtTheTime) {
     request.time_s = time_s;
     request.next_time_s = time_s + 1.0 / 30.0;
     request.cameras = request.sonars = {0};
+    request.simulated = &(*physics)->motion();
+    (*physics)->reach(request.time_s);
+    (*physics)->reach(request.next_time_s);
     const auto frame = (*session)->render(request);
     ASSERT_TRUE(frame.ok()) << frame.error().message;
     const ViewImages& view = frame->cameras[0].eyes[0];
@@ -101,7 +104,8 @@ TEST_F(PhysicsRender, DrawingChangesNoBitOfThePhysics) {
     FrameRequest request;
     request.time_s = request.next_time_s = i / 10.0;
     request.cameras = {0};
-    (*live)->place((*session)->scene(), 0, request.time_s);
+    (*live)->follow(0, request.time_s);
+    request.simulated = &(*live)->motion();
     ASSERT_TRUE((*session)->render(request).ok());
     const auto& drawn = (*live)->newest();
     simulation->advance(drawn.step - simulation->newest().step);
@@ -129,7 +133,8 @@ TEST_F(PhysicsRender, AHundredRunsDrawnAndNotHaveTheSameHashes) {
       FrameRequest request;
       request.time_s = request.next_time_s = 0.25 * i;
       request.cameras = request.sonars = {0};
-      (*live)->place((*session)->scene(), 0, request.time_s);
+      (*live)->follow(0, request.time_s);
+      request.simulated = &(*live)->motion();
       if (run % 2 == 1) {
         ASSERT_TRUE((*session)->render(request).ok());
       }

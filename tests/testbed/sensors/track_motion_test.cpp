@@ -190,7 +190,7 @@ TEST(TrackLight, ALampShinesFromWhereItsCarrierIs) {
   for (const auto& [time_s, wanted] :
        {std::pair(0.5, Vec3f(0, 0, -1.5)), std::pair(10.0, Vec3f(4.5, 0, -4))}) {
     render::FrameState state;
-    state.time_s = time_s;
+    state.world_from_lamp = {scene.world_from(scene.lamps[0].mount, time_s)};
     const auto light = render::make_lighting(scene, state, Vec3(0, -5, 0), {}, false);
     ASSERT_TRUE(light.ok());
     EXPECT_LT(glm::distance(Vec3f(light->lamps[0].position), wanted), 1e-5f);

@@ -144,47 +144,6 @@ TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
   EXPECT_LT(*other.first_difference, 260u);
 }
 
-// A path recorded for pictures is the path of the simulation, at every step and between.
-TEST(PhysicsDeterminism, TracksForPicturesAreThePathFlown) {
-  auto scene = load_text(busy_text());
-  ASSERT_TRUE(scene.ok());
-  TestDive dive = dive_of(*scene);
-  ASSERT_TRUE(fly_ahead(*scene, {.until_s = 6.0}).ok());
-  const scene::Mount& mount = scene->objects.at(2).mount;
-  ASSERT_TRUE(mount.track.has_value());
-  EXPECT_FALSE(scene->objects.at(0).mount.track.has_value());
-  dive.run(5.0, [&] {
-    const Pose drawn = scene->world_from(mount, dive.time_s());
-    ASSERT_LT(glm::distance(drawn.position_m, dive.pose().position_m), 1e-12);
-    ASSERT_GT(std::abs(glm::dot(drawn.rotation, dive.pose().rotation)), 1.0 - 1e-12);
-  });
-}
-
-// What comes before the first picture is flown but not kept.
-TEST(PhysicsDeterminism, TracksForLatePicturesBeginBeforeThem) {
-  auto whole = load_text(busy_text()), late = load_text(busy_text());
-  ASSERT_TRUE(whole.ok() && late.ok());
-  int seconds = 0;
-  ASSERT_TRUE(fly_ahead(*whole, {.until_s = 6.0}).ok());
-  ASSERT_TRUE(fly_ahead(*late, {.from_s = 4.0, .until_s = 6.0, .second = [&] { ++seconds; }}).ok());
-  EXPECT_EQ(seconds, 6);
-  const scene::Track &all = *whole->objects.at(2).mount.track,
-                     &kept = *late->objects.at(2).mount.track;
-  EXPECT_GT(kept.places.front().time_s, 2.0);
-  EXPECT_LT(kept.places.front().time_s, 4.0);
-  for (double t = 4.0; t <= 6.0; t += 0.0137)
-    ASSERT_EQ(pose_at(kept, t).position_m, pose_at(all, t).position_m) << t;
-}
-
-TEST(PhysicsDeterminism, AFlightOfMoreThanADayIsRefused) {
-  auto scene = load_text(busy_text());
-  ASSERT_TRUE(scene.ok());
-  const Status flown = fly_ahead(*scene, {.until_s = 86500.0});
-  ASSERT_FALSE(flown.ok());
-  EXPECT_EQ(flown.error().code, ErrorCode::kBadInput);
-  EXPECT_NE(flown.error().message.find("86400"), std::string::npos) << flown.error().message;
-}
-
 TEST(PhysicsDeterminism, TheStateNamesEveryByte) {
   sim::check_fields_cover(PhysicsState(3, 2));
   sim::check_fields_cover(PhysicsInputs(3, 2));

@@ -2,7 +2,6 @@
 // and what is drawn is the body that the physics has.
 #include "diver/frames.hpp"
 #include "engine/scene/animation.hpp"
-#include "testbed/loop/live_physics.hpp"
 #include "testbed/record/dive_record.hpp"
 #include "tests/testbed/simulation/dives.hpp"
 

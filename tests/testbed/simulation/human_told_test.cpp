@@ -9,7 +9,7 @@ TEST(HumanDive, RowsSayGasAndTissues) {
   TestDive dive =
       dive_of(kStillWater + diver_text(std::string("position_m = [0, -18, 0]\n") + kProne) +
               rov_text("position_m = [3, -18, 0]\n"));
-  DiveRecorder recorder(*dive.world, {.rows = true, .tracks = true});
+  DiveRecorder recorder(*dive.world, {.rows = true});
   recorder.add(dive.simulation->newest());
   dive.run(3.0, [&] { recorder.add(dive.simulation->newest()); });
   const auto& rows = recorder.humans().rows();
@@ -33,10 +33,6 @@ TEST(HumanDive, RowsSayGasAndTissues) {
        {",no_stop_min,", ",heart_bpm,", ",co2_proxy_mmhg,", ",tank_bar,", ",oxygen_risk,",
         ",out_of_gas_s,", ",ascent_gas_l,", ",ascent_gas_there_l,", ",tanks_too_small"})
     EXPECT_NE(csv.find(column), csv.npos) << column;
-  scene::Scene drawn = dive.scene;
-  recorder.humans().give_tracks(drawn);
-  ASSERT_TRUE(drawn.objects[0].node_motion.has_value());
-  EXPECT_NEAR(static_cast<double>(drawn.objects[0].node_motion->keys.size()), 181.0, 2.0);
 }
 
 // A tank of a litre at 40 m, then a jacket that carries the diver up: what endangered the diver is

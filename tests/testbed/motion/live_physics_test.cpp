@@ -1,6 +1,7 @@
 // Physics beside a picture: in lock-step it is where a simulation of that time is, on its thread
 // where the clock says, between two steps and no farther than one from either.
-#include "testbed/loop/live_physics.hpp"
+#include "testbed/motion/live_physics.hpp"
+
 #include "tests/testbed/simulation/dives.hpp"
 
 namespace neritic::testbed {
@@ -19,8 +20,8 @@ TEST(LivePhysics, InLockStepItIsThePathFlown) {
   ASSERT_TRUE(live.ok());
   (*live)->start();
   for (int frame = 0; frame < 30; ++frame) {
-    (*live)->place(scene, 0, frame / 30.0);
-    EXPECT_LT(glm::distance(scene.objects[0].mount.pose.position_m, dive.pose().position_m), 1e-9);
+    EXPECT_EQ((*live)->follow(0, frame / 30.0), frame / 30.0);
+    EXPECT_LT(glm::distance((*live)->pose(0).position_m, dive.pose().position_m), 1e-9);
     dive.run(1.0 / 30.0);
   }
   EXPECT_EQ((*live)->newest().hash, dive.simulation->log().hashes[(*live)->newest().step]);
@@ -39,8 +40,8 @@ TEST(LivePhysics, OnItsThreadItKeepsTheClocksPace) {
   const TimeNs begun_ns = now_ns();
   double farthest_m = 0.0;
   for (TimeNs now = begun_ns; now < begun_ns + 1'000'000'000; now = now_ns()) {
-    (*live)->place(scene, now, 0.0);
-    const Vec3 at = scene.objects[0].mount.pose.position_m;
+    (*live)->follow(now, 0.0);
+    const Vec3 at = (*live)->pose(0).position_m;
     double nearest_m = 1e9;
     for (const Vec3& p : path) nearest_m = std::min(nearest_m, glm::distance(p, at));
     farthest_m = std::max(farthest_m, nearest_m);

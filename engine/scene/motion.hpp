@@ -1,0 +1,67 @@
+// Where the things of a scene are, how they move and how that is known, at any time: by their
+// tracks and clips, or by a simulation. Pictures, sonars and cameras that ride along all ask here;
+// nothing changes the scene to move things. Plain values; any thread that may read both.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "engine/scene/animation.hpp"
+#include "engine/scene/node_motion.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace neritic::scene {
+
+// A moving frame in another.
+struct Motion {
+  Pose pose;                         // target_from_source
+  Vec3 velocity_m_s{0.0};            // of the source's origin, in the target's axes
+  Vec3 angular_velocity_rad_s{0.0};  // in the target's axes
+};
+// What moves in b, as seen from a, in which b moves.
+Motion operator*(const Motion& a_from_b, const Motion& b_from_c);
+
+enum class Knowledge {
+  kExact,      // by a track, a clip, or a state of just that time
+  kBetween,    // between two states
+  kPredicted,  // from the newest state on, at its velocity
+  kHeld,       // outside what is known: the oldest state, or the prediction at its limit
+};
+
+struct MotionAt {
+  Motion motion;
+  Knowledge known = Knowledge::kExact;
+  double predicted_s = 0.0;  // how far behind that time the newest state is
+};
+
+// Objects that something else than their track and clip moves: a simulation.
+class SimulatedMotion {
+ public:
+  virtual ~SimulatedMotion() = default;
+  // World_from_object; nothing for an object that the simulation does not move.
+  virtual std::optional<MotionAt> at(std::size_t object, double time_s) const = 0;
+  // The pose of the object's model; nothing where its clip says it.
+  virtual std::optional<ModelPose> model_pose(std::size_t object, const Model& model,
+                                              double time_s) const = 0;
+};
+
+class MotionSource {
+ public:
+  // Both must outlive this; simulated may be nullptr: all moves by tracks and clips.
+  MotionSource(const Scene& scene, const SimulatedMotion* simulated = nullptr)
+      : scene_(&scene), simulated_(simulated) {}
+
+  const Scene& scene() const { return *scene_; }
+  // World_from_mount, with all that carries it.
+  Pose world_from(const Mount& mount, double time_s) const { return at(mount, time_s).motion.pose; }
+  MotionAt at(const Mount& mount, double time_s) const;
+  Pose world_from_object(std::size_t object, double time_s) const;
+  ModelPose model_pose(std::size_t object, const Model& model, double time_s) const;
+
+ private:
+  std::optional<MotionAt> simulated(std::size_t object, double time_s) const;
+  const Scene* scene_;
+  const SimulatedMotion* simulated_;
+};
+
+}  // namespace neritic::scene

@@ -1,0 +1,100 @@
+#include "testbed/motion/motion_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/check.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+int index_in(const std::vector<int>& table, std::size_t object) {
+  return object < table.size() ? table[object] : -1;
+}
+
+// Positions along the line, attitudes along the shortest turn, velocities in proportion.
+scene::Motion between(const scene::Motion& a, const scene::Motion& b, double share) {
+  const auto mix = [share](const Vec3& from, const Vec3& to) { return from + (to - from) * share; };
+  return {{mix(a.pose.position_m, b.pose.position_m),
+           glm::normalize(glm::slerp(a.pose.rotation, b.pose.rotation, share))},
+          mix(a.velocity_m_s, b.velocity_m_s),
+          mix(a.angular_velocity_rad_s, b.angular_velocity_rad_s)};
+}
+
+// Both velocities stay as they are.
+scene::Motion predicted(const scene::Motion& from, double ahead_s) {
+  scene::Motion out = from;
+  out.pose.position_m += from.velocity_m_s * ahead_s;
+  const double rate_rad_s = glm::length(from.angular_velocity_rad_s);
+  if (rate_rad_s > 0.0)
+    out.pose.rotation = glm::normalize(
+        glm::angleAxis(rate_rad_s * ahead_s, from.angular_velocity_rad_s / rate_rad_s) *
+        from.pose.rotation);
+  return out;
+}
+
+}  // namespace
+
+MotionHistory::MotionHistory(std::vector<Moved> moved) : moved_(std::move(moved)), ring_(kKept) {
+  int joints = 0;
+  for (std::size_t i = 0; i < moved_.size(); ++i) {
+    const std::size_t object = moved_[i].object;
+    if (object >= place_.size()) {
+      place_.resize(object + 1, -1);
+      joints_.resize(object + 1, -1);
+    }
+    place_[object] = static_cast<int>(i);
+    if (!moved_[i].nodes.empty()) joints_[object] = joints++;
+  }
+}
+
+void MotionHistory::add(MotionSnapshot snapshot) {
+  NERITIC_CHECK(snapshot.motions.size() == moved_.size(), "{} motions of {} objects",
+                snapshot.motions.size(), moved_.size());
+  if (count_ > 0 && snapshot.time_s <= newest_s()) return;
+  ring_[added_++ % ring_.size()] = std::move(snapshot);
+  count_ = std::min(count_ + 1, ring_.size());
+}
+
+// Of the newest snapshot that is not later than time_s; the oldest where all are later.
+std::size_t MotionHistory::age_before(double time_s) const {
+  std::size_t age = 0;
+  while (age + 1 < count_ && at_age(age).time_s > time_s) ++age;
+  return age;
+}
+
+std::optional<scene::MotionAt> MotionHistory::at(std::size_t object, double time_s) const {
+  const int place = index_in(place_, object);
+  if (place < 0 || count_ == 0) return std::nullopt;
+  const auto index = static_cast<std::size_t>(place);
+  const std::size_t age = age_before(time_s);
+  const MotionSnapshot& before = at_age(age);
+  const scene::Motion& from = before.motions[index];
+  const double since_s = time_s - before.time_s;
+  if (since_s == 0.0) return scene::MotionAt{from};
+  if (since_s < 0.0) return scene::MotionAt{{from.pose}, scene::Knowledge::kHeld};
+  if (age > 0) {
+    const MotionSnapshot& after = at_age(age - 1);
+    const double share = since_s / (after.time_s - before.time_s);
+    return scene::MotionAt{between(from, after.motions[index], share), scene::Knowledge::kBetween};
+  }
+  if (since_s <= kMostPredicted_s)
+    return scene::MotionAt{predicted(from, since_s), scene::Knowledge::kPredicted, since_s};
+  return scene::MotionAt{
+      {predicted(from, kMostPredicted_s).pose}, scene::Knowledge::kHeld, since_s};
+}
+
+std::optional<scene::ModelPose> MotionHistory::model_pose(std::size_t object,
+                                                          const scene::Model& model,
+                                                          double time_s) const {
+  const int place = index_in(joints_, object);
+  if (place < 0 || count_ == 0) return std::nullopt;
+  const auto index = static_cast<std::size_t>(place);
+  const std::size_t age = age_before(time_s);
+  scene::NodeMotion motion{moved_[static_cast<std::size_t>(place_[object])].nodes,
+                           {at_age(age).joints[index]}};
+  if (age > 0) motion.keys.push_back(at_age(age - 1).joints[index]);
+  return scene::evaluate_pose(model, motion, time_s);
+}
+
+}  // namespace neritic::testbed

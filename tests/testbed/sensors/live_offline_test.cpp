@@ -1,0 +1,135 @@
+// A sonar on a vehicle that swims by physics hears the same beside a running thread, as a window
+// does, and in lock-step, as `render` does: the same bits wherever the states are the same, Doppler
+// and motion within the ping included.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "engine/core/files.hpp"
+#include "testbed/motion/live_physics.hpp"
+#include "testbed/sensors/session.hpp"
+#include "tests/support/gpu_fixture.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// A vehicle that flies along a wall, at which its sonar looks askew.
+scene::Scene scene_of_flight() {
+  const test::ScratchFolder scratch;
+  const std::string dynamics =
+      (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string();
+  EXPECT_TRUE(write_text(scratch / "s.toml", R"([physics]
+[[objects]]
+name = "wall"
+class = "structure"
+shape = "box"
+size_m = [1, 20, 40]
+position_m = [-4.5, -10, 0]
+[[vehicles]]
+name = "rov"
+shape = "box"
+size_m = [0.5, 0.3, 0.5]
+dynamics = ")" + dynamics + R"("
+position_m = [0, -10, 0]
+yaw_deg = 60
+mission = { waypoints = [ { position_m = [-2, -10, -20] } ] }
+[[vehicles.sonars]]
+name = "sonar"
+position_m = [0.4, 0, -0.3]
+range_m = [0.5, 10]
+azimuth_deg = 40
+elevation_deg = 10
+bins = [400, 64, 32]
+)")
+                  .ok());
+  scene::Scene scene = scene::load_scene(scratch / "s.toml").value();
+  scene.sonars[0].terms.frequency_hz = 750e3;
+  scene.sonars[0].terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 60e3};
+  scene.sonars[0].terms.motion =
+      scene::SonarMotion{.within_ping = true, .doppler = true, .pulse_s = 500e-6};
+  return scene;
+}
+
+SonarFrame ping_at(Session& session, double time_s, const scene::SimulatedMotion* simulated) {
+  FrameRequest request;
+  request.time_s = request.next_time_s = time_s;
+  request.sonars = {0};
+  request.simulated = simulated;
+  auto result = session.render(request);
+  EXPECT_TRUE(result.ok()) << result.error().message;
+  return std::move(result->sonars[0]);
+}
+
+class LiveOffline : public test::GpuTest {};
+
+TEST_F(LiveOffline, AThreadAndLockStepGiveTheSameSonarBits) {
+  const scene::Scene scene = scene_of_flight();
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
+  NERITIC_ASSERT_OK(const auto live, LivePhysics::create(scene, LivePhysics::Pace::kClock));
+  NERITIC_ASSERT_OK(const auto offline, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+  live->start();
+  std::uint64_t last = 0;
+  for (int ping = 0; ping < 8; ++ping) {
+    do {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      live->follow(now_ns(), 0.0);
+    } while (live->shown_snapshot().step <= last);
+    last = live->shown_snapshot().step;
+    const double time_s = (static_cast<double>(last) - 0.4) * live->world().step_s();
+    const SonarFrame heard = ping_at(*session, time_s, &live->motion());
+    offline->reach(time_s);
+    ASSERT_EQ(offline->newest().step, last);
+    EXPECT_EQ(live->shown_snapshot().hash, offline->newest().hash);
+    const SonarFrame expected = ping_at(*session, time_s, &offline->motion());
+    EXPECT_EQ(heard.image.intensity, expected.image.intensity) << time_s;
+    EXPECT_EQ(heard.world_from_sonar.position_m, expected.world_from_sonar.position_m);
+  }
+}
+
+// What the states' velocities change, against the same place passed at the same velocity by a
+// track.
+TEST_F(LiveOffline, TheSonarHearsItsVehiclesVelocity) {
+  const scene::Scene scene = scene_of_flight();
+  NERITIC_ASSERT_OK(const auto physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+  constexpr double kTime_s = 4.0;
+  physics->reach(kTime_s);
+  const scene::MotionSource source(scene, &physics->motion());
+  const scene::Motion motion = source.at(scene.sonars[0].mount, kTime_s).motion;
+  ASSERT_GT(glm::length(motion.velocity_m_s), 0.3);
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
+  const SonarFrame heard = ping_at(*session, kTime_s, &physics->motion());
+  const auto passing = [&](const Vec3& velocity_m_s, const Vec3& turn_rad_s) {
+    scene::Scene by_track = scene;
+    scene::Track track;
+    for (const double t : {-1.0, 1.0}) {
+      track.places.push_back({kTime_s + t, motion.pose.position_m + velocity_m_s * t});
+      const double rate_rad_s = glm::length(turn_rad_s);
+      const Quat turn = rate_rad_s == 0.0 ? Quat(1, 0, 0, 0)
+                                          : glm::angleAxis(rate_rad_s * t, turn_rad_s / rate_rad_s);
+      track.attitudes.push_back({kTime_s + t, glm::normalize(turn * motion.pose.rotation)});
+    }
+    by_track.sonars[0].mount = {-1, {}, track};
+    // The vehicle's own box stays behind, out of sight.
+    by_track.objects[1].mount.pose.position_m = {0.0, -10.0, 30.0};
+    auto other = Session::create(device(), std::move(by_track));
+    EXPECT_TRUE(other.ok());
+    return ping_at(**other, kTime_s, nullptr);
+  };
+  const auto difference = [&](const SonarFrame& a) {
+    double sum = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < a.image.intensity.size(); ++i) {
+      sum += std::abs(double(a.image.intensity[i]) - double(heard.image.intensity[i]));
+      all += heard.image.intensity[i];
+    }
+    return sum / all;
+  };
+  const double moving = difference(passing(motion.velocity_m_s, motion.angular_velocity_rad_s));
+  const double still = difference(passing(Vec3(0.0), Vec3(0.0)));
+  EXPECT_LT(moving, 1e-3);
+  EXPECT_GT(still, 10.0 * moving);
+  EXPECT_GT(still, 0.01);
+}
+
+}  // namespace
+}  // namespace neritic::testbed
