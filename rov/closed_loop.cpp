@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rov/thrust_priority.hpp"
+
 namespace neritic::rov {
 
 LoopRun fly(const Vehicle& vehicle, const ControlGains& gains, const State& start,
@@ -16,7 +18,8 @@ LoopRun fly(const Vehicle& vehicle, const ControlGains& gains, const State& star
   ControlState control;
   for (std::size_t k = 0; k < periods; ++k) {
     const Setpoint setpoint = guide(state, static_cast<double>(k) * gains.period_s);
-    const Inputs inputs = control_inputs(vehicle, allocator, gains, setpoint, state, control);
+    const Inputs inputs = (steps.level_first ? level_inputs : control_inputs)(
+        vehicle, allocator, gains, setpoint, state, control);
     for (int i = 0; i < steps.count; ++i)
       state = step(vehicle, state, inputs, gains.period_s / steps.count, steps.integrator);
     for (const double force : inputs.thruster_n)

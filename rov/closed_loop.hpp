@@ -25,6 +25,7 @@ struct LoopRun {
 struct LoopSteps {
   int count = 5;
   Integrator integrator = Integrator::kGuarded;
+  bool level_first = false;  // by level_inputs() (thrust_priority.hpp)
 };
 LoopRun fly(const Vehicle& vehicle, const ControlGains& gains, const State& start,
             const Guide& guide, double seconds, const LoopSteps& steps = {});

@@ -191,6 +191,9 @@ LoopCase read_loop(const CaseField& loop, const CaseField& at, const std::string
         "surge_, sway_, depth_ and metres (surge_2m), roll_, pitch_, yaw_ and degrees "
         "(yaw_90deg), or waypoints are accepted");
   out.duration_s = at["duration_s"].number(out.duration_s, 0.1, 1e4);
+  const std::string priority = at["priority"].text("none");
+  if (priority != "none" && priority != "level") at["priority"].fail("none and level are accepted");
+  out.level_first = priority == "level";
   for (const char* figure : kFigures)
     if (const auto value = maybe(at[figure])) out.figures[figure] = *value;
   out.end_state = at["end_state"].numbers(13);

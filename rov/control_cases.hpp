@@ -14,7 +14,8 @@
 //     depth_+1m, roll_, pitch_, yaw_90deg and so on, or any name with waypoints (p, yaw) and
 //     radius; of rise_10_90, t90, overshoot_pct, settle_s, final_error, max_tilt_deg,
 //     max_thruster_N, arrival_s, end_state what is compared. It begins at rest at 10 m and lasts
-//     duration_s [15; 40 with waypoints]
+//     duration_s [15; 40 with waypoints]; priority: "none" [none] or "level", the law of missions
+//     (thrust_priority.hpp)
 #pragma once
 
 #include <map>
@@ -59,6 +60,7 @@ struct LoopCase {
   double buoyancy_water_kg_m3 = 0.0;  // 0: neutral
   double lag_s = 0.1, min_n = 0.0, max_n = 0.0, duration_s = 15.0;
   ControlGains gains;
+  bool level_first = false;
   // A step of one axis, or waypoints.
   std::size_t axis = 0;
   double amount = 0.0;  // m or rad

@@ -182,8 +182,8 @@ CaseResult check_loop(const LoopCase& one, const ControlCheck& options) {
   };
   const int steps =
       std::max(1, static_cast<int>(std::ceil(options.hz * one.gains.period_s - 1e-9)));
-  const LoopRun run =
-      fly(vehicle, one.gains, start_of_loops(), guide, one.duration_s, {steps, options.integrator});
+  const LoopRun run = fly(vehicle, one.gains, start_of_loops(), guide, one.duration_s,
+                          {steps, options.integrator, one.level_first});
   CaseResult result{one.id, {}};
   const auto found = figures_of(one, run);
   for (const auto& [what, expected] : one.figures) {

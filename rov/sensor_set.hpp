@@ -15,6 +15,7 @@ struct SensorSet {
   std::optional<Compass> compass;
   std::optional<Altimeter> altimeter;
   std::optional<Usbl> usbl;
+  bool any() const { return imu || dvl || pressure || compass || altimeter || usbl; }
 };
 
 // One sensor's newest reading. count: how many it made; 0: none yet.

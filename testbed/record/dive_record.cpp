@@ -32,7 +32,6 @@ DiveRecorder::DiveRecorder(const PhysicsWorld& world, const RecordOptions& optio
     : world_(world),
       options_(options),
       figures_(world.vehicles().size()),
-      readings_(world.vehicles().size()),
       last_(world.start()),
       humans_(world) {}
 
@@ -64,7 +63,8 @@ DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState
   row.near_points = state.contact.near_points;
   row.touched_steps = state.contact.touched_steps;
   row.hash = snapshot.hash;
-  row.readings = readings_[index];
+  if (const rov::SensorReadings* readings = world_.readings(snapshot.state, index))
+    row.readings = *readings;
   return row;
 }
 
@@ -82,12 +82,6 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
     figures.shallowest_m = std::min(figures.shallowest_m, now.body.position_ned_m.z);
     figures.deepest_m = std::max(figures.deepest_m, now.body.position_ned_m.z);
     figures.largest_tilt_rad = std::max(figures.largest_tilt_rad, tilt_of(now.body.attitude));
-    if (options_.rows) {
-      const double from_s = snapshot.step == 0 ? -1.0 : snapshot.time_s - world_.step_s();
-      rov::update_readings(world_.vehicles()[i].file.sensors, {world_.rays(), world_.seed(), i},
-                           world_.vehicles()[i].vehicle, now.body, now.contact.acceleration, from_s,
-                           snapshot.time_s, readings_[i]);
-    }
     if (options_.rows && row_due(i, snapshot.step)) rows_.push_back(row_of(i, snapshot));
   }
   humans_.add(snapshot, options_.rows && human_row_due(snapshot.step));

@@ -56,7 +56,6 @@ class DiveRecorder {
   RecordOptions options_;
   std::vector<DiveRow> rows_;
   std::vector<DiveFigures> figures_;
-  std::vector<rov::SensorReadings> readings_;
   PhysicsState last_;
   HumanRecorder humans_;
 };

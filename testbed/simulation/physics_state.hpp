@@ -12,6 +12,7 @@
 #include "engine/sim/block.hpp"
 #include "engine/sim/simulation.hpp"
 #include "rov/dynamics.hpp"
+#include "rov/sensor_set.hpp"
 #include "testbed/simulation/physics_inputs.hpp"
 
 namespace neritic::testbed {
@@ -93,21 +94,28 @@ struct HumanPhysics {
 };
 
 // The state of a scene's physics: one block, sized once from the scene (PhysicsWorld::start()).
-class PhysicsState : public sim::Block<VehicleState, HumanPhysics> {
+class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings> {
  public:
   PhysicsState() = default;
-  PhysicsState(std::size_t vehicles, std::size_t humans) : Block({vehicles, humans}) {}
+  // sensing: vehicles that have sensors.
+  PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing)
+      : Block({vehicles, humans, sensing}) {}
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
   std::span<HumanPhysics> humans() { return part<HumanPhysics>(); }
   std::span<const HumanPhysics> humans() const { return part<HumanPhysics>(); }
+  // Of the vehicles that have sensors, in their order: PhysicsWorld::readings() finds a vehicle's.
+  std::span<rov::SensorReadings> readings() { return part<rov::SensorReadings>(); }
+  std::span<const rov::SensorReadings> readings() const { return part<rov::SensorReadings>(); }
 
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
     auto humans = self.humans();
+    auto readings = self.readings();
     field("vehicles", vehicles);
     field("humans", humans);
+    field("readings", readings);
   }
 };
 

@@ -5,38 +5,12 @@
 #include <limits>
 
 #include "rov/frames.hpp"
+#include "rov/thrust_priority.hpp"
 #include "testbed/simulation/physics_world.hpp"
 #include "testbed/simulation/surface.hpp"
 
 namespace neritic::testbed {
 namespace {
-
-// Of a wrench that pushes the share for which the thrusters have room beside what holds the vehicle
-// level: at full thrust they would have none left, and it would overturn.
-rov::Vec6 with_room(const rov::Vehicle& vehicle, const rov::Allocator& allocator,
-                    const rov::Vec6& holding, const rov::Vec6& push) {
-  const auto held_n = allocator.allocate(holding).wanted_n;
-  const auto push_n = allocator.allocate(push).wanted_n;
-  double share = 1.0;
-  for (std::size_t i = 0; i < vehicle.thruster_count; ++i) {
-    if (push_n[i] == 0.0) continue;
-    const double limit_n =
-        push_n[i] > 0.0 ? vehicle.thrusters[i].max_n : vehicle.thrusters[i].min_n;
-    share = std::min(share, (limit_n - held_n[i]) / push_n[i]);
-  }
-  return std::max(0.0, share) * push;
-}
-
-// What a mission's push leaves of the thrusters is little where the setpoint is far away, and
-// moving fast the water turns a vehicle broadside (the Munk moment, v x M_A v; Fossen 2011,
-// eq. 6.43) more than its gains hold: cut like all the rest, its moments would not keep it off its
-// nose. So they come first, the Munk moment given on top.
-rov::Vec6 level_first(const rov::Vehicle& vehicle, const rov::Allocator& allocator,
-                      const rov::Vec6& wrench, const rov::State& body) {
-  const Vec3 munk = glm::cross(body.velocity.linear(), (vehicle.mass * body.velocity).linear());
-  const rov::Vec6 moments = rov::vec6(Vec3(0.0), wrench.angular() + munk);
-  return moments + with_room(vehicle, allocator, moments, rov::vec6(wrench.linear(), Vec3(0.0)));
-}
 
 void add_contact(const ContactReport& report, double dt_s, VehicleState& state) {
   const Quat body_from_ned = glm::conjugate(state.body.attitude);
@@ -62,12 +36,13 @@ bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
 }
 
 PhysicsState PhysicsWorld::start() const {
-  PhysicsState state(vehicles_.size(), humans_.size());
+  PhysicsState state(vehicles_.size(), humans_.size(), sensing_);
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     state.vehicles()[i].body = vehicles_[i].start;
     state.vehicles()[i].mission = mission_start(vehicles_[i].start);
   }
   for (std::size_t i = 0; i < humans_.size(); ++i) state.humans()[i] = humans_[i].start;
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) sense(i, -1.0, 0.0, state);
   return state;
 }
 
@@ -193,6 +168,8 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
     if (own.parted) report.change_ned = report.change_ned + velocity_ned(own.free) - own.alone_ned;
     add_contact(report, dt_s, vehicles[i]);
     vehicles[i].contact.touched_steps += report.motion.touched || own.parted ? 1 : 0;
+    const double end_s = sim::StepTime{time.step + 1, dt_s}.time_s();
+    sense(i, end_s - dt_s, end_s, after);
   }
   for (std::size_t k = 0; k < humans.size(); ++k)
     end_human(humans_[k], solid_, scratch.humans[k].moving, scratch.humans[k].parted, time.step,
@@ -209,28 +186,39 @@ bool PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const Vehic
     state.command_n = {};
     return true;
   }
-  const rov::Setpoint setpoint =
-      piloted ? piloted_setpoint(inputs, state.body, state.mission)
-              : vehicle.mission->update(all, state.body, time_s, state.mission);
+  rov::Setpoint setpoint = piloted
+                               ? piloted_setpoint(inputs, state.body, state.mission)
+                               : vehicle.mission->update(all, state.body, time_s, state.mission);
+  if (piloted) setpoint.pilot = inputs.pilot;
   rov::ControlState control{state.integral};
-  const rov::Vec6 holding =
-      rov::control_wrench(vehicle.vehicle, vehicle.file.gains, setpoint, state.body, control);
-  rov::Inputs commands;
-  const auto allocate = [&](const rov::Allocator& allocator) {
-    const rov::Vec6 wrench =
-        piloted ? holding + with_room(vehicle.vehicle, allocator, holding, inputs.pilot)
-                : level_first(vehicle.vehicle, allocator, holding, state.body);
-    commands.thruster_n = allocator.allocate(wrench, vehicle.file.gains.saturation).force_n;
+  const auto commands_by = [&](const rov::Allocator& allocator) {
+    return (piloted ? rov::piloted_inputs : rov::level_inputs)(
+        vehicle.vehicle, allocator, vehicle.file.gains, setpoint, state.body, control);
   };
-  if (inputs.failed_thrusters == vehicle.failed_thrusters)
-    allocate(vehicle.allocator);
-  else
-    allocate(rov::Allocator(vehicle.vehicle, inputs.failed_thrusters));
+  rov::Inputs commands =
+      inputs.failed_thrusters == vehicle.failed_thrusters
+          ? commands_by(vehicle.allocator)
+          : commands_by(rov::Allocator(vehicle.vehicle, inputs.failed_thrusters));
   rov::drive(vehicle.file, commands);
   if (!sim::all_finite(commands)) return false;
   state.command_n = commands.thruster_n;
   state.integral = control.integral;
   return true;
+}
+
+// The samples of the vehicle's sensors that are due in (from_s, to_s], of the state at to_s.
+void PhysicsWorld::sense(std::size_t index, double from_s, double to_s, PhysicsState& state) const {
+  const PhysicsVehicle& vehicle = vehicles_[index];
+  if (!vehicle.readings) return;
+  const VehicleState& now = state.vehicles()[index];
+  rov::update_readings(vehicle.file.sensors, {rays(), seed_, index}, vehicle.vehicle, now.body,
+                       now.contact.acceleration, from_s, to_s, state.readings()[*vehicle.readings]);
+}
+
+const rov::SensorReadings* PhysicsWorld::readings(const PhysicsState& state,
+                                                  std::size_t vehicle) const {
+  const auto& at = vehicles_[vehicle].readings;
+  return at ? &state.readings()[*at] : nullptr;
 }
 
 // What pushes it in the step to come.

@@ -142,6 +142,7 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
   rov::teleport(out.start, rov::ned_from_world(at.position_m), rov::ned_from_world(at.rotation));
   NERITIC_TRY_STATUS(check_start(scene, out.name, out.solid.shape,
                                  rov::world_pose(out.start.position_ned_m, out.start.attitude)));
+  if (out.file.sensors.any()) out.readings = sensing_++;
   vehicles_.push_back(std::move(out));
   return {};
 }

@@ -30,6 +30,7 @@ struct PhysicsVehicle {
   SolidBody solid;
   double top_m = 0.0, bottom_m = 0.0;  // of the shape, above the origin
   rov::State start;
+  std::optional<std::size_t> readings;  // of PhysicsState::readings(); none: without sensors
 };
 
 // Memory that a step works in, kept from step to step so that none allocates. Its content means
@@ -78,6 +79,8 @@ class PhysicsWorld {
                     const sim::StepTime& time) const;
   static void apply(PhysicsInputs& inputs, const PhysicsMessage& message);
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
+  // The newest readings of a vehicle's sensors; null where it has none.
+  const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
   // What sensors hear: the first solid thing along a ray.
   rov::RayQuery rays() const;
 
@@ -95,6 +98,7 @@ class PhysicsWorld {
                      const sim::BodyShape& shape, const Pose& start) const;
   bool steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
              VehicleState& state) const;
+  void sense(std::size_t index, double from_s, double to_s, PhysicsState& state) const;
   // Where something that moves so is, during a step.
   diver::WaterFlow water_along(const Vec3& position_ned_m, const Vec3& velocity_ned_m_s,
                                double time_s, double dt_s) const;
@@ -108,6 +112,7 @@ class PhysicsWorld {
   sim::StaticWorld solid_;
   std::vector<PhysicsVehicle> vehicles_;
   std::vector<PhysicsHuman> humans_;
+  std::size_t sensing_ = 0;  // vehicles with sensors
 };
 
 // What the scene says of the current, its grid read.

@@ -29,10 +29,13 @@ Result<Surveyor> make_surveyor(const Suite& suite) {
   NERITIC_TRY(out.scene, scene::load_scene(suite.options().assets + "/scenes/mission.toml"));
   for (scene::Object& object : out.scene.objects)
     if (object.dynamics)
-      object.dynamics->file =
-          suite.options().assets + "/vehicles/bluerov2_heavy_survey_dynamics.toml";
+      object.dynamics->file = suite.options().assets + "/vehicles/bluerov2_heavy_dynamics.toml";
   NERITIC_TRY(out.world, testbed::PhysicsWorld::create(out.scene));
-  out.sensors = out.world->vehicles()[0].file.sensors;
+  NERITIC_TRY(
+      const rov::VehicleFile survey,
+      rov::read_vehicle(suite.options().assets + "/vehicles/bluerov2_heavy_survey_dynamics.toml",
+                        out.scene.physics->water_kg_m3));
+  out.sensors = survey.sensors;
   const double hz = 1.0 / out.world->step_s();
   out.sensors.imu->rate_hz = out.sensors.dvl->rate_hz = out.sensors.pressure->rate_hz = hz;
   out.sensors.compass->rate_hz = out.sensors.altimeter->rate_hz = out.sensors.usbl->rate_hz = hz;
