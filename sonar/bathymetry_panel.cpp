@@ -1,20 +1,25 @@
-// The chart of a bathymetric grid.
+// The chart of a bathymetric grid. Pure functions; any thread.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "engine/draw2d/axes.hpp"
+#include "engine/draw2d/resample.hpp"
 #include "sonar/bathymetry.hpp"
-#include "sonar/waterfall_panel.hpp"
 
 namespace neritic::sonar {
+
+using namespace draw2d;
+
 namespace {
 
-constexpr double kTop = 92, kBottom = 70, kLeft = 84, kRight = 150;  // margins in 900 px of height
+constexpr double kTop = 92, kBottom = 70, kLeft = 84,
+                 kRight = 150;  // margins, multiples of the unit
 
 struct DepthSpan {
   double shallow = 0.0, deep = 1.0;
 };
-// The middle 99 % of depths, so that a stray sounding does not take the colours.
+// The middle 99 % of the depths, so that a stray sounding does not stretch the colours.
 DepthSpan span_of(const BathymetryGrid& grid) {
   std::vector<double> depths;
   for (const double d : grid.mean_m)
@@ -38,7 +43,7 @@ double depth_at(const BathymetryGrid& grid, std::int64_t column, std::int64_t ro
       .mean_m[static_cast<std::size_t>(row) * grid.columns + static_cast<std::size_t>(column)];
 }
 
-// Rise a metre towards greater index; one-sided at an edge or a hole, 0 for a lone cell.
+// Rise per metre towards greater indices; one-sided at an edge or a hole, 0 for a lone cell.
 double rise(double before, double here, double after, double cell_m) {
   if (!std::isnan(before) && !std::isnan(after)) return (before - after) / (2.0 * cell_m);
   if (!std::isnan(after)) return (here - after) / cell_m;
@@ -55,7 +60,8 @@ Slope slope_at(const BathymetryGrid& grid, std::int64_t c, std::int64_t r) {
           rise(depth_at(grid, c, r - 1), here, depth_at(grid, c, r + 1), grid.cell_m)};
 }
 
-// Heights are exaggerated until a usual slope (the 90th percentile) is seen as 30 degrees.
+// The factor by which heights are exaggerated, so that the 90th percentile of the slopes is shaded
+// like one of 30 degrees.
 double exaggeration(const BathymetryGrid& grid) {
   std::vector<double> slopes;
   for (std::uint32_t r = 0; r < grid.rows; ++r)
@@ -70,7 +76,7 @@ double exaggeration(const BathymetryGrid& grid) {
   return *at > 0.0 ? std::clamp(std::tan(radians(30.0)) / *at, 1.0, 50.0) : 1.0;
 }
 
-// Lambert's cosine under a light in the north-west, 45 degrees high, over that of level ground.
+// Lambert's cosine under a light in the north-west, 45 degrees high, relative to level ground.
 double shade_at(const Slope& slope, double exaggerate) {
   const Vec3 normal =
       glm::normalize(Vec3(-slope.east * exaggerate, 1.0, -slope.south * exaggerate));
@@ -91,11 +97,11 @@ void draw_cells(Canvas& canvas, const PlotBox& box, const BathymetryGrid& grid,
   for (std::size_t i = 0; i < colors.size(); ++i)
     if (!std::isnan(grid.mean_m[i]))
       colors[i] = lit(
-          palette_color(Palette::kDepth, (span.deep - grid.mean_m[i]) / (span.deep - span.shallow)),
+          map_color(ColorMap::kDepth, (span.deep - grid.mean_m[i]) / (span.deep - span.shallow)),
           shade_at(slope_at(grid, static_cast<std::int64_t>(i % grid.columns),
                             static_cast<std::int64_t>(i / grid.columns)),
                    exaggerate));
-  // Each channel as a plane; holes stay holes.
+  // Resamples each channel by itself; holes stay holes.
   const auto width = static_cast<std::uint32_t>(std::lround(box.width())),
              height = static_cast<std::uint32_t>(std::lround(box.height()));
   std::array<ImageF32, 3> planes;
@@ -124,18 +130,18 @@ ImageU8 draw_bathymetry(const BathymetryGrid& grid, const std::string& title,
   const double unit = height_px / 900.0;
   const double columns = std::max(1u, grid.columns), rows = std::max(1u, grid.rows);
   const double room = height_px - (kTop + kBottom) * unit;
-  // As high as the panel, but not wider than two of it.
+  // As high as the panel allows, but at most twice as wide as that.
   const double px_per_cell = std::min(room / rows, 2.0 * room / columns);
   const double wide = std::max(1.0, std::round(columns * px_per_cell)),
                high = std::max(1.0, std::round(rows * px_per_cell));
   const double width = std::max(wide, 420.0 * unit) + (kLeft + kRight) * unit;
-  // High enough for the legend at least.
+  // The legend needs a least height.
   const double height = std::max(high, 280.0 * unit) + (kTop + kBottom) * unit;
   Canvas canvas(static_cast<std::uint32_t>(std::lround(width)),
                 static_cast<std::uint32_t>(std::lround(height)), kPlotBackground);
   const DepthSpan span = span_of(grid);
   draw_title(canvas, title,
-             fmt::format("{} x {} cells of {} m   light from the north-west", grid.rows,
+             fmt::format("{} \u00d7 {} cells of {} m   light from the north-west", grid.rows,
                          grid.columns, number_text(grid.cell_m)),
              unit);
   const double left = std::round(kLeft * unit), top = std::round(kTop * unit);
@@ -150,7 +156,7 @@ ImageU8 draw_bathymetry(const BathymetryGrid& grid, const std::string& title,
   }
   draw_frame(canvas, box, unit);
   const double bar = width - (kRight - 34) * unit;
-  draw_legend(canvas, {bar, top, bar + 14 * unit, top + 260 * unit}, Palette::kDepth, span.deep,
+  draw_legend(canvas, {bar, top, bar + 14 * unit, top + 260 * unit}, ColorMap::kDepth, span.deep,
               span.shallow, "depth, m", unit);
   return canvas.take();
 }

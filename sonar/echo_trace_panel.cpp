@@ -1,15 +1,19 @@
-// The range-time picture of an echo trace.
+// The range-time picture of an echo trace. Pure functions; any thread.
 #include <algorithm>
 #include <cmath>
 
+#include "engine/draw2d/axes.hpp"
+#include "engine/draw2d/resample.hpp"
 #include "sonar/echo_trace.hpp"
-#include "sonar/waterfall_panel.hpp"
 
 namespace neritic::sonar {
+
+using namespace draw2d;
+
 namespace {
 
-// [range][ping] in 0 to 1 over span_db below the strongest echo, on the box's pixels. Energy is
-// averaged before decibels are taken, as a display with fewer lines than pings does.
+// [range][ping] as 0 to 1 over the span_db decibels below the strongest echo, on the box's pixels.
+// Averages power, then converts to decibels, as a display with fewer lines than pings does.
 ImageF32 shades_of(const EchoTrace& trace, double strongest, double span_db, std::uint32_t width,
                    std::uint32_t height) {
   const std::size_t pings = trace.pings().size(), bins = trace.options().n_range;
@@ -24,7 +28,7 @@ ImageF32 shades_of(const EchoTrace& trace, double strongest, double span_db, std
   return out;
 }
 
-// The first return, broken where pings have none.
+// The first return of each ping; the line is broken where pings have none.
 void draw_line(Canvas& canvas, const PlotBox& box, const EchoTrace& trace, double unit) {
   const auto& pings = trace.pings();
   const EchoTraceOptions& o = trace.options();
@@ -37,17 +41,21 @@ void draw_line(Canvas& canvas, const PlotBox& box, const EchoTrace& trace, doubl
            (pings[i].first_m - o.range_min_m) / (o.range_max_m - o.range_min_m) * box.height();
   };
   const Color white{1, 1, 1, 0.9f};
-  for (std::size_t i = 0; i < pings.size(); ++i) {
-    if (std::isnan(pings[i].first_m)) continue;
-    const bool joined = i + 1 < pings.size() && !std::isnan(pings[i + 1].first_m);
-    const std::size_t to = joined ? i + 1 : i;
-    canvas.segment(x(i), y(i), x(to), y(to), 1.3 * unit, white);
+  std::vector<Vec2> line;
+  for (std::size_t i = 0; i <= pings.size(); ++i) {
+    if (i < pings.size() && !std::isnan(pings[i].first_m)) {
+      line.emplace_back(x(i), y(i));
+      continue;
+    }
+    canvas.polyline(line, 1.3 * unit, white);
+    line.clear();
   }
 }
 
 std::string time_label(const EchoTrace& trace, double from_s, double to_s) {
-  return fmt::format("time, s   ({} pings, {} to {} s)", trace.pings().size(), number_text(from_s),
-                     number_text(to_s));
+  return fmt::format("time, s   ({} pings, {} to {} s)", trace.pings().size(),
+                     number_text(std::round(10.0 * from_s) / 10.0),
+                     number_text(std::round(10.0 * to_s) / 10.0));
 }
 
 }  // namespace
@@ -67,11 +75,11 @@ ImageU8 draw_echo_trace(const EchoTrace& trace, const EchoPictureOptions& option
   double strongest = 0.0;
   for (const float v : trace.intensity()) strongest = std::max(strongest, double{v});
   if (!pings.empty() && box.width() >= 1.0 && box.height() >= 1.0) {
-    draw_shades(canvas, box,
+    draw_shades(canvas, static_cast<int>(box.left), static_cast<int>(box.top),
                 shades_of(trace, strongest > 0.0 ? strongest : 1.0, options.span_db,
                           static_cast<std::uint32_t>(box.width()),
                           static_cast<std::uint32_t>(box.height())),
-                Palette::kEcho);
+                ColorMap::kEcho);
     draw_line(canvas, box, trace, unit);
     const double from = pings.front().time_s, to = pings.back().time_s;
     draw_bottom_axis(canvas, box, from, to, time_label(trace, from, to), unit);
@@ -79,7 +87,7 @@ ImageU8 draw_echo_trace(const EchoTrace& trace, const EchoPictureOptions& option
   draw_left_axis(canvas, box, o.range_min_m, o.range_max_m, "range, m", unit);
   draw_frame(canvas, box, unit);
   const double bar = options.width_px - 78 * unit;
-  draw_legend(canvas, {bar, box.top, bar + 14 * unit, box.top + 260 * unit}, Palette::kEcho,
+  draw_legend(canvas, {bar, box.top, bar + 14 * unit, box.top + 260 * unit}, ColorMap::kEcho,
               -options.span_db, 0.0, "dB re max", unit);
   return canvas.take();
 }

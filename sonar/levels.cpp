@@ -64,4 +64,15 @@ std::vector<float> above_floor(std::span<const float> intensity, std::span<const
   return out;
 }
 
+double percentile_of_heard(std::span<const float> values, double fraction) {
+  std::vector<float> heard;
+  for (const float v : values)
+    if (v > 0.0f && std::isfinite(v)) heard.push_back(v);
+  if (heard.empty()) return 1.0;
+  const auto at =
+      heard.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(heard.size() - 1));
+  std::nth_element(heard.begin(), at, heard.end());
+  return *at;
+}
+
 }  // namespace neritic::sonar

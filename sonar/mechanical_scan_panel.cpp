@@ -1,12 +1,17 @@
-// The map of a mechanical scan.
+// The map of a mechanical scan. Pure functions; any thread.
 #include <algorithm>
 #include <cmath>
 
+#include "engine/draw2d/axes.hpp"
+#include "engine/draw2d/resample.hpp"
+#include "sonar/levels.hpp"
 #include "sonar/mechanical_scan.hpp"
 #include "sonar/panel.hpp"
-#include "sonar/waterfall_panel.hpp"
 
 namespace neritic::sonar {
+
+using namespace draw2d;
+
 namespace {
 
 constexpr double kGamma = 0.6, kTop = 96, kBottom = 64, kLeft = 84, kRight = 110;
@@ -21,12 +26,10 @@ void draw_track(Canvas& canvas, const PlotBox& box, const MechanicalScan& scan,
   };
   const auto& steps = scan.steps();
   const Color blue{0.45f, 0.85f, 1.0f, 0.9f};
-  for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
-    const Vec2 a = pixel(steps[i]), b = pixel(steps[i + 1]);
-    canvas.segment(a.x, a.y, b.x, b.y, 1.6 * unit, blue);
-  }
-  const Vec2 end = pixel(steps.back());
-  canvas.segment(end.x, end.y, end.x, end.y, 7.0 * unit, blue);
+  std::vector<Vec2> line;
+  for (const ScanStep& step : steps) line.push_back(pixel(step));
+  canvas.polyline(line, 1.6 * unit, blue);
+  canvas.disc(line.back().x, line.back().y, 3.5 * unit, blue);
 }
 
 }  // namespace
@@ -49,7 +52,7 @@ ImageU8 draw_mosaic(const MechanicalScan& scan, const ScanMosaic& mosaic, const 
   draw_title(canvas, title,
              fmt::format("{} steps   cells of {} m   {}   blue: track", scan.steps().size(),
                          number_text(mosaic.cell_m),
-                         levels ? "power re 1 uPa"
+                         levels ? "power re 1 \u00b5Pa"
                                 : fmt::format("full scale {:.3g}, gamma {:g}", full_scale, kGamma)),
              unit);
   if (!mosaic.intensity.empty()) {
@@ -59,7 +62,7 @@ ImageU8 draw_mosaic(const MechanicalScan& scan, const ScanMosaic& mosaic, const 
     const PanelOptions display{.gamma = kGamma, .span_db = levels ? kScanShown_db : 0.0};
     for (float& v : shades.data)
       if (!std::isnan(v)) v = static_cast<float>(panel_brightness(v, full_scale, display));
-    draw_shades(canvas, box, shades, Palette::kBronze);
+    draw_shades(canvas, static_cast<int>(left), static_cast<int>(top), shades, ColorMap::kBronze);
     const double west = static_cast<double>(mosaic.first_column) * mosaic.cell_m,
                  north = static_cast<double>(mosaic.first_row) * mosaic.cell_m;
     draw_left_axis(canvas, box, north, north + rows * mosaic.cell_m, "z, m", unit);
@@ -71,7 +74,7 @@ ImageU8 draw_mosaic(const MechanicalScan& scan, const ScanMosaic& mosaic, const 
   draw_frame(canvas, box, unit);
   const double bar = canvas.width() - 82 * unit;
   const double top_db = 10.0 * std::log10(full_scale);
-  draw_legend(canvas, {bar, top, bar + 14 * unit, top + 220 * unit}, Palette::kBronze,
+  draw_legend(canvas, {bar, top, bar + 14 * unit, top + 220 * unit}, ColorMap::kBronze,
               levels ? top_db - kScanShown_db : 0.0, levels ? top_db : 100.0,
               levels ? "dB" : "display, %", unit);
   return canvas.take();

@@ -4,20 +4,25 @@
 #include <cmath>
 
 #include "engine/core/check.hpp"
+#include "engine/draw2d/axes.hpp"
+#include "sonar/levels.hpp"
 #include "sonar/panel_drawing.hpp"
 
 namespace neritic::sonar {
+
+using namespace draw2d;
+
 namespace {
 
 constexpr std::uint32_t kOutside = ~0u;
-constexpr int kLevels = 1024;  // of brightness that are told apart
+constexpr int kLevels = 1024;  // of brightness
 
-// The colour of each level of brightness, as bytes.
+// The colour of each brightness level, as bytes.
 std::vector<std::array<std::uint16_t, 3>> level_colors() {
   std::vector<std::array<std::uint16_t, 3>> out;
   const auto byte = [](float v) { return static_cast<std::uint16_t>(v * 255.0f + 0.5f); };
   for (int i = 0; i < kLevels; ++i) {
-    const Color c = panel_color(i / (kLevels - 1.0));
+    const Color c = map_color(ColorMap::kCopper, i / (kLevels - 1.0));
     out.push_back({byte(c.r), byte(c.g), byte(c.b)});
   }
   return out;
@@ -34,22 +39,15 @@ double panel_brightness(double value, double full_scale, const PanelOptions& opt
 }
 
 double panel_full_scale(const SonarImage& image, const PanelOptions& options) {
-  if (options.full_scale > 0.0) return options.full_scale;
-  std::vector<float> heard;
-  for (const float value : image.intensity)
-    if (value > 0.0f) heard.push_back(value);
-  if (heard.empty()) return 1.0;
-  const auto at =
-      heard.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(heard.size() - 1));
-  std::nth_element(heard.begin(), at, heard.end());
-  return *at;
+  return options.full_scale > 0.0 ? options.full_scale
+                                  : percentile_of_heard(image.intensity, 0.995);
 }
 
 PolarPanel::PolarPanel(const BeamGrid& grid, const PanelOptions& options)
     : grid_(grid), options_(options) {
   const PanelLayout layout = lay_out(grid, options.height_px, options.words);
   const double unit = options.height_px / 900.0;
-  Canvas under(layout.width, layout.height, kPanelBackground);
+  Canvas under(layout.width, layout.height, kPlotBackground);
   if (options.words) {
     draw_scale(under, unit);
     draw_words(under, grid, options.title, unit);
@@ -76,7 +74,7 @@ PolarPanel::PolarPanel(const BeamGrid& grid, const PanelOptions& options)
   }
 }
 
-// The cell at metres to the right of and below the apex.
+// The cell at a place given in metres right of and below the apex.
 std::uint32_t PolarPanel::cell_at(double right_m, double below_m) const {
   const Limits& l = grid_.limits;
   const double r2 = right_m * right_m + below_m * below_m;
@@ -109,7 +107,7 @@ ImageU8 PolarPanel::draw(const SonarImage& image) const {
       for (int k = 0; k < 3; ++k) sum[k] += cell == kOutside ? p[k] : colors[levels[cell]][k];
     for (int k = 0; k < 3; ++k) p[k] = static_cast<std::uint8_t>((sum[k] + 2) / 4);
   }
-  // What the lines do to black and to white tells what they do to any colour.
+  // Blending is linear: the lines over black and over white give the lines over any colour.
   for (std::size_t i = 0; i < out.data.size(); ++i) {
     const int black = lines_over_black_.data[i], white = lines_over_white_.data[i];
     if (white - black < 255)

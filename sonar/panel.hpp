@@ -1,5 +1,5 @@
 // The polar picture of a sonar image: a fan with range rings, bearing lines, numbers and a colour
-// scale. For people only; it never changes the data.
+// scale. It is drawn from a copy of the data and never changes them.
 #pragma once
 
 #include <array>
@@ -15,21 +15,21 @@ namespace neritic::sonar {
 struct PanelOptions {
   std::uint32_t height_px = 900;
   std::string title = "IMAGING SONAR";
-  // Value shown in full brightness; 0: the 99.5th percentile of what is not silent. Stated on the
-  // panel either way.
+  // The value drawn in full brightness; 0: the 99.5th percentile of the values above zero. The
+  // panel states which.
   double full_scale = 0.0;
   // Shown brightness = (value / full scale)^gamma. Display only; stated on the panel.
   double gamma = 0.6;
-  // > 0: brightness follows decibels instead, from full scale down to that many below it.
+  // Above 0: brightness is linear in decibels instead, from full scale down to span_db below it.
   double span_db = 0.0;
-  // false: the fan with its lines alone, for small pictures on which no word could be read.
+  // false: the fan and its lines without text, for pictures too small to read text on.
   bool words = true;
 };
-// Shown brightness of a value, 0 to 1.
+// The brightness in which a value is drawn, 0 to 1.
 double panel_brightness(double value, double full_scale, const PanelOptions& options);
 
-// Draws one sonar's images. Where each pixel looks and the lines over it are worked out once, so
-// that a live display can draw every ping. draw may run on several threads at once.
+// Draws the images of one sonar. The constructor computes the cells that each pixel shows and the
+// lines over them once, so that a live display can draw every ping. Several threads may call draw.
 class PolarPanel {
  public:
   explicit PolarPanel(const BeamGrid& grid, const PanelOptions& options = {});
@@ -37,7 +37,7 @@ class PolarPanel {
   ImageU8 draw(const SonarImage& image) const;
 
  private:
-  struct Fan {  // a pixel that shows the wedge, and the cells that its samples fall in
+  struct Fan {  // a pixel of the fan and the cells of its four samples
     std::uint32_t pixel;
     std::array<std::uint32_t, 4> cells;  // kOutside: none
   };
@@ -50,8 +50,7 @@ class PolarPanel {
 
 ImageU8 draw_panel(const BeamGrid& grid, const SonarImage& image, const PanelOptions& options = {});
 
-// The panel's full scale for an image (PanelOptions::full_scale or the automatic one; 1 for
-// silence).
+// The panel's full scale for an image: PanelOptions::full_scale or the automatic one.
 double panel_full_scale(const SonarImage& image, const PanelOptions& options);
 
 }  // namespace neritic::sonar

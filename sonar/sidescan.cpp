@@ -12,7 +12,6 @@
 #include "engine/scene/image_file.hpp"
 #include "sonar/beam_grid.hpp"
 #include "sonar/levels.hpp"
-#include "sonar/waterfall_panel.hpp"
 
 namespace neritic::sonar {
 namespace {

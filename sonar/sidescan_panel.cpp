@@ -1,23 +1,28 @@
-// The pictures of a side-scan record.
+// The pictures of a side-scan record. Pure functions; any thread.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "engine/draw2d/axes.hpp"
+#include "engine/draw2d/resample.hpp"
+#include "sonar/levels.hpp"
 #include "sonar/panel.hpp"
 #include "sonar/sidescan.hpp"
-#include "sonar/waterfall_panel.hpp"
 
 namespace neritic::sonar {
+
+using namespace draw2d;
+
 namespace {
 
-// Margins, and the lettering's unit, of a picture of the width.
+// The plot's box and the unit of all lettering, for a picture of the given width.
 struct Layout {
   double unit;
   PlotBox box;
   std::uint32_t width, height;
 };
-// narrowest: the part of the width to which what is too high may shrink.
+// narrowest: the part of the width to which a plot that is too high may shrink.
 Layout lay_out(const SidescanPictureOptions& options, double box_height_per_width,
                double narrowest = 1.0) {
   const double unit = options.width_px / 1200.0;
@@ -30,12 +35,13 @@ Layout lay_out(const SidescanPictureOptions& options, double box_height_per_widt
   const double high = std::clamp(std::round(wide * box_height_per_width), 1.0, highest);
   const double at = left + std::floor(0.5 * (room - wide));
   out.box = {at, top, at + wide, top + high};
-  // High enough for the legend at least.
+  // The legend needs a least height.
   out.height = static_cast<std::uint32_t>(top + std::max(high, 240 * unit) + below);
   return out;
 }
 
-// How values become brightness: as the power of gamma, an amplitude's as the devices draw it.
+// How values become brightness: (value / full scale)^gamma. gamma 0.5 draws amplitudes, as devices
+// do.
 struct Display {
   double full_scale, gamma;
   bool levels;
@@ -47,12 +53,12 @@ struct Display {
   }
   double full_db() const { return 10.0 * std::log10(full_scale); }
   std::string text() const {
-    return levels ? fmt::format("full scale {:.0f} dB re 1 uPa, gamma {:g}", full_db(), gamma)
+    return levels ? fmt::format("full scale {:.0f} dB re 1 \u00b5Pa, gamma {:g}", full_db(), gamma)
                   : fmt::format("full scale {:.2g}, gamma {:g}", full_scale, gamma);
   }
 };
 
-// Multiples of 5 dB where they are in brightness, until they lie too close to be told apart.
+// Marks at multiples of 5 dB, placed by their brightness, until they lie too close together.
 std::vector<LegendMark> marks_in_db(const Display& display) {
   constexpr double kStep_db = 5.0, kDarkest = 0.1;
   constexpr int kMost = 8;
@@ -73,7 +79,7 @@ Display display_of(const SidescanRecord& record, std::span<const float> values,
   return {full_scale, options.gamma, record.options().levels};
 }
 
-// shown_m: of the track, where it is not all.
+// shown_m: how much of the track is shown, if not all.
 std::string subtitle(const SidescanRecord& record, const Display& display,
                      std::optional<double> shown_m = {}) {
   const SidescanOptions& o = record.options();
@@ -90,16 +96,16 @@ void finish(Canvas& canvas, const Layout& layout, const Display& display) {
   const PlotBox at{bar, top, bar + 14 * layout.unit, top + 220 * layout.unit};
   // The bar is even in brightness: value = full scale * shade^(1 / gamma).
   if (display.levels)
-    draw_legend(canvas, at, Palette::kBronze, marks_in_db(display), "dB", layout.unit);
+    draw_legend(canvas, at, ColorMap::kBronze, marks_in_db(display), "dB", layout.unit);
   else
-    draw_legend(canvas, at, Palette::kBronze, 0.0, 100.0, "display, %", layout.unit);
+    draw_legend(canvas, at, ColorMap::kBronze, 0.0, 100.0, "display, %", layout.unit);
   canvas.text(layout.box.left + 14 * layout.unit, layout.box.top - 9 * layout.unit,
               10 * layout.unit, "PORT", kPlotText);
   canvas.text(layout.box.right, layout.box.top - 9 * layout.unit, 10 * layout.unit, "STARBOARD",
               kPlotText, Align::kRight);
 }
 
-// Rows in reverse: the newest line on top.
+// The rows in reverse order: the newest line on top.
 std::vector<float> newest_first(std::span<const float> image, std::size_t rows) {
   const std::size_t width = image.size() / rows;
   std::vector<float> out;
@@ -145,7 +151,8 @@ void draw_ranges(Canvas& canvas, const Layout& layout, double from_m, double to_
               Align::kCenter);
 }
 
-// Index of the ping nearest to each of height distances along the track, the farthest first.
+// For each of height equal distances along the track, the farthest first: the index of the nearest
+// ping.
 std::vector<std::size_t> pings_along(std::span<const double> along_m, std::uint32_t height) {
   std::vector<std::size_t> out(height);
   std::size_t ping = 0;
@@ -165,7 +172,7 @@ ImageU8 draw_slant(const SidescanRecord& record, const FirstReturns& bottom,
                    const SidescanPictureOptions& options) {
   const SidescanOptions& o = record.options();
   const std::size_t pings = record.pings();
-  // As the device: a line a ping, some two pixels high, whatever the speed was.
+  // As on the device: each ping is a line about two pixels high, whatever the speed was.
   const Layout layout = lay_out(options, 2.0 * static_cast<double>(pings) / options.width_px);
   Canvas canvas(layout.width, layout.height, kPlotBackground);
   const Display display = display_of(record, record.slant_image(), options);
@@ -176,7 +183,8 @@ ImageU8 draw_slant(const SidescanRecord& record, const FirstReturns& bottom,
                       static_cast<std::uint32_t>(layout.box.width()),
                       static_cast<std::uint32_t>(layout.box.height()));
     display.shade(shades);
-    draw_shades(canvas, layout.box, shades, Palette::kBronze);
+    draw_shades(canvas, static_cast<int>(layout.box.left), static_cast<int>(layout.box.top), shades,
+                ColorMap::kBronze);
     draw_bottom(canvas, layout, o, bottom.port_m, -1.0);
     draw_bottom(canvas, layout, o, bottom.starboard_m, 1.0);
     draw_left_axis(canvas, layout.box, static_cast<double>(pings), 0.0, "ping", layout.unit);
@@ -191,13 +199,13 @@ ImageU8 draw_ground(const SidescanRecord& record, const GroundImage& ground,
                     const SidescanPictureOptions& options) {
   const std::vector<double> along = record.along_track_m();
   const double length_m = along.empty() ? 0.0 : along.back();
-  // A long track is shown to a smaller scale, down to a quarter; of a longer one the beginning.
+  // A long track is drawn to a smaller scale, down to a quarter; a longer one is cut at its end.
   const Layout layout = lay_out(options, length_m / (2.0 * ground.ground_max_m), 0.25);
   Canvas canvas(layout.width, layout.height, kPlotBackground);
   const Display display = display_of(record, ground.intensity, options);
   const double px_per_m = layout.box.width() / (2.0 * ground.ground_max_m);
   const double room_m = layout.box.height() / px_per_m;
-  const bool cut = room_m < 0.99 * length_m;  // not by the pixels' rounding
+  const bool cut = room_m < 0.99 * length_m;  // by more than the rounding of pixels
   const double shown_m = cut ? room_m : length_m;
   draw_title(canvas, options.title + "   GROUND RANGE",
              subtitle(record, display, cut ? std::optional(shown_m) : std::nullopt), layout.unit);
@@ -215,7 +223,8 @@ ImageU8 draw_ground(const SidescanRecord& record, const GroundImage& ground,
     ImageF32 shades =
         resample_area(rows, height, width, static_cast<std::uint32_t>(layout.box.width()), height);
     display.shade(shades);
-    draw_shades(canvas, layout.box, shades, Palette::kBronze);
+    draw_shades(canvas, static_cast<int>(layout.box.left), static_cast<int>(layout.box.top), shades,
+                ColorMap::kBronze);
     draw_left_axis(canvas, layout.box, shown_m, 0.0, "along, m", layout.unit);
     draw_scale_bar(canvas, layout.box.left + 14 * layout.unit, layout.box.bottom - 18 * layout.unit,
                    px_per_m, 0.2 * layout.box.width(), layout.unit);

@@ -1,4 +1,4 @@
-// A single beam's echo over range, as an oscilloscope would show it. For people only.
+// The picture of a single beam's echo over range, as on an oscilloscope. Pure; any thread.
 #pragma once
 
 #include <span>

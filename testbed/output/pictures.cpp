@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sonar/canvas.hpp"
-
 namespace neritic::testbed {
 namespace {
 

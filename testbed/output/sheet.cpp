@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sonar/canvas.hpp"
+#include "engine/draw2d/canvas.hpp"
 #include "testbed/output/pictures.hpp"
 
 namespace neritic::testbed {
 namespace {
 
-constexpr sonar::Color kPaper{0.055f, 0.075f, 0.10f, 1.0f}, kInk{0.80f, 0.88f, 0.92f, 1.0f};
+constexpr draw2d::Color kPaper{0.055f, 0.075f, 0.10f, 1.0f}, kInk{0.80f, 0.88f, 0.92f, 1.0f};
 constexpr double kCaption_px = 11.0;
 constexpr std::uint32_t kCaptionBand_px = 26, kGap_px = 10;
 
@@ -33,18 +33,18 @@ void place(ImageU8& out, const Tile& tile, const Slot& slot) {
 }
 
 // The caption, and behind it the colours of its key while they fit, then how many do not.
-void write_caption(sonar::Canvas& canvas, const Tile& tile, const Slot& slot) {
+void write_caption(draw2d::Canvas& canvas, const Tile& tile, const Slot& slot) {
   constexpr double kWord_px = 9.0, kSwatch_px = 11.0, kSpace_px = 4.0, kAfter_px = 9.0;
   const double y = slot.y + kCaptionBand_px - 9.0;
   double x = slot.x + 2.0;
   canvas.text(x, y, kCaption_px, tile.caption, kInk);
-  x += sonar::Canvas::text_width(kCaption_px, tile.caption) + 2.0 * kAfter_px;
+  x += canvas.text_width(kCaption_px, tile.caption) + 2.0 * kAfter_px;
   for (std::size_t i = 0; i < tile.key.size(); ++i) {
     const auto& [color, word] = tile.key[i];
-    const double width = kSwatch_px + kSpace_px + sonar::Canvas::text_width(kWord_px, word);
+    const double width = kSwatch_px + kSpace_px + canvas.text_width(kWord_px, word);
     const std::string others = fmt::format("+{}", tile.key.size() - i);
     const double after =
-        i + 1 == tile.key.size() ? 0.0 : kAfter_px + sonar::Canvas::text_width(kWord_px, others);
+        i + 1 == tile.key.size() ? 0.0 : kAfter_px + canvas.text_width(kWord_px, others);
     if (x + width + after > slot.x + slot.width) {
       canvas.text(x, y - 1.0, kWord_px, others, kInk);
       return;
@@ -59,7 +59,7 @@ void write_caption(sonar::Canvas& canvas, const Tile& tile, const Slot& slot) {
 
 ImageU8 draw(std::uint32_t width, std::uint32_t height, const std::vector<Tile>& tiles,
              const std::vector<Slot>& slots) {
-  sonar::Canvas canvas(width, height, kPaper);
+  draw2d::Canvas canvas(width, height, kPaper);
   for (std::size_t i = 0; i < tiles.size(); ++i) write_caption(canvas, tiles[i], slots[i]);
   ImageU8 out = canvas.take();
   for (std::size_t i = 0; i < tiles.size(); ++i) place(out, tiles[i], slots[i]);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sonar/canvas.hpp"
+#include "sonar/levels.hpp"
 
 namespace neritic {
 namespace {
@@ -80,18 +80,13 @@ TEST(SonarPanel, AutoGainIsAHighPercentileOfWhatIsHeard) {
   EXPECT_EQ(sonar::panel_full_scale(image, {.full_scale = 0.25}), 0.25);
 }
 
-TEST(Canvas, TextHasTheWidthItSays) {
-  sonar::Canvas canvas(400, 60, {0, 0, 0});
-  canvas.text(20, 40, 24, "Range 12.5 m \u00b0", {1, 1, 1});
-  std::uint32_t left = 400, right = 0;
-  for (std::uint32_t y = 0; y < 60; ++y)
-    for (std::uint32_t x = 0; x < 400; ++x)
-      if (canvas.image().at(x, y) > 128) {
-        left = std::min(left, x);
-        right = std::max(right, x);
-      }
-  EXPECT_NEAR(left, 20, 3);
-  EXPECT_NEAR(right, 20 + sonar::Canvas::text_width(24, "Range 12.5 m \u00b0"), 3);
+TEST(Levels, ThePercentileIsOfWhatIsHeard) {
+  std::vector<float> values(1000, 0.0f);
+  EXPECT_EQ(sonar::percentile_of_heard(values, 0.9), 1.0);
+  for (int i = 0; i < 101; ++i) values[i * 9] = static_cast<float>(i + 1);
+  values[1] = std::nanf("");
+  EXPECT_EQ(sonar::percentile_of_heard(values, 0.5), 51.0);
+  EXPECT_EQ(sonar::percentile_of_heard(values, 1.0), 101.0);
 }
 
 }  // namespace

@@ -42,9 +42,9 @@ std::vector<double> ticks(const Axis& axis) {
 
 namespace {
 
-using sonar::Align;
-using sonar::Canvas;
-using sonar::Color;
+using draw2d::Align;
+using draw2d::Canvas;
+using draw2d::Color;
 
 constexpr double kTextPx = 10.0, kTitlePx = 13.0;
 
@@ -52,7 +52,7 @@ void draw_axes(Canvas& canvas, const Box& box, const std::string& title, const A
                const Axis& y, bool x_ticks) {
   const Box in = inside(box);
   const Color grid = kInk.with_alpha(0.10f), line = kInk.with_alpha(0.7f);
-  canvas.text(in.left, box.top + 20, kTitlePx, title, kInk, Align::kLeft, 1.7);
+  canvas.text(in.left, box.top + 20, kTitlePx, title, kInk, Align::kLeft, draw2d::Face::kBold);
   for (const double v : ticks(y)) {
     const double py = place(y, v, in.bottom, in.top);
     canvas.segment(in.left, py, in.right, py, 1.0, grid);
@@ -81,7 +81,7 @@ void draw_notes(Canvas& canvas, const Box& in, const Series& s, const Axis& x, c
   constexpr double kNotePx = 8.0, kOff = 6.0;
   for (std::size_t i = 0; i < std::min(s.notes.size(), s.x.size()); ++i) {
     const double px = place(x, s.x[i], in.left, in.right), py = place(y, s.y[i], in.bottom, in.top);
-    const double width = Canvas::text_width(kNotePx, s.notes[i]);
+    const double width = draw2d::Font().width(kNotePx, s.notes[i]);
     for (const auto& [right, above] :
          {std::pair{true, true}, {true, false}, {false, true}, {false, false}}) {
       const double left = right ? px + kOff : px - kOff - width;
@@ -104,7 +104,7 @@ void draw_legend(Canvas& canvas, const Box& box, const std::vector<Series>& seri
   double y = box.top + 0.5 * kLegendLine_px;
   for (const Series& s : series) {
     if (s.name.empty()) continue;
-    const double width = Canvas::text_width(kTextPx, s.name);
+    const double width = draw2d::Font().width(kTextPx, s.name);
     canvas.text(box.right - 4 - width, y + 4, kTextPx, s.name, kInk);
     const double mark = box.right - (s.joined ? 38.0 : 26.0) - width;
     canvas.segment(mark, y, s.joined ? box.right - 14 - width : mark, y, s.joined ? 2.4 : 4.0,
@@ -158,7 +158,7 @@ Box legend_box(const Box& box, const Axis& x, const Axis& y, const std::vector<S
   double wide = 42.0, high = 0.0;
   for (const Series& s : series) {
     if (s.name.empty()) continue;
-    wide = std::max(wide, 42.0 + Canvas::text_width(kTextPx, s.name));
+    wide = std::max(wide, 42.0 + draw2d::Font().width(kTextPx, s.name));
     high += kLegendLine_px;
   }
   const double highest = in.top + kTextPx;  // under the axis's own words
@@ -220,7 +220,7 @@ void draw_mark(Canvas& canvas, const Box& box, const Axis& x, const Axis& y, dou
   canvas.segment(px + 7, py - 7, px + 26, py - 34, 1.2, {0.75f, 0.1f, 0.1f});
   // On paper of its own: lines and notes crowd where a curve bends.
   canvas.fill_rectangle(px + 24, py - 36 - kTextPx - 3,
-                        px + 32 + Canvas::text_width(kTextPx, words), py - 32, kPaper);
+                        px + 32 + draw2d::Font().width(kTextPx, words), py - 32, kPaper);
   canvas.text(px + 28, py - 36, kTextPx, words, {0.75f, 0.1f, 0.1f});
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sonar/canvas.hpp"
+#include "engine/draw2d/canvas.hpp"
 
 namespace neritic::tools {
 
@@ -17,7 +17,7 @@ struct Axis {
 
 struct Series {
   std::string name;  // empty: not in the legend
-  sonar::Color color;
+  draw2d::Color color;
   std::vector<double> x, y;
   std::vector<std::string> notes = {};  // beside the points; empty: none
   bool joined = true;                   // by lines
@@ -26,7 +26,7 @@ struct Series {
 
 struct Bar {
   std::string name;
-  sonar::Color color;
+  draw2d::Color color;
   double value = 0.0;
 };
 
@@ -35,18 +35,18 @@ struct Box {
 };
 
 // Paper, ink, and colours that tell apart also for the colour-blind (Okabe and Ito 2008).
-inline constexpr sonar::Color kPaper{0.985f, 0.98f, 0.97f}, kInk{0.13f, 0.15f, 0.18f};
-inline constexpr sonar::Color kSeriesColors[] = {{0.0f, 0.447f, 0.698f},
-                                                 {0.835f, 0.369f, 0.0f},
-                                                 {0.0f, 0.62f, 0.451f},
-                                                 {0.8f, 0.475f, 0.655f},
-                                                 {0.35f, 0.35f, 0.35f}};
+inline constexpr draw2d::Color kPaper{0.985f, 0.98f, 0.97f}, kInk{0.13f, 0.15f, 0.18f};
+inline constexpr draw2d::Color kSeriesColors[] = {{0.0f, 0.447f, 0.698f},
+                                                  {0.835f, 0.369f, 0.0f},
+                                                  {0.0f, 0.62f, 0.451f},
+                                                  {0.8f, 0.475f, 0.655f},
+                                                  {0.35f, 0.35f, 0.35f}};
 
 // An axis that holds all values with a little room.
 Axis axis_for(const std::string& label, const std::vector<double>& values, bool log);
 
 // The legend lies where it hides the least, nothing where a place is free.
-void draw_lines(sonar::Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
+void draw_lines(draw2d::Canvas& canvas, const Box& box, const std::string& title, const Axis& x,
                 const Axis& y, const std::vector<Series>& series, bool legend_below = false);
 // The numbers at an axis: 1, 2, 5 times powers of ten; of a logarithmic one that holds fewer than
 // three of these, equal steps.
@@ -60,9 +60,9 @@ double place(const Axis& axis, double value, double from, double to);
 // The rectangle inside the axes of a plot.
 Box inside(const Box& box);
 // A ring around a point of such a plot, with words.
-void draw_mark(sonar::Canvas& canvas, const Box& box, const Axis& x, const Axis& y, double at_x,
+void draw_mark(draw2d::Canvas& canvas, const Box& box, const Axis& x, const Axis& y, double at_x,
                double at_y, const std::string& words);
-void draw_bars(sonar::Canvas& canvas, const Box& box, const std::string& title,
+void draw_bars(draw2d::Canvas& canvas, const Box& box, const std::string& title,
                const std::string& label, const std::vector<Bar>& bars);
 
 }  // namespace neritic::tools

@@ -13,9 +13,9 @@ constexpr std::uint32_t kPlotWidth = 1600, kPlotHeight = 1000;
 constexpr double kMargin = 10.0, kTitlePart = 60.0;
 constexpr std::size_t kMostPlotted = 4000;
 
-sonar::Canvas titled(const std::string& title, const std::string& under) {
-  sonar::Canvas canvas(kPlotWidth, kPlotHeight, kPaper);
-  canvas.text(24, 30, 16, title, kInk, sonar::Align::kLeft, 2.0);
+draw2d::Canvas titled(const std::string& title, const std::string& under) {
+  draw2d::Canvas canvas(kPlotWidth, kPlotHeight, kPaper);
+  canvas.text(24, 30, 16, title, kInk, draw2d::Align::kLeft, draw2d::Face::kBold);
   canvas.text(24, 52, 10, under, kInk.with_alpha(0.7f));
   return canvas;
 }
@@ -43,7 +43,7 @@ Axis axis_over(const std::string& label, const std::vector<Series>& all,
   return {label, middle - half, middle + half};
 }
 
-void draw(sonar::Canvas& canvas, const Box& box, const std::string& title, const std::string& x,
+void draw(draw2d::Canvas& canvas, const Box& box, const std::string& title, const std::string& x,
           const std::string& y, const std::vector<Series>& series, double least_y) {
   draw_lines(canvas, box, title, axis_over(x, series, &Series::x, 1e-3, 0.0),
              axis_over(y, series, &Series::y, least_y), series);
@@ -120,7 +120,7 @@ std::vector<Series> rate_lines(const std::vector<diver::BreathState>& states, co
 }
 
 // Where an estimate is no rate: no breath since when, or not sure of one.
-void mark_silence(sonar::Canvas& canvas, const Box& box, const Axis& x, const BreathReport& r) {
+void mark_silence(draw2d::Canvas& canvas, const Box& box, const Axis& x, const BreathReport& r) {
   const Box in = inside(box);
   double before_s = 0.0;
   std::string before;
@@ -132,7 +132,7 @@ void mark_silence(sonar::Canvas& canvas, const Box& box, const Axis& x, const Br
       const double from_s = quiet && anew ? s.time_s - s.quiet_s : before_s;
       const double left = place(x, std::max(from_s, 0.0), in.left, in.right),
                    end = place(x, s.time_s, in.left, in.right);
-      const sonar::Color color = quiet ? sonar::Color{0.75f, 0.1f, 0.1f} : kInk;
+      const draw2d::Color color = quiet ? draw2d::Color{0.75f, 0.1f, 0.1f} : kInk;
       canvas.fill_rectangle(left, in.top, end, in.bottom, color.with_alpha(quiet ? 0.14f : 0.06f));
       if (anew) canvas.text(left + 4.0, in.bottom - 8.0, 8.0, words, color);
     }
@@ -152,7 +152,7 @@ ImageU8 report_plot(const PhysioFlags& flags, const EcgReport& r) {
   if (r.score)
     under += fmt::format("; against marks {} found, {} extra, {} missed", r.score->found,
                          r.score->extra, r.score->missed);
-  sonar::Canvas canvas = titled("Heart: " + name_only(flags.file), under);
+  draw2d::Canvas canvas = titled("Heart: " + name_only(flags.file), under);
   const double right = kPlotWidth - kMargin, half = kTitlePart + 0.5 * (kPlotHeight - kTitlePart);
   draw(canvas, {kMargin, kTitlePart, right, half - 20.0}, "Ten seconds", "time, s",
        r.ecg.channel.empty() ? "ECG" : r.ecg.channel, ecg_excerpt(r), 1e-6);
@@ -172,7 +172,7 @@ ImageU8 report_plot(const PhysioFlags& flags, const EcgReport& r) {
 }
 
 ImageU8 report_plot(const PhysioFlags& flags, const BreathReport& r) {
-  sonar::Canvas canvas =
+  draw2d::Canvas canvas =
       titled("Breath: " + name_only(flags.file),
              fmt::format(
                  "{} over {:g} s, an estimate every {:g} s; an estimate looks back over its window",
@@ -215,7 +215,7 @@ ImageU8 report_plot(const PhysioFlags& flags, const GazeReport& r) {
       fmt::format("{}: {} fixations, {} saccades, {} blinks", r.velocity() ? "I-VT" : "I-DT",
                   r.events.fixations.size(), r.events.saccades.size(), r.events.blinks.size());
   if (r.kappa) under += fmt::format("; kappa {:.2f} against a person's marks", *r.kappa);
-  sonar::Canvas canvas =
+  draw2d::Canvas canvas =
       titled("Gaze: " + name_only(flags.file), under + "; smooth pursuit is unsupported");
   const auto& samples = r.recording.samples;
   const std::size_t every = samples.size() / kMostPlotted + 1;

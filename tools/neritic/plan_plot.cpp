@@ -9,9 +9,9 @@
 namespace neritic::tools {
 namespace {
 
-using sonar::Align;
-using sonar::Canvas;
-using sonar::Color;
+using draw2d::Align;
+using draw2d::Canvas;
+using draw2d::Color;
 
 constexpr double kPlanWide = 1500.0, kProfileHigh = 620.0, kGasHigh = 230.0, kTissuesHigh = 390.0;
 constexpr double kLabel_px = 9.0, kLegend_px = 110.0;  // that a panel's legend is wide
@@ -80,9 +80,9 @@ void name_gases(Canvas& canvas, const Box& box, const std::vector<const TraceRow
   }
   double right = inside(box).right;
   for (std::size_t i = seen.size(); i-- > 0;) {
-    const double top = box.top + 18.0, wide = Canvas::text_width(kLabel_px, words[i]);
+    const double top = box.top + 18.0, wide = draw2d::Font().width(kLabel_px, words[i]);
     const Color color = gas_color(seen[i]);
-    canvas.text(right - wide, top, kLabel_px, words[i], color, Align::kLeft, 1.6);
+    canvas.text(right - wide, top, kLabel_px, words[i], color, Align::kLeft, draw2d::Face::kBold);
     canvas.segment(right - wide - 28.0, top - 4.0, right - wide - 8.0, top - 4.0, 3.0, color);
     right -= wide + 50.0;
   }
@@ -159,7 +159,7 @@ void draw_minimum(Canvas& canvas, const Box& in, const Axis& x, const Axis& y,
   const std::string words =
       fmt::format("{}: {:.0f} bar{}", curve.name, *curve.minimum,
                   enough ? "" : fmt::format(", more than the {:.0f} there", *curve.then));
-  const bool fits = px + 18.0 + Canvas::text_width(kLabel_px, words) < in.right - kLegend_px;
+  const bool fits = px + 18.0 + draw2d::Font().width(kLabel_px, words) < in.right - kLegend_px;
   canvas.text(fits ? px + 18.0 : px - 18.0, words_y + 4.0, kLabel_px, words,
               enough ? color : kCeilingColor, fits ? Align::kLeft : Align::kRight);
 }
@@ -175,7 +175,7 @@ void draw_used_up(Canvas& canvas, const Box& in, const Axis& x, const Axis& y,
   canvas.segment(px, words_y, px, py, 1.2, kCeilingColor.with_alpha(0.6f));
   for (const double slope : {-6.0, 6.0})
     canvas.segment(px - 6.0, py - slope, px + 6.0, py + slope, 2.2, kCeilingColor);
-  const bool fits = px - 12.0 - Canvas::text_width(kLabel_px, words) > in.left;
+  const bool fits = px - 12.0 - draw2d::Font().width(kLabel_px, words) > in.left;
   canvas.text(fits ? px - 12.0 : px + 12.0, words_y + 4.0, kLabel_px, words, kCeilingColor,
               fits ? Align::kRight : Align::kLeft);
 }
@@ -227,9 +227,9 @@ void draw_legend(Canvas& canvas, double left, double top, const PlanPicture& pic
 double draw_head(Canvas* canvas, const PlanPicture& picture) {
   const auto line = [&](double y, double size_px, const std::string& words, const Color& color) {
     if (!canvas) return;
-    const double most = kPlanWide - 48.0, wide = Canvas::text_width(size_px, words);
+    const double most = kPlanWide - 48.0, wide = draw2d::Font().width(size_px, words);
     canvas->text(24, y, wide > most ? size_px * most / wide : size_px, words, color, Align::kLeft,
-                 size_px > 12.0 ? 2.0 : 0.0);
+                 size_px > 12.0 ? draw2d::Face::kBold : draw2d::Face::kRegular);
   };
   line(34, 16, picture.title, kInk);
   line(56, 10, picture.below, kInk.with_alpha(0.75f));

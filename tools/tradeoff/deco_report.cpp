@@ -79,7 +79,7 @@ nlohmann::json deco_json(const DecoTradeoff& t) {
 }
 
 // Curves of the worst of all dives over x: what(point).
-void draw_deco(sonar::Canvas& canvas, const Box& box, const DecoTradeoff& t,
+void draw_deco(draw2d::Canvas& canvas, const Box& box, const DecoTradeoff& t,
                const std::string& title, const std::string& label, double (*what)(const DecoPoint&),
                bool noted) {
   std::vector<Series> series;
@@ -109,9 +109,10 @@ void draw_deco(sonar::Canvas& canvas, const Box& box, const DecoTradeoff& t,
 
 ImageU8 deco_plot(const DecoTradeoff& t) {
   constexpr double kWide = 900, kHigh = 620, kHead = 64;
-  sonar::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                       static_cast<std::uint32_t>(kHead + kHigh), kPaper);
-  canvas.text(24, 34, 18, "Decompression: error against cost", kInk, sonar::Align::kLeft, 2.2);
+  draw2d::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
+                        static_cast<std::uint32_t>(kHead + kHigh), kPaper);
+  canvas.text(24, 34, 18, "Decompression: error against cost", kInk, draw2d::Align::kLeft,
+              draw2d::Face::kBold);
   canvas.text(24, 54, 10,
               "dives known by samples whose corners lie between them, the worst of three; truth: "
               "Schreiner's equation from corner to corner",

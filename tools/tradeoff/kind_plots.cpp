@@ -7,9 +7,9 @@
 namespace neritic::tools {
 namespace {
 
-using sonar::Align;
-using sonar::Canvas;
-using sonar::Color;
+using draw2d::Align;
+using draw2d::Canvas;
+using draw2d::Color;
 
 constexpr double kWidth = 1920, kTop = 70, kCurves = 560, kRow = 24;
 const Color kRing{0.75f, 0.1f, 0.1f};
@@ -100,7 +100,7 @@ void draw_other_knobs(Canvas& canvas, const Box& box, const KindResult& k) {
     if (of_sweep(k, sweep).empty()) continue;
     canvas.fill_rectangle(x, in.bottom + 32, x + 12, in.bottom + 42, c);
     canvas.text(x + 18, in.bottom + 42, 10.0, sweep, kInk);
-    x += 40 + Canvas::text_width(10.0, sweep);
+    x += 40 + canvas.text_width(10.0, sweep);
   }
 }
 
@@ -139,7 +139,7 @@ void draw_terms(Canvas& canvas, double top, const KindResult& k) {
   for (const TermPoint& t : k.terms)
     for (int lane = 0; lane < 3; ++lane)
       if (shown(t, lane)) lanes[lane].largest = std::max(lanes[lane].largest, value(t, lane));
-  canvas.text(24, top, 13, "terms", kInk, Align::kLeft, 1.7);
+  canvas.text(24, top, 13, "terms", kInk, Align::kLeft, draw2d::Face::kBold);
   for (const Lane& lane : lanes) canvas.text(lane.left, top, 10, lane.title, kInk.with_alpha(0.8f));
   double y = top + 12;
   for (const TermPoint& t : k.terms) {
@@ -164,7 +164,7 @@ ImageU8 draw_kind(const KindResult& k, const std::string& device, const std::str
   const double height = terms_top + kRow * static_cast<double>(k.terms.size()) + 40;
   Canvas canvas(static_cast<std::uint32_t>(kWidth), static_cast<std::uint32_t>(height), kPaper);
   canvas.text(24, 34, 18, fmt::format("Sonar, {}: error against cost", k.kind), kInk, Align::kLeft,
-              2.2);
+              draw2d::Face::kBold);
   canvas.text(24, 56, 10,
               fmt::format("{}; scene {}; truth: {:.2g} rays, themselves off by {:.2f} %", device,
                           scene, k.rays, 100.0 * k.uncertain),

@@ -16,7 +16,7 @@ using rov::Integrator;
 
 constexpr Integrator kDrawn[] = {Integrator::kSemiImplicit, Integrator::kRk4, Integrator::kGuarded};
 // A flight each.
-constexpr sonar::Color kFlightColors[] = {
+constexpr draw2d::Color kFlightColors[] = {
     {0.0f, 0.447f, 0.698f}, {0.835f, 0.369f, 0.0f}, {0.0f, 0.62f, 0.451f}, {0.8f, 0.475f, 0.655f},
     {0.35f, 0.35f, 0.35f},  {0.34f, 0.71f, 0.91f},  {0.72f, 0.58f, 0.0f}};
 constexpr double kLevels_m[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
@@ -138,7 +138,7 @@ bool is_drawn(const PhysicsPoint& p) {
 }
 
 // The curves in a box; the knee, where there is one, is marked.
-void draw_curves(sonar::Canvas& canvas, const Box& box, const std::string& title,
+void draw_curves(draw2d::Canvas& canvas, const Box& box, const std::string& title,
                  const std::string& label, What what, const std::vector<Series>& series,
                  const PhysicsPoint* mark, bool legend_below = false) {
   std::vector<double> xs, ys;
@@ -154,7 +154,7 @@ void draw_curves(sonar::Canvas& canvas, const Box& box, const std::string& title
 }
 
 // Error over cost of one flight's integrators; steps stand beside the default's points.
-void draw_flight(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t, std::size_t f) {
+void draw_flight(draw2d::Canvas& canvas, const Box& box, const PhysicsTradeoff& t, std::size_t f) {
   std::vector<Series> series;
   for (const Integrator i : kDrawn) {
     Series s{std::string(name_of(i)), kSeriesColors[series.size()], {}, {}, {}};
@@ -171,7 +171,7 @@ void draw_flight(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t
 }
 
 // What the default gives on every flight, over the step's length.
-void draw_steps(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
+void draw_steps(draw2d::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
   std::vector<Series> series;
   for (std::size_t f = 0; f < std::size(kFlightNames); ++f) {
     Series s{kWords[f].title, kFlightColors[f], {}, {}, {}};
@@ -188,7 +188,7 @@ void draw_steps(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t)
 }
 
 // 240 Hz, with the steps that touch in parts.
-void draw_parts(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
+void draw_parts(draw2d::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
   std::vector<Series> series;
   for (std::size_t f = 2; f < std::size(kFlightNames); ++f) {
     Series s{kWords[f].title, kFlightColors[f], {}, {}, {}};
@@ -206,9 +206,10 @@ void draw_parts(sonar::Canvas& canvas, const Box& box, const PhysicsTradeoff& t)
 
 ImageU8 physics_plot(const PhysicsTradeoff& t) {
   constexpr double kWide = 900, kHigh = 520, kHead = 64;
-  sonar::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                       static_cast<std::uint32_t>(kHead + 3 * kHigh), kPaper);
-  canvas.text(24, 34, 18, "Vehicle physics: error against cost", kInk, sonar::Align::kLeft, 2.2);
+  draw2d::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
+                        static_cast<std::uint32_t>(kHead + 3 * kHigh), kPaper);
+  canvas.text(24, 34, 18, "Vehicle physics: error against cost", kInk, draw2d::Align::kLeft,
+              draw2d::Face::kBold);
   canvas.text(24, 54, 10,
               fmt::format("{:g} s of recorded commands, round a square in a current or set down on "
                           "sand and driven against a wall; truth: extrapolation of order 16, among "

@@ -138,7 +138,7 @@ nlohmann::json physiology_json(const PhysiologyTradeoff& t) {
   return json;
 }
 
-void draw_breath(sonar::Canvas& canvas, const Box& error_box, const Box& right_box,
+void draw_breath(draw2d::Canvas& canvas, const Box& error_box, const Box& right_box,
                  const PhysiologyTradeoff& t, const std::string& signals) {
   std::vector<Series> errors, rights;
   std::vector<double> xs, ys;
@@ -179,7 +179,7 @@ void draw_breath(sonar::Canvas& canvas, const Box& error_box, const Box& right_b
              {"% of all windows", 0.0, 125.0}, rights);
 }
 
-void draw_heart(sonar::Canvas& canvas, const Box& rate_box, const Box& detector_box,
+void draw_heart(draw2d::Canvas& canvas, const Box& rate_box, const Box& detector_box,
                 const PhysiologyTradeoff& t) {
   std::vector<Series> rates;
   std::vector<double> xs, ys;
@@ -217,10 +217,10 @@ ImageU8 physiology_plot(const PhysiologyTradeoff& t) {
   std::vector<std::string> rows_of = signals_of(t);
   if (rows_of.size() > 2) std::erase(rows_of, "recorded");  // its sensors say it
   const auto rows = static_cast<int>(rows_of.size()) + 1;
-  sonar::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                       static_cast<std::uint32_t>(kTop + rows * kHigh), kPaper);
+  draw2d::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
+                        static_cast<std::uint32_t>(kTop + rows * kHigh), kPaper);
   canvas.text(24, 34, 18, "Heart and breath: error over latency and cost", kInk,
-              sonar::Align::kLeft, 2.2);
+              draw2d::Align::kLeft, draw2d::Face::kBold);
   int row = 0;
   const auto boxes = [&] {
     const double top = kTop + kHigh * row++;

@@ -130,7 +130,7 @@ std::vector<Series> series_of(const SonarTradeoff& t, const std::string& scene, 
   return out;
 }
 
-void draw_curve(sonar::Canvas& canvas, const Box& box, const SonarTradeoff& t,
+void draw_curve(draw2d::Canvas& canvas, const Box& box, const SonarTradeoff& t,
                 const std::string& scene, const std::string& title, Axis x, Axis y, Value fx,
                 Value fy, bool mark) {
   const auto series = series_of(t, scene, fx, fy, mark);
@@ -149,10 +149,11 @@ void draw_curve(sonar::Canvas& canvas, const Box& box, const SonarTradeoff& t,
 
 ImageU8 plot_of(const SonarTradeoff& t, const std::vector<std::string>& scenes) {
   constexpr double kWidth = 640, kHeight = 460, kTop = 64;
-  sonar::Canvas canvas(
+  draw2d::Canvas canvas(
       1920, static_cast<std::uint32_t>(kTop + kHeight * static_cast<double>(scenes.size())),
       kPaper);
-  canvas.text(24, 34, 18, "Imaging sonar: error against cost", kInk, sonar::Align::kLeft, 2.2);
+  canvas.text(24, 34, 18, "Imaging sonar: error against cost", kInk, draw2d::Align::kLeft,
+              draw2d::Face::kBold);
   canvas.text(24, 54, 10,
               fmt::format("{}; truth: {} rays a cell; labels: G-buffer pixels a cell", t.device,
                           t.rays_a_cell),

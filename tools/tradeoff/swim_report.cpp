@@ -105,7 +105,7 @@ nlohmann::json swim_json(const SwimTradeoff& t) {
 }
 
 // Error over what(point), a curve a variant; some variants only, so that they can be told apart.
-void draw_swim(sonar::Canvas& canvas, const Box& box, const SwimTradeoff& t,
+void draw_swim(draw2d::Canvas& canvas, const Box& box, const SwimTradeoff& t,
                const std::string& swim, const std::string& title, const std::string& label,
                double (*what)(const SwimPoint&), bool noted) {
   const char* const drawn[] = {"1 strips", "2 strips",  "4 strips",
@@ -137,10 +137,10 @@ void draw_swim(sonar::Canvas& canvas, const Box& box, const SwimTradeoff& t,
 
 ImageU8 swim_plot(const SwimTradeoff& t) {
   constexpr double kWide = 900, kHigh = 460, kHead = 64;
-  sonar::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                       static_cast<std::uint32_t>(kHead + 3 * kHigh), kPaper);
-  canvas.text(24, 34, 18, "Swimming by moving limbs: error against cost", kInk, sonar::Align::kLeft,
-              2.2);
+  draw2d::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
+                        static_cast<std::uint32_t>(kHead + 3 * kHigh), kPaper);
+  canvas.text(24, 34, 18, "Swimming by moving limbs: error against cost", kInk,
+              draw2d::Align::kLeft, draw2d::Face::kBold);
   canvas.text(24, 54, 10,
               fmt::format("{:g} s of flutter kick, {:.1f} m; truth: 64 strips a segment, .25 ms",
                           t.swim_s, t.way_m),

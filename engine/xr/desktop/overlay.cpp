@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "engine/core/check.hpp"
+#include "engine/draw2d/font.hpp"
 #include "shaders.hpp"
 #include "shared/imgui.h"
 
@@ -14,7 +15,7 @@ namespace neritic::xr {
 namespace {
 
 constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
-constexpr float kFontSize_px = 13.0f;  // the built-in bitmap font is drawn for multiples of this
+constexpr float kFontSize_px = 14.0f;  // the em, at a scale of 1
 
 void set_style(float scale) {
   ImGui::StyleColorsDark();
@@ -61,9 +62,19 @@ Overlay::~Overlay() {
 
 Status Overlay::create_font() {
   ImGuiIO& io = ImGui::GetIO();
+  // Latin, general punctuation, super- and subscripts, Greek, arrows and mathematical signs. ImGui
+  // draws any other code point as a question mark.
+  static constexpr ImWchar kRanges[] = {0x20,   0xFF,   0x370,  0x3FF,  0x2010,
+                                        0x2027, 0x2070, 0x209F, 0x2190, 0x21FF,
+                                        0x2200, 0x226F, 0xFFFD, 0xFFFD, 0};
+  const std::span<const std::byte> file = draw2d::font_file(draw2d::Face::kRegular);
   ImFontConfig config;
-  config.SizePixels = kFontSize_px * scale_;
-  io.Fonts->AddFontDefault(&config);
+  config.FontDataOwnedByAtlas = false;
+  // ImGui takes a pointer to bytes that it may change, but reads them only.
+  void* bytes = const_cast<std::byte*>(file.data());
+  const ImFont* font = io.Fonts->AddFontFromMemoryTTF(
+      bytes, static_cast<int>(file.size()), std::round(kFontSize_px * scale_), &config, kRanges);
+  NERITIC_CHECK(font != nullptr, "ImGui does not read the font");
   unsigned char* pixels = nullptr;
   int width = 0, height = 0;
   io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
