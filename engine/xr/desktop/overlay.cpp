@@ -63,7 +63,7 @@ Overlay::~Overlay() {
 Status Overlay::create_font() {
   ImGuiIO& io = ImGui::GetIO();
   // Latin, general punctuation, super- and subscripts, Greek, arrows and mathematical signs. ImGui
-  // draws any other code point as a question mark.
+  // draws any other code point as U+FFFD.
   static constexpr ImWchar kRanges[] = {0x20,   0xFF,   0x370,  0x3FF,  0x2010,
                                         0x2027, 0x2070, 0x209F, 0x2190, 0x21FF,
                                         0x2200, 0x226F, 0xFFFD, 0xFFFD, 0};
