@@ -108,7 +108,7 @@ void draw_rings(Canvas& canvas, const PanelLayout& layout, const Limits& l, doub
   };
   for (double r = step; r < l.range_max_m - 0.35 * step; r += step)
     if (r > l.range_min_m) {
-      ring(r, 0.20f, 1.0 * unit);
+      ring(r, 0.32f, 1.0 * unit);
       label(r);
     }
   if (l.range_min_m > 0.0) {
@@ -139,7 +139,7 @@ void draw_bearings(Canvas& canvas, const PanelLayout& layout, const Limits& l, d
   for (double b = std::ceil(degrees(l.azimuth_min_rad) / step - 1e-6) * step;
        b <= degrees(l.azimuth_max_rad) + 1e-6; b += step) {
     if (span > 359.0 && b < -179.0) continue;  // the same line as +180
-    line(radians(b), 0.16f, 1.0 * unit);
+    line(radians(b), 0.22f, 1.0 * unit);
     const double out = l.range_max_m * layout.scale;
     const double a = radians(b);
     canvas.segment(layout.apex_x + out * std::sin(a), layout.apex_y - out * std::cos(a),
@@ -147,11 +147,15 @@ void draw_bearings(Canvas& canvas, const PanelLayout& layout, const Limits& l, d
                    layout.apex_y - (out + 6 * unit) * std::cos(a), 1.2 * unit,
                    kPlotLine.with_alpha(0.6f));
     if (!words) continue;
-    const double far = out + 22 * unit;
-    const double rounded = std::abs(b) < 1e-9 ? 0.0 : b;
-    canvas.text(layout.apex_x + far * std::sin(a), layout.apex_y - far * std::cos(a), 10.5 * unit,
-                number_text(rounded) + "\u00b0", kPlotText.with_alpha(0.85f), Align::kCenter,
-                Face::kRegular, VerticalAlign::kMiddle);
+    const double size = 10.5 * unit;
+    const std::string text = number_text(b) + "\u00b0";
+    // Far enough out that the text's box clears the tick on any side of the fan.
+    const double far = out + 10 * unit +
+                       std::abs(std::sin(a)) * canvas.text_width(size, text) / 2.0 +
+                       std::abs(std::cos(a)) * size / 2.0;
+    canvas.text(layout.apex_x + far * std::sin(a), layout.apex_y - far * std::cos(a), size, text,
+                kPlotText.with_alpha(0.85f), Align::kCenter, Face::kRegular,
+                VerticalAlign::kMiddle);
   }
   if (span < 359.0) {
     line(l.azimuth_min_rad, 0.5f, 1.4 * unit);
@@ -195,7 +199,12 @@ void draw_words(Canvas& canvas, const BeamGrid& grid, const std::string& title, 
   const auto aperture = [](double from, double to) {
     return std::round(degrees(to - from) * 100) / 100;
   };
-  canvas.text(24 * unit, 38 * unit, 17 * unit, title, kPlotText, Align::kLeft, Face::kBold);
+  // A title that would meet the numbers of the colour scale is set smaller, then cut.
+  const double room = scale_box(canvas, unit).left - 88 * unit;
+  const double size = std::clamp(
+      17 * unit * room / canvas.text_width(17 * unit, title, Face::kBold), 11 * unit, 17 * unit);
+  canvas.text(24 * unit, 38 * unit, size, canvas.shortened(size, title, room, Face::kBold),
+              kPlotText, Align::kLeft, Face::kBold);
   canvas.text(24 * unit, 62 * unit, 10.5 * unit,
               fmt::format("range {} to {}   aperture {:g}\u00b0 \u00d7 {:g}\u00b0",
                           range_text(l.range_min_m), range_text(l.range_max_m),

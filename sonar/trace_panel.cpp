@@ -10,12 +10,6 @@ namespace neritic::sonar {
 
 using namespace draw2d;
 
-namespace {
-
-constexpr int kMarks = 5;  // parts that each axis is divided into
-
-}  // namespace
-
 ImageU8 draw_trace(const BeamGrid& grid, std::span<const float> intensity,
                    const PanelOptions& options) {
   const double unit = options.height_px / 900.0;
@@ -28,33 +22,21 @@ ImageU8 draw_trace(const BeamGrid& grid, std::span<const float> intensity,
   if (!(whole.full_scale > 0.0) && !intensity.empty())
     whole.full_scale = *std::max_element(intensity.begin(), intensity.end());
   const double full = panel_full_scale(image, whole);
-  const double left = 90 * unit, right = width - 40 * unit, top = 90 * unit,
-               bottom = height - 84 * unit;
+  const PlotBox box{90 * unit, 104 * unit, width - 40 * unit, height - 92 * unit};
   draw_words(canvas, grid, options.title, unit);
-  for (int i = 0; i <= kMarks; ++i) {
-    const double part = double(i) / kMarks;
-    const double x = left + part * (right - left), y = bottom - part * (bottom - top);
-    canvas.segment(x, top, x, bottom, unit, kPlotLine.with_alpha(0.14f));
-    canvas.segment(left, y, right, y, unit, kPlotLine.with_alpha(0.14f));
-    const Limits& l = grid.limits;
-    canvas.text(x, bottom + 20 * unit, 10 * unit,
-                fmt::format("{:.4g} m", l.range_min_m + part * (l.range_max_m - l.range_min_m)),
-                kPlotText.with_alpha(0.85f), Align::kCenter);
-    canvas.text(left - 8 * unit, y, 10 * unit,
-                options.span_db > 0.0 ? fmt::format("{:.0f} dB", 10.0 * std::log10(full) -
-                                                                     (1.0 - part) * options.span_db)
-                                      : fmt::format("{:.3g}", full * part),
-                kPlotText.with_alpha(0.85f), Align::kRight, Face::kRegular, VerticalAlign::kMiddle);
-  }
-  canvas.text(left, top - 12 * unit, 10 * unit,
-              options.span_db > 0.0 ? "dB re 1 \u00b5Pa" : "mean cosine",
-              kPlotText.with_alpha(0.7f));
+  const double full_db = 10.0 * std::log10(full);
+  if (options.span_db > 0.0)
+    draw_left_axis(canvas, box, full_db, full_db - options.span_db, "dB re 1 \u00b5Pa", unit);
+  else
+    draw_left_axis(canvas, box, full, 0.0, "mean cosine", unit);
+  draw_bottom_axis(canvas, box, grid.limits.range_min_m, grid.limits.range_max_m, "range, m", unit);
+  draw_frame(canvas, box, unit);
   PanelOptions linear = options;
   linear.gamma = 1.0;
-  std::vector<Vec2> curve{{left, bottom}};
+  std::vector<Vec2> curve{{box.left, box.bottom}};
   for (std::size_t i = 0; i < intensity.size(); ++i) {
-    const double x = left + (i + 0.5) / static_cast<double>(intensity.size()) * (right - left);
-    const double y = bottom - panel_brightness(intensity[i], full, linear) * (bottom - top);
+    const double x = box.left + (i + 0.5) / static_cast<double>(intensity.size()) * box.width();
+    const double y = box.bottom - panel_brightness(intensity[i], full, linear) * box.height();
     curve.emplace_back(x, y);
   }
   canvas.polyline(curve, 1.6 * unit, map_color(ColorMap::kCopper, 0.75));

@@ -16,7 +16,7 @@ struct Slot {
   std::uint32_t x, y, width, height;
 };
 
-// Copies the tile's picture into its slot, scaled to fit, in the middle.
+// Copies the tile's picture into the middle of its slot, shrunk to fit.
 void place(ImageU8& out, const Tile& tile, const Slot& slot) {
   if (tile.image.empty()) return;
   const std::uint32_t room = slot.height - kCaptionBand_px;
@@ -32,13 +32,15 @@ void place(ImageU8& out, const Tile& tile, const Slot& slot) {
                 &out.data[(std::size_t{top + v} * out.width + left) * 3]);
 }
 
-// The caption, and behind it the colours of its key while they fit, then how many do not.
+// The caption, cut to the slot's width, then the colours of its key as far as there is room, then
+// the number of those left out.
 void write_caption(draw2d::Canvas& canvas, const Tile& tile, const Slot& slot) {
   constexpr double kWord_px = 9.0, kSwatch_px = 11.0, kSpace_px = 4.0, kAfter_px = 9.0;
   const double y = slot.y + kCaptionBand_px - 9.0;
   double x = slot.x + 2.0;
-  canvas.text(x, y, kCaption_px, tile.caption, kInk);
-  x += canvas.text_width(kCaption_px, tile.caption) + 2.0 * kAfter_px;
+  const std::string caption = canvas.shortened(kCaption_px, tile.caption, slot.width - 4.0);
+  canvas.text(x, y, kCaption_px, caption, kInk);
+  x += canvas.text_width(kCaption_px, caption) + 2.0 * kAfter_px;
   for (std::size_t i = 0; i < tile.key.size(); ++i) {
     const auto& [color, word] = tile.key[i];
     const double width = kSwatch_px + kSpace_px + canvas.text_width(kWord_px, word);
@@ -83,8 +85,7 @@ void add_row(std::vector<Slot>& slots, std::uint32_t tiles, std::uint32_t width,
 }  // namespace
 
 ImageU8 contact_sheet(const std::vector<Tile>& tiles) {
-  // Three small tiles beside the large one, each 16 to 9, are as high as it: 3 h + 2 (caption +
-  // gap).
+  // The large tile is as high as the three small ones beside it: 3 heights + 2 (caption + gap).
   constexpr std::uint32_t kSmallWidth = 420, kSmallHeight = 236 + kCaptionBand_px, kBeside = 3;
   constexpr std::uint32_t kLargeHeight = kBeside * kSmallHeight + (kBeside - 1) * kGap_px;
   constexpr std::uint32_t kLargeWidth = (kLargeHeight - kCaptionBand_px) * 16 / 9;
