@@ -71,9 +71,10 @@ TEST_F(OutputPage, OfTheHeart) {
   ASSERT_TRUE(write_text(folder_ / "heart.csv", text).ok());
   ASSERT_TRUE(write_file(folder_ / "heart.atr", marks).ok());
   said_by("physio ecg " + in_folder("heart.csv") + " --annotations " + in_folder("heart.atr") +
-          " --out " + in_folder(""));
+          " --out " + in_folder("") + " --plot " + in_folder("p.png"));
   expect_columns("## `physio ecg`: ecg.csv", written("ecg.csv"));
   expect_keys("## `physio ecg`: ecg.json", written("ecg.json"));
+  expect_keys("## `physio ecg --plot`", written("p.plot.json"));
 }
 
 TEST_F(OutputPage, OfBreath) {
@@ -81,9 +82,11 @@ TEST_F(OutputPage, OfBreath) {
   for (int i = 0; i < 20000; ++i)
     sound += fmt::format("{:.4f}\n", std::sin(0.7 * i) * std::sin(0.4e-3 * kPi * i));
   ASSERT_TRUE(write_text(folder_ / "s_12bpm.csv", sound).ok());
-  said_by("physio breath " + in_folder("s_12bpm.csv") + " --out " + in_folder(""));
+  said_by("physio breath " + in_folder("s_12bpm.csv") + " --out " + in_folder("") + " --plot " +
+          in_folder("p.png"));
   expect_columns("## `physio breath`: breath.csv", written("breath.csv"));
   expect_keys("## `physio breath`: breath.json", written("breath.json"));
+  expect_keys("## `physio breath --plot`", written("p.plot.json"));
 }
 
 TEST_F(OutputPage, OfGaze) {
@@ -97,10 +100,11 @@ TEST_F(OutputPage, OfGaze) {
   for (int i = 0; i < 300; ++i) gaze += "0,0,1,1\n";
   ASSERT_TRUE(write_text(folder_ / "g.csv", gaze).ok());
   const std::string command = "physio gaze " + in_folder("g.csv") + " --out " + in_folder("") +
-                              " --intrinsics 500,500,320,240";
+                              " --intrinsics 500,500,320,240 --plot " + in_folder("p.png");
   said_by(command);
   expect_columns("## `physio gaze`: gaze.csv", written("gaze.csv"));
   expect_keys("## `physio gaze`: gaze.json", written("gaze.json"));
+  expect_keys("## `physio gaze --plot`", written("p.plot.json"));
 }
 
 TEST_F(OutputPage, OfAPlan) {
@@ -123,6 +127,19 @@ TEST_F(OutputPage, OfALogOfDepths) {
   said_by(plan + " --out " + in_folder("out"));
   expect_columns("## `plan --log`: log.csv", written("out/log.csv"));
   expect_keys("## `plan --log --json`", said_by(plan + " --json"));
+}
+
+TEST_F(OutputPage, OfAPlansPicture) {
+  Words keys;
+  for (const char* tank : {"", "--tank 18/45=24,232 "}) {
+    said_by(fmt::format("plan --gas 18/45 ean50 --depth 60 --time 25 {}--plot {}", tank,
+                        in_folder("p.png")));
+    const auto json = parse_json(written("p.plot.json"));
+    ASSERT_TRUE(json.ok()) << json.error().message;
+    gather_keys(*json, keys);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "p.png"));
+  }
+  expect_keys("## `plan`: plan.plot.json", keys);
 }
 
 TEST_F(OutputPage, OfChecks) {

@@ -350,7 +350,9 @@ void add_plan(CLI::App& app, Run& run) {
                       "whose rows of --log: of a column vehicle that names several");
   command->add_option("--plot", flags->plot, "a picture (.png)")->check(png_file);
   command
-      ->add_option("--out", flags->out, "folder for plan.json and plan.png, or log.csv and log.png")
+      ->add_option(
+          "--out", flags->out,
+          "folder for plan.json and plan.png, or log.csv and log.png, and the picture's data")
       ->check(named);
   command->add_flag("--json", flags->json, "for programs: JSON on standard output");
   command->callback([flags, &run] { run = [flags] { return run_plan(*flags); }; });

@@ -9,7 +9,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/text.hpp"
-#include "engine/scene/image_file.hpp"
+#include "tools/common/picture.hpp"
 #include "tools/neritic/physio_report.hpp"
 
 namespace neritic::tools {
@@ -71,8 +71,10 @@ Result<std::string> show(const PhysioFlags& flags, const Report& report, bool pl
     NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".json"), json));
     where = flags.out.string() + fmt::format(": {0}.csv, {0}.json", flags.what);
   }
-  if (!flags.plot.empty())
-    NERITIC_TRY_STATUS(scene::write_png8(flags.plot, report_plot(flags, report)));
+  if (!flags.plot.empty()) {
+    const auto drawn = write_picture(flags.plot, report_picture(flags, report));
+    if (!drawn.ok()) return drawn.error();
+  }
   if (flags.out.empty() || flags.json) {
     if (flags.json || !played) fmt::print("{}", flags.json ? json : text.summary + text.table);
     std::fflush(stdout);

@@ -1,6 +1,6 @@
 // What `neritic physio` finds in a recording, and how it is said: a table (.csv) under a summary,
 // the same as JSON, and a picture. physio_ecg.cpp, physio_breath.cpp and physio_gaze.cpp analyse,
-// physio_json.cpp and physio_plot.cpp show. One thread.
+// physio_json.cpp and physio_picture.cpp show. One thread.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,7 +10,6 @@
 #include "diver/gaze_csv.hpp"
 #include "diver/heart_monitor.hpp"
 #include "diver/heart_score.hpp"
-#include "engine/core/image.hpp"
 #include "tools/neritic/commands.hpp"
 
 namespace neritic::tools {
@@ -84,9 +83,10 @@ ReportText report_text(const PhysioFlags& flags, const GazeReport& report);
 nlohmann::json report_json(const PhysioFlags& flags, const EcgReport& report);
 nlohmann::json report_json(const PhysioFlags& flags, const BreathReport& report);
 nlohmann::json report_json(const PhysioFlags& flags, const GazeReport& report);
-ImageU8 report_plot(const PhysioFlags& flags, const EcgReport& report);
-ImageU8 report_plot(const PhysioFlags& flags, const BreathReport& report);
-ImageU8 report_plot(const PhysioFlags& flags, const GazeReport& report);
+// The data of the picture.
+nlohmann::json report_picture(const PhysioFlags& flags, const EcgReport& report);
+nlohmann::json report_picture(const PhysioFlags& flags, const BreathReport& report);
+nlohmann::json report_picture(const PhysioFlags& flags, const GazeReport& report);
 
 const char* name_of(diver::IntervalKind kind);
 

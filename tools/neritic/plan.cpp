@@ -1,11 +1,12 @@
 // `neritic plan`: a dive planned, or a log of depths replayed; as text or JSON, and as a picture.
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "diver/gas_label.hpp"
 #include "engine/core/files.hpp"
-#include "engine/scene/image_file.hpp"
-#include "tools/neritic/plan_plot.hpp"
+#include "tools/common/picture.hpp"
+#include "tools/neritic/plan_picture.hpp"
 #include "tools/neritic/plan_report.hpp"
 #include "tools/neritic/plan_request.hpp"
 #include "tools/neritic/plan_trace.hpp"
@@ -28,21 +29,25 @@ std::string conditions(const PlanFlags& flags, const diver::DecoEnvironment& whe
   return out;
 }
 
-// --plot's file, and the one in --out's folder.
-Status write_pictures(const PlanFlags& flags, const char* name, const PlanPicture& picture,
-                      const DiveTrace& trace) {
-  if (flags.plot.empty() && flags.out.empty()) return {};
-  const ImageU8 image = draw_dive(picture, trace);
-  if (!flags.plot.empty()) NERITIC_TRY_STATUS(scene::write_png8(flags.plot, image));
-  if (!flags.out.empty()) NERITIC_TRY_STATUS(scene::write_png8(flags.out / name, image));
-  return {};
+// --plot's picture, and the one in --out's folder; whether what was asked for is drawn.
+Result<bool> write_pictures(const PlanFlags& flags, const char* name, const PlanPicture& picture,
+                            const DiveTrace& trace) {
+  const nlohmann::json data = plan_picture_data(picture, trace);
+  bool drawn = true;
+  for (const auto& file : {flags.plot, flags.out.empty() ? flags.out : flags.out / name}) {
+    if (file.empty()) continue;
+    NERITIC_TRY(const bool this_one, write_picture(file, data));
+    drawn = drawn && this_one;
+  }
+  return drawn;
 }
 
-// Where the results are; nothing where JSON was printed, which stands alone.
-std::string written(const PlanFlags& flags, const char* names) {
+// Where the results are. Nothing where JSON was printed, which stands alone.
+std::string written(const PlanFlags& flags, const char* stem, const char* table, bool drawn) {
   if (flags.json || (flags.out.empty() && flags.plot.empty())) return {};
-  if (flags.out.empty()) return flags.plot.string();
-  return flags.out.string() + ": " + names;
+  if (flags.out.empty()) return (drawn ? flags.plot : picture_data_path(flags.plot)).string();
+  return fmt::format("{}: {}, {}.plot.json{}", flags.out.string(), table, stem,
+                     drawn ? fmt::format(", {}.png", stem) : "");
 }
 
 Result<std::string> plan_a_dive(const PlanFlags& flags) {
@@ -59,28 +64,30 @@ Result<std::string> plan_a_dive(const PlanFlags& flags) {
   for (const diver::PlanLevel& level : request.levels)
     levels += fmt::format("{}{:g} m, {:g} min", levels.empty() ? "" : "; ", level.depth_m,
                           level.leave_min);
-  PlanPicture picture{
-      fmt::format("{} on {}", levels, diver::name_of(request.gases[0].mix)),
-      fmt::format("{}, {}; run time {:.1f} min, stops {:.1f} min, CNS {:.0f} %, OTU "
-                  "{:.0f}; for planning with judgement, no substitute for training",
-                  gf_text(request.gf_low, request.gf_high), flags.convention, report.plan.run_min(),
-                  report.plan.stop_min(), report.oxygen().cns_percent, report.oxygen().otu),
-      conditions(flags, request.conventions.environment),
-      {},
-      request.conventions,
-      request.gf_low,
-      request.gf_high,
-      request.gases,
-      report.plan.stops,
-      gas_curves(report)};
-  for (const diver::PlanWarning& warning : report.warnings)
-    picture.warnings.push_back(warning.text);
-  if (!flags.plot.empty() || !flags.out.empty())
-    NERITIC_TRY_STATUS(
-        write_pictures(flags, "plan.png", picture, trace_plan(request, report.plan)));
+  bool drawn = true;
+  if (!flags.plot.empty() || !flags.out.empty()) {
+    PlanPicture picture{
+        fmt::format("{} on {}", levels, diver::name_of(request.gases[0].mix)),
+        {fmt::format("{}, {}; run time {:.1f} min, stops {:.1f} min, CNS {:.0f} %, OTU {:.0f}; for "
+                     "planning with judgement, no substitute for training",
+                     gf_text(request.gf_low, request.gf_high), flags.convention,
+                     report.plan.run_min(), report.plan.stop_min(), report.oxygen().cns_percent,
+                     report.oxygen().otu),
+         conditions(flags, request.conventions.environment)},
+        {},
+        request.conventions,
+        request.gf_high,
+        request.gases,
+        report.plan.stops,
+        gas_curves(report)};
+    for (const diver::PlanWarning& warning : report.warnings)
+      picture.warnings.push_back(warning.text);
+    NERITIC_TRY(drawn,
+                write_pictures(flags, "plan.png", picture, trace_plan(request, report.plan)));
+  }
   fmt::print("{}", flags.json ? plan_json(report) : plan_text(report));
   std::fflush(stdout);
-  return written(flags, "plan.json, plan.png");
+  return written(flags, "plan", "plan.json", drawn);
 }
 
 std::string log_text(const PlanFlags& flags, const diver::DepthLog& log, const DiveTrace& trace) {
@@ -128,24 +135,25 @@ Result<std::string> replay_a_log(const PlanFlags& flags) {
     NERITIC_TRY_STATUS(make_folder(flags.out));
     NERITIC_TRY_STATUS(write_text(flags.out / "log.csv", trace_csv(trace, s.gases)));
   }
-  NERITIC_TRY_STATUS(
-      write_pictures(flags, "log.png",
-                     {"Replayed: " + std::filesystem::path(flags.log).filename().string(),
-                      fmt::format("{}, {}; {} samples, {} refused, deepest ceiling {:.1f} m",
-                                  gf_text(s.gf_low, s.gf_high), flags.convention,
-                                  log.samples.size(), trace.end.refused, trace.most_ceiling_m),
-                      conditions(flags, s.conventions.environment),
-                      log_warnings(trace),
-                      s.conventions,
-                      s.gf_low,
-                      s.gf_high,
-                      s.gases,
-                      {},
-                      {}},
-                     trace));
+  const PlanPicture picture{
+      "Replayed: " + std::filesystem::path(flags.log).filename().string(),
+      {fmt::format("{}, {}; {} samples, {} refused, deepest ceiling {:.1f} m",
+                   gf_text(s.gf_low, s.gf_high), flags.convention, log.samples.size(),
+                   trace.end.refused, trace.most_ceiling_m),
+       conditions(flags, s.conventions.environment)},
+      log_warnings(trace),
+      s.conventions,
+      s.gf_high,
+      s.gases,
+      {},
+      {}};
+  bool drawn = true;
+  if (!flags.plot.empty() || !flags.out.empty()) {
+    NERITIC_TRY(drawn, write_pictures(flags, "log.png", picture, trace));
+  }
   fmt::print("{}", flags.json ? log_json(flags.log, log, trace) : log_text(flags, log, trace));
   std::fflush(stdout);
-  return written(flags, "log.csv, log.png");
+  return written(flags, "log", "log.csv", drawn);
 }
 
 }  // namespace

@@ -29,8 +29,10 @@ def read(path):
 def painters():
     """Each name of a picture and the function that draws it, data -> Figure."""
     import dive
+    import physio
+    import plan
 
-    return {"dive": dive.draw}
+    return {"dive": dive.draw, "plan": plan.draw} | physio.PAINTERS
 
 
 def save(figure, path):

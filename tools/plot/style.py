@@ -169,6 +169,10 @@ def notes(ax, items, size=7.5, taken=None):
                     continue
                 if any(left < t[2] + 2 and t[0] - 2 < right and low < t[3] + 1 and t[1] - 1 < top for t in taken):
                     continue
+                ends = np.array([[px, py], [np.clip(px, left, right), np.clip(py, low, top)]])
+                leader = ends[0] + np.linspace(0, 1, 12)[:, None] * (ends[1] - ends[0])
+                if any(((leader > t[:2]) & (leader < t[2:])).all(axis=1).any() for t in taken):
+                    continue
                 hidden = np.count_nonzero((curves[:, 0] > left - 2) & (curves[:, 0] < right + 2) &
                                           (curves[:, 1] > low - 1) & (curves[:, 1] < top + 1))
                 cost = hidden + 0.05 * far
