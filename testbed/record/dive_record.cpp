@@ -72,7 +72,7 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
   for (std::size_t i = 0; i < figures_.size(); ++i) {
     const VehicleState &now = snapshot.state.vehicles()[i], &before = last_.vehicles()[i];
     DiveFigures& figures = figures_[i];
-    if (snapshot.step > 0) {
+    if (begun_) {
       figures.path_m += glm::distance(now.body.position_ned_m, before.body.position_ned_m);
       if (now.mission.arrived > before.mission.arrived)
         figures.arrivals_s.push_back(snapshot.time_s);
@@ -86,6 +86,7 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
   }
   humans_.add(snapshot, options_.rows && human_row_due(snapshot.step));
   last_ = snapshot.state;
+  begun_ = true;
 }
 
 }  // namespace neritic::testbed

@@ -57,6 +57,7 @@ class DiveRecorder {
   std::vector<DiveRow> rows_;
   std::vector<DiveFigures> figures_;
   PhysicsState last_;
+  bool begun_ = false;
   HumanRecorder humans_;
 };
 

@@ -107,13 +107,19 @@ void HumanRecorder::note_dangers(std::size_t index, const sim::Snapshot<PhysicsS
 }
 
 void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row) {
+  if (!begun_) {  // at time 0, or at a restored state
+    next_sample_s_ =
+        diver::kComputerSample_s * std::ceil(snapshot.time_s / diver::kComputerSample_s - 1e-9);
+    for (std::size_t i = 0; i < last_tank_.size(); ++i)
+      last_tank_[i] = snapshot.state.humans()[i].human.held.tank;
+  }
   const bool sample = snapshot.time_s >= next_sample_s_ - 1e-9;
   if (sample) next_sample_s_ += diver::kComputerSample_s;
   for (std::size_t i = 0; i < figures_.size(); ++i) {
     const HumanPhysics& state = snapshot.state.humans()[i];
     const diver::RootState& root = state.human.root;
     HumanFigures& figures = figures_[i];
-    if (snapshot.step > 0) figures.path_m += glm::distance(root.position_ned_m, last_ned_m_[i]);
+    if (begun_) figures.path_m += glm::distance(root.position_ned_m, last_ned_m_[i]);
     last_ned_m_[i] = root.position_ned_m;
     figures.largest_speed_m_s =
         std::max(figures.largest_speed_m_s, glm::length(root.velocity.linear()));
@@ -123,6 +129,7 @@ void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row) {
     if (sample) note_dangers(i, snapshot);
     if (row) rows_.push_back(row_of(i, snapshot));
   }
+  begun_ = true;
 }
 
 }  // namespace neritic::testbed

@@ -77,6 +77,7 @@ class HumanRecorder {
   std::vector<HumanFigures> figures_;
   std::vector<Vec3> last_ned_m_;
   std::vector<std::uint64_t> last_tank_;
+  bool begun_ = false;
   double next_sample_s_ = 0.0;  // of the divers' computers
 };
 

@@ -237,6 +237,10 @@ rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const Vehicle
   return acting;
 }
 
+StateFormat PhysicsWorld::state_format() const {
+  return {scene_hash_, step_s_, start(), start_inputs()};
+}
+
 PhysicsSimulation::Step PhysicsWorld::step_function() const {
   return [this, scratch = scratch()](const PhysicsState& before, const PhysicsInputs& inputs,
                                      const sim::StepTime& time, PhysicsState& after) mutable {

@@ -7,6 +7,7 @@
 
 #include "rov/frames.hpp"
 #include "rov/step_choice.hpp"
+#include "testbed/simulation/scene_hash.hpp"
 #include "testbed/simulation/static_scene.hpp"
 #include "testbed/simulation/vehicle_shape.hpp"
 
@@ -77,6 +78,7 @@ bool PhysicsWorld::needed(const scene::Scene& scene) {
 Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Scene& scene) {
   std::unique_ptr<PhysicsWorld> world(new PhysicsWorld);
   world->seed_ = scene.seed;
+  NERITIC_TRY(world->scene_hash_, scene_hash(scene));
   if (scene.current) {
     NERITIC_TRY(world->current_, current_of(*scene.current));
   }

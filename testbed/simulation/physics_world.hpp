@@ -14,6 +14,7 @@
 #include "testbed/simulation/body_step.hpp"
 #include "testbed/simulation/human_world.hpp"
 #include "testbed/simulation/mission.hpp"
+#include "testbed/simulation/saved_state.hpp"
 
 namespace neritic::testbed {
 
@@ -86,6 +87,8 @@ class PhysicsWorld {
 
   // The step with memory of its own, for a simulation or a replay; borrows the world.
   PhysicsSimulation::Step step_function() const;
+  // What states of this world are saved as, and must be to go on in it.
+  StateFormat state_format() const;
   // Borrows the world.
   std::unique_ptr<PhysicsSimulation> simulation(sim::SimulationOptions options) const;
 
@@ -106,7 +109,7 @@ class PhysicsWorld {
                         const VehicleState& state, double time_s, double dt_s) const;
 
   double step_s_ = 1.0 / 240.0;
-  std::uint64_t seed_ = 0;
+  std::uint64_t seed_ = 0, scene_hash_ = 0;
   StepMethod method_;
   std::optional<sim::Current> current_;
   sim::StaticWorld solid_;

@@ -86,6 +86,31 @@ mission = { waypoints = [ { position_m = [0, -6, -2] }, { position_m = [1, -7, -
   test::ScratchFolder scratch_;
 };
 
+// Two processes: one saves half way, the other goes on; the same hash as one that never stopped.
+TEST_F(DivePhysics, SavedInOneProcessItGoesOnInAnotherWithTheSameHash) {
+  const std::string file = (scratch_ / "half.state").string();
+  const auto hash_of = [](const Outcome& outcome) {
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out.substr(outcome.out.rfind("hash "));
+  };
+  const std::string whole = hash_of(dive("--headless --seconds 4"));
+  const std::string half = hash_of(dive("--headless --seconds 2 --save '" + file + "'"));
+  const Outcome on = dive("--headless --seconds 2 --restore '" + file + "'");
+  EXPECT_NE(half, whole);
+  EXPECT_EQ(hash_of(on), whole);
+  const Outcome both =
+      dive("--headless --restore '" + file + "' --record '" + (scratch_ / "x.log").string() + "'");
+  EXPECT_EQ(both.status, 2);
+  EXPECT_NE(both.err.find("--record: accepted without --restore"), std::string::npos) << both.err;
+  auto text = read_text(scratch_ / "dive.toml").value();
+  text.replace(text.find("[1, -7, -2]"), 11, "[1, -7, -3]");
+  ASSERT_TRUE(write_text(scratch_ / "other.toml", text).ok());
+  const Outcome other = dive("--headless --restore '" + file + "'", "other.toml");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("a state of another scene"), std::string::npos) << other.err;
+  EXPECT_EQ(std::ranges::count(other.err, '\n'), 1) << other.err;
+}
+
 TEST_F(DivePhysics, FliesWithoutADeviceAndSaysWhatCameOfIt) {
   const Outcome outcome = dive("--headless --seconds 20 --log " + file("a.csv"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -303,7 +328,7 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
        "--json: accepted with --headless and without flags of pictures"},
       {"--headless --replay none.log", "dive.toml", "none.log"},
       {"--headless --replay a.log --log x.csv", "dive.toml",
-       "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --realtime, "},
+       "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --save, "},
       {"--headless --replay a.log --seconds 10", "dive.toml",
        "--replay: accepted without --seconds"},
       {"--headless --seconds 1e7", "dive.toml", "--seconds: 10000000; up to 1e+06 is accepted"},

@@ -55,7 +55,7 @@ struct DiveFlags {
   std::optional<double> seconds;
   bool headless = false, fast = false, panels = false, validation = false;
   // Of scenes with physics, headless.
-  std::string log, plot, record, replay;
+  std::string log, plot, record, replay, save, restore;
   std::optional<double> log_rate_hz;  // absent or 0: the controllers'
   bool realtime = false, json = false;
 };

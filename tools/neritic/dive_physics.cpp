@@ -34,6 +34,8 @@ std::string physics_flag(const DiveFlags& flags) {
   if (!flags.plot.empty()) return "--plot";
   if (!flags.record.empty()) return "--record";
   if (!flags.replay.empty()) return "--replay";
+  if (!flags.save.empty()) return "--save";
+  if (!flags.restore.empty()) return "--restore";
   if (flags.realtime) return "--realtime";
   if (flags.json) return "--json";
   return "";
@@ -48,7 +50,7 @@ Pace run_steps(PhysicsSimulation& simulation, DiveRecorder& recorder, const Dive
   const TimeNs begun_ns = clock.now();
   sim::StepPacer pacer(1.0 / step_s, kCatchUp, begun_ns);
   Progress progress("second", static_cast<std::uint64_t>(std::ceil(seconds)));
-  double told_s = 0.0;
+  double told_s = simulation.newest().time_s;
   recorder.add(simulation.newest());
   Pace pace;
   for (std::uint64_t done = 0; done < steps;) {
@@ -87,6 +89,10 @@ Status check_writable(const std::filesystem::path& path) {
 Status write_results(const DiveFlags& flags, const std::string& title, const PhysicsWorld& world,
                      const PhysicsSimulation& simulation, const DiveRecorder& recorder) {
   std::vector<Status> written;
+  if (!flags.save.empty())
+    written.push_back(
+        write_state(flags.save, world.state_format(),
+                    {simulation.newest().step, simulation.newest().state, simulation.inputs()}));
   if (!flags.record.empty())
     written.push_back(sim::write_input_log(flags.record, simulation.log()));
   if (!flags.log.empty())
@@ -131,12 +137,14 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
                      flag, flags.scene);
   if (!flags.headless || draws(flags))
     return bad_input("{}: accepted with --headless and without flags of pictures", flag);
-  if (!flags.replay.empty() &&
-      (!flags.log.empty() || !flags.record.empty() || flags.realtime || !flags.plot.empty() ||
-       flags.json || flags.seconds || flags.log_rate_hz))
+  if (!flags.replay.empty() && (!flags.log.empty() || !flags.record.empty() || flags.realtime ||
+                                !flags.plot.empty() || flags.json || flags.seconds ||
+                                flags.log_rate_hz || !flags.save.empty() || !flags.restore.empty()))
     return bad_input(
-        "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --realtime, "
-        "--json; it runs as long as the recording");
+        "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --save, "
+        "--restore, --realtime, --json; it runs as long as the recording");
+  if (!flags.restore.empty() && !flags.record.empty())
+    return bad_input("--record: accepted without --restore: a recording begins at time 0");
   return {};
 }
 
@@ -146,9 +154,13 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene) {
     return bad_input("--seconds: {}; up to {:g} is accepted", seconds, kMostPhysicsSeconds);
   NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
   if (!flags.replay.empty()) return replay_dive(flags, *world);
-  for (const std::string& file : {flags.log, flags.plot, flags.record})
+  for (const std::string& file : {flags.log, flags.plot, flags.record, flags.save})
     NERITIC_TRY_STATUS(check_writable(file));
   const auto simulation = world->simulation({.seed = scene.seed});
+  if (!flags.restore.empty()) {
+    NERITIC_TRY(const SavedState saved, read_state(flags.restore, world->state_format()));
+    simulation->restore(saved.step, saved.state, saved.inputs);
+  }
   DiveRecorder recorder(*world, {.rows = !flags.log.empty() || !flags.plot.empty(),
                                  .row_rate_hz = flags.log_rate_hz.value_or(0.0)});
   const Interrupt interrupt;

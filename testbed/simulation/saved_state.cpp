@@ -1,0 +1,145 @@
+#include "testbed/simulation/saved_state.hpp"
+
+#include <bit>
+#include <cstring>
+#include <string_view>
+
+#include "engine/core/files.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie");
+
+constexpr std::string_view kMagic = "NRTCSAVE";
+constexpr std::uint32_t kVersion = 1;
+
+struct Header {
+  char magic[8];
+  std::uint32_t version, zero;
+  std::uint64_t scene_hash, layout_hash, step;
+  double time_s;
+  std::uint64_t state_bytes, input_bytes;
+};
+static_assert(sizeof(Header) == 64);
+
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+  Hash64 hash;
+  hash.add_span(bytes);
+  return hash.value();
+}
+
+template <class T>
+void append(std::vector<std::byte>& out, const T& value) {
+  const auto bytes = sim::bytes_of(value);
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+template <class Block>
+void fill(Block& block, std::span<const std::byte> bytes) {
+  if (!bytes.empty()) std::memcpy(block.bytes().data(), bytes.data(), bytes.size());
+}
+
+template <class T>
+void add_fields(Hash64& hash, const T& like) {
+  for (const sim::LogField& field : sim::log_fields(like)) {
+    hash.add(field.type);
+    hash.add_span(std::span<const char>(field.name.data(), field.name.size()));
+  }
+}
+
+Status check_header(const Header& header, const StateFormat& format, std::size_t size,
+                    const std::string& name) {
+  if (header.version != kVersion || header.zero != 0)
+    return bad_input("{}: a saved state of version {}; accepted: {}", name, header.version,
+                     kVersion);
+  if (header.scene_hash != format.scene_hash)
+    return bad_input("{}: a state of another scene, whose hash is {:016x}; accepted: {:016x}", name,
+                     header.scene_hash, format.scene_hash);
+  const std::uint64_t layout = format.layout_hash();
+  if (header.layout_hash != layout)
+    return bad_input("{}: a state of another layout, whose hash is {:016x}; accepted: {:016x}",
+                     name, header.layout_hash, layout);
+  const std::size_t expected = sizeof(Header) + format.state.bytes().size() +
+                               format.inputs.bytes().size() + sizeof(std::uint64_t);
+  if (header.state_bytes != format.state.bytes().size() ||
+      header.input_bytes != format.inputs.bytes().size())
+    return bad_input("{}: {} bytes of state and {} of inputs; accepted: {} and {}", name,
+                     header.state_bytes, header.input_bytes, format.state.bytes().size(),
+                     format.inputs.bytes().size());
+  if (size != expected)
+    return bad_input("{}: {} bytes; accepted: {}, as its head says", name, size, expected);
+  return {};
+}
+
+}  // namespace
+
+std::uint64_t StateFormat::layout_hash() const {
+  Hash64 hash;
+  add_fields(hash, PhysicsState(1, 1, 1));
+  add_fields(hash, PhysicsInputs(1, 1));
+  for (const std::uint64_t count : state.counts()) hash.add(count);
+  for (const std::uint64_t count : inputs.counts()) hash.add(count);
+  return hash.value();
+}
+
+std::vector<std::byte> encode_state(const StateFormat& format, const SavedState& saved) {
+  NERITIC_CHECK(saved.state.counts() == format.state.counts() &&
+                    saved.inputs.counts() == format.inputs.counts(),
+                "{} and {} bytes", saved.state.bytes().size(), saved.inputs.bytes().size());
+  Header header{{},
+                kVersion,
+                0,
+                format.scene_hash,
+                format.layout_hash(),
+                saved.step,
+                sim::StepTime{saved.step, format.step_s}.time_s(),
+                saved.state.bytes().size(),
+                saved.inputs.bytes().size()};
+  std::memcpy(header.magic, kMagic.data(), kMagic.size());
+  std::vector<std::byte> out;
+  append(out, header);
+  append(out, saved.state);
+  append(out, saved.inputs);
+  append(out, checksum(out));
+  return out;
+}
+
+Result<SavedState> parse_state(const StateFormat& format, std::span<const std::byte> bytes,
+                               const std::string& name) {
+  if (bytes.size() < kMagic.size() || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
+    return bad_input("{}: not a saved state (its first bytes are not {})", name, kMagic);
+  if (bytes.size() < sizeof(Header))
+    return bad_input("{}: {} bytes, cut off in its head of {}", name, bytes.size(), sizeof(Header));
+  Header header;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  NERITIC_TRY_STATUS(check_header(header, format, bytes.size(), name));
+  const auto body = bytes.first(bytes.size() - sizeof(std::uint64_t));
+  std::uint64_t sum = 0;
+  std::memcpy(&sum, bytes.data() + body.size(), sizeof sum);
+  if (sum != checksum(body))
+    return bad_input("{}: damaged: its bytes have the hash {:016x}, its end says {:016x}", name,
+                     checksum(body), sum);
+  SavedState out{header.step, format.state, format.inputs};
+  fill(out.state, body.subspan(sizeof header, header.state_bytes));
+  fill(out.inputs, body.subspan(sizeof header + header.state_bytes, header.input_bytes));
+  const double time_s = sim::StepTime{header.step, format.step_s}.time_s();
+  if (header.time_s != time_s)
+    return bad_input("{}: step {} at {} s; accepted: {} s", name, header.step, header.time_s,
+                     time_s);
+  if (!sim::all_finite(out.state) || !sim::all_finite(out.inputs))
+    return bad_input("{}: a number in it is not finite; accepted: finite numbers", name);
+  return out;
+}
+
+Status write_state(const std::filesystem::path& path, const StateFormat& format,
+                   const SavedState& saved) {
+  return write_file(path, encode_state(format, saved));
+}
+
+Result<SavedState> read_state(const std::filesystem::path& path, const StateFormat& format) {
+  NERITIC_TRY(const auto bytes, read_file(path));
+  return parse_state(format, bytes, path.string());
+}
+
+}  // namespace neritic::testbed

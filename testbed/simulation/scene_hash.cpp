@@ -1,0 +1,158 @@
+#include "testbed/simulation/scene_hash.hpp"
+
+#include "engine/core/files.hpp"
+#include "engine/core/hash.hpp"
+#include "rov/vehicle_file.hpp"
+#include "testbed/simulation/static_scene.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// Adds values member by member: padding has no meaning.
+class SceneHash {
+ public:
+  Status add(const scene::Scene& scene) {
+    number(scene.seed);
+    const scene::Physics& physics = *scene.physics;
+    text(physics.integrator);
+    numbers(physics.rate_hz, physics.max_error_m, physics.water_kg_m3, physics.altitude_m);
+    number(scene.current.has_value());
+    if (scene.current) NERITIC_TRY_STATUS(add(*scene.current));
+    for (const scene::Object& object : scene.objects) NERITIC_TRY_STATUS(add(scene, object));
+    return {};
+  }
+  std::uint64_t value() const { return hash_.value(); }
+
+ private:
+  void number(std::uint64_t value) { hash_.add(value); }
+  template <class... Numbers>
+  void numbers(Numbers... values) {
+    (hash_.add(static_cast<double>(values)), ...);
+  }
+  void text(const std::string& value) {
+    hash_.add_span(std::span<const char>(value.data(), value.size()));
+  }
+  void vec(const Vec3& v) { numbers(v.x, v.y, v.z); }
+  void quat(const Quat& q) { numbers(q.w, q.x, q.y, q.z); }
+  void matrix(const Mat4& m) {
+    for (int i = 0; i < 4; ++i) numbers(m[i].x, m[i].y, m[i].z, m[i].w);
+  }
+  Status file(const std::filesystem::path& path) {
+    number(path.empty());
+    if (path.empty()) return {};
+    NERITIC_TRY(const auto bytes, read_file(path));
+    hash_.add_span(std::span<const std::byte>(bytes));
+    return {};
+  }
+
+  Status add(const scene::Current& c) {
+    number(static_cast<std::uint64_t>(c.kind));
+    vec(c.velocity_m_s), vec(c.deep_velocity_m_s), vec(c.origin_m), vec(c.spacing_m);
+    numbers(c.depth_m, c.exponent, c.start_s, c.interval_s);
+    return file(c.file);
+  }
+
+  void add(const scene::Mount& mount) {
+    numbers(mount.object);
+    vec(mount.pose.position_m), quat(mount.pose.rotation);
+    number(mount.track.has_value());
+    if (!mount.track) return;
+    for (const auto& place : mount.track->places) numbers(place.time_s), vec(place.position_m);
+    for (const auto& at : mount.track->attitudes) numbers(at.time_s), quat(at.rotation);
+  }
+
+  // Vertices at rest and triangles: outlines of what moves, shapes of what is solid.
+  void add(const scene::Model& model, const Vec3& scale) {
+    for (const Vec3& point : rest_points(model, scale)) vec(point);
+    for (const scene::Mesh& mesh : model.meshes)
+      for (const scene::Primitive& p : mesh.primitives)
+        hash_.add_span(std::span<const std::uint32_t>(p.indices));
+    // A diver's joints are drawn by these; a vehicle's outline stands on them.
+    for (const scene::Node& node : model.nodes) text(node.name), vec(node.translation_m);
+  }
+
+  Status add(const scene::Scene& scene, const scene::Object& object) {
+    text(object.name);
+    add(object.mount);
+    number(object.dynamics.has_value());
+    number(object.human.has_value());
+    number(static_cast<std::uint64_t>(object.collision));
+    const bool touched = object.collision != scene::Collision::kNone || object.dynamics;
+    if (object.model >= 0 && (touched || object.human)) {
+      add(*scene.models[static_cast<std::size_t>(object.model)], object.scale);
+      for (const Mat4& copy : object.copies) matrix(copy);
+    }
+    if (object.dynamics) NERITIC_TRY_STATUS(add(*object.dynamics, scene.physics->water_kg_m3));
+    if (object.human) NERITIC_TRY_STATUS(add(*object.human));
+    return {};
+  }
+
+  Status add(const scene::Dynamics& dynamics, double water_kg_m3) {
+    NERITIC_TRY_STATUS(file(dynamics.file));
+    NERITIC_TRY_STATUS(add_thrust(dynamics.file, water_kg_m3));
+    number(dynamics.failed_thrusters);
+    number(dynamics.tether_anchor_m.has_value());
+    if (dynamics.tether_anchor_m) vec(*dynamics.tether_anchor_m);
+    number(dynamics.mission.has_value());
+    if (dynamics.mission) add(*dynamics.mission);
+    return {};
+  }
+
+  // A thrust table lies in a file of its own: what the motors make of commands, over their range.
+  Status add_thrust(const std::filesystem::path& path, double water_kg_m3) {
+    constexpr int kCommands = 64;
+    constexpr double kMost_n = 200.0;
+    NERITIC_TRY(const rov::VehicleFile vehicle, rov::read_vehicle(path, water_kg_m3));
+    for (int i = -kCommands; i <= kCommands; ++i) {
+      rov::Inputs commands;
+      commands.thruster_n.fill(kMost_n * i / kCommands);
+      rov::drive(vehicle, commands);
+      for (const double force_n : commands.thruster_n) numbers(force_n);
+    }
+    return {};
+  }
+
+  void add(const scene::Aim& aim) { numbers(aim.object), vec(aim.point_m); }
+  void add(const scene::Facing& facing) {
+    number(facing.heading_rad.has_value());
+    numbers(facing.heading_rad.value_or(0.0));
+    number(facing.look_at.has_value());
+    if (facing.look_at) add(*facing.look_at);
+    number(facing.tilt);
+  }
+  void add(const scene::Mission& m) {
+    number(static_cast<std::uint64_t>(m.kind));
+    add(m.facing);
+    for (const scene::MissionWaypoint& waypoint : m.waypoints) {
+      vec(waypoint.position_m), numbers(waypoint.hold_s);
+      add(waypoint.facing);
+    }
+    numbers(m.acceptance_m, m.speed_m_s, m.radius_m, m.distance_m);
+    number(m.repeat);
+    vec(m.offset_m);
+    add(m.target), add(m.between_a), add(m.between_b);
+  }
+
+  Status add(const scene::Human& human) {
+    NERITIC_TRY_STATUS(file(human.file));
+    NERITIC_TRY_STATUS(file(human.jacket_buttons));
+    number(human.swim.has_value());
+    if (!human.swim) return {};
+    for (const Vec3& point : human.swim->waypoints_m) vec(point);
+    numbers(human.swim->speed_m_s, human.swim->acceptance_m);
+    number(human.swim->repeat);
+    return file(human.swim->motion);
+  }
+
+  Hash64 hash_;
+};
+
+}  // namespace
+
+Result<std::uint64_t> scene_hash(const scene::Scene& scene) {
+  SceneHash hash;
+  NERITIC_TRY_STATUS(hash.add(scene));
+  return hash.value();
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,147 @@
+// A saved state goes on with the hashes of the run that it was taken from, and a state that does
+// not belong is refused in one line.
+#include "testbed/simulation/saved_state.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/core/random.hpp"
+#include "tests/testbed/simulation/dives.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// A mission, a wall to touch, sensors, a diver who swims by a plan; current.
+std::string scene_text(const std::string& rov_keys = "") {
+  return std::string(R"(seed = 5
+[physics]
+[current]
+kind = "uniform"
+velocity_m_s = [0.2, 0, 0.1]
+[[objects]]
+name = "wall"
+class = "structure"
+shape = "box"
+size_m = [6, 4, 0.5]
+position_m = [0, -10, -1.5]
+)") +
+         rov_text("position_m = [0, -10, 0]\n" + rov_keys + R"(
+mission = { waypoints = [ { position_m = [0, -10, -4] }, { position_m = [2, -8, 1] } ] }
+)",
+                  "rov", "bluerov2_heavy_survey_dynamics.toml") +
+         rov_text("position_m = [3, -9, 1]\n", "adrift") +
+         diver_text(std::string("position_m = [-3, -10, 0]\n") + kProne +
+                    "swim = { waypoints_m = [[-3, -10, -6], [0, -9, -6]] }\n");
+}
+
+SavedState saved_of(const PhysicsSimulation& simulation) {
+  return {simulation.newest().step, simulation.newest().state, simulation.inputs()};
+}
+
+// A pilot and a suit change the inputs now and then.
+void push_some(PhysicsSimulation& simulation, std::uint64_t step) {
+  if (step % 97 != 0) return;
+  PhysicsMessage message;
+  message.vehicle = 1;
+  message.inputs.piloted = step / 97 % 2;
+  message.inputs.pilot[0] = 10.0;
+  simulation.push(message);
+}
+
+// 1 000 steps of a run, each restored from bytes in another simulation, of a world built anew, that
+// then takes three steps.
+TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
+  constexpr std::uint64_t kSteps = 2400, kPlaces = 1000, kOn = 3;
+  TestDive run = dive_of(scene_text());
+  const TestDive other = dive_of(scene_text());
+  std::vector<std::uint64_t> places;
+  for (std::uint64_t i = 0; places.size() < kPlaces; ++i) {
+    const std::uint64_t place = random_bits({3, 1, 4}, i) % kSteps;
+    if (std::ranges::find(places, place) == places.end()) places.push_back(place);
+  }
+  std::vector<std::vector<std::byte>> saved(kSteps);
+  const StateFormat format = run.world->state_format();
+  for (std::uint64_t step = 0; step < kSteps + kOn; ++step) {
+    if (std::ranges::find(places, step) != places.end())
+      saved[step] = encode_state(format, saved_of(*run.simulation));
+    push_some(*run.simulation, step);
+    run.simulation->advance(1);
+  }
+  const auto& hashes = run.simulation->log().hashes;
+  const StateFormat other_format = other.world->state_format();
+  for (const std::uint64_t place : places) {
+    const auto restored = parse_state(other_format, saved[place], "dive.state");
+    ASSERT_TRUE(restored.ok()) << restored.error().message;
+    other.simulation->restore(restored->step, restored->state, restored->inputs);
+    ASSERT_EQ(other.simulation->newest().hash, hashes[place]) << place;
+    for (std::uint64_t i = 0; i < kOn; ++i) {
+      push_some(*other.simulation, place + i);
+      other.simulation->advance(1);
+      ASSERT_EQ(other.simulation->newest().hash, hashes[place + i + 1]) << place << " + " << i + 1;
+    }
+  }
+  EXPECT_GT(run.vehicle(0).contact.touched_steps + run.vehicle(1).contact.touched_steps, 0u);
+}
+
+std::string refusal(const StateFormat& format, std::span<const std::byte> bytes) {
+  const auto parsed = parse_state(format, bytes, "dive.state");
+  if (parsed.ok()) return "";
+  EXPECT_EQ(parsed.error().code, ErrorCode::kBadInput);
+  EXPECT_TRUE(parsed.error().message.starts_with("dive.state: ")) << parsed.error().message;
+  EXPECT_EQ(parsed.error().message.find('\n'), std::string::npos);
+  return parsed.error().message;
+}
+
+TEST(SavedState, OfAnotherSceneOrVersionOrDamagedIsRefusedInOneLine) {
+  TestDive dive = dive_of(scene_text());
+  dive.run(0.1);
+  const StateFormat format = dive.world->state_format();
+  const auto bytes = encode_state(format, saved_of(*dive.simulation));
+  ASSERT_EQ(refusal(format, bytes), "");
+  const auto has = [](const std::string& message, const char* part) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  has(refusal(dive_of(scene_text("failed_thrusters = [2]\n")).world->state_format(), bytes),
+      "a state of another scene, whose hash is ");
+  StateFormat fewer = format;
+  fewer.state = PhysicsState(1, 1, 1);
+  has(refusal(fewer, bytes), "a state of another layout, whose hash is ");
+  auto version = bytes;
+  version[8] = std::byte{9};
+  has(refusal(format, version), "a saved state of version 9; accepted: 1");
+  has(refusal(format, {}), "not a saved state (its first bytes are not NRTCSAVE)");
+  for (std::size_t size = 0; size < bytes.size(); size += size < 80 ? 1 : 37)
+    ASSERT_NE(refusal(format, std::span(bytes).first(size)), "") << size;
+  auto longer = bytes;
+  longer.push_back(std::byte{0});
+  has(refusal(format, longer), "as its head says");
+  for (std::size_t at = 0; at < bytes.size(); at += at < 64 ? 1 : 11) {
+    auto damaged = bytes;
+    damaged[at] ^= std::byte{4};
+    ASSERT_NE(refusal(format, damaged), "") << at;
+  }
+}
+
+// The hash covers what the physics is built from, and no camera.
+TEST(SavedState, ACameraMoreIsTheSameSceneAndAnyOtherWaypointOrWallIsNot) {
+  const auto hash = [](const std::string& text) {
+    return dive_of(text).world->state_format().scene_hash;
+  };
+  const std::string text = scene_text();
+  const auto changed = [&](const char* from, const char* to) {
+    std::string other = text;
+    other.replace(other.find(from), std::strlen(from), to);
+    return hash(other);
+  };
+  const std::uint64_t first = hash(text);
+  EXPECT_EQ(hash(text), first);
+  EXPECT_EQ(hash(text + "[[cameras]]\nname = \"eye\"\nposition_m = [0, -5, 9]\n"), first);
+  EXPECT_NE(changed("seed = 5", "seed = 6"), first);
+  EXPECT_NE(changed("[0.2, 0, 0.1]", "[0.2, 0, 0.2]"), first);
+  EXPECT_NE(changed("size_m = [6, 4, 0.5]", "size_m = [6, 4, 0.6]"), first);
+  EXPECT_NE(changed("[2, -8, 1]", "[2, -8, 1.1]"), first);
+  EXPECT_NE(changed("[0, -9, -6]", "[0, -9, -7]"), first);
+}
+
+}  // namespace
+}  // namespace neritic::testbed
