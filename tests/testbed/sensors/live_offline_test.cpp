@@ -3,10 +3,12 @@
 // and motion within the ping included.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "engine/core/files.hpp"
 #include "testbed/motion/live_physics.hpp"
+#include "testbed/sensors/ping_schedule.hpp"
 #include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
@@ -85,6 +87,52 @@ TEST_F(LiveOffline, AThreadAndLockStepGiveTheSameSonarBits) {
     EXPECT_EQ(heard.image.intensity, expected.image.intensity) << time_s;
     EXPECT_EQ(heard.world_from_sonar.position_m, expected.world_from_sonar.position_m);
   }
+}
+
+// A window on a simulated clock asks for each of its frames, and pings at those that are due;
+// `render` asks for the pings alone, and already knows the states of the next one.
+TEST_F(LiveOffline, AWindowsFramesAndRendersGiveTheSameSonarBits) {
+  const scene::Scene scene = scene_of_flight();
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
+  NERITIC_ASSERT_OK(const auto window, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+  NERITIC_ASSERT_OK(const auto offline, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+  constexpr double kFrame_s = 1.0 / 64.0, kPing_s = 0.25;
+  PingSchedule schedule({1.0 / kPing_s});
+  window->start();
+  std::uint32_t pings = 0;
+  int pings_heard = 0;
+  bool heard_last = false;
+  for (int frame = 0; frame <= 256; ++frame) {
+    FrameRequest shown;
+    shown.time_s = shown.next_time_s = window->follow(0, frame * kFrame_s);
+    const auto due = schedule.due(shown.time_s);
+    if (due.empty()) continue;
+    shown.sonars = {0};
+    shown.pings = {due.front().number};
+    shown.simulated = &window->motion();
+    FrameRequest rendered;
+    rendered.time_s = shown.time_s;
+    rendered.next_time_s = shown.time_s + kPing_s;
+    rendered.frame = pings++;
+    rendered.sonars = {0};
+    rendered.simulated = &offline->motion();
+    offline->reach(rendered.time_s);
+    EXPECT_EQ(window->newest().hash, offline->newest().hash) << shown.time_s;
+    offline->reach(rendered.next_time_s);
+    NERITIC_ASSERT_OK(const FrameResult heard, session->render(shown));
+    NERITIC_ASSERT_OK(const FrameResult expected, session->render(rendered));
+    const SonarFrame& a = heard.sonars.front();
+    const SonarFrame& b = expected.sonars.front();
+    EXPECT_EQ(a.image.intensity, b.image.intensity) << shown.time_s;
+    EXPECT_EQ(a.world_from_sonar.position_m, b.world_from_sonar.position_m);
+    heard_last = std::ranges::count_if(a.image.intensity, [](float i) { return i > 0.0f; }) > 0;
+    pings_heard += heard_last;
+  }
+  EXPECT_EQ(pings, 17u);
+  // While the vehicle looks away from the wall a ping is silent. The last is the one whose velocity
+  // the next test shows to be heard.
+  EXPECT_GE(pings_heard, 5);
+  EXPECT_TRUE(heard_last);
 }
 
 // What the states' velocities change, against the same place passed at the same velocity by a
