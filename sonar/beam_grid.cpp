@@ -133,9 +133,4 @@ LeaningView leaning_view(const BeamGrid& grid, const Sector& sector, double pixe
   return out;
 }
 
-Intrinsics intrinsics_of(const FrustumTangents& t, std::uint32_t width, std::uint32_t height) {
-  const double fx = width / (t.right - t.left), fy = height / (t.top - t.bottom);
-  return {fx, fy, -t.left * fx, t.top * fy};
-}
-
 }  // namespace neritic::sonar

@@ -115,11 +115,4 @@ struct LeaningView {
 LeaningView leaning_view(const BeamGrid& grid, const Sector& sector, double pixels_per_cell,
                          std::uint32_t max_extent = kMaxPictureSide);
 
-// A pinhole in pixels, pixel centres at +0.5, row 0 on top.
-struct Intrinsics {
-  double fx = 1.0, fy = 1.0, cx = 0.0, cy = 0.0;
-};
-Intrinsics intrinsics_of(const FrustumTangents& tangents, std::uint32_t width,
-                         std::uint32_t height);
-
 }  // namespace neritic::sonar

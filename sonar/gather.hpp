@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/intrinsics.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "shared/sonar.h"
 #include "shared/sonar_echo.h"

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "engine/core/intrinsics.hpp"
 #include "sonar/map_file.hpp"
 #include "sonar/reference.hpp"
 

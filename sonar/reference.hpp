@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/intrinsics.hpp"
 #include "engine/core/result.hpp"
 #include "sonar/beam_grid.hpp"
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/core/image.hpp"
+#include "engine/core/intrinsics.hpp"
 #include "engine/core/result.hpp"
 #include "sonar/beam_grid.hpp"
 

@@ -16,15 +16,6 @@ Mat4 clip_from_origin(const Pose& world_from_view, const ViewDesc& view, const V
 
 }  // namespace
 
-Intrinsics intrinsics_of(const FrustumTangents& t, std::uint32_t width, std::uint32_t height) {
-  Intrinsics k;
-  k.fx = width / (t.right - t.left);
-  k.fy = height / (t.top - t.bottom);
-  k.cx = -t.left * k.fx;
-  k.cy = t.top * k.fy;
-  return k;
-}
-
 std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set) {
   NERITIC_CHECK(set.views.size() <= shared::kMaxViews, "{} views in a set", set.views.size());
   std::array<shared::View, shared::kMaxViews> out{};

@@ -38,13 +38,6 @@ struct ViewSet {
   std::uint32_t layers() const { return static_cast<std::uint32_t>(views.size()); }
 };
 
-// Focal lengths and centre in pixels (centres at +0.5, row 0 on top) of a view of that size.
-struct Intrinsics {
-  double fx = 0, fy = 0, cx = 0, cy = 0;
-};
-Intrinsics intrinsics_of(const FrustumTangents& tangents, std::uint32_t width,
-                         std::uint32_t height);
-
 // What the shaders see of the set: a uniform block of kMaxViews, those beyond the set's own are
 // zero.
 std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set);

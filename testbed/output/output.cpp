@@ -110,8 +110,8 @@ sonar::SonarFiles sonar_files(const SonarFrame& frame) {
           frame.level, frame.terms.output, frame.label_energy ? &*frame.label_energy : nullptr};
 }
 
-Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
-                   const FrameFacts& facts) {
+Status write_sonar_frame(const std::filesystem::path& folder, const SonarFrame& frame,
+                         const FrameFacts& facts) {
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(remove_earlier_sectors(folder));
   for (std::size_t i = 0; i < frame.sectors.size(); ++i)

@@ -30,11 +30,11 @@ std::filesystem::path sonar_folder(const SonarFrame& frame);
 Status write_view(const std::filesystem::path& folder, const ViewImages& view,
                   const FrameFacts& facts);
 
-// sonar.npy, sonar_labels.npy, sonar.png, sonar.json, and its view beside them (sector_0, sector_1,
-// ... where the wedge took several).
-// What sonar/write_sonar.hpp draws and writes of it.
+// The part of the frame that sonar::write_sonar draws and writes; borrows from the frame.
 sonar::SonarFiles sonar_files(const SonarFrame& frame);
-Status write_sonar(const std::filesystem::path& folder, const SonarFrame& frame,
-                   const FrameFacts& facts);
+// The files of sonar::write_sonar, and the sonar's view beside them (in sector_0, sector_1, ... if
+// the wedge needed several views).
+Status write_sonar_frame(const std::filesystem::path& folder, const SonarFrame& frame,
+                         const FrameFacts& facts);
 
 }  // namespace neritic::testbed

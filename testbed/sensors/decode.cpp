@@ -58,7 +58,7 @@ void decode_motion(std::span<const float> texels, std::span<const float> depth_t
   out.motion.data.assign(texels.begin(), texels.end());
   if (std::abs(next_from_view.w) == 1.0) return;
   const Mat3 turn = glm::mat3_cast(next_from_view);
-  const render::Intrinsics& k = out.intrinsics;
+  const Intrinsics& k = out.intrinsics;
   for (std::size_t i = 0; i < depth_texels.size(); ++i) {
     if (depth_texels[i] > 0.0f) continue;
     const double x = static_cast<double>(i % out.width) + 0.5;

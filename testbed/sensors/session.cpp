@@ -31,7 +31,7 @@ std::vector<ViewImages> decode_views(const ViewWork& work) {
     const render::ViewDesc& view = work.views.views[i];
     ViewImages eye;
     eye.world_from_view = view.world_from_view;
-    eye.intrinsics = render::intrinsics_of(view.tangents, work.views.width, work.views.height);
+    eye.intrinsics = intrinsics_of(view.tangents, work.views.width, work.views.height);
     eye.near_m = view.near_m;
     eye.width = work.views.width;
     eye.height = work.views.height;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/core/image.hpp"
+#include "engine/core/intrinsics.hpp"
 #include "engine/core/result.hpp"
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/frames.hpp"
@@ -27,7 +28,7 @@ namespace neritic::testbed {
 // One eye's images at the host. Empty where they were not asked for.
 struct ViewImages {
   Pose world_from_view;
-  render::Intrinsics intrinsics;
+  Intrinsics intrinsics;
   double near_m = 0.0;
   std::uint32_t width = 0, height = 0;
   ImageF32 depth;    // planar metres, +inf where nothing is hit

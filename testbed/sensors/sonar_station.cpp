@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "engine/core/check.hpp"
+#include "engine/core/intrinsics.hpp"
 #include "sonar/quality.hpp"
 
 namespace neritic::testbed {
@@ -83,7 +84,7 @@ Result<std::unique_ptr<HeadState>> SonarStation::make_head(const scene::Sonar& s
   sonar::GBufferLayout layout;
   layout.width = h.sampled.size.width;
   layout.height = h.sampled.size.height;
-  layout.intrinsics = sonar::intrinsics_of(h.sampled.tangents, layout.width, layout.height);
+  layout.intrinsics = intrinsics_of(h.sampled.tangents, layout.width, layout.height);
   layout.lean = h.sampled.lean;
   layout.near_m = sonar.near_m;
   sonar::GatherOptions options{

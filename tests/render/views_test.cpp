@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/core/intrinsics.hpp"
+
 namespace neritic::render {
 namespace {
 

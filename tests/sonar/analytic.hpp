@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/core/intrinsics.hpp"
 #include "sonar/reference.hpp"
 
 namespace neritic::test {
@@ -64,7 +65,7 @@ inline Shape seabed_with_two_spheres() {
 
 // The images that a perfect rasterizer gives for a pinhole whose axis has azimuth yaw_rad.
 inline sonar::SonarInput images_of(const Shape& shape, std::uint32_t width, std::uint32_t height,
-                                   const sonar::Intrinsics& k, double yaw_rad = 0.0) {
+                                   const Intrinsics& k, double yaw_rad = 0.0) {
   sonar::SonarInput in;
   in.width = width;
   in.height = height;
@@ -91,7 +92,7 @@ inline std::vector<sonar::SonarInput> sector_images(const sonar::BeamGrid& grid,
   for (const sonar::Sector& sector : sonar::plan_sectors(grid)) {
     const auto size = sonar::gbuffer_size(grid, sector, pixels_per_cell);
     out.push_back(images_of(shape, size.width, size.height,
-                            sonar::intrinsics_of(sector.tangents, size.width, size.height),
+                            intrinsics_of(sector.tangents, size.width, size.height),
                             sector.yaw_rad));
   }
   return out;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/core/intrinsics.hpp"
+
 namespace neritic {
 namespace {
 
@@ -109,8 +111,7 @@ TEST(SonarSectors, ALeaningViewCoversTheWedgeAndItsRowsFillEachOthersGaps) {
         }
       EXPECT_EQ(leaning.size.height, upright.height);
       EXPECT_LE(leaning.size.width, 1.25 * upright.width + 6.0);
-      const auto k =
-          sonar::intrinsics_of(leaning.tangents, leaning.size.width, leaning.size.height);
+      const auto k = intrinsics_of(leaning.tangents, leaning.size.width, leaning.size.height);
       const double fx = upright.width / (t.right - t.left);
       EXPECT_GE(k.fx / fx, 1.0 - 1e-12);
       EXPECT_LE(k.fx / fx, 1.0 + 1.0 / upright.width);

@@ -2,6 +2,7 @@
 // it saw of one row at hand for the next, or many that look anew.
 #include <gtest/gtest.h>
 
+#include "engine/core/intrinsics.hpp"
 #include "engine/gpu/frames.hpp"
 #include "tests/sonar/analytic.hpp"
 #include "tests/sonar/gpu_fixture.hpp"
@@ -93,7 +94,7 @@ Result<std::vector<std::uint32_t>> SonarThreads::leaning_sums(const BeamGrid& gr
   const std::vector<sonar::Sector> sectors = sonar::plan_sectors(grid);
   const sonar::LeaningView view = sonar::leaning_view(grid, sectors[0], 2.0);
   const auto [width, height] = std::pair(view.size.width, view.size.height);
-  const sonar::Intrinsics pinhole = sonar::intrinsics_of(view.tangents, width, height);
+  const Intrinsics pinhole = intrinsics_of(view.tangents, width, height);
   const auto in = test::images_of(seabed_with_two_spheres(), width, height, pinhole);
   std::vector<glm::vec4> texels(in.depth.size());
   for (std::size_t i = 0; i < texels.size(); ++i)

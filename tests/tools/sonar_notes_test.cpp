@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/files.hpp"
+#include "engine/core/intrinsics.hpp"
 #include "sonar/offline_input.hpp"
 #include "tests/support/support.hpp"
 
@@ -202,7 +203,7 @@ TEST(OfflineInput, TheNormalOfAnExrIsItsVector) {
 // Pinholes from JSON, of a 64 x 48 image of that path.
 class Pinholes : public ::testing::Test {
  protected:
-  Result<sonar::Intrinsics> read(const std::string& json, const std::string& depth = "depth.png") {
+  Result<Intrinsics> read(const std::string& json, const std::string& depth = "depth.png") {
     EXPECT_TRUE(write_text(folder_ / "k.json", json).ok());
     sonar::MapFile map;
     map.path = depth;

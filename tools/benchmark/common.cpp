@@ -2,6 +2,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/hash.hpp"
+#include "engine/core/intrinsics.hpp"
 #include "tools/benchmark/groups.hpp"
 
 namespace neritic::bench {
@@ -74,7 +75,7 @@ sonar::SonarInput relief_input(const sonar::BeamGrid& grid, std::uint32_t width,
   sonar::SonarInput in;
   in.width = width;
   in.height = height;
-  in.intrinsics = sonar::intrinsics_of(sector.tangents, width, height);
+  in.intrinsics = intrinsics_of(sector.tangents, width, height);
   const auto point = [](double tx, double ty) {
     const double range_m =
         3.0 + 0.8 * std::sin(4.0 * tx) * std::cos(7.0 * ty) + 0.2 * std::sin(31.0 * tx + 17.0 * ty);

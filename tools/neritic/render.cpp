@@ -135,7 +135,7 @@ Status write_frame(const fs::path& folder, const FrameResult& result, const Fram
       written.insert(folder / name);
     }
   for (const SonarFrame& sonar : result.sonars) {
-    NERITIC_TRY_STATUS(write_sonar(folder / sonar_folder(sonar), sonar, facts));
+    NERITIC_TRY_STATUS(write_sonar_frame(folder / sonar_folder(sonar), sonar, facts));
     written.insert(folder / sonar.name);
   }
   return {};

@@ -20,11 +20,11 @@ Status run_one(const SonarJob& job, SonarNotes& notes) {
   }
   NERITIC_TRY(LoadedFrame frame, load_frame(job, files, notes));
   if (flags.method == "reference")
-    return write_frame(job, flags.out, hear_by_reference(job, std::move(frame)));
+    return write_heard_frame(job, flags.out, hear_by_reference(job, std::move(frame)));
   NERITIC_TRY(const std::unique_ptr<SonarEar> ear, SonarEar::create(job));
   NERITIC_TRY(HeardFrame heard, ear->hear(std::move(frame)));
   NERITIC_TRY_STATUS(check_validation(ear->device()));
-  return write_frame(job, flags.out, std::move(heard));
+  return write_heard_frame(job, flags.out, std::move(heard));
 }
 
 }  // namespace

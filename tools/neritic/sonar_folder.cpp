@@ -167,7 +167,7 @@ Status run_kind(const Run& run) {
                           }});
   const std::unique_ptr<sonar::PolarPanel> panel = panel_of(job);
   const auto write = [&](const fs::path& folder, HeardFrame frame) {
-    return write_frame(job, folder, std::move(frame), panel.get());
+    return write_heard_frame(job, folder, std::move(frame), panel.get());
   };
   if (job.flags.method == "reference")
     return run_frames(run, notes,

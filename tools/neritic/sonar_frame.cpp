@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 nlohmann::json facts_of(const SonarJob& job, const sonar::FrameFiles& files,
                         const sonar::SonarInput& in) {
   const SonarFlags& flags = job.flags;
-  const sonar::Intrinsics& k = in.intrinsics;
+  const Intrinsics& k = in.intrinsics;
   const bool normals = !flags.normals.empty();
   nlohmann::json json{
       {"kind", flags.kind},
@@ -55,7 +55,7 @@ std::uint32_t ping_number(const sonar::FrameFiles& files) {
 }
 
 bool same_shape(const sonar::SonarInput& a, const sonar::SonarInput& b) {
-  const sonar::Intrinsics &k = a.intrinsics, &l = b.intrinsics;
+  const Intrinsics &k = a.intrinsics, &l = b.intrinsics;
   return a.width == b.width && a.height == b.height && k.fx == l.fx && k.fy == l.fy &&
          k.cx == l.cx && k.cy == l.cy && a.normals_face_sensor == b.normals_face_sensor;
 }
@@ -142,8 +142,8 @@ Status check_classes(const sonar::SonarInput& in, const sonar::MapFile& labels) 
 
 }  // namespace
 
-Result<sonar::Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFile& image) {
-  sonar::Intrinsics k;
+Result<Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFile& image) {
+  Intrinsics k;
   if (is_json_name(flags.intrinsics)) {
     NERITIC_TRY(k, sonar::read_intrinsics(flags.intrinsics, image));
   } else {
@@ -174,7 +174,7 @@ Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& fil
                                SonarNotes& notes) {
   const TimeNs start = now_ns();
   NERITIC_TRY(const sonar::MapFile depth, sonar::read_map(files.paths[kDepthGroup]));
-  NERITIC_TRY(const sonar::Intrinsics intrinsics, frame_intrinsics(job.flags, depth));
+  NERITIC_TRY(const Intrinsics intrinsics, frame_intrinsics(job.flags, depth));
   note_whole_metres(job, depth, notes);
   std::optional<sonar::MapFile> normals, labels;
   if (!files.paths[kNormalGroup].empty()) {
@@ -263,8 +263,8 @@ std::unique_ptr<sonar::PolarPanel> panel_of(const SonarJob& job) {
                                            job.sonar.terms.output));
 }
 
-Status write_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame,
-                   const sonar::PolarPanel* panel) {
+Status write_heard_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame,
+                         const sonar::PolarPanel* panel) {
   const auto cloud = add_findings(job, frame.image, frame.facts);
   return sonar::write_sonar(folder,
                             {.grid = job.head.beams,

@@ -28,7 +28,7 @@ struct LoadedFrame {
 Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& files,
                                SonarNotes& notes);
 // The pinhole that the flags give to a depth image (or picture).
-Result<sonar::Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFile& image);
+Result<Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFile& image);
 
 struct HeardFrame {
   sonar::SonarImage image;
@@ -58,8 +58,8 @@ class SonarEar {
 };
 
 // Into the folder, sonar.json last. panel: the job's, where there are many frames to draw.
-Status write_frame(const SonarJob& job, const std::filesystem::path& folder, HeardFrame frame,
-                   const sonar::PolarPanel* panel = nullptr);
+Status write_heard_frame(const SonarJob& job, const std::filesystem::path& folder, HeardFrame frame,
+                         const sonar::PolarPanel* panel = nullptr);
 // Nothing where no picture is asked for, or it is not polar.
 std::unique_ptr<sonar::PolarPanel> panel_of(const SonarJob& job);
 

@@ -13,7 +13,7 @@ bool covers(const sonar::SonarInput& in, double azimuth_rad, double elevation_ra
   const Vec3 d(std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad),
                -std::cos(elevation_rad) * std::cos(azimuth_rad));
   if (!(d.z < 0.0)) return false;
-  const sonar::Intrinsics& k = in.intrinsics;
+  const Intrinsics& k = in.intrinsics;
   const double u = k.cx + k.fx * d.x / -d.z, v = k.cy - k.fy * d.y / -d.z;
   // Half a pixel is no gap: pinholes given for pixel centres at integers end there.
   return u >= -0.5 && v >= -0.5 && u <= in.width + 0.5 && v <= in.height + 0.5;
@@ -46,7 +46,7 @@ bool in_aperture(const sonar::Limits& limits, const Vec3& direction) {
 Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in) {
   const sonar::Limits& l = grid.limits;
   Coverage out;
-  const sonar::Intrinsics& k = in.intrinsics;
+  const Intrinsics& k = in.intrinsics;
   std::size_t directions = 0;
   for (std::uint32_t v = 0; v < in.height; ++v)
     for (std::uint32_t u = 0; u < in.width; ++u) {

@@ -66,7 +66,7 @@ Result<PictureLine> load_picture_line(const SonarJob& job, const sonar::FrameFil
   }
   PictureLine out;
   NERITIC_TRY(out.line, sonar::sidescan_from_picture(picture, line_options(job)));
-  const sonar::Intrinsics& k = picture.intrinsics;
+  const Intrinsics& k = picture.intrinsics;
   out.facts = {{"kind", job.flags.kind},
                {"method", job.flags.method},
                {"picture", path.filename().string()},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/intrinsics.hpp"
 #include "shared/octahedral.h"
 #include "sonar/offline_input.hpp"
 
@@ -41,13 +42,13 @@ sonar::SonarInput cast_gbuffer(const RayWorld& world, const sonar::Sector& secto
   sonar::SonarInput in;
   in.width = width;
   in.height = height;
-  in.intrinsics = sonar::intrinsics_of(sector.tangents, width, height);
+  in.intrinsics = intrinsics_of(sector.tangents, width, height);
   in.yaw_rad = sector.yaw_rad;
   const Mat3 sonar_from_view = sonar::sonar_from_view(sector.yaw_rad);
   const Mat3 view_from_sonar = glm::transpose(sonar_from_view);
   for (std::uint32_t v = 0; v < height; ++v)
     for (std::uint32_t u = 0; u < width; ++u) {
-      const sonar::Intrinsics& k = in.intrinsics;
+      const Intrinsics& k = in.intrinsics;
       const Vec3 ray((u + 0.5 - k.cx) / k.fx, -(v + 0.5 - k.cy) / k.fy, -1.0);
       const RayHit hit = world.cast(sonar_from_view * ray);
       in.depth.push_back(hit.t);

@@ -135,7 +135,7 @@ TEST_F(SonarOracles, CountsAreTheLevelsFromTheFloorOn) {
     scene::Scene scene = wall(10.0, sonar);
     const SonarFrame frame = ping(device(), scene);
     const test::ScratchFolder out;
-    NERITIC_ASSERT_STATUS(write_sonar(out / "sonar", frame, FrameFacts{}));
+    NERITIC_ASSERT_STATUS(write_sonar_frame(out / "sonar", frame, FrameFacts{}));
     NERITIC_ASSERT_OK(const NpyArray file, read_npy(out / "sonar" / "sonar_counts.npy"));
     EXPECT_EQ(file.type, bits == 8 ? NpyType::kUint8 : NpyType::kUint16);
     const std::vector<double> counts = file.to_doubles();

@@ -123,7 +123,7 @@ TEST_F(SonarSettings, FileSaysWhichPixelsACellWereAskedForAndUsed) {
   const test::ScratchFolder scratch;
   FrameFacts facts;
   facts.scene = "scene\xff.toml";  // a path need not be UTF-8
-  ASSERT_TRUE(write_sonar(scratch / "sonar", result.sonars[0], facts).ok());
+  ASSERT_TRUE(write_sonar_frame(scratch / "sonar", result.sonars[0], facts).ok());
   NERITIC_ASSERT_OK(const auto text, read_text(scratch / "sonar" / "sonar.json"));
   const auto gbuffer = parse_json(text).value()["model"]["gbuffer"];
   EXPECT_EQ(gbuffer["width"], result.sonars[0].gbuffer_width);
@@ -142,7 +142,7 @@ TEST_F(SonarSettings, FileSaysWhichQualityTheSonarIsSampledBy) {
   const test::ScratchFolder scratch;
   std::vector<nlohmann::json> said;
   for (const SonarFrame& frame : result.sonars) {
-    ASSERT_TRUE(write_sonar(scratch / frame.name, frame, FrameFacts{}).ok());
+    ASSERT_TRUE(write_sonar_frame(scratch / frame.name, frame, FrameFacts{}).ok());
     NERITIC_ASSERT_OK(const auto text, read_text(scratch / frame.name / "sonar.json"));
     said.push_back(parse_json(text).value()["model"]);
   }

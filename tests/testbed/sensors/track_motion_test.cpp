@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/core/intrinsics.hpp"
 #include "engine/render/lighting.hpp"
 #include "engine/scene/shapes.hpp"
 #include "testbed/sensors/session.hpp"
@@ -86,7 +87,7 @@ class TrackMotion : public test::GpuTest {
 };
 
 // The pixel that a point of the view frame falls on.
-glm::dvec2 pixel_of(const render::Intrinsics& k, const Vec3& p) {
+glm::dvec2 pixel_of(const Intrinsics& k, const Vec3& p) {
   return {k.cx + k.fx * p.x / -p.z, k.cy - k.fy * p.y / -p.z};
 }
 
