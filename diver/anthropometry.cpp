@@ -92,12 +92,12 @@ double SegmentMeasures::radius_m() const {
 Result<std::array<SegmentMeasures, kSegments>> measure_segments(const Build& build) {
   const Table& table = build.sex == Sex::kMale ? kMale : kFemale;
   if (!(build.height_m >= 1.2 && build.height_m <= 2.3))
-    return bad_input("height_m: {} found, 1.2 to 2.3 is accepted", build.height_m);
+    return bad_input("height_m: found {}; accepted: 1.2 to 2.3", build.height_m);
   if (!(build.mass_kg >= 30.0 && build.mass_kg <= 200.0))
-    return bad_input("mass_kg: {} found, 30 to 200 is accepted", build.mass_kg);
+    return bad_input("mass_kg: found {}; accepted: 30 to 200", build.mass_kg);
   const double width = build.mass_kg / build.height_m / (table.mass_kg / table.height_m);
   if (!(width <= kMostWidthRatio && width >= 1.0 / kMostWidthRatio))
-    return bad_input("mass_kg: {} at a height of {} m found, {:.0f} to {:.0f} is accepted",
+    return bad_input("mass_kg: found {} at a height of {} m; accepted: {:.0f} to {:.0f}",
                      build.mass_kg, build.height_m, build.mass_kg / width / kMostWidthRatio,
                      build.mass_kg / width * kMostWidthRatio);
   std::array<SegmentMeasures, kSegments> out;

@@ -29,7 +29,7 @@ Warped warp(double cut_hz, double rate_hz) {
 
 Status check_sound_rate(double rate_hz) {
   if (rate_hz >= kLeastSoundRate_hz && rate_hz <= kMostSoundRate_hz) return {};
-  return bad_input("breath: a rate of {:g} Hz found, {:g} to {:g} is accepted", rate_hz,
+  return bad_input("breath: found a rate of {:g} Hz; accepted: {:g} to {:g}", rate_hz,
                    kLeastSoundRate_hz, kMostSoundRate_hz);
 }
 

@@ -9,10 +9,10 @@ namespace neritic::diver {
 
 Status check_breath_settings(const BreathSettings& settings) {
   if (!(settings.block_s >= 0.5 && settings.block_s <= 60.0))
-    return bad_input("breath: blocks of {:g} s found, 0.5 to 60 are accepted", settings.block_s);
+    return bad_input("breath: found blocks of {:g} s; accepted: 0.5 to 60", settings.block_s);
   if (!(settings.window_s >= settings.block_s && settings.window_s <= 300.0))
-    return bad_input("breath: a window of {:g} s found, {:g} to 300 are accepted",
-                     settings.window_s, settings.block_s);
+    return bad_input("breath: found a window of {:g} s; accepted: {:g} to 300", settings.window_s,
+                     settings.block_s);
   return {};
 }
 

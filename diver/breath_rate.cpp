@@ -208,8 +208,7 @@ Result<BreathEstimator> breath_estimator_of(const std::string& name) {
   using enum BreathEstimator;
   for (const BreathEstimator e : {kSpectrum, kAutocorrelation, kMultiBand})
     if (name == name_of(e)) return e;
-  return bad_input("estimator '{}' found, spectrum, autocorrelation or multiband is accepted",
-                   name);
+  return bad_input("found estimator '{}'; accepted: spectrum, autocorrelation or multiband", name);
 }
 
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,

@@ -25,7 +25,7 @@ Result<std::vector<std::uint64_t>> button_columns(const SampleTable& table, std:
     const auto found = std::ranges::find(kButtonColumns, table.names[i],
                                          [](const auto& column) { return column.name; });
     if (found == std::end(kButtonColumns))
-      return bad_input("{}: a column {} found; t_s, inflate, deflate, dump are accepted", name,
+      return bad_input("{}: found a column {}; accepted: t_s, inflate, deflate, dump", name,
                        table.names[i]);
     bits[i] = found->bit;
   }
@@ -45,22 +45,22 @@ Result<ButtonRecording> read_button_recording(std::string_view text, const std::
   double unit_s = 1.0;
   const auto time = table.time_column(unit_s);
   if (!time || table.names.size() < 2)
-    return bad_input("{}: columns {} found; t_s and any of inflate, deflate, dump are accepted",
-                     name, fmt::join(table.names, ", "));
+    return bad_input("{}: found columns {}; accepted: t_s and any of inflate, deflate, dump", name,
+                     fmt::join(table.names, ", "));
   NERITIC_TRY(const std::vector<std::uint64_t> bits, button_columns(table, *time, name));
   ButtonRecording out;
   for (std::size_t row = 0; row < table.columns[*time].size(); ++row) {
     const double at_s = unit_s * table.columns[*time][row];
     if (!(std::abs(at_s) <= kMostButtonTime_s) ||
         (!out.time_s.empty() && !(at_s > out.time_s.back())))
-      return bad_input("{}:{}: time {} found; times that rise, to 1e9 s, are accepted", name,
+      return bad_input("{}:{}: found time {}; accepted: times that rise, to 1e9 s", name,
                        table.lines[row], table.columns[*time][row]);
     std::uint64_t pressed = 0;
     for (std::size_t i = 0; i < bits.size(); ++i) {
       const double value = table.columns[i][row];
       if (bits[i] == 0) continue;
       if (value != 0.0 && value != 1.0)  // NaN too
-        return bad_input("{}:{}: {}: {} found; 0 and 1 are accepted", name, table.lines[row],
+        return bad_input("{}:{}: {}: found {}; accepted: 0 and 1", name, table.lines[row],
                          table.names[i], value);
       if (value == 1.0) pressed |= bits[i];
     }

@@ -12,19 +12,21 @@ namespace neritic::diver {
 Expected expected_number(const CaseField& field);
 // 16 rows of nitrogen, helium; nothing where absent or wrong.
 std::optional<TissueState> read_tissues(const CaseField& field);
-// "ZH-L16B-GF" and the words about compartment 1.
-void read_model(const CaseField& model, const CaseField& table, DecoConventions& conventions);
-// What is given replaces what the request has.
+// "ZH-L16B-GF" (first compartment 1b, 5 min) or "ZH-L16C-GF" (compartment 1, 4 min).
+void read_model(const CaseField& model, DecoConventions& conventions);
+// Each member present replaces the request's value.
 void read_parameters(const CaseField& parameters, DivePlanRequest& request);
 std::vector<PlanGas> read_gases(const CaseField& gases);
-// "air...", "O2...", "32/0...": of a surface interval.
-GasMix read_surface_gas(const CaseField& field);
+// depth_m, and the run time in the member `leave`.
+PlanLevel read_level(const CaseField& field, const char* leave);
 // kind, depth_m, bottom_runtime_min, levels of `profile`.
 std::vector<PlanLevel> read_levels(const CaseField& profile);
-// A list of depth_m, minutes, and gf_next, o2, he where they are there; or rows of depth, minutes.
+// A list of depth_m, minutes, and gf_next, o2, he where they are there.
 std::optional<std::vector<ExpectedStop>> read_stops(const CaseField& list);
+// Rows of depth, minutes.
+std::optional<std::vector<ExpectedStop>> read_stop_rows(const CaseField& list);
 // Of one profile.
 DecoExpected read_expected(const CaseField& profile);
-std::vector<EarlierCase> read_earlier(const CaseField& repetitive, const DivePlanRequest& base);
+std::optional<EarlierCase> read_earlier(const CaseField& repetitive, const DivePlanRequest& base);
 
 }  // namespace neritic::diver

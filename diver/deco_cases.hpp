@@ -1,53 +1,41 @@
-// Cases of decompression from a file of the form of deco_vectors: dives with what a planner of the
-// same conventions found, and tables of times without stops. Any thread.
+// Cases of decompression from a file of the format of deco_vectors.json: dives with the results of
+// a planner of the same conventions, and tables of times without stops. Any thread.
 //
-// The form, as such files document it (JSON; bar, m, min; what is optional has its default in
-// brackets; what is not named here is ignored, but a parameter, a member of reference, of its
-// points, of oxygen_exposure, that is one of these but for capitals, or begins or goes on as one,
-// is an error, and so is all but a text that is said of earlier dives under a name that is not
-// here; of all that is expected, what is there is compared):
-//   tolerances: tissues_bar [1e-6], ndl_continuous_min [1e-3], stop_minutes [exact: 1e-3]
-//   profiles: a list of
-//     id; model: a text with 16B or 16C; coefficient_table: a text with "compartment 1b" or
-//       "compartment 1 " [1b for B, 1 for C]
+// JSON; bar, m, min, gases in percent. [] holds the default of a member that may be missing. Of
+// all that is expected, what is there is compared.
+//   tolerances: tissues_bar [1e-6], ndl_continuous_min [1e-3]
+//   profiles: list of
+//     id; model: "ZH-L16B-GF" (first compartment 1b, 5 min) or "ZH-L16C-GF" (1, 4 min)
 //     parameters: gf_low, gf_high; surface_pressure_bar [of altitude_m]; bar_per_metre [of
-//       water_density_kg_m3 and gravity_m_s2]; water_vapour_pressure_bar [.0627],
-//       start_n2_fraction [.7902], descent_rate_m_min [20], ascent_rate_m_min [10], stop_step_m
-//       [3], stop_quantum_min [1], last_stop_m [stop_step_m], saturation, desaturation [1: times
-//       the speed at which gas goes in and out]
-//     gases: a list of o2, he [0], n2 (percent), switch_depth_m [0], role travel, bottom, deco
-//       [bottom for the first, deco for the rest]
-//     profile: kind square with depth_m, bottom_runtime_min; or multilevel with levels: a list of
-//       depth_m, leave_runtime_min
-//     initial_tissues [those of repetitive, or saturated]: 16 rows of nitrogen, helium
-//     repetitive: what was dived before. One dive: first_dive (depth_m, bottom_runtime_min or
-//     levels;
-//       gases [the case's]; parameters that differ), surface_interval_min, surface_interval_gas
-//       ["air" or "O2/He"], and expected: first_dive_stops (rows of depth, minutes),
-//       first_dive_runtime_min, tissues_at_surfacing, tissues_after_interval. Several: second_dive,
-//       third_dive, to the sixth, likewise with surface_interval_min a list; or a list of dives,
-//       oldest first, as repetitive, or in it under any name, each with its own
-//       surface_interval_min and with stops, runtime_min and the tissues expected of it; or a dive
-//       has its own repetitive, of what was dived before it. stops, runtime_min,
-//       tissues_at_surfacing, tissues_after_interval may stand in a dive, or beside it after its
-//       ordinal (second_dive_tissues_at_surfacing), once; tissues with no ordinal are those of the
-//       last of the dives that they stand beside, or a list of one table a dive
-//     segments: columns (from_m, to_m, minutes, o2_percent, he_percent, phase) and rows: replayed
-//     reference: end_of_bottom, first_stop, stops, surfacing, and so on: expected
-//       (DecoExpected). A first stop shallower than last_stop_m, in stops or in first_stop, stands
-//       for a planner that made it
+//       water_density_kg_m3 and gravity_m_s2]; water_vapour_pressure_bar [0.0627],
+//       start_n2_fraction [0.7902], descent_rate_m_min [20], ascent_rate_m_min [10], stop_step_m
+//       [3], stop_quantum_min [1], last_stop_m [stop_step_m]
+//     gases: list of o2, he [0], n2 [the rest], switch_depth_m [0], role: travel, bottom or deco
+//       [bottom for the first, deco for the others]
+//     profile: kind square with depth_m, bottom_runtime_min; or kind multilevel with levels: list
+//       of depth_m, leave_runtime_min
+//     initial_tissues [after repetitive, or saturated]: 16 rows of nitrogen, helium
+//     repetitive [none]: one dive before: first_dive (depth_m, bottom_runtime_min, gases [the
+//       case's]), surface_interval_min; surface_interval_gas: "air 21/0 (N2 0.79), surface
+//       pressure, Schreiner with R=0", the only one; expected: first_dive_stops (rows of depth,
+//       minutes), first_dive_runtime_min, tissues_at_surfacing, tissues_after_interval
+//     segments: replayed: columns (from_m, to_m, minutes, o2_percent, he_percent, phase) and rows
+//     reference: end_of_bottom, first_stop, surfacing (points), stops (depth_m, minutes, o2, he,
+//       gf_next), no_deco, total_stop_time_min, time_to_surface_min, total_runtime_min,
+//       ndl_bottom_gas_runtime_min (whole_minutes, continuous; null: no time): expected. A first
+//       stop shallower than last_stop_m, in stops or in first_stop, is a planner's that made it
 //     oxygen_exposure: cns_percent, otu, max_po2_bar: expected
-//     second_opinions: by program, each with total_stop_time_min, or stops whose minutes include
-//       the ways between them, or runtime_leaving_last_stop_min, total_runtime_min: expected within
-//       15 % or 3 min of total stop time, as such files say, of the set of conventions that is
-//       nearest to the program's (subsurface: run-minutes, baker_gfdeco: msw; of others the set
-//       that their conventions name, else the case's own), on the column of ZH-L16 that their table
-//       names (a text with B or C); end_of_bottom_tissues_n2_he_bar within .005 bar,
-//       start_of_deco_zone_m within .2 m, cns_percent within 15 % and 1, otu within 5 % and .5
-//   ndl_tables: a list of model, gf_high, o2 (he: none), surface_pressure_bar, bar_per_metre,
+//     second_opinions: subsurface (conventions run-minutes) and baker_gfdeco
+//       (conventions msw), each with total_stop_time_min, or stops whose minutes include the ways
+//       between them, runtime_leaving_last_stop_min, total_runtime_min: expected within 15 % or
+//       3 min of total stop time; end_of_bottom_tissues_n2_he_bar within 0.005 bar,
+//       start_of_deco_zone_m within 0.2 m, cns_percent within 15 % and 1, otu within 5 % and 0.5
+//   ndl_tables: list of model, gf_low, gf_high, o2, surface_pressure_bar, bar_per_metre,
 //     descent_rate_m_min, ascent_rate_m_min, rows: depth_m, decotengu_runtime_min,
 //     decotengu_runtime_whole_min, closed_form_time_at_depth_min, controlling_compartment; null is
 //     no limit
+// units, conventions_of_reference and texts under other names are not read. Other members are
+// errors.
 #pragma once
 
 #include <map>
@@ -84,8 +72,7 @@ struct ExpectedNdl {
 
 struct SecondOpinion {
   std::string program;
-  std::string set;  // of conventions; empty: the case's own
-  std::optional<BuehlmannTable> table;
+  std::string set;  // of conventions
   // What the program gives of these.
   Expected stop_min, stops_and_ways_min, leave_last_min, run_min;
   Expected zone_m, cns_percent, otu;
@@ -118,7 +105,7 @@ struct ReplayedSegment {
 struct DecoCase {
   std::string id;
   DivePlanRequest request;  // its start: initial_tissues, where the file has them
-  std::vector<EarlierCase> earlier;
+  std::optional<EarlierCase> earlier;
   std::vector<ReplayedSegment> segments;
   DecoExpected expected;
 };
@@ -137,8 +124,7 @@ struct NdlTable {
 };
 
 struct DecoCases {
-  // Tolerances. Stops are exact where they differ by less than this.
-  double tissues_bar = 1e-6, ndl_min = 1e-3, stop_min = 1e-3;
+  double tissues_bar = 1e-6, ndl_min = 1e-3;  // tolerances
   std::vector<DecoCase> dives;
   std::vector<NdlTable> tables;
 };

@@ -6,6 +6,7 @@
 
 #include "diver/deco_check_errors.hpp"
 #include "diver/deco_ndl.hpp"
+#include "engine/core/check.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -13,7 +14,8 @@ namespace {
 // Of second opinions: their sets of conventions are near, not the same (integer mbar, REAL*4).
 constexpr double kOpinionTissues_bar = 0.005, kOpinionZone_m = 0.2;
 // Numbers of files are rounded to so many digits.
-constexpr double kRunTime_min = 1e-3, kGf = 1e-6, kDepth_m = 1e-5, kPo2_bar = 1e-4;
+constexpr double kStop_min = 1e-3, kRunTime_min = 1e-3, kGf = 1e-6, kDepth_m = 1e-5,
+                 kPo2_bar = 1e-4;
 
 double tissue_error(const TissueState& a, const TissueState& b) {
   double worst = 0.0;
@@ -69,28 +71,23 @@ class DiveCheck {
     if (expected) errors_.add(what, "bar", tissue_error(found, *expected), tolerances_.tissues_bar);
   }
 
-  // The dives before; they give the start where the file does not.
+  // The dive before; it gives the start where the file does not.
   bool check_earlier(DivePlanRequest& request) {
-    std::optional<TissueState> start;
-    for (const EarlierCase& one : one_.earlier) {
-      EarlierDive dive = one.earlier;
-      if (start) dive.dive.start = start;
-      std::vector<DivePlan> plans;
-      const auto after = tissues_after({dive}, &plans);
-      if (!after.ok()) {
-        errors_.add_failure("earlier dive: " + after.error().message);
-        return false;
-      }
-      if (one.stops)
-        errors_.add("earlier stops", "min", stop_error(plans[0].stops, *one.stops),
-                    tolerances_.stop_min);
-      errors_.add("earlier run time", "min", plans[0].run_min(), one.run_min, kRunTime_min);
-      tissues("tissues at earlier surfacing", plans[0].surfacing.tissues, one.surfacing);
-      tissues("tissues after the interval", *after, one.after_interval);
-      start = *after;
+    if (!one_.earlier) return true;
+    const EarlierCase& one = *one_.earlier;
+    std::vector<DivePlan> plans;
+    const auto after = tissues_after({one.earlier}, &plans);
+    if (!after.ok()) {
+      errors_.add_failure("earlier dive: " + after.error().message);
+      return false;
     }
-    if (start) tissues("initial tissues", *start, request.start);
-    if (start && !request.start) request.start = start;
+    if (one.stops)
+      errors_.add("earlier stops", "min", stop_error(plans[0].stops, *one.stops), kStop_min);
+    errors_.add("earlier run time", "min", plans[0].run_min(), one.run_min, kRunTime_min);
+    tissues("tissues at earlier surfacing", plans[0].surfacing.tissues, one.surfacing);
+    tissues("tissues after the interval", *after, one.after_interval);
+    tissues("initial tissues", *after, request.start);
+    if (!request.start) request.start = *after;
     return true;
   }
 
@@ -142,7 +139,7 @@ class DiveCheck {
     const DecoExpected& e = one_.expected;
     if (e.no_stops) errors_.add("no stops", "", plan.no_stops ? 1.0 : 0.0, e.no_stops, 0.5);
     if (!e.stops) return;
-    errors_.add("stops", "min", stop_error(plan.stops, *e.stops), tolerances_.stop_min);
+    errors_.add("stops", "min", stop_error(plan.stops, *e.stops), kStop_min);
     for (std::size_t i = 0; i < std::min(plan.stops.size(), e.stops->size()); ++i) {
       const PlanStop& found = plan.stops[i];
       const ExpectedStop& expected = (*e.stops)[i];
@@ -159,7 +156,7 @@ class DiveCheck {
 
   void check_times(const DivePlanRequest&, const DivePlan& plan) {
     const DecoExpected& e = one_.expected;
-    errors_.add("stops", "min", plan.stop_min(), e.stop_min, tolerances_.stop_min);
+    errors_.add("stops", "min", plan.stop_min(), e.stop_min, kStop_min);
     errors_.add("run time", "min", plan.ascent_min(), e.ascent_min, kRunTime_min);
     errors_.add("run time", "min", plan.run_min(), e.run_min, kRunTime_min);
     // Files sum over steps of 1 s, here it is in closed form; they differ most where the limit is
@@ -212,33 +209,27 @@ class DiveCheck {
       errors_.add("time without stops, whole", "min", std::floor(**found), e.whole_min, 0.5);
   }
 
-  // The case under the set of conventions that is nearest to the program's.
+  // The case under the program's conventions.
   void check_opinion(const SecondOpinion& opinion) {
     const auto named = conventions_of(opinion.set);
+    NERITIC_CHECK(named.ok(), "conventions {}", opinion.set);
     DivePlanRequest request = one_.request;
     const auto adopt = [&](DivePlanRequest& r) {
       const DecoConventions own = r.conventions;
-      if (named.ok()) {
-        r.conventions = *named;
-        if (opinion.set != "msw") r.conventions.environment = own.environment;
-        r.conventions.descent_m_min = own.descent_m_min;
-        r.conventions.ascent_m_min = own.ascent_m_min;
-        r.conventions.last_stop_m = own.last_stop_m;
-        r.last_stop_always = true;
-      }
-      r.conventions.table = opinion.table.value_or(r.conventions.table);
-      // Who has not dived has so by each program's own air; other tissues are what they are.
+      r.conventions = *named;
+      if (opinion.set != "msw") r.conventions.environment = own.environment;
+      r.conventions.descent_m_min = own.descent_m_min;
+      r.conventions.ascent_m_min = own.ascent_m_min;
+      r.conventions.last_stop_m = own.last_stop_m;
+      r.last_stop_always = true;
+      // Without a dive before, each program starts saturated by its own air.
       if (!has_dived(own, r.start)) r.start.reset();
     };
     adopt(request);
-    std::vector<EarlierDive> dives;
-    for (const EarlierCase& earlier : one_.earlier) {
-      dives.push_back(earlier.earlier);
-      adopt(dives.back().dive);
-    }
-    if (!dives.empty()) {
-      const auto start = tissues_after(dives);
-      if (start.ok()) request.start = *start;
+    if (one_.earlier) {
+      EarlierDive dive = one_.earlier->earlier;
+      adopt(dive.dive);
+      if (const auto start = tissues_after({dive}); start.ok()) request.start = *start;
     }
     const auto plan = plan_dive(request);
     const std::string beside = " beside " + opinion.program, what = "stop time" + beside;
@@ -254,7 +245,7 @@ class DiveCheck {
     // Tissues that the case gives come of its own air, which the slow ones remember.
     const DecoConventions& own = one_.request.conventions;
     const double air_bar =
-        one_.earlier.empty() && request.start
+        !one_.earlier && request.start
             ? std::abs(own.start_n2 - request.conventions.start_n2) * own.environment.surface_bar
             : 0.0;
     if (opinion.tissues)

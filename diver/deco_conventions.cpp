@@ -55,7 +55,7 @@ Result<DecoConventions> conventions_of(std::string_view name) {
     if (set.name == name) return set.conventions;
     names += (names.empty() ? "" : ", ") + std::string(set.name);
   }
-  return bad_input("convention '{}' found; {} are accepted", name.substr(0, 40), names);
+  return bad_input("found convention '{}'; accepted: {}", name.substr(0, 40), names);
 }
 
 }  // namespace neritic::diver

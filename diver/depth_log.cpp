@@ -43,16 +43,16 @@ class LogReader {
       NERITIC_TRY_STATUS(width_ == 0 ? read_names(line) : read_row(line));
     }
     if (width_ == 0)
-      return bad_input("{}: no row of names found, time_s and depth_m are accepted", name_);
+      return bad_input("{}: found no row of names; accepted: time_s and depth_m", name_);
     if (vehicles_.size() > 1 && vehicle_.empty())
-      return bad_input("{}: rows of {} found, one is accepted: choose by --vehicle", name_,
+      return bad_input("{}: found rows of {}; accepted: one, choose by --vehicle", name_,
                        fmt::join(vehicles_, ", "));
     if (!vehicle_.empty() && log_.samples.empty())
-      return bad_input("{}: --vehicle: '{}' found; {} is accepted", name_, vehicle_,
+      return bad_input("{}: --vehicle: found '{}'; accepted: {}", name_, vehicle_,
                        vehicles_.empty() ? std::string("a file with a column vehicle")
                                          : fmt::format("{}", fmt::join(vehicles_, ", ")));
     if (log_.samples.empty())
-      return bad_input("{}: no sample found, at least one is accepted", name_);
+      return bad_input("{}: found no sample; accepted: at least one", name_);
     return std::move(log_);
   }
 
@@ -72,15 +72,16 @@ class LogReader {
     gas_ = find("gas");
     of_ = find("vehicle");
     if (time_ == width_ || depth_ == width_)
-      return bad_input("{}: line {}: columns '{}' found, time_s or time_min and depth_m are needed",
-                       name_, line_, shown(trimmed_cell(line)));
+      return bad_input(
+          "{}: line {}: found columns '{}'; accepted: with time_s or time_min, and depth_m", name_,
+          line_, shown(trimmed_cell(line)));
     return {};
   }
 
   Status read_row(std::string_view line) {
     const std::vector<std::string_view> cells = csv_cells(line, separators_);
     if (cells.size() != width_)
-      return bad_input("{}: line {}: {} cells found, {} are accepted", name_, line_, cells.size(),
+      return bad_input("{}: line {}: found {} cells; accepted: {}", name_, line_, cells.size(),
                        width_);
     const std::string_view whose = of_ < width_ ? cells[of_] : std::string_view();
     if (of_ < width_ && vehicles_.size() < kMostVehicles &&
@@ -90,17 +91,16 @@ class LogReader {
     DepthSample sample;
     if (!read_cell(cells[time_], sample.time_s) || !std::isfinite(sample.time_s) ||
         std::abs(sample.time_s) > 1e12)
-      return bad_input("{}: line {}: time '{}' found, a number is accepted", name_, line_,
+      return bad_input("{}: line {}: found time '{}'; accepted: a number", name_, line_,
                        shown(cells[time_]));
     sample.time_s *= unit_s_;
     if (!log_.samples.empty() && sample.time_s < log_.samples.back().time_s)
-      return bad_input(
-          "{}: line {}: time {} found after {}, times that do not go back are accepted", name_,
-          line_, shown(cells[time_]), log_.samples.back().time_s / unit_s_);
+      return bad_input("{}: line {}: found time {} after {}; accepted: times that do not go back",
+                       name_, line_, shown(cells[time_]), log_.samples.back().time_s / unit_s_);
     if (cells[depth_].empty())
       sample.depth_m = std::numeric_limits<double>::quiet_NaN();
     else if (!read_cell(cells[depth_], sample.depth_m))
-      return bad_input("{}: line {}: depth '{}' found, a number is accepted", name_, line_,
+      return bad_input("{}: line {}: found depth '{}'; accepted: a number", name_, line_,
                        shown(cells[depth_]));
     if (gas_ < width_) NERITIC_TRY_STATUS(read_gas(cells[gas_], sample));
     if (log_.samples.size() == kMostSamples)
@@ -117,13 +117,13 @@ class LogReader {
     }
     const auto mix = parse_mix(cell);
     if (!mix.ok())
-      return bad_input("{}: line {}: gas '{}' found; air, o2, ean32 or 18/45 is accepted", name_,
+      return bad_input("{}: line {}: found gas '{}'; accepted: air, o2, ean32 or 18/45", name_,
                        line_, shown(cell));
     const auto at = std::ranges::find(log_.gases, *mix);
     sample.gas = static_cast<std::size_t>(at - log_.gases.begin());
     if (at != log_.gases.end()) return {};
     if (log_.gases.size() == 32)
-      return bad_input("{}: line {}: a 33rd gas found, 32 are accepted", name_, line_);
+      return bad_input("{}: line {}: found a 33rd gas; accepted: at most 32", name_, line_);
     log_.gases.push_back(*mix);
     return {};
   }

@@ -19,45 +19,44 @@ bool within(double value, double least, double most) {
 Status check_conventions(const DecoConventions& c) {
   const DecoEnvironment& e = c.environment;
   if (!within(e.surface_bar, 0.2, 5.0))
-    return bad_input("surface pressure {} bar found, 0.2 to 5 is accepted", e.surface_bar);
+    return bad_input("found surface pressure {} bar; accepted: 0.2 to 5", e.surface_bar);
   if (!within(e.bar_per_m, 0.05, 0.2))
-    return bad_input("{} bar a metre found, 0.05 to 0.2 is accepted", e.bar_per_m);
+    return bad_input("found {} bar a metre; accepted: 0.05 to 0.2", e.bar_per_m);
   if (!within(c.water_vapour_bar, 0.0, 0.1) || !within(c.start_n2, 0.0, 1.0))
     return bad_input(
-        "water vapour {} bar, start at {} of nitrogen found; 0 to 0.1 and 0 to 1 are "
-        "accepted",
+        "found water vapour {} bar, start at {} of nitrogen; accepted: 0 to 0.1 and 0 to 1",
         c.water_vapour_bar, c.start_n2);
   if (!within(c.descent_m_min, 0.1, 1000.0) || !within(c.ascent_m_min, 0.1, 1000.0))
-    return bad_input("rates of {} down and {} up found, 0.1 to 1000 m/min are accepted",
+    return bad_input("found rates of {} down and {} up; accepted: 0.1 to 1000 m/min",
                      c.descent_m_min, c.ascent_m_min);
   if (!within(c.stop_step_m, 0.1, 100.0) || !within(c.stop_quantum_min, 0.01, 60.0))
-    return bad_input("stops every {} m and {} min found; 0.1 to 100 and 0.01 to 60 are accepted",
+    return bad_input("found stops every {} m and {} min; accepted: 0.1 to 100 and 0.01 to 60",
                      c.stop_step_m, c.stop_quantum_min);
   const double steps = c.last_stop_m / c.stop_step_m;
   if (!within(steps, 1.0, 100.0) || std::abs(steps - std::round(steps)) > 1e-9)
-    return bad_input("last stop {} m found, a multiple of {} m is accepted", c.last_stop_m,
+    return bad_input("found last stop {} m; accepted: a multiple of {} m", c.last_stop_m,
                      c.stop_step_m);
   if (!within(c.saturation, 0.1, 10.0) || !within(c.desaturation, 0.1, 10.0))
-    return bad_input("saturation {}, desaturation {} found; 0.1 to 10 is accepted", c.saturation,
+    return bad_input("found saturation {}, desaturation {}; accepted: 0.1 to 10", c.saturation,
                      c.desaturation);
   return {};
 }
 
 Status check_gases(const std::vector<PlanGas>& gases) {
   if (gases.empty() || gases.size() > 32)
-    return bad_input("{} gases found, 1 to 32 are accepted", gases.size());
+    return bad_input("found {} gases; accepted: 1 to 32", gases.size());
   for (const PlanGas& gas : gases) {
     if (!within(gas.mix.oxygen, 0.01, 1.0) || !within(gas.mix.helium, 0.0, 0.99) ||
         gas.mix.nitrogen() < -1e-9)
-      return bad_input("gas of {} oxygen and {} helium found, shares of one gas are accepted",
+      return bad_input("found gas of {} oxygen and {} helium; accepted: shares of one gas",
                        gas.mix.oxygen, gas.mix.helium);
     if (!within(gas.switch_depth_m, 0.0, kDeepestPlan_m))
-      return bad_input("switch to {} at {} m found, 0 to {} m is accepted", name_of(gas.mix),
+      return bad_input("found switch to {} at {} m; accepted: 0 to {} m", name_of(gas.mix),
                        gas.switch_depth_m, kDeepestPlan_m);
   }
   const auto is_bottom = [](const PlanGas& gas) { return gas.role == GasRole::kBottom; };
   if (std::ranges::count_if(gases, is_bottom) != 1)
-    return bad_input("{} bottom gases found, one is accepted",
+    return bad_input("found {} bottom gases; accepted: one",
                      std::ranges::count_if(gases, is_bottom));
   return {};
 }
@@ -66,18 +65,18 @@ Status check_numbers(const DivePlanRequest& r) {
   NERITIC_TRY_STATUS(check_conventions(r.conventions));
   NERITIC_TRY_STATUS(check_gases(r.gases));
   if (!within(r.gf_low, 0.01, 1.5) || !within(r.gf_high, r.gf_low, 1.5))
-    return bad_input("gradient factors {}/{} found; 0.01 to 1.5, low not above high, are accepted",
+    return bad_input("found gradient factors {}/{}; accepted: 0.01 to 1.5, low not above high",
                      r.gf_low, r.gf_high);
-  if (r.levels.empty()) return bad_input("no depth found, at least one is accepted");
+  if (r.levels.empty()) return bad_input("found no depth; accepted: at least one");
   for (const PlanLevel& level : r.levels)
     if (!within(level.depth_m, 0.01, kDeepestPlan_m) || !within(level.leave_min, 0.0, 1e6))
-      return bad_input("{} m until {} min found; 0.01 to {} m and at most 1000000 min are accepted",
+      return bad_input("found {} m until {} min; accepted: 0.01 to {} m and at most 1000000 min",
                        level.depth_m, level.leave_min, kDeepestPlan_m);
   if (!r.start) return {};
   for (const Compartments* gas : {&r.start->n2_bar, &r.start->he_bar})
     for (const double bar : *gas)
       if (!within(bar, 0.0, 1000.0))
-        return bad_input("{} bar in a tissue found, 0 to 1000 is accepted", bar);
+        return bad_input("found {} bar in a tissue; accepted: 0 to 1000", bar);
   return {};
 }
 
@@ -128,16 +127,15 @@ Status check_bottom_gas(const DivePlanRequest& r) {
   for (const PlanGas& gas : r.gases)
     if (gas.role == GasRole::kTravel && gas.switch_depth_m == bottom.switch_depth_m)
       return bad_input(
-          "bottom gas {} and travel gas {} both from {:g} m found; another depth from which the "
-          "bottom gas is breathed (as {}@40) is accepted",
+          "found bottom gas {} and travel gas {} both from {:g} m; accepted: another depth from "
+          "which the bottom gas is breathed, as {}@40",
           name_of(bottom.mix), name_of(gas.mix), gas.switch_depth_m, name_of(bottom.mix));
   const double deepest_m = std::ranges::max_element(r.levels, {}, &PlanLevel::depth_m)->depth_m;
   const PlanGas& breathed = r.gases[gas_down_to(r.gases, deepest_m)];
   if (breathed.role != GasRole::kBottom)
     return bad_input(
-        "bottom gas {} from {:g} m found, while {} is breathed at {:g} m, the deepest; a depth "
-        "from "
-        "{:g} to {:g} m is accepted",
+        "found bottom gas {} from {:g} m while {} is breathed at {:g} m, the deepest; accepted: a "
+        "depth from {:g} to {:g} m",
         name_of(bottom.mix), bottom.switch_depth_m, name_of(breathed.mix), deepest_m,
         breathed.switch_depth_m, deepest_m);
   return {};
@@ -321,8 +319,8 @@ Status check_ceilings(const DivePlanRequest& request, const DivePlan& plan) {
   const LevelAboveCeiling& above = *plan.above_ceiling;
   const PlanLevel& level = request.levels[above.level];
   return bad_input(
-      "{:g} m until {:g} min found, above the ceiling, which is at {:.2f} m on the way there; "
-      "{:.1f} m or deeper is accepted",
+      "found {:g} m until {:g} min, above the ceiling, which is at {:.2f} m on the way there; "
+      "accepted: {:.1f} m or deeper",
       level.depth_m, level.leave_min, above.least_m, std::ceil(10.0 * above.least_m) / 10.0);
 }
 
@@ -338,7 +336,7 @@ Result<TissueState> tissues_after(const std::vector<EarlierDive>& dives,
                    earlier.surface_min, earlier.surface_gas);
     if (plans) plans->push_back(std::move(plan));
   }
-  if (!tissues) return bad_input("no earlier dive found, at least one is accepted");
+  if (!tissues) return bad_input("found no earlier dive; accepted: at least one");
   return *tissues;
 }
 

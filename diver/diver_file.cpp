@@ -45,7 +45,7 @@ void read_bounded(const CaseField& field, double unit, const Bounds& in, double&
 int whole_number(const CaseField& field, int fallback, int least, int most) {
   const double value = field.number(fallback);
   if (value == std::floor(value) && value >= least && value <= most) return static_cast<int>(value);
-  field.refuse(fmt::format("a whole number from {} to {} is", least, most));
+  field.refuse(fmt::format("a whole number from {} to {}", least, most));
   return fallback;
 }
 
@@ -54,14 +54,14 @@ void read_person(const CaseField& file, BodyParameters& p) {
   if (sex == "female")
     p.build.sex = Sex::kFemale;
   else if (sex != "male")
-    file["sex"].refuse("male or female is");
+    file["sex"].refuse("male or female");
   p.build.height_m = file["height_m"].number(p.build.height_m);
   p.build.mass_kg = file["mass_kg"].number(p.build.mass_kg);
   const std::string model = file["model"].text("full");
   if (model == "planar")
     p.model = Model::kPlanar;
   else if (model != "full")
-    file["model"].refuse("full or planar is");
+    file["model"].refuse("full or planar");
   p.strips_a_segment = whole_number(file["strips_a_segment"], p.strips_a_segment, 1, 64);
 }
 
@@ -87,7 +87,7 @@ Tank read_tank(const CaseField& field) {
   tank.mix.oxygen = field["oxygen"].number(tank.mix.oxygen, 0.0, 1.0);
   tank.mix.helium = field["helium"].number(tank.mix.helium, 0.0, 1.0);
   if (!is_mix(tank.mix))
-    field["helium"].fail(fmt::format("{} beside {} of oxygen found, shares of 1 are accepted",
+    field["helium"].fail(fmt::format("found {} beside {} of oxygen; accepted: shares of 1",
                                      tank.mix.helium, tank.mix.oxygen));
   read_bounded(field["empty_kg"], 1.0, kTankMass_kg, tank.empty_mass_kg);
   read_bounded(field["outer_l"], kLitre_m3, kTankOuterVolume_m3, tank.outer_volume_m3);
@@ -112,7 +112,7 @@ void read_suit(const CaseField& field, std::optional<Suit>& suit) {
   if (suit->thickness_m == 0.0)
     suit.reset();
   else if (suit->thickness_m < kThinnestSuit_m)  // metres, taken for millimetres
-    field.refuse("0 or 0.5 to 12 millimetres are");
+    field.refuse("0 or 0.5 to 12 millimetres");
 }
 
 void read_gear(const CaseField& file, Gear& gear) {
@@ -123,7 +123,7 @@ void read_gear(const CaseField& file, Gear& gear) {
     gear.tanks.clear();
     const std::size_t count = file["tanks"].size();
     if (count > kMaxTanks)
-      file["tanks"].fail(fmt::format("{} found, up to {} are accepted", count, kMaxTanks));
+      file["tanks"].fail(fmt::format("found {}; accepted: up to {}", count, kMaxTanks));
     for (std::size_t i = 0; i < std::min(count, kMaxTanks); ++i)
       gear.tanks.push_back(read_tank(file["tanks"].at(i)));
   }

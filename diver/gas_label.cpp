@@ -17,7 +17,7 @@ bool read_percent(std::string_view text, double& percent) {
 }
 
 Error no_mix(std::string_view text) {
-  return bad_input("gas '{}' found; air, o2, ean32 (1 to 100) or 18/45 (oxygen/helium) is accepted",
+  return bad_input("found gas '{}'; accepted: air, o2, ean32 (1 to 100) or 18/45 (oxygen/helium)",
                    text.substr(0, 40));
 }
 

@@ -34,12 +34,13 @@ Status check_tanks(const DivePlanRequest& request, const PlanBreathing& b,
   for (std::size_t i = 0; i < tanks.size(); ++i) {
     const PlanTank& tank = tanks[i];
     if (tank.gas >= request.gases.size())
-      return bad_input("tank of gas {} found, the plan has {}", tank.gas, request.gases.size());
+      return bad_input("found tank of gas {}; accepted: the {} gases of the plan", tank.gas,
+                       request.gases.size());
     NERITIC_TRY_STATUS(check_limits({{"a tank's litres", tank.volume_l, 0.1, 200.0},
                                      {"a tank's bar", tank.pressure_bar, 1.0, 350.0}}));
     for (std::size_t k = 0; k < i; ++k)
       if (mix_of(request, tanks[k].gas) == mix_of(request, tank.gas))
-        return bad_input("two tanks of {} found, one a gas is accepted: twins as their sum",
+        return bad_input("found two tanks of {}; accepted: one per gas, twins as their sum",
                          name_of(mix_of(request, tank.gas)));
   }
   return {};

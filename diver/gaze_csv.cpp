@@ -23,7 +23,7 @@ Result<GazeRecording> parse_gaze_csv(std::string_view text, const std::string& n
   const auto time = table.time_column(time_scale);
   const double rate = rate_hz > 0.0 ? rate_hz : table.rate_hz.value_or(0.0);
   if (!time && !(rate > 0.0))
-    return bad_input("{}: no time found, a column t_s, a comment with fs_hz= or --rate is accepted",
+    return bad_input("{}: found no time; accepted: a column t_s, a comment with fs_hz= or --rate",
                      name);
   Column x = column_of(table, "x_deg"), y = column_of(table, "y_deg");
   if (!x || !y) {
@@ -36,9 +36,8 @@ Result<GazeRecording> parse_gaze_csv(std::string_view text, const std::string& n
   const bool has_angles = x && y;
   if (!has_angles && !(dx && dy && dz))
     return bad_input(
-        "{}: columns {} found, x_deg and y_deg, x_rad and y_rad, or dx, dy, dz are "
-        "accepted",
-        name, fmt::join(table.names, ", "));
+        "{}: found columns {}; accepted: x_deg and y_deg, x_rad and y_rad, or dx, dy, dz", name,
+        fmt::join(table.names, ", "));
   Column status = column_of(table, "status");
   if (!status) status = column_of(table, "valid");
   const Column marks = column_of(table, "evt");

@@ -30,14 +30,14 @@ Status check_gaze_settings(const GazeSettings& s) {
     return value >= low && value <= high;
   };
   if (!within(s.velocity_rad_s, radians(1.0), radians(1000.0)))
-    return bad_input("gaze: {:g} deg/s found, 1 to 1000 are accepted", degrees(s.velocity_rad_s));
+    return bad_input("gaze: found {:g} deg/s; accepted: 1 to 1000", degrees(s.velocity_rad_s));
   if (!within(s.dispersion_rad, radians(0.05), radians(30.0)))
-    return bad_input("gaze: a dispersion of {:g} deg found, 0.05 to 30 are accepted",
+    return bad_input("gaze: found a dispersion of {:g} deg; accepted: 0.05 to 30",
                      degrees(s.dispersion_rad));
   for (const double duration_s :
        {s.velocity_window_s, s.bridge_s, s.merge_s, s.least_fixation_s, s.dispersion_s})
     if (!within(duration_s, 0.0, 2.0))
-      return bad_input("gaze: a duration of {:g} s found, 0 to 2 are accepted", duration_s);
+      return bad_input("gaze: found a duration of {:g} s; accepted: 0 to 2", duration_s);
   return {};
 }
 

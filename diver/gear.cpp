@@ -34,7 +34,7 @@ Status check_gear(const Gear& gear) {
                                      {"fin mass", gear.fins->mass_kg, kFinMass_kg},
                                      {"fin volume", gear.fins->volume_m3, kFinVolume_m3}}));
   if (gear.tanks.size() > kMaxTanks)
-    return bad_input("tanks: {} found, up to {} are accepted", gear.tanks.size(), kMaxTanks);
+    return bad_input("tanks: found {}; accepted: up to {}", gear.tanks.size(), kMaxTanks);
   for (const Tank& tank : gear.tanks) {
     NERITIC_TRY_STATUS(
         check_limits({{"tank volume", tank.water_volume_m3, kTankVolume_m3},
@@ -44,7 +44,7 @@ Status check_gear(const Gear& gear) {
                       {"tank length", tank.length_m, kTankLength_m},
                       {"tank pressure", tank.pressure_pa, kTankPressure_pa}}));
     if (!is_mix(tank.mix))
-      return bad_input("tank gas: oxygen {} and helium {} found, shares of 1 are accepted",
+      return bad_input("tank gas: found oxygen {} and helium {}; accepted: shares of 1",
                        tank.mix.oxygen, tank.mix.helium);
   }
   if (gear.jacket)

@@ -39,7 +39,7 @@ constexpr std::ptrdiff_t kUsualOf = 2;
 
 Status check_ecg_rate(double rate_hz) {
   if (rate_hz >= kLeastEcgRate_hz && rate_hz <= kMostEcgRate_hz) return {};
-  return bad_input("ECG: a rate of {:g} Hz found, {:g} to {:g} is accepted", rate_hz,
+  return bad_input("ECG: found a rate of {:g} Hz; accepted: {:g} to {:g}", rate_hz,
                    kLeastEcgRate_hz, kMostEcgRate_hz);
 }
 

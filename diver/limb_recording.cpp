@@ -58,20 +58,20 @@ Result<LimbRecording> read_limb_recording(std::string_view text, const std::stri
   const auto time = table.time_column(unit_s);
   const std::vector<AngleColumn> columns = angle_columns(table);
   if (!time || columns.empty())
-    return bad_input("{}: columns {} found, t_s and angles such as upper_leg_l_y_deg are accepted",
+    return bad_input("{}: found columns {}; accepted: t_s and angles such as upper_leg_l_y_deg",
                      name, fmt::join(table.names, ", "));
   LimbRecording out;
   const std::vector<double>& times = table.columns[*time];
   for (std::size_t row = 0; row < times.size(); ++row) {
     const double at_s = unit_s * (times[row] - times[0]);
     if (!std::isfinite(at_s) || (row > 0 && !(at_s > out.time_s.back())))
-      return bad_input("{}:{}: time {} found, times that rise are accepted", name, table.lines[row],
+      return bad_input("{}:{}: found time {}; accepted: times that rise", name, table.lines[row],
                        times[row]);
     JointAngles angles{};
     for (const AngleColumn& column : columns) {
       const double deg = table.columns[column.column][row];
       if (!(std::abs(deg) <= kMostAngle_deg))
-        return bad_input("{}:{}: {}: {} found, -360 to 360 is accepted", name, table.lines[row],
+        return bad_input("{}:{}: {}: found {}; accepted: -360 to 360", name, table.lines[row],
                          table.names[column.column], deg);
       angles[column.joint][column.axis] = radians(deg);
     }
@@ -79,7 +79,7 @@ Result<LimbRecording> read_limb_recording(std::string_view text, const std::stri
     out.joints.push_back(rotations_of(angles));
   }
   if (out.time_s.size() < 2)
-    return bad_input("{}: {} rows found, two or more are accepted", name, out.time_s.size());
+    return bad_input("{}: found {} rows; accepted: two or more", name, out.time_s.size());
   return out;
 }
 

@@ -19,7 +19,7 @@ struct Limit {
 inline Status check_limits(std::initializer_list<Limit> limits) {
   for (const Limit& l : limits)
     if (!(l.value >= l.in.low && l.value <= l.in.high))
-      return bad_input("{}: {} found, {} to {} is accepted", l.name, l.value, l.in.low, l.in.high);
+      return bad_input("{}: found {}; accepted: {} to {}", l.name, l.value, l.in.low, l.in.high);
   return {};
 }
 

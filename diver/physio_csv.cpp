@@ -95,10 +95,10 @@ std::optional<double> rate_in(std::string_view comment) {
 Status take_heading(const std::vector<std::string_view>& cells, const std::string& where,
                     SampleTable& table) {
   if (cells.size() > kMostCsvColumns)
-    return bad_input("{}: {} columns found, at most {} are accepted", where, cells.size(),
+    return bad_input("{}: found {} columns; accepted: at most {}", where, cells.size(),
                      kMostCsvColumns);
   if (std::ranges::any_of(cells, [](std::string_view c) { return !std::isnan(cell_number(c)); }))
-    return bad_input("{}: a number found in the heading, names of columns are accepted", where);
+    return bad_input("{}: found a number in the heading; accepted: names of columns", where);
   for (const std::string_view cell : cells) table.names.push_back(lower_case(cell));
   table.columns.resize(cells.size());
   table.words.resize(cells.size());
@@ -192,9 +192,8 @@ Status spread_evenly(const std::vector<double>& time_s, const std::vector<double
       const double most =
           std::max(kMostMissing, kMostMissingARow * static_cast<double>(values.size()));
       if ((missing += ahead) > most)
-        return bad_input(
-            "{}: {:.0f} missing samples up to {:g} s found, at most {:.0f} are accepted", name,
-            missing, time_s[i], most);
+        return bad_input("{}: found {:.0f} missing samples up to {:g} s; accepted: at most {:.0f}",
+                         name, missing, time_s[i], most);
       const auto places = static_cast<std::size_t>(std::lround(ahead));
       out.samples.resize(out.samples.size() + places, kNothing);
       out.missing += places;
@@ -276,16 +275,16 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
       continue;
     }
     if (cells.size() != table.names.size())
-      return bad_input("{}: {} columns found, {} are accepted", where(), cells.size(),
+      return bad_input("{}: found {} columns; accepted: {}", where(), cells.size(),
                        table.names.size());
     if (table.columns[0].size() == kMostSamples / table.names.size())
-      return bad_input("{}: more rows than {} found, fewer are accepted", where(),
+      return bad_input("{}: found more rows than {}; accepted: fewer", where(),
                        table.columns[0].size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto value =
           is_flag(table.names[i]) ? cell_flag(cells[i]) : std::optional(cell_number(cells[i]));
       if (!value)
-        return bad_input("{}: {} '{}' found, true, false or a number is accepted", where(),
+        return bad_input("{}: found {} '{}'; accepted: true, false or a number", where(),
                          table.names[i], cells[i].substr(0, 40));
       table.columns[i].push_back(*value);
       if (std::isnan(*value) && is_word(cells[i])) table.words[i] = true;
@@ -296,7 +295,7 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
     if (std::ranges::any_of(table.columns[i], [](double v) { return !std::isnan(v); }))
       table.words[i] = false;
   if (table.names.empty() || table.columns[0].empty())
-    return bad_input("{}: no row found, a heading and one row or more are accepted", name);
+    return bad_input("{}: found no row; accepted: a heading and one row or more", name);
   return table;
 }
 
@@ -312,10 +311,10 @@ Result<Recording> parse_csv(std::string_view text, const std::string& name,
       if (i != time && table.words[i] == words && !counts_rows(table.names[i], table.columns[i]))
         column = i;
   if (!column)
-    return bad_input("{}: no column '{}' found, {} is accepted", name, channel.column,
+    return bad_input("{}: found no column '{}'; accepted: {}", name, channel.column,
                      fmt::join(table.names, ", "));
   if (table.words[*column])
-    return bad_input("{}: column '{}' of words found, numbers are accepted", name,
+    return bad_input("{}: found column '{}' of words; accepted: numbers", name,
                      table.names[*column]);
   Recording out{table.names[*column]};
   std::vector<double> time_s, values;
@@ -337,7 +336,7 @@ Result<Recording> parse_csv(std::string_view text, const std::string& name,
     }
     if (time_s.empty())
       return bad_input(
-          "{}: no time in column '{}' found, seconds up to {:g} (or _ms, _us) are accepted", name,
+          "{}: found no time in column '{}'; accepted: seconds up to {:g} (or _ms, _us)", name,
           table.names[*time], kMostTime_s);
   }
   out.rate_hz = channel.rate_hz > 0.0 ? channel.rate_hz : table.rate_hz.value_or(0.0);
@@ -349,8 +348,8 @@ Result<Recording> parse_csv(std::string_view text, const std::string& name,
   }
   if (!(out.rate_hz >= kLeastRate_hz && out.rate_hz <= kMostRate_hz))
     return bad_input(
-        "{}: no rate of {:g} to {:g} Hz found, a column of time with two rows or more, a comment "
-        "with fs_hz= or --rate is accepted",
+        "{}: found no rate of {:g} to {:g} Hz; accepted: a column of time with two rows or more, a "
+        "comment with fs_hz= or --rate",
         name, kLeastRate_hz, kMostRate_hz);
   if (time_s.empty()) {
     out.samples = std::move(table.columns[*column]);

@@ -33,7 +33,7 @@ struct WavFormat {
 
 Result<WavFormat> wav_format(std::span<const std::byte> chunk, const std::string& name) {
   if (chunk.size() < 16)
-    return bad_input("{}: 'fmt ' of {} bytes found, 16 or more are accepted", name, chunk.size());
+    return bad_input("{}: found 'fmt ' of {} bytes; accepted: 16 or more", name, chunk.size());
   WavFormat format;
   format.kind = static_cast<std::uint16_t>(little_endian(chunk, 0, 2));
   format.channels = static_cast<std::uint16_t>(little_endian(chunk, 2, 2));
@@ -47,12 +47,12 @@ Result<WavFormat> wav_format(std::span<const std::byte> chunk, const std::string
   if (!(format.kind == kPcm && one_of({8, 16, 24, 32})) &&
       !(format.kind == kFloat && one_of({32, 64})))
     return bad_input(
-        "{}: format {} of {} bit found, PCM (1) of 8, 16, 24 or 32 bit or float (3) of 32 or 64 is "
-        "accepted",
+        "{}: found format {} of {} bit; accepted: PCM (1) of 8, 16, 24 or 32 bit or float (3) of "
+        "32 or 64",
         name, format.kind, format.bits);
-  if (format.channels == 0) return bad_input("{}: no channel found, one or more is accepted", name);
+  if (format.channels == 0) return bad_input("{}: found no channel; accepted: one or more", name);
   if (format.rate_hz == 0 || format.rate_hz > kMostRate_hz)
-    return bad_input("{}: a rate of {} Hz found, 1 to {:g} is accepted", name, format.rate_hz,
+    return bad_input("{}: found a rate of {} Hz; accepted: 1 to {:g}", name, format.rate_hz,
                      kMostRate_hz);
   return format;
 }
@@ -74,7 +74,7 @@ double wav_sample(const WavFormat& format, std::span<const std::byte> bytes, std
 Result<Recording> parse_wav(std::span<const std::byte> bytes, const std::string& name,
                             std::uint32_t channel) {
   if (!has_tag(bytes, 0, "RIFF") || !has_tag(bytes, 8, "WAVE"))
-    return bad_input("{}: no RIFF and WAVE found, a .wav file is accepted", name);
+    return bad_input("{}: found no RIFF and WAVE; accepted: a .wav file", name);
   std::optional<WavFormat> format;
   std::optional<std::span<const std::byte>> data;
   for (std::size_t at = 12; at + 8 <= bytes.size() && !data;) {
@@ -94,13 +94,13 @@ Result<Recording> parse_wav(std::span<const std::byte> bytes, const std::string&
     return bad_input("{}: no '{}' found before the end, it is required", name,
                      format ? "data" : "fmt ");
   if (channel >= format->channels)
-    return bad_input("{}: channel {} found, 0 to {} is accepted", name, channel,
+    return bad_input("{}: found channel {}; accepted: 0 to {}", name, channel,
                      format->channels - 1);
   const std::size_t frame = format->sample_bytes() * format->channels;
   const std::size_t count = data->size() / frame;
-  if (count == 0) return bad_input("{}: no samples found, one or more is accepted", name);
+  if (count == 0) return bad_input("{}: found no samples; accepted: one or more", name);
   if (count > kMostSamples)
-    return bad_input("{}: {} samples found, at most {} are accepted", name, count, kMostSamples);
+    return bad_input("{}: found {} samples; accepted: at most {}", name, count, kMostSamples);
   Recording out{fmt::format("channel {}", channel), static_cast<double>(format->rate_hz)};
   out.samples.reserve(count);
   for (std::size_t i = 0; i < count; ++i)

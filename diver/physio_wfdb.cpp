@@ -45,23 +45,22 @@ Result<std::size_t> record_line(const std::vector<std::string_view>& words, Wfdb
   std::size_t signals = 0;
   if (words.size() < 2 || !whole_number(words[1], signals) || signals == 0 ||
       signals > kMostSignals)
-    return bad_input("{}: '{}' signals found, 1 to {} is accepted", where,
+    return bad_input("{}: found '{}' signals; accepted: 1 to {}", where,
                      words.size() < 2 ? "" : words[1], kMostSignals);
   if (words[0].find('/') != std::string_view::npos)
-    return bad_input("{}: record '{}' of several segments found, one of one is accepted", where,
+    return bad_input("{}: found record '{}' of several segments; accepted: a record of one", where,
                      words[0]);
   header.record = words[0];
   if (words.size() > 2) {
     std::string_view rate = words[2];
     if (!take_number(rate, header.rate_hz) || (!rate.empty() && rate[0] != '/') ||
         !(header.rate_hz >= kLeastRate_hz && header.rate_hz <= kMostRate_hz))
-      return bad_input("{}: a rate of '{}' found, {:g} to {:g} Hz is accepted", where, words[2],
+      return bad_input("{}: found a rate of '{}'; accepted: {:g} to {:g} Hz", where, words[2],
                        kLeastRate_hz, kMostRate_hz);
   }
   if (words.size() > 3 &&
       (!whole_number(words[3], header.samples) || header.samples > kMostSamples))
-    return bad_input("{}: '{}' samples found, at most {} is accepted", where, words[3],
-                     kMostSamples);
+    return bad_input("{}: found '{}' samples; accepted: at most {}", where, words[3], kMostSamples);
   return signals;
 }
 
@@ -85,7 +84,7 @@ bool take_gain(std::string_view text, WfdbSignal& signal, bool& has_baseline) {
 // file, format+offset, gain, bits, zero, first value, checksum, block, name
 Result<WfdbSignal> signal_line(const std::vector<std::string_view>& words,
                                const std::string& where) {
-  if (words.size() < 2) return bad_input("{}: file and format of a signal are required", where);
+  if (words.size() < 2) return bad_input("{}: accepted: file and format of a signal", where);
   WfdbSignal signal;
   signal.file = words[0];
   std::string_view format = words[1];
@@ -102,21 +101,21 @@ Result<WfdbSignal> signal_line(const std::vector<std::string_view>& words,
   }
   if (!known || !format.empty())
     return bad_input(
-        "{}: format '{}' found, {} (perhaps x samples a frame, without skew) is accepted", where,
+        "{}: found format '{}'; accepted: {} (perhaps x samples a frame, without skew)", where,
         words[1], fmt::join(kFormats, ", "));
   bool has_baseline = false;
   if (words.size() > 2 && !take_gain(words[2], signal, has_baseline))
-    return bad_input("{}: a gain of '{}' found, one like 200, 200(1024) or 200/mV is accepted",
-                     where, words[2]);
+    return bad_input("{}: found a gain of '{}'; accepted: one like 200, 200(1024) or 200/mV", where,
+                     words[2]);
   double zero = 0.0;
   if (words.size() > 4 && !whole_number(words[4], zero))
-    return bad_input("{}: a zero of '{}' found, a number is accepted", where, words[4]);
+    return bad_input("{}: found a zero of '{}'; accepted: a number", where, words[4]);
   if (!has_baseline) signal.baseline = zero;
   if (words.size() > 5 && !whole_number(words[5], signal.first))
-    return bad_input("{}: a first value of '{}' found, a number is accepted", where, words[5]);
+    return bad_input("{}: found a first value of '{}'; accepted: a number", where, words[5]);
   signal.has_checksum = words.size() > 6;
   if (signal.has_checksum && !whole_number(words[6], signal.checksum))
-    return bad_input("{}: a checksum of '{}' found, a number is accepted", where, words[6]);
+    return bad_input("{}: found a checksum of '{}'; accepted: a number", where, words[6]);
   if (words.size() > 8) signal.name = words[8];
   return signal;
 }
@@ -223,7 +222,7 @@ Result<WfdbHeader> parse_wfdb_header(std::string_view text, const std::string& n
 Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t channel,
                                     std::span<const std::byte> bytes, const std::string& name) {
   if (channel >= header.signals.size())
-    return bad_input("{}: channel {} found, 0 to {} is accepted", name, channel,
+    return bad_input("{}: found channel {}; accepted: 0 to {}", name, channel,
                      header.signals.size() - 1);
   const WfdbSignal& signal = header.signals[channel];
   // Signals of one file lie frame by frame side by side.
@@ -231,7 +230,7 @@ Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t chan
   for (std::size_t i = 0; i < header.signals.size(); ++i) {
     if (header.signals[i].file != signal.file) continue;
     if (header.signals[i].format != signal.format)
-      return bad_input("{}: formats {} and {} in one file found, one is accepted", name,
+      return bad_input("{}: found formats {} and {} in one file; accepted: one", name,
                        header.signals[i].format, signal.format);
     if (i == channel) place = side_by_side;
     side_by_side += static_cast<std::size_t>(header.signals[i].frame_samples);
@@ -242,7 +241,7 @@ Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t chan
   const std::size_t there = whole_samples(bytes.size(), signal.format) / side_by_side;
   const std::size_t count = header.samples > 0 ? header.samples : there;
   if (count == 0 || count > there || count * in_frame > kMostSamples)
-    return bad_input("{}: {} samples found, {} are required", name, there,
+    return bad_input("{}: found {} samples; accepted: {}", name, there,
                      std::max<std::size_t>(count, 1));
   Recording out{signal.name, header.rate_hz * signal.frame_samples};
   out.frame_hz = header.rate_hz;
@@ -262,7 +261,7 @@ Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t chan
   }
   if (signal.has_checksum &&
       static_cast<std::uint16_t>(sum) != static_cast<std::uint16_t>(signal.checksum))
-    return bad_input("{}: a checksum of {} found, the header's {} is accepted", name,
+    return bad_input("{}: found a checksum of {}; accepted: the header's {}", name,
                      static_cast<std::int16_t>(sum), signal.checksum);
   return out;
 }
@@ -292,7 +291,7 @@ Result<std::vector<BeatAnnotation>> parse_wfdb_beats(std::span<const std::byte> 
       if (is_beat(code)) beats.push_back({static_cast<double>(sample) / rate_hz, code});
     }
   }
-  return bad_input("{}: no end mark found after {} beats, two zero bytes are required", name,
+  return bad_input("{}: found no end mark after {} beats; accepted: two zero bytes", name,
                    beats.size());
 }
 

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "engine/core/text.hpp"
 #include "rov/bluerov2.hpp"
 
 namespace neritic::rov {
@@ -16,8 +17,8 @@ std::vector<PidAxis> read_axes(const CaseField& field, std::size_t count) {
   const std::vector<double> kp = field.required("KP").numbers();
   if (count == 0) count = kp.size();
   if (count == 0 || count > 6 || kp.size() != count) {
-    field["KP"].refuse(count == 6 ? "a list of six numbers is"
-                                  : "a list of as many numbers as axes, one to six, is");
+    field["KP"].refuse(count == 6 ? "a list of six numbers"
+                                  : "a list of as many numbers as axes, one to six");
     return {};
   }
   std::vector<PidAxis> axes(count);
@@ -26,7 +27,7 @@ std::vector<PidAxis> read_axes(const CaseField& field, std::size_t count) {
     const std::vector<double> values = at.numbers(count);
     for (std::size_t i = 0; i < values.size(); ++i) {
       axes[i].*member = values[i];
-      if (!(values[i] >= least)) at.refuse(fmt::format("numbers from {} are", least));
+      if (!(values[i] >= least)) at.refuse(fmt::format("numbers from {}", least));
     }
   };
   read("KP", &PidAxis::kp, true, -1e300);
@@ -38,9 +39,10 @@ std::vector<PidAxis> read_axes(const CaseField& field, std::size_t count) {
   return axes;
 }
 
-PidCase read_pid(const CaseField& field, std::string id) {
+PidCase read_pid(const CaseField& field) {
+  field.allow_with_texts({"KP", "KI", "KD", "umax", "imax", "izone", "dt", "I0", "rule", "steps"});
   PidCase out;
-  out.id = std::move(id);
+  out.id = "pid_sequence";
   out.axes = read_axes(field, 0);
   const std::size_t n = out.axes.size();
   out.dt_s = field.required("dt").number(0.0, 1e-9, 1e3);
@@ -49,27 +51,15 @@ PidCase read_pid(const CaseField& field, std::string id) {
   const CaseField steps = field.required("steps");
   for (std::size_t i = 0; i < steps.size() && n > 0; ++i) {
     const CaseField at = steps.at(i);
+    at.allow_with_texts({"e", "nu", "u", "I"});
     PidStep step{at["e"].required_numbers(n), at["nu"].required_numbers(n), at["u"].numbers(n),
                  at["I"].numbers(n)};
     if (step.output.empty() && step.integral.empty())
-      at.fail("nothing to compare found; u or I is accepted");
+      at.fail("found nothing to compare; accepted: u or I");
     out.steps.push_back(std::move(step));
   }
-  if (out.steps.empty()) steps.fail("empty; at least one step is accepted");
+  if (out.steps.empty()) steps.fail("found none; accepted: at least one step");
   return out;
-}
-
-// The member whose name begins so: B_6x8, pinv_8x6.
-CaseField beginning(const CaseField& field, std::string_view prefix) {
-  for (const std::string& key : field.keys())
-    if (key.starts_with(prefix)) return field[key];
-  return field[std::string(prefix) + "..."];
-}
-
-std::vector<double> one_or_each(const CaseField& field, std::size_t n, double least, double most) {
-  if (field.is_array()) return field.numbers(n);
-  if (!field.present()) field.fail("not found, but needed");
-  return std::vector<double>(n, field.number(0.0, least, most));
 }
 
 std::optional<double> maybe(const CaseField& field) {
@@ -82,8 +72,9 @@ void read_allocation_cases(const CaseField& list, AllocationTable& out, CaseFile
   for (std::size_t i = 0; i < list.size(); ++i) {
     const CaseField at = list.at(i);
     AllocationCase one;
-    one.id = fmt::format("allocation/{}", at["id"].text(fmt::format("{}", i)));
+    one.id = fmt::format("allocation/{}", i);
     file.enter_case(one.id);
+    at.allow_with_texts({"tau", "f_pinv", "scale", "f_scaled", "tau_achieved"});
     const std::vector<double> tau = at["tau"].required_numbers(6);
     std::copy(tau.begin(), tau.end(), one.wrench.v.begin());
     one.wanted_n = at["f_pinv"].numbers(n);
@@ -91,55 +82,69 @@ void read_allocation_cases(const CaseField& list, AllocationTable& out, CaseFile
     one.force_n = at["f_scaled"].numbers(n);
     one.achieved = at["tau_achieved"].numbers(6);
     if (one.wanted_n.empty() && !one.scale && one.force_n.empty() && one.achieved.empty())
-      at.fail("nothing to compare found; f_pinv, scale, f_scaled or tau_achieved is accepted");
+      at.fail("found nothing to compare; accepted: f_pinv, scale, f_scaled or tau_achieved");
     out.cases.push_back(std::move(one));
   }
 }
 
 AllocationTable read_allocation(const CaseField& field, CaseFile& file) {
+  field.allow_with_texts({"B_6x8", "pinv_8x6", "rank", "singular_values", "cond", "cond_length_0p2",
+                          "fmax", "fmin", "rule", "cases"});
   AllocationTable out;
-  const CaseField matrix = beginning(field, "B_6x");
-  if (!matrix.present()) matrix.fail("not found, but needed");
-  const std::size_t n = matrix.at(0).is_array() ? matrix.at(0).size() : 0;
-  if (n == 0 || n > kMaxThrusters) {
-    matrix.refuse(fmt::format("six rows of 1 to {} numbers are", kMaxThrusters));
-    return out;
-  }
-  const auto rows = matrix.rows(6, n);
+  constexpr std::size_t n = 8;
+  static_assert(n <= kMaxThrusters);
+  const auto rows = field.required("B_6x8").rows(6, n);
   out.columns.resize(n);
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (std::size_t k = 0; k < n; ++k) out.columns[k][i] = rows[i][k];
-  out.inverse = beginning(field, "pinv_").rows(n, 6);
+  out.inverse = field["pinv_8x6"].rows(n, 6);
   out.rank = maybe(field["rank"]);
   out.singular_values = field["singular_values"].present() ? field["singular_values"].numbers(6)
                                                            : std::vector<double>();
   out.condition = maybe(field["cond"]);
   out.condition_length_0_2 = maybe(field["cond_length_0p2"]);
-  out.max_n = one_or_each(field["fmax"], n, 0.0, 1e9);
-  out.min_n = one_or_each(field["fmin"], n, -1e9, 0.0);
+  out.max_n.assign(n, field.required("fmax").number(0.0, 0.0, 1e9));
+  out.min_n.assign(n, field.required("fmin").number(0.0, -1e9, 0.0));
   read_allocation_cases(field["cases"], out, file);
   return out;
 }
 
-// The number behind the first mention of a word in a text; no number where there is none.
-double number_after(const std::string& text, std::string_view word) {
-  const auto at = text.find(word);
-  double value = NAN;
-  if (at != text.npos)
-    std::from_chars(text.data() + at + word.size(), text.data() + text.size(), value);
-  return value;
+constexpr std::string_view kPlantForm =
+    "\"Fossen + thruster lag T s, force limits +MAX/-MIN N\", three numbers above 0";
+constexpr std::string_view kMap = "tau=M_RB*u (paper), F=scale(pinv tau)";
+
+// Takes a number off the front of a text, and the words behind it; nothing where they are not
+// there.
+std::optional<double> take_number(std::string_view& text, std::string_view words_behind) {
+  const std::size_t end = text.find(words_behind);
+  if (end == text.npos) return std::nullopt;
+  const auto number = parse_number(text.substr(0, end));
+  text.remove_prefix(end + words_behind.size());
+  if (!number || !(*number >= 1e-6 && *number <= 1e6)) return std::nullopt;
+  return number;
 }
 
+// The plant is a text of one fixed form, the map a fixed text.
 void read_plant(const CaseField& loop, LoopCase& out) {
   const std::string plant = loop.required("plant").text();
-  out.lag_s = number_after(plant, "lag ");
-  out.max_n = number_after(plant, "limits +");
-  out.min_n = -number_after(plant, "/-");
-  const auto fits = [](double x) { return x >= 1e-6 && x <= 1e6; };
-  if (!fits(out.lag_s) || !fits(out.max_n) || !fits(-out.min_n))
-    loop["plant"].refuse("\"... lag 0.1 s, force limits +51.436/-39.908 N\" is");
-  const std::string map = loop["map"].text("tau=M_RB*u");
-  if (map.find("M_RB*u") == map.npos) loop["map"].refuse("\"tau=M_RB*u, F=scale(pinv tau)\" is");
+  std::string_view rest = plant;
+  constexpr std::string_view kBegin = "Fossen + thruster lag ";
+  if (rest.starts_with(kBegin)) {
+    rest.remove_prefix(kBegin.size());
+    const auto lag = take_number(rest, " s, force limits +");
+    const auto most = lag ? take_number(rest, "/-") : std::nullopt;
+    const auto least = most ? take_number(rest, " N") : std::nullopt;
+    if (least && rest.empty()) {
+      out.lag_s = *lag;
+      out.max_n = *most;
+      out.min_n = -*least;
+    } else {
+      loop["plant"].refuse(kPlantForm);
+    }
+  } else {
+    loop["plant"].refuse(kPlantForm);
+  }
+  if (loop.required("map").text() != kMap) loop["map"].refuse(fmt::format("\"{}\"", kMap));
 }
 
 // "surge_2m", "depth_+1m", "yaw_90deg"
@@ -164,17 +169,21 @@ bool read_manoeuvre(const std::string& name, LoopCase& out) {
 void read_waypoints(const CaseField& at, LoopCase& out) {
   const CaseField list = at["waypoints"];
   for (std::size_t i = 0; i < list.size(); ++i) {
+    list.at(i).allow_with_texts({"p", "yaw"});
     const std::vector<double> p = list.at(i)["p"].required_numbers(3);
     if (p.empty()) return;
-    out.waypoints.push_back({{p[0], p[1], p[2]}, list.at(i)["yaw"].number(0.0)});
+    out.waypoints.push_back({{p[0], p[1], p[2]}, list.at(i).required("yaw").number(0.0)});
   }
-  if (out.waypoints.empty()) list.fail("empty; at least one waypoint is accepted");
-  out.radius_m = at["radius"].number(0.15, 1e-6, 1e4);
+  if (out.waypoints.empty()) list.fail("found none; accepted: at least one waypoint");
+  out.radius_m = at.required("radius").number(0.15, 1e-6, 1e4);
   out.arrivals_s = at["arrival_s"].numbers(out.waypoints.size());
   out.duration_s = 40.0;
 }
 
 LoopCase read_loop(const CaseField& loop, const CaseField& at, const std::string& id) {
+  at.allow_with_texts({"rise_10_90", "t90", "overshoot_pct", "settle_s", "final_error",
+                       "max_tilt_deg", "max_thruster_N", "end_state", "waypoints", "radius",
+                       "arrival_s", "priority"});
   LoopCase out;
   out.id = id;
   read_plant(loop, out);
@@ -183,28 +192,30 @@ LoopCase read_loop(const CaseField& loop, const CaseField& at, const std::string
   if (plant == "sea" || plant == "fresh")
     out.buoyancy_water_kg_m3 = plant == "sea" ? kSeaDensity : kFreshDensity;
   else if (plant != "neutral")
-    at.fail("a name that begins with neutral/, fresh/ or sea/ is accepted");
+    at.fail("accepted: a name that begins with neutral/, fresh/ or sea/");
   if (at["waypoints"].present())
     read_waypoints(at, out);
   else if (cut == id.npos || !read_manoeuvre(id.substr(cut + 1), out))
     at.fail(
-        "surge_, sway_, depth_ and metres (surge_2m), roll_, pitch_, yaw_ and degrees "
-        "(yaw_90deg), or waypoints are accepted");
-  out.duration_s = at["duration_s"].number(out.duration_s, 0.1, 1e4);
+        "accepted: surge_, sway_, depth_ and metres (surge_2m), roll_, pitch_, yaw_ and degrees "
+        "(yaw_90deg), or waypoints");
   const std::string priority = at["priority"].text("none");
-  if (priority != "none" && priority != "level") at["priority"].fail("none and level are accepted");
+  if (priority != "none" && priority != "level") at["priority"].refuse("none or level");
   out.level_first = priority == "level";
   for (const char* figure : kFigures)
     if (const auto value = maybe(at[figure])) out.figures[figure] = *value;
   out.end_state = at["end_state"].numbers(13);
   if (out.figures.empty() && out.end_state.empty() && out.arrivals_s.empty())
-    at.fail("nothing to compare found; t90, overshoot_pct, ..., end_state are accepted");
+    at.fail("found nothing to compare; accepted: t90, overshoot_pct, ..., end_state");
   return out;
 }
 
 void read_loops(const CaseField& loop, CaseFile& file, ControlCases& out) {
   ControlGains gains;
-  const std::vector<PidAxis> axes = read_axes(loop.required("gains"), 6);
+  loop.allow_with_texts({"gains", "control_hz", "plant", "map", "results"});
+  const CaseField gains_field = loop.required("gains");
+  gains_field.allow_with_texts({"KP", "KI", "KD", "umax", "imax", "izone"});
+  const std::vector<PidAxis> axes = read_axes(gains_field, 6);
   if (axes.size() == 6) std::copy(axes.begin(), axes.end(), gains.axes.begin());
   gains.period_s = 1.0 / loop["control_hz"].number(50.0, 1.0, 1e4);
   const CaseField results = loop.required("results");
@@ -221,15 +232,10 @@ Result<ControlCases> read_control_cases(std::string_view text, const std::string
   NERITIC_TRY(CaseFile file, CaseFile::parse(text, name));
   const CaseField root = file.root();
   ControlCases out;
-  if (const CaseField pid = root["pid_sequence"]; pid.is_array()) {
-    for (std::size_t i = 0; i < pid.size(); ++i) {
-      const std::string id = pid.at(i)["id"].text(fmt::format("pid_sequence/{}", i));
-      file.enter_case(id);
-      out.pids.push_back(read_pid(pid.at(i), id));
-    }
-  } else if (pid.present()) {
+  root.allow_with_texts({"pid_sequence", "allocation", "closed_loop"});
+  if (const CaseField pid = root["pid_sequence"]; pid.present()) {
     file.enter_case("pid_sequence");
-    out.pids.push_back(read_pid(pid, "pid_sequence"));
+    out.pid = read_pid(pid);
   }
   if (root["allocation"].present()) {
     file.enter_case("allocation");
@@ -238,8 +244,8 @@ Result<ControlCases> read_control_cases(std::string_view text, const std::string
   file.enter_case("closed_loop");
   if (root["closed_loop"].present()) read_loops(root["closed_loop"], file, out);
   file.enter_case("");
-  if (out.pids.empty() && !out.allocation && out.loops.empty())
-    root.fail("no case found; pid_sequence, allocation and closed_loop are accepted");
+  if (!out.pid && !out.allocation && out.loops.empty())
+    root.fail("found no case; accepted: pid_sequence, allocation and closed_loop");
   if (file.failed()) return file.error();
   return out;
 }

@@ -1,21 +1,23 @@
-// Cases of control from a file of the form of control_vectors: steps of the controller, thruster
-// allocations, closed loops. Any thread.
+// Cases of control from a file of the format of control_vectors.json: steps of the controller,
+// thruster allocations, closed loops. Any thread.
 //
-// The form, as such files document it (JSON; what is optional has its default in brackets):
-//   pid_sequence: KP, KI, KD, umax, imax, izone [none], a number an axis; dt; I0 [0];
-//     steps: e, nu, and of u, I what is compared. An object, or a list of them
-//   allocation: B_6xN; of pinv_Nx6, rank, singular_values, cond, cond_length_0p2 what is compared;
-//     fmax, fmin: a number, or one a thruster; cases: tau, and of f_pinv, scale, f_scaled,
-//     tau_achieved what is compared
-//   closed_loop: gains as above, six axes; control_hz [50]; plant: a text, of which "lag T s"
-//     and "limits +MAX/-MIN N" count, both needed; map: a text with "M_RB*u", the only one;
-//     results: by "PLANT/MANOEUVRE", PLANT
-//     neutral, fresh or sea (the BlueROV2 Heavy's buoyancy), MANOEUVRE surge_2m, sway_1m,
-//     depth_+1m, roll_, pitch_, yaw_90deg and so on, or any name with waypoints (p, yaw) and
-//     radius; of rise_10_90, t90, overshoot_pct, settle_s, final_error, max_tilt_deg,
-//     max_thruster_N, arrival_s, end_state what is compared. It begins at rest at 10 m and lasts
-//     duration_s [15; 40 with waypoints]; priority: "none" [none] or "level", the law of missions
-//     (thrust_priority.hpp)
+// JSON. [] holds the default of a member that may be missing; at least one of the three is needed.
+//   pid_sequence: KP, KI, KD, umax, imax, izone [none], each one number per axis; dt; I0 [0];
+//     steps: e, nu, and of u, I what is compared
+//   allocation: B_6x8; of pinv_8x6, rank, singular_values, cond, cond_length_0p2 what is compared;
+//     fmax, fmin: N per thruster; cases: tau, and of f_pinv, scale, f_scaled, tau_achieved what is
+//     compared
+//   closed_loop: gains as above for six axes; control_hz [50];
+//     plant: "Fossen + thruster lag T s, force limits +MAX/-MIN N";
+//     map: "tau=M_RB*u (paper), F=scale(pinv tau)";
+//     results: by "PLANT/MANOEUVRE". PLANT is neutral, fresh or sea (the BlueROV2 Heavy's
+//     buoyancy); MANOEUVRE is surge_, sway_, depth_ with metres (surge_2m, depth_+1m), roll_,
+//     pitch_, yaw_ with degrees (yaw_90deg), or any name with waypoints (p, yaw) and radius. Of
+//     rise_10_90, t90, overshoot_pct, settle_s, final_error, max_tilt_deg, max_thruster_N,
+//     arrival_s, end_state what is there is compared. A run begins at rest at 10 m and lasts 15 s,
+//     with waypoints 40 s; priority: "none" or "level", the law of missions (thrust_priority.hpp)
+//     ["none"], is this project's own member
+// A text under another name is not read. Other members are errors.
 #pragma once
 
 #include <map>
@@ -71,7 +73,7 @@ struct LoopCase {
 };
 
 struct ControlCases {
-  std::vector<PidCase> pids;
+  std::optional<PidCase> pid;
   std::optional<AllocationTable> allocation;
   std::vector<LoopCase> loops;
 };

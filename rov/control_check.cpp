@@ -204,7 +204,7 @@ CaseResult check_loop(const LoopCase& one, const ControlCheck& options) {
 
 std::vector<CaseResult> check_control(const ControlCases& cases, const ControlCheck& options) {
   std::vector<CaseResult> out;
-  for (const PidCase& one : cases.pids) out.push_back(check_pid(one));
+  if (cases.pid) out.push_back(check_pid(*cases.pid));
   if (cases.allocation) {
     const AllocationTable& table = *cases.allocation;
     const Allocator allocator(table.columns, table.min_n, table.max_n);

@@ -7,7 +7,7 @@ constexpr double kFarthest_m = 100.0;
 
 Vec3 point_of(const CaseField& field) {
   const Vec3 p = field.vec3(Vec3(0.0));
-  if (!(glm::length(p) <= kFarthest_m)) field.refuse("a point within 100 m of the origin is");
+  if (!(glm::length(p) <= kFarthest_m)) field.refuse("a point within 100 m of the origin");
   return p;
 }
 
@@ -23,7 +23,7 @@ OutlineBox read_box(const CaseField& field) {
   box.size_m = field.required("size_m").vec3(Vec3(1.0));
   for (int i = 0; i < 3; ++i)
     if (!(box.size_m[i] >= 1e-3 && box.size_m[i] <= kFarthest_m))
-      field["size_m"].refuse("three lengths from 0.001 to 100 are");
+      field["size_m"].refuse("three lengths from 0.001 to 100");
   const auto turn = [&](const char* key, const Vec3& axis) {
     return glm::angleAxis(radians(field[key].number(0.0, -360.0, 360.0)), axis);
   };
@@ -50,7 +50,7 @@ OutlineHull read_hull(const CaseField& field) {
   const CaseField points = field.required("points_m");
   OutlineHull hull;
   for (const auto& row : points.rows(0, 3)) hull.points_m.emplace_back(row[0], row[1], row[2]);
-  if (hull.points_m.size() < 4) points.refuse("four points or more are");
+  if (hull.points_m.size() < 4) points.refuse("four points or more");
   return hull;
 }
 
@@ -59,7 +59,7 @@ OutlineHull read_hull(const CaseField& field) {
 std::vector<OutlinePart> read_outline(const CaseField& list) {
   std::vector<OutlinePart> parts;
   if (list.size() > kMaxOutlineParts) {
-    list.fail(fmt::format("{} parts found, up to {} are accepted", list.size(), kMaxOutlineParts));
+    list.fail(fmt::format("found {} parts; accepted: up to {}", list.size(), kMaxOutlineParts));
     return parts;
   }
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -74,7 +74,7 @@ std::vector<OutlinePart> read_outline(const CaseField& list) {
     else if (kind == "hull")
       parts.emplace_back(read_hull(part));
     else
-      part["kind"].refuse("box, sphere, capsule or hull is");
+      part["kind"].refuse("box, sphere, capsule or hull");
   }
   return parts;
 }

@@ -57,7 +57,7 @@ Dvl read_dvl_table(const CaseField& field) {
   if (const auto range = field["range_m"].numbers(2); !range.empty()) {
     dvl.least_m = range[0];
     dvl.most_m = range[1];
-    if (!(range[0] >= 0.0 && range[1] > range[0])) field["range_m"].refuse("[least, most] is");
+    if (!(range[0] >= 0.0 && range[1] > range[0])) field["range_m"].refuse("[least, most]");
   }
   dvl.noise = noise_of(field["noise_m_s"]);
   dvl.noise_share = field["noise_share"].number(0.0, 0.0, 1.0);
@@ -106,7 +106,7 @@ Altimeter read_altimeter_table(const CaseField& field) {
   if (const auto range = field["range_m"].numbers(2); !range.empty()) {
     altimeter.least_m = range[0];
     altimeter.most_m = range[1];
-    if (!(range[0] >= 0.0 && range[1] > range[0])) field["range_m"].refuse("[least, most] is");
+    if (!(range[0] >= 0.0 && range[1] > range[0])) field["range_m"].refuse("[least, most]");
   }
   altimeter.noise = noise_of(field["noise_m"]);
   altimeter.noise_share = field["noise_share"].number(0.0, 0.0, 1.0);

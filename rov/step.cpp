@@ -102,7 +102,7 @@ std::string_view name_of(Integrator integrator) {
 Result<Integrator> integrator_of(std::string_view name) {
   for (std::size_t i = 0; i < std::size(kNames); ++i)
     if (kNames[i] == name) return static_cast<Integrator>(i);
-  return bad_input("integrator '{}' found, semi_euler, rk4 or guarded is accepted", name);
+  return bad_input("found integrator '{}'; accepted: semi_euler, rk4 or guarded", name);
 }
 
 State step(const Vehicle& vehicle, const State& state, const Inputs& inputs, double dt_s,

@@ -33,7 +33,7 @@ Result<StepChoice> cheapest_step(double max_error_m, bool among_things) {
   const auto rate = std::ranges::find_if(kRates, holds);
   const auto contact = std::ranges::find_if(kContacts, holds);
   if (rate == std::end(kRates) || (among_things && contact == std::end(kContacts)))
-    return bad_input("max_error_m: {} found, a number from {} is accepted{}", max_error_m, least_m,
+    return bad_input("max_error_m: found {}; accepted: a number from {}{}", max_error_m, least_m,
                      among_things ? " where something solid can be touched" : "");
   if (!among_things) return StepChoice{rate->hz, 1};
   const double parts = std::ceil(1.0 / (rate->hz * contact->step_s) - 1e-9);

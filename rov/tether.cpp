@@ -29,10 +29,9 @@ Status check_tether(const Tether& t) {
                           {"water_kg_m3", t.water_kg_m3, 0.0, 2000.0}};
   for (const Bound& b : bounds)
     if (!(b.value >= b.least && b.value <= b.most))
-      return bad_input("tether.{}: {} found, [{}, {}] is accepted", b.name, b.value, b.least,
-                       b.most);
+      return bad_input("tether.{}: found {}; accepted: [{}, {}]", b.name, b.value, b.least, b.most);
   if (!is_finite(t.attachment_m) || glm::length(t.attachment_m) > 100.0)
-    return bad_input("tether.attachment_m: a point within 100 m of the body's origin is accepted");
+    return bad_input("tether.attachment_m: accepted: a point within 100 m of the body's origin");
   return {};
 }
 

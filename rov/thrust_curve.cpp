@@ -97,12 +97,12 @@ Result<Heading> read_heading(std::string_view line, const std::string& where) {
     if (!name.ends_with('v') ||
         !read_number(
             std::string_view(name).substr(kPrefix.size(), name.size() - kPrefix.size() - 1), volts))
-      return bad_input("{}: column {} found, a name like thrust_n_16v is accepted", where, i + 1);
+      return bad_input("{}: found column {}; accepted: a name like thrust_n_16v", where, i + 1);
     out.thrust.push_back(i);
     out.volts.push_back(volts);
   }
   if (lower(cells[0]) != "pwm_us" || out.volts.empty() || cells.size() > kMostColumns)
-    return bad_input("{}: a heading \"pwm_us,thrust_n_16v,...\" is accepted", where);
+    return bad_input("{}: accepted: a heading \"pwm_us,thrust_n_16v,...\"", where);
   return out;
 }
 
@@ -112,15 +112,14 @@ Result<ThrustCurve> ThrustCurve::make(std::vector<double> pwm_us, std::vector<do
                                       std::vector<std::vector<double>> thrust_n) {
   if (pwm_us.size() < 2 || pwm_us.size() != thrust_n.size() || volts.empty())
     return bad_input(
-        "{} pulse widths of {} rows of thrust found, two or more, a row each, are "
-        "accepted",
+        "found {} pulse widths of {} rows of thrust; accepted: two or more, a row each",
         pwm_us.size(), thrust_n.size());
   if (!rises(pwm_us) || !rises(volts))
     return bad_input("pulse widths or voltages that do not rise found");
   for (const auto& row : thrust_n)
     if (row.size() != volts.size() ||
         !std::ranges::all_of(row, [](double x) { return std::abs(x) <= kMostNumber; }))
-      return bad_input("a row of {} thrusts found, {} finite numbers are accepted", row.size(),
+      return bad_input("found a row of {} thrusts; accepted: {} finite numbers", row.size(),
                        volts.size());
   ThrustCurve out;
   for (std::size_t k = 0; k < volts.size(); ++k) make_monotone(thrust_n, k);
@@ -151,7 +150,7 @@ Result<ThrustCurve> ThrustCurve::parse(std::string_view text, const std::string&
     bool good = cells.size() == heading.columns && pwm_us.size() < kMostRows;
     for (std::size_t i = 0; i < cells.size(); ++i) good = good && read_number(cells[i], row[i]);
     if (!good)
-      return bad_input("{}: {} numbers are accepted, in up to {} rows", where, heading.columns,
+      return bad_input("{}: accepted: {} numbers, in up to {} rows", where, heading.columns,
                        kMostRows);
     pwm_us.push_back(row[0]);
     thrust_n.emplace_back();

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <span>
 
@@ -15,13 +13,14 @@
 namespace neritic::rov {
 namespace {
 
-constexpr double kLongest = 1e5;    // s
-constexpr double kMostSpeed = 1e3;  // m/s, rad/s
+constexpr double kLongest = 1e5;       // s
+constexpr double kMostSpeed = 1e3;     // m/s, rad/s
+constexpr double kMostSineRate = 1e6;  // rad/s
 
-// step() would refuse an input beyond most, and the case tell of another flight.
+// step() clamps no input: one beyond most is refused here.
 void within(const CaseField& field, std::span<const double> values, double most) {
   if (!std::ranges::all_of(values, [&](double x) { return std::abs(x) <= most; }))
-    field.refuse(fmt::format("numbers in [-{0:g}, {0:g}] are", most));
+    field.refuse(fmt::format("numbers in [-{0:g}, {0:g}]", most));
 }
 
 Vec6 vec6_of(const CaseField& field, double most) {
@@ -40,7 +39,7 @@ Vec3 vec3_of(const CaseField& field, double most) {
 
 Mat6 matrix6(const CaseField& field) {
   Mat6 out;
-  const auto rows = field.square(6);
+  const auto rows = field.rows(6, 6);
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (std::size_t j = 0; j < 6; ++j) out(i, j) = rows[i][j];
   return out;
@@ -49,7 +48,7 @@ Mat6 matrix6(const CaseField& field) {
 VehicleParameters read_parameters(const CaseField& field) {
   VehicleParameters p;
   p.mass_kg = field.required("m_kg").number(1.0, 1e-9, 1e9);
-  const auto inertia = field.required("I_CO_kgm2").square(3);
+  const auto inertia = field.required("I_CO_kgm2").rows(3, 3);
   for (std::size_t i = 0; i < inertia.size(); ++i)
     for (std::size_t j = 0; j < 3; ++j)
       p.inertia_kg_m2[static_cast<int>(j)][static_cast<int>(i)] = inertia[i][j];
@@ -66,7 +65,7 @@ VehicleParameters read_parameters(const CaseField& field) {
 std::vector<Thruster> read_thrusters(const CaseField& field) {
   if (!field["position_frd_m"].present() && !field["direction_frd"].present()) {
     std::vector<Thruster> out = heavy_thrusters();
-    for (Thruster& t : out) t = {t.position_m, t.direction};  // files give forces as they are
+    for (Thruster& t : out) t = {t.position_m, t.direction};  // no limits: forces are given
     return out;
   }
   const auto positions = field.required("position_frd_m").rows(0, 3);
@@ -79,88 +78,31 @@ std::vector<Thruster> read_thrusters(const CaseField& field) {
   return out;
 }
 
-// Whether a member's name says that it is a lag's time constant, or about a lag.
-bool is_time_name(std::string_view key) {
-  return key == "T" || key.starts_with("T_") || key.ends_with("_T") || key.ends_with("_T_s") ||
-         key == "tau_s" || key.ends_with("_tau") || key.ends_with("_tau_s");
-}
-bool is_lag_name(std::string_view key) {
-  return key.find("lag") != key.npos || key.find("time_const") != key.npos;
-}
-
-// A number whose name says that it is a lag's time constant. Texts about a lag are notes.
-std::optional<double> find_lag_time(const CaseField& place) {
-  for (const std::string& key : place.keys()) {
-    const CaseField field = place[key];
-    if (!field.present() || !(is_time_name(key) || (is_lag_name(key) && !field.is_text())))
-      continue;
-    if (!field.is_object()) return field.number(1.0, 1e-6, 1e6);
-    if (const auto inner = find_lag_time(field)) return inner;
-  }
-  return std::nullopt;
+std::optional<SineWrench> read_sine(const CaseField& field) {
+  if (!field.present()) return std::nullopt;
+  SineWrench out;
+  field.allow_with_texts({"A", "omega", "phase"});
+  out.amplitude = vec6_of(field.required("A"), kMostForce);
+  out.rad_s = vec6_of(field.required("omega"), kMostSineRate);
+  out.phase_rad = vec6_of(field.required("phase"), kMostSineRate);
+  return out;
 }
 
-// "..., T = 0.1 s": the number behind a T that stands for itself.
-std::optional<double> told_lag_time(const CaseField& note) {
-  const std::string text = note.is_text() ? note.text() : "";
-  const auto is_word = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
-  };
-  for (std::size_t at = text.find('T'); at != text.npos; at = text.find('T', at + 1)) {
-    if (at > 0 && is_word(text[at - 1])) continue;
-    const auto equals = text.find_first_not_of(' ', at + 1);
-    if (equals == text.npos || text[equals] != '=') continue;
-    const auto number = text.find_first_not_of(' ', equals + 1);
-    double value = 0.0;
-    if (number == text.npos ||
-        std::from_chars(text.data() + number, text.data() + text.size(), value).ec != std::errc())
-      continue;
-    if (value >= 1e-6 && value <= 1e6) return value;
-    note.refuse("T from 1e-6 to 1e6 s is");
-  }
-  return std::nullopt;
-}
-
-std::optional<double> lag_time(const CaseField& scenario, const CaseField& thrusters) {
-  for (const CaseField& place : {scenario, scenario["thrusters"], scenario["params"], thrusters})
-    if (const auto time = find_lag_time(place)) return time;
-  for (const CaseField& note : {scenario["doc"], thrusters["lag1"]})
-    if (const auto time = told_lag_time(note)) return time;
-  return std::nullopt;
-}
-
-// Members that are none of these would be passed over: a misspelt one is an error. What a file
-// says besides (rho, g) is its own.
-void refuse_unknown(const CaseField& field, std::span<const std::string_view> names) {
-  for (const std::string& key : field.keys()) {
-    const CaseField member = field[key];
-    if (!member.present() || member.is_text() || is_time_name(key) || is_lag_name(key) ||
-        std::ranges::find(names, key) != names.end())
-      continue;
-    const auto like = [&](std::string_view name) { return is_misspelt(key, name); };
-    if (std::ranges::none_of(names, like)) continue;
-    member.fail(fmt::format("not known; the nearest is {}", nearest(key, names)));
-  }
-}
-
-// Of the case: thrusters push, and how they follow their commands.
-bool read_mode(const CaseField& scenario, const CaseField& thrusters, ThrusterLag& lag) {
+// Sets how the thrusters follow their commands; false where the case has none.
+bool read_mode(const CaseField& scenario, ThrusterLag& lag) {
   const std::string mode = scenario["thruster_mode"].text("none");
   if (mode == "lag1") {
     lag.kind = ThrusterLag::Kind::kFirstOrder;
-    if (const auto time = lag_time(scenario, thrusters))
-      lag.time_s = *time;
-    else
-      scenario["lag1_T_s"].fail("not found, but needed: the T of thruster_mode lag1, in seconds");
+    lag.time_s = scenario.required("thruster_time_constant_s").number(1.0, 1e-6, 1e6);
   } else if (mode == "vb3") {
     lag.kind = ThrusterLag::Kind::kThirdOrder;
   } else if (mode != "none" && mode != "force" && mode != "vb_poly" && mode != "t200_16V") {
-    scenario["thruster_mode"].refuse("none, force, lag1, vb3, vb_poly or t200_16V is");
+    scenario["thruster_mode"].refuse("none, force, lag1, vb3, vb_poly or t200_16V");
   }
   return mode != "none";
 }
 
-// The forces of the thrusters in a segment, as it gives them or as its inputs come to.
+// The forces of the thrusters in a segment: given, or computed from its inputs.
 std::vector<double> read_forces(const CaseField& scenario, std::size_t segment, std::size_t count,
                                 const std::filesystem::path& folder) {
   const CaseField given = scenario["input_segments"].at(segment)["thruster_force_cmd_N"];
@@ -188,20 +130,17 @@ std::vector<double> read_forces(const CaseField& scenario, std::size_t segment, 
 
 void read_segments(const CaseField& scenario, bool thrust, const std::filesystem::path& folder,
                    TrajectoryCase& out) {
-  constexpr std::string_view kSegment[] = {"t0", "t1", "tau_body", "tau_sin",
-                                           "thruster_force_cmd_N"};
   const CaseField list = scenario["input_segments"];
   for (std::size_t i = 0; i < list.size(); ++i) {
     const CaseField at = list.at(i);
-    refuse_unknown(at, kSegment);
+    at.allow_with_texts({"t0", "t1", "tau_body", "thruster_force_cmd_N"});
     InputSegment segment;
     segment.t0_s = at.required("t0").number(0.0, 0.0, kLongest);
     segment.t1_s = at.required("t1").number(0.0, 0.0, kLongest);
-    if (!(segment.t1_s > segment.t0_s)) at["t1"].refuse("a time after t0 is");
+    if (!(segment.t1_s > segment.t0_s)) at["t1"].refuse("a time after t0");
     if (!out.segments.empty() && segment.t0_s < out.segments.back().t1_s)
-      at["t0"].refuse("a time not before the last segment's t1 is");
+      at["t0"].refuse("a time not before the last segment's t1");
     segment.wrench = vec6_of(at["tau_body"], kMostForce);
-    segment.sines = read_sines(at["tau_sin"]);
     const auto forces = read_forces(scenario, i, out.vehicle.thruster_count, folder);
     if (thrust) std::ranges::copy(forces, segment.thruster_n.begin());
     out.segments.push_back(segment);
@@ -214,7 +153,7 @@ std::optional<Quat> read_attitude(const CaseField& field) {
   const Quat out(q[0], q[1], q[2], q[3]);
   const double length = glm::length(out);
   if (!(length > 0.5 && length < 2.0)) {
-    field.refuse("a unit quaternion [w, x, y, z] is");
+    field.refuse("a unit quaternion [w, x, y, z]");
     return std::nullopt;
   }
   return out / length;
@@ -224,10 +163,11 @@ void read_samples(const CaseField& scenario, TrajectoryCase& out) {
   const CaseField list = scenario.required("samples");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const CaseField at = list.at(i);
+    at.allow_with_texts({"t", "p_ned", "q_wxyz", "nu_frd", "thruster_force_N"});
     TrajectorySample sample;
     sample.t_s = at.required("t").number(0.0, 0.0, kLongest);
     if (!out.samples.empty() && !(sample.t_s > out.samples.back().t_s))
-      at["t"].refuse("a time after the last sample's is");
+      at["t"].refuse("a time after the last sample's");
     if (at["p_ned"].present()) sample.position_ned_m = at["p_ned"].vec3(Vec3(0.0));
     sample.attitude = read_attitude(at["q_wxyz"]);
     if (at["nu_frd"].present()) sample.velocity = vec6_of(at["nu_frd"], kMostForce);
@@ -235,39 +175,48 @@ void read_samples(const CaseField& scenario, TrajectoryCase& out) {
                             ? at["thruster_force_N"].numbers(out.vehicle.thruster_count)
                             : std::vector<double>();
     if (!sample.position_ned_m && !sample.attitude && !sample.velocity && sample.thruster_n.empty())
-      at.fail("nothing to compare found; p_ned, q_wxyz, nu_frd or thruster_force_N is accepted");
+      at.fail("found nothing to compare; accepted: p_ned, q_wxyz, nu_frd or thruster_force_N");
     out.samples.push_back(std::move(sample));
   }
-  if (out.samples.empty()) list.fail("empty; at least one sample is accepted");
+  if (out.samples.empty()) list.fail("found none; accepted: at least one sample");
 }
 
 // "rk4_240Hz": [position, velocity]; null where that integrator diverged.
 void read_promises(const CaseField& field, TrajectoryCase& out) {
   for (const std::string& key : field.keys()) {
-    const auto cut = key.rfind('_');
-    double hz = 0.0;
-    if (cut == key.npos || !key.ends_with("Hz")) continue;
-    std::from_chars(key.data() + cut + 1, key.data() + key.size() - 2, hz);
     const CaseField pair = field[key];
-    if (!(hz > 0.0) || pair.size() < 2 || !pair.at(0).is_number() || !pair.at(1).is_number())
-      continue;
+    if (pair.is_text()) continue;
+    const std::string_view name = key;
+    const auto cut = name.rfind('_');
+    const std::string_view integrator = name.substr(0, cut);
+    const bool known = cut != name.npos && (integrator == "rk4" || integrator == "semi_euler");
+    const auto hz = known && name.ends_with("Hz")
+                        ? parse_number(name.substr(cut + 1, name.size() - cut - 3))
+                        : std::nullopt;
+    if (!hz || !(*hz > 0.0 && *hz < 1e9)) {
+      pair.fail("not known; accepted: rk4_ or semi_euler_, a rate and Hz, as rk4_240Hz");
+      return;
+    }
+    if (pair.size() != 2) pair.refuse("[position, velocity], each a number or null");
+    if (!pair.at(0).present() || !pair.at(1).present()) continue;
     out.promised.push_back(
-        {key.substr(0, cut), hz, pair.at(0).number(0.0), pair.at(1).number(0.0)});
+        {std::string(integrator), *hz, pair.at(0).number(0.0), pair.at(1).number(0.0)});
   }
 }
 
 TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseField& thrusters,
                          const std::filesystem::path& folder) {
-  constexpr std::string_view kParameters[] = {"m_kg", "I_CO_kgm2", "r_g_m", "r_b_m",   "W_N",
-                                              "B_N",  "M_A",       "D_L",   "D_Q_diag"};
-  constexpr std::string_view kInitial[] = {"p_ned", "q_wxyz", "nu_frd"};
+  scenario.allow_with_texts({"id", "params", "current_ned_mps", "initial", "thruster_mode",
+                             "thruster_time_constant_s", "input_segments", "input_normalised_V",
+                             "input_pwm_us", "tau_sin", "samples", "reference_error_estimate",
+                             "fixed_step_end_error", "quat_norm_error", "closed_form"});
+  scenario["params"].allow_with_texts(
+      {"m_kg", "I_CO_kgm2", "r_g_m", "r_b_m", "W_N", "B_N", "M_A", "D_L", "D_Q_diag"});
+  scenario["initial"].allow_with_texts({"p_ned", "q_wxyz", "nu_frd"});
   TrajectoryCase out;
-  refuse_unknown(scenario["params"], kParameters);
-  refuse_unknown(scenario["initial"], kInitial);
   VehicleParameters parameters = read_parameters(scenario.required("params"));
-  const bool thrust = read_mode(scenario, thrusters, parameters.lag);
-  const CaseField own = scenario["thrusters"];
-  parameters.thrusters = read_thrusters(own["position_frd_m"].present() ? own : thrusters);
+  const bool thrust = read_mode(scenario, parameters.lag);
+  parameters.thrusters = read_thrusters(thrusters);
   if (file.failed()) return out;
   Result<Vehicle> vehicle = make_vehicle(parameters);
   if (!vehicle.ok()) {
@@ -280,7 +229,7 @@ TrajectoryCase read_case(CaseFile& file, const CaseField& scenario, const CaseFi
   out.position_ned_m = vec3_of(initial["p_ned"], kMostForce);
   out.attitude = read_attitude(initial["q_wxyz"]).value_or(Quat(1.0, 0.0, 0.0, 0.0));
   out.velocity = vec6_of(initial["nu_frd"], kMostSpeed);
-  out.sines = read_sines(scenario["tau_sin"]);
+  out.sine = read_sine(scenario["tau_sin"]);
   read_segments(scenario, thrust, folder, out);
   read_samples(scenario, out);
   read_promises(scenario["fixed_step_end_error"], out);
@@ -296,7 +245,11 @@ Result<std::vector<TrajectoryCase>> read_trajectories(std::string_view text,
   NERITIC_TRY(CaseFile file, CaseFile::parse(text, name));
   const CaseField root = file.root();
   if (root["format"].present() && root["format"].text() != "rov_vectors/1")
-    root["format"].refuse("\"rov_vectors/1\" is");
+    root["format"].refuse("\"rov_vectors/1\"");
+  root.allow_with_texts(
+      {"format", "conventions", "equations", "thrusters", "sources", "scenarios"});
+  root["thrusters"].allow_with_texts(
+      {"position_frd_m", "direction_frd", "allocation_6x8", "pinv_8x6"});
   const CaseField list = root.required("scenarios");
   std::vector<TrajectoryCase> out;
   for (std::size_t i = 0; i < list.size() && !file.failed(); ++i) {
@@ -308,7 +261,7 @@ Result<std::vector<TrajectoryCase>> read_trajectories(std::string_view text,
     out.push_back(std::move(one));
   }
   file.enter_case("");
-  if (list.present() && out.empty()) list.fail("empty; at least one case is accepted");
+  if (list.present() && out.empty()) list.fail("found none; accepted: at least one case");
   if (file.failed()) return file.error();
   return out;
 }

@@ -9,19 +9,14 @@ namespace {
 constexpr double kSameTime = 1e-9;   // s
 constexpr double kFairRate = 120.0;  // Hz, down to which the bars are RK4's
 
-// The sines that push from a time on.
+// The case's sine from a time on.
 struct Swing {
-  const TrajectoryCase* one;
-  const InputSegment* segment;  // null between segments
+  const SineWrench* sine;
   double t_s;
 
   static Vec6 at(const void* context, double t_s) {
     const auto& swing = *static_cast<const Swing*>(context);
-    Vec6 sum;
-    for (const SineWrench& sine : swing.one->sines) sum = sum + sine.at(swing.t_s + t_s);
-    if (swing.segment)
-      for (const SineWrench& sine : swing.segment->sines) sum = sum + sine.at(swing.t_s + t_s);
-    return sum;
+    return swing.sine->at(swing.t_s + t_s);
   }
 };
 
@@ -52,10 +47,9 @@ struct Run {
       inputs.wrench = segment->wrench;
       inputs.thruster_n = segment->thruster_n;
     }
-    const Swing swing{&one, segment, t_s};
-    const bool swings = !one.sines.empty() || (segment && !segment->sines.empty());
+    const Swing swing{one.sine ? &*one.sine : nullptr, t_s};
     return step(one.vehicle, state, inputs, dt_s, integrator,
-                swings ? VaryingWrench{&Swing::at, &swing} : VaryingWrench{});
+                one.sine ? VaryingWrench{&Swing::at, &swing} : VaryingWrench{});
   }
 };
 

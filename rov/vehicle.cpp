@@ -19,13 +19,13 @@ bool within(const Vec3& v, double most) {
 
 Status check_scalars(const VehicleParameters& p) {
   if (!(p.mass_kg > 0.0 && p.mass_kg <= kLargest))
-    return bad_input("mass_kg: {} found, a number in (0, 1e9] is accepted", p.mass_kg);
+    return bad_input("mass_kg: found {}; accepted: a number in (0, 1e9]", p.mass_kg);
   if (!within(p.weight_n, 0.0))
-    return bad_input("weight_n: {} found, a number in [0, 1e9] is accepted", p.weight_n);
+    return bad_input("weight_n: found {}; accepted: a number in [0, 1e9]", p.weight_n);
   if (!within(p.buoyancy_n, 0.0))
-    return bad_input("buoyancy_n: {} found, a number in [0, 1e9] is accepted", p.buoyancy_n);
+    return bad_input("buoyancy_n: found {}; accepted: a number in [0, 1e9]", p.buoyancy_n);
   if (!within(p.gravity_centre_m, 100.0) || !within(p.buoyancy_centre_m, 100.0))
-    return bad_input("{}: a point within 100 m of the body's origin is accepted",
+    return bad_input("{}: accepted: a point within 100 m of the body's origin",
                      within(p.gravity_centre_m, 100.0) ? "buoyancy_centre_m" : "gravity_centre_m");
   return {};
 }
@@ -34,21 +34,21 @@ Status check_matrices(const VehicleParameters& p, const Mat6& rigid, const Mat6&
   if (!is_finite(rigid) || !(smallest_pivot(rigid) > kSingular))
     return bad_input(
         "inertia_kg_m2: with mass {} and centre of gravity ({}, {}, {}) the mass matrix is not "
-        "positive definite; a matrix that is one is accepted",
+        "positive definite; accepted: a matrix that is one",
         p.mass_kg, p.gravity_centre_m.x, p.gravity_centre_m.y, p.gravity_centre_m.z);
   if (!is_finite(mass) || !(smallest_pivot(symmetric_part(mass)) > kSingular))
     return bad_input(
-        "added_mass: with the rigid body's the matrix is singular or not positive definite; a "
-        "matrix that is positive definite is accepted");
+        "added_mass: with the rigid body's the matrix is singular or not positive definite; "
+        "accepted: a matrix that is positive definite");
   for (std::size_t i = 0; i < 6; ++i) {
     if (!within(p.added_mass(i, i), 0.0))
-      return bad_input("added_mass: {} found on its diagonal, a number in [0, 1e9] is accepted",
+      return bad_input("added_mass: found {} on its diagonal; accepted: a number in [0, 1e9]",
                        p.added_mass(i, i));
     if (!within(p.linear_damping(i, i), 0.0))
-      return bad_input("linear_damping: {} found on its diagonal, a number in [0, 1e9] is accepted",
+      return bad_input("linear_damping: found {} on its diagonal; accepted: a number in [0, 1e9]",
                        p.linear_damping(i, i));
     if (!within(p.quadratic_damping[i], 0.0))
-      return bad_input("quadratic_damping: {} found, a number in [0, 1e9] is accepted",
+      return bad_input("quadratic_damping: found {}; accepted: a number in [0, 1e9]",
                        p.quadratic_damping[i]);
   }
   if (!is_finite(p.linear_damping))
@@ -58,19 +58,18 @@ Status check_matrices(const VehicleParameters& p, const Mat6& rigid, const Mat6&
 
 Status check_thrusters(const std::vector<Thruster>& thrusters) {
   if (thrusters.size() > kMaxThrusters)
-    return bad_input("thrusters: {} found, up to {} are accepted", thrusters.size(), kMaxThrusters);
+    return bad_input("thrusters: found {}; accepted: up to {}", thrusters.size(), kMaxThrusters);
   for (std::size_t i = 0; i < thrusters.size(); ++i) {
     const Thruster& t = thrusters[i];
     if (!within(t.position_m, 100.0))
-      return bad_input("thrusters[{}].position_m: a point within 100 m is accepted", i);
+      return bad_input("thrusters[{}].position_m: accepted: a point within 100 m", i);
     if (!within(t.direction, 2.0) || glm::length(t.direction) < 0.5)
-      return bad_input("thrusters[{}].direction: ({}, {}, {}) found, a unit vector is accepted", i,
+      return bad_input("thrusters[{}].direction: found ({}, {}, {}); accepted: a unit vector", i,
                        t.direction.x, t.direction.y, t.direction.z);
     if (!(t.min_n <= 0.0 && t.max_n >= 0.0 && t.min_n >= -kLargest && t.max_n <= kLargest))
       return bad_input(
-          "thrusters[{}]: forces from {} to {} N found, from [-1e9, 0] to [0, 1e9] "
-          "are accepted",
-          i, t.min_n, t.max_n);
+          "thrusters[{}]: found forces from {} to {} N; accepted: from [-1e9, 0] to [0, 1e9]", i,
+          t.min_n, t.max_n);
   }
   return {};
 }

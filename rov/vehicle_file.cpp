@@ -57,11 +57,11 @@ Mat6 matrix_of(const CaseField& field) {
 // Symmetric, and never giving energy: within rounding of positive semidefinite.
 void check_dissipation(const CaseField& file, const VehicleParameters& p) {
   if (symmetric_part(p.added_mass) != p.added_mass)
-    file["added_mass"].fail("not symmetric; a symmetric matrix is accepted");
+    file["added_mass"].fail("not symmetric; accepted: a symmetric matrix");
   Mat6 lifted = symmetric_part(p.linear_damping);
   for (std::size_t i = 0; i < 6; ++i) lifted(i, i) += 1e-12 + 1e-12 * lifted(i, i);
   if (!(smallest_pivot(lifted) > -1e-9))
-    file["linear_damping"].fail("adds energy; a positive semidefinite matrix is accepted");
+    file["linear_damping"].fail("adds energy; accepted: a positive semidefinite matrix");
 }
 
 void read_body(const CaseField& file, double water_kg_m3, VehicleParameters& p) {
@@ -92,7 +92,7 @@ void read_lag(const CaseField& field, ThrusterLag& lag) {
   else if (kind == "first_order")
     lag.kind = ThrusterLag::Kind::kFirstOrder;
   else if (kind != "none")
-    field["kind"].refuse("none, first_order or third_order is");
+    field["kind"].refuse("none, first_order or third_order");
   lag.time_s = field["time_s"].number(lag.time_s, 1e-6, 1e6);
   lag.a2 = field["a2"].number(lag.a2, 0.0, 1e9);
   lag.a1 = field["a1"].number(lag.a1, 0.0, 1e15);
@@ -111,7 +111,7 @@ void read_thrusters(const CaseField& list, VehicleParameters& p) {
     if (length > 1e-6 && length < 1e6)
       thruster.direction = direction / length;
     else
-      at["direction"].refuse("a vector that is not 0 is");
+      at["direction"].refuse("a vector that is not 0");
     thruster.min_n = at["min_n"].number(thruster.min_n, -1e9, 0.0);
     thruster.max_n = at["max_n"].number(thruster.max_n, 0.0, 1e9);
     p.thrusters.push_back(thruster);
@@ -141,7 +141,7 @@ void read_gains(const CaseField& field, ControlGains& gains) {
   for (const auto& [key, member] : lists) {
     const auto values = field[key].numbers(6);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!(values[i] >= 0.0)) field[key].refuse("numbers from 0 are");
+      if (!(values[i] >= 0.0)) field[key].refuse("numbers from 0");
       gains.axes[i].*member = values[i];
     }
   }
@@ -150,7 +150,7 @@ void read_gains(const CaseField& field, ControlGains& gains) {
   if (saturation == "redistribute")
     gains.saturation = Saturation::kRedistribute;
   else if (saturation != "scale")
-    field["saturation"].refuse("scale or redistribute is");
+    field["saturation"].refuse("scale or redistribute");
   gains.feed_forward = field["feed_forward"].boolean(false);
 }
 

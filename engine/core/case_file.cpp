@@ -23,7 +23,7 @@ Result<CaseFile> CaseFile::parse(std::string_view text, std::string name) {
   Result<nlohmann::json> parsed = parse_json(text);
   if (!parsed.ok())
     return bad_input("{}: no JSON: {}", name, printable(parsed.error().message, 200));
-  if (!parsed->is_object()) return bad_input("{}: a JSON object is accepted, none found", name);
+  if (!parsed->is_object()) return bad_input("{}: found no JSON object; accepted: one", name);
   return CaseFile(std::move(*parsed), std::move(name));
 }
 
@@ -68,7 +68,7 @@ CaseField CaseField::operator[](std::string_view key) const {
   const std::string path = path_.empty() ? std::string(key) : path_ + "." + std::string(key);
   if (!present()) return {*file_, nullptr, path};
   if (!value_->is_object()) {
-    refuse("an object is");
+    refuse("an object");
     return {*file_, nullptr, path};
   }
   const auto it = value_->find(std::string(key));
@@ -91,7 +91,7 @@ std::vector<std::string> CaseField::keys() const {
 std::size_t CaseField::size() const {
   if (!present()) return 0;
   if (value_->is_array()) return value_->size();
-  refuse("a list is");
+  refuse("a list");
   return 0;
 }
 
@@ -102,13 +102,13 @@ CaseField CaseField::at(std::size_t i) const {
 
 std::string CaseField::text(std::string_view fallback) const {
   if (is_text()) return value_->get<std::string>();
-  if (present()) refuse("a text is");
+  if (present()) refuse("a text");
   return std::string(fallback);
 }
 
 bool CaseField::boolean(bool fallback) const {
   if (present() && value_->is_boolean()) return value_->get<bool>();
-  if (present()) refuse("true or false is");
+  if (present()) refuse("true or false");
   return fallback;
 }
 
@@ -119,9 +119,9 @@ double CaseField::number(double fallback, double least, double most) const {
     if (number >= least && number <= most) return number;
   }
   if (least > -1e300 || most < 1e300)
-    refuse(fmt::format("a number in [{}, {}] is", least, most));
+    refuse(fmt::format("a number in [{}, {}]", least, most));
   else
-    refuse("a number is");
+    refuse("a number");
   return fallback;
 }
 
@@ -135,7 +135,7 @@ std::vector<double> CaseField::numbers() const {
       if (good) out.push_back(item.get<double>());
     }
   if (good) return out;
-  refuse("a list of numbers is");
+  refuse("a list of numbers");
   return {};
 }
 
@@ -147,7 +147,7 @@ std::vector<double> CaseField::numbers(std::size_t count) const {
       if (item.is_number() && std::isfinite(item.get<double>())) out.push_back(item.get<double>());
     if (out.size() == count) return out;
   }
-  refuse(fmt::format("a list of {} numbers is", count));
+  refuse(fmt::format("a list of {} numbers", count));
   return {};
 }
 
@@ -156,8 +156,8 @@ std::vector<std::vector<double>> CaseField::rows(std::size_t rows, std::size_t c
   if (!present()) return out;
   const bool good = value_->is_array() && (rows == 0 || value_->size() == rows);
   if (!good) {
-    refuse(rows == 0 ? fmt::format("a list of rows of {} numbers is", columns)
-                     : fmt::format("{} rows of {} numbers are", rows, columns));
+    refuse(rows == 0 ? fmt::format("a list of rows of {} numbers", columns)
+                     : fmt::format("{} rows of {} numbers", rows, columns));
     return out;
   }
   for (std::size_t i = 0; i < value_->size(); ++i) {
@@ -181,7 +181,7 @@ std::vector<std::vector<double>> CaseField::square(std::size_t n) const {
   if (!present()) return {};
   if (is_array() && size() == n && at(0).is_array()) return rows(n, n);
   if (!is_array() || size() != n) {
-    refuse(fmt::format("{} rows of {} numbers, or {} of a diagonal, are", n, n, n));
+    refuse(fmt::format("{} rows of {} numbers, or {} of a diagonal", n, n, n));
     return {};
   }
   const std::vector<double> diagonal = numbers(n);
@@ -191,26 +191,24 @@ std::vector<std::vector<double>> CaseField::square(std::size_t n) const {
 }
 
 void CaseField::allow(std::span<const std::string_view> names) const {
-  for (const std::string& key : keys()) {
-    if (std::ranges::find(names, key) != names.end()) continue;
-    (*this)[key].fail(fmt::format("not known; the nearest is {}", nearest(key, names)));
-  }
+  for (const std::string& key : keys())
+    if (std::ranges::find(names, key) == names.end())
+      (*this)[key].fail(fmt::format("not known; the nearest is {}", nearest(key, names)));
 }
 
-void CaseField::refuse_misspelt(std::span<const std::string_view> names) const {
+void CaseField::allow_with_texts(std::initializer_list<std::string_view> names) const {
+  const std::span<const std::string_view> known(names.begin(), names.size());
   for (const std::string& key : keys()) {
+    if (std::ranges::find(known, key) != known.end()) continue;
     const CaseField member = (*this)[key];
-    if (!member.present() || member.is_text() || std::ranges::find(names, key) != names.end())
-      continue;
-    std::vector<std::string_view> like;
-    for (const std::string_view name : names)
-      if (is_misspelt(key, name)) like.push_back(name);
-    if (!like.empty()) member.fail(fmt::format("not known; the nearest is {}", nearest(key, like)));
+    const std::string_view near = nearest(key, known);
+    if (!member.is_text() || is_slip(key, near))
+      member.fail(fmt::format("not known; the nearest is {}", near));
   }
 }
 
 void CaseField::refuse(std::string_view accepted) const {
-  if (!file_->failed()) fail(fmt::format("{} found, {} accepted", found(), accepted));
+  if (!file_->failed()) fail(fmt::format("found {}; accepted: {}", found(), accepted));
 }
 
 std::string CaseField::found() const {

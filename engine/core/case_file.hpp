@@ -1,9 +1,10 @@
 // Checked reading of files of cases (JSON) and of vehicles (TOML): every getter says what it
-// accepts and records the first thing that is wrong, as "file: case 'id': field: ... found, ...
-// accepted", of TOML with the line, "file:line: field: ...". Later getters return their fallbacks,
-// so that a reader reads on and asks once whether it failed. One thread.
+// accepts and records the first thing that is wrong, as "file: case 'id': field: found ...;
+// accepted: ...", of TOML with the line, "file:line: field: ...". Later getters return their
+// fallbacks, so that a reader reads on and asks once whether it failed. One thread.
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -92,11 +93,11 @@ class CaseField {
   std::vector<std::vector<double>> square(std::size_t n) const;
   // Fails where a member has none of these names, and tells the nearest.
   void allow(std::span<const std::string_view> names) const;
-  // Fails where a member that is no text is a misspelt one of these names (is_misspelt); what a
-  // file says besides is its own.
-  void refuse_misspelt(std::span<const std::string_view> names) const;
+  // The same, but a text under another name is a note for people, unless its name is a slip of one
+  // of these (is_slip).
+  void allow_with_texts(std::initializer_list<std::string_view> names) const;
 
-  // "field: found ..., accepted"
+  // Records "field: found F; accepted: A".
   void refuse(std::string_view accepted) const;
   void fail(const std::string& message) const { file_->fail(path_, message); }
 

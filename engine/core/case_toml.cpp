@@ -86,7 +86,7 @@ Result<nlohmann::json> read_tree(std::string_view text, const std::string& name,
       *file = (folder / file->get<std::string>()).string();
   const auto include = own.find("include");
   if (include == own.end()) return own;
-  if (!include->is_string()) return bad_input("{}: include: the name of a file is accepted", name);
+  if (!include->is_string()) return bad_input("{}: include: accepted: the name of a file", name);
   if (depth == kMostIncludes)
     return bad_input("{}: include: files nested deeper than {} found", name, depth);
   const std::filesystem::path path = folder / include->get<std::string>();

@@ -25,7 +25,8 @@ Status read_into(const fs::path& path, Buffer& out) {
   const auto size = fs::file_size(path, error);
   if (error) return bad_input("{}: cannot be read: {}", path.string(), error.message());
   if (size > kMaxFileBytes)
-    return bad_input("{}: {} bytes, at most {} are accepted", path.string(), size, kMaxFileBytes);
+    return bad_input("{}: found {} bytes; accepted: at most {}", path.string(), size,
+                     kMaxFileBytes);
   File file(std::fopen(path.c_str(), "rb"));
   if (!file) return bad_input("{}: cannot be opened", path.string());
   out.resize(size);

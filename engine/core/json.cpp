@@ -39,7 +39,7 @@ void tidy(nlohmann::json& value) {
 
 Result<nlohmann::json> parse_json(std::string_view text) {
   if (const int depth = nesting_of(text); depth > kMaxJsonNesting)
-    return bad_input("JSON nested {} deep, at most {} is accepted", depth, kMaxJsonNesting);
+    return bad_input("found JSON nested {} deep; accepted: at most {}", depth, kMaxJsonNesting);
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception& exception) {

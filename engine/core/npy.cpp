@@ -69,8 +69,7 @@ Result<std::vector<std::size_t>> parse_shape(std::string_view text, const std::s
       continue;
     }
     if (!std::isdigit(static_cast<unsigned char>(text[i])))
-      return bad_input("{}: the .npy shape has '{}', only whole numbers are accepted", name,
-                       text[i]);
+      return bad_input("{}: found '{}' in the .npy shape; accepted: whole numbers", name, text[i]);
     std::size_t value = 0;
     while (i < text.size() && std::isdigit(static_cast<unsigned char>(text[i]))) {
       if (value > kMaxFileBytes) return bad_input("{}: the .npy shape is too large", name);
@@ -195,7 +194,7 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
   const auto byte_at = [&](std::size_t i) { return std::to_integer<std::size_t>(bytes[i]); };
   const std::size_t major = byte_at(6);
   if (major < 1 || major > 3)
-    return bad_input("{}: .npy version {}, 1 to 3 are accepted", name, major);
+    return bad_input("{}: found .npy version {}; accepted: 1 to 3", name, major);
   const std::size_t prefix = major == 1 ? 10 : 12;
   if (bytes.size() < prefix) return bad_input("{}: the .npy header is cut off", name);
   std::size_t length = byte_at(8) | byte_at(9) << 8;
@@ -222,13 +221,13 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
   const auto row = std::find_if(kTypes.begin(), kTypes.end(),
                                 [&](const TypeRow& r) { return type_name == r.name; });
   if (row == kTypes.end())
-    return bad_input("{}: element type {} found, f2 f4 f8 u1 u2 u4 i2 i4 i8 b1 are accepted", name,
+    return bad_input("{}: found element type {}; accepted: f2 f4 f8 u1 u2 u4 i2 i4 i8 b1", name,
                      neritic::printable(quoted_start(descr)));
   array.type = row->type;
   const std::string_view order = value_of(header, "fortran_order");
   const bool fortran = order.starts_with("True");
   if (!fortran && !order.starts_with("False"))
-    return bad_input("{}: fortran_order {} found, True or False is accepted", name,
+    return bad_input("{}: found fortran_order {}; accepted: True or False", name,
                      order.empty() ? "nothing" : neritic::printable(quoted_start(order)));
   NERITIC_TRY(array.shape, parse_shape(value_of(header, "shape"), name));
 

@@ -57,9 +57,9 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-bool is_misspelt(std::string_view word, std::string_view name) {
-  const std::size_t n = std::min(word.size(), name.size());
-  return n >= 2 && word != name && lower_case(word.substr(0, n)) == lower_case(name.substr(0, n));
+bool is_slip(std::string_view word, std::string_view name) {
+  if (word.size() > name.size() + 2) return false;
+  return edit_distance(lower_case(word), lower_case(name)) <= (name.size() < 8 ? 1u : 2u);
 }
 
 std::string printable(std::string_view text, std::size_t max_bytes) {

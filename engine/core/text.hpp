@@ -20,8 +20,9 @@ std::string printable(std::string_view text, std::size_t max_bytes = 60);
 // The name with the smallest edit distance to word (the first of equals); empty for an empty list.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> names);
 
-// Whether a word is likely meant for a name: the same but for capitals, or one begins the other.
-bool is_misspelt(std::string_view word, std::string_view name);
+// Whether a word is a slip of the pen for a name: the same but for capitals, or one edit away, or
+// two where the name has eight letters or more.
+bool is_slip(std::string_view word, std::string_view name);
 
 // "a, b, c"
 std::string join(std::span<const std::string_view> names);

@@ -50,14 +50,14 @@ TEST(Npy, WhatIsNotReadIsSaidWithWhatIs) {
   const auto message = [](const Result<NpyArray>& array) {
     return array.ok() ? "" : array.error().message;
   };
-  const std::string types = " found, f2 f4 f8 u1 u2 u4 i2 i4 i8 b1 are accepted";
-  EXPECT_EQ(message(parsed("<c8", "(1,)", "12345678")), "a.npy: element type <c8" + types);
-  EXPECT_EQ(message(parsed("|i1", "(1,)", "1")), "a.npy: element type |i1" + types);
-  EXPECT_EQ(message(parsed("<u8", "(1,)", "12345678")), "a.npy: element type <u8" + types);
+  const std::string types = "; accepted: f2 f4 f8 u1 u2 u4 i2 i4 i8 b1";
+  EXPECT_EQ(message(parsed("<c8", "(1,)", "12345678")), "a.npy: found element type <c8" + types);
+  EXPECT_EQ(message(parsed("|i1", "(1,)", "1")), "a.npy: found element type |i1" + types);
+  EXPECT_EQ(message(parsed("<u8", "(1,)", "12345678")), "a.npy: found element type <u8" + types);
   EXPECT_EQ(message(parsed("|u1", "(1,)", "1", "'no'")),
-            "a.npy: fortran_order no found, True or False is accepted");
+            "a.npy: found fortran_order no; accepted: True or False");
   EXPECT_EQ(message(with_header("{'descr': '|u1', 'shape': (1,), 'fortran_order': F\n", "1")),
-            "a.npy: fortran_order F? found, True or False is accepted");
+            "a.npy: found fortran_order F?; accepted: True or False");
 }
 
 // numpy.save of numpy.asfortranarray(numpy.arange(24, dtype='<u2').reshape(2, 3, 4)), in bytes.

@@ -9,7 +9,7 @@ namespace neritic {
 namespace {
 
 Result<int> half(int n) {
-  if (n % 2 != 0) return bad_input("n: {} found; accepted: an even number", n);
+  if (n % 2 != 0) return bad_input("n: found {}; accepted: an even number", n);
   return n / 2;
 }
 
@@ -21,7 +21,7 @@ Result<int> quarter(int n) {
 TEST(Result, TryHandsOnTheValueOrTheError) {
   EXPECT_EQ(quarter(12).value(), 3);
   ASSERT_FALSE(quarter(6).ok());
-  EXPECT_EQ(quarter(6).error().message, "n: 3 found; accepted: an even number");
+  EXPECT_EQ(quarter(6).error().message, "n: found 3; accepted: an even number");
   EXPECT_EQ(exit_status(quarter(6).error().code), 2);
 }
 
@@ -33,9 +33,9 @@ TEST(Result, ValuesThatOnlyMoveMoveOut) {
 }
 
 TEST(ResultDeathTest, TheValueOfAnErrorEndsTheProgramWithTheErrorsMessage) {
-  EXPECT_DEATH((void)half(5).value(), "check failed: .*n: 5 found; accepted: an even number");
+  EXPECT_DEATH((void)half(5).value(), "check failed: .*n: found 5; accepted: an even number");
   const Result<int> odd = half(7);
-  EXPECT_DEATH((void)*odd, "n: 7 found");
+  EXPECT_DEATH((void)*odd, "n: found 7");
   const Result<std::string> none(bad_input("no text"));
   EXPECT_DEATH((void)none->size(), "no text");
 }

@@ -83,7 +83,7 @@ TEST(Anthropometry, BothSidesAreAlikeAndMassesAddUp) {
 
 TEST(Anthropometry, BodiesOutOfAnyProportionAreRefused) {
   EXPECT_EQ(measure_segments({Sex::kMale, 0.3, 75}).error().message,
-            "height_m: 0.3 found, 1.2 to 2.3 is accepted");
+            "height_m: found 0.3; accepted: 1.2 to 2.3");
   EXPECT_FALSE(measure_segments({Sex::kMale, 1.78, -1.0}).ok());
   EXPECT_FALSE(measure_segments({Sex::kMale, 2.2, 31.0}).ok());
   EXPECT_FALSE(measure_segments({Sex::kMale, std::nan(""), 75}).ok());

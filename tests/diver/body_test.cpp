@@ -122,10 +122,10 @@ TEST(Body, TwoTanksAlikeAreATwinSet) {
 TEST(Body, ParametersBeyondAnyDiversAreRefusedByName) {
   BodyParameters p;
   p.gear.suit->thickness_m = 0.5;
-  EXPECT_EQ(make_body(p).error().message, "suit: 0.5 found, 0 to 0.012 is accepted");
+  EXPECT_EQ(make_body(p).error().message, "suit: found 0.5; accepted: 0 to 0.012");
   p = {};
   p.gear.tanks.resize(5);
-  EXPECT_EQ(make_body(p).error().message, "tanks: 5 found, up to 4 are accepted");
+  EXPECT_EQ(make_body(p).error().message, "tanks: found 5; accepted: up to 4");
   p = {};
   p.gear.tanks[0].mix = {0.9, 0.3};
   EXPECT_FALSE(make_body(p).ok());

@@ -32,15 +32,15 @@ TEST(ButtonRecording, WhatIsWrongIsSaidInOneLine) {
   const struct {
     const char *text, *message;
   } wrong[] = {
-      {"inflate\n1\n", "t_s and any of inflate, deflate, dump are accepted"},
+      {"inflate\n1\n", "accepted: t_s and any of inflate, deflate, dump"},
       {"t_s\n1\n", "t_s and any of inflate"},
-      {"t_s,inflat\n0,1\n", "a column inflat found; t_s, inflate, deflate, dump"},
+      {"t_s,inflat\n0,1\n", "found a column inflat; accepted: t_s, inflate, deflate, dump"},
       {"t_s,inflate\n", "b.csv"},
-      {"t_s,inflate\n3,1\n3,0\n", "b.csv:3: time 3 found; times that rise"},
-      {"t_s,inflate\n1e12,1\n", "b.csv:2: time 1000000000000 found"},
-      {"t_s,inflate\nnan,1\n", "b.csv:2: time nan found"},
-      {"# a test\n\nt_s,inflate,dump\n1,0,2\n", "b.csv:4: dump: 2 found; 0 and 1 are accepted"},
-      {"t_s,inflate\n1,\n", "b.csv:2: inflate: nan found; 0 and 1"}};
+      {"t_s,inflate\n3,1\n3,0\n", "b.csv:3: found time 3; accepted: times that rise"},
+      {"t_s,inflate\n1e12,1\n", "b.csv:2: found time 1000000000000"},
+      {"t_s,inflate\nnan,1\n", "b.csv:2: found time nan"},
+      {"# a test\n\nt_s,inflate,dump\n1,0,2\n", "b.csv:4: dump: found 2; accepted: 0 and 1"},
+      {"t_s,inflate\n1,\n", "b.csv:2: inflate: found nan; accepted: 0 and 1"}};
   for (const auto& one : wrong) {
     const auto r = read_button_recording(one.text, "b.csv");
     ASSERT_FALSE(r.ok()) << one.text;

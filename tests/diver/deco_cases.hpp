@@ -6,6 +6,7 @@
 #include <string>
 
 #include "diver/deco_check.hpp"
+#include "diver/gas_label.hpp"
 #include "engine/core/files.hpp"
 #include "tests/support/support.hpp"
 

@@ -54,21 +54,20 @@ TEST(DepthLog, WhatIsWrongIsSaidWithItsLine) {
     return log.ok() ? std::string("read") : log.error().message;
   };
   EXPECT_EQ(fault("time_s,depth_m\n0,1\n"), "read");
-  EXPECT_EQ(fault(""), "d.csv: no row of names found, time_s and depth_m are accepted");
-  EXPECT_EQ(fault("time_s,depth_m\n"), "d.csv: no sample found, at least one is accepted");
-  EXPECT_EQ(
-      fault("clock,depth_m\n0,1\n"),
-      "d.csv: line 1: columns 'clock,depth_m' found, time_s or time_min and depth_m are needed");
-  EXPECT_EQ(fault("time_s,depth_m\n0,1\n1\n"), "d.csv: line 3: 1 cells found, 2 are accepted");
-  EXPECT_EQ(fault("time_s,depth_m\nx,1\n"), "d.csv: line 2: time 'x' found, a number is accepted");
+  EXPECT_EQ(fault(""), "d.csv: found no row of names; accepted: time_s and depth_m");
+  EXPECT_EQ(fault("time_s,depth_m\n"), "d.csv: found no sample; accepted: at least one");
+  EXPECT_EQ(fault("clock,depth_m\n0,1\n"),
+            "d.csv: line 1: found columns 'clock,depth_m'; accepted: with time_s or time_min, "
+            "and depth_m");
+  EXPECT_EQ(fault("time_s,depth_m\n0,1\n1\n"), "d.csv: line 3: found 1 cells; accepted: 2");
+  EXPECT_EQ(fault("time_s,depth_m\nx,1\n"), "d.csv: line 2: found time 'x'; accepted: a number");
   EXPECT_EQ(fault("time_s,depth_m\nnan,1\n"),
-            "d.csv: line 2: time 'nan' found, a number is accepted");
+            "d.csv: line 2: found time 'nan'; accepted: a number");
   EXPECT_EQ(fault("time_s,depth_m\n5,1\n4,1\n"),
-            "d.csv: line 3: time 4 found after 5, times that do not go back are accepted");
-  EXPECT_EQ(fault("time_s,depth_m\n0,1m\n"),
-            "d.csv: line 2: depth '1m' found, a number is accepted");
+            "d.csv: line 3: found time 4 after 5; accepted: times that do not go back");
+  EXPECT_EQ(fault("time_s,depth_m\n0,1m\n"), "d.csv: line 2: found depth '1m'; accepted: a number");
   EXPECT_EQ(fault("time_s,depth_m,gas\n0,1,water\n"),
-            "d.csv: line 2: gas 'water' found; air, o2, ean32 or 18/45 is accepted");
+            "d.csv: line 2: found gas 'water'; accepted: air, o2, ean32 or 18/45");
 }
 
 }  // namespace

@@ -130,10 +130,9 @@ TEST(DivePlan, ALevelAboveItsCeilingIsOneLine) {
   DivePlanRequest r = square_dive(60.0, 30.0);
   r.levels.push_back({3.0, 60.0});
   DivePlan plan = planned(r);
-  EXPECT_EQ(
-      check_ceilings(r, plan).error().message,
-      "3 m until 60 min found, above the ceiling, which is at 29.39 m on the way there; 29.4 m or "
-      "deeper is accepted");
+  EXPECT_EQ(check_ceilings(r, plan).error().message,
+            "found 3 m until 60 min, above the ceiling, which is at 29.39 m on the way there; "
+            "accepted: 29.4 m or deeper");
   r.start = plan.end_of_bottom.tissues;
   r.levels = {{5.0, 30.0}};
   plan = planned(r);
@@ -253,12 +252,12 @@ TEST(DivePlan, WhatIsWrongIsSaidInOneLine) {
   EXPECT_EQ(fault([](auto&) {}), "planned");
   EXPECT_THAT(fault([](auto& r) { r.gf_low = 0.9; }), HasSubstr("gradient factors 0.9/0.85"));
   EXPECT_THAT(fault([](auto& r) { r.gf_high = std::nan(""); }), HasSubstr("gradient factors"));
-  EXPECT_THAT(fault([](auto& r) { r.levels.clear(); }), HasSubstr("no depth found"));
+  EXPECT_THAT(fault([](auto& r) { r.levels.clear(); }), HasSubstr("found no depth"));
   EXPECT_THAT(fault([](auto& r) { r.levels[0].leave_min = 1.0; }),
               HasSubstr("30 m is reached after 1.5 min, but to be left at 1"));
   EXPECT_THAT(fault([](auto& r) { r.levels[0].depth_m = std::nan(""); }), HasSubstr("m until"));
-  EXPECT_THAT(fault([](auto& r) { r.gases.clear(); }), HasSubstr("0 gases found"));
-  EXPECT_THAT(fault([](auto& r) { r.gases.push_back({}); }), HasSubstr("2 bottom gases found"));
+  EXPECT_THAT(fault([](auto& r) { r.gases.clear(); }), HasSubstr("found 0 gases"));
+  EXPECT_THAT(fault([](auto& r) { r.gases.push_back({}); }), HasSubstr("found 2 bottom gases"));
   EXPECT_THAT(fault([](auto& r) { r.gases[0].mix = {0.6, 0.6}; }), HasSubstr("gas of 0.6 oxygen"));
   EXPECT_THAT(fault([](auto& r) { r.conventions.last_stop_m = 4.0; }),
               HasSubstr("a multiple of 3 m"));
@@ -282,7 +281,7 @@ TEST(DecoConventions, SetsHaveNamesAndDiffer) {
   for (const PlanStop& s : run.stops) EXPECT_NEAR(s.leave_min, std::round(s.leave_min), 1e-9);
   for (const PlanStop& s : stop.stops) EXPECT_EQ(s.minutes, std::round(s.minutes));
   EXPECT_EQ(conventions_of("guess").error().message,
-            "convention 'guess' found; stop-minutes, run-minutes, msw are accepted");
+            "found convention 'guess'; accepted: stop-minutes, run-minutes, msw");
 }
 
 TEST(DecoNdl, ClosedFormIsThePublishedTable) {

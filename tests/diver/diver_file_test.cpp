@@ -106,7 +106,7 @@ TEST(DiverFile, TheAirOverTheWaterIsTheScenes) {
 TEST(DiverFile, MistakesNameTheFileAndTheKey) {
   EXPECT_THAT(diver_fault("hight_m = 1.8"), HasSubstr("height_m"));
   EXPECT_THAT(diver_fault("sex = \"other\""), HasSubstr("male or female"));
-  EXPECT_THAT(diver_fault("height_m = 9"), HasSubstr("d.toml:1: height_m: 9 found"));
+  EXPECT_THAT(diver_fault("height_m = 9"), HasSubstr("d.toml:1: height_m: found 9"));
   EXPECT_THAT(diver_fault("suit_mm = 90"), HasSubstr("suit"));
   EXPECT_THAT(diver_fault("[[tanks]]\noxygen = 2"), HasSubstr("oxygen"));
   EXPECT_THAT(diver_fault("[computer]\ngf_low = 0.9\ngf_high = 0.2"), HasSubstr("computer"));
@@ -118,29 +118,29 @@ TEST(DiverFile, MistakesNameTheFileAndTheKey) {
 // In the file's own units, by its own keys, and where it is.
 TEST(DiverFile, MistakesAreSaidInTheFilesUnitsAndWithTheirLine) {
   EXPECT_EQ(diver_fault("height_m = 1.8\n[[tanks]]\n[[tanks]]\nvolume_l = 7\npressure_bar = 351\n"),
-            "d.toml:5: tanks[1].pressure_bar: 351 found, a number in [0, 350] is accepted");
+            "d.toml:5: tanks[1].pressure_bar: found 351; accepted: a number in [0, 350]");
   EXPECT_EQ(diver_fault("\nsuit_mm = -1"),
-            "d.toml:2: suit_mm: -1 found, a number in [0, 12] is accepted");
+            "d.toml:2: suit_mm: found -1; accepted: a number in [0, 12]");
   EXPECT_EQ(diver_fault("suit_mm = 0.005"),
-            "d.toml:1: suit_mm: 0.005 found, 0 or 0.5 to 12 millimetres are accepted");
+            "d.toml:1: suit_mm: found 0.005; accepted: 0 or 0.5 to 12 millimetres");
   EXPECT_EQ(diver_fault("strips_a_segment = 4.5"),
-            "d.toml:1: strips_a_segment: 4.5 found, a whole number from 1 to 64 is accepted");
+            "d.toml:1: strips_a_segment: found 4.5; accepted: a whole number from 1 to 64");
   EXPECT_EQ(diver_fault("# a comment\nfins = { length_m = 0.4, width_m = 3 }"),
-            "d.toml:2: fins.width_m: 3 found, a number in [0.02, 1] is accepted");
+            "d.toml:2: fins.width_m: found 3; accepted: a number in [0.02, 1]");
   EXPECT_EQ(diver_fault("jacket = { capacity_l = 0.2 }"),
-            "d.toml:1: jacket.capacity_l: 0.2 found, a number in [1, 60] is accepted");
+            "d.toml:1: jacket.capacity_l: found 0.2; accepted: a number in [1, 60]");
   for (const char* litres : {"-50", "1000", "21"})
     EXPECT_EQ(diver_fault(std::string("jacket = { volume_l = ") + litres + " }"),
-              fmt::format("d.toml:1: jacket.volume_l: {:g} found, a number in [0, 20] is accepted",
+              fmt::format("d.toml:1: jacket.volume_l: found {:g}; accepted: a number in [0, 20]",
                           std::stod(litres)));
   EXPECT_EQ(diver_fault("[[tanks]]\noxygen = 0.6\nhelium = 0.5"),
-            "d.toml:3: tanks[0].helium: 0.5 beside 0.6 of oxygen found, shares of 1 are accepted");
+            "d.toml:3: tanks[0].helium: found 0.5 beside 0.6 of oxygen; accepted: shares of 1");
   EXPECT_EQ(diver_fault("\n\nheigth_m = 1.8"),
             "d.toml:3: heigth_m: not known; the nearest is height_m");
   EXPECT_THAT(diver_fault("height_m = 1.8\nmass_kg = 31"),
-              HasSubstr("d.toml:2: mass_kg: 31 at a height of 1.8 m found"));
+              HasSubstr("d.toml:2: mass_kg: found 31 at a height of 1.8 m"));
   EXPECT_THAT(diver_fault("[computer]\ngf_high = 3"),
-              HasSubstr("d.toml:2: computer.gf_high: 3 found, a number in [0.01, 1.5]"));
+              HasSubstr("d.toml:2: computer.gf_high: found 3; accepted: a number in [0.01, 1.5]"));
   EXPECT_THAT(diver_fault("\n[computer]\ngf_low = 0.9\ngf_high = 0.2"),
               HasSubstr("d.toml:2: computer: "));
 }

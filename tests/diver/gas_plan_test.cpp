@@ -147,7 +147,7 @@ TEST(GasPlan, AMixThatIsBreathedTwiceComesOutOfOneTank) {
   EXPECT_NEAR(p.use[1].tank->end_bar, tank_bar({0.5, 0.0}, {1, 11.0, 200.0}, litres), 1e-9);
   const auto twice = gas_use(request, p.plan, {}, {{1, 11.0, 200.0}, {2, 7.0, 200.0}});
   ASSERT_FALSE(twice.ok());
-  EXPECT_THAT(twice.error().message, HasSubstr("two tanks of EAN50 found"));
+  EXPECT_THAT(twice.error().message, HasSubstr("found two tanks of EAN50"));
 }
 
 // The first level is on the travel gas, the bottom gas begins deeper.
@@ -172,11 +172,12 @@ TEST(GasPlan, MistakesAreToldInOneLine) {
     const auto use = gas_use(request, plan, breathing, tanks);
     return use.ok() ? std::string("none") : use.error().message;
   };
-  EXPECT_THAT(fault({0.0}, {}), HasSubstr("litres a minute: 0 found, 1 to 200 is accepted"));
-  EXPECT_THAT(fault({20.0, NAN}, {}), HasSubstr("litres a minute of the ascent: nan found"));
-  EXPECT_THAT(fault({}, {{1, 12.0, 200.0}}), HasSubstr("tank of gas 1 found, the plan has 1"));
-  EXPECT_THAT(fault({}, {{0, 12.0, 500.0}}), HasSubstr("a tank's bar: 500 found"));
-  EXPECT_THAT(fault({}, {{0, 12.0, 200.0}, {0, 7.0, 200.0}}), HasSubstr("two tanks of air found"));
+  EXPECT_THAT(fault({0.0}, {}), HasSubstr("litres a minute: found 0; accepted: 1 to 200"));
+  EXPECT_THAT(fault({20.0, NAN}, {}), HasSubstr("litres a minute of the ascent: found nan"));
+  EXPECT_THAT(fault({}, {{1, 12.0, 200.0}}),
+              HasSubstr("found tank of gas 1; accepted: the 1 gases"));
+  EXPECT_THAT(fault({}, {{0, 12.0, 500.0}}), HasSubstr("a tank's bar: found 500"));
+  EXPECT_THAT(fault({}, {{0, 12.0, 200.0}, {0, 7.0, 200.0}}), HasSubstr("found two tanks of air"));
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ TEST(GazeCsv, WordsOfAStatusAreReadAndOthersRefused) {
     EXPECT_FALSE(valid(word)) << word;
   EXPECT_THAT(
       parse_gaze_csv("t_s,x_deg,y_deg,valid\n0,1,1,1\n1,1,1,blink\n", "a.csv", 0.0).error().message,
-      testing::HasSubstr("a.csv:3: valid 'blink' found, true, false or a number is accepted"));
+      testing::HasSubstr("a.csv:3: found valid 'blink'; accepted: true, false or a number"));
 }
 
 // A screen ends before the side: such angles are no other direction.

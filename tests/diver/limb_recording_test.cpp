@@ -32,13 +32,13 @@ TEST(LimbRecording, WhatIsWrongIsSaidInOneLine) {
   const struct {
     const char *text, *message;
   } wrong[] = {
-      {"t_s,knee_deg\n0,1\n1,2\n", "upper_leg_l_y_deg are accepted"},
+      {"t_s,knee_deg\n0,1\n1,2\n", "angles such as upper_leg_l_y_deg"},
       {"head_y_deg\n1\n2\n", "t_s and angles"},
       {"t_s,pelvis_y_deg\n0,1\n1,2\n", "t_s and angles"},
-      {"t_s,head_y_deg\n0,1\n", "1 rows found, two or more"},
-      {"t_s,head_y_deg\n0,1\n0,2\n", "k.csv:3: time 0 found, times that rise"},
-      {"t_s,head_y_deg\n0,1\n1,400\n", "k.csv:3: head_y_deg: 400 found, -360 to 360"},
-      {"# a suit\nt_s,head_y_deg\n0,1\n\n# slower\n1,nan\n", "k.csv:6: head_y_deg: nan found"}};
+      {"t_s,head_y_deg\n0,1\n", "found 1 rows; accepted: two or more"},
+      {"t_s,head_y_deg\n0,1\n0,2\n", "k.csv:3: found time 0; accepted: times that rise"},
+      {"t_s,head_y_deg\n0,1\n1,400\n", "k.csv:3: head_y_deg: found 400; accepted: -360 to 360"},
+      {"# a suit\nt_s,head_y_deg\n0,1\n\n# slower\n1,nan\n", "k.csv:6: head_y_deg: found nan"}};
   for (const auto& one : wrong) {
     const auto r = read_limb_recording(one.text, "k.csv");
     ASSERT_FALSE(r.ok()) << one.text;

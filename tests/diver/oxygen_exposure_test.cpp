@@ -122,7 +122,7 @@ TEST(GasLabel, NamesAreReadAndWritten) {
                           "water", "18/-1", "1e400"})
     EXPECT_FALSE(parse_mix(bad).ok()) << bad;
   EXPECT_EQ(parse_mix("water").error().message,
-            "gas 'water' found; air, o2, ean32 (1 to 100) or 18/45 (oxygen/helium) is accepted");
+            "found gas 'water'; accepted: air, o2, ean32 (1 to 100) or 18/45 (oxygen/helium)");
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(WavFile, ChannelsAreToldApart) {
       wav_of(1, 2, 16, number(0x4000, 2) + number(0, 2) + number(0x2000, 2) + number(0x1000, 2)));
   EXPECT_EQ(parse_wav(bytes, "a.wav", 0)->samples, (std::vector{0.5, 0.25}));
   EXPECT_EQ(parse_wav(bytes, "a.wav", 1)->samples, (std::vector{0.0, 0.125}));
-  EXPECT_THAT(parse_wav(bytes, "a.wav", 2).error().message, HasSubstr("0 to 1 is accepted"));
+  EXPECT_THAT(parse_wav(bytes, "a.wav", 2).error().message, HasSubstr("accepted: 0 to 1"));
 }
 
 // A recorder that was cut off has left both lengths as it wrote them at first: 0, the heading's, or
@@ -92,9 +92,9 @@ TEST(WavFile, ARecorderThatWasCutOffGivesWhatIsThere) {
 }
 
 TEST(WavFile, WhatIsNoneIsAnErrorInWords) {
-  EXPECT_THAT(parse_wav({}, "a.wav", 0).error().message, HasSubstr("a.wav: no RIFF"));
+  EXPECT_THAT(parse_wav({}, "a.wav", 0).error().message, HasSubstr("a.wav: found no RIFF"));
   EXPECT_THAT(parse_wav(bytes_of(wav_of(2, 1, 4, "abcd")), "a.wav", 0).error().message,
-              HasSubstr("format 2 of 4 bit found"));
+              HasSubstr("found format 2 of 4 bit"));
   EXPECT_THAT(parse_wav(bytes_of(wav_of(1, 1, 16, "")), "a.wav", 0).error().message,
               HasSubstr("no samples"));
 }
@@ -119,7 +119,7 @@ TEST(WfdbFile, SignalsOfFormat212And16AreThoseOfTheirBits) {
               HasSubstr("checksum of 2147"));
   header->samples = 100;
   EXPECT_THAT(parse_wfdb_signal(*header, 1, bytes_of(packed), "r.dat").error().message,
-              HasSubstr("2 samples found, 100 are required"));
+              HasSubstr("found 2 samples; accepted: 100"));
   const auto plain = parse_wfdb_header("r 1 130.16\nr.dat 16\n", "r.hea");
   ASSERT_TRUE(plain.ok());
   EXPECT_EQ(parse_wfdb_signal(*plain, 0, bytes_of(number(0xFF38, 2)), "r.dat")->samples,
@@ -198,9 +198,9 @@ TEST(WfdbFile, HeadersThatAreNoneSayTheLine) {
     return parse_wfdb_header(text, "r.hea").error().message;
   };
   EXPECT_THAT(message(""), HasSubstr("no record line"));
-  EXPECT_THAT(message("r 1 nan\nr.dat 16\n"), HasSubstr("r.hea:1: a rate of 'nan'"));
+  EXPECT_THAT(message("r 1 nan\nr.dat 16\n"), HasSubstr("r.hea:1: found a rate of 'nan'"));
   EXPECT_THAT(message("r 2 360\nr.dat 16\n"), HasSubstr("1 of 2 signals"));
-  EXPECT_THAT(message("# note\nr 1 360\nr.dat 22\n"), HasSubstr("r.hea:3: format '22'"));
+  EXPECT_THAT(message("# note\nr 1 360\nr.dat 22\n"), HasSubstr("r.hea:3: found format '22'"));
   EXPECT_THAT(message("r 1 360\nr.dat 16x0\n"), HasSubstr("format '16x0'"));
   EXPECT_THAT(message("r 1 360\nr.dat 16:4\n"), HasSubstr("format '16:4'"));
   EXPECT_THAT(message("r/3 1 360\n"), HasSubstr("several segments"));
@@ -311,18 +311,18 @@ TEST(SignalCsv, HeadingsAreTakenAsTheyCome) {
   EXPECT_EQ(parse_csv(counted, "a.csv", {"index", 100.0})->channel, "index");
   EXPECT_THAT(
       parse_csv("time,ecg\n1700000000000000,1\n1700000000010000,2\n", "a.csv", {}).error().message,
-      HasSubstr("no time in column 'time' found"));
+      HasSubstr("found no time in column 'time'"));
 }
 
 TEST(SignalCsv, WhatIsNoneIsAnErrorInWords) {
   const auto message = [](const char* text) {
     return parse_csv(text, "a.csv", {}).error().message;
   };
-  EXPECT_THAT(message(""), HasSubstr("no row found"));
-  EXPECT_THAT(message("t,ecg\n"), HasSubstr("no row found"));
-  EXPECT_THAT(message("0.1,2\n0.2,3\n"), HasSubstr("a.csv:1: a number found in the heading"));
-  EXPECT_THAT(message("ecg\n1\n2\n"), HasSubstr("--rate is accepted"));
-  EXPECT_THAT(message("t,ecg\n0,1\n0.1,2,3\n"), HasSubstr("a.csv:3: 3 columns"));
+  EXPECT_THAT(message(""), HasSubstr("found no row"));
+  EXPECT_THAT(message("t,ecg\n"), HasSubstr("found no row"));
+  EXPECT_THAT(message("0.1,2\n0.2,3\n"), HasSubstr("a.csv:1: found a number in the heading"));
+  EXPECT_THAT(message("ecg\n1\n2\n"), HasSubstr("with fs_hz= or --rate"));
+  EXPECT_THAT(message("t,ecg\n0,1\n0.1,2,3\n"), HasSubstr("a.csv:3: found 3 columns"));
   EXPECT_THAT(message("t,ecg\n0,1\n0.001,2\n0.002,2\n1e9,3\n"), HasSubstr("missing samples"));
   EXPECT_TRUE(parse_csv("ecg\n1\n", "a.csv", {"", 360.0}).ok());
 }

@@ -40,7 +40,7 @@ TEST(RovControl, EveryPublishedCaseHolds) {
 
 TEST(RovControl, AWrongCaseDoesNotHold) {
   ControlCases wrong = cases();
-  wrong.pids[0].steps[9].output[1] += 1e-8;
+  wrong.pid->steps[9].output[1] += 1e-8;
   wrong.allocation->cases[6].force_n[3] += 1e-6;
   wrong.allocation->singular_values[2] += 1e-6;
   for (LoopCase& loop : wrong.loops) {

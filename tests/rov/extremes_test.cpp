@@ -220,20 +220,22 @@ TEST(RovExtremes, ParametersThatAreNoVehicleAreErrors) {
   };
   using ::testing::HasSubstr;
   EXPECT_EQ(said([](auto&) {}), "");
-  EXPECT_THAT(said([](auto& p) { p.mass_kg = -1; }), HasSubstr("mass_kg: -1 found, a number in"));
-  EXPECT_THAT(said([](auto& p) { p.mass_kg = kNan; }), HasSubstr("mass_kg: nan found"));
-  EXPECT_THAT(said([](auto& p) { p.weight_n = -5; }), HasSubstr("weight_n: -5 found"));
+  EXPECT_THAT(said([](auto& p) { p.mass_kg = -1; }),
+              HasSubstr("mass_kg: found -1; accepted: a number in"));
+  EXPECT_THAT(said([](auto& p) { p.mass_kg = kNan; }), HasSubstr("mass_kg: found nan"));
+  EXPECT_THAT(said([](auto& p) { p.weight_n = -5; }), HasSubstr("weight_n: found -5"));
   EXPECT_THAT(said([](auto& p) { p.inertia_kg_m2 = Mat3(0.0); }), HasSubstr("inertia_kg_m2: with"));
   EXPECT_THAT(said([](auto& p) { p.gravity_centre_m = {0, 0, 1}; }), HasSubstr("(0, 0, 1) the ma"));
   EXPECT_THAT(said([](auto& p) { p.added_mass(0, 1) = p.added_mass(1, 0) = 30; }),
               HasSubstr("added_mass: with the rigid body's the matrix is singular or not"));
-  EXPECT_THAT(said([](auto& p) { p.added_mass(2, 2) = -3; }), HasSubstr("added_mass: -3 found"));
+  EXPECT_THAT(said([](auto& p) { p.added_mass(2, 2) = -3; }), HasSubstr("added_mass: found -3"));
   EXPECT_THAT(said([](auto& p) { p.quadratic_damping[4] = -3; }),
-              HasSubstr("quadratic_damping: -3 found"));
-  EXPECT_THAT(said([](auto& p) { p.thrusters.resize(17); }), HasSubstr("17 found, up to 16"));
+              HasSubstr("quadratic_damping: found -3"));
+  EXPECT_THAT(said([](auto& p) { p.thrusters.resize(17); }),
+              HasSubstr("found 17; accepted: up to 16"));
   EXPECT_THAT(said([](auto& p) { p.lag.a1 = 1.0; }), HasSubstr("stable poles"));
   EXPECT_THAT(said([](auto& p) { p.tether = Tether{.length_m = -1.0}; }),
-              HasSubstr("tether.length_m: -1 found, [0.1, 100000] is accepted"));
+              HasSubstr("tether.length_m: found -1; accepted: [0.1, 100000]"));
 }
 
 }  // namespace

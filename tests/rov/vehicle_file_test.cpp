@@ -65,7 +65,7 @@ TEST(RovVehicleFile, FaultsNameTheKeyWhatWasFoundAndWhatIsAccepted) {
   const std::string good = "mass_kg = 10\ninertia_kg_m2 = [0.2, 0.2, 0.3]\n";
   EXPECT_EQ(vehicle_fault(good), "");
   EXPECT_THAT(vehicle_fault("mass_kg = -3\ninertia_kg_m2 = [1, 1, 1]"),
-              HasSubstr("v.toml:1: mass_kg: -3 found, a number in"));
+              HasSubstr("v.toml:1: mass_kg: found -3; accepted: a number in"));
   EXPECT_THAT(vehicle_fault("mass_kg = nan\ninertia_kg_m2 = [1, 1, 1]"),
               HasSubstr("mass_kg: \"nan\" fo"));
   EXPECT_THAT(vehicle_fault("inertia_kg_m2 = [1, 1, 1]"),
@@ -80,19 +80,19 @@ TEST(RovVehicleFile, FaultsNameTheKeyWhatWasFoundAndWhatIsAccepted) {
                                    "[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]"),
               HasSubstr("linear_damping: adds energy"));
   EXPECT_THAT(vehicle_fault(good + "[lag]\nkind = \"slow\""),
-              HasSubstr("lag.kind: \"slow\" found, none,"));
+              HasSubstr("lag.kind: found \"slow\"; accepted: none,"));
   EXPECT_THAT(vehicle_fault(good + "[[thrusters]]\nposition_m = [0, 0, 0]"),
               HasSubstr("thrusters[0].direction: not found, but needed"));
   EXPECT_THAT(vehicle_fault(good + "[[thrusters]]\nposition_m = [0, 0, 0]\ndirection = [0, 0, 0]"),
-              HasSubstr("direction: [0,0,0] found, a vector that is not 0 is accepted"));
+              HasSubstr("direction: found [0,0,0]; accepted: a vector that is not 0"));
   EXPECT_THAT(vehicle_fault(good + "[tether]\nlength_m = -4"),
-              HasSubstr("tether.length_m: -4 found"));
+              HasSubstr("tether.length_m: found -4"));
   EXPECT_THAT(vehicle_fault(good + "[control]\nkp = [1, 1, 1, 1, 1, -1]"), HasSubstr("control.kp"));
   EXPECT_THAT(vehicle_fault(good + "thrust_table = \"none.csv\""),
               HasSubstr("none.csv: no such file"));
   EXPECT_THAT(vehicle_fault("mass_kg = = 3"), HasSubstr("v.toml:1: not TOML"));
   EXPECT_THAT(vehicle_fault("include = \"bluerov2_heavy_dynamics.toml\"\nmass_kg = -1"),
-              HasSubstr("mass_kg: -1 found"));
+              HasSubstr("mass_kg: found -1"));
   EXPECT_THAT(vehicle_fault("[=]"), HasSubstr("not TOML"));
   EXPECT_THAT(vehicle_fault("mass_kg = [1\xc3\xb8]"), HasSubstr("not TOML"));
 }
@@ -127,7 +127,7 @@ TEST(RovVehicleFile, SensorsAreThereWhereNamedAndQuietWhereNotTold) {
   ASSERT_TRUE(quiet.ok()) << quiet.error().message;
   EXPECT_TRUE(quiet->sensors.imu->gyro.off() && quiet->sensors.dvl->noise.off());
   EXPECT_THAT(vehicle_fault(body + "[dvl]\nrange_m = [5, 1]"),
-              HasSubstr("dvl.range_m: [5,1] found"));
+              HasSubstr("dvl.range_m: found [5,1]"));
   EXPECT_THAT(vehicle_fault(body + "[imu]\ngyro_deg_s = { wite = 1 }"),
               HasSubstr("imu.gyro_deg_s.wite: not known; the nearest is white"));
 }
@@ -210,7 +210,7 @@ TEST(RovThrustCurve, FaultsAreSaidInOneLine) {
   EXPECT_THAT(said(""), HasSubstr("t.csv: 0 pulse widths"));
   EXPECT_THAT(said("pwm,thrust_n_12v\n"), HasSubstr("t.csv:1: a heading"));
   EXPECT_THAT(said("pwm_us,thrust_n_v\n"), HasSubstr("t.csv:1: column 2"));
-  EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,x\n"), HasSubstr("t.csv:2: 2 numbers are accepted"));
+  EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,x\n"), HasSubstr("t.csv:2: accepted: 2 numbers"));
   EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,1\n1000,2\n"), HasSubstr("do not rise"));
 }
 

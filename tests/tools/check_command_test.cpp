@@ -94,7 +94,7 @@ TEST(CheckCommand, Status2AndOneLineWhereThereIsNothingToCheck) {
          std::string("check: 'diver' found, rov, control or deco is accepted\n")},
         {"rov --hz 0 " + bad, std::string("check: --hz 0 found, 1 to 100000 is accepted\n")},
         {"rov --integrator euler " + bad,
-         std::string("integrator 'euler' found, semi_euler, rk4 or guarded is accepted\n")}}) {
+         std::string("found integrator 'euler'; accepted: semi_euler, rk4 or guarded\n")}}) {
     const Said said = checked(arguments);
     EXPECT_EQ(said.status, 2) << arguments;
     EXPECT_EQ(said.error, "neritic: " + error) << arguments;

@@ -293,14 +293,14 @@ TEST_F(DivePhysics, AParameterFileThatIsNoVehicleEndsInOneLine) {
   const struct {
     const char *parameters, *message;
   } files[] = {
-      {"mass_kg = -13.5\ninertia_kg_m2 = [0.3, 0.2, 0.4]\n", "mass_kg: -13.5 found"},
+      {"mass_kg = -13.5\ninertia_kg_m2 = [0.3, 0.2, 0.4]\n", "mass_kg: found -13.5"},
       {"mass_kg = 13.5\ninertia_kg_m2 = [0.3, 0, 0.4]\n",
        "the mass matrix is not positive definite"},
       {"mass_kg = 13.5\ninertia_kg_m2 = [0.3, 0.2, 0.4]\nadded_mass = [[-13.5, 0, 0, 0, 0, 0], "
        "[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], "
        "[0, 0, 0, 0, 0, 0]]\n",
        "added_mass: with the rigid body's the matrix is singular"},
-      {"mass_kg = nan\ninertia_kg_m2 = [0.3, 0.2, 0.4]\n", "mass_kg: \"nan\" found"}};
+      {"mass_kg = nan\ninertia_kg_m2 = [0.3, 0.2, 0.4]\n", "mass_kg: found \"nan\""}};
   for (const auto& file : files) {
     ASSERT_TRUE(write_text(scratch_ / "wrong.toml", file.parameters).ok());
     ASSERT_TRUE(write_text(scratch_ / "wrong_dive.toml",

@@ -185,10 +185,10 @@ TEST(PhysioCommand, AColumnOfWordsIsNoSignal) {
   EXPECT_EQ(json_in(folder / "out/ecg.json")["signal"], "ecg");
   flags.channel = "mark";
   EXPECT_THAT(run_physio(flags).error().message,
-              HasSubstr("words.csv: column 'mark' of words found, numbers are accepted"));
+              HasSubstr("words.csv: found column 'mark' of words; accepted: numbers"));
   flags.channel.clear();
   flags.file = (folder / "alone.csv").string();
-  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("column 'ecg' of words found"));
+  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("found column 'ecg' of words"));
 }
 
 // What is left at the end is heard, too.
@@ -337,9 +337,9 @@ TEST(PhysioCommand, FilesThatAreNoneAreErrorsInWords) {
     EXPECT_FALSE(said.ok());
     return said.ok() ? std::string() : said.error().message;
   };
-  EXPECT_THAT(message("ecg", "empty.csv", ""), HasSubstr("no row found"));
+  EXPECT_THAT(message("ecg", "empty.csv", ""), HasSubstr("found no row"));
   EXPECT_THAT(message("ecg", "slow.csv", "t_s,ecg\n0,1\n0.1,2\n0.2,1\n"),
-              HasSubstr("a rate of 10 Hz found, 50 to 1e+06 is accepted"));
+              HasSubstr("found a rate of 10 Hz; accepted: 50 to 1e+06"));
   EXPECT_THAT(message("ecg", "one.csv", "t_s,ecg\n0,1\n"), HasSubstr("no rate"));
   EXPECT_THAT(message("breath", "cut.wav", "RIFF"), HasSubstr("no RIFF and WAVE"));
   EXPECT_THAT(message("gaze", "gaze.wav", "x"), HasSubstr("gaze as .csv"));

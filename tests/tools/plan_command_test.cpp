@@ -306,9 +306,10 @@ TEST(PlanCommand, ALogOfSeveralVehiclesIsOneOfThem) {
   const std::string of_log = "plan --json --log " + (folder / "dive.csv").string();
   const PlanSaid both = said_by(of_log);
   EXPECT_EQ(both.status, 2);
-  EXPECT_THAT(both.error, HasSubstr("rows of rov, diver found, one is accepted: choose by --vehi"));
+  EXPECT_THAT(both.error, HasSubstr("found rows of rov, diver; accepted: one, choose by --vehi"));
   EXPECT_EQ(std::ranges::count(both.error, '\n'), 1);
-  EXPECT_THAT(said_by(of_log + " --vehicle cat").error, HasSubstr("'cat' found; rov, diver is"));
+  EXPECT_THAT(said_by(of_log + " --vehicle cat").error,
+              HasSubstr("found 'cat'; accepted: rov, diver"));
   const PlanSaid one = said_by(of_log + " --vehicle diver");
   EXPECT_EQ(one.status, 0) << one.error;
   const auto json = parse_json(one.out).value();
@@ -329,39 +330,42 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
         {"plan --time 30", "plan: no --depth found; how deep"},
         {"plan --depth 30 --time 20 --gf 0/85", "--gf: 0/85 found; 1 to 150 percent"},
         {"plan --depth 30 --time 1", "30 m is reached after 1.5 min, but to be left at 1"},
-        {"plan --depth nan --time 20", "nan m until 20 min found"},
-        {"plan --depth 30 --time 20 --gas water", "gas 'water' found; air, o2, ean32"},
+        {"plan --depth nan --time 20", "found nan m until 20 min"},
+        {"plan --depth 30 --time 20 --gas water", "found gas 'water'; accepted: air, o2, ean32"},
         {"plan --depth 30 --time 20 --gas air ean50@deep", "--gas: 'deep' found, a number"},
         {"plan --depth 30 --time 20 --gf 30", "--gf: '30' found, two percentages"},
         {"plan --depth 30 --time 20 --gf 90/30",
          "--gf: 90/30 found; 1 to 150 percent, the first not above"},
-        {"plan --depth 30 --time 20 --convention best", "convention 'best' found; stop-minutes"},
+        {"plan --depth 30 --time 20 --convention best",
+         "found convention 'best'; accepted: stop-minutes"},
         {"plan --depth 30 --time 20 --water beer", "--water: 'beer' found; fresh, salt"},
         {"plan --depth 30 --time 20 --altitude 90000", "--altitude 90000 found"},
-        {"plan --depth 30 --time 20 --last-stop 4", "last stop 4 m found, a multiple of 3 m"},
+        {"plan --depth 30 --time 20 --last-stop 4",
+         "found last stop 4 m; accepted: a multiple of 3 m"},
         {"plan --depth 30 --time 20 --after 30,25", "--after: 2 numbers in '30,25' found"},
         {"plan --depth 30 --time 20 --table z", "--table: 'z' found, b or c"},
-        {"plan --depth 30 --time 20 --ascent-rate 0", "0 up found, 0.1 to 1000 m/min"},
+        {"plan --depth 30 --time 20 --ascent-rate 0", "0 up; accepted: 0.1 to 1000 m/min"},
         {"plan --depth 30 --time 20 --descent-rate 0", "rates of 0 down"},
-        {"plan --depth 30 --time 20 --last-stop 0", "last stop 0 m found"},
-        {"plan --depth 30 --time 20 --surface 0", "surface pressure 0 bar found"},
-        {"plan --depth 0 --time 20", "0 m until 20 min found"},
+        {"plan --depth 30 --time 20 --last-stop 0", "found last stop 0 m"},
+        {"plan --depth 30 --time 20 --surface 0", "found surface pressure 0 bar"},
+        {"plan --depth 0 --time 20", "found 0 m until 20 min"},
         {"plan --gas 10/70 --depth 100 --time 15 --travel ean32",
-         "bottom gas 10/70 and travel gas EAN32 both from 0 m found"},
+         "found bottom gas 10/70 and travel gas EAN32 both from 0 m"},
         {"plan --gas 10/70 --depth 100 --time 15 --travel ean32@0 21/35@30",
-         "bottom gas 10/70 and travel gas EAN32 both from 0 m found"},
+         "found bottom gas 10/70 and travel gas EAN32 both from 0 m"},
         {"plan --gas 10/70@40 --depth 30 --time 15 --travel ean32",
-         "bottom gas 10/70 from 40 m found, while EAN32 is breathed at 30 m"},
+         "found bottom gas 10/70 from 40 m while EAN32 is breathed at 30 m"},
         {"plan --gas 10/70@20 --depth 60 --time 15 --travel ean32 21/35@30",
-         "bottom gas 10/70 from 20 m found, while 21/35 is breathed at 60 m"},
+         "found bottom gas 10/70 from 20 m while 21/35 is breathed at 60 m"},
         {"plan --depth 30 --time 20 --gas ean32@50",
          "--gas: EAN32 from 50 m found, and nothing to breathe above; EAN32, or what is"},
         {"plan --depth 60 --time 30 --level 3,60",
-         "3 m until 60 min found, above the ceiling, which is at 29.39 m on the way there; 29.4 m"},
+         "found 3 m until 60 min, above the ceiling, which is at 29.39 m on the way there; "
+         "accepted: 29.4"},
         {"plan --depth 30 --time 20 --tank air=12", "--tank: 1 numbers in '12' found"},
         {"plan --depth 30 --time 20 --tank 12,200", "--tank: '12,200' found, GAS=LITRES,BAR"},
         {"plan --depth 30 --time 20 --tank o2=12,200", "a tank of O2 found, which is none of"},
-        {"plan --depth 30 --time 20 --rmv 0", "litres a minute: 0 found, 1 to 200"},
+        {"plan --depth 30 --time 20 --rmv 0", "litres a minute: found 0; accepted: 1 to 200"},
         {"plan --log nowhere.csv --depth 40", "--log: found with --depth, --time or --level"},
         {"plan --depth 30 --time 20 --altitude 2000 --surface 1.0",
          "--altitude and --surface: both found, one of them is accepted"},
@@ -398,7 +402,7 @@ TEST(CheckDeco, ALineACaseAndItsStatus) {
   ASSERT_TRUE(write_text(folder / "bad.json", "{\"profiles\": 3}").ok());
   const PlanSaid bad = said_by("check deco " + (folder / "bad.json").string());
   EXPECT_EQ(bad.status, 2);
-  EXPECT_THAT(bad.error, HasSubstr("bad.json: profiles: 3 found, a list is accepted\n"));
+  EXPECT_THAT(bad.error, HasSubstr("bad.json: profiles: found 3; accepted: a list\n"));
 }
 
 }  // namespace

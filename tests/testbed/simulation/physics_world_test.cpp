@@ -180,7 +180,7 @@ TEST(PhysicsWorld, AnErrorChoosesTheStep) {
   const auto too_good = world_of("1e-6", wall);
   ASSERT_FALSE(too_good.ok());
   EXPECT_NE(
-      too_good.error().message.find("a number from 0.00044 is accepted where something solid"),
+      too_good.error().message.find("accepted: a number from 0.00044 where something solid"),
       std::string::npos)
       << too_good.error().message;
 }

@@ -138,7 +138,7 @@ TEST(VehicleShape, FaultsAreOneLine) {
   using ::testing::HasSubstr;
   EXPECT_EQ(fault(""), "");
   EXPECT_THAT(fault("[[outline]]\nkind = \"ball\""),
-              HasSubstr("outline[0].kind: \"ball\" found, box, sphere, capsule or hull is"));
+              HasSubstr("outline[0].kind: found \"ball\"; accepted: box, sphere, capsule or hull"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"sphere\""), HasSubstr("radius_m: not found"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"sphere\"\nradius_m = -1"), HasSubstr("radius_m: -1"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"box\"\nsize_m = [1, 0, 1]"), HasSubstr("size_m"));
