@@ -74,12 +74,21 @@ struct Mission {
   double distance_m = -1.0;
 };
 
+// The source that a group of inputs of a vehicle or diver listens to (testbed/samples/README.md).
+struct InputChoice {
+  std::string group;               // "body", "wrench"
+  std::string from;                // "autopilot", "recording", "nobody", or a live source's name
+  std::optional<double> hold_s;    // how long a silent live source's newest value holds
+  std::string then = "autopilot";  // afterwards: "autopilot" or "nobody"
+};
+
 // Settings of an object that is a vehicle with its own physics.
 struct Dynamics {
   std::filesystem::path file;          // its parameters
   std::optional<Mission> mission;      // absent: nobody steers
   std::uint64_t failed_thrusters = 0;  // bit i: the file's thruster i + 1
   std::optional<Vec3> tether_anchor_m;
+  std::vector<InputChoice> inputs;  // groups not named: autopilot
 };
 
 // Where a diver swims: from point to point, each counting as reached within acceptance_m. At the
@@ -99,6 +108,8 @@ struct Human {
   std::optional<SwimPlan> swim;  // absent: hovers
   // The jacket's buttons over time: from its first row on they are pressed so. Empty: none.
   std::filesystem::path jacket_buttons;
+  // Groups not named: their recording where there is a file, else autopilot.
+  std::vector<InputChoice> inputs;
 };
 
 // Whether vehicles can touch an object, and as what.

@@ -9,6 +9,7 @@
 
 #include "engine/scene/scene.hpp"
 #include "engine/scene/scene_includes.hpp"
+#include "engine/scene/scene_keys.hpp"
 #include "engine/scene/shapes.hpp"
 
 namespace neritic::scene {
@@ -123,6 +124,9 @@ Status read_vehicle_physics(SceneDraft& draft, const SceneSource& source,
                             std::size_t first_object);
 // scene_read_mission.cpp: the table mission of the vehicle of that name.
 Mission read_mission(TableReader& reader, const SceneDraft& draft, const std::string& vehicle);
+// scene_read_inputs.cpp: the table inputs, with a key for any of the groups; empty where it is
+// absent. recorded: the groups for which the scene names a file.
+std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded);
 
 // scene_models.cpp: one model a distinct request, in the order of first use, and each request's.
 struct LoadedModels {

@@ -69,6 +69,7 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "human",
                                                         "swim",
                                                         "jacket_buttons",
+                                                        "inputs",
                                                         "cameras",
                                                         "sonars",
                                                         "lamps"});
@@ -95,6 +96,10 @@ inline constexpr auto kOrbitKeys =
 inline constexpr auto kFollowKeys = std::to_array<Key>({"object", "offset_m"});
 inline constexpr auto kSwimKeys =
     std::to_array<Key>({"waypoints_m", "speed_m_s", "acceptance_m", "repeat", "motion"});
+inline constexpr auto kDiverInputKeys =
+    std::to_array<Key>({"body", "hands", "head", "gaze", "buttons", "breath", "heart", "gas"});
+inline constexpr auto kVehicleInputKeys = std::to_array<Key>({"wrench", "setpoint", "fault"});
+inline constexpr auto kInputChoiceKeys = std::to_array<Key>({"from", "hold_s", "then"});
 inline constexpr auto kStandBetweenKeys = std::to_array<Key>({"a", "b", "distance_m"});
 
 inline constexpr auto kScatterKeys =

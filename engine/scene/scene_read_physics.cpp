@@ -17,7 +17,8 @@ constexpr Interval kAnySeconds{-1e9, 1e9, false, false, "seconds"};
 constexpr std::size_t kMaxFailedThruster = 16;
 
 constexpr Key kPhysicsOnly[] = {"collision",       "dynamics", "mission", "failed_thrusters",
-                                "tether_anchor_m", "human",    "swim",    "jacket_buttons"};
+                                "tether_anchor_m", "human",    "swim",    "jacket_buttons",
+                                "inputs"};
 constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m"};
 // The default classes that vehicles cannot pass.
 constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
@@ -101,6 +102,8 @@ class VehiclePhysicsReader {
     }
     read_collision();
     read_human();
+    if (reader_.has("inputs") && !reader_.has("human") && !reader_.has("dynamics"))
+      reader_.refuse("inputs", "no such key without human or dynamics");
     if (!reader_.has("dynamics")) {
       for (const Key key : kDynamicsOnly)
         if (reader_.has(key)) reader_.refuse(key, "no such key without dynamics");
@@ -122,6 +125,7 @@ class VehiclePhysicsReader {
       dynamics.mission = read_mission(mission, draft_, object_.object.name);
       NERITIC_TRY_STATUS(mission.status());
     }
+    dynamics.inputs = read_inputs(reader_, kVehicleInputKeys, {});
     object_.object.dynamics = std::move(dynamics);
     return reader_.status();
   }
@@ -164,6 +168,10 @@ class VehiclePhysicsReader {
       reader_.refuse("human", "no such key for what is not drawn: its joints are moved");
     if (const TomlValue* table = reader_.table("swim")) human.swim = read_swim(*table);
     if (reader_.has("jacket_buttons")) human.jacket_buttons = reader_.file("jacket_buttons");
+    std::vector<Key> recorded;
+    if (human.swim && !human.swim->motion.empty()) recorded.push_back("body");
+    if (!human.jacket_buttons.empty()) recorded.push_back("buttons");
+    human.inputs = read_inputs(reader_, kDiverInputKeys, recorded);
     object_.object.human = std::move(human);
   }
 

@@ -153,6 +153,21 @@ TEST_F(ScenePhysics, EveryKindOfMissionArrives) {
   EXPECT_EQ(between.distance_m, 2.5);
 }
 
+TEST_F(ScenePhysics, InputsNameASourceForEachGroup) {
+  const Scene scene = scene_of(scratch_, "[physics]\n" ROV R"(
+inputs = { wrench = "joystick", fault = { from = "bench", hold_s = 5, then = "nobody" } }
+)");
+  const auto& inputs = scene.objects[0].dynamics->inputs;
+  ASSERT_EQ(inputs.size(), 2u);
+  EXPECT_EQ(inputs[0].group, "wrench");
+  EXPECT_EQ(inputs[0].from, "joystick");
+  EXPECT_FALSE(inputs[0].hold_s.has_value());
+  EXPECT_EQ(inputs[0].then, "autopilot");
+  EXPECT_EQ(inputs[1].from, "bench");
+  EXPECT_EQ(inputs[1].hold_s, 5.0);
+  EXPECT_EQ(inputs[1].then, "nobody");
+}
+
 struct WrongPhysics {
   const char* text;
   const char* message;
@@ -235,6 +250,23 @@ INSTANTIATE_TEST_SUITE_P(
         WrongPhysics{MISSION "waypoints = [{ heading_deg = 3 }]",
                      "s.toml:7: vehicles[0].mission.waypoints[0].position_m: found nothing; "
                      "accepted: [x, y, z] in metres"},
+        WrongPhysics{"[physics]\n" BALL "inputs = { body = 'suit' }",
+                     "s.toml:5: objects[0].inputs: found a table; accepted: no such key without "
+                     "human or dynamics"},
+        WrongPhysics{"[physics]\n" ROV "inputs = { body = 'suit' }",
+                     "s.toml:6: vehicles[0].inputs.body: unknown key; nearest known key: fault"},
+        WrongPhysics{"[physics]\n" ROV "inputs = { wrench = 'recording' }",
+                     "s.toml:6: vehicles[0].inputs.wrench: found \"recording\"; accepted: "
+                     "autopilot, nobody, or a source's name of up to 64 printable characters"},
+        WrongPhysics{"[physics]\n" ROV "inputs = { wrench = { hold_s = 3 } }",
+                     "s.toml:6: vehicles[0].inputs.wrench.from: found nothing; accepted: "
+                     "autopilot, nobody, or a source's name of up to 64 printable characters"},
+        WrongPhysics{"[physics]\n" ROV "inputs = { wrench = { from = 'nobody', hold_s = 3 } }",
+                     "s.toml:6: vehicles[0].inputs.wrench.hold_s: found 3; accepted: no such key "
+                     "beside from = \"nobody\""},
+        WrongPhysics{"[physics]\n" ROV "inputs = { wrench = { from = 'pad', then = 'pad' } }",
+                     "s.toml:6: vehicles[0].inputs.wrench.then: found \"pad\"; accepted: one of "
+                     "autopilot, nobody"},
         WrongPhysics{MISSION "waypoints = []",
                      "s.toml:7: vehicles[0].mission.waypoints: found []; accepted: 1 to "
                      "10000 tables with position_m"},
