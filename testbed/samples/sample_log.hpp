@@ -1,0 +1,57 @@
+// The samples that a run used, by step, and the hash of its state after each step: enough to run it
+// again and to see whether it went the same way. In memory, and as a file:
+//
+//   all little-endian, nothing aligned; a name is a u8 length and printable ASCII
+//   8 bytes  "NRTCLOG2"
+//   f64 step_s   u64 seed   u64 steps   u64 samples   u32 kinds   u32 streams   u32 sources
+//   kinds:    name, u32 fields; each field 1 byte type as Python's struct has it (d f i I q Q),
+//   name streams:  name, u32 kind (its place above) sources:  name samples:  u64 step (never
+//   falling, below steps), u32 stream, u32 source, u64 sequence,
+//             i64 captured_ns, i64 arrived_ns, then the fields' numbers
+//   hashes:   u64 each, of the state at step 0, 1, ... steps
+//
+// Pure functions and plain values; any thread.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "testbed/samples/stream_table.hpp"
+
+namespace neritic::testbed {
+
+struct SampleLog {
+  struct Entry {
+    std::uint64_t step = 0;  // that used it first
+    Sample sample;
+  };
+  struct LoggedStream {
+    std::string name;
+    PayloadKind kind = PayloadKind::kEvent;
+    bool operator==(const LoggedStream&) const = default;
+  };
+  double step_s = 0.0;
+  std::uint64_t seed = 0;  // the scene's
+  std::vector<LoggedStream> streams;
+  std::vector<std::string> sources;  // by SourceId
+  std::vector<Entry> entries;
+  std::vector<std::uint64_t> hashes;  // one more than there are steps
+
+  std::uint64_t steps() const { return hashes.empty() ? 0 : hashes.size() - 1; }
+};
+
+std::vector<SampleLog::LoggedStream> logged_streams(const StreamTable& table);
+
+// Precondition: at least the hash of the start.
+std::vector<std::byte> encode_sample_log(const SampleLog& log);
+// What is returned keeps the format's promises, and every number is finite. name stands in
+// messages.
+Result<SampleLog> parse_sample_log(std::span<const std::byte> bytes, const std::string& name);
+// kBadInput if the log was recorded of other streams.
+Status check_streams(const SampleLog& log, const StreamTable& table, const std::string& name);
+Status write_sample_log(const std::filesystem::path& path, const SampleLog& log);
+Result<SampleLog> read_sample_log(const std::filesystem::path& path);
+
+}  // namespace neritic::testbed

@@ -1,0 +1,154 @@
+#include "testbed/samples/sample_log.hpp"
+
+#include <limits>
+
+#include "engine/core/files.hpp"
+#include "engine/sim/fields.hpp"
+#include "tests/support/support.hpp"
+#include "tests/testbed/samples/streams.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// One sample of each stream, every number of its payload another one.
+SampleLog log_of_every_kind() {
+  const StreamTable table = diver_and_rov();
+  SampleLog log{0.25, 42, logged_streams(table), {"simulation", "motion suit"}, {}, {1, 2, 3, 4}};
+  double next = 0.5;
+  for (StreamId id = 0; id < table.size(); ++id) {
+    Payload payload = empty_payload(table[id].kind);
+    std::visit(
+        [&](auto& value) {
+          sim::for_each_scalar(value, [&](auto& scalar) {
+            scalar = static_cast<std::remove_reference_t<decltype(scalar)>>(next++);
+          });
+        },
+        payload);
+    log.entries.push_back({id / 8u, {{id, 1, 7 + id, -3, 1'000'000'000'000}, payload}});
+  }
+  return log;
+}
+
+TEST(SampleLog, EveryKindReadsBackAsItWasWritten) {
+  const test::ScratchFolder folder;
+  const SampleLog log = log_of_every_kind();
+  ASSERT_TRUE(write_sample_log(folder / "run.log", log).ok());
+  const auto read = read_sample_log(folder / "run.log");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->step_s, 0.25);
+  EXPECT_EQ(read->seed, 42u);
+  EXPECT_EQ(read->streams, log.streams);
+  EXPECT_EQ(read->sources, log.sources);
+  EXPECT_EQ(read->hashes, log.hashes);
+  ASSERT_EQ(read->entries.size(), log.entries.size());
+  for (std::size_t i = 0; i < log.entries.size(); ++i) {
+    EXPECT_EQ(read->entries[i].step, log.entries[i].step);
+    EXPECT_TRUE(sim::same_bits(read->entries[i].sample.header, log.entries[i].sample.header));
+    std::visit(
+        [&](const auto& value) {
+          using T = std::remove_cvref_t<decltype(value)>;
+          EXPECT_TRUE(sim::same_bits(value, std::get<T>(log.entries[i].sample.payload))) << i;
+        },
+        read->entries[i].sample.payload);
+  }
+}
+
+// The format's description, read by hand.
+TEST(SampleLog, BytesLieAsTheFormatSays) {
+  const SampleLog log{0.25,
+                      7,
+                      {{"d/gas", PayloadKind::kGas}},
+                      {"s"},
+                      {{0, {{0, 0, 5, 1, 2}, GasSupply{9}}}},
+                      {0x1122334455667788ull, 3}};
+  const std::vector<int> expected{'N',  'R',  'T',  'C',  'L',  'O',  'G',  '2',  //
+                                  0,    0,    0,    0,    0,    0,    0xd0, 0x3f, 7,
+                                  0,    0,    0,    0,    0,    0,    0,  // 0.25, seed
+                                  1,    0,    0,    0,    0,    0,    0,    0,    1,
+                                  0,    0,    0,    0,    0,    0,    0,  // steps, samples
+                                  1,    0,    0,    0,    1,    0,    0,    0,    1,
+                                  0,    0,    0,  // kinds, ...
+                                  3,    'g',  'a',  's',  1,    0,    0,    0,    'Q',
+                                  4,    't',  'a',  'n',  'k',  5,    'd',  '/',  'g',
+                                  'a',  's',  0,    0,    0,    0,    1,    's',  //
+                                  0,    0,    0,    0,    0,    0,    0,    0,    // step
+                                  0,    0,    0,    0,    0,    0,    0,    0,    // stream, source
+                                  5,    0,    0,    0,    0,    0,    0,    0,    1,
+                                  0,    0,    0,    0,    0,    0,    0,  // sequence, captured
+                                  2,    0,    0,    0,    0,    0,    0,    0,    9,
+                                  0,    0,    0,    0,    0,    0,    0,  // arrived, tank
+                                  0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11, 3,
+                                  0,    0,    0,    0,    0,    0,    0};
+  const auto bytes = encode_sample_log(log);
+  ASSERT_EQ(bytes.size(), expected.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    EXPECT_EQ(std::to_integer<int>(bytes[i]), expected[i]) << i;
+}
+
+TEST(SampleLog, EveryTruncationAndEveryExtraByteIsRefusedInOneLine) {
+  auto bytes = encode_sample_log(log_of_every_kind());
+  const auto expect_refused = [](std::span<const std::byte> text, std::size_t size) {
+    const auto log = parse_sample_log(text, "cut.log");
+    ASSERT_FALSE(log.ok()) << size;
+    EXPECT_TRUE(log.error().message.starts_with("cut.log: ")) << log.error().message;
+    EXPECT_EQ(log.error().message.find('\n'), std::string::npos);
+  };
+  for (std::size_t n = 0; n < bytes.size(); ++n) expect_refused(std::span(bytes).first(n), n);
+  bytes.push_back(std::byte{0});
+  expect_refused(bytes, bytes.size());
+}
+
+struct BadLog {
+  const char* says;
+  void (*spoil)(SampleLog&);
+};
+void PrintTo(const BadLog& bad, std::ostream* out) {
+  *out << bad.says;
+}
+class BadSampleLog : public testing::TestWithParam<BadLog> {};
+
+TEST_P(BadSampleLog, IsTheDocumentedLine) {
+  SampleLog log = log_of_every_kind();
+  GetParam().spoil(log);
+  const auto read = parse_sample_log(encode_sample_log(log), "bad.log");
+  ASSERT_FALSE(read.ok());
+  EXPECT_EQ(read.error().message, GetParam().says);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadSampleLog,
+    testing::Values(BadLog{"bad.log: a step of 0 s; accepted: over 0 to 1 s",
+                           [](SampleLog& log) { log.step_s = 0.0; }},
+                    BadLog{"bad.log: sample 9 is of step 0; accepted: 1 to 2",
+                           [](SampleLog& log) { log.entries[9].step = 0; }},
+                    BadLog{"bad.log: sample 3 is of step 3; accepted: 0 to 2",
+                           [](SampleLog& log) { log.entries[3].step = 3; }},
+                    BadLog{"bad.log: sample 1 is cut off, or of no stream or source of the file",
+                           [](SampleLog& log) { log.entries[1].sample.header.source = 2; }},
+                    BadLog{"bad.log: sample 0, of diver/joints at step 0, is not finite",
+                           [](SampleLog& log) {
+                             std::get<BodyJoints>(log.entries[0].sample.payload).joints[2].y =
+                                 std::numeric_limits<double>::quiet_NaN();
+                           }},
+                    BadLog{"bad.log: source 1 is cut off, or has no name",
+                           [](SampleLog& log) { log.sources[1] = "\n"; }}));
+
+TEST(SampleLog, AnOlderVersionsLogAndOtherStreamsAreRefusedInOneLine) {
+  auto bytes = encode_sample_log(log_of_every_kind());
+  bytes[7] = std::byte{'1'};
+  EXPECT_EQ(parse_sample_log(bytes, "old.log").error().message,
+            "old.log: a log of inputs of an older version (NRTCLOG1); accepted: NRTCLOG2");
+  const SampleLog log = log_of_every_kind();
+  EXPECT_TRUE(check_streams(log, diver_and_rov(), "run.log").ok());
+  StreamTable other;
+  other.add_diver("buddy");
+  EXPECT_EQ(check_streams(log, other, "run.log").error().message,
+            "run.log: stream 0 is diver/joints; accepted: buddy/joints, as in the scene");
+  StreamTable more = diver_and_rov();
+  more.add_object("crate");
+  EXPECT_EQ(check_streams(log, more, "run.log").error().message,
+            "run.log: 19 streams; accepted: 20, as in the scene");
+}
+
+}  // namespace
+}  // namespace neritic::testbed
