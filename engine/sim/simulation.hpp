@@ -1,10 +1,11 @@
 // A state that steps at a fixed rate: state <- step(state, inputs, time). Its owner either advances
 // it (lock-step) or starts its thread; both give the same states for the same inputs.
 //
-// Inputs hold until a message changes them: messages enter by push() from any thread and are
-// applied at the next step boundary. The inputs of each step are logged, with the hash of each
-// state. A step whose result is not finite is refused and counted: the state before it stays while
-// time goes on. Readers get snapshots (snapshot.hpp). State, Inputs and Message list their fields
+// Inputs hold until a message changes them. Messages enter through an inbox, which any thread may
+// fill; each step drains it first. Its drain() returns what range of messages it likes, bounded and
+// all finite; apply() keeps the inputs finite. The messages are logged by step, with the hash of
+// each state. A step whose result is not finite is refused and counted: the state before it stays
+// while time goes on. Readers get snapshots (snapshot.hpp). State and Inputs list their fields
 // (fields.hpp); a state is a plain struct or a block (block.hpp).
 #pragma once
 
@@ -17,8 +18,7 @@
 #include <vector>
 
 #include "engine/core/check.hpp"
-#include "engine/sim/inbox.hpp"
-#include "engine/sim/input_log.hpp"
+#include "engine/sim/run_log.hpp"
 #include "engine/sim/snapshot.hpp"
 #include "engine/sim/state_hash.hpp"
 #include "engine/sim/step_thread.hpp"
@@ -30,30 +30,45 @@ struct SimulationOptions {
   double step_s =
       1.0 / kDefaultRate_hz;  // up to kMaxStep_s; a thread needs kMinRate_hz to kMaxRate_hz
   int max_catch_up = 4;       // most steps at once in thread mode
-  std::size_t inbox_capacity = 1024;
-  bool log = true;         // keep inputs and hashes in memory: 8 bytes a step, and each change
+  bool log = true;         // keep messages and hashes in memory: 8 bytes a step, and each message
   std::uint64_t seed = 0;  // for the log only
 };
 
-template <class State, class Inputs, class Message = Inputs>
+// Writes the state after the step into after, which has the layout of before and any content.
+template <class State, class Inputs>
+using StepFunction = std::function<void(const State& before, const Inputs& inputs,
+                                        const StepTime& time, State& after)>;
+
+// step as it is, or of a function that returns State(before, inputs, step_s).
+template <class State, class Inputs, class Function>
+StepFunction<State, Inputs> step_of(Function step) {
+  if constexpr (std::is_invocable_r_v<State, Function&, const State&, const Inputs&, double>)
+    return [step = std::move(step)](const State& before, const Inputs& inputs, const StepTime& time,
+                                    State& after) { after = step(before, inputs, time.step_s); };
+  else
+    return step;
+}
+
+template <class State, class Inputs, class InboxType>
 class Simulation {
  public:
-  // Writes the state after the step into after, which has the layout of before and any content.
-  using Step = std::function<void(const State& before, const Inputs& inputs, const StepTime& time,
-                                  State& after)>;
-  using Apply = std::function<void(Inputs&, const Message&)>;
+  using Inbox = InboxType;
+  using Message = typename Inbox::Message;
+  using Step = StepFunction<State, Inputs>;
+  // A message that enters before the step of that number.
+  using Apply = std::function<void(Inputs&, const Message&, std::uint64_t step)>;
+  using Log = RunLog<Inputs, Message>;
 
-  // step is as above, or returns State(before, inputs, step_s). step and apply are pure: no clock,
-  // file, thread; they run on the stepping thread.
-  template <class StepFunction>
+  // step and apply are pure: no clock, file, thread; they run on the stepping thread.
+  template <class Function>
   Simulation(const SimulationOptions& options, const State& state, const Inputs& inputs,
-             StepFunction step, Apply apply)
+             std::unique_ptr<Inbox> inbox, Function step, Apply apply)
       : options_(options),
-        step_(step_of(std::move(step))),
+        step_(step_of<State, Inputs>(std::move(step))),
         apply_(std::move(apply)),
         inputs_(inputs),
         source_({state, 0, 0.0, 0, state_hash(0, state)}),
-        inbox_(options.inbox_capacity) {
+        inbox_(std::move(inbox)) {
     NERITIC_CHECK(options.step_s > 0.0 && options.step_s <= kMaxStep_s, "step {} s",
                   options.step_s);
     check_fields_cover(state);
@@ -61,16 +76,10 @@ class Simulation {
     NERITIC_CHECK(all_finite(state) && all_finite(inputs), "the start is not finite");
     begin_log();
   }
-  // Messages that are whole inputs replace them.
-  template <class StepFunction>
-  Simulation(const SimulationOptions& options, const State& state, const Inputs& inputs,
-             StepFunction step) requires std::same_as<Inputs, Message>
-      : Simulation(options, state, inputs, std::move(step),
-                   [](Inputs& held, const Message& message) { held = message; }) {}
 
-  // Any thread; false where a number in it is not finite.
-  bool push(const Message& message) { return inbox_.push(message); }
-  InboxCounts inbox_counts() const { return inbox_.counts(); }
+  // Any thread.
+  Inbox& inbox() { return *inbox_; }
+  const Inbox& inbox() const { return *inbox_; }
 
   // Any thread, also while the simulation's thread runs. The reader is dropped before this.
   SnapshotReader<State> reader() { return source_.reader(); }
@@ -86,7 +95,7 @@ class Simulation {
   void restore(std::uint64_t step, const State& state, const Inputs& inputs) {
     check_idle();
     NERITIC_CHECK(all_finite(state) && all_finite(inputs), "the restored state is not finite");
-    inbox_.drain(messages_);
+    (void)inbox_->drain();
     inputs_ = inputs;
     source_.restart({state, step, static_cast<double>(step) * options_.step_s, simulated_ns(step),
                      state_hash(step, state)});
@@ -125,25 +134,14 @@ class Simulation {
     check_idle();
     return inputs_;
   }
-  const InputLog<Inputs>& log() const {
+  const Log& log() const {
     check_idle();
     return log_;
   }
-  // Any thread: steps whose result was not finite, and inputs that apply() made not finite.
+  // Any thread: steps whose result was not finite.
   std::uint64_t refused_states() const { return refused_states_; }
-  std::uint64_t refused_inputs() const { return refused_inputs_; }
 
  private:
-  template <class StepFunction>
-  static Step step_of(StepFunction step) {
-    if constexpr (std::is_invocable_r_v<State, StepFunction&, const State&, const Inputs&, double>)
-      return
-          [step = std::move(step)](const State& before, const Inputs& inputs, const StepTime& time,
-                                   State& after) { after = step(before, inputs, time.step_s); };
-    else
-      return step;
-  }
-
   void check_idle() const { NERITIC_CHECK(!thread_, "the simulation's thread runs"); }
 
   TimeNs simulated_ns(std::uint64_t step) const {
@@ -151,30 +149,16 @@ class Simulation {
   }
 
   void begin_log() {
-    log_ = {options_.step_s, options_.seed, source_.newest().step, {}, {}};
-    if (!options_.log) return;
-    log_.entries.push_back({log_.first_step, inputs_});
-    log_.hashes.push_back(source_.newest().hash);
+    log_ = {options_.step_s, options_.seed, source_.newest().step, inputs_, {}, {}};
+    if (options_.log) log_.hashes.push_back(source_.newest().hash);
   }
 
   void take_messages() {
-    inbox_.drain(messages_);
-    if (messages_.empty()) return;
-    const Inputs before = inputs_;
-    for (const Message& message : messages_) {
-      Inputs changed = inputs_;
-      apply_(changed, message);
-      if (all_finite(changed))
-        inputs_ = changed;
-      else
-        ++refused_inputs_;
+    const std::uint64_t step = source_.newest().step;
+    for (const Message& message : inbox_->drain()) {
+      apply_(inputs_, message, step);
+      if (options_.log) log_.entries.push_back({step, message});
     }
-    if (!options_.log || same_bits(before, inputs_)) return;
-    // The start's entry stands for the first step until that is taken.
-    if (log_.entries.back().step == source_.newest().step)
-      log_.entries.back().inputs = inputs_;
-    else
-      log_.entries.push_back({source_.newest().step, inputs_});
   }
 
   void step_once(TimeNs due_ns) {
@@ -199,10 +183,9 @@ class Simulation {
   Apply apply_;
   Inputs inputs_;
   SnapshotSource<State> source_;
-  Inbox<Message> inbox_;
-  std::vector<Message> messages_;  // drained, memory kept
-  InputLog<Inputs> log_;
-  std::atomic<std::uint64_t> refused_states_{0}, refused_inputs_{0};
+  std::unique_ptr<Inbox> inbox_;
+  Log log_;
+  std::atomic<std::uint64_t> refused_states_{0};
   StepPacer::Counts pace_;
   std::unique_ptr<StepThread> thread_;  // last: ends before what it uses
 };
@@ -212,26 +195,29 @@ struct ReplayReport {
   std::optional<std::uint64_t> first_difference;  // the step whose hash differs; 0: the start
 };
 
-// Runs a log again. step is the simulation's, either form; stops at the first difference.
-template <class State, class Inputs, class StepFunction>
-ReplayReport replay(const InputLog<Inputs>& log, const State& start, StepFunction step) {
+// Runs a log again. step and apply are the simulation's; stops at the first difference.
+template <class State, class Inputs, class Message, class Function, class Apply>
+ReplayReport replay(const RunLog<Inputs, Message>& log, const State& start, Function function,
+                    Apply&& apply) {
   ReplayReport report;
-  if (log.hashes.empty()) return report;
-  Simulation<State, Inputs> run({.step_s = log.step_s, .log = false}, start,
-                                log.entries.front().inputs, std::move(step));
-  run.restore(log.first_step, start, log.entries.front().inputs);
+  const auto step = step_of<State, Inputs>(std::move(function));
+  State state = start, next = start;
+  Inputs inputs = log.start;
   std::size_t entry = 0;
-  for (std::uint64_t i = 0;; ++i) {
-    if (run.newest().hash != log.hashes[i]) {
-      report.first_difference = log.first_step + i;
+  for (std::uint64_t i = 0; i < log.hashes.size(); ++i) {
+    const std::uint64_t now = log.first_step + i;
+    if (state_hash(now, state) != log.hashes[i]) {
+      report.first_difference = now;
       return report;
     }
     if (i == log.steps()) return report;
-    for (; entry + 1 < log.entries.size() && log.entries[entry + 1].step <= run.newest().step;)
-      run.push(log.entries[++entry].inputs);
-    run.advance(1);
+    for (; entry < log.entries.size() && log.entries[entry].step <= now; ++entry)
+      apply(inputs, log.entries[entry].message, now);
+    step(state, inputs, StepTime{now, log.step_s}, next);
+    if (all_finite(next)) std::swap(state, next);
     ++report.steps;
   }
+  return report;
 }
 
 }  // namespace neritic::sim

@@ -25,12 +25,18 @@ std::uint64_t canonical_bits(T value) {
   }
 }
 
-// Of a block (block.hpp) the counts first.
+// Of a block (block.hpp) the counts first. A state may list fields for its hash alone
+// (hashed_fields), to leave out what is not in use.
 template <class State>
 void add_state(Hash64& hash, const State& state) {
   if constexpr (requires { state.counts(); })
     for (const std::uint64_t count : state.counts()) hash.add(count);
-  for_each_scalar(state, [&](const auto& scalar) { hash.add(canonical_bits(scalar)); });
+  const auto add = [&](const auto& scalar) { hash.add(canonical_bits(scalar)); };
+  const auto field = [&](const auto&, const auto& piece) { for_each_scalar(piece, add); };
+  if constexpr (requires { State::hashed_fields(field, state); })
+    State::hashed_fields(field, state);
+  else
+    for_each_scalar(state, add);
 }
 
 // Of values alone.

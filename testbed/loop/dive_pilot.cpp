@@ -8,18 +8,36 @@ namespace {
 // What held keys push with; with shift, all that there is room for.
 constexpr double kPush_n = 30.0, kLift_n = 40.0, kTurn_n_m = 3.0, kFastTurn_n_m = 10.0;
 constexpr double kFullThrust_n = 1e4;
+// Each frame sends the keys. A window that draws none for so long has let go of the vehicle.
+constexpr double kKeysHold_s = 1.0;
 // Behind and above a vehicle that carries no camera.
 const Pose kChase{{0.0, 0.6, 2.2}, from_yaw_pitch_roll(0.0, -0.2, 0.0)};
 
-VehicleInputs inputs_of(const DiveInput& input, std::uint64_t failed_thrusters) {
-  VehicleInputs out;
-  out.piloted = 1;
-  out.failed_thrusters = failed_thrusters;
-  out.pilot[0] = -input.move.z * (input.fast ? kFullThrust_n : kPush_n);
-  out.pilot[1] = input.move.x * (input.fast ? kFullThrust_n : kPush_n);
-  out.pilot[2] = -input.move.y * (input.fast ? kFullThrust_n : kLift_n);
-  out.pilot[5] = input.turn * (input.fast ? kFastTurn_n_m : kTurn_n_m);
+VehicleWrench wrench_of(const DiveInput& input) {
+  VehicleWrench out;
+  out.wrench[0] = -input.move.z * (input.fast ? kFullThrust_n : kPush_n);
+  out.wrench[1] = input.move.x * (input.fast ? kFullThrust_n : kPush_n);
+  out.wrench[2] = -input.move.y * (input.fast ? kFullThrust_n : kLift_n);
+  out.wrench[5] = input.turn * (input.fast ? kFastTurn_n_m : kTurn_n_m);
   return out;
+}
+
+// "diver: buttons without controllers, autopilot" of each group whose live source is silent.
+template <class Group, class Groups, class Inputs>
+void add_silent(const std::string& name, const Groups& groups, const Inputs& inputs,
+                const SampleInbox& inbox, std::vector<std::string>& out) {
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const GroupPhase phase = groups[i].phase;
+    if (phase != GroupPhase::kLost && phase != GroupPhase::kWaiting) continue;
+    const GroupControl& control = inputs.control[i];
+    const auto sources = inbox.source_names();
+    const bool known = control.authority == Authority::kLive && control.source < sources.size();
+    out.push_back(fmt::format("{}: {} {} {}; {}", name, name_of(static_cast<Group>(i)),
+                              phase == GroupPhase::kLost ? "lost" : "waits for",
+                              known ? sources[control.source] : "its source",
+                              phase == GroupPhase::kLost ? fmt::format("{} times", groups[i].losses)
+                                                         : std::string(name_of(control.then))));
+  }
 }
 
 }  // namespace
@@ -27,6 +45,7 @@ VehicleInputs inputs_of(const DiveInput& input, std::uint64_t failed_thrusters) 
 DivePilot::DivePilot(LivePhysics* physics, const scene::Mount& view)
     : physics_(physics), vehicle_from_view_(kChase) {
   if (!physics_) return;
+  if (const auto source = physics_->inbox().open("keyboard"); source.ok()) source_ = *source;
   const auto& vehicles = physics_->world().vehicles();
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     if (view.object != static_cast<int>(vehicles[i].object)) continue;
@@ -35,15 +54,31 @@ DivePilot::DivePilot(LivePhysics* physics, const scene::Mount& view)
   }
 }
 
+void DivePilot::send(PayloadKind kind, std::uint64_t& sequence, const Payload& payload) {
+  const auto vehicle = static_cast<std::uint32_t>(vehicle_);
+  const StreamId stream = physics_->world().streams().id(OwnerSort::kVehicle, vehicle, kind);
+  const TimeNs now = now_ns();
+  physics_->inbox().push({{stream, source_, sequence++, now, now}, payload});
+}
+
+// The vehicle's wrench to the keyboard, or back to what the scene chose.
+void DivePilot::hand_over(bool to_pilot) {
+  const GroupControl& chosen =
+      physics_->world().start_inputs().vehicles()[vehicle_].of(VehicleGroup::kWrench);
+  Event event{.group = static_cast<std::uint64_t>(VehicleGroup::kWrench)};
+  event.authority = static_cast<std::uint64_t>(to_pilot ? Authority::kLive : chosen.authority);
+  event.source = to_pilot ? source_ : chosen.source;
+  event.hold_s = to_pilot ? kKeysHold_s : chosen.hold_s;
+  send(PayloadKind::kEvent, events_, event);
+}
+
 bool DivePilot::take(const DiveInput& input) {
   if (!physics_) return false;
-  const bool was_flying = flying_;
-  if (input.toggle_pilot) flying_ = !flying_;
-  VehicleInputs inputs;
-  inputs.failed_thrusters = physics_->world().vehicles()[vehicle_].failed_thrusters;
-  if (flying_) inputs = inputs_of(input, inputs.failed_thrusters);
-  const bool news = flying_ != was_flying || !sim::same_bits(inputs, told_);
-  if ((flying_ || was_flying) && news && physics_->steer(vehicle_, inputs)) told_ = inputs;
+  if (input.toggle_pilot) {
+    flying_ = !flying_;
+    hand_over(flying_);
+  }
+  if (flying_) send(PayloadKind::kWrench, wrenches_, wrench_of(input));
   return flying_;
 }
 
@@ -70,6 +105,13 @@ std::vector<std::string> DivePilot::lines() const {
                       vehicles[i].mission->waypoint_count());
     out.push_back(line);
   }
+  const PhysicsInputs& chosen = physics_->world().start_inputs();
+  for (std::size_t i = 0; i < vehicles.size(); ++i)
+    add_silent<VehicleGroup>(vehicles[i].name, physics_->shown().vehicles()[i].groups,
+                             chosen.vehicles()[i], physics_->inbox(), out);
+  for (std::size_t i = 0; i < physics_->world().humans().size(); ++i)
+    add_silent<DiverGroup>(physics_->world().humans()[i].name, physics_->shown().humans()[i].groups,
+                           chosen.humans()[i], physics_->inbox(), out);
   if (const auto dropped = physics_->counts().dropped; dropped > 0)
     out.push_back(fmt::format("{} steps dropped", dropped));
   return out;

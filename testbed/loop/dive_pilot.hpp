@@ -18,15 +18,19 @@ class DivePilot {
   bool take(const DiveInput& input);
   // The riding view; precondition: take() said true.
   Pose world_from_view() const;
-  // A line a vehicle, for the panels.
+  // A line a vehicle, for the panels; and one a group of inputs whose live source is silent.
   std::vector<std::string> lines() const;
 
  private:
+  void send(PayloadKind kind, std::uint64_t& sequence, const Payload& payload);
+  void hand_over(bool to_pilot);
+
   LivePhysics* physics_;
   std::size_t vehicle_ = 0;  // the one that the view is on, else the first
   Pose vehicle_from_view_;
   bool flying_ = false;
-  VehicleInputs told_;
+  SourceId source_ = kSimulation;            // the keyboard
+  std::uint64_t wrenches_ = 0, events_ = 0;  // samples sent
 };
 
 }  // namespace neritic::testbed

@@ -55,10 +55,6 @@ double LivePhysics::follow_thread(TimeNs display_ns) {
   return reader_.newest().time_s + 1e-9 * static_cast<double>(display_ns - reader_.newest().due_ns);
 }
 
-bool LivePhysics::steer(std::size_t vehicle, const VehicleInputs& inputs) {
-  return simulation_->push({.vehicle = vehicle, .inputs = inputs});
-}
-
 Pose LivePhysics::pose(std::size_t vehicle) const {
   return history_.at(world_->vehicles()[vehicle].object, shown_s_)->motion.pose;
 }

@@ -27,8 +27,8 @@ class LivePhysics {
   // Lock-step: steps until the state of time_s is known, and keeps the states of a short while
   // before it; what was kept for the last such time stays. second: called after each second.
   void reach(double time_s, const std::function<void()>& second = {});
-  // Of a pilot, from the next step on. False where a number is not finite.
-  bool steer(std::size_t vehicle, const VehicleInputs& inputs);
+  // Where samples enter; any thread. They count from the next step on.
+  SampleInbox& inbox() { return simulation_->inbox(); }
 
   const PhysicsWorld& world() const { return *world_; }
   const MotionHistory& motion() const { return history_; }

@@ -11,8 +11,13 @@ void take(const Sample& sample, T& value) {
 
 template <class Inputs>
 bool apply_event(Inputs& inputs, const Event& event) {
-  return event.kind == EventKind::kSetAuthority && event.group < inputs.control.size() &&
-         set_authority(inputs.control[event.group], event.authority, event.source);
+  if (event.kind != EventKind::kSetAuthority || event.group >= inputs.control.size() ||
+      event.hold_s < 0.0)
+    return false;
+  GroupControl& control = inputs.control[event.group];
+  if (!set_authority(control, event.authority, event.source)) return false;
+  if (event.hold_s > 0.0) control.hold_s = event.hold_s;
+  return true;
 }
 
 // Whether the sample's own group listens to its source.

@@ -30,6 +30,9 @@ struct SourceCounts {
 
 class SampleInbox {
  public:
+  using Message = Sample;
+  // Usual: a step uses 2048 samples at most, which takes it less than a millisecond.
+  static constexpr std::size_t kCapacity = 1024;
   static constexpr std::size_t kMaxSources = 256;
   // A sample is refused as late if it arrived longer after its capture, unless open() says more.
   static constexpr TimeNs kMaxAge_ns = 500'000'000;

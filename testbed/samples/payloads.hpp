@@ -41,8 +41,8 @@ struct HandJoints {
   }
 };
 
-// Left, then right, as a headset tracks them: x to the right of the back of the hand, y along its
-// normal, z from the fingers to the wrist.
+// Left, then right. Axes as a standing person's while the arm hangs at the side: x right, y from
+// the fingers to the wrist, z backwards.
 struct HandPoses {
   std::array<Pose, 2> world_from_hand{};
   std::uint64_t tracked = 0;  // bit 0 left, bit 1 right: the others' poses mean nothing
@@ -53,7 +53,7 @@ struct HandPoses {
   }
 };
 
-// View axes: x right, y up, z backwards.
+// View axes: x right, y up, z backwards. The neck turns the head so; the trunk carries its place.
 struct HeadPose {
   Pose world_from_head;
 
@@ -142,22 +142,21 @@ struct ObjectPose {
 
 // Something that happens once.
 enum class EventKind : std::uint64_t {
-  kSetAuthority,  // in: `group` is from now on under `authority`, a live one of `source`
-  kSourceLost,    // out: `group` heard nothing from `source` for its hold time
-  kSourceBack,    // out: and hears it again
+  kSetAuthority,  // `group` is from now on under `authority`, a live one of `source`
 };
-inline constexpr std::uint64_t kEventKinds = 3;
 struct Event {
   EventKind kind = EventKind::kSetAuthority;
   std::uint64_t group = 0;      // DiverGroup or VehicleGroup of the stream's owner (authority.hpp)
   std::uint64_t authority = 0;  // Authority
   std::uint64_t source = 0;
+  double hold_s = 0.0;  // of a new authority: how long it may be silent; 0: as it was
 
   static void fields(auto&& field, auto& self) {
     field("kind", self.kind);
     field("group", self.group);
     field("authority", self.authority);
     field("source", self.source);
+    field("hold_s", self.hold_s);
   }
 };
 
@@ -168,7 +167,7 @@ struct CompassReading {
   static void fields(auto&& field, auto& self) { field("heading_rad", self.heading_rad); }
 };
 
-struct Collision {
+struct CollisionReading {
   Vec3 impulse_n_s{0.0};     // on the body, over one step
   std::uint64_t points = 0;  // in contact
   double depth_m = 0.0;      // of the deepest, into the other thing

@@ -40,8 +40,8 @@ using Payload =
     std::variant<BodyJoints, HandJoints, HandPoses, HeadPose, Gaze, JacketButtons, Breath, Heart,
                  GasSupply, VehicleWrench, VehicleSetpoint, ThrusterFault, ObjectPose, Event,
                  rov::ImuReading, rov::DvlReading, rov::PressureReading, CompassReading,
-                 rov::AltimeterReading, rov::UsblReading, Collision, DiverMotion, ComputerReading,
-                 ImageHandle>;
+                 rov::AltimeterReading, rov::UsblReading, CollisionReading, DiverMotion,
+                 ComputerReading, ImageHandle>;
 
 enum class PayloadKind : std::uint32_t {
   kBodyJoints,

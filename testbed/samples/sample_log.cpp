@@ -6,7 +6,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/sim/fields.hpp"
-#include "engine/sim/input_log.hpp"
+#include "engine/sim/run_log.hpp"
 
 namespace neritic::testbed {
 namespace {

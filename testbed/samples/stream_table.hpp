@@ -36,6 +36,7 @@ class StreamTable {
   std::span<const Stream> streams() const { return streams_; }
   std::size_t size() const { return streams_.size(); }
   const Stream& operator[](StreamId id) const { return streams_.at(id); }
+  // The first of that name: a scene may give two owners the same.
   std::optional<StreamId> find(const std::string& name) const;
   // Precondition: the owner has such a stream.
   StreamId id(OwnerSort sort, std::uint32_t owner, PayloadKind kind) const;

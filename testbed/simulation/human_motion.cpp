@@ -55,23 +55,14 @@ diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) 
   return {state.leg_from_ned_m, 0.0};
 }
 
-HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
+HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
                      const diver::WaterFlow& water, std::uint64_t step, double dt_s,
                      HumanPhysics& state) {
-  diver::HumanInputs acting = inputs.human;
+  follow_plan(human, state);
+  diver::HumanInputs acting = acting_inputs(human, inputs, step, dt_s, state);
   acting.current_ned_m_s = water.current_m_s;
   acting.current_change_ned_m_s2 = water.change_m_s2;
   acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
-  follow_plan(human, state);
-  const double now_s = static_cast<double>(step) * dt_s;
-  if (inputs.worn == 0 && human.recording)
-    acting.joints = human.recording->at(now_s, human.repeat);
-  else if (inputs.worn == 0)  // nobody wears the suit: swims by itself
-    diver::swim(human.body, human.file.swimmer, swim_goal(human, state), state.human, state.swimmer,
-                dt_s, acting);
-  if (inputs.worn == 0 && human.buttons)
-    acting.buttons = human.buttons->at(now_s).value_or(acting.buttons);
-  if (inputs.worn == 0 && human.file.gas_switching.by_plan) acting.tank = state.tank;
   const diver::RootState before = state.human.root;
   state.human = diver::step(human.body, state.human, acting, dt_s);
   const diver::RootState& after = state.human.root;

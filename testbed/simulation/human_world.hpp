@@ -56,8 +56,12 @@ struct HumanStep {
   Pose before;
   sim::BodyMotion free;  // as if alone; what it meets changes it
 };
+// The inputs of each group's authority in this step; steps the groups and the swimmer. Without
+// currents.
+diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& inputs,
+                                 std::uint64_t step, double dt_s, HumanPhysics& state);
 // dt_s later, as if the water were empty.
-HumanStep free_human(const PhysicsHuman& human, const HumanSteering& inputs,
+HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
                      const diver::WaterFlow& water, std::uint64_t step, double dt_s,
                      HumanPhysics& state);
 // Whether a diver touched a vehicle, or another diver: the free steps of both then part, by equal

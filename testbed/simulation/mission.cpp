@@ -115,21 +115,32 @@ rov::Setpoint MissionGuide::update(const PhysicsState& all, const rov::State& bo
   return setpoint;
 }
 
-rov::Setpoint piloted_setpoint(const VehicleInputs& inputs, const rov::State& body,
+rov::Setpoint piloted_setpoint(const rov::Vec6& wrench, const rov::State& body,
                                MissionState& mission) {
-  const bool begins = mission.piloted == 0;
+  const bool begins = mission.piloted != 1;
   mission.piloted = 1;
   const double depth_m =
-      begins || inputs.pilot[2] != 0.0 ? body.position_ned_m.z : mission.wanted_ned_m.z;
-  const bool heading_free = begins || inputs.pilot[5] != 0.0;
+      begins || wrench[2] != 0.0 ? body.position_ned_m.z : mission.wanted_ned_m.z;
+  const bool heading_free = begins || wrench[5] != 0.0;
   const double heading_rad =
       rov::heading_of(heading_free ? body.attitude : mission.wanted_attitude);
   rov::Setpoint setpoint;
   setpoint.position_ned_m = {body.position_ned_m.x, body.position_ned_m.y, depth_m};
   setpoint.attitude = rov::heading_attitude(heading_rad);
   setpoint.hold_north = setpoint.hold_east = false;
-  setpoint.hold_depth = inputs.pilot[2] == 0.0;
-  setpoint.hold_heading = inputs.pilot[5] == 0.0;
+  setpoint.hold_depth = wrench[2] == 0.0;
+  setpoint.hold_heading = wrench[5] == 0.0;
+  mission.wanted_ned_m = setpoint.position_ned_m;
+  mission.wanted_attitude = setpoint.attitude;
+  return setpoint;
+}
+
+rov::Setpoint given_setpoint(const VehicleSetpoint& wanted, MissionState& mission) {
+  mission.piloted = 2;
+  rov::Setpoint setpoint;
+  setpoint.position_ned_m = rov::ned_from_world(wanted.position_m);
+  setpoint.velocity_ned_m_s = rov::ned_from_world(wanted.velocity_m_s);
+  setpoint.attitude = rov::heading_attitude(wanted.heading_rad);
   mission.wanted_ned_m = setpoint.position_ned_m;
   mission.wanted_attitude = setpoint.attitude;
   return setpoint;

@@ -52,8 +52,10 @@ class MissionGuide {
 
 // While a pilot flies: depth and heading held where they are since the pilot let go of them, level
 // always. The pilot's wrench comes on top.
-rov::Setpoint piloted_setpoint(const VehicleInputs& inputs, const rov::State& body,
+rov::Setpoint piloted_setpoint(const rov::Vec6& wrench, const rov::State& body,
                                MissionState& mission);
+// From outside: there, level, at that heading.
+rov::Setpoint given_setpoint(const VehicleSetpoint& wanted, MissionState& mission);
 
 // At the start: nothing reached, and held is where the body is.
 MissionState mission_start(const rov::State& body);

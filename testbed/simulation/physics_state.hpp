@@ -13,6 +13,7 @@
 #include "engine/sim/simulation.hpp"
 #include "rov/dynamics.hpp"
 #include "rov/sensor_set.hpp"
+#include "testbed/samples/inbox.hpp"
 #include "testbed/simulation/physics_inputs.hpp"
 
 namespace neritic::testbed {
@@ -22,7 +23,8 @@ struct MissionState {
   std::uint64_t arrived = 0, left = 0;  // waypoints, all rounds together
   double arrived_s = 0.0;               // at the waypoint where it holds
   Vec3 leg_from_ned_m{0.0};             // where the way to the next waypoint begins
-  std::uint64_t piloted = 0;            // 1: a pilot flew at the last control period
+  // Who steered at the last control period: 0 the mission, 1 a pilot, 2 a setpoint from outside.
+  std::uint64_t piloted = 0;
   // What the controller holds.
   Vec3 wanted_ned_m{0.0};
   Quat wanted_attitude{1.0, 0.0, 0.0, 0.0};
@@ -61,8 +63,13 @@ struct VehicleState {
   std::array<double, rov::kMaxThrusters> command_n{};
   MissionState mission;
   ContactState contact;
+  std::array<GroupState, kVehicleGroups> groups;  // of its inputs
 
   static void fields(auto&& field, auto& self) {
+    fields_but_groups(field, self);
+    field("groups", self.groups);
+  }
+  static void fields_but_groups(auto&& field, auto& self) {
     field("body", self.body);
     field("integral", self.integral);
     field("command_n", self.command_n);
@@ -74,15 +81,20 @@ struct VehicleState {
 // A diver who swims by moving limbs.
 struct HumanPhysics {
   diver::HumanState human;
-  diver::SwimmerState swimmer;  // moves the limbs where nobody wears a suit
+  diver::SwimmerState swimmer;  // moves the limbs under the autopilot
   std::uint64_t arrived = 0;    // waypoints, all rounds together
   Vec3 leg_from_ned_m{0.0};     // where the way to the next one begins, or the place to stay at
   ContactState contact;
-  // The tank breathed from where nobody wears a suit, and the switch to another one.
+  // The tank breathed from by plan, and the switch to another one.
   std::uint64_t tank = 0;
   diver::GasSwitchState gas_switch;
+  std::array<GroupState, kDiverGroups> groups;  // of the inputs
 
   static void fields(auto&& field, auto& self) {
+    fields_but_groups(field, self);
+    field("groups", self.groups);
+  }
+  static void fields_but_groups(auto&& field, auto& self) {
     field("human", self.human);
     field("swimmer", self.swimmer);
     field("arrived", self.arrived);
@@ -117,8 +129,23 @@ class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorRe
     field("humans", humans);
     field("readings", readings);
   }
+  // The hash covers groups once a live source was asked for.
+  static void hashed_fields(auto&& field, auto& self) {
+    const auto add = [&](auto& one) {
+      std::remove_cvref_t<decltype(one)>::fields_but_groups(field, one);
+      for (const GroupState& group : one.groups)
+        if (group.phase != GroupPhase::kChosen || group.losses > 0) {
+          field("groups", one.groups);
+          return;
+        }
+    };
+    for (auto& vehicle : self.vehicles()) add(vehicle);
+    for (auto& human : self.humans()) add(human);
+    auto readings = self.readings();
+    field("readings", readings);
+  }
 };
 
-using PhysicsSimulation = sim::Simulation<PhysicsState, PhysicsInputs, PhysicsMessage>;
+using PhysicsSimulation = sim::Simulation<PhysicsState, PhysicsInputs, SampleInbox>;
 
 }  // namespace neritic::testbed

@@ -24,6 +24,22 @@ void add_contact(const ContactReport& report, double dt_s, VehicleState& state) 
                                            body_from_ned * report.change_ned.angular());
 }
 
+Authority authority_of(const VehicleInputs& inputs, const VehicleState& state, VehicleGroup group) {
+  return acting(inputs.of(group), state.groups[static_cast<std::size_t>(group)].phase);
+}
+
+std::uint64_t failed_thrusters(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
+                               const VehicleState& state) {
+  switch (authority_of(inputs, state, VehicleGroup::kFault)) {
+    case Authority::kLive:
+      return inputs.fault.failed;
+    case Authority::kNobody:
+      return 0;
+    default:
+      return vehicle.failed_thrusters;
+  }
+}
+
 }  // namespace
 
 bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
@@ -46,20 +62,12 @@ PhysicsState PhysicsWorld::start() const {
   return state;
 }
 
-PhysicsInputs PhysicsWorld::start_inputs() const {
-  PhysicsInputs inputs(vehicles_.size(), humans_.size());
-  for (std::size_t i = 0; i < vehicles_.size(); ++i)
-    inputs.vehicles()[i].failed_thrusters = vehicles_[i].failed_thrusters;
-  return inputs;
-}
-
-void PhysicsWorld::apply(PhysicsInputs& inputs, const PhysicsMessage& message) {
-  if (message.is_human != 0) {
-    if (message.vehicle < inputs.humans().size())
-      inputs.humans()[message.vehicle] = message.steering;
-  } else if (message.vehicle < inputs.vehicles().size()) {
-    inputs.vehicles()[message.vehicle] = message.inputs;
-  }
+void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) const {
+  const Stream& stream = streams_[sample.header.stream];
+  if (stream.sort == OwnerSort::kDiver)
+    testbed::apply(inputs.humans()[stream.owner], sample, step);
+  else if (stream.sort == OwnerSort::kVehicle)
+    testbed::apply(inputs.vehicles()[stream.owner], sample, step);
 }
 
 Vec3 PhysicsWorld::current_ned_m_s(const Vec3& position_ned_m, double time_s) const {
@@ -129,6 +137,9 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     VehicleScratch& own = scratch.vehicles[i];
     own.parted = false;
+    for (std::size_t k = 0; k < kVehicleGroups; ++k)
+      vehicles[i].groups[k] =
+          next_group(vehicles[i].groups[k], inputs.vehicles()[i].control[k], time.step, dt_s);
     own.refused =
         control_due(i, time.step) && !steer(i, before, inputs.vehicles()[i], time_s, vehicles[i]);
     own.acting = acting_on(vehicles_[i], inputs.vehicles()[i], vehicles[i], time_s, dt_s);
@@ -176,29 +187,35 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
               dt_s, humans[k]);
 }
 
-// New commands for the thrusters. False where the inputs are no numbers: the last commands hold.
+// New commands for the thrusters: of a pilot's wrench, else of a setpoint from outside, else of the
+// mission. False where the commands are no numbers: the last ones hold.
 bool PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs,
                          double time_s, VehicleState& state) const {
   if (!sim::all_finite(inputs)) return false;
   const PhysicsVehicle& vehicle = vehicles_[index];
-  const bool piloted = inputs.piloted != 0;
-  if (!piloted && !vehicle.mission) {
+  const Authority wrench_by = authority_of(inputs, state, VehicleGroup::kWrench);
+  const Authority setpoint_by = authority_of(inputs, state, VehicleGroup::kSetpoint);
+  const bool piloted = wrench_by == Authority::kLive;
+  const bool given = setpoint_by == Authority::kLive;
+  const bool rests = wrench_by == Authority::kNobody || setpoint_by == Authority::kNobody;
+  if (!piloted && !given && (rests || !vehicle.mission)) {
     state.command_n = {};
     return true;
   }
-  rov::Setpoint setpoint = piloted
-                               ? piloted_setpoint(inputs, state.body, state.mission)
-                               : vehicle.mission->update(all, state.body, time_s, state.mission);
-  if (piloted) setpoint.pilot = inputs.pilot;
+  rov::Setpoint setpoint =
+      piloted ? piloted_setpoint(inputs.wrench.wrench, state.body, state.mission)
+      : given ? given_setpoint(inputs.setpoint, state.mission)
+              : vehicle.mission->update(all, state.body, time_s, state.mission);
+  if (piloted) setpoint.pilot = inputs.wrench.wrench;
   rov::ControlState control{state.integral};
   const auto commands_by = [&](const rov::Allocator& allocator) {
     return (piloted ? rov::piloted_inputs : rov::level_inputs)(
         vehicle.vehicle, allocator, vehicle.file.gains, setpoint, state.body, control);
   };
-  rov::Inputs commands =
-      inputs.failed_thrusters == vehicle.failed_thrusters
-          ? commands_by(vehicle.allocator)
-          : commands_by(rov::Allocator(vehicle.vehicle, inputs.failed_thrusters));
+  const std::uint64_t failed = failed_thrusters(vehicle, inputs, state);
+  rov::Inputs commands = failed == vehicle.failed_thrusters
+                             ? commands_by(vehicle.allocator)
+                             : commands_by(rov::Allocator(vehicle.vehicle, failed));
   rov::drive(vehicle.file, commands);
   if (!sim::all_finite(commands)) return false;
   state.command_n = commands.thruster_n;
@@ -232,7 +249,7 @@ rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const Vehicle
   acting.current_change_ned_m_s2 = water.change_m_s2;
   acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
   acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
-  acting.failed_thrusters = inputs.failed_thrusters;
+  acting.failed_thrusters = failed_thrusters(vehicle, inputs, state);
   apply_surface(vehicle.vehicle, vehicle.top_m, vehicle.bottom_m, state.body, acting);
   return acting;
 }
@@ -250,9 +267,15 @@ PhysicsSimulation::Step PhysicsWorld::step_function() const {
 
 std::unique_ptr<PhysicsSimulation> PhysicsWorld::simulation(sim::SimulationOptions options) const {
   options.step_s = step_s_;
+  // A scene may have more streams than an inbox usually keeps samples.
+  auto inbox = std::make_unique<SampleInbox>(
+      streams_, std::max<std::size_t>(SampleInbox::kCapacity, streams_.size()));
+  for (const std::string& name : sources_) NERITIC_CHECK(inbox->open(name).ok(), "{}", name);
   return std::make_unique<PhysicsSimulation>(
-      options, start(), start_inputs(), step_function(),
-      [](PhysicsInputs& inputs, const PhysicsMessage& message) { apply(inputs, message); });
+      options, start(), start_inputs(), std::move(inbox), step_function(),
+      [this](PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) {
+        apply(inputs, sample, step);
+      });
 }
 
 }  // namespace neritic::testbed

@@ -95,7 +95,27 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
     if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i, movers));
     if (scene.objects[i].human) NERITIC_TRY_STATUS(world->add_human(scene, i));
   }
+  world->choose_inputs(scene);
+  if (world->sources_.size() >= SampleInbox::kMaxSources)
+    return bad_input("{}: inputs of {} live sources; accepted: up to {}", scene.path,
+                     world->sources_.size(), SampleInbox::kMaxSources - 1);
   return std::unique_ptr<const PhysicsWorld>(std::move(world));
+}
+
+void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
+  start_inputs_ = PhysicsInputs(vehicles_.size(), humans_.size());
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    streams_.add_vehicle(vehicles_[i].name, vehicles_[i].file.sensors);
+    start_inputs_.vehicles()[i] =
+        chosen_inputs(scene.objects[vehicles_[i].object].dynamics->inputs, sources_);
+  }
+  for (std::size_t i = 0; i < humans_.size(); ++i) {
+    const PhysicsHuman& human = humans_[i];
+    streams_.add_diver(human.name);
+    start_inputs_.humans()[i] =
+        chosen_inputs(scene.objects[human.object].human->inputs, human.recording.has_value(),
+                      human.buttons.has_value(), sources_);
+  }
 }
 
 Status PhysicsWorld::choose_step(const scene::Scene& scene) {

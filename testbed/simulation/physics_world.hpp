@@ -69,7 +69,7 @@ class PhysicsWorld {
   bool control_due(std::size_t vehicle, std::uint64_t step) const;
 
   PhysicsState start() const;
-  PhysicsInputs start_inputs() const;
+  const PhysicsInputs& start_inputs() const { return start_inputs_; }
   // The step. scratch: of this world, used by one thread at a time. after: of the layout of
   // start().
   void step(const PhysicsState& before, const PhysicsInputs& inputs, const sim::StepTime& time,
@@ -78,7 +78,11 @@ class PhysicsWorld {
   // The same with memory of its own, for single steps.
   PhysicsState step(const PhysicsState& before, const PhysicsInputs& inputs,
                     const sim::StepTime& time) const;
-  static void apply(PhysicsInputs& inputs, const PhysicsMessage& message);
+  // A sample that arrived before step. Pure.
+  void apply(PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) const;
+  // The streams that enter and leave, and the live sources that the scene names.
+  const StreamTable& streams() const { return streams_; }
+  const SourceNames& sources() const { return sources_; }
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
@@ -89,7 +93,7 @@ class PhysicsWorld {
   PhysicsSimulation::Step step_function() const;
   // What states of this world are saved as, and must be to go on in it.
   StateFormat state_format() const;
-  // Borrows the world.
+  // With an inbox in which the scene's sources are open. Borrows the world.
   std::unique_ptr<PhysicsSimulation> simulation(sim::SimulationOptions options) const;
 
  private:
@@ -97,6 +101,7 @@ class PhysicsWorld {
   Status choose_step(const scene::Scene& scene);
   Status add_vehicle(const scene::Scene& scene, std::size_t object, const Movers& movers);
   Status add_human(const scene::Scene& scene, std::size_t object);
+  void choose_inputs(const scene::Scene& scene);
   Status check_start(const scene::Scene& scene, const std::string& name,
                      const sim::BodyShape& shape, const Pose& start) const;
   bool steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
@@ -116,6 +121,9 @@ class PhysicsWorld {
   std::vector<PhysicsVehicle> vehicles_;
   std::vector<PhysicsHuman> humans_;
   std::size_t sensing_ = 0;  // vehicles with sensors
+  StreamTable streams_;
+  SourceNames sources_;
+  PhysicsInputs start_inputs_;
 };
 
 // What the scene says of the current, its grid read.

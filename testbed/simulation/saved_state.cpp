@@ -42,10 +42,12 @@ void fill(Block& block, std::span<const std::byte> bytes) {
 
 template <class T>
 void add_fields(Hash64& hash, const T& like) {
-  for (const sim::LogField& field : sim::log_fields(like)) {
-    hash.add(field.type);
-    hash.add_span(std::span<const char>(field.name.data(), field.name.size()));
-  }
+  sim::for_each_named_scalar(like, [&](const std::string& name, const auto& scalar) {
+    using Scalar = std::remove_cvref_t<decltype(scalar)>;
+    hash.add(std::is_floating_point_v<Scalar> ? 'f' : std::is_signed_v<Scalar> ? 'i' : 'u');
+    hash.add(static_cast<std::uint64_t>(sizeof scalar));
+    hash.add_span(std::span<const char>(name.data(), name.size()));
+  });
 }
 
 Status check_header(const Header& header, const StateFormat& format, std::size_t size,

@@ -91,6 +91,7 @@ class SceneHash {
     NERITIC_TRY_STATUS(file(dynamics.file));
     NERITIC_TRY_STATUS(add_thrust(dynamics.file, water_kg_m3));
     number(dynamics.failed_thrusters);
+    add(dynamics.inputs);
     number(dynamics.tether_anchor_m.has_value());
     if (dynamics.tether_anchor_m) vec(*dynamics.tether_anchor_m);
     number(dynamics.mission.has_value());
@@ -112,6 +113,12 @@ class SceneHash {
     return {};
   }
 
+  void add(const std::vector<scene::InputChoice>& inputs) {
+    for (const scene::InputChoice& choice : inputs) {
+      text(choice.group), text(choice.from), text(choice.then);
+      numbers(choice.hold_s.value_or(-1.0));
+    }
+  }
   void add(const scene::Aim& aim) { numbers(aim.object), vec(aim.point_m); }
   void add(const scene::Facing& facing) {
     number(facing.heading_rad.has_value());
@@ -136,6 +143,7 @@ class SceneHash {
   Status add(const scene::Human& human) {
     NERITIC_TRY_STATUS(file(human.file));
     NERITIC_TRY_STATUS(file(human.jacket_buttons));
+    add(human.inputs);
     number(human.swim.has_value());
     if (!human.swim) return {};
     for (const Vec3& point : human.swim->waypoints_m) vec(point);

@@ -30,11 +30,14 @@ const std::map<std::string, std::set<std::string>>& allowed() {
       {"hud",
        {"engine/core", "engine/gpu", "engine/graph", "engine/draw2d", "engine/xr", "diver", "rov"}},
       {"testbed/samples", {"engine/core", "engine/sim", "rov", "diver"}},
-      {"testbed/simulation", {"engine/core", "engine/scene", "engine/sim", "rov", "diver"}},
+      {"testbed/simulation",
+       {"engine/core", "engine/scene", "testbed/samples", "engine/sim", "rov", "diver"}},
       {"testbed/record",
-       {"engine/core", "engine/scene", "engine/sim", "rov", "diver", "testbed/simulation"}},
+       {"engine/core", "engine/scene", "testbed/samples", "engine/sim", "rov", "diver",
+        "testbed/simulation"}},
       {"testbed/motion",
-       {"engine/core", "engine/scene", "engine/sim", "rov", "diver", "testbed/simulation"}},
+       {"engine/core", "engine/scene", "testbed/samples", "engine/sim", "rov", "diver",
+        "testbed/simulation"}},
       {"testbed/sensors",
        {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "engine/render", "sonar",
         "shared"}},
@@ -44,8 +47,8 @@ const std::map<std::string, std::set<std::string>>& allowed() {
       {"testbed/loop",
        {"engine/core", "engine/gpu", "engine/graph", "engine/draw2d", "engine/scene",
         "engine/render", "engine/sim", "engine/xr", "sonar", "rov", "diver", "shared",
-        "testbed/simulation", "testbed/motion", "testbed/record", "testbed/sensors",
-        "testbed/output"}},
+        "testbed/samples", "testbed/simulation", "testbed/motion", "testbed/record",
+        "testbed/sensors", "testbed/output"}},
       {"shaders/shared", {"shared"}}};
   return table;
 }

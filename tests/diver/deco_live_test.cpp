@@ -6,8 +6,8 @@
 
 #include <random>
 
-#include "engine/sim/simulation.hpp"
 #include "tests/diver/deco_cases.hpp"
+#include "tests/sim/plain_inbox.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -350,19 +350,19 @@ TEST(DecoLive, ASimulationOfAComputerReplaysToTheSameBits) {
   const auto step = [&](const DiveComputerState& state, const DiveSample& sample, double dt_s) {
     return computer.step(state, sample, dt_s);
   };
-  sim::Simulation<DiveComputerState, DiveSample> simulation({.step_s = 0.05}, computer.start(), {},
-                                                            step);
+  auto simulation =
+      sim::test::plain_simulation({.step_s = 0.05}, computer.start(), DiveSample{}, step);
   std::mt19937 random(9);
   for (int second = 0; second < 600; ++second) {
     const double depth_m =
         std::max(40.0 * std::sin(second / 200.0), 0.0) + 1e-4 * (random() % 1000);
-    EXPECT_TRUE(simulation.push({depth_m, depth_m < 21.0 && second > 300 ? 1u : 0u}));
-    EXPECT_FALSE(simulation.push({kNan, 0}));
+    simulation.inbox().push({depth_m, depth_m < 21.0 && second > 300 ? 1u : 0u});
     simulation.advance(20);
   }
   EXPECT_GT(simulation.newest().state.deepest_m, 39.0);
   EXPECT_EQ(simulation.newest().state.last.gas, 1u);
-  const sim::ReplayReport again = sim::replay(simulation.log(), computer.start(), step);
+  const sim::ReplayReport again =
+      sim::replay(simulation.log(), computer.start(), step, sim::test::apply_whole<DiveSample>);
   EXPECT_EQ(again.steps, 12000u);
   EXPECT_FALSE(again.first_difference.has_value());
 }

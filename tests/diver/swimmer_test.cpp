@@ -5,8 +5,8 @@
 #include <atomic>
 #include <thread>
 
-#include "engine/sim/simulation.hpp"
 #include "tests/diver/swims.hpp"
+#include "tests/sim/plain_inbox.hpp"
 #include "tests/support/cpu_time.hpp"
 #include "tests/support/support.hpp"
 
@@ -208,16 +208,18 @@ TEST(DiverDeterminism, AReplayOfItsInputsGivesTheSameHashes) {
     return step(body, s, in, dt);
   };
   const HumanState start = begin(body, {0.0, 0.0, 15.0}, 0.0).state;
-  sim::Simulation<HumanState, HumanInputs> simulation({.step_s = 1.0 / 240.0}, start, {}, pure);
+  auto simulation =
+      sim::test::plain_simulation({.step_s = 1.0 / 240.0}, start, HumanInputs{}, pure);
   SwimmerState swimmer;
   HumanInputs inputs;
   for (int i = 0; i < 300; ++i) {
     swim(body, SwimmerSettings{}, {{10.0, 4.0, 14.0}, 0.5}, simulation.newest().state, swimmer,
          1.0 / 60.0, inputs);
-    ASSERT_TRUE(simulation.push(inputs));
+    simulation.inbox().push(inputs);
     simulation.advance(4);
   }
-  EXPECT_FALSE(sim::replay(simulation.log(), start, pure).first_difference.has_value());
+  EXPECT_FALSE(sim::replay(simulation.log(), start, pure, sim::test::apply_whole<HumanInputs>)
+                   .first_difference.has_value());
   EXPECT_EQ(simulation.refused_states(), 0u);
   EXPECT_GT(simulation.newest().state.root.position_ned_m.x, 1.0);
 }
@@ -230,7 +232,8 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
     return step(body, s, in, dt);
   };
   const HumanState start = begin(body, {0.0, 0.0, 15.0}, 0.0).state;
-  sim::Simulation<HumanState, HumanInputs> simulation({.step_s = 1.0 / 240.0}, start, {}, pure);
+  auto simulation =
+      sim::test::plain_simulation({.step_s = 1.0 / 240.0}, start, HumanInputs{}, pure);
   std::atomic<bool> stop{false};
   std::atomic<std::uint64_t> seen{0};
   std::vector<std::thread> others;
@@ -252,7 +255,7 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
       inputs.instruments.heart.time_s += 1.0;
       inputs.instruments.heart.rate_bpm = draws.uniform(50.0, 180.0);
       inputs.instruments.heart.quality = SignalQuality::kGood;
-      simulation.push(inputs);
+      simulation.inbox().push(inputs);
       std::this_thread::yield();
     }
   });
@@ -262,7 +265,8 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
   simulation.stop();
   stop = true;
   for (std::thread& thread : others) thread.join();
-  EXPECT_FALSE(sim::replay(simulation.log(), start, pure).first_difference.has_value());
+  EXPECT_FALSE(sim::replay(simulation.log(), start, pure, sim::test::apply_whole<HumanInputs>)
+                   .first_difference.has_value());
   EXPECT_GT(simulation.log().entries.size(), 2u);
   EXPECT_EQ(simulation.newest().state.life.vitals.measured, kHeartMeasured);
   EXPECT_EQ(simulation.refused_states(), 0u);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/sim/simulation.hpp"
+#include "tests/sim/spring.hpp"
 
 namespace neritic::sim {
 namespace {
@@ -97,21 +98,22 @@ TEST(Block, ItsHashSaysHowManyThereAre) {
 
 // Lock-step, a refused step and a snapshot, of a block as of a plain struct.
 TEST(Block, IsAStateThatSteps) {
-  Simulation<Fleet, Buoy> simulation(
-      {.step_s = 0.5}, Fleet(3, 1), {},
+  Simulation<Fleet, Buoy, test::PlainInbox<Buoy>> simulation(
+      {.step_s = 0.5}, Fleet(3, 1), {}, std::make_unique<test::PlainInbox<Buoy>>(),
       [](const Fleet& before, const Buoy& inputs, const StepTime& time, Fleet& after) {
         after = before;
         for (Boat& boat : after.boats()) boat.at_m.x += boat.speed_m_s * time.step_s;
         after.buoys()[0].number = time.step;
         if (inputs.number == 0) after.boats()[2].at_m.y = std::nan("");
-      });
+      },
+      [](Buoy& inputs, const Buoy& message, std::uint64_t) { inputs = message; });
   auto reader = simulation.reader();
   simulation.advance(4);
   ASSERT_TRUE(reader.update());
   EXPECT_EQ(reader.newest().state.boats()[2].at_m.x, 5.0);
   EXPECT_EQ(reader.previous().state.boats()[2].at_m.x, 3.75);
   EXPECT_EQ(reader.newest().state.buoys()[0].number, 3u);
-  simulation.push({0});
+  simulation.inbox().push({0});
   simulation.advance(1);
   EXPECT_EQ(simulation.refused_states(), 1u);
   EXPECT_EQ(simulation.newest().state.boats()[0].at_m.x, 5.0);

@@ -134,15 +134,18 @@ TEST(SnapshotReader, ComesAndGoesWhileTheThreadRuns) {
   for (std::thread& thread : threads) thread.join();
   spring.stop();
   EXPECT_EQ(faults, 0u);
-  const ReplayReport report = replay(spring.log(), test::SpringState{}, test::spring_step);
+  const ReplayReport report = replay(spring.log(), test::SpringState{}, test::spring_step,
+                                     test::apply_whole<test::SpringInputs>);
   EXPECT_FALSE(report.first_difference.has_value());
 }
 
 TEST(SnapshotReader, LeftBehindByItsSimulationIsABug) {
   EXPECT_DEATH(
       {
-        auto spring = std::make_unique<test::Spring>(SimulationOptions{}, test::SpringState{},
-                                                     test::SpringInputs{}, test::spring_step);
+        auto spring = std::make_unique<test::Spring>(
+            SimulationOptions{}, test::SpringState{}, test::SpringInputs{},
+            std::make_unique<test::PlainInbox<test::SpringInputs>>(), test::spring_step,
+            test::apply_whole<test::SpringInputs>);
         auto reader = spring->reader();
         spring.reset();
       },

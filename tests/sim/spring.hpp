@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "engine/sim/simulation.hpp"
+#include "tests/sim/plain_inbox.hpp"
 
 namespace neritic::sim::test {
 
@@ -46,10 +46,16 @@ inline SpringState blend_spring(const SpringState& a, const SpringState& b, doub
   return out;
 }
 
-using Spring = Simulation<SpringState, SpringInputs>;
+using Spring = Simulation<SpringState, SpringInputs, PlainInbox<SpringInputs>>;
 
+template <class Function>
+Spring make_spring(SimulationOptions options, Function step) {
+  return Spring(options, SpringState{}, SpringInputs{},
+                std::make_unique<PlainInbox<SpringInputs>>(), std::move(step),
+                apply_whole<SpringInputs>);
+}
 inline Spring make_spring(SimulationOptions options = {}) {
-  return Spring(options, SpringState{}, SpringInputs{}, spring_step);
+  return make_spring(options, spring_step);
 }
 
 }  // namespace neritic::sim::test

@@ -8,6 +8,7 @@
 
 #include "engine/core/files.hpp"
 #include "testbed/record/dive_record.hpp"
+#include "testbed/record/run_record.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/neritic/dive_picture.hpp"
 #include "tools/neritic/dive_told.hpp"
@@ -94,7 +95,7 @@ Status write_results(const DiveFlags& flags, const std::string& title, const Phy
         write_state(flags.save, world.state_format(),
                     {simulation.newest().step, simulation.newest().state, simulation.inputs()}));
   if (!flags.record.empty())
-    written.push_back(sim::write_input_log(flags.record, simulation.log()));
+    written.push_back(write_sample_log(flags.record, recorded_run(world, simulation)));
   if (!flags.log.empty())
     written.push_back(
         write_text(flags.log, csv_of(world, recorder.rows(), recorder.humans().rows())));
@@ -107,11 +108,12 @@ Status write_results(const DiveFlags& flags, const std::string& title, const Phy
 }
 
 Status replay_dive(const DiveFlags& flags, const PhysicsWorld& world) {
-  NERITIC_TRY(const auto log, sim::read_input_log(flags.replay, world.start_inputs()));
+  NERITIC_TRY(const SampleLog log, read_sample_log(flags.replay));
   if (log.step_s != world.step_s())
     return bad_input("{}: steps of {} s; accepted: {} s, as in {}", flags.replay, log.step_s,
                      world.step_s(), flags.scene);
-  const auto report = sim::replay(log, world.start(), world.step_function());
+  NERITIC_TRY_STATUS(check_streams(log, world.streams(), flags.replay));
+  const sim::ReplayReport report = replay_run(world, log);
   if (report.first_difference)
     return failure(ErrorCode::kUnsupported, "{}: another state than recorded from step {} of {} on",
                    flags.replay, *report.first_difference, log.steps());

@@ -167,6 +167,33 @@ nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& s
           {"end", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}}};
 }
 
+// A line a live source that sent anything wrong or had samples replaced.
+std::string source_lines(const SampleInbox& inbox) {
+  std::string lines;
+  const auto names = inbox.source_names();
+  for (SourceId id = 0; id < names.size(); ++id) {
+    const SourceCounts counts = inbox.counts(id);
+    if (counts.refused() + counts.lost + counts.dropped == 0) continue;
+    lines += fmt::format("source {}: {} samples used, {} lost, {} dropped, {} refused\n", names[id],
+                         counts.accepted - counts.dropped, counts.lost, counts.dropped,
+                         counts.refused());
+  }
+  return lines;
+}
+
+// A line a group of inputs whose live source fell silent or never spoke.
+template <class Group, class Groups>
+std::string silence_lines(const std::string& name, const Groups& groups) {
+  std::string lines;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const std::string group = fmt::format("{}: {}: ", name, name_of(static_cast<Group>(i)));
+    if (groups[i].phase == GroupPhase::kWaiting) lines += group + "its source never spoke\n";
+    if (groups[i].losses > 0)
+      lines += group + fmt::format("its source fell silent {} times\n", groups[i].losses);
+  }
+  return lines;
+}
+
 }  // namespace
 
 nlohmann::json changes_json(const PhysicsHuman& human, const HumanFigures& figures) {
@@ -234,11 +261,18 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
     return;
   }
   for (std::size_t i = 0; i < world.vehicles().size(); ++i)
-    fmt::print("{}",
-               vehicle_line(world.vehicles()[i], newest.state.vehicles()[i], recorder.figures()[i]));
+    fmt::print(
+        "{}", vehicle_line(world.vehicles()[i], newest.state.vehicles()[i], recorder.figures()[i]));
   for (std::size_t i = 0; i < world.humans().size(); ++i)
     fmt::print("{}", human_line(world.humans()[i], newest.state.humans()[i],
                                 recorder.humans().figures()[i]));
+  for (std::size_t i = 0; i < world.vehicles().size(); ++i)
+    fmt::print("{}", silence_lines<VehicleGroup>(world.vehicles()[i].name,
+                                                 newest.state.vehicles()[i].groups));
+  for (std::size_t i = 0; i < world.humans().size(); ++i)
+    fmt::print("{}",
+               silence_lines<DiverGroup>(world.humans()[i].name, newest.state.humans()[i].groups));
+  fmt::print("{}", source_lines(simulation.inbox()));
   fmt::print("{:g} s in {} steps, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",
              newest.time_s, newest.step, speed, pace.dropped, hash);
 }

@@ -4,7 +4,8 @@
 #include <thread>
 
 #include "testbed/record/dive_record.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "testbed/record/run_record.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -89,12 +90,12 @@ TEST(PhysicsDeterminism, APilotAndAReaderBesideTheThreadThatSteps) {
   sim::SimulatedClock clock;
   auto reader = dive.simulation->reader();
   dive.simulation->start(clock);
-  std::jthread pilot([&](const std::stop_token& stop) {
+  std::jthread sender([&](const std::stop_token& stop) {
     for (std::uint64_t i = 0; !stop.stop_requested(); ++i) {
-      VehicleInputs inputs;
+      Piloting inputs;
       inputs.piloted = i % 3 == 0 ? 0 : 1;
       inputs.pilot[i % 6] = i % 17 == 0 ? std::nan("") : 5.0 * std::sin(0.1 * double(i));
-      dive.simulation->push({i % 2, inputs});
+      pilot(dive, static_cast<std::uint32_t>(i % 2), inputs);
       std::this_thread::yield();
     }
   });
@@ -105,13 +106,12 @@ TEST(PhysicsDeterminism, APilotAndAReaderBesideTheThreadThatSteps) {
     seen = reader.newest().step;
     ASSERT_TRUE(sim::all_finite(reader.newest().state));
   }
-  pilot.request_stop();
-  pilot.join();
+  sender.request_stop();
+  sender.join();
   dive.simulation->stop();
-  EXPECT_GT(dive.simulation->inbox_counts().refused, 0u);
+  EXPECT_GT(dive.simulation->inbox().counts(1).refused(), 0u);
   EXPECT_GT(dive.simulation->log().entries.size(), 1u);
-  const auto report =
-      sim::replay(dive.simulation->log(), dive.world->start(), dive.world->step_function());
+  const auto report = replayed(*dive.world, dive.simulation->log());
   EXPECT_GE(report.steps, 1200u);
   EXPECT_FALSE(report.first_difference.has_value());
 }
@@ -120,25 +120,26 @@ TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
   const test::ScratchFolder scratch;
   TestDive dive = dive_of(busy_text());
   dive.run(1.0);
-  VehicleInputs inputs;
+  Piloting inputs;
   inputs.piloted = 1;
   inputs.pilot[0] = 30.0;
   inputs.failed_thrusters = 2;
-  dive.simulation->push({0, inputs});
+  pilot(dive, 0, inputs);
   dive.run(2.0);
   inputs.pilot[5] = -4.0;
-  dive.simulation->push({1, inputs});
-  dive.simulation->push({7, inputs});  // of nobody
+  pilot(dive, 1, inputs);
   dive.run(2.0);
-  ASSERT_TRUE(sim::write_input_log(scratch / "dive.log", dive.simulation->log()).ok());
-  auto log = sim::read_input_log(scratch / "dive.log", dive.world->start_inputs());
+  ASSERT_TRUE(
+      write_sample_log(scratch / "dive.log", recorded_run(*dive.world, *dive.simulation)).ok());
+  auto log = read_sample_log(scratch / "dive.log");
   ASSERT_TRUE(log.ok()) << log.error().message;
-  const auto step = dive.world->step_function();
-  const auto report = sim::replay(*log, dive.world->start(), step);
+  const auto report = replay_run(*dive.world, *log);
   EXPECT_EQ(report.steps, 1200u);
   EXPECT_FALSE(report.first_difference.has_value());
-  log->entries[1].inputs.vehicles()[0].pilot[0] = 35.0;
-  const auto other = sim::replay(*log, dive.world->start(), step);
+  auto& wrench = std::get<VehicleWrench>(log->entries[3].sample.payload);
+  EXPECT_EQ(wrench.wrench[0], 30.0);
+  wrench.wrench[0] = 35.0;
+  const auto other = replay_run(*dive.world, *log);
   ASSERT_TRUE(other.first_difference.has_value());
   EXPECT_GT(*other.first_difference, 240u);
   EXPECT_LT(*other.first_difference, 260u);
@@ -147,7 +148,6 @@ TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
 TEST(PhysicsDeterminism, TheStateNamesEveryByte) {
   sim::check_fields_cover(PhysicsState(3, 2, 2));
   sim::check_fields_cover(PhysicsInputs(3, 2));
-  sim::check_fields_cover(PhysicsMessage{});
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // A diver and a vehicle, or another diver, that meet: neither gets into the other, what one gives
 // the other takes, and both go on.
 #include "engine/sim/convex_query.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -38,8 +38,8 @@ TestDive meeting() {
                  rov_text("position_m = [-1.6, -12, -0.3]\nyaw_deg = -90\n"));
 }
 
-VehicleInputs ahead_by(double newton) {
-  VehicleInputs ahead;
+Piloting ahead_by(double newton) {
+  Piloting ahead;
   ahead.piloted = 1;
   ahead.pilot[0] = newton;
   return ahead;
@@ -52,7 +52,7 @@ double rov_in_diver_m(const TestDive& dive) {
 
 TEST(DiverMeets, AVehicleAtFullThrustDoesNotGetIntoADiverAndPushes) {
   TestDive dive = meeting();
-  dive.simulation->push({0, ahead_by(400.0)});
+  pilot(dive, 0, ahead_by(400.0));
   dive.run(12.0, [&] { ASSERT_LT(rov_in_diver_m(dive), 0.02) << dive.time_s(); });
   const HumanPhysics& human = dive.state().humans()[0];
   EXPECT_GT(human.contact.touched_steps, 50u);
@@ -64,7 +64,7 @@ TEST(DiverMeets, AVehicleAtFullThrustDoesNotGetIntoADiverAndPushes) {
 TEST(DiverMeets, RunsAgree) {
   const auto hashes = [] {
     TestDive dive = meeting();
-    dive.simulation->push({0, ahead_by(60.0)});
+    pilot(dive, 0, ahead_by(60.0));
     dive.run(6.0);
     EXPECT_GT(dive.state().humans()[0].contact.touched_steps, 0u);
     return dive.simulation->log().hashes;
@@ -87,7 +87,7 @@ Blow blow_of(const Mat6& mass, const Quat& attitude, const Vec3& at_ned_m, const
 TEST(DiverMeets, WhatTheVehicleLosesTheDiverTakes) {
   TestDive dive = meeting();
   PhysicsInputs inputs = dive.world->start_inputs();
-  inputs.vehicles()[0] = ahead_by(60.0);
+  inputs.vehicles()[0] = held(ahead_by(60.0));
   PhysicsState state = dive.world->start();
   const double dt_s = 1.0 / 240.0;
   int hits = 0;

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "rov/step.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -46,17 +46,17 @@ TEST(PhysicsExtremes, EveryNumberOfAMessageIsRefusedWhereItIsNone) {
   std::uint64_t refused = 0;
   for (std::size_t i = 0; i < 6; ++i)
     for (const double value : {kNan, kInf, -kInf}) {
-      VehicleInputs inputs;
+      Piloting inputs;
       inputs.piloted = 1;
       inputs.pilot[i] = value;
-      EXPECT_FALSE(dive.simulation->push({0, inputs}));
+      EXPECT_FALSE(pilot(dive, 0, inputs));
       ++refused;
     }
   TestDive other = dive_of(dive.scene);
   other.run(10.0);
   dive.run(5.0);
   other.run(5.0);
-  EXPECT_EQ(dive.simulation->inbox_counts().refused, refused);
+  EXPECT_EQ(dive.simulation->inbox().counts(1).refused(), refused);
   EXPECT_EQ(dive.simulation->newest().hash, other.simulation->newest().hash);  // the last good held
 }
 
@@ -67,8 +67,8 @@ TEST(PhysicsExtremes, WrenchesOfAnySizeAndInputsThatAreNoNumbersLeaveFiniteState
       const TestDive dive = dive_of(scene_text());
       PhysicsState state = dive.world->start();
       PhysicsInputs inputs = dive.world->start_inputs();
-      inputs.vehicles()[0].piloted = 1;
-      inputs.vehicles()[0].pilot[axis] = value;
+      inputs.vehicles()[0] = held({.piloted = 1});
+      inputs.vehicles()[0].wrench.wrench[axis] = value;
       std::uint64_t i = 0;
       for (; i < 480; ++i) {
         state = dive.world->step(state, inputs, {i, dive.world->step_s()});
@@ -80,7 +80,7 @@ TEST(PhysicsExtremes, WrenchesOfAnySizeAndInputsThatAreNoNumbersLeaveFiniteState
         EXPECT_GT(body.refused_inputs, 0u) << value << " " << axis;
       }
       // And it comes to rest when the pilot lets go.
-      inputs.vehicles()[0].pilot = {};
+      inputs.vehicles()[0].wrench = {};
       for (; i < 480 + 10 * 240; ++i)
         state = dive.world->step(state, inputs, {i, dive.world->step_s()});
       EXPECT_LT(glm::length(state.vehicles()[0].body.velocity.linear()), 0.3)
@@ -115,8 +115,8 @@ TEST(PhysicsExtremes, TenKilonewtonIntoABlockNeverGetInsideAtAnyMassAndStep) {
       const TestDive dive = dive_of(text);
       PhysicsState state = dive.world->start();
       PhysicsInputs inputs = dive.world->start_inputs();
-      inputs.vehicles()[0].piloted = 1;
-      inputs.vehicles()[0].pilot[0] = 1e4;  // north: into the block
+      inputs.vehicles()[0] = held({.piloted = 1});
+      inputs.vehicles()[0].wrench.wrench[0] = 1e4;  // north: into the block
       double fastest_m_s = 0.0;
       std::uint64_t step = 0;
       for (double t_s = 0.0; t_s < 20.0; t_s += dt_s) {

@@ -1,6 +1,6 @@
 // What a vehicle's inertial unit feels of what it touches.
 #include "rov/sensor_set.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -67,10 +67,10 @@ TEST(FeltContact, AtRestOnTheBedItReadsGravityUpward) {
 TEST(FeltContact, HeldByAWallItReadsNoPush) {
   TestDive dive = dive_of(std::string("[physics]\n") + kWall +
                           rov_text("position_m = [1.2, -10, 0]\nyaw_deg = -90\n"));
-  VehicleInputs inputs;
+  Piloting inputs;
   inputs.piloted = 1;
   inputs.pilot[0] = 60.0;  // 3 m/s^2 if nothing stood there
-  dive.simulation->push({0, inputs});
+  pilot(dive, 0, inputs);
   dive.run(10.0);
   Feeler imu(dive, 100.0);
   dive.run(5.0, [&] {
@@ -92,10 +92,10 @@ TEST(FeltContact, AHitAddsUpToTheChangeOfVelocity) {
     TestDive dive = dive_of(std::string("[physics]\n") + kWall +
                             rov_text("position_m = [0.6, -10, 0]\nyaw_deg = -90\n"));
     Feeler imu(dive, rate_hz);
-    VehicleInputs inputs;
+    Piloting inputs;
     inputs.piloted = 1;
     inputs.pilot[0] = 80.0;
-    dive.simulation->push({0, inputs});
+    pilot(dive, 0, inputs);
     double fastest_m_s = 0.0, hardest = 0.0;
     dive.run(3.0, [&] {
       imu.read();
@@ -117,10 +117,10 @@ TEST(FeltContact, VehiclesThatMeetFeelEachOther) {
   TestDive dive =
       dive_of("[physics]\n" + rov_text("position_m = [-1.5, -6, 0]\nyaw_deg = -90\n", "one") +
               rov_text("position_m = [0.5, -6, 0]\nyaw_deg = -90\n", "other"));
-  VehicleInputs ahead;
+  Piloting ahead;
   ahead.piloted = 1;
   ahead.pilot[0] = 80.0;
-  dive.simulation->push({0, ahead});
+  pilot(dive, 0, ahead);
   Feeler one(dive, 200.0, 0), other(dive, 200.0, 1);
   double fastest_m_s = 0.0;
   while (dive.vehicle(1).contact.touched_steps < 24 && dive.time_s() < 10.0) {

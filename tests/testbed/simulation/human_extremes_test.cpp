@@ -8,7 +8,8 @@
 
 #include "diver/frames.hpp"
 #include "engine/core/random.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "testbed/record/run_record.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -46,13 +47,13 @@ const HumanPhysics& human_of(const TestDive& dive) {
 }
 
 // What a suit and its buttons never send, differently for each index.
-HumanSteering wild_steering(std::uint64_t index) {
+Suit wild_steering(std::uint64_t index) {
   const RandomKey key{20261105, 7, index};
   std::uint64_t count = 0;
   const auto uniform = [&](double from, double to) {
     return from + (to - from) * random_uniform(key, count++);
   };
-  HumanSteering out;
+  Suit out;
   out.worn = 1;
   for (Quat& q : out.human.joints)
     q = glm::normalize(Quat(uniform(0.1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
@@ -77,7 +78,7 @@ TEST(HumanDiveDeterminism, AHundredRunsHaveTheSameHashes) {
   const auto run = [&] {
     const auto simulation = first.world->simulation({});
     simulation->advance(240);
-    simulation->push({.vehicle = 0, .is_human = 1, .steering = wild_steering(3)});
+    wear(*first.world, *simulation, 0, wild_steering(3));
     simulation->advance(120);
     return simulation->log().hashes;
   };
@@ -105,9 +106,9 @@ TEST(HumanDiveDeterminism, TheThreadUnderLoadWithReadersAndSendersReplaysInLockS
     });
   others.emplace_back([&] {
     for (std::uint64_t i = 0; !stop; ++i) {
-      HumanSteering steering = wild_steering(i);
+      Suit steering = wild_steering(i);
       steering.worn = i % 3 == 0;
-      simulation->push({.vehicle = i % 3, .is_human = i % 2, .steering = steering});
+      wear(*dive.world, *simulation, 0, steering);
       std::this_thread::yield();
     }
   });
@@ -117,8 +118,7 @@ TEST(HumanDiveDeterminism, TheThreadUnderLoadWithReadersAndSendersReplaysInLockS
   simulation->stop();
   stop = true;
   for (std::thread& thread : others) thread.join();
-  const auto report =
-      sim::replay(simulation->log(), dive.world->start(), dive.world->step_function());
+  const auto report = replayed(*dive.world, simulation->log());
   EXPECT_FALSE(report.first_difference.has_value());
   EXPECT_EQ(report.steps, simulation->log().steps());
   EXPECT_GT(simulation->log().entries.size(), 2u);
@@ -129,18 +129,20 @@ TEST(HumanDiveDeterminism, ARecordedDiveReplaysFromItsFile) {
   const test::ScratchFolder scratch;
   TestDive dive = dive_of(busy_diver_text());
   for (std::uint64_t i = 0; i < 20; ++i) {
-    HumanSteering steering = wild_steering(i);
+    Suit steering = wild_steering(i);
     steering.worn = i % 2;
-    ASSERT_TRUE(dive.simulation->push({.is_human = 1, .steering = steering}));
+    ASSERT_TRUE(wear(dive, 0, steering));
     dive.run(0.1);
   }
-  ASSERT_TRUE(sim::write_input_log(scratch / "dive.log", dive.simulation->log()).ok());
-  auto log = sim::read_input_log(scratch / "dive.log", dive.world->start_inputs());
+  ASSERT_TRUE(
+      write_sample_log(scratch / "dive.log", recorded_run(*dive.world, *dive.simulation)).ok());
+  auto log = read_sample_log(scratch / "dive.log");
   ASSERT_TRUE(log.ok()) << log.error().message;
-  const auto step = dive.world->step_function();
-  EXPECT_FALSE(sim::replay(*log, dive.world->start(), step).first_difference.has_value());
-  log->entries[1].inputs.humans()[0].human.joints[2] = glm::angleAxis(1.0, Vec3(0.0, 1.0, 0.0));
-  EXPECT_TRUE(sim::replay(*log, dive.world->start(), step).first_difference.has_value());
+  EXPECT_FALSE(replay_run(*dive.world, *log).first_difference.has_value());
+  for (auto& entry : log->entries)
+    if (auto* body = std::get_if<BodyJoints>(&entry.sample.payload))
+      body->joints[2] = glm::angleAxis(1.0, Vec3(0.0, 1.0, 0.0));
+  EXPECT_TRUE(replay_run(*dive.world, *log).first_difference.has_value());
 }
 
 TEST(HumanDiveExtremes, AWildSuitIsBoundedAndTheDiverSwimsOn) {
@@ -148,7 +150,7 @@ TEST(HumanDiveExtremes, AWildSuitIsBoundedAndTheDiverSwimsOn) {
   dive.run(2.0);
   double fastest_m_s = 0.0;
   for (std::uint64_t i = 0; i < 5 * 240; ++i) {
-    ASSERT_TRUE(dive.simulation->push({.is_human = 1, .steering = wild_steering(i)}));
+    ASSERT_TRUE(wear(dive, 0, wild_steering(i)));
     dive.run(1.0 / 240.0);
     ASSERT_TRUE(sim::all_finite(dive.state())) << i;
     fastest_m_s = std::max(fastest_m_s, speed_of(human_of(dive)));
@@ -159,7 +161,7 @@ TEST(HumanDiveExtremes, AWildSuitIsBoundedAndTheDiverSwimsOn) {
   EXPECT_EQ(dive.simulation->refused_states(), 0u);
   // The suit is taken off, its buttons have emptied the jacket: where it goes on from once that is
   // made good, and how far it comes.
-  ASSERT_TRUE(dive.simulation->push({.is_human = 1, .steering = {}}));
+  ASSERT_TRUE(wear(dive, 0, Suit{}));
   dive.run(60.0);
   const Vec3 from = human_of(dive).human.root.position_ned_m;
   const double to_go = glm::distance(from, dive.world->humans()[0].waypoints_ned_m[0]);
@@ -175,12 +177,12 @@ TEST(HumanDiveExtremes, AWildSuitIsBoundedAndTheDiverSwimsOn) {
 TEST(HumanDiveExtremes, ATankThatIsNoneHoldsTissuesAndNotTheComputer) {
   TestDive dive = dive_of(busy_diver_text());
   dive.run(3.0);
-  HumanSteering steering;
+  Suit steering;
   steering.worn = 1;
   steering.human.joints = diver::rotations_of(diver::streamlined(dive.world->humans()[0].body));
   steering.human.buttons = diver::kInflate;
   steering.human.tank = 3;
-  ASSERT_TRUE(dive.simulation->push({.is_human = 1, .steering = steering}));
+  ASSERT_TRUE(wear(dive, 0, steering));
   dive.run(1.5);
   const diver::DiveComputerState before = human_of(dive).human.life.computer;
   dive.run(20.0);
@@ -195,7 +197,7 @@ TEST(HumanDiveExtremes, ATankThatIsNoneHoldsTissuesAndNotTheComputer) {
   EXPECT_TRUE(sim::same_bits(computer.tissues, before.tissues));
   EXPECT_TRUE(sim::same_bits(computer.oxygen, before.oxygen));
   steering.human.tank = 0;
-  ASSERT_TRUE(dive.simulation->push({.is_human = 1, .steering = steering}));
+  ASSERT_TRUE(wear(dive, 0, steering));
   dive.run(15.0);
   EXPECT_EQ(human_of(dive).human.life.computer.last.breathed, 1u);
   EXPECT_FALSE(sim::same_bits(human_of(dive).human.life.computer.tissues, before.tissues));
@@ -208,30 +210,30 @@ TEST(HumanDiveExtremes, MessagesThatAreNoNumbersNeverComeIn) {
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
         -std::numeric_limits<double>::infinity()})
     for (int place = 0; place < 4; ++place) {
-      HumanSteering steering;
+      Suit steering;
       steering.worn = 1;
       if (place == 0) steering.human.joints[5].y = bad;
-      if (place == 1) steering.human.current_ned_m_s.z = bad;
+      if (place == 1) steering.human.instruments.gaze.direction.z = bad;
       if (place == 2) steering.human.instruments.heart.over_five_minutes.sdnn_ms = bad;
       if (place == 3) steering.human.breath_bias_m3 = bad;
-      EXPECT_FALSE(dive.simulation->push({.is_human = 1, .steering = steering}));
+      EXPECT_FALSE(wear(dive, 0, steering));
       ++pushed;
       dive.run(0.05);
       untouched.run(0.05);
     }
-  EXPECT_EQ(dive.simulation->inbox_counts().refused, pushed);
+  EXPECT_EQ(dive.simulation->inbox().counts(1).refused(), pushed);
   EXPECT_EQ(dive.simulation->newest().hash, untouched.simulation->newest().hash);
 }
 
 // Beneath the surface the diver comes up, is held there by what floats it, and goes on living.
 TEST(HumanDiveExtremes, FullInflationEndsAtTheSurface) {
   TestDive dive = dive_of(busy_diver_text());
-  HumanSteering steering;
+  Suit steering;
   steering.worn = 1;
   steering.human.joints = diver::rotations_of(diver::streamlined(dive.world->humans()[0].body));
   steering.human.buttons = diver::kInflate;
   steering.human.hold_breath = 1;
-  ASSERT_TRUE(dive.simulation->push({.is_human = 1, .steering = steering}));
+  ASSERT_TRUE(wear(dive, 0, steering));
   double fastest_m_s = 0.0;
   dive.run(40.0, [&] { fastest_m_s = std::max(fastest_m_s, speed_of(human_of(dive))); });
   const diver::HumanState& human = human_of(dive).human;

@@ -1,7 +1,7 @@
 // Which tank a scene's diver breathes from: by the plan of his gases, another where one is out, and
 // what is told of it.
 #include "testbed/record/dive_record.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -133,10 +133,10 @@ TEST(HumanGas, ADiveBeginsOnAGasThatCanBeBreathed) {
 // A person in the suit has hands.
 TEST(HumanGas, WhoWearsTheSuitSaysWhatIsBreathed) {
   GasDive d(kNitroxFor21m, "position_m = [0, -15, 0]\n");
-  HumanSteering steering;
+  Suit steering;
   steering.worn = 1;
   steering.human.tank = 1;
-  ASSERT_TRUE(d.dive.simulation->push({.vehicle = 0, .is_human = 1, .steering = steering}));
+  ASSERT_TRUE(wear(d.dive, 0, steering));
   d.run(5.0);
   EXPECT_EQ(d.human().human.held.tank, 1u);
 }

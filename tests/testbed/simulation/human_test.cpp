@@ -3,7 +3,7 @@
 #include "diver/frames.hpp"
 #include "engine/scene/animation.hpp"
 #include "testbed/record/dive_record.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -219,19 +219,18 @@ TEST(HumanDive, RunsAndReplaysWithTheSameHashes) {
                                "swim = { waypoints_m = [[3, -12, -6], [0, -11, 0]] }\n");
   TestDive a = dive_of(text), b = dive_of(text);
   a.run(4.0);
-  HumanSteering steering;
+  Suit steering;
   steering.worn = 1;
   steering.human.buttons = diver::kInflate;
   steering.human.joints = diver::rotations_of(diver::streamlined(a.world->humans()[0].body));
-  ASSERT_TRUE(a.simulation->push({.vehicle = 0, .is_human = 1, .steering = steering}));
-  ASSERT_TRUE(a.simulation->push({.vehicle = 9, .is_human = 1, .steering = steering}));  // nobody
+  ASSERT_TRUE(wear(a, 0, steering));
   a.run(3.0);
   b.run(4.0);
   const auto& hashes = a.simulation->log().hashes;
   for (std::size_t i = 0; i <= 960; ++i) ASSERT_EQ(hashes[i], b.simulation->log().hashes[i]) << i;
   EXPECT_GT(a.state().humans()[0].human.life.jacket_moles,
             b.state().humans()[0].human.life.jacket_moles);
-  const auto report = sim::replay(a.simulation->log(), a.world->start(), a.world->step_function());
+  const auto report = replayed(*a.world, a.simulation->log());
   EXPECT_FALSE(report.first_difference.has_value());
   EXPECT_EQ(report.steps, a.simulation->log().steps());
 }

@@ -1,6 +1,6 @@
 // Missions flown: waypoints reached in order, faced as said; circles, formations and stations held;
 // with a thruster lost, on a tether, in a current, by a pilot.
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -223,10 +223,10 @@ TEST(Mission, APilotTakesOverAndGivesBack) {
   TestDive dive = dive_of(kStill + rov_text("position_m = [0, -10, 0]\nyaw_deg = -90\n"
                                             "mission = { hold = \"station\" }\n"));
   dive.run(2.0);
-  VehicleInputs inputs;
+  Piloting inputs;
   inputs.piloted = 1;
   inputs.pilot[0] = 40.0;  // forwards, which is east
-  dive.simulation->push({0, inputs});
+  pilot(dive, 0, inputs);
   dive.run(5.0);
   const Vec3 flown = dive.pose().position_m;
   EXPECT_GT(flown.x, 1.5);
@@ -235,11 +235,11 @@ TEST(Mission, APilotTakesOverAndGivesBack) {
   EXPECT_LT(apart_deg(heading_deg(dive.pose()), 90.0), 2.0);
   inputs.pilot = {};
   inputs.pilot[5] = 3.0;  // to starboard
-  dive.simulation->push({0, inputs});
+  pilot(dive, 0, inputs);
   dive.run(2.0);
   const double turned_deg = heading_deg(dive.pose());
   EXPECT_GT(apart_deg(turned_deg, 90.0), 30.0);
-  dive.simulation->push({0, {}});
+  pilot(dive, 0, Piloting{});
   dive.run(20.0);
   EXPECT_LT(dive.speed_m_s(), 0.005);  // station where it was given back
   EXPECT_GT(dive.pose().position_m.x, 1.5);

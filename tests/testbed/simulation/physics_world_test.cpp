@@ -5,7 +5,7 @@
 #include "rov/step_choice.hpp"
 #include "testbed/record/dive_record.hpp"
 #include "testbed/simulation/static_scene.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -38,10 +38,10 @@ TEST(PhysicsWorld, StartsWhereTheSceneSaysInMarineAxes) {
 TEST(PhysicsWorld, SurgeHeaveAndYawMoveItAsTheSceneSeesThem) {
   const auto moved_by = [](std::size_t axis, double amount) {
     TestDive dive = dive_of(kPhysics + rov_text("position_m = [0, -10, 0]\nyaw_deg = -90\n"));
-    VehicleInputs inputs;
+    Piloting inputs;
     inputs.piloted = 1;
     inputs.pilot[axis] = amount;
-    dive.simulation->push({0, inputs});
+    pilot(dive, 0, inputs);
     dive.run(2.0);
     return dive.pose();
   };
@@ -97,10 +97,10 @@ TEST(PhysicsWorld, WhatRisesFloatsAtItsDraught) {
 
 TEST(PhysicsWorld, ThrustersOutOfTheWaterPushNothing) {
   TestDive dive = dive_of(kPhysics + rov_text("position_m = [0, -1, 0]\n"));
-  VehicleInputs inputs;
+  Piloting inputs;
   inputs.piloted = 1;
   inputs.pilot[2] = -400.0;  // up, with all that it has: more than its weight
-  dive.simulation->push({0, inputs});
+  pilot(dive, 0, inputs);
   double highest_m = -1.0;
   dive.run(30.0, [&] { highest_m = std::max(highest_m, dive.pose().position_m.y); });
   EXPECT_GT(highest_m, 0.0);

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "engine/core/random.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -39,13 +39,11 @@ SavedState saved_of(const PhysicsSimulation& simulation) {
 }
 
 // A pilot and a suit change the inputs now and then.
-void push_some(PhysicsSimulation& simulation, std::uint64_t step) {
+void push_some(const TestDive& dive, std::uint64_t step) {
   if (step % 97 != 0) return;
-  PhysicsMessage message;
-  message.vehicle = 1;
-  message.inputs.piloted = step / 97 % 2;
-  message.inputs.pilot[0] = 10.0;
-  simulation.push(message);
+  Piloting piloting{.piloted = step / 97 % 2};
+  piloting.pilot[0] = 10.0;
+  pilot(dive, 1, piloting);
 }
 
 // 1 000 steps of a run, each restored from bytes in another simulation, of a world built anew, that
@@ -64,7 +62,7 @@ TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
   for (std::uint64_t step = 0; step < kSteps + kOn; ++step) {
     if (std::ranges::find(places, step) != places.end())
       saved[step] = encode_state(format, saved_of(*run.simulation));
-    push_some(*run.simulation, step);
+    push_some(run, step);
     run.simulation->advance(1);
   }
   const auto& hashes = run.simulation->log().hashes;
@@ -75,7 +73,7 @@ TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
     other.simulation->restore(restored->step, restored->state, restored->inputs);
     ASSERT_EQ(other.simulation->newest().hash, hashes[place]) << place;
     for (std::uint64_t i = 0; i < kOn; ++i) {
-      push_some(*other.simulation, place + i);
+      push_some(other, place + i);
       other.simulation->advance(1);
       ASSERT_EQ(other.simulation->newest().hash, hashes[place + i + 1]) << place << " + " << i + 1;
     }
@@ -139,6 +137,9 @@ TEST(SavedState, ACameraMoreIsTheSameSceneAndAnyOtherWaypointOrWallIsNot) {
   EXPECT_NE(changed("seed = 5", "seed = 6"), first);
   EXPECT_NE(changed("[0.2, 0, 0.1]", "[0.2, 0, 0.2]"), first);
   EXPECT_NE(changed("size_m = [6, 4, 0.5]", "size_m = [6, 4, 0.6]"), first);
+  EXPECT_NE(
+      changed("position_m = [3, -9, 1]", "position_m = [3, -9, 1]\ninputs = { wrench = \"pad\" }"),
+      first);
   EXPECT_NE(changed("[2, -8, 1]", "[2, -8, 1.1]"), first);
   EXPECT_NE(changed("[0, -9, -6]", "[0, -9, -7]"), first);
 }

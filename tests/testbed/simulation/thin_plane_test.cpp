@@ -2,7 +2,7 @@
 // that was put half way through.
 #include <algorithm>
 
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -16,11 +16,11 @@ std::string sheet_text(const std::string& more) {
 }
 
 void push(TestDive& dive, double surge_n, double sway_n = 0.0) {
-  VehicleInputs inputs;
+  Piloting inputs;
   inputs.piloted = 1;
   inputs.pilot[0] = surge_n;
   inputs.pilot[1] = sway_n;
-  dive.simulation->push({0, inputs});
+  pilot(dive, 0, inputs);
 }
 
 // From either side, at its face: it stops there, and gets off again.
@@ -61,8 +61,8 @@ TEST(ThinPlane, WhoWasPutThroughItIsLedOutAndFliesOn) {
                                 body.attitude));
       long step = 0;
       const auto x_after = [&](double seconds, double surge_n) {
-        inputs.vehicles()[0].piloted = 1;
-        inputs.vehicles()[0].pilot[0] = surge_n;
+        inputs.vehicles()[0] = held({.piloted = 1});
+        inputs.vehicles()[0].wrench.wrench[0] = surge_n;
         for (const auto end = step + std::lround(seconds * 240); step < end; ++step) {
           state = dive.world->step(state, inputs, {std::uint64_t(step), dive.world->step_s()});
           EXPECT_TRUE(sim::all_finite(state));

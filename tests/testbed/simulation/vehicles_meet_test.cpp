@@ -1,6 +1,6 @@
 // Vehicles that meet: neither gets into the other, and both fly on.
 #include "engine/sim/convex_query.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -26,11 +26,11 @@ std::string two_vehicles() {
 
 TEST(VehiclesMeet, AtFullThrustAgainstEachOtherNeitherGetsIn) {
   TestDive dive = dive_of(two_vehicles());
-  VehicleInputs ahead;
+  Piloting ahead;
   ahead.piloted = 1;
   ahead.pilot[0] = 400.0;
-  dive.simulation->push({0, ahead});
-  dive.simulation->push({1, ahead});
+  pilot(dive, 0, ahead);
+  pilot(dive, 1, ahead);
   dive.run(20.0, [&] { ASSERT_LT(depth_between(dive), 0.01) << dive.time_s(); });
   EXPECT_GT(dive.vehicle(0).contact.touched_steps, 100u);
   EXPECT_EQ(dive.vehicle(0).contact.touched_steps, dive.vehicle(1).contact.touched_steps);
@@ -40,10 +40,10 @@ TEST(VehiclesMeet, AtFullThrustAgainstEachOtherNeitherGetsIn) {
 TEST(VehiclesMeet, OneIsPushedAlongAndAllRunsAgree) {
   const auto fly = [] {
     TestDive dive = dive_of(two_vehicles());
-    VehicleInputs ahead;
+    Piloting ahead;
     ahead.piloted = 1;
     ahead.pilot[0] = 40.0;
-    dive.simulation->push({0, ahead});
+    pilot(dive, 0, ahead);
     dive.run(15.0);
     EXPECT_LT(depth_between(dive), 0.01);
     EXPECT_GT(dive.pose(1).position_m.x, 1.8);  // it lies adrift, and is pushed

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/scene/animation.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -158,10 +158,10 @@ TEST_P(WreckRamming, NobodyGetsIntoTheWreck) {
   scene::Object& rov = *std::ranges::find(scene.objects, "rov", &scene::Object::name);
   rov.mount.pose = {ram.from_m, from_yaw_pitch_roll(radians(ram.yaw_deg), 0.0, 0.0)};
   TestDive dive = dive_of(std::move(scene));
-  VehicleInputs inputs;
+  Piloting inputs;
   inputs.piloted = 1;
   inputs.pilot = ram.thrust;
-  dive.simulation->push({0, inputs});
+  pilot(dive, 0, inputs);
   const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
   dive.run(60.0, [&] {
     if (dive.simulation->newest().step % 12 == 0) {

@@ -1,0 +1,160 @@
+// Live samples on a diver in a scene: real buttons on an autopilot's body, three sources at their
+// own rates, a source that falls silent, a burst beside a thread that steps.
+#include <thread>
+
+#include "testbed/record/run_record.hpp"
+#include "tests/testbed/simulation/senders.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+std::string hover_text(const std::string& inputs) {
+  return kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
+                                  "inputs = { " + inputs + " }\n");
+}
+
+// A device of one stream, open in a dive's inbox.
+struct Device {
+  Device(const TestDive& dive, const std::string& name, const std::string& stream)
+      : inbox(dive.simulation->inbox()),
+        source(inbox.open(name).value()),
+        stream(dive.world->streams().find(stream).value()) {}
+  SampleVerdict say(const Payload& payload) {
+    return inbox.push({{stream, source, sequence++, 0, 0}, payload});
+  }
+  SampleInbox& inbox;
+  SourceId source;
+  StreamId stream;
+  std::uint64_t sequence = 0;
+};
+
+const GroupState& group(const TestDive& dive, DiverGroup group) {
+  return dive.state().humans()[0].groups[static_cast<std::size_t>(group)];
+}
+double depth_m(const TestDive& dive) {
+  return dive.state().humans()[0].human.root.position_ned_m.z;
+}
+
+TEST(LiveInputs, RealButtonsOnAnAutopilotsBodyChangeItsDepth) {
+  TestDive hovers = dive_of(hover_text("body = \"autopilot\""));
+  TestDive pressed = dive_of(hover_text("buttons = \"controllers\""));
+  Device controllers(pressed, "controllers", "diver/buttons");
+  hovers.run(8.0);
+  pressed.run(8.0, [&] { controllers.say(JacketButtons{diver::kInflate}); });
+  EXPECT_NEAR(depth_m(hovers), 12.0, 1.0);
+  EXPECT_LT(depth_m(pressed), depth_m(hovers) - 2.0);
+  EXPECT_EQ(group(pressed, DiverGroup::kButtons).phase, GroupPhase::kLive);
+  EXPECT_EQ(group(pressed, DiverGroup::kBody).phase, GroupPhase::kChosen);
+}
+
+TEST(LiveInputs, ThreeSourcesAtTheirOwnRatesAndTheReplayOfThem) {
+  TestDive dive =
+      dive_of(hover_text("body = \"suit\", buttons = \"controllers\", heart = \"strap\""));
+  Device suit(dive, "suit", "diver/joints"), controllers(dive, "controllers", "diver/buttons"),
+      strap(dive, "strap", "diver/heart");
+  BodyJoints body;
+  for (std::uint64_t step = 0; step < 5 * 240; ++step) {
+    body.joints[0] = glm::angleAxis(0.2 * std::sin(0.01 * double(step)), Vec3(0.0, 1.0, 0.0));
+    suit.say(body);
+    if (step % 24 == 0) controllers.say(JacketButtons{step / 24 % 2});
+    Heart heart;
+    heart.state.beats = step;
+    if (step % 240 == 0) strap.say(heart);
+    dive.simulation->advance(1);
+    const DiverInputs& inputs = dive.simulation->inputs().humans()[0];
+    ASSERT_EQ(inputs.body.joints[0].y, body.joints[0].y);
+    ASSERT_EQ(inputs.buttons.pressed, step / 24 % 2);
+    ASSERT_EQ(inputs.heart.state.beats, step / 240 * 240);
+  }
+  for (const DiverGroup each : {DiverGroup::kBody, DiverGroup::kButtons, DiverGroup::kHeart}) {
+    EXPECT_EQ(group(dive, each).phase, GroupPhase::kLive);
+    EXPECT_EQ(group(dive, each).losses, 0u);
+  }
+  const SampleLog log = recorded_run(*dive.world, *dive.simulation);
+  EXPECT_EQ(log.entries.size(), 1200u + 50u + 5u);
+  EXPECT_FALSE(replay_run(*dive.world, log).first_difference.has_value());
+}
+
+TEST(LiveInputs, ASuitThatFallsSilentIsCountedAndTheAutopilotSwims) {
+  TestDive dive = dive_of(hover_text("body = { from = \"suit\", hold_s = 0.25 }"));
+  Device suit(dive, "suit", "diver/joints");
+  EXPECT_EQ(group(dive, DiverGroup::kBody).phase, GroupPhase::kChosen);  // before the first step
+  dive.run(0.1);
+  EXPECT_EQ(group(dive, DiverGroup::kBody).phase, GroupPhase::kWaiting);
+  suit.say(BodyJoints{});
+  dive.run(0.2);
+  EXPECT_EQ(group(dive, DiverGroup::kBody).phase, GroupPhase::kLive);
+  dive.run(0.2);
+  EXPECT_EQ(group(dive, DiverGroup::kBody).phase, GroupPhase::kLost);
+  EXPECT_EQ(group(dive, DiverGroup::kBody).losses, 1u);
+  dive.run(20.0);
+  EXPECT_NEAR(depth_m(dive), 12.0, 2.0);
+  suit.say(BodyJoints{});
+  dive.run(0.01);
+  EXPECT_EQ(group(dive, DiverGroup::kBody).phase, GroupPhase::kLive);
+}
+
+// Three threads send while the simulation's thread steps on a simulated clock and a fourth bursts.
+TEST(LiveInputs, ABurstBesideTheSteppingThreadIsCountedAndTheRunReplays) {
+  const TestDive dive = dive_of(hover_text("body = \"suit\", buttons = \"controllers\""));
+  auto reader = dive.simulation->reader();
+  sim::SimulatedClock clock;
+  Device suit(dive, "suit", "diver/joints"), controllers(dive, "controllers", "diver/buttons"),
+      noise(dive, "noise", "diver/gas");
+  dive.simulation->start(clock);
+  std::vector<std::jthread> threads;
+  for (Device* device : {&suit, &controllers})
+    threads.emplace_back([device](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        // Every second one is of the other device's kind.
+        device->say(empty_payload(device->sequence % 2 == 0 ? PayloadKind::kBodyJoints
+                                                            : PayloadKind::kButtons));
+        std::this_thread::yield();
+      }
+    });
+  threads.emplace_back([&noise] {
+    for (int i = 0; i < 20'000; ++i) noise.say(GasSupply{});
+  });
+  for (std::uint64_t seen = 0; seen < 480;)
+    if (reader.update()) seen = reader.newest().step;
+  for (std::jthread& thread : threads) thread.request_stop();
+  for (std::jthread& thread : threads) thread.join();
+  dive.simulation->stop();
+  EXPECT_EQ(dive.simulation->inbox().counts(noise.source).accepted, 20'000u);
+  EXPECT_GT(dive.simulation->inbox().counts(suit.source).not_of_stream, 0u);
+  EXPECT_FALSE(replay_run(*dive.world, recorded_run(*dive.world, *dive.simulation))
+                   .first_difference.has_value());
+}
+
+// A million samples from another thread: the drain of each step takes what a step has time for.
+TEST(LiveInputs, ABurstOfAMillionMakesNoStepLate) {
+  const TestDive dive = dive_of(hover_text("gas = \"noise\""));
+  Device noise(dive, "noise", "diver/gas");
+  std::jthread burst([&noise] {
+    for (int i = 0; i < 1'000'000; ++i) noise.say(GasSupply{});
+  });
+  PhysicsInputs inputs = dive.world->start_inputs();
+  std::uint64_t used = 0, slow = 0, drains = 0;
+  const auto drain = [&] {
+    const TimeNs begun = now_ns();
+    for (const Sample& sample : noise.inbox.drain()) {
+      dive.world->apply(inputs, sample, drains);
+      ++used;
+    }
+    slow += now_ns() - begun > 4'166'667;  // a step at 240 Hz
+    ++drains;
+  };
+  while (noise.inbox.counts(noise.source).accepted < 1'000'000) {
+    drain();
+    std::this_thread::sleep_for(std::chrono::microseconds(4167));
+  }
+  burst.join();
+  drain();
+  const SourceCounts counts = noise.inbox.counts(noise.source);
+  EXPECT_EQ(used + counts.dropped, 1'000'000u);
+  EXPECT_EQ(inputs.humans()[0].of(DiverGroup::kGas).heard, used);
+  EXPECT_LE(slow * 50, drains);  // the machine may take the thread away now and then
+}
+
+}  // namespace
+}  // namespace neritic::testbed
