@@ -99,8 +99,7 @@ constexpr VkBufferUsageFlags kReadableUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
 graph::FrameGraph::ImportState readable() {
-  return {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
-          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  return {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }
 
 }  // namespace

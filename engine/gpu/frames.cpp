@@ -73,6 +73,11 @@ class FramesImpl final : public Frames {
 
   Result<Commands*> begin() override;
   Result<std::uint64_t> submit(const SubmitSync& sync) override;
+  std::uint64_t recording() const override { return recording_number_; }
+  bool was_submitted(std::uint64_t recording) const override {
+    if (recording == recording_number_) return !open_;
+    return !std::binary_search(dropped_.begin(), dropped_.end(), recording);
+  }
   Status wait(std::uint64_t value) override;
   void retire(std::function<void()> destroy) override;
   const std::vector<PassTime>& pass_times() const override { return times_; }
@@ -105,9 +110,12 @@ class FramesImpl final : public Frames {
   Buffer spare_;  // what a failed upload is said to lie in; its frame is never submitted
   std::uint64_t next_value_ = 1;  // of the frame being recorded, or the next one
   bool recording_ = false, timing_ = true;
-  std::optional<Error> frame_error_;  // of the frame being recorded; submit returns it
-  std::deque<Retired> retired_;       // in the order of their values
-  std::vector<PassTime> times_;       // of frame times_value_
+  std::uint64_t recording_number_ = 0;  // counts begin()
+  bool open_ = false;                   // begun, and not submitted with success
+  std::vector<std::uint64_t> dropped_;  // recordings, rising; only failures add to it
+  std::optional<Error> frame_error_;    // of the frame being recorded; submit returns it
+  std::deque<Retired> retired_;         // in the order of their values
+  std::vector<PassTime> times_;         // of frame times_value_
   std::uint64_t times_value_ = 0;
   Commands commands_;
 };
@@ -145,6 +153,8 @@ FramesImpl::~FramesImpl() {
 
 Result<Commands*> FramesImpl::begin() {
   // A frame that was begun and never submitted (its recording failed) is dropped and begun anew.
+  if (open_) dropped_.push_back(recording_number_);
+  open_ = false;
   recording_ = false;
   frame_error_.reset();
   Slot& next = slots_[next_value_ % slots_.size()];
@@ -156,7 +166,8 @@ Result<Commands*> FramesImpl::begin() {
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   NERITIC_TRY_VK("vkBeginCommandBuffer", vkBeginCommandBuffer(next.commands, &info));
   next.timer.start(timing_);
-  recording_ = true;
+  recording_ = open_ = true;
+  ++recording_number_;
   attach(commands_, this, next.commands);
   return &commands_;
 }
@@ -189,6 +200,7 @@ Result<std::uint64_t> FramesImpl::submit(const SubmitSync& sync) {
   info.pSignalSemaphoreInfos = signals.data();
   NERITIC_TRY_VK("vkQueueSubmit2", vkQueueSubmit2(device_.queue(), 1, &info, VK_NULL_HANDLE));
   current.value = next_value_;
+  open_ = false;
   return next_value_++;
 }
 

@@ -145,13 +145,26 @@ void record_mips(VkCommandBuffer commands, const Image& image, VkFilter filter) 
 
 }  // namespace
 
+void record_full_barrier(VkCommandBuffer commands) {
+  VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  all.srcStageMask = all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  all.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  all.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  info.memoryBarrierCount = 1;
+  info.pMemoryBarriers = &all;
+  vkCmdPipelineBarrier2(commands, &info);
+}
+
 Status run_once(Device& device, const std::function<void(VkCommandBuffer)>& record) {
   OneShot shot(device.handle());
   NERITIC_TRY_STATUS(create(device, shot));
   VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   NERITIC_TRY_VK("vkBeginCommandBuffer", vkBeginCommandBuffer(shot.commands, &begin));
+  record_full_barrier(shot.commands);
   record(shot.commands);
+  record_full_barrier(shot.commands);
   NERITIC_TRY_VK("vkEndCommandBuffer", vkEndCommandBuffer(shot.commands));
   VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
   commands.commandBuffer = shot.commands;

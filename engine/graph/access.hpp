@@ -6,12 +6,6 @@
 
 namespace neritic::graph {
 
-// The access bits that change memory; only these need to be made available by a barrier.
-inline constexpr VkAccessFlags2 kWriteAccess =
-    VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
-    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
-    VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-
 // Whether a resource of that kind can be used so at all (no image is a vertex buffer).
 bool access_fits(Access access, ResourceKind kind);
 // Accesses that happen after the frame: no pass can declare them.

@@ -1,6 +1,9 @@
 // All stages in turn: a declaration becomes a plan. Pure; any thread.
+#include <algorithm>
+#include <numeric>
+
 #include "engine/core/check.hpp"
-#include "engine/graph/plan.hpp"
+#include "engine/graph/past.hpp"
 
 namespace neritic::graph {
 
@@ -19,6 +22,29 @@ Status check_sizes(const Plan& plan) {
   return {};
 }
 
+// What the next frame will read has to be written as a whole, or not at all.
+Status check_histories(const Plan& plan) {
+  const auto written = [](const Part& part) {
+    return std::any_of(part.epochs.begin(), part.epochs.end(),
+                       [](const Epoch& epoch) { return epoch.write; });
+  };
+  std::vector<bool> some(plan.graph.resources.size()), none(plan.graph.resources.size());
+  for (const Part& part : plan.parts) (written(part) ? some : none)[part.resource] = true;
+  for (std::size_t r = 0; r < some.size(); ++r)
+    if (plan.graph.resources[r].history == History::kNext && some[r] && none[r])
+      return failure(ErrorCode::kInternal, "frame graph: \"{}\" is written only in part",
+                     plan.graph.resources[r].name);
+  return {};
+}
+
+void start_from_nothing(Plan& plan) {
+  std::vector<std::uint64_t> objects(plan.graph.resources.size());
+  std::iota(objects.begin(), objects.end(), 0);
+  std::vector<std::uint64_t> classes(plan.placement.heap_size.size());
+  std::iota(classes.begin(), classes.end(), 0);
+  Past().run(plan, objects, classes, plan.barriers.first);
+}
+
 }  // namespace
 
 Result<Plan> compile(GraphDecl graph, const NeedsOf& needs_of) {
@@ -34,7 +60,12 @@ Result<Plan> compile(GraphDecl graph, const NeedsOf& needs_of) {
   plan.lifetimes = lifetimes(plan.graph, plan.order);
   NERITIC_TRY_STATUS(check_sizes(plan));
   plan.placement = place(plan.graph, plan.lifetimes, plan.needs);
-  plan.barriers = barriers(plan.graph, plan.order, plan.lifetimes, plan.needs, plan.placement);
+  plan.parts = find_parts(plan.graph, plan.order);
+  NERITIC_TRY_STATUS(check_histories(plan));
+  plan.left = left_pending(plan.graph, plan.parts);
+  plan.takeover = taken_over(plan.graph, plan.lifetimes, plan.needs, plan.placement, plan.left);
+  plan.barriers = barriers(plan.graph, plan.order, plan.parts);
+  start_from_nothing(plan);
   return plan;
 }
 

@@ -41,8 +41,9 @@ void dump_barrier(Out out, const GraphDecl& graph, const Barrier& barrier) {
     fmt::format_to(out, ", layout {} -> {}", layout_name(barrier.old_layout),
                    layout_name(barrier.new_layout));
   }
-  fmt::format_to(out, ", access {} -> {}{}\n", access_names(barrier.src_access),
-                 access_names(barrier.dst_access), barrier.discards ? ", discards" : "");
+  fmt::format_to(out, ", access {} -> {}{}{}\n", access_names(barrier.src_access),
+                 access_names(barrier.dst_access), barrier.discards ? ", discards" : "",
+                 barrier.earlier ? ", after an earlier run" : "");
 }
 
 std::string shape(const ResourceDecl& resource) {
@@ -68,10 +69,24 @@ void dump_transients(Out out, const Plan& plan) {
   }
 }
 
-std::size_t barrier_count(const Plan& plan) {
-  std::size_t count = plan.barriers.at_end.size();
-  for (const auto& list : plan.barriers.before) count += list.size();
+struct BarrierCount {
+  std::size_t all = 0, earlier = 0;
+};
+BarrierCount count_barriers(const Plan& plan) {
+  BarrierCount count;
+  for (const auto& list : plan.barriers.before) count.all += list.size();
+  for (const auto& list : plan.barriers.first) {
+    count.all += list.size();
+    for (const Barrier& barrier : list) count.earlier += barrier.earlier;
+  }
   return count;
+}
+
+void dump_barriers(Out out, const Plan& plan, std::size_t position) {
+  for (const Barrier& barrier : plan.barriers.first[position])
+    dump_barrier(out, plan.graph, barrier);
+  for (const Barrier& barrier : plan.barriers.before[position])
+    dump_barrier(out, plan.graph, barrier);
 }
 
 }  // namespace
@@ -80,19 +95,21 @@ std::string dump_text(const Plan& plan) {
   const GraphDecl& graph = plan.graph;
   std::string text;
   const Out out = std::back_inserter(text);
-  fmt::format_to(out, "frame graph: {} passes kept, {} culled, {} barriers\n", plan.order.size(),
-                 graph.passes.size() - plan.order.size(), barrier_count(plan));
+  const BarrierCount count = count_barriers(plan);
+  fmt::format_to(
+      out, "frame graph: {} passes kept, {} culled, {} barriers ({} after an earlier run)\n",
+      plan.order.size(), graph.passes.size() - plan.order.size(), count.all, count.earlier);
   fmt::format_to(out, "passes in order\n");
   for (std::size_t position = 0; position < plan.order.size(); ++position) {
     const PassDecl& pass = graph.passes[plan.order[position]];
     fmt::format_to(out, "  {:>2}  {}{}\n", position, pass.name,
                    pass.side_effect ? " (side effect)" : "");
     if (!pass.terms.empty()) fmt::format_to(out, "      terms  {}\n", pass.terms);
-    for (const Barrier& barrier : plan.barriers.before[position]) dump_barrier(out, graph, barrier);
+    dump_barriers(out, plan, position);
     dump_uses(out, graph, pass);
   }
   fmt::format_to(out, "at the end\n");
-  for (const Barrier& barrier : plan.barriers.at_end) dump_barrier(out, graph, barrier);
+  dump_barriers(out, plan, plan.order.size());
   for (const Use& output : graph.outputs)
     fmt::format_to(out, "      output {} {} ({})\n", name_of(graph, output.resource, output.range),
                    output.version, access_info(output.access).name);

@@ -50,7 +50,7 @@ class DotWriter {
       while (plan_.order[position] != p) ++position;
       line("  p{} [shape=box, label=\"{}: {}{}{}\\n{} barriers\"];", p, position,
            escaped(pass.name), pass.terms.empty() ? "" : "\\n", escaped(pass.terms),
-           plan_.barriers.before[position].size());
+           plan_.barriers.first[position].size() + plan_.barriers.before[position].size());
     } else {
       line("  p{} [shape=box, style=dashed, color=gray, label=\"{}\\nculled\"];", p,
            escaped(pass.name));

@@ -1,15 +1,16 @@
 // Executor: caches plans by declaration, gives the graphs in use real memory, records passes and
-// barriers. Each frame opens with one full memory barrier, so that frames never race each other
-// over transient memory or over imports; within the frame the plan's barriers are exact. Rendering
-// thread.
+// barriers. What earlier runs left pending (past.hpp) decides what the first uses of a run wait
+// for. Rendering thread.
 #include <algorithm>
 #include <utility>
 
 #include "engine/core/check.hpp"
-#include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"
 #include "engine/gpu/device.hpp"
+#include "engine/graph/declaration_hash.hpp"
 #include "engine/graph/frame_graph.hpp"
+#include "engine/graph/histories.hpp"
+#include "engine/graph/past.hpp"
 #include "engine/graph/realisation.hpp"
 #include "engine/graph/record_barriers.hpp"
 #include "engine/graph/transient_heaps.hpp"
@@ -19,52 +20,13 @@ namespace {
 
 // Plans are small; memory is not. A program that alternates between graphs (sensors at rates of
 // their own, a screenshot now and then) should allocate nothing: they share the memory of the
-// largest, and a graph gives up its part once it has not run for so many runs, some seconds.
+// largest. A graph gives up its part, and a history its images, after kRunsRemembered runs without
+// it, which are some seconds.
 constexpr std::size_t kPlansKept = 32;
 constexpr std::uint64_t kRunsRemembered = 256;
-
-void add_text(Hash64& hash, const std::string& text) {
-  hash.add(text.size());
-  hash.add_bytes(text.data(), text.size());
-}
-
-void add_uses(Hash64& hash, const std::vector<Use>& uses) {
-  hash.add(uses.size());
-  for (const Use& use : uses) {
-    hash.add(std::uint64_t{use.resource} << 32 | use.version);
-    hash.add(static_cast<std::uint64_t>(use.access));
-    hash.add(std::uint64_t{use.range.mip} << 32 | use.range.mips);
-    hash.add(std::uint64_t{use.range.layer} << 32 | use.range.layers);
-  }
-}
-
-// Equal declarations hash equal; unequal ones are told apart by == where the hash should not.
-std::uint64_t hash_of(const GraphDecl& graph) {
-  Hash64 hash;
-  for (const ResourceDecl& r : graph.resources) {
-    add_text(hash, r.name);
-    const std::uint64_t facts[] = {static_cast<std::uint64_t>(r.kind),
-                                   r.imported,
-                                   static_cast<std::uint64_t>(r.format),
-                                   std::uint64_t{r.width} << 32 | r.height,
-                                   std::uint64_t{r.layers} << 32 | r.mips,
-                                   r.image_usage,
-                                   r.size_bytes,
-                                   r.buffer_usage,
-                                   r.initial_stages,
-                                   r.initial_access,
-                                   static_cast<std::uint64_t>(r.initial_layout)};
-    hash.add_bytes(facts, sizeof facts);
-  }
-  for (const PassDecl& pass : graph.passes) {
-    add_text(hash, pass.name);
-    add_uses(hash, pass.uses);
-    hash.add(pass.side_effect);
-    add_text(hash, pass.terms);
-  }
-  add_uses(hash, graph.outputs);
-  return hash.value();
-}
+// More imported objects than a program has at any time. Most of them must be gone, so all are
+// forgotten behind a full barrier.
+constexpr std::size_t kObjectsKept = 4096;
 
 }  // namespace
 
@@ -85,17 +47,22 @@ struct Executor::Impl {
   std::vector<std::unique_ptr<Entry>> entries;  // stable addresses: callers hold Plan pointers
   std::uint64_t clock = 0, runs = 0;
   TransientHeaps heaps;  // what every realisation lies in
+  Histories histories;
+  Past past;
+  std::uint64_t recording = 0;  // Frames::recording at the last run
   std::function<void(Plan&)> spoil;
   Plan spoiled;
   // Scratch, kept to allocate nothing in a frame.
   BarrierRecorder recorder;
   std::vector<const gpu::Image*> images;
   std::vector<const gpu::Buffer*> buffers;
+  std::vector<std::uint64_t> objects, class_keys;
 
   // Objects and memory that frames in flight may still use. The objects go first.
   struct Retired {
     std::vector<gpu::Allocation> heaps;
     std::vector<std::unique_ptr<Realisation>> realisations;
+    std::vector<gpu::Image> images;
   };
   void retire(Retired retired) {
     // std::function must be copyable, so the owner is shared with the copies it may make.
@@ -108,9 +75,13 @@ struct Executor::Impl {
     retired.realisations.push_back(std::move(realisation));
     retire(std::move(retired));
   }
-  // All memory, and what lies in it.
-  void retire_all() {
-    Retired retired{heaps.take(), {}};
+  void retire(std::vector<gpu::Image> gone) {
+    if (!gone.empty()) retire(Retired{{}, {}, std::move(gone)});
+  }
+  // All transient memory, and what lies in it.
+  void retire_transients() {
+    Retired retired{heaps.take(), {}, {}};
+    past.forget_memory();
     for (const auto& entry : entries)
       if (entry->realisation) retired.realisations.push_back(std::move(entry->realisation));
     retire(std::move(retired));
@@ -185,7 +156,7 @@ struct Executor::Impl {
         for (std::size_t c = 0; c < entry->classes.size(); ++c)
           TransientHeaps::add(needs, entry->classes[c], entry->plan.placement.heap_size[c]);
     if (heaps.fit(needs)) return {};
-    retire_all();
+    retire_transients();
     return heaps.allocate(frames.device().allocator(), needs);
   }
 
@@ -193,10 +164,50 @@ struct Executor::Impl {
   void resolve(const FrameGraph& graph, const Realisation& realisation) {
     images = graph.imported_images_;
     buffers = graph.imported_buffers_;
+    for (const HistoryDecl& history : graph.histories_) {
+      images[history.last] = &histories.last(history.name);
+      images[history.next] = &histories.next(history.name);
+    }
+    objects.assign(images.size(), 0);
     for (std::size_t r = 0; r < images.size(); ++r) {
+      if (images[r]) objects[r] = object_of(*images[r]);
+      if (buffers[r]) objects[r] = object_of(*buffers[r]);
       if (realisation.images()[r]) images[r] = &realisation.images()[r];
       if (realisation.buffers()[r]) buffers[r] = &realisation.buffers()[r];
     }
+  }
+
+  // What the past says must be what the GPU will have done: a recording that was dropped has to be
+  // taken back.
+  void check_past(VkCommandBuffer cmd) {
+    const bool dropped =
+        recording != 0 && !frames.was_submitted(recording) && frames.recording() != recording;
+    std::vector<gpu::Image> gone;
+    if (dropped) histories.rewind(recording, past, gone);
+    const bool crowded = past.object_count() > kObjectsKept;
+    if (crowded) past.settle();
+    if (dropped || crowded) gpu::record_full_barrier(cmd);
+    recording = frames.recording();
+    if (runs > kRunsRemembered) histories.drop_unused(runs - kRunsRemembered, past, gone);
+    retire(std::move(gone));
+  }
+
+  // The histories of the graph, with their clears recorded where they are new.
+  Status prepare_histories(const FrameGraph& graph, VkCommandBuffer cmd) {
+    std::vector<gpu::Image> gone;
+    const Status made =
+        histories.prepare(frames.device(), graph.histories_, recording, runs, cmd, past, gone);
+    retire(std::move(gone));
+    return made;
+  }
+
+  // The barriers before the plan's first uses in this run.
+  void start(Entry& entry) {
+    class_keys.clear();
+    for (const MemoryClass& c : entry.classes)
+      class_keys.push_back(std::uint64_t{c.memory_type_bits} << 1 |
+                           (c.kind == ResourceKind::kImage ? 1 : 0));
+    past.run(entry.plan, objects, class_keys, entry.plan.barriers.first);
   }
 
   // The views of parts that the kept passes name, so that recording cannot fail.
@@ -212,23 +223,29 @@ struct Executor::Impl {
 
   void record(FrameGraph& graph, const Plan& plan, gpu::Commands& commands) {
     const VkCommandBuffer cmd = commands.handle();
-    record_frame_barrier(cmd);
     for (std::size_t position = 0; position < plan.order.size(); ++position) {
       const std::uint32_t pass = plan.order[position];
       commands.begin_region(plan.graph.passes[pass].name);
-      recorder.record(cmd, plan.barriers.before[position], images, buffers);
+      record_barriers(cmd, plan, position);
       PassContext context(commands, graph.id_, plan.graph.passes[pass], images, buffers);
       graph.records_[pass](context);
       commands.end_region();
     }
-    recorder.record(cmd, plan.barriers.at_end, images, buffers);
+    record_barriers(cmd, plan, plan.order.size());
+  }
+  void record_barriers(VkCommandBuffer cmd, const Plan& plan, std::size_t position) {
+    recorder.record(cmd, plan.barriers.first[position], plan.barriers.before[position], images,
+                    buffers);
   }
 };
 
 Executor::Executor(gpu::Frames& frames) : impl_(std::make_unique<Impl>(frames)) {}
 
 Executor::~Executor() {
-  impl_->retire_all();
+  impl_->retire_transients();
+  std::vector<gpu::Image> gone;
+  impl_->histories.drop_all(gone);
+  impl_->retire(std::move(gone));
 }
 
 Result<const Plan*> Executor::compile(const FrameGraph& graph) {
@@ -239,8 +256,11 @@ Result<const Plan*> Executor::compile(const FrameGraph& graph) {
 Result<const Plan*> Executor::run(FrameGraph& graph, gpu::Commands& commands) {
   NERITIC_TRY(Impl::Entry* const entry, impl_->find_or_compile(graph.declaration()));
   NERITIC_TRY_STATUS(impl_->realise(*entry));
+  impl_->check_past(commands.handle());
+  NERITIC_TRY_STATUS(impl_->prepare_histories(graph, commands.handle()));
   impl_->resolve(graph, *entry->realisation);
   NERITIC_TRY_STATUS(impl_->make_part_views(entry->plan));
+  impl_->start(*entry);
   const Plan* plan = &entry->plan;
   if (impl_->spoil) {
     impl_->spoiled = *plan;
@@ -248,7 +268,12 @@ Result<const Plan*> Executor::run(FrameGraph& graph, gpu::Commands& commands) {
     plan = &impl_->spoiled;
   }
   impl_->record(graph, *plan, commands);
+  impl_->histories.advance(graph.histories_, *plan);
   return plan;
+}
+
+std::uint64_t Executor::history_bytes() const {
+  return impl_->histories.bytes();
 }
 
 std::uint64_t Executor::transient_bytes() const {

@@ -161,6 +161,33 @@ BufferHandle FrameGraph::import_buffer(const std::string& name, const gpu::Buffe
   return {add_resource(std::move(resource), nullptr, &buffer), 0, id_};
 }
 
+HistoryImages FrameGraph::history(const std::string& name, const TransientImage& desc,
+                                  std::initializer_list<Access> accesses) {
+  for (const HistoryDecl& known : histories_)
+    if (known.name == name) return {{known.last, 0, id_, {}}, {known.next, 0, id_, {}}};
+  HistoryDecl history{name, {name, desc.format, desc.width, desc.height, desc.layers, desc.mips}};
+  history.desc.array_view = true;
+  history.desc.usage = access_info(Access::kTransferWrite).image_usage;  // it is cleared at first
+  for (const Access access : accesses) history.desc.usage |= access_info(access).image_usage;
+  const auto add = [&](const char* which, History role) {
+    ResourceDecl resource;
+    resource.name = name + which;
+    resource.imported = true;
+    resource.history = role;
+    resource.format = desc.format;
+    resource.width = desc.width;
+    resource.height = desc.height;
+    resource.layers = desc.layers;
+    resource.mips = desc.mips;
+    resource.image_usage = history.desc.usage;
+    return add_resource(std::move(resource), nullptr, nullptr);
+  };
+  history.last = add(" (last)", History::kLast);
+  history.next = add(" (next)", History::kNext);
+  histories_.push_back(history);
+  return {{history.last, 0, id_, {}}, {history.next, 0, id_, {}}};
+}
+
 void FrameGraph::output(ImageHandle image, Access access) {
   declaration_.outputs.push_back(use_of(image, access, "an output"));
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -98,23 +99,43 @@ class PassContext {
   const std::vector<const gpu::Buffer*>& buffers_;
 };
 
-// State of an imported resource at the frame's start; contents are defined unless layout is
-// UNDEFINED for an image. stages and access 0: nothing on the GPU is pending on it.
+// How an imported resource is at the frame's start. stages, access: what is pending on it besides
+// earlier runs of the executor, which knows those (a semaphore's wait stage, for one). layout: of
+// the image; its contents are undefined where that is UNDEFINED.
 struct ImportState {
-  VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  VkAccessFlags2 access = VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_MEMORY_READ_BIT;
+  VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_NONE;
+  VkAccessFlags2 access = VK_ACCESS_2_NONE;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
+// An image that keeps its content from frame to frame.
+struct HistoryImages {
+  ImageHandle last;  // what the last frame wrote that declared it; zero where there is none
+  ImageHandle next;  // empty; what is written becomes the next frame's last
+};
+struct HistoryDecl {
+  std::string name;
+  gpu::ImageDesc desc;
+  std::uint32_t last = kNoResource, next = kNoResource;  // resources of the graph
 };
 
 class FrameGraph {
  public:
   FrameGraph();
   using ImportState = graph::ImportState;
-  // The image and buffer must live until Executor::run returns (the GPU: until the frame is done).
-  // Importing one again gives the same resource.
+  // The image and buffer must live until the GPU is done with the frame. Importing one again gives
+  // the same resource. One executor's graphs may share it; other users must say in state what is
+  // pending.
   ImageHandle import_image(const gpu::Image& image, const ImportState& state);
   BufferHandle import_buffer(const std::string& name, const gpu::Buffer& buffer,
                              const ImportState& state = {});
+
+  // A history by name. accesses: all that any frame does with it. Its content is zero at first, and
+  // again after a change of size, format or accesses; it stays as it is while no kept pass writes
+  // next; it is freed when no graph has declared it for some seconds. A kept pass that writes next
+  // in part is an error: next must be written whole. Writing next keeps no pass; an output does.
+  HistoryImages history(const std::string& name, const TransientImage& desc,
+                        std::initializer_list<Access> accesses);
 
   // setup: void(PassBuilder&, Data&), runs now. record: void(const Data&, PassContext&), runs in
   // Executor::run if the pass is kept. Returns the data with its handles.
@@ -150,20 +171,24 @@ class FrameGraph {
   std::vector<std::function<void(PassContext&)>> records_;
   std::vector<const gpu::Image*> imported_images_;  // by resource; nullptr for others
   std::vector<const gpu::Buffer*> imported_buffers_;
+  std::vector<HistoryDecl> histories_;
 };
 
 // Compiles graphs for a device and runs them. Graphs share transient memory, enough for the largest
 // of those that ran lately, and keep their images in it: a frame that declares the same as one of
-// the last few hundred allocates nothing.
+// the last few hundred allocates nothing. Frames in flight overlap: a run waits for earlier ones
+// only where it touches the same import, history or bytes of transient memory.
 class Executor {
  public:
   explicit Executor(gpu::Frames& frames);
   ~Executor();
   // Compiles (cached by declaration); errors name pass and resource. Valid until the next call.
   Result<const Plan*> compile(const FrameGraph& graph);
-  // Compiles and records every kept pass with its barriers, each in a region of its name.
+  // Compiles and records every kept pass with its barriers, each in a region of its name. The plan
+  // has the barriers of this run, those after earlier runs included. Valid until the next call.
   Result<const Plan*> run(FrameGraph& graph, gpu::Commands& commands);
   std::uint64_t transient_bytes() const;  // device memory held for transients now
+  std::uint64_t history_bytes() const;    // and for histories
 
   // For tests only: run() hands a copy of each plan to spoil before it records it, so that a test
   // can plant a wrong barrier and see validation catch it. An empty function takes it off again.

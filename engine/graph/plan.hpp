@@ -55,13 +55,24 @@ const AccessInfo& access_info(Access access);
 
 enum class ResourceKind { kImage, kBuffer };
 
+// An image that keeps its content from frame to frame is two: the one that the last frame wrote,
+// which this frame reads, and the one that this frame writes for the next.
+enum class History { kNone, kLast, kNext };
+
+// The access bits that change memory; only these need to be made available by a barrier.
+inline constexpr VkAccessFlags2 kWriteAccess =
+    VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+    VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+
 // The mips and layers of an image that a use touches; everything by default. Of a buffer: all.
 using gpu::ImageRange;
 
 struct ResourceDecl {
   std::string name;
   ResourceKind kind = ResourceKind::kImage;
-  bool imported = false;  // lives outside the frame; contents defined at its start
+  bool imported = false;             // lives outside the frame; contents defined at its start
+  History history = History::kNone;  // not kNone: imported, and the executor keeps it
   // Images. gather_usage collects the usage flags of both kinds from the declared accesses.
   VkFormat format = VK_FORMAT_UNDEFINED;
   std::uint32_t width = 0, height = 0, layers = 1, mips = 1;
@@ -69,7 +80,7 @@ struct ResourceDecl {
   // Buffers.
   std::uint64_t size_bytes = 0;
   VkBufferUsageFlags buffer_usage = 0;
-  // Imported: the state it comes in (and, after execution, the state it is left in is in the plan).
+  // Imported: what is pending on it outside of graphs, and its layout.
   VkPipelineStageFlags2 initial_stages = VK_PIPELINE_STAGE_2_NONE;
   VkAccessFlags2 initial_access = VK_ACCESS_2_NONE;
   VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -144,6 +155,38 @@ struct Placement {
 Placement place(const GraphDecl& graph, std::span<const Lifetime> lifetimes,
                 std::span<const MemoryNeed> needs);
 
+// The uses of a part of a resource between two barriers: one write, or a run of reads in one
+// layout.
+struct Epoch {
+  std::uint32_t position = 0;  // of its first use; the order's size for outputs
+  VkPipelineStageFlags2 stages = 0;
+  VkAccessFlags2 access = 0;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  // UNDEFINED for buffers
+  bool write = false;
+  VkAccessFlags2 written() const { return write ? access & kWriteAccess : 0; }
+};
+// Mips and layers that every use of the frame takes together or not at all. Most images and all
+// buffers have one part.
+struct Part {
+  std::uint32_t resource = 0;
+  ImageRange range;           // concrete counts
+  std::vector<Epoch> epochs;  // empty: no kept pass uses it
+  bool is_whole(const ResourceDecl& r) const { return range == ImageRange{0, r.mips, 0, r.layers}; }
+};
+
+// What a later use of the same memory has to wait for. access: what was written; 0: only read.
+struct Pending {
+  VkPipelineStageFlags2 stages = 0;
+  VkAccessFlags2 access = 0;
+  void add(const Pending& other) { stages |= other.stages, access |= other.access; }
+};
+// What is pending on each resource's memory after its last use.
+std::vector<Pending> left_pending(const GraphDecl& graph, std::span<const Part> parts);
+// What each transient waits for of those that had its memory before it in the same frame.
+std::vector<Pending> taken_over(const GraphDecl& graph, std::span<const Lifetime> lifetimes,
+                                std::span<const MemoryNeed> needs, const Placement& placement,
+                                std::span<const Pending> left);
+
 struct Barrier {
   std::uint32_t resource = 0;
   ImageRange range;  // concrete: counts are those of the resource
@@ -151,18 +194,19 @@ struct Barrier {
   VkAccessFlags2 src_access = 0, dst_access = 0;
   VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED, new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   bool discards = false;  // contents are not kept (first use, or memory taken over from another)
+  bool earlier = false;   // waits for an earlier run
 
   bool operator==(const Barrier&) const = default;
 };
+// One list a position in the order, and one at the end for the outputs' accesses. A run records
+// first[p] and before[p] together.
 struct BarrierPlan {
-  std::vector<std::vector<Barrier>> before;  // one list a position in the order
-  std::vector<Barrier> at_end;               // to the outputs' accesses
+  std::vector<std::vector<Barrier>> first;   // before first uses: after what earlier runs left
+  std::vector<std::vector<Barrier>> before;  // between uses of this frame
 };
-// Read after read in the same layout gives none. The first use of a transient waits for the last
-// use of whatever had its memory before.
+// Read after read in the same layout gives none. Leaves first empty.
 BarrierPlan barriers(const GraphDecl& graph, std::span<const std::uint32_t> order,
-                     std::span<const Lifetime> lifetimes, std::span<const MemoryNeed> needs,
-                     const Placement& placement);
+                     std::span<const Part> parts);
 
 struct Plan {
   GraphDecl graph;
@@ -171,7 +215,9 @@ struct Plan {
   std::vector<Lifetime> lifetimes;
   std::vector<MemoryNeed> needs;
   Placement placement;
-  BarrierPlan barriers;
+  std::vector<Part> parts;              // those of one resource in a row
+  std::vector<Pending> left, takeover;  // by resource
+  BarrierPlan barriers;  // first: as if nothing had run before, until the plan has run
 };
 
 // Fills usage flags of every resource from the accesses declared on it.

@@ -1,7 +1,7 @@
 // Inside engine/graph: the memory that the transients of all graphs lie in, one heap a memory class
-// (realisation.hpp), each in as many blocks as the device makes it. Graphs take turns with it: each
-// run opens with a barrier behind everything, and leaves nothing that the next would want.
-// Move-only; rendering thread.
+// (realisation.hpp), each in as many blocks as the device makes it. Graphs take turns with it: a
+// run waits for what earlier ones did to the same bytes (past.hpp), and leaves nothing that the
+// next needs. Move-only; rendering thread.
 #pragma once
 
 #include <vector>

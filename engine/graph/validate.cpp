@@ -102,6 +102,7 @@ class Validator {
 
   // Version 0 holds something only where it was imported with contents.
   bool has_contents(const ResourceDecl& resource) const {
+    if (resource.history != History::kNone) return resource.history == History::kLast;
     return resource.imported && (resource.kind == ResourceKind::kBuffer ||
                                  resource.initial_layout != VK_IMAGE_LAYOUT_UNDEFINED);
   }
@@ -147,6 +148,9 @@ class Validator {
 
   Status check_write(const std::string& who, const Use& use) const {
     const std::vector<Write>& writes = writes_[use.resource];
+    if (graph_.resources[use.resource].history == History::kLast)
+      return graph_bug("{} writes \"{}\", which the frame before made: only reads are possible",
+                       who, name(use));
     if (use.version < writes.size())
       return graph_bug(
           "two writers of version {} of \"{}\": pass \"{}\" and {} (write to the "
@@ -206,6 +210,8 @@ class Validator {
       const Use& use = graph_.outputs[i];
       NERITIC_TRY_STATUS(check_use("an output", use));
       NERITIC_TRY_STATUS(check_read("an output", use));
+      if (use.access == Access::kPresent && !graph_.resources[use.resource].imported)
+        return graph_bug("an output presents \"{}\", which no window gave", name(use));
       for (std::size_t j = 0; j < i; ++j) {
         const Use& other = graph_.outputs[j];
         if (!uses_meet(graph_, other, use)) continue;

@@ -58,6 +58,15 @@ struct DeformedGeometry {
   graph::BufferHandle positions, next_positions;
 };
 
+// What shading reads. An effect that shading uses adds its image here as a handle that may be
+// empty, as GBuffer::emissive is: an empty handle is not declared, and its bit in Lighting::terms
+// is 0.
+struct ShadeInputs {
+  const GBuffer& gbuffer;  // of kind kSurface
+  const ViewSet& views;
+  const shared::Lighting& lighting;
+};
+
 enum class GBufferKind {
   kGeometry,  // depth, normal, label: a sonar's
   kSurface,   // and what shading needs: a camera's
@@ -79,8 +88,7 @@ class Renderer {
                                   const DrawList& draws);
   // HDR picture of a surface G-buffer.
   Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix,
-                                           const GBuffer& gbuffer, const ViewSet& views,
-                                           const shared::Lighting& lighting);
+                                           const ShadeInputs& inputs);
   // Blended materials over the HDR picture; only declared where the draw list has some.
   Result<graph::ImageHandle> declare_forward(graph::FrameGraph& graph, const std::string& prefix,
                                              graph::ImageHandle hdr, const GBuffer& gbuffer,

@@ -24,8 +24,10 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device) {
 
 Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                                                    const std::string& prefix,
-                                                   const GBuffer& gbuffer, const ViewSet& views,
-                                                   const shared::Lighting& lighting) {
+                                                   const ShadeInputs& inputs) {
+  const GBuffer& gbuffer = inputs.gbuffer;
+  const ViewSet& views = inputs.views;
+  const shared::Lighting& lighting = inputs.lighting;
   gpu::Pipeline& pipeline = shade_[{lighting.terms, lighting.lamp_count}];
   if (!pipeline) {
     gpu::ComputePipelineDesc desc;

@@ -63,10 +63,7 @@ Result<ShownPicture> OffscreenDisplay::declare(graph::FrameGraph& graph,
   ShownPicture shown{{}, kFormat, options_.groups[0].width, options_.groups[0].height, true};
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     const std::string name = i == 0 ? "display" : fmt::format("display {}", i);
-    // Earlier contents are overwritten; the frame before may still read them.
-    const graph::ImageHandle target = graph.import_image(
-        targets_[i],
-        {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_UNDEFINED});
+    const graph::ImageHandle target = graph.import_image(targets_[i], {});  // overwritten
     NERITIC_TRY(
         const graph::ImageHandle composed,
         compositor_->declare(graph, name, target, options_.groups[i], i, world_from_head, layers));

@@ -193,9 +193,7 @@ graph::ImageHandle SonarFans::picture(graph::FrameGraph& graph, std::size_t sona
   if (found == fans_.end()) return {};
   const Fan& fan = *found->second;
   if (fan.drawn) return fan.drawn;
-  return graph.import_image(fan.picture,
-                            {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
-                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+  return graph.import_image(fan.picture, {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
 }
 
 const sonar::BeamGrid* SonarFans::grid(std::size_t sonar) const {

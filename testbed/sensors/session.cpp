@@ -129,7 +129,7 @@ Status Session::declare_camera(graph::FrameGraph& graph, const scene::MotionSour
                 render::make_lighting(scene_, state, work.views.origin_m(), camera.exposure,
                                       gpu_scene_->has_emission()));
     NERITIC_TRY(graph::ImageHandle hdr,
-                renderer_->declare_shade(graph, prefix, g, work.views, lighting));
+                renderer_->declare_shade(graph, prefix, {g, work.views, lighting}));
     NERITIC_TRY(hdr, renderer_->declare_forward(graph, prefix, hdr, g, *gpu_scene_, deformed,
                                                 work.views, work.draws, lighting));
     NERITIC_TRY(work.color_image,

@@ -66,7 +66,7 @@ TEST(Cull, LaterWriterThatNobodyNeedsGoes) {
 TEST(Cull, EmptyGraphGivesAnEmptyPlan) {
   const Plan plan = GraphMaker{}.plan();
   EXPECT_TRUE(plan.order.empty());
-  EXPECT_TRUE(plan.barriers.at_end.empty());
+  EXPECT_TRUE(barriers_at_end(plan).empty());
   EXPECT_FALSE(dump_text(plan).empty());
 }
 

@@ -156,8 +156,10 @@ inline std::uint32_t find_resource(const Plan& plan, const std::string& name) {
 inline std::function<void(Plan&)> drop_barriers(const std::string& name, std::size_t position) {
   return [name, position](Plan& plan) {
     const std::uint32_t r = find_resource(plan, name);
-    auto& list = plan.barriers.before[position];
-    EXPECT_GT(std::erase_if(list, [r](const Barrier& b) { return b.resource == r; }), 0u);
+    const auto on_it = [r](const Barrier& b) { return b.resource == r; };
+    EXPECT_GT(std::erase_if(plan.barriers.first[position], on_it) +
+                  std::erase_if(plan.barriers.before[position], on_it),
+              0u);
   };
 }
 

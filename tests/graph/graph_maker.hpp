@@ -31,6 +31,17 @@ inline Result<Plan> plan_with(const GraphDecl& graph, const std::vector<MemoryNe
   return compile(graph, [&](const GraphDecl&) { return needs; });
 }
 
+// The barriers of a plan before a position, those before first uses at first.
+inline std::vector<Barrier> barriers_at(const Plan& plan, std::size_t position) {
+  std::vector<Barrier> all = plan.barriers.first[position];
+  const std::vector<Barrier>& more = plan.barriers.before[position];
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+inline std::vector<Barrier> barriers_at_end(const Plan& plan) {
+  return barriers_at(plan, plan.order.size());
+}
+
 struct GraphMaker {
   GraphDecl graph;
 

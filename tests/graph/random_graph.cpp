@@ -160,7 +160,8 @@ class Draw {
     for (std::uint32_t r = 0; r < version_.size(); ++r) {
       if (newest_change(r, {}) == kEmpty || !chance(20)) continue;
       Access access = image(r) ? pick(kImageReads) : pick(kBufferReads);
-      if (chance(30)) access = image(r) ? Access::kPresent : Access::kHostRead;
+      if (chance(30) && !image(r)) access = Access::kHostRead;
+      if (chance(30) && image(r) && decl(r).imported) access = Access::kPresent;
       result_.maker.output(r, version_[r], access);
     }
   }

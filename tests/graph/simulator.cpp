@@ -73,44 +73,69 @@ bool touches(const Plan& plan, const ImageRange& range, const Member& member) {
   return member.mip - part.mip < part.mips && member.layer - part.layer < part.layers;
 }
 
-// A stretch of memory that is one mip and layer of each resource that has it, or of one import.
+// A stretch of memory: one mip and layer of each resource that has it in each run, or of one object
+// outside of the frames. It is walked through all runs.
 class Cell {
  public:
-  Cell(const Plan& plan, std::vector<Member> members, std::vector<std::string>& hazards)
-      : plan_(plan), members_(std::move(members)), hazards_(hazards) {
-    const ResourceDecl& r = plan.graph.resources[members_.front().resource];
-    if (r.imported) {
-      start_imported(members_.front().resource, r);
-    } else {
-      start_transient();
-    }
-  }
+  Cell(std::span<const PlanRun> runs, std::vector<std::vector<Member>> members,
+       std::vector<std::string>& hazards)
+      : runs_(runs), members_by_run_(std::move(members)), hazards_(hazards) {}
 
-  void run() {
-    const auto end = static_cast<std::uint32_t>(plan_.order.size());
-    for (std::uint32_t position = 0; position < end; ++position) {
-      for (const Barrier& barrier : plan_.barriers.before[position]) apply(barrier, position);
-      const PassDecl& pass = plan_.graph.passes[plan_.order[position]];
-      for (const Use& u : pass.uses)
-        if (!access_info(u.access).write) access(u, pass.name, position);
-      for (const Use& u : pass.uses)
-        if (access_info(u.access).write) access(u, pass.name, position);
+  void walk() {
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      plan_ = &runs_[i].plan;
+      members_ = members_by_run_[i];
+      if (members_.empty()) continue;
+      start();
+      walk_plan();
+      base_ += static_cast<std::uint32_t>(plan_->order.size()) + 1;
     }
-    for (const Barrier& barrier : plan_.barriers.at_end) apply(barrier, end);
-    for (const Use& u : plan_.graph.outputs) access(u, "output", end);
   }
 
  private:
+  void start() {
+    owner_ = ~0u;
+    version_ = kGarbage;
+    const ResourceDecl& r = plan_->graph.resources[members_.front().resource];
+    if (!r.imported) return;
+    owner_ = members_.front().resource;
+    if (seen_) {
+      version_ = 0;
+    } else {
+      start_imported(r);
+    }
+    seen_ = true;
+  }
+
+  void walk_plan() {
+    const auto end = static_cast<std::uint32_t>(plan_->order.size());
+    for (std::uint32_t position = 0; position < end; ++position) {
+      apply_all(position);
+      const PassDecl& pass = plan_->graph.passes[plan_->order[position]];
+      for (const Use& u : pass.uses)
+        if (!access_info(u.access).write) access(u, pass.name, base_ + position);
+      for (const Use& u : pass.uses)
+        if (access_info(u.access).write) access(u, pass.name, base_ + position);
+    }
+    apply_all(end);
+    for (const Use& u : plan_->graph.outputs) access(u, "output", base_ + end);
+  }
+
+  void apply_all(std::uint32_t position) {
+    for (const Barrier& barrier : plan_->barriers.first[position]) apply(barrier, position);
+    for (const Barrier& barrier : plan_->barriers.before[position]) apply(barrier, position);
+  }
+
   bool has(std::uint32_t resource, const ImageRange& range) const {
     return std::any_of(members_.begin(), members_.end(), [&](const Member& member) {
-      return member.resource == resource && touches(plan_, range, member);
+      return member.resource == resource && touches(*plan_, range, member);
     });
   }
 
   // The newest version up to the use's in which a declared write changed this mip and layer.
   std::uint32_t expected_version(const Use& u) const {
     std::uint32_t newest = 0;
-    for (const PassDecl& pass : plan_.graph.passes)
+    for (const PassDecl& pass : plan_->graph.passes)
       for (const Use& w : pass.uses)
         if (w.resource == u.resource && access_info(w.access).write && w.version < u.version &&
             has(w.resource, w.range))
@@ -118,23 +143,8 @@ class Cell {
     return newest;
   }
 
-  // The frame before may have done anything here; the frame's opening barrier has covered it.
-  void start_transient() {
-    for (VkPipelineStageFlags2 left = every_stage(); left; left &= left - 1) {
-      Touch touch{"the frame before", ~0u};
-      touch.stage = left & ~(left - 1);
-      touch.writes = kWrites;
-      touch.is_write = touch.available = true;
-      touch.before = every_stage();
-      touch.seen_by = {{every_stage(),
-                        expand_access(VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT)}};
-      touches_.push_back(touch);
-    }
-  }
-
-  void start_imported(std::uint32_t resource, const ResourceDecl& decl) {
+  void start_imported(const ResourceDecl& decl) {
     layout_ = decl.initial_layout;
-    owner_ = resource;
     const bool image = decl.kind == ResourceKind::kImage;
     version_ = image && layout_ == VK_IMAGE_LAYOUT_UNDEFINED ? kGarbage : 0;
     const VkAccessFlags2 access = expand_access(decl.initial_access);
@@ -158,7 +168,7 @@ class Cell {
 
   void apply(const Barrier& barrier, std::uint32_t position) {
     if (!has(barrier.resource, barrier.range)) return;
-    const ResourceDecl& decl = plan_.graph.resources[barrier.resource];
+    const ResourceDecl& decl = plan_->graph.resources[barrier.resource];
     const VkPipelineStageFlags2 src = expand_stages(barrier.src_stages);
     const VkPipelineStageFlags2 dst = expand_stages(barrier.dst_stages);
     const VkAccessFlags2 src_access = expand_access(barrier.src_access);
@@ -194,7 +204,7 @@ class Cell {
 
   void access(const Use& u, const std::string& who, std::uint32_t position) {
     if (!has(u.resource, u.range)) return;
-    const ResourceDecl& decl = plan_.graph.resources[u.resource];
+    const ResourceDecl& decl = plan_->graph.resources[u.resource];
     const AccessInfo& info = access_info(u.access);
     check_contents(u, decl, who, info);
     std::vector<Touch> mine;
@@ -246,60 +256,90 @@ class Cell {
   }
 
   static constexpr std::int64_t kGarbage = -1;
-  const Plan& plan_;
-  std::vector<Member> members_;
+  std::span<const PlanRun> runs_;
+  std::vector<std::vector<Member>> members_by_run_;
   std::vector<std::string>& hazards_;
+  // Of the run that is walked.
+  const Plan* plan_ = nullptr;
+  std::vector<Member> members_;
+  std::uint32_t base_ = 0;  // positions of the runs before
+  bool seen_ = false;       // the object was there in a run before
   std::vector<Touch> touches_;
   std::uint32_t owner_ = ~0u;
   std::int64_t version_ = kGarbage;
   VkImageLayout layout_ = VK_IMAGE_LAYOUT_UNDEFINED;
 };
 
+// Where a run's resources lie: by memory class and byte, or by object.
+using Where = std::pair<std::uint64_t, std::uint64_t>;
+constexpr std::uint64_t kObjects = ~std::uint64_t{0};  // instead of a memory class
+
+bool is_at(const PlanRun& run, std::uint32_t r, const Where& where) {
+  const auto& [memory_class, at] = where;
+  if (run.plan.graph.resources[r].imported) return memory_class == kObjects && run.objects[r] == at;
+  if (!run.plan.lifetimes[r].used()) return false;
+  const MemoryNeed& need = run.plan.needs[r];
+  const std::uint64_t begin = run.plan.placement.offset[r];
+  return memory_class == run.classes[need.memory_class] && begin <= at && at < begin + need.size;
+}
+
+// Cuts memory at every begin and end: between two cuts it is the same to all bytes.
+std::set<Where> places(std::span<const PlanRun> runs) {
+  std::set<Where> all;
+  for (const PlanRun& run : runs)
+    for (std::uint32_t r = 0; r < run.plan.graph.resources.size(); ++r) {
+      if (run.plan.graph.resources[r].imported) {
+        all.insert({kObjects, run.objects[r]});
+      } else if (run.plan.lifetimes[r].used()) {
+        const std::uint64_t heap = run.classes[run.plan.needs[r].memory_class];
+        all.insert({heap, run.plan.placement.offset[r]});
+        all.insert({heap, run.plan.placement.offset[r] + run.plan.needs[r].size});
+      }
+    }
+  return all;
+}
+
+// A byte may be of any mip and layer of the resources that have it. Choice k takes part k of each,
+// counted round; with two strides, so that parts meet in other pairs too. An object has the same
+// part in all runs.
+void walk_cells(std::span<const PlanRun> runs, const Where& where,
+                std::vector<std::string>& hazards) {
+  std::uint32_t most = 1;
+  for (const PlanRun& run : runs)
+    for (std::uint32_t r = 0; r < run.plan.graph.resources.size(); ++r)
+      if (is_at(run, r, where))
+        most =
+            std::max(most, run.plan.graph.resources[r].mips * run.plan.graph.resources[r].layers);
+  const std::uint32_t strides = where.first == kObjects || most == 1 ? 1 : 2;
+  for (std::uint32_t k = 0; k < most; ++k)
+    for (std::uint32_t stride = 0; stride < strides; ++stride) {
+      std::vector<std::vector<Member>> members(runs.size());
+      std::uint32_t n = k;
+      for (std::size_t i = 0; i < runs.size(); ++i)
+        for (std::uint32_t r = 0; r < runs[i].plan.graph.resources.size(); ++r) {
+          if (!is_at(runs[i], r, where)) continue;
+          const ResourceDecl& decl = runs[i].plan.graph.resources[r];
+          const std::uint32_t part = n % (decl.mips * decl.layers);
+          members[i].push_back({r, part / decl.layers, part % decl.layers});
+          n += stride;
+        }
+      Cell(runs, std::move(members), hazards).walk();
+    }
+}
+
 }  // namespace
 
-std::vector<std::string> find_hazards(const Plan& plan) {
+std::vector<std::string> find_hazards(std::span<const PlanRun> runs) {
   std::vector<std::string> hazards;
-  // A byte of memory may be of any mip and layer of each resource that has it: every combination.
-  const auto run_cells = [&](const std::vector<std::uint32_t>& sharing) {
-    std::vector<std::vector<Member>> all{{}};
-    for (const std::uint32_t r : sharing) {
-      std::vector<std::vector<Member>> more;
-      for (const std::vector<Member>& members : all)
-        for (std::uint32_t m = 0; m < plan.graph.resources[r].mips; ++m)
-          for (std::uint32_t l = 0; l < plan.graph.resources[r].layers; ++l) {
-            more.push_back(members);
-            more.back().push_back({r, m, l});
-          }
-      all = std::move(more);
-    }
-    for (std::vector<Member>& members : all) Cell(plan, std::move(members), hazards).run();
-  };
-  std::vector<std::uint32_t> transients;
-  for (std::uint32_t r = 0; r < plan.graph.resources.size(); ++r) {
-    if (plan.graph.resources[r].imported) {
-      run_cells({r});
-    } else if (plan.lifetimes[r].used()) {
-      transients.push_back(r);
-    }
-  }
-  // Cut each class's memory at every begin and end: between two cuts it is the same to all bytes.
-  std::set<std::pair<std::uint32_t, std::uint64_t>> cuts;
-  for (const std::uint32_t r : transients) {
-    const MemoryNeed& need = plan.needs[r];
-    cuts.insert({need.memory_class, plan.placement.offset[r]});
-    cuts.insert({need.memory_class, plan.placement.offset[r] + need.size});
-  }
-  for (const auto& [memory_class, byte] : cuts) {
-    std::vector<std::uint32_t> sharing;
-    for (const std::uint32_t r : transients) {
-      const std::uint64_t begin = plan.placement.offset[r];
-      if (plan.needs[r].memory_class == memory_class && begin <= byte &&
-          byte < begin + plan.needs[r].size)
-        sharing.push_back(r);
-    }
-    if (!sharing.empty()) run_cells(sharing);
-  }
+  for (const Where& where : places(runs)) walk_cells(runs, where, hazards);
   return hazards;
+}
+
+std::vector<std::string> find_hazards(const Plan& plan) {
+  PlanRun run{plan, {}, {}};
+  for (std::size_t r = 0; r < plan.graph.resources.size(); ++r) run.objects.push_back(r);
+  for (std::size_t c = 0; c < plan.placement.heap_size.size(); ++c) run.classes.push_back(c);
+  return find_hazards(std::span(&run, 1));
 }
 
 }  // namespace neritic::graph

@@ -18,7 +18,7 @@ constexpr Access kRead = Access::kStorageReadCompute;
 TEST(Validate, ChainIsValid) {
   // [make] -> (a1) -> [refine] -> (a2) -> [show] -> (b1) -> output
   GraphMaker m;
-  const auto a = m.image("a"), b = m.image("b");
+  const auto a = m.image("a"), b = m.imported_image("b", 0, 0, VK_IMAGE_LAYOUT_UNDEFINED);
   m.pass("make", {use(a, 0, kWrite)});
   m.pass("refine", {use(a, 1, kWrite)});
   m.pass("show", {use(a, 2, kRead), use(b, 0, Access::kColorAttachment)});
@@ -229,9 +229,17 @@ TEST(Validate, HostReadAndPresentAreOnlyForOutputs) {
               AllOf(HasSubstr("only an output"), HasSubstr("\"P\""), HasSubstr("answers")));
 }
 
-TEST(Validate, OutputInTwoLayoutsIsRefused) {
+TEST(Validate, OnlyAnImportCanBePresented) {
   GraphMaker m;
   const auto a = m.image("alga");
+  m.pass("P", {use(a, 0, kWrite)});
+  m.output(a, 1, Access::kPresent);
+  EXPECT_THAT(m.error(), AllOf(HasSubstr("presents"), HasSubstr("\"alga\"")));
+}
+
+TEST(Validate, OutputInTwoLayoutsIsRefused) {
+  GraphMaker m;
+  const auto a = m.imported_image("alga", 0, 0, VK_IMAGE_LAYOUT_UNDEFINED);
   m.pass("P", {use(a, 0, kWrite)});
   m.output(a, 1, Access::kPresent);
   m.output(a, 1, Access::kTransferRead);

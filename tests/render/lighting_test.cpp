@@ -8,7 +8,9 @@ namespace neritic::render {
 namespace {
 
 shared::Lighting light_of(const scene::Scene& scene, bool has_emission = false) {
-  const auto light = make_lighting(scene, {}, Vec3(0.0, -3.0, 0.0), {}, has_emission);
+  FrameState state;
+  state.world_from_lamp.resize(scene.lamps.size());
+  const auto light = make_lighting(scene, state, Vec3(0.0, -3.0, 0.0), {}, has_emission);
   EXPECT_TRUE(light.ok());
   return light.ok() ? *light : shared::Lighting{};
 }

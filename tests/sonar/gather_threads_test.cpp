@@ -121,9 +121,8 @@ Result<std::vector<std::uint32_t>> SonarThreads::leaning_sums(const BeamGrid& gr
   graph::Executor executor(*frames);
   graph::FrameGraph graph;
   sonar::SonarGather::Inputs inputs;
-  inputs.normals = graph.import_image(
-      surfaces, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
-                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+  inputs.normals =
+      graph.import_image(surfaces, {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
   const auto sums = gather.declare(graph, inputs).sums;
   graph.output(graph::copy_buffer(graph, "sums to host", sums, "sums", host),
                graph::Access::kHostRead);

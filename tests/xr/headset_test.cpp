@@ -66,7 +66,7 @@ class HeadsetTest : public test::GpuTest {
                                             gpu_scene_->has_emission())
                           .value();
     const auto hdr =
-        renderer_->declare_shade(graph, prefix, g, drawn->views, drawn->lighting).value();
+        renderer_->declare_shade(graph, prefix, {g, drawn->views, drawn->lighting}).value();
     const auto picture = renderer_
                              ->declare_picture(graph, prefix, hdr, group.width, group.height,
                                                drawn->views.layers(), false)

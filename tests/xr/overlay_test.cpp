@@ -75,9 +75,8 @@ TEST_F(OverlayTest, PictureOfTheGraphIsShownRightWayUp) {
   const std::array<std::uint32_t, 4> colors{0xff0000ffu, 0xff00ff00u, 0xffff0000u, 0xffffffffu};
   NERITIC_ASSERT_STATUS(gpu::upload_image(device(), picture, std::as_bytes(std::span(colors))));
   graph::FrameGraph graph;
-  const graph::ImageHandle handle = graph.import_image(
-      picture, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
-                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+  const graph::ImageHandle handle =
+      graph.import_image(picture, {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
   overlay->begin(kWidth, kHeight, 0.01);
   ImGui::GetBackgroundDrawList()->AddImage(overlay->texture(handle), ImVec2(0, 0),
                                            ImVec2(kWidth, kHeight));

@@ -11,6 +11,9 @@ namespace {
 // Pause before the next try if the surface gave no image, so that the loop is not busy.
 constexpr std::chrono::milliseconds kRetry{5};
 
+// What waits for the surface's image: the copy to it. All earlier passes may run before.
+constexpr VkPipelineStageFlags2 kImageReadyStage = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+
 }  // namespace
 
 Result<std::unique_ptr<DesktopDisplay>> DesktopDisplay::create(gpu::Device& device, Window& window,
@@ -71,9 +74,8 @@ Result<DisplayFrame> DesktopDisplay::begin_frame(const Pose&) {
 Result<ShownPicture> DesktopDisplay::declare(graph::FrameGraph& graph, const Pose& world_from_head,
                                              std::span<const Layer> layers) {
   const gpu::ImageDesc& desc = swapchain_.image().desc();
-  const graph::ImageHandle target = graph.import_image(
-      swapchain_.image(),
-      {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_UNDEFINED});
+  const graph::ImageHandle target =
+      graph.import_image(swapchain_.image(), {.stages = kImageReadyStage});
   NERITIC_TRY(const graph::ImageHandle composed,
               compositor_->declare(graph, "display", target, group_, 0, world_from_head, layers));
   graph.output(composed, graph::Access::kPresent);
@@ -82,7 +84,9 @@ Result<ShownPicture> DesktopDisplay::declare(graph::FrameGraph& graph, const Pos
 }
 
 gpu::Frames::SubmitSync DesktopDisplay::sync() const {
-  return {.wait = swapchain_.image_ready(), .signal = swapchain_.drawn()};
+  return {.wait = swapchain_.image_ready(),
+          .wait_stage = kImageReadyStage,
+          .signal = swapchain_.drawn()};
 }
 
 Status DesktopDisplay::end_frame() {

@@ -66,7 +66,7 @@ class Studio {
       NERITIC_TRY_STATUS(copy("motion", g.motion, render::kMotionFormat));
       NERITIC_TRY(lighting, render::make_lighting(scene_, state, views.origin_m(), {},
                                                   gpu_scene_->has_emission()));
-      NERITIC_TRY(auto hdr, renderer_->declare_shade(graph, "", g, views, lighting));
+      NERITIC_TRY(auto hdr, renderer_->declare_shade(graph, "", {g, views, lighting}));
       NERITIC_TRY(hdr, renderer_->declare_forward(graph, "", hdr, g, *gpu_scene_, deformed, views,
                                                   draws, lighting));
       NERITIC_TRY(const auto color,
