@@ -54,7 +54,7 @@ TEST(DecoTradeoff, ErrorsFallWithTheStepByTheMethodsOrderAndTheDefaultIsFinerTha
 
   const test::ScratchFolder folder;
   ASSERT_TRUE(write_deco_tradeoff(folder / "out", measured).ok());
-  for (const char* name : {"deco.csv", "deco.md", "deco.json", "deco.png"})
+  for (const char* name : {"deco.csv", "deco.md", "deco.json", "deco.plot.json", "deco.png"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
 }
 

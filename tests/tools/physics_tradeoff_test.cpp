@@ -90,7 +90,8 @@ TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
 
   const test::ScratchFolder folder;
   ASSERT_TRUE(write_physics_tradeoff(folder / "out", t).ok());
-  for (const char* name : {"physics.csv", "physics.md", "physics.json", "physics.png"})
+  for (const char* name :
+       {"physics.csv", "physics.md", "physics.json", "physics.plot.json", "physics.png"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
 }
 

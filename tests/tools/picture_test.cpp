@@ -8,7 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "tests/support/support.hpp"
+#include "tests/tools/page_words.hpp"
+#include "tools/common/curves.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -69,6 +72,35 @@ TEST_F(Picture, WhatCannotBeDrawnIsAnErrorInOneLine) {
       << drawn.error().message;
   EXPECT_EQ(drawn.error().message.find('\n'), std::string::npos);
   EXPECT_FALSE(write_picture(folder_ / "none/a.png", {{"picture", "dive"}}).ok());
+}
+
+// Of each thing one, with a value that a logarithmic axis has no place for and one that is none.
+Page small_page() {
+  Page page{"Title", {"A fact."}, 2};
+  page.panels.push_back({"Curves",
+                         {"s"},
+                         {"m"},
+                         {{"one", {1.0, 2.0, 4.0}, {0.5, 0.0, NAN}, {"a", "b", "c"}}},
+                         {{1.0, 0.5, "default"}},
+                         {{0.0, 0.1, "10 %"}}});
+  page.panels.push_back({"Bars", {""}, {"%"}, {}, {}, {}, {{"left", "side", 3.0}}});
+  page.lanes = {"ms"};
+  page.rows = {{"term", {2.0}, "note"}, {"none", {NAN}, ""}};
+  return page;
+}
+
+TEST_F(Picture, ThePageOfTheModuleHasEveryKeyOfCurvesAndThePageIsDrawn) {
+  const auto drawn = write_picture(folder_ / "c.png", page_data(small_page()));
+  ASSERT_TRUE(drawn.ok()) << drawn.error().message;
+  EXPECT_TRUE(*drawn);
+  EXPECT_GT(std::filesystem::file_size(folder_ / "c.png"), 10000u);
+  const auto json = parse_json(read_text(folder_ / "c.plot.json").value());
+  ASSERT_TRUE(json.ok());
+  EXPECT_TRUE((*json)["panels"][0]["series"][0]["y"][2].is_null());
+  Words keys;
+  gather_keys(*json, keys);
+  const std::string page = read_text(test::source_dir() / "tools/plot/README.md").value();
+  EXPECT_EQ(words_of(page, "## The data of `curves`", "\n## ", false), keys);
 }
 
 TEST(PictureData, HasSixDigitsAndLiesBesideThePicture) {

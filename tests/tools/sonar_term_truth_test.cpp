@@ -178,9 +178,10 @@ TEST(TradeoffSonar, WritesAKindsKnobsTermsAndPicture) {
   std::vector<std::string> doing, parts;
   options.now = [&](const std::string& what) { doing.push_back(what); };
   const test::ScratchFolder folder;
-  options.part_done = [&](const std::string& part, const SonarTradeoff& so_far) {
+  options.part_done = [&](const std::string& part, const SonarTradeoff& so_far) -> Status {
     parts.push_back(part);
-    return write_last_kind(folder.path(), so_far);
+    const auto drawn = write_last_kind(folder.path(), so_far);
+    return drawn.ok() ? Status() : Status(drawn.error());
   };
   const auto tradeoff = run_sonar_tradeoff(options);
   ASSERT_TRUE(tradeoff.ok()) << tradeoff.error().message;

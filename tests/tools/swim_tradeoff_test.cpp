@@ -43,7 +43,7 @@ TEST(SwimTradeoff, ErrorsFallWithStepsAndStripsAndThePlanarModelIsFarther) {
 
   test::ScratchFolder folder;
   ASSERT_TRUE(write_swim_tradeoff(folder / "out", t).ok());
-  for (const char* name : {"swim.csv", "swim.md", "swim.json", "swim.png"})
+  for (const char* name : {"swim.csv", "swim.md", "swim.json", "swim.plot.json", "swim.png"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
   EXPECT_THAT(read_text(folder / "out" / "swim.md").value(), testing::HasSubstr("(default)"));
 }

@@ -15,6 +15,12 @@
 namespace neritic::tools {
 namespace {
 
+// Where the results are.
+std::string files(const TradeoffFlags& flags, const char* stem, bool drawn) {
+  return fmt::format("{}: {}.csv, .md, .json, .plot.json{}", flags.out.string(), stem,
+                     drawn ? ", .png" : "");
+}
+
 Result<std::string> trade_physics(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
     return bad_input("tradeoff: kind '{}' found, none is accepted for physics", flags.kind);
@@ -23,8 +29,8 @@ Result<std::string> trade_physics(const TradeoffFlags& flags) {
   Progress progress("tradeoff physics", steps(options));
   options.step = [&] { progress.step(); };
   NERITIC_TRY(const PhysicsTradeoff tradeoff, run_physics_tradeoff(options));
-  NERITIC_TRY_STATUS(write_physics_tradeoff(flags.out, tradeoff));
-  return flags.out.string() + ": physics.csv, .md, .json, .png";
+  NERITIC_TRY(const bool drawn, write_physics_tradeoff(flags.out, tradeoff));
+  return files(flags, "physics", drawn);
 }
 
 Result<std::string> trade_swim(const TradeoffFlags& flags) {
@@ -34,8 +40,8 @@ Result<std::string> trade_swim(const TradeoffFlags& flags) {
   options.quick = flags.quick;
   Progress progress("tradeoff swim", steps(options));
   options.step = [&] { progress.step(); };
-  NERITIC_TRY_STATUS(write_swim_tradeoff(flags.out, run_swim_tradeoff(options)));
-  return flags.out.string() + ": swim.csv, .md, .json, .png";
+  NERITIC_TRY(const bool drawn, write_swim_tradeoff(flags.out, run_swim_tradeoff(options)));
+  return files(flags, "swim", drawn);
 }
 
 Result<std::string> trade_physiology(const TradeoffFlags& flags) {
@@ -47,8 +53,8 @@ Result<std::string> trade_physiology(const TradeoffFlags& flags) {
   Progress progress("tradeoff physiology", steps(options));
   options.step = [&] { progress.step(); };
   NERITIC_TRY(const PhysiologyTradeoff tradeoff, run_physiology_tradeoff(options));
-  NERITIC_TRY_STATUS(write_physiology_tradeoff(flags.out, tradeoff));
-  return flags.out.string() + ": physiology.csv, .md, .json, .png";
+  NERITIC_TRY(const bool drawn, write_physiology_tradeoff(flags.out, tradeoff));
+  return files(flags, "physiology", drawn);
 }
 
 Result<std::string> trade_deco(const TradeoffFlags& flags) {
@@ -58,8 +64,8 @@ Result<std::string> trade_deco(const TradeoffFlags& flags) {
   options.quick = flags.quick;
   Progress progress("tradeoff deco", steps(options));
   options.step = [&] { progress.step(); };
-  NERITIC_TRY_STATUS(write_deco_tradeoff(flags.out, run_deco_tradeoff(options)));
-  return flags.out.string() + ": deco.csv, .md, .json, .png";
+  NERITIC_TRY(const bool drawn, write_deco_tradeoff(flags.out, run_deco_tradeoff(options)));
+  return files(flags, "deco", drawn);
 }
 
 Result<std::string> trade_sonar(const TradeoffFlags& flags) {
@@ -91,17 +97,24 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   options.step = [&] { progress.step(); };
   options.now = [&](const std::string& doing) { progress.now(doing); };
   // What is done stays done, however far the rest comes.
+  bool all_drawn = true;
   options.part_done = [&](const std::string& part, const SonarTradeoff& so_far) -> Status {
     const std::string name = part == "plain" ? "tradeoff" : part;
-    NERITIC_TRY_STATUS(part == "plain" ? write_plain(flags.out, so_far)
-                                       : write_last_kind(flags.out, so_far));
-    progress.say(fmt::format("{}: {}/{}.csv, .png", part, flags.out.string(), name));
+    NERITIC_TRY(const bool drawn, part == "plain" ? write_plain(flags.out, so_far)
+                                                  : write_last_kind(flags.out, so_far));
+    all_drawn = all_drawn && drawn;
+    progress.say(fmt::format("{}: {}/{}.csv{}", part, flags.out.string(), name,
+                             drawn ? ", .png" : ", .plot.json"));
     return {};
   };
   NERITIC_TRY(const SonarTradeoff tradeoff, run_sonar_tradeoff(options));
-  std::string files = tradeoff.points.empty() ? "" : "tradeoff.csv, .png, .json and plain.md";
+  const char* const drawn = all_drawn ? ", .png" : "";
+  std::string files = tradeoff.points.empty()
+                          ? ""
+                          : fmt::format("tradeoff.csv, .json, .plot.json{} and plain.md", drawn);
   for (const KindResult& kind : tradeoff.kinds)
-    files += fmt::format("{}{}.csv, _terms.csv, .png", files.empty() ? "" : "; ", kind.kind);
+    files += fmt::format("{}{}.csv, _terms.csv, .plot.json{}", files.empty() ? "" : "; ", kind.kind,
+                         drawn);
   if (!tradeoff.kinds.empty()) files += "; tradeoff.md and quality.json of all";
   if (tradeoff.quick) files += "; --quick tells no quality levels";
   return fmt::format("{}: {}", flags.out.string(), files);

@@ -28,11 +28,12 @@ def read(path):
 
 def painters():
     """Each name of a picture and the function that draws it, data -> Figure."""
+    import curves
     import dive
     import physio
     import plan
 
-    return {"dive": dive.draw, "plan": plan.draw} | physio.PAINTERS
+    return {"dive": dive.draw, "plan": plan.draw, "curves": curves.draw} | physio.PAINTERS
 
 
 def save(figure, path):

@@ -82,7 +82,7 @@ def plain_log(axis):
     axis.set_major_locator(LogLocator(base=10, numticks=9))
     axis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
     low, high = sorted(axis.get_view_interval())
-    if high / max(low, 1e-300) < 40:  # few decades: 2 and 5 too
+    if high / max(low, 1e-300) < 300:  # few decades: 2 and 5 too
         axis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5), numticks=12))
     axis.set_minor_formatter(NullFormatter())
 
@@ -148,11 +148,12 @@ def _samples(ax):
 
 
 def notes(ax, items, size=7.5, taken=None):
-    """Labels beside points: items of (x, y, words, colour, must). Those that must stand go first."""
+    """Labels beside points: items of (x, y, words, colour, must). Those that must stand go first.
+    taken: boxes in pixels (left, low, right, top) that stay free, as of rings."""
     fig = ax.figure
     renderer = fig.canvas.get_renderer()
     frame, curves = ax.get_window_extent(renderer), _samples(ax)
-    taken = taken if taken is not None else []
+    taken = [] if taken is None else taken
     for x, y, words, hue, must in sorted(items, key=lambda item: not item[4]):
         px, py = ax.transData.transform((x, y))
         text = ax.text(0, 0, words, size=size, color=hue, transform=None, zorder=20,
@@ -171,7 +172,8 @@ def notes(ax, items, size=7.5, taken=None):
                     continue
                 ends = np.array([[px, py], [np.clip(px, left, right), np.clip(py, low, top)]])
                 leader = ends[0] + np.linspace(0, 1, 12)[:, None] * (ends[1] - ends[0])
-                if any(((leader > t[:2]) & (leader < t[2:])).all(axis=1).any() for t in taken):
+                if any(((leader > t[:2]) & (leader < t[2:])).all(axis=1).any() for t in taken
+                       if not (t[0] < px < t[2] and t[1] < py < t[3])):
                     continue
                 hidden = np.count_nonzero((curves[:, 0] > left - 2) & (curves[:, 0] < right + 2) &
                                           (curves[:, 1] > low - 1) & (curves[:, 1] < top + 1))

@@ -6,8 +6,8 @@
 #include "diver/deco_live.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
-#include "engine/scene/image_file.hpp"
-#include "tools/common/plot.hpp"
+#include "tools/common/curves.hpp"
+#include "tools/common/picture.hpp"
 #include "tools/tradeoff/deco_tradeoff.hpp"
 
 namespace neritic::tools {
@@ -79,61 +79,49 @@ nlohmann::json deco_json(const DecoTradeoff& t) {
 }
 
 // Curves of the worst of all dives over x: what(point).
-void draw_deco(draw2d::Canvas& canvas, const Box& box, const DecoTradeoff& t,
-               const std::string& title, const std::string& label, double (*what)(const DecoPoint&),
-               bool noted) {
-  std::vector<Series> series;
-  std::vector<double> xs, ys;
+Panel deco_panel(const DecoTradeoff& t, const std::string& title, const std::string& label,
+                 double (*what)(const DecoPoint&), bool noted) {
+  Panel panel{title, {label}, {"largest error of a tissue, bar"}};
+  const std::vector<DecoPoint> worst = worst_of(t);
   for (const TissueMethod m : kTissueMethods) {
-    Series s{name_of(m), kSeriesColors[series.size()], {}, {}, {}};
-    for (const DecoPoint& p : worst_of(t)) {
+    Series s{name_of(m), {}, {}};
+    for (const DecoPoint& p : worst) {
       if (p.method != m || !(p.error_bar > 0.0) || p.error_bar > 10.0) continue;
       s.x.push_back(what(p));
       s.y.push_back(p.error_bar);
       if (noted && m == TissueMethod::kFactors) s.notes.push_back(fmt::format("{:g} s", p.step_s));
     }
-    xs.insert(xs.end(), s.x.begin(), s.x.end());
-    ys.insert(ys.end(), s.y.begin(), s.y.end());
-    series.push_back(std::move(s));
+    panel.series.push_back(std::move(s));
   }
-  const Axis x = axis_for(label, xs, true);
-  Axis y = axis_for("largest error of a tissue, bar", ys, true);
-  y.max *= 3.0;  // room for its label
-  draw_lines(canvas, box, title, x, y, series, !noted);
   const DecoPoint best = knee(t);
-  draw_mark(canvas, box, x, y, what(best), best.error_bar, "knee");
-  for (const DecoPoint& p : worst_of(t))
+  panel.marks.push_back({what(best), best.error_bar, "knee"});
+  for (const DecoPoint& p : worst)
     if (p.method == TissueMethod::kFactors && p.step_s == diver::kComputerSample_s)
-      draw_mark(canvas, box, x, y, what(p), p.error_bar, "default");
+      panel.marks.push_back({what(p), p.error_bar, "default"});
+  return panel;
 }
 
-ImageU8 deco_plot(const DecoTradeoff& t) {
-  constexpr double kWide = 900, kHigh = 620, kHead = 64;
-  draw2d::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                        static_cast<std::uint32_t>(kHead + kHigh), kPaper);
-  canvas.text(24, 34, 18, "Decompression: error against cost", kInk, draw2d::Align::kLeft,
-              draw2d::Face::kBold);
-  canvas.text(24, 54, 10,
-              "dives known by samples whose corners lie between them, the worst of three; truth: "
-              "Schreiner's equation from corner to corner",
-              kInk.with_alpha(0.7f));
-  draw_deco(
-      canvas, {0, kHead, kWide, kHead + kHigh}, t, "over the step", "step, s",
-      [](const DecoPoint& p) { return p.step_s; }, false);
-  draw_deco(
-      canvas, {kWide, kHead, 2 * kWide, kHead + kHigh}, t, "over cost",
-      "us of one core an hour of diving", [](const DecoPoint& p) { return p.us_an_hour; }, true);
-  return canvas.take();
+Page deco_page(const DecoTradeoff& t) {
+  return {"Decompression: error against cost",
+          {"Dives known by samples whose corners lie between them, the worst of three. Truth: "
+           "Schreiner's equation from corner to corner."},
+          2,
+          {deco_panel(
+               t, "Over the step", "step, s", [](const DecoPoint& p) { return p.step_s; }, false),
+           deco_panel(
+               t, "Over cost", "µs of one core an hour of diving",
+               [](const DecoPoint& p) { return p.us_an_hour; }, true)}};
 }
 
 }  // namespace
 
-Status write_deco_tradeoff(const std::filesystem::path& folder, const DecoTradeoff& tradeoff) {
+Result<bool> write_deco_tradeoff(const std::filesystem::path& folder,
+                                 const DecoTradeoff& tradeoff) {
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(write_text(folder / "deco.csv", deco_csv(tradeoff)));
   NERITIC_TRY_STATUS(write_text(folder / "deco.md", deco_md(tradeoff)));
-  NERITIC_TRY_STATUS(scene::write_png8(folder / "deco.png", deco_plot(tradeoff)));
-  return write_json(folder / "deco.json", deco_json(tradeoff));
+  NERITIC_TRY_STATUS(write_json(folder / "deco.json", deco_json(tradeoff)));
+  return write_picture(folder / "deco.png", page_data(deco_page(tradeoff)));
 }
 
 }  // namespace neritic::tools

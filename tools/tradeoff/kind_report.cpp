@@ -1,13 +1,13 @@
-// Tables of `neritic tradeoff sonar` for each kind (sonar_tradeoff.hpp); the pictures are
-// kind_plots'.
+// Tables of `neritic tradeoff sonar` for each kind (sonar_tradeoff.hpp); kind_page.hpp has
+// the pictures.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
-#include "engine/scene/image_file.hpp"
-#include "tools/tradeoff/kind_plots.hpp"
+#include "tools/common/picture.hpp"
+#include "tools/tradeoff/kind_page.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
 
 namespace neritic::tools {
@@ -130,17 +130,17 @@ std::string markdown(const SonarTradeoff& t) {
 
 }  // namespace
 
-Status write_last_kind(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
+Result<bool> write_last_kind(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
   NERITIC_CHECK(!tradeoff.kinds.empty(), "no kind is measured");
   NERITIC_TRY_STATUS(make_folder(folder));
   const KindResult& k = tradeoff.kinds.back();
   NERITIC_TRY_STATUS(write_text(folder / (k.kind + ".csv"), knobs_csv(k)));
   NERITIC_TRY_STATUS(write_text(folder / (k.kind + "_terms.csv"), terms_csv(k)));
-  NERITIC_TRY_STATUS(
-      scene::write_png8(folder / (k.kind + ".png"),
-                        draw_kind(k, tradeoff.device, tradeoff.kinds_scene, !tradeoff.quick)));
   NERITIC_TRY_STATUS(write_text(folder / "tradeoff.md", markdown(tradeoff)));
-  return write_json(folder / "quality.json", summary(tradeoff));
+  NERITIC_TRY_STATUS(write_json(folder / "quality.json", summary(tradeoff)));
+  return write_picture(
+      folder / (k.kind + ".png"),
+      page_data(kind_page(k, tradeoff.device, tradeoff.kinds_scene, !tradeoff.quick)));
 }
 
 }  // namespace neritic::tools

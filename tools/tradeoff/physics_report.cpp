@@ -5,8 +5,9 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
-#include "engine/scene/image_file.hpp"
-#include "tools/common/plot.hpp"
+#include "engine/scene/physics_settings.hpp"
+#include "tools/common/curves.hpp"
+#include "tools/common/picture.hpp"
 #include "tools/tradeoff/physics_tradeoff.hpp"
 
 namespace neritic::tools {
@@ -15,10 +16,6 @@ namespace {
 using rov::Integrator;
 
 constexpr Integrator kDrawn[] = {Integrator::kSemiImplicit, Integrator::kRk4, Integrator::kGuarded};
-// A flight each.
-constexpr draw2d::Color kFlightColors[] = {
-    {0.0f, 0.447f, 0.698f}, {0.835f, 0.369f, 0.0f}, {0.0f, 0.62f, 0.451f}, {0.8f, 0.475f, 0.655f},
-    {0.35f, 0.35f, 0.35f},  {0.34f, 0.71f, 0.91f},  {0.72f, 0.58f, 0.0f}};
 constexpr double kLevels_m[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 
 // What flights are called in tables and plots, in the order of kFlightNames.
@@ -126,116 +123,86 @@ nlohmann::json physics_json(const PhysicsTradeoff& t) {
   return json;
 }
 
-using What = double (*)(const PhysicsPoint&);
-double cost_of(const PhysicsPoint& p) {
-  return p.us_a_second;
-}
-double step_ms_of(const PhysicsPoint& p) {
-  return 1e3 * p.step_s;
-}
 bool is_drawn(const PhysicsPoint& p) {
   return p.error_m > 0.0 && p.error_m <= 10.0;
 }
 
-// The curves in a box; the knee, where there is one, is marked.
-void draw_curves(draw2d::Canvas& canvas, const Box& box, const std::string& title,
-                 const std::string& label, What what, const std::vector<Series>& series,
-                 const PhysicsPoint* mark, bool legend_below = false) {
-  std::vector<double> xs, ys;
-  for (const Series& s : series) {
-    xs.insert(xs.end(), s.x.begin(), s.x.end());
-    ys.insert(ys.end(), s.y.begin(), s.y.end());
-  }
-  const Axis x = axis_for(label, xs, true);
-  Axis y = axis_for("largest error, m", ys, true);
-  y.max *= 5.0;  // room for its label
-  draw_lines(canvas, box, title, x, y, series, legend_below);
-  if (mark) draw_mark(canvas, box, x, y, what(*mark), mark->error_m, "knee");
-}
+constexpr const char* kError = "largest error, m";
+constexpr const char* kCost = "µs of one core a second of flight";
 
-// Error over cost of one flight's integrators; steps stand beside the default's points.
-void draw_flight(draw2d::Canvas& canvas, const Box& box, const PhysicsTradeoff& t, std::size_t f) {
-  std::vector<Series> series;
+// Error over cost of one flight's integrators; steps stand beside the recommended one's points.
+Panel flight_panel(const PhysicsTradeoff& t, std::size_t f) {
+  Panel panel{std::string(kWords[f].title) + ": over cost", {kCost}, {kError}};
   for (const Integrator i : kDrawn) {
-    Series s{std::string(name_of(i)), kSeriesColors[series.size()], {}, {}, {}};
+    Series s{std::string(name_of(i)), {}, {}};
     for (const PhysicsPoint& p : t.points) {
       if (p.flight != kFlightNames[f] || p.integrator != i || !is_drawn(p)) continue;
-      s.x.push_back(cost_of(p));
+      s.x.push_back(p.us_a_second);
       s.y.push_back(p.error_m);
-      if (i == Integrator::kGuarded) s.notes.push_back(fmt::format("{:.3g} ms", step_ms_of(p)));
+      if (i == Integrator::kGuarded) s.notes.push_back(fmt::format("{:.3g} ms", 1e3 * p.step_s));
+      if (i == Integrator::kGuarded && std::abs(p.step_s * scene::Physics{}.rate_hz - 1.0) < 1e-6)
+        panel.marks.push_back({p.us_a_second, p.error_m, "default"});
     }
-    series.push_back(std::move(s));
+    panel.series.push_back(std::move(s));
   }
-  draw_curves(canvas, box, std::string(kWords[f].title) + ": over cost",
-              "us of one core a second of flight", cost_of, series, knee(t, kFlightNames[f]));
+  if (const PhysicsPoint* p = knee(t, kFlightNames[f]))
+    panel.marks.push_back({p->us_a_second, p->error_m, "knee"});
+  return panel;
 }
 
-// What the default gives on every flight, over the step's length.
-void draw_steps(draw2d::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
-  std::vector<Series> series;
+// What the recommended integrator gives on every flight, over the step's length.
+Panel steps_panel(const PhysicsTradeoff& t) {
+  Panel panel{"guarded, every flight: over the step", {"step, ms"}, {kError}};
   for (std::size_t f = 0; f < std::size(kFlightNames); ++f) {
-    Series s{kWords[f].title, kFlightColors[f], {}, {}, {}};
+    Series s{kWords[f].title, {}, {}};
     for (const PhysicsPoint& p : t.points) {
       if (p.flight != kFlightNames[f] || p.integrator != Integrator::kGuarded || !is_drawn(p))
         continue;
-      s.x.push_back(step_ms_of(p));
+      s.x.push_back(1e3 * p.step_s);
       s.y.push_back(p.error_m);
     }
-    series.push_back(std::move(s));
+    panel.series.push_back(std::move(s));
   }
-  draw_curves(canvas, box, "guarded, every flight: over the step", "step, ms", step_ms_of, series,
-              nullptr, true);
+  return panel;
 }
 
 // 240 Hz, with the steps that touch in parts.
-void draw_parts(draw2d::Canvas& canvas, const Box& box, const PhysicsTradeoff& t) {
-  std::vector<Series> series;
+Panel parts_panel(const PhysicsTradeoff& t) {
+  Panel panel{"240 Hz, guarded, steps that touch in parts: over cost", {kCost}, {kError}};
   for (std::size_t f = 2; f < std::size(kFlightNames); ++f) {
-    Series s{kWords[f].title, kFlightColors[f], {}, {}, {}};
+    Series s{kWords[f].title, {}, {}};
     for (const PhysicsPoint& p : t.parts) {
       if (p.flight != kFlightNames[f] || !is_drawn(p)) continue;
-      s.x.push_back(cost_of(p));
+      s.x.push_back(p.us_a_second);
       s.y.push_back(p.error_m);
-      s.notes.push_back(fmt::format("{} parts", p.contact_parts));
+      s.notes.push_back(fmt::format("{} part{}", p.contact_parts, p.contact_parts == 1 ? "" : "s"));
     }
-    series.push_back(std::move(s));
+    panel.series.push_back(std::move(s));
   }
-  draw_curves(canvas, box, "240 Hz, guarded, steps that touch in parts: over cost",
-              "us of one core a second of flight", cost_of, series, nullptr);
+  return panel;
 }
 
-ImageU8 physics_plot(const PhysicsTradeoff& t) {
-  constexpr double kWide = 900, kHigh = 520, kHead = 64;
-  draw2d::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                        static_cast<std::uint32_t>(kHead + 3 * kHigh), kPaper);
-  canvas.text(24, 34, 18, "Vehicle physics: error against cost", kInk, draw2d::Align::kLeft,
-              draw2d::Face::kBold);
-  canvas.text(24, 54, 10,
-              fmt::format("{:g} s of recorded commands, round a square in a current or set down on "
-                          "sand and driven against a wall; truth: extrapolation of order 16, among "
-                          "things steps of 31 us",
-                          t.flight_s),
-              kInk.with_alpha(0.7f));
-  const auto box = [&](int column, int row) {
-    const double left = kWide * column, top = kHead + kHigh * row;
-    return Box{left, top, left + kWide, top + kHigh};
-  };
-  for (int f = 0; f < 4; ++f)
-    draw_flight(canvas, box(f % 2, f / 2), t, static_cast<std::size_t>(f));
-  draw_steps(canvas, box(0, 2), t);
-  draw_parts(canvas, box(1, 2), t);
-  return canvas.take();
+Page physics_page(const PhysicsTradeoff& t) {
+  Page page{"Vehicle physics: error against cost",
+            {fmt::format("{:g} s of recorded commands, round a square in a current or set down on "
+                         "sand and driven against a wall. Truth: extrapolation of order 16; among "
+                         "things steps of 31 µs. Default: guarded, {:g} Hz.",
+                         t.flight_s, scene::Physics{}.rate_hz)}};
+  for (std::size_t f = 0; f < 4; ++f) page.panels.push_back(flight_panel(t, f));
+  page.panels.push_back(steps_panel(t));
+  page.panels.push_back(parts_panel(t));
+  return page;
 }
 
 }  // namespace
 
-Status write_physics_tradeoff(const std::filesystem::path& folder,
-                              const PhysicsTradeoff& tradeoff) {
+Result<bool> write_physics_tradeoff(const std::filesystem::path& folder,
+                                    const PhysicsTradeoff& tradeoff) {
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(write_text(folder / "physics.csv", physics_csv(tradeoff)));
   NERITIC_TRY_STATUS(write_text(folder / "physics.md", physics_md(tradeoff)));
-  NERITIC_TRY_STATUS(scene::write_png8(folder / "physics.png", physics_plot(tradeoff)));
-  return write_json(folder / "physics.json", physics_json(tradeoff));
+  NERITIC_TRY_STATUS(write_json(folder / "physics.json", physics_json(tradeoff)));
+  return write_picture(folder / "physics.png", page_data(physics_page(tradeoff)));
 }
 
 }  // namespace neritic::tools

@@ -60,7 +60,9 @@ const PhysicsPoint* knee(const PhysicsTradeoff& tradeoff, const std::string& fli
 // lag is given.
 const PhysicsPoint* cheapest(const PhysicsTradeoff& tradeoff, double max_error_m);
 
-// physics.csv, physics.md, physics.json, physics.png in the folder.
-Status write_physics_tradeoff(const std::filesystem::path& folder, const PhysicsTradeoff& tradeoff);
+// In the folder physics.csv, .md, .json and .plot.json, and where it can be drawn (true)
+// physics.png.
+Result<bool> write_physics_tradeoff(const std::filesystem::path& folder,
+                                    const PhysicsTradeoff& tradeoff);
 
 }  // namespace neritic::tools

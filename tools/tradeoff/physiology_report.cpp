@@ -5,12 +5,15 @@
 #include "diver/breath_monitor.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
-#include "engine/scene/image_file.hpp"
-#include "tools/common/plot.hpp"
+#include "tools/common/curves.hpp"
+#include "tools/common/picture.hpp"
 #include "tools/tradeoff/physiology_tradeoff.hpp"
 
 namespace neritic::tools {
 namespace {
+
+// A logarithmic axis has no zero: smaller errors are drawn as this.
+constexpr double kLeastError_bpm = 0.01;
 
 std::string physiology_csv(const PhysiologyTradeoff& t) {
   std::string out = "what,signals,estimator,window,latency_s,error,right,answered,doubled,us\n";
@@ -138,112 +141,90 @@ nlohmann::json physiology_json(const PhysiologyTradeoff& t) {
   return json;
 }
 
-void draw_breath(draw2d::Canvas& canvas, const Box& error_box, const Box& right_box,
-                 const PhysiologyTradeoff& t, const std::string& signals) {
-  std::vector<Series> errors, rights;
-  std::vector<double> xs, ys;
+// The error, and the share of windows that are right.
+void add_breath(Page& page, const PhysiologyTradeoff& t, const std::string& signals) {
+  const Axis x{"window, s: as late as that"};
+  Panel errors{"Breath, " + signals + " sounds: error", x, {"median error, breaths/min"}};
+  Panel rights{"Breath, " + signals + " sounds: right within 2", x, {"% of all windows", false}};
   for (const diver::BreathEstimator e :
        {diver::BreathEstimator::kSpectrum, diver::BreathEstimator::kAutocorrelation,
         diver::BreathEstimator::kMultiBand}) {
-    Series error{name_of(e), kSeriesColors[errors.size()], {}, {}, {}}, right = error;
+    Series error{name_of(e), {}, {}}, right = error;
     for (const BreathPoint& p : t.breath) {
       if (p.signals != signals || p.estimator != e) continue;
       if (p.answered > 0.0) {
         error.x.push_back(p.window_s);
-        error.y.push_back(std::max(p.median_bpm, 0.01));
+        error.y.push_back(std::max(p.median_bpm, kLeastError_bpm));
       }
       right.x.push_back(p.window_s);
       right.y.push_back(100.0 * p.right);
     }
-    xs.insert(xs.end(), error.x.begin(), error.x.end());
-    ys.insert(ys.end(), error.y.begin(), error.y.end());
-    errors.push_back(std::move(error));
-    rights.push_back(std::move(right));
+    errors.series.push_back(std::move(error));
+    rights.series.push_back(std::move(right));
   }
-  const Axis x = axis_for("window, s: as late as that", xs, true);
-  Axis y = axis_for("error in the middle, breaths/min", ys, true);
-  y.max *= 4.0;
-  draw_lines(canvas, error_box, "Breath, " + signals + " sounds: error", x, y, errors);
   const BreathPoint* knee = breath_knee(t, signals);
   for (const BreathPoint& p : t.breath) {
     if (p.signals != signals || p.estimator != diver::BreathEstimator::kMultiBand) continue;
     const bool at_knee = knee != nullptr && p.window_s == knee->window_s;
     const bool chosen = p.window_s == diver::BreathSettings{}.window_s;
-    if (at_knee || chosen)
-      draw_mark(canvas, error_box, x, y, p.window_s, std::max(p.median_bpm, 0.01),
-                at_knee && chosen ? "knee, default"
-                : at_knee         ? "knee"
-                                  : "default");
+    if (!at_knee && !chosen) continue;
+    const char* words = at_knee && chosen ? "knee, default" : at_knee ? "knee" : "default";
+    if (p.answered > 0.0)
+      errors.marks.push_back({p.window_s, std::max(p.median_bpm, kLeastError_bpm), words});
+    rights.marks.push_back({p.window_s, 100.0 * p.right, words});
   }
-  draw_lines(canvas, right_box, "Breath, " + signals + " sounds: right within 2", x,
-             {"% of all windows", 0.0, 125.0}, rights);
+  page.panels.push_back(std::move(errors));
+  page.panels.push_back(std::move(rights));
 }
 
-void draw_heart(draw2d::Canvas& canvas, const Box& rate_box, const Box& detector_box,
-                const PhysiologyTradeoff& t) {
-  std::vector<Series> rates;
-  std::vector<double> xs, ys;
+void add_heart(Page& page, const PhysiologyTradeoff& t) {
+  Panel rates{"Heart rate through effort, with extra beats",
+              {"latency, s (intervals beside the points)"},
+              {"error, bpm rms"}};
   for (const RateOver e : {RateOver::kCount, RateOver::kMean, RateOver::kMedian}) {
-    Series s{name_of(e), kSeriesColors[rates.size()], {}, {}, {}};
+    Series s{name_of(e), {}, {}};
     for (const HeartPoint& p : t.heart) {
       if (p.estimator != e || !(p.rms_bpm > 0.0)) continue;
       s.x.push_back(p.latency_s);
       s.y.push_back(p.rms_bpm);
       if (e == RateOver::kMedian) s.notes.push_back(fmt::format("{}", p.intervals));
     }
-    xs.insert(xs.end(), s.x.begin(), s.x.end());
-    ys.insert(ys.end(), s.y.begin(), s.y.end());
-    rates.push_back(std::move(s));
+    rates.series.push_back(std::move(s));
   }
-  const Axis x = axis_for("latency, s (intervals beside the points)", xs, true);
-  Axis y = axis_for("error, bpm rms", ys, true);
-  y.max *= 3.0;
-  draw_lines(canvas, rate_box, "Heart rate through effort, with extra beats", x, y, rates);
   if (const HeartPoint* p = heart_choice(t))
-    draw_mark(canvas, rate_box, x, y, p->latency_s, p->rms_bpm, "default");
-  Series timing{"R wave's time", kSeriesColors[0], {}, {}, {}};
+    rates.marks.push_back({p->latency_s, p->rms_bpm, "default"});
+  Panel detector{"Pan and Tompkins by sampling rate, 6 dB of noise",
+                 {"µs of one core a second of ECG"},
+                 {"error of the R wave's time, ms rms"}};
+  Series timing{"R wave's time", {}, {}};
   for (const DetectorPoint& p : t.detector) {
     timing.x.push_back(p.us_a_second);
     timing.y.push_back(p.timing_ms);
     timing.notes.push_back(fmt::format("{:g} Hz", p.rate_hz));
   }
-  draw_lines(canvas, detector_box, "Pan and Tompkins by sampling rate, 6 dB of noise",
-             axis_for("us of one core a second of ECG", timing.x, true),
-             axis_for("timing, ms rms", timing.y, true), {timing});
+  detector.series.push_back(std::move(timing));
+  page.panels.push_back(std::move(rates));
+  page.panels.push_back(std::move(detector));
 }
 
-ImageU8 physiology_plot(const PhysiologyTradeoff& t) {
-  constexpr double kWide = 900, kHigh = 480, kTop = 44;
-  std::vector<std::string> rows_of = signals_of(t);
-  if (rows_of.size() > 2) std::erase(rows_of, "recorded");  // its sensors say it
-  const auto rows = static_cast<int>(rows_of.size()) + 1;
-  draw2d::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                        static_cast<std::uint32_t>(kTop + rows * kHigh), kPaper);
-  canvas.text(24, 34, 18, "Heart and breath: error over latency and cost", kInk,
-              draw2d::Align::kLeft, draw2d::Face::kBold);
-  int row = 0;
-  const auto boxes = [&] {
-    const double top = kTop + kHigh * row++;
-    return std::pair{Box{0, top, kWide, top + kHigh}, Box{kWide, top, 2 * kWide, top + kHigh}};
-  };
-  for (const std::string& signals : rows_of) {
-    const auto [left, right] = boxes();
-    draw_breath(canvas, left, right, t, signals);
-  }
-  const auto [left, right] = boxes();
-  draw_heart(canvas, left, right, t);
-  return canvas.take();
+Page physiology_page(const PhysiologyTradeoff& t) {
+  std::vector<std::string> kinds = signals_of(t);
+  if (kinds.size() > 2) std::erase(kinds, "recorded");  // its sensors say it
+  Page page{"Heart and breath: error over latency and cost", {}};
+  for (const std::string& signals : kinds) add_breath(page, t, signals);
+  add_heart(page, t);
+  return page;
 }
 
 }  // namespace
 
-Status write_physiology_tradeoff(const std::filesystem::path& folder,
-                                 const PhysiologyTradeoff& tradeoff) {
+Result<bool> write_physiology_tradeoff(const std::filesystem::path& folder,
+                                       const PhysiologyTradeoff& tradeoff) {
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(write_text(folder / "physiology.csv", physiology_csv(tradeoff)));
   NERITIC_TRY_STATUS(write_text(folder / "physiology.md", physiology_md(tradeoff)));
-  NERITIC_TRY_STATUS(scene::write_png8(folder / "physiology.png", physiology_plot(tradeoff)));
-  return write_json(folder / "physiology.json", physiology_json(tradeoff));
+  NERITIC_TRY_STATUS(write_json(folder / "physiology.json", physiology_json(tradeoff)));
+  return write_picture(folder / "physiology.png", page_data(physiology_page(tradeoff)));
 }
 
 }  // namespace neritic::tools

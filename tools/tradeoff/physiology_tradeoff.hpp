@@ -72,8 +72,9 @@ const BreathPoint* breath_knee(const PhysiologyTradeoff& tradeoff, const std::st
 // a missed beat.
 const HeartPoint* heart_choice(const PhysiologyTradeoff& tradeoff);
 
-// physiology.csv, .md, .json, .png in the folder.
-Status write_physiology_tradeoff(const std::filesystem::path& folder,
-                                 const PhysiologyTradeoff& tradeoff);
+// In the folder physiology.csv, .md, .json and .plot.json, and where it can be drawn (true)
+// physiology.png.
+Result<bool> write_physiology_tradeoff(const std::filesystem::path& folder,
+                                       const PhysiologyTradeoff& tradeoff);
 
 }  // namespace neritic::tools

@@ -4,8 +4,8 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
-#include "engine/scene/image_file.hpp"
-#include "tools/common/plot.hpp"
+#include "tools/common/curves.hpp"
+#include "tools/common/picture.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
 
 namespace neritic::tools {
@@ -112,77 +112,53 @@ nlohmann::json summary_of(const SonarTradeoff& t, const std::vector<std::string>
 
 using Value = double (*)(const Point&);
 
-std::vector<Series> series_of(const SonarTradeoff& t, const std::string& scene, Value x, Value y,
-                              bool noted) {
-  std::vector<Series> out;
+// A curve a gather, and one of the renderer's own images; resolutions stand beside the default's.
+Panel gather_panel(const SonarTradeoff& t, const std::string& scene, const std::string& title,
+                   const Axis& x, const Axis& y, Value fx, Value fy, bool noted) {
+  Panel panel{title, x, y};
   const auto add = [&](const std::string& name, const std::vector<const Point*>& points) {
     if (points.empty()) return;
-    Series s{name, kSeriesColors[out.size()], {}, {}, {}};
+    Series s{name, {}, {}};
     for (const Point* p : points) {
-      s.x.push_back(x(*p));
-      s.y.push_back(y(*p));
+      s.x.push_back(fx(*p));
+      s.y.push_back(fy(*p));
       if (noted && name == "plane") s.notes.push_back(fmt::format("{:g}", p->scale));
+      if (name == "plane" && p->scale == scene::Sonar{}.gbuffer_scale)
+        panel.marks.push_back({fx(*p), fy(*p), fmt::format("default: {:g}", p->scale)});
     }
-    out.push_back(std::move(s));
+    panel.series.push_back(std::move(s));
   };
   for (const char* gather : kGatherNames) add(gather, select(t, scene, "resolution", gather));
   add("plane, renderer's images", select(t, scene, "renderer", ""));
-  return out;
+  const Point* best = knee(t, scene, "plane");
+  if (noted && best != nullptr)
+    panel.marks.push_back(
+        {fx(*best), fy(*best), fmt::format("knee: {:g} pixels a cell", best->scale)});
+  return panel;
 }
 
-void draw_curve(draw2d::Canvas& canvas, const Box& box, const SonarTradeoff& t,
-                const std::string& scene, const std::string& title, Axis x, Axis y, Value fx,
-                Value fy, bool mark) {
-  const auto series = series_of(t, scene, fx, fy, mark);
-  std::vector<double> xs, ys;
-  for (const Series& s : series) {
-    xs.insert(xs.end(), s.x.begin(), s.x.end());
-    ys.insert(ys.end(), s.y.begin(), s.y.end());
+Page plain_page(const SonarTradeoff& t, const std::vector<std::string>& scenes) {
+  Page page{
+      "Imaging sonar: error against cost",
+      {fmt::format("{}. Truth: {} rays a cell. Numbers beside points: G-buffer pixels a cell.",
+                   t.device, t.rays_a_cell)},
+      3};
+  for (const std::string& scene : scenes) {
+    page.panels.push_back(gather_panel(
+        t, scene, scene + ": image error over cost", {"ms, raster (where known) and gather"},
+        {"sum of differences / energy", false}, [](const Point& p) { return p.cost_ms(); },
+        [](const Point& p) { return p.error.l1; }, true));
+    page.panels.push_back(gather_panel(
+        t, scene, scene + ": energy over resolution", {"G-buffer pixels a cell"},
+        {"total energy / truth, less 1", false}, [](const Point& p) { return p.scale; },
+        [](const Point& p) { return p.error.energy; }, false));
+    Panel bars{scene + ": plane, 0.5 pixels a cell", {""}, {"sum of differences / energy"}};
+    for (const char* sweep : {"normals", "bins"})
+      for (const Point* p : select(t, scene, sweep, "plane"))
+        bars.bars.push_back({bar_name(*p), sweep, p->error.l1});
+    page.panels.push_back(std::move(bars));
   }
-  x = axis_for(x.label, xs, x.log);
-  y = axis_for(y.label, ys, y.log);
-  draw_lines(canvas, box, title, x, y, series, !mark);
-  const Point* p = mark ? knee(t, scene, "plane") : nullptr;
-  if (p != nullptr)
-    draw_mark(canvas, box, x, y, fx(*p), fy(*p), fmt::format("knee: {:g} pixels a cell", p->scale));
-}
-
-ImageU8 plot_of(const SonarTradeoff& t, const std::vector<std::string>& scenes) {
-  constexpr double kWidth = 640, kHeight = 460, kTop = 64;
-  draw2d::Canvas canvas(
-      1920, static_cast<std::uint32_t>(kTop + kHeight * static_cast<double>(scenes.size())),
-      kPaper);
-  canvas.text(24, 34, 18, "Imaging sonar: error against cost", kInk, draw2d::Align::kLeft,
-              draw2d::Face::kBold);
-  canvas.text(24, 54, 10,
-              fmt::format("{}; truth: {} rays a cell; labels: G-buffer pixels a cell", t.device,
-                          t.rays_a_cell),
-              kInk.with_alpha(0.7f));
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const double top = kTop + kHeight * static_cast<double>(i);
-    const auto box = [&](int column) {
-      return Box{kWidth * column, top, kWidth * (column + 1), top + kHeight};
-    };
-    const std::string& scene = scenes[i];
-    draw_curve(
-        canvas, box(0), t, scene, scene + ": image error over cost",
-        {"ms, raster (where known) and gather", 0, 0, true},
-        {"sum of differences / energy", 0, 0, false}, [](const Point& p) { return p.cost_ms(); },
-        [](const Point& p) { return p.error.l1; }, true);
-    draw_curve(
-        canvas, box(1), t, scene, scene + ": energy over resolution",
-        {"G-buffer pixels a cell", 0, 0, true}, {"total energy / truth, less 1", 0, 0, false},
-        [](const Point& p) { return p.scale; }, [](const Point& p) { return p.error.energy; },
-        false);
-    std::vector<Bar> bars;
-    for (const Point* p : select(t, scene, "normals", "plane"))
-      bars.push_back({bar_name(*p), kSeriesColors[1], p->error.l1});
-    for (const Point* p : select(t, scene, "bins", "plane"))
-      bars.push_back({bar_name(*p), kSeriesColors[2], p->error.l1});
-    draw_bars(canvas, box(2), scene + ": normals and bins (plane gather, 0.5 pixels a cell)",
-              "sum of differences / energy", bars);
-  }
-  return canvas.take();
+  return page;
 }
 
 std::string plain_markdown(const SonarTradeoff& t, const std::vector<std::string>& scenes) {
@@ -201,15 +177,15 @@ std::string plain_markdown(const SonarTradeoff& t, const std::vector<std::string
 
 }  // namespace
 
-Status write_plain(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
+Result<bool> write_plain(const std::filesystem::path& folder, const SonarTradeoff& tradeoff) {
   NERITIC_TRY_STATUS(make_folder(folder));
   std::vector<std::string> scenes;
   for (const Point& p : tradeoff.points)
     if (std::find(scenes.begin(), scenes.end(), p.scene) == scenes.end()) scenes.push_back(p.scene);
   NERITIC_TRY_STATUS(write_text(folder / "tradeoff.csv", csv_of(tradeoff)));
   NERITIC_TRY_STATUS(write_text(folder / "plain.md", plain_markdown(tradeoff, scenes)));
-  NERITIC_TRY_STATUS(scene::write_png8(folder / "tradeoff.png", plot_of(tradeoff, scenes)));
-  return write_json(folder / "tradeoff.json", summary_of(tradeoff, scenes));
+  NERITIC_TRY_STATUS(write_json(folder / "tradeoff.json", summary_of(tradeoff, scenes)));
+  return write_picture(folder / "tradeoff.png", page_data(plain_page(tradeoff, scenes)));
 }
 
 }  // namespace neritic::tools

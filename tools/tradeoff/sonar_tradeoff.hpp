@@ -34,9 +34,11 @@ struct SonarTradeoff {
 };
 Result<SonarTradeoff> run_sonar_tradeoff(const SonarTradeoffOptions& options);
 
-// In the folder: tradeoff.csv, tradeoff.png, tradeoff.json and plain.md of the plain cosine.
-Status write_plain(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
-// KIND.csv, KIND_terms.csv, KIND.png of the last of the kinds; tradeoff.md and quality.json of all.
-Status write_last_kind(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
+// In the folder: tradeoff.csv, .json, .plot.json and plain.md of the plain cosine. Each of these
+// two gives whether the picture, .png, could be drawn too.
+Result<bool> write_plain(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
+// KIND.csv, KIND_terms.csv, KIND.plot.json of the last of the kinds; tradeoff.md and quality.json
+// of all.
+Result<bool> write_last_kind(const std::filesystem::path& folder, const SonarTradeoff& tradeoff);
 
 }  // namespace neritic::tools

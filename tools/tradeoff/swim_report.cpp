@@ -4,8 +4,8 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
-#include "engine/scene/image_file.hpp"
-#include "tools/common/plot.hpp"
+#include "tools/common/curves.hpp"
+#include "tools/common/picture.hpp"
 #include "tools/tradeoff/swim_tradeoff.hpp"
 
 namespace neritic::tools {
@@ -19,7 +19,8 @@ std::string model_name(Model model) {
   return model == Model::kFull ? "full" : "planar";
 }
 std::string variant_name(const SwimPoint& p) {
-  return p.model == Model::kPlanar ? "planar" : fmt::format("{} strips", p.strips);
+  return p.model == Model::kPlanar ? "planar"
+                                   : fmt::format("{} strip{}", p.strips, p.strips == 1 ? "" : "s");
 }
 
 std::string swim_csv(const SwimTradeoff& t) {
@@ -48,8 +49,8 @@ std::string point_words(const SwimPoint& p) {
 std::string swim_md(const SwimTradeoff& t) {
   std::string out = fmt::format(
       "# Swimming: error against cost\n\nA diver with full gear kicks for {:g} s ({:.1f} m); the "
-      "largest distance from the same swim with 64 strips a segment and steps of .25 ms (itself "
-      "within {:.0e} m of steps of .5 ms), and microseconds of one core a second of swimming.\n",
+      "largest distance from the same swim with 64 strips a segment and steps of 0.25 ms (itself "
+      "within {:.0e} m of steps of 0.5 ms), and microseconds of one core a second of swimming.\n",
       t.swim_s, t.way_m, t.reference_error_m);
   const auto names = variants_of(t);
   for (const char* swim : kSwimNames) {
@@ -105,15 +106,13 @@ nlohmann::json swim_json(const SwimTradeoff& t) {
 }
 
 // Error over what(point), a curve a variant; some variants only, so that they can be told apart.
-void draw_swim(draw2d::Canvas& canvas, const Box& box, const SwimTradeoff& t,
-               const std::string& swim, const std::string& title, const std::string& label,
-               double (*what)(const SwimPoint&), bool noted) {
-  const char* const drawn[] = {"1 strips", "2 strips",  "4 strips",
+Panel swim_panel(const SwimTradeoff& t, const std::string& swim, const std::string& title,
+                 const std::string& label, double (*what)(const SwimPoint&), bool noted) {
+  const char* const drawn[] = {"1 strip",  "2 strips",  "4 strips",
                                "6 strips", "16 strips", "planar"};
-  std::vector<Series> series;
-  std::vector<double> xs, ys;
+  Panel panel{title, {label}, {"largest error, m"}};
   for (const char* name : drawn) {
-    Series s{name, kSeriesColors[series.size()], {}, {}, {}};
+    Series s{name, {}, {}};
     for (const SwimPoint& p : t.points) {
       if (p.swim != swim || variant_name(p) != name || !(p.error_m > 0.0) || p.error_m > 100.0)
         continue;
@@ -122,50 +121,37 @@ void draw_swim(draw2d::Canvas& canvas, const Box& box, const SwimTradeoff& t,
       if (noted && variant_name(p) == drawn[3])
         s.notes.push_back(fmt::format("{:.3g} ms", 1e3 * p.step_s));
     }
-    xs.insert(xs.end(), s.x.begin(), s.x.end());
-    ys.insert(ys.end(), s.y.begin(), s.y.end());
-    series.push_back(std::move(s));
+    panel.series.push_back(std::move(s));
   }
-  const Axis x = axis_for(label, xs, true);
-  Axis y = axis_for("largest error, m", ys, true);
-  y.max *= 5.0;  // room for its label
-  draw_lines(canvas, box, title, x, y, series, !noted);
   for (const SwimPoint& p : t.points)
-    if (p.swim == swim && is_default(p))
-      draw_mark(canvas, box, x, y, what(p), p.error_m, "default");
+    if (p.swim == swim && is_default(p)) panel.marks.push_back({what(p), p.error_m, "default"});
+  return panel;
 }
 
-ImageU8 swim_plot(const SwimTradeoff& t) {
-  constexpr double kWide = 900, kHigh = 460, kHead = 64;
-  draw2d::Canvas canvas(static_cast<std::uint32_t>(2 * kWide),
-                        static_cast<std::uint32_t>(kHead + 3 * kHigh), kPaper);
-  canvas.text(24, 34, 18, "Swimming by moving limbs: error against cost", kInk,
-              draw2d::Align::kLeft, draw2d::Face::kBold);
-  canvas.text(24, 54, 10,
-              fmt::format("{:g} s of flutter kick, {:.1f} m; truth: 64 strips a segment, .25 ms",
-                          t.swim_s, t.way_m),
-              kInk.with_alpha(0.7f));
-  for (std::size_t row = 0; row < std::size(kSwimNames); ++row) {
-    const double top = kHead + kHigh * static_cast<double>(row);
-    const std::string swim = kSwimNames[row];
-    draw_swim(
-        canvas, {0, top, kWide, top + kHigh}, t, swim, swim + ": over cost",
-        "us of one core a second", [](const SwimPoint& p) { return p.us_a_second; }, true);
-    draw_swim(
-        canvas, {kWide, top, 2 * kWide, top + kHigh}, t, swim, swim + ": over the step", "step, ms",
-        [](const SwimPoint& p) { return 1e3 * p.step_s; }, false);
+Page swim_page(const SwimTradeoff& t) {
+  Page page{"Swimming by moving limbs: error against cost",
+            {fmt::format("{:g} s of flutter kick, {:.1f} m. Truth: 64 strips a segment, 0.25 ms.",
+                         t.swim_s, t.way_m)}};
+  for (const std::string swim : kSwimNames) {
+    page.panels.push_back(swim_panel(
+        t, swim, swim + ": over cost", "µs of one core a second",
+        [](const SwimPoint& p) { return p.us_a_second; }, true));
+    page.panels.push_back(swim_panel(
+        t, swim, swim + ": over the step", "step, ms",
+        [](const SwimPoint& p) { return 1e3 * p.step_s; }, false));
   }
-  return canvas.take();
+  return page;
 }
 
 }  // namespace
 
-Status write_swim_tradeoff(const std::filesystem::path& folder, const SwimTradeoff& tradeoff) {
+Result<bool> write_swim_tradeoff(const std::filesystem::path& folder,
+                                 const SwimTradeoff& tradeoff) {
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(write_text(folder / "swim.csv", swim_csv(tradeoff)));
   NERITIC_TRY_STATUS(write_text(folder / "swim.md", swim_md(tradeoff)));
-  NERITIC_TRY_STATUS(scene::write_png8(folder / "swim.png", swim_plot(tradeoff)));
-  return write_json(folder / "swim.json", swim_json(tradeoff));
+  NERITIC_TRY_STATUS(write_json(folder / "swim.json", swim_json(tradeoff)));
+  return write_picture(folder / "swim.png", page_data(swim_page(tradeoff)));
 }
 
 }  // namespace neritic::tools

@@ -63,7 +63,7 @@ const SwimPoint* knee(std::span<const SwimPoint> points, const std::string& swim
 const SwimPoint* cheapest_within(std::span<const SwimPoint> points, const std::string& swim,
                                  double error_m);
 
-// swim.csv, swim.md, swim.json, swim.png in the folder.
-Status write_swim_tradeoff(const std::filesystem::path& folder, const SwimTradeoff& tradeoff);
+// In the folder swim.csv, .md, .json and .plot.json, and where it can be drawn (true) swim.png.
+Result<bool> write_swim_tradeoff(const std::filesystem::path& folder, const SwimTradeoff& tradeoff);
 
 }  // namespace neritic::tools
