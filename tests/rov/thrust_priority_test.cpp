@@ -84,7 +84,7 @@ TEST(RovThrustPriority, CheckControlFliesItWhereAFileAsksForIt) {
     return fmt::format(R"({{"closed_loop": {{"gains": {{"KP": [8,8,10,30,30,12],
       "KI": [0.8,0.8,1.2,2,2,0.6], "KD": [4,4,5,7,7,5], "umax": [9.5,9.5,11,40,40,40],
       "imax": [1,1,1,3,3,1], "izone": [0.15,0.15,0.15,0.3,0.3,0.3]}},
-      "plant": "lag 0.1 s, limits +51.5/-40 N", "results":
+      "plant": "Fossen + thruster lag 0.1 s, force limits +51.5/-40 N", "results":
       {{"neutral/surge_2m": {{"t90": 3.08, {}"overshoot_pct": 0.4}}}}}}}})",
                        priority);
   };

@@ -67,7 +67,7 @@ TEST(RovVehicleFile, FaultsNameTheKeyWhatWasFoundAndWhatIsAccepted) {
   EXPECT_THAT(vehicle_fault("mass_kg = -3\ninertia_kg_m2 = [1, 1, 1]"),
               HasSubstr("v.toml:1: mass_kg: found -3; accepted: a number in"));
   EXPECT_THAT(vehicle_fault("mass_kg = nan\ninertia_kg_m2 = [1, 1, 1]"),
-              HasSubstr("mass_kg: \"nan\" fo"));
+              HasSubstr("mass_kg: found \"nan\"; accepted: a number in"));
   EXPECT_THAT(vehicle_fault("inertia_kg_m2 = [1, 1, 1]"),
               HasSubstr("mass_kg: not found, but needed"));
   EXPECT_THAT(vehicle_fault("mass_kg = 10\ninertia_kg_m2 = [0, 0, 0]"),
@@ -75,7 +75,7 @@ TEST(RovVehicleFile, FaultsNameTheKeyWhatWasFoundAndWhatIsAccepted) {
   EXPECT_THAT(vehicle_fault(good + "added_mas = 3"),
               HasSubstr("added_mas: not known; the nearest is add"));
   EXPECT_THAT(vehicle_fault(good + "added_mass = [1, 2]"),
-              HasSubstr("6 rows of 6 numbers, or 6 of a diagonal, are"));
+              HasSubstr("accepted: 6 rows of 6 numbers, or 6 of a diagonal"));
   EXPECT_THAT(vehicle_fault(good + "linear_damping = [[1,9,0,0,0,0],[9,1,0,0,0,0],[0,0,1,0,0,0],"
                                    "[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]"),
               HasSubstr("linear_damping: adds energy"));
@@ -207,9 +207,9 @@ TEST(RovThrustCurve, FaultsAreSaidInOneLine) {
     return curve.ok() ? "" : curve.error().message;
   };
   EXPECT_EQ(said("# c\npwm_us,thrust_n_12v\n1100,-3\n1900,4\n"), "");
-  EXPECT_THAT(said(""), HasSubstr("t.csv: 0 pulse widths"));
-  EXPECT_THAT(said("pwm,thrust_n_12v\n"), HasSubstr("t.csv:1: a heading"));
-  EXPECT_THAT(said("pwm_us,thrust_n_v\n"), HasSubstr("t.csv:1: column 2"));
+  EXPECT_THAT(said(""), HasSubstr("t.csv: found 0 pulse widths"));
+  EXPECT_THAT(said("pwm,thrust_n_12v\n"), HasSubstr("t.csv:1: accepted: a heading"));
+  EXPECT_THAT(said("pwm_us,thrust_n_v\n"), HasSubstr("t.csv:1: found column 2"));
   EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,x\n"), HasSubstr("t.csv:2: accepted: 2 numbers"));
   EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,1\n1000,2\n"), HasSubstr("do not rise"));
 }
