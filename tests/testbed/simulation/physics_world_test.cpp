@@ -168,7 +168,7 @@ TEST(PhysicsWorld, AnErrorChoosesTheStep) {
   EXPECT_EQ((*world_of("2e-8"))->method().contact_parts, 1);
   const auto refused = world_of("1e-15");
   ASSERT_FALSE(refused.ok());
-  EXPECT_NE(refused.error().message.find("dive.toml: physics.max_error_m: 1e-15 found"),
+  EXPECT_NE(refused.error().message.find("dive.toml: physics.max_error_m: found 1e-15"),
             std::string::npos)
       << refused.error().message;
   // Where something can be touched, the steps that touch it are taken in parts.

@@ -140,12 +140,12 @@ TEST(VehicleShape, FaultsAreOneLine) {
   EXPECT_THAT(fault("[[outline]]\nkind = \"ball\""),
               HasSubstr("outline[0].kind: found \"ball\"; accepted: box, sphere, capsule or hull"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"sphere\""), HasSubstr("radius_m: not found"));
-  EXPECT_THAT(fault("[[outline]]\nkind = \"sphere\"\nradius_m = -1"), HasSubstr("radius_m: -1"));
+  EXPECT_THAT(fault("[[outline]]\nkind = \"sphere\"\nradius_m = -1"), HasSubstr("radius_m: found -1"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"box\"\nsize_m = [1, 0, 1]"), HasSubstr("size_m"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"box\"\nsize_m = [1, 1, 1]\nradius_m = 1"),
               HasSubstr("radius_m: not known"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"hull\"\npoints_m = [[0, 0, 0]]"),
-              HasSubstr("four points or more are"));
+              HasSubstr("accepted: four points or more"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"hull\"\n"
                     "points_m = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]"),
               HasSubstr("v: outline: the hull of 4 points has no volume"));
