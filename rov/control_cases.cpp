@@ -124,7 +124,7 @@ std::optional<double> take_number(std::string_view& text, std::string_view words
   return number;
 }
 
-// The plant is a text of one fixed form, the map a fixed text.
+// The plant is a text of one fixed form; the map, if given, a fixed text.
 void read_plant(const CaseField& loop, LoopCase& out) {
   const std::string plant = loop.required("plant").text();
   std::string_view rest = plant;
@@ -144,7 +144,8 @@ void read_plant(const CaseField& loop, LoopCase& out) {
   } else {
     loop["plant"].refuse(kPlantForm);
   }
-  if (loop.required("map").text() != kMap) loop["map"].refuse(fmt::format("\"{}\"", kMap));
+  if (loop["map"].present() && loop["map"].text() != kMap)
+    loop["map"].refuse(fmt::format("\"{}\"", kMap));
 }
 
 // "surge_2m", "depth_+1m", "yaw_90deg"

@@ -9,7 +9,7 @@
 //     compared
 //   closed_loop: gains as above for six axes; control_hz [50];
 //     plant: "Fossen + thruster lag T s, force limits +MAX/-MIN N";
-//     map: "tau=M_RB*u (paper), F=scale(pinv tau)";
+//     map [optional]: "tau=M_RB*u (paper), F=scale(pinv tau)";
 //     results: by "PLANT/MANOEUVRE". PLANT is neutral, fresh or sea (the BlueROV2 Heavy's
 //     buoyancy); MANOEUVRE is surge_, sway_, depth_ with metres (surge_2m, depth_+1m), roll_,
 //     pitch_, yaw_ with degrees (yaw_90deg), or any name with waypoints (p, yaw) and radius. Of
