@@ -4,9 +4,10 @@
 
 namespace neritic::diver {
 
-// Of a prolate spheroid of half axes a > b, as shares of the mass (along, across) and of the moment
-// of inertia about a short axis (turning) of the water it displaces. Lamb, "Hydrodynamics" (1932),
-// art. 114 and 115. slenderness a/b, over 1; from 1 to 1.0001 it counts as 1.0001.
+// Coefficients of a prolate spheroid of half axes a > b, as shares of the mass (along, across) and
+// of the moment of inertia about a short axis (turning) of the water it displaces. Lamb,
+// "Hydrodynamics" (1932), art. 114 and 115. slenderness a/b, over 1; from 1 to 1.0001 it counts
+// as 1.0001.
 struct SpheroidAddedMass {
   double along = 0.0, across = 0.0, turning = 0.0;
 };

@@ -80,7 +80,7 @@ Kind kind_of(Segment segment) {
   return {};
 }
 
-// Of lean or heavy people whose limbs would be out of any proportion.
+// Limits for lean or heavy people whose limbs would be out of proportion.
 constexpr double kMostWidthRatio = 2.2;
 
 }  // namespace

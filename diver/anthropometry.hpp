@@ -27,7 +27,7 @@ struct SegmentMeasures {
   // About the centre: front to back, side to side, along the segment.
   double sagittal_kg_m2 = 0.0, transverse_kg_m2 = 0.0, longitudinal_kg_m2 = 0.0;
   double volume_m3 = 0.0;  // the thorax with the air that stays in it (Dempster's specimens)
-  // Of a circular cylinder of that length and volume.
+  // The radius of a circular cylinder of that length and volume.
   double radius_m() const;
 };
 
@@ -40,7 +40,7 @@ Result<std::array<SegmentMeasures, kSegments>> measure_segments(const Build& bui
 inline constexpr double kHipAside = 0.0500;
 inline constexpr double kShoulderAside = 0.1028;
 inline constexpr double kShoulderAbove = 0.3083;
-// Of the foot: the ankle in front of the heel and above the foot's middle line.
+// The foot: the ankle in front of the heel and above the foot's middle line.
 inline constexpr double kAnkleFromHeel = 0.0340;
 inline constexpr double kAnkleAboveFoot = 0.0200;
 

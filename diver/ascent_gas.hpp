@@ -9,7 +9,7 @@ namespace neritic::diver {
 
 struct AscentGas {
   DiveComputerView view;
-  // Of the tank that is breathed from, litres at 1 bar: for the way up, and there.
+  // Litres at 1 bar of the tank in use: needed for the ascent, and available.
   double needed_l = 0.0, there_l = 0.0;
   // Bits of tanks: of those that do not hold their share of the way up, or give no full breath.
   std::uint64_t too_small = 0;

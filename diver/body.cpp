@@ -16,21 +16,21 @@ constexpr double kCylinderDrag = 1.1;
 constexpr double kPlateDrag = 1.9;
 constexpr double kFriction = 0.01;
 
-// C_d A of a prone swimmer without gear is .0459 m^2 (Narita et al. 2017), of which friction on
-// the skin is .018; the rest is laid on the head.
+// C_d A of a prone swimmer without gear is 0.0459 m^2 (Narita et al. 2017), of which friction on
+// the skin is 0.018; the rest is laid on the head.
 constexpr double kHeadDrag_m2 = 0.028;
-// With suit, tank, jacket and fins it is .295 m^2 in trim (40 N at a knot); .013 of C_d more for
+// With suit, tank, jacket and fins it is 0.295 m^2 in trim (40 N at a knot); 0.013 of C_d more for
 // each degree head up, +49 % at 15 degrees (Passmore and Rickers 2002, Sports Eng. 5, 65). Laid on
 // the jacket and on the tank, half each; crossflow over strips alone gives a tenth of that growth.
 constexpr double kWornDrag_m2 = 0.238;
 constexpr double kWornIncidence = 2.15;
 
 // The specimens of Dempster had so much air in the thorax, of a body of 75 kg: without it the body
-// is 1.06 as dense as water, with the residual volume 1.04, with full lungs .98.
+// is 1.06 as dense as water, with the residual volume 1.04, with full lungs 0.98.
 constexpr double kSpecimenAir_m3_kg = 2.2e-3 / 75.0;
 
 // Neoprene: thinner than sold where it is stretched and at the joints, so that a suit of 5 mm lifts
-// 3 kg at the surface; .65 of it is gas; the rest is rubber.
+// 3 kg at the surface; 0.65 of it is gas; the rest is rubber.
 constexpr double kSuitShare = 0.6;
 constexpr double kSuitGas = 0.65;
 constexpr double kRubber_kg_m3 = 1250.0;
@@ -307,7 +307,7 @@ class BodyMaker {
     add_part(cloth);
   }
 
-  // Of a segment's origin with all joints straight, in the body's axes.
+  // A segment's origin with all joints straight, in the body's axes.
   Vec3 origin_of(std::size_t segment) const {
     Vec3 at(0.0);
     for (; segment != kPelvis; segment = kParent[segment]) at += body_.segments[segment].joint_m;

@@ -17,7 +17,7 @@ inline constexpr double kGravity_m_s2 = 9.80665;
 inline constexpr double kSurfacePressure_pa = 101325.0;
 inline constexpr double kSeaWater_kg_m3 = 1025.0;
 
-// What moves and how the body may move.
+// The joints and axes in which the body may move.
 enum class Model : std::uint32_t {
   kFull,    // all joints, six degrees of freedom
   kPlanar,  // hips, knees, ankles and spine bend in the body's middle plane: surge, heave, pitch

@@ -13,7 +13,7 @@ namespace {
 constexpr double kMostBandRate_hz = 16000.0;
 constexpr double kEnvelopeLow_hz = 100.0, kEnvelopeHigh_hz = 2000.0;
 constexpr double kMostSound = 1e6;
-// Of the rate: a band pass that ends closer to one half is none.
+// A share of the sampling rate: a band pass that ends closer to one half is none.
 constexpr double kHighestShare = 0.45;
 
 // b over a, of a prototype 1 / (s^2 + sqrt 2 s + 1), warped so that the cut is exact.

@@ -40,8 +40,8 @@ class BreathBands {
   // Precondition: check_sound_rate(rate_hz).
   explicit BreathBands(double rate_hz);
 
-  // The frame that this sample completes is added to `out`. What is not finite (or larger than a
-  // million) is refused and counted, and the last good value held.
+  // The frame that this sample completes is added to `out`. A value that is not finite (or larger
+  // than a million) is refused and counted, and the last good value held.
   void push(double sample, std::vector<BreathFrame>& out);
 
   int bands() const { return static_cast<int>(filters_.size()); }

@@ -19,7 +19,7 @@ struct BreathSettings {
   // That an estimate looks back over: two blocks, the knee of `tradeoff physiology`.
   double window_s = 20.0;
 };
-// kBadInput: blocks of .5 to 60 s, windows of a block to 300 s.
+// kBadInput: blocks of 0.5 to 60 s, windows of a block to 300 s.
 Status check_breath_settings(const BreathSettings& settings);
 
 // The analysis. One owner, one thread.

@@ -10,7 +10,7 @@
 namespace neritic::diver {
 namespace {
 
-// Levels are smoothed by Hann's window of so many frames: 2 Hz, half of it .3 s.
+// Levels are smoothed by Hann's window of so many frames: 2 Hz, half of it 0.3 s.
 constexpr int kSmoothFrames = 10;
 // Its equivalent length, (sum w)^2 / sum w^2 of a Hann window: two thirds.
 constexpr double kSmooth_s = kSmoothFrames / kBreathFrames_hz * 2.0 / 3.0;
@@ -25,7 +25,7 @@ constexpr double kSilence = 1e-12;         // full scale squared: -120 dB
 // breath at most but once in 87 windows.
 constexpr double kMostPause = 1.25;
 // The first peak so near the highest: twice a breath is like a breath too. Measured on recordings
-// of paced breathing; between .8 and .9 nothing changes much.
+// of paced breathing; between 0.8 and 0.9 nothing changes much.
 constexpr double kFirstPeak = 0.85;
 // How far off the next but one breath is looked for, in periods.
 constexpr double kReach = 0.15;
@@ -152,7 +152,7 @@ bool is_lively(double deviation, double width_hz) {
   return deviation * deviation >= kOverNoise * noise && deviation >= kLeastDeviation;
 }
 
-// Which frames are louder in any lively band than half way between its softest and its loudest
+// The frames that are louder in any lively band than half way between its softest and its loudest
 // twentieth, in decibels; none where nothing stands out by 6 dB.
 std::vector<bool> loud_frames(std::span<const BreathFrame> frames, const BreathBands& front) {
   std::vector<bool> loud(frames.size(), false);

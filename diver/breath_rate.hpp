@@ -23,7 +23,7 @@ enum class BreathEstimator : std::uint8_t {
 const char* name_of(BreathEstimator estimator);
 Result<BreathEstimator> breath_estimator_of(const std::string& name);
 
-// The confidence below which it says that it knows no rate: .9, .25 and, as published, none.
+// The confidence below which no rate is given: 0.9, 0.25 and, as published, none.
 double confidence_asked(BreathEstimator estimator);
 
 struct BreathEstimate {
@@ -43,7 +43,7 @@ struct BreathEstimate {
   }
 };
 
-// What a snapshot holds of the breath (breath_monitor.hpp). Always finite.
+// A snapshot's data about the breath (breath_monitor.hpp). Always finite.
 struct BreathState {
   double time_s = 0.0;  // of the newest sample analysed
   BreathEstimate estimate;
@@ -61,9 +61,9 @@ struct BreathState {
   }
 };
 
-// Of a window of frames; front says which bands there are. A window without breath says so: steady
-// noise, silence, less than four seconds, less confidence than asked and, for all but kSpectrum, a
-// rate that a pause contradicts, 1.25 of its breaths long.
+// The estimate of a window of frames; the front frame says which bands exist. A window without
+// breath says so: steady noise, silence, less than four seconds, less confidence than asked and,
+// for all but kSpectrum, a rate that a pause contradicts, 1.25 of its breaths long.
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
                                BreathEstimator estimator, double least_confidence);
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMostComponents = 3;
 // A component that has less of all power is rounding.
 constexpr double kLeastShare = 1e-9;
-// With 0 a breath whose halves are alike is found twice, with 1 half as often; .5 is between.
+// 0 finds a breath with two equal halves twice, 1 finds it half as often; 0.5 lies between.
 constexpr double kShareOfDouble = 0.5;
 // A line at half of the frequency that stands so far over the median of all says that only every
 // second is a whole breath. On the recordings none does; chance alone reaches 5.5.
@@ -85,8 +85,8 @@ std::vector<Levels> components_of(const std::vector<Levels>& bands) {
 
 // How strong the best line of sounds without rhythm is (its share of all power times the window's
 // seconds): an extreme value's distribution, by location and scale. Measured on the paced
-// recordings cut into pieces of .3 to 3 s in random order, windows of 10 to 60 s: both sensors'
-// locations are within .2 of it, scales .4 to .57.
+// recordings cut into pieces of 0.3 to 3 s in random order, windows of 10 to 60 s: both sensors'
+// locations are within 0.2 of it, scales 0.4 to 0.57.
 double share_of_arrhythmic_below(double share, double window_s) {
   const double location = 2.85 + 0.75 * std::log(window_s / 20.0);
   constexpr double kScale = 0.5;

@@ -12,7 +12,7 @@ using Levels = std::vector<double>;  // kBreathFrames_hz of them a second
 // of kBreathFrames_hz.
 std::vector<double> line_powers(const Levels& x, double step_hz, std::size_t count);
 
-// The top of a parabola through three values, one apart: its place, from -.5 to .5; 0: no top.
+// The top of a parabola through three values, one apart: its place, from -0.5 to 0.5; 0: no top.
 double parabola_top(double before, double here, double after);
 
 struct Rhythm {
@@ -20,10 +20,11 @@ struct Rhythm {
   double confidence = 0.0;  // the share of sounds without rhythm whose best line is weaker
 };
 
-// Of levels as long as each other, each with mean 0 and deviation about 1. Principal components of
-// all bands, each scaled to the same power: the first is how loud it is, the next its colour, which
-// tells breathing in from breathing out. Of their spectra together the line that has most with half
-// of what its double has: a breath's halves are never quite alike, and never quite unlike.
+// The rhythm of levels of equal length, each with mean 0 and deviation about 1. Principal
+// components of all bands, each scaled to the same power: the first is the loudness, the next the
+// colour, which tells breathing in from breathing out. Of their spectra together the line that has
+// most with half of what its double has: a breath's halves are never quite alike, and never quite
+// unlike.
 Rhythm common_rhythm(const std::vector<Levels>& bands);
 
 }  // namespace neritic::diver

@@ -3,7 +3,7 @@
 //
 // Sources: A. A. Buehlmann, Tauchmedizin (4th ed. 1995), table 25: half-times, b, and the columns
 // A, B, C of nitrogen's a; helium's and compartment 1b as collected by E. C. Baker, Understanding
-// M-values (1998). Of compartment 1 there are two: 4 min, or 1b of 5 min. Programs that name the
+// M-values (1998). Compartment 1 exists twice: 4 min, or 1b of 5 min. Programs that name the
 // same model differ in that.
 #pragma once
 
@@ -18,7 +18,7 @@ using Compartments = std::array<double, kCompartments>;
 enum class BuehlmannTable { kB, kC };          // B for printed tables, C for computers
 enum class FirstCompartment { k4Min, k5Min };  // 1 or 1b
 
-// Of one inert gas.
+// Coefficients of one inert gas.
 struct InertGas {
   Compartments half_time_min, a_bar, b;
   Compartments rate_min;  // ln 2 / half-time

@@ -9,7 +9,7 @@
 
 namespace neritic::diver {
 
-// What holds during one ascent. Borrows conventions and gases.
+// The constants of one ascent. Borrows conventions and gases.
 struct AscentSettings {
   const DecoConventions& conventions;
   Buehlmann model;  // the conventions'

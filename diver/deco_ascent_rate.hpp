@@ -1,5 +1,5 @@
 // How fast a diver rises, and when to say so: the slope of a line through at least 10 s of depths.
-// Two samples of a sensor with 5 cm of noise would make 4 m/min of it, the line .3. Pure functions
+// Two samples of a sensor with 5 cm of noise would make 4 m/min of it, the line 0.3. Pure functions
 // over plain bytes; any thread.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What programs of the same model do differently, each thing a field, and named sets of them. The
+// The differences between programs of the same model, each a field, and named sets of them. The
 // differences are no errors of anybody: ZH-L16 says what tissues tolerate, not how an ascent is put
 // into whole minutes. Plain values; any thread.
 #pragma once
@@ -14,7 +14,7 @@ namespace neritic::diver {
 
 // When a stop ends: after whole multiples of the quantum at it, or when the run time is one.
 enum class StopEnd { kWholeStop, kWholeRunTime };
-// What is tried before a stop is left: the next depth against the tissues as they are, or as they
+// The test before a stop is left: the next depth against the tissues as they are, or as they
 // will be when it is reached.
 enum class LeavingTrial { kTissuesAtStop, kTissuesAfterAscent };
 // How the first stop is found: by rising to the ceiling of GF low, again and again while it

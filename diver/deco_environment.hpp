@@ -23,7 +23,7 @@ struct DecoEnvironment {
   }
 };
 
-// What tables of limits use: 1 bar, and 10 m of water a bar.
+// The convention of tables of limits: 1 bar, and 10 m of water a bar.
 inline constexpr DecoEnvironment kTenMetresABar{1.0, 0.1};
 
 inline double bar_per_m_of(double density_kg_m3, double gravity_m_s2 = kStandardGravity_m_s2) {

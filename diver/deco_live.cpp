@@ -53,7 +53,7 @@ DiveComputer::DiveComputer(DiveComputer&& other) noexcept
     : DiveComputer(std::move(other.settings_)) {}
 
 Result<DiveComputer> DiveComputer::create(DiveComputerSettings settings) {
-  // What a planner accepts.
+  // The limits of the planner.
   DivePlanRequest request{settings.conventions,
                           settings.gf_low,
                           settings.gf_high,

@@ -66,7 +66,7 @@ inline constexpr double kCeilingSlack_m = 0.3;
 // Gases whose share of the way up is told: the first ones of the settings.
 inline constexpr std::size_t kToldGases = 4;
 
-// What a computer's display has. Above a ceiling the stops begin at or below it, not where the
+// The data of a computer's display. Above a ceiling the stops begin at or below it, not where the
 // diver is: the next stop is then deeper than the diver, at the surface too, and the way down to it
 // is part of the time to the surface. The way up is reckoned as breathed.
 struct DiveComputerView {
@@ -75,7 +75,7 @@ struct DiveComputerView {
   double no_stop_min = 0.0;             // left without stops; 0 with a ceiling; infinite: no limit
   double stop_m = 0.0, stop_min = 0.0;  // the next stop; 0: none
   double to_surface_min = 0.0;          // infinite where the ceiling never clears
-  // Of that, pressure times time on each gas: times litres a minute, what the way up takes.
+  // Pressure times time of it on each gas; times litres per minute it is the gas for the ascent.
   std::array<double, kToldGases> to_surface_bar_min{};
   double po2_bar = 0.0, density_g_l = 0.0, narcotic_m = 0.0;
   double gradient = 0.0, surface_gradient = 0.0;  // of the M-value, here and if at the surface
@@ -96,8 +96,8 @@ class DiveComputer {
   DiveComputerState start(const TissueState& tissues) const;
   // dt_s after the last sample; the depth changed linearly, and what the last sample breathes was
   // breathed. Where that was nothing, no gas comes to the lungs or leaves them: tissues, CNS and
-  // OTU stay. What is no number, out of bounds (-10 to 2000 m, a gas that there is none of,
-  // breathed above 1, dt_s below 0 or endless) is refused and counted, and the last good sample
+  // OTU stay. A sample that is not finite or out of bounds (-10 to 2000 m, a gas that there is none
+  // of, breathed above 1, dt_s below 0 or endless) is refused and counted, and the last good sample
   // held. Above the surface is at it.
   DiveComputerState step(const DiveComputerState& before, const DiveSample& sample,
                          double dt_s) const;

@@ -21,7 +21,7 @@ double tissue_bar(const TissueState& tissues, std::size_t i) {
   return tissues.n2_bar[i] + tissues.he_bar[i];
 }
 
-// Of one compartment and gas. alveolar: at first; slope: its bar a minute. Schreiner's terms are
+// One compartment and gas. alveolar: at first; slope: its bar a minute. Schreiner's terms are
 // ordered so that none is large where minutes are few and the slope is steep.
 double schreiner(double tissue, double alveolar, double slope, double k, double minutes) {
   const double x = k * minutes, gone = -std::expm1(-x);

@@ -197,7 +197,7 @@ class WayDown {
     }
   }
 
-  // Of GF low, which holds until stops begin.
+  // With GF low, which holds until stops begin.
   double ceiling_m(const TissueState& tissues) const {
     return request_.conventions.environment.depth_m(
         ceiling(settings_.model, tissues, settings_.gf_low).pressure_bar);

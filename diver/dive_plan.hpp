@@ -38,8 +38,8 @@ struct DivePlanRequest {
   // A last stop deeper than the step holds also where the first stop would be shallower. Off: such
   // a dive stops at the step, as one program does by mistake.
   bool last_stop_always = true;
-  // What earlier dives left of CNS, and the day's OTU. A plan has its own dive's alone; warnings
-  // and computers count both.
+  // The CNS that remains of earlier dives, and the day's OTU. A plan has its own dive's alone;
+  // warnings and computers count both.
   OxygenExposure oxygen_before;
 };
 
@@ -87,13 +87,13 @@ struct DivePlan {
   double ascent_min() const { return surfacing.run_min - end_of_bottom.run_min; }
 };
 
-// What of a request is wrong, a level that is to be left before it is reached included, and a
+// The error of a request, if any; a level that is to be left before it is reached included, and a
 // travel gas that is breathed where the bottom gas should be.
 Status check_request(const DivePlanRequest& request);
 // Errors as check_request's, or the depth at which a ceiling never clears. Levels are dived as they
 // are asked for, also above a ceiling: DivePlan::above_ceiling.
 Result<DivePlan> plan_dive(const DivePlanRequest& request);
-// Of one who leaves for the surface at the end of the first so many levels.
+// The ascent of a diver who leaves for the surface at the end of the first so many levels.
 Result<DivePlan> plan_dive(const DivePlanRequest& request, std::size_t levels);
 // That no level is above its ceiling: what a plan for a diver must keep.
 Status check_ceilings(const DivePlanRequest& request, const DivePlan& plan);
@@ -109,8 +109,9 @@ struct EarlierDive {
 // Tissues after the dives, oldest first. plans: if not null, each dive's plan is put there.
 Result<TissueState> tissues_after(const std::vector<EarlierDive>& dives,
                                   std::vector<DivePlan>* plans = nullptr);
-// What is left of the oxygen of dives that were planned so: CNS declines at the surface (cns_after)
-// while it is not gained there; OTU is that of the last 24 hours. As large as the dives.
+// The oxygen exposure that remains of dives planned this way: CNS declines at the surface
+// (cns_after) while it is not gained there; OTU is that of the last 24 hours. As large as the
+// dives.
 OxygenExposure oxygen_after(const std::vector<EarlierDive>& dives,
                             const std::vector<DivePlan>& plans);
 

@@ -30,7 +30,7 @@ constexpr std::string_view kGasSwitchKeys[] = {"reaction_s"};
 constexpr double kLitre_m3 = 1e-3, kBar_pa = 1e5;
 constexpr double kThinnestSuit_m = 0.5e-3;
 
-// false: not worn. What is absent is worn as it is by default.
+// false: not worn. An absent table means the default gear.
 bool taken_off(const CaseField& field) {
   return field.present() && !field.is_object() && !field.is_array() && !field.boolean(false);
 }

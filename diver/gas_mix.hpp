@@ -1,4 +1,4 @@
-// What is breathed: shares of oxygen and helium by moles, the rest nitrogen. A plain value, also in
+// A breathing gas: shares of oxygen and helium by moles, the rest nitrogen. A plain value, also in
 // states (two doubles); any thread.
 #pragma once
 

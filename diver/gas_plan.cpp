@@ -52,8 +52,8 @@ double bar_min(const DecoEnvironment& where, const PlanSegment& s, double share 
   return share * s.minutes * where.pressure_bar(0.5 * (s.from_m + to_m));
 }
 
-// What two divers need from the end of the last level up to another gas or the surface, and the
-// depth down to which pressure the tank gives it.
+// The gas that two divers need from the end of the last level up to another gas or the surface, and
+// the depth down to which pressure the tank gives it.
 struct MinimumGas {
   std::size_t gas = 0;
   double litres = 0.0, until_m = 0.0;

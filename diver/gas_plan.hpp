@@ -29,7 +29,7 @@ struct PlanTank {
   double volume_l = 0.0, pressure_bar = 0.0;
 };
 
-// Of one tank over the plan.
+// Use of one tank over the plan.
 struct PlanTankUse {
   PlanTank tank;
   double end_bar = 0.0;      // when the plan is done; 0: it does not last
@@ -39,7 +39,7 @@ struct PlanTankUse {
   std::optional<double> empty_min, empty_m;
 };
 
-// Of one mix over the plan, whatever it is carried for.
+// Use of one mix over the plan, whatever its role.
 struct PlanGasUse {
   std::size_t gas = 0;  // the first of this mix of the request
   double used_l = 0.0;  // by one diver
@@ -60,7 +60,7 @@ Result<std::vector<PlanGasUse>> gas_use(const DivePlanRequest& request, const Di
 double segment_litres(const DivePlanRequest& request, const DivePlan& plan,
                       const PlanBreathing& breathing, const PlanSegment& segment, double from_min);
 
-// What a tank of a mix shows when so many litres are gone; 0: all of it.
+// The pressure of a tank of a mix after so many litres; 0: all of it.
 double tank_bar(const GasMix& mix, const PlanTank& tank, double used_l);
 
 // Tanks that do not hold what the plan, or minimum gas, takes: one line a tank.

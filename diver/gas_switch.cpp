@@ -44,7 +44,7 @@ class Chooser {
     const double kept_to_m =
         std::min(down_to_m + kGasDepthSlack_m, richest_depth_m(gases_[i].mix) + kRichestSlack_m);
     if (deep_m > (breathed(i) ? kept_to_m : down_to_m)) return false;
-    // Who dives in a lake in the mountains is used to its air.
+    // A diver in a mountain lake is used to its air.
     const double used_to = std::min(body_.surface_pa / kSurfacePressure_pa, 1.0);
     const double least_bar = used_to * (breathed(i) ? kLeastOxygen_bar : kLeastOxygenAnew_bar);
     if (gases_[i].mix.oxygen * 1e-5 * pressure_at(body_, shallow_m) < least_bar) return false;

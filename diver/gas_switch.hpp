@@ -1,6 +1,6 @@
-// Which tank a diver breathes from who follows the plan that his gases make: the bottom gas (the
+// The tank that a diver breathes from by the plan of the gases: the bottom gas (the
 // first tank) on the way down, deco gas from its switch depth on the way up, another tank where one
-// is out. What stands in for the diver's own hands where nobody wears the suit. Pure functions over
+// is out. Replaces the diver's own hands if no suit is worn. Pure functions over
 // plain bytes; any thread. Depths in m, down positive.
 #pragma once
 
@@ -32,13 +32,13 @@ struct GasSwitchState {
 };
 
 // A gas is breathed between these pressures of oxygen, bar: the least that thought bears without
-// harm is .16 (risk_proxies.cpp), .18 leaves room; 1.6 is the most at rest (NOAA Diving Manual, 4th
-// ed., 2001), at 10 m of water a bar, as switch depths are reckoned. To a gas near the lower one
-// the diver changes only from .20 on, so that nobody changes to and fro. Over a lake in the
+// harm is 0.16 (risk_proxies.cpp), 0.18 leaves room; 1.6 is the most at rest (NOAA Diving Manual,
+// 4th ed., 2001), at 10 m of water a bar, as switch depths are reckoned. To a gas near the lower
+// one the diver changes only from 0.20 on, so that the diver does not alternate. Over a lake in the
 // mountains both are its air's share of these.
 inline constexpr double kLeastOxygen_bar = 0.18, kLeastOxygenAnew_bar = 0.20;
 inline constexpr double kMostOxygen_bar = 1.6;
-// Who can breathe nothing else breathes what has so much, or more than kMostOxygen_bar.
+// Without an alternative the diver breathes down to this, or above kMostOxygen_bar.
 inline constexpr double kThinks_bar = 0.16;
 // A gas that is breathed is kept so much below its switch depth, and so much at most below the
 // depth of kMostOxygen_bar (1.65 bar of oxygen there): who hovers there does not change to and fro.

@@ -16,7 +16,7 @@ double angle_between(const Vec3& a, const Vec3& b);
 // No number where an angle is 90 degrees or more either way: no screen is there.
 Vec3 direction_of_angles(double x_rad, double y_rad);
 
-// A camera without distortion. Pixel centres at +.5, row 0 on top.
+// A camera without distortion. Pixel centres at +0.5, row 0 on top.
 struct GazeCamera {
   Pose world_from_view;
   double fx = 1.0, fy = 1.0, cx = 0.0, cy = 0.0;  // pixels

@@ -48,7 +48,7 @@ Result<GazeRecording> parse_gaze_csv(std::string_view text, const std::string& n
     sample.time_s = time ? time_scale * table.columns[*time][i] : static_cast<double>(i) / rate;
     sample.direction = has_angles ? direction_of_angles(scale * (*x)[i], scale * (*y)[i])
                                   : Vec3((*dx)[i], (*dy)[i], (*dz)[i]);
-    // What is not said was not seen.
+    // A missing value means that the eye was not seen.
     sample.valid = !status || (std::isfinite((*status)[i]) && (*status)[i] != 0.0);
     out.samples.push_back(sample);
     if (!marks) continue;

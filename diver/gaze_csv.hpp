@@ -11,7 +11,7 @@ namespace neritic::diver {
 struct GazeRecording {
   std::vector<GazeSample> samples;
   // Codes of a person who looked at the recording, where there is a column 'evt': 0 undefined, 1
-  // fixation, 2 saccade, 3 what follows one, 4 pursuit, 5 blink. Of every sample.
+  // fixation, 2 saccade, 3 after a saccade, 4 pursuit, 5 blink. One per sample.
   std::vector<int> marks;
 };
 // Columns: time (t_s, or a rate in a comment), then x_deg and y_deg (or x_rad, y_rad: angles on a

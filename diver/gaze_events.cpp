@@ -125,7 +125,7 @@ void GazeMonitor::settle_velocity(bool all, GazeEvents& out) {
     classify(seen, velocity > settings_.velocity_rad_s ? GazeClass::kSaccade : GazeClass::kFixation,
              velocity, out);
     ++settled_;
-    // What lies more than a window back is not asked for again.
+    // Samples more than a window back are not needed again.
     std::size_t old = 0;
     while (old + 1 < settled_ && waiting_[old + 1].time_s < seen.time_s - half_s - kSlack_s) ++old;
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(old));
@@ -248,7 +248,7 @@ void GazeMonitor::end_fixation(GazeEvents& out) {
   has_held_ = true;
 }
 
-// What is held is final, and so is the saccade after it.
+// The held event is final, and so is the saccade after it.
 void GazeMonitor::emit(GazeEvents& out) {
   if (has_held_ && held_.end_s - held_.start_s >= settings_.least_fixation_s) {
     out.fixations.push_back(held_);
@@ -270,7 +270,7 @@ void GazeMonitor::emit(GazeEvents& out) {
   has_saccade_ = false;
 }
 
-// What was taken for a saccade just before was the lid.
+// The saccade just before was the eyelid.
 void GazeMonitor::note_loss(double from_s, double to_s, GazeEvents& out) {
   loss_from_s_ = from_s;
   loss_to_s_ = to_s;

@@ -24,7 +24,8 @@ struct GazeSettings {
   GazeMethod method = GazeMethod::kVelocity;
   // Olsen 2012 (Tobii's I-VT filter): 30 degrees a second; gaps of 75 ms are bridged; fixations
   // less than 75 ms and half a degree apart are one; shorter ones than 60 ms are none. His window
-  // of 20 ms blurs the ends of saccades at 1 kHz: kappa against a person's marks .67, of 10 ms .71.
+  // of 20 ms blurs the ends of saccades at 1 kHz: kappa against a person's marks 0.67, of 10 ms
+  // 0.71.
   double velocity_rad_s = radians(30.0);
   double velocity_window_s = 0.010;
   double bridge_s = 0.075, merge_s = 0.075, merge_rad = radians(0.5), least_fixation_s = 0.060;
@@ -61,7 +62,7 @@ struct Saccade {
   double amplitude_rad = 0.0, peak_rad_s = 0.0;
 };
 
-// What a snapshot holds of the gaze. Always finite.
+// A snapshot's data about the gaze. Always finite.
 struct GazeState {
   double time_s = 0.0;
   Vec3 direction{0.0, 0.0, -1.0};  // the last good one
@@ -91,11 +92,11 @@ struct GazeState {
 struct GazeEvents {
   std::vector<Fixation> fixations;
   std::vector<Saccade> saccades;
-  // What moved like saccades where the eye was lost, or (I-VT, which measures it) faster than eyes
+  // Movements like saccades while the eye was lost, or (I-VT, which measures it) faster than eyes
   // turn: blinks, and no eye.
   std::vector<Saccade> blinks;
-  // Of every sample that was pushed, in order, as the method alone says, before anything is merged
-  // or dropped. What was refused is lost.
+  // The class of every pushed sample, in order, by the method alone, before anything is merged
+  // or dropped. Refused samples count as lost.
   std::vector<GazeClass> classes;
 };
 
@@ -104,7 +105,7 @@ class GazeMonitor {
   // Precondition: check_gaze_settings(settings).
   explicit GazeMonitor(const GazeSettings& settings) : settings_(settings) {}
 
-  // What this sample settles is added to `out`.
+  // Appends the events that this sample completes to `out`.
   void push(const GazeSample& sample, GazeEvents& out);
   void finish(GazeEvents& out);
   const GazeState& state() const { return state_; }
@@ -167,7 +168,7 @@ class GazeMonitor {
 
 GazeEvents find_gaze_events(const std::vector<GazeSample>& samples, const GazeSettings& settings);
 
-// Which samples lie within a saccade, its first and its last one included. Both in the order of
+// The samples that lie within a saccade, its first and its last one included. Both in the order of
 // time.
 std::vector<bool> in_saccades(const std::vector<GazeSample>& samples,
                               const std::vector<Saccade>& saccades);

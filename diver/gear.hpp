@@ -1,4 +1,4 @@
-// What a diver carries: suit, fins, tanks, jacket, lead. Parameters as a person writes them,
+// A diver's gear: suit, fins, tanks, jacket, lead. Parameters as a person writes them,
 // checked by make_body (body.hpp). Plain values; any thread.
 #pragma once
 
@@ -86,7 +86,7 @@ struct Gear {
 // How many of its tanks are worn on the back: 0 to 2.
 std::size_t tanks_on_back(const Gear& gear);
 
-// What people wear, SI.
+// Usual gear, SI.
 inline constexpr Bounds kSuitThickness_m{0.0, 0.012};
 inline constexpr Bounds kFinLength_m{0.01, 1.2}, kFinWidth_m{0.02, 1.0}, kFinAngle_rad{-0.6, 0.6},
     kFinMass_kg{0.01, 10.0}, kFinVolume_m3{0.0, 0.01};

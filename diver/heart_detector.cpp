@@ -20,7 +20,7 @@ constexpr double kLost_s = 0.5;
 // The heart stops for no longer (30 beats a minute are 2 s): the levels are wrong, as after a
 // spike.
 constexpr double kWithoutBeat_s = 4.0;
-// What rounding leaves of a constant, against its size.
+// The rounding error of a constant, relative to its size.
 constexpr double kRounding = 1e-9;
 // No ECG is larger, in any unit; its square stays finite.
 constexpr double kMostEcg = 1e12;
@@ -103,7 +103,7 @@ void BeatDetector::push(double value, std::vector<Beat>& out) {
   } else {
     if (static_cast<double>(missing_in_a_row_) > kLost_s * rate_hz_) lose_signal();
     missing_in_a_row_ = 0;
-    // What came before the first sample, or while the signal was lost, was as it is now: no step.
+    // The signal before the first sample, or during a loss, counts as equal to this one: no step.
     if (!has_value_)
       for (Place& p : ring_) p = {value};
     has_value_ = true;
@@ -298,7 +298,7 @@ Beat BeatDetector::locate(const Peak& peak) const {
 
 void BeatDetector::lose_signal() {
   ++counts_.gaps;
-  // What is known is settled as it stands; then all is learnt anew.
+  // Settles what is known, then learns everything anew.
   has_value_ = false;
   learnt_ = false;
   after_gap_ = true;

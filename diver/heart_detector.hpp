@@ -36,7 +36,7 @@ class BeatDetector {
   // Precondition: check_ecg_rate(rate_hz).
   explicit BeatDetector(double rate_hz);
 
-  // The beats that this sample settles are added to `out`: at most some .5 s after their R wave,
+  // Appends the beats that this sample completes to `out`: at most some 0.5 s after their R wave,
   // those of a look back later.
   void push(double value, std::vector<Beat>& out);
   // No more will come: what the last second held is settled.
@@ -46,7 +46,7 @@ class BeatDetector {
   bool learning() const { return !learnt_; }
   // No change for the last two seconds: electrode off, or amplifier at its limit.
   bool flat() const;
-  // Of the levels: peaks that beats have over those that noise has. 0 while learning.
+  // The ratio of the peak levels of beats and of noise. 0 while learning.
   double signal_over_noise() const;
   // Kurtosis of the band over the last eight seconds, at the newest beat: 3 of noise, 5 and more of
   // a heart up to 200 beats a minute (kSQI of Li, Mark and Clifford 2008, Physiol. Meas. 29, 15). 0
@@ -54,7 +54,7 @@ class BeatDetector {
   double peakedness() const { return peakedness_; }
 
  private:
-  // What happened at one place of the signal; all four in step.
+  // The signal's values at one place; all four are aligned.
   struct Place {
     double raw = 0.0, band = 0.0, slope = 0.0, energy = 0.0;
   };

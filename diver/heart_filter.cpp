@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kHalfLength_s = 0.2;
 
-// Of an ideal low pass, at t.
+// Impulse response of an ideal low pass at t.
 double low_pass_tap(double cut_hz, double t_s) {
   const double x = 2.0 * kPi * cut_hz * t_s;
   return std::abs(x) < 1e-12 ? 2.0 * cut_hz : 2.0 * cut_hz * std::sin(x) / x;

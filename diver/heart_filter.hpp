@@ -7,7 +7,7 @@
 namespace neritic::diver {
 
 // 5 to 15 Hz (Pan and Tompkins 1985, IEEE Trans. Biomed. Eng. 32, 230). Their integer filters are
-// for 200 Hz; this is a windowed sinc (Hamming) over .4 s, at any rate, that gives exactly nothing
+// for 200 Hz; this is a windowed sinc (Hamming) over 0.4 s, at any rate, that gives exactly nothing
 // for a constant.
 inline constexpr double kQrsLow_hz = 5.0, kQrsHigh_hz = 15.0;
 

@@ -33,7 +33,7 @@ constexpr int kFewestIntervals = 8, kJudgedIntervals = 16;
 constexpr double kNoTime = 0.5;
 constexpr int kTooFewIntervals = 5;
 constexpr double kMostOtherWay = 0.25;  // of beats, as extra ones may
-// Of the samples of the last seconds.
+// The share among the samples of the last seconds.
 constexpr double kMissing_s = 4.0, kMostMissing = 0.25;
 
 static_assert(std::is_trivially_copyable_v<HeartState>);

@@ -18,7 +18,7 @@ enum class SignalQuality : std::uint64_t {
 };
 const char* name_of(SignalQuality quality);
 
-// What a snapshot holds of the heart. Always finite.
+// A snapshot's data about the heart. Always finite.
 struct HeartState {
   double time_s = 0.0;  // of the newest sample or interval
   double last_beat_s = 0.0;
@@ -44,13 +44,13 @@ struct HeartState {
 
 class HeartMonitor {
  public:
-  // Of an ECG. Precondition: check_ecg_rate(rate_hz).
+  // The monitor of an ECG. Precondition: check_ecg_rate(rate_hz).
   explicit HeartMonitor(double rate_hz);
-  // Of a strap that sends intervals.
+  // The monitor of a strap that sends intervals.
   HeartMonitor() = default;
 
   void push(std::span<const double> samples);
-  // An interval in seconds, oldest first; what is no heart's (.2 to 3 s) is refused and counted,
+  // An interval in seconds, oldest first; one outside 0.2 to 3 s is refused and counted,
   // and is a gap.
   void push_interval(double length_s);
   // No contact for so long, at most an hour; any other length is refused and counted.
@@ -61,7 +61,7 @@ class HeartMonitor {
  private:
   void take(const Interval& interval);
   void forget();
-  // Of the last intervals.
+  // Figures of the last intervals.
   struct Timekeeping {
     int judged = 0, normal = 0;
   };

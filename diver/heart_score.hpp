@@ -17,7 +17,7 @@ struct HeartScore {
   double sensitivity = 0.0;              // found / (found + missed)
   double predictivity = 0.0;             // +P: found / (found + extra)
   double median_offset_ms = 0.0, p95_offset_ms = 0.0;  // of the found: signed; absolute
-  // Of ectopic beats: flagged of those marked, and marked of those flagged.
+  // Ectopic beats: the share of marked ones that are flagged, and of flagged ones that are marked.
   int ectopic_marked = 0, ectopic_flagged = 0, ectopic_both = 0;
 };
 // Both in rising order; intervals: of the beats found, one each.

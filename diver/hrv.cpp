@@ -89,7 +89,7 @@ IntervalKind IntervalJudge::kind_of(double length_s) {
   std::nth_element(sorted.begin(), middle, sorted.begin() + normal_count_);
   const double usual_s = *middle;
   if (std::abs(length_s - usual_s) <= kEctopicShare * usual_s) {
-    // What follows an ectopic beat begins with it: no NN, however long it is.
+    // The interval after an ectopic beat begins with that beat, so it is no NN interval.
     if (after_ectopic_) {
       after_ectopic_ = false;
       odd_in_a_row_ = 0;

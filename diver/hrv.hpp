@@ -9,7 +9,7 @@
 
 namespace neritic::diver {
 
-// What the interval that a beat ends is to the figures.
+// The class of the interval that a beat ends.
 enum class IntervalKind : std::uint8_t {
   kNormal,   // between two beats of the sinus rhythm: NN
   kNone,     // the first beat, or the first after a gap: no interval
@@ -28,7 +28,7 @@ struct Interval {
 // 15 % early.
 inline constexpr double kEctopicShare = 0.15;
 
-// Which intervals are normal, one by one. Bounded memory. One owner, one thread.
+// Classifies intervals one by one. Bounded memory. One owner, one thread.
 class IntervalJudge {
  public:
   // The beat at time_s; after_gap: no interval leads to it.
@@ -67,11 +67,11 @@ struct Variability {
     field("sd2_ms", self.sd2_ms);
   }
 };
-// Of normal intervals alone. Pairs that something came between count only where across_gaps says
-// so. Fewer than two intervals, or pairs: their figures are 0.
+// Figures of normal intervals alone. Pairs with something between them count only if across_gaps
+// says so. Fewer than two intervals, or pairs: their figures are 0.
 Variability variability(std::span<const Interval> intervals, bool across_gaps = false);
 
-// Power by frequency: VLF .0033 to .04 Hz, LF to .15, HF to .4 (Task Force 1996).
+// Power by frequency: VLF 0.0033 to 0.04 Hz, LF to 0.15, HF to 0.4 (Task Force 1996).
 struct HeartSpectrum {
   double vlf_ms2 = 0.0, lf_ms2 = 0.0, hf_ms2 = 0.0;
   double lf_over_hf = 0.0;  // 0 where HF is 0

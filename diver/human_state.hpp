@@ -13,7 +13,7 @@
 
 namespace neritic::diver {
 
-// What a step is given; held until it changes.
+// A step's inputs; each holds until it changes.
 struct HumanInputs {
   JointRotations joints = straight_joints();  // where the limbs are wanted or measured
   // The water around the diver (WaterFlow, motion.hpp): at the step's start, how that changes where

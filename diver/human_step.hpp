@@ -16,7 +16,7 @@ inline constexpr double kMostWaterAcceleration_m_s2 = 100.0;
 
 // Inputs that are not finite or beyond any diver's are refused: the last good value is held, and
 // state.refused_inputs counts it (each joint for itself). So is a dt_s outside (0, 10] s: then
-// nothing moves. What is returned is finite if the state was.
+// nothing moves. The result is finite if the state was.
 HumanState step(const Body& body, const HumanState& state, const HumanInputs& inputs, double dt_s,
                 double longest_substep_s = kLongestSubstep_s);
 

@@ -44,7 +44,7 @@ double valve_flow(const Body& body, const JacketGas& gas, double area_m2, double
   return orifice_moles_s(kAir, area_m2, gas.pressure_pa, ambient_above(body, place, mouth_m));
 }
 
-// Of the higher one of both, over the thorax's origin.
+// Height of the higher one of both above the thorax's origin.
 double dump_height(const Jacket& jacket, const ThoraxPlace& place) {
   return std::max(glm::dot(place.up, jacket.dump_m), glm::dot(place.up, jacket.relief_at_m));
 }

@@ -33,7 +33,7 @@ JacketGas jacket_gas(const Body& body, double moles, const ThoraxPlace& place);
 // Whether there is gas that a dump would let out.
 bool gas_at_dump(const Body& body, double moles, const ThoraxPlace& place);
 
-// The gas changes by what the pressed buttons let through and the relief valve lets out. What comes
+// The gas changes by the flow of the pressed buttons and of the relief valve. The gas that comes
 // in is taken from the first tank; dump wins over inflate.
 void step_jacket(const Body& body, double& moles, TankState& tanks, std::uint64_t buttons,
                  const ThoraxPlace& place, double dt_s);

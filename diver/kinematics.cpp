@@ -12,7 +12,7 @@ Quat about(int axis, double angle_rad) {
   return {std::cos(0.5 * angle_rad), v.x, v.y, v.z};
 }
 
-// What of a joint's rotation is in the body's middle plane.
+// The part of a joint's rotation in the body's middle plane.
 Quat in_plane(const Quat& q) {
   const double length = std::hypot(q.w, q.y);
   return length > 0.0 ? Quat(q.w / length, 0.0, q.y / length, 0.0) : Quat(1.0, 0.0, 0.0, 0.0);

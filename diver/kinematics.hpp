@@ -29,7 +29,7 @@ JointRotations rotations_of(const std::array<Quat, kSegments>& common_from_segme
 // Left and right exchanged.
 JointRotations mirrored(const JointRotations& rotations);
 
-// Of body and gear without water, tanks empty.
+// Body and gear without water, tanks empty.
 struct MassProperties {
   double mass_kg = 0.0;
   Vec3 centre_m{0.0};

@@ -11,7 +11,7 @@ constexpr double kAirHeat = kGasConstant * kTankTemperature_k;
 // Uptake follows demand within a minute (Whipp and Wasserman 1972, J. Appl. Physiol. 33, 351).
 constexpr double kOxygenLag_s = 35.0;
 constexpr double kEquivalent = 25.0;
-// Of a man of 75 kg at the surface, for minutes.
+// Values of a man of 75 kg at the surface, for minutes.
 constexpr double kMostVentilation_l_min = 110.0;
 // No breath is faster: peak flow through a regulator.
 constexpr double kMostFlow_m3_s = 8e-3;

@@ -33,7 +33,7 @@ struct LungState {
 
 // At rest.
 inline constexpr double kRestingOxygen_l_min = 0.32;
-// Of people fit enough to dive for work.
+// Values of people fit enough for commercial diving.
 inline constexpr double kMostOxygen_l_min = 4.5;
 
 // Oxygen that mechanical power of the limbs asks for, litres a minute: 20.9 kJ a litre, a quarter

@@ -69,7 +69,7 @@ double drag_rate(const Mat6& mass, const Mat6& drag) {
   return trace;
 }
 
-// Of the planar model only surge, heave and pitch are solved for.
+// The planar model solves for surge, heave and pitch only.
 void keep_in_plane(Mat6& matrix, Vec6& rhs) {
   for (const std::size_t i : {1u, 3u, 5u}) {
     for (std::size_t j = 0; j < 6; ++j) matrix(i, j) = matrix(j, i) = i == j ? 1.0 : 0.0;

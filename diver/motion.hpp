@@ -38,7 +38,7 @@ struct WaterFlow {
       : current_m_s(current), change_m_s2(change), acceleration_m_s2(acceleration) {}
 };
 
-// What limbs did in a step.
+// The limbs' part in a step.
 struct LimbWork {
   double power_w = 0.0;  // mean mechanical power of all joints; negative: the water moved them
 };

@@ -1,4 +1,4 @@
-// What oxygen does to a diver: the share of the central nervous system's limit (CNS) and the lungs'
+// Oxygen exposure of a diver: the share of the central nervous system's limit (CNS) and the lungs'
 // dose (OTU), and the limits by gas and depth that divers plan with. Pure functions over plain
 // values; any thread. Pressures in bar, times in minutes.
 #pragma once
@@ -27,13 +27,13 @@ inline constexpr double kCnsFrom_bar = 0.5;       // as E. C. Baker and most pro
 inline constexpr double kCnsFromTable_bar = 0.6;  // where NOAA's printed table begins
 inline constexpr double kCnsToTable_bar = 1.6;    // and ends
 
-// Of minutes at a partial pressure that changes linearly, in closed form: CNS 100 / limit, from
-// cns_from_bar on; OTU ((pO2 - 0.5) / 0.5)^(5/6) a minute above 0.5 (J. M. Clark and C. J.
-// Lambertsen 1971; R. W. Hamilton 1989).
+// The exposure of minutes at a partial pressure that changes linearly, in closed form: CNS 100 /
+// limit, from cns_from_bar on; OTU ((pO2 - 0.5) / 0.5)^(5/6) a minute above 0.5 (J. M. Clark and C.
+// J. Lambertsen 1971; R. W. Hamilton 1989).
 OxygenExposure oxygen_exposure(double from_po2_bar, double to_po2_bar, double minutes,
                                double cns_from_bar = kCnsFrom_bar);
 
-// What is left of a CNS share after minutes without: halves in 90 (Hamilton 1989).
+// The CNS share that remains after minutes without exposure: halves in 90 (Hamilton 1989).
 double cns_after(double cns_percent, double minutes);
 // With what is added meanwhile, so many minutes of it at the surface: there the share of CNS
 // declines, unless some is gained (on oxygen). Planner and dive computer count so.

@@ -40,7 +40,7 @@ bool is_word(std::string_view cell) {
          std::ranges::find(kNone, lower_case(cell)) == std::end(kNone);
 }
 
-// Of "time_ms", "time (ms)", "time [ms]", "time ms"; seconds where there is no unit.
+// The unit of "time_ms", "time (ms)", "time [ms]", "time ms"; seconds if there is no unit.
 double seconds_of_unit(std::string_view name) {
   const auto last = name.find_last_not_of(" )]");
   name = name.substr(0, last == name.npos ? 0 : last + 1);
@@ -54,7 +54,7 @@ double seconds_of_unit(std::string_view name) {
   return 1.0;
 }
 
-// Of a column of flags: 1, 0, or nothing where there is no word.
+// A cell of a column of flags: 1, 0, or nothing if it is empty.
 std::optional<double> cell_flag(std::string_view cell) {
   constexpr std::string_view kYes[] = {"true", "yes", "valid", "ok", "y", "t"};
   constexpr std::string_view kNo[] = {"false", "no", "invalid", "lost", "n", "f"};
@@ -132,7 +132,7 @@ double common_step(const std::vector<double>& steps, double base, double clean) 
   return base;
 }
 
-// Of those upwards, in seconds; 0: none.
+// The median of the positive steps, in seconds; 0: none.
 double median_step(const std::vector<double>& stamps) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < stamps.size(); ++i)

@@ -8,7 +8,7 @@
 
 namespace neritic::diver {
 
-// What all tables of this folder share: cells of a line without blanks and quotes; a file without
+// Shared by all tables of this folder: cells of a line without blanks and quotes; a file without
 // the mark that spreadsheets begin it with; by comma or semicolon where the heading has one, else
 // tab.
 std::string_view trimmed_cell(std::string_view text);

@@ -14,7 +14,7 @@
 
 namespace neritic::diver {
 
-// What a recording may be: no file asks for more memory than some 2 GiB, or for a rate that no
+// Limits of a recording: no file may ask for more memory than some 2 GiB, or for a rate that no
 // device has.
 inline constexpr double kLeastRate_hz = 0.1, kMostRate_hz = 1e6;
 inline constexpr std::size_t kMostSamples = std::size_t{1} << 28;

@@ -83,7 +83,7 @@ Result<Recording> parse_wav(std::span<const std::byte> bytes, const std::string&
     if (has_tag(bytes, at, "fmt ")) {
       NERITIC_TRY(format, wav_format(chunk, name));
     } else if (has_tag(bytes, at, "data")) {
-      // Of a recorder that was cut off: neither length was filled in, the rest of the file is
+      // A recorder that was cut off: neither length was filled in, the rest of the file is
       // sound.
       const bool open = length == 0 && little_endian(bytes, 4, 4) + 8 < bytes.size();
       data = open ? bytes.subspan(at + 8) : chunk;

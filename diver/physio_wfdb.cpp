@@ -175,7 +175,7 @@ std::int32_t raw_sample(std::span<const std::byte> bytes, int format, std::size_
 
 std::size_t whole_samples(std::size_t bytes, int format) {
   const SampleLayout layout = layout_of(format);
-  // Of a group that is cut off, those whose bits are all there.
+  // A truncated group gives the samples whose bits are complete.
   const std::size_t rest = bytes % layout.bytes;
   const std::size_t more = layout.samples == 1 ? 0 : format == 212 ? rest / 2 : rest >= 2 ? 1 : 0;
   return bytes / layout.bytes * layout.samples + more;

@@ -96,7 +96,7 @@ class Warnings {
 
   void keep(const PlanWarning& w) {
     for (PlanWarning& old : found_) {
-      // Of the two limits of density the higher one says it all.
+      // The higher one of the two density limits suffices.
       const bool same = old.kind == w.kind ||
                         (w.kind == kDensityAdvised && old.kind == kDensityMost) ||
                         (w.kind == kDensityMost && old.kind == kDensityAdvised);

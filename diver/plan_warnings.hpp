@@ -1,4 +1,4 @@
-// What a diver should know before diving a plan. Pure functions; any thread.
+// Warnings to a diver about a plan. Pure functions; any thread.
 #pragma once
 
 #include <string>

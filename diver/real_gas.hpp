@@ -13,7 +13,7 @@ inline constexpr double kMostGasPressure_pa = 500e5;
 
 // Z = p V / (n R T): cubics through the tables of the pure gases at 300 K (Perry's Chemical
 // Engineers' Handbook, 7th ed., compressibility factors of O2, N2 and He, up to 500 bar), mixed by
-// moles. Within .4 % of measured air.
+// moles. Within 0.4 % of measured air.
 double compressibility(const GasMix& mix, double pressure_pa);
 
 // Moles in a volume at a pressure, and back; at the tank's temperature. Both rise with each other.

@@ -13,11 +13,12 @@ static_assert(std::is_trivially_copyable_v<RiskProxies>);
 
 // CO2 given off to O2 taken up, of mixed diet and moderate effort.
 constexpr double kRespiratoryQuotient = 0.85;
-// Of each breath, what reaches no alveolus: VD/VT .3 at rest, with a regulator's own space.
+// The share of each breath that reaches no alveolus: VD/VT 0.3 at rest, with a regulator's own
+// space.
 constexpr double kDeadSpaceShare = 0.3;
 constexpr double kMetre_pa = 1e4;  // of sea water, as tables for divers count
-// Raised, high, severe. Breaths a minute: above 25 a sign of panic. Of the CNS limit 80 % is the
-// most by plan (NOAA). Below .18 bar too little oxygen, below .16 thought suffers, below .10
+// Raised, high, severe. Breaths per minute: above 25 is a sign of panic. 80 % of the CNS limit is
+// the most by plan (NOAA). Below 0.18 bar too little oxygen, below 0.16 thought suffers, below 0.10
 // consciousness goes; who is in the mountains is used to what the air there has of it, down to the
 // last.
 constexpr double kFastBreath_bpm[] = {25.0, 30.0, 40.0};
@@ -26,7 +27,7 @@ constexpr double kLittleOxygen_bar[] = {0.18, 0.16, 0.10};
 constexpr double kPause_s[] = {5.0, 15.0, 30.0};  // skip breathing: pauses from 5 s
 constexpr double kMostCo2_mmhg = 200.0;
 // Litres of CO2 that raise its pressure by a mmHg: without breathing it rises by 3.8 mmHg a minute
-// of some .2 l a minute given off (Eger and Severinghaus 1961, Anesthesiology 22, 419).
+// of some 0.2 l a minute given off (Eger and Severinghaus 1961, Anesthesiology 22, 419).
 constexpr double kCo2Store_l_mmhg = 0.2 / 3.8;
 
 RiskLevel little_oxygen(double oxygen_bar, double surface_pa) {

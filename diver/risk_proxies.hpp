@@ -27,9 +27,9 @@ inline constexpr double kOxygenLevels_bar[] = {1.4, 1.6, 1.8};
 // Arterial CO2 in mmHg in the steady state: 863 VCO2 / VA, VCO2 in litres a minute STPD, VA (the
 // alveolar ventilation) in litres a minute BTPS. Not finite for VA = 0.
 double arterial_co2_mmhg(double co2_l_min, double alveolar_l_min);
-// Of the ventilation, what the dead space leaves: VE (1 - VD / VT).
+// The part of the ventilation beyond the dead space: VE (1 - VD / VT).
 double alveolar_ventilation(double ventilation_l_min, double dead_space_share);
-// Oxygen uptake of a diver who fins at v m/s: .25 + 1.03 v + 1.83 v^2 (Pendergast 2003, average
+// Oxygen uptake of a diver who fins at v m/s: 0.25 + 1.03 v + 1.83 v^2 (Pendergast 2003, average
 // fins), litres a minute; v is bounded to 0 to 2.
 double swimming_oxygen_l_min(double speed_m_s);
 
@@ -39,7 +39,7 @@ struct RiskInput {
   double surface_pa = 101325.0;
   double oxygen = 0.21, helium = 0.0;
   double gas_density_kg_m3 = 1.2;    // of the gas breathed, at depth
-  double oxygen_uptake_l_min = 0.3;  // by effort (rest: .25 to .3)
+  double oxygen_uptake_l_min = 0.3;  // by effort (rest: 0.25 to 0.3)
   double ventilation_l_min = 8.0;    // at depth; measured, or breath rate times tidal volume
   double cns_percent = 0.0;          // of the limit for the central nervous system
   double breath_rate_bpm = 0.0;      // 0: not known

@@ -23,7 +23,7 @@ inline SpatialMass& operator+=(SpatialMass& m, const SpatialMass& other) {
   return m;
 }
 
-// Of mass_kg at centre_m with an inertia about that centre.
+// The spatial mass of mass_kg at centre_m with an inertia about that centre.
 inline SpatialMass rigid_mass(double mass_kg, const Vec3& centre_m, const Mat3& inertia_kg_m2) {
   const Mat3 s = cross_matrix(centre_m);
   return {mass_kg * Mat3(1.0), -mass_kg * s, inertia_kg_m2 - mass_kg * s * s};

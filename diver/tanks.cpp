@@ -13,7 +13,7 @@ constexpr double kChokedFlow = 0.6847314564;  // sqrt(gamma) (2 / (gamma + 1))^3
 // ventilation are 3.3), less as the tank comes within kWeakTank_pa of ambient.
 constexpr double kDemand_m3_s = 5e-3;
 
-// What can leave before the tank is at that pressure.
+// The gas that can leave before the tank reaches that pressure.
 double moles_above(const Body& body, const TankState& tanks, std::size_t tank, double pressure_pa) {
   const TankPlace& place = body.tanks[tank];
   return std::max(0.0, tanks.moles[tank] - moles_in(place.mix, place.water_volume_m3, pressure_pa));

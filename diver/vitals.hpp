@@ -1,4 +1,4 @@
-// What a robot beside a diver may act on: how fast the heart beats and the lungs breathe, where the
+// The numbers that a robot beside a diver may act on: rates of heart and breath, where the
 // diver looks, and the risk proxies of that effort and that gas. As instruments that are worn say
 // (heart_monitor, breath_monitor, gaze_events); where one says nothing, as the effort asks for.
 // World north, east, down. Pure functions over plain bytes; any thread.
@@ -39,7 +39,7 @@ struct VitalState {
   double heart_bpm = 0.0, breath_bpm = 0.0;
   double pause_s = 0.0;  // since the last breath, where it is held or not heard
   Vec3 gaze_ned{1.0, 0.0, 0.0};
-  // Which of the three are an instrument's: the heart where its signal is good, the breath where a
+  // The values that come from an instrument: the heart if its signal is good, the breath if a
   // rate is known or a pause of five seconds is heard (0 breaths a minute then).
   std::uint64_t measured = 0;
   RiskProxies risk;
@@ -64,11 +64,11 @@ struct VitalState {
 };
 
 // Beats a minute of a heart that pumps so much oxygen: the share of its reserve is that of the
-// uptake's (Swain and Leutholtz 1997, Med. Sci. Sports Exerc. 29, 410), up to 208 - .7 age of a
+// uptake's (Swain and Leutholtz 1997, Med. Sci. Sports Exerc. 29, 410), up to 208 - 0.7 age of a
 // person of 35 (Tanaka 2001, J. Am. Coll. Cardiol. 37, 153), from 65 at rest.
 double effort_heart_bpm(double oxygen_l_min);
 
-// What moves and breathes meanwhile.
+// The motion and breath of the same time.
 struct VitalInputs {
   GasMix mix;
   double ambient_pa = 0.0, surface_pa = kSurfacePressure_pa;

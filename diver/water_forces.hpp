@@ -1,6 +1,6 @@
-// What water and weight do to a moving body, summed over all of it: drag of strips, trailing edges,
-// blunt shape; weight and buoyancy at their own centres. Body axes, about the body's origin (the
-// middle of the hips). Pure functions without allocation; any thread.
+// Forces of water and weight on a moving body, summed over all segments: drag of strips, trailing
+// edges, blunt shape; weight and buoyancy at their own centres. Body axes, about the body's origin
+// (the middle of the hips). Pure functions without allocation; any thread.
 //
 // Strips take the crossflow principle (Morison): what flows across a strip's section pulls by its
 // speed across, what flows along by friction. A foot's or fin's end sheds the momentum of the water
@@ -19,7 +19,7 @@ namespace neritic::diver {
 struct Immersion {
   Vec3 down{0.0, 0.0, 1.0};  // unit, body axes
   double depth_m = 0.0;      // of the body's origin
-  // Of the water itself, Du/Dt, body axes: it pulls at what is in it as if gravity leaned.
+  // Acceleration of the water itself, Du/Dt, body axes; it acts like a tilted gravity.
   Vec3 water_m_s2{0.0};
 };
 

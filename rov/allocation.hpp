@@ -1,6 +1,6 @@
 // From a wanted wrench to thruster forces: the pseudo-inverse of B, f = B^+ tau (Fossen 2011,
-// section 12.3). What exceeds the thrusters' limits is cut so that the wrench keeps its direction.
-// Made once, anew when a thruster fails; then without allocation. Any thread.
+// section 12.3). Forces beyond the thrusters' limits are scaled so that the wrench keeps its
+// direction. Made once, anew when a thruster fails; then without allocation. Any thread.
 #pragma once
 
 #include <array>
@@ -46,7 +46,7 @@ class Allocator {
   Allocator(ThrusterMatrix columns, std::span<const double> min_n, std::span<const double> max_n);
 
   Allocation allocate(const Vec6& wrench, Saturation saturation = Saturation::kScale) const;
-  // What the forces give: B f.
+  // The wrench of the forces: B f.
   Vec6 wrench_of(const std::array<double, kMaxThrusters>& force_n) const;
   const PseudoInverse& inverse() const { return inverse_; }
   std::size_t count() const { return count_; }

@@ -6,7 +6,7 @@
 
 namespace neritic::rov {
 
-// Of the parameters' source, used with them: von Benzon et al. 2022.
+// From the parameters' source, used with them: von Benzon et al. 2022.
 inline constexpr double kGravity = 9.82;                               // m/s^2
 inline constexpr double kSeaDensity = 1028.0, kFreshDensity = 1000.0;  // kg/m^3
 

@@ -11,7 +11,7 @@
 
 namespace neritic::rov {
 
-// What to hold, asked once a control period.
+// The setpoint, asked once per control period.
 using Guide = std::function<Setpoint(const State& state, double t_s)>;
 
 struct LoopRun {

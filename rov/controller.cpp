@@ -16,7 +16,7 @@ Quat with_heading(const Quat& attitude, double heading_rad) {
   return heading_attitude(heading_rad - heading_of(attitude)) * attitude;
 }
 
-// Of a world vector only the components that are held.
+// The held components of a world vector.
 Vec3 held(const Setpoint& s, const Vec3& v) {
   return {s.hold_north ? v.x : 0.0, s.hold_east ? v.y : 0.0, s.hold_depth ? v.z : 0.0};
 }
@@ -57,7 +57,7 @@ Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Set
   const Quat& q = state.attitude;
   const Quat back = glm::conjugate(q);
   const bool all_position = s.hold_north && s.hold_east && s.hold_depth;
-  // What the setpoint leaves free, it follows.
+  // Axes that the setpoint leaves free follow the body.
   Quat wanted = s.attitude;
   if (!s.hold_level) wanted = with_heading(q, heading_of(s.hold_heading ? s.attitude : q));
   if (s.hold_level && !s.hold_heading) wanted = with_heading(s.attitude, heading_of(q));

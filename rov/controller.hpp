@@ -11,7 +11,7 @@
 
 namespace neritic::rov {
 
-// Where to be. What is not held is left to the pilot: neither pushed back nor damped.
+// The wanted pose. Axes that are not held are left to the pilot: neither corrected nor damped.
 struct Setpoint {
   Vec3 position_ned_m{0.0};
   Quat attitude{1.0, 0.0, 0.0, 0.0};

@@ -26,7 +26,7 @@
 
 namespace neritic::rov {
 
-// What acts on a vehicle during one step. Plain bytes: logged and replayed as they are. fields()
+// The actions on a vehicle during one step. Plain bytes: logged and replayed as they are. fields()
 // names all of them, for hashes and logs.
 struct Inputs {
   Vec6 wrench;  // tau beside the thrusters', body axes, N and N m
@@ -83,7 +83,7 @@ double followed_command(const Vehicle& vehicle, const Inputs& inputs, std::size_
 // Force along each thruster's direction, now.
 std::array<double, kMaxThrusters> thruster_forces(const Vehicle& vehicle, const State& state,
                                                   const Inputs& inputs);
-// What one newton each, times the forces, gives: B f.
+// The wrench of one newton each, times the forces: B f.
 Vec6 thruster_wrench(const Vehicle& vehicle, const std::array<double, kMaxThrusters>& forces_n);
 
 // nu_r of the state in this current, and back.
@@ -108,7 +108,7 @@ WaterMotion motion_rate(const Vehicle& vehicle, const WaterMotion& motion, const
                         const Inputs& inputs);
 // Weight, buoyancy and tether: -g(q) and the tether's pull, body axes.
 Vec6 static_wrench(const Vehicle& vehicle, const WaterMotion& motion, const Inputs& inputs);
-// What accelerating water adds to the rate of M nu_r, body axes; 0 in a steady, uniform current.
+// The part of accelerating water in the rate of M nu_r, body axes; 0 in a steady, uniform current.
 Vec6 water_wrench(const Vehicle& vehicle, const Quat& attitude, const Inputs& inputs);
 
 }  // namespace neritic::rov

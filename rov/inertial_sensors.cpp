@@ -11,7 +11,7 @@ ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, 
   const Vec6 rate = derivative(vehicle, state, state.held).velocity + contact;
   const Vec3 w = state.velocity.angular(), turning = rate.angular();
   const Vec3 r = imu.mount.position_m;
-  // Of the point r, in body axes: the origin's, which turn, and what turning adds there.
+  // Velocity of the point r, in body axes: the origin's, plus the part of the rotation.
   const Vec3 acceleration = rate.linear() + glm::cross(w, state.velocity.linear()) +
                             glm::cross(turning, r) + glm::cross(w, glm::cross(w, r));
   const Vec3 gravity = glm::conjugate(state.attitude) * Vec3(0.0, 0.0, imu.gravity_m_s2);

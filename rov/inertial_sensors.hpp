@@ -41,7 +41,7 @@ struct PressureSensor {
   Noise noise;                 // Pa
   double resolution_pa = 0.0;  // 0: none
   double air_pa = 101325.0;    // over the water: the scene's, by its altitude
-  // What depth is counted from, as the sensor was zeroed; nothing: the air over the water.
+  // The pressure at depth 0, as the sensor was zeroed; empty: the air over the water.
   std::optional<double> surface_pa;
   double water_kg_m3 = 1025.0, gravity_m_s2 = 9.82;
 };

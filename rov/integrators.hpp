@@ -13,7 +13,7 @@ struct StepTask {
   VaryingWrench varying;
   double dt_s;
 
-  // What the inputs push with at t seconds after the start, thrusters left out.
+  // The wrench of the inputs t seconds after the start, without thrusters.
   Vec6 wrench_at(double t_s) const {
     return varying.at ? inputs.wrench + varying.at(varying.context, t_s) : inputs.wrench;
   }
@@ -25,7 +25,7 @@ using LagStates = std::array<LagState, kMaxThrusters>;
 void semi_implicit(const StepTask& task, int substeps, bool implicit_coriolis, WaterMotion& motion,
                    LagStates& lag);
 void rk4(const StepTask& task, WaterMotion& motion, LagStates& lag);
-// The lag exactly, the rest by RK4. What the thrusters give is known beforehand as an impulse, so
+// The lag exactly, the rest by RK4. The thrusters' impulse is known beforehand, so
 // that RK4 sees nu less that impulse's share, whose slope has none of the lag's fast swings.
 void split_rk4(const StepTask& task, int substeps, WaterMotion& motion, LagStates& lag);
 

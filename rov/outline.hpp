@@ -23,7 +23,7 @@ struct OutlineCapsule {
   Vec3 from_m{0.0}, to_m{0.0};
   double radius_m = 1.0;
 };
-// Of these points.
+// The convex hull of these points.
 struct OutlineHull {
   std::vector<Vec3> points_m;
 };

@@ -19,7 +19,7 @@ struct Noise {
   bool off() const { return white == 0.0 && bias == 0.0 && walk == 0.0; }
 };
 
-// What data sheets give for white noise: a density per root hertz, over the sensor's band.
+// White noise as data sheets give it: a density per root hertz, over the sensor's band.
 inline double white_from_density(double density_per_root_hz, double rate_hz) {
   return density_per_root_hz * std::sqrt(rate_hz);
 }
@@ -32,7 +32,7 @@ double random_normal(const RandomKey& key, std::uint64_t index);
 // 1948). walk(k + 1) - walk(k) are independent, whatever order they are asked in.
 double random_walk(const RandomKey& key, std::uint64_t steps);
 
-// Of one sensor of one vehicle.
+// Noise of one sensor of one vehicle.
 struct NoiseSource {
   std::uint64_t seed = 0;    // the scene's
   std::uint64_t stream = 0;  // vehicle and sensor

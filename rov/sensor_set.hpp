@@ -1,4 +1,4 @@
-// The sensors of one vehicle together: what is there, what each said last. What is not there costs
+// The sensors of one vehicle and the newest reading of each. An absent sensor costs
 // nothing. Pure functions; any thread.
 #pragma once
 
@@ -39,7 +39,7 @@ struct SensorReadings {
   Reading<double> heading_rad;
   Reading<AltimeterReading> altimeter;
   Reading<UsblReading> usbl;
-  // What contacts did to the velocity since the inertial unit's last reading, and in what time.
+  // The change of velocity by contacts since the inertial unit's last reading, and its duration.
   Vec6 contact_change;
   double contact_s = 0.0;
   static void fields(auto&& field, auto& self) {

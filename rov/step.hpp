@@ -42,7 +42,7 @@ inline constexpr double kMostWaterAcceleration_m_s2 = 100.0;  // in each axis
 
 // Inputs that are not finite, or larger than these, are refused: the last good value is held (at
 // first zero) and state.refused_inputs counts it. So is a dt outside (0, 10] s: then nothing moves.
-// What is returned is finite if the state was.
+// The result is finite if the state was.
 State step(const Vehicle& vehicle, const State& state, const Inputs& inputs, double dt_s,
            Integrator integrator = Integrator::kGuarded, const VaryingWrench& varying = {});
 

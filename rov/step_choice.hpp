@@ -20,7 +20,7 @@ std::span<const MeasuredRate> measured_rates();
 // How far steps that touch something lead off the path, by their length: the worst of all that was
 // flown at steps so long or shorter, whole or parts of 80 and 240 Hz. The same vehicle set down on
 // sand, driven along it and against a wall, 20 s, with and without lag; a ball that bounces, a
-// block that slides, a ball that rolls, against closed forms. Of first order; the bounces are the
+// block that slides, a ball that rolls, against closed forms. First order; the bounces are the
 // worst.
 struct MeasuredContact {
   double step_s, error_m;

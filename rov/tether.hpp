@@ -5,9 +5,9 @@
 // Model. The cable of length L spans straight from anchor to attachment, in water that moves
 // with the current. Drag a metre is Morison's, 1/2 rho C_n d |u_n| u_n + 1/2 rho pi C_t d |u_t| u_t
 // (Morison et al. 1950; C_n 1.2, C_t 0.01: Hoerner 1965 for cylinders), with the cable's own
-// velocity growing linearly from 0 at the anchor. Of each metre's drag the vehicle bears the share
+// velocity growing linearly from 0 at the anchor. The vehicle bears the share of each metre's drag
 // s by the lever rule, s from 0 at the anchor to 1; of its net weight, one half. Farther than L the
-// cable is taut: E A (distance - L) / L plus damping, never a push. What is left out: sag, the
+// cable is taut: E A (distance - L) / L plus damping, never a push. Not modelled: sag, the
 // cable's inertia and vortex shedding; slack cables drag as straight ones do.
 #pragma once
 

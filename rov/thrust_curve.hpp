@@ -29,8 +29,8 @@ class ThrustCurve {
   // The pulse width that gives the force, linear between rows; the middle of the dead band for 0,
   // the ends where it is more than the motor can.
   double pwm_us(double thrust_n, double volts) const;
-  // What a commanded force comes to: its pulse width in whole microseconds, and that one's thrust.
-  // One that is not finite stays so, for step() to refuse.
+  // The thrust of a commanded force: its pulse width in whole microseconds, and the thrust at that
+  // width. One that is not finite stays so, for step() to refuse.
   double realised_n(double commanded_n, double volts) const;
 
   double least_n(double volts) const { return thrust_n(pwm_us_.front(), volts); }

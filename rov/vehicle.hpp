@@ -1,4 +1,4 @@
-// What a vehicle is: its parameters as a person writes them, and a Vehicle that was checked and
+// A vehicle: its parameters as a person writes them, and a Vehicle that was checked and
 // prepared from them. Body axes forward, starboard, down (Fossen's), about the body's origin. Plain
 // values that do not change while a simulation runs; any thread.
 #pragma once
@@ -24,7 +24,7 @@ inline constexpr std::size_t kMaxThrusters = 16;
 struct Thruster {
   Vec3 position_m{0.0};
   Vec3 direction{1.0, 0.0, 0.0};
-  // What the motor can do; a command beyond is cut.
+  // The motor's limits; a command beyond is clamped.
   double min_n = -1e9, max_n = 1e9;
 };
 
@@ -63,7 +63,7 @@ struct Vehicle {
   std::array<Vec6, kMaxThrusters> thruster_wrench;  // of one newton each: the columns of B
   PreparedLag lag;
   std::optional<Tether> tether;
-  // Of steps that are to be quick (prepare_steps()); others compute theirs.
+  // Cached for quick steps (prepare_steps()); other steps compute it.
   std::array<LagPropagator, kMaxPrepared> prepared;
   // Bounds of how fast things change, for the choice of substeps (step.cpp).
   double damping_rate = 0.0;   // 1/s, of linear damping

@@ -107,8 +107,7 @@ Status Dive::frame(const xr::DisplayFrame& display_frame, bool last) {
   if (frames_drawn_ == 0) start_ns_ = display_frame.display_at_ns;
   if (frames_drawn_ == 0 && options_.physics) options_.physics->start();
   time_s_ = to_s(display_frame.display_at_ns - start_ns_);
-  if (options_.physics)
-    time_s_ = options_.physics->follow(display_frame.display_at_ns, time_s_);
+  if (options_.physics) time_s_ = options_.physics->follow(display_frame.display_at_ns, time_s_);
   take_input(elapsed_s_);
   aim_camera(display_frame);
 

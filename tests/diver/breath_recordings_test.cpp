@@ -86,7 +86,7 @@ BySensor window_errors(const std::vector<PacedBreath>& sounds, BreathEstimator e
   return out;
 }
 
-// Of the whole set (15 recordings a sensor, of which these are five) it is known what the plain
+// For the whole set (15 recordings per sensor, of which these are five) it is known what the plain
 // spectrum of the envelope and an autocorrelation of several bands reach: the median error of what
 // they answer, and the share of that within 2 a minute. Ours is better than the better of them for
 // each sensor and window, where it answers every window; and where it may refuse, it is right.

@@ -111,7 +111,7 @@ TEST(DecoLive, GasesThatAreUsedUpDoNotShortenTheAscent) {
     }
     for (std::size_t i = 0; i < kToldGases; ++i)
       EXPECT_NEAR(view.to_surface_bar_min[i], bar_min[i], 1e-9) << one.id;
-    // What is breathed now is: its bit changes nothing.
+    // The gas in use counts as available: its bit changes nothing.
     EXPECT_EQ(computer.view(state, bottom).to_surface_min, with_min) << one.id;
     ++shown;
   }
@@ -173,7 +173,7 @@ TEST(DecoLive, FollowingAPlanOfAnySetTheComputerHasThePlansSlope) {
   }
 }
 
-// What computers on wrists do with one who is above the ceiling: the stops begin below, the way
+// Wrist computers above the ceiling: the stops begin below, the way
 // down to them counts, and it is said.
 TEST(DecoLive, AboveABrokenCeilingTheStopsBeginBelowItAndItIsSaid) {
   for (const char* set : {"stop-minutes", "run-minutes", "msw"}) {

@@ -1,4 +1,4 @@
-// What decompression takes of a core: processor time, the least of several, whoever else is at
+// Cost of decompression: processor time, the least of several runs, whoever else is at
 // work.
 #include <gtest/gtest.h>
 

@@ -201,7 +201,7 @@ TEST(DivePlan, TravelGasIsBreathedUntilTheBottomGasBegins) {
     EXPECT_EQ(stop.gas, stop.depth_m <= 21.0 ? 3u : 0u) << stop.depth_m;
 }
 
-// What is planned for one gas is not that of another.
+// The plan of one gas is not the plan of another.
 TEST(DivePlan, ABottomGasThatIsNotBreathedAtTheBottomIsRefused) {
   DivePlanRequest r = square_dive(60.0, 20.0, {0.10, 0.70});
   r.gases.push_back({{0.32, 0.0}, 0.0, GasRole::kTravel});

@@ -1,4 +1,4 @@
-// What no dive should meet: limbs at 10 m/s, steps of a second, upside down, 300 m to the surface
+// Extremes of a dive: limbs at 10 m/s, steps of a second, upside down, 300 m to the surface
 // at once, tanks of 0 and 350 bar, buttons gone wild, sensors that jump, numbers that are none.
 // Energy stays bounded, nothing that leaves is not finite, and afterwards everything is as it
 // should be.

@@ -1,4 +1,4 @@
-// Which tank a diver breathes from who follows the plan of his gases.
+// The tank that a diver breathes from by the plan of the gases.
 #include "diver/gas_switch.hpp"
 
 #include <gtest/gtest.h>
@@ -142,7 +142,7 @@ TEST(GasSwitch, AnEmptyTankIsLeftForOneThatCanBeBreathedThere) {
   diver.leave(0, 8.4);
   // On the way up the empty one gives a breath again; it is not gone back to.
   EXPECT_EQ(diver.at(1, 22.0, 25.0), 1u);
-  // What little another holds is taken only where nothing else is left.
+  // A nearly empty tank is used only if no other is left.
   diver.leave(1, 10.0);
   EXPECT_EQ(diver.at(0, 25.0, 25.0), 1u);
   diver.leave(0, 9.0);
@@ -184,7 +184,7 @@ TEST(GasSwitch, AReactionGoesBeforeTheChangeAndSettingsTurnItOff) {
   EXPECT_EQ(seconds_until_changed(diver.file.gas_switching), 4);  // seen within a second
   EXPECT_EQ(seconds_until_changed({}), 6);
   EXPECT_EQ(seconds_until_changed({.by_plan = false}), 0);
-  // Who sinks will be too deep by then.
+  // A sinking diver will be too deep by then.
   GasSwitchState state;
   for (int i = 0; i < 60; ++i)
     EXPECT_EQ(step_gas_switch({}, diver.gases(), diver.body, diver.tanks, computer, 0, 20.0, 0.5,

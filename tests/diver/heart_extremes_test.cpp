@@ -248,7 +248,7 @@ TEST(HeartExtremes, ALeapInTheFirstSecondsIsOvercome) {
   }
 }
 
-// What stays is the signal: another offset, or beats a hundred times as large.
+// A change that lasts is the signal: another offset, or beats a hundred times as large.
 TEST(HeartExtremes, AChangeThatLastsIsNoLeap) {
   const auto beats = test::even_beats(0.8, 60.0);
   for (const bool offset : {true, false}) {

@@ -88,7 +88,7 @@ TEST(Jacket, ButtonsFillAndEmptyItAsTheyDo) {
   tanks = full;
   const double at10 = pressed(body, kInflate, standing(10.0), 0.0, 3.0, tanks);
   EXPECT_NEAR(at10, 2.7e-3, 0.4e-3);
-  // What came in is what the tank lost.
+  // The jacket's gain is the tank's loss.
   const double moles = jacket_moles(body, at10, standing(10.0));
   EXPECT_NEAR(full.moles[0] - tanks.moles[0], moles, 1e-4 * moles);
   EXPECT_LT(pressed(body, kDeflate, standing(10.0), 5e-3, 1.0, tanks), 3.5e-3);

@@ -305,7 +305,7 @@ TEST(SignalCsv, HeadingsAreTakenAsTheyCome) {
     EXPECT_NEAR(csv->rate_hz, 100.0, 1e-9) << text;
     EXPECT_EQ(csv->samples, (std::vector<double>{5.0, 6.0, 7.0})) << text;
   }
-  // What counts rows is no signal, unless it is asked for.
+  // A column that counts rows is no signal, unless it is asked for.
   const char* counted = "index,ecg\n0,5\n1,6\n2,5\n";
   EXPECT_EQ(parse_csv(counted, "a.csv", {"", 100.0})->channel, "ecg");
   EXPECT_EQ(parse_csv(counted, "a.csv", {"index", 100.0})->channel, "index");

@@ -1,4 +1,4 @@
-// What a diver is warned of, and that a plan within all limits has no warning.
+// Warnings of plans, and that a plan within all limits has none.
 #include "diver/plan_warnings.hpp"
 
 #include <gtest/gtest.h>

@@ -89,7 +89,7 @@ TEST(RiskProxies, OxygenHasItsLimitsBothWays) {
   EXPECT_EQ(at(0.10, 0.99), RiskLevel::kSevere);
 }
 
-// Who stands by a lake at 3000 m breathes what all breathe there; a hypoxic gas is one there too.
+// Air at a lake at 3000 m is no risk; a hypoxic gas is one there too.
 TEST(RiskProxies, AirInTheMountainsIsNoRisk) {
   RiskInput in;
   in.ambient_pa = in.surface_pa = 70.1e3;

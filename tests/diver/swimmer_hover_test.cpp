@@ -132,7 +132,7 @@ TEST(Swimmer, HoversLevelInWhateverGear) {
   }
 }
 
-// Who stands stoops into trim: a kick would carry him up.
+// A standing diver bends into trim, since a kick would carry the diver up.
 TEST(Swimmer, WhoStandsTurnsCalmlyIntoTrim) {
   const Body body = body_with(Gear{});
   for (const double depth_m : {5.0, 15.0}) {
@@ -147,7 +147,7 @@ TEST(Swimmer, WhoStandsTurnsCalmlyIntoTrim) {
   }
 }
 
-// Who hovers in a current comes back without haste: a place 2.4 m beside moves no faster than a
+// A diver who hovers in a current returns slowly: a place 2.4 m beside moves no faster than a
 // vehicle that keeps there flies, and three metres of drift are left alone.
 TEST(Swimmer, ComesBackNoFasterThanWhoKeepsBesideCanFollow) {
   const Body body = body_with(Gear{});

@@ -72,7 +72,7 @@ BodyParameters with_twin(double suit_m) {
   return p;
 }
 
-// What jacket and suit hold doubles from 20 m to 5 m. Who does not let it out as it grows is
+// The gas in jacket and suit doubles from 20 m to 5 m. A diver who does not vent it is
 // carried to the surface: the fins' share of the rate is small.
 TEST(Swimmer, RisesNoFasterThanTaughtAndStopsAtThePlace) {
   BodyParameters no_suit, half_empty, small, large_tank;

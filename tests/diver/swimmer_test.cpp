@@ -70,8 +70,8 @@ SteeredKick steered_kick(const Gear& gear, double amplitude_m, double speed_m_s)
   return out;
 }
 
-// What the program itself swims, not the kick alone: the published .93 and .51 m a beat (Zamparo et
-// al. 2002) with fins and without, and a person's power. Steering leaves the kick its thrust.
+// The swimmer with all joints, not the kick alone: the published 0.93 and 0.51 m per beat (Zamparo
+// et al. 2002) with fins and without, and a person's power. Steering leaves the kick its thrust.
 TEST(Swimmer, ItsKickGivesWhatIsPublishedWithFinsAndBare) {
   for (const double speed_m_s : {0.45, 0.6, 0.8})
     EXPECT_NEAR(steered_kick(fins_only(), 0.20, speed_m_s).m_a_beat, 0.93, 0.10) << speed_m_s;

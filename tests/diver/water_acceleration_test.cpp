@@ -14,9 +14,9 @@ Body floating() {
   return weightless(body_with(Gear{}));
 }
 
-// All of the water gathers speed evenly. Who floats goes along, in any attitude and posture, though
-// the water that moves along differs along each axis; limbs that rest feel nothing, and drag takes
-// nothing from what does not move through the water.
+// All of the water gathers speed evenly. A neutral body goes along, in any attitude and posture,
+// though the water that moves along differs along each axis; limbs that rest feel nothing, and drag
+// takes nothing from what does not move through the water.
 TEST(DiverWaterAcceleration, WhoFloatsMovesWithWaterThatGathersSpeed) {
   const Vec3 a(0.3, -0.2, 0.1);
   for (std::uint64_t index = 0; index < 6; ++index) {
@@ -94,7 +94,7 @@ TEST(DiverWaterAcceleration, WhatIsHeavierTakesItsShare) {
 }
 
 // Between converging walls of water, u = k (x, -y): what drifts follows x e^(kt), y e^(-kt), though
-// its own current changes otherwise than the water's. Who is stretched out flat in z feels no turn.
+// its own current changes otherwise than the water's. A body stretched out flat in z feels no turn.
 TEST(DiverWaterAcceleration, WhoFloatsFollowsTheWatersPathThroughAStrain) {
   Body body = without_drag(floating());
   for (SegmentBody& segment : body.segments) segment = {segment.joint_m};

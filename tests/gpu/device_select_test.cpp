@@ -1,4 +1,4 @@
-// Which device is chosen, on invented lists: no GPU needed.
+// Device selection on invented lists; needs no GPU.
 #include "engine/gpu/device_select.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Which faults of drivers are gone round, by driver and version.
+// The driver faults that have a workaround, by driver and version.
 #include "engine/gpu/quirks.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Which passes run and in which order. Drawn as: (a1) version 1 of a, [P] a pass.
+// The passes that run, and their order. Drawn as: (a1) version 1 of a, [P] a pass.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What a person reads about a plan: complete, and valid for Graphviz.
+// A plan's dump: complete, and valid for Graphviz.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -23,7 +23,7 @@ struct Push {
   std::uint32_t count, factor, shift;
 };
 
-// What test_graph_step.comp computes.
+// The result of test_graph_step.comp.
 inline std::vector<std::uint32_t> step(const std::vector<std::uint32_t>& source,
                                        std::uint32_t factor, std::uint32_t shift) {
   std::vector<std::uint32_t> target(source.size());

@@ -11,7 +11,7 @@
 
 namespace neritic::graph {
 
-// What most test graphs do to a resource.
+// The uses of a resource in most test graphs.
 inline constexpr Access kWrite = Access::kStorageWriteCompute;
 inline constexpr Access kRead = Access::kStorageReadCompute;
 
@@ -90,7 +90,7 @@ struct GraphMaker {
     graph.outputs.push_back({resource, version, access});
   }
 
-  // What a made-up device says: sizes from the declaration, one class a kind.
+  // The answers of an invented device: sizes from the declaration, one class a kind.
   std::vector<MemoryNeed> needs(std::uint64_t alignment = 1) const {
     std::vector<MemoryNeed> all;
     for (const ResourceDecl& r : graph.resources) {

@@ -64,7 +64,7 @@ TEST(RandomGraphs, NeedEveryBarrierTheyHave) {
   EXPECT_GT(dropped, kGraphs);
 }
 
-// What is taken out of a mask: one bit of one barrier of a plan.
+// The planted fault: one bit of one barrier of a plan.
 struct Cut {
   const Plan& plan;
   const Barrier& barrier;

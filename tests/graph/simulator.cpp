@@ -8,7 +8,7 @@
 namespace neritic::graph {
 namespace {
 
-// What ALL_COMMANDS and MEMORY_* stand for here: every bit an Access can have. HOST is no command.
+// The meaning of ALL_COMMANDS and MEMORY_* here: every bit an Access can have. HOST is no command.
 constexpr VkPipelineStageFlags2 kHost = VK_PIPELINE_STAGE_2_HOST_BIT;
 
 VkPipelineStageFlags2 every_stage() {

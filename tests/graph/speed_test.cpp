@@ -1,4 +1,4 @@
-// What planning costs. The numbers are printed; the limits are loose enough for a busy machine and
+// The cost of planning. The numbers are printed; the limits are loose enough for a busy machine and
 // sanitizers, tight enough to notice an accidental square.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What is the skin of a solid: every edge met both ways, every part wound outwards.
+// The skin of a solid: every edge passed both ways, every part wound outwards.
 #include "engine/render/closed_surface.hpp"
 
 #include <gtest/gtest.h>

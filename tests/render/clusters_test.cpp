@@ -1,4 +1,4 @@
-// What clusters promise: the same triangles in a new order, bounds that hold them, and a culling
+// Promises of clusters: the same triangles in a new order, bounds that hold them, and a culling
 // that never drops a triangle of which a corner is in a view.
 #include "engine/render/clusters.hpp"
 

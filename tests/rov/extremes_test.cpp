@@ -1,4 +1,4 @@
-// What no dive should meet: steps of a second, ten kilonewton, a thousandth of the mass, five
+// Extremes of a vehicle: steps of a second, ten kilonewton, a thousandth of the mass, five
 // metres a second of current, jumps, 100 km, inputs that are no numbers. Energy stays bounded,
 // nothing that leaves is not finite, and afterwards it flies as before.
 #include <gmock/gmock.h>

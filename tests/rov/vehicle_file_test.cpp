@@ -224,7 +224,7 @@ TEST(RovThrustCurve, CommandsGoThroughDeadBandAndSaturation) {
   EXPECT_NEAR(inputs.thruster_n[2], 10.0, 0.06);
   EXPECT_EQ(inputs.thruster_n[3], file.curve->most_n(16.0));
   EXPECT_EQ(inputs.thruster_n[4], file.curve->least_n(16.0));
-  // What is no number gets through to the step, which refuses, counts and holds.
+  // A NaN gets through to the step, which refuses it, counts it and holds the last input.
   inputs.thruster_n[0] = std::numeric_limits<double>::quiet_NaN();
   inputs.thruster_n[1] = -std::numeric_limits<double>::infinity();
   drive(file, inputs);

@@ -1,4 +1,4 @@
-// What `neritic_bench --filter` says to a name that nothing has. Needs no device: it is said first.
+// `neritic_bench --filter` with an unknown name; needs no device, since names are checked first.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

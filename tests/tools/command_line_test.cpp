@@ -1,4 +1,4 @@
-// What `neritic` says about itself: help, version, wrong flags. No device.
+// Help, version and wrong flags of `neritic`; needs no device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

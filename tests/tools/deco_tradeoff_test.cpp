@@ -20,7 +20,7 @@ DecoPoint point_of(const std::vector<DecoPoint>& points, TissueMethod method, do
   return {};
 }
 
-// What a sample costs by count instead of time, so that the knee is the same on any machine: one
+// The cost of a sample by count instead of time, so that the knee is the same on any machine: one
 // pass over the tissues, six where each takes exponentials (diver/TRADE.md).
 DecoTradeoff counted(DecoTradeoff measured) {
   for (DecoPoint& p : measured.points)

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What no driver answers to.
+// A device name that no driver has.
 constexpr const char* kNoDevice = "env VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent";
 
 class DivePhysics : public testing::Test {

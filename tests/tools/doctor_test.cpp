@@ -1,4 +1,4 @@
-// What `neritic doctor` concludes, on invented machines and on this one.
+// Conclusions of `neritic doctor`, on invented machines and on this one.
 #include "tools/neritic/doctor.hpp"
 
 #include <gmock/gmock.h>

@@ -80,7 +80,7 @@ TEST(Interrupt, AFolderOfImagesGoesOnWhereItWasStopped) {
   EXPECT_EQ(exit_status(stopped.error().code), 130);
   EXPECT_THAT(stopped.error().message, HasSubstr("of 600 frames are whole in " + out.string()));
   EXPECT_THAT(stopped.error().message, HasSubstr("the same command goes on"));
-  // What is there is whole, and nothing else is there.
+  // Every file that exists is whole, and no other file exists.
   std::size_t whole = 0;
   for (const auto& entry : fs::directory_iterator(out)) {
     EXPECT_TRUE(fs::exists(entry.path() / "sonar.npy")) << entry.path();

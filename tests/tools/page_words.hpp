@@ -1,4 +1,4 @@
-// What a page of columns and keys names, against what a program wrote.
+// Compares the names on a page of columns and keys with a program's output.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace neritic {
 
 using Words = std::set<std::string>;
 
-// What stands in backticks in a table's rows, of the page from one heading to the next; of their
+// The words in backticks in a table's rows, from one heading of the page to the next; of their
 // first cells alone where so asked.
 inline Words words_of(const std::string& page, const std::string& from, const std::string& to,
                       bool first_cells) {

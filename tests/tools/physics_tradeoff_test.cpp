@@ -111,7 +111,7 @@ TEST(PhysicsTradeoff, SlidingAndRollingEndWhereTheirClosedFormsSay) {
   }
 }
 
-// What max_error_m gets, flown: every flight stays within what was asked for.
+// The step that max_error_m selects keeps every flight within that error.
 TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnEveryFlight) {
   std::vector<Flight> flights;
   flights.push_back(square_flight(true, 5.0).value());

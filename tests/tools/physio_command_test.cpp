@@ -191,7 +191,7 @@ TEST(PhysioCommand, AColumnOfWordsIsNoSignal) {
   EXPECT_THAT(run_physio(flags).error().message, HasSubstr("found column 'ecg' of words"));
 }
 
-// What is left at the end is heard, too.
+// The rest at the end is analysed, too.
 TEST(PhysioCommand, SoundIsHeardUpToItsEnd) {
   const test::ScratchFolder folder;
   const auto times = [&](int seconds) {
@@ -302,7 +302,7 @@ TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
   EXPECT_THAT(run_physio(eyes).error().message, HasSubstr("--headset: --method ivt found"));
 }
 
-// What is not known is null: a heart of no beats has no rate of 0.
+// Unknown values are null: a heart of no beats has no rate of 0.
 TEST(PhysioCommand, WhatIsNotKnownIsNull) {
   const test::ScratchFolder folder;
   std::string still = "# fs_hz=1000\necg\n";

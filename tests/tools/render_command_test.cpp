@@ -50,7 +50,7 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
   const struct {
     std::string arguments, names;
   } cases[] = {
-      // What only the sonar itself can tell names file, sonar and key too.
+      // An error that only the sonar can find names file, sonar and key too.
       {with_sonar("pulse.toml", "bandwidth_hz = 10\n"), "pulse.toml: sonar ears: range_spread"},
       {with_sonar("gather.toml", "gather = \"published\"\nlevel = {}\n"),
        "gather.toml: sonar ears: gather: published found"},

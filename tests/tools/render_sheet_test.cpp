@@ -81,7 +81,7 @@ TEST(ContactSheet, AKeyOfColoursIsBesideTheCaptionAsFarAsThereIsRoom) {
   EXPECT_LT(in_room, 10 * 121u);
 }
 
-// Of the sheet itself, whose pictures' own pixels are larger in number than any swatch's.
+// Counts in the sheet itself, whose pictures have more pixels than any swatch.
 TEST(RenderSheet, LabelsHaveTheirClassesNamedLargestFirst) {
   const test::ScratchFolder out;
   FrameResult result;

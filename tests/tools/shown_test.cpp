@@ -1,4 +1,4 @@
-// What the pages of claims name as a test is one: a test that is renamed takes its line along.
+// Each test that a page of claims names exists.
 #include <gtest/gtest.h>
 
 #include <filesystem>

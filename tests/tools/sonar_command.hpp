@@ -1,4 +1,4 @@
-// What the tests of `neritic sonar` share: the command as typed, its arrays, small images.
+// Shared by the tests of `neritic sonar`: the command as typed, its arrays, small images.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Which files of a folder belong together.
+// The files of a folder that belong together.
 #include <gtest/gtest.h>
 
 #include "engine/core/files.hpp"

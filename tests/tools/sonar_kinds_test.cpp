@@ -388,7 +388,7 @@ TEST_F(Wall, EnergyLabelsNameTheClassOfThePixels) {
   const auto labels = numbers_of(folder_ / "out" / "sonar_labels.npy");
   EXPECT_GT(std::count(labels.begin(), labels.end(), 7.0), 50);
   EXPECT_EQ(sum(numbers_of(folder_ / "out" / "sonar_instances.npy")), 0.0);
-  // What stands for shadow there is no class.
+  // The code for shadow there is no class.
   const std::vector<std::uint16_t> shadows(kWidth * kHeight, std::uint16_t{65534});
   ASSERT_TRUE(
       write_npy(folder_ / "labels.npy", std::span<const std::uint16_t>(shadows), {kHeight, kWidth})

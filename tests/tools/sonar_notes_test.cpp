@@ -1,4 +1,4 @@
-// What `neritic sonar` notes about images that give a poor or silent picture, and what it refuses.
+// Notes of `neritic sonar` about images that give a poor or silent picture, and its refusals.
 #include "tools/neritic/sonar_notes.hpp"
 
 #include <gmock/gmock.h>

@@ -88,7 +88,7 @@ void expect_near(const std::array<int, 3>& a, const std::array<int, 3>& b, int l
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], levels) << "channel " << i;
 }
 
-// What a wall that glows with that radiance looks like, unlit.
+// The picture of an unlit wall that glows with that radiance.
 Result<std::array<int, 3>> look_of(gpu::Device& device, const Vec3f& radiance) {
   scene::Model model = white_wall();
   model.materials[0].base_color = {0.0f, 0.0f, 0.0f, 1.0f};

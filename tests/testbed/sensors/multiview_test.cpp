@@ -150,7 +150,7 @@ TEST_F(MultiviewTest, PairsDrawnAtOnceArePairsDrawnEyeByEye) {
   EXPECT_GT(different(together[0].depth, together[1].depth), 1000u);  // two eyes, not one twice
 }
 
-// What needs clipping agrees exactly where the device is not known to clip into the wrong view: the
+// Clipped triangles agree exactly if the device is not known to clip into the wrong view: the
 // list of quirks says no more and no less than what is wrong.
 TEST_F(MultiviewTest, ClippedTrianglesAgreeUnlessTheDeviceIsKnownForIt) {
   scene::Scene scene = stereo_scene();

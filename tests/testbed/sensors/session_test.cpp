@@ -1,4 +1,4 @@
-// What a session promises: the same picture far from the origin, from one or two eyes, and nothing
+// Promises of a session: the same picture far from the origin, from one or two eyes, and nothing
 // in the graph that the scene does not name.
 #include "testbed/sensors/session.hpp"
 

@@ -14,7 +14,7 @@ namespace {
 using scene::SonarKind;
 using SonarExtremes = test::GpuTest;
 
-// What must hold of any sonar whatever: returns the total.
+// Checks that hold for any sonar; returns the total.
 double expect_sane(const std::vector<SonarFrame>& frames, const std::string& of) {
   double total = 0.0;
   EXPECT_FALSE(frames.empty()) << of;

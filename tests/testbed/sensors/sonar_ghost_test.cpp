@@ -34,7 +34,7 @@ double ghost_over_direct_db(gpu::Device& device, scene::Scene scene, double refl
   return 10.0 * std::log10(total(ping(device, scene)) / direct - 1.0);
 }
 
-// What a Lambert sphere lit from one side sends to another, beta off, over what it sends back: the
+// Light of a Lambert sphere towards a direction beta off, relative to straight back: the
 // integral of cos(in) cos(out) over what both see.
 double lambert_sphere(double beta_rad) {
   return (std::sin(beta_rad) + (kPi - beta_rad) * std::cos(beta_rad)) / kPi;
@@ -135,7 +135,7 @@ TEST_F(SonarGhost, NoneComesWhereSomethingStandsInEitherLegsWay) {
   }
 }
 
-// What the mirror's image of the sonar looks through on its own side is no part of the water.
+// The space on the mirrored sonar's own side is not part of the water.
 TEST_F(SonarGhost, WhatStandsBeyondTheMirrorHidesNone) {
   const auto added = [&](scene::Scene scene) {
     const double direct = total(ping(device(), scene));

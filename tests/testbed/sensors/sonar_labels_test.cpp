@@ -39,7 +39,7 @@ TEST_F(SonarLabels, AreThoseOfMostEnergyBehindPatternAndPulse) {
   const SonarFrame frame = ping(device(), scene);
   ASSERT_TRUE(frame.label_energy);
   const auto& found = *frame.label_energy;
-  // What each instance alone would be heard by: all others reflect nothing, and hide what they hid.
+  // The echo of each instance alone: all others reflect nothing, but still occlude.
   std::vector<std::vector<float>> alone;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     scene::Scene one = scene;

@@ -120,7 +120,7 @@ TEST_F(SonarOracles, GainOf40LogMakesEqualSpheresEqual) {
     scene::Scene scene;
     scene.objects.push_back(object_of(scene, scene::make_sphere(0.1, 256), {0.0, 0.0, -range_m}));
     scene.sonars = {sonar};
-    // What is left is SL + TS, with 20 log(a / 2); seen from nearby, a sphere shows 1.5 a / r less.
+    // The rest is SL + TS, with 20 log(a / 2); seen from nearby, a sphere shows 1.5 a / r less.
     const double nearby_db = 10.0 * std::log10(1.0 - 1.5 * 0.1 / range_m);
     EXPECT_NEAR(10.0 * std::log10(total(ping(device(), scene))), 200.0 - 26.02 + nearby_db, 0.1)
         << range_m;

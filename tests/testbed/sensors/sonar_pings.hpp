@@ -44,7 +44,7 @@ inline scene::SonarLevel plain_level() {
   return level;
 }
 
-// What every head of the scene's first sonar heard.
+// The echoes of every head of the scene's first sonar.
 inline std::vector<SonarFrame> pings(gpu::Device& device, const scene::Scene& scene,
                                      std::uint32_t number = 0) {
   FrameRequest request;

@@ -87,7 +87,7 @@ TEST_F(SonarRandom, FewScatterersAreKDistributed) {
   }
 }
 
-// What speckle makes of a wall's whole power, through pattern and pulse, however many columns
+// A wall's total power with speckle, through pattern and pulse, however many columns
 // sample a beam and however near the wall is.
 double speckled_over_smooth(gpu::Device& device, double distance_m, std::uint32_t samples) {
   scene::Sonar sonar = sonar_of(0.9 * distance_m, 1.5 * distance_m, 0);
@@ -300,7 +300,7 @@ class AlongRange {
     }
     return out;
   }
-  // Of a bin at home with that which lies `rows` bins nearer after the way ahead.
+  // Correlation of a bin at home with the bin `rows` nearer after the way ahead.
   double correlation_with(const Powers& moved, std::uint32_t rows) const {
     std::vector<double> before, after;
     for (std::uint32_t seed = 0; seed < kSeeds; ++seed)

@@ -95,7 +95,7 @@ TEST_F(SonarSettings, ReflectivityIsATableOnlyWhereAnObjectHasOne) {
     session->keep_plan_dump(true);
     NERITIC_ASSERT_OK(const FrameResult result, session->render(all_sonars(scene)));
     EXPECT_EQ(session->plan_text().find("reflectivity") != std::string::npos, reflectivity != 1.0f);
-    // Who gathers the frame's arrays again has it from here, by instance label.
+    // A reader who gathers the frame's arrays again finds it here, by instance label.
     const std::vector<float>& table = result.sonars[0].reflectivity;
     ASSERT_EQ(table.empty(), reflectivity == 1.0f);
     if (!table.empty()) {

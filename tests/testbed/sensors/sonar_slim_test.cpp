@@ -49,8 +49,8 @@ scene::Sonar slim_sonar(const std::string& quality, std::uint32_t beams) {
   return sonar;
 }
 
-// The plain cosine's sum over all bins: azimuth in beams, elevation in apertures. Of a piece of the
-// pole at h from its nearest point, d away, at range r: solid angle 2 a dh (d / r) / r^2; mean
+// The plain cosine's sum over all bins: azimuth in beams, elevation in apertures. For a piece of
+// the pole at h from its nearest point, d away, at range r: solid angle 2 a dh (d / r) / r^2; mean
 // cosine of incidence over its width (pi / 4) (d / r).
 double pole_energy(const scene::Sonar& s, double radius_m, double lean_rad) {
   constexpr int kSteps = 20000;

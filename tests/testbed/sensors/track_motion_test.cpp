@@ -1,4 +1,4 @@
-// What moves on a track: cameras, lamps, sonars and what they carry are where the track says at the
+// Motion on tracks: cameras, lamps, sonars and their loads are where the track says at the
 // frame's time, and motion images tell where each pixel's point is at the next frame's.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What a session makes on the device: every object has a name for debuggers, and every image a
+// Vulkan objects of a session: every object has a name for debuggers, and every image a
 // format that devices are chosen for.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

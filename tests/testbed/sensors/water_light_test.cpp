@@ -101,7 +101,7 @@ scene::Scene scene_of(const View& view) {
   return scene;
 }
 
-// Of the picture's middle; the test fails where eight bits are too coarse to tell.
+// The radiance in the picture's middle; the test fails if eight bits are too coarse.
 Vec3 radiance_of(gpu::Device& device, const View& view) {
   auto session = Session::create(device, scene_of(view));
   EXPECT_TRUE(session.ok());
@@ -155,7 +155,7 @@ TEST_F(WaterLight, DaylightFadesWithDepthByDiffuseAttenuation) {
   }
 }
 
-// What the water before a black wall sends, against the water before nothing: level by the beam
+// Light from the water before a black wall, relative to the water before nothing: level by the beam
 // attenuation alone; down, where ever less light comes to be scattered, by c + K_d.
 TEST_F(WaterLight, TheWatersOwnLightSaturatesWithTheLengthOfSight) {
   for (const double pitch_rad : {0.0, -0.5 * kPi})
@@ -187,7 +187,7 @@ TEST_F(WaterLight, TheWatersOwnLightSaturatesWithTheLengthOfSight) {
 double henyey_greenstein(double cosine, double g) {
   return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
 }
-// Of sea water (Morel 1974).
+// Scattering of sea water (Morel 1974).
 double morel(double cosine) {
   return 3.0 / (4.0 * kPi * (3.0 + 0.835)) * (1.0 + 0.835 * cosine * cosine);
 }
@@ -287,7 +287,7 @@ TEST_F(WaterLight, ALampInTheAirIsDimmedByTheWatersPartOfTheWay) {
   }
 }
 
-// What a lamp beside and behind the eye sends back from the water before it, to_m of the sight
+// Backscatter of a lamp beside and behind the eye, to_m of the sight
 // being in water: the sum over the sight of I / r^2, scattered once, dimmed over both legs.
 Vec3 glow_integral(const View& view, const render::WaterOptics& optics, double to_m) {
   constexpr double kStep_m = 0.001;
@@ -396,7 +396,7 @@ TEST_F(WaterLight, SnellsWindowLetsInAllTheLight) {
     }
   for (int ch = 0; ch < 3; ++ch) wanted += kLuminance[ch] * light.surface_irradiance[ch];
   EXPECT_NEAR(sum / wanted, 1.0, 0.03);
-  // Of the sky alone, at the zenith: n^2 times the air's radiance, less some 2 % at the surface.
+  // The sky alone, at the zenith: n^2 times the air's radiance, less some 2 % at the surface.
   const Vec3 zenith = map[kSide / 2 * kSide + kSide / 2];
   const double reflected = std::pow((1.333 - 1.0) / (1.333 + 1.0), 2.0);
   const double air = wanted * (1.0 - light.direct_share) / 0.934 / kPi;

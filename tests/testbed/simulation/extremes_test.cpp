@@ -1,4 +1,4 @@
-// What no dive should meet, in whole dives among things: messages and inputs that are no numbers,
+// Extremes of whole dives among things: messages and inputs that are no numbers,
 // ten kilonewton, steps of a second, a thousandth of the mass. Nothing that leaves is not finite,
 // energy stays bounded, nobody gets into what is solid, and afterwards it flies as before.
 #include <limits>

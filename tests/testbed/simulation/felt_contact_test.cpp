@@ -1,4 +1,4 @@
-// What a vehicle's inertial unit feels of what it touches.
+// Contacts as a vehicle's inertial unit measures them.
 #include "rov/sensor_set.hpp"
 #include "tests/testbed/simulation/senders.hpp"
 
@@ -104,8 +104,8 @@ TEST(FeltContact, AHitAddsUpToTheChangeOfVelocity) {
     });
     ASSERT_GT(dive.vehicle().contact.touched_steps, 100u);
     ASSERT_GT(fastest_m_s, 0.5);
-    // What water and thrusters do is read at the sample: the hit takes 5 m/s^2 of drag away, and a
-    // reading stands for the time since the last.
+    // Forces of water and thrusters are read at the sample: the hit takes 5 m/s^2 of drag away, and
+    // a reading stands for the time since the last.
     EXPECT_LT(glm::distance(imu.sum_m_s, imu.velocity_m_s()), 7.0 / std::min(rate_hz, 240.0))
         << rate_hz;
     EXPECT_GT(hardest, 0.7 * fastest_m_s * std::min(rate_hz, 240.0)) << rate_hz;

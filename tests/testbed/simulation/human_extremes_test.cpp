@@ -46,7 +46,7 @@ const HumanPhysics& human_of(const TestDive& dive) {
   return dive.state().humans()[0];
 }
 
-// What a suit and its buttons never send, differently for each index.
+// Impossible data of a suit and its buttons, different for each index.
 Suit wild_steering(std::uint64_t index) {
   const RandomKey key{20261105, 7, index};
   std::uint64_t count = 0;
@@ -173,7 +173,7 @@ TEST(HumanDiveExtremes, AWildSuitIsBoundedAndTheDiverSwimsOn) {
   EXPECT_LT(glm::length(after.human.root.velocity.angular()), 1.0);
 }
 
-// Who breathes from a tank that is not there gets no gas, and has a computer that goes on.
+// A diver who breathes from a missing tank gets no gas, and the computer continues.
 TEST(HumanDiveExtremes, ATankThatIsNoneHoldsTissuesAndNotTheComputer) {
   TestDive dive = dive_of(busy_diver_text());
   dive.run(3.0);

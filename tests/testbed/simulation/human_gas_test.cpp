@@ -1,5 +1,5 @@
-// Which tank a scene's diver breathes from: by the plan of his gases, another where one is out, and
-// what is told of it.
+// The tank that a scene's diver breathes from: by the plan of the gases, another if one is empty,
+// and what is told of it.
 #include "testbed/record/dive_record.hpp"
 #include "tests/testbed/simulation/senders.hpp"
 

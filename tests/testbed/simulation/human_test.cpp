@@ -142,7 +142,7 @@ TEST(HumanDive, WhatIsDrawnIsTheBodyOfThePhysics) {
   EXPECT_LT(breath, 0.15);
 }
 
-// What is drawn is as tall as the diver, and wears what the diver's file says and nothing else.
+// The drawn diver has the file's height and exactly the file's gear.
 TEST(HumanDive, IsDrawnAtItsHeightWithItsGear) {
   const test::ScratchFolder folder;
   const auto bounds_of = [&](const std::string& file, double* crown_m) {

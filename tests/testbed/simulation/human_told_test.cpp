@@ -1,4 +1,4 @@
-// What is told of a diver's dive: rows of gas and tissues, what endangered the diver, the way up.
+// The report of a diver's dive: rows of gas and tissues, what endangered the diver, the way up.
 #include "testbed/record/dive_record.hpp"
 #include "tests/testbed/simulation/dives.hpp"
 
@@ -56,7 +56,7 @@ TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
     if (now_s > 0.0) dark_s += dive.world->step_s();
     if (now_s > 1.1 && unfed_s <= 1.1) unfed = life.computer.tissues;
     unfed_s = std::max(unfed_s, now_s);
-    // What is not breathed loads no tissue.
+    // Gas that is not breathed loads no tissue.
     if (now_s > 1.1) {
       ASSERT_TRUE(sim::same_bits(life.computer.tissues, unfed)) << now_s;
     }
@@ -73,7 +73,7 @@ TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
 }
 
 // An hour at 30 m, then an inflator that freezes open: up at many times the rate allowed, through
-// the ceiling, and nothing stops it. What is told is what depth and ceiling were, second by second.
+// the ceiling, and nothing stops it. The report gives depth and ceiling second by second.
 TEST(HumanDive, AnInflatorThatFreezesOpenIsAnUncontrolledAscentAndIsTold) {
   const test::ScratchFolder folder;
   const std::string file = (folder / "frozen.csv").string();

@@ -179,9 +179,8 @@ TEST(PhysicsWorld, AnErrorChoosesTheStep) {
   EXPECT_EQ((*among)->method().contact_parts, 32);
   const auto too_good = world_of("1e-6", wall);
   ASSERT_FALSE(too_good.ok());
-  EXPECT_NE(
-      too_good.error().message.find("accepted: a number from 0.00044 where something solid"),
-      std::string::npos)
+  EXPECT_NE(too_good.error().message.find("accepted: a number from 0.00044 where something solid"),
+            std::string::npos)
       << too_good.error().message;
 }
 

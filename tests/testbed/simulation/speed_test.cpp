@@ -1,4 +1,4 @@
-// What a vehicle with all its sensors takes of a core in a scene: processor time, so that what else
+// Cost of a vehicle with all its sensors in a scene: processor time, so that what else
 // the machine does counts little.
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-// What vehicles are for contacts: their file's outline, the hull of what is drawn, or its box.
+// Shapes of vehicles for contacts: their file's outline, the hull of what is drawn, or its box.
 #include "testbed/simulation/vehicle_shape.hpp"
 
 #include <gmock/gmock.h>
@@ -140,7 +140,8 @@ TEST(VehicleShape, FaultsAreOneLine) {
   EXPECT_THAT(fault("[[outline]]\nkind = \"ball\""),
               HasSubstr("outline[0].kind: found \"ball\"; accepted: box, sphere, capsule or hull"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"sphere\""), HasSubstr("radius_m: not found"));
-  EXPECT_THAT(fault("[[outline]]\nkind = \"sphere\"\nradius_m = -1"), HasSubstr("radius_m: found -1"));
+  EXPECT_THAT(fault("[[outline]]\nkind = \"sphere\"\nradius_m = -1"),
+              HasSubstr("radius_m: found -1"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"box\"\nsize_m = [1, 0, 1]"), HasSubstr("size_m"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"box\"\nsize_m = [1, 1, 1]\nradius_m = 1"),
               HasSubstr("radius_m: not known"));
