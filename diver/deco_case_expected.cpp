@@ -1,4 +1,4 @@
-// What a case expects, and the dive before it (deco_case_parts.hpp).
+// The expected results of a case, and the dive before it (deco_case_parts.hpp).
 #include <algorithm>
 
 #include "diver/deco_case_parts.hpp"

@@ -13,7 +13,7 @@ struct Intrinsics {
   double fx = 1.0, fy = 1.0, cx = 0.0, cy = 0.0;
 };
 
-// Of a picture of that size between those edges.
+// The pinhole of a picture of that size between those edges.
 inline Intrinsics intrinsics_of(const FrustumTangents& tangents, std::uint32_t width,
                                 std::uint32_t height) {
   const double fx = width / (tangents.right - tangents.left),

@@ -35,7 +35,7 @@ class Font {
   // zero sizes have no extent. CHECKs that it is finite and at most kLargestText_px.
   // The advance of the text, kerning included; proportional to the size.
   double width(double size_px, std::string_view utf8) const;
-  // Of the unhinted outlines; hinting moves an edge by up to a pixel.
+  // Extents of the unhinted outlines; hinting moves an edge by up to a pixel.
   InkBox ink(double size_px, std::string_view utf8) const;
   // The coverage of a text whose origin is at x on the baseline, which is rounded to a whole row.
   // Pixels outside clip are left out.

@@ -22,7 +22,7 @@ class Allocator;
 struct ValidationLog;
 struct ValidationTarget;
 
-// Who makes the Vulkan objects if Vulkan's own functions must not be called (an OpenXR runtime
+// The maker of the Vulkan objects if Vulkan's own functions must not be called (an OpenXR runtime
 // makes them itself). Empty functions: Vulkan's own.
 struct DeviceMaker {
   std::function<VkResult(const VkInstanceCreateInfo&, VkInstance*)> instance;
@@ -34,7 +34,8 @@ struct DeviceMaker {
 struct DeviceOptions {
   std::string device;  // part of a name (any case) or an index; empty: discrete, integrated, CPU
   bool validation = false;  // the Khronos layer with synchronization validation
-  // What a display asks for (a window: surfaces and swapchains). kUnsupported if one is missing.
+  // Extensions that a display asks for (a window: surfaces and swapchains). kUnsupported if one is
+  // missing.
   std::vector<const char*> instance_extensions, device_extensions;
   DeviceMaker maker;
   // Where the pipeline cache is kept; empty: not kept. See default_cache_folder().

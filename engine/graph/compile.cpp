@@ -22,7 +22,7 @@ Status check_sizes(const Plan& plan) {
   return {};
 }
 
-// What the next frame will read has to be written as a whole, or not at all.
+// Content that the next frame reads is written as a whole, or not at all.
 Status check_histories(const Plan& plan) {
   const auto written = [](const Part& part) {
     return std::any_of(part.epochs.begin(), part.epochs.end(),

@@ -1,7 +1,8 @@
-// Which source each group of a participant's inputs listens to. Every group has one authority at a
-// time; the scene chooses it, an event changes it. A live source that falls silent holds its newest
-// value for `hold_s`, then `then` acts until it is heard again. Pure functions over plain bytes:
-// the control is part of a step's inputs, the state part of its state, so a replay repeats both.
+// The source that each group of a participant's inputs listens to. Every group has one authority at
+// a time; the scene chooses it, an event changes it. A live source that falls silent holds its
+// newest value for `hold_s`, then `then` acts until it is heard again. Pure functions over plain
+// bytes: the control is part of a step's inputs, the state part of its state, so a replay repeats
+// both.
 #pragma once
 
 #include <array>
