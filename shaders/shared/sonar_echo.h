@@ -7,7 +7,8 @@
 
 NERITIC_SHARED_BEGIN
 
-// Constants of one ping. Directions and lengths in the axes of the G-buffer's normals, about the view's eye.
+// Constants of one ping. Directions and lengths in the axes of the G-buffer's normals, about the
+// view's eye.
 struct SonarEcho {
   vec3 motion;         // heard range = r + r * dot(motion, d) + dot(doppler, d)
   float sum_scale;     // power 1 (amplitude 1 where coherent) in counts
