@@ -1,5 +1,5 @@
 // The sonar's image as a fan, for the eyes of a person at the live display. Shared by its two
-// passes and their host share: one finds how bright to show it, one draws it.
+// passes and their host: one finds how bright to show it, one draws it.
 #ifndef NERITIC_SHARED_SONAR_FAN_H
 #define NERITIC_SHARED_SONAR_FAN_H
 #include "shared/types.h"
