@@ -109,6 +109,7 @@ Status Dive::frame(const xr::DisplayFrame& display_frame, bool last) {
   time_s_ = to_s(display_frame.display_at_ns - start_ns_);
   if (options_.physics) time_s_ = options_.physics->follow(display_frame.display_at_ns, time_s_);
   take_input(elapsed_s_);
+  if (options_.physics) NERITIC_TRY_STATUS(pilot_.poll(options_.physics->inbox(), time_s_));
   aim_camera(display_frame);
 
   graph::FrameGraph graph;

@@ -54,32 +54,38 @@ DivePilot::DivePilot(LivePhysics* physics, const scene::Mount& view)
   }
 }
 
-void DivePilot::send(PayloadKind kind, std::uint64_t& sequence, const Payload& payload) {
+void DivePilot::send(SampleInbox& inbox, PayloadKind kind, std::uint64_t& sequence,
+                     const Payload& payload) {
   const auto vehicle = static_cast<std::uint32_t>(vehicle_);
   const StreamId stream = physics_->world().streams().id(OwnerSort::kVehicle, vehicle, kind);
   const TimeNs now = now_ns();
-  physics_->inbox().push({{stream, source_, sequence++, now, now}, payload});
+  inbox.push({{stream, source_, sequence++, now, now}, payload});
 }
 
-// The vehicle's wrench to the keyboard, or back to what the scene chose.
-void DivePilot::hand_over(bool to_pilot) {
+// Gives the vehicle's wrench to the keyboard while it flies, else back to the scene's choice.
+void DivePilot::hand_over(SampleInbox& inbox) {
   const GroupControl& chosen =
       physics_->world().start_inputs().vehicles()[vehicle_].of(VehicleGroup::kWrench);
   Event event{.group = static_cast<std::uint64_t>(VehicleGroup::kWrench)};
-  event.authority = static_cast<std::uint64_t>(to_pilot ? Authority::kLive : chosen.authority);
-  event.source = to_pilot ? source_ : chosen.source;
-  event.hold_s = to_pilot ? kKeysHold_s : chosen.hold_s;
-  send(PayloadKind::kEvent, events_, event);
+  event.authority = static_cast<std::uint64_t>(flying_ ? Authority::kLive : chosen.authority);
+  event.source = flying_ ? source_ : chosen.source;
+  event.hold_s = flying_ ? kKeysHold_s : chosen.hold_s;
+  send(inbox, PayloadKind::kEvent, events_, event);
 }
 
 bool DivePilot::take(const DiveInput& input) {
   if (!physics_) return false;
-  if (input.toggle_pilot) {
-    flying_ = !flying_;
-    hand_over(flying_);
-  }
-  if (flying_) send(PayloadKind::kWrench, wrenches_, wrench_of(input));
+  if (input.toggle_pilot) flying_ = !flying_;
+  wrench_ = wrench_of(input);
   return flying_;
+}
+
+Status DivePilot::poll(SampleInbox& inbox, double) {
+  if (!physics_) return {};
+  if (flying_ != flew_) hand_over(inbox);
+  flew_ = flying_;
+  if (flying_) send(inbox, PayloadKind::kWrench, wrenches_, wrench_);
+  return {};
 }
 
 Pose DivePilot::world_from_view() const {

@@ -1,34 +1,38 @@
-// Who flies a vehicle by hand in the live program: keys to a wrench, and a view that rides along.
-// Rendering thread.
+// Flies a vehicle by hand in the live program: keys to samples of a wrench, and a view that rides
+// along. Rendering thread.
 #pragma once
 
 #include <string>
 
 #include "testbed/loop/dive_input.hpp"
 #include "testbed/motion/live_physics.hpp"
+#include "testbed/samples/source.hpp"
 
 namespace neritic::testbed {
 
-class DivePilot {
+class DivePilot final : public SampleSource {
  public:
   // physics may be nullptr: nothing to fly. view: the mount of the camera that is flown.
   DivePilot(LivePhysics* physics, const scene::Mount& view);
 
   // Keys of this frame. True while a vehicle is flown: the camera is not then.
   bool take(const DiveInput& input);
+  // Sends what the keys of the newest frame ask for.
+  Status poll(SampleInbox& inbox, double scene_time_s) override;
   // The riding view; precondition: take() said true.
   Pose world_from_view() const;
   // A line a vehicle, for the panels; and one a group of inputs whose live source is silent.
   std::vector<std::string> lines() const;
 
  private:
-  void send(PayloadKind kind, std::uint64_t& sequence, const Payload& payload);
-  void hand_over(bool to_pilot);
+  void send(SampleInbox& inbox, PayloadKind kind, std::uint64_t& sequence, const Payload& payload);
+  void hand_over(SampleInbox& inbox);
 
   LivePhysics* physics_;
   std::size_t vehicle_ = 0;  // the one that the view is on, else the first
   Pose vehicle_from_view_;
-  bool flying_ = false;
+  bool flying_ = false, flew_ = false;       // now, and at the last poll
+  VehicleWrench wrench_;                     // of the newest keys
   SourceId source_ = kSimulation;            // the keyboard
   std::uint64_t wrenches_ = 0, events_ = 0;  // samples sent
 };

@@ -50,13 +50,6 @@ HumanRow HumanRecorder::row_of(std::size_t index,
   return row;
 }
 
-diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& state) {
-  const double now_l_min = diver::read_gas(human.body, state.human).ventilation_l_min;
-  return diver::ascent_gas(*human.computer, state.human.life.computer, human.body,
-                           state.human.life.tanks,
-                           std::max(now_l_min, diver::PlanBreathing{}.ascent_l_min));
-}
-
 void HumanRecorder::note_tank(std::size_t index, const sim::Snapshot<PhysicsState>& snapshot) {
   const diver::HumanState& state = snapshot.state.humans()[index].human;
   const std::uint64_t from = last_tank_[index], to = state.held.tank;

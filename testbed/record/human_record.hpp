@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diver/ascent_gas.hpp"
-#include "diver/gas_plan.hpp"
+#include "testbed/simulation/human_readings.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
@@ -30,9 +29,6 @@ struct HumanRow {
   diver::VitalState vitals;
   std::uint64_t hash = 0;  // of the whole state
 };
-
-// What the way up takes as the diver breathes now, though no less than plans reckon with.
-diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& state);
 
 // A change to another tank.
 struct TankChange {

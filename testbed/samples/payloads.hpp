@@ -183,22 +183,28 @@ struct CollisionReading {
 struct DiverMotion {
   Pose world_from_body;                        // model axes: starboard, up, back
   Vec3 velocity_m_s{0.0}, angular_rad_s{0.0};  // over ground, body axes
-  double heart_bpm = 0.0, breath_bpm = 0.0;
+  Vec3 gaze{0.0};                              // unit
+  double heart_bpm = 0.0, breath_bpm = 0.0, ventilation_l_min = 0.0;
   double tank_pa = 0.0, jacket_m3 = 0.0, lungs_m3 = 0.0;
+  std::uint64_t tank = 0, buttons = 0;  // breathed from, from 0; pressed, as in JacketButtons
 
   static void fields(auto&& field, auto& self) {
     field("world_from_body", self.world_from_body);
     field("velocity_m_s", self.velocity_m_s);
     field("angular_rad_s", self.angular_rad_s);
+    field("gaze", self.gaze);
     field("heart_bpm", self.heart_bpm);
     field("breath_bpm", self.breath_bpm);
+    field("ventilation_l_min", self.ventilation_l_min);
     field("tank_pa", self.tank_pa);
     field("jacket_m3", self.jacket_m3);
     field("lungs_m3", self.lungs_m3);
+    field("tank", self.tank);
+    field("buttons", self.buttons);
   }
 };
 
-// What a dive computer shows; -1 where there is no limit or no end.
+// The display of a dive computer; -1 where there is no limit or no end.
 struct ComputerReading {
   double depth_m = 0.0, ceiling_m = 0.0, stop_m = 0.0;
   double no_stop_min = 0.0, stop_min = 0.0, to_surface_min = 0.0;

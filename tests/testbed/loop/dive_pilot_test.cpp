@@ -36,6 +36,7 @@ position_m = [0, 0.1, -0.4]
     for (const double end_s = time_s_ + seconds; time_s_ < end_s; time_s_ += 0.05) {
       EXPECT_EQ(pilot.take(input), expected);
       input.toggle_pilot = false;
+      ASSERT_TRUE(pilot.poll(physics_->inbox(), time_s_).ok());
       physics_->follow(0, time_s_);
     }
   }

@@ -1,0 +1,123 @@
+#include "testbed/simulation/output_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "testbed/simulation/human_readings.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+bool leaves(const Stream& stream) {
+  switch (stream.kind) {
+    case PayloadKind::kImu:
+    case PayloadKind::kDvl:
+    case PayloadKind::kPressure:
+    case PayloadKind::kCompass:
+    case PayloadKind::kAltimeter:
+    case PayloadKind::kUsbl:
+    case PayloadKind::kMotion:
+    case PayloadKind::kComputer:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// Calls visit with the vehicle's newest reading of that kind.
+template <class Visit>
+auto with_reading(PayloadKind kind, const rov::SensorReadings& readings, const Visit& visit) {
+  switch (kind) {
+    case PayloadKind::kImu:
+      return visit(readings.imu);
+    case PayloadKind::kDvl:
+      return visit(readings.dvl);
+    case PayloadKind::kPressure:
+      return visit(readings.pressure);
+    case PayloadKind::kCompass:
+      return visit(readings.heading_rad);
+    case PayloadKind::kAltimeter:
+      return visit(readings.altimeter);
+    case PayloadKind::kUsbl:
+      return visit(readings.usbl);
+    default:
+      check_failed(__FILE__, __LINE__, "a vehicle's sensor", std::string(name_of(kind)));
+  }
+}
+
+TimeNs to_ns(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+}  // namespace
+
+std::vector<StreamId> OutputSamples::all(const PhysicsWorld& world) {
+  std::vector<StreamId> out;
+  for (StreamId id = 0; id < world.streams().size(); ++id)
+    if (leaves(world.streams()[id])) out.push_back(id);
+  return out;
+}
+
+OutputSamples::OutputSamples(const PhysicsWorld& world, const std::vector<StreamId>& wanted)
+    : world_(world) {
+  for (const StreamId id : wanted) {
+    NERITIC_CHECK(leaves(world.streams()[id]), "stream {} enters", world.streams()[id].name);
+    outputs_.push_back({id});
+  }
+  samples_.reserve(outputs_.size());
+}
+
+// Readings at 0, period_s, 2 period_s ..., each at the first step that is not before it.
+OutputSamples::Made OutputSamples::every(double period_s, std::uint64_t step) const {
+  const double periods = std::floor(static_cast<double>(step) * world_.step_s() / period_s + 1e-9);
+  return {static_cast<std::uint64_t>(periods) + 1, periods * period_s};
+}
+
+OutputSamples::Made OutputSamples::made(const Stream& stream,
+                                        const sim::Snapshot<PhysicsState>& snapshot) const {
+  if (stream.kind == PayloadKind::kMotion)
+    return every(std::max(1.0 / kDiverMotion_hz, world_.step_s()), snapshot.step);
+  if (stream.kind == PayloadKind::kComputer)
+    return every(std::max(diver::kComputerSample_s, world_.step_s()), snapshot.step);
+  return with_reading(stream.kind, *world_.readings(snapshot.state, stream.owner),
+                      [](const auto& reading) {
+                        return Made{reading.count, reading.time_s};
+                      });
+}
+
+Payload OutputSamples::payload(const Stream& stream, const PhysicsState& state) const {
+  if (stream.sort == OwnerSort::kDiver) {
+    const PhysicsHuman& human = world_.humans()[stream.owner];
+    const HumanPhysics& now = state.humans()[stream.owner];
+    if (stream.kind == PayloadKind::kMotion) return motion_reading(human, now);
+    return computer_reading(human, now);
+  }
+  return with_reading(stream.kind, *world_.readings(state, stream.owner),
+                      [](const auto& reading) -> Payload {
+                        if constexpr (std::is_same_v<decltype(reading.value), double>)
+                          return CompassReading{reading.value};
+                        else
+                          return reading.value;
+                      });
+}
+
+std::span<const Sample> OutputSamples::of(const sim::Snapshot<PhysicsState>& snapshot) {
+  samples_.clear();
+  const double step_began_s = snapshot.time_s - world_.step_s();
+  for (Output& output : outputs_) {
+    const Stream& stream = world_.streams()[output.stream];
+    const Made now = made(stream, snapshot);
+    // At the first snapshot: those of its own step.
+    const bool due = begun_ ? now.count != output.count : now.time_s > step_began_s;
+    output.count = now.count;
+    if (!due || now.count == 0) continue;
+    const TimeNs age_ns = to_ns(snapshot.time_s - now.time_s);
+    samples_.push_back(
+        {{output.stream, kSimulation, now.count - 1, snapshot.due_ns - age_ns, snapshot.due_ns},
+         payload(stream, snapshot.state)});
+  }
+  begun_ = true;
+  return samples_;
+}
+
+}  // namespace neritic::testbed
