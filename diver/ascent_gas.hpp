@@ -17,8 +17,8 @@ struct AscentGas {
 };
 
 // The computer's gases are the body's tanks, as diver files make them. Gas for the ascent whose
-// tank does not hold its share is left out, and the rest breathes the longer; at so many litres a
-// minute of ambient pressure.
+// tank does not hold its share is left out, and the other gases are breathed longer. The rate is in
+// litres a minute at ambient pressure.
 AscentGas ascent_gas(const DiveComputer& computer, const DiveComputerState& state, const Body& body,
                      const TankState& tanks, double litres_a_minute);
 

@@ -25,8 +25,8 @@ constexpr double kHeadDrag_m2 = 0.028;
 constexpr double kWornDrag_m2 = 0.238;
 constexpr double kWornIncidence = 2.15;
 
-// The specimens of Dempster had so much air in the thorax, of a body of 75 kg: without it the body
-// is 1.06 as dense as water, with the residual volume 1.04, with full lungs 0.98.
+// Air in the thorax of Dempster's specimens, 2.2 l in a body of 75 kg: without it the density is
+// 1.06 of water's, with the residual volume 1.04, with full lungs 0.98.
 constexpr double kSpecimenAir_m3_kg = 2.2e-3 / 75.0;
 
 // Neoprene: thinner than sold where it is stretched and at the joints, so that a suit of 5 mm lifts
@@ -179,7 +179,7 @@ class BodyMaker {
     part.volume_m3 = m.volume_m3;
     if (segment == kThorax) part.volume_m3 -= kSpecimenAir_m3_kg * in_.build.mass_kg;
 
-    // Lengths of the trunk are told from its upper end, where its axis ends.
+    // Lengths of the trunk are measured from its upper end, where its axis ends.
     const double at_m = segment <= kHead ? m.length_m - m.centre_m : m.centre_m;
     const Vec3 along = section.segment_from_part[0];
     // Along the part, from front to back, from side to side, in the part's axes.

@@ -10,7 +10,7 @@
 namespace neritic::diver {
 namespace {
 
-// Levels are smoothed by Hann's window of so many frames: 2 Hz, half of it 0.3 s.
+// Frames of the Hann window that smooths levels: 2 Hz; half of it lasts 0.3 s.
 constexpr int kSmoothFrames = 10;
 // Its equivalent length, (sum w)^2 / sum w^2 of a Hann window: two thirds.
 constexpr double kSmooth_s = kSmoothFrames / kBreathFrames_hz * 2.0 / 3.0;

@@ -17,10 +17,10 @@ constexpr std::size_t kMostComponents = 3;
 constexpr double kLeastShare = 1e-9;
 // 0 finds a breath with two equal halves twice, 1 finds it half as often; 0.5 lies between.
 constexpr double kShareOfDouble = 0.5;
-// A line at half of the frequency that stands so far over the median of all says that only every
-// second is a whole breath. On the recordings none does; chance alone reaches 5.5.
+// If a line at half of the frequency exceeds the median of all by this factor, a whole breath has
+// twice the period. On the recordings none does; chance alone reaches 5.5.
 constexpr double kHalfLine = 6.0;
-// Lines are looked for in steps of so much of what a window resolves.
+// Lines are searched in steps of the window's resolution divided by this number.
 constexpr double kLinesAResolution = 8.0;
 constexpr int kMostSweeps = 30;
 

@@ -22,9 +22,9 @@ struct Rhythm {
 
 // The rhythm of levels of equal length, each with mean 0 and deviation about 1. Principal
 // components of all bands, each scaled to the same power: the first is the loudness, the next the
-// colour, which tells breathing in from breathing out. Of their spectra together the line that has
-// most with half of what its double has: a breath's halves are never quite alike, and never quite
-// unlike.
+// colour, which tells breathing in from breathing out. The rhythm is the line of their summed
+// spectra with the most power, half of the power at its double included: a breath's halves are
+// neither equal nor unrelated.
 Rhythm common_rhythm(const std::vector<Levels>& bands);
 
 }  // namespace neritic::diver

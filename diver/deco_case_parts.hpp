@@ -25,7 +25,7 @@ std::vector<PlanLevel> read_levels(const CaseField& profile);
 std::optional<std::vector<ExpectedStop>> read_stops(const CaseField& list);
 // Rows of depth, minutes.
 std::optional<std::vector<ExpectedStop>> read_stop_rows(const CaseField& list);
-// Of one profile.
+// Both read the parts of one profile.
 DecoExpected read_expected(const CaseField& profile);
 std::optional<EarlierCase> read_earlier(const CaseField& repetitive, const DivePlanRequest& base);
 

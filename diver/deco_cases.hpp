@@ -73,7 +73,7 @@ struct ExpectedNdl {
 struct SecondOpinion {
   std::string program;
   std::string set;  // of conventions
-  // What the program gives of these.
+  // The values that the reference program printed; absent where it printed none.
   Expected stop_min, stops_and_ways_min, leave_last_min, run_min;
   Expected zone_m, cns_percent, otu;
   std::optional<TissueState> tissues;  // at the end of the bottom

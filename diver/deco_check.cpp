@@ -11,9 +11,9 @@
 namespace neritic::diver {
 namespace {
 
-// Of second opinions: their sets of conventions are near, not the same (integer mbar, REAL*4).
+// Tolerances of second opinions: their conventions are close, not equal (integer mbar, REAL*4).
 constexpr double kOpinionTissues_bar = 0.005, kOpinionZone_m = 0.2;
-// Numbers of files are rounded to so many digits.
+// Numbers in files are rounded; these tolerances cover the digits that the files keep.
 constexpr double kStop_min = 1e-3, kRunTime_min = 1e-3, kGf = 1e-6, kDepth_m = 1e-5,
                  kPo2_bar = 1e-4;
 
@@ -165,7 +165,7 @@ class DiveCheck {
       errors_.add("CNS", "%", plan.oxygen.cns_percent, e.cns_percent,
                   0.01 + (plan.max_po2_bar > 1.6 ? 0.01 : 0.0005) * *e.cns_percent);
     if (e.otu) errors_.add("OTU", "", plan.oxygen.otu, e.otu, 0.005 + 0.0005 * *e.otu);
-    // Which miss the pressure at which a gas is taken by half a step.
+    // Files, in steps of 1 s, miss the pressure at a gas change by up to half a step.
     const DecoConventions& c = one_.request.conventions;
     const double half_step_bar =
         0.5 / 60.0 * c.environment.bar_per_m * std::max(c.ascent_m_min, c.descent_m_min);

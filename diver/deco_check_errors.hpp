@@ -1,4 +1,4 @@
-// What a check of a case of decompression gathers. One thread.
+// The errors that the check of one decompression case gathers. One thread.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class DecoErrors {
            double tolerance) {
     if (expected) add(what, unit, found - *expected, tolerance);
   }
-  // What could not be planned at all.
+  // Records that nothing could be planned: an infinite error.
   void add_failure(const std::string& what) {
     add(what, "", std::numeric_limits<double>::infinity(), 1.0);
   }

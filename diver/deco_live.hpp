@@ -63,7 +63,7 @@ struct DiveComputerState {
 // conventions differ by in the gradient factor at a stop.
 inline constexpr double kCeilingSlack_m = 0.3;
 
-// Gases whose share of the way up is told: the first ones of the settings.
+// The number of gases whose share of the ascent is reported: the first ones of the settings.
 inline constexpr std::size_t kToldGases = 4;
 
 // The data of a computer's display. Above a ceiling the stops begin at or below it, not where the
@@ -94,11 +94,11 @@ class DiveComputer {
   // At the surface, never dived; or with these tissues.
   DiveComputerState start() const;
   DiveComputerState start(const TissueState& tissues) const;
-  // dt_s after the last sample; the depth changed linearly, and what the last sample breathes was
-  // breathed. Where that was nothing, no gas comes to the lungs or leaves them: tissues, CNS and
-  // OTU stay. A sample that is not finite or out of bounds (-10 to 2000 m, a gas that there is none
-  // of, breathed above 1, dt_s below 0 or endless) is refused and counted, and the last good sample
-  // held. Above the surface is at it.
+  // dt_s after the last sample; the depth changed linearly, and the diver breathed the last gas. If
+  // that was none, no gas enters or leaves the lungs: tissues, CNS and OTU stay as they are. A
+  // sample that is not finite or out of bounds (-10 to 2000 m, a gas that is not in the settings,
+  // breathed above 1, dt_s negative or infinite) is refused and counted, and the last good sample
+  // is used. A depth above the surface counts as 0.
   DiveComputerState step(const DiveComputerState& before, const DiveSample& sample,
                          double dt_s) const;
   // without: bits of gases whose tanks are empty or shut: the ascent does not switch to them.

@@ -93,7 +93,7 @@ Status check_request(const DivePlanRequest& request);
 // Errors as check_request's, or the depth at which a ceiling never clears. Levels are dived as they
 // are asked for, also above a ceiling: DivePlan::above_ceiling.
 Result<DivePlan> plan_dive(const DivePlanRequest& request);
-// The ascent of a diver who leaves for the surface at the end of the first so many levels.
+// The ascent of a diver who leaves for the surface after the first `levels` levels.
 Result<DivePlan> plan_dive(const DivePlanRequest& request, std::size_t levels);
 // That no level is above its ceiling: what a plan for a diver must keep.
 Status check_ceilings(const DivePlanRequest& request, const DivePlan& plan);

@@ -35,7 +35,7 @@ bool taken_off(const CaseField& field) {
   return field.present() && !field.is_object() && !field.is_array() && !field.boolean(false);
 }
 
-// In the file's unit, of which one is so many of ours; what is absent stays.
+// Reads a value in the file's unit; unit: one of it in SI. An absent field keeps the value.
 void read_bounded(const CaseField& field, double unit, const Bounds& in, double& value) {
   if (!field.present()) return;
   const auto said = [&](double si) { return std::round(si / unit * 1e6) / 1e6; };

@@ -20,7 +20,7 @@ struct FlutterKick {
   double lift_rad = 0.0;
   // How much wider the left leg beats than the right one, of the mean: steers to starboard.
   double left_more = 0.0;
-  // The left leg so much more to the belly's side, the right one less: rolls to starboard.
+  // Moves the left leg by this angle to the belly's side, the right one back: rolls to starboard.
   double twist_rad = 0.0;
 };
 

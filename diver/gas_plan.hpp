@@ -13,8 +13,8 @@ namespace neritic::diver {
 // Litres of ambient pressure that a diver breathes a minute (RMV, also called SAC): on the way down
 // and along the levels, and from the end of the last one on; the defaults are the planner's of
 // Subsurface 5. Minimum gas ("rock bottom") as S. Fuchs and R. Walsh put it (Subsurface, January
-// 2017): so many divers breathe so many times the first of these, for so long where the trouble
-// begins and then all the way up to the next gas.
+// 2017): `divers` divers breathe `stress` times bottom_l_min, for problem_min at depth and then all
+// the way up to the next gas.
 struct PlanBreathing {
   double bottom_l_min = 20.0, ascent_l_min = 17.0;
   double divers = 2.0, stress = 2.0, problem_min = 4.0;
@@ -60,7 +60,7 @@ Result<std::vector<PlanGasUse>> gas_use(const DivePlanRequest& request, const Di
 double segment_litres(const DivePlanRequest& request, const DivePlan& plan,
                       const PlanBreathing& breathing, const PlanSegment& segment, double from_min);
 
-// The pressure of a tank of a mix after so many litres; 0: all of it.
+// The pressure left in a tank after used_l litres, bar; 0: empty.
 double tank_bar(const GasMix& mix, const PlanTank& tank, double used_l);
 
 // Tanks that do not hold what the plan, or minimum gas, takes: one line a tank.

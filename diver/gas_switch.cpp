@@ -37,7 +37,7 @@ class Chooser {
   bool breathed(std::size_t i) const { return i == choice_.breathed; }
   double worth(std::size_t i) const { return breathed(i) ? kSpare_pa : kWorthSwitching_pa; }
 
-  // Down to a depth, with so much more than a full breath, and with oxygen enough.
+  // True down to a depth, if the tank has more_pa beyond a full breath, and enough oxygen.
   bool fits(std::size_t i, double down_to_m, double more_pa) const {
     const double shallow_m = std::min(choice_.depth_m, choice_.soon_m);
     const double deep_m = std::max(choice_.depth_m, choice_.soon_m);

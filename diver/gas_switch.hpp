@@ -40,11 +40,11 @@ inline constexpr double kLeastOxygen_bar = 0.18, kLeastOxygenAnew_bar = 0.20;
 inline constexpr double kMostOxygen_bar = 1.6;
 // Without an alternative the diver breathes down to this, or above kMostOxygen_bar.
 inline constexpr double kThinks_bar = 0.16;
-// A gas that is breathed is kept so much below its switch depth, and so much at most below the
-// depth of kMostOxygen_bar (1.65 bar of oxygen there): who hovers there does not change to and fro.
+// Hysteresis: the gas in use is kept down to kGasDepthSlack_m below its switch depth, but at most
+// kRichestSlack_m below the depth of kMostOxygen_bar (1.65 bar of oxygen there).
 inline constexpr double kGasDepthSlack_m = 1.0, kRichestSlack_m = 0.5;
-// A tank is left with so much more than a full breath takes, since the change takes its time; and
-// changed to by choice only with so much more that the way up does not make it one to go back to.
+// A tank is left when it has less than kSpare_pa beyond a full breath, since the change takes time.
+// It is chosen only with kWorthSwitching_pa beyond, so that the ascent forces no change back.
 inline constexpr double kSpare_pa = 5e5, kWorthSwitching_pa = 10e5;
 
 // Where a diver is who chooses, and where he will be when he has changed.
@@ -58,10 +58,10 @@ struct GasChoice {
 // the first is the bottom gas. Deco gas: where the diver was deeper than its depth at any time of
 // the dive and is not below it now, or makes stops, or breathes it and was deeper than now by
 // kGasDepthSlack_m; of several the one for the shallowest use, as plans have it. Else the bottom
-// gas. Where neither is fit to breathe or has gas, what is breathed, else the richest that is.
-// Never changed to: one with less than kLeastOxygen_bar or more than kMostOxygen_bar where the
-// diver is and soon will be, nor one without a full breath. But who gets no full breath and has no
-// such tank takes, of those that give one and have kThinks_bar, the one with the least oxygen.
+// gas. If neither is fit to breathe or has gas: the one in use, else the richest that is. Never
+// changed to: a gas outside kLeastOxygen_bar to kMostOxygen_bar at the diver's depth now or soon,
+// or one without a full breath. A diver without a full breath who has no such tank takes, of those
+// that give a breath and have kThinks_bar, the one with the least oxygen.
 std::size_t tank_to_breathe(std::span<const PlanGas> gases, const Body& body,
                             const TankState& tanks, const GasChoice& choice);
 

@@ -25,9 +25,9 @@ constexpr double kRounding = 1e-9;
 // No ECG is larger, in any unit; its square stays finite.
 constexpr double kMostEcg = 1e12;
 constexpr double kLeastInterval_s = 0.2, kMostInterval_s = 2.5;
-// A step so many times the usual of a second is no beat's (an extra beat is some three times as
-// steep as others) but an electrode's or a switch's, unless it stays so: a tenth of a QRS complex
-// is as long.
+// A step of kLeap times the usual one of a second comes from an electrode or a switch, not from a
+// beat (an extra beat is about three times as steep as others), unless it lasts longer than
+// kLongestLeap_s, a tenth of a QRS complex.
 constexpr double kLeap = 10.0, kLongestLeap_s = 0.008;
 // A second's step is the largest but for those of a few samples that leapt in and out, fewer than a
 // QRS complex has; what is usual falls by no more a second.

@@ -26,8 +26,8 @@ struct Beat {
 struct EcgCounts {
   std::uint64_t samples = 0;    // all, refused ones included
   std::uint64_t refused = 0;    // not finite, or leapt: the last good value was held
-  std::uint64_t leaps = 0;      // of these, so far off for so short that no heart made them
-  std::uint64_t gaps = 0;       // so many missing in a row that the signal was taken as lost
+  std::uint64_t leaps = 0;      // of these, spikes too steep and short to come from a heart
+  std::uint64_t gaps = 0;       // runs of missing samples long enough to count as signal loss
   std::uint64_t relearned = 0;  // times the levels were learnt anew, after seconds without a beat
 };
 

@@ -21,7 +21,7 @@ struct HumanInputs {
   Vec3 current_ned_m_s{0.0}, current_change_ned_m_s2{0.0}, water_acceleration_ned_m_s2{0.0};
   double other_power_w = 0.0;      // work beside what limbs do to the water
   double ventilation_l_min = 0.0;  // as measured; 0: by effort
-  double breath_bias_m3 = 0.0;     // around so much more air than at rest
+  double breath_bias_m3 = 0.0;     // mean lung volume less that at rest
   std::uint64_t hold_breath = 0;   // 1: held
   std::uint64_t buttons = 0;       // kInflate, kDeflate, kDump
   std::uint64_t tank = 0;          // that is breathed from

@@ -38,7 +38,7 @@ bool gas_at_dump(const Body& body, double moles, const ThoraxPlace& place);
 void step_jacket(const Body& body, double& moles, TankState& tanks, std::uint64_t buttons,
                  const ThoraxPlace& place, double dt_s);
 
-// Moles that fill so much of the bladder there; volume up to its capacity.
+// Moles of gas that fill this volume of the bladder there; volume up to its capacity.
 double jacket_moles(const Body& body, double volume_m3, const ThoraxPlace& place);
 
 }  // namespace neritic::diver

@@ -15,7 +15,7 @@ constexpr double kEquivalent = 25.0;
 constexpr double kMostVentilation_l_min = 110.0;
 // No breath is faster: peak flow through a regulator.
 constexpr double kMostFlow_m3_s = 8e-3;
-// A lung bears so much more than its whole volume in pressure (Schaefer et al. 1958: 80 mmHg).
+// Overpressure that a full lung bears (Schaefer et al. 1958: 80 mmHg).
 constexpr double kMostStretch_pa = 10.7e3;
 
 double gas_density(const GasMix& mix, double ambient_pa) {

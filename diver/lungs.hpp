@@ -55,7 +55,7 @@ double middle_of_quiet_breath(const Body& body);
 struct BreathInputs {
   double limb_power_w = 0.0;       // mean mechanical power just now
   double ventilation_l_min = 0.0;  // as measured; 0: follows from oxygen
-  double bias_m3 = 0.0;            // breathes around so much more (or less) than at rest
+  double bias_m3 = 0.0;            // mean lung volume less that at rest
   bool hold = false;
   std::size_t tank = 0;
 };

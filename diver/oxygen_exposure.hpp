@@ -9,9 +9,9 @@
 namespace neritic::diver {
 
 // Longest single exposure (NOAA Diving Manual, 4th ed. 2001, table 15-1: 720 min at 0.6 bar to 45
-// at 1.6; 900 at 0.5 by the same manual's slope), linear between. Infinite up to 0.5. Above 1.6
-// there is no limit to go by: it runs on to nothing at 1.7, never below a minute, as a warning and
-// no figure.
+// at 1.6; 900 at 0.5 by the same manual's slope), linear between. Infinite up to 0.5. No limit is
+// published above 1.6: the line falls on to zero at 1.7, but not below a minute, as a warning
+// rather than a figure.
 double cns_limit_min(double po2_bar);
 
 struct OxygenExposure {
@@ -35,8 +35,8 @@ OxygenExposure oxygen_exposure(double from_po2_bar, double to_po2_bar, double mi
 
 // The CNS share that remains after minutes without exposure: halves in 90 (Hamilton 1989).
 double cns_after(double cns_percent, double minutes);
-// With what is added meanwhile, so many minutes of it at the surface: there the share of CNS
-// declines, unless some is gained (on oxygen). Planner and dive computer count so.
+// Exposure after an addition, surface_min of which passed at the surface: there the CNS share
+// declines, unless some is added (on oxygen). Planner and dive computer both use it.
 OxygenExposure exposure_after(const OxygenExposure& before, const OxygenExposure& added,
                               double surface_min);
 

@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::size_t kMostCsvColumns = 64;
 constexpr double kMostTime_s = 1e12;
-// A step so much longer than usual is a gap, and more where steps scatter.
+// A step longer than kGapSteps usual steps and kGapDeviations deviations of the steps is a gap.
 constexpr double kGapSteps = 1.5, kGapDeviations = 6.0;
-// A stamp so much after its place is the next place's: a missing sample makes it one. More where
-// stamps jitter.
+// A stamp later than its place by more than kLateSteps steps and kLateDeviations deviations of the
+// jitter belongs to the next place: a sample is missing.
 constexpr double kLateSteps = 0.75, kLateDeviations = 4.0;
-// A stamp so much before the one before it jitters; more is a clock that went back.
+// A stamp up to this part of a step before its predecessor is jitter; more is a clock set back.
 constexpr double kBackSteps = 0.75;
 constexpr double kDeviationOfMedian = 1.4826;  // of a normal distribution
 // A few rows with a clock that leaps must not fill the memory with what is missing.

@@ -63,7 +63,7 @@ struct VitalState {
   }
 };
 
-// Beats a minute of a heart that pumps so much oxygen: the share of its reserve is that of the
+// Beats a minute at this oxygen uptake: the share of the heart's reserve is that of the
 // uptake's (Swain and Leutholtz 1997, Med. Sci. Sports Exerc. 29, 410), up to 208 - 0.7 age of a
 // person of 35 (Tanaka 2001, J. Am. Coll. Cardiol. 37, 153), from 65 at rest.
 double effort_heart_bpm(double oxygen_l_min);

@@ -46,7 +46,7 @@ struct NoiseSource {
 };
 
 // The number of the last sample due in (from_s, to_s] of a sensor that samples at 0, 1 / rate, ...;
-// nothing where none is. Where several are, those before the last are dropped.
+// nothing if none is due. If several are due, those before the last are dropped.
 std::optional<std::uint64_t> sample_due(double rate_hz, double from_s, double to_s);
 
 }  // namespace neritic::rov

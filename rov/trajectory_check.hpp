@@ -9,7 +9,7 @@
 
 namespace neritic::rov {
 
-// What the recommended integrator holds at 240 Hz.
+// Errors that the recommended integrator stays below at 240 Hz.
 inline constexpr double kPositionBar = 1e-6;  // m
 inline constexpr double kAttitudeBar = 1e-6;  // of a quaternion's components, up to its sign
 inline constexpr double kVelocityBar = 1e-5;  // m/s, rad/s

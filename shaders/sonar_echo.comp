@@ -154,8 +154,8 @@ struct GhostPath {
 
 // And what it adds, the mean of both ways round. The beam's solid angle covers a patch of area range^2 / cos(in),
 // which Lambert's law sends on with cos(in) cos(out), so cos(out) alone is left. Each leg passes the pattern once.
-// What the mirror shows is free on the way from the mirror; whether the ways from the sonar to the mirror and to the
-// point are, the sonar's own view tells.
+// A point that the mirror's view shows has a free path from the mirror. The sonar's own view tells whether the paths
+// from the sonar to the mirror and to the point are free.
 GhostPath ghost_path(vec3 direction, uint row, BeamHit hit, out float power) {
   GhostPath none = GhostPath(0.0, 0.0, vec3(0.0), vec3(0.0));
   power = 0.0;
@@ -288,7 +288,7 @@ void share_out(uint column, RowEcho e) {
 
 uint end_of(float range_m) { return uint(clamp(bin_at(range_m), 0.0, float(kSonarFarthestEnd - 1))); }
 
-// A beam that ended on something is told where, heard or not, so that shadows are known.
+// A beam that hit a surface records where, even if its echo is too weak to count, so that shadows are known.
 void tell(uint column, uint row, RowEcho e, bool heard, uint label) {
   SonarRecord record = SonarRecord(kSonarNoReturn, 0, label, 0);
   if (e.range_m > 0.0) {

@@ -25,7 +25,7 @@ double pulse_envelope(PulseShape shape, double offset_m, double resolution_m);
 // The pulse's energy from -infinity to offset_m over its whole energy, 0 to 1.
 double pulse_energy_below(PulseShape shape, double offset_m, double resolution_m);
 
-// What a point in the middle of one range bin gives to the bins around it.
+// The shares of its power that a point in the middle of a range bin gives to the bins around it.
 struct RangeSpread {
   std::uint32_t reach = 0;     // bins to either side: 2 reach + 1 taps, the middle one its own bin
   std::vector<double> energy;  // shares of its energy, summing to 1

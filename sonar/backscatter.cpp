@@ -11,7 +11,7 @@ namespace neritic::sonar {
 namespace {
 
 constexpr std::uint16_t kSeabedClass = 1;  // scene::kClasses
-// What the bottoms of Lambert's -27 dB are taken to be made of.
+// The material assumed for bottoms with Lambert's -27 dB.
 constexpr std::string_view kLambertMaterial = "sand";
 
 template <class Value>

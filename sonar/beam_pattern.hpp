@@ -1,5 +1,5 @@
-// What a transducer hears from an angle off its axis: one-way amplitude, 1 on the axis, negative
-// in side lobes of opposite phase. One plane at a time: azimuth and elevation of a line array or a
+// Beam patterns: one-way amplitude at an angle off a transducer's axis, 1 on the axis, negative in
+// side lobes of opposite phase. One plane at a time: azimuth and elevation of a line array or a
 // rectangle multiply. Pure functions in double; any thread.
 //
 // Exact sine law: u = L / lambda * sin(theta). All but the table are

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint16_t kSeabed = scene::kClasses[0].id;
 
-// What an annotation says of one object, gathered in a walk down the columns.
+// The annotation of one object, gathered in a walk down the columns.
 struct Mask {
   std::uint32_t left = ~0u, top = ~0u, right = 0, bottom = 0;  // inclusive
   std::uint64_t area = 0;
@@ -166,7 +166,7 @@ void CocoFile::add(const std::string& file_name, const LabelImage& labels) {
          {"image_id", image_id},
          {"category_id", class_id},
          {"instance", class_id == kShadow ? 0 : part},
-         // Of many things, or all about: the box tells nothing.
+         // Several objects, or a surface all around: the box has no meaning.
          {"iscrowd", part == 0 || class_id == kSeabed ? 1 : 0},
          {"area", mask.area},
          {"bbox", {mask.left, mask.top, mask.right - mask.left + 1, mask.bottom - mask.top + 1}},

@@ -33,10 +33,10 @@ class CocoFile {
                     RangeAxis range = RangeAxis::kDown);
 
   // One annotation for each (class, instance) in the image whose class has a name, in that order.
-  // Of shadow one for each connected part (by sides and corners) of at least kLeastShadow bins,
-  // with the annotation of what casts it as "cast_by": the instance that most of its beams show
-  // next nearer, where one is; smaller parts are a crowd together. Instance 0 and the seabed are
-  // crowds.
+  // Shadow gets one for each connected part (by sides and corners) of at least kLeastShadow bins,
+  // with the annotation of the object that casts it as "cast_by": the instance next nearer in most
+  // of its beams, if there is one; smaller parts together are a crowd. Instance 0 and the seabed
+  // are crowds.
   // file_name: of the picture that the labels belong to, n_beams wide and n_range high.
   static constexpr std::size_t kLeastShadow = 8;
   void add(const std::string& file_name, const LabelImage& labels);

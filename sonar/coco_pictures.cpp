@@ -38,7 +38,7 @@ Status CocoPictures::add(const std::string& name, const SonarImage& image) {
   const std::vector<std::uint16_t> counts = quantize(image.intensity, shown_);
   for (std::size_t i = 0; i < counts.size(); ++i)
     out.data[i] = static_cast<std::uint8_t>(counts[i]);
-  // What is silent is black on any scale.
+  // A silent picture is black on any scale.
   drawn_[name] = most > 0.0f ? white_ : std::numeric_limits<std::int64_t>::max();
   NERITIC_TRY_STATUS(make_folder((folder_ / name).parent_path()));
   return scene::write_png8(folder_ / name, out);

@@ -15,8 +15,8 @@ namespace neritic::sonar {
 
 // Where the output is named, a grey is its count of 8 bits (quantize). Else the strongest bin of
 // the whole run is white (rounded up to a whole count) and black lies 76.5 dB below it (powers: 0.3
-// dB a count) or 38.25 dB (mean cosines, re 1: 0.15 dB). What comes later and louder moves the
-// scale, so finish() draws earlier pictures anew: their counts only fall, by whole ones.
+// dB a count) or 38.25 dB (mean cosines, re 1: 0.15 dB). A louder picture later moves the scale,
+// so finish() draws earlier pictures anew: their counts only fall, by whole counts.
 class CocoPictures {
  public:
   // folder: which names are given from. level: the images are powers, 1 being 1 uPa^2.

@@ -17,9 +17,9 @@ namespace neritic::sonar {
 // Mean power of the noise in each range row as it leaves the receiver; empty where none is named.
 std::vector<float> noise_by_row(const Ping& ping);
 
-// What a range row must exceed to be a return: the detection's floor_db above the noise's mean, or
-// what noise alone (its power is exponentially distributed) reaches but once in ten million bins: a
-// constant false alarm rate, whatever the gain does with range. Empty without noise.
+// The power that a return must exceed in each range row: the detection's floor_db above the noise's
+// mean, or the level that noise alone (exponentially distributed) exceeds in one of ten million
+// bins: a constant false alarm rate at any gain. Empty without noise.
 std::vector<float> detection_floor(const scene::SonarDetection& detection,
                                    std::span<const float> noise_by_row);
 

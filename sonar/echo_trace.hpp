@@ -1,4 +1,4 @@
-// What an echo sounder heard over a track: one range profile a ping, the first and the strongest
+// The record of an echo sounder over a track: one range profile a ping, the first and the strongest
 // return, and the range-time picture. Intensities are linear. One owner, one thread.
 #pragma once
 
@@ -36,7 +36,7 @@ struct EchoPing {
   double first_m = 0.0;      // where the first return begins
   double strongest_m = 0.0;  // where the return that has the strongest bin begins
 
-  // Of a bottom under a sonar that looks straight down.
+  // Depth of the bottom below the surface, m, for a sonar that looks straight down.
   double first_depth_m() const { return sonar_depth_m + first_m; }
   double strongest_depth_m() const { return sonar_depth_m + strongest_m; }
 };
@@ -54,14 +54,14 @@ class EchoTrace {
   // Options must be valid (CHECKed).
   explicit EchoTrace(const EchoTraceOptions& options);
 
-  // One ping's intensity [n_range] (CHECKed), at a time and depth (-y) of the sonar. What is not
-  // finite or negative counts as silence.
+  // One ping's intensity [n_range] (CHECKed), at a time and depth (-y) of the sonar. Values that
+  // are negative or not finite count as silence.
   void append(std::span<const float> intensity, double time_s, double sonar_depth_m);
 
   const EchoTraceOptions& options() const { return options_; }
   const std::vector<EchoPing>& pings() const { return pings_; }
   std::span<const float> intensity() const { return intensity_; }  // [pings][n_range]
-  // Of the first return's range over time: slope in m/s, negative where the sonar comes down.
+  // Line through the first return's range over time: slope in m/s, negative if the sonar descends.
   std::optional<LineFit> first_return_slope() const;
 
  private:

@@ -113,8 +113,8 @@ class BeamBlock {
       add_to_chain(first, key, counts);
   }
 
-  // What part of a beam something nearer hides a bin from; 0: too little for a shadow. columns:
-  // that have a jump about it. ended: of its rays, nearer.
+  // The part of a beam for which a nearer surface hides the bin; 0: too little for a shadow.
+  // columns: those with a range jump about the bin. ended: the beam's rays that hit nearer.
   float hidden_part(std::uint32_t beam, std::uint32_t row, std::int32_t columns,
                     std::uint64_t ended) const {
     const float of_columns = static_cast<float>(columns) / static_cast<float>(samples_);

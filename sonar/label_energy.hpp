@@ -14,10 +14,10 @@ inline constexpr std::uint16_t kWater = 0;
 inline constexpr std::uint16_t kGhost = 65533;   // a return that came by way of a mirror
 inline constexpr std::uint16_t kShadow = 65534;  // hidden by something nearer, and silent
 
-// What one ray brought. bin: the range row that its energy is in; kNoReturn where it hit nothing,
-// kShared where its energy is shared evenly over the rows nearest to farthest; any other beyond the
-// image's last is a surface farther off, which does not sound here. nearest, farthest: the rows
-// that the ray's height spans on its surface, whether it sounds or not.
+// The echo of one ray. bin: the range row of its energy; kNoReturn if it hit nothing, kShared if
+// its energy is shared evenly over the rows nearest to farthest; any other beyond the image's last
+// row is a surface out of range, which gives no energy. nearest, farthest: the rows that the ray's
+// height spans on its surface, with or without energy.
 inline constexpr std::uint32_t kNoReturn = 0xffffffff, kShared = 0xfffffffe;
 struct EnergyRecord {
   std::uint32_t bin;
@@ -33,8 +33,8 @@ struct LabelImage {
   // [n_range][n_beams], row 0 nearest, column 0 full port.
   std::vector<std::uint16_t> classes;
   std::vector<std::uint16_t> instances;
-  // Of the bin's energy, above 0 to 1; in shadow the part of the beam's columns, or of its rays,
-  // that is hidden; 0 in water.
+  // Part of the bin's energy, above 0 to 1; in shadow the part of the beam's columns, or of its
+  // rays, that is hidden; 0 in water.
   std::vector<float> fraction;
 };
 

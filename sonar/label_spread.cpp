@@ -148,7 +148,7 @@ class Spreader {
     for (std::uint32_t row = t.from; row < t.upto; ++row) to.energy[row] += weight * t.energy[row];
   }
 
-  // Bearings turn while the echo comes back: a row's columns are so many on, and between two.
+  // Bearings turn while the echo returns: a row's columns are shifted, in general by a fraction.
   void add_turned(int beam, int k, const LabelTrace& t) {
     LabelTraces& to = beams_[static_cast<std::size_t>(beam)];
     for (std::uint32_t row = t.from; row < t.upto; ++row) {

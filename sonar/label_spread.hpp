@@ -10,7 +10,7 @@
 
 namespace neritic::sonar {
 
-// Of powers; weights[k] weighs what lies first + k away. Empty: each value stays where it is.
+// A kernel of powers: weights[k] is for the value at distance first + k. Empty: no spread.
 struct PowerTaps {
   int first = 0;
   std::vector<float> weights;  // [kernels][size]: beam b's is the b-th, or the last
@@ -28,8 +28,8 @@ struct LabelSpread {
          shift = 0.0;  // columns that bearings turn until row 0, and from row to row
 };
 
-// What lies so far under a kernel's peak (30 dB) fills no bin: a bin in a bright thing's far side
-// lobes stays water or shadow.
+// Taps 30 dB or more below a kernel's peak fill no bin: a bin in the far side lobes of a bright
+// object stays water or shadow.
 inline constexpr float kLeastPart = 1e-3f;
 
 // records: [rows][n_columns], of the direct rays and each mirror's. labels: what

@@ -26,7 +26,7 @@ struct MapFile {
   std::size_t pixels() const { return std::size_t{width} * height; }
 };
 
-// Of a PNG with a palette the numbers are its indices, as masks of classes are kept.
+// The numbers of a PNG with a palette are its indices, as files of class masks use them.
 enum class MapUse { kNumbers, kColors };
 
 // kBadInput with the path, what was found and what is accepted.

@@ -22,8 +22,8 @@ constexpr double kMaxMosaicCells = 1 << 26;
 struct Turn {
   double from_rad, to_rad;
 };
-// What the head swept, beams included, its middle within half a turn of ahead; at most a full turn,
-// which begins so that the first heading is a beam's middle.
+// The sector that the head swept, beams included, its middle within half a turn of ahead; at most a
+// full turn, which begins so that the first heading is a beam's middle.
 Turn swept(const MechanicalScan& scan) {
   const auto& steps = scan.steps();
   if (steps.empty()) return {-kPi, kPi};
@@ -63,7 +63,7 @@ struct Box {
     high = glm::max(high, p);
   }
 };
-// Of all that the beam paints: its edges, and the arc's extremes where it holds a quarter's axis.
+// Bounds of the area that a beam paints: its edges, and the arc's extremes if it crosses an axis.
 Box box_of(const PlanBeam& beam, const MechanicalScanOptions& o) {
   Box box;
   const auto at = [&](double bearing, double range_m) {

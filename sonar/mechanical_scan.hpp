@@ -42,8 +42,8 @@ class MechanicalScan {
   // Options must be valid (CHECKed).
   explicit MechanicalScan(const MechanicalScanOptions& options);
 
-  // One step's intensity [n_range], nearest first (CHECKed). What is not finite or negative counts
-  // as silence.
+  // One step's intensity [n_range], nearest first (CHECKed). Values that are negative or not finite
+  // count as silence.
   void append(std::span<const float> intensity, const ScanStep& step);
 
   const MechanicalScanOptions& options() const { return options_; }

@@ -2,8 +2,8 @@
 //
 // A frame's name is its file's path, without folder parts, prefix and suffix that all files of its
 // group share, and without its extension: depth_0001.png and normal_0001.exr, 0001_depth.npy and
-// 0001_normals.npy, or frame_0001/camera/depth.npy and .../normals.npy are all frame 0001. What is
-// shared ends at a separator (/ _ - . or a space) or between a letter and a digit, so that no
+// 0001_normals.npy, or frame_0001/camera/depth.npy and .../normals.npy are all frame 0001. A shared
+// part ends at a separator (/ _ - . or a space) or between a letter and a digit, so that no
 // number is cut in two: depth_0010 and depth_0011 are 0010 and 0011. A group of one file is named
 // by the longest run of digits in its stem, or all of it. Where a group has files of the same stems
 // as the leading group, these count. Any thread.
@@ -22,8 +22,8 @@ namespace neritic::sonar {
 // [...]) in it that is not itself the name of a file.
 bool names_many(const std::string& pattern);
 
-// Sorted by name. Of a folder (not those below it) the files that end so ("png", without the dot,
-// any case) and are not hidden, of a pattern all that match. kBadInput where there is none.
+// Files sorted by name: from a folder (not those below it) the visible files with this ending
+// ("png", any case, no dot), or all that match a pattern. kBadInput if there is none.
 Result<std::vector<std::filesystem::path>> list_files(const std::string& pattern,
                                                       std::span<const char* const> extensions);
 

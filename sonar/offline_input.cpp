@@ -99,7 +99,7 @@ Vec3 to_sonar_axes(const Vec3& n, NormalAxes axes) {
   return n;
 }
 
-// What each code of a channel stands for; empty where the map holds numbers.
+// The value of each code of a channel; empty if the map holds numbers.
 std::vector<double> decode_table(MapFile::Coding coding, double gamma) {
   if (coding == MapFile::Coding::kNumbers) return {};
   std::vector<double> table(coding == MapFile::Coding::kCoded8 ? 256 : 65536);

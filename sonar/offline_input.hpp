@@ -27,8 +27,8 @@ struct OfflineOptions {
 // Where the normals came from.
 enum class NormalSource { kFile, kDepth };
 
-// normals absent: estimated from the depth. Sizes must match. Of an EXR with many channels the
-// depth is Z (depth, V, Y) and the normal X, Y, Z or R, G, B, in whatever layer. kBadInput too
+// normals absent: estimated from the depth. Sizes must match. In an EXR with many channels depth is
+// Z (or depth, V, Y) and the normal X, Y, Z or R, G, B, in whatever layer. kBadInput too
 // where depth or labels have several channels that differ: a picture or normals, given in their
 // place.
 Result<SonarInput> make_input(const MapFile& depth, const MapFile* normals, const MapFile* labels,

@@ -28,7 +28,7 @@ double receiver_gain(const scene::Sonar& sonar, double r, double absorption_db_p
   return std::min(power_from_db(db), kLargestPower / std::max(largest, 1.0));
 }
 
-// A cell of scatterers is no smaller than so many bins, columns and rows: what moves on by a part
+// A cell of scatterers has at least this size in bins, columns and rows: what moves on by a part
 // of one stays in its cell, mostly, and a row misses none.
 constexpr double kCellBins = 4.0, kCellColumns = 4.0, kCellRows = 2.0;
 

@@ -1,5 +1,5 @@
-// What one ping of a head needs besides its head: where the sonar is, how it moves, and the numbers
-// that follow from that for the passes. Pure functions of plain values; any thread.
+// The state of one ping: the sonar's pose and velocity, and the numbers that the passes need and
+// that follow from them. Pure functions of plain values; any thread.
 #pragma once
 
 #include <vector>
@@ -46,7 +46,7 @@ struct Ping {
   std::vector<glm::vec2> gains;
   float noise_power = 0.0f, shift_columns_per_row = 0.0f, first_shift_columns = 0.0f;
   std::uint32_t seed = 0, ping = 0;
-  // What the receiver takes of it; gains must live until the run.
+  // The receiver's part of the ping; gains must live until the run.
   Receiver::Ping receiver() const {
     return {gains, noise_power, seed, ping, first_shift_columns, shift_columns_per_row};
   }

@@ -47,7 +47,7 @@ bool rows_are_counts(SonarKind kind) {
   return kind == SonarKind::kProfiling || kind == SonarKind::kEchoSounder;
 }
 
-// What two echoes must be apart to be told apart: the pulse's, or a bin where none is named.
+// Range resolution, m: the pulse's, or one bin if the sonar names no pulse.
 double range_cell_m(const scene::Sonar& s) {
   const auto& spread = s.terms.range_spread;
   if (!spread) return (s.range_max_m - s.range_min_m) / s.bins_range;

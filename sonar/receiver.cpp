@@ -40,7 +40,7 @@ Result<gpu::Image> taps_image(gpu::Device& device, const char* name, const Taps&
   return image;
 }
 
-// Of the taps with themselves, one on: 1 where they change slowly, 0 of a single one.
+// Autocorrelation of the taps at a lag of one: near 1 if they change slowly, 0 for a single tap.
 float correlation_a_step_on(const Taps& taps) {
   double own = 0.0, next = 0.0;
   for (std::size_t i = 0; i < taps.weights.size(); ++i) {

@@ -11,8 +11,8 @@
 
 namespace neritic::sonar {
 
-// A kernel: weights[k] weighs what lies first + k away. Of kernels, one a beam, beam b's is the
-// b-th of their rows.
+// A kernel: weights[k] is for the value at distance first + k. If each beam has a kernel, row b is
+// beam b's.
 struct Taps {
   int first = 0;
   std::vector<float> weights;  // [kernels][size]; empty: none, each value stays where it is

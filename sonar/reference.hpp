@@ -1,7 +1,7 @@
 // The published algorithm on the CPU, literally, in double precision: every pixel of depth and
 // normal images is projected into the volume I(r, theta, phi), the last pixel of a cell in
-// row-major order wins, and the sum over elevation is divided by n_phi. What the GPU gathers are
-// measured against. Source: UnRealTHASC (2024), section IV.A, eq. 2 to 5 and Algorithm 1. Pure
+// row-major order wins, and the sum over elevation is divided by n_phi. GPU gathers are compared
+// with it. Source: UnRealTHASC (2024), section IV.A, eq. 2 to 5 and Algorithm 1. Pure
 // functions; any thread.
 #pragma once
 

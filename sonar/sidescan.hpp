@@ -48,7 +48,7 @@ class SidescanRecord {
   explicit SidescanRecord(const SidescanOptions& options);
 
   // One ping: intensities [n_range] of each side, nearest first (CHECKed), and the pose of the
-  // sonar's body (x starboard, z backwards). What is not finite or negative counts as silence.
+  // sonar's body (x starboard, z backwards). Negative or not finite values count as silence.
   void append(std::span<const float> port, std::span<const float> starboard,
               const Pose& world_from_sonar, double time_s);
 
@@ -72,8 +72,8 @@ class SidescanRecord {
 };
 
 // [pings][2 * n_ground]: bins of equal width over a flat bottom, from the track outwards to
-// ground_max_m: g = sqrt(r^2 - h^2). What a slant bin heard is shared among the ground bins that
-// it covers in proportion to the part of its range that maps to each: no energy is gained or lost
+// ground_max_m: g = sqrt(r^2 - h^2). A slant bin's energy is shared among the ground bins that it
+// covers in proportion to the part of its range that maps to each: no energy is gained or lost
 // but what lies in the water column or beyond. A side without a first return takes the other's; a
 // ping without either is NaN.
 struct GroundImage {

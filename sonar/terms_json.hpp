@@ -15,8 +15,8 @@ nlohmann::json terms_json(const scene::SonarTerms& terms);
 // All of it but name, mount and track.
 nlohmann::json sensor_json(const scene::Sonar& sonar);
 
-// What a sonar is sampled by: the level, its measured error, the max_error that asked for it (0:
-// its name did).
+// The sampling of a sonar: the level, its measured error, and the max_error that asked for it (0:
+// the scene named the level).
 nlohmann::json quality_json(const QualityLevel& level, double max_error);
 
 }  // namespace neritic::sonar

@@ -16,15 +16,15 @@ namespace neritic::sonar {
 // The bottom's depth in metres at x, z of the world; NaN where there is none.
 using TrueDepth = std::function<double(double x_m, double z_m)>;
 
-// Of a heightfield's mesh (scene::make_terrain: the same triangles, not bilinear patches), whose
-// model frame has its origin at position_m and the world's axes.
+// Depth of a heightfield's mesh (scene::make_terrain: the same triangles, not bilinear patches),
+// whose model frame has its origin at position_m and the world's axes.
 TrueDepth true_depth(std::shared_ptr<const scene::Heightfield> field, const Vec3& position_m);
 
 struct TerrainError {
   std::size_t count = 0;  // of what was compared; with 0 the numbers are NaN
   double rms_m = 0, mean_m = 0, p95_m = 0, max_m = 0;  // p95, max of the absolute error
-  // Of a grid: the part of its cells that were sounded, among those that have a true depth at their
-  // centre. 1 for points.
+  // For a grid, the sounded part of the cells that have a true depth at their centre. 1 for
+  // points.
   double coverage = 1.0;
 };
 

@@ -33,7 +33,7 @@ PanelOptions panel_options(scene::SonarKind kind, bool level, const scene::Sonar
 // The picture: polar, or for a single beam the echo over range.
 ImageU8 draw_sonar(const SonarFiles& files);
 
-// What write_sonar may leave in a folder, the .json first.
+// The files that write_sonar may write into a folder, the .json first.
 inline constexpr const char* kSonarFiles[] = {"sonar.json",
                                               "sonar.npy",
                                               "sonar_labels.npy",
@@ -47,7 +47,7 @@ inline constexpr const char* kSonarFiles[] = {"sonar.json",
 // first, so that none ever describes other arrays, however far the removing comes.
 Status remove_earlier_sonar(const std::filesystem::path& folder);
 // The size in bytes of each of them that is there beside the .json, by name: what the .json says
-// under "bytes", so that a cut or missing file is told.
+// under "bytes", so that a truncated or missing file is detected.
 nlohmann::json sonar_file_sizes(const std::filesystem::path& folder);
 
 // facts: what else sonar.json shall say (options, device, timings); limits, bins and units are

@@ -13,7 +13,7 @@ int failed(const neritic::Error& error) {
   return neritic::exit_status(error.code);
 }
 
-// What was printed counts as done only once it has left.
+// Output counts as printed only once it is flushed: a full disk or a closed pipe is an error.
 int flushed(int status) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
   std::fprintf(stderr, "neritic: standard output cannot be written\n");

@@ -1,6 +1,6 @@
 // Drawing on an RGB picture with smooth edges: lines, arcs, polygons and text, for panels, sheets
 // and instruments. Pixel coordinates, y down, the first pixel's centre at (0.5, 0.5); angles are
-// bearings, clockwise from up, in radians. What lies outside the picture is clipped. The same
+// bearings, clockwise from up, in radians. Shapes are clipped at the picture's edges. The same
 // calls give the same bytes. One owner, one thread.
 #pragma once
 

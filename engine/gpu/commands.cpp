@@ -1,4 +1,4 @@
-// What one frame's recording can do; Frames holds what is behind it. Rendering thread.
+// The commands that one frame can record; Frames owns the objects behind them. Rendering thread.
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/frames.hpp"
 

@@ -66,7 +66,7 @@ struct DeviceInfo {
   Quirks quirks;                     // what the engine goes round
 };
 
-// What validation said. A test fails on any message.
+// The messages of Vulkan validation. A test fails on any message.
 struct ValidationLog {
   std::vector<std::string> messages;
 };

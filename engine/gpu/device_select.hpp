@@ -1,4 +1,4 @@
-// Which of the devices to run on: a pure function on plain data, tested without a GPU. Any thread.
+// Chooses the device to run on: a pure function on plain data, tested without a GPU. Any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the engine needs to know about the formats it uses. Any thread.
+// Texel sizes and kinds of the image formats that the engine uses. Any thread.
 #include "engine/core/check.hpp"
 #include "engine/gpu/resources.hpp"
 

@@ -3,7 +3,7 @@
 //
 // Both ends of a region are written when all work before them is complete (ALL_COMMANDS), so that
 // regions follow one another without overlap. Regions begin and end outside vkCmdBeginRendering.
-// What lavapipe's values mean: see frame_timer.cpp.
+// frame_timer.cpp says what lavapipe's values mean.
 #pragma once
 
 #include <volk.h>

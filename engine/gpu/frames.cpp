@@ -18,7 +18,7 @@ namespace {
 
 constexpr VkDeviceSize kSmallestUpload = 16;  // bytes: empty data can still be bound
 
-// What one frame in flight owns.
+// The objects that one frame in flight owns.
 struct Slot {
   Slot(const Device& gpu, std::uint32_t index)
       : device(gpu.handle()),

@@ -12,7 +12,7 @@ struct ImageRange {
   std::uint32_t mip = 0, mips = kAllOfThem;      // first, count
   std::uint32_t layer = 0, layers = kAllOfThem;  // first, count
 
-  // With the counts of an image that has so many mips and layers instead of kAllOfThem.
+  // Replaces kAllOfThem by the counts of an image with these mips and layers.
   constexpr ImageRange within(std::uint32_t all_mips, std::uint32_t all_layers) const {
     return {mip, mips == kAllOfThem ? all_mips - std::min(mip, all_mips) : mips, layer,
             layers == kAllOfThem ? all_layers - std::min(layer, all_layers) : layers};

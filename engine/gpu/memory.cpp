@@ -13,10 +13,10 @@ namespace neritic::gpu {
 namespace {
 
 constexpr VkDeviceSize kBlockBytes = VkDeviceSize{64} << 20;
-// Of a small heap (a 256 MiB window into a graphics card) one block takes no more than this part.
+// One block takes at most 1 / kHeapParts of a small heap (a 256 MiB window into a graphics card).
 constexpr VkDeviceSize kHeapParts = 8;
 
-// What each use must have, would like, and would rather not have.
+// Memory properties that a use must have, would like, and would rather avoid.
 struct Wish {
   VkMemoryPropertyFlags must, like, avoid;
 };

@@ -130,7 +130,7 @@ class DescriptorArena {
   std::size_t current_ = 0;
 };
 
-// What one binding is bound to. The elements of a binding with count > 1 are given one by one, in
+// The resource of one binding. The elements of a binding with count > 1 are given one by one, in
 // order.
 struct BoundResource {
   std::uint32_t binding = 0;

@@ -1,5 +1,5 @@
-// What drivers are known to do wrong, so that the engine goes round it. Decided by driver and
-// version, shown by `doctor`, overridden by tests (DeviceOptions::quirks). Pure; any thread.
+// Known faults of drivers that the engine works around. Decided by the driver's name and version,
+// shown by `doctor`, overridden by tests (DeviceOptions::quirks). Pure; any thread.
 #pragma once
 
 #include <volk.h>

@@ -99,7 +99,7 @@ class Image {
   Allocation allocation_;
 };
 
-// What vkCreateImage / vkCreateBuffer would need, without making one (for planning aliased memory).
+// Memory that vkCreateImage / vkCreateBuffer would need; creates nothing (to plan aliased memory).
 VkMemoryRequirements image_requirements(const Device& device, const ImageDesc& desc);
 VkMemoryRequirements buffer_requirements(const Device& device, const BufferDesc& desc);
 

@@ -97,7 +97,7 @@ bool only_as_output(Access access) {
 bool subsumes(Access write, Access read) {
   if (write == Access::kDepthAttachment && read == Access::kDepthTest) return true;
   const AccessInfo &w = access_info(write), &r = access_info(read);
-  // What only buffers can be used for has no layout.
+  // Accesses that only buffers can have have no layout.
   const bool one_layout = w.layout == r.layout || w.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
                           r.layout == VK_IMAGE_LAYOUT_UNDEFINED;
   return w.write && one_layout && (r.stages & ~w.stages) == 0 && (r.access & ~w.access) == 0;

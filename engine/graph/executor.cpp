@@ -1,6 +1,6 @@
 // Executor: caches plans by declaration, gives the graphs in use real memory, records passes and
-// barriers. What earlier runs left pending (past.hpp) decides what the first uses of a run wait
-// for. Rendering thread.
+// barriers. The first uses of a run wait for the accesses that earlier runs left pending
+// (past.hpp). Rendering thread.
 #include <algorithm>
 #include <utility>
 
@@ -177,8 +177,8 @@ struct Executor::Impl {
     }
   }
 
-  // What the past says must be what the GPU will have done: a recording that was dropped has to be
-  // taken back.
+  // The past must describe what the GPU will have executed: if a recording was dropped, its changes
+  // to the past are undone.
   void check_past(VkCommandBuffer cmd) {
     const bool dropped =
         recording != 0 && !frames.was_submitted(recording) && frames.recording() != recording;

@@ -163,7 +163,7 @@ class FrameGraph {
   PassBuilder begin_pass(const std::string& name);
   std::uint32_t add_resource(ResourceDecl&& resource, const gpu::Image* image,
                              const gpu::Buffer* buffer);
-  // What a handle names here; a CHECK where it is another graph's.
+  // The use of a handle's resource; CHECKs that the handle belongs to this graph.
   template <class Handle>
   Use use_of(const Handle& handle, Access access, const std::string& who) const;
   std::uint64_t id_;  // no other graph of the program has it

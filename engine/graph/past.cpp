@@ -1,6 +1,6 @@
-// See past.hpp. A run waits only for what touched the same bytes: the object itself, or whatever
-// lay where its transient lies. What is waited for once need not be waited for again: later uses
-// chain to the first (barriers.cpp).
+// See past.hpp. A run waits only for accesses to the same bytes: those of the object itself, or of
+// the resources that its transient's memory had before. One wait is enough: later uses chain to the
+// first (barriers.cpp).
 #include "engine/graph/past.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace neritic::graph {
 namespace {
 
-// What the caller of import says is pending, and what earlier runs left.
+// The accesses that are pending: those that import's caller named and those that earlier runs left.
 Epoch initial_epoch(const ResourceDecl& resource, const Epoch& left) {
   Epoch epoch = left;
   epoch.stages |= resource.initial_stages;

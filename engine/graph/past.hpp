@@ -25,7 +25,7 @@ class Past {
     Epoch use;            // its last
     bool settled = true;  // no write since all could see the contents
   };
-  // Of an object: mips outer, layers inner. Empty: never used.
+  // One entry per subresource of an object: mips outer, layers inner. Empty: never used.
   using State = std::vector<Left>;
   const State& object(std::uint64_t id) const;
   void set_object(std::uint64_t id, State state);

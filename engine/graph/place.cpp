@@ -21,7 +21,7 @@ struct Range {
   std::uint64_t begin, end;
 };
 
-// What is to be placed; block: 0, or what it must not cross multiples of.
+// A piece of memory to place. It must not cross a multiple of block; 0: no such limit.
 struct Piece {
   std::uint64_t size, alignment, block;
 };

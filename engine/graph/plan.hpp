@@ -65,7 +65,7 @@ inline constexpr VkAccessFlags2 kWriteAccess =
     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
     VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
-// The mips and layers of an image that a use touches; everything by default. Of a buffer: all.
+// The mips and layers of an image that a use touches; all by default, and always of a buffer.
 using gpu::ImageRange;
 
 struct ResourceDecl {
@@ -141,8 +141,8 @@ std::vector<Lifetime> lifetimes(const GraphDecl& graph, std::span<const std::uin
 struct MemoryNeed {
   std::uint64_t size = 0, alignment = 1;
   std::uint32_t memory_class = 0;  // only resources of one class may share memory (type bits, kind)
-  // What the device gives in one piece of the class, a multiple of every alignment: the class's
-  // heap is made of blocks of so many bytes, the last as long as it must be. 0: one block.
+  // The largest allocation of this class that the device allows, a multiple of every alignment. The
+  // class's heap consists of blocks of this size, the last as long as needed. 0: one block.
   std::uint64_t block_bytes = 0;
 };
 // Where each transient resource lies in its class's heap. Two whose lifetimes overlap never overlap
@@ -174,15 +174,15 @@ struct Part {
   bool is_whole(const ResourceDecl& r) const { return range == ImageRange{0, r.mips, 0, r.layers}; }
 };
 
-// What a later use of the same memory has to wait for. access: what was written; 0: only read.
+// The stages and writes that a later use of the same memory waits for. access 0: only reads.
 struct Pending {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
   void add(const Pending& other) { stages |= other.stages, access |= other.access; }
 };
-// What is pending on each resource's memory after its last use.
+// Pending accesses of each resource's memory after its last use.
 std::vector<Pending> left_pending(const GraphDecl& graph, std::span<const Part> parts);
-// What each transient waits for of those that had its memory before it in the same frame.
+// Accesses of the transients that had the same memory earlier in the frame, for each to wait for.
 std::vector<Pending> taken_over(const GraphDecl& graph, std::span<const Lifetime> lifetimes,
                                 std::span<const MemoryNeed> needs, const Placement& placement,
                                 std::span<const Pending> left);
@@ -223,8 +223,8 @@ struct Plan {
 // Fills usage flags of every resource from the accesses declared on it.
 void gather_usage(GraphDecl& graph);
 
-// What each resource of a valid graph, whose usage flags are gathered, takes. The device says;
-// tests invent it.
+// The memory that each resource of a valid graph needs; usage flags must be gathered. The device
+// gives the numbers; tests invent them.
 using NeedsOf = std::function<std::vector<MemoryNeed>(const GraphDecl& graph)>;
 
 // All stages. kOutOfMemory names a transient that is larger than a block.

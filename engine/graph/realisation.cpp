@@ -30,7 +30,7 @@ gpu::BufferDesc buffer_desc(const ResourceDecl& resource) {
   return desc;
 }
 
-// What the device gives in one piece, a multiple of every alignment.
+// The largest allocation that the device allows, rounded down to a multiple of every alignment.
 VkDeviceSize block_bytes_of(const gpu::Device& device, std::uint32_t memory_type_bits) {
   constexpr VkDeviceSize kUnit = VkDeviceSize{16} << 20;
   const VkDeviceSize most =

@@ -19,7 +19,7 @@ struct MemoryClass {
   VkDeviceSize block_bytes = 0;  // most that the device gives of it in one piece
 };
 
-// What the device says each transient of the graph takes; the graph's usage flags must be gathered.
+// The memory that each transient needs on this device; the graph's usage flags must be gathered.
 // Fills classes; MemoryNeed::memory_class indexes them.
 std::vector<MemoryNeed> memory_needs(const gpu::Device& device, const GraphDecl& graph,
                                      std::vector<MemoryClass>& classes);

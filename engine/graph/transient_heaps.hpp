@@ -13,7 +13,7 @@ namespace neritic::graph {
 
 class TransientHeaps {
  public:
-  // What one plan, or the largest of many, takes of a class.
+  // Bytes of a memory class that one plan needs, or the largest of several plans.
   struct Need {
     MemoryClass memory_class;
     std::uint64_t size = 0;

@@ -164,8 +164,8 @@ class Validator {
     return {};
   }
 
-  // What one pass does with one resource must be possible in one state of it, without a barrier
-  // inside the pass.
+  // All uses of one resource in one pass must fit a single state (layout), since no barrier is
+  // possible inside a pass.
   Status check_combination(const PassDecl& pass) const {
     for (std::size_t i = 0; i < pass.uses.size(); ++i) {
       for (std::size_t j = i + 1; j < pass.uses.size(); ++j) {

@@ -1,6 +1,6 @@
-// Which clusters of an instance the views of a set can see. Never drops a triangle that could reach
-// a pixel: bounds are in double, and what the GPU's floats may move is added. Plain data on the
-// CPU; any thread.
+// Finds the clusters of an instance that the views of a set can see. Never drops a triangle that
+// could reach a pixel: bounds are in double, with a margin for the GPU's rounding to float. Plain
+// data on the CPU; any thread.
 #pragma once
 
 #include <array>

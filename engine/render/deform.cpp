@@ -13,7 +13,7 @@ gpu::BoundResource uploaded(gpu::Commands& commands, std::uint32_t binding,
   return gpu::bound_buffer(binding, slice.buffer, slice.offset, slice.size);
 }
 
-// What the deform pass writes is one storage buffer, and a mesh is one dispatch.
+// The deform pass writes one storage buffer, one dispatch per mesh.
 Status check_deform(const gpu::Device& device, const FrameState& state) {
   const std::size_t bytes = state.deformed_vertices * sizeof(shared::VertexPosition);
   if (bytes > device.limits().maxStorageBufferRange)

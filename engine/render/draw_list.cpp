@@ -30,12 +30,12 @@ double largest_scale(const Mat4& m) {
                    glm::dot(Vec3(m[2]), Vec3(m[2])));
 }
 
-// What an instance must lose to be a draw of its own: a draw command costs llvmpipe what 270
-// triangles outside the picture do (cluster_culling.cpp).
+// Indices that culling must save before an instance gets a draw of its own: a draw command costs
+// llvmpipe as much as 270 triangles outside the picture (cluster_culling.cpp).
 constexpr std::uint32_t kLeastSaved = 3 * 256;  // indices
 
-// What opaque draws are sorted by: how near their surface may be, and among those around the eye
-// the centre. By the centre alone the seabed under the eye would come last, or first.
+// Sort key of opaque draws: the least distance of their surface, or the centre's for those that lie
+// around the eye. By the centre alone the seabed under the eye would come last, or first.
 double nearness(double center_m, double radius_m) {
   return std::max(0.0, center_m - radius_m) + 1e-3 * center_m;
 }

@@ -1,5 +1,5 @@
-// What one view set draws: instances that some view can see, and of rigid meshes the clusters that
-// some view can see. Plain data made on the CPU.
+// The draws of one view set: instances that some view can see, and for rigid meshes the clusters
+// that some view can see. Plain data made on the CPU.
 #pragma once
 
 #include <vector>
@@ -33,14 +33,14 @@ struct DrawList {
 
 struct DrawListOptions {
   bool clusters = true;  // false: every instance whole, for comparison; no bit of a picture differs
-  // Of closed meshes that every eye is outside of, front faces alone: for views that else draw both
-  // sides, as sonars do. Pixels at outlines differ, where rounding puts a back before its front.
+  // Draws only front faces of closed meshes if every eye is outside: for views that otherwise draw
+  // both sides (sonars). Pixels at outlines differ where rounding puts a back before its front.
   bool hide_back_faces = false;
   // Objects of this class are left out; 0: none are.
   std::uint16_t without_class = 0;
 };
 
-// Up to so many seen instances of a mesh that has clusters are looked at one by one, and each that
+// Up to this many visible instances of a mesh with clusters are examined one by one, and each that
 // loses enough triangles to the picture's edges is a draw of its own. More of them stay one draw:
 // most are then wholly inside or small, and looking costs more than it saves.
 inline constexpr std::size_t kMostSplitInstances = 256;

@@ -1,5 +1,5 @@
-// Renderer: the G-buffer, in one pass or two. What glows is drawn after all else: only then does a
-// pass write the emission image, so that the many triangles that do not glow do not pay for it.
+// Renderer: the G-buffer, in one pass or two. Glowing surfaces are drawn last, by a pass of their
+// own that writes the emission image, so that triangles that do not glow do not pay for it.
 #include "engine/render/raster_draws.hpp"
 #include "engine/render/renderer.hpp"
 

@@ -61,7 +61,7 @@ class GpuSceneBuilder {
     return {};
   }
 
-  // Of what no sonar hears, or hears from both sides anyhow, nobody asks whether it is closed.
+  // False where the answer is not needed: without sonars, and for surfaces with two sides.
   bool may_be_closed(std::span<const scene::Material> materials, int material,
                      const GpuPrimitive& primitive) const {
     if (scene_.sonars.empty() || primitive.deforms()) return false;

@@ -69,8 +69,8 @@ SunLight sun_light(const scene::Sun& sun, bool under_water) {
   return out;
 }
 
-// What a white surface near the camera receives, lux: the sun's light there, or half of the
-// strongest lamp's at 3 m (most of what it lights is further or oblique), and no less than
+// Illuminance of a white surface near the camera, lux: the sun's light there, or half of the
+// strongest lamp's at 3 m (most lit surfaces are farther away or oblique), and no less than
 // kDarkest_lx.
 double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& scene,
                             std::span<const PlacedLight> model_lights) {

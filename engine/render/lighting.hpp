@@ -13,7 +13,7 @@ namespace neritic::render {
 // Illuminance of a clear day with the sun in the zenith, lux (rounded; direct sunlight 80 to 100
 // klx, Schlyter, "Radiometry and photometry in astronomy").
 inline constexpr double kClearDay_lx = 100000.0;
-// Share of it that comes straight from the sun (the rest is sky; clear days have .8 to .9).
+// Share of it that comes straight from the sun (the rest is sky; clear days have 0.8 to 0.9).
 inline constexpr double kSunShare = 0.85;
 
 // kBadInput for an unknown water type or too many lamps. exposure: of the camera that looks. Lamps
@@ -22,7 +22,7 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
                                        const Vec3& origin_m, const scene::Exposure& exposure,
                                        bool has_emission);
 
-// What a shading of it computes, for the frame graph's dump: "sun, water, scattering, 2 lamps".
+// The terms that shading computes, for the frame graph's dump: "sun, water, scattering, 2 lamps".
 std::string names_of_terms(const shared::Lighting& lighting);
 
 }  // namespace neritic::render

@@ -58,7 +58,7 @@ struct DeformedGeometry {
   graph::BufferHandle positions, next_positions;
 };
 
-// What shading reads. An effect that shading uses adds its image here as a handle that may be
+// Inputs of shading. An effect that shading uses adds its image here as a handle that may be
 // empty, as GBuffer::emissive is: an empty handle is not declared, and its bit in Lighting::terms
 // is 0.
 struct ShadeInputs {
@@ -133,7 +133,7 @@ class Renderer {
   Result<PreparedDraws> prepare(const GpuScene& scene, const DrawList& list,
                                 const std::vector<Draw>& draws, GBufferKind kind, bool forward,
                                 bool motion, bool emissive, std::uint32_t view_mask);
-  // What passes that draw borrow until the graph has run.
+  // Objects that draw passes borrow until the graph has run.
   struct RasterInputs {
     const GpuScene& scene;
     const ViewSet& views;

@@ -19,7 +19,7 @@ struct ViewDesc {
   double near_m = 0.05;
   // The sides lean: a point at (x, y) of unit distance lies between them where left <= x - lean y
   // <= right, so that each row of pixels is shifted against the one above by the same part of a
-  // pixel. Of sonars only.
+  // pixel. Only sonars use it.
   double lean = 0.0;
   Pose next_world_from_view;  // at the next frame's time, for motion
 };
@@ -38,11 +38,11 @@ struct ViewSet {
   std::uint32_t layers() const { return static_cast<std::uint32_t>(views.size()); }
 };
 
-// What the shaders see of the set: a uniform block of kMaxViews, those beyond the set's own are
+// The set as a uniform block of kMaxViews for the shaders; entries beyond the set's own views are
 // zero.
 std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set);
 
-// What a position on the GPU may be off, relative to the sizes of the terms that it is the sum of:
+// Bound of a position's error on the GPU, relative to the sizes of the terms that are summed:
 // rows rounded to float, four products and sums, then four more to clip space. (1 + 4 + 4) 2^-24 is
 // 5.4e-7; this is near four times that.
 inline constexpr double kFloatError = 2e-6;

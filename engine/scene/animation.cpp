@@ -143,7 +143,7 @@ void add_corners(Bounds& bounds, const Mat4& m, const Bounds& box) {
                    i & 4 ? box.max.z : box.min.z));
 }
 
-// Beyond so many vertices the corners of boxes stand for them: bounds stay true, but less tight.
+// Meshes with more vertices are bounded by the corners of boxes: still safe, but less tight.
 constexpr std::size_t kMaxBoundsVertices = 4'000'000;
 
 // n_vertices: of the primitives without instances so far.

@@ -11,7 +11,7 @@
 namespace neritic::scene::gltf {
 namespace {
 
-// The memory that one file may make the model allocate: a base, plus so many times its own bytes.
+// The memory that one file may make the model allocate: a base, plus a multiple of its own size.
 constexpr std::size_t kBaseBudgetBytes = std::size_t{256} << 20, kBudgetFactor = 64;
 constexpr std::size_t kMaxBudgetBytes = std::size_t{6} << 30;
 // The base for pictures: plain ones shrink to next to nothing in a file. Sixteen of 4096 x 4096.

@@ -1,6 +1,6 @@
 // Reads glTF 2.0 (.gltf with files or data URIs beside it, .glb) into a Model. Every index, length
-// and number is checked: a bad file is an Error (kBadInput) with one line, never a crash. What can
-// be drawn nevertheless (a missing picture, an optional extension) becomes a line of Model::notes.
+// and number is checked: a bad file is an Error (kBadInput) with one line, never a crash. A fault
+// that still lets the model be drawn (a missing picture, an optional extension) becomes a note.
 #pragma once
 
 #include <cstddef>

@@ -62,7 +62,7 @@ class PngReader {
     png_read_info(png_, info_);
     return true;
   }
-  // Arranges that rows come out with so many channels (0: as stored) of 8 or 16 bits.
+  // Makes libpng give rows of this number of channels (0: as stored), of 8 or 16 bits.
   bool set_layout(std::uint32_t channels, int bits, Expand expand) {
     if (setjmp(png_jmpbuf(png_))) return false;
     if (expand == Expand::kToColors) png_set_expand(png_);

@@ -18,7 +18,7 @@ struct Motion {
   Vec3 velocity_m_s{0.0};            // of the source's origin, in the target's axes
   Vec3 angular_velocity_rad_s{0.0};  // in the target's axes
 };
-// What moves in b, as seen from a, in which b moves.
+// Composes motions: c moves in frame b, and b in frame a; the result is c's motion in a.
 Motion operator*(const Motion& a_from_b, const Motion& b_from_c);
 
 enum class Knowledge {

@@ -20,7 +20,7 @@ bool is_live(const std::string& from) {
   return from != "autopilot" && from != "recording" && from != "nobody";
 }
 
-// Of `group = "suit"` or `group = { from = "suit", hold_s = 1, then = "nobody" }`.
+// Reads `group = "suit"` or `group = { from = "suit", hold_s = 1, then = "nobody" }`.
 InputChoice read_choice(TableReader& reader, Key group, KeyList recorded) {
   const TomlValue* value = reader.find(group);
   InputChoice choice{std::string(group), "", {}};

@@ -132,7 +132,7 @@ struct SonarOutput {
   bool operator==(const SonarOutput&) const = default;
 };
 
-// How returns are told in what profiling, echo sounder and side-scan accumulate over a track.
+// How profiling, echo sounder and side-scan detect returns in what they gather over a track.
 struct SonarDetection {
   // A return begins where this part of the strongest (side-scan: of the 95th percentile) is
   // reached. Absent: the kind's own.
@@ -141,7 +141,7 @@ struct SonarDetection {
   // bin.
   std::optional<double> floor_db;
   double quality = 0.0;     // profiling: least part that the echo is of all that its beam heard
-  std::uint32_t pings = 5;  // side-scan: the altitude is the median of so many, odd
+  std::uint32_t pings = 5;  // side-scan: the altitude is the median over these, an odd number
   bool operator==(const SonarDetection&) const = default;
 };
 

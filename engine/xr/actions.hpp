@@ -1,6 +1,6 @@
 // Input as named actions: a program states a table of what its user can do and with which controls
-// of which devices; a display gives the values of that table once a frame. Which library reads the
-// devices is the display's affair. Plain values; any thread.
+// of which devices; a display gives the values of that table once a frame. Each display chooses the
+// library that reads its devices. Plain values; any thread.
 //
 // A binding is a text: a device and a control ("key W", "mouse wheel", "pad left_x"), with "-" in
 // front if it counts the other way, and " while DEVICE CONTROL" behind if another control has to be
@@ -38,7 +38,7 @@ struct Control {
 std::span<const Control> controls();
 inline constexpr std::size_t kMaxControls = 128;
 
-// What the controls are doing. A display fills it from its devices.
+// The current values of the controls. A display fills it from its devices.
 struct DeviceState {
   std::array<double, kMaxControls> value{};  // 1 held; axes -1 to 1; motion since last time
   std::array<std::uint32_t, kMaxControls> presses{};  // since last time

@@ -45,7 +45,7 @@ struct DisplayFrame {
   std::vector<ViewGroup> groups;  // with kDraw at least one
 };
 
-// What the views of a group see.
+// The pictures of a group's views.
 struct ProjectionLayer {
   std::size_t group = 0;
   graph::ImageHandle color;  // sRGB-encoded RGBA8, an array layer a view; any size: it is scaled
@@ -68,7 +68,7 @@ struct PanelLayer {
 
 using Layer = std::variant<ProjectionLayer, PanelLayer>;
 
-// What a frame shows of the first group, for a screenshot.
+// The picture of a frame's first group, for a screenshot.
 struct ShownPicture {
   graph::ImageHandle image;
   VkFormat format = VK_FORMAT_UNDEFINED;
@@ -86,11 +86,11 @@ class Display {
   // world_from_head: from where the projection layers were drawn.
   virtual Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
                                        std::span<const Layer> layers) = 0;
-  // What the submission of a frame with declared layers has to wait for and signal.
+  // The semaphores that the submission of a frame with declared layers waits for and signals.
   virtual gpu::Frames::SubmitSync sync() const = 0;
   // Ends the frame: shows the layers, if some were declared and submitted.
   virtual Status end_frame() = 0;
-  // What the user did since the last call, by the table of actions that the display was made with.
+  // The user's actions since the last call, by the table that the display was made with.
   // claims: devices that panels use now; their controls do nothing else.
   virtual ActionValues take_actions(const InputClaims& claims) = 0;
 };

@@ -58,9 +58,9 @@ NERITIC_CONST uint kShadeMaterial = 5;
 NERITIC_CONST uint kShadeEmissive = 6;
 NERITIC_CONST uint kShadeHdr = 7;
 NERITIC_CONST uint kShadeGroup = 8;
-// Specialisation constants of the shade pass: the terms and the number of lamps. What a scene does
-// not name is not even compiled: a processor's driver computes both sides of a branch, and runs the
-// body of a loop once at least.
+// Specialisation constants of the shade pass: the terms and the number of lamps. Terms that a scene
+// does not name are not compiled: a CPU driver computes both sides of a branch, and runs the body
+// of a loop at least once.
 NERITIC_CONST uint kSpecTerms = 0;
 NERITIC_CONST uint kSpecLamps = 1;
 

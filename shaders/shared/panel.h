@@ -1,5 +1,5 @@
-// What the pass that draws a display's panels and its shaders share: a flat rectangle in each view
-// of a group, one texture.
+// Shared by the pass that draws a display's panels and its shaders: a flat rectangle in each view
+// of a group, with one texture.
 #ifndef NERITIC_SHARED_PANEL_H
 #define NERITIC_SHARED_PANEL_H
 #include "shared/types.h"

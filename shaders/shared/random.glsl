@@ -17,7 +17,7 @@ uvec4 hash_of(uvec4 v) {
 // In (0, 1).
 float unit_open(uint bits) { return (float(bits >> 9) + 0.5) * (1.0 / 8388608.0); }
 
-// A complex normal number of mean power 1, turned by so many turns.
+// A complex normal number of mean power 1, its phase advanced by `turns`.
 vec2 complex_normal(uvec2 bits, float turns) {
   float amplitude = sqrt(-log(unit_open(bits.x)));
   float angle = 6.28318530718 * fract(unit_open(bits.y) + turns);

@@ -29,7 +29,7 @@ struct BeamHit {
 const float kLopsided = 2.0;
 
 // Half of 1 / p of p = 1.3247..., p^3 = p + 1, in 2^-32: rows spread evenly over a column's width, and over the
-// shifts of the pixels' rows too, which go by the golden ratio. Rows as far above the middle one as below it
+// shifts of the pixels' rows too, which follow the golden ratio. Rows as far above the middle one as below it
 // look as far to either side, so that all together look at the column's middle.
 const uint kHalfRowPlace = 1621087445u;
 // A single column may be wider than a view.

@@ -25,7 +25,7 @@ TEST(DecoVectors, OtherConventionsGasesAndLevelsHold) {
   expect_all_hold("deco_more.json", 9);
 }
 
-// What was compared and how near it came.
+// Every quantity is compared; its error is far below its tolerance.
 TEST(DecoVectors, EveryQuantityIsComparedAndIsFarInsideItsTolerance) {
   std::map<std::string, double> worst;  // of error / tolerance
   for (const CaseResult& one : check_deco(deco_cases("deco_vectors.json")))

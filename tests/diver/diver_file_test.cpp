@@ -1,4 +1,4 @@
-// Divers from files: what is said arrives, what is not has its default, mistakes are told.
+// Divers from files: given values arrive, absent ones have their defaults, mistakes are reported.
 #include "diver/diver_file.hpp"
 
 #include <gmock/gmock.h>

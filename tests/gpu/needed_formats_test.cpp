@@ -1,4 +1,4 @@
-// A device without a format that the passes use is not chosen, and is told so by name.
+// A device without a format that the passes use is not chosen, and the error names the format.
 #include "engine/gpu/needed_formats.hpp"
 
 #include <gmock/gmock.h>

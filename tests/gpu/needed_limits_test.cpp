@@ -1,4 +1,4 @@
-// A device whose limits are too small for the passes is not chosen, and is told so by name.
+// A device whose limits are too small for the passes is not chosen, and the error names the limit.
 #include "engine/gpu/needed_limits.hpp"
 
 #include <gmock/gmock.h>

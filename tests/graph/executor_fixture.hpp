@@ -71,8 +71,8 @@ class ExecutorTest : public test::GpuTest {
   struct StepData {
     BufferHandle source, target;
   };
-  // One more pass of test_graph_step.comp; target: where to, a new transient, with room for so many
-  // numbers, where it is none.
+  // One more pass of test_graph_step.comp; target: where to, a new transient, with room for this
+  // many numbers, where it is none.
   BufferHandle add_step(FrameGraph& graph, const std::string& name, BufferHandle source,
                         std::uint32_t factor, std::uint32_t shift, BufferHandle target = {},
                         std::uint32_t count = kCount, std::uint32_t room = kCount) {

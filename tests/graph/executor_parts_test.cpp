@@ -15,7 +15,7 @@ constexpr std::uint32_t kWidth = 37, kHeight = 22, kLayers = 2, kMips = 6;
 
 using Texels = std::vector<std::uint32_t>;
 
-// What test_graph_mip.comp computes, for all layers of one mip.
+// The same computation as test_graph_mip.comp, for all layers of one mip.
 Texels next_mip(const Texels& above, std::uint32_t width, std::uint32_t height) {
   const std::uint32_t w = std::max(width / 2, 1u), h = std::max(height / 2, 1u);
   Texels below;

@@ -106,7 +106,7 @@ class HistoryTest : public ExecutorTest {
     return graph;
   }
 
-  // What the frames since the history began have made of it.
+  // The texels after all frames since the history began.
   static std::vector<std::uint32_t> expected(const std::vector<std::uint32_t>& adds, Size size) {
     std::vector<std::uint32_t> texels(std::size_t{size.width} * size.height);
     for (const std::uint32_t add : adds)

@@ -122,7 +122,7 @@ class Sequence {
   explicit Sequence(std::uint64_t seed) {
     for (const std::uint64_t s : {2 * seed, 2 * seed + 1}) {
       RandomGraph random = random_graph(s);
-      // Who presents waits by semaphores, which no plan shows.
+      // Presentation waits by semaphores, which are not part of a plan.
       std::erase_if(random.maker.graph.outputs,
                     [](const Use& u) { return u.access == Access::kPresent; });
       Result<Plan> plan = plan_with(random.maker.graph, random.needs);

@@ -145,7 +145,7 @@ TEST_F(RandomDeviceTest, EveryPlantedMissingBarrierIsCaught) {
     const Plan plan = *take(executor_->compile(graph));
     for (std::size_t position = 0; position < plan.order.size(); ++position) {
       for (const Barrier& barrier : barriers_at(plan, position)) {
-        // What only an earlier frame had is in another submission, which the layer does not see.
+        // An earlier frame's accesses are in another submission, which the layer does not see.
         if (plan.graph.resources[barrier.resource].imported) continue;
         if (between_shader_writes(barrier)) continue;
         const auto drop = [&](Plan& spoilt) {

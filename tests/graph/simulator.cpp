@@ -259,7 +259,7 @@ class Cell {
   std::span<const PlanRun> runs_;
   std::vector<std::vector<Member>> members_by_run_;
   std::vector<std::string>& hazards_;
-  // Of the run that is walked.
+  // State of the run that is walked.
   const Plan* plan_ = nullptr;
   std::vector<Member> members_;
   std::uint32_t base_ = 0;  // positions of the runs before

@@ -22,7 +22,7 @@ struct PlanRun {
 
 // One sentence a hazard; empty for sound plans that run one after the other.
 std::vector<std::string> find_hazards(std::span<const PlanRun> runs);
-// Of a plan alone, before which nothing ran.
+// The hazards of a single plan, before which nothing ran.
 std::vector<std::string> find_hazards(const Plan& plan);
 
 }  // namespace neritic::graph

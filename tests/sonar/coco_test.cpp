@@ -223,7 +223,7 @@ TEST(CocoPictures, ShowTheOutputsCountsWhereItIsNamed) {
   EXPECT_EQ(pictures.scale()["full_scale_db"], 111.0);
 }
 
-// Pings side by side, a row or a column each, in pictures of so many.
+// Pings side by side, a row or a column each, a fixed number of pings a picture.
 TEST(PingLabels, LieSideBySideAsTheirRecordDoes) {
   const test::ScratchFolder folder;
   const std::size_t pings = sonar::PingLabels::kPingsAPicture + 3;

@@ -15,7 +15,7 @@ namespace neritic::tools {
 using namespace testbed;
 namespace {
 
-// A minute a row, so many rows, one metre up in a hundred.
+// A log of this many rows, one a second; the diver rises by 1 cm a row.
 std::vector<HumanRow> slow_rise(std::size_t count) {
   std::vector<HumanRow> rows(count);
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -18,7 +18,7 @@ class OutputPage : public testing::Test {
  protected:
   void SetUp() override { page_ = read_text(test::source_dir() / "diver/OUTPUT.md").value(); }
 
-  // What it prints; fails where it does.
+  // Standard output of a command; fails: the command is expected to fail.
   std::string said_by(const std::string& arguments, bool fails = false) {
     const std::string command = fmt::format("{}/tools/neritic -q {} > {}", NERITIC_BINARY_DIR,
                                             arguments, (folder_ / "said").string());

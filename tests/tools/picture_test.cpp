@@ -74,7 +74,7 @@ TEST_F(Picture, WhatCannotBeDrawnIsAnErrorInOneLine) {
   EXPECT_FALSE(write_picture(folder_ / "none/a.png", {{"picture", "dive"}}).ok());
 }
 
-// Of each thing one, with a value that a logarithmic axis has no place for and one that is none.
+// One element of each kind, with a zero on a logarithmic axis and a NaN.
 Page small_page() {
   Page page{"Title", {"A fact."}, 2};
   page.panels.push_back({"Curves",

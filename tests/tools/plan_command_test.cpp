@@ -56,7 +56,7 @@ TEST(PlanCommand, APlanIsPrintedAsADiverExpectsIt) {
               HasSubstr("no stops are needed\nwithout stops: until 47 min"));
 }
 
-// What is warned of stands on the picture too, a red line each, above the panels.
+// The picture shows each warning too, as a red line above the panels.
 TEST(PlanCommand, WarningsStandOnThePicture) {
   const test::ScratchFolder folder;
   struct Drawn {
@@ -243,7 +243,7 @@ TEST(PlanCommand, ATravelGasThatIsTheDecoGasIsOneTank) {
             0);
 }
 
-// Of several levels, and stops between whole metres.
+// Plans of several levels, and of depths between whole metres.
 TEST(PlanCommand, DepthsAndLevelsAreSaidAsTheyAre) {
   const std::string said = said_by("plan --depth 30 --time 20 --level 18,45").out;
   EXPECT_THAT(said, HasSubstr("min of run time at 30 m alone\n"));

@@ -14,7 +14,7 @@ namespace neritic::xr {
 
 class FakeHeadset final : public Display {
  public:
-  // What one frame ended with.
+  // The layers and pose that one frame ended with.
   struct Ended {
     std::vector<std::size_t> projections;  // groups
     std::vector<bool> with_depth;          // by projection
@@ -41,7 +41,7 @@ class FakeHeadset final : public Display {
     }
     return made;
   }
-  // What a headset's runtime asks of the device; calls is counted up by each thing it makes.
+  // Makes the device as a headset's runtime demands; counts its creation calls in `calls`.
   static void require(gpu::DeviceOptions& options, int& calls) {
     options.maker.instance = [&calls](const VkInstanceCreateInfo& info, VkInstance* instance) {
       ++calls;

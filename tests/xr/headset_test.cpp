@@ -43,8 +43,8 @@ class HeadsetTest : public test::GpuTest {
                       render::GpuScene::create(device(), scene_, renderer_->material_layout()));
   }
 
-  // Declares the views of a group and gives its layer. What the passes borrow stays until the next
-  // frame.
+  // Declares the views of a group and gives its layer. Objects that the passes borrow live until
+  // the next frame.
   ProjectionLayer draw(graph::FrameGraph& graph, const DisplayFrame& frame, std::size_t index) {
     const ViewGroup& group = frame.groups[index];
     auto drawn = std::make_unique<Drawn>();

@@ -1,4 +1,4 @@
-// What an offscreen display shows of one frame of layers, at the host.
+// The pixels that an offscreen display shows for one frame of layers, read back to the host.
 #pragma once
 
 #include <array>

@@ -33,8 +33,8 @@ for _s, _m in (("l", -1), ("r", 1)):
     JOINTS[f"foot_{_s}"] = (f"lower_leg_{_s}", ANKLE * _f)
 NAMES = list(JOINTS)
 
-# What is worn hangs on joints of its own, at rest on the segment's (the blade's where the pocket ends): a
-# scale of 0 takes it off, into the body.
+# Gear has joints of its own, at rest on the segment's (the blade's where the pocket ends): a scale of 0
+# hides it inside the body.
 GEAR = {
     "tank": ("thorax", CHEST * np.array([0, 1.0, 0])),
     "regulator": ("head", np.array([0, NECK, 0.005])),

@@ -1,5 +1,5 @@
 // Pictures of curves. The program writes their data as JSON; tools/plot, a Python module, draws
-// them with matplotlib. Where Python, matplotlib or the module is missing, the data is written all
+// them with matplotlib. If Python, matplotlib or the module is missing, the data is written all
 // the same, and one line on stderr says what to install: that is no failure. One thread at a time.
 #pragma once
 

@@ -14,7 +14,7 @@ namespace {
 
 using Run = std::function<Result<std::string>()>;
 
-// Of commands that say themselves what they did.
+// For commands that print their own results.
 Result<std::string> nothing_to_say(const Status& status) {
   if (!status.ok()) return status.error();
   return std::string();

@@ -54,7 +54,7 @@ struct DiveFlags {
   std::uint64_t frames = 0;
   std::optional<double> seconds;
   bool headless = false, fast = false, panels = false, validation = false;
-  // Of scenes with physics, headless.
+  // These need a scene with physics, and --headless.
   std::string log, plot, record, replay, save, restore;
   std::optional<double> log_rate_hz;  // absent or 0: the controllers'
   bool realtime = false, json = false;
@@ -106,7 +106,7 @@ struct DoctorFlags {
 };
 Status run_doctor(const DoctorFlags& flags);
 
-// What a command line asks for: something to run, or help to print.
+// A parsed command line: a command to run, or help to print.
 struct CommandLine {
   // Gives one line that says where the results are, or nothing.
   std::function<Result<std::string>()> run;

@@ -1,5 +1,5 @@
-// What `neritic doctor` finds on a machine, and what follows from it. Plain data, so that the
-// conclusions are tested on invented machines. Main thread.
+// The findings of `neritic doctor` on a machine, and the conclusions from them. Plain data, so that
+// the conclusions are tested on invented machines. Main thread.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ class Progress {
   Progress(std::string what, std::uint64_t total);
   ~Progress();
   void step();
-  // What is being done now, after the count.
+  // Shows the current activity after the count.
   void now(std::string doing);
   // A line of its own that stays, also where no count is shown.
   void say(const std::string& line);

@@ -12,7 +12,7 @@
 namespace neritic::tools {
 namespace {
 
-// Of less no estimate is made (breath_rate.hpp).
+// Shorter sounds give no estimate (breath_rate.hpp).
 constexpr double kLeastSound_s = 4.0;
 
 // --reference, or a rate in the file's name: ..._12bpm_...
@@ -52,7 +52,7 @@ Result<diver::Recording> load_sound(const PhysioFlags& flags) {
   return sound;
 }
 
-// What the published way makes of the same: ten seconds at a time.
+// The same sound by the published method: each ten seconds on its own.
 std::vector<diver::BreathState> plain_states(const BreathReport& report) {
   const double block_s = report.settings.block_s;
   return diver::analyse_breath(report.sound, {diver::BreathEstimator::kSpectrum, block_s, block_s});

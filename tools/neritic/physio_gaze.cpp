@@ -42,7 +42,7 @@ std::string pixel_cells(const GazeReport& r, const Vec3& direction) {
 // A saccade of some 50 ms must not lie between two samples.
 constexpr double kLeastGaze_hz = 20.0;
 
-// Of the times in the middle, whatever a few of them are. Nothing of fewer than three samples.
+// The rate by the median step, so that a few odd stamps do not matter; none below three samples.
 std::optional<double> sampling_hz(const std::vector<diver::GazeSample>& samples) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < samples.size(); ++i)

@@ -1,4 +1,4 @@
-// What `neritic physio` finds in a recording, and how it is said: a table (.csv) under a summary,
+// The findings of `neritic physio` in a recording, and their output: a summary and a table (.csv),
 // the same as JSON, and a picture. physio_ecg.cpp, physio_breath.cpp and physio_gaze.cpp analyse,
 // physio_json.cpp and physio_picture.cpp show. One thread.
 #pragma once
@@ -61,8 +61,8 @@ struct GazeReport {
   diver::GazeEvents events;
   diver::GazeState state;
   std::optional<diver::GazeCamera> camera;
-  // Against a person's marks, sample by sample, saccade or none: of the saccades that are told; and
-  // of what the method alone makes of each sample, blinks and noise included.
+  // Cohen's kappa against a person's marks, sample by sample, saccade or not: of the reported
+  // saccades, and of the method's raw output for each sample, blinks and noise included.
   std::optional<double> kappa, plain_kappa;
   double us_a_second = 0.0;
   bool velocity() const { return settings.method == diver::GazeMethod::kVelocity; }

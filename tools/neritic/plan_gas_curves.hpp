@@ -1,4 +1,4 @@
-// What a plan's picture draws of each gas. Pure function; any thread.
+// The curve of each gas in a plan's picture. Pure function; any thread.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace neritic::tools {
 
-// Of one gas over run time: what its tank shows, bar, until it is used up, or where none is given
-// the litres used.
+// One gas over run time: the pressure of its tank, bar, until it is used up, or, without a given
+// tank, the litres used.
 struct GasCurve {
   std::string name;
   std::size_t gas = 0;

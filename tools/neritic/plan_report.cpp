@@ -138,7 +138,7 @@ std::string depth_text(const PlanReport& r) {
   return mix == diver::kAir ? out + "\n" : out + fmt::format(", EAD {:.1f} m\n", air);
 }
 
-// What is taken of each gas, and what its tank has then.
+// Litres used of each gas, and the pressure left in its tank.
 std::string gas_text(const PlanReport& r) {
   const diver::PlanBreathing& b = r.breathing;
   std::string out = fmt::format("gas at {:g} L/min, {:g} from the ascent on, in litres at 1 bar\n",

@@ -14,7 +14,7 @@ struct PlanReport {
   diver::DivePlan plan;
   std::vector<diver::PlanWarning> warnings;
   double without_stops_min = 0.0;  // largest run time; negative: none
-  // Of this dive, and what earlier ones left.
+  // The exposure of this dive plus the rest of earlier dives'.
   diver::OxygenExposure oxygen() const {
     return {plan.oxygen.cns_percent + request.oxygen_before.cns_percent,
             plan.oxygen.otu + request.oxygen_before.otu};
@@ -29,7 +29,7 @@ Result<PlanReport> make_plan_report(const std::string& convention,
 
 std::string plan_text(const PlanReport& report);
 std::string plan_json(const PlanReport& report);
-// What a replayed log came to, and its last tissues.
+// The results of a replayed log, with its last tissues.
 std::string log_json(const std::string& file, const diver::DepthLog& log, const DiveTrace& trace);
 
 }  // namespace neritic::tools

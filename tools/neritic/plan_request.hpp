@@ -1,4 +1,4 @@
-// What the flags of `neritic plan` ask for, as requests of the planner and settings of the dive
+// Turns the flags of `neritic plan` into requests of the planner and settings of the dive
 // computer.
 #pragma once
 
@@ -20,8 +20,8 @@ struct PlanGasFlags {
 // How the request's gases are breathed and carried.
 Result<PlanGasFlags> plan_gas(const PlanFlags& flags, const diver::DivePlanRequest& request);
 
-// For a log: its gases first, the flags' after them; samples' gases are numbers of these. What a
-// flag says of a gas of the log holds: its depth, and whether it is the bottom's.
+// For a log: its gases first, the flags' after them; samples' gases are numbers of these. A flag
+// decides a logged gas's switch depth, and whether it is the bottom gas.
 Result<diver::DiveComputerSettings> log_settings(const PlanFlags& flags,
                                                  const diver::DepthLog& log);
 // At the start of a log: never dived, or after earlier dives.

@@ -107,8 +107,8 @@ struct Run {
   std::atomic<std::size_t>& written;
 };
 
-// What is wrong with one frame's files leaves it out, and what an earlier run made of it goes;
-// anything else ends the run.
+// A fault in one frame's files leaves the frame out and deletes its results of an earlier run; any
+// other fault ends the run.
 template <class T>
 Result<std::optional<T>> or_skip(const Run& run, std::size_t frame, Result<T> made) {
   if (made.ok()) return std::optional<T>(std::move(*made));
@@ -186,7 +186,7 @@ Status run_kind(const Run& run) {
   return check_validation(ear->device());
 }
 
-// Of the first frame that there is: all have the same.
+// The files in the first finished frame's folder: all frames have the same.
 std::string files_of_a_result(const Run& run) {
   for (const FrameFiles& frame : run.frames)
     if (const auto names = result_files(run.job.flags.out / frame.name); !names.empty())

@@ -60,7 +60,7 @@ bool same_shape(const sonar::SonarInput& a, const sonar::SonarInput& b) {
          k.cx == l.cx && k.cy == l.cy && a.normals_face_sensor == b.normals_face_sensor;
 }
 
-// What a kind of sonar says of one ping beside its image; the cloud of a profiling one.
+// Adds the findings of a sonar's kind for one ping to `facts`; gives a profiling sonar's cloud.
 std::optional<sonar::PointCloud> add_findings(const SonarJob& job, const sonar::SonarImage& image,
                                               nlohmann::json& facts) {
   const sonar::BeamGrid& grid = job.head.beams;
@@ -82,7 +82,7 @@ std::optional<sonar::PointCloud> add_findings(const SonarJob& job, const sonar::
   return cloud;
 }
 
-// Of the first frame: what the images leave of the sonar's wedge.
+// Notes, for the first frame only, which part of the sonar's wedge the images cover.
 void note_coverage(const SonarJob& job, const sonar::SonarInput& in, SonarNotes& notes) {
   if (!notes.first(SonarNotes::About::kCoverage)) return;
   const bool published = job.flags.method == "reference" || job.gather == sonar::Gather::kPublished;

@@ -112,7 +112,7 @@ void put_grid(scene::Sonar& sonar, const sonar::BeamGrid& grid) {
   sonar.bins_elevation = grid.bins.elevation;
 }
 
-// What images alone cannot give.
+// Refuses terms that need more than images: a scene, a track or other sensors.
 Status refuse_terms(const std::string& file, const scene::SonarTerms& terms) {
   const auto refuse = [&](const char* key, const char* why) {
     return bad_input("{}: {}: found, none is accepted without a scene: {}", file, key, why);

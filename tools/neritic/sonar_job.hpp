@@ -1,5 +1,5 @@
-// What `neritic sonar` is asked for, worked out before any image is read: the sensor with its
-// terms, how images are to be understood, and the settings that say whether a result is this run's.
+// The task of `neritic sonar`, worked out before any image is read: the sensor with its terms, how
+// to read the images, and the settings that tell whether an existing result is this run's.
 // Plain values; any thread.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What a user should know about one sonar image made from images: whether anything lies in the
-// wedge, and whether the images are fine enough for its cells. Any thread.
+// Notes for the user about one sonar image made from images: whether any surface lies in the wedge,
+// and whether the images are fine enough for its cells. Any thread.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Cove
 // Where a good part of what lies in the wedge is silent by its normals. estimated: from the depth.
 std::optional<std::string> normals_note(const Coverage& coverage, bool estimated);
 
-// What is said once in a run, however many frames it concerns. Any thread.
+// Notes that are printed once in a run, however many frames they concern. Any thread.
 class SonarNotes {
  public:
   enum class About : unsigned { kWholeMetres, kCoverage };

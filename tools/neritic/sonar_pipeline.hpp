@@ -1,5 +1,5 @@
 // Many frames through three steps: read (workers), process (the calling thread, which owns the
-// GPU), write (workers). Bounded: so many frames are between the first step and the last at once,
+// GPU), write (workers). Bounded: at most in_flight frames are between the first step and the last,
 // and workers write before they read on. Frames finish in any order; each step gets the frame's
 // number, so that no result depends on the order.
 //
@@ -27,7 +27,7 @@ namespace neritic::tools {
 struct PipelineOptions {
   std::size_t frames = 0;
   std::size_t workers = 1;    // at least 1
-  std::size_t in_flight = 3;  // at most so many frames' data at once; at least 1
+  std::size_t in_flight = 3;  // frames in memory at once; at least 1
 };
 
 template <class Input, class Output>
@@ -73,7 +73,7 @@ class Pipeline {
            !steps_.stopped();
   }
 
-  // What a step returns, or what it throws (memory, a library) as an error of its own.
+  // A step's result; an exception that it throws (memory, a library) becomes an Error.
   template <class Step>
   static auto guarded(Step step) -> decltype(step()) {
     try {

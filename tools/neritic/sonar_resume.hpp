@@ -1,5 +1,5 @@
-// What lies in OUT of a run over a folder: which frames are there already and are this run's,
-// results that appear whole, and the list of what was left out.
+// The output folder of a run over many frames: finds frames that are already there and belong to
+// this run, makes results appear whole, and lists frames that were left out.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@
 
 namespace neritic::tools {
 
-// What tells a frame's images from others, for sonar.json: of each its whole path, links followed,
-// its size and when it was last changed. Of the files as they are now.
+// The identity of a frame's images, for sonar.json: the whole path of each with links followed, its
+// size and time of last change, as the files are now.
 nlohmann::json file_stamps(const sonar::FrameFiles& frame);
 
 // The numbers of the frames without a result of the same settings and the same files as they are

@@ -96,7 +96,7 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   Progress progress("tradeoff sonar", steps(options));
   options.step = [&] { progress.step(); };
   options.now = [&](const std::string& doing) { progress.now(doing); };
-  // What is done stays done, however far the rest comes.
+  // Each finished part is written at once, so that it stays if a later part fails.
   bool all_drawn = true;
   options.part_done = [&](const std::string& part, const SonarTradeoff& so_far) -> Status {
     const std::string name = part == "plain" ? "tradeoff" : part;

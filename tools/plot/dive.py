@@ -13,7 +13,7 @@ LONGEST_MIN = 300.0  # longer times are not drawn: no diver plans by them
 RESERVE_BAR = 50.0
 DIVER_PX, VEHICLE_PX = 410, 250  # heights of one's small panels
 
-# What endangers a diver: words, colour, and in which rows it holds.
+# Dangers to a diver: words, colour, and the rows in which each holds.
 DANGERS = (
     ("nothing to breathe", INK, lambda d: numbers(d["out_of_gas"]) > 0),
     ("above the ceiling", "#8c1a8c", lambda d: numbers(d["ceiling_violated"]) > 0),

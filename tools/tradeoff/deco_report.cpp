@@ -1,4 +1,4 @@
-// What `neritic tradeoff deco` writes (deco_tradeoff.hpp).
+// The output of `neritic tradeoff deco` (deco_tradeoff.hpp).
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -78,8 +78,8 @@ struct Sample {
   TissueState exact;
 };
 
-// Pressures, gases and exact tissues every step_s. Gases are switched at the first sample that
-// comes: a computer is told of a switch, it does not have to guess it.
+// Pressures, gases and exact tissues every step_s. A gas switch takes effect at the next sample:
+// the diver reports it to the computer, which does not have to guess it.
 std::vector<Sample> samples_of(const KnownDive& dive, double step_s) {
   const diver::Buehlmann model = dive.conventions.model();
   const diver::DecoEnvironment& where = dive.conventions.environment;

@@ -18,7 +18,7 @@ struct DecoTradeoffOptions {
 };
 std::uint64_t steps(const DecoTradeoffOptions& options);
 
-// What is done between two samples.
+// The integration of tissue pressures between two samples.
 enum class TissueMethod {
   kEuler,      // p += k (P - p) dt, P of the older sample
   kHeld,       // exact for the older sample's pressure
@@ -43,7 +43,7 @@ struct DecoTradeoff {
 };
 DecoTradeoff run_deco_tradeoff(const DecoTradeoffOptions& options);
 
-// Of each method and step the largest error and cost of all dives.
+// The largest error and cost over all dives for each method and step.
 std::vector<DecoPoint> worst_of(const DecoTradeoff& tradeoff);
 // The knee of the front of all methods, over the worst of the dives; both axes as they are.
 DecoPoint knee(const DecoTradeoff& tradeoff);

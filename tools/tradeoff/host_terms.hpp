@@ -1,5 +1,5 @@
-// What the host does for a ping or with its image: the table of a sound speed profile at several
-// sizes, and counts of 8 and 16 bits. Each held against what it approximates. Any thread.
+// The CPU's part of a ping and its image: the table of a sound speed profile at several sizes, and
+// counts of 8 and 16 bits. Each is compared with the exact values. Any thread.
 #pragma once
 
 #include <span>

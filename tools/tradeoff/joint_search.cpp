@@ -52,8 +52,8 @@ class JointSearch {
     return p;
   }
 
-  // From the finest with so many rows down: of the other knobs that can go a step coarser, the one
-  // that leaves the cheapest ping within the bound.
+  // Descends from the finest setting with this number of rows: each step makes that other knob
+  // coarser that gives the cheapest ping within the bound.
   Status descend(double bound, std::size_t rows) {
     Place here{ladders_.bins.size() - 1, ladders_.scales.size() - 1, ladders_.columns.size() - 1,
                rows};

@@ -10,7 +10,7 @@
 
 namespace neritic::tools {
 
-// What each knob may be, coarse to fine.
+// The values that each knob can have, coarse to fine.
 struct Ladders {
   std::vector<std::uint32_t> bins;  // of range
   std::vector<double> scales;       // pixels a cell

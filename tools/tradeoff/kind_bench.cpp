@@ -34,7 +34,7 @@ Status KindBench::open(gpu::Device& device, const scene::Scene& scene) {
   scene::Scene own = scene;
   scene::Sonar first = with_knobs(kind_.base, kind_.middle);
   first.terms.level = scene::SonarLevel{};  // so that the session knows what objects scatter
-  own.sonars = {first, first};              // the second is what a price is told against
+  own.sonars = {first, first};              // prices are relative to the second
   own.cameras.clear();
   NERITIC_TRY(session_, Session::create(device, std::move(own)));
   session_->frames().enable_timing(true);
@@ -98,7 +98,8 @@ Result<KindBench::Price> KindBench::price(const scene::Sonar& with, const scene:
     }
     const double middle_ms = median_of(more_ms), n = static_cast<double>(more_ms.size());
     for (double& ms : more_ms) ms = std::abs(ms - middle_ms);
-    // Of a median of n normal values, whose deviation is 1.48 times the median distance from it.
+    // Standard error of a median of n normal values; their deviation is 1.48 times the median of
+    // their distances from it.
     const double error_ms = 1.2533 * 1.4826 * median_of(more_ms) / std::sqrt(n);
     out.ms += middle_ms / static_cast<double>(kind_.shots.size());
     variance += error_ms * error_ms;

@@ -27,17 +27,17 @@ class KindBench {
   // kind must outlive it.
   explicit KindBench(const KindSetting& kind) : kind_(kind) {}
   Status open(gpu::Device& device, const scene::Scene& scene);
-  // A setting of the kind's sensor; the least time of repeats (0: only images). What is the scene's
-  // rather than the sonar's (bodies that bend) is not counted.
+  // A setting of the kind's sensor; the least time of repeats (0: only images). The scene's own
+  // work (bodies that bend) is not counted.
   Result<Measured> render(const scene::Sonar& sonar, int repeats);
-  // What one setting takes longer than another: both in turns, the median of their differences, the
-  // mean over shots. By turns what disturbs the machine disturbs both alike.
+  // The extra time of one setting over another: both are run in turns, so that other load affects
+  // both alike; the median of their differences, then the mean over shots.
   struct Price {
     double ms = 0.0;
     double resolution_ms = 0.0;  // its standard error, from the differences' scatter
   };
   Result<Price> price(const scene::Sonar& with, const scene::Sonar& without, int pairs);
-  // Of the last render.
+  // Sensor poses of the last render.
   const std::vector<Placed>& placed() const { return placed_; }
   std::uint64_t seed() const { return session_->scene().seed; }
   void set_seed(std::uint64_t seed) { session_->scene().seed = seed; }

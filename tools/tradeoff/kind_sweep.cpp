@@ -34,7 +34,7 @@ std::vector<std::uint32_t> columns_of(SonarKind kind, bool quick) {
   return {1, 2, 4, 6, 10, 16};
 }
 
-// Of the middle's.
+// Factors of the middle setting's number of rows.
 std::vector<double> row_factors(bool quick) {
   return quick ? std::vector<double>{0.5}
                : std::vector<double>{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0};
@@ -120,7 +120,7 @@ class KindSweep {
     return out;
   }
 
-  // What makes the rays' own error a fraction of a per cent (KindResult::uncertain tells).
+  // Enough rays for their own error to be a fraction of a per cent (KindResult::uncertain).
   TruthRays rays() const {
     TruthRays rays;
     switch (kind_.base.kind) {

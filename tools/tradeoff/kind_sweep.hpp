@@ -47,7 +47,7 @@ struct KindResult {
 struct KindSweepOptions {
   bool quick = false;
   std::function<void()> step = [] {};
-  // What comes next, in words: some steps take a minute.
+  // Receives the name of the next step, to show progress: some steps take a minute.
   std::function<void(const std::string&)> now = [](const std::string&) {};
 };
 // How often step is called for a kind.
@@ -57,7 +57,7 @@ std::uint64_t kind_steps(scene::SonarKind kind, bool quick);
 Result<KindResult> sweep_kind(gpu::Device& device, const scene::Scene& scene, const RayWorld& world,
                               const KindSetting& kind, const KindSweepOptions& options);
 
-// What a named quality level promises: the cheapest settings below this error.
+// A named quality level: the cheapest settings below this error.
 struct ErrorLevel {
   const char* name;
   double max_error;

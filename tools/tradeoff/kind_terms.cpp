@@ -17,7 +17,7 @@ constexpr int kPairs = 11;
 // An image that a term changes by less tells nothing of it.
 constexpr double kUnheard = 1e-4;
 
-// What the rays take from the sonar, so that they cannot tell whether it is right.
+// Inputs that the rays share with the sonar, so that the comparison cannot check them.
 const char* taken_by_the_rays(const scene::SonarTerms& terms) {
   if (terms.ghosts) return "the rays take the mirrors' places as given";
   if (terms.profile && terms.profile->bent) return "the rays take the bent rays' table as given";
@@ -72,7 +72,7 @@ class TermSweep {
     return add_host_terms(out);
   }
 
-  // What does not depend on the kind is told with the first.
+  // Terms that do not depend on the kind are reported with the first kind only.
   Status add_host_terms(KindResult& out) {
     if (kind_.base.kind != SonarKind::kImaging) return {};
     for (const TermCase& c : cases_) {

@@ -1,4 +1,4 @@
-// What each term of a kind costs, what it is off by, and what leaving it out is off by. Rendering
+// The cost of each term of a kind, its error, and the error of leaving it out. Rendering
 // thread.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What `neritic tradeoff sonar` measures of each kind of sonar: one sensor with its point spread
-// (patterns and pulse) in the given scene, from a few places, and the same sensor with every knob
+// The cases that `neritic tradeoff sonar` measures for each kind of sonar: a sensor with its point
+// spread (patterns and pulse) in the given scene, from a few places, and the same with every knob
 // and term changed one at a time. Pure functions; any thread.
 #pragma once
 

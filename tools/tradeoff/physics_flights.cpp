@@ -119,7 +119,7 @@ std::unique_ptr<const sim::StaticWorld> sand(const sim::Surface& surface, bool w
   return std::make_unique<const sim::StaticWorld>(builder.build());
 }
 
-// What falls, slides and rolls: of so much mass and weight in water, on sand with this friction.
+// The body that falls, slides and rolls: its mass, weight in water, and friction on sand.
 constexpr double kSlideMass_kg = 10.0, kSlideWeight_n = 15.0, kSlideFriction = 0.3;
 constexpr double kBallRadius_m = 0.15, kSlideSpeed_m_s = 1.0;
 

@@ -1,4 +1,4 @@
-// What `neritic tradeoff physics` writes (physics_tradeoff.hpp).
+// The output of `neritic tradeoff physics` (physics_tradeoff.hpp).
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ using rov::Integrator;
 constexpr Integrator kDrawn[] = {Integrator::kSemiImplicit, Integrator::kRk4, Integrator::kGuarded};
 constexpr double kLevels_m[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 
-// What flights are called in tables and plots, in the order of kFlightNames.
+// Names of flights in tables and plots, in the order of kFlightNames.
 struct FlightWords {
   const char *title, *about;
 };
@@ -150,7 +150,7 @@ Panel flight_panel(const PhysicsTradeoff& t, std::size_t f) {
   return panel;
 }
 
-// What the recommended integrator gives on every flight, over the step's length.
+// The recommended integrator's error on every flight, over the length of the step.
 Panel steps_panel(const PhysicsTradeoff& t) {
   Panel panel{"guarded, every flight: over the step", {"step, ms"}, {kError}};
   for (std::size_t f = 0; f < std::size(kFlightNames); ++f) {

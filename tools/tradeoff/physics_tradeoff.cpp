@@ -18,7 +18,7 @@ using rov::Integrator;
 constexpr int kCounts[] = {50, 25, 20, 12, 10, 5, 4, 2, 1};
 constexpr Integrator kIntegrators[] = {Integrator::kSemiImplicit, Integrator::kRk4,
                                        Integrator::kGuarded};
-// Of a step that touches, at 240 Hz.
+// Parts into which a step of 240 Hz with contacts is divided.
 constexpr int kParts[] = {1, 2, 4, 8, 16, 32};
 constexpr int kPartsCount = 12;
 // Later the ball's bounces are too low to count as such, and what slides has stopped.
@@ -72,14 +72,14 @@ PhysicsPoint measure(Flight& flight, const Way& way, bool quick) {
   const FlownError error = flown_error(flight, step_s, way.method);
   point.error_m = error.m;
   point.error_rad = error.rad;
-  // What touches takes tens of times as long: fewer are as sure.
+  // Flights with contacts take tens of times as long: fewer repeats are as precise.
   const int repeats = quick ? 1 : flight.solid ? 3 : 15;
   point.us_a_second =
       least_cpu_us(flight, way, repeats) / (static_cast<double>(flight.inputs.size()) * kHold_s);
   return point;
 }
 
-// What is flown, one after the other: their truths take memory and time.
+// Makes one flight at a time: the reference solutions take memory and time.
 Result<Flight> flight_of(std::size_t index, double seconds) {
   switch (index) {
     case 0:

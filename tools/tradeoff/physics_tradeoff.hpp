@@ -22,7 +22,7 @@ struct PhysicsTradeoffOptions {
 };
 std::uint64_t steps(const PhysicsTradeoffOptions& options);
 
-// What is flown (physics_flights.hpp), in this order.
+// The flights (physics_flights.hpp), in this order.
 inline constexpr const char* kFlightNames[] = {
     "no lag", "lag", "contact, no lag", "contact, lag", "bounce", "slide", "roll"};
 

@@ -1,4 +1,4 @@
-// What `neritic tradeoff physiology` writes (physiology_tradeoff.hpp).
+// The output of `neritic tradeoff physiology` (physiology_tradeoff.hpp).
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

@@ -19,7 +19,7 @@ struct MadeHeart {
 };
 // From rest over effort and back, with respiratory arrhythmia and one extra beat in thirty.
 MadeHeart make_heart(double seconds, std::uint64_t seed);
-// Gaussian waves around each beat, and white noise so many decibels below the signal's power.
+// Gaussian waves around each beat, and white noise snr_db decibels below the signal's power.
 std::vector<double> make_ecg(const std::vector<double>& beats_s, double rate_hz, double seconds,
                              double snr_db, std::uint64_t seed);
 

@@ -29,7 +29,7 @@ struct BreathPoint {
   double us = 0.0;                                    // of one core, an estimate
 };
 
-// What asking for more confidence gives and costs: multiband, windows of BreathSettings::window_s.
+// Gain and cost of a higher confidence limit: multiband, windows of BreathSettings::window_s.
 struct BreathCoverage {
   std::string signals;
   double least_confidence = 0.0;

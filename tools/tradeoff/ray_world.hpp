@@ -1,4 +1,4 @@
-// What rays from the sonar hit: triangles (Embree) or closed forms. Any number of threads may cast.
+// The surfaces that a sonar's rays hit: triangles (Embree) or closed forms. Any thread may cast.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What `neritic tradeoff sonar` writes (sonar_tradeoff.hpp).
+// The output of `neritic tradeoff sonar` (sonar_tradeoff.hpp).
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

@@ -128,7 +128,7 @@ Result<Setting> scene_setting(const scene::Scene& scene, const SonarTradeoffOpti
   return setting;
 }
 
-// What the renderer takes for the scene's sonar at each scale, and how near its own images come.
+// The renderer's time for the scene's sonar at each scale, and the error of its own images.
 Status measure_renderer(gpu::Device& device, scene::Scene scene, const Setting& setting,
                         const Truth& truth, const SonarTradeoffOptions& options,
                         std::map<double, double>& raster_ms, std::vector<Point>& points) {

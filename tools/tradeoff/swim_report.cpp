@@ -1,4 +1,4 @@
-// What `neritic tradeoff swim` writes (swim_tradeoff.hpp).
+// The output of `neritic tradeoff swim` (swim_tradeoff.hpp).
 #include <cmath>
 #include <nlohmann/json.hpp>
 

@@ -24,8 +24,8 @@ struct SwimTradeoffOptions {
 };
 std::uint64_t steps(const SwimTradeoffOptions& options);
 
-// What a step costs whatever its strips, in strips: 10.9 us over 17 ns, measured over 1 to 64
-// strips a segment. So costs are counted, the same on any machine.
+// The fixed cost of a step in units of one strip's: 10.9 us over 17 ns, measured with 1 to 64
+// strips a segment. Costs in strips are the same on any machine.
 inline constexpr double kStepInStrips = 600.0;
 
 // "straight" keeps to the body's plane, as far as beating legs do; "turning" also bends the spine
@@ -49,9 +49,9 @@ struct SwimTradeoff {
 };
 SwimTradeoff run_swim_tradeoff(const SwimTradeoffOptions& options);
 
-// What is used where nothing is said (240 Hz and BodyParameters).
+// True for the default settings (240 Hz and BodyParameters).
 bool is_default(const SwimPoint& point);
-// Of each model, strips and step the largest errors over all swims, called "all".
+// The largest errors over all swims of each model, strips and step, as a swim called "all".
 inline constexpr const char* kAllSwims = "all";
 std::vector<SwimPoint> worst_of_all(const SwimTradeoff& tradeoff);
 // The default is the cheapest, of what is measured, whose error in any swim is within this share of

@@ -10,8 +10,8 @@
 namespace neritic::tools {
 namespace {
 
-// Of the table that stands for the exact bent rays: its interpolation is off by (32 / 128)^2 of
-// what the sonar's own table is.
+// Size of the table that stands for the exact bent rays: its interpolation error is (32 / 128)^2 of
+// that of the sonar's own table.
 constexpr sonar::RangeCorrectionSize kFineTable{129, 257};
 // Beyond the last angle at which a pattern's power is this share of its peak it is left out.
 constexpr double kLeastWeight = 1e-5;
@@ -31,7 +31,7 @@ double return_s(const Vec3& target_m, const Vec3& velocity_m_s, double out_s, do
   return t;
 }
 
-// Of a table, at a share of its longest range and a sine of the elevation.
+// The entry of a table at a share of its longest range and a sine of the elevation.
 double entry_of(const sonar::RangeCorrection& table, const std::vector<float>& entries,
                 double share, double sine) {
   const double x = std::clamp(share, 0.0, 1.0) * (table.width - 1);
@@ -93,8 +93,8 @@ Result<TermImage> TermImage::create(const scene::Sonar& sonar, const sonar::Head
   return made;
 }
 
-// What a bin hears of a return k sub-bins beyond its near edge, by the pulse's energy between the
-// bin's edges. With levels a return in a bin's middle keeps its power there.
+// The share that a bin receives of a return k sub-bins beyond its near edge: the pulse's energy
+// between the bin's edges. With levels a return in a bin's middle keeps its power there.
 void TermImage::make_kernel() {
   const auto& spread = sonar_->terms.range_spread;
   if (!spread) return;

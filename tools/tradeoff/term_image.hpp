@@ -2,7 +2,7 @@
 // in double, and is spread by the pulse and the beams in closed form. Knows nothing of G-buffers,
 // gathers or taps. One owner, one thread.
 //
-// What is shared with the sonar under test are the formulas of the physics (patterns, pulse,
+// It shares with the sonar under test only the formulas of the physics (patterns, pulse,
 // absorption, sound speed), which have tests of their own against published values.
 #pragma once
 
@@ -36,7 +36,7 @@ struct TruthRay {
   bool inside = true;    // heard at all: of a cone, of an aperture
 };
 
-// What came back: out along `out_m` in one or two legs, back along one straight leg.
+// An echo: out along `out_m` in one or two legs, back along one straight leg.
 struct TruthEcho {
   double out_m = 0.0, back_m = 0.0;
   Vec3 target_m{0.0};   // from the sonar, world axes

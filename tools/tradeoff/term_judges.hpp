@@ -9,8 +9,8 @@
 
 namespace neritic::tools {
 
-// Of an image, cell by cell. l1: the mean of each cell's relative error weighted by the cell's true
-// energy, which is the sum of absolute differences over the truth's total.
+// The error of an image, cell by cell. l1: the mean relative error of cells, weighted by their true
+// energy: the sum of absolute differences over the truth's total.
 struct ImageDifference {
   double l1 = 0.0, energy = 0.0;  // energy: total over the truth's, less 1
 };

@@ -16,7 +16,7 @@ struct Column {
   int half;  // neighbours lie in different halves, so that what those differ by is the rays' error
 };
 
-// Outside the aperture a pattern hears little: its columns are so much wider.
+// Columns outside the aperture are wider by this factor, since the pattern is weak there.
 constexpr int kCoarser = 8;
 // Half-power widths around the aperture that are still traced finely.
 constexpr double kFineWidths = 4.0;
@@ -128,7 +128,7 @@ class Tracer {
     return is_cast(ray) ? world_.cast_from(view_.origin_m, ray.direction) : RayHit{};
   }
 
-  // What lies beyond a cone may still be where a ray ends that leaves within it.
+  // A ray that leaves within the cone can end beyond it, since rays bend.
   bool is_cast(const TruthRay& ray) const {
     return !head_.folded || ray.off_axis_rad <= patterns_.cone_rad + most_bend_rad_;
   }

@@ -11,7 +11,7 @@ namespace {
 // Pause before the next try if the surface gave no image, so that the loop is not busy.
 constexpr std::chrono::milliseconds kRetry{5};
 
-// What waits for the surface's image: the copy to it. All earlier passes may run before.
+// The copy to the surface's image waits for it. All earlier passes may run before.
 constexpr VkPipelineStageFlags2 kImageReadyStage = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
 
 }  // namespace

@@ -30,7 +30,7 @@ class Overlay {
   // colour multiplied by alpha, clear where ImGui drew nothing.
   graph::ImageHandle declare(graph::FrameGraph& graph);
 
-  // What ImGui's panels use of the input now.
+  // The input devices that ImGui's panels use now.
   InputClaims claims() const;
   float scale() const { return scale_; }
 

@@ -37,7 +37,7 @@ class Swapchain {
   Result<AcquireOutcome> acquire();
   Result<PresentOutcome> present();
 
-  // Of the acquired image.
+  // These belong to the acquired image.
   const gpu::Image& image() const { return images_[current_]; }
   VkSemaphore image_ready() const { return ready_[ready_at_]; }
   VkSemaphore drawn() const { return drawn_[current_]; }
