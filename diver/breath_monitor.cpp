@@ -24,12 +24,15 @@ BreathAnalyser::BreathAnalyser(double rate_hz, const BreathSettings& settings)
 const BreathState& BreathAnalyser::take(std::span<const float> sound) {
   for (const float sample : sound) bands_.push(sample, frames_);
   samples_ += sound.size();
-  const auto most = static_cast<std::size_t>(std::lround(settings_.window_s * kBreathFrames_hz));
+  const double history_s = std::max(settings_.window_s, kSlowWindow_s);
+  const auto most = static_cast<std::size_t>(std::lround(history_s * kBreathFrames_hz));
   if (frames_.size() > most)
     frames_.erase(frames_.begin(), frames_.end() - static_cast<std::ptrdiff_t>(most));
   state_.time_s = static_cast<double>(samples_) / rate_hz_ + lost_s_;
-  state_.estimate = estimate_breath(frames_, bands_, settings_.estimator);
-  state_.quiet_s = quiet_for(frames_, bands_);
+  state_.estimate =
+      estimate_newest_breath(frames_, settings_.window_s, bands_, settings_.estimator);
+  const auto window = static_cast<std::size_t>(std::lround(settings_.window_s * kBreathFrames_hz));
+  state_.quiet_s = quiet_for(std::span(frames_).last(std::min(window, frames_.size())), bands_);
   state_.refused = bands_.refused();
   ++state_.blocks;
   return state_;

@@ -19,6 +19,9 @@ struct BreathSettings {
   // That an estimate looks back over: two blocks, the knee of `tradeoff physiology`.
   double window_s = 20.0;
 };
+// The sound that is kept for breath of less than 6 a minute, if the window is shorter: three
+// breaths of 4 a minute.
+inline constexpr double kSlowWindow_s = 45.0;
 // kBadInput: blocks of 0.5 to 60 s, windows of a block to 300 s.
 Status check_breath_settings(const BreathSettings& settings);
 
@@ -36,7 +39,7 @@ class BreathAnalyser {
   double rate_hz_;
   BreathSettings settings_;
   BreathBands bands_;
-  std::vector<BreathFrame> frames_;  // the last window's
+  std::vector<BreathFrame> frames_;  // the last window's, or kSlowWindow_s
   std::uint64_t samples_ = 0;
   double lost_s_ = 0.0;
   BreathState state_;

@@ -29,7 +29,9 @@ constexpr double kMostPause = 1.25;
 constexpr double kFirstPeak = 0.85;
 // How far off the next but one breath is looked for, in periods.
 constexpr double kReach = 0.15;
-constexpr double kMostDeviations = 1.5;                // of a level, from its mean
+constexpr double kMostDeviations = 1.5;  // of a level, from its mean
+// The baselines look no lower, as published.
+constexpr double kSlowestOfBaselines_hz = 0.1;
 constexpr double kDecibelsANeper = 4.342944819032518;  // of power
 
 Levels smoothed(const Levels& in) {
@@ -77,7 +79,7 @@ void by_autocorrelation(const Levels& envelope, BreathEstimate& out) {
   const auto frames = static_cast<int>(envelope.size());
   const int shortest = static_cast<int>(kBreathFrames_hz / kFastestBreath_hz);
   const int last = frames - static_cast<int>(kLeastOverlap_s * kBreathFrames_hz);
-  const int longest = std::min(static_cast<int>(kBreathFrames_hz / kSlowestBreath_hz), last);
+  const int longest = std::min(static_cast<int>(kBreathFrames_hz / kSlowestOfBaselines_hz), last);
   // By lag, worked out where it is asked for.
   std::vector<double> r(static_cast<std::size_t>(last + 2),
                         std::numeric_limits<double>::quiet_NaN());
@@ -120,7 +122,7 @@ void by_spectrum(const Levels& envelope, BreathEstimate& out) {
     windowed[i] *= 0.5 - 0.5 * std::cos(2.0 * kPi * (static_cast<double>(i) + 0.5) / n);
     all += envelope[i] * envelope[i];
   }
-  const auto slowest = static_cast<std::size_t>(std::ceil(kSlowestBreath_hz / step_hz));
+  const auto slowest = static_cast<std::size_t>(std::ceil(kSlowestOfBaselines_hz / step_hz));
   const auto fastest = static_cast<std::size_t>(std::floor(kFastestBreath_hz / step_hz));
   const auto power = line_powers(windowed, step_hz, fastest + 2);
   std::size_t best = slowest;
@@ -132,10 +134,17 @@ void by_spectrum(const Levels& envelope, BreathEstimate& out) {
   out.confidence = std::min(1.0, all > 0.0 ? power[best] / (all * n / 8.0) : 0.0);
 }
 
-void by_rhythm(const std::vector<Levels>& bands, BreathEstimate& out) {
+// An estimate, and whether the breath is longer than the window can measure.
+struct WindowEstimate {
+  BreathEstimate breath;
+  bool slower = false;
+};
+
+void by_rhythm(const std::vector<Levels>& bands, WindowEstimate& out) {
   const Rhythm rhythm = common_rhythm(bands);
-  out.rate_bpm = 60.0 * rhythm.rate_hz;
-  out.confidence = rhythm.confidence;
+  out.breath.rate_bpm = 60.0 * rhythm.rate_hz;
+  out.breath.confidence = rhythm.confidence;
+  out.slower = rhythm.slower;
 }
 
 Levels log_levels(std::span<const BreathFrame> frames, std::size_t band) {
@@ -178,6 +187,40 @@ double longest_pause_s(std::span<const BreathFrame> frames, const BreathBands& f
   return longest / kBreathFrames_hz;
 }
 
+WindowEstimate estimate_window(std::span<const BreathFrame> frames, const BreathBands& front,
+                               BreathEstimator estimator, double least_confidence) {
+  WindowEstimate result;
+  BreathEstimate& out = result.breath;
+  if (static_cast<double>(frames.size()) < kLeastWindow_s * kBreathFrames_hz) return result;
+  std::vector<Levels> bands;
+  for (int band = 0; band < front.bands(); ++band) {
+    Levels levels = log_levels(frames, static_cast<std::size_t>(band));
+    const double deviation = center(levels);
+    if (deviation <= 0.0) continue;
+    if (is_lively(deviation, front.width_hz(band)))
+      out.depth_db = std::max(out.depth_db, kDecibelsANeper * deviation);
+    // A band counts as much as the next, and a knock no more than a breath.
+    for (double& l : levels) l = std::clamp(l / deviation, -kMostDeviations, kMostDeviations);
+    center(levels);
+    bands.push_back(std::move(levels));
+  }
+  // No band goes up and down by more than noise does.
+  if (out.depth_db <= 0.0) return result;
+  Levels envelope;
+  for (const BreathFrame& f : frames) envelope.push_back(f.envelope);
+  envelope = smoothed(envelope);
+  center(envelope);
+  if (estimator == BreathEstimator::kSpectrum) by_spectrum(envelope, out);
+  if (estimator == BreathEstimator::kAutocorrelation) by_autocorrelation(envelope, out);
+  if (estimator == BreathEstimator::kMultiBand) by_rhythm(bands, result);
+  const bool missed = estimator != BreathEstimator::kSpectrum &&
+                      longest_pause_s(frames, front) * out.rate_bpm / 60.0 >= kMostPause;
+  const bool sure = out.confidence >= least_confidence && !missed;
+  out.breathing = out.rate_bpm > 0.0 && sure ? 1 : 0;
+  if (!out.breathing) out.rate_bpm = 0.0;
+  return result;
+}
+
 }  // namespace
 
 const char* name_of(BreathEstimator estimator) {
@@ -211,42 +254,27 @@ Result<BreathEstimator> breath_estimator_of(const std::string& name) {
   return bad_input("found estimator '{}'; accepted: spectrum, autocorrelation or multiband", name);
 }
 
+double slowest_breath_hz(double window_s) {
+  return window_s >= 2.0 / kSlowestBreath_hz ? kSlowestBreath_hz : 0.1;
+}
+
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
                                BreathEstimator estimator, double least_confidence) {
-  BreathEstimate out;
-  if (static_cast<double>(frames.size()) < kLeastWindow_s * kBreathFrames_hz) return out;
-  std::vector<Levels> bands;
-  for (int band = 0; band < front.bands(); ++band) {
-    Levels levels = log_levels(frames, static_cast<std::size_t>(band));
-    const double deviation = center(levels);
-    if (deviation <= 0.0) continue;
-    if (is_lively(deviation, front.width_hz(band)))
-      out.depth_db = std::max(out.depth_db, kDecibelsANeper * deviation);
-    // A band counts as much as the next, and a knock no more than a breath.
-    for (double& l : levels) l = std::clamp(l / deviation, -kMostDeviations, kMostDeviations);
-    center(levels);
-    bands.push_back(std::move(levels));
-  }
-  // No band goes up and down by more than noise does.
-  if (out.depth_db <= 0.0) return out;
-  Levels envelope;
-  for (const BreathFrame& f : frames) envelope.push_back(f.envelope);
-  envelope = smoothed(envelope);
-  center(envelope);
-  if (estimator == BreathEstimator::kSpectrum) by_spectrum(envelope, out);
-  if (estimator == BreathEstimator::kAutocorrelation) by_autocorrelation(envelope, out);
-  if (estimator == BreathEstimator::kMultiBand) by_rhythm(bands, out);
-  const bool missed = estimator != BreathEstimator::kSpectrum &&
-                      longest_pause_s(frames, front) * out.rate_bpm / 60.0 >= kMostPause;
-  const bool sure = out.confidence >= least_confidence && !missed;
-  out.breathing = out.rate_bpm > 0.0 && sure ? 1 : 0;
-  if (!out.breathing) out.rate_bpm = 0.0;
-  return out;
+  return estimate_window(frames, front, estimator, least_confidence).breath;
 }
 
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
                                BreathEstimator estimator) {
   return estimate_breath(frames, front, estimator, confidence_asked(estimator));
+}
+
+BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, double window_s,
+                                      const BreathBands& front, BreathEstimator estimator) {
+  const auto window = static_cast<std::size_t>(std::lround(window_s * kBreathFrames_hz));
+  const WindowEstimate newest = estimate_window(history.last(std::min(window, history.size())),
+                                                front, estimator, confidence_asked(estimator));
+  if (!newest.slower || history.size() <= window) return newest.breath;
+  return estimate_breath(history, front, estimator);
 }
 
 double quiet_for(std::span<const BreathFrame> frames, const BreathBands& front) {

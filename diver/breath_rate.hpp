@@ -7,8 +7,11 @@
 
 namespace neritic::diver {
 
-// 6 to 42 breaths a minute.
-inline constexpr double kSlowestBreath_hz = 0.1, kFastestBreath_hz = 0.7;
+// 3 to 42 breaths a minute. A window must hold two breaths: one of 20 s measures 6 a minute and
+// more, one of 40 s all.
+inline constexpr double kSlowestBreath_hz = 0.05, kFastestBreath_hz = 0.7;
+// The slowest rate that a window of this many seconds is searched for.
+double slowest_breath_hz(double window_s);
 
 enum class BreathEstimator : std::uint8_t {
   // The largest line in the spectrum of the envelope, as published. Breathing in and breathing out
@@ -61,13 +64,18 @@ struct BreathState {
   }
 };
 
-// The estimate of a window of frames; the front frame says which bands exist. A window without
-// breath says so: steady noise, silence, less than four seconds, less confidence than asked and,
-// for all but kSpectrum, a rate that a pause contradicts, 1.25 of its breaths long.
+// The estimate of a window of frames; `front` says which bands exist. There is no breath in steady
+// noise, in silence, in less than four seconds, where the confidence is less than asked and, for
+// all but kSpectrum, where the sound pauses for 1.25 breaths of the rate.
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
                                BreathEstimator estimator, double least_confidence);
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
                                BreathEstimator estimator);
+
+// The same for the last seconds of a longer history. kMultiBand: if every second burst is alike, so
+// that a breath is longer than the window can measure, the whole history is the window.
+BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, double window_s,
+                                      const BreathBands& front, BreathEstimator estimator);
 
 // Since when no burst was heard, in seconds, at the window's end: a pause. The whole window where
 // there is none.

@@ -20,6 +20,10 @@ constexpr double kShareOfDouble = 0.5;
 // If a line at half of the frequency exceeds the median of all by this factor, a whole breath has
 // twice the period. On the recordings none does; chance alone reaches 5.5.
 constexpr double kHalfLine = 6.0;
+// Below 0.1 Hz levels drift: there the line at half of the frequency must be this much stronger
+// than the best. Slow regulator breath has 1.3 and more; 2 of 150 windows of faster breath on the
+// recordings have more than 1.
+constexpr double kSlowHalf = 1.25;
 // Lines are searched in steps of the window's resolution divided by this number.
 constexpr double kLinesAResolution = 8.0;
 constexpr int kMostSweeps = 30;
@@ -125,7 +129,10 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
   if (components.empty()) return {};
   const auto frames = static_cast<double>(bands[0].size());
   const double step_hz = kBreathFrames_hz / frames / kLinesAResolution;
-  const auto slowest = static_cast<std::size_t>(std::ceil(kSlowestBreath_hz / step_hz));
+  const auto line_of = [&](double hz) {
+    return static_cast<std::size_t>(std::ceil(hz / step_hz - 1e-9));
+  };
+  const std::size_t slowest = line_of(slowest_breath_hz(frames / kBreathFrames_hz));
   const auto fastest = static_cast<std::size_t>(std::floor(kFastestBreath_hz / step_hz));
   std::vector<double> together(2 * (fastest + 1) + 1, 0.0);
   for (const Levels& component : components) {
@@ -142,15 +149,23 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
   const double confidence = share_of_arrhythmic_below(at(best), frames / kBreathFrames_hz);
   double line = static_cast<double>(best) + parabola_top(at(best - 1), at(best), at(best + 1));
   constexpr auto kReach = static_cast<std::size_t>(kLinesAResolution / 4.0);
-  if (best / 2 >= slowest) {
+  bool slower = false;
+  // A window must hold one breath at least to show its line.
+  const double slowest_half_hz = std::max(kSlowestBreath_hz, kBreathFrames_hz / frames);
+  if (best / 2 >= line_of(slowest_half_hz)) {
     const auto half = together.begin() + static_cast<std::ptrdiff_t>(best / 2);
     const double highest = *std::max_element(half - kReach, half + kReach + 1);
     std::vector<double> sorted(together.begin() + static_cast<std::ptrdiff_t>(slowest),
                                together.end());
     std::ranges::nth_element(sorted,
                              sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
-    if (highest > kHalfLine * sorted[sorted.size() / 2]) line *= 0.5;
+    const bool stands_out = highest > kHalfLine * sorted[sorted.size() / 2];
+    if (stands_out && (best / 2 >= line_of(0.1) || highest > kSlowHalf * at(best))) {
+      line *= 0.5;
+      slower = best / 2 < slowest;
+    }
   }
+  if (slower) return {.slower = true};
   return {step_hz * line, confidence};
 }
 

@@ -16,8 +16,11 @@ std::vector<double> line_powers(const Levels& x, double step_hz, std::size_t cou
 double parabola_top(double before, double here, double after);
 
 struct Rhythm {
-  double rate_hz = 0.0;     // 0: no line in kSlowestBreath_hz to kFastestBreath_hz
+  double rate_hz = 0.0;     // 0: no line in slowest_breath_hz to kFastestBreath_hz
   double confidence = 0.0;  // the share of sounds without rhythm whose best line is weaker
+  // A line at half of the rate says that a breath is longer than the window can measure; rate_hz
+  // and confidence are 0.
+  bool slower = false;
 };
 
 // The rhythm of levels of equal length, each with mean 0 and deviation about 1. Principal

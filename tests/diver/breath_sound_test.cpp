@@ -64,6 +64,39 @@ TEST(BreathSound, ARegulatorsHissAndBubblesAreOneBreath) {
   }
 }
 
+// In for 0.4 of a breath, hissing, and out for 0.4 of it, bubbling; or in alone.
+std::vector<float> slow_breath(double rate_bpm, bool out_is_heard, double seconds) {
+  constexpr double kRate_hz = 2000.0;
+  auto hiss = SecondOrderFilter::high_pass(400.0, kRate_hz);
+  auto bubbles = SecondOrderFilter::low_pass(200.0, kRate_hz);
+  std::vector<float> sound;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(seconds * kRate_hz); ++i) {
+    const double share = std::fmod(static_cast<double>(i) / kRate_hz * rate_bpm / 60.0, 1.0);
+    const double noise = test::gauss({7}, i);
+    const double high = hiss.step(noise), low = 3.0 * bubbles.step(noise);
+    const bool in = share < 0.4, out = out_is_heard && share >= 0.5 && share < 0.9;
+    sound.push_back(static_cast<float>(0.05 * (in ? high : out ? low : 0.02 * noise)));
+  }
+  return sound;
+}
+
+TEST(BreathSound, SlowBreathIsRightOrRefusedAndNeverDoubled) {
+  for (const bool out_is_heard : {true, false})
+    for (const double rate_bpm : {3.0, 3.5, 4.0, 4.5, 5.0, 5.5}) {
+      SCOPED_TRACE(fmt::format("{} a minute, out {}", rate_bpm, out_is_heard));
+      Recording sound{"", 2000.0};
+      const std::vector<float> samples = slow_breath(rate_bpm, out_is_heard, 120.0);
+      sound.samples.assign(samples.begin(), samples.end());
+      const std::vector<BreathState> states = analyse_breath(sound, {});
+      for (const BreathState& state : states) {
+        if (state.estimate.breathing)
+          EXPECT_NEAR(state.estimate.rate_bpm, rate_bpm, 0.4) << state.time_s << " s";
+      }
+      // In alone looks like many rhythms at once: it may stay refused.
+      if (out_is_heard) EXPECT_TRUE(states.back().estimate.breathing);
+    }
+}
+
 TEST(BreathSound, APauseIsNoRate) {
   std::vector<float> sound = bursts(1.0, 0.5, 40.0);
   const std::vector<float> pause = bursts(0.02, 0.02, 12.0);
