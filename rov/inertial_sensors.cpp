@@ -21,15 +21,15 @@ ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, 
               noise.error3(imu.accelerometer, 3, sample, imu.rate_hz)};
 }
 
-PressureReading read_pressure(const PressureSensor& sensor, const State& state,
-                              const NoiseSource& noise, std::uint64_t sample) {
+PressureReading read_pressure(const PressureSensor& sensor, const SensorWater& water,
+                              const State& state, const NoiseSource& noise, std::uint64_t sample) {
   const Vec3 at = state.position_ned_m + state.attitude * sensor.mount.position_m;
-  const double pa_per_m = sensor.water_kg_m3 * sensor.gravity_m_s2;
-  double pressure = sensor.air_pa + pa_per_m * std::max(0.0, at.z) +
+  double pressure = water.air_pa + water.water_kg_m3 * water.gravity_m_s2 * std::max(0.0, at.z) +
                     noise.error(sensor.noise, 0, sample, sensor.rate_hz);
   if (sensor.resolution_pa > 0.0)
     pressure = sensor.resolution_pa * std::round(pressure / sensor.resolution_pa);
-  return {pressure, (pressure - sensor.surface_pa.value_or(sensor.air_pa)) / pa_per_m};
+  return {pressure, (pressure - sensor.surface_pa.value_or(water.air_pa)) /
+                        (sensor.water_kg_m3 * sensor.gravity_m_s2)};
 }
 
 double read_compass(const Compass& compass, const State& state, const NoiseSource& noise,

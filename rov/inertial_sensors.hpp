@@ -35,12 +35,19 @@ struct ImuReading {
 ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, const Vec6& contact,
                     const NoiseSource& noise, std::uint64_t sample);
 
+// The water that a sensor is in, and the air over it: the scene's.
+struct SensorWater {
+  double water_kg_m3 = 1028.0, gravity_m_s2 = 9.82;
+  double air_pa = 101325.0;
+};
+
 struct PressureSensor {
   Mount mount;
   double rate_hz = 20.0;
   Noise noise;                 // Pa
   double resolution_pa = 0.0;  // 0: none
-  double air_pa = 101325.0;    // over the water: the scene's, by its altitude
+  // The sensor's settings, by which it converts the pressure to a depth. They need not be those of
+  // the water it is in: a sensor set for the sea reads 2.4 % too little in a lake.
   // The pressure at depth 0, as the sensor was zeroed; empty: the air over the water.
   std::optional<double> surface_pa;
   double water_kg_m3 = 1025.0, gravity_m_s2 = 9.82;
@@ -53,8 +60,8 @@ struct PressureReading {
     field("depth_m", self.depth_m);
   }
 };
-PressureReading read_pressure(const PressureSensor& sensor, const State& state,
-                              const NoiseSource& noise, std::uint64_t sample);
+PressureReading read_pressure(const PressureSensor& sensor, const SensorWater& water,
+                              const State& state, const NoiseSource& noise, std::uint64_t sample);
 
 struct Compass {
   double rate_hz = 50.0;

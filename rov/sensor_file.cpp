@@ -29,7 +29,7 @@ Mount mount_of(const CaseField& field) {
                                                    turn(angle("roll_deg"), {1, 0, 0})};
 }
 
-Imu read_imu_table(const CaseField& field) {
+Imu read_imu_table(const CaseField& field, double gravity_m_s2) {
   constexpr std::string_view kKeys[] = {"position_m",         "yaw_deg",     "pitch_deg",
                                         "roll_deg",           "rate_hz",     "gyro_deg_s",
                                         "accelerometer_m_s2", "gravity_m_s2"};
@@ -39,7 +39,7 @@ Imu read_imu_table(const CaseField& field) {
   imu.rate_hz = rate_of(field, imu.rate_hz);
   imu.gyro = noise_of(field["gyro_deg_s"], radians(1.0));
   imu.accelerometer = noise_of(field["accelerometer_m_s2"]);
-  imu.gravity_m_s2 = field["gravity_m_s2"].number(imu.gravity_m_s2, 0.0, 100.0);
+  imu.gravity_m_s2 = field["gravity_m_s2"].number(gravity_m_s2, 0.0, 100.0);
   return imu;
 }
 
@@ -65,7 +65,7 @@ Dvl read_dvl_table(const CaseField& field) {
   return dvl;
 }
 
-PressureSensor read_pressure_table(const CaseField& field) {
+PressureSensor read_pressure_table(const CaseField& field, double gravity_m_s2) {
   constexpr std::string_view kKeys[] = {"position_m", "rate_hz",     "noise_pa",    "resolution_pa",
                                         "surface_pa", "water_kg_m3", "gravity_m_s2"};
   field.allow(kKeys);
@@ -76,7 +76,7 @@ PressureSensor read_pressure_table(const CaseField& field) {
   p.resolution_pa = field["resolution_pa"].number(0.0, 0.0, 1e6);
   if (field["surface_pa"].present()) p.surface_pa = field["surface_pa"].number(0.0, 0.0, 1e6);
   p.water_kg_m3 = field["water_kg_m3"].number(p.water_kg_m3, 1.0, 2000.0);
-  p.gravity_m_s2 = field["gravity_m_s2"].number(p.gravity_m_s2, 0.1, 100.0);
+  p.gravity_m_s2 = field["gravity_m_s2"].number(gravity_m_s2, 0.1, 100.0);
   return p;
 }
 
@@ -132,11 +132,12 @@ Usbl read_usbl_table(const CaseField& field) {
 
 }  // namespace
 
-SensorSet read_sensors(const CaseField& vehicle) {
+SensorSet read_sensors(const CaseField& vehicle, double gravity_m_s2) {
   SensorSet out;
-  if (vehicle["imu"].present()) out.imu = read_imu_table(vehicle["imu"]);
+  if (vehicle["imu"].present()) out.imu = read_imu_table(vehicle["imu"], gravity_m_s2);
   if (vehicle["dvl"].present()) out.dvl = read_dvl_table(vehicle["dvl"]);
-  if (vehicle["pressure"].present()) out.pressure = read_pressure_table(vehicle["pressure"]);
+  if (vehicle["pressure"].present())
+    out.pressure = read_pressure_table(vehicle["pressure"], gravity_m_s2);
   if (vehicle["compass"].present()) out.compass = read_compass_table(vehicle["compass"]);
   if (vehicle["altimeter"].present()) out.altimeter = read_altimeter_table(vehicle["altimeter"]);
   if (vehicle["usbl"].present()) out.usbl = read_usbl_table(vehicle["usbl"]);

@@ -7,7 +7,8 @@
 
 namespace neritic::rov {
 
-// Faults are recorded in the field's file.
-SensorSet read_sensors(const CaseField& vehicle);
+// Faults are recorded in the field's file. gravity_m_s2: the vehicle's, which its sensors share
+// unless their tables name another.
+SensorSet read_sensors(const CaseField& vehicle, double gravity_m_s2);
 
 }  // namespace neritic::rov

@@ -63,7 +63,7 @@ void update_readings(const SensorSet& sensors, const SensorWorld& world, const V
   });
   with(sensors.pressure, kPressure, readings.pressure,
        [&](const PressureSensor& s, const NoiseSource& n, std::uint64_t k) {
-         return read_pressure(s, state, n, k);
+         return read_pressure(s, world.water, state, n, k);
        });
   with(sensors.compass, kCompass, readings.heading_rad,
        [&](const Compass& s, const NoiseSource& n, std::uint64_t k) {

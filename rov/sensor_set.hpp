@@ -58,6 +58,7 @@ struct SensorWorld {
   RayQuery rays;              // without one, nothing is heard
   std::uint64_t seed = 0;     // of the scene
   std::uint64_t vehicle = 0;  // its number: vehicles differ in their noise
+  SensorWater water{};
 };
 
 // Replaces the readings of the sensors that are due in (from_s, to_s], of the state at to_s.

@@ -64,10 +64,9 @@ void check_dissipation(const CaseField& file, const VehicleParameters& p) {
     file["linear_damping"].fail("adds energy; accepted: a positive semidefinite matrix");
 }
 
-void read_body(const CaseField& file, double water_kg_m3, VehicleParameters& p) {
+void read_body(const CaseField& file, double water_kg_m3, double gravity, VehicleParameters& p) {
   p.name = file["name"].text();
   p.mass_kg = file.required("mass_kg").number(1.0, 1e-6, 1e9);
-  const double gravity = file["gravity_m_s2"].number(kGravity, 0.0, 100.0);
   const auto inertia = file.required("inertia_kg_m2").square(3);
   for (std::size_t i = 0; i < inertia.size(); ++i)
     for (std::size_t j = 0; j < 3; ++j)
@@ -163,14 +162,18 @@ Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name
   root.allow(kVehicleKeys);
   VehicleFile out;
   VehicleParameters& p = out.parameters;
-  read_body(root, water_kg_m3, p);
+  out.gravity_m_s2 = root["gravity_m_s2"].number(kGravity, 0.0, 100.0);
+  read_body(root, water_kg_m3, out.gravity_m_s2, p);
   read_thrusters(root["thrusters"], p);
   if (root["lag"].present()) read_lag(root["lag"], p.lag);
-  if (root["tether"].present()) read_tether(root["tether"], p.tether.emplace());
+  if (root["tether"].present()) {
+    p.tether = Tether{.water_kg_m3 = water_kg_m3};
+    read_tether(root["tether"], *p.tether);
+  }
   out.gains = default_gains();
   if (root["control"].present()) read_gains(root["control"], out.gains);
   out.voltage_v = root["voltage_v"].number(16.0, 1.0, 1000.0);
-  out.sensors = read_sensors(root);
+  out.sensors = read_sensors(root, out.gravity_m_s2);
   out.outline = read_outline(root["outline"]);
   const std::string curve = root["thrust_table"].text();
   if (file.failed()) return file.error();

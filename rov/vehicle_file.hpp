@@ -19,12 +19,14 @@ struct VehicleFile {
   // Where the file names a thrust table: commands go through it at this voltage (drive()).
   std::optional<ThrustCurve> curve;
   double voltage_v = 16.0;
+  double gravity_m_s2 = 9.82;
   SensorSet sensors;
   std::vector<OutlinePart> outline;  // none: what is drawn of it says it
 };
 
 // Errors in one line: file:line, key, what was found, what is accepted. Buoyancy is that of the
-// file's volume in water of this density, unless it gives the buoyancy itself.
+// file's volume in water of this density, unless it gives the buoyancy itself; so is the tether's
+// drag, unless its table names another density.
 Result<VehicleFile> read_vehicle(const std::filesystem::path& path, double water_kg_m3);
 // The same from text; paths in it are relative to folder.
 Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name,

@@ -228,8 +228,12 @@ void PhysicsWorld::sense(std::size_t index, double from_s, double to_s, PhysicsS
   const PhysicsVehicle& vehicle = vehicles_[index];
   if (!vehicle.readings) return;
   const VehicleState& now = state.vehicles()[index];
-  rov::update_readings(vehicle.file.sensors, {rays(), seed_, index}, vehicle.vehicle, now.body,
+  rov::update_readings(vehicle.file.sensors, sensor_world(index), vehicle.vehicle, now.body,
                        now.contact.acceleration, from_s, to_s, state.readings()[*vehicle.readings]);
+}
+
+rov::SensorWorld PhysicsWorld::sensor_world(std::size_t vehicle) const {
+  return {rays(), seed_, vehicle, vehicles_[vehicle].water};
 }
 
 const rov::SensorReadings* PhysicsWorld::readings(const PhysicsState& state,

@@ -137,8 +137,6 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
   const scene::Object& object = scene.objects[index];
   const scene::Dynamics& dynamics = *object.dynamics;
   NERITIC_TRY(rov::VehicleFile file, rov::read_vehicle(dynamics.file, scene.physics->water_kg_m3));
-  if (file.sensors.pressure)
-    file.sensors.pressure->air_pa = 1e5 * diver::surface_bar_at(scene.physics->altitude_m);
   NERITIC_TRY(rov::Vehicle vehicle, rov::make_vehicle(file.parameters));
   rov::prepare_steps(vehicle, std::array{step_s_, step_s_ / method_.contact_parts});
   NERITIC_TRY_STATUS(check_thrusters(scene, object, vehicle));
@@ -165,6 +163,8 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
   NERITIC_TRY_STATUS(check_start(scene, out.name, out.solid.shape,
                                  rov::world_pose(out.start.position_ned_m, out.start.attitude)));
   if (out.file.sensors.any()) out.readings = sensing_++;
+  out.water = {scene.physics->water_kg_m3, out.file.gravity_m_s2,
+               1e5 * diver::surface_bar_at(scene.physics->altitude_m)};
   vehicles_.push_back(std::move(out));
   return {};
 }

@@ -32,6 +32,7 @@ struct PhysicsVehicle {
   double top_m = 0.0, bottom_m = 0.0;  // of the shape, above the origin
   rov::State start;
   std::optional<std::size_t> readings;  // of PhysicsState::readings(); none: without sensors
+  rov::SensorWater water;               // around its sensors
 };
 
 // Memory that a step works in, kept from step to step so that none allocates. Its content means
@@ -61,7 +62,6 @@ class PhysicsWorld {
 
   const std::vector<PhysicsVehicle>& vehicles() const { return vehicles_; }
   const std::vector<PhysicsHuman>& humans() const { return humans_; }
-  std::uint64_t seed() const { return seed_; }  // of the scene, for sensors
   const sim::StaticWorld& solid() const { return solid_; }
   double step_s() const { return step_s_; }
   const StepMethod& method() const { return method_; }
@@ -88,6 +88,8 @@ class PhysicsWorld {
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
   // What sensors hear: the first solid thing along a ray.
   rov::RayQuery rays() const;
+  // Everything around a vehicle's sensors.
+  rov::SensorWorld sensor_world(std::size_t vehicle) const;
 
   // The step with memory of its own, for a simulation or a replay; borrows the world.
   PhysicsSimulation::Step step_function() const;

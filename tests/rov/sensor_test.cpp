@@ -63,25 +63,41 @@ TEST(RovSensor, PressureIsThatOfItsDepth) {
   State state;
   state.position_ned_m.z = 10.0;
   state.attitude = glm::angleAxis(kPi / 2.0, Vec3(0, 1, 0));  // bow up: its tail is lower
-  const PressureReading read = read_pressure(sensor, state, {}, 0);
+  const SensorWater water{1025.0, 9.82, 101325.0};
+  const PressureReading read = read_pressure(sensor, water, state, {}, 0);
   EXPECT_NEAR(read.depth_m, 10.2, 1e-9);
   EXPECT_NEAR(read.pressure_pa, 101325.0 + 1025.0 * 9.82 * 10.2, 1e-6);
   sensor.resolution_pa = 20.0;
-  EXPECT_EQ(std::fmod(read_pressure(sensor, state, {}, 0).pressure_pa, 20.0), 0.0);
+  EXPECT_EQ(std::fmod(read_pressure(sensor, water, state, {}, 0).pressure_pa, 20.0), 0.0);
 }
 
-// A lake at 2000 m: zeroed there it reads its depth, zeroed at the sea .22 bar too little.
+// The water presses, and the sensor's setting converts: 20 m of fresh water read by a sensor that
+// is set for the sea, and for fresh water.
+TEST(RovSensor, PressureIsThatOfTheWaterAndDepthThatOfTheSetting) {
+  PressureSensor sensor;
+  sensor.water_kg_m3 = 1025.0;
+  const SensorWater lake{1000.0, 9.82, 95000.0};
+  State state;
+  state.position_ned_m.z = 20.0;
+  EXPECT_NEAR(read_pressure(sensor, lake, state, {}, 0).pressure_pa, 95000.0 + 1000.0 * 9.82 * 20.0,
+              1e-6);
+  EXPECT_NEAR(read_pressure(sensor, lake, state, {}, 0).depth_m, 20.0 * 1000.0 / 1025.0, 1e-9);
+  sensor.water_kg_m3 = 1000.0;
+  EXPECT_NEAR(read_pressure(sensor, lake, state, {}, 0).depth_m, 20.0, 1e-9);
+}
+
+// A lake at 2000 m: zeroed there it reads its depth, zeroed at the sea 0.22 bar too little.
 TEST(RovSensor, PressureCountsFromTheAirOverTheWater) {
   PressureSensor sensor;
-  sensor.air_pa = 79495.0;
+  const SensorWater lake{1025.0, 9.82, 79495.0};
   State state;
   state.position_ned_m.z = 10.0;
   const double water_pa = 1025.0 * 9.82 * 10.0;
-  EXPECT_NEAR(read_pressure(sensor, state, {}, 0).pressure_pa, 79495.0 + water_pa, 1e-6);
-  EXPECT_NEAR(read_pressure(sensor, state, {}, 0).depth_m, 10.0, 1e-9);
+  EXPECT_NEAR(read_pressure(sensor, lake, state, {}, 0).pressure_pa, 79495.0 + water_pa, 1e-6);
+  EXPECT_NEAR(read_pressure(sensor, lake, state, {}, 0).depth_m, 10.0, 1e-9);
   sensor.surface_pa = 101325.0;
-  EXPECT_NEAR(read_pressure(sensor, state, {}, 0).pressure_pa, 79495.0 + water_pa, 1e-6);
-  EXPECT_NEAR(read_pressure(sensor, state, {}, 0).depth_m,
+  EXPECT_NEAR(read_pressure(sensor, lake, state, {}, 0).pressure_pa, 79495.0 + water_pa, 1e-6);
+  EXPECT_NEAR(read_pressure(sensor, lake, state, {}, 0).depth_m,
               10.0 + (79495.0 - 101325.0) / (1025.0 * 9.82), 1e-9);
 }
 

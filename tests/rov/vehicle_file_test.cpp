@@ -132,6 +132,26 @@ TEST(RovVehicleFile, SensorsAreThereWhereNamedAndQuietWhereNotTold) {
               HasSubstr("imu.gyro_deg_s.wite: not known; the nearest is white"));
 }
 
+// The scene's water and the vehicle's gravity, unless a table names its own.
+TEST(RovVehicleFile, TetherAndSensorsAreInTheScenesWater) {
+  const std::string text =
+      "mass_kg = 10\ninertia_kg_m2 = [0.2, 0.2, 0.3]\ngravity_m_s2 = 9.78\n[tether]\n[imu]\n"
+      "[pressure]\n";
+  const auto lake = parse_vehicle(text, "v.toml", vehicles(), kFreshDensity);
+  ASSERT_TRUE(lake.ok()) << lake.error().message;
+  EXPECT_EQ(lake->parameters.tether->water_kg_m3, kFreshDensity);
+  EXPECT_EQ(lake->gravity_m_s2, 9.78);
+  EXPECT_EQ(lake->sensors.imu->gravity_m_s2, 9.78);
+  EXPECT_EQ(lake->sensors.pressure->gravity_m_s2, 9.78);
+  const auto named = parse_vehicle(
+      "mass_kg = 10\ninertia_kg_m2 = [0.2, 0.2, 0.3]\n[tether]\n"
+      "water_kg_m3 = 1010\n[imu]\ngravity_m_s2 = 9.8\n",
+      "v.toml", vehicles(), kFreshDensity);
+  ASSERT_TRUE(named.ok()) << named.error().message;
+  EXPECT_EQ(named->parameters.tether->water_kg_m3, 1010.0);
+  EXPECT_EQ(named->sensors.imu->gravity_m_s2, 9.8);
+}
+
 TEST(RovThrustCurve, ShippedTableIsTheMeasurementsToATenthOfANewton) {
   const auto curve = ThrustCurve::read(vehicles() / "t200_thrust.csv");
   ASSERT_TRUE(curve.ok()) << curve.error().message;

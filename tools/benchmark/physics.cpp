@@ -54,8 +54,8 @@ Sample survey(const Surveyor& surveyor, int seconds) {
     simulation->advance(1);
     const TimeNs stepped = now_ns();
     const auto& newest = simulation->newest();
-    rov::update_readings(surveyor.sensors, {world.rays(), world.seed(), 0},
-                         world.vehicles()[0].vehicle, newest.state.vehicles()[0].body,
+    rov::update_readings(surveyor.sensors, world.sensor_world(0), world.vehicles()[0].vehicle,
+                         newest.state.vehicles()[0].body,
                          newest.state.vehicles()[0].contact.acceleration,
                          newest.time_s - world.step_s(), newest.time_s, readings);
     of_sensors += now_ns() - stepped;

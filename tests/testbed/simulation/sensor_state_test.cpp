@@ -18,9 +18,9 @@ TEST(SensorState, TheStepReadsWhatTheSensorsReadOfEachState) {
   const PhysicsVehicle& survey = dive.world->vehicles()[1];
   rov::SensorReadings expected;
   const auto sense = [&](double from_s, double to_s) {
-    rov::update_readings(survey.file.sensors, {dive.world->rays(), dive.world->seed(), 1},
-                         survey.vehicle, dive.vehicle(1).body, dive.vehicle(1).contact.acceleration,
-                         from_s, to_s, expected);
+    rov::update_readings(survey.file.sensors, dive.world->sensor_world(1), survey.vehicle,
+                         dive.vehicle(1).body, dive.vehicle(1).contact.acceleration, from_s, to_s,
+                         expected);
   };
   sense(-1.0, 0.0);
   const double dt_s = dive.world->step_s();
@@ -33,6 +33,24 @@ TEST(SensorState, TheStepReadsWhatTheSensorsReadOfEachState) {
   }
   EXPECT_GT(expected.imu.count, 500u);
   EXPECT_GT(expected.dvl.count, 5u);
+}
+
+// A lake of fresh water at 1000 m: the pressure is that of its water under its air, whatever water
+// the sensor is set for.
+TEST(SensorState, PressureIsThatOfTheScenesWater) {
+  const test::ScratchFolder scratch;
+  ASSERT_TRUE(write_text(scratch / "set_for_the_sea.toml",
+                         "include = \"" + vehicles_folder() +
+                             "/bluerov2_heavy_dynamics.toml\"\n[pressure]\n")
+                  .ok());
+  const TestDive dive =
+      dive_of(std::string("[physics]\nwater_kg_m3 = 1000\naltitude_m = 1000\n") +
+              "[[vehicles]]\nname = \"rov\"\nshape = \"box\"\nposition_m = [0, -20, 0]\n"
+              "dynamics = \"" +
+              (scratch / "set_for_the_sea.toml").string() + "\"\n");
+  const rov::PressureReading& read = dive.world->readings(dive.state(), 0)->pressure.value;
+  EXPECT_NEAR(read.pressure_pa, 89875.0 + 1000.0 * 9.82 * 20.0, 2.0);  // US Standard Atmosphere
+  EXPECT_NEAR(read.depth_m, 20.0 * 1000.0 / 1025.0, 1e-9);
 }
 
 TEST(SensorState, AVehicleWithoutSensorsTakesNoSpaceForThem) {

@@ -16,7 +16,7 @@ double ms_a_second(TestDive& dive, const rov::SensorSet& sensors, double enough_
     for (int i = 0; i < 240; ++i) {
       dive.simulation->advance(1);
       const VehicleState& state = dive.vehicle();
-      rov::update_readings(sensors, {dive.world->rays(), 1, 0}, dive.world->vehicles()[0].vehicle,
+      rov::update_readings(sensors, dive.world->sensor_world(0), dive.world->vehicles()[0].vehicle,
                            state.body, state.contact.acceleration,
                            dive.time_s() - dive.world->step_s(), dive.time_s(), readings);
     }
