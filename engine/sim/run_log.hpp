@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 namespace neritic::sim {
@@ -20,7 +21,7 @@ struct RunLog {
   std::uint64_t seed = 0;        // the run's, for setting the run up again
   std::uint64_t first_step = 0;  // where it begins: not 0 after a restored state
   Inputs start{};                // before the first message
-  std::vector<Entry> entries;
+  std::deque<Entry> entries;  // a deque: to add one never moves the others, which would take long
   std::vector<std::uint64_t> hashes;  // one more than there are steps
 
   std::uint64_t steps() const { return hashes.empty() ? 0 : hashes.size() - 1; }

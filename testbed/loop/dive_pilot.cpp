@@ -1,6 +1,7 @@
 #include "testbed/loop/dive_pilot.hpp"
 
 #include "rov/frames.hpp"
+#include "testbed/samples/authority_words.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -20,24 +21,6 @@ VehicleWrench wrench_of(const DiveInput& input) {
   out.wrench[2] = -input.move.y * (input.fast ? kFullThrust_n : kLift_n);
   out.wrench[5] = input.turn * (input.fast ? kFastTurn_n_m : kTurn_n_m);
   return out;
-}
-
-// "diver: buttons without controllers, autopilot" of each group whose live source is silent.
-template <class Group, class Groups, class Inputs>
-void add_silent(const std::string& name, const Groups& groups, const Inputs& inputs,
-                const SampleInbox& inbox, std::vector<std::string>& out) {
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    const GroupPhase phase = groups[i].phase;
-    if (phase != GroupPhase::kLost && phase != GroupPhase::kWaiting) continue;
-    const GroupControl& control = inputs.control[i];
-    const auto sources = inbox.source_names();
-    const bool known = control.authority == Authority::kLive && control.source < sources.size();
-    out.push_back(fmt::format("{}: {} {} {}; {}", name, name_of(static_cast<Group>(i)),
-                              phase == GroupPhase::kLost ? "lost" : "waits for",
-                              known ? sources[control.source] : "its source",
-                              phase == GroupPhase::kLost ? fmt::format("{} times", groups[i].losses)
-                                                         : std::string(name_of(control.then))));
-  }
 }
 
 }  // namespace
@@ -111,13 +94,13 @@ std::vector<std::string> DivePilot::lines() const {
                       vehicles[i].mission->waypoint_count());
     out.push_back(line);
   }
-  const PhysicsInputs& chosen = physics_->world().start_inputs();
+  const auto sources = physics_->inbox().source_names();
   for (std::size_t i = 0; i < vehicles.size(); ++i)
-    add_silent<VehicleGroup>(vehicles[i].name, physics_->shown().vehicles()[i].groups,
-                             chosen.vehicles()[i], physics_->inbox(), out);
-  for (std::size_t i = 0; i < physics_->world().humans().size(); ++i)
-    add_silent<DiverGroup>(physics_->world().humans()[i].name, physics_->shown().humans()[i].groups,
-                           chosen.humans()[i], physics_->inbox(), out);
+    add_trouble<VehicleGroup>(vehicles[i].name, physics_->shown().vehicles()[i].groups, sources,
+                              out);
+  const auto& humans = physics_->world().humans();
+  for (std::size_t i = 0; i < humans.size(); ++i)
+    add_trouble<DiverGroup>(humans[i].name, physics_->shown().humans()[i].groups, sources, out);
   if (const auto dropped = physics_->counts().dropped; dropped > 0)
     out.push_back(fmt::format("{} steps dropped", dropped));
   return out;

@@ -21,7 +21,8 @@ class DivePilot final : public SampleSource {
   Status poll(SampleInbox& inbox, double scene_time_s) override;
   // The riding view; precondition: take() said true.
   Pose world_from_view() const;
-  // A line a vehicle, for the panels; and one a group of inputs whose live source is silent.
+  // For the panels: a line a vehicle, then one a group of inputs whose source is silent or that
+  // does not use the samples sent to it.
   std::vector<std::string> lines() const;
 
  private:

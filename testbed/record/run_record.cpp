@@ -1,5 +1,7 @@
 #include "testbed/record/run_record.hpp"
 
+#include "testbed/samples/recorded_source.hpp"
+
 namespace neritic::testbed {
 
 SampleLog recorded_run(const PhysicsWorld& world, const PhysicsSimulation& simulation) {
@@ -13,15 +15,26 @@ SampleLog recorded_run(const PhysicsWorld& world, const PhysicsSimulation& simul
   return out;
 }
 
-sim::ReplayReport replay_run(const PhysicsWorld& world, const SampleLog& log) {
-  PhysicsSimulation::Log run{log.step_s, log.seed, 0, world.start_inputs(), {}, log.hashes};
-  run.entries.reserve(log.entries.size());
-  for (const SampleLog::Entry& entry : log.entries)
-    run.entries.push_back({entry.step, entry.sample});
-  return sim::replay(run, world.start(), world.step_function(),
-                     [&](PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) {
-                       world.apply(inputs, sample, step);
-                     });
+Result<sim::ReplayReport> replay_run(const PhysicsWorld& world, SampleLog log,
+                                     const std::string& name) {
+  if (log.step_s != world.step_s())
+    return bad_input("{}: steps of {} s; accepted: {} s, as in the scene", name, log.step_s,
+                     world.step_s());
+  NERITIC_TRY(RecordedSource source, RecordedSource::create(std::move(log), world.streams(), name));
+  const auto simulation = world.simulation({.log = false});
+  const auto& hashes = source.log().hashes;
+  sim::ReplayReport report;
+  for (std::uint64_t step = 0; step < hashes.size(); ++step) {
+    if (simulation->newest().hash != hashes[step]) {
+      report.first_difference = step;
+      return report;
+    }
+    if (step + 1 == hashes.size()) break;
+    NERITIC_TRY_STATUS(source.poll(simulation->inbox(), simulation->newest().time_s));
+    simulation->advance(1);
+    ++report.steps;
+  }
+  return report;
 }
 
 }  // namespace neritic::testbed

@@ -10,7 +10,9 @@ namespace neritic::testbed {
 // Precondition: the simulation keeps its log, and began at step 0.
 SampleLog recorded_run(const PhysicsWorld& world, const PhysicsSimulation& simulation);
 
-// Precondition: check_streams(log, world.streams()), and the world's step.
-sim::ReplayReport replay_run(const PhysicsWorld& world, const SampleLog& log);
+// Runs the log again: its samples enter by a RecordedSource, and each state's hash is compared.
+// kBadInput for a log of another step or with samples of other streams. name stands in messages.
+Result<sim::ReplayReport> replay_run(const PhysicsWorld& world, SampleLog log,
+                                     const std::string& name);
 
 }  // namespace neritic::testbed

@@ -10,8 +10,13 @@ constexpr std::array<std::string_view, kDiverGroups> kDiverGroupNames{
 constexpr std::array<std::string_view, kVehicleGroups> kVehicleGroupNames{"wrench", "setpoint",
                                                                           "fault"};
 
+constexpr std::array<std::string_view, 4> kPhaseNames{"chosen", "waiting", "live", "lost"};
+
 }  // namespace
 
+std::string_view name_of(GroupPhase phase) {
+  return kPhaseNames.at(static_cast<std::size_t>(phase));
+}
 std::string_view name_of(Authority authority) {
   return kAuthorityNames.at(static_cast<std::size_t>(authority));
 }
@@ -57,6 +62,7 @@ std::optional<std::size_t> group_of(PayloadKind kind) {
 bool hear(GroupControl& control, SourceId source, std::uint64_t step) {
   if (control.authority != Authority::kLive || control.source != source) {
     ++control.unheeded;
+    control.unheeded_source = source;
     return false;
   }
   ++control.heard;
@@ -75,6 +81,12 @@ bool set_authority(GroupControl& control, std::uint64_t authority, std::uint64_t
 GroupState next_group(const GroupState& before, const GroupControl& control, std::uint64_t step,
                       double dt_s) {
   GroupState next = before;
+  next.authority = control.authority;
+  next.then = control.then;
+  next.source = control.source;
+  next.heard = control.heard;
+  next.unheeded = control.unheeded;
+  next.unheeded_source = control.unheeded_source;
   if (control.authority != Authority::kLive) {
     next.phase = GroupPhase::kChosen;
   } else if (control.heard == 0) {
@@ -88,16 +100,12 @@ GroupState next_group(const GroupState& before, const GroupControl& control, std
 }
 
 Authority acting(const GroupControl& control, GroupPhase phase) {
-  switch (phase) {
-    case GroupPhase::kChosen:
-      return control.authority;
-    case GroupPhase::kLive:
-      return Authority::kLive;
-    case GroupPhase::kWaiting:
-    case GroupPhase::kLost:
-      return control.then;
-  }
-  return control.then;
+  return phase == GroupPhase::kWaiting || phase == GroupPhase::kLost ? control.then
+                                                                     : control.authority;
+}
+
+Authority acting(const GroupState& state) {
+  return acting(GroupControl{.authority = state.authority, .then = state.then}, state.phase);
 }
 
 }  // namespace neritic::testbed

@@ -49,14 +49,16 @@ inline constexpr std::array<double, kDiverGroups> kDiverHold_s{0.5, 0.5,  0.5,  
                                                                0.5, 30.0, 10.0, kHoldForever_s};
 inline constexpr std::array<double, kVehicleGroups> kVehicleHold_s{0.5, 0.5, kHoldForever_s};
 
-// What a group is to listen to, and what it heard.
+// The source that a group is to listen to, and the samples that came for it.
 struct GroupControl {
   Authority authority = Authority::kAutopilot;
   Authority then = Authority::kAutopilot;  // while a live source is silent; never kLive
   std::uint64_t source = 0;                // of kLive
   double hold_s = kHoldForever_s;
-  std::uint64_t heard = 0, unheeded = 0;  // samples of the source, and of any other
-  std::uint64_t heard_step = 0;           // the step that used the newest first
+  std::uint64_t heard = 0;            // samples of the source
+  std::uint64_t heard_step = 0;       // the step that used the newest first
+  std::uint64_t unheeded = 0;         // samples of any other source
+  std::uint64_t unheeded_source = 0;  // of the newest of those
 
   static void fields(auto&& field, auto& self) {
     field("authority", self.authority);
@@ -64,8 +66,9 @@ struct GroupControl {
     field("source", self.source);
     field("hold_s", self.hold_s);
     field("heard", self.heard);
-    field("unheeded", self.unheeded);
     field("heard_step", self.heard_step);
+    field("unheeded", self.unheeded);
+    field("unheeded_source", self.unheeded_source);
   }
 };
 
@@ -80,21 +83,33 @@ enum class GroupPhase : std::uint64_t {
   kLive,
   kLost,  // the source is silent for longer than hold_s
 };
+std::string_view name_of(GroupPhase phase);
 
+// With the control of the newest step beside it, so that a snapshot says who has the authority.
 struct GroupState {
   GroupPhase phase = GroupPhase::kChosen;
   std::uint64_t losses = 0;  // times that the source fell silent
+  Authority authority = Authority::kAutopilot, then = Authority::kAutopilot;
+  std::uint64_t source = 0;
+  std::uint64_t heard = 0, unheeded = 0, unheeded_source = 0;
 
   static void fields(auto&& field, auto& self) {
     field("phase", self.phase);
     field("losses", self.losses);
+    field("authority", self.authority);
+    field("then", self.then);
+    field("source", self.source);
+    field("heard", self.heard);
+    field("unheeded", self.unheeded);
+    field("unheeded_source", self.unheeded_source);
   }
 };
 
 // In step `step`, which lasts dt_s.
 GroupState next_group(const GroupState& before, const GroupControl& control, std::uint64_t step,
                       double dt_s);
-// What acts on the group in that phase: kLive only where the source is heard.
+// The authority that acts on the group in that phase: kLive only while the source is heard.
 Authority acting(const GroupControl& control, GroupPhase phase);
+Authority acting(const GroupState& state);
 
 }  // namespace neritic::testbed

@@ -11,12 +11,13 @@ void take(const Sample& sample, T& value) {
 
 template <class Inputs>
 bool apply_event(Inputs& inputs, const Event& event) {
-  if (event.kind != EventKind::kSetAuthority || event.group >= inputs.control.size() ||
-      event.hold_s < 0.0)
+  const bool known = event.kind == EventKind::kSetAuthority &&
+                     event.group < inputs.control.size() && event.hold_s >= 0.0;
+  if (!known || !set_authority(inputs.control[event.group], event.authority, event.source)) {
+    ++inputs.refused_events;
     return false;
-  GroupControl& control = inputs.control[event.group];
-  if (!set_authority(control, event.authority, event.source)) return false;
-  if (event.hold_s > 0.0) control.hold_s = event.hold_s;
+  }
+  if (event.hold_s > 0.0) inputs.control[event.group].hold_s = event.hold_s;
   return true;
 }
 

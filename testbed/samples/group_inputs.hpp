@@ -18,6 +18,7 @@ struct DiverInputs {
   Breath breath;
   Heart heart;
   GasSupply gas;
+  std::uint64_t refused_events = 0;  // that name no group or authority
 
   const GroupControl& of(DiverGroup group) const {
     return control[static_cast<std::size_t>(group)];
@@ -36,6 +37,7 @@ struct DiverInputs {
     field("breath", self.breath);
     field("heart", self.heart);
     field("gas", self.gas);
+    field("refused_events", self.refused_events);
   }
 };
 
@@ -44,6 +46,7 @@ struct VehicleInputs {
   VehicleWrench wrench;
   VehicleSetpoint setpoint;
   ThrusterFault fault;
+  std::uint64_t refused_events = 0;  // that name no group or authority
 
   const GroupControl& of(VehicleGroup group) const {
     return control[static_cast<std::size_t>(group)];
@@ -55,6 +58,7 @@ struct VehicleInputs {
     field("wrench", self.wrench);
     field("setpoint", self.setpoint);
     field("fault", self.fault);
+    field("refused_events", self.refused_events);
   }
 };
 
@@ -62,8 +66,8 @@ struct VehicleInputs {
 DiverInputs autopilot_diver();
 VehicleInputs autopilot_vehicle();
 
-// A sample that arrived before `step`: into its group if its source has the authority. An event
-// sets an authority. False where it changed nothing, which is counted.
+// Puts a sample that arrived before `step` into its group if its source has the authority. An event
+// sets an authority. False if it changed nothing; the group or `refused_events` counts it then.
 bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step);
 bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step);
 

@@ -59,7 +59,8 @@ Result<SourceId> SampleInbox::open(const std::string& name, TimeNs max_age_ns) {
 
 SampleVerdict SampleInbox::check(const Sample& sample, bool finite, Source& source) {
   const SampleHeader& header = sample.header;
-  if (header.stream >= streams_.size() || streams_[header.stream].kind != sample.kind())
+  if (header.stream >= streams_.size() || streams_[header.stream].kind != sample.kind() ||
+      !enters(sample.kind()))
     return SampleVerdict::kNotOfStream;
   // The number counts as come, whatever becomes of the sample.
   const auto found =

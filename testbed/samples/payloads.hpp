@@ -226,17 +226,35 @@ struct ComputerReading {
   }
 };
 
-// A camera's or sonar's image stays in the ring of its sensor: the sample says which one it is. Its
-// slot may be read once the sensor's completion value reached `completion`.
+// Texels lie row by row, the top row (of a sonar the nearest range) first, without gaps.
+enum class ImageFormat : std::uint32_t {
+  kColor,       // 4 bytes: red, green, blue, alpha, sRGB
+  kDepth,       // float: reversed Z with an infinite far plane
+  kSonarSums,   // uint32: sums of the plain cosine
+  kSonarPower,  // float: power after the receiver's gains
+};
+
+// The image of a camera or sonar. It stays on the device: `frame` says in which frame of the
+// sensors it was declared, `index` which of that frame's images it is. The host may read it once
+// the device's completion value reached `completion`, and as long as the frame is kept: the frame
+// pins the buffers of its images.
 struct ImageHandle {
-  std::uint64_t slot = 0, completion = 0;
+  std::uint64_t frame = 0, completion = 0;
+  std::uint32_t index = 0;
+  ImageFormat format = ImageFormat::kColor;
   std::uint32_t width = 0, height = 0;  // pixels; of a sonar azimuth and range bins
+  std::uint32_t layers = 1;             // views
+  std::uint32_t texel_bytes = 4;
 
   static void fields(auto&& field, auto& self) {
-    field("slot", self.slot);
+    field("frame", self.frame);
     field("completion", self.completion);
+    field("index", self.index);
+    field("format", self.format);
     field("width", self.width);
     field("height", self.height);
+    field("layers", self.layers);
+    field("texel_bytes", self.texel_bytes);
   }
 };
 

@@ -1,4 +1,4 @@
-// A sample: a header that says whose it is and when it was taken, and one payload. Plain bytes; any
+// A sample: a header that names its source and its time, and one payload. Plain bytes; any
 // thread. A device, a client, a recording or the simulation sends it (README.md).
 #pragma once
 
@@ -74,6 +74,10 @@ static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kImage) + 1
 
 // The last part of a stream's name: "joints", "imu".
 std::string_view name_of(PayloadKind kind);
+// Whether samples of the kind are inputs; the others leave.
+constexpr bool enters(PayloadKind kind) {
+  return kind <= PayloadKind::kEvent;
+}
 
 struct Sample {
   SampleHeader header;

@@ -5,9 +5,15 @@
 //   8 bytes  "NRTCLOG2"
 //   f64 step_s   u64 seed   u64 steps   u64 samples   u32 kinds   u32 streams   u32 sources
 //   kinds:    name, u32 fields; each field 1 byte type as Python's struct has it (d f i I q Q),
-//   name streams:  name, u32 kind (its place above) sources:  name samples:  u64 step (never
-//   falling, below steps), u32 stream, u32 source, u64 sequence,
+//   name
+//
+//   streams:  name, u32 kind (its place above)
+//
+//   sources:  name
+//
+//   samples:  u64 step (never falling, below steps), u32 stream, u32 source, u64 sequence,
 //             i64 captured_ns, i64 arrived_ns, then the fields' numbers
+//
 //   hashes:   u64 each, of the state at step 0, 1, ... steps
 //
 // Pure functions and plain values; any thread.
@@ -49,7 +55,7 @@ std::vector<std::byte> encode_sample_log(const SampleLog& log);
 // What is returned keeps the format's promises, and every number is finite. name stands in
 // messages.
 Result<SampleLog> parse_sample_log(std::span<const std::byte> bytes, const std::string& name);
-// kBadInput if the log was recorded of other streams.
+// kBadInput if the log has samples of a stream that the table lacks.
 Status check_streams(const SampleLog& log, const StreamTable& table, const std::string& name);
 Status write_sample_log(const std::filesystem::path& path, const SampleLog& log);
 Result<SampleLog> read_sample_log(const std::filesystem::path& path);

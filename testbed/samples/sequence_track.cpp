@@ -2,6 +2,26 @@
 
 namespace neritic::testbed {
 
+std::string_view name_of(SampleVerdict verdict) {
+  switch (verdict) {
+    case SampleVerdict::kAccepted:
+      return "accepted";
+    case SampleVerdict::kRepeated:
+      return "repeated";
+    case SampleVerdict::kOutOfOrder:
+      return "out of order";
+    case SampleVerdict::kLate:
+      return "late";
+    case SampleVerdict::kNotFinite:
+      return "not finite";
+    case SampleVerdict::kNotOfStream:
+      return "not of its stream";
+    case SampleVerdict::kUnknownSource:
+      return "of an unknown source";
+  }
+  return "";
+}
+
 SequenceTrack::Found SequenceTrack::take(std::uint64_t sequence, TimeNs captured_ns) {
   constexpr std::uint64_t kWindow = 64;
   if (seen_ == 0) {

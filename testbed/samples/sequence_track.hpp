@@ -3,21 +3,25 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "engine/core/clock.hpp"
 
 namespace neritic::testbed {
 
-// What became of a sample that came in.
+// The fate of a sample that came in.
 enum class SampleVerdict {
   kAccepted,
   kRepeated,       // its sequence number came before
   kOutOfOrder,     // older than what came before, by number or by capture time
   kLate,           // captured too long ago, or after it arrived
   kNotFinite,      // a number is NaN or infinite
-  kNotOfStream,    // no such stream, or another kind of payload than the stream's
+  kNotOfStream,    // no such stream, an output, or another kind of payload than the stream's
   kUnknownSource,  // the source was never opened
 };
+
+// "out of order", "late".
+std::string_view name_of(SampleVerdict verdict);
 
 class SequenceTrack {
  public:

@@ -30,7 +30,7 @@ class StreamTable {
   void add_vehicle(const std::string& name, const rov::SensorSet& sensors);
   // Of its next object that something outside moves.
   void add_object(const std::string& name);
-  // Of its next camera or sonar.
+  // Of its next camera or sonar: cameras first, then sonars.
   void add_sensor(const std::string& name);
 
   std::span<const Stream> streams() const { return streams_; }

@@ -109,11 +109,7 @@ Status write_results(const DiveFlags& flags, const std::string& title, const Phy
 
 Status replay_dive(const DiveFlags& flags, const PhysicsWorld& world) {
   NERITIC_TRY(const SampleLog log, read_sample_log(flags.replay));
-  if (log.step_s != world.step_s())
-    return bad_input("{}: steps of {} s; accepted: {} s, as in {}", flags.replay, log.step_s,
-                     world.step_s(), flags.scene);
-  NERITIC_TRY_STATUS(check_streams(log, world.streams(), flags.replay));
-  const sim::ReplayReport report = replay_run(world, log);
+  NERITIC_TRY(const sim::ReplayReport report, replay_run(world, log, flags.replay));
   if (report.first_difference)
     return failure(ErrorCode::kUnsupported, "{}: another state than recorded from step {} of {} on",
                    flags.replay, *report.first_difference, log.steps());

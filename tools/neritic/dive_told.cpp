@@ -6,6 +6,7 @@
 #include "diver/gas_label.hpp"
 #include "engine/core/json.hpp"
 #include "rov/frames.hpp"
+#include "testbed/samples/authority_words.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -167,31 +168,87 @@ nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& s
           {"end", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}}};
 }
 
-// A line a live source that sent anything wrong or had samples replaced.
+bool in_trouble(const SourceCounts& counts) {
+  return counts.refused() + counts.lost + counts.dropped > 0;
+}
+
+// A line a live source of which samples were lost, dropped or refused.
 std::string source_lines(const SampleInbox& inbox) {
   std::string lines;
   const auto names = inbox.source_names();
   for (SourceId id = 0; id < names.size(); ++id) {
     const SourceCounts counts = inbox.counts(id);
-    if (counts.refused() + counts.lost + counts.dropped == 0) continue;
-    lines += fmt::format("source {}: {} samples used, {} lost, {} dropped, {} refused\n", names[id],
-                         counts.accepted - counts.dropped, counts.lost, counts.dropped,
-                         counts.refused());
+    if (!in_trouble(counts)) continue;
+    lines +=
+        fmt::format("source {}: {} samples taken", names[id], counts.accepted - counts.dropped);
+    for (const auto& [count, words] : {std::pair(counts.lost, "lost"),
+                                       {counts.dropped, "dropped"},
+                                       {counts.late, "late"},
+                                       {counts.repeated, "repeated"},
+                                       {counts.out_of_order, "out of order"},
+                                       {counts.not_finite, "not finite"},
+                                       {counts.not_of_stream, "not of their stream"}})
+      if (count > 0) lines += fmt::format(", {} {}", count, words);
+    lines += "\n";
   }
+  if (const auto unknown = inbox.unknown_sources(); unknown > 0)
+    lines += fmt::format("{} samples of unknown sources refused\n", unknown);
   return lines;
 }
 
-// A line a group of inputs whose live source fell silent or never spoke.
-template <class Group, class Groups>
-std::string silence_lines(const std::string& name, const Groups& groups) {
-  std::string lines;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    const std::string group = fmt::format("{}: {}: ", name, name_of(static_cast<Group>(i)));
-    if (groups[i].phase == GroupPhase::kWaiting) lines += group + "its source never spoke\n";
-    if (groups[i].losses > 0)
-      lines += group + fmt::format("its source fell silent {} times\n", groups[i].losses);
+nlohmann::json sources_json(const SampleInbox& inbox) {
+  nlohmann::json json = nlohmann::json::array();
+  const auto names = inbox.source_names();
+  for (SourceId id = 0; id < names.size(); ++id) {
+    const SourceCounts counts = inbox.counts(id);
+    if (id == kSimulation && counts.accepted == 0 && !in_trouble(counts)) continue;
+    json.push_back({{"name", names[id]},
+                    {"accepted", counts.accepted},
+                    {"dropped", counts.dropped},
+                    {"lost", counts.lost},
+                    {"late", counts.late},
+                    {"repeated", counts.repeated},
+                    {"out_of_order", counts.out_of_order},
+                    {"not_finite", counts.not_finite},
+                    {"not_of_stream", counts.not_of_stream}});
   }
-  return lines;
+  return json;
+}
+
+// Of each group that a source was named for or that samples came for.
+template <class Group, class Groups>
+nlohmann::json groups_json(const Groups& groups, const std::vector<std::string>& sources) {
+  nlohmann::json json = nlohmann::json::object();
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const GroupState& state = groups[i];
+    if (state.authority == Authority::kAutopilot && state.unheeded == 0 && state.losses == 0)
+      continue;
+    json[std::string(name_of(static_cast<Group>(i)))] = {
+        {"authority", authority_words(state, sources)},
+        {"phase", name_of(state.phase)},
+        {"used", state.heard},
+        {"not_used", state.unheeded},
+        {"fell_silent", state.losses}};
+  }
+  return json;
+}
+
+// A line a group of inputs whose live source fell silent, never spoke, or is not heeded, and one of
+// events that named no group.
+template <class Group, class Groups>
+std::string group_lines(const std::string& name, const Groups& groups, std::uint64_t refused_events,
+                        const std::vector<std::string>& sources) {
+  std::vector<std::string> lines;
+  add_trouble<Group>(name, groups, sources, lines);
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (groups[i].phase != GroupPhase::kLost && groups[i].losses > 0)
+      lines.push_back(fmt::format("{}: {}: its source fell silent {} times", name,
+                                  name_of(static_cast<Group>(i)), groups[i].losses));
+  if (refused_events > 0)
+    lines.push_back(fmt::format("{}: {} events refused", name, refused_events));
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
 }
 
 }  // namespace
@@ -239,6 +296,7 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
   const auto& newest = simulation.newest();
   const double speed = newest.time_s / std::max(pace.wall_s, 1e-9);
   const std::string hash = fmt::format("{:016x}", newest.hash);
+  const auto sources = simulation.inbox().source_names();
   if (flags.json) {
     nlohmann::json json{{"scene", flags.scene},
                         {"simulated_s", newest.time_s},
@@ -250,13 +308,23 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                         {"refused_states", simulation.refused_states()},
                         {"hash", hash},
                         {"vehicles", nlohmann::json::array()}};
-    for (std::size_t i = 0; i < world.vehicles().size(); ++i)
-      json["vehicles"].push_back(
-          vehicle_json(world.vehicles()[i], newest.state.vehicles()[i], recorder.figures()[i]));
+    for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
+      const VehicleState& state = newest.state.vehicles()[i];
+      auto vehicle = vehicle_json(world.vehicles()[i], state, recorder.figures()[i]);
+      vehicle["inputs"] = groups_json<VehicleGroup>(state.groups, sources);
+      vehicle["refused_events"] = simulation.inputs().vehicles()[i].refused_events;
+      json["vehicles"].push_back(std::move(vehicle));
+    }
     json["humans"] = nlohmann::json::array();
-    for (std::size_t i = 0; i < world.humans().size(); ++i)
-      json["humans"].push_back(
-          human_json(world.humans()[i], newest.state.humans()[i], recorder.humans().figures()[i]));
+    for (std::size_t i = 0; i < world.humans().size(); ++i) {
+      const HumanPhysics& state = newest.state.humans()[i];
+      auto human = human_json(world.humans()[i], state, recorder.humans().figures()[i]);
+      human["inputs"] = groups_json<DiverGroup>(state.groups, sources);
+      human["refused_events"] = simulation.inputs().humans()[i].refused_events;
+      json["humans"].push_back(std::move(human));
+    }
+    json["sources"] = sources_json(simulation.inbox());
+    json["unknown_source_samples"] = simulation.inbox().unknown_sources();
     fmt::print("{}\n", json_text(json));
     return;
   }
@@ -267,11 +335,13 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
     fmt::print("{}", human_line(world.humans()[i], newest.state.humans()[i],
                                 recorder.humans().figures()[i]));
   for (std::size_t i = 0; i < world.vehicles().size(); ++i)
-    fmt::print("{}", silence_lines<VehicleGroup>(world.vehicles()[i].name,
-                                                 newest.state.vehicles()[i].groups));
+    fmt::print(
+        "{}", group_lines<VehicleGroup>(world.vehicles()[i].name, newest.state.vehicles()[i].groups,
+                                        simulation.inputs().vehicles()[i].refused_events, sources));
   for (std::size_t i = 0; i < world.humans().size(); ++i)
     fmt::print("{}",
-               silence_lines<DiverGroup>(world.humans()[i].name, newest.state.humans()[i].groups));
+               group_lines<DiverGroup>(world.humans()[i].name, newest.state.humans()[i].groups,
+                                       simulation.inputs().humans()[i].refused_events, sources));
   fmt::print("{}", source_lines(simulation.inbox()));
   fmt::print("{:g} s in {} steps, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",
              newest.time_s, newest.step, speed, pace.dropped, hash);

@@ -3,34 +3,11 @@
 #include <thread>
 
 #include "testbed/record/run_record.hpp"
-#include "tests/testbed/simulation/senders.hpp"
+#include "tests/testbed/simulation/devices.hpp"
 
 namespace neritic::testbed {
 namespace {
 
-std::string hover_text(const std::string& inputs) {
-  return kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
-                                  "inputs = { " + inputs + " }\n");
-}
-
-// A device of one stream, open in a dive's inbox.
-struct Device {
-  Device(const TestDive& dive, const std::string& name, const std::string& stream)
-      : inbox(dive.simulation->inbox()),
-        source(inbox.open(name).value()),
-        stream(dive.world->streams().find(stream).value()) {}
-  SampleVerdict say(const Payload& payload) {
-    return inbox.push({{stream, source, sequence++, 0, 0}, payload});
-  }
-  SampleInbox& inbox;
-  SourceId source;
-  StreamId stream;
-  std::uint64_t sequence = 0;
-};
-
-const GroupState& group(const TestDive& dive, DiverGroup group) {
-  return dive.state().humans()[0].groups[static_cast<std::size_t>(group)];
-}
 double depth_m(const TestDive& dive) {
   return dive.state().humans()[0].human.root.position_ned_m.z;
 }
@@ -72,7 +49,7 @@ TEST(LiveInputs, ThreeSourcesAtTheirOwnRatesAndTheReplayOfThem) {
   }
   const SampleLog log = recorded_run(*dive.world, *dive.simulation);
   EXPECT_EQ(log.entries.size(), 1200u + 50u + 5u);
-  EXPECT_FALSE(replay_run(*dive.world, log).first_difference.has_value());
+  EXPECT_FALSE(replay_run(*dive.world, log, "run.log").value().first_difference.has_value());
 }
 
 TEST(LiveInputs, ASuitThatFallsSilentIsCountedAndTheAutopilotSwims) {
@@ -122,38 +99,9 @@ TEST(LiveInputs, ABurstBesideTheSteppingThreadIsCountedAndTheRunReplays) {
   dive.simulation->stop();
   EXPECT_EQ(dive.simulation->inbox().counts(noise.source).accepted, 20'000u);
   EXPECT_GT(dive.simulation->inbox().counts(suit.source).not_of_stream, 0u);
-  EXPECT_FALSE(replay_run(*dive.world, recorded_run(*dive.world, *dive.simulation))
+  EXPECT_FALSE(replay_run(*dive.world, recorded_run(*dive.world, *dive.simulation), "run.log")
+                   .value()
                    .first_difference.has_value());
-}
-
-// A million samples from another thread: the drain of each step takes what a step has time for.
-TEST(LiveInputs, ABurstOfAMillionMakesNoStepLate) {
-  const TestDive dive = dive_of(hover_text("gas = \"noise\""));
-  Device noise(dive, "noise", "diver/gas");
-  std::jthread burst([&noise] {
-    for (int i = 0; i < 1'000'000; ++i) noise.say(GasSupply{});
-  });
-  PhysicsInputs inputs = dive.world->start_inputs();
-  std::uint64_t used = 0, slow = 0, drains = 0;
-  const auto drain = [&] {
-    const TimeNs begun = now_ns();
-    for (const Sample& sample : noise.inbox.drain()) {
-      dive.world->apply(inputs, sample, drains);
-      ++used;
-    }
-    slow += now_ns() - begun > 4'166'667;  // a step at 240 Hz
-    ++drains;
-  };
-  while (noise.inbox.counts(noise.source).accepted < 1'000'000) {
-    drain();
-    std::this_thread::sleep_for(std::chrono::microseconds(4167));
-  }
-  burst.join();
-  drain();
-  const SourceCounts counts = noise.inbox.counts(noise.source);
-  EXPECT_EQ(used + counts.dropped, 1'000'000u);
-  EXPECT_EQ(inputs.humans()[0].of(DiverGroup::kGas).heard, used);
-  EXPECT_LE(slow * 50, drains);  // the machine may take the thread away now and then
 }
 
 }  // namespace
