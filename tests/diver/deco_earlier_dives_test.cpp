@@ -71,12 +71,13 @@ TEST(DecoEarlierDives, EachDiveOfADayIsThatOfAnIndependentImplementation) {
   EXPECT_EQ(compared, 7u);
 }
 
+constexpr const char* kSmall = R"({"profiles": [{"id": "small", "model": "ZH-L16B-GF",
+    "parameters": {"gf_low": 0.3, "gf_high": 0.85}, "gases": [{"o2": 21}],
+    "profile": {"kind": "square", "depth_m": 30, "bottom_runtime_min": 25}}]})";
+
 // The line for a file whose case has this dive before it.
 std::string earlier_fault(const Json& repetitive) {
-  Json json = parse_json(R"({"profiles": [{"id": "small", "model": "ZH-L16B-GF",
-    "parameters": {"gf_low": 0.3, "gf_high": 0.85}, "gases": [{"o2": 21}],
-    "profile": {"kind": "square", "depth_m": 30, "bottom_runtime_min": 25}}]})")
-                  .value();
+  Json json = parse_json(kSmall).value();
   json["profiles"][0]["repetitive"] = repetitive;
   const auto read = read_deco_cases(json_text(json), "dives.json");
   return read.ok() ? "read" : read.error().message;
@@ -101,10 +102,36 @@ TEST(DecoEarlierDives, OtherMembersOfTheDiveBeforeAreRefused) {
   EXPECT_THAT(fault("/surface_interval_min", Json::array({60})),
               HasSubstr("found [60]; accepted: a number in"));
   EXPECT_THAT(fault("/surface_interval_gas", "oxygen"),
-              HasSubstr("found \"oxygen\"; accepted: \"air 21/0 (N2 0.79), surface"));
+              HasSubstr("found \"oxygen\"; accepted: \"NAME O2/HE (N2 SHARE), surface"));
   EXPECT_THAT(earlier_fault(Json::array({first})), HasSubstr("accepted: an object"));
   EXPECT_THAT(earlier_fault({{"surface_interval_min", 60}}),
               HasSubstr("first_dive: not found, but needed"));
+}
+
+TEST(DecoEarlierDives, TheGasOfTheIntervalIsThatOfItsText) {
+  const std::string how = ", surface pressure, Schreiner with R=0";
+  const auto gas_of = [&](const std::string& gas) -> std::optional<GasMix> {
+    Json json = parse_json(kSmall).value();
+    json["profiles"][0]["repetitive"] = {
+        {"first_dive", {{"depth_m", 30}, {"bottom_runtime_min", 25}}},
+        {"surface_interval_min", 60},
+        {"surface_interval_gas", gas}};
+    const auto read = read_deco_cases(json_text(json), "dives.json");
+    if (!read.ok()) return std::nullopt;
+    return read->dives.at(0).earlier->earlier.surface_gas;
+  };
+  EXPECT_EQ(gas_of("air 21/0 (N2 0.79)" + how)->oxygen, kAir.oxygen);
+  EXPECT_EQ(gas_of("oxygen 100/0 (N2 0)" + how)->oxygen, 1.0);
+  EXPECT_DOUBLE_EQ(gas_of("ean50 50/0 (N2 0.5)" + how)->oxygen, 0.5);
+  EXPECT_DOUBLE_EQ(gas_of("21/35 21/35 (N2 0.44)" + how)->helium, 0.35);
+  for (const char* not_one_gas :
+       {"air 21/0 (N2 0.79)", "air 32/0 (N2 0.68)", "air 21/0 (N2 0.78)", "air 21 (N2 0.79)",
+        "air 21/0", "(N2 0.79)", "air 21/0 (N2 0.79 )", "air 21/0 (N2 )"}) {
+    EXPECT_FALSE(
+        gas_of(not_one_gas +
+               (not_one_gas == std::string("air 21/0 (N2 0.79)") ? ", surface pressure" : how)))
+        << not_one_gas;
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
-// Golden images: every case of cases.json rendered and compared with its pictures here. A failure
-// writes actual, golden and an amplified difference to build/.../golden/. NERITIC_UPDATE_GOLDEN=1
-// (see tools/golden) writes the goldens anew.
+// Goldens: every case of cases.json rendered and compared with what lies here: pictures, the sums
+// of sonars, and the state's hash where physics moves the scene. A failure writes actual, golden
+// and an amplified difference to build/.../golden/. NERITIC_UPDATE_GOLDEN=1 (see tools/golden)
+// writes the goldens anew.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +12,9 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
+#include "testbed/motion/live_physics.hpp"
 #include "testbed/sensors/session.hpp"
+#include "tests/golden/compare.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
 
@@ -26,8 +29,10 @@ const fs::path kFolder = test::source_dir() / "tests" / "golden";
 struct Case {
   std::string name, scene, water;
   std::uint32_t width = 0, height = 0;
-  double time_s = 0.0, max_fraction = 0.0;
-  int max_difference = 0;
+  double time_s = 0.0;
+  bool physics = false;
+  test::PictureLimits limits;
+  std::map<std::string, std::size_t> patch_px;  // of pictures where more is accepted, and why
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
@@ -38,11 +43,19 @@ std::vector<Case> read_cases() {
   const auto text = read_text(kFolder / "cases.json");
   if (!text.ok()) return {};
   std::vector<Case> cases;
-  const nlohmann::json listed = parse_json(*text).value();
-  for (const nlohmann::json& entry : listed)
-    cases.push_back({entry["name"], entry["scene"], entry.value("water", ""), entry["size"][0],
-                     entry["size"][1], entry["time_s"], entry["max_fraction_of_pixels"],
-                     entry["max_channel_difference"]});
+  const nlohmann::json file = parse_json(*text).value();
+  const nlohmann::json& limits = file["limits"];
+  for (const nlohmann::json& entry : file["cases"])
+    cases.push_back({entry["name"],
+                     entry["scene"],
+                     entry.value("water", ""),
+                     entry["size"][0],
+                     entry["size"][1],
+                     entry["time_s"],
+                     entry.value("physics", false),
+                     {limits["level"], limits["fraction_of_pixels"], limits["mean_difference"],
+                      limits["patch_pixels"]},
+                     entry.value("patch_pixels", std::map<std::string, std::size_t>{})});
   return cases;
 }
 
@@ -89,7 +102,18 @@ bool update_goldens() {
   return update && std::string(update) == "1";
 }
 
-void expect_like_golden(const ImageU8& actual, const std::string& name, const Case& c) {
+// The difference 16 times amplified, so that one level shows.
+ImageU8 amplified_difference(const ImageU8& actual, const ImageU8& golden) {
+  ImageU8 out(actual.width, actual.height, actual.channels);
+  for (std::size_t i = 0; i < out.data.size(); ++i)
+    out.data[i] = static_cast<std::uint8_t>(
+        std::min(255, 16 * std::abs(int(actual.data[i]) - int(golden.data[i]))));
+  return out;
+}
+
+// sensor: the part of name that says whose picture it is.
+void expect_like_golden(const ImageU8& actual, const std::string& sensor, const Case& c) {
+  const std::string name = c.name + "." + sensor;
   const fs::path golden_path = kFolder / (name + ".png");
   if (update_goldens()) {
     NERITIC_ASSERT_STATUS(scene::write_png8(golden_path, actual));
@@ -97,39 +121,41 @@ void expect_like_golden(const ImageU8& actual, const std::string& name, const Ca
   }
   const auto read = scene::read_image8(golden_path, actual.channels);
   if (!read.ok() || read->width != actual.width || read->height != actual.height) {
-    // Nothing to compare with: all of the picture differs.
     write_picture(name + ".actual.png", actual);
-    write_picture(name + ".difference.png", actual);
     ADD_FAILURE() << name << ": "
                   << (read.ok() ? "the golden has another size" : read.error().message)
-                  << "; see golden/" << name
-                  << ".actual.png and .difference.png in the build folder";
+                  << "; see golden/" << name << ".actual.png in the build folder";
     return;
   }
-  const ImageU8& golden = *read;
-  std::size_t off = 0;
-  int worst = 0;
-  ImageU8 difference(actual.width, actual.height, actual.channels);
-  for (std::size_t pixel = 0; pixel < std::size_t{actual.width} * actual.height; ++pixel) {
-    int most = 0;
-    for (std::uint32_t ch = 0; ch < actual.channels; ++ch) {
-      const std::size_t i = pixel * actual.channels + ch;
-      const int d = std::abs(int(actual.data[i]) - int(golden.data[i]));
-      most = std::max(most, d);
-      difference.data[i] = static_cast<std::uint8_t>(std::min(255, d * 16));
-    }
-    worst = std::max(worst, most);
-    off += most > c.max_difference;
-  }
-  const double fraction = double(off) / (double(actual.width) * actual.height);
-  EXPECT_LE(fraction, c.max_fraction)
-      << name << ": " << off << " pixels differ by more than " << c.max_difference << ", worst "
-      << worst << "; see golden/" << name
-      << ".actual.png, .golden.png and .difference.png in the build folder";
-  if (fraction <= c.max_fraction) return;
+  test::PictureLimits limits = c.limits;
+  if (const auto own = c.patch_px.find(sensor); own != c.patch_px.end())
+    limits.patch_px = own->second;
+  const auto faults = test::faults_of(test::difference_of(actual, *read, limits.level), limits);
+  if (faults.empty()) return;
+  for (const std::string& fault : faults) ADD_FAILURE() << name << ": " << fault;
   write_picture(name + ".actual.png", actual);
-  write_picture(name + ".golden.png", golden);
-  write_picture(name + ".difference.png", difference);
+  write_picture(name + ".golden.png", *read);
+  write_picture(name + ".difference.png", amplified_difference(actual, *read));
+}
+
+// The sums of each sonar and, of a case with physics, step and hash of the state.
+void expect_like_golden_numbers(const nlohmann::json& actual, const Case& c) {
+  if (actual["state"].is_null() && actual["sonars"].empty()) return;
+  const fs::path path = kFolder / (c.name + ".json");
+  if (update_goldens()) {
+    NERITIC_ASSERT_STATUS(write_text(path, json_text(actual, -1) + "\n"));
+    return;
+  }
+  NERITIC_ASSERT_OK(const std::string text, read_text(path));
+  NERITIC_ASSERT_OK(const nlohmann::json golden, parse_json(text));
+  EXPECT_EQ(actual["state"], golden["state"]) << c.name;
+  ASSERT_EQ(actual["sonars"].size(), golden["sonars"].size()) << c.name;
+  for (const auto& [sonar, sums] : actual["sonars"].items()) {
+    ASSERT_TRUE(golden["sonars"].contains(sonar)) << c.name << "." << sonar;
+    for (const std::string& fault :
+         test::faults_of(test::sums_from(sums), test::sums_from(golden["sonars"][sonar]), {}))
+      ADD_FAILURE() << c.name << "." << sonar << ": " << fault;
+  }
 }
 
 TEST(GoldenCases, CanBeRead) {
@@ -144,6 +170,13 @@ TEST(GoldenCases, NameEveryScene) {
   EXPECT_EQ(named, there);
 }
 
+// At least: a mission, a dive, an uncontrolled ascent.
+TEST(GoldenCases, RunPhysics) {
+  std::size_t run = 0;
+  for (const Case& c : read_cases()) run += c.physics;
+  EXPECT_GE(run, 3u);
+}
+
 TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
   const Case& c = GetParam();
   NERITIC_ASSERT_OK(scene::Scene scene, scene::load_scene(test::source_dir() / c.scene));
@@ -154,19 +187,31 @@ TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
   request.next_time_s = c.time_s + 1.0 / 30.0;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) request.cameras.push_back(i);
   for (std::size_t i = 0; i < scene.sonars.size(); ++i) request.sonars.push_back(i);
+  nlohmann::json numbers{{"state", nullptr}, {"sonars", nlohmann::json::object()}};
+  std::unique_ptr<LivePhysics> physics;
+  if (c.physics) {
+    NERITIC_ASSERT_OK(physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+    physics->reach(request.time_s);
+    const auto& state = physics->newest();
+    numbers["state"] = {{"step", state.step}, {"hash", fmt::format("{:016x}", state.hash)}};
+    physics->reach(request.next_time_s);
+    request.simulated = &physics->motion();
+  }
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
   NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
   ASSERT_FALSE(result.cameras.empty() && result.sonars.empty());
   for (const CameraFrame& camera : result.cameras)
     for (std::size_t e = 0; e < camera.eyes.size(); ++e)
-      expect_like_golden(camera.eyes[e].color, c.name + "." + camera.name + (e ? ".right" : ""), c);
+      expect_like_golden(camera.eyes[e].color, camera.name + (e ? ".right" : ""), c);
   for (const SonarFrame& sonar : result.sonars) {
-    const std::string name =
-        c.name + "." + sonar.name + (sonar.head.empty() ? "" : "." + sonar.head);
+    const std::string name = sonar.name + (sonar.head.empty() ? "" : "." + sonar.head);
     const ImageU8 grey = grey_sonar(sonar);
-    expect_shades(grey, name);
+    expect_shades(grey, c.name + "." + name);
     expect_like_golden(grey, name, c);
+    numbers["sonars"][name] = test::to_json(
+        test::sums_of(sonar.image.intensity, sonar.image.n_range, sonar.image.n_azimuth));
   }
+  expect_like_golden_numbers(numbers, c);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Golden, ::testing::ValuesIn(read_cases()),

@@ -28,6 +28,7 @@ Machine complete_machine() {
   machine.devices = {device};
   machine.chosen = 0;
   machine.validation_layer = true;
+  machine.matplotlib = "3.6.3 of python3";
   machine.display = "X11 :0";
   machine.display_there = true;
   return machine;
@@ -48,8 +49,9 @@ std::string why(const Machine& machine, const std::string& command) {
 
 TEST(DoctorVerdict, ACompleteMachineDoesAllButTheHeadset) {
   const Machine machine = complete_machine();
-  for (const char* command : {"render", "sonar --method gpu", "sonar --method reference",
-                              "dive (window)", "tests with validation"})
+  for (const char* command :
+       {"render", "sonar --method gpu", "sonar --method reference", "dive (window)",
+        "curves of plan, physio, dive", "tests with validation"})
     EXPECT_TRUE(works(machine, command)) << command;
   EXPECT_FALSE(works(machine, "dive (headset)"));
 }
@@ -63,13 +65,24 @@ TEST(DoctorText, SaysWhatItGoesRound) {
   EXPECT_THAT(doctor_json(machine), HasSubstr("\"clips_into_wrong_view\": true"));
 }
 
-TEST(DoctorVerdict, WithoutADeviceOnlyTheReferenceSonarWorks) {
+TEST(DoctorText, NamesMatplotlibOrHowToGetIt) {
+  Machine machine = complete_machine();
+  EXPECT_THAT(doctor_text(machine), HasSubstr("matplotlib          3.6.3 of python3"));
+  machine.matplotlib.clear();
+  EXPECT_FALSE(works(machine, "curves of plan, physio, dive"));
+  EXPECT_THAT(doctor_text(machine), HasSubstr("absent: tools/setup plots installs it"));
+  EXPECT_THAT(doctor_json(machine), HasSubstr("\"matplotlib\": null"));
+}
+
+TEST(DoctorVerdict, WithoutADeviceOnlyTheReferenceSonarAndCurvesWork) {
   Machine machine = complete_machine();
   machine.devices.clear();
   machine.chosen.reset();
   machine.trouble = Error{ErrorCode::kNoDevice, "no Vulkan device: install mesa-vulkan-drivers"};
   for (const Verdict& verdict : verdicts(machine))
-    EXPECT_EQ(verdict.works, verdict.command == "sonar --method reference") << verdict.command;
+    EXPECT_EQ(verdict.works, verdict.command == "sonar --method reference" ||
+                                 verdict.command == "curves of plan, physio, dive")
+        << verdict.command;
   EXPECT_THAT(doctor_text(machine), HasSubstr("mesa-vulkan-drivers"));
 }
 
