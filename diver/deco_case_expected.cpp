@@ -1,5 +1,7 @@
 // The expected results of a case, and the dive before it (deco_case_parts.hpp).
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
 #include "diver/deco_case_parts.hpp"
 
@@ -78,6 +80,28 @@ SecondOpinion read_opinion(const CaseField& field, const Program& program) {
   return opinion;
 }
 
+// The gas of "NAME O2/HE (N2 SHARE), surface pressure, Schreiner with R=0": three ways to say one
+// gas, which must agree, and how it loads the tissues, which is always so. Nothing: another text.
+std::optional<GasMix> read_surface_gas(std::string_view text) {
+  constexpr std::string_view kNitrogen = " (N2 ", kHow = "), surface pressure, Schreiner with R=0";
+  constexpr double kSame = 1e-9;
+  const std::size_t nitrogen = text.find(kNitrogen), gap = text.substr(0, nitrogen).rfind(' ');
+  if (nitrogen == text.npos || gap == text.npos || !text.ends_with(kHow)) return std::nullopt;
+  const auto named = parse_mix(text.substr(0, gap));
+  const std::string_view percent = text.substr(gap + 1, nitrogen - gap - 1);
+  const auto mix = parse_mix(percent);
+  if (!named.ok() || !mix.ok() || percent.find('/') == percent.npos) return std::nullopt;
+  text.remove_suffix(kHow.size());
+  text.remove_prefix(std::min(text.size(), nitrogen + kNitrogen.size()));
+  double share = 0.0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), share);
+  if (read.ec != std::errc{} || read.ptr != text.data() + text.size()) return std::nullopt;
+  const bool agree = std::abs(named->oxygen - mix->oxygen) < kSame &&
+                     std::abs(named->helium - mix->helium) < kSame &&
+                     std::abs(share - (1.0 - mix->oxygen - mix->helium)) < kSame;
+  return agree ? std::optional(*mix) : std::nullopt;
+}
+
 }  // namespace
 
 DecoExpected read_expected(const CaseField& profile) {
@@ -110,7 +134,6 @@ DecoExpected read_expected(const CaseField& profile) {
 
 std::optional<EarlierCase> read_earlier(const CaseField& repetitive, const DivePlanRequest& base) {
   if (!repetitive.present()) return std::nullopt;
-  constexpr std::string_view kAir = "air 21/0 (N2 0.79), surface pressure, Schreiner with R=0";
   repetitive.allow_with_texts({"first_dive", "first_dive_stops", "first_dive_runtime_min",
                                "tissues_at_surfacing", "surface_interval_min",
                                "surface_interval_gas", "tissues_after_interval"});
@@ -123,8 +146,15 @@ std::optional<EarlierCase> read_earlier(const CaseField& repetitive, const DiveP
   request.levels = {read_level(dive, "bottom_runtime_min")};
   if (dive["gases"].present()) request.gases = read_gases(dive["gases"]);
   out.earlier.surface_min = repetitive.required("surface_interval_min").number(0.0, 0.0, 1e9);
-  if (repetitive["surface_interval_gas"].text(kAir) != kAir)
-    repetitive["surface_interval_gas"].refuse(fmt::format("\"{}\"", kAir));
+  if (const CaseField gas = repetitive["surface_interval_gas"]; gas.present()) {
+    const auto mix = read_surface_gas(gas.text());
+    if (mix)
+      out.earlier.surface_gas = *mix;
+    else
+      gas.refuse(
+          "\"NAME O2/HE (N2 SHARE), surface pressure, Schreiner with R=0\" of one gas, such as "
+          "\"air 21/0 (N2 0.79), ...\"");
+  }
   out.stops = read_stop_rows(repetitive["first_dive_stops"]);
   out.run_min = expected_number(repetitive["first_dive_runtime_min"]);
   out.surfacing = read_tissues(repetitive["tissues_at_surfacing"]);

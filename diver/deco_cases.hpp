@@ -16,8 +16,9 @@
 //       of depth_m, leave_runtime_min
 //     initial_tissues [after repetitive, or saturated]: 16 rows of nitrogen, helium
 //     repetitive [none]: one dive before: first_dive (depth_m, bottom_runtime_min, gases [the
-//       case's]), surface_interval_min; surface_interval_gas: "air 21/0 (N2 0.79), surface
-//       pressure, Schreiner with R=0", the only one; expected: first_dive_stops (rows of depth,
+//       case's]), surface_interval_min; surface_interval_gas ["air 21/0 (N2 0.79), surface
+//       pressure, Schreiner with R=0"]: "NAME O2/HE (N2 SHARE), " and the same end, of any gas
+//       whose label, percents and share agree; expected: first_dive_stops (rows of depth,
 //       minutes), first_dive_runtime_min, tissues_at_surfacing, tissues_after_interval
 //     segments: replayed: columns (from_m, to_m, minutes, o2_percent, he_percent, phase) and rows
 //     reference: end_of_bottom, first_stop, surfacing (points), stops (depth_m, minutes, o2, he,

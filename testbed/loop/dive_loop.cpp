@@ -219,8 +219,8 @@ Result<graph::ImageHandle> Dive::declare_overlay(graph::FrameGraph& graph, const
                               scene.sonars[index].rate_hz});
     }
     draw_readout(camera_, scale);
-    draw_status(facts, camera_, times_, now, scale);
-    draw_sonars(facts, scale);
+    if (!show_help_ || help_leaves_room(dive_actions(), scale))
+      draw_sonars(facts, draw_status(facts, camera_, times_, now, scale), scale);
     draw_hint(now < note_until_ns_ ? note_ : "F1  keys", scale);
   } else if (now < note_until_ns_) {
     draw_hint(note_, scale);

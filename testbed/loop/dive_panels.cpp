@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/draw2d/axes.hpp"
+
 namespace neritic::testbed {
 namespace {
 
@@ -12,8 +14,20 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
 constexpr ImU32 kInk = IM_COL32(230, 242, 247, 255);
 constexpr ImU32 kFaint = IM_COL32(230, 242, 247, 150);
 constexpr ImU32 kPaper = IM_COL32(5, 12, 17, 190);
+// Pixels at scale 1.
 constexpr float kEdge_px = 12.0f;  // between panels and the window's edges
+constexpr float kGap_px = 8.0f;    // between panels
 constexpr float kStatusWidth_px = 330.0f, kSonarWidth_px = 360.0f, kReadoutWidth_px = 340.0f;
+constexpr float kNarrowSonarWidth_px = 280.0f;  // below the status, above the readout of 640 x 480
+// Room beside and above a fan for its ranges and its bearing: "12.5 m" is 40 pixels wide.
+constexpr float kFanMargin_px = 44.0f;
+
+// Whether status and sonars stand side by side, each with its edge and its window's padding.
+bool side_by_side(float scale) {
+  const float sonar = kSonarWidth_px * scale + 2.0f * ImGui::GetStyle().WindowPadding.x;
+  const float wanted = sonar + (kStatusWidth_px + 2.0f * kEdge_px + kGap_px) * scale;
+  return ImGui::GetIO().DisplaySize.x >= wanted;
+}
 
 void text_line(const std::string& text) {
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
@@ -64,6 +78,8 @@ void draw_card(ImDrawList& list, double heading_deg, float x, float y, float hal
 void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2 size) {
   const sonar::Limits& l = panel.grid.limits;
   constexpr ImU32 kLine = IM_COL32(158, 204, 219, 80), kRim = IM_COL32(158, 204, 219, 170);
+  // Rings about so many; a smaller first range has no room for its label.
+  constexpr double kRings = 6.0, kLeastLabelled = 0.06;
   const auto at = [&](double range_m, double bearing_rad) {
     const Vec2 p = panel.shape.place(range_m, bearing_rad);
     return ImVec2(corner.x + static_cast<float>(p.x) * size.x,
@@ -77,15 +93,21 @@ void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2
     list.PathStroke(color, ImDrawFlags_None, 1.0f);
   };
   const double middle = 0.5 * (l.azimuth_min_rad + l.azimuth_max_rad);
-  constexpr int kRings = 4;
-  for (int i = 0; i <= kRings; ++i) {
-    const double range_m = glm::mix(l.range_min_m, l.range_max_m, double(i) / kRings);
-    arc(range_m, i == 0 || i == kRings ? kRim : kLine);
-    if (i == 0 && l.range_min_m <= 0.0) continue;
-    const ImVec2 label = at(range_m, l.azimuth_max_rad);
-    list.AddText(ImVec2(label.x + 4.0f, label.y - 2.0f), kInk,
-                 fmt::format("{:.3g}", range_m).c_str());
+  const auto label = [&](double range_m) {
+    const ImVec2 edge = at(range_m, l.azimuth_max_rad);
+    list.AddText(ImVec2(edge.x + 4.0f, edge.y - 2.0f), kInk,
+                 fmt::format("{:.3g} m", range_m).c_str());
+  };
+  arc(l.range_min_m, kRim);
+  if (l.range_min_m > kLeastLabelled * l.range_max_m) label(l.range_min_m);
+  const double step = draw2d::nice_step(l.range_max_m, kRings);
+  for (double range_m = step; range_m < l.range_max_m - 0.35 * step; range_m += step) {
+    if (range_m <= l.range_min_m + 0.5 * step) continue;  // its label would meet the first one
+    arc(range_m, kLine);
+    label(range_m);
   }
+  arc(l.range_max_m, kRim);
+  label(l.range_max_m);
   for (const double bearing : {l.azimuth_min_rad, l.azimuth_max_rad})
     list.AddLine(at(l.range_min_m, bearing), at(l.range_max_m, bearing), kRim);
   for (const double part : {0.25, 0.5, 0.75}) {
@@ -104,7 +126,8 @@ void draw_sonar(const SonarPanel& panel, float width, float scale) {
                         l.range_max_m, degrees(l.azimuth_max_rad - l.azimuth_min_rad),
                         degrees(l.elevation_max_rad - l.elevation_min_rad), panel.rate_hz)
                 .c_str());
-  const float margin_x = 34.0f * scale, margin_y = ImGui::GetTextLineHeight() + 6.0f * scale;
+  const float margin_x = kFanMargin_px * scale,
+              margin_y = ImGui::GetTextLineHeight() + 6.0f * scale;
   const float fan_width = width - 2.0f * margin_x;
   const ImVec2 size(fan_width, fan_width * static_cast<float>(panel.shape.height) /
                                    static_cast<float>(panel.shape.width));
@@ -184,8 +207,8 @@ void draw_readout(const FreeCamera& camera, float scale) {
   centered(list, x, top + 4.0f * scale, kInk, text);
 }
 
-void draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTimes& times,
-                 TimeNs now_ns, float scale) {
+float draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTimes& times,
+                  TimeNs now_ns, float scale) {
   ImGui::SetNextWindowPos(ImVec2(kEdge_px * scale, kEdge_px * scale), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSizeConstraints(ImVec2(kStatusWidth_px * scale, 0.0f),
                                       ImVec2(kStatusWidth_px * scale, 1e6f));
@@ -209,15 +232,22 @@ void draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTi
   ImGui::PushTextWrapPos(0.0f);
   for (const std::string& line : facts.vehicles) text_line(line);
   ImGui::PopTextWrapPos();
-  ImGui::Separator();
-  timings_table(times, now_ns, scale);
+  // Where the sonars stand below, there is no room for the times.
+  if (facts.sonars.empty() || side_by_side(scale)) {
+    ImGui::Separator();
+    timings_table(times, now_ns, scale);
+  }
+  const float height = ImGui::GetWindowHeight();
   ImGui::End();
+  return height;
 }
 
-void draw_sonars(const PanelFacts& facts, float scale) {
-  const float width = kSonarWidth_px * scale;
+void draw_sonars(const PanelFacts& facts, float status_height_px, float scale) {
+  const bool beside = side_by_side(scale);
+  const float width = (beside ? kSonarWidth_px : kNarrowSonarWidth_px) * scale;
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   float y = kEdge_px * scale;
+  if (!beside) y += status_height_px + kGap_px * scale;
   for (const SonarPanel& panel : facts.sonars) {
     ImGui::SetNextWindowPos(ImVec2(display.x - kEdge_px * scale, y), ImGuiCond_Always,
                             ImVec2(1.0f, 0.0f));
@@ -226,9 +256,23 @@ void draw_sonars(const PanelFacts& facts, float scale) {
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
     if (!ImGui::IsWindowCollapsed()) draw_sonar(panel, width, scale);
-    y += ImGui::GetWindowHeight() + 8.0f * scale;
+    y += ImGui::GetWindowHeight() + kGap_px * scale;
     ImGui::End();
   }
+}
+
+bool help_leaves_room(std::span<const xr::ActionDesc> actions, float scale) {
+  float controls = 0.0f, helps = 0.0f;
+  for (const xr::ActionDesc& action : actions) {
+    if (action.help.empty()) continue;
+    controls = std::max(controls, ImGui::CalcTextSize(desktop_controls(action).c_str()).x);
+    helps = std::max(helps, ImGui::CalcTextSize(action.help.c_str()).x);
+  }
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float list = controls + helps + 4.0f * style.CellPadding.x + 2.0f * style.WindowPadding.x;
+  // The wider of the side panels on each side, since the list stands in the middle.
+  const float side = (kSonarWidth_px + kEdge_px + kGap_px) * scale + 2.0f * style.WindowPadding.x;
+  return ImGui::GetIO().DisplaySize.x >= list + 2.0f * side;
 }
 
 void draw_help(std::span<const xr::ActionDesc> actions, float scale) {

@@ -32,9 +32,13 @@ struct PanelFacts {
 };
 
 void draw_readout(const FreeCamera& camera, float scale);
-void draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTimes& times,
-                 TimeNs now_ns, float scale);
-void draw_sonars(const PanelFacts& facts, float scale);
+// Returns the panel's height in pixels. In a window too narrow for status and sonars side by side
+// it leaves out the times of the passes, and the sonars stand below it.
+float draw_status(const PanelFacts& facts, const FreeCamera& camera, const DiveTimes& times,
+                  TimeNs now_ns, float scale);
+void draw_sonars(const PanelFacts& facts, float status_height_px, float scale);
+// Whether the list of keys fits between the side panels; else it is shown instead of them.
+bool help_leaves_room(std::span<const xr::ActionDesc> actions, float scale);
 // actions: whose controls are listed.
 void draw_help(std::span<const xr::ActionDesc> actions, float scale);
 // One line at the lower edge.

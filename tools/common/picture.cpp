@@ -118,8 +118,7 @@ Result<bool> draw_picture(const fs::path& data, const fs::path& picture) {
     return failure(ErrorCode::kIo, "{}: not drawn: {}", picture.string(), last_line(done->said));
   }
   say_not_drawn(picture, data,
-                "no python3 here has matplotlib; tools/setup plots installs it (Debian's "
-                "python3-matplotlib)");
+                fmt::format("no python3 here has matplotlib; {}", kHowToGetMatplotlib));
   return false;
 }
 
@@ -127,6 +126,15 @@ Result<bool> write_picture(const fs::path& picture, const nlohmann::json& data) 
   const fs::path path = picture_data_path(picture);
   NERITIC_TRY_STATUS(write_text(path, json_text(data, -1) + "\n"));
   return draw_picture(path, picture);
+}
+
+std::string matplotlib_here() {
+  for (const char* python : kPythons) {
+    const auto done =
+        run_program({python, "-c", "import matplotlib; print(matplotlib.__version__)"});
+    if (done && done->status == 0) return last_line(done->said) + " of " + python;
+  }
+  return {};
 }
 
 double six_digits(double value) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "engine/core/result.hpp"
 
@@ -19,6 +20,13 @@ Result<bool> draw_picture(const std::filesystem::path& data, const std::filesyst
 
 // Writes the data beside the picture, then draws it.
 Result<bool> write_picture(const std::filesystem::path& picture, const nlohmann::json& data);
+
+// Of the matplotlib that draws, by asking the first Python here that has it ("3.6.3 of
+// /usr/bin/python3"); empty: none has.
+std::string matplotlib_here();
+// What to do about that.
+inline constexpr const char* kHowToGetMatplotlib =
+    "tools/setup plots installs it (Debian's python3-matplotlib)";
 
 // Six significant digits, which are more than a picture shows: the data stays small.
 double six_digits(double value);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/json.hpp"
+#include "tools/common/picture.hpp"
 #include "tools/neritic/commands.hpp"
 
 namespace neritic::tools {
@@ -100,6 +101,9 @@ std::vector<Verdict> verdicts(const Machine& machine) {
   out.push_back({"sonar --method reference", true, "on the CPU, no Vulkan needed"});
   out.push_back(window_verdict(machine));
   out.push_back(headset_verdict(machine));
+  out.push_back({"curves of plan, physio, dive", !machine.matplotlib.empty(),
+                 machine.matplotlib.empty() ? std::string("no matplotlib: ") + kHowToGetMatplotlib
+                                            : "matplotlib " + machine.matplotlib});
   out.push_back({"tests with validation", render && machine.validation_layer,
                  !render ? kNoDevice
                  : machine.validation_layer
@@ -118,6 +122,9 @@ std::string doctor_text(const Machine& machine) {
   text += fmt::format(
       "Validation layer    {}\n",
       machine.validation_layer ? "installed" : "absent (Debian package vulkan-validationlayers)");
+  text += fmt::format("matplotlib          {}\n",
+                      machine.matplotlib.empty() ? std::string("absent: ") + kHowToGetMatplotlib
+                                                 : machine.matplotlib);
   text +=
       fmt::format("Display             {}{}\n", machine.display.empty() ? "none" : machine.display,
                   machine.display.empty() || machine.display_there ? "" : " (not there)");
@@ -135,7 +142,7 @@ std::string doctor_text(const Machine& machine) {
                       static_cast<double>(machine.memory_available_bytes) / kGiB);
   text += "What will work\n";
   for (const Verdict& verdict : verdicts(machine))
-    text += fmt::format("  {:<26}{:<5}{}\n", verdict.command, verdict.works ? "yes" : "no",
+    text += fmt::format("  {:<30}{:<5}{}\n", verdict.command, verdict.works ? "yes" : "no",
                         verdict.why);
   return text;
 }
@@ -151,6 +158,8 @@ std::string doctor_json(const Machine& machine) {
   if (machine.trouble) json["trouble"] = machine.trouble->message;
   json["device_start_ms"] = machine.device_start_ms;
   json["validation_layer"] = machine.validation_layer;
+  json["matplotlib"] = nullptr;
+  if (!machine.matplotlib.empty()) json["matplotlib"] = machine.matplotlib;
   json["display"] = {{"name", machine.display}, {"there", machine.display_there}};
   json["openxr"] = {{"runtime", machine.openxr_runtime.string()},
                     {"exists", machine.openxr_manifest_exists}};

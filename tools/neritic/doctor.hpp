@@ -20,6 +20,7 @@ struct Machine {
   std::optional<Error> trouble;
   double device_start_ms = 0.0;  // creating the device and one round trip through its memory
   bool validation_layer = false;
+  std::string matplotlib;  // version and the Python that has it; empty: curves are not drawn
 
   // "X11 :0" or "Wayland wayland-0" as the environment names it; empty: none named.
   std::string display;

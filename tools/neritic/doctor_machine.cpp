@@ -12,6 +12,7 @@
 #include "engine/core/memory.hpp"
 #include "engine/gpu/device_select.hpp"
 #include "engine/gpu/frames.hpp"
+#include "tools/common/picture.hpp"
 #include "tools/neritic/doctor.hpp"
 
 namespace neritic::tools {
@@ -121,6 +122,7 @@ Machine examine_machine(const std::string& wanted_device) {
   if (const Status status = examine_vulkan(wanted_device, machine); !status.ok())
     machine.trouble = status.error();
   machine.validation_layer = gpu::validation_layer_present();
+  machine.matplotlib = matplotlib_here();
   examine_display(machine);
   machine.openxr_runtime = find_openxr_runtime();
   machine.openxr_manifest_exists = is_file(machine.openxr_runtime);
