@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "engine/core/clock.hpp"
-#include "sonar/head_decode.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -95,9 +94,6 @@ Result<gpu::Image> image_like(gpu::Device& device, const std::string& name, VkFo
                              .array_view = true});
 }
 
-constexpr VkBufferUsageFlags kReadableUsage =
-    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-
 graph::FrameGraph::ImportState readable() {
   return {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }
@@ -105,14 +101,16 @@ graph::FrameGraph::ImportState readable() {
 }  // namespace
 
 ImageGather::~ImageGather() {
-  if (device_ != nullptr) device_->wait_idle();
+  device_.wait_idle();
 }
 
 Result<std::unique_ptr<ImageGather>> ImageGather::create(gpu::Device& device, const BeamGrid& grid,
                                                          std::span<const SonarInput> inputs,
                                                          Gather gather, GatherThreads threads) {
-  std::unique_ptr<ImageGather> made(new ImageGather);
-  NERITIC_TRY_STATUS(made->prepare(device, grid, inputs, {.gather = gather, .threads = threads}));
+  Head plain;
+  plain.beams = plain.samples = grid;
+  std::unique_ptr<ImageGather> made(new ImageGather(device));
+  NERITIC_TRY_STATUS(made->prepare({}, plain, inputs, {.gather = gather, .threads = threads}));
   return made;
 }
 
@@ -120,94 +118,68 @@ Result<std::unique_ptr<ImageGather>> ImageGather::create(gpu::Device& device,
                                                          const scene::Sonar& sonar,
                                                          const Head& head, const SonarInput& input,
                                                          Gather gather, GatherThreads threads) {
-  std::unique_ptr<ImageGather> made(new ImageGather);
-  made->sonar_ = sonar;
-  made->head_ = head;
-  NERITIC_TRY_STATUS(made->prepare(device, head.samples, std::span(&input, 1),
-                                   {.gather = gather, .threads = threads, .echo = head.echo}));
-  if (!head.echo) return made;
-  ReceiverDesc desc = head.receiver;
-  desc.sum_scale = made->gather_->fixed_scale();
-  NERITIC_TRY(Receiver receiver, Receiver::create(device, std::move(desc)));
-  made->receiver_ = std::make_unique<Receiver>(std::move(receiver));
-  NERITIC_TRY_STATUS(made->make_buffers());
+  std::unique_ptr<ImageGather> made(new ImageGather(device));
+  NERITIC_TRY_STATUS(
+      made->prepare(sonar, head, std::span(&input, 1), {.gather = gather, .threads = threads}));
   return made;
 }
 
-Status ImageGather::prepare(gpu::Device& device, const BeamGrid& grid,
+Status ImageGather::prepare(const scene::Sonar& sonar, const Head& head,
                             std::span<const SonarInput> inputs, GatherOptions options) {
-  NERITIC_TRY_STATUS(check_inputs(grid, inputs, device.limits()));
-  device_ = &device;
-  const bool records = options.echo && options.echo->records;
+  NERITIC_TRY_STATUS(check_inputs(head.samples, inputs, device_.limits()));
+  labels_ = head.echo && head.echo->records;
   for (const SonarInput& in : inputs) {
-    labels_ |= !in.labels.empty() || records;
+    labels_ |= !in.labels.empty();
     reflect_ |= !in.reflectivity.empty();
   }
+  options.labels = labels_;
+  options.reflectivity = reflect_;
   GBufferLayout layout{inputs[0].width, inputs[0].height, inputs[0].intrinsics};
   layout.packed = true;
   layout.normals_face_sensor = inputs[0].normals_face_sensor;
-  options.labels = labels_;
-  options.reflectivity = reflect_;
-  const bool terms = options.echo.has_value();
-  NERITIC_TRY(SonarGather sonar,
-              SonarGather::create(device, grid, sectors_for(grid, inputs), layout, options));
-  gather_ = std::make_unique<SonarGather>(std::move(sonar));
+  NERITIC_TRY(HeadGather made,
+              HeadGather::create(device_, {.sonar = sonar,
+                                           .head = head,
+                                           .sectors = sectors_for(head.samples, inputs),
+                                           .layout = layout,
+                                           .options = options,
+                                           .mirrors = {}}));
+  head_ = std::make_unique<HeadGather>(std::move(made));
+  NERITIC_TRY(buffers_, head_->make_buffers(device_, "sonar "));
   NERITIC_TRY_STATUS(make_images(inputs[0], static_cast<std::uint32_t>(inputs.size())));
-  if (!terms) NERITIC_TRY_STATUS(make_buffers());
   NERITIC_TRY_STATUS(upload(inputs));
-  NERITIC_TRY(frames_, gpu::Frames::create(device, 1));
+  NERITIC_TRY(frames_, gpu::Frames::create(device_, 1));
   frames_->enable_timing(true);
   executor_ = std::make_unique<graph::Executor>(*frames_);
   return {};
 }
 
 Status ImageGather::make_images(const SonarInput& in, std::uint32_t layers) {
-  NERITIC_TRY(surface_image_, image_like(*device_, "sonar input surfaces",
+  NERITIC_TRY(surface_image_, image_like(device_, "sonar input surfaces",
                                          VK_FORMAT_R32G32B32A32_SFLOAT, in, layers));
   if (labels_ || reflect_) {
     NERITIC_TRY(label_image_,
-                image_like(*device_, "sonar input labels", VK_FORMAT_R16G16_UINT, in, layers));
+                image_like(device_, "sonar input labels", VK_FORMAT_R16G16_UINT, in, layers));
   }
   if (!reflect_) return {};
   std::vector<float> table(kReflectivitySteps);
   for (std::uint32_t i = 0; i < kReflectivitySteps; ++i)
     table[i] = static_cast<float>(i) / (kReflectivitySteps - 1);
   NERITIC_TRY(reflectivity_,
-              gpu::Buffer::create(*device_, {.name = "sonar reflectivity",
-                                             .size = table.size() * sizeof(float),
-                                             .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                                      VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
-  return gpu::upload_buffer(*device_, reflectivity_, std::as_bytes(std::span(table)));
-}
-
-Status ImageGather::make_buffers() {
-  const auto result = [&](const char* name, std::uint64_t bytes,
-                          VkBufferUsageFlags usage = kReadableUsage) {
-    return gpu::Buffer::create(
-        *device_,
-        {.name = name, .size = bytes, .usage = usage, .memory = gpu::MemoryUse::kReadback});
-  };
-  if (labels_) {
-    NERITIC_TRY(keys_, result("sonar keys", gather_->keys_bytes(), gather_->sums_usage()));
-  }
-  if (!receiver_) {
-    NERITIC_TRY(sums_, result("sonar sums", gather_->sums_bytes(), gather_->sums_usage()));
-    return {};
-  }
-  NERITIC_TRY(power_, result("sonar power", receiver_->power_bytes()));
-  if (head_.echo->records) {
-    NERITIC_TRY(records_, result("sonar records", gather_->records_bytes()));
-  }
-  return {};
+              gpu::Buffer::create(device_, {.name = "sonar reflectivity",
+                                            .size = table.size() * sizeof(float),
+                                            .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                                     VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
+  return gpu::upload_buffer(device_, reflectivity_, std::as_bytes(std::span(table)));
 }
 
 Status ImageGather::upload(std::span<const SonarInput> inputs) {
   const SonarInput& in = inputs[0];
-  if (in.width != gather_->layout().width || in.height != gather_->layout().height)
+  if (in.width != head_->gather().layout().width || in.height != head_->gather().layout().height)
     return bad_input("depth image: {} x {} pixels found, {} x {} as before is accepted", in.width,
-                     in.height, gather_->layout().width, gather_->layout().height);
+                     in.height, head_->gather().layout().width, head_->gather().layout().height);
   const auto put = [&](gpu::Image& image, const auto& texels) {
-    return gpu::upload_image(*device_, image, std::as_bytes(std::span(texels)));
+    return gpu::upload_image(device_, image, std::as_bytes(std::span(texels)));
   };
   NERITIC_TRY_STATUS(put(surface_image_, all_layers(inputs, surfaces)));
   if (labels_ || reflect_) return put(label_image_, all_layers(inputs, label_pairs));
@@ -217,55 +189,26 @@ Status ImageGather::upload(std::span<const SonarInput> inputs) {
 Result<SonarImage> ImageGather::run(const PingState& state) {
   const TimeNs start = now_ns();
   graph::FrameGraph graph;
-  SonarGather::Inputs inputs;
-  inputs.normals = graph.import_image(surface_image_, readable());
-  if (labels_ || reflect_) inputs.labels = graph.import_image(label_image_, readable());
-  if (reflect_) {
-    inputs.reflectivity = graph.import_buffer("sonar reflectivity", reflectivity_);
-    inputs.reflectivities = kReflectivitySteps;
-  }
-  const bool in_place = device_->info().shared_memory;
-  if (in_place && !receiver_) inputs.sums_target = graph.import_buffer("sonar sums", sums_);
-  if (in_place && labels_) inputs.keys_target = graph.import_buffer("sonar keys", keys_);
-  if (records_.size() > 0) inputs.records_target = graph.import_buffer("sonar records", records_);
-  Ping ping;
-  if (receiver_) {
-    PingState here = state;
-    here.gbuffer_in_world_axes = false;
-    ping = ping_of(sonar_, head_, here);
-    inputs.echo = ping.echo;
-    inputs.correction = ping.correction;
-  }
-  SonarGather::Outputs outputs = gather_->declare(graph, inputs);
-  if (!in_place && !receiver_)
-    outputs.sums = copy_buffer(graph, "sonar sums to host", outputs.sums, "sonar sums", sums_);
-  if (!in_place && labels_)
-    outputs.keys = copy_buffer(graph, "sonar keys to host", outputs.keys, "sonar keys", keys_);
-  if (labels_) graph.output(outputs.keys, graph::Access::kHostRead);
-  if (outputs.records) graph.output(outputs.records, graph::Access::kHostRead);
-  graph.output(receiver_ ? receiver_->declare(graph, outputs.sums, ping.receiver(),
-                                              graph.import_buffer("sonar power", power_), "")
-                         : outputs.sums,
-               graph::Access::kHostRead);
+  HeadGather::View view;
+  view.normals = graph.import_image(surface_image_, readable());
+  if (labels_ || reflect_) view.labels = graph.import_image(label_image_, readable());
+  HeadGather::Table table;
+  if (reflect_)
+    table = {graph.import_buffer("sonar reflectivity", reflectivity_), kReflectivitySteps};
+  HeadPing ping;
+  ping.host = &buffers_;
+  ping.state = state;
+  ping.state.gbuffer_in_world_axes = false;
+  head_->begin(graph, view, table, ping);
+  head_->end(graph, ping);
 
   NERITIC_TRY(gpu::Commands * commands, frames_->begin());
   NERITIC_TRY([[maybe_unused]] const graph::Plan* plan, executor_->run(graph, *commands));
   NERITIC_TRY(const std::uint64_t done, frames_->submit());
   NERITIC_TRY_STATUS(frames_->wait(done));
 
-  const auto keys = keys_.mapped<std::uint32_t>();
-  SonarImage out;
-  if (receiver_) {
-    const auto power = power_.mapped<float>();
-    out = {head_.beams.bins.range,
-           head_.beams.bins.azimuth,
-           {power.begin(), power.end()},
-           beam_labels(head_, keys)};
-    if (records_.size() > 0)
-      label_energy_ = beam_energies(head_, ping, {records_.mapped<shared::SonarRecord>()});
-  } else {
-    out = gather_->to_image(sums_.mapped<std::uint32_t>(), keys);
-  }
+  SonarImage out = head_->image(ping);
+  label_energy_ = head_->label_energy(ping);
   wall_ms_ = to_ms(now_ns() - start);
   return out;
 }

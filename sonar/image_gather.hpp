@@ -10,11 +10,7 @@
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/frames.hpp"
 #include "engine/graph/frame_graph.hpp"
-#include "sonar/gather.hpp"
-#include "sonar/head.hpp"
-#include "sonar/label_energy.hpp"
-#include "sonar/ping.hpp"
-#include "sonar/reference.hpp"
+#include "sonar/head_gather.hpp"
 
 namespace neritic::sonar {
 
@@ -34,27 +30,24 @@ class ImageGather {
   Status upload(std::span<const SonarInput> inputs);
   // One frame: gather, wait, read back. The same bits every time. state: of a sensor with terms.
   Result<SonarImage> run(const PingState& state = {});
-  // Of the last run, where the sensor names labels by energy.
+  // The last run's, where the sensor names labels by energy.
   const std::optional<LabelImage>& label_energy() const { return label_energy_; }
   // GPU times of the newest finished run, and the wall time of the last run with its waiting.
   const std::vector<gpu::PassTime>& pass_times() const { return frames_->pass_times(); }
   double wall_ms() const { return wall_ms_; }
 
  private:
-  ImageGather() = default;
-  Status prepare(gpu::Device& device, const BeamGrid& grid, std::span<const SonarInput> inputs,
+  explicit ImageGather(gpu::Device& device) : device_(device) {}
+  Status prepare(const scene::Sonar& sonar, const Head& head, std::span<const SonarInput> inputs,
                  GatherOptions options);
   Status make_images(const SonarInput& in, std::uint32_t layers);
-  Status make_buffers();
-  gpu::Device* device_ = nullptr;
-  std::unique_ptr<SonarGather> gather_;
-  std::unique_ptr<Receiver> receiver_;  // with terms
-  scene::Sonar sonar_;
-  Head head_;
+  gpu::Device& device_;
+  std::unique_ptr<HeadGather> head_;
+  HeadBuffers buffers_;
   std::optional<LabelImage> label_energy_;
   bool labels_ = false, reflect_ = false;
   gpu::Image surface_image_, label_image_;
-  gpu::Buffer reflectivity_, sums_, keys_, power_, records_;
+  gpu::Buffer reflectivity_;
   std::unique_ptr<gpu::Frames> frames_;
   std::unique_ptr<graph::Executor> executor_;
   double wall_ms_ = 0.0;

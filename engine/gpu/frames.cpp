@@ -32,7 +32,9 @@ struct Slot {
         descriptors(std::move(other.descriptors)),
         uploads(std::move(other.uploads)),
         timer(std::move(other.timer)),
-        value(other.value) {}
+        value(other.value),
+        times(std::move(other.times)),
+        times_value(other.times_value) {}
   Slot& operator=(Slot&&) = delete;
   ~Slot() {
     if (pool != VK_NULL_HANDLE) vkDestroyCommandPool(device, pool, nullptr);
@@ -44,7 +46,9 @@ struct Slot {
   DescriptorArena descriptors;
   UploadArena uploads;
   FrameTimer timer;
-  std::uint64_t value = 0;  // the timeline value of its last submission
+  std::uint64_t value = 0;      // the timeline value of its last submission
+  std::vector<PassTime> times;  // of frame times_value
+  std::uint64_t times_value = 0;
 };
 
 Status create_slot(const Device& device, std::uint32_t index, Slot& slot) {
@@ -80,7 +84,9 @@ class FramesImpl final : public Frames {
   }
   Status wait(std::uint64_t value) override;
   void retire(std::function<void()> destroy) override;
-  const std::vector<PassTime>& pass_times() const override { return times_; }
+  Result<std::uint64_t> completed() const override;
+  const std::vector<PassTime>& pass_times() const override;
+  std::vector<PassTime> pass_times_of(std::uint64_t value) const override;
   void enable_timing(bool on) override { timing_ = on; }
   Device& device() override { return device_; }
 
@@ -115,8 +121,6 @@ class FramesImpl final : public Frames {
   std::vector<std::uint64_t> dropped_;  // recordings, rising; only failures add to it
   std::optional<Error> frame_error_;    // of the frame being recorded; submit returns it
   std::deque<Retired> retired_;         // in the order of their values
-  std::vector<PassTime> times_;         // of frame times_value_
-  std::uint64_t times_value_ = 0;
   Commands commands_;
 };
 
@@ -225,12 +229,26 @@ void FramesImpl::finished(std::uint64_t value) {
     retired_.pop_front();
     destroy();
   }
-  Slot* newest = nullptr;
-  for (Slot& candidate : slots_)
-    if (candidate.value <= value && (!newest || candidate.value > newest->value))
-      newest = &candidate;
-  if (newest && newest->value > times_value_ && newest->timer.collect(times_))
-    times_value_ = newest->value;
+  for (Slot& done : slots_)
+    if (done.value <= value && done.value > done.times_value && done.timer.collect(done.times))
+      done.times_value = done.value;
+}
+
+Result<std::uint64_t> FramesImpl::completed() const {
+  std::uint64_t value = 0;
+  NERITIC_TRY_VK("vkGetSemaphoreCounterValue",
+                 vkGetSemaphoreCounterValue(device_.handle(), timeline_, &value));
+  return value;
+}
+
+const std::vector<PassTime>& FramesImpl::pass_times() const {
+  return std::ranges::max_element(slots_, {}, &Slot::times_value)->times;
+}
+
+std::vector<PassTime> FramesImpl::pass_times_of(std::uint64_t value) const {
+  for (const Slot& slot : slots_)
+    if (slot.times_value == value) return slot.times;
+  return {};
 }
 
 void FramesImpl::retire(std::function<void()> destroy) {

@@ -95,11 +95,16 @@ class Frames {
   virtual bool was_submitted(std::uint64_t recording) const = 0;
   // Waits until that frame is done (kDeviceLost after 60 s).
   virtual Status wait(std::uint64_t value) = 0;
+  // The newest frame that is done; 0 before the first. Does not wait.
+  virtual Result<std::uint64_t> completed() const = 0;
   // Runs destroy when the frame being recorded (or the last submitted) is done on the GPU.
   virtual void retire(std::function<void()> destroy) = 0;
   // Times of the regions of the newest finished frame, in order; empty before the first, or where
   // the queue has no timestamps. Includes host_ms of recording as "record".
   virtual const std::vector<PassTime>& pass_times() const = 0;
+  // The same of one frame, after it was waited for and until another frame in its slot is done;
+  // else empty.
+  virtual std::vector<PassTime> pass_times_of(std::uint64_t value) const = 0;
   virtual void enable_timing(bool on) = 0;
   virtual Device& device() = 0;
 

@@ -115,7 +115,7 @@ Result<SonarFans::Fan*> SonarFans::fan_of(std::size_t sonar, const std::string& 
 }
 
 graph::BufferHandle SonarFans::declare_scale(graph::FrameGraph& graph, const std::string& name,
-                                             const LiveFrame::Sonar& ping, const Fan& fan) {
+                                             const SensorFrame::Sonar& ping, const Fan& fan) {
   const sonar::Bins& bins = ping.grid.bins;
   const std::uint32_t cells = bins.range * bins.azimuth;
   const graph::BufferHandle scale = graph.import_buffer(name + " fan scale", fan.scale);
@@ -150,7 +150,7 @@ void SonarFans::begin_frame() {
 }
 
 Status SonarFans::declare(graph::FrameGraph& graph, const std::string& name,
-                          const LiveFrame::Sonar& ping) {
+                          const SensorFrame::Sonar& ping) {
   NERITIC_TRY(Fan* const fan, fan_of(ping.index, name, ping.grid));
   const graph::BufferHandle scale = declare_scale(graph, name, ping, *fan);
   // Every texel is written: what was there need not be kept.

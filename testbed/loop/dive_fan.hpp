@@ -10,7 +10,7 @@
 #include "engine/gpu/pipeline.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "sonar/beam_grid.hpp"
-#include "testbed/sensors/session.hpp"
+#include "testbed/sensors/sensor_frame.hpp"
 
 namespace neritic::testbed {
 
@@ -29,7 +29,7 @@ class SonarFans {
   // A new graph: handles of the last are forgotten.
   void begin_frame();
   // Declares the passes that draw a ping. name: the sonar's, unique in the scene.
-  Status declare(graph::FrameGraph& graph, const std::string& name, const LiveFrame::Sonar& ping);
+  Status declare(graph::FrameGraph& graph, const std::string& name, const SensorFrame::Sonar& ping);
   // The newest picture for this frame's passes to read (kSampledFragment); empty before the first.
   graph::ImageHandle picture(graph::FrameGraph& graph, std::size_t sonar);
   const FanShape* shape(std::size_t sonar) const;        // nullptr before the first
@@ -46,7 +46,7 @@ class SonarFans {
   explicit SonarFans(gpu::Device& device) : device_(device) {}
   Result<Fan*> fan_of(std::size_t sonar, const std::string& name, const sonar::BeamGrid& grid);
   graph::BufferHandle declare_scale(graph::FrameGraph& graph, const std::string& name,
-                                    const LiveFrame::Sonar& ping, const Fan& fan);
+                                    const SensorFrame::Sonar& ping, const Fan& fan);
   gpu::Device& device_;
   gpu::Pipeline scale_, draw_;
   std::map<std::size_t, std::unique_ptr<Fan>> fans_;

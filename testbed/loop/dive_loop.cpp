@@ -113,7 +113,7 @@ Status Dive::frame(const xr::DisplayFrame& display_frame, bool last) {
   aim_camera(display_frame);
 
   graph::FrameGraph graph;
-  std::unique_ptr<LiveFrame> live;
+  std::unique_ptr<SensorFrame> live;
   NERITIC_TRY_STATUS(declare(graph, display_frame, last, live));
   gpu::Frames& frames = session_.frames();
   NERITIC_TRY(gpu::Commands * commands, frames.begin());
@@ -160,11 +160,12 @@ void Dive::add_due_sonars(FrameRequest& request) {
 }
 
 Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_frame, bool last,
-                     std::unique_ptr<LiveFrame>& live) {
+                     std::unique_ptr<SensorFrame>& live) {
   FrameRequest request;
   request.time_s = request.next_time_s = time_s_;
   if (options_.physics) request.simulated = &options_.physics->motion();
   request.cameras = {options_.camera};
+  request.capture = kColorOnGpu;
   const bool panels = options_.panels && show_panels_;
   if (panels || !overlay_) add_due_sonars(request);
   NERITIC_TRY(live, session_.declare(graph, request));
@@ -173,7 +174,7 @@ Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_f
     const xr::ViewGroup& group = display_frame.groups.front();
     overlay_->begin(group.width, group.height, elapsed_s_);
     fans_->begin_frame();
-    for (const LiveFrame::Sonar& ping : live->sonars) {
+    for (const SensorFrame::Sonar& ping : live->sonars) {
       const scene::Sonar& sonar = session_.scene().sonars[ping.index];
       if (sonar.kind == scene::SonarKind::kImaging || sonar.kind == scene::SonarKind::kProfiling) {
         NERITIC_TRY_STATUS(fans_->declare(graph, sonar.name, ping));
@@ -186,7 +187,7 @@ Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_f
       layers.push_back(screen_panel(group, image));
     }
   } else {
-    for (const LiveFrame::Sonar& ping : live->sonars)
+    for (const SensorFrame::Sonar& ping : live->sonars)
       graph.output(ping.image, graph::Access::kStorageReadCompute);
   }
   NERITIC_TRY(const xr::ShownPicture shown, display_.declare(graph, world_from_head_, layers));
@@ -198,7 +199,8 @@ Status Dive::declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_f
   return {};
 }
 
-Result<graph::ImageHandle> Dive::declare_overlay(graph::FrameGraph& graph, const LiveFrame& live) {
+Result<graph::ImageHandle> Dive::declare_overlay(graph::FrameGraph& graph,
+                                                 const SensorFrame& live) {
   const TimeNs now = now_ns();
   const float scale = overlay_->scale();
   const scene::Scene& scene = session_.scene();
@@ -247,7 +249,7 @@ Status Dive::declare_shot(graph::FrameGraph& graph, const xr::ShownPicture& show
   shot.bgra = shown.format == VK_FORMAT_B8G8R8A8_UNORM;
   NERITIC_TRY(shot.texels, readback_.declare(graph, device_, "screenshot", shown.image,
                                              shown.format, shown.width, shown.height, 1));
-  shot_ = shot;
+  shot_ = std::move(shot);
   return {};
 }
 

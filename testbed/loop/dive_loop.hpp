@@ -47,7 +47,7 @@ class Dive {
  private:
   struct Shot {
     std::filesystem::path path;
-    const gpu::Buffer* texels = nullptr;
+    Readback texels;
     std::uint32_t width = 0, height = 0;
     bool bgra = false, by_key = false;
     std::uint64_t done = 0;  // the frame that fills it
@@ -57,8 +57,8 @@ class Dive {
   void aim_camera(const xr::DisplayFrame& display_frame);
   void add_due_sonars(FrameRequest& request);
   Status declare(graph::FrameGraph& graph, const xr::DisplayFrame& display_frame, bool last,
-                 std::unique_ptr<LiveFrame>& live);
-  Result<graph::ImageHandle> declare_overlay(graph::FrameGraph& graph, const LiveFrame& live);
+                 std::unique_ptr<SensorFrame>& live);
+  Result<graph::ImageHandle> declare_overlay(graph::FrameGraph& graph, const SensorFrame& live);
   Status declare_shot(graph::FrameGraph& graph, const xr::ShownPicture& shown);
   Status write_shot(bool at_end);
 

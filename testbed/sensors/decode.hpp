@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "testbed/sensors/session.hpp"
+#include "testbed/sensors/frame_result.hpp"
 
 namespace neritic::testbed {
 

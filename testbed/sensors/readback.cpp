@@ -2,18 +2,19 @@
 
 namespace neritic::testbed {
 
-Result<const gpu::Buffer*> ReadbackPool::declare(graph::FrameGraph& graph, gpu::Device& device,
-                                                 const std::string& name, graph::ImageHandle image,
-                                                 VkFormat format, std::uint32_t width,
-                                                 std::uint32_t height, std::uint32_t layers) {
+Result<Readback> ReadbackPool::declare(graph::FrameGraph& graph, gpu::Device& device,
+                                       const std::string& name, graph::ImageHandle image,
+                                       VkFormat format, std::uint32_t width, std::uint32_t height,
+                                       std::uint32_t layers) {
   const VkDeviceSize size = VkDeviceSize{gpu::texel_bytes(format)} * width * height * layers;
-  std::unique_ptr<gpu::Buffer>& buffer = buffers_[name];
-  if (!buffer || buffer->size() != size) {
-    NERITIC_TRY(auto fresh, gpu::Buffer::create(
-                                device, {name + " readback", size, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                         gpu::MemoryUse::kReadback}));
-    buffer = std::make_unique<gpu::Buffer>(std::move(fresh));
-  }
+  const auto make = [&]() -> Result<gpu::Buffer> {
+    device.wait_idle();  // a frame in flight may still write the buffer that this one replaces
+    return gpu::Buffer::create(device, {name + " readback", size, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                        gpu::MemoryUse::kReadback});
+  };
+  NERITIC_TRY(Readback buffer,
+              buffers_[name].take(
+                  name, [&](const auto& old) { return old.size() == size; }, make));
   struct Data {
     graph::BufferHandle target;
   };
@@ -37,7 +38,7 @@ Result<const gpu::Buffer*> ReadbackPool::declare(graph::FrameGraph& graph, gpu::
                                context.buffer(data.target).handle(), 1, &region);
       });
   graph.output(pass.target, graph::Access::kHostRead);
-  return buffer.get();
+  return buffer;
 }
 
 }  // namespace neritic::testbed

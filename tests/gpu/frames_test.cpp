@@ -288,6 +288,43 @@ TEST_F(TimerTest, TimesAreThoseOfTheNewestFinishedFrame) {
   EXPECT_THAT(names_of(frames->pass_times()), ElementsAre("record", "frame 4"));
 }
 
+TEST_F(TimerTest, TimesOfAFrameStayUntilItsSlotIsDoneAgain) {
+  NERITIC_ASSERT_OK(const auto frames, Frames::create(device(), 2));
+  std::uint64_t done[4] = {};
+  const auto submit = [&](int i) {
+    NERITIC_ASSERT_OK(Commands * commands, frames->begin());
+    commands->begin_region("frame " + std::to_string(i));
+    commands->end_region();
+    NERITIC_ASSERT_OK(done[i], frames->submit());
+  };
+  submit(0);
+  submit(1);
+  NERITIC_ASSERT_STATUS(frames->wait(done[1]));
+  EXPECT_THAT(names_of(frames->pass_times_of(done[0])), ElementsAre("record", "frame 0"));
+  EXPECT_THAT(names_of(frames->pass_times_of(done[1])), ElementsAre("record", "frame 1"));
+  submit(2);
+  submit(3);
+  NERITIC_ASSERT_STATUS(frames->wait(done[3]));
+  EXPECT_TRUE(frames->pass_times_of(done[0]).empty());
+  EXPECT_THAT(names_of(frames->pass_times_of(done[2])), ElementsAre("record", "frame 2"));
+}
+
+TEST_F(TimerTest, CompletedIsTheNewestFrameThatIsDone) {
+  NERITIC_ASSERT_OK(const auto frames, Frames::create(device(), 2));
+  NERITIC_ASSERT_OK(const std::uint64_t none, frames->completed());
+  EXPECT_EQ(none, 0u);
+  for (int i = 0; i < 3; ++i) {
+    NERITIC_ASSERT_OK(Commands * commands, frames->begin());
+    burn(*commands, 1);
+    NERITIC_ASSERT_OK(const std::uint64_t frame, frames->submit());
+    NERITIC_ASSERT_OK(const std::uint64_t before, frames->completed());
+    EXPECT_LE(before, frame);
+    NERITIC_ASSERT_STATUS(frames->wait(frame));
+    NERITIC_ASSERT_OK(const std::uint64_t after, frames->completed());
+    EXPECT_EQ(after, frame);
+  }
+}
+
 TEST_F(TimerTest, RegionsBeyondTheLimitAreNotTimedAndHarmNothing) {
   NERITIC_ASSERT_OK(const auto frames, Frames::create(device()));
   NERITIC_ASSERT_OK(Commands * commands, frames->begin());

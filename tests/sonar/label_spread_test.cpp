@@ -29,9 +29,9 @@ std::vector<EnergyRecord> rays(const LabelSpread& s, std::uint32_t elevations, s
       r = {sonar::kNoReturn, 0, 0, 0, 0, 0};
       continue;
     }
-    const auto bin = random() % (s.n_range + 5);
+    const auto bin = static_cast<std::uint32_t>(random() % (s.n_range + 5));
     r = {random() % 2 ? bin : sonar::kShared,
-         random() % 1000,
+         static_cast<std::uint32_t>(random() % 1000),
          static_cast<std::uint16_t>(1 + random() % 3),
          static_cast<std::uint16_t>(random() % 2),
          static_cast<std::uint16_t>(bin),

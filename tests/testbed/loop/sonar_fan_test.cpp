@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "testbed/loop/dive_fan.hpp"
+#include "testbed/sensors/readback.hpp"
 #include "tests/support/gpu_fixture.hpp"
 
 namespace neritic::testbed {
@@ -41,7 +42,7 @@ TEST_F(SonarFansTest, OneEchoLightsItsCellOnly) {
   NERITIC_ASSERT_STATUS(
       fans->declare(graph, "sonar", {0, grid, graph.import_buffer("sums", buffer)}));
   const FanShape shape = *fans->shape(0);
-  NERITIC_ASSERT_OK(const gpu::Buffer* texels,
+  NERITIC_ASSERT_OK(const Readback texels,
                     readback.declare(graph, device(), "fan", fans->picture(graph, 0),
                                      VK_FORMAT_R8G8B8A8_UNORM, shape.width, shape.height, 1));
   NERITIC_ASSERT_OK(gpu::Commands * commands, frames->begin());

@@ -51,7 +51,7 @@ class Studio {
     NERITIC_TRY(const auto deformed, renderer_->declare_deform(graph, *gpu_scene_, state));
     NERITIC_TRY(const auto g, renderer_->declare_gbuffer(graph, "", kind, *gpu_scene_, state,
                                                          deformed, views, draws));
-    std::map<std::string, const gpu::Buffer*> copies;
+    std::map<std::string, Readback> copies;
     const auto copy = [&](const std::string& name, graph::ImageHandle image,
                           VkFormat format) -> Status {
       NERITIC_TRY(copies[name], readback_.declare(graph, device_, name, image, format, views.width,

@@ -1,0 +1,88 @@
+// One sonar of a session: what it keeps from frame to frame, its part of a frame's graph, and its
+// results at the host. Private to testbed/sensors; rendering thread.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sonar/head_gather.hpp"
+#include "testbed/sensors/view_sensor.hpp"
+
+namespace neritic::testbed {
+
+// What the scene's instances send back, for all its sonars: read once, when the session is made.
+struct EchoTables {
+  std::vector<float> reflectivities;      // by instance label; empty: all are 1
+  gpu::Buffer reflectivity, backscatter;  // by instance label; empty where no sonar needs them
+  double backscatter_scale = 1.0;         // strength that 1 in the table stands for
+
+  static Result<EchoTables> create(gpu::Device& device, const scene::Scene& scene);
+  const gpu::Buffer* of(const scene::Sonar& sonar) const;  // nullptr: all are 1
+};
+
+// A head as long as the settings stay.
+struct HeadState {
+  std::string name;  // of passes: the sonar's, and the head's where there are several
+  std::vector<sonar::Sector> sectors;
+  sonar::LeaningView upright;  // a plain pinhole, of the arrays
+  // The view that beams gather from: it leans, but for cones and the published gather.
+  sonar::LeaningView sampled;
+  std::unique_ptr<sonar::HeadGather> gather;
+  Ring<sonar::HeadBuffers> buffers;
+  const sonar::Head& head() const { return gather->head(); }
+};
+
+struct SonarState {
+  scene::Sonar made_from;
+  sonar::Gather mode = sonar::Gather::kPlane;
+  double pixels_per_cell = 1.0;  // asked for; the device's largest image may allow less
+  std::vector<sonar::Mirror> mirrors;
+  std::vector<HeadState> heads;
+};
+
+// One head in one frame.
+struct HeadWork {
+  HeadState* state = nullptr;
+  Pin<sonar::HeadBuffers> buffers;  // empty: nothing is brought to the host
+  sonar::HeadPing ping;
+  ViewsWork sampled, arrays;
+  std::vector<std::unique_ptr<ViewsWork>> ghosts;  // a mirror
+  double heading_rad = 0.0;
+  Pose world_from_sonar, world_from_head;
+};
+
+// One sonar in one frame. Keeps its settings from being replaced; heads, which borrow from them, go
+// first.
+struct SonarWork {
+  std::size_t index = 0;
+  Pin<SonarState> state;
+  std::vector<std::unique_ptr<HeadWork>> heads;
+};
+
+class SonarSensor {
+ public:
+  // tables must outlive it. index: into the scene's sonars.
+  SonarSensor(const EchoTables& tables, std::size_t index) : tables_(tables), index_(index) {}
+
+  // Adds a geometry G-buffer a head (and a mirror), the gathers, the receiver. ping: its number.
+  Result<std::unique_ptr<SonarWork>> declare(const FrameParts& frame, const Capture& capture,
+                                             std::uint32_t ping);
+  // A result a head, after the frame is done.
+  std::vector<SonarFrame> decode(const SonarWork& work) const;
+
+ private:
+  Result<Pin<SonarState>> state_of(gpu::Device& device, scene::Sonar sonar);
+  Result<HeadState> make_head(gpu::Device& device, const scene::Sonar& sonar,
+                              const SonarState& state, sonar::Head head) const;
+  Status declare_head(const FrameParts& frame, const Capture& capture, const SonarState& sonar,
+                      HeadWork& work) const;
+  Status declare_ghosts(const FrameParts& frame, const SonarState& sonar, HeadWork& work) const;
+  SonarFrame decode_head(const SonarState& sonar, const HeadWork& work) const;
+
+  const EchoTables& tables_;
+  std::size_t index_;
+  // The newest settings last; earlier ones as long as a frame borrows them.
+  std::vector<std::unique_ptr<PinSlot<SonarState>>> states_;
+};
+
+}  // namespace neritic::testbed

@@ -1,0 +1,160 @@
+#include "testbed/sensors/view_sensor.hpp"
+
+#include <future>
+
+#include "engine/core/check.hpp"
+#include "engine/render/lighting.hpp"
+#include "testbed/sensors/decode.hpp"
+#include "testbed/sensors/session.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+template <class T>
+std::span<const T> layer_of(const gpu::Buffer& buffer, std::size_t layer, std::size_t elements) {
+  return std::span<const T>(buffer.mapped<T>()).subspan(layer * elements, elements);
+}
+
+// With fewer pixels a thread costs more than it saves (0.1 ms on the build machine).
+constexpr std::size_t kWorthAThread = 1 << 16;
+
+Status check_size(const gpu::Device& device, const std::string& what,
+                  const render::ViewSet& views) {
+  const std::uint32_t limit = device.limits().maxImageDimension2D;
+  if (views.width == 0 || views.height == 0 || views.width > limit || views.height > limit)
+    return bad_input("{}: size {}x{}; 1 to {} pixels a side are accepted", what, views.width,
+                     views.height, limit);
+  return {};
+}
+
+// The tonemapped picture of a surface G-buffer.
+Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::string& prefix,
+                                         const render::GBuffer& g, const ViewsRequest& request,
+                                         const ViewsWork& work) {
+  NERITIC_TRY(const shared::Lighting lighting,
+              render::make_lighting(frame.scene, frame.state, work.views.origin_m(),
+                                    request.exposure, frame.gpu_scene.has_emission()));
+  NERITIC_TRY(graph::ImageHandle hdr,
+              frame.renderer.declare_shade(frame.graph, prefix, {g, work.views, lighting}));
+  NERITIC_TRY(hdr,
+              frame.renderer.declare_forward(frame.graph, prefix, hdr, g, frame.gpu_scene,
+                                             frame.deformed, work.views, work.draws, lighting));
+  return frame.renderer.declare_picture(frame.graph, prefix, hdr, g.width, g.height, g.layers,
+                                        request.antialias);
+}
+
+ViewImages decode_view(const ViewsWork& work, std::size_t i) {
+  const render::ViewDesc& view = work.views.views[i];
+  ViewImages eye;
+  eye.world_from_view = view.world_from_view;
+  eye.intrinsics = intrinsics_of(view.tangents, work.views.width, work.views.height);
+  eye.near_m = view.near_m;
+  eye.width = work.views.width;
+  eye.height = work.views.height;
+  const std::size_t pixels = std::size_t{eye.width} * eye.height;
+  // Two halves of about the same bytes, which share nothing but the sizes.
+  const auto shape = [&] {
+    if (work.depth) decode_depth(layer_of<float>(*work.depth, i, pixels), eye);
+    if (work.normal) decode_normals(layer_of<std::uint32_t>(*work.normal, i, pixels), eye);
+  };
+  const auto look = [&] {
+    if (work.label) decode_labels(layer_of<std::uint32_t>(*work.label, i, pixels), eye);
+    if (work.color) decode_color(layer_of<std::uint32_t>(*work.color, i, pixels), eye);
+    if (work.motion)
+      decode_motion(
+          layer_of<float>(*work.motion, i, pixels * 2),
+          work.depth ? layer_of<float>(*work.depth, i, pixels) : std::span<const float>(),
+          glm::conjugate(view.next_world_from_view.rotation) * view.world_from_view.rotation, eye);
+  };
+  if (pixels < kWorthAThread || !(work.depth && (work.color || work.motion))) {
+    shape();
+    look();
+  } else {
+    auto other = std::async(std::launch::async, look);
+    shape();
+    other.get();
+  }
+  return eye;
+}
+
+}  // namespace
+
+Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::string& label,
+                                         const ViewsRequest& request, ViewsWork& work) {
+  const Capture& capture = request.capture;
+  NERITIC_CHECK(!request.views.views.empty() && request.views.views.size() <= shared::kMaxViews,
+                "{} has {} views", label, request.views.views.size());
+  NERITIC_TRY_STATUS(check_size(frame.device, label, request.views));
+  work.views = request.views;
+  work.draws = render::build_draw_list(frame.scene, frame.gpu_scene, frame.state, work.views);
+  const std::string prefix = request.name + " ";
+  // With or without colour the same G-buffer: single-sided materials, no blended ones in the depth.
+  NERITIC_TRY(const render::GBuffer g,
+              frame.renderer.declare_gbuffer(frame.graph, prefix, render::GBufferKind::kSurface,
+                                             frame.gpu_scene, frame.state, frame.deformed,
+                                             work.views, work.draws));
+  SensorFrame::Views out{.depth = g.depth,
+                         .normal = g.normal,
+                         .label = g.label,
+                         .near_m = work.views.views.front().near_m,
+                         .width = g.width,
+                         .height = g.height,
+                         .layers = g.layers};
+  if (capture.color) {
+    NERITIC_TRY(out.color, declare_color(frame, prefix, g, request, work));
+  }
+  if (!capture.to_host) return out;
+  const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
+    return frame.readback.declare(frame.graph, frame.device, prefix + name, image, format, g.width,
+                                  g.height, g.layers);
+  };
+  if (capture.color) {
+    NERITIC_TRY(work.color, bring("color", out.color, render::kColorFormat));
+  }
+  if (capture.geometry) NERITIC_TRY_STATUS(bring_geometry(frame, prefix, g, work));
+  if (capture.motion && g.motion) {
+    NERITIC_TRY(work.motion, bring("motion", g.motion, render::kMotionFormat));
+  }
+  return out;
+}
+
+Status bring_geometry(const FrameParts& frame, const std::string& prefix, const render::GBuffer& g,
+                      ViewsWork& work) {
+  const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
+    return frame.readback.declare(frame.graph, frame.device, prefix + name, image, format, g.width,
+                                  g.height, g.layers);
+  };
+  NERITIC_TRY(work.depth, bring("depth", g.depth, render::kDepthFormat));
+  NERITIC_TRY(work.normal, bring("normal", g.normal, render::kNormalFormat));
+  NERITIC_TRY(work.label, bring("label", g.label, render::kLabelFormat));
+  return {};
+}
+
+std::vector<ViewImages> decode_views(const ViewsWork& work) {
+  std::vector<ViewImages> views;
+  for (std::size_t i = 0; i < work.views.views.size(); ++i) views.push_back(decode_view(work, i));
+  return views;
+}
+
+render::ViewSet camera_views(const scene::MotionSource& motion, const scene::Camera& camera,
+                             double time_s, double next_time_s) {
+  render::ViewSet set;
+  set.width = camera.width;
+  set.height = camera.height;
+  render::ViewDesc view;
+  view.tangents = tangents_from_fov(camera.vertical_fov_rad, double(camera.width) / camera.height);
+  view.near_m = camera.near_m;
+  const Pose center = motion.world_from(camera.mount, time_s);
+  const Pose next_center = motion.world_from(camera.mount, next_time_s);
+  const int eyes = camera.stereo_baseline_m > 0.0 ? 2 : 1;
+  for (int i = 0; i < eyes; ++i) {
+    const double side = eyes == 1 ? 0.0 : (i == 0 ? -0.5 : 0.5);
+    const Vec3 eye_m(side * camera.stereo_baseline_m, 0.0, 0.0);
+    view.world_from_view = {center * eye_m, center.rotation};
+    view.next_world_from_view = {next_center * eye_m, next_center.rotation};
+    set.views.push_back(view);
+  }
+  return set;
+}
+
+}  // namespace neritic::testbed

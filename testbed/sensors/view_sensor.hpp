@@ -1,0 +1,44 @@
+// A camera's or a view set's part of a frame's graph, and its images at the host. Private to
+// testbed/sensors; rendering thread.
+#pragma once
+
+#include <vector>
+
+#include "engine/render/renderer.hpp"
+#include "testbed/sensors/frame_request.hpp"
+#include "testbed/sensors/frame_result.hpp"
+#include "testbed/sensors/readback.hpp"
+#include "testbed/sensors/sensor_frame.hpp"
+
+namespace neritic::testbed {
+
+// What all sensors of a frame share while it is declared.
+struct FrameParts {
+  graph::FrameGraph& graph;
+  gpu::Device& device;
+  render::Renderer& renderer;
+  const scene::Scene& scene;
+  const render::GpuScene& gpu_scene;
+  const scene::MotionSource& motion;
+  const render::FrameState& state;
+  const render::DeformedGeometry& deformed;
+  ReadbackPool& readback;
+};
+
+// A view set in one frame: data that the passes borrow, and the buffers that the host reads.
+struct ViewsWork {
+  render::ViewSet views;
+  render::DrawList draws;
+  Readback depth, normal, label, color, motion;  // empty where they were not asked for
+};
+
+// Adds the passes of a view set. label: of errors, "camera NAME".
+Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::string& label,
+                                         const ViewsRequest& request, ViewsWork& work);
+// Declares the read-backs of a G-buffer's geometry.
+Status bring_geometry(const FrameParts& frame, const std::string& prefix, const render::GBuffer& g,
+                      ViewsWork& work);
+// The images that were asked for, a view each, after the frame is done.
+std::vector<ViewImages> decode_views(const ViewsWork& work);
+
+}  // namespace neritic::testbed
