@@ -1,0 +1,255 @@
+#include "rov/navigation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rov/controller.hpp"
+#include "rov/navigation_measurements.hpp"
+
+namespace neritic::rov {
+namespace {
+
+// Of the attitude before anything was measured.
+constexpr double kUnknown_rad = 1.0;
+// Beyond these no reading is one: what the devices can measure (16 g, 2000 degrees a second), the
+// deepest sea, and speeds that no vehicle has.
+constexpr double kMostForce_m_s2 = 160.0, kMostTurning_rad_s = 35.0;
+constexpr double kMostSpeed_m_s = 50.0, kMostDepth_m = 12e3, kMostFix_m = 1e7;
+// Rejections over this time, and at least so many, before a sensor is believed again.
+constexpr double kPatience_s = 10.0;
+constexpr double kLeastPatience = 5.0;
+
+// An inertial reading holds for so many periods.
+constexpr double kHeldPeriods = 4.0;
+
+// The covariance follows the motion at least this often: its transition takes the attitude for
+// constant since.
+constexpr double kLongestPending_s = 0.1;
+
+// The random stream of launch errors, apart from the sensors'.
+constexpr std::uint64_t kLaunchStream = 0x6c61756e63680000ull;
+
+std::uint64_t patience(double rate_hz) {
+  return static_cast<std::uint64_t>(std::max(kLeastPatience, std::ceil(kPatience_s * rate_hz)));
+}
+
+bool within(const Vec3& v, double most) {
+  return is_finite(v) && glm::length(v) <= most;
+}
+
+// Whether there is a reading that was not used yet; it is then. Readings that come faster than the
+// effort allows are left out.
+template <class Value>
+bool fresh(const NavigationModel& model, double rate_hz, const Reading<Value>& reading,
+           std::uint64_t& used) {
+  if (reading.count == used) return false;
+  const double most_hz = model.effort.corrections_hz;
+  const auto every = most_hz > 0.0 && rate_hz > most_hz
+                         ? static_cast<std::uint64_t>(std::ceil(rate_hz / most_hz - 1e-9))
+                         : std::uint64_t{1};
+  // The first reading is number 1: it and every so many after it are used.
+  const bool wanted = (reading.count - 1) / every != (used - 1) / every || used == 0;
+  used = reading.count;
+  return wanted;
+}
+
+// In body axes.
+ImuReading in_body(const NavigationModel& model, const ImuReading& reading) {
+  return {model.imu.mount.rotation * reading.angular_rad_s,
+          model.imu.mount.rotation * reading.specific_force_m_s2};
+}
+
+// Moves the state to time_s without a new inertial reading: the last one holds for some periods.
+void carry(const NavigationModel& model, double time_s, NavigationState& state) {
+  const double dt_s = time_s - state.time_s;
+  if (!(dt_s > 0.0)) return;
+  const double silent_s = std::max(0.0, state.time_s - state.imu_s);
+  if (silent_s + dt_s <= kHeldPeriods / model.imu.rate_hz)
+    move(state, state.imu, model.imu.gravity_m_s2, dt_s);
+  else
+    coast(state, silent_s, dt_s);
+}
+
+// Levels the state by its inertial reading, whatever it was before.
+void level(const NavigationModel& model, NavigationState& state) {
+  move_covariance(state, model.motion);
+  AidTally levelled;
+  correct(state, level_measurement(model, state), levelled, 0);
+}
+
+class Corrections {
+ public:
+  Corrections(const NavigationModel& model, double time_s, NavigationState& state)
+      : model_(model), time_s_(time_s), state_(state) {}
+
+  // Refuses a reading that no such sensor can make.
+  bool refuse(Aid aid, bool good) {
+    if (!good) ++tally(aid).refused;
+    return !good;
+  }
+  // Carries the state to the time of the readings, before it is compared with one.
+  void prepare() {
+    carry(model_, time_s_, state_);
+    move_covariance(state_, model_.motion);
+  }
+  void apply(Aid aid, double rate_hz, const Measurement& measurement) {
+    const double most_hz = model_.effort.corrections_hz;
+    correct(state_, measurement, tally(aid),
+            patience(most_hz > 0.0 ? std::min(rate_hz, most_hz) : rate_hz));
+  }
+
+ private:
+  AidTally& tally(Aid aid) { return state_.aids[static_cast<std::size_t>(aid)]; }
+  const NavigationModel& model_;
+  double time_s_;
+  NavigationState& state_;
+};
+
+void correct_by_dvl(const NavigationModel& model, const DvlReading& reading, Corrections& out,
+                    const NavigationState& state) {
+  for (std::size_t beam = 0; beam < 4; ++beam) {
+    const auto aid = static_cast<Aid>(beam);
+    const double speed = reading.speed_m_s[beam];
+    if (!reading.hears(beam) || out.refuse(aid, std::abs(speed) <= kMostSpeed_m_s)) continue;
+    out.prepare();
+    out.apply(aid, model.dvl->rate_hz, beam_measurement(model, state, beam, speed));
+  }
+}
+
+void correct_by_fix(const NavigationModel& model, const UsblReading& reading, double age_s,
+                    Corrections& out, const NavigationState& state) {
+  if (reading.heard == 0) return;
+  if (out.refuse(Aid::kUsbl, within(reading.position_ned_m, kMostFix_m))) return;
+  out.prepare();
+  out.apply(Aid::kUsbl, model.usbl->rate_hz, fix_measurement(model, state, reading, age_s));
+}
+
+// All but the inertial unit's.
+void correct_by_new(const NavigationModel& model, const SensorReadings& readings, double time_s,
+                    NavigationState& state) {
+  Corrections out(model, time_s, state);
+  if (model.dvl && fresh(model, model.dvl->rate_hz, readings.dvl, state.dvl_used))
+    correct_by_dvl(model, readings.dvl.value, out, state);
+  if (model.pressure &&
+      fresh(model, model.pressure->rate_hz, readings.pressure, state.pressure_used)) {
+    const double depth_m = readings.pressure.value.depth_m;
+    if (!out.refuse(Aid::kPressure, std::abs(depth_m) <= kMostDepth_m)) {
+      out.prepare();
+      out.apply(Aid::kPressure, model.pressure->rate_hz, depth_measurement(model, state, depth_m));
+    }
+  }
+  if (model.compass &&
+      fresh(model, model.compass->rate_hz, readings.heading_rad, state.compass_used)) {
+    const double heading = readings.heading_rad.value;
+    if (!out.refuse(Aid::kCompass, std::abs(heading) <= 10.0 * kPi) && has_heading(state)) {
+      out.prepare();
+      out.apply(Aid::kCompass, model.compass->rate_hz, heading_measurement(model, state, heading));
+    }
+  }
+  if (!model.usbl || readings.usbl.count == 0) return;
+  // Half the way back to the surface; no longer than until the next fix replaces it.
+  const double travel_s = readings.usbl.value.travel_s, period_s = 1.0 / model.usbl->rate_hz;
+  const double late_s = travel_s > 0.0 ? std::min(0.5 * travel_s, 0.9 * period_s) : 0.0;
+  const double age_s = time_s - readings.usbl.time_s;
+  if (age_s >= late_s && fresh(model, model.usbl->rate_hz, readings.usbl, state.usbl_used))
+    correct_by_fix(model, readings.usbl.value, std::clamp(age_s, 0.0, period_s), out, state);
+}
+
+}  // namespace
+
+Vec3 surveyed_launch(const Vec3& position_ned_m, std::uint64_t seed, std::uint64_t vehicle) {
+  const NoiseSource noise{seed, kLaunchStream + vehicle};
+  return position_ned_m + noise.error3({.white = kLaunchSigma_m}, 0, 0, 1.0);
+}
+
+NavigationState start_navigation(const NavigationModel& model, const SensorReadings& readings,
+                                 const Vec3& launch_ned_m, double time_s) {
+  NavigationState state;
+  state.time_s = state.imu_s = time_s;
+  const ImuReading first = in_body(model, readings.imu.value);
+  const bool felt = readings.imu.count > 0 && within(first.specific_force_m_s2, kMostForce_m_s2) &&
+                    within(first.angular_rad_s, kMostTurning_rad_s);
+  if (felt) state.imu = first;
+  state.imu_used = readings.imu.count;
+  // Groves 2013, eq. 5.101: roll and pitch of a body that feels gravity alone.
+  const Vec3 f = state.imu.specific_force_m_s2;
+  const double roll = felt ? std::atan2(-f.y, -f.z) : 0.0;
+  const double pitch = felt ? std::atan2(f.x, std::hypot(f.y, f.z)) : 0.0;
+  const double read = readings.heading_rad.value;
+  const double heading =
+      model.compass && readings.heading_rad.count > 0 && std::abs(read) <= 10.0 * kPi
+          ? read + model.compass->declination_rad
+          : 0.0;
+  state.attitude = heading_attitude(heading) * glm::angleAxis(pitch, Vec3(0.0, 1.0, 0.0)) *
+                   glm::angleAxis(roll, Vec3(1.0, 0.0, 0.0));
+  state.position_ned_m = launch_ned_m + state.attitude * model.imu.mount.position_m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    state.covariance.set(kAttitudeError + i, kAttitudeError + i, kUnknown_rad * kUnknown_rad);
+    state.covariance.set(kVelocityError + i, kVelocityError + i,
+                         kLaunchSigma_m_s * kLaunchSigma_m_s);
+    state.covariance.set(kPositionError + i, kPositionError + i, kLaunchSigma_m * kLaunchSigma_m);
+  }
+  for (std::size_t i = kFirstBias; i < kErrors; ++i)
+    state.covariance.set(i, i, model.bias_variance[i - kFirstBias]);
+  // The attitude is the readings' own: their innovations are 0 here, and leave what it has to do
+  // with the sensors' biases.
+  if (felt) level(model, state);
+  correct_by_new(model, readings, time_s, state);
+  return state;
+}
+
+void update_navigation(const NavigationModel& model, const SensorReadings& readings, double time_s,
+                       NavigationState& state) {
+  if (!std::isfinite(time_s)) return;
+  if (readings.imu.count != state.imu_used) {
+    state.imu_used = readings.imu.count;
+    const ImuReading next = in_body(model, readings.imu.value);
+    const bool good = within(next.specific_force_m_s2, kMostForce_m_s2) &&
+                      within(next.angular_rad_s, kMostTurning_rad_s);
+    if (good) {
+      // After a silence the last reading says nothing of the time between.
+      if (time_s - state.imu_s > 2.0 * kHeldPeriods / model.imu.rate_hz) {
+        carry(model, time_s, state);
+        state.imu = next;
+        level(model, state);
+      }
+      move(state, next, model.imu.gravity_m_s2, time_s - state.time_s);
+      state.imu_s = std::max(state.imu_s, time_s);
+    } else {
+      ++state.imu_refused;
+    }
+  }
+  correct_by_new(model, readings, time_s, state);
+  if (state.pending_s > kLongestPending_s) move_covariance(state, model.motion);
+}
+
+State estimated_state(const NavigationModel& model, const NavigationState& navigation,
+                      double time_s, const State& known) {
+  State out = known;
+  const Vec3 turning = navigation.imu.angular_rad_s - navigation.bias3(kGyroBias);
+  const double since_s =
+      std::clamp(time_s - navigation.time_s, 0.0, kHeldPeriods / model.imu.rate_hz);
+  const Vec3 arm = model.imu.mount.position_m;
+  out.attitude = glm::normalize(navigation.attitude * rotation_by(since_s * turning));
+  out.position_ned_m =
+      navigation.position_ned_m + since_s * navigation.velocity_ned_m_s - out.attitude * arm;
+  out.velocity =
+      vec6(glm::conjugate(out.attitude) * navigation.velocity_ned_m_s - glm::cross(turning, arm),
+           turning);
+  out.held.current_ned_m_s = out.held.current_change_ned_m_s2 =
+      out.held.water_acceleration_ned_m_s2 = Vec3(0.0);
+  return out;
+}
+
+NavigationEstimate estimate_of(const NavigationModel& model, const NavigationState& navigation) {
+  const Vec3 turning = navigation.imu.angular_rad_s - navigation.bias3(kGyroBias);
+  const Vec3 arm = model.imu.mount.position_m;
+  return {navigation.position_ned_m - navigation.attitude * arm,
+          navigation.velocity_ned_m_s - navigation.attitude * glm::cross(turning, arm),
+          navigation.attitude,
+          navigation.sigma3(kPositionError),
+          navigation.sigma3(kVelocityError),
+          navigation.sigma3(kAttitudeError)};
+}
+
+}  // namespace neritic::rov

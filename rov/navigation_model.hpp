@@ -1,0 +1,43 @@
+// What a vehicle's navigation knows of its sensors: where they sit and how they err, from the same
+// specification that the sensors' errors are drawn by (sensor_set.hpp). Built once, then only read;
+// any thread.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "rov/navigation_filter.hpp"
+#include "rov/sensor_set.hpp"
+
+namespace neritic::rov {
+
+// How much of the readings is used: error against cost (`neritic tradeoff navigation`).
+struct NavigationEffort {
+  // Corrections by one sensor a second, at most; readings between are left out. 0: all.
+  double corrections_hz = 0.0;
+};
+
+struct NavigationModel {
+  Imu imu;
+  std::optional<Dvl> dvl;
+  std::optional<PressureSensor> pressure;
+  std::optional<Compass> compass;
+  std::optional<Usbl> usbl;
+  MotionNoise motion;
+  NavigationEffort effort;
+  // Variances of the biases before anything was measured.
+  std::array<double, kErrors - kFirstBias> bias_variance{};
+};
+
+// The sensors that must be added before the vehicle can navigate by them, as the tables of its file
+// are named: "[imu], [compass]", "[dvl] or [usbl]". Empty: it can.
+std::string missing_for_navigation(const SensorSet& sensors);
+// Precondition: nothing is missing.
+NavigationModel navigation_model(const SensorSet& sensors, const NavigationEffort& effort = {});
+
+// The variance of a reading's white noise, discretisation included; and of one metre of depth.
+double depth_variance(const PressureSensor& sensor);
+double compass_variance(const Compass& compass);
+double beam_variance(const Dvl& dvl, double speed_m_s);
+
+}  // namespace neritic::rov

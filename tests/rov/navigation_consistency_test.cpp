@@ -1,0 +1,114 @@
+// Whether navigation errs as much as its covariance says, no more and no less: over 200 seeds of
+// every sensor's noise, on a flight by the vehicle's own dynamics. Bounds are those of the
+// chi-square distribution (Bar-Shalom, Li, Kirubarajan 2001, section 5.4), at 99.9 %.
+#include "tests/rov/navigation_runs.hpp"
+
+namespace neritic::rov {
+namespace {
+
+constexpr int kSeeds = 200;
+
+// Wilson and Hilferty 1931: where the chi-square distribution of n degrees of freedom has the
+// quantile of z standard deviations of the normal one.
+double chi_square(double n, double z) {
+  const double a = 2.0 / (9.0 * n);
+  return n * std::pow(1.0 - a + z * std::sqrt(a), 3.0);
+}
+constexpr double k999 = 3.29;  // of both tails
+
+struct Mean {
+  double sum = 0.0;
+  int count = 0;
+  void add(double x) { sum += x, ++count; }
+  double value() const { return sum / count; }
+};
+
+struct Consistency {
+  std::map<int, Mean> position, velocity, attitude;  // by time, s
+  std::array<Mean, kAids> nis;
+  std::uint64_t rejected = 0, tested = 0, readmitted = 0, refused = 0;
+};
+
+const Consistency& consistency() {
+  static const Consistency result = [] {
+    constexpr int kSeconds = 30;
+    const auto& truth = circling(kSeconds);
+    Consistency out;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      NavigationRun run(sensors_of(seed), seed, truth[0], water_of(seed));
+      for (std::size_t k = 1; k < truth.size(); ++k) {
+        const auto before = run.state.aids;
+        run.step(truth[k], static_cast<double>(k) * kRunStep_s);
+        for (std::size_t a = 0; a < kAids; ++a) {
+          const AidTally& now = run.state.aids[a];
+          if (now.accepted + now.rejected > before[a].accepted + before[a].rejected)
+            out.nis[a].add(now.nis);
+        }
+        if (k % 250 != 0) continue;
+        const int second = static_cast<int>(k / 250);
+        if (second != 2 && second % 10 != 0) continue;
+        const NavigationState& s = run.state;
+        out.position[second].add(
+            normalized_square(s, kPositionError, run.position_error(truth[k])));
+        out.velocity[second].add(
+            normalized_square(s, kVelocityError, run.velocity_error(truth[k])));
+        out.attitude[second].add(
+            normalized_square(s, kAttitudeError, run.attitude_error(truth[k])));
+      }
+      for (const AidTally& aid : run.state.aids) {
+        out.rejected += aid.rejected;
+        out.tested += aid.accepted + aid.rejected;
+        out.readmitted += aid.readmitted;
+        out.refused += aid.refused;
+      }
+    }
+    return out;
+  }();
+  return result;
+}
+
+void expect_chi_square(const std::map<int, Mean>& by_time, const char* what) {
+  const double n = 3.0 * kSeeds;
+  const double least = chi_square(n, -k999) / kSeeds, most = chi_square(n, k999) / kSeeds;
+  ASSERT_EQ(by_time.size(), 4u);
+  for (const auto& [second, mean] : by_time) {
+    ::testing::Test::RecordProperty(fmt::format("{}_{}_s", what, second),
+                                    fmt::format("{:.3f}", mean.value()));
+    EXPECT_GT(mean.value(), least) << what << " after " << second << " s";
+    EXPECT_LT(mean.value(), most) << what << " after " << second << " s";
+  }
+}
+
+TEST(RovNavigationConsistency, PositionErrsAsItsCovarianceSays) {
+  expect_chi_square(consistency().position, "position");
+}
+
+TEST(RovNavigationConsistency, VelocityErrsAsItsCovarianceSays) {
+  expect_chi_square(consistency().velocity, "velocity");
+}
+
+TEST(RovNavigationConsistency, AttitudeErrsAsItsCovarianceSays) {
+  expect_chi_square(consistency().attitude, "attitude");
+}
+
+TEST(RovNavigationConsistency, InnovationsOfEverySensorAreAsLargeAsExpected) {
+  for (std::size_t a = 0; a < kAids; ++a) {
+    const Mean& nis = consistency().nis[a];
+    const double of = a == static_cast<std::size_t>(Aid::kUsbl) ? 3.0 : 1.0;
+    const double n = of * nis.count;
+    // Floors of the variances and quantisation are worth a few percent.
+    EXPECT_GT(nis.value(), 0.96 * chi_square(n, -k999) / nis.count) << "aid " << a;
+    EXPECT_LT(nis.value(), 1.04 * chi_square(n, k999) / nis.count) << "aid " << a;
+  }
+}
+
+TEST(RovNavigationConsistency, ReadingsWithoutFaultAreHardlyEverRejected) {
+  const Consistency& c = consistency();
+  EXPECT_GT(c.tested, 500'000u);
+  EXPECT_LT(static_cast<double>(c.rejected), 2e-3 * static_cast<double>(c.tested));
+  EXPECT_EQ(c.readmitted, 0u);
+  EXPECT_EQ(c.refused, 0u);
+}
+
+}  // namespace
+}  // namespace neritic::rov
