@@ -84,6 +84,13 @@ class Simulation {
   // Any thread, also while the simulation's thread runs. The reader is dropped before this.
   SnapshotReader<State> reader() { return source_.reader(); }
 
+  // each sees every state on the stepping thread, right after its step; its time is the step's.
+  // Not while the thread runs.
+  void observe(std::function<void(const Snapshot<State>&)> each) {
+    check_idle();
+    observer_ = std::move(each);
+  }
+
   // Lock-step: so many steps now. Not while the thread runs.
   void advance(std::uint64_t steps) {
     check_idle();
@@ -176,6 +183,7 @@ class Simulation {
     next.hash = state_hash(next.step, next.state);
     if (options_.log) log_.hashes.push_back(next.hash);
     source_.put();
+    if (observer_) observer_(source_.newest());
   }
 
   SimulationOptions options_;
@@ -184,6 +192,7 @@ class Simulation {
   Inputs inputs_;
   SnapshotSource<State> source_;
   std::unique_ptr<Inbox> inbox_;
+  std::function<void(const Snapshot<State>&)> observer_;
   Log log_;
   std::atomic<std::uint64_t> refused_states_{0};
   StepPacer::Counts pace_;

@@ -1,10 +1,11 @@
-// A scene's physics beside what shows and hears it: on a thread of its own at a clock's pace, or in
-// lock-step with the times asked for. Keeps the history that says where everything is. The thread
-// that draws owns this and calls all of it.
+// A scene's physics beside what shows, hears and records it: on a thread of its own at a clock's
+// pace, or in lock-step with the times asked for. Keeps the history that says where everything is.
+// The thread that runs the loop owns this and calls all of it.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "testbed/motion/motion_history.hpp"
 #include "testbed/simulation/physics_world.hpp"
@@ -14,42 +15,67 @@ namespace neritic::testbed {
 class LivePhysics {
  public:
   enum class Pace { kClock, kPicture };
+  struct Options {
+    Pace pace = Pace::kPicture;
+    bool log = false;                 // keep inputs and hashes, for a recording
+    std::uint64_t seed = 0;           // the scene's, for a recording
+    std::optional<SavedState> start;  // goes on from here; else from the scene's start
+  };
   // Errors as PhysicsWorld::create. Precondition: PhysicsWorld::needed(scene).
   static Result<std::unique_ptr<LivePhysics>> create(const scene::Scene& scene, Pace pace);
+  // A saved state must fit the world (read_state).
+  static std::unique_ptr<LivePhysics> create(std::unique_ptr<const PhysicsWorld> world,
+                                             const Options& options);
   ~LivePhysics();
 
-  // Time 0 is now.
+  // each sees every state in turn, the start first: on the stepping thread, which is the caller's
+  // in lock-step. Before start().
+  using Observer = std::function<void(const sim::Snapshot<PhysicsState>&)>;
+  void observe(const Observer& each);
+  // The time of the state that it starts from is now.
   void start();
-  // Takes what is known up to the time of a picture: in lock-step it steps to time_s, else it asks
-  // the thread what is new and ignores time_s. Returns the scene time of the picture, which stands
-  // still while the thread drops steps and never falls.
-  double follow(TimeNs display_ns, double time_s);
+  // After the last step; newest() and simulation() may be asked then, at any pace.
+  void stop() { simulation_->stop(); }
+
+  // Asked after each step of a lock-step; true ends it at once.
+  using Stop = std::function<bool()>;
+  // Takes what is known up to the time of a picture: in lock-step it steps to time_s and returns
+  // it. Else it asks the thread what is new, ignores time_s and returns the scene time of the
+  // picture, which stands still while the thread drops steps and never falls.
+  double follow(TimeNs display_ns, double time_s, const Stop& stop = {});
   // Lock-step: steps until the state of time_s is known, and keeps the states of a short while
-  // before it; what was kept for the last such time stays. second: called after each second.
-  void reach(double time_s, const std::function<void()>& second = {});
+  // before it; what was kept for the last such time stays.
+  void reach(double time_s, const Stop& stop = {});
+  // Lock-step: one step. Nothing is kept: the history does not follow.
+  void advance() { simulation_->advance(1); }
   // Where samples enter; any thread. They count from the next step on.
   SampleInbox& inbox() { return simulation_->inbox(); }
 
+  Pace pace() const { return pace_; }
   const PhysicsWorld& world() const { return *world_; }
   const MotionHistory& motion() const { return history_; }
   // The newest state that follow() found, and a vehicle's pose at the time that it returned.
-  const PhysicsState& shown() const { return reader_.newest().state; }
-  const sim::Snapshot<PhysicsState>& shown_snapshot() const { return reader_.newest(); }
+  const PhysicsState& shown() const { return shown_snapshot().state; }
+  const sim::Snapshot<PhysicsState>& shown_snapshot() const {
+    return reader_ ? reader_->newest() : simulation_->newest();
+  }
   Pose pose(std::size_t vehicle) const;
   sim::StepPacer::Counts counts() const { return simulation_->pace(); }
-  // Lock-step only.
+  // Lock-step, or after stop().
   const sim::Snapshot<PhysicsState>& newest() const { return simulation_->newest(); }
+  const PhysicsSimulation& simulation() const { return *simulation_; }
 
  private:
-  LivePhysics(std::unique_ptr<const PhysicsWorld> world, Pace pace);
+  LivePhysics(std::unique_ptr<const PhysicsWorld> world, const Options& options);
   double follow_thread(TimeNs display_ns);
 
   std::unique_ptr<const PhysicsWorld> world_;
   Pace pace_;
   sim::HostClock clock_;
   std::unique_ptr<PhysicsSimulation> simulation_;
-  sim::SnapshotReader<PhysicsState> reader_;
+  std::optional<sim::SnapshotReader<PhysicsState>> reader_;  // of the thread's states
   MotionHistory history_;
+  std::uint64_t start_step_ = 0;
   double shown_s_ = 0.0;
 };
 

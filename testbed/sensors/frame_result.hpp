@@ -68,6 +68,8 @@ struct SonarFrame {
 };
 
 struct FrameResult {
+  std::uint32_t frame = 0;  // the request's
+  double time_s = 0.0;      // the request's
   std::vector<CameraFrame> cameras;
   std::vector<CameraFrame> views;  // the request's view sets
   std::vector<SonarFrame> sonars;

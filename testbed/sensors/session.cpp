@@ -14,6 +14,7 @@ namespace neritic::testbed {
 // What a frame's passes borrow, and the buffers that the host reads.
 struct FrameWork {
   TimeNs begun_ns = 0;
+  std::uint32_t frame = 0;  // the request's
   render::FrameState state;
   // A picture: of a camera, or of a view set.
   struct Picture {
@@ -68,6 +69,7 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   auto frame = std::make_unique<SensorFrame>();
   FrameWork& work = *frame->work_;
   work.begun_ns = now_ns();
+  work.frame = request.frame;
   const scene::MotionSource motion(scene_, request.simulated);
   const auto moves = [](const Capture& capture) { return capture.motion && capture.color; };
   const bool next =
@@ -129,6 +131,8 @@ Result<FrameResult> Session::read(const SensorFrame& frame) {
   NERITIC_TRY_STATUS(frames_->wait(frame.done_at_));  // returns at once, and collects the times
   const FrameWork& work = *frame.work_;
   FrameResult result;
+  result.frame = work.frame;
+  result.time_s = work.state.time_s;
   for (const auto& camera : work.cameras)
     if (camera->to_host) result.cameras.push_back({camera->name, decode_views(camera->work)});
   for (const auto& set : work.views)

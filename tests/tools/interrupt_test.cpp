@@ -53,9 +53,17 @@ TEST(InterruptDeathTest, TheSecondSignalEndsTheProgram) {
       {
         const tools::Interrupt interrupt;
         std::raise(SIGINT);
+        std::this_thread::sleep_for(std::chrono::milliseconds(600));
         std::raise(SIGINT);
       },
       ::testing::KilledBySignal(SIGINT), "");
+}
+
+// `timeout` signals the program, then its group, which the program is in.
+TEST(Interrupt, ASignalRepeatedAtOnceIsTheSameWish) {
+  const tools::Interrupt interrupt;
+  for (int time = 0; time < 5; ++time) std::raise(SIGTERM);
+  EXPECT_TRUE(interrupt.requested());
 }
 
 TEST(Interrupt, AFolderOfImagesGoesOnWhereItWasStopped) {

@@ -96,6 +96,10 @@ void add_render(CLI::App& app, Run& run) {
   command->add_flag(
       "--own-rates", flags->own_rates,
       "each sensor only in the frames in which its rate_hz makes it due (else all in each)");
+  command->add_option("--log", flags->files.log,
+                      "where vehicles or divers move by physics: their dive as a .csv");
+  command->add_option("--log-rate", flags->files.log_rate_hz,
+                      "its rows a second, else one a control period");
   command->add_flag("--sheet", flags->sheet,
                     "also a picture of every image (OUT/sheet), and all on one (OUT/sheet.png)");
   command->add_flag("--validate", flags->validation,
@@ -211,17 +215,18 @@ void add_dive(CLI::App& app, Run& run) {
       "no window. Where vehicles move by physics and no flag asks for pictures: their "
       "dive alone, as fast as it can; else frames at the camera's rate, then a "
       "summary of their times");
-  command->add_option("--log", flags->log, "the vehicles' dive as a .csv, a row a control period");
-  command->add_option("--log-rate", flags->log_rate_hz, "rows a second instead");
+  command->add_option("--log", flags->files.log,
+                      "the vehicles' dive as a .csv, a row a control period");
+  command->add_option("--log-rate", flags->files.log_rate_hz, "rows a second instead");
   command
-      ->add_option("--plot", flags->plot,
+      ->add_option("--plot", flags->files.plot,
                    "the dive as a .png, its data beside as .plot.json; tools/setup plots installs "
                    "what draws")
       ->check(png_file);
-  command->add_option("--record", flags->record, "inputs and state hashes, for --replay");
+  command->add_option("--record", flags->files.record, "inputs and state hashes, for --replay");
   command->add_option("--replay", flags->replay,
                       "runs a recorded dive again and compares each state's hash");
-  command->add_option("--save", flags->save, "the state at the end, for --restore");
+  command->add_option("--save", flags->files.save, "the state at the end, for --restore");
   command->add_option("--restore", flags->restore,
                       "goes on from a saved state of the same scene, --seconds more");
   command->add_flag("--realtime", flags->realtime, "physics at the clock's pace");

@@ -15,6 +15,12 @@
 
 namespace neritic::tools {
 
+// What a run of physics leaves behind; empty: nothing.
+struct StepFileFlags {
+  std::string log, plot, record, save;
+  std::optional<double> log_rate_hz;  // absent or 0: the controllers'
+};
+
 struct RenderFlags {
   std::string scene, out, size, device, dump_graph, water;
   std::vector<std::string> sensors;
@@ -26,6 +32,7 @@ struct RenderFlags {
   bool track_only = false;  // no frame folders: only what accumulates over the frames
   std::string quality;      // of all sonars, for what the scene says; empty: as it says
   bool own_rates = false;   // a sensor is in those frames only in which its rate makes it due
+  StepFileFlags files;      // of scenes with physics: the log
 };
 Result<std::string> run_render(const RenderFlags& flags);
 
@@ -55,8 +62,8 @@ struct DiveFlags {
   std::optional<double> seconds;
   bool headless = false, fast = false, panels = false, validation = false;
   // These need a scene with physics, and --headless.
-  std::string log, plot, record, replay, save, restore;
-  std::optional<double> log_rate_hz;  // absent or 0: the controllers'
+  StepFileFlags files;
+  std::string replay, restore;
   bool realtime = false, json = false;
 };
 Status run_dive(const DiveFlags& flags);

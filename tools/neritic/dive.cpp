@@ -113,7 +113,10 @@ Status run_dive(const DiveFlags& flags) {
   NERITIC_TRY(scene::Scene scene, load(flags));
   for (const std::string& note : scene.notes) log_warn("{}", note);
   NERITIC_TRY_STATUS(check_physics_flags(flags, scene));
-  if (asks_for_physics_alone(flags, scene)) return dive_physics(flags, scene);
+  if (asks_for_physics_alone(flags, scene)) {
+    const Interrupt interrupt;
+    return dive_physics(flags, scene, interrupt);
+  }
   DiveOptions options;
   std::unique_ptr<LivePhysics> physics;
   if (PhysicsWorld::needed(scene)) {

@@ -4,6 +4,7 @@
 
 #include "engine/scene/scene.hpp"
 #include "tools/neritic/commands.hpp"
+#include "tools/neritic/interrupt.hpp"
 
 namespace neritic::tools {
 
@@ -13,6 +14,6 @@ bool asks_for_physics_alone(const DiveFlags& flags, const scene::Scene& scene);
 Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene);
 
 // Precondition: asks_for_physics_alone.
-Status dive_physics(const DiveFlags& flags, const scene::Scene& scene);
+Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Interrupt& interrupt);
 
 }  // namespace neritic::tools

@@ -15,7 +15,6 @@ using namespace testbed;
 struct Pace {
   double wall_s = 0.0;
   std::uint64_t dropped = 0;
-  bool interrupted = false;
 };
 
 // By --json as JSON.

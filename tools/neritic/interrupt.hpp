@@ -1,5 +1,6 @@
 // Ctrl-C in the middle of a long run: what is under way is finished, what accumulated is written,
-// and one line says how to go on. A second one ends the program at once.
+// and one line says how to go on. A second one, half a second later or more, ends the program at
+// once.
 #pragma once
 
 namespace neritic::tools {

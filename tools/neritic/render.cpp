@@ -7,21 +7,17 @@
 #include "engine/core/files.hpp"
 #include "engine/core/log.hpp"
 #include "engine/render/water_optics.hpp"
-#include "testbed/motion/live_physics.hpp"
-#include "testbed/output/output.hpp"
-#include "testbed/output/survey.hpp"
-#include "testbed/sensors/ping_schedule.hpp"
-#include "testbed/sensors/session.hpp"
+#include "testbed/loop/loop.hpp"
+#include "testbed/output/frame_files.hpp"
 #include "testbed/sensors/sonar_check.hpp"
 #include "testbed/sensors/validation.hpp"
 #include "tools/neritic/commands.hpp"
-#include "tools/neritic/flags.hpp"
 #include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/render_sheet.hpp"
+#include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
-using namespace testbed;
 namespace {
 
 namespace fs = std::filesystem;
@@ -66,85 +62,67 @@ bool wanted(const RenderFlags& flags, const std::string& name) {
          std::find(flags.sensors.begin(), flags.sensors.end(), name) != flags.sensors.end();
 }
 
-Result<FrameRequest> request_of(const RenderFlags& flags, const scene::Scene& scene) {
-  FrameRequest request;
+Result<LoopSensors> sensors_of(const RenderFlags& flags, const scene::Scene& scene) {
+  LoopSensors sensors{.own_rates = flags.own_rates};
   std::vector<std::string> known;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     known.push_back(scene.cameras[i].name);
-    if (wanted(flags, known.back())) request.cameras.push_back(i);
+    if (wanted(flags, known.back())) sensors.cameras.push_back(i);
   }
   for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
     known.push_back(scene.sonars[i].name);
     if (!wanted(flags, known.back())) continue;
     NERITIC_TRY_STATUS(check_sonar(scene, scene.sonars[i]));
-    request.sonars.push_back(i);
+    sensors.sonars.push_back(i);
   }
   for (const std::string& name : flags.sensors)
     if (std::find(known.begin(), known.end(), name) == known.end())
       return bad_input("--sensor {}: not in {}, which has {}", name, flags.scene,
                        known.empty() ? "no sensors" : fmt::format("{}", fmt::join(known, ", ")));
-  if (request.cameras.empty() && request.sonars.empty())
+  if (sensors.cameras.empty() && sensors.sonars.empty())
     return bad_input("{}: no camera and no sonar, so there is nothing to render", flags.scene);
-  return request;
-}
-
-// Of the cameras, then the sonars of a request.
-std::vector<double> rates_of(const scene::Scene& scene, const FrameRequest& request) {
-  std::vector<double> rates_hz;
-  for (const std::size_t i : request.cameras) rates_hz.push_back(scene.cameras[i].rate_hz);
-  for (const std::size_t i : request.sonars) rates_hz.push_back(scene.sonars[i].rate_hz);
-  return rates_hz;
-}
-
-// What of all sensors is due; schedule is of rates_of(all).
-void take_due(PingSchedule& schedule, const FrameRequest& all, FrameRequest& request) {
-  request.cameras.clear();
-  request.sonars.clear();
-  request.pings.clear();
-  for (const PingSchedule::Due& due : schedule.due(request.time_s)) {
-    if (due.sensor < all.cameras.size()) {
-      request.cameras.push_back(all.cameras[due.sensor]);
-    } else {
-      request.sonars.push_back(all.sonars[due.sensor - all.cameras.size()]);
-      request.pings.push_back(due.number);
-    }
+  // A side-scan made from pictures needs their depth.
+  if (flags.track_only) {
+    sensors.capture.motion = false;
+    sensors.capture.geometry = std::ranges::any_of(
+        sensors.sonars, [&](std::size_t i) { return !scene.sonars[i].picture_camera.empty(); });
   }
+  return sensors;
+}
+
+// Frames follow the first camera's rate, or the first sonar's; or the fastest, where each sensor
+// has its own.
+double frame_rate_hz(const scene::Scene& scene, const LoopSensors& sensors) {
+  std::vector<double> rates_hz;
+  for (const std::size_t i : sensors.cameras) rates_hz.push_back(scene.cameras[i].rate_hz);
+  for (const std::size_t i : sensors.sonars) rates_hz.push_back(scene.sonars[i].rate_hz);
+  return sensors.own_rates ? *std::ranges::max_element(rates_hz) : rates_hz.front();
 }
 
 // A sonar cannot ping again before its farthest echo is back.
-void warn_of_rates(const scene::Scene& scene, const FrameRequest& request, double ping_hz) {
+void warn_of_rates(const scene::Scene& scene, const LoopSensors& sensors, double frame_hz) {
   constexpr double kSoundSpeed_m_s = 1500.0;  // near enough for a warning
-  for (const std::size_t i : request.sonars) {
+  for (const std::size_t i : sensors.sonars) {
     const scene::Sonar& sonar = scene.sonars[i];
     const double most_hz = kSoundSpeed_m_s / (2.0 * sonar.range_max_m);
-    const double rate_hz = ping_hz > 0.0 ? ping_hz : sonar.rate_hz;
+    const double rate_hz = sensors.own_rates ? sonar.rate_hz : frame_hz;
     if (rate_hz > 1.01 * most_hz)
       log_warn("sonar {}: {:.3g} pings a second, but echoes from {:g} m allow {:.3g}", sonar.name,
                rate_hz, sonar.range_max_m, most_hz);
   }
 }
 
-// Appends the folders that were written to.
-Status write_frame(const fs::path& folder, const FrameResult& result, const FrameFacts& facts,
-                   std::set<fs::path>& written) {
-  for (const CameraFrame& camera : result.cameras)
-    for (std::size_t e = 0; e < camera.eyes.size(); ++e) {
-      const std::string name =
-          camera.eyes.size() == 1 ? camera.name : camera.name + (e == 0 ? "_left" : "_right");
-      NERITIC_TRY_STATUS(write_view(folder / name, camera.eyes[e], facts));
-      written.insert(folder / name);
-    }
-  for (const SonarFrame& sonar : result.sonars) {
-    NERITIC_TRY_STATUS(write_sonar_frame(folder / sonar_folder(sonar), sonar, facts));
-    written.insert(folder / sonar.name);
+// The scene's physics; nullptr where nothing moves by physics.
+Result<std::unique_ptr<LivePhysics>> make_physics(const RenderFlags& flags,
+                                                  const scene::Scene& scene, double last_s) {
+  if (!PhysicsWorld::needed(scene)) {
+    if (const std::string flag = first_step_flag(flags.files); !flag.empty())
+      return bad_input(
+          "{}: accepted where a vehicle has dynamics or a diver swims; in {} none does", flag,
+          flags.scene);
+    return std::unique_ptr<LivePhysics>();
   }
-  return {};
-}
-
-// The scene's physics, stepped to the first frame; nullptr where nothing moves by physics.
-Result<std::unique_ptr<LivePhysics>> start_physics(const scene::Scene& scene, double first_s,
-                                                   double last_s) {
-  if (!PhysicsWorld::needed(scene)) return std::unique_ptr<LivePhysics>();
+  NERITIC_TRY_STATUS(check_step_files(flags.files));
   if (!(last_s <= kLongestFlight_s))
     return bad_input("{}: physics to {:g} s of scene time; at most {:g} s are accepted", scene.path,
                      last_s, kLongestFlight_s);
@@ -155,8 +133,6 @@ Result<std::unique_ptr<LivePhysics>> start_physics(const scene::Scene& scene, do
       "physics: {} solid things of {} triangles built in {:.0f} ms; {} vehicles and {} divers move",
       counts.things, counts.triangles, to_ms(now_ns() - begun_ns),
       physics->world().vehicles().size(), physics->world().humans().size());
-  Progress progress("second of the dive", static_cast<std::uint64_t>(std::max(first_s, 0.0)));
-  physics->reach(first_s, [&] { progress.step(); });
   return physics;
 }
 
@@ -168,6 +144,27 @@ Status dump_graph(const RenderFlags& flags, const Session& session) {
   const bool dot = fs::path(flags.dump_graph).extension() == ".dot";
   return write_text(flags.dump_graph, dot ? session.plan_graphviz() : session.plan_text());
 }
+
+// Beside the files of the frames: the first frame's sheet and graph, and the count on a terminal.
+class FirstFrame final : public FrameSink {
+ public:
+  FirstFrame(const RenderFlags& flags, const Session& session)
+      : flags_(flags), session_(session), progress_("frame", flags.frames) {}
+  Status accept(const FrameResult& frame) override {
+    if (frame.frame == 0 && flags_.sheet)
+      NERITIC_TRY_STATUS(write_sheet(flags_.out, frame, session_.scene().class_names));
+    if (frame.frame == 0 && !flags_.dump_graph.empty())
+      NERITIC_TRY_STATUS(dump_graph(flags_, session_));
+    progress_.step();
+    return {};
+  }
+  Status finish() override { return {}; }
+
+ private:
+  const RenderFlags& flags_;
+  const Session& session_;
+  Progress progress_;
+};
 
 // What an earlier run left in the folder stays; say so where it could be taken for this one's.
 void warn_of_leftovers(const RenderFlags& flags, bool wrote_track,
@@ -194,11 +191,11 @@ void warn_of_leftovers(const RenderFlags& flags, bool wrote_track,
 }
 
 // "out: frame_0000 to 0029 of rov_camera, rov_sonar; track; sheet.png shows all at one glance".
-std::string summary(const RenderFlags& flags, const scene::Scene& scene,
-                    const FrameRequest& request, bool wrote_track) {
+std::string summary(const RenderFlags& flags, const scene::Scene& scene, const LoopSensors& sensors,
+                    bool wrote_track) {
   std::vector<std::string> names, parts;
-  for (const std::size_t i : request.cameras) names.push_back(scene.cameras[i].name);
-  for (const std::size_t i : request.sonars) names.push_back(scene.sonars[i].name);
+  for (const std::size_t i : sensors.cameras) names.push_back(scene.cameras[i].name);
+  for (const std::size_t i : sensors.sonars) names.push_back(scene.sonars[i].name);
   const std::string last = flags.frames > 1 ? fmt::format(" to {:04}", flags.frames - 1) : "";
   if (!flags.track_only)
     parts.push_back(fmt::format("frame_0000{} of {}", last, fmt::join(names, ", ")));
@@ -208,18 +205,19 @@ std::string summary(const RenderFlags& flags, const scene::Scene& scene,
 }
 
 // Of a run that the user stopped after so many frames.
-Error stopped_render(const RenderFlags& flags, std::uint32_t frames, double step_s,
+Error stopped_render(const RenderFlags& flags, std::uint64_t frames, double step_s,
                      bool wrote_track) {
   std::string there;
   if (!flags.track_only)
-    there += fmt::format(" as {} to {}", frame_folder(0), frame_folder(frames - 1));
+    there += fmt::format(" as {} to {}", frame_folder(0),
+                         frame_folder(static_cast<std::uint32_t>(frames - 1)));
   if (wrote_track)
     there += fmt::format("{}track, of these frames", there.empty() ? " as " : " and ");
   return {ErrorCode::kInterrupted,
           fmt::format("interrupted: {} of {} frames are in {}{}; --time {:.10g} --frames {} with "
                       "another --out makes the others",
-                      frames, flags.frames, flags.out, there, flags.time_s + frames * step_s,
-                      flags.frames - frames)};
+                      frames, flags.frames, flags.out, there,
+                      flags.time_s + static_cast<double>(frames) * step_s, flags.frames - frames)};
 }
 
 }  // namespace
@@ -229,10 +227,11 @@ Result<std::string> run_render(const RenderFlags& flags) {
     return bad_input("--time: {} s; a number from {:g} to {:g} is accepted", flags.time_s,
                      -kLatestTime_s, kLatestTime_s);
   const TimeNs start = now_ns();
+  const Interrupt interrupt;
   NERITIC_TRY(scene::Scene scene, load(flags));
-  NERITIC_TRY(FrameRequest request, request_of(flags, scene));
+  NERITIC_TRY(LoopSensors sensors, sensors_of(flags, scene));
   for (const std::string& note : scene.notes) log_warn("{}", note);
-  if (!request.cameras.empty() && !scene.sun && scene.lamps.empty() && scene.model_lights.empty())
+  if (!sensors.cameras.empty() && !scene.sun && scene.lamps.empty() && scene.model_lights.empty())
     log_warn("{}: no sun and no lamps, so only what glows by itself is seen", flags.scene);
   if (const fs::path folder = fs::path(flags.dump_graph).parent_path();
       !folder.empty() && !fs::is_directory(folder))
@@ -244,66 +243,44 @@ Result<std::string> run_render(const RenderFlags& flags) {
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(const auto device, gpu::Device::create(options));
-  // Frames follow the first camera's rate, or the first sonar's; or the fastest, where each has its
-  // own.
-  const std::vector<double> rates_hz = rates_of(scene, request);
-  const double step_s =
-      1.0 / (flags.own_rates ? *std::ranges::max_element(rates_hz) : rates_hz.front());
-  PingSchedule schedule(rates_hz);
-  const FrameRequest all = request;
-  NERITIC_TRY(const auto physics,
-              start_physics(scene, flags.time_s, flags.time_s + flags.frames * step_s));
-  if (physics) request.simulated = &physics->motion();
-  if (flags.frames > 1) warn_of_rates(scene, request, flags.own_rates ? 0.0 : rates_hz.front());
+  const double rate_hz = frame_rate_hz(scene, sensors), step_s = 1.0 / rate_hz;
+  NERITIC_TRY(const auto physics, make_physics(flags, scene, flags.time_s + flags.frames * step_s));
+  if (flags.frames > 1) warn_of_rates(scene, sensors, rate_hz);
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
            session->gpu_scene().triangles());
   session->keep_plan_dump(!flags.dump_graph.empty());
-  if (flags.track_only) {
-    // A side-scan made from pictures needs their depth.
-    const auto& sonars = session->scene().sonars;
-    request.capture.motion = false;
-    request.capture.geometry =
-        std::any_of(request.sonars.begin(), request.sonars.end(),
-                    [&](std::size_t i) { return !sonars[i].picture_camera.empty(); });
+  sensors.session = session.get();
+
+  std::optional<StepFiles> step_files;
+  StepProgress approach("second of the dive", flags.time_s);
+  std::vector<StepSink*> step_sinks;
+  if (physics) {
+    step_files.emplace(flags.files, session->scene().title, *physics);
+    step_sinks = step_files->sinks();
+    step_sinks.push_back(&approach);
   }
   // Of one frame no track is made, but its boxes are.
   const bool tracks = flags.frames > 1 || flags.track_only;
-  Survey survey(session->scene(), flags.out, {flags.chart_cell_m, tracks});
-  FrameFacts facts;
-  std::set<fs::path> written;  // sensors' folders
-  Progress progress("frame", flags.frames);
-  const Interrupt interrupt;
-  std::uint32_t made = 0;
-  for (std::uint32_t i = 0; i < flags.frames && !interrupt.requested(); ++i) {
-    request.time_s = flags.time_s + i * step_s;
-    request.next_time_s = request.time_s + step_s;
-    request.frame = i;
-    if (flags.own_rates) take_due(schedule, all, request);
-    if (physics) {
-      physics->reach(request.time_s);
-      physics->reach(request.next_time_s);
-    }
-    NERITIC_TRY(const FrameResult result, session->render(request));
-    facts = {request.time_s,      session->scene().seed, flags.scene,
-             device->info().name, result.passes,         result.frame_ms};
-    if (!flags.track_only)
-      NERITIC_TRY_STATUS(
-          write_frame(fs::path(flags.out) / frame_folder(i), result, facts, written));
-    NERITIC_TRY_STATUS(survey.add(result, i, request.time_s));
-    if (i == 0 && flags.sheet)
-      NERITIC_TRY_STATUS(write_sheet(flags.out, result, session->scene().class_names));
-    if (i == 0 && !flags.dump_graph.empty()) NERITIC_TRY_STATUS(dump_graph(flags, *session));
-    progress.step();
-    ++made;
-  }
-  if (made == 0) return Error{ErrorCode::kInterrupted, "interrupted before the first frame"};
-  NERITIC_TRY(const bool wrote_track, survey.write(facts));
-  if (const auto hint = survey.hint()) log_warn("{}", *hint);
-  if (made < flags.frames) return stopped_render(flags, made, step_s, wrote_track);
-  warn_of_leftovers(flags, wrote_track, written);
+  FrameFiles files(*session, {flags.out, flags.scene, !flags.track_only,
+                              SurveyOptions{flags.chart_cell_m, tracks}});
+  FirstFrame first(flags, *session);
+  Loop loop(
+      {.clock = Clock::simulated(flags.time_s, step_s),
+       .physics = physics.get(),
+       .sensors = sensors,
+       .step_sinks = step_sinks,
+       .frame_sinks = {&files, &first},
+       .stop = {.frames = flags.frames, .interrupted = [&] { return interrupt.requested(); }}});
+  NERITIC_TRY_STATUS(loop.run());
+  if (loop.frames() == 0)
+    return Error{ErrorCode::kInterrupted, "interrupted before the first frame"};
+  if (const auto hint = files.hint()) log_warn("{}", *hint);
+  if (loop.frames() < flags.frames)
+    return stopped_render(flags, loop.frames(), step_s, files.wrote_track());
+  warn_of_leftovers(flags, files.wrote_track(), files.folders());
   NERITIC_TRY_STATUS(check_validation(*device));
-  return summary(flags, session->scene(), all, wrote_track);
+  return summary(flags, session->scene(), sensors, files.wrote_track());
 }
 
 }  // namespace neritic::tools

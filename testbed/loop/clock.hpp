@@ -1,0 +1,46 @@
+// When the frames of a run are. Three kinds: the host's clock, which waits; simulated times, which
+// do not; and as fast as possible, which is simulated time with a step of the simulation as its
+// period. Plain value; the thread of the loop.
+#pragma once
+
+#include <optional>
+
+#include "engine/sim/step_pacer.hpp"
+
+namespace neritic::testbed {
+
+struct FrameTime {
+  double time_s = 0.0;       // of the scene
+  double next_time_s = 0.0;  // of the frame after it, as far as is known now
+  TimeNs host_ns = 0;        // when it is seen or, without a display, was due
+};
+
+class Clock {
+ public:
+  // The host's. Where a display shows the frames, their times are the display's. Otherwise a frame
+  // is due each period; after a delay up to kCatchUp come at once, the others are dropped.
+  static Clock real(double start_s, double period_s);
+  // Frame k is at start_s + k * period_s. Nothing waits.
+  static Clock simulated(double start_s, double period_s);
+
+  static constexpr int kCatchUp = 4;
+
+  bool is_real() const { return real_; }
+  // Waits for the next frame. display_at_ns: when a display that has waited already will show it.
+  FrameTime next(std::optional<TimeNs> display_at_ns);
+  std::uint64_t dropped() const { return pacer_ ? pacer_->counts().dropped : 0; }
+
+ private:
+  Clock(bool real, double start_s, double period_s)
+      : real_(real), start_s_(start_s), period_s_(period_s) {}
+  TimeNs wait_for_due();
+
+  bool real_;
+  double start_s_, period_s_;
+  std::uint64_t frames_ = 0;
+  TimeNs begun_ns_ = 0;                  // of the first frame, on the host
+  std::optional<sim::StepPacer> pacer_;  // without a display
+  int due_ = 0;                          // frames that the pacer gave and that were not taken yet
+};
+
+}  // namespace neritic::testbed

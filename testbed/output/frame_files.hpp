@@ -1,0 +1,42 @@
+// The files of a run of frames, as `render` writes them: a folder a frame and sensor, and what
+// accumulates along the way. Rendering thread.
+#pragma once
+
+#include <set>
+
+#include "testbed/output/survey.hpp"
+#include "testbed/sensors/frame_sink.hpp"
+
+namespace neritic::testbed {
+
+struct FrameFilesOptions {
+  std::filesystem::path out;
+  std::string scene;    // its file, as meta.json names it
+  bool folders = true;  // false: only what accumulates
+  SurveyOptions survey;
+};
+
+class FrameFiles final : public FrameSink {
+ public:
+  // The session outlives it.
+  FrameFiles(Session& session, FrameFilesOptions options);
+  Status accept(const FrameResult& frame) override;
+  Status finish() override;
+
+  // After finish: the sensors' folders, whether OUT/track has something, and what to name where a
+  // chart's cells are too fine.
+  const std::set<std::filesystem::path>& folders() const { return written_; }
+  bool wrote_track() const { return wrote_track_; }
+  std::optional<std::string> hint() const { return survey_.hint(); }
+
+ private:
+  Status write_folders(const FrameResult& frame);
+  Session& session_;
+  FrameFilesOptions options_;
+  Survey survey_;
+  FrameFacts facts_;  // of the newest frame
+  std::set<std::filesystem::path> written_;
+  bool wrote_track_ = false;
+};
+
+}  // namespace neritic::testbed

@@ -1,0 +1,144 @@
+// The loop without sensors: which steps its sinks see, how a run ends, and what its clock says.
+#include "testbed/loop/loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "engine/core/files.hpp"
+#include "testbed/record/file_sinks.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+class LoopTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const test::ScratchFolder scratch;
+    const std::string dynamics =
+        (test::source_dir() / "assets/vehicles/bluerov2_heavy_survey_dynamics.toml").string();
+    ASSERT_TRUE(
+        write_text(scratch / "s.toml",
+                   "[physics]\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\ndynamics = \"" +
+                       dynamics + "\"\nposition_m = [0, -6, 0]\n")
+            .ok());
+    scene_ = scene::load_scene(scratch / "s.toml").value();
+  }
+  std::unique_ptr<LivePhysics> physics(LivePhysics::Pace pace = LivePhysics::Pace::kPicture) const {
+    return LivePhysics::create(scene_, pace).value();
+  }
+
+  scene::Scene scene_;
+};
+
+// Keeps the steps and the readings of the vehicle's depth sensor; fails at a step.
+class Listener final : public StepSink {
+ public:
+  explicit Listener(const PhysicsWorld& world, std::uint64_t fails_at = UINT64_MAX)
+      : stream_(world.streams().find("rov/pressure").value()), fails_at_(fails_at) {}
+  std::vector<StreamId> streams() const override { return {stream_}; }
+  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override {
+    steps.push_back(step.step);
+    hashes.push_back(step.hash);
+    for (const Sample& sample : outputs) readings += sample.header.stream == stream_;
+    if (step.step == fails_at_) return failure(ErrorCode::kIo, "full");
+    return {};
+  }
+  Status finish() override {
+    ++finished;
+    return {};
+  }
+  std::vector<std::uint64_t> steps, hashes;
+  int readings = 0, finished = 0;
+
+ private:
+  StreamId stream_;
+  std::uint64_t fails_at_;
+};
+
+TEST_F(LoopTest, ASinkSeesEachStepOnceInOrderFromTheStartOn) {
+  const auto dive = physics();
+  Listener listener(dive->world());
+  Loop loop({.clock = Clock::simulated(0.0, dive->world().step_s()),
+             .physics = dive.get(),
+             .step_sinks = {&listener},
+             .stop = {.frames = 240}});
+  ASSERT_TRUE(loop.run().ok());
+  EXPECT_EQ(loop.frames(), 240u);
+  ASSERT_EQ(listener.steps.size(), 241u);
+  for (std::uint64_t i = 0; i < listener.steps.size(); ++i) EXPECT_EQ(listener.steps[i], i);
+  EXPECT_EQ(listener.hashes.back(), dive->newest().hash);
+  EXPECT_EQ(listener.finished, 1);
+  // One second of the sensor's rate.
+  const double rate_hz = dive->world().vehicles()[0].file.sensors.pressure->rate_hz;
+  EXPECT_NEAR(listener.readings, rate_hz, 1.0);
+}
+
+TEST_F(LoopTest, AThreadGivesItsSinksTheSameStatesAsLockStep) {
+  const auto live = physics(LivePhysics::Pace::kClock), offline = physics();
+  Listener heard(live->world()), expected(offline->world());
+  live->observe([&](const auto& step) { ASSERT_TRUE(heard.accept(step, {}).ok()); });
+  live->start();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  live->stop();
+  Loop loop({.clock = Clock::simulated(0.0, offline->world().step_s()),
+             .physics = offline.get(),
+             .step_sinks = {&expected},
+             .stop = {.frames = live->newest().step}});
+  ASSERT_TRUE(loop.run().ok());
+  ASSERT_GT(heard.steps.size(), 5u);
+  EXPECT_EQ(heard.steps, expected.steps);
+  EXPECT_EQ(heard.hashes, expected.hashes);
+}
+
+TEST_F(LoopTest, AFailedSinkEndsTheRunAndAllAreFinished) {
+  const auto dive = physics();
+  Listener other(dive->world()), failing(dive->world(), 10);
+  Loop loop({.clock = Clock::simulated(0.0, dive->world().step_s()),
+             .physics = dive.get(),
+             .step_sinks = {&other, &failing}});
+  const Status status = loop.run();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().message, "full");
+  EXPECT_EQ(dive->newest().step, 10u);
+  EXPECT_EQ(other.finished + failing.finished, 2);
+}
+
+TEST_F(LoopTest, AnInterruptEndsItBetweenSteps) {
+  const auto dive = physics();
+  int asked = 0;
+  Loop loop({.clock = Clock::simulated(0.0, dive->world().step_s()),
+             .physics = dive.get(),
+             .stop = {.interrupted = [&] { return ++asked > 7; }}});
+  ASSERT_TRUE(loop.run().ok());
+  EXPECT_TRUE(loop.interrupted());
+  EXPECT_EQ(dive->newest().step, 7u);
+}
+
+TEST(LoopClock, SimulatedFramesAreMultiplesOfThePeriodFromTheStart) {
+  Clock clock = Clock::simulated(100.0, 0.25);
+  for (int i = 0; i < 8; ++i) {
+    const FrameTime at = clock.next(std::nullopt);
+    EXPECT_EQ(at.time_s, 100.0 + 0.25 * i);
+    EXPECT_EQ(at.next_time_s, 100.25 + 0.25 * i);
+  }
+  EXPECT_EQ(clock.dropped(), 0u);
+}
+
+TEST(LoopClock, ARealClockFollowsTheDisplayOrWaitsAndDropsWhatIsTooLate) {
+  Clock shown = Clock::real(5.0, 0.1);
+  EXPECT_EQ(shown.next(1'000'000'000).time_s, 5.0);
+  EXPECT_DOUBLE_EQ(shown.next(1'250'000'000).time_s, 5.25);
+  const TimeNs begun_ns = now_ns();
+  Clock waiting = Clock::real(0.0, 0.01);
+  for (int i = 0; i < 5; ++i) waiting.next(std::nullopt);
+  EXPECT_GE(now_ns() - begun_ns, 50'000'000);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  waiting.next(std::nullopt);
+  EXPECT_GE(waiting.dropped(), 15u);
+}
+
+}  // namespace
+}  // namespace neritic::testbed

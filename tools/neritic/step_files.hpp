@@ -1,0 +1,50 @@
+// What flags ask a run of physics to leave behind (--log, --plot, --record, --save), as step sinks,
+// and its progress on a terminal.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "testbed/motion/live_physics.hpp"
+#include "testbed/record/file_sinks.hpp"
+#include "tools/neritic/commands.hpp"
+#include "tools/neritic/flags.hpp"
+
+namespace neritic::tools {
+using namespace testbed;
+
+// The first flag that was given; empty: none.
+std::string first_step_flag(const StepFileFlags& flags);
+// kBadInput for a rate that is none, kIo for a file that cannot be written: better known before a
+// run of hours than after it.
+Status check_step_files(const StepFileFlags& flags);
+
+// The sinks that the flags name, in the order in which they finish. The log's figures are always
+// there, for the summary.
+class StepFiles {
+ public:
+  // title: of the scene, for the plot. The physics outlives it.
+  StepFiles(const StepFileFlags& flags, const std::string& title, const LivePhysics& physics);
+  std::vector<StepSink*> sinks() const;
+  const DiveRecorder& recorder() const { return log_->recorder(); }
+
+ private:
+  std::vector<std::unique_ptr<StepSink>> files_;
+  DiveLog* log_ = nullptr;  // one of them
+};
+
+// Counts simulated seconds up to a time.
+class StepProgress final : public StepSink {
+ public:
+  StepProgress(std::string what, double until_s) : what_(std::move(what)), until_s_(until_s) {}
+  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
+  Status finish() override;
+
+ private:
+  std::string what_;
+  double until_s_, told_s_ = 0.0;
+  bool begun_ = false;
+  std::optional<Progress> progress_;
+};
+
+}  // namespace neritic::tools
