@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::diver {
 namespace {
 
@@ -92,14 +94,14 @@ double SegmentMeasures::radius_m() const {
 Result<std::array<SegmentMeasures, kSegments>> measure_segments(const Build& build) {
   const Table& table = build.sex == Sex::kMale ? kMale : kFemale;
   if (!(build.height_m >= 1.2 && build.height_m <= 2.3))
-    return bad_input("height_m: found {}; accepted: 1.2 to 2.3", build.height_m);
+    return refusal("height_m", fmt::format("{}", build.height_m), "1.2 to 2.3");
   if (!(build.mass_kg >= 30.0 && build.mass_kg <= 200.0))
-    return bad_input("mass_kg: found {}; accepted: 30 to 200", build.mass_kg);
+    return refusal("mass_kg", fmt::format("{}", build.mass_kg), "30 to 200");
   const double width = build.mass_kg / build.height_m / (table.mass_kg / table.height_m);
   if (!(width <= kMostWidthRatio && width >= 1.0 / kMostWidthRatio))
-    return bad_input("mass_kg: found {} at a height of {} m; accepted: {:.0f} to {:.0f}",
-                     build.mass_kg, build.height_m, build.mass_kg / width / kMostWidthRatio,
-                     build.mass_kg / width * kMostWidthRatio);
+    return refusal("mass_kg", fmt::format("{} at a height of {} m", build.mass_kg, build.height_m),
+                   fmt::format("{:.0f} to {:.0f}", build.mass_kg / width / kMostWidthRatio,
+                               build.mass_kg / width * kMostWidthRatio));
   std::array<SegmentMeasures, kSegments> out;
   for (std::size_t i = 0; i < kSegments; ++i) {
     const Kind kind = kind_of(static_cast<Segment>(i));

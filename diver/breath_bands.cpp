@@ -5,6 +5,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/math.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -29,8 +30,8 @@ Warped warp(double cut_hz, double rate_hz) {
 
 Status check_sound_rate(double rate_hz) {
   if (rate_hz >= kLeastSoundRate_hz && rate_hz <= kMostSoundRate_hz) return {};
-  return bad_input("breath: found a rate of {:g} Hz; accepted: {:g} to {:g}", rate_hz,
-                   kLeastSoundRate_hz, kMostSoundRate_hz);
+  return refusal("breath", fmt::format("a rate of {:g} Hz", rate_hz),
+                 fmt::format("{:g} to {:g}", kLeastSoundRate_hz, kMostSoundRate_hz));
 }
 
 SecondOrderFilter SecondOrderFilter::low_pass(double cut_hz, double rate_hz) {

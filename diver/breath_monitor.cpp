@@ -4,15 +4,16 @@
 #include <cmath>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 
 Status check_breath_settings(const BreathSettings& settings) {
   if (!(settings.block_s >= 0.5 && settings.block_s <= 60.0))
-    return bad_input("breath: found blocks of {:g} s; accepted: 0.5 to 60", settings.block_s);
+    return refusal("breath", fmt::format("blocks of {:g} s", settings.block_s), "0.5 to 60");
   if (!(settings.window_s >= settings.block_s && settings.window_s <= 300.0))
-    return bad_input("breath: found a window of {:g} s; accepted: {:g} to 300", settings.window_s,
-                     settings.block_s);
+    return refusal("breath", fmt::format("a window of {:g} s", settings.window_s),
+                   fmt::format("{:g} to 300", settings.block_s));
   return {};
 }
 

@@ -6,6 +6,7 @@
 
 #include "diver/breath_rhythm.hpp"
 #include "engine/core/math.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -251,7 +252,7 @@ Result<BreathEstimator> breath_estimator_of(const std::string& name) {
   using enum BreathEstimator;
   for (const BreathEstimator e : {kSpectrum, kAutocorrelation, kMultiBand})
     if (name == name_of(e)) return e;
-  return bad_input("found estimator '{}'; accepted: spectrum, autocorrelation or multiband", name);
+  return refusal("", fmt::format("estimator '{}'", name), "spectrum, autocorrelation or multiband");
 }
 
 double slowest_breath_hz(double window_s) {

@@ -5,6 +5,7 @@
 
 #include "diver/jacket.hpp"
 #include "diver/physio_csv.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -25,8 +26,8 @@ Result<std::vector<std::uint64_t>> button_columns(const SampleTable& table, std:
     const auto found = std::ranges::find(kButtonColumns, table.names[i],
                                          [](const auto& column) { return column.name; });
     if (found == std::end(kButtonColumns))
-      return bad_input("{}: found a column {}; accepted: t_s, inflate, deflate, dump", name,
-                       table.names[i]);
+      return refusal(name, fmt::format("a column {}", table.names[i]),
+                     "t_s, inflate, deflate, dump");
     bits[i] = found->bit;
   }
   return bits;
@@ -45,23 +46,24 @@ Result<ButtonRecording> read_button_recording(std::string_view text, const std::
   double unit_s = 1.0;
   const auto time = table.time_column(unit_s);
   if (!time || table.names.size() < 2)
-    return bad_input("{}: found columns {}; accepted: t_s and any of inflate, deflate, dump", name,
-                     fmt::join(table.names, ", "));
+    return refusal(name, fmt::format("columns {}", fmt::join(table.names, ", ")),
+                   "t_s and any of inflate, deflate, dump");
   NERITIC_TRY(const std::vector<std::uint64_t> bits, button_columns(table, *time, name));
   ButtonRecording out;
   for (std::size_t row = 0; row < table.columns[*time].size(); ++row) {
     const double at_s = unit_s * table.columns[*time][row];
     if (!(std::abs(at_s) <= kMostButtonTime_s) ||
         (!out.time_s.empty() && !(at_s > out.time_s.back())))
-      return bad_input("{}:{}: found time {}; accepted: times that rise, to 1e9 s", name,
-                       table.lines[row], table.columns[*time][row]);
+      return refusal(fmt::format("{}:{}", name, table.lines[row]),
+                     fmt::format("time {}", table.columns[*time][row]),
+                     "times that rise, to 1e9 s");
     std::uint64_t pressed = 0;
     for (std::size_t i = 0; i < bits.size(); ++i) {
       const double value = table.columns[i][row];
       if (bits[i] == 0) continue;
       if (value != 0.0 && value != 1.0)  // NaN too
-        return bad_input("{}:{}: {}: found {}; accepted: 0 and 1", name, table.lines[row],
-                         table.names[i], value);
+        return refusal(fmt::format("{}:{}: {}", name, table.lines[row], table.names[i]),
+                       fmt::format("{}", value), "0 and 1");
       if (value == 1.0) pressed |= bits[i];
     }
     out.time_s.push_back(at_s);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::diver {
 
 Expected expected_number(const CaseField& field) {
@@ -67,8 +69,8 @@ std::vector<PlanGas> read_gases(const CaseField& gases) {
     const double o2 = field.required("o2").number(21.0, 1.0, 100.0);
     const double he = field["he"].number(0.0, 0.0, 99.0);
     if (o2 + he > 100.0)
-      field.fail(fmt::format(
-          "found {} % of oxygen and {} % of helium; accepted: at most 100 % in all", o2, he));
+      field.fail(found_accepted(fmt::format("{} % of oxygen and {} % of helium", o2, he),
+                                "at most 100 % in all"));
     const double n2 = field["n2"].number(100.0 - o2 - he);
     if (std::abs(n2 + o2 + he - 100.0) > 0.01) field["n2"].refuse("what is left of 100");
     gas.mix = mix_of_percent(o2, he);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "diver/deco_case_parts.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::diver {
@@ -123,16 +124,17 @@ Result<DecoCases> read_deco_cases(std::string_view text, std::string name) {
   out.ndl_min = root["tolerances"]["ndl_continuous_min"].number(out.ndl_min, 0.0, 10.0);
   const CaseField profiles = root["profiles"], tables = root["ndl_tables"];
   if (profiles.size() + tables.size() == 0 && !file.failed())
-    profiles.fail("found no case; accepted: a list of dives here, or of tables in ndl_tables");
+    profiles.fail(found_accepted("no case", "a list of dives here, or of tables in ndl_tables"));
   if (profiles.size() + tables.size() > kMostCases)
-    profiles.fail(fmt::format("found {} cases; accepted: at most {}",
-                              profiles.size() + tables.size(), kMostCases));
+    profiles.fail(found_accepted(fmt::format("{} cases", profiles.size() + tables.size()),
+                                 fmt::format("at most {}", kMostCases)));
   std::set<std::string> ids;
   for (std::size_t i = 0; i < profiles.size() && !file.failed(); ++i) {
     const CaseField profile = profiles.at(i);
     std::string id = profile.required("id").text();
     if (!ids.insert(id).second)
-      profile["id"].fail(fmt::format("found '{}' a second time; accepted: a name of its own", id));
+      profile["id"].fail(
+          found_accepted(fmt::format("'{}' a second time", id), "a name of its own"));
     file.enter_case(id);
     out.dives.push_back(read_case(profile, std::move(id)));
   }

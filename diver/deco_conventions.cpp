@@ -4,6 +4,7 @@
 #include <string>
 
 #include "diver/oxygen_exposure.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -55,7 +56,7 @@ Result<DecoConventions> conventions_of(std::string_view name) {
     if (set.name == name) return set.conventions;
     names += (names.empty() ? "" : ", ") + std::string(set.name);
   }
-  return bad_input("found convention '{}'; accepted: {}", name.substr(0, 40), names);
+  return refusal("", fmt::format("convention '{}'", name.substr(0, 40)), fmt::format("{}", names));
 }
 
 }  // namespace neritic::diver

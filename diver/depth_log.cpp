@@ -7,6 +7,7 @@
 
 #include "diver/gas_label.hpp"
 #include "diver/physio_csv.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::diver {
@@ -42,17 +43,16 @@ class LogReader {
       if (words.empty() || words.front() == '#') continue;
       NERITIC_TRY_STATUS(width_ == 0 ? read_names(line) : read_row(line));
     }
-    if (width_ == 0)
-      return bad_input("{}: found no row of names; accepted: time_s and depth_m", name_);
+    if (width_ == 0) return refusal(name_, "no row of names", "time_s and depth_m");
     if (vehicles_.size() > 1 && vehicle_.empty())
-      return bad_input("{}: found rows of {}; accepted: one, choose by --vehicle", name_,
-                       fmt::join(vehicles_, ", "));
+      return refusal(name_, fmt::format("rows of {}", fmt::join(vehicles_, ", ")),
+                     "one, choose by --vehicle");
     if (!vehicle_.empty() && log_.samples.empty())
-      return bad_input("{}: --vehicle: found '{}'; accepted: {}", name_, vehicle_,
-                       vehicles_.empty() ? std::string("a file with a column vehicle")
-                                         : fmt::format("{}", fmt::join(vehicles_, ", ")));
-    if (log_.samples.empty())
-      return bad_input("{}: found no sample; accepted: at least one", name_);
+      return refusal(
+          fmt::format("{}: --vehicle", name_), fmt::format("'{}'", vehicle_),
+          fmt::format("{}", vehicles_.empty() ? std::string("a file with a column vehicle")
+                                              : fmt::format("{}", fmt::join(vehicles_, ", "))));
+    if (log_.samples.empty()) return refusal(name_, "no sample", "at least one");
     return std::move(log_);
   }
 
@@ -72,17 +72,17 @@ class LogReader {
     gas_ = find("gas");
     of_ = find("vehicle");
     if (time_ == width_ || depth_ == width_)
-      return bad_input(
-          "{}: line {}: found columns '{}'; accepted: with time_s or time_min, and depth_m", name_,
-          line_, shown(trimmed_cell(line)));
+      return refusal(fmt::format("{}: line {}", name_, line_),
+                     fmt::format("columns '{}'", shown(trimmed_cell(line))),
+                     "with time_s or time_min, and depth_m");
     return {};
   }
 
   Status read_row(std::string_view line) {
     const std::vector<std::string_view> cells = csv_cells(line, separators_);
     if (cells.size() != width_)
-      return bad_input("{}: line {}: found {} cells; accepted: {}", name_, line_, cells.size(),
-                       width_);
+      return refusal(fmt::format("{}: line {}", name_, line_),
+                     fmt::format("{} cells", cells.size()), fmt::format("{}", width_));
     const std::string_view whose = of_ < width_ ? cells[of_] : std::string_view();
     if (of_ < width_ && vehicles_.size() < kMostVehicles &&
         std::ranges::find(vehicles_, shown(whose)) == vehicles_.end())
@@ -91,20 +91,22 @@ class LogReader {
     DepthSample sample;
     if (!read_cell(cells[time_], sample.time_s) || !std::isfinite(sample.time_s) ||
         std::abs(sample.time_s) > 1e12)
-      return bad_input("{}: line {}: found time '{}'; accepted: a number", name_, line_,
-                       shown(cells[time_]));
+      return refusal(fmt::format("{}: line {}", name_, line_),
+                     fmt::format("time '{}'", shown(cells[time_])), "a number");
     sample.time_s *= unit_s_;
     if (!log_.samples.empty() && sample.time_s < log_.samples.back().time_s)
-      return bad_input("{}: line {}: found time {} after {}; accepted: times that do not go back",
-                       name_, line_, shown(cells[time_]), log_.samples.back().time_s / unit_s_);
+      return refusal(fmt::format("{}: line {}", name_, line_),
+                     fmt::format("time {} after {}", shown(cells[time_]),
+                                 log_.samples.back().time_s / unit_s_),
+                     "times that do not go back");
     if (cells[depth_].empty())
       sample.depth_m = std::numeric_limits<double>::quiet_NaN();
     else if (!read_cell(cells[depth_], sample.depth_m))
-      return bad_input("{}: line {}: found depth '{}'; accepted: a number", name_, line_,
-                       shown(cells[depth_]));
+      return refusal(fmt::format("{}: line {}", name_, line_),
+                     fmt::format("depth '{}'", shown(cells[depth_])), "a number");
     if (gas_ < width_) NERITIC_TRY_STATUS(read_gas(cells[gas_], sample));
     if (log_.samples.size() == kMostSamples)
-      return bad_input("{}: more than {} samples found", name_, kMostSamples);
+      return refusal(name_, "more samples", fmt::format("up to {}", kMostSamples));
     log_.samples.push_back(sample);
     return {};
   }
@@ -117,13 +119,13 @@ class LogReader {
     }
     const auto mix = parse_mix(cell);
     if (!mix.ok())
-      return bad_input("{}: line {}: found gas '{}'; accepted: air, o2, ean32 or 18/45", name_,
-                       line_, shown(cell));
+      return refusal(fmt::format("{}: line {}", name_, line_), fmt::format("gas '{}'", shown(cell)),
+                     "air, o2, ean32 or 18/45");
     const auto at = std::ranges::find(log_.gases, *mix);
     sample.gas = static_cast<std::size_t>(at - log_.gases.begin());
     if (at != log_.gases.end()) return {};
     if (log_.gases.size() == 32)
-      return bad_input("{}: line {}: found a 33rd gas; accepted: at most 32", name_, line_);
+      return refusal(fmt::format("{}: line {}", name_, line_), "a 33rd gas", "at most 32");
     log_.gases.push_back(*mix);
     return {};
   }

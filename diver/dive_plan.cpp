@@ -5,6 +5,7 @@
 
 #include "diver/deco_ascent.hpp"
 #include "diver/gas_label.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -19,45 +20,48 @@ bool within(double value, double least, double most) {
 Status check_conventions(const DecoConventions& c) {
   const DecoEnvironment& e = c.environment;
   if (!within(e.surface_bar, 0.2, 5.0))
-    return bad_input("found surface pressure {} bar; accepted: 0.2 to 5", e.surface_bar);
+    return refusal("", fmt::format("surface pressure {} bar", e.surface_bar), "0.2 to 5");
   if (!within(e.bar_per_m, 0.05, 0.2))
-    return bad_input("found {} bar a metre; accepted: 0.05 to 0.2", e.bar_per_m);
+    return refusal("", fmt::format("{} bar a metre", e.bar_per_m), "0.05 to 0.2");
   if (!within(c.water_vapour_bar, 0.0, 0.1) || !within(c.start_n2, 0.0, 1.0))
-    return bad_input(
-        "found water vapour {} bar, start at {} of nitrogen; accepted: 0 to 0.1 and 0 to 1",
-        c.water_vapour_bar, c.start_n2);
+    return refusal(
+        "",
+        fmt::format("water vapour {} bar, start at {} of nitrogen", c.water_vapour_bar, c.start_n2),
+        "0 to 0.1 and 0 to 1");
   if (!within(c.descent_m_min, 0.1, 1000.0) || !within(c.ascent_m_min, 0.1, 1000.0))
-    return bad_input("found rates of {} down and {} up; accepted: 0.1 to 1000 m/min",
-                     c.descent_m_min, c.ascent_m_min);
+    return refusal("", fmt::format("rates of {} down and {} up", c.descent_m_min, c.ascent_m_min),
+                   "0.1 to 1000 m/min");
   if (!within(c.stop_step_m, 0.1, 100.0) || !within(c.stop_quantum_min, 0.01, 60.0))
-    return bad_input("found stops every {} m and {} min; accepted: 0.1 to 100 and 0.01 to 60",
-                     c.stop_step_m, c.stop_quantum_min);
+    return refusal("",
+                   fmt::format("stops every {} m and {} min", c.stop_step_m, c.stop_quantum_min),
+                   "0.1 to 100 and 0.01 to 60");
   const double steps = c.last_stop_m / c.stop_step_m;
   if (!within(steps, 1.0, 100.0) || std::abs(steps - std::round(steps)) > 1e-9)
-    return bad_input("found last stop {} m; accepted: a multiple of {} m", c.last_stop_m,
-                     c.stop_step_m);
+    return refusal("", fmt::format("last stop {} m", c.last_stop_m),
+                   fmt::format("a multiple of {} m", c.stop_step_m));
   if (!within(c.saturation, 0.1, 10.0) || !within(c.desaturation, 0.1, 10.0))
-    return bad_input("found saturation {}, desaturation {}; accepted: 0.1 to 10", c.saturation,
-                     c.desaturation);
+    return refusal("", fmt::format("saturation {}, desaturation {}", c.saturation, c.desaturation),
+                   "0.1 to 10");
   return {};
 }
 
 Status check_gases(const std::vector<PlanGas>& gases) {
   if (gases.empty() || gases.size() > 32)
-    return bad_input("found {} gases; accepted: 1 to 32", gases.size());
+    return refusal("", fmt::format("{} gases", gases.size()), "1 to 32");
   for (const PlanGas& gas : gases) {
     if (!within(gas.mix.oxygen, 0.01, 1.0) || !within(gas.mix.helium, 0.0, 0.99) ||
         gas.mix.nitrogen() < -1e-9)
-      return bad_input("found gas of {} oxygen and {} helium; accepted: shares of one gas",
-                       gas.mix.oxygen, gas.mix.helium);
+      return refusal("",
+                     fmt::format("gas of {} oxygen and {} helium", gas.mix.oxygen, gas.mix.helium),
+                     "shares of one gas");
     if (!within(gas.switch_depth_m, 0.0, kDeepestPlan_m))
-      return bad_input("found switch to {} at {} m; accepted: 0 to {} m", name_of(gas.mix),
-                       gas.switch_depth_m, kDeepestPlan_m);
+      return refusal("", fmt::format("switch to {} at {} m", name_of(gas.mix), gas.switch_depth_m),
+                     fmt::format("0 to {} m", kDeepestPlan_m));
   }
   const auto is_bottom = [](const PlanGas& gas) { return gas.role == GasRole::kBottom; };
   if (std::ranges::count_if(gases, is_bottom) != 1)
-    return bad_input("found {} bottom gases; accepted: one",
-                     std::ranges::count_if(gases, is_bottom));
+    return refusal("", fmt::format("{} bottom gases", std::ranges::count_if(gases, is_bottom)),
+                   "one");
   return {};
 }
 
@@ -65,18 +69,18 @@ Status check_numbers(const DivePlanRequest& r) {
   NERITIC_TRY_STATUS(check_conventions(r.conventions));
   NERITIC_TRY_STATUS(check_gases(r.gases));
   if (!within(r.gf_low, 0.01, 1.5) || !within(r.gf_high, r.gf_low, 1.5))
-    return bad_input("found gradient factors {}/{}; accepted: 0.01 to 1.5, low not above high",
-                     r.gf_low, r.gf_high);
-  if (r.levels.empty()) return bad_input("found no depth; accepted: at least one");
+    return refusal("", fmt::format("gradient factors {}/{}", r.gf_low, r.gf_high),
+                   "0.01 to 1.5, low not above high");
+  if (r.levels.empty()) return refusal("", "no depth", "at least one");
   for (const PlanLevel& level : r.levels)
     if (!within(level.depth_m, 0.01, kDeepestPlan_m) || !within(level.leave_min, 0.0, 1e6))
-      return bad_input("found {} m until {} min; accepted: 0.01 to {} m and at most 1000000 min",
-                       level.depth_m, level.leave_min, kDeepestPlan_m);
+      return refusal("", fmt::format("{} m until {} min", level.depth_m, level.leave_min),
+                     fmt::format("0.01 to {} m and at most 1000000 min", kDeepestPlan_m));
   if (!r.start) return {};
   for (const Compartments* gas : {&r.start->n2_bar, &r.start->he_bar})
     for (const double bar : *gas)
       if (!within(bar, 0.0, 1000.0))
-        return bad_input("found {} bar in a tissue; accepted: 0 to 1000", bar);
+        return refusal("", fmt::format("{} bar in a tissue", bar), "0 to 1000");
   return {};
 }
 
@@ -126,18 +130,19 @@ Status check_bottom_gas(const DivePlanRequest& r) {
   const PlanGas& bottom = *std::ranges::find(r.gases, GasRole::kBottom, &PlanGas::role);
   for (const PlanGas& gas : r.gases)
     if (gas.role == GasRole::kTravel && gas.switch_depth_m == bottom.switch_depth_m)
-      return bad_input(
-          "found bottom gas {} and travel gas {} both from {:g} m; accepted: another depth from "
-          "which the bottom gas is breathed, as {}@40",
-          name_of(bottom.mix), name_of(gas.mix), gas.switch_depth_m, name_of(bottom.mix));
+      return refusal("",
+                     fmt::format("bottom gas {} and travel gas {} both from {:g} m",
+                                 name_of(bottom.mix), name_of(gas.mix), gas.switch_depth_m),
+                     fmt::format("another depth from which the bottom gas is breathed, as {}@40",
+                                 name_of(bottom.mix)));
   const double deepest_m = std::ranges::max_element(r.levels, {}, &PlanLevel::depth_m)->depth_m;
   const PlanGas& breathed = r.gases[gas_down_to(r.gases, deepest_m)];
   if (breathed.role != GasRole::kBottom)
-    return bad_input(
-        "found bottom gas {} from {:g} m while {} is breathed at {:g} m, the deepest; accepted: a "
-        "depth from {:g} to {:g} m",
-        name_of(bottom.mix), bottom.switch_depth_m, name_of(breathed.mix), deepest_m,
-        breathed.switch_depth_m, deepest_m);
+    return refusal(
+        "",
+        fmt::format("bottom gas {} from {:g} m while {} is breathed at {:g} m, the deepest",
+                    name_of(bottom.mix), bottom.switch_depth_m, name_of(breathed.mix), deepest_m),
+        fmt::format("a depth from {:g} to {:g} m", breathed.switch_depth_m, deepest_m));
   return {};
 }
 
@@ -161,8 +166,10 @@ class WayDown {
       if (!above_) watch_ceiling(i, before);
       const double minutes = level.leave_min - state_.run_min;
       if (minutes < -kSameMinute)
-        return bad_input("{:g} m is reached after {:.4g} min, but to be left at {:g}",
-                         level.depth_m, state_.run_min, level.leave_min);
+        return refusal("",
+                       fmt::format("{:g} m, reached after {:.4g} min, until {:g} min",
+                                   level.depth_m, state_.run_min, level.leave_min),
+                       "a later time");
       move(level.depth_m, std::max(minutes, 0.0), PlanPhase::kBottom);
       state_.run_min = std::max(level.leave_min, state_.run_min);
     }
@@ -307,8 +314,10 @@ Result<DivePlan> plan_dive(const DivePlanRequest& request, std::size_t levels) {
   plan.end_of_bottom = point_of(state);
   const AscentEnd end = ascend(settings, state, writer);
   if (end == AscentEnd::kNeverClears)
-    return bad_input("at {:g} m on {} the ceiling never clears", state.depth_m,
-                     name_of(request.gases[state.gas].mix));
+    return refusal("",
+                   fmt::format("no end of the stop at {:g} m on {}: its ceiling never clears",
+                               state.depth_m, name_of(request.gases[state.gas].mix)),
+                   "a gas with less inert gas");
   plan.no_stops = end == AscentEnd::kDirect;
   plan.surfacing = point_of(state);
   return plan;
@@ -318,10 +327,11 @@ Status check_ceilings(const DivePlanRequest& request, const DivePlan& plan) {
   if (!plan.above_ceiling) return {};
   const LevelAboveCeiling& above = *plan.above_ceiling;
   const PlanLevel& level = request.levels[above.level];
-  return bad_input(
-      "found {:g} m until {:g} min, above the ceiling, which is at {:.2f} m on the way there; "
-      "accepted: {:.1f} m or deeper",
-      level.depth_m, level.leave_min, above.least_m, std::ceil(10.0 * above.least_m) / 10.0);
+  return refusal(
+      "",
+      fmt::format("{:g} m until {:g} min, above the ceiling, which is at {:.2f} m on the way there",
+                  level.depth_m, level.leave_min, above.least_m),
+      fmt::format("{:.1f} m or deeper", std::ceil(10.0 * above.least_m) / 10.0));
 }
 
 Result<TissueState> tissues_after(const std::vector<EarlierDive>& dives,
@@ -336,7 +346,7 @@ Result<TissueState> tissues_after(const std::vector<EarlierDive>& dives,
                    earlier.surface_min, earlier.surface_gas);
     if (plans) plans->push_back(std::move(plan));
   }
-  if (!tissues) return bad_input("found no earlier dive; accepted: at least one");
+  if (!tissues) return refusal("", "no earlier dive", "at least one");
   return *tissues;
 }
 

@@ -7,6 +7,7 @@
 #include "diver/oxygen_exposure.hpp"
 #include "engine/core/case_toml.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -87,8 +88,8 @@ Tank read_tank(const CaseField& field) {
   tank.mix.oxygen = field["oxygen"].number(tank.mix.oxygen, 0.0, 1.0);
   tank.mix.helium = field["helium"].number(tank.mix.helium, 0.0, 1.0);
   if (!is_mix(tank.mix))
-    field["helium"].fail(fmt::format("found {} beside {} of oxygen; accepted: shares of 1",
-                                     tank.mix.helium, tank.mix.oxygen));
+    field["helium"].fail(found_accepted(
+        fmt::format("{} beside {} of oxygen", tank.mix.helium, tank.mix.oxygen), "shares of 1"));
   read_bounded(field["empty_kg"], 1.0, kTankMass_kg, tank.empty_mass_kg);
   read_bounded(field["outer_l"], kLitre_m3, kTankOuterVolume_m3, tank.outer_volume_m3);
   read_bounded(field["radius_m"], 1.0, kTankRadius_m, tank.radius_m);
@@ -123,7 +124,8 @@ void read_gear(const CaseField& file, Gear& gear) {
     gear.tanks.clear();
     const std::size_t count = file["tanks"].size();
     if (count > kMaxTanks)
-      file["tanks"].fail(fmt::format("found {}; accepted: up to {}", count, kMaxTanks));
+      file["tanks"].fail(
+          found_accepted(fmt::format("{}", count), fmt::format("up to {}", kMaxTanks)));
     for (std::size_t i = 0; i < std::min(count, kMaxTanks); ++i)
       gear.tanks.push_back(read_tank(file["tanks"].at(i)));
   }

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::diver {
@@ -17,8 +18,8 @@ bool read_percent(std::string_view text, double& percent) {
 }
 
 Error no_mix(std::string_view text) {
-  return bad_input("found gas '{}'; accepted: air, o2, ean32 (1 to 100) or 18/45 (oxygen/helium)",
-                   text.substr(0, 40));
+  return refusal("", fmt::format("gas '{}'", text.substr(0, 40)),
+                 "air, o2, ean32 (1 to 100) or 18/45 (oxygen/helium)");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "diver/gas_label.hpp"
 #include "diver/limits.hpp"
 #include "diver/tanks.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -34,14 +35,14 @@ Status check_tanks(const DivePlanRequest& request, const PlanBreathing& b,
   for (std::size_t i = 0; i < tanks.size(); ++i) {
     const PlanTank& tank = tanks[i];
     if (tank.gas >= request.gases.size())
-      return bad_input("found tank of gas {}; accepted: the {} gases of the plan", tank.gas,
-                       request.gases.size());
+      return refusal("", fmt::format("tank of gas {}", tank.gas),
+                     fmt::format("the {} gases of the plan", request.gases.size()));
     NERITIC_TRY_STATUS(check_limits({{"a tank's litres", tank.volume_l, 0.1, 200.0},
                                      {"a tank's bar", tank.pressure_bar, 1.0, 350.0}}));
     for (std::size_t k = 0; k < i; ++k)
       if (mix_of(request, tanks[k].gas) == mix_of(request, tank.gas))
-        return bad_input("found two tanks of {}; accepted: one per gas, twins as their sum",
-                         name_of(mix_of(request, tank.gas)));
+        return refusal("", fmt::format("two tanks of {}", name_of(mix_of(request, tank.gas))),
+                       "one per gas, twins as their sum");
   }
   return {};
 }
@@ -209,8 +210,8 @@ std::vector<PlanWarning> gas_warnings(const DivePlanRequest& request,
       out.push_back(
           {PlanWarningKind::kMinimumGas, u.minimum_run_min, u.minimum_depth_m, t.then_bar,
            t.minimum_bar, u.gas,
-           fmt::format("{}: {:.0f} bar left at {:g} m, {:.0f} min; minimum gas to go up "
-                       "with is {:.0f}",
+           fmt::format("{}: {:.0f} bar left at {:g} m, {:.0f} min; minimum gas for the "
+                       "ascent is {:.0f}",
                        tank, t.then_bar, u.minimum_depth_m, u.minimum_run_min, t.minimum_bar)});
     }
   }

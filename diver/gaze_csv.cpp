@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "diver/physio_csv.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -23,8 +24,7 @@ Result<GazeRecording> parse_gaze_csv(std::string_view text, const std::string& n
   const auto time = table.time_column(time_scale);
   const double rate = rate_hz > 0.0 ? rate_hz : table.rate_hz.value_or(0.0);
   if (!time && !(rate > 0.0))
-    return bad_input("{}: found no time; accepted: a column t_s, a comment with fs_hz= or --rate",
-                     name);
+    return refusal(name, "no time", "a column t_s, a comment with fs_hz= or --rate");
   Column x = column_of(table, "x_deg"), y = column_of(table, "y_deg");
   if (!x || !y) {
     x = column_of(table, "x_rad");
@@ -35,9 +35,8 @@ Result<GazeRecording> parse_gaze_csv(std::string_view text, const std::string& n
                dz = column_of(table, "dz");
   const bool has_angles = x && y;
   if (!has_angles && !(dx && dy && dz))
-    return bad_input(
-        "{}: found columns {}; accepted: x_deg and y_deg, x_rad and y_rad, or dx, dy, dz", name,
-        fmt::join(table.names, ", "));
+    return refusal(name, fmt::format("columns {}", fmt::join(table.names, ", ")),
+                   "x_deg and y_deg, x_rad and y_rad, or dx, dy, dz");
   Column status = column_of(table, "status");
   if (!status) status = column_of(table, "valid");
   const Column marks = column_of(table, "evt");

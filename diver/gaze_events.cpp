@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -30,14 +31,14 @@ Status check_gaze_settings(const GazeSettings& s) {
     return value >= low && value <= high;
   };
   if (!within(s.velocity_rad_s, radians(1.0), radians(1000.0)))
-    return bad_input("gaze: found {:g} deg/s; accepted: 1 to 1000", degrees(s.velocity_rad_s));
+    return refusal("gaze", fmt::format("{:g} deg/s", degrees(s.velocity_rad_s)), "1 to 1000");
   if (!within(s.dispersion_rad, radians(0.05), radians(30.0)))
-    return bad_input("gaze: found a dispersion of {:g} deg; accepted: 0.05 to 30",
-                     degrees(s.dispersion_rad));
+    return refusal("gaze", fmt::format("a dispersion of {:g} deg", degrees(s.dispersion_rad)),
+                   "0.05 to 30");
   for (const double duration_s :
        {s.velocity_window_s, s.bridge_s, s.merge_s, s.least_fixation_s, s.dispersion_s})
     if (!within(duration_s, 0.0, 2.0))
-      return bad_input("gaze: found a duration of {:g} s; accepted: 0 to 2", duration_s);
+      return refusal("gaze", fmt::format("a duration of {:g} s", duration_s), "0 to 2");
   return {};
 }
 

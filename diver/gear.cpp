@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::diver {
 
 Tank tank_of(double water_volume_m3) {
@@ -34,7 +36,8 @@ Status check_gear(const Gear& gear) {
                                      {"fin mass", gear.fins->mass_kg, kFinMass_kg},
                                      {"fin volume", gear.fins->volume_m3, kFinVolume_m3}}));
   if (gear.tanks.size() > kMaxTanks)
-    return bad_input("tanks: found {}; accepted: up to {}", gear.tanks.size(), kMaxTanks);
+    return refusal("tanks", fmt::format("{}", gear.tanks.size()),
+                   fmt::format("up to {}", kMaxTanks));
   for (const Tank& tank : gear.tanks) {
     NERITIC_TRY_STATUS(
         check_limits({{"tank volume", tank.water_volume_m3, kTankVolume_m3},
@@ -44,8 +47,9 @@ Status check_gear(const Gear& gear) {
                       {"tank length", tank.length_m, kTankLength_m},
                       {"tank pressure", tank.pressure_pa, kTankPressure_pa}}));
     if (!is_mix(tank.mix))
-      return bad_input("tank gas: found oxygen {} and helium {}; accepted: shares of 1",
-                       tank.mix.oxygen, tank.mix.helium);
+      return refusal("tank gas",
+                     fmt::format("oxygen {} and helium {}", tank.mix.oxygen, tank.mix.helium),
+                     "shares of 1");
   }
   if (gear.jacket)
     NERITIC_TRY_STATUS(

@@ -7,6 +7,7 @@
 
 #include "diver/heart_filter.hpp"
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -39,8 +40,8 @@ constexpr std::ptrdiff_t kUsualOf = 2;
 
 Status check_ecg_rate(double rate_hz) {
   if (rate_hz >= kLeastEcgRate_hz && rate_hz <= kMostEcgRate_hz) return {};
-  return bad_input("ECG: found a rate of {:g} Hz; accepted: {:g} to {:g}", rate_hz,
-                   kLeastEcgRate_hz, kMostEcgRate_hz);
+  return refusal("ECG", fmt::format("a rate of {:g} Hz", rate_hz),
+                 fmt::format("{:g} to {:g}", kLeastEcgRate_hz, kMostEcgRate_hz));
 }
 
 BeatDetector::BeatDetector(double rate_hz) : rate_hz_(rate_hz) {

@@ -5,6 +5,7 @@
 
 #include "diver/kinematics.hpp"
 #include "diver/physio_csv.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -58,28 +59,28 @@ Result<LimbRecording> read_limb_recording(std::string_view text, const std::stri
   const auto time = table.time_column(unit_s);
   const std::vector<AngleColumn> columns = angle_columns(table);
   if (!time || columns.empty())
-    return bad_input("{}: found columns {}; accepted: t_s and angles such as upper_leg_l_y_deg",
-                     name, fmt::join(table.names, ", "));
+    return refusal(name, fmt::format("columns {}", fmt::join(table.names, ", ")),
+                   "t_s and angles such as upper_leg_l_y_deg");
   LimbRecording out;
   const std::vector<double>& times = table.columns[*time];
   for (std::size_t row = 0; row < times.size(); ++row) {
     const double at_s = unit_s * (times[row] - times[0]);
     if (!std::isfinite(at_s) || (row > 0 && !(at_s > out.time_s.back())))
-      return bad_input("{}:{}: found time {}; accepted: times that rise", name, table.lines[row],
-                       times[row]);
+      return refusal(fmt::format("{}:{}", name, table.lines[row]),
+                     fmt::format("time {}", times[row]), "times that rise");
     JointAngles angles{};
     for (const AngleColumn& column : columns) {
       const double deg = table.columns[column.column][row];
       if (!(std::abs(deg) <= kMostAngle_deg))
-        return bad_input("{}:{}: {}: found {}; accepted: -360 to 360", name, table.lines[row],
-                         table.names[column.column], deg);
+        return refusal(fmt::format("{}:{}: {}", name, table.lines[row], table.names[column.column]),
+                       fmt::format("{}", deg), "-360 to 360");
       angles[column.joint][column.axis] = radians(deg);
     }
     out.time_s.push_back(at_s);
     out.joints.push_back(rotations_of(angles));
   }
   if (out.time_s.size() < 2)
-    return bad_input("{}: found {} rows; accepted: two or more", name, out.time_s.size());
+    return refusal(name, fmt::format("{} rows", out.time_s.size()), "two or more");
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/result.hpp"
 
 namespace neritic::diver {
@@ -19,7 +20,8 @@ struct Limit {
 inline Status check_limits(std::initializer_list<Limit> limits) {
   for (const Limit& l : limits)
     if (!(l.value >= l.in.low && l.value <= l.in.high))
-      return bad_input("{}: found {}; accepted: {} to {}", l.name, l.value, l.in.low, l.in.high);
+      return refusal(l.name, fmt::format("{}", l.value),
+                     fmt::format("{} to {}", l.in.low, l.in.high));
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::diver {
@@ -95,10 +96,10 @@ std::optional<double> rate_in(std::string_view comment) {
 Status take_heading(const std::vector<std::string_view>& cells, const std::string& where,
                     SampleTable& table) {
   if (cells.size() > kMostCsvColumns)
-    return bad_input("{}: found {} columns; accepted: at most {}", where, cells.size(),
-                     kMostCsvColumns);
+    return refusal(where, fmt::format("{} columns", cells.size()),
+                   fmt::format("at most {}", kMostCsvColumns));
   if (std::ranges::any_of(cells, [](std::string_view c) { return !std::isnan(cell_number(c)); }))
-    return bad_input("{}: found a number in the heading; accepted: names of columns", where);
+    return refusal(where, "a number in the heading", "names of columns");
   for (const std::string_view cell : cells) table.names.push_back(lower_case(cell));
   table.columns.resize(cells.size());
   table.words.resize(cells.size());
@@ -192,8 +193,8 @@ Status spread_evenly(const std::vector<double>& time_s, const std::vector<double
       const double most =
           std::max(kMostMissing, kMostMissingARow * static_cast<double>(values.size()));
       if ((missing += ahead) > most)
-        return bad_input("{}: found {:.0f} missing samples up to {:g} s; accepted: at most {:.0f}",
-                         name, missing, time_s[i], most);
+        return refusal(name, fmt::format("{:.0f} missing samples up to {:g} s", missing, time_s[i]),
+                       fmt::format("at most {:.0f}", most));
       const auto places = static_cast<std::size_t>(std::lround(ahead));
       out.samples.resize(out.samples.size() + places, kNothing);
       out.missing += places;
@@ -275,17 +276,16 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
       continue;
     }
     if (cells.size() != table.names.size())
-      return bad_input("{}: found {} columns; accepted: {}", where(), cells.size(),
-                       table.names.size());
+      return refusal(where(), fmt::format("{} columns", cells.size()),
+                     fmt::format("{}", table.names.size()));
     if (table.columns[0].size() == kMostSamples / table.names.size())
-      return bad_input("{}: found more rows than {}; accepted: fewer", where(),
-                       table.columns[0].size());
+      return refusal(where(), fmt::format("more rows than {}", table.columns[0].size()), "fewer");
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto value =
           is_flag(table.names[i]) ? cell_flag(cells[i]) : std::optional(cell_number(cells[i]));
       if (!value)
-        return bad_input("{}: found {} '{}'; accepted: true, false or a number", where(),
-                         table.names[i], cells[i].substr(0, 40));
+        return refusal(where(), fmt::format("{} '{}'", table.names[i], cells[i].substr(0, 40)),
+                       "true, false or a number");
       table.columns[i].push_back(*value);
       if (std::isnan(*value) && is_word(cells[i])) table.words[i] = true;
     }
@@ -295,7 +295,7 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
     if (std::ranges::any_of(table.columns[i], [](double v) { return !std::isnan(v); }))
       table.words[i] = false;
   if (table.names.empty() || table.columns[0].empty())
-    return bad_input("{}: found no row; accepted: a heading and one row or more", name);
+    return refusal(name, "no row", "a heading and one row or more");
   return table;
 }
 
@@ -311,11 +311,10 @@ Result<Recording> parse_csv(std::string_view text, const std::string& name,
       if (i != time && table.words[i] == words && !counts_rows(table.names[i], table.columns[i]))
         column = i;
   if (!column)
-    return bad_input("{}: found no column '{}'; accepted: {}", name, channel.column,
-                     fmt::join(table.names, ", "));
+    return refusal(name, fmt::format("no column '{}'", channel.column),
+                   fmt::format("{}", fmt::join(table.names, ", ")));
   if (table.words[*column])
-    return bad_input("{}: found column '{}' of words; accepted: numbers", name,
-                     table.names[*column]);
+    return refusal(name, fmt::format("column '{}' of words", table.names[*column]), "numbers");
   Recording out{table.names[*column]};
   std::vector<double> time_s, values;
   if (time) {
@@ -335,9 +334,8 @@ Result<Recording> parse_csv(std::string_view text, const std::string& name,
       values.push_back(table.columns[*column][i]);
     }
     if (time_s.empty())
-      return bad_input(
-          "{}: found no time in column '{}'; accepted: seconds up to {:g} (or _ms, _us)", name,
-          table.names[*time], kMostTime_s);
+      return refusal(name, fmt::format("no time in column '{}'", table.names[*time]),
+                     fmt::format("seconds up to {:g} (or _ms, _us)", kMostTime_s));
   }
   out.rate_hz = channel.rate_hz > 0.0 ? channel.rate_hz : table.rate_hz.value_or(0.0);
   const double step_s = usual_step(time_s);
@@ -347,10 +345,8 @@ Result<Recording> parse_csv(std::string_view text, const std::string& name,
     out.rate_hz = std::round(scale / step_s) / scale;
   }
   if (!(out.rate_hz >= kLeastRate_hz && out.rate_hz <= kMostRate_hz))
-    return bad_input(
-        "{}: found no rate of {:g} to {:g} Hz; accepted: a column of time with two rows or more, a "
-        "comment with fs_hz= or --rate",
-        name, kLeastRate_hz, kMostRate_hz);
+    return refusal(name, fmt::format("no rate of {:g} to {:g} Hz", kLeastRate_hz, kMostRate_hz),
+                   "a column of time with two rows or more, a comment with fs_hz= or --rate");
   if (time_s.empty()) {
     out.samples = std::move(table.columns[*column]);
     return out;

@@ -9,6 +9,8 @@
 #include <limits>
 #include <optional>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::diver {
 namespace {
 
@@ -33,7 +35,7 @@ struct WavFormat {
 
 Result<WavFormat> wav_format(std::span<const std::byte> chunk, const std::string& name) {
   if (chunk.size() < 16)
-    return bad_input("{}: found 'fmt ' of {} bytes; accepted: 16 or more", name, chunk.size());
+    return refusal(name, fmt::format("'fmt ' of {} bytes", chunk.size()), "16 or more");
   WavFormat format;
   format.kind = static_cast<std::uint16_t>(little_endian(chunk, 0, 2));
   format.channels = static_cast<std::uint16_t>(little_endian(chunk, 2, 2));
@@ -46,14 +48,12 @@ Result<WavFormat> wav_format(std::span<const std::byte> chunk, const std::string
   };
   if (!(format.kind == kPcm && one_of({8, 16, 24, 32})) &&
       !(format.kind == kFloat && one_of({32, 64})))
-    return bad_input(
-        "{}: found format {} of {} bit; accepted: PCM (1) of 8, 16, 24 or 32 bit or float (3) of "
-        "32 or 64",
-        name, format.kind, format.bits);
-  if (format.channels == 0) return bad_input("{}: found no channel; accepted: one or more", name);
+    return refusal(name, fmt::format("format {} of {} bit", format.kind, format.bits),
+                   "PCM (1) of 8, 16, 24 or 32 bit or float (3) of 32 or 64");
+  if (format.channels == 0) return refusal(name, "no channel", "one or more");
   if (format.rate_hz == 0 || format.rate_hz > kMostRate_hz)
-    return bad_input("{}: found a rate of {} Hz; accepted: 1 to {:g}", name, format.rate_hz,
-                     kMostRate_hz);
+    return refusal(name, fmt::format("a rate of {} Hz", format.rate_hz),
+                   fmt::format("1 to {:g}", kMostRate_hz));
   return format;
 }
 
@@ -74,7 +74,7 @@ double wav_sample(const WavFormat& format, std::span<const std::byte> bytes, std
 Result<Recording> parse_wav(std::span<const std::byte> bytes, const std::string& name,
                             std::uint32_t channel) {
   if (!has_tag(bytes, 0, "RIFF") || !has_tag(bytes, 8, "WAVE"))
-    return bad_input("{}: found no RIFF and WAVE; accepted: a .wav file", name);
+    return refusal(name, "no RIFF and WAVE", "a .wav file");
   std::optional<WavFormat> format;
   std::optional<std::span<const std::byte>> data;
   for (std::size_t at = 12; at + 8 <= bytes.size() && !data;) {
@@ -91,16 +91,16 @@ Result<Recording> parse_wav(std::span<const std::byte> bytes, const std::string&
     at += 8 + std::min(length + (length & 1), left);
   }
   if (!format || !data)
-    return bad_input("{}: no '{}' found before the end, it is required", name,
-                     format ? "data" : "fmt ");
+    return refusal(name, fmt::format("no '{}' before the end", format ? "data" : "fmt "),
+                   "a whole file");
   if (channel >= format->channels)
-    return bad_input("{}: found channel {}; accepted: 0 to {}", name, channel,
-                     format->channels - 1);
+    return refusal(name, fmt::format("channel {}", channel),
+                   fmt::format("0 to {}", format->channels - 1));
   const std::size_t frame = format->sample_bytes() * format->channels;
   const std::size_t count = data->size() / frame;
-  if (count == 0) return bad_input("{}: found no samples; accepted: one or more", name);
+  if (count == 0) return refusal(name, "no samples", "one or more");
   if (count > kMostSamples)
-    return bad_input("{}: found {} samples; accepted: at most {}", name, count, kMostSamples);
+    return refusal(name, fmt::format("{} samples", count), fmt::format("at most {}", kMostSamples));
   Recording out{fmt::format("channel {}", channel), static_cast<double>(format->rate_hz)};
   out.samples.reserve(count);
   for (std::size_t i = 0; i < count; ++i)

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::diver {
 namespace {
 
@@ -45,22 +47,23 @@ Result<std::size_t> record_line(const std::vector<std::string_view>& words, Wfdb
   std::size_t signals = 0;
   if (words.size() < 2 || !whole_number(words[1], signals) || signals == 0 ||
       signals > kMostSignals)
-    return bad_input("{}: found '{}' signals; accepted: 1 to {}", where,
-                     words.size() < 2 ? "" : words[1], kMostSignals);
+    return refusal(where, fmt::format("'{}' signals", words.size() < 2 ? "" : words[1]),
+                   fmt::format("1 to {}", kMostSignals));
   if (words[0].find('/') != std::string_view::npos)
-    return bad_input("{}: found record '{}' of several segments; accepted: a record of one", where,
-                     words[0]);
+    return refusal(where, fmt::format("record '{}' of several segments", words[0]),
+                   "a record of one");
   header.record = words[0];
   if (words.size() > 2) {
     std::string_view rate = words[2];
     if (!take_number(rate, header.rate_hz) || (!rate.empty() && rate[0] != '/') ||
         !(header.rate_hz >= kLeastRate_hz && header.rate_hz <= kMostRate_hz))
-      return bad_input("{}: found a rate of '{}'; accepted: {:g} to {:g} Hz", where, words[2],
-                       kLeastRate_hz, kMostRate_hz);
+      return refusal(where, fmt::format("a rate of '{}'", words[2]),
+                     fmt::format("{:g} to {:g} Hz", kLeastRate_hz, kMostRate_hz));
   }
   if (words.size() > 3 &&
       (!whole_number(words[3], header.samples) || header.samples > kMostSamples))
-    return bad_input("{}: found '{}' samples; accepted: at most {}", where, words[3], kMostSamples);
+    return refusal(where, fmt::format("'{}' samples", words[3]),
+                   fmt::format("at most {}", kMostSamples));
   return signals;
 }
 
@@ -84,7 +87,8 @@ bool take_gain(std::string_view text, WfdbSignal& signal, bool& has_baseline) {
 // file, format+offset, gain, bits, zero, first value, checksum, block, name
 Result<WfdbSignal> signal_line(const std::vector<std::string_view>& words,
                                const std::string& where) {
-  if (words.size() < 2) return bad_input("{}: accepted: file and format of a signal", where);
+  if (words.size() < 2)
+    return refusal(where, "fewer than two words", "file and format of a signal");
   WfdbSignal signal;
   signal.file = words[0];
   std::string_view format = words[1];
@@ -100,22 +104,22 @@ Result<WfdbSignal> signal_line(const std::vector<std::string_view>& words,
     known = take_number(format, signal.offset) && signal.offset >= 0;
   }
   if (!known || !format.empty())
-    return bad_input(
-        "{}: found format '{}'; accepted: {} (perhaps x samples a frame, without skew)", where,
-        words[1], fmt::join(kFormats, ", "));
+    return refusal(
+        where, fmt::format("format '{}'", words[1]),
+        fmt::format("{} (perhaps x samples a frame, without skew)", fmt::join(kFormats, ", ")));
   bool has_baseline = false;
   if (words.size() > 2 && !take_gain(words[2], signal, has_baseline))
-    return bad_input("{}: found a gain of '{}'; accepted: one like 200, 200(1024) or 200/mV", where,
-                     words[2]);
+    return refusal(where, fmt::format("a gain of '{}'", words[2]),
+                   "one like 200, 200(1024) or 200/mV");
   double zero = 0.0;
   if (words.size() > 4 && !whole_number(words[4], zero))
-    return bad_input("{}: found a zero of '{}'; accepted: a number", where, words[4]);
+    return refusal(where, fmt::format("a zero of '{}'", words[4]), "a number");
   if (!has_baseline) signal.baseline = zero;
   if (words.size() > 5 && !whole_number(words[5], signal.first))
-    return bad_input("{}: found a first value of '{}'; accepted: a number", where, words[5]);
+    return refusal(where, fmt::format("a first value of '{}'", words[5]), "a number");
   signal.has_checksum = words.size() > 6;
   if (signal.has_checksum && !whole_number(words[6], signal.checksum))
-    return bad_input("{}: found a checksum of '{}'; accepted: a number", where, words[6]);
+    return refusal(where, fmt::format("a checksum of '{}'", words[6]), "a number");
   if (words.size() > 8) signal.name = words[8];
   return signal;
 }
@@ -212,26 +216,28 @@ Result<WfdbHeader> parse_wfdb_header(std::string_view text, const std::string& n
     NERITIC_TRY(WfdbSignal signal, signal_line(words, where));
     header.signals.push_back(std::move(signal));
   }
-  if (expected == 0) return bad_input("{}: no record line found, it is required", name);
+  if (expected == 0) return refusal(name, "no record line", "one");
   if (header.signals.size() < expected)
-    return bad_input("{}: {} of {} signals found, a line each is required", name,
-                     header.signals.size(), expected);
+    return refusal(name, fmt::format("{} of {} signals", header.signals.size(), expected),
+                   "a line for each");
   return header;
 }
 
 Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t channel,
                                     std::span<const std::byte> bytes, const std::string& name) {
   if (channel >= header.signals.size())
-    return bad_input("{}: found channel {}; accepted: 0 to {}", name, channel,
-                     header.signals.size() - 1);
+    return refusal(name, fmt::format("channel {}", channel),
+                   fmt::format("0 to {}", header.signals.size() - 1));
   const WfdbSignal& signal = header.signals[channel];
   // Signals of one file lie frame by frame side by side.
   std::size_t side_by_side = 0, place = 0;
   for (std::size_t i = 0; i < header.signals.size(); ++i) {
     if (header.signals[i].file != signal.file) continue;
     if (header.signals[i].format != signal.format)
-      return bad_input("{}: found formats {} and {} in one file; accepted: one", name,
-                       header.signals[i].format, signal.format);
+      return refusal(
+          name,
+          fmt::format("formats {} and {} in one file", header.signals[i].format, signal.format),
+          "one");
     if (i == channel) place = side_by_side;
     side_by_side += static_cast<std::size_t>(header.signals[i].frame_samples);
   }
@@ -241,8 +247,8 @@ Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t chan
   const std::size_t there = whole_samples(bytes.size(), signal.format) / side_by_side;
   const std::size_t count = header.samples > 0 ? header.samples : there;
   if (count == 0 || count > there || count * in_frame > kMostSamples)
-    return bad_input("{}: found {} samples; accepted: {}", name, there,
-                     std::max<std::size_t>(count, 1));
+    return refusal(name, fmt::format("{} samples", there),
+                   fmt::format("{}", std::max<std::size_t>(count, 1)));
   Recording out{signal.name, header.rate_hz * signal.frame_samples};
   out.frame_hz = header.rate_hz;
   out.samples.reserve(count * in_frame);
@@ -261,8 +267,8 @@ Result<Recording> parse_wfdb_signal(const WfdbHeader& header, std::uint32_t chan
   }
   if (signal.has_checksum &&
       static_cast<std::uint16_t>(sum) != static_cast<std::uint16_t>(signal.checksum))
-    return bad_input("{}: found a checksum of {}; accepted: the header's {}", name,
-                     static_cast<std::int16_t>(sum), signal.checksum);
+    return refusal(name, fmt::format("a checksum of {}", static_cast<std::int16_t>(sum)),
+                   fmt::format("the header's {}", signal.checksum));
   return out;
 }
 
@@ -291,8 +297,7 @@ Result<std::vector<BeatAnnotation>> parse_wfdb_beats(std::span<const std::byte> 
       if (is_beat(code)) beats.push_back({static_cast<double>(sample) / rate_hz, code});
     }
   }
-  return bad_input("{}: found no end mark after {} beats; accepted: two zero bytes", name,
-                   beats.size());
+  return refusal(name, fmt::format("no end mark after {} beats", beats.size()), "two zero bytes");
 }
 
 }  // namespace neritic::diver

@@ -123,11 +123,11 @@ class Warnings {
       case kOxygenLow:
         return fmt::format("pO2 {:.3f} bar {}: below {:.3g}, hypoxic", w.value, place, w.limit);
       case kDensityAdvised:
-        return fmt::format("gas density {:.1f} g/L {}: above {:g}, advised", w.value, place,
-                           w.limit);
+        return fmt::format("gas density {:.1f} g/L {}: above {:g}, the advised limit", w.value,
+                           place, w.limit);
       case kDensityMost:
-        return fmt::format("gas density {:.1f} g/L {}: above {:g}, the most", w.value, place,
-                           w.limit);
+        return fmt::format("gas density {:.1f} g/L {}: above {:g}, the highest acceptable", w.value,
+                           place, w.limit);
       case kNarcosis:
         return fmt::format("narcotic depth {:.0f} m {}: above {:g}", w.value, place, w.limit);
       case kCns:
@@ -135,17 +135,16 @@ class Warnings {
                            earlier(before.cns_percent), w.limit);
       case kCnsBeyondTable:
         return fmt::format(
-            "CNS: {:.1f} min above {:g} bar, up to {:.2f} {}, where NOAA's table ends; reckoned "
-            "there by its last limit run on to nothing at 1.7 bar, never below a minute: a warning "
-            "and no figure",
+            "CNS: {:.1f} min above {:g} bar, where NOAA's table ends, up to {:.2f} {}; there the "
+            "limit is extrapolated to zero at 1.7 bar, at least a minute: a warning, not a figure",
             beyond_min_, w.limit, w.value, place);
       case kOtu:
         return fmt::format("OTU {:.0f} at the end{}: above {:g}", w.value, earlier(before.otu),
                            w.limit);
       case kCounterdiffusion:
         return fmt::format(
-            "switch to {} at {:.4g} m: nitrogen rises by {:.2f} of helium's fall, above "
-            "a fifth",
+            "switch to {} at {:.4g} m: nitrogen rises by {:.2f} of the fall in helium, above one "
+            "fifth",
             gas, w.depth_m, w.value);
       case kTankTooSmall:
       case kMinimumGas:

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "rov/bluerov2.hpp"
 
@@ -55,10 +56,10 @@ PidCase read_pid(const CaseField& field) {
     PidStep step{at["e"].required_numbers(n), at["nu"].required_numbers(n), at["u"].numbers(n),
                  at["I"].numbers(n)};
     if (step.output.empty() && step.integral.empty())
-      at.fail("found nothing to compare; accepted: u or I");
+      at.fail(found_accepted("nothing to compare", "u or I"));
     out.steps.push_back(std::move(step));
   }
-  if (out.steps.empty()) steps.fail("found none; accepted: at least one step");
+  if (out.steps.empty()) steps.fail(found_accepted("none", "at least one step"));
   return out;
 }
 
@@ -82,7 +83,7 @@ void read_allocation_cases(const CaseField& list, AllocationTable& out, CaseFile
     one.force_n = at["f_scaled"].numbers(n);
     one.achieved = at["tau_achieved"].numbers(6);
     if (one.wanted_n.empty() && !one.scale && one.force_n.empty() && one.achieved.empty())
-      at.fail("found nothing to compare; accepted: f_pinv, scale, f_scaled or tau_achieved");
+      at.fail(found_accepted("nothing to compare", "f_pinv, scale, f_scaled or tau_achieved"));
     out.cases.push_back(std::move(one));
   }
 }
@@ -175,7 +176,7 @@ void read_waypoints(const CaseField& at, LoopCase& out) {
     if (p.empty()) return;
     out.waypoints.push_back({{p[0], p[1], p[2]}, list.at(i).required("yaw").number(0.0)});
   }
-  if (out.waypoints.empty()) list.fail("found none; accepted: at least one waypoint");
+  if (out.waypoints.empty()) list.fail(found_accepted("none", "at least one waypoint"));
   out.radius_m = at.required("radius").number(0.15, 1e-6, 1e4);
   out.arrivals_s = at["arrival_s"].numbers(out.waypoints.size());
   out.duration_s = 40.0;
@@ -193,13 +194,13 @@ LoopCase read_loop(const CaseField& loop, const CaseField& at, const std::string
   if (plant == "sea" || plant == "fresh")
     out.buoyancy_water_kg_m3 = plant == "sea" ? kSeaDensity : kFreshDensity;
   else if (plant != "neutral")
-    at.fail("accepted: a name that begins with neutral/, fresh/ or sea/");
+    at.fail(found_accepted("another name", "one that begins with neutral/, fresh/ or sea/"));
   if (at["waypoints"].present())
     read_waypoints(at, out);
   else if (cut == id.npos || !read_manoeuvre(id.substr(cut + 1), out))
-    at.fail(
-        "accepted: surge_, sway_, depth_ and metres (surge_2m), roll_, pitch_, yaw_ and degrees "
-        "(yaw_90deg), or waypoints");
+    at.fail(found_accepted("another name",
+                           "surge_, sway_, depth_ and metres (surge_2m), roll_, pitch_, yaw_ and "
+                           "degrees (yaw_90deg), or waypoints"));
   const std::string priority = at["priority"].text("none");
   if (priority != "none" && priority != "level") at["priority"].refuse("none or level");
   out.level_first = priority == "level";
@@ -207,7 +208,7 @@ LoopCase read_loop(const CaseField& loop, const CaseField& at, const std::string
     if (const auto value = maybe(at[figure])) out.figures[figure] = *value;
   out.end_state = at["end_state"].numbers(13);
   if (out.figures.empty() && out.end_state.empty() && out.arrivals_s.empty())
-    at.fail("found nothing to compare; accepted: t90, overshoot_pct, ..., end_state");
+    at.fail(found_accepted("nothing to compare", "t90, overshoot_pct, ..., end_state"));
   return out;
 }
 
@@ -246,7 +247,7 @@ Result<ControlCases> read_control_cases(std::string_view text, const std::string
   if (root["closed_loop"].present()) read_loops(root["closed_loop"], file, out);
   file.enter_case("");
   if (!out.pid && !out.allocation && out.loops.empty())
-    root.fail("found no case; accepted: pid_sequence, allocation and closed_loop");
+    root.fail(found_accepted("no case", "pid_sequence, allocation and closed_loop"));
   if (file.failed()) return file.error();
   return out;
 }

@@ -1,5 +1,7 @@
 #include "rov/outline.hpp"
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::rov {
 namespace {
 
@@ -59,7 +61,8 @@ OutlineHull read_hull(const CaseField& field) {
 std::vector<OutlinePart> read_outline(const CaseField& list) {
   std::vector<OutlinePart> parts;
   if (list.size() > kMaxOutlineParts) {
-    list.fail(fmt::format("found {} parts; accepted: up to {}", list.size(), kMaxOutlineParts));
+    list.fail(found_accepted(fmt::format("{} parts", list.size()),
+                             fmt::format("up to {}", kMaxOutlineParts)));
     return parts;
   }
   for (std::size_t i = 0; i < list.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "rov/integrators.hpp"
 
 namespace neritic::rov {
@@ -102,7 +103,7 @@ std::string_view name_of(Integrator integrator) {
 Result<Integrator> integrator_of(std::string_view name) {
   for (std::size_t i = 0; i < std::size(kNames); ++i)
     if (kNames[i] == name) return static_cast<Integrator>(i);
-  return bad_input("found integrator '{}'; accepted: semi_euler, rk4 or guarded", name);
+  return refusal("", fmt::format("integrator '{}'", name), "semi_euler, rk4 or guarded");
 }
 
 State step(const Vehicle& vehicle, const State& state, const Inputs& inputs, double dt_s,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::rov {
 namespace {
 
@@ -33,8 +35,9 @@ Result<StepChoice> cheapest_step(double max_error_m, bool among_things) {
   const auto rate = std::ranges::find_if(kRates, holds);
   const auto contact = std::ranges::find_if(kContacts, holds);
   if (rate == std::end(kRates) || (among_things && contact == std::end(kContacts)))
-    return bad_input("max_error_m: found {}; accepted: a number from {}{}", max_error_m, least_m,
-                     among_things ? " where something solid can be touched" : "");
+    return refusal("max_error_m", fmt::format("{}", max_error_m),
+                   fmt::format("a number from {}{}", least_m,
+                               among_things ? " where something solid can be touched" : ""));
   if (!among_things) return StepChoice{rate->hz, 1};
   const double parts = std::ceil(1.0 / (rate->hz * contact->step_s) - 1e-9);
   return StepChoice{rate->hz, std::max(1, static_cast<int>(parts))};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::rov {
 namespace {
 
@@ -29,9 +31,10 @@ Status check_tether(const Tether& t) {
                           {"water_kg_m3", t.water_kg_m3, 0.0, 2000.0}};
   for (const Bound& b : bounds)
     if (!(b.value >= b.least && b.value <= b.most))
-      return bad_input("tether.{}: found {}; accepted: [{}, {}]", b.name, b.value, b.least, b.most);
+      return refusal(fmt::format("tether.{}", b.name), fmt::format("{}", b.value),
+                     fmt::format("[{}, {}]", b.least, b.most));
   if (!is_finite(t.attachment_m) || glm::length(t.attachment_m) > 100.0)
-    return bad_input("tether.attachment_m: accepted: a point within 100 m of the body's origin");
+    return refusal("tether.attachment_m", "another point", "one within 100 m of the body's origin");
   return {};
 }
 

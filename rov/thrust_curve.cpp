@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::rov {
 namespace {
@@ -97,12 +98,12 @@ Result<Heading> read_heading(std::string_view line, const std::string& where) {
     if (!name.ends_with('v') ||
         !read_number(
             std::string_view(name).substr(kPrefix.size(), name.size() - kPrefix.size() - 1), volts))
-      return bad_input("{}: found column {}; accepted: a name like thrust_n_16v", where, i + 1);
+      return refusal(where, fmt::format("column {}", i + 1), "a name like thrust_n_16v");
     out.thrust.push_back(i);
     out.volts.push_back(volts);
   }
   if (lower(cells[0]) != "pwm_us" || out.volts.empty() || cells.size() > kMostColumns)
-    return bad_input("{}: accepted: a heading \"pwm_us,thrust_n_16v,...\"", where);
+    return refusal(where, "another heading", "\"pwm_us,thrust_n_16v,...\"");
   return out;
 }
 
@@ -111,16 +112,16 @@ Result<Heading> read_heading(std::string_view line, const std::string& where) {
 Result<ThrustCurve> ThrustCurve::make(std::vector<double> pwm_us, std::vector<double> volts,
                                       std::vector<std::vector<double>> thrust_n) {
   if (pwm_us.size() < 2 || pwm_us.size() != thrust_n.size() || volts.empty())
-    return bad_input(
-        "found {} pulse widths of {} rows of thrust; accepted: two or more, a row each",
-        pwm_us.size(), thrust_n.size());
+    return refusal(
+        "", fmt::format("{} pulse widths of {} rows of thrust", pwm_us.size(), thrust_n.size()),
+        "two or more, a row each");
   if (!rises(pwm_us) || !rises(volts))
-    return bad_input("pulse widths or voltages that do not rise found");
+    return refusal("", "pulse widths or voltages that do not rise", "rising ones");
   for (const auto& row : thrust_n)
     if (row.size() != volts.size() ||
         !std::ranges::all_of(row, [](double x) { return std::abs(x) <= kMostNumber; }))
-      return bad_input("found a row of {} thrusts; accepted: {} finite numbers", row.size(),
-                       volts.size());
+      return refusal("", fmt::format("a row of {} thrusts", row.size()),
+                     fmt::format("{} finite numbers", volts.size()));
   ThrustCurve out;
   for (std::size_t k = 0; k < volts.size(); ++k) make_monotone(thrust_n, k);
   out.pwm_us_ = std::move(pwm_us);
@@ -150,8 +151,8 @@ Result<ThrustCurve> ThrustCurve::parse(std::string_view text, const std::string&
     bool good = cells.size() == heading.columns && pwm_us.size() < kMostRows;
     for (std::size_t i = 0; i < cells.size(); ++i) good = good && read_number(cells[i], row[i]);
     if (!good)
-      return bad_input("{}: accepted: {} numbers, in up to {} rows", where, heading.columns,
-                       kMostRows);
+      return refusal(where, "another row",
+                     fmt::format("{} numbers, in up to {} rows", heading.columns, kMostRows));
     pwm_us.push_back(row[0]);
     thrust_n.emplace_back();
     for (const std::size_t i : heading.thrust) thrust_n.back().push_back(row[i]);

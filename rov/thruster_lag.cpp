@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::rov {
 namespace {
 
@@ -60,16 +62,15 @@ PreparedLag::PreparedLag(const ThrusterLag& lag)
 
 Status check_lag(const ThrusterLag& lag) {
   if (lag.kind == ThrusterLag::Kind::kFirstOrder && !(lag.time_s >= 1e-6 && lag.time_s <= 1e6))
-    return bad_input("thruster lag: found time {} s; accepted: [1e-6, 1e6]", lag.time_s);
+    return refusal("thruster lag", fmt::format("time {} s", lag.time_s), "[1e-6, 1e6]");
   if (lag.kind != ThrusterLag::Kind::kThirdOrder) return {};
   const bool finite = std::isfinite(lag.a0 + lag.a1 + lag.a2 + lag.b1);
   if (!finite || !(lag.a0 > 0.0) || !(lag.a2 > 0.0) || !(lag.a1 * lag.a2 > lag.a0))
-    return bad_input(
-        "thruster lag: found s^3 + {} s^2 + {} s + {}; accepted: a denominator with stable poles",
-        lag.a2, lag.a1, lag.a0);
+    return refusal("thruster lag", fmt::format("s^3 + {} s^2 + {} s + {}", lag.a2, lag.a1, lag.a0),
+                   "a denominator with stable poles");
   if (fastest_rate(lag) > 1e6)
-    return bad_input("thruster lag: found poles up to {} 1/s; accepted: up to 1e6",
-                     fastest_rate(lag));
+    return refusal("thruster lag", fmt::format("poles up to {} 1/s", fastest_rate(lag)),
+                   "up to 1e6");
   return {};
 }
 

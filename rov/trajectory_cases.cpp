@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "rov/bluerov2.hpp"
 #include "rov/step.hpp"
@@ -175,10 +176,10 @@ void read_samples(const CaseField& scenario, TrajectoryCase& out) {
                             ? at["thruster_force_N"].numbers(out.vehicle.thruster_count)
                             : std::vector<double>();
     if (!sample.position_ned_m && !sample.attitude && !sample.velocity && sample.thruster_n.empty())
-      at.fail("found nothing to compare; accepted: p_ned, q_wxyz, nu_frd or thruster_force_N");
+      at.fail(found_accepted("nothing to compare", "p_ned, q_wxyz, nu_frd or thruster_force_N"));
     out.samples.push_back(std::move(sample));
   }
-  if (out.samples.empty()) list.fail("found none; accepted: at least one sample");
+  if (out.samples.empty()) list.fail(found_accepted("none", "at least one sample"));
 }
 
 // "rk4_240Hz": [position, velocity]; null where that integrator diverged.
@@ -194,7 +195,8 @@ void read_promises(const CaseField& field, TrajectoryCase& out) {
                         ? parse_number(name.substr(cut + 1, name.size() - cut - 3))
                         : std::nullopt;
     if (!hz || !(*hz > 0.0 && *hz < 1e9)) {
-      pair.fail("not known; accepted: rk4_ or semi_euler_, a rate and Hz, as rk4_240Hz");
+      pair.fail(
+          found_accepted("another name", "rk4_ or semi_euler_, a rate and Hz, such as rk4_240Hz"));
       return;
     }
     if (pair.size() != 2) pair.refuse("[position, velocity], each a number or null");
@@ -261,7 +263,7 @@ Result<std::vector<TrajectoryCase>> read_trajectories(std::string_view text,
     out.push_back(std::move(one));
   }
   file.enter_case("");
-  if (list.present() && out.empty()) list.fail("found none; accepted: at least one case");
+  if (list.present() && out.empty()) list.fail(found_accepted("none", "at least one case"));
   if (file.failed()) return file.error();
   return out;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::rov {
 namespace {
 
@@ -19,57 +21,62 @@ bool within(const Vec3& v, double most) {
 
 Status check_scalars(const VehicleParameters& p) {
   if (!(p.mass_kg > 0.0 && p.mass_kg <= kLargest))
-    return bad_input("mass_kg: found {}; accepted: a number in (0, 1e9]", p.mass_kg);
+    return refusal("mass_kg", fmt::format("{}", p.mass_kg), "a number in (0, 1e9]");
   if (!within(p.weight_n, 0.0))
-    return bad_input("weight_n: found {}; accepted: a number in [0, 1e9]", p.weight_n);
+    return refusal("weight_n", fmt::format("{}", p.weight_n), "a number in [0, 1e9]");
   if (!within(p.buoyancy_n, 0.0))
-    return bad_input("buoyancy_n: found {}; accepted: a number in [0, 1e9]", p.buoyancy_n);
+    return refusal("buoyancy_n", fmt::format("{}", p.buoyancy_n), "a number in [0, 1e9]");
   if (!within(p.gravity_centre_m, 100.0) || !within(p.buoyancy_centre_m, 100.0))
-    return bad_input("{}: accepted: a point within 100 m of the body's origin",
-                     within(p.gravity_centre_m, 100.0) ? "buoyancy_centre_m" : "gravity_centre_m");
+    return refusal(within(p.gravity_centre_m, 100.0) ? "buoyancy_centre_m" : "gravity_centre_m",
+                   "another point", "one within 100 m of the body's origin");
   return {};
 }
 
 Status check_matrices(const VehicleParameters& p, const Mat6& rigid, const Mat6& mass) {
   if (!is_finite(rigid) || !(smallest_pivot(rigid) > kSingular))
-    return bad_input(
-        "inertia_kg_m2: with mass {} and centre of gravity ({}, {}, {}) the mass matrix is not "
-        "positive definite; accepted: a matrix that is one",
-        p.mass_kg, p.gravity_centre_m.x, p.gravity_centre_m.y, p.gravity_centre_m.z);
+    return refusal(
+        "inertia_kg_m2",
+        fmt::format("a mass matrix that is not positive definite, with mass {} and centre of "
+                    "gravity ({}, {}, {})",
+                    p.mass_kg, p.gravity_centre_m.x, p.gravity_centre_m.y, p.gravity_centre_m.z),
+        "a positive definite one");
   if (!is_finite(mass) || !(smallest_pivot(symmetric_part(mass)) > kSingular))
-    return bad_input(
-        "added_mass: with the rigid body's the matrix is singular or not positive definite; "
-        "accepted: a matrix that is positive definite");
+    return refusal("added_mass",
+                   "a sum with the rigid body's mass matrix that is not positive definite",
+                   "a positive definite one");
   for (std::size_t i = 0; i < 6; ++i) {
     if (!within(p.added_mass(i, i), 0.0))
-      return bad_input("added_mass: found {} on its diagonal; accepted: a number in [0, 1e9]",
-                       p.added_mass(i, i));
+      return refusal("added_mass", fmt::format("{} on its diagonal", p.added_mass(i, i)),
+                     "a number in [0, 1e9]");
     if (!within(p.linear_damping(i, i), 0.0))
-      return bad_input("linear_damping: found {} on its diagonal; accepted: a number in [0, 1e9]",
-                       p.linear_damping(i, i));
+      return refusal("linear_damping", fmt::format("{} on its diagonal", p.linear_damping(i, i)),
+                     "a number in [0, 1e9]");
     if (!within(p.quadratic_damping[i], 0.0))
-      return bad_input("quadratic_damping: found {}; accepted: a number in [0, 1e9]",
-                       p.quadratic_damping[i]);
+      return refusal("quadratic_damping", fmt::format("{}", p.quadratic_damping[i]),
+                     "a number in [0, 1e9]");
   }
   if (!is_finite(p.linear_damping))
-    return bad_input("linear_damping: a number that is not finite found");
+    return refusal("linear_damping", "a number that is not finite", "finite numbers");
   return {};
 }
 
 Status check_thrusters(const std::vector<Thruster>& thrusters) {
   if (thrusters.size() > kMaxThrusters)
-    return bad_input("thrusters: found {}; accepted: up to {}", thrusters.size(), kMaxThrusters);
+    return refusal("thrusters", fmt::format("{}", thrusters.size()),
+                   fmt::format("up to {}", kMaxThrusters));
   for (std::size_t i = 0; i < thrusters.size(); ++i) {
     const Thruster& t = thrusters[i];
     if (!within(t.position_m, 100.0))
-      return bad_input("thrusters[{}].position_m: accepted: a point within 100 m", i);
+      return refusal(fmt::format("thrusters[{}].position_m", i), "another point",
+                     "one within 100 m");
     if (!within(t.direction, 2.0) || glm::length(t.direction) < 0.5)
-      return bad_input("thrusters[{}].direction: found ({}, {}, {}); accepted: a unit vector", i,
-                       t.direction.x, t.direction.y, t.direction.z);
+      return refusal(fmt::format("thrusters[{}].direction", i),
+                     fmt::format("({}, {}, {})", t.direction.x, t.direction.y, t.direction.z),
+                     "a unit vector");
     if (!(t.min_n <= 0.0 && t.max_n >= 0.0 && t.min_n >= -kLargest && t.max_n <= kLargest))
-      return bad_input(
-          "thrusters[{}]: found forces from {} to {} N; accepted: from [-1e9, 0] to [0, 1e9]", i,
-          t.min_n, t.max_n);
+      return refusal(fmt::format("thrusters[{}]", i),
+                     fmt::format("forces from {} to {} N", t.min_n, t.max_n),
+                     "from [-1e9, 0] to [0, 1e9]");
   }
   return {};
 }

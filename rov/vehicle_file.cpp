@@ -6,6 +6,7 @@
 
 #include "engine/core/case_toml.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "rov/bluerov2.hpp"
 #include "rov/sensor_file.hpp"
 
@@ -57,11 +58,12 @@ Mat6 matrix_of(const CaseField& field) {
 // Symmetric, and never giving energy: within rounding of positive semidefinite.
 void check_dissipation(const CaseField& file, const VehicleParameters& p) {
   if (symmetric_part(p.added_mass) != p.added_mass)
-    file["added_mass"].fail("not symmetric; accepted: a symmetric matrix");
+    file["added_mass"].fail(found_accepted("an asymmetric matrix", "a symmetric one"));
   Mat6 lifted = symmetric_part(p.linear_damping);
   for (std::size_t i = 0; i < 6; ++i) lifted(i, i) += 1e-12 + 1e-12 * lifted(i, i);
   if (!(smallest_pivot(lifted) > -1e-9))
-    file["linear_damping"].fail("adds energy; accepted: a positive semidefinite matrix");
+    file["linear_damping"].fail(
+        found_accepted("a matrix that adds energy", "a positive semidefinite one"));
 }
 
 void read_body(const CaseField& file, double water_kg_m3, double gravity, VehicleParameters& p) {

@@ -6,6 +6,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/math.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -54,7 +55,8 @@ double ainslie_mccolm_db_km(const Water& w, double f_khz) {
 
 Status in_range(const char* what, double value, double low, double high, const char* unit) {
   if (value >= low && value <= high) return {};
-  return bad_input("water: {} is {} {}, {} to {} is accepted", what, value, unit, low, high);
+  return refusal(fmt::format("water: {}", what), fmt::format("{} {}", value, unit),
+                 fmt::format("{} to {}", low, high));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::sonar {
@@ -69,8 +70,9 @@ Result<Medium> material_of(std::string_view name) {
     if (material.name == name) return material.medium;
     names.push_back(material.name);
   }
-  return bad_input("material '{}' is not known; nearest: {}; accepted: {}", printable(name),
-                   nearest(name, names), join(names));
+  return refusal("material",
+                 fmt::format("'{}' (nearest: {})", printable(name), nearest(name, names)),
+                 join(names));
 }
 
 }  // namespace neritic::sonar

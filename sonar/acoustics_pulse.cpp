@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/core/math.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -82,7 +83,8 @@ double envelope(PulseShape shape, double x) {
 
 Status positive(const char* what, double value) {
   if (value > 0.0 && std::isfinite(value)) return {};
-  return bad_input("range_spread: {} is {}; accepted: a positive number", what, value);
+  return refusal(fmt::format("range_spread: {}", what), fmt::format("{}", value),
+                 "a positive number");
 }
 
 }  // namespace
@@ -104,16 +106,18 @@ Result<RangeSpread> range_spread(PulseShape shape, double resolution_m, double b
   NERITIC_TRY_STATUS(positive("resolution", resolution_m));
   NERITIC_TRY_STATUS(positive("bin", bin_m));
   if (!(max_truncated > 0.0 && max_truncated < 1.0))
-    return bad_input("range_spread: truncation {}; accepted: a number in (0, 1)", max_truncated);
+    return refusal("range_spread", fmt::format("truncation {}", max_truncated),
+                   "a number in (0, 1)");
   const double bin = bin_m / resolution_m;
   // edges[k]: share between the middle and the far edge of the k-th bin out.
   std::vector<double> edges;
   do {
     if (edges.size() > kMaxReach)
-      return bad_input(
-          "range_spread: a pulse of {:g} m (c / 2B) reaches over more than {} bins of {:g} m; "
-          "accepted: more bandwidth_hz, or fewer range bins",
-          resolution_m, kMaxReach, bin_m);
+      return refusal(
+          "range_spread",
+          fmt::format("a pulse of {:g} m (c / 2B), which spreads over more than {} bins of {:g} m",
+                      resolution_m, kMaxReach, bin_m),
+          "more bandwidth_hz, or fewer range bins");
     edges.push_back(energy_from_zero(shape, (static_cast<double>(edges.size()) + 0.5) * bin));
   } while (1.0 - 2.0 * edges.back() > max_truncated);
 

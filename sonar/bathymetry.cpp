@@ -10,6 +10,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file.hpp"
 
 namespace neritic::sonar {
@@ -97,8 +98,9 @@ Result<BathymetryGrid> Bathymetry::grid() const {
   const auto columns = static_cast<std::uint64_t>(east - west + 1),
              rows = static_cast<std::uint64_t>(south - north + 1);
   if (columns * rows > kMaxGridCells)
-    return bad_input("bathymetry: soundings span {} x {} cells of {} m; accepted: {} cells in all",
-                     rows, columns, cell_m_, kMaxGridCells);
+    return refusal("bathymetry",
+                   fmt::format("soundings over {} x {} cells of {} m", rows, columns, cell_m_),
+                   fmt::format("at most {} cells in all", kMaxGridCells));
   out.first_column = west;
   out.first_row = north;
   out.columns = static_cast<std::uint32_t>(columns);

@@ -2,24 +2,27 @@
 
 #include <algorithm>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::sonar {
 namespace {
 
 Status check_range(const char* what, double min, double max, double lowest, double highest,
                    double widest, double to_user, const char* unit) {
   if (!std::isfinite(min) || !std::isfinite(max) || !(min < max))
-    return bad_input("{}: from {:g} to {:g} {} found, two increasing numbers are accepted", what,
-                     min * to_user, max * to_user, unit);
+    return refusal(what, fmt::format("{:g} to {:g} {}", min * to_user, max * to_user, unit),
+                   "two increasing numbers");
   if (min < lowest - 1e-9 || max > highest + 1e-9 || max - min > widest + 1e-9)
-    return bad_input(
-        "{}: from {:g} to {:g} {} found, {:g} to {:g} and at most {:g} wide is accepted", what,
-        min * to_user, max * to_user, unit, lowest * to_user, highest * to_user, widest * to_user);
+    return refusal(what, fmt::format("{:g} to {:g} {}", min * to_user, max * to_user, unit),
+                   fmt::format("limits from {:g} to {:g}, at most {:g} apart", lowest * to_user,
+                               highest * to_user, widest * to_user));
   return {};
 }
 
 Status check_bins(const char* what, std::uint32_t n) {
   if (n < 1 || n > kMaxBins)
-    return bad_input("bins in {}: {} found, 1 to {} is accepted", what, n, kMaxBins);
+    return refusal(fmt::format("bins in {}", what), fmt::format("{}", n),
+                   fmt::format("1 to {}", kMaxBins));
   return {};
 }
 

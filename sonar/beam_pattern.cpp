@@ -5,6 +5,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/math.hpp"
+#include "engine/core/refusal.hpp"
 #include "sonar/acoustics.hpp"
 
 namespace neritic::sonar {
@@ -71,28 +72,29 @@ double half_power_u(BeamKind kind) {
 
 Result<BeamPattern> BeamPattern::of_length(BeamKind kind, double length_wavelengths) {
   if (kind == BeamKind::kTable)
-    return bad_input("beam '{}' has no length; accepted: sinc, hamming, piston", name_of(kind));
+    return refusal("beam", fmt::format("'{}', which has no length", name_of(kind)),
+                   "sinc, hamming, piston");
   if (!(length_wavelengths >= kMinLength && length_wavelengths <= kMaxLength))
-    return bad_input("beam: a length of {} wavelengths; accepted: {:g} to {:g}", length_wavelengths,
-                     kMinLength, kMaxLength);
+    return refusal("beam", fmt::format("a length of {} wavelengths", length_wavelengths),
+                   fmt::format("{:g} to {:g}", kMinLength, kMaxLength));
   return BeamPattern(kind, length_wavelengths);
 }
 
 Result<BeamPattern> BeamPattern::of_half_power_width(BeamKind kind, double width_rad) {
   if (kind == BeamKind::kTable)
-    return bad_input("beam '{}' has no width to choose; accepted: sinc, hamming, piston",
-                     name_of(kind));
+    return refusal("beam", fmt::format("'{}', whose width is fixed", name_of(kind)),
+                   "sinc, hamming, piston");
   if (!(width_rad > 0.0 && width_rad < kPi))
-    return bad_input("beam: a half-power width of {} degrees; accepted: above 0 and below 180",
-                     degrees(width_rad));
+    return refusal("beam", fmt::format("a half-power width of {} degrees", degrees(width_rad)),
+                   "above 0 and below 180");
   return of_length(kind, half_power_u(kind) / std::sin(0.5 * width_rad));
 }
 
 Result<BeamPattern> BeamPattern::of_table(Table degrees_db) {
   NERITIC_TRY_STATUS(validate(degrees_db, "beam table", kAngleLimits));
   if (degrees_db.back().x < 0.0)
-    return bad_input("beam table: angles end at {} degrees; accepted: tables that reach the axis",
-                     degrees_db.back().x);
+    return refusal("beam table", fmt::format("angles that end at {} degrees", degrees_db.back().x),
+                   "tables that reach the axis, 0 degrees");
   BeamPattern pattern(BeamKind::kTable, 0.0);
   if (degrees_db.front().x >= 0.0)
     for (auto row = degrees_db.rbegin(); row != degrees_db.rend(); ++row)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 #include "sonar/levels.hpp"
 
 namespace neritic::sonar {
@@ -75,12 +76,14 @@ std::optional<BottomDetection> detect(const BeamGrid& grid, std::span<const doub
 
 Status validate(const BottomDetectionOptions& options) {
   if (!(options.relative_threshold > 0.0 && options.relative_threshold <= 1.0))
-    return bad_input("bottom detection: relative threshold {}; accepted: above 0, at most 1",
-                     options.relative_threshold);
+    return refusal("bottom detection",
+                   fmt::format("relative threshold {}", options.relative_threshold),
+                   "above 0, at most 1");
   if (!(options.floor >= 0.0) || !std::isfinite(options.floor))
-    return bad_input("bottom detection: floor {}; accepted: 0 or more", options.floor);
+    return refusal("bottom detection", fmt::format("floor {}", options.floor), "0 or more");
   if (!(options.least_quality >= 0.0 && options.least_quality <= 1.0))
-    return bad_input("bottom detection: least quality {}; accepted: 0 to 1", options.least_quality);
+    return refusal("bottom detection", fmt::format("least quality {}", options.least_quality),
+                   "0 to 1");
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/bottom_detection.hpp"
 #include "sonar/levels.hpp"
@@ -60,20 +61,22 @@ std::string csv_of(const EchoTrace& trace) {
 
 Status validate(const EchoTraceOptions& o) {
   if (o.n_range == 0 || o.n_range > kMaxBins)
-    return bad_input("echo trace: {} range bins; accepted: 1 to {}", o.n_range, kMaxBins);
+    return refusal("echo trace", fmt::format("{} range bins", o.n_range),
+                   fmt::format("1 to {}", kMaxBins));
   if (!(o.range_min_m >= 0.0 && o.range_max_m > o.range_min_m) || !std::isfinite(o.range_max_m))
-    return bad_input("echo trace: range {} to {} m; accepted: 0 or more, growing", o.range_min_m,
-                     o.range_max_m);
+    return refusal("echo trace",
+                   fmt::format("a range from {} to {} m", o.range_min_m, o.range_max_m),
+                   "from 0 or more, increasing");
   if (!(o.relative_threshold > 0.0 && o.relative_threshold <= 1.0))
-    return bad_input("echo trace: relative threshold {}; accepted: above 0, at most 1",
-                     o.relative_threshold);
+    return refusal("echo trace", fmt::format("relative threshold {}", o.relative_threshold),
+                   "above 0, at most 1");
   if (!(o.floor >= 0.0) || !std::isfinite(o.floor))
-    return bad_input("echo trace: floor {}; accepted: 0 or more", o.floor);
+    return refusal("echo trace", fmt::format("floor {}", o.floor), "0 or more");
   if (!(o.pulse_bins >= 1.0) || !std::isfinite(o.pulse_bins))
-    return bad_input("echo trace: a pulse of {} bins; accepted: 1 or more", o.pulse_bins);
+    return refusal("echo trace", fmt::format("a pulse of {} bins", o.pulse_bins), "1 or more");
   if (!o.floor_by_bin.empty() && o.floor_by_bin.size() != o.n_range)
-    return bad_input("echo trace: a floor of {} bins; accepted: none, or {}", o.floor_by_bin.size(),
-                     o.n_range);
+    return refusal("echo trace", fmt::format("a floor of {} bins", o.floor_by_bin.size()),
+                   fmt::format("none, or {}", o.n_range));
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/gpu/device.hpp"
 
 namespace neritic::sonar {
@@ -69,32 +70,38 @@ const char* name_of(Gather gather) {
 Result<Gather> gather_of(const std::string& name) {
   for (const Gather g : {Gather::kNearest, Gather::kPlane, Gather::kPublished})
     if (name == name_of(g)) return g;
-  return bad_input("gather: '{}' found, nearest, plane or published is accepted", name);
+  return refusal("gather", fmt::format("'{}'", name), "nearest, plane or published");
 }
 
 Status SonarGather::check(const gpu::Device& device) const {
   const VkPhysicalDeviceLimits& limits = device.limits();
   if (options_.gather == Gather::kPublished && options_.echo)
-    return bad_input(
-        "gather published: it is the plain cosine; with terms, plane or nearest is accepted");
+    return refusal("gather", "published with terms",
+                   "plane or nearest (published is without terms)");
   NERITIC_CHECK(options_.gather != Gather::kPublished || layout_.lean == 0.0,
                 "the published gather takes upright images");
   if (const std::uint64_t most = limits.maxStorageBufferRange; sums_bytes() > most)
     return failure(
-        ErrorCode::kUnsupported,
-        "sonar image of {} x {} bins: {} bytes, the device allows {}; {:.2f} of these range bins "
-        "(or, where a quality sets them, of its range), or fewer beams or samples of a beam, fit",
-        grid_.bins.range, grid_.bins.azimuth, sums_bytes(), most,
-        std::floor(100.0 * static_cast<double>(most) / static_cast<double>(sums_bytes())) / 100.0);
+        ErrorCode::kUnsupported, "sonar image: {}",
+        found_accepted(
+            fmt::format("{} x {} bins, {} bytes", grid_.bins.range, grid_.bins.azimuth,
+                        sums_bytes()),
+            fmt::format(
+                "{} bytes on this device: at most {:.0f} range bins (with a quality, a range "
+                "that is as much shorter), or fewer beams or samples of a beam",
+                most,
+                std::floor(grid_.bins.range *
+                           (static_cast<double>(most) / static_cast<double>(sums_bytes()))))));
   if (options_.echo && options_.echo->records && records_bytes() > limits.maxStorageBufferRange)
-    return failure(ErrorCode::kUnsupported,
-                   "sonar labels.energy of {} columns x {} bins of elevation: {} bytes of records, "
-                   "the device allows {}",
-                   grid_.bins.azimuth, grid_.bins.elevation, records_bytes(),
-                   limits.maxStorageBufferRange);
+    return failure(
+        ErrorCode::kUnsupported, "sonar: labels.energy: {}",
+        found_accepted(fmt::format("{} columns x {} bins of elevation, {} bytes",
+                                   grid_.bins.azimuth, grid_.bins.elevation, records_bytes()),
+                       fmt::format("{} bytes on this device", limits.maxStorageBufferRange)));
   if (grid_.bins.elevation > limits.maxImageDimension2D)
-    return failure(ErrorCode::kUnsupported, "sonar of {} bins of elevation: the device allows {}",
-                   grid_.bins.elevation, limits.maxImageDimension2D);
+    return failure(ErrorCode::kUnsupported, "sonar: {}",
+                   found_accepted(fmt::format("{} bins of elevation", grid_.bins.elevation),
+                                  fmt::format("{} on this device", limits.maxImageDimension2D)));
   return {};
 }
 

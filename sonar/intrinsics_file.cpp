@@ -4,6 +4,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "sonar/offline_input.hpp"
 
@@ -18,10 +19,9 @@ std::string quoted_json(const Json& json) {
 
 Result<double> number(const Json& json, const char* key, const std::string& path) {
   const auto at = json.find(key);
-  if (at == json.end())
-    return bad_input("{}: no \"{}\" found, fx, fy, cx and cy are accepted", path, key);
+  if (at == json.end()) return refusal(path, fmt::format("no \"{}\"", key), "fx, fy, cx and cy");
   if (!at->is_number())
-    return bad_input("{}: \"{}\" is {}, a number is accepted", path, key, quoted_json(*at));
+    return refusal(fmt::format("{}: {}", path, key), quoted_json(*at), "a number");
   return at->get<double>();
 }
 
@@ -72,8 +72,10 @@ Result<const Json*> named_frame(const Json& frames, const std::string& path,
         places, [&](const Place& other) { return other.holds(place) && !place.holds(other); });
     if (part_of_longer) continue;
     if (found != nullptr && found != place.frame)
-      return bad_input("{}: frames '{}' and '{}' both fit {}, one is accepted", path, id_of(*found),
-                       id_of(*place.frame), depth_path);
+      return refusal(path,
+                     fmt::format("frames '{}' and '{}' that both fit {}", id_of(*found),
+                                 id_of(*place.frame), depth_path),
+                     "one");
     found = place.frame;
   }
   return found;
@@ -86,9 +88,9 @@ Result<Json> frame_of(const Json& json, const std::string& path, const std::stri
   if (frames->size() == 1 && frames->front().is_object()) return frames->front();
   NERITIC_TRY(const Json* found, named_frame(*frames, path, depth_path));
   if (found == nullptr)
-    return bad_input(
-        "{}: none of its {} frames is named in {}, fx,fy,cx,cy in numbers are accepted too", path,
-        frames->size(), depth_path);
+    return refusal(path,
+                   fmt::format("{} frames, none of which names {}", frames->size(), depth_path),
+                   "a frame for that file, or fx,fy,cx,cy as numbers");
   return *found;
 }
 
@@ -111,12 +113,11 @@ std::vector<double> nine_numbers(const Json& matrix) {
 Result<Intrinsics> from_matrix(const Json& matrix, const char* key, const std::string& path) {
   const std::vector<double> m = nine_numbers(matrix);
   if (m.size() != 9)
-    return bad_input("{}: \"{}\" is {}, nine numbers are accepted", path, key, quoted_json(matrix));
+    return refusal(fmt::format("{}: {}", path, key), quoted_json(matrix), "nine numbers");
   const bool by_rows = m[6] == 0.0 && m[7] == 0.0, by_columns = m[2] == 0.0 && m[5] == 0.0;
   if (m[1] != 0.0 || m[3] != 0.0 || m[8] != 1.0 || !(by_rows || by_columns))
-    return bad_input(
-        "{}: \"{}\" is {}, a pinhole's fx,0,cx,0,fy,cy,0,0,1 by rows or by columns is accepted",
-        path, key, quoted_json(matrix));
+    return refusal(fmt::format("{}: {}", path, key), quoted_json(matrix),
+                   "a pinhole's fx,0,cx,0,fy,cy,0,0,1 by rows or by columns");
   return Intrinsics{m[0], m[4], by_rows ? m[2] : m[6], by_rows ? m[5] : m[7]};
 }
 
@@ -131,17 +132,15 @@ Status check_pinhole(const Json& json, const std::string& path) {
                           "d", "k1", "k2", "k3", "p1", "p2"}) {
     const auto at = json.find(key);
     if (at != json.end() && any_not_zero(*at))
-      return bad_input(
-          "{}: \"{}\" is {}, a pinhole without distortion is accepted: of images that "
-          "are rectified leave it out",
-          path, key, quoted_json(*at));
+      return refusal(fmt::format("{}: {}", path, key), quoted_json(*at),
+                     "no distortion (if the images are rectified, remove the key)");
   }
   for (const char* key : {"model", "camera_model", "projection"}) {
     const auto at = json.find(key);
     if (at == json.end() || !at->is_string()) continue;
     const std::string name = lower_case(at->get<std::string>());
     if (name.find("pinhole") == name.npos && name.find("perspective") == name.npos)
-      return bad_input("{}: \"{}\" is {}, a pinhole is accepted", path, key, quoted_json(*at));
+      return refusal(fmt::format("{}: {}", path, key), quoted_json(*at), "a pinhole");
   }
   return {};
 }
@@ -153,15 +152,16 @@ Result<Intrinsics> read_intrinsics(const std::filesystem::path& path, const MapF
   const std::string name = path.string();
   const Result<Json> parsed = parse_json(text);
   if (!parsed.ok() || !parsed->is_object())
-    return bad_input("{}: not a JSON object; one with fx, fy, cx and cy is accepted{}", name,
-                     parsed.ok() ? "" : ": " + parsed.error().message);
+    return refusal(
+        name, fmt::format("no JSON object{}", parsed.ok() ? "" : ": " + parsed.error().message),
+        "one with fx, fy, cx and cy");
   const Json& whole = *parsed;
   NERITIC_TRY(Json json, frame_of(whole, name, depth.path));
   for (const auto& [key, found] : {std::pair{"width", depth.width}, {"height", depth.height}}) {
     const auto at = json.find(key);
     if (at != json.end() && at->is_number() && at->get<double>() != found)
-      return bad_input("{}: \"{}\" is {}, the {} of {} is accepted", name, key, json_text(*at, -1),
-                       found, depth.path);
+      return refusal(fmt::format("{}: {}", name, key), json_text(*at, -1),
+                     fmt::format("{}, as {} has", found, depth.path));
   }
   NERITIC_TRY_STATUS(check_pinhole(json, name));
   if (json.contains("intrinsics") && json["intrinsics"].is_object()) {

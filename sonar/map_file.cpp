@@ -1,6 +1,7 @@
 #include "sonar/map_file.hpp"
 
 #include "engine/core/npy.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/image_file.hpp"
 
@@ -24,14 +25,13 @@ MapFile from_raster(const std::filesystem::path& path, const Raster<T>& raster,
 Result<MapFile> read_npy_map(const std::filesystem::path& path) {
   NERITIC_TRY(const NpyArray array, read_npy(path));
   if (array.shape.size() < 2 || array.shape.size() > 3)
-    return bad_input(
-        "{}: an array of {} axes found, [height, width] or [height, width, channels] is "
-        "accepted",
-        path.string(), array.shape.size());
+    return refusal(path.string(), fmt::format("an array of {} axes", array.shape.size()),
+                   "[height, width] or [height, width, channels]");
   const std::size_t channels = array.shape.size() == 3 ? array.shape[2] : 1;
   if (array.shape[0] > 32768 || array.shape[1] > 32768 || channels > 16)
-    return bad_input("{}: {} x {} x {} found, at most 32768 x 32768 x 16 is accepted",
-                     path.string(), array.shape[1], array.shape[0], channels);
+    return refusal(path.string(),
+                   fmt::format("{} x {} x {}", array.shape[1], array.shape[0], channels),
+                   "at most 32768 x 32768 x 16");
   MapFile map;
   map.path = path.string();
   map.height = static_cast<std::uint32_t>(array.shape[0]);
@@ -68,12 +68,14 @@ Result<MapFile> read_map(const std::filesystem::path& path, MapUse use) {
   } else {
     if (!std::filesystem::exists(path))
       return bad_input("{}: no such file or folder", path.string());
-    return bad_input("{}: a file named '{}' found, .npy, .png or .exr is accepted", path.string(),
-                     extension);
+    return refusal(path.string(), fmt::format("a file named '{}'", extension),
+                   ".npy, .png or .exr");
   }
   if (map.pixels() == 0 || map.channels == 0)
-    return bad_input("{}: {} x {} pixels of {} channels found, at least one of each is accepted",
-                     path.string(), map.width, map.height, map.channels);
+    return refusal(
+        path.string(),
+        fmt::format("{} x {} pixels of {} channels", map.width, map.height, map.channels),
+        "at least one of each");
   return map;
 }
 

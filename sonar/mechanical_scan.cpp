@@ -9,6 +9,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/levels.hpp"
 #include "sonar/panel.hpp"
@@ -133,17 +134,19 @@ std::string csv_of(const MechanicalScan& scan) {
 
 Status validate(const MechanicalScanOptions& o) {
   if (o.n_range == 0 || o.n_range > kMaxBins)
-    return bad_input("mechanical scan: {} range bins; accepted: 1 to {}", o.n_range, kMaxBins);
+    return refusal("mechanical scan", fmt::format("{} range bins", o.n_range),
+                   fmt::format("1 to {}", kMaxBins));
   if (!(o.range_min_m >= 0.0 && o.range_max_m > o.range_min_m) || !std::isfinite(o.range_max_m))
-    return bad_input("mechanical scan: range {} to {} m; accepted: 0 or more, growing",
-                     o.range_min_m, o.range_max_m);
+    return refusal("mechanical scan",
+                   fmt::format("a range from {} to {} m", o.range_min_m, o.range_max_m),
+                   "from 0 or more, increasing");
   if (!(o.beam_rad >= 2.0 * kPi / kMaxBins && o.beam_rad <= kPi))
-    return bad_input("mechanical scan: beam of {} degrees; accepted: {:.3g} to 180",
-                     degrees(o.beam_rad), 360.0 / kMaxBins);
+    return refusal("mechanical scan", fmt::format("a beam of {} degrees", degrees(o.beam_rad)),
+                   fmt::format("{:.3g} to 180", 360.0 / kMaxBins));
   if (!(o.elevation_rad > 0.0 && o.elevation_rad <= kMaxElevation_rad))
-    return bad_input(
-        "mechanical scan: beam of {} degrees in elevation; accepted: above 0, at most {}",
-        degrees(o.elevation_rad), degrees(kMaxElevation_rad));
+    return refusal("mechanical scan",
+                   fmt::format("a beam of {} degrees in elevation", degrees(o.elevation_rad)),
+                   fmt::format("above 0, at most {}", degrees(kMaxElevation_rad)));
   return {};
 }
 
@@ -203,7 +206,7 @@ DeviceImage device_image(const MechanicalScan& scan) {
 
 Result<ScanMosaic> scan_mosaic(const MechanicalScan& scan, double cell_m) {
   if (!(cell_m > 0.0) || !std::isfinite(cell_m))
-    return bad_input("scan mosaic: cell of {} m; accepted: above 0", cell_m);
+    return refusal("scan mosaic", fmt::format("cells of {} m", cell_m), "above 0");
   ScanMosaic out;
   out.cell_m = cell_m;
   if (scan.steps().empty()) return out;
@@ -220,8 +223,8 @@ Result<ScanMosaic> scan_mosaic(const MechanicalScan& scan, double cell_m) {
   const Vec2 first = glm::floor(all.low / cell_m), last = glm::floor(all.high / cell_m);
   const Vec2 size = last - first + 1.0;
   if (!(size.x * size.y <= kMaxMosaicCells && std::abs(first.x) < 1e15 && std::abs(first.y) < 1e15))
-    return bad_input("scan mosaic: {} x {} cells of {} m; accepted: {} in all", size.y, size.x,
-                     cell_m, kMaxMosaicCells);
+    return refusal("scan mosaic", fmt::format("{} x {} cells of {} m", size.y, size.x, cell_m),
+                   fmt::format("at most {} in all", kMaxMosaicCells));
   out.first_column = static_cast<std::int64_t>(first.x);
   out.first_row = static_cast<std::int64_t>(first.y);
   out.columns = static_cast<std::uint32_t>(size.x);

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <map>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::sonar {
@@ -99,8 +100,8 @@ Result<ByName> by_name(const Paths& files, const std::vector<std::string>& names
   ByName out;
   for (std::size_t i = 0; i < files.size(); ++i)
     if (const auto [at, added] = out.emplace(names[i], files[i]); !added)
-      return bad_input("{} and {}: both are frame '{}', one of them is accepted",
-                       at->second.string(), files[i].string(), names[i]);
+      return refusal(fmt::format("{} and {}", at->second.string(), files[i].string()),
+                     fmt::format("two files of frame '{}'", names[i]), "one");
   return out;
 }
 
@@ -118,10 +119,11 @@ Result<Paths> list_files(const std::string& pattern, std::span<const char* const
   NERITIC_TRY(Paths files, folder ? files_in(pattern, extensions) : files_like(pattern));
   std::sort(files.begin(), files.end());
   if (!files.empty()) return files;
-  if (!folder) return bad_input("{}: no file like that found", pattern);
+  if (!folder)
+    return refusal(pattern, "no such file", "a file, a folder or a pattern that files match");
   std::string kinds;
   for (const char* e : extensions) kinds += std::string(kinds.empty() ? "." : ", .") + e;
-  return bad_input("{}: no image in that folder, {} is accepted", pattern, kinds);
+  return refusal(pattern, "no image in that folder", kinds);
 }
 
 std::vector<std::string> frame_names(std::span<const fs::path> files) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::sonar {
 namespace {
 
@@ -39,8 +41,7 @@ bool is_grey(const MapFile& map) {
 // The channel that holds depth: named so in an EXR, in whatever layer (not beside an X: that is a
 // vector's), else the first of a grey image.
 Result<std::uint32_t> depth_channel(const MapFile& map) {
-  if (map.palette)
-    return bad_input("{}: a palette's indices found, grey numbers are accepted as depth", map.path);
+  if (map.palette) return refusal(map.path, "a palette's indices", "grey numbers as depth");
   for (const char* name : {"Z", "depth", "V", "Y"}) {
     std::vector<std::uint32_t> found;
     for (std::uint32_t c = 0; c < map.channel_names.size(); ++c)
@@ -48,15 +49,15 @@ Result<std::uint32_t> depth_channel(const MapFile& map) {
           !channel_in(map, layer_of(map.channel_names[c]), "X"))
         found.push_back(c);
     if (found.size() > 1)
-      return bad_input("{}: channels {} and {} found, one channel of depth is accepted", map.path,
-                       map.channel_names[found[0]], map.channel_names[found[1]]);
+      return refusal(map.path,
+                     fmt::format("channels {} and {}", map.channel_names[found[0]],
+                                 map.channel_names[found[1]]),
+                     "one channel of depth");
     if (!found.empty()) return found[0];
   }
   if (map.channels > 1 && !is_grey(map))
-    return bad_input(
-        "{}: {} channels that differ found, one channel of depth is accepted (of an EXR also Z, "
-        "depth, V or Y of any layer)",
-        map.path, map.channels);
+    return refusal(map.path, fmt::format("{} channels that differ", map.channels),
+                   "one channel of depth (in an EXR also Z, depth, V or Y of any layer)");
   return 0u;
 }
 
@@ -64,7 +65,7 @@ Result<std::uint32_t> depth_channel(const MapFile& map) {
 // else the first three.
 Result<std::array<std::uint32_t, 3>> normal_channels(const MapFile& map) {
   if (map.channels < 3)
-    return bad_input("{}: {} channels found, x, y and z are accepted", map.path, map.channels);
+    return refusal(map.path, fmt::format("{} channels", map.channels), "x, y and z");
   for (const auto& names : {std::array{"X", "Y", "Z"}, {"R", "G", "B"}}) {
     std::vector<std::array<std::uint32_t, 3>> found;
     for (std::uint32_t c = 0; c < map.channel_names.size(); ++c) {
@@ -74,8 +75,10 @@ Result<std::array<std::uint32_t, 3>> normal_channels(const MapFile& map) {
       if (y && z) found.push_back({c, *y, *z});
     }
     if (found.size() > 1)
-      return bad_input("{}: vectors {} and {} found, one is accepted", map.path,
-                       map.channel_names[found[0][0]], map.channel_names[found[1][0]]);
+      return refusal(map.path,
+                     fmt::format("vectors {} and {}", map.channel_names[found[0][0]],
+                                 map.channel_names[found[1][0]]),
+                     "one");
     if (!found.empty()) return found[0];
   }
   return std::array{0u, 1u, 2u};
@@ -83,8 +86,8 @@ Result<std::array<std::uint32_t, 3>> normal_channels(const MapFile& map) {
 
 Status check_size(const MapFile& depth, const MapFile& other) {
   if (other.width == depth.width && other.height == depth.height) return {};
-  return bad_input("{}: {} x {} pixels found, the {} x {} of {} are accepted", other.path,
-                   other.width, other.height, depth.width, depth.height, depth.path);
+  return refusal(other.path, fmt::format("{} x {} pixels", other.width, other.height),
+                 fmt::format("{} x {}, the size of {}", depth.width, depth.height, depth.path));
 }
 
 Vec3 to_sonar_axes(const Vec3& n, NormalAxes axes) {
@@ -126,17 +129,16 @@ std::vector<double> normals_of(const MapFile& map, const std::array<std::uint32_
 
 Result<std::vector<std::uint16_t>> labels_of(const MapFile& map) {
   if (map.channels > 1 && !is_grey(map))
-    return bad_input(
-        "{}: {} channels that differ found, one channel of class numbers is accepted (a PNG's "
-        "palette gives its indices)",
-        map.path, map.channels);
+    return refusal(map.path, fmt::format("{} channels that differ", map.channels),
+                   "one channel of class numbers (of a PNG with a palette, its indices)");
   std::vector<std::uint16_t> out(map.pixels());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double value = map.at(i, 0);
     if (!(value >= 0.0 && value <= 65535.0 && value == std::floor(value)))
-      return bad_input(
-          "{}: label {:g} at column {}, row {} found, a whole number from 0 to 65535 is accepted",
-          map.path, value, i % map.width, i / map.width);
+      return refusal(
+          map.path,
+          fmt::format("label {:g} at column {}, row {}", value, i % map.width, i / map.width),
+          "a whole number from 0 to 65535");
     out[i] = static_cast<std::uint16_t>(value);
   }
   return out;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "sonar/acoustics_pulse.hpp"
 #include "sonar/beam_grid.hpp"
 #include "sonar/head_pattern.hpp"
@@ -96,20 +97,22 @@ std::span<const QualityLevel> quality_levels(SonarKind kind) {
 Result<const QualityLevel*> quality_level(const scene::Sonar& sonar) {
   if (sonar.quality.empty() && !(sonar.max_error > 0.0)) return nullptr;
   if (!sonar.quality.empty() && sonar.max_error > 0.0)
-    return bad_input("sonar {}: quality '{}' and max_error {:g} found, one of them is accepted",
-                     sonar.name, sonar.quality, sonar.max_error);
+    return refusal(fmt::format("sonar {}", sonar.name),
+                   fmt::format("quality '{}' and max_error {:g}", sonar.quality, sonar.max_error),
+                   "one of them");
   const auto levels = quality_levels(sonar.kind);
   if (!sonar.quality.empty()) {
     for (const QualityLevel& level : levels)
       if (sonar.quality == level.name) return &level;
-    return bad_input("sonar {}: quality '{}' found, draft, standard or reference is accepted",
-                     sonar.name, sonar.quality);
+    return refusal(fmt::format("sonar {}: quality", sonar.name), fmt::format("'{}'", sonar.quality),
+                   "draft, standard or reference");
   }
   // Levels rise in cost as they fall in error.
   for (const QualityLevel& level : levels)
     if (level.error <= sonar.max_error) return &level;
-  return bad_input("sonar {}: max_error {:g} found, at least {:g} is accepted for kind {}",
-                   sonar.name, sonar.max_error, levels.back().error, scene::name_of(sonar.kind));
+  return refusal(
+      fmt::format("sonar {}: max_error", sonar.name), fmt::format("{:g}", sonar.max_error),
+      fmt::format("at least {:g} for kind {}", levels.back().error, scene::name_of(sonar.kind)));
 }
 
 Status apply_quality(scene::Sonar& sonar) {
@@ -122,9 +125,10 @@ Status apply_quality(scene::Sonar& sonar) {
     sonar.bins_range *= static_cast<std::uint32_t>(
         std::clamp(std::ceil(0.99 * least_bins / sonar.bins_range), 1.0, kMostFiner));
   if (sonar.bins_range > kMaxBins)
-    return bad_input(
-        "sonar {}: quality {} over {:g} m needs {} range bins, at most {} are accepted", sonar.name,
-        level->name, span_m, sonar.bins_range, kMaxBins);
+    return refusal(fmt::format("sonar {}", sonar.name),
+                   fmt::format("quality {} over {:g} m, which needs {} range bins", level->name,
+                               span_m, sonar.bins_range),
+                   fmt::format("at most {}", kMaxBins));
   sonar.gbuffer_scale = level->gbuffer_scale;
   const double rows = rows_are_counts(sonar.kind) ? level->rows : level->rows * span_m / cell_m;
   sonar.bins_elevation =

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 #include "sonar/sparse_volume.hpp"
 
 namespace neritic::sonar {
@@ -10,24 +11,25 @@ namespace neritic::sonar {
 Status validate(const SonarInput& input) {
   const std::size_t pixels = std::size_t{input.width} * input.height;
   if (pixels == 0)
-    return bad_input("depth image: {} x {} pixels found, at least 1 x 1 is accepted", input.width,
-                     input.height);
+    return refusal("depth image", fmt::format("{} x {} pixels", input.width, input.height),
+                   "at least 1 x 1");
   if (input.depth.size() != pixels || input.normals.size() != 3 * pixels)
-    return bad_input("normal image: {} values for {} pixels found, 3 a pixel are accepted",
-                     input.normals.size(), input.depth.size());
+    return refusal("normal image",
+                   fmt::format("{} values for {} pixels", input.normals.size(), input.depth.size()),
+                   "3 a pixel");
   if (!input.labels.empty() && input.labels.size() != pixels)
-    return bad_input("label image: {} values for {} pixels found, one a pixel is accepted",
-                     input.labels.size(), pixels);
+    return refusal("label image",
+                   fmt::format("{} values for {} pixels", input.labels.size(), pixels),
+                   "one a pixel");
   if (!input.reflectivity.empty() && input.reflectivity.size() != pixels)
-    return bad_input("reflectivity: {} values for {} pixels found, one a pixel is accepted",
-                     input.reflectivity.size(), pixels);
+    return refusal("reflectivity",
+                   fmt::format("{} values for {} pixels", input.reflectivity.size(), pixels),
+                   "one a pixel");
   const Intrinsics& k = input.intrinsics;
   if (!(k.fx > 0.0 && k.fy > 0.0) || !std::isfinite(k.fx) || !std::isfinite(k.fy) ||
       !std::isfinite(k.cx) || !std::isfinite(k.cy))
-    return bad_input(
-        "intrinsics: {:g},{:g},{:g},{:g} found, finite numbers with positive fx and fy "
-        "are accepted",
-        k.fx, k.fy, k.cx, k.cy);
+    return refusal("intrinsics", fmt::format("{:g},{:g},{:g},{:g}", k.fx, k.fy, k.cx, k.cy),
+                   "finite numbers with positive fx and fy");
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/beam_grid.hpp"
 #include "sonar/levels.hpp"
@@ -90,21 +91,23 @@ nlohmann::json facts_of(const SidescanRecord& record, const GroundImage& ground)
 
 Status validate(const SidescanOptions& o) {
   if (o.n_range == 0 || o.n_range > kMaxBins)
-    return bad_input("side-scan: {} range bins; accepted: 1 to {}", o.n_range, kMaxBins);
+    return refusal("side-scan", fmt::format("{} range bins", o.n_range),
+                   fmt::format("1 to {}", kMaxBins));
   if (!(o.range_min_m >= 0.0 && o.range_max_m > o.range_min_m) || !std::isfinite(o.range_max_m))
-    return bad_input("side-scan: range {} to {} m; accepted: 0 or more, growing", o.range_min_m,
-                     o.range_max_m);
+    return refusal("side-scan",
+                   fmt::format("a range from {} to {} m", o.range_min_m, o.range_max_m),
+                   "from 0 or more, increasing");
   if (!(o.relative_threshold > 0.0 && o.relative_threshold <= 1.0))
-    return bad_input("side-scan: relative threshold {}; accepted: above 0, at most 1",
-                     o.relative_threshold);
+    return refusal("side-scan", fmt::format("relative threshold {}", o.relative_threshold),
+                   "above 0, at most 1");
   if (!(o.floor >= 0.0) || !std::isfinite(o.floor))
-    return bad_input("side-scan: floor {}; accepted: 0 or more", o.floor);
+    return refusal("side-scan", fmt::format("floor {}", o.floor), "0 or more");
   if (!o.floor_by_bin.empty() && o.floor_by_bin.size() != o.n_range)
-    return bad_input("side-scan: a floor of {} bins; accepted: none, or {}", o.floor_by_bin.size(),
-                     o.n_range);
+    return refusal("side-scan", fmt::format("a floor of {} bins", o.floor_by_bin.size()),
+                   fmt::format("none, or {}", o.n_range));
   if (o.tracking_pings % 2 == 0)
-    return bad_input("side-scan: tracking over {} pings; accepted: an odd number",
-                     o.tracking_pings);
+    return refusal("side-scan", fmt::format("tracking over {} pings", o.tracking_pings),
+                   "an odd number");
   return {};
 }
 

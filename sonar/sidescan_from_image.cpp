@@ -4,36 +4,38 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::sonar {
 namespace {
 
 Status check(const SeabedPicture& p, const PictureLineOptions& o) {
   const ImageF32& b = p.brightness;
   if (b.channels != 1 || b.width == 0 || b.height == 0)
-    return bad_input(
-        "side-scan from a picture: {} x {} pixels of {} channels; accepted: one "
-        "channel, at least one pixel",
-        b.width, b.height, b.channels);
+    return refusal("side-scan from a picture",
+                   fmt::format("{} x {} pixels of {} channels", b.width, b.height, b.channels),
+                   "one channel, at least one pixel");
   if (!p.depth_m.empty() && p.depth_m.size() != b.data.size())
-    return bad_input("side-scan from a picture: {} depths for {} pixels; accepted: one a pixel",
-                     p.depth_m.size(), b.data.size());
+    return refusal("side-scan from a picture",
+                   fmt::format("{} depths for {} pixels", p.depth_m.size(), b.data.size()),
+                   "one a pixel");
   if (!(p.intrinsics.fx > 0.0) || !(p.intrinsics.fy > 0.0) || !std::isfinite(p.intrinsics.cx) ||
       !std::isfinite(p.intrinsics.cy))
-    return bad_input("side-scan from a picture: focal lengths {}, {}; accepted: above 0",
-                     p.intrinsics.fx, p.intrinsics.fy);
+    return refusal("side-scan from a picture",
+                   fmt::format("focal lengths {}, {}", p.intrinsics.fx, p.intrinsics.fy),
+                   "above 0");
   if (p.depth_m.empty() && !(p.altitude_m > 0.0 && std::isfinite(p.altitude_m)))
-    return bad_input("side-scan from a picture: altitude {} m; accepted: above 0", p.altitude_m);
+    return refusal("side-scan from a picture", fmt::format("altitude {} m", p.altitude_m),
+                   "above 0");
   if (o.n_range == 0 || o.n_range > kMaxBins || !(o.range_min_m >= 0.0) ||
       !(o.range_max_m > o.range_min_m) || !std::isfinite(o.range_max_m))
-    return bad_input(
-        "side-scan from a picture: {} bins from {} to {} m; accepted: 1 to {} bins, "
-        "ranges of 0 or more that grow",
-        o.n_range, o.range_min_m, o.range_max_m, kMaxBins);
+    return refusal("side-scan from a picture",
+                   fmt::format("{} bins from {} to {} m", o.n_range, o.range_min_m, o.range_max_m),
+                   fmt::format("1 to {} bins, ranges from 0 or more, increasing", kMaxBins));
   if (!(o.beam_along_rad > 0.0 && o.beam_along_rad < kPi))
-    return bad_input(
-        "side-scan from a picture: beam of {} degrees along the track; accepted: above "
-        "0, below 180",
-        degrees(o.beam_along_rad));
+    return refusal("side-scan from a picture",
+                   fmt::format("a beam of {} degrees along the track", degrees(o.beam_along_rad)),
+                   "above 0, below 180");
   return {};
 }
 
@@ -100,10 +102,9 @@ Result<SidescanLine> sidescan_from_picture(const SeabedPicture& picture,
   const double top = picture.intrinsics.cy - reach, bottom = picture.intrinsics.cy + reach;
   const double height = picture.brightness.height;
   if (bottom <= 0.0 || top >= height)
-    return bad_input(
-        "side-scan from a picture: rows {:.1f} to {:.1f} of the beam; accepted: some "
-        "of the picture's {}",
-        top, bottom, picture.brightness.height);
+    return refusal(
+        "side-scan from a picture", fmt::format("rows {:.1f} to {:.1f} in the beam", top, bottom),
+        fmt::format("a beam that meets the picture's {} rows", picture.brightness.height));
   std::array<std::vector<double>, 2> sides{std::vector<double>(options.n_range),
                                            std::vector<double>(options.n_range)};
   double rows = 0.0;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/json.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic {
@@ -23,7 +24,7 @@ Result<CaseFile> CaseFile::parse(std::string_view text, std::string name) {
   Result<nlohmann::json> parsed = parse_json(text);
   if (!parsed.ok())
     return bad_input("{}: no JSON: {}", name, printable(parsed.error().message, 200));
-  if (!parsed->is_object()) return bad_input("{}: found no JSON object; accepted: one", name);
+  if (!parsed->is_object()) return refusal(name, "no JSON object", "one");
   return CaseFile(std::move(*parsed), std::move(name));
 }
 
@@ -208,7 +209,7 @@ void CaseField::allow_with_texts(std::initializer_list<std::string_view> names) 
 }
 
 void CaseField::refuse(std::string_view accepted) const {
-  if (!file_->failed()) fail(fmt::format("found {}; accepted: {}", found(), accepted));
+  if (!file_->failed()) fail(found_accepted(found(), accepted));
 }
 
 std::string CaseField::found() const {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/toml.hpp"
 
 namespace neritic {
@@ -73,7 +74,8 @@ Result<nlohmann::json> read_tree(std::string_view text, const std::string& name,
                                  std::span<const std::string_view> paths, int depth,
                                  Places& places) {
   if (text.size() > kMostBytes)
-    return bad_input("{}: {} bytes; accepted: at most {}", name, text.size(), kMostBytes);
+    return refusal(name, fmt::format("{} bytes", text.size()),
+                   fmt::format("at most {}", kMostBytes));
   NERITIC_TRY(const TomlValue parsed, parse_toml(text, name, 0));
   nlohmann::json own = json_of(parsed);
   Places own_places;
@@ -86,9 +88,11 @@ Result<nlohmann::json> read_tree(std::string_view text, const std::string& name,
       *file = (folder / file->get<std::string>()).string();
   const auto include = own.find("include");
   if (include == own.end()) return own;
-  if (!include->is_string()) return bad_input("{}: include: accepted: the name of a file", name);
+  if (!include->is_string())
+    return refusal(fmt::format("{}: include", name), "another kind of value", "the name of a file");
   if (depth == kMostIncludes)
-    return bad_input("{}: include: files nested deeper than {} found", name, depth);
+    return refusal(fmt::format("{}: include", name), "files nested deeper",
+                   fmt::format("{} levels", depth));
   const std::filesystem::path path = folder / include->get<std::string>();
   own.erase(include);
   NERITIC_TRY(const std::string base, read_text(path));

@@ -7,6 +7,8 @@
 #include <memory>
 #include <system_error>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic {
 namespace fs = std::filesystem;
 namespace {
@@ -25,8 +27,8 @@ Status read_into(const fs::path& path, Buffer& out) {
   const auto size = fs::file_size(path, error);
   if (error) return bad_input("{}: cannot be read: {}", path.string(), error.message());
   if (size > kMaxFileBytes)
-    return bad_input("{}: found {} bytes; accepted: at most {}", path.string(), size,
-                     kMaxFileBytes);
+    return refusal(path.string(), fmt::format("{} bytes", size),
+                   fmt::format("at most {}", kMaxFileBytes));
   File file(std::fopen(path.c_str(), "rb"));
   if (!file) return bad_input("{}: cannot be opened", path.string());
   out.resize(size);

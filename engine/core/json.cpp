@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic {
 namespace {
@@ -39,7 +40,8 @@ void tidy(nlohmann::json& value) {
 
 Result<nlohmann::json> parse_json(std::string_view text) {
   if (const int depth = nesting_of(text); depth > kMaxJsonNesting)
-    return bad_input("found JSON nested {} deep; accepted: at most {}", depth, kMaxJsonNesting);
+    return refusal("", fmt::format("JSON nested {} deep", depth),
+                   fmt::format("at most {}", kMaxJsonNesting));
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception& exception) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic {
@@ -60,7 +61,7 @@ std::string quoted_start(std::string_view text) {
 
 Result<std::vector<std::size_t>> parse_shape(std::string_view text, const std::string& name) {
   if (text.empty() || text.front() != '(')
-    return bad_input("{}: the .npy header has no shape", name);
+    return refusal(name, "no shape in the .npy header", "one");
   std::vector<std::size_t> shape;
   std::size_t i = 1;
   while (i < text.size() && text[i] != ')') {
@@ -69,17 +70,18 @@ Result<std::vector<std::size_t>> parse_shape(std::string_view text, const std::s
       continue;
     }
     if (!std::isdigit(static_cast<unsigned char>(text[i])))
-      return bad_input("{}: found '{}' in the .npy shape; accepted: whole numbers", name, text[i]);
+      return refusal(name, fmt::format("'{}' in the .npy shape", text[i]), "whole numbers");
     std::size_t value = 0;
     while (i < text.size() && std::isdigit(static_cast<unsigned char>(text[i]))) {
-      if (value > kMaxFileBytes) return bad_input("{}: the .npy shape is too large", name);
+      if (value > kMaxFileBytes)
+        return refusal(name, "too large a .npy shape", "one whose size fits 64 bits");
       value = value * 10 + static_cast<std::size_t>(text[i++] - '0');
     }
     shape.push_back(value);
     if (shape.size() > kMaxDimensions)
-      return bad_input("{}: the .npy shape has over 32 axes", name);
+      return refusal(name, "over 32 axes in the .npy shape", "up to 32");
   }
-  if (i >= text.size()) return bad_input("{}: the .npy shape does not end", name);
+  if (i >= text.size()) return refusal(name, "no end of the .npy shape", "one in parentheses");
   return shape;
 }
 
@@ -190,16 +192,16 @@ std::vector<double> NpyArray::to_doubles() const {
 
 Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& name) {
   if (bytes.size() < 10 || std::memcmp(bytes.data(), kMagic, 6) != 0)
-    return bad_input("{}: not an .npy file", name);
+    return refusal(name, "no .npy file", "one");
   const auto byte_at = [&](std::size_t i) { return std::to_integer<std::size_t>(bytes[i]); };
   const std::size_t major = byte_at(6);
-  if (major < 1 || major > 3)
-    return bad_input("{}: found .npy version {}; accepted: 1 to 3", name, major);
+  if (major < 1 || major > 3) return refusal(name, fmt::format(".npy version {}", major), "1 to 3");
   const std::size_t prefix = major == 1 ? 10 : 12;
-  if (bytes.size() < prefix) return bad_input("{}: the .npy header is cut off", name);
+  if (bytes.size() < prefix) return refusal(name, "a .npy header that is cut off", "a whole file");
   std::size_t length = byte_at(8) | byte_at(9) << 8;
   if (major > 1) length |= byte_at(10) << 16 | byte_at(11) << 24;
-  if (length > bytes.size() - prefix) return bad_input("{}: the .npy header is cut off", name);
+  if (length > bytes.size() - prefix)
+    return refusal(name, "a .npy header that is cut off", "a whole file");
   const std::string_view header(reinterpret_cast<const char*>(bytes.data()) + prefix, length);
 
   // Printable ASCII that ends in a newline (NEP 1): what is quoted below then stays on one line.
@@ -207,11 +209,11 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
   if (!std::all_of(header.begin(), header.end(),
                    [&](char c) { return printable(c) || c == '\n'; }) ||
       header.substr(0, header.empty() ? 0 : header.size() - 1).find('\n') != header.npos)
-    return bad_input("{}: the .npy header is not one line of text", name);
+    return refusal(name, "a .npy header of another form", "one line of text");
 
   NpyArray array;
   const std::string_view descr = value_of(header, "descr");
-  if (descr.size() < 5) return bad_input("{}: the .npy header has no descr", name);
+  if (descr.size() < 5) return refusal(name, "no descr in the .npy header", "one");
   std::string type_name(descr.substr(1, 3));
   const bool big_endian = type_name[0] == '>';
   if (big_endian || type_name[0] == '=' || type_name[0] == '|' || type_name[0] == '<') {
@@ -221,25 +223,28 @@ Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& 
   const auto row = std::find_if(kTypes.begin(), kTypes.end(),
                                 [&](const TypeRow& r) { return type_name == r.name; });
   if (row == kTypes.end())
-    return bad_input("{}: found element type {}; accepted: f2 f4 f8 u1 u2 u4 i2 i4 i8 b1", name,
-                     neritic::printable(quoted_start(descr)));
+    return refusal(name, fmt::format("element type {}", neritic::printable(quoted_start(descr))),
+                   "f2 f4 f8 u1 u2 u4 i2 i4 i8 b1");
   array.type = row->type;
   const std::string_view order = value_of(header, "fortran_order");
   const bool fortran = order.starts_with("True");
   if (!fortran && !order.starts_with("False"))
-    return bad_input("{}: found fortran_order {}; accepted: True or False", name,
-                     order.empty() ? "nothing" : neritic::printable(quoted_start(order)));
+    return refusal(name,
+                   fmt::format("fortran_order {}",
+                               order.empty() ? "nothing" : neritic::printable(quoted_start(order))),
+                   "True or False");
   NERITIC_TRY(array.shape, parse_shape(value_of(header, "shape"), name));
 
   std::size_t expected = row->size;
   for (const std::size_t extent : array.shape) {
     if (extent != 0 && expected > kMaxFileBytes / extent)
-      return bad_input("{}: the .npy shape is larger than the file", name);
+      return refusal(name, "a .npy shape larger than the file", "a whole file");
     expected *= extent;
   }
   const std::size_t present = bytes.size() - prefix - length;
   if (present < expected)
-    return bad_input("{}: {} bytes of elements, the shape needs {}", name, present, expected);
+    return refusal(name, fmt::format("{} bytes of elements", present),
+                   fmt::format("{}, as the shape needs", expected));
   const auto data = bytes.subspan(prefix + length, expected);
   array.bytes.assign(data.begin(), data.end());
   if (big_endian)

@@ -32,6 +32,7 @@ struct ParserGaveUp {};
 #include <algorithm>
 #include <optional>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic {
@@ -88,9 +89,9 @@ Status check_lines(std::string_view text, const std::string& file_name) {
       line += c == '\n';
       dots = 0;
     } else if (c == '.' && ++dots > kMaxDotsInLine) {
-      return bad_input(
-          "{}:{}: more than {} dots in a line; accepted: long lists over several lines", file_name,
-          line, kMaxDotsInLine);
+      return refusal(fmt::format("{}:{}", file_name, line),
+                     fmt::format("more than {} dots in a line", kMaxDotsInLine),
+                     "long lists over several lines");
     }
   }
   return {};

@@ -28,9 +28,9 @@ Quirks quirks_of(VkDriverId driver, std::string_view driver_info) {
 
 std::string workarounds(const Quirks& quirks) {
   std::string out;
-  if (quirks.clips_into_wrong_view) out += "one view a rendering";
+  if (quirks.clips_into_wrong_view) out += "one view per rendering";
   if (quirks.late_timestamps)
-    out += (out.empty() ? "" : ", ") + std::string("a barrier behind each timestamp");
+    out += (out.empty() ? "" : ", ") + std::string("a barrier after each timestamp");
   return out;
 }
 

@@ -23,7 +23,7 @@ struct Quirks {
 // driver_info: what VkPhysicalDeviceDriverProperties says, for Mesa "Mesa 22.3.6 (LLVM 15.0.6)".
 Quirks quirks_of(VkDriverId driver, std::string_view driver_info);
 
-// "draws one view a rendering, a barrier behind each timestamp"; empty where there are none.
+// "draws one view per rendering, a barrier after each timestamp"; empty if there are none.
 std::string workarounds(const Quirks& quirks);
 
 }  // namespace neritic::gpu

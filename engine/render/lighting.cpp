@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/render/water_optics.hpp"
 #include "engine/scene/model_lights.hpp"
 
@@ -184,8 +185,8 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
     light.sun_cosine = static_cast<float>(sun.beam.cosine);
   }
   if (scene.lamps.size() > shared::kMaxLamps)
-    return bad_input("{}: {} lamps, at most {} are accepted", scene.path, scene.lamps.size(),
-                     shared::kMaxLamps);
+    return refusal(fmt::format("{}: lamps", scene.path), fmt::format("{}", scene.lamps.size()),
+                   fmt::format("at most {}", shared::kMaxLamps));
   NERITIC_CHECK(state.world_from_lamp.size() == scene.lamps.size(), "{} poses of {} lamps",
                 state.world_from_lamp.size(), scene.lamps.size());
   for (std::size_t i = 0; i < scene.lamps.size(); ++i)

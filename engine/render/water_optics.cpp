@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/scene.hpp"
 
@@ -60,7 +61,7 @@ Result<WaterOptics> jerlov_optics(const std::string& type) {
   const auto row =
       std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& r) { return type == r.name; });
   if (row == kTypes.end())
-    return bad_input("water type '{}'; accepted: {}", type, join(scene::kWaterTypes));
+    return refusal("water type", fmt::format("'{}'", type), join(scene::kWaterTypes));
   WaterOptics optics;
   for (int i = 0; i < 3; ++i) {
     const double wavelength_nm = kWavelength_nm[i];

@@ -70,7 +70,9 @@ bool Resources::parse_component(Field field, Component& out) {
       return true;
     default:
       if (!field.report().failed())
-        field.fail_with("component type {} found, 5120 to 5126 without 5124 are accepted", code);
+        field.refuse(fmt::format("component type {}", code),
+                     "5120 (int8), 5121 (uint8), 5122 (int16), 5123 (uint16), 5125 (uint32) or "
+                     "5126 (float)");
       return false;
   }
 }
@@ -94,7 +96,8 @@ std::span<const std::byte> Resources::buffer(int i) {
   } else if (i == 0 && !bin_.empty()) {
     buffer.bytes = bin_;
   } else {
-    field.fail("a buffer without bytes is used (no uri, no binary chunk)");
+    field.refuse("a buffer without data",
+                 "a buffer with a uri, or the first one of a .glb with a BIN chunk");
     return {};
   }
   // Bytes beyond the declared length are padding; views may not reach into it.
@@ -106,15 +109,16 @@ std::span<const std::byte> Resources::view_at(int i) {
   const Field field = root_["bufferViews"].at(i);
   const int buffer_index = field["buffer"].index(buffers_.size(), "buffers");
   if (buffer_index < 0) {
-    field.fail("a buffer view without a buffer");
+    field.refuse("no buffer", "the index of a buffer");
     return {};
   }
   const auto bytes = buffer(buffer_index);
   const std::uint64_t offset = field["byteOffset"].whole(0), length = field["byteLength"].whole(0);
   if (field.report().failed()) return {};
   if (offset > bytes.size() || length > bytes.size() - offset) {
-    field.fail_with("bytes {} + {} found, but buffer {} has {}", offset, length, buffer_index,
-                    bytes.size());
+    field.refuse(
+        fmt::format("{} + {} bytes (byteOffset + byteLength)", offset, length),
+        fmt::format("a range inside buffer {}, which has {} bytes", buffer_index, bytes.size()));
     return {};
   }
   return bytes.subspan(offset, length);
@@ -139,8 +143,8 @@ bool Resources::charge(std::size_t bytes, Field where) {
   const std::size_t budget =
       std::min(kMaxBudgetBytes, kBaseBudgetBytes + kBudgetFactor * source_bytes_);
   if (bytes > budget - std::min(budget, charged_bytes_)) {
-    where.fail_with("the model would need more than {} MiB, too much for a file of this size",
-                    budget >> 20);
+    where.refuse(fmt::format("data that need more than {} MiB", budget >> 20),
+                 "less, for a file of this size");
     return false;
   }
   charged_bytes_ += bytes;
@@ -167,8 +171,7 @@ bool Resources::locate(Field field, Field reference, std::string_view shapes, El
   out.components = components_of(type);
   if (out.components == 0 || shapes.find(type) == shapes.npos) {
     if (!field.report().failed())
-      reference.fail_with("an accessor of type \"{}\" found, {} is accepted", one_line(type, 20),
-                          shapes);
+      reference.refuse(fmt::format("an accessor of type \"{}\"", one_line(type, 20)), shapes);
     return false;
   }
   if (!parse_component(field["componentType"], out.component)) return false;
@@ -188,14 +191,16 @@ bool Resources::locate(Field field, Field reference, std::string_view shapes, El
     if (out.stride == 0) out.stride = element_bytes;  // 0 is how glTF 1.0 said "packed"
     if (field.report().failed()) return false;
     if (out.stride < element_bytes) {
-      stride.fail_with("{} found, but an element has {} bytes", out.stride, element_bytes);
+      stride.refuse(fmt::format("{}", out.stride),
+                    fmt::format("at least {}, the bytes of an element", element_bytes));
       return false;
     }
     // Overflow-safe: count and stride are below 2^32 and 2^21.
     const std::size_t need = out.count == 0 ? 0 : (out.count - 1) * out.stride + element_bytes;
     if (offset > bytes.size() || need > bytes.size() - offset) {
-      field.fail_with("{} elements need {} bytes from {}, but bufferViews[{}] has {}", out.count,
-                      need, offset, view_index, bytes.size());
+      field.refuse(fmt::format("{} elements, {} bytes from byte {} on", out.count, need, offset),
+                   fmt::format("a range inside bufferViews[{}], which has {} bytes", view_index,
+                               bytes.size()));
       return false;
     }
     out.data = bytes.data() + offset;
@@ -212,21 +217,21 @@ bool Resources::resolve_sparse(Field sparse, Elements& out) {
   index_elements.count = out.sparse_count;
   if (sparse.report().failed()) return false;
   if (out.sparse_count > out.count) {
-    sparse.fail_with("{} sparse elements found, but the accessor has {}", out.sparse_count,
-                     out.count);
+    sparse.refuse(fmt::format("{} sparse elements", out.sparse_count),
+                  fmt::format("at most {}, the accessor's count", out.count));
     return false;
   }
   if (!parse_component(indices["componentType"], index_elements.component)) return false;
   index_elements.stride = size_of(index_elements.component);
   const std::size_t element_bytes = size_of(out.component) * out.components;
   const auto place = [&](Field field, std::size_t stride) -> const std::byte* {
-    if (!field["bufferView"].present()) field.fail("no bufferView");
+    if (!field["bufferView"].present()) field.refuse("no bufferView", "the index of a buffer view");
     const auto bytes = view(field["bufferView"]);
     const std::uint64_t offset = field["byteOffset"].whole(0);
     if (field.report().failed()) return nullptr;
     if (offset > bytes.size() || out.sparse_count > (bytes.size() - offset) / stride) {
-      field.fail_with("{} sparse elements found, but its buffer view has {} bytes",
-                      out.sparse_count, bytes.size());
+      field.refuse(fmt::format("{} sparse elements", out.sparse_count),
+                   fmt::format("as many as lie in the {} bytes of the buffer view", bytes.size()));
       return nullptr;
     }
     return bytes.data() + offset;
@@ -237,7 +242,8 @@ bool Resources::resolve_sparse(Field sparse, Elements& out) {
   if (out.sparse_count > 0) out.sparse_indices = wholes(index_elements);
   for (const std::uint32_t i : out.sparse_indices) {
     if (i < out.count) continue;
-    indices.fail_with("sparse index {} found, but the accessor has {} elements", i, out.count);
+    indices.refuse(fmt::format("sparse index {}", i),
+                   fmt::format("an index below {}, the accessor's count", out.count));
     return false;
   }
   return true;

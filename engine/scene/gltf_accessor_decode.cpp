@@ -154,7 +154,7 @@ std::vector<std::uint32_t> Resources::indices(Field reference) {
   Elements elements;
   if (!resolve(reference, "SCALAR", elements)) return {};
   if (elements.component == Component::kFloat) {
-    reference.fail("indices stored as floats, unsigned whole numbers are accepted");
+    reference.refuse("indices stored as floats", "unsigned whole numbers");
     return {};
   }
   return wholes(elements);
@@ -164,7 +164,7 @@ std::vector<std::array<std::uint16_t, 4>> Resources::joints(Field reference) {
   Elements elements;
   if (!resolve(reference, "VEC4", elements)) return {};
   if (size_of(elements.component) > 2) {
-    reference.fail("joints stored in 4 bytes each, 1 or 2 are accepted");
+    reference.refuse("joints of 4 bytes each", "1 or 2 bytes");
     return {};
   }
   const auto values = wholes(elements);

@@ -90,11 +90,9 @@ class Audit {
   }
 
  private:
-  template <class... Args>
-  void say(const std::string& path, fmt::format_string<Args...> format, Args&&... args) {
+  void say(const std::string& path, std::string_view found, std::string_view accepted) {
     told_.insert(path.substr(0, path.find(']') + 1));
-    if (report_.takes_notes())
-      report_.note(path + ": " + fmt::format(format, std::forward<Args>(args)...));
+    if (report_.takes_notes()) report_.note(path + ": " + found_accepted(found, accepted));
   }
 
   const Json& list(const char* key) const {
@@ -121,7 +119,7 @@ class Audit {
   void walk(const Json& value, const std::string& path, int depth) {
     if (depth > 32 || !report_.takes_notes()) return;
     if (value.is_array()) {
-      if (value.empty()) say(path, "an empty list found, at least one element is accepted");
+      if (value.empty()) say(path, "an empty list", "one element or more");
       for (std::size_t i = 0; i < value.size() && i < 4096; ++i)
         if (value[i].is_structured()) walk(value[i], fmt::format("{}[{}]", path, i), depth + 1);
     }
@@ -137,13 +135,13 @@ class Audit {
     if (!extensions.is_object()) return;
     for (const auto& [name, value] : extensions.items()) {
       if (!declared_.contains(name))
-        say(path.empty() ? "extensions" : path + ".extensions",
-            "{} found, extensionsUsed does not name it", name);
+        say(path.empty() ? "extensions" : path + ".extensions", fmt::format("{}", name),
+            "extensions that extensionsUsed names");
       const bool material = path.starts_with("materials[") && path.ends_with("]");
       const bool wrong =
           (name.starts_with("KHR_materials_") && !material && name != "KHR_materials_variants") ||
           (name == "KHR_texture_transform" && !owner.contains("index"));
-      if (wrong) say(path, "{} found, it does not belong there", name);
+      if (wrong) say(path, fmt::format("{}", name), "extensions that belong to this object");
     }
   }
 
@@ -152,18 +150,17 @@ class Audit {
       each(r.list, [&](const Json& owner, const std::string& path) {
         const std::uint64_t index = whole_of(owner, r.key, kNoNumber);
         if (index != kNoNumber && index >= list(r.target).size())
-          say(path + "." + r.key, "{} found, there are {} {}", index, list(r.target).size(),
-              r.target);
+          say(path + "." + r.key, fmt::format("{}", index),
+              fmt::format("an index below {}, the number of {}", list(r.target).size(), r.target));
       });
     for (const Reference& r : kNeeded)
       each(r.list, [&](const Json& owner, const std::string& path) {
-        if (!owner.contains(r.key)) say(path, "no {} found, one is needed", r.key);
+        if (!owner.contains(r.key)) say(path, fmt::format("no {}", r.key), "one");
       });
   }
 
   void check_length(const Json& owner, const std::string& path) {
-    if (whole_of(owner, "byteLength", 1) == 0)
-      say(path + ".byteLength", "0 found, 1 and more is accepted");
+    if (whole_of(owner, "byteLength", 1) == 0) say(path + ".byteLength", "0", "1 or more");
   }
 
   void check_uri(const Json& owner, const std::string& path) {
@@ -171,8 +168,7 @@ class Audit {
     const std::size_t colon = uri.find(':'), slash = uri.find('/');
     if (colon == std::string::npos || colon == 1 || slash < colon) return;  // a file's name
     const bool data = uri.starts_with("data:") && uri.find(";base64,") != std::string::npos;
-    if (!data)
-      say(path + ".uri", "{} found, a file or data of base64 is accepted", one_line(uri, 40));
+    if (!data) say(path + ".uri", one_line(uri, 40), "a file, or data in base64");
   }
 
   void check_view(const Json& view, const std::string& path) {
@@ -182,13 +178,15 @@ class Audit {
                         offset = whole_of(view, "byteOffset", 0),
                         length = whole_of(view, "byteLength", 0);
     if (holds != kNoNumber && (offset > holds || length > holds - offset))
-      say(path, "{} bytes from byte {} found, its buffer has {}", length, offset, holds);
+      say(path, fmt::format("{} bytes from byte {} on", length, offset),
+          fmt::format("a range inside its buffer of {} bytes", holds));
     const std::uint64_t stride = whole_of(view, "byteStride", kNoNumber);
     if (stride == kNoNumber) return;
     if (stride < 4 || stride > 252 || stride % 4 != 0)
-      say(path + ".byteStride", "{} found, multiples of 4 from 4 to 252 are accepted", stride);
+      say(path + ".byteStride", fmt::format("{}", stride), "a multiple of 4 from 4 to 252");
     else if (length > 0 && stride > length)
-      say(path + ".byteStride", "{} found, the view has {} bytes", stride, length);
+      say(path + ".byteStride", fmt::format("{}", stride),
+          fmt::format("at most {}, the bytes of the view", length));
   }
 
   void check_accessor(const Json& accessor, const std::string& path) {
@@ -197,42 +195,43 @@ class Audit {
                         offset = whole_of(accessor, "byteOffset", 0);
     const Json& view = element("bufferViews", whole_of(accessor, "bufferView", kNoNumber));
     if (component > 0 && (offset + whole_of(view, "byteOffset", 0)) % component != 0)
-      say(path + ".byteOffset", "{} found, with its view's no multiple of {} bytes", offset,
-          component);
+      say(path + ".byteOffset", fmt::format("{}", offset),
+          fmt::format("an offset whose sum with the view's is a multiple of {} bytes", component));
     const std::uint64_t stride = whole_of(view, "byteStride", kNoNumber);
     if (stride != kNoNumber && stride < component * components)
-      say(path, "elements of {} bytes found, its view's byteStride is {}", component * components,
-          stride);
+      say(path, fmt::format("elements of {} bytes", component * components),
+          fmt::format("at most {}, the view's byteStride", stride));
     if (accessor.contains("byteOffset") && !accessor.contains("bufferView"))
-      say(path + ".byteOffset", "found without a bufferView, which it is for");
+      say(path + ".byteOffset", "a value without a bufferView",
+          "none, unless a bufferView is named");
     const Json* sparse = member_of(accessor, "sparse");
     if (!sparse) return;
     const std::uint64_t count = whole_of(*sparse, "count", 0);
     if (count == 0 || count > whole_of(accessor, "count", kNoNumber))
-      say(path + ".sparse.count", "{} found, 1 to the accessor's count is accepted", count);
+      say(path + ".sparse.count", fmt::format("{}", count), "1 to the accessor's count");
   }
 
   void check_node(const Json& node, const std::string& path) {
     if (node.contains("matrix") &&
         (node.contains("translation") || node.contains("rotation") || node.contains("scale")))
-      say(path, "a matrix beside translation, rotation or scale found, one of them is accepted");
+      say(path, "a matrix beside translation, rotation or scale", "one of the two");
     for (const char* key : {"skin", "weights"})
       if (node.contains(key) && !node.contains("mesh"))
-        say(path + "." + key, "found without a mesh, which it is for");
+        say(path + "." + key, "a value without a mesh", "none, unless the node has a mesh");
     const Json* extensions = member_of(node, "extensions");
     const Json* light = extensions ? member_of(*extensions, "KHR_lights_punctual") : nullptr;
     if (light && light->is_object() && !light->contains("light"))
-      say(path + ".extensions.KHR_lights_punctual", "no light found, one is needed");
+      say(path + ".extensions.KHR_lights_punctual", "no light", "the index of a light");
   }
 
   void check_camera(const Json& camera, const std::string& path) {
     if (camera.contains("perspective") && camera.contains("orthographic"))
-      say(path, "perspective and orthographic found, one of them is accepted");
+      say(path, "perspective and orthographic", "one of them");
     const Json* flat = member_of(camera, "orthographic");
     for (const char* key : {"xmag", "ymag"})
       if (const Json* size = flat ? member_of(*flat, key) : nullptr;
           size && size->is_number() && size->get<double>() == 0.0)
-        say(path + ".orthographic." + key, "0 found, a size is accepted");
+        say(path + ".orthographic." + key, "0", "a size other than 0");
   }
 
   bool has_bounds(std::uint64_t accessor) const {
@@ -245,8 +244,8 @@ class Audit {
     const Json& accessor = element("accessors", whole_of(owner, key, kNoNumber));
     const std::uint64_t view = whole_of(accessor, "bufferView", kNoNumber);
     if (element("bufferViews", view).contains("byteStride"))
-      say(fmt::format("bufferViews[{}].byteStride", view), "found, but the {} in it have no stride",
-          key);
+      say(fmt::format("bufferViews[{}].byteStride", view), fmt::format("a stride for {}", key),
+          "none, since these elements are packed");
   }
 
   void check_mesh(const Json& mesh, const std::string& path) {
@@ -272,12 +271,10 @@ class Audit {
       const bool known = name.starts_with("_") ||
                          std::ranges::find(kSemantics, name) != std::end(kSemantics) ||
                          std::ranges::any_of(kNumbered, starts);
-      if (!known)
-        say(path, "{} found, glTF's names and those with a leading _ are accepted",
-            one_line(name, 60));
+      if (!known) say(path, one_line(name, 60), "glTF's names, or names that begin with _");
     }
     if (!has_bounds(whole_of(attributes, "POSITION", kNoNumber)))
-      say(path + ".POSITION", "an accessor without min and max found, both are needed");
+      say(path + ".POSITION", "an accessor without min and max", "one with both");
   }
 
   void check_animation(const Json& clip, const std::string& path) {
@@ -286,8 +283,8 @@ class Audit {
       check_packed((*samplers)[i], "input");
       check_packed((*samplers)[i], "output");
       if (!has_bounds(whole_of((*samplers)[i], "input", kNoNumber)))
-        say(fmt::format("{}.samplers[{}].input", path, i),
-            "an accessor without min and max found, both are needed");
+        say(fmt::format("{}.samplers[{}].input", path, i), "an accessor without min and max",
+            "one with both");
     }
     const Json* channels = member_of(clip, "channels");
     std::set<std::pair<std::uint64_t, std::string>> moved;
@@ -295,7 +292,8 @@ class Audit {
       const Json* target = member_of((*channels)[i], "target");
       const std::uint64_t node = target ? whole_of(*target, "node", kNoNumber) : kNoNumber;
       if (node != kNoNumber && !moved.emplace(node, text_of(*target, "path")).second)
-        say(fmt::format("{}.channels[{}].target", path, i), "moves what an earlier channel moves");
+        say(fmt::format("{}.channels[{}].target", path, i),
+            "the node and path of an earlier channel", "each once");
     }
   }
 

@@ -82,7 +82,7 @@ class ValueAudit {
   void check_header(Field image, std::span<const std::byte> bytes) {
     const PictureSize size = peek_size(bytes);
     if (report_.failed() || (size.width > 0 && size.height > 0) || other_formats()) return;
-    image.fail_with("no PNG or JPEG picture ({} bytes)", bytes.size());
+    image.refuse(fmt::format("{} bytes of another kind", bytes.size()), "a PNG or JPEG picture");
   }
 
   // True where an extension brings pictures of other kinds.
@@ -124,11 +124,12 @@ class ValueAudit {
   void check_bound(Field bound, const std::vector<double>& found, const char* which) {
     if (!bound.present()) return;
     if (bound.size() != found.size())
-      return bound.fail_with("{} numbers found, {} are accepted", bound.size(), found.size());
+      return bound.refuse(fmt::format("{} numbers", bound.size()), fmt::format("{}", found.size()));
     for (std::size_t c = 0; c < found.size() && std::isfinite(found[c]); ++c) {
       const double declared = bound.at(c).number(found[c]);
       if (std::abs(declared - found[c]) > 2e-6 * std::abs(found[c]) + 1e-9)
-        return bound.at(c).fail_with("{} found, the {} value is {}", declared, which, found[c]);
+        return bound.at(c).refuse(fmt::format("{}", declared),
+                                  fmt::format("the {} value of the data, {}", which, found[c]));
     }
   }
 
@@ -141,8 +142,8 @@ class ValueAudit {
     if (!whole_bytes(accessor)) return;
     if (!extremes_[i]) extremes_[i] = loading_.resources.extremes(accessor);
     if (extremes_[i]->max.size() == 1 && extremes_[i]->max[0] == extremes_[i]->type_max)
-      indices.fail_with("{} found, the largest value of its type is no index",
-                        extremes_[i]->type_max);
+      indices.refuse(fmt::format("{}", extremes_[i]->type_max),
+                     "smaller values, since glTF reserves the largest of each type");
   }
 
   void check_skins() {
@@ -153,9 +154,10 @@ class ValueAudit {
       for (std::size_t j = 0; j < matrices.size(); ++j) {
         const Vec4 row(matrices[j][0].w, matrices[j][1].w, matrices[j][2].w, matrices[j][3].w);
         if (glm::distance(row, Vec4(0.0, 0.0, 0.0, 1.0)) > 1e-5)
-          return skin["inverseBindMatrices"].fail_with(
-              "a last row of {}, {}, {}, {} found in matrix {}, 0, 0, 0, 1 is accepted", row.x,
-              row.y, row.z, row.w, j);
+          return skin["inverseBindMatrices"].refuse(
+              fmt::format("the last row {}, {}, {}, {} in matrix {}", row.x, row.y, row.z, row.w,
+                          j),
+              "0, 0, 0, 1");
       }
     });
     std::vector<bool> shown(model.nodes.size(), false);
@@ -170,7 +172,8 @@ class ValueAudit {
       if (!shown[n] || model.nodes[n].skin < 0) return;
       for (const int joint : model.skins[model.nodes[n].skin].joints)
         if (!shown[joint])
-          return node["skin"].fail_with("its joint, node {}, is not in the shown scene", joint);
+          return node["skin"].refuse(fmt::format("joint node {} outside the shown scene", joint),
+                                     "nodes of that scene");
     });
   }
 

@@ -37,7 +37,7 @@ bool parse_interpolation(Field field, Channel& out) {
   else if (name == "CUBICSPLINE")
     out.interpolation = Channel::Interpolation::kCubic;
   else
-    field.fail_with("\"{}\" found, STEP, LINEAR or CUBICSPLINE is accepted", one_line(name, 40));
+    field.refuse(fmt::format("\"{}\"", one_line(name, 40)), "STEP, LINEAR or CUBICSPLINE");
   return !field.report().failed();
 }
 
@@ -101,7 +101,7 @@ void keep_increasing(Field input, Channel& channel) {
 void load_keys(Loading& loading, Field sampler, Channel& out) {
   const Field input = sampler["input"], output = sampler["output"];
   if (!input.present() || !output.present()) {
-    sampler.fail("an animation sampler without input or output");
+    sampler.refuse("a sampler without input or output", "one with both");
     return;
   }
   out.times_s = loading.resources.floats(input);
@@ -112,9 +112,10 @@ void load_keys(Loading& loading, Field sampler, Channel& out) {
   const bool cubic = out.interpolation == Channel::Interpolation::kCubic;
   const std::size_t expected = out.times_s.size() * out.width * (cubic ? 3 : 1);
   if (components != expected_components || out.values.size() != expected) {
-    output.fail_with("{} values of {} components found, {} of {} are accepted",
-                     out.values.size() / std::max(components, 1), components,
-                     expected / expected_components, expected_components);
+    output.refuse(
+        fmt::format("{} values of {} components", out.values.size() / std::max(components, 1),
+                    components),
+        fmt::format("{} values of {}", expected / expected_components, expected_components));
     return;
   }
   keep_increasing(input, out);
@@ -128,7 +129,7 @@ Clip load_clip(Loading& loading, Field field) {
   for (std::size_t i = 0; i < channels.size() && !loading.report.failed(); ++i) {
     Channel channel;
     const int sampler = channels.at(i)["sampler"].index(samplers.size(), "samplers");
-    if (sampler < 0) channels.at(i).fail("a channel without a sampler");
+    if (sampler < 0) channels.at(i).refuse("a channel without a sampler", "the index of a sampler");
     if (loading.report.failed()) break;
     if (!parse_target(loading, channels.at(i)["target"], channel)) continue;
     if (!parse_interpolation(samplers.at(sampler)["interpolation"], channel)) break;

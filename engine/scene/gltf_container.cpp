@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/gltf_json.hpp"
 
 namespace neritic::scene::gltf {
@@ -68,7 +69,7 @@ Result<std::vector<std::byte>> base64_decode(std::string_view text) {
   int n_bits = 0;
   for (const char c : text) {
     const int value = kTable[static_cast<unsigned char>(c)];
-    if (value < 0) return bad_input("a data URI with characters that are not base64");
+    if (value < 0) return refusal("", "a data URI with other characters than base64's", "base64");
     bits = (bits << 6) | static_cast<std::uint32_t>(value);
     n_bits += 6;
     if (n_bits >= 8) {
@@ -81,7 +82,7 @@ Result<std::vector<std::byte>> base64_decode(std::string_view text) {
 
 Result<std::vector<std::byte>> read_data_uri(std::string_view uri) {
   const auto comma = uri.find(',');
-  if (comma == uri.npos) return bad_input("a data URI without a comma");
+  if (comma == uri.npos) return refusal("", "a data URI without a comma", "data:TYPE;base64,DATA");
   const std::string_view head = uri.substr(0, comma), payload = uri.substr(comma + 1);
   if (head.ends_with(";base64")) return base64_decode(payload);
   const std::string text = percent_decode(payload);
@@ -105,34 +106,42 @@ bool has_scheme(std::string_view uri) {
 
 Result<Container> open_container(std::span<const std::byte> bytes) {
   if (bytes.size() < 4 || word_at(bytes, 0) != kMagic) return Container{as_text(bytes), {}, false};
-  if (bytes.size() < kHeaderBytes) return bad_input("a .glb cut off in its header");
+  if (bytes.size() < kHeaderBytes)
+    return refusal("", "a .glb that ends within its header", "a whole file");
   if (const auto version = word_at(bytes, 4); version != 2)
-    return bad_input(".glb version {} found, 2 is accepted", version);
+    return refusal("", fmt::format(".glb version {}", version), "2");
   const std::size_t length = word_at(bytes, 8);
   if (length < kHeaderBytes || length > bytes.size())
-    return bad_input(".glb header says {} bytes, the file has {}", length, bytes.size());
+    return refusal("", fmt::format("a .glb whose header states {} bytes", length),
+                   fmt::format("at most the file's {}", bytes.size()));
   bytes = bytes.first(length);  // what follows is not part of the asset
 
   Container out;
   out.binary = true;
   std::size_t n_chunks = 0;
   for (std::size_t at = kHeaderBytes; at < length; ++n_chunks) {
-    if (length - at < kChunkHeaderBytes) return bad_input(".glb chunk {} is cut off", n_chunks);
+    if (length - at < kChunkHeaderBytes)
+      return refusal("", fmt::format("a .glb that ends within the header of chunk {}", n_chunks),
+                     "a whole file");
     const std::size_t size = word_at(bytes, at);
     const std::uint32_t type = word_at(bytes, at + 4);
     at += kChunkHeaderBytes;
     if (size > length - at)
-      return bad_input(".glb chunk {} says {} bytes, {} are left", n_chunks, size, length - at);
+      return refusal("", fmt::format(".glb chunk {} of {} bytes", n_chunks, size),
+                     fmt::format("at most the {} that are left", length - at));
     const auto chunk = bytes.subspan(at, size);
-    if (n_chunks == 0 && type != kJsonChunk) return bad_input(".glb whose first chunk is not JSON");
-    if (n_chunks > 0 && type == kJsonChunk) return bad_input(".glb with a second JSON chunk");
-    if (n_chunks > 1 && type == kBinChunk) return bad_input(".glb with a misplaced BIN chunk");
+    if (n_chunks == 0 && type != kJsonChunk)
+      return refusal("", "another first chunk than JSON", "a .glb that begins with its JSON chunk");
+    if (n_chunks > 0 && type == kJsonChunk)
+      return refusal("", "a second JSON chunk", "one in a .glb");
+    if (n_chunks > 1 && type == kBinChunk)
+      return refusal("", "a BIN chunk in another place", "the second chunk of a .glb");
     if (n_chunks == 0) out.json = as_text(chunk);
     if (type == kBinChunk) out.bin = chunk;
     // Chunks start on multiples of four; a last chunk without its padding is forgiven.
     at = std::min(length, at + size + (4 - size % 4) % 4);
   }
-  if (n_chunks == 0) return bad_input(".glb without chunks");
+  if (n_chunks == 0) return refusal("", "a .glb without chunks", "one with a JSON chunk");
   return out;
 }
 
@@ -140,7 +149,7 @@ Result<std::vector<std::byte>> read_uri(std::string_view uri, const fs::path& fo
   if (uri.starts_with("data:")) return read_data_uri(uri);
   const std::string shown = one_line(uri, 80);
   if (has_scheme(uri))
-    return bad_input("\"{}\" found, a data URI or a relative path is accepted", shown);
+    return refusal("", fmt::format("\"{}\"", shown), "a data URI or a relative path");
   const std::string decoded = percent_decode(uri);
   const fs::path relative = fs::path(decoded).lexically_normal();
   const fs::path literal = fs::path(uri).lexically_normal();
@@ -149,8 +158,10 @@ Result<std::vector<std::byte>> read_uri(std::string_view uri, const fs::path& fo
   };
   const bool inside = decoded.find_first_of(std::string_view("\\\0", 2)) == decoded.npos &&
                       below(relative) && below(literal);
-  if (!inside) return bad_input("\"{}\" found, a path below the model's folder is accepted", shown);
-  if (folder.empty()) return bad_input("\"{}\" found, but there is no folder to read from", shown);
+  if (!inside) return refusal("", fmt::format("\"{}\"", shown), "a path below the model's folder");
+  if (folder.empty())
+    return refusal("", fmt::format("\"{}\"", shown),
+                   "data URIs only, since the model is not read from a folder");
   // Some exporters leave a literal "%20" in the file's name.
   std::error_code ignored;
   if (decoded != uri && !fs::exists(folder / relative, ignored) &&

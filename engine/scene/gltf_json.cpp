@@ -62,7 +62,7 @@ void Report::note(std::string line) {
 Field Field::operator[](std::string_view key) const {
   if (!value_) return *this;
   if (!value_->is_object()) {
-    fail_with("{} found, an object is accepted", found());
+    refuse(found(), "an object");
     return {root_, nullptr, report_};
   }
   const auto it = value_->find(std::string(key));
@@ -72,7 +72,7 @@ Field Field::operator[](std::string_view key) const {
 std::size_t Field::size() const {
   if (!value_) return 0;
   if (value_->is_array()) return value_->size();
-  fail_with("{} found, an array is accepted", found());
+  refuse(found(), "an array");
   return 0;
 }
 
@@ -85,7 +85,7 @@ std::vector<std::string> Field::keys() const {
   std::vector<std::string> out;
   if (!value_) return out;
   if (!value_->is_object()) {
-    fail_with("{} found, an object is accepted", found());
+    refuse(found(), "an object");
     return out;
   }
   for (auto it = value_->begin(); it != value_->end(); ++it) out.push_back(it.key());
@@ -95,21 +95,21 @@ std::vector<std::string> Field::keys() const {
 std::string Field::text(std::string_view fallback) const {
   if (!value_) return std::string(fallback);
   if (value_->is_string()) return value_->get<std::string>();
-  fail_with("{} found, a string is accepted", found());
+  refuse(found(), "a string");
   return std::string(fallback);
 }
 
 bool Field::boolean(bool fallback) const {
   if (!value_) return fallback;
   if (value_->is_boolean()) return value_->get<bool>();
-  fail_with("{} found, true or false is accepted", found());
+  refuse(found(), "true or false");
   return fallback;
 }
 
 double Field::number(double fallback) const {
   if (!value_) return fallback;
   if (value_->is_number()) return value_->get<double>();
-  fail_with("{} found, a number is accepted", found());
+  refuse(found(), "a number");
   return fallback;
 }
 
@@ -132,9 +132,9 @@ std::uint64_t Field::whole(std::uint64_t fallback, std::uint64_t max) const {
   }
   if (whole && value <= max) return value;
   if (max == UINT64_MAX)
-    fail_with("{} found, a whole number from 0 is accepted", found());
+    refuse(found(), "a whole number from 0");
   else
-    fail_with("{} found, a whole number from 0 to {} is accepted", found(), max);
+    refuse(found(), fmt::format("a whole number from 0 to {}", max));
   return fallback;
 }
 
@@ -142,7 +142,8 @@ int Field::index(std::size_t count, std::string_view what) const {
   if (!value_) return -1;
   const std::uint64_t value = whole(UINT64_MAX);
   if (value < count) return static_cast<int>(value);
-  if (!report_->failed()) fail_with("{} found, but the file has {} {}", found(), count, what);
+  if (!report_->failed())
+    refuse(found(), fmt::format("an index below {}, the number of {}", count, what));
   return -1;
 }
 
@@ -151,7 +152,7 @@ bool Field::read_numbers(double* out, std::size_t count) const {
   bool good = value_->is_array() && value_->size() == count;
   for (std::size_t i = 0; good && i < count; ++i) good = (*value_)[i].is_number();
   if (!good) {
-    fail_with("{} found, {} numbers are accepted", found(), count);
+    refuse(found(), fmt::format("a list of {} numbers", count));
     return false;
   }
   for (std::size_t i = 0; i < count; ++i) out[i] = (*value_)[i].get<double>();

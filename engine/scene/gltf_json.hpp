@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/core/result.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::scene::gltf {
 
@@ -89,9 +89,9 @@ class Field {
   void fail(std::string_view message) const {
     if (!report_->failed()) report_->fail(path(), message);
   }
-  template <class... Args>
-  void fail_with(fmt::format_string<Args...> format, Args&&... args) const {
-    fail(fmt::format(format, std::forward<Args>(args)...));
+  // Fails with "found X; accepted: Y".
+  void refuse(std::string_view found, std::string_view accepted) const {
+    fail(found_accepted(found, accepted));
   }
   template <class... Args>
   void note_with(fmt::format_string<Args...> format, Args&&... args) const {

@@ -10,8 +10,7 @@ void load_spot(Field spot, Light& out) {
   const double outer = spot["outerConeAngle"].number(kPi / 4.0);
   const double inner = spot["innerConeAngle"].number(0.0);
   if (!(outer > 0.0 && outer <= kPi / 2.0 + 1e-6 && inner >= 0.0 && inner < outer)) {
-    spot.fail_with("cone angles {} and {} found, 0 <= inner < outer <= pi/2 is accepted", inner,
-                   outer);
+    spot.refuse(fmt::format("cone angles {} and {}", inner, outer), "0 <= inner < outer <= pi/2");
     return;
   }
   out.inner_cone_rad = static_cast<float>(inner);
@@ -39,8 +38,8 @@ void load_lights(Loading& loading) {
       light.kind = Light::Kind::kSpot;
       load_spot(field["spot"], light);
     } else {
-      field.fail_with("light type \"{}\" found, directional, point or spot is accepted",
-                      one_line(type, 40));
+      field.refuse(fmt::format("light type \"{}\"", one_line(type, 40)),
+                   "directional, point or spot");
     }
     loading.model.lights.push_back(std::move(light));
   }

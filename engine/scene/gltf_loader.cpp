@@ -54,17 +54,15 @@ void check_asset(Loading& loading) {
   int major = 0, minor = 0;
   if (!parse_version(version.text(), major, minor) || major != 2)
     asset.report().fail("asset.version",
-                        fmt::format("\"{}\" found, 2.x is accepted", one_line(version.text(), 20)));
+                        found_accepted("\"" + one_line(version.text(), 20) + "\"", "2.x"));
   if (min_version.present() &&
       (!parse_version(min_version.text(), major, minor) || major != 2 || minor > 0))
-    min_version.fail_with("\"{}\" found, at most 2.0 is accepted",
-                          one_line(min_version.text(), 20));
+    min_version.refuse(fmt::format("\"{}\"", one_line(min_version.text(), 20)), "at most 2.0");
 
   const Field required = loading.root["extensionsRequired"], used = loading.root["extensionsUsed"];
   for (std::size_t i = 0; i < required.size(); ++i)
     if (const std::string name = required.at(i).text(); !is_supported(name))
-      required.fail_with("the extension {} is required but not supported; supported are {}",
-                         one_line(name, 80), supported_list());
+      required.refuse(one_line(name, 80), supported_list());
   for (std::size_t i = 0; i < used.size(); ++i)
     if (const std::string name = used.at(i).text(); !is_supported(name))
       loading.report.note(fmt::format("the extension {} is not supported and ignored", name));

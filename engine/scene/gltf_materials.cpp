@@ -84,7 +84,7 @@ TextureRef parse_texture_ref(Loading& loading, Field field) {
   TextureRef out;
   if (!field.present()) return out;
   out.texture = field["index"].index(loading.model.textures.size(), "textures");
-  if (out.texture < 0) field.fail("a texture reference without a valid index");
+  if (out.texture < 0) field.refuse("no texture", "the index of a texture");
   Field set = field["texCoord"];
   const Field transform = field.extension("KHR_texture_transform");
   if (transform.present()) {

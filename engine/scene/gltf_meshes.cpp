@@ -18,7 +18,8 @@ bool check_length(const std::vector<T>& list, std::size_t expected, Field field)
   if (list.empty() && !field.present()) return true;
   if (field.report().failed()) return false;
   if (list.size() == expected) return true;
-  field.fail_with("{} elements found, but POSITION has {}", list.size(), expected);
+  field.refuse(fmt::format("{} elements", list.size()),
+               fmt::format("{}, as in POSITION", expected));
   return false;
 }
 
@@ -51,7 +52,8 @@ void load_influences(Loading& loading, Field attributes, Primitive& out) {
     const Field w = attributes[fmt::format("WEIGHTS_{}", set)];
     if (!j.present() && !w.present()) break;
     if (j.present() != w.present()) {
-      attributes.fail_with("JOINTS_{} and WEIGHTS_{} are accepted together only", set, set);
+      attributes.refuse(fmt::format("one of JOINTS_{} and WEIGHTS_{}", set, set),
+                        "both or neither");
       return;
     }
     joints.push_back(loading.resources.joints(j));
@@ -121,7 +123,8 @@ void load_indices(Loading& loading, Field field, Mode mode, Primitive& out) {
   }
   const auto largest = std::max_element(indices.begin(), indices.end());
   if (largest != indices.end() && *largest >= out.positions.size()) {
-    field.fail_with("index {} found, but there are {} vertices", *largest, out.positions.size());
+    field.refuse(fmt::format("index {}", *largest),
+                 fmt::format("an index below {}, the number of vertices", out.positions.size()));
     return;
   }
   out.topology = topology_of(mode);
@@ -196,8 +199,9 @@ void load_meshes(Loading& loading) {
       if (drawn) mesh.primitives.push_back(std::move(primitive));
       const std::size_t n_targets = mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
       if (drawn && mesh.primitives.back().targets.size() != n_targets) {
-        primitives.at(k).fail_with("{} morph targets found, the mesh's first primitive has {}",
-                                   mesh.primitives.back().targets.size(), n_targets);
+        primitives.at(k).refuse(
+            fmt::format("{} morph targets", mesh.primitives.back().targets.size()),
+            fmt::format("{}, as in the mesh's first primitive", n_targets));
         return;
       }
     }

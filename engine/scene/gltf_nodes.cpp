@@ -37,7 +37,8 @@ void load_instances(Loading& loading, Field field, Node& out) {
   const std::size_t n = std::max({translations.size(), rotations.size(), scales.size()});
   for (const std::size_t length : {translations.size(), rotations.size(), scales.size()})
     if (length != 0 && length != n)
-      attributes.fail_with("instance attributes of different lengths, {} and {}", length, n);
+      attributes.refuse(fmt::format("attributes of {} and {} instances", length, n),
+                        "one number for all");
   if (loading.report.failed() || !loading.resources.charge(n * sizeof(Mat4), attributes)) return;
   for (std::size_t i = 0; i < n; ++i) {
     Node instance;
@@ -83,8 +84,9 @@ void link_parents(Loading& loading) {
     for (std::size_t k = 0; k < nodes[i].children.size(); ++k) {
       const int child = nodes[i].children[k];
       if (nodes[child].parent >= 0) {
-        fields.at(i)["children"].at(k).fail_with("node {} has two parents, {} and {}", child,
-                                                 nodes[child].parent, i);
+        fields.at(i)["children"].at(k).refuse(
+            fmt::format("node {} as the child of nodes {} and {}", child, nodes[child].parent, i),
+            "one parent");
         return;
       }
       nodes[child].parent = static_cast<int>(i);
@@ -103,7 +105,7 @@ void link_parents(Loading& loading) {
   }
   if (n_reached == nodes.size()) return;
   const auto looped = std::find(reached.begin(), reached.end(), false) - reached.begin();
-  fields.at(looped).fail("the node is its own ancestor");
+  fields.at(looped).refuse("a node that is its own ancestor", "a tree");
 }
 
 // The largest joint that each mesh uses, -1 where it uses none. Once a mesh: many nodes may share
@@ -123,8 +125,8 @@ void check_joints(Loading& loading, std::size_t node_index, const std::vector<in
   const int n_joints = static_cast<int>(loading.model.skins[node.skin].joints.size());
   const Field field = loading.root["nodes"].at(node_index);
   if (largest[node.mesh] >= n_joints)
-    field["skin"].fail_with("the mesh uses joint {}, but skin {} has {}", largest[node.mesh],
-                            node.skin, n_joints);
+    field["skin"].refuse(fmt::format("joint {} in the mesh", largest[node.mesh]),
+                         fmt::format("joints of skin {}, which has {}", node.skin, n_joints));
   if (largest[node.mesh] >= 0) return;
   field.note_with("a skin on a mesh without joints is ignored");
   node.skin = -1;
@@ -149,12 +151,12 @@ void load_skins(Loading& loading) {
     field["skeleton"].index(n_nodes, "nodes");
     for (std::size_t k = 0; k < joints.size(); ++k)
       skin.joints.push_back(joints.at(k).index(n_nodes, "nodes"));
-    if (skin.joints.empty()) field.fail("a skin without joints");
+    if (skin.joints.empty()) field.refuse("no joints", "one or more");
     const Field inverse_bind = field["inverseBindMatrices"];
     if (inverse_bind.present()) skin.inverse_bind = loading.resources.matrices(inverse_bind);
     if (inverse_bind.present() && skin.inverse_bind.size() < skin.joints.size())
-      inverse_bind.fail_with("{} matrices found for {} joints", skin.inverse_bind.size(),
-                             skin.joints.size());
+      inverse_bind.refuse(fmt::format("{} matrices", skin.inverse_bind.size()),
+                          fmt::format("one for each of {} joints", skin.joints.size()));
     skin.inverse_bind.resize(skin.joints.size(), Mat4(1.0));
     loading.model.skins.push_back(std::move(skin));
   }
@@ -179,7 +181,8 @@ void load_roots(Loading& loading) {
     const int node = nodes.at(i).index(model.nodes.size(), "nodes");
     if (node < 0) return;
     if (model.nodes[node].parent >= 0) {
-      nodes.at(i).fail_with("node {} is no root, its parent is {}", node, model.nodes[node].parent);
+      nodes.at(i).refuse(fmt::format("node {}, a child of node {}", node, model.nodes[node].parent),
+                         "nodes without a parent");
       return;
     }
     if (!seen[node]) model.roots.push_back(node);

@@ -6,6 +6,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/image_file.hpp"
 #include "engine/scene/shapes.hpp"
@@ -18,8 +19,8 @@ constexpr std::uint32_t kNoVertex = ~0u;
 
 Status check_size(std::size_t rows, std::size_t columns, const std::string& name) {
   if (rows < 2 || columns < 2 || rows > kMaxHeightfieldSamples / columns)
-    return bad_input("{}: {} x {} samples; accepted: 2 x 2 to {} in all", name, rows, columns,
-                     kMaxHeightfieldSamples);
+    return refusal(name, fmt::format("{} x {} samples", rows, columns),
+                   fmt::format("2 x 2 to {} in all", kMaxHeightfieldSamples));
   return {};
 }
 
@@ -31,8 +32,8 @@ Result<Heightfield> read_asc(const std::filesystem::path& path) {
 Result<Heightfield> read_npy_field(const std::filesystem::path& path) {
   NERITIC_TRY(const NpyArray array, read_npy(path));
   if (array.shape.size() != 2)
-    return bad_input("{}: an array of {} dimensions; accepted: 2 (rows, columns)", path.string(),
-                     array.shape.size());
+    return refusal(path.string(), fmt::format("an array of {} dimensions", array.shape.size()),
+                   "2 (rows, columns)");
   NERITIC_TRY_STATUS(check_size(array.shape[0], array.shape[1], path.string()));
   Heightfield field;
   field.rows = static_cast<std::uint32_t>(array.shape[0]);
@@ -46,8 +47,8 @@ Result<Heightfield> read_npy_field(const std::filesystem::path& path) {
 Result<Heightfield> read_png_field(const std::filesystem::path& path) {
   NERITIC_TRY(const ImageU16 image, read_image16(path));
   if (image.channels != 1)
-    return bad_input("{}: {} channels; accepted: a 16-bit PNG of one grey channel", path.string(),
-                     image.channels);
+    return refusal(path.string(), fmt::format("{} channels", image.channels),
+                   "a 16-bit PNG of one grey channel");
   NERITIC_TRY_STATUS(check_size(image.height, image.width, path.string()));
   Heightfield field;
   field.rows = image.height;
@@ -62,8 +63,8 @@ Result<Heightfield> read_by_kind(const std::filesystem::path& path) {
   if (extension == ".asc") return read_asc(path);
   if (extension == ".npy") return read_npy_field(path);
   if (extension == ".png") return read_png_field(path);
-  return bad_input("{}: found '{}'; accepted: a heightfield as .asc, .npy or 16-bit .png",
-                   path.string(), printable(extension));
+  return refusal(path.string(), fmt::format("'{}'", printable(extension)),
+                 "a heightfield as .asc, .npy or 16-bit .png");
 }
 
 // A sample's height; NaN outside the field and where there is no data.
@@ -126,19 +127,20 @@ Result<Heightfield> read_heightfield(const std::filesystem::path& path,
   NERITIC_TRY(Heightfield field, read_by_kind(path));
   if (options.cell_m > 0.0) field.cell_m = options.cell_m;
   if (!(field.cell_m > 0.0))
-    return bad_input("{}: the file has no cell size; accepted: cell_m, in metres", path.string());
+    return refusal(path.string(), "no cell size in the file", "the key cell_m, in metres");
   bool any = false;
   for (std::size_t i = 0; i < field.heights_m.size(); ++i) {
     float& height = field.heights_m[i];
     if (std::isnan(height)) continue;
     height = static_cast<float>(height * options.scale + options.offset_m);
     if (!(std::abs(height) <= kMaxHeight_m))
-      return bad_input("{}: row {}, column {}: height {} m; accepted: {} to {} or no data",
-                       path.string(), i / field.columns, i % field.columns, height, -kMaxHeight_m,
-                       kMaxHeight_m);
+      return refusal(
+          fmt::format("{}: row {}, column {}", path.string(), i / field.columns, i % field.columns),
+          fmt::format("height {} m", height),
+          fmt::format("{} to {} or no data", -kMaxHeight_m, kMaxHeight_m));
     any = true;
   }
-  if (!any) return bad_input("{}: no sample has data", path.string());
+  if (!any) return refusal(path.string(), "no height", "one sample with data or more");
   return field;
 }
 

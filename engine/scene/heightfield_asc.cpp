@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/shapes.hpp"
 
@@ -66,19 +67,20 @@ bool set_header(Header& header, const std::string& key, double value) {
 
 Status check_header(Header& header, const std::string& name) {
   for (const auto& [key, value] : {std::pair("ncols", header.columns), {"nrows", header.rows}}) {
-    if (!value) return bad_input("{}: the header has no {}", name, key);
+    if (!value) return refusal(name, fmt::format("no {} in the header", key), "one");
     if (!(*value >= 2.0 && *value <= kMaxAscSide && *value == std::floor(*value)))
-      return bad_input("{}: {}: found {}; accepted: a whole number from 2 to {}", name, key, *value,
-                       kMaxAscSide);
+      return refusal(fmt::format("{}: {}", name, key), fmt::format("{}", *value),
+                     fmt::format("a whole number from 2 to {}", kMaxAscSide));
   }
   if (!header.cell_m && header.dx_m) {
     if (header.dy_m && *header.dy_m != *header.dx_m)
-      return bad_input("{}: dx {} and dy {} differ; accepted: square cells", name, *header.dx_m,
-                       *header.dy_m);
+      return refusal(name, fmt::format("dx {} and dy {}", *header.dx_m, *header.dy_m),
+                     "square cells");
     header.cell_m = header.dx_m;
   }
   if (header.cell_m && !(*header.cell_m > 0.0 && std::isfinite(*header.cell_m)))
-    return bad_input("{}: cellsize: found {}; accepted: a positive number", name, *header.cell_m);
+    return refusal(fmt::format("{}: cellsize", name), fmt::format("{}", *header.cell_m),
+                   "a positive number");
   return {};
 }
 
@@ -94,13 +96,12 @@ Result<Heightfield> parse_asc(std::string_view text, const std::string& name) {
     const std::string_view value_word = words.next();
     const auto value = parse_number(value_word);
     if (!value)
-      return bad_input("{}:{}: {}: found '{}'; accepted: a number", name, line, printable(key),
-                       printable(value_word));
+      return refusal(fmt::format("{}:{}: {}", name, line, printable(key)),
+                     fmt::format("'{}'", printable(value_word)), "a number");
     if (!set_header(header, key, *value))
-      return bad_input(
-          "{}:{}: '{}' is not a key of an ESRI grid; accepted: ncols, nrows, xllcorner, yllcorner, "
-          "xllcenter, yllcenter, cellsize, dx, dy, nodata_value",
-          name, line, printable(key));
+      return refusal(fmt::format("{}:{}", name, line), fmt::format("'{}'", printable(key)),
+                     "ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, dx, dy, "
+                     "nodata_value");
   }
   NERITIC_TRY_STATUS(check_header(header, name));
 
@@ -111,24 +112,24 @@ Result<Heightfield> parse_asc(std::string_view text, const std::string& name) {
   const std::size_t count = std::size_t{field.columns} * field.rows;
   // A forged header cannot exhaust the memory: a number takes two characters at least.
   if (count > text.size() / 2 + 1 || count > kMaxHeightfieldSamples)
-    return bad_input(
-        "{}: {} x {} numbers announced; accepted: as many as the file holds, at most {}", name,
-        field.columns, field.rows, kMaxHeightfieldSamples);
+    return refusal(name, fmt::format("a header for {} x {} numbers", field.columns, field.rows),
+                   fmt::format("as many as the file holds, at most {}", kMaxHeightfieldSamples));
   field.heights_m.reserve(count);
   for (; !word.empty(); word = words.next()) {
     const auto value = parse_number(word);
     if (!value)
-      return bad_input("{}:{}: found '{}'; accepted: a number", name, words.line(),
-                       printable(word));
+      return refusal(fmt::format("{}:{}", name, words.line()), fmt::format("'{}'", printable(word)),
+                     "a number");
     if (field.heights_m.size() == count)
-      return bad_input("{}:{}: more than ncols x nrows = {} numbers", name, words.line(), count);
+      return refusal(fmt::format("{}:{}", name, words.line()), "more numbers than ncols x nrows",
+                     fmt::format("{}", count));
     const bool missing = std::isnan(*value) || *value == header.no_data;
     field.heights_m.push_back(missing ? std::numeric_limits<float>::quiet_NaN()
                                       : static_cast<float>(*value));
   }
   if (field.heights_m.size() != count)
-    return bad_input("{}: {} numbers; accepted: ncols x nrows = {}", name, field.heights_m.size(),
-                     count);
+    return refusal(name, fmt::format("{} numbers", field.heights_m.size()),
+                   fmt::format("ncols x nrows = {}", count));
   return field;
 }
 

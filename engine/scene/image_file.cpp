@@ -4,6 +4,7 @@
 #include "engine/scene/image_file.hpp"
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file_jpeg.hpp"
 #include "engine/scene/image_file_png.hpp"
 
@@ -13,7 +14,8 @@ Result<ImageU8> decode_image8(std::span<const std::byte> bytes, const std::strin
                               std::uint32_t channels) {
   if (is_png(bytes)) return decode_png8(bytes, name, channels);
   if (is_jpeg(bytes)) return decode_jpeg(bytes, name, channels);
-  return bad_input("{}: no PNG or JPEG picture ({} bytes)", name, bytes.size());
+  return refusal(name, fmt::format("{} bytes of another kind", bytes.size()),
+                 "a PNG or JPEG picture");
 }
 
 PictureSize peek_size(std::span<const std::byte> bytes) {

@@ -10,6 +10,7 @@
 #include <exception>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file.hpp"
 #include "engine/scene/image_file_limits.hpp"
 
@@ -97,8 +98,8 @@ Status check_window(const std::string& name, const WindowSize& size) {
   if (size.width < 1 || size.height < 1 || size.width > kMaxImageSide ||
       size.height > kMaxImageSide ||
       static_cast<std::uint64_t>(size.width * size.height) > kMaxImagePixels)
-    return bad_input("{}: {} x {} pixels, at most {} x {} and 2^28 in all are accepted", name,
-                     size.width, size.height, kMaxImageSide, kMaxImageSide);
+    return refusal(name, fmt::format("{} x {} pixels", size.width, size.height),
+                   fmt::format("at most {} x {} and 2^28 in all", kMaxImageSide, kMaxImageSide));
   return {};
 }
 
@@ -112,31 +113,32 @@ Result<ExrImage> read_channels(std::span<const std::byte> bytes, const std::stri
   NERITIC_TRY_STATUS(check_window(name, {width, height}));
   NERITIC_TRY_STATUS(check_window(name, whole));
   if (!window.intersects(display))
-    return bad_input("{}: none of its pixels lie in its display window of {} x {}", name,
-                     whole.width, whole.height);
+    return refusal(
+        name, "no pixel in the display window",
+        fmt::format("a data window inside its {} x {} pixels", whole.width, whole.height));
   ExrImage out;
   const Imf::ChannelList& channels = file.header().channels();
   for (auto it = channels.begin(); it != channels.end(); ++it) {
     if (it.channel().xSampling != 1 || it.channel().ySampling != 1)
-      return bad_input("{}: channel {} is subsampled, full resolution is accepted", name,
-                       it.name());
+      return refusal(name, fmt::format("the subsampled channel {}", it.name()), "full resolution");
     out.names.emplace_back(it.name());
   }
   const std::uint64_t n_channels = out.names.size();
   if (n_channels < 1 || n_channels > kMaxChannels)
-    return bad_input("{}: {} channels, 1 to {} are accepted", name, n_channels, kMaxChannels);
+    return refusal(name, fmt::format("{} channels", n_channels),
+                   fmt::format("1 to {}", kMaxChannels));
   // A crop to almost nothing is usual, so the file's size says nothing of the display window.
   if (window != display &&
       static_cast<std::uint64_t>(whole.width * whole.height) * n_channels > kMaxCroppedValues)
-    return bad_input(
-        "{}: a display window of {} x {} x {} values, at most 2^28 are accepted where the data "
-        "window is another",
-        name, whole.width, whole.height, n_channels);
+    return refusal(name,
+                   fmt::format("a display window of {} x {} x {} values", whole.width, whole.height,
+                               n_channels),
+                   "at most 2^28 if the data window differs");
   const std::uint64_t n_bytes =
       static_cast<std::uint64_t>(width * height) * n_channels * sizeof(float);
   if (n_bytes > bytes.size() * kMaxRatio + kRatioSlackBytes)
-    return bad_input("{}: {} x {} x {} values cannot come from {} bytes", name, width, height,
-                     n_channels, bytes.size());
+    return refusal(name, fmt::format("{} x {} x {} values", width, height, n_channels),
+                   fmt::format("as many as can come from {} bytes", bytes.size()));
   sort_channels(out.names);
   out.image = ImageF32(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
                        static_cast<std::uint32_t>(n_channels));
@@ -160,7 +162,7 @@ Result<ExrImage> decode_exr(std::span<const std::byte> bytes, const std::string&
     std::string reason = exception.what();
     for (char& c : reason)
       if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-    return bad_input("{}: no readable OpenEXR file: {}", name, reason);
+    return refusal(name, fmt::format("no readable OpenEXR file ({})", reason), "a whole .exr");
   }
 }
 

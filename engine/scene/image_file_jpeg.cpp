@@ -8,6 +8,7 @@
 // After jpeglib.
 #include <jerror.h>
 
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file_limits.hpp"
 
 namespace neritic::scene {
@@ -108,22 +109,22 @@ PictureSize jpeg_size(std::span<const std::byte> bytes) {
 Result<ImageU8> decode_jpeg(std::span<const std::byte> bytes, const std::string& name,
                             std::uint32_t channels) {
   JpegReader reader;
-  if (!reader.read_header(bytes)) return bad_input("{}: a broken JPEG ({})", name, reader.error());
+  if (!reader.read_header(bytes))
+    return refusal(name, fmt::format("a broken JPEG ({})", reader.error()), "a whole picture");
   const std::uint64_t width = reader.width(), height = reader.height(), pixels = width * height;
   if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide ||
       pixels > kMaxImagePixels)
-    return bad_input("{}: {} x {} pixels, at most {} x {} and 2^28 in all are accepted", name,
-                     width, height, kMaxImageSide, kMaxImageSide);
+    return refusal(name, fmt::format("{} x {} pixels", width, height),
+                   fmt::format("at most {} x {} and 2^28 in all", kMaxImageSide, kMaxImageSide));
   if (pixels > bytes.size() * kMaxPixelsPerByte + kSlackPixels)
-    return bad_input("{}: {} x {} pixels cannot come from {} bytes", name, width, height,
-                     bytes.size());
+    return refusal(name, fmt::format("{} x {} pixels", width, height),
+                   fmt::format("as many as can come from {} bytes", bytes.size()));
   note_if_heavy(name, width, height);
-  if (reader.four_inks())
-    return bad_input("{}: a JPEG of four inks (CMYK), grey or RGB is accepted", name);
+  if (reader.four_inks()) return refusal(name, "a JPEG of four inks (CMYK)", "grey or RGB");
   if (channels == 0) channels = reader.gray() ? 1 : 3;
   ImageU8 image(reader.width(), reader.height(), channels);
   if (!reader.read_pixels(channels, image.data.data()))
-    return bad_input("{}: a broken JPEG ({})", name, reader.error());
+    return refusal(name, fmt::format("a broken JPEG ({})", reader.error()), "a whole picture");
   return image;
 }
 

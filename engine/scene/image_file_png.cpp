@@ -7,6 +7,7 @@
 #include <csetjmp>
 #include <cstring>
 
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file_limits.hpp"
 
 namespace neritic::scene {
@@ -102,24 +103,25 @@ template <class T>
 Result<Raster<T>> decode_png(std::span<const std::byte> bytes, const std::string& name,
                              std::uint32_t channels, Expand expand) {
   const auto broken = [&](const Source& source) {
-    return bad_input("{}: a broken PNG ({})", name, source.reason);
+    return refusal(name, fmt::format("a broken PNG ({})", source.reason), "a whole picture");
   };
   Source source{bytes};
   PngReader reader(&source);
   if (!reader.read_header()) return broken(source);
   const std::uint64_t pixels = std::uint64_t{reader.width()} * reader.height();
   if (pixels > kMaxImagePixels)
-    return bad_input("{}: {} x {} pixels, at most 2^28 in all are accepted", name, reader.width(),
-                     reader.height());
+    return refusal(name, fmt::format("{} x {} pixels", reader.width(), reader.height()),
+                   "at most 2^28 in all");
   // row_bytes: still as stored.
   if (std::uint64_t{reader.row_bytes()} * reader.height() > bytes.size() * kMaxDeflateRatio)
-    return bad_input("{}: {} x {} pixels cannot come from {} bytes", name, reader.width(),
-                     reader.height(), bytes.size());
+    return refusal(name, fmt::format("{} x {} pixels", reader.width(), reader.height()),
+                   fmt::format("as many as can come from {} bytes", bytes.size()));
   if (!reader.set_layout(channels, 8 * sizeof(T), expand)) return broken(source);
   note_if_heavy(name, reader.width(), reader.height());
   Raster<T> image(reader.width(), reader.height(), reader.channels());
   if (reader.row_bytes() * reader.height() != image.data.size() * sizeof(T))
-    return bad_input("{}: a PNG of an unknown layout", name);
+    return refusal(name, "a PNG of an unknown layout",
+                   "grey, RGB or a palette, with or without alpha");
   if (!reader.read_rows(reinterpret_cast<png_bytep>(image.data.data()))) return broken(source);
   return image;
 }
@@ -133,11 +135,12 @@ std::uint32_t big_endian(std::span<const std::byte> bytes, std::size_t at) {
 
 // Said here in full: libpng only says "invalid IHDR data".
 Status check_size(std::span<const std::byte> bytes, const std::string& name) {
-  if (!is_png(bytes)) return bad_input("{}: no PNG picture ({} bytes)", name, bytes.size());
+  if (!is_png(bytes))
+    return refusal(name, fmt::format("{} bytes of another kind", bytes.size()), "a PNG picture");
   const auto [width, height] = png_size(bytes);
   if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide)
-    return bad_input("{}: {} x {} pixels, 1 x 1 to {} x {} are accepted", name, width, height,
-                     kMaxImageSide, kMaxImageSide);
+    return refusal(name, fmt::format("{} x {} pixels", width, height),
+                   fmt::format("1 x 1 to {} x {}", kMaxImageSide, kMaxImageSide));
   return {};
 }
 
@@ -166,7 +169,7 @@ Result<ImageU8> decode_png8(std::span<const std::byte> bytes, const std::string&
 Result<PngNumbers> decode_png_numbers(std::span<const std::byte> bytes, const std::string& name) {
   NERITIC_TRY_STATUS(check_size(bytes, name));
   if (png_bits(bytes) > 8)
-    return bad_input("{}: {} bits a channel found, at most 8 are accepted", name, png_bits(bytes));
+    return refusal(name, fmt::format("{} bits a channel", png_bits(bytes)), "at most 8");
   PngNumbers out;
   NERITIC_TRY(out.image, decode_png<std::uint8_t>(bytes, name, 0, Expand::kNever));
   out.palette = std::to_integer<int>(bytes[kColorTypeAt]) == PNG_COLOR_TYPE_PALETTE;
@@ -176,8 +179,7 @@ Result<PngNumbers> decode_png_numbers(std::span<const std::byte> bytes, const st
 Result<ImageU16> decode_png16(std::span<const std::byte> bytes, const std::string& name) {
   NERITIC_TRY_STATUS(check_size(bytes, name));
   if (png_bits(bytes) != 16)
-    return bad_input("{}: {} bits a channel found, a 16-bit PNG is accepted", name,
-                     png_bits(bytes));
+    return refusal(name, fmt::format("{} bits a channel", png_bits(bytes)), "a 16-bit PNG");
   return decode_png<std::uint16_t>(bytes, name, 0, Expand::kToColors);
 }
 

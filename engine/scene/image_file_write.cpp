@@ -5,6 +5,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file.hpp"
 
 namespace neritic::scene {
@@ -68,8 +69,9 @@ Status write_png(const std::filesystem::path& path, const Raster<T>& image) {
                 "{} values for {} x {} x {}", image.data.size(), image.width, image.height,
                 image.channels);
   if (image.empty())
-    return bad_input("{}: a picture of {} x {} pixels, at least 1 x 1 is accepted", path.string(),
-                     image.width, image.height);
+    return refusal(path.string(),
+                   fmt::format("a picture of {} x {} pixels", image.width, image.height),
+                   "at least 1 x 1");
   Sink sink;
   const Layout layout{image.width, image.height, image.channels, int{sizeof(T)} * 8};
   if (!encode(layout, reinterpret_cast<const png_byte*>(image.data.data()), &sink) ||

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::scene {
@@ -33,16 +34,17 @@ Result<std::vector<double>> parse_row(std::string_view row, const std::string& p
     const std::string_view word = trim(take(row, ','));
     const auto value = parse_number(word);
     if (!value || !(std::abs(*value) <= format.max_number))
-      return bad_input("{}: found '{}'; accepted: a number of at most {:g}", place, printable(word),
-                       format.max_number);
+      return refusal(place, fmt::format("'{}'", printable(word)),
+                     fmt::format("a number of at most {:g}", format.max_number));
     values.push_back(*value);
   }
   const std::size_t n = values.size();
   if (n < format.min_columns || n > format.max_columns)
-    return bad_input("{}: {} numbers; accepted: {}", place,
-                     n > format.max_columns ? fmt::format("more than {}", format.max_columns)
-                                            : std::to_string(n),
-                     format.columns);
+    return refusal(place,
+                   fmt::format("{} numbers", n > format.max_columns
+                                                 ? fmt::format("more than {}", format.max_columns)
+                                                 : std::to_string(n)),
+                   fmt::format("{}", format.columns));
   return values;
 }
 
@@ -61,10 +63,11 @@ Result<std::vector<NumberRow>> parse_rows(std::string_view text, const std::stri
     if (heading) continue;
     NERITIC_TRY(auto values, parse_row(row, fmt::format("{}:{}", name, line), format));
     if (rows.size() == format.max_rows)
-      return bad_input("{}:{}: more than {} rows", name, line, format.max_rows);
+      return refusal(fmt::format("{}:{}", name, line), "another row",
+                     fmt::format("at most {} rows", format.max_rows));
     rows.push_back({line, std::move(values)});
   }
-  if (rows.empty()) return bad_input("{}: no row; accepted: rows of {}", name, format.columns);
+  if (rows.empty()) return refusal(name, "no row", fmt::format("rows of {}", format.columns));
   return rows;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/model_lights.hpp"
 #include "engine/scene/motion.hpp"
@@ -26,10 +27,10 @@ Status find_clips(SceneDraft& draft, const std::vector<std::shared_ptr<const Mod
     }
     if (object.object.clip >= 0) continue;
     if (names.empty())
-      return bad_input("{}: found \"{}\"; accepted: none, the model has no clips",
-                       object.place_clip, printable(object.clip));
-    return bad_input("{}: found \"{}\"; accepted: a clip of the model: {}", object.place_clip,
-                     printable(object.clip), printable(join(names), 300));
+      return refusal(object.place_clip, fmt::format("\"{}\"", printable(object.clip)),
+                     "none, the model has no clips");
+    return refusal(object.place_clip, fmt::format("\"{}\"", printable(object.clip)),
+                   fmt::format("a clip of the model: {}", printable(join(names), 300)));
   }
   return {};
 }
@@ -40,9 +41,10 @@ Status number_instances(SceneDraft& draft) {
   for (ObjectDraft& object : draft.objects) {
     const std::size_t count = object.object.instance_count();
     if (count > kMaxInstances + 1 - next)
-      return bad_input(
-          "{}: {} copies make {} instances in all; accepted: at most {} (16-bit labels)",
-          object.place, count, next - 1 + count, kMaxInstances);
+      return refusal(
+          object.place,
+          fmt::format("{} copies, which make {} instances in all", count, next - 1 + count),
+          fmt::format("at most {} (16-bit labels)", kMaxInstances));
     object.object.instance = static_cast<std::uint16_t>(next);
     next += count;
   }

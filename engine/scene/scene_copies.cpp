@@ -3,6 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/number_rows.hpp"
 
 namespace neritic::scene {
@@ -23,8 +24,8 @@ Result<std::vector<Mat4>> parse_copies(std::string_view text, const std::string&
   std::vector<Mat4> copies;
   for (const NumberRow& row : rows) {
     if (row.values.size() == 5 && !(row.values[4] > 0.0))
-      return bad_input("{}:{}: scale {}; accepted: a positive number", name, row.line,
-                       row.values[4]);
+      return refusal(fmt::format("{}:{}", name, row.line), fmt::format("scale {}", row.values[4]),
+                     "a positive number");
     copies.push_back(copy_from_row(row.values));
   }
   return copies;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::scene {
@@ -69,8 +70,8 @@ class Includer {
     std::error_code error;
     const auto bytes = fs::file_size(path, error);
     if (!error && bytes > kMaxSceneBytes)
-      return bad_input("{}: {} bytes; accepted: a scene file of at most {}", path.string(), bytes,
-                       kMaxSceneBytes);
+      return refusal(path.string(), fmt::format("{} bytes", bytes),
+                     fmt::format("a scene file of at most {}", kMaxSceneBytes));
     NERITIC_TRY(const std::string text, read_text(path));
     source_.files.push_back(path.string());
     chain_.push_back(path);
@@ -84,8 +85,9 @@ class Includer {
   // Replaces what the table and its entries include by what the files hold.
   Status expand(TomlValue& table) {
     if (table.entries.size() > kMaxKeys)
-      return bad_input("{}: {} keys in a table; accepted: at most {}", source_.place(table.where),
-                       table.entries.size(), kMaxKeys);
+      return refusal(source_.place(table.where),
+                     fmt::format("{} keys in a table", table.entries.size()),
+                     fmt::format("at most {}", kMaxKeys));
     for (const std::string_view key : kIncludingArrays) {
       TomlEntry* entry = table.find(key);
       if (!entry || !entry->value.is_table_array()) continue;
@@ -126,15 +128,16 @@ class Includer {
   }
 
   Error not_a_path(const TomlValue& value) const {
-    return bad_input("{}: include: found {}; accepted: the path of a TOML file, or a list of such",
-                     source_.place(value.where), describe(value));
+    return refusal(fmt::format("{}: include", source_.place(value.where)), describe(value),
+                   "the path of a TOML file, or a list of such");
   }
 
   Error loop(const TomlValue& written, const fs::path& path) const {
     std::string chain;
     for (const fs::path& open : chain_) chain += open.filename().string() + " -> ";
-    return bad_input("{}: include: a loop: {}{}; accepted: files that do not include each other",
-                     source_.place(written.where), chain, path.filename().string());
+    return refusal(fmt::format("{}: include", source_.place(written.where)),
+                   fmt::format("a loop, {}{}", chain, path.filename().string()),
+                   "files that do not include each other");
   }
 
   SceneSource source_;

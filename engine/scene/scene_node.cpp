@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
 
@@ -72,8 +73,9 @@ Result<Model> model_of_node(const Model& model, const std::string& name) {
   if (at == model.nodes.end()) {
     std::vector<std::string_view> names;
     for (const Node& node : model.nodes) names.push_back(node.name);
-    return bad_input("{}: found node \"{}\"; accepted: a node of the file (nearest: \"{}\")",
-                     model.name, printable(name), printable(nearest(name, names)));
+    return refusal(
+        model.name, fmt::format("node \"{}\"", printable(name)),
+        fmt::format("a node of the file (nearest: \"{}\")", printable(nearest(name, names))));
   }
   const int root = static_cast<int>(at - model.nodes.begin());
   const std::vector<bool> kept = below(model, root);
@@ -93,8 +95,9 @@ Result<Model> model_of_node(const Model& model, const std::string& name) {
     if (!kept[i] || node.skin < 0) continue;
     for (const int joint : model.skins[static_cast<std::size_t>(node.skin)].joints)
       if (!kept[static_cast<std::size_t>(joint)])
-        return bad_input("{}: node \"{}\" is moved by joints outside it; accepted: the whole model",
-                         model.name, printable(name));
+        return refusal(model.name,
+                       fmt::format("node \"{}\", which joints outside it move", printable(name)),
+                       "the whole model");
   }
   Node& node = part.nodes[static_cast<std::size_t>(root)];
   if (node.parent >= 0)

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
 
@@ -40,7 +41,7 @@ class Placer {
   enum class State { kOpen, kBusy, kDone };
 
   static Error twice(const std::string& place, const std::string& name) {
-    return bad_input("{}: found \"{}\" a second time; accepted: a name of its own", place, name);
+    return refusal(place, fmt::format("\"{}\" a second time", name), "a name of its own");
   }
 
   Status check_sensor_names() const {
@@ -63,16 +64,19 @@ class Placer {
   template <class Sensor>
   static Status no_eye(const std::set<std::string>& eyes, const MountedDraft<Sensor>& view) {
     if (!eyes.contains(view.sensor.name)) return {};
-    return bad_input("{}: found \"{}\", the name of a stereo camera's eye; accepted: another",
-                     view.place, view.sensor.name);
+    return refusal(view.place,
+                   fmt::format("\"{}\", the name of a stereo camera's eye", view.sensor.name),
+                   "another");
   }
 
   Result<int> find(const std::string& name, const std::string& place) const {
     if (name.empty()) return -1;
     if (const auto at = index_.find(name); at != index_.end()) return at->second;
-    return bad_input(
-        "{}: found \"{}\"; accepted: the name of an object or vehicle{}", place, printable(name),
-        names_.empty() ? std::string() : fmt::format(" (nearest: {})", nearest(name, names_)));
+    return refusal(
+        place, fmt::format("\"{}\"", printable(name)),
+        fmt::format(
+            "the name of an object or vehicle{}",
+            names_.empty() ? std::string() : fmt::format(" (nearest: {})", nearest(name, names_))));
   }
 
   Mount& mount_of(std::size_t i) { return draft_.objects[i].object.mount; }
@@ -97,11 +101,10 @@ class Placer {
     ObjectDraft& object = draft_.objects[i];
     if (pose_state_[i] == State::kDone) return {};
     if (pose_state_[i] == State::kBusy || ++depth_ > kMaxDepth)
-      return bad_input(
-          "{}: {} hangs on itself through on or look_at; accepted: no such loop, at most "
-          "{} steps",
+      return refusal(
           object.placement.on.empty() ? object.placement.place_look_at : object.placement.place_on,
-          object.object.name, kMaxDepth);
+          fmt::format("{}, which hangs on itself through on or look_at", object.object.name),
+          fmt::format("no such loop, at most {} steps", kMaxDepth));
     pose_state_[i] = State::kBusy;
     NERITIC_TRY_STATUS(settle_parent(i));
     NERITIC_TRY_STATUS(put(object.placement, object.object.mount));
@@ -121,8 +124,9 @@ class Placer {
                                  draft_.objects[target_index].placement.pose.position_m;
     const Vec3 target_m = inverse(world_pose(parent)) * target_in_world;
     if (target_m == placement.pose.position_m)
-      return bad_input("{}: {} is at the very place it would be looked at from; accepted: another",
-                       placement.place_look_at, placement.look_at);
+      return refusal(placement.place_look_at,
+                     fmt::format("{} at the place from which it is looked at", placement.look_at),
+                     "another place");
     return look_at(placement.pose.position_m, target_m);
   }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
@@ -24,15 +25,15 @@ Status read_classes(Scene& scene, const SceneSource& source, const TomlValue* ta
   for (const TomlEntry& entry : table->entries) {
     const std::string place = source.place(entry.where) + ": classes." + printable(entry.key);
     if (!is_name(entry.key))
-      return bad_input("{}: a name of 1 to 64 letters, digits, _ and - is accepted", place);
+      return refusal(place, "a name of another form", "1 to 64 letters, digits, _ and -");
     const TomlValue& id = entry.value;
     if (id.kind != TomlValue::Kind::kInteger || id.integer < 1 || id.integer > kMaxClass)
-      return bad_input("{}: found {}; accepted: a whole number from 1 to {}", place, describe(id),
-                       kMaxClass);
+      return refusal(place, describe(id), fmt::format("a whole number from 1 to {}", kMaxClass));
     for (const auto& [other_id, other_name] : scene.class_names)
       if (other_id == id.integer || other_name == entry.key)
-        return bad_input("{}: found {}; accepted: a name and number of its own (class {} is {})",
-                         place, describe(id), other_name, other_id);
+        return refusal(
+            place, describe(id),
+            fmt::format("a name and number of its own (class {} is {})", other_name, other_id));
     scene.class_names[static_cast<std::uint16_t>(id.integer)] = entry.key;
   }
   return {};
@@ -65,9 +66,9 @@ void read_rotation(TableReader& reader, PlacementDraft& placement) {
   const int ways = int{turned} + int{reader.has("rotation_xyzw")} + int{reader.has("look_at_m")} +
                    int{reader.has("look_at")};
   if (ways > 1)
-    reader.refuse_table(
-        "more than one attitude; accepted: one of yaw_deg with pitch_deg and roll_deg, "
-        "rotation_xyzw, look_at_m, look_at");
+    reader.refuse_table("more than one attitude",
+                        "one of yaw_deg with pitch_deg and roll_deg, "
+                        "rotation_xyzw, look_at_m, look_at");
   placement.pose.rotation = from_yaw_pitch_roll(radians(reader.number("yaw_deg", 0.0, kAnyTurn)),
                                                 radians(reader.number("pitch_deg", 0.0, kAnyTurn)),
                                                 radians(reader.number("roll_deg", 0.0, kAnyTurn)));

@@ -23,8 +23,9 @@ class MissionReader {
     constexpr Key kWays[] = {"waypoints", "hold", "orbit", "follow", "stand_between"};
     const auto ways = std::ranges::count_if(kWays, [&](Key key) { return reader.has(key); });
     if (ways != 1)
-      reader.refuse_table(fmt::format("{} of {}; accepted: one of them",
-                                      ways == 0 ? "none" : "more than one", join(kWays)));
+      reader.refuse_table(
+          fmt::format("{} of {}", ways == 0 ? "none" : "more than one", join(kWays)),
+          "one of them");
     if (reader.has("waypoints")) read_waypoints(reader, mission);
     if (reader.has("hold")) reader.choice("hold", "station", std::to_array<Key>({"station"}));
     if (const TomlValue* table = reader.table("orbit")) read_orbit(reader, *table, mission);
@@ -65,8 +66,7 @@ class MissionReader {
     Facing facing;
     if (int{reader.has("heading_deg")} + int{reader.has("look_at")} + int{reader.has("look_at_m")} >
         1)
-      reader.refuse_table(
-          "more than one of heading_deg, look_at, look_at_m; accepted: one of them");
+      reader.refuse_table("more than one of heading_deg, look_at, look_at_m", "one of them");
     if (reader.has("heading_deg"))
       facing.heading_rad = radians(reader.number("heading_deg", 0.0, kAnyTurn));
     if (reader.has("look_at")) facing.look_at = read_aim(reader, "look_at");
@@ -104,7 +104,7 @@ class MissionReader {
     TableReader reader(parent.source(), table, parent.path("orbit"), kOrbitKeys);
     mission.kind = Mission::Kind::kOrbit;
     if (reader.has("object") == reader.has("point_m"))
-      reader.refuse_table("none or both of object, point_m; accepted: one of them");
+      reader.refuse_table("none or both of object, point_m", "one of them");
     else if (reader.has("object"))
       mission.target = read_aim(reader, "object");
     else

@@ -112,8 +112,9 @@ std::optional<ModelRequest> read_drawing(TableReader& reader) {
     return std::nullopt;
   }
   if (drawings != 1) {
-    reader.refuse_table(fmt::format("{} of model, shape, terrain; accepted: one of them",
-                                    drawings > 0 ? "more than one" : "none"));
+    reader.refuse_table(
+        fmt::format("{} of model, shape, terrain", drawings > 0 ? "more than one" : "none"),
+        "one of them");
     return request;
   }
   request.place = reader.place(model ? "model" : shape ? "shape" : "terrain");
@@ -160,7 +161,7 @@ void read_acoustics(TableReader& reader, Object& object) {
 
 std::vector<Mat4> read_copies(TableReader& reader) {
   if (int{reader.has("copies")} + int{reader.has("copies_file")} + int{reader.has("scatter")} > 1)
-    reader.refuse_table("more than one of copies, copies_file, scatter; accepted: one of them");
+    reader.refuse_table("more than one of copies, copies_file, scatter", "one of them");
   std::vector<Mat4> copies;
   for (const auto& row : reader.rows("copies", {3, 4, 5}, kAnyMetres)) {
     if (row.size() == 5 && !(row[4] > 0.0))

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
@@ -226,9 +227,8 @@ Status read_physics(SceneDraft& draft, const SceneSource& source, const TomlValu
   }
   if (!current) return {};
   if (!physics)
-    return bad_input(
-        "{}: current: found a table; accepted: no such key in a scene without [physics]",
-        source.place(current->where));
+    return refusal(fmt::format("{}: current", source.place(current->where)), "a table",
+                   "no such key in a scene without [physics]");
   NERITIC_TRY(draft.scene.current, read_current_table(source, *current));
   return {};
 }

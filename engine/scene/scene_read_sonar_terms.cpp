@@ -193,7 +193,7 @@ SonarGhosts read_ghosts(TableReader& reader) {
   if (!ghosts.surface) refuse_beside(reader, "surface_reflection", "without surface = true");
   if (!ghosts.bottom_m) refuse_beside(reader, "bottom_reflection", "without bottom_m");
   if (!ghosts.surface && !ghosts.bottom_m)
-    reader.refuse_table("no mirror; accepted: surface = true, bottom_m, or both");
+    reader.refuse_table("no mirror", "surface = true, bottom_m, or both");
   return ghosts;
 }
 
@@ -213,7 +213,7 @@ SonarMotion read_motion(TableReader& reader) {
   motion.pulse_s = reader.number("pulse_s", motion.pulse_s, {0, 10, true, false, "seconds"});
   if (!motion.doppler) refuse_beside(reader, "pulse_s", "without doppler = true");
   if (!motion.within_ping && !motion.doppler)
-    reader.refuse_table("no motion; accepted: within_ping = true, doppler = true, or both");
+    reader.refuse_table("no motion", "within_ping = true, doppler = true, or both");
   return motion;
 }
 

@@ -1,6 +1,7 @@
 // Reads a track: waypoints, a lawn-mower pattern or a file, at a speed or at the file's times.
 #include <algorithm>
 
+#include "engine/core/refusal.hpp"
 #include "engine/scene/number_rows.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
@@ -52,21 +53,21 @@ Quat attitude_of(const std::vector<double>& row) {
 Status take_rows(const std::vector<NumberRow>& rows, const std::string& name, TrackDraft& track,
                  std::vector<Vec3>& points) {
   const std::size_t columns = rows.front().values.size();
-  if (rows.size() < 2) return bad_input("{}: 1 row; accepted: 2 or more", name);
+  if (rows.size() < 2) return refusal(name, "1 row", "2 or more");
   for (const NumberRow& row : rows) {
     const std::vector<double>& v = row.values;
     if (v.size() != columns || (columns != 3 && columns != 4 && columns != 7))
-      return bad_input(
-          "{}:{}: {} numbers; accepted: x, y, z or t_s, x, y, z or t_s, x, y, z, yaw_deg, "
-          "pitch_deg, roll_deg, in all rows alike",
-          name, row.line, v.size());
+      return refusal(fmt::format("{}:{}", name, row.line), fmt::format("{} numbers", v.size()),
+                     "x, y, z or t_s, x, y, z or t_s, x, y, z, yaw_deg, pitch_deg, roll_deg, the "
+                     "same in all rows");
     if (columns == 3) {
       points.emplace_back(v[0], v[1], v[2]);
       continue;
     }
     if (!track.places.empty() && !(v[0] > track.places.back().time_s))
-      return bad_input("{}:{}: time {} after {}; accepted: rising times", name, row.line, v[0],
-                       track.places.back().time_s);
+      return refusal(fmt::format("{}:{}", name, row.line),
+                     fmt::format("time {} after {}", v[0], track.places.back().time_s),
+                     "rising times");
     track.places.push_back({v[0], {v[1], v[2], v[3]}});
     if (columns == 7) track.recorded.push_back(attitude_of(v));
   }
@@ -100,7 +101,7 @@ void give_times(TableReader& reader, std::vector<Vec3> points, TrackDraft& track
   if (!reader.has("speed_m_s")) reader.refuse("speed_m_s", "a number in " + kSpeed.text());
   const auto& p = waypoints.points_m;
   if (std::adjacent_find(p.begin(), p.end()) != p.end())
-    reader.refuse_table("a waypoint that is its neighbour; accepted: waypoints apart");
+    reader.refuse_table("a waypoint at the place of its neighbour", "waypoints apart");
   if (!reader.ok()) return;
   track.places = places_of(waypoints);
   if (!(track.places.back().time_s <= kMaxTime_s))
@@ -124,7 +125,7 @@ std::optional<TrackDraft> read_track(TableReader& parent) {
   if (!table) return std::nullopt;
   TableReader reader(parent.source(), *table, parent.path("track"), kTrackKeys);
   if (int{reader.has("waypoints_m")} + int{reader.has("lawn_mower")} + int{reader.has("file")} != 1)
-    reader.refuse_table("none or more than one of waypoints_m, lawn_mower, file; accepted: one");
+    reader.refuse_table("none or more than one of waypoints_m, lawn_mower, file", "one of them");
   TrackDraft track;
   std::vector<Vec3> points = read_waypoints(reader);
   if (points.empty()) points = read_lawn_mower(reader);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::scene {
@@ -81,13 +82,12 @@ void TableReader::fail(Error error) {
 
 void TableReader::refuse(Key key, std::string_view accepted) {
   const TomlValue* value = find(key);
-  fail(bad_input("{}: found {}; accepted: {}", place(key), value ? describe(*value) : "nothing",
-                 accepted));
+  fail(refusal(place(key), value ? describe(*value) : "nothing", accepted));
 }
 
-void TableReader::refuse_table(std::string_view complaint) {
-  fail(bad_input("{}: {}{}{}", source_->place(table_->where), path_, path_.empty() ? "" : ": ",
-                 complaint));
+void TableReader::refuse_table(std::string_view found, std::string_view accepted) {
+  const std::string file_line = source_->place(table_->where);
+  fail(refusal(path_.empty() ? file_line : file_line + ": " + path_, found, accepted));
 }
 
 Status TableReader::status() const {
@@ -162,9 +162,9 @@ bool TableReader::check_numbers(Key key, const TomlValue& value,
   for (const TomlValue& item : value.items)
     good = good && item.is_number() && interval.holds(item.number);
   if (!good) {
-    fail(bad_input("{}: {}: found {}; accepted: a list of {} numbers, each in {}",
-                   source_->place(value.where), path(key), describe(value), counts_text(counts),
-                   interval.text()));
+    fail(refusal(
+        fmt::format("{}: {}", source_->place(value.where), path(key)), describe(value),
+        fmt::format("a list of {} numbers, each in {}", counts_text(counts), interval.text())));
     return false;
   }
   out.reserve(value.items.size());

@@ -58,9 +58,9 @@ class TableReader {
   // A table, or nullptr where the key is absent.
   const TomlValue* table(Key key);
 
-  // Faults. accepted completes "accepted: ...".
+  // Faults. found and accepted complete "found ...; accepted: ...".
   void refuse(Key key, std::string_view accepted);
-  void refuse_table(std::string_view complaint);
+  void refuse_table(std::string_view found, std::string_view accepted);
   void fail(Error error);
 
   Status status() const;

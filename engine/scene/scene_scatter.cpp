@@ -5,6 +5,7 @@
 
 #include "engine/core/hash.hpp"
 #include "engine/core/random.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_surface.hpp"
 
@@ -90,9 +91,8 @@ Status scatter_all(SceneDraft& draft, const std::vector<std::shared_ptr<const Mo
         if (draft.objects[i].object.name == scatter.on) on = static_cast<int>(i);
       const ObjectDraft* ground = on < 0 ? nullptr : &draft.objects[static_cast<std::size_t>(on)];
       if (!ground || ground->scatter || !ground->request)
-        return bad_input(
-            "{}.on: found \"{}\"; accepted: the name of an object that is drawn, not scattered",
-            scatter.place, scatter.on);
+        return refusal(fmt::format("{}.on", scatter.place), fmt::format("\"{}\"", scatter.on),
+                       "the name of an object that is drawn, not scattered");
       auto at = surfaces.find(scatter.on);
       if (at == surfaces.end()) {
         const auto model = static_cast<std::size_t>(ground->object.model);
@@ -104,10 +104,10 @@ Status scatter_all(SceneDraft& draft, const std::vector<std::shared_ptr<const Mo
     for (std::uint64_t copy = 0; copy < scatter.count; ++copy) {
       const auto placed = draw_copy(scatter, surface, key, copy);
       if (!placed)
-        return bad_input(
-            "{}: copy {} of {} found no place in {} attempts; accepted: an area that the "
-            "surface covers and keep_out_m leaves free",
-            scatter.place, copy, scatter.count, kMaxAttempts);
+        return refusal(scatter.place,
+                       fmt::format("no place for copy {} of {} in {} attempts", copy, scatter.count,
+                                   kMaxAttempts),
+                       "an area that the surface covers and keep_out_m leaves free");
       object.object.copies.push_back(*placed);
     }
   }

@@ -1,5 +1,6 @@
 #include "engine/scene/scene_table.hpp"
 
+#include "engine/core/refusal.hpp"
 #include "engine/scene/number_rows.hpp"
 
 namespace neritic::scene {
@@ -16,11 +17,12 @@ Result<SonarTable> make_table(const Rows& rows, const TableFormat& format, Value
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::vector<double>& v = values(rows[i]);
     if (!format.x.holds(v[0]) || !format.y.holds(v[1]))
-      return bad_input("{}: found {}, {}; accepted: {} in {} and {}", place(i), v[0], v[1],
-                       format.columns, format.x.text(), format.y.text());
+      return refusal(
+          place(i), fmt::format("{}, {}", v[0], v[1]),
+          fmt::format("{} in {} and {}", format.columns, format.x.text(), format.y.text()));
     if (!table.empty() && !(v[0] > table.back()[0]))
-      return bad_input("{}: found {} after {}; accepted: {}, the first column rising", place(i),
-                       v[0], table.back()[0], format.columns);
+      return refusal(place(i), fmt::format("{} after {}", v[0], table.back()[0]),
+                     fmt::format("{}, the first column rising", format.columns));
     table.push_back({v[0], v[1]});
   }
   return table;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/sim/convex_hull.hpp"
 #include "engine/sim/plane_axes.hpp"
 
@@ -69,13 +70,15 @@ void BodyShape::add_box(const Pose& body_from_box, const Vec3& half_m) {
 
 Status BodyShape::add_hull(std::span<const Vec3> points_m, const std::string& name) {
   for (std::size_t i = 0; i < points_m.size(); ++i)
-    if (!is_finite(points_m[i])) return bad_input("{}: point {} is not finite", name, i);
+    if (!is_finite(points_m[i]))
+      return refusal(name, fmt::format("point {}, which is not finite", i), "finite numbers");
   const auto [hull, shrunk_m] = convex_hull(points_m, {.shrink = kEdgeRadius_m});
   if (hull.triangles.empty())
-    return bad_input("{}: the hull of {} points has no volume", name, points_m.size());
+    return refusal(name, fmt::format("a hull of {} points without volume", points_m.size()),
+                   "four points or more, not in a plane");
   if (hull.corners.size() > kMaxCorePoints)
-    return bad_input("{}: the hull has {} corners; accepted: up to {}", name, hull.corners.size(),
-                     kMaxCorePoints);
+    return refusal(name, fmt::format("a hull with {} corners", hull.corners.size()),
+                   fmt::format("up to {}", kMaxCorePoints));
   add({hull.corners, shrunk_m}, hull.inner_radius + shrunk_m);
   return {};
 }

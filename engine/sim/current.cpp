@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "engine/sim/current_grid.hpp"
 
 namespace neritic::sim {
@@ -11,13 +12,14 @@ namespace {
 
 Status check_speed(const char* what, const Vec3& velocity_m_s) {
   if (glm::length(velocity_m_s) <= kMaxCurrent_m_s) return {};
-  return bad_input("{} is ({}, {}, {}) m/s; accepted: up to {} m/s", what, velocity_m_s.x,
-                   velocity_m_s.y, velocity_m_s.z, kMaxCurrent_m_s);
+  return refusal(what,
+                 fmt::format("({}, {}, {}) m/s", velocity_m_s.x, velocity_m_s.y, velocity_m_s.z),
+                 fmt::format("up to {} m/s", kMaxCurrent_m_s));
 }
 
 Status check_depth(double depth_m) {
   if (std::isfinite(depth_m) && depth_m > 0.0) return {};
-  return bad_input("depth_m is {}; accepted: over 0", depth_m);
+  return refusal("depth_m", fmt::format("{}", depth_m), "above 0");
 }
 
 struct CheckCurrent {
@@ -27,7 +29,7 @@ struct CheckCurrent {
   Status operator()(const PowerLawCurrent& current) const {
     NERITIC_TRY_STATUS(check_depth(current.depth_m));
     if (!(current.exponent > 0.0 && current.exponent <= 1.0))
-      return bad_input("exponent is {}; accepted: over 0 to 1", current.exponent);
+      return refusal("exponent", fmt::format("{}", current.exponent), "above 0 to 1");
     return check_speed("surface_velocity_m_s", current.surface_velocity_m_s);
   }
   Status operator()(const LinearCurrent& current) const {

@@ -6,6 +6,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::sim {
 namespace {
@@ -45,21 +46,25 @@ Status check_grid(const GridCurrent& current) {
   const CurrentGridAxes& axes = current.axes;
   for (int axis = 0; axis < 3; ++axis)
     if (!std::isfinite(axes.spacing_m[axis]) || axes.spacing_m[axis] == 0.0)
-      return bad_input("spacing_m has {}; accepted: numbers other than 0", axes.spacing_m[axis]);
+      return refusal("spacing_m", fmt::format("{}", axes.spacing_m[axis]), "numbers other than 0");
   if (!is_finite(axes.origin_m))
-    return bad_input("origin_m is ({}, {}, {}); accepted: finite numbers", axes.origin_m.x,
-                     axes.origin_m.y, axes.origin_m.z);
+    return refusal("origin_m",
+                   fmt::format("({}, {}, {})", axes.origin_m.x, axes.origin_m.y, axes.origin_m.z),
+                   "finite numbers");
   if (!std::isfinite(axes.interval_s) || axes.interval_s <= 0.0)
-    return bad_input("interval_s is {}; accepted: over 0", axes.interval_s);
+    return refusal("interval_s", fmt::format("{}", axes.interval_s), "above 0");
   if (!std::isfinite(axes.start_s))
-    return bad_input("start_s is {}; accepted: finite numbers", axes.start_s);
+    return refusal("start_s", fmt::format("{}", axes.start_s), "finite numbers");
   if (sample_count(current) == 0 || current.velocities_m_s.size() != sample_count(current) * 3)
-    return bad_input("{} numbers for {} samples; accepted: 3 each, 1 sample or more",
-                     current.velocities_m_s.size(), sample_count(current));
+    return refusal("",
+                   fmt::format("{} numbers for {} samples", current.velocities_m_s.size(),
+                               sample_count(current)),
+                   "3 each, 1 sample or more");
   for (std::size_t i = 0; i < current.velocities_m_s.size(); ++i)
     if (!(std::abs(current.velocities_m_s[i]) <= kMaxCurrent_m_s))
-      return bad_input("sample {} has {} m/s; accepted: up to {} m/s", i / 3,
-                       current.velocities_m_s[i], kMaxCurrent_m_s);
+      return refusal(fmt::format("sample {}", i / 3),
+                     fmt::format("{} m/s", current.velocities_m_s[i]),
+                     fmt::format("up to {} m/s", kMaxCurrent_m_s));
   return {};
 }
 
@@ -105,14 +110,14 @@ Result<GridCurrent> parse_grid_current(std::span<const std::byte> bytes, const s
   NERITIC_TRY(const NpyArray array, parse_npy(bytes, name));
   const bool steady = array.shape.size() == 4;
   if ((!steady && array.shape.size() != 5) || array.shape.back() != 3)
-    return bad_input("{}: shape ({}); accepted: [time, y, z, x, 3] or [y, z, x, 3]", name,
-                     fmt::join(array.shape, ", "));
+    return refusal(name, fmt::format("shape ({})", fmt::join(array.shape, ", ")),
+                   "[time, y, z, x, 3] or [y, z, x, 3]");
   GridCurrent current;
   current.axes = axes;
   for (std::size_t i = 0; i + 1 < array.shape.size(); ++i) {
     const std::size_t extent = array.shape[i];
     if (extent == 0 || extent > kMaxFileBytes)
-      return bad_input("{}: {} samples along axis {}; accepted: 1 or more", name, extent, i);
+      return refusal(name, fmt::format("{} samples along axis {}", extent, i), "1 or more");
     current.counts[i + (steady ? 1 : 0)] = static_cast<std::uint32_t>(extent);
   }
   const std::vector<double> values = array.to_doubles();

@@ -4,20 +4,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::sim {
 
 Result<HeightGrid> HeightGrid::build(std::uint32_t columns, std::uint32_t rows, double cell_m,
                                      std::span<const float> heights_m, const std::string& name) {
   if (columns < 2 || rows < 2 || heights_m.size() != std::size_t{columns} * rows)
-    return bad_input("{}: {} heights for {} x {}; accepted: at least 2 x 2, one each", name,
-                     heights_m.size(), rows, columns);
+    return refusal(name, fmt::format("{} heights for {} x {}", heights_m.size(), rows, columns),
+                   "at least 2 x 2, one each");
   if (heights_m.size() > std::size_t{1} << 30)
-    return bad_input("{}: {} heights; accepted: up to 2^30", name, heights_m.size());
+    return refusal(name, fmt::format("{} heights", heights_m.size()), "up to 2^30");
   if (!std::isfinite(cell_m) || cell_m <= 0.0)
-    return bad_input("{}: cells of {} m; accepted: over 0", name, cell_m);
+    return refusal(name, fmt::format("cells of {} m", cell_m), "above 0");
   for (std::size_t i = 0; i < heights_m.size(); ++i)
     if (std::isinf(heights_m[i]))
-      return bad_input("{}: height {} is infinite; accepted: numbers, NaN for none", name, i);
+      return refusal(fmt::format("{}: height {}", name, i), "infinity", "numbers, NaN for none");
   HeightGrid grid;
   grid.columns_ = columns;
   grid.rows_ = rows;

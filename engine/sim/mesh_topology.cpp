@@ -6,6 +6,8 @@
 #include <map>
 #include <numeric>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::sim {
 namespace {
 
@@ -181,13 +183,14 @@ Result<TriangleMesh> TriangleMesh::build(std::span<const Vec3f> vertices_m,
                                          std::span<const std::uint32_t> indices,
                                          const std::string& name) {
   if (indices.size() % 3 != 0)
-    return bad_input("{}: {} indices; accepted: three a triangle", name, indices.size());
+    return refusal(name, fmt::format("{} indices", indices.size()), "three a triangle");
   for (std::size_t i = 0; i < indices.size(); ++i)
     if (indices[i] >= vertices_m.size())
-      return bad_input("{}: index {} is {}; accepted: less than the {} vertices", name, i,
-                       indices[i], vertices_m.size());
+      return refusal(fmt::format("{}: index {}", name, i), fmt::format("{}", indices[i]),
+                     fmt::format("below {}, the number of vertices", vertices_m.size()));
   for (std::size_t i = 0; i < vertices_m.size(); ++i)
-    if (!is_finite(Vec3(vertices_m[i]))) return bad_input("{}: vertex {} is not finite", name, i);
+    if (!is_finite(Vec3(vertices_m[i])))
+      return refusal(name, fmt::format("vertex {}, which is not finite", i), "finite numbers");
   TriangleMesh mesh;
   MeshTopology topology(mesh);
   topology.weld(vertices_m, indices);

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/sim/convex_hull.hpp"
 #include "engine/sim/static_things.hpp"
 
@@ -42,10 +43,12 @@ Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_mesh(
 Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_hull(std::span<const Vec3> points_m,
                                                                  const std::string& name) {
   for (std::size_t i = 0; i < points_m.size(); ++i)
-    if (!is_finite(points_m[i])) return bad_input("{}: point {} is not finite", name, i);
+    if (!is_finite(points_m[i]))
+      return refusal(name, fmt::format("point {}, which is not finite", i), "finite numbers");
   const ConvexHull hull = convex_hull(points_m).hull;
   if (hull.triangles.empty())
-    return bad_input("{}: the hull of {} points has no volume", name, points_m.size());
+    return refusal(name, fmt::format("a hull of {} points without volume", points_m.size()),
+                   "four points or more, not in a plane");
   std::vector<Vec3f> vertices_m(hull.corners.begin(), hull.corners.end());
   std::vector<std::uint32_t> indices;
   for (const auto& triangle : hull.triangles)

@@ -104,7 +104,7 @@ TEST(AddedMass, OfSpheroidsIsThatOfTheClosedForm) {
 }
 
 TEST(AddedMass, OfAFinIsFourteenTimesTheFoot) {
-  // A plate of .20 by .45 m on a foot of 1.03 kg.
+  // A plate of 0.20 by 0.45 m on a foot of 1.03 kg.
   const double added_kg = 0.45 * section_added_mass(1025.0, 0.10);
   EXPECT_NEAR(added_kg, 14.49, 0.005);
   EXPECT_NEAR(section_added_mass(1025.0, 0.10), 32.2013, 1e-3);

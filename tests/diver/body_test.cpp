@@ -193,7 +193,7 @@ TEST(Kinematics, VelocitiesAreThoseOfMovingPoints) {
   }
 }
 
-// 40 N at a knot in trim, 71 N with bent knees (C_d A .295 and .524 m^2), 13 to 17 % more for 5
+// 40 N at a knot in trim, 71 N with bent knees (C_d A 0.295 and 0.524 m^2), 13 to 17 % more for 5
 // degrees head up and 45 to 55 % more for 15 (Passmore and Rickers 2002); 23.5 v^2 N without gear
 // (Narita et al. 2017).
 TEST(Drag, InTrimAndOutOfItIsAsMeasured) {
@@ -218,7 +218,7 @@ TEST(Drag, GrowsWithTheSquareOfSpeed) {
 }
 
 TEST(Drag, FallingFlatItIsTheWidthOfTheBody) {
-  // .7 m^2 of width times 1.1, fins aside; the strips' own sum.
+  // 0.7 m^2 of width times 1.1, fins aside; the strips' own sum.
   Gear gear;
   gear.fins.reset();
   const Body diver = body_with(gear);

@@ -122,7 +122,7 @@ TEST(BreathRecordings, EachSensorIsHeardBetterThanByTheBaselines) {
   }
 }
 
-// The same sounds, cut into pieces of .3 to 3 s in random order: as loud, as colourful, no rhythm.
+// The same sounds, cut into pieces of 0.3 to 3 s in random order: as loud, as colourful, no rhythm.
 // One in ten is taken for breath, as the confidence that is asked promises.
 TEST(BreathRecordings, SoundsWithoutRhythmAreRefusedAsOftenAsTheConfidenceSays) {
   NERITIC_REQUIRE_SHARED(shared);

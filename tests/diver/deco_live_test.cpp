@@ -414,7 +414,7 @@ TEST(AscentRate, ARiseBetweenTwoSamplesIsOne) {
   EXPECT_EQ(alarm_after(0.6, 2.0), AscentAlarm::kNone);  // too short to be said
 }
 
-// 5 cm of noise: by the line's theory .286 m/min at 1 Hz over eleven samples; two points have 4.2.
+// 5 cm of noise: by the line's theory 0.286 m/min at 1 Hz over eleven samples; two points have 4.2.
 TEST(AscentRate, NoiseDoesNotAlarmAndARiseDoes) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.05);

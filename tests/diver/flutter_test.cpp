@@ -12,22 +12,22 @@ FlutterKick of(double amplitude_m) {
   return kick;
 }
 
-// Zamparo et al. (2002): .93 m for each beat with fins, .51 m without (swimmers without tanks).
+// Zamparo et al. (2002): 0.93 m for each beat with fins, 0.51 m without (swimmers without tanks).
 TEST(Flutter, SpeedIsProportionalToFrequencyAsPublished) {
   for (const double hz : {0.5, 0.75, 1.0, 1.4}) {
     const KickRun with = kick_steadily(fins_only(), of(0.20), hz, 24.0);
     const KickRun without = kick_steadily(no_gear(), of(0.20), hz, 24.0);
     EXPECT_NEAR(with.speed_m_s / hz, 0.93, 0.10) << hz;
     EXPECT_NEAR(without.speed_m_s / hz, 0.51, 0.08) << hz;
-    // Froude efficiency of the wave, (c + v) / 2 c: .70 and .61.
+    // Froude efficiency of the wave, (c + v) / 2 c: 0.70 and 0.61.
     const double c = 2.33 * hz;
     EXPECT_NEAR((c + with.speed_m_s) / (2.0 * c), 0.70, 0.03);
     EXPECT_NEAR((c + without.speed_m_s) / (2.0 * c), 0.61, 0.03);
   }
 }
 
-// With a tank, C_d A .295: a strip model with the same wave gives .65 m for each beat at an
-// amplitude of .30, .43 at .20 (surge alone).
+// With a tank, C_d A 0.295: a strip model with the same wave gives 0.65 m for each beat at an
+// amplitude of 0.30, 0.43 at 0.20 (surge alone).
 TEST(Flutter, ADiverSwimsHalfAMetreASecondForTheStrengthOfAPerson) {
   EXPECT_NEAR(kick_steadily(Gear{}, of(0.30), 1.0).speed_m_s, 0.65, 0.08);
   EXPECT_NEAR(kick_steadily(Gear{}, of(0.20), 1.0).speed_m_s, 0.43, 0.05);
@@ -115,7 +115,7 @@ TEST(Flutter, TheRightLegIsHalfABeatBehindTheLeft) {
     EXPECT_NEAR(a[joint_of(s)].y, b[joint_of(kMirror[s])].y, 1e-12);
 }
 
-// The error falls with the square of the step: .2 % at 240 Hz, 3.5 % at 60 Hz (joints held
+// The error falls with the square of the step: 0.2 % at 240 Hz, 3.5 % at 60 Hz (joints held
 // between).
 TEST(Flutter, SpeedDoesNotDependOnTheStep) {
   const double truth = kick_steadily(Gear{}, FlutterKick{}, 1.0, 14.0, 1.0 / 1000.0).speed_m_s;

@@ -33,7 +33,7 @@ Planned gas_planned(const DivePlanRequest& request, const std::vector<PlanTank>&
 }
 
 TEST(GasPlan, LitresOfADiveWithoutStopsAreTheHandsSum) {
-  // 18 m: .9 min down at 1.9 bar on average, 39.1 min at 2.8, 1.8 min up at 1.9.
+  // 18 m: 0.9 min down at 1.9 bar on average, 39.1 min at 2.8, 1.8 min up at 1.9.
   const Planned p = gas_planned(easy_dive(18.0, 40.0));
   ASSERT_TRUE(p.plan.stops.empty());
   EXPECT_NEAR(p.use[0].used_l, 20.0 * (0.9 * 1.9 + 39.1 * 2.8) + 17.0 * 1.8 * 1.9, 1e-9);

@@ -72,7 +72,7 @@ TEST(GasSwitch, BelowItsDepthNoGasIsBreathedAndNobodyChangesToAndFro) {
 }
 
 TEST(GasSwitch, NeverToAGasWithTooLittleOrTooMuchOxygen) {
-  // 10/70 has .18 bar of oxygen from 8 m on, and .20 from 9.9 m on.
+  // 10/70 has 0.18 bar of oxygen from 8 m on, and 0.20 from 9.9 m on.
   const Carries deep("tanks = [ { oxygen = 0.1, helium = 0.7 }, { oxygen = 0.5 } ]\n");
   EXPECT_EQ(deep.at(0, 0.0, 0.0), 1u);
   EXPECT_EQ(deep.at(1, 9.0, 9.0), 1u);
@@ -115,7 +115,7 @@ TEST(GasSwitch, WhatIsBreathedHasAtMost1650MillibarOfOxygen) {
   EXPECT_GT(most_bar, 1.64);
 }
 
-// Where the air itself has .167 bar, air is no gas to flee from.
+// Where the air itself has 0.167 bar, air is no gas to flee from.
 TEST(GasSwitch, AirIsBreathedInTheMountains) {
   Carries lake("tanks = [ {}, { oxygen = 0.5 } ]\n");
   EXPECT_EQ(lake.at(0, 0.0, 0.0), 0u);
@@ -162,7 +162,7 @@ TEST(GasSwitch, WhoGetsNothingElseTakesTheLeastOxygenAtAnyDepth) {
   }
   twin.leave(1, 5.0);
   EXPECT_EQ(twin.at(0, 70.0, 70.0), 2u);
-  // 10/70 has .14 bar at 4 m: no help; at 7 m .17 is.
+  // 10/70 has 0.14 bar at 4 m: no help; at 7 m 0.17 is.
   Carries shallow("tanks = [ {}, { oxygen = 0.1, helium = 0.7 } ]\n");
   shallow.leave(0, 1.0);
   EXPECT_EQ(shallow.at(0, 4.0, 40.0), 0u);

@@ -222,7 +222,7 @@ TEST(GazeMonitor, StaysFiniteWhateverComes) {
 }
 
 // Sample by sample against a person's marks; plain I-VT at 30 degrees a second is said to reach
-// .71.
+// 0.71.
 TEST(EyeRecording, SaccadesAgreeWithAPersonsMarksBetterThanPlainVelocityDoes) {
   NERITIC_REQUIRE_SHARED(shared);
   const auto path = shared / "data" / "recordings" / "eye_fixations" / "lookAtPoint_EL_S1_30s.csv";

@@ -44,8 +44,8 @@ TEST(Variability, ADifferenceOfExactlyFiftyDoesNotCount) {
   EXPECT_NEAR(v.sd2_ms, 0.40824829046393196, 1e-9);
 }
 
-// RR(t) = .9 + .03 sin(2 pi .1 t) + .02 sin(2 pi .25 t) s, each stamped at its end: A^2/2 of each
-// line is 450 and 200 ms^2.
+// RR(t) = 0.9 + 0.03 sin(2 pi 0.1 t) + 0.02 sin(2 pi 0.25 t) s, each stamped at its end: A^2/2 of
+// each line is 450 and 200 ms^2.
 TEST(HeartSpectrum, TwoLinesHaveThePowerOfTheirAmplitudes) {
   std::vector<Interval> intervals;
   for (double t = 0.0; t < 600.0;) {

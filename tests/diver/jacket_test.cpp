@@ -135,7 +135,7 @@ TEST(Jacket, TheReliefValveHoldsItsPressure) {
 }
 
 TEST(Jacket, FlowsAreThoseOfNozzles) {
-  // Choked: .04042 A p / sqrt(T), in SI (Shapiro 1953, eq. 4.17, of air with argon).
+  // Choked: 0.04042 A p / sqrt(T), in SI (Shapiro 1953, eq. 4.17, of air with argon).
   const double kg_s = orifice_moles_s(kAir, 1e-4, 1e5, 1e4) * molar_mass(kAir);
   EXPECT_NEAR(kg_s, 0.04041874 * 1e5 * 1e-4 / std::sqrt(293.15), 1e-4);
   // Hardly any pressure: A sqrt(2 rho dp).

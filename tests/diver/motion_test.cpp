@@ -212,8 +212,8 @@ TEST(ClosedForm, AGlideSlowsDownAsOneOverTime) {
   EXPECT_NEAR(root.position_ned_m.x, v0 * tau_s * std::log1p(2.0 / tau_s), 5e-3);
 }
 
-// One kilogram too heavy sinks at .255 m/s where C_d A is .30, at .159 where it is .77; five litres
-// too light rise at .357 flat: v = sqrt(2 F / (rho C_d A)).
+// One kilogram too heavy sinks at 0.255 m/s where C_d A is 0.30, at 0.159 where it is 0.77; five
+// litres too light rise at 0.357 flat: v = sqrt(2 F / (rho C_d A)).
 TEST(ClosedForm, SinkingAndRisingEndAtTheirTerminalSpeeds) {
   EXPECT_NEAR(std::sqrt(2.0 * 10.0 / (1025.0 * 0.30)), 0.25503, 1e-5);
   struct Case {
@@ -265,7 +265,7 @@ TEST(ClosedForm, SinkingAndRisingEndAtTheirTerminalSpeeds) {
   }
 }
 
-// White noise of a millimetre at the end of limbs of .6 m, at 120 Hz, differenced twice would be
+// White noise of a millimetre at the end of limbs of 0.6 m, at 120 Hz, differenced twice would be
 // 35 m/s^2 and kilonewtons.
 TEST(LimbFilter, SensorNoiseAtRestMovesNobody) {
   const Body body = body_with(Gear{});

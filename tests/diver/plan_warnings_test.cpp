@@ -51,11 +51,12 @@ TEST(PlanWarnings, OxygenBeyondTheTableOfCnsIsSaid) {
   };
   DivePlanRequest request = square_dive(30.0, 25.0, {0.5, 0.0});
   request.conventions.environment = {1.0, 0.1};
-  // 1.6 bar is at 22 m: 1.1 min down at 20 m/min, from 1.5 min on at 2 bar, and .8 min up at 10.
-  EXPECT_EQ(line_of(request),
-            "CNS: 24.7 min above 1.6 bar, up to 2.00 on EAN50 at 30 m, 2 min, where NOAA's table "
-            "ends; reckoned there by its last limit run on to nothing at 1.7 bar, never below a "
-            "minute: a warning and no figure");
+  // 1.6 bar is at 22 m: 1.1 min down at 20 m/min, from 1.5 min on at 2 bar, and 0.8 min up at 10.
+  EXPECT_EQ(
+      line_of(request),
+      "CNS: 24.7 min above 1.6 bar, where NOAA's table ends, up to 2.00 on EAN50 at 30 m, 2 "
+      "min; there the limit is extrapolated to zero at 1.7 bar, at least a minute: a warning, "
+      "not a figure");
   // The whole time at the bottom counts alike where the depth does not change.
   request.levels[0].leave_min = 35.0;
   EXPECT_EQ(line_of(request).substr(0, 13), "CNS: 34.7 min");
@@ -81,7 +82,9 @@ TEST(PlanWarnings, TellTheWorstAndWhere) {
   const DivePlanRequest request = square_dive(45.0, 10.0);
   const auto warnings = plan_warnings(request, plan_dive(request).value());
   ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_EQ(warnings[0].text, "gas density 7.1 g/L on air at 45 m, 2 min: above 6.2, the most");
+  EXPECT_EQ(warnings[0].text,
+            "gas density 7.1 g/L on air at 45 m, 2 min: above 6.2, the highest "
+            "acceptable");
   EXPECT_EQ(warnings[1].text, "narcotic depth 45 m on air at 45 m, 2 min: above 30");
 }
 

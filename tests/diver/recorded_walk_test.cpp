@@ -200,7 +200,7 @@ TEST_F(RecordedWalk, BonesKeepTheirLengthAndTheFootOnTheGroundItsPlace) {
           pose.hips_ned_m + pose.ned_from_body * posture[feet[side]].origin_m);
   }
   for (const std::vector<Vec3>& ankle : ankles) {
-    // On the ground: where the ankle moves at less than .25 m/s.
+    // On the ground: where the ankle moves at less than 0.25 m/s.
     std::size_t longest = 0, best = 0, run = 0;
     for (std::size_t i = 1; i < ankle.size(); ++i) {
       run = glm::distance(ankle[i], ankle[i - 1]) * kWalk_hz < 0.25 ? run + 1 : 0;

@@ -65,7 +65,7 @@ TEST(RiskProxies, DenseGasAndBreathHaveTheirPublishedLimits) {
 }
 
 // 1.4 and 1.6 bar, 80 and 100 % of the CNS limit; and too little: air at 4 500 m of altitude has
-// .121 bar, a hypoxic 10/70 at the surface .10.
+// 0.121 bar, a hypoxic 10/70 at the surface 0.10.
 TEST(RiskProxies, OxygenHasItsLimitsBothWays) {
   const auto at = [](double oxygen, double ambient_bar, double cns_percent = 0.0) {
     RiskInput in;
@@ -84,7 +84,7 @@ TEST(RiskProxies, OxygenHasItsLimitsBothWays) {
   EXPECT_EQ(at(0.21, 1.0, 81.0), RiskLevel::kRaised);
   EXPECT_EQ(at(0.21, 1.0, 101.0), RiskLevel::kHigh);
   EXPECT_EQ(at(0.21, 1.0, 151.0), RiskLevel::kSevere);
-  EXPECT_EQ(at(0.21, 0.80), RiskLevel::kRaised);  // .168
+  EXPECT_EQ(at(0.21, 0.80), RiskLevel::kRaised);  // 0.168
   EXPECT_EQ(at(0.21, 0.577), RiskLevel::kHigh);
   EXPECT_EQ(at(0.10, 0.99), RiskLevel::kSevere);
 }

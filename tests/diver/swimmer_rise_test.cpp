@@ -20,7 +20,7 @@ struct Rise {
   double rate_m_min = 0.0;                  // the fastest, as the dive computer says it
   double alarm_s = 0.0;                     // so long it said so
   double over_m = 0.0;                      // above the place
-  double risen_s = -1.0, arrived_s = -1.0;  // within .5 m of the depth, within 1 m of the place
+  double risen_s = -1.0, arrived_s = -1.0;  // within 0.5 m of the depth, within 1 m of the place
   // From a minute after arriving on, for another.
   double off_depth_m = 0.0, pitch_deg = 0.0;
 };
@@ -98,7 +98,7 @@ TEST(Swimmer, RisesNoFasterThanTaughtAndStopsAtThePlace) {
     EXPECT_LT(rise.rate_m_min, 8.5) << c.name;
     EXPECT_EQ(rise.alarm_s, 0.0) << c.name;
     EXPECT_LT(rise.over_m, 0.4) << c.name;
-    // No slower than it must, either: at .12 m/s but for the start and the end.
+    // No slower than it must, either: at 0.12 m/s but for the start and the end.
     const double fastest_s = (c.from_m - c.to_m) / 0.12;
     EXPECT_GT(rise.risen_s, 0.0) << c.name;
     EXPECT_LT(rise.risen_s, fastest_s + 15.0) << c.name;

@@ -143,7 +143,7 @@ TEST(Swimmer, AtADiversPaceItTakesTheOxygenThatIsPublished) {
 }
 
 // Why fast swims cost more than published is not the kick: wider or narrower, of a shorter or
-// longer wave, beating more with the whole leg or with the tips, at .6 m/s none takes less.
+// longer wave, beating more with the whole leg or with the tips, at 0.6 m/s none takes less.
 TEST(Swimmer, NoOtherKickTakesLessAtThatSpeed) {
   const Body body = body_with(Gear{});
   const auto watts = [&](const FlutterKick& kick) {
@@ -159,7 +159,7 @@ TEST(Swimmer, NoOtherKickTakesLessAtThatSpeed) {
       s.state = step(body, s.state, s.inputs, 1.0 / 240.0);
       if (i >= 30 * 240) way_m += s.state.root.velocity[0] / 240.0;
     }
-    // As if at .6 m/s, where a kick does not get there: power goes with the cube.
+    // As if at 0.6 m/s, where a kick does not get there: power goes with the cube.
     return (s.state.life.limb_work_j - half_j) / 30.0 * std::pow(0.6 * 30.0 / way_m, 3.0);
   };
   const double usual_w = watts({});

@@ -152,7 +152,7 @@ TEST(DiverWaterAcceleration, ADiverIsCarriedByASwell) {
     }
     return most - least;
   };
-  // The water goes to and fro by 2 * .5 / w = 1.27 m; across it a diver of about its density goes
+  // The water goes to and fro by 2 * 0.5 / w = 1.27 m; across it a diver of about its density goes
   // nearly all of that.
   const double carried_m = swell(true, kStep_s), dragged_m = swell(false, kStep_s);
   EXPECT_NEAR(carried_m, 1.27, 0.07);

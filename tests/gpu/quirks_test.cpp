@@ -23,8 +23,8 @@ TEST(QuirksOf, AreLlvmpipesByItsMesa) {
 
 TEST(QuirksOf, AreSaidInWords) {
   EXPECT_EQ(workarounds({}), "");
-  EXPECT_EQ(workarounds({true, true}), "one view a rendering, a barrier behind each timestamp");
-  EXPECT_EQ(workarounds({false, true}), "a barrier behind each timestamp");
+  EXPECT_EQ(workarounds({true, true}), "one view per rendering, a barrier after each timestamp");
+  EXPECT_EQ(workarounds({false, true}), "a barrier after each timestamp");
 }
 
 TEST_F(QuirksTest, CanBeOverridden) {

@@ -11,7 +11,7 @@ namespace neritic::render {
 namespace {
 
 TEST(WaterOptics, TenMetresFadeAsThePublishedTableSays) {
-  // exp(-10 K_d) at 600 and 450 nm: type I .0954, .8270; III .0523, .2592; 5C .0183, .0037.
+  // exp(-10 K_d) at 600 and 450 nm: type I 0.0954, 0.8270; III 0.0523, 0.2592; 5C 0.0183, 0.0037.
   const struct {
     const char* type;
     double red, blue;
@@ -60,9 +60,9 @@ TEST(WaterOptics, SightFadesFasterThanDaylightWhereWaterScatters) {
 }
 
 TEST(WaterOptics, ClosureGivesBackKdAndSeaWaterAbsorbsNoLessThanPure) {
-  // K_d = 1.04 (a + b_b) / mu_d with b_b = .5 b_water + .0183 b_particles (Morel 1974: pure water
+  // K_d = 1.04 (a + b_b) / mu_d with b_b = 0.5 b_water + 0.0183 b_particles (Morel 1974: pure water
   // scatters as much back as on), where absorption is not held at pure water's
-  // (Pope and Fry 1997: .2224, .0565, .00922 at 600, 550, 450 nm).
+  // (Pope and Fry 1997: 0.2224, 0.0565, 0.00922 at 600, 550, 450 nm).
   const Vec3 pure(.2224, .0565, .00922);
   int closed = 0;
   for (const char* type : {"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"}) {

@@ -224,10 +224,12 @@ TEST(RovExtremes, ParametersThatAreNoVehicleAreErrors) {
               HasSubstr("mass_kg: found -1; accepted: a number in"));
   EXPECT_THAT(said([](auto& p) { p.mass_kg = kNan; }), HasSubstr("mass_kg: found nan"));
   EXPECT_THAT(said([](auto& p) { p.weight_n = -5; }), HasSubstr("weight_n: found -5"));
-  EXPECT_THAT(said([](auto& p) { p.inertia_kg_m2 = Mat3(0.0); }), HasSubstr("inertia_kg_m2: with"));
+  EXPECT_THAT(said([](auto& p) { p.inertia_kg_m2 = Mat3(0.0); }),
+              HasSubstr("inertia_kg_m2: found a mass"));
   EXPECT_THAT(said([](auto& p) { p.gravity_centre_m = {0, 0, 1}; }), HasSubstr("(0, 0, 1) the ma"));
-  EXPECT_THAT(said([](auto& p) { p.added_mass(0, 1) = p.added_mass(1, 0) = 30; }),
-              HasSubstr("added_mass: with the rigid body's the matrix is singular or not"));
+  EXPECT_THAT(
+      said([](auto& p) { p.added_mass(0, 1) = p.added_mass(1, 0) = 30; }),
+      HasSubstr("added_mass: found a sum with the rigid body's mass matrix that is not positive"));
   EXPECT_THAT(said([](auto& p) { p.added_mass(2, 2) = -3; }), HasSubstr("added_mass: found -3"));
   EXPECT_THAT(said([](auto& p) { p.quadratic_damping[4] = -3; }),
               HasSubstr("quadratic_damping: found -3"));

@@ -71,14 +71,15 @@ TEST(RovVehicleFile, FaultsNameTheKeyWhatWasFoundAndWhatIsAccepted) {
   EXPECT_THAT(vehicle_fault("inertia_kg_m2 = [1, 1, 1]"),
               HasSubstr("mass_kg: not found, but needed"));
   EXPECT_THAT(vehicle_fault("mass_kg = 10\ninertia_kg_m2 = [0, 0, 0]"),
-              HasSubstr("v.toml: inertia_kg_m2: with mass 10"));
+              HasSubstr("v.toml: inertia_kg_m2: found a mass matrix that is not positive definite, "
+                        "with mass 10"));
   EXPECT_THAT(vehicle_fault(good + "added_mas = 3"),
               HasSubstr("added_mas: not known; the nearest is add"));
   EXPECT_THAT(vehicle_fault(good + "added_mass = [1, 2]"),
               HasSubstr("accepted: 6 rows of 6 numbers, or 6 of a diagonal"));
   EXPECT_THAT(vehicle_fault(good + "linear_damping = [[1,9,0,0,0,0],[9,1,0,0,0,0],[0,0,1,0,0,0],"
                                    "[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]"),
-              HasSubstr("linear_damping: adds energy"));
+              HasSubstr("linear_damping: found a matrix that adds energy"));
   EXPECT_THAT(vehicle_fault(good + "[lag]\nkind = \"slow\""),
               HasSubstr("lag.kind: found \"slow\"; accepted: none,"));
   EXPECT_THAT(vehicle_fault(good + "[[thrusters]]\nposition_m = [0, 0, 0]"),
@@ -102,7 +103,7 @@ TEST(RovVehicleFile, IncludesAreOverlaidAndLoopsAreRefused) {
   ASSERT_TRUE(write_text(folder / "loop.toml", "include = \"loop.toml\"\n").ok());
   const auto loop = read_vehicle(folder / "loop.toml", kSeaDensity);
   ASSERT_FALSE(loop.ok());
-  EXPECT_THAT(loop.error().message, HasSubstr("nested deeper than 8"));
+  EXPECT_THAT(loop.error().message, HasSubstr("found files nested deeper; accepted: 8 levels"));
   const auto over = parse_vehicle(
       "include = \"bluerov2_heavy_dynamics.toml\"\nmass_kg = 14\n[lag]\nkind = \"none\"\n",
       "v.toml", vehicles(), kSeaDensity);
@@ -228,9 +229,10 @@ TEST(RovThrustCurve, FaultsAreSaidInOneLine) {
   };
   EXPECT_EQ(said("# c\npwm_us,thrust_n_12v\n1100,-3\n1900,4\n"), "");
   EXPECT_THAT(said(""), HasSubstr("t.csv: found 0 pulse widths"));
-  EXPECT_THAT(said("pwm,thrust_n_12v\n"), HasSubstr("t.csv:1: accepted: a heading"));
+  EXPECT_THAT(said("pwm,thrust_n_12v\n"), HasSubstr("t.csv:1: found another heading"));
   EXPECT_THAT(said("pwm_us,thrust_n_v\n"), HasSubstr("t.csv:1: found column 2"));
-  EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,x\n"), HasSubstr("t.csv:2: accepted: 2 numbers"));
+  EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,x\n"),
+              HasSubstr("t.csv:2: found another row; accepted: 2 numbers"));
   EXPECT_THAT(said("pwm_us,thrust_n_12v\n1100,1\n1000,2\n"), HasSubstr("do not rise"));
 }
 

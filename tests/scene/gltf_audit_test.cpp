@@ -28,31 +28,32 @@ TEST(GltfAudit, AWholeFileHasNoNotes) {
 TEST(GltfAudit, EachBrokenRuleIsANoteWithItsPath) {
   const Json far_view = {{"buffer", 0}, {"byteOffset", 4}, {"byteLength", 1u << 30}};
   const std::vector<BrokenRule> rules = {
-      {"cameras: an empty list found", [](Json& j) { j["cameras"] = Json::array(); }},
-      {"nodes[0].children: an empty list",
+      {"cameras: found an empty list", [](Json& j) { j["cameras"] = Json::array(); }},
+      {"nodes[0].children: found an empty list",
        [](Json& j) { j["nodes"][0]["children"] = Json::array(); }},
-      {"images[0].bufferView: 9 found, there are 2 bufferViews",
+      {"images[0].bufferView: found 9; accepted: an index below 2, the number of bufferViews",
        [](Json& j) {
          j["images"] = {{{"bufferView", 9}, {"mimeType", "image/png"}}};
        }},
-      {"bufferViews[2]: no buffer found",
+      {"bufferViews[2]: found no buffer",
        [](Json& j) {
          j["bufferViews"].push_back({{"byteLength", 4}});
        }},
-      {"bytes from byte 4 found", [&](Json& j) { j["bufferViews"].push_back(far_view); }},
-      {"byteLength: 0 found",
+      {"bytes from byte 4 on; accepted: a range inside its buffer",
+       [&](Json& j) { j["bufferViews"].push_back(far_view); }},
+      {"byteLength: found 0",
        [](Json& j) {
          j["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 0}});
        }},
-      {"byteStride: 6 found, multiples of 4",
+      {"byteStride: found 6; accepted: a multiple of 4",
        [](Json& j) {
          j["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 8}, {"byteStride", 6}});
        }},
-      {"images[0].uri: ftp://a/b.png found",
+      {"images[0].uri: found ftp://a/b.png",
        [](Json& j) {
          j["images"] = {{{"uri", "ftp://a/b.png"}}};
        }},
-      {"no multiple of 4 bytes",
+      {"is a multiple of 4 bytes",
        [](Json& j) {
          j["accessors"].push_back({{"bufferView", 0},
                                    {"byteOffset", 2},
@@ -60,46 +61,46 @@ TEST(GltfAudit, EachBrokenRuleIsANoteWithItsPath) {
                                    {"count", 1},
                                    {"type", "SCALAR"}});
        }},
-      {"a matrix beside translation",
+      {"found a matrix beside translation",
        [](Json& j) {
          j["nodes"].push_back({{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
                                {"translation", {0, 0, 0}}});
        }},
-      {"weights: found without a mesh",
+      {"weights: found a value without a mesh",
        [](Json& j) {
          j["nodes"].push_back({{"weights", {1}}});
        }},
-      {"perspective and orthographic found",
+      {"found perspective and orthographic",
        [](Json& j) {
          j["cameras"] = {{{"type", "perspective"},
                           {"perspective", {{"yfov", 1}, {"znear", 1}}},
                           {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 2}, {"znear", 1}}}}};
        }},
-      {"POSITION: an accessor without min and max",
+      {"POSITION: found an accessor without min and max",
        [](Json& j) { j["accessors"][0].erase("min"); }},
-      {"WIDTH found, glTF's names",
+      {"WIDTH; accepted: glTF's names",
        [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["WIDTH"] = 0; }},
-      {"KHR_materials_unlit found, it does not belong there",
+      {"found KHR_materials_unlit; accepted: extensions that belong",
        [](Json& j) {
          j["extensionsUsed"] = {"KHR_materials_unlit"};
          j["nodes"][0]["extensions"]["KHR_materials_unlit"] = Json::object();
        }},
-      {"byteOffset: found without a bufferView",
+      {"byteOffset: found a value without a bufferView",
        [](Json& j) {
          j["accessors"].push_back(
              {{"byteOffset", 0}, {"componentType", 5126}, {"count", 1}, {"type", "SCALAR"}});
        }},
-      {"bufferViews[1].byteStride: found, but the indices in it have no stride",
+      {"bufferViews[1].byteStride: found a stride for indices; accepted: none",
        [](Json& j) {
          j["bufferViews"][1]["byteStride"] = 4;
          j["accessors"][1]["count"] = 3;
        }},
-      {"nodes[0].extensions.KHR_lights_punctual: no light found",
+      {"nodes[0].extensions.KHR_lights_punctual: found no light",
        [](Json& j) {
          j["extensionsUsed"] = {"KHR_lights_punctual"};
          j["nodes"][0]["extensions"]["KHR_lights_punctual"] = Json::object();
        }},
-      {"EXT_secret found, extensionsUsed does not name it",
+      {"found EXT_secret; accepted: extensions that extensionsUsed names",
        [](Json& j) { j["nodes"][0]["extensions"]["EXT_secret"]["a"] = 1; }},
       {"extensionsRequired does not name it",
        [](Json& j) { j["extensionsUsed"] = {"KHR_mesh_quantization"}; }},
@@ -145,26 +146,27 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
         b.vec3({0, 0, length, 0, 0, 1, 0, 0, 1, 0, 0, 1});
   };
   const std::vector<BrokenValue> values = {
-      {"accessors[0].min[1]: -0.5 found, the least value is 0",
+      {"accessors[0].min[1]: found -0.5; accepted: the least value of the data, 0",
        [](Builder& b) { b.json["accessors"][0]["min"][1] = -0.5; }},
-      {"accessors[0].max[0]: 0.99 found, the largest value is 1",
+      {"accessors[0].max[0]: found 0.99; accepted: the largest value of the data, 1",
        [](Builder& b) { b.json["accessors"][0]["max"][0] = 0.99; }},
-      {"accessors[1].max: 2 numbers found, 1 are accepted",
+      {"accessors[1].max: found 2 numbers; accepted: 1",
        [](Builder& b) {
          b.json["accessors"][1]["max"] = {3, 3};
        }},
-      {"accessors[0].min[2]: \"low\" found, a number is accepted",
+      {"accessors[0].min[2]: found \"low\"; accepted: a number",
        [](Builder& b) { b.json["accessors"][0]["min"][2] = "low"; }},
       // Seven digits, as some exporters write them.
       {"",
        [](Builder& b) {
          b.json["accessors"][b.vec3({0, 0, 0, 1.0f / 3, 0, 0})]["max"][0] = 0.3333333;
        }},
-      {"accessors[2].min[0]: 1 found, the least value is -7",
+      {"accessors[2].min[0]: found 1; accepted: the least value of the data, -7",
        [](Builder& b) {
          b.json["accessors"][b.accessor<std::int8_t>("VEC3", 3, {-7, 2, 3, 4, 5, 6})]["min"][0] = 1;
        }},
-      {"accessors[2]: 9 elements need 108 bytes from 0, but bufferViews[2] has 12",
+      {"accessors[2]: found 9 elements, 108 bytes from byte 0 on; accepted: a range inside "
+       "bufferViews[2], which has 12",
        [](Builder& b) {
          Json& accessor = b.json["accessors"][b.vec3({0, 0, 0})];
          accessor["count"] = 9;
@@ -183,7 +185,7 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
                                {"values", {{"bufferView", by}}}};
        }},
       // Zeros where there is no view, but for one.
-      {"accessors[2].min[0]: 4 found, the least value is 0",
+      {"accessors[2].min[0]: found 4; accepted: the least value of the data, 0",
        [](Builder& b) {
          const int at = b.view(std::vector<std::uint16_t>{0});
          const int by = b.view(std::vector<float>{4});
@@ -193,7 +195,7 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
                                {"indices", {{"bufferView", at}, {"componentType", 5123}}},
                                {"values", {{"bufferView", by}}}};
        }},
-      {"meshes[0].primitives[0].indices: 255 found, the largest value of its type is no index",
+      {"meshes[0].primitives[0].indices: found 255; accepted: smaller values",
        [](Builder& b) {
          auto& primitive = b.json["meshes"][0]["primitives"][0];
          primitive["attributes"]["POSITION"] = b.vec3(std::vector<float>(3 * 256, 0.0f));
@@ -205,11 +207,11 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
        [](Builder& b) {
          b.json["images"] = {{{"uri", "none.png"}}};
        }},
-      {"images[0].uri: a data URI with characters that are not base64",
+      {"images[0].uri: found a data URI with other characters than base64's",
        [](Builder& b) {
          b.json["images"] = {{{"uri", "data:image/png;base64,`"}}};
        }},
-      {"images[0]: no PNG or JPEG picture (3 bytes)",
+      {"images[0]: found 3 bytes of another kind; accepted: a PNG or JPEG picture",
        [](Builder& b) {
          b.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};
        }},
@@ -222,12 +224,12 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
        [&](Builder& b) {
          skin(b, {0, 0, 0, 1, 0, 0, 0, 1});
        }},
-      {"skins[0].inverseBindMatrices: a last row of 0, 0, 0, 4 found in matrix 1, 0, 0, 0, 1 is "
-       "accepted",
+      {"skins[0].inverseBindMatrices: found the last row 0, 0, 0, 4 in matrix 1; accepted: "
+       "0, 0, 0, 1",
        [&](Builder& b) {
          skin(b, {0, 0, 0, 1, 0, 0, 0, 4});
        }},
-      {"nodes[0].skin: its joint, node 1, is not in the shown scene",
+      {"nodes[0].skin: found joint node 1 outside the shown scene",
        [&](Builder& b) {
          skin(b, {0, 0, 0, 1, 0, 0, 0, 1});
          b.json["scenes"][0]["nodes"] = {0};

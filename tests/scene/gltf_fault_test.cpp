@@ -28,40 +28,41 @@ TEST(GltfLoader, FaultsAreNamedWithTheirPlaceInTheFile) {
     change(b);
     expect_refused(b, words);
   };
-  broken("nodes[0].mesh: 7 found, but the file has 1 meshes",
+  broken("nodes[0].mesh: found 7; accepted: an index below 1, the number of meshes",
          [](Builder& b) { b.json["nodes"][0]["mesh"] = 7; });
-  broken("nodes[0].mesh: -1 found", [](Builder& b) { b.json["nodes"][0]["mesh"] = -1; });
-  broken("nodes[0].mesh: \"a\" found", [](Builder& b) { b.json["nodes"][0]["mesh"] = "a"; });
-  broken("accessors[0]: 4000000000 elements need",
+  broken("nodes[0].mesh: found -1", [](Builder& b) { b.json["nodes"][0]["mesh"] = -1; });
+  broken("nodes[0].mesh: found \"a\"", [](Builder& b) { b.json["nodes"][0]["mesh"] = "a"; });
+  broken("accessors[0]: found 4000000000 elements",
          [](Builder& b) { b.json["accessors"][0]["count"] = 4000000000u; });
-  broken("too much for a file of this size", [](Builder& b) {
+  broken("accepted: less, for a file of this size", [](Builder& b) {
     b.json["accessors"][0]["count"] = 4000000000u;
     b.json["accessors"][0].erase("bufferView");
   });
-  broken("accessors[0]: 4 elements need 48 bytes from 8",
+  broken("accessors[0]: found 4 elements, 48 bytes from byte 8 on",
          [](Builder& b) { b.json["accessors"][0]["byteOffset"] = 8; });
-  broken("bufferViews[0]: bytes",
+  broken("bufferViews[0]: found 18446744073709551615 + ",
          [](Builder& b) { b.json["bufferViews"][0]["byteOffset"] = 18446744073709551615u; });
-  broken("bufferViews[0].byteStride: 4 found",
+  broken("bufferViews[0].byteStride: found 4",
          [](Builder& b) { b.json["bufferViews"][0]["byteStride"] = 4; });
-  broken("index 3 found, but there are 3 vertices",
+  broken("found index 3; accepted: an index below 3",
          [](Builder& b) { b.json["accessors"][0]["count"] = 3; });
-  broken("component type 5124", [](Builder& b) { b.json["accessors"][0]["componentType"] = 5124; });
-  broken("type \"VEC2\" found, VEC3 is accepted",
+  broken("found component type 5124; accepted: 5120 (int8)",
+         [](Builder& b) { b.json["accessors"][0]["componentType"] = 5124; });
+  broken("type \"VEC2\"; accepted: VEC3",
          [](Builder& b) { b.json["accessors"][0]["type"] = "VEC2"; });
-  broken("meshes[0].primitives[0].mode: 9 found",
+  broken("meshes[0].primitives[0].mode: found 9",
          [](Builder& b) { b.json["meshes"][0]["primitives"][0]["mode"] = 9; });
   broken("its own ancestor", [](Builder& b) {
     b.json["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
   });
   broken("its own ancestor", [](Builder& b) { b.json["nodes"] = {{{"children", {0}}}}; });
-  broken("has two parents", [](Builder& b) {
+  broken("accepted: one parent", [](Builder& b) {
     b.json["nodes"] = {{{"children", {2}}}, {{"children", {2}}}, Json::object()};
   });
-  broken("two parents", [](Builder& b) {
+  broken("accepted: one parent", [](Builder& b) {
     b.json["nodes"] = {{{"children", {1, 1}}}, Json::object()};
   });
-  broken("asset.version: \"1.0\"", [](Builder& b) { b.json["asset"]["version"] = "1.0"; });
+  broken("asset.version: found \"1.0\"", [](Builder& b) { b.json["asset"]["version"] = "1.0"; });
 }
 
 TEST(GltfLoader, UrisLeadBelowTheModelsFolderOnly) {

@@ -112,20 +112,21 @@ TEST(AscGrid, EveryFaultIsOneLineThatNamesIt) {
     const char* text;
     const char* message;
   } cases[] = {
-      {"", "g: the header has no ncols"},
-      {"ncols 2\n", "g: the header has no nrows"},
+      {"", "g: found no ncols in the header; accepted: one"},
+      {"ncols 2\n", "g: found no nrows in the header; accepted: one"},
       {"ncols two\n", "g:1: ncols: found 'two'; accepted: a number"},
       {"ncols 2\nnrows 1e9\n",
        "g: nrows: found 1000000000; accepted: a whole number from 2 to 32768"},
       {"ncols 2.5\nnrows 2\n", "g: ncols: found 2.5; accepted: a whole number from 2 to 32768"},
       {"ncols 2\nnrows 2\ncellsize -3\n1 1 1 1",
        "g: cellsize: found -3; accepted: a positive number"},
-      {"ncols 2\nnrows 2\ncellsize 1\n1 2\n3", "g: 3 numbers; accepted: ncols x nrows = 4"},
+      {"ncols 2\nnrows 2\ncellsize 1\n1 2\n3", "g: found 3 numbers; accepted: ncols x nrows = 4"},
       {"ncols 2\nnrows 2\ncellsize 1\n1 2\n3 4\n5", "g:6: more than ncols x nrows = 4 numbers"},
       {"ncols 2\nnrows 2\ncellsize 1\n1 2\n3 x", "g:5: found 'x'; accepted: a number"},
       {"ncols 30000\nnrows 30000\ncellsize 1\n1",
-       "g: 30000 x 30000 numbers announced; accepted: as many as the file holds, at most 16777216"},
-      {"ncols 2\nnrows 2\ndx 1\ndy 2\n1 1 1 1", "g: dx 1 and dy 2 differ; accepted: square cells"},
+       "g: found a header for 30000 x 30000 numbers; accepted: as many as the file holds, at most "
+       "16777216"},
+      {"ncols 2\nnrows 2\ndx 1\ndy 2\n1 1 1 1", "g: found dx 1 and dy 2; accepted: square cells"},
   };
   for (const auto& c : cases) {
     const auto field = parse_asc(c.text, "g");
@@ -178,15 +179,16 @@ TEST(Heightfield, FaultsNameFileAndCure) {
   ASSERT_TRUE(write_npy(scratch / "inf.npy", infinite, {2, 2}).ok());
   const std::string at = scratch.path().string() + "/";
   EXPECT_EQ(message(scratch / "a.npy", {}),
-            at + "a.npy: the file has no cell size; accepted: cell_m, in metres");
+            at + "a.npy: found no cell size in the file; accepted: the key cell_m, in metres");
   EXPECT_EQ(message(scratch / "line.npy", {1.0}),
-            at + "line.npy: an array of 1 dimensions; accepted: 2 (rows, columns)");
+            at + "line.npy: found an array of 1 dimensions; accepted: 2 (rows, columns)");
   EXPECT_EQ(message(scratch / "thin.npy", {1.0}),
-            at + "thin.npy: 1 x 4 samples; accepted: 2 x 2 to 16777216 in all");
+            at + "thin.npy: found 1 x 4 samples; accepted: 2 x 2 to 16777216 in all");
   EXPECT_EQ(message(scratch / "holes.npy", {1.0}), at + "holes.npy: no sample has data");
   EXPECT_EQ(
       message(scratch / "inf.npy", {1.0}),
-      at + "inf.npy: row 1, column 1: height inf m; accepted: -1000000 to 1000000 or no data");
+      at +
+          "inf.npy: row 1, column 1: found height inf m; accepted: -1000000 to 1000000 or no data");
   EXPECT_EQ(message(scratch / "x.tif", {1.0}),
             at + "x.tif: found '.tif'; accepted: a heightfield as .asc, .npy or 16-bit .png");
   EXPECT_EQ(message(scratch / "no.asc", {1.0}), at + "no.asc: no such file");

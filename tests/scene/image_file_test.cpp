@@ -133,7 +133,7 @@ TEST(ImageFile, ForgedHeadersAreRefused) {
   set_size(30000, 8000);
   auto read = decode_image8(bytes, "forged.png");
   ASSERT_FALSE(read.ok());
-  EXPECT_NE(read.error().message.find("cannot come from"), std::string::npos)
+  EXPECT_NE(read.error().message.find("as many as can come from"), std::string::npos)
       << read.error().message;
   bytes[29] ^= std::byte{1};
   EXPECT_NE(decode_image8(bytes, "sum.png").error().message.find("CRC"), std::string::npos);
@@ -157,7 +157,8 @@ TEST(ImageFile, OtherFilesAreNamedAsNoPicture) {
   const auto read = decode_image8(bytes_of(text), "notes.txt");
   ASSERT_FALSE(read.ok());
   EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
-  EXPECT_NE(read.error().message.find("notes.txt: no PNG or JPEG"), std::string::npos);
+  EXPECT_NE(read.error().message.find("bytes of another kind; accepted: a PNG or JPEG"),
+            std::string::npos);
   EXPECT_FALSE(decode_image8({}, "empty").ok());
 }
 

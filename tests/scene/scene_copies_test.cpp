@@ -118,7 +118,7 @@ TEST(SceneScatter, ASurfaceThatDoesNotCoverTheAreaIsRefused) {
                   .ok());
   const auto scene = load_scene(scratch / "s.toml");
   ASSERT_FALSE(scene.ok());
-  EXPECT_NE(scene.error().message.find("copy 0 of 1 found no place"), std::string::npos);
+  EXPECT_NE(scene.error().message.find("found no place for copy 0 of 1"), std::string::npos);
 }
 
 }  // namespace

@@ -83,11 +83,12 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Object, SceneError,
     testing::Values(
-        WrongLine{"[[objects]]\nname = 'a'",
-                  "s.toml:1: objects[0]: none of model, shape, terrain; accepted: one of them"},
         WrongLine{
-            SPHERE "model = 'x.glb'",
-            "s.toml:1: objects[0]: more than one of model, shape, terrain; accepted: one of them"},
+            "[[objects]]\nname = 'a'",
+            "s.toml:1: objects[0]: found none of model, shape, terrain; accepted: one of them"},
+        WrongLine{SPHERE "model = 'x.glb'",
+                  "s.toml:1: objects[0]: found more than one of model, shape, terrain; accepted: "
+                  "one of them"},
         WrongLine{"[[objects]]\nmodel = 'x.glb'",
                   "s.toml:2: objects[0].model: found \"x.glb\"; accepted: a file; x.glb is none"},
         WrongLine{
@@ -128,10 +129,10 @@ INSTANTIATE_TEST_SUITE_P(
             SPHERE "position_m = [0, 1]",
             "s.toml:3: objects[0].position_m: found [0, 1]; accepted: a list of 3 numbers, each in "
             "[-40000000, 40000000] metres"},
-        WrongLine{
-            SPHERE "yaw_deg = 1\nlook_at_m = [1, 1, 1]",
-            "s.toml:1: objects[0]: more than one attitude; accepted: one of yaw_deg with pitch_deg "
-            "and roll_deg, rotation_xyzw, look_at_m, look_at"},
+        WrongLine{SPHERE "yaw_deg = 1\nlook_at_m = [1, 1, 1]",
+                  "s.toml:1: objects[0]: found more than one attitude; accepted: one of yaw_deg "
+                  "with pitch_deg "
+                  "and roll_deg, rotation_xyzw, look_at_m, look_at"},
         WrongLine{
             SPHERE "rotation_xyzw = [0, 0, 0, 0]",
             "s.toml:3: objects[0].rotation_xyzw: found [0, 0, 0, 0]; accepted: a unit quaternion "
@@ -155,14 +156,13 @@ INSTANTIATE_TEST_SUITE_P(
             SPHERE "name = 'ball'\n" SPHERE "on = 'bal'",
             "s.toml:6: objects[1].on: found \"bal\"; accepted: the name of an object or vehicle "
             "(nearest: ball)"},
-        WrongLine{
-            SPHERE "name = 'a'\non = 'a'",
-            "s.toml:4: objects[0].on: a hangs on itself through on or look_at; accepted: no such "
-            "loop, at most 64 steps"},
-        WrongLine{
-            SPHERE "name = 'a'\nlook_at = 'a'",
-            "s.toml:4: objects[0].look_at: a is at the very place it would be looked at from; "
-            "accepted: another"},
+        WrongLine{SPHERE "name = 'a'\non = 'a'",
+                  "s.toml:4: objects[0].on: found a, which hangs on itself through on or look_at; "
+                  "accepted: no such "
+                  "loop, at most 64 steps"},
+        WrongLine{SPHERE "name = 'a'\nlook_at = 'a'",
+                  "s.toml:4: objects[0].look_at: found a at the place from which it is looked at; "
+                  "accepted: another"},
         WrongLine{
             SPHERE "copies = [[1, 2]]",
             "s.toml:3: objects[0].copies: found [1, 2]; accepted: a list of 3, 4 or 5 numbers, "
@@ -170,10 +170,10 @@ INSTANTIATE_TEST_SUITE_P(
             "in [-40000000, 40000000] metres"},
         WrongLine{SPHERE "copies = []",
                   "s.toml:3: objects[0].copies: found []; accepted: one copy or more"},
-        WrongLine{
-            SPHERE "copies = [[0,0,0]]\nscatter = {area_m = [0,0,1,1]}",
-            "s.toml:1: objects[0]: more than one of copies, copies_file, scatter; accepted: one of "
-            "them"},
+        WrongLine{SPHERE "copies = [[0,0,0]]\nscatter = {area_m = [0,0,1,1]}",
+                  "s.toml:1: objects[0]: found more than one of copies, copies_file, scatter; "
+                  "accepted: one of "
+                  "them"},
         WrongLine{
             SPHERE "copies_file = 'c.csv'",
             "s.toml:3: objects[0].copies_file: found \"c.csv\"; accepted: a file; c.csv is none"},
@@ -219,16 +219,17 @@ INSTANTIATE_TEST_SUITE_P(
                   "s.toml:3: objects[0].scatter.aling: unknown key; nearest known key: align"},
         WrongLine{SPHERE "on = 'x'\nscatter = {area_m = [0, 0, 1, 1]}",
                   "s.toml:3: objects[0].on: found \"x\"; accepted: no such key beside scatter"},
-        WrongLine{
-            SPHERE "scatter = {area_m = [0, 0, 1, 1], keep_out_m = [[0, 0, 9]]}",
-            "s.toml:3: objects[0].scatter: copy 0 of 1 found no place in 256 attempts; accepted: "
-            "an "
-            "area that the surface covers and keep_out_m leaves free"},
-        WrongLine{
-            SPHERE "copies = [[0,0,0]]\n" SPHERE "scatter = {area_m = [0, 0, 1, 1], count = 65535}",
-            "s.toml:4: objects[1].name: 65535 copies make 65536 instances in all; accepted: at "
-            "most "
-            "65535 (16-bit labels)"}),
+        WrongLine{SPHERE "scatter = {area_m = [0, 0, 1, 1], keep_out_m = [[0, 0, 9]]}",
+                  "s.toml:3: objects[0].scatter: found no place for copy 0 of 1 in 256 attempts; "
+                  "accepted: "
+                  "an "
+                  "area that the surface covers and keep_out_m leaves free"},
+        WrongLine{SPHERE "copies = [[0,0,0]]\n" SPHERE
+                         "scatter = {area_m = [0, 0, 1, 1], count = 65535}",
+                  "s.toml:4: objects[1].name: found 65535 copies, which make 65536 instances in "
+                  "all; accepted: at "
+                  "most "
+                  "65535 (16-bit labels)"}),
     wrong_line_name);
 
 INSTANTIATE_TEST_SUITE_P(

@@ -11,12 +11,14 @@ TEST(SceneInclude, ALoopIsRefusedWithItsChain) {
   const test::ScratchFolder scratch;
   ASSERT_TRUE(write_text(scratch / "b.toml", "\ninclude = 'c.toml'").ok());
   ASSERT_TRUE(write_text(scratch / "c.toml", "include = ['s.toml']").ok());
-  EXPECT_EQ(message_of(scratch, "include = 'b.toml'"),
-            "c.toml:1: include: a loop: s.toml -> b.toml -> c.toml -> s.toml; accepted: files that "
-            "do not include each other");
-  EXPECT_EQ(message_of(scratch, "[[sonars]]\ninclude = './s.toml'"),
-            "s.toml:2: include: a loop: s.toml -> s.toml; accepted: files that do not include each "
-            "other");
+  EXPECT_EQ(
+      message_of(scratch, "include = 'b.toml'"),
+      "c.toml:1: include: found a loop, s.toml -> b.toml -> c.toml -> s.toml; accepted: files that "
+      "do not include each other");
+  EXPECT_EQ(
+      message_of(scratch, "[[sonars]]\ninclude = './s.toml'"),
+      "s.toml:2: include: found a loop, s.toml -> s.toml; accepted: files that do not include each "
+      "other");
 }
 
 TEST(SceneInclude, AWrongKeyInAnIncludedFileIsToldWithThatFilesLine) {
@@ -150,7 +152,7 @@ TEST(SceneGarbage, DeepNestingIsRefusedBeforeTheStackEnds) {
 TEST(SceneGarbage, AHugeFileIsRefusedByItsSize) {
   const test::ScratchFolder scratch;
   EXPECT_EQ(message_of(scratch, std::string((4u << 20) + 1, '#')),
-            "s.toml: 4194305 bytes; accepted: a scene file of at most 4194304");
+            "s.toml: found 4194305 bytes; accepted: a scene file of at most 4194304");
 }
 
 TEST(SceneGarbage, AFolderOrNothingIsRefused) {

@@ -242,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "s.toml:6: vehicles[0].failed_thrusters: found [0]; accepted: a list "
                      "of the file's thrusters by number, each 1 to 16"},
         WrongPhysics{MISSION,
-                     "s.toml:6: vehicles[0].mission: none of waypoints, hold, orbit, follow, "
+                     "s.toml:6: vehicles[0].mission: found none of waypoints, hold, orbit, follow, "
                      "stand_between; accepted: one of them"},
         WrongPhysics{MISSION "hold = 'station'\nrepeat = true",
                      "s.toml:8: vehicles[0].mission.repeat: found true; accepted: no such key "

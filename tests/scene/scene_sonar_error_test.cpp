@@ -184,7 +184,8 @@ INSTANTIATE_TEST_SUITE_P(
             "detection = {floor_db = 3}\nkind = 'profiling'",
             ".detection: found a table; accepted: floor_db beside noise: its decibels are above "
             "it"},
-        WrongKeys{"ghosts = {}", ".ghosts: no mirror; accepted: surface = true, bottom_m, or both"},
+        WrongKeys{"ghosts = {}",
+                  ".ghosts: found no mirror; accepted: surface = true, bottom_m, or both"},
         WrongKeys{"ghosts = {surface = true, bottom_reflection = 1}",
                   ".ghosts.bottom_reflection: found 1; accepted: no such key without bottom_m"},
         WrongKeys{"ghosts = {bottom_m = 0}",
@@ -194,8 +195,9 @@ INSTANTIATE_TEST_SUITE_P(
             "sound_speed = {profile = [[0, 99]]}",
             ".sound_speed.profile: row 1: found 0, 99; accepted: depth_m, m/s in [-100, 12000] "
             "metres and [100, 10000] m/s"},
-        WrongKeys{"motion = {}",
-                  ".motion: no motion; accepted: within_ping = true, doppler = true, or both"},
+        WrongKeys{
+            "motion = {}",
+            ".motion: found no motion; accepted: within_ping = true, doppler = true, or both"},
         WrongKeys{"motion = {within_ping = true, pulse_s = 1}",
                   ".motion.pulse_s: found 1; accepted: no such key without doppler = true"},
         WrongKeys{

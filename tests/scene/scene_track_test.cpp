@@ -183,8 +183,8 @@ TEST_P(TrackError, IsTheDocumentedLine) {
 
 #define TWO "waypoints_m = [[0,0,0],[1,0,0]]"
 #define AREA "area_m = [0,0,1,1]"
-#define WAY                                                                            \
-  "s.toml:2: lamps[0].track: none or more than one of waypoints_m, lawn_mower, file; " \
+#define WAY                                                                                  \
+  "s.toml:2: lamps[0].track: found none or more than one of waypoints_m, lawn_mower, file; " \
   "accepted: one"
 
 INSTANTIATE_TEST_SUITE_P(
@@ -206,7 +206,8 @@ INSTANTIATE_TEST_SUITE_P(
              "s.toml:2: lamps[0].track.waypoints_m: found [[...]]; accepted: 2 to 100000 lists "
              "of x, y, z"},
         Case{"track = {waypoints_m = [[0,0,0],[0,0,0]], speed_m_s = 1}",
-             "s.toml:2: lamps[0].track: a waypoint that is its neighbour; accepted: waypoints "
+             "s.toml:2: lamps[0].track: found a waypoint at the place of its neighbour; accepted: "
+             "waypoints "
              "apart"},
         Case{"position_m = [0,0,1]\ntrack = {" TWO ", speed_m_s = 1}",
              "s.toml:2: lamps[0].position_m: found [0, 0, 1]; accepted: no such key beside track"},

@@ -142,10 +142,10 @@ TEST(Current, WhatAGridsFileMayNotHaveIsNamed) {
   EXPECT_TRUE(has(error_of({2, 2, 3}, 0.0, {}), "shape (2, 2, 3); accepted: [time, y, z, x, 3]"));
   EXPECT_TRUE(has(error_of({2, 2, 2, 2}, 0.0, {}), "shape (2, 2, 2, 2)"));
   EXPECT_TRUE(has(error_of({2, 0, 2, 3}, 0.0, {}), "0 samples along axis 1"));
-  EXPECT_TRUE(has(error_of({2, 1, 2, 3}, kNan, {}), "sample 3 has nan m/s"));
+  EXPECT_TRUE(has(error_of({2, 1, 2, 3}, kNan, {}), "sample 3: found nan m/s"));
   EXPECT_TRUE(has(error_of({2, 1, 2, 3}, 1e9, {}), "accepted: up to 100 m/s"));
   EXPECT_TRUE(has(error_of({1, 1, 1, 3}, 0.0, {.spacing_m = Vec3(1.0, 0.0, 1.0)}), "spacing_m"));
-  EXPECT_TRUE(has(error_of({1, 1, 1, 3}, 0.0, {.interval_s = -1.0}), "interval_s is -1"));
+  EXPECT_TRUE(has(error_of({1, 1, 1, 3}, 0.0, {.interval_s = -1.0}), "interval_s: found -1"));
 }
 
 TEST(Current, ValuesThatCannotBeAreRefused) {

@@ -256,24 +256,31 @@ TEST(StaticWorld, WhatCannotBeIsNamed) {
   };
   const std::vector<std::uint32_t> past{0, 1, 3}, two{0, 1}, good{0, 1, 2};
   EXPECT_EQ(message(builder.add_mesh(triangle, past, "wreck.glb")),
-            "wreck.glb: index 2 is 3; accepted: less than the 3 vertices");
+            "wreck.glb: index 2: found 3; accepted: below 3, the number of vertices");
   EXPECT_EQ(message(builder.add_mesh(triangle, two, "wreck.glb")),
-            "wreck.glb: 2 indices; accepted: three a triangle");
+            "wreck.glb: found 2 indices; accepted: three a triangle");
   std::vector<Vec3f> bad = triangle;
   bad[1].y = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(message(builder.add_mesh(bad, good, "wreck.glb")), "wreck.glb: vertex 1 is not finite");
+  EXPECT_EQ(message(builder.add_mesh(bad, good, "wreck.glb")),
+            "wreck.glb: found vertex 1, which is not finite; accepted: "
+            "finite numbers");
   const std::vector<Vec3> flat{Vec3(0.0), Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0),
                                Vec3(1.0, 1.0, 0.0)};
-  EXPECT_EQ(message(builder.add_hull(flat, "rock")), "rock: the hull of 4 points has no volume");
+  EXPECT_EQ(message(builder.add_hull(flat, "rock")),
+            "rock: found a hull of 4 points without volume; accepted: four "
+            "points or more, not in a plane");
   const std::vector<float> heights(4, std::numeric_limits<float>::infinity());
   EXPECT_EQ(message(builder.add_heights(2, 2, 1.0, heights, "bed")),
-            "bed: height 0 is infinite; accepted: numbers, NaN for none");
+            "bed: height 0: found infinity; accepted: numbers, NaN for none");
   EXPECT_EQ(message(builder.add_heights(3, 2, 1.0, heights, "bed")),
-            "bed: 4 heights for 2 x 3; accepted: at least 2 x 2, one each");
+            "bed: found 4 heights for 2 x 3; accepted: at least 2 x 2, one each");
   BodyShape shape;
-  EXPECT_EQ(message(shape.add_hull(flat, "hull")), "hull: the hull of 4 points has no volume");
+  EXPECT_EQ(message(shape.add_hull(flat, "hull")),
+            "hull: found a hull of 4 points without volume; accepted: four "
+            "points or more, not in a plane");
   const std::vector<Vec3> nowhere{Vec3(kNan), Vec3(1.0), Vec3(2.0), Vec3(3.0)};
-  EXPECT_EQ(message(shape.add_hull(nowhere, "hull")), "hull: point 0 is not finite");
+  EXPECT_EQ(message(shape.add_hull(nowhere, "hull")),
+            "hull: found point 0, which is not finite; accepted: finite numbers");
 }
 
 TEST(StaticWorld, HullsKeepTheirSizeButForTheirEdges) {

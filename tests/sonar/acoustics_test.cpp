@@ -97,7 +97,7 @@ TEST(SonarAbsorption, IsFiniteAndPositiveOverTheWholeRangeOfWaterAndFrequency) {
 TEST(SonarAbsorption, RefusesWhatIsNoWaterAndPassesNaNOn) {
   const auto refused = sonar::validate(Water{10, 35, -1, 8});
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().message, "water: depth is -1 m, 0 to 12000 is accepted");
+  EXPECT_EQ(refused.error().message, "water: depth: found -1 m; accepted: 0 to 12000");
   EXPECT_FALSE(sonar::validate(Water{kNaN, 35, 0, 8}).ok());
   EXPECT_FALSE(sonar::validate(Water{10, 61, 0, 8}).ok());
   EXPECT_FALSE(sonar::validate(Water{10, 35, 0, 14}).ok());

@@ -176,7 +176,7 @@ TEST(SonarQuality, MoreRangeThanBinsCanSampleIsRefused) {
   sonar.range_max_m = 5000.0;
   const Status applied = apply_quality(sonar);
   ASSERT_FALSE(applied.ok());
-  EXPECT_NE(applied.error().message.find("at most 16384 are accepted"), std::string::npos)
+  EXPECT_NE(applied.error().message.find("accepted: at most 16384"), std::string::npos)
       << applied.error().message;
 }
 

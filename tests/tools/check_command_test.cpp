@@ -40,7 +40,7 @@ TEST(CheckCommand, ALineACaseAndStatus0WhereAllHold) {
   const Said rov = checked("rov " + data("trajectories.json"));
   EXPECT_EQ(rov.status, 0) << rov.error;
   EXPECT_EQ(std::ranges::count(rov.out, '\n'), 17);
-  EXPECT_THAT(rov.out, HasSubstr("mission_40s            ok      worst "));
+  EXPECT_THAT(rov.out, HasSubstr("mission_40s            ok      error "));
   EXPECT_EQ(rov.error, "");
   const Said control = checked("control " + data("control.json"));
   EXPECT_EQ(control.status, 0) << control.error;
@@ -54,7 +54,7 @@ TEST(CheckCommand, Status1AndTheCaseWhereOneDoesNotHold) {
   ASSERT_TRUE(write_json(folder / "wrong.json", json).ok());
   const Said said = checked("rov " + (folder / "wrong.json").string());
   EXPECT_EQ(said.status, 1);
-  EXPECT_THAT(said.out, HasSubstr("surge_step             not ok  worst "));
+  EXPECT_THAT(said.out, HasSubstr("surge_step             not ok  error "));
   EXPECT_THAT(said.error, HasSubstr("wrong.json: 1 of 17 cases do not hold"));
 
   const Said for_programs = checked("rov --json " + (folder / "wrong.json").string());
@@ -91,8 +91,8 @@ TEST(CheckCommand, Status2AndOneLineWhereThereIsNothingToCheck) {
        {std::pair{"rov " + bad, bad + ": case 'a': scenarios[0].params: not found, but needed\n"},
         {std::string("rov nowhere.json"), std::string("nowhere.json: no such file\n")},
         {std::string("diver x"),
-         std::string("check: 'diver' found, rov, control or deco is accepted\n")},
-        {"rov --hz 0 " + bad, std::string("check: --hz 0 found, 1 to 100000 is accepted\n")},
+         std::string("check: found 'diver'; accepted: rov, control or deco\n")},
+        {"rov --hz 0 " + bad, std::string("check: --hz: found 0; accepted: 1 to 100000\n")},
         {"rov --integrator euler " + bad,
          std::string("found integrator 'euler'; accepted: semi_euler, rk4 or guarded\n")}}) {
     const Said said = checked(arguments);

@@ -34,8 +34,9 @@ TEST(CommandLine, AWrongFlagPointsAtTheSubcommandsHelp) {
 
 TEST(CommandLine, AFlagSaysWhatItWantsAndAMisspeltOneTheNearest) {
   EXPECT_EQ(said({"plan", "--depth", "30ft", "--time", "20"}),
-            "--depth: '30ft' found; a number is accepted: metres (see neritic plan --help)");
-  EXPECT_THAT(said({"plan", "--depth=deep"}), HasSubstr("--depth: 'deep' found; a number"));
+            "--depth: found '30ft'; accepted: a number, metres (see neritic plan --help)");
+  EXPECT_THAT(said({"plan", "--depth=deep"}),
+              HasSubstr("--depth: found 'deep'; accepted: a number"));
   EXPECT_EQ(said({"plan", "--dept", "30", "--time", "20"}),
             "--dept: no such flag; the nearest is --depth (see neritic plan --help)");
   EXPECT_THAT(said({"dive", "a.toml", "--headles"}), HasSubstr("nearest is --headless"));
@@ -68,7 +69,7 @@ TEST(CommandLine, APictureThatIsNoPngIsRefused) {
     };
     ASSERT_FALSE(with("p.jpg").ok()) << words[0];
     EXPECT_EQ(exit_status(with("p.jpg").error().code), 2);
-    EXPECT_THAT(with("p.jpg").error().message, HasSubstr("'p.jpg' found; a .png is accepted"));
+    EXPECT_THAT(with("p.jpg").error().message, HasSubstr("found 'p.jpg'; accepted: a .png"));
     EXPECT_FALSE(with("p").ok()) << words[0];
     EXPECT_TRUE(with("p.PNG").ok()) << words[0];
   }

@@ -329,7 +329,7 @@ TEST_F(DivePhysics, AParameterFileThatIsNoVehicleEndsInOneLine) {
   } files[] = {
       {"mass_kg = -13.5\ninertia_kg_m2 = [0.3, 0.2, 0.4]\n", "mass_kg: found -13.5"},
       {"mass_kg = 13.5\ninertia_kg_m2 = [0.3, 0, 0.4]\n",
-       "the mass matrix is not positive definite"},
+       "found a mass matrix that is not positive definite"},
       {"mass_kg = 13.5\ninertia_kg_m2 = [0.3, 0.2, 0.4]\nadded_mass = [[-13.5, 0, 0, 0, 0, 0], "
        "[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], "
        "[0, 0, 0, 0, 0, 0]]\n",

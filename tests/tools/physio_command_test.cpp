@@ -80,7 +80,7 @@ TEST(PhysioCommand, ARecordIsScoredAgainstItsOwnMarks) {
   EXPECT_EQ(json_in(folder / "ecg.json")["signal"], "V5");
   flags.channel = "V6";
   EXPECT_THAT(run_physio(flags).error().message,
-              HasSubstr("'V6' found, MLII, V5 or a number from 0 is accepted"));
+              HasSubstr("found 'V6'; accepted: MLII, V5 or a number from 0"));
 }
 
 TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
@@ -127,7 +127,7 @@ TEST(PhysioCommand, GazeTooSlowForSaccadesIsRefused) {
     EXPECT_EQ(done.ok(), hz == 20.0);
     if (!done.ok()) {
       EXPECT_EQ(done.error().message,
-                flags.file + ": gaze at 10 Hz found, 20 Hz or more is accepted");
+                flags.file + ": found gaze at 10 Hz; accepted: 20 Hz or more");
     }
   }
 }
@@ -205,7 +205,7 @@ TEST(PhysioCommand, SoundIsHeardUpToItsEnd) {
     const auto said = run_physio(flags);
     std::vector<double> out;
     if (!said.ok()) {
-      EXPECT_THAT(said.error().message, HasSubstr("3.0 s found, 4 s or more is accepted"));
+      EXPECT_THAT(said.error().message, HasSubstr("found 3.0 s of sound; accepted: 4 s or more"));
       return out;
     }
     const nlohmann::json json = json_in(folder / "out/breath.json");
@@ -263,7 +263,7 @@ TEST(PhysioCommand, PlayedInRealTimeItWritesWhatWasAskedFor) {
   const auto short_one = run_physio(flags);
   ASSERT_FALSE(short_one.ok());
   EXPECT_THAT(short_one.error().message,
-              HasSubstr("5.1 s found, 10 s or more is accepted with --realtime"));
+              HasSubstr("found 5.1 s of sound; accepted: 10 s or more with --realtime"));
 }
 
 TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
@@ -299,7 +299,7 @@ TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
   ASSERT_TRUE(run_physio(eyes).ok());
   EXPECT_EQ(json_in(folder / "eyes/gaze.json")["method"], "idt");
   eyes.method = "ivt";
-  EXPECT_THAT(run_physio(eyes).error().message, HasSubstr("--headset: --method ivt found"));
+  EXPECT_THAT(run_physio(eyes).error().message, HasSubstr("--headset: found --method ivt"));
 }
 
 // Unknown values are null: a heart of no beats has no rate of 0.
@@ -343,12 +343,12 @@ TEST(PhysioCommand, FilesThatAreNoneAreErrorsInWords) {
   EXPECT_THAT(message("ecg", "one.csv", "t_s,ecg\n0,1\n"), HasSubstr("no rate"));
   EXPECT_THAT(message("breath", "cut.wav", "RIFF"), HasSubstr("no RIFF and WAVE"));
   EXPECT_THAT(message("gaze", "gaze.wav", "x"), HasSubstr("gaze as .csv"));
-  EXPECT_THAT(message("ecg", "a.mp3", "x"), HasSubstr(".csv, .wav, .hea or .dat is accepted"));
-  EXPECT_THAT(message("pulse", "a.csv", "x"), HasSubstr("ecg, breath or gaze is accepted"));
+  EXPECT_THAT(message("ecg", "a.mp3", "x"), HasSubstr("accepted: .csv, .wav, .hea or .dat"));
+  EXPECT_THAT(message("pulse", "a.csv", "x"), HasSubstr("accepted: ecg, breath or gaze"));
   PhysioFlags flags;
   flags.what = "ecg";
   flags.file = folder.path().string();
-  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("a folder found"));
+  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("found a folder"));
 }
 
 TEST(PhysiologyTradeoff, TheDefaultsAreTheChoiceOfTheCurves) {

@@ -57,10 +57,10 @@ TEST_F(Picture, WithoutMatplotlibTheDataIsWrittenAndOneLineSaysWhatToInstall) {
 TEST_F(Picture, BadDataEndsInOneLine) {
   ASSERT_TRUE(write_text(folder_ / "other.json", "{\"key\": 1}\n").ok());
   EXPECT_EQ(run(kModule + " " + file("other.json")), 2);
-  EXPECT_NE(said().find("other.json: no key \"picture\" found"), std::string::npos) << said();
+  EXPECT_NE(said().find("other.json: found no key \"picture\""), std::string::npos) << said();
   ASSERT_TRUE(write_text(folder_ / "unknown.json", "{\"picture\": \"sunset\"}\n").ok());
   EXPECT_EQ(run(kModule + " " + file("unknown.json")), 2);
-  EXPECT_NE(said().find("picture \"sunset\" found; dive"), std::string::npos) << said();
+  EXPECT_NE(said().find("found picture \"sunset\"; accepted: dive"), std::string::npos) << said();
   EXPECT_EQ(run(kModule + " " + file("none.json")), 2);
   EXPECT_EQ(std::ranges::count(said(), '\n'), 1) << said();
 }

@@ -53,7 +53,7 @@ TEST(PlanCommand, APlanIsPrintedAsADiverExpectsIt) {
   EXPECT_THAT(said.out, HasSubstr("MOD of EAN50: 21.9 m at 1.6 bar"));
   EXPECT_THAT(said.out, HasSubstr("WARNING: gas density 5.6 g/L on 18/45 at 60 m"));
   EXPECT_THAT(said_by("plan --depth 18 --time 40").out,
-              HasSubstr("no stops are needed\nwithout stops: until 47 min"));
+              HasSubstr("no stops are needed\nno-stop limit: 47 min"));
 }
 
 // The picture shows each warning too, as a red line above the panels.
@@ -177,7 +177,7 @@ TEST(PlanCommand, GasIsReckonedForEachTank) {
   EXPECT_THAT(said.out,
               HasSubstr("bottom      30 m   18:30   20:00  air      0.84   5.2  30 m    1335\n"));
   EXPECT_THAT(said.out, HasSubstr("gas at 18 L/min, 15 from the ascent on"));
-  EXPECT_THAT(said.out, HasSubstr("L, 15 L at 230 bar end at "));
+  EXPECT_THAT(said.out, HasSubstr("L; a tank of 15 L at 230 bar ends at "));
   EXPECT_THAT(said.out, HasSubstr("; minimum gas at 30 m, 20 min: "));
   EXPECT_THAT(said.out, testing::Not(HasSubstr("WARNING: tank")));
   const auto gas = [](const std::string& with) {
@@ -325,25 +325,26 @@ TEST(PlanCommand, ALogOfSeveralVehiclesIsOneOfThem) {
 
 TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
   for (const auto& [arguments, error] :
-       {std::pair{"plan", "plan: no --depth and --time found; how deep (m) and how long"},
-        {"plan --depth 30", "plan: no --time found; how deep"},
-        {"plan --time 30", "plan: no --depth found; how deep"},
-        {"plan --depth 30 --time 20 --gf 0/85", "--gf: 0/85 found; 1 to 150 percent"},
+       {std::pair{"plan", "plan: found no --depth and --time; accepted: depth (m) and time"},
+        {"plan --depth 30", "plan: found no --time; accepted: depth"},
+        {"plan --time 30", "plan: found no --depth; accepted: depth"},
+        {"plan --depth 30 --time 20 --gf 0/85", "--gf: found 0/85; accepted: 1 to 150 percent"},
         {"plan --depth 30 --time 1", "30 m is reached after 1.5 min, but to be left at 1"},
         {"plan --depth nan --time 20", "found nan m until 20 min"},
         {"plan --depth 30 --time 20 --gas water", "found gas 'water'; accepted: air, o2, ean32"},
-        {"plan --depth 30 --time 20 --gas air ean50@deep", "--gas: 'deep' found, a number"},
-        {"plan --depth 30 --time 20 --gf 30", "--gf: '30' found, two percentages"},
+        {"plan --depth 30 --time 20 --gas air ean50@deep",
+         "--gas: found 'deep'; accepted: a number"},
+        {"plan --depth 30 --time 20 --gf 30", "--gf: found '30'; accepted: two percentages"},
         {"plan --depth 30 --time 20 --gf 90/30",
-         "--gf: 90/30 found; 1 to 150 percent, the first not above"},
+         "--gf: found 90/30; accepted: 1 to 150 percent, the first not above"},
         {"plan --depth 30 --time 20 --convention best",
          "found convention 'best'; accepted: stop-minutes"},
-        {"plan --depth 30 --time 20 --water beer", "--water: 'beer' found; fresh, salt"},
-        {"plan --depth 30 --time 20 --altitude 90000", "--altitude 90000 found"},
+        {"plan --depth 30 --time 20 --water beer", "--water: found 'beer'; accepted: fresh, salt"},
+        {"plan --depth 30 --time 20 --altitude 90000", "--altitude: found 90000"},
         {"plan --depth 30 --time 20 --last-stop 4",
          "found last stop 4 m; accepted: a multiple of 3 m"},
-        {"plan --depth 30 --time 20 --after 30,25", "--after: 2 numbers in '30,25' found"},
-        {"plan --depth 30 --time 20 --table z", "--table: 'z' found, b or c"},
+        {"plan --depth 30 --time 20 --after 30,25", "--after: found 2 numbers in '30,25'"},
+        {"plan --depth 30 --time 20 --table z", "--table: found 'z'; accepted: b or c"},
         {"plan --depth 30 --time 20 --ascent-rate 0", "0 up; accepted: 0.1 to 1000 m/min"},
         {"plan --depth 30 --time 20 --descent-rate 0", "rates of 0 down"},
         {"plan --depth 30 --time 20 --last-stop 0", "found last stop 0 m"},
@@ -358,17 +359,18 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
         {"plan --gas 10/70@20 --depth 60 --time 15 --travel ean32 21/35@30",
          "found bottom gas 10/70 from 20 m while 21/35 is breathed at 60 m"},
         {"plan --depth 30 --time 20 --gas ean32@50",
-         "--gas: EAN32 from 50 m found, and nothing to breathe above; EAN32, or what is"},
+         "--gas: found EAN32 from 50 m, with nothing to breathe above; accepted: a bottom"},
         {"plan --depth 60 --time 30 --level 3,60",
          "found 3 m until 60 min, above the ceiling, which is at 29.39 m on the way there; "
          "accepted: 29.4"},
-        {"plan --depth 30 --time 20 --tank air=12", "--tank: 1 numbers in '12' found"},
-        {"plan --depth 30 --time 20 --tank 12,200", "--tank: '12,200' found, GAS=LITRES,BAR"},
-        {"plan --depth 30 --time 20 --tank o2=12,200", "a tank of O2 found, which is none of"},
+        {"plan --depth 30 --time 20 --tank air=12", "--tank: found 1 numbers in '12'"},
+        {"plan --depth 30 --time 20 --tank 12,200",
+         "--tank: found '12,200'; accepted: GAS=LITRES,BAR"},
+        {"plan --depth 30 --time 20 --tank o2=12,200", "found a tank of O2; accepted: gases of"},
         {"plan --depth 30 --time 20 --rmv 0", "litres a minute: found 0; accepted: 1 to 200"},
         {"plan --log nowhere.csv --depth 40", "--log: found with --depth, --time or --level"},
         {"plan --depth 30 --time 20 --altitude 2000 --surface 1.0",
-         "--altitude and --surface: both found, one of them is accepted"},
+         "--altitude, --surface: found both; accepted: one of them"},
         {"plan --depth 30 --time 20 --vehicle diver", "--vehicle: found without --log"},
         {"plan --log nowhere.csv", "nowhere.csv: no such file"}}) {
     const PlanSaid said = said_by(arguments);

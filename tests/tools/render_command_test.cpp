@@ -71,9 +71,9 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
       {"render " + scene("pool.toml") + out + " --water 4X", "4X"},
       {"render " + scene("pool.toml") + out + " --colour red", "neritic render --help"},
       {"render " + scene("pool.toml") + out + " --frames abc",
-       "--frames: 'abc' found, 1 to 1000000 is accepted"},
+       "--frames: found 'abc'; accepted: 1 to 1000000"},
       {"render " + scene("pool.toml") + out + " --chart-cell 2000",
-       "--chart-cell: '2000' found, 0.001 to 1000 is accepted"},
+       "--chart-cell: found '2000'; accepted: 0.001 to 1000"},
       {"rendre " + scene("pool.toml"), "rendre"},
       {"render", "scene"}};
   for (const auto& c : cases) {

@@ -299,8 +299,9 @@ TEST_F(SmallImages, LabelsOfAPaletteAreItsIndices) {
   ImageU8 colored(kWidth, kHeight, 3);
   for (std::size_t i = 0; i < colored.data.size(); ++i) colored.data[i] = i % 3 == 1 ? 128 : 0;
   ASSERT_TRUE(scene::write_png8(folder_ / "colors.png", colored).ok());
-  expect_refused(words({"--labels", (folder_ / "colors.png").string()}), "colors.png: 3 channels");
-  expect_refused(with("--depth", path), "classes.png: a palette");
+  expect_refused(words({"--labels", (folder_ / "colors.png").string()}),
+                 "colors.png: found 3 channels");
+  expect_refused(with("--depth", path), "classes.png: found a palette");
   const std::vector<float> halves(kWidth * kHeight, 1.5f);
   ASSERT_TRUE(write_npy(folder_ / "halves.npy", halves, {kHeight, kWidth}).ok());
   expect_refused(words({"--labels", (folder_ / "halves.npy").string()}), "label 1.5");
@@ -366,15 +367,17 @@ TEST_F(SmallImages, WrongFlagsAreRefusedByName) {
   expect_refused(words({"--axes", "maya"}), "--axes");
   expect_refused(words({"--method", "magic"}), "--method");
   expect_refused(words({"--azimuth", "-90"}),
-                 "--azimuth: -90 degrees found, more than 0 or two edges are accepted");
-  expect_refused(words({"--elevation", "0"}), "--elevation: 0 degrees found, more than 0");
-  expect_refused(with("--intrinsics", "calib.yaml"), "fx,fy,cx,cy or a .json file is accepted");
+                 "--azimuth: found -90 degrees; accepted: more than 0, or two edges");
+  expect_refused(words({"--elevation", "0"}),
+                 "--elevation: found 0 degrees; accepted: more than 0");
+  expect_refused(with("--intrinsics", "calib.yaml"), "accepted: fx,fy,cx,cy or a .json file");
   expect_refused(words({"--seed", "-1"}), "0 to 18446744073709551615");
   expect_refused(words({"--seed", "99999999999999999999999"}), "0 to 18446744073709551615");
 }
 
 TEST_F(SmallImages, FlagsWithoutEffectAreRefused) {
-  expect_refused(words({"--seed", "2"}), "--seed: found, accepted with --sensor");
+  expect_refused(words({"--seed", "2"}),
+                 "--seed: found in a run that would ignore it; accepted: with --sensor");
   expect_refused(words({"--backscatter-db", "-30"}), "--backscatter-db: found");
   expect_refused(words({"--side", "port"}), "--side: found");
   for (const auto& [flag, value] :
@@ -382,7 +385,8 @@ TEST_F(SmallImages, FlagsWithoutEffectAreRefused) {
     auto all = words({flag, value});
     const auto at = std::find(all.begin(), all.end(), "--normals");
     all.erase(at, at + 2);
-    expect_refused(all, std::string(flag) + ": found, accepted with --normals");
+    expect_refused(
+        all, std::string(flag) + ": found in a run that would ignore it; accepted: with --normals");
   }
 }
 

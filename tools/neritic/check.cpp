@@ -5,6 +5,7 @@
 #include "diver/deco_check.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/refusal.hpp"
 #include "rov/control_check.hpp"
 #include "rov/trajectory_check.hpp"
 #include "tools/neritic/commands.hpp"
@@ -14,9 +15,9 @@ namespace {
 
 Result<std::vector<CaseResult>> check_file(const CheckFlags& flags) {
   if (flags.what != "rov" && flags.what != "control" && flags.what != "deco")
-    return bad_input("check: '{}' found, rov, control or deco is accepted", flags.what);
+    return refusal("check", fmt::format("'{}'", flags.what), "rov, control or deco");
   if (!(flags.hz >= 1.0 && flags.hz <= 1e5))
-    return bad_input("check: --hz {} found, 1 to 100000 is accepted", flags.hz);
+    return refusal("check: --hz", fmt::format("{}", flags.hz), "1 to 100000");
   NERITIC_TRY(const rov::Integrator integrator, rov::integrator_of(flags.integrator));
   NERITIC_TRY(const std::string text, read_text(flags.file));
   if (flags.what == "deco") {
@@ -49,9 +50,9 @@ std::string line_of(const CaseResult& one, std::size_t id_width) {
   const std::string unit = worst.unit.empty() ? "" : " " + worst.unit;
   const std::string when = worst.time_s > 0.0 ? fmt::format(", at {:g} s", worst.time_s) : "";
   const std::string note = one.note.empty() ? "" : "; " + one.note;
-  return fmt::format("{:<{}}  {:<6}  worst {:.2e}{} of {:.2e}{} in {}{}{}\n", name_of_case(one),
-                     id_width, one.ok() ? "ok" : "not ok", worst.error, unit, worst.tolerance, unit,
-                     worst.what, when, note);
+  return fmt::format("{:<{}}  {:<6}  error {:.2e}{} of {:.2e}{} allowed: {}{}{}\n",
+                     name_of_case(one), id_width, one.ok() ? "ok" : "not ok", worst.error, unit,
+                     worst.tolerance, unit, worst.what, when, note);
 }
 
 std::string text_of(const std::vector<CaseResult>& results) {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <memory>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/scene.hpp"
 #include "tools/neritic/commands.hpp"
@@ -22,13 +23,13 @@ Result<std::string> nothing_to_say(const Status& status) {
 
 // An empty name would be the working folder, by chance.
 std::string named(const std::string& folder) {
-  return folder.empty() ? "'' found; a folder's name is accepted" : "";
+  return folder.empty() ? found_accepted("''", "a folder's name") : "";
 }
 
 // Pictures are written in this form whatever the name says.
 std::string png_file(const std::string& file) {
   const std::string kind = lower_case(std::filesystem::path(file).extension().string());
-  return kind == ".png" ? "" : fmt::format("'{}' found; a .png is accepted", file);
+  return kind == ".png" ? "" : found_accepted(fmt::format("'{}'", file), "a .png");
 }
 
 // The parser takes the largest number for any that is larger.
@@ -36,7 +37,7 @@ std::string seed_number(const std::string& text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole ? "" : text + " found; a whole number from 0 to 18446744073709551615 is accepted";
+  return whole ? "" : found_accepted(text, "a whole number from 0 to 18446744073709551615");
 }
 
 // Numbers from least to most, in the words of every other refusal.
@@ -47,7 +48,8 @@ CLI::Validator between(T least, T most) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool good =
         error == std::errc() && end == text.data() + text.size() && value >= least && value <= most;
-    return good ? "" : fmt::format("'{}' found, {} to {} is accepted", text, least, most);
+    return good ? ""
+                : found_accepted(fmt::format("'{}'", text), fmt::format("{} to {}", least, most));
   };
   return CLI::Validator(check, fmt::format("in [{} - {}]", least, most));
 }
@@ -109,64 +111,73 @@ void add_render(CLI::App& app, Run& run) {
 
 void add_sonar_images(CLI::App& command, SonarFlags& flags) {
   command.add_option("--depth", flags.depth,
-                     "depth image: .npy, .png (8, 16 bit), .exr; or a folder of them, or a quoted "
-                     "pattern, for a frame each");
+                     "depth image: .npy, .png (8, 16 bit) or .exr; or a folder or a quoted "
+                     "pattern, one frame per file");
   command.add_option("--normals", flags.normals,
-                     "normal image, or a folder; without it, estimated from depth");
-  command.add_option("--labels", flags.labels, "class image, 0 to 65535, or a folder");
+                     "normal image, or a folder; without it normals are estimated from depth");
+  command.add_option("--labels", flags.labels, "image of class numbers, 0 to 65535, or a folder");
   command.add_option("--intrinsics", flags.intrinsics, "fx,fy,cx,cy in pixels, or a .json file")
       ->required();
-  command.add_option("--pixel-centers", flags.pixel_centers, "where cx, cy count pixel centres")
+  command
+      .add_option("--pixel-centers", flags.pixel_centers,
+                  "whether the centre of the first pixel is 0.5,0.5 (half) or 0,0 (integer)")
       ->check(CLI::IsMember({"half", "integer"}))
       ->capture_default_str();
-  command.add_option("--depth-kind", flags.depth_kind, "along the view axis, or along each ray")
+  command
+      .add_option("--depth-kind", flags.depth_kind,
+                  "depth along the view axis (planar), or along each ray (range)")
       ->check(CLI::IsMember({"planar", "range"}))
       ->capture_default_str();
-  command.add_option("--depth-scale", flags.depth_scale, "metres a unit of the depth image")
+  command.add_option("--depth-scale", flags.depth_scale, "metres per unit of the depth image")
       ->capture_default_str();
-  command.add_option("--axes", flags.axes, "of the normals")
+  command.add_option("--axes", flags.axes, "axes of the normals")
       ->check(CLI::IsMember({"opengl", "opencv", "ros"}))
       ->capture_default_str();
   command
-      .add_option("--normals-sign", flags.normals_sign, "unknown: the absolute incidence counts")
+      .add_option("--normals-sign", flags.normals_sign,
+                  "facing: normals point at the sensor; unknown: only the absolute value of the "
+                  "incidence counts")
       ->check(CLI::IsMember({"facing", "unknown"}))
       ->capture_default_str();
-  command.add_option("--gamma", flags.gamma, "of normals coded in 8 or 16 bit: n = 2 v^gamma - 1")
+  command
+      .add_option("--gamma", flags.gamma,
+                  "gamma of normals stored as 8 or 16 bit colours v: n = 2 v^gamma - 1")
       ->capture_default_str();
 }
 
 void add_sonar_device(CLI::App& command, SonarFlags& flags) {
-  command.add_option("--sensor", flags.sensor,
-                     "a sensor's file with its terms (assets/sensors); the next five override it");
+  command.add_option(
+      "--sensor", flags.sensor,
+      "file of a sensor with its terms (assets/sensors); the next five flags override its values");
   add_quality(command, flags.quality);
   command.add_option("--range", flags.range, "nearest,farthest in metres (imaging: 1,5)");
-  command.add_option("--azimuth", flags.azimuth,
-                     "full aperture in degrees, or from,to; of an echo sounder its whole cone "
-                     "(imaging: 90)");
+  command.add_option(
+      "--azimuth", flags.azimuth,
+      "full aperture in degrees, or from,to; for an echo sounder its whole cone (imaging: 90)");
   command.add_option("--elevation", flags.elevation,
                      "full aperture in degrees, or from,to (imaging: 28)");
   command.add_option("--bins", flags.bins, "range,azimuth,elevation (imaging: 500,500,500)");
   command
       .add_option("--method", flags.method,
-                  "reference: the published loop in double, no GPU; image: a side-scan line from "
-                  "a camera's picture")
+                  "reference: the published algorithm in double precision on the CPU; image: a "
+                  "side-scan line from a camera's picture")
       ->check(CLI::IsMember({"gpu", "reference", "image"}))
       ->capture_default_str();
   command
-      .add_option(
-          "--gather", flags.gather,
-          "how the GPU samples. published (the default of imaging without terms): each pixel adds "
-          "to one cell, as the published loop does; plane (the default of all others and of "
-          "scenes): each cell looks into the image, better where pixels are few")
+      .add_option("--gather", flags.gather,
+                  "how the GPU samples. published (default for imaging without terms): each pixel "
+                  "adds to one cell, as in the published algorithm; plane (default for all others "
+                  "and for scenes): each beam is intersected with the plane of a pixel, better at "
+                  "low resolution; nearest: each beam takes the nearest pixel")
       ->check(CLI::IsMember({"published", "nearest", "plane"}));
-  command.add_option("--side", flags.side, "of a side-scan: the side whose axis is the image's")
+  command.add_option("--side", flags.side, "sidescan: the side that the images look at")
       ->check(CLI::IsMember({"port", "starboard"}))
       ->capture_default_str();
   command
       .add_option("--backscatter-db", flags.backscatter_db,
-                  "Lambert strength of all surfaces, for sensors with a level")
+                  "Lambert backscatter strength of all surfaces, dB, for sensors with a level")
       ->capture_default_str();
-  command.add_option("--seed", flags.seed, "of speckle and noise")
+  command.add_option("--seed", flags.seed, "seed of speckle and noise")
       ->check(seed_number)
       ->capture_default_str();
   command.add_option("--picture", flags.picture,
@@ -174,27 +185,28 @@ void add_sonar_device(CLI::App& command, SonarFlags& flags) {
   command.add_option("--altitude", flags.altitude,
                      "with --method image: metres above a flat bottom, instead of --depth");
   command.add_flag("--incidence", flags.incidence,
-                   "with --method image: times the cosine of incidence");
+                   "with --method image: multiplies by the cosine of incidence");
 }
 
 void add_sonar(CLI::App& app, Run& run) {
   auto flags = std::make_shared<SonarFlags>();
   CLI::App* command = app.add_subcommand(
-      "sonar", "sonar images from any depth and normal images, one or a folder of them");
+      "sonar", "makes sonar images from depth and normal images: from one frame or from a folder");
   command->add_option("kind", flags->kind, "imaging, profiling, echosounder, sidescan")->required();
   add_sonar_images(*command, *flags);
   add_sonar_device(*command, *flags);
   command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
   command->add_flag("--validate", flags->validation,
-                    "run with Vulkan validation; any message is a failure");
-  command->add_flag("--no-pictures", flags->no_pictures, "without sonar.png, which takes longest");
+                    "runs with Vulkan validation; any message is a failure");
+  command->add_flag("--no-pictures", flags->no_pictures,
+                    "writes no sonar.png, which takes longest");
   command->add_flag("--overwrite", flags->overwrite,
-                    "of folders: make frames again that OUT has already");
-  command->add_option("--workers", flags->workers, "of folders: threads that read and write")
+                    "folders: makes frames again that OUT already has");
+  command->add_option("--workers", flags->workers, "folders: threads that read and write")
       ->check(between(1, 256));
   command
       ->add_option("--out", flags->out,
-                   "folder for sonar.npy, .png, .json; of a folder, one folder a frame")
+                   "folder for sonar.npy, .png, .json; for folders of images one folder per frame")
       ->required()
       ->check(named);
   command->callback([command, flags, &run] {
@@ -251,41 +263,45 @@ void add_dive(CLI::App& app, Run& run) {
 
 void add_tradeoff(CLI::App& app, Run& run) {
   auto flags = std::make_shared<TradeoffFlags>();
-  CLI::App* command =
-      app.add_subcommand("tradeoff", "error against cost of one model, with its curve");
+  CLI::App* command = app.add_subcommand(
+      "tradeoff", "measures the error of a model against its cost, over all of its settings");
   command->add_option("what", flags->what, "sonar, physics, swim, deco or physiology")->required();
-  command->add_option("--out", flags->out, "folder for tables (.csv, .md), pictures and levels")
+  command
+      ->add_option("--out", flags->out,
+                   "folder for the tables (.csv, .md), their pictures and the quality levels")
       ->required()
       ->check(named);
   command
       ->add_option("scene,--scene", flags->scene,
-                   "whose first sonar's place is taken; none: only closed forms")
+                   "sonar: the scene whose first sonar gives the place; none: only scenes with a "
+                   "closed-form answer")
       ->capture_default_str();
-  command->add_option("--kind", flags->kind,
-                      "only this: imaging, profiling, echosounder, sidescan, mechanical");
+  command->add_option(
+      "--kind", flags->kind,
+      "sonar: only this kind: imaging, profiling, echosounder, sidescan or mechanical");
   command->add_option("--recordings", flags->recordings,
-                      "physiology: a folder of paced breath too (.wav, ..._12bpm_...)");
+                      "physiology: also measures the paced breath sounds in this folder (.wav, "
+                      "rate in the name: ..._12bpm_...)");
   command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
-  command->add_flag(
-      "--quick", flags->quick,
-      "fewer rays, bins and points: to see that it works; sonar names no quality levels");
+  command->add_flag("--quick", flags->quick,
+                    "a fast trial with fewer rays, bins and points; gives no quality levels");
   command->callback([flags, &run] { run = [flags] { return run_tradeoff(*flags); }; });
 }
 
 void add_check(CLI::App& app, Run& run) {
   auto flags = std::make_shared<CheckFlags>();
-  CLI::App* command = app.add_subcommand(
-      "check",
-      "holds the vehicle, its control or the dive planner against a file of cases; a line a case");
-  command->add_option("what", flags->what, "rov (trajectories), control or deco")->required();
-  command->add_option("file", flags->file, "the cases, JSON")->required();
+  CLI::App* command = app.add_subcommand("check",
+                                         "compares the vehicle, its control or the dive planner "
+                                         "with a file of reference cases; one line per case");
   command
-      ->add_option("--integrator", flags->integrator,
-                   "of rov and control: guarded, rk4 or semi_euler")
+      ->add_option("what", flags->what,
+                   "rov (trajectories of the vehicle), control or deco (dive plans)")
+      ->required();
+  command->add_option("file", flags->file, "file of cases (.json)")->required();
+  command->add_option("--integrator", flags->integrator, "rov, control: guarded, rk4 or semi_euler")
       ->capture_default_str();
-  command->add_option("--hz", flags->hz, "of rov and control: steps a second")
-      ->capture_default_str();
-  command->add_flag("--json", flags->json, "for programs: JSON on standard output");
+  command->add_option("--hz", flags->hz, "rov, control: steps per second")->capture_default_str();
+  command->add_flag("--json", flags->json, "JSON on standard output, for programs");
   command->callback([flags, &run] { run = [flags] { return nothing_to_say(run_check(*flags)); }; });
 }
 
@@ -294,106 +310,117 @@ void add_plan(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand(
       "plan", "plans a dive: stops, run times, oxygen, warnings; or replays a log of depths");
   command
-      ->add_option(
-          "--gas", flags->gases,
-          "air, ean32, 18/45, o2. The first is the bottom's; further ones are for the ascent, "
-          "each @ its switch depth in metres (else where it has 1.6 bar of oxygen)")
+      ->add_option("--gas", flags->gases,
+                   "gases: air, ean32, 18/45 (oxygen/helium) or o2. The first is breathed at the "
+                   "bottom, the others on the ascent from GAS@DEPTH in metres (default: the depth "
+                   "of 1.6 bar of oxygen)")
       ->expected(1, 32);
   command
       ->add_option("--travel", flags->travel,
-                   "MIX[@DEPTH]: breathed on the way down from there until the next one's depth; "
-                   "then the bottom gas has one too: --gas 15/55@30")
+                   "GAS[@DEPTH]: breathed on the descent from this depth until the next gas's "
+                   "depth; the bottom gas then needs a depth too: --gas 15/55@30")
       ->expected(1, 32);
-  command->add_option("--depth", flags->depth_m, "metres");
+  command->add_option("--depth", flags->depth_m, "depth of the bottom, metres");
   command->add_option("--time", flags->time_min,
-                      "minutes from the surface to the end of the bottom: the way down counts");
+                      "minutes from leaving the surface to leaving the bottom, descent included");
   command
       ->add_option("--level", flags->levels,
-                   "DEPTH,MIN: a further depth, and the run time at which it is left")
+                   "DEPTH,MIN: a further level: its depth, and the run time at which the diver "
+                   "leaves it; repeat for more")
       ->expected(1)
       ->take_all();
   command
-      ->add_option(
-          "--after", flags->after,
-          "DEPTH,MIN,INTERVAL[,GAS]: an earlier dive and the minutes at the surface after it; "
-          "again for more, the oldest first")
+      ->add_option("--after", flags->after,
+                   "DEPTH,MIN,INTERVAL[,GAS]: an earlier dive and the surface interval after it, "
+                   "minutes; repeat for more, oldest first")
       ->expected(1)
       ->take_all();
-  command->add_option("--gf", flags->gf, "gradient factors, percent")->capture_default_str();
+  command->add_option("--gf", flags->gf, "gradient factors low/high, percent")
+      ->capture_default_str();
   command
       ->add_option(
           "--convention", flags->convention,
-          "stop-minutes, run-minutes or msw: what programs do differently (diver/README.md)")
+          "stop-minutes, run-minutes or msw: rules in which planners differ (diver/README.md)")
       ->capture_default_str();
   command->add_option("--table", flags->table,
-                      "another column of ZH-L16 than the convention's: b, c");
-  command->add_option("--altitude", flags->altitude_m, "metres above the sea, acclimatised");
-  command->add_option("--surface", flags->surface_bar, "pressure at the surface, bar, instead");
-  command->add_option("--water", flags->water, "fresh, salt, en13319, or its density in kg/m3");
-  command->add_option("--last-stop", flags->last_stop_m, "metres");
+                      "ZH-L16 coefficients b or c (default: the convention's)");
+  command->add_option("--altitude", flags->altitude_m,
+                      "altitude of the dive site, metres; the diver is acclimatised");
+  command->add_option("--surface", flags->surface_bar,
+                      "pressure at the surface, bar, instead of --altitude");
+  command->add_option("--water", flags->water, "fresh, salt, en13319, or a density in kg/m3");
+  command->add_option("--last-stop", flags->last_stop_m, "depth of the last stop, metres");
   command->add_option("--ascent-rate", flags->ascent_m_min, "m/min");
   command->add_option("--descent-rate", flags->descent_m_min, "m/min");
   command->add_option("--saturation", flags->saturation,
-                      "110/90: percent of the speed at which gas goes in and out");
+                      "speed of gas uptake and release, percent of the model's: 110/90");
   command
       ->add_option("--rmv,--sac", flags->rmv,
-                   "litres breathed a minute at the pressure there: at the bottom, and from the "
-                   "ascent on; or one for both")
+                   "breathing, litres per minute at ambient pressure: at the bottom, and from the "
+                   "ascent on; or one number for both")
       ->capture_default_str();
   command
       ->add_option("--minimum-gas", flags->minimum_gas,
-                   "DIVERS,TIMES,MIN: who goes up on what is left, how many times --rmv each "
-                   "breathes, and how long until they leave")
+                   "DIVERS,TIMES,MIN: minimum gas brings up this number of divers, each breathing "
+                   "TIMES --rmv, after MIN minutes at depth")
       ->capture_default_str();
   command
       ->add_option("--tank", flags->tanks,
-                   "GAS=LITRES,BAR: what is carried of a gas, as 18/45=24,232; twins as their sum")
+                   "GAS=LITRES,BAR: a tank and its pressure, such as 18/45=24,232; for twins the "
+                   "sum of both volumes")
       ->expected(1)
       ->take_all();
-  command->add_option(
-      "--log", flags->log,
-      "depths of a dive (.csv: time_s, depth_m, perhaps gas) instead of a plan: what a "
-      "dive computer would have shown");
+  command->add_option("--log", flags->log,
+                      "instead of a plan: replays the depths of a dive (.csv: time_s, depth_m, "
+                      "optionally gas) on the dive computer");
   command->add_option("--vehicle", flags->vehicle,
-                      "whose rows of --log: of a column vehicle that names several");
-  command->add_option("--plot", flags->plot, "a picture (.png)")->check(png_file);
+                      "with --log: the participant whose rows are used, by the column vehicle");
+  command->add_option("--plot", flags->plot, "file of the picture (.png)")->check(png_file);
   command
       ->add_option(
           "--out", flags->out,
           "folder for plan.json and plan.png, or log.csv and log.png, and the picture's data")
       ->check(named);
-  command->add_flag("--json", flags->json, "for programs: JSON on standard output");
+  command->add_flag("--json", flags->json, "JSON on standard output, for programs");
   command->callback([flags, &run] { run = [flags] { return run_plan(*flags); }; });
 }
 
 void add_physio(CLI::App& app, Run& run) {
   auto flags = std::make_shared<PhysioFlags>();
-  CLI::App* command = app.add_subcommand(
-      "physio", "heart, breath or gaze out of a recording: a table, or JSON, or a picture");
+  CLI::App* command = app.add_subcommand("physio",
+                                         "finds heart beats, breaths or eye movements in a "
+                                         "recording; gives a table, JSON or a picture");
   command->add_option("what", flags->what, "ecg, breath or gaze")->required();
   command->add_option("file", flags->file, ".csv, .wav or a WFDB record (.hea, .dat)")->required();
-  command->add_option("--channel", flags->channel,
-                      "of several: its number from 0, or its name (.csv, WFDB)");
-  command->add_option("--rate", flags->rate_hz, "samples a second, where a .csv does not say")
+  command->add_option(
+      "--channel", flags->channel,
+      "the channel, if there are several: its number from 0, or its name (.csv, WFDB)");
+  command
+      ->add_option("--rate", flags->rate_hz, "samples per second of a .csv without a time column")
       ->check(between(0.1, 1e6));
-  command->add_option("--annotations", flags->annotations,
-                      "ecg: marked beats (.atr); a record's own beside it is found");
+  command->add_option(
+      "--annotations", flags->annotations,
+      "ecg: file of marked beats (.atr) to compare with (default: the record's own, if present)");
   command
       ->add_option("--estimator", flags->estimator,
-                   "breath: multiband, autocorrelation or spectrum (as published)")
+                   "breath: multiband, autocorrelation or spectrum (the published method)")
       ->capture_default_str();
-  command->add_option("--window", flags->window_s, "breath: seconds an estimate looks back over");
+  command->add_option("--window", flags->window_s,
+                      "breath: seconds of sound that an estimate uses");
   command->add_option("--reference", flags->reference_bpm,
-                      "breath: the known rate (else of a name like ..._12bpm_...)");
-  command->add_flag("--realtime", flags->realtime,
-                    "breath: at the recording's own pace, recorded and analysed on two threads");
+                      "breath: the true rate, breaths a minute, to compare with (default: from a "
+                      "file name such as ..._12bpm_...)");
+  command->add_flag(
+      "--realtime", flags->realtime,
+      "breath: plays the recording at its own pace, with recording and analysis on two threads");
   command->add_option("--method", flags->method,
                       "gaze: ivt (30 deg/s; the default) or idt (1 deg, 100 ms)");
-  command->add_flag("--headset", flags->headset, "gaze: idt, with a headset's 250 ms");
+  command->add_flag("--headset", flags->headset,
+                    "gaze: idt with 250 ms, for the slow sampling of headsets");
   command->add_option("--intrinsics", flags->intrinsics,
-                      "gaze: fx,fy,cx,cy of a camera at the eye: fixations in its pixels too");
+                      "gaze: fx,fy,cx,cy of a camera at the eye; adds each fixation in its pixels");
   command->add_option("--out", flags->out, "folder for the table and the JSON");
-  command->add_option("--plot", flags->plot, "a picture (.png)")->check(png_file);
+  command->add_option("--plot", flags->plot, "file of the picture (.png)")->check(png_file);
   command->add_flag("--json", flags->json, "JSON on standard output instead of the table");
   command->callback([flags, &run] { run = [flags] { return run_physio(*flags); }; });
 }
@@ -401,9 +428,9 @@ void add_physio(CLI::App& app, Run& run) {
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
-      app.add_subcommand("doctor", "says what this machine has and what will work on it");
+      app.add_subcommand("doctor", "reports what this machine has and which commands work on it");
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
-  command->add_flag("--json", flags->json, "for programs: JSON on standard output");
+  command->add_flag("--json", flags->json, "JSON on standard output, for programs");
   command->callback(
       [flags, &run] { run = [flags] { return nothing_to_say(run_doctor(*flags)); }; });
 }
@@ -418,8 +445,9 @@ std::string what_was_wrong(const CLI::App& app, const CLI::App& command,
       said.starts_with(unconverted) && value != said.npos) {
     const std::string name = said.substr(unconverted.size(), value - unconverted.size());
     if (const CLI::Option* option = command.get_option_no_throw(name))
-      return fmt::format("{}: '{}' found; a number is accepted: {}", name,
-                         printable(said.substr(value + 3)), option->get_description());
+      return refusal(name, fmt::format("'{}'", printable(said.substr(value + 3))),
+                     fmt::format("a number, {}", option->get_description()))
+          .message;
   }
   if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return said;
   std::vector<std::string> names;
@@ -444,8 +472,9 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   app.fallthrough();
   CommandLine line;
   app.set_version_flag("--version", "neritic " NERITIC_VERSION);
-  app.add_flag("-v,--verbose", line.verbose, "say on stderr what is loaded, chosen and compiled");
-  app.add_flag("-q,--quiet", line.quiet, "say only what failed");
+  app.add_flag("-v,--verbose", line.verbose,
+               "also prints on stderr what is loaded, chosen and compiled");
+  app.add_flag("-q,--quiet", line.quiet, "prints errors only");
   add_render(app, line.run);
   add_sonar(app, line.run);
   add_dive(app, line.run);
@@ -467,7 +496,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
       std::string names;
       for (const CLI::App* command : app.get_subcommands(nullptr))
         names += (names.empty() ? "" : ", ") + command->get_name();
-      return bad_input("'{}' is no command; {} are", arguments[0], names);
+      return refusal("", fmt::format("command '{}'", arguments[0]), fmt::format("{}", names));
     }
     const auto chosen = app.get_subcommands();
     const CLI::App& command = chosen.empty() ? app : *chosen.front();

@@ -60,13 +60,13 @@ std::string device_text(const Machine& machine, std::size_t position) {
   text +=
       fmt::format("     {}\n", device.usable ? "usable" : "not usable: lacks " + device.missing);
   text += fmt::format(
-      "     {} views a pass, images up to {} x {}, {} pass times, {:.1f} GiB {}{}\n",
+      "     {} views per pass, images up to {} x {}, {} pass times, {:.1f} GiB {}{}\n",
       device.max_views, device.max_image_size, device.max_image_size,
       device.timestamps ? "measures" : "no", static_cast<double>(device.memory_bytes) / kGiB,
-      device.shared_memory ? "shared with the host" : "of its own",
+      device.shared_memory ? "shared with the CPU" : "of its own",
       device.can_present ? "" : ", no windows");
   if (const std::string around = gpu::workarounds(device.quirks); !around.empty())
-    text += fmt::format("     goes round its driver's faults: {}\n", around);
+    text += fmt::format("     works around faults of its driver: {}\n", around);
   return text;
 }
 
@@ -118,7 +118,7 @@ std::string doctor_text(const Machine& machine) {
   if (machine.devices.empty()) text += "  none\n";
   if (machine.trouble) text += fmt::format("  {}\n", machine.trouble->message);
   if (can_render(machine))
-    text += fmt::format("  tried: it starts and answers in {:.0f} ms\n", machine.device_start_ms);
+    text += fmt::format("  tested: it starts and answers in {:.0f} ms\n", machine.device_start_ms);
   text += fmt::format(
       "Validation layer    {}\n",
       machine.validation_layer ? "installed" : "absent (Debian package vulkan-validationlayers)");

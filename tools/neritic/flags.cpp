@@ -9,6 +9,7 @@
 
 #include "engine/core/image.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::tools {
 
@@ -21,8 +22,8 @@ Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& fl
   const auto second = cross ? std::from_chars(first.ptr + 1, end, height) : first;
   if (!cross || second.ec != std::errc{} || second.ptr != end || width < 1 || height < 1 ||
       width > kMaxPictureSide || height > kMaxPictureSide)
-    return bad_input("{}: '{}'; WIDTHxHEIGHT of 1 to {} pixels a side is accepted", flag, text,
-                     kMaxPictureSide);
+    return refusal(flag, fmt::format("'{}'", text),
+                   fmt::format("WIDTHxHEIGHT, 1 to {} pixels a side", kMaxPictureSide));
   return std::pair{width, height};
 }
 
@@ -36,8 +37,8 @@ Result<std::vector<double>> parse_numbers(const char* flag, const std::string& t
     const char* end = text.data() + comma;
     const auto [stop, error] = std::from_chars(text.data() + at, end, value);
     if (error != std::errc() || stop != end || !std::isfinite(value))
-      return bad_input("--{}: '{}' found, {} is accepted", flag, text,
-                       most == 1 ? "a number" : "numbers separated by commas");
+      return refusal(fmt::format("--{}", flag), fmt::format("'{}'", text),
+                     most == 1 ? "a number" : "numbers separated by commas");
     out.push_back(value);
     at = comma + 1;
   }

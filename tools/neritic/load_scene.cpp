@@ -1,5 +1,6 @@
 #include "tools/neritic/load_scene.hpp"
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/gltf_loader.hpp"
 #include "tools/neritic/flags.hpp"
@@ -14,8 +15,8 @@ Result<scene::Scene> load(const std::filesystem::path& path, const Extent& model
   const std::string extension = lower_case(path.extension().string());
   if (extension == ".toml" || extension.empty()) return scene::load_scene(path, options);
   if (extension != ".gltf" && extension != ".glb")
-    return bad_input("{}: a {} file; accepted: a scene (.toml) or a model (.gltf, .glb)",
-                     path.string(), extension.substr(1));
+    return refusal(path.string(), fmt::format("a {} file", extension.substr(1)),
+                   "a scene (.toml) or a model (.gltf, .glb)");
   NERITIC_TRY(scene::Model model, scene::load_gltf(path));
   scene::Scene scene =
       scene::scene_of_model(std::move(model), model_extent.first, model_extent.second);

@@ -8,6 +8,7 @@
 #include "diver/physio_wfdb.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/neritic/physio_report.hpp"
@@ -20,7 +21,7 @@ Result<std::uint32_t> channel_number(const PhysioFlags& flags) {
   std::uint32_t number = 0;
   for (const char c : flags.channel) {
     if (c < '0' || c > '9' || number > 1000)
-      return bad_input("--channel: '{}' found, a number from 0 is accepted", flags.channel);
+      return refusal("--channel", fmt::format("'{}'", flags.channel), "a number from 0");
     number = 10 * number + static_cast<std::uint32_t>(c - '0');
   }
   return number;
@@ -40,14 +41,14 @@ Result<diver::Recording> load_record(const PhysioFlags& flags) {
     if (!number.ok()) {
       std::vector<std::string_view> names;
       for (const diver::WfdbSignal& signal : header.signals) names.push_back(signal.name);
-      return bad_input("--channel: '{}' found, {} or a number from 0 is accepted", flags.channel,
-                       join(names));
+      return refusal("--channel", fmt::format("'{}'", flags.channel),
+                     fmt::format("{} or a number from 0", join(names)));
     }
     channel = *number;
   }
   if (channel >= header.signals.size())
-    return bad_input("{}: channel {} found, 0 to {} is accepted", header_path.string(), channel,
-                     header.signals.size() - 1);
+    return refusal(header_path.string(), fmt::format("channel {}", channel),
+                   fmt::format("0 to {}", header.signals.size() - 1));
   const auto data_path = header_path.parent_path() / header.signals[channel].file;
   NERITIC_TRY(const auto bytes, read_file(data_path));
   return diver::parse_wfdb_signal(header, channel, bytes, data_path.string());
@@ -63,10 +64,10 @@ Result<std::string> show(const PhysioFlags& flags, const Report& report, bool pl
     NERITIC_TRY_STATUS(make_folder(flags.out));
     std::error_code no_such;
     if (std::filesystem::equivalent(flags.out / (flags.what + ".csv"), flags.file, no_such))
-      return bad_input(
-          "--out: '{}' found, where the table would replace the recording; another "
-          "folder is accepted",
-          flags.out.string());
+      return refusal("--out",
+                     fmt::format("'{}', the recording's folder, where the table would replace it",
+                                 flags.out.string()),
+                     "another folder");
     NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".csv"), text.table));
     NERITIC_TRY_STATUS(write_text(flags.out / (flags.what + ".json"), json));
     where = flags.out.string() + fmt::format(": {0}.csv, {0}.json", flags.what);
@@ -90,8 +91,7 @@ Result<diver::Recording> load_recording(const PhysioFlags& flags) {
   const std::string kind = lower_case(path.extension().string());
   std::error_code none;
   if (std::filesystem::is_directory(path, none))
-    return bad_input("{}: a folder found, a file of .csv, .wav, .hea or .dat is accepted",
-                     flags.file);
+    return refusal(flags.file, "a folder", "a file of .csv, .wav, .hea or .dat");
   if (kind == ".csv") {
     NERITIC_TRY(const std::string text, read_text(path));
     return diver::parse_csv(text, flags.file, {flags.channel, flags.rate_hz});
@@ -102,7 +102,7 @@ Result<diver::Recording> load_recording(const PhysioFlags& flags) {
     return diver::parse_wav(bytes, flags.file, channel);
   }
   if (kind.empty() || kind == ".hea" || kind == ".dat") return load_record(flags);
-  return bad_input("{}: '{}' found, .csv, .wav, .hea or .dat is accepted", flags.file, kind);
+  return refusal(flags.file, fmt::format("'{}'", kind), ".csv, .wav, .hea or .dat");
 }
 
 Result<std::string> run_physio(const PhysioFlags& flags) {
@@ -122,7 +122,7 @@ Result<std::string> run_physio(const PhysioFlags& flags) {
     NERITIC_TRY(const GazeReport report, analyse_gaze(flags));
     return show(flags, report);
   }
-  return bad_input("physio: '{}' found, ecg, breath or gaze is accepted", flags.what);
+  return refusal("physio", fmt::format("'{}'", flags.what), "ecg, breath or gaze");
 }
 
 }  // namespace neritic::tools

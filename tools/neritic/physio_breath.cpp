@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "engine/core/clock.hpp"
+#include "engine/core/refusal.hpp"
 #include "tools/neritic/physio_report.hpp"
 
 namespace neritic::tools {
@@ -34,12 +35,12 @@ Result<diver::BreathSettings> breath_settings(const PhysioFlags& flags) {
   diver::BreathSettings settings;
   NERITIC_TRY(settings.estimator, diver::breath_estimator_of(flags.estimator));
   if (flags.reference_bpm && !(*flags.reference_bpm > 0.0 && *flags.reference_bpm <= 120.0))
-    return bad_input("--reference: {} found, above 0 to 120 breaths a minute is accepted",
-                     *flags.reference_bpm);
+    return refusal("--reference", fmt::format("{}", *flags.reference_bpm),
+                   "above 0 to 120 breaths a minute");
   settings.window_s = flags.window_s.value_or(settings.window_s);
   if (!(settings.window_s >= kLeastSound_s && settings.window_s <= 300.0))
-    return bad_input("--window: {} found, {:g} to 300 s is accepted", settings.window_s,
-                     kLeastSound_s);
+    return refusal("--window", fmt::format("{}", settings.window_s),
+                   fmt::format("{:g} to 300 s", kLeastSound_s));
   settings.block_s = std::min(settings.block_s, settings.window_s);
   NERITIC_TRY_STATUS(diver::check_breath_settings(settings));
   return settings;
@@ -69,10 +70,11 @@ std::string breath_row(const diver::BreathState& s) {
 
 std::string errors_line(const char* name, const RateErrors& e) {
   if (e.answered == 0)
-    return fmt::format("# {}: no window answered, {} refused\n", name, e.refused);
+    return fmt::format("# {}: no window has an answer, {} have none\n", name, e.refused);
   return fmt::format(
-      "# {}: {} windows answered, {} refused; error {:.2f} breaths/min in the middle, {:.2f} on "
-      "the mean; {:.0f} % within 2, {:.0f} % doubled\n",
+      "# {}: {} windows have an answer, {} have none; median error {:.2f} breaths/min, mean "
+      "{:.2f}; "
+      "{:.0f} % within 2, {:.0f} % at twice the rate\n",
       name, e.answered, e.refused, e.median_bpm, e.mean_bpm, 100.0 * e.within_2, 100.0 * e.doubled);
 }
 
@@ -107,8 +109,8 @@ Result<BreathReport> analyse_sound(const PhysioFlags& flags) {
   NERITIC_TRY(report.sound, load_sound(flags));
   const double least_s = std::min(report.settings.block_s, kLeastSound_s);
   if (report.sound.seconds() < least_s)
-    return bad_input("{}: {:.1f} s found, {:g} s or more is accepted", flags.file,
-                     report.sound.seconds(), least_s);
+    return refusal(flags.file, fmt::format("{:.1f} s of sound", report.sound.seconds()),
+                   fmt::format("{:g} s or more", least_s));
   report.true_bpm = known_rate(flags);
   const TimeNs start = now_ns();
   report.states = diver::analyse_breath(report.sound, report.settings);
@@ -123,8 +125,8 @@ Result<BreathReport> play_sound(const PhysioFlags& flags) {
   NERITIC_TRY(report.sound, load_sound(flags));
   const diver::Recording& sound = report.sound;
   if (sound.seconds() < report.settings.block_s)
-    return bad_input("{}: {:.1f} s found, {:g} s or more is accepted with --realtime", flags.file,
-                     sound.seconds(), report.settings.block_s);
+    return refusal(flags.file, fmt::format("{:.1f} s of sound", sound.seconds()),
+                   fmt::format("{:g} s or more with --realtime", report.settings.block_s));
   report.true_bpm = known_rate(flags);
   diver::BreathMonitor monitor(sound.rate_hz, report.settings);
   const std::vector<float> samples(sound.samples.begin(), sound.samples.end());
@@ -163,7 +165,7 @@ ReportText report_text(const PhysioFlags& flags, const BreathReport& r) {
                   r.sound.rate_hz, r.sound.seconds(), diver::name_of(r.settings.estimator),
                   r.settings.window_s, r.settings.block_s);
   if (r.true_bpm) {
-    out += fmt::format("# {:g} breaths/min by the reference\n", *r.true_bpm);
+    out += fmt::format("# true rate: {:g} breaths/min\n", *r.true_bpm);
     out += errors_line(
         fmt::format("{} over {:g} s", diver::name_of(r.settings.estimator), r.settings.window_s)
             .c_str(),
@@ -173,7 +175,7 @@ ReportText report_text(const PhysioFlags& flags, const BreathReport& r) {
                        rate_errors(r.plain, *r.true_bpm, r.settings.block_s));
   }
   if (r.us_a_second)
-    out += fmt::format("# {:.0f} us of one core a second of sound\n", *r.us_a_second);
+    out += fmt::format("# cost: {:.0f} us of one core per second of sound\n", *r.us_a_second);
   std::string table = kBreathHeading;
   for (const diver::BreathState& s : r.states) table += breath_row(s);
   return {std::move(out), std::move(table)};

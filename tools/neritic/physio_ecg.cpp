@@ -68,36 +68,37 @@ ReportText report_text(const PhysioFlags& flags, const EcgReport& r) {
   const auto ectopic =
       std::ranges::count(r.intervals, diver::IntervalKind::kEctopic, &diver::Interval::kind);
   std::string out = fmt::format(
-      "# {}: {} at {:g} Hz, {:.1f} s; {} samples refused ({} leapt), {} missing, {} gaps, signal "
+      "# {}: {} at {:g} Hz, {:.1f} s; {} samples refused ({} as spikes), {} missing, {} gaps; "
+      "signal "
       "{}\n",
       flags.file, r.ecg.channel.empty() ? "ECG" : r.ecg.channel, r.ecg.rate_hz, r.ecg.seconds(),
       r.refused(), r.counts.leaps, r.ecg.missing, r.counts.gaps, diver::name_of(r.state.quality));
   const diver::Variability& v = r.variability;
-  out += fmt::format("# {} beats, {} ectopic; {} on the mean, {} at the end\n", r.beats.size(),
+  out += fmt::format("# {} beats, {} ectopic; mean rate {}, {} at the end\n", r.beats.size(),
                      ectopic, rate_words(v.mean_rate_bpm), rate_words(r.state.rate_bpm));
   if (v.pairs > 0)
     out += fmt::format(
-        "# of {} normal intervals: SDNN {:.1f} ms, RMSSD {:.1f} ms, pNN50 {:.2f} %, SD1 {:.1f} ms, "
+        "# {} normal intervals: SDNN {:.1f} ms, RMSSD {:.1f} ms, pNN50 {:.2f} %, SD1 {:.1f} ms, "
         "SD2 {:.1f} ms\n",
         v.intervals, v.sdnn_ms, v.rmssd_ms, v.pnn50_percent, v.sd1_ms, v.sd2_ms);
   if (r.spectrum.valid)
     out += fmt::format(
-        "# Lomb-Scargle, 300 s: VLF {:.0f}, LF {:.0f}, HF {:.0f} ms2, LF/HF {:.2f}\n",
+        "# spectrum (Lomb-Scargle, 300 s): VLF {:.0f}, LF {:.0f}, HF {:.0f} ms2, LF/HF {:.2f}\n",
         r.spectrum.vlf_ms2, r.spectrum.lf_ms2, r.spectrum.hf_ms2, r.spectrum.lf_over_hf);
   else
-    out += "# no spectrum: it takes two minutes of normal beats\n";
+    out += "# no spectrum: it needs two minutes of normal beats\n";
   if (r.score) {
     const diver::HeartScore& s = *r.score;
     out += fmt::format(
-        "# against {}: {} found, {} extra, {} missed; sensitivity {:.4f}, +P {:.4f} (within 150 "
-        "ms, "
-        "AAMI EC57); offset {:.1f} ms in the middle, 95 % within {:.1f} ms\n",
+        "# compared with {}: {} beats found, {} extra, {} missed; sensitivity {:.4f}, positive "
+        "predictivity {:.4f} (within 150 ms, AAMI EC57); median offset {:.1f} ms, 95 % within "
+        "{:.1f} ms\n",
         r.reference, s.found, s.extra, s.missed, s.sensitivity, s.predictivity, s.median_offset_ms,
         s.p95_offset_ms);
-    out += fmt::format("# ectopic: {} marked, {} flagged, {} both\n", s.ectopic_marked,
+    out += fmt::format("# ectopic beats: {} marked, {} found, {} both\n", s.ectopic_marked,
                        s.ectopic_flagged, s.ectopic_both);
   }
-  out += fmt::format("# {:.0f} us of one core a second of ECG\n", r.us_a_second);
+  out += fmt::format("# cost: {:.0f} us of one core per second of ECG\n", r.us_a_second);
   std::string table = "time_s,rr_ms,kind,amplitude\n";
   for (std::size_t i = 0; i < r.beats.size(); ++i)
     table += fmt::format("{:.4f},{},{},{:.6g}\n", r.ecg.start_s + r.beats[i].time_s,

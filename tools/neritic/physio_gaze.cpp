@@ -5,6 +5,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/physio_report.hpp"
 
@@ -14,10 +15,10 @@ namespace {
 Result<diver::GazeSettings> gaze_settings(const PhysioFlags& flags) {
   const std::string name = !flags.method.empty() ? flags.method : flags.headset ? "idt" : "ivt";
   if (name != "ivt" && name != "idt")
-    return bad_input("--method: '{}' found, ivt or idt is accepted", name);
+    return refusal("--method", fmt::format("'{}'", name), "ivt or idt");
   const auto method = name == "ivt" ? diver::GazeMethod::kVelocity : diver::GazeMethod::kDispersion;
   if (flags.headset && method == diver::GazeMethod::kVelocity)
-    return bad_input("--headset: --method ivt found, idt is accepted");
+    return refusal("--headset", "--method ivt", "idt");
   if (flags.headset) return diver::headset_gaze(method);
   diver::GazeSettings settings;
   settings.method = method;
@@ -29,7 +30,7 @@ Result<std::optional<diver::GazeCamera>> gaze_camera(const PhysioFlags& flags) {
   if (flags.intrinsics.empty()) return std::optional<diver::GazeCamera>();
   NERITIC_TRY(const auto numbers, parse_numbers("intrinsics", flags.intrinsics, 4, 4));
   if (!(numbers[0] > 0.0 && numbers[1] > 0.0))
-    return bad_input("--intrinsics: '{}' found, fx and fy above 0 are accepted", flags.intrinsics);
+    return refusal("--intrinsics", fmt::format("'{}'", flags.intrinsics), "fx and fy above 0");
   return std::optional<diver::GazeCamera>({{}, numbers[0], numbers[1], numbers[2], numbers[3]});
 }
 
@@ -68,13 +69,13 @@ Result<GazeReport> analyse_gaze(const PhysioFlags& flags) {
   NERITIC_TRY(report.settings, gaze_settings(flags));
   NERITIC_TRY(report.camera, gaze_camera(flags));
   if (std::filesystem::path(flags.file).extension() != ".csv")
-    return bad_input("{}: gaze as .csv is accepted", flags.file);
+    return refusal(flags.file, "another kind of file", "gaze as .csv");
   NERITIC_TRY(const std::string text, read_text(flags.file));
   NERITIC_TRY(report.recording, diver::parse_gaze_csv(text, flags.file, flags.rate_hz));
   const auto& samples = report.recording.samples;
   if (const auto hz = sampling_hz(samples); hz && *hz < 0.98 * kLeastGaze_hz)
-    return bad_input("{}: gaze at {:.3g} Hz found, {:g} Hz or more is accepted", flags.file, *hz,
-                     kLeastGaze_hz);
+    return refusal(flags.file, fmt::format("gaze at {:.3g} Hz", *hz),
+                   fmt::format("{:g} Hz or more", kLeastGaze_hz));
   const TimeNs start = now_ns();
   diver::GazeMonitor monitor(report.settings);
   for (const diver::GazeSample& sample : samples) monitor.push(sample, report.events);
@@ -100,15 +101,15 @@ ReportText report_text(const PhysioFlags& flags, const GazeReport& r) {
                                : fmt::format("within {:g} deg for {:g} ms or more",
                                              degrees(r.settings.dispersion_rad),
                                              1e3 * r.settings.dispersion_s));
-  out += fmt::format("# {} fixations, {} saccades, {} blinks (no eye's movement)\n# {}\n",
+  out += fmt::format("# {} fixations, {} saccades, {} blinks (too fast for an eye)\n# {}\n",
                      r.events.fixations.size(), r.events.saccades.size(), r.events.blinks.size(),
                      diver::kPursuitNote);
   if (r.kappa)
     out += fmt::format(
-        "# against marks, saccade or none: kappa {:.3f} of these saccades; {:.3f} of each sample "
-        "as plain {} has it\n",
+        "# compared with a person's marks, saccade or not: kappa {:.3f} for these saccades, {:.3f} "
+        "for plain {} of each sample\n",
         *r.kappa, *r.plain_kappa, r.velocity() ? "I-VT" : "I-DT");
-  out += fmt::format("# {:.0f} us of one core a second of gaze\n", r.us_a_second);
+  out += fmt::format("# cost: {:.0f} us of one core per second of gaze\n", r.us_a_second);
   std::string table =
       "kind,start_s,end_s,duration_ms,x_deg,y_deg,spread_deg,amplitude_deg,peak_deg_s,pursuit";
   table += r.camera ? ",u_px,v_px\n" : "\n";

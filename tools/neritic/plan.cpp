@@ -5,6 +5,7 @@
 
 #include "diver/gas_label.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/neritic/plan_picture.hpp"
 #include "tools/neritic/plan_report.hpp"
@@ -51,7 +52,7 @@ std::string written(const PlanFlags& flags, const char* stem, const char* table,
 }
 
 Result<std::string> plan_a_dive(const PlanFlags& flags) {
-  if (!flags.vehicle.empty()) return bad_input("--vehicle: found without --log");
+  if (!flags.vehicle.empty()) return refusal("--vehicle", "without --log", "with --log");
   NERITIC_TRY(const diver::DivePlanRequest request, plan_request(flags));
   NERITIC_TRY(const PlanGasFlags gas, plan_gas(flags, request));
   NERITIC_TRY(const PlanReport report,
@@ -123,7 +124,8 @@ std::vector<std::string> log_warnings(const DiveTrace& trace) {
 
 Result<std::string> replay_a_log(const PlanFlags& flags) {
   if (flags.depth_m || flags.time_min || !flags.levels.empty())
-    return bad_input("--log: found with --depth, --time or --level; a log has its own depths");
+    return refusal("--log", "with --depth, --time or --level",
+                   "without them, since a log has its own depths");
   NERITIC_TRY(const std::string text, read_text(flags.log));
   NERITIC_TRY(const diver::DepthLog log, diver::read_depth_log(text, flags.log, flags.vehicle));
   NERITIC_TRY(diver::DiveComputerSettings settings, log_settings(flags, log));

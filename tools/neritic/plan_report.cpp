@@ -141,27 +141,27 @@ std::string depth_text(const PlanReport& r) {
 // Litres used of each gas, and the pressure left in its tank.
 std::string gas_text(const PlanReport& r) {
   const diver::PlanBreathing& b = r.breathing;
-  std::string out = fmt::format("gas at {:g} L/min, {:g} from the ascent on, in litres at 1 bar\n",
+  std::string out = fmt::format("gas at {:g} L/min, {:g} from the ascent on (litres at 1 bar)\n",
                                 b.bottom_l_min, b.ascent_l_min);
   for (const diver::PlanGasUse& use : r.gas) {
     out += fmt::format("  {}: {:.0f} L", diver::name_of(r.request.gases[use.gas].mix), use.used_l);
     if (use.tank && !use.tank->empty_min)
-      out += fmt::format(", {:g} L at {:g} bar end at {:.0f} bar", use.tank->tank.volume_l,
-                         use.tank->tank.pressure_bar, use.tank->end_bar);
+      out += fmt::format("; a tank of {:g} L at {:g} bar ends at {:.0f} bar",
+                         use.tank->tank.volume_l, use.tank->tank.pressure_bar, use.tank->end_bar);
     else if (use.tank)
-      out += fmt::format(", more than {:g} L at {:g} bar", use.tank->tank.volume_l,
+      out += fmt::format(", more than a tank of {:g} L at {:g} bar has", use.tank->tank.volume_l,
                          use.tank->tank.pressure_bar);
     if (use.minimum_l > 0.0)
       out += fmt::format("; minimum gas at {:g} m, {:.0f} min: {:.0f} L", use.minimum_depth_m,
                          use.minimum_run_min, use.minimum_l);
     if (use.tank && use.minimum_l > 0.0)
-      out += fmt::format(", {:.0f} bar of the {:.0f} there", use.tank->minimum_bar,
+      out += fmt::format(", {:.0f} bar; the tank then has {:.0f}", use.tank->minimum_bar,
                          use.tank->then_bar);
     out += "\n";
   }
   return out + fmt::format(
-                   "  (minimum gas: {:g} divers, {:g} times {:g} L/min each, {:g} min "
-                   "there, then up to the next gas)\n",
+                   "  (minimum gas: {:g} divers, each {:g} x {:g} L/min, for {:g} min at depth and "
+                   "then up to the next gas)\n",
                    b.divers, b.stress, b.bottom_l_min, b.problem_min);
 }
 
@@ -175,14 +175,14 @@ std::string sums_text(const PlanReport& r) {
                        plan.stops.front().depth_m, clock_text(plan.stop_min()),
                        clock_text(plan.ascent_min()), clock_text(plan.run_min()));
   if (r.without_stops_min < 0.0)
-    out += "without stops: never, even if turned at once\n";
+    out += "no-stop limit: none, stops are needed even after turning at once\n";
   else if (r.without_stops_min >= diver::kNoLimit_min)
-    out += "without stops: any time\n";
+    out += "no-stop limit: unlimited\n";
   else
-    out += fmt::format(
-        "without stops: until {:.0f} min of run time{}\n", std::floor(r.without_stops_min),
-        r.request.levels.size() > 1 ? fmt::format(" at {:g} m alone", r.request.levels[0].depth_m)
-                                    : "");
+    out += fmt::format("no-stop limit: {:.0f} min of run time{}\n", std::floor(r.without_stops_min),
+                       r.request.levels.size() > 1
+                           ? fmt::format(" at {:g} m alone", r.request.levels[0].depth_m)
+                           : "");
   const diver::OxygenExposure oxygen = r.oxygen(), &before = r.request.oxygen_before;
   const bool repetitive = before.cns_percent > 0.0 || before.otu > 0.0;
   out += fmt::format(

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "diver/gas_label.hpp"
+#include "engine/core/refusal.hpp"
 #include "tools/neritic/flags.hpp"
 
 namespace neritic::tools {
@@ -21,7 +22,7 @@ Result<double> plan_number(const std::string& flag, std::string_view text) {
   double value = 0.0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    return bad_input("--{}: '{}' found, a number is accepted", flag, text.substr(0, 40));
+    return refusal(fmt::format("--{}", flag), fmt::format("'{}'", text.substr(0, 40)), "a number");
   return value;
 }
 
@@ -29,7 +30,8 @@ Result<double> plan_number(const std::string& flag, std::string_view text) {
 Result<std::pair<double, double>> percent_pair(const std::string& flag, const std::string& text) {
   const std::size_t slash = text.find('/');
   if (slash == text.npos)
-    return bad_input("--{}: '{}' found, two percentages as 30/85 are accepted", flag, text);
+    return refusal(fmt::format("--{}", flag), fmt::format("'{}'", text),
+                   "two percentages, such as 30/85");
   NERITIC_TRY(const double first, plan_number(flag, std::string_view(text).substr(0, slash)));
   NERITIC_TRY(const double second, plan_number(flag, std::string_view(text).substr(slash + 1)));
   return std::pair{first / 100.0, second / 100.0};
@@ -70,18 +72,18 @@ Result<double> bar_per_m_of_water(const std::string& water) {
   const auto [end, fault] = std::from_chars(water.data(), water.data() + water.size(), density);
   if (fault != std::errc() || end != water.data() + water.size() ||
       !(density >= 900.0 && density <= 1300.0))
-    return bad_input("--water: '{}' found; fresh, salt, en13319 or 900 to 1300 kg/m3 is accepted",
-                     water);
+    return refusal("--water", fmt::format("'{}'", water),
+                   "fresh, salt, en13319 or 900 to 1300 kg/m3");
   return diver::bar_per_m_of(density);
 }
 
 Result<DecoConventions> conventions_asked(const PlanFlags& flags) {
   NERITIC_TRY(DecoConventions c, diver::conventions_of(flags.convention));
   if (flags.altitude_m && flags.surface_bar)
-    return bad_input("--altitude and --surface: both found, one of them is accepted");
+    return refusal("--altitude, --surface", "both", "one of them");
   if (flags.altitude_m) {
     if (!(*flags.altitude_m >= -500.0 && *flags.altitude_m <= 9000.0))
-      return bad_input("--altitude {} found, -500 to 9000 m is accepted", *flags.altitude_m);
+      return refusal("--altitude", fmt::format("{}", *flags.altitude_m), "-500 to 9000 m");
     c.environment.surface_bar = diver::surface_bar_at(*flags.altitude_m);
   }
   c.environment.surface_bar = flags.surface_bar.value_or(c.environment.surface_bar);
@@ -91,7 +93,7 @@ Result<DecoConventions> conventions_asked(const PlanFlags& flags) {
   if (flags.table == "b" || flags.table == "c")
     c.table = flags.table == "b" ? diver::BuehlmannTable::kB : diver::BuehlmannTable::kC;
   else if (!flags.table.empty())
-    return bad_input("--table: '{}' found, b or c is accepted", flags.table);
+    return refusal("--table", fmt::format("'{}'", flags.table), "b or c");
   c.last_stop_m = flags.last_stop_m.value_or(c.last_stop_m);
   c.ascent_m_min = flags.ascent_m_min.value_or(c.ascent_m_min);
   c.descent_m_min = flags.descent_m_min.value_or(c.descent_m_min);
@@ -107,13 +109,12 @@ Result<DecoConventions> conventions_asked(const PlanFlags& flags) {
 Result<diver::PlanTank> tank_of(const std::string& text, const DivePlanRequest& request) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos)
-    return bad_input("--tank: '{}' found, GAS=LITRES,BAR as 18/45=24,232 is accepted", text);
+    return refusal("--tank", fmt::format("'{}'", text), "GAS=LITRES,BAR, such as 18/45=24,232");
   NERITIC_TRY(const diver::GasMix mix, diver::parse_mix(text.substr(0, equals)));
   NERITIC_TRY(const auto sizes, parse_numbers("tank", text.substr(equals + 1), 2, 2));
   for (std::size_t i = 0; i < request.gases.size(); ++i)
     if (request.gases[i].mix == mix) return diver::PlanTank{i, sizes[0], sizes[1]};
-  return bad_input("--tank: a tank of {} found, which is none of the plan's gases",
-                   diver::name_of(mix));
+  return refusal("--tank", fmt::format("a tank of {}", diver::name_of(mix)), "gases of the plan");
 }
 
 // Conventions, gradient factors and gases.
@@ -122,9 +123,8 @@ Result<DivePlanRequest> bare_request(const PlanFlags& flags) {
   NERITIC_TRY(request.conventions, conventions_asked(flags));
   NERITIC_TRY(const auto gf, percent_pair("gf", flags.gf));
   if (!(gf.first >= 0.01 && gf.first <= gf.second && gf.second <= 1.5))
-    return bad_input(
-        "--gf: {} found; 1 to 150 percent, the first not above the second, as 30/85 is accepted",
-        flags.gf);
+    return refusal("--gf", flags.gf,
+                   "1 to 150 percent, the first not above the second, such as 30/85");
   request.gf_low = gf.first;
   request.gf_high = gf.second;
   NERITIC_TRY(request.gases, gases_of(flags));
@@ -146,7 +146,7 @@ Result<diver::EarlierDive> earlier_dive(const std::string& text, const DivePlanR
   earlier.dive.levels = {{values[0], values[1]}};
   earlier.surface_min = values[2];
   if (!(earlier.surface_min >= 0.0))
-    return bad_input("--after: an interval of {} min found, 0 or more is accepted", values[2]);
+    return refusal("--after", fmt::format("an interval of {} min", values[2]), "0 or more");
   return earlier;
 }
 
@@ -169,17 +169,16 @@ Result<DivePlanRequest> plan_request(const PlanFlags& flags) {
   NERITIC_TRY(DivePlanRequest request, bare_request(flags));
   if (!flags.depth_m || !flags.time_min) {
     const char* what = flags.depth_m ? "--time" : flags.time_min ? "--depth" : "--depth and --time";
-    return bad_input(
-        "plan: no {} found; how deep (m) and how long (min, the way down included) is accepted, as "
-        "--depth 30 --time 25; or --log FILE of a dive that was",
-        what);
+    return refusal("plan", fmt::format("no {}", what),
+                   "depth (m) and time at the bottom (min, descent included), such as --depth 30 "
+                   "--time 25; or --log FILE of a recorded dive");
   }
   const PlanGas& bottom = request.gases[0];
   if (flags.travel.empty() && bottom.switch_depth_m > 0.0)
-    return bad_input(
-        "--gas: {0} from {1:g} m found, and nothing to breathe above; {0}, or what is breathed "
-        "there by --travel, is accepted",
-        diver::name_of(bottom.mix), bottom.switch_depth_m);
+    return refusal("--gas",
+                   fmt::format("{} from {:g} m, with nothing to breathe above",
+                               diver::name_of(bottom.mix), bottom.switch_depth_m),
+                   "a bottom gas without a depth, or --travel with the gas above");
   request.levels = {{*flags.depth_m, *flags.time_min}};
   for (const std::string& text : flags.levels) {
     NERITIC_TRY(const auto level, parse_numbers("level", text, 2, 2));

@@ -1,5 +1,6 @@
 // `neritic sonar`: sonar images from depth and normal images of anyone's making, no scene.
 #include "engine/core/log.hpp"
+#include "engine/core/refusal.hpp"
 #include "testbed/sensors/validation.hpp"
 #include "tools/neritic/sonar_folder.hpp"
 #include "tools/neritic/sonar_picture.hpp"
@@ -38,7 +39,7 @@ Result<std::string> run_sonar(const SonarFlags& flags) {
     return done;
   }
   if (flags.overwrite || flags.workers > 0)
-    return bad_input("--overwrite, --workers: found, accepted with folders of frames");
+    return refusal("--overwrite, --workers", "with a single frame", "with folders of frames");
   SonarNotes notes;
   NERITIC_TRY_STATUS(run_one(job, notes));
   notes.release();

@@ -8,6 +8,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/refusal.hpp"
 #include "testbed/sensors/validation.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/interrupt.hpp"
@@ -56,8 +57,8 @@ Result<std::vector<FrameFiles>> frames_of(const SonarJob& job, FrameList& skippe
   for (const Group& g : groups_of(job.flags)) {
     if (g.pattern.empty()) continue;
     if (!sonar::names_many(g.pattern))
-      return bad_input("--{}: the file {} found, a folder or a pattern as the others is accepted",
-                       g.flag, g.pattern);
+      return refusal(fmt::format("--{}", g.flag), fmt::format("the file {}", g.pattern),
+                     "a folder or a pattern, as the other flags have");
     std::span<const char* const> kinds = kMaps;
     if (g.group == kPictureGroup) kinds = kPictures;
     NERITIC_TRY(files[g.group], sonar::list_files(g.pattern, kinds));
@@ -74,7 +75,9 @@ Result<std::vector<FrameFiles>> frames_of(const SonarJob& job, FrameList& skippe
 Status complete(const SonarJob& job, const FrameFiles& frame) {
   for (const Group& g : groups_of(job.flags))
     if (!g.pattern.empty() && frame.paths[g.group].empty())
-      return bad_input("no file for frame '{}' in --{} {}", frame.name, g.flag, g.pattern);
+      return refusal(
+          "", fmt::format("no file for frame '{}' in --{} {}", frame.name, g.flag, g.pattern),
+          "a file for each frame");
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/refusal.hpp"
 #include "sonar/detection.hpp"
 #include "sonar/quality.hpp"
 #include "sonar/terms_json.hpp"
@@ -133,10 +134,10 @@ void say_silence(const SonarJob& job, const sonar::SonarInput& in, HeardFrame& h
 Status check_classes(const sonar::SonarInput& in, const sonar::MapFile& labels) {
   for (const std::uint16_t label : in.labels)
     if (label == sonar::kShadow || label == sonar::kGhost)
-      return bad_input(
-          "{}: class {} found, any but {} and {} is accepted beside labels.energy, where they mean "
-          "ghost and shadow",
-          labels.path, label, sonar::kGhost, sonar::kShadow);
+      return refusal(
+          labels.path, fmt::format("class {}", label),
+          fmt::format("any but {} and {}, which mean ghost and shadow with labels.energy",
+                      sonar::kGhost, sonar::kShadow));
   return {};
 }
 
@@ -149,13 +150,12 @@ Result<Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFil
   } else {
     const auto values = parse_numbers("intrinsics", flags.intrinsics, 4, 4);
     if (!values.ok())
-      return bad_input("--intrinsics: '{}' found, fx,fy,cx,cy or a .json file is accepted",
-                       flags.intrinsics);
+      return refusal("--intrinsics", fmt::format("'{}'", flags.intrinsics),
+                     "fx,fy,cx,cy or a .json file");
     k = {(*values)[0], (*values)[1], (*values)[2], (*values)[3]};
   }
   if (!(k.fx > 0.0 && k.fy > 0.0))
-    return bad_input("--intrinsics: fx {:g}, fy {:g} found, positive numbers are accepted", k.fx,
-                     k.fy);
+    return refusal("--intrinsics", fmt::format("fx {:g}, fy {:g}", k.fx, k.fy), "positive numbers");
   if (flags.pixel_centers == "integer") {
     k.cx += 0.5;
     k.cy += 0.5;
@@ -180,8 +180,9 @@ Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& fil
   if (!files.paths[kNormalGroup].empty()) {
     NERITIC_TRY(normals, sonar::read_map(files.paths[kNormalGroup], sonar::MapUse::kColors));
     if (normals->coding == sonar::MapFile::Coding::kNumbers && job.options.gamma != 1.0)
-      return bad_input("--gamma: {:g} found, 1 is accepted: {} holds numbers, not codes",
-                       job.options.gamma, normals->path);
+      return refusal(
+          "--gamma", fmt::format("{:g}", job.options.gamma),
+          fmt::format("1, since {} has plain numbers, not coded colours", normals->path));
   }
   if (!files.paths[kLabelGroup].empty()) {
     NERITIC_TRY(labels, sonar::read_map(files.paths[kLabelGroup]));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "engine/core/refusal.hpp"
 #include "engine/scene/sonar_file.hpp"
 #include "sonar/detection.hpp"
 #include "testbed/sensors/session.hpp"
@@ -39,8 +40,8 @@ Result<SonarKind> kind_of(const std::string& name) {
   for (const SonarKind kind :
        {SonarKind::kImaging, SonarKind::kProfiling, SonarKind::kEchoSounder, SonarKind::kSideScan})
     if (name == scene::name_of(kind)) return kind;
-  return bad_input(
-      "sonar kind: '{}' found, imaging, profiling, echosounder or sidescan is accepted", name);
+  return refusal("sonar", fmt::format("kind '{}'", name),
+                 "imaging, profiling, echosounder or sidescan");
 }
 
 // A full aperture about dead ahead, or its two edges; radians.
@@ -48,8 +49,8 @@ Result<std::pair<double, double>> aperture(const char* flag, const std::string& 
   NERITIC_TRY(const auto values, parse_numbers(flag, text, 1, 2));
   if (values.size() == 2) return std::pair{radians(values[0]), radians(values[1])};
   if (!(values[0] > 0.0))
-    return bad_input("--{}: {:g} degrees found, more than 0 or two edges are accepted", flag,
-                     values[0]);
+    return refusal(fmt::format("--{}", flag), fmt::format("{:g} degrees", values[0]),
+                   "more than 0, or two edges");
   return std::pair{-radians(values[0]) / 2.0, radians(values[0]) / 2.0};
 }
 
@@ -57,8 +58,8 @@ Result<sonar::Bins> bins_of(const std::string& text) {
   NERITIC_TRY(const auto bins, parse_numbers("bins", text, 3, 3));
   for (const double n : bins)
     if (n != std::floor(n) || n < 1.0 || n > sonar::kMaxBins)
-      return bad_input("--bins: {:g} in '{}' found, whole numbers from 1 to {} are accepted", n,
-                       text, sonar::kMaxBins);
+      return refusal("--bins", fmt::format("{:g} in '{}'", n, text),
+                     fmt::format("whole numbers from 1 to {}", sonar::kMaxBins));
   return sonar::Bins{static_cast<std::uint32_t>(bins[0]), static_cast<std::uint32_t>(bins[1]),
                      static_cast<std::uint32_t>(bins[2])};
 }
@@ -81,8 +82,8 @@ Result<sonar::BeamGrid> grid_of(const SonarFlags& flags, const scene::Sonar& s) 
     if (across.empty()) across = upright;
     if (upright.empty()) upright = across;
     if (across != upright)
-      return bad_input("--elevation: '{}' found, the '{}' of --azimuth is accepted for a cone",
-                       upright, across);
+      return refusal("--elevation", fmt::format("'{}'", upright),
+                     fmt::format("'{}', as --azimuth, for a cone", across));
   }
   if (!across.empty()) {
     NERITIC_TRY(const auto edges, aperture("azimuth", across));
@@ -115,7 +116,7 @@ void put_grid(scene::Sonar& sonar, const sonar::BeamGrid& grid) {
 // Refuses terms that need more than images: a scene, a track or other sensors.
 Status refuse_terms(const std::string& file, const scene::SonarTerms& terms) {
   const auto refuse = [&](const char* key, const char* why) {
-    return bad_input("{}: {}: found, none is accepted without a scene: {}", file, key, why);
+    return refusal(fmt::format("{}: {}", file, key), "the key", fmt::format("none, since {}", why));
   };
   if (terms.ghosts) return refuse("ghosts", "images do not show what a mirror would");
   if (terms.motion) return refuse("motion", "images do not tell how the sonar moves");
@@ -125,16 +126,15 @@ Status refuse_terms(const std::string& file, const scene::SonarTerms& terms) {
 
 Result<scene::Sonar> sensor_of(const SonarFlags& flags, SonarKind kind) {
   if (flags.sensor.empty() && !flags.quality.empty())
-    return bad_input(
-        "--quality: found, it is accepted with --sensor: plain beams are those of --bins");
+    return refusal("--quality", "without --sensor", "with --sensor, or --bins alone");
   if (!flags.bins.empty() && !flags.quality.empty())
-    return bad_input("--bins: found beside --quality, one of them is accepted");
+    return refusal("--bins", "beside --quality", "one of them");
   if (flags.sensor.empty()) return default_sonar(kind);
   NERITIC_TRY(scene::Sonar sonar, scene::load_sonar(flags.sensor));
   const std::string file = flags.sensor.string();
   if (sonar.kind != kind)
-    return bad_input("{}: a sensor of kind {} found, {} is accepted (neritic sonar {})", file,
-                     scene::name_of(sonar.kind), flags.kind, flags.kind);
+    return refusal(file, fmt::format("a sensor of kind {}", scene::name_of(sonar.kind)),
+                   fmt::format("{} (neritic sonar {})", flags.kind, flags.kind));
   NERITIC_TRY_STATUS(refuse_terms(file, sonar.terms));
   if (!flags.quality.empty()) {
     sonar.quality = flags.quality;
@@ -155,8 +155,9 @@ Result<sonar::Head> head_of(const scene::Sonar& sonar, const sonar::BeamGrid& gr
   const bool symmetric =
       l.azimuth_min_rad == -l.azimuth_max_rad && l.elevation_min_rad == -l.elevation_max_rad;
   if (head.echo && !symmetric)
-    return bad_input("--{}: two edges found, one full aperture is accepted for a sensor with terms",
-                     l.azimuth_min_rad == -l.azimuth_max_rad ? "elevation" : "azimuth");
+    return refusal(
+        fmt::format("--{}", l.azimuth_min_rad == -l.azimuth_max_rad ? "elevation" : "azimuth"),
+        "two edges", "one full aperture for a sensor with terms");
   if (!head.echo) head.beams = head.samples = grid;
   return head;
 }
@@ -172,27 +173,27 @@ Result<sonar::Gather> gather_of(const SonarFlags& flags, const scene::Sonar& son
 
 Status check_method(const SonarFlags& flags, bool plain) {
   if (flags.method == "reference" && !plain)
-    return bad_input("--method: reference found, gpu is accepted for {}",
-                     flags.sensor.empty() ? "kind " + flags.kind : "a sensor with terms");
+    return refusal("--method", "reference",
+                   fmt::format("gpu for {}", flags.sensor.empty() ? "kind " + flags.kind
+                                                                  : "a sensor with terms"));
   if (flags.method != "gpu" && (!flags.device.empty() || flags.validation))
-    return bad_input("--device, --validate: found, accepted with --method gpu");
+    return refusal("--device, --validate", "without --method gpu", "with it");
   if (flags.method == "reference" && !flags.gather.empty() && flags.gather != "published")
-    return bad_input("--gather: {} found, published is accepted with --method reference",
-                     flags.gather);
+    return refusal("--gather", flags.gather, "published with --method reference");
   if (flags.method != "image") {
-    if (flags.depth.empty()) return bad_input("--depth: none found, a depth image is accepted");
+    if (flags.depth.empty()) return refusal("--depth", "none", "a depth image");
     if (!flags.picture.empty() || !flags.altitude.empty() || flags.incidence)
-      return bad_input("--picture, --altitude, --incidence: found, accepted with --method image");
+      return refusal("--picture, --altitude, --incidence", "without --method image", "with it");
     return {};
   }
   if (flags.kind != "sidescan")
-    return bad_input("--method: image found, it is accepted for kind sidescan");
+    return refusal("--method", "image", "gpu or reference, or image for kind sidescan");
   if (!flags.sensor.empty())
-    return bad_input("--sensor: found, none is accepted with --method image: it has no terms");
-  if (flags.picture.empty()) return bad_input("--picture: none found, a picture is accepted");
+    return refusal("--sensor", "with --method image", "none, since this method has no terms");
+  if (flags.picture.empty()) return refusal("--picture", "none", "a picture");
   if (flags.depth.empty() == flags.altitude.empty())
-    return bad_input("--depth, --altitude: {} found, one of them is accepted with --method image",
-                     flags.depth.empty() ? "neither" : "both");
+    return refusal("--depth, --altitude", flags.depth.empty() ? "neither" : "both",
+                   "one of them with --method image");
   return {};
 }
 
@@ -201,7 +202,7 @@ Status check_effects(const SonarFlags& flags, const SonarJob& job) {
   const auto refuse = [&flags](std::initializer_list<const char*> names, const char* where) {
     for (const char* name : names)
       if (flags.given.contains(name))
-        return Status(bad_input("{}: found, accepted {}", name, where));
+        return Status(refusal(name, "in a run that would ignore it", fmt::format("{}", where)));
     return Status();
   };
   if (flags.method == "image")
@@ -230,9 +231,9 @@ Result<sonar::OfflineOptions> options_of(const SonarFlags& flags) {
   NERITIC_TRY(const auto scale, parse_numbers("depth-scale", flags.depth_scale, 1, 1));
   NERITIC_TRY(const auto gamma, parse_numbers("gamma", flags.gamma, 1, 1));
   if (!(scale[0] > 0.0))
-    return bad_input("--depth-scale: {:g} found, a positive number is accepted", scale[0]);
+    return refusal("--depth-scale", fmt::format("{:g}", scale[0]), "a positive number");
   if (!(gamma[0] > 0.0))
-    return bad_input("--gamma: {:g} found, a positive number is accepted", gamma[0]);
+    return refusal("--gamma", fmt::format("{:g}", gamma[0]), "a positive number");
   options.depth_scale = scale[0];
   options.gamma = gamma[0];
   return options;
@@ -249,7 +250,7 @@ Result<sonar::PingState> state_of(const SonarJob& job) {
   state.stream = job.flags.side == "starboard" ? 1 : 0;
   NERITIC_TRY(const auto strength, parse_numbers("backscatter-db", job.flags.backscatter_db, 1, 1));
   if (!(strength[0] >= -100.0 && strength[0] <= 20.0))
-    return bad_input("--backscatter-db: {:g} found, -100 to 20 is accepted", strength[0]);
+    return refusal("--backscatter-db", fmt::format("{:g}", strength[0]), "-100 to 20");
   state.backscatter_scale = std::pow(10.0, strength[0] / 10.0);
   return state;
 }
@@ -270,13 +271,13 @@ Result<SonarJob> plan_job(const SonarFlags& flags) {
                                  ? flags.sensor.string() + ": gather"
                                  : std::string("--gather");
   if (job.gather == sonar::Gather::kPublished && !job.plain())
-    return bad_input("{}: published found, plane or nearest is accepted for {}", gather,
-                     flags.sensor.empty() ? "kind " + flags.kind : "a sensor with terms");
+    return refusal(
+        gather, "published",
+        fmt::format("plane or nearest for {}",
+                    flags.sensor.empty() ? "kind " + flags.kind : "a sensor with terms"));
   if (job.gather == sonar::Gather::kNearest && job.sonar.terms.labels.energy)
-    return bad_input(
-        "{}: nearest found, plane is accepted beside labels.energy: shadow needs a beam's "
-        "footprint",
-        gather);
+    return refusal(gather, "nearest",
+                   "plane with labels.energy, since shadow needs a beam's footprint");
   NERITIC_TRY_STATUS(check_effects(flags, job));
   NERITIC_TRY(job.options, options_of(flags));
   NERITIC_TRY(job.state, state_of(job));

@@ -6,6 +6,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/sidescan.hpp"
 #include "sonar/write_sonar.hpp"
@@ -30,8 +31,9 @@ Result<std::vector<float>> depth_of(const SonarJob& job, const fs::path& path,
                                     const sonar::SeabedPicture& picture, SonarNotes& notes) {
   NERITIC_TRY(const sonar::MapFile map, sonar::read_map(path));
   if (map.width != picture.brightness.width || map.height != picture.brightness.height)
-    return bad_input("{}: {} x {} pixels found, the picture's {} x {} are accepted", path.string(),
-                     map.width, map.height, picture.brightness.width, picture.brightness.height);
+    return refusal(path.string(), fmt::format("{} x {} pixels", map.width, map.height),
+                   fmt::format("{} x {}, the picture's size", picture.brightness.width,
+                               picture.brightness.height));
   note_whole_metres(job, map, notes);
   // Normals have no part in it: those of any depth will do.
   NERITIC_TRY(const sonar::SonarInput in,
@@ -110,8 +112,8 @@ Status write_waterfall(const SonarJob& job, const std::vector<sonar::FrameFiles>
     NERITIC_TRY(const NpyArray array, read_npy(path));
     const std::vector<double> values = array.to_doubles();
     if (values.size() != 2 * std::size_t{o.n_range})
-      return bad_input("{}: {} numbers found, {} are accepted", path.string(), values.size(),
-                       2 * std::size_t{o.n_range});
+      return refusal(path.string(), fmt::format("{} numbers", values.size()),
+                     fmt::format("{}", 2 * std::size_t{o.n_range}));
     const std::vector<float> lines(values.begin(), values.end());
     const std::span<const float> both(lines);
     record.append(both.first(o.n_range), both.last(o.n_range), Pose{}, 0.0);

@@ -5,6 +5,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/refusal.hpp"
 #include "sonar/write_sonar.hpp"
 
 namespace neritic::tools {
@@ -55,8 +56,7 @@ bool may_replace(const fs::path& folder) {
 
 Status check_replaceable(const fs::path& folder) {
   if (may_replace(folder)) return {};
-  return bad_input("{}: files of something else found there, another --out is accepted",
-                   folder.string());
+  return refusal(folder.string(), "files that are no results of neritic sonar", "another --out");
 }
 
 Status same_settings(const json& found, const json& asked, const fs::path& path) {
@@ -69,8 +69,10 @@ Status same_settings(const json& found, const json& asked, const fs::path& path)
   std::string key;
   for (const auto& [name, value] : both.items())
     if (in(found, name) != in(asked, name)) key = key.empty() ? name : key;
-  return bad_input("{}: made with {} {}, {} is asked for; another --out or --overwrite is accepted",
-                   path.string(), key, in(found, key), in(asked, key));
+  return refusal(
+      path.string(),
+      fmt::format("results with {} {} instead of {}", key, in(found, key), in(asked, key)),
+      "another --out, or --overwrite");
 }
 
 json stamp_of(const fs::path& path) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "engine/core/refusal.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/tradeoff/deco_tradeoff.hpp"
@@ -23,7 +24,7 @@ std::string files(const TradeoffFlags& flags, const char* stem, bool drawn) {
 
 Result<std::string> trade_physics(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
-    return bad_input("tradeoff: kind '{}' found, none is accepted for physics", flags.kind);
+    return refusal("tradeoff physics", fmt::format("kind '{}'", flags.kind), "none");
   PhysicsTradeoffOptions options;
   options.quick = flags.quick;
   Progress progress("tradeoff physics", steps(options));
@@ -35,7 +36,7 @@ Result<std::string> trade_physics(const TradeoffFlags& flags) {
 
 Result<std::string> trade_swim(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
-    return bad_input("tradeoff: kind '{}' found, none is accepted for swim", flags.kind);
+    return refusal("tradeoff swim", fmt::format("kind '{}'", flags.kind), "none");
   SwimTradeoffOptions options;
   options.quick = flags.quick;
   Progress progress("tradeoff swim", steps(options));
@@ -46,7 +47,7 @@ Result<std::string> trade_swim(const TradeoffFlags& flags) {
 
 Result<std::string> trade_physiology(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
-    return bad_input("tradeoff: kind '{}' found, none is accepted for physiology", flags.kind);
+    return refusal("tradeoff physiology", fmt::format("kind '{}'", flags.kind), "none");
   PhysiologyTradeoffOptions options;
   options.quick = flags.quick;
   options.recordings = flags.recordings;
@@ -59,7 +60,7 @@ Result<std::string> trade_physiology(const TradeoffFlags& flags) {
 
 Result<std::string> trade_deco(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
-    return bad_input("tradeoff: kind '{}' found, none is accepted for deco", flags.kind);
+    return refusal("tradeoff deco", fmt::format("kind '{}'", flags.kind), "none");
   DecoTradeoffOptions options;
   options.quick = flags.quick;
   Progress progress("tradeoff deco", steps(options));
@@ -79,20 +80,16 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
     using enum scene::SonarKind;
     if (std::ranges::none_of(std::array{kImaging, kProfiling, kEchoSounder, kSideScan, kMechanical},
                              known))
-      return bad_input(
-          "tradeoff: kind '{}' found, imaging, profiling, echosounder, sidescan or mechanical is "
-          "accepted",
-          flags.kind);
+      return refusal("tradeoff sonar", fmt::format("kind '{}'", flags.kind),
+                     "imaging, profiling, echosounder, sidescan or mechanical");
     if (options.scene.empty())
-      return bad_input("tradeoff: kind '{}' without a scene found, a scene is accepted",
-                       flags.kind);
+      return refusal("tradeoff sonar", fmt::format("kind '{}' without a scene", flags.kind),
+                     "with --scene FILE");
   }
   std::error_code none;
   if (flags.scene == TradeoffFlags().scene && !std::filesystem::exists(flags.scene, none))
-    return bad_input(
-        "tradeoff: no {} here; accepted: to start in the project's folder, or --scene FILE, or "
-        "none",
-        flags.scene);
+    return refusal("--scene", fmt::format("no {} in this folder", flags.scene),
+                   "a start in the project's folder, --scene FILE, or --scene none");
   Progress progress("tradeoff sonar", steps(options));
   options.step = [&] { progress.step(); };
   options.now = [&](const std::string& doing) { progress.now(doing); };
@@ -128,8 +125,8 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "swim") return trade_swim(flags);
   if (flags.what == "physiology") return trade_physiology(flags);
   if (flags.what == "deco") return trade_deco(flags);
-  return bad_input("tradeoff: '{}' found, sonar, physics, swim, deco or physiology is accepted",
-                   flags.what);
+  return refusal("tradeoff", fmt::format("'{}'", flags.what),
+                 "sonar, physics, swim, deco or physiology");
 }
 
 }  // namespace neritic::tools

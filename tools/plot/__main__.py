@@ -22,7 +22,7 @@ def read(path):
     except (OSError, ValueError) as error:
         raise BadData(f"{path}: cannot be read: {error}") from None
     if not isinstance(data, dict) or not isinstance(data.get("picture"), str):
-        raise BadData(f'{path}: no key "picture" found; a data file of neritic (.plot.json) is accepted')
+        raise BadData(f'{path}: found no key "picture"; accepted: a data file of neritic (.plot.json)')
     return data
 
 
@@ -61,7 +61,7 @@ def main():
         data = read(asked.data)
         known = painters()
         if data["picture"] not in known:
-            raise BadData(f'{asked.data}: picture "{data["picture"]}" found; {", ".join(known)} are accepted')
+            raise BadData(f'{asked.data}: found picture "{data["picture"]}"; accepted: {", ".join(known)}')
         save(known[data["picture"]](data), asked.out or stem + ".png")
     except ModuleNotFoundError as error:
         if error.name is None or error.name.split(".")[0] not in ("matplotlib", "numpy"):

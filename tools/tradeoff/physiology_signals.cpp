@@ -7,6 +7,7 @@
 #include "diver/physio_wav.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/math.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -96,7 +97,7 @@ MadeHeart make_heart(double seconds, std::uint64_t seed) {
     const double rate = effort_rate_bpm(t);
     out.beats_s.push_back(t);
     out.rate_bpm.push_back(rate);
-    // Breath moves the rate by 4 % at .25 Hz; every thirtieth beat comes a third early, and the
+    // Breath moves the rate by 4 % at 0.25 Hz; every thirtieth beat comes a third early, and the
     // next as much late.
     double length_s = 60.0 / rate * (1.0 + 0.04 * std::sin(2.0 * kPi * 0.25 * t));
     if (pause)
@@ -145,8 +146,7 @@ Result<std::vector<BreathSound>> read_breath(const std::filesystem::path& folder
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, failed))
     if (entry.path().extension() == ".wav" && rate_in_name(entry.path().filename().string()) > 0.0)
       paths.push_back(entry.path());
-  if (failed)
-    return bad_input("{}: no folder found, one with recordings is accepted", folder.string());
+  if (failed) return refusal(folder.string(), "no folder", "one with recordings");
   std::ranges::sort(paths);
   std::vector<BreathSound> out;
   for (const auto& path : paths) {
@@ -157,8 +157,8 @@ Result<std::vector<BreathSound>> read_breath(const std::filesystem::path& folder
     out.push_back({name.substr(0, name.find('_')), rate_in_name(name), std::move(sound)});
   }
   if (out.empty())
-    return bad_input("{}: no recordings found, .wav files named like breath_12bpm.wav are accepted",
-                     folder.string());
+    return refusal(folder.string(), "no recordings",
+                   ".wav files with names such as breath_12bpm.wav");
   return out;
 }
 

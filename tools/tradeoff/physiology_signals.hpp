@@ -34,7 +34,7 @@ std::vector<BreathSound> make_breath(const std::vector<double>& rates_bpm, doubl
                                      std::uint64_t seed);
 // The .wav files of a folder and those below it whose names hold a rate (SENSOR_12bpm_...).
 Result<std::vector<BreathSound>> read_breath(const std::filesystem::path& folder);
-// Pieces of .3 to 3 s in random order: as loud, as colourful, without rhythm.
+// Pieces of 0.3 to 3 s in random order: as loud, as colourful, without rhythm.
 std::vector<diver::BreathFrame> in_pieces(const std::vector<diver::BreathFrame>& frames,
                                           const RandomKey& key);
 

@@ -26,7 +26,7 @@ class RayWorld {
 };
 
 Result<std::unique_ptr<RayWorld>> make_triangle_world(Triangles triangles);
-// A seabed plane .8 m below and spheres of radius .35 and .15 m at 3 and 4 m.
+// A seabed plane 0.8 m below and spheres of radius 0.35 and 0.15 m at 3 and 4 m.
 std::unique_ptr<RayWorld> make_analytic_world();
 
 }  // namespace neritic::tools

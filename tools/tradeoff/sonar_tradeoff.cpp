@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "engine/core/refusal.hpp"
 #include "engine/scene/scene.hpp"
 #include "testbed/sensors/session.hpp"
 
@@ -116,8 +117,7 @@ Setting analytic_setting(const SonarTradeoffOptions& options) {
 }
 
 Result<Setting> scene_setting(const scene::Scene& scene, const SonarTradeoffOptions& options) {
-  if (scene.sonars.empty())
-    return bad_input("{}: no sonar found, a scene with one is accepted", scene.path);
+  if (scene.sonars.empty()) return refusal(scene.path, "no sonar", "a scene with one");
   const scene::Sonar& s = scene.sonars.front();
   Setting setting;
   setting.name = std::filesystem::path(scene.path).stem().string();
@@ -282,8 +282,7 @@ Result<SonarTradeoff> run_sonar_tradeoff(const SonarTradeoffOptions& options) {
   }
   if (!options.scene.empty()) {
     NERITIC_TRY(const scene::Scene scene, scene::load_scene(options.scene));
-    if (scene.sonars.empty())
-      return bad_input("{}: no sonar found, a scene with one is accepted", scene.path);
+    if (scene.sonars.empty()) return refusal(scene.path, "no sonar", "a scene with one");
     NERITIC_TRY_STATUS(measure_kinds(*device, scene, options, out));
   }
   return out;
