@@ -16,7 +16,7 @@ namespace neritic::diver {
 struct BreathSettings {
   BreathEstimator estimator = BreathEstimator::kMultiBand;
   double block_s = 10.0;  // of sound, handed over at once: an estimate each
-  // That an estimate looks back over: two blocks, the knee of `tradeoff physiology`.
+  // Sound that an estimate uses: two blocks, the knee of `tradeoff physiology`.
   double window_s = 20.0;
 };
 // The sound that is kept for breath of less than 6 a minute, if the window is shorter: three
@@ -32,7 +32,7 @@ class BreathAnalyser {
   BreathAnalyser(double rate_hz, const BreathSettings& settings);
   // The next sound, of any length.
   const BreathState& take(std::span<const float> sound);
-  // A block that nobody heard: what was before is no neighbour of what comes.
+  // Lost blocks: the sound before and after them is not continuous.
   void lose(std::uint64_t blocks, double seconds);
 
  private:

@@ -16,10 +16,10 @@ constexpr int kSmoothFrames = 10;
 // Its equivalent length, (sum w)^2 / sum w^2 of a Hann window: two thirds.
 constexpr double kSmooth_s = kSmoothFrames / kBreathFrames_hz * 2.0 / 3.0;
 constexpr double kLeastWindow_s = 4.0, kLeastOverlap_s = 2.0;
-// A level that varies no more than twice as much as that of steady noise tells nothing: the
+// A level that varies at most twice as much as that of steady noise carries no information: the
 // variance of the logarithm of noise power over B Hz and T s is 1 / BT.
 constexpr double kOverNoise = 4.0;
-// And bands that vary by less than half a decibel are not breathed in.
+// Bands that vary by less than half a decibel contain no breath.
 constexpr double kLeastDeviation = 0.115;  // nepers of power
 constexpr double kSilence = 1e-12;         // full scale squared: -120 dB
 // Breaths that were missed: a rate says that none was. Breathing that is paced pauses for half a
@@ -81,7 +81,7 @@ void by_autocorrelation(const Levels& envelope, BreathEstimate& out) {
   const int shortest = static_cast<int>(kBreathFrames_hz / kFastestBreath_hz);
   const int last = frames - static_cast<int>(kLeastOverlap_s * kBreathFrames_hz);
   const int longest = std::min(static_cast<int>(kBreathFrames_hz / kSlowestOfBaselines_hz), last);
-  // By lag, worked out where it is asked for.
+  // Autocorrelation by lag, computed on demand; NaN: not yet.
   std::vector<double> r(static_cast<std::size_t>(last + 2),
                         std::numeric_limits<double>::quiet_NaN());
   const auto at = [&](int lag) {

@@ -1,4 +1,4 @@
-// The jacket's buttons as somebody presses them: over time, out of a table. Any thread.
+// Presses of the jacket's buttons over time, read from a table. Any thread.
 //
 // The form: .csv; a column t_s (or another time of physio_csv.hpp) and any of inflate, deflate,
 // dump: 1 pressed, 0 not, each from its row's time up to the next one's. Buttons not named are

@@ -33,7 +33,7 @@ struct AscentState {
   bool stop_owed = false;
 };
 
-// Is told what the ascent consists of, in its order.
+// Receives the parts of the ascent in order.
 class AscentSink {
  public:
   virtual ~AscentSink() = default;

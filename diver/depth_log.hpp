@@ -2,8 +2,8 @@
 //
 // The form: text, a row a line, columns as physio_csv.hpp parts them. The first row names them, in
 // any order: time_s or time_min (as SampleTable::time_column has it); depth_m, "depth (m)"; gas
-// (air, ean32, 18/45), if there is one; vehicle, whose row it is, where several dive. Other columns
-// are left alone, and so are empty lines and lines that begin with #. A depth that is "nan" or
+// (air, ean32, 18/45), optional; vehicle, the participant of the row, if there are several. Other
+// columns are ignored, and so are empty lines and lines that begin with #. A depth that is "nan" or
 // empty is a sample that failed; times may not go back.
 #pragma once
 
@@ -27,7 +27,7 @@ struct DepthLog {
 };
 
 // name stands in messages. Errors name the line, what was found, what is accepted.
-// vehicle: whose rows are taken, where the column vehicle names several; empty: all are one's.
+// vehicle: the participant whose rows are read, if the column vehicle names several; else empty.
 Result<DepthLog> read_depth_log(std::string_view text, const std::string& name,
                                 std::string_view vehicle = {});
 

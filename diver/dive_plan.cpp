@@ -167,8 +167,8 @@ class WayDown {
       const double minutes = level.leave_min - state_.run_min;
       if (minutes < -kSameMinute)
         return refusal("",
-                       fmt::format("{:g} m, reached after {:.4g} min, until {:g} min",
-                                   level.depth_m, state_.run_min, level.leave_min),
+                       fmt::format("{:g} m until {:g} min, though it is reached after {:.4g} min",
+                                   level.depth_m, level.leave_min, state_.run_min),
                        "a later time");
       move(level.depth_m, std::max(minutes, 0.0), PlanPhase::kBottom);
       state_.run_min = std::max(level.leave_min, state_.run_min);
@@ -210,7 +210,7 @@ class WayDown {
         ceiling(settings_.model, tissues, settings_.gf_low).pressure_bar);
   }
 
-  // No ceiling holds for who may still come up at once.
+  // A ceiling does not apply while a direct ascent is still allowed.
   bool tolerated(const TissueState& tissues, double depth_m, std::size_t gas) const {
     if (ceiling_m(tissues) <= depth_m + kSameDepth_m) return true;
     if (!request_.conventions.direct_ascent) return false;

@@ -95,7 +95,7 @@ Status check_request(const DivePlanRequest& request);
 Result<DivePlan> plan_dive(const DivePlanRequest& request);
 // The ascent of a diver who leaves for the surface after the first `levels` levels.
 Result<DivePlan> plan_dive(const DivePlanRequest& request, std::size_t levels);
-// That no level is above its ceiling: what a plan for a diver must keep.
+// Refuses a plan with a level above its ceiling.
 Status check_ceilings(const DivePlanRequest& request, const DivePlan& plan);
 // The end of the last level, without an ascent.
 Result<PlanPoint> end_of_levels(const DivePlanRequest& request);

@@ -21,8 +21,8 @@ struct DiverFile {
 };
 
 // water_kg_m3 and surface_pa are the scene's: its water and the air over it.
-// include: a file whose keys come first. Errors: file and key, what was found and is accepted; what
-// make_body and DiveComputer::create refuse.
+// include: a file whose keys come first. Errors: file and key, found and accepted; those of
+// make_body and DiveComputer::create too.
 Result<DiverFile> read_diver(const std::filesystem::path& path, double water_kg_m3,
                              double surface_pa = kSurfacePressure_pa);
 // The same of text in memory; folder is what an include is relative to.

@@ -1,6 +1,6 @@
 // The one place where a diver's axes meet the program's. Here: world north, east, down; body
 // forward (to the head), starboard, down (out of the belly). Elsewhere: world x east, y up, z
-// south; bodies x starboard, y up, z backwards, so that who swims level faces -z. Models of people
+// south; bodies x starboard, y up, z backwards: a level swimmer faces -z. Models of people
 // stand: x right, y to the head, z out of the back. Pure functions; any thread.
 #pragma once
 

@@ -10,7 +10,7 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<GasSwitchState>);
 
-// As usual switch depths are reckoned.
+// Depth of kMostOxygen_bar by the same rule as usual switch depths: 10 m a bar.
 double richest_depth_m(const GasMix& mix) {
   return max_operating_depth_m(mix, kMostOxygen_bar, kTenMetresABar);
 }
@@ -87,7 +87,7 @@ class Chooser {
     return best;
   }
 
-  // For who has nothing else: the least oxygen that keeps thinking.
+  // The fallback if no gas is fit: the one with the least oxygen above kThinks_bar.
   std::size_t least_bad() const {
     const double ambient_pa = pressure_at(body_, std::min(choice_.depth_m, choice_.soon_m));
     const double used_to = std::min(body_.surface_pa / kSurfacePressure_pa, 1.0);

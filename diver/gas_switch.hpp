@@ -12,7 +12,7 @@
 
 namespace neritic::diver {
 
-// Longer, and who moves at all is seldom bound for any depth for as long.
+// Longer times would look too far ahead: a moving diver seldom keeps one direction that long.
 inline constexpr double kMostReaction_s = 20.0;
 
 struct GasSwitching {
@@ -47,7 +47,7 @@ inline constexpr double kGasDepthSlack_m = 1.0, kRichestSlack_m = 0.5;
 // It is chosen only with kWorthSwitching_pa beyond, so that the ascent forces no change back.
 inline constexpr double kSpare_pa = 5e5, kWorthSwitching_pa = 10e5;
 
-// Where a diver is who chooses, and where he will be when he has changed.
+// The state of a diver who chooses a gas: the depth now, and after the time that a change takes.
 struct GasChoice {
   std::size_t breathed = 0;
   double depth_m = 0.0, soon_m = 0.0;

@@ -98,7 +98,7 @@ inline constexpr Bounds kJacketCapacity_m3{1e-3, 0.06}, kJacketMass_kg{0.0, 20.0
     kJacketHose_m{0.0, 1.0}, kJacketSideways{0.0, 1.0};
 inline constexpr Bounds kLead_kg{0.0, 60.0}, kLeadShare{0.0, 1.0}, kGearDragArea_m2{0.0, 5.0};
 
-// The first thing that nobody wears: its name, what was found, what is accepted.
+// Refuses the first value that is out of range: its name, what was found, what is accepted.
 Status check_gear(const Gear& gear);
 
 // A swimmer in trunks.

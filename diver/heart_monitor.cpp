@@ -126,7 +126,7 @@ void HeartMonitor::skip(double seconds) {
     return;
   }
   if (detector_) {
-    // As if the samples had come and been no numbers.
+    // Lost samples count as samples that are no numbers.
     const double missing[] = {std::nan("")};
     for (double t = 0.0; t < seconds; t += 1.0 / rate_hz_) push(missing);
     return;

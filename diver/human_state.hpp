@@ -49,8 +49,8 @@ struct LifeState {
   double jacket_moles = 0.0;
   double limb_power_w = 0.0;  // mechanical, over the last second or so
   double limb_work_j = 0.0;   // so far
-  // Tissues and oxygen, as a dive computer of the same breath and depth has them; step() carries
-  // them along, and who has the computer steps them (deco_live.hpp).
+  // Tissues and oxygen of a dive computer with the same breath and depth; step() only copies them,
+  // and the owner of the computer steps them (deco_live.hpp).
   DiveComputerState computer;
   VitalState vitals;  // heart, breath, gaze, risk
 

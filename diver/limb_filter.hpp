@@ -11,7 +11,7 @@ namespace neritic::diver {
 // has nothing above 6 Hz).
 inline constexpr double kLimbCutoff_hz = 6.0;
 // A joint that is farther behind than this follows at 20 rad/s at most, the fastest that limbs move
-// by themselves: so a sensor that jumps throws nobody about.
+// by themselves: a sensor that jumps does not throw the body about.
 inline constexpr double kMostLag_rad = 0.75;
 
 struct LimbState {

@@ -42,7 +42,7 @@ OxygenExposure exposure_after(const OxygenExposure& before, const OxygenExposure
 
 // Deepest for a partial pressure of oxygen.
 double max_operating_depth_m(const GasMix& mix, double po2_bar, const DecoEnvironment& where);
-// Where a deco gas is switched to unless told: the deepest multiple of 3 m (10 m a bar) with 1.6
+// Default switch depth of a deco gas: the deepest multiple of 3 m (10 m a bar) with at most 1.6
 // bar of oxygen.
 double usual_switch_depth_m(const GasMix& mix);
 // Equivalent narcotic depth on air where oxygen narcotises as nitrogen does.

@@ -42,7 +42,7 @@ struct CsvChannel {
   double rate_hz = 0.0;  // 0: from the column of time, else from the comment
 };
 // One column, evenly spaced. The rate is that of the steps of usual length, to six digits; stamps
-// may jitter. Where the time leaps, the samples between are missing and counted; rows whose time
+// may jitter. If the time leaps, the samples between are missing and counted; rows whose time
 // goes back by most of a step or more are refused and counted, and so are rows whose time stands
 // still, unless the rate is given: then they are of one packet. A column of words is an error.
 Result<Recording> parse_csv(std::string_view text, const std::string& name,

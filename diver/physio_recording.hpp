@@ -1,5 +1,5 @@
 // A recording of a diver's signals, as every reader gives it: evenly spaced samples of one channel,
-// whatever the file. Missing samples are NaN; who analyses refuses and counts them. Plain values;
+// whatever the file. Missing samples are NaN; the analysis refuses and counts them. Plain values;
 // any thread.
 #pragma once
 

@@ -9,8 +9,8 @@ namespace {
 
 using enum PlanWarningKind;
 
-// R. W. Hamilton's and agencies' working and deco limits; hypoxia as agencies teach it, where air
-// at the surface has more: who dives in the mountains is used to theirs.
+// R. W. Hamilton's and agencies' working and deco limits; hypoxia as agencies teach it. At altitude
+// the limit falls with the air's own oxygen pressure, to which the diver is acclimatised.
 constexpr double kBottomPo2_bar = 1.4, kDecoPo2_bar = 1.6, kLeastPo2_bar = 0.16;
 constexpr double kNarcotic_m = 30.0, kCns_percent = 80.0, kOtuLimit = 300.0;
 constexpr double kSlack = 1e-6;  // limits may be met

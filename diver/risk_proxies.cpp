@@ -18,9 +18,9 @@ constexpr double kRespiratoryQuotient = 0.85;
 constexpr double kDeadSpaceShare = 0.3;
 constexpr double kMetre_pa = 1e4;  // of sea water, as tables for divers count
 // Raised, high, severe. Breaths per minute: above 25 is a sign of panic. 80 % of the CNS limit is
-// the most by plan (NOAA). Below 0.18 bar too little oxygen, below 0.16 thought suffers, below 0.10
-// consciousness goes; who is in the mountains is used to what the air there has of it, down to the
-// last.
+// the most by plan (NOAA). Below 0.18 bar oxygen is low, below 0.16 thinking suffers, below 0.10
+// consciousness is lost; at altitude the first two limits fall to the oxygen of the air there, but
+// not below the last.
 constexpr double kFastBreath_bpm[] = {25.0, 30.0, 40.0};
 constexpr double kCnsLevels_percent[] = {80.0, 100.0, 150.0};
 constexpr double kLittleOxygen_bar[] = {0.18, 0.16, 0.10};

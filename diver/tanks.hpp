@@ -14,7 +14,7 @@ struct TankState {
   static void fields(auto&& field, auto& self) { field("moles", self.moles); }
 };
 
-// As filled.
+// The tanks at their start pressures.
 TankState full_tanks(const Body& body);
 
 double tank_pressure(const Body& body, const TankState& tanks, std::size_t tank);

@@ -85,8 +85,8 @@ struct UsblReading {
   double range_m = 0.0, bearing_rad = 0.0;  // from north to east
   double elevation_rad = 0.0;               // positive down
   Vec3 position_ned_m{0.0};                 // what they put together to
-  // The answer took so long: it tells of the vehicle half of it ago. The reading is of its state
-  // now; who uses it adds the delay.
+  // Two-way travel time. A real answer would show the vehicle half of it ago; this reading is of
+  // its state now, and the user adds the delay.
   double travel_s = 0.0;
   static void fields(auto&& field, auto& self) {
     field("heard", self.heard);

@@ -1,5 +1,5 @@
-// The BlueROV2 Heavy's published parameters, so that a vehicle is at hand without a file. The same
-// as assets/vehicles/bluerov2_heavy_dynamics.toml and its variants. Any thread.
+// The BlueROV2 Heavy's published parameters, for use without a file. Equal to those of
+// assets/vehicles/bluerov2_heavy_dynamics.toml and its variants. Any thread.
 #pragma once
 
 #include "rov/vehicle.hpp"

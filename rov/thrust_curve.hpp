@@ -19,8 +19,8 @@ class ThrustCurve {
   // finite.
   static Result<ThrustCurve> make(std::vector<double> pwm_us, std::vector<double> volts,
                                   std::vector<std::vector<double>> thrust_n);
-  // A .csv whose heading names the columns: pwm_us, then thrust_n_16v and so on, others are passed
-  // over; '#' comments.
+  // A .csv whose heading names the columns: pwm_us, then thrust_n_16v and so on; other columns are
+  // ignored; '#' begins a comment.
   static Result<ThrustCurve> parse(std::string_view text, const std::string& name);
   static Result<ThrustCurve> read(const std::filesystem::path& path);
 

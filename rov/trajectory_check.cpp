@@ -53,8 +53,8 @@ struct Run {
   }
 };
 
-// The error at the end that the file promises a step as long as this; of a rate that it does not
-// list, by the integrator's order from the nearest that it does. 0, 0 where it tells of none.
+// The error at the end that the file states for this length of step; for a rate that it does not
+// list, extrapolated from the nearest by the integrator's order. 0, 0 if it states none.
 PromisedError promised(const TrajectoryCase& one, const TrajectoryCheck& options) {
   const bool euler = options.integrator == Integrator::kSemiImplicit;
   const double order = euler ? 1.0 : 4.0;

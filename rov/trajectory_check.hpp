@@ -30,7 +30,7 @@ struct TrajectoryCheck {
 // error does, and plain RK4's of a lagging thruster are wider. Where the file promises a larger
 // error for a step as long, twice that is the tolerance, since the end that it speaks of is not
 // always the worst place; nor is it finer than the samples' own error. Semi-implicit Euler is
-// compared at the end alone, of which alone the file tells, with bars of order 1.
+// compared at the end alone, since the file has only that, with bars of order 1.
 CaseResult check_trajectory(const TrajectoryCase& one, const TrajectoryCheck& options = {});
 
 // The state at every sample.

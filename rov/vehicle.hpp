@@ -45,7 +45,7 @@ struct VehicleParameters {
   std::optional<Tether> tether;
 };
 
-// Lengths of time for which the lag's exact map is at hand.
+// Number of step lengths for which the lag's exact map is stored.
 inline constexpr std::size_t kMaxPrepared = 16;
 
 // Checked and prepared. Trivially destructible: steps only read it.

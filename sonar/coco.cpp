@@ -77,8 +77,8 @@ std::vector<std::uint32_t> shadow_parts(const LabelImage& labels) {
   return parts;
 }
 
-// By part of shadow: the class and instance that most of its bins have next nearer in their beam,
-// seabed, ghosts and shadows aside; parts that have none before them are absent.
+// For each part of a shadow: the class and instance that is next nearer in the beams of most of its
+// bins, without seabed, ghosts and shadows; parts with none before them are absent.
 std::map<std::uint32_t, std::uint64_t> casters_of(const LabelImage& labels,
                                                   const std::vector<std::uint32_t>& parts,
                                                   RangeAxis range) {

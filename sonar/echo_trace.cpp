@@ -22,7 +22,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // Half as much again as the pulse: what a return may be long and be a point's.
 constexpr double kPointLength = 1.5;
 
-// Where the return begins whose flank holds a bin.
+// The beginning of the return whose flank contains a bin.
 double return_bins(std::span<const float> profile, std::size_t at, double pulse_bins) {
   const auto value = [&](std::size_t i) {
     return i < profile.size() ? double{heard(profile[i])} : 0.0;

@@ -10,7 +10,7 @@
 
 namespace neritic::sonar {
 
-// The floats that such a program would have at hand.
+// The inputs of such a program, as floats.
 struct LiteralInput {
   std::uint32_t width = 0, height = 0;
   float fx = 1, fy = 1, cx = 0, cy = 0;

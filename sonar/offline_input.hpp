@@ -49,7 +49,7 @@ std::vector<double> normals_from_depth(const SonarInput& input);
 // zeros tell, or of three rows; or "frames", a list with "id"s, of which the one that stands in the
 // depth file's name, else in its folders, is taken (the only one where there is one): whole, so
 // that 1 is not found in 10. A width and height in it must be the image's. kBadInput where two ids
-// fit, the matrix has a skew, or the file tells of a lens that is no pinhole.
+// fit, the matrix has a skew, or the file describes a lens that is no pinhole.
 Result<Intrinsics> read_intrinsics(const std::filesystem::path& path, const MapFile& depth);
 
 }  // namespace neritic::sonar

@@ -1,7 +1,7 @@
 // Sound speed over depth, and rays through it: straight ones, whose travel time is exact, and bent
 // ones after Snell. Linear between the table's rows, constant above the first and below the last.
 // Depths are metres below the surface, positive; elevations radians above the horizontal; times
-// one way. No surface and no bottom: who traces a ray ends it there. Immutable; any thread.
+// one way. No surface and no bottom: the caller ends rays there. Immutable; any thread.
 #pragma once
 
 #include <span>
@@ -24,8 +24,8 @@ class SoundSpeedProfile {
   // Rows of depth_m in [-100, 12000], rising, and m/s in [100, 10000].
   static Result<SoundSpeedProfile> of_table(Table depth_speed);
 
-  // As a ray that a flat mirror sends back meets it: beyond the mirror's depth the image of what
-  // is before it.
+  // The profile along a ray that a flat mirror reflects, unfolded: beyond the mirror's depth it is
+  // mirrored.
   SoundSpeedProfile beyond_mirror(double mirror_depth_m, bool water_below) const;
 
   double speed_m_s(double depth_m) const;

@@ -91,7 +91,7 @@ class CaseField {
   Vec3 vec3(const Vec3& fallback) const;
   // n rows of n numbers, or its diagonal alone; empty where absent or refused.
   std::vector<std::vector<double>> square(std::size_t n) const;
-  // Fails where a member has none of these names, and tells the nearest.
+  // Fails if a member has none of these names; the message has the nearest.
   void allow(std::span<const std::string_view> names) const;
   // The same, but a text under another name is a note for people, unless its name is a slip of one
   // of these (is_slip).

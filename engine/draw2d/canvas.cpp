@@ -14,8 +14,8 @@ std::uint8_t to_byte(float v) {
   return static_cast<std::uint8_t>(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
 
-// How much of a pixel a stroke covers whose middle line is at a distance from the pixel's centre:
-// a ramp one pixel wide at the edge; a stroke thinner than a pixel is fainter instead.
+// The part of a pixel that a stroke covers, by the distance of its middle line from the pixel's
+// centre: a ramp one pixel wide at the edge; a stroke thinner than a pixel is fainter instead.
 double stroke_coverage(double distance_px, double width_px) {
   return std::clamp(width_px / 2.0 + 0.5 - distance_px, 0.0, std::clamp(width_px, 0.0, 1.0));
 }

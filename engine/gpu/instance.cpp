@@ -95,7 +95,7 @@ Result<InstanceHandles> create_instance(const DeviceOptions& options, Validation
     extensions.push_back(name);
   }
 
-  // Drivers that are not wholly Vulkan (MoltenVK) are listed only to who asks.
+  // Drivers that do not conform fully (MoltenVK) are listed only with this extension.
   const bool portability = has(present, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
   if (portability) extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
 

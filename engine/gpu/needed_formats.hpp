@@ -1,7 +1,7 @@
 // The image formats that Neritic's passes use, and how. A device without one of them is not chosen,
-// and `doctor` says which it lacks. This folder knows no pass; who uses a format asserts that it is
-// here (render/renderer.hpp), and a test holds the list against all that a scene makes. Pure; any
-// thread.
+// and `doctor` says which it lacks. This folder knows no pass; the user of a format asserts that it
+// is here (render/renderer.hpp), and a test compares the list with all formats that scenes use.
+// Pure; any thread.
 #pragma once
 
 #include <volk.h>

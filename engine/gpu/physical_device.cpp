@@ -41,15 +41,15 @@ constexpr std::array kRequired13{
         &VkPhysicalDeviceVulkan13Features::dynamicRendering, "dynamicRendering"},
     FeatureRow<VkPhysicalDeviceVulkan13Features>{
         &VkPhysicalDeviceVulkan13Features::synchronization2, "synchronization2"},
-    // A texel fetched beside an image is zero: who looks there need not ask first.
+    // A texel fetched outside an image is zero, so that shaders need no bounds checks.
     FeatureRow<VkPhysicalDeviceVulkan13Features>{
         &VkPhysicalDeviceVulkan13Features::robustImageAccess, "robustImageAccess"},
     FeatureRow<VkPhysicalDeviceVulkan13Features>{&VkPhysicalDeviceVulkan13Features::maintenance4,
                                                  "maintenance4"},
 };
 
-// Turned on where the device has them: who uses one asks Device::features(), or the limit that it
-// raises (maxDrawIndexedIndexValue).
+// Enabled if the device has them: code that uses one checks Device::features(), or the limit that
+// it raises (maxDrawIndexedIndexValue).
 constexpr std::array kOptional{
     &VkPhysicalDeviceFeatures::independentBlend, &VkPhysicalDeviceFeatures::fullDrawIndexUint32,
     &VkPhysicalDeviceFeatures::shaderClipDistance,  // of what a mirror shows, for sonars' ghosts

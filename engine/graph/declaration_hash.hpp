@@ -7,7 +7,7 @@
 
 namespace neritic::graph {
 
-// Equal declarations hash equal; the cache tells unequal ones with one hash apart by ==.
+// Equal declarations have equal hashes; the cache also compares with ==, in case of a collision.
 std::uint64_t hash_of(const GraphDecl& graph);
 
 }  // namespace neritic::graph

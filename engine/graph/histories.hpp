@@ -17,7 +17,7 @@ class Histories {
  public:
   // Makes the images of declarations that are new or changed, and records their clearing to zero.
   // recording: Frames::recording; run: counts the executor's runs. Appends images that the GPU may
-  // still use and nobody needs to retired.
+  // still use, but no history needs, to retired.
   Status prepare(const gpu::Device& device, const std::vector<HistoryDecl>& declared,
                  std::uint64_t recording, std::uint64_t run, VkCommandBuffer cmd, Past& past,
                  std::vector<gpu::Image>& retired);

@@ -38,7 +38,7 @@ bool GpuScene::has_emission() const {
   return parts_->materials.has_emission;
 }
 
-// Makes the groups of every model's primitives, then fills in who shows them.
+// Makes the groups of every model's primitives, then fills in the instances that show them.
 class GpuSceneBuilder {
  public:
   GpuSceneBuilder(const scene::Scene& scene, GpuScene& out) : scene_(scene), out_(out) {}

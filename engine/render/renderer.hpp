@@ -1,5 +1,5 @@
 // The passes that make pictures, as free-standing declarations on a frame graph: deform, G-buffer
-// (full or geometry only), shade, forward, tonemap. Each is declared only by who needs it: a scene
+// (full or geometry only), shade, forward, tonemap. Each is declared only if needed: a scene
 // without skins has no deform pass, a sonar's view no albedo. Rendering thread only.
 #pragma once
 

@@ -11,7 +11,7 @@ namespace neritic::scene::gltf {
 namespace {
 
 constexpr std::string_view kShapes = "SCALAR VEC2 VEC3 VEC4 MAT4";
-// Files whose accessors lie over one another are looked at so far.
+// Limits the bytes that are examined, since accessors of a hostile file can overlap many times.
 constexpr std::size_t kExamineFactor = 4, kExamineBaseBytes = std::size_t{1} << 20;
 
 template <class T>

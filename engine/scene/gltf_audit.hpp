@@ -18,8 +18,8 @@ std::set<std::string> note_broken_rules(const Json& document, Report& report);
 
 // Checks of values, once the model is whole: bounds that accessors do not keep, accessors and
 // pictures that nothing is drawn with and that cannot be read, indices that would restart a
-// primitive, inverse bind matrices, joints beside the shown scene. Leaves out what was `told` of
-// before.
+// primitive, inverse bind matrices, joints beside the shown scene. Skips elements in `told`, which
+// have a note already.
 void note_broken_values(Loading& loading, const std::set<std::string>& told);
 
 }  // namespace neritic::scene::gltf

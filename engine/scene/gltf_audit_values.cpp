@@ -36,7 +36,7 @@ class ValueAudit {
   }
 
  private:
-  // Elements of a list that nothing was told of; what fails is a note.
+  // Checks the elements of a list that have no note yet; a failure becomes a note.
   template <class Check>
   void each(Field list, const char* name, Check check) {
     const std::size_t n = list.size();

@@ -1,5 +1,5 @@
-// Nodes of a model that something moves which is no clip: the joints of a person who swims by
-// physics. A plain value; any thread.
+// Nodes of a model that are moved by something other than a clip: the joints of a diver who swims
+// by physics. A plain value; any thread.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Every key of the scene format, table by table: the one list from which unknown keys are told and
-// suggestions made, and which the format's page (assets/scenes/README.md) is tested against.
+// Every key of the scene format, table by table: the one list for finding unknown keys and making
+// suggestions. A test compares the format's page (assets/scenes/README.md) with it.
 #pragma once
 
 #include <array>

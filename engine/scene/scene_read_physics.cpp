@@ -14,7 +14,7 @@ namespace {
 constexpr Interval kCurrentSpeed{-100, 100, false, false, "m/s"};
 constexpr Interval kOverZeroMetres{0, 1e6, true, false, "metres"};
 constexpr Interval kAnySeconds{-1e9, 1e9, false, false, "seconds"};
-// As many as vehicles can have.
+// The most thrusters that a vehicle can have.
 constexpr std::size_t kMaxFailedThruster = 16;
 
 constexpr Key kPhysicsOnly[] = {"collision",       "dynamics", "mission", "failed_thrusters",

@@ -1,5 +1,5 @@
-// Reads the keys of one TOML table with type and range checks. The first fault sticks: what is read
-// after it are defaults, and status() tells it as one line (file:line: key: found; accepted). One
+// Reads the keys of one TOML table with type and range checks. The first fault sticks: later reads
+// give defaults, and status() returns it as one line (file:line: key: found; accepted). One
 // thread, while a scene loads.
 #pragma once
 

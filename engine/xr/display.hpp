@@ -1,5 +1,5 @@
-// The seam between the program and what shows its frames: a desktop window, an image that nobody
-// looks at (offscreen), a headset. A frame is begin_frame, then, if the verdict is kDraw, declare
+// The interface between the program and the device that shows its frames: a desktop window, an
+// offscreen image, a headset. A frame is begin_frame, then, if the verdict is kDraw, declare
 // and the submission with sync(), then end_frame. Rendering thread.
 #pragma once
 

@@ -1,5 +1,5 @@
-// A display that nobody looks at: frames go to images of the program's own, paced by a rate or as
-// fast as they come. For machines without a screen, and for tests. Rendering thread.
+// A display without a screen: frames go to images of the program's own, at a rate or as fast as
+// they come. For machines without a screen, and for tests. Rendering thread.
 #pragma once
 
 #include <memory>

@@ -185,8 +185,8 @@ struct Look {
   float centre_m;
 };
 
-// For rows whose footprints are bounded by their neighbours'. A thread that looks at all of them in turn has the
-// neighbours' ranges at hand.
+// For rows whose footprints are bounded by their neighbours'. A thread that processes all rows in turn keeps the
+// neighbours' ranges.
 const bool kBounded = kFootprint == kSonarFootprintBounded;
 const bool kInTurn = kBounded && kLanes == 1;
 
@@ -217,8 +217,8 @@ vec2 neighbour_ranges(SonarColumn s, uint row, int v) {
   return kBounded ? vec2(neighbour_range(s, int(row) - 1, v), neighbour_range(s, int(row) + 1, v)) : vec2(0.0);
 }
 
-// neighbour_ranges, of the looks before and after the row's where they are at hand; beyond the first and the last row
-// any look will do.
+// neighbour_ranges from the looks before and after the row's if the thread has kept them; beyond the first and the last
+// row any look will do.
 vec2 ranges_beside(SonarColumn s, uint row, Look before, Look look, Look after) {
   if (!kInTurn) return neighbour_ranges(s, row, look.v);
   bool below = row > 0 && before.centre_v != look.v;

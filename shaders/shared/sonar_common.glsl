@@ -56,7 +56,7 @@ uint label_key(float strength, uint label) {
   return max(1u, uint(strength * 65535.0 + 0.5)) << 16 | (65535u - label);
 }
 
-// The incidence term with what the pixel's instance reflects; tells its label.
+// The incidence term times the reflectivity of the pixel's instance; gives the label too.
 float reflected(float strength, ivec3 at, out uvec2 label) {
   label = uvec2(0);
   if (kReflect != 0 || kLabels != 0) label = texelFetch(label_image, at, 0).xy;

@@ -219,7 +219,8 @@ TEST(DecoCaseFile, WhatIsWrongIsSaidInOneLine) {
   EXPECT_THAT(fault_with("/profile/kind", "wavy"), HasSubstr("square or multilevel"));
   EXPECT_THAT(fault_with("/profile/kind", "multilevel"),
               HasSubstr("levels: not found, but needed"));
-  EXPECT_THAT(fault_with("/profile/bottom_runtime_min", 1), HasSubstr("is reached after 1.5 min"));
+  EXPECT_THAT(fault_with("/profile/bottom_runtime_min", 1),
+              HasSubstr("it is reached after 1.5 min"));
   EXPECT_THAT(fault_with("/initial_tissues", Json::array({1, 2})),
               HasSubstr("16 rows of 2 numbers"));
   EXPECT_THAT(fault_with("/reference/stops", 3), HasSubstr("accepted: a list"));

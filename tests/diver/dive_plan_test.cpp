@@ -239,7 +239,7 @@ TEST(DivePlan, ExtremesArePlannedOrRefused) {
   never.levels = {{120.0, 30000.0}};
   const auto refused = plan_dive(never);
   ASSERT_FALSE(refused.ok());
-  EXPECT_THAT(refused.error().message, HasSubstr("the ceiling never clears"));
+  EXPECT_THAT(refused.error().message, HasSubstr("its ceiling never clears"));
 }
 
 TEST(DivePlan, WhatIsWrongIsSaidInOneLine) {
@@ -254,7 +254,7 @@ TEST(DivePlan, WhatIsWrongIsSaidInOneLine) {
   EXPECT_THAT(fault([](auto& r) { r.gf_high = std::nan(""); }), HasSubstr("gradient factors"));
   EXPECT_THAT(fault([](auto& r) { r.levels.clear(); }), HasSubstr("found no depth"));
   EXPECT_THAT(fault([](auto& r) { r.levels[0].leave_min = 1.0; }),
-              HasSubstr("30 m is reached after 1.5 min, but to be left at 1"));
+              HasSubstr("found 30 m until 1 min, though it is reached after 1.5 min"));
   EXPECT_THAT(fault([](auto& r) { r.levels[0].depth_m = std::nan(""); }), HasSubstr("m until"));
   EXPECT_THAT(fault([](auto& r) { r.gases.clear(); }), HasSubstr("found 0 gases"));
   EXPECT_THAT(fault([](auto& r) { r.gases.push_back({}); }), HasSubstr("found 2 bottom gases"));

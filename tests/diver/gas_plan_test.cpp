@@ -105,9 +105,10 @@ TEST(GasPlan, ATankThatIsTooSmallIsOneLine) {
   const Planned little = gas_planned(dive, {{0, 15.0, 200.0}});
   ASSERT_EQ(warnings(little).size(), 1u);
   EXPECT_EQ(warnings(little)[0].kind, PlanWarningKind::kMinimumGas);
-  EXPECT_THAT(warnings(little)[0].text,
-              HasSubstr("tank of air, 15 L at 200 bar: 44 bar left at 18 m, 40 min; minimum gas to "
-                        "go up with is 83"));
+  EXPECT_THAT(
+      warnings(little)[0].text,
+      HasSubstr("tank of air, 15 L at 200 bar: 44 bar left at 18 m, 40 min; minimum gas for "
+                "the ascent is 83"));
   const Planned empty = gas_planned(dive, {{0, 10.0, 200.0}});
   ASSERT_EQ(warnings(empty).size(), 1u);
   const PlanWarning w = warnings(empty)[0];

@@ -242,7 +242,8 @@ TEST(RovCaseFile, FaultsOfControlAreSaidInOneLine) {
        "+51/-39 N\"; accepted: \"Fossen + thruster lag T s"},
       {"/closed_loop/gains/KP", "[1]",
        "closed_loop.gains.KP: found [1]; accepted: a list of six numbers"},
-      {"/closed_loop/results", "{\"mars/surge_2m\": {\"t90\": 1}}", "a name that begins with neu"},
+      {"/closed_loop/results", "{\"mars/surge_2m\": {\"t90\": 1}}",
+       "accepted: one that begins with neu"},
       {"/closed_loop/results", "{\"sea/dance\": {\"t90\": 1}}", "case 'sea/dance'"},
       {"/closed_loop/results", "{\"sea/surge_0m\": {\"t90\": 1}}", "case 'sea/surge_0m'"}};
   for (const Fault& f : faults) {

@@ -226,7 +226,10 @@ TEST(RovExtremes, ParametersThatAreNoVehicleAreErrors) {
   EXPECT_THAT(said([](auto& p) { p.weight_n = -5; }), HasSubstr("weight_n: found -5"));
   EXPECT_THAT(said([](auto& p) { p.inertia_kg_m2 = Mat3(0.0); }),
               HasSubstr("inertia_kg_m2: found a mass"));
-  EXPECT_THAT(said([](auto& p) { p.gravity_centre_m = {0, 0, 1}; }), HasSubstr("(0, 0, 1) the ma"));
+  EXPECT_THAT(said([](auto& p) {
+                p.gravity_centre_m = {0, 0, 1};
+              }),
+              HasSubstr("with mass 13.5 and centre of gravity (0, 0, 1)"));
   EXPECT_THAT(
       said([](auto& p) { p.added_mass(0, 1) = p.added_mass(1, 0) = 30; }),
       HasSubstr("added_mass: found a sum with the rigid body's mass matrix that is not positive"));

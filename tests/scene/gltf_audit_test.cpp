@@ -166,7 +166,7 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
          b.json["accessors"][b.accessor<std::int8_t>("VEC3", 3, {-7, 2, 3, 4, 5, 6})]["min"][0] = 1;
        }},
       {"accessors[2]: found 9 elements, 108 bytes from byte 0 on; accepted: a range inside "
-       "bufferViews[2], which has 12",
+       "bufferViews[2], which has 12 bytes",
        [](Builder& b) {
          Json& accessor = b.json["accessors"][b.vec3({0, 0, 0})];
          accessor["count"] = 9;
@@ -195,7 +195,8 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
                                {"indices", {{"bufferView", at}, {"componentType", 5123}}},
                                {"values", {{"bufferView", by}}}};
        }},
-      {"meshes[0].primitives[0].indices: found 255; accepted: smaller values",
+      {"meshes[0].primitives[0].indices: found 255; accepted: smaller values, since glTF reserves "
+       "the largest of each type",
        [](Builder& b) {
          auto& primitive = b.json["meshes"][0]["primitives"][0];
          primitive["attributes"]["POSITION"] = b.vec3(std::vector<float>(3 * 256, 0.0f));
@@ -207,7 +208,7 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
        [](Builder& b) {
          b.json["images"] = {{{"uri", "none.png"}}};
        }},
-      {"images[0].uri: found a data URI with other characters than base64's",
+      {"images[0].uri: found a data URI with other characters than base64's; accepted: base64",
        [](Builder& b) {
          b.json["images"] = {{{"uri", "data:image/png;base64,`"}}};
        }},
@@ -229,7 +230,7 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
        [&](Builder& b) {
          skin(b, {0, 0, 0, 1, 0, 0, 0, 4});
        }},
-      {"nodes[0].skin: found joint node 1 outside the shown scene",
+      {"nodes[0].skin: found joint node 1 outside the shown scene; accepted: nodes of that scene",
        [&](Builder& b) {
          skin(b, {0, 0, 0, 1, 0, 0, 0, 1});
          b.json["scenes"][0]["nodes"] = {0};

@@ -121,7 +121,8 @@ TEST(AscGrid, EveryFaultIsOneLineThatNamesIt) {
       {"ncols 2\nnrows 2\ncellsize -3\n1 1 1 1",
        "g: cellsize: found -3; accepted: a positive number"},
       {"ncols 2\nnrows 2\ncellsize 1\n1 2\n3", "g: found 3 numbers; accepted: ncols x nrows = 4"},
-      {"ncols 2\nnrows 2\ncellsize 1\n1 2\n3 4\n5", "g:6: more than ncols x nrows = 4 numbers"},
+      {"ncols 2\nnrows 2\ncellsize 1\n1 2\n3 4\n5",
+       "g:6: found more numbers than ncols x nrows; accepted: 4"},
       {"ncols 2\nnrows 2\ncellsize 1\n1 2\n3 x", "g:5: found 'x'; accepted: a number"},
       {"ncols 30000\nnrows 30000\ncellsize 1\n1",
        "g: found a header for 30000 x 30000 numbers; accepted: as many as the file holds, at most "
@@ -184,7 +185,8 @@ TEST(Heightfield, FaultsNameFileAndCure) {
             at + "line.npy: found an array of 1 dimensions; accepted: 2 (rows, columns)");
   EXPECT_EQ(message(scratch / "thin.npy", {1.0}),
             at + "thin.npy: found 1 x 4 samples; accepted: 2 x 2 to 16777216 in all");
-  EXPECT_EQ(message(scratch / "holes.npy", {1.0}), at + "holes.npy: no sample has data");
+  EXPECT_EQ(message(scratch / "holes.npy", {1.0}),
+            at + "holes.npy: found no height; accepted: one sample with data or more");
   EXPECT_EQ(
       message(scratch / "inf.npy", {1.0}),
       at +

@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "loop, at most 64 steps"},
         WrongLine{SPHERE "name = 'a'\nlook_at = 'a'",
                   "s.toml:4: objects[0].look_at: found a at the place from which it is looked at; "
-                  "accepted: another"},
+                  "accepted: another place"},
         WrongLine{
             SPHERE "copies = [[1, 2]]",
             "s.toml:3: objects[0].copies: found [1, 2]; accepted: a list of 3, 4 or 5 numbers, "

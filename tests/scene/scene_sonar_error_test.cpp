@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
             ".level.tvg: back.csv:3: found 1 after 1; accepted: range_m, db, the first column "
             "rising"},
         WrongKeys{"level = {tvg = 'three.csv'}",
-                  ".level.tvg: three.csv:1: more than 2 numbers; accepted: range_m, db"},
+                  ".level.tvg: three.csv:1: found more than 2 numbers; accepted: range_m, db"},
         WrongKeys{
             "level = {tvg = [[0, 1]], tvg_absorption = true}",
             ".level.tvg_absorption: found true; accepted: no such key beside a table of gains"},

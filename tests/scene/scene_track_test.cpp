@@ -221,16 +221,18 @@ INSTANTIATE_TEST_SUITE_P(
             "s.toml:2: lamps[0].track.turn_m: found 1; accepted: no such key unless the heading is "
             "along"},
         Case{"track = {file = 'one.csv', speed_m_s = 1}",
-             "s.toml:2: lamps[0].track.file: one.csv: 1 row; accepted: 2 or more"},
-        Case{
-            "track = {file = 'five.csv', speed_m_s = 1}",
-            "s.toml:2: lamps[0].track.file: five.csv:1: 5 numbers; accepted: x, y, z or t_s, x, y, "
-            "z or t_s, x, y, z, yaw_deg, pitch_deg, roll_deg, in all rows alike"},
+             "s.toml:2: lamps[0].track.file: one.csv: found 1 row; accepted: 2 or more"},
+        Case{"track = {file = 'five.csv', speed_m_s = 1}",
+             "s.toml:2: lamps[0].track.file: five.csv:1: found 5 numbers; accepted: x, y, z or "
+             "t_s, x, y, "
+             "z or t_s, x, y, z, yaw_deg, pitch_deg, roll_deg, the same in all rows"},
         Case{"track = {file = 'mixed.csv', speed_m_s = 1}",
-             "s.toml:2: lamps[0].track.file: mixed.csv:2: 4 numbers; accepted: x, y, z or t_s, x, "
-             "y, z or t_s, x, y, z, yaw_deg, pitch_deg, roll_deg, in all rows alike"},
+             "s.toml:2: lamps[0].track.file: mixed.csv:2: found 4 numbers; accepted: x, y, z or "
+             "t_s, x, "
+             "y, z or t_s, x, y, z, yaw_deg, pitch_deg, roll_deg, the same in all rows"},
         Case{"track = {file = 'back.csv'}",
-             "s.toml:2: lamps[0].track.file: back.csv:3: time 1 after 1; accepted: rising times"},
+             "s.toml:2: lamps[0].track.file: back.csv:3: found time 1 after 1; accepted: rising "
+             "times"},
         Case{"track = {file = 'far.csv'}",
              "s.toml:2: lamps[0].track.file: far.csv:2: found '1e9'; accepted: a number of at most "
              "4e+07"},

@@ -34,7 +34,8 @@ TEST(CommandLine, AWrongFlagPointsAtTheSubcommandsHelp) {
 
 TEST(CommandLine, AFlagSaysWhatItWantsAndAMisspeltOneTheNearest) {
   EXPECT_EQ(said({"plan", "--depth", "30ft", "--time", "20"}),
-            "--depth: found '30ft'; accepted: a number, metres (see neritic plan --help)");
+            "--depth: found '30ft'; accepted: a number: depth of the bottom, metres (see neritic "
+            "plan --help)");
   EXPECT_THAT(said({"plan", "--depth=deep"}),
               HasSubstr("--depth: found 'deep'; accepted: a number"));
   EXPECT_EQ(said({"plan", "--dept", "30", "--time", "20"}),

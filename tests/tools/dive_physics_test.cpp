@@ -333,7 +333,7 @@ TEST_F(DivePhysics, AParameterFileThatIsNoVehicleEndsInOneLine) {
       {"mass_kg = 13.5\ninertia_kg_m2 = [0.3, 0.2, 0.4]\nadded_mass = [[-13.5, 0, 0, 0, 0, 0], "
        "[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], "
        "[0, 0, 0, 0, 0, 0]]\n",
-       "added_mass: with the rigid body's the matrix is singular"},
+       "added_mass: found a sum with the rigid body's mass matrix that is not"},
       {"mass_kg = nan\ninertia_kg_m2 = [0.3, 0.2, 0.4]\n", "mass_kg: found \"nan\""}};
   for (const auto& file : files) {
     ASSERT_TRUE(write_text(scratch_ / "wrong.toml", file.parameters).ok());

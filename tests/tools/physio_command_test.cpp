@@ -92,7 +92,8 @@ TEST(PhysioCommand, GazeBecomesFixationsWithTheirPixels) {
   flags.what = "gaze";
   flags.file = (folder / "gaze.csv").string();
   flags.out = folder.path();  // where gaze.csv is
-  EXPECT_THAT(run_physio(flags).error().message, HasSubstr("would replace the recording"));
+  EXPECT_THAT(run_physio(flags).error().message,
+              HasSubstr("the recording's folder, where the table would replace it"));
   flags.out = folder / "out";
   flags.intrinsics = "100,100,50,50";
   flags.plot = folder / "gaze.png";

@@ -329,7 +329,7 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
         {"plan --depth 30", "plan: found no --time; accepted: depth"},
         {"plan --time 30", "plan: found no --depth; accepted: depth"},
         {"plan --depth 30 --time 20 --gf 0/85", "--gf: found 0/85; accepted: 1 to 150 percent"},
-        {"plan --depth 30 --time 1", "30 m is reached after 1.5 min, but to be left at 1"},
+        {"plan --depth 30 --time 1", "found 30 m until 1 min, though it is reached after 1.5 min"},
         {"plan --depth nan --time 20", "found nan m until 20 min"},
         {"plan --depth 30 --time 20 --gas water", "found gas 'water'; accepted: air, o2, ean32"},
         {"plan --depth 30 --time 20 --gas air ean50@deep",
@@ -363,7 +363,7 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
         {"plan --depth 60 --time 30 --level 3,60",
          "found 3 m until 60 min, above the ceiling, which is at 29.39 m on the way there; "
          "accepted: 29.4"},
-        {"plan --depth 30 --time 20 --tank air=12", "--tank: found 1 numbers in '12'"},
+        {"plan --depth 30 --time 20 --tank air=12", "--tank: found 1 number in '12'; accepted: 2"},
         {"plan --depth 30 --time 20 --tank 12,200",
          "--tank: found '12,200'; accepted: GAS=LITRES,BAR"},
         {"plan --depth 30 --time 20 --tank o2=12,200", "found a tank of O2; accepted: gases of"},

@@ -446,7 +446,7 @@ std::string what_was_wrong(const CLI::App& app, const CLI::App& command,
     const std::string name = said.substr(unconverted.size(), value - unconverted.size());
     if (const CLI::Option* option = command.get_option_no_throw(name))
       return refusal(name, fmt::format("'{}'", printable(said.substr(value + 3))),
-                     fmt::format("a number, {}", option->get_description()))
+                     fmt::format("a number: {}", option->get_description()))
           .message;
   }
   if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return said;

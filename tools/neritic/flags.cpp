@@ -43,10 +43,10 @@ Result<std::vector<double>> parse_numbers(const char* flag, const std::string& t
     at = comma + 1;
   }
   if (out.size() < fewest || out.size() > most)
-    return bad_input(
-        "--{}: {} numbers in '{}' found, {} {} accepted", flag, out.size(), text,
-        fewest == most ? fmt::format("{}", most) : fmt::format("{} or {}", fewest, most),
-        most == 1 ? "is" : "are");
+    return refusal(
+        fmt::format("--{}", flag),
+        fmt::format("{} number{} in '{}'", out.size(), out.size() == 1 ? "" : "s", text),
+        fewest == most ? fmt::format("{}", most) : fmt::format("{} or {}", fewest, most));
   return out;
 }
 

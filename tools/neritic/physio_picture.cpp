@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// A picture tells no more points of a curve apart.
+// More points of a curve than this cannot be seen in a picture.
 constexpr std::size_t kMostPoints = 4000;
 
 std::string name_only(const std::string& path) {

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// A picture tells no more rows apart.
+// More rows than this cannot be seen in a picture.
 constexpr std::size_t kMostRows = 3000;
 
 bool same_kind(const TraceRow& a, const TraceRow& b) {

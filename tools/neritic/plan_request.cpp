@@ -226,7 +226,7 @@ Result<diver::DiveComputerSettings> log_settings(const PlanFlags& flags,
     return std::ranges::find(settings.gases, GasRole::kBottom, &PlanGas::role) !=
            settings.gases.end();
   };
-  // Else the log's first gas is the bottom's, and the flags' nobody has breathed.
+  // Otherwise the log's first gas is the bottom gas, and gases of flags alone were never breathed.
   if (!has_bottom() && unnamed) settings.gases[*unnamed].role = GasRole::kBottom;
   for (const PlanGas& gas : request.gases) {
     const bool known =

@@ -16,7 +16,7 @@ struct TraceRow {
   diver::DiveComputerView view;
 };
 
-// A moment whose tissues are worth a look.
+// A moment of which the report shows the tissues.
 struct TraceMoment {
   std::string name;
   double run_min = 0.0, depth_m = 0.0;

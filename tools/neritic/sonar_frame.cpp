@@ -111,7 +111,7 @@ bool can_be_heard(const SonarJob& job, const sonar::SonarInput& in) {
   return false;
 }
 
-// Why an image holds nothing; empty where it does. Behind noise no bin tells it, but the pixels do.
+// The reason why an image has no echo; empty if it has one. With noise the pixels decide, not bins.
 std::string silence_of(const SonarJob& job, const sonar::SonarInput& in,
                        const sonar::SonarImage& image) {
   const bool heard =

@@ -28,7 +28,7 @@ struct Coverage {
 bool in_aperture(const sonar::Limits& limits, const Vec3& direction);
 Coverage coverage_of(const sonar::BeamGrid& grid, const sonar::SonarInput& in);
 
-// The line that tells the user what is amiss, if anything. published: each pixel adds to one cell.
+// A line about missing coverage, if there is any. published: each pixel adds to one cell.
 std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Coverage& coverage,
                                          bool published);
 // Where a good part of what lies in the wedge is silent by its normals. estimated: from the depth.

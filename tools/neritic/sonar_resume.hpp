@@ -24,7 +24,7 @@ Result<std::vector<std::size_t>> frames_to_do(const SonarJob& job,
                                               FrameList& silent);
 
 // Runs write on a hidden folder beside OUT/name, which then takes its place. kBadInput where a
-// folder of that name is there that holds something else than a result: nobody's files are removed.
+// folder of that name has other files than a result's: a user's own files are never removed.
 // Any thread.
 Status write_whole(const std::filesystem::path& out, const std::string& name,
                    const std::function<Status(const std::filesystem::path&)>& write);

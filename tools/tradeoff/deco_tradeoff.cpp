@@ -156,7 +156,7 @@ void dive_by_samples(const KnownDive& dive, const std::vector<Sample>& samples, 
   }
 }
 
-// Processor time of one dive: the least of several, each long enough to be told.
+// Processor time of one dive: the least of several runs, each long enough to measure.
 double dive_cpu_us(const KnownDive& dive, const std::vector<Sample>& samples, TissueMethod method,
                    double step_s, bool quick) {
   double least = 1e300, kept = 0.0;

@@ -12,9 +12,9 @@ using scene::Sonar;
 using scene::SonarKind;
 using Measured = KindBench::Measured;
 
-// How often a term's price is taken.
+// Pairs of pings by which a term's cost is measured.
 constexpr int kPairs = 11;
-// An image that a term changes by less tells nothing of it.
+// A term that changes the image by less than this is not heard in it.
 constexpr double kUnheard = 1e-4;
 
 // Inputs that the rays share with the sonar, so that the comparison cannot check them.

@@ -66,7 +66,7 @@ Result<PhysiologyTradeoff> run_physiology_tradeoff(const PhysiologyTradeoffOptio
 // The knee of a falling curve: the point farthest below the line between its ends. x rises. Fewer
 // than three points: the last.
 std::size_t knee_of(const std::vector<double>& x, const std::vector<double>& y);
-// That of multiband's share of windows that are answered wrongly or not.
+// The knee of multiband: windows with a wrong answer or none, over the window's length.
 const BreathPoint* breath_knee(const PhysiologyTradeoff& tradeoff, const std::string& signals);
 // The median over the most intervals whose error is within 5 % of the least: more of them ride over
 // a missed beat.

@@ -105,7 +105,7 @@ nlohmann::json swim_json(const SwimTradeoff& t) {
   return json;
 }
 
-// Error over what(point), a curve a variant; some variants only, so that they can be told apart.
+// Error over what(point), a curve for each of some variants; more would not be distinguishable.
 Panel swim_panel(const SwimTradeoff& t, const std::string& swim, const std::string& title,
                  const std::string& label, double (*what)(const SwimPoint&), bool noted) {
   const char* const drawn[] = {"1 strip",  "2 strips",  "4 strips",

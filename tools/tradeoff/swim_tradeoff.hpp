@@ -54,8 +54,8 @@ bool is_default(const SwimPoint& point);
 // The largest errors over all swims of each model, strips and step, as a swim called "all".
 inline constexpr const char* kAllSwims = "all";
 std::vector<SwimPoint> worst_of_all(const SwimTradeoff& tradeoff);
-// The default is the cheapest, of what is measured, whose error in any swim is within this share of
-// the way straight ahead.
+// The default is the cheapest measured setting whose error in any swim is at most this share of the
+// straight swim's distance.
 inline constexpr double kWithinShare = 0.0025;
 // Points of the full model, by counted cost; null where there is none. The knee of the front (no
 // other is both cheaper and better), both axes logarithmic; and the cheapest within an error.

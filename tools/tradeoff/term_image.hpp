@@ -68,8 +68,8 @@ class TermImage {
   const scene::Sonar& settings() const { return *sonar_; }
   bool wants_ghosts() const { return sonar_->terms.ghosts.has_value(); }
   const std::optional<sonar::SoundSpeedProfile>& profile() const { return profile_; }
-  // By how much higher than straight the ray leaves that ends so far off in a direction of that
-  // sine above the horizon; 0 where rays are straight.
+  // The angle by which a bent ray leaves higher than the straight one, for an end at range_m in a
+  // direction with this sine above the horizon; 0 for straight rays.
   double bend_rad(double range_m, double sine, bool ghost) const;
   double sound_speed_m_s() const { return sound_speed_m_s_; }
 

@@ -133,8 +133,8 @@ class Tracer {
     return !head_.folded || ray.off_axis_rad <= patterns_.cone_rad + most_bend_rad_;
   }
 
-  // As an image's pattern counts a ray that ends so far off in its direction: by where it leaves.
-  // The piece of elevation that it stands for stays that of the direction.
+  // An image's pattern weighs a bent ray at the angle at which it leaves, not at which it ends. The
+  // piece of elevation that the ray stands for stays that of its direction.
   TruthRay leaving(const TermImage& image, const TruthRay& ray, double range_m, bool ghost) const {
     const double bend_rad = image.bend_rad(range_m, ray.direction.y, ghost);
     const Vec3 level(ray.direction.x, 0.0, ray.direction.z);
@@ -169,7 +169,7 @@ class Tracer {
     return static_cast<int>(std::clamp(std::ceil(span_m / (0.5 * finest_m_)), 1.0, kMost));
   }
 
-  // A ray's pattern counts for an image whose settings name one (of a cone, either).
+  // Applies a ray's pattern only if the image's settings name one (of a cone, either).
   static TruthRay seen_by(const TermImage& image, const TruthRay& ray) {
     const scene::Sonar& sonar = image.settings();
     const bool cone = sonar.kind == scene::SonarKind::kEchoSounder;
@@ -287,7 +287,7 @@ Result<std::vector<TermTruth>> trace_terms(const RayWorld& world, const TruthVie
                                            const TruthRays& rays) {
   NERITIC_TRY(const auto heads, sonar::plan_heads(sonars.front()));
   sonar::Head plan = heads.at(head);
-  // One whose rays bend looks farther up and down, beyond what it hears: by as many rays more.
+  // With bent rays the plan is taller than the heard elevation, by proportionally more rays.
   double taller = 1.0;
   for (const scene::Sonar& sonar : sonars) {
     if (!sonar.terms.profile || !sonar.terms.profile->bent) continue;

@@ -1,5 +1,5 @@
 // The images of a window's surface, in turn: acquire one, draw, present it. Vertical sync (FIFO).
-// That the window changed its size is no error but an outcome; recreate() then. Rendering thread.
+// A changed window size is an outcome, not an error: call recreate() then. Rendering thread.
 #pragma once
 
 #include <volk.h>

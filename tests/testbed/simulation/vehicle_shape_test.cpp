@@ -149,7 +149,7 @@ TEST(VehicleShape, FaultsAreOneLine) {
               HasSubstr("accepted: four points or more"));
   EXPECT_THAT(fault("[[outline]]\nkind = \"hull\"\n"
                     "points_m = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]"),
-              HasSubstr("v: outline: the hull of 4 points has no volume"));
+              HasSubstr("v: outline: found a hull of 4 points without volume"));
   EXPECT_THAT(fault("", std::string(kDrawnBox) + "\ncollision = true"),
               HasSubstr("collision: found true; accepted: \"hull\", beside dynamics"));
 }
