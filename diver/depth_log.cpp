@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMostSamples = 10'000'000;
 constexpr std::size_t kMostVehicles = 8;  // that are named
+constexpr double kMostAbove_m = 1.0;      // the surface: waves, and sensors that drift
 
 bool read_cell(std::string_view cell, double& value) {
   const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -31,7 +32,8 @@ std::string shown(std::string_view cell) {
 
 class LogReader {
  public:
-  LogReader(const std::string& name, std::string_view vehicle) : name_(name), vehicle_(vehicle) {}
+  LogReader(const std::string& name, std::string_view vehicle, bool upwards)
+      : name_(name), vehicle_(vehicle), upwards_(upwards) {}
 
   Result<DepthLog> read(std::string_view text) {
     text = without_mark(text);
@@ -104,6 +106,12 @@ class LogReader {
     else if (!read_cell(cells[depth_], sample.depth_m))
       return refusal(fmt::format("{}: line {}", name_, line_),
                      fmt::format("depth '{}'", shown(cells[depth_])), "a number");
+    if (upwards_) sample.depth_m = -sample.depth_m;
+    if (sample.depth_m < -kMostAbove_m)
+      return refusal(fmt::format("{}: line {}", name_, line_),
+                     fmt::format("depth '{}'", shown(cells[depth_])),
+                     upwards_ ? "up to 1 with --depths-up, where depths are negative"
+                              : "from -1; --depths-up reads depths that are negative");
     if (gas_ < width_) NERITIC_TRY_STATUS(read_gas(cells[gas_], sample));
     if (log_.samples.size() == kMostSamples)
       return refusal(name_, "more samples", fmt::format("up to {}", kMostSamples));
@@ -132,6 +140,7 @@ class LogReader {
 
   const std::string& name_;
   std::string_view vehicle_;
+  bool upwards_;
   std::vector<std::string> vehicles_;  // that there are
   std::size_t line_ = 0, width_ = 0, time_ = 0, depth_ = 0, gas_ = 0, of_ = 0;
   const char* separators_ = ",;";
@@ -142,8 +151,8 @@ class LogReader {
 }  // namespace
 
 Result<DepthLog> read_depth_log(std::string_view text, const std::string& name,
-                                std::string_view vehicle) {
-  return LogReader(name, vehicle).read(text);
+                                std::string_view vehicle, bool upwards) {
+  return LogReader(name, vehicle, upwards).read(text);
 }
 
 }  // namespace neritic::diver

@@ -4,7 +4,8 @@
 // any order: time_s or time_min (as SampleTable::time_column has it); depth_m, "depth (m)"; gas
 // (air, ean32, 18/45), optional; vehicle, the participant of the row, if there are several. Other
 // columns are ignored, and so are empty lines and lines that begin with #. A depth that is "nan" or
-// empty is a sample that failed; times may not go back.
+// empty is a sample that failed; times may not go back. Depths count downwards, or upwards
+// if asked; a computer at the surface may show up to a metre the other way, more is refused.
 #pragma once
 
 #include <string>
@@ -27,8 +28,9 @@ struct DepthLog {
 };
 
 // name stands in messages. Errors name the line, what was found, what is accepted.
+// upwards: depths are negative below the surface.
 // vehicle: the participant whose rows are read, if the column vehicle names several; else empty.
 Result<DepthLog> read_depth_log(std::string_view text, const std::string& name,
-                                std::string_view vehicle = {});
+                                std::string_view vehicle = {}, bool upwards = false);
 
 }  // namespace neritic::diver

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "diver/gaze.hpp"
+#include "diver/gaze_noise.hpp"
 #include "engine/core/result.hpp"
 
 namespace neritic::diver {
@@ -28,6 +30,10 @@ struct GazeSettings {
   // 0.71.
   double velocity_rad_s = radians(30.0);
   double velocity_window_s = 0.010;
+  // Noise that would pass for saccades is averaged over windows up to the widest one; where that
+  // does not suffice the velocity asked rises to so many deviations of the noise (Engbert and
+  // Kliegl 2003: 6; their velocity, the difference of means, in windows wider than the above).
+  double widest_window_s = 0.040, noise_deviations = 6.0;
   double bridge_s = 0.075, merge_s = 0.075, merge_rad = radians(0.5), least_fixation_s = 0.060;
   // Salvucci and Goldberg: 1 degree for 100 ms.
   double dispersion_rad = radians(1.0), dispersion_s = 0.100;
@@ -61,6 +67,19 @@ struct Saccade {
   double start_s = 0.0, end_s = 0.0;
   double amplitude_rad = 0.0, peak_rad_s = 0.0;
 };
+
+// The noise of a recording, and the velocity and window that I-VT used because of it: means over
+// its samples.
+struct GazeNoiseFound {
+  double deviation_rad = 0.0;  // of one axis, from sample to sample; 0: not known
+  double velocity_rad_s = 0.0, window_s = 0.0;
+};
+// The amplitude of saccades whose largest speed is this one: Baloh 1975 (Neurology 25, 1065),
+// 551 (1 - exp(-A / 14)) degrees a second of A degrees.
+double amplitude_of_peak_rad(double peak_rad_s);
+// The smallest saccade that such a velocity in such a window finds: its largest speed must reach
+// it, and so must its mean over half of the window.
+double smallest_saccade_rad(const GazeNoiseFound& noise);
 
 // A snapshot's data about the gaze. Always finite.
 struct GazeState {
@@ -109,6 +128,7 @@ class GazeMonitor {
   void push(const GazeSample& sample, GazeEvents& out);
   void finish(GazeEvents& out);
   const GazeState& state() const { return state_; }
+  GazeNoiseFound noise() const;
 
  private:
   struct Seen {
@@ -135,6 +155,17 @@ class GazeMonitor {
     double low_x = 0.0, high_x = 0.0, low_y = 0.0, high_y = 0.0;
   };
 
+  // The velocity at a waiting sample over a window; nothing where samples after it are wanted.
+  struct Velocity {
+    Vec3 rad_s{0.0};
+    double size_rad_s = 0.0;
+  };
+  std::optional<Velocity> velocity_at(std::size_t sample, double window_s, bool all) const;
+  struct Asked {
+    double window_s = 0.0, velocity_rad_s = 0.0;
+  };
+  Asked asked() const;
+  void learn_noise(double time_s, double window_s, const Vec3& velocity_rad_s);
   void settle_velocity(bool all, GazeEvents& out);
   void settle_dispersion(bool all, GazeEvents& out);
   void classify(const Seen& seen, GazeClass is, double velocity_rad_s, GazeEvents& out);
@@ -149,6 +180,14 @@ class GazeMonitor {
   GazeSettings settings_;
   std::vector<Seen> waiting_;  // oldest first: not all settled yet
   std::size_t settled_ = 0;    // of them
+  GazeNoise noise_;
+  bool learnt_ = false;
+  MedianDeviation slow_noise_;  // of velocities over the window that is in use, rad/s
+  double deviation_sum_rad_ = 0.0;
+  Asked asked_sum_;
+  double seen_samples_ = 0.0, asked_samples_ = 0.0;
+  double slow_window_s_ = 0.0, slow_time_s_ = 0.0;
+  std::optional<Vec3> slow_velocity_rad_s_;
   std::uint32_t lost_ = 0;
   bool in_fixation_ = false;  // I-DT: the window has become one, this large
   Extent extent_;

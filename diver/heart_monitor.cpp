@@ -68,27 +68,32 @@ void HeartMonitor::push(std::span<const double> samples) {
     missing_share_ += (missed - missing_share_) / (kMissing_s * rate_hz_);
     for (const Beat& beat : found_) {
       downward_ = downward_ << 1 | (beat.amplitude < 0.0 ? 1u : 0u);
-      take(judge_.take(beat.time_s, beat.after_gap));
+      Interval interval = judge_.take(beat.time_s, beat.after_gap);
+      interval.doubtful = judged() == SignalQuality::kPoor;
+      take(interval);
     }
   }
   const EcgCounts& counts = detector_->counts();
   state_.time_s = static_cast<double>(counts.samples) / rate_hz_;
   state_.refused = counts.refused;
   state_.gaps = counts.gaps;
+  state_.quality = judged();
+  forget();
+}
+
+SignalQuality HeartMonitor::judged() const {
   using enum SignalQuality;
+  const EcgCounts& counts = detector_->counts();
   const Timekeeping beats = timekeeping();
   const bool noise =
       detector_->peakedness() < kFlatBelow &&
       (beats.judged < kFewestIntervals || beats.normal < kLeastNormal * beats.judged);
-  state_.quality =
-      counts.samples == counts.refused || detector_->flat() ? kNone
-      : detector_->learning()                               ? kLearning
-      : detector_->signal_over_noise() < kPoorBelow || missing_share_ > kMostMissing || noise
-          ? kPoor
-      : beats.judged < kTooFewIntervals                                  ? kLearning
-      : beats.normal < kNoTime * beats.judged || both_ways(beats.judged) ? kPoor
-                                                                         : kGood;
-  forget();
+  if (counts.samples == counts.refused || detector_->flat()) return kNone;
+  if (detector_->learning()) return kLearning;
+  if (detector_->signal_over_noise() < kPoorBelow || missing_share_ > kMostMissing || noise)
+    return kPoor;
+  if (beats.judged < kTooFewIntervals) return kLearning;
+  return beats.normal < kNoTime * beats.judged || both_ways(beats.judged) ? kPoor : kGood;
 }
 
 // A heart's beats all point up, or all down; what goes both ways is an eye, a limb, a wave.
@@ -138,6 +143,18 @@ void HeartMonitor::skip(double seconds) {
   forget();
 }
 
+double HeartMonitor::doubtful_share() const {
+  return state_.beats > 0 ? static_cast<double>(doubtful_beats_) / static_cast<double>(state_.beats)
+                          : 0.0;
+}
+
+// Whether the figures of the intervals in memory are denied.
+bool HeartMonitor::doubtful() const {
+  const auto count = std::ranges::count(intervals_, true, &Interval::doubtful);
+  return state_.quality == SignalQuality::kPoor ||
+         static_cast<double>(count) > kMostDoubtful * static_cast<double>(intervals_.size());
+}
+
 void HeartMonitor::take(const Interval& interval) {
   if (intervals_.size() == kMostIntervals) intervals_.erase(intervals_.begin());
   intervals_.push_back(interval);
@@ -146,6 +163,7 @@ void HeartMonitor::take(const Interval& interval) {
     state_.last_beat_s = interval.end_s;
   }
   state_.ectopic += interval.kind == IntervalKind::kEctopic;
+  doubtful_beats_ += interval.doubtful;
 }
 
 // Drops what is older than five minutes, and works the figures out anew where there is something
@@ -161,13 +179,17 @@ void HeartMonitor::forget() {
 
 HeartState HeartMonitor::state() const {
   HeartState state = state_;
-  state.over_five_minutes = variability(intervals_);
+  if (doubtful())
+    state.spectrum = {};
+  else
+    state.over_five_minutes = variability(intervals_);
   std::vector<double> last_s;
   for (auto i = intervals_.rbegin(); i != intervals_.rend() && last_s.size() < kRateOver; ++i) {
     if (i->kind == IntervalKind::kNone) break;  // what lies before a gap is old
     if (i->kind == IntervalKind::kNormal) last_s.push_back(i->length_s);
   }
-  if (last_s.empty() || state.time_s - state.last_beat_s > kStale_s) {
+  if (last_s.empty() || state.time_s - state.last_beat_s > kStale_s ||
+      state.quality == SignalQuality::kPoor) {
     state.rate_bpm = 0.0;
     return state;
   }

@@ -22,7 +22,10 @@ const char* name_of(SignalQuality quality);
 struct HeartState {
   double time_s = 0.0;  // of the newest sample or interval
   double last_beat_s = 0.0;
-  double rate_bpm = 0.0;  // by the median of the last four normal intervals; 0: none, or stale
+  // By the median of the last four normal intervals; 0: none, stale, or of a poor signal.
+  double rate_bpm = 0.0;
+  // Of no interval, and no valid spectrum, where the signal is poor or was for more than
+  // kMostDoubtful of the intervals.
   Variability over_five_minutes;
   HeartSpectrum spectrum;
   SignalQuality quality = SignalQuality::kNone;
@@ -42,6 +45,10 @@ struct HeartState {
   }
 };
 
+// Noise adds beats and shifts others. Where more than this share of them was found in a poor
+// signal, figures of their intervals tell more of the noise than of the heart.
+inline constexpr double kMostDoubtful = 0.02;
+
 class HeartMonitor {
  public:
   // The monitor of an ECG. Precondition: check_ecg_rate(rate_hz).
@@ -57,9 +64,13 @@ class HeartMonitor {
   void skip(double seconds);
 
   HeartState state() const;
+  // The share of all beats so far that were found in a poor signal.
+  double doubtful_share() const;
 
  private:
   void take(const Interval& interval);
+  SignalQuality judged() const;
+  bool doubtful() const;
   void forget();
   // Figures of the last intervals.
   struct Timekeeping {
@@ -73,6 +84,7 @@ class HeartMonitor {
   double missing_share_ = 0.0;  // of the samples of late
   std::uint64_t downward_ = 0;  // bits of the last beats, the newest lowest
   IntervalJudge judge_;
+  std::uint64_t doubtful_beats_ = 0;
   std::vector<Beat> found_;          // scratch
   std::vector<Interval> intervals_;  // the last five minutes, oldest first
   HeartState state_;

@@ -21,6 +21,7 @@ struct Interval {
   double end_s = 0.0;     // the time of the beat that ends it
   double length_s = 0.0;  // 0 of kNone
   IntervalKind kind = IntervalKind::kNone;
+  bool doubtful = false;  // its beat was found in a poor signal (HeartMonitor)
 };
 
 // An interval that is so far from the median of the normal ones before (share of it) ends in an

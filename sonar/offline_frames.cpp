@@ -28,23 +28,35 @@ bool ends_so(const fs::path& path, std::span<const char* const> extensions) {
                      [&](const char* e) { return extension == std::string(".") + e; });
 }
 
-Result<Paths> files_in(const fs::path& folder, std::span<const char* const> extensions) {
+// Adds a plain file to out, and what cannot be followed to unusable.
+void sort_in(const fs::path& path, Paths& out, std::vector<UnusableFile>& unusable) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_regular_file(status))
+    out.push_back(path);
+  else if (status.type() == fs::file_type::not_found)
+    unusable.push_back({path, "a link that leads nowhere"});
+  else if (status.type() == fs::file_type::none)
+    unusable.push_back({path, error.message()});
+}
+
+Result<Paths> files_in(const fs::path& folder, std::span<const char* const> extensions,
+                       std::vector<UnusableFile>& unusable) {
   Paths out;
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (at->is_regular_file() && ends_so(at->path(), extensions) &&
-        at->path().filename().string().front() != '.')
-      out.push_back(at->path());
+    if (ends_so(at->path(), extensions) && at->path().filename().string().front() != '.')
+      sort_in(at->path(), out, unusable);
   if (error) return bad_input("{}: cannot be listed: {}", folder.string(), error.message());
   return out;
 }
 
-Result<Paths> files_like(const std::string& pattern) {
+Result<Paths> files_like(const std::string& pattern, std::vector<UnusableFile>& unusable) {
   glob_t found{};
   const int status = ::glob(pattern.c_str(), 0, nullptr, &found);
   Paths out;
   for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i)
-    if (fs::is_regular_file(found.gl_pathv[i])) out.emplace_back(found.gl_pathv[i]);
+    sort_in(found.gl_pathv[i], out, unusable);
   ::globfree(&found);
   if (status != 0 && status != GLOB_NOMATCH)
     return bad_input("{}: the files it matches cannot be listed", pattern);
@@ -113,11 +125,14 @@ bool names_many(const std::string& pattern) {
   return pattern.find_first_of("*?[") != std::string::npos && !fs::exists(pattern, error);
 }
 
-Result<Paths> list_files(const std::string& pattern, std::span<const char* const> extensions) {
+Result<Paths> list_files(const std::string& pattern, std::span<const char* const> extensions,
+                         std::vector<UnusableFile>& unusable) {
   std::error_code error;
   const bool folder = fs::is_directory(pattern, error);
-  NERITIC_TRY(Paths files, folder ? files_in(pattern, extensions) : files_like(pattern));
+  NERITIC_TRY(Paths files,
+              folder ? files_in(pattern, extensions, unusable) : files_like(pattern, unusable));
   std::sort(files.begin(), files.end());
+  std::ranges::sort(unusable, {}, &UnusableFile::path);
   if (!files.empty()) return files;
   if (!folder)
     return refusal(pattern, "no such file", "a file, a folder or a pattern that files match");

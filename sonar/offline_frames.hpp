@@ -24,8 +24,15 @@ bool names_many(const std::string& pattern);
 
 // Files sorted by name: from a folder (not those below it) the visible files with this ending
 // ("png", any case, no dot), or all that match a pattern. kBadInput if there is none.
+// unusable: gets those of these names that cannot be followed, with the reason: links that lead
+// nowhere or in a loop.
+struct UnusableFile {
+  std::filesystem::path path;
+  std::string reason;
+};
 Result<std::vector<std::filesystem::path>> list_files(const std::string& pattern,
-                                                      std::span<const char* const> extensions);
+                                                      std::span<const char* const> extensions,
+                                                      std::vector<UnusableFile>& unusable);
 
 // The frames' names, in the order of the files: fit for a folder's, never empty.
 std::vector<std::string> frame_names(std::span<const std::filesystem::path> files);

@@ -37,9 +37,15 @@ void load_lights(Loading& loading) {
     } else if (type == "spot") {
       light.kind = Light::Kind::kSpot;
       load_spot(field["spot"], light);
+    } else if (field["type"].present()) {
+      // Nodes refer to it by number: it stays, and does not shine.
+      field.note_with(
+          "light type \"{}\" is not known and ignored; known are directional, point "
+          "and spot",
+          one_line(type, 40));
+      light.intensity = 0.0f;
     } else {
-      field.refuse(fmt::format("light type \"{}\"", one_line(type, 40)),
-                   "directional, point or spot");
+      field.refuse("no type", "directional, point or spot");
     }
     loading.model.lights.push_back(std::move(light));
   }

@@ -35,6 +35,7 @@ struct Look {
   double roughness = 0.9, metallic = 0.0;
   bool double_sided = false;
   std::filesystem::path color_texture, normal_texture;
+  std::string place_color_texture, place_normal_texture;  // "file:line: key", for errors
   double texture_m = 1.0;
 };
 

@@ -50,7 +50,7 @@ Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height) {
   Scene scene;
   scene.title = model.name;
   scene.path = model.name;
-  scene.notes = model.notes;
+  for (const std::string& note : model.notes) scene.notes.push_back(model.name + ": " + note);
   for (const ClassName& known : kClasses) scene.class_names[known.id] = known.name;
 
   Object object;

@@ -22,10 +22,18 @@ std::string identity_of(const fs::path& file) {
   return error ? file.string() : canonical.string();
 }
 
+// The error with the place of the key that it is about.
+Error at_place(const std::string& place, const Error& error) {
+  return {error.code, place + ": " + error.message};
+}
+
 // Adds the picture as a texture of the model and refers to it.
-Status add_texture(const fs::path& file, double repeats_per_unit, Model& model, TextureRef& ref) {
+Status add_texture(const fs::path& file, const std::string& place, double repeats_per_unit,
+                   Model& model, TextureRef& ref) {
   if (file.empty()) return {};
-  NERITIC_TRY(ImageU8 image, read_image8(file, 4));
+  Result<ImageU8> read = read_image8(file, 4);
+  if (!read.ok()) return at_place(place, read.error());
+  ImageU8 image = std::move(read).value();
   ref.texture = static_cast<int>(model.textures.size());
   const auto repeats = static_cast<float>(repeats_per_unit);
   ref.transform_u = {repeats, 0, 0};
@@ -42,8 +50,10 @@ Result<Material> make_material(const Look& look, bool metres_in_uv, Model& model
   material.metallic = static_cast<float>(look.metallic);
   material.double_sided = look.double_sided;
   const double repeats = metres_in_uv ? 1.0 / look.texture_m : 1.0;
-  NERITIC_TRY_STATUS(add_texture(look.color_texture, repeats, model, material.base_color_texture));
-  NERITIC_TRY_STATUS(add_texture(look.normal_texture, repeats, model, material.normal_texture));
+  NERITIC_TRY_STATUS(add_texture(look.color_texture, look.place_color_texture, repeats, model,
+                                 material.base_color_texture));
+  NERITIC_TRY_STATUS(add_texture(look.normal_texture, look.place_normal_texture, repeats, model,
+                                 material.normal_texture));
   return material;
 }
 
@@ -63,12 +73,20 @@ Model make_shape(const ModelRequest& request) {
   return make_sphere(request.radius_m, request.segments);
 }
 
+// Errors begin with the place of the key that they are about.
 Result<Model> load_base(const ModelRequest& request) {
-  if (request.kind == ModelRequest::Kind::kFile) return load_gltf(request.file);
+  if (request.kind == ModelRequest::Kind::kFile) {
+    Result<Model> model = load_gltf(request.file);
+    if (!model.ok()) return at_place(request.place, model.error());
+    // A scene has notes of many files.
+    for (std::string& note : model->notes) note = request.file.string() + ": " + note;
+    return model;
+  }
   Model model;
   if (request.kind == ModelRequest::Kind::kTerrain) {
-    NERITIC_TRY(const Heightfield field, read_heightfield(request.file, request.heights));
-    model = make_terrain(field, request.look.texture_m);
+    const Result<Heightfield> field = read_heightfield(request.file, request.heights);
+    if (!field.ok()) return at_place(request.place, field.error());
+    model = make_terrain(*field, request.look.texture_m);
     if (!request.look.normal_texture.empty()) add_terrain_tangents(model);
   } else {
     model = make_shape(request);
@@ -151,8 +169,7 @@ Result<LoadedModels> load_models(const std::vector<ModelRequest>& requests) {
   }
   auto results = load_bases(bases);
   for (std::size_t i = 0; i < bases.size(); ++i)
-    if (!results[i]->ok())
-      return Error{results[i]->error().code, bases[i]->place + ": " + results[i]->error().message};
+    if (!results[i]->ok()) return results[i]->error();
 
   LoadedModels loaded;
   std::map<std::string, int> model_index;
@@ -170,8 +187,7 @@ Result<LoadedModels> load_models(const std::vector<ModelRequest>& requests) {
       continue;
     }
     Result<Model> part = model_of_node(*base, requests[r].node);
-    if (!part.ok())
-      return Error{part.error().code, requests[r].place + ": " + part.error().message};
+    if (!part.ok()) return at_place(requests[r].place, part.error());
     loaded.models.push_back(std::make_shared<const Model>(std::move(part).value()));
   }
   return loaded;

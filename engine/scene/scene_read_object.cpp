@@ -54,6 +54,8 @@ void read_look(TableReader& reader, ModelRequest& request, double default_textur
   look.double_sided = reader.flag("double_sided", false);
   look.color_texture = reader.file("color_texture");
   look.normal_texture = reader.file("normal_texture");
+  look.place_color_texture = reader.place("color_texture");
+  look.place_normal_texture = reader.place("normal_texture");
   look.texture_m = reader.number("texture_m", default_texture_m, kSize);
 }
 

@@ -89,11 +89,14 @@ TEST(BreathSound, SlowBreathIsRightOrRefusedAndNeverDoubled) {
       sound.samples.assign(samples.begin(), samples.end());
       const std::vector<BreathState> states = analyse_breath(sound, {});
       for (const BreathState& state : states) {
-        if (state.estimate.breathing)
+        if (state.estimate.breathing) {
           EXPECT_NEAR(state.estimate.rate_bpm, rate_bpm, 0.4) << state.time_s << " s";
+        }
       }
       // In alone looks like many rhythms at once: it may stay refused.
-      if (out_is_heard) EXPECT_TRUE(states.back().estimate.breathing);
+      if (out_is_heard) {
+        EXPECT_TRUE(states.back().estimate.breathing);
+      }
     }
 }
 

@@ -66,8 +66,31 @@ TEST(DepthLog, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_EQ(fault("time_s,depth_m\n5,1\n4,1\n"),
             "d.csv: line 3: found time 4 after 5; accepted: times that do not go back");
   EXPECT_EQ(fault("time_s,depth_m\n0,1m\n"), "d.csv: line 2: found depth '1m'; accepted: a number");
+  EXPECT_EQ(fault("time_s,depth_m\n0,0.2\n10,-18.5\n"),
+            "d.csv: line 3: found depth '-18.5'; accepted: from -1; --depths-up reads depths that "
+            "are negative");
   EXPECT_EQ(fault("time_s,depth_m,gas\n0,1,water\n"),
             "d.csv: line 2: found gas 'water'; accepted: air, o2, ean32 or 18/45");
+}
+
+// Depths that are negative below the surface were a dive at the surface. A computer that bobs there
+// shows a little above it.
+TEST(DepthLog, DepthsCountDownwardsOrAsAskedUpwards) {
+  const char* up = "time_s,depth_m\n0,0.4\n10,-18\n20,nan\n30,-30\n40,\n";
+  EXPECT_FALSE(read_depth_log(up, "d.csv").ok());
+  const auto turned = read_depth_log(up, "d.csv", "", true);
+  ASSERT_TRUE(turned.ok()) << turned.error().message;
+  EXPECT_EQ(turned->samples[0].depth_m, -0.4);
+  EXPECT_EQ(turned->samples[1].depth_m, 18.0);
+  EXPECT_TRUE(std::isnan(turned->samples[2].depth_m));
+  EXPECT_EQ(turned->samples[3].depth_m, 30.0);
+  const auto down = read_depth_log("time_s,depth_m\n0,-1\n10,-0.3\n20,18\n", "d.csv");
+  ASSERT_TRUE(down.ok()) << down.error().message;
+  EXPECT_EQ(down->samples[0].depth_m, -1.0);
+  const auto wrong = read_depth_log("time_s,depth_m\n0,0\n10,18\n", "d.csv", "", true);
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_NE(wrong.error().message.find("line 3: found depth '18'"), std::string::npos)
+      << wrong.error().message;
 }
 
 }  // namespace

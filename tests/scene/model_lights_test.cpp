@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/core/files.hpp"
+#include "engine/scene/scene.hpp"
 #include "engine/scene/scene_copies.hpp"
 #include "engine/scene/shapes.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::scene {
 namespace {
@@ -54,6 +57,30 @@ TEST(ModelLights, TheBrightestAreKeptAndOneNoteSaysSo) {
   ASSERT_EQ(scene.notes.size(), 1u);
   EXPECT_NE(scene.notes[0].find("40 lights of models"), std::string::npos) << scene.notes[0];
   EXPECT_NE(scene.notes[0].find("13 brightest"), std::string::npos) << scene.notes[0];
+}
+
+// A type of some later version: the other lights shine, and a note names the file.
+TEST(ModelLights, ATypeThatIsNotKnownIsIgnoredWithANote) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_text(folder / "lamps.gltf", R"({"asset": {"version": "2.0"},
+      "extensionsUsed": ["KHR_lights_punctual"],
+      "extensions": {"KHR_lights_punctual": {"lights": [
+        {"type": "spherical", "intensity": 50}, {"type": "point", "intensity": 30}]}},
+      "nodes": [{"extensions": {"KHR_lights_punctual": {"light": 0}}},
+                {"extensions": {"KHR_lights_punctual": {"light": 1}}}],
+      "scenes": [{"nodes": [0, 1]}]})")
+                  .ok());
+  ASSERT_TRUE(
+      write_text(folder / "s.toml", "[[objects]]\nname = 'lamps'\nmodel = 'lamps.gltf'\n").ok());
+  const auto scene = load_scene(folder / "s.toml");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  ASSERT_EQ(scene->model_lights.size(), 1u);
+  EXPECT_EQ(light_of(*scene, scene->model_lights[0]).intensity, 30.0f);
+  ASSERT_EQ(scene->notes.size(), 1u);
+  EXPECT_EQ(scene->notes[0], (folder / "lamps.gltf").string() +
+                                 ": extensions.KHR_lights_punctual.lights[0]: light type "
+                                 "\"spherical\" is not known and ignored; known are directional, "
+                                 "point and spot");
 }
 
 TEST(ModelLights, EveryCopyBringsItsOwn) {

@@ -86,6 +86,22 @@ TEST(SceneModels, ATerrainWithANormalMapHasTangentsAlongX) {
   EXPECT_EQ(model.textures.at(model.materials[0].base_color_texture.texture).image, 0);
 }
 
+TEST(SceneModels, APictureThatDoesNotLoadIsNamedWithItsOwnKeyAndLine) {
+  const test::ScratchFolder scratch;
+  ASSERT_TRUE(write_text(scratch / "bad.png", "no picture").ok());
+  ASSERT_TRUE(write_png8(scratch / "n.png", ImageU8(2, 2, 3, 128)).ok());
+  write_hill(scratch);
+  const std::string terrain = "[[objects]]\nterrain = 'hill.npy'\ncell_m = 2\n",
+                    box = "[[objects]]\nshape = 'box'\nroughness = 0.5\n",
+                    both = "color_texture = 'n.png'\nnormal_texture = 'bad.png'\n";
+  EXPECT_TRUE(message_of(scratch, box + "color_texture = 'bad.png'\n")
+                  .starts_with("s.toml:4: objects[0].color_texture: bad.png: "));
+  EXPECT_TRUE(message_of(scratch, terrain + "color_texture = 'bad.png'\n")
+                  .starts_with("s.toml:4: objects[0].color_texture: bad.png: "));
+  EXPECT_TRUE(message_of(scratch, terrain + both)
+                  .starts_with("s.toml:5: objects[0].normal_texture: bad.png: "));
+}
+
 TEST(SceneModels, AFileThatDoesNotLoadIsNamedWithTheLineThatAsksForIt) {
   const test::ScratchFolder scratch;
   ASSERT_TRUE(write_text(scratch / "bad.glb", "not a model").ok());

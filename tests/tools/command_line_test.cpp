@@ -76,6 +76,21 @@ TEST(CommandLine, APictureThatIsNoPngIsRefused) {
   }
 }
 
+TEST(CommandLine, NoFrameIsNoNumberOfFrames) {
+  for (const char* command : {"render", "dive"}) {
+    EXPECT_THAT(said({command, "a.toml", "--out", "o", "--frames", "0"}),
+                HasSubstr("'0' found, 1 to 1000000 is accepted"))
+        << command;
+    EXPECT_FALSE(parse_command_line({command, "a.toml", "--frames", "-1"}).ok());
+  }
+}
+
+TEST(CommandLine, HelpSaysWhatRenderWritesAndHowAPlanIsAskedFor) {
+  EXPECT_THAT(said({"render", "--help"}), HasSubstr("OUT/frame_0000"));
+  EXPECT_THAT(said({"plan", "--help"}), HasSubstr("neritic plan --depth 30 --time 25"));
+  EXPECT_THAT(said({"plan", "--help"}), HasSubstr("--table c"));
+}
+
 TEST(CommandLine, AWrongSubcommandListsThem) {
   EXPECT_THAT(said({"rendre"}),
               HasSubstr("render, sonar, dive, tradeoff, check, plan, physio, doctor"));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
 
 #include "diver/gaze_csv.hpp"
@@ -15,6 +16,7 @@
 #include "engine/scene/image_file.hpp"
 #include "tests/support/support.hpp"
 #include "tools/neritic/commands.hpp"
+#include "tools/neritic/physio_report.hpp"
 #include "tools/tradeoff/physiology_signals.hpp"
 #include "tools/tradeoff/physiology_tradeoff.hpp"
 
@@ -301,6 +303,65 @@ TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
   EXPECT_EQ(json_in(folder / "eyes/gaze.json")["method"], "idt");
   eyes.method = "ivt";
   EXPECT_THAT(run_physio(eyes).error().message, HasSubstr("--headset: found --method ivt"));
+}
+
+// A figure beside a quality that denies it is no figure: refused in words, null as JSON.
+TEST(PhysioCommand, APoorSignalHasNoVariability) {
+  const test::ScratchFolder folder;
+  std::vector<double> beats_s;
+  for (double t = 0.5; t < 149.0; t += 0.8) beats_s.push_back(t);
+  PhysioFlags flags;
+  flags.what = "ecg";
+  flags.file = (folder / "heart.csv").string();
+  flags.out = folder / "out";
+  for (const bool noisy : {false, true}) {
+    const auto ecg = make_ecg(beats_s, 250.0, 150.0, noisy ? -6.0 : 20.0, 1);
+    std::string text = "t_s,ecg_mv\n";
+    for (std::size_t i = 0; i < ecg.size(); ++i)
+      text += fmt::format("{:.4f},{:.4f}\n", static_cast<double>(i) / 250.0, ecg[i]);
+    ASSERT_TRUE(write_text(folder / "heart.csv", text).ok());
+    ASSERT_TRUE(run_physio(flags).ok());
+    const nlohmann::json json = json_in(folder / "out/ecg.json");
+    const auto report = analyse_ecg(flags);
+    ASSERT_TRUE(report.ok());
+    const std::string summary = report_text(flags, *report).summary;
+    EXPECT_EQ(json["quality"], noisy ? "poor" : "good");
+    for (const char* key : {"rate_bpm", "variability", "last_five_minutes", "spectrum"})
+      EXPECT_EQ(json[key].is_null(), noisy) << key;
+    EXPECT_EQ(summary.find("SDNN") == std::string::npos, noisy);
+    EXPECT_EQ(summary.find("no rate, variability or spectrum is given") != std::string::npos,
+              noisy);
+  }
+}
+
+// Saccades that noise hides, and fixations that it breaks up, are told in one line.
+TEST(PhysioCommand, NoiseOfGazeIsToldWhereItHidesSaccades) {
+  const test::ScratchFolder folder;
+  PhysioFlags flags;
+  flags.what = "gaze";
+  flags.file = (folder / "gaze.csv").string();
+  flags.out = folder / "out";
+  for (const double noise_deg : {0.0, 0.3}) {
+    std::string text = "t_s,x_deg,y_deg\n";
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < 4000; ++i)
+      text += fmt::format("{:.4f},{:.4f},{:.4f}\n", i / 200.0,
+                          (i / 100 % 2 ? 8.0 : 0.0) + noise_deg * normal(random),
+                          noise_deg * normal(random));
+    ASSERT_TRUE(write_text(folder / "gaze.csv", text).ok());
+    for (const char* method : {"ivt", "idt"}) {
+      flags.method = method;
+      ASSERT_TRUE(run_physio(flags).ok());
+      const nlohmann::json json = json_in(folder / "out/gaze.json");
+      EXPECT_EQ(json["warning"].is_null(), noise_deg == 0.0) << method;
+      if (json["warning"].is_null()) continue;
+      EXPECT_THAT(json["warning"].get<std::string>(), HasSubstr("noise of 0.3"));
+      const auto report = analyse_gaze(flags);
+      ASSERT_TRUE(report.ok());
+      EXPECT_THAT(report_text(flags, *report).summary, HasSubstr("# noise of 0.3"));
+    }
+  }
 }
 
 // Unknown values are null: a heart of no beats has no rate of 0.

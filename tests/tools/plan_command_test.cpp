@@ -57,6 +57,16 @@ TEST(PlanCommand, APlanIsPrintedAsADiverExpectsIt) {
 }
 
 // The picture shows each warning too, as a red line above the panels.
+TEST(PlanCommand, TheFirstLineNamesTheTableAndTheFlagForTheOther) {
+  const auto first_line = [](const std::string& text) { return text.substr(0, text.find('\n')); };
+  EXPECT_EQ(first_line(said_by("plan --depth 30 --time 25").out),
+            "ZH-L16B (--table c: ZH-L16C): 30 m until 25 min on air");
+  EXPECT_EQ(first_line(said_by("plan --depth 30 --time 25 --table c").out),
+            "ZH-L16C (--table b: ZH-L16B): 30 m until 25 min on air");
+  EXPECT_EQ(first_line(said_by("plan --depth 30 --time 25 --convention run-minutes").out),
+            "ZH-L16C (--table b: ZH-L16B): 30 m until 25 min on air");
+}
+
 TEST(PlanCommand, WarningsStandOnThePicture) {
   const test::ScratchFolder folder;
   struct Drawn {
@@ -248,6 +258,20 @@ TEST(PlanCommand, DepthsAndLevelsAreSaidAsTheyAre) {
   const std::string said = said_by("plan --depth 30 --time 20 --level 18,45").out;
   EXPECT_THAT(said, HasSubstr("min of run time at 30 m alone\n"));
   EXPECT_THAT(said_by("plan --depth 22.5 --time 40").out, HasSubstr("bottom    22.5 m   "));
+}
+
+TEST(PlanCommand, ALogOfNegativeDepthsIsRefusedOrTurnedOver) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_text(folder / "up.csv", "time_s,depth_m\n0,0.3\n60,-18\n1200,-18\n").ok());
+  const std::string log = "plan --log " + (folder / "up.csv").string();
+  const PlanSaid refused = said_by(log);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.error, HasSubstr("up.csv: line 3: found depth '-18'; accepted: from -1"));
+  EXPECT_EQ(refused.out, "");
+  const PlanSaid turned = said_by(log + " --depths-up");
+  EXPECT_EQ(turned.status, 0) << turned.error;
+  EXPECT_THAT(turned.out, HasSubstr("deepest 18.0 m; ZH-L16B (--table c: ZH-L16C)\n"));
+  EXPECT_EQ(said_by("plan --depth 30 --time 25 --depths-up").status, 2);
 }
 
 TEST(PlanCommand, ALogIsReplayedSampleBySample) {

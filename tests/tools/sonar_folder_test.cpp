@@ -93,6 +93,18 @@ TEST_F(SonarFolder, GivesEachFrameWhatItGivesAlone) {
     EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
 }
 
+TEST_F(SonarFolder, LinksThatLoopOrDangleAreSkippedAndListed) {
+  write_frames(3);
+  fs::create_symlink("depth_007.npy", folder_ / "d" / "depth_007.npy");
+  fs::create_symlink("gone.npy", folder_ / "d" / "depth_008.npy");
+  fs::create_symlink("normal_007.npy", folder_ / "n" / "normal_007.npy");
+  expect_done(words());
+  EXPECT_EQ(run_facts()["made"], 3);
+  for (const char* name : {"depth_007.npy", "depth_008.npy", "normal_007.npy"})
+    EXPECT_NE(skipped().find(name), std::string::npos) << skipped();
+  EXPECT_NE(skipped().find("a link that leads nowhere"), std::string::npos) << skipped();
+}
+
 TEST_F(SonarFolder, GoesOnWhereItStopped) {
   write_frames(5);
   expect_done(words());

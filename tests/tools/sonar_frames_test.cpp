@@ -84,6 +84,7 @@ TEST(OfflineFrames, TwoFilesOfOneFrameAreRefusedByName) {
 }
 
 TEST(OfflineFrames, FoldersAndPatternsListTheirImages) {
+  std::vector<sonar::UnusableFile> unusable;
   const test::ScratchFolder folder;
   for (const char* name : {"b.npy", "a.PNG", "c.txt", ".hidden.npy", "d[1].npy"})
     ASSERT_TRUE(write_text(folder / name, "x").ok());
@@ -94,19 +95,39 @@ TEST(OfflineFrames, FoldersAndPatternsListTheirImages) {
   EXPECT_FALSE(sonar::names_many((folder / "d[1].npy").string()));
   EXPECT_FALSE(sonar::names_many((folder / "absent.npy").string()));
 
-  const auto in_folder = sonar::list_files(folder.path().string(), kMaps);
+  const auto in_folder = sonar::list_files(folder.path().string(), kMaps, unusable);
   ASSERT_TRUE(in_folder.ok());
   EXPECT_EQ(*in_folder, (Paths{folder / "a.PNG", folder / "b.npy", folder / "d[1].npy"}));
-  const auto like = sonar::list_files((folder / "?.*").string(), kMaps);
+  const auto like = sonar::list_files((folder / "?.*").string(), kMaps, unusable);
   ASSERT_TRUE(like.ok());
   EXPECT_EQ(*like, (Paths{folder / "a.PNG", folder / "b.npy", folder / "c.txt"}));
 
-  const auto none = sonar::list_files((folder / "*.exr").string(), kMaps);
+  const auto none = sonar::list_files((folder / "*.exr").string(), kMaps, unusable);
   ASSERT_FALSE(none.ok());
   EXPECT_NE(none.error().message.find("*.exr"), std::string::npos);
-  const auto empty = sonar::list_files((folder / "below.npy").string(), kMaps);
+  const auto empty = sonar::list_files((folder / "below.npy").string(), kMaps, unusable);
   ASSERT_FALSE(empty.ok());
   EXPECT_NE(empty.error().message.find(".exr"), std::string::npos);
+  EXPECT_TRUE(unusable.empty());
+}
+
+TEST(OfflineFrames, LinksThatLoopOrDangleAreLeftOutWithTheReason) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_text(folder / "a.npy", "x").ok());
+  std::filesystem::create_symlink(folder / "a.npy", folder / "good.npy");
+  std::filesystem::create_symlink("loop.npy", folder / "loop.npy");
+  std::filesystem::create_symlink("gone", folder / "dangling.npy");
+  for (const std::string& pattern : {folder.path().string(), (folder / "*.npy").string()}) {
+    std::vector<sonar::UnusableFile> unusable;
+    const auto files = sonar::list_files(pattern, kMaps, unusable);
+    ASSERT_TRUE(files.ok()) << files.error().message;
+    EXPECT_EQ(*files, (Paths{folder / "a.npy", folder / "good.npy"}));
+    ASSERT_EQ(unusable.size(), 2u) << pattern;
+    EXPECT_EQ(unusable[0].path, folder / "dangling.npy");
+    EXPECT_EQ(unusable[0].reason, "a link that leads nowhere");
+    EXPECT_EQ(unusable[1].path, folder / "loop.npy");
+    EXPECT_FALSE(unusable[1].reason.empty());
+  }
 }
 
 }  // namespace

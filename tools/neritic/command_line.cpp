@@ -66,7 +66,13 @@ void add_render(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand(
       "render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
   command->add_option("scene", flags->scene, "scene or model file")->required();
-  command->add_option("--out", flags->out, "folder for the results")->required()->check(named);
+  command
+      ->add_option(
+          "--out", flags->out,
+          "folder for the results: in OUT/frame_0000 a folder a sensor with pictures (.png), "
+          "arrays (.npy) and facts (.json); in OUT/track what sonars accumulate over frames")
+      ->required()
+      ->check(named);
   command
       ->add_option("--frames", flags->frames,
                    "number of frames, apart by the rate_hz of the first camera, else of the first "
@@ -246,7 +252,8 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
   command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
   command->add_option("--seconds", flags->seconds, "stop after so many seconds");
-  command->add_option("--frames", flags->frames, "stop after so many frames");
+  command->add_option("--frames", flags->frames, "stop after so many frames")
+      ->check(between(1, 1000000));
   command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png")
       ->check(png_file);
   command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
@@ -309,6 +316,9 @@ void add_plan(CLI::App& app, Run& run) {
   auto flags = std::make_shared<PlanFlags>();
   CLI::App* command = app.add_subcommand(
       "plan", "plans a dive: stops, run times, oxygen, warnings; or replays a log of depths");
+  command->footer(
+      "Example: neritic plan --depth 30 --time 25 --gas ean32 --gf 30/85 --table c\n"
+      "Example: neritic plan --log DIVE.csv --table c --out out/log");
   command
       ->add_option("--gas", flags->gases,
                    "gases: air, ean32, 18/45 (oxygen/helium) or o2. The first is breathed at the "
@@ -343,7 +353,7 @@ void add_plan(CLI::App& app, Run& run) {
           "stop-minutes, run-minutes or msw: rules in which planners differ (diver/README.md)")
       ->capture_default_str();
   command->add_option("--table", flags->table,
-                      "ZH-L16 coefficients b or c (default: the convention's)");
+                      "ZH-L16 coefficients b or c (default: the convention's, b of stop-minutes)");
   command->add_option("--altitude", flags->altitude_m,
                       "altitude of the dive site, metres; the diver is acclimatised");
   command->add_option("--surface", flags->surface_bar,
@@ -375,6 +385,8 @@ void add_plan(CLI::App& app, Run& run) {
                       "optionally gas) on the dive computer");
   command->add_option("--vehicle", flags->vehicle,
                       "with --log: the participant whose rows are used, by the column vehicle");
+  command->add_flag("--depths-up", flags->depths_up,
+                    "with --log: its depths are negative below the surface");
   command->add_option("--plot", flags->plot, "file of the picture (.png)")->check(png_file);
   command
       ->add_option(
@@ -421,7 +433,9 @@ void add_physio(CLI::App& app, Run& run) {
                       "gaze: fx,fy,cx,cy of a camera at the eye; adds each fixation in its pixels");
   command->add_option("--out", flags->out, "folder for the table and the JSON");
   command->add_option("--plot", flags->plot, "file of the picture (.png)")->check(png_file);
-  command->add_flag("--json", flags->json, "JSON on standard output instead of the table");
+  command->add_flag("--table", flags->table,
+                    "each beat, estimate or eye movement on standard output too (.csv)");
+  command->add_flag("--json", flags->json, "JSON on standard output instead of the summary");
   command->callback([flags, &run] { run = [flags] { return run_physio(*flags); }; });
 }
 

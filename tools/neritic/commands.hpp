@@ -92,6 +92,7 @@ struct PlanFlags {
   std::optional<double> altitude_m, surface_bar, last_stop_m, ascent_m_min, descent_m_min;
   std::filesystem::path out, plot;
   bool json = false;
+  bool depths_up = false;  // of the log: negative below the surface
 };
 Result<std::string> run_plan(const PlanFlags& flags);
 
@@ -103,7 +104,7 @@ struct PhysioFlags {
   std::filesystem::path out, plot;
   double rate_hz = 0.0;                           // 0: the file's
   std::optional<double> window_s, reference_bpm;  // not given: the default; none
-  bool json = false, headset = false, realtime = false;
+  bool json = false, table = false, headset = false, realtime = false;
 };
 Result<std::string> run_physio(const PhysioFlags& flags);
 

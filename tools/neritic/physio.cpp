@@ -10,6 +10,7 @@
 #include "engine/core/json.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
+#include "tools/common/outputs.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/neritic/physio_report.hpp"
 
@@ -76,8 +77,15 @@ Result<std::string> show(const PhysioFlags& flags, const Report& report, bool pl
     const auto drawn = write_picture(flags.plot, report_picture(flags, report));
     if (!drawn.ok()) return drawn.error();
   }
-  if (flags.out.empty() || flags.json) {
-    if (flags.json || !played) fmt::print("{}", flags.json ? json : text.summary + text.table);
+  if (flags.out.empty() || flags.json || flags.table) {
+    if (flags.json)
+      fmt::print("{}", json);
+    else if (!played)
+      fmt::print("{}{}", text.summary,
+                 flags.table
+                     ? text.table
+                     : fmt::format("# {} rows: --table prints them, --out FOLDER writes them\n",
+                                   std::ranges::count(text.table, '\n') - 1));
     std::fflush(stdout);
     return std::string();
   }
@@ -106,6 +114,9 @@ Result<diver::Recording> load_recording(const PhysioFlags& flags) {
 }
 
 Result<std::string> run_physio(const PhysioFlags& flags) {
+  NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
+  NERITIC_TRY_STATUS(check_output_file("--plot", flags.plot));
+  if (flags.table && flags.json) return bad_input("--table, --json: both found; accepted: one");
   if (flags.what == "ecg") {
     NERITIC_TRY(const EcgReport report, analyse_ecg(flags));
     return show(flags, report);

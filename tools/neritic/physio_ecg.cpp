@@ -52,6 +52,7 @@ Result<EcgReport> analyse_ecg(const PhysioFlags& flags) {
   diver::HeartMonitor monitor(report.ecg.rate_hz);
   monitor.push(report.ecg.samples);
   report.state = monitor.state();
+  report.doubtful_share = monitor.doubtful_share();
   const auto marks_file = marks_path(flags);
   if (marks_file.empty()) return report;
   NERITIC_TRY(const auto bytes, read_file(marks_file));
@@ -72,20 +73,26 @@ ReportText report_text(const PhysioFlags& flags, const EcgReport& r) {
       "signal "
       "{}\n",
       flags.file, r.ecg.channel.empty() ? "ECG" : r.ecg.channel, r.ecg.rate_hz, r.ecg.seconds(),
-      r.refused(), r.counts.leaps, r.ecg.missing, r.counts.gaps, diver::name_of(r.state.quality));
+      r.refused(), r.counts.leaps, r.ecg.missing, r.counts.gaps, diver::name_of(r.quality()));
   const diver::Variability& v = r.variability;
-  out += fmt::format("# {} beats, {} ectopic; mean rate {}, {} at the end\n", r.beats.size(),
-                     ectopic, rate_words(v.mean_rate_bpm), rate_words(r.state.rate_bpm));
-  if (v.pairs > 0)
+  if (!r.figures_known())
+    out += fmt::format(
+        "# {} beats, some of them noise: the signal is poor, {:.0f} % of the beats found in noise; "
+        "no rate, variability or spectrum is given\n",
+        r.beats.size(), 100.0 * r.doubtful_share);
+  else
+    out += fmt::format("# {} beats, {} ectopic; mean rate {}, {} at the end\n", r.beats.size(),
+                       ectopic, rate_words(v.mean_rate_bpm), rate_words(r.state.rate_bpm));
+  if (r.figures_known() && v.pairs > 0)
     out += fmt::format(
         "# {} normal intervals: SDNN {:.1f} ms, RMSSD {:.1f} ms, pNN50 {:.2f} %, SD1 {:.1f} ms, "
         "SD2 {:.1f} ms\n",
         v.intervals, v.sdnn_ms, v.rmssd_ms, v.pnn50_percent, v.sd1_ms, v.sd2_ms);
-  if (r.spectrum.valid)
+  if (r.figures_known() && r.spectrum.valid)
     out += fmt::format(
         "# spectrum (Lomb-Scargle, 300 s): VLF {:.0f}, LF {:.0f}, HF {:.0f} ms2, LF/HF {:.2f}\n",
         r.spectrum.vlf_ms2, r.spectrum.lf_ms2, r.spectrum.hf_ms2, r.spectrum.lf_over_hf);
-  else
+  else if (r.figures_known())
     out += "# no spectrum: it needs two minutes of normal beats\n";
   if (r.score) {
     const diver::HeartScore& s = *r.score;

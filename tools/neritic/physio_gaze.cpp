@@ -83,6 +83,7 @@ Result<GazeReport> analyse_gaze(const PhysioFlags& flags) {
   const double seconds = std::max(samples.back().time_s - samples.front().time_s, 1e-3);
   report.us_a_second = 1e-3 * static_cast<double>(now_ns() - start) / seconds;
   report.state = monitor.state();
+  report.noise = monitor.noise();
   if (report.recording.marks.empty()) return report;
   std::vector<bool> marked, found;
   for (const int mark : report.recording.marks) marked.push_back(mark == 2);
@@ -93,17 +94,38 @@ Result<GazeReport> analyse_gaze(const PhysioFlags& flags) {
   return report;
 }
 
+// I-DT: a fixation's samples spread by some four deviations each way and axis.
+std::string noise_warning(const GazeReport& r) {
+  constexpr double kRaised = 1.2, kSpread = 8.0;
+  const double noise_deg = degrees(r.noise.deviation_rad);
+  if (r.velocity() && r.noise.velocity_rad_s > kRaised * r.settings.velocity_rad_s)
+    return fmt::format(
+        "noise of {:.2f} deg rms: I-VT asks for {:.0f} deg/s instead of {:g}, and misses saccades "
+        "under about {:.1f} deg",
+        noise_deg, degrees(r.noise.velocity_rad_s), degrees(r.settings.velocity_rad_s),
+        degrees(diver::smallest_saccade_rad(r.noise)));
+  if (!r.velocity() && kSpread * r.noise.deviation_rad > r.settings.dispersion_rad)
+    return fmt::format(
+        "noise of {:.2f} deg rms: fixations spread as wide as the {:g} deg of I-DT and break up; "
+        "--method ivt bears it",
+        noise_deg, degrees(r.settings.dispersion_rad));
+  return {};
+}
+
 ReportText report_text(const PhysioFlags& flags, const GazeReport& r) {
-  std::string out =
-      fmt::format("# {}: {} samples, {} refused; {} {}\n", flags.file, r.recording.samples.size(),
-                  r.state.refused, r.velocity() ? "I-VT" : "I-DT",
-                  r.velocity() ? fmt::format("above {:g} deg/s", degrees(r.settings.velocity_rad_s))
-                               : fmt::format("within {:g} deg for {:g} ms or more",
-                                             degrees(r.settings.dispersion_rad),
-                                             1e3 * r.settings.dispersion_s));
+  std::string out = fmt::format(
+      "# {}: {} samples, {} refused; {} {}\n", flags.file, r.recording.samples.size(),
+      r.state.refused, r.velocity() ? "I-VT" : "I-DT",
+      r.velocity()
+          ? fmt::format("above {:.3g} deg/s over {:.2g} ms", degrees(r.noise.velocity_rad_s),
+                        1e3 * r.noise.window_s)
+          : fmt::format("within {:g} deg for {:g} ms or more", degrees(r.settings.dispersion_rad),
+                        1e3 * r.settings.dispersion_s));
   out += fmt::format("# {} fixations, {} saccades, {} blinks (too fast for an eye)\n# {}\n",
                      r.events.fixations.size(), r.events.saccades.size(), r.events.blinks.size(),
                      diver::kPursuitNote);
+  if (const std::string warning = noise_warning(r); !warning.empty())
+    out += fmt::format("# {}\n", warning);
   if (r.kappa)
     out += fmt::format(
         "# compared with a person's marks, saccade or not: kappa {:.3f} for these saccades, {:.3f} "

@@ -13,7 +13,8 @@ json known_json(bool known, double value) {
   return known ? json(value) : json();
 }
 
-json variability_json(const diver::Variability& v) {
+json variability_json(bool known, const diver::Variability& v) {
+  if (!known) return json();
   const bool some = v.intervals > 0, paired = v.pairs > 0;
   return {{"intervals", v.intervals},
           {"mean_rr_ms", known_json(some, v.mean_rr_ms)},
@@ -54,17 +55,19 @@ json report_json(const PhysioFlags& flags, const EcgReport& r) {
            {"gaps", r.counts.gaps},
            {"leaps", r.counts.leaps},
            {"relearned", r.counts.relearned},
-           {"quality", diver::name_of(r.state.quality)},
-           {"rate_bpm", known_json(r.state.rate_bpm > 0.0, r.state.rate_bpm)},
+           {"quality", diver::name_of(r.quality())},
+           {"doubtful_share", r.doubtful_share},
+           {"rate_bpm", known_json(r.figures_known() && r.state.rate_bpm > 0.0, r.state.rate_bpm)},
            {"us_a_second", r.us_a_second}};
-  out["variability"] = variability_json(r.variability);
-  out["last_five_minutes"] = variability_json(r.state.over_five_minutes);
-  out["spectrum"] = r.spectrum.valid ? json{{"method", "Lomb-Scargle, pieces of 300 s"},
-                                            {"vlf_ms2", r.spectrum.vlf_ms2},
-                                            {"lf_ms2", r.spectrum.lf_ms2},
-                                            {"hf_ms2", r.spectrum.hf_ms2},
-                                            {"lf_over_hf", r.spectrum.lf_over_hf}}
-                                     : json();
+  out["variability"] = variability_json(r.figures_known(), r.variability);
+  out["last_five_minutes"] = variability_json(r.figures_known(), r.state.over_five_minutes);
+  out["spectrum"] = r.figures_known() && r.spectrum.valid
+                        ? json{{"method", "Lomb-Scargle, pieces of 300 s"},
+                               {"vlf_ms2", r.spectrum.vlf_ms2},
+                               {"lf_ms2", r.spectrum.lf_ms2},
+                               {"hf_ms2", r.spectrum.hf_ms2},
+                               {"lf_over_hf", r.spectrum.lf_over_hf}}
+                        : json();
   out["beats"] = json::array();
   for (std::size_t i = 0; i < r.beats.size(); ++i)
     out["beats"].push_back({{"time_s", r.ecg.start_s + r.beats[i].time_s},
@@ -119,10 +122,18 @@ json report_json(const PhysioFlags& flags, const BreathReport& r) {
 }
 
 json report_json(const PhysioFlags& flags, const GazeReport& r) {
-  json out{{"file", flags.file},          {"method", r.velocity() ? "ivt" : "idt"},
-           {"note", diver::kPursuitNote}, {"samples", r.recording.samples.size()},
-           {"refused", r.state.refused},  {"us_a_second", r.us_a_second},
-           {"fixations", json::array()},  {"saccades", json::array()},
+  json out{{"file", flags.file},
+           {"method", r.velocity() ? "ivt" : "idt"},
+           {"note", diver::kPursuitNote},
+           {"samples", r.recording.samples.size()},
+           {"refused", r.state.refused},
+           {"us_a_second", r.us_a_second},
+           {"noise_deg", known_json(r.noise.deviation_rad > 0.0, degrees(r.noise.deviation_rad))},
+           {"velocity_deg_s", known_json(r.velocity(), degrees(r.noise.velocity_rad_s))},
+           {"window_s", known_json(r.velocity(), r.noise.window_s)},
+           {"warning", noise_warning(r).empty() ? json() : json(noise_warning(r))},
+           {"fixations", json::array()},
+           {"saccades", json::array()},
            {"blinks", json::array()}};
   for (const diver::Fixation& f : r.events.fixations) {
     json one{{"start_s", f.start_s},

@@ -101,10 +101,12 @@ json level_data(const BreathReport& r) {
 
 json report_picture(const PhysioFlags& flags, const EcgReport& r) {
   const diver::Variability& v = r.variability;
-  std::string facts = fmt::format(
-      "{} beats, mean {:.1f} bpm; SDNN {:.1f} ms, RMSSD {:.1f} ms, pNN50 {:.1f} %; signal {}",
-      r.beats.size(), v.mean_rate_bpm, v.sdnn_ms, v.rmssd_ms, v.pnn50_percent,
-      diver::name_of(r.state.quality));
+  std::string facts = fmt::format("{} beats; signal poor: no figures", r.beats.size());
+  if (r.figures_known())
+    facts = fmt::format(
+        "{} beats, mean {:.1f} bpm; SDNN {:.1f} ms, RMSSD {:.1f} ms, pNN50 {:.1f} %; signal {}",
+        r.beats.size(), v.mean_rate_bpm, v.sdnn_ms, v.rmssd_ms, v.pnn50_percent,
+        diver::name_of(r.quality()));
   if (r.score)
     facts += fmt::format("; against marks {} found, {} extra, {} missed", r.score->found,
                          r.score->extra, r.score->missed);
@@ -114,7 +116,7 @@ json report_picture(const PhysioFlags& flags, const EcgReport& r) {
            {"excerpt", excerpt_data(r)},
            {"intervals", intervals_data(r)},
            {"spectrum", nullptr}};
-  if (r.spectrum.valid)
+  if (r.figures_known() && r.spectrum.valid)
     out["spectrum"] = {{"vlf_ms2", six_digits(r.spectrum.vlf_ms2)},
                        {"lf_ms2", six_digits(r.spectrum.lf_ms2)},
                        {"hf_ms2", six_digits(r.spectrum.hf_ms2)},
@@ -143,6 +145,7 @@ json report_picture(const PhysioFlags& flags, const GazeReport& r) {
   std::string facts =
       fmt::format("{}: {} fixations, {} saccades, {} blinks", r.velocity() ? "I-VT" : "I-DT",
                   r.events.fixations.size(), r.events.saccades.size(), r.events.blinks.size());
+  if (!noise_warning(r).empty()) facts += "; " + noise_warning(r);
   if (r.kappa) facts += fmt::format("; kappa {:.2f} against a person's marks", *r.kappa);
   json out{{"picture", "physio gaze"},
            {"title", "Gaze: " + name_only(flags.file)},

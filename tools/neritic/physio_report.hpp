@@ -22,6 +22,7 @@ struct EcgReport {
   std::vector<diver::Beat> beats;
   std::vector<diver::Interval> intervals;  // one a beat
   diver::HeartState state;                 // as a live monitor would end
+  double doubtful_share = 0.0;             // of the beats: found in a poor signal
   diver::Variability variability;          // of the whole recording
   diver::HeartSpectrum spectrum;
   diver::EcgCounts counts;
@@ -30,6 +31,12 @@ struct EcgReport {
   double us_a_second = 0.0;  // of one core, a second of ECG
   // Rows and samples that say nothing; what is missing between rows is no sample.
   std::uint64_t refused() const { return ecg.refused + counts.refused - ecg.missing; }
+  // The signal is poor if it is so at the end, or was for too many of its beats. Then no figure of
+  // the intervals is given.
+  diver::SignalQuality quality() const {
+    return doubtful_share > diver::kMostDoubtful ? diver::SignalQuality::kPoor : state.quality;
+  }
+  bool figures_known() const { return quality() != diver::SignalQuality::kPoor; }
 };
 Result<EcgReport> analyse_ecg(const PhysioFlags& flags);
 
@@ -60,6 +67,7 @@ struct GazeReport {
   diver::GazeSettings settings;
   diver::GazeEvents events;
   diver::GazeState state;
+  diver::GazeNoiseFound noise;
   std::optional<diver::GazeCamera> camera;
   // Cohen's kappa against a person's marks, sample by sample, saccade or not: of the reported
   // saccades, and of the method's raw output for each sample, blinks and noise included.
@@ -67,6 +75,8 @@ struct GazeReport {
   double us_a_second = 0.0;
   bool velocity() const { return settings.method == diver::GazeMethod::kVelocity; }
 };
+// One line if the noise hides saccades or breaks fixations up; empty: it does not.
+std::string noise_warning(const GazeReport& report);
 Result<GazeReport> analyse_gaze(const PhysioFlags& flags);
 // The screen angles of a direction, degrees.
 double screen_x_deg(const Vec3& direction);

@@ -6,6 +6,7 @@
 #include "diver/gas_label.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/refusal.hpp"
+#include "tools/common/outputs.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/neritic/plan_picture.hpp"
 #include "tools/neritic/plan_report.hpp"
@@ -53,6 +54,7 @@ std::string written(const PlanFlags& flags, const char* stem, const char* table,
 
 Result<std::string> plan_a_dive(const PlanFlags& flags) {
   if (!flags.vehicle.empty()) return refusal("--vehicle", "without --log", "with --log");
+  if (flags.depths_up) return refusal("--depths-up", "without --log", "with --log");
   NERITIC_TRY(const diver::DivePlanRequest request, plan_request(flags));
   NERITIC_TRY(const PlanGasFlags gas, plan_gas(flags, request));
   NERITIC_TRY(const PlanReport report,
@@ -91,12 +93,13 @@ Result<std::string> plan_a_dive(const PlanFlags& flags) {
   return written(flags, "plan", "plan.json", drawn);
 }
 
-std::string log_text(const PlanFlags& flags, const diver::DepthLog& log, const DiveTrace& trace) {
+std::string log_text(const PlanFlags& flags, const diver::DepthLog& log,
+                     diver::BuehlmannTable table, const DiveTrace& trace) {
   const diver::DiveComputerState& end = trace.end;
   const diver::DiveComputerView& view = trace.rows.back().view;
-  std::string out =
-      fmt::format("{}: {} samples, {} refused, {:.1f} min, deepest {:.1f} m\n", flags.log,
-                  log.samples.size(), end.refused, trace.rows.back().run_min, end.deepest_m);
+  std::string out = fmt::format("{}: {} samples, {} refused, {:.1f} min, deepest {:.1f} m; {}\n",
+                                flags.log, log.samples.size(), end.refused,
+                                trace.rows.back().run_min, end.deepest_m, table_words(table));
   out += fmt::format("deepest ceiling {:.1f} m, {:.1f} min above it; {:.1f} min of ascent alarm\n",
                      trace.most_ceiling_m, trace.above_ceiling_min, trace.fast_min);
   out += fmt::format(
@@ -127,7 +130,8 @@ Result<std::string> replay_a_log(const PlanFlags& flags) {
     return refusal("--log", "with --depth, --time or --level",
                    "without them, since a log has its own depths");
   NERITIC_TRY(const std::string text, read_text(flags.log));
-  NERITIC_TRY(const diver::DepthLog log, diver::read_depth_log(text, flags.log, flags.vehicle));
+  NERITIC_TRY(const diver::DepthLog log,
+              diver::read_depth_log(text, flags.log, flags.vehicle, flags.depths_up));
   NERITIC_TRY(diver::DiveComputerSettings settings, log_settings(flags, log));
   NERITIC_TRY(const diver::DiveComputer computer, diver::DiveComputer::create(std::move(settings)));
   NERITIC_TRY(const diver::DiveComputerState start, log_start(flags, computer));
@@ -153,7 +157,8 @@ Result<std::string> replay_a_log(const PlanFlags& flags) {
   if (!flags.plot.empty() || !flags.out.empty()) {
     NERITIC_TRY(drawn, write_pictures(flags, "log.png", picture, trace));
   }
-  fmt::print("{}", flags.json ? log_json(flags.log, log, trace) : log_text(flags, log, trace));
+  fmt::print("{}", flags.json ? log_json(flags.log, log, trace)
+                              : log_text(flags, log, s.conventions.table, trace));
   std::fflush(stdout);
   return written(flags, "log", "log.csv", drawn);
 }
@@ -161,6 +166,8 @@ Result<std::string> replay_a_log(const PlanFlags& flags) {
 }  // namespace
 
 Result<std::string> run_plan(const PlanFlags& flags) {
+  NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
+  NERITIC_TRY_STATUS(check_output_file("--plot", flags.plot));
   return flags.log.empty() ? plan_a_dive(flags) : replay_a_log(flags);
 }
 

@@ -75,11 +75,11 @@ std::string head_text(const PlanReport& r) {
     levels += fmt::format("{}{:g} m until {:g} min", levels.empty() ? "" : ", then ", level.depth_m,
                           level.leave_min);
   const diver::DecoConventions& c = r.request.conventions;
-  std::string out = fmt::format("{} on {}\n", levels, gases_text(r.request));
+  std::string out =
+      fmt::format("{}: {} on {}\n", table_words(c.table), levels, gases_text(r.request));
   out += fmt::format(
-      "ZH-L16{} GF {:g}/{:g}, {}; surface {:.4f} bar, {:.1f} kg/m3; down {:g}, up {:g} m/min\n",
-      c.table == diver::BuehlmannTable::kB ? "B" : "C", 100.0 * r.request.gf_low,
-      100.0 * r.request.gf_high, r.convention, c.environment.surface_bar,
+      "GF {:g}/{:g}, {}; surface {:.4f} bar, {:.1f} kg/m3; down {:g}, up {:g} m/min\n",
+      100.0 * r.request.gf_low, 100.0 * r.request.gf_high, r.convention, c.environment.surface_bar,
       c.environment.bar_per_m * 1e5 / diver::kStandardGravity_m_s2, c.descent_m_min,
       c.ascent_m_min);
   return out;
@@ -294,6 +294,11 @@ Result<PlanReport> make_plan_report(const std::string& convention, const DivePla
   NERITIC_TRY(const auto without, diver::run_time_without_stops(request));
   report.without_stops_min = without.value_or(-1.0);
   return report;
+}
+
+std::string table_words(diver::BuehlmannTable table) {
+  return table == diver::BuehlmannTable::kB ? "ZH-L16B (--table c: ZH-L16C)"
+                                            : "ZH-L16C (--table b: ZH-L16B)";
 }
 
 std::string plan_text(const PlanReport& report) {

@@ -27,6 +27,8 @@ Result<PlanReport> make_plan_report(const std::string& convention,
                                     const diver::PlanBreathing& breathing,
                                     const std::vector<diver::PlanTank>& tanks);
 
+// "ZH-L16B", with the flag that takes the other one.
+std::string table_words(diver::BuehlmannTable table);
 std::string plan_text(const PlanReport& report);
 std::string plan_json(const PlanReport& report);
 // The results of a replayed log, with its last tissues.

@@ -2,6 +2,7 @@
 #include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
 #include "testbed/sensors/validation.hpp"
+#include "tools/common/outputs.hpp"
 #include "tools/neritic/sonar_folder.hpp"
 #include "tools/neritic/sonar_picture.hpp"
 #include "tools/neritic/sonar_resume.hpp"
@@ -31,6 +32,7 @@ Status run_one(const SonarJob& job, SonarNotes& notes) {
 }  // namespace
 
 Result<std::string> run_sonar(const SonarFlags& flags) {
+  NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
   NERITIC_TRY(const SonarJob job, plan_job(flags));
   const bool estimated = flags.normals.empty() && flags.method != "image";
   if (is_folder_job(job)) {

@@ -61,7 +61,9 @@ Result<std::vector<FrameFiles>> frames_of(const SonarJob& job, FrameList& skippe
                      "a folder or a pattern, as the other flags have");
     std::span<const char* const> kinds = kMaps;
     if (g.group == kPictureGroup) kinds = kPictures;
-    NERITIC_TRY(files[g.group], sonar::list_files(g.pattern, kinds));
+    std::vector<sonar::UnusableFile> unusable;
+    NERITIC_TRY(files[g.group], sonar::list_files(g.pattern, kinds, unusable));
+    for (const sonar::UnusableFile& file : unusable) skipped.add_file(file.path, file.reason);
   }
   std::swap(files[0], files[lead]);
   NERITIC_TRY(std::vector<FrameFiles> frames, sonar::pair_frames(files));

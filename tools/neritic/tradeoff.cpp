@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "engine/core/refusal.hpp"
+#include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/tradeoff/deco_tradeoff.hpp"
@@ -120,6 +121,7 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
 }  // namespace
 
 Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
+  NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
   if (flags.what == "sonar") return trade_sonar(flags);
   if (flags.what == "physics") return trade_physics(flags);
   if (flags.what == "swim") return trade_swim(flags);

@@ -1,0 +1,65 @@
+#include "tools/common/outputs.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
+namespace neritic::tools {
+namespace fs = std::filesystem;
+namespace {
+
+Status refused(std::string_view flag, const fs::path& path, const std::string& reason) {
+  return failure(ErrorCode::kIo, "{}: {} ({}): cannot be written", flag, path.string(), reason);
+}
+
+// Empty: something can be made in the folder. Permissions alone do not tell: file systems may be
+// read-only or full.
+std::string why_not_in(const fs::path& folder) {
+  std::string name = (folder / ".neritic-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) return std::generic_category().message(errno);
+  ::rmdir(name.c_str());
+  return {};
+}
+
+}  // namespace
+
+Status check_output_folder(std::string_view flag, const fs::path& folder) {
+  if (folder.empty()) return {};
+  std::error_code error;
+  fs::path there = fs::absolute(folder, error).lexically_normal();
+  while (!error && fs::symlink_status(there, error).type() == fs::file_type::not_found &&
+         there.has_relative_path()) {
+    error.clear();
+    there = there.parent_path();
+  }
+  if (error) return refused(flag, folder, error.message());
+  if (!fs::is_directory(there, error))
+    return refused(flag, folder, there.string() + " is no folder");
+  if (const std::string reason = why_not_in(there); !reason.empty())
+    return refused(flag, folder, reason);
+  return {};
+}
+
+Status check_output_file(std::string_view flag, const fs::path& file) {
+  if (file.empty()) return {};
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (fs::is_directory(status)) return refused(flag, file, "it is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status)) return {};
+  // A link is followed: the file that it names is replaced.
+  error.clear();
+  const fs::path behind = fs::is_symlink(fs::symlink_status(file, error))
+                              ? fs::weakly_canonical(file, error)
+                              : fs::absolute(file, error);
+  if (error) return refused(flag, file, error.message());
+  if (!fs::is_directory(behind.parent_path(), error))
+    return refused(flag, file, "no folder " + behind.parent_path().string());
+  if (const std::string reason = why_not_in(behind.parent_path()); !reason.empty())
+    return refused(flag, file, reason);
+  return {};
+}
+
+}  // namespace neritic::tools
