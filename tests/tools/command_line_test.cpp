@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tools/neritic/commands.hpp"
+#include "tools/neritic/flags.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -74,6 +75,14 @@ TEST(CommandLine, APictureThatIsNoPngIsRefused) {
     EXPECT_FALSE(with("p").ok()) << words[0];
     EXPECT_TRUE(with("p.PNG").ok()) << words[0];
   }
+}
+
+TEST(Progress, SaysHowLongTheRestTakes) {
+  EXPECT_EQ(progress_line("frame", 0, 100, 5.0), "frame 0 of 100");
+  EXPECT_EQ(progress_line("frame", 25, 100, 60.0), "frame 25 of 100, 3:00 left");
+  EXPECT_EQ(progress_line("frame", 99, 100, 990.0), "frame 99 of 100, 0:10 left");
+  EXPECT_EQ(progress_line("point", 10, 100, 1000.0), "point 10 of 100, 2 h 30 min left");
+  EXPECT_EQ(progress_line("frame", 100, 100, 60.0), "frame 100 of 100");
 }
 
 TEST(CommandLine, NoFrameIsNoNumberOfFrames) {

@@ -50,8 +50,24 @@ Result<std::vector<double>> parse_numbers(const char* flag, const std::string& t
   return out;
 }
 
+std::string progress_line(const std::string& what, std::uint64_t done, std::uint64_t total,
+                          double elapsed_s) {
+  std::string line = fmt::format("{} {} of {}", what, done, total);
+  if (done == 0 || done >= total) return line;
+  const double left_s = elapsed_s * static_cast<double>(total - done) / static_cast<double>(done);
+  const auto whole_s = static_cast<std::uint64_t>(std::ceil(std::min(left_s, 1e9)));
+  if (whole_s >= 3600)
+    return line + fmt::format(", {} h {:02} min left", whole_s / 3600, whole_s / 60 % 60);
+  return line + fmt::format(", {}:{:02} left", whole_s / 60, whole_s % 60);
+}
+
 Progress::Progress(std::string what, std::uint64_t total)
-    : what_(std::move(what)), total_(total), shown_(total > 1 && isatty(STDERR_FILENO)) {}
+    : what_(std::move(what)),
+      total_(total),
+      begun_ns_(now_ns()),
+      said_ns_(begun_ns_),
+      shown_(total > 1),
+      terminal_(isatty(STDERR_FILENO)) {}
 
 void Progress::step() {
   ++done_;
@@ -64,22 +80,30 @@ void Progress::now(std::string doing) {
 }
 
 void Progress::say(const std::string& line) {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
   log_line(LogLevel::kWarnings, line);
   doing_.clear();
   show();
 }
 
 void Progress::show() {
+  constexpr double kSayEvery_s = 30.0;
   if (!shown_) return;
-  fmt::print(stderr, "\r{} {} of {}", what_, done_, total_);
-  // A line that was longer leaves nothing behind.
-  if (!doing_.empty()) fmt::print(stderr, ": {}\033[K", doing_);
-  std::fflush(stderr);
+  const TimeNs now = now_ns();
+  const std::string line = progress_line(what_, done_, total_, 1e-3 * to_ms(now - begun_ns_)) +
+                           (doing_.empty() ? "" : ": " + doing_);
+  if (terminal_) {
+    // A line that was longer leaves nothing behind.
+    fmt::print(stderr, "\r{}\033[K", line);
+    std::fflush(stderr);
+  } else if (1e-3 * to_ms(now - said_ns_) >= kSayEvery_s) {
+    said_ns_ = now;
+    log_line(LogLevel::kWarnings, line);
+  }
 }
 
 Progress::~Progress() {
-  if (shown_) fmt::print(stderr, "\n");
+  if (shown_ && terminal_) fmt::print(stderr, "\n");
 }
 
 }  // namespace neritic::tools

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/clock.hpp"
 #include "engine/core/result.hpp"
 
 namespace neritic::tools {
@@ -18,8 +19,12 @@ Result<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& fl
 Result<std::vector<double>> parse_numbers(const char* flag, const std::string& text,
                                           std::size_t fewest, std::size_t most);
 
-// One line on stderr that is rewritten, only where stderr is a terminal and there is more than one
-// step.
+// "frame 25 of 100, 3:00 left", supposing that the steps to come take as long as those done.
+std::string progress_line(const std::string& what, std::uint64_t done, std::uint64_t total,
+                          double elapsed_s);
+
+// Where there is more than one step: one line on stderr that is rewritten, or, where stderr is no
+// terminal, a line every half minute.
 class Progress {
  public:
   Progress(std::string what, std::uint64_t total);
@@ -34,7 +39,8 @@ class Progress {
   void show();
   std::string what_, doing_;
   std::uint64_t total_, done_ = 0;
-  bool shown_;
+  TimeNs begun_ns_, said_ns_;
+  bool shown_, terminal_;
 };
 
 }  // namespace neritic::tools
