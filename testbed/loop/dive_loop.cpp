@@ -13,6 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr TimeNs kNote_ns = 3'000'000'000;  // how long a note stays on the screen
 constexpr int kMaxShots = 10000;
+constexpr double kSlack_s = 1e-6;  // sums of frames' periods are rounded
 
 double to_s(TimeNs duration_ns) {
   return static_cast<double>(duration_ns) * 1e-9;
@@ -85,8 +86,10 @@ Status Dive::run() {
       if (options_.seconds > 0.0 && seconds_ >= options_.seconds) break;
       continue;
     }
+    // Simulated time, as this frame will have it: a slow device draws as much of the scene.
+    const double next_s = frames_drawn_ == 0 ? 0.0 : time_s_ + to_s(display_frame.period_ns);
     const bool last = (options_.frames > 0 && frames_drawn_ + 1 >= options_.frames) ||
-                      (options_.seconds > 0.0 && seconds_ >= options_.seconds);
+                      (options_.seconds > 0.0 && next_s >= options_.seconds - kSlack_s);
     NERITIC_TRY_STATUS(frame(display_frame, last));
     if (last || quit_) break;
   }

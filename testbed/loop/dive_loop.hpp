@@ -23,7 +23,7 @@ namespace neritic::testbed {
 
 struct DiveOptions {
   std::uint64_t frames = 0;          // stop after so many; 0: no limit
-  double seconds = 0.0;              // stop after so long; 0: no limit
+  double seconds = 0.0;              // of simulated time, then stop; 0: no limit
   std::filesystem::path screenshot;  // the last frame's picture; empty: none
   std::size_t camera = 0;            // of the scene, the one that is flown
   std::vector<std::size_t> sonars;   // of the scene, those that ping

@@ -59,6 +59,13 @@ TEST_F(Outputs, OthersAreRefusedWithTheFlagAndTheReason) {
 TEST_F(Outputs, EveryCommandLooksBeforeItWorks) {
   const std::string no = at("file/below"), file = at("none/a.png");
   const std::vector<std::vector<std::string>> commands = {
+      {"render", "absent.toml", "--out", no},
+      {"render", "absent.toml", "--out", at("out"), "--dump-graph", file},
+      {"dive", "absent.toml", "--headless", "--log", file},
+      {"dive", "absent.toml", "--headless", "--plot", file},
+      {"dive", "absent.toml", "--headless", "--record", file},
+      {"dive", "absent.toml", "--headless", "--save", file},
+      {"dive", "absent.toml", "--headless", "--screenshot", file},
       {"sonar", "imaging", "--depth", "absent.npy", "--intrinsics", "1,1,1,1", "--out", no},
       {"tradeoff", "physics", "--out", no},
       {"plan", "--depth", "30", "--time", "25", "--out", no},

@@ -251,7 +251,7 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_flag("--json", flags->json, "the dive's summary as JSON");
   command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
   command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
-  command->add_option("--seconds", flags->seconds, "stop after so many seconds");
+  command->add_option("--seconds", flags->seconds, "stop after so many simulated seconds");
   command->add_option("--frames", flags->frames, "stop after so many frames")
       ->check(between(1, 1000000));
   command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png")

@@ -8,6 +8,7 @@
 #include "engine/xr/offscreen.hpp"
 #include "testbed/loop/dive_loop.hpp"
 #include "testbed/sensors/validation.hpp"
+#include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/dive_physics.hpp"
 #include "tools/neritic/flags.hpp"
@@ -110,6 +111,8 @@ Status run_dive(const DiveFlags& flags) {
     return bad_input("--fast: accepted with --headless (a window follows its screen)");
   if (flags.panels && !flags.headless)
     return bad_input("--panels: accepted with --headless (a window has them; F2)");
+  NERITIC_TRY_STATUS(check_step_files(flags.files));
+  NERITIC_TRY_STATUS(check_output_file("--screenshot", flags.screenshot));
   NERITIC_TRY(scene::Scene scene, load(flags));
   for (const std::string& note : scene.notes) log_warn("{}", note);
   NERITIC_TRY_STATUS(check_physics_flags(flags, scene));

@@ -70,7 +70,6 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
     return bad_input("--seconds: {}; up to {:g} is accepted", seconds, kMostPhysicsSeconds);
   NERITIC_TRY(auto world, PhysicsWorld::create(scene));
   if (!flags.replay.empty()) return replay_dive(flags, *world);
-  NERITIC_TRY_STATUS(check_step_files(flags.files));
   LivePhysics::Options options{.log = !flags.files.record.empty(), .seed = scene.seed};
   if (!flags.restore.empty()) {
     NERITIC_TRY(options.start, read_state(flags.restore, world->state_format()));

@@ -11,6 +11,7 @@
 #include "testbed/output/frame_files.hpp"
 #include "testbed/sensors/sonar_check.hpp"
 #include "testbed/sensors/validation.hpp"
+#include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/load_scene.hpp"
@@ -122,7 +123,6 @@ Result<std::unique_ptr<LivePhysics>> make_physics(const RenderFlags& flags,
           flags.scene);
     return std::unique_ptr<LivePhysics>();
   }
-  NERITIC_TRY_STATUS(check_step_files(flags.files));
   if (!(last_s <= kLongestFlight_s))
     return bad_input("{}: physics to {:g} s of scene time; at most {:g} s are accepted", scene.path,
                      last_s, kLongestFlight_s);
@@ -226,6 +226,10 @@ Result<std::string> run_render(const RenderFlags& flags) {
   if (!(std::abs(flags.time_s) <= kLatestTime_s))
     return bad_input("--time: {} s; a number from {:g} to {:g} is accepted", flags.time_s,
                      -kLatestTime_s, kLatestTime_s);
+  NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
+  NERITIC_TRY_STATUS(check_step_files(flags.files));
+  if (flags.dump_graph != "-")
+    NERITIC_TRY_STATUS(check_output_file("--dump-graph", flags.dump_graph));
   const TimeNs start = now_ns();
   const Interrupt interrupt;
   NERITIC_TRY(scene::Scene scene, load(flags));
@@ -233,9 +237,6 @@ Result<std::string> run_render(const RenderFlags& flags) {
   for (const std::string& note : scene.notes) log_warn("{}", note);
   if (!sensors.cameras.empty() && !scene.sun && scene.lamps.empty() && scene.model_lights.empty())
     log_warn("{}: no sun and no lamps, so only what glows by itself is seen", flags.scene);
-  if (const fs::path folder = fs::path(flags.dump_graph).parent_path();
-      !folder.empty() && !fs::is_directory(folder))
-    return bad_input("--dump-graph: {}: no folder {}", flags.dump_graph, folder.string());
   log_info("scene read in {:.0f} ms: {} models, {} objects", to_ms(now_ns() - start),
            scene.models.size(), scene.objects.size());
   gpu::DeviceOptions options;

@@ -1,11 +1,10 @@
 #include "tools/neritic/step_files.hpp"
 
-#include <unistd.h>
-
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tools/common/outputs.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/neritic/dive_picture.hpp"
 
@@ -13,17 +12,6 @@ namespace neritic::tools {
 namespace {
 
 constexpr double kMostRows_hz = 1e4;
-
-Status check_writable(const std::filesystem::path& path) {
-  if (path.empty()) return {};
-  std::error_code ignored;
-  const auto status = std::filesystem::status(path, ignored);
-  if (std::filesystem::exists(status) && std::filesystem::is_other(status)) return {};
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  if (!std::filesystem::is_directory(status) && ::access(folder.c_str(), W_OK | X_OK) == 0)
-    return {};
-  return failure(ErrorCode::kIo, "{}: cannot be written", path.string());
-}
 
 // The rows of the log as a picture.
 class DivePlot final : public StepSink {
@@ -58,9 +46,10 @@ Status check_step_files(const StepFileFlags& flags) {
   const double rate_hz = flags.log_rate_hz.value_or(0.0);
   if (!(rate_hz >= 0.0 && rate_hz <= kMostRows_hz))
     return bad_input("--log-rate: {}; a number from 0 to {:g} is accepted", rate_hz, kMostRows_hz);
-  for (const std::string& file : {flags.log, flags.plot, flags.record, flags.save})
-    NERITIC_TRY_STATUS(check_writable(file));
-  return {};
+  NERITIC_TRY_STATUS(check_output_file("--log", flags.log));
+  NERITIC_TRY_STATUS(check_output_file("--plot", flags.plot));
+  NERITIC_TRY_STATUS(check_output_file("--record", flags.record));
+  return check_output_file("--save", flags.save);
 }
 
 StepFiles::StepFiles(const StepFileFlags& flags, const std::string& title,

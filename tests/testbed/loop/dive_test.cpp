@@ -89,6 +89,21 @@ TEST(Dive, HeadlessDrawsThatManyFramesAndSaysWhatTheyTook) {
   EXPECT_EQ(outcome.out.substr(outcome.out.find('\n', line) - 2, 2), " 7") << outcome.out;
 }
 
+// Frames a tenth of a second apart, whatever one takes to draw.
+TEST(Dive, SecondsAreThoseOfTheScene) {
+  const test::ScratchFolder scratch;
+  std::ofstream(scratch / "ball.toml")
+      << "[sun]\nelevation_deg = 60\n[[objects]]\nname = \"ball\"\nshape = \"sphere\"\n"
+         "radius_m = 0.5\nposition_m = [3, -4, 5]\n[[cameras]]\nname = \"eye\"\nwidth = 64\n"
+         "height = 48\nrate_hz = 10\nposition_m = [3, -4, 8]\n";
+  const Outcome outcome =
+      dive(scratch, "",
+           fmt::format("'{}' --headless --fast --seconds 2", (scratch / "ball.toml").string()));
+  if (test::may_skip_without_device()) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("21 frames in"), std::string::npos) << outcome.out;
+}
+
 // Bodies that bend, without the motion image that `render` always asks for.
 TEST(Dive, AnimatedSceneLeavesValidationSilent) {
   const test::ScratchFolder scratch;
