@@ -88,7 +88,7 @@ TEST(Progress, SaysHowLongTheRestTakes) {
 TEST(CommandLine, NoFrameIsNoNumberOfFrames) {
   for (const char* command : {"render", "dive"}) {
     EXPECT_THAT(said({command, "a.toml", "--out", "o", "--frames", "0"}),
-                HasSubstr("'0' found, 1 to 1000000 is accepted"))
+                HasSubstr("found '0'; accepted: 1 to 1000000"))
         << command;
     EXPECT_FALSE(parse_command_line({command, "a.toml", "--frames", "-1"}).ok());
   }

@@ -116,7 +116,7 @@ Result<diver::Recording> load_recording(const PhysioFlags& flags) {
 Result<std::string> run_physio(const PhysioFlags& flags) {
   NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
   NERITIC_TRY_STATUS(check_output_file("--plot", flags.plot));
-  if (flags.table && flags.json) return bad_input("--table, --json: both found; accepted: one");
+  if (flags.table && flags.json) return refusal("--table, --json", "both", "one of them");
   if (flags.what == "ecg") {
     NERITIC_TRY(const EcgReport report, analyse_ecg(flags));
     return show(flags, report);
