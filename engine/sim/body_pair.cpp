@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/sim/contact_rows.hpp"
 #include "engine/sim/convex_query.hpp"
+#include "engine/sim/pair_solver.hpp"
 #include "engine/sim/plane_axes.hpp"
 #include "engine/sim/static_things.hpp"
 
@@ -17,26 +17,8 @@ constexpr double kPairTolerance_m_s = 1e-12;
 // Depth beyond it is undone at this rate, up to this speed, as in the contact solver.
 constexpr double kPairSlop_m = 1e-6, kPairPushRate_hz = 50.0, kPairPush_m_s = 2.0;
 
-struct PairPoint {
-  Vec3 point_m, normal;  // world, the point about a's origin; the normal from b to a
-  double gap_m;
-};
-
-// One direction at one point of both bodies, each in its own axes.
-struct PairRow {
-  SolverRow a, b;
-  double impulse = 0.0;
-
-  double mobility() const { return a.mobility + b.mobility; }
-  double speed(const Six& va, const Six& vb) const {
-    return dot_of(a.jacobian, va) + dot_of(b.jacobian, vb);
-  }
-  void push(double change, Six& va, Six& vb) {
-    impulse += change;
-    add_scaled(va, a.response, change);
-    add_scaled(vb, b.response, change);
-  }
-};
+// Bodies whose ways come no nearer than this do not touch.
+constexpr double kPairMargin_m = 1e-3;
 
 PairRow row_of(const PairBody& a, const PairBody& b, const Vec3& b_from_a_m, const Vec3& point_m,
                const Vec3& direction) {
@@ -56,10 +38,11 @@ double way_m(const PairBody& body) {
 }
 
 // The nearest points of each pair of parts that could touch within the step.
-std::vector<PairPoint> near_points(const PairBody& a, const PairBody& b, const Vec3& b_from_a_m) {
-  std::vector<PairPoint> out;
-  const double margin_m = way_m(a) + way_m(b) + 1e-3;
-  if (glm::length(b_from_a_m) > a.shape.reach_m() + b.shape.reach_m() + margin_m) return out;
+void find_near_points(const PairBody& a, const PairBody& b, const Vec3& b_from_a_m,
+                      std::vector<PairPoint>& out) {
+  out.clear();
+  const double margin_m = way_m(a) + way_m(b) + kPairMargin_m;
+  if (glm::length(b_from_a_m) > a.shape.reach_m() + b.shape.reach_m() + margin_m) return;
   const Mat3 turn_a = glm::mat3_cast(a.before.rotation), turn_b = glm::mat3_cast(b.before.rotation);
   PartPoints storage_a, storage_b;
   for (const ConvexPart& part_a : a.shape.parts()) {
@@ -75,42 +58,7 @@ std::vector<PairPoint> near_points(const PairBody& a, const PairBody& b, const V
       out.push_back({on_b + found->direction * (0.5 * gap_m), found->direction, gap_m});
     }
   }
-  return out;
 }
-
-// The bodies' pair of velocities that keeps what the rows ask for.
-struct PairSolver {
-  std::vector<PairRow> normals, sides, others;
-  std::vector<double> targets_m_s;
-
-  // False: nothing pushed.
-  bool solve(double friction, Six& va, Six& vb) {
-    for (int round = 0; round < kPairRounds; ++round) {
-      double change_m_s = 0.0;
-      for (std::size_t i = 0; i < normals.size(); ++i) {
-        PairRow& n = normals[i];
-        const double wanted = n.impulse - (n.speed(va, vb) - targets_m_s[i]) / n.mobility();
-        const double change = std::max(wanted, 0.0) - n.impulse;
-        n.push(change, va, vb);
-        change_m_s = std::max(change_m_s, std::abs(change) * n.mobility());
-        if (friction > 0.0) rub(i, friction, va, vb);
-      }
-      if (change_m_s < kPairTolerance_m_s) break;
-    }
-    return std::ranges::any_of(normals, [](const PairRow& n) { return n.impulse > 0.0; });
-  }
-
- private:
-  void rub(std::size_t i, double friction, Six& va, Six& vb) {
-    PairRow &x = sides[i], &y = others[i];
-    const double mobility = x.mobility() + y.mobility();
-    Vec2 impulse(x.impulse - x.speed(va, vb) / mobility, y.impulse - y.speed(va, vb) / mobility);
-    const double most = friction * normals[i].impulse, size = glm::length(impulse);
-    if (size > most) impulse *= most / size;
-    x.push(impulse.x - x.impulse, va, vb);
-    y.push(impulse.y - y.impulse, va, vb);
-  }
-};
 
 // The pose after the step at this velocity, which is in the axes of the free step's end.
 Pose pose_after(const PairBody& body, const Six& velocity, const Six& push, double dt_s) {
@@ -125,12 +73,51 @@ Pose pose_after(const PairBody& body, const Six& velocity, const Six& push, doub
 
 }  // namespace
 
-bool part_bodies(PairBody& a, PairBody& b, double friction, double dt_s) {
+void PairSolver::clear() {
+  normals.clear();
+  sides.clear();
+  others.clear();
+  targets_m_s.clear();
+}
+
+bool PairSolver::solve(double friction, Six& va, Six& vb) {
+  for (int round = 0; round < kPairRounds; ++round) {
+    double change_m_s = 0.0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      PairRow& n = normals[i];
+      const double wanted = n.impulse - (n.speed(va, vb) - targets_m_s[i]) / n.mobility();
+      const double change = std::max(wanted, 0.0) - n.impulse;
+      n.push(change, va, vb);
+      change_m_s = std::max(change_m_s, std::abs(change) * n.mobility());
+      if (friction > 0.0) rub(i, friction, va, vb);
+    }
+    if (change_m_s < kPairTolerance_m_s) break;
+  }
+  return std::ranges::any_of(normals, [](const PairRow& n) { return n.impulse > 0.0; });
+}
+
+void PairSolver::rub(std::size_t i, double friction, Six& va, Six& vb) {
+  PairRow &x = sides[i], &y = others[i];
+  const double mobility = x.mobility() + y.mobility();
+  Vec2 impulse(x.impulse - x.speed(va, vb) / mobility, y.impulse - y.speed(va, vb) / mobility);
+  const double most = friction * normals[i].impulse, size = glm::length(impulse);
+  if (size > most) impulse *= most / size;
+  x.push(impulse.x - x.impulse, va, vb);
+  y.push(impulse.y - y.impulse, va, vb);
+}
+
+double pair_reach_m(const PairBody& body) {
+  return body.shape.reach_m() + way_m(body) + 0.5 * kPairMargin_m;
+}
+
+bool part_bodies(PairBody& a, PairBody& b, double friction, double dt_s, PairMemory& memory) {
   const Vec3 b_from_a_m = b.before.position_m - a.before.position_m;
-  const std::vector<PairPoint> points = near_points(a, b, b_from_a_m);
-  if (points.empty()) return false;
-  PairSolver meeting, leaving;
-  for (const PairPoint& p : points) {
+  find_near_points(a, b, b_from_a_m, memory.points);
+  if (memory.points.empty()) return false;
+  PairSolver &meeting = memory.meeting, &leaving = memory.leaving;
+  meeting.clear();
+  leaving.clear();
+  for (const PairPoint& p : memory.points) {
     const PlaneAxes across = plane_axes(p.normal);
     meeting.normals.push_back(row_of(a, b, b_from_a_m, p.point_m, p.normal));
     meeting.sides.push_back(row_of(a, b, b_from_a_m, p.point_m, across.x));

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "engine/sim/motion.hpp"
+#include "engine/sim/pair_solver.hpp"
 
 namespace neritic::sim {
 
@@ -20,7 +21,10 @@ struct PairBody {
   BodyMotion free;  // its step as if alone; changed where the other is in the way
 };
 
+// Two bodies whose origins before the step are farther apart than the sum of their reaches do not
+// touch in it.
+double pair_reach_m(const PairBody& body);
 // Whether they touched; where not, both keep their bits. friction: Coulomb's coefficient.
-bool part_bodies(PairBody& a, PairBody& b, double friction, double dt_s);
+bool part_bodies(PairBody& a, PairBody& b, double friction, double dt_s, PairMemory& memory);
 
 }  // namespace neritic::sim

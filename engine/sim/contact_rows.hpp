@@ -1,5 +1,5 @@
 // The parts of the contact solver: six-vectors, the rows of one contact, and a round's steps. Body
-// axes; for contact_solver.cpp alone.
+// axes.
 #pragma once
 
 #include <algorithm>
@@ -64,10 +64,18 @@ double solve_friction(SolverContact& contact, Six& velocity);
 // heavier along one axis than another need tens of rounds then, not thousands.
 class Conjugate {
  public:
-  explicit Conjugate(std::size_t contacts) : last_(contacts), way_(contacts) {}
-
+  // Begins with contacts that have no impulses yet.
+  void begin(std::size_t contacts) {
+    last_.assign(contacts, Vec3(0.0));
+    way_.assign(contacts, Vec3(0.0));
+    size_ = 0.0;
+  }
   // After a round: contacts hold what it solved.
   void advance(std::vector<SolverContact>& contacts, Six& velocity);
+  void reserve(std::size_t contacts) {
+    last_.reserve(contacts);
+    way_.reserve(contacts);
+  }
 
  private:
   std::vector<Vec3> last_, way_;  // where the last round began, and the direction

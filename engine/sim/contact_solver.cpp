@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/sim/contact_rows.hpp"
+#include "engine/sim/contact_memory.hpp"
 
 namespace neritic::sim {
 namespace {
@@ -86,8 +86,9 @@ void solve_safely(std::vector<SolverContact>& contacts, double enough_m_s, Six& 
 }
 
 // The velocity that undoes depth within this step's motion, beside the velocity that was solved.
-Six solve_push(std::vector<SolverContact>& rows, std::span<const BodyContact> contacts,
-               const Six& velocity, double dt_s) {
+Six solve_push(SolverMemory& memory, std::span<const BodyContact> contacts, const Six& velocity,
+               double dt_s) {
+  std::vector<SolverContact>& rows = memory.rows;
   Six push{};
   const bool deep = std::any_of(contacts.begin(), contacts.end(),
                                 [](const BodyContact& c) { return c.gap_m < -kSlop_m; });
@@ -101,9 +102,9 @@ Six solve_push(std::vector<SolverContact>& rows, std::span<const BodyContact> co
     rows[i].impulse = Vec3(0.0);
     rows[i].friction = 0.0;
   }
-  Conjugate conjugate(rows.size());
+  memory.conjugate.begin(rows.size());
   for (int round = 0; round < kMostPushRounds; ++round) {
-    if (round > 0) conjugate.advance(rows, push);
+    if (round > 0) memory.conjugate.advance(rows, push);
     if (solve_round(rows, push) < kPushTolerance_m_s) break;
   }
   return push;
@@ -122,11 +123,13 @@ double time_to_hit(std::span<const BodyContact> contacts, const Twist& velocity,
 }
 
 ContactSolution solve_contacts(std::span<const BodyContact> contacts,
-                               const InverseMass& inverse_mass, const Twist& free, double dt_s) {
+                               const InverseMass& inverse_mass, const Twist& free, double dt_s,
+                               SolverMemory& memory) {
   ContactSolution solution;
   Six velocity = six_of(free);
-  std::vector<SolverContact> rows;
-  rows.reserve(contacts.size());
+  auto& [rows, impulses, conjugate] = memory;
+  rows.clear();
+  impulses.clear();
   double fastest_m_s = 0.0;
   bool bounces = false;
   for (const BodyContact& contact : contacts) {
@@ -139,7 +142,7 @@ ContactSolution solve_contacts(std::span<const BodyContact> contacts,
   const double enough_m_s = std::max(kTolerance * fastest_m_s, kSmallestChange_m_s);
   const double loose_m_s = std::max(kLooseTolerance * fastest_m_s, kSmallestChange_m_s);
   solution.converged = contacts.empty();
-  Conjugate conjugate(rows.size());
+  conjugate.begin(rows.size());
   while (!solution.converged && solution.rounds < kMostRounds) {
     if (solution.rounds > 0) conjugate.advance(rows, velocity);
     ++solution.rounds;
@@ -152,10 +155,11 @@ ContactSolution solve_contacts(std::span<const BodyContact> contacts,
     solve_safely(rows, enough_m_s, velocity);
   }
   for (const SolverContact& row : rows)
-    solution.impulses.push_back(
+    impulses.push_back(
         {row.impulse.x, row.side_axis * row.impulse.y + row.other_axis * row.impulse.z});
+  solution.impulses = impulses;
   solution.velocity = twist_of(velocity);
-  solution.push = twist_of(solve_push(rows, contacts, velocity, dt_s));
+  solution.push = twist_of(solve_push(memory, contacts, velocity, dt_s));
   return solution;
 }
 

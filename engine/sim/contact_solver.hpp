@@ -14,7 +14,6 @@
 
 #include <array>
 #include <span>
-#include <vector>
 
 #include "engine/core/math.hpp"
 
@@ -45,8 +44,8 @@ struct ContactImpulse {
 
 struct ContactSolution {
   Twist velocity;
-  Twist push;                            // out of what is penetrated: for this step's motion only
-  std::vector<ContactImpulse> impulses;  // one a contact
+  Twist push;  // out of what is penetrated: for this step's motion only
+  std::span<const ContactImpulse> impulses;  // one a contact, in the solver's memory
   int rounds = 0;
   bool converged = true;
 
@@ -57,9 +56,12 @@ struct ContactSolution {
   }
 };
 
-// free: the velocity at the end of the step if there were no contacts. dt_s > 0.
+struct SolverMemory;  // contact_memory.hpp
+// free: the velocity at the end of the step if there were no contacts. dt_s > 0. memory: any
+// content; the solution's impulses lie in it.
 ContactSolution solve_contacts(std::span<const BodyContact> contacts,
-                               const InverseMass& inverse_mass, const Twist& free, double dt_s);
+                               const InverseMass& inverse_mass, const Twist& free, double dt_s,
+                               SolverMemory& memory);
 
 // When within dt_s the first contact is hit faster than kBounce_m_s that is not touched yet; dt_s:
 // none.

@@ -49,8 +49,12 @@ Separation box_separation(const PlacedPart& part, const Triangle& triangle);
 // The widest.
 Separation widest_separation(const PlacedPart& part, const Triangle& triangle);
 
+struct ThinMemory {
+  std::vector<char> seen, keep;  // of each point
+  std::vector<std::size_t> group;
+};
 // Among points with the same normal a few suffice: the deepest, and the outermost in eight
-// directions. Keeps the order; points[from] on are thinned.
-void thin_touch_points(std::vector<TouchPoint>& points, std::size_t from);
+// directions. Keeps the order; points[from] on are thinned. memory: any content.
+void thin_touch_points(std::vector<TouchPoint>& points, std::size_t from, ThinMemory& memory);
 
 }  // namespace neritic::sim

@@ -24,7 +24,7 @@ std::array<Vec2, kDirections> spread_directions() {
 // The outermost of the group in each direction, and the deepest where it is deeper than those by
 // more than rounding. Ties go to the first.
 void keep_outermost(std::span<const TouchPoint> points, std::span<const std::size_t> group,
-                    const std::array<Vec2, kDirections>& directions, std::vector<bool>& keep) {
+                    const std::array<Vec2, kDirections>& directions, std::vector<char>& keep) {
   constexpr double kTie_m = 1e-9, kDeeper_m = 1e-7;
   const PlaneAxes axes = plane_axes(points[group[0]].normal);
   std::array<std::size_t, kDirections> outermost;
@@ -50,7 +50,7 @@ void keep_outermost(std::span<const TouchPoint> points, std::span<const std::siz
 
 // Among points at one place with all but the same normal, as where surfaces overlap, the deepest
 // stays: more would say the same and only slow the solver down.
-void drop_doubles(std::span<const TouchPoint> points, std::vector<bool>& keep) {
+void drop_doubles(std::span<const TouchPoint> points, std::vector<char>& keep) {
   constexpr double kSamePlace_m = 1e-3, kAlike = 1e-4;  // 14 mrad
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t j = i + 1; keep[i] && j < points.size(); ++j) {
@@ -63,12 +63,13 @@ void drop_doubles(std::span<const TouchPoint> points, std::vector<bool>& keep) {
 
 }  // namespace
 
-void thin_touch_points(std::vector<TouchPoint>& points, std::size_t from) {
+void thin_touch_points(std::vector<TouchPoint>& points, std::size_t from, ThinMemory& memory) {
   const std::span<const TouchPoint> own(points.data() + from, points.size() - from);
   if (own.size() <= 1) return;
   const auto directions = spread_directions();
-  std::vector<bool> seen(own.size(), false), keep(own.size(), false);
-  std::vector<std::size_t> group;
+  auto& [seen, keep, group] = memory;
+  seen.assign(own.size(), false);
+  keep.assign(own.size(), false);
   for (std::size_t first = 0; first < own.size(); ++first) {
     if (seen[first]) continue;
     group.clear();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/sim/contact_memory.hpp"
 #include "engine/sim/snapshot.hpp"
 
 namespace neritic::sim {
@@ -51,15 +52,13 @@ Pose moved_by(const Pose& pose, const WorldTwist& velocity, double duration_s) {
   return moved(pose, in_body(velocity, pose.rotation), duration_s);
 }
 
-std::vector<BodyContact> in_body_axes(const std::vector<Contact>& contacts, const Vec3& origin_m,
-                                      const Quat& world_from_body) {
+void in_body_axes(std::span<const Contact> contacts, const Vec3& origin_m,
+                  const Quat& world_from_body, std::vector<BodyContact>& out) {
   const Mat3 body_from_world = glm::mat3_cast(glm::conjugate(world_from_body));
-  std::vector<BodyContact> out;
-  out.reserve(contacts.size());
+  out.clear();
   for (const Contact& contact : contacts)
     out.push_back({body_from_world * (contact.point_m - origin_m), body_from_world * contact.normal,
                    contact.gap_m, contact.surface.friction, contact.surface.restitution});
-  return out;
 }
 
 // M v from M^-1 by Cholesky's factors; M is symmetric positive definite.
@@ -103,11 +102,13 @@ Twist turned(const WorldTwist& velocity, const Quat& solved_in, const Quat& now,
 class Mover {
  public:
   Mover(const StaticWorld& world, const BodyShape& shape, const InverseMass& inverse_mass,
-        const Pose& before, const BodyMotion& free, double dt_s, MotionReport& told)
+        const Pose& before, const BodyMotion& free, double dt_s, ContactMemory& memory,
+        MotionReport& told)
       : world_(world),
         shape_(shape),
         inverse_mass_(inverse_mass),
         free_(free),
+        memory_(memory),
         told_(told),
         now_(before),
         target_(free.world_from_body),
@@ -123,10 +124,10 @@ class Mover {
           std::clamp(1.01 * way_length(shape_, now_, target_), kLeastMargin_m, kMostMargin_m);
       meet(margin_m);
       const double safe_m = std::min({kShortWay_m, 0.25 * shape_.thinnest_m(), margin_m});
-      const double share =
-          way_length(shape_, now_, target_) > safe_m
-              ? std::min(cut_, world_.sweep(shape_, now_, target_, allowed_m, passable_))
-              : cut_;
+      const double share = way_length(shape_, now_, target_) > safe_m
+                               ? std::min(cut_, world_.sweep(shape_, now_, target_, allowed_m,
+                                                             memory_.passable, memory_))
+                               : cut_;
       if (share >= 1.0 && way_s_ >= left_s_) break;
       now_ = share < 1.0 ? blend_pose(now_, target_, share) : target_;
       left_s_ -= way_s_ * share;
@@ -144,31 +145,33 @@ class Mover {
  private:
   // Contacts here, and what they make of the velocity and the way.
   void meet(double margin_m) {
-    world_.contacts(shape_, now_, margin_m, contacts_);
-    told_.contacts = static_cast<int>(contacts_.size());
-    passable_.clear();
+    const auto contacts = world_.contacts(shape_, now_, margin_m, memory_);
+    told_.contacts = static_cast<int>(contacts.size());
+    memory_.passable.clear();
     cut_ = 1.0;
-    for (const Contact& contact : contacts_) {
+    for (const Contact& contact : contacts) {
       if (told_.pieces == 1) told_.deepest_m = std::max(told_.deepest_m, -contact.gap_m);
-      if (contact.inside || contact.gap_m < -kDeep_m) passable_.push_back(contact.thing);
+      if (contact.inside || contact.gap_m < -kDeep_m) memory_.passable.push_back(contact.thing);
     }
     // In the axes at the end of the way, which the free velocity is in.
     const Quat& axes = target_.rotation;
-    const auto body_contacts = in_body_axes(contacts_, now_.position_m, axes);
+    in_body_axes(contacts, now_.position_m, axes, memory_.body_contacts);
+    const std::span<const BodyContact> body_contacts = memory_.body_contacts;
     const Twist free = in_body(velocity_, axes);
     // As far as the first hit, which then is one impulse at its own place and time.
     const double until_s = hits_ < kMostHits ? time_to_hit(body_contacts, free, left_s_) : left_s_;
     const bool hit = until_s < left_s_;
     hits_ += hit ? 1 : 0;
-    const auto solution = solve_contacts(body_contacts, inverse_mass_, free, until_s);
+    const auto solution =
+        solve_contacts(body_contacts, inverse_mass_, free, until_s, memory_.solver);
     if (!solution.acted()) {
       if (hit) cut_ = until_s / left_s_;
       return;
     }
     told_.touched = true;
     told_.converged = told_.converged && solution.converged;
-    for (std::size_t i = 0; i < contacts_.size(); ++i)
-      told_.impulse_n_s += contacts_[i].normal * solution.impulses[i].normal_n_s +
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      told_.impulse_n_s += contacts[i].normal * solution.impulses[i].normal_n_s +
                            axes * solution.impulses[i].friction_n_s;
     velocity_ = in_world(solution.velocity, axes);
     const WorldTwist push = in_world(solution.push, axes);
@@ -180,7 +183,7 @@ class Mover {
   void aim(const WorldTwist& velocity, double duration_s) {
     const double turn_rad_s = glm::length(velocity.angular);
     way_s_ = std::min(duration_s, kMostTurn_rad / turn_rad_s);
-    if (!passable_.empty()) {
+    if (!memory_.passable.empty()) {
       // Things that it penetrates deeply are not swept against: no farther than that nothing thick
       // is passed.
       const double speed_m_s = glm::length(velocity.linear) + turn_rad_s * shape_.reach_m();
@@ -193,6 +196,7 @@ class Mover {
   const BodyShape& shape_;
   const InverseMass& inverse_mass_;
   const BodyMotion& free_;
+  ContactMemory& memory_;
   MotionReport& told_;
   Pose now_, target_;
   Quat solved_in_;  // axes in which the velocity was last solved
@@ -200,8 +204,6 @@ class Mover {
   double left_s_, way_s_;  // to the end; to the target
   double cut_ = 1.0;       // share of the way to the target until something is hit
   int hits_ = 0;           // so often the step was cut there
-  std::vector<Contact> contacts_;
-  std::vector<std::uint32_t> passable_;  // things that it is deep in
 };
 
 }  // namespace
@@ -218,11 +220,18 @@ Pose moved(const Pose& world_from_body, const Twist& velocity, double duration_s
 
 BodyMotion move_body(const StaticWorld& world, const BodyShape& shape,
                      const InverseMass& inverse_mass, const Pose& before, const BodyMotion& free,
-                     double dt_s, MotionReport* report) {
+                     double dt_s, ContactMemory& memory, MotionReport* report) {
   MotionReport unread;
   MotionReport& told = report ? *report : unread;
   told = {};
-  return Mover(world, shape, inverse_mass, before, free, dt_s, told).run();
+  return Mover(world, shape, inverse_mass, before, free, dt_s, memory, told).run();
+}
+
+BodyMotion move_body(const StaticWorld& world, const BodyShape& shape,
+                     const InverseMass& inverse_mass, const Pose& before, const BodyMotion& free,
+                     double dt_s, MotionReport* report) {
+  ContactMemory memory;
+  return move_body(world, shape, inverse_mass, before, free, dt_s, memory, report);
 }
 
 }  // namespace neritic::sim

@@ -29,6 +29,10 @@ struct MotionReport {
 
 BodyMotion move_body(const StaticWorld& world, const BodyShape& shape,
                      const InverseMass& inverse_mass, const Pose& before, const BodyMotion& free,
+                     double dt_s, ContactMemory& memory, MotionReport* report = nullptr);
+// The same with memory of its own, for single steps.
+BodyMotion move_body(const StaticWorld& world, const BodyShape& shape,
+                     const InverseMass& inverse_mass, const Pose& before, const BodyMotion& free,
                      double dt_s, MotionReport* report = nullptr);
 
 // The pose after so long at this velocity: position along the world's direction of now, attitude

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/sim/contact_memory.hpp"
 #include "engine/sim/static_things.hpp"
 
 namespace neritic::sim {
@@ -78,7 +79,8 @@ struct Sweeper {
 }  // namespace
 
 double StaticWorld::sweep(const BodyShape& shape, const Pose& from, const Pose& to,
-                          double allowed_m, std::span<const std::uint32_t> passable) const {
+                          double allowed_m, std::span<const std::uint32_t> passable,
+                          ContactMemory& memory) const {
   const Way way(from, to);
   const double reach_m = shape.reach_m();
   const Sweeper sweeper{way, way.turn_rad * reach_m};
@@ -86,7 +88,7 @@ double StaticWorld::sweep(const BodyShape& shape, const Pose& from, const Pose& 
   constexpr double kMostPieces = 4096.0;
   const double length_m = glm::length(way.move_m);
   const double pieces = std::clamp(std::ceil(length_m / (4.0 * reach_m)), 1.0, kMostPieces);
-  std::vector<std::uint32_t> near;
+  std::vector<std::uint32_t>& near = memory.near;
 
   for (double piece = 0.0; piece < pieces; ++piece) {
     const double start = piece / pieces, end = (piece + 1.0) / pieces;

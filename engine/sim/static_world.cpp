@@ -5,6 +5,7 @@
 #include <array>
 #include <tuple>
 
+#include "engine/sim/contact_memory.hpp"
 #include "engine/sim/static_things.hpp"
 
 namespace neritic::sim {
@@ -43,7 +44,7 @@ TouchPoint escape(const PlacedPart& part, const Vec3& surface) {
 }
 
 void touch(const PlacedPart& part, const LocalThing& thing, double margin_m,
-           std::vector<TouchPoint>& out) {
+           std::vector<TouchPoint>& out, ThinMemory& thin) {
   const std::size_t first = out.size();
   if (const auto surface = way_out(thing, part.centre_m)) {
     out.push_back(escape(part, *surface));
@@ -62,23 +63,25 @@ void touch(const PlacedPart& part, const LocalThing& thing, double margin_m,
   };
   std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
             [&](const TouchPoint& a, const TouchPoint& b) { return key(a) < key(b); });
-  thin_touch_points(out, first);
+  thin_touch_points(out, first, thin);
 }
 
 }  // namespace
 
-void StaticWorld::contacts(const BodyShape& shape, const Pose& world_from_body, double margin_m,
-                           std::vector<Contact>& out) const {
+std::span<const Contact> StaticWorld::contacts(const BodyShape& shape, const Pose& world_from_body,
+                                               double margin_m, ContactMemory& memory) const {
+  auto& near = memory.near;
+  auto& points = memory.points;
+  auto& out = memory.contacts;
+  near.clear();
   out.clear();
   const Vec3& origin_m = world_from_body.position_m;
   const double reach_m = shape.reach_m() + margin_m;
   const Box around{origin_m - Vec3(reach_m), origin_m + Vec3(reach_m)};
-  std::vector<std::uint32_t> near;
   things_->tree.overlapping(around, [&](std::uint32_t i) {
     if (things_->things[i].bounds.overlaps(around)) near.push_back(i);
   });
   std::sort(near.begin(), near.end());
-  std::vector<TouchPoint> points;
   PartPoints storage;
   for (const std::uint32_t i : near) {
     const StaticThing& thing = things_->things[i];
@@ -88,13 +91,14 @@ void StaticWorld::contacts(const BodyShape& shape, const Pose& world_from_body, 
     for (std::size_t p = 0; p < shape.parts().size(); ++p) {
       points.clear();
       touch(place_part(shape.parts()[p], local_from_body, Vec3(0.0), storage), local, margin_m,
-            points);
+            points, memory.thin);
       for (const TouchPoint& point : points)
         out.push_back({origin_m + world_from_local * point.point_m, world_from_local * point.normal,
                        point.gap_m, thing.surface, i, point.triangle, static_cast<std::uint32_t>(p),
                        point.triangle == kNoTriangle});
     }
   }
+  return out;
 }
 
 std::optional<RayHit> StaticWorld::cast(const Vec3& origin_m, const Vec3& direction,

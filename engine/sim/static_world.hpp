@@ -50,6 +50,8 @@ struct StaticWorldCounts {
   std::size_t dropped = 0;                // triangles without area, or on the same three points
 };
 
+struct ContactMemory;  // contact_memory.hpp
+
 class StaticWorld {
  public:
   StaticWorld();
@@ -58,17 +60,17 @@ class StaticWorld {
   StaticWorld& operator=(StaticWorld&&) noexcept;
 
   // Contacts of a body at a pose with all that is no farther than margin_m, sorted by thing, part
-  // and triangle; out's memory is reused. A part whose centre lies in something closed, or below
-  // the seabed, gets one contact there that leads out.
-  void contacts(const BodyShape& shape, const Pose& world_from_body, double margin_m,
-                std::vector<Contact>& out) const;
+  // and triangle; memory.contacts until its next use. A part whose centre lies in something closed,
+  // or below the seabed, gets one contact there that leads out.
+  std::span<const Contact> contacts(const BodyShape& shape, const Pose& world_from_body,
+                                    double margin_m, ContactMemory& memory) const;
 
   // The share of the way, 0 to 1, that a body can go from one pose to another, straight and turning
   // at a constant rate, before any part comes deeper than allowed_m into a
   // triangle, or a quarter of that deeper than it starts. 1: all. Things in passable are not looked
-  // at.
+  // at. Works in memory.near.
   double sweep(const BodyShape& shape, const Pose& from, const Pose& to, double allowed_m,
-               std::span<const std::uint32_t> passable = {}) const;
+               std::span<const std::uint32_t> passable, ContactMemory& memory) const;
 
   // The nearest surface along the unit direction, up to max_distance_m.
   std::optional<RayHit> cast(const Vec3& origin_m, const Vec3& direction,

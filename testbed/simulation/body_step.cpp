@@ -15,10 +15,11 @@ sim::BodyMotion motion_of(const rov::State& state) {
 }
 
 rov::State step_once(const sim::StaticWorld& solid, const SolidBody& body, const rov::State& before,
-                     rov::State free, double dt_s, ContactReport& report) {
+                     rov::State free, double dt_s, sim::ContactMemory& memory,
+                     ContactReport& report) {
   const sim::BodyMotion moved = sim::move_body(
       solid, body.shape, body.inverse_mass, rov::world_pose(before.position_ned_m, before.attitude),
-      motion_of(free), dt_s, &report.motion);
+      motion_of(free), dt_s, memory, &report.motion);
   if (!report.motion.touched) return free;
   const rov::Vec6 without = velocity_ned(free);
   set_motion(moved, free);
@@ -64,18 +65,19 @@ void set_motion(const sim::BodyMotion& motion, rov::State& state) {
 }
 
 bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& b,
-                   rov::State& free_b) {
+                   rov::State& free_b, sim::PairMemory& memory) {
   sim::PairBody pair_a = pair_body(a, free_a), pair_b = pair_body(b, free_b);
-  if (!sim::part_bodies(pair_a, pair_b, kVehicleFriction, a.dt_s)) return false;
+  if (!sim::part_bodies(pair_a, pair_b, kVehicleFriction, a.dt_s, memory)) return false;
   set_motion(pair_a.free, free_a);
   set_motion(pair_b.free, free_b);
   return true;
 }
 
 rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
-                      const rov::State& free, bool parted, ContactReport* report) {
+                      const rov::State& free, bool parted, sim::ContactMemory& memory,
+                      ContactReport* report) {
   ContactReport told;
-  rov::State after = step_once(solid, step.body, step.before, free, step.dt_s, told);
+  rov::State after = step_once(solid, step.body, step.before, free, step.dt_s, memory, told);
   if (told.motion.touched && !parted && step.method.contact_parts > 1) {
     const double depth_m = told.motion.deepest_m, part_s = step.dt_s / step.method.contact_parts;
     told = {{.pieces = 0, .touched = true, .deepest_m = depth_m}, {}};
@@ -86,13 +88,19 @@ rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
       ContactReport part;
       after = step_once(solid, step.body, before,
                         free_step({step.body, step.vehicle, before, inputs, part_s, step.method}),
-                        part_s, part);
+                        part_s, memory, part);
       add_part(part, told);
       inputs.current_ned_m_s += part_s * inputs.current_change_ned_m_s2;
     }
   }
   if (report) *report = told;
   return after;
+}
+
+rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
+                      const rov::State& free) {
+  sim::ContactMemory memory;
+  return step_among(solid, step, free, false, memory);
 }
 
 }  // namespace neritic::testbed

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/sim/body_pair.hpp"
+#include "engine/sim/contact_memory.hpp"
 #include "rov/step.hpp"
 
 namespace neritic::testbed {
@@ -49,10 +50,14 @@ sim::PairBody pair_body(const VehicleStep& step, const rov::State& free);
 void set_motion(const sim::BodyMotion& motion, rov::State& state);
 // Whether two vehicles touched: their free steps then part.
 bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& b,
-                   rov::State& free_b);
+                   rov::State& free_b, sim::PairMemory& memory);
 // Along what is solid. The axes of both sides differ by exchanged components alone, so the way
 // there and back keeps every bit of what is not touched. parted: it is not taken in parts.
 rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
-                      const rov::State& free, bool parted = false, ContactReport* report = nullptr);
+                      const rov::State& free, bool parted, sim::ContactMemory& memory,
+                      ContactReport* report = nullptr);
+// The same with memory of its own, for single steps that nothing parted.
+rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
+                      const rov::State& free);
 
 }  // namespace neritic::testbed

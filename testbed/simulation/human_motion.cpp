@@ -36,10 +36,6 @@ void follow_plan(const PhysicsHuman& human, HumanPhysics& state) {
 // Coulomb's, of a diver on a vehicle: that of a scene's things.
 constexpr double kHumanFriction = sim::Surface{}.friction;
 
-sim::PairBody pair_body(const PhysicsHuman& human, const HumanStep& moving) {
-  return {human.shape, moving.inverse_mass, moving.before, moving.free};
-}
-
 bool computer_due(std::uint64_t step, double dt_s) {
   const auto samples = [&](std::uint64_t steps) {
     return std::floor(static_cast<double>(steps) * dt_s / diver::kComputerSample_s + 1e-9);
@@ -76,29 +72,34 @@ HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
            {world_from_ned(after.velocity.linear()), world_from_ned(after.velocity.angular())}}};
 }
 
+sim::PairBody pair_body(const PhysicsHuman& human, const HumanStep& moving) {
+  return {human.shape, moving.inverse_mass, moving.before, moving.free};
+}
+
 bool part_from_vehicle(const PhysicsHuman& human, HumanStep& moving, const VehicleStep& vehicle,
-                       rov::State& free) {
+                       rov::State& free, sim::PairMemory& memory) {
   sim::PairBody a = pair_body(vehicle, free), b = pair_body(human, moving);
-  if (!sim::part_bodies(a, b, kHumanFriction, vehicle.dt_s)) return false;
+  if (!sim::part_bodies(a, b, kHumanFriction, vehicle.dt_s, memory)) return false;
   set_motion(a.free, free);
   moving.free = b.free;
   return true;
 }
 
 bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman& b,
-                 HumanStep& moving_b, double dt_s) {
+                 HumanStep& moving_b, double dt_s, sim::PairMemory& memory) {
   sim::PairBody pair_a = pair_body(a, moving_a), pair_b = pair_body(b, moving_b);
-  if (!sim::part_bodies(pair_a, pair_b, kHumanFriction, dt_s)) return false;
+  if (!sim::part_bodies(pair_a, pair_b, kHumanFriction, dt_s, memory)) return false;
   moving_a.free = pair_a.free;
   moving_b.free = pair_b.free;
   return true;
 }
 
 void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
-               bool parted, std::uint64_t step, double dt_s, HumanPhysics& state) {
+               bool parted, std::uint64_t step, double dt_s, sim::ContactMemory& memory,
+               HumanPhysics& state) {
   sim::MotionReport report;
   const sim::BodyMotion moved = sim::move_body(solid, human.shape, moving.inverse_mass,
-                                               moving.before, moving.free, dt_s, &report);
+                                               moving.before, moving.free, dt_s, memory, &report);
   diver::RootState& after = state.human.root;
   after.position_ned_m = ned_from_world(moved.world_from_body.position_m);
   after.attitude = ned_from_world(moved.world_from_body.rotation);

@@ -64,15 +64,18 @@ diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& i
 HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
                      const diver::WaterFlow& water, std::uint64_t step, double dt_s,
                      HumanPhysics& state);
+// As pairs are solved.
+sim::PairBody pair_body(const PhysicsHuman& human, const HumanStep& moving);
 // Whether a diver touched a vehicle, or another diver: the free steps of both then part, by equal
 // and opposite impulses.
 bool part_from_vehicle(const PhysicsHuman& human, HumanStep& moving, const VehicleStep& vehicle,
-                       rov::State& free);
+                       rov::State& free, sim::PairMemory& memory);
 bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman& b,
-                 HumanStep& moving_b, double dt_s);
+                 HumanStep& moving_b, double dt_s, sim::PairMemory& memory);
 // Along what is solid, and the dive computer's sample. parted: touched one that moves.
 void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
-               bool parted, std::uint64_t step, double dt_s, HumanPhysics& state);
+               bool parted, std::uint64_t step, double dt_s, sim::ContactMemory& memory,
+               HumanPhysics& state);
 
 // What is drawn: where the model stands, and its nodes' rotations and scales (breath).
 Pose drawn_pose(const HumanPhysics& state);

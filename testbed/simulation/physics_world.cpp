@@ -1,30 +1,18 @@
 // What is read and checked once: the vehicles, what is solid, the current (physics_world.hpp).
 #include "testbed/simulation/physics_world.hpp"
 
-#include <array>
-#include <bit>
 #include <cmath>
 
 #include "rov/frames.hpp"
 #include "rov/step_choice.hpp"
 #include "testbed/simulation/scene_hash.hpp"
 #include "testbed/simulation/static_scene.hpp"
-#include "testbed/simulation/vehicle_shape.hpp"
 
 namespace neritic::testbed {
 namespace {
 
 // A vehicle that starts deeper than this in something solid is a mistake of the scene's.
 constexpr double kMostStartDepth_m = 0.02;
-
-Status check_thrusters(const scene::Scene& scene, const scene::Object& object,
-                       const rov::Vehicle& vehicle) {
-  const std::uint64_t failed = object.dynamics->failed_thrusters;
-  if ((failed >> vehicle.thruster_count) == 0) return {};
-  return bad_input("{}: {}: failed_thrusters: thruster {} found; accepted: 1 to {}, as {} has",
-                   scene.path, object.name, std::bit_width(failed), vehicle.thruster_count,
-                   object.dynamics->file.string());
-}
 
 Status check_anchor(const scene::Scene& scene, const scene::Object& object, bool tethered) {
   if (tethered == object.dynamics->tether_anchor_m.has_value()) return {};
@@ -78,7 +66,6 @@ bool PhysicsWorld::needed(const scene::Scene& scene) {
 Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Scene& scene) {
   std::unique_ptr<PhysicsWorld> world(new PhysicsWorld);
   world->seed_ = scene.seed;
-  NERITIC_TRY(world->scene_hash_, scene_hash(scene));
   if (scene.current) {
     NERITIC_TRY(world->current_, current_of(*scene.current));
   }
@@ -95,6 +82,10 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
     if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i, movers));
     if (scene.objects[i].human) NERITIC_TRY_STATUS(world->add_human(scene, i));
   }
+  std::vector<std::uint64_t> vehicle_files;
+  for (const PhysicsVehicle& vehicle : world->vehicles_)
+    vehicle_files.push_back(vehicle.kind.model.hash);
+  NERITIC_TRY(world->scene_hash_, scene_hash(scene, vehicle_files));
   world->choose_inputs(scene);
   if (world->sources_.size() >= SampleInbox::kMaxSources)
     return bad_input("{}: inputs of {} live sources; accepted: up to {}", scene.path,
@@ -138,31 +129,16 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
                                  const Movers& movers) {
   const scene::Object& object = scene.objects[index];
   const scene::Dynamics& dynamics = *object.dynamics;
-  NERITIC_TRY(rov::VehicleFile file, rov::read_vehicle(dynamics.file, scene.physics->water_kg_m3));
-  NERITIC_TRY(rov::Vehicle vehicle, rov::make_vehicle(file.parameters));
-  rov::prepare_steps(vehicle, std::array{step_s_, step_s_ / method_.contact_parts});
-  NERITIC_TRY_STATUS(check_thrusters(scene, object, vehicle));
-  NERITIC_TRY_STATUS(check_anchor(scene, object, vehicle.tether.has_value()));
-  PhysicsVehicle out{.name = object.name,
-                     .object = index,
-                     .file = std::move(file),
-                     .vehicle = vehicle,
-                     .failed_thrusters = dynamics.failed_thrusters,
-                     .allocator = rov::Allocator(vehicle, dynamics.failed_thrusters)};
-  // A controller cannot act more often than the physics step.
-  out.file.gains.period_s = std::max(out.file.gains.period_s, step_s_);
+  NERITIC_TRY(const VehicleKind* kind, kinds_.of(scene, object, step_s_, method_));
+  NERITIC_TRY_STATUS(check_anchor(scene, object, kind->model.vehicle.tether.has_value()));
+  PhysicsVehicle out{.name = object.name, .object = index, .kind = *kind};
+  out.failed_thrusters = dynamics.failed_thrusters;
   if (dynamics.mission) out.mission.emplace(scene, *dynamics.mission, movers);
   if (dynamics.tether_anchor_m)
     out.tether_anchor_ned_m = rov::ned_from_world(*dynamics.tether_anchor_m);
-  out.solid = solid_body(vehicle);
-  Result<VehicleShape> shape = vehicle_shape(scene, object, out.file.outline);
-  if (!shape.ok()) return bad_input("{}: {}: {}", scene.path, object.name, shape.error().message);
-  out.solid.shape = std::move(shape->body);
-  out.top_m = shape->top_m;
-  out.bottom_m = shape->bottom_m;
   const Pose at = scene.world_from(object.mount, 0.0);
   rov::teleport(out.start, rov::ned_from_world(at.position_m), rov::ned_from_world(at.rotation));
-  NERITIC_TRY_STATUS(check_start(scene, out.name, out.solid.shape,
+  NERITIC_TRY_STATUS(check_start(scene, out.name, kind->solid.shape,
                                  rov::world_pose(out.start.position_ned_m, out.start.attitude)));
   if (out.file.sensors.any()) out.readings = sensing_++;
   out.water = {scene.physics->water_kg_m3, out.file.gravity_m_s2,
@@ -182,9 +158,8 @@ Status PhysicsWorld::add_human(const scene::Scene& scene, std::size_t index) {
 
 Status PhysicsWorld::check_start(const scene::Scene& scene, const std::string& name,
                                  const sim::BodyShape& shape, const Pose& start) const {
-  std::vector<sim::Contact> contacts;
-  solid_.contacts(shape, start, 0.0, contacts);
-  for (const sim::Contact& contact : contacts)
+  sim::ContactMemory memory;
+  for (const sim::Contact& contact : solid_.contacts(shape, start, 0.0, memory))
     if (contact.inside || contact.gap_m < -kMostStartDepth_m)
       return bad_input("{}: {}: starts {:.2f} m deep in {}; accepted: a place in the water",
                        scene.path, name, -contact.gap_m,

@@ -10,26 +10,26 @@
 
 #include "engine/scene/scene.hpp"
 #include "engine/sim/current.hpp"
-#include "rov/vehicle_file.hpp"
+#include "engine/sim/workers.hpp"
 #include "testbed/simulation/body_step.hpp"
 #include "testbed/simulation/human_world.hpp"
 #include "testbed/simulation/mission.hpp"
+#include "testbed/simulation/pair_finder.hpp"
 #include "testbed/simulation/saved_state.hpp"
+#include "testbed/simulation/vehicle_kinds.hpp"
 
 namespace neritic::testbed {
 
 // A vehicle of the scene, prepared.
 struct PhysicsVehicle {
   std::string name;
-  std::size_t object = 0;  // index into Scene::objects
-  rov::VehicleFile file;
-  rov::Vehicle vehicle;
+  std::size_t object = 0;   // index into Scene::objects
+  const VehicleKind& kind;  // of the world, shared with its like
+  const rov::VehicleFile& file = kind.model.file;
+  const rov::Vehicle& vehicle = kind.model.vehicle;
   std::uint64_t failed_thrusters = 0;  // at the start
-  rov::Allocator allocator;            // without those
   std::optional<MissionGuide> mission;
   Vec3 tether_anchor_ned_m{0.0};
-  SolidBody solid;
-  double top_m = 0.0, bottom_m = 0.0;  // of the shape, above the origin
   rov::State start;
   std::optional<std::size_t> readings;  // of PhysicsState::readings(); none: without sensors
   rov::SensorWater water;               // around its sensors
@@ -50,6 +50,18 @@ struct HumanScratch {
 struct StepScratch {
   std::vector<VehicleScratch> vehicles;
   std::vector<HumanScratch> humans;
+  PairFinder finder;
+  sim::PairMemory pair;
+  std::vector<sim::ContactMemory> contacts;  // of each thread
+  sim::Workers workers;
+};
+// One call of the step.
+struct StepCall {
+  const PhysicsState& before;
+  const PhysicsInputs& inputs;
+  const sim::StepTime& time;
+  StepScratch& scratch;
+  PhysicsState& after;
 };
 
 class PhysicsWorld {
@@ -74,7 +86,7 @@ class PhysicsWorld {
   // start().
   void step(const PhysicsState& before, const PhysicsInputs& inputs, const sim::StepTime& time,
             StepScratch& scratch, PhysicsState& after) const;
-  StepScratch scratch() const;
+  StepScratch scratch(unsigned threads) const;
   // The same with memory of its own, for single steps.
   PhysicsState step(const PhysicsState& before, const PhysicsInputs& inputs,
                     const sim::StepTime& time) const;
@@ -91,12 +103,15 @@ class PhysicsWorld {
   // Everything around a vehicle's sensors.
   rov::SensorWorld sensor_world(std::size_t vehicle) const;
 
-  // The step with memory of its own, for a simulation or a replay; borrows the world.
-  PhysicsSimulation::Step step_function() const;
+  // The step with memory and threads of its own, for a simulation or a replay; borrows the world.
+  // threads share the vehicles and divers of a step, with the same bits; 0: one thread for a small
+  // scene, up to all cores for a crowd.
+  PhysicsSimulation::Step step_function(unsigned threads = 0) const;
   // What states of this world are saved as, and must be to go on in it.
   StateFormat state_format() const;
   // With an inbox in which the scene's sources are open. Borrows the world.
-  std::unique_ptr<PhysicsSimulation> simulation(sim::SimulationOptions options) const;
+  std::unique_ptr<PhysicsSimulation> simulation(sim::SimulationOptions options,
+                                                unsigned threads = 0) const;
 
  private:
   PhysicsWorld() = default;
@@ -109,6 +124,13 @@ class PhysicsWorld {
   bool steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
              VehicleState& state) const;
   void sense(std::size_t index, double from_s, double to_s, PhysicsState& state) const;
+  VehicleStep vehicle_step(const StepCall& call, std::size_t i) const;
+  void begin_vehicle(const StepCall& call, std::size_t i) const;
+  void begin_human(const StepCall& call, std::size_t k) const;
+  void part_all(const StepCall& call) const;
+  bool part(const StepCall& call, std::size_t a, std::size_t b) const;
+  void finish_vehicle(const StepCall& call, std::size_t i, unsigned thread) const;
+  void finish_human(const StepCall& call, std::size_t k, unsigned thread) const;
   // Where something that moves so is, during a step.
   diver::WaterFlow water_along(const Vec3& position_ned_m, const Vec3& velocity_ned_m_s,
                                double time_s, double dt_s) const;
@@ -120,6 +142,7 @@ class PhysicsWorld {
   StepMethod method_;
   std::optional<sim::Current> current_;
   sim::StaticWorld solid_;
+  VehicleKinds kinds_;
   std::vector<PhysicsVehicle> vehicles_;
   std::vector<PhysicsHuman> humans_;
   std::size_t sensing_ = 0;  // vehicles with sensors

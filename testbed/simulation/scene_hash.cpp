@@ -1,8 +1,9 @@
 #include "testbed/simulation/scene_hash.hpp"
 
+#include <map>
+
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
-#include "rov/vehicle_file.hpp"
 #include "testbed/simulation/static_scene.hpp"
 
 namespace neritic::testbed {
@@ -11,6 +12,9 @@ namespace {
 // Adds values member by member: padding has no meaning.
 class SceneHash {
  public:
+  explicit SceneHash(std::span<const std::uint64_t> vehicle_files)
+      : vehicle_files_(vehicle_files) {}
+
   Status add(const scene::Scene& scene) {
     number(scene.seed);
     const scene::Physics& physics = *scene.physics;
@@ -40,8 +44,14 @@ class SceneHash {
   Status file(const std::filesystem::path& path) {
     number(path.empty());
     if (path.empty()) return {};
-    NERITIC_TRY(const auto bytes, read_file(path));
-    hash_.add_span(std::span<const std::byte>(bytes));
+    auto& known = files_[path.string()];
+    if (!known) {
+      NERITIC_TRY(const auto bytes, read_file(path));
+      Hash64 hash;
+      hash.add_span(std::span<const std::byte>(bytes));
+      known = hash.value();
+    }
+    number(*known);
     return {};
   }
 
@@ -63,12 +73,18 @@ class SceneHash {
 
   // Vertices at rest and triangles: outlines of what moves, shapes of what is solid.
   void add(const scene::Model& model, const Vec3& scale) {
-    for (const Vec3& point : rest_points(model, scale)) vec(point);
-    for (const scene::Mesh& mesh : model.meshes)
-      for (const scene::Primitive& p : mesh.primitives)
-        hash_.add_span(std::span<const std::uint32_t>(p.indices));
-    // A diver's joints are drawn by these; a vehicle's outline stands on them.
-    for (const scene::Node& node : model.nodes) text(node.name), vec(node.translation_m);
+    auto& known = models_[{&model, {scale.x, scale.y, scale.z}}];
+    if (!known) {
+      SceneHash own({});
+      for (const Vec3& point : rest_points(model, scale)) own.vec(point);
+      for (const scene::Mesh& mesh : model.meshes)
+        for (const scene::Primitive& p : mesh.primitives)
+          own.hash_.add_span(std::span<const std::uint32_t>(p.indices));
+      // A diver's joints are drawn by these; a vehicle's outline stands on them.
+      for (const scene::Node& node : model.nodes) own.text(node.name), own.vec(node.translation_m);
+      known = own.value();
+    }
+    number(*known);
   }
 
   Status add(const scene::Scene& scene, const scene::Object& object) {
@@ -82,35 +98,19 @@ class SceneHash {
       add(*scene.models[static_cast<std::size_t>(object.model)], object.scale);
       for (const Mat4& copy : object.copies) matrix(copy);
     }
-    if (object.dynamics) NERITIC_TRY_STATUS(add(*object.dynamics, scene.physics->water_kg_m3));
+    if (object.dynamics) add(*object.dynamics);
     if (object.human) NERITIC_TRY_STATUS(add(*object.human));
     return {};
   }
 
-  Status add(const scene::Dynamics& dynamics, double water_kg_m3) {
-    NERITIC_TRY_STATUS(file(dynamics.file));
-    NERITIC_TRY_STATUS(add_thrust(dynamics.file, water_kg_m3));
+  void add(const scene::Dynamics& dynamics) {
+    number(vehicle_files_[vehicle_++]);
     number(dynamics.failed_thrusters);
     add(dynamics.inputs);
     number(dynamics.tether_anchor_m.has_value());
     if (dynamics.tether_anchor_m) vec(*dynamics.tether_anchor_m);
     number(dynamics.mission.has_value());
     if (dynamics.mission) add(*dynamics.mission);
-    return {};
-  }
-
-  // A thrust table lies in a file of its own: what the motors make of commands, over their range.
-  Status add_thrust(const std::filesystem::path& path, double water_kg_m3) {
-    constexpr int kCommands = 64;
-    constexpr double kMost_n = 200.0;
-    NERITIC_TRY(const rov::VehicleFile vehicle, rov::read_vehicle(path, water_kg_m3));
-    for (int i = -kCommands; i <= kCommands; ++i) {
-      rov::Inputs commands;
-      commands.thruster_n.fill(kMost_n * i / kCommands);
-      rov::drive(vehicle, commands);
-      for (const double force_n : commands.thruster_n) numbers(force_n);
-    }
-    return {};
   }
 
   void add(const std::vector<scene::InputChoice>& inputs) {
@@ -153,12 +153,19 @@ class SceneHash {
   }
 
   Hash64 hash_;
+  std::span<const std::uint64_t> vehicle_files_;  // of each vehicle in turn
+  std::size_t vehicle_ = 0;
+  // Of what many objects share, each once.
+  std::map<std::string, std::optional<std::uint64_t>> files_;
+  std::map<std::pair<const scene::Model*, std::array<double, 3>>, std::optional<std::uint64_t>>
+      models_;
 };
 
 }  // namespace
 
-Result<std::uint64_t> scene_hash(const scene::Scene& scene) {
-  SceneHash hash;
+Result<std::uint64_t> scene_hash(const scene::Scene& scene,
+                                 std::span<const std::uint64_t> vehicle_files) {
+  SceneHash hash(vehicle_files);
   NERITIC_TRY_STATUS(hash.add(scene));
   return hash.value();
 }

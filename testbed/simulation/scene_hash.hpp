@@ -4,12 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "engine/scene/scene.hpp"
 
 namespace neritic::testbed {
 
-// kBadInput where a file that the physics reads cannot be read.
-Result<std::uint64_t> scene_hash(const scene::Scene& scene);
+// vehicle_files: the hash of each vehicle's file (vehicle_kinds.hpp). kBadInput if another file
+// that the physics reads cannot be read.
+Result<std::uint64_t> scene_hash(const scene::Scene& scene,
+                                 std::span<const std::uint64_t> vehicle_files);
 
 }  // namespace neritic::testbed

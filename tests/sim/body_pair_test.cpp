@@ -10,6 +10,8 @@
 namespace neritic::sim {
 namespace {
 
+PairMemory pair_memory;
+
 using test::Body, test::inverse_of, test::kinetic_energy, test::make_body, test::mass_of;
 
 constexpr double kPairStep_s = 1.0 / 240.0;
@@ -30,7 +32,7 @@ bool step_pair(Body& a, Body& b, double friction, double dt_s) {
   };
   PairBody pa{a.shape, a.inverse_mass, a.motion.world_from_body, free_of(a)},
       pb{b.shape, b.inverse_mass, b.motion.world_from_body, free_of(b)};
-  const bool met = part_bodies(pa, pb, friction, dt_s);
+  const bool met = part_bodies(pa, pb, friction, dt_s, pair_memory);
   a.motion = pa.free;
   b.motion = pb.free;
   return met;
@@ -89,7 +91,7 @@ TEST(BodyPair, WhatIsApartKeepsItsBits) {
       pb{b.shape, b.inverse_mass, b.motion.world_from_body, b.motion};
   pa.free.world_from_body.position_m += Vec3(1.0 / 3.0, 0.1, 0.2);
   const BodyMotion before = pa.free;
-  EXPECT_FALSE(part_bodies(pa, pb, 0.5, kPairStep_s));
+  EXPECT_FALSE(part_bodies(pa, pb, 0.5, kPairStep_s, pair_memory));
   EXPECT_EQ(pa.free.world_from_body.position_m, before.world_from_body.position_m);
   EXPECT_EQ(pa.free.velocity.linear, before.velocity.linear);
 }
@@ -125,7 +127,7 @@ TEST(BodyPair, MomentumStaysAndEnergyNeverGrows) {
     PairBody pa{a.shape, a.inverse_mass, a.motion.world_from_body, a.motion},
         pb{b.shape, b.inverse_mass, b.motion.world_from_body, b.motion};
     const Vec3 before = momentum(a) + momentum(b);
-    if (!part_bodies(pa, pb, uniform(0.0, 1.0), kPairStep_s)) continue;
+    if (!part_bodies(pa, pb, uniform(0.0, 1.0), kPairStep_s, pair_memory)) continue;
     ++met;
     const Vec3 after = (a.motion.world_from_body.rotation * pa.free.velocity.linear) * a.mass[0] +
                        (b.motion.world_from_body.rotation * pb.free.velocity.linear) * b.mass[0];

@@ -1,8 +1,7 @@
-#include "engine/sim/contact_solver.hpp"
-
 #include <gtest/gtest.h>
 
 #include "engine/core/random.hpp"
+#include "engine/sim/contact_memory.hpp"
 #include "tests/sim/bodies.hpp"
 
 namespace neritic::sim {
@@ -14,6 +13,9 @@ constexpr double kDt_s = 1.0 / 240.0;
 constexpr double kRadius_m = 0.15;
 const Vec3 kInertia(0.09);  // 2/5 m r^2 of a ball of 10 kg, r = 0.15 m
 
+// Solutions lie in it until the next one.
+SolverMemory solver_memory;
+
 BodyContact under_a_ball(double friction, double restitution) {
   return {Vec3(0.0, -kRadius_m, 0.0), Vec3(0.0, 1.0, 0.0), 0.0, friction, restitution};
 }
@@ -23,8 +25,8 @@ TEST(ContactSolver, ABallBouncesWithTheClosedFormsImpulse) {
   const InverseMass inverse = inverse_of(mass_of(10.0, kInertia));
   for (const double e : {0.0, 0.3, 0.8, 1.0}) {
     const BodyContact contact = under_a_ball(0.0, e);
-    const auto solution =
-        solve_contacts(std::span(&contact, 1), inverse, {Vec3(0.0, -2.0, 0.0)}, kDt_s);
+    const auto solution = solve_contacts(std::span(&contact, 1), inverse, {Vec3(0.0, -2.0, 0.0)},
+                                         kDt_s, solver_memory);
     EXPECT_NEAR(solution.impulses[0].normal_n_s, (1.0 + e) * 10.0 * 2.0, 1e-12) << e;
     EXPECT_NEAR(solution.velocity.linear.y, e * 2.0, 1e-13) << e;
   }
@@ -35,7 +37,7 @@ TEST(ContactSolver, AddedMassCountsInTheDirectionItIsAddedIn) {
   const InverseMass inverse = inverse_of(mass_of(10.0, kInertia, Vec3(3.0, 6.0, 15.0)));
   const BodyContact contact = under_a_ball(0.0, 0.5);
   const auto solution =
-      solve_contacts(std::span(&contact, 1), inverse, {Vec3(1.0, -2.0, 0.5)}, kDt_s);
+      solve_contacts(std::span(&contact, 1), inverse, {Vec3(1.0, -2.0, 0.5)}, kDt_s, solver_memory);
   EXPECT_NEAR(solution.impulses[0].normal_n_s, 1.5 * 16.0 * 2.0, 1e-12);
   EXPECT_NEAR(solution.velocity.linear.x, 1.0, 1e-15);
   EXPECT_NEAR(solution.velocity.linear.z, 0.5, 1e-15);
@@ -46,7 +48,7 @@ TEST(ContactSolver, ObliqueNormalsMeetTheFullMassMatrix) {
   const InverseMass inverse = inverse_of(mass_of(10.0, kInertia, Vec3(3.0, 6.0, 15.0)));
   const Vec3 n = glm::normalize(Vec3(1.0, 2.0, -0.5)), v(-1.0, -2.0, 0.7);
   const BodyContact contact{-kRadius_m * n, n, 0.0, 0.0, 0.4};
-  const auto solution = solve_contacts(std::span(&contact, 1), inverse, {v}, kDt_s);
+  const auto solution = solve_contacts(std::span(&contact, 1), inverse, {v}, kDt_s, solver_memory);
   const double mobility = n.x * n.x / 13.0 + n.y * n.y / 16.0 + n.z * n.z / 25.0;
   EXPECT_NEAR(solution.impulses[0].normal_n_s, -1.4 * glm::dot(n, v) / mobility, 1e-11);
 }
@@ -56,8 +58,8 @@ TEST(ContactSolver, ASlidingBallLosesMuGAndSpinsUpAsTheTextbookSays) {
   const InverseMass inverse = inverse_of(mass_of(10.0, kInertia));
   constexpr double kMu = 0.2, kG = 9.82;
   const BodyContact contact = under_a_ball(kMu, 0.0);
-  const auto solution =
-      solve_contacts(std::span(&contact, 1), inverse, {Vec3(3.0, -kG * kDt_s, 0.0)}, kDt_s);
+  const auto solution = solve_contacts(std::span(&contact, 1), inverse,
+                                       {Vec3(3.0, -kG * kDt_s, 0.0)}, kDt_s, solver_memory);
   EXPECT_NEAR(solution.velocity.linear.x, 3.0 - kMu * kG * kDt_s, 1e-12);
   EXPECT_NEAR(solution.velocity.angular.z, -kMu * 10.0 * kG * kRadius_m / 0.09 * kDt_s, 1e-12);
   EXPECT_NEAR(solution.velocity.linear.y, 0.0, 1e-13);
@@ -66,8 +68,8 @@ TEST(ContactSolver, ASlidingBallLosesMuGAndSpinsUpAsTheTextbookSays) {
 TEST(ContactSolver, FrictionStopsAndNeverTurnsRound) {
   const InverseMass inverse = inverse_of(mass_of(10.0, Vec3(1e9)));
   const BodyContact contact = under_a_ball(5.0, 0.0);
-  const auto solution =
-      solve_contacts(std::span(&contact, 1), inverse, {Vec3(0.01, -0.5, 0.02)}, kDt_s);
+  const auto solution = solve_contacts(std::span(&contact, 1), inverse, {Vec3(0.01, -0.5, 0.02)},
+                                       kDt_s, solver_memory);
   EXPECT_LT(glm::length(solution.velocity.linear), 1e-9);
 }
 
@@ -76,7 +78,7 @@ TEST(ContactSolver, SlidingFrictionOpposesTheSlipAtTheConesEdge) {
   const InverseMass inverse = inverse_of(mass_of(10.0, Vec3(1e9), Vec3(0.0, 5.0, 40.0)));
   const BodyContact contact = under_a_ball(0.3, 0.0);
   const auto solution =
-      solve_contacts(std::span(&contact, 1), inverse, {Vec3(2.0, -0.1, 1.0)}, kDt_s);
+      solve_contacts(std::span(&contact, 1), inverse, {Vec3(2.0, -0.1, 1.0)}, kDt_s, solver_memory);
   const Vec3 slip(solution.velocity.linear.x, 0.0, solution.velocity.linear.z);
   const Vec3 friction = solution.impulses[0].friction_n_s;
   EXPECT_NEAR(glm::length(friction), 0.3 * solution.impulses[0].normal_n_s, 1e-12);
@@ -87,9 +89,11 @@ TEST(ContactSolver, AContactAheadStopsTheBodyJustThere) {
   const InverseMass inverse = inverse_of(mass_of(10.0, kInertia));
   BodyContact contact = under_a_ball(0.0, 0.0);
   contact.gap_m = 0.002;
-  const auto fast = solve_contacts(std::span(&contact, 1), inverse, {Vec3(0.0, -2.0, 0.0)}, kDt_s);
+  const auto fast =
+      solve_contacts(std::span(&contact, 1), inverse, {Vec3(0.0, -2.0, 0.0)}, kDt_s, solver_memory);
   EXPECT_NEAR(fast.velocity.linear.y * kDt_s, -0.002, 1e-15);
-  const auto slow = solve_contacts(std::span(&contact, 1), inverse, {Vec3(0.0, -0.4, 0.0)}, kDt_s);
+  const auto slow =
+      solve_contacts(std::span(&contact, 1), inverse, {Vec3(0.0, -0.4, 0.0)}, kDt_s, solver_memory);
   EXPECT_EQ(slow.velocity.linear.y, -0.4);
   EXPECT_FALSE(slow.acted());
 }
@@ -98,12 +102,14 @@ TEST(ContactSolver, DepthIsUndoneByAPushThatCarriesNoEnergy) {
   const InverseMass inverse = inverse_of(mass_of(10.0, kInertia));
   BodyContact contact = under_a_ball(0.0, 0.0);
   contact.gap_m = -0.01;
-  const auto solution = solve_contacts(std::span(&contact, 1), inverse, {}, kDt_s);
+  const auto solution = solve_contacts(std::span(&contact, 1), inverse, {}, kDt_s, solver_memory);
   EXPECT_EQ(solution.velocity.linear, Vec3(0.0));
   EXPECT_GT(solution.push.linear.y, 0.1);
   EXPECT_LE(solution.push.linear.y * kDt_s, 0.01);
   contact.gap_m = -5.0;
-  EXPECT_NEAR(solve_contacts(std::span(&contact, 1), inverse, {}, kDt_s).push.linear.y, 2.0, 1e-9);
+  EXPECT_NEAR(
+      solve_contacts(std::span(&contact, 1), inverse, {}, kDt_s, solver_memory).push.linear.y, 2.0,
+      1e-9);
 }
 
 // A random symmetric positive definite matrix with the spread of masses that is asked for.
@@ -137,7 +143,7 @@ TEST(ContactSolver, NeverAddsEnergyNorApproachWhateverTheMassAndTheContacts) {
     }
     const Twist free{Vec3(uniform(900), uniform(901) - 1.0, uniform(902)),
                      Vec3(uniform(903), uniform(904), uniform(905))};
-    const auto solution = solve_contacts(contacts, inverse_of(mass), free, kDt_s);
+    const auto solution = solve_contacts(contacts, inverse_of(mass), free, kDt_s, solver_memory);
     EXPECT_LE(kinetic_energy(mass, solution.velocity),
               kinetic_energy(mass, free) * (1.0 + 1e-9) + 1e-12)
         << seed;
@@ -161,8 +167,8 @@ TEST(ContactSolver, MassesOfOneToAThousandDoNotSinkIn) {
   for (int i = 0; i < 4; ++i)
     contacts.push_back(
         {Vec3(i & 1 ? 0.2 : -0.2, -0.1, i & 2 ? 0.3 : -0.3), Vec3(0.0, 1.0, 0.0), 0.0, 0.5, 0.0});
-  const auto solution =
-      solve_contacts(contacts, inverse, {Vec3(0.1, -1.0, 0.05), Vec3(0.1, 0.2, -0.1)}, kDt_s);
+  const auto solution = solve_contacts(
+      contacts, inverse, {Vec3(0.1, -1.0, 0.05), Vec3(0.1, 0.2, -0.1)}, kDt_s, solver_memory);
   for (const BodyContact& contact : contacts) {
     const Vec3 at =
         solution.velocity.linear + glm::cross(solution.velocity.angular, contact.point_m);

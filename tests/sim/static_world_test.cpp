@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/random.hpp"
+#include "engine/sim/contact_memory.hpp"
 #include "engine/sim/triangle_mesh.hpp"
 #include "tests/sim/bodies.hpp"
 #include "tests/sim/spring.hpp"
@@ -28,9 +29,9 @@ BodyShape ball_shape(double radius_m) {
 }
 std::vector<Contact> contacts_of(const StaticWorld& world, const BodyShape& shape, const Pose& pose,
                                  double margin_m = 0.02) {
-  std::vector<Contact> contacts;
-  world.contacts(shape, pose, margin_m, contacts);
-  return contacts;
+  ContactMemory memory;
+  world.contacts(shape, pose, margin_m, memory);
+  return memory.contacts;
 }
 Pose at(double x, double y, double z) {
   return {Vec3(x, y, z), Quat(1.0, 0.0, 0.0, 0.0)};
@@ -240,7 +241,8 @@ TEST(StaticWorld, TrianglesWithoutAreaAndRepeatedOnesAreDroppedAndCounted) {
 TEST(StaticWorld, MeshesOfNothingAreInNobodysWay) {
   const StaticWorld empty = world_of({});
   EXPECT_TRUE(contacts_of(empty, box_shape(), at(0.0, 0.0, 0.0)).empty());
-  EXPECT_EQ(empty.sweep(box_shape(), at(0.0, 0.0, 0.0), at(9.0, 0.0, 0.0), 0.001), 1.0);
+  ContactMemory memory;
+  EXPECT_EQ(empty.sweep(box_shape(), at(0.0, 0.0, 0.0), at(9.0, 0.0, 0.0), 0.001, {}, memory), 1.0);
   EXPECT_FALSE(empty.cast(Vec3(0.0), Vec3(0.0, -1.0, 0.0), 100.0).has_value());
   // All triangles without area, and a world without things.
   const Mesh lines{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {0, 1, 2, 0, 0, 0}};

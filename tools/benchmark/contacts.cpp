@@ -2,6 +2,7 @@
 // over a seabed, of a mesh and of a grid of heights, larger and larger or finer and finer.
 #include "engine/core/clock.hpp"
 #include "engine/core/hash.hpp"
+#include "engine/sim/contact_memory.hpp"
 #include "engine/sim/motion.hpp"
 #include "tools/benchmark/groups.hpp"
 
@@ -67,6 +68,7 @@ Sample slide(const sim::StaticWorld& world, double above_m) {
   for (std::size_t i = 0; i < 6; ++i) inverse_mass[7 * i] = i < 3 ? 1.0 / 20.0 : 2.0;
   sim::BodyMotion motion{{{0.1, 0.16 + above_m, 0.1}, Quat(1.0, 0.0, 0.0, 0.0)}, {}};
   motion.velocity.linear = Vec3(0.2, 0.0, 0.1);
+  sim::ContactMemory memory;
   TimeNs spent = 0;
   int touched = 0;
   for (int i = 0; i < kSlides; ++i) {
@@ -77,7 +79,7 @@ Sample slide(const sim::StaticWorld& world, double above_m) {
     free.world_from_body = sim::moved(before, free.velocity, kSlide_s);
     sim::MotionReport report;
     const TimeNs begin = now_ns();
-    motion = sim::move_body(world, shape, inverse_mass, before, free, kSlide_s, &report);
+    motion = sim::move_body(world, shape, inverse_mass, before, free, kSlide_s, memory, &report);
     spent += now_ns() - begin;
     touched += report.touched ? 1 : 0;
   }

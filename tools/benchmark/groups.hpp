@@ -18,6 +18,7 @@ inline constexpr std::string_view kGroups[] = {
 inline constexpr std::size_t kGroupsWithoutDevice = 3;
 
 Status bench_physics(Suite& suite);                             // vehicles, hand-off of states
+Status bench_physics_fleet(Suite& suite);                       // a scene of 1000 vehicles
 Status bench_contacts(Suite& suite);                            // contacts against triangles
 Status bench_diver(Suite& suite);                               // a swimming diver
 Status bench_sonar_binning(Suite& suite, gpu::Device& device);  // the gather against the volume

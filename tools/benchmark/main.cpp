@@ -35,6 +35,7 @@ Status check_filter(const Suite& suite) {
 Status run_without_device(Suite& suite) {
   if (suite.options().once) return {};
   NERITIC_TRY_STATUS(bench_physics(suite));
+  NERITIC_TRY_STATUS(bench_physics_fleet(suite));
   NERITIC_TRY_STATUS(bench_diver(suite));
   return bench_contacts(suite);
 }

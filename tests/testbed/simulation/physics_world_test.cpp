@@ -310,8 +310,9 @@ TEST(StaticScene, ATerrainIsSolidBelowAsItIsDrawn) {
     // Three metres down: inside, but under a mesh, which it is where its cells are not square.
     sim::BodyShape ball;
     ball.add_sphere(Vec3(0.0), 0.1);
-    std::vector<sim::Contact> contacts;
-    world->contacts(ball, {{5.0, -22.0, 1.0}, Quat(1, 0, 0, 0)}, 0.01, contacts);
+    sim::ContactMemory memory;
+    const auto contacts =
+        world->contacts(ball, {{5.0, -22.0, 1.0}, Quat(1, 0, 0, 0)}, 0.01, memory);
     const bool square = std::string_view(scale) != "scale = [2, 3, 1]\n";
     ASSERT_EQ(contacts.size(), square ? 1u : 0u) << scale;
     EXPECT_EQ(square, !contacts.empty() && contacts[0].inside) << scale;

@@ -28,7 +28,7 @@ sim::BodyShape shape_of(const std::string& outline, const std::string& vehicle) 
   EXPECT_TRUE(scene.ok()) << scene.error().message;
   const auto world = PhysicsWorld::create(*scene);
   EXPECT_TRUE(world.ok()) << world.error().message;
-  return (*world)->vehicles()[0].solid.shape;
+  return (*world)->vehicles()[0].kind.solid.shape;
 }
 
 // The farthest that the shape reaches along a direction of model axes.
@@ -108,7 +108,7 @@ TEST(VehicleShape, TheHullOfWhatIsDrawnHoldsIt) {
 // The shipped outline is the drawn vehicle's: as long, wide and high but for cables and lamps.
 TEST(VehicleShape, TheBlueRovsOutlineIsThatOfItsModel) {
   const TestDive dive = dive_of(mission_scene());
-  const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
+  const sim::BodyShape& shape = dive.world->vehicles()[0].kind.solid.shape;
   ASSERT_EQ(shape.parts().size(), 5u);
   EXPECT_NEAR(reach_along(shape, {1, 0, 0}), 0.2875, 1e-6);
   EXPECT_NEAR(reach_along(shape, {0, 1, 0}), 0.128, 1e-6);

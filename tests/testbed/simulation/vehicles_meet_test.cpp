@@ -9,8 +9,8 @@ double depth_between(const TestDive& dive) {
   double deepest_m = 0.0;
   const auto& vehicles = dive.world->vehicles();
   const Pose a_from_b = inverse(dive.pose(0)) * dive.pose(1);
-  for (const sim::ConvexPart& pa : vehicles[0].solid.shape.parts())
-    for (const sim::ConvexPart& pb : vehicles[1].solid.shape.parts()) {
+  for (const sim::ConvexPart& pa : vehicles[0].kind.solid.shape.parts())
+    for (const sim::ConvexPart& pb : vehicles[1].kind.solid.shape.parts()) {
       std::vector<Vec3> points_b;
       for (const Vec3& p : pb.core_m) points_b.push_back(a_from_b * p);
       const auto found = sim::convex_distance(pa.core_m, points_b);

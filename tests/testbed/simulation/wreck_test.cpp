@@ -100,7 +100,7 @@ const Oracle& wreck_oracle() {
 TEST(WreckMission, AllWaypointsAreReachedAndNothingIsTouched) {
   TestDive dive = dive_of(mission_scene());
   EXPECT_GT(wreck_oracle().inside_box({{0.0, -15.0, 0.0}, Quat(1, 0, 0, 0)}, Vec3(2.0)), 0u);
-  const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
+  const sim::BodyShape& shape = dive.world->vehicles()[0].kind.solid.shape;
   EXPECT_GT(shape.parts().size(), 1u);
   dive.run(230.0, [&] {
     if (dive.simulation->newest().step % 24 == 0) {
@@ -162,7 +162,7 @@ TEST_P(WreckRamming, NobodyGetsIntoTheWreck) {
   inputs.piloted = 1;
   inputs.pilot = ram.thrust;
   pilot(dive, 0, inputs);
-  const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
+  const sim::BodyShape& shape = dive.world->vehicles()[0].kind.solid.shape;
   dive.run(60.0, [&] {
     if (dive.simulation->newest().step % 12 == 0) {
       ASSERT_EQ(wreck_oracle().inside(shape, dive.pose(), 0.006), 0u) << dive.time_s();
@@ -182,7 +182,7 @@ TEST(WreckMission, NoCurrentPushesItIntoTheWreck) {
   scene::Object& rov = *std::ranges::find(scene.objects, "rov", &scene::Object::name);
   rov.mount.pose = {{6.0, -15.5, 6.0}, from_yaw_pitch_roll(radians(20.0), 0.0, 0.0)};
   TestDive dive = dive_of(std::move(scene));
-  const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
+  const sim::BodyShape& shape = dive.world->vehicles()[0].kind.solid.shape;
   dive.run(20.0, [&] {
     ASSERT_LT(dive.speed_m_s(), 6.0);
     if (dive.simulation->newest().step % 12 == 0) {
@@ -214,7 +214,7 @@ TEST(WreckMission, DroppedOnSandItComesToRest) {
   EXPECT_LT(farthest_m, 1e-3);
   EXPECT_LT(dive.vehicle().contact.deepest_m, 0.005);
   const Oracle sand(dive.scene, "seabed");
-  const sim::BodyShape& shape = dive.world->vehicles()[0].solid.shape;
+  const sim::BodyShape& shape = dive.world->vehicles()[0].kind.solid.shape;
   EXPECT_EQ(sand.inside(shape, dive.pose(), 0.006), 0u);
   EXPECT_GT(sand.inside(shape, dive.pose(), -0.006), 0u);
 }

@@ -1,0 +1,52 @@
+// What vehicles of one file and one model share: parameters, allocation, shape. Each is read and
+// made once, so that a thousand vehicles of one kind load as fast as one and lie in the caches
+// together. Built with the world, then only read; any thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+
+#include "engine/scene/scene.hpp"
+#include "rov/allocation.hpp"
+#include "rov/vehicle_file.hpp"
+#include "testbed/simulation/body_step.hpp"
+
+namespace neritic::testbed {
+
+// Of a vehicle file.
+struct VehicleModel {
+  rov::VehicleFile file;
+  rov::Vehicle vehicle;
+  // Hash of the file's bytes, and of what its thrust table makes of commands.
+  std::uint64_t hash = 0;
+};
+
+struct VehicleKind {
+  const VehicleModel& model;
+  rov::Allocator allocator;  // without the thrusters that have failed at the start
+  SolidBody solid;
+  double top_m = 0.0, bottom_m = 0.0;  // of the shape, above the origin
+};
+
+class VehicleKinds {
+ public:
+  // The kind of a vehicle of the scene whose steps take step_s: one object for all of a kind, valid
+  // as long as this. Always the same scene, step and method. Errors in one line.
+  Result<const VehicleKind*> of(const scene::Scene& scene, const scene::Object& object,
+                                double step_s, const StepMethod& method);
+
+ private:
+  Result<const VehicleModel*> model_of(const scene::Scene& scene, const scene::Object& object,
+                                       double step_s, const StepMethod& method);
+
+  // File, failed thrusters, drawn model, scale, collision.
+  using Key = std::tuple<std::string, std::uint64_t, int, std::array<double, 3>, scene::Collision>;
+  std::map<std::string, std::unique_ptr<const VehicleModel>> models_;
+  std::map<Key, std::unique_ptr<const VehicleKind>> kinds_;
+};
+
+}  // namespace neritic::testbed

@@ -1,0 +1,120 @@
+// What drives a vehicle in a step: its authorities, thruster commands and the water around it
+// (physics_world.hpp).
+#include <algorithm>
+#include <cmath>
+
+#include "rov/frames.hpp"
+#include "rov/thrust_priority.hpp"
+#include "testbed/simulation/physics_world.hpp"
+#include "testbed/simulation/surface.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+Authority authority_of(const VehicleInputs& inputs, const VehicleState& state, VehicleGroup group) {
+  return acting(inputs.of(group), state.groups[static_cast<std::size_t>(group)].phase);
+}
+
+std::uint64_t failed_thrusters(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
+                               const VehicleState& state) {
+  switch (authority_of(inputs, state, VehicleGroup::kFault)) {
+    case Authority::kLive:
+      return inputs.fault.failed;
+    case Authority::kNobody:
+      return 0;
+    default:
+      return vehicle.failed_thrusters;
+  }
+}
+
+}  // namespace
+
+bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
+  if (step == 0) return true;
+  const double periods_a_step = step_s_ / vehicles_[vehicle].file.gains.period_s;
+  const auto periods = [&](std::uint64_t steps) {
+    return std::floor(static_cast<double>(steps) * periods_a_step + 1e-9);
+  };
+  return periods(step) != periods(step - 1);
+}
+
+// New commands for the thrusters: of a pilot's wrench, else of a setpoint from outside, else of the
+// mission. False where the commands are no numbers: the last ones hold.
+bool PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs,
+                         double time_s, VehicleState& state) const {
+  if (!sim::all_finite(inputs)) return false;
+  const PhysicsVehicle& vehicle = vehicles_[index];
+  const Authority wrench_by = authority_of(inputs, state, VehicleGroup::kWrench);
+  const Authority setpoint_by = authority_of(inputs, state, VehicleGroup::kSetpoint);
+  const bool piloted = wrench_by == Authority::kLive;
+  const bool given = setpoint_by == Authority::kLive;
+  const bool rests = wrench_by == Authority::kNobody || setpoint_by == Authority::kNobody;
+  if (!piloted && !given && (rests || !vehicle.mission)) {
+    state.command_n = {};
+    return true;
+  }
+  rov::Setpoint setpoint =
+      piloted ? piloted_setpoint(inputs.wrench.wrench, state.body, state.mission)
+      : given ? given_setpoint(inputs.setpoint, state.mission)
+              : vehicle.mission->update(all, state.body, time_s, state.mission);
+  if (piloted) setpoint.pilot = inputs.wrench.wrench;
+  rov::ControlState control{state.integral};
+  const auto commands_by = [&](const rov::Allocator& allocator) {
+    return (piloted ? rov::piloted_inputs : rov::level_inputs)(
+        vehicle.vehicle, allocator, vehicle.file.gains, setpoint, state.body, control);
+  };
+  const std::uint64_t failed = failed_thrusters(vehicle, inputs, state);
+  rov::Inputs commands = failed == vehicle.failed_thrusters
+                             ? commands_by(vehicle.kind.allocator)
+                             : commands_by(rov::Allocator(vehicle.vehicle, failed));
+  rov::drive(vehicle.file, commands);
+  if (!sim::all_finite(commands)) return false;
+  state.command_n = commands.thruster_n;
+  state.integral = control.integral;
+  return true;
+}
+
+Vec3 PhysicsWorld::current_ned_m_s(const Vec3& position_ned_m, double time_s) const {
+  if (!current_) return Vec3(0.0);
+  return rov::ned_from_world(
+      sim::sample(*current_, rov::world_from_ned(position_ned_m), time_s).velocity_m_s);
+}
+
+// The current where the thing will be half way through the step, how that changes on its way, and
+// the water's own acceleration: to second order in the step. A grid may jump within the thing's own
+// length: that is no acceleration of all the water around.
+diver::WaterFlow PhysicsWorld::water_along(const Vec3& position_ned_m, const Vec3& velocity_ned_m_s,
+                                           double time_s, double dt_s) const {
+  if (!current_) return {};
+  const Vec3 velocity_m_s = rov::world_from_ned(velocity_ned_m_s);
+  const sim::CurrentSample water =
+      sim::sample(*current_, rov::world_from_ned(position_ned_m) + 0.5 * dt_s * velocity_m_s,
+                  time_s + 0.5 * dt_s);
+  const auto change_along = [&](const Vec3& way_m_s) {
+    static_assert(rov::kMostWaterAcceleration_m_s2 == diver::kMostWaterAcceleration_m_s2);
+    constexpr double kMost = rov::kMostWaterAcceleration_m_s2;
+    return rov::ned_from_world(
+        glm::clamp(water.rate_m_s2 + water.gradient_per_s * way_m_s, Vec3(-kMost), Vec3(kMost)));
+  };
+  const Vec3 change = change_along(velocity_m_s);
+  return {rov::ned_from_world(water.velocity_m_s) - 0.5 * dt_s * change, change,
+          change_along(water.velocity_m_s)};
+}
+
+// What pushes it in the step to come.
+rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
+                                    const VehicleState& state, double time_s, double dt_s) const {
+  rov::Inputs acting;
+  acting.thruster_n = state.command_n;
+  const diver::WaterFlow water = water_along(
+      state.body.position_ned_m, state.body.attitude * state.body.velocity.linear(), time_s, dt_s);
+  acting.current_ned_m_s = water.current_m_s;
+  acting.current_change_ned_m_s2 = water.change_m_s2;
+  acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
+  acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
+  acting.failed_thrusters = failed_thrusters(vehicle, inputs, state);
+  apply_surface(vehicle.vehicle, vehicle.kind.top_m, vehicle.kind.bottom_m, state.body, acting);
+  return acting;
+}
+
+}  // namespace neritic::testbed
