@@ -9,12 +9,17 @@
 namespace neritic::diver {
 
 struct FlutterKick {
-  double amplitude_m = 0.25;   // of the tips, half of the whole beat
+  // At the tips, half of the whole beat. Amplitude and exponent are those of the least power with
+  // full gear at 0.6 m/s: 0.18 and 0.32 m, 1.0 and 1.6 take more
+  // (Swimmer.NoOtherKickTakesLessAtThatSpeed).
+  double amplitude_m = 0.25;
   double wavelength_m = 2.33;  // the wave runs at 2.33 m times the frequency (Zamparo et al. 2002)
   double exponent = 1.25;
-  // Knees bend one way only: this much on average. Hips and ankles make up for it.
+  // Knees bend one way only: this much on average. Hips and ankles make up for it. Measured with
+  // full gear at 0.5 m/s: 109 W; with 8 degrees 130 W, with 24 degrees 111 W.
   double knee_rad = radians(16.0);
-  // Toes are pointed no farther than this from square: in line with the shin.
+  // Toes are pointed no farther than this from square: in line with the shin. Measured likewise: 70
+  // degrees take 131 W, 50 degrees (an average ankle: AAOS 1965, Joint Motion) 192 W.
   double pointed_rad = radians(90.0);
   // Both legs out of the line, to the belly's side: steers in pitch.
   double lift_rad = 0.0;

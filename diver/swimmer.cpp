@@ -3,81 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diver/swimmer_constants.hpp"
+
 namespace neritic::diver {
 namespace {
 
-// What a kick gives for each beat a second with full gear, m; the rest is learned while swimming.
-constexpr double kMetresABeat = 0.52;
-constexpr double kMostLift_rad = radians(18.0), kMostTwist_rad = radians(14.0);
-constexpr double kMostLeftMore = 0.5;
-constexpr double kMostBend_rad = radians(18.0), kMostAside_rad = radians(25.0);
-// Nobody swims for minutes with more: a person's limit, not the water's.
-constexpr double kMostKick_w = 300.0;
-constexpr double kMostPitch_rad = radians(30.0);
-constexpr double kMostSink_m_s = 0.15;  // 9 m a minute
-// Who is to change depth by so much holds the jacket neutral on the way, until so near; and begins
-// with that share of the rate, for which pitch and jacket have seconds to come. Up it goes more
-// slowly than the 9 m a minute that is taught (30 feet: NOAA Diving Manual).
-constexpr double kMostRise_m_s = 0.12, kChangeBegin = 0.2, kChangeLag_s = 12.0;
-constexpr double kWellOff_m = 1.3, kHardlyOff_m = 0.2;
-// The pitch holds that rate so much more firmly than a depth. Sharp turns would bring the head up.
-constexpr double kChangeFirm = 2.0, kChangeTurn_rad = 0.2;
-constexpr double kMostBreathBias_m3 = 0.6e-3;
-// So fast through the water legs steer; slower, posture does.
-constexpr double kWay_m_s = 0.25;
-// To that side at most who turns by leaning.
-constexpr double kMostBank_rad = radians(20.0);
-// A place farther round than this lies behind.
-constexpr double kBehind_rad = radians(140.0);
-// Who hovers bends the back as far as this in each of two joints: that shifts the jacket's gas,
-// which else runs to the higher end and turns the diver on his head.
-constexpr double kHoverBend = 1.0;  // of the legs' lift; 0.25 while swimming
-// And the arms, to the front: their weight lowers the head.
-constexpr double kHoverArms = 4.0;  // of the legs' lift towards the belly
-// Where that is hardly enough, shins beat in turn, so far and so often: fins that move hold on to
-// the water, which slows tilting, and push a little.
-constexpr double kTread_rad = radians(5.0), kTread_hz = 1.0;
-// Up to that share of what steering may ask for, posture alone holds the pitch.
-constexpr double kTreads = 0.3;
-// Who hovers has no fins to hold the depth: breath answers so much more.
-constexpr double kHoverBreath = 1.5;
-// Who hovers swims back to the place from so far away, or righting from such a tilt, and rests
-// again from so near.
-constexpr double kAdrift_m = 3.0, kNear_m = 0.7, kTilted_rad = radians(20.0);
-// Steeper than this a kick would carry him up or down: who hovers stoops, so far in each of two
-// joints of the back, the legs behind him, until he is less so.
-constexpr double kSteep_rad = radians(25.0), kStoop_rad = radians(17.0), kStoopLag_s = 0.7;
-// More than kStill_m_s is a current: aims so far upstream of the place.
-constexpr double kStill_m_s = 0.06, kAimAhead_m = 4.0;
-// So fast in still water, and so much faster for each metre off the place. Back to the place no
-// faster than who keeps beside can follow. Who rights himself needs way.
-struct WayBack {
-  double speed_m_s, each_metre_1_s, most_m_s;
-};
-constexpr WayBack kBack{0.15, 0.01, 0.5}, kRighting{0.35, 0.15, 0.8};
-constexpr std::uint64_t kGoesBack = 1, kRightsHimself = 2;
-// Nobody moves a joint from one side to the other within less, nor breathes otherwise.
-constexpr double kSteeringLag_s = 0.4, kBreathLag_s = 0.7;
-// Buttons are pressed for a moment, after so much want of breath, and then waited for.
-constexpr double kPress_s = 0.25, kWait_s = 3.0, kSure_l_s = 4.0;
-// So much too much or too little lift is most of what breath can hold: a button is pressed without
-// waiting for the want to add up.
-constexpr double kBreathHolds_l = 0.5;
-// Who rises lets gas out where so much too much lifts, down to so much, and in where so much is
-// missing; who sinks the other way round. Breath holds the rest: so much want of it is remembered.
-constexpr double kUsualAt_l = 0.2, kUsualTo_l = 0.0, kUsualWait_s = 2.0;
-constexpr double kUnusualAt_l = -0.8, kUnusualTo_l = -0.5;
-constexpr double kChangeSum_l_s = 2.0;
-// Jackets that hold fewer moles are empty; tanks below that pressure fill none.
-constexpr double kEmptyJacket_mol = 1e-3, kFillsJacket_pa = 5e5;
-// Gas leaves at the higher end of the trunk: the head goes up for that, at most so long.
-constexpr double kVent_s = 6.0, kVentPress_s = 0.08, kVentPitch_rad = radians(14.0);
+using namespace swimming;
 
 void follow(double& value, double wanted, double lag_s, double dt_s) {
   value += (wanted - value) * -std::expm1(-dt_s / lag_s);
 }
 
-// The value without what of it beats at that frequency. Trapezoidal state-variable filter
+// The value without its part that beats at that frequency. Trapezoidal state-variable filter
 // (Zavalishin 2012, "The Art of VA Filter Design", 4.5): steady values pass whole.
 double between_beats(BeatNotch& notch, double value, double hz, double dt_s) {
   constexpr double kDamping = 0.5;  // wide: beats change their pace
@@ -108,8 +45,8 @@ void pace(const SwimmerSettings& settings, double speed_m_s, double wanted_m_s, 
       std::fmod(swimmer.phase_rad + 2.0 * kPi * swimmer.frequency_hz * dt_s, 2.0 * kPi);
 }
 
-// Litres by which the diver floats in the middle of a quiet breath: what jacket and suit lift too
-// much. People feel it by what breath and fins have to hold.
+// Litres of excess lift of jacket and suit, with the lungs in the middle of a quiet breath. People
+// feel it by the breath and the fin strokes that hold them in place.
 double lifted_l(const Body& body, const HumanState& state) {
   const double weight_m3 = net_weight_n(body, state) / (body.water_kg_m3 * kGravity_m_s2);
   return 1e3 * (middle_of_quiet_breath(body) - state.life.lungs.volume_m3 - weight_m3);
@@ -119,14 +56,14 @@ bool can_fill(const Body& body, const HumanState& state) {
   return tank_pressure(body, state.life.tanks, 0) > kFillsJacket_pa;
 }
 
-// What jacket and suit hold grows on the way up and shrinks on the way down, the faster the
-// shallower: who changes depth lets gas out, or in, as it does, so that fins alone make the rate. A
-// button is held until enough is out or in, or let go at kVent_s.
+// The gas in jacket and suit expands on the way up and shrinks on the way down, most near the
+// surface. A diver who changes depth lets gas out, or in, at the same pace, so that the fins alone
+// make the rate. A button is held until the lift is right, at most for kVent_s.
 void hold_neutral(const Body& body, const HumanState& state, bool at_valve, SwimmerState& swimmer,
                   HumanInputs& inputs) {
   swimmer.lift_sum = std::clamp(swimmer.lift_sum, -kChangeSum_l_s, kChangeSum_l_s);
   const bool rises = swimmer.rises > 0.0;
-  // What the way brings: too much lift going up, too little going down.
+  // The change of lift that the way causes: an excess going up, a lack going down.
   const double brought_l = rises ? lifted_l(body, state) : -lifted_l(body, state);
   const bool goes_on = swimmer.button_s < 0.0;
   const bool usual =
@@ -146,7 +83,7 @@ void hold_neutral(const Body& body, const HumanState& state, bool at_valve, Swim
 void balance(const Body& body, double sink_too_much_m_s, const HumanState& state,
              SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
   const bool at_valve = gas_at_dump(body, state.life.jacket_moles, thorax_place(body, state));
-  // Who has to point the nose down to stay down is too light.
+  // A diver who has to point the nose down to stay down is too light.
   const double rests = swimmer.rests;
   const double usual_l = 1.6 * sink_too_much_m_s + 0.1 * swimmer.climb_sum;
   const double want_l = (1.0 + kHoverBreath * rests) * usual_l;
@@ -186,8 +123,8 @@ double wanted_heading(const SwimGoal& goal, const HumanState& state, double head
   return std::atan2(way.y, way.x) - crab;
 }
 
-// The goal of who hovers: rest, and the way back once drifted off, or tilted more than a posture
-// rights: fins right a body that has way. In a current the head stays into it.
+// The goal of a hovering diver: to rest; to swim back once drifted off, or once tilted by more than
+// posture corrects, since fins right a body that has way. In a current the head stays into it.
 SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimmer) {
   const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
   const Vec3& drift = state.held.current_ned_m_s;
@@ -216,8 +153,8 @@ SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimme
   return goal;
 }
 
-// Metres a second down to that depth. A place well above or below is come to at a rate of its own,
-// in which the swimmer comes slowly.
+// Metres a second down to that depth. A place well above or below is approached at a rate that
+// grows slowly.
 double wanted_sink(double deeper_m, bool swims, SwimmerState& swimmer, double dt_s) {
   const double to_go_m = std::copysign(1.0, -swimmer.rises) * deeper_m;
   if (swimmer.rises != 0.0 && to_go_m < kHardlyOff_m) {
@@ -254,14 +191,14 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   const double pitch_rate = velocity[4];
   const double yaw_rate = velocity[5];
   const double yaw = std::clamp(1.5 * std::clamp(turn, -0.5, 0.5) - 2.0 * yaw_rate, -1.0, 1.0);
-  // Who has little way and holds his nose up turns by leaning: what holds it up leans along.
+  // A diver with little way and the nose up turns by leaning: the legs that lift it lean along.
   const double leans =
       slow(swimmer) * std::clamp(-2.0 * swimmer.lift_rad / kMostLift_rad, 0.0, 1.0);
   swimmer.roll_sum = rests * std::clamp(swimmer.roll_sum + roll * dt_s, -1.0, 1.0);
   const double tilt = std::clamp(
       2.0 * (roll - leans * yaw * kMostBank_rad) + 1.0 * roll_rate + 0.5 * swimmer.roll_sum, -1.0,
       1.0);
-  // Who rests holds the roll by bending to a side: trunk and legs are no longer under each other.
+  // A resting diver corrects the roll by bending to a side, which moves trunk and legs apart.
   const double aside = tilt * std::max(leans, slow(swimmer));
   const double turns = yaw * (1.0 - leans);
   const double bend = turns + aside * (1.0 - std::abs(turns));
@@ -358,7 +295,7 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
   const double upright = (std::abs(attitude.pitch_rad) - kTilted_rad) / (kSteep_rad - kTilted_rad);
   const double stoops = hovers && attitude.pitch_rad > 0.0 ? std::clamp(upright, 0.0, 1.0) : 0.0;
   follow(swimmer.stoop_rad, stoops * kStoop_rad, kStoopLag_s, dt_s);
-  // Of who stands there is no roll.
+  // A standing diver has no roll.
   const double roll_rad = attitude.roll_rad * std::cos(attitude.pitch_rad);
   steer(turn, pitch - attitude.pitch_rad, roll_rad, state.root.velocity, swimmer, dt_s);
   inputs.joints = posture_for(body, settings, swimmer);

@@ -1,6 +1,6 @@
-// A person who swims to a place: joints for the kick and for steering, breath and buttons for the
-// depth. What stands in for the motion suit and the jacket's buttons where nobody wears them. Plain
-// bytes in, plain bytes out; pure functions, any thread. World north, east, down.
+// A simulated person who swims to a place: joints for the kick and for steering, breath and buttons
+// for the depth. It replaces the motion suit and the jacket's buttons where nobody wears them.
+// Plain bytes in, plain bytes out; pure functions, any thread. World north, east, down.
 #pragma once
 
 #include "diver/flutter_kick.hpp"
@@ -9,15 +9,17 @@
 namespace neritic::diver {
 
 struct SwimGoal {
-  // Well above: is risen to by less than 9 m a minute, in wide turns where it lies straight above;
-  // well below: is sunk to likewise, by 9 m a minute at most.
+  // The swimmer rises to a place well above by less than 9 m a minute, in wide turns if it lies
+  // straight above, and sinks to one well below by about 9 m a minute.
   Vec3 target_ned_m{0.0};
-  // Through the water; 0: hovers there, level, and swims back when a current took the diver away.
+  // Through the water; 0: hovers there, level, and swims back after drifting away.
   double speed_m_s = 0.5;
 };
 
 struct SwimmerSettings {
   FlutterKick kick;
+  // With full gear 0.68 m/s at 231 W (105 W at 1 Hz, diver/README.md; power goes with the cube).
+  // Bare feet reach 1.6 Hz at 0.8 m/s (Zamparo et al. 2006, Eur. J. Appl. Physiol. 96, 459).
   double most_frequency_hz = 1.3;
   double gliding_speed_m_s = 0.05;  // below: legs rest
 };
@@ -38,22 +40,22 @@ struct SwimmerState {
   double speed_sum = 0.0;  // m: too slow so far
   double climb_sum = 0.0;  // m: sunk too much so far
   double pitch_sum = 0.0;  // rad s: too low so far
-  double roll_sum = 0.0;   // rad s: too far to starboard so far, of who rests
-  double lift_sum = 0.0;   // litres times seconds of breath that was wanted
+  double roll_sum = 0.0;   // rad s: too far to starboard so far, while resting
+  double lift_sum = 0.0;   // litres times seconds of breath that was asked for
   double breath_bias_m3 = 0.0;
   double lift_rad = 0.0, twist_rad = 0.0, left_more = 0.0, bend_rad = 0.0;
-  double legs_aside_rad = 0.0;                // of who has little way: to starboard
-  double stoop_rad = 0.0;                     // of who stands and is to hover
-  double tread = 0.0, tread_phase_rad = 0.0;  // of who rests: shins beat, 0 to 1
+  double legs_aside_rad = 0.0;                // with little way: to starboard
+  double stoop_rad = 0.0;                     // while hovering too steeply
+  double tread = 0.0, tread_phase_rad = 0.0;  // while resting: shins beat, 0 to 1
   double turn_side = 0.0;                     // 1: comes round to starboard, -1: to port
-  // What the swimmer feels of roll and rates between the beats.
+  // Roll and its rate without the kick's own rolling.
   BeatNotch roll, roll_rate;
   double rests = 1.0;     // 1: lies still in the water, 0: has way
   double button_s = 0.0;  // since a button was last let go; negative: still to be pressed
-  // To a place well above: the share of its rate that is wanted; negative: sinks to one well below;
-  // 0: neither.
+  // The share of the rate at which the swimmer rises to a place well above; negative: sinks to one
+  // well below; 0: neither.
   double rises = 0.0;
-  // Who is to hover: 1: was adrift and swims back; 2: tilts, and swims to right himself.
+  // While hovering, 1: drifted off and swims back; 2: tilted, and swims to right himself.
   std::uint64_t goes_back = 0;
 
   static void fields(auto&& field, auto& self) {
@@ -88,7 +90,7 @@ struct SwimmerState {
 void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& goal,
           const HumanState& state, SwimmerState& swimmer, double dt_s, HumanInputs& inputs);
 
-// Attitude as people say it, from ned_from_body.
+// Heading, pitch and roll from ned_from_body.
 struct HumanAttitude {
   double heading_rad = 0.0, pitch_rad = 0.0, roll_rad = 0.0;  // of the line from hips to head
 };
