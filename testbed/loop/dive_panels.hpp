@@ -1,4 +1,4 @@
-// What `dive` draws over the picture: compass and depth, facts and timings, the live sonars, the
+// The panels that `dive` draws over the picture: compass and depth, facts and timings, the live sonars, the
 // keys. Dear ImGui calls between Overlay::begin and Overlay::declare. Rendering thread.
 #pragma once
 

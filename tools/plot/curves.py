@@ -4,7 +4,7 @@ import numpy as np
 from style import GREY, RED, area, color, figure, heading, legend, notes, numbers, plain_log, room, title
 
 WIDE, PANEL_PX, HEAD_PX, FOOT_PX, ROW_PX = 1800, 400, 44, 60, 24
-RING_PX, ASIDE_PX = 10, 190
+RING_PX, ASIDE_PX = 10, 215
 
 
 def log_room(values):
@@ -20,7 +20,7 @@ def log_room(values):
 def beside(panel, wide):
     """Whether the names need a column at the right: the title's line does not hold them."""
     letters = 1.25 * len(panel["title"]) + sum(len(series["name"]) + 6 for series in panel["series"])
-    return not panel["bars"] and letters * 5.6 > wide
+    return not panel["bars"] and letters * 6.2 > wide
 
 
 def draw_curves(ax, panel, hues, aside):
