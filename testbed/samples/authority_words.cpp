@@ -27,8 +27,9 @@ std::string trouble_words(const GroupState& state, const std::vector<std::string
     words = fmt::format("{} is silent{}, {} acts", source_name(state.source, sources),
                         times_words(state.losses), name_of(state.then));
   if (state.unheeded == 0) return words;
-  return words + fmt::format("{}{} samples of {} not used, {}", words.empty() ? "" : "; ",
-                             state.unheeded, source_name(state.unheeded_source, sources),
+  return words + fmt::format("{}{} sample{} of {} not used, {}", words.empty() ? "" : "; ",
+                             state.unheeded, state.unheeded == 1 ? "" : "s",
+                             source_name(state.unheeded_source, sources),
                              authority_words(state, sources));
 }
 

@@ -167,15 +167,28 @@ struct CompassReading {
   static void fields(auto&& field, auto& self) { field("heading_rad", self.heading_rad); }
 };
 
+// A step in which a vehicle or a diver touched something: the nearest thing where the step ended.
+enum class CollisionWith : std::uint64_t {
+  kNothing,  // nothing is within 0.05 m any more
+  kSolid,    // an object of the scene that stands still
+  kVehicle,
+  kDiver,
+};
 struct CollisionReading {
-  Vec3 impulse_n_s{0.0};     // on the body, over one step
-  std::uint64_t points = 0;  // in contact
-  double depth_m = 0.0;      // of the deepest, into the other thing
+  CollisionWith with = CollisionWith::kNothing;
+  std::uint64_t other = 0;  // instance label of an object; number of a vehicle or diver
+  Vec3 point_m{0.0};
+  Vec3 normal{0.0};       // unit, from the other thing to this body
+  double depth_m = 0.0;   // of one in the other; 0: they only touch
+  Vec3 impulse_n_s{0.0};  // of all that stands still on the body, over the step; with kSolid only
 
   static void fields(auto&& field, auto& self) {
-    field("impulse_n_s", self.impulse_n_s);
-    field("points", self.points);
+    field("with", self.with);
+    field("other", self.other);
+    field("point_m", self.point_m);
+    field("normal", self.normal);
     field("depth_m", self.depth_m);
+    field("impulse_n_s", self.impulse_n_s);
   }
 };
 

@@ -16,6 +16,7 @@ bool leaves(const Stream& stream) {
     case PayloadKind::kCompass:
     case PayloadKind::kAltimeter:
     case PayloadKind::kUsbl:
+    case PayloadKind::kCollision:
     case PayloadKind::kMotion:
     case PayloadKind::kComputer:
       return true;
@@ -45,6 +46,8 @@ auto with_reading(PayloadKind kind, const rov::SensorReadings& readings, const V
   }
 }
 
+constexpr double kLongAgo_s = -1e9;
+
 TimeNs to_ns(double seconds) {
   return std::llround(seconds * 1e9);
 }
@@ -59,7 +62,7 @@ std::vector<StreamId> OutputSamples::all(const PhysicsWorld& world) {
 }
 
 OutputSamples::OutputSamples(const PhysicsWorld& world, const std::vector<StreamId>& wanted)
-    : world_(world) {
+    : world_(world), collisions_(world) {
   for (const StreamId id : wanted) {
     NERITIC_CHECK(leaves(world.streams()[id]), "stream {} enters", world.streams()[id].name);
     outputs_.push_back({id});
@@ -79,13 +82,23 @@ OutputSamples::Made OutputSamples::made(const Stream& stream,
     return every(std::max(1.0 / kDiverMotion_hz, world_.step_s()), snapshot.step);
   if (stream.kind == PayloadKind::kComputer)
     return every(std::max(diver::kComputerSample_s, world_.step_s()), snapshot.step);
+  if (stream.kind == PayloadKind::kCollision) {
+    const PhysicsState& state = snapshot.state;
+    const ContactState& contact = stream.sort == OwnerSort::kVehicle
+                                      ? state.vehicles()[stream.owner].contact
+                                      : state.humans()[stream.owner].contact;
+    // Whether the step before the first snapshot touched something is not known.
+    return {contact.touched_steps, begun_ ? snapshot.time_s : kLongAgo_s};
+  }
   return with_reading(stream.kind, *world_.readings(snapshot.state, stream.owner),
                       [](const auto& reading) {
                         return Made{reading.count, reading.time_s};
                       });
 }
 
-Payload OutputSamples::payload(const Stream& stream, const PhysicsState& state) const {
+Payload OutputSamples::payload(const Stream& stream, const PhysicsState& state) {
+  if (stream.kind == PayloadKind::kCollision)
+    return collisions_.find(stream.sort, stream.owner, state);
   if (stream.sort == OwnerSort::kDiver) {
     const PhysicsHuman& human = world_.humans()[stream.owner];
     const HumanPhysics& now = state.humans()[stream.owner];

@@ -1,6 +1,7 @@
 // The samples that leave a simulation: readings of vehicle sensors, states and dive computers of
-// divers. Each step's snapshot gives those that are due at it, each at its own rate. Only the
-// streams that are asked for cost anything. The thread that has the snapshots, one at a time.
+// divers, collisions. Each step's snapshot gives those that are due at it, each at its own rate.
+// Only the streams that are asked for cost anything. The thread that has the snapshots, one at a
+// time.
 //
 //   OutputSamples outputs(world, {world.streams().find("rov/imu").value()});
 //   for (const Sample& sample : outputs.of(simulation.newest())) ...   // after each step
@@ -8,12 +9,13 @@
 
 #include <vector>
 
-#include "testbed/simulation/physics_world.hpp"
+#include "testbed/simulation/collisions.hpp"
 
 namespace neritic::testbed {
 
 // A diver's state leaves at this rate, or at that of the steps where it is lower. The dive computer
-// has its own (diver::kComputerSample_s), vehicle sensors that of their files.
+// has its own (diver::kComputerSample_s), vehicle sensors that of their files. A collision leaves
+// with each step in which the body touches something.
 inline constexpr double kDiverMotion_hz = 60.0;
 
 class OutputSamples {
@@ -43,9 +45,10 @@ class OutputSamples {
   };
   Made made(const Stream& stream, const sim::Snapshot<PhysicsState>& snapshot) const;
   Made every(double period_s, std::uint64_t step) const;
-  Payload payload(const Stream& stream, const PhysicsState& state) const;
+  Payload payload(const Stream& stream, const PhysicsState& state);
 
   const PhysicsWorld& world_;
+  CollisionFinder collisions_;
   std::vector<Output> outputs_;
   std::vector<Sample> samples_;
   bool begun_ = false;

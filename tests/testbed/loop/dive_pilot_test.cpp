@@ -96,6 +96,25 @@ TEST_F(DivePilotTest, TheViewRidesOnTheCamerasMountAndTheMissionComesBack) {
   EXPECT_LT(glm::length(physics_->shown().vehicles()[0].body.velocity.linear()), 0.02);
 }
 
+// A window that draws no more sends no keys; another device sends wrenches that nobody asked for.
+TEST_F(DivePilotTest, TheLinesNameTheSourceThatHasTheAuthorityNow) {
+  DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
+  const SourceId other = physics_->inbox().open("joystick").value();
+  const StreamId wrench = physics_->world().streams().find("rov/wrench").value();
+  physics_->inbox().push({{wrench, other, 0, 0, 0}, VehicleWrench{}});
+  physics_->follow(0, time_s_ += 0.1);
+  ASSERT_EQ(pilot.lines().size(), 2u);
+  EXPECT_EQ(pilot.lines()[1], "rov: wrench: 1 sample of joystick not used, autopilot");
+  DiveInput input;
+  input.toggle_pilot = true;
+  fly(pilot, input, 0.2);
+  EXPECT_EQ(pilot.lines()[1], "rov: wrench: 1 sample of joystick not used, live from keyboard");
+  physics_->follow(0, time_s_ += 3.0);
+  EXPECT_EQ(pilot.lines()[1],
+            "rov: wrench: keyboard is silent, autopilot acts; "
+            "1 sample of joystick not used, live from keyboard");
+}
+
 TEST_F(DivePilotTest, WithoutPhysicsNothingIsFlown) {
   DivePilot pilot(nullptr, scene_.cameras[0].mount);
   DiveInput input;

@@ -36,7 +36,7 @@ TEST(SourceWatch, TellsOnceOfASourceThatFallsSilentComesBackAndIsReplaced) {
   EXPECT_THAT(lines, ElementsAre("1.00 s: diver: body: suit is heard again"));
   const auto sources = dive.simulation->inbox().source_names();
   EXPECT_EQ(trouble_words(group(dive, DiverGroup::kButtons), sources),
-            "1 samples of controllers not used, autopilot");
+            "1 sample of controllers not used, autopilot");
   events.say(Event{EventKind::kSetAuthority, static_cast<std::uint64_t>(DiverGroup::kButtons),
                    static_cast<std::uint64_t>(Authority::kLive), buttons.source, 0.5});
   run(0.1);
@@ -46,7 +46,7 @@ TEST(SourceWatch, TellsOnceOfASourceThatFallsSilentComesBackAndIsReplaced) {
   std::vector<std::string> told;
   add_trouble<DiverGroup>("diver", dive.state().humans()[0].groups, sources, told);
   EXPECT_THAT(told, ElementsAre("diver: buttons: controllers was never heard, autopilot acts; "
-                                "1 samples of controllers not used, live from controllers",
+                                "1 sample of controllers not used, live from controllers",
                                 "diver: gas: noise was never heard, autopilot acts"));
 }
 
