@@ -1,5 +1,6 @@
 #include "testbed/loop/dive_pilot.hpp"
 
+#include "engine/core/log.hpp"
 #include "rov/frames.hpp"
 #include "testbed/samples/authority_words.hpp"
 
@@ -28,6 +29,8 @@ VehicleWrench wrench_of(const DiveInput& input) {
 DivePilot::DivePilot(LivePhysics* physics, const scene::Mount& view)
     : physics_(physics), vehicle_from_view_(kChase) {
   if (!physics_) return;
+  watch_.emplace(physics_->world(), physics_->inbox(),
+                 [](const std::string& line) { log_warn("{}", line); });
   if (const auto source = physics_->inbox().open("keyboard"); source.ok()) source_ = *source;
   const auto& vehicles = physics_->world().vehicles();
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
@@ -65,6 +68,7 @@ bool DivePilot::take(const DiveInput& input) {
 
 Status DivePilot::poll(SampleInbox& inbox, double) {
   if (!physics_) return {};
+  NERITIC_TRY_STATUS(watch_->accept(physics_->shown_snapshot(), {}));
   if (flying_ != flew_) hand_over(inbox);
   flew_ = flying_;
   if (flying_) send(inbox, PayloadKind::kWrench, wrenches_, wrench_);

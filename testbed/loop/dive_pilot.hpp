@@ -6,6 +6,7 @@
 
 #include "testbed/loop/dive_input.hpp"
 #include "testbed/motion/live_physics.hpp"
+#include "testbed/record/source_watch.hpp"
 #include "testbed/samples/source.hpp"
 
 namespace neritic::testbed {
@@ -17,7 +18,8 @@ class DivePilot final : public SampleSource {
 
   // Keys of this frame. True while a vehicle is flown: the camera is not then.
   bool take(const DiveInput& input);
-  // Sends what the keys of the newest frame ask for.
+  // Sends what the keys of the newest frame ask for, and logs a line if the authority over any
+  // group of inputs changed.
   Status poll(SampleInbox& inbox, double scene_time_s) override;
   // The riding view; precondition: take() said true.
   Pose world_from_view() const;
@@ -32,8 +34,9 @@ class DivePilot final : public SampleSource {
   LivePhysics* physics_;
   std::size_t vehicle_ = 0;  // the one that the view is on, else the first
   Pose vehicle_from_view_;
-  bool flying_ = false, flew_ = false;       // now, and at the last poll
-  VehicleWrench wrench_;                     // of the newest keys
+  bool flying_ = false, flew_ = false;  // now, and at the last poll
+  VehicleWrench wrench_;                // of the newest keys
+  std::optional<SourceWatch> watch_;
   SourceId source_ = kSimulation;            // the keyboard
   std::uint64_t wrenches_ = 0, events_ = 0;  // samples sent
 };

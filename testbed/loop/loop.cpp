@@ -25,6 +25,7 @@ Status Loop::run() {
   const TimeNs begun_ns = now_ns();
   if (parts_.physics) {
     if (steps_) parts_.physics->observe([this](const auto& step) { steps_->accept(step); });
+    parts_.physics->listen(parts_.sources);
     parts_.physics->start();
   }
   const Status status = run_frames();
@@ -43,14 +44,15 @@ Status Loop::run_frames() {
 
 bool Loop::stopped() {
   interrupted_ = interrupted_ || (parts_.stop.interrupted && parts_.stop.interrupted());
-  return interrupted_ || (steps_ && steps_->failed());
+  return interrupted_ || (steps_ && steps_->failed()) ||
+         (parts_.physics && !parts_.physics->listening().ok());
 }
 
 Status Loop::frame() {
   const FrameTime at = parts_.clock.next(std::nullopt);
   if (!parts_.sensors) {
     parts_.physics->advance();
-    ++frames_;
+    if (parts_.physics->listening().ok()) ++frames_;
     return {};
   }
   return sense(at);
@@ -100,6 +102,7 @@ Status Loop::finish(const Status& status) {
   const auto keep = [&](const Status& next) {
     if (first.ok()) first = next;
   };
+  if (parts_.physics) keep(parts_.physics->listening());
   if (steps_) keep(steps_->finish());
   if (!status.ok() || frames_ == 0) return first;
   for (FrameSink* sink : parts_.frame_sinks) keep(sink->finish());

@@ -33,6 +33,7 @@ struct LoopStop {
 struct LoopParts {
   Clock clock;
   LivePhysics* physics = nullptr;
+  std::vector<SampleSource*> sources;  // polled by the physics
   std::optional<LoopSensors> sensors;
   std::vector<StepSink*> step_sinks;
   std::vector<FrameSink*> frame_sinks;
@@ -55,7 +56,7 @@ class Loop {
   Status frame();
   Status sense(const FrameTime& at);
   void take_due(FrameRequest& request);
-  // Asks whether the user stopped the run, or a sink failed.
+  // Asks whether the user stopped the run, or a source or a sink failed.
   bool stopped();
   Status finish(const Status& status);
 

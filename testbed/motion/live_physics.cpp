@@ -51,11 +51,23 @@ void LivePhysics::start() {
   if (pace_ == Pace::kClock) simulation_->start(clock_);
 }
 
+// Whether all sources could be polled, until now.
+bool LivePhysics::poll(double time_s) {
+  for (SampleSource* source : sources_)
+    if (listening_.ok()) listening_ = source->poll(inbox(), time_s);
+  return listening_.ok();
+}
+
+void LivePhysics::advance() {
+  if (poll(simulation_->newest().time_s)) simulation_->advance(1);
+}
+
 void LivePhysics::reach(double time_s, const Stop& stop) {
   // Half of the history: the other half holds what was kept for the time before.
   const double kept_s = (MotionHistory::kKept / 2 - 1) * world_->step_s();
   while (simulation_->newest().time_s < time_s) {
-    simulation_->advance(1);
+    advance();
+    if (!listening_.ok()) return;
     const auto& newest = simulation_->newest();
     if (newest.time_s > time_s - kept_s) history_.add(motion_of(*world_, newest));
     if (stop && stop()) return;
@@ -75,6 +87,7 @@ double LivePhysics::follow(TimeNs display_ns, double time_s, const Stop& stop) {
 double LivePhysics::follow_thread(TimeNs display_ns) {
   reader_->update();
   const auto& newest = reader_->newest();
+  (void)poll(newest.time_s);  // listening() tells of a failure
   if (newest.step == start_step_) return shown_s_;
   history_.add(motion_of(*world_, reader_->previous()));
   history_.add(motion_of(*world_, newest));

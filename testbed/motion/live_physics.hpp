@@ -6,8 +6,10 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "testbed/motion/motion_history.hpp"
+#include "testbed/samples/source.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
@@ -32,6 +34,12 @@ class LivePhysics {
   // in lock-step. Before start().
   using Observer = std::function<void(const sim::Snapshot<PhysicsState>&)>;
   void observe(const Observer& each);
+  // Polls the sources before each step of a lock-step, and in each follow() beside a thread. After
+  // the first failure it polls no more, and a lock-step takes no more steps. Before start();
+  // borrows them.
+  void listen(std::vector<SampleSource*> sources) { sources_ = std::move(sources); }
+  // The first failure of a source.
+  const Status& listening() const { return listening_; }
   // The time of the state that it starts from is now.
   void start();
   // After the last step; newest() and simulation() may be asked then, at any pace.
@@ -47,7 +55,7 @@ class LivePhysics {
   // before it; what was kept for the last such time stays.
   void reach(double time_s, const Stop& stop = {});
   // Lock-step: one step. Nothing is kept: the history does not follow.
-  void advance() { simulation_->advance(1); }
+  void advance();
   // Where samples enter; any thread. They count from the next step on.
   SampleInbox& inbox() { return simulation_->inbox(); }
 
@@ -68,6 +76,7 @@ class LivePhysics {
  private:
   LivePhysics(std::unique_ptr<const PhysicsWorld> world, const Options& options);
   double follow_thread(TimeNs display_ns);
+  bool poll(double time_s);
 
   std::unique_ptr<const PhysicsWorld> world_;
   Pace pace_;
@@ -75,6 +84,8 @@ class LivePhysics {
   std::unique_ptr<PhysicsSimulation> simulation_;
   std::optional<sim::SnapshotReader<PhysicsState>> reader_;  // of the thread's states
   MotionHistory history_;
+  std::vector<SampleSource*> sources_;
+  Status listening_;
   std::uint64_t start_step_ = 0;
   double shown_s_ = 0.0;
 };

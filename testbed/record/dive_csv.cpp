@@ -145,6 +145,13 @@ void append_motion(std::string& out, const Pose& world_from_body, const Vec6& ve
   append_numbers(out, {wanted_m.x, wanted_m.y, wanted_m.z});
 }
 
+// Columns silent, in a scene that names live sources, and hash.
+void append_end(std::string& out, const PhysicsWorld& world, std::uint64_t silent,
+                std::uint64_t hash) {
+  if (!world.sources().empty()) fmt::format_to(std::back_inserter(out), ",{}", silent);
+  fmt::format_to(std::back_inserter(out), ",{:016x}\n", hash);
+}
+
 void append_row(std::string& out, const PhysicsWorld& world, const DiveRow& row,
                 std::size_t thrusters) {
   const PhysicsVehicle& vehicle = world.vehicles()[row.vehicle];
@@ -165,7 +172,7 @@ void append_row(std::string& out, const PhysicsWorld& world, const DiveRow& row,
     if (any_has(world, sensor))
       append_readings(out, sensor, sensor.has(vehicle.file.sensors) ? &row.readings : nullptr);
   if (!world.humans().empty()) append_empty(out, cells_of(kHumanColumns));
-  fmt::format_to(std::back_inserter(out), ",{:016x}\n", row.hash);
+  append_end(out, world, row.silent, row.hash);
 }
 
 void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& row,
@@ -225,7 +232,7 @@ void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& r
                      row.ascent.needed_l,
                      row.ascent.there_l,
                      static_cast<double>(row.ascent.too_small)});
-  fmt::format_to(std::back_inserter(out), ",{:016x}\n", row.hash);
+  append_end(out, world, row.silent, row.hash);
 }
 
 }  // namespace
@@ -241,6 +248,7 @@ std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows,
   for (const SensorColumns& sensor : kSensorColumns)
     if (any_has(world, sensor)) out += sensor.names;
   if (!world.humans().empty()) out += kHumanColumns;
+  if (!world.sources().empty()) out += ",silent";
   out += ",hash\n";
   std::size_t human = 0;
   const auto humans_until = [&](double time_s) {

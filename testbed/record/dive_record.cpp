@@ -62,6 +62,7 @@ DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState
   row.arrived = state.mission.arrived;
   row.near_points = state.contact.near_points;
   row.touched_steps = state.contact.touched_steps;
+  row.silent = silent_groups(state.groups);
   row.hash = snapshot.hash;
   if (const rov::SensorReadings* readings = world_.readings(snapshot.state, index))
     row.readings = *readings;

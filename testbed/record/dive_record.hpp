@@ -26,6 +26,7 @@ struct DiveRow {
   Pose wanted;  // world_from_body
   std::size_t waypoint = 0;
   std::uint64_t arrived = 0, near_points = 0, touched_steps = 0;
+  std::uint64_t silent = 0;      // bits of groups of inputs whose source is not heard
   std::uint64_t hash = 0;        // of all vehicles' state
   rov::SensorReadings readings;  // the newest of each sensor that it has
 };

@@ -46,6 +46,7 @@ HumanRow HumanRecorder::row_of(std::size_t index,
   row.cns_percent = state.human.life.computer.oxygen.cns_percent;
   row.otu = state.human.life.computer.oxygen.otu;
   row.vitals = state.human.life.vitals;
+  row.silent = silent_groups(state.groups);
   row.hash = snapshot.hash;
   return row;
 }

@@ -27,7 +27,8 @@ struct HumanRow {
   diver::AscentGas ascent;                         // with the dive computer's view
   double cns_percent = 0.0, otu = 0.0;
   diver::VitalState vitals;
-  std::uint64_t hash = 0;  // of the whole state
+  std::uint64_t silent = 0;  // bits of groups of inputs whose source is not heard
+  std::uint64_t hash = 0;    // of the whole state
 };
 
 // A change to another tank.

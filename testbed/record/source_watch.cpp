@@ -23,22 +23,22 @@ std::string change_words(const GroupState& before, const GroupState& now,
 
 // Group: DiverGroup or VehicleGroup.
 template <class Group, class Groups>
-void add_changes(double time_s, const std::string& name, const SampleInbox& inbox,
-                 const Groups& groups, Groups& before, std::vector<std::string>& lines) {
+void tell_changes(double time_s, const std::string& name, const SampleInbox& inbox,
+                  const Groups& groups, Groups& before, const SourceWatch::Tell& tell) {
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (told(before[i], groups[i])) continue;
-    lines.push_back(fmt::format("{:.2f} s: {}: {}: {}", time_s, name,
-                                name_of(static_cast<Group>(i)),
-                                change_words(before[i], groups[i], inbox.source_names())));
+    tell(fmt::format("{:.2f} s: {}: {}: {}", time_s, name, name_of(static_cast<Group>(i)),
+                     change_words(before[i], groups[i], inbox.source_names())));
     before[i] = groups[i];
   }
 }
 
 }  // namespace
 
-SourceWatch::SourceWatch(const PhysicsWorld& world, const SampleInbox& inbox)
+SourceWatch::SourceWatch(const PhysicsWorld& world, const SampleInbox& inbox, Tell tell)
     : world_(world),
       inbox_(inbox),
+      tell_(std::move(tell)),
       vehicles_(world.vehicles().size()),
       humans_(world.humans().size()) {
   // The scene's own choices are no news.
@@ -50,16 +50,15 @@ SourceWatch::SourceWatch(const PhysicsWorld& world, const SampleInbox& inbox)
       humans_[i][k] = next_group({}, world.start_inputs().humans()[i].control[k], 0, 0.0);
 }
 
-std::vector<std::string> SourceWatch::changes(const sim::Snapshot<PhysicsState>& snapshot) {
-  std::vector<std::string> lines;
-  if (snapshot.step == 0) return lines;  // before the first step no group has a phase
+Status SourceWatch::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) {
+  if (step.step == 0) return {};  // before the first step no group has a phase
   for (std::size_t i = 0; i < vehicles_.size(); ++i)
-    add_changes<VehicleGroup>(snapshot.time_s, world_.vehicles()[i].name, inbox_,
-                              snapshot.state.vehicles()[i].groups, vehicles_[i], lines);
+    tell_changes<VehicleGroup>(step.time_s, world_.vehicles()[i].name, inbox_,
+                               step.state.vehicles()[i].groups, vehicles_[i], tell_);
   for (std::size_t i = 0; i < humans_.size(); ++i)
-    add_changes<DiverGroup>(snapshot.time_s, world_.humans()[i].name, inbox_,
-                            snapshot.state.humans()[i].groups, humans_[i], lines);
-  return lines;
+    tell_changes<DiverGroup>(step.time_s, world_.humans()[i].name, inbox_,
+                             step.state.humans()[i].groups, humans_[i], tell_);
+  return {};
 }
 
 }  // namespace neritic::testbed

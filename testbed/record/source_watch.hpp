@@ -2,25 +2,29 @@
 // heard again, or the group is handed over. One thread.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "testbed/simulation/physics_world.hpp"
+#include "testbed/record/step_sink.hpp"
 
 namespace neritic::testbed {
 
-class SourceWatch {
+class SourceWatch final : public StepSink {
  public:
+  // Gets a line a change: "12.50 s: diver: body: suit is silent, autopilot acts".
+  using Tell = std::function<void(const std::string& line)>;
   // Borrows both.
-  SourceWatch(const PhysicsWorld& world, const SampleInbox& inbox);
+  SourceWatch(const PhysicsWorld& world, const SampleInbox& inbox, Tell tell);
 
-  // Newer states than before, not necessarily each. A line a change: "12.50 s: diver: body: suit is
-  // silent, autopilot acts". Allocates only for a change.
-  std::vector<std::string> changes(const sim::Snapshot<PhysicsState>& snapshot);
+  // Steps may be left out. Allocates only for a change.
+  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
+  Status finish() override { return {}; }
 
  private:
   const PhysicsWorld& world_;
   const SampleInbox& inbox_;
+  Tell tell_;
   std::vector<std::array<GroupState, kVehicleGroups>> vehicles_;  // as last told
   std::vector<std::array<GroupState, kDiverGroups>> humans_;
 };

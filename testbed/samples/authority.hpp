@@ -111,5 +111,14 @@ GroupState next_group(const GroupState& before, const GroupControl& control, std
 // The authority that acts on the group in that phase: kLive only while the source is heard.
 Authority acting(const GroupControl& control, GroupPhase phase);
 Authority acting(const GroupState& state);
+// Bit i: group i waits for its source, or lost it.
+template <class Groups>
+std::uint64_t silent_groups(const Groups& groups) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (groups[i].phase == GroupPhase::kWaiting || groups[i].phase == GroupPhase::kLost)
+      bits |= std::uint64_t{1} << i;
+  return bits;
+}
 
 }  // namespace neritic::testbed

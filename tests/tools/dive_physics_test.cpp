@@ -17,6 +17,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
+#include "testbed/samples/sample_log.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic {
@@ -99,6 +100,65 @@ mission = { waypoints = [ { position_m = [0, -6, -2] }, { position_m = [1, -7, -
 
   test::ScratchFolder scratch_;
 };
+
+// A recorded joystick flies while the scene gives it the wrench; sequence 2 of it never came.
+// Nobody asked for the fault that a console reports.
+TEST_F(DivePhysics, PlaysARecordingAndTellsOfLostSilentAndUnusedSamples) {
+  using namespace testbed;
+  const auto wrench = [](std::uint64_t step, std::uint64_t sequence) {
+    return SampleLog::Entry{step, {{0, 1, sequence, 0, 0}, VehicleWrench{{40.0}}}};
+  };
+  const SampleLog log{
+      1.0 / 240.0,
+      0,
+      {{"rov/wrench", PayloadKind::kWrench}, {"rov/fault", PayloadKind::kFault}},
+      {"simulation", "joystick", "console"},
+      {wrench(0, 0), wrench(60, 1), {80, {{1, 2, 0, 0, 0}, ThrusterFault{1}}}, wrench(120, 3)},
+      std::vector<std::uint64_t>(122)};
+  ASSERT_TRUE(write_sample_log(scratch_ / "joystick.log", log).ok());
+  auto text = read_text(scratch_ / "dive.toml").value();
+  ASSERT_TRUE(
+      write_text(scratch_ / "live.toml",
+                 text + "inputs = { wrench = { from = \"joystick\", then = \"nobody\" } }\n")
+          .ok());
+  const std::string play = "--headless --seconds 2 --play " + file("joystick.log");
+  const Outcome outcome = dive(play + " --json --log " + file("live.csv"), "live.toml");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = parse_json(outcome.out).value();
+  const auto& inputs = json["vehicles"][0]["inputs"];
+  EXPECT_EQ(inputs["wrench"], (nlohmann::json{{"authority", "live from joystick"},
+                                              {"phase", "lost"},
+                                              {"used", 3},
+                                              {"not_used", 0},
+                                              {"fell_silent", 1}}));
+  EXPECT_EQ(inputs["fault"]["not_used"], 1);
+  EXPECT_EQ(json["sources"][0]["name"], "joystick");
+  EXPECT_EQ(json["sources"][0]["accepted"], 3);
+  EXPECT_EQ(json["sources"][0]["lost"], 1);
+  EXPECT_EQ(json["sources"][1]["name"], "console");
+  EXPECT_NE(outcome.err.find("rov: wrench: joystick is silent, nobody acts\n"), std::string::npos)
+      << outcome.err;
+  // The log says when: until the first sample, and from 0.5 s after the last.
+  const auto columns = table("live.csv");
+  ASSERT_TRUE(columns.contains("silent"));
+  const auto silent_at = [&](double time_s) {
+    for (std::size_t i = 0; i < columns.at("time_s").size(); ++i)
+      if (std::abs(std::stod(columns.at("time_s")[i]) - time_s) < 1e-6)
+        return columns.at("silent")[i];
+    return std::string("no such row");
+  };
+  EXPECT_EQ(silent_at(0.9), "0");
+  EXPECT_EQ(silent_at(1.5), "1");
+  const Outcome words = dive(play, "live.toml");
+  EXPECT_NE(words.out.find("source joystick: 3 samples taken, 1 lost\n"), std::string::npos)
+      << words.out;
+  EXPECT_NE(words.out.find("rov: fault: 1 sample of console not used, autopilot\n"),
+            std::string::npos)
+      << words.out;
+  const Outcome alone = dive("--headless --seconds 2 --json --log " + file("alone.csv"));
+  EXPECT_NE(parse_json(alone.out).value()["hash"], json["hash"]);
+  EXPECT_FALSE(table("alone.csv").contains("silent"));
+}
 
 // Two processes: one saves half way, the other goes on; the same hash as one that never stopped.
 TEST_F(DivePhysics, SavedInOneProcessItGoesOnInAnotherWithTheSameHash) {

@@ -242,6 +242,9 @@ void add_dive(CLI::App& app, Run& run) {
                    "what draws")
       ->check(png_file);
   command->add_option("--record", flags->files.record, "inputs and state hashes, for --replay");
+  command->add_option("--play", flags->play,
+                      "sends the samples of a recorded dive as live ones: they drive the groups of "
+                      "inputs that name their devices");
   command->add_option("--replay", flags->replay,
                       "runs a recorded dive again and compares each state's hash");
   command->add_option("--save", flags->files.save, "the state at the end, for --restore");

@@ -63,7 +63,7 @@ struct DiveFlags {
   bool headless = false, fast = false, panels = false, validation = false;
   // These need a scene with physics, and --headless.
   StepFileFlags files;
-  std::string replay, restore;
+  std::string play, replay, restore;
   bool realtime = false, json = false;
 };
 Status run_dive(const DiveFlags& flags);

@@ -2,8 +2,11 @@
 
 #include <cmath>
 
+#include "engine/core/log.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/run_record.hpp"
+#include "testbed/record/source_watch.hpp"
+#include "testbed/samples/recorded_source.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/step_files.hpp"
 
@@ -22,6 +25,7 @@ bool draws(const DiveFlags& flags) {
 // The first flag that only a dive of physics alone takes; empty: none.
 std::string physics_flag(const DiveFlags& flags) {
   if (const std::string flag = first_step_flag(flags.files); !flag.empty()) return flag;
+  if (!flags.play.empty()) return "--play";
   if (!flags.replay.empty()) return "--replay";
   if (!flags.restore.empty()) return "--restore";
   if (flags.realtime) return "--realtime";
@@ -54,11 +58,12 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
                      flag, flags.scene);
   if (!flags.headless || draws(flags))
     return bad_input("{}: accepted with --headless and without flags of pictures", flag);
-  if (!flags.replay.empty() && (!first_step_flag(flags.files).empty() || flags.realtime ||
-                                flags.json || flags.seconds || !flags.restore.empty()))
+  if (!flags.replay.empty() &&
+      (!first_step_flag(flags.files).empty() || flags.realtime || flags.json || flags.seconds ||
+       !flags.restore.empty() || !flags.play.empty()))
     return bad_input(
         "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --save, "
-        "--restore, --realtime, --json; it runs as long as the recording");
+        "--restore, --play, --realtime, --json; it runs as long as the recording");
   if (!flags.restore.empty() && !flags.files.record.empty())
     return bad_input("--record: accepted without --restore: a recording begins at time 0");
   return {};
@@ -74,16 +79,25 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
   if (!flags.restore.empty()) {
     NERITIC_TRY(options.start, read_state(flags.restore, world->state_format()));
   }
+  std::optional<RecordedSource> recording;
+  if (!flags.play.empty()) {
+    NERITIC_TRY(SampleLog log, read_sample_log(flags.play));
+    NERITIC_TRY(recording, RecordedSource::create(std::move(log), world->streams(), flags.play));
+  }
   const double step_s = world->step_s();
   const auto physics = LivePhysics::create(std::move(world), options);
   const double start_s = physics->newest().time_s;
   const StepFiles files(flags.files, scene.title, *physics);
   StepProgress progress("second", start_s + seconds);
-  std::vector<StepSink*> sinks{&progress};
+  SourceWatch watch(physics->world(), physics->inbox(),
+                    [](const std::string& line) { log_warn("{}", line); });
+  std::vector<StepSink*> sinks{&progress, &watch};
   for (StepSink* sink : files.sinks()) sinks.push_back(sink);
   Loop loop(
       {.clock = flags.realtime ? Clock::real(start_s, step_s) : Clock::simulated(start_s, step_s),
        .physics = physics.get(),
+       .sources =
+           recording ? std::vector<SampleSource*>{&*recording} : std::vector<SampleSource*>{},
        .step_sinks = sinks,
        .stop = {.frames = static_cast<std::uint64_t>(std::ceil(seconds / step_s - 1e-9)),
                 .interrupted = [&] { return interrupt.requested(); }}});

@@ -58,6 +58,42 @@ class Listener final : public StepSink {
   std::uint64_t fails_at_;
 };
 
+// Notes the times at which it is polled; fails at one of them.
+class Device final : public SampleSource {
+ public:
+  explicit Device(std::size_t fails_at = SIZE_MAX) : fails_at_(fails_at) {}
+  Status poll(SampleInbox&, double scene_time_s) override {
+    times_s.push_back(scene_time_s);
+    if (times_s.size() == fails_at_) return failure(ErrorCode::kIo, "unplugged");
+    return {};
+  }
+  std::vector<double> times_s;
+
+ private:
+  std::size_t fails_at_;
+};
+
+TEST_F(LoopTest, ASourceIsPolledBeforeEachStepAndItsFailureEndsTheRun) {
+  const auto dive = physics();
+  const double step_s = dive->world().step_s();
+  Listener listener(dive->world());
+  Device first, second(5);
+  Loop loop({.clock = Clock::simulated(0.0, step_s),
+             .physics = dive.get(),
+             .sources = {&first, &second},
+             .step_sinks = {&listener},
+             .stop = {.frames = 240}});
+  const Status status = loop.run();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().message, "unplugged");
+  EXPECT_EQ(listener.finished, 1);
+  EXPECT_EQ(dive->newest().step, 4u);
+  EXPECT_EQ(loop.frames(), 4u);
+  ASSERT_EQ(first.times_s.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_DOUBLE_EQ(first.times_s[i], static_cast<double>(i) * step_s);
+}
+
 TEST_F(LoopTest, ASinkSeesEachStepOnceInOrderFromTheStartOn) {
   const auto dive = physics();
   Listener listener(dive->world());

@@ -15,14 +15,12 @@ TEST(SourceWatch, TellsOnceOfASourceThatFallsSilentComesBackAndIsReplaced) {
       hover_text("body = { from = \"suit\", hold_s = 0.25, then = \"nobody\" }, gas = \"noise\""));
   Device suit(dive, "suit", "diver/joints"), buttons(dive, "controllers", "diver/buttons"),
       events(dive, "operator", "diver/event");
-  SourceWatch watch(*dive.world, dive.simulation->inbox());
   std::vector<std::string> lines;
+  SourceWatch watch(*dive.world, dive.simulation->inbox(),
+                    [&](const std::string& line) { lines.push_back(line); });
   const auto run = [&](double seconds) {
     lines.clear();
-    dive.run(seconds, [&] {
-      for (std::string& line : watch.changes(dive.simulation->newest()))
-        lines.push_back(std::move(line));
-    });
+    dive.run(seconds, [&] { ASSERT_TRUE(watch.accept(dive.simulation->newest(), {}).ok()); });
   };
   run(0.5);
   EXPECT_THAT(lines, IsEmpty());  // what the scene asks for, and nobody was heard yet
