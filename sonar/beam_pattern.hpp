@@ -14,22 +14,18 @@
 
 namespace neritic::sonar {
 
-enum class BeamKind {
-  kSinc,     // uniform line or rectangle side L: sin(pi u) / (pi u)
-  kHamming,  // line with Hamming weights, continuous: side lobes below -42 dB
-  kPiston,   // circular, L its diameter: 2 J1(pi u) / (pi u)
-  kTable,    // measured
-};
-const char* name_of(BeamKind kind);
+using scene::BeamShape;
+// "sinc", "hamming", "piston", "table", as scenes name them.
+const char* name_of(BeamShape shape);
 class BeamPattern {
  public:
   // Length in wavelengths, in [1e-3, 1e5]. kBadInput otherwise, and for kTable.
-  static Result<BeamPattern> of_length(BeamKind kind, double length_wavelengths);
+  static Result<BeamPattern> of_length(BeamShape shape, double length_wavelengths);
   // The length whose one-way half-power width (both sides together) is width_rad, in (0, pi).
-  static Result<BeamPattern> of_half_power_width(BeamKind kind, double width_rad);
+  static Result<BeamPattern> of_half_power_width(BeamShape shape, double width_rad);
   // Rows of degrees, rising in [-180, 180], and dB in [-300, 0], linear in between. Without
   // negative angles both sides are alike. Beyond its last angles a table hears nothing.
-  static Result<BeamPattern> of_table(Table degrees_db);
+  static Result<BeamPattern> of_table(SonarTable degrees_db);
 
   // theta_rad in [-pi, pi] off the axis.
   double amplitude(double theta_rad) const;
@@ -39,7 +35,7 @@ class BeamPattern {
   // Power there and back, where the same pattern sends and hears.
   double two_way_power(double theta_rad) const;
 
-  BeamKind kind() const { return kind_; }
+  BeamShape shape() const { return shape_; }
   // Both sides together, how far off the axis one way keeps half the power that it has on it; of a
   // table at most to its ends.
   double half_power_width_rad() const;
@@ -48,17 +44,17 @@ class BeamPattern {
   double second_null_rad() const;
 
  private:
-  BeamPattern(BeamKind kind, double length) : kind_(kind), length_(length) {}
+  BeamPattern(BeamShape shape, double length) : shape_(shape), length_(length) {}
   double table_amplitude(double theta_rad) const;
-  BeamKind kind_;
+  BeamShape shape_;
   double length_;
-  Table table_;  // radians and dB, symmetric tables mirrored
+  SonarTable table_;  // radians and dB, symmetric tables mirrored
 };
 
 // Constants of the closed forms, in u. Uniform line: half power at 0.44295, so a width of 0.886
 // lambda / L; first side lobe -13.26 dB at 1.4303. Piston: ka sin(theta) = pi u = 1.6163; side
 // lobe -17.57 dB at 5.136.
-double beam_response(BeamKind kind, double u);  // kSinc, kHamming, kPiston
-double half_power_u(BeamKind kind);
+double beam_response(BeamShape shape, double u);  // kSinc, kHamming, kPiston
+double half_power_u(BeamShape shape);
 
 }  // namespace neritic::sonar

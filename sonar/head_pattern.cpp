@@ -12,16 +12,11 @@ namespace {
 constexpr double kPatternTruncated = 0.005;
 
 Result<BeamPattern> pattern_of(const scene::SonarPattern& pattern) {
-  using Shape = scene::SonarPattern::Shape;
-  if (pattern.shape == Shape::kTable) {
-    Table degrees_db = rows_of(pattern.table);
-    for (TableRow& row : degrees_db) row.x = degrees(row.x);
-    return BeamPattern::of_table(std::move(degrees_db));
-  }
-  return BeamPattern::of_half_power_width(pattern.shape == Shape::kHamming  ? BeamKind::kHamming
-                                          : pattern.shape == Shape::kPiston ? BeamKind::kPiston
-                                                                            : BeamKind::kSinc,
-                                          pattern.half_power_rad);
+  if (pattern.shape != BeamShape::kTable)
+    return BeamPattern::of_half_power_width(pattern.shape, pattern.half_power_rad);
+  SonarTable degrees_db = pattern.table;
+  for (SonarRow& row : degrees_db) row.x = degrees(row.x);
+  return BeamPattern::of_table(std::move(degrees_db));
 }
 
 // Places at which a pattern is looked at over a width: one, but where it has lobes narrower than
@@ -130,7 +125,7 @@ std::uint32_t pattern_reach(const HeadPatterns& patterns, double axis_rad, doubl
   double beyond = total - power[0];
   std::uint32_t reach = 0;
   while (reach < half_turn && beyond > kPatternTruncated * total) beyond -= power[++reach];
-  if (patterns.azimuth->kind() == BeamKind::kTable) return reach;
+  if (patterns.azimuth->shape() == BeamShape::kTable) return reach;
   const double lobes = std::ceil(patterns.azimuth->second_null_rad() / column_rad);
   return std::max(reach, std::min(half_turn, static_cast<std::uint32_t>(lobes)));
 }

@@ -47,8 +47,7 @@ double noise_level_db(const scene::SonarTerms& terms) {
 }
 
 double receiver_gain_db(const SonarLevel& level, double range_m, double absorption_db_m) {
-  if (!level.tvg_table.empty())
-    return level.gain_db + interpolate(rows_of(level.tvg_table), range_m);
+  if (!level.tvg_table.empty()) return level.gain_db + interpolate(level.tvg_table, range_m);
   const double absorption_db = level.tvg_absorption ? 2.0 * absorption_db_m * range_m : 0.0;
   return level.gain_db + level.tvg_log / 20.0 * spherical_spreading_db(range_m) + absorption_db;
 }

@@ -57,7 +57,7 @@ double range_cell_m(const scene::Sonar& s) {
 
 Result<double> half_power_width_rad(const scene::Sonar& sonar) {
   const scene::SonarPattern& pattern = *sonar.terms.beam.azimuth;
-  if (pattern.shape != scene::SonarPattern::Shape::kTable) return pattern.half_power_rad;
+  if (pattern.shape != scene::BeamShape::kTable) return pattern.half_power_rad;
   const auto patterns = head_patterns(sonar);
   if (!patterns.ok()) return bad_input("sonar {}: beam: {}", sonar.name, patterns.error().message);
   return patterns->azimuth->half_power_width_rad();

@@ -37,7 +37,7 @@ BentRay bent_ray(const SoundSpeedProfile& profile, double launch_depth_m, double
 
 // Indices of rows kept between first and last, both of which are: the farthest from the chord stays
 // as long as it is farther than the tolerance.
-void keep_rows(const scene::SonarTable& rows, double tolerance_m_s, std::vector<bool>& kept) {
+void keep_rows(const SonarTable& rows, double tolerance_m_s, std::vector<bool>& kept) {
   std::vector<std::pair<std::size_t, std::size_t>> spans{{0, rows.size() - 1}};
   kept[0] = kept[rows.size() - 1] = true;
   while (!spans.empty()) {
@@ -47,8 +47,8 @@ void keep_rows(const scene::SonarTable& rows, double tolerance_m_s, std::vector<
     std::size_t worst = first;
     double most = tolerance_m_s;
     for (std::size_t i = first + 1; i < last; ++i) {
-      const double chord = a[1] + (b[1] - a[1]) * (rows[i][0] - a[0]) / (b[0] - a[0]);
-      if (std::abs(rows[i][1] - chord) > most) most = std::abs(rows[i][1] - chord), worst = i;
+      const double chord = a.y + (b.y - a.y) * (rows[i].x - a.x) / (b.x - a.x);
+      if (std::abs(rows[i].y - chord) > most) most = std::abs(rows[i].y - chord), worst = i;
     }
     if (worst == first) continue;
     kept[worst] = true;
@@ -60,25 +60,25 @@ void keep_rows(const scene::SonarTable& rows, double tolerance_m_s, std::vector<
 }  // namespace
 
 double most_bend_rad(const scene::SonarProfile& profile, double range_max_m) {
-  const scene::SonarTable& rows = profile.table;
-  double steepest_s = 0.0, slowest = rows[0][1], fastest = rows[0][1];
+  const SonarTable& rows = profile.table;
+  double steepest_s = 0.0, slowest = rows[0].y, fastest = rows[0].y;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    steepest_s = std::max(steepest_s,
-                          std::abs((rows[i][1] - rows[i - 1][1]) / (rows[i][0] - rows[i - 1][0])));
-    slowest = std::min(slowest, rows[i][1]);
-    fastest = std::max(fastest, rows[i][1]);
+    steepest_s =
+        std::max(steepest_s, std::abs((rows[i].y - rows[i - 1].y) / (rows[i].x - rows[i - 1].x)));
+    slowest = std::min(slowest, rows[i].y);
+    fastest = std::max(fastest, rows[i].y);
   }
   // A curve of at most that curvature leaves its chord by at most an arc's half angle.
   const double half_turn = std::asin(std::min(1.0, 0.5 * range_max_m * steepest_s / slowest));
   return std::min(half_turn, 2.0 * std::acos(slowest / fastest));
 }
 
-scene::SonarTable simplified(const scene::SonarTable& profile, double tolerance_m_s) {
+SonarTable simplified(const SonarTable& profile, double tolerance_m_s) {
   if (profile.size() < 3) return profile;
   for (;; tolerance_m_s *= 2.0) {
     std::vector<bool> kept(profile.size(), false);
     keep_rows(profile, tolerance_m_s, kept);
-    scene::SonarTable out;
+    SonarTable out;
     for (std::size_t i = 0; i < profile.size(); ++i)
       if (kept[i]) out.push_back(profile[i]);
     if (out.size() <= kMostRows) return out;
@@ -107,7 +107,7 @@ RangeCorrection range_correction(const scene::SonarProfile& settings, double lau
                                  double range_max_m, double assumed_speed_m_s,
                                  RangeCorrectionSize size,
                                  const std::optional<ProfileMirror>& mirror) {
-  const auto made = SoundSpeedProfile::of_table(rows_of(settings.table));
+  const auto made = SoundSpeedProfile::of_table(settings.table);
   NERITIC_CHECK(made.ok(), "sound speed profile: {}", made.ok() ? "" : made.error().message);
   const SoundSpeedProfile profile =
       mirror ? made->beyond_mirror(mirror->depth_m, mirror->water_below) : *made;

@@ -47,7 +47,7 @@ double most_bend_rad(const scene::SonarProfile& profile, double range_max_m);
 // The profile with only the rows it takes to be within tolerance_m_s of all of them (Douglas and
 // Peucker 1973), and with at most kMostRows: the tolerance doubles until it is so.
 inline constexpr std::size_t kMostRows = 256;
-scene::SonarTable simplified(const scene::SonarTable& profile, double tolerance_m_s = 0.01);
+SonarTable simplified(const SonarTable& profile, double tolerance_m_s = 0.01);
 
 // The tables of a head (and of one mirror, where named), which go by its depth alone: made anew
 // only where that changes by kDepthStep_m (whatever the order of pings, a depth has one table).

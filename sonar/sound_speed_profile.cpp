@@ -17,23 +17,23 @@ double log1p_over(double x) {
 
 }  // namespace
 
-SoundSpeedProfile::SoundSpeedProfile(Table rows) : rows_(std::move(rows)) {
+SoundSpeedProfile::SoundSpeedProfile(SonarTable rows) : rows_(std::move(rows)) {
   layers_.push_back({-kInfinity, rows_.front().x, rows_.front().x, rows_.front().y, 0.0});
   for (std::size_t i = 1; i < rows_.size(); ++i) {
-    const TableRow &a = rows_[i - 1], &b = rows_[i];
+    const SonarRow &a = rows_[i - 1], &b = rows_[i];
     layers_.push_back({a.x, b.x, a.x, a.y, (b.y - a.y) / (b.x - a.x)});
   }
   layers_.push_back({rows_.back().x, kInfinity, rows_.back().x, rows_.back().y, 0.0});
 }
 
-Result<SoundSpeedProfile> SoundSpeedProfile::of_table(Table depth_speed) {
+Result<SoundSpeedProfile> SoundSpeedProfile::of_table(SonarTable depth_speed) {
   NERITIC_TRY_STATUS(validate(depth_speed, "sound speed profile", kSpeedLimits));
   return SoundSpeedProfile(std::move(depth_speed));
 }
 
 SoundSpeedProfile SoundSpeedProfile::beyond_mirror(double mirror_depth_m, bool water_below) const {
-  Table rows{{mirror_depth_m, speed_m_s(mirror_depth_m)}};
-  for (const TableRow& row : rows_) {
+  SonarTable rows{{mirror_depth_m, speed_m_s(mirror_depth_m)}};
+  for (const SonarRow& row : rows_) {
     if (water_below ? row.x <= mirror_depth_m : row.x >= mirror_depth_m) continue;
     rows.push_back(row);
     rows.push_back({2.0 * mirror_depth_m - row.x, row.y});
@@ -48,7 +48,7 @@ double SoundSpeedProfile::speed_m_s(double depth_m) const {
 
 std::size_t SoundSpeedProfile::layer_at(double depth_m) const {
   const auto above = std::upper_bound(rows_.begin(), rows_.end(), depth_m,
-                                      [](double v, const TableRow& row) { return v < row.x; });
+                                      [](double v, const SonarRow& row) { return v < row.x; });
   return static_cast<std::size_t>(above - rows_.begin());
 }
 

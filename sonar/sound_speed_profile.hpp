@@ -22,7 +22,7 @@ struct RayPoint {
 class SoundSpeedProfile {
  public:
   // Rows of depth_m in [-100, 12000], rising, and m/s in [100, 10000].
-  static Result<SoundSpeedProfile> of_table(Table depth_speed);
+  static Result<SoundSpeedProfile> of_table(SonarTable depth_speed);
 
   // The profile along a ray that a flat mirror reflects, unfolded: beyond the mirror's depth it is
   // mirrored.
@@ -48,10 +48,10 @@ class SoundSpeedProfile {
     double depth_m_, speed_m_s;  // a depth of the layer and the speed there
     double gradient_s;           // dc/dz, 1/s
   };
-  SoundSpeedProfile(Table rows);
+  SoundSpeedProfile(SonarTable rows);
   // Index of the layer that holds depth; of two at a boundary the lower one.
   std::size_t layer_at(double depth_m) const;
-  Table rows_;
+  SonarTable rows_;
   std::vector<Layer> layers_;  // rows + 1, from the top; the outer two are half-spaces
 };
 

@@ -7,17 +7,11 @@
 
 namespace neritic::sonar {
 
-Table rows_of(const scene::SonarTable& table) {
-  Table rows;
-  for (const auto& [x, y] : table) rows.push_back({x, y});
-  return rows;
-}
-
-Status validate(std::span<const TableRow> rows, const std::string& name,
+Status validate(std::span<const SonarRow> rows, const std::string& name,
                 const TableLimits& limits) {
   if (rows.empty()) return bad_input("{}: no row; accepted: at least one", name);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const TableRow& row = rows[i];
+    const SonarRow& row = rows[i];
     if (!(row.x >= limits.x_min && row.x <= limits.x_max && row.y >= limits.y_min &&
           row.y <= limits.y_max))
       return bad_input("{}: row {} is {}, {}; accepted: [{:g}, {:g}] and [{:g}, {:g}]", name, i + 1,
@@ -29,14 +23,14 @@ Status validate(std::span<const TableRow> rows, const std::string& name,
   return {};
 }
 
-double interpolate(std::span<const TableRow> rows, double x) {
+double interpolate(std::span<const SonarRow> rows, double x) {
   NERITIC_CHECK(!rows.empty(), "interpolating in a table without rows");
   if (std::isnan(x)) return x;
   const auto above = std::upper_bound(rows.begin(), rows.end(), x,
-                                      [](double v, const TableRow& row) { return v < row.x; });
+                                      [](double v, const SonarRow& row) { return v < row.x; });
   if (above == rows.begin()) return rows.front().y;
   if (above == rows.end()) return rows.back().y;
-  const TableRow &a = *(above - 1), &b = *above;
+  const SonarRow &a = *(above - 1), &b = *above;
   return a.y + (b.y - a.y) * ((x - a.x) / (b.x - a.x));
 }
 

@@ -11,20 +11,17 @@
 
 namespace neritic::sonar {
 
-struct TableRow {
-  double x = 0.0, y = 0.0;
-};
-using Table = std::vector<TableRow>;
-Table rows_of(const scene::SonarTable& table);
+using scene::SonarRow;
+using scene::SonarTable;
 
 // What a table's columns may hold.
 struct TableLimits {
   double x_min = -1e9, x_max = 1e9, y_min = -1e9, y_max = 1e9;
 };
 // kBadInput names the row: none, out of range, x not rising.
-Status validate(std::span<const TableRow> rows, const std::string& name, const TableLimits& limits);
+Status validate(std::span<const SonarRow> rows, const std::string& name, const TableLimits& limits);
 
 // Linear between rows, the end rows' values beyond them. NaN for NaN. At least one row.
-double interpolate(std::span<const TableRow> rows, double x);
+double interpolate(std::span<const SonarRow> rows, double x);
 
 }  // namespace neritic::sonar

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/math.hpp"
+#include "sonar/beam_pattern.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -14,6 +15,12 @@ using scene::SonarLevel;
 // Degrees as they were written: radians and back are off by a last bit.
 double degrees_of(double rad) {
   return std::round(degrees(rad) * 1e10) / 1e10;
+}
+
+json rows_json(const SonarTable& table) {
+  json rows = json::array();
+  for (const auto& [x, y] : table) rows.push_back({x, y});
+  return rows;
 }
 
 json water_json(const scene::SonarWater& water) {
@@ -45,7 +52,7 @@ json level_json(const SonarLevel& level) {
            {"spreading", level.spreading},
            {"gain_db", level.gain_db}};
   if (!level.tvg_table.empty()) {
-    out["tvg"] = level.tvg_table;
+    out["tvg"] = rows_json(level.tvg_table);
     return out;
   }
   out["tvg"] = level.tvg_log;
@@ -54,16 +61,14 @@ json level_json(const SonarLevel& level) {
 }
 
 void add_pattern(json& beam, const char* axis, const std::optional<scene::SonarPattern>& pattern) {
-  using Shape = scene::SonarPattern::Shape;
   if (!pattern) return;
-  if (pattern->shape == Shape::kTable) {
-    json& rows = beam[axis] = json::array();
-    for (const auto& [angle_rad, db] : pattern->table) rows.push_back({degrees_of(angle_rad), db});
+  if (pattern->shape == BeamShape::kTable) {
+    SonarTable degrees_db = pattern->table;
+    for (SonarRow& row : degrees_db) row.x = degrees_of(row.x);
+    beam[axis] = rows_json(degrees_db);
     return;
   }
-  beam[axis] = pattern->shape == Shape::kHamming  ? "hamming"
-               : pattern->shape == Shape::kPiston ? "piston"
-                                                  : "sinc";
+  beam[axis] = name_of(pattern->shape);
   beam[std::string(axis) + "_deg"] = degrees_of(pattern->half_power_rad);
 }
 
@@ -131,7 +136,7 @@ json terms_json(const scene::SonarTerms& t) {
   if (t.ghosts) out["ghosts"] = ghosts_json(*t.ghosts);
   if (t.profile)
     out["sound_speed"] = {{"rays", t.profile->bent ? "bent" : "straight"},
-                          {"profile", t.profile->table}};
+                          {"profile", rows_json(t.profile->table)}};
   if (t.motion) out["motion"] = motion_json(*t.motion);
   if (t.labels.energy || t.labels.coco)
     out["labels"] = {{"energy", t.labels.energy}, {"coco", t.labels.coco}};

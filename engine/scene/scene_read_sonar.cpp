@@ -132,7 +132,7 @@ void check_cone_beam(TableReader& reader, const SonarBeam& beam) {
 void check_beam(TableReader& reader, const Sonar& sonar) {
   const SonarBeam& beam = sonar.terms.beam;
   const auto is_disc = [](const auto& pattern) {
-    return pattern && pattern->shape == SonarPattern::Shape::kPiston;
+    return pattern && pattern->shape == BeamShape::kPiston;
   };
   if ((is_disc(beam.azimuth) || is_disc(beam.elevation)) && sonar.kind != SonarKind::kEchoSounder)
     reader.refuse("beam", "piston, a disc, of kind \"echosounder\" only");

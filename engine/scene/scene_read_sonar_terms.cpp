@@ -110,16 +110,16 @@ std::optional<SonarPattern> read_pattern(TableReader& reader, Key key, Key width
   }
   SonarPattern pattern;
   if (is_table(*value)) {
-    pattern.shape = SonarPattern::Shape::kTable;
+    pattern.shape = BeamShape::kTable;
     pattern.table = read_table(reader, key, kPatternTable);
-    for (auto& row : pattern.table) row[0] = radians(row[0]);
+    for (SonarRow& row : pattern.table) row.x = radians(row.x);
     refuse_beside(reader, width, "beside a table");
     return pattern;
   }
   if (is_text(value, "hamming"))
-    pattern.shape = SonarPattern::Shape::kHamming;
+    pattern.shape = BeamShape::kHamming;
   else if (is_text(value, "piston"))
-    pattern.shape = SonarPattern::Shape::kPiston;
+    pattern.shape = BeamShape::kPiston;
   else if (!is_text(value, "sinc"))
     reader.refuse(key, "sinc, hamming, piston, or " + table_text(kPatternTable));
   pattern.half_power_rad = radians(reader.number(width, 1.0, {0.001, 180, false, true, "degrees"}));

@@ -20,8 +20,8 @@ Result<SonarTable> make_table(const Rows& rows, const TableFormat& format, Value
       return refusal(
           place(i), fmt::format("{}, {}", v[0], v[1]),
           fmt::format("{} in {} and {}", format.columns, format.x.text(), format.y.text()));
-    if (!table.empty() && !(v[0] > table.back()[0]))
-      return refusal(place(i), fmt::format("{} after {}", v[0], table.back()[0]),
+    if (!table.empty() && !(v[0] > table.back().x))
+      return refusal(place(i), fmt::format("{} after {}", v[0], table.back().x),
                      fmt::format("{}, the first column rising", format.columns));
     table.push_back({v[0], v[1]});
   }

@@ -28,8 +28,12 @@ struct SonarWater {
   bool operator==(const SonarWater&) const = default;
 };
 
-// A column of a table read from a file or a list: x strictly increasing.
-using SonarTable = std::vector<std::array<double, 2>>;
+// A table of two columns, read from a file or a list: x strictly increasing.
+struct SonarRow {
+  double x = 0.0, y = 0.0;
+  bool operator==(const SonarRow&) const = default;
+};
+using SonarTable = std::vector<SonarRow>;
 
 // Decibels: echo level = source level - 2 transmission loss + target strength, then the receiver.
 // Absent: the published model's plain cosine.
@@ -46,11 +50,17 @@ struct SonarLevel {
   bool operator==(const SonarLevel&) const = default;
 };
 
+// One-way beam pattern over the sine of the angle, of an aperture of length L (sonar/beam_pattern).
+enum class BeamShape {
+  kSinc,     // uniform line or rectangle side L: sin(pi u) / (pi u)
+  kHamming,  // line with Hamming weights, continuous: side lobes below -42 dB
+  kPiston,   // circular, L its diameter: 2 J1(pi u) / (pi u)
+  kTable,    // measured
+};
+
 // One axis' one-way beam pattern.
 struct SonarPattern {
-  // Sinc; a Hamming-shaded line; a disc (echo sounders); from a file.
-  enum class Shape { kUniform, kHamming, kPiston, kTable };
-  Shape shape = Shape::kUniform;
+  BeamShape shape = BeamShape::kSinc;
   double half_power_rad = radians(1.0);  // full width at half power of one way
   // Off-axis angle (radians, -pi to pi; without negative ones both sides are alike), decibels.
   SonarTable table;

@@ -101,8 +101,8 @@ floor_db = 12
   t.frequency_hz = 450e3;
   t.water = {-1.5, 12, 7.5, 300, 1490};
   t.level = SonarLevel{210, SonarLevel::Absorption::kAinslieMcColm, 0, false, 30, true, {}, -6};
-  t.beam.azimuth = SonarPattern{SonarPattern::Shape::kHamming, radians(0.5), {}};
-  t.beam.elevation = SonarPattern{SonarPattern::Shape::kUniform, radians(20.0), {}};
+  t.beam.azimuth = SonarPattern{BeamShape::kHamming, radians(0.5), {}};
+  t.beam.elevation = SonarPattern{BeamShape::kSinc, radians(20.0), {}};
   t.beam.samples = 4;
   t.beam.steering = SonarBeam::Steering::kFlat;
   t.beam.two_way = true;
@@ -139,7 +139,7 @@ TEST(SceneSonar, DetectionAndPatternsOfSomeKinds) {
             9u);
   EXPECT_EQ(sonar_of(scratch, "kind = 'echosounder'\nbeam = {elevation = 'piston'}")
                 .terms.beam.elevation->shape,
-            SonarPattern::Shape::kPiston);
+            BeamShape::kPiston);
 }
 
 TEST(SceneSonar, TablesComeFromFilesBesideTheScene) {
@@ -156,7 +156,7 @@ sound_speed = { profile = "svp.csv" }
   EXPECT_EQ(sonar.terms.level->tvg_log, 0.0);
   EXPECT_EQ(sonar.terms.level->absorption, SonarLevel::Absorption::kFixed);
   EXPECT_EQ(sonar.terms.level->absorption_db_per_m, 0.05);
-  EXPECT_EQ(sonar.terms.beam.elevation->shape, SonarPattern::Shape::kTable);
+  EXPECT_EQ(sonar.terms.beam.elevation->shape, BeamShape::kTable);
   EXPECT_EQ(sonar.terms.beam.elevation->table,
             (SonarTable{{0, 0}, {radians(2.0), -3.5}, {radians(5.0), -40}}));
   EXPECT_EQ(sonar.terms.beam.azimuth->table,

@@ -11,11 +11,11 @@
 namespace neritic {
 namespace {
 
-using sonar::BeamKind;
 using sonar::BeamPattern;
+using sonar::BeamShape;
 
 // The greatest response off the axis between two u, in dB one way, and where.
-std::pair<double, double> side_lobe(BeamKind kind, double from, double to) {
+std::pair<double, double> side_lobe(BeamShape kind, double from, double to) {
   double highest = 0.0, at = 0.0;
   for (double u = from; u < to; u += 1e-5)
     if (std::abs(sonar::beam_response(kind, u)) > highest)
@@ -23,14 +23,14 @@ std::pair<double, double> side_lobe(BeamKind kind, double from, double to) {
   return {20.0 * std::log10(highest), at};
 }
 
-constexpr BeamKind kClosedForms[] = {BeamKind::kSinc, BeamKind::kHamming, BeamKind::kPiston};
+constexpr BeamShape kClosedForms[] = {BeamShape::kSinc, BeamShape::kHamming, BeamShape::kPiston};
 
 TEST(SonarBeamPattern, UniformLineHasTheTextbookWidthAndSideLobe) {
-  EXPECT_NEAR(sonar::half_power_u(BeamKind::kSinc), 0.4429464706894523, 1e-12);
-  const auto [level_db, u] = side_lobe(BeamKind::kSinc, 1.0, 2.0);
+  EXPECT_NEAR(sonar::half_power_u(BeamShape::kSinc), 0.4429464706894523, 1e-12);
+  const auto [level_db, u] = side_lobe(BeamShape::kSinc, 1.0, 2.0);
   EXPECT_NEAR(level_db, -13.26146, 1e-5);
   EXPECT_NEAR(u, 1.4303, 5e-5);
-  const auto line = *BeamPattern::of_length(BeamKind::kSinc, 100.0);
+  const auto line = *BeamPattern::of_length(BeamShape::kSinc, 100.0);
   const double theta = std::asin(u / 100.0);
   EXPECT_NEAR(10 * std::log10(line.two_way_power(theta)), -26.52, 0.005);
   EXPECT_LT(line.amplitude(theta), 0.0);  // of opposite phase
@@ -39,9 +39,9 @@ TEST(SonarBeamPattern, UniformLineHasTheTextbookWidthAndSideLobe) {
 }
 
 TEST(SonarBeamPattern, PistonHasTheTextbookWidthAndSideLobe) {
-  EXPECT_NEAR(kPi * sonar::half_power_u(BeamKind::kPiston), 1.61634, 1e-5);
-  const auto piston = *BeamPattern::of_length(BeamKind::kPiston, 20.0);
-  const auto [level_db, u] = side_lobe(BeamKind::kPiston, 1.22, 2.23);
+  EXPECT_NEAR(kPi * sonar::half_power_u(BeamShape::kPiston), 1.61634, 1e-5);
+  const auto piston = *BeamPattern::of_length(BeamShape::kPiston, 20.0);
+  const auto [level_db, u] = side_lobe(BeamShape::kPiston, 1.22, 2.23);
   EXPECT_NEAR(level_db, -17.5702, 5e-4);
   EXPECT_NEAR(kPi * u, 5.1356, 5e-4);
   EXPECT_NEAR(piston.amplitude(piston.second_null_rad()), 0.0, 1e-5);
@@ -49,7 +49,7 @@ TEST(SonarBeamPattern, PistonHasTheTextbookWidthAndSideLobe) {
 }
 
 TEST(SonarBeamPattern, HammingLineIsTheTransformOfItsWeights) {
-  const auto line = *BeamPattern::of_length(BeamKind::kHamming, 10.0);
+  const auto line = *BeamPattern::of_length(BeamShape::kHamming, 10.0);
   for (const double theta : {0.0, 0.01, 0.1, 0.2, 0.5, 1.0, 1.5}) {
     const double u = 10.0 * std::sin(theta);
     double sum = 0.0;
@@ -60,15 +60,15 @@ TEST(SonarBeamPattern, HammingLineIsTheTransformOfItsWeights) {
     }
     EXPECT_NEAR(line.amplitude(theta), sum / 0.54, 1e-7) << theta;
   }
-  EXPECT_NEAR(sonar::half_power_u(BeamKind::kHamming) * 2, 1.30, 0.005);  // Harris 1978, table I
+  EXPECT_NEAR(sonar::half_power_u(BeamShape::kHamming) * 2, 1.30, 0.005);  // Harris 1978, table I
   double highest = 0.0;
   for (double u = 2.0; u < 10.0; u += 1e-3)
-    highest = std::max(highest, std::abs(sonar::beam_response(BeamKind::kHamming, u)));
+    highest = std::max(highest, std::abs(sonar::beam_response(BeamShape::kHamming, u)));
   EXPECT_NEAR(20 * std::log10(highest), -42.7, 0.3);
 }
 
 TEST(SonarBeamPattern, AWidthIsWhereHalfThePowerIsLeft) {
-  for (const BeamKind kind : kClosedForms) {
+  for (const BeamShape kind : kClosedForms) {
     const auto pattern = *BeamPattern::of_half_power_width(kind, 0.3);
     EXPECT_NEAR(pattern.half_power_width_rad(), 0.3, 1e-9) << name_of(kind);
   }
@@ -83,7 +83,7 @@ TEST(SonarBeamPattern, AWidthIsWhereHalfThePowerIsLeft) {
 }
 
 TEST(SonarBeamPattern, WidthsAreSolvedExactly) {
-  for (const BeamKind kind : kClosedForms)
+  for (const BeamShape kind : kClosedForms)
     for (const double width_deg : {0.1, 0.6, 2.0, 12.0, 25.0, 60.0, 120.0, 179.0}) {
       const auto pattern = BeamPattern::of_half_power_width(kind, radians(width_deg));
       ASSERT_TRUE(pattern.ok());
@@ -92,7 +92,7 @@ TEST(SonarBeamPattern, WidthsAreSolvedExactly) {
 }
 
 TEST(SonarBeamPattern, IsOneOnTheAxisEvenBaffledAndNeverLouder) {
-  for (const BeamKind kind : kClosedForms)
+  for (const BeamShape kind : kClosedForms)
     for (const double length : {0.001, 0.4, 1.0, 7.5, 1000.0}) {
       const auto pattern = *BeamPattern::of_length(kind, length);
       EXPECT_EQ(pattern.amplitude(0.0), 1.0);
@@ -104,13 +104,13 @@ TEST(SonarBeamPattern, IsOneOnTheAxisEvenBaffledAndNeverLouder) {
         }
       }
     }
-  const auto shortest = *BeamPattern::of_length(BeamKind::kSinc, 0.3);
+  const auto shortest = *BeamPattern::of_length(BeamShape::kSinc, 0.3);
   EXPECT_EQ(shortest.second_null_rad(), kPi / 2);  // too short to have one
   EXPECT_TRUE(std::isnan(shortest.amplitude(std::nan(""))));
 }
 
 TEST(SonarBeamPattern, SteeredBeamsWidenAsOneOverTheCosine) {
-  const auto line = *BeamPattern::of_length(BeamKind::kSinc, 100.0);
+  const auto line = *BeamPattern::of_length(BeamShape::kSinc, 100.0);
   for (const double steer_deg : {0.0, 30.0, 60.0}) {
     const double steer = radians(steer_deg), offset = 0.4429464706894523 / 100.0;
     EXPECT_EQ(line.steered_amplitude(steer, steer), 1.0);
@@ -121,10 +121,10 @@ TEST(SonarBeamPattern, SteeredBeamsWidenAsOneOverTheCosine) {
 }
 
 TEST(SonarBeamPattern, RefusesWhatIsNoBeam) {
-  EXPECT_FALSE(BeamPattern::of_length(BeamKind::kSinc, 0.0).ok());
-  EXPECT_FALSE(BeamPattern::of_length(BeamKind::kSinc, std::nan("")).ok());
-  EXPECT_FALSE(BeamPattern::of_half_power_width(BeamKind::kSinc, kPi).ok());
-  EXPECT_FALSE(BeamPattern::of_half_power_width(BeamKind::kTable, 0.1).ok());
+  EXPECT_FALSE(BeamPattern::of_length(BeamShape::kSinc, 0.0).ok());
+  EXPECT_FALSE(BeamPattern::of_length(BeamShape::kSinc, std::nan("")).ok());
+  EXPECT_FALSE(BeamPattern::of_half_power_width(BeamShape::kSinc, kPi).ok());
+  EXPECT_FALSE(BeamPattern::of_half_power_width(BeamShape::kTable, 0.1).ok());
 }
 
 TEST(SonarBeamPattern, TablesAreInterpolatedAndMirrored) {

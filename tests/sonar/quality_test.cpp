@@ -87,9 +87,9 @@ TEST(SonarQuality, ALevelWinsAndASecondTimeChangesNothing) {
 
 // A one-way pattern of that half-power width as a table of decibels, by its closed form.
 scene::SonarPattern table_of(double half_power_rad) {
-  const auto line = BeamPattern::of_half_power_width(BeamKind::kSinc, half_power_rad);
+  const auto line = BeamPattern::of_half_power_width(BeamShape::kSinc, half_power_rad);
   EXPECT_TRUE(line.ok());
-  scene::SonarPattern pattern{.shape = scene::SonarPattern::Shape::kTable, .table = {}};
+  scene::SonarPattern pattern{.shape = scene::BeamShape::kTable, .table = {}};
   for (int i = 0; i <= 40; ++i) {
     const double theta = i / 40.0 * half_power_rad;
     pattern.table.push_back({theta, 20.0 * std::log10(line->amplitude(theta))});
@@ -98,12 +98,11 @@ scene::SonarPattern table_of(double half_power_rad) {
 }
 
 TEST(SonarQuality, ASecondTimeChangesNothingWhateverThePattern) {
-  using Shape = scene::SonarPattern::Shape;
+  using Shape = scene::BeamShape;
   for (const SonarKind kind : kKinds)
     for (const QualityLevel& level : quality_levels(kind))
       for (const double width_deg : {0.3, 2.0, 40.0})
-        for (const Shape shape :
-             {Shape::kUniform, Shape::kHamming, Shape::kPiston, Shape::kTable}) {
+        for (const Shape shape : {Shape::kSinc, Shape::kHamming, Shape::kPiston, Shape::kTable}) {
           scene::Sonar sonar = sonar_of(kind);
           sonar.quality = level.name;
           sonar.terms.beam.azimuth =

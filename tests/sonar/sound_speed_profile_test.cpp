@@ -16,7 +16,7 @@ namespace {
 using sonar::RayPoint;
 using sonar::SoundSpeedProfile;
 
-SoundSpeedProfile profile(sonar::Table rows) {
+SoundSpeedProfile profile(scene::SonarTable rows) {
   auto made = SoundSpeedProfile::of_table(std::move(rows));
   EXPECT_TRUE(made.ok());
   return std::move(made).value();
@@ -261,9 +261,8 @@ TEST(SonarRangeCorrection, BentRaysLeaveAlongTheirCircle) {
 TEST(SonarRangeCorrection, ManyRowsAreThinnedWithinTheirTolerance) {
   const scene::SonarTable rows = many_rows(), few = sonar::simplified(rows);
   EXPECT_LT(few.size(), 120u);
-  const auto all = sonar::rows_of(rows), some = sonar::rows_of(few);
   for (double depth = 0.0; depth < 200.0; depth += 0.013)
-    EXPECT_NEAR(sonar::interpolate(some, depth), sonar::interpolate(all, depth), 0.0101);
+    EXPECT_NEAR(sonar::interpolate(few, depth), sonar::interpolate(rows, depth), 0.0101);
   // Rows without any order keep to the limit.
   scene::SonarTable noisy;
   for (int i = 0; i < 100000; ++i) noisy.push_back({0.05 * i, 1500.0 + (i * 7919 % 101) * 0.1});

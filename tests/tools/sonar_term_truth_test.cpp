@@ -148,7 +148,7 @@ TEST(TermTruth, ABentRaysPatternIsThatOfWhereItLeaves) {
   sonar.terms.profile->bent = true;
   const double leaves_rad = std::atan(80.0 * 2.5 / 3000.0);
   const auto pattern =
-      sonar::BeamPattern::of_half_power_width(sonar::BeamKind::kSinc, radians(7.0));
+      sonar::BeamPattern::of_half_power_width(sonar::BeamShape::kSinc, radians(7.0));
   ASSERT_TRUE(pattern.ok());
   EXPECT_NEAR(total(trace(*world, sonar, view)) / straight, pattern->two_way_power(leaves_rad),
               0.03 * pattern->two_way_power(leaves_rad));

@@ -16,8 +16,8 @@ SonarTerms every_term() {
   SonarTerms t;
   t.frequency_hz = 900e3;
   t.level = scene::SonarLevel{.tvg_log = 40.0, .tvg_absorption = true};
-  t.beam.azimuth = scene::SonarPattern{.shape = scene::SonarPattern::Shape::kHamming,
-                                       .half_power_rad = radians(0.6)};
+  t.beam.azimuth =
+      scene::SonarPattern{.shape = scene::BeamShape::kHamming, .half_power_rad = radians(0.6)};
   t.beam.elevation = scene::SonarPattern{.half_power_rad = radians(20.0)};
   t.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 60e3};
   t.speckle = scene::SonarSpeckle{};

@@ -49,9 +49,7 @@ std::vector<TermPoint> profile_tables(const scene::Sonar& sonar, double depth_m)
   scene::SonarProfile straight = *sonar.terms.profile, bent = straight;
   straight.bent = false;
   bent.bent = true;
-  sonar::Table rows;
-  for (const auto& [depth, speed] : straight.table) rows.push_back({depth, speed});
-  const auto profile = sonar::SoundSpeedProfile::of_table(std::move(rows));
+  const auto profile = sonar::SoundSpeedProfile::of_table(straight.table);
   NERITIC_CHECK(profile.ok(), "profile: {}", profile.ok() ? "" : profile.error().message);
   std::vector<TermPoint> out;
   for (const sonar::RangeCorrectionSize size :

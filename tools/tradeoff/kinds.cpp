@@ -9,7 +9,7 @@ namespace {
 
 using scene::Sonar;
 using scene::SonarKind;
-using Shape = scene::SonarPattern::Shape;
+using Shape = scene::BeamShape;
 
 scene::SonarPattern pattern(Shape shape, double half_power_rad) {
   return {.shape = shape, .half_power_rad = half_power_rad, .table = {}};
@@ -54,7 +54,7 @@ KindSetting imaging(const Sonar& like, const Pose& place) {
   s.azimuth_rad = like.azimuth_rad;
   s.bins_azimuth = 360;
   s.terms.beam.azimuth = pattern(Shape::kHamming, s.azimuth_rad / 90.0);
-  s.terms.beam.elevation = pattern(Shape::kUniform, s.elevation_rad);
+  s.terms.beam.elevation = pattern(Shape::kSinc, s.elevation_rad);
   return {s, {0.5, 2, 1000}, {{place, 0}}};
 }
 
@@ -63,13 +63,13 @@ KindSetting profiling(const Sonar& like, const Pose& down, double altitude_m) {
   s.azimuth_rad = radians(90.0);
   s.bins_azimuth = 256;
   s.terms.beam.azimuth = pattern(Shape::kHamming, radians(0.7));
-  s.terms.beam.elevation = pattern(Shape::kUniform, radians(0.7));
+  s.terms.beam.elevation = pattern(Shape::kSinc, radians(0.7));
   return {s, {0.5, 2, 16}, {{down, 0}}};
 }
 
 KindSetting echo_sounder(const Sonar& like, const std::vector<Shot>& shots, double altitude_m) {
   Sonar s = sensor(like, SonarKind::kEchoSounder, 1.5 * altitude_m, radians(25.0));
-  s.terms.beam.elevation = pattern(Shape::kUniform, radians(12.0));
+  s.terms.beam.elevation = pattern(Shape::kSinc, radians(12.0));
   return {s, {0.5, 64, 64}, shots};
 }
 
@@ -77,8 +77,8 @@ KindSetting side_scan(const Sonar& like, const std::vector<Shot>& shots) {
   Sonar s = sensor(like, SonarKind::kSideScan, like.range_max_m, radians(60.0));
   s.azimuth_rad = radians(1.0);
   s.bins_azimuth = 1;
-  s.terms.beam.azimuth = pattern(Shape::kUniform, radians(1.0));
-  s.terms.beam.elevation = pattern(Shape::kUniform, radians(50.0));
+  s.terms.beam.azimuth = pattern(Shape::kSinc, radians(1.0));
+  s.terms.beam.elevation = pattern(Shape::kSinc, radians(50.0));
   return {s, {0.5, 4, 1000}, shots};
 }
 
@@ -87,8 +87,8 @@ KindSetting mechanical(const Sonar& like, const Pose& place) {
   s.azimuth_rad = 2.0 * kPi;
   s.step_rad = radians(0.9);
   s.bins_azimuth = 1;
-  s.terms.beam.azimuth = pattern(Shape::kUniform, radians(2.0));
-  s.terms.beam.elevation = pattern(Shape::kUniform, radians(25.0));
+  s.terms.beam.azimuth = pattern(Shape::kSinc, radians(2.0));
+  s.terms.beam.elevation = pattern(Shape::kSinc, radians(25.0));
   KindSetting out{s, {0.5, 4, 1000}, {}};
   for (const std::uint32_t step : {160u, 175u, 200u, 212u, 240u})
     out.shots.push_back({place, step});

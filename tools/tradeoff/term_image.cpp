@@ -62,9 +62,7 @@ Result<TermImage> TermImage::create(const scene::Sonar& sonar, const sonar::Head
   made.sound_speed_m_s_ = ping.sound_speed_m_s;
   made.absorption_db_per_m_ = ping.absorption_db_per_m;
   if (const auto& profile = sonar.terms.profile) {
-    sonar::Table rows;
-    for (const auto& [depth_m, speed] : profile->table) rows.push_back({depth_m, speed});
-    NERITIC_TRY(made.profile_, sonar::SoundSpeedProfile::of_table(std::move(rows)));
+    NERITIC_TRY(made.profile_, sonar::SoundSpeedProfile::of_table(profile->table));
     const double c = made.sound_speed_m_s_, range_m = head.beams.limits.range_max_m;
     if (profile->bent)
       made.bent_ = sonar::range_correction(*profile, view.depth_m, range_m, c, kFineTable);

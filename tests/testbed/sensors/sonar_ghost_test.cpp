@@ -60,7 +60,7 @@ TEST_F(SonarGhost, EachLegPassesThePatternOnce) {
   const auto expect = [&](double width_rad) {
     scene.sonars[0].terms.beam.elevation = scene::SonarPattern{.half_power_rad = width_rad};
     NERITIC_ASSERT_OK(const sonar::BeamPattern pattern,
-                      sonar::BeamPattern::of_half_power_width(sonar::BeamKind::kSinc, width_rad));
+                      sonar::BeamPattern::of_half_power_width(sonar::BeamShape::kSinc, width_rad));
     const double amplitude = pattern.amplitude(std::atan2(2.0 * kDepth_m, kRange_m));
     EXPECT_NEAR(ghost_over_direct_db(device(), scene, 1.0),
                 closed_form_db(1.0, amplitude * amplitude), 0.3)

@@ -125,7 +125,7 @@ TEST_F(SonarPresets, ASideScansAltitudeIsTheBottomsHeight) {
 std::pair<double, double> spread_over_closed_form_db(const SonarFrame& frame, double height_m,
                                                      double nearest_m) {
   const auto pattern = sonar::BeamPattern::of_half_power_width(
-      sonar::BeamKind::kSinc, frame.terms.beam.elevation->half_power_rad);
+      sonar::BeamShape::kSinc, frame.terms.beam.elevation->half_power_rad);
   EXPECT_TRUE(pattern.ok());
   const sonar::SonarImage& image = frame.image;
   double least = 1e9, most = -1e9;

@@ -170,7 +170,7 @@ scene::Scene tilted_floor(double range_m, const scene::Sonar& sonar) {
 // phase of its path there and back.
 double expected_correlation(double x_m, double range_m, double half_power_rad, double turns_per_m) {
   const auto pattern =
-      sonar::BeamPattern::of_half_power_width(sonar::BeamKind::kHamming, half_power_rad);
+      sonar::BeamPattern::of_half_power_width(sonar::BeamShape::kHamming, half_power_rad);
   double real = 0.0, imaginary = 0.0, power = 0.0;
   for (double at_m = -0.6; at_m <= 0.6; at_m += 1e-4) {
     const auto amplitude = [&](double off_m) {

@@ -37,8 +37,8 @@ inline scene::SonarTerms every_term() {
   t.frequency_hz = 450e3;
   t.level = scene::SonarLevel{.tvg_log = 30.0, .tvg_absorption = true};
   t.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(4.0)};
-  t.beam.elevation = scene::SonarPattern{.shape = scene::SonarPattern::Shape::kHamming,
-                                         .half_power_rad = radians(30.0)};
+  t.beam.elevation =
+      scene::SonarPattern{.shape = scene::BeamShape::kHamming, .half_power_rad = radians(30.0)};
   t.beam.samples = 2;
   t.range_spread = scene::SonarRangeSpread{};
   t.speckle = scene::SonarSpeckle{.shape = 2.0};
@@ -54,7 +54,7 @@ inline scene::SonarTerms every_term() {
 // Those again in the other shapes that patterns, steering and gain can have, each with a kind that
 // takes it.
 inline std::vector<std::pair<scene::SonarKind, scene::SonarTerms>> other_shapes() {
-  using Shape = scene::SonarPattern::Shape;
+  using Shape = scene::BeamShape;
   scene::SonarTerms flat = every_term();
   flat.beam.steering = scene::SonarBeam::Steering::kFlat;
   flat.level->tvg_log = 0.0;

@@ -124,7 +124,7 @@ TEST_F(SonarTerms, ABentRaysPatternIsThatOfWhereItLeaves) {
   EXPECT_NEAR(tilt_rad, -std::atan(kPlateOff_m * 2.5 / 3000.0), 1e-12);
   sonar.terms.beam.elevation = scene::SonarPattern{.half_power_rad = half_power_rad};
   NERITIC_ASSERT_OK(const auto pattern, sonar::BeamPattern::of_half_power_width(
-                                            sonar::BeamKind::kSinc, half_power_rad));
+                                            sonar::BeamShape::kSinc, half_power_rad));
   const auto mean_db = [&](bool bent, double axis_rad) {
     double sum = 0.0;
     constexpr int kSteps = 200;
