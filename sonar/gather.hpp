@@ -79,7 +79,7 @@ struct GatherOptions {
   std::optional<EchoOptions> echo;
 };
 
-// What one dispatch gathers: rows of cells, and (published) of them these rows of pixels.
+// One dispatch gathers these rows of cells, and (published) these rows of pixels of them.
 struct GatherPart {
   std::uint32_t first_row = 0, end_row = 0, first_v = 0, end_v = 0;
 };
@@ -120,7 +120,7 @@ class SonarGather {
   // graph's run.
   Outputs declare(graph::FrameGraph& graph, const Inputs& inputs) const;
 
-  // What a buffer is made for that is a target of sums or keys.
+  // Usage of a buffer that is a target of sums or keys.
   VkBufferUsageFlags sums_usage() const;
   std::uint64_t sums_bytes() const;
   std::uint64_t keys_bytes() const;
@@ -158,10 +158,10 @@ class SonarGather {
   gpu::Buffer no_buffer_;
 };
 
-// What a gather does with the ranges that a row's height spans (kSonarFootprint...): it shares
+// How a gather treats the ranges that a row's height spans (kSonarFootprint...): it shares
 // counts out over them, so that a surface at grazing is no comb of single bins, and tells records
 // of beams the span. Where a row may be wider than a range bin (its arc at the farthest range) the
-// span ends where the neighbouring rows' begin. Of the plane gather only: the others do not know
+// span ends where the neighbouring rows' begin. For the plane gather only: the others do not know
 // the surface.
 std::uint32_t footprint_of(const BeamGrid& grid, const GatherOptions& options);
 

@@ -50,6 +50,7 @@ struct HeadPing {
   graph::BufferHandle image;
 };
 
+// Passes borrow it: it stays where it is from begin until the graph has run.
 class HeadGather {
  public:
   static Result<HeadGather> create(gpu::Device& device, HeadDesc desc);
@@ -74,7 +75,7 @@ class HeadGather {
   // Adds the receiver and, if there is a host, what brings the results to it.
   void end(graph::FrameGraph& graph, HeadPing& ping) const;
 
-  // Of a ping with a host, after its frame is done.
+  // The results of a ping with a host, after its frame is done.
   SonarImage image(const HeadPing& ping) const;
   std::optional<LabelImage> label_energy(const HeadPing& ping) const;
 

@@ -14,7 +14,7 @@ namespace neritic::sonar {
 using scene::SonarRow;
 using scene::SonarTable;
 
-// What a table's columns may hold.
+// Accepted values of a table's columns.
 struct TableLimits {
   double x_min = -1e9, x_max = 1e9, y_min = -1e9, y_max = 1e9;
 };

@@ -5,7 +5,7 @@
 namespace neritic::testbed {
 namespace {
 
-// Of a period: frames whose times are sums of fractions may come this much early.
+// Share of a period by which frames, whose times are sums of fractions, may come early.
 constexpr double kEarly = 1e-6;
 
 }  // namespace

@@ -14,8 +14,8 @@ class PingSchedule {
     std::size_t sensor = 0;    // by place in the rates
     std::uint32_t number = 0;  // of its ping: 0, 1, 2, ...
   };
-  // Those whose time has come: at the first call all, then each a period after its last, kept to
-  // its own beat. One that is late pings once, not for every ping missed. Times do not fall.
+  // The sensors whose time has come: at the first call all, then each a period after its last, on
+  // its own beat. A late sensor pings once, not once for each ping missed. Times must not fall.
   std::vector<Due> due(double time_s);
 
  private:

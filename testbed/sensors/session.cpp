@@ -11,7 +11,7 @@
 
 namespace neritic::testbed {
 
-// What a frame's passes borrow, and the buffers that the host reads.
+// Data that a frame's passes borrow, and pins of the buffers that the host reads.
 struct FrameWork {
   TimeNs begun_ns = 0;
   std::uint32_t frame = 0;  // the request's

@@ -1,5 +1,5 @@
-// What a scene's author is told of a sonar that cannot be: one line with the scene's file, the
-// sonar's name and the key. Any thread.
+// Errors about sonars for a scene's author: one line with the scene's file, the sonar's name and
+// the key. Any thread.
 #pragma once
 
 #include "engine/core/result.hpp"

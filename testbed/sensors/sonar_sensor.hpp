@@ -1,4 +1,4 @@
-// One sonar of a session: what it keeps from frame to frame, its part of a frame's graph, and its
+// One sonar of a session: its state from frame to frame, its part of a frame's graph, and its
 // results at the host. Private to testbed/sensors; rendering thread.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace neritic::testbed {
 
-// What the scene's instances send back, for all its sonars: read once, when the session is made.
+// Echo strengths of the scene's instances, for all its sonars: read once, with the session.
 struct EchoTables {
   std::vector<float> reflectivities;      // by instance label; empty: all are 1
   gpu::Buffer reflectivity, backscatter;  // by instance label; empty where no sonar needs them

@@ -1,4 +1,4 @@
-// What a sonar keeps while its settings stay: planned once, and again after a change.
+// A sonar's state while its settings stay: planned once, and again after a change.
 #include <algorithm>
 
 #include "engine/core/intrinsics.hpp"

@@ -1,4 +1,4 @@
-// What Vulkan's validation layers said of a device's work. Rendering thread only.
+// Messages of Vulkan's validation layers about a device's work. Rendering thread only.
 #pragma once
 
 #include "engine/gpu/device.hpp"

@@ -12,7 +12,7 @@
 
 namespace neritic::testbed {
 
-// What all sensors of a frame share while it is declared.
+// Shared by all sensors of a frame while it is declared.
 struct FrameParts {
   graph::FrameGraph& graph;
   gpu::Device& device;
