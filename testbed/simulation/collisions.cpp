@@ -21,7 +21,7 @@ CollisionFinder::Body CollisionFinder::body(OwnerSort sort, std::uint32_t owner,
                                             const PhysicsState& state) const {
   if (sort == OwnerSort::kVehicle) {
     const rov::State& now = state.vehicles()[owner].body;
-    return {world_.vehicles()[owner].solid.shape,
+    return {world_.vehicles()[owner].kind.solid.shape,
             rov::world_pose(now.position_ned_m, now.attitude)};
   }
   const diver::RootState& now = state.humans()[owner].human.root;
@@ -29,8 +29,8 @@ CollisionFinder::Body CollisionFinder::body(OwnerSort sort, std::uint32_t owner,
 }
 
 void CollisionFinder::find_solid(const Body& body, CollisionReading& reading) {
-  world_.solid().contacts(body.shape, body.world_from_body, kApart_m, contacts_);
-  for (const sim::Contact& contact : contacts_) {
+  for (const sim::Contact& contact :
+       world_.solid().contacts(body.shape, body.world_from_body, kApart_m, memory_)) {
     if (-contact.gap_m <= reading.depth_m) continue;
     reading.point_m = contact.point_m;
     reading.normal = contact.normal;

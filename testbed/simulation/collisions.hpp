@@ -3,8 +3,7 @@
 // call to call; one thread at a time.
 #pragma once
 
-#include <vector>
-
+#include "engine/sim/contact_memory.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
@@ -28,7 +27,7 @@ class CollisionFinder {
                   CollisionReading& reading) const;
 
   const PhysicsWorld& world_;
-  std::vector<sim::Contact> contacts_;
+  sim::ContactMemory memory_;
 };
 
 }  // namespace neritic::testbed

@@ -70,7 +70,7 @@ TEST(SonarBeamPattern, HammingLineIsTheTransformOfItsWeights) {
 TEST(SonarBeamPattern, AWidthIsWhereHalfThePowerIsLeft) {
   for (const BeamShape kind : kClosedForms) {
     const auto pattern = *BeamPattern::of_half_power_width(kind, 0.3);
-    EXPECT_NEAR(pattern.half_power_width_rad(), 0.3, 1e-9) << name_of(kind);
+    EXPECT_NEAR(pattern.half_power_width_rad(), 0.3, 1e-9) << sonar::name_of(kind);
   }
   // -3.0103 dB lies 1 + 0.0103 / 3 degrees out to the right, 3.0103 / 6 * 4 to the left.
   const auto lopsided = *BeamPattern::of_table({{-4, -6}, {0, 0}, {1, -3}, {2, -6}, {9, 0}});

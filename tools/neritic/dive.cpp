@@ -13,6 +13,7 @@
 #include "tools/neritic/dive_physics.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/load_scene.hpp"
+#include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
 using namespace testbed;

@@ -185,9 +185,12 @@ TEST_F(SonarFootprint, APileThatReachesAboveTheSonarHidesTheFloorBehindItToTheEn
       for (std::uint32_t row = 0; row < kBins && (behind || beside); ++row) {
         const std::uint16_t found = frame.label_energy->classes[std::size_t{row} * kBeams + column];
         // The pile's farthest ray goes down to its foot, or up over its edge.
-        if (frame.grid.range_m(row) > std::hypot(kNear_m + 0.4, kHeight_m) + 0.1)
+        if (frame.grid.range_m(row) > std::hypot(kNear_m + 0.4, kHeight_m) + 0.1) {
           EXPECT_EQ(found == sonar::kShadow, behind) << column << ", " << frame.grid.range_m(row);
-        if (beside) EXPECT_NE(found, sonar::kShadow) << column << ", " << frame.grid.range_m(row);
+        }
+        if (beside) {
+          EXPECT_NE(found, sonar::kShadow) << column << ", " << frame.grid.range_m(row);
+        }
       }
     }
   }
