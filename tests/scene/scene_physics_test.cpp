@@ -280,7 +280,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "s.toml:7: vehicles[0].mission.follow.object: found \"rov\"; accepted: the "
                      "name of another object or vehicle"},
         WrongPhysics{MISSION "orbit = { radius_m = 3 }",
-                     "s.toml:7: vehicles[0].mission.orbit: none or both of object, point_m; "
+                     "s.toml:7: vehicles[0].mission.orbit: found none or both of object, point_m; "
                      "accepted: one of them"},
         WrongPhysics{BALL MISSION "stand_between = { a = 'ball', b = 'ball' }\nheading_deg = 3",
                      "s.toml:11: vehicles[0].mission.heading_deg: found 3; accepted: no such key "

@@ -185,7 +185,7 @@ TEST_P(TrackError, IsTheDocumentedLine) {
 #define AREA "area_m = [0,0,1,1]"
 #define WAY                                                                                  \
   "s.toml:2: lamps[0].track: found none or more than one of waypoints_m, lawn_mower, file; " \
-  "accepted: one"
+  "accepted: one of them"
 
 INSTANTIATE_TEST_SUITE_P(
     Files, TrackError,
