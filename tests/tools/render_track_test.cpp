@@ -123,8 +123,12 @@ TEST_F(RenderTrack, BoxesOfOneFrameLieOverItsPicture) {
   ASSERT_EQ(heard.size(), picture.data.size());
   const double most = *std::max_element(heard.begin(), heard.end());
   for (std::size_t i = 0; i < heard.size(); ++i) {
-    if (heard[i] == 0.0) EXPECT_EQ(picture.data[i], 0) << i;
-    if (heard[i] > 0.1 * most) EXPECT_GT(picture.data[i], 50) << i;
+    if (heard[i] == 0.0) {
+      EXPECT_EQ(picture.data[i], 0) << i;
+    }
+    if (heard[i] > 0.1 * most) {
+      EXPECT_GT(picture.data[i], 50) << i;
+    }
   }
   std::set<std::string> found;
   for (const auto& a : coco.at("annotations"))
