@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "testbed/record/run_record.hpp"
+#include "testbed/record/source_watch.hpp"
 #include "tests/testbed/simulation/devices.hpp"
 
 namespace neritic::testbed {
@@ -71,13 +72,38 @@ TEST(LiveInputs, ASuitThatFallsSilentIsCountedAndTheAutopilotSwims) {
   EXPECT_EQ(group(dive, DiverGroup::kBody).phase, GroupPhase::kLive);
 }
 
-// Three threads send while the simulation's thread steps on a simulated clock and a fourth bursts.
+// Counts the diver's readings on the stepping thread.
+class Counter final : public StepSink {
+ public:
+  explicit Counter(const PhysicsWorld& world)
+      : stream_(world.streams().find("diver/motion").value()) {}
+  std::vector<StreamId> streams() const override { return {stream_}; }
+  Status accept(const sim::Snapshot<PhysicsState>&, std::span<const Sample> outputs) override {
+    for (const Sample& sample : outputs) gaps += sample.header.sequence != readings++;
+    return {};
+  }
+  Status finish() override { return {}; }
+  std::uint64_t readings = 0, gaps = 0;
+
+ private:
+  StreamId stream_;
+};
+
+// Three threads send while the simulation's thread steps on a simulated clock and gives each step
+// to its sinks, and a fourth bursts.
 TEST(LiveInputs, ABurstBesideTheSteppingThreadIsCountedAndTheRunReplays) {
   const TestDive dive = dive_of(hover_text("body = \"suit\", buttons = \"controllers\""));
   auto reader = dive.simulation->reader();
   sim::SimulatedClock clock;
   Device suit(dive, "suit", "diver/joints"), controllers(dive, "controllers", "diver/buttons"),
       noise(dive, "noise", "diver/gas");
+  std::vector<std::string> told;
+  SourceWatch watch(*dive.world, dive.simulation->inbox(),
+                    [&](const std::string& line) { told.push_back(line); });
+  Counter counter(*dive.world);
+  StepSinks sinks(*dive.world, {&watch, &counter});
+  sinks.accept(dive.simulation->newest());
+  dive.simulation->observe([&](const auto& step) { sinks.accept(step); });
   dive.simulation->start(clock);
   std::vector<std::jthread> threads;
   for (Device* device : {&suit, &controllers})
@@ -97,6 +123,10 @@ TEST(LiveInputs, ABurstBesideTheSteppingThreadIsCountedAndTheRunReplays) {
   for (std::jthread& thread : threads) thread.request_stop();
   for (std::jthread& thread : threads) thread.join();
   dive.simulation->stop();
+  EXPECT_TRUE(sinks.finish().ok());
+  EXPECT_FALSE(told.empty());
+  EXPECT_GE(counter.readings, 120u);  // of 2 s
+  EXPECT_EQ(counter.gaps, 0u);
   EXPECT_EQ(dive.simulation->inbox().counts(noise.source).accepted, 20'000u);
   EXPECT_GT(dive.simulation->inbox().counts(suit.source).not_of_stream, 0u);
   EXPECT_FALSE(replay_run(*dive.world, recorded_run(*dive.world, *dive.simulation), "run.log")
