@@ -7,7 +7,7 @@
 namespace neritic::testbed {
 namespace {
 
-// What held keys push with; with shift, all that there is room for.
+// The force of held keys; with shift, as much as the thrusters have room for.
 constexpr double kPush_n = 30.0, kLift_n = 40.0, kTurn_n_m = 3.0, kFastTurn_n_m = 10.0;
 constexpr double kFullThrust_n = 1e4;
 // Each frame sends the keys. A window that draws none for so long has let go of the vehicle.

@@ -12,8 +12,8 @@ namespace neritic::testbed {
 // "live from suit", "autopilot": the authority that the group has now.
 std::string authority_words(const GroupState& state, const std::vector<std::string>& sources);
 
-// What an operator must know of the group, a clause each: that its source is silent or was never
-// heard and what acts instead, that samples of other sources are not used. Empty: nothing.
+// The troubles of the group, a clause each: its source is silent or was never heard, and what acts
+// instead; samples of other sources are not used. Empty: none.
 std::string trouble_words(const GroupState& state, const std::vector<std::string>& sources);
 
 // A line a group in trouble, "diver: body: suit is silent, autopilot acts". Group: DiverGroup or

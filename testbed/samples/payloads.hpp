@@ -1,4 +1,4 @@
-// What a sample carries: one small plain struct a kind, which lists its fields
+// The contents of samples: one small plain struct a kind, which lists its fields
 // (engine/sim/fields.hpp) so that it can be checked, logged and replayed. World frame unless said
 // otherwise: x east, y up, z south, metres. Body axes are marine: forward, starboard, down (a
 // diver's forward points from the hips to the head). Vehicle readings and instrument states are the
@@ -17,7 +17,7 @@ namespace neritic::testbed {
 
 // Inputs of a diver.
 
-// Where the limbs are measured or wanted: parent_from_child of each joint (diver/segments.hpp).
+// The measured or wanted posture: parent_from_child of each joint (diver/segments.hpp).
 struct BodyJoints {
   diver::JointRotations joints = diver::straight_joints();
   double other_power_w = 0.0;  // work of the body beside what the limbs do to the water
@@ -76,7 +76,7 @@ struct Breath {
   double ventilation_l_min = 0.0;  // measured, at ambient pressure; 0: by effort
   double bias_m3 = 0.0;            // the breath swings around this much more air than at rest
   std::uint64_t hold = 0;          // 1: held
-  diver::BreathState monitor;      // what a breath monitor made of the sound
+  diver::BreathState monitor;      // a breath monitor's estimate from the sound
 
   static void fields(auto&& field, auto& self) {
     field("ventilation_l_min", self.ventilation_l_min);

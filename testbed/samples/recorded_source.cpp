@@ -5,7 +5,7 @@ namespace {
 
 // Times in a log are those of the run that was recorded, so none of its samples is too old.
 constexpr TimeNs kAnyAge_ns = TimeNs{1} << 61;
-// Of the time of a poll, which is a sum of steps.
+// The rounding of the time of a poll.
 constexpr double kRounding_s = 1e-9;
 
 }  // namespace

@@ -15,7 +15,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are copied as
 
 constexpr std::string_view kMagic = "NRTCLOG2", kOldMagic = "NRTCLOG1";
 constexpr std::size_t kMaxStreams = 1'000'000, kMaxFields = 4096, kMaxName = 255;
-// Of a sample without its payload, and of the shortest stream and source.
+// The size of a sample without its payload, and that of the shortest stream and source.
 constexpr std::size_t kHeaderBytes = 8 + 4 + 4 + 8 + 8 + 8, kLeastName = 2;
 
 // Sums of two such times do not overflow: 36 years.

@@ -52,7 +52,7 @@ std::vector<SampleLog::LoggedStream> logged_streams(const StreamTable& table);
 
 // Precondition: at least the hash of the start.
 std::vector<std::byte> encode_sample_log(const SampleLog& log);
-// What is returned keeps the format's promises, and every number is finite. name stands in
+// The returned log keeps the format's promises, and every number is finite. name stands in
 // messages.
 Result<SampleLog> parse_sample_log(std::span<const std::byte> bytes, const std::string& name);
 // kBadInput if the log has samples of a stream that the table lacks.

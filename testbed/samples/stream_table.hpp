@@ -24,13 +24,13 @@ struct Stream {
 
 class StreamTable {
  public:
-  // Of the scene's next diver: inputs, motion, dive computer, collisions, events.
+  // Streams of the scene's next diver: inputs, motion, dive computer, collisions, events.
   void add_diver(const std::string& name);
-  // Of its next vehicle: inputs, the sensors that it has, collisions, events.
+  // Streams of its next vehicle: inputs, the sensors that it has, collisions, events.
   void add_vehicle(const std::string& name, const rov::SensorSet& sensors);
-  // Of its next object that something outside moves.
+  // The stream of its next object that something outside moves.
   void add_object(const std::string& name);
-  // Of its next camera or sonar: cameras first, then sonars.
+  // The stream of its next camera or sonar: cameras first, then sonars.
   void add_sensor(const std::string& name);
 
   std::span<const Stream> streams() const { return streams_; }

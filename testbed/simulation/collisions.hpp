@@ -1,5 +1,5 @@
-// What a vehicle or diver touches, for the samples of its collisions: the nearest thing where the
-// step ended. Asked only for a body that touched something in the step. Its memory is kept from
+// Finds what a vehicle or diver touches, for the samples of its collisions: the nearest thing where
+// the step ended. Asked only for a body that touched something in the step. Its memory is kept from
 // call to call; one thread at a time.
 #pragma once
 

@@ -67,7 +67,7 @@ TimeNs burst_once(const PhysicsWorld& world) {
   burst.join();
   simulation.stop();
   const StepTimes beside = times;  // the step to come is this thread's
-  simulation.advance(1);  // drains the rest
+  simulation.advance(1);           // drains the rest
 
   const SourceCounts counts = simulation.inbox().counts(noise.source);
   const std::uint64_t used = simulation.inputs().humans()[0].of(DiverGroup::kGas).heard;
@@ -86,7 +86,7 @@ TimeNs burst_once(const PhysicsWorld& world) {
 TEST(Burst, OfAMillionSamplesMakesNoStepLateAndEachSampleIsCounted) {
   const TestDive dive = dive_of(hover_text("gas = \"noise\""));
   const auto period_ns = static_cast<TimeNs>(dive.world->step_s() * 1e9);
-  // What makes steps late does so in every run; a virtual machine's host only now and then.
+  // A fault makes steps late in every run; the host of a virtual machine does so now and then.
   TimeNs least_worst_ns = burst_once(*dive.world);
   for (int i = 0; i < 2 && least_worst_ns > period_ns; ++i)
     least_worst_ns = std::min(least_worst_ns, burst_once(*dive.world));

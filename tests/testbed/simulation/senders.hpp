@@ -73,7 +73,7 @@ inline bool wear(const PhysicsWorld& world, PhysicsSimulation& simulation, std::
   const auto kind_of = [](const Payload& payload) {
     return static_cast<PayloadKind>(payload.index());
   };
-  // What is not finite is sent alone.
+  // A payload that is not finite is sent alone.
   for (const Payload& payload : payloads)
     if (!all_finite(payload)) return say(kind_of(payload), payload);
   const Authority by = suit.worn ? Authority::kLive : Authority::kAutopilot;
