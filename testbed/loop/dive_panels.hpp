@@ -1,5 +1,5 @@
-// The panels that `dive` draws over the picture: compass and depth, facts and timings, the live sonars, the
-// keys. Dear ImGui calls between Overlay::begin and Overlay::declare. Rendering thread.
+// The panels that `dive` draws over the picture: compass and depth, facts and timings, the live
+// sonars, the keys. Dear ImGui calls between Overlay::begin and Overlay::declare. Rendering thread.
 #pragma once
 
 #include <imgui.h>

@@ -63,11 +63,12 @@ bool DivePilot::take(const DiveInput& input) {
   if (!physics_) return false;
   if (input.toggle_pilot) flying_ = !flying_;
   wrench_ = wrench_of(input);
+  sent_ = false;
   return flying_;
 }
 
 Status DivePilot::poll(SampleInbox& inbox, double) {
-  if (!physics_) return {};
+  if (!physics_ || std::exchange(sent_, true)) return {};
   NERITIC_TRY_STATUS(watch_->accept(physics_->shown_snapshot(), {}));
   if (flying_ != flew_) hand_over(inbox);
   flew_ = flying_;

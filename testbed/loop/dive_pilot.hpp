@@ -18,10 +18,11 @@ class DivePilot final : public SampleSource {
 
   // Keys of this frame. True while a vehicle is flown: the camera is not then.
   bool take(const DiveInput& input);
-  // Sends what the keys of the newest frame ask for, and logs a line if the authority over any
-  // group of inputs changed.
+  bool flying() const { return flying_; }
+  // Sends what the keys of the newest frame ask for, once, and logs a line if the authority over
+  // any group of inputs changed.
   Status poll(SampleInbox& inbox, double scene_time_s) override;
-  // The riding view; precondition: take() said true.
+  // The riding view; precondition: flying().
   Pose world_from_view() const;
   // For the panels: a line a vehicle, then one a group of inputs whose source is silent or that
   // does not use the samples sent to it.
@@ -35,6 +36,7 @@ class DivePilot final : public SampleSource {
   std::size_t vehicle_ = 0;  // the one that the view is on, else the first
   Pose vehicle_from_view_;
   bool flying_ = false, flew_ = false;  // now, and at the last poll
+  bool sent_ = true;                    // the newest keys
   VehicleWrench wrench_;                // of the newest keys
   std::optional<SourceWatch> watch_;
   SourceId source_ = kSimulation;            // the keyboard

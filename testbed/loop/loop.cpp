@@ -1,9 +1,12 @@
 #include "testbed/loop/loop.hpp"
 
 #include "engine/core/clock.hpp"
+#include "testbed/loop/dive_view.hpp"
 
 namespace neritic::testbed {
 namespace {
+
+constexpr double kSlack_s = 1e-6;  // sums of frames' periods are rounded
 
 PingSchedule schedule_of(const LoopSensors& sensors) {
   const scene::Scene& scene = sensors.session->scene();
@@ -13,9 +16,21 @@ PingSchedule schedule_of(const LoopSensors& sensors) {
   return PingSchedule(rates_hz);
 }
 
+void take_due(PingSchedule& schedule, const LoopSensors& sensors, FrameRequest& request) {
+  for (const PingSchedule::Due& due : schedule.due(request.time_s)) {
+    if (due.sensor < sensors.cameras.size()) {
+      request.cameras.push_back(sensors.cameras[due.sensor]);
+    } else {
+      request.sonars.push_back(sensors.sonars[due.sensor - sensors.cameras.size()]);
+      request.pings.push_back(due.number);
+    }
+  }
+}
+
 }  // namespace
 
 Loop::Loop(LoopParts parts) : parts_(std::move(parts)) {
+  NERITIC_CHECK(parts_.sensors || (parts_.physics && !parts_.view), "nothing to run");
   if (parts_.physics && !parts_.step_sinks.empty())
     steps_.emplace(parts_.physics->world(), parts_.step_sinks);
   if (parts_.sensors && parts_.sensors->own_rates) schedule_ = schedule_of(*parts_.sensors);
@@ -26,7 +41,6 @@ Status Loop::run() {
   if (parts_.physics) {
     if (steps_) parts_.physics->observe([this](const auto& step) { steps_->accept(step); });
     parts_.physics->listen(parts_.sources);
-    parts_.physics->start();
   }
   const Status status = run_frames();
   if (parts_.physics) parts_.physics->stop();
@@ -35,11 +49,9 @@ Status Loop::run() {
 }
 
 Status Loop::run_frames() {
-  while (parts_.stop.frames == 0 || frames_ < parts_.stop.frames) {
-    if (stopped()) return {};
-    NERITIC_TRY_STATUS(frame());
-  }
-  return {};
+  while (!last_ && !quit_ && !stopped()) NERITIC_TRY_STATUS(frame());
+  NERITIC_TRY_STATUS(give_done(true));
+  return parts_.view ? parts_.view->finish() : Status();
 }
 
 bool Loop::stopped() {
@@ -49,52 +61,121 @@ bool Loop::stopped() {
 }
 
 Status Loop::frame() {
-  const FrameTime at = parts_.clock.next(std::nullopt);
+  DiveView* view = parts_.view;
+  std::optional<TimeNs> display_at_ns;
+  if (view) {
+    NERITIC_TRY(const xr::FrameVerdict verdict, view->begin_frame());
+    if (verdict == xr::FrameVerdict::kQuit) {
+      quit_ = true;
+      return {};
+    }
+    display_at_ns = view->display_at_ns();
+  }
+  const FrameTime at = parts_.clock.next(display_at_ns);
+  if (!std::exchange(started_, true)) {
+    if (parts_.physics) parts_.physics->start();
+    end_s_ = at.time_s + parts_.stop.seconds - kSlack_s;
+  }
+  if (view && view->take_input()) quit_ = true;  // after this frame
+  const double time_s = advance(at);
+  if (stopped()) return {};
+  last_ = is_last(time_s);
   if (!parts_.sensors) {
-    parts_.physics->advance();
-    if (parts_.physics->listening().ok()) ++frames_;
+    ++frames_;
     return {};
   }
-  return sense(at);
+  FrameRequest request = request_at(at, time_s);
+  if (parts_.physics && request.capture.motion && !request.cameras.empty()) {
+    // The pixels of a motion image lead to the next frame.
+    parts_.physics->reach(request.next_time_s, [this] { return stopped(); });
+    if (stopped()) return {};
+  }
+  return view ? show(request) : sense(request);
 }
 
-Status Loop::sense(const FrameTime& at) {
+// The simulation, up to the frame; gives the frame's scene time.
+double Loop::advance(const FrameTime& at) {
+  LivePhysics* physics = parts_.physics;
+  if (!physics) return at.time_s;
+  if (parts_.sensors) return physics->follow(at.host_ns, at.time_s, [this] { return stopped(); });
+  physics->advance();
+  return physics->newest().time_s;
+}
+
+// Whether the frame at that time ends the run. One that is hidden is none of stop.frames.
+bool Loop::is_last(double time_s) {
+  const bool counts = !parts_.view || parts_.view->shown();
+  return (parts_.stop.frames > 0 && counts && frames_ + 1 >= parts_.stop.frames) ||
+         (parts_.stop.seconds > 0.0 && time_s >= end_s_);
+}
+
+FrameRequest Loop::request_at(const FrameTime& at, double time_s) {
   const LoopSensors& sensors = *parts_.sensors;
   FrameRequest request;
-  request.time_s = at.time_s;
-  request.next_time_s = at.next_time_s;
-  request.frame = static_cast<std::uint32_t>(frames_);
-  request.cameras = sensors.cameras;
-  request.sonars = sensors.sonars;
+  request.time_s = time_s;
+  // When the next frame of a thread's simulation is, only its clock will say.
+  request.next_time_s = time_s == at.time_s ? at.next_time_s : time_s;
+  request.frame = static_cast<std::uint32_t>(sensed_);
   request.capture = sensors.capture;
-  if (schedule_) take_due(request);
-  if (LivePhysics* physics = parts_.physics) {
-    const auto stop = [this] { return stopped(); };
-    physics->follow(at.host_ns, request.time_s, stop);
-    // The pixels of a motion image lead to the next frame.
-    if (request.capture.motion && !request.cameras.empty())
-      physics->reach(request.next_time_s, stop);
-    if (stopped()) return {};
-    request.simulated = &physics->motion();
+  if (parts_.physics) request.simulated = &parts_.physics->motion();
+  if (schedule_) {
+    take_due(*schedule_, sensors, request);
+  } else {
+    request.cameras = sensors.cameras;
+    request.sonars = sensors.sonars;
   }
-  NERITIC_TRY(const FrameResult result, sensors.session->render(request));
+  return request;
+}
+
+// A frame that nobody looks at.
+Status Loop::sense(const FrameRequest& request) {
+  NERITIC_TRY(const FrameResult result, parts_.sensors->session->render(request));
   ++frames_;
-  for (FrameSink* sink : parts_.frame_sinks) NERITIC_TRY_STATUS(sink->accept(result));
+  ++sensed_;
+  return give(result);
+}
+
+// A frame of the view, and of the sensors that are due, whether it is seen or hidden.
+Status Loop::show(FrameRequest& request) {
+  DiveView& view = *parts_.view;
+  Session& session = *parts_.sensors->session;
+  const bool senses = !request.cameras.empty() || !request.sonars.empty();
+  if (view.shown()) view.add_views(request);
+  if (!senses && !view.shown()) return view.end_frame(std::nullopt);
+  graph::FrameGraph graph;
+  NERITIC_TRY(auto frame, session.declare(graph, request));
+  NERITIC_TRY_STATUS(view.declare(graph, *frame, request.time_s, last_));
+  NERITIC_TRY(gpu::Commands * commands, session.frames().begin());
+  NERITIC_TRY(const graph::Plan* plan, session.executor().run(graph, *commands));
+  (void)plan;
+  NERITIC_TRY(const std::uint64_t value, session.frames().submit(view.sync()));
+  frame->submitted(value);
+  NERITIC_TRY_STATUS(view.end_frame(value));
+  frames_ += view.shown() ? 1 : 0;
+  if (senses && request.capture.to_host) {
+    pending_.push_back(std::move(frame));
+    ++sensed_;
+  }
+  return give_done(false);
+}
+
+// Gives the frame sinks what the GPU has finished; wait: all of it.
+Status Loop::give_done(bool wait) {
+  for (; !pending_.empty(); pending_.pop_front()) {
+    Session& session = *parts_.sensors->session;
+    const SensorFrame& frame = *pending_.front();
+    if (wait) NERITIC_TRY_STATUS(session.frames().wait(frame.done_at()));
+    NERITIC_TRY(const bool done, session.is_done(frame));
+    if (!done) break;
+    NERITIC_TRY(const FrameResult result, session.read(frame));
+    NERITIC_TRY_STATUS(give(result));
+  }
   return {};
 }
 
-void Loop::take_due(FrameRequest& request) {
-  const LoopSensors& sensors = *parts_.sensors;
-  request.cameras.clear();
-  request.sonars.clear();
-  for (const PingSchedule::Due& due : schedule_->due(request.time_s)) {
-    if (due.sensor < sensors.cameras.size()) {
-      request.cameras.push_back(sensors.cameras[due.sensor]);
-    } else {
-      request.sonars.push_back(sensors.sonars[due.sensor - sensors.cameras.size()]);
-      request.pings.push_back(due.number);
-    }
-  }
+Status Loop::give(const FrameResult& result) {
+  for (FrameSink* sink : parts_.frame_sinks) NERITIC_TRY_STATUS(sink->accept(result));
+  return {};
 }
 
 Status Loop::finish(const Status& status) {
@@ -104,7 +185,7 @@ Status Loop::finish(const Status& status) {
   };
   if (parts_.physics) keep(parts_.physics->listening());
   if (steps_) keep(steps_->finish());
-  if (!status.ok() || frames_ == 0) return first;
+  if (!status.ok() || sensed_ == 0) return first;
   for (FrameSink* sink : parts_.frame_sinks) keep(sink->finish());
   return first;
 }

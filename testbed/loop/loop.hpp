@@ -1,40 +1,47 @@
 // The loop of every program that runs a scene: `render`, `dive` with and without pictures, the
-// benchmark. They differ in what they give it: a clock, and any of simulation, sensors, sinks.
-// Each iteration is one frame; without sensors it is one step of the simulation. The thread that
-// runs it owns Vulkan.
+// benchmark. They differ in what they give it: a clock, and any of a simulation, sensors, a view,
+// sources and sinks. Each iteration is one frame; without sensors it is one step of the simulation.
+// The thread that runs it owns Vulkan.
 #pragma once
 
+#include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "testbed/loop/clock.hpp"
 #include "testbed/motion/live_physics.hpp"
 #include "testbed/record/step_sink.hpp"
+#include "testbed/samples/source.hpp"
 #include "testbed/sensors/frame_sink.hpp"
 #include "testbed/sensors/ping_schedule.hpp"
 
 namespace neritic::testbed {
 
-// Cameras and sonars of the session's scene that someone wants.
+class DiveView;
+
+// Cameras and sonars of the session's scene that someone wants. Any other is never declared.
 struct LoopSensors {
   Session* session = nullptr;
   std::vector<std::size_t> cameras, sonars;
-  Capture capture;
+  Capture capture;         // to_host: for frame sinks
   bool own_rates = false;  // each at its own rate; else all in each frame
 };
 
 struct LoopStop {
-  std::uint64_t frames = 0;           // 0: no limit
-  std::function<bool()> interrupted;  // asked before each frame; empty: never
+  std::uint64_t frames = 0;           // with a view those that it shows; 0: no limit
+  double seconds = 0.0;               // of scene time since the first frame; 0: no limit
+  std::function<bool()> interrupted;  // asked before each frame and step; empty: never
 };
 
-// All that is pointed to outlives the loop.
+// Everything that is pointed to outlives the loop.
 struct LoopParts {
   Clock clock;
   LivePhysics* physics = nullptr;
-  std::vector<SampleSource*> sources;  // polled by the physics
   std::optional<LoopSensors> sensors;
+  DiveView* view = nullptr;            // with sensors
+  std::vector<SampleSource*> sources;  // polled by the physics
   std::vector<StepSink*> step_sinks;
   std::vector<FrameSink*> frame_sinks;
   LoopStop stop;
@@ -54,18 +61,24 @@ class Loop {
  private:
   Status run_frames();
   Status frame();
-  Status sense(const FrameTime& at);
-  void take_due(FrameRequest& request);
-  // Asks whether the user stopped the run, or a source or a sink failed.
+  double advance(const FrameTime& at);
+  bool is_last(double time_s);
+  FrameRequest request_at(const FrameTime& at, double time_s);
+  Status sense(const FrameRequest& request);
+  Status show(FrameRequest& request);
+  Status give_done(bool wait);
+  Status give(const FrameResult& result);
+  // Asks whether the user stopped the run, or a source or a step sink failed.
   bool stopped();
   Status finish(const Status& status);
 
   LoopParts parts_;
-  std::optional<StepSinks> steps_;        // with physics and sinks
-  std::optional<PingSchedule> schedule_;  // of the sensors, cameras first
-  std::uint64_t frames_ = 0;
-  double wall_s_ = 0.0;
-  bool interrupted_ = false;
+  std::optional<StepSinks> steps_;                    // with physics and sinks
+  std::optional<PingSchedule> schedule_;              // of the sensors, cameras first
+  std::deque<std::unique_ptr<SensorFrame>> pending_;  // submitted; the sinks do not have them yet
+  std::uint64_t frames_ = 0, sensed_ = 0;             // frames; those that are for frame sinks
+  double wall_s_ = 0.0, end_s_ = 0.0;                 // end_s_: the scene time at which it ends
+  bool started_ = false, interrupted_ = false, quit_ = false, last_ = false;
 };
 
 }  // namespace neritic::testbed

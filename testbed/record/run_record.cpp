@@ -1,7 +1,5 @@
 #include "testbed/record/run_record.hpp"
 
-#include "testbed/samples/recorded_source.hpp"
-
 namespace neritic::testbed {
 
 SampleLog recorded_run(const PhysicsWorld& world, const PhysicsSimulation& simulation) {
@@ -15,12 +13,26 @@ SampleLog recorded_run(const PhysicsWorld& world, const PhysicsSimulation& simul
   return out;
 }
 
-Result<sim::ReplayReport> replay_run(const PhysicsWorld& world, SampleLog log,
-                                     const std::string& name) {
+Result<RecordedSource> source_of(const PhysicsWorld& world, SampleLog log,
+                                 const std::string& name) {
   if (log.step_s != world.step_s())
     return bad_input("{}: steps of {} s; accepted: {} s, as in the scene", name, log.step_s,
                      world.step_s());
-  NERITIC_TRY(RecordedSource source, RecordedSource::create(std::move(log), world.streams(), name));
+  return RecordedSource::create(std::move(log), world.streams(), name);
+}
+
+Status RecordingCheck::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) {
+  if (step.step >= hashes_.size()) return {};
+  if (step.hash != hashes_[step.step])
+    return failure(ErrorCode::kUnsupported, "{}: another state than recorded from step {} of {} on",
+                   name_, step.step, hashes_.size() - 1);
+  equal_ = step.step;
+  return {};
+}
+
+Result<sim::ReplayReport> replay_run(const PhysicsWorld& world, SampleLog log,
+                                     const std::string& name) {
+  NERITIC_TRY(RecordedSource source, source_of(world, std::move(log), name));
   const auto simulation = world.simulation({.log = false});
   const auto& hashes = source.log().hashes;
   sim::ReplayReport report;

@@ -12,8 +12,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
-#include "testbed/motion/live_physics.hpp"
-#include "testbed/sensors/session.hpp"
+#include "testbed/loop/loop.hpp"
 #include "tests/golden/compare.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
@@ -158,6 +157,16 @@ void expect_like_golden_numbers(const nlohmann::json& actual, const Case& c) {
   }
 }
 
+class LastFrame final : public FrameSink {
+ public:
+  Status accept(const FrameResult& frame) override {
+    result = frame;
+    return {};
+  }
+  Status finish() override { return {}; }
+  FrameResult result;
+};
+
 TEST(GoldenCases, CanBeRead) {
   ASSERT_FALSE(read_cases().empty());
 }
@@ -182,23 +191,27 @@ TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
   NERITIC_ASSERT_OK(scene::Scene scene, scene::load_scene(test::source_dir() / c.scene));
   for (scene::Camera& camera : scene.cameras) camera.width = c.width, camera.height = c.height;
   if (!c.water.empty()) scene.water->type = c.water;
-  FrameRequest request;
-  request.time_s = c.time_s;
-  request.next_time_s = c.time_s + 1.0 / 30.0;
-  for (std::size_t i = 0; i < scene.cameras.size(); ++i) request.cameras.push_back(i);
-  for (std::size_t i = 0; i < scene.sonars.size(); ++i) request.sonars.push_back(i);
+  LoopSensors sensors;
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) sensors.cameras.push_back(i);
+  for (std::size_t i = 0; i < scene.sonars.size(); ++i) sensors.sonars.push_back(i);
   nlohmann::json numbers{{"state", nullptr}, {"sonars", nlohmann::json::object()}};
   std::unique_ptr<LivePhysics> physics;
   if (c.physics) {
     NERITIC_ASSERT_OK(physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
-    physics->reach(request.time_s);
+    physics->reach(c.time_s);
     const auto& state = physics->newest();
     numbers["state"] = {{"step", state.step}, {"hash", fmt::format("{:016x}", state.hash)}};
-    physics->reach(request.next_time_s);
-    request.simulated = &physics->motion();
   }
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
-  NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+  sensors.session = session.get();
+  LastFrame last;
+  Loop loop({.clock = Clock::simulated(c.time_s, 1.0 / 30.0),
+             .physics = physics.get(),
+             .sensors = sensors,
+             .frame_sinks = {&last},
+             .stop = {.frames = 1}});
+  NERITIC_ASSERT_STATUS(loop.run());
+  const FrameResult& result = last.result;
   ASSERT_FALSE(result.cameras.empty() && result.sonars.empty());
   for (const CameraFrame& camera : result.cameras)
     for (std::size_t e = 0; e < camera.eyes.size(); ++e)

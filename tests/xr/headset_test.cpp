@@ -2,35 +2,12 @@
 // own pose, tangents and size, with depth, and with a device that the display made.
 #include <gtest/gtest.h>
 
-#include "engine/core/files.hpp"
 #include "engine/render/lighting.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/scene/scene.hpp"
-#include "tests/support/support.hpp"
-#include "tests/xr/fake_headset.hpp"
-#include "tests/xr/shown.hpp"
+#include "tests/xr/ball_scene.hpp"
 
 namespace neritic::xr {
 namespace {
-
-constexpr double kNear_m = 0.05, kRadius_m = 0.1;
-const Vec3 kBall_m{30.3, -4.1, 8.0};
-const Pose kStage{{30.0, -5.6, 10.0}, from_yaw_pitch_roll(-0.1, 0.0, 0.0)};
-
-scene::Scene ball_scene() {
-  const test::ScratchFolder scratch;
-  EXPECT_TRUE(write_text(scratch / "ball.toml",
-                         fmt::format("[sun]\nelevation_deg = 60\n[[objects]]\nname = \"ball\"\n"
-                                     "shape = \"sphere\"\nradius_m = {}\n"
-                                     "position_m = [{}, {}, {}]\n",
-                                     kRadius_m, kBall_m.x, kBall_m.y, kBall_m.z))
-                  .ok());
-  return scene::load_scene(scratch / "ball.toml").value();
-}
-
-Pose head_at(std::uint64_t frame) {
-  return {{0.0, 1.6, 0.02 * static_cast<double>(frame)}, from_yaw_pitch_roll(0.05, -0.1, 0.03)};
-}
 
 class HeadsetTest : public test::GpuTest {
  protected:
@@ -89,37 +66,6 @@ class HeadsetTest : public test::GpuTest {
     drawn_.clear();
   }
 
-  // The ball's middle and depth in each view, by the pinhole equations alone.
-  void expect_ball(const FakeHeadset& headset, const DisplayFrame& frame, std::size_t index) {
-    const ViewGroup& group = frame.groups[index];
-    const auto depth = read_layers(device(), headset.depth(index));
-    const auto* values = reinterpret_cast<const float*>(depth.data());
-    const auto color = read_layers(device(), headset.color(index));
-    for (std::size_t v = 0; v < group.views.size(); ++v) {
-      const View& view = group.views[v];
-      const Vec3 ball = inverse(*frame.world_from_head * view.head_from_view) * kBall_m;
-      double sum_x = 0.0, sum_y = 0.0, count = 0.0;
-      float nearest = 0.0f;
-      int lit = 0;
-      for (std::uint32_t y = 0; y < group.height; ++y)
-        for (std::uint32_t x = 0; x < group.width; ++x) {
-          const std::size_t at = (v * group.height + y) * group.width + x;
-          if (!(values[at] > 0.0f)) continue;
-          sum_x += x + 0.5, sum_y += y + 0.5, count += 1.0;
-          nearest = std::max(nearest, values[at]);
-          lit = std::max(lit, static_cast<int>(color.data()[at * 4]));
-        }
-      ASSERT_GT(count, 15.0) << index << " " << v;
-      const FrustumTangents& t = view.tangents;
-      const double x = (ball.x / -ball.z - t.left) / (t.right - t.left) * group.width;
-      const double y = (t.top - ball.y / -ball.z) / (t.top - t.bottom) * group.height;
-      EXPECT_NEAR(sum_x / count, x, 0.35) << index << " " << v;
-      EXPECT_NEAR(sum_y / count, y, 0.35) << index << " " << v;
-      EXPECT_NEAR(kNear_m / nearest, -ball.z - kRadius_m, 0.01) << index << " " << v;
-      EXPECT_GT(lit, 20) << index << " " << v;
-    }
-  }
-
  private:
   struct Drawn {
     render::FrameState state;
@@ -142,7 +88,7 @@ TEST_F(HeadsetTest, AStereoPairIsDrawnFromTheTrackedHeadWithItsOwnTangents) {
     const Pose expected = kStage * head_at(static_cast<std::uint64_t>(i));
     ASSERT_TRUE(frame.world_from_head);
     EXPECT_LT(glm::distance(frame.world_from_head->position_m, expected.position_m), 1e-12);
-    expect_ball(*headset, frame, 0);
+    expect_ball(device(), *headset, *frame.world_from_head, frame.groups[0], 0);
     EXPECT_EQ(headset->ended().back().projections, (std::vector<std::size_t>{0}));
     EXPECT_EQ(headset->ended().back().with_depth, (std::vector<bool>{true}));
   }
@@ -155,8 +101,8 @@ TEST_F(HeadsetTest, FourViewsAreTwoGroupsOfTheirOwnSizes) {
       FakeHeadset::create(device(), {{eye_pair(100, 90), eye_pair(140, 130, 0.25)}, head_at, {}}));
   DisplayFrame frame;
   show(*headset, frame);
-  expect_ball(*headset, frame, 0);
-  expect_ball(*headset, frame, 1);
+  expect_ball(device(), *headset, *frame.world_from_head, frame.groups[0], 0);
+  expect_ball(device(), *headset, *frame.world_from_head, frame.groups[1], 1);
   EXPECT_EQ(headset->ended().back().projections, (std::vector<std::size_t>{0, 1}));
 }
 

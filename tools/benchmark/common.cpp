@@ -3,6 +3,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/intrinsics.hpp"
+#include "testbed/loop/loop.hpp"
 #include "tools/benchmark/groups.hpp"
 
 namespace neritic::bench {
@@ -21,6 +22,25 @@ void add(Hash64& hash, const testbed::ViewImages& view) {
   add(hash, view.color.data);
   add(hash, view.motion.data);
 }
+
+// The time from its making to a frame's results, and their hash.
+class Stopwatch final : public testbed::FrameSink {
+ public:
+  Status accept(const testbed::FrameResult& frame) override {
+    const double ms = to_ms(now_ns() - begun_ns_);
+    sample_ = {ms, parts_of(frame.passes), hash_of(frame)};
+    double known = 0.0;
+    for (const auto& [part, part_ms] : sample_.parts) known += part_ms;
+    sample_.parts["(evaluate, draw lists, decode, waits)"] = ms - known;
+    return {};
+  }
+  Status finish() override { return {}; }
+  const Sample& sample() const { return sample_; }
+
+ private:
+  TimeNs begun_ns_ = now_ns();
+  Sample sample_;
+};
 
 }  // namespace
 
@@ -56,16 +76,18 @@ std::map<std::string, double> parts_of(const std::vector<gpu::PassTime>& passes)
 }
 
 Contender frames_of(const std::string& name, testbed::Session& session,
-                    testbed::FrameRequest request) {
-  return {name, [&session, request]() -> Result<Sample> {
-            const TimeNs start = now_ns();
-            NERITIC_TRY(const testbed::FrameResult result, session.render(request));
-            const double ms = to_ms(now_ns() - start);
-            Sample sample{ms, parts_of(result.passes), hash_of(result)};
-            double known = 0.0;
-            for (const auto& [part, part_ms] : sample.parts) known += part_ms;
-            sample.parts["(evaluate, draw lists, decode, waits)"] = ms - known;
-            return sample;
+                    const testbed::FrameRequest& request) {
+  const testbed::LoopSensors sensors{&session, request.cameras, request.sonars, request.capture};
+  const auto clock =
+      testbed::Clock::simulated(request.time_s, request.next_time_s - request.time_s);
+  return {name, [sensors, clock]() -> Result<Sample> {
+            Stopwatch stopwatch;
+            testbed::Loop loop({.clock = clock,
+                                .sensors = sensors,
+                                .frame_sinks = {&stopwatch},
+                                .stop = {.frames = 1}});
+            NERITIC_TRY_STATUS(loop.run());
+            return stopwatch.sample();
           }};
 }
 

@@ -38,10 +38,10 @@ std::string hash_of(const sonar::SonarImage& image);
 std::string hash_of(const testbed::FrameResult& result);
 std::map<std::string, double> parts_of(const std::vector<gpu::PassTime>& passes);
 
-// Frames of a session as a contender; the session must outlive it. Wall time of Session::render:
-// evaluate, draw lists, graph, record, run, arrays at the host.
+// Runs of one frame as a contender, by the loop that `render` runs; the session must outlive it.
+// Wall time: evaluate, draw lists, graph, record, run, arrays at the host.
 Contender frames_of(const std::string& name, testbed::Session& session,
-                    testbed::FrameRequest request);
+                    const testbed::FrameRequest& request);
 
 // Depth and normals of a wavy wall 2 to 4 m away that fills a wedge: every pixel counts.
 sonar::SonarInput relief_input(const sonar::BeamGrid& grid, std::uint32_t width,

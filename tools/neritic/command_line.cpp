@@ -245,12 +245,13 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_option("--play", flags->play,
                       "sends the samples of a recorded dive as live ones: they drive the groups of "
                       "inputs that name their devices");
-  command->add_option("--replay", flags->replay,
-                      "runs a recorded dive again and compares each state's hash");
+  command->add_option(
+      "--replay", flags->replay,
+      "runs a recorded dive again, in a window too, and compares each state's hash");
   command->add_option("--save", flags->files.save, "the state at the end, for --restore");
   command->add_option("--restore", flags->restore,
                       "goes on from a saved state of the same scene, --seconds more");
-  command->add_flag("--realtime", flags->realtime, "physics at the clock's pace");
+  command->add_flag("--realtime", flags->realtime, "physics without pictures at the clock's pace");
   command->add_flag("--json", flags->json, "the dive's summary as JSON");
   command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
   command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");

@@ -61,7 +61,7 @@ struct DiveFlags {
   std::uint64_t frames = 0;
   std::optional<double> seconds;
   bool headless = false, fast = false, panels = false, validation = false;
-  // These need a scene with physics, and --headless.
+  // These need a scene with physics; play and realtime also --headless without pictures.
   StepFileFlags files;
   std::string play, replay, restore;
   bool realtime = false, json = false;

@@ -6,11 +6,14 @@
 #include "engine/core/log.hpp"
 #include "engine/xr/desktop/desktop.hpp"
 #include "engine/xr/offscreen.hpp"
-#include "testbed/loop/dive_loop.hpp"
+#include "testbed/loop/dive_view.hpp"
+#include "testbed/loop/loop.hpp"
+#include "testbed/record/run_record.hpp"
 #include "testbed/sensors/validation.hpp"
 #include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/dive_physics.hpp"
+#include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/step_files.hpp"
@@ -33,13 +36,19 @@ Result<scene::Scene> load(const DiveFlags& flags) {
       scene.cameras[0].width = size.first, scene.cameras[0].height = size.second;
     }
   }
-  for (scene::Camera& camera : scene.cameras)
-    camera.stereo_baseline_m = 0.0;  // one window, one eye
   return scene;
 }
 
-// The first camera and every sonar, or those named.
-Status choose_sensors(const DiveFlags& flags, const scene::Scene& scene, DiveOptions& options) {
+// The camera where the view begins, and the sonars that are wanted.
+struct Chosen {
+  std::size_t camera = 0;
+  std::vector<std::size_t> sonars;
+};
+
+// The first camera and every sonar, or those named: a panel shows each sonar, and without panels
+// the summary of times has its passes.
+Result<Chosen> choose_sensors(const DiveFlags& flags, const scene::Scene& scene) {
+  Chosen chosen;
   std::string known;
   for (const scene::Camera& camera : scene.cameras) known += " " + camera.name;
   for (const scene::Sonar& sonar : scene.sonars) known += " " + sonar.name;
@@ -48,59 +57,158 @@ Status choose_sensors(const DiveFlags& flags, const scene::Scene& scene, DiveOpt
   };
   std::size_t found = 0;
   for (std::size_t i = scene.cameras.size(); i-- > 0;)
-    if (wanted(scene.cameras[i].name)) options.camera = i, ++found;
+    if (wanted(scene.cameras[i].name)) chosen.camera = i, ++found;
   for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
     const bool named = wanted(scene.sonars[i].name);
-    if (flags.sensors.empty() || named) options.sonars.push_back(i);
+    if (flags.sensors.empty() || named) chosen.sonars.push_back(i);
     if (named) ++found;
   }
   if (found < flags.sensors.size())
     return bad_input("--sensor: {} found, {} has{}", fmt::join(flags.sensors, " "), flags.scene,
                      known);
-  return {};
+  return chosen;
 }
 
-Result<std::unique_ptr<gpu::Device>> make_device(const DiveFlags& flags, const xr::Window* window) {
+// Where the pictures go. In the order of creation: each uses those before it.
+struct Screen {
+  std::unique_ptr<xr::Window> window;  // not with --headless
+  std::unique_ptr<gpu::Device> device;
+  std::unique_ptr<xr::Display> display;
+  std::unique_ptr<xr::Overlay> overlay;
+};
+
+Status make_device(const DiveFlags& flags, const scene::Scene& scene, const scene::Camera& camera,
+                   Screen& screen) {
   gpu::DeviceOptions options;
   options.device = flags.device;
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
-  if (window) window->require(options);
-  return gpu::Device::create(options);
-}
-
-Status dive_offscreen(const DiveFlags& flags, gpu::Device& device, Session& session,
-                      DiveOptions options) {
-  const scene::Camera& camera = session.scene().cameras[options.camera];
-  const xr::OffscreenOptions offscreen{
-      {xr::one_view(camera.width, camera.height, camera.vertical_fov_rad)},
-      camera.rate_hz,
-      flags.fast};
-  if (options.frames == 0 && options.seconds == 0.0) options.seconds = kHeadlessSeconds;
-  options.summary = true;
-  NERITIC_TRY(const auto display, xr::OffscreenDisplay::create(device, offscreen));
-  std::unique_ptr<xr::Overlay> overlay;
-  if (flags.panels) {
-    NERITIC_TRY(overlay, xr::Overlay::create(device, nullptr, 1));
+  if (!flags.headless) {
+    NERITIC_TRY(screen.window,
+                xr::Window::create({.title = "Neritic: " + scene.title,
+                                    .width = camera.width,
+                                    .height = camera.height,
+                                    .actions = dive_actions(),
+                                    .hint = "use --headless, or neritic render for pictures"}));
+    screen.window->require(options);
   }
-  Dive dive(device, session, *display, overlay.get(), options);
-  NERITIC_TRY_STATUS(dive.run());
-  fmt::print("{}, {} x {}\n{}", device.info().name, camera.width, camera.height,
-             dive.times().summary(dive.frames_drawn(), dive.seconds()));
-  if (options.physics)  // as a dive of the physics alone says it, to be held against it
-    fmt::print("physics: {} steps, hash {:016x}\n", options.physics->newest().step,
-               options.physics->newest().hash);
+  NERITIC_TRY(screen.device, gpu::Device::create(options));
   return {};
 }
 
-Status dive_window(xr::Window& window, gpu::Device& device, Session& session, DiveOptions options) {
-  const scene::Camera& camera = session.scene().cameras[options.camera];
-  NERITIC_TRY(const auto display, xr::DesktopDisplay::create(
-                                      device, window, {kFramesInFlight, camera.vertical_fov_rad}));
-  NERITIC_TRY(const auto overlay, xr::Overlay::create(device, &window, window.content_scale()));
-  options.may_close = true;
-  Dive dive(device, session, *display, overlay.get(), options);
-  return dive.run();
+Status make_display(const DiveFlags& flags, const scene::Camera& camera, Screen& screen) {
+  gpu::Device& device = *screen.device;
+  if (screen.window) {
+    xr::Window& window = *screen.window;
+    NERITIC_TRY(screen.display, xr::DesktopDisplay::create(
+                                    device, window, {kFramesInFlight, camera.vertical_fov_rad}));
+    NERITIC_TRY(screen.overlay, xr::Overlay::create(device, &window, window.content_scale()));
+    return {};
+  }
+  const xr::OffscreenOptions options{
+      {xr::one_view(camera.width, camera.height, camera.vertical_fov_rad)},
+      camera.rate_hz,
+      flags.fast};
+  NERITIC_TRY(screen.display, xr::OffscreenDisplay::create(device, options));
+  if (flags.panels) {
+    NERITIC_TRY(screen.overlay, xr::Overlay::create(device, nullptr, 1));
+  }
+  return {};
+}
+
+// On standard output. A window says nothing but what --json asks for.
+void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera& camera,
+          const DiveView& view, const Loop& loop, const LivePhysics* physics,
+          const DiveRecorder* recorder) {
+  if (flags.json)
+    return print_summary(flags, physics->world(), physics->simulation(), *recorder,
+                         {loop.wall_s(), physics->counts().dropped});
+  if (!flags.headless) return;
+  fmt::print("{}, {} x {}\n{}", device.info().name, camera.width, camera.height,
+             view.times().summary(loop.frames(), loop.wall_s()));
+  if (physics)  // in the words of a dive without pictures, to be compared with it
+    fmt::print("physics: {} steps, hash {:016x}\n", physics->newest().step, physics->newest().hash);
+}
+
+// A recording that is shown: it steers, and each state is compared with it.
+struct Replay {
+  RecordedSource source;
+  RecordingCheck check;
+};
+
+Result<std::unique_ptr<Replay>> make_replay(const DiveFlags& flags, const PhysicsWorld& world) {
+  NERITIC_TRY(SampleLog log, read_sample_log(flags.replay));
+  NERITIC_TRY(RecordedSource source, source_of(world, std::move(log), flags.replay));
+  // The hashes stay where they are when the source moves.
+  const std::span<const std::uint64_t> hashes = source.log().hashes;
+  return std::make_unique<Replay>(Replay{std::move(source), RecordingCheck(hashes, flags.replay)});
+}
+
+Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt& interrupt) {
+  std::unique_ptr<LivePhysics> physics;
+  std::unique_ptr<Replay> replay;
+  if (PhysicsWorld::needed(scene)) {
+    // A recording is exact where its samples enter before the same step: in lock-step.
+    using Pace = LivePhysics::Pace;
+    const bool lock_step = flags.headless || !flags.replay.empty();
+    NERITIC_TRY(physics,
+                make_dive_physics(flags, scene, lock_step ? Pace::kPicture : Pace::kClock));
+  }
+  if (physics && !flags.replay.empty()) {
+    NERITIC_TRY(replay, make_replay(flags, physics->world()));
+  }
+  NERITIC_TRY(const Chosen chosen, choose_sensors(flags, scene));
+  const scene::Camera camera = scene.cameras[chosen.camera];
+  Screen screen;
+  NERITIC_TRY_STATUS(make_device(flags, scene, camera, screen));
+  NERITIC_TRY(const auto session, Session::create(*screen.device, std::move(scene)));
+  NERITIC_TRY_STATUS(make_display(flags, camera, screen));
+  NERITIC_TRY(const auto view,
+              DiveView::create(*session, *screen.display, screen.overlay.get(), physics.get(),
+                               {.camera = chosen.camera,
+                                .sonars = chosen.sonars,
+                                .summary = flags.headless,
+                                .screenshot = flags.screenshot,
+                                .may_close = !flags.headless}));
+  std::optional<StepFiles> files;
+  std::vector<StepSink*> step_sinks;
+  std::vector<SampleSource*> sources{&view->pilot()};
+  if (physics) {
+    files.emplace(flags.files, session->scene().title, *physics);
+    step_sinks = files->sinks();
+  }
+  if (replay) {
+    step_sinks.push_back(&replay->check);
+    sources = {&replay->source};
+  }
+  const double start_s = physics ? physics->newest().time_s : 0.0, period_s = 1.0 / camera.rate_hz;
+  const bool limited = flags.frames > 0 || flags.seconds || replay;
+  const double unlimited_s = limited || !flags.headless ? 0.0 : kHeadlessSeconds;
+  const double recorded_s =
+      replay ? static_cast<double>(replay->source.log().steps()) * physics->world().step_s() : 0.0;
+  Loop loop(
+      {.clock = flags.fast ? Clock::simulated(start_s, period_s) : Clock::real(start_s, period_s),
+       .physics = physics.get(),
+       .sensors = LoopSensors{.session = session.get(),
+                              .sonars = chosen.sonars,
+                              .capture = kColorOnGpu,
+                              .own_rates = true},
+       .view = view.get(),
+       .sources = sources,
+       .step_sinks = step_sinks,
+       .stop = {.frames = flags.frames,
+                .seconds = replay ? recorded_s : flags.seconds.value_or(unlimited_s),
+                .interrupted = [&] { return interrupt.requested(); }}});
+  NERITIC_TRY_STATUS(loop.run());
+  if (replay)
+    fmt::print("{}: {} of {} steps, each with the hash that was recorded\n", flags.replay,
+               replay->check.equal_steps(), replay->source.log().steps());
+  tell(flags, *screen.device, camera, *view, loop, physics.get(),
+       files ? &files->recorder() : nullptr);
+  if (loop.interrupted())
+    return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s; all until then is written",
+                   loop.wall_s());
+  return check_validation(*screen.device);
 }
 
 }  // namespace
@@ -114,42 +222,12 @@ Status run_dive(const DiveFlags& flags) {
     return bad_input("--panels: accepted with --headless (a window has them; F2)");
   NERITIC_TRY_STATUS(check_step_files(flags.files));
   NERITIC_TRY_STATUS(check_output_file("--screenshot", flags.screenshot));
+  const Interrupt interrupt;
   NERITIC_TRY(scene::Scene scene, load(flags));
   for (const std::string& note : scene.notes) log_warn("{}", note);
   NERITIC_TRY_STATUS(check_physics_flags(flags, scene));
-  if (asks_for_physics_alone(flags, scene)) {
-    const Interrupt interrupt;
-    return dive_physics(flags, scene, interrupt);
-  }
-  DiveOptions options;
-  std::unique_ptr<LivePhysics> physics;
-  if (PhysicsWorld::needed(scene)) {
-    using Pace = LivePhysics::Pace;
-    NERITIC_TRY(physics,
-                LivePhysics::create(scene, flags.headless ? Pace::kPicture : Pace::kClock));
-    options.physics = physics.get();
-  }
-  options.frames = flags.frames;
-  options.seconds = flags.seconds.value_or(0.0);
-  options.screenshot = flags.screenshot;
-  NERITIC_TRY_STATUS(choose_sensors(flags, scene, options));
-
-  std::unique_ptr<xr::Window> window;
-  const scene::Camera& camera = scene.cameras[options.camera];
-  if (!flags.headless) {
-    NERITIC_TRY(window,
-                xr::Window::create({.title = "Neritic: " + scene.title,
-                                    .width = camera.width,
-                                    .height = camera.height,
-                                    .actions = dive_actions(),
-                                    .hint = "use --headless, or neritic render for pictures"}));
-  }
-  NERITIC_TRY(const auto device, make_device(flags, window.get()));
-  NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
-  const Status status = window ? dive_window(*window, *device, *session, options)
-                               : dive_offscreen(flags, *device, *session, options);
-  if (!status.ok()) return status;
-  return check_validation(*device);
+  return asks_for_physics_alone(flags, scene) ? dive_physics(flags, scene, interrupt)
+                                              : dive_pictures(flags, std::move(scene), interrupt);
 }
 
 }  // namespace neritic::tools

@@ -6,7 +6,6 @@
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/run_record.hpp"
 #include "testbed/record/source_watch.hpp"
-#include "testbed/samples/recorded_source.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/step_files.hpp"
 
@@ -22,7 +21,7 @@ bool draws(const DiveFlags& flags) {
          !flags.device.empty();
 }
 
-// The first flag that only a dive of physics alone takes; empty: none.
+// The first flag that needs physics; empty: none.
 std::string physics_flag(const DiveFlags& flags) {
   if (const std::string flag = first_step_flag(flags.files); !flag.empty()) return flag;
   if (!flags.play.empty()) return "--play";
@@ -33,9 +32,10 @@ std::string physics_flag(const DiveFlags& flags) {
   return "";
 }
 
-Status replay_dive(const DiveFlags& flags, const PhysicsWorld& world) {
+Status replay_dive(const DiveFlags& flags, const scene::Scene& scene) {
+  NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
   NERITIC_TRY(const SampleLog log, read_sample_log(flags.replay));
-  NERITIC_TRY(const sim::ReplayReport report, replay_run(world, log, flags.replay));
+  NERITIC_TRY(const sim::ReplayReport report, replay_run(*world, log, flags.replay));
   if (report.first_difference)
     return failure(ErrorCode::kUnsupported, "{}: another state than recorded from step {} of {} on",
                    flags.replay, *report.first_difference, log.steps());
@@ -56,8 +56,9 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   if (!PhysicsWorld::needed(scene))
     return bad_input("{}: accepted where a vehicle has dynamics or a diver swims; in {} none does",
                      flag, flags.scene);
-  if (!flags.headless || draws(flags))
-    return bad_input("{}: accepted with --headless and without flags of pictures", flag);
+  if ((flags.realtime || !flags.play.empty()) && (!flags.headless || draws(flags)))
+    return bad_input("{}: accepted with --headless and without flags of pictures",
+                     flags.realtime ? "--realtime" : "--play");
   if (!flags.replay.empty() &&
       (!first_step_flag(flags.files).empty() || flags.realtime || flags.json || flags.seconds ||
        !flags.restore.empty() || !flags.play.empty()))
@@ -69,24 +70,33 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   return {};
 }
 
+Result<std::unique_ptr<LivePhysics>> make_dive_physics(const DiveFlags& flags,
+                                                       const scene::Scene& scene,
+                                                       LivePhysics::Pace pace) {
+  NERITIC_TRY(auto world, PhysicsWorld::create(scene));
+  LivePhysics::Options options{
+      .pace = pace, .log = !flags.files.record.empty(), .seed = scene.seed};
+  if (!flags.restore.empty()) {
+    NERITIC_TRY(options.start, read_state(flags.restore, world->state_format()));
+  }
+  return LivePhysics::create(std::move(world), options);
+}
+
 Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Interrupt& interrupt) {
   const double seconds = flags.seconds.value_or(kPhysicsSeconds);
   if (seconds > kMostPhysicsSeconds)
     return bad_input("--seconds: {}; up to {:g} is accepted", seconds, kMostPhysicsSeconds);
-  NERITIC_TRY(auto world, PhysicsWorld::create(scene));
-  if (!flags.replay.empty()) return replay_dive(flags, *world);
-  LivePhysics::Options options{.log = !flags.files.record.empty(), .seed = scene.seed};
-  if (!flags.restore.empty()) {
-    NERITIC_TRY(options.start, read_state(flags.restore, world->state_format()));
-  }
+  if (!flags.replay.empty()) return replay_dive(flags, scene);
+  NERITIC_TRY(const auto physics, make_dive_physics(flags, scene, LivePhysics::Pace::kPicture));
+  const double start_s = physics->newest().time_s, step_s = physics->world().step_s();
   std::optional<RecordedSource> recording;
+  std::vector<SampleSource*> sources;
   if (!flags.play.empty()) {
     NERITIC_TRY(SampleLog log, read_sample_log(flags.play));
-    NERITIC_TRY(recording, RecordedSource::create(std::move(log), world->streams(), flags.play));
+    NERITIC_TRY(recording,
+                RecordedSource::create(std::move(log), physics->world().streams(), flags.play));
+    sources = {&*recording};
   }
-  const double step_s = world->step_s();
-  const auto physics = LivePhysics::create(std::move(world), options);
-  const double start_s = physics->newest().time_s;
   const StepFiles files(flags.files, scene.title, *physics);
   StepProgress progress("second", start_s + seconds);
   SourceWatch watch(physics->world(), physics->inbox(),
@@ -96,8 +106,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
   Loop loop(
       {.clock = flags.realtime ? Clock::real(start_s, step_s) : Clock::simulated(start_s, step_s),
        .physics = physics.get(),
-       .sources =
-           recording ? std::vector<SampleSource*>{&*recording} : std::vector<SampleSource*>{},
+       .sources = sources,
        .step_sinks = sinks,
        .stop = {.frames = static_cast<std::uint64_t>(std::ceil(seconds / step_s - 1e-9)),
                 .interrupted = [&] { return interrupt.requested(); }}});

@@ -12,7 +12,7 @@
 namespace neritic::xr {
 namespace {
 
-constexpr double kHiddenWait_s = 0.1;
+constexpr double kHiddenWait_s = 0.01;
 constexpr double kStickRest = 0.12;  // sticks do not come back to their middle exactly
 
 std::string last_glfw_error() {

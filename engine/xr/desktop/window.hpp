@@ -43,7 +43,8 @@ class Window {
   void require(gpu::DeviceOptions& options) const;
   Result<VkSurfaceKHR> create_surface(VkInstance instance) const;
 
-  // Handles pending events. While the window is hidden, waits up to 0.1 s for one.
+  // Handles pending events. While the window is hidden, waits up to 0.01 s for one: the
+  // program's other work goes on.
   WindowState poll();
   // See Display::take_actions.
   ActionValues take_actions(const InputClaims& claims);

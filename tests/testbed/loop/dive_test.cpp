@@ -27,15 +27,19 @@ std::string text_of(const fs::path& path) {
   return text.str();
 }
 
-Outcome dive(const test::ScratchFolder& scratch, const std::string& before,
-             const std::string& arguments) {
-  const std::string program = fmt::format("{}/tools/neritic", NERITIC_BINARY_DIR);
+Outcome neritic(const test::ScratchFolder& scratch, const std::string& before,
+                const std::string& arguments) {
   const std::string command =
-      fmt::format("{} '{}' dive {} > '{}' 2> '{}'", before, program, arguments,
+      fmt::format("{} '{}/tools/neritic' {} > '{}' 2> '{}'", before, NERITIC_BINARY_DIR, arguments,
                   (scratch / "out").string(), (scratch / "err").string());
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(scratch / "out"),
           text_of(scratch / "err")};
+}
+
+Outcome dive(const test::ScratchFolder& scratch, const std::string& before,
+             const std::string& arguments) {
+  return neritic(scratch, before, "dive " + arguments);
 }
 
 std::string pool() {
@@ -132,6 +136,99 @@ TEST(Dive, SceneWithoutCameraOrSonarIsSeenAndPaysForNoSonar) {
   const auto image = scene::read_image8(scratch / "last.png", 3);
   ASSERT_TRUE(image.ok()) << image.error().message;
   EXPECT_GT(drawn_pixels(*image), 200u);  // the ball
+}
+
+// A vehicle with a camera and a sonar of four pings a second, in the scratch folder.
+std::string write_flight(const test::ScratchFolder& scratch) {
+  const std::string dynamics =
+      (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string();
+  std::ofstream(scratch / "flight.toml")
+      << "title = \"flight\"\n[physics]\n[sun]\n[[objects]]\n"
+         "name = \"sand\"\nclass = \"seabed\"\nshape = \"plane\"\n"
+         "size_m = [20, 20]\nposition_m = [0, -8, 0]\n"
+         "[[vehicles]]\nname = \"rov\"\nshape = \"box\"\n"
+         "dynamics = \""
+      << dynamics
+      << "\"\nposition_m = [0, -6, 0]\n"
+         "mission = { waypoints = [ { position_m = [0, -6, -2] } ] }\n"
+         "[[vehicles.cameras]]\nname = \"eye\"\nwidth = 32\n"
+         "height = 18\nrate_hz = 16\n"
+         "[[vehicles.sonars]]\nname = \"sonar\"\nrate_hz = 4\n"
+         "range_m = [0.5, 8]\nazimuth_deg = 40\n"
+         "elevation_deg = 10\nbins = [50, 16, 8]\n";
+  return (scratch / "flight.toml").string();
+}
+
+// With and without pictures, and by `render`: one second of the same flight.
+TEST(Dive, LogRecordingAndStateDoNotDependOnWhoLooks) {
+  const test::ScratchFolder scratch;
+  const std::string scene = write_flight(scratch), at = scratch.path().string();
+  const auto ask = [&](const std::string& name) {
+    return fmt::format("--log {0}/{1}.csv --record {0}/{1}.log --save {0}/{1}.state --json", at,
+                       name);
+  };
+  const Outcome alone =
+      dive(scratch, "", fmt::format("'{}' --headless --seconds 1 {}", scene, ask("a")));
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  const Outcome shown =
+      dive(scratch, "", fmt::format("'{}' --headless --fast --frames 17 {}", scene, ask("b")));
+  if (test::may_skip_without_device()) GTEST_SKIP() << shown.err;
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  const Outcome rendered =
+      neritic(scratch, "",
+              fmt::format("render '{}' --sensor rov_sonar --frames 5 --out {}/r --log {}/c.csv",
+                          scene, at, at));
+  ASSERT_EQ(rendered.status, 0) << rendered.err;
+  const std::string csv = text_of(scratch / "a.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 52);
+  EXPECT_EQ(text_of(scratch / "b.csv"), csv);
+  EXPECT_EQ(text_of(scratch / "c.csv"), csv);
+  const Outcome same =
+      dive(scratch, "", fmt::format("'{}' --headless --replay {}/b.log", scene, at));
+  EXPECT_EQ(same.status, 0) << same.err;
+  EXPECT_EQ(text_of(scratch / "b.state"), text_of(scratch / "a.state"));
+  const auto hash_in = [](const std::string& out) { return out.substr(out.find("\"hash\""), 28); };
+  EXPECT_EQ(hash_in(shown.out), hash_in(alone.out));
+  // Both go on from there alike.
+  const Outcome on =
+      dive(scratch, "",
+           fmt::format("'{}' --headless --seconds 1 --restore {}/a.state --json", scene, at));
+  const Outcome on_shown = dive(
+      scratch, "",
+      fmt::format("'{}' --headless --fast --frames 17 --restore {}/b.state --json", scene, at));
+  ASSERT_EQ(on_shown.status, 0) << on_shown.err;
+  EXPECT_EQ(hash_in(on_shown.out), hash_in(on.out));
+  EXPECT_NE(hash_in(on.out), hash_in(alone.out));
+  const Outcome replay = dive(
+      scratch, "", fmt::format("'{}' --headless --fast --panels --replay {}/a.log", scene, at));
+  EXPECT_EQ(replay.status, 0) << replay.err;
+  EXPECT_NE(replay.out.find("a.log: 240 of 240 steps, each with the hash that was recorded"),
+            std::string::npos)
+      << replay.out;
+}
+
+// Its simulation has a thread of its own; the window's log begins as any other.
+TEST(Dive, AWindowKeepsALogAndItsRecordingReplays) {
+  if (!has_program("xvfb-run")) GTEST_SKIP() << "no xvfb-run (Debian package xvfb)";
+  const test::ScratchFolder scratch;
+  const std::string scene = write_flight(scratch), at = scratch.path().string();
+  const Outcome window =
+      dive(scratch, "xvfb-run -a -s '-screen 0 640x480x24'",
+           fmt::format("'{}' --seconds 1 --log {}/w.csv --record {}/w.log --json", scene, at, at));
+  if (test::may_skip_without_device()) GTEST_SKIP() << window.err;
+  ASSERT_EQ(window.status, 0) << window.err;
+  EXPECT_NE(window.out.find("\"hash\""), std::string::npos) << window.out;
+  const std::string log = text_of(scratch / "w.csv");
+  const auto rows = std::count(log.begin(), log.end(), '\n');
+  EXPECT_GT(rows, 5);
+  const Outcome alone =
+      dive(scratch, "",
+           fmt::format("'{}' --headless --seconds {} --log {}/a.csv", scene, rows / 50 + 1, at));
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  EXPECT_EQ(text_of(scratch / "a.csv").substr(0, log.size()), log);
+  const Outcome replay =
+      dive(scratch, "", fmt::format("'{}' --headless --replay {}/w.log", scene, at));
+  EXPECT_EQ(replay.status, 0) << replay.err;
 }
 
 TEST(Dive, WithoutADisplaySaysSoInOneLineAndNamesTheWaysRound) {

@@ -4,36 +4,18 @@
 
 #include <thread>
 
-#include "engine/core/files.hpp"
 #include "rov/frames.hpp"
 #include "testbed/motion/live_physics.hpp"
 #include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
-#include "tests/support/support.hpp"
+#include "tests/testbed/wall_flight.hpp"
 
 namespace neritic::testbed {
 namespace {
 
-// A vehicle that comes from the east towards a wall whose face is at x = -4.
+// The vehicle comes towards the wall.
 scene::Scene scene_of_wall() {
-  const test::ScratchFolder scratch;
-  const std::string dynamics =
-      (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string();
-  EXPECT_TRUE(write_text(scratch / "s.toml", R"([physics]
-[sun]
-[[objects]]
-name = "wall"
-class = "structure"
-shape = "box"
-size_m = [1, 20, 20]
-position_m = [-4.5, -10, 0]
-[[vehicles]]
-name = "rov"
-shape = "box"
-size_m = [0.5, 0.3, 0.5]
-dynamics = ")" + dynamics + R"("
-position_m = [0, -10, 0]
-yaw_deg = 90
+  return wall_scene(R"(yaw_deg = 90
 mission = { waypoints = [ { position_m = [-2, -10, 0] } ], look_at = "wall" }
 [[vehicles.cameras]]
 name = "eye"
@@ -47,9 +29,7 @@ range_m = [0.2, 6.2]
 azimuth_deg = 20
 elevation_deg = 5
 bins = [600, 33, 33]
-)")
-                  .ok());
-  return scene::load_scene(scratch / "s.toml").value();
+)");
 }
 
 class PhysicsRender : public test::GpuTest {};
