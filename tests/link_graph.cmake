@@ -1,0 +1,27 @@
+# Writes BUILD/link_graph.txt: a line "target: library ..." for each library of ours, as configured, private libraries
+# included, for tests/tools/link_rule_test.cpp.
+function(neritic_link_graph folder)
+  get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(target ${targets})
+    get_target_property(type ${target} TYPE)
+    if(NOT target MATCHES "^neritic_" OR NOT type MATCHES "LIBRARY")
+      continue()
+    endif()
+    get_target_property(libraries ${target} INTERFACE_LINK_LIBRARIES)
+    if(NOT libraries)
+      set(libraries "")
+    endif()
+    # A static library's private ones stand there as $<LINK_ONLY:library>.
+    string(REGEX REPLACE "\\$<LINK_ONLY:([^>]*)>" "\\1" libraries "${libraries}")
+    list(JOIN libraries " " libraries)
+    set_property(GLOBAL APPEND_STRING PROPERTY NERITIC_LINK_GRAPH "${target}: ${libraries}\n")
+  endforeach()
+  get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
+  foreach(below ${folders})
+    neritic_link_graph(${below})
+  endforeach()
+endfunction()
+
+neritic_link_graph(${CMAKE_SOURCE_DIR})
+get_property(graph GLOBAL PROPERTY NERITIC_LINK_GRAPH)
+file(WRITE ${CMAKE_BINARY_DIR}/link_graph.txt "${graph}")
