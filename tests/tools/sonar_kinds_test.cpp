@@ -9,6 +9,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/math.hpp"
 #include "engine/scene/image_file.hpp"
 #include "tests/support/support.hpp"
 #include "tests/tools/sonar_command.hpp"
