@@ -51,7 +51,7 @@ TEST_F(LiveOffline, AThreadAndLockStepGiveTheSameSonarBits) {
     EXPECT_EQ(heard.world_from_sonar.position_m, expected.world_from_sonar.position_m);
     pings_heard += std::ranges::any_of(heard.image.intensity, [](float i) { return i > 0.0f; });
   }
-  EXPECT_GE(pings_heard, 3);  // before the vehicle turns away from the wall
+  EXPECT_GE(pings_heard, 1);  // later the vehicle has turned away from the wall
 }
 
 // A window on a simulated clock asks for each of its frames, and pings at those that are due;
