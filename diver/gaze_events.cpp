@@ -54,12 +54,12 @@ GazeNoiseFound GazeMonitor::noise() const {
   if (asked_samples_ == 0) return out;
   out.velocity_rad_s = asked_sum_.velocity_rad_s / asked_samples_;
   out.window_s = asked_sum_.window_s / asked_samples_;
+  out.span_s = asked_sum_.span_s / asked_samples_;
   return out;
 }
 
 double smallest_saccade_rad(const GazeNoiseFound& noise) {
-  return std::max(amplitude_of_peak_rad(noise.velocity_rad_s),
-                  0.5 * noise.window_s * noise.velocity_rad_s);
+  return std::max(amplitude_of_peak_rad(noise.velocity_rad_s), noise.span_s * noise.velocity_rad_s);
 }
 
 double amplitude_of_peak_rad(double peak_rad_s) {
@@ -171,17 +171,17 @@ std::optional<GazeMonitor::Velocity> GazeMonitor::velocity_at(std::size_t sample
 GazeMonitor::Asked GazeMonitor::asked() const {
   const double usual_s = settings_.velocity_window_s,
                noise_rad = settings_.noise_deviations * noise_.deviation_rad();
-  Asked out{usual_s, settings_.velocity_rad_s};
+  Asked out{usual_s, settings_.velocity_rad_s, usual_s};
   if (!(noise_rad > 0.0) || waiting_.size() < 2) return out;
   const double step_s =
       (waiting_.back().time_s - waiting_.front().time_s) / static_cast<double>(waiting_.size() - 1);
   for (double window_s = usual_s;; window_s *= 2.0) {
     // Means of n samples each, n + 1 steps apart; in the usual window, of the outermost alone.
-    const double n = std::max(1.0, std::floor(0.5 * window_s / step_s + 1e-3));
-    const double noise_rad_s = window_s > usual_s
-                                   ? noise_rad * std::sqrt(2.0 / n) / ((n + 1.0) * step_s)
-                                   : noise_rad * std::sqrt(2.0) / (2.0 * n * step_s);
-    out = {window_s, std::max(settings_.velocity_rad_s, noise_rad_s)};
+    const bool means = window_s > usual_s;
+    const double n = std::max(1.0, std::ceil(0.5 * window_s / step_s - 1e-3)),
+                 span_s = (means ? n + 1.0 : 2.0 * n) * step_s,
+                 noise_rad_s = noise_rad * std::sqrt(2.0 / (means ? n : 1.0)) / span_s;
+    out = {window_s, std::max(settings_.velocity_rad_s, noise_rad_s), span_s};
     if (noise_rad_s <= settings_.velocity_rad_s || 2.0 * window_s > settings_.widest_window_s)
       break;
   }
@@ -220,6 +220,7 @@ void GazeMonitor::settle_velocity(bool all, GazeEvents& out) {
     const Seen seen = waiting_[settled_];
     asked_sum_.window_s += asked.window_s;
     asked_sum_.velocity_rad_s += asked.velocity_rad_s;
+    asked_sum_.span_s += asked.span_s;
     ++asked_samples_;
     if (asked.window_s > usual_s) learn_noise(seen.time_s, asked.window_s, velocity->rad_s);
     classify(

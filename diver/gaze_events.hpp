@@ -73,12 +73,13 @@ struct Saccade {
 struct GazeNoiseFound {
   double deviation_rad = 0.0;  // of one axis, from sample to sample; 0: not known
   double velocity_rad_s = 0.0, window_s = 0.0;
+  double span_s = 0.0;  // between the places whose distance, over it, is the velocity
 };
 // The amplitude of saccades whose largest speed is this one: Baloh 1975 (Neurology 25, 1065),
 // 551 (1 - exp(-A / 14)) degrees a second of A degrees.
 double amplitude_of_peak_rad(double peak_rad_s);
 // The smallest saccade that such a velocity in such a window finds: its largest speed must reach
-// it, and so must its mean over half of the window.
+// it, and so must its mean over the span.
 double smallest_saccade_rad(const GazeNoiseFound& noise);
 
 // A snapshot's data about the gaze. Always finite.
@@ -162,7 +163,7 @@ class GazeMonitor {
   };
   std::optional<Velocity> velocity_at(std::size_t sample, double window_s, bool all) const;
   struct Asked {
-    double window_s = 0.0, velocity_rad_s = 0.0;
+    double window_s = 0.0, velocity_rad_s = 0.0, span_s = 0.0;
   };
   Asked asked() const;
   void learn_noise(double time_s, double window_s, const Vec3& velocity_rad_s);
