@@ -17,10 +17,10 @@ constexpr Interval kAnySeconds{-1e9, 1e9, false, false, "seconds"};
 // The most thrusters that a vehicle can have.
 constexpr std::size_t kMaxFailedThruster = 16;
 
-constexpr Key kPhysicsOnly[] = {"collision",       "dynamics", "mission", "failed_thrusters",
-                                "tether_anchor_m", "human",    "swim",    "jacket_buttons",
-                                "inputs"};
-constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m"};
+constexpr Key kPhysicsOnly[] = {"collision",       "dynamics",   "mission", "failed_thrusters",
+                                "tether_anchor_m", "navigation", "human",   "swim",
+                                "jacket_buttons",  "inputs"};
+constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m", "navigation"};
 // The default classes that vehicles cannot pass.
 constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
 
@@ -121,6 +121,11 @@ class VehiclePhysicsReader {
     if (reader_.has("failed_thrusters")) dynamics.failed_thrusters = read_failed();
     if (reader_.has("tether_anchor_m"))
       dynamics.tether_anchor_m = reader_.vector3("tether_anchor_m", Vec3(0.0), kAnyMetres);
+    if (reader_.has("navigation"))
+      dynamics.navigation = reader_.choice("navigation", "truth",
+                                           std::to_array<Key>({"truth", "measured"})) == "truth"
+                                ? Dynamics::Navigation::kTruth
+                                : Dynamics::Navigation::kMeasured;
     if (const TomlValue* table = reader_.table("mission")) {
       TableReader mission(reader_.source(), *table, reader_.path("mission"), kMissionKeys);
       dynamics.mission = read_mission(mission, draft_, object_.object.name);

@@ -25,11 +25,13 @@ std::uint64_t canonical_bits(T value) {
   }
 }
 
-// Of a block (block.hpp) the counts first. A state may list fields for its hash alone
-// (hashed_fields), to leave out what is not in use.
+// Of a block (block.hpp) the counts first. A state may list counts and fields for its hash alone
+// (hashed_counts, hashed_fields), to leave out what is not in use.
 template <class State>
 void add_state(Hash64& hash, const State& state) {
-  if constexpr (requires { state.counts(); })
+  if constexpr (requires { state.hashed_counts(); })
+    for (const std::uint64_t count : state.hashed_counts()) hash.add(count);
+  else if constexpr (requires { state.counts(); })
     for (const std::uint64_t count : state.counts()) hash.add(count);
   const auto add = [&](const auto& scalar) { hash.add(canonical_bits(scalar)); };
   const auto field = [&](const auto&, const auto& piece) { for_each_scalar(piece, add); };

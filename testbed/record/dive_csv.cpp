@@ -131,6 +131,37 @@ void append_readings(std::string& out, const SensorColumns& sensor, const Readin
     out += std::isnan(number) ? std::string(",") : fmt::format(",{:.9g}", number);
 }
 
+// Of vehicles that fly on what they measure: where they take themselves to be, as x_m to
+// heave_m_s, and standard deviations about the world's axes.
+constexpr const char* kEstimateColumns =
+    ",estimated_x_m,estimated_y_m,estimated_z_m,estimated_heading_deg,estimated_pitch_deg,"
+    "estimated_"
+    "roll_deg,estimated_surge_m_s,estimated_sway_m_s,estimated_heave_m_s,sigma_x_m,sigma_y_m,sigma_"
+    "z_m,sigma_vx_m_s,sigma_vy_m_s,sigma_vz_m_s,sigma_about_x_deg,sigma_about_y_deg,sigma_about_z_"
+    "deg,navigation_error_m";
+
+bool any_navigates(const PhysicsWorld& world) {
+  return std::ranges::any_of(world.vehicles(), [](const PhysicsVehicle& vehicle) {
+    return vehicle.navigation.has_value();
+  });
+}
+
+void append_estimate(std::string& out, const DiveRow& row) {
+  if (!row.estimate) return append_empty(out, cells_of(kEstimateColumns));
+  const rov::NavigationEstimate& e = *row.estimate;
+  const Vec3 p = rov::world_from_ned(e.position_ned_m);
+  const Vec3 v = glm::conjugate(e.attitude) * e.velocity_ned_m_s;
+  const auto [heading, pitch, roll] = euler_of(e.attitude);
+  append_numbers(out, {p.x, p.y, p.z, compass_deg(heading), degrees(pitch), degrees(roll)});
+  append_numbers(out, {v.x, v.y, v.z});
+  // x east, y up, z south.
+  for (const auto& [sigma, unit] :
+       {std::pair(e.position_sigma_m, 1.0), std::pair(e.velocity_sigma_m_s, 1.0),
+        std::pair(e.attitude_sigma_rad, degrees(1.0))})
+    append_numbers(out, {unit * sigma.y, unit * sigma.z, unit * sigma.x});
+  append_numbers(out, {glm::distance(p, row.world_from_body.position_m)});
+}
+
 // Columns x_m to wanted_z_m. Velocity: body axes forward, starboard, down; the rest: world axes.
 void append_motion(std::string& out, const Pose& world_from_body, const Vec6& velocity,
                    const Vec3& current_m_s, const Vec3& wanted_m) {
@@ -171,6 +202,7 @@ void append_row(std::string& out, const PhysicsWorld& world, const DiveRow& row,
   for (const SensorColumns& sensor : kSensorColumns)
     if (any_has(world, sensor))
       append_readings(out, sensor, sensor.has(vehicle.file.sensors) ? &row.readings : nullptr);
+  if (any_navigates(world)) append_estimate(out, row);
   if (!world.humans().empty()) append_empty(out, cells_of(kHumanColumns));
   append_end(out, world, row.silent, row.hash);
 }
@@ -186,6 +218,7 @@ void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& r
   append_empty(out, static_cast<std::ptrdiff_t>(2 * thrusters));
   for (const SensorColumns& sensor : kSensorColumns)
     if (any_has(world, sensor)) append_empty(out, cells_of(sensor.names));
+  if (any_navigates(world)) append_empty(out, cells_of(kEstimateColumns));
   const diver::GasReading& gas = row.gas;
   const diver::DiveComputerView& deco = row.ascent.view;
   const diver::VitalState& vitals = row.vitals;
@@ -247,6 +280,7 @@ std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows,
     out += fmt::format(",command_{}_n,thrust_{}_n", i, i);
   for (const SensorColumns& sensor : kSensorColumns)
     if (any_has(world, sensor)) out += sensor.names;
+  if (any_navigates(world)) out += kEstimateColumns;
   if (!world.humans().empty()) out += kHumanColumns;
   if (!world.sources().empty()) out += ",silent";
   out += ",hash\n";

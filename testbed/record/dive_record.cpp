@@ -66,6 +66,7 @@ DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState
   row.hash = snapshot.hash;
   if (const rov::SensorReadings* readings = world_.readings(snapshot.state, index))
     row.readings = *readings;
+  row.estimate = world_.estimate(snapshot.state, index);
   return row;
 }
 
@@ -82,6 +83,11 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
         std::max(figures.largest_speed_m_s, glm::length(now.body.velocity.linear()));
     figures.shallowest_m = std::min(figures.shallowest_m, now.body.position_ned_m.z);
     figures.deepest_m = std::max(figures.deepest_m, now.body.position_ned_m.z);
+    if (const auto estimate = world_.estimate(snapshot.state, i)) {
+      figures.navigation_error_m = glm::distance(estimate->position_ned_m, now.body.position_ned_m);
+      figures.largest_navigation_error_m =
+          std::max(figures.largest_navigation_error_m.value_or(0.0), *figures.navigation_error_m);
+    }
     figures.largest_tilt_rad = std::max(figures.largest_tilt_rad, tilt_of(now.body.attitude));
     if (options_.rows && row_due(i, snapshot.step)) rows_.push_back(row_of(i, snapshot));
   }

@@ -29,12 +29,15 @@ struct DiveRow {
   std::uint64_t silent = 0;      // bits of groups of inputs whose source is not heard
   std::uint64_t hash = 0;        // of all vehicles' state
   rov::SensorReadings readings;  // the newest of each sensor that it has
+  std::optional<rov::NavigationEstimate> estimate;  // of one that flies on what it measures
 };
 
 struct DiveFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, largest_tilt_rad = 0.0;
   double shallowest_m = 1e9, deepest_m = -1e9;  // of its origin, below the still surface
   std::vector<double> arrivals_s;               // of its waypoints
+  // Of a vehicle that flies on what it measures: the distance from where it takes itself to be.
+  std::optional<double> navigation_error_m, largest_navigation_error_m;
 };
 
 class DiveRecorder {

@@ -21,6 +21,7 @@ class MissionGuide {
   std::size_t waypoint_count() const { return waypoints_.size(); }
   // Of the waypoint that it flies to or holds at.
   std::size_t waypoint_index(const MissionState& mission) const;
+  bool repeats() const { return repeat_; }
   // All waypoints reached, of a mission that does not repeat.
   bool done(const MissionState& mission) const;
 

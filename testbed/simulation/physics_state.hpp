@@ -12,6 +12,7 @@
 #include "engine/sim/block.hpp"
 #include "engine/sim/simulation.hpp"
 #include "rov/dynamics.hpp"
+#include "rov/navigation_state.hpp"
 #include "rov/sensor_set.hpp"
 #include "testbed/samples/inbox.hpp"
 #include "testbed/simulation/physics_inputs.hpp"
@@ -106,12 +107,14 @@ struct HumanPhysics {
 };
 
 // The state of a scene's physics: one block, sized once from the scene (PhysicsWorld::start()).
-class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings> {
+class PhysicsState
+    : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings, rov::NavigationState> {
  public:
   PhysicsState() = default;
-  // sensing: vehicles that have sensors.
-  PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing)
-      : Block({vehicles, humans, sensing}) {}
+  // sensing: vehicles that have sensors; navigating: those that fly on what they measure.
+  PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing,
+               std::size_t navigating)
+      : Block({vehicles, humans, sensing, navigating}) {}
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
@@ -120,16 +123,24 @@ class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorRe
   // Of the vehicles that have sensors, in their order: PhysicsWorld::readings() finds a vehicle's.
   std::span<rov::SensorReadings> readings() { return part<rov::SensorReadings>(); }
   std::span<const rov::SensorReadings> readings() const { return part<rov::SensorReadings>(); }
+  // Of the vehicles that fly on what they measure: PhysicsWorld::navigation() finds a vehicle's.
+  std::span<rov::NavigationState> navigation() { return part<rov::NavigationState>(); }
+  std::span<const rov::NavigationState> navigation() const { return part<rov::NavigationState>(); }
 
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
     auto humans = self.humans();
     auto readings = self.readings();
+    auto navigation = self.navigation();
     field("vehicles", vehicles);
     field("humans", humans);
     field("readings", readings);
+    field("navigation", navigation);
   }
-  // The hash covers groups once a live source was asked for.
+  // The hash covers groups once a live source was asked for, and navigation where there is any.
+  std::span<const std::uint64_t> hashed_counts() const {
+    return std::span(counts()).first(navigation().empty() ? kKinds - 1 : kKinds);
+  }
   static void hashed_fields(auto&& field, auto& self) {
     const auto add = [&](auto& one) {
       std::remove_cvref_t<decltype(one)>::fields_but_groups(field, one);
@@ -142,7 +153,9 @@ class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorRe
     for (auto& vehicle : self.vehicles()) add(vehicle);
     for (auto& human : self.humans()) add(human);
     auto readings = self.readings();
+    auto navigation = self.navigation();
     field("readings", readings);
+    if (!navigation.empty()) field("navigation", navigation);
   }
 };
 

@@ -39,13 +39,14 @@ constexpr std::size_t kRoomForContacts = 256;
 }  // namespace
 
 PhysicsState PhysicsWorld::start() const {
-  PhysicsState state(vehicles_.size(), humans_.size(), sensing_);
-  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-    state.vehicles()[i].body = vehicles_[i].start;
-    state.vehicles()[i].mission = mission_start(vehicles_[i].start);
-  }
+  PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_);
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) state.vehicles()[i].body = vehicles_[i].start;
   for (std::size_t i = 0; i < humans_.size(); ++i) state.humans()[i] = humans_[i].start;
-  for (std::size_t i = 0; i < vehicles_.size(); ++i) sense(i, -1.0, 0.0, state);
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    sense(i, -1.0, 0.0, state);
+    start_navigation(i, state);
+    state.vehicles()[i].mission = mission_start(known_state(state, i, 0.0));
+  }
   return state;
 }
 
@@ -204,6 +205,7 @@ void PhysicsWorld::finish_vehicle(const StepCall& call, std::size_t i, unsigned 
   state.contact.touched_steps += report.motion.touched || own.parted ? 1 : 0;
   const double end_s = sim::StepTime{call.time.step + 1, dt_s}.time_s();
   sense(i, end_s - dt_s, end_s, call.after);
+  navigate(i, end_s, call.after);
 }
 
 void PhysicsWorld::finish_human(const StepCall& call, std::size_t k, unsigned thread) const {

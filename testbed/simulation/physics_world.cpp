@@ -141,6 +141,8 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
   NERITIC_TRY_STATUS(check_start(scene, out.name, kind->solid.shape,
                                  rov::world_pose(out.start.position_ned_m, out.start.attitude)));
   if (out.file.sensors.any()) out.readings = sensing_++;
+  NERITIC_TRY(auto navigation, choose_navigation(scene, object, out.file.sensors));
+  if (navigation) out.navigation = VehicleNavigation{std::move(*navigation), navigating_++};
   out.water = {scene.physics->water_kg_m3, out.file.gravity_m_s2,
                1e5 * diver::surface_bar_at(scene.physics->altitude_m)};
   vehicles_.push_back(std::move(out));

@@ -11,6 +11,7 @@
 #include "engine/scene/scene.hpp"
 #include "engine/sim/current.hpp"
 #include "engine/sim/workers.hpp"
+#include "rov/navigation.hpp"
 #include "testbed/simulation/body_step.hpp"
 #include "testbed/simulation/human_world.hpp"
 #include "testbed/simulation/mission.hpp"
@@ -19,6 +20,12 @@
 #include "testbed/simulation/vehicle_kinds.hpp"
 
 namespace neritic::testbed {
+
+// How a vehicle that flies on what it measures navigates.
+struct VehicleNavigation {
+  rov::NavigationModel model;
+  std::size_t place = 0;  // in PhysicsState::navigation()
+};
 
 // A vehicle of the scene, prepared.
 struct PhysicsVehicle {
@@ -32,7 +39,8 @@ struct PhysicsVehicle {
   Vec3 tether_anchor_ned_m{0.0};
   rov::State start;
   std::optional<std::size_t> readings;  // of PhysicsState::readings(); none: without sensors
-  rov::SensorWater water;               // around its sensors
+  std::optional<VehicleNavigation> navigation;  // none: flies on its true state
+  rov::SensorWater water;                       // around its sensors
 };
 
 // Memory that a step works in, kept from step to step so that none allocates. Its content means
@@ -98,6 +106,13 @@ class PhysicsWorld {
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
+  // How a vehicle that flies on what it measures takes itself to move; null, none: it flies on its
+  // true state.
+  const rov::NavigationState* navigation(const PhysicsState& state, std::size_t vehicle) const;
+  std::optional<rov::NavigationEstimate> estimate(const PhysicsState& state,
+                                                  std::size_t vehicle) const;
+  // The state that its control and its mission go by.
+  rov::State known_state(const PhysicsState& state, std::size_t vehicle, double time_s) const;
   // What sensors hear: the first solid thing along a ray.
   rov::RayQuery rays() const;
   // Everything around a vehicle's sensors.
@@ -131,6 +146,8 @@ class PhysicsWorld {
   bool part(const StepCall& call, std::size_t a, std::size_t b) const;
   void finish_vehicle(const StepCall& call, std::size_t i, unsigned thread) const;
   void finish_human(const StepCall& call, std::size_t k, unsigned thread) const;
+  void start_navigation(std::size_t index, PhysicsState& state) const;
+  void navigate(std::size_t index, double time_s, PhysicsState& state) const;
   // Where something that moves so is, during a step.
   diver::WaterFlow water_along(const Vec3& position_ned_m, const Vec3& velocity_ned_m_s,
                                double time_s, double dt_s) const;
@@ -145,11 +162,18 @@ class PhysicsWorld {
   VehicleKinds kinds_;
   std::vector<PhysicsVehicle> vehicles_;
   std::vector<PhysicsHuman> humans_;
-  std::size_t sensing_ = 0;  // vehicles with sensors
+  std::size_t sensing_ = 0;     // vehicles with sensors
+  std::size_t navigating_ = 0;  // those that fly on what they measure
   StreamTable streams_;
   SourceNames sources_;
   PhysicsInputs start_inputs_;
 };
+
+// How a vehicle with these sensors navigates, as the scene chooses; none: by its true state. An
+// Error where sensors are missing.
+Result<std::optional<rov::NavigationModel>> choose_navigation(const scene::Scene& scene,
+                                                              const scene::Object& object,
+                                                              const rov::SensorSet& sensors);
 
 // What the scene says of the current, its grid read.
 Result<sim::Current> current_of(const scene::Current& current);

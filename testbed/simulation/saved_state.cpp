@@ -78,7 +78,7 @@ Status check_header(const Header& header, const StateFormat& format, std::size_t
 
 std::uint64_t StateFormat::layout_hash() const {
   Hash64 hash;
-  add_fields(hash, PhysicsState(1, 1, 1));
+  add_fields(hash, PhysicsState(1, 1, 1, 1));
   add_fields(hash, PhysicsInputs(1, 1));
   for (const std::uint64_t count : state.counts()) hash.add(count);
   for (const std::uint64_t count : inputs.counts()) hash.add(count);

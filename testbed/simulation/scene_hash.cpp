@@ -106,6 +106,7 @@ class SceneHash {
   void add(const scene::Dynamics& dynamics) {
     number(vehicle_files_[vehicle_++]);
     number(dynamics.failed_thrusters);
+    number(static_cast<std::uint64_t>(dynamics.navigation));
     add(dynamics.inputs);
     number(dynamics.tether_anchor_m.has_value());
     if (dynamics.tether_anchor_m) vec(*dynamics.tether_anchor_m);

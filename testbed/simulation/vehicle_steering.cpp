@@ -53,15 +53,15 @@ bool PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const Vehic
     state.command_n = {};
     return true;
   }
-  rov::Setpoint setpoint =
-      piloted ? piloted_setpoint(inputs.wrench.wrench, state.body, state.mission)
-      : given ? given_setpoint(inputs.setpoint, state.mission)
-              : vehicle.mission->update(all, state.body, time_s, state.mission);
+  const rov::State known = known_state(all, index, time_s);
+  rov::Setpoint setpoint = piloted ? piloted_setpoint(inputs.wrench.wrench, known, state.mission)
+                           : given ? given_setpoint(inputs.setpoint, state.mission)
+                                   : vehicle.mission->update(all, known, time_s, state.mission);
   if (piloted) setpoint.pilot = inputs.wrench.wrench;
   rov::ControlState control{state.integral};
   const auto commands_by = [&](const rov::Allocator& allocator) {
     return (piloted ? rov::piloted_inputs : rov::level_inputs)(
-        vehicle.vehicle, allocator, vehicle.file.gains, setpoint, state.body, control);
+        vehicle.vehicle, allocator, vehicle.file.gains, setpoint, known, control);
   };
   const std::uint64_t failed = failed_thrusters(vehicle, inputs, state);
   rov::Inputs commands = failed == vehicle.failed_thrusters

@@ -15,7 +15,7 @@ using namespace neritic;
 using namespace neritic::testbed;
 
 const StateFormat& format() {
-  static const StateFormat format{7, 1.0 / 240.0, PhysicsState(2, 1, 1), PhysicsInputs(2, 1)};
+  static const StateFormat format{7, 1.0 / 240.0, PhysicsState(2, 1, 1, 1), PhysicsInputs(2, 1)};
   return format;
 }
 

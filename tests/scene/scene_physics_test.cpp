@@ -86,6 +86,7 @@ shape = "box"
 dynamics = "d.toml"
 position_m = [1, 2, 3]
 failed_thrusters = [1, 4]
+navigation = "truth"
 tether_anchor_m = [0, 1, 0]
 [vehicles.mission]
 speed_m_s = 0.5
@@ -112,6 +113,7 @@ waypoints = [
   ASSERT_TRUE(scene.objects[1].dynamics.has_value());
   const Dynamics& dynamics = *scene.objects[1].dynamics;
   EXPECT_EQ(dynamics.failed_thrusters, 0b1001u);
+  EXPECT_EQ(dynamics.navigation, Dynamics::Navigation::kTruth);
   expect_near(*dynamics.tether_anchor_m, Vec3(0, 1, 0) + offset);
   ASSERT_TRUE(dynamics.mission.has_value());
   const Mission& mission = *dynamics.mission;
@@ -241,6 +243,12 @@ INSTANTIATE_TEST_SUITE_P(
         WrongPhysics{"[physics]\n" ROV "failed_thrusters = [0]",
                      "s.toml:6: vehicles[0].failed_thrusters: found [0]; accepted: a list "
                      "of the file's thrusters by number, each 1 to 16"},
+        WrongPhysics{"[physics]\n" ROV "navigation = 'gps'",
+                     "s.toml:6: vehicles[0].navigation: found \"gps\"; accepted: one of truth, "
+                     "measured"},
+        WrongPhysics{"[physics]\n" BALL "navigation = 'truth'",
+                     "s.toml:5: objects[0].navigation: found \"truth\"; accepted: no such key "
+                     "without dynamics"},
         WrongPhysics{MISSION,
                      "s.toml:6: vehicles[0].mission: found none of waypoints, hold, orbit, follow, "
                      "stand_between; accepted: one of them"},

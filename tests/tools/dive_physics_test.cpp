@@ -435,5 +435,35 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
   }
 }
 
+// Sensors enough to navigate by: another seed is another way, and a table of seeds tells how they
+// ended.
+TEST_F(DivePhysics, RunsOfSeedsEndInATable) {
+  const std::string survey =
+      (test::source_dir() / "assets/vehicles/bluerov2_heavy_survey_dynamics.toml").string();
+  ASSERT_TRUE(write_text(scratch_ / "measured.toml",
+                         "include = \"dive.toml\"\n[[vehicles]]\nname = \"rov\"\ndynamics = \"" +
+                             survey + "\"\n[vehicles.mission]\nacceptance_m = 0.3\n")
+                  .ok());
+  const Outcome table = dive("--headless --seconds 40 --seed 5 --runs 3", "measured.toml");
+  EXPECT_EQ(table.status, 0) << table.err;
+  for (const char* seed : {"\n         5  rov", "\n         6  rov", "\n         7  rov"})
+    EXPECT_NE(table.out.find(seed), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("3 of 3 missions done, 0 touched something"), std::string::npos)
+      << table.out;
+  const Outcome json = dive("--headless --seconds 40 --seed 5 --runs 2 --json", "measured.toml");
+  const auto runs = parse_json(json.out);
+  ASSERT_TRUE(runs.ok()) << json.out;
+  ASSERT_EQ(runs->size(), 2u);
+  EXPECT_NE((*runs)[0]["largest_navigation_error_m"], (*runs)[1]["largest_navigation_error_m"]);
+  // Too short for the way.
+  const Outcome short_of = dive("--headless --seconds 0.5 --runs 1", "measured.toml");
+  EXPECT_EQ(short_of.status, 1);
+  EXPECT_NE(short_of.err.find("1 of 1 missions not done in 0.5 s"), std::string::npos)
+      << short_of.err;
+  EXPECT_EQ(dive("--headless --runs 2 --log x.csv", "measured.toml").status, 2);
+  const Outcome one = dive("--headless --seconds 2 --seed 5", "measured.toml");
+  EXPECT_NE(one.out.find("navigation off by up to 0."), std::string::npos) << one.out;
+}
+
 }  // namespace
 }  // namespace neritic

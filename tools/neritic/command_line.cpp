@@ -108,6 +108,8 @@ void add_render(CLI::App& app, Run& run) {
                       "where vehicles or divers move by physics: their dive as a .csv");
   command->add_option("--log-rate", flags->files.log_rate_hz,
                       "its rows a second, else one a control period");
+  command->add_option("--seed", flags->seed,
+                      "of the sensors' noise, instead of the scene's; what is scattered stays");
   command->add_flag("--sheet", flags->sheet,
                     "also a picture of every image (OUT/sheet), and all on one (OUT/sheet.png)");
   command->add_flag("--validate", flags->validation,
@@ -251,6 +253,13 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_option("--save", flags->files.save, "the state at the end, for --restore");
   command->add_option("--restore", flags->restore,
                       "goes on from a saved state of the same scene, --seconds more");
+  command->add_option("--seed", flags->seed,
+                      "of the sensors' noise, instead of the scene's; what is scattered stays");
+  command
+      ->add_option("--runs", flags->runs,
+                   "with --headless: so many dives, with the seeds from --seed on, until their "
+                   "missions are done; a table of outcomes")
+      ->check(between(1, 100000));
   command->add_flag("--realtime", flags->realtime, "physics without pictures at the clock's pace");
   command->add_flag("--json", flags->json, "the dive's summary as JSON");
   command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");

@@ -33,6 +33,7 @@ struct RenderFlags {
   std::string quality;      // of all sonars, for what the scene says; empty: as it says
   bool own_rates = false;   // a sensor is in those frames only in which its rate makes it due
   StepFileFlags files;      // of scenes with physics: the log
+  std::optional<std::uint64_t> seed;  // instead of the scene's
 };
 Result<std::string> run_render(const RenderFlags& flags);
 
@@ -65,6 +66,8 @@ struct DiveFlags {
   StepFileFlags files;
   std::string play, replay, restore;
   bool realtime = false, json = false;
+  std::optional<std::uint64_t> seed;  // instead of the scene's
+  std::optional<std::uint32_t> runs;  // with the seeds from there on
 };
 Status run_dive(const DiveFlags& flags);
 

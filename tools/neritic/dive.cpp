@@ -29,6 +29,7 @@ constexpr double kHeadlessSeconds = 5.0;      // where neither --frames nor --se
 
 Result<scene::Scene> load(const DiveFlags& flags) {
   NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size));
+  if (flags.seed) scene.seed = *flags.seed;
   if (scene.cameras.empty()) {
     scene.cameras.push_back(camera_for(scene));
     if (!flags.size.empty()) {

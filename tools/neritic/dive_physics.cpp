@@ -6,6 +6,8 @@
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/run_record.hpp"
 #include "testbed/record/source_watch.hpp"
+#include "testbed/samples/recorded_source.hpp"
+#include "tools/neritic/dive_runs.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/step_files.hpp"
 
@@ -29,6 +31,7 @@ std::string physics_flag(const DiveFlags& flags) {
   if (!flags.restore.empty()) return "--restore";
   if (flags.realtime) return "--realtime";
   if (flags.json) return "--json";
+  if (flags.runs) return "--runs";
   return "";
 }
 
@@ -56,9 +59,11 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   if (!PhysicsWorld::needed(scene))
     return bad_input("{}: accepted where a vehicle has dynamics or a diver swims; in {} none does",
                      flag, flags.scene);
-  if ((flags.realtime || !flags.play.empty()) && (!flags.headless || draws(flags)))
+  if ((flags.realtime || flags.runs || !flags.play.empty()) && (!flags.headless || draws(flags)))
     return bad_input("{}: accepted with --headless and without flags of pictures",
-                     flags.realtime ? "--realtime" : "--play");
+                     flags.realtime ? "--realtime"
+                     : flags.runs   ? "--runs"
+                                    : "--play");
   if (!flags.replay.empty() &&
       (!first_step_flag(flags.files).empty() || flags.realtime || flags.json || flags.seconds ||
        !flags.restore.empty() || !flags.play.empty()))
@@ -67,6 +72,11 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
         "--restore, --play, --realtime, --json; it runs as long as the recording");
   if (!flags.restore.empty() && !flags.files.record.empty())
     return bad_input("--record: accepted without --restore: a recording begins at time 0");
+  if (flags.runs && (!first_step_flag(flags.files).empty() || flags.realtime ||
+                     !flags.replay.empty() || !flags.restore.empty() || !flags.play.empty()))
+    return bad_input(
+        "--runs: accepted without --log, --log-rate, --plot, --record, --save, --replay, "
+        "--restore, --play, --realtime: one run leaves such files (--seed N)");
   return {};
 }
 
@@ -86,6 +96,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
   const double seconds = flags.seconds.value_or(kPhysicsSeconds);
   if (seconds > kMostPhysicsSeconds)
     return bad_input("--seconds: {}; up to {:g} is accepted", seconds, kMostPhysicsSeconds);
+  if (flags.runs) return dive_runs(flags, scene, interrupt);
   if (!flags.replay.empty()) return replay_dive(flags, scene);
   NERITIC_TRY(const auto physics, make_dive_physics(flags, scene, LivePhysics::Pace::kPicture));
   const double start_s = physics->newest().time_s, step_s = physics->world().step_s();

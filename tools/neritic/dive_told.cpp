@@ -29,6 +29,9 @@ std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& stat
       "{:.2f} m of way, up to {:.2f} m/s, {:.1f} to {:.1f} m deep, tilted up to {:.1f} degrees, ",
       figures.path_m, figures.largest_speed_m_s, figures.shallowest_m, figures.deepest_m,
       degrees(figures.largest_tilt_rad));
+  if (figures.largest_navigation_error_m)
+    line += fmt::format("navigation off by up to {:.2f} m ({:.2f} m at the end), ",
+                        *figures.largest_navigation_error_m, *figures.navigation_error_m);
   line += touch_words(state.contact.touched_steps);
   if (state.body.refused_inputs > 0)
     line += fmt::format(", {} inputs refused", state.body.refused_inputs);
@@ -148,6 +151,10 @@ nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
           {"end", {{"position_m", {p.x, p.y, p.z}}}}};
 }
 
+nlohmann::json number_or_null(const std::optional<double>& number) {
+  return number ? nlohmann::json(*number) : nlohmann::json();
+}
+
 nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& state,
                             const DiveFigures& figures) {
   const Pose end = rov::world_pose(state.body.position_ned_m, state.body.attitude);
@@ -165,6 +172,9 @@ nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& s
           {"shallowest_m", figures.shallowest_m},
           {"deepest_m", figures.deepest_m},
           {"refused_inputs", state.body.refused_inputs},
+          {"navigation", vehicle.navigation ? "measured" : "truth"},
+          {"navigation_error_m", number_or_null(figures.navigation_error_m)},
+          {"largest_navigation_error_m", number_or_null(figures.largest_navigation_error_m)},
           {"end", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}}};
 }
 

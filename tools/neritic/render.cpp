@@ -41,6 +41,7 @@ Result<scene::Scene> load(const RenderFlags& flags) {
           scene::kFarthest_m);
   }
   NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size, options));
+  if (flags.seed) scene.seed = *flags.seed;
   if (!flags.quality.empty())
     for (scene::Sonar& sonar : scene.sonars) {
       sonar.quality = flags.quality;

@@ -146,7 +146,7 @@ TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
 }
 
 TEST(PhysicsDeterminism, TheStateNamesEveryByte) {
-  sim::check_fields_cover(PhysicsState(3, 2, 2));
+  sim::check_fields_cover(PhysicsState(3, 2, 2, 2));
   sim::check_fields_cover(PhysicsInputs(3, 2));
 }
 

@@ -102,7 +102,7 @@ TEST(SavedState, OfAnotherSceneOrVersionOrDamagedIsRefusedInOneLine) {
   has(refusal(dive_of(scene_text("failed_thrusters = [2]\n")).world->state_format(), bytes),
       "a state of another scene, whose hash is ");
   StateFormat fewer = format;
-  fewer.state = PhysicsState(1, 1, 1);
+  fewer.state = PhysicsState(1, 1, 1, 1);
   has(refusal(fewer, bytes), "a state of another layout, whose hash is ");
   auto version = bytes;
   version[8] = std::byte{9};

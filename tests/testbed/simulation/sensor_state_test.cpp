@@ -59,7 +59,8 @@ TEST(SensorState, AVehicleWithoutSensorsTakesNoSpaceForThem) {
                      dive_of(kStillWater + rov_text("position_m = [0, -10, 0]\n", "s", kSurvey));
   EXPECT_EQ(plain.state().bytes().size(), sizeof(VehicleState));
   EXPECT_EQ(plain.world->readings(plain.state(), 0), nullptr);
-  EXPECT_EQ(survey.state().bytes().size(), sizeof(VehicleState) + sizeof(rov::SensorReadings));
+  EXPECT_EQ(survey.state().bytes().size(),
+            sizeof(VehicleState) + sizeof(rov::SensorReadings) + sizeof(rov::NavigationState));
 }
 
 // One sample a second (diver::kComputerSample_s), counted by the step alone.
