@@ -67,6 +67,11 @@ double log_integral(double u) {
   return a == 0.0 ? 0.0 : integrals(2.0 * kPi * a).cin / (2.0 * kPi * kPi);
 }
 
+// The pulse's energy in resolutions: that of a flat one is 1.
+double length(PulseShape shape) {
+  return shape == PulseShape::kFlat ? 1.0 : 1.5;
+}
+
 // Share of the energy between 0 and x resolutions; odd, one half at infinity. The Hann envelope is
 // sin(pi x) / pi * (1/x - 1/2 / (x-1) - 1/2 / (x+1)); squared, in partial fractions.
 double energy_from_zero(PulseShape shape, double x) {
@@ -74,7 +79,24 @@ double energy_from_zero(PulseShape shape, double x) {
   if (shape == PulseShape::kFlat) return sinc2_integral(x);
   return (sinc2_integral(x) + 0.25 * (sinc2_integral(x - 1.0) + sinc2_integral(x + 1.0)) +
           0.75 * (log_integral(x + 1.0) - log_integral(x - 1.0))) /
-         1.5;
+         length(shape);
+}
+
+// Integral of energy_from_zero from 0 to x, by parts; even. The first moment of the Hann envelope's
+// power follows from the same partial fractions.
+double energy_integral(PulseShape shape, double x) {
+  double moment = log_integral(x);
+  if (shape == PulseShape::kHann)
+    moment += log_integral(1.0) - 0.5 * (log_integral(x - 1.0) + log_integral(x + 1.0)) +
+              0.25 * (sinc2_integral(x - 1.0) - sinc2_integral(x + 1.0)) +
+              0.5 * sinc2_integral(1.0);
+  return x * energy_from_zero(shape, x) - moment / length(shape);
+}
+
+// Share between a point in bin 0 and the far edge of the k-th bin out; bin: in resolutions.
+double energy_to_edge(PulseShape shape, PlaceInBin place, double k, double bin) {
+  if (place == PlaceInBin::kMiddle) return energy_from_zero(shape, (k + 0.5) * bin);
+  return (energy_integral(shape, (k + 1.0) * bin) - energy_integral(shape, k * bin)) / bin;
 }
 
 double envelope(PulseShape shape, double x) {
@@ -97,19 +119,23 @@ double pulse_envelope(PulseShape shape, double offset_m, double resolution_m) {
   return envelope(shape, offset_m / resolution_m);
 }
 
+double pulse_length_m(PulseShape shape, double resolution_m) {
+  return length(shape) * resolution_m;
+}
+
 double pulse_energy_below(PulseShape shape, double offset_m, double resolution_m) {
   return 0.5 + energy_from_zero(shape, offset_m / resolution_m);
 }
 
 Result<RangeSpread> range_spread(PulseShape shape, double resolution_m, double bin_m,
-                                 double max_truncated) {
+                                 double max_truncated, PlaceInBin place) {
   NERITIC_TRY_STATUS(positive("resolution", resolution_m));
   NERITIC_TRY_STATUS(positive("bin", bin_m));
   if (!(max_truncated > 0.0 && max_truncated < 1.0))
     return refusal("range_spread", fmt::format("truncation {}", max_truncated),
                    "a number in (0, 1)");
   const double bin = bin_m / resolution_m;
-  // edges[k]: share between the middle and the far edge of the k-th bin out.
+  // edges[k]: share between the point and the far edge of the k-th bin out.
   std::vector<double> edges;
   do {
     if (edges.size() > kMaxReach)
@@ -118,12 +144,13 @@ Result<RangeSpread> range_spread(PulseShape shape, double resolution_m, double b
           fmt::format("a pulse of {:g} m (c / 2B), which spreads over more than {} bins of {:g} m",
                       resolution_m, kMaxReach, bin_m),
           "more bandwidth_hz, or fewer range bins");
-    edges.push_back(energy_from_zero(shape, (static_cast<double>(edges.size()) + 0.5) * bin));
+    edges.push_back(energy_to_edge(shape, place, static_cast<double>(edges.size()), bin));
   } while (1.0 - 2.0 * edges.back() > max_truncated);
 
   RangeSpread spread;
   spread.reach = static_cast<std::uint32_t>(edges.size() - 1);
   spread.truncated = std::max(0.0, 1.0 - 2.0 * edges.back());
+  spread.pulse_bins = length(shape) / bin;
   spread.energy.resize(2 * std::size_t{spread.reach} + 1);
   spread.amplitude.resize(spread.energy.size());
   for (std::uint32_t k = 0; k <= spread.reach; ++k) {

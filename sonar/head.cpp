@@ -131,15 +131,16 @@ std::vector<float> beam_weights(const scene::Sonar& sonar, const Head& head,
   return weights;
 }
 
-// What spreads along range. Calibrated levels keep a point's peak; else its energy is kept.
+// What spreads along range. With levels a bin has the mean power over its length, whatever that is;
+// else the energy is kept.
 Result<Taps> range_taps(const scene::Sonar& sonar, const BeamGrid& grid, bool coherent) {
   if (!sonar.terms.range_spread) return Taps{};
   NERITIC_TRY(const RangeSpread kernel, pulse_taps(sonar.terms, grid));
-  const double peak = sonar.terms.level ? kernel.energy[kernel.reach] : 1.0;
+  const double scale = sonar.terms.level ? kernel.pulse_bins : 1.0;
   Taps taps{-static_cast<int>(kernel.reach), {}};
   for (std::size_t i = 0; i < kernel.energy.size(); ++i)
-    taps.weights.push_back(static_cast<float>(coherent ? kernel.amplitude[i] / std::sqrt(peak)
-                                                       : kernel.energy[i] / peak));
+    taps.weights.push_back(static_cast<float>(coherent ? kernel.amplitude[i] * std::sqrt(scale)
+                                                       : kernel.energy[i] * scale));
   return taps;
 }
 
@@ -254,7 +255,8 @@ Result<RangeSpread> pulse_taps(const scene::SonarTerms& terms, const BeamGrid& g
       range_resolution_m(sound_speed_of(terms.water, 0.0), terms.range_spread->bandwidth_hz);
   // A Hann pulse's tails are short, a sinc's are not: leaving out 1 % costs its echo as much error.
   return range_spread(hann ? PulseShape::kHann : PulseShape::kFlat, resolution, grid.range_step_m(),
-                      hann ? 1e-3 : 1e-2);
+                      hann ? 1e-3 : 1e-2,
+                      terms.level ? PlaceInBin::kAnywhere : PlaceInBin::kMiddle);
 }
 
 double scan_heading_rad(const scene::Sonar& sonar, std::uint32_t ping) {

@@ -86,6 +86,47 @@ TEST(SonarRangeSpread, IsTheSampledEnvelopeInFineBinsAndOneBinInCoarseOnes) {
             sonar::range_spread(PulseShape::kFlat, 0.025, 0.005, 1e-3)->reach);
 }
 
+// The envelope's power of points 1/200 of a bin apart, averaged over each bin: no integral in
+// closed form.
+TEST(SonarRangeSpread, HasTheMeanPowerOfAPointAnywhereInItsBin) {
+  constexpr double kResolution_m = 0.02;
+  for (const auto shape : {PulseShape::kFlat, PulseShape::kHann})
+    for (const double bins_a_pulse : {20.0, 3.0, 1.0, 0.5, 0.1}) {
+      const double bin = sonar::pulse_length_m(shape, kResolution_m) / bins_a_pulse;
+      const auto spread =
+          *sonar::range_spread(shape, kResolution_m, bin, 1e-3, sonar::PlaceInBin::kAnywhere);
+      EXPECT_NEAR(spread.pulse_bins, bins_a_pulse, 1e-12);
+      EXPECT_NEAR(std::reduce(spread.energy.begin(), spread.energy.end()), 1.0, 1e-12);
+      const int reach = static_cast<int>(spread.reach);
+      for (int k = 0; k <= std::min(reach, 3); ++k) {
+        // Over all pairs of places: a distance d from k - 1 to k + 1 bins has the weight
+        // 1 - abs(d - k).
+        double mean = 0.0;
+        constexpr int kSteps = 4000;
+        for (int i = 0; i < kSteps; ++i) {
+          const double d = (i + 0.5) / kSteps * 2.0 - 1.0;
+          mean += (1.0 - std::abs(d)) *
+                  std::pow(sonar::pulse_envelope(shape, (k + d) * bin, kResolution_m), 2) * 2.0 /
+                  kSteps;
+        }
+        const double tap = spread.energy[static_cast<std::size_t>(reach + k)] * spread.pulse_bins;
+        EXPECT_NEAR(tap, mean, 2e-3 * mean + 1e-4) << bins_a_pulse << " " << k;
+      }
+    }
+}
+
+// In bins that are short against the pulse it makes no difference where in them a point lies.
+TEST(SonarRangeSpread, PlacesInShortBinsAreAlike) {
+  const auto middle = *sonar::range_spread(PulseShape::kHann, 0.025, 0.001, 1e-3);
+  const auto anywhere =
+      *sonar::range_spread(PulseShape::kHann, 0.025, 0.001, 1e-3, sonar::PlaceInBin::kAnywhere);
+  ASSERT_EQ(middle.reach, anywhere.reach);
+  for (std::size_t i = 0; i < middle.energy.size(); ++i)
+    EXPECT_NEAR(anywhere.energy[i] / middle.energy[middle.reach],
+                middle.energy[i] / middle.energy[middle.reach], 1e-3);
+  EXPECT_NEAR(anywhere.energy[anywhere.reach] * anywhere.pulse_bins, 1.0, 2e-3);
+}
+
 TEST(SonarRangeSpread, RefusesWhatIsNoLength) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -1.0, nan}) {

@@ -92,7 +92,8 @@ Result<TermImage> TermImage::create(const scene::Sonar& sonar, const sonar::Head
 }
 
 // The share that a bin receives of a return k sub-bins beyond its near edge: the pulse's energy
-// between the bin's edges. With levels a return in a bin's middle keeps its power there.
+// between the bin's edges. With levels it is the mean power over the bin, of a return whose peak
+// is 1.
 void TermImage::make_kernel() {
   const auto& spread = sonar_->terms.range_spread;
   if (!spread) return;
@@ -105,9 +106,9 @@ void TermImage::make_kernel() {
     return sonar::pulse_energy_below(shape, step - offset_m, resolution) -
            sonar::pulse_energy_below(shape, -offset_m, resolution);
   };
-  const double peak = sonar_->terms.level ? share(step / 2.0) : 1.0;
+  const double scale = sonar_->terms.level ? sonar::pulse_length_m(shape, resolution) / step : 1.0;
   for (int k = -reach_ * kSubBins; k <= (reach_ + 1) * kSubBins; ++k)
-    kernel_.push_back(share(k * step / kSubBins) / peak);
+    kernel_.push_back(share(k * step / kSubBins) * scale);
 }
 
 double TermImage::power(const TruthRay& ray, const TruthEcho& echo) const {
