@@ -5,7 +5,8 @@
 
 // Exposed scene radiance to a display picture: the filmic curve fitted by Stephen Hill to the ACES
 // reference and output transforms (in ACES's wider primaries, so that a saturated sea keeps its shades),
-// then sRGB encoding.
+// then the gamut of sRGB by hue and lightness (shared/gamut.h) and sRGB encoding.
+#include "shared/gamut.h"
 #include "shared/lighting.h"
 
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
@@ -24,7 +25,7 @@ vec3 filmic(vec3 x) {
   // at a display value of about 0.8.
   vec3 v = kFromSrgb * (x * 1.8);
   v = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
-  return clamp(kToSrgb * v, 0.0, 1.0);
+  return kToSrgb * v;
 }
 
 // IEC 61966-2-1. Its power of 1/2.4 by square roots, which every device has and which cost a CPU a fifth
@@ -39,7 +40,9 @@ void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec2 size = imageSize(out_image).xy;
   if (at.x >= size.x || at.y >= size.y) return;
-  vec3 x = max(texelFetch(hdr_image, at, 0).rgb, vec3(0.0));
-  vec3 c = srgb(filmic(x));
+  // No more than a half float can represent, since the curve divides squares; what is not a number becomes 0.
+  vec3 x = texelFetch(hdr_image, at, 0).rgb;
+  x = mix(vec3(0.0), min(x, vec3(65504.0)), greaterThan(x, vec3(0.0)));
+  vec3 c = srgb(map_into_gamut(filmic(x)));
   imageStore(out_image, at, vec4(c, kLumaInAlpha ? dot(c, vec3(0.299, 0.587, 0.114)) : 1.0));
 }

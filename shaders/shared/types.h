@@ -22,7 +22,10 @@ using ivec2 = glm::ivec2;
 using mat3 = glm::mat3;
 using mat4 = glm::mat4;
 using glm::abs;
+using glm::max;
+using glm::min;
 using glm::normalize;
+using glm::pow;
 }  // namespace neritic::shared
 #define NERITIC_SHARED_BEGIN namespace neritic::shared {
 #define NERITIC_SHARED_END }

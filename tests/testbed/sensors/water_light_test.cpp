@@ -1,8 +1,8 @@
-// Light in water measured on pictures, the documented tone curve inverted, against closed forms:
-// sight fades by exp(-c z) (Beer and Lambert), daylight by exp(-K_d d), the water's own light grows
-// as B (1 - exp(-c z)), and its B is the integral of what is scattered once; so are the lamps'
-// beams, and lamps light what they reach by exp(-c z) / z^2. Snell's window lets in all the light
-// there is.
+// Light in water measured on pictures, the documented tone curve and gamut mapping inverted,
+// against closed forms: sight fades by exp(-c z) (Beer and Lambert), daylight by exp(-K_d d), the
+// water's own light grows as B (1 - exp(-c z)), and its B is the integral of what is scattered
+// once; so are the lamps' beams, and lamps light what they reach by exp(-c z) / z^2. Snell's window
+// lets in all the light there is.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,14 +12,28 @@
 #include "engine/render/lighting.hpp"
 #include "engine/render/water_optics.hpp"
 #include "engine/scene/shapes.hpp"
+#include "shared/gamut.h"
 #include "shared/phase.h"
 #include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
+#include "tests/support/oklab.hpp"
 
 namespace neritic::testbed {
 namespace {
 
 using WaterLight = test::GpuTest;
+
+// Chroma as it was before the mapping into the gamut: with w = (r - k) / (1 - k) of the colour
+// displayed, x = w / (1 - w) (shaders/shared/gamut.h).
+Vec3 before_gamut(const Vec3& linear) {
+  constexpr double k = shared::kGamutKnee;
+  test::Lch colour = test::oklab(linear);
+  const double edge = test::edge_chroma(colour.lightness, colour.hue_rad);
+  if (colour.chroma <= k * edge) return linear;
+  const double w = (colour.chroma / edge - k) / (1.0 - k);
+  colour.chroma = (k + (1.0 - k) * w / (1.0 - w)) * edge;
+  return test::linear_srgb(colour);
+}
 
 // The inverse of Hill's fit of the ACES transforms and of the sRGB encoding (IEC 61966-2-1).
 Vec3 exposed_radiance(const Vec3& encoded) {
@@ -31,7 +45,7 @@ Vec3 exposed_radiance(const Vec3& encoded) {
   for (int i = 0; i < 3; ++i)
     linear[i] =
         encoded[i] <= 0.04045 ? encoded[i] / 12.92 : std::pow((encoded[i] + 0.055) / 1.055, 2.4);
-  Vec3 y = glm::inverse(to_srgb) * linear;
+  Vec3 y = glm::inverse(to_srgb) * before_gamut(linear);
   for (int i = 0; i < 3; ++i) {
     // y = (v^2 + .0245786 v - .000090537) / (.983729 v^2 + .432951 v + .238081).
     const double a = 1.0 - 0.983729 * y[i], b = 0.0245786 - 0.432951 * y[i],
@@ -132,6 +146,27 @@ TEST_F(WaterLight, OneMoreMetreOfWaterFadesByBeamAttenuation) {
     for (int ch = 0; ch < 3; ++ch) {
       const double wanted = std::exp(-optics.beam_attenuation_m()[ch]);
       EXPECT_NEAR(far[ch] / near[ch] / wanted, 1.0, 0.05) << type << " " << ch;
+    }
+  }
+}
+
+// Open water by daylight, for which cameras expose: clipped channels would show neon green (5C) and
+// ultramarine (I). Photographs of daylight have a median of 0.0 % of such pixels.
+TEST_F(WaterLight, NoChannelOfOpenWaterIsAtTheGamutsEdgeInAnyType) {
+  for (const std::string_view name : scene::kWaterTypes) {
+    const std::string type(name);
+    scene::Scene scene = scene_of({.water = type.c_str(),
+                                   .depth_m = 5.0,
+                                   .face_m = 0.0,
+                                   .scattering = true,
+                                   .auto_exposure = true});
+    NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+    FrameRequest request;
+    request.cameras = {0};
+    NERITIC_ASSERT_OK(const auto result, session->render(request));
+    for (int ch = 0; ch < 3; ++ch) {
+      const int value = result.cameras[0].eyes[0].color.at(16, 16, ch);
+      EXPECT_TRUE(value > 0 && value < 255) << type << " channel " << ch << ": " << value;
     }
   }
 }
@@ -337,7 +372,7 @@ TEST_F(WaterLight, AirDoesNotGlow) {
     NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene_of(view)));
     FrameRequest request;
     request.cameras = {0};
-    NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
+    NERITIC_ASSERT_OK(const auto result, session->render(request));
     for (int ch = 0; ch < 3; ++ch)
       EXPECT_EQ(result.cameras[0].eyes[0].color.at(16, 16, ch), 0) << pitch_rad;
   }
