@@ -74,6 +74,42 @@ TEST_F(Picture, WhatCannotBeDrawnIsAnErrorInOneLine) {
   EXPECT_FALSE(write_picture(folder_ / "none/a.png", {{"picture", "dive"}}).ok());
 }
 
+TEST_F(Picture, NoLabelOfADiveOverlapsAnotherOrLeavesThePage) {
+  ASSERT_EQ(
+      run(fmt::format("'{}/tools/neritic' -q dive '{}' --headless --seconds 3 --plot {}",
+                      NERITIC_BINARY_DIR, (test::source_dir() / "assets/scenes/dive.toml").string(),
+                      file("a.png"))),
+      0)
+      << said();
+  EXPECT_EQ(run(fmt::format(
+                "/usr/bin/python3 -B '{}/tests/tools/plot_labels.py' '{}/tools/plot' {}",
+                test::source_dir().string(), test::source_dir().string(), file("a.plot.json"))),
+            0)
+      << said();
+}
+
+TEST_F(Picture, AllPanelsOfADiveAreDrawnOnRequestAlone) {
+  ASSERT_EQ(
+      run(fmt::format("'{}/tools/neritic' -q dive '{}' --headless --seconds 1 --plot {}",
+                      NERITIC_BINARY_DIR,
+                      (test::source_dir() / "assets/scenes/mission.toml").string(), file("a.png"))),
+      0)
+      << said();
+  EXPECT_EQ(run(kModule + " " + file("a.plot.json") + " --all --out " + file("all.png")), 0)
+      << said();
+  const auto height = [&](const char* name) {  // big endian, at byte 20 of a PNG
+    const std::string png = read_text(folder_ / name).value();
+    return png.size() < 24
+               ? 0
+               : 256 * static_cast<unsigned char>(png[22]) + static_cast<unsigned char>(png[23]);
+  };
+  EXPECT_GT(height("all.png"), height("a.png") + 200);
+  ASSERT_TRUE(write_text(folder_ / "plan.json", "{\"picture\": \"plan\"}\n").ok());
+  EXPECT_EQ(run(kModule + " " + file("plan.json") + " --all"), 2);
+  EXPECT_NE(said().find("found --all of picture \"plan\"; accepted: dive"), std::string::npos)
+      << said();
+}
+
 // One element of each kind, with a zero on a logarithmic axis and a NaN.
 Page small_page() {
   Page page{"Title", {"A fact."}, 2};

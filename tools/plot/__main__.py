@@ -1,4 +1,4 @@
-"""Draws the data of a picture that `neritic` wrote: python3 tools/plot DATA.json [--out PICTURE.png].
+"""Draws the data of a picture that `neritic` wrote: python3 tools/plot DATA.json [--out PICTURE.png] [--all].
 
 The key "picture" of the data says which picture it is; README.md lists them. Exit status: 0 drawn,
 1 could not write, 2 bad data or usage, 3 matplotlib is missing. One line on stderr says why.
@@ -55,6 +55,7 @@ def main():
     parser = argparse.ArgumentParser(prog="tools/plot", description="Draws the data of a picture of neritic.")
     parser.add_argument("data", help="what neritic wrote: DIVE.plot.json, deco.json, ...")
     parser.add_argument("--out", help="the picture, .png (default: the data's name with .png)")
+    parser.add_argument("--all", action="store_true", help="a dive: every panel, beneath the page of its story")
     asked = parser.parse_args()
     stem = asked.data.removesuffix(".json").removesuffix(".plot")
     try:
@@ -62,7 +63,10 @@ def main():
         known = painters()
         if data["picture"] not in known:
             raise BadData(f'{asked.data}: found picture "{data["picture"]}"; accepted: {", ".join(known)}')
-        save(known[data["picture"]](data), asked.out or stem + ".png")
+        if asked.all and data["picture"] != "dive":
+            raise BadData(f'{asked.data}: found --all of picture "{data["picture"]}"; accepted: dive')
+        drawn = known[data["picture"]](data, everything=True) if asked.all else known[data["picture"]](data)
+        save(drawn, asked.out or stem + ".png")
     except ModuleNotFoundError as error:
         if error.name is None or error.name.split(".")[0] not in ("matplotlib", "numpy"):
             raise

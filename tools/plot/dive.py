@@ -1,17 +1,21 @@
-"""The picture of a dive (`neritic dive --plot`): its story on one page. Large: depth over time, with
-ceiling, stops, wanted path, the ground below and whatever endangered a diver; and the path from above.
-Small, beneath: gas, times, pace, breath and risks of each diver; thrust, error and speed of vehicles.
+"""The picture of a dive (`neritic dive --plot`): its story on one page. Large: depth over time with
+ceiling, stops, the wanted path, the ground below and whatever endangered a diver; of vehicles the path
+from above too. Small, beneath: gas, pace and risks of each diver; error and thruster load of vehicles.
+The small panels are in dive_panels.py; all others follow on request: `python3 tools/plot F.plot.json --all`.
 """
 import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 
-from style import (BLUE, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK, RED, SAND, area, color, figure, gaps, heading,
-                   legend, notes, numbers, over_time, room, time_axis, title)
+from dive_panels import RESERVE_BAR, diver_story, draw_more, height_of_more, vehicle_story
+from style import (GREY, INK, PAPER, PINK, RED, SAND, area, color, figure, fit, gaps, heading, legend, notes, numbers,
+                   section, short, time_axis, title)
 
 MOST_DIVERS, MOST_VEHICLES = 2, 3  # that have small panels of their own
 MOST_STRIPS = 12
-LONGEST_MIN = 300.0  # longer times are not drawn: no diver plans by them
-RESERVE_BAR = 50.0
-DIVER_PX, VEHICLE_PX = 410, 250  # heights of one's small panels
+ROW_PX, PANEL_PX = 222, 130  # heights of one's small panels, with words and alone
+WANTED = dict(color="#f0b93a", lw=5.5, path_effects=[withStroke(linewidth=6.8, foreground=INK)], zorder=3,
+              solid_capstyle="butt")  # a broad band, the flown path runs thin on it
 
 # Dangers to a diver: words, colour, and the rows in which each holds.
 DANGERS = (
@@ -45,20 +49,54 @@ def danger_lines(diver):
     return out
 
 
+def mean_depth(diver):
+    """Over time, of the rows that the data holds: they are not evenly spaced."""
+    time, depth = numbers(diver["time_s"]), numbers(diver["depth_m"])
+    span = np.diff(time)
+    if span.sum() <= 0:
+        return depth.mean()
+    return float((0.5 * (depth[1:] + depth[:-1]) * span).sum() / span.sum())
+
+
+def mark_depths(ax, divers, first_color, seconds):
+    """Lines of mean depths, points of deepest ones; returns their labels."""
+    items = []
+    for i, diver in enumerate(divers[:MOST_DIVERS]):
+        depth, hue = numbers(diver["depth_m"]), color(first_color + i)
+        if not np.isfinite(depth).any():
+            continue
+        whose = f"{short(diver['name'])}: " if len(divers) > 1 else ""
+        deepest, mean = int(np.nanargmax(depth)), mean_depth(diver)
+        ax.axhline(mean, color=hue, lw=1.0, ls=(0, (1, 2)), zorder=2)
+        ax.plot(diver["time_s"][deepest], depth[deepest], "v", color=hue, mec=INK, ms=7, zorder=8)
+        items.append((diver["time_s"][deepest], depth[deepest], f"{whose}deepest {depth[deepest]:.1f} m", hue, True))
+        items.append((0.985 * seconds, mean, f"{whose}mean {mean:.1f} m", hue, True))
+    return items
+
+
+def shade_alarms(ax, divers, seconds):
+    """The rows of dangers beneath have their words, in the same colours."""
+    least = 0.002 * seconds  # so that a moment is seen
+    for level, hue in ((1, "#ee6a5a"), (2, RED)):
+        for diver in divers:
+            for at, long in gaps(diver["time_s"], numbers(diver["ascent_alarm"]) == level):
+                ax.axvspan(at, at + max(long, least), color=hue, alpha=0.22, lw=0, zorder=0.5)
+
+
 def draw_depth(ax, data, strips, seconds):
     vehicles, divers = data["vehicles"], data["humans"]
     shown = []
     for i, one in enumerate(vehicles):
         depth = numbers(one["depth_m"])
-        ax.plot(one["time_s"], depth, color=color(i), lw=2.4, alpha=0.75, label=one["name"] if i < 6 else "_")
-        shown.append(depth)
         if one["wanted_depth_m"] is not None:
             wanted = numbers(one["wanted_depth_m"])
-            ax.plot(one["time_s"], wanted, color=INK, lw=1.0, ls=(0, (4, 3)), label="wanted" if i == 0 else "_", zorder=5)
+            ax.plot(one["time_s"], wanted, **WANTED, label="wanted" if i == 0 else "_")
             shown.append(wanted)
+        ax.plot(one["time_s"], depth, color=color(i), lw=1.8, label=short(one["name"]) if i < 6 else "_", zorder=4)
+        shown.append(depth)
     for i, diver in enumerate(divers):
         depth, hue = numbers(diver["depth_m"]), color(len(vehicles) + i)
-        ax.plot(diver["time_s"], depth, color=hue, lw=2.4, label=diver["name"] if i < 6 else "_", zorder=4)
+        ax.plot(diver["time_s"], depth, color=hue, lw=2.4, label=short(diver["name"]) if i < 6 else "_", zorder=4)
         shown.append(depth)
         ceiling, stop = numbers(diver["ceiling_m"]), numbers(diver["stop_m"])
         if np.nanmax(ceiling, initial=0) > 0:
@@ -67,7 +105,7 @@ def draw_depth(ax, data, strips, seconds):
                     label="ceiling" if i == 0 else "_")
             shown.append(ceiling[ceiling > 0])
         if np.nanmax(stop, initial=0) > 0:
-            ax.plot(diver["time_s"], np.where(stop > 0, stop, np.nan), color=PINK, lw=1.1, ls=(0, (2, 2)),
+            ax.plot(diver["time_s"], np.where(stop > 0, stop, np.nan), color=PINK, lw=1.6, ls=(0, (2, 2)),
                     label="next stop" if i == 0 else "_")
             shown.append(stop[stop > 0])
     values = np.concatenate(shown) if shown else np.zeros(1)
@@ -87,20 +125,21 @@ def draw_depth(ax, data, strips, seconds):
         ground = numbers(one["ground_depth_m"])
         if np.isfinite(ground).any() and np.nanmin(ground) < bottom + margin:
             ax.fill_between(one["time_s"], ground, bottom + margin, color=SAND, alpha=0.45, lw=0, zorder=0,
-                            label=f"ground below {one['name']}")
+                            label=f"ground below {short(one['name'])}")
+    shade_alarms(ax, divers, seconds)
     handles = ax.get_legend_handles_labels()[0]
     for _, hue, _, time, depth in strips:
         ax.plot(time, depth, color=hue, lw=5, zorder=6, solid_capstyle="butt")
     time_axis(ax, seconds)
     ax.set_ylabel("depth, m")
     title(ax, "Depth over time", 11)
-    legend(ax, 9, handles[:9])
-    items = [(w["at_s"], w["at_depth_m"], str(w["number"]), INK, True) for v in vehicles[:1] for w in v["waypoints"]]
+    legend(ax, 9, handles)
+    marks = mark_depths(ax, divers, len(vehicles), seconds)
+    events = [(w["at_s"], w["at_depth_m"], str(w["number"]), INK, True) for v in vehicles[:1] for w in v["waypoints"]]
     for diver in divers:
-        items += [(s["at_s"], s["depth_m"], "to " + s["to"], INK, True) for s in diver["gas_switches"][:8]]
-    if items:
-        ax.plot([i[0] for i in items], [i[1] for i in items], "o", color=INK, ms=4.5, zorder=8)
-        notes(ax, items, 8.5)
+        events += [(s["at_s"], s["depth_m"], "to " + s["to"], INK, True) for s in diver["gas_switches"][:8]]
+    ax.plot([i[0] for i in events], [i[1] for i in events], "o", color=INK, ms=4.5, zorder=8)
+    notes(ax, marks + events, 8.5)
 
 
 def danger_strips(data):
@@ -117,19 +156,31 @@ def danger_strips(data):
 
 
 def draw_strips(ax, strips, seconds):
-    """One row a danger, under the depth, with its words at the right."""
-    least = 0.003 * seconds  # so that a moment is seen
-    for i, (words, hue, spans, _, _) in enumerate(strips):
-        ax.broken_barh([(a, max(b, least)) for a, b in spans], (i + 0.1, 0.8), color=hue, lw=0)
-        ax.text(1.008, (i + 0.5) / len(strips), words, transform=ax.transAxes, color=hue, size=8, va="center")
+    """One row a danger, under the depth; its words stand beside its first or last time if there is room."""
+    time_axis(ax, seconds, False)
     ax.set_ylim(0, len(strips))
     ax.set_yticks([])
     ax.spines["left"].set_visible(False)
-    time_axis(ax, seconds, False)
     ax.tick_params(axis="x", labelbottom=False)
+    least = 0.003 * seconds  # so that a moment is seen
+    pixel = ax.get_xlim()[1] / ax.get_window_extent().width
+    for i, (words, hue, spans, _, _) in enumerate(strips):
+        spans = [(a, max(b, least)) for a, b in spans]
+        ax.broken_barh(spans, (i + 0.1, 0.8), color=hue, lw=0)
+        text = ax.text(0, i + 0.5, words, color=hue, size=8, va="center_baseline", zorder=5,
+                       path_effects=[withStroke(linewidth=3, foreground=PAPER)])
+        wide, begins, ends = text.get_window_extent().width * pixel, spans[0][0], sum(spans[0])
+        after = min([a for a, _ in spans[1:]], default=ax.get_xlim()[1])
+        last = sum(spans[-1])
+        if after - ends > wide + 8 * pixel:
+            text.set_x(ends + 4 * pixel)
+        elif ax.get_xlim()[1] - last > wide + 8 * pixel:
+            text.set_x(last + 4 * pixel)
+        elif begins > wide + 8 * pixel:
+            text.set_x(begins - wide - 4 * pixel)
 
 
-def draw_map(fig, ax, data):
+def draw_map(fig, ax, data, seconds):
     ground = data["ground"]
     title(ax, "Path from above", 11)
     ax.set_xlabel("east, m")
@@ -152,99 +203,41 @@ def draw_map(fig, ax, data):
         bar.outline.set_visible(False)
         ax.grid(False)
     items = []
+    keys = [Line2D([], [], marker="o", ls="", mfc=PAPER, mec=INK, label="start"),
+            Line2D([], [], marker="s", ls="", color=INK, label="end")]
     for i, one in enumerate(data["vehicles"] + data["humans"]):
         x, y = numbers(one["x_m"]), -numbers(one["z_m"])
         if not len(x):
             continue
-        ax.plot(x, y, color=color(i), lw=2.2, alpha=0.85)
         wanted = one.get("wanted_x_m")
         if wanted is not None:
-            ax.plot(numbers(wanted), -numbers(one["wanted_z_m"]), color=INK, lw=1.0, ls=(0, (4, 3)), zorder=5)
+            keys[2:] = ax.plot(numbers(wanted), -numbers(one["wanted_z_m"]), **WANTED, label="wanted")
+        ax.plot(x, y, color=color(i), lw=1.8, zorder=4)
         ax.plot(x[0], y[0], "o", mfc=PAPER, mec=color(i), mew=1.6, ms=7, zorder=7)
         ax.plot(x[-1], y[-1], "s", color=color(i), ms=6.5, zorder=7)
         if i < 6:
-            items.append((x[-1], y[-1], one["name"], color(i), True))
+            items.append((x[-1], y[-1], short(one["name"]), color(i), True))
     for w in data["vehicles"][0]["waypoints"] if data["vehicles"] else []:
         ax.plot(w["at_x_m"], -w["at_z_m"], "o", color=INK, ms=4, zorder=8)
-        items.append((w["at_x_m"], -w["at_z_m"], str(w["number"]), INK, False))
+        items.append((w["at_x_m"], -w["at_z_m"], f"{w['number']}: {clock(w['at_s'], seconds)}", INK, False))
     notes(ax, items, 8.5)
-    ax.text(1.0, 1.012, "○ start  ■ end  – – wanted", transform=ax.transAxes, ha="right", va="bottom", size=8.5,
-            color=GREY)
+    legend(ax, 8.5, keys)
 
 
-def diver_panels(axes, diver, seconds):
-    time, limits = numbers(diver["time_s"]), diver["limits"]
-    column = lambda key: numbers(diver[key])
-    step = iter(axes)
-
-    ax = next(step)
-    tanks = [(time, numbers(bar), f"{i + 1}: {gas}" if len(diver["tanks"]) > 1 else gas, color((0, 3, 6, 5)[i % 4]))
-             for i, (gas, bar) in enumerate(zip(diver["tanks"], diver["tank_bar"]))]
-    if tanks:
-        over_time(ax, tanks, "bar", "Tanks", seconds, 5)
-        if ax.get_ylim()[0] < 1.6 * RESERVE_BAR:
-            ax.axhline(RESERVE_BAR, color=RED, lw=0.9, ls=(0, (4, 3)))
-            ax.set_ylim(bottom=min(ax.get_ylim()[0], 40))
-        for switch in diver["gas_switches"]:
-            ax.axvline(switch["at_s"], color=INK, lw=0.8, ls=":")
-    else:
-        ax.set_axis_off()
-
-    ax = next(step)
-    held = lambda key: np.where(column(key) <= LONGEST_MIN, column(key), np.nan)
-    over_time(ax, [(time, held("no_stop_min"), "no stop", BLUE), (time, held("remaining_min"), "gas", GREEN),
-                   (time, column("to_surface_min"), "way up", ORANGE)], "min", "Time left", seconds)
-
-    ax = next(step)
-    rate = column("ascent_m_min")
-    over_time(ax, [(time, rate, "", BLUE)], "m/min, up", "Ascent", seconds)
-    most = np.nanmax(rate, initial=0)
-    for key, hue, words in (("fast_m_min", "#ee6a5a", "fast"), ("dangerous_m_min", RED, "dangerous")):
-        if most > 0.5 * limits[key]:
-            ax.axhline(limits[key], color=hue, lw=1.0, ls=(0, (4, 3)), label=words)
-            ax.set_ylim(top=max(ax.get_ylim()[1], 1.15 * limits[key]))
-    legend(ax, 7.5)
-
-    ax = next(step)
-    over_time(ax, [(time, column("speed_m_s"), "speed, m/s", BLUE), (time, column("kick_hz"), "kicks, 1/s", ORANGE)],
-              "m/s, 1/s", "Pace", seconds, 0.2)
-    over_time(next(step), [(time, column("limb_power_w"), "", BLUE)], "W", "Power of the limbs", seconds)
-    over_time(next(step), [(time, column("ventilation_l_min"), "gas breathed", BLUE),
-                           (time, column("oxygen_l_min"), "oxygen used", ORANGE)], "l/min", "Gas", seconds,
-              time_label=True)
-    over_time(next(step), [(time, column("heart_bpm"), "heart", RED), (time, column("breaths_min"), "breath", BLUE)],
-              "1/min", "Heart, breath", seconds, time_label=True)
-    over_time(next(step), [(time, column("lungs_l"), "lungs", BLUE), (time, column("jacket_l"), "jacket", ORANGE)],
-              "l", "Gas held", seconds, time_label=True)
-    over_time(next(step), [(time, column("net_weight_n"), "", BLUE)], "N, down", "Weight less lift", seconds,
-              time_label=True)
-    next_ax = next(step)
-    next_ax.axhline(0, color=FAINT, lw=0)
-    shares = [(key, words, hue, limits[limit][0]) for key, words, hue, limit in (
-        ("co2_proxy_mmhg", "CO2", GREY, "co2_mmhg"), ("narcosis_proxy_m", "narcosis", ORANGE, "narcotic_m"),
-        ("gas_density_g_l", "density", BLUE, "density_g_l"), ("po2_bar", "O2", GREEN, "oxygen_bar"))]
-    over_time(next_ax, [(time, 100 * column(key) / raised, words, hue) for key, words, hue, raised in shares],
-              "% of raised", "Risk*", seconds, time_label=True)
-    next_ax.axhline(100, color=RED, lw=1.0, ls=(0, (4, 3)))
-    next_ax.set_ylim(0, max(next_ax.get_ylim()[1], 112))
+def clock(at_s, seconds):
+    """A time as its axis shows it: seconds up to ten minutes, then minutes."""
+    return f"{at_s:.0f} s" if seconds <= 600 else f"{at_s / 60:.0f} min"
 
 
-def vehicle_panels(axes, vehicle, seconds):
-    time, name = numbers(vehicle["time_s"]), vehicle["name"]
-    over_time(axes[0], [(time, numbers(f), str(i + 1), color(i)) for i, f in enumerate(vehicle["thrust_n"])], "N",
-              f"Thrusters of {name}", seconds, time_label=True)
-    for line in axes[0].lines:
-        line.set(lw=0.8, alpha=0.85)
-    if vehicle["error_m"] is not None:
-        over_time(axes[1], [(time, numbers(vehicle["error_m"]), "", ORANGE)], "m", "Off the wanted place", seconds, 0.05,
-                  time_label=True)
-    else:
-        axes[1].set_axis_off()
-    over_time(axes[2], [(time, numbers(vehicle["speed_m_s"]), "", BLUE)], "m/s", "Speed over ground", seconds, 0.05,
-              time_label=True)
+def row_of_areas(fig, top, count):
+    """Panels of equal width in one row of the page, 1600 pixels wide."""
+    step = 1510 / count
+    return [area(fig, 70 + step * i, top + 24, 70 + step * (i + 1) - 66 + 46 * (i + 1 == count), top + 24 + PANEL_PX)
+            for i in range(count)]
 
 
-def draw(data):
+def draw(data, everything=False):
+    """everything: all other panels too, beneath the story."""
     divers, vehicles = data["humans"][:MOST_DIVERS], data["vehicles"][:MOST_VEHICLES]
     everyone = data["vehicles"] + data["humans"]
     seconds = max([one["time_s"][-1] for one in everyone if one["time_s"]], default=1.0)
@@ -254,35 +247,30 @@ def draw(data):
         facts = [f"{len(data['vehicles'])} vehicles and {len(data['humans'])} divers; panels of their own: the first "
                  f"{len(vehicles)} and {len(divers)}"]
     wide, large = 1600, 520
-    high = 44 + 19 * (len(facts) + len(warnings)) + 34 + large + 76
-    fig = figure(wide, high + DIVER_PX * len(divers) + VEHICLE_PX * len(vehicles))
+    high = 44 + 19 * (len(facts) + len(warnings)) + 34 + large + 84 + ROW_PX * (len(divers) + len(vehicles))
+    if everything:
+        high += height_of_more(divers, vehicles)
+    fig = figure(wide, high)
     top = heading(fig, data["title"] or "Dive", facts, warnings) + 34
     strips = danger_strips(data)
-    strips_px = 13 * len(strips) + 34 if strips else 0
-    draw_depth(area(fig, 70, top, 1010, top + large - strips_px), data, strips, seconds)
+    strips_px = 16 * len(strips) + 34 if strips else 0
+    side = 430 if divers else large - 60  # of the path from above, which divers alone do not need
+    right = 1505 - side - 85 if data["vehicles"] else 1560
+    draw_depth(area(fig, 70, top, right, top + large - strips_px), data, strips, seconds)
     if strips:
-        draw_strips(area(fig, 70, top + large - strips_px + 46, 1010, top + large + 12), strips, seconds)
-    draw_map(fig, area(fig, 1085, top, 1085 + min(large, 430), top + min(large, 430)), data)
-    top += large + 66
-    for diver in divers:
-        section(fig, top, diver["name"])
-        axes = [area(fig, 70 + 308 * i, top + 24 + 176 * row, 70 + 308 * i + 244, top + 154 + 176 * row)
-                for row in range(2) for i in range(5)]
-        diver_panels(axes, diver, seconds)
-        top += DIVER_PX
-    for vehicle in vehicles:
-        section(fig, top, vehicle["name"])
-        axes = [area(fig, 70, top + 24, 620, top + 24 + 150), area(fig, 690, top + 24, 1090, top + 24 + 150),
-                area(fig, 1160, top + 24, 1560, top + 24 + 150)]
-        vehicle_panels(axes, vehicle, seconds)
-        top += VEHICLE_PX
+        draw_strips(area(fig, 70, top + large - strips_px + 46, right, top + large + 12), strips, seconds)
+    if data["vehicles"]:
+        draw_map(fig, area(fig, 1505 - side, top, 1505, top + side), data, seconds)
+    top += large + 74
+    for one, story, count in [(d, diver_story, 3) for d in divers] + [(v, vehicle_story, 2) for v in vehicles]:
+        section(fig, top, short(one["name"]))
+        story(row_of_areas(fig, top, count), one, seconds)
+        top += ROW_PX
+    if everything:
+        draw_more(fig, top, divers, vehicles, seconds)
     if divers:
-        fig.text(24 / wide, 0.08 / fig.get_size_inches()[1], f"Time left: without a stop, of gas to {RESERVE_BAR:g} bar, and what the way up takes. "
-                 f"* {data['risk_note']}; 100 %: where it counts as raised.",
-                 size=8, color=GREY)
+        words = f"* {data['risk_note']}; 100 %: where it counts as raised."
+        if everything:
+            words = f"Time left: without a stop, of gas to {RESERVE_BAR:g} bar, and what the way up takes. " + words
+        fit(fig, fig.text(24 / wide, 8 / high, words, size=8, color=GREY))
     return fig
-
-
-def section(fig, top, words):
-    width, height = fig.get_size_inches() * 100
-    fig.text(24 / width, 1 - (top - 16) / height, words, size=12, weight="bold", color=INK)

@@ -1,6 +1,7 @@
 """What all pictures share: colours, panels, legends clear of the curves, labels that never collide.
 
-A legend stands above its panel, on the line of the title. A label beside a point takes the first of
+A legend stands above its panel, on the line of the title; where it would reach the title it is set
+smaller, then its last entries are left out. A label beside a point takes the first of
 the places around the point that hides no other label, and of these the one that hides least of the
 curves; where all are taken it is left out.
 """
@@ -24,7 +25,7 @@ matplotlib.rcParams.update({
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
     "grid.color": "#d9d9d6", "grid.linewidth": 0.6, "xtick.color": "#4a4f57", "ytick.color": "#4a4f57",
     "xtick.labelsize": 8, "ytick.labelsize": 8, "axes.labelsize": 8.5, "lines.linewidth": 1.4,
-    "lines.solid_capstyle": "round", "path.simplify_threshold": 0.3, "agg.path.chunksize": 10000,
+    "axes.formatter.useoffset": False, "axes.formatter.limits": (-5, 7), "lines.solid_capstyle": "round", "path.simplify_threshold": 0.3, "agg.path.chunksize": 10000,
 })
 
 
@@ -49,17 +50,33 @@ def area(fig, left, top, right, bottom):
     return fig.add_axes([left / width, 1 - bottom / height, (right - left) / width, (bottom - top) / height])
 
 
+def short(name, most=24):
+    """A name that leaves room for others."""
+    return name if len(name) <= most else name[:most - 1] + "…"
+
+
+def fit(fig, text):
+    """Sets a line of text that begins at the page's left margin as small as the page's width asks."""
+    room_px = fig.get_size_inches()[0] * DPI - 48
+    wide = text.get_window_extent().width
+    if wide > room_px:
+        text.set_size(text.get_size() * room_px / wide)
+
+
+def section(fig, top, words):
+    """A headline above a row of panels that begins there, in pixels."""
+    width, height = fig.get_size_inches() * DPI
+    fig.text(24 / width, 1 - (top - 16) / height, words, size=12, weight="bold", color=INK)
+
+
 def heading(fig, title, lines=(), warnings=()):
     """The picture's title, lines of facts and red warnings; returns how many pixels they take."""
     width, height = fig.get_size_inches() * DPI
-    fig.text(24 / width, 1 - 30 / height, title, size=15, weight="bold", va="baseline")
+    fit(fig, fig.text(24 / width, 1 - 30 / height, title, size=15, weight="bold", va="baseline"))
     y = 30
     for words, hue in [(w, "#50555e") for w in lines] + [("WARNING: " + w, RED) for w in warnings]:
         y += 19
-        text = fig.text(24 / width, 1 - y / height, words, size=9.5, color=hue, va="baseline")
-        wide = text.get_window_extent().width
-        if wide > width - 48:
-            text.set_size(9.5 * (width - 48) / wide)
+        fit(fig, fig.text(24 / width, 1 - y / height, words, size=9.5, color=hue, va="baseline"))
     return y + 14
 
 
@@ -71,10 +88,18 @@ def legend(ax, size=8, handles=None, handle=1.4):
     """On the title's line, from the right; below one entry it says nothing and is left out."""
     handles = handles if handles is not None else ax.get_legend_handles_labels()[0]
     handles = [h for h in handles if not h.get_label().startswith("_")]
-    if handles:
-        ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.005, 1.0), ncol=len(handles),
-                  frameon=False, fontsize=size, handlelength=handle, columnspacing=0.8, handletextpad=0.5,
-                  borderpad=0.1, borderaxespad=0.15, labelspacing=0.15)
+    title_right = ax._left_title.get_window_extent().x1
+    while handles:
+        made = ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.005, 1.0), ncol=len(handles),
+                         frameon=False, fontsize=size, handlelength=handle, columnspacing=0.8, handletextpad=0.5,
+                         borderpad=0.1, borderaxespad=0.15, labelspacing=0.15)
+        if made.get_window_extent().x0 > title_right + 6:
+            return
+        made.remove()
+        if size > 7:
+            size -= 0.5
+        else:
+            handles = handles[:-1]
 
 
 def plain_log(axis):
@@ -88,14 +113,15 @@ def plain_log(axis):
 
 
 def time_axis(ax, seconds, label=True):
-    """Seconds up to ten minutes, then minutes; the data stays in seconds."""
-    ax.set_xlim(0, max(seconds, 1e-3))
+    """Seconds up to ten minutes, then minutes; the data stays in seconds. Ticks as the width allows."""
+    ax.set_xlim(0, max(seconds, 0.1))
+    most = int(np.clip(ax.get_window_extent().width / 60, 2, 8))
     if seconds <= 600:
-        ax.xaxis.set_major_locator(MaxNLocator(8))
+        ax.xaxis.set_major_locator(MaxNLocator(most))
         if label:
             ax.set_xlabel("time, s")
         return
-    minutes = MaxNLocator(8, steps=[1, 2, 5, 10]).tick_values(0, seconds / 60)
+    minutes = MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(0, seconds / 60)
     ax.set_xticks([60 * m for m in minutes if 60 * m <= seconds])
     ax.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v / 60:g}"))
     if label:
