@@ -24,7 +24,7 @@ struct HeartState {
   double last_beat_s = 0.0;
   // By the median of the last four normal intervals; 0: none, stale, or of a poor signal.
   double rate_bpm = 0.0;
-  // Of no interval, and no valid spectrum, where the signal is poor or was for more than
+  // Without intervals, and no valid spectrum, where the signal is poor or was for more than
   // kMostDoubtful of the intervals.
   Variability over_five_minutes;
   HeartSpectrum spectrum;

@@ -9,7 +9,7 @@
 namespace neritic::rov {
 namespace {
 
-// Of the attitude before anything was measured.
+// The standard deviation of the attitude before the first measurement.
 constexpr double kUnknown_rad = 1.0;
 // Beyond these no reading is one: what the devices can measure (16 g, 2000 degrees a second), the
 // deepest sea, and speeds that no vehicle has.

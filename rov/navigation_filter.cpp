@@ -59,7 +59,7 @@ bool decompose(std::array<std::array<double, 3>, 3>& s, std::size_t n) {
 // well above the rounding of what was there; the next ones go on.
 constexpr double kLeastLeft = 1e-10;
 
-// What a measurement's numbers have to do with the errors.
+// A measurement's covariances with the errors, and its noise.
 struct Innovation {
   std::array<Column, 3> with_errors{};           // P H^T, a column each
   std::array<std::array<double, 3>, 3> noise{};  // R

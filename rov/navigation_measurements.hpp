@@ -1,4 +1,4 @@
-// What each sensor's reading says of the navigation's errors: the measurement that the filter is
+// Each sensor's reading as a measurement of the navigation's errors, which the filter is
 // corrected by (navigation_filter.hpp). Derivatives are exact to first order in the errors. NED and
 // body axes. Pure functions; any thread.
 #pragma once

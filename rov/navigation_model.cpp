@@ -20,7 +20,7 @@ double pa_per_m(const PressureSensor& sensor) {
   return sensor.water_kg_m3 * sensor.gravity_m_s2;
 }
 
-// Of `count` biases from `place` on: their variance at first, and what it gathers a second.
+// For `count` biases from `place` on: their variance at first, and what it gathers a second.
 void add_biases(NavigationModel& model, std::size_t place, std::size_t count, const Noise& noise,
                 double unit = 1.0) {
   for (std::size_t i = place - kFirstBias; i < place - kFirstBias + count; ++i) {

@@ -1,4 +1,4 @@
-// What a vehicle's navigation knows of its sensors: where they sit and how they err, from the same
+// A navigation's model of the sensors: where they sit and how they err, from the same
 // specification that the sensors' errors are drawn by (sensor_set.hpp). Built once, then only read;
 // any thread.
 #pragma once

@@ -1,4 +1,4 @@
-// What a vehicle knows of its motion: the state of an error-state Kalman filter (Solà 2017,
+// A vehicle's knowledge of its motion: the state of an error-state Kalman filter (Solà 2017,
 // "Quaternion kinematics for the error-state Kalman filter", arXiv:1711.02508), with its covariance
 // and a tally of each aid's readings. World axes north, east, down; body axes forward, starboard,
 // down. Plain bytes, all of them finite: a part of a simulation's state. Any thread.

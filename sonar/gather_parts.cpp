@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kMostTurns = 60000;
 
-// Of a row: turns of the thread that takes most, the most pixels of a column across, and the rows
+// For a row: turns of the thread that takes most, the most pixels of a column across, and the rows
 // of pixels that any column looks at. A pixel more on either side than the shader's, which rounds
 // its floats otherwise.
 struct RowOfCells {

@@ -1,4 +1,4 @@
-// What a gather is made of: its shader with the constants of its options, and the images of its
+// The parts of a gather: its shader with the constants of its options, and the images of its
 // tables. Made once.
 #include <array>
 
@@ -23,7 +23,7 @@ constexpr std::array<gpu::BindingDesc, 19> kBindings{
      {shared::kSonarBindSumTexels, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
      {shared::kSonarBindKeyTexels, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
      {shared::kSonarBindScratchTexels, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
-     // Of a gather with terms only.
+     // For a gather with terms only.
      {shared::kSonarBindEcho, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
      {shared::kSonarBindWeights, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindCorrection, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
@@ -124,7 +124,7 @@ Status SonarGather::make_tables(gpu::Device& device) {
                             {static_cast<std::uint32_t>(echo->gamma_quantiles.size()), 1},
                             std::as_bytes(std::span(echo->gamma_quantiles))));
   }
-  // What is bound where a scene has no labels or no reflectivities.
+  // Bound where a scene has no labels or no reflectivities.
   const std::array<std::byte, 4> zero{};
   NERITIC_TRY(no_labels_, table_image(device, "sonar no labels", VK_FORMAT_R16G16_UINT, {1, 1},
                                       zero, /*array=*/true));

@@ -1,4 +1,4 @@
-// What a sonar's settings come to: its heads (one, or a side-scan's two), each a view of its own
+// A sonar's settings as heads (one, or a side-scan's two), each a view of its own
 // with a grid of beams that it gathers and a grid that leaves it, and the terms that its passes
 // need. Fixed as long as the settings are. Pure functions of plain values; any thread.
 #pragma once
@@ -19,22 +19,22 @@ struct Head {
   Pose sonar_from_head;  // a head looks along its -z
   BeamGrid beams;        // of what leaves: [range][beams]
   BeamGrid samples;      // of what is gathered: samples_per_beam columns a beam, and a margin
-  // What of the elevations gathered is heard: less than all where rays are bent, whose ends are
-  // looked at from beyond.
+  // The part of the gathered elevations that is heard: less than all where rays are bent, whose
+  // ends are looked at from beyond.
   double heard_up_rad = 0.0;                       // to either side
   std::uint32_t samples_per_beam = 1, margin = 0;  // columns
   bool folded = false;  // all columns are one beam: an echo sounder's cone
   // Absent: the plain cosine, whose 32-bit sums are the image.
   std::optional<EchoOptions> echo;
   ReceiverDesc receiver;  // where echo is there; sum_scale is the gather's
-  // What one gathered beam of full strength counts in the field, before range and water: power.
+  // The weight of one gathered beam of full strength in the field, before range and water: power.
   double sample_power = 1.0;
 };
 
 // kBadInput that names the setting.
 Result<std::vector<Head>> plan_heads(const scene::Sonar& sonar);
 
-// What the pulse that the terms name makes of a point over the grid's bins; without one, empty.
+// The image of a point by the pulse that the terms name, over the grid's bins; without one, empty.
 Result<RangeSpread> pulse_taps(const scene::SonarTerms& terms, const BeamGrid& grid);
 
 // Where a mechanical scanner's beam points at its ping-th ping: azimuth in sonar axes, positive to

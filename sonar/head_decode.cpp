@@ -28,7 +28,7 @@ std::vector<std::uint16_t> beam_labels(const Head& head, std::span<const std::ui
 
 namespace {
 
-// What each ray of a beam's own columns counts, by the pattern; empty: all alike.
+// The weight of each ray of a beam's own columns, by the pattern; empty: all alike.
 std::vector<std::uint8_t> ray_weights(const Head& head) {
   const std::vector<float>& w = head.echo->weights;
   if (w.empty()) return {};
@@ -48,7 +48,7 @@ PowerTaps power_taps(const Taps& taps, bool coherent) {
   return out;
 }
 
-// What the receiver does to the field, to energies.
+// Does to energies what the receiver does to the field.
 LabelSpread label_spread_of(const Head& head, const Ping& ping) {
   const ReceiverDesc& r = head.receiver;
   LabelSpread out{.n_range = r.rows,

@@ -1,4 +1,4 @@
-// What a head's gather left at the host, by beams. Pure functions; any thread.
+// A head's gather at the host, by beams. Pure functions; any thread.
 #pragma once
 
 #include <span>

@@ -16,12 +16,12 @@ struct SolverMemory {
 };
 
 struct ContactMemory {
-  // Of a static world's queries.
+  // For a static world's queries.
   std::vector<std::uint32_t> near;  // things
   std::vector<TouchPoint> points;   // of one part
   ThinMemory thin;
   std::vector<Contact> contacts;
-  // Of a body's motion.
+  // For a body's motion.
   std::vector<std::uint32_t> passable;  // things that it is deep in
   std::vector<BodyContact> body_contacts;
   SolverMemory solver;

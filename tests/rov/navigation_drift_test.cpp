@@ -85,7 +85,7 @@ TEST(RovNavigationDrift, IsThatOfSuchSensorsAtSea) {
     return std::sqrt(square);
   };
   EXPECT_NEAR(flown_m, 600.0, 10.0);
-  // Of one fix at this distance: 10.5 m.
+  // For one fix at this distance: 10.5 m.
   EXPECT_LT(rms("imu_dvl_depth_compass_usbl", sum.with_fixes_m), 3.0);
   const double with_dvl_m = rms("imu_dvl_depth_compass", sum.with_dvl_m);
   EXPECT_LT(with_dvl_m, 0.05 * flown_m);

@@ -143,7 +143,7 @@ TEST(RovNavigationFilter, CovarianceMovesAsTheDenseMatrixProduct) {
       EXPECT_NEAR(s.covariance(i, j), expected[i][j], 1e-14);
 }
 
-// Of every sensor, at random places, in random motion, with every arm and bias in it.
+// Measurements of every sensor, at random places, in random motion, with every arm and bias in it.
 TEST(RovNavigationFilter, MeasurementsChangeAsTheirDerivativesSay) {
   Draws draws(33);
   SensorSet sensors = survey_file().sensors;

@@ -45,7 +45,7 @@ std::set<std::string> all_linked(const Graph& graph, const std::string& target) 
   return out;
 }
 
-// What has a GPU, a window, a plot or a panel.
+// Libraries that have a GPU, a window, a plot or a panel.
 const std::set<std::string> kPictures{
     "neritic_gpu",      "neritic_graph",     "neritic_draw2d", "neritic_render",
     "neritic_xr",       "neritic_desktop",   "neritic_sonar",  "neritic_hud",

@@ -1,4 +1,4 @@
-// What contacts cost against the triangles of what is touched: a box of an ROV's size that slides
+// The cost of contacts against the triangles of what is touched: a box of an ROV's size that slides
 // over a seabed, of a mesh and of a grid of heights, larger and larger or finer and finer.
 #include "engine/core/clock.hpp"
 #include "engine/core/hash.hpp"

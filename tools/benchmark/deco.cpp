@@ -1,4 +1,4 @@
-// What decompression costs: a plan, a computer's view, and the tissues of many divers at once.
+// The cost of decompression: a plan, a computer's view, and the tissues of many divers at once.
 #include <vector>
 
 #include "diver/deco_live.hpp"
@@ -24,7 +24,7 @@ diver::DivePlanRequest trimix_request() {
   return request;
 }
 
-// Of one plan, the mean of many.
+// One plan's time, the mean of many.
 Contender plans() {
   return {"deco/plan_trimix_three_gases", []() -> Result<Sample> {
             const diver::DivePlanRequest request = trimix_request();
@@ -79,7 +79,8 @@ Contender computers_of_many() {
       }};
 }
 
-// What one computer shows at the end of the bottom: time without stops, next stop, whole ascent.
+// The numbers that one computer shows at the end of the bottom: time without stops, next stop,
+// whole ascent.
 Contender one_view() {
   return {"deco/view", []() -> Result<Sample> {
             const diver::DivePlanRequest request = trimix_request();

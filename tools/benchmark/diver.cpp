@@ -1,4 +1,4 @@
-// What a diver costs: a second of swimming with everything on (limbs, water, jacket, breath, gas,
+// The cost of a diver: a second of swimming with everything on (limbs, water, jacket, breath, gas,
 // the swimmer's own decisions, the dive computer), with the full model and with the planar one.
 #include <cmath>
 

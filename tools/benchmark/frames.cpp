@@ -23,7 +23,7 @@ Facts scene_facts(const std::string& file, const Session& session) {
   return {{"scene", file}, {"triangles", static_cast<double>(session.gpu_scene().triangles())}};
 }
 
-// What a frame costs on the CPU before anything is recorded.
+// The cost of a frame on the CPU before anything is recorded.
 Contender cpu_costs(const std::string& name, Session& session) {
   return {name, [&session]() -> Result<Sample> {
             const TimeNs start = now_ns();

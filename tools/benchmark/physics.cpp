@@ -201,7 +201,7 @@ Status bench_physics(Suite& suite) {
                       {{"operations", 4.0 * kChains * kProducts}}}},
                     15));
   suite.must_agree("physics/1000_rovs_and_control", "physics/1000_rovs_and_control_2_threads");
-  // Of processor time: what other programs take of the core is not the ROV's.
+  // Measured in processor time, so that other programs on the core do not count.
   if (const Measured* m = suite.find("physics/rov_all_sensors_240_hz"))
     suite.aim_most("one ROV with all sensors, share of a core", "%",
                    0.1 * median(m->cpu_ms) / kSeconds, 1.0);

@@ -1,4 +1,5 @@
-// What needs other processes: start to first picture, and the same bits on one and on two threads.
+// Measurements that need other processes: start to first picture, and the same bits on one and on
+// two threads.
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// What each term of a sonar costs, one at a time and all together, on the sonar benchmark's scene.
+// The cost of each term of a sonar, one at a time and all together, on the sonar benchmark's scene.
 #include <cmath>
 #include <utility>
 
@@ -73,7 +73,7 @@ scene::Track course_of(const Pose& place) {
   return course;
 }
 
-// What leaves as counts costs the host, not the device: an image of the scene's size to 8 and 16
+// Output as counts costs the host, not the device: an image of the scene's size to 8 and 16
 // bits.
 Contender counts_of(const std::string& name, const std::vector<float>& power, std::uint32_t bits) {
   return {name, [&power, bits]() -> Result<Sample> {

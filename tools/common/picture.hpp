@@ -21,10 +21,10 @@ Result<bool> draw_picture(const std::filesystem::path& data, const std::filesyst
 // Writes the data beside the picture, then draws it.
 Result<bool> write_picture(const std::filesystem::path& picture, const nlohmann::json& data);
 
-// Of the matplotlib that draws, by asking the first Python here that has it ("3.6.3 of
+// The version of the matplotlib that draws, by asking the first Python here that has it ("3.6.3 of
 // /usr/bin/python3"); empty: none has.
 std::string matplotlib_here();
-// What to do about that.
+// The advice for that.
 inline constexpr const char* kHowToGetMatplotlib =
     "tools/setup plots installs it (Debian's python3-matplotlib)";
 

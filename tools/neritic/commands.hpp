@@ -15,7 +15,7 @@
 
 namespace neritic::tools {
 
-// What a run of physics leaves behind; empty: nothing.
+// The files that a run of physics writes; empty: none.
 struct StepFileFlags {
   std::string log, plot, record, save;
   std::optional<double> log_rate_hz;  // absent or 0: the controllers'

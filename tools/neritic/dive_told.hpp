@@ -1,4 +1,4 @@
-// What a dive without pictures says at its end on standard output: a line for each vehicle and
+// The report of a dive without pictures on standard output: a line for each vehicle and
 // diver, what endangered the divers, or all of it as JSON.
 #pragma once
 
@@ -22,7 +22,7 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                    const PhysicsSimulation& simulation, const DiveRecorder& recorder,
                    const Pace& pace);
 
-// What endangered a diver, and the changes to another tank: keys of the summary and of the
+// Dangers to a diver, and the changes to another tank: keys of the summary and of the
 // picture's data (testbed/record/LOG.md). Null: it did not happen.
 nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figures);
 nlohmann::json changes_json(const PhysicsHuman& human, const HumanFigures& figures);

@@ -100,7 +100,7 @@ TEST_F(LiveOffline, AWindowsFramesAndRendersGiveTheSameSonarBits) {
   EXPECT_TRUE(heard_last);
 }
 
-// What the states' velocities change, against the same place passed at the same velocity by a
+// The change by the states' velocities, against the same place passed at the same velocity by a
 // track.
 TEST_F(LiveOffline, TheSonarHearsItsVehiclesVelocity) {
   const scene::Scene scene = scene_of_flight();

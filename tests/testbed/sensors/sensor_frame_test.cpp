@@ -191,7 +191,7 @@ TEST_F(SensorFrameTest, AViewSetShowsWhatACameraThereShows) {
   EXPECT_GT(std::ranges::count(both.views[0].eyes[0].labels.data, 12), 0);
 }
 
-// What a window asks for: colour and depth for passes of the same graph, no copies.
+// The request of a window: colour and depth for passes of the same graph, no copies.
 TEST_F(SensorFrameTest, NothingLeavesTheGpuUnasked) {
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), sea_with_camera()));
   FrameRequest request = all_at(0.0, 0);
