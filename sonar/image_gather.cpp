@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/core/clock.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -13,24 +14,22 @@ constexpr std::uint32_t kReflectivitySteps = 65536;
 
 Status check_inputs(const BeamGrid& grid, std::span<const SonarInput> inputs,
                     const VkPhysicalDeviceLimits& limits) {
-  if (inputs.empty()) return bad_input("sonar: no images found, at least one view is accepted");
+  if (inputs.empty()) return refusal("sonar", "no images", "one view or more");
   for (const SonarInput& in : inputs) {
     NERITIC_TRY_STATUS(validate(in));
     const SonarInput& first = inputs.front();
     if (in.width != first.width || in.height != first.height ||
         in.intrinsics.fx != first.intrinsics.fx || in.intrinsics.fy != first.intrinsics.fy ||
         in.intrinsics.cx != first.intrinsics.cx || in.intrinsics.cy != first.intrinsics.cy)
-      return bad_input(
-          "sonar: views of different sizes or pinholes found, one for all is accepted");
+      return refusal("sonar", "views of different sizes or pinholes", "one size and one pinhole");
     if (in.width > limits.maxImageDimension2D || in.height > limits.maxImageDimension2D)
-      return bad_input(
-          "depth image: {} x {} pixels found, the device takes at most {} a side (the "
-          "reference takes any)",
-          in.width, in.height, limits.maxImageDimension2D);
+      return refusal("depth image", fmt::format("{} x {} pixels", in.width, in.height),
+                     fmt::format("at most {} a side on this device (the reference takes any)",
+                                 limits.maxImageDimension2D));
   }
   if (inputs.size() > 1 && inputs.size() != plan_sectors(grid).size())
-    return bad_input("sonar: {} views found, the wedge has {} sectors", inputs.size(),
-                     plan_sectors(grid).size());
+    return refusal("sonar", fmt::format("{} views", inputs.size()),
+                   fmt::format("1, or {} as the wedge has sectors", plan_sectors(grid).size()));
   return {};
 }
 
@@ -176,8 +175,9 @@ Status ImageGather::make_images(const SonarInput& in, std::uint32_t layers) {
 Status ImageGather::upload(std::span<const SonarInput> inputs) {
   const SonarInput& in = inputs[0];
   if (in.width != head_->gather().layout().width || in.height != head_->gather().layout().height)
-    return bad_input("depth image: {} x {} pixels found, {} x {} as before is accepted", in.width,
-                     in.height, head_->gather().layout().width, head_->gather().layout().height);
+    return refusal("depth image", fmt::format("{} x {} pixels", in.width, in.height),
+                   fmt::format("{} x {} as before", head_->gather().layout().width,
+                               head_->gather().layout().height));
   const auto put = [&](gpu::Image& image, const auto& texels) {
     return gpu::upload_image(device_, image, std::as_bytes(std::span(texels)));
   };

@@ -1,6 +1,6 @@
 // The interface between the program and the device that shows its frames: a desktop window, an
 // offscreen image, a headset. A frame is begin_frame, then, if the verdict is kDraw, declare
-// and the submission with sync(), then end_frame. Rendering thread.
+// and the submission with sync(), then end_frame on every path. Rendering thread.
 #pragma once
 
 #include <optional>
@@ -33,13 +33,14 @@ struct ViewGroup {
 enum class FrameVerdict {
   kDraw,    // the frame will be seen
   kHidden,  // nobody would see it (minimised, headset taken off): declare nothing for the display
-  kQuit,    // the user closed it
+  kQuit,    // the user closed it: no frame began
 };
 
 struct DisplayFrame {
   FrameVerdict verdict = FrameVerdict::kHidden;
-  TimeNs display_at_ns = 0;  // when the picture will be seen, on the host clock
-  TimeNs period_ns = 0;      // between two frames
+  // When the picture will be seen, on the host clock. Absent: no screen paces the frames, so that
+  // the program's clock does.
+  std::optional<TimeNs> display_at_ns;
   // Where the display tracks its wearer's head; absent: the program's camera is the head.
   std::optional<Pose> world_from_head;
   std::vector<ViewGroup> groups;  // with kDraw at least one
@@ -79,8 +80,9 @@ struct ShownPicture {
 class Display {
  public:
   virtual ~Display() = default;
-  // Waits until the display wants a frame. world_from_stage: where the space in which the display
-  // tracks lies in the world; displays without tracking do not use it.
+  // Waits until the display wants a frame; one without a screen does not wait. world_from_stage:
+  // where the space in which the display tracks lies in the world; displays without tracking do not
+  // use it.
   virtual Result<DisplayFrame> begin_frame(const Pose& world_from_stage) = 0;
   // Adds the passes that bring the layers to the display, in this order, each over the ones before.
   // world_from_head: from where the projection layers were drawn.
@@ -88,8 +90,9 @@ class Display {
                                        std::span<const Layer> layers) = 0;
   // The semaphores that the submission of a frame with declared layers waits for and signals.
   virtual gpu::Frames::SubmitSync sync() const = 0;
-  // Ends the frame: shows the layers, if some were declared and submitted.
-  virtual Status end_frame() = 0;
+  // Ends the frame; each frame that began is ended. submitted: its layers were declared and their
+  // submission used sync(), so they are shown; else nothing is.
+  virtual Status end_frame(bool submitted) = 0;
   // The user's actions since the last call, by the table that the display was made with.
   // claims: devices that panels use now; their controls do nothing else.
   virtual ActionValues take_actions(const InputClaims& claims) = 0;

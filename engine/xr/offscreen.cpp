@@ -1,9 +1,5 @@
 #include "engine/xr/offscreen.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <thread>
-
 namespace neritic::xr {
 namespace {
 
@@ -38,21 +34,8 @@ Result<std::unique_ptr<OffscreenDisplay>> OffscreenDisplay::create(
 }
 
 Result<DisplayFrame> OffscreenDisplay::begin_frame(const Pose&) {
-  const auto period_ns = static_cast<TimeNs>(std::llround(1e9 / options_.rate_hz));
-  if (frame_ == 0) start_ns_ = next_ns_ = now_ns();
   DisplayFrame frame;
   frame.verdict = FrameVerdict::kDraw;
-  frame.period_ns = period_ns;
-  if (options_.fast) {
-    frame.display_at_ns = start_ns_ + static_cast<TimeNs>(frame_) * period_ns;
-  } else {
-    const TimeNs now = now_ns();
-    if (next_ns_ > now) std::this_thread::sleep_for(std::chrono::nanoseconds(next_ns_ - now));
-    // A frame that came late does not make the next ones hurry.
-    next_ns_ = std::max(next_ns_, now) + period_ns;
-    frame.display_at_ns = next_ns_;
-  }
-  ++frame_;
   frame.groups = options_.groups;
   return frame;
 }

@@ -1,5 +1,5 @@
-// A display without a screen: frames go to images of the program's own, at a rate or as fast as
-// they come. For machines without a screen, and for tests. Rendering thread.
+// A display without a screen: frames go to images of the program's own, as fast as they come. For
+// machines without a screen, and for tests. Rendering thread.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,6 @@ namespace neritic::xr {
 
 struct OffscreenOptions {
   std::vector<ViewGroup> groups;  // see one_view
-  double rate_hz = 30.0;          // frames a second of the scene's time
-  // Frames follow each other without waiting, each 1 / rate_hz later in time than the last: the
-  // same pictures on every machine.
-  bool fast = false;
 };
 
 // A single view straight ahead, as of a window of that size.
@@ -27,7 +23,7 @@ class OffscreenDisplay final : public Display {
   Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
                                std::span<const Layer> layers) override;
   gpu::Frames::SubmitSync sync() const override { return {}; }
-  Status end_frame() override { return {}; }
+  Status end_frame(bool) override { return {}; }
   ActionValues take_actions(const InputClaims&) override { return {}; }
   // The composed picture of a group, an array layer a view, in TRANSFER_SRC_OPTIMAL once the frame
   // is done.
@@ -38,8 +34,6 @@ class OffscreenDisplay final : public Display {
   OffscreenOptions options_;
   std::unique_ptr<Compositor> compositor_;
   std::vector<gpu::Image> targets_;  // by group
-  TimeNs start_ns_ = 0, next_ns_ = 0;
-  std::uint64_t frame_ = 0;
 };
 
 }  // namespace neritic::xr

@@ -4,17 +4,17 @@
 
 namespace neritic::testbed {
 
-Clock Clock::real(double start_s, double period_s) {
-  return {true, start_s, period_s};
+Clock Clock::real(double start_s, double period_s, int catch_up) {
+  return {true, start_s, period_s, catch_up};
 }
 
 Clock Clock::simulated(double start_s, double period_s) {
-  return {false, start_s, period_s};
+  return {false, start_s, period_s, kCatchUp};
 }
 
 TimeNs Clock::wait_for_due() {
   sim::HostClock host;
-  if (!pacer_) pacer_.emplace(1.0 / period_s_, kCatchUp, host.now());
+  if (!pacer_) pacer_.emplace(1.0 / period_s_, catch_up_, host.now());
   while (due_ == 0) {
     host.wait_until(pacer_->next_ns());
     due_ = pacer_->take(host.now());
@@ -31,7 +31,7 @@ FrameTime Clock::next(std::optional<TimeNs> display_at_ns) {
     return {time_s, time_s, *display_at_ns};
   }
   const TimeNs host_ns = real_ ? wait_for_due() : display_at_ns.value_or(0);
-  const double time_s = start_s_ + frame * period_s_;
+  const double time_s = start_s_ + (frame + static_cast<double>(dropped())) * period_s_;
   return {time_s, time_s + period_s_, host_ns};
 }
 

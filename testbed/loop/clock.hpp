@@ -1,6 +1,6 @@
-// When the frames of a run are. Three kinds: the host's clock, which waits; simulated times, which
-// do not; and as fast as possible, which is simulated time with a step of the simulation as its
-// period. Plain value; the thread of the loop.
+// When the frames of a run are. Two kinds: the host's clock, which waits for each frame unless a
+// display has waited already; and simulated times, which do not wait. Nothing else paces a run.
+// Plain value; the thread of the loop.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,11 @@ struct FrameTime {
 
 class Clock {
  public:
-  // The host's. Where a display shows the frames, their times are the display's. Otherwise a frame
-  // is due each period; after a delay up to kCatchUp come at once, the others are dropped.
-  static Clock real(double start_s, double period_s);
+  // The host's. If a display says when it shows the frames, their times are the display's.
+  // Otherwise a frame is due each period; after a delay up to `catch_up` come at once, and time
+  // runs on over the others, which are dropped. catch_up: kCatchUp for steps, 1 for pictures, so
+  // that a late one does not make the next ones hurry.
+  static Clock real(double start_s, double period_s, int catch_up = kCatchUp);
   // Frame k is at start_s + k * period_s. Nothing waits.
   static Clock simulated(double start_s, double period_s);
 
@@ -31,12 +33,13 @@ class Clock {
   std::uint64_t dropped() const { return pacer_ ? pacer_->counts().dropped : 0; }
 
  private:
-  Clock(bool real, double start_s, double period_s)
-      : real_(real), start_s_(start_s), period_s_(period_s) {}
+  Clock(bool real, double start_s, double period_s, int catch_up)
+      : real_(real), start_s_(start_s), period_s_(period_s), catch_up_(catch_up) {}
   TimeNs wait_for_due();
 
   bool real_;
   double start_s_, period_s_;
+  int catch_up_;
   std::uint64_t frames_ = 0;
   TimeNs begun_ns_ = 0;                  // of the first frame, on the host
   std::optional<sim::StepPacer> pacer_;  // without a display

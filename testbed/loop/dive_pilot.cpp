@@ -31,7 +31,6 @@ DivePilot::DivePilot(LivePhysics* physics, const scene::Mount& view)
   if (!physics_) return;
   watch_.emplace(physics_->world(), physics_->inbox(),
                  [](const std::string& line) { log_warn("{}", line); });
-  if (const auto source = physics_->inbox().open("keyboard"); source.ok()) source_ = *source;
   const auto& vehicles = physics_->world().vehicles();
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     if (view.object != static_cast<int>(vehicles[i].object)) continue;
@@ -40,12 +39,20 @@ DivePilot::DivePilot(LivePhysics* physics, const scene::Mount& view)
   }
 }
 
+Result<DivePilot> DivePilot::create(LivePhysics* physics, const scene::Mount& view, bool may_fly) {
+  DivePilot pilot(physics, view);
+  if (may_fly && physics && !physics->world().vehicles().empty()) {
+    NERITIC_TRY(pilot.keyboard_, physics->inbox().open("keyboard"));
+  }
+  return pilot;
+}
+
 void DivePilot::send(SampleInbox& inbox, PayloadKind kind, std::uint64_t& sequence,
                      const Payload& payload) {
   const auto vehicle = static_cast<std::uint32_t>(vehicle_);
   const StreamId stream = physics_->world().streams().id(OwnerSort::kVehicle, vehicle, kind);
   const TimeNs now = now_ns();
-  inbox.push({{stream, source_, sequence++, now, now}, payload});
+  inbox.push({{stream, *keyboard_, sequence++, now, now}, payload});
 }
 
 // Gives the vehicle's wrench to the keyboard while it flies, else back to the scene's choice.
@@ -54,14 +61,14 @@ void DivePilot::hand_over(SampleInbox& inbox) {
       physics_->world().start_inputs().vehicles()[vehicle_].of(VehicleGroup::kWrench);
   Event event{.group = static_cast<std::uint64_t>(VehicleGroup::kWrench)};
   event.authority = static_cast<std::uint64_t>(flying_ ? Authority::kLive : chosen.authority);
-  event.source = flying_ ? source_ : chosen.source;
+  event.source = flying_ ? *keyboard_ : chosen.source;
   event.hold_s = flying_ ? kKeysHold_s : chosen.hold_s;
   send(inbox, PayloadKind::kEvent, events_, event);
 }
 
 bool DivePilot::take(const DiveInput& input) {
   if (!physics_) return false;
-  if (input.toggle_pilot) flying_ = !flying_;
+  if (input.toggle_pilot && keyboard_) flying_ = !flying_;
   wrench_ = wrench_of(input);
   sent_ = false;
   return flying_;

@@ -13,8 +13,10 @@ namespace neritic::testbed {
 
 class DivePilot final : public SampleSource {
  public:
-  // physics may be nullptr: nothing to fly. view: the mount of the camera that is flown.
-  DivePilot(LivePhysics* physics, const scene::Mount& view);
+  // Without physics, without vehicles, or if not may_fly (a replay), nothing is flown. view: the
+  // mount of the camera that is flown. kBadInput if the inbox has no room for the keyboard.
+  static Result<DivePilot> create(LivePhysics* physics, const scene::Mount& view,
+                                  bool may_fly = true);
 
   // Keys of this frame. True while a vehicle is flown: the camera is not then.
   bool take(const DiveInput& input);
@@ -29,6 +31,7 @@ class DivePilot final : public SampleSource {
   std::vector<std::string> lines() const;
 
  private:
+  DivePilot(LivePhysics* physics, const scene::Mount& view);
   void send(SampleInbox& inbox, PayloadKind kind, std::uint64_t& sequence, const Payload& payload);
   void hand_over(SampleInbox& inbox);
 
@@ -39,7 +42,7 @@ class DivePilot final : public SampleSource {
   bool sent_ = true;                    // the newest keys
   VehicleWrench wrench_;                // of the newest keys
   std::optional<SourceWatch> watch_;
-  SourceId source_ = kSimulation;            // the keyboard
+  std::optional<SourceId> keyboard_;         // absent: nothing is flown
   std::uint64_t wrenches_ = 0, events_ = 0;  // samples sent
 };
 

@@ -20,14 +20,14 @@ xr::PanelLayer screen_panel(const xr::ViewGroup& group, graph::ImageHandle image
 
 }  // namespace
 
-DiveView::DiveView(Session& session, xr::Display& display, xr::Overlay* overlay,
-                   LivePhysics* physics, const DiveViewOptions& options)
+DiveView::DiveView(Session& session, xr::Display& display, xr::Overlay* overlay, DivePilot pilot,
+                   const DiveViewOptions& options)
     : session_(session),
       display_(display),
       overlay_(overlay),
       options_(options),
       camera_(session.scene().world_from(session.scene().cameras[options.camera].mount)),
-      pilot_(physics, session.scene().cameras[options.camera].mount),
+      pilot_(std::move(pilot)),
       first_pose_(camera_.world_from_view()),
       screenshots_(session.device(), session.frames(), options.screenshot, options.may_close),
       times_(options.summary) {}
@@ -35,15 +35,24 @@ DiveView::DiveView(Session& session, xr::Display& display, xr::Overlay* overlay,
 Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display& display,
                                                    xr::Overlay* overlay, LivePhysics* physics,
                                                    const DiveViewOptions& options) {
-  std::unique_ptr<DiveView> view(new DiveView(session, display, overlay, physics, options));
+  NERITIC_TRY(
+      DivePilot pilot,
+      DivePilot::create(physics, session.scene().cameras[options.camera].mount, options.may_fly));
+  std::unique_ptr<DiveView> view(
+      new DiveView(session, display, overlay, std::move(pilot), options));
   if (overlay) {
     NERITIC_TRY(view->fans_, SonarFans::create(session.device()));
   }
   return view;
 }
 
+DiveView::~DiveView() {
+  session_.device().wait_idle();
+}
+
 Result<xr::FrameVerdict> DiveView::begin_frame() {
   NERITIC_TRY(frame_, display_.begin_frame(camera_.world_from_view()));
+  in_frame_ = frame_.verdict != xr::FrameVerdict::kQuit;
   const TimeNs now = now_ns();
   elapsed_s_ = last_frame_ns_ == 0 ? 0.0 : 1e-9 * static_cast<double>(now - last_frame_ns_);
   if (last_frame_ns_ != 0 && shown()) times_.add_frame(elapsed_s_ * 1e3, now);
@@ -157,7 +166,8 @@ gpu::Frames::SubmitSync DiveView::sync() const {
 }
 
 Status DiveView::end_frame(std::optional<std::uint64_t> value) {
-  NERITIC_TRY_STATUS(display_.end_frame());
+  in_frame_ = false;
+  NERITIC_TRY_STATUS(display_.end_frame(value.has_value() && shown()));
   NERITIC_TRY(const std::uint64_t completed, session_.frames().completed());
   NERITIC_TRY_STATUS(collect_times(completed));
   if (value) {

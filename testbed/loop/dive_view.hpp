@@ -26,6 +26,7 @@ struct DiveViewOptions {
   bool summary = false;              // keep samples of times for one
   std::filesystem::path screenshot;  // of the last frame; empty: none
   bool may_close = false;            // any frame may be the last
+  bool may_fly = true;               // a vehicle by hand; not in a replay
 };
 
 class DiveView {
@@ -34,11 +35,15 @@ class DiveView {
   static Result<std::unique_ptr<DiveView>> create(Session& session, xr::Display& display,
                                                   xr::Overlay* overlay, LivePhysics* physics,
                                                   const DiveViewOptions& options);
+  // Waits for the GPU, which may still use the fans and the screenshot after a failure.
+  ~DiveView();
 
   // A frame, in this order. Waits until the display wants one.
   Result<xr::FrameVerdict> begin_frame();
-  // When the frame is seen; whether it is seen at all, and not hidden.
-  TimeNs display_at_ns() const { return frame_.display_at_ns; }
+  // When the frame is seen, if the display says so; whether it is seen at all, and not hidden.
+  std::optional<TimeNs> display_at_ns() const { return frame_.display_at_ns; }
+  // From begin_frame, unless the user quit, to end_frame.
+  bool in_frame() const { return in_frame_; }
   bool shown() const { return frame_.verdict == xr::FrameVerdict::kDraw; }
   // What the user did since the last frame; true: quits.
   bool take_input();
@@ -57,7 +62,7 @@ class DiveView {
   const DiveTimes& times() const { return times_; }
 
  private:
-  DiveView(Session& session, xr::Display& display, xr::Overlay* overlay, LivePhysics* physics,
+  DiveView(Session& session, xr::Display& display, xr::Overlay* overlay, DivePilot pilot,
            const DiveViewOptions& options);
   Status declare_sonars(graph::FrameGraph& graph, const SensorFrame& frame);
   Result<graph::ImageHandle> declare_overlay(graph::FrameGraph& graph, double time_s);
@@ -75,7 +80,7 @@ class DiveView {
   xr::DisplayFrame frame_;
   std::string note_;
   TimeNs note_until_ns_ = 0;
-  bool show_help_ = false, show_panels_ = true;
+  bool show_help_ = false, show_panels_ = true, in_frame_ = false;
   TimeNs last_frame_ns_ = 0;  // 0: none, or it was hidden
   double elapsed_s_ = 0.0;
   std::deque<std::uint64_t> in_flight_;  // submissions whose times are not collected yet

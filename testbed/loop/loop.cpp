@@ -43,7 +43,12 @@ Status Loop::run() {
     parts_.physics->listen(parts_.sources);
   }
   const Status status = run_frames();
-  if (parts_.physics) parts_.physics->stop();
+  if (parts_.physics) {
+    parts_.physics->stop();
+    // The physics may outlive the loop and its parts.
+    parts_.physics->observe({});
+    parts_.physics->listen({});
+  }
   wall_s_ = to_ms(now_ns() - begun_ns) * 1e-3;
   return finish(status);
 }
@@ -71,6 +76,15 @@ Status Loop::frame() {
     }
     display_at_ns = view->display_at_ns();
   }
+  const Status status = frame_at(display_at_ns);
+  if (!view || !view->in_frame()) return status;
+  // A stop or an error cut the frame short, or nothing was drawn: it is ended all the same.
+  const Status ended = view->end_frame(std::nullopt);
+  return status.ok() ? ended : status;
+}
+
+Status Loop::frame_at(std::optional<TimeNs> display_at_ns) {
+  DiveView* view = parts_.view;
   const FrameTime at = parts_.clock.next(display_at_ns);
   if (!std::exchange(started_, true)) {
     if (parts_.physics) parts_.physics->start();
@@ -141,7 +155,7 @@ Status Loop::show(FrameRequest& request) {
   Session& session = *parts_.sensors->session;
   const bool senses = !request.cameras.empty() || !request.sonars.empty();
   if (view.shown()) view.add_views(request);
-  if (!senses && !view.shown()) return view.end_frame(std::nullopt);
+  if (!senses && !view.shown()) return {};
   graph::FrameGraph graph;
   NERITIC_TRY(auto frame, session.declare(graph, request));
   NERITIC_TRY_STATUS(view.declare(graph, *frame, request.time_s, last_));

@@ -35,7 +35,8 @@ struct LoopStop {
   std::function<bool()> interrupted;  // asked before each frame and step; empty: never
 };
 
-// Everything that is pointed to outlives the loop.
+// Everything that is pointed to outlives the loop. After the run the physics no longer refers to
+// the sources and sinks.
 struct LoopParts {
   Clock clock;
   LivePhysics* physics = nullptr;
@@ -61,6 +62,8 @@ class Loop {
  private:
   Status run_frames();
   Status frame();
+  // display_at_ns: when the view's display shows it.
+  Status frame_at(std::optional<TimeNs> display_at_ns);
   double advance(const FrameTime& at);
   bool is_last(double time_s);
   FrameRequest request_at(const FrameTime& at, double time_s);

@@ -43,7 +43,7 @@ LivePhysics::~LivePhysics() {
 }
 
 void LivePhysics::observe(const Observer& each) {
-  each(simulation_->newest());
+  if (each) each(simulation_->newest());
   simulation_->observe(each);
 }
 

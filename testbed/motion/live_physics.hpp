@@ -31,12 +31,12 @@ class LivePhysics {
   ~LivePhysics();
 
   // each sees every state in turn, the start first: on the stepping thread, which is the caller's
-  // in lock-step. Before start().
+  // in lock-step. Empty: nobody does from now on. Before start() or after stop().
   using Observer = std::function<void(const sim::Snapshot<PhysicsState>&)>;
   void observe(const Observer& each);
   // Polls the sources before each step of a lock-step, and in each follow() beside a thread. After
-  // the first failure it polls no more, and a lock-step takes no more steps. Before start();
-  // borrows them.
+  // the first failure it polls no more, and a lock-step takes no more steps. Before start()
+  // or after stop(); borrows them.
   void listen(std::vector<SampleSource*> sources) { sources_ = std::move(sources); }
   // The first failure of a source.
   const Status& listening() const { return listening_; }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/scene/image_file.hpp"
 #include "engine/scene/scene_surface.hpp"
 #include "sonar/bathymetry.hpp"
@@ -196,17 +197,14 @@ Status Survey::Record::add_picture(const FrameResult& result, const Pose& world_
   for (const CameraFrame& camera : result.cameras)
     if (camera.name == sonar.picture_camera) eye = &camera.eyes.front();
   if (!eye || eye->color.empty() || eye->depth.empty())
-    return bad_input(
-        "sonar {}: picture_camera: {} found, a camera of the scene with its picture "
-        "and depth is accepted",
-        sonar.name, sonar.picture_camera);
+    return refusal(fmt::format("sonar {}: picture_camera", sonar.name), sonar.picture_camera,
+                   "a camera of the scene with its picture and depth");
   const Vec3 down = eye->world_from_view.rotation * Vec3(0, 0, -1);
   if (down.y > -kStraightDown)
-    return bad_input(
-        "sonar {}: picture_camera {}: it looks {:.0f} degrees off straight down, at "
-        "most {:.0f} are accepted",
-        sonar.name, sonar.picture_camera, degrees(std::acos(-down.y)),
-        degrees(std::acos(kStraightDown)));
+    return refusal(fmt::format("sonar {}: picture_camera", sonar.name),
+                   fmt::format("{}, which looks {:.0f} degrees off straight down",
+                               sonar.picture_camera, degrees(std::acos(-down.y))),
+                   fmt::format("at most {:.0f} degrees", degrees(std::acos(kStraightDown))));
   const sonar::SeabedPicture picture{
       sonar::brightness_of(eye->color),
       {eye->intrinsics.fx, eye->intrinsics.fy, eye->intrinsics.cx, eye->intrinsics.cy},

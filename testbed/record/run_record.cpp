@@ -30,23 +30,4 @@ Status RecordingCheck::accept(const sim::Snapshot<PhysicsState>& step, std::span
   return {};
 }
 
-Result<sim::ReplayReport> replay_run(const PhysicsWorld& world, SampleLog log,
-                                     const std::string& name) {
-  NERITIC_TRY(RecordedSource source, source_of(world, std::move(log), name));
-  const auto simulation = world.simulation({.log = false});
-  const auto& hashes = source.log().hashes;
-  sim::ReplayReport report;
-  for (std::uint64_t step = 0; step < hashes.size(); ++step) {
-    if (simulation->newest().hash != hashes[step]) {
-      report.first_difference = step;
-      return report;
-    }
-    if (step + 1 == hashes.size()) break;
-    NERITIC_TRY_STATUS(source.poll(simulation->inbox(), simulation->newest().time_s));
-    simulation->advance(1);
-    ++report.steps;
-  }
-  return report;
-}
-
 }  // namespace neritic::testbed

@@ -32,9 +32,4 @@ class RecordingCheck final : public StepSink {
   std::uint64_t equal_ = 0;  // the newest step that was compared
 };
 
-// Runs the log again: its samples enter by a RecordedSource, and each state's hash is compared.
-// kBadInput for a log of another step or with samples of other streams. name stands in messages.
-Result<sim::ReplayReport> replay_run(const PhysicsWorld& world, SampleLog log,
-                                     const std::string& name);
-
 }  // namespace neritic::testbed

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/core/result.hpp"
 
 namespace neritic::testbed {
@@ -65,9 +66,9 @@ class Ring {
       free = slot.get();
     }
     if (!free && slots_.size() == kMost)
-      return failure(ErrorCode::kUnsupported,
-                     "{}: read-back: {} frames hold one; at most {} frames at once are accepted",
-                     name, kMost, kMost);
+      return failure(ErrorCode::kUnsupported, "{}: read-back: {}", name,
+                     found_accepted(fmt::format("{} frames that hold one", kMost),
+                                    fmt::format("at most {} frames at once", kMost)));
     NERITIC_TRY(T value, make());
     if (!free) free = slots_.emplace_back(std::make_unique<PinSlot<T>>()).get();
     free->value = std::move(value);

@@ -1,5 +1,6 @@
 #include "testbed/sensors/sonar_check.hpp"
 
+#include "engine/core/refusal.hpp"
 #include "sonar/gather.hpp"
 #include "sonar/head.hpp"
 
@@ -17,8 +18,8 @@ Status check_sonar(const scene::Scene& scene, const scene::Sonar& sonar) {
   if (!heads.ok()) return of_sonar(scene, sonar, heads.error());
   if (sonar.gather == sonar::name_of(sonar::Gather::kPublished) && heads->front().echo)
     return of_sonar(scene, sonar,
-                    bad_input("gather: published found, plane or nearest is accepted beside terms "
-                              "and for kinds of one beam: it is the plain cosine"));
+                    refusal("gather", "published, the plain cosine",
+                            "plane or nearest beside terms and for kinds of one beam"));
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include <future>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/render/lighting.hpp"
 #include "testbed/sensors/decode.hpp"
 #include "testbed/sensors/session.hpp"
@@ -22,8 +23,8 @@ Status check_size(const gpu::Device& device, const std::string& what,
                   const render::ViewSet& views) {
   const std::uint32_t limit = device.limits().maxImageDimension2D;
   if (views.width == 0 || views.height == 0 || views.width > limit || views.height > limit)
-    return bad_input("{}: size {}x{}; 1 to {} pixels a side are accepted", what, views.width,
-                     views.height, limit);
+    return refusal(what, fmt::format("size {}x{}", views.width, views.height),
+                   fmt::format("1 to {} pixels a side", limit));
   return {};
 }
 

@@ -175,7 +175,9 @@ TEST_F(DivePhysics, SavedInOneProcessItGoesOnInAnotherWithTheSameHash) {
   const Outcome both =
       dive("--headless --restore '" + file + "' --record '" + (scratch_ / "x.log").string() + "'");
   EXPECT_EQ(both.status, 2);
-  EXPECT_NE(both.err.find("--record: accepted without --restore"), std::string::npos) << both.err;
+  EXPECT_NE(both.err.find("--record: found --restore beside it; accepted: a run from time 0"),
+            std::string::npos)
+      << both.err;
   auto text = read_text(scratch_ / "dive.toml").value();
   text.replace(text.find("[1, -7, -2]"), 11, "[1, -7, -3]");
   ASSERT_TRUE(write_text(scratch_ / "other.toml", text).ok());
@@ -231,6 +233,33 @@ TEST_F(DivePhysics, RunsAlikeAndReplaysWhatItRecorded) {
   EXPECT_EQ(other.status, 1);
   EXPECT_NE(other.err.find("another state than recorded from step"), std::string::npos)
       << other.err;
+  // What it did until then is told, as of a run that ends well.
+  EXPECT_NE(other.out.find(" of 1920 steps, each with the hash that was recorded"),
+            std::string::npos)
+      << other.out;
+  EXPECT_NE(other.out.find(" steps dropped, hash "), std::string::npos) << other.out;
+}
+
+TEST_F(DivePhysics, AReplayCanBeInterrupted) {
+  ASSERT_EQ(dive("--headless --seconds 60 --record " + file("a.log")).status, 0);
+  const pid_t program = ::fork();
+  if (program == 0) {
+    std::freopen((scratch_ / "out").c_str(), "w", stdout);
+    std::freopen((scratch_ / "err").c_str(), "w", stderr);
+    ::execl(fmt::format("{}/tools/neritic", NERITIC_BINARY_DIR).c_str(), "neritic", "dive",
+            (scratch_ / "dive.toml").c_str(), "--headless", "--replay",
+            (scratch_ / "a.log").c_str(), nullptr);
+    ::_exit(127);
+  }
+  while (!catches(program, SIGINT)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ::kill(program, SIGINT);
+  int raw = 0;
+  ASSERT_EQ(::waitpid(program, &raw, 0), program);
+  const std::string err = read_text(scratch_ / "err").value();
+  ASSERT_TRUE(WIFEXITED(raw));
+  EXPECT_EQ(WEXITSTATUS(raw), 130) << err;
+  EXPECT_EQ(err.rfind("neritic: interrupted after ", 0), 0u) << err;
+  EXPECT_NE(err.find(" s of 60\n"), std::string::npos) << err;
 }
 
 TEST_F(DivePhysics, KeepsTheClocksPaceWhenToldTo) {
@@ -415,18 +444,20 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
     std::string arguments, scene, message;
   } cases[] = {
       {"--headless --log x.csv", "still.toml",
-       "--log: accepted where a vehicle has dynamics or a diver swims; in "},
-      {"--headless --log-rate 0", "still.toml", "--log-rate: accepted where a vehicle"},
+       "still.toml, where nothing moves by physics; accepted: a scene where a vehicle has "
+       "dynamics"},
+      {"--headless --log-rate 0", "still.toml", "--log-rate: found "},
       {"--realtime", "dive.toml",
-       "--realtime: accepted with --headless and without flags of pictures"},
+       "--realtime: found a run with pictures; accepted: with --headless and without flags"},
       {"--headless --replay none.log", "dive.toml", "none.log"},
       {"--headless --replay a.log --log x.csv", "dive.toml",
-       "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --save, "},
+       "--replay: found --log beside it; accepted: no --seconds, --log, --log-rate, --plot, "},
       {"--headless --replay a.log --seconds 10", "dive.toml",
-       "--replay: accepted without --seconds"},
-      {"--headless --seconds 1e7", "dive.toml", "--seconds: 10000000; up to 1e+06 is accepted"},
-      {"--headless --log-rate -1", "dive.toml",
-       "--log-rate: -1; a number from 0 to 10000 is accepted"}};
+       "--replay: found --seconds beside it; accepted: no --seconds"},
+      {"--headless --seconds 1e7", "dive.toml", "--seconds: found 10000000; accepted: up to 1e+06"},
+      {"--headless --play a.log --restore a.state", "dive.toml",
+       "--play: found --restore beside it; accepted: a run from time 0"},
+      {"--headless --log-rate -1", "dive.toml", "--log-rate: found -1; accepted: 0 to 10000"}};
   for (const auto& wrong : cases) {
     const Outcome outcome = dive(wrong.arguments, wrong.scene);
     EXPECT_EQ(outcome.status, 2) << wrong.message;

@@ -32,7 +32,7 @@ Vec2 pixel_of(const ViewGroup& group, std::size_t view, const Vec3& point_in_hea
 
 TEST_F(CompositorTest, NoLayersShowBlack) {
   graph::FrameGraph graph;
-  const Shown shown = show({{one_view(8, 4, 1.0)}, 30, true}, graph, {}, {});
+  const Shown shown = show({{one_view(8, 4, 1.0)}}, graph, {}, {});
   EXPECT_EQ(shown.at(0, 0), kBlack);
   EXPECT_EQ(shown.at(7, 3), kBlack);
 }
@@ -43,7 +43,7 @@ TEST_F(CompositorTest, ThePictureIsScaledToItsGroupAndEachViewKeepsItsLayer) {
   pair.views.push_back(pair.views[0]);
   const graph::ImageHandle picture =
       flat_image(graph, "picture", 8, 4, {{1, 0, 0, 1}, {0, 1, 0, 1}});
-  const Shown shown = show({{pair}, 30, true}, graph, {}, {ProjectionLayer{.color = picture}});
+  const Shown shown = show({{pair}}, graph, {}, {ProjectionLayer{.color = picture}});
   for (const auto& [x, y] : {std::pair{0u, 0u}, {31u, 15u}, {13u, 7u}}) {
     EXPECT_EQ(shown.at(x, y, 0), kRed);
     EXPECT_EQ(shown.at(x, y, 1), kGreen);
@@ -52,7 +52,7 @@ TEST_F(CompositorTest, ThePictureIsScaledToItsGroupAndEachViewKeepsItsLayer) {
 
 TEST_F(CompositorTest, AGroupWithoutItsOwnPictureIsBlack) {
   graph::FrameGraph graph;
-  const OffscreenOptions options{{one_view(8, 8, 1.0), one_view(4, 4, 0.5)}, 30, true};
+  const OffscreenOptions options{{one_view(8, 8, 1.0), one_view(4, 4, 0.5)}};
   const graph::ImageHandle picture = flat_image(graph, "picture", 8, 8, {{1, 0, 0, 1}});
   EXPECT_EQ(show(options, graph, {}, {ProjectionLayer{.group = 0, .color = picture}}, 1).at(2, 2),
             kBlack);
@@ -77,7 +77,7 @@ TEST_F(CompositorTest, PanelsLieWhereEachAsymmetricViewProjectsThem) {
                      .pose = head_from_panel,
                      .size_m = {0.6, 0.3}};
     if (lock == PanelLayer::Lock::kWorld) panel.pose = world_from_head * head_from_panel;
-    const Shown shown = show({{pair}, 30, true}, graph, world_from_head, {panel});
+    const Shown shown = show({{pair}}, graph, world_from_head, {panel});
     for (std::uint32_t view = 0; view < 2; ++view)
       for (const double side : {-1.0, 1.0})
         for (const double up : {-1.0, 1.0}) {
@@ -105,7 +105,7 @@ TEST_F(CompositorTest, PanelsAreDrawnInTheirOrderAndMixByAlpha) {
       PanelLayer{.image = flat_image(graph, "over", 2, 2, {{0, 0.5f, 0, 0.5f}}),
                  .pose = Pose{{0, 0, -2}},
                  .size_m = {8, 8}}};
-  const Shown shown = show({{one_view(8, 8, radians(90.0))}, 30, true}, graph, {}, layers);
+  const Shown shown = show({{one_view(8, 8, radians(90.0))}}, graph, {}, layers);
   EXPECT_NEAR(shown.at(3, 3)[0], 127, 1);
   EXPECT_NEAR(shown.at(3, 3)[1], 128, 1);
   EXPECT_EQ(shown.at(3, 3)[2], 0);
@@ -116,7 +116,7 @@ TEST_F(CompositorTest, APanelBehindTheHeadIsNotSeen) {
   const PanelLayer panel{.image = flat_image(graph, "panel", 2, 2, {{0, 1, 0, 1}}),
                          .pose = Pose{{0, 0, 1}},
                          .size_m = {4, 4}};
-  EXPECT_EQ(show({{one_view(8, 8, radians(90.0))}, 30, true}, graph, {}, {panel}).at(4, 4), kBlack);
+  EXPECT_EQ(show({{one_view(8, 8, radians(90.0))}}, graph, {}, {panel}).at(4, 4), kBlack);
 }
 
 }  // namespace

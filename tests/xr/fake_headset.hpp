@@ -26,6 +26,7 @@ class FakeHeadset final : public Display {
     std::function<Pose(std::uint64_t frame)> stage_from_head;
     std::function<bool(std::uint64_t frame)> worn;  // else nobody would see the frame
     TimeNs period_ns = 11'111'111;
+    std::uint64_t fails_at = UINT64_MAX;  // the frame whose layers it refuses
   };
 
   static Result<std::unique_ptr<FakeHeadset>> create(gpu::Device& device, Options options) {
@@ -64,7 +65,6 @@ class FakeHeadset final : public Display {
     DisplayFrame frame;
     frame.verdict =
         !options_.worn || options_.worn(frame_) ? FrameVerdict::kDraw : FrameVerdict::kHidden;
-    frame.period_ns = options_.period_ns;
     frame.display_at_ns = static_cast<TimeNs>(frame_) * options_.period_ns;
     frame.world_from_head = world_from_stage * options_.stage_from_head(frame_);
     frame.groups = options_.groups;
@@ -73,6 +73,7 @@ class FakeHeadset final : public Display {
   }
   Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
                                std::span<const Layer> layers) override {
+    if (begun_frames() == options_.fails_at + 1) return failure(ErrorCode::kIo, "unplugged");
     Ended ended;
     ended.world_from_head = world_from_head;
     ShownPicture shown{
@@ -100,7 +101,7 @@ class FakeHeadset final : public Display {
     return shown;
   }
   gpu::Frames::SubmitSync sync() const override { return {}; }
-  Status end_frame() override {
+  Status end_frame(bool) override {
     ended_.push_back(std::exchange(pending_, {}));
     return {};
   }
@@ -108,6 +109,7 @@ class FakeHeadset final : public Display {
 
   const gpu::Image& color(std::size_t group) const { return colors_[group]; }
   const gpu::Image& depth(std::size_t group) const { return depths_[group]; }
+  std::uint64_t begun_frames() const { return frame_; }
   const std::vector<Ended>& ended() const { return ended_; }  // by frame
 
  private:

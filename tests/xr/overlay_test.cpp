@@ -18,7 +18,7 @@ class OverlayTest : public test::GpuTest {
   void draw(Overlay& overlay, graph::FrameGraph& graph) {
     NERITIC_ASSERT_OK(
         const auto display,
-        OffscreenDisplay::create(device(), {{one_view(kWidth, kHeight, radians(90.0))}, 30, true}));
+        OffscreenDisplay::create(device(), {{one_view(kWidth, kHeight, radians(90.0))}}));
     const std::vector<Layer> layers{PanelLayer{.name = "overlay",
                                                .image = overlay.declare(graph),
                                                .pose = Pose{{0, 0, -1}},

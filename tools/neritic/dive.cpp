@@ -1,14 +1,13 @@
 // `neritic dive SCENE`: the live program. A desktop window with a free camera, the scene's sonars
 // and timings; or, with --headless, the same frames without a window and a summary of their times.
-#include <algorithm>
 #include <cmath>
 
 #include "engine/core/log.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/xr/desktop/desktop.hpp"
 #include "engine/xr/offscreen.hpp"
 #include "testbed/loop/dive_view.hpp"
 #include "testbed/loop/loop.hpp"
-#include "testbed/record/run_record.hpp"
 #include "testbed/sensors/validation.hpp"
 #include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
@@ -16,6 +15,7 @@
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/load_scene.hpp"
+#include "tools/neritic/named_sensors.hpp"
 #include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
@@ -49,25 +49,8 @@ struct Chosen {
 // The first camera and every sonar, or those named: a panel shows each sonar, and without panels
 // the summary of times has its passes.
 Result<Chosen> choose_sensors(const DiveFlags& flags, const scene::Scene& scene) {
-  Chosen chosen;
-  std::string known;
-  for (const scene::Camera& camera : scene.cameras) known += " " + camera.name;
-  for (const scene::Sonar& sonar : scene.sonars) known += " " + sonar.name;
-  const auto wanted = [&](const std::string& name) {
-    return std::find(flags.sensors.begin(), flags.sensors.end(), name) != flags.sensors.end();
-  };
-  std::size_t found = 0;
-  for (std::size_t i = scene.cameras.size(); i-- > 0;)
-    if (wanted(scene.cameras[i].name)) chosen.camera = i, ++found;
-  for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
-    const bool named = wanted(scene.sonars[i].name);
-    if (flags.sensors.empty() || named) chosen.sonars.push_back(i);
-    if (named) ++found;
-  }
-  if (found < flags.sensors.size())
-    return bad_input("--sensor: {} found, {} has{}", fmt::join(flags.sensors, " "), flags.scene,
-                     known);
-  return chosen;
+  NERITIC_TRY(const NamedSensors named, named_sensors(flags.sensors, scene));
+  return Chosen{named.cameras.empty() ? 0 : named.cameras.front(), named.sonars};
 }
 
 // Where the pictures go. In the order of creation: each uses those before it.
@@ -107,9 +90,7 @@ Status make_display(const DiveFlags& flags, const scene::Camera& camera, Screen&
     return {};
   }
   const xr::OffscreenOptions options{
-      {xr::one_view(camera.width, camera.height, camera.vertical_fov_rad)},
-      camera.rate_hz,
-      flags.fast};
+      {xr::one_view(camera.width, camera.height, camera.vertical_fov_rad)}};
   NERITIC_TRY(screen.display, xr::OffscreenDisplay::create(device, options));
   if (flags.panels) {
     NERITIC_TRY(screen.overlay, xr::Overlay::create(device, nullptr, 1));
@@ -131,20 +112,6 @@ void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera
     fmt::print("physics: {} steps, hash {:016x}\n", physics->newest().step, physics->newest().hash);
 }
 
-// A recording that is shown: it steers, and each state is compared with it.
-struct Replay {
-  RecordedSource source;
-  RecordingCheck check;
-};
-
-Result<std::unique_ptr<Replay>> make_replay(const DiveFlags& flags, const PhysicsWorld& world) {
-  NERITIC_TRY(SampleLog log, read_sample_log(flags.replay));
-  NERITIC_TRY(RecordedSource source, source_of(world, std::move(log), flags.replay));
-  // The hashes stay where they are when the source moves.
-  const std::span<const std::uint64_t> hashes = source.log().hashes;
-  return std::make_unique<Replay>(Replay{std::move(source), RecordingCheck(hashes, flags.replay)});
-}
-
 Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt& interrupt) {
   std::unique_ptr<LivePhysics> physics;
   std::unique_ptr<Replay> replay;
@@ -156,7 +123,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
                 make_dive_physics(flags, scene, lock_step ? Pace::kPicture : Pace::kClock));
   }
   if (physics && !flags.replay.empty()) {
-    NERITIC_TRY(replay, make_replay(flags, physics->world()));
+    NERITIC_TRY(replay, Replay::read(flags.replay, physics->world()));
   }
   NERITIC_TRY(const Chosen chosen, choose_sensors(flags, scene));
   const scene::Camera camera = scene.cameras[chosen.camera];
@@ -170,7 +137,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
                                 .sonars = chosen.sonars,
                                 .summary = flags.headless,
                                 .screenshot = flags.screenshot,
-                                .may_close = !flags.headless}));
+                                .may_close = !flags.headless,
+                                .may_fly = !replay}));
   std::optional<StepFiles> files;
   std::vector<StepSink*> step_sinks;
   std::vector<SampleSource*> sources{&view->pilot()};
@@ -180,32 +148,31 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
   }
   if (replay) {
     step_sinks.push_back(&replay->check);
-    sources = {&replay->source};
+    sources.push_back(&replay->source);
   }
   const double start_s = physics ? physics->newest().time_s : 0.0, period_s = 1.0 / camera.rate_hz;
   const bool limited = flags.frames > 0 || flags.seconds || replay;
   const double unlimited_s = limited || !flags.headless ? 0.0 : kHeadlessSeconds;
-  const double recorded_s =
-      replay ? static_cast<double>(replay->source.log().steps()) * physics->world().step_s() : 0.0;
-  Loop loop(
-      {.clock = flags.fast ? Clock::simulated(start_s, period_s) : Clock::real(start_s, period_s),
-       .physics = physics.get(),
-       .sensors = LoopSensors{.session = session.get(),
-                              .sonars = chosen.sonars,
-                              .capture = kColorOnGpu,
-                              .own_rates = true},
-       .view = view.get(),
-       .sources = sources,
-       .step_sinks = step_sinks,
-       .stop = {.frames = flags.frames,
-                .seconds = replay ? recorded_s : flags.seconds.value_or(unlimited_s),
-                .interrupted = [&] { return interrupt.requested(); }}});
-  NERITIC_TRY_STATUS(loop.run());
-  if (replay)
-    fmt::print("{}: {} of {} steps, each with the hash that was recorded\n", flags.replay,
-               replay->check.equal_steps(), replay->source.log().steps());
+  const double recorded_s = replay ? replay->seconds() : 0.0;
+  Loop loop({.clock = flags.fast ? Clock::simulated(start_s, period_s)
+                                 : Clock::real(start_s, period_s, 1),
+             .physics = physics.get(),
+             .sensors = LoopSensors{.session = session.get(),
+                                    .sonars = chosen.sonars,
+                                    .capture = kColorOnGpu,
+                                    .own_rates = true},
+             .view = view.get(),
+             .sources = sources,
+             .step_sinks = step_sinks,
+             .stop = {.frames = flags.frames,
+                      .seconds = replay ? recorded_s : flags.seconds.value_or(unlimited_s),
+                      .interrupted = [&] { return interrupt.requested(); }}});
+  const Status status = loop.run();
+  // Also of a run that failed: what it did until then.
+  if (replay) replay->tell();
   tell(flags, *screen.device, camera, *view, loop, physics.get(),
        files ? &files->recorder() : nullptr);
+  NERITIC_TRY_STATUS(status);
   if (loop.interrupted())
     return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s; all until then is written",
                    loop.wall_s());
@@ -216,11 +183,11 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
 
 Status run_dive(const DiveFlags& flags) {
   if (flags.seconds && !(std::isfinite(*flags.seconds) && *flags.seconds > 0.0))
-    return bad_input("--seconds: {}; a number above 0 is accepted", *flags.seconds);
+    return refusal("--seconds", fmt::format("{}", *flags.seconds), "a number above 0");
   if (flags.fast && !flags.headless)
-    return bad_input("--fast: accepted with --headless (a window follows its screen)");
+    return refusal("--fast", "a run in a window", "with --headless (a window follows its screen)");
   if (flags.panels && !flags.headless)
-    return bad_input("--panels: accepted with --headless (a window has them; F2)");
+    return refusal("--panels", "a run in a window", "with --headless (a window has them; F2)");
   NERITIC_TRY_STATUS(check_step_files(flags.files));
   NERITIC_TRY_STATUS(check_output_file("--screenshot", flags.screenshot));
   const Interrupt interrupt;

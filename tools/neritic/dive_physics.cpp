@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "engine/core/log.hpp"
+#include "engine/core/refusal.hpp"
 #include "testbed/loop/loop.hpp"
-#include "testbed/record/run_record.hpp"
 #include "testbed/record/source_watch.hpp"
 #include "testbed/samples/recorded_source.hpp"
 #include "tools/neritic/dive_runs.hpp"
@@ -12,6 +12,7 @@
 #include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 constexpr double kPhysicsSeconds = 60.0;  // where --seconds is not given
@@ -35,16 +36,15 @@ std::string physics_flag(const DiveFlags& flags) {
   return "";
 }
 
-Status replay_dive(const DiveFlags& flags, const scene::Scene& scene) {
-  NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
-  NERITIC_TRY(const SampleLog log, read_sample_log(flags.replay));
-  NERITIC_TRY(const sim::ReplayReport report, replay_run(*world, log, flags.replay));
-  if (report.first_difference)
-    return failure(ErrorCode::kUnsupported, "{}: another state than recorded from step {} of {} on",
-                   flags.replay, *report.first_difference, log.steps());
-  fmt::print("{}: {} steps, each with the hash that was recorded, the last {:016x}\n", flags.replay,
-             report.steps, log.hashes.back());
-  return {};
+// The first flag that a replay cannot have; empty: none.
+std::string flag_beside_replay(const DiveFlags& flags) {
+  if (const std::string flag = first_step_flag(flags.files); !flag.empty()) return flag;
+  if (flags.seconds) return "--seconds";
+  if (!flags.restore.empty()) return "--restore";
+  if (!flags.play.empty()) return "--play";
+  if (flags.realtime) return "--realtime";
+  if (flags.json) return "--json";
+  return "";
 }
 
 }  // namespace
@@ -56,28 +56,41 @@ bool asks_for_physics_alone(const DiveFlags& flags, const scene::Scene& scene) {
 Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   const std::string flag = physics_flag(flags);
   if (flag.empty()) return {};
-  if (!PhysicsWorld::needed(scene))
-    return bad_input("{}: accepted where a vehicle has dynamics or a diver swims; in {} none does",
-                     flag, flags.scene);
-  if ((flags.realtime || flags.runs || !flags.play.empty()) && (!flags.headless || draws(flags)))
-    return bad_input("{}: accepted with --headless and without flags of pictures",
-                     flags.realtime ? "--realtime"
-                     : flags.runs   ? "--runs"
-                                    : "--play");
-  if (!flags.replay.empty() &&
-      (!first_step_flag(flags.files).empty() || flags.realtime || flags.json || flags.seconds ||
-       !flags.restore.empty() || !flags.play.empty()))
-    return bad_input(
-        "--replay: accepted without --seconds, --log, --log-rate, --plot, --record, --save, "
-        "--restore, --play, --realtime, --json; it runs as long as the recording");
-  if (!flags.restore.empty() && !flags.files.record.empty())
-    return bad_input("--record: accepted without --restore: a recording begins at time 0");
+  if (!PhysicsWorld::needed(scene)) return flag_without_physics(flag, flags.scene);
+  const char* alone = flags.realtime       ? "--realtime"
+                      : flags.runs         ? "--runs"
+                      : flags.play.empty() ? ""
+                                           : "--play";
+  if (*alone != '\0' && (!flags.headless || draws(flags)))
+    return refusal(alone, "a run with pictures", "with --headless and without flags of pictures");
+  if (const std::string beside = flag_beside_replay(flags);
+      !flags.replay.empty() && !beside.empty())
+    return refusal("--replay", beside + " beside it",
+                   "no --seconds, --log, --log-rate, --plot, --record, --save, --restore, --play, "
+                   "--realtime, --json; it runs as long as the recording");
+  if (!flags.restore.empty() && !(flags.files.record.empty() && flags.play.empty()))
+    return refusal(flags.play.empty() ? "--record" : "--play", "--restore beside it",
+                   "a run from time 0, where a recording begins");
   if (flags.runs && (!first_step_flag(flags.files).empty() || flags.realtime ||
                      !flags.replay.empty() || !flags.restore.empty() || !flags.play.empty()))
-    return bad_input(
-        "--runs: accepted without --log, --log-rate, --plot, --record, --save, --replay, "
-        "--restore, --play, --realtime: one run leaves such files (--seed N)");
+    return refusal("--runs", "a flag of one run beside it",
+                   "no --log, --log-rate, --plot, --record, --save, --replay, --restore, --play, "
+                   "--realtime; one run leaves such files (--seed N)");
   return {};
+}
+
+Result<std::unique_ptr<Replay>> Replay::read(const std::string& file, const PhysicsWorld& world) {
+  NERITIC_TRY(SampleLog log, read_sample_log(file));
+  if (log.steps() == 0) return refusal(file, "a recording of 0 steps", "1 step or more");
+  NERITIC_TRY(RecordedSource source, source_of(world, std::move(log), file));
+  // The hashes stay where they are when the source moves.
+  const std::span<const std::uint64_t> hashes = source.log().hashes;
+  return std::make_unique<Replay>(Replay{std::move(source), RecordingCheck(hashes, file), file});
+}
+
+void Replay::tell() const {
+  fmt::print("{}: {} of {} steps, each with the hash that was recorded\n", file,
+             check.equal_steps(), steps());
 }
 
 Result<std::unique_ptr<LivePhysics>> make_dive_physics(const DiveFlags& flags,
@@ -93,27 +106,35 @@ Result<std::unique_ptr<LivePhysics>> make_dive_physics(const DiveFlags& flags,
 }
 
 Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Interrupt& interrupt) {
-  const double seconds = flags.seconds.value_or(kPhysicsSeconds);
+  double seconds = flags.seconds.value_or(kPhysicsSeconds);
   if (seconds > kMostPhysicsSeconds)
-    return bad_input("--seconds: {}; up to {:g} is accepted", seconds, kMostPhysicsSeconds);
+    return refusal("--seconds", fmt::format("{}", seconds),
+                   fmt::format("up to {:g}", kMostPhysicsSeconds));
   if (flags.runs) return dive_runs(flags, scene, interrupt);
-  if (!flags.replay.empty()) return replay_dive(flags, scene);
   NERITIC_TRY(const auto physics, make_dive_physics(flags, scene, LivePhysics::Pace::kPicture));
-  const double start_s = physics->newest().time_s, step_s = physics->world().step_s();
-  std::optional<RecordedSource> recording;
+  const PhysicsWorld& world = physics->world();
+  const double start_s = physics->newest().time_s, step_s = world.step_s();
+  SourceWatch watch(world, physics->inbox(), [](const std::string& line) { log_warn("{}", line); });
+  const StepFiles files(flags.files, scene.title, *physics);
+  std::vector<StepSink*> sinks{&watch};
+  for (StepSink* sink : files.sinks()) sinks.push_back(sink);
+  // Recordings: one of a device, one of the whole run.
+  std::optional<RecordedSource> played;
+  std::unique_ptr<Replay> replay;
   std::vector<SampleSource*> sources;
   if (!flags.play.empty()) {
     NERITIC_TRY(SampleLog log, read_sample_log(flags.play));
-    NERITIC_TRY(recording,
-                RecordedSource::create(std::move(log), physics->world().streams(), flags.play));
-    sources = {&*recording};
+    NERITIC_TRY(played, RecordedSource::create(std::move(log), world.streams(), flags.play));
+    sources = {&*played};
   }
-  const StepFiles files(flags.files, scene.title, *physics);
+  if (!flags.replay.empty()) {
+    NERITIC_TRY(replay, Replay::read(flags.replay, world));
+    sources = {&replay->source};
+    sinks.push_back(&replay->check);
+    seconds = replay->seconds();
+  }
   StepProgress progress("second", start_s + seconds);
-  SourceWatch watch(physics->world(), physics->inbox(),
-                    [](const std::string& line) { log_warn("{}", line); });
-  std::vector<StepSink*> sinks{&progress, &watch};
-  for (StepSink* sink : files.sinks()) sinks.push_back(sink);
+  sinks.push_back(&progress);
   Loop loop(
       {.clock = flags.realtime ? Clock::real(start_s, step_s) : Clock::simulated(start_s, step_s),
        .physics = physics.get(),
@@ -121,14 +142,15 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
        .step_sinks = sinks,
        .stop = {.frames = static_cast<std::uint64_t>(std::ceil(seconds / step_s - 1e-9)),
                 .interrupted = [&] { return interrupt.requested(); }}});
-  const Status written = loop.run();
-  print_summary(flags, physics->world(), physics->simulation(), files.recorder(),
+  const Status status = loop.run();
+  // Also of a run that failed: what it did until then.
+  if (replay) replay->tell();
+  print_summary(flags, world, physics->simulation(), files.recorder(),
                 {loop.wall_s(), loop.dropped()});
-  NERITIC_TRY_STATUS(written);
+  NERITIC_TRY_STATUS(status);
   if (loop.interrupted())
-    return failure(ErrorCode::kInterrupted,
-                   "interrupted after {:.4g} s of {:g}; all until then is written",
-                   physics->newest().time_s, seconds);
+    return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s of {:g}{}",
+                   physics->newest().time_s, seconds, replay ? "" : "; all until then is written");
   return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/scene/scene.hpp"
 #include "testbed/motion/live_physics.hpp"
+#include "testbed/record/run_record.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/interrupt.hpp"
 
@@ -19,6 +20,22 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene);
 Result<std::unique_ptr<testbed::LivePhysics>> make_dive_physics(const DiveFlags& flags,
                                                                 const scene::Scene& scene,
                                                                 testbed::LivePhysics::Pace pace);
+
+// A recording that is run again: it steers, and each state is compared with it. It stays where it
+// is: the check borrows from the source.
+struct Replay {
+  testbed::RecordedSource source;
+  testbed::RecordingCheck check;
+  std::string file;
+
+  // kBadInput for a recording of another scene or without steps.
+  static Result<std::unique_ptr<Replay>> read(const std::string& file,
+                                              const testbed::PhysicsWorld& world);
+  std::uint64_t steps() const { return source.log().steps(); }
+  double seconds() const { return static_cast<double>(steps()) * source.log().step_s; }
+  // On standard output: how many steps were as recorded.
+  void tell() const;
+};
 
 // Precondition: asks_for_physics_alone.
 Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Interrupt& interrupt);

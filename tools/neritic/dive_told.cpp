@@ -9,6 +9,7 @@
 #include "testbed/samples/authority_words.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 std::string touch_words(std::uint64_t steps) {

@@ -9,7 +9,6 @@
 #include "tools/neritic/commands.hpp"
 
 namespace neritic::tools {
-using namespace testbed;
 
 // How the steps went.
 struct Pace {
@@ -18,13 +17,15 @@ struct Pace {
 };
 
 // By --json as JSON.
-void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
-                   const PhysicsSimulation& simulation, const DiveRecorder& recorder,
-                   const Pace& pace);
+void print_summary(const DiveFlags& flags, const testbed::PhysicsWorld& world,
+                   const testbed::PhysicsSimulation& simulation,
+                   const testbed::DiveRecorder& recorder, const Pace& pace);
 
 // Dangers to a diver, and the changes to another tank: keys of the summary and of the
 // picture's data (testbed/record/LOG.md). Null: it did not happen.
-nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figures);
-nlohmann::json changes_json(const PhysicsHuman& human, const HumanFigures& figures);
+nlohmann::json dangers_json(const testbed::PhysicsHuman& human,
+                            const testbed::HumanFigures& figures);
+nlohmann::json changes_json(const testbed::PhysicsHuman& human,
+                            const testbed::HumanFigures& figures);
 
 }  // namespace neritic::tools

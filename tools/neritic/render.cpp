@@ -6,6 +6,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/render/water_optics.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/output/frame_files.hpp"
@@ -15,10 +16,12 @@
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/load_scene.hpp"
+#include "tools/neritic/named_sensors.hpp"
 #include "tools/neritic/render_sheet.hpp"
 #include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,10 +38,10 @@ Result<scene::Scene> load(const RenderFlags& flags) {
     // As positions in files. A comparison that a NaN fails.
     const Vec3 far = glm::abs(options.offset_m);
     if (!(std::max({far.x, far.y, far.z}) <= scene::kFarthest_m) || !is_finite(options.offset_m))
-      return bad_input(
-          "--offset: {:g} {:g} {:g}; three numbers of -{:g} to {:g} metres are accepted",
-          options.offset_m.x, options.offset_m.y, options.offset_m.z, scene::kFarthest_m,
-          scene::kFarthest_m);
+      return refusal(
+          "--offset",
+          fmt::format("{:g} {:g} {:g}", options.offset_m.x, options.offset_m.y, options.offset_m.z),
+          fmt::format("three numbers of -{0:g} to {0:g} metres", scene::kFarthest_m));
   }
   NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size, options));
   if (flags.seed) scene.seed = *flags.seed;
@@ -48,7 +51,9 @@ Result<scene::Scene> load(const RenderFlags& flags) {
       sonar.max_error = 0.0;
     }
   if (flags.water.empty()) return scene;
-  if (!scene.water) return bad_input("--water {}: {} names no water", flags.water, flags.scene);
+  if (!scene.water)
+    return refusal("--water", fmt::format("{}, which names no water", flags.scene),
+                   "a scene with a table [water]");
   // The types are written in capitals; a flag may be typed in any.
   std::string type = flags.water;
   std::transform(type.begin(), type.end(), type.begin(),
@@ -59,30 +64,15 @@ Result<scene::Scene> load(const RenderFlags& flags) {
   return scene;
 }
 
-bool wanted(const RenderFlags& flags, const std::string& name) {
-  return flags.sensors.empty() ||
-         std::find(flags.sensors.begin(), flags.sensors.end(), name) != flags.sensors.end();
-}
-
 Result<LoopSensors> sensors_of(const RenderFlags& flags, const scene::Scene& scene) {
-  LoopSensors sensors{.own_rates = flags.own_rates};
-  std::vector<std::string> known;
-  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-    known.push_back(scene.cameras[i].name);
-    if (wanted(flags, known.back())) sensors.cameras.push_back(i);
-  }
-  for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
-    known.push_back(scene.sonars[i].name);
-    if (!wanted(flags, known.back())) continue;
+  NERITIC_TRY(NamedSensors named, named_sensors(flags.sensors, scene));
+  LoopSensors sensors{.cameras = std::move(named.cameras),
+                      .sonars = std::move(named.sonars),
+                      .own_rates = flags.own_rates};
+  for (const std::size_t i : sensors.sonars)
     NERITIC_TRY_STATUS(check_sonar(scene, scene.sonars[i]));
-    sensors.sonars.push_back(i);
-  }
-  for (const std::string& name : flags.sensors)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      return bad_input("--sensor {}: not in {}, which has {}", name, flags.scene,
-                       known.empty() ? "no sensors" : fmt::format("{}", fmt::join(known, ", ")));
   if (sensors.cameras.empty() && sensors.sonars.empty())
-    return bad_input("{}: no camera and no sonar, so there is nothing to render", flags.scene);
+    return refusal(flags.scene, "no camera and no sonar", "one or more");
   // A side-scan made from pictures needs their depth.
   if (flags.track_only) {
     sensors.capture.motion = false;
@@ -119,14 +109,12 @@ Result<std::unique_ptr<LivePhysics>> make_physics(const RenderFlags& flags,
                                                   const scene::Scene& scene, double last_s) {
   if (!PhysicsWorld::needed(scene)) {
     if (const std::string flag = first_step_flag(flags.files); !flag.empty())
-      return bad_input(
-          "{}: accepted where a vehicle has dynamics or a diver swims; in {} none does", flag,
-          flags.scene);
+      return flag_without_physics(flag, flags.scene);
     return std::unique_ptr<LivePhysics>();
   }
   if (!(last_s <= kLongestFlight_s))
-    return bad_input("{}: physics to {:g} s of scene time; at most {:g} s are accepted", scene.path,
-                     last_s, kLongestFlight_s);
+    return refusal(scene.path, fmt::format("physics to {:g} s of scene time", last_s),
+                   fmt::format("at most {:g} s", kLongestFlight_s));
   const TimeNs begun_ns = now_ns();
   NERITIC_TRY(auto physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
   const auto counts = physics->world().solid().counts();
@@ -225,8 +213,8 @@ Error stopped_render(const RenderFlags& flags, std::uint64_t frames, double step
 
 Result<std::string> run_render(const RenderFlags& flags) {
   if (!(std::abs(flags.time_s) <= kLatestTime_s))
-    return bad_input("--time: {} s; a number from {:g} to {:g} is accepted", flags.time_s,
-                     -kLatestTime_s, kLatestTime_s);
+    return refusal("--time", fmt::format("{} s", flags.time_s),
+                   fmt::format("{:g} to {:g} s", -kLatestTime_s, kLatestTime_s));
   NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
   NERITIC_TRY_STATUS(check_step_files(flags.files));
   if (flags.dump_graph != "-")

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/refusal.hpp"
 #include "tools/common/outputs.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/neritic/dive_picture.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 constexpr double kMostRows_hz = 1e4;
@@ -42,10 +44,16 @@ std::string first_step_flag(const StepFileFlags& flags) {
   return "";
 }
 
+Error flag_without_physics(const std::string& flag, const std::string& scene) {
+  return refusal(flag, fmt::format("{}, where nothing moves by physics", scene),
+                 "a scene where a vehicle has dynamics or a diver swims");
+}
+
 Status check_step_files(const StepFileFlags& flags) {
   const double rate_hz = flags.log_rate_hz.value_or(0.0);
   if (!(rate_hz >= 0.0 && rate_hz <= kMostRows_hz))
-    return bad_input("--log-rate: {}; a number from 0 to {:g} is accepted", rate_hz, kMostRows_hz);
+    return refusal("--log-rate", fmt::format("{}", rate_hz),
+                   fmt::format("0 to {:g}", kMostRows_hz));
   NERITIC_TRY_STATUS(check_output_file("--log", flags.log));
   NERITIC_TRY_STATUS(check_output_file("--plot", flags.plot));
   NERITIC_TRY_STATUS(check_output_file("--record", flags.record));

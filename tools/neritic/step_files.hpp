@@ -11,10 +11,11 @@
 #include "tools/neritic/flags.hpp"
 
 namespace neritic::tools {
-using namespace testbed;
 
 // The first flag that was given; empty: none.
 std::string first_step_flag(const StepFileFlags& flags);
+// For a flag of physics in a scene where nothing moves by physics. scene: its path.
+Error flag_without_physics(const std::string& flag, const std::string& scene);
 // kBadInput for a rate that is none, kIo for a file that cannot be written: better known before a
 // run of hours than after it.
 Status check_step_files(const StepFileFlags& flags);
@@ -24,20 +25,22 @@ Status check_step_files(const StepFileFlags& flags);
 class StepFiles {
  public:
   // title: of the scene, for the plot. The physics outlives it.
-  StepFiles(const StepFileFlags& flags, const std::string& title, const LivePhysics& physics);
-  std::vector<StepSink*> sinks() const;
-  const DiveRecorder& recorder() const { return log_->recorder(); }
+  StepFiles(const StepFileFlags& flags, const std::string& title,
+            const testbed::LivePhysics& physics);
+  std::vector<testbed::StepSink*> sinks() const;
+  const testbed::DiveRecorder& recorder() const { return log_->recorder(); }
 
  private:
-  std::vector<std::unique_ptr<StepSink>> files_;
-  DiveLog* log_ = nullptr;  // one of them
+  std::vector<std::unique_ptr<testbed::StepSink>> files_;
+  testbed::DiveLog* log_ = nullptr;  // one of them
 };
 
 // Counts simulated seconds up to a time.
-class StepProgress final : public StepSink {
+class StepProgress final : public testbed::StepSink {
  public:
   StepProgress(std::string what, double until_s) : what_(std::move(what)), until_s_(until_s) {}
-  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
+  Status accept(const sim::Snapshot<testbed::PhysicsState>& step,
+                std::span<const testbed::Sample> outputs) override;
   Status finish() override;
 
  private:

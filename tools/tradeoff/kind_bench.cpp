@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 KindBench::Measured times_of(const FrameResult& frame) {

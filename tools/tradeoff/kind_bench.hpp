@@ -9,7 +9,6 @@
 #include "tools/tradeoff/kinds.hpp"
 
 namespace neritic::tools {
-using namespace testbed;
 
 class KindBench {
  public:
@@ -44,7 +43,7 @@ class KindBench {
 
  private:
   const KindSetting& kind_;
-  std::unique_ptr<Session> session_;
+  std::unique_ptr<testbed::Session> session_;
   std::vector<Placed> placed_;
 };
 

@@ -9,6 +9,7 @@
 #include "tools/tradeoff/extrapolation.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 constexpr double kTolerance = 1e-12;

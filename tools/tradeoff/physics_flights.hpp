@@ -9,7 +9,6 @@
 #include "testbed/simulation/body_step.hpp"
 
 namespace neritic::tools {
-using namespace testbed;
 
 // Commands change so often: the longest step.
 inline constexpr double kHold_s = 0.05;
@@ -17,7 +16,7 @@ inline constexpr double kHold_s = 0.05;
 struct Flight {
   std::string name;
   rov::Vehicle vehicle;
-  SolidBody body;
+  testbed::SolidBody body;
   std::unique_ptr<const sim::StaticWorld> solid;  // nothing: open water
   rov::State start;
   std::vector<rov::Inputs> inputs;  // held for kHold_s each
@@ -26,10 +25,10 @@ struct Flight {
   double truth_error_m = 0.0;
 
   rov::State step(const rov::State& state, const rov::Inputs& held, double dt_s,
-                  const StepMethod& method) const {
-    const VehicleStep step{body, vehicle, state, held, dt_s, method};
-    const rov::State free = free_step(step);
-    return solid ? step_among(*solid, step, free) : free;
+                  const testbed::StepMethod& method) const {
+    const testbed::VehicleStep step{body, vehicle, state, held, dt_s, method};
+    const rov::State free = testbed::free_step(step);
+    return solid ? testbed::step_among(*solid, step, free) : free;
   }
 };
 

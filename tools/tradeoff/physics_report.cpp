@@ -11,6 +11,7 @@
 #include "tools/tradeoff/physics_tradeoff.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 using rov::Integrator;

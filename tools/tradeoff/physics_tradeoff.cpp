@@ -10,6 +10,7 @@
 #include "tools/tradeoff/physics_flights.hpp"
 
 namespace neritic::tools {
+using namespace testbed;
 namespace {
 
 using rov::Integrator;

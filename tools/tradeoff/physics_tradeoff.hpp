@@ -14,7 +14,6 @@
 #include "testbed/simulation/body_step.hpp"
 
 namespace neritic::tools {
-using namespace testbed;
 
 struct PhysicsTradeoffOptions {
   bool quick = false;                  // a shorter flight, timed once: to see that it works
@@ -50,7 +49,7 @@ struct Flight;
 struct FlownError {
   double m = 0.0, rad = 0.0;
 };
-FlownError flown_error(const Flight& flight, double step_s, const StepMethod& method);
+FlownError flown_error(const Flight& flight, double step_s, const testbed::StepMethod& method);
 Result<PhysicsTradeoff> run_physics_tradeoff(const PhysicsTradeoffOptions& options);
 
 // The knee of the front of all integrators (no other is both cheaper and better), both axes

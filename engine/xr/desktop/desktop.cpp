@@ -46,7 +46,6 @@ Result<AcquireOutcome> DesktopDisplay::acquire() {
 
 Result<DisplayFrame> DesktopDisplay::begin_frame(const Pose&) {
   DisplayFrame frame;
-  frame.period_ns = static_cast<TimeNs>(std::llround(1e9 / window_.refresh_hz()));
   switch (window_.poll()) {
     case WindowState::kClosed:
       frame.verdict = FrameVerdict::kQuit;
@@ -57,10 +56,13 @@ Result<DisplayFrame> DesktopDisplay::begin_frame(const Pose&) {
     case WindowState::kVisible:
       break;
   }
-  NERITIC_TRY(const AcquireOutcome outcome, acquire());
+  // An image that no submission used is still acquired.
+  if (!acquired_) {
+    NERITIC_TRY(const AcquireOutcome outcome, acquire());
+    acquired_ = outcome == AcquireOutcome::kReady;
+  }
   // The next refresh at the earliest; one period is the best guess without present timing.
-  frame.display_at_ns = now_ns() + frame.period_ns;
-  acquired_ = outcome == AcquireOutcome::kReady;
+  frame.display_at_ns = now_ns() + std::llround(1e9 / window_.refresh_hz());
   if (!acquired_) {
     std::this_thread::sleep_for(kRetry);
     return frame;
@@ -89,8 +91,8 @@ gpu::Frames::SubmitSync DesktopDisplay::sync() const {
           .signal = swapchain_.drawn()};
 }
 
-Status DesktopDisplay::end_frame() {
-  if (!acquired_) return {};
+Status DesktopDisplay::end_frame(bool submitted) {
+  if (!acquired_ || !submitted) return {};
   acquired_ = false;
   NERITIC_TRY(const PresentOutcome outcome, swapchain_.present());
   if (outcome == PresentOutcome::kOutOfDate) stale_ = true;

@@ -24,7 +24,7 @@ class DesktopDisplay final : public Display {
   Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
                                std::span<const Layer> layers) override;
   gpu::Frames::SubmitSync sync() const override;
-  Status end_frame() override;
+  Status end_frame(bool submitted) override;
   ActionValues take_actions(const InputClaims& claims) override {
     return window_.take_actions(claims);
   }
@@ -38,7 +38,7 @@ class DesktopDisplay final : public Display {
   DesktopOptions options_;
   std::unique_ptr<Compositor> compositor_;
   ViewGroup group_;        // of this frame
-  bool acquired_ = false;  // an image waits for this frame's end
+  bool acquired_ = false;  // an image waits to be presented
   bool stale_ = true;      // the swapchain no longer fits the surface
   std::uint32_t made_for_width_ = 0, made_for_height_ = 0;  // the window's size back then
 };

@@ -6,6 +6,7 @@
 
 #include "engine/core/files.hpp"
 #include "tests/support/support.hpp"
+#include "tests/testbed/simulation/dives.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -47,7 +48,7 @@ position_m = [0, 0.1, -0.4]
 };
 
 TEST_F(DivePilotTest, KeysMoveItAheadAsideUpAndRound) {
-  DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
+  DivePilot pilot = DivePilot::create(physics_.get(), scene_.cameras[0].mount).value();
   DiveInput input;
   fly(pilot, input, 1.0, false);
   EXPECT_LT(glm::distance(physics_->pose(0).position_m, Vec3(0, -6, 0)), 0.02);
@@ -69,7 +70,7 @@ TEST_F(DivePilotTest, KeysMoveItAheadAsideUpAndRound) {
 }
 
 TEST_F(DivePilotTest, AtFullThrustItStaysUpright) {
-  DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
+  DivePilot pilot = DivePilot::create(physics_.get(), scene_.cameras[0].mount).value();
   DiveInput input;
   input.toggle_pilot = input.fast = true;
   input.move = {0, 0, -1};
@@ -79,7 +80,7 @@ TEST_F(DivePilotTest, AtFullThrustItStaysUpright) {
 }
 
 TEST_F(DivePilotTest, TheViewRidesOnTheCamerasMountAndTheMissionComesBack) {
-  DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
+  DivePilot pilot = DivePilot::create(physics_.get(), scene_.cameras[0].mount).value();
   DiveInput input;
   input.toggle_pilot = true;
   input.move = {0, 0, -1};
@@ -98,7 +99,7 @@ TEST_F(DivePilotTest, TheViewRidesOnTheCamerasMountAndTheMissionComesBack) {
 
 // A window that draws no more sends no keys; another device sends wrenches that nobody asked for.
 TEST_F(DivePilotTest, TheLinesNameTheSourceThatHasTheAuthorityNow) {
-  DivePilot pilot(physics_.get(), scene_.cameras[0].mount);
+  DivePilot pilot = DivePilot::create(physics_.get(), scene_.cameras[0].mount).value();
   const SourceId other = physics_->inbox().open("joystick").value();
   const StreamId wrench = physics_->world().streams().find("rov/wrench").value();
   physics_->inbox().push({{wrench, other, 0, 0, 0}, VehicleWrench{}});
@@ -116,11 +117,42 @@ TEST_F(DivePilotTest, TheLinesNameTheSourceThatHasTheAuthorityNow) {
 }
 
 TEST_F(DivePilotTest, WithoutPhysicsNothingIsFlown) {
-  DivePilot pilot(nullptr, scene_.cameras[0].mount);
+  DivePilot pilot = DivePilot::create(nullptr, scene_.cameras[0].mount).value();
   DiveInput input;
   input.toggle_pilot = true;
   EXPECT_FALSE(pilot.take(input));
   EXPECT_TRUE(pilot.lines().empty());
+}
+
+// P over a diver alone: there is no vehicle to ride on or to take over.
+TEST_F(DivePilotTest, InASceneOfDiversAloneNothingIsFlown) {
+  const scene::Scene divers =
+      load_text(kStillWater + diver_text("position_m = [0, -12, 0]\n")).value();
+  physics_ = LivePhysics::create(divers, LivePhysics::Pace::kPicture).value();
+  physics_->start();
+  DivePilot pilot = DivePilot::create(physics_.get(), {}).value();
+  DiveInput input;
+  input.toggle_pilot = true;
+  fly(pilot, input, 0.2, false);
+  EXPECT_TRUE(pilot.lines().empty());
+}
+
+TEST_F(DivePilotTest, InAReplayNothingIsFlown) {
+  DivePilot pilot = DivePilot::create(physics_.get(), scene_.cameras[0].mount, false).value();
+  DiveInput input;
+  input.toggle_pilot = true;
+  input.move = {0, 0, -1};
+  fly(pilot, input, 1.0, false);
+  ASSERT_EQ(pilot.lines().size(), 1u);
+  EXPECT_EQ(pilot.lines()[0].find("piloted"), std::string::npos) << pilot.lines()[0];
+  EXPECT_GT(physics_->pose(0).position_m.z, -0.1);
+}
+
+TEST_F(DivePilotTest, WithoutRoomForTheKeyboardItIsAnError) {
+  for (int i = 0; physics_->inbox().open(fmt::format("device {}", i)).ok();) ++i;
+  const auto pilot = DivePilot::create(physics_.get(), scene_.cameras[0].mount);
+  ASSERT_FALSE(pilot.ok());
+  EXPECT_EQ(pilot.error().message.rfind("source 'keyboard': ", 0), 0u) << pilot.error().message;
 }
 
 }  // namespace

@@ -247,7 +247,7 @@ TEST(Dive, UnknownSensorIsRefusedWithTheKnownOnes) {
       dive(scratch, "", fmt::format("'{}' --headless --frames 1 --sensor nose", pool()));
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("nose"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("camera sonar"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("accepted: camera, sonar"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

@@ -43,6 +43,46 @@ class HeadsetView : public test::GpuTest {
   }
 };
 
+// A runtime waits for the end of each frame that it began.
+TEST_F(HeadsetView, AFrameThatAStopCutsShortIsEnded) {
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene()));
+  NERITIC_ASSERT_OK(const auto headset,
+                    xr::FakeHeadset::create(device(), {{xr::eye_pair(12, 11)}, xr::head_at, {}}));
+  NERITIC_ASSERT_OK(const auto view, DiveView::create(*session, *headset, nullptr, nullptr, {}));
+  int asked = 0;
+  Loop loop({.clock = Clock::real(0.0, 1.0 / 90.0),
+             .sensors = LoopSensors{.session = session.get()},
+             .view = view.get(),
+             .stop = {.interrupted = [&] { return ++asked == 2; }}});  // within the first frame
+  NERITIC_ASSERT_STATUS(loop.run());
+  EXPECT_TRUE(loop.interrupted());
+  EXPECT_EQ(headset->begun_frames(), 1u);
+  EXPECT_EQ(headset->ended().size(), 1u);
+}
+
+// Two frames are in flight then; the view goes before the session.
+TEST_F(HeadsetView, AFrameThatFailsIsEndedAndTheViewWaitsForThoseInFlight) {
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene()));
+  NERITIC_ASSERT_OK(const auto headset,
+                    xr::FakeHeadset::create(device(), {.groups = {xr::eye_pair(120, 110)},
+                                                       .stage_from_head = xr::head_at,
+                                                       .worn = {},
+                                                       .fails_at = 2}));
+  NERITIC_ASSERT_OK(auto view, DiveView::create(*session, *headset, nullptr, nullptr, {}));
+  Loop loop({.clock = Clock::real(0.0, 1.0 / 90.0),
+             .sensors = LoopSensors{.session = session.get()},
+             .view = view.get(),
+             .stop = {.frames = 5}});
+  const Status status = loop.run();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().message, "unplugged");
+  EXPECT_EQ(headset->begun_frames(), 3u);
+  EXPECT_EQ(headset->ended().size(), 3u);
+  view.reset();
+  NERITIC_ASSERT_OK(const std::uint64_t completed, session->frames().completed());
+  EXPECT_GE(completed, 2u);
+}
+
 TEST_F(HeadsetView, AStereoPairIsDrawnFromTheTrackedHead) {
   expect_all_views({xr::eye_pair(120, 110)});
 }

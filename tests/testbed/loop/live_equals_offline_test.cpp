@@ -116,10 +116,8 @@ class LiveEqualsOffline : public test::GpuTest {
 };
 
 TEST_F(LiveEqualsOffline, AWindowWithPanelsAndRenderGiveTheSameSonarAndLog) {
-  NERITIC_ASSERT_OK(
-      const auto display,
-      xr::OffscreenDisplay::create(
-          device(), {.groups = {xr::one_view(96, 54, 1.0)}, .rate_hz = kFrames_hz, .fast = true}));
+  NERITIC_ASSERT_OK(const auto display, xr::OffscreenDisplay::create(
+                                            device(), {.groups = {xr::one_view(96, 54, 1.0)}}));
   NERITIC_ASSERT_OK(const auto overlay, xr::Overlay::create(device(), nullptr, 1.0f));
   const Outcome live = shown(*display, overlay.get(), kFrames);
   EXPECT_EQ(live.frames, kFrames);
@@ -141,9 +139,8 @@ TEST_F(LiveEqualsOffline, WhileTheViewIsHiddenSonarAndLogGoOn) {
 
 // The flown camera, the display and a riding sonar leave the scene as it was loaded.
 TEST_F(LiveEqualsOffline, ARunLeavesTheSceneAsItIs) {
-  NERITIC_ASSERT_OK(const auto display,
-                    xr::OffscreenDisplay::create(
-                        device(), {.groups = {xr::one_view(40, 30, 1.0)}, .fast = true}));
+  NERITIC_ASSERT_OK(const auto display, xr::OffscreenDisplay::create(
+                                            device(), {.groups = {xr::one_view(40, 30, 1.0)}}));
   (void)shown(*display, nullptr, 20);
   const scene::Camera &after = session_->scene().cameras[0], &before = scene_.cameras[0];
   EXPECT_EQ(after.width, before.width);
@@ -157,9 +154,8 @@ TEST_F(LiveEqualsOffline, ARunLeavesTheSceneAsItIs) {
 
 // A sonar that no panel, sink or flag names has no pass.
 TEST_F(LiveEqualsOffline, ASonarThatNobodyWantsIsNotDeclared) {
-  NERITIC_ASSERT_OK(const auto display,
-                    xr::OffscreenDisplay::create(
-                        device(), {.groups = {xr::one_view(40, 30, 1.0)}, .fast = true}));
+  NERITIC_ASSERT_OK(const auto display, xr::OffscreenDisplay::create(
+                                            device(), {.groups = {xr::one_view(40, 30, 1.0)}}));
   for (const bool wanted : {false, true}) {
     NERITIC_ASSERT_OK(const auto view,
                       DiveView::create(*session_, *display, nullptr, nullptr, {.summary = true}));

@@ -152,6 +152,27 @@ TEST_F(LoopTest, AnInterruptEndsItBetweenSteps) {
   EXPECT_EQ(dive->newest().step, 7u);
 }
 
+// The physics, its sinks and sources may have other owners than the loop.
+TEST_F(LoopTest, AfterARunThePhysicsCallsNoSinkAndNoSourceOfIt) {
+  const auto dive = physics();
+  Listener listener(dive->world());
+  Device device;
+  const auto run = [&](std::vector<StepSink*> sinks, std::vector<SampleSource*> sources) {
+    Loop loop({.clock = Clock::simulated(0.0, dive->world().step_s()),
+               .physics = dive.get(),
+               .sources = std::move(sources),
+               .step_sinks = std::move(sinks),
+               .stop = {.frames = 5}});
+    return loop.run();
+  };
+  ASSERT_TRUE(run({&listener}, {&device}).ok());
+  dive->advance();
+  ASSERT_TRUE(run({}, {}).ok());
+  EXPECT_EQ(dive->newest().step, 11u);
+  EXPECT_EQ(listener.steps.size(), 6u);
+  EXPECT_EQ(device.times_s.size(), 5u);
+}
+
 TEST(LoopClock, SimulatedFramesAreMultiplesOfThePeriodFromTheStart) {
   Clock clock = Clock::simulated(100.0, 0.25);
   for (int i = 0; i < 8; ++i) {
@@ -173,6 +194,20 @@ TEST(LoopClock, ARealClockFollowsTheDisplayOrWaitsAndDropsWhatIsTooLate) {
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   waiting.next(std::nullopt);
   EXPECT_GE(waiting.dropped(), 15u);
+}
+
+// Frames of a run without a screen that take longer than their period: none is caught up, and the
+// scene's time keeps up with the host's.
+TEST(LoopClock, TimeRunsOnOverDroppedFrames) {
+  Clock clock = Clock::real(2.0, 0.01, 1);
+  const FrameTime first = clock.next(std::nullopt);
+  for (int i = 0; i < 4; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(35));
+    const FrameTime at = clock.next(std::nullopt);
+    EXPECT_NEAR(at.time_s - first.time_s, 1e-9 * static_cast<double>(at.host_ns - first.host_ns),
+                0.0101);
+  }
+  EXPECT_GE(clock.dropped(), 8u);
 }
 
 }  // namespace

@@ -151,8 +151,8 @@ TEST_F(SensorFrameTest, TheRingSaysThatTooManyFramesHoldReadBacks) {
     const auto refused = session->declare(graph, request);
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().message,
-              "test: sonar plain: read-back: 8 frames hold one; at most 8 frames at once are "
-              "accepted");
+              "test: sonar plain: read-back: found 8 frames that hold one; accepted: at most 8 "
+              "frames at once");
   }
   held.erase(held.begin());
   NERITIC_ASSERT_OK(const FrameResult result, session->render(request));

@@ -5,6 +5,7 @@
 
 #include "testbed/record/dive_record.hpp"
 #include "testbed/record/run_record.hpp"
+#include "tests/testbed/simulation/replay_run.hpp"
 #include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {

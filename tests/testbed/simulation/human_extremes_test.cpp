@@ -9,6 +9,7 @@
 #include "diver/frames.hpp"
 #include "engine/core/random.hpp"
 #include "testbed/record/run_record.hpp"
+#include "tests/testbed/simulation/replay_run.hpp"
 #include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {

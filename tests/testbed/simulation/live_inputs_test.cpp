@@ -5,6 +5,7 @@
 #include "testbed/record/run_record.hpp"
 #include "testbed/record/source_watch.hpp"
 #include "tests/testbed/simulation/devices.hpp"
+#include "tests/testbed/simulation/replay_run.hpp"
 
 namespace neritic::testbed {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "testbed/record/run_record.hpp"
 #include "tests/testbed/simulation/devices.hpp"
+#include "tests/testbed/simulation/replay_run.hpp"
 
 namespace neritic::testbed {
 namespace {
