@@ -128,7 +128,7 @@ Error failure(ErrorCode code, fmt::format_string<Args...> format, Args&&... args
   if (!name.ok()) return name.error();                   \
   declaration = std::move(name).value()
 // The same for a Status.
-#define NERITIC_TRY_STATUS(expression)                       \
-  if (auto NERITIC_CONCAT(status_, __LINE__) = (expression); \
-      !NERITIC_CONCAT(status_, __LINE__).ok())               \
-  return NERITIC_CONCAT(status_, __LINE__).error()
+#define NERITIC_TRY_STATUS(expression)                                                        \
+  do {                                                                                        \
+    if (auto status_of_try = (expression); !status_of_try.ok()) return status_of_try.error(); \
+  } while (false)
