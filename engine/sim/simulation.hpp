@@ -199,34 +199,10 @@ class Simulation {
   std::unique_ptr<StepThread> thread_;  // last: ends before what it uses
 };
 
+// How a recorded run went when it was run again.
 struct ReplayReport {
   std::uint64_t steps = 0;                        // taken
   std::optional<std::uint64_t> first_difference;  // the step whose hash differs; 0: the start
 };
-
-// Runs a log again. step and apply are the simulation's; stops at the first difference.
-template <class State, class Inputs, class Message, class Function, class Apply>
-ReplayReport replay(const RunLog<Inputs, Message>& log, const State& start, Function function,
-                    Apply&& apply) {
-  ReplayReport report;
-  const auto step = step_of<State, Inputs>(std::move(function));
-  State state = start, next = start;
-  Inputs inputs = log.start;
-  std::size_t entry = 0;
-  for (std::uint64_t i = 0; i < log.hashes.size(); ++i) {
-    const std::uint64_t now = log.first_step + i;
-    if (state_hash(now, state) != log.hashes[i]) {
-      report.first_difference = now;
-      return report;
-    }
-    if (i == log.steps()) return report;
-    for (; entry < log.entries.size() && log.entries[entry].step <= now; ++entry)
-      apply(inputs, log.entries[entry].message, now);
-    step(state, inputs, StepTime{now, log.step_s}, next);
-    if (all_finite(next)) std::swap(state, next);
-    ++report.steps;
-  }
-  return report;
-}
 
 }  // namespace neritic::sim

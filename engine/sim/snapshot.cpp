@@ -1,24 +1,9 @@
-// Blending of snapshots: where a time lies, and poses.
+// Blending of poses.
 #include "engine/sim/snapshot.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 namespace neritic::sim {
-
-BlendShare blend_share(TimeNs previous_ns, TimeNs newest_ns, TimeNs time_ns,
-                       TimeNs max_predict_ns) {
-  if (time_ns == newest_ns) return {1.0, BlendKind::kExact};
-  if (time_ns == previous_ns) return {0.0, BlendKind::kExact};
-  if (time_ns < previous_ns) return {0.0, BlendKind::kHeld};
-  // Nothing yet but the start: there is no line to follow.
-  if (newest_ns <= previous_ns) return {1.0, BlendKind::kHeld};
-  const TimeNs limit_ns = newest_ns + std::max<TimeNs>(max_predict_ns, 0);
-  const TimeNs shown_ns = std::min(time_ns, limit_ns);
-  const double share =
-      static_cast<double>(shown_ns - previous_ns) / static_cast<double>(newest_ns - previous_ns);
-  if (time_ns > limit_ns) return {share, BlendKind::kHeld};
-  return {share, time_ns < newest_ns ? BlendKind::kInterpolated : BlendKind::kPredicted};
-}
 
 Pose blend_pose(const Pose& older, const Pose& newer, double share) {
   const Vec3 position_m = older.position_m + (newer.position_m - older.position_m) * share;

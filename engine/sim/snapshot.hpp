@@ -1,7 +1,6 @@
-// Snapshots of a state, and the state at any time between or just after the two newest: exact,
-// interpolated or predicted, and labelled so. The stepping thread publishes; each reader belongs
-// to one thread and may come and go at any time. Times are those of the clock that drives the
-// steps.
+// Snapshots of a state, the two newest at a time. The stepping thread publishes; each reader
+// belongs to one thread and may come and go at any time. Times are those of the clock that drives
+// the steps.
 #pragma once
 
 #include <array>
@@ -32,26 +31,6 @@ template <class State>
 struct SnapshotPair {
   Snapshot<State> previous, newest;
 };
-
-enum class BlendKind {
-  kExact,         // a snapshot of just that time
-  kInterpolated,  // between the two
-  kPredicted,     // after the newer, along the line through both
-  kHeld,          // before the older: the older one; after the prediction's limit: that limit
-};
-
-template <class State>
-struct Blended {
-  State state{};
-  BlendKind kind = BlendKind::kExact;
-};
-
-// The place of a time between the two: share 0 is the older, 1 the newer, more is prediction.
-struct BlendShare {
-  double share = 1.0;
-  BlendKind kind = BlendKind::kExact;
-};
-BlendShare blend_share(TimeNs previous_ns, TimeNs newest_ns, TimeNs time_ns, TimeNs max_predict_ns);
 
 // Positions along the line, attitudes along the shortest turn; share may pass 1.
 Pose blend_pose(const Pose& older, const Pose& newer, double share);
@@ -141,17 +120,6 @@ class SnapshotReader {
   bool update() { return outlet_->update(); }
   const Snapshot<State>& newest() const { return outlet_->newest().newest; }
   const Snapshot<State>& previous() const { return outlet_->newest().previous; }
-
-  // blend(older, newer, share) gives the state at a share of the way.
-  template <class Blend>
-  Blended<State> at(TimeNs time_ns, Blend&& blend, TimeNs max_predict_ns = 100'000'000) const {
-    const auto& pair = outlet_->newest();
-    const BlendShare where =
-        blend_share(pair.previous.due_ns, pair.newest.due_ns, time_ns, max_predict_ns);
-    if (where.share == 1.0) return {pair.newest.state, where.kind};
-    if (where.share == 0.0) return {pair.previous.state, where.kind};
-    return {blend(pair.previous.state, pair.newest.state, where.share), where.kind};
-  }
 
  private:
   friend class SnapshotSource<State>;

@@ -37,6 +37,13 @@ DivePilot::DivePilot(LivePhysics* physics, const scene::Mount& view)
     vehicle_ = i;
     vehicle_from_view_ = view.pose;
   }
+  // A state that was saved in flight: nobody holds the keys now, so the scene's choice comes back.
+  if (vehicles.empty()) return;
+  const GroupControl& wrench =
+      physics_->simulation().inputs().vehicles()[vehicle_].of(VehicleGroup::kWrench);
+  const auto sources = physics_->inbox().source_names();
+  flew_ = wrench.authority == Authority::kLive && wrench.source < sources.size() &&
+          sources[wrench.source] == "keyboard";
 }
 
 Result<DivePilot> DivePilot::create(LivePhysics* physics, const scene::Mount& view, bool may_fly) {

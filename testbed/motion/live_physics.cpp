@@ -10,8 +10,7 @@ namespace {
 std::unique_ptr<PhysicsSimulation> simulation_of(const PhysicsWorld& world,
                                                  const LivePhysics::Options& options) {
   auto simulation = world.simulation({.log = options.log, .seed = options.seed});
-  if (options.start)
-    simulation->restore(options.start->step, options.start->state, options.start->inputs);
+  if (options.start) restore_state(*simulation, *options.start);
   return simulation;
 }
 

@@ -20,8 +20,7 @@ Status RecordingFile::finish() {
 }
 
 Status StateFile::finish() {
-  return write_state(path_, world_.state_format(),
-                     {simulation_.newest().step, simulation_.newest().state, simulation_.inputs()});
+  return write_state(path_, world_.state_format(), saved_state(simulation_));
 }
 
 }  // namespace neritic::testbed

@@ -10,9 +10,11 @@ void take(const Sample& sample, T& value) {
 }
 
 template <class Inputs>
-bool apply_event(Inputs& inputs, const Event& event) {
+bool apply_event(Inputs& inputs, const Event& event, std::uint64_t recorded) {
   const bool known = event.kind == EventKind::kSetAuthority &&
-                     event.group < inputs.control.size() && event.hold_s >= 0.0;
+                     event.group < inputs.control.size() && event.hold_s >= 0.0 &&
+                     (event.authority != static_cast<std::uint64_t>(Authority::kRecording) ||
+                      (recorded >> event.group & 1) != 0);
   if (!known || !set_authority(inputs.control[event.group], event.authority, event.source)) {
     ++inputs.refused_events;
     return false;
@@ -44,8 +46,9 @@ VehicleInputs autopilot_vehicle() {
   return all_autopilot<VehicleInputs>(kVehicleHold_s);
 }
 
-bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step) {
-  if (const Event* event = std::get_if<Event>(&sample.payload)) return apply_event(inputs, *event);
+bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step, std::uint64_t recorded) {
+  if (const Event* event = std::get_if<Event>(&sample.payload))
+    return apply_event(inputs, *event, recorded);
   if (!heard(inputs, sample, step)) return false;
   take(sample, inputs.body);
   take(sample, inputs.hands);
@@ -62,7 +65,8 @@ bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step) {
 }
 
 bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step) {
-  if (const Event* event = std::get_if<Event>(&sample.payload)) return apply_event(inputs, *event);
+  if (const Event* event = std::get_if<Event>(&sample.payload))
+    return apply_event(inputs, *event, 0);
   if (!heard(inputs, sample, step)) return false;
   take(sample, inputs.wrench);
   take(sample, inputs.setpoint);

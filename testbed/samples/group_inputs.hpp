@@ -18,7 +18,7 @@ struct DiverInputs {
   Breath breath;
   Heart heart;
   GasSupply gas;
-  std::uint64_t refused_events = 0;  // that name no group or authority
+  std::uint64_t refused_events = 0;  // that name no group, authority or recording
 
   const GroupControl& of(DiverGroup group) const {
     return control[static_cast<std::size_t>(group)];
@@ -46,7 +46,7 @@ struct VehicleInputs {
   VehicleWrench wrench;
   VehicleSetpoint setpoint;
   ThrusterFault fault;
-  std::uint64_t refused_events = 0;  // that name no group or authority
+  std::uint64_t refused_events = 0;  // that name no group, authority or recording
 
   const GroupControl& of(VehicleGroup group) const {
     return control[static_cast<std::size_t>(group)];
@@ -68,7 +68,9 @@ VehicleInputs autopilot_vehicle();
 
 // Puts a sample that arrived before `step` into its group if its source has the authority. An event
 // sets an authority. False if it changed nothing; the group or `refused_events` counts it then.
-bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step);
+// recorded: bit i: the scene has a file for group i; a vehicle has none.
+bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step,
+           std::uint64_t recorded = 0);
 bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step);
 
 }  // namespace neritic::testbed

@@ -62,17 +62,16 @@ SampleVerdict SampleInbox::check(const Sample& sample, bool finite, Source& sour
   if (header.stream >= streams_.size() || streams_[header.stream].kind != sample.kind() ||
       !enters(sample.kind()))
     return SampleVerdict::kNotOfStream;
-  // The number counts as come, whatever becomes of the sample.
-  const auto found =
-      source.tracks[header.stream].sequence.take(header.sequence, header.captured_ns);
+  const bool late = header.captured_ns < header.arrived_ns - source.max_age_ns ||
+                    header.captured_ns > header.arrived_ns + kMaxAhead_ns;
+  // The number counts as come, whatever becomes of the sample; its capture time only if it is good.
+  const auto found = source.tracks[header.stream].sequence.take(header.sequence, header.captured_ns,
+                                                                finite && !late);
   source.counts.lost += found.missing;
   if (found.was_missing) --source.counts.lost;
   if (found.verdict != SampleVerdict::kAccepted) return found.verdict;
   if (!finite) return SampleVerdict::kNotFinite;
-  if (header.captured_ns < header.arrived_ns - source.max_age_ns ||
-      header.captured_ns > header.arrived_ns + kMaxAhead_ns)
-    return SampleVerdict::kLate;
-  return SampleVerdict::kAccepted;
+  return late ? SampleVerdict::kLate : SampleVerdict::kAccepted;
 }
 
 void SampleInbox::store(const Sample& sample) {

@@ -128,18 +128,6 @@ struct ThrusterFault {
   static void fields(auto&& field, auto& self) { field("failed", self.failed); }
 };
 
-// An object that something outside moves.
-struct ObjectPose {
-  Pose world_from_object;
-  Vec3 velocity_m_s{0.0}, angular_rad_s{0.0};
-
-  static void fields(auto&& field, auto& self) {
-    field("world_from_object", self.world_from_object);
-    field("velocity_m_s", self.velocity_m_s);
-    field("angular_rad_s", self.angular_rad_s);
-  }
-};
-
 // Something that happens once.
 enum class EventKind : std::uint64_t {
   kSetAuthority,  // `group` is from now on under `authority`, a live one of `source`
@@ -236,38 +224,6 @@ struct ComputerReading {
     field("cns_percent", self.cns_percent);
     field("gas", self.gas);
     field("alarm", self.alarm);
-  }
-};
-
-// Texels lie row by row, the top row (of a sonar the nearest range) first, without gaps.
-enum class ImageFormat : std::uint32_t {
-  kColor,       // 4 bytes: red, green, blue, alpha, sRGB
-  kDepth,       // float: reversed Z with an infinite far plane
-  kSonarSums,   // uint32: sums of the plain cosine
-  kSonarPower,  // float: power after the receiver's gains
-};
-
-// The image of a camera or sonar. It stays on the device: `frame` says in which frame of the
-// sensors it was declared, `index` which of that frame's images it is. The host may read it once
-// the device's completion value reached `completion`, and as long as the frame is kept: the frame
-// pins the buffers of its images.
-struct ImageHandle {
-  std::uint64_t frame = 0, completion = 0;
-  std::uint32_t index = 0;
-  ImageFormat format = ImageFormat::kColor;
-  std::uint32_t width = 0, height = 0;  // pixels; of a sonar azimuth and range bins
-  std::uint32_t layers = 1;             // views
-  std::uint32_t texel_bytes = 4;
-
-  static void fields(auto&& field, auto& self) {
-    field("frame", self.frame);
-    field("completion", self.completion);
-    field("index", self.index);
-    field("format", self.format);
-    field("width", self.width);
-    field("height", self.height);
-    field("layers", self.layers);
-    field("texel_bytes", self.texel_bytes);
   }
 };
 

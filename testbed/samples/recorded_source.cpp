@@ -36,16 +36,24 @@ Status RecordedSource::open_all(SampleInbox& inbox) {
 Status RecordedSource::push(SampleInbox& inbox, const SampleLog::Entry& entry) {
   const SampleHeader& logged = entry.sample.header;
   Last& last = last_[logged.source * log_.streams.size() + logged.stream];
-  // A device that was restarted while it was recorded began to count anew.
-  if (last.any && (logged.sequence <= last.sequence || logged.captured_ns < last.captured_ns))
+  // A device that was restarted while it was recorded began to count anew. In a burst the inbox
+  // replaced samples that it had accepted: they left a gap.
+  if (last.any && (logged.sequence <= last.sequence || logged.captured_ns < last.captured_ns ||
+                   logged.sequence - last.sequence > SequenceTrack::kMostMissing))
     NERITIC_TRY_STATUS(open(inbox, logged.source));
   last = {true, logged.sequence, logged.captured_ns};
 
   Sample sample = entry.sample;
   sample.header.stream = streams_[logged.stream];
   sample.header.source = sources_[logged.source];
-  if (Event* event = std::get_if<Event>(&sample.payload); event && event->source < sources_.size())
+  if (Event* event = std::get_if<Event>(&sample.payload)) {
+    // A number that the log does not name may be another device's here.
+    if (event->source >= sources_.size())
+      return bad_input("{}: {} at step {}: an event of source {} found; accepted: of the log's {}",
+                       name_, log_.streams[logged.stream].name, entry.step, event->source,
+                       sources_.size());
     event->source = sources_[event->source];
+  }
   const SampleVerdict verdict = inbox.push(sample);
   if (verdict == SampleVerdict::kAccepted) return {};
   return bad_input("{}: {} at step {}: sample {} is {}; accepted: samples as an inbox takes them",

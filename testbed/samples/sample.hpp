@@ -22,8 +22,8 @@ struct SampleHeader {
   StreamId stream = 0;
   SourceId source = kSimulation;
   std::uint64_t sequence = 0;  // rises by one a sample of this source and stream
-  // Host clock. Captured: when it was measured, mapped from the sender's clock; arrived: when the
-  // inbox got it, 0 until then.
+  // The clock that drives the steps. Captured: when it was measured, mapped from the sender's
+  // clock. Arrived: when it reached this program; the source that pushes it sets both.
   TimeNs captured_ns = 0, arrived_ns = 0;
 
   static void fields(auto&& field, auto& self) {
@@ -38,10 +38,9 @@ struct SampleHeader {
 // The order is that of PayloadKind.
 using Payload =
     std::variant<BodyJoints, HandJoints, HandPoses, HeadPose, Gaze, JacketButtons, Breath, Heart,
-                 GasSupply, VehicleWrench, VehicleSetpoint, ThrusterFault, ObjectPose, Event,
-                 rov::ImuReading, rov::DvlReading, rov::PressureReading, CompassReading,
-                 rov::AltimeterReading, rov::UsblReading, CollisionReading, DiverMotion,
-                 ComputerReading, ImageHandle>;
+                 GasSupply, VehicleWrench, VehicleSetpoint, ThrusterFault, Event, rov::ImuReading,
+                 rov::DvlReading, rov::PressureReading, CompassReading, rov::AltimeterReading,
+                 rov::UsblReading, CollisionReading, DiverMotion, ComputerReading>;
 
 enum class PayloadKind : std::uint32_t {
   kBodyJoints,
@@ -56,7 +55,6 @@ enum class PayloadKind : std::uint32_t {
   kWrench,
   kSetpoint,
   kFault,
-  kObjectPose,
   kEvent,
   kImu,
   kDvl,
@@ -67,10 +65,9 @@ enum class PayloadKind : std::uint32_t {
   kCollision,
   kMotion,
   kComputer,
-  kImage,
 };
 inline constexpr std::size_t kPayloadKinds = std::variant_size_v<Payload>;
-static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kImage) + 1);
+static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kComputer) + 1);
 
 // The last part of a stream's name: "joints", "imu".
 std::string_view name_of(PayloadKind kind);

@@ -22,9 +22,10 @@ std::string_view name_of(SampleVerdict verdict) {
   return "";
 }
 
-SequenceTrack::Found SequenceTrack::take(std::uint64_t sequence, TimeNs captured_ns) {
+SequenceTrack::Found SequenceTrack::take(std::uint64_t sequence, TimeNs captured_ns, bool good) {
   constexpr std::uint64_t kWindow = 64;
   if (seen_ == 0) {
+    if (!good) return {};
     first_ = newest_ = sequence;
     seen_ = 1;
     captured_ns_ = captured_ns;
@@ -39,11 +40,23 @@ SequenceTrack::Found SequenceTrack::take(std::uint64_t sequence, TimeNs captured
     return {SampleVerdict::kOutOfOrder, 0, sequence > first_};
   }
   const std::uint64_t ahead = sequence - newest_;
-  seen_ = ahead < kWindow ? seen_ << ahead | 1 : 1;
+  std::uint64_t missing = ahead - 1;
+  if (missing > kMostMissing) {
+    if (sequence != after_jump_) {
+      after_jump_ = good ? sequence + 1 : 0;
+      return {SampleVerdict::kOutOfOrder, 0, false};
+    }
+    --missing;  // the number before this one came
+    seen_ = 3;
+  } else {
+    seen_ = ahead < kWindow ? seen_ << ahead | 1 : 1;
+  }
   newest_ = sequence;
+  after_jump_ = 0;
+  if (!good) return {SampleVerdict::kAccepted, missing, false};
   const bool in_order = captured_ns >= captured_ns_;
   if (in_order) captured_ns_ = captured_ns;
-  return {in_order ? SampleVerdict::kAccepted : SampleVerdict::kOutOfOrder, ahead - 1, false};
+  return {in_order ? SampleVerdict::kAccepted : SampleVerdict::kOutOfOrder, missing, false};
 }
 
 }  // namespace neritic::testbed

@@ -33,16 +33,6 @@ void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sen
   add(OwnerSort::kVehicle, static_cast<std::uint32_t>(first_[1].size()), name, kinds);
 }
 
-void StreamTable::add_object(const std::string& name) {
-  add(OwnerSort::kObject, static_cast<std::uint32_t>(first_[2].size()), name,
-      std::to_array({PayloadKind::kObjectPose}));
-}
-
-void StreamTable::add_sensor(const std::string& name) {
-  add(OwnerSort::kSensor, static_cast<std::uint32_t>(first_[3].size()), name,
-      std::to_array({PayloadKind::kImage}));
-}
-
 std::optional<StreamId> StreamTable::find(const std::string& name) const {
   const auto at = ids_.find(name);
   if (at == ids_.end()) return std::nullopt;

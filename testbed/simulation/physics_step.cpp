@@ -50,11 +50,25 @@ PhysicsState PhysicsWorld::start() const {
   return state;
 }
 
+namespace {
+
+// Bit i: the scene has a file for group i.
+std::uint64_t recorded_groups(const PhysicsHuman& human) {
+  const auto bit = [](DiverGroup group) {
+    return std::uint64_t{1} << static_cast<std::uint64_t>(group);
+  };
+  return (human.recording ? bit(DiverGroup::kBody) : 0) |
+         (human.buttons ? bit(DiverGroup::kButtons) : 0);
+}
+
+}  // namespace
+
 void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) const {
   const Stream& stream = streams_[sample.header.stream];
   if (stream.sort == OwnerSort::kDiver)
-    testbed::apply(inputs.humans()[stream.owner], sample, step);
-  else if (stream.sort == OwnerSort::kVehicle)
+    testbed::apply(inputs.humans()[stream.owner], sample, step,
+                   recorded_groups(humans_[stream.owner]));
+  else
     testbed::apply(inputs.vehicles()[stream.owner], sample, step);
 }
 
@@ -234,7 +248,9 @@ const rov::SensorReadings* PhysicsWorld::readings(const PhysicsState& state,
 }
 
 StateFormat PhysicsWorld::state_format() const {
-  return {scene_hash_, step_s_, start(), start_inputs()};
+  std::vector<std::string> names{"simulation"};
+  names.insert(names.end(), sources_.begin(), sources_.end());
+  return {scene_hash_, step_s_, start(), start_inputs(), std::move(names)};
 }
 
 PhysicsSimulation::Step PhysicsWorld::step_function(unsigned threads) const {

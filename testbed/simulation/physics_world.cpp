@@ -107,8 +107,6 @@ void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
         chosen_inputs(scene.objects[human.object].human->inputs, human.recording.has_value(),
                       human.buttons.has_value(), sources_);
   }
-  for (const scene::Camera& camera : scene.cameras) streams_.add_sensor(camera.name);
-  for (const scene::Sonar& sonar : scene.sonars) streams_.add_sensor(sonar.name);
 }
 
 Status PhysicsWorld::choose_step(const scene::Scene& scene) {

@@ -1,5 +1,6 @@
 #include "testbed/simulation/saved_state.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string_view>
@@ -12,11 +13,12 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie");
 
 constexpr std::string_view kMagic = "NRTCSAVE";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kLongestName = 255;
+constexpr std::uint32_t kVersion = 2;
 
 struct Header {
   char magic[8];
-  std::uint32_t version, zero;
+  std::uint32_t version, sources;
   std::uint64_t scene_hash, layout_hash, step;
   double time_s;
   std::uint64_t state_bytes, input_bytes;
@@ -52,7 +54,7 @@ void add_fields(Hash64& hash, const T& like) {
 
 Status check_header(const Header& header, const StateFormat& format, std::size_t size,
                     const std::string& name) {
-  if (header.version != kVersion || header.zero != 0)
+  if (header.version != kVersion)
     return bad_input("{}: a saved state of version {}; accepted: {}", name, header.version,
                      kVersion);
   if (header.scene_hash != format.scene_hash)
@@ -62,16 +64,45 @@ Status check_header(const Header& header, const StateFormat& format, std::size_t
   if (header.layout_hash != layout)
     return bad_input("{}: a state of another layout, whose hash is {:016x}; accepted: {:016x}",
                      name, header.layout_hash, layout);
-  const std::size_t expected = sizeof(Header) + format.state.bytes().size() +
-                               format.inputs.bytes().size() + sizeof(std::uint64_t);
   if (header.state_bytes != format.state.bytes().size() ||
       header.input_bytes != format.inputs.bytes().size())
     return bad_input("{}: {} bytes of state and {} of inputs; accepted: {} and {}", name,
                      header.state_bytes, header.input_bytes, format.state.bytes().size(),
                      format.inputs.bytes().size());
-  if (size != expected)
-    return bad_input("{}: {} bytes; accepted: {}, as its head says", name, size, expected);
+  const std::size_t least = sizeof(Header) + header.state_bytes + header.input_bytes +
+                            header.sources + sizeof(std::uint64_t);
+  if (size < least)
+    return bad_input("{}: {} bytes; accepted: {} or more, as its head says", name, size, least);
+  if (header.sources < format.sources.size() || header.sources > SampleInbox::kMaxSources)
+    return bad_input("{}: {} sources; accepted: {} to {}", name, header.sources,
+                     format.sources.size(), SampleInbox::kMaxSources);
   return {};
+}
+
+// The names that fill bytes.
+Result<std::vector<std::string>> parse_names(std::span<const std::byte> bytes, std::size_t count,
+                                             const std::vector<std::string>& first,
+                                             const std::string& name) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; at < bytes.size();) {
+    const auto length = std::to_integer<std::size_t>(bytes[at++]);
+    if (length > bytes.size() - at) return bad_input("{}: cut off in the name of a source", name);
+    std::string source(length, ' ');
+    std::memcpy(source.data(), bytes.data() + at, length);
+    at += length;
+    const bool printable = std::ranges::all_of(source, [](char c) { return c >= ' ' && c <= '~'; });
+    if (source.empty() || !printable || std::ranges::find(out, source) != out.end())
+      return bad_input("{}: source {}: found an empty, unprintable or repeated name; accepted: {}",
+                       name, out.size(), "printable ASCII, each name once");
+    if (out.size() < first.size() && source != first[out.size()])
+      return bad_input("{}: source {}: found '{}'; accepted: '{}', as in the scene", name,
+                       out.size(), source, first[out.size()]);
+    out.push_back(std::move(source));
+  }
+  if (out.size() != count)
+    return bad_input("{}: {} names of sources; accepted: {}, as its head says", name, out.size(),
+                     count);
+  return out;
 }
 
 }  // namespace
@@ -91,7 +122,7 @@ std::vector<std::byte> encode_state(const StateFormat& format, const SavedState&
                 "{} and {} bytes", saved.state.bytes().size(), saved.inputs.bytes().size());
   Header header{{},
                 kVersion,
-                0,
+                static_cast<std::uint32_t>(saved.sources.size()),
                 format.scene_hash,
                 format.layout_hash(),
                 saved.step,
@@ -103,6 +134,12 @@ std::vector<std::byte> encode_state(const StateFormat& format, const SavedState&
   append(out, header);
   append(out, saved.state);
   append(out, saved.inputs);
+  for (const std::string& source : saved.sources) {
+    NERITIC_CHECK(source.size() <= kLongestName, "a source's name of {} bytes", source.size());
+    out.push_back(static_cast<std::byte>(source.size()));
+    const auto bytes = std::as_bytes(std::span(source));
+    out.insert(out.end(), bytes.begin(), bytes.end());
+  }
   append(out, checksum(out));
   return out;
 }
@@ -122,7 +159,9 @@ Result<SavedState> parse_state(const StateFormat& format, std::span<const std::b
   if (sum != checksum(body))
     return bad_input("{}: damaged: its bytes have the hash {:016x}, its end says {:016x}", name,
                      checksum(body), sum);
-  SavedState out{header.step, format.state, format.inputs};
+  const std::size_t blocks = sizeof header + header.state_bytes + header.input_bytes;
+  SavedState out{header.step, format.state, format.inputs, {}};
+  NERITIC_TRY(out.sources, parse_names(body.subspan(blocks), header.sources, format.sources, name));
   fill(out.state, body.subspan(sizeof header, header.state_bytes));
   fill(out.inputs, body.subspan(sizeof header + header.state_bytes, header.input_bytes));
   const double time_s = sim::StepTime{header.step, format.step_s}.time_s();
@@ -142,6 +181,19 @@ Status write_state(const std::filesystem::path& path, const StateFormat& format,
 Result<SavedState> read_state(const std::filesystem::path& path, const StateFormat& format) {
   NERITIC_TRY(const auto bytes, read_file(path));
   return parse_state(format, bytes, path.string());
+}
+
+SavedState saved_state(const PhysicsSimulation& simulation) {
+  return {simulation.newest().step, simulation.newest().state, simulation.inputs(),
+          simulation.inbox().source_names()};
+}
+
+void restore_state(PhysicsSimulation& simulation, const SavedState& saved) {
+  for (SourceId id = kSimulation + 1; id < saved.sources.size(); ++id) {
+    const auto opened = simulation.inbox().open(saved.sources[id]);
+    NERITIC_CHECK(opened.ok() && *opened == id, "source {} is not '{}'", id, saved.sources[id]);
+  }
+  simulation.restore(saved.step, saved.state, saved.inputs);
 }
 
 }  // namespace neritic::testbed

@@ -1,10 +1,11 @@
 // A run's state as bytes, to go on later or in another process with the same hashes:
 //
 //   all little-endian, nothing aligned
-//   8 bytes "NRTCSAVE"   u32 version   u32 0
+//   8 bytes "NRTCSAVE"   u32 version   u32 sources
 //   u64 scene hash (scene_hash.hpp)    u64 layout hash: names, types and counts of all fields
 //   u64 step   f64 time_s   u64 bytes of state   u64 bytes of inputs
-//   the state's block, the inputs' block, u64 hash of all bytes before
+//   the state's block, the inputs' block, each source's name (u8 length, printable ASCII), u64 hash
+//   of all bytes before
 //
 // Pure functions; any thread.
 #pragma once
@@ -19,6 +20,8 @@ struct SavedState {
   std::uint64_t step = 0;
   PhysicsState state;
   PhysicsInputs inputs;  // that hold until a message changes them
+  // By SourceId, as the inbox knew them: state and inputs name sources by number.
+  std::vector<std::string> sources;
 };
 
 // What a saved state must fit: PhysicsWorld::state_format().
@@ -27,16 +30,24 @@ struct StateFormat {
   double step_s = 0.0;
   PhysicsState state;  // any content
   PhysicsInputs inputs;
+  std::vector<std::string> sources;  // "simulation", then those that the scene names
   std::uint64_t layout_hash() const;
 };
 
 std::vector<std::byte> encode_state(const StateFormat& format, const SavedState& saved);
-// Everything in what is returned is finite and fits the format. name stands in messages.
+// Everything in what is returned is finite and fits the format; the names begin with the format's,
+// and none comes twice. name stands in messages.
 Result<SavedState> parse_state(const StateFormat& format, std::span<const std::byte> bytes,
                                const std::string& name);
 
 Status write_state(const std::filesystem::path& path, const StateFormat& format,
                    const SavedState& saved);
 Result<SavedState> read_state(const std::filesystem::path& path, const StateFormat& format);
+
+// The state of a simulation of the world that the format is of, to save after a step.
+SavedState saved_state(const PhysicsSimulation& simulation);
+// Goes on from it in a simulation of such a world that no device was opened in. Opens the saved
+// sources, so that each name has its number again, whichever device comes first.
+void restore_state(PhysicsSimulation& simulation, const SavedState& saved);
 
 }  // namespace neritic::testbed

@@ -9,7 +9,8 @@
 namespace neritic::testbed {
 namespace {
 
-// Adds values member by member: padding has no meaning.
+// Adds values member by member: padding has no meaning. What may be any number of things begins
+// with their count, so that the end of one list is never read as the start of what follows.
 class SceneHash {
  public:
   explicit SceneHash(std::span<const std::uint64_t> vehicle_files)
@@ -22,6 +23,7 @@ class SceneHash {
     numbers(physics.rate_hz, physics.max_error_m, physics.water_kg_m3, physics.altitude_m);
     number(scene.current.has_value());
     if (scene.current) NERITIC_TRY_STATUS(add(*scene.current));
+    number(scene.objects.size());
     for (const scene::Object& object : scene.objects) NERITIC_TRY_STATUS(add(scene, object));
     return {};
   }
@@ -67,7 +69,9 @@ class SceneHash {
     vec(mount.pose.position_m), quat(mount.pose.rotation);
     number(mount.track.has_value());
     if (!mount.track) return;
+    number(mount.track->places.size());
     for (const auto& place : mount.track->places) numbers(place.time_s), vec(place.position_m);
+    number(mount.track->attitudes.size());
     for (const auto& at : mount.track->attitudes) numbers(at.time_s), quat(at.rotation);
   }
 
@@ -76,10 +80,15 @@ class SceneHash {
     auto& known = models_[{&model, {scale.x, scale.y, scale.z}}];
     if (!known) {
       SceneHash own({});
-      for (const Vec3& point : rest_points(model, scale)) own.vec(point);
-      for (const scene::Mesh& mesh : model.meshes)
+      const auto points = rest_points(model, scale);
+      own.number(points.size());
+      for (const Vec3& point : points) own.vec(point);
+      own.number(model.meshes.size());
+      for (const scene::Mesh& mesh : model.meshes) {
+        own.number(mesh.primitives.size());
         for (const scene::Primitive& p : mesh.primitives)
           own.hash_.add_span(std::span<const std::uint32_t>(p.indices));
+      }
       // A diver's joints are drawn by these; a vehicle's outline stands on them.
       for (const scene::Node& node : model.nodes) own.text(node.name), own.vec(node.translation_m);
       known = own.value();
@@ -96,6 +105,7 @@ class SceneHash {
     const bool touched = object.collision != scene::Collision::kNone || object.dynamics;
     if (object.model >= 0 && (touched || object.human)) {
       add(*scene.models[static_cast<std::size_t>(object.model)], object.scale);
+      number(object.copies.size());
       for (const Mat4& copy : object.copies) matrix(copy);
     }
     if (object.dynamics) add(*object.dynamics);
@@ -115,6 +125,7 @@ class SceneHash {
   }
 
   void add(const std::vector<scene::InputChoice>& inputs) {
+    number(inputs.size());
     for (const scene::InputChoice& choice : inputs) {
       text(choice.group), text(choice.from), text(choice.then);
       numbers(choice.hold_s.value_or(-1.0));
@@ -131,6 +142,7 @@ class SceneHash {
   void add(const scene::Mission& m) {
     number(static_cast<std::uint64_t>(m.kind));
     add(m.facing);
+    number(m.waypoints.size());
     for (const scene::MissionWaypoint& waypoint : m.waypoints) {
       vec(waypoint.position_m), numbers(waypoint.hold_s);
       add(waypoint.facing);
@@ -147,6 +159,7 @@ class SceneHash {
     add(human.inputs);
     number(human.swim.has_value());
     if (!human.swim) return {};
+    number(human.swim->waypoints_m.size());
     for (const Vec3& point : human.swim->waypoints_m) vec(point);
     numbers(human.swim->speed_m_s, human.swim->acceptance_m);
     number(human.swim->repeat);

@@ -8,6 +8,7 @@
 
 #include "tests/diver/deco_cases.hpp"
 #include "tests/sim/plain_inbox.hpp"
+#include "tests/sim/replay.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -361,8 +362,8 @@ TEST(DecoLive, ASimulationOfAComputerReplaysToTheSameBits) {
   }
   EXPECT_GT(simulation.newest().state.deepest_m, 39.0);
   EXPECT_EQ(simulation.newest().state.last.gas, 1u);
-  const sim::ReplayReport again =
-      sim::replay(simulation.log(), computer.start(), step, sim::test::apply_whole<DiveSample>);
+  const sim::ReplayReport again = sim::test::replay(simulation.log(), computer.start(), step,
+                                                    sim::test::apply_whole<DiveSample>);
   EXPECT_EQ(again.steps, 12000u);
   EXPECT_FALSE(again.first_difference.has_value());
 }

@@ -7,6 +7,7 @@
 
 #include "tests/diver/swims.hpp"
 #include "tests/sim/plain_inbox.hpp"
+#include "tests/sim/replay.hpp"
 #include "tests/support/cpu_time.hpp"
 #include "tests/support/support.hpp"
 
@@ -218,7 +219,7 @@ TEST(DiverDeterminism, AReplayOfItsInputsGivesTheSameHashes) {
     simulation.inbox().push(inputs);
     simulation.advance(4);
   }
-  EXPECT_FALSE(sim::replay(simulation.log(), start, pure, sim::test::apply_whole<HumanInputs>)
+  EXPECT_FALSE(sim::test::replay(simulation.log(), start, pure, sim::test::apply_whole<HumanInputs>)
                    .first_difference.has_value());
   EXPECT_EQ(simulation.refused_states(), 0u);
   EXPECT_GT(simulation.newest().state.root.position_ned_m.x, 1.0);
@@ -265,7 +266,7 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
   simulation.stop();
   stop = true;
   for (std::thread& thread : others) thread.join();
-  EXPECT_FALSE(sim::replay(simulation.log(), start, pure, sim::test::apply_whole<HumanInputs>)
+  EXPECT_FALSE(sim::test::replay(simulation.log(), start, pure, sim::test::apply_whole<HumanInputs>)
                    .first_difference.has_value());
   EXPECT_GT(simulation.log().entries.size(), 2u);
   EXPECT_EQ(simulation.newest().state.life.vitals.measured, kHeartMeasured);

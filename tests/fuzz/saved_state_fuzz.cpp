@@ -15,7 +15,8 @@ using namespace neritic;
 using namespace neritic::testbed;
 
 const StateFormat& format() {
-  static const StateFormat format{7, 1.0 / 240.0, PhysicsState(2, 1, 1, 1), PhysicsInputs(2, 1)};
+  static const StateFormat format{
+      7, 1.0 / 240.0, PhysicsState(2, 1, 1, 1), PhysicsInputs(2, 1), {"simulation"}};
   return format;
 }
 
@@ -39,7 +40,8 @@ void check(std::span<const std::byte> bytes) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   check(fuzz::as_bytes(data, size));
   if (size < 4) return 0;
-  std::vector<std::byte> bytes = encode_state(format(), {3, format().state, format().inputs});
+  std::vector<std::byte> bytes =
+      encode_state(format(), {3, format().state, format().inputs, {"simulation", "keyboard"}});
   std::uint32_t place = 0;
   std::memcpy(&place, data, 4);
   const std::size_t at = (place >> 1) % bytes.size();

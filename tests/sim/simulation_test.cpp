@@ -5,12 +5,14 @@
 #include <limits>
 #include <thread>
 
+#include "tests/sim/replay.hpp"
 #include "tests/sim/spring.hpp"
 
 namespace neritic::sim {
 namespace {
 
-using test::kNan, test::make_spring, test::Spring, test::SpringInputs, test::SpringState;
+using test::kNan, test::make_spring, test::replay, test::Spring, test::SpringInputs,
+    test::SpringState;
 
 TEST(Simulation, LockStepIsTheStepFunctionRepeated) {
   Spring spring = make_spring({.step_s = 0.01});
@@ -112,11 +114,11 @@ TEST(Simulation, AThreadUnderAShowerOfMessagesReplaysToTheSameHashes) {
       std::this_thread::yield();
     }
   });
-  std::uint64_t last = 0, backwards = 0, wrong_hashes = 0;
+  std::uint64_t last = 0, backwards = 0, wrong_hashes = 0, torn = 0;
   std::thread second([&, other = spring.reader()]() mutable {
     while (!done) {
       other.update();
-      other.at(clock.now(), test::blend_spring);
+      torn += other.newest().hash != state_hash(other.newest().step, other.newest().state);
     }
   });
   while (last < 20'000) {
@@ -131,6 +133,7 @@ TEST(Simulation, AThreadUnderAShowerOfMessagesReplaysToTheSameHashes) {
   spring.stop();
   EXPECT_EQ(backwards, 0u);
   EXPECT_EQ(wrong_hashes, 0u);
+  EXPECT_EQ(torn, 0u);
   EXPECT_EQ(spring.pace().steps, spring.newest().step);
   const ReplayReport report =
       replay(spring.log(), SpringState{}, test::spring_step, test::apply_whole<SpringInputs>);

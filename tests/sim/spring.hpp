@@ -40,12 +40,6 @@ inline SpringState spring_step(const SpringState& state, const SpringInputs& inp
   return next;
 }
 
-inline SpringState blend_spring(const SpringState& a, const SpringState& b, double share) {
-  SpringState out = b;
-  out.position_m = a.position_m + (b.position_m - a.position_m) * share;
-  return out;
-}
-
 using Spring = Simulation<SpringState, SpringInputs, PlainInbox<SpringInputs>>;
 
 template <class Function>

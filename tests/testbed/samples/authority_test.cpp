@@ -134,5 +134,27 @@ TEST(Authority, ProducersAtDifferentRatesEachKeepTheirNewestValue) {
   for (const GroupState& state : states) EXPECT_EQ(state.losses, 0u);
 }
 
+TEST(Authority, AnEventGivesAGroupToARecordingOnlyWhereTheSceneHasOne) {
+  const StreamTable table = diver_and_rov();
+  constexpr auto kRecording = static_cast<std::uint64_t>(Authority::kRecording);
+  constexpr auto kBody = static_cast<std::uint64_t>(DiverGroup::kBody);
+  constexpr auto kHead = static_cast<std::uint64_t>(DiverGroup::kHead);
+  DiverInputs diver = autopilot_diver();
+  const auto ask = [&](std::uint64_t group, std::uint64_t recorded) {
+    const Event event{EventKind::kSetAuthority, group, kRecording, 0};
+    return apply(diver, sample_of(table, "diver/event", 9, 0, event), 7, recorded);
+  };
+  EXPECT_FALSE(ask(kBody, 0));
+  EXPECT_FALSE(ask(kHead, std::uint64_t{1} << kBody));
+  EXPECT_EQ(diver.of(DiverGroup::kBody).authority, Authority::kAutopilot);
+  EXPECT_EQ(diver.refused_events, 2u);
+  EXPECT_TRUE(ask(kBody, std::uint64_t{1} << kBody));
+  EXPECT_EQ(diver.of(DiverGroup::kBody).authority, Authority::kRecording);
+  VehicleInputs vehicle = autopilot_vehicle();
+  const Event event{EventKind::kSetAuthority, 0, kRecording, 0};
+  EXPECT_FALSE(apply(vehicle, sample_of(table, "rov/event", 9, 0, event), 7));
+  EXPECT_EQ(vehicle.refused_events, 1u);
+}
+
 }  // namespace
 }  // namespace neritic::testbed

@@ -116,7 +116,7 @@ TEST(SampleInbox, ABurstOfAMillionKeepsWhatTheBoundAllowsAndTheNewestOfEachSourc
   EXPECT_EQ(inbox.counts(quiet).dropped, 0u);
   // The next burst finds room again.
   for (std::uint64_t i = 0; i < 10; ++i)
-    inbox.push(sample_of(table, "diver/buttons", noisy, kBurst + i, JacketButtons{i}));
+    inbox.push(sample_of(table, "diver/buttons", noisy, kBurst / 2 + i, JacketButtons{i}));
   EXPECT_EQ(inbox.drain().size(), 10u);
 }
 
@@ -157,6 +157,29 @@ TEST(SampleInbox, ThreadsThatPushBurstsLoseNothingUncounted) {
   EXPECT_EQ(accepted, 3 * kEach);
   EXPECT_EQ(drained + dropped, accepted);
   for (const char* stream : streams) EXPECT_EQ(newest[*table.find(stream)], kEach - 1) << stream;
+}
+
+TEST(SampleInbox, OneSampleOfAWrongTimeOrNumberDoesNotEndItsSource) {
+  const StreamTable table = diver_and_rov();
+  SampleInbox inbox(table, 64);
+  const SourceId suit = inbox.open("suit").value();
+  constexpr TimeNs kSecond = 1'000'000'000;
+  const auto push = [&](std::uint64_t sequence, TimeNs captured_ns, double bias = 0.0) {
+    Breath breath;
+    breath.bias_m3 = bias;
+    Sample sample = sample_of(table, "diver/breath", suit, sequence, breath, kSecond);
+    sample.header.captured_ns = captured_ns;
+    return inbox.push(sample);
+  };
+  EXPECT_EQ(push(~std::uint64_t{0}, 3600 * kSecond), kLate);  // nothing begins with it
+  EXPECT_EQ(push(1, kSecond), kAccepted);
+  EXPECT_EQ(push(2, 3600 * kSecond), kLate);
+  EXPECT_EQ(push(3, kSecond), kAccepted);
+  EXPECT_EQ(push(4, kSecond + 1, std::numeric_limits<double>::infinity()), kNotFinite);
+  EXPECT_EQ(push(5, kSecond), kAccepted);
+  EXPECT_EQ(push(1'000'000'000'000, kSecond), kOutOfOrder);
+  EXPECT_EQ(push(6, kSecond), kAccepted);
+  EXPECT_EQ(inbox.counts(suit).lost, 0u);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include "engine/core/files.hpp"
 #include "engine/sim/fields.hpp"
+#include "testbed/samples/authority.hpp"
+#include "testbed/samples/recorded_source.hpp"
 #include "tests/support/support.hpp"
 #include "tests/testbed/samples/streams.hpp"
 
@@ -145,8 +147,30 @@ TEST(SampleLog, AnOlderVersionsLogAndOtherStreamsAreRefusedInOneLine) {
   EXPECT_EQ(check_streams(log, other, "run.log").error().message,
             "run.log: samples of diver/joints found; accepted: of the scene's streams");
   StreamTable more = diver_and_rov();
-  more.add_object("crate");
+  more.add_diver("buddy");
   EXPECT_TRUE(check_streams(log, more, "run.log").ok());
+}
+
+TEST(SampleLog, AnEventOfASourceThatTheLogDoesNotNameIsRefusedInOneLine) {
+  const StreamTable table = diver_and_rov();
+  for (const SourceId named : {0u, 1u, 2u}) {
+    SampleLog log{1.0 / 240.0, 0, logged_streams(table), {"simulation", "suit"}, {}, {1, 2}};
+    const Event event{EventKind::kSetAuthority, 0, static_cast<std::uint64_t>(Authority::kLive),
+                      named};
+    log.entries.push_back({0, sample_of(table, "diver/event", 1, 0, event)});
+    SampleInbox inbox(table, 8);
+    ASSERT_TRUE(inbox.open("pad").ok());  // has the number 1 here
+    auto source = RecordedSource::create(log, table, "run.log");
+    const Status polled = source->poll(inbox, 0.0);
+    if (named == 2) {
+      EXPECT_EQ(polled.error().message,
+                "run.log: diver/event at step 0: an event of source 2 found; accepted: of the "
+                "log's 2");
+      continue;
+    }
+    ASSERT_TRUE(polled.ok()) << polled.error().message;
+    EXPECT_EQ(std::get<Event>(inbox.drain()[0].payload).source, named == 0 ? 0u : 2u);
+  }
 }
 
 }  // namespace

@@ -73,5 +73,17 @@ TEST(SequenceTrack, AShuffledStreamIsCountedAsASetOfNumbersSays) {
             *seen.rbegin() - numbers.front() + 1 - static_cast<std::uint64_t>(since_first));
 }
 
+TEST(SequenceTrack, ALargeGapCountsOnceTheNextNumberFollowsIt) {
+  SequenceTrack track;
+  track.take(1, 0);
+  EXPECT_EQ(track.take(2 + SequenceTrack::kMostMissing, 0).missing, SequenceTrack::kMostMissing);
+  EXPECT_EQ(track.take(50'000, 0).verdict, kOutOfOrder);
+  EXPECT_EQ(track.take(70'000, 0).verdict, kOutOfOrder);
+  const auto next = track.take(70'001, 0);
+  EXPECT_EQ(next.verdict, kAccepted);
+  EXPECT_EQ(next.missing, 70'000 - (3 + SequenceTrack::kMostMissing));
+  EXPECT_EQ(track.take(70'000, 0).verdict, kRepeated);
+}
+
 }  // namespace
 }  // namespace neritic::testbed

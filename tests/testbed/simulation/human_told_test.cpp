@@ -1,6 +1,7 @@
 // The report of a diver's dive: rows of gas and tissues, what endangered the diver, the way up.
 #include "testbed/record/dive_record.hpp"
-#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/devices.hpp"
+#include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -161,6 +162,15 @@ TEST(HumanDive, OnlyGasThatIsThereShortensTheWayUp) {
   const double there_l = 24.0 * (200.0 / diver::compressibility(diver::kAir, 200e5) -
                                  6.01325 / diver::compressibility(diver::kAir, 6.01325e5));
   EXPECT_NEAR(full.ascent.there_l, there_l, 1.0);
+}
+
+TEST(HumanTold, AnEventAsksForARecordingThatTheSceneLacksAndIsRefused) {
+  const TestDive dive = dive_of(hover_text("body = \"suit\""));
+  Device operator_(dive, "operator", "diver/event");
+  operator_.say(hand_over(static_cast<std::size_t>(DiverGroup::kBody), Authority::kRecording, 0));
+  dive.simulation->advance(1);
+  EXPECT_EQ(dive.simulation->inputs().humans()[0].refused_events, 1u);
+  EXPECT_EQ(group(dive, DiverGroup::kBody).authority, Authority::kLive);
 }
 
 }  // namespace

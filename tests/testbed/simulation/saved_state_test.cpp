@@ -3,7 +3,9 @@
 #include "testbed/simulation/saved_state.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <optional>
 
 #include "engine/core/random.hpp"
 #include "tests/testbed/simulation/senders.hpp"
@@ -34,10 +36,6 @@ mission = { waypoints = [ { position_m = [0, -10, -4] }, { position_m = [2, -8, 
                     "swim = { waypoints_m = [[-3, -10, -6], [0, -9, -6]] }\n");
 }
 
-SavedState saved_of(const PhysicsSimulation& simulation) {
-  return {simulation.newest().step, simulation.newest().state, simulation.inputs()};
-}
-
 // A pilot and a suit change the inputs now and then.
 void push_some(const TestDive& dive, std::uint64_t step) {
   if (step % 97 != 0) return;
@@ -47,9 +45,9 @@ void push_some(const TestDive& dive, std::uint64_t step) {
 }
 
 // 1 000 steps of a run, each restored from bytes in another simulation, of a world built anew, that
-// then takes three steps.
+// then takes 12 steps.
 TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
-  constexpr std::uint64_t kSteps = 2400, kPlaces = 1000, kOn = 3;
+  constexpr std::uint64_t kSteps = 2400, kPlaces = 1000, kOn = 12;
   TestDive run = dive_of(scene_text());
   const TestDive other = dive_of(scene_text());
   std::vector<std::uint64_t> places;
@@ -61,7 +59,7 @@ TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
   const StateFormat format = run.world->state_format();
   for (std::uint64_t step = 0; step < kSteps + kOn; ++step) {
     if (std::ranges::find(places, step) != places.end())
-      saved[step] = encode_state(format, saved_of(*run.simulation));
+      saved[step] = encode_state(format, saved_state(*run.simulation));
     push_some(run, step);
     run.simulation->advance(1);
   }
@@ -70,7 +68,7 @@ TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
   for (const std::uint64_t place : places) {
     const auto restored = parse_state(other_format, saved[place], "dive.state");
     ASSERT_TRUE(restored.ok()) << restored.error().message;
-    other.simulation->restore(restored->step, restored->state, restored->inputs);
+    restore_state(*other.simulation, *restored);
     ASSERT_EQ(other.simulation->newest().hash, hashes[place]) << place;
     for (std::uint64_t i = 0; i < kOn; ++i) {
       push_some(other, place + i);
@@ -79,6 +77,90 @@ TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
     }
   }
   EXPECT_GT(run.vehicle(0).contact.touched_steps + run.vehicle(1).contact.touched_steps, 0u);
+}
+
+// The second process is this program anew, which finds the folder named and dives no first dive.
+TEST(SavedState, GoesOnInAnotherProcessFromTwentyRandomPlaces) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  constexpr const char* kFolder = "NERITIC_TEST_STATES";
+  constexpr std::uint64_t kSteps = 1200, kPlaces = 20, kOn = 60;
+  const auto place = [](std::uint64_t i) { return random_bits({2, 7, 1}, i) % kSteps; };
+  std::optional<test::ScratchFolder> scratch;
+  if (std::getenv(kFolder) == nullptr) {
+    scratch.emplace();
+    TestDive run = dive_of(scene_text());
+    for (std::uint64_t step = 0; step < kSteps + kOn; ++step) {
+      for (std::uint64_t i = 0; i < kPlaces; ++i) {
+        if (place(i) != step) continue;
+        const auto path = scratch->path() / fmt::format("{}.state", i);
+        ASSERT_TRUE(
+            write_state(path, run.world->state_format(), saved_state(*run.simulation)).ok());
+      }
+      push_some(run, step);
+      run.simulation->advance(1);
+    }
+    std::string hashes;
+    for (std::uint64_t i = 0; i < kPlaces; ++i)
+      hashes += fmt::format("{:016x}\n", run.simulation->log().hashes[place(i) + kOn]);
+    ASSERT_TRUE(write_text(scratch->path() / "hashes", hashes).ok());
+    ASSERT_EQ(setenv(kFolder, scratch->path().c_str(), 1), 0);
+  }
+  const auto go_on = [&] {
+    const std::filesystem::path folder = std::getenv(kFolder);
+    const TestDive dive = dive_of(scene_text());
+    std::string hashes;
+    for (std::uint64_t i = 0; i < kPlaces; ++i) {
+      restore_state(
+          *dive.simulation,
+          read_state(folder / fmt::format("{}.state", i), dive.world->state_format()).value());
+      for (std::uint64_t step = place(i); step < place(i) + kOn; ++step) {
+        push_some(dive, step);
+        dive.simulation->advance(1);
+      }
+      hashes += fmt::format("{:016x}\n", dive.simulation->newest().hash);
+    }
+    std::exit(hashes == read_text(folder / "hashes").value() ? 0 : 1);
+  };
+  EXPECT_EXIT(go_on(), testing::ExitedWithCode(0), "");
+  unsetenv(kFolder);
+}
+
+// A keyboard flies while the state is saved. Where the run goes on, another device comes first.
+TEST(SavedState, EachSourceHasItsNumberAgainWhicheverDeviceComesFirst) {
+  TestDive run = dive_of(scene_text());
+  const SourceId keyboard = run.simulation->inbox().open("keyboard").value();
+  const StreamId events = run.world->streams().find("adrift/event").value();
+  constexpr auto kWrench = static_cast<std::size_t>(VehicleGroup::kWrench);
+  run.simulation->inbox().push(
+      {{events, keyboard, 0, 0, 0}, hand_over(kWrench, Authority::kLive, keyboard)});
+  run.simulation->advance(1);
+  const StateFormat format = run.world->state_format();
+  const auto bytes = encode_state(format, saved_state(*run.simulation));
+
+  const TestDive later = dive_of(scene_text());
+  restore_state(*later.simulation, parse_state(format, bytes, "dive.state").value());
+  EXPECT_NE(later.simulation->inbox().open("joystick").value(), keyboard);
+  EXPECT_EQ(later.simulation->inbox().open("keyboard").value(), keyboard);
+  EXPECT_EQ(later.simulation->inputs().vehicles()[1].control[kWrench].source, keyboard);
+}
+
+TEST(SavedState, NamesThatAreNotThoseOfTheSceneOrComeTwiceAreRefusedInOneLine) {
+  TestDive dive = dive_of(scene_text());
+  const StateFormat format = dive.world->state_format();
+  const auto refused = [&](std::vector<std::string> sources) {
+    SavedState saved = saved_state(*dive.simulation);
+    saved.sources = std::move(sources);
+    const auto parsed = parse_state(format, encode_state(format, saved), "dive.state");
+    return parsed.ok() ? std::string() : parsed.error().message;
+  };
+  EXPECT_EQ(refused({"simulation", "pad"}), "");
+  EXPECT_EQ(refused({}), "dive.state: 0 sources; accepted: 1 to 256");
+  EXPECT_EQ(refused({"pad"}),
+            "dive.state: source 0: found 'pad'; accepted: 'simulation', as in the scene");
+  for (const char* name : {"pad", "", "two\nlines"})
+    EXPECT_EQ(refused({"simulation", "pad", name}),
+              "dive.state: source 2: found an empty, unprintable or repeated name; accepted: "
+              "printable ASCII, each name once");
 }
 
 std::string refusal(const StateFormat& format, std::span<const std::byte> bytes) {
@@ -94,7 +176,7 @@ TEST(SavedState, OfAnotherSceneOrVersionOrDamagedIsRefusedInOneLine) {
   TestDive dive = dive_of(scene_text());
   dive.run(0.1);
   const StateFormat format = dive.world->state_format();
-  const auto bytes = encode_state(format, saved_of(*dive.simulation));
+  const auto bytes = encode_state(format, saved_state(*dive.simulation));
   ASSERT_EQ(refusal(format, bytes), "");
   const auto has = [](const std::string& message, const char* part) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
@@ -106,13 +188,13 @@ TEST(SavedState, OfAnotherSceneOrVersionOrDamagedIsRefusedInOneLine) {
   has(refusal(fewer, bytes), "a state of another layout, whose hash is ");
   auto version = bytes;
   version[8] = std::byte{9};
-  has(refusal(format, version), "a saved state of version 9; accepted: 1");
+  has(refusal(format, version), "a saved state of version 9; accepted: 2");
   has(refusal(format, {}), "not a saved state (its first bytes are not NRTCSAVE)");
   for (std::size_t size = 0; size < bytes.size(); size += size < 80 ? 1 : 37)
     ASSERT_NE(refusal(format, std::span(bytes).first(size)), "") << size;
   auto longer = bytes;
   longer.push_back(std::byte{0});
-  has(refusal(format, longer), "as its head says");
+  has(refusal(format, longer), "damaged: its bytes have the hash ");
   for (std::size_t at = 0; at < bytes.size(); at += at < 64 ? 1 : 11) {
     auto damaged = bytes;
     damaged[at] ^= std::byte{4};

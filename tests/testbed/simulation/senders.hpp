@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "diver/frames.hpp"
+#include "tests/sim/replay.hpp"
 #include "tests/testbed/simulation/dives.hpp"
 
 namespace neritic::testbed {
@@ -101,10 +102,10 @@ inline VehicleInputs held(const Piloting& piloting) {
 
 // Runs a dive's log again.
 inline sim::ReplayReport replayed(const PhysicsWorld& world, const PhysicsSimulation::Log& log) {
-  return sim::replay(log, world.start(), world.step_function(),
-                     [&](PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) {
-                       world.apply(inputs, sample, step);
-                     });
+  return sim::test::replay(log, world.start(), world.step_function(),
+                           [&](PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) {
+                             world.apply(inputs, sample, step);
+                           });
 }
 
 }  // namespace neritic::testbed
