@@ -1,5 +1,7 @@
 #include "testbed/samples/recorded_source.hpp"
 
+#include <algorithm>
+
 namespace neritic::testbed {
 namespace {
 
@@ -18,6 +20,11 @@ Result<RecordedSource> RecordedSource::create(SampleLog log, const StreamTable& 
     source.streams_.push_back(table.find(stream.name).value_or(0));  // 0: of no sample
   source.last_.resize(source.log_.sources.size() * source.log_.streams.size());
   return source;
+}
+
+bool RecordedSource::has_samples() const {
+  return std::ranges::any_of(
+      log_.entries, [](const SampleLog::Entry& entry) { return enters(entry.sample.kind()); });
 }
 
 Result<SourceId> RecordedSource::open(SampleInbox& inbox, SourceId logged) const {

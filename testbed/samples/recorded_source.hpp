@@ -20,6 +20,8 @@ class RecordedSource final : public SampleSource {
   Status poll(SampleInbox& inbox, double scene_time_s) override;
   // All samples are pushed.
   bool done() const { return next_ == log_.entries.size(); }
+  // A sample of the log is pushed; else the scene runs as without it.
+  bool has_samples() const;
   const SampleLog& log() const { return log_; }
 
  private:

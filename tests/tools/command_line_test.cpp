@@ -41,6 +41,8 @@ TEST(CommandLine, AFlagSaysWhatItWantsAndAMisspeltOneTheNearest) {
               HasSubstr("--depth: found 'deep'; accepted: a number"));
   EXPECT_EQ(said({"plan", "--dept", "30", "--time", "20"}),
             "--dept: no such flag; the nearest is --depth (see neritic plan --help)");
+  EXPECT_THAT(said({"render", "a.toml", "--out", "o", "--offset", "1", "2"}),
+              HasSubstr("--offset: found 2 of 3 values; accepted: moves the whole world by x y z"));
   EXPECT_THAT(said({"dive", "a.toml", "--headles"}), HasSubstr("nearest is --headless"));
   EXPECT_THAT(said({"dive", "a.toml", "--verbos"}), HasSubstr("nearest is --verbose"));
 }
@@ -98,6 +100,7 @@ TEST(CommandLine, HelpSaysWhatRenderWritesAndHowAPlanIsAskedFor) {
   EXPECT_THAT(said({"render", "--help"}), HasSubstr("OUT/frame_0000"));
   EXPECT_THAT(said({"plan", "--help"}), HasSubstr("neritic plan --depth 30 --time 25"));
   EXPECT_THAT(said({"plan", "--help"}), HasSubstr("--table c"));
+  EXPECT_THAT(said({"check", "--help"}), HasSubstr("tests/diver/data/deco_vectors.json"));
 }
 
 TEST(CommandLine, AWrongSubcommandListsThem) {

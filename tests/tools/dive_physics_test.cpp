@@ -172,6 +172,10 @@ TEST_F(DivePhysics, SavedInOneProcessItGoesOnInAnotherWithTheSameHash) {
   const Outcome on = dive("--headless --seconds 2 --restore '" + file + "'");
   EXPECT_NE(half, whole);
   EXPECT_EQ(hash_of(on), whole);
+  EXPECT_NE(on.out.find("4 s in 960 steps (2 s of them restored), "), std::string::npos) << on.out;
+  const auto summary =
+      parse_json(dive("--headless --json --seconds 2 --restore '" + file + "'").out).value();
+  EXPECT_NEAR(summary["speed"].get<double>() * summary["wall_s"].get<double>(), 2.0, 1e-6);
   const Outcome both =
       dive("--headless --restore '" + file + "' --record '" + (scratch_ / "x.log").string() + "'");
   EXPECT_EQ(both.status, 2);
@@ -185,6 +189,23 @@ TEST_F(DivePhysics, SavedInOneProcessItGoesOnInAnotherWithTheSameHash) {
   EXPECT_EQ(other.status, 2);
   EXPECT_NE(other.err.find("a state of another scene"), std::string::npos) << other.err;
   EXPECT_EQ(std::ranges::count(other.err, '\n'), 1) << other.err;
+}
+
+TEST_F(DivePhysics, QuietlyItPrintsItsJsonAlone) {
+  const std::string recording = file("a.log");
+  const Outcome quiet = dive("-q --headless --seconds 1 --record " + recording);
+  EXPECT_EQ(quiet.status, 0) << quiet.err;
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  EXPECT_EQ(dive("-q --headless --replay " + recording).out, "");
+  EXPECT_TRUE(parse_json(dive("-q --headless --seconds 1 --json").out).ok());
+}
+
+TEST_F(DivePhysics, ARecordingWithoutLiveSamplesHasNothingToPlay) {
+  ASSERT_EQ(dive("--headless --seconds 1 --record " + file("a.log")).status, 0);
+  const Outcome played = dive("--headless --seconds 1 --play " + file("a.log"));
+  EXPECT_EQ(played.status, 0);
+  EXPECT_NE(played.err.find("nothing to play: no live sample was recorded\n"), std::string::npos)
+      << played.err;
 }
 
 TEST_F(DivePhysics, FliesWithoutADeviceAndSaysWhatCameOfIt) {

@@ -55,6 +55,40 @@ TEST_F(Outputs, OthersAreRefusedWithTheFlagAndTheReason) {
   EXPECT_FALSE(check_output_file("--log", "/proc/neritic.csv").ok());
 }
 
+TEST_F(Outputs, TwoFlagsWithOneFileAreRefusedAndDevicesAreNot) {
+  ASSERT_TRUE(make_folder(folder_ / "sub").ok());
+  const auto checked = [](const std::string& one, const std::string& other) {
+    const OutputFile files[] = {{"--log", one}, {"--plot", ""}, {"--save", other}};
+    return check_outputs_differ(files);
+  };
+  EXPECT_TRUE(checked(at("new"), at("file")).ok());
+  EXPECT_TRUE(checked("", "").ok());
+  EXPECT_TRUE(checked("/dev/null", "/dev/null").ok());
+  for (const auto& [one, other] :
+       {std::pair("new", "new"), {"new", "sub/../new"}, {"file", "link"}}) {
+    const Status status = checked(at(one), at(other));
+    ASSERT_FALSE(status.ok()) << one << other;
+    EXPECT_EQ(exit_status(status.error().code), 2);
+    EXPECT_EQ(status.error().message,
+              "--log, --save: found one file, " + at(other) + "; accepted: a file for each flag");
+  }
+}
+
+// The scene is not there: what is refused is refused before anything is read.
+TEST_F(Outputs, NoCommandWritesTwoResultsToOneFile) {
+  const std::string file = at("a.png"), data = at("a.plot.json"), out = at("out");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"dive", "absent.toml", "--log", file, "--save", file},
+        {"dive", "absent.toml", "--record", file, "--plot", file},
+        {"dive", "absent.toml", "--save", data, "--plot", file},
+        {"dive", "absent.toml", "--screenshot", file, "--plot", file},
+        {"render", "absent.toml", "--out", out, "--log", file, "--dump-graph", file}}) {
+    const Result<std::string> ran = parse_command_line(words).value().run();
+    ASSERT_FALSE(ran.ok());
+    EXPECT_THAT(ran.error().message, HasSubstr("found one file, ")) << words[0] << words[2];
+  }
+}
+
 // Each command looks at its outputs before anything else: before its inputs, which are not there.
 TEST_F(Outputs, EveryCommandLooksBeforeItWorks) {
   const std::string no = at("file/below"), file = at("none/a.png");

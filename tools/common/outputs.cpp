@@ -7,6 +7,8 @@
 #include <string>
 #include <system_error>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::tools {
 namespace fs = std::filesystem;
 namespace {
@@ -22,6 +24,20 @@ std::string why_not_in(const fs::path& folder) {
   if (::mkdtemp(name.data()) == nullptr) return std::generic_category().message(errno);
   ::rmdir(name.c_str());
   return {};
+}
+
+bool keeps_one_result(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  return !fs::exists(status) || fs::is_regular_file(status);
+}
+
+// By their names where they are yet to be made.
+bool same_file(const fs::path& one, const fs::path& other) {
+  std::error_code error;
+  if (fs::equivalent(one, other, error) && !error) return true;
+  return fs::weakly_canonical(fs::absolute(one, error), error) ==
+         fs::weakly_canonical(fs::absolute(other, error), error);
 }
 
 }  // namespace
@@ -59,6 +75,18 @@ Status check_output_file(std::string_view flag, const fs::path& file) {
     return refused(flag, file, "no folder " + behind.parent_path().string());
   if (const std::string reason = why_not_in(behind.parent_path()); !reason.empty())
     return refused(flag, file, reason);
+  return {};
+}
+
+Status check_outputs_differ(std::span<const OutputFile> files) {
+  for (std::size_t i = 0; i < files.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const OutputFile &one = files[j], &other = files[i];
+      if (one.file.empty() || other.file.empty() || !keeps_one_result(one.file)) continue;
+      if (same_file(one.file, other.file))
+        return refusal(fmt::format("{}, {}", one.flag, other.flag),
+                       fmt::format("one file, {}", other.file.string()), "a file for each flag");
+    }
   return {};
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 #include "engine/core/result.hpp"
@@ -17,5 +18,14 @@ Status check_output_folder(std::string_view flag, const std::filesystem::path& f
 // A file, which write_file() writes: its folder must be there. Devices and pipes are written to as
 // they stand.
 Status check_output_file(std::string_view flag, const std::filesystem::path& file);
+
+// A file that a flag asks for. An empty path: none is asked for.
+struct OutputFile {
+  std::string_view flag;
+  std::filesystem::path file;
+};
+// kBadInput if two flags name one file: the last that is written would replace the others. Devices
+// and pipes may be named twice.
+Status check_outputs_differ(std::span<const OutputFile> files);
 
 }  // namespace neritic::tools

@@ -110,8 +110,10 @@ void add_render(CLI::App& app, Run& run) {
                       "its rows a second, else one a control period");
   command->add_option("--seed", flags->seed,
                       "of the sensors' noise, instead of the scene's; what is scattered stays");
-  command->add_flag("--sheet", flags->sheet,
-                    "also a picture of every image (OUT/sheet), and all on one (OUT/sheet.png)");
+  command->add_flag(
+      "--sheet", flags->sheet,
+      "also pictures of what each sensor sees and of the first camera's depth, normals, "
+      "labels and motion (OUT/sheet), and all on one (OUT/sheet.png)");
   command->add_flag("--validate", flags->validation,
                     "run with Vulkan validation; any message is a failure");
   command->callback([flags, &run] { run = [flags] { return run_render(*flags); }; });
@@ -224,7 +226,7 @@ void add_sonar(CLI::App& app, Run& run) {
   });
 }
 
-void add_dive(CLI::App& app, Run& run) {
+void add_dive(CLI::App& app, CommandLine& line) {
   auto flags = std::make_shared<DiveFlags>();
   CLI::App* command = app.add_subcommand(
       "dive",
@@ -264,7 +266,10 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_flag("--json", flags->json, "the dive's summary as JSON");
   command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
   command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
-  command->add_option("--seconds", flags->seconds, "stop after so many simulated seconds");
+  command->add_option(
+      "--seconds", flags->seconds,
+      "stop after so many simulated seconds (default with --headless: 60 of physics "
+      "alone, 5 of frames)");
   command->add_option("--frames", flags->frames, "stop after so many frames")
       ->check(between(1, 1000000));
   command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png")
@@ -278,7 +283,11 @@ void add_dive(CLI::App& app, Run& run) {
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_flag("--validate", flags->validation,
                     "run with Vulkan validation; any message is a failure");
-  command->callback([flags, &run] { run = [flags] { return nothing_to_say(run_dive(*flags)); }; });
+  // The flags of all commands are read by then.
+  command->callback([flags, &line] {
+    flags->quiet = line.quiet;
+    line.run = [flags] { return nothing_to_say(run_dive(*flags)); };
+  });
 }
 
 void add_tradeoff(CLI::App& app, Run& run) {
@@ -318,6 +327,10 @@ void add_check(CLI::App& app, Run& run) {
                    "rov (trajectories of the vehicle), control or deco (dive plans)")
       ->required();
   command->add_option("file", flags->file, "file of cases (.json)")->required();
+  command->footer(
+      "Example: neritic check rov tests/rov/data/trajectories.json\n"
+      "Example: neritic check control tests/rov/data/control.json\n"
+      "Example: neritic check deco tests/diver/data/deco_vectors.json");
   command->add_option("--integrator", flags->integrator, "rov, control: guarded, rk4 or semi_euler")
       ->capture_default_str();
   command->add_option("--hz", flags->hz, "rov, control: steps per second")->capture_default_str();
@@ -476,6 +489,17 @@ std::string what_was_wrong(const CLI::App& app, const CLI::App& command,
                      fmt::format("a number: {}", option->get_description()))
           .message;
   }
+  // "--offset: At least 3 required but received 2"
+  const std::size_t least = said.find(": At least "), got = said.find(" required but received ");
+  if (least != said.npos && got != said.npos) {
+    const std::string name = said.substr(0, least);
+    if (const CLI::Option* option = command.get_option_no_throw(name))
+      return refusal(name,
+                     fmt::format("{} of {} values", said.substr(got + 23),
+                                 said.substr(least + 11, got - least - 11)),
+                     option->get_description())
+          .message;
+  }
   if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return said;
   std::vector<std::string> names;
   for (const CLI::App* of : {&command, &app})
@@ -501,10 +525,10 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   app.set_version_flag("--version", "neritic " NERITIC_VERSION);
   app.add_flag("-v,--verbose", line.verbose,
                "also prints on stderr what is loaded, chosen and compiled");
-  app.add_flag("-q,--quiet", line.quiet, "prints errors only");
+  app.add_flag("-q,--quiet", line.quiet, "no notes, and no summary of a dive but --json");
   add_render(app, line.run);
   add_sonar(app, line.run);
-  add_dive(app, line.run);
+  add_dive(app, line);
   add_tradeoff(app, line.run);
   add_check(app, line.run);
   add_plan(app, line.run);

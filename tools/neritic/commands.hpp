@@ -68,6 +68,7 @@ struct DiveFlags {
   bool realtime = false, json = false;
   std::optional<std::uint64_t> seed;  // instead of the scene's
   std::optional<std::uint32_t> runs;  // with the seeds from there on
+  bool quiet = false;                 // no summary but --json's
 };
 Status run_dive(const DiveFlags& flags);
 

@@ -9,7 +9,6 @@
 #include "testbed/loop/dive_view.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/sensors/validation.hpp"
-#include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/dive_physics.hpp"
 #include "tools/neritic/dive_told.hpp"
@@ -101,11 +100,11 @@ Status make_display(const DiveFlags& flags, const scene::Camera& camera, Screen&
 // On standard output. A window says nothing but what --json asks for.
 void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera& camera,
           const DiveView& view, const Loop& loop, const LivePhysics* physics,
-          const DiveRecorder* recorder) {
+          const DiveRecorder* recorder, double start_s) {
   if (flags.json)
     return print_summary(flags, physics->world(), physics->simulation(), *recorder,
-                         {loop.wall_s(), physics->counts().dropped});
-  if (!flags.headless) return;
+                         {loop.wall_s(), physics->counts().dropped, start_s});
+  if (!flags.headless || flags.quiet) return;
   fmt::print("{}, {} x {}\n{}", device.info().name, camera.width, camera.height,
              view.times().summary(loop.frames(), loop.wall_s()));
   if (physics)  // in the words of a dive without pictures, to be compared with it
@@ -169,9 +168,9 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
                       .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
   // Also of a run that failed: what it did until then.
-  if (replay) replay->tell();
+  if (replay && !flags.quiet) replay->tell();
   tell(flags, *screen.device, camera, *view, loop, physics.get(),
-       files ? &files->recorder() : nullptr);
+       files ? &files->recorder() : nullptr, start_s);
   NERITIC_TRY_STATUS(status);
   if (loop.interrupted())
     return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s; all until then is written",
@@ -188,8 +187,7 @@ Status run_dive(const DiveFlags& flags) {
     return refusal("--fast", "a run in a window", "with --headless (a window follows its screen)");
   if (flags.panels && !flags.headless)
     return refusal("--panels", "a run in a window", "with --headless (a window has them; F2)");
-  NERITIC_TRY_STATUS(check_step_files(flags.files));
-  NERITIC_TRY_STATUS(check_output_file("--screenshot", flags.screenshot));
+  NERITIC_TRY_STATUS(check_step_files(flags.files, {"--screenshot", flags.screenshot}));
   const Interrupt interrupt;
   NERITIC_TRY(scene::Scene scene, load(flags));
   for (const std::string& note : scene.notes) log_warn("{}", note);

@@ -125,6 +125,8 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
   if (!flags.play.empty()) {
     NERITIC_TRY(SampleLog log, read_sample_log(flags.play));
     NERITIC_TRY(played, RecordedSource::create(std::move(log), world.streams(), flags.play));
+    if (!played->has_samples())
+      log_warn("{}: nothing to play: no live sample was recorded", flags.play);
     sources = {&*played};
   }
   if (!flags.replay.empty()) {
@@ -144,9 +146,9 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
                 .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
   // Also of a run that failed: what it did until then.
-  if (replay) replay->tell();
+  if (replay && !flags.quiet) replay->tell();
   print_summary(flags, world, physics->simulation(), files.recorder(),
-                {loop.wall_s(), loop.dropped()});
+                {loop.wall_s(), loop.dropped(), start_s});
   NERITIC_TRY_STATUS(status);
   if (loop.interrupted())
     return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s of {:g}{}",

@@ -305,7 +305,7 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                    const PhysicsSimulation& simulation, const DiveRecorder& recorder,
                    const Pace& pace) {
   const auto& newest = simulation.newest();
-  const double speed = newest.time_s / std::max(pace.wall_s, 1e-9);
+  const double speed = (newest.time_s - pace.start_s) / std::max(pace.wall_s, 1e-9);
   const std::string hash = fmt::format("{:016x}", newest.hash);
   const auto sources = simulation.inbox().source_names();
   if (flags.json) {
@@ -339,6 +339,7 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
     fmt::print("{}\n", json_text(json));
     return;
   }
+  if (flags.quiet) return;
   for (std::size_t i = 0; i < world.vehicles().size(); ++i)
     fmt::print(
         "{}", vehicle_line(world.vehicles()[i], newest.state.vehicles()[i], recorder.figures()[i]));
@@ -354,8 +355,10 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                group_lines<DiverGroup>(world.humans()[i].name, newest.state.humans()[i].groups,
                                        simulation.inputs().humans()[i].refused_events, sources));
   fmt::print("{}", source_lines(simulation.inbox()));
-  fmt::print("{:g} s in {} steps, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",
-             newest.time_s, newest.step, speed, pace.dropped, hash);
+  const std::string restored =
+      pace.start_s > 0.0 ? fmt::format(" ({:g} s of them restored)", pace.start_s) : "";
+  fmt::print("{:g} s in {} steps{}, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",
+             newest.time_s, newest.step, restored, speed, pace.dropped, hash);
 }
 
 }  // namespace neritic::tools

@@ -14,9 +14,10 @@ namespace neritic::tools {
 struct Pace {
   double wall_s = 0.0;
   std::uint64_t dropped = 0;
+  double start_s = 0.0;  // of a restored state; 0: a new run
 };
 
-// By --json as JSON.
+// By --json as JSON; with --quiet that alone.
 void print_summary(const DiveFlags& flags, const testbed::PhysicsWorld& world,
                    const testbed::PhysicsSimulation& simulation,
                    const testbed::DiveRecorder& recorder, const Pace& pace);

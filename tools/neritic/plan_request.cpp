@@ -37,13 +37,19 @@ Result<std::pair<double, double>> percent_pair(const std::string& flag, const st
   return std::pair{first / 100.0, second / 100.0};
 }
 
+Result<diver::GasMix> mix_of(const std::string& flag, const std::string& text) {
+  const auto mix = diver::parse_mix(text);
+  if (!mix.ok()) return Error{mix.error().code, fmt::format("--{}: {}", flag, mix.error().message)};
+  return mix;
+}
+
 // "18/45", "ean50@21".
-Result<PlanGas> gas_of(const std::string& text, GasRole role) {
+Result<PlanGas> gas_of(const std::string& flag, const std::string& text, GasRole role) {
   const std::size_t at = text.find('@');
-  NERITIC_TRY(const diver::GasMix mix, diver::parse_mix(text.substr(0, at)));
+  NERITIC_TRY(const diver::GasMix mix, mix_of(flag, text.substr(0, at)));
   PlanGas gas{mix, 0.0, role};
   if (at != text.npos) {
-    NERITIC_TRY(gas.switch_depth_m, plan_number("gas", text.substr(at + 1)));
+    NERITIC_TRY(gas.switch_depth_m, plan_number(flag, text.substr(at + 1)));
   } else if (role == GasRole::kDeco) {
     gas.switch_depth_m = diver::usual_switch_depth_m(mix);
   }
@@ -53,12 +59,13 @@ Result<PlanGas> gas_of(const std::string& text, GasRole role) {
 Result<std::vector<PlanGas>> gases_of(const PlanFlags& flags) {
   std::vector<PlanGas> gases;
   for (const std::string& text : flags.gases) {
-    NERITIC_TRY(const PlanGas gas, gas_of(text, gases.empty() ? GasRole::kBottom : GasRole::kDeco));
+    NERITIC_TRY(const PlanGas gas,
+                gas_of("gas", text, gases.empty() ? GasRole::kBottom : GasRole::kDeco));
     gases.push_back(gas);
   }
   if (gases.empty()) gases.emplace_back();
   for (const std::string& text : flags.travel) {
-    NERITIC_TRY(const PlanGas gas, gas_of(text, GasRole::kTravel));
+    NERITIC_TRY(const PlanGas gas, gas_of("travel", text, GasRole::kTravel));
     gases.push_back(gas);
   }
   return gases;
@@ -110,7 +117,7 @@ Result<diver::PlanTank> tank_of(const std::string& text, const DivePlanRequest& 
   const std::size_t equals = text.find('=');
   if (equals == text.npos)
     return refusal("--tank", fmt::format("'{}'", text), "GAS=LITRES,BAR, such as 18/45=24,232");
-  NERITIC_TRY(const diver::GasMix mix, diver::parse_mix(text.substr(0, equals)));
+  NERITIC_TRY(const diver::GasMix mix, mix_of("tank", text.substr(0, equals)));
   NERITIC_TRY(const auto sizes, parse_numbers("tank", text.substr(equals + 1), 2, 2));
   for (std::size_t i = 0; i < request.gases.size(); ++i)
     if (request.gases[i].mix == mix) return diver::PlanTank{i, sizes[0], sizes[1]};
@@ -138,7 +145,8 @@ Result<diver::EarlierDive> earlier_dive(const std::string& text, const DivePlanR
   earlier.dive.gases = {PlanGas{}};
   std::string numbers = text;
   if (std::ranges::count(text, ',') == 3) {
-    NERITIC_TRY(const PlanGas gas, gas_of(text.substr(text.rfind(',') + 1), GasRole::kBottom));
+    NERITIC_TRY(const PlanGas gas,
+                gas_of("after", text.substr(text.rfind(',') + 1), GasRole::kBottom));
     earlier.dive.gases = {gas};
     numbers = text.substr(0, text.rfind(','));
   }
@@ -173,6 +181,9 @@ Result<DivePlanRequest> plan_request(const PlanFlags& flags) {
                    "depth (m) and time at the bottom (min, descent included), such as --depth 30 "
                    "--time 25; or --log FILE of a recorded dive");
   }
+  for (const auto& [flag, value] :
+       {std::pair("--depth", *flags.depth_m), {"--time", *flags.time_min}})
+    if (!std::isfinite(value)) return refusal(flag, fmt::format("{}", value), "a number");
   const PlanGas& bottom = request.gases[0];
   if (flags.travel.empty() && bottom.switch_depth_m > 0.0)
     return refusal("--gas",

@@ -216,9 +216,8 @@ Result<std::string> run_render(const RenderFlags& flags) {
     return refusal("--time", fmt::format("{} s", flags.time_s),
                    fmt::format("{:g} to {:g} s", -kLatestTime_s, kLatestTime_s));
   NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
-  NERITIC_TRY_STATUS(check_step_files(flags.files));
-  if (flags.dump_graph != "-")
-    NERITIC_TRY_STATUS(check_output_file("--dump-graph", flags.dump_graph));
+  const std::string graph_file = flags.dump_graph != "-" ? flags.dump_graph : "";
+  NERITIC_TRY_STATUS(check_step_files(flags.files, {"--dump-graph", graph_file}));
   const TimeNs start = now_ns();
   const Interrupt interrupt;
   NERITIC_TRY(scene::Scene scene, load(flags));

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/refusal.hpp"
-#include "tools/common/outputs.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/neritic/dive_picture.hpp"
 
@@ -49,15 +48,19 @@ Error flag_without_physics(const std::string& flag, const std::string& scene) {
                  "a scene where a vehicle has dynamics or a diver swims");
 }
 
-Status check_step_files(const StepFileFlags& flags) {
+Status check_step_files(const StepFileFlags& flags, const OutputFile& other) {
   const double rate_hz = flags.log_rate_hz.value_or(0.0);
   if (!(rate_hz >= 0.0 && rate_hz <= kMostRows_hz))
     return refusal("--log-rate", fmt::format("{}", rate_hz),
                    fmt::format("0 to {:g}", kMostRows_hz));
-  NERITIC_TRY_STATUS(check_output_file("--log", flags.log));
-  NERITIC_TRY_STATUS(check_output_file("--plot", flags.plot));
-  NERITIC_TRY_STATUS(check_output_file("--record", flags.record));
-  return check_output_file("--save", flags.save);
+  std::vector<OutputFile> files{{"--log", flags.log},
+                                {"--plot", flags.plot},
+                                {"--record", flags.record},
+                                {"--save", flags.save},
+                                other};
+  for (const OutputFile& one : files) NERITIC_TRY_STATUS(check_output_file(one.flag, one.file));
+  if (!flags.plot.empty()) files.push_back({"--plot", picture_data_path(flags.plot)});
+  return check_outputs_differ(files);
 }
 
 StepFiles::StepFiles(const StepFileFlags& flags, const std::string& title,

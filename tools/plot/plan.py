@@ -4,11 +4,36 @@ switches large; what is left of each gas beneath; the tissues at the moments tha
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from style import BLUE, GREY, INK, RED, area, color, figure, gaps, heading, legend, notes, numbers, title
 
 GOLD = "#e69f00"  # helium
 ALARMS = ((1, "rises fast", "#ee6a5a"), (2, "rises dangerously fast", RED))
+
+
+def label_stops(ax, stops):
+    """Each stop's words at the right edge, at the stop's own depth, at the end of a line from the stop: beside
+    the stop they would stand under the next one. Returns the boxes of the words in pixels."""
+    if not stops:
+        return []
+    minutes, leave = {}, {}
+    for stop in stops:
+        minutes.setdefault(stop["depth_m"], []).append(f"{stop['minutes']:.3g}")
+        leave[stop["depth_m"]] = stop["leave_min"]
+    end, depths = ax.get_xlim()[1], sorted(minutes)
+    apart = min(np.diff(depths), default=np.inf)
+    pixels = abs(ax.transData.transform((0, apart))[1] - ax.transData.transform((0, 0))[1]) if len(depths) > 1 else 20
+    taken = []
+    for depth in depths:
+        words = ax.text(end, depth, f"{depth:g} m  {' + '.join(minutes[depth])} min", ha="right", va="center", zorder=20,
+                        size=float(np.clip(0.6 * pixels, 5, 8.5)))
+        box = words.get_window_extent(ax.figure.canvas.get_renderer())
+        taken.append((box.x0, box.y0, box.x1, box.y1))
+        left = ax.transData.inverted().transform((box.x0 - 4, box.y0))[0]
+        if left > leave[depth]:
+            ax.plot([leave[depth], left], [depth, depth], color=GREY, lw=0.7, ls=(0, (1, 2)), zorder=1)
+    return taken
 
 
 def draw_profile(ax, data, end):
@@ -17,6 +42,7 @@ def draw_profile(ax, data, end):
     deepest = max(3.0, np.nanmax(depth), np.nanmax(ceiling))
     ax.set_xlim(0, end)
     ax.set_ylim(1.1 * deepest, -0.02 * deepest)
+    ax.yaxis.set_major_locator(MaxNLocator(8, steps=[1, 2, 5, 10]))
     ax.fill_between(run, 0, ceiling, color=RED, alpha=0.13, lw=0)
     there = ceiling > 0
     there[:-1] |= there[1:]  # with the row before: the line begins at the surface
@@ -43,9 +69,7 @@ def draw_profile(ax, data, end):
             for since, minutes in gaps(run, flags):
                 ax.axvspan(since, since + max(minutes, 0.002 * end), color=hue, alpha=0.25, lw=0)
             handles.append(Patch(color=hue, alpha=0.4, label=words))
-    for stop in data["stops"]:
-        items.append((stop["leave_min"], stop["depth_m"], f"{stop['depth_m']:g} m  {stop['minutes']:.3g} min", INK, False))
-    notes(ax, items, 8.5)
+    notes(ax, items, 8.5, label_stops(ax, data["stops"]))
     ax.set_ylabel("depth, m")
     ax.set_xlabel("run time, min")
     title(ax, "Depth over run time", 11)
@@ -84,7 +108,7 @@ def draw_gas(ax, curves, end):
     legend(ax, 8.5)
 
 
-def draw_tissues(ax, moment, gf_high, helium):
+def draw_tissues(ax, moment, gf_high, helium, first):
     x = np.arange(1, len(moment["n2_bar"]) + 1)
     n2, he, m_value = (numbers(moment[key]) for key in ("n2_bar", "he_bar", "m_value_bar"))
     ax.bar(x, n2, 0.72, color=BLUE, alpha=0.85)
@@ -99,13 +123,16 @@ def draw_tissues(ax, moment, gf_high, helium):
     ax.set_xlim(0.4, len(x) + 0.6)
     ax.set_xticks([1, 4, 8, 12, 16])
     ax.grid(axis="x", visible=False)
-    ax.set_ylabel("inert gas, bar", labelpad=2)
+    ax.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    if first:  # the others are of the same quantity, and stand too close for their own
+        ax.set_ylabel("inert gas, bar")
     ax.set_xlabel("compartment, fast to slow")
     title(ax, f"{moment['name'].capitalize()}: {moment['run_min']:.0f} min, {moment['depth_m']:.3g} m, {ambient:.2f} bar", 9.5)
 
 
 def draw(data):
-    end = max(1.04 * max(data["run_min"]), 1e-3)
+    # Room for the words of the stops beside the last of them.
+    end = max((1.09 if data["stops"] else 1.04) * max(data["run_min"]), 1e-3)
     curves = data["gas_left"]
     wide, profile, gas, tissues = 1600, 520, 150, 240
     lines = len(data["facts"]) + len(data["warnings"])
@@ -121,10 +148,13 @@ def draw(data):
     count = len(data["moments"])
     pitch = (wide - 100) / count
     for i, moment in enumerate(data["moments"]):
-        draw_tissues(area(fig, 70 + i * pitch, top, i * pitch + pitch + 20, top + tissues), moment, data["gf_high"], helium)
+        draw_tissues(area(fig, 70 + i * pitch, top, i * pitch + pitch + 20, top + tissues), moment, data["gf_high"], helium,
+                     i == 0)
     handles = [Patch(color=BLUE, label="nitrogen")] + ([Patch(color=GOLD, label="helium")] if helium else []) + [
-        Line2D([], [], color=RED, lw=2, label="M-value of what gives off gas"),
-        Line2D([], [], color=INK, lw=1.4, label=f"GF high, {100 * data['gf_high']:g} % of the way to the M-value"),
         Line2D([], [], color=GREY, lw=1.2, ls=(0, (5, 3)), label="pressure of the water")]
+    if any(v is not None for moment in data["moments"] for v in moment["m_value_bar"]):
+        handles += [Line2D([], [], color=RED, lw=2, label="M-value of what gives off gas"),
+                    Line2D([], [], color=INK, lw=1.4,
+                           label=f"GF high, {100 * data['gf_high']:g} % of the way to the M-value")]
     fig.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.035, 0.0), ncol=len(handles), frameon=False, fontsize=9)
     return fig
