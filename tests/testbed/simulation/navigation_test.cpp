@@ -121,7 +121,6 @@ TEST(Navigation, ControlGoesByTheEstimate) {
   const PhysicsState plain = dive.world->step(dive.state(), inputs, time),
                      pushed = dive.world->step(off, inputs, time);
   const auto surge = [&](const PhysicsState& state) {
-    rov::State body = state.vehicles()[0].body;
     return rov::thruster_wrench(dive.world->vehicles()[0].vehicle,
                                 state.vehicles()[0].command_n)[0];
   };
