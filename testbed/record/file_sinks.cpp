@@ -20,7 +20,7 @@ Status RecordingFile::finish() {
 }
 
 Status StateFile::finish() {
-  return write_state(path_, world_.state_format(), saved_state(simulation_));
+  return write_state(path_, world_.state_format(), saved_state(simulation_, world_.state_format()));
 }
 
 }  // namespace neritic::testbed

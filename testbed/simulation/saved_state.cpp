@@ -183,9 +183,21 @@ Result<SavedState> read_state(const std::filesystem::path& path, const StateForm
   return parse_state(format, bytes, path.string());
 }
 
-SavedState saved_state(const PhysicsSimulation& simulation) {
-  return {simulation.newest().step, simulation.newest().state, simulation.inputs(),
-          simulation.inbox().source_names()};
+SavedState saved_state(const PhysicsSimulation& simulation, const StateFormat& format) {
+  const PhysicsInputs& inputs = simulation.inputs();
+  // Sources that were opened and never used stay out, so that the bytes do not depend on who looks.
+  std::size_t named = format.sources.size();
+  const auto keep = [&](const auto& participants) {
+    for (const auto& participant : participants)
+      for (const GroupControl& control : participant.control)
+        named = std::max({named, static_cast<std::size_t>(control.source) + 1,
+                          static_cast<std::size_t>(control.unheeded_source) + 1});
+  };
+  keep(inputs.vehicles());
+  keep(inputs.humans());
+  std::vector<std::string> names = simulation.inbox().source_names();
+  names.resize(std::min(named, names.size()));
+  return {simulation.newest().step, simulation.newest().state, inputs, std::move(names)};
 }
 
 void restore_state(PhysicsSimulation& simulation, const SavedState& saved) {

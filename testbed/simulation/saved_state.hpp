@@ -45,7 +45,7 @@ Status write_state(const std::filesystem::path& path, const StateFormat& format,
 Result<SavedState> read_state(const std::filesystem::path& path, const StateFormat& format);
 
 // The state of a simulation of the world that the format is of, to save after a step.
-SavedState saved_state(const PhysicsSimulation& simulation);
+SavedState saved_state(const PhysicsSimulation& simulation, const StateFormat& format);
 // Goes on from it in a simulation of such a world that no device was opened in. Opens the saved
 // sources, so that each name has its number again, whichever device comes first.
 void restore_state(PhysicsSimulation& simulation, const SavedState& saved);

@@ -62,6 +62,7 @@ struct Likeness {
   double contrast = 0.0;    // standard deviation of the thumbnail, grey levels
   double colour = 0.0;      // largest difference of the mean colours' shares of red, green and blue
   double brightness = 0.0;  // of ours over the thumbnail's
+  bool vivid = false;       // a channel of the thumbnail has less than a tenth of its light
 };
 
 Likeness compare(const ImageU8& ours, const ImageU8& theirs) {
@@ -94,12 +95,15 @@ Likeness compare(const ImageU8& ours, const ImageU8& theirs) {
   for (int c = 0; c < 3; ++c)
     out.colour = std::max(out.colour, std::abs(mean_a[c] / sum_a - mean_b[c] / sum_b));
   out.brightness = sum_a / sum_b;
+  out.vivid = std::min({mean_b[0], mean_b[1], mean_b[2]}) < 0.1 * sum_b;
   return out;
 }
 
 bool alike(const Likeness& like, double least_pattern) {
   constexpr double kPlain = 10.0;  // less contrast is what shine does to an even surface
-  return (like.contrast < kPlain || like.pattern > least_pattern) && like.colour < 0.05 &&
+  // Colours near the edge of sRGB lose chroma on purpose (DECISIONS.md 41).
+  const double most_colour = like.vivid ? 0.15 : 0.05;
+  return (like.contrast < kPlain || like.pattern > least_pattern) && like.colour < most_colour &&
          like.brightness > 0.6 && like.brightness < 1.4;
 }
 

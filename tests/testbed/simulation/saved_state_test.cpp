@@ -59,7 +59,7 @@ TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
   const StateFormat format = run.world->state_format();
   for (std::uint64_t step = 0; step < kSteps + kOn; ++step) {
     if (std::ranges::find(places, step) != places.end())
-      saved[step] = encode_state(format, saved_state(*run.simulation));
+      saved[step] = encode_state(format, saved_state(*run.simulation, run.world->state_format()));
     push_some(run, step);
     run.simulation->advance(1);
   }
@@ -93,8 +93,9 @@ TEST(SavedState, GoesOnInAnotherProcessFromTwentyRandomPlaces) {
       for (std::uint64_t i = 0; i < kPlaces; ++i) {
         if (place(i) != step) continue;
         const auto path = scratch->path() / fmt::format("{}.state", i);
-        ASSERT_TRUE(
-            write_state(path, run.world->state_format(), saved_state(*run.simulation)).ok());
+        ASSERT_TRUE(write_state(path, run.world->state_format(),
+                                saved_state(*run.simulation, run.world->state_format()))
+                        .ok());
       }
       push_some(run, step);
       run.simulation->advance(1);
@@ -135,7 +136,7 @@ TEST(SavedState, EachSourceHasItsNumberAgainWhicheverDeviceComesFirst) {
       {{events, keyboard, 0, 0, 0}, hand_over(kWrench, Authority::kLive, keyboard)});
   run.simulation->advance(1);
   const StateFormat format = run.world->state_format();
-  const auto bytes = encode_state(format, saved_state(*run.simulation));
+  const auto bytes = encode_state(format, saved_state(*run.simulation, run.world->state_format()));
 
   const TestDive later = dive_of(scene_text());
   restore_state(*later.simulation, parse_state(format, bytes, "dive.state").value());
@@ -148,7 +149,7 @@ TEST(SavedState, NamesThatAreNotThoseOfTheSceneOrComeTwiceAreRefusedInOneLine) {
   TestDive dive = dive_of(scene_text());
   const StateFormat format = dive.world->state_format();
   const auto refused = [&](std::vector<std::string> sources) {
-    SavedState saved = saved_state(*dive.simulation);
+    SavedState saved = saved_state(*dive.simulation, dive.world->state_format());
     saved.sources = std::move(sources);
     const auto parsed = parse_state(format, encode_state(format, saved), "dive.state");
     return parsed.ok() ? std::string() : parsed.error().message;
@@ -176,7 +177,8 @@ TEST(SavedState, OfAnotherSceneOrVersionOrDamagedIsRefusedInOneLine) {
   TestDive dive = dive_of(scene_text());
   dive.run(0.1);
   const StateFormat format = dive.world->state_format();
-  const auto bytes = encode_state(format, saved_state(*dive.simulation));
+  const auto bytes =
+      encode_state(format, saved_state(*dive.simulation, dive.world->state_format()));
   ASSERT_EQ(refusal(format, bytes), "");
   const auto has = [](const std::string& message, const char* part) {
     EXPECT_NE(message.find(part), std::string::npos) << message;

@@ -26,23 +26,40 @@ double ms_a_second(TestDive& dive, const rov::SensorSet& sensors, double enough_
   return least_ms;
 }
 
-scene::Scene surveyed_scene() {
+using Navigation = scene::Dynamics::Navigation;
+
+scene::Scene surveyed_scene(Navigation navigation) {
   scene::Scene scene = mission_scene();
   for (scene::Object& object : scene.objects)
-    if (object.dynamics)
+    if (object.dynamics) {
+      object.dynamics->navigation = navigation;
       object.dynamics->file =
           test::source_dir() / "assets/vehicles/bluerov2_heavy_survey_dynamics.toml";
+    }
   return scene;
 }
 
 // On its mission along the wreck, every sensor at every step, four beams and an altimeter's ray
 // each time: under a hundredth of a core, 10 ms a second.
 TEST(PhysicsSpeed, AVehicleWithItsRaysTakesUnderAHundredthOfACore) {
-  TestDive dive = dive_of(surveyed_scene());
+  TestDive dive = dive_of(surveyed_scene(Navigation::kTruth));
   rov::SensorSet sensors = dive.world->vehicles()[0].file.sensors;
   sensors.imu->rate_hz = sensors.dvl->rate_hz = sensors.pressure->rate_hz = 240.0;
   sensors.compass->rate_hz = sensors.altimeter->rate_hz = sensors.usbl->rate_hz = 240.0;
   const double ms = ms_a_second(dive, sensors, 10.0);
+  RecordProperty("ms_a_second", fmt::format("{:.2f}", ms));
+  if (test::kFast) {
+    EXPECT_LT(ms, 10.0);
+  }
+}
+
+// Its navigation by those sensors, at their own rates, costs less than another hundredth.
+TEST(PhysicsSpeed, NavigationBySensorsTakesUnderAHundredthOfACore) {
+  const auto second_ms = [](Navigation navigation) {
+    TestDive dive = dive_of(surveyed_scene(navigation));
+    return test::least_cpu_ms(10.0, [&] { dive.run(1.0); });
+  };
+  const double ms = second_ms(Navigation::kMeasured) - second_ms(Navigation::kTruth);
   RecordProperty("ms_a_second", fmt::format("{:.2f}", ms));
   if (test::kFast) {
     EXPECT_LT(ms, 10.0);
@@ -75,7 +92,7 @@ TEST(PhysicsSpeed, ADiverWithEverythingOnTakesUnderAHundredthOfACore) {
 // README.md has the figures); here with room for slow machines.
 TEST(PhysicsSpeed, InContactItTakesLittleMore) {
   for (const Vec3& from_m : {Vec3(9.0, -17.6, 4.0), Vec3(0.5, -13.2, 8.0)}) {
-    scene::Scene scene = surveyed_scene();
+    scene::Scene scene = surveyed_scene(Navigation::kTruth);
     scene.physics->water_kg_m3 = 990.0;  // so that it sinks
     scene.current.reset();
     scene::Object& rov = *std::ranges::find(scene.objects, "rov", &scene::Object::name);
