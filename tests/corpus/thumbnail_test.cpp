@@ -102,9 +102,9 @@ Likeness compare(const ImageU8& ours, const ImageU8& theirs) {
 bool alike(const Likeness& like, double least_pattern) {
   constexpr double kPlain = 10.0;  // less contrast is what shine does to an even surface
   // Colours near the edge of sRGB lose chroma on purpose (DECISIONS.md 41).
-  const double most_colour = like.vivid ? 0.15 : 0.05;
-  return (like.contrast < kPlain || like.pattern > least_pattern) && like.colour < most_colour &&
-         like.brightness > 0.6 && like.brightness < 1.4;
+  const double most_colour = like.vivid ? 0.15 : 0.05, lost_pattern = like.vivid ? 0.05 : 0.0;
+  return (like.contrast < kPlain || like.pattern > least_pattern - lost_pattern) &&
+         like.colour < most_colour && like.brightness > 0.6 && like.brightness < 1.4;
 }
 
 ImageU8 turned(const ImageU8& image, bool left_right) {
