@@ -88,8 +88,8 @@ TEST(TermTruth, PatternsAndPulseKeepAWallsEnergy) {
   const double plain = total(trace(*world, sonar));
   sonar.terms.range_spread = scene::SonarRangeSpread{};
   EXPECT_NEAR(total(trace(*world, sonar)) / plain, 1.0, 1e-3);
-  sonar.terms.beam.azimuth = scene::SonarPattern{.shape = scene::BeamShape::kHamming,
-                                                 .half_power_rad = radians(1.0)};
+  sonar.terms.beam.azimuth =
+      scene::SonarPattern{.shape = scene::BeamShape::kHamming, .half_power_rad = radians(1.0)};
   EXPECT_NEAR(total(trace(*world, sonar)) / plain, 1.0, 2e-3);
 }
 

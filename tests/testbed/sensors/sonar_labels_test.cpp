@@ -17,8 +17,8 @@ scene::Scene two_boxes_and_a_sphere() {
   sonar.gbuffer_scale = 2.0;
   sonar.mount.pose.rotation = glm::angleAxis(radians(-12.0), Vec3(1, 0, 0));
   sonar.terms.beam.samples = 2;
-  sonar.terms.beam.azimuth = scene::SonarPattern{.shape = scene::BeamShape::kHamming,
-                                                 .half_power_rad = radians(2.0)};
+  sonar.terms.beam.azimuth =
+      scene::SonarPattern{.shape = scene::BeamShape::kHamming, .half_power_rad = radians(2.0)};
   sonar.terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 8e3};
   sonar.terms.level = plain_level();
   sonar.terms.labels.energy = true;

@@ -97,8 +97,8 @@ double speckled_over_smooth(gpu::Device& device, double distance_m, std::uint32_
   sonar.bins_elevation = 96;
   sonar.terms.frequency_hz = 720e3;
   sonar.terms.beam.samples = samples;
-  sonar.terms.beam.azimuth = scene::SonarPattern{.shape = scene::BeamShape::kHamming,
-                                                 .half_power_rad = radians(1.0)};
+  sonar.terms.beam.azimuth =
+      scene::SonarPattern{.shape = scene::BeamShape::kHamming, .half_power_rad = radians(1.0)};
   sonar.terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 30e3};
   scene::Scene scene = wall(distance_m, sonar);
   const double smooth = total(ping(device, scene));
@@ -230,8 +230,8 @@ TEST_F(SonarRandom, SpeckleFadesWithTheWayAcross) {
   sonar.terms.frequency_hz = 750e3;
   sonar.terms.water.sound_speed_m_s = 1500.0;
   sonar.terms.beam.samples = 2;
-  sonar.terms.beam.azimuth = scene::SonarPattern{.shape = scene::BeamShape::kHamming,
-                                                 .half_power_rad = kWidth_rad};
+  sonar.terms.beam.azimuth =
+      scene::SonarPattern{.shape = scene::BeamShape::kHamming, .half_power_rad = kWidth_rad};
   sonar.terms.speckle = scene::SonarSpeckle{.scatterer_m = 0.01};
   scene::Scene scene = tilted_floor(kRange_m, sonar);
   scene::Scene plain = scene;

@@ -46,8 +46,8 @@ Piloting ahead_by(double newton) {
 }
 
 double rov_in_diver_m(const TestDive& dive) {
-  return depth_of(dive.world->vehicles()[0].kind.solid.shape, dive.pose(), dive.world->humans()[0].shape,
-                  human_pose(dive.state(), 0));
+  return depth_of(dive.world->vehicles()[0].kind.solid.shape, dive.pose(),
+                  dive.world->humans()[0].shape, human_pose(dive.state(), 0));
 }
 
 TEST(DiverMeets, AVehicleAtFullThrustDoesNotGetIntoADiverAndPushes) {
