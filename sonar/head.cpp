@@ -76,7 +76,8 @@ void widen_elevation(Head& head, const HeadPatterns& patterns) {
     widen(l.azimuth_min_rad, l.azimuth_max_rad, g.azimuth_step_rad(), g.bins.azimuth);
 }
 
-// What leaves within the beam may end beyond it: rows (a cone's columns too) as far as rays bend.
+// Sound that leaves within the beam may end beyond it: rows (a cone's columns too) as far as rays
+// bend.
 void widen_for_bends(Head& head, const scene::SonarProfile& profile, bool cone) {
   BeamGrid& g = head.samples;
   Limits& l = g.limits;
@@ -131,7 +132,7 @@ std::vector<float> beam_weights(const scene::Sonar& sonar, const Head& head,
   return weights;
 }
 
-// What spreads along range. With levels a bin has the mean power over its length, whatever that is;
+// The spread along range. With levels a bin has the mean power over its length, whatever that is;
 // else the energy is kept.
 Result<Taps> range_taps(const scene::Sonar& sonar, const BeamGrid& grid, bool coherent) {
   if (!sonar.terms.range_spread) return Taps{};
@@ -165,7 +166,7 @@ std::vector<float> beam_kernel(const scene::Sonar& sonar, const Head& head,
   return kernel;
 }
 
-// What gathers columns into a beam.
+// The weights that gather columns into a beam.
 Taps across_taps(const scene::Sonar& sonar, const Head& head, const HeadPatterns& patterns,
                  std::uint32_t reach, bool coherent) {
   if (head.samples_per_beam == 1 && reach == 0 && !head.folded) return {};
@@ -212,7 +213,7 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
                                     ? std::max(sonar.bins_azimuth, t.beam.samples)
                                     : t.beam.samples;
   const double column = head.beams.azimuth_step_rad() / samples;
-  // Of a flat array the outermost beam is the widest.
+  // The outermost beam of a flat array is the widest.
   const double widest_rad = patterns.flat ? head.beams.azimuth_rad(0) : 0.0;
   const std::uint32_t reach =
       patterns.azimuth && !head.folded ? pattern_reach(patterns, widest_rad, column) : 0;

@@ -88,8 +88,8 @@ struct Dynamics {
   std::optional<Mission> mission;      // absent: nobody steers
   std::uint64_t failed_thrusters = 0;  // bit i: the file's thruster i + 1
   std::optional<Vec3> tether_anchor_m;
-  // What control and guidance go by: the vehicle's own sensors, or its true state. kBySensors: the
-  // sensors, if it has enough of them.
+  // The state that control and guidance use: the vehicle's own sensors, or its true state.
+  // kBySensors: the sensors, if it has enough of them.
   enum class Navigation { kBySensors, kTruth, kMeasured };
   Navigation navigation = Navigation::kBySensors;
   std::vector<InputChoice> inputs;  // groups not named: autopilot

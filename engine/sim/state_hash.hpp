@@ -25,7 +25,7 @@ std::uint64_t canonical_bits(T value) {
   }
 }
 
-// Of a block (block.hpp) the counts first. A state may list counts and fields for its hash alone
+// A block (block.hpp) starts with its counts. A state may list counts and fields for its hash alone
 // (hashed_counts, hashed_fields), to leave out what is not in use.
 template <class State>
 void add_state(Hash64& hash, const State& state) {
@@ -41,7 +41,7 @@ void add_state(Hash64& hash, const State& state) {
     for_each_scalar(state, add);
 }
 
-// Of values alone.
+// The hash of values alone.
 template <class State>
 std::uint64_t state_hash(const State& state) {
   Hash64 hash;
@@ -49,7 +49,7 @@ std::uint64_t state_hash(const State& state) {
   return hash.value();
 }
 
-// Of a state after so many steps: what a run compares.
+// The hash of a state after a number of steps: two runs compare it.
 template <class State>
 std::uint64_t state_hash(std::uint64_t step, const State& state) {
   Hash64 hash;

@@ -1,4 +1,4 @@
-// What the user of `dive` can do: the table of actions with the controls of each, and their values
+// The actions of the user of `dive`: their table with the controls of each, and their values
 // in one frame. Plain values.
 #pragma once
 

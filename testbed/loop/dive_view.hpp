@@ -1,4 +1,4 @@
-// What a person sees of a run and does in it: a display with all its views, a camera to fly or the
+// A person's view of a run: a display with all its views, a camera to fly or the
 // head that the display tracks, a vehicle flown by hand, the sonars' fans, panels, screenshots.
 // The loop calls it once a frame. Rendering thread.
 #pragma once
@@ -45,7 +45,7 @@ class DiveView {
   // From begin_frame, unless the user quit, to end_frame.
   bool in_frame() const { return in_frame_; }
   bool shown() const { return frame_.verdict == xr::FrameVerdict::kDraw; }
-  // What the user did since the last frame; true: quits.
+  // The user's actions since the last frame; true: quits.
   bool take_input();
   // The keys' samples, for the simulation.
   SampleSource& pilot() { return pilot_; }

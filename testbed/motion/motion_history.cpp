@@ -56,7 +56,7 @@ void MotionHistory::add(MotionSnapshot snapshot) {
   count_ = std::min(count_ + 1, ring_.size());
 }
 
-// Of the newest snapshot that is not later than time_s; the oldest where all are later.
+// The age of the newest snapshot that is not later than time_s; the oldest where all are later.
 std::size_t MotionHistory::age_before(double time_s) const {
   std::size_t age = 0;
   while (age + 1 < count_ && at_age(age).time_s > time_s) ++age;

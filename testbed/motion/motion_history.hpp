@@ -9,7 +9,7 @@
 
 namespace neritic::testbed {
 
-// What a simulation moves at one instant, in the order of the history's objects.
+// The objects that a simulation moves, at one instant, in the order of the history's objects.
 struct MotionSnapshot {
   double time_s = 0.0;
   std::vector<scene::Motion> motions;          // world_from_object

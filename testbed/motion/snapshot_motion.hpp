@@ -1,5 +1,5 @@
-// What the motion history keeps of a simulation's state: poses and velocities of vehicles and
-// divers in the world, and the divers' joints. Pure functions; any thread.
+// The part of a simulation's state that the motion history keeps: poses and velocities of vehicles
+// and divers in the world, and the divers' joints. Pure functions; any thread.
 #pragma once
 
 #include "testbed/motion/motion_history.hpp"

@@ -11,7 +11,7 @@
 
 namespace neritic::testbed {
 
-// What meta.json says besides the view itself.
+// The content of meta.json besides the view itself.
 struct FrameFacts {
   double time_s = 0.0;
   std::uint64_t seed = 0;
@@ -22,7 +22,7 @@ struct FrameFacts {
 
 // "frame_0000" of OUT.
 std::string frame_folder(std::uint32_t number);
-// Of a frame's folder: SENSOR, of a sonar with several heads SENSOR/HEAD.
+// The path in a frame's folder: SENSOR, for a sonar with several heads SENSOR/HEAD.
 std::filesystem::path sonar_folder(const SonarFrame& frame);
 
 // depth.npy, normals.npy, labels.npy, instances.npy, meta.json; for a camera color.png and

@@ -29,7 +29,7 @@ ImageU8 resized(const ImageU8& image, std::uint32_t width, std::uint32_t height)
 struct Tile {
   ImageU8 image;
   std::string caption;
-  // What its colours mean, beside the caption as far as there is room.
+  // The meaning of its colours, beside the caption as far as there is room.
   std::vector<std::pair<Rgb, std::string>> key = {};
 };
 // The first tile large on the left, the others in rows beside and under it.

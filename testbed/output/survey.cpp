@@ -75,7 +75,7 @@ bool is_object(std::uint16_t class_id) {
   return class_id != sonar::kWater && class_id != kSeabedClass;
 }
 
-// Of the files that a single beam accumulates.
+// For the files that a single beam accumulates.
 const char* prefix_of(SonarKind kind) {
   return kind == SonarKind::kSideScan     ? "sidescan"
          : kind == SonarKind::kMechanical ? "mechanical"
@@ -95,11 +95,11 @@ struct Survey::Record {
   explicit Record(const scene::Sonar& settings) : sonar(as_sampled(settings)) {}
   const scene::Sonar sonar;
   std::size_t pings = 0;
-  // Of a profiling sonar.
+  // For a profiling sonar.
   sonar::PointCloud cloud;
   std::unique_ptr<sonar::Bathymetry> bathymetry;
   double cell_m = 0.0;
-  // What the chart's error is taken of: soundings of the bottom, and not of what stands on it.
+  // The chart's error counts soundings of the bottom, and not of things that stand on it.
   std::unique_ptr<sonar::Bathymetry> terrain;
   std::vector<Vec3> terrain_points, nadir;
   std::vector<Vec3> places;  // of each ping

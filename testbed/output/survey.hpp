@@ -1,4 +1,4 @@
-// What accumulates while a sonar moves along a track: point cloud and bathymetric grid of a
+// Results that accumulate while a sonar moves along a track: point cloud and bathymetric grid of a
 // profiling sonar, the range-time record of an echo sounder, the waterfall of a side-scan, the turn
 // of a mechanical scanner, COCO boxes with their pictures. Fed frame by frame; written once. One
 // thread.

@@ -15,7 +15,7 @@ struct EulerAngles {
   double heading_rad, pitch_rad, roll_rad;
 };
 
-// Of an attitude in marine axes: heading, then pitch, then roll (Fossen 2011, eq. 2.45).
+// The angles of an attitude in marine axes: heading, then pitch, then roll (Fossen 2011, eq. 2.45).
 EulerAngles euler_of(const Quat& q) {
   return {rov::heading_of(q), std::asin(std::clamp(2.0 * (q.w * q.y - q.z * q.x), -1.0, 1.0)),
           std::atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))};
@@ -47,7 +47,7 @@ constexpr const char* kHumanColumns =
     "density_risk,breathing_risk,oxygen_risk,out_of_gas_s,ascent_gas_l,ascent_gas_there_l,tanks_"
     "too_small";
 
-// What is not finite (no end of breath in sight) is an empty cell.
+// A number that is not finite (no end of breath in sight) is an empty cell.
 void append_cells(std::string& out, std::initializer_list<double> numbers) {
   for (const double number : numbers)
     out += std::isfinite(number) ? fmt::format(",{:.9g}", number) : std::string(",");
@@ -131,7 +131,7 @@ void append_readings(std::string& out, const SensorColumns& sensor, const Readin
     out += std::isnan(number) ? std::string(",") : fmt::format(",{:.9g}", number);
 }
 
-// Of vehicles that fly on what they measure: where they take themselves to be, as x_m to
+// For vehicles that fly by their own sensors: their estimated position, as x_m to
 // heave_m_s, and standard deviations about the world's axes.
 constexpr const char* kEstimateColumns =
     ",estimated_x_m,estimated_y_m,estimated_z_m,estimated_heading_deg,estimated_pitch_deg,"

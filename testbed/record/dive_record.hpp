@@ -1,4 +1,4 @@
-// What a simulation went through, kept as it goes: a row of numbers each control period, and
+// The record of a simulation, kept as it goes: a row of numbers each control period, and
 // figures of the whole. One thread: the one that steps.
 #pragma once
 
@@ -36,7 +36,7 @@ struct DiveFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, largest_tilt_rad = 0.0;
   double shallowest_m = 1e9, deepest_m = -1e9;  // of its origin, below the still surface
   std::vector<double> arrivals_s;               // of its waypoints
-  // Of a vehicle that flies on what it measures: the distance from where it takes itself to be.
+  // For a vehicle that flies by its own sensors: the distance from its estimated position.
   std::optional<double> navigation_error_m, largest_navigation_error_m;
 };
 

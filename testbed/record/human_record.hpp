@@ -1,4 +1,4 @@
-// What divers went through, kept as it goes: rows of numbers, and figures of the whole. One thread:
+// The record of divers, kept as a run goes: rows of numbers, and figures of the whole. One thread:
 // the one that steps.
 #pragma once
 
@@ -39,7 +39,7 @@ struct TankChange {
 
 struct HumanFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, deepest_m = 0.0, shallowest_m = 1e9;
-  // What endangered the diver, over the dive, noted once a second. How long nothing came to
+  // Dangers to the diver, over the dive, noted once a second. How long nothing came to
   // breathe, all together and at a stretch, since when and of which tank at first; 0: never.
   double out_of_gas_s = 0.0, out_of_gas_longest_s = 0.0, out_of_gas_from_s = 0.0;
   std::uint64_t out_of_gas_tank = 0;

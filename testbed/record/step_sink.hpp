@@ -1,4 +1,4 @@
-// What a running simulation gives each of its steps to: the log, the plot, the recording, the saved
+// Receivers of each step of a running simulation: the log, the plot, the recording, the saved
 // state, later a server. Their owner makes them before the first step and finishes them after the
 // last.
 #pragma once

@@ -1,4 +1,4 @@
-// What takes the results of a run's frames: the files of `render`, a test, later a recording or a
+// Takes the results of a run's frames: the files of `render`, a test, later a recording or a
 // server. The rendering thread calls all of it.
 #pragma once
 

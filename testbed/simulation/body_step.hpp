@@ -9,7 +9,8 @@
 
 namespace neritic::testbed {
 
-// What contacts are solved with. Model axes (starboard, up, back) about the vehicle's origin.
+// The body for which contacts are solved. Model axes (starboard, up, back) about the vehicle's
+// origin.
 struct SolidBody {
   sim::BodyShape shape;
   sim::InverseMass inverse_mass{};
@@ -34,7 +35,7 @@ struct VehicleStep {
   const StepMethod& method;
 };
 
-// What contacts did in a step.
+// The effect of contacts in a step.
 struct ContactReport {
   sim::MotionReport motion;
   // Change of velocity that nothing else made: linear and angular, NED axes, m/s and rad/s.

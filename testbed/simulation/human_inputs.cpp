@@ -1,4 +1,4 @@
-// What a diver's groups of inputs give the diver in a step (human_world.hpp).
+// The effect of a diver's groups of inputs in a step (human_world.hpp).
 #include "diver/frames.hpp"
 #include "testbed/simulation/human_world.hpp"
 

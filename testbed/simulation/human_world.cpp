@@ -1,4 +1,4 @@
-// What is read and checked once (human_world.hpp).
+// Reads and checks divers once (human_world.hpp).
 #include "testbed/simulation/human_world.hpp"
 
 #include <cmath>

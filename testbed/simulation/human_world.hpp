@@ -47,7 +47,7 @@ struct PhysicsHuman {
 // Errors in one line: files that do not read, models without the segments' nodes.
 Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t object);
 
-// What the diver swims to now.
+// The diver's present goal.
 diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state);
 
 // A diver on the way through a step, for what touches: world axes.
@@ -77,7 +77,7 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
                bool parted, std::uint64_t step, double dt_s, sim::ContactMemory& memory,
                HumanPhysics& state);
 
-// What is drawn: where the model stands, and its nodes' rotations and scales (breath).
+// The drawn diver: the pose of the model, and its nodes' rotations and scales (breath).
 Pose drawn_pose(const HumanPhysics& state);
 scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
                                     double time_s);

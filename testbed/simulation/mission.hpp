@@ -19,7 +19,7 @@ class MissionGuide {
                        MissionState& mission) const;
   // 0 where it has none.
   std::size_t waypoint_count() const { return waypoints_.size(); }
-  // Of the waypoint that it flies to or holds at.
+  // The waypoint that it flies to or holds at.
   std::size_t waypoint_index(const MissionState& mission) const;
   bool repeats() const { return repeat_; }
   // All waypoints reached, of a mission that does not repeat.

@@ -1,4 +1,4 @@
-// What changes while a scene's vehicles and divers move: the state of a simulation
+// All that changes while a scene's vehicles and divers move: the state of a simulation
 // (engine/sim/simulation.hpp), one block of plain structs. NED and forward, starboard, down (rov/).
 // Any thread.
 #pragma once
@@ -24,9 +24,9 @@ struct MissionState {
   std::uint64_t arrived = 0, left = 0;  // waypoints, all rounds together
   double arrived_s = 0.0;               // at the waypoint where it holds
   Vec3 leg_from_ned_m{0.0};             // where the way to the next waypoint begins
-  // Who steered at the last control period: 0 the mission, 1 a pilot, 2 a setpoint from outside.
+  // The pilot of the last control period: 0 the mission, 1 a pilot, 2 a setpoint from outside.
   std::uint64_t piloted = 0;
-  // What the controller holds.
+  // The controller's set value.
   Vec3 wanted_ned_m{0.0};
   Quat wanted_attitude{1.0, 0.0, 0.0, 0.0};
 
@@ -120,10 +120,10 @@ class PhysicsState
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
   std::span<HumanPhysics> humans() { return part<HumanPhysics>(); }
   std::span<const HumanPhysics> humans() const { return part<HumanPhysics>(); }
-  // Of the vehicles that have sensors, in their order: PhysicsWorld::readings() finds a vehicle's.
+  // For the vehicles that have sensors, in their order: PhysicsWorld::readings() finds a vehicle's.
   std::span<rov::SensorReadings> readings() { return part<rov::SensorReadings>(); }
   std::span<const rov::SensorReadings> readings() const { return part<rov::SensorReadings>(); }
-  // Of the vehicles that fly on what they measure: PhysicsWorld::navigation() finds a vehicle's.
+  // For the vehicles that fly by their own sensors: PhysicsWorld::navigation() finds a vehicle's.
   std::span<rov::NavigationState> navigation() { return part<rov::NavigationState>(); }
   std::span<const rov::NavigationState> navigation() const { return part<rov::NavigationState>(); }
 

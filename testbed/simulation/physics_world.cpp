@@ -1,4 +1,4 @@
-// What is read and checked once: the vehicles, what is solid, the current (physics_world.hpp).
+// Reads and checks once: the vehicles, what is solid, the current (physics_world.hpp).
 #include "testbed/simulation/physics_world.hpp"
 
 #include <cmath>

@@ -113,7 +113,7 @@ class PhysicsWorld {
                                                   std::size_t vehicle) const;
   // The state that its control and its mission go by.
   rov::State known_state(const PhysicsState& state, std::size_t vehicle, double time_s) const;
-  // What sensors hear: the first solid thing along a ray.
+  // Rays of sensors: the first solid thing along a ray.
   rov::RayQuery rays() const;
   // Everything around a vehicle's sensors.
   rov::SensorWorld sensor_world(std::size_t vehicle) const;
@@ -122,7 +122,7 @@ class PhysicsWorld {
   // threads share the vehicles and divers of a step, with the same bits; 0: one thread for a small
   // scene, up to all cores for a crowd.
   PhysicsSimulation::Step step_function(unsigned threads = 0) const;
-  // What states of this world are saved as, and must be to go on in it.
+  // The format of saved states of this world.
   StateFormat state_format() const;
   // With an inbox in which the scene's sources are open. Borrows the world.
   std::unique_ptr<PhysicsSimulation> simulation(sim::SimulationOptions options,
@@ -175,7 +175,7 @@ Result<std::optional<rov::NavigationModel>> choose_navigation(const scene::Scene
                                                               const scene::Object& object,
                                                               const rov::SensorSet& sensors);
 
-// What the scene says of the current, its grid read.
+// The scene's current, with its grid read.
 Result<sim::Current> current_of(const scene::Current& current);
 
 }  // namespace neritic::testbed

@@ -5,7 +5,8 @@
 namespace neritic::testbed {
 namespace {
 
-// Of what moves by physics: its pose, and its velocity over ground in its own marine axes.
+// For an object that moves by physics: its pose, and its velocity over ground in its own marine
+// axes.
 struct Carrier {
   Pose world_from_object, world_from_body;
   Quat ned_from_body;

@@ -9,7 +9,7 @@
 
 namespace neritic::testbed {
 
-// Which objects move by physics: index of an object's vehicle, or of its diver; -1: none.
+// The objects that move by physics: index of an object's vehicle, or of its diver; -1: none.
 struct Movers {
   std::vector<int> vehicle_of_object, human_of_object;
 };
@@ -20,13 +20,13 @@ class Place {
   Place(const scene::Scene& scene, const scene::Aim& aim, const Movers& movers);
 
   Pose at(const PhysicsState& state, double time_s) const;
-  // Whose -z is ahead: a diver's head, where at() has the axes of the model, which stands.
+  // With -z ahead: a diver's head, where at() has the axes of the model, which stands.
   Quat facing(const PhysicsState& state, double time_s) const;
   Vec3 velocity_m_s(const PhysicsState& state, double time_s) const;
 
  private:
   std::vector<scene::Mount> chain_;  // itself first; each in the frame of the next
-  // What the last of the chain is mounted on; both -1: the world.
+  // The mover that the last of the chain is mounted on; both -1: the world.
   int vehicle_ = -1, human_ = -1;
 };
 

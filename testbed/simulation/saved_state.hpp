@@ -24,7 +24,7 @@ struct SavedState {
   std::vector<std::string> sources;
 };
 
-// What a saved state must fit: PhysicsWorld::state_format().
+// The format that a saved state must fit: PhysicsWorld::state_format().
 struct StateFormat {
   std::uint64_t scene_hash = 0;
   double step_s = 0.0;

@@ -169,7 +169,7 @@ class SceneHash {
   Hash64 hash_;
   std::span<const std::uint64_t> vehicle_files_;  // of each vehicle in turn
   std::size_t vehicle_ = 0;
-  // Of what many objects share, each once.
+  // Files that many objects share count once.
   std::map<std::string, std::optional<std::uint64_t>> files_;
   std::map<std::pair<const scene::Model*, std::array<double, 3>>, std::optional<std::uint64_t>>
       models_;

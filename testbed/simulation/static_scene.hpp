@@ -1,4 +1,4 @@
-// What of a scene is in the way of vehicles: objects with a collision, as they stand. World frame.
+// The obstacles of a scene for vehicles: objects with a collision, as they stand. World frame.
 // Pure function; any thread.
 #pragma once
 

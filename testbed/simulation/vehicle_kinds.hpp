@@ -1,6 +1,6 @@
-// What vehicles of one file and one model share: parameters, allocation, shape. Each is read and
-// made once, so that a thousand vehicles of one kind load as fast as one and lie in the caches
-// together. Built with the world, then only read; any thread.
+// The data that vehicles of one file and one model share: parameters, allocation, shape. Each is
+// read and made once, so that a thousand vehicles of one kind load as fast as one and lie in the
+// caches together. Built with the world, then only read; any thread.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace neritic::testbed {
 
-// Of a vehicle file.
+// The content of a vehicle file.
 struct VehicleModel {
   rov::VehicleFile file;
   rov::Vehicle vehicle;

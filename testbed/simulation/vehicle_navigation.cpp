@@ -1,4 +1,4 @@
-// What a vehicle knows of its motion (physics_world.hpp): by its own sensors, or its true state.
+// A vehicle's knowledge of its motion (physics_world.hpp): by its own sensors, or its true state.
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {

@@ -1,4 +1,4 @@
-// What a vehicle is for contacts: the outline of its file, or the hull of what is drawn of it, or
+// A vehicle's shape for contacts: the outline of its file, or the hull of what is drawn of it, or
 // the box about that. Model axes. Pure function; any thread.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What drives a vehicle in a step: its authorities, thruster commands and the water around it
+// The drive of a vehicle in a step: its authorities, thruster commands and the water around it
 // (physics_world.hpp).
 #include <algorithm>
 #include <cmath>
@@ -101,7 +101,7 @@ diver::WaterFlow PhysicsWorld::water_along(const Vec3& position_ned_m, const Vec
           change_along(water.velocity_m_s)};
 }
 
-// What pushes it in the step to come.
+// The forces on it in the step to come.
 rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
                                     const VehicleState& state, double time_s, double dt_s) const {
   rov::Inputs acting;

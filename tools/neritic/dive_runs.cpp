@@ -14,7 +14,7 @@ namespace neritic::tools {
 using namespace testbed;
 namespace {
 
-// Of one vehicle with a mission, in one run.
+// The outcome of one vehicle with a mission, in one run.
 struct Outcome {
   std::string vehicle;
   std::uint64_t seed = 0, arrived = 0, waypoints = 0;

@@ -68,7 +68,7 @@ std::string warning_lines(const PhysicsHuman& human, const HumanFigures& figures
   return lines;
 }
 
-// Which tanks were changed to, when and where; empty: none.
+// The changes of tanks, with time and depth; empty: none.
 std::string change_lines(const PhysicsHuman& human, const HumanFigures& figures) {
   constexpr std::size_t kTold = 8;
   if (figures.tank_changes.empty()) return {};
@@ -226,7 +226,7 @@ nlohmann::json sources_json(const SampleInbox& inbox) {
   return json;
 }
 
-// Of each group that a source was named for or that samples came for.
+// Each group that a source was named for or that samples came for.
 template <class Group, class Groups>
 nlohmann::json groups_json(const Groups& groups, const std::vector<std::string>& sources) {
   nlohmann::json json = nlohmann::json::object();

@@ -155,7 +155,7 @@ class FirstFrame final : public FrameSink {
   Progress progress_;
 };
 
-// What an earlier run left in the folder stays; say so where it could be taken for this one's.
+// Warns of files of an earlier run that could be taken for this one's.
 void warn_of_leftovers(const RenderFlags& flags, bool wrote_track,
                        const std::set<fs::path>& written) {
   const fs::path out = flags.out;
@@ -193,7 +193,7 @@ std::string summary(const RenderFlags& flags, const scene::Scene& scene, const L
   return fmt::format("{}: {}", flags.out, fmt::join(parts, "; "));
 }
 
-// Of a run that the user stopped after so many frames.
+// The message for a run that the user stopped.
 Error stopped_render(const RenderFlags& flags, std::uint64_t frames, double step_s,
                      bool wrote_track) {
   std::string there;
@@ -249,7 +249,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
     step_sinks = step_files->sinks();
     step_sinks.push_back(&approach);
   }
-  // Of one frame no track is made, but its boxes are.
+  // One frame makes no track, but boxes.
   const bool tracks = flags.frames > 1 || flags.track_only;
   FrameFiles files(*session, {flags.out, flags.scene, !flags.track_only,
                               SurveyOptions{flags.chart_cell_m, tracks}});

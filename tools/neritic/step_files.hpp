@@ -1,5 +1,5 @@
-// What flags ask a run of physics to leave behind (--log, --plot, --record, --save), as step sinks,
-// and its progress on a terminal.
+// The files that flags ask a run of physics to write (--log, --plot, --record, --save), as step
+// sinks, and its progress on a terminal.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@ namespace neritic::tools {
 std::string first_step_flag(const StepFileFlags& flags);
 // For a flag of physics in a scene where nothing moves by physics. scene: its path.
 Error flag_without_physics(const std::string& flag, const std::string& scene);
-// Of these files and of another that the command writes: kBadInput for a rate that is none and for
+// Checks these files and another that the command writes: kBadInput for a rate that is none and for
 // two flags with one file, kIo for a file that cannot be written: better known before a run of
 // hours than after it.
 Status check_step_files(const StepFileFlags& flags, const OutputFile& other);
