@@ -9,7 +9,7 @@ namespace {
 
 std::unique_ptr<PhysicsSimulation> simulation_of(const PhysicsWorld& world,
                                                  const LivePhysics::Options& options) {
-  auto simulation = world.simulation({.log = options.log, .seed = options.seed});
+  auto simulation = world.simulation({.log = options.log, .seed = options.seed}, options.threads);
   if (options.start) restore_state(*simulation, *options.start);
   return simulation;
 }

@@ -21,6 +21,7 @@ class LivePhysics {
     Pace pace = Pace::kPicture;
     bool log = false;                 // keep inputs and hashes, for a recording
     std::uint64_t seed = 0;           // the scene's, for a recording
+    unsigned threads = 0;             // of a step (PhysicsWorld::simulation)
     std::optional<SavedState> start;  // goes on from here; else from the scene's start
   };
   // Errors as PhysicsWorld::create. Precondition: PhysicsWorld::needed(scene).

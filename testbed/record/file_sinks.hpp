@@ -25,35 +25,33 @@ class DiveLog final : public StepSink {
   std::filesystem::path csv_;
 };
 
-// The samples that the run used, and the hash of each state. The simulation keeps them itself.
-class RecordingFile final : public StepSink {
+// A file that is made of the simulation after the last step.
+class EndFile : public StepSink {
  public:
-  // Precondition: the simulation keeps its log, and begins at step 0.
-  RecordingFile(const PhysicsWorld& world, const PhysicsSimulation& simulation,
-                std::filesystem::path path)
+  EndFile(const PhysicsWorld& world, const PhysicsSimulation& simulation,
+          std::filesystem::path path)
       : world_(world), simulation_(simulation), path_(std::move(path)) {}
-  Status accept(const sim::Snapshot<PhysicsState>&, std::span<const Sample>) override { return {}; }
-  Status finish() override;
+  Status accept(const sim::Snapshot<PhysicsState>&, std::span<const Sample>) final { return {}; }
 
- private:
+ protected:
   const PhysicsWorld& world_;
   const PhysicsSimulation& simulation_;
   std::filesystem::path path_;
 };
 
-// The state after the last step, and the inputs that hold then.
-class StateFile final : public StepSink {
+// The samples that the run used, and the hash of each state. The simulation keeps them itself.
+// Precondition: the simulation keeps its log, and begins at step 0.
+class RecordingFile final : public EndFile {
  public:
-  StateFile(const PhysicsWorld& world, const PhysicsSimulation& simulation,
-            std::filesystem::path path)
-      : world_(world), simulation_(simulation), path_(std::move(path)) {}
-  Status accept(const sim::Snapshot<PhysicsState>&, std::span<const Sample>) override { return {}; }
+  using EndFile::EndFile;
   Status finish() override;
+};
 
- private:
-  const PhysicsWorld& world_;
-  const PhysicsSimulation& simulation_;
-  std::filesystem::path path_;
+// The state after the last step, and the inputs that hold then.
+class StateFile final : public EndFile {
+ public:
+  using EndFile::EndFile;
+  Status finish() override;
 };
 
 }  // namespace neritic::testbed

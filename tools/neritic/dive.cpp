@@ -167,7 +167,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
                       .seconds = replay ? recorded_s : flags.seconds.value_or(unlimited_s),
                       .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
-  // Also of a run that failed: what it did until then.
+  // A run that failed prints its summary too.
   if (replay && !flags.quiet) replay->tell();
   tell(flags, *screen.device, camera, *view, loop, physics.get(),
        files ? &files->recorder() : nullptr, start_s);

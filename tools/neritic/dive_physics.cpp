@@ -110,7 +110,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
   if (seconds > kMostPhysicsSeconds)
     return refusal("--seconds", fmt::format("{}", seconds),
                    fmt::format("up to {:g}", kMostPhysicsSeconds));
-  if (flags.runs) return dive_runs(flags, scene, interrupt);
+  if (flags.runs) return dive_runs(flags, scene, seconds, interrupt);
   NERITIC_TRY(const auto physics, make_dive_physics(flags, scene, LivePhysics::Pace::kPicture));
   const PhysicsWorld& world = physics->world();
   const double start_s = physics->newest().time_s, step_s = world.step_s();
@@ -145,7 +145,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
        .stop = {.frames = static_cast<std::uint64_t>(std::ceil(seconds / step_s - 1e-9)),
                 .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
-  // Also of a run that failed: what it did until then.
+  // A run that failed prints its summary too.
   if (replay && !flags.quiet) replay->tell();
   print_summary(flags, world, physics->simulation(), files.recorder(),
                 {loop.wall_s(), loop.dropped(), start_s});

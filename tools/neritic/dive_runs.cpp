@@ -1,13 +1,16 @@
 #include "tools/neritic/dive_runs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "engine/core/json.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/sim/workers.hpp"
-#include "testbed/record/dive_record.hpp"
+#include "testbed/loop/loop.hpp"
+#include "testbed/record/file_sinks.hpp"
 #include "tools/neritic/flags.hpp"
 
 namespace neritic::tools {
@@ -45,21 +48,24 @@ Run run_with(scene::Scene scene, std::uint64_t seed, double seconds, const Inter
   scene.seed = seed;
   auto made = PhysicsWorld::create(scene);
   if (!made.ok()) return {Status(made.error()), {}};
-  const PhysicsWorld& world = **made;
-  const auto simulation = world.simulation({.seed = seed}, 1);
-  DiveRecorder recorder(world, {});
-  recorder.add(simulation->newest());
-  while (simulation->newest().time_s < seconds - 1e-9 && !interrupt.requested() &&
-         !all_done(world, simulation->newest().state)) {
-    simulation->advance(1);
-    recorder.add(simulation->newest());
-  }
+  const auto physics = LivePhysics::create(std::move(*made), {.seed = seed, .threads = 1});
+  const PhysicsWorld& world = physics->world();
+  DiveLog log(world, {}, {});
   Run run;
-  const PhysicsState& end = simulation->newest().state;
+  Loop loop(
+      {.clock = Clock::simulated(0.0, world.step_s()),
+       .physics = physics.get(),
+       .step_sinks = {&log},
+       .stop = {.frames = static_cast<std::uint64_t>(std::ceil(seconds / world.step_s() - 1e-9)),
+                .interrupted = [&] {
+                  return interrupt.requested() || all_done(world, physics->newest().state);
+                }}});
+  run.status = loop.run();
+  const PhysicsState& end = physics->newest().state;
   for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
     const PhysicsVehicle& vehicle = world.vehicles()[i];
     if (!has_end(vehicle)) continue;
-    const DiveFigures& figures = recorder.figures()[i];
+    const DiveFigures& figures = log.recorder().figures()[i];
     run.outcomes.push_back(
         {vehicle.name, seed, end.vehicles()[i].mission.arrived, vehicle.mission->waypoint_count(),
          figures.arrivals_s.empty() ? 0.0 : figures.arrivals_s.back(),
@@ -115,9 +121,12 @@ void print(const std::vector<Outcome>& outcomes, std::size_t done, bool as_json)
 
 }  // namespace
 
-Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, const Interrupt& interrupt) {
-  constexpr double kRunSeconds = 60.0;
-  const double seconds = flags.seconds.value_or(kRunSeconds);
+Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, double seconds,
+                 const Interrupt& interrupt) {
+  NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
+  if (std::ranges::none_of(world->vehicles(), has_end))
+    return refusal("--runs", fmt::format("{}, which has no mission with an end", flags.scene),
+                   "waypoints without repeat");
   std::vector<Run> runs(*flags.runs);
   Progress progress("run", runs.size());
   std::mutex told;  // guards progress
@@ -134,9 +143,6 @@ Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, const Interr
     outcomes.insert(outcomes.end(), run.outcomes.begin(), run.outcomes.end());
   }
   if (interrupt.requested()) return failure(ErrorCode::kInterrupted, "--runs: interrupted");
-  if (outcomes.empty())
-    return bad_input("--runs: {} has no mission with an end; accepted: waypoints without repeat",
-                     flags.scene);
   const auto done = static_cast<std::size_t>(std::ranges::count_if(outcomes, &Outcome::done));
   print(outcomes, done, flags.json);
   if (done < outcomes.size())

@@ -1,4 +1,4 @@
-// `neritic dive --headless --runs N`: the same dive with N seeds, and a table of what became of it.
+// `neritic dive --headless --runs N`: the same dive with N seeds, and a table of outcomes.
 #pragma once
 
 #include "engine/scene/scene.hpp"
@@ -7,9 +7,10 @@
 
 namespace neritic::tools {
 
-// Runs of the scene with the seeds from its own on, each until its missions are done or --seconds
-// are over. An Error (exit status 1) where a mission was not done. Precondition: a vehicle of the
-// scene has a mission with an end.
-Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, const Interrupt& interrupt);
+// Runs of the scene with the seeds from its own on, each until its missions are done or the seconds
+// are over. kBadInput if no vehicle has a mission with an end; another Error (exit status 1) if a
+// mission was not done. Precondition: PhysicsWorld::needed.
+Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, double seconds,
+                 const Interrupt& interrupt);
 
 }  // namespace neritic::tools
