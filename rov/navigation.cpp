@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rov/controller.hpp"
 #include "rov/navigation_measurements.hpp"
@@ -37,20 +38,10 @@ bool within(const Vec3& v, double most) {
   return is_finite(v) && glm::length(v) <= most;
 }
 
-// Whether there is a reading that was not used yet; it is then. Readings that come faster than the
-// effort allows are left out.
+// Whether there is a reading that was not used yet; it is then.
 template <class Value>
-bool fresh(const NavigationModel& model, double rate_hz, const Reading<Value>& reading,
-           std::uint64_t& used) {
-  if (reading.count == used) return false;
-  const double most_hz = model.effort.corrections_hz;
-  const auto every = most_hz > 0.0 && rate_hz > most_hz
-                         ? static_cast<std::uint64_t>(std::ceil(rate_hz / most_hz - 1e-9))
-                         : std::uint64_t{1};
-  // The first reading is number 1: it and every so many after it are used.
-  const bool wanted = (reading.count - 1) / every != (used - 1) / every || used == 0;
-  used = reading.count;
-  return wanted;
+bool fresh(const Reading<Value>& reading, std::uint64_t& used) {
+  return std::exchange(used, reading.count) != reading.count;
 }
 
 // In body axes.
@@ -93,9 +84,7 @@ class Corrections {
     move_covariance(state_, model_.motion);
   }
   void apply(Aid aid, double rate_hz, const Measurement& measurement) {
-    const double most_hz = model_.effort.corrections_hz;
-    correct(state_, measurement, tally(aid),
-            patience(most_hz > 0.0 ? std::min(rate_hz, most_hz) : rate_hz));
+    correct(state_, measurement, tally(aid), patience(rate_hz));
   }
 
  private:
@@ -128,18 +117,16 @@ void correct_by_fix(const NavigationModel& model, const UsblReading& reading, do
 void correct_by_new(const NavigationModel& model, const SensorReadings& readings, double time_s,
                     NavigationState& state) {
   Corrections out(model, time_s, state);
-  if (model.dvl && fresh(model, model.dvl->rate_hz, readings.dvl, state.dvl_used))
+  if (model.dvl && fresh(readings.dvl, state.dvl_used))
     correct_by_dvl(model, readings.dvl.value, out, state);
-  if (model.pressure &&
-      fresh(model, model.pressure->rate_hz, readings.pressure, state.pressure_used)) {
+  if (model.pressure && fresh(readings.pressure, state.pressure_used)) {
     const double depth_m = readings.pressure.value.depth_m;
     if (!out.refuse(Aid::kPressure, std::abs(depth_m) <= kMostDepth_m)) {
       out.prepare();
       out.apply(Aid::kPressure, model.pressure->rate_hz, depth_measurement(model, state, depth_m));
     }
   }
-  if (model.compass &&
-      fresh(model, model.compass->rate_hz, readings.heading_rad, state.compass_used)) {
+  if (model.compass && fresh(readings.heading_rad, state.compass_used)) {
     const double heading = readings.heading_rad.value;
     if (!out.refuse(Aid::kCompass, std::abs(heading) <= 10.0 * kPi) && has_heading(state)) {
       out.prepare();
@@ -151,7 +138,7 @@ void correct_by_new(const NavigationModel& model, const SensorReadings& readings
   const double travel_s = readings.usbl.value.travel_s, period_s = 1.0 / model.usbl->rate_hz;
   const double late_s = travel_s > 0.0 ? std::min(0.5 * travel_s, 0.9 * period_s) : 0.0;
   const double age_s = time_s - readings.usbl.time_s;
-  if (age_s >= late_s && fresh(model, model.usbl->rate_hz, readings.usbl, state.usbl_used))
+  if (age_s >= late_s && fresh(readings.usbl, state.usbl_used))
     correct_by_fix(model, readings.usbl.value, std::clamp(age_s, 0.0, period_s), out, state);
 }
 

@@ -43,7 +43,7 @@ std::string missing_for_navigation(const SensorSet& sensors) {
   return missing;
 }
 
-NavigationModel navigation_model(const SensorSet& sensors, const NavigationEffort& effort) {
+NavigationModel navigation_model(const SensorSet& sensors) {
   NERITIC_CHECK(sensors.imu.has_value(), "navigation without an inertial unit");
   NavigationModel out;
   out.imu = *sensors.imu;
@@ -51,7 +51,6 @@ NavigationModel navigation_model(const SensorSet& sensors, const NavigationEffor
   out.pressure = sensors.pressure;
   out.compass = sensors.compass;
   out.usbl = sensors.usbl;
-  out.effort = effort;
   // White noise of a sample stands for the time of a sample: variance times the period.
   out.motion.gyro = square(out.imu.gyro.white) / out.imu.rate_hz + square(kLeastGyro);
   out.motion.accelerometer =

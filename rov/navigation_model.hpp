@@ -11,12 +11,6 @@
 
 namespace neritic::rov {
 
-// How much of the readings is used: error against cost (`neritic tradeoff navigation`).
-struct NavigationEffort {
-  // Corrections by one sensor a second, at most; readings between are left out. 0: all.
-  double corrections_hz = 0.0;
-};
-
 struct NavigationModel {
   Imu imu;
   std::optional<Dvl> dvl;
@@ -24,7 +18,6 @@ struct NavigationModel {
   std::optional<Compass> compass;
   std::optional<Usbl> usbl;
   MotionNoise motion;
-  NavigationEffort effort;
   // Variances of the biases before anything was measured.
   std::array<double, kErrors - kFirstBias> bias_variance{};
 };
@@ -33,7 +26,7 @@ struct NavigationModel {
 // are named: "[imu], [compass]", "[dvl] or [usbl]". Empty: it can.
 std::string missing_for_navigation(const SensorSet& sensors);
 // Precondition: nothing is missing.
-NavigationModel navigation_model(const SensorSet& sensors, const NavigationEffort& effort = {});
+NavigationModel navigation_model(const SensorSet& sensors);
 
 // The variance of a reading's white noise, discretisation included; and of one metre of depth.
 double depth_variance(const PressureSensor& sensor);

@@ -93,8 +93,8 @@ inline const std::vector<State>& circling(double seconds) {
 class NavigationRun {
  public:
   NavigationRun(const SensorSet& sensors, std::uint64_t seed, const State& start,
-                const SensorWater& in = {}, const NavigationEffort& effort = {})
-      : water(in), sensors_(sensors), seed_(seed), model_(navigation_model(sensors, effort)) {
+                const SensorWater& in = {})
+      : water(in), sensors_(sensors), seed_(seed), model_(navigation_model(sensors)) {
     read(start, -1.0, 0.0);
     state = start_navigation(model_, readings, surveyed_launch(start.position_ned_m, seed, 0), 0.0);
   }
