@@ -28,7 +28,7 @@ double encoded_level(double x) {
   return 255.0 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055);
 }
 
-// What tone curves make of saturated light: some channels below 0, some above 1.
+// Colours of saturated light after a tone curve: some channels lie below 0, some above 1.
 std::vector<Vec3> wide_colours() {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> channel(-0.4, 1.4), scale(0.02, 1.0);

@@ -13,7 +13,7 @@ struct Lch {
   double lightness, chroma, hue_rad;
 };
 
-// Of linear sRGB.
+// Lightness, chroma and hue of a linear sRGB colour.
 inline Lch oklab(const Vec3& c) {
   const double l = std::cbrt(0.4122214708 * c.x + 0.5363325363 * c.y + 0.0514459929 * c.z);
   const double m = std::cbrt(0.2119034982 * c.x + 0.6806995451 * c.y + 0.1073969566 * c.z);

@@ -254,7 +254,7 @@ TEST_F(DivePhysics, RunsAlikeAndReplaysWhatItRecorded) {
   EXPECT_EQ(other.status, 1);
   EXPECT_NE(other.err.find("another state than recorded from step"), std::string::npos)
       << other.err;
-  // What it did until then is told, as of a run that ends well.
+  // It prints the steps before the difference, and the usual summary.
   EXPECT_NE(other.out.find(" of 1920 steps, each with the hash that was recorded"),
             std::string::npos)
       << other.out;

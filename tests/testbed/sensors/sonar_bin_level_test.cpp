@@ -23,7 +23,7 @@ struct BinnedDevice {
   double own_bin_m = 0.0;     // of its file
 };
 
-// Of assets/sensors: devices whose bins are longer than the pulse, about as long, and a side-scan.
+// Devices of assets/sensors whose bins are longer than the pulse, about as long, and a side-scan.
 std::vector<BinnedDevice> binned_devices() {
   const test::ScratchFolder scratch;
   std::vector<BinnedDevice> found;
