@@ -1,0 +1,127 @@
+#include "engine/net/clock_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace neritic::net {
+namespace {
+
+constexpr double kForget = 1.0 / 256.0;  // of the spread, a packet
+
+}  // namespace
+
+void ClockMap::restart() {
+  const std::uint64_t jumps = jumps_;
+  *this = {};
+  jumps_ = jumps;
+}
+
+// How long the way took beyond the shortest; the longest is forgotten slowly.
+void ClockMap::note_way(TimeNs way_ns, TimeNs) {
+  const double way = std::max(0.0, static_cast<double>(way_ns));
+  spread_ns_ += kForget * (way - spread_ns_);
+  longest_ns_ = std::max(way, longest_ns_ * (1.0 - kForget / 16.0));
+}
+
+// Whether the device's clock was set: a packet comes before it can, or all come late for long.
+bool ClockMap::jumped(TimeNs late_ns, TimeNs arrived_ns) {
+  if (late_ns < -kEarly_ns) return true;
+  if (late_ns <= kLate_ns) {
+    late_ = false;
+    return false;
+  }
+  if (!std::exchange(late_, true)) late_since_ns_ = arrived_ns;
+  return arrived_ns - late_since_ns_ >= kLateFor_ns;
+}
+
+void ClockMap::add(TimeNs sent_ns, TimeNs arrived_ns) {
+  const TimeNs way_ns = arrived_ns - sent_ns;
+  if (!lowest_.empty()) {
+    const TimeNs late_ns = arrived_ns - to_host(sent_ns);
+    if (jumped(late_ns, arrived_ns)) {
+      ++jumps_;
+      restart();
+    }
+  }
+  newest_sent_ns_ = lowest_.empty() ? sent_ns : std::max(newest_sent_ns_, sent_ns);
+  const auto second = [](TimeNs t) { return t / kBucket_ns; };
+  const auto at = std::ranges::find_if(
+      lowest_, [&](const Point& p) { return second(p.sent_ns) >= second(sent_ns); });
+  bool changed = true;
+  if (at != lowest_.end() && second(at->sent_ns) == second(sent_ns)) {
+    changed = way_ns < at->way_ns;
+    if (changed) *at = {sent_ns, way_ns};
+  } else {
+    lowest_.insert(at, {sent_ns, way_ns});
+  }
+  while (lowest_.size() > kBuckets) lowest_.pop_front();
+  if (changed) fit();
+  note_way(arrived_ns - to_host(sent_ns), arrived_ns);
+}
+
+// The edge of the lower hull above the mean of all times; level while the times span little.
+void ClockMap::fit() {
+  const auto lowest = std::ranges::min_element(lowest_, {}, &Point::way_ns);
+  base_sent_ns_ = lowest->sent_ns;
+  base_offset_ns_ = lowest->way_ns;
+  slope_ = 0.0;
+  if (lowest_.back().sent_ns - lowest_.front().sent_ns < kDriftAfter_ns) return;
+  const TimeNs from_ns = lowest_.front().sent_ns, level_ns = base_offset_ns_;
+  struct Corner {
+    double t, way;
+  };
+  std::vector<Corner> hull;
+  double mean = 0.0;
+  for (const Point& point : lowest_) {
+    const Corner c{static_cast<double>(point.sent_ns - from_ns),
+                   static_cast<double>(point.way_ns - level_ns)};
+    mean += c.t / static_cast<double>(lowest_.size());
+    const auto above = [&](const Corner& a, const Corner& b) {
+      return (b.way - a.way) * (c.t - a.t) >= (c.way - a.way) * (b.t - a.t);
+    };
+    while (hull.size() > 1 && above(hull[hull.size() - 2], hull.back())) hull.pop_back();
+    hull.push_back(c);
+  }
+  std::size_t i = 1;
+  while (i + 1 < hull.size() && hull[i].t < mean) ++i;
+  const Corner &a = hull[i - 1], &b = hull[i];
+  slope_ = std::clamp((b.way - a.way) / (b.t - a.t), -kMostDrift, kMostDrift);
+  base_sent_ns_ = from_ns + static_cast<TimeNs>(a.t);
+  base_offset_ns_ = level_ns + static_cast<TimeNs>(a.way);
+}
+
+void ClockMap::add_exchange(TimeNs t0_ns, TimeNs t1_ns, TimeNs t2_ns, TimeNs t3_ns) {
+  add(t2_ns, t3_ns);
+  const TimeNs round_ns = (t3_ns - t0_ns) - (t2_ns - t1_ns);
+  if (round_ns < 0) return;
+  // A good exchange counts for a minute.
+  if (two_way_ && round_ns > best_round_ns_ && t3_ns - round_at_ns_ < 60 * kBucket_ns) return;
+  // Host minus device; by the line, the way back would take no time.
+  const TimeNs offset_ns = ((t0_ns - t1_ns) + (t3_ns - t2_ns)) / 2;
+  const TimeNs by_line_ns = to_host(t2_ns) - shift_ns_ - t2_ns;
+  shift_ns_ = offset_ns - by_line_ns;
+  two_way_ = true;
+  best_round_ns_ = round_ns;
+  round_at_ns_ = t3_ns;
+}
+
+TimeNs ClockMap::to_host(TimeNs sent_ns) const {
+  if (lowest_.empty()) return sent_ns;
+  return sent_ns + base_offset_ns_ + shift_ns_ +
+         static_cast<TimeNs>(slope_ * static_cast<double>(sent_ns - base_sent_ns_));
+}
+
+ClockEstimate ClockMap::estimate() const {
+  ClockEstimate out{.jumps = jumps_};
+  if (lowest_.empty()) return out;
+  out.known = true;
+  out.offset_s = 1e-9 * static_cast<double>(to_host(newest_sent_ns_) - newest_sent_ns_);
+  out.drift_ppm = 1e6 * slope_;
+  out.spread_ms = 1e-6 * spread_ns_;
+  out.longest_ms = 1e-6 * longest_ns_;
+  return out;
+}
+
+}  // namespace neritic::net

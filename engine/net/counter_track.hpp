@@ -1,0 +1,52 @@
+// A device's counter that wraps, as one that does not; and which values are new, repeated, older or
+// missing. A value far ahead counts only if the next follows it, since one corrupt packet must not
+// make all good ones after it old; an older value after a silence is that of a device that was
+// started again. Plain value; one thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "engine/core/clock.hpp"
+
+namespace neritic::net {
+
+struct LinkCounts {
+  std::uint64_t datagrams = 0, bytes = 0;
+  std::uint64_t malformed = 0;  // no datagram of the device's, or one that is not whole
+  std::uint64_t unused = 0;     // whole ones that the scene has no use for
+  std::uint64_t repeated = 0, older = 0, lost = 0;
+  std::uint64_t restarts = 0;    // of the device
+  std::uint64_t refused = 0;     // parts of whole ones: a segment that is not finite
+  std::uint64_t overflowed = 0;  // dropped by the full receive queue
+};
+
+class CounterTrack {
+ public:
+  // bits: the counter's width, 8 to 64.
+  explicit CounterTrack(int bits) : bits_(bits) {}
+
+  enum class Verdict { kNew, kRepeated, kOlder, kDoubtful, kRestarted };
+  // The value of a packet that arrived then; counts what it finds. An older value that was counted
+  // as lost is so no more. kDoubtful: far ahead; nothing is counted yet.
+  Verdict take(std::uint64_t value, TimeNs arrived_ns, LinkCounts& counts);
+  // The value of the newest packet without wraps: rises, also over a restart.
+  std::uint64_t newest() const { return newest_; }
+
+  static constexpr std::int64_t kMostMissing = 1000;
+  static constexpr TimeNs kSilence_ns = 500'000'000;
+
+ private:
+  std::int64_t step_to(std::uint64_t value) const;
+  Verdict begin(std::uint64_t value, TimeNs arrived_ns, bool restarted);
+
+  int bits_;
+  bool any_ = false;
+  std::uint64_t value_ = 0;                // the newest, as it came
+  std::uint64_t newest_ = 0;               // without wraps
+  std::uint64_t seen_ = 0;                 // bit i: newest - i came
+  TimeNs heard_ns_ = 0;                    // the newest good value
+  std::optional<std::uint64_t> doubtful_;  // the value far ahead that came last
+};
+
+}  // namespace neritic::net

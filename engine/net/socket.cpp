@@ -1,0 +1,210 @@
+#include "engine/net/socket.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "engine/core/clock.hpp"
+
+namespace neritic::net {
+namespace {
+
+constexpr std::size_t kBatch = 64, kStreamRead = 64 << 10;
+constexpr int kWait_ms = 1000;
+constexpr TimeNs kRetry_ns = 1'000'000'000;
+
+sockaddr_in system_address(const Address& address) {
+  sockaddr_in out{};
+  out.sin_family = AF_INET;
+  out.sin_addr.s_addr = htonl(address.ipv4);
+  out.sin_port = htons(address.port);
+  return out;
+}
+
+Error socket_error(const Address& address, std::string_view what, int error) {
+  return failure(ErrorCode::kIo, "{}: {}: {}", to_text(address), what, std::strerror(error));
+}
+
+Descriptor new_socket(int type) {
+  return Descriptor(::socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+}
+
+Status bind_to(const Descriptor& socket, const Address& address) {
+  const sockaddr_in to = system_address(address);
+  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0)
+    return socket_error(address, "cannot listen there", errno);
+  return {};
+}
+
+void set(const Descriptor& socket, int level, int option, int value) {
+  (void)::setsockopt(socket.get(), level, option, &value, sizeof value);
+}
+
+bool wait_for(const Descriptor& socket, short events) {
+  pollfd wanted{socket.get(), events, 0};
+  return ::poll(&wanted, 1, kWait_ms) == 1;
+}
+
+int pending_error(const Descriptor& socket) {
+  int error = 0;
+  socklen_t size = sizeof error;
+  return ::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
+}
+
+}  // namespace
+
+Descriptor::~Descriptor() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+Result<UdpReceiver> UdpReceiver::bind(const Address& address) {
+  Descriptor socket = new_socket(SOCK_DGRAM);
+  if (!socket.open()) return socket_error(address, "no socket", errno);
+  set(socket, SOL_SOCKET, SO_RCVBUF, kReceiveQueue);
+  set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1);
+  NERITIC_TRY_STATUS(bind_to(socket, address));
+  UdpReceiver out(std::move(socket));
+  out.buffer_.resize(kBatch * kMostDatagram);
+  return out;
+}
+
+std::uint16_t UdpReceiver::port() const {
+  sockaddr_in at{};
+  socklen_t size = sizeof at;
+  (void)::getsockname(socket_.get(), reinterpret_cast<sockaddr*>(&at), &size);
+  return ntohs(at.sin_port);
+}
+
+std::size_t UdpReceiver::receive(const Received& received, std::size_t most) {
+  std::array<mmsghdr, kBatch> messages{};
+  std::array<iovec, kBatch> parts{};
+  alignas(cmsghdr) std::array<char, 64> control{};
+  std::size_t total = 0;
+  while (total < most) {
+    const std::size_t wanted = std::min(kBatch, most - total);
+    for (std::size_t i = 0; i < wanted; ++i) {
+      parts[i] = {buffer_.data() + i * kMostDatagram, kMostDatagram};
+      messages[i].msg_hdr = {};
+      messages[i].msg_hdr.msg_iov = &parts[i];
+      messages[i].msg_hdr.msg_iovlen = 1;
+    }
+    // The count of drops comes with a datagram; the first of a batch tells.
+    messages[0].msg_hdr.msg_control = control.data();
+    messages[0].msg_hdr.msg_controllen = control.size();
+    const int got = ::recvmmsg(socket_.get(), messages.data(), static_cast<unsigned>(wanted),
+                               MSG_DONTWAIT, nullptr);
+    if (got <= 0) break;
+    for (cmsghdr* c = CMSG_FIRSTHDR(&messages[0].msg_hdr); c;
+         c = CMSG_NXTHDR(&messages[0].msg_hdr, c)) {
+      if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SO_RXQ_OVFL) continue;
+      std::uint32_t drops = 0;
+      std::memcpy(&drops, CMSG_DATA(c), sizeof drops);
+      overflowed_ = drops;
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(got); ++i)
+      received(Bytes(buffer_).subspan(i * kMostDatagram, messages[i].msg_len),
+               (messages[i].msg_hdr.msg_flags & MSG_TRUNC) != 0);
+    total += static_cast<std::size_t>(got);
+    if (static_cast<std::size_t>(got) < wanted) break;
+  }
+  return total;
+}
+
+Result<UdpSender> UdpSender::create(const Address& to) {
+  Descriptor socket = new_socket(SOCK_DGRAM);
+  if (!socket.open()) return socket_error(to, "no socket", errno);
+  return UdpSender(std::move(socket), to);
+}
+
+bool UdpSender::send(Bytes bytes) const {
+  const sockaddr_in to = system_address(to_);
+  return ::sendto(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL,
+                  reinterpret_cast<const sockaddr*>(&to),
+                  sizeof to) == static_cast<ssize_t>(bytes.size());
+}
+
+Result<TcpReceiver> TcpReceiver::open(const Address& address, Way way) {
+  TcpReceiver out(address, way);
+  out.buffer_.resize(kStreamRead);
+  if (way == Way::kConnect) return out;
+  out.listener_ = new_socket(SOCK_STREAM);
+  if (!out.listener_.open()) return socket_error(address, "no socket", errno);
+  set(out.listener_, SOL_SOCKET, SO_REUSEADDR, 1);
+  NERITIC_TRY_STATUS(bind_to(out.listener_, address));
+  if (::listen(out.listener_.get(), 1) != 0)
+    return socket_error(address, "cannot listen there", errno);
+  return out;
+}
+
+// Whether there is a stream that can be read.
+bool TcpReceiver::attempt() {
+  if (stream_.open()) {
+    if (!connecting_) return true;
+    pollfd wanted{stream_.get(), POLLOUT, 0};
+    if (::poll(&wanted, 1, 0) != 1) return false;
+    connecting_ = false;
+    if (pending_error(stream_) == 0) return true;
+    stream_ = Descriptor();
+    return false;
+  }
+  if (way_ == Way::kListen) {
+    stream_ =
+        Descriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    return stream_.open();
+  }
+  if (now_ns() < next_attempt_ns_) return false;
+  next_attempt_ns_ = now_ns() + kRetry_ns;
+  stream_ = new_socket(SOCK_STREAM);
+  const sockaddr_in to = system_address(address_);
+  const int status = ::connect(stream_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  connecting_ = status != 0 && errno == EINPROGRESS;
+  if (status != 0 && !connecting_) stream_ = Descriptor();
+  return status == 0;
+}
+
+void TcpReceiver::receive(const Received& received) {
+  if (!attempt()) return;
+  const ssize_t got = ::recv(stream_.get(), buffer_.data(), buffer_.size(), MSG_DONTWAIT);
+  if (got > 0) {
+    received(Bytes(buffer_).first(static_cast<std::size_t>(got)), false);
+  } else if (got == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
+    stream_ = Descriptor();
+    received({}, true);
+  }
+}
+
+Result<TcpSender> TcpSender::connect(const Address& to) {
+  Descriptor socket = new_socket(SOCK_STREAM);
+  if (!socket.open()) return socket_error(to, "no socket", errno);
+  const sockaddr_in at = system_address(to);
+  int error = 0;
+  if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0)
+    error = errno != EINPROGRESS        ? errno
+            : wait_for(socket, POLLOUT) ? pending_error(socket)
+                                        : ETIMEDOUT;
+  if (error != 0) return socket_error(to, "cannot connect", error);
+  set(socket, IPPROTO_TCP, TCP_NODELAY, 1);
+  return TcpSender(std::move(socket));
+}
+
+bool TcpSender::send(Bytes bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent =
+        ::send(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent > 0)
+      bytes = bytes.subspan(static_cast<std::size_t>(sent));
+    else if ((errno != EAGAIN && errno != EWOULDBLOCK) || !wait_for(socket_, POLLOUT))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace neritic::net

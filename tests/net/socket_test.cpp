@@ -1,0 +1,110 @@
+#include "engine/net/socket.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/clock.hpp"
+
+namespace neritic::net {
+namespace {
+
+std::vector<std::byte> packet(std::size_t size, int value) {
+  return std::vector<std::byte>(size, static_cast<std::byte>(value));
+}
+
+TEST(Address, GoodOnesComeBackAndOthersAreRefusedInOneLine) {
+  for (const char* text : {"udp://127.0.0.1:9763", "tcp://192.168.1.20:1", "udp://0.0.0.0:65535"})
+    EXPECT_EQ(to_text(parse_address(text).value()), text);
+  EXPECT_TRUE(parse_address("udp://localhost:9763")->loopback());
+  EXPECT_FALSE(parse_address("udp://0.0.0.0:9763")->loopback());
+  for (const char* text :
+       {"", "udp", "udp://", "127.0.0.1:9763", "udp://127.0.0.1", "udp://127.0.0.1:",
+        "udp://127.0.0.1:0", "udp://127.0.0.1:65536", "udp://127.0.0.1:-1", "udp://127.0.0.256:1",
+        "udp://1.2.3:4", "udp://1.2.3.4.5:6", "http://127.0.0.1:1", "udp://127.0.0.1:9763 ",
+        "udp://example.org:1", "udp://:1", "udp://127.0.0.1:99999999999999999999"}) {
+    const auto address = parse_address(text);
+    ASSERT_FALSE(address.ok()) << text;
+    EXPECT_EQ(address.error().message.find('\n'), std::string::npos);
+    EXPECT_NE(address.error().message.find("accepted: udp://"), std::string::npos);
+  }
+}
+
+// A receiver on a port that the system chooses, and a sender to it.
+struct Pair {
+  UdpReceiver receiver = UdpReceiver::bind({.port = 0}).value();
+  UdpSender sender = UdpSender::create({.port = receiver.port()}).value();
+};
+
+TEST(Udp, DatagramsArriveInOrderAndNoneIsANumberOfNone) {
+  Pair pair;
+  const auto nothing = [](Bytes, bool) { ADD_FAILURE(); };
+  EXPECT_EQ(pair.receiver.receive(nothing, 100), 0u);
+  for (int i = 0; i < 200; ++i)
+    ASSERT_TRUE(pair.sender.send(packet(static_cast<std::size_t>(i), i)));
+  int next = 0;
+  const auto check = [&](Bytes bytes, bool cut) {
+    EXPECT_FALSE(cut);
+    EXPECT_EQ(bytes.size(), static_cast<std::size_t>(next));
+    if (!bytes.empty()) {
+      EXPECT_EQ(bytes.back(), static_cast<std::byte>(next));
+    }
+    ++next;
+  };
+  EXPECT_EQ(pair.receiver.receive(check, 150), 150u);
+  EXPECT_EQ(pair.receiver.receive(check, 1000), 50u);
+}
+
+TEST(Udp, WhatIsLongerThanAnyPacketIsTold) {
+  Pair pair;
+  ASSERT_TRUE(pair.sender.send(packet(kMostDatagram + 1, 1)));
+  bool told = false;
+  pair.receiver.receive([&](Bytes, bool cut) { told = cut; }, 1);
+  EXPECT_TRUE(told);
+}
+
+TEST(Udp, AFullQueueDropsAndCounts) {
+  Pair pair;
+  constexpr std::uint64_t kSent = 20'000;
+  for (std::uint64_t i = 0; i < kSent; ++i) (void)pair.sender.send(packet(1000, 1));
+  std::uint64_t got = pair.receiver.receive([](Bytes, bool) {}, kSent);
+  EXPECT_LT(got, kSent);
+  // The next datagram tells of those before it.
+  ASSERT_TRUE(pair.sender.send(packet(1, 1)));
+  got += pair.receiver.receive([](Bytes, bool) {}, 1);
+  EXPECT_EQ(got + pair.receiver.overflowed(), kSent + 1);
+}
+
+TEST(Udp, ATakenPortIsOneLine) {
+  const UdpReceiver first = UdpReceiver::bind({.port = 0}).value();
+  const auto second = UdpReceiver::bind({.port = first.port()});
+  ASSERT_FALSE(second.ok());
+  EXPECT_NE(second.error().message.find(fmt::format("127.0.0.1:{}: cannot listen", first.port())),
+            std::string::npos)
+      << second.error().message;
+}
+
+TEST(Tcp, AStreamArrivesWholeAndItsEndIsTold) {
+  // A free port.
+  const std::uint16_t port = UdpReceiver::bind({.port = 0})->port();
+  const Address address{Transport::kTcp, 0x7f000001, port};
+  auto receiver = TcpReceiver::open(address, TcpReceiver::Way::kListen).value();
+  std::vector<std::byte> got;
+  int ends = 0;
+  const auto take = [&](Bytes bytes, bool end) {
+    got.insert(got.end(), bytes.begin(), bytes.end());
+    ends += end ? 1 : 0;
+  };
+  receiver.receive(take);
+  for (int round = 1; round <= 2; ++round) {
+    auto sender = std::make_unique<TcpSender>(TcpSender::connect(address).value());
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(sender->send(packet(1000, i)));
+    for (int i = 0; i < 1000 && got.size() < 10'000; ++i) receiver.receive(take);
+    EXPECT_EQ(got.size(), 10'000u);
+    sender.reset();
+    for (int i = 0; i < 1000 && ends < round; ++i) receiver.receive(take);
+    EXPECT_EQ(ends, round);
+    got.clear();
+  }
+}
+
+}  // namespace
+}  // namespace neritic::net
