@@ -37,8 +37,6 @@ Status read_into(const fs::path& path, Buffer& out) {
   return {};
 }
 
-// The name that symbolic links lead to, whether or not there is a file yet: a rename must replace
-// that one, not the link.
 Result<fs::path> behind_links(const fs::path& path) {
   constexpr int kMostLinks = 40;  // as Linux
   std::error_code error;
@@ -67,15 +65,19 @@ Result<std::string> read_text(const fs::path& path) {
   return text;
 }
 
-Status write_file(const fs::path& path, std::span<const std::byte> bytes) {
+Result<WriteTarget> write_target(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   // A device or a pipe is written to: a rename would put a plain file in its place.
-  const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
-  fs::path target = path;
-  if (!in_place) {
-    NERITIC_TRY(target, behind_links(path));
-  }
+  if (fs::exists(status) && !fs::is_regular_file(status)) return WriteTarget{path, true};
+  NERITIC_TRY(fs::path target, behind_links(path));
+  return WriteTarget{std::move(target), false};
+}
+
+Status write_file(const fs::path& path, std::span<const std::byte> bytes) {
+  NERITIC_TRY(const auto where, write_target(path));
+  const auto& [target, in_place] = where;
+  std::error_code error;
   static std::atomic<unsigned> counter{0};  // two threads may write the same name at once
   fs::path name = target;
   if (!in_place) name += fmt::format(".{}-{}.tmp", ::getpid(), counter++);
@@ -84,7 +86,6 @@ Status write_file(const fs::path& path, std::span<const std::byte> bytes) {
   const bool written =
       bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
   const bool closed = std::fclose(file.release()) == 0;
-  error.clear();
   if (written && closed && !in_place) fs::rename(name, target, error);
   if (!written || !closed || error) {
     std::error_code ignored;

@@ -25,6 +25,15 @@ Result<std::string> read_text(const std::filesystem::path& path);
 Status write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status write_text(const std::filesystem::path& path, std::string_view text);
 
+// Where a file of that name is written: the name that symbolic links lead to, whether or not there
+// is a file yet (a rename must replace that one, not the link). in_place: it is no plain file. kIo
+// for a loop of links.
+struct WriteTarget {
+  std::filesystem::path path;
+  bool in_place = false;
+};
+Result<WriteTarget> write_target(const std::filesystem::path& path);
+
 // A file that is not there is no fault. kIo where it is and can't be removed.
 Status remove_file(const std::filesystem::path& path);
 

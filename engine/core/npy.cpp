@@ -260,8 +260,8 @@ Result<NpyArray> read_npy(const std::filesystem::path& path) {
   return parse_npy(bytes, path.string());
 }
 
-Status write_npy(const std::filesystem::path& path, NpyType type,
-                 std::span<const std::size_t> shape, std::span<const std::byte> bytes) {
+std::vector<std::byte> npy_bytes(NpyType type, std::span<const std::size_t> shape,
+                                 std::span<const std::byte> bytes) {
   std::string dims;
   for (const std::size_t extent : shape) dims += fmt::format("{}, ", extent);
   std::string header =
@@ -278,7 +278,12 @@ Status write_npy(const std::filesystem::path& path, NpyType type,
   out[9] = static_cast<std::byte>(header.size() >> 8);
   std::memcpy(out.data() + 10, header.data(), header.size());
   if (!bytes.empty()) std::memcpy(out.data() + 10 + header.size(), bytes.data(), bytes.size());
-  return write_file(path, out);
+  return out;
+}
+
+Status write_npy(const std::filesystem::path& path, NpyType type,
+                 std::span<const std::size_t> shape, std::span<const std::byte> bytes) {
+  return write_file(path, npy_bytes(type, shape, bytes));
 }
 
 Status write_npy(const std::filesystem::path& path, std::span<const float> values,

@@ -37,6 +37,14 @@ struct NpyArray {
   std::vector<double> to_doubles() const;
 };
 
+template <class T>
+constexpr NpyType npy_type_of() {
+  if constexpr (std::is_same_v<T, float>) return NpyType::kFloat32;
+  if constexpr (std::is_same_v<T, double>) return NpyType::kFloat64;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return NpyType::kUint8;
+  if constexpr (std::is_same_v<T, std::uint16_t>) return NpyType::kUint16;
+}
+
 std::size_t npy_type_size(NpyType type);
 bool is_float(NpyType type);
 // "<f4" and so on.
@@ -47,6 +55,9 @@ Result<NpyArray> read_npy(const std::filesystem::path& path);
 // The same from bytes already in memory; name stands in messages. For fuzzing and archives.
 Result<NpyArray> parse_npy(std::span<const std::byte> bytes, const std::string& name);
 
+// The file's bytes.
+std::vector<std::byte> npy_bytes(NpyType type, std::span<const std::size_t> shape,
+                                 std::span<const std::byte> bytes);
 Status write_npy(const std::filesystem::path& path, NpyType type,
                  std::span<const std::size_t> shape, std::span<const std::byte> bytes);
 Status write_npy(const std::filesystem::path& path, std::span<const float> values,

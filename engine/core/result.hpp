@@ -5,9 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "engine/core/check.hpp"
 
@@ -46,44 +47,77 @@ inline int exit_status(ErrorCode code) {
   check_failed(__FILE__, __LINE__, "Result has an error", "");
 }
 
+// Not a std::variant: its templates would cost a twentieth of the time to compile Neritic.
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
-  Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
+  Result(T value) : ok_(true) { std::construct_at(&value_, std::move(value)); }
+  Result(Error error) : ok_(false) { std::construct_at(&error_, std::move(error)); }
+  Result(Result&& other) noexcept(std::is_nothrow_move_constructible_v<T>) : ok_(other.ok_) {
+    take(std::move(other));
+  }
+  Result(const Result& other) requires std::is_copy_constructible_v<T> : ok_(other.ok_) {
+    if (ok_)
+      std::construct_at(&value_, other.value_);
+    else
+      std::construct_at(&error_, other.error_);
+  }
+  Result& operator=(Result other) noexcept(std::is_nothrow_move_constructible_v<T>) {
+    destroy();
+    ok_ = other.ok_;
+    take(std::move(other));
+    return *this;
+  }
+  ~Result() { destroy(); }
 
-  bool ok() const { return state_.index() == 0; }
-  explicit operator bool() const { return ok(); }
+  bool ok() const { return ok_; }
+  explicit operator bool() const { return ok_; }
   // Preconditions: ok() for value(), !ok() for error().
   T& value() & {
     check_value();
-    return *std::get_if<0>(&state_);
+    return value_;
   }
   const T& value() const& {
     check_value();
-    return *std::get_if<0>(&state_);
+    return value_;
   }
   T&& value() && {
     check_value();
-    return std::move(*std::get_if<0>(&state_));
+    return std::move(value_);
   }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
   T& operator*() & { return value(); }
   const T& operator*() const& { return value(); }
   const Error& error() const {
-    if (ok()) [[unlikely]]
+    if (ok_) [[unlikely]]
       error_of_value();
-    return *std::get_if<1>(&state_);
+    return error_;
   }
 
  private:
   void check_value() const {
-    if (!ok()) [[unlikely]]
-      value_of_error(*std::get_if<1>(&state_));
+    if (!ok_) [[unlikely]]
+      value_of_error(error_);
+  }
+  void take(Result&& other) {
+    if (ok_)
+      std::construct_at(&value_, std::move(other.value_));
+    else
+      std::construct_at(&error_, std::move(other.error_));
+  }
+  void destroy() {
+    if (ok_)
+      value_.~T();
+    else
+      error_.~Error();
   }
 
-  std::variant<T, Error> state_;
+  union {
+    T value_;
+    Error error_;
+  };
+  bool ok_;
 };
 
 template <>

@@ -32,6 +32,24 @@ TEST(Result, ValuesThatOnlyMoveMoveOut) {
   EXPECT_EQ(*out, 7);
 }
 
+TEST(Result, CopiesAndTakesTheOther) {
+  const std::string words(40, 'a');  // too long to lie within the string
+  Result<std::string> result(words);
+  Result<std::string> copy = result;
+  EXPECT_EQ(*copy, words);
+  copy = bad_input("{}", words);
+  EXPECT_EQ(copy.error().message, words);
+  EXPECT_EQ(*result, words);
+  Result<std::string> error = copy;
+  copy = result;
+  EXPECT_EQ(*copy, words);
+  result = std::move(error);
+  EXPECT_EQ(result.error().message, words);
+  Result<std::string>& itself = result;
+  result = itself;
+  EXPECT_EQ(result.error().message, words);
+}
+
 TEST(ResultDeathTest, TheValueOfAnErrorEndsTheProgramWithTheErrorsMessage) {
   EXPECT_DEATH((void)half(5).value(), "check failed: .*n: found 5; accepted: an even number");
   const Result<int> odd = half(7);

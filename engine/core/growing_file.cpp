@@ -1,0 +1,77 @@
+#include "engine/core/growing_file.hpp"
+
+#include <system_error>
+
+#include "engine/core/files.hpp"
+
+namespace neritic {
+namespace fs = std::filesystem;
+
+fs::path part_of(const fs::path& path) {
+  fs::path part = path;
+  part += ".part";
+  return part;
+}
+
+Status GrowingFile::append(std::string_view text) {
+  if (written_ns_ == 0) written_ns_ = now_ns();
+  chunk_ += text;
+  if (chunk_.size() < kChunk_bytes && now_ns() - written_ns_ < kChunk_ns) return {};
+  return write_chunk();
+}
+
+Status GrowingFile::append(std::span<const std::byte> bytes) {
+  return append(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+Result<GrowingFile::File> GrowingFile::open() {
+  const bool first = target_.empty();
+  if (first) {
+    NERITIC_TRY(const WriteTarget target, write_target(path_));
+    target_ = target.path;
+    in_place_ = target.in_place;
+  }
+  const fs::path name = in_place_ ? target_ : part_of(target_);
+  File file(std::fopen(name.c_str(), first ? "wb" : "ab"));
+  if (!file) return failure(ErrorCode::kIo, "{}: cannot be written", name.string());
+  return file;
+}
+
+Status GrowingFile::write_chunk() {
+  File file = std::move(held_);
+  if (!file) {
+    NERITIC_TRY(file, open());
+  }
+  const bool written =
+      chunk_.empty() || std::fwrite(chunk_.data(), 1, chunk_.size(), file.get()) == chunk_.size();
+  const bool flushed = std::fflush(file.get()) == 0;
+  if (in_place_) held_ = std::move(file);
+  if (!written || !flushed || (file && std::fclose(file.release()) != 0)) return not_whole();
+  whole_bytes_ += chunk_.size();
+  chunk_.clear();
+  written_ns_ = now_ns();
+  return {};
+}
+
+// Cuts off what was written of the last chunk: it may end within a row.
+Error GrowingFile::not_whole() const {
+  const std::string what = path_.string() + ": cannot be written whole (disk full?)";
+  if (in_place_) return Error{ErrorCode::kIo, what};
+  std::error_code ignored;
+  fs::resize_file(part_of(target_), whole_bytes_, ignored);
+  return failure(ErrorCode::kIo, "{}; what was written before is in {}", what,
+                 part_of(target_).string());
+}
+
+Status GrowingFile::finish() {
+  NERITIC_TRY_STATUS(write_chunk());
+  held_.reset();
+  if (in_place_) return {};
+  std::error_code error;
+  fs::rename(part_of(target_), target_, error);
+  if (error)
+    return failure(ErrorCode::kIo, "{}: cannot be written: {}", path_.string(), error.message());
+  return {};
+}
+
+}  // namespace neritic
