@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
+#include "engine/core/refusal.hpp"
+#include "engine/core/text.hpp"
 #include "engine/scene/node_motion.hpp"
 
 namespace neritic::scene {
@@ -240,10 +241,18 @@ ModelPose evaluate_pose(const Model& model, const NodeMotion& motion, double tim
   return pose;
 }
 
-int find_clip(const Model& model, std::string_view name) {
-  for (std::size_t i = 0; i < model.clips.size(); ++i)
-    if (model.clips[i].name == name) return static_cast<int>(i);
-  return -1;
+Result<int> find_clip(const Model& model, const std::string& wanted, const std::string& place) {
+  const int n_clips = static_cast<int>(model.clips.size());
+  for (int i = 0; i < n_clips; ++i)
+    if (model.clips[i].name == wanted) return i;
+  std::string known;
+  for (int i = 0; i < n_clips; ++i) {
+    if (wanted == fmt::format("{}", i)) return i;
+    known += fmt::format("{}{} {}", i > 0 ? ", " : "", i, model.clips[i].name);
+  }
+  return refusal(place, fmt::format("\"{}\"", printable(wanted)),
+                 n_clips == 0 ? "none, the model has no clips"
+                              : "a clip of the model, by name or number: " + printable(known, 300));
 }
 
 std::vector<Mat4> joint_matrices(const Model& model, const ModelPose& pose, int skin) {

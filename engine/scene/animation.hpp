@@ -2,9 +2,10 @@
 // skin. Pure functions of their arguments; any thread. All matrices are in the model's frame.
 #pragma once
 
-#include <string_view>
+#include <string>
 #include <vector>
 
+#include "engine/core/result.hpp"
 #include "engine/scene/model.hpp"
 
 namespace neritic::scene {
@@ -22,8 +23,9 @@ ModelPose evaluate_pose(const Model& model, int clip, double time_s, bool loop =
 // The pose at time_s of nodes that something else moves, the others at rest.
 ModelPose evaluate_pose(const Model& model, const NodeMotion& motion, double time_s);
 
-// The clip of that name; -1 where there is none.
-int find_clip(const Model& model, std::string_view name);
+// The clip of that name (the first, where names repeat), else the one of that number from 0 on. The
+// error begins with place and lists the clips that there are.
+Result<int> find_clip(const Model& model, const std::string& wanted, const std::string& place);
 
 // model_from_bind, one a joint: model_from_joint * inverse_bind.
 std::vector<Mat4> joint_matrices(const Model& model, const ModelPose& pose, int skin);

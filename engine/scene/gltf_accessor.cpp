@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/scene/gltf_container.hpp"
+#include "engine/scene/gltf_meshopt.hpp"
 
 namespace neritic::scene::gltf {
 namespace {
@@ -105,8 +106,69 @@ std::span<const std::byte> Resources::buffer(int i) {
   return buffer.bytes;
 }
 
+std::size_t Resources::bytes_of(std::uint32_t component_type) {
+  if (component_type == 5120 || component_type == 5121) return 1;
+  if (component_type == 5122 || component_type == 5123) return 2;
+  return component_type == 5125 || component_type == 5126 ? 4 : 0;
+}
+
+Resources::Shape Resources::shape(Field reference) {
+  const Field field = accessor(reference);
+  if (!field.present()) return {};
+  Component component = Component::kFloat;
+  if (!parse_component(field["componentType"], component)) return {};
+  const std::string type = field["type"].text();
+  const Shape out{static_cast<std::uint32_t>(field["componentType"].whole(0)), components_of(type),
+                  field["count"].whole(0, std::numeric_limits<std::uint32_t>::max())};
+  if (out.components == 0)
+    field["type"].refuse(fmt::format("\"{}\"", one_line(type, 20)), "SCALAR, VEC2, VEC3 or VEC4");
+  return field.report().failed() ? Shape{} : out;
+}
+
+void Resources::supply(Field reference, std::size_t count, std::vector<std::byte> bytes) {
+  const Field field = accessor(reference);
+  if (const std::uint64_t said = field["count"].whole(0); said != count)
+    field.note_with("count {}, but the compressed mesh has {}, which are used", said, count);
+  supplied_[field.place()] = {count, std::move(bytes)};
+}
+
 std::span<const std::byte> Resources::view_at(int i) {
   const Field field = root_["bufferViews"].at(i);
+  const Field packed = field.extension("EXT_meshopt_compression");
+  return packed.present() ? unpacked_view(i, field, packed) : stored_bytes(field);
+}
+
+std::span<const std::byte> Resources::unpacked_view(int i, Field view, Field packed) {
+  if (const auto known = unpacked_views_.find(i); known != unpacked_views_.end())
+    return known->second;
+  std::vector<std::byte>& out = unpacked_views_[i];  // stays empty after a failure
+  MeshoptStream stream;
+  stream.count = packed["count"].whole(0, std::numeric_limits<std::uint32_t>::max());
+  stream.stride = packed["byteStride"].whole(0, 1 << 20);
+  stream.mode = packed["mode"].text();
+  stream.filter = packed["filter"].text("NONE");
+  const auto bytes = stored_bytes(packed);
+  if (view.report().failed()) return {};
+  if (const Status fits = check_meshopt(stream); !fits.ok()) {
+    packed.fail(fits.error().message);
+    return {};
+  }
+  const std::size_t size = stream.count * stream.stride;
+  if (const std::uint64_t said = view["byteLength"].whole(size); said != size) {
+    view.refuse(fmt::format("byteLength {}", said),
+                fmt::format("{}, the extension's count * byteStride", size));
+    return {};
+  }
+  if (!charge(size, packed)) return {};
+  auto decoded = decode_meshopt(stream, bytes);
+  if (decoded.ok())
+    out = std::move(decoded).value();
+  else
+    packed.fail(decoded.error().message);
+  return out;
+}
+
+std::span<const std::byte> Resources::stored_bytes(Field field) {
   const int buffer_index = field["buffer"].index(buffers_.size(), "buffers");
   if (buffer_index < 0) {
     field.refuse("no buffer", "the index of a buffer");
@@ -136,7 +198,10 @@ Field Resources::accessor(Field reference) const {
 }
 
 std::size_t Resources::count(Field reference) const {
-  return accessor(reference)["count"].whole(0, std::numeric_limits<std::uint32_t>::max());
+  const Field field = accessor(reference);
+  if (const auto given = supplied_.find(field.place()); given != supplied_.end())
+    return given->second.count;
+  return field["count"].whole(0, std::numeric_limits<std::uint32_t>::max());
 }
 
 bool Resources::charge(std::size_t bytes, Field where) {
@@ -181,6 +246,11 @@ bool Resources::locate(Field field, Field reference, std::string_view shapes, El
   out.stride = element_bytes;
   if (field.report().failed()) return false;
 
+  if (const auto given = supplied_.find(field.place()); given != supplied_.end()) {
+    out.count = given->second.count;
+    out.data = given->second.bytes.data();
+    return true;
+  }
   if (const Field view_reference = field["bufferView"]; view_reference.present()) {
     const auto bytes = view(view_reference);
     const int view_index = view_reference.index(root_["bufferViews"].size(), "bufferViews");

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -23,11 +24,25 @@ class Resources {
   // bin: a .glb's binary chunk. folder: where relative URIs lead; empty: no files.
   Resources(Field root, std::span<const std::byte> bin, std::filesystem::path folder);
 
-  // The bytes of the buffer view that `reference` names; empty after a failure.
+  // The bytes of the buffer view that `reference` names, decompressed; empty after a failure.
   std::span<const std::byte> view(Field reference);
 
   // The accessor's element count; 0 where absent or wrong.
   std::size_t count(Field reference) const;
+
+  // An accessor as the file describes it; all 0 after a failure and where it is absent.
+  struct Shape {
+    std::uint32_t component_type = 0;  // glTF's code
+    int components = 0;
+    std::size_t count = 0;
+  };
+  Shape shape(Field reference);
+  // Bytes of a component of glTF's code, 0 for an unknown one.
+  static std::size_t bytes_of(std::uint32_t component_type);
+  // Elements made by a decoder, packed, in the accessor's shape, instead of those that its buffer
+  // view holds.
+  void supply(Field reference, std::size_t count, std::vector<std::byte> bytes);
+  bool is_supplied(Field accessor) const { return supplied_.contains(accessor.place()); }
 
   // The elements of the accessor that `reference` names; empty where it is absent or after a
   // failure. Numbers that are not finite become 0, with a note.
@@ -88,6 +103,9 @@ class Resources {
 
   std::span<const std::byte> buffer(int i);
   std::span<const std::byte> view_at(int i);
+  // The bytes from byteOffset on, byteLength of them, of the buffer that `field` names.
+  std::span<const std::byte> stored_bytes(Field field);
+  std::span<const std::byte> unpacked_view(int i, Field view, Field packed);
   Field accessor(Field reference) const;
   // False where absent or wrong. shapes: accepted types, as "VEC3" or "VEC3 VEC4". resolve() also
   // charges what the elements take; locate() has the accessor itself, said at `reference`.
@@ -109,6 +127,12 @@ class Resources {
   std::span<const std::byte> bin_;
   std::filesystem::path folder_;
   std::vector<Buffer> buffers_;
+  struct Supplied {
+    std::size_t count = 0;
+    std::vector<std::byte> bytes;
+  };
+  std::map<const Json*, Supplied> supplied_;              // by accessor
+  std::map<int, std::vector<std::byte>> unpacked_views_;  // by buffer view
   std::size_t source_bytes_ = 0, charged_bytes_ = 0, picture_bytes_ = 0, examined_bytes_ = 0;
   bool examined_all_ = true;
 };

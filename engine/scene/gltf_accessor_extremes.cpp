@@ -10,7 +10,7 @@
 namespace neritic::scene::gltf {
 namespace {
 
-constexpr std::string_view kShapes = "SCALAR VEC2 VEC3 VEC4 MAT4";
+constexpr std::string_view kAccessorShapes = "SCALAR VEC2 VEC3 VEC4 MAT4";
 // Limits the bytes that are examined, since accessors of a hostile file can overlap many times.
 constexpr std::size_t kExamineFactor = 4, kExamineBaseBytes = std::size_t{1} << 20;
 
@@ -52,13 +52,13 @@ bool Resources::may_locate(Field accessor) {
 
 void Resources::check(Field accessor) {
   Elements elements;
-  if (may_locate(accessor)) locate(accessor, accessor, kShapes, elements);
+  if (may_locate(accessor)) locate(accessor, accessor, kAccessorShapes, elements);
 }
 
 Resources::Extremes Resources::extremes(Field accessor) {
   Extremes out;
   Elements e;
-  if (!may_locate(accessor) || !locate(accessor, accessor, kShapes, e)) return out;
+  if (!may_locate(accessor) || !locate(accessor, accessor, kAccessorShapes, e)) return out;
   const std::size_t element_bytes = size_of(e.component) * e.components;
   const std::size_t bytes = ((e.data ? e.count : 0) + e.sparse_count) * element_bytes;
   if (bytes == 0 || !may_examine(bytes)) return out;

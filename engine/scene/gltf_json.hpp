@@ -55,6 +55,8 @@ class Field {
       : root_(root), value_(value), report_(report) {}
 
   bool present() const { return value_ != nullptr; }
+  // The place itself, to tell fields apart; null where absent.
+  const Json* place() const { return value_; }
   // The same document, nowhere in it.
   Field absent() const { return {root_, nullptr, report_}; }
   // A member of an object; absent where there is none. Fails where this is no object.

@@ -1,11 +1,13 @@
 // Textures, samplers and materials. See gltf_stages.hpp. Source: Khronos glTF 2.0
-// sections 3.8, 3.9; KHR_texture_transform, KHR_materials_emissive_strength, KHR_materials_unlit.
+// sections 3.8, 3.9; the extensions of materials that README.md lists, EXT_texture_webp,
+// KHR_texture_transform, KHR_materials_emissive_strength, KHR_materials_unlit.
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
 #include "engine/scene/gltf_container.hpp"
+#include "engine/scene/gltf_mix.hpp"
 #include "engine/scene/gltf_stages.hpp"
 #include "engine/scene/image_file.hpp"
 
@@ -59,7 +61,8 @@ void load_textures(Loading& loading) {
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const Field field = textures.at(i);
     Texture texture;
-    texture.image = field["source"].index(n_images, "images");
+    const Field webp = field.extension("EXT_texture_webp")["source"];
+    texture.image = (webp.present() ? webp : field["source"]).index(n_images, "images");
     const int sampler = field["sampler"].index(samplers.size(), "samplers");
     if (sampler >= 0) texture.sampler = parse_sampler(samplers.at(sampler));
     loading.model.textures.push_back(texture);
@@ -112,6 +115,38 @@ AlphaMode parse_alpha_mode(Field field) {
   return AlphaMode::kOpaque;
 }
 
+// Reflectance (model.hpp) of a dielectric: KHR_materials_ior, times KHR_materials_specular, whose
+// colour counts as its mean. Of an index of 0, "infinite" in the extension, the largest.
+float parse_reflectance(Field field) {
+  const double index = field.extension("KHR_materials_ior")["ior"].number(1.5);
+  const Field specular = field.extension("KHR_materials_specular");
+  const auto color = specular["specularColorFactor"].numbers<3>({1.0, 1.0, 1.0});
+  for (const char* key : {"specularTexture", "specularColorTexture"})
+    if (specular[key].present()) specular[key].note_with("ignored, only the factors are read");
+  const double normal = index >= 1.0 ? (index - 1.0) / (index + 1.0) : index == 0.0 ? 1.0 : 0.0;
+  const double strength = unit(specular["specularFactor"], 1.0f) *
+                          std::max(0.0, (color[0] + color[1] + color[2]) / 3.0);
+  return static_cast<float>(std::min(normal * std::sqrt(strength), 0.8));
+}
+
+MixedPictures parse_mixed(Loading& loading, Field field, Material& out) {
+  MixedPictures mixed;
+  const Field transmission = field.extension("KHR_materials_transmission");
+  mixed.transmission = unit(transmission["transmissionFactor"], 0.0f);
+  mixed.transmission_texture = parse_texture_ref(loading, transmission["transmissionTexture"]);
+  const Field old = field.extension("KHR_materials_pbrSpecularGlossiness");
+  mixed.specular_glossiness = old.present();
+  if (!old.present()) return mixed;
+  mixed.specular = color_of(old["specularFactor"].numbers<3>({1.0, 1.0, 1.0}));
+  mixed.glossiness = unit(old["glossinessFactor"], 1.0f);
+  mixed.specular_texture = parse_texture_ref(loading, old["specularGlossinessTexture"]);
+  const auto diffuse = old["diffuseFactor"].numbers<4>({1.0, 1.0, 1.0, 1.0});
+  out.base_color = glm::clamp(Vec4f(diffuse[0], diffuse[1], diffuse[2], diffuse[3]), 0.0f, 1.0f);
+  out.base_color_texture = parse_texture_ref(loading, old["diffuseTexture"]);
+  out.metallic_roughness_texture = TextureRef{};
+  return mixed;
+}
+
 Material parse_material(Loading& loading, Field field) {
   Material out;
   out.name = field["name"].text();
@@ -136,12 +171,19 @@ Material parse_material(Loading& loading, Field field) {
   out.alpha_cutoff = std::max(0.0f, field["alphaCutoff"].number_f(0.5f));
   out.double_sided = field["doubleSided"].boolean(false);
   out.unlit = field.extension("KHR_materials_unlit").present();
+  out.reflectance = parse_reflectance(field);
+  loading.mixed.push_back(parse_mixed(loading, field, out));
   return out;
 }
 
-std::array<TextureRef*, 5> texture_refs(Material& material) {
+// All of material i, those to be mixed in too.
+std::array<TextureRef*, 7> texture_refs(Loading& loading, std::size_t i) {
+  Material& material = loading.model.materials[i];
+  MixedPictures& mixed = loading.mixed[i];
   return {&material.base_color_texture, &material.metallic_roughness_texture,
-          &material.normal_texture, &material.occlusion_texture, &material.emissive_texture};
+          &material.normal_texture,     &material.occlusion_texture,
+          &material.emissive_texture,   &mixed.specular_texture,
+          &mixed.transmission_texture};
 }
 
 // Textures whose pictures are the same bytes get the same picture: it is decoded and held once.
@@ -159,8 +201,8 @@ std::vector<bool> share_pictures(Loading& loading) {
   };
   std::vector<int> shared(images.size(), -1);
   std::vector<bool> used(images.size(), false);
-  for (Material& material : loading.model.materials)
-    for (const TextureRef* ref : texture_refs(material)) {
+  for (std::size_t i = 0; i < loading.model.materials.size(); ++i)
+    for (const TextureRef* ref : texture_refs(loading, i)) {
       if (!ref->present()) continue;
       int& image = loading.model.textures[ref->texture].image;
       if (image < 0) continue;
@@ -225,8 +267,8 @@ void finish_images(Loading& loading) {
       loading.report.note(job.error + "; drawn without it");
     }
   }
-  for (Material& material : loading.model.materials)
-    for (TextureRef* ref : texture_refs(material)) {
+  for (std::size_t i = 0; i < loading.model.materials.size(); ++i)
+    for (TextureRef* ref : texture_refs(loading, i)) {
       if (!ref->present()) continue;
       const int image = loading.model.textures[ref->texture].image;
       if (image < 0)
@@ -234,6 +276,7 @@ void finish_images(Loading& loading) {
             "textures[{}]: no picture of a supported kind; drawn without it", ref->texture));
       if (image < 0 || broken[image]) *ref = TextureRef{};
     }
+  mix_pictures(loading);
 }
 
 }  // namespace neritic::scene::gltf

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/scene/gltf_draco.hpp"
 #include "engine/scene/gltf_geometry.hpp"
 #include "engine/scene/gltf_stages.hpp"
 
@@ -159,6 +160,7 @@ bool load_primitive(Loading& loading, Field field, Primitive& out) {
     field.note_with("no POSITION, nothing is drawn");
     return false;
   }
+  unpack_draco(loading, field);
   out.positions = loading.resources.vec3s(attributes["POSITION"]);
   if (loading.report.failed()) return false;
   out.file_vertices = static_cast<std::uint32_t>(out.positions.size());

@@ -13,6 +13,18 @@
 
 namespace neritic::scene::gltf {
 
+// Pictures of extensions that finish_images works into a material's own.
+struct MixedPictures {
+  // KHR_materials_pbrSpecularGlossiness.
+  bool specular_glossiness = false;
+  Vec3f specular{1.0f};
+  float glossiness = 1.0f;
+  TextureRef specular_texture;
+  // KHR_materials_transmission.
+  float transmission = 0.0f;
+  TextureRef transmission_texture;
+};
+
 // Shared by the stages.
 struct Loading {
   Field root;
@@ -20,6 +32,7 @@ struct Loading {
   Resources& resources;
   ImageDecoder& images;
   Model& model;
+  std::vector<MixedPictures> mixed = {};  // one a material
 };
 
 // asset.version, minVersion and extensions: refuses what is not supported by name, notes what is
@@ -27,7 +40,8 @@ struct Loading {
 void check_asset(Loading& loading);
 // Textures and samplers, then materials; hands the pictures that materials use to the decoder.
 void load_materials(Loading& loading);
-// Waits for the pictures; textures whose picture is missing or broken leave their materials.
+// Waits for the pictures; textures whose picture is missing or broken leave their materials. Then
+// works the mixed pictures in.
 void finish_images(Loading& loading);
 void load_meshes(Loading& loading);
 void load_lights(Loading& loading);

@@ -36,7 +36,7 @@ class Words {
   int line_ = 1;
 };
 
-struct Header {
+struct AscHeader {
   std::optional<double> columns, rows, cell_m, dx_m, dy_m;
   double no_data = -9999.0;  // the format's default
 };
@@ -47,7 +47,7 @@ bool is_header_key(std::string_view word) {
 }
 
 // Stores the number under its key; false where the key is none of the format's.
-bool set_header(Header& header, const std::string& key, double value) {
+bool set_header(AscHeader& header, const std::string& key, double value) {
   if (key == "ncols")
     header.columns = value;
   else if (key == "nrows")
@@ -65,7 +65,7 @@ bool set_header(Header& header, const std::string& key, double value) {
   return true;
 }
 
-Status check_header(Header& header, const std::string& name) {
+Status check_header(AscHeader& header, const std::string& name) {
   for (const auto& [key, value] : {std::pair("ncols", header.columns), {"nrows", header.rows}}) {
     if (!value) return refusal(name, fmt::format("no {} in the header", key), "one");
     if (!(*value >= 2.0 && *value <= kMaxAscSide && *value == std::floor(*value)))
@@ -88,7 +88,7 @@ Status check_header(Header& header, const std::string& name) {
 
 Result<Heightfield> parse_asc(std::string_view text, const std::string& name) {
   Words words(text);
-  Header header;
+  AscHeader header;
   std::string_view word = words.next();
   for (; is_header_key(word); word = words.next()) {
     const std::string key = lower_case(word);

@@ -1,12 +1,13 @@
-// Reading pictures: which decoder for which file. See image_file.hpp. The decoders are libpng and
-// libjpeg-turbo, since stb_image 2.27 did not survive fuzzing (image_file_jpeg.hpp); OpenEXR is in
-// image_file_exr.cpp, writing in image_file_write.cpp.
+// Reading pictures: which decoder for which file. See image_file.hpp. The decoders are libpng,
+// libwebp and libjpeg-turbo, since stb_image 2.27 did not survive fuzzing (image_file_jpeg.hpp);
+// OpenEXR is in image_file_exr.cpp, writing in image_file_write.cpp.
 #include "engine/scene/image_file.hpp"
 
 #include "engine/core/files.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/scene/image_file_jpeg.hpp"
 #include "engine/scene/image_file_png.hpp"
+#include "engine/scene/image_file_webp.hpp"
 
 namespace neritic::scene {
 
@@ -14,13 +15,15 @@ Result<ImageU8> decode_image8(std::span<const std::byte> bytes, const std::strin
                               std::uint32_t channels) {
   if (is_png(bytes)) return decode_png8(bytes, name, channels);
   if (is_jpeg(bytes)) return decode_jpeg(bytes, name, channels);
+  if (is_webp(bytes)) return decode_webp(bytes, name, channels);
   return refusal(name, fmt::format("{} bytes of another kind", bytes.size()),
-                 "a PNG or JPEG picture");
+                 "a PNG, JPEG or WebP picture");
 }
 
 PictureSize peek_size(std::span<const std::byte> bytes) {
   if (is_png(bytes)) return png_size(bytes);
   if (is_jpeg(bytes)) return jpeg_size(bytes);
+  if (is_webp(bytes)) return webp_size(bytes);
   return {};
 }
 

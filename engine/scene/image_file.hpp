@@ -1,4 +1,4 @@
-// Picture and map files: read PNG, JPEG (8 and 16 bit) and OpenEXR; write PNG. Any thread.
+// Picture and map files: read PNG (8 and 16 bit), JPEG, WebP and OpenEXR; write PNG. Any thread.
 // Errors are kBadInput with the path and what is accepted; sizes are limited to 32768 x 32768 and
 // 2^28 pixels, so a forged header cannot exhaust the memory.
 #pragma once

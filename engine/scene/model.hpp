@@ -76,12 +76,18 @@ struct Material {
   std::string name;
   Vec4f base_color{1.0f};  // linear
   float metallic = 1.0f, roughness = 1.0f;
+  // (n - 1) / (n + 1) of the index of refraction, 0 to 0.8: squared, what a dielectric reflects in
+  // air at normal incidence. KHR_materials_ior and KHR_materials_specular change it.
+  float reflectance = 0.2f;
   Vec3f emissive{0.0f};  // linear, KHR_materials_emissive_strength multiplied in
   float normal_scale = 1.0f, occlusion_strength = 1.0f;
   float alpha_cutoff = 0.5f;
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   bool double_sided = false;
   bool unlit = false;
+  // KHR_materials_transmission, of a thin pane: 1 - base colour's alpha of the light that is not
+  // reflected passes, tinted by the base colour.
+  bool transmissive = false;
   TextureRef base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture,
       emissive_texture;
 };

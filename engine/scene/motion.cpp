@@ -13,36 +13,50 @@ Motion local_motion(const Mount& mount, double time_s) {
           angular_velocity_at(*mount.track, time_s)};
 }
 
+// From the thing outwards, so that its pose is rounded as it always was, up to the world or to what
+// the simulation moves. mount_of(object): of an object that carries.
+template <class MountOf>
+MotionAt motion_along(const Mount& mount, double time_s, const SimulatedMotion* simulated,
+                      const MountOf& mount_of) {
+  MotionAt out{local_motion(mount, time_s)};
+  for (int object = mount.object; object >= 0;) {
+    const auto index = static_cast<std::size_t>(object);
+    if (simulated)
+      if (const auto moved = simulated->at(index, time_s))
+        return {moved->motion * out.motion, moved->known, moved->predicted_s};
+    const Mount& carrier = mount_of(index);
+    out.motion = local_motion(carrier, time_s) * out.motion;
+    object = carrier.object;
+  }
+  return out;
+}
+
 }  // namespace
 
-Motion operator*(const Motion& a_from_b, const Motion& b_from_c) {
-  const Quat& turn = a_from_b.pose.rotation;
-  const Vec3 arm_m = turn * b_from_c.pose.position_m;
-  return {a_from_b.pose * b_from_c.pose,
-          a_from_b.velocity_m_s + glm::cross(a_from_b.angular_velocity_rad_s, arm_m) +
-              turn * b_from_c.velocity_m_s,
-          a_from_b.angular_velocity_rad_s + turn * b_from_c.angular_velocity_rad_s};
+CarriedThing::CarriedThing(const Scene& scene, const Mount& mount) : chain_{mount} {
+  while (chain_.back().object >= 0) {
+    NERITIC_CHECK(chain_.size() <= scene.objects.size(), "{} mounts", chain_.size());
+    chain_.push_back(scene.objects.at(static_cast<std::size_t>(chain_.back().object)).mount);
+  }
+}
+
+MotionAt CarriedThing::at(double time_s, const SimulatedMotion* simulated) const {
+  std::size_t next = 1;
+  return motion_along(chain_.front(), time_s, simulated,
+                      [&](std::size_t) -> const Mount& { return chain_[next++]; });
 }
 
 std::optional<MotionAt> MotionSource::simulated(std::size_t object, double time_s) const {
   return simulated_ ? simulated_->at(object, time_s) : std::nullopt;
 }
 
-// From the mount outwards, so that its pose is rounded as it always was.
 MotionAt MotionSource::at(const Mount& mount, double time_s) const {
-  MotionAt out{local_motion(mount, time_s)};
   const std::size_t objects = scene_->objects.size();
   std::size_t steps = 0;
-  for (int object = mount.object; object >= 0;) {
-    const auto index = static_cast<std::size_t>(object);
+  return motion_along(mount, time_s, simulated_, [&](std::size_t index) -> const Mount& {
     NERITIC_CHECK(index < objects && steps++ < objects, "object {} of {}", index, objects);
-    if (const auto moved = simulated(index, time_s))
-      return {moved->motion * out.motion, moved->known, moved->predicted_s};
-    const Mount& carrier = scene_->objects[index].mount;
-    out.motion = local_motion(carrier, time_s) * out.motion;
-    object = carrier.object;
-  }
-  return out;
+    return scene_->objects[index].mount;
+  });
 }
 
 Pose MotionSource::world_from_object(std::size_t object, double time_s) const {

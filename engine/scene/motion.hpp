@@ -5,21 +5,14 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
+#include "engine/core/motion.hpp"
 #include "engine/scene/animation.hpp"
 #include "engine/scene/node_motion.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace neritic::scene {
-
-// A moving frame in another.
-struct Motion {
-  Pose pose;                         // target_from_source
-  Vec3 velocity_m_s{0.0};            // of the source's origin, in the target's axes
-  Vec3 angular_velocity_rad_s{0.0};  // in the target's axes
-};
-// Composes motions: c moves in frame b, and b in frame a; the result is c's motion in a.
-Motion operator*(const Motion& a_from_b, const Motion& b_from_c);
 
 enum class Knowledge {
   kExact,      // by a track, a clip, or a state of just that time
@@ -43,6 +36,17 @@ class SimulatedMotion {
   // The pose of the object's model; nothing where its clip says it.
   virtual std::optional<ModelPose> model_pose(std::size_t object, const Model& model,
                                               double time_s) const = 0;
+};
+
+// A thing with what carries it, copied out of a scene that need not stay: where it is, as the
+// scene's MotionSource says it.
+class CarriedThing {
+ public:
+  CarriedThing(const Scene& scene, const Mount& mount);
+  MotionAt at(double time_s, const SimulatedMotion* simulated) const;
+
+ private:
+  std::vector<Mount> chain_;  // itself first; each is mounted on the object whose mount follows
 };
 
 class MotionSource {

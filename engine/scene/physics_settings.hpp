@@ -54,16 +54,20 @@ struct MissionWaypoint {
   double hold_s = 0.0;  // stays so long
 };
 
+// The motion that a speed is one of: over ground or through the water, which differ in a current.
+enum class SpeedOver { kGround, kWater };
+
 // Where a vehicle is to go; exactly what kind says.
 struct Mission {
   enum class Kind { kStation, kWaypoints, kOrbit, kFollow, kStandBetween };
   Kind kind = Kind::kStation;
   Facing facing;
   // Waypoints: each counts as reached within acceptance_m. speed_m_s of them: along the line
-  // between; 0: as the controller does.
+  // between; 0: as fast as it can.
   std::vector<MissionWaypoint> waypoints;
   double acceptance_m = 0.15;
   double speed_m_s = 0.0;  // orbit: positive from north to east
+  SpeedOver speed_over = SpeedOver::kGround;
   bool repeat = false;
   // Orbit: round target. Follow: beside it, (starboard, up, back) of its heading.
   Aim target;
@@ -74,7 +78,7 @@ struct Mission {
   double distance_m = -1.0;
 };
 
-// The source that a group of inputs of a vehicle or diver listens to (testbed/samples/README.md).
+// The source that a group of inputs of an object listens to (testbed/samples/README.md).
 struct InputChoice {
   std::string group;               // "body", "wrench"
   std::string from;                // "autopilot", "recording", "nobody", or a live source's name
@@ -101,7 +105,8 @@ struct Dynamics {
 struct SwimPlan {
   std::vector<Vec3> waypoints_m;
   std::filesystem::path motion;  // instead of waypoints; empty: none
-  double speed_m_s = 0.4;        // through the water
+  double speed_m_s = 0.4;
+  SpeedOver speed_over = SpeedOver::kWater;
   double acceptance_m = 1.5;
   bool repeat = false;
 };

@@ -14,23 +14,11 @@
 namespace neritic::scene {
 namespace {
 
-// The clip of that name. (Names may repeat in a file; the first counts.)
 Status find_clips(SceneDraft& draft, const std::vector<std::shared_ptr<const Model>>& models) {
   for (ObjectDraft& object : draft.objects) {
     if (object.clip.empty()) continue;
     const Model& model = *models[static_cast<std::size_t>(object.object.model)];
-    std::vector<std::string_view> names;
-    for (const Clip& clip : model.clips) {
-      if (clip.name == object.clip && object.object.clip < 0)
-        object.object.clip = static_cast<int>(names.size());
-      names.push_back(clip.name);
-    }
-    if (object.object.clip >= 0) continue;
-    if (names.empty())
-      return refusal(object.place_clip, fmt::format("\"{}\"", printable(object.clip)),
-                     "none, the model has no clips");
-    return refusal(object.place_clip, fmt::format("\"{}\"", printable(object.clip)),
-                   fmt::format("a clip of the model: {}", printable(join(names), 300)));
+    NERITIC_TRY(object.object.clip, find_clip(model, object.clip, object.place_clip));
   }
   return {};
 }
@@ -70,6 +58,7 @@ void move_out(Dynamics& dynamics, const Vec3& offset_m) {
 void move_out(SceneDraft& draft, const Vec3& offset_m) {
   Scene& scene = draft.scene;
   if (scene.current) scene.current->origin_m += offset_m;
+  if (scene.world_from_lab) scene.world_from_lab->position_m += offset_m;
   const auto moved = [&offset_m](Mount mount) {
     if (mount.object >= 0) return mount;
     mount.pose.position_m += offset_m;
@@ -94,6 +83,29 @@ void move_out(SceneDraft& draft, const Vec3& offset_m) {
   move_sensors(draft.cameras, scene.cameras);
   move_sensors(draft.sonars, scene.sonars);
   move_sensors(draft.lamps, scene.lamps);
+}
+
+// The quality of sonars: as asked for, else as their file says, else chosen.
+void choose_sampling(Scene& scene, const std::string& asked) {
+  constexpr std::size_t kFew = 4;
+  const char* level = scene.sonars.size() <= kFew ? "standard" : "draft";
+  std::vector<std::string> chosen;
+  for (Sonar& sonar : scene.sonars) {
+    if (!asked.empty()) {
+      sonar.quality = asked;
+      sonar.max_error = 0.0;
+      sonar.quality_chosen = false;
+    } else if (sonar.quality_chosen) {
+      sonar.quality = level;
+      chosen.push_back(sonar.name);
+    }
+  }
+  if (chosen.empty()) return;
+  const bool few = scene.sonars.size() <= kFew;
+  scene.notes.push_back(fmt::format("{}: {}: no quality is named, so \"{}\" it is; {}", scene.path,
+                                    fmt::join(chosen, ", "), level,
+                                    few ? "quality = \"draft\" is faster"
+                                        : fmt::format("at most {} sonars get \"standard\"", kFew)));
 }
 
 }  // namespace
@@ -127,6 +139,7 @@ Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& 
         draft.scene.notes.push_back(note);
   draft.scene.models = std::move(loaded.models);
   choose_model_lights(draft.scene);
+  choose_sampling(draft.scene, options.sonar_quality);
   return std::move(draft.scene);
 }
 

@@ -54,6 +54,7 @@ struct Object {
   Collision collision = Collision::kNone;  // without [physics]: none
   std::optional<Dynamics> dynamics;  // it moves by physics, from its mount's pose at time 0 on
   std::optional<Human> human;        // likewise, by its limbs
+  std::vector<InputChoice> inputs;   // the source of its pose; empty: its mount alone
   // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
   std::vector<Mat4> copies;
   std::size_t instance_count() const { return copies.empty() ? 1 : copies.size(); }
@@ -130,6 +131,9 @@ struct Sonar {
   // "draft", "standard", "reference" or an error to stay under: what is not set follows from it.
   std::string quality;
   double max_error = 0.0;  // 0: not named
+  // The file names nothing of how beams are sampled: load_scene chooses the quality, which then
+  // keeps the range bins and makes nothing coarser.
+  bool quality_chosen = false;
   SonarTerms terms;
 };
 // Whether all but name, rate and mount are the same.
@@ -150,6 +154,8 @@ struct Scene {
   std::vector<ModelLight> model_lights;  // those that shine beside lamps and sun
   std::vector<Camera> cameras;
   std::vector<Sonar> sonars;
+  // Where the frame of a lab's tracking (headset, motion suit) lies; absent: as the wearer starts.
+  std::optional<Pose> world_from_lab;
   std::vector<std::string> notes;  // what was ignored, once each
 
   // World_from_mount at a time by tracks, with all that carries it (motion.hpp: by physics too).
@@ -163,7 +169,8 @@ struct Scene {
 inline constexpr double kFarthest_m = 4e7;
 
 struct SceneOptions {
-  Vec3 offset_m{0.0};  // added to everything fixed to the world: to test far from the origin
+  Vec3 offset_m{0.0};         // added to everything fixed to the world: to test far from the origin
+  std::string sonar_quality;  // of every sonar, whatever the file says; empty: as it says
 };
 
 // Reads a scene file (its format: assets/scenes/README.md). Every error names file, line and key,
@@ -171,7 +178,7 @@ struct SceneOptions {
 Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& options = {});
 
 // A scene that shows one model: framed by a camera, no water, lit by the model's own lights where
-// it brings some, else by a sun. For `render model.glb`.
-Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height);
+// it brings some, else by a sun. For `render model.glb`. clip: an index, or -1 for the first.
+Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height, int clip = -1);
 
 }  // namespace neritic::scene

@@ -19,6 +19,7 @@ struct TrackDraft {
   std::vector<Track::Place> places;
   std::vector<Quat> recorded;  // attitudes of a file, one a place; empty: heading says
   TrackHeading heading;
+  bool repeat = false;
 };
 
 // A pose with the names it depends on. place_*: "file:line: key", for errors.
@@ -125,9 +126,12 @@ Status read_vehicle_physics(SceneDraft& draft, const SceneSource& source,
                             std::size_t first_object);
 // scene_read_mission.cpp: the table mission of the vehicle of that name.
 Mission read_mission(TableReader& reader, const SceneDraft& draft, const std::string& vehicle);
+// The key speed_over: "ground" or "water".
+SpeedOver read_speed_over(TableReader& reader, SpeedOver otherwise);
 // scene_read_inputs.cpp: the table inputs, with a key for any of the groups; empty where it is
-// absent. recorded: the groups for which the scene names a file.
-std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded);
+// absent. recorded: the groups for which the scene names a file. then: the default of that key.
+std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded,
+                                     const std::string& then = "autopilot");
 
 // scene_models.cpp: one model a distinct request, in the order of first use, and each request's.
 struct LoadedModels {

@@ -15,10 +15,19 @@ constexpr double kMargin = 1.12;  // the model fills about nine tenths of the pi
 // Exposure is set for no less light than this: a candela at a kilometre.
 constexpr double kDarkest_lx = 1e-6;
 
+constexpr int kFramedInstants = 8;  // of a clip, whose whole course stays in the picture
+
 // The bounds that the camera must show. Nothing drawn, or bounds that are not numbers: a metre
 // around the origin.
 Bounds bounds_to_frame(const Model& model, int clip) {
   Bounds bounds = model_bounds(model, evaluate_pose(model, clip, 0.0));
+  for (int i = 1; clip >= 0 && i < kFramedInstants; ++i) {
+    const double time_s = model.clips[clip].duration_s * i / kFramedInstants;
+    const Bounds then = model_bounds(model, evaluate_pose(model, clip, time_s));
+    if (then.empty()) continue;
+    bounds.add(then.min);
+    bounds.add(then.max);
+  }
   if (bounds.empty() || !is_finite(bounds.min) || !is_finite(bounds.max))
     bounds = {Vec3(-0.5), Vec3(0.5)};
   const double size = glm::length(bounds.max - bounds.min);
@@ -46,7 +55,7 @@ double distance_to_frame(const Bounds& bounds, const Quat& world_from_view,
 
 }  // namespace
 
-Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height) {
+Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height, int clip) {
   Scene scene;
   scene.title = model.name;
   scene.path = model.name;
@@ -58,7 +67,7 @@ Scene scene_of_model(Model model, std::uint32_t width, std::uint32_t height) {
   object.model = 0;
   object.class_id = 12;  // target
   object.instance = 1;
-  object.clip = model.clips.empty() ? -1 : 0;
+  object.clip = model.clips.empty() ? -1 : std::max(clip, 0);
 
   Camera camera;
   camera.name = "camera";

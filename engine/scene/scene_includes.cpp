@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "engine/core/files.hpp"
 #include "engine/core/refusal.hpp"
@@ -43,7 +44,26 @@ void merge_table_arrays(TomlValue& base, TomlValue over) {
   }
 }
 
+// Ways to say the same thing, one key of any table each: a place, an attitude.
+const std::vector<std::vector<std::string_view>> kPlaces{{"position_m"}, {"track"}};
+const std::vector<std::vector<std::string_view>> kAttitudes{
+    {"yaw_deg", "pitch_deg", "roll_deg"}, {"rotation_xyzw"}, {"look_at"}, {"look_at_m"}};
+
+// Drops from base the ways that over replaces by another.
+void drop_replaced(TomlValue& base, const TomlValue& over) {
+  for (const auto& ways : {kPlaces, kAttitudes})
+    for (const auto& way : ways) {
+      if (std::ranges::none_of(way, [&](std::string_view key) { return over.find(key); })) continue;
+      for (const auto& other : ways)
+        if (other != way)
+          std::erase_if(base.entries, [&](const TomlEntry& entry) {
+            return std::ranges::find(other, entry.key) != other.end();
+          });
+    }
+}
+
 void merge_table(TomlValue& base, TomlValue over) {
+  drop_replaced(base, over);
   for (TomlEntry& entry : over.entries) {
     TomlEntry* old = base.find(entry.key);
     if (!old)

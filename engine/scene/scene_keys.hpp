@@ -13,7 +13,10 @@ using KeyList = std::span<const Key>;
 
 inline constexpr auto kSceneKeys =
     std::to_array<Key>({"title", "seed", "include", "classes", "sun", "water", "physics", "current",
-                        "objects", "vehicles", "cameras", "sonars", "lamps"});
+                        "objects", "vehicles", "cameras", "sonars", "lamps", "lab"});
+
+inline constexpr auto kLabKeys =
+    std::to_array<Key>({"position_m", "yaw_deg", "pitch_deg", "roll_deg", "rotation_xyzw"});
 
 inline constexpr auto kSunKeys = std::to_array<Key>({"elevation_deg", "azimuth_deg", "intensity"});
 
@@ -77,7 +80,7 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
 
 // Keys of things that move.
 inline constexpr auto kTrackKeys = std::to_array<Key>(
-    {"waypoints_m", "lawn_mower", "file", "speed_m_s", "start_s", "heading", "turn_m"});
+    {"waypoints_m", "lawn_mower", "file", "speed_m_s", "start_s", "heading", "turn_m", "repeat"});
 inline constexpr auto kLawnMowerKeys =
     std::to_array<Key>({"area_m", "depth_m", "spacing_m", "legs"});
 
@@ -87,19 +90,20 @@ inline constexpr auto kPhysicsKeys =
 inline constexpr auto kCurrentKeys =
     std::to_array<Key>({"kind", "velocity_m_s", "deep_velocity_m_s", "depth_m", "exponent", "file",
                         "origin_m", "spacing_m", "start_s", "interval_s"});
-inline constexpr auto kMissionKeys =
-    std::to_array<Key>({"waypoints", "acceptance_m", "speed_m_s", "repeat", "hold", "orbit",
-                        "follow", "stand_between", "heading_deg", "look_at", "look_at_m", "tilt"});
+inline constexpr auto kMissionKeys = std::to_array<Key>(
+    {"waypoints", "acceptance_m", "speed_m_s", "speed_over", "repeat", "hold", "orbit", "follow",
+     "stand_between", "heading_deg", "look_at", "look_at_m", "tilt"});
 inline constexpr auto kMissionWaypointKeys =
     std::to_array<Key>({"position_m", "heading_deg", "look_at", "look_at_m", "tilt", "hold_s"});
 inline constexpr auto kOrbitKeys =
-    std::to_array<Key>({"object", "point_m", "radius_m", "speed_m_s"});
+    std::to_array<Key>({"object", "point_m", "radius_m", "speed_m_s", "speed_over"});
 inline constexpr auto kFollowKeys = std::to_array<Key>({"object", "offset_m"});
-inline constexpr auto kSwimKeys =
-    std::to_array<Key>({"waypoints_m", "speed_m_s", "acceptance_m", "repeat", "motion"});
+inline constexpr auto kSwimKeys = std::to_array<Key>(
+    {"waypoints_m", "speed_m_s", "speed_over", "acceptance_m", "repeat", "motion"});
 inline constexpr auto kDiverInputKeys =
     std::to_array<Key>({"body", "hands", "head", "gaze", "buttons", "breath", "heart", "gas"});
 inline constexpr auto kVehicleInputKeys = std::to_array<Key>({"wrench", "setpoint", "fault"});
+inline constexpr auto kObjectInputKeys = std::to_array<Key>({"pose"});
 inline constexpr auto kInputChoiceKeys = std::to_array<Key>({"from", "hold_s", "then"});
 inline constexpr auto kStandBetweenKeys = std::to_array<Key>({"a", "b", "distance_m"});
 

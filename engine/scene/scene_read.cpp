@@ -60,26 +60,43 @@ Result<Water> read_water(const SceneSource& source, const TomlValue& table) {
   return water;
 }
 
+// The attitude by the keys of angles or the quaternion.
+Quat read_turn(TableReader& reader) {
+  const std::vector<double> q = reader.numbers("rotation_xyzw", {4}, {-1.001, 1.001});
+  if (q.size() == 4) {
+    const Quat rotation(q[3], q[0], q[1], q[2]);
+    if (std::abs(glm::length(rotation) - 1.0) <= 1e-3) return glm::normalize(rotation);
+    reader.refuse("rotation_xyzw", "a unit quaternion [x, y, z, w]");
+  }
+  return from_yaw_pitch_roll(radians(reader.number("yaw_deg", 0.0, kAnyTurn)),
+                             radians(reader.number("pitch_deg", 0.0, kAnyTurn)),
+                             radians(reader.number("roll_deg", 0.0, kAnyTurn)));
+}
+bool has_angles(const TableReader& reader) {
+  return reader.has("yaw_deg") || reader.has("pitch_deg") || reader.has("roll_deg");
+}
+
 // yaw, pitch, roll or rotation_xyzw or a look_at: at most one of the three ways.
 void read_rotation(TableReader& reader, PlacementDraft& placement) {
-  const bool turned = reader.has("yaw_deg") || reader.has("pitch_deg") || reader.has("roll_deg");
-  const int ways = int{turned} + int{reader.has("rotation_xyzw")} + int{reader.has("look_at_m")} +
-                   int{reader.has("look_at")};
+  const int ways = int{has_angles(reader)} + int{reader.has("rotation_xyzw")} +
+                   int{reader.has("look_at_m")} + int{reader.has("look_at")};
   if (ways > 1)
     reader.refuse_table("more than one attitude",
                         "one of yaw_deg with pitch_deg and roll_deg, "
                         "rotation_xyzw, look_at_m, look_at");
-  placement.pose.rotation = from_yaw_pitch_roll(radians(reader.number("yaw_deg", 0.0, kAnyTurn)),
-                                                radians(reader.number("pitch_deg", 0.0, kAnyTurn)),
-                                                radians(reader.number("roll_deg", 0.0, kAnyTurn)));
-  const std::vector<double> q = reader.numbers("rotation_xyzw", {4}, {-1.001, 1.001});
-  if (q.size() == 4) {
-    const Quat rotation(q[3], q[0], q[1], q[2]);
-    if (std::abs(glm::length(rotation) - 1.0) > 1e-3)
-      reader.refuse("rotation_xyzw", "a unit quaternion [x, y, z, w]");
-    else
-      placement.pose.rotation = glm::normalize(rotation);
-  }
+  placement.pose.rotation = read_turn(reader);
+}
+
+Result<Pose> read_lab(const SceneSource& source, const TomlValue& table) {
+  TableReader reader(source, table, "lab", kLabKeys);
+  Pose world_from_lab;
+  world_from_lab.position_m = reader.vector3("position_m", Vec3(0.0), kAnyMetres);
+  if (has_angles(reader) && reader.has("rotation_xyzw"))
+    reader.refuse_table("more than one attitude",
+                        "one of yaw_deg with pitch_deg and roll_deg, rotation_xyzw");
+  world_from_lab.rotation = read_turn(reader);
+  NERITIC_TRY_STATUS(reader.status());
+  return world_from_lab;
 }
 
 }  // namespace
@@ -121,6 +138,7 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   const TomlValue* water = reader.table("water");
   const TomlValue* physics = reader.table("physics");
   const TomlValue* current = reader.table("current");
+  const TomlValue* lab = reader.table("lab");
   const auto& objects = reader.tables("objects");
   const auto& vehicles = reader.tables("vehicles");
   NERITIC_TRY_STATUS(reader.status());
@@ -130,6 +148,9 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   }
   if (water) {
     NERITIC_TRY(scene.water, read_water(source, *water));
+  }
+  if (lab) {
+    NERITIC_TRY(scene.world_from_lab, read_lab(source, *lab));
   }
   NERITIC_TRY_STATUS(read_physics(draft, source, physics, current));
   NERITIC_TRY_STATUS(read_sensors(draft, reader, ""));  // first: a scene's own camera leads

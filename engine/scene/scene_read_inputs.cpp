@@ -1,4 +1,4 @@
-// Reads which source each group of inputs of a vehicle or diver listens to.
+// Reads which source each group of inputs of a vehicle, a diver or another object listens to.
 #include <algorithm>
 
 #include "engine/core/text.hpp"
@@ -21,9 +21,9 @@ bool is_live(const std::string& from) {
 }
 
 // Reads `group = "suit"` or `group = { from = "suit", hold_s = 1, then = "nobody" }`.
-InputChoice read_choice(TableReader& reader, Key group, KeyList recorded) {
+InputChoice read_choice(TableReader& reader, Key group, KeyList recorded, const std::string& then) {
   const TomlValue* value = reader.find(group);
-  InputChoice choice{std::string(group), "", {}};
+  InputChoice choice{std::string(group), "", {}, then};
   const std::string accepted =
       fmt::format("autopilot, {}nobody, or a source's name of up to {} printable characters",
                   std::ranges::find(recorded, group) != recorded.end() ? "recording, " : "",
@@ -55,13 +55,14 @@ InputChoice read_choice(TableReader& reader, Key group, KeyList recorded) {
 
 }  // namespace
 
-std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded) {
+std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded,
+                                     const std::string& then) {
   std::vector<InputChoice> choices;
   const TomlValue* table = reader.table("inputs");
   if (!table) return choices;
   TableReader inputs(reader.source(), *table, reader.path("inputs"), groups);
   for (const Key group : groups)
-    if (inputs.has(group)) choices.push_back(read_choice(inputs, group, recorded));
+    if (inputs.has(group)) choices.push_back(read_choice(inputs, group, recorded, then));
   if (!inputs.ok()) reader.fail(inputs.status().error());
   return choices;
 }

@@ -33,7 +33,7 @@ class MissionReader {
     if (const TomlValue* table = reader.table("stand_between"))
       read_stand_between(reader, *table, mission);
     if (mission.kind != Mission::Kind::kWaypoints)
-      for (const Key key : {"acceptance_m", "speed_m_s", "repeat"})
+      for (const Key key : {"acceptance_m", "speed_m_s", "speed_over", "repeat"})
         if (reader.has(key)) reader.refuse(key, "no such key without waypoints");
     mission.facing = read_facing(reader);
     if (mission.kind == Mission::Kind::kStandBetween)
@@ -97,6 +97,9 @@ class MissionReader {
     }
     mission.acceptance_m = reader.number("acceptance_m", mission.acceptance_m, kLength);
     mission.speed_m_s = reader.number("speed_m_s", 0.0, kMissionSpeed);
+    mission.speed_over = read_speed_over(reader, mission.speed_over);
+    if (reader.has("speed_over") && !reader.has("speed_m_s"))
+      reader.refuse("speed_over", "no such key without speed_m_s");
     mission.repeat = reader.flag("repeat", false);
   }
 
@@ -111,6 +114,7 @@ class MissionReader {
       mission.target.point_m = reader.vector3("point_m", Vec3(0.0), kAnyMetres);
     mission.radius_m = reader.number("radius_m", 1.0, kLength);
     mission.speed_m_s = reader.number("speed_m_s", 0.3, {-100, 100, false, false, "m/s"});
+    mission.speed_over = read_speed_over(reader, mission.speed_over);
     if (!reader.has("radius_m")) reader.refuse("radius_m", "a number in " + kLength.text());
     if (!reader.ok()) parent.fail(reader.status().error());
   }
@@ -138,6 +142,13 @@ class MissionReader {
 };
 
 }  // namespace
+
+SpeedOver read_speed_over(TableReader& reader, SpeedOver otherwise) {
+  constexpr auto kOver = std::to_array<Key>({"ground", "water"});
+  const Key usual = otherwise == SpeedOver::kGround ? kOver[0] : kOver[1];
+  return reader.choice("speed_over", std::string(usual), kOver) == kOver[0] ? SpeedOver::kGround
+                                                                            : SpeedOver::kWater;
+}
 
 Mission read_mission(TableReader& reader, const SceneDraft& draft, const std::string& vehicle) {
   return MissionReader(draft, vehicle).read(reader);

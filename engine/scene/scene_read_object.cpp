@@ -96,8 +96,8 @@ void read_model(TableReader& reader, ModelRequest& request) {
 
 // Whether it may go undrawn: what only carries sensors, or moves for others to hang on.
 bool is_carrier(const TableReader& reader) {
-  return reader.has("track") || reader.has("cameras") || reader.has("sonars") ||
-         reader.has("lamps");
+  return reader.has("track") || reader.has("inputs") || reader.has("cameras") ||
+         reader.has("sonars") || reader.has("lamps");
 }
 
 // Nothing for a carrier that is not drawn.

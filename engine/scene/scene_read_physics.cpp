@@ -103,8 +103,7 @@ class VehiclePhysicsReader {
     }
     read_collision();
     read_human();
-    if (reader_.has("inputs") && !reader_.has("human") && !reader_.has("dynamics"))
-      reader_.refuse("inputs", "no such key without human or dynamics");
+    read_tracked();
     if (!reader_.has("dynamics")) {
       for (const Key key : kDynamicsOnly)
         if (reader_.has(key)) reader_.refuse(key, "no such key without dynamics");
@@ -141,7 +140,7 @@ class VehiclePhysicsReader {
     const Scene& scene = draft_.scene;
     Object& object = object_.object;
     const auto name = scene.class_names.find(object.class_id);
-    const bool still = !object_.placement.track && object_.clip.empty();
+    const bool still = !object_.placement.track && object_.clip.empty() && !is_tracked();
     const bool solid = name != scene.class_names.end() && still && object_.request &&
                        std::ranges::find(kSolidClasses, name->second) != std::end(kSolidClasses);
     object.collision = solid ? Collision::kMesh : Collision::kNone;
@@ -156,7 +155,19 @@ class VehiclePhysicsReader {
     if (object.collision != Collision::kNone && !object_.request)
       reader_.refuse("collision", "no such key for what is not drawn");
     if (object.collision != Collision::kNone && !still)
-      reader_.refuse("collision", "false, since what has a track or a clip is not solid");
+      reader_.refuse("collision", "false, since what has a track, a clip or inputs is not solid");
+  }
+
+  // Whether devices move it, though it is neither a vehicle nor a diver.
+  bool is_tracked() const {
+    return reader_.has("inputs") && !reader_.has("human") && !reader_.has("dynamics");
+  }
+
+  void read_tracked() {
+    if (!is_tracked()) return;
+    if (reader_.has("scatter")) reader_.refuse("inputs", "no such key beside scatter");
+    object_.object.inputs = read_inputs(reader_, kObjectInputKeys, {}, "nobody");
+    if (object_.object.inputs.empty()) reader_.refuse("inputs", "a table with the key pose");
   }
 
   void read_human() {
@@ -187,7 +198,7 @@ class VehiclePhysicsReader {
     plan.repeat = swim.flag("repeat", false);
     if (swim.has("motion")) {
       plan.motion = swim.file("motion");
-      for (const Key key : {"waypoints_m", "speed_m_s", "acceptance_m"})
+      for (const Key key : {"waypoints_m", "speed_m_s", "speed_over", "acceptance_m"})
         if (swim.has(key)) swim.refuse(key, "no such key beside motion");
       if (const Status status = swim.status(); !status.ok()) reader_.fail(status.error());
       return plan;
@@ -196,6 +207,7 @@ class VehiclePhysicsReader {
       plan.waypoints_m.push_back({p[0], p[1], p[2]});
     if (plan.waypoints_m.empty()) swim.refuse("waypoints_m", "a list of points [x, y, z]");
     plan.speed_m_s = swim.number("speed_m_s", plan.speed_m_s, {0, 1.2, true, false, "m/s"});
+    plan.speed_over = read_speed_over(swim, plan.speed_over);
     plan.acceptance_m =
         swim.number("acceptance_m", plan.acceptance_m, {0, 100, true, false, "metres"});
     if (const Status status = swim.status(); !status.ok()) reader_.fail(status.error());

@@ -95,7 +95,16 @@ void read_apertures(TableReader& reader, Sonar& sonar) {
                                           azimuth_deg));
 }
 
+// Whether a key says how finely beams are sampled.
+bool names_sampling(TableReader& reader) {
+  for (const Key key : {"quality", "max_error", "gbuffer_scale", "gather"})
+    if (reader.has(key)) return true;
+  const TomlValue* beam = reader.find("beam");
+  return beam != nullptr && beam->find("samples") != nullptr;
+}
+
 void read_quality(TableReader& reader, Sonar& sonar) {
+  sonar.quality_chosen = !names_sampling(reader);
   sonar.gbuffer_scale = reader.number("gbuffer_scale", 0.0, {0, 16});
   sonar.gather = reader.choice("gather", "", kGathers);
   sonar.near_m = reader.number("near_m", 0.02, kNear);

@@ -91,7 +91,7 @@ void read_track_file(TableReader& reader, TrackDraft& track, std::vector<Vec3>& 
 // Times for points without: by speed_m_s, from start_s on.
 void give_times(TableReader& reader, std::vector<Vec3> points, TrackDraft& track) {
   if (!track.places.empty()) {
-    for (const Key key : {"speed_m_s", "start_s"})
+    for (const Key key : {"speed_m_s", "start_s", "repeat"})
       if (reader.has(key)) reader.refuse(key, "no such key beside a file with times");
     return;
   }
@@ -99,8 +99,10 @@ void give_times(TableReader& reader, std::vector<Vec3> points, TrackDraft& track
   constexpr Interval kSpeed{0, 1000, true, false, "m/s"};
   waypoints.speed_m_s = reader.number("speed_m_s", 1.0, kSpeed);
   if (!reader.has("speed_m_s")) reader.refuse("speed_m_s", "a number in " + kSpeed.text());
+  waypoints.repeat = track.repeat = reader.flag("repeat", false);
   const auto& p = waypoints.points_m;
-  if (std::adjacent_find(p.begin(), p.end()) != p.end())
+  const bool meets = waypoints.repeat && p.size() > 1 && p.front() == p.back();
+  if (meets || std::adjacent_find(p.begin(), p.end()) != p.end())
     reader.refuse_table("a waypoint at the place of its neighbour", "waypoints apart");
   if (!reader.ok()) return;
   track.places = places_of(waypoints);
@@ -148,7 +150,9 @@ Track make_track(const TrackDraft& draft, const Quat& rotation) {
   if (draft.recorded.empty()) {
     TrackHeading heading = draft.heading;
     heading.rotation = rotation;
-    return track_of(draft.places, heading);
+    Track track = track_of(draft.places, heading);
+    if (draft.repeat) close(track);
+    return track;
   }
   Track track{draft.places, {}};
   for (std::size_t i = 0; i < draft.places.size(); ++i)

@@ -27,6 +27,13 @@ std::optional<Between> between(const std::vector<Key>& keys, double time_s) {
                  (time_s - before.time_s) / duration_s, duration_s};
 }
 
+// The time of the course's first round.
+double in_round(const Track& track, double time_s) {
+  const double passed_s = time_s - track.repeat_from_s;
+  if (!(track.repeat_s > 0.0) || passed_s < 0.0) return time_s;
+  return track.repeat_from_s + std::fmod(passed_s, track.repeat_s);
+}
+
 template <class Key>
 const Key& outside(const std::vector<Key>& keys, double time_s) {
   return time_s < keys.front().time_s ? keys.front() : keys.back();
@@ -77,13 +84,23 @@ std::vector<Track::Attitude> attitudes_along(const std::vector<Track::Place>& pl
 }  // namespace
 
 std::vector<Track::Place> places_of(const Waypoints& waypoints) {
+  std::vector<Vec3> points_m = waypoints.points_m;
+  if (waypoints.repeat) points_m.insert(points_m.end(), {points_m[0], points_m[1]});
   std::vector<Track::Place> places;
   double length_m = 0.0;
-  for (std::size_t i = 0; i < waypoints.points_m.size(); ++i) {
-    if (i > 0) length_m += glm::distance(waypoints.points_m[i - 1], waypoints.points_m[i]);
-    places.push_back({waypoints.start_s + length_m / waypoints.speed_m_s, waypoints.points_m[i]});
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    if (i > 0) length_m += glm::distance(points_m[i - 1], points_m[i]);
+    places.push_back({waypoints.start_s + length_m / waypoints.speed_m_s, points_m[i]});
   }
   return places;
+}
+
+void close(Track& track) {
+  const auto& places = track.places;
+  NERITIC_CHECK(places.size() >= 4, "a course of {} places that repeats", places.size());
+  // In the middle of the first leg no turn is under way.
+  track.repeat_from_s = 0.5 * (places[0].time_s + places[1].time_s);
+  track.repeat_s = places[places.size() - 2].time_s - places[0].time_s;
 }
 
 Track track_of(std::vector<Track::Place> places, const TrackHeading& heading) {
@@ -121,6 +138,7 @@ std::vector<Vec3> waypoints_of(const LawnMower& mower) {
 
 Pose pose_at(const Track& track, double time_s) {
   NERITIC_CHECK(!track.places.empty() && !track.attitudes.empty(), "a track without keys");
+  time_s = in_round(track, time_s);
   Pose pose;
   if (const auto at = between(track.places, time_s)) {
     const Vec3& a = track.places[at->before].position_m;
@@ -138,14 +156,14 @@ Pose pose_at(const Track& track, double time_s) {
 }
 
 Vec3 velocity_at(const Track& track, double time_s) {
-  const auto at = between(track.places, time_s);
+  const auto at = between(track.places, in_round(track, time_s));
   if (!at) return Vec3(0.0);
   return (track.places[at->before + 1].position_m - track.places[at->before].position_m) /
          at->duration_s;
 }
 
 Vec3 angular_velocity_at(const Track& track, double time_s) {
-  const auto at = between(track.attitudes, time_s);
+  const auto at = between(track.attitudes, in_round(track, time_s));
   if (!at) return Vec3(0.0);
   Quat turn = track.attitudes[at->before + 1].rotation *
               glm::conjugate(track.attitudes[at->before].rotation);

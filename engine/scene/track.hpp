@@ -22,6 +22,8 @@ struct Track {
   // Each at least one, times not falling; of two at the same time the later counts from then on.
   std::vector<Place> places;
   std::vector<Attitude> attitudes;
+  // From repeat_from_s on it goes round, once in repeat_s; 0: it does not.
+  double repeat_from_s = 0.0, repeat_s = 0.0;
 };
 
 // A course through points at one speed.
@@ -29,6 +31,7 @@ struct Waypoints {
   std::vector<Vec3> points_m;  // two or more, neighbours apart
   double speed_m_s = 1.0;      // > 0
   double start_s = 0.0;
+  bool repeat = false;  // from the last back to the first, and again
 };
 
 // How a body turns on its course.
@@ -41,7 +44,10 @@ struct TrackHeading {
   double turn_m = 1.0;
 };
 
+// Those of a course that repeats end with its first leg, so that its turns are whole.
 std::vector<Track::Place> places_of(const Waypoints& waypoints);
+// Makes a track over the places of a course that repeats go round.
+void close(Track& track);
 // Along a course that is vertical or stands, the heading before it stays (at the start: that of the
 // first leg with one, or none).
 Track track_of(std::vector<Track::Place> places, const TrackHeading& heading);

@@ -74,8 +74,10 @@ TEST(Animation, NoClipIsTheRestPose) {
   const Model model = two_nodes(slide(Channel::Interpolation::kLinear));
   EXPECT_EQ(origin_of(evaluate_pose(model, -1, 2.0), 1), Vec3(1, 0, 0));
   EXPECT_EQ(origin_of(evaluate_pose(model, 7, 2.0), 1), Vec3(1, 0, 0));
-  EXPECT_EQ(find_clip(model, "move"), 0);
-  EXPECT_EQ(find_clip(model, "stand"), -1);
+  EXPECT_EQ(find_clip(model, "move", "clip").value(), 0);
+  EXPECT_EQ(find_clip(model, "0", "clip").value(), 0);
+  EXPECT_EQ(find_clip(model, "stand", "--clip").error().message,
+            "--clip: found \"stand\"; accepted: a clip of the model, by name or number: 0 move");
 }
 
 // A cubic whose tangents are the slopes of f(t) = t^3 - 2t reproduces f exactly.

@@ -212,14 +212,14 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
        [](Builder& b) {
          b.json["images"] = {{{"uri", "data:image/png;base64,`"}}};
        }},
-      {"images[0]: found 3 bytes of another kind; accepted: a PNG or JPEG picture",
+      {"images[0]: found 3 bytes of another kind; accepted: a PNG, JPEG or WebP picture",
        [](Builder& b) {
          b.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};
        }},
-      {"the extension EXT_texture_webp is not supported and ignored",
+      {"the extension KHR_texture_basisu is not supported and ignored",
        [](Builder& b) {
-         b.json["images"] = {{{"uri", "data:image/webp;base64,AAAA"}}};
-         b.json["extensionsUsed"] = {"EXT_texture_webp"};
+         b.json["images"] = {{{"uri", "data:image/ktx2;base64,AAAA"}}};
+         b.json["extensionsUsed"] = {"KHR_texture_basisu"};
        }},
       {"",
        [&](Builder& b) {

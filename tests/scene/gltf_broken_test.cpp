@@ -18,18 +18,18 @@ namespace neritic::test {
 namespace {
 namespace fs = std::filesystem;
 
-struct Case {
+struct BrokenCase {
   fs::path file;
   std::set<std::string> errors;  // the validator's codes; empty: valid
 };
 
-std::vector<Case> validator_cases(const fs::path& folder) {
-  std::vector<Case> cases;
+std::vector<BrokenCase> validator_cases(const fs::path& folder) {
+  std::vector<BrokenCase> cases;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const std::string name = entry.path().string();
     if (!name.ends_with(".report.json")) continue;
     const auto issues = parse_json(read_text(entry.path()).value()).value()["issues"];
-    Case one{name.substr(0, name.size() - std::string(".report.json").size()), {}};
+    BrokenCase one{name.substr(0, name.size() - std::string(".report.json").size()), {}};
     for (const auto& message : issues["messages"])
       if (message["severity"] == 0) one.errors.insert(message["code"]);
     cases.push_back(one);
@@ -37,11 +37,11 @@ std::vector<Case> validator_cases(const fs::path& folder) {
   return cases;
 }
 
-std::vector<Case> bad_inputs(const fs::path& folder) {
-  std::vector<Case> cases;
+std::vector<BrokenCase> bad_inputs(const fs::path& folder) {
+  std::vector<BrokenCase> cases;
   const auto verdicts = parse_json(read_text(folder / "validator.json").value()).value();
   for (const auto& [name, verdict] : verdicts.items()) {
-    Case one{folder / name, {}};
+    BrokenCase one{folder / name, {}};
     for (const auto& [code, count] : verdict["codes"].items()) one.errors.insert(code);
     if (verdict["validator_errors"] == 0) one.errors.clear();
     cases.push_back(one);
@@ -69,7 +69,7 @@ const std::set<std::string> kMustRefuse = {"ACCESSOR_INDEX_OOB",
                                            "NODE_PARENT_OVERRIDE",
                                            "UNKNOWN_ASSET_MAJOR_VERSION"};
 
-void check_case(const Case& one) {
+void check_case(const BrokenCase& one) {
   SCOPED_TRACE(one.file.string());
   const auto start = std::chrono::steady_clock::now();
   const auto model = scene::load_gltf(one.file);
@@ -97,14 +97,14 @@ TEST(GltfBroken, ValidatorCasesLoadOrEndInOneLine) {
   NERITIC_REQUIRE_SHARED(shared);
   const auto cases = validator_cases(shared / "data/gltf-broken/gltf-validator-cases");
   ASSERT_GT(cases.size(), 140u);
-  for (const Case& one : cases) check_case(one);
+  for (const BrokenCase& one : cases) check_case(one);
 }
 
 TEST(GltfBroken, OtherProjectsBadInputsLoadOrEndInOneLine) {
   NERITIC_REQUIRE_SHARED(shared);
   const auto cases = bad_inputs(shared / "data/gltf-broken/gltf-bad-inputs");
   ASSERT_GE(cases.size(), 30u);
-  for (const Case& one : cases) check_case(one);
+  for (const BrokenCase& one : cases) check_case(one);
 }
 
 // Every prefix of a real .glb, and every byte of its header and JSON flipped, must end the same

@@ -32,6 +32,10 @@ Result<Model> GltfBuilder::load(const std::filesystem::path& folder) {
   if (!bytes.empty())
     json["buffers"] = {{{"byteLength", bytes.size()},
                         {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+  if (fallback_bytes > 0)
+    json["buffers"].push_back(
+        {{"byteLength", fallback_bytes},
+         {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
   const std::string text = json_text(json, -1);
   return parse_gltf_bytes(std::as_bytes(std::span(text.data(), text.size())), "made.gltf", folder);
 }

@@ -18,6 +18,7 @@ using Json = nlohmann::json;
 struct GltfBuilder {
   Json json = {{"asset", {{"version", "2.0"}}}};
   std::vector<std::uint8_t> bytes;
+  std::size_t fallback_bytes = 0;  // of a second buffer without data, for compressed views
 
   template <class T>
   int view(const std::vector<T>& values, int stride = 0) {

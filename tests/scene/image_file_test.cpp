@@ -157,7 +157,7 @@ TEST(ImageFile, OtherFilesAreNamedAsNoPicture) {
   const auto read = decode_image8(bytes_of(text), "notes.txt");
   ASSERT_FALSE(read.ok());
   EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
-  EXPECT_NE(read.error().message.find("bytes of another kind; accepted: a PNG or JPEG"),
+  EXPECT_NE(read.error().message.find("bytes of another kind; accepted: a PNG, JPEG or WebP"),
             std::string::npos);
   EXPECT_FALSE(decode_image8({}, "empty").ok());
 }

@@ -67,6 +67,28 @@ TEST(SceneAssets, TheWreckHasTheRovFacingTheDiverAtTwoToFourMetres) {
   EXPECT_GT(diver_depth.y, -18.0);
 }
 
+// Whatever swims by a clip goes through the water: a metre in five seconds, at any time of the
+// dive.
+TEST(SceneAssets, NothingSwimsOnTheSpot) {
+  int swimmers = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::source_dir() / "assets/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Scene scene = load(entry.path().filename().string().c_str());
+    for (const Object& object : scene.objects) {
+      if (object.model < 0 || object.clip < 0 || object.human) continue;
+      if (scene.models[object.model]->clips[object.clip].name != "swim") continue;
+      ++swimmers;
+      for (const double time_s : {0.0, 100.0, 1000.0})
+        EXPECT_GT(glm::distance(scene.world_from(object.mount, time_s).position_m,
+                                scene.world_from(object.mount, time_s + 5.0).position_m),
+                  1.0)
+            << entry.path() << " " << object.name << " " << time_s;
+    }
+  }
+  EXPECT_GE(swimmers, 8);
+}
+
 TEST(SceneAssets, TheBenchmarkSceneHasItsSizeAndNothingElse) {
   const Scene scene = load("benchmark_23k.toml");
   EXPECT_NEAR(static_cast<double>(drawn_triangles(scene)), 23000.0, 500.0);
@@ -108,6 +130,7 @@ TEST(SceneAssets, TheFormatsPageHasEveryKey) {
   ASSERT_TRUE(page.ok());
   for (const KeyList keys : {KeyList(kSceneKeys),
                              KeyList(kSunKeys),
+                             KeyList(kLabKeys),
                              KeyList(kWaterKeys),
                              KeyList(kObjectKeys),
                              KeyList(kScatterKeys),
@@ -120,6 +143,7 @@ TEST(SceneAssets, TheFormatsPageHasEveryKey) {
                              KeyList(kStandBetweenKeys),
                              KeyList(kDiverInputKeys),
                              KeyList(kVehicleInputKeys),
+                             KeyList(kObjectInputKeys),
                              KeyList(kInputChoiceKeys),
                              KeyList(kTrackKeys),
                              KeyList(kLawnMowerKeys),

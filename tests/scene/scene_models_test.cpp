@@ -152,6 +152,20 @@ TEST(SceneOfModel, TheCameraFramesAnySize) {
     }
 }
 
+TEST(SceneOfModel, TheChosenClipIsShownWithAllOfItsCourse) {
+  Model model = make_box(Vec3(1.0));
+  for (const float end_m : {0.0f, 30.0f}) {
+    const Channel slide{0,      Channel::Path::kTranslation, Channel::Interpolation::kLinear,
+                        {0, 4}, {0, 0, 0, end_m, 0, 0},      3};
+    model.clips.push_back({fmt::format("{} m", end_m), 4.0, {slide}});
+  }
+  const Scene first = scene_of_model(model, 640, 480), second = scene_of_model(model, 640, 480, 1);
+  EXPECT_EQ(first.objects[0].clip, 0);
+  EXPECT_EQ(second.objects[0].clip, 1);
+  EXPECT_GT(framing_of(first, {Vec3(-0.5), Vec3(0.5)}).reach, 0.7);
+  EXPECT_LT(framing_of(second, {Vec3(-0.5), Vec3(26.7, 0.5, 0.5)}).reach, 1.0);
+}
+
 TEST(SceneOfModel, EmptyAndPointModelsGetACameraToo) {
   Model point = make_plane(1.0, 1.0);
   Primitive& primitive = point.meshes[0].primitives[0];

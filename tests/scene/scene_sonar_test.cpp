@@ -18,9 +18,32 @@ Sonar sonar_of(const test::ScratchFolder& scratch, const std::string& keys) {
 TEST(SceneSonar, NothingNamedIsThePublishedModel) {
   const test::ScratchFolder scratch;
   Sonar wanted;
+  wanted.quality = "standard";
+  wanted.quality_chosen = true;
   EXPECT_TRUE(same_settings(sonar_of(scratch, ""), wanted));
   wanted.bins_range = 501;
   EXPECT_FALSE(same_settings(sonar_of(scratch, ""), wanted));
+}
+
+TEST(SceneSonar, WhatNamesNoSamplingGetsStandardAndOneNoteSaysSo) {
+  const test::ScratchFolder scratch;
+  const std::string open = "[[sonars]]\n";
+  Scene scene = scene_of(scratch, open + open);
+  EXPECT_EQ(scene.sonars[1].quality, "standard");
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_THAT(scene.notes[0],
+              ::testing::EndsWith("sonar, sonar_1: no quality is named, so \"standard\" it is; "
+                                  "quality = \"draft\" is faster"));
+  for (const char* named : {"quality = \"draft\"", "max_error = 0.05", "gbuffer_scale = 0.5",
+                            "gather = \"plane\"", "beam = { samples = 1 }"}) {
+    scene = scene_of(scratch, open + named);
+    EXPECT_FALSE(scene.sonars[0].quality_chosen) << named;
+    EXPECT_THAT(scene.notes, ::testing::IsEmpty()) << named;
+  }
+  scene = scene_of(scratch, open + open + open + open + open + "quality = \"reference\"\n");
+  EXPECT_EQ(scene.sonars[0].quality, "draft");
+  EXPECT_EQ(scene.sonars[4].quality, "reference");
+  EXPECT_EQ(scene.notes.size(), 1u);
 }
 
 TEST(SceneSonar, EmptyTermsHaveTheirDefaults) {

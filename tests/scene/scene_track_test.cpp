@@ -38,6 +38,36 @@ on = "towed"
 position_m = [0, 0, -1]
 )";
 
+// Another way to name a place or an attitude replaces the included one.
+TEST(SceneTrack, AnIncludingTableNamesAPlaceInAnotherWay) {
+  const test::ScratchFolder scratch;
+  ASSERT_TRUE(write_text(scratch / "base.toml", R"(
+[[objects]]
+name = "swimmer"
+shape = "sphere"
+pitch_deg = -80
+track = { waypoints_m = [[0, -5, 0], [10, -5, 0], [10, -5, 10]], speed_m_s = 1, repeat = true }
+[[objects]]
+name = "stone"
+shape = "sphere"
+position_m = [1, -9, 1]
+look_at = "swimmer"
+)")
+                  .ok());
+  const Scene scene = scene_of(scratch, R"(include = "base.toml"
+[[objects]]
+name = "swimmer"
+position_m = [3, -4, 5]
+[[objects]]
+name = "stone"
+yaw_deg = 90
+track = { waypoints_m = [[0, -9, 0], [0, -9, 8]], speed_m_s = 1, repeat = true, heading = "fixed" }
+)");
+  expect_near(scene.world_from(scene.objects[0].mount, 50.0).position_m, {3, -4, 5});
+  expect_near(scene.world_from(scene.objects[1].mount, 20.0).position_m, {0, -9, 4});
+  expect_near(scene.world_from(scene.objects[1].mount, 20.0).rotation * Vec3(0, 0, -1), {-1, 0, 0});
+}
+
 TEST(SceneTrack, WhatMovesCarriesWhatHangsOnIt) {
   const test::ScratchFolder scratch;
   const Scene scene = scene_of(scratch, kConvoy);

@@ -60,6 +60,30 @@ TEST(Track, WithoutATurningLengthItTurnsAtOnce) {
   expect_near(angular_velocity_at(track, 8), {0, 0, 0});
 }
 
+// A square of 8 m, a metre a second, from second 2 on: round after round the same places, ahead
+// along each leg, and nothing jumps where a round begins.
+TEST(Track, ACourseThatRepeatsGoesRoundWithoutAJump) {
+  const Waypoints square{{{0, 0, 0}, {8, 0, 0}, {8, 0, 8}, {0, 0, 8}}, 1.0, 2.0, true};
+  Track track = track_of(places_of(square), {.turn_m = 2.0});
+  close(track);
+  expect_near(pose_at(track, 0.0).position_m, {0, 0, 0});
+  expect_near(velocity_at(track, 0.0), {0, 0, 0});
+  for (const double round_s : {0.0, 32.0, 32.0 * 1000}) {
+    expect_near(pose_at(track, round_s + 6).position_m, {4, 0, 0});
+    expect_near(forward(pose_at(track, round_s + 6)), {1, 0, 0});
+    expect_near(pose_at(track, round_s + 30).position_m, {0, 0, 4});
+    expect_near(forward(pose_at(track, round_s + 30)), {0, 0, -1});
+    expect_near(velocity_at(track, round_s + 30), {0, 0, -1});
+  }
+  // In the middle of the turn at the round's end.
+  expect_near(forward(pose_at(track, 34)), {std::sqrt(0.5), 0, -std::sqrt(0.5)});
+  for (double t = 2.0; t < 80.0; t += 0.05) {
+    const Pose a = pose_at(track, t), b = pose_at(track, t + 0.05);
+    EXPECT_LT(glm::distance(a.position_m, b.position_m), 0.0501) << t;
+    EXPECT_LT(glm::distance(forward(a), forward(b)), 0.08) << t;
+  }
+}
+
 TEST(Track, ATurnTakesNoMoreThanHalfALeg) {
   const Track track = corner({.turn_m = 1000.0});
   expect_near(forward(pose_at(track, 5.5)), {0, 0, -1});  // the middle of the first leg
