@@ -22,6 +22,9 @@ std::vector<Control> make_controls() {
   add("pad",
       {"left_x", "left_y", "right_x", "right_y", "left_trigger", "right_trigger", "a", "b", "x",
        "y", "left_bumper", "right_bumper", "back", "start", "up", "right", "down", "left"});
+  // The controllers in the hands: x is "lower" and y "upper" on the left one of some.
+  for (const char* hand : {"left", "right"})
+    add(hand, {"stick_x", "stick_y", "stick", "trigger", "squeeze", "lower", "upper", "menu"});
   NERITIC_CHECK(all.size() <= kMaxControls, "{} controls", all.size());
   return all;
 }

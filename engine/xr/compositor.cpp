@@ -101,7 +101,7 @@ AllCorners corners_of(const PanelLayer& panel, const ViewGroup& group,
     const Mat4 clip_from_panel =
         reversed_z_projection(view.tangents, kPanelNear_m) * to_matrix(view_from_panel);
     out[i] = {Vec4f(clip_from_panel[3]), Vec4f(clip_from_panel[0] * (0.5 * panel.size_m.x)),
-              Vec4f(clip_from_panel[1] * (0.5 * panel.size_m.y))};
+              Vec4f(clip_from_panel[1] * (0.5 * panel.size_m.y)), Vec4f(0.0f)};
   }
   return out;
 }
@@ -109,6 +109,7 @@ AllCorners corners_of(const PanelLayer& panel, const ViewGroup& group,
 struct DrawnPanel {
   ImageHandle image;
   AllCorners corners;
+  std::vector<PanelPart> parts;
 };
 
 struct PanelsData {
@@ -141,15 +142,19 @@ void record_panels(const PanelsData& data, const gpu::Pipeline& pipeline, VkSamp
   vkCmdSetCullMode(cmd, VK_CULL_MODE_NONE);
   vkCmdSetFrontFace(cmd, VK_FRONT_FACE_COUNTER_CLOCKWISE);
   context.commands.bind_pipeline(pipeline);
-  for (const DrawnPanel& panel : data.panels) {
-    const gpu::UploadSlice corners =
-        context.commands.upload(std::span<const shared::PanelCorners>(panel.corners));
-    context.commands.bind(
-        pipeline,
-        {gpu::bound_buffer(shared::kPanelCorners, corners.buffer, corners.offset, corners.size),
-         gpu::bound_texture(shared::kPanelTexture, context.image(panel.image).view(), sampler)});
-    vkCmdDraw(cmd, 4, 1, 0, 0);
-  }
+  for (const DrawnPanel& panel : data.panels)
+    for (const PanelPart& part : panel.parts) {
+      AllCorners corners = panel.corners;
+      for (shared::PanelCorners& view : corners)
+        view.part = Vec4f(part.left, part.top, part.right, part.bottom);
+      const gpu::UploadSlice slice =
+          context.commands.upload(std::span<const shared::PanelCorners>(corners));
+      context.commands.bind(
+          pipeline,
+          {gpu::bound_buffer(shared::kPanelCorners, slice.buffer, slice.offset, slice.size),
+           gpu::bound_texture(shared::kPanelTexture, context.image(panel.image).view(), sampler)});
+      vkCmdDraw(cmd, 4, 1, 0, 0);
+    }
   vkCmdEndRendering(cmd);
 }
 
@@ -212,7 +217,7 @@ Result<ImageHandle> Compositor::declare(graph::FrameGraph& graph, const std::str
   std::vector<DrawnPanel> panels;
   for (const Layer& layer : layers)
     if (const auto* panel = std::get_if<PanelLayer>(&layer))
-      panels.push_back({panel->image, corners_of(*panel, group, world_from_head)});
+      panels.push_back({panel->image, corners_of(*panel, group, world_from_head), panel->parts});
   if (panels.empty()) return target;
   NERITIC_TRY(const gpu::Pipeline* const pipeline, pipeline_for(views));
   return graph

@@ -3,6 +3,7 @@
 // and the submission with sync(), then end_frame on every path. Rendering thread.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,6 +37,18 @@ enum class FrameVerdict {
   kQuit,    // the user closed it: no frame began
 };
 
+// The tracking of a wearer beside the head, in the world.
+struct Tracked {
+  // Left, then right; origin at the wrist. Axes as a standing person's while the arm hangs with the
+  // palm to the thigh: x right, y from the fingers to the wrist, z backwards.
+  std::array<std::optional<Pose>, 2> hands;
+  struct Gaze {
+    Pose pose;              // between the eyes, which look along -z
+    TimeNs sampled_ns = 0;  // when the eyes were measured, on the host clock
+  };
+  std::optional<Gaze> gaze;
+};
+
 struct DisplayFrame {
   FrameVerdict verdict = FrameVerdict::kHidden;
   // When the picture will be seen, on the host clock. Absent: no screen paces the frames, so that
@@ -43,6 +56,7 @@ struct DisplayFrame {
   std::optional<TimeNs> display_at_ns;
   // Where the display tracks its wearer's head; absent: the program's camera is the head.
   std::optional<Pose> world_from_head;
+  Tracked tracked;
   std::vector<ViewGroup> groups;  // with kDraw at least one
 };
 
@@ -56,15 +70,24 @@ struct ProjectionLayer {
   double near_m = 0.0;
 };
 
+// A rectangle of a picture: 0 to 1 from its left and its top.
+struct PanelPart {
+  double left = 0.0, top = 0.0, right = 1.0, bottom = 1.0;
+};
+
 // A flat picture over what the layers before it show.
 struct PanelLayer {
   enum class Lock { kHead, kWorld };
   std::string name;
-  graph::ImageHandle image;  // sRGB-encoded RGBA8, colour multiplied by alpha
+  // sRGB-encoded RGBA8, colour multiplied by alpha. A headset keeps a panel's image by its name: an
+  // empty handle shows the last one again.
+  graph::ImageHandle image;
   Lock lock = Lock::kHead;
   Pose pose;         // of its centre in the head's frame or the world's: x right, y up, z to the
                      // viewer
   Vec2 size_m{1.0};  // width and height
+  // Disjoint; the picture is clear outside of them, so that a display may leave that out.
+  std::vector<PanelPart> parts{PanelPart{}};
 };
 
 using Layer = std::variant<ProjectionLayer, PanelLayer>;
@@ -84,6 +107,10 @@ class Display {
   // where the space in which the display tracks lies in the world; displays without tracking do not
   // use it.
   virtual Result<DisplayFrame> begin_frame(const Pose& world_from_stage) = 0;
+  // Reads the head's and the views' poses again, for the same display time: as late as the frame
+  // allows, just before the views are declared. The stage may have moved since begin_frame.
+  // Displays without tracking change nothing.
+  virtual void track(DisplayFrame&, const Pose& /*world_from_stage*/) {}
   // Adds the passes that bring the layers to the display, in this order, each over the ones before.
   // world_from_head: from where the projection layers were drawn.
   virtual Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,

@@ -22,7 +22,8 @@ class OverlayTest : public test::GpuTest {
     const std::vector<Layer> layers{PanelLayer{.name = "overlay",
                                                .image = overlay.declare(graph),
                                                .pose = Pose{{0, 0, -1}},
-                                               .size_m = {2.0 * kWidth / kHeight, 2.0}}};
+                                               .size_m = {2.0 * kWidth / kHeight, 2.0},
+                                               .parts = overlay.drawn()}};
     NERITIC_ASSERT_OK(const ShownPicture picture, display->declare(graph, {}, layers));
     EXPECT_EQ(picture.width, kWidth);
     shown_ = run_and_read(device(), graph, display->picture(0));
@@ -59,6 +60,37 @@ TEST_F(OverlayTest, HalfTransparentInkMixesEvenlyWithWhatIsUnder) {
   EXPECT_NEAR(mixed[0], 200.0 * 128 / 255, 1.0);
   EXPECT_NEAR(mixed[1], 200.0 * 127 / 255, 1.0);
   EXPECT_EQ(mixed[2], 0);
+}
+
+// Otherwise a window would blend every pixel of its screen.
+TEST_F(OverlayTest, OnlyThePartsThatWereDrawnAreLaidOver) {
+  NERITIC_ASSERT_OK(const auto overlay, Overlay::create(device(), nullptr, 1.0f));
+  graph::FrameGraph graph;
+  overlay->begin(kWidth, kHeight, 0.01);
+  const auto window = [](const char* name, ImVec2 at, ImVec2 size) {
+    ImGui::SetNextWindowPos(at);
+    ImGui::SetNextWindowSize(size);
+    ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y),
+                                              IM_COL32(10, 20, 30, 255));
+    ImGui::End();
+  };
+  window("a", {0, 0}, {33, 34});
+  window("b", {20, 10}, {33, 34});  // over the first
+  ImGui::GetForegroundDrawList()->AddRectFilled(ImVec2(60, 44), ImVec2(80, 60),
+                                                IM_COL32(200, 200, 200, 255));  // over the edge
+  draw(*overlay, graph);
+  double area = 0.0;
+  for (const PanelPart& part : overlay->drawn()) {
+    EXPECT_GE(part.left, 0.0);
+    EXPECT_LE(part.right, 1.0);
+    area += (part.right - part.left) * (part.bottom - part.top);
+  }
+  EXPECT_GE(overlay->drawn().size(), 2u);
+  EXPECT_LT(area, 0.85);  // 53 x 44 of 64 x 48, and the corner
+  EXPECT_EQ(texel(25, 20), (Texel{10, 20, 30, 255}));
+  EXPECT_EQ(texel(62, 46), (Texel{200, 200, 200, 255}));
+  EXPECT_EQ(texel(62, 2), (Texel{0, 0, 0, 255}));
 }
 
 TEST_F(OverlayTest, PictureOfTheGraphIsShownRightWayUp) {

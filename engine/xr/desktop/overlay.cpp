@@ -15,6 +15,7 @@ namespace neritic::xr {
 namespace {
 
 constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
+constexpr float kHeightOfScale1_px = 1080.0f;
 constexpr float kFontSize_px = 14.0f;  // the em, at a scale of 1
 
 void set_style(float scale) {
@@ -36,6 +37,54 @@ void set_style(float scale) {
   style.ScaleAllSizes(scale);
 }
 
+bool meet(const PanelPart& a, const PanelPart& b) {
+  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+}
+
+PanelPart around(const PanelPart& a, const PanelPart& b) {
+  return {std::min(a.left, b.left), std::min(a.top, b.top), std::max(a.right, b.right),
+          std::max(a.bottom, b.bottom)};
+}
+
+// Adds a part to disjoint ones; those that meet become one.
+void add_part(std::vector<PanelPart>& parts, PanelPart part) {
+  for (auto met = parts.begin(); met != parts.end();) {
+    if (meet(*met, part)) {
+      part = around(*met, part);
+      parts.erase(met);
+      met = parts.begin();
+    } else {
+      ++met;
+    }
+  }
+  parts.push_back(part);
+}
+
+// In whole pixels: the vertices of each command, within what it is clipped to.
+std::vector<PanelPart> drawn_parts(const ImDrawData& data) {
+  const float width = data.DisplaySize.x, height = data.DisplaySize.y;
+  std::vector<PanelPart> parts;
+  for (int n = 0; n < data.CmdListsCount; ++n) {
+    const ImDrawList& list = *data.CmdLists[n];
+    for (const ImDrawCmd& command : list.CmdBuffer) {
+      ImVec2 least(width, height), most(0.0f, 0.0f);
+      for (unsigned int i = 0; i < command.ElemCount; ++i) {
+        const ImDrawIdx index = list.IdxBuffer[static_cast<int>(command.IdxOffset + i)];
+        const ImVec2 at = list.VtxBuffer[static_cast<int>(command.VtxOffset + index)].pos;
+        least = {std::min(least.x, at.x), std::min(least.y, at.y)};
+        most = {std::max(most.x, at.x), std::max(most.y, at.y)};
+      }
+      const float left = std::floor(std::max({least.x, command.ClipRect.x, 0.0f}));
+      const float top = std::floor(std::max({least.y, command.ClipRect.y, 0.0f}));
+      const float right = std::ceil(std::min({most.x, command.ClipRect.z, width}));
+      const float bottom = std::ceil(std::min({most.y, command.ClipRect.w, height}));
+      if (left < right && top < bottom)
+        add_part(parts, {left / width, top / height, right / width, bottom / height});
+    }
+  }
+  return parts;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Overlay>> Overlay::create(gpu::Device& device, Window* window, float scale) {
@@ -43,7 +92,7 @@ Result<std::unique_ptr<Overlay>> Overlay::create(gpu::Device& device, Window* wi
   IMGUI_CHECKVERSION();
   std::unique_ptr<Overlay> overlay(new Overlay(device));
   overlay->context_ = ImGui::CreateContext();
-  overlay->scale_ = std::max(1.0f, std::round(scale));
+  overlay->least_scale_ = overlay->scale_ = std::max(1.0f, std::round(scale));
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // no files of its own
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
@@ -53,6 +102,18 @@ Result<std::unique_ptr<Overlay>> Overlay::create(gpu::Device& device, Window* wi
   NERITIC_TRY_STATUS(overlay->create_font());
   NERITIC_TRY_STATUS(overlay->create_pipeline());
   return overlay;
+}
+
+Status Overlay::fit(std::uint32_t height) {
+  const float wanted = std::round(static_cast<float>(height) / kHeightOfScale1_px);
+  const float scale = std::max(least_scale_, wanted);
+  if (scale == scale_) return {};
+  device_.wait_idle();  // frames in flight read the font
+  scale_ = scale;
+  ImGui::GetStyle() = ImGuiStyle();
+  set_style(scale);
+  ImGui::GetIO().Fonts->Clear();
+  return create_font();
 }
 
 Overlay::~Overlay() {
@@ -131,6 +192,7 @@ ImTextureID Overlay::texture(graph::ImageHandle image, std::uint32_t layer) {
 
 graph::ImageHandle Overlay::declare(graph::FrameGraph& graph) {
   ImGui::Render();
+  drawn_ = drawn_parts(*ImGui::GetDrawData());
   struct Data {
     graph::ImageHandle target;
   };

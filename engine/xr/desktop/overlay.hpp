@@ -12,15 +12,19 @@
 #include "engine/gpu/pipeline.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "engine/xr/desktop/window.hpp"
+#include "engine/xr/display.hpp"
 
 namespace neritic::xr {
 
 class Overlay {
  public:
-  // window: whose input it reads; nullptr: none. scale: of text and panels.
+  // window: whose input it reads; nullptr: none. scale: the least of text and panels.
   static Result<std::unique_ptr<Overlay>> create(gpu::Device& device, Window* window, float scale);
   ~Overlay();
 
+  // Scales text and panels for pictures of that height: twice as large on 2160 pixels as on 1080.
+  // Waits for the GPU when the scale changes.
+  Status fit(std::uint32_t height);
   // Starts a frame of that many pixels; ImGui calls may follow.
   void begin(std::uint32_t width, std::uint32_t height, double elapsed_s);
   // An image of this frame's graph for ImGui to draw with (sRGB-encoded values, a 2D array as all
@@ -29,6 +33,8 @@ class Overlay {
   // Ends ImGui's frame and declares the pass that draws it: RGBA8 of the size given to begin,
   // colour multiplied by alpha, clear where ImGui drew nothing.
   graph::ImageHandle declare(graph::FrameGraph& graph);
+  // Rectangles that hold all that was drawn; after declare.
+  const std::vector<PanelPart>& drawn() const { return drawn_; }
 
   // The input devices that ImGui's panels use now.
   InputClaims claims() const;
@@ -49,11 +55,12 @@ class Overlay {
   gpu::Device& device_;
   ImGuiContext* context_ = nullptr;
   bool glfw_ = false;
-  float scale_ = 1.0f;
+  float least_scale_ = 1.0f, scale_ = 1.0f;
   std::uint32_t width_ = 1, height_ = 1;  // of this frame
   gpu::Image font_;
   gpu::Sampler sampler_;
   gpu::Pipeline pipeline_;
+  std::vector<PanelPart> drawn_;
   std::vector<Texture> textures_;  // of this frame; ImTextureID is its place plus one, 0: the font
 };
 

@@ -1,0 +1,327 @@
+#include "engine/xr/openxr/headset.hpp"
+
+#include <thread>
+
+#include "engine/core/check.hpp"
+#include "engine/core/log.hpp"
+#include "engine/xr/compositor.hpp"
+#include "engine/xr/openxr/inputs.hpp"
+#include "engine/xr/openxr/panels.hpp"
+#include "engine/xr/openxr/views.hpp"
+
+namespace neritic::xr {
+namespace openxr {
+namespace {
+
+// While nobody wears it: the program's other work goes on at this pace.
+constexpr std::chrono::milliseconds kIdle{10};
+// Between two tries to reach a runtime that went away.
+constexpr TimeNs kRetry_ns = 500'000'000;
+
+class OpenXrHeadset final : public Headset {
+ public:
+  OpenXrHeadset(const HeadsetOptions& options, ActionTable actions)
+      : options_(options), actions_(std::move(actions)) {}
+  ~OpenXrHeadset() override { disconnect(); }
+  Status connect();
+
+  void require(gpu::DeviceOptions& options) override;
+  Status attach(gpu::Device& device) override;
+  const HeadsetInfo& info() const override { return info_; }
+  const std::vector<std::string>& validation_messages() const override { return messages_; }
+
+  Result<DisplayFrame> begin_frame(const Pose& world_from_stage) override;
+  void track(DisplayFrame& frame, const Pose& world_from_stage) override;
+  Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
+                               std::span<const Layer> layers) override;
+  gpu::Frames::SubmitSync sync() const override { return {}; }
+  Status end_frame(bool submitted) override;
+  ActionValues take_actions(const InputClaims& claims) override;
+
+ private:
+  // The children of a session, in the order of creation.
+  struct Parts {
+    std::unique_ptr<Session> session;
+    std::unique_ptr<Views> views;
+    std::unique_ptr<Panels> panels;
+    std::unique_ptr<Inputs> inputs;
+  };
+  Status start_session();
+  void end_session();
+  void disconnect();
+  void reconnect();
+  // After a failed call: goes on without the session or the runtime where it was lost, else gives
+  // the error back.
+  Status recover(const Status& status);
+  Status begin(DisplayFrame& frame);
+  Status end(bool submitted);
+  Status declare_layers(graph::FrameGraph& graph, std::span<const Layer> layers,
+                        ShownPicture& shown);
+  Status declare_projection(graph::FrameGraph& graph, const ProjectionLayer& layer);
+  void fill(DisplayFrame& frame) const;
+  void fill_tracked(DisplayFrame& frame) const;
+
+  HeadsetOptions options_;
+  ActionTable actions_;
+  HeadsetInfo info_;
+  std::vector<std::string> messages_;
+  gpu::Device* device_ = nullptr;
+  std::unique_ptr<Runtime> runtime_;  // nullptr: it went away
+  std::unique_ptr<Presenter> presenter_;
+  Parts parts_;  // empty: no session
+  TimeNs retry_at_ns_ = 0;
+  std::string told_;  // why the last try failed
+  Pose world_from_stage_;
+  bool in_frame_ = false;  // between xrBeginFrame and xrEndFrame
+  XrTime display_at_ = 0;
+  std::vector<double> near_m_;   // of each group's depth this frame; 0: none
+  std::vector<bool> projected_;  // groups with a picture this frame
+};
+
+Status OpenXrHeadset::connect() {
+  NERITIC_TRY(runtime_, Runtime::create(options_, true, &messages_));
+  info_ = runtime_->info();
+  log_info("headset {} by {}", info_.system, info_.runtime);
+  return {};
+}
+
+void OpenXrHeadset::require(gpu::DeviceOptions& options) {
+  options.maker.instance = [this](const VkInstanceCreateInfo& info, VkInstance* instance) {
+    return runtime_->make_instance(info, instance);
+  };
+  options.maker.physical = [this](VkInstance instance, VkPhysicalDevice* device) {
+    return runtime_->find_physical(instance, device);
+  };
+  options.maker.device = [this](VkPhysicalDevice physical, const VkDeviceCreateInfo& info,
+                                VkDevice* device) {
+    return runtime_->make_device(physical, info, device);
+  };
+}
+
+Status OpenXrHeadset::attach(gpu::Device& device) {
+  NERITIC_CHECK(!device_, "attached twice");
+  device_ = &device;
+  NERITIC_TRY(presenter_, Presenter::create(device));
+  return start_session();
+}
+
+Status OpenXrHeadset::start_session() {
+  Parts parts;
+  NERITIC_TRY(parts.session, Session::create(*runtime_, *device_, options_));
+  NERITIC_TRY(parts.views, Views::create(*runtime_, *parts.session, *device_));
+  NERITIC_TRY(parts.panels, Panels::create(*runtime_, *parts.session, *device_, *presenter_));
+  NERITIC_TRY(parts.inputs, Inputs::create(*runtime_, *parts.session));
+  parts_ = std::move(parts);
+  return {};
+}
+
+void OpenXrHeadset::end_session() {
+  if (parts_.session) device_->wait_idle();  // the runtime's images may still be drawn to
+  parts_.inputs.reset();
+  parts_.panels.reset();
+  parts_.views.reset();
+  parts_.session.reset();
+  in_frame_ = false;
+}
+
+void OpenXrHeadset::disconnect() {
+  end_session();
+  runtime_.reset();
+}
+
+Status OpenXrHeadset::recover(const Status& status) {
+  if (status.ok() && (!runtime_ || runtime_->loss() == Loss::kNone)) return {};
+  if (!runtime_ || runtime_->loss() == Loss::kNone) return status;
+  const bool instance = runtime_->loss() == Loss::kInstance;
+  log_warn("{} lost the headset{}: the dive goes on, and shows again when it is back",
+           info_.runtime, status.ok() ? "" : " (" + status.error().message + ")");
+  end_session();
+  if (instance)
+    runtime_.reset();
+  else
+    runtime_->forget_session_loss();
+  retry_at_ns_ = now_ns() + (instance ? kRetry_ns : 0);
+  return {};
+}
+
+// Tries again what was lost, once a while. Its failures are those of a runtime that is not back.
+void OpenXrHeadset::reconnect() {
+  if (parts_.session || now_ns() < retry_at_ns_) return;
+  retry_at_ns_ = now_ns() + kRetry_ns;
+  Status status;
+  if (!runtime_) {
+    status = connect();
+    if (status.ok()) status = runtime_->check_device(*device_);
+  }
+  if (status.ok()) status = start_session();
+  if (status.ok()) {
+    log_info("the headset is back");
+    return;
+  }
+  if (status.error().message != told_) log_warn("{}", status.error().message);
+  told_ = status.error().message;
+  disconnect();
+}
+
+Result<DisplayFrame> OpenXrHeadset::begin_frame(const Pose& world_from_stage) {
+  NERITIC_CHECK(device_, "a frame before attach");
+  world_from_stage_ = world_from_stage;
+  DisplayFrame frame;
+  frame.display_at_ns = now_ns();
+  reconnect();
+  if (parts_.session) NERITIC_TRY_STATUS(recover(begin(frame)));
+  if (!in_frame_ && frame.verdict != FrameVerdict::kQuit) std::this_thread::sleep_for(kIdle);
+  if (!in_frame_ && frame.verdict == FrameVerdict::kDraw) frame.verdict = FrameVerdict::kHidden;
+  return frame;
+}
+
+Status OpenXrHeadset::begin(DisplayFrame& frame) {
+  Session& session = *parts_.session;
+  NERITIC_TRY_STATUS(session.poll(parts_.views->configuration()));
+  if (runtime_->loss() != Loss::kNone) return {};
+  if (session.exits()) {
+    frame.verdict = FrameVerdict::kQuit;
+    return {};
+  }
+  if (!session.running()) return {};
+  XrFrameState state{XR_TYPE_FRAME_STATE};
+  NERITIC_TRY_STATUS(
+      runtime_->check(runtime_->xr().WaitFrame(session.handle(), nullptr, &state), "xrWaitFrame"));
+  runtime_->note_frame(state.predictedDisplayTime, state.predictedDisplayPeriod);
+  NERITIC_TRY_STATUS(
+      runtime_->check(runtime_->xr().BeginFrame(session.handle(), nullptr), "xrBeginFrame"));
+  in_frame_ = true;
+  display_at_ = state.predictedDisplayTime;
+  near_m_.assign(parts_.views->swapchains().size(), 0.0);
+  projected_.assign(near_m_.size(), false);
+  frame.display_at_ns = runtime_->to_host(display_at_);
+  if (!state.shouldRender) return {};
+  NERITIC_TRY(const bool known, parts_.views->locate(display_at_));
+  if (!known) return {};
+  frame.verdict = FrameVerdict::kDraw;
+  fill(frame);
+  fill_tracked(frame);
+  return {};
+}
+
+void OpenXrHeadset::fill(DisplayFrame& frame) const {
+  frame.world_from_head = world_from_stage_ * parts_.views->stage_from_head();
+  frame.groups = parts_.views->groups();
+}
+
+void OpenXrHeadset::fill_tracked(DisplayFrame& frame) const {
+  parts_.inputs->track(display_at_, frame.tracked);
+  for (std::optional<Pose>& hand : frame.tracked.hands)
+    if (hand) *hand = world_from_stage_ * *hand;
+  if (frame.tracked.gaze) frame.tracked.gaze->pose = world_from_stage_ * frame.tracked.gaze->pose;
+}
+
+// Where the session was lost meanwhile, end_frame finds it out.
+ActionValues OpenXrHeadset::take_actions(const InputClaims& claims) {
+  DeviceState state;
+  if (parts_.inputs && !parts_.inputs->sync(state).ok()) state = {};
+  return actions_.values(state, claims);
+}
+
+// Where it fails, or knows no better, the frame keeps what it had.
+void OpenXrHeadset::track(DisplayFrame& frame, const Pose& world_from_stage) {
+  if (!in_frame_ || frame.verdict != FrameVerdict::kDraw) return;
+  world_from_stage_ = world_from_stage;
+  (void)parts_.views->locate(display_at_);
+  fill(frame);
+}
+
+Result<ShownPicture> OpenXrHeadset::declare(graph::FrameGraph& graph, const Pose&,
+                                            std::span<const Layer> layers) {
+  NERITIC_CHECK(in_frame_, "layers without a frame");
+  ShownPicture shown;
+  const Status status = declare_layers(graph, layers, shown);
+  if (status.ok() || runtime_->loss() == Loss::kNone) {
+    NERITIC_TRY_STATUS(status);
+    return shown;
+  }
+  // end_frame drops what was lost.
+  return shown;
+}
+
+Status OpenXrHeadset::declare_layers(graph::FrameGraph& graph, std::span<const Layer> layers,
+                                     ShownPicture& shown) {
+  if (const ProjectionLayer* first = projection_of(layers, 0)) {
+    const graph::ResourceDecl& image = graph.declaration().resources[first->color.resource];
+    shown = {first->color, image.format, image.width, image.height, true};
+  }
+  for (const Layer& layer : layers) {
+    if (const auto* panel = std::get_if<PanelLayer>(&layer)) {
+      NERITIC_TRY_STATUS(parts_.panels->declare(graph, *panel));
+    } else {
+      NERITIC_TRY_STATUS(declare_projection(graph, std::get<ProjectionLayer>(layer)));
+    }
+  }
+  return {};
+}
+
+Status OpenXrHeadset::declare_projection(graph::FrameGraph& graph, const ProjectionLayer& layer) {
+  Views::Group& group = parts_.views->swapchains()[layer.group];
+  NERITIC_TRY(const gpu::Image* const color, group.color->acquire());
+  NERITIC_TRY_STATUS(presenter_->declare(graph, color->desc().name, layer.color, *color, true));
+  projected_[layer.group] = true;
+  if (!layer.depth || !group.depth) return {};
+  // A picture of another size is scaled; its depth is not, and stays here.
+  const graph::ResourceDecl& drawn = graph.declaration().resources[layer.depth.resource];
+  if (drawn.width != group.depth->desc().width || drawn.height != group.depth->desc().height)
+    return {};
+  NERITIC_TRY(const gpu::Image* const depth, group.depth->acquire());
+  graph.output(copy_depth(graph, depth->desc().name, layer.depth, graph.import_image(*depth, {})),
+               graph::Access::kDepthAttachment);
+  near_m_[layer.group] = layer.near_m;
+  return {};
+}
+
+Status OpenXrHeadset::end_frame(bool submitted) {
+  if (!in_frame_) return {};
+  return recover(end(submitted));
+}
+
+Status OpenXrHeadset::end(bool submitted) {
+  if (runtime_->loss() != Loss::kNone) return {};
+  std::vector<const XrCompositionLayerBaseHeader*> layers;
+  if (submitted) {
+    bool whole = true;
+    for (std::size_t i = 0; i < projected_.size(); ++i) {
+      Views::Group& group = parts_.views->swapchains()[i];
+      if (projected_[i]) NERITIC_TRY_STATUS(group.color->release());
+      if (near_m_[i] > 0.0) NERITIC_TRY_STATUS(group.depth->release());
+      whole = whole && projected_[i];
+    }
+    if (whole) layers.push_back(parts_.views->layer(near_m_));
+    NERITIC_TRY(const auto panels, parts_.panels->finish(world_from_stage_));
+    layers.insert(layers.end(), panels.begin(), panels.end());
+  } else {
+    parts_.panels->drop();
+  }
+  XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO};
+  info.displayTime = display_at_;
+  info.environmentBlendMode = parts_.views->blend_mode();
+  info.layerCount = static_cast<std::uint32_t>(layers.size());
+  info.layers = layers.data();
+  in_frame_ = false;
+  return runtime_->check(runtime_->xr().EndFrame(parts_.session->handle(), &info), "xrEndFrame");
+}
+
+}  // namespace
+}  // namespace openxr
+
+Result<std::unique_ptr<Headset>> Headset::connect(const HeadsetOptions& options) {
+  NERITIC_TRY(ActionTable actions, ActionTable::create(options.actions));
+  auto headset = std::make_unique<openxr::OpenXrHeadset>(options, std::move(actions));
+  NERITIC_TRY_STATUS(headset->connect());
+  return std::unique_ptr<Headset>(std::move(headset));
+}
+
+Result<HeadsetInfo> examine_headset() {
+  NERITIC_TRY(const auto runtime, openxr::Runtime::create({}, false, nullptr));
+  (void)runtime->find_system();  // without one its name stays empty
+  return runtime->info();
+}
+
+}  // namespace neritic::xr

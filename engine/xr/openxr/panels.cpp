@@ -1,0 +1,61 @@
+#include "engine/xr/openxr/panels.hpp"
+
+namespace neritic::xr::openxr {
+
+Result<std::unique_ptr<Panels>> Panels::create(Runtime& runtime, const Session& session,
+                                               gpu::Device& device, Presenter& presenter) {
+  std::unique_ptr<Panels> panels(new Panels(runtime, session, device, presenter));
+  NERITIC_TRY(const auto formats, swapchain_formats(runtime, session.handle()));
+  NERITIC_TRY(panels->format_, choose_color(formats));
+  return panels;
+}
+
+Status Panels::declare(graph::FrameGraph& graph, const PanelLayer& panel) {
+  Kept& kept = chains_[panel.name];
+  if (panel.image) {
+    const graph::ResourceDecl& image = graph.declaration().resources[panel.image.resource];
+    if (!kept.chain || kept.chain->desc().width != image.width ||
+        kept.chain->desc().height != image.height) {
+      if (kept.chain) device_.wait_idle();  // sizes change seldom
+      kept = {};
+      NERITIC_TRY(kept.chain, Swapchain::create(runtime_, session_.handle(), device_,
+                                                {.name = "headset panel " + panel.name,
+                                                 .format = format_,
+                                                 .usage = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT |
+                                                          XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
+                                                 .width = image.width,
+                                                 .height = image.height}));
+    }
+    NERITIC_TRY(const gpu::Image* const target, kept.chain->acquire());
+    NERITIC_TRY_STATUS(
+        presenter_.declare(graph, "headset panel " + panel.name, panel.image, *target, false));
+    kept.drawn = true;
+  }
+  if (kept.drawn) shown_.push_back({panel, kept.chain.get()});
+  return {};
+}
+
+Result<std::vector<const XrCompositionLayerBaseHeader*>> Panels::finish(
+    const Pose& world_from_stage) {
+  quads_.clear();
+  for (const Shown& shown : shown_) {
+    NERITIC_TRY_STATUS(shown.chain->release());
+    const bool head = shown.panel.lock == PanelLayer::Lock::kHead;
+    XrCompositionLayerQuad quad{XR_TYPE_COMPOSITION_LAYER_QUAD};
+    quad.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
+    quad.space = head ? session_.head() : session_.stage();
+    quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
+    quad.subImage = shown.chain->sub_image(0);
+    quad.pose = to_xr(head ? shown.panel.pose : inverse(world_from_stage) * shown.panel.pose);
+    quad.size = {static_cast<float>(shown.panel.size_m.x),
+                 static_cast<float>(shown.panel.size_m.y)};
+    quads_.push_back(quad);
+  }
+  shown_.clear();
+  std::vector<const XrCompositionLayerBaseHeader*> layers;
+  for (const XrCompositionLayerQuad& quad : quads_)
+    layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&quad));
+  return layers;
+}
+
+}  // namespace neritic::xr::openxr

@@ -1,0 +1,48 @@
+// Inside engine/xr/openxr only: panels as composition layers of their own, each with the runtime's
+// images in the panel's own resolution. Rendering thread.
+#pragma once
+
+#include <map>
+
+#include "engine/xr/display.hpp"
+#include "engine/xr/openxr/presenter.hpp"
+#include "engine/xr/openxr/session.hpp"
+#include "engine/xr/openxr/swapchain.hpp"
+
+namespace neritic::xr::openxr {
+
+class Panels {
+ public:
+  // All outlive it.
+  static Result<std::unique_ptr<Panels>> create(Runtime& runtime, const Session& session,
+                                                gpu::Device& device, Presenter& presenter);
+  // Adds the pass that draws the panel's image, if it brings one.
+  Status declare(graph::FrameGraph& graph, const PanelLayer& panel);
+  // Hands back the images of this frame's panels, and gives their layers in the order of declare.
+  // Valid until the next frame's declare.
+  Result<std::vector<const XrCompositionLayerBaseHeader*>> finish(const Pose& world_from_stage);
+  // Forgets this frame's panels, whose images were not drawn.
+  void drop() { shown_.clear(); }
+
+ private:
+  Panels(Runtime& runtime, const Session& session, gpu::Device& device, Presenter& presenter)
+      : runtime_(runtime), session_(session), device_(device), presenter_(presenter) {}
+  struct Shown {
+    PanelLayer panel;
+    Swapchain* chain = nullptr;
+  };
+  struct Kept {
+    std::unique_ptr<Swapchain> chain;
+    bool drawn = false;  // has content
+  };
+  Runtime& runtime_;
+  const Session& session_;
+  gpu::Device& device_;
+  Presenter& presenter_;
+  VkFormat format_ = VK_FORMAT_UNDEFINED;
+  std::map<std::string, Kept> chains_;  // by panel
+  std::vector<Shown> shown_;            // of this frame
+  std::vector<XrCompositionLayerQuad> quads_;
+};
+
+}  // namespace neritic::xr::openxr

@@ -1,0 +1,31 @@
+// Inside engine/xr/openxr only: draws a picture into an image of the runtime, in whatever format
+// that has. Rendering thread.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "engine/gpu/pipeline.hpp"
+#include "engine/graph/frame_graph.hpp"
+
+namespace neritic::xr::openxr {
+
+class Presenter {
+ public:
+  // The device must outlive it.
+  static Result<std::unique_ptr<Presenter>> create(gpu::Device& device);
+  // from: sRGB-encoded, colour multiplied by alpha, as many layers as target, scaled to its size.
+  // opaque: alpha counts as 1. Ends as the runtime wants it; a pass of that name.
+  Status declare(graph::FrameGraph& graph, const std::string& pass, graph::ImageHandle from,
+                 const gpu::Image& target, bool opaque);
+
+ private:
+  explicit Presenter(gpu::Device& device) : device_(device) {}
+  Result<const gpu::Pipeline*> pipeline_for(VkFormat format, std::uint32_t layers, bool opaque);
+  gpu::Device& device_;
+  gpu::Sampler sampler_;
+  std::map<std::tuple<VkFormat, std::uint32_t, bool>, gpu::Pipeline> pipelines_;
+};
+
+}  // namespace neritic::xr::openxr

@@ -1,0 +1,144 @@
+#include "engine/xr/openxr/swapchain.hpp"
+
+#include <algorithm>
+
+namespace neritic::xr::openxr {
+namespace {
+
+constexpr int kWaits = 1000;
+
+struct Format {
+  VkFormat format;
+  const char* name;
+};
+// 8 bits of linear light show bands in dark water, so that they come last.
+constexpr Format kColors[] = {
+    {VK_FORMAT_R8G8B8A8_SRGB, "R8G8B8A8_SRGB"},
+    {VK_FORMAT_B8G8R8A8_SRGB, "B8G8R8A8_SRGB"},
+    {VK_FORMAT_R16G16B16A16_SFLOAT, "R16G16B16A16_SFLOAT"},
+    {VK_FORMAT_A2B10G10R10_UNORM_PACK32, "A2B10G10R10_UNORM"},
+    {VK_FORMAT_R8G8B8A8_UNORM, "R8G8B8A8_UNORM"},
+    {VK_FORMAT_B8G8R8A8_UNORM, "B8G8R8A8_UNORM"},
+};
+
+VkImageUsageFlags vulkan_usage(XrSwapchainUsageFlags usage) {
+  VkImageUsageFlags out = 0;
+  if (usage & XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT) out |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  if (usage & XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT)
+    out |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  if (usage & XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT) out |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  if (usage & XR_SWAPCHAIN_USAGE_SAMPLED_BIT) out |= VK_IMAGE_USAGE_SAMPLED_BIT;
+  return out;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Swapchain>> Swapchain::create(Runtime& runtime, XrSession session,
+                                                     gpu::Device& device,
+                                                     const SwapchainDesc& desc) {
+  std::unique_ptr<Swapchain> chain(new Swapchain(runtime, desc));
+  XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
+  info.usageFlags = desc.usage;
+  info.format = desc.format;
+  info.sampleCount = info.faceCount = info.mipCount = 1;
+  info.width = desc.width;
+  info.height = desc.height;
+  info.arraySize = desc.layers;
+  NERITIC_TRY_STATUS(runtime.check(runtime.xr().CreateSwapchain(session, &info, &chain->handle_),
+                                   "xrCreateSwapchain"));
+  std::vector<XrSwapchainImageVulkan2KHR> images;
+  const XrResult result = enumerate(
+      images, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR}, [&](auto capacity, auto count, auto items) {
+        return runtime.xr().EnumerateSwapchainImages(
+            chain->handle_, capacity, count, reinterpret_cast<XrSwapchainImageBaseHeader*>(items));
+      });
+  NERITIC_TRY_STATUS(runtime.check(result, "xrEnumerateSwapchainImages"));
+  for (const XrSwapchainImageVulkan2KHR& image : images) {
+    // One name for all: the frame graph's plan is the same whichever image it draws to.
+    NERITIC_TRY(gpu::Image borrowed, gpu::Image::borrow(device,
+                                                        {.name = desc.name,
+                                                         .format = desc.format,
+                                                         .width = desc.width,
+                                                         .height = desc.height,
+                                                         .layers = desc.layers,
+                                                         .usage = vulkan_usage(desc.usage),
+                                                         .array_view = true},
+                                                        image.image));
+    chain->images_.push_back(std::move(borrowed));
+  }
+  return chain;
+}
+
+Swapchain::~Swapchain() {
+  images_.clear();
+  if (handle_ != XR_NULL_HANDLE) (void)runtime_.xr().DestroySwapchain(handle_);
+}
+
+Result<const gpu::Image*> Swapchain::acquire() {
+  if (acquired_) return &images_[current_];
+  XrSwapchainImageAcquireInfo acquire{XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO};
+  NERITIC_TRY_STATUS(
+      runtime_.check(runtime_.xr().AcquireSwapchainImage(handle_, &acquire, &current_),
+                     "xrAcquireSwapchainImage"));
+  if (current_ >= images_.size())
+    return failure(ErrorCode::kDeviceLost, "{}: xrAcquireSwapchainImage gave image {} of {}",
+                   runtime_.info().runtime, current_, images_.size());
+  XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO};
+  wait.timeout = XR_INFINITE_DURATION;
+  // A runtime may give up sooner than it was told.
+  XrResult waited = XR_TIMEOUT_EXPIRED;
+  for (int attempt = 0; attempt < kWaits && waited == XR_TIMEOUT_EXPIRED; ++attempt)
+    waited = runtime_.xr().WaitSwapchainImage(handle_, &wait);
+  if (waited == XR_TIMEOUT_EXPIRED) waited = XR_ERROR_RUNTIME_FAILURE;
+  NERITIC_TRY_STATUS(runtime_.check(waited, "xrWaitSwapchainImage"));
+  acquired_ = true;
+  return &images_[current_];
+}
+
+Status Swapchain::release() {
+  if (!std::exchange(acquired_, false)) return {};
+  XrSwapchainImageReleaseInfo info{XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO};
+  return runtime_.check(runtime_.xr().ReleaseSwapchainImage(handle_, &info),
+                        "xrReleaseSwapchainImage");
+}
+
+XrSwapchainSubImage Swapchain::sub_image(std::uint32_t layer) const {
+  return {
+      handle_,
+      {{0, 0}, {static_cast<std::int32_t>(desc_.width), static_cast<std::int32_t>(desc_.height)}},
+      layer};
+}
+
+Result<std::vector<VkFormat>> swapchain_formats(Runtime& runtime, XrSession session) {
+  std::vector<std::int64_t> numbers;
+  const XrResult result =
+      enumerate(numbers, std::int64_t{0}, [&](auto capacity, auto count, auto items) {
+        return runtime.xr().EnumerateSwapchainFormats(session, capacity, count, items);
+      });
+  NERITIC_TRY_STATUS(runtime.check(result, "xrEnumerateSwapchainFormats"));
+  std::vector<VkFormat> formats;
+  for (const std::int64_t number : numbers) formats.push_back(static_cast<VkFormat>(number));
+  return formats;
+}
+
+Result<VkFormat> choose_color(std::span<const VkFormat> offered) {
+  std::string accepted, found;
+  for (const Format& format : kColors) {
+    if (std::find(offered.begin(), offered.end(), format.format) != offered.end())
+      return format.format;
+    accepted += (accepted.empty() ? "" : ", ") + std::string(format.name);
+  }
+  for (const VkFormat format : offered)
+    found += fmt::format("{}{}", found.empty() ? "" : ", ", static_cast<int>(format));
+  return failure(ErrorCode::kUnsupported,
+                 "the OpenXR runtime takes pictures of the Vulkan formats {} only; accepted: {}",
+                 found.empty() ? "(none)" : found, accepted);
+}
+
+VkFormat choose_depth(std::span<const VkFormat> offered) {
+  return std::find(offered.begin(), offered.end(), VK_FORMAT_D32_SFLOAT) != offered.end()
+             ? VK_FORMAT_D32_SFLOAT
+             : VK_FORMAT_UNDEFINED;
+}
+
+}  // namespace neritic::xr::openxr

@@ -1,0 +1,193 @@
+#include "engine/xr/openxr/views.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/core/log.hpp"
+
+namespace neritic::xr::openxr {
+
+Result<std::unique_ptr<Views>> Views::create(Runtime& runtime, const Session& session,
+                                             gpu::Device& device) {
+  std::unique_ptr<Views> views(new Views(runtime, session));
+  NERITIC_TRY_STATUS(views->choose_configuration());
+  NERITIC_TRY_STATUS(views->choose_blend_mode());
+  NERITIC_TRY(const auto sizes, views->sizes());
+  NERITIC_TRY_STATUS(views->make_swapchains(device, sizes));
+  views->views_.assign(sizes.size(), {XR_TYPE_VIEW});
+  for (XrView& view : views->views_) view.pose = to_xr({});
+  return views;
+}
+
+// Four views where they are offered, else two, else one.
+Status Views::choose_configuration() {
+  std::vector<XrViewConfigurationType> offered;
+  const XrResult result =
+      enumerate(offered, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO,
+                [&](auto capacity, auto count, auto items) {
+                  return runtime_.xr().EnumerateViewConfigurations(
+                      runtime_.instance(), runtime_.system(), capacity, count, items);
+                });
+  NERITIC_TRY_STATUS(runtime_.check(result, "xrEnumerateViewConfigurations"));
+  for (const XrViewConfigurationType wanted :
+       {XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO,
+        XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO}) {
+    if (wanted == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO && !runtime_.has().quad_views)
+      continue;
+    if (std::find(offered.begin(), offered.end(), wanted) == offered.end()) continue;
+    configuration_ = wanted;
+    foveated_ =
+        wanted == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO && runtime_.foveation_here();
+    return {};
+  }
+  return failure(ErrorCode::kUnsupported, "{} shows neither one, two nor four views",
+                 runtime_.info().runtime);
+}
+
+// The sea hides the room; glasses that cannot do that add it to the room.
+Status Views::choose_blend_mode() {
+  std::vector<XrEnvironmentBlendMode> offered;
+  const XrResult result = enumerate(
+      offered, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, [&](auto capacity, auto count, auto items) {
+        return runtime_.xr().EnumerateEnvironmentBlendModes(runtime_.instance(), runtime_.system(),
+                                                            configuration_, capacity, count, items);
+      });
+  NERITIC_TRY_STATUS(runtime_.check(result, "xrEnumerateEnvironmentBlendModes"));
+  if (!offered.empty() &&
+      std::find(offered.begin(), offered.end(), XR_ENVIRONMENT_BLEND_MODE_OPAQUE) == offered.end())
+    blend_mode_ = offered.front();
+  return {};
+}
+
+Result<std::vector<XrViewConfigurationView>> Views::sizes() {
+  XrFoveatedViewConfigurationViewVARJO foveated{XR_TYPE_FOVEATED_VIEW_CONFIGURATION_VIEW_VARJO};
+  foveated.foveatedRenderingActive = XR_TRUE;
+  std::vector<XrViewConfigurationView> sizes;
+  // Each item needs a chained structure of its own; all say the same.
+  std::vector<XrFoveatedViewConfigurationViewVARJO> chained(16, foveated);
+  const XrResult result = enumerate(
+      sizes, {XR_TYPE_VIEW_CONFIGURATION_VIEW}, [&](auto capacity, auto count, auto items) {
+        for (std::uint32_t i = 0; foveated_ && i < capacity && i < chained.size(); ++i)
+          items[i].next = &chained[i];
+        return runtime_.xr().EnumerateViewConfigurationViews(
+            runtime_.instance(), runtime_.system(), configuration_, capacity, count, items);
+      });
+  NERITIC_TRY_STATUS(runtime_.check(result, "xrEnumerateViewConfigurationViews"));
+  for (XrViewConfigurationView& size : sizes) size.next = nullptr;
+  if (sizes.empty())
+    return failure(ErrorCode::kUnsupported, "{} has no views", runtime_.info().runtime);
+  return sizes;
+}
+
+Status Views::make_swapchains(gpu::Device& device, std::span<const XrViewConfigurationView> sizes) {
+  NERITIC_TRY(const auto formats, swapchain_formats(runtime_, session_.handle()));
+  NERITIC_TRY(const VkFormat color, choose_color(formats));
+  const VkFormat depth = runtime_.has().depth ? choose_depth(formats) : VK_FORMAT_UNDEFINED;
+  if (foveated_) {
+    XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO};
+    info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_COMBINED_EYE_VARJO;
+    info.poseInReferenceSpace = to_xr({});
+    NERITIC_TRY_STATUS(
+        runtime_.check(runtime_.xr().CreateReferenceSpace(session_.handle(), &info, &eyes_),
+                       "xrCreateReferenceSpace"));
+  }
+  // The views of a pair share one image: its size is the larger of the two.
+  for (std::size_t first = 0; first < sizes.size(); first += 2) {
+    Group group{.first = first, .count = std::min<std::size_t>(2, sizes.size() - first)};
+    std::uint32_t width = 1, height = 1;
+    for (std::size_t i = first; i < first + group.count; ++i) {
+      width = std::max(width, sizes[i].recommendedImageRectWidth);
+      height = std::max(height, sizes[i].recommendedImageRectHeight);
+    }
+    const auto number = groups_.size();
+    SwapchainDesc desc{
+        .name = fmt::format("headset color {}", number),
+        .format = color,
+        .usage = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
+        .width = width,
+        .height = height,
+        .layers = static_cast<std::uint32_t>(group.count)};
+    NERITIC_TRY(group.color, Swapchain::create(runtime_, session_.handle(), device, desc));
+    if (depth != VK_FORMAT_UNDEFINED) {
+      desc.name = fmt::format("headset depth {}", number);
+      desc.format = depth;
+      desc.usage = XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                   XR_SWAPCHAIN_USAGE_SAMPLED_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
+      NERITIC_TRY(group.depth, Swapchain::create(runtime_, session_.handle(), device, desc));
+    }
+    groups_.push_back(std::move(group));
+  }
+  return {};
+}
+
+bool Views::gaze_ready(XrTime at) const {
+  XrSpaceLocation eyes{XR_TYPE_SPACE_LOCATION};
+  return foveated_ && XR_SUCCEEDED(runtime_.xr().LocateSpace(eyes_, session_.head(), at, &eyes)) &&
+         (eyes.locationFlags & XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT);
+}
+
+Result<bool> Views::locate(XrTime at) {
+  XrSpaceLocation head{XR_TYPE_SPACE_LOCATION};
+  NERITIC_TRY_STATUS(runtime_.check(
+      runtime_.xr().LocateSpace(session_.head(), session_.stage(), at, &head), "xrLocateSpace"));
+  XrViewLocateFoveatedRenderingVARJO foveated{XR_TYPE_VIEW_LOCATE_FOVEATED_RENDERING_VARJO};
+  foveated.foveatedRenderingActive = gaze_ready(at) ? XR_TRUE : XR_FALSE;
+  XrViewLocateInfo info{XR_TYPE_VIEW_LOCATE_INFO, foveated_ ? &foveated : nullptr};
+  info.viewConfigurationType = configuration_;
+  info.displayTime = at;
+  info.space = session_.stage();
+  XrViewState state{XR_TYPE_VIEW_STATE};
+  std::vector<XrView> found(views_.size(), {XR_TYPE_VIEW});
+  std::uint32_t count = 0;
+  NERITIC_TRY_STATUS(runtime_.check(
+      runtime_.xr().LocateViews(session_.handle(), &info, &state,
+                                static_cast<std::uint32_t>(found.size()), &count, found.data()),
+      "xrLocateViews"));
+  const bool known = (state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) &&
+                     (state.viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) &&
+                     (head.locationFlags & XR_SPACE_LOCATION_ORIENTATION_VALID_BIT) &&
+                     (head.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT);
+  if (!known || count != views_.size()) return false;
+  views_ = std::move(found);
+  stage_from_head_ = to_pose(head.pose);
+  return true;
+}
+
+std::vector<ViewGroup> Views::groups() const {
+  std::vector<ViewGroup> out;
+  for (const Group& group : groups_) {
+    ViewGroup views{group.color->desc().width, group.color->desc().height, {}};
+    for (std::size_t i = group.first; i < group.first + group.count; ++i)
+      views.views.push_back(
+          {inverse(stage_from_head_) * to_pose(views_[i].pose), to_tangents(views_[i].fov)});
+    out.push_back(std::move(views));
+  }
+  return out;
+}
+
+const XrCompositionLayerBaseHeader* Views::layer(std::span<const double> near_m) {
+  layer_views_.assign(views_.size(), {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW});
+  layer_depths_.assign(views_.size(), {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR});
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    for (std::size_t i = 0; i < groups_[g].count; ++i) {
+      XrCompositionLayerProjectionView& view = layer_views_[groups_[g].first + i];
+      view.pose = views_[groups_[g].first + i].pose;
+      view.fov = views_[groups_[g].first + i].fov;
+      view.subImage = groups_[g].color->sub_image(static_cast<std::uint32_t>(i));
+      if (!(near_m[g] > 0.0) || !groups_[g].depth) continue;
+      // Reversed: 0 is at infinity, 1 at near_m.
+      XrCompositionLayerDepthInfoKHR& depth = layer_depths_[groups_[g].first + i];
+      depth.subImage = groups_[g].depth->sub_image(static_cast<std::uint32_t>(i));
+      depth.minDepth = 0.0f;
+      depth.maxDepth = 1.0f;
+      depth.nearZ = std::numeric_limits<float>::infinity();
+      depth.farZ = static_cast<float>(near_m[g]);
+      view.next = &depth;
+    }
+  layer_.space = session_.stage();
+  layer_.viewCount = static_cast<std::uint32_t>(layer_views_.size());
+  layer_.views = layer_views_.data();
+  return reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer_);
+}
+
+}  // namespace neritic::xr::openxr

@@ -1,0 +1,57 @@
+// Inside engine/xr/openxr only: the views of a session (one, two or four), grouped by size, with
+// the runtime's images of each group, and where they are at a frame's display time. Rendering
+// thread.
+#pragma once
+
+#include "engine/xr/display.hpp"
+#include "engine/xr/openxr/session.hpp"
+#include "engine/xr/openxr/swapchain.hpp"
+
+namespace neritic::xr::openxr {
+
+class Views {
+ public:
+  // runtime, session and device must outlive it.
+  static Result<std::unique_ptr<Views>> create(Runtime& runtime, const Session& session,
+                                               gpu::Device& device);
+  XrViewConfigurationType configuration() const { return configuration_; }
+  XrEnvironmentBlendMode blend_mode() const { return blend_mode_; }
+
+  // Where head and views are at that time. False: the runtime does not know how the head is turned.
+  Result<bool> locate(XrTime at);
+  const Pose& stage_from_head() const { return stage_from_head_; }
+  // Sizes, poses and frusta of the newest locate.
+  std::vector<ViewGroup> groups() const;
+
+  struct Group {
+    std::size_t first = 0, count = 0;         // of the configuration's views
+    std::unique_ptr<Swapchain> color, depth;  // depth: nullptr where none goes to the runtime
+  };
+  std::vector<Group>& swapchains() { return groups_; }
+
+  // The composition layer of what the newest locate found; valid until the next call. near_m: of
+  // each group's depth, 0: without.
+  const XrCompositionLayerBaseHeader* layer(std::span<const double> near_m);
+
+ private:
+  Views(Runtime& runtime, const Session& session) : runtime_(runtime), session_(session) {}
+  Status choose_configuration();
+  Status choose_blend_mode();
+  Result<std::vector<XrViewConfigurationView>> sizes();
+  Status make_swapchains(gpu::Device& device, std::span<const XrViewConfigurationView> sizes);
+  bool gaze_ready(XrTime at) const;
+  Runtime& runtime_;
+  const Session& session_;
+  XrViewConfigurationType configuration_ = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+  XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+  bool foveated_ = false;
+  XrSpace eyes_ = XR_NULL_HANDLE;  // with foveated_
+  std::vector<Group> groups_;
+  std::vector<XrView> views_;
+  Pose stage_from_head_;
+  XrCompositionLayerProjection layer_{XR_TYPE_COMPOSITION_LAYER_PROJECTION};
+  std::vector<XrCompositionLayerProjectionView> layer_views_;
+  std::vector<XrCompositionLayerDepthInfoKHR> layer_depths_;
+};
+
+}  // namespace neritic::xr::openxr
