@@ -38,8 +38,8 @@ Canvas::Canvas(std::uint32_t width, std::uint32_t height, const Color& backgroun
   }
 }
 
-Canvas::Canvas(ImageU8 rgb) : image_(std::move(rgb)) {
-  NERITIC_CHECK(image_.channels == 3, "{} channels", image_.channels);
+Canvas::Canvas(ImageU8 picture) : image_(std::move(picture)) {
+  NERITIC_CHECK(image_.channels == 3 || image_.channels == 4, "{} channels", image_.channels);
 }
 
 PixelBox Canvas::bounds() const {
@@ -54,12 +54,17 @@ PixelBox Canvas::pixels_of(double left, double top, double right, double bottom)
           clamped(std::ceil(right), width()), clamped(std::ceil(bottom), height())};
 }
 
+void Canvas::clear() {
+  std::ranges::fill(image_.data, std::uint8_t{0});
+}
+
 void Canvas::blend(int x, int y, const Color& color, float coverage) {
   if (x < 0 || y < 0 || x >= static_cast<int>(width()) || y >= static_cast<int>(height())) return;
   const float a = std::clamp(color.alpha * coverage, 0.0f, 1.0f);
   std::uint8_t* p = &image_.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
-  const float rgb[3] = {color.r, color.g, color.b};
-  for (int i = 0; i < 3; ++i) p[i] = to_byte(p[i] / 255.0f * (1.0f - a) + rgb[i] * a);
+  const float over[4] = {color.r, color.g, color.b, 1.0f};
+  for (std::uint32_t i = 0; i < image_.channels; ++i)
+    p[i] = to_byte(p[i] / 255.0f * (1.0f - a) + over[i] * a);
 }
 
 void Canvas::paint(const Mask& mask, const Color& color) {

@@ -1,7 +1,8 @@
-// Drawing on an RGB picture with smooth edges: lines, arcs, polygons and text, for panels, sheets
-// and instruments. Pixel coordinates, y down, the first pixel's centre at (0.5, 0.5); angles are
-// bearings, clockwise from up, in radians. Shapes are clipped at the picture's edges. The same
-// calls give the same bytes. One owner, one thread.
+// Drawing on a picture with smooth edges: lines, arcs, polygons and text, for panels, sheets and
+// instruments. The picture is RGB, or RGBA with its colour multiplied by alpha. Pixel coordinates,
+// y down, the first pixel's centre at (0.5, 0.5); angles are bearings, clockwise from up, in
+// radians. Shapes are clipped at the picture's edges. The same calls give the same bytes. One
+// owner, one thread.
 #pragma once
 
 #include <array>
@@ -23,13 +24,16 @@ enum class VerticalAlign { kBaseline, kMiddle, kTop };  // of the capitals, at y
 class Canvas {
  public:
   Canvas(std::uint32_t width, std::uint32_t height, const Color& background);
-  // CHECKs that the picture has three channels.
-  explicit Canvas(ImageU8 rgb);
+  // RGB or premultiplied RGBA, to be drawn over. CHECKs that the picture has three or four
+  // channels.
+  explicit Canvas(ImageU8 picture);
 
   std::uint32_t width() const { return image_.width; }
   std::uint32_t height() const { return image_.height; }
 
-  // Mixes the color over one pixel; coverage 0 to 1.
+  // All channels to 0: black, or of RGBA nothing at all. Fonts stay open.
+  void clear();
+  // Mixes the color over one pixel; coverage 0 to 1. No channel of RGBA becomes larger than alpha.
   void blend(int x, int y, const Color& color, float coverage);
   void fill_rectangle(double x0, double y0, double x1, double y1, const Color& color);
   // A closed polygon; what it winds around at least once is filled.

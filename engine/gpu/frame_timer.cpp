@@ -81,6 +81,11 @@ void FrameTimer::stop() {
   pending_ = on_;
 }
 
+std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, std::uint64_t mask) {
+  const std::uint64_t elapsed = (end - begin) & mask;
+  return elapsed > mask / 2 ? 0 : elapsed;
+}
+
 bool FrameTimer::collect(std::vector<PassTime>& times) {
   if (!std::exchange(pending_, false)) return false;
   std::array<std::uint64_t, 2 * kMaxRegions> ticks{};
@@ -94,7 +99,7 @@ bool FrameTimer::collect(std::vector<PassTime>& times) {
   times.clear();
   times.push_back({"record", to_ms(record_ns_)});
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const std::uint64_t elapsed = (ticks[2 * i + 1] - ticks[2 * i]) & mask;  // ticks may wrap
+    const std::uint64_t elapsed = elapsed_ticks(ticks[2 * i], ticks[2 * i + 1], mask);
     times.push_back(
         {names_[i], static_cast<double>(elapsed) * device_->timestamp_period_ns() * 1e-6});
   }

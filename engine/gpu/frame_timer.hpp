@@ -17,6 +17,10 @@
 
 namespace neritic::gpu {
 
+// Between two timestamps of that many valid bits (mask), which may wrap. An end before its begin,
+// as threads of a software device write now and then, is no time.
+std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, std::uint64_t mask);
+
 class FrameTimer {
  public:
   // Regions beyond this many in a frame are not timed.

@@ -52,6 +52,7 @@ constexpr std::array kRequired13{
 // it raises (maxDrawIndexedIndexValue).
 constexpr std::array kOptional{
     &VkPhysicalDeviceFeatures::independentBlend, &VkPhysicalDeviceFeatures::fullDrawIndexUint32,
+    &VkPhysicalDeviceFeatures::dualSrcBlend,        // of tinted glass
     &VkPhysicalDeviceFeatures::shaderClipDistance,  // of what a mirror shows, for sonars' ghosts
 };
 

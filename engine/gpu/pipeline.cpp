@@ -128,14 +128,17 @@ std::vector<VkPipelineColorBlendAttachmentState> blend_states(const GraphicsPipe
   write_all.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                              VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
   std::vector<VkPipelineColorBlendAttachmentState> states(desc.color_formats.size(), write_all);
-  if (desc.blend == Blend::kAlphaOver && !states.empty()) {
+  if (desc.blend != Blend::kNone && !states.empty()) {
+    const bool tinted = desc.blend == Blend::kTinted;
     VkPipelineColorBlendAttachmentState& first = states.front();
     first.blendEnable = VK_TRUE;
     first.srcColorBlendFactor = VK_BLEND_FACTOR_ONE;
-    first.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+    first.dstColorBlendFactor =
+        tinted ? VK_BLEND_FACTOR_SRC1_COLOR : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     first.colorBlendOp = VK_BLEND_OP_ADD;
     first.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-    first.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+    first.dstAlphaBlendFactor =
+        tinted ? VK_BLEND_FACTOR_SRC1_ALPHA : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     first.alphaBlendOp = VK_BLEND_OP_ADD;
   }
   return states;

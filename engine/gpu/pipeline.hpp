@@ -66,7 +66,9 @@ struct VertexStream {
   bool per_instance = false;
 };
 
-enum class Blend { kNone, kAlphaOver };  // kAlphaOver: premultiplied source over destination
+// kAlphaOver: premultiplied source over destination. kTinted: source plus destination times the
+// fragment stage's second output (where features().dualSrcBlend).
+enum class Blend { kNone, kAlphaOver, kTinted };
 
 struct GraphicsPipelineDesc {
   std::string name;

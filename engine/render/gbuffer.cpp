@@ -1,5 +1,6 @@
 // Renderer: the G-buffer, in one pass or two. Glowing surfaces are drawn last, by a pass of their
 // own that writes the emission image, so that triangles that do not glow do not pay for it.
+#include "engine/core/check.hpp"
 #include "engine/render/raster_draws.hpp"
 #include "engine/render/renderer.hpp"
 
@@ -22,8 +23,12 @@ void Renderer::record_gbuffer(const GBuffer& g, VkAttachmentLoadOp load,
       colors.push_back(
           attachment(context.image(handle), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, op));
   };
-  for (const graph::ImageHandle handle : {g.normal, g.label, g.albedo, g.material})
+  // The stages write to the first two by number: what is not kept leaves its place empty.
+  for (const graph::ImageHandle handle : {g.normal, g.label}) {
+    if (!handle) colors.push_back({VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO});
     add(handle, load);
+  }
+  for (const graph::ImageHandle handle : {g.albedo, g.material}) add(handle, load);
   add(g.emissive, VK_ATTACHMENT_LOAD_OP_CLEAR);
   add(g.motion, load);
   const VkRenderingAttachmentInfo depth =
@@ -41,18 +46,22 @@ void Renderer::record_gbuffer(const GBuffer& g, VkAttachmentLoadOp load,
 Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix,
                                           GBufferKind kind, const GpuScene& scene,
                                           const FrameState& state, const DeformedGeometry& deformed,
-                                          const ViewSet& views, const DrawList& draws) {
+                                          const ViewSet& views, const DrawList& draws,
+                                          const GBufferParts& parts) {
   const bool surface = kind == GBufferKind::kSurface;
-  const bool motion = surface && state.motion;
+  NERITIC_CHECK(!surface || parts == GBufferParts{}, "{}shading needs all parts", prefix);
+  const bool motion = kind != GBufferKind::kGeometry && state.motion;
   const std::uint32_t layers = views.layers();
   std::vector<MaskedDraws> masked, glowing;
   for (const std::uint32_t mask : view_masks_of(layers, device_)) {
     NERITIC_TRY(PreparedDraws prepared,
-                prepare(scene, draws, draws.opaque, kind, false, motion, false, mask));
-    // A sonar hears blended surfaces as solid ones; a camera draws them in the forward pass.
+                prepare(scene, draws, draws.opaque, kind, false, motion, false, mask, parts));
+    // A sonar hears blended surfaces as solid ones; a camera draws them in the forward pass. What
+    // glows is drawn last also where nothing of the glow is kept: the same pixels win.
     if (!surface) {
-      NERITIC_TRY(PreparedDraws more,
-                  prepare(scene, draws, draws.blended, kind, false, false, false, mask));
+      const bool shape = kind == GBufferKind::kShape;
+      NERITIC_TRY(PreparedDraws more, prepare(scene, draws, shape ? draws.opaque : draws.blended,
+                                              kind, false, motion, shape, mask, parts));
       prepared.draws.insert(prepared.draws.end(), more.draws.begin(), more.draws.end());
     }
     masked.push_back({mask, std::move(prepared)});
@@ -78,8 +87,8 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
               builder.create_image(prefix + name, {format, g.width, g.height, layers}), access);
         };
         g.depth = target("depth", kDepthFormat, kDepth);
-        g.normal = target("normal", kNormalFormat, kColor);
-        g.label = target("label", kLabelFormat, kColor);
+        if (parts.normal) g.normal = target("normal", kNormalFormat, kColor);
+        if (parts.label) g.label = target("label", kLabelFormat, kColor);
         if (surface) {
           g.albedo = target("albedo", kAlbedoFormat, kColor);
           g.material = target("material", kMaterialFormat, kColor);

@@ -49,6 +49,7 @@ std::uint32_t flags_of(const scene::Material& m, bool vertex_colors) {
   flag(m.unlit, shared::kMaterialUnlit);
   flag(vertex_colors, shared::kMaterialVertexColor);
   flag(m.alpha_mode == scene::AlphaMode::kMask, shared::kMaterialMask);
+  flag(m.transmissive, shared::kMaterialTransmissive);
   return flags;
 }
 
@@ -171,6 +172,7 @@ Status MaterialBuilder::add_material(std::size_t model_index, const scene::Mater
   data.emissive = m.emissive;
   data.metallic = m.metallic;
   data.roughness = m.roughness;
+  data.reflectance = std::min(m.reflectance, shared::kMaxReflectance);
   data.normal_scale = m.normal_scale;
   data.occlusion_strength = m.occlusion_strength;
   data.alpha_cutoff = m.alpha_cutoff;
@@ -191,7 +193,7 @@ Status MaterialBuilder::add_material(std::size_t model_index, const scene::Mater
   material.flags = flags_of(m, vertex_colors);
   material.double_sided = m.double_sided;
   material.mask = m.alpha_mode == scene::AlphaMode::kMask;
-  material.blend = m.alpha_mode == scene::AlphaMode::kBlend;
+  material.blend = m.alpha_mode == scene::AlphaMode::kBlend || m.transmissive;
   material.emissive = m.unlit || m.emissive != Vec3f(0.0f);
   out_.has_emission |= material.emissive;
   out_.materials.push_back(material);

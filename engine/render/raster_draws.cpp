@@ -71,24 +71,26 @@ Renderer::InstanceStreams Renderer::upload_instances(gpu::Commands& commands, co
 Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const DrawList& list,
                                                   const std::vector<Draw>& draws, GBufferKind kind,
                                                   bool forward, bool motion, bool emissive,
-                                                  std::uint32_t view_mask) {
+                                                  std::uint32_t view_mask,
+                                                  const GBufferParts& parts) {
   PreparedDraws prepared;
   for (const Draw& draw : draws) {
     const GpuMaterial& material = scene.materials()[draw.primitive->material];
-    if (kind == GBufferKind::kSurface && !forward && material.emissive != emissive) continue;
-    RasterStage stage = forward ? RasterStage::kForward : RasterStage::kSurface;
-    if (kind == GBufferKind::kGeometry)
-      stage = material.mask ? RasterStage::kGeometryMasked : RasterStage::kGeometry;
+    const bool geometry = kind == GBufferKind::kGeometry;
+    if (!geometry && !forward && material.emissive != emissive) continue;
+    RasterStage stage = forward                       ? RasterStage::kForward
+                        : kind == GBufferKind::kShape ? RasterStage::kShape
+                                                      : RasterStage::kSurface;
+    if (geometry) stage = material.mask ? RasterStage::kGeometryMasked : RasterStage::kGeometry;
     NERITIC_TRY(
         const gpu::Pipeline* pipeline,
         raster_pipeline({stage, vk_topology(draw.primitive->topology),
                          motion && stage != RasterStage::kGeometry,
                          emissive && stage == RasterStage::kSurface, list.clipped, view_mask,
-                         stage == RasterStage::kGeometry ? 0u : material.flags}));
+                         stage == RasterStage::kGeometry ? 0u : material.flags, parts}));
     // A camera sees the sides that the material has. A sonar hears both sides of a sheet, but of a
     // solid with one side it needs no backs: see closed_surface.hpp.
-    const bool both_sides =
-        material.double_sided || (kind == GBufferKind::kGeometry && !draw.hides_back_faces);
+    const bool both_sides = material.double_sided || (geometry && !draw.hides_back_faces);
     prepared.draws.push_back({draw,
                               std::span(list.ranges).subspan(draw.first_range, draw.range_count),
                               pipeline, stage != RasterStage::kGeometry, both_sides, &material});

@@ -47,7 +47,8 @@ gpu::VertexStream next_instance_stream(bool motion) {
       true};
 }
 
-std::span<const std::uint32_t> gbuffer_fragment(bool emissive, bool motion) {
+std::span<const std::uint32_t> gbuffer_fragment(bool shape, bool emissive, bool motion) {
+  if (shape) return motion ? shaders::kGbufferShapeMotionFrag : shaders::kGbufferShapeFrag;
   if (emissive) return motion ? shaders::kGbufferEmissiveMotionFrag : shaders::kGbufferEmissiveFrag;
   return motion ? shaders::kGbufferMotionFrag : shaders::kGbufferFrag;
 }
@@ -61,18 +62,23 @@ std::span<const std::uint32_t> vertex_code(bool plain, bool clipped) {
 
 Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   if (const auto found = raster_.find(key); found != raster_.end()) return &found->second;
-  const auto& [stage, topology, motion, emissive, clipped, view_mask, material_flags] = key;
+  const auto& [stage, topology, motion, emissive, clipped, view_mask, material_flags, parts] = key;
   const bool forward = stage == RasterStage::kForward;
-  const bool surface = stage == RasterStage::kSurface;
+  const bool shape = stage == RasterStage::kShape;
+  const bool surface = shape || stage == RasterStage::kSurface;
   const bool plain = stage == RasterStage::kGeometry;
+  const bool tinted = forward && (material_flags & shared::kMaterialTransmissive) &&
+                      device_.features().dualSrcBlend;
   gpu::GraphicsPipelineDesc desc;
   desc.name = plain                                   ? "geometry"
               : stage == RasterStage::kGeometryMasked ? "geometry masked"
+              : shape                                 ? "gbuffer shape"
               : surface                               ? "gbuffer"
                                                       : "forward";
   desc.vertex_code = vertex_code(plain, clipped);
   desc.fragment_code = plain     ? shaders::kGeometryFrag
-                       : surface ? gbuffer_fragment(emissive, motion)
+                       : surface ? gbuffer_fragment(shape, emissive, motion)
+                       : tinted  ? shaders::kForwardTintedFrag
                        : forward ? shaders::kForwardFrag
                                  : shaders::kGeometryMaskedFrag;
   constexpr auto kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
@@ -96,10 +102,11 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   if (forward) {
     desc.color_formats = {kHdrFormat};
     desc.depth_write = false;
-    desc.blend = gpu::Blend::kAlphaOver;
+    desc.blend = tinted ? gpu::Blend::kTinted : gpu::Blend::kAlphaOver;
   } else {
-    desc.color_formats = {kNormalFormat, kLabelFormat};
-    if (surface)
+    desc.color_formats = {parts.normal ? kNormalFormat : VK_FORMAT_UNDEFINED,
+                          parts.label ? kLabelFormat : VK_FORMAT_UNDEFINED};
+    if (surface && !shape)
       desc.color_formats.insert(desc.color_formats.end(), {kAlbedoFormat, kMaterialFormat});
     if (surface && emissive) desc.color_formats.push_back(kEmissiveFormat);
     if (surface && motion) desc.color_formats.push_back(kMotionFormat);

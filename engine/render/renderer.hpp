@@ -69,7 +69,14 @@ struct ShadeInputs {
 
 enum class GBufferKind {
   kGeometry,  // depth, normal, label: a sonar's
+  kShape,     // the same as kSurface has, bit for bit, and motion: a camera's without a picture
   kSurface,   // and what shading needs: a camera's
+};
+
+// The images that are kept of a geometry or shape G-buffer beside its depth. The rest has no image.
+struct GBufferParts {
+  bool normal = true, label = true;
+  auto operator<=>(const GBufferParts&) const = default;
 };
 
 class Renderer {
@@ -85,7 +92,7 @@ class Renderer {
   Result<GBuffer> declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix,
                                   GBufferKind kind, const GpuScene& scene, const FrameState& state,
                                   const DeformedGeometry& deformed, const ViewSet& views,
-                                  const DrawList& draws);
+                                  const DrawList& draws, const GBufferParts& parts = {});
   // HDR picture of a surface G-buffer.
   Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix,
                                            const ShadeInputs& inputs);
@@ -114,10 +121,10 @@ class Renderer {
                                             const PictureFilter& filter, gpu::Pipeline& pipeline,
                                             graph::ImageHandle in, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
-  enum class RasterStage { kGeometry, kGeometryMasked, kSurface, kForward };
-  // stage, topology, motion, emissive, clipped, view mask, the material's flags.
-  using RasterKey =
-      std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, bool, std::uint32_t, std::uint32_t>;
+  enum class RasterStage { kGeometry, kGeometryMasked, kShape, kSurface, kForward };
+  // stage, topology, motion, emissive, clipped, view mask, the material's flags, parts.
+  using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, bool, std::uint32_t,
+                               std::uint32_t, GBufferParts>;
   explicit Renderer(gpu::Device& device) : device_(device) {}
   Result<const gpu::Pipeline*> raster_pipeline(const RasterKey& key);
   // The pipelines that a list of draws needs, made before the pass records.
@@ -132,7 +139,8 @@ class Renderer {
   // emissive: the draws that glow, else those that do not (of a surface G-buffer).
   Result<PreparedDraws> prepare(const GpuScene& scene, const DrawList& list,
                                 const std::vector<Draw>& draws, GBufferKind kind, bool forward,
-                                bool motion, bool emissive, std::uint32_t view_mask);
+                                bool motion, bool emissive, std::uint32_t view_mask,
+                                const GBufferParts& parts = {});
   // Objects that draw passes borrow until the graph has run.
   struct RasterInputs {
     const GpuScene& scene;

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -85,17 +86,28 @@ class Simulation {
   SnapshotReader<State> reader() { return source_.reader(); }
 
   // each sees every state on the stepping thread, right after its step; its time is the step's.
-  // Not while the thread runs.
-  void observe(std::function<void(const Snapshot<State>&)> each) {
+  // used sees each message that the next step uses, before that. Not while the thread runs.
+  void observe(std::function<void(const Snapshot<State>&)> each,
+               std::function<void(const Message&)> used = {}) {
     check_idle();
     observer_ = std::move(each);
+    used_ = std::move(used);
   }
+
+  const std::function<void(const Snapshot<State>&)>& observer() const { return observer_; }
 
   // Lock-step: so many steps now. Not while the thread runs.
   void advance(std::uint64_t steps) {
     check_idle();
     for (std::uint64_t i = 0; i < steps; ++i) step_once(simulated_ns(source_.newest().step + 1));
   }
+
+  // No step after the one of that number: time stands still there. Not while the thread runs.
+  void end_at(std::uint64_t step) {
+    check_idle();
+    last_step_ = step;
+  }
+  std::uint64_t last_step() const { return last_step_; }
 
   // Goes on from a state that was saved after so many steps. Messages not yet applied are dropped;
   // the log begins anew. Layouts as at construction; everything finite. Not while the thread runs.
@@ -125,12 +137,12 @@ class Simulation {
   void stop() {
     if (!thread_) return;
     thread_->stop();
-    pace_ = thread_->counts();
+    pace_ = thread_->counts() + pace_;
     thread_.reset();
   }
   bool running() const { return thread_ != nullptr; }
-  // The counts of the thread that runs or ran last.
-  StepPacer::Counts pace() const { return thread_ ? thread_->counts() : pace_; }
+  // The counts of all threads so far.
+  StepPacer::Counts pace() const { return thread_ ? thread_->counts() + pace_ : pace_; }
 
   // The next three: not while the thread runs (readers get snapshots instead).
   const Snapshot<State>& newest() const {
@@ -164,13 +176,15 @@ class Simulation {
     const std::uint64_t step = source_.newest().step;
     for (const Message& message : inbox_->drain()) {
       apply_(inputs_, message, step);
+      if (used_) used_(message);
       if (options_.log) log_.entries.push_back({step, message});
     }
   }
 
   void step_once(TimeNs due_ns) {
-    take_messages();
     const Snapshot<State>& newest = source_.newest();
+    if (newest.step >= last_step_) return;
+    take_messages();
     Snapshot<State>& next = source_.next();
     step_(newest.state, inputs_, {newest.step, options_.step_s}, next.state);
     if (!all_finite(next.state)) {
@@ -193,7 +207,9 @@ class Simulation {
   SnapshotSource<State> source_;
   std::unique_ptr<Inbox> inbox_;
   std::function<void(const Snapshot<State>&)> observer_;
+  std::function<void(const Message&)> used_;
   Log log_;
+  std::uint64_t last_step_ = std::numeric_limits<std::uint64_t>::max();
   std::atomic<std::uint64_t> refused_states_{0};
   StepPacer::Counts pace_;
   std::unique_ptr<StepThread> thread_;  // last: ends before what it uses

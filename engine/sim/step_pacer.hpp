@@ -17,6 +17,10 @@ class StepPacer {
     std::uint64_t steps = 0, caught_up = 0;  // all; of those, the ones that had to be caught up
     std::uint64_t dropped = 0;               // steps that never ran
     TimeNs dropped_ns = 0;
+    Counts operator+(const Counts& other) const {
+      return {steps + other.steps, caught_up + other.caught_up, dropped + other.dropped,
+              dropped_ns + other.dropped_ns};
+    }
   };
 
   // rate_hz > 0, max_catch_up >= 1: most steps at once. The first step is due one period after
