@@ -241,6 +241,9 @@ class BodyMaker {
   void add_lungs() {
     const double size = in_.build.mass_kg / 75.0;
     body_.lungs = {1.3e-3 * size, 2.5e-3 * size, 6.0e-3 * size};
+    body_.fitness = in_.fitness;
+    if (body_.fitness.most_oxygen_l_min == 0.0)
+      body_.fitness.most_oxygen_l_min = usual_most_oxygen_l_min(in_.build.mass_kg);
     body_.lungs_at_m = {0.48 * measures_[kThorax].length_m, 0.0, 0.0};
   }
 
@@ -427,6 +430,7 @@ Result<Body> make_body(const BodyParameters& parameters) {
       {{"water density", parameters.water_kg_m3, 0.0, 1300.0},
        {"strips a segment", static_cast<double>(parameters.strips_a_segment), 1, 64}}));
   NERITIC_TRY_STATUS(check_limits({{"pressure at the surface", parameters.surface_pa, 2e4, 5e5}}));
+  NERITIC_TRY_STATUS(check_fitness(parameters.fitness));
   NERITIC_TRY_STATUS(check_gear(parameters.gear));
   return BodyMaker(parameters, measures).make();
 }

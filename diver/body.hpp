@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "diver/anthropometry.hpp"
+#include "diver/exertion.hpp"
 #include "diver/gear.hpp"
 #include "diver/spatial_mass.hpp"
 
@@ -25,6 +26,7 @@ enum class Model : std::uint32_t {
 
 struct BodyParameters {
   Build build;
+  Fitness fitness;
   Gear gear;
   Model model = Model::kFull;
   int strips_a_segment = 6;  // 1 to 64; `neritic tradeoff swim`
@@ -96,6 +98,7 @@ struct Body {
   std::array<TankPlace, kMaxTanks> tanks;
   std::size_t tank_count = 0;
   LungSizes lungs;
+  Fitness fitness;       // with the most oxygen of that mass
   Vec3 lungs_at_m{0.0};  // in the thorax
   Jacket jacket;         // scaled to the body; capacity 0: none
   Model model = Model::kFull;

@@ -135,17 +135,18 @@ void by_spectrum(const Levels& envelope, BreathEstimate& out) {
   out.confidence = std::min(1.0, all > 0.0 ? power[best] / (all * n / 8.0) : 0.0);
 }
 
-// An estimate, and whether the breath is longer than the window can measure.
+// An estimate, and whether a longer window may tell more: of a breath longer than this one can
+// measure, or of bursts that are alike.
 struct WindowEstimate {
   BreathEstimate breath;
-  bool slower = false;
+  bool asks_for_more = false;
 };
 
 void by_rhythm(const std::vector<Levels>& bands, WindowEstimate& out) {
   const Rhythm rhythm = common_rhythm(bands);
   out.breath.rate_bpm = 60.0 * rhythm.rate_hz;
   out.breath.confidence = rhythm.confidence;
-  out.slower = rhythm.slower;
+  out.asks_for_more = rhythm.slower || rhythm.alike;
 }
 
 Levels log_levels(std::span<const BreathFrame> frames, std::size_t band) {
@@ -274,7 +275,7 @@ BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, doub
   const auto window = static_cast<std::size_t>(std::lround(window_s * kBreathFrames_hz));
   const WindowEstimate newest = estimate_window(history.last(std::min(window, history.size())),
                                                 front, estimator, confidence_asked(estimator));
-  if (!newest.slower || history.size() <= window) return newest.breath;
+  if (!newest.asks_for_more || history.size() <= window) return newest.breath;
   return estimate_breath(history, front, estimator);
 }
 

@@ -72,8 +72,8 @@ BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const Breath
 BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const BreathBands& front,
                                BreathEstimator estimator);
 
-// The same for the last seconds of a longer history. kMultiBand: if every second burst is alike, so
-// that a breath is longer than the window can measure, the whole history is the window.
+// The same for the last seconds of a longer history. kMultiBand: if the breath is longer than the
+// window can measure, or every burst is like the one before, the whole history is the window.
 BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, double window_s,
                                       const BreathBands& front, BreathEstimator estimator);
 

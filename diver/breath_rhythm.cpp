@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numeric>
 
+#include "diver/breath_halves.hpp"
 #include "diver/breath_rate.hpp"
 #include "engine/core/math.hpp"
 
@@ -24,6 +26,19 @@ constexpr double kHalfLine = 6.0;
 // than the best. Slow regulator breath has 1.3 and more; 2 of 150 windows of faster breath on the
 // recordings have more than 1.
 constexpr double kSlowHalf = 1.25;
+// One sound alone repeats where loudness has this share of its power in the line and not much more
+// at its double, and colours have at most this share of the loudness's line: made sounds have up to
+// 0.4, seldom 0.7, the recordings, whose halves differ in colour, 0.33 and more. Bands that go
+// against the loudness tell sounds from one another.
+constexpr double kLeastLoudLine = 0.1, kMostDouble = 1.5, kMostAgainst = 0.1;
+constexpr double kLittleColour = 0.4, kSomeColour = 0.7;
+// Shorter windows leave more colour to chance.
+constexpr double kColourWindow_s = 20.0;
+// A hump that is wider than half of its period has its double's trough at its top; a narrower one,
+// or two humps of different height, the double's top, with more than this share.
+constexpr double kNarrow = 0.1;
+// Bursts that differ by chance alone reach 5, whole breaths of the recordings 23.
+constexpr double kAlternates = 8.0, kSurelyAlternates = 40.0;
 // Lines are searched in steps of the window's resolution divided by this number.
 constexpr double kLinesAResolution = 8.0;
 constexpr int kMostSweeps = 30;
@@ -97,6 +112,41 @@ double share_of_arrhythmic_below(double share, double window_s) {
   return std::exp(-std::exp(-(share * window_s - location) / kScale));
 }
 
+// Turns the first component so that louder is up, and says whether it is the loudness: bands that
+// go against it tell sounds from one another.
+bool turn_to_loudness(const std::vector<Levels>& bands, Levels& component) {
+  double with = 0.0, against = 0.0;
+  for (const Levels& band : bands) {
+    const double along = std::inner_product(band.begin(), band.end(), component.begin(), 0.0);
+    (along > 0.0 ? with : against) += std::abs(along);
+  }
+  if (against > with)
+    for (double& level : component) level = -level;
+  return std::min(with, against) <= kMostAgainst * std::max(with, against);
+}
+
+// The colours' share of the loudness's line; infinite where the line is not of one hump a period.
+double colour_at(const std::vector<std::vector<double>>& powers, std::size_t line) {
+  const double loud = powers[0][line];
+  double colour = 0.0;
+  for (std::size_t i = 1; i < powers.size(); ++i) colour += powers[i][line];
+  const bool one_hump = loud >= kLeastLoudLine && powers[0][2 * line] <= kMostDouble * loud;
+  return one_hump ? colour / loud : std::numeric_limits<double>::infinity();
+}
+
+// The share of the second harmonic that has its top where the first one has: negative for its
+// trough there.
+double double_at_top(const Levels& loudness, double hz) {
+  std::complex<double> first = 0.0, second = 0.0;
+  for (std::size_t i = 0; i < loudness.size(); ++i) {
+    const double turns = static_cast<double>(i) / kBreathFrames_hz * hz;
+    first += std::polar(loudness[i], -2.0 * kPi * turns);
+    second += std::polar(loudness[i], -4.0 * kPi * turns);
+  }
+  const std::complex<double> turned = second * std::conj(first * first);
+  return turned.real() / std::max(std::pow(std::abs(first), 3.0), 1e-300);
+}
+
 }  // namespace
 
 double parabola_top(double before, double here, double after) {
@@ -125,7 +175,7 @@ std::vector<double> line_powers(const Levels& x, double step_hz, std::size_t cou
 }
 
 Rhythm common_rhythm(const std::vector<Levels>& bands) {
-  const std::vector<Levels> components = components_of(bands);
+  std::vector<Levels> components = components_of(bands);
   if (components.empty()) return {};
   const auto frames = static_cast<double>(bands[0].size());
   const double step_hz = kBreathFrames_hz / frames / kLinesAResolution;
@@ -135,11 +185,14 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
   const std::size_t slowest = line_of(slowest_breath_hz(frames / kBreathFrames_hz));
   const auto fastest = static_cast<std::size_t>(std::floor(kFastestBreath_hz / step_hz));
   std::vector<double> together(2 * (fastest + 1) + 1, 0.0);
+  std::vector<std::vector<double>> powers;
   for (const Levels& component : components) {
-    const auto power = line_powers(component, step_hz, together.size());
-    // A pure line has half of the square of its frames.
-    for (std::size_t i = 0; i < power.size(); ++i)
-      together[i] += power[i] * 2.0 / (static_cast<double>(components.size()) * frames * frames);
+    powers.push_back(line_powers(component, step_hz, together.size()));
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      powers.back()[i] *=
+          2.0 / (frames * frames);  // a pure line has half of the square of its frames
+      together[i] += powers.back()[i] / static_cast<double>(components.size());
+    }
   }
   const auto at = [&](std::size_t i) { return together[i] + kShareOfDouble * together[2 * i]; };
   std::size_t best = 0;
@@ -149,7 +202,7 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
   const double confidence = share_of_arrhythmic_below(at(best), frames / kBreathFrames_hz);
   double line = static_cast<double>(best) + parabola_top(at(best - 1), at(best), at(best + 1));
   constexpr auto kReach = static_cast<std::size_t>(kLinesAResolution / 4.0);
-  bool slower = false;
+  bool slower = false, alike = false;
   // A window must hold one breath at least to show its line.
   const double slowest_half_hz = std::max(kSlowestBreath_hz, kBreathFrames_hz / frames);
   if (best / 2 >= line_of(slowest_half_hz)) {
@@ -165,8 +218,18 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
       slower = best / 2 < slowest;
     }
   }
+  if (line > 0.75 * static_cast<double>(best) && turn_to_loudness(bands, components[0])) {
+    const double window_s = frames / kBreathFrames_hz;
+    const double hz = step_hz * line, colour = colour_at(powers, best);
+    const bool little = colour <= kLittleColour * std::max(1.0, kColourWindow_s / window_s);
+    const double differ = colour <= kSomeColour || little ? alternation(bands, hz) : 0.0;
+    const bool alternates = differ > (little ? kAlternates : kSurelyAlternates);
+    alike = !alternates && little && double_at_top(components[0], hz) < kNarrow;
+    if (alternates) line *= 0.5;
+    slower = alternates && line < static_cast<double>(slowest);
+  }
   if (slower) return {.slower = true};
-  return {step_hz * line, confidence};
+  return {step_hz * line, alike ? std::min(confidence, kAlikeConfidence) : confidence, alike};
 }
 
 }  // namespace neritic::diver

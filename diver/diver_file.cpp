@@ -13,9 +13,9 @@ namespace neritic::diver {
 namespace {
 
 constexpr std::string_view kDiverKeys[] = {
-    "name",         "sex",  "height_m", "mass_kg",     "model",   "strips_a_segment",
-    "suit_mm",      "fins", "tanks",    "jacket",      "lead_kg", "lead_at_shoulders",
-    "drag_area_m2", "kick", "computer", "gas_switches"};
+    "name",         "sex",  "height_m", "mass_kg",      "model",   "strips_a_segment",
+    "suit_mm",      "fins", "tanks",    "jacket",       "lead_kg", "lead_at_shoulders",
+    "drag_area_m2", "kick", "computer", "gas_switches", "fitness"};
 constexpr std::string_view kFinKeys[] = {"length_m", "width_m", "angle_deg", "mass_kg", "volume_l"};
 constexpr std::string_view kTankKeys[] = {"volume_l", "pressure_bar", "oxygen",
                                           "helium",   "empty_kg",     "outer_l",
@@ -27,6 +27,7 @@ constexpr std::string_view kComputerKeys[] = {"conventions", "gf_low",     "gf_h
                                               "last_stop_m", "saturation", "desaturation"};
 
 constexpr std::string_view kGasSwitchKeys[] = {"reaction_s"};
+constexpr std::string_view kFitnessKeys[] = {"most_oxygen_l_min", "critical_share", "reserve_kj"};
 
 constexpr double kLitre_m3 = 1e-3, kBar_pa = 1e5;
 constexpr double kThinnestSuit_m = 0.5e-3;
@@ -152,6 +153,15 @@ void read_kick(const CaseField& field, SwimmerSettings& swimmer) {
   swimmer.most_frequency_hz = field["most_hz"].number(swimmer.most_frequency_hz, 0.3, 3.0);
 }
 
+void read_fitness(const CaseField& field, Fitness& fitness) {
+  fitness.tires = !taken_off(field);
+  if (!fitness.tires) return;
+  field.allow(kFitnessKeys);
+  read_bounded(field["most_oxygen_l_min"], 1.0, kMostOxygenUptake_l_min, fitness.most_oxygen_l_min);
+  read_bounded(field["critical_share"], 1.0, kCriticalShare, fitness.critical_share);
+  read_bounded(field["reserve_kj"], 1e3, kWorkReserve_j, fitness.reserve_j);
+}
+
 void read_gas_switches(const CaseField& field, GasSwitching& switching) {
   switching.by_plan = !taken_off(field);
   if (!switching.by_plan) return;
@@ -214,6 +224,7 @@ Result<DiverFile> parse_diver(std::string_view text, const std::string& name,
   read_person(root, out.parameters);
   read_gear(root, out.parameters.gear);
   read_kick(root["kick"], out.swimmer);
+  read_fitness(root["fitness"], out.parameters.fitness);
   read_gas_switches(root["gas_switches"], out.gas_switching);
   const Status computer = read_computer(root, out.parameters, out.computer);
   if (!file.failed() && !computer.ok()) root["computer"].fail(computer.error().message);

@@ -47,8 +47,10 @@ struct LifeState {
   LungState lungs;
   TankState tanks;
   double jacket_moles = 0.0;
-  double limb_power_w = 0.0;  // mechanical, over the last second or so
-  double limb_work_j = 0.0;   // so far
+  double limb_power_w = 0.0;    // mechanical, over the last second or so
+  double limb_work_j = 0.0;     // so far
+  double moving_power_w = 0.0;  // to speed limbs up (LimbWork), smoothed likewise
+  double spent_j = 0.0;         // of the reserve above the critical power (exertion.hpp)
   // Tissues and oxygen of a dive computer with the same breath and depth; step() only copies them,
   // and the owner of the computer steps them (deco_live.hpp).
   DiveComputerState computer;
@@ -60,6 +62,8 @@ struct LifeState {
     field("jacket_moles", self.jacket_moles);
     field("limb_power_w", self.limb_power_w);
     field("limb_work_j", self.limb_work_j);
+    field("moving_power_w", self.moving_power_w);
+    field("spent_j", self.spent_j);
     field("computer", self.computer);
     field("vitals", self.vitals);
   }

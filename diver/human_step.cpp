@@ -90,6 +90,7 @@ Breathing breathing_of(const Body& body, const HumanState& state, double ambient
 void live(const Body& body, HumanState& state, double dt_s) {
   VitalInputs in;
   in.oxygen_l_min = state.life.lungs.oxygen_l_min;
+  in.most_oxygen_l_min = body.fitness.most_oxygen_l_min;
   in.mix = breathed_mix(body, state);
   in.ambient_pa = pressure_at(body, state.root.position_ned_m.z);
   in.surface_pa = body.surface_pa;
@@ -108,7 +109,10 @@ void substep(const Body& body, HumanState& state, double into_s, double dt_s) {
   // Gas where the body is now, then motion with that gas.
   const double ambient_pa = pressure_at(body, state.root.position_ned_m.z);
   BreathInputs breath;
-  breath.limb_power_w = life.limb_power_w + in.other_power_w;
+  const double effort_w =
+      metabolic_power_w(life.limb_power_w + in.other_power_w, life.moving_power_w);
+  life.spent_j = spent_after(body.fitness, life.spent_j, effort_w, dt_s);
+  breath.oxygen_demand_l_min = oxygen_demand_l_min(body.fitness, effort_w, life.spent_j);
   breath.ventilation_l_min = in.ventilation_l_min;
   breath.bias_m3 = in.breath_bias_m3;
   breath.hold = in.hold_breath != 0;
@@ -125,7 +129,10 @@ void substep(const Body& body, HumanState& state, double into_s, double dt_s) {
   // Muscles that brake take no work back.
   const double power_w = std::clamp(work.power_w, 0.0, kMostPower_w);
   life.limb_work_j += power_w * dt_s;
-  life.limb_power_w += (power_w - life.limb_power_w) * -std::expm1(-dt_s / kPowerLag_s);
+  const double follows = -std::expm1(-dt_s / kPowerLag_s);
+  life.limb_power_w += (power_w - life.limb_power_w) * follows;
+  const double moving_w = std::min(work.moving_w, kMostPower_w);
+  life.moving_power_w += (moving_w - life.moving_power_w) * follows;
 }
 
 }  // namespace

@@ -44,11 +44,6 @@ void count_fed(LungState& lungs, bool fed, double dt_s) {
 
 }  // namespace
 
-double oxygen_demand_l_min(double limb_power_w) {
-  constexpr double kJoulePerLitre = 20900.0, kEfficiency = 0.25;
-  return kRestingOxygen_l_min + std::max(0.0, limb_power_w) * 60.0 / (kJoulePerLitre * kEfficiency);
-}
-
 double ventilation_l_min(const Body& body, double oxygen_l_min, const GasMix& mix,
                          double ambient_pa) {
   const double denser = gas_density(mix, ambient_pa) / gas_density(kAir, kSurfacePressure_pa);
@@ -67,8 +62,8 @@ double middle_of_quiet_breath(const Body& body) {
 
 void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const BreathInputs& in,
                 double ambient_pa, double dt_s) {
-  const double demand = std::min(oxygen_demand_l_min(in.limb_power_w), kMostOxygen_l_min);
-  lungs.oxygen_l_min += (demand - lungs.oxygen_l_min) * -std::expm1(-dt_s / kOxygenLag_s);
+  lungs.oxygen_l_min +=
+      (in.oxygen_demand_l_min - lungs.oxygen_l_min) * -std::expm1(-dt_s / kOxygenLag_s);
   if (in.hold) {
     hold_breath(body, lungs, ambient_pa, dt_s);
     return;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "diver/exertion.hpp"
 #include "diver/tanks.hpp"
 
 namespace neritic::diver {
@@ -31,15 +32,6 @@ struct LungState {
   }
 };
 
-// At rest.
-inline constexpr double kRestingOxygen_l_min = 0.32;
-// Values of people fit enough for commercial diving.
-inline constexpr double kMostOxygen_l_min = 4.5;
-
-// Oxygen that mechanical power of the limbs asks for, litres a minute: 20.9 kJ a litre, a quarter
-// of it to work (di Prampero 1986, Int. J. Sports Med. 7, 55).
-double oxygen_demand_l_min(double limb_power_w);
-
 // Respiratory minute volume, litres of ambient pressure a minute: 25 times the oxygen taken up, as
 // far as the chest can move gas that dense (maximal voluntary ventilation falls with the root of
 // density: Camporesi and Bosco 2003, "Bennett and Elliott's Physiology", 5th ed., ch. 5).
@@ -53,7 +45,7 @@ double tidal_volume(const Body& body, double ventilation_l_min);
 double middle_of_quiet_breath(const Body& body);
 
 struct BreathInputs {
-  double limb_power_w = 0.0;       // mean mechanical power just now
+  double oxygen_demand_l_min = kRestingOxygen_l_min;
   double ventilation_l_min = 0.0;  // as measured; 0: follows from oxygen
   double bias_m3 = 0.0;            // mean lung volume less that at rest
   bool hold = false;

@@ -90,6 +90,25 @@ Vec6 in_body(const Quat& attitude, const Vec6& v) {
   return in_world(glm::conjugate(attitude), v);
 }
 
+// Kinetic energy of a segment against the trunk, without the water that moves along.
+double energy_of(const SegmentBody& segment, const SegmentPose& pose) {
+  const Mat3 segment_from_body = glm::transpose(pose.body_from_segment);
+  const Vec3 v = segment_from_body * pose.velocity_m_s, w = segment_from_body * pose.angular_rad_s;
+  const SpatialMass& m = segment.rigid;
+  return 0.5 * (glm::dot(v, m.a * v + 2.0 * (m.b * w)) + glm::dot(w, m.c * w));
+}
+
+double speeding_up_j(const Body& body, const Posture& before, const Posture& after) {
+  double sum = 0.0;
+  for (const std::size_t first : {kLeftUpperArm, kRightUpperArm, kLeftUpperLeg, kRightUpperLeg}) {
+    double gained = 0.0;
+    for (std::size_t i = first; i < first + 3; ++i)
+      gained += energy_of(body.segments[i], after[i]) - energy_of(body.segments[i], before[i]);
+    sum += std::max(0.0, gained);
+  }
+  return sum;
+}
+
 }  // namespace
 
 LimbWork move_root(const Body& body, RootState& root, const LimbState& before,
@@ -138,7 +157,8 @@ LimbWork move_root(const Body& body, RootState& root, const LimbState& before,
   root.velocity =
       next + in_body(root.attitude, vec6(water.current_m_s + dt_s * water.change_m_s2, Vec3(0.0)));
   const double gained = energy_at(mass, next) - energy_at(old_mass, velocity);
-  return {gained / dt_s - (1.0 - implicit) * old_forces.power_w - implicit * forces.power_w};
+  return {gained / dt_s - (1.0 - implicit) * old_forces.power_w - implicit * forces.power_w,
+          speeding_up_j(body, old_posture, posture) / dt_s};
 }
 
 WorldMomentum world_momentum(const Body& body, const RootState& root, const LimbState& limbs,

@@ -41,6 +41,9 @@ struct WaterFlow {
 // The limbs' part in a step.
 struct LimbWork {
   double power_w = 0.0;  // mean mechanical power of all joints; negative: the water moved them
+  // To speed up arms and legs against the trunk, each limb for itself: the internal power (Zamparo
+  // et al. 2002, J. Exp. Biol. 205, 2665). What slows down gives nothing back.
+  double moving_w = 0.0;
 };
 
 // One step: limbs go from before to after, the root follows. Trapezoidal in time where drag is

@@ -22,7 +22,7 @@ constexpr double kLateSteps = 0.75, kLateDeviations = 4.0;
 constexpr double kBackSteps = 0.75;
 constexpr double kDeviationOfMedian = 1.4826;  // of a normal distribution
 // A few rows with a clock that leaps must not fill the memory with what is missing.
-constexpr double kMostMissing = 1e6, kMostMissingARow = 100.0;
+constexpr double kMostMissingSamples = 1e6, kMostMissingARow = 100.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 double cell_number(std::string_view cell) {
@@ -191,7 +191,7 @@ Status spread_evenly(const std::vector<double>& time_s, const std::vector<double
     const double ahead = (time_s[i] - next_s) / step_s;
     if (has_place && ahead > late) {
       const double most =
-          std::max(kMostMissing, kMostMissingARow * static_cast<double>(values.size()));
+          std::max(kMostMissingSamples, kMostMissingARow * static_cast<double>(values.size()));
       if ((missing += ahead) > most)
         return refusal(name, fmt::format("{:.0f} missing samples up to {:g} s", missing, time_s[i]),
                        fmt::format("at most {:.0f}", most));

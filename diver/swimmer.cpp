@@ -27,15 +27,18 @@ double between_beats(BeatNotch& notch, double value, double hz, double dt_s) {
   return value - 2.0 * kDamping * first;
 }
 
-// How hard to kick for that speed, within what legs give: their power goes with the cube of beats.
-void pace(const SwimmerSettings& settings, double speed_m_s, double wanted_m_s, double power_w,
-          SwimmerState& swimmer, double dt_s) {
+// How hard to kick for that speed, within what the person has left: power goes with the cube of
+// beats.
+void pace(const Body& body, const SwimmerSettings& settings, double speed_m_s, double wanted_m_s,
+          const LifeState& life, SwimmerState& swimmer, double dt_s) {
   const bool kicks = wanted_m_s > settings.gliding_speed_m_s;
   follow(swimmer.effort, kicks ? 1.0 : 0.0, 1.0, dt_s);
   const double error = wanted_m_s - speed_m_s;
   if (kicks) swimmer.speed_sum = std::clamp(swimmer.speed_sum + error * dt_s, -3.0, 3.0);
+  const double kick_w = metabolic_power_w(life.limb_power_w, life.moving_power_w);
   const double strong_hz =
-      std::max(swimmer.frequency_hz, 0.1) * std::cbrt(kMostKick_w / std::max(power_w, 1.0));
+      std::max(swimmer.frequency_hz, 0.1) *
+      std::cbrt(strongest_power_w(body.fitness, life.spent_j) / std::max(kick_w, 1.0));
   const double wanted_hz =
       std::clamp((wanted_m_s + 0.3 * error + 0.15 * swimmer.speed_sum) / kMetresABeat, 0.25,
                  settings.most_frequency_hz);
@@ -271,7 +274,7 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
   swimmer.climb_sum = swims ? std::clamp(swimmer.climb_sum + too_much_m_s * dt_s, -3.0, 3.0) : 0.0;
   const double way = std::clamp(ahead_m_s / kWay_m_s, 0.0, 1.0);
   follow(swimmer.rests, 1.0 - swimmer.effort * way, 0.5, dt_s);
-  pace(settings, ahead_m_s, goal.speed_m_s, state.life.limb_power_w, swimmer, dt_s);
+  pace(body, settings, ahead_m_s, goal.speed_m_s, state.life, swimmer, dt_s);
   balance(body, too_much_m_s, state, swimmer, dt_s, inputs);
 
   double turn = 0.0, pitch = 0.0;

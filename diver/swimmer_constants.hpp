@@ -20,11 +20,6 @@ namespace neritic::diver::swimming {
 // Way of a beat with full gear, m, from which the pace begins: measured, and held by
 // Swimmer.ItsKickGivesWhatIsPublishedWithFinsAndBare. At 1.4 times the hover strays by 5.7 m.
 inline constexpr double kMetresABeat = 0.52;
-// Mechanical power of the legs at most. At an efficiency of 0.25 it takes 3.8 l of oxygen a minute
-// (lungs.hpp), 84 % of kMostOxygen_l_min: about the share at which the critical power of trained
-// people lies, which can be kept up for tens of minutes (Poole et al. 2016, Med. Sci. Sports Exerc.
-// 48, 2320). Work above it, and fatigue, are not modelled.
-inline constexpr double kMostKick_w = 300.0;
 
 // Angles that steer, far inside the range of joints: hip 30 degrees back and to the inner side, 45
 // to the outer; trunk 80 forward, 25 back, 35 to a side, 45 of twist (AAOS 1965, Joint Motion).

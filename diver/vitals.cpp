@@ -13,22 +13,22 @@ constexpr double kMostHeard_bpm = 300.0, kMostBreaths_bpm = 120.0;
 // An instrument that says nothing new for so long is not believed any longer: a strap speaks each
 // second, breath is analysed in blocks of ten seconds, eyes are seen many times a second.
 constexpr double kHeartSilence_s = 10.0, kBreathSilence_s = 30.0, kGazeSilence_s = 1.0;
-constexpr double kMostTime_s = 1e12;
+constexpr double kMostWordTime_s = 1e12;
 
 bool possible(const HeartState& heart) {
-  return sim::all_finite(heart) && std::abs(heart.time_s) <= kMostTime_s && heart.rate_bpm >= 0.0 &&
-         heart.rate_bpm <= kMostHeard_bpm;
+  return sim::all_finite(heart) && std::abs(heart.time_s) <= kMostWordTime_s &&
+         heart.rate_bpm >= 0.0 && heart.rate_bpm <= kMostHeard_bpm;
 }
 
 bool possible(const BreathState& breath) {
-  return sim::all_finite(breath) && std::abs(breath.time_s) <= kMostTime_s &&
+  return sim::all_finite(breath) && std::abs(breath.time_s) <= kMostWordTime_s &&
          breath.estimate.rate_bpm >= 0.0 && breath.estimate.rate_bpm <= kMostBreaths_bpm &&
          breath.quiet_s >= 0.0;
 }
 
 bool possible(const GazeState& gaze) {
   const double length = glm::length(gaze.direction);
-  return sim::all_finite(gaze) && std::abs(gaze.time_s) <= kMostTime_s && length > 0.5 &&
+  return sim::all_finite(gaze) && std::abs(gaze.time_s) <= kMostWordTime_s && length > 0.5 &&
          length < 2.0;
 }
 
@@ -54,9 +54,9 @@ int take_instruments(const Instruments& said, Instruments& held) {
          take_word(said.gaze, held.gaze);
 }
 
-double effort_heart_bpm(double oxygen_l_min) {
+double effort_heart_bpm(double oxygen_l_min, double most_oxygen_l_min) {
   const double share =
-      (oxygen_l_min - kRestingOxygen_l_min) / (kMostOxygen_l_min - kRestingOxygen_l_min);
+      (oxygen_l_min - kRestingOxygen_l_min) / (most_oxygen_l_min - kRestingOxygen_l_min);
   return kRestingHeart_bpm + glm::clamp(share, 0.0, 1.0) * (kMostHeart_bpm - kRestingHeart_bpm);
 }
 
@@ -73,7 +73,8 @@ void step_vitals(const Instruments& said, const VitalInputs& in, double dt_s, Vi
       said.gaze.now != GazeClass::kLost;
   vitals.measured =
       (heart ? kHeartMeasured : 0) | (breath ? kBreathMeasured : 0) | (gaze ? kGazeMeasured : 0);
-  vitals.heart_bpm = heart ? said.heart.rate_bpm : effort_heart_bpm(in.oxygen_l_min);
+  vitals.heart_bpm =
+      heart ? said.heart.rate_bpm : effort_heart_bpm(in.oxygen_l_min, in.most_oxygen_l_min);
   vitals.breath_bpm = breath ? said.breath.estimate.rate_bpm : in.breath_bpm;
   if (breath)
     vitals.pause_s = said.breath.quiet_s;

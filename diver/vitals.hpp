@@ -66,14 +66,14 @@ struct VitalState {
 // Beats a minute at this oxygen uptake: the share of the heart's reserve is that of the
 // uptake's (Swain and Leutholtz 1997, Med. Sci. Sports Exerc. 29, 410), up to 208 - 0.7 age of a
 // person of 35 (Tanaka 2001, J. Am. Coll. Cardiol. 37, 153), from 65 at rest.
-double effort_heart_bpm(double oxygen_l_min);
+double effort_heart_bpm(double oxygen_l_min, double most_oxygen_l_min);
 
 // The motion and breath of the same time.
 struct VitalInputs {
   GasMix mix;
   double ambient_pa = 0.0, surface_pa = kSurfacePressure_pa;
   double cns_percent = 0.0;  // as the dive computer has it
-  double oxygen_l_min = kRestingOxygen_l_min;
+  double oxygen_l_min = kRestingOxygen_l_min, most_oxygen_l_min = 0.0;
   double ventilation_l_min = 0.0, breath_bpm = 0.0;  // 0 while the breath is held
   Vec3 face_ned{1.0, 0.0, 0.0};
 };

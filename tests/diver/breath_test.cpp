@@ -24,6 +24,11 @@ double breathe(const Body& body, Minutes& m, double depth_m, double minutes, Bre
   return 1e3 * moles * kGasConstant * kTankTemperature_k / ambient_pa(depth_m) / minutes;
 }
 
+BreathInputs working(const Body& body, double power_w) {
+  return {.oxygen_demand_l_min =
+              oxygen_demand_l_min(body.fitness, metabolic_power_w(power_w, 0.0), 0.0)};
+}
+
 TEST(Breath, ATankLosesWhatIsBreathed) {
   const Body body = body_with(Gear{});
   Minutes m{{}, full_tanks(body)};
@@ -46,7 +51,7 @@ TEST(Breath, ConsumptionGrowsWithDepthAndEffort) {
   const Body body = body_with(Gear{});
   const auto bar_a_minute = [&](double depth_m, double power_w) {
     Minutes m{{}, full_tanks(body)};
-    const BreathInputs in{.limb_power_w = power_w};
+    const BreathInputs in = working(body, power_w);
     breathe(body, m, depth_m, 4.0, in);
     const double before = tank_pressure(body, m.tanks, 0);
     breathe(body, m, depth_m, 2.0, in);
@@ -60,7 +65,8 @@ TEST(Breath, ConsumptionGrowsWithDepthAndEffort) {
 TEST(Breath, VentilationIsThatOfTheTables) {
   const Body body = body_with(Gear{});
   const auto at = [&](double power_w) {
-    return ventilation_l_min(body, oxygen_demand_l_min(power_w), kAir, ambient_pa(10.0));
+    return ventilation_l_min(body, working(body, power_w).oxygen_demand_l_min, kAir,
+                             ambient_pa(10.0));
   };
   EXPECT_NEAR(at(0.0), 8.0, 0.5);
   EXPECT_GT(at(60.0), 20.0);
@@ -78,10 +84,10 @@ TEST(Breath, TheMiddleOfTheLungsStaysWithEffort) {
   const Body body = body_with(Gear{});
   const auto mean_m3 = [&](double power_w) {
     Minutes m{{}, full_tanks(body)};
-    breathe(body, m, 10.0, 4.0, {.limb_power_w = power_w});
+    breathe(body, m, 10.0, 4.0, working(body, power_w));
     double sum = 0.0;
     for (int i = 0; i < 120 * 240; ++i) {
-      step_lungs(body, m.lungs, m.tanks, {.limb_power_w = power_w}, ambient_pa(10.0), 1.0 / 240.0);
+      step_lungs(body, m.lungs, m.tanks, working(body, power_w), ambient_pa(10.0), 1.0 / 240.0);
       sum += m.lungs.volume_m3;
     }
     return sum / (120 * 240);

@@ -36,6 +36,20 @@ TEST(DiverFile, NothingSaidIsTheDefaultDiver) {
   EXPECT_EQ(file.computer.gases[0].mix, kAir);
 }
 
+TEST(DiverFile, FitnessArrivesAndNobodyNeedTire) {
+  const Fitness given =
+      diver_of("fitness = { most_oxygen_l_min = 2.6, critical_share = 0.7, reserve_kj = 12 }")
+          .parameters.fitness;
+  EXPECT_EQ(given.most_oxygen_l_min, 2.6);
+  EXPECT_EQ(given.critical_share, 0.7);
+  EXPECT_EQ(given.reserve_j, 12e3);
+  EXPECT_TRUE(given.tires);
+  EXPECT_FALSE(diver_of("fitness = false").parameters.fitness.tires);
+  EXPECT_THAT(diver_fault("[fitness]\nreserve_kj = 500\n"),
+              HasSubstr("fitness.reserve_kj: found 500; accepted: a number in [1, 100]"));
+  EXPECT_THAT(diver_fault("[fitness]\ncritical_share = 1.0\n"), HasSubstr("critical_share"));
+}
+
 TEST(DiverFile, WhatIsSaidArrives) {
   const DiverFile file = diver_of(R"(
 name = "Ada"

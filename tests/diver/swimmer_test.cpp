@@ -99,7 +99,7 @@ TEST(Swimmer, KicksNoHarderThanAPersonCan) {
     if (i == 30 * 240) half_j = s.state.life.limb_work_j;
     if (i > 10 * 240) most_w = std::max(most_w, s.state.life.limb_power_w);
   }
-  EXPECT_NEAR((s.state.life.limb_work_j - half_j) / 30.0, 300.0, 20.0);
+  EXPECT_NEAR((s.state.life.limb_work_j - half_j) / 30.0, 280.0, 25.0);  // and tires
   EXPECT_LT(most_w, 450.0);
 }
 
@@ -237,6 +237,8 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
       sim::test::plain_simulation({.step_s = 1.0 / 240.0}, start, HumanInputs{}, pure);
   std::atomic<bool> stop{false};
   std::atomic<std::uint64_t> seen{0};
+  std::atomic<bool> measured{false};
+  std::atomic<int> pushed{0};
   std::vector<std::thread> others;
   for (int reader = 0; reader < 2; ++reader)
     others.emplace_back([&, reader] {
@@ -244,7 +246,9 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
       while (!stop)
         if (snapshots.update()) {
           if (!sim::all_finite(snapshots.newest().state)) ADD_FAILURE() << "not finite";
-          if (reader == 0) seen = snapshots.newest().step;
+          if (reader != 0) continue;
+          seen = snapshots.newest().step;
+          measured = snapshots.newest().state.life.vitals.measured == kHeartMeasured;
         }
     });
   others.emplace_back([&] {
@@ -257,12 +261,16 @@ TEST(DiverDeterminism, OnItsThreadWithReadersAndSendersItReplays) {
       inputs.instruments.heart.rate_bpm = draws.uniform(50.0, 180.0);
       inputs.instruments.heart.quality = SignalQuality::kGood;
       simulation.inbox().push(inputs);
+      ++pushed;
       std::this_thread::yield();
     }
   });
   sim::SimulatedClock clock;
   simulation.start(clock);
-  while (seen < 480) std::this_thread::yield();
+  // Two seconds take 6 ms of the thread: a loaded machine may not have let the suit send in them.
+  while (seen < 480 || !measured || pushed < 100) std::this_thread::yield();
+  const std::uint64_t then = seen;
+  while (seen < then + 240) std::this_thread::yield();
   simulation.stop();
   stop = true;
   for (std::thread& thread : others) thread.join();

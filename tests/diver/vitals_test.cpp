@@ -36,8 +36,8 @@ HumanInputs still_inputs(const Body& body) {
 }
 
 TEST(Vitals, AHeartFollowsEffortAndRest) {
-  EXPECT_NEAR(effort_heart_bpm(kRestingOxygen_l_min), 65.0, 1e-12);
-  EXPECT_NEAR(effort_heart_bpm(kMostOxygen_l_min), 183.5, 1e-12);
+  EXPECT_NEAR(effort_heart_bpm(kRestingOxygen_l_min, 3.4), 65.0, 1e-12);
+  EXPECT_NEAR(effort_heart_bpm(3.4, 3.4), 183.5, 1e-12);
   const Body body = body_with(Gear{});
   HumanState state = diver_at(body, 10.0);
   HumanInputs inputs = still_inputs(body);
@@ -47,7 +47,7 @@ TEST(Vitals, AHeartFollowsEffortAndRest) {
   EXPECT_GT(rested.breath_bpm, 5.0);
   EXPECT_EQ(rested.measured, 0u);
   EXPECT_NEAR(rested.risk.co2_mmhg, 42.0, 2.0);
-  inputs.other_power_w = 120.0;  // 1.7 l/min of oxygen
+  inputs.other_power_w = 120.0;  // 1.5 l/min of oxygen
   live_for(body, state, inputs, 180.0);
   EXPECT_GT(state.life.vitals.heart_bpm, 95.0);
   EXPECT_LT(state.life.vitals.heart_bpm, 130.0);
@@ -206,7 +206,7 @@ TEST(VitalRisk, WorkInDenseGasIsMoreCo2AndDepthIsMoreNarcosis) {
     const Body body = body_with(gear);
     HumanState state = diver_at(body, depth_m);
     HumanInputs inputs = still_inputs(body);
-    inputs.other_power_w = 180.0;
+    inputs.other_power_w = 230.0;
     live_for(body, state, inputs, 240.0);
     EXPECT_GT(tank_pressure(body, state.life.tanks, 0), 20e5);
     return state.life.vitals.risk;
