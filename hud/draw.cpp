@@ -1,0 +1,187 @@
+// The layouts that a diver wears. Depth and time until something is owed are largest; what an alarm
+// is about changes its plate too.
+#include "hud/draw.hpp"
+
+namespace neritic::hud {
+namespace {
+
+using draw2d::Color;
+
+FixedText with_unit(const char* label, const char* unit) {
+  return FixedText::of("{} {}", label, unit);
+}
+
+// The stop's depth is the number that is owed; above the ceiling it is what the alarm is about.
+Tone limit_tone(const Shown& shown) {
+  return tone_of(shown, shown.in_stops ? Alarm::kCeiling : Alarm::kNoStop);
+}
+
+Tone depth_tone(const Shown& shown) {
+  return tone_of(shown, Alarm::kCeiling);
+}
+
+}  // namespace
+
+void draw_limit(Painter& p, const Box& box, const Shown& shown, double size, double label_size) {
+  if (!shown.in_stops) {
+    p.cell({box, "NO STOP", shown.no_stop.view(), "min", size, label_size, limit_tone(shown)});
+    return;
+  }
+  const double part = 0.5 * box.w;
+  p.cell({{box.x, box.y, part, box.h},
+          with_unit("STOP", unit_names(shown.units).depth).view(),
+          shown.stop.view(),
+          "",
+          size,
+          label_size,
+          limit_tone(shown)});
+  p.cell({{box.x + part, box.y, part, box.h}, "min", shown.stop_min.view(), "", size, label_size});
+}
+
+void draw_wrist(Painter& p, const Shown& s) {
+  const UnitNames unit = unit_names(s.units);
+  constexpr Color kCase{0.16f, 0.17f, 0.18f}, kScreen{0.005f, 0.012f, 0.018f};
+  p.plate({0.0, 0.0, 480.0, 400.0}, 34.0, kCase);
+  p.plate({8.0, 8.0, 464.0, 384.0}, 28.0, kScreen);
+  p.cell({{18.0, 20.0, 234.0, 122.0},
+          with_unit("DEPTH", unit.depth).view(),
+          s.depth.view(),
+          "",
+          66.0,
+          14.0,
+          depth_tone(s)});
+  p.ascent_bar({262.0, 28.0, 34.0, 108.0}, s, 16.0);
+  draw_limit(p, {310.0, 20.0, 152.0, 122.0}, s, s.in_stops ? 40.0 : 54.0, 14.0);
+  p.line(20.0, 149.0, 460.0, 149.0, 1.5, kFaint);
+  p.cell({{18.0, 154.0, 150.0, 74.0}, "TIME", s.dive_time.view(), "", 30.0, 13.0});
+  if (s.in_stops)
+    p.cell({{170.0, 154.0, 136.0, 74.0},
+            "CEILING",
+            s.ceiling.view(),
+            unit.depth,
+            30.0,
+            13.0,
+            depth_tone(s)});
+  else
+    p.cell({{170.0, 154.0, 136.0, 74.0}, "DEEPEST", s.deepest.view(), unit.depth, 30.0, 13.0});
+  p.cell({{310.0, 154.0, 152.0, 74.0}, "TO SURFACE", s.to_surface.view(), "min", 30.0, 13.0});
+  p.line(20.0, 233.0, 460.0, 233.0, 1.5, kFaint);
+  p.cell({{18.0, 238.0, 150.0, 72.0},
+          "TANK",
+          s.tank.view(),
+          unit.pressure,
+          30.0,
+          13.0,
+          tone_of(s, Alarm::kGas)});
+  p.cell({{170.0, 238.0, 84.0, 72.0}, "LASTS", s.gas_min.view(), "min", 22.0, 13.0});
+  p.cell({{254.0, 238.0, 78.0, 72.0},
+          "pO2",
+          s.oxygen.view(),
+          "",
+          22.0,
+          13.0,
+          tone_of(s, Alarm::kOxygen)});
+  p.cell({{334.0, 238.0, 128.0, 72.0},
+          FixedText::of("GAS  MOD {}", s.mod.view()).view(),
+          s.gas.view(),
+          "",
+          22.0,
+          12.0});
+  p.line(20.0, 315.0, 460.0, 315.0, 1.5, kFaint);
+  if (any_alarm(s)) {
+    p.alarm_band({18.0, 320.0, 444.0, 62.0}, s, 20.0);
+    return;
+  }
+  p.tissues({28.0, 330.0, 150.0, 46.0}, s);
+  p.cell({{184.0, 318.0, 70.0, 64.0}, "CNS", s.cns.view(), "%", 18.0, 13.0});
+  p.compass({262.0, 330.0, 190.0, 48.0}, s, 14.0);
+}
+
+void draw_corner(Painter& p, const Shown& s) {
+  const UnitNames unit = unit_names(s.units);
+  p.plate({0.0, 0.0, 400.0, any_alarm(s) ? 300.0 : 248.0}, 18.0, kPlate);
+  p.cell({{10.0, 8.0, 188.0, 108.0},
+          with_unit("DEPTH", unit.depth).view(),
+          s.depth.view(),
+          "",
+          55.0,
+          13.0,
+          depth_tone(s)});
+  p.ascent_bar({206.0, 18.0, 30.0, 94.0}, s, 14.0);
+  draw_limit(p, {248.0, 8.0, 144.0, 108.0}, s, s.in_stops ? 34.0 : 46.0, 12.0);
+  p.line(14.0, 122.0, 386.0, 122.0, 1.5, kFaint);
+  p.cell({{10.0, 126.0, 130.0, 62.0}, "TIME", s.dive_time.view(), "", 25.0, 12.0});
+  p.cell({{142.0, 126.0, 122.0, 62.0},
+          "TANK",
+          s.tank.view(),
+          unit.pressure,
+          25.0,
+          12.0,
+          tone_of(s, Alarm::kGas)});
+  p.cell({{266.0, 126.0, 126.0, 62.0}, "TO SURFACE", s.to_surface.view(), "min", 25.0, 12.0});
+  p.cell({{10.0, 190.0, 130.0, 50.0},
+          FixedText::of("GAS  MOD {}", s.mod.view()).view(),
+          s.gas.view(),
+          "",
+          17.0,
+          12.0});
+  p.cell({{142.0, 190.0, 122.0, 50.0}, "LASTS", s.gas_min.view(), "min", 17.0, 12.0});
+  p.cell({{266.0, 190.0, 70.0, 50.0},
+          "pO2",
+          s.oxygen.view(),
+          "",
+          17.0,
+          12.0,
+          tone_of(s, Alarm::kOxygen)});
+  p.cell({{336.0, 190.0, 58.0, 50.0}, "CNS", s.cns.view(), "%", 17.0, 12.0});
+  if (any_alarm(s)) p.alarm_band({8.0, 244.0, 384.0, 50.0}, s, 16.0);
+}
+
+// Along the lower edge of the mask: one row to glance at, the alarm above it.
+void draw_mask(Painter& p, const Shown& s) {
+  const UnitNames unit = unit_names(s.units);
+  const double top = 52.0, h = 88.0;
+  p.plate({0.0, top, 960.0, h}, 16.0, kPlate);
+  p.cell({{12.0, top, 186.0, h},
+          with_unit("DEPTH", unit.depth).view(),
+          s.depth.view(),
+          "",
+          46.0,
+          12.0,
+          depth_tone(s)});
+  p.ascent_bar({208.0, top + 8.0, 26.0, h - 16.0}, s, 13.0);
+  draw_limit(p, {246.0, top, 156.0, h}, s, s.in_stops ? 36.0 : 46.0, 12.0);
+  p.cell({{408.0, top, 144.0, h}, "TIME", s.dive_time.view(), "", 28.0, 12.0});
+  p.cell({{556.0, top, 112.0, h}, "TO SURFACE", s.to_surface.view(), "min", 28.0, 12.0});
+  p.cell({{674.0, top, 118.0, h},
+          FixedText::of("TANK  {} min", s.gas_min.view()).view(),
+          s.tank.view(),
+          unit.pressure,
+          28.0,
+          12.0,
+          tone_of(s, Alarm::kGas)});
+  p.cell({{798.0, top, 80.0, h},
+          s.gas.view(),
+          s.oxygen.view(),
+          "",
+          22.0,
+          12.0,
+          tone_of(s, Alarm::kOxygen)});
+  p.cell({{880.0, top, 76.0, h}, "HDG", s.heading.view(), "", 22.0, 12.0});
+  if (any_alarm(s)) p.alarm_band({250.0, 0.0, 460.0, 48.0}, s, 17.0);
+}
+
+void draw(LayoutKind layout, Painter& painter, const Shown& shown) {
+  switch (layout) {
+    case LayoutKind::kWrist:
+      return draw_wrist(painter, shown);
+    case LayoutKind::kMask:
+      return draw_mask(painter, shown);
+    case LayoutKind::kCorner:
+      return draw_corner(painter, shown);
+    case LayoutKind::kConsole:
+      return draw_console(painter, shown);
+  }
+}
+
+}  // namespace neritic::hud

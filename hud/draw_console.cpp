@@ -1,0 +1,200 @@
+// The operator's console: the diver on the left, streams and sonar on the right, heart and breath
+// below, and the view itself in the middle with the place that the diver looks at.
+#include "diver/jacket.hpp"
+#include "hud/draw.hpp"
+
+namespace neritic::hud {
+namespace {
+
+using draw2d::Align;
+using draw2d::Color;
+using draw2d::Face;
+
+constexpr double kTitle = 12.0, kLeft = 16.0, kWide = 300.0;
+
+void title(Painter& p, double x, double y, std::string_view words) {
+  p.text(x, y, kTitle, words, kLabel, Align::kLeft, Face::kBold);
+}
+
+void draw_jacket(Painter& p, const Box& box, const Shown& s) {
+  const UnitNames unit = unit_names(s.units);
+  title(p, box.x + 6.0, box.y + 18.0, "JACKET");
+  // The bladder, filled from its top: gas lies there.
+  const Box bladder{box.x + 8.0, box.y + 30.0, 44.0, box.h - 40.0};
+  p.plate(bladder, 12.0, kFaint.with_alpha(0.14f));
+  if (s.jacket_step != kNoStep && s.jacket_step > 0)
+    p.fill({bladder.x + 4.0, bladder.y + 6.0, bladder.w - 8.0,
+            (bladder.h - 12.0) * s.jacket_step / kBarSteps},
+           kLabel);
+  p.cell(
+      {{box.x + 60.0, box.y + 24.0, 112.0, 52.0}, "GAS", s.jacket.view(), unit.volume, 20.0, 12.0});
+  p.cell(
+      {{box.x + 176.0, box.y + 24.0, 118.0, 52.0}, "LIFT", s.lift.view(), unit.weight, 20.0, 12.0});
+  const char* net = !s.net_known ? "NET" : s.sinks ? "SINKS" : "FLOATS";
+  p.cell({{box.x + 60.0, box.y + 78.0, 112.0, 52.0}, net, s.net.view(), unit.weight, 20.0, 12.0});
+  struct Key {
+    std::uint64_t bit;
+    const char* word;
+  };
+  constexpr Key kKeys[] = {
+      {diver::kInflate, "INFLATE"}, {diver::kDeflate, "DEFLATE"}, {diver::kDump, "DUMP"}};
+  double y = box.y + 82.0;
+  for (const Key& key : kKeys) {
+    const bool pressed = (s.buttons & key.bit) != 0;
+    const Box at{box.x + 182.0, y, 104.0, 20.0};
+    if (pressed)
+      p.plate(at, 5.0, kInk);
+    else
+      p.outline(at, 1.5, kFaint);
+    p.text(at.x + 0.5 * at.w, at.bottom() - 4.5, 11.0, key.word, pressed ? kBlack : kLabel,
+           Align::kCenter, pressed ? Face::kBold : Face::kRegular);
+    y += 24.0;
+  }
+}
+
+void draw_diver(Painter& p, const Shown& s) {
+  const UnitNames unit = unit_names(s.units);
+  const double x = kLeft, right = x + 152.0;
+  p.plate({x, 16.0, kWide, 688.0}, 14.0, kPlate);
+  p.cell({{x + 6.0, 22.0, 214.0, 104.0},
+          FixedText::of("DEPTH {}", unit.depth).view(),
+          s.depth.view(),
+          "",
+          54.0,
+          12.0,
+          tone_of(s, Alarm::kCeiling)});
+  p.ascent_bar({x + 240.0, 30.0, 34.0, 96.0}, s, 15.0);
+  draw_limit(p, {x + 6.0, 136.0, 176.0, 80.0}, s, s.in_stops ? 34.0 : 40.0, 12.0);
+  p.cell({{x + 186.0, 136.0, 108.0, 80.0}, "TO SURFACE", s.to_surface.view(), "min", 28.0, 12.0});
+  p.cell({{x + 6.0, 222.0, 142.0, 62.0}, "TIME", s.dive_time.view(), "", 24.0, 12.0});
+  if (s.in_stops)
+    p.cell({{right, 222.0, 142.0, 62.0}, "CEILING", s.ceiling.view(), unit.depth, 24.0, 12.0});
+  else
+    p.cell({{right, 222.0, 142.0, 62.0}, "DEEPEST", s.deepest.view(), unit.depth, 24.0, 12.0});
+  p.cell({{x + 6.0, 288.0, 142.0, 62.0},
+          "TANK",
+          s.tank.view(),
+          unit.pressure,
+          24.0,
+          12.0,
+          tone_of(s, Alarm::kGas)});
+  p.cell({{right, 288.0, 142.0, 62.0}, "LASTS", s.gas_min.view(), "min", 24.0, 12.0});
+  p.cell({{x + 6.0, 354.0, 128.0, 54.0},
+          FixedText::of("GAS  MOD {}", s.mod.view()).view(),
+          s.gas.view(),
+          "",
+          19.0,
+          12.0});
+  p.cell({{x + 136.0, 354.0, 86.0, 54.0},
+          "pO2",
+          s.oxygen.view(),
+          "",
+          19.0,
+          12.0,
+          tone_of(s, Alarm::kOxygen)});
+  p.cell({{x + 224.0, 354.0, 72.0, 54.0}, "CNS", s.cns.view(), "%", 19.0, 12.0});
+  title(p, x + 12.0, 436.0, "TISSUES");
+  p.text(x + kWide - 12.0, 436.0, 11.0, "line: ambient, top: limit", kLabel, Align::kRight);
+  p.tissues({x + 12.0, 446.0, kWide - 24.0, 78.0}, s);
+  draw_jacket(p, {x + 4.0, 536.0, kWide - 8.0, 164.0}, s);
+}
+
+void draw_health(Painter& p, double x, double y, Health health) {
+  if (health == Health::kGood) {
+    p.disc(x, y, 5.0, kInk);
+  } else if (health == Health::kWaiting) {
+    p.ring(x, y, 4.5, 2.0, kCautionColor);
+  } else {
+    p.line(x - 4.0, y - 4.0, x + 4.0, y + 4.0, 2.5, kDangerText);
+    p.line(x - 4.0, y + 4.0, x + 4.0, y - 4.0, 2.5, kDangerText);
+  }
+}
+
+void draw_streams(Painter& p, const Shown& s) {
+  const double x = 964.0, row = 26.0;
+  const double rows =
+      std::max<double>(1.0, static_cast<double>(s.stream_count)) + (s.more_streams > 0 ? 1.0 : 0.0);
+  p.plate({x, 16.0, kWide, 40.0 + row * rows}, 14.0, kPlate);
+  title(p, x + 12.0, 38.0, "STREAMS");
+  double y = 62.0;
+  if (s.stream_count == 0) p.text(x + 12.0, y, 11.0, "none from outside", kLabel);
+  for (std::size_t i = 0; i < s.stream_count; ++i, y += row) {
+    const StreamHealth& stream = s.streams[i];
+    draw_health(p, x + 18.0, y - 5.0, stream.health);
+    const double w = p.text(x + 32.0, y, 11.0, stream.name.view(), kInk);
+    const double room = kWide - 32.0 - w - 24.0;
+    const double wide = p.width(11.0, stream.note.view(), Face::kRegular);
+    const Color color = stream.health == Health::kGood      ? kLabel
+                        : stream.health == Health::kWaiting ? kCautionColor
+                                                            : kDangerText;
+    p.text(x + kWide - 12.0, y, 11.0 * std::min(1.0, room / wide), stream.note.view(), color,
+           Align::kRight);
+  }
+  if (s.more_streams > 0)
+    p.text(x + 12.0, y, 11.0, FixedText::of("and {} more", s.more_streams).view(), kLabel);
+}
+
+void draw_trace(Painter& p, const Box& box, const char* name, std::string_view value,
+                const char* unit, const double (&ends)[2],
+                const std::array<std::uint8_t, Minute::kSamples>& trace) {
+  p.plate(box, 14.0, kPlate);
+  title(p, box.x + 14.0, box.y + 24.0, name);
+  const double right = box.right() - 14.0;
+  const double w = p.text(right, box.y + 34.0, 11.0, unit, kLabel, Align::kRight);
+  p.text(right - w - 6.0, box.y + 34.0, 24.0, value, kInk, Align::kRight, Face::kBold);
+  const Box plot{box.x + 44.0, box.y + 46.0, box.w - 58.0, box.h - 76.0};
+  p.text(plot.x - 6.0, plot.y + 11.0, 11.0, FixedText::of("{:.0f}", ends[1]).view(), kLabel,
+         Align::kRight);
+  p.text(plot.x - 6.0, plot.bottom(), 11.0, FixedText::of("{:.0f}", ends[0]).view(), kLabel,
+         Align::kRight);
+  p.line(plot.x, plot.bottom(), plot.right(), plot.bottom(), 1.0, kFaint);
+  p.line(plot.x, plot.y, plot.right(), plot.y, 1.0, kFaint);
+  p.text(plot.x, box.bottom() - 10.0, 11.0, "60 s ago", kLabel);
+  p.text(plot.right(), box.bottom() - 10.0, 11.0, "now", kLabel, Align::kRight);
+  std::vector<Vec2> points;
+  const auto flush = [&] {
+    if (points.size() > 1) p.polyline(points, 2.0, kInk);
+    points.clear();
+  };
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    if (trace[i] == 0) {
+      flush();
+      continue;
+    }
+    points.emplace_back(plot.x + plot.w * static_cast<double>(i) / (trace.size() - 1.0),
+                        plot.bottom() - plot.h * (trace[i] - 1) / 254.0);
+  }
+  flush();
+}
+
+// A ring with four ticks; the words stand on a plate of their own.
+void draw_gaze(Painter& p, const Shown& s) {
+  const double x = 1.280 * s.gaze_x, y = 0.720 * s.gaze_y;
+  p.ring(x, y, 17.0, 6.0, kBlack.with_alpha(0.75f));
+  p.ring(x, y, 17.0, 3.0, kInk);
+  for (const Vec2 way : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)})
+    p.line(x + 17.0 * way.x, y + 17.0 * way.y, x + 25.0 * way.x, y + 25.0 * way.y, 3.0, kInk);
+  p.plate({x + 22.0, y + 14.0, 54.0, 20.0}, 5.0, kPlate);
+  p.text(x + 49.0, y + 29.0, 11.0, "GAZE", kInk, Align::kCenter, Face::kBold);
+}
+
+}  // namespace
+
+void draw_console(Painter& p, const Shown& s) {
+  if (s.has_gaze) draw_gaze(p, s);
+  draw_diver(p, s);
+  draw_streams(p, s);
+  if (s.has_sonar) {
+    p.plate({964.0, 404.0, kWide, 300.0}, 14.0, kPlate);
+    title(p, 976.0, 426.0, "ROV SONAR");
+  }
+  p.plate({490.0, 16.0, 300.0, 56.0}, 14.0, kPlate);
+  p.compass({502.0, 22.0, 276.0, 46.0}, s, 14.0);
+  if (any_alarm(s)) p.alarm_band({400.0, 80.0, 480.0, 60.0}, s, 20.0);
+  draw_trace(p, {332.0, 560.0, 304.0, 144.0}, "HEART", s.heart.view(), "beats/min", kHeartTrace_bpm,
+             s.heart_trace);
+  draw_trace(p, {644.0, 560.0, 304.0, 144.0}, "BREATH", s.breath.view(), "breaths/min",
+             kLungsTrace_l, s.lungs_trace);
+}
+
+}  // namespace neritic::hud

@@ -1,0 +1,47 @@
+// An instrument: takes a diver's data as it comes and keeps the picture of one layout, with alarms
+// and the last minute. A picture that would stay the same is not drawn again, and costs no
+// allocation. One owner, one thread.
+#pragma once
+
+#include <memory>
+
+#include "hud/draw.hpp"
+
+namespace neritic::hud {
+
+class Hud {
+ public:
+  // height_px: of the picture; the width follows from the layout.
+  Hud(LayoutKind layout, Units units, std::uint32_t height_px);
+
+  // From the next update on the picture has this height; alarms and the last minute stay.
+  void resize(std::uint32_t height_px);
+  // Alarms and the last minute go on, and nothing is drawn.
+  void observe(const DiveData& data);
+  // The same, and draws. Whether the picture changed.
+  bool update(const DiveData& data, const OperatorData& about = {});
+
+  const Layout& layout() const { return layout_; }
+  const AlarmState& alarms() const { return alarms_; }
+  const Shown& shown() const { return shown_; }
+  // RGBA, sRGB-encoded, colour multiplied by alpha; transparent before the first update.
+  const ImageU8& picture() const { return canvas_.image(); }
+  // The texts of the picture.
+  std::span<const TextMark> marks() const { return marks_; }
+
+ private:
+  const Layout& layout_;
+  Units units_;
+  double scale_;
+  AlarmState alarms_;
+  Minute minute_;
+  Shown shown_;
+  bool drawn_ = false;
+  std::vector<TextMark> marks_;
+  draw2d::Canvas canvas_;
+};
+
+// The picture with its colour divided by alpha, as PNG files have it.
+ImageU8 straight_alpha(const ImageU8& premultiplied);
+
+}  // namespace neritic::hud

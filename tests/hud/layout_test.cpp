@@ -1,0 +1,301 @@
+// Pictures of all layouts: large enough to be read, in contrast over any water, right at their
+// edges, drawn only when they change, and as their goldens. A golden sheet has one layout with all
+// alarms over blue, green and black water; NERITIC_UPDATE_GOLDEN=1 (tools/golden) writes them anew.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "engine/core/files.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tests/hud/dives.hpp"
+#include "tests/support/support.hpp"
+
+namespace {
+std::atomic<std::size_t> allocations{0};
+}  // namespace
+
+// Counts what the heap is asked for in this program.
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* const at = std::malloc(size == 0 ? 1 : size)) return at;
+  throw std::bad_alloc();
+}
+void operator delete(void* at) noexcept {
+  std::free(at);
+}
+void operator delete(void* at, std::size_t) noexcept {
+  std::free(at);
+}
+
+namespace neritic::hud {
+namespace {
+
+namespace fs = std::filesystem;
+
+// sRGB of sunlit blue water, of green water, and of night.
+constexpr std::array<std::array<int, 3>, 3> kWaters{{{70, 160, 215}, {105, 165, 95}, {0, 0, 0}}};
+
+const std::vector<StreamHealth>& streams() {
+  static const std::vector<StreamHealth> list{{"diver: body", "live from suit", Health::kGood},
+                                              {"diver: heart", "strap is silent", Health::kLost},
+                                              {"diver: gaze", "never heard", Health::kWaiting},
+                                              {"rov: wrench", "autopilot", Health::kGood}};
+  return list;
+}
+
+OperatorData about() {
+  return {.gaze = Vec2(0.47, 0.42), .streams = streams(), .has_sonar = true};
+}
+
+Hud hud_of(LayoutKind kind, const DiveData& data, double scale = 1.0) {
+  const auto height = static_cast<std::uint32_t>(std::lround(scale * layout_of(kind).height_px));
+  Hud hud(kind, Units::kMetric, height);
+  if (kind == LayoutKind::kConsole && std::isfinite(data.depth_m)) fill_minute(hud, data);
+  hud.update(data, about());
+  return hud;
+}
+
+ImageU8 over(const ImageU8& rgba, const std::array<int, 3>& water) {
+  ImageU8 out(rgba.width, rgba.height, 3);
+  for (std::size_t i = 0; i < std::size_t{rgba.width} * rgba.height; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      out.data[3 * i + c] = static_cast<std::uint8_t>(std::min(
+          255, rgba.data[4 * i + c] + (water[c] * (255 - rgba.data[4 * i + 3]) + 127) / 255));
+  return out;
+}
+
+// WCAG 2.2: the part of a channel's level in the relative luminance, by channel.
+const std::array<std::array<double, 256>, 3>& luminance_table() {
+  static const auto table = [] {
+    std::array<std::array<double, 256>, 3> out{};
+    constexpr double kWeights[] = {0.2126, 0.7152, 0.0722};
+    for (int c = 0; c < 3; ++c)
+      for (int i = 0; i < 256; ++i) {
+        const double v = i / 255.0;
+        out[c][i] = kWeights[c] * (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+      }
+    return out;
+  }();
+  return table;
+}
+
+// The relative luminance of a premultiplied pixel over water.
+double luminance(const std::uint8_t* p, const int* water) {
+  static const double *red = luminance_table()[0].data(), *green = luminance_table()[1].data(),
+                      *blue = luminance_table()[2].data();
+  const int through = 255 - p[3];
+  return red[p[0] + water[0] * through / 255] + green[p[1] + water[1] * through / 255] +
+         blue[p[2] + water[2] * through / 255];
+}
+
+TEST(HudLayout, EveryTextIsLargeEnoughToBeRead) {
+  for (const Layout& layout : layouts()) {
+    const double px_deg = pixels_a_degree(layout);
+    EXPECT_GE(px_deg, kLeastPixels_deg) << layout.name;
+    EXPECT_NEAR(layout.size_m.x / layout.size_m.y, double(layout.width_px) / layout.height_px, 0.02)
+        << layout.name;
+    for (const NamedDive& dive : all_dives()) {
+      const Hud hud = hud_of(layout.kind, dive.data);
+      ASSERT_GT(hud.marks().size(), 12u);
+      for (const TextMark& mark : hud.marks())
+        EXPECT_GE(mark.size / px_deg, kLeastText_deg)
+            << layout.name << " " << dive.name << " at " << mark.box.x << ", " << mark.box.y;
+    }
+  }
+}
+
+TEST(HudLayout, DepthIsTheLargestNumber) {
+  for (const Layout& layout : layouts()) {
+    const Hud hud = hud_of(layout.kind, calm_dive());
+    double largest = 0.0;
+    for (const TextMark& mark : hud.marks()) largest = std::max(largest, mark.size);
+    EXPECT_GE(largest / pixels_a_degree(layout), 1.5) << layout.name;
+  }
+}
+
+TEST(HudLayout, NoTextLeavesThePictureOrMeetsAnother) {
+  for (const Layout& layout : layouts())
+    for (const NamedDive& dive : all_dives()) {
+      const Hud hud = hud_of(layout.kind, dive.data);
+      const auto marks = hud.marks();
+      for (std::size_t i = 0; i < marks.size(); ++i) {
+        const Box& a = marks[i].box;
+        EXPECT_TRUE(a.x >= 0.0 && a.y >= 0.0 && a.right() <= layout.width_px &&
+                    a.bottom() <= layout.height_px)
+            << layout.name << " " << dive.name << " " << i;
+        for (std::size_t j = 0; j < i; ++j) {
+          const Box& b = marks[j].box;
+          EXPECT_FALSE(a.x < b.right() - 0.5 && b.x < a.right() - 0.5 && a.y < b.bottom() - 0.5 &&
+                       b.y < a.bottom() - 0.5)
+              << layout.name << " " << dive.name << ": " << i << " and " << j << " at " << a.x
+              << ", " << a.y;
+        }
+      }
+    }
+}
+
+// By the pixels: the brightest and the darkest of each text's box, over each water.
+TEST(HudLayout, EveryTextHasAContrastOfSevenOverBlueGreenAndBlackWater) {
+  for (const Layout& layout : layouts())
+    for (const NamedDive& dive : all_dives()) {
+      const Hud hud = hud_of(layout.kind, dive.data);
+      const ImageU8& picture = hud.picture();
+      for (const auto& water : kWaters)
+        for (const TextMark& mark : hud.marks()) {
+          double low = 1.0, high = 0.0;
+          const auto to = [](double v) { return static_cast<std::uint32_t>(std::max(0.0, v)); };
+          const std::uint32_t left = to(mark.box.x),
+                              right = std::min(to(mark.box.right() + 1.0), picture.width),
+                              bottom = std::min(to(mark.box.bottom() + 1.0), picture.height);
+          for (std::uint32_t y = to(mark.box.y); y < bottom; ++y) {
+            const std::uint8_t* row = picture.data.data() + std::size_t{4} * y * picture.width;
+            for (std::uint32_t x = left; x < right; ++x) {
+              const double l = luminance(row + 4 * x, water.data());
+              if (l < low) low = l;
+              if (l > high) high = l;
+            }
+          }
+          EXPECT_GE((high + 0.05) / (low + 0.05), 7.0)
+              << layout.name << " " << dive.name << " over water of red " << water[0] << " at "
+              << mark.box.x << ", " << mark.box.y;
+        }
+    }
+}
+
+// Brightness alone shows each alarm, over a hundredth of the layout and more.
+TEST(HudLayout, AnAlarmIsSeenWithoutColour) {
+  for (const Layout& layout : layouts()) {
+    const Hud calm = hud_of(layout.kind, calm_dive());
+    for (std::size_t i = 0; i < kAlarms; ++i) {
+      const Hud hud =
+          hud_of(layout.kind, alarmed_dive(static_cast<Alarm>(i), AlarmLevel::kCaution));
+      std::size_t differ = 0;
+      for (std::uint32_t y = 0; y < layout.height_px; y += 4)
+        for (std::uint32_t x = 0; x < layout.width_px; x += 4)
+          differ += std::abs(luminance(&hud.picture().at(x, y), kWaters[2].data()) -
+                             luminance(&calm.picture().at(x, y), kWaters[2].data())) > 0.2;
+      EXPECT_GT(differ, layout.width_px * layout.height_px / 1600) << layout.name << " " << i;
+    }
+  }
+}
+
+// Over any water the picture is what drawing on that water gives, and no colour exceeds its alpha.
+TEST(HudLayout, AlphaIsRightAtEveryEdge) {
+  for (const Layout& layout : layouts()) {
+    const Hud hud = hud_of(layout.kind, calm_dive());
+    const ImageU8& rgba = hud.picture();
+    ASSERT_EQ(rgba.channels, 4u);
+    std::size_t edges = 0;
+    for (std::size_t i = 0; i < rgba.data.size(); i += 4) {
+      const std::uint8_t alpha = rgba.data[i + 3];
+      edges += alpha > 0 && alpha < 255;
+      for (std::size_t c = 0; c < 3; ++c) ASSERT_LE(rgba.data[i + c], alpha) << layout.name;
+    }
+    EXPECT_GT(edges, 100u) << layout.name;
+    for (const auto& water : kWaters) {
+      ImageU8 plain(rgba.width, rgba.height, 3);
+      for (std::size_t i = 0; i < plain.data.size(); ++i)
+        plain.data[i] = static_cast<std::uint8_t>(water[i % 3]);
+      draw2d::Canvas canvas(std::move(plain));
+      std::vector<TextMark> marks;
+      Painter painter(canvas, 1.0, marks);
+      draw(layout.kind, painter, hud.shown());
+      const ImageU8 seen = over(rgba, water);
+      int worst = 0;
+      for (std::size_t i = 0; i < seen.data.size(); ++i)
+        worst = std::max(worst, std::abs(int(seen.data[i]) - int(canvas.image().data[i])));
+      EXPECT_LE(worst, 3) << layout.name;
+    }
+  }
+}
+
+TEST(HudLayout, WhatStaysTheSameIsNotDrawnAgainAndAllocatesNothing) {
+  for (const Layout& layout : layouts()) {
+    Hud hud(layout.kind, Units::kMetric, layout.height_px / 2);
+    DiveData d = calm_dive();
+    EXPECT_TRUE(hud.update(d, about())) << layout.name;
+    const std::size_t before = allocations;
+    bool changed = false;
+    for (int i = 0; i < 100; ++i) changed |= hud.update(d, about());
+    EXPECT_FALSE(changed) << layout.name;
+    EXPECT_EQ(allocations, before) << layout.name;
+    d.depth_m += 0.1;
+    EXPECT_TRUE(hud.update(d, about())) << layout.name;
+  }
+  EXPECT_GT(allocations, 0u);
+}
+
+TEST(HudLayout, AScaleDrawsTheSamePictureFiner) {
+  for (const Layout& layout : layouts()) {
+    const Hud twice = hud_of(layout.kind, calm_dive(), 1.5);
+    EXPECT_EQ(twice.picture().height, std::lround(1.5 * layout.height_px));
+    EXPECT_EQ(twice.picture().width, std::lround(1.5 * layout.width_px));
+    const Hud once = hud_of(layout.kind, calm_dive());
+    ASSERT_EQ(once.marks().size(), twice.marks().size());
+    for (std::size_t i = 0; i < once.marks().size(); ++i)
+      EXPECT_NEAR(once.marks()[i].box.x, twice.marks()[i].box.x, 0.5) << layout.name;
+  }
+}
+
+// The wearer's left and up: an arm across the chest, its back to the eyes.
+TEST(HudLayout, TheWristsScreenLiesOnTheArmAndEveryOtherFacesTheEyes) {
+  const Layout& wrist = layout_of(LayoutKind::kWrist);
+  const Mat3 hand_from_panel = glm::mat3_cast(wrist.lock_from_panel.rotation);
+  EXPECT_LT(glm::length(hand_from_panel[0] - Vec3(0, -1, 0)), 1e-9);
+  EXPECT_LT(glm::length(hand_from_panel[2] - Vec3(-1, 0, 0)), 1e-9);
+  EXPECT_NEAR(glm::determinant(hand_from_panel), 1.0, 1e-9);
+  for (const Layout& layout : layouts()) {
+    const Vec3 to_eye = -layout.head_from_panel.position_m;
+    const Vec3 normal = layout.head_from_panel.rotation * Vec3(0, 0, 1);
+    EXPECT_NEAR(glm::length(to_eye), layout.viewing_m, 0.03) << layout.name;
+    EXPECT_GT(glm::dot(glm::normalize(to_eye), normal), std::cos(radians(3.0))) << layout.name;
+  }
+}
+
+// All dives of a layout, each over one of the waters, side by side.
+ImageU8 sheet_of(const Layout& layout) {
+  const auto dives = all_dives();
+  const double scale = layout.kind == LayoutKind::kConsole ? 0.75 : 1.0;
+  const std::uint32_t columns = layout.kind == LayoutKind::kMask ? 1 : 2;
+  const auto rows = static_cast<std::uint32_t>((dives.size() + columns - 1) / columns);
+  ImageU8 sheet;
+  for (std::size_t i = 0; i < dives.size(); ++i) {
+    const ImageU8 one = over(hud_of(layout.kind, dives[i].data, scale).picture(), kWaters[i % 3]);
+    if (sheet.empty()) sheet = ImageU8(columns * one.width, rows * one.height, 3);
+    const auto left = static_cast<std::uint32_t>(i % columns) * one.width,
+               top = static_cast<std::uint32_t>(i / columns) * one.height;
+    for (std::uint32_t y = 0; y < one.height; ++y)
+      std::copy_n(&one.at(0, y), 3 * one.width, &sheet.at(left, top + y));
+  }
+  return sheet;
+}
+
+TEST(HudLayout, EachLayoutWithEachAlarmIsAsItsGolden) {
+  const char* update = std::getenv("NERITIC_UPDATE_GOLDEN");
+  for (const Layout& layout : layouts()) {
+    const std::string name = std::string(layout.name) + ".png";
+    const fs::path golden = test::source_dir() / "tests" / "hud" / "golden" / name;
+    const ImageU8 sheet = sheet_of(layout);
+    if (update && std::string(update) == "1") {
+      ASSERT_TRUE(scene::write_png8(golden, sheet).ok());
+      continue;
+    }
+    const ImageU8 wanted = scene::read_image8(golden, 3).value();
+    ASSERT_EQ(wanted.width, sheet.width) << name;
+    ASSERT_EQ(wanted.height, sheet.height) << name;
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < sheet.data.size(); ++i)
+      differ += std::abs(int(sheet.data[i]) - int(wanted.data[i])) > 8;
+    const std::size_t most = sheet.data.size() / 1000;
+    EXPECT_LE(differ, most) << name << "; see golden/hud_" << name << " in the build folder";
+    if (differ <= most) continue;
+    const fs::path folder = fs::path(NERITIC_BINARY_DIR) / "golden";
+    ASSERT_TRUE(make_folder(folder).ok());
+    ASSERT_TRUE(scene::write_png8(folder / ("hud_" + name), sheet).ok());
+  }
+}
+
+}  // namespace
+}  // namespace neritic::hud
