@@ -94,18 +94,33 @@ Allocator::Allocator(ThrusterMatrix columns, std::span<const double> min_n,
   std::ranges::copy(max_n, max_n_.begin());
 }
 
-Allocation Allocator::allocate(const Vec6& wrench, Saturation saturation) const {
+Allocation Allocator::allocate(const Vec6& wrench, Saturation saturation,
+                               const std::array<double, kMaxThrusters>& beside_n) const {
   Allocation out;
+  std::array<double, kMaxThrusters> rise_n{};
   for (std::size_t i = 0; i < count_; ++i) {
-    const double f = dot(inverse_.rows[i], wrench);
-    out.wanted_n[i] = f;
-    if (f > max_n_[i]) out.scale = std::min(out.scale, max_n_[i] / f);
-    if (f < min_n_[i]) out.scale = std::min(out.scale, min_n_[i] / f);
+    rise_n[i] = dot(inverse_.rows[i], wrench);
+    out.wanted_n[i] = beside_n[i] + rise_n[i];
   }
-  for (std::size_t i = 0; i < count_; ++i)  // clamped: the product rounds
-    out.force_n[i] = std::clamp(out.scale * out.wanted_n[i], min_n_[i], max_n_[i]);
-  if (saturation == Saturation::kRedistribute && out.scale < 1.0) redistribute(wrench, out);
+  out.force_n = beside_n;
+  out.scale = raise(rise_n, 1.0, out.force_n);
+  if (saturation == Saturation::kRedistribute && out.scale < 1.0)
+    redistribute(wrench_of(rise_n), out);
   return out;
+}
+
+// Adds the largest share of rise_n that the limits leave, at most as much as asked; returns it.
+double Allocator::raise(const std::array<double, kMaxThrusters>& rise_n, double most,
+                        std::array<double, kMaxThrusters>& force_n) const {
+  double share = most;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (rise_n[i] > 0.0) share = std::min(share, (max_n_[i] - force_n[i]) / rise_n[i]);
+    if (rise_n[i] < 0.0) share = std::min(share, (min_n_[i] - force_n[i]) / rise_n[i]);
+  }
+  share = std::max(share, 0.0);
+  for (std::size_t i = 0; i < count_; ++i)  // clamped: the product rounds
+    force_n[i] = std::clamp(force_n[i] + share * rise_n[i], min_n_[i], max_n_[i]);
+  return share;
 }
 
 void Allocator::redistribute(const Vec6& wrench, Allocation& out) const {
@@ -117,18 +132,11 @@ void Allocator::redistribute(const Vec6& wrench, Allocation& out) const {
         open[i] = columns_[i];
     }
     const PseudoInverse more = pseudo_inverse({open.data(), count_});
-    std::array<double, kMaxThrusters> rise{};  // of the forces, for all of the wrench
-    for (std::size_t i = 0; i < count_; ++i) rise[i] = dot(more.rows[i], wrench);
-    const Vec6 off = wrench_of(rise) - wrench;
+    std::array<double, kMaxThrusters> rise_n{};  // of the forces, for all of the wrench
+    for (std::size_t i = 0; i < count_; ++i) rise_n[i] = dot(more.rows[i], wrench);
+    const Vec6 off = wrench_of(rise_n) - wrench;
     if (dot(off, off) > 1e-18 * dot(wrench, wrench)) return;
-    double by = 1.0 - out.scale;
-    for (std::size_t i = 0; i < count_; ++i) {
-      if (rise[i] > 0.0) by = std::min(by, (max_n_[i] - out.force_n[i]) / rise[i]);
-      if (rise[i] < 0.0) by = std::min(by, (min_n_[i] - out.force_n[i]) / rise[i]);
-    }
-    for (std::size_t i = 0; i < count_; ++i)
-      out.force_n[i] = std::clamp(out.force_n[i] + by * rise[i], min_n_[i], max_n_[i]);
-    out.scale += by;
+    out.scale += raise(rise_n, 1.0 - out.scale, out.force_n);
   }
 }
 

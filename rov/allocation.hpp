@@ -36,7 +36,7 @@ enum class Saturation {
 struct Allocation {
   std::array<double, kMaxThrusters> wanted_n{};  // B^+ tau
   std::array<double, kMaxThrusters> force_n{};   // within the limits
-  double scale = 1.0;                            // of the wrench that is given
+  double scale = 1.0;                            // of the wrench that is given, from 0
 };
 
 class Allocator {
@@ -45,7 +45,10 @@ class Allocator {
   explicit Allocator(const Vehicle& vehicle, std::uint64_t failed = 0);
   Allocator(ThrusterMatrix columns, std::span<const double> min_n, std::span<const double> max_n);
 
-  Allocation allocate(const Vec6& wrench, Saturation saturation = Saturation::kScale) const;
+  // beside_n: forces that the thrusters give already, within their limits, and keep giving. The
+  // wrench gets the room that they leave; wanted_n and force_n are sums with them.
+  Allocation allocate(const Vec6& wrench, Saturation saturation = Saturation::kScale,
+                      const std::array<double, kMaxThrusters>& beside_n = {}) const;
   // The wrench of the forces: B f.
   Vec6 wrench_of(const std::array<double, kMaxThrusters>& force_n) const;
   const PseudoInverse& inverse() const { return inverse_; }
@@ -54,6 +57,8 @@ class Allocator {
   double largest(const Vec6& direction) const;
 
  private:
+  double raise(const std::array<double, kMaxThrusters>& rise_n, double most,
+               std::array<double, kMaxThrusters>& force_n) const;
   void redistribute(const Vec6& wrench, Allocation& allocation) const;
   std::size_t count_ = 0;
   std::array<Vec6, kMaxThrusters> columns_;

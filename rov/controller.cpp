@@ -1,5 +1,8 @@
 #include "rov/controller.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace neritic::rov {
 namespace {
 
@@ -14,6 +17,37 @@ Vec3 rotation_vector(Quat q) {
 // Roll and pitch left as they are, at another heading.
 Quat with_heading(const Quat& attitude, double heading_rad) {
   return heading_attitude(heading_rad - heading_of(attitude)) * attitude;
+}
+
+// u of all axes.
+Vec6 corrections(const ControlGains& gains, const Vec6& error, const Vec6& rate,
+                 ControlState& control, Clip clip) {
+  std::array<PidTerms, 6> terms;
+  for (std::size_t i = 0; i < 6; ++i)
+    terms[i] = pid_terms(gains.axes[i], control.integral[i], error[i], rate[i], gains.period_s);
+  const auto excess = [&](std::size_t i) {
+    return std::abs(terms[i].pull) / std::max(gains.axes[i].u_max, 1e-300);
+  };
+  std::size_t most = 0;
+  for (const std::size_t i : {1, 2})
+    if (excess(i) > excess(most)) most = i;
+  double share = 1.0;
+  if (const auto& [pull, rest] = terms[most]; clip == Clip::kDirection && pull != 0.0)
+    share = std::clamp((std::copysign(gains.axes[most].u_max, pull) - rest) / pull, 0.0, 1.0);
+  Vec6 u;
+  for (std::size_t i = 0; i < 6; ++i)
+    u[i] = std::clamp((i < 3 ? share : 1.0) * terms[i].pull + terms[i].rest, -gains.axes[i].u_max,
+                      gains.axes[i].u_max);
+  return u;
+}
+
+// That of a vehicle that moves so through the water, against it, body axes.
+Vec6 drag_of(const Vehicle& vehicle, const Vec3& velocity_m_s) {
+  const Vec6 moving = vec6(velocity_m_s, Vec3(0.0));
+  Vec6 drag = vehicle.linear_damping * moving;
+  for (std::size_t i = 0; i < 6; ++i)
+    drag[i] += vehicle.quadratic_damping[i] * std::abs(moving[i]) * moving[i];
+  return drag;
 }
 
 // The held components of a world vector.
@@ -46,6 +80,11 @@ double heading_of(const Quat& q) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
 }
 
+Vec3 along(const Vec3& vector) {
+  const double length = glm::length(vector);
+  return length > 0.0 ? vector / length : Vec3(0.0);
+}
+
 Vec6 pose_error(const Vec3& position, const Quat& attitude, const Vec3& wanted_position,
                 const Quat& wanted_attitude) {
   const Quat back = glm::conjugate(attitude);
@@ -53,7 +92,7 @@ Vec6 pose_error(const Vec3& position, const Quat& attitude, const Vec3& wanted_p
 }
 
 Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Setpoint& s,
-                    const State& state, ControlState& control) {
+                    const State& state, ControlState& control, Clip clip) {
   const Quat& q = state.attitude;
   const Quat back = glm::conjugate(q);
   const bool all_position = s.hold_north && s.hold_east && s.hold_depth;
@@ -73,9 +112,9 @@ Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Set
   }
   if (!s.hold_heading) rate[5] = 0.0;
   if (!s.hold_level) rate[3] = rate[4] = 0.0;
-  Vec6 u;
-  for (std::size_t i = 0; i < 6; ++i)
-    u[i] = pid_step(gains.axes[i], control.integral[i], error[i], rate[i], gains.period_s);
+  Vec6 u = corrections(gains, error, rate, control, clip);
+  const Vec3 way = along(setpoint_velocity);
+  if (s.by_drag_alone) u = u - vec6(glm::dot(u.linear(), way) * way, Vec3(0.0));
   Vec6 wrench = vehicle.rigid_mass * u + s.pilot;
   if (gains.feed_forward)
     wrench = wrench - static_wrench(vehicle,
@@ -83,10 +122,14 @@ Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Set
                                      through_water(q, state.velocity, state.held.current_ned_m_s),
                                      state.held.current_ned_m_s},
                                     state.held);
-  const Vec6 moving = vec6(setpoint_velocity, Vec3(0.0));
-  wrench = wrench + vehicle.linear_damping * moving;
-  for (std::size_t i = 0; i < 6; ++i)
-    wrench[i] += vehicle.quadratic_damping[i] * std::abs(moving[i]) * moving[i];
+  const Vec6 drag = drag_of(vehicle, setpoint_velocity);
+  wrench = wrench + drag;
+  if (s.by_drag_alone) {
+    // Water from the side changes the drag along a way that is off the body's axes.
+    const Vec3 flow = through_water(q, state.velocity, state.held.current_ned_m_s).linear();
+    const Vec6 here = drag_of(vehicle, setpoint_velocity + flow - glm::dot(flow, way) * way);
+    wrench = wrench + vec6(glm::dot((here - drag).linear(), way) * way, Vec3(0.0));
+  }
   return wrench;
 }
 

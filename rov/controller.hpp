@@ -15,8 +15,10 @@ namespace neritic::rov {
 struct Setpoint {
   Vec3 position_ned_m{0.0};
   Quat attitude{1.0, 0.0, 0.0, 0.0};
-  // How the setpoint itself moves; its drag is fed forward.
+  // How the setpoint itself moves; its drag is fed forward. By drag alone: a velocity through the
+  // water, for which that drag is all the thrust along it; the speed over ground comes as it may.
   Vec3 velocity_ned_m_s{0.0};
+  bool by_drag_alone = false;
   bool hold_north = true, hold_east = true, hold_depth = true;
   bool hold_heading = true;
   bool hold_level = true;  // roll and pitch
@@ -38,15 +40,26 @@ struct ControlState {
   Vec6 integral;
 };
 
+// The direction of a vector; of one of no length 0.
+Vec3 along(const Vec3& vector);
+
 // [R^T (p* - p); log(q^-1 q*)]: metres and radians in body axes, the short way round.
 Vec6 pose_error(const Vec3& position, const Quat& attitude, const Vec3& wanted_position,
                 const Quat& wanted_attitude);
 
+// The cut of u where it exceeds u_max.
+enum class Clip {
+  kEachAxis,  // by itself
+  // The pull to a position far away by one factor for its three axes, so that it keeps its
+  // direction at any tilt of the body: a share of a long way is not a correction of depth.
+  kDirection,
+};
 // The wrench M_RB u and what is fed forward. state.velocity is taken over ground.
 Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Setpoint& setpoint,
-                    const State& state, ControlState& control);
+                    const State& state, ControlState& control, Clip clip = Clip::kEachAxis);
 
-// The same as thruster commands. Precondition: the allocator is of this vehicle.
+// The same, clipped in each axis, as thruster commands. Precondition: the allocator is of this
+// vehicle.
 Inputs control_inputs(const Vehicle& vehicle, const Allocator& allocator, const ControlGains& gains,
                       const Setpoint& setpoint, const State& state, ControlState& control);
 

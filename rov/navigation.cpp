@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "rov/controller.hpp"
@@ -133,13 +134,29 @@ void correct_by_new(const NavigationModel& model, const SensorReadings& readings
       out.apply(Aid::kCompass, model.compass->rate_hz, heading_measurement(model, state, heading));
     }
   }
-  if (!model.usbl || readings.usbl.count == 0) return;
-  // Half the way back to the surface; no longer than until the next fix replaces it.
-  const double travel_s = readings.usbl.value.travel_s, period_s = 1.0 / model.usbl->rate_hz;
-  const double late_s = travel_s > 0.0 ? std::min(0.5 * travel_s, 0.9 * period_s) : 0.0;
-  const double age_s = time_s - readings.usbl.time_s;
-  if (age_s >= late_s && fresh(readings.usbl, state.usbl_used))
-    correct_by_fix(model, readings.usbl.value, std::clamp(age_s, 0.0, period_s), out, state);
+}
+
+// How late a new fix arrives: half the way back to the surface, no longer than until the next one
+// replaces it. Infinite, where none is new.
+double fix_late_s(const NavigationModel& model, const SensorReadings& readings,
+                  const NavigationState& state) {
+  const auto& fix = readings.usbl;
+  if (!model.usbl || fix.count == state.usbl_used) return std::numeric_limits<double>::infinity();
+  const double travel_s = fix.value.travel_s, period_s = 1.0 / model.usbl->rate_hz;
+  return travel_s > 0.0 ? std::min(0.5 * travel_s, 0.9 * period_s) : 0.0;
+}
+
+// Takes in the fix that has arrived by time_s, at its own time where the state is not past that.
+void correct_by_arrived(const NavigationModel& model, const SensorReadings& readings, double time_s,
+                        NavigationState& state) {
+  const double late_s = fix_late_s(model, readings, state);
+  if (!(time_s - readings.usbl.time_s >= late_s)) return;
+  state.usbl_used = readings.usbl.count;
+  const double at_s =
+      std::clamp(readings.usbl.time_s + late_s, std::min(state.time_s, time_s), time_s);
+  Corrections out(model, at_s, state);
+  const double age_s = std::clamp(at_s - readings.usbl.time_s, 0.0, 1.0 / model.usbl->rate_hz);
+  correct_by_fix(model, readings.usbl.value, age_s, out, state);
 }
 
 }  // namespace
@@ -182,12 +199,16 @@ NavigationState start_navigation(const NavigationModel& model, const SensorReadi
   // with the sensors' biases.
   if (felt) level(model, state);
   correct_by_new(model, readings, time_s, state);
+  correct_by_arrived(model, readings, time_s, state);
   return state;
 }
 
 void update_navigation(const NavigationModel& model, const SensorReadings& readings, double time_s,
                        NavigationState& state) {
   if (!std::isfinite(time_s)) return;
+  // Before the inertial unit's reading, unless both are of the same time.
+  if (time_s - readings.usbl.time_s > fix_late_s(model, readings, state))
+    correct_by_arrived(model, readings, time_s, state);
   if (readings.imu.count != state.imu_used) {
     state.imu_used = readings.imu.count;
     const ImuReading next = in_body(model, readings.imu.value);
@@ -207,6 +228,7 @@ void update_navigation(const NavigationModel& model, const SensorReadings& readi
     }
   }
   correct_by_new(model, readings, time_s, state);
+  correct_by_arrived(model, readings, time_s, state);
   if (state.pending_s > kLongestPending_s) move_covariance(state, model.motion);
 }
 

@@ -65,8 +65,8 @@ double NoiseSource::uniform(std::uint64_t component, std::uint64_t sample) const
 
 std::optional<std::uint64_t> sample_due(double rate_hz, double from_s, double to_s) {
   // A sample on the boundary belongs to the step that ends there, within rounding of the times.
-  const double last = std::floor(to_s * rate_hz + 1e-6),
-               before = std::floor(from_s * rate_hz + 1e-6);
+  const double last = std::floor(to_s * rate_hz + 1e-5),
+               before = std::floor(from_s * rate_hz + 1e-5);
   if (!(last > before) || !(last >= 0.0)) return std::nullopt;
   return static_cast<std::uint64_t>(last);
 }

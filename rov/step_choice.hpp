@@ -1,6 +1,6 @@
 // How often a vehicle is stepped for the error that a user accepts: measured by `neritic tradeoff
-// physics`, a BlueROV2 Heavy that flies 20 s round a square in a current, with and without the lag
-// of its thrusters. Pure function; any thread.
+// physics`, a BlueROV2 Heavy that flies for 20 s by recorded commands and by a controller in the
+// loop, in currents that change. Pure function; any thread.
 #pragma once
 
 #include <span>
@@ -10,11 +10,15 @@
 namespace neritic::rov {
 
 struct MeasuredRate {
-  double hz;           // of kGuarded, which stays stable where plain RK4 would not
-  double error_m;      // the largest distance from the true path, with and without lag
+  double hz;  // of kGuarded, which stays stable where plain RK4 would not
+  // The largest distance from the true path of all flights. By recorded commands it is 2.9e-6 at 80
+  // Hz. A controller whose pulses are whole microseconds turns a difference of 1e-7 into one of a
+  // pulse sooner or later, and that into the error here; at 1000 Hz none was turned.
+  double error_m;
   double us_a_second;  // of one core (a shared Xeon core), lag included
 };
-// From the cheapest to the best. Below 80 Hz the guard takes as many substeps and nothing is saved.
+// From the cheapest to the best. Below 80 Hz the guard takes as many substeps and nothing is saved;
+// rates between these cost more than the first and turn pulses as it does.
 std::span<const MeasuredRate> measured_rates();
 
 // How far steps that touch something lead off the path, by their length: the worst of all that was

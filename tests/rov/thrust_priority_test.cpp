@@ -24,43 +24,72 @@ double busiest(const Vehicle& vehicle, const Allocator& allocator, const Vec6& w
   return most;
 }
 
+using Forces = std::array<double, kMaxThrusters>;
+
 TEST(RovThrustPriority, APushThatFitsIsGivenInFullAndALargerOneToTheThrustersLimit) {
   const Vehicle vehicle = heavy();
   const Allocator allocator(vehicle);
   const Vec6 holding = vec6(Vec3(0.0, 0.0, -10.0), Vec3(2.0, -3.0, 1.0));
+  const Forces held_n = allocator.allocate(holding).force_n;
+  const auto given = [&](const Vec6& push) {
+    return allocator.wrench_of(allocator.allocate(push, Saturation::kScale, held_n).force_n) -
+           holding;
+  };
   const Vec6 small = vec6(Vec3(5.0, 2.0, 0.0), Vec3(0.0));
-  EXPECT_EQ(with_room(vehicle, allocator, holding, small), small);
-  const Vec6 huge = vec6(Vec3(4000.0, -1000.0, 500.0), Vec3(0.0));
-  const Vec6 given = with_room(vehicle, allocator, holding, huge);
-  EXPECT_NEAR(busiest(vehicle, allocator, holding + given), 1.0, 1e-9);
-  EXPECT_NEAR(given[0] / given[1], -4.0, 1e-12);  // its direction is kept
-  EXPECT_NEAR(given[0] / given[2], 8.0, 1e-12);
+  EXPECT_LT(glm::distance(given(small).linear(), small.linear()), 1e-12);
+  const Vec6 huge = given(vec6(Vec3(4000.0, -1000.0, 500.0), Vec3(0.0)));
+  EXPECT_NEAR(busiest(vehicle, allocator, holding + huge), 1.0, 1e-9);
+  EXPECT_NEAR(huge[0] / huge[1], -4.0, 1e-12);  // its direction is kept
+  EXPECT_NEAR(huge[0] / huge[2], 8.0, 1e-12);
+  EXPECT_LT(glm::length(huge.angular()), 1e-12);
 }
 
 TEST(RovThrustPriority, NothingIsPushedWhereHoldingAloneIsTooMuch) {
   const Vehicle vehicle = heavy();
   const Allocator allocator(vehicle);
-  const Vec6 holding = vec6(Vec3(1e5, 0.0, 0.0), Vec3(0.0));
-  EXPECT_EQ(with_room(vehicle, allocator, holding, vec6(Vec3(10.0, 0.0, 0.0), Vec3(0.0))), Vec6{});
+  const Forces held_n = allocator.allocate(vec6(Vec3(1e5, 0.0, 0.0), Vec3(0.0))).force_n;
+  const Allocation pushed =
+      allocator.allocate(vec6(Vec3(10.0, 0.0, 0.0), Vec3(0.0)), Saturation::kScale, held_n);
+  EXPECT_EQ(pushed.scale, 0.0);
+  EXPECT_EQ(pushed.force_n, held_n);
 }
 
-// The moments, with the Munk moment on top, are given in full beside any force.
-TEST(RovThrustPriority, MomentsComeBeforeForces) {
+// The moments, with the Munk moment on top, are given in full beside any force; so are the forces
+// across the path beside any push along it.
+TEST(RovThrustPriority, MomentsComeBeforeForcesAndForcesAcrossThePathBeforeThoseAlong) {
   const Vehicle vehicle = heavy();
   const Allocator allocator(vehicle);
+  const ControlGains gains = default_gains();
   State state;
   state.velocity = vec6(Vec3(1.2, 0.4, -0.3), Vec3(0.0));
-  const Vec6 wrench = vec6(Vec3(900.0, 300.0, -200.0), Vec3(1.0, -2.0, 0.5));
+  Setpoint setpoint;
+  setpoint.position_ned_m = {0.0, 0.3, 0.2};
+  setpoint.velocity_ned_m_s = {30.0, 0.0, 0.0};
+  setpoint.attitude = heading_attitude(0.05);
+  ControlState control;
+  const Vec6 wrench = control_wrench(vehicle, gains, setpoint, state, control, Clip::kDirection);
+  control = {};
+  const WrenchParts parts = parted_wrench(vehicle, gains, setpoint, state, control);
   const Vec3 munk = glm::cross(state.velocity.linear(), (vehicle.mass * state.velocity).linear());
   ASSERT_GT(glm::length(munk), 0.5);
-  const Vec6 given = level_first(vehicle, allocator, wrench, state);
-  EXPECT_LT(glm::distance(given.angular(), wrench.angular() + munk), 1e-12);
-  EXPECT_LT(given[0], 0.5 * wrench[0]);
-  EXPECT_GT(given[0], 0.0);
-  EXPECT_LE(busiest(vehicle, allocator, given), 1.0 + 1e-9);
-  // One factor for all leaves a small part of the moments.
-  const Vec6 cut = allocator.wrench_of(allocator.allocate(wrench).force_n);
-  EXPECT_LT(std::abs(cut[4]), 0.5 * std::abs(wrench[4]));
+  const Vec6 sum = parts.level + parts.hold + parts.push;
+  EXPECT_LT(glm::distance(sum.linear(), wrench.linear()), 1e-9);
+  EXPECT_LT(glm::distance(sum.angular(), wrench.angular() + munk), 1e-12);
+  EXPECT_EQ(parts.hold[0], 0.0);
+  EXPECT_EQ(parts.push[1], 0.0);
+  EXPECT_EQ(parts.push[2], 0.0);
+  for (const Saturation saturation : {Saturation::kScale, Saturation::kRedistribute}) {
+    ControlGains as = gains;
+    as.saturation = saturation;
+    control = {};
+    const Vec6 given = allocator.wrench_of(
+        level_inputs(vehicle, allocator, as, setpoint, state, control).thruster_n);
+    EXPECT_LT(glm::distance(given.angular(), sum.angular()), 1e-9);
+    EXPECT_NEAR(given[1], wrench[1], 1e-9);
+    EXPECT_NEAR(given[2], wrench[2], 1e-9);
+    EXPECT_LT(given[0], 0.5 * wrench[0]);
+    EXPECT_GT(given[0], 0.0);
+  }
 }
 
 // To a setpoint far away, at full thrust.
