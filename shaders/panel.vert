@@ -10,10 +10,10 @@ layout(set = 0, binding = kPanelCorners, scalar) readonly buffer Corners {
 
 layout(location = 0) out vec2 out_uv;
 
-// A strip of four corners; the texture's row 0 is on top.
+// A strip of four corners, the lower ones first; the texture's row 0 is on top.
 void main() {
-  const vec2 corner = vec2(float(gl_VertexIndex & 1), float(gl_VertexIndex >> 1)) * 2.0 - 1.0;
   const PanelCorners c = corners[gl_ViewIndex];
-  gl_Position = c.middle + corner.x * c.right + corner.y * c.up;
-  out_uv = vec2(corner.x, -corner.y) * 0.5 + 0.5;
+  out_uv = vec2((gl_VertexIndex & 1) == 0 ? c.part.x : c.part.z,
+                (gl_VertexIndex >> 1) == 0 ? c.part.w : c.part.y);
+  gl_Position = c.middle + (2.0 * out_uv.x - 1.0) * c.right + (1.0 - 2.0 * out_uv.y) * c.up;
 }

@@ -49,8 +49,9 @@ void main() {
   s.roughness = material.x;
   s.metallic = material.y;
   s.occlusion = material.z;
+  s.reflectance = material.w;
   vec3 radiance = emitted;
-  if (material.w <= 0.5) radiance += shade_surface(s, -direction);  // w: unlit
+  if (material.w < 0.9) radiance += shade_surface(s, -direction);  // else unlit
   if (!hit) radiance = beyond(eye_depth_m, direction);
   Sight sight = look_through(eye_depth_m, direction, hit ? planar_m * stretch : kForever_m);
   radiance = radiance * sight.transmittance + sight.added;

@@ -36,7 +36,11 @@ void main() {
       sum += texelFetch(taps, ivec2(k, 0), 0).r * imageLoad(field, ivec3(at.x, at.y + c.first + k, 0)).rg;
   } else {
     int start = at.x * int(c.stride) + c.first;
-    float turned = kShift != 0 ? c.first_shift + c.shift * float(at.y) : 0.0;
+    float turned = 0.0;
+    if (kShift != 0) {
+      float bearing = c.first_bearing_rad + c.bearing_step_rad * float(at.x);
+      turned = c.first_shift + c.shift * float(at.y) + c.shift_right * cos(bearing) + c.shift_back * sin(bearing);
+    }
     float whole = floor(turned);
     part = turned - whole;
     start += int(whole);

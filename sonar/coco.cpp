@@ -5,43 +5,13 @@
 #include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/mask_runs.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace neritic::sonar {
 namespace {
 
 constexpr std::uint16_t kSeabed = scene::kClasses[0].id;
-
-// The annotation of one object, gathered in a walk down the columns.
-struct Mask {
-  std::uint32_t left = ~0u, top = ~0u, right = 0, bottom = 0;  // inclusive
-  std::uint64_t area = 0;
-  std::vector<std::uint32_t> runs{0};  // ends with a run inside the mask, once there is any
-  std::uint64_t covered = 0;           // pixels that the runs span
-
-  void add(std::uint32_t x, std::uint32_t y, std::uint32_t height) {
-    const std::uint64_t at = std::uint64_t{x} * height + y;
-    if (at == covered && area > 0) {
-      ++runs.back();
-    } else {
-      if (area > 0) runs.push_back(0);
-      runs.back() = static_cast<std::uint32_t>(at - covered);
-      runs.push_back(1);
-    }
-    covered = at + 1;
-    ++area;
-    left = std::min(left, x);
-    right = std::max(right, x);
-    top = std::min(top, y);
-    bottom = std::max(bottom, y);
-  }
-  void close(std::uint64_t pixels) {
-    if (covered < pixels) {
-      if (area > 0) runs.push_back(0);
-      runs.back() = static_cast<std::uint32_t>(pixels - covered);
-    }
-  }
-};
 
 std::uint64_t key_of(std::uint16_t class_id, std::uint32_t part) {
   return std::uint64_t{class_id} << 32 | part;
@@ -116,7 +86,7 @@ std::vector<std::uint32_t> run_lengths(std::span<const std::uint8_t> mask, std::
                                        std::uint32_t width) {
   NERITIC_CHECK(mask.size() == std::size_t{height} * width, "{} pixels for {} x {}", mask.size(),
                 height, width);
-  Mask out;
+  MaskRuns out;
   for (std::uint32_t x = 0; x < width; ++x)
     for (std::uint32_t y = 0; y < height; ++y)
       if (mask[std::size_t{y} * width + x] != 0) out.add(x, y, height);
@@ -136,10 +106,10 @@ void CocoFile::add(const std::string& file_name, const LabelImage& labels) {
       {{"id", image_id}, {"file_name", file_name}, {"width", width}, {"height", height}});
   const std::vector<std::uint32_t> parts =
       class_names_.contains(kShadow) ? shadow_parts(labels) : std::vector<std::uint32_t>{};
-  std::map<std::uint64_t, Mask> masks;
+  std::map<std::uint64_t, MaskRuns> masks;
   for (std::uint32_t x = 0; x < width; ++x) {
     std::uint64_t last_key = 0;
-    Mask* last = nullptr;
+    MaskRuns* last = nullptr;
     for (std::uint32_t y = 0; y < height; ++y) {
       const std::size_t at = std::size_t{y} * width + x;
       if (labels.classes[at] == kWater) continue;

@@ -17,7 +17,7 @@
 namespace neritic::sonar {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoEcho = std::numeric_limits<double>::quiet_NaN();
 
 // Half as much again as the pulse: what a return may be long and be a point's.
 constexpr double kPointLength = 1.5;
@@ -146,7 +146,7 @@ void EchoTrace::append(std::span<const float> intensity, double time_s, double s
   const std::vector<float> profile =
       above_floor(std::span<const float>(intensity_).subspan(from), options_.floor_by_bin);
   const auto range = [&](std::optional<double> bins) {
-    return bins ? options_.range_min_m + *bins * options_.range_step_m() : kNone;
+    return bins ? options_.range_min_m + *bins * options_.range_step_m() : kNoEcho;
   };
   pings_.push_back({time_s, sonar_depth_m,
                     range(first_return_bins(profile, options_.relative_threshold, options_.floor,

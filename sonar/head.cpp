@@ -240,6 +240,8 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
   r.coherent = t.speckle.has_value();
   r.noise = t.noise.has_value();
   r.shift = t.motion && t.motion->within_ping && !head.folded;
+  r.first_bearing_rad = head.beams.azimuth_rad(0);
+  r.bearing_step_rad = head.beams.azimuth_step_rad();
   NERITIC_TRY(r.range, range_taps(sonar, head.beams, r.coherent));
   r.across = across_taps(sonar, head, patterns, reach, r.coherent);
   if (r.shift && r.across.weights.empty()) r.across = {0, {1.0f}};

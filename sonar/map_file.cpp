@@ -1,9 +1,11 @@
 #include "sonar/map_file.hpp"
 
-#include "engine/core/npy.hpp"
+#include "engine/core/files.hpp"
+#include "engine/core/npz.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/image_file.hpp"
+#include "engine/scene/netpbm_file.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -22,8 +24,15 @@ MapFile from_raster(const std::filesystem::path& path, const Raster<T>& raster,
   return map;
 }
 
-Result<MapFile> read_npy_map(const std::filesystem::path& path) {
-  NERITIC_TRY(const NpyArray array, read_npy(path));
+std::span<const std::string_view> names_in_archive(MapUse use) {
+  static constexpr std::string_view kDepth[] = {"depth", "disparity", "range", "arr_0"};
+  static constexpr std::string_view kNormals[] = {"normals", "normal", "arr_0"};
+  static constexpr std::string_view kLabels[] = {"labels", "label", "mask", "arr_0"};
+  if (use == MapUse::kNormals) return kNormals;
+  return use == MapUse::kLabels ? std::span<const std::string_view>(kLabels) : kDepth;
+}
+
+Result<MapFile> from_array(const std::filesystem::path& path, const NpyArray& array) {
   if (array.shape.size() < 2 || array.shape.size() > 3)
     return refusal(path.string(), fmt::format("an array of {} axes", array.shape.size()),
                    "[height, width] or [height, width, channels]");
@@ -44,13 +53,34 @@ Result<MapFile> read_npy_map(const std::filesystem::path& path) {
   return map;
 }
 
+Result<MapFile> read_netpbm_map(const std::filesystem::path& path) {
+  NERITIC_TRY(const auto bytes, read_file(path));
+  NERITIC_TRY(scene::NetpbmMap read, scene::parse_netpbm(bytes, path.string()));
+  MapFile map;
+  map.path = path.string();
+  map.width = read.width;
+  map.height = read.height;
+  map.channels = read.channels;
+  if (read.bits == 8) map.coding = MapFile::Coding::kCoded8;
+  if (read.bits == 16) map.coding = MapFile::Coding::kCoded16;
+  map.whole_numbers = read.bits != 0;
+  map.values = std::move(read.values);
+  return map;
+}
+
 }  // namespace
 
 Result<MapFile> read_map(const std::filesystem::path& path, MapUse use) {
   const std::string extension = lower_case(path.extension().string());
   MapFile map;
   if (extension == ".npy") {
-    NERITIC_TRY(map, read_npy_map(path));
+    NERITIC_TRY(const NpyArray array, read_npy(path));
+    NERITIC_TRY(map, from_array(path, array));
+  } else if (extension == ".npz") {
+    NERITIC_TRY(const NpyArray array, read_npz(path, names_in_archive(use)));
+    NERITIC_TRY(map, from_array(path, array));
+  } else if (extension == ".pgm" || extension == ".pfm") {
+    NERITIC_TRY(map, read_netpbm_map(path));
   } else if (extension == ".exr") {
     NERITIC_TRY(const scene::ExrImage exr, scene::read_exr(path));
     map = from_raster(path, exr.image, MapFile::Coding::kNumbers);
@@ -58,7 +88,7 @@ Result<MapFile> read_map(const std::filesystem::path& path, MapUse use) {
   } else if (extension == ".png" && scene::is_png16(path)) {
     NERITIC_TRY(const ImageU16 image, scene::read_image16(path));
     map = from_raster(path, image, MapFile::Coding::kCoded16);
-  } else if (extension == ".png" && use == MapUse::kNumbers) {
+  } else if (extension == ".png" && use != MapUse::kNormals) {
     NERITIC_TRY(const scene::PngNumbers numbers, scene::read_png_numbers(path));
     map = from_raster(path, numbers.image, MapFile::Coding::kCoded8);
     map.palette = numbers.palette;
@@ -69,7 +99,7 @@ Result<MapFile> read_map(const std::filesystem::path& path, MapUse use) {
     if (!std::filesystem::exists(path))
       return bad_input("{}: no such file or folder", path.string());
     return refusal(path.string(), fmt::format("a file named '{}'", extension),
-                   ".npy, .png or .exr");
+                   ".npy, .npz, .png, .pgm, .pfm or .exr");
   }
   if (map.pixels() == 0 || map.channels == 0)
     return refusal(

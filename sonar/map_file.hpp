@@ -1,5 +1,6 @@
-// Depth, normal and label maps from files of any kind that people keep them in: .npy, PNG (1 to 16
-// bit) and OpenEXR. Values as stored, in double, so that nothing is lost. Any thread.
+// Depth, normal and label maps from files of any kind that people keep them in: .npy, .npz, PNG (1
+// to 16 bit), .pgm, .pfm and OpenEXR. Values as stored, in double, so that nothing is lost. Any
+// thread.
 #pragma once
 
 #include <filesystem>
@@ -26,10 +27,11 @@ struct MapFile {
   std::size_t pixels() const { return std::size_t{width} * height; }
 };
 
-// The numbers of a PNG with a palette are its indices, as files of class masks use them.
-enum class MapUse { kNumbers, kColors };
+// Picks the array of an .npz, by name. The numbers of a PNG with a palette are its colours as
+// normals, else its indices, as files of class masks use them.
+enum class MapUse { kDepth, kNormals, kLabels };
 
 // kBadInput with the path, what was found and what is accepted.
-Result<MapFile> read_map(const std::filesystem::path& path, MapUse use = MapUse::kNumbers);
+Result<MapFile> read_map(const std::filesystem::path& path, MapUse use = MapUse::kDepth);
 
 }  // namespace neritic::sonar

@@ -121,7 +121,10 @@ std::vector<double> normals_of(const MapFile& map, const std::array<std::uint32_
     if (!table.empty())
       for (int k = 0; k < 3; ++k) n[k] = table[static_cast<std::size_t>(n[k])];
     // A marker of "unknown" stays one in any axes.
-    if (n != Vec3(-1.0)) n = to_sonar_axes(n, options.axes);
+    if (n != Vec3(-1.0)) {
+      if (options.world_from_camera) n = glm::transpose(*options.world_from_camera) * n;
+      n = to_sonar_axes(n, options.axes);
+    }
     std::copy_n(&n[0], 3, &out[3 * i]);
   }
   return out;
@@ -144,69 +147,39 @@ Result<std::vector<std::uint16_t>> labels_of(const MapFile& map) {
   return out;
 }
 
-// The step to the neighbour's side along one image axis: towards the side whose depth is nearer to
-// this pixel's, or both. before and after may be absent.
-std::optional<Vec3> step(const std::optional<Vec3>& before, const Vec3& here,
-                         const std::optional<Vec3>& after) {
-  if (!before && !after) return std::nullopt;
-  if (!before) return *after - here;
-  if (!after) return here - *before;
-  const double back = std::abs(before->z - here.z), forth = std::abs(after->z - here.z);
-  // Three times: a smooth surface bends by far less from pixel to pixel, an outline by far more.
-  constexpr double kOutline = 3.0;
-  if (forth > kOutline * back) return here - *before;
-  if (back > kOutline * forth) return *after - here;
-  return *after - *before;
-}
-
 }  // namespace
 
 double decode_normal(double code, double max, double gamma) {
   return 2.0 * std::pow(code / max, gamma) - 1.0;
 }
 
-std::vector<double> normals_from_depth(const SonarInput& in) {
-  std::vector<double> out(3 * std::size_t{in.width} * in.height, 0.0);
-  const auto point = [&](std::int64_t u, std::int64_t v) -> std::optional<Vec3> {
-    if (u < 0 || v < 0 || u >= in.width || v >= in.height) return std::nullopt;
-    return point_of(in, static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v));
-  };
-  for (std::int64_t v = 0; v < in.height; ++v)
-    for (std::int64_t u = 0; u < in.width; ++u) {
-      const auto here = point(u, v);
-      if (!here) continue;
-      const auto right = step(point(u - 1, v), *here, point(u + 1, v));
-      const auto down = step(point(u, v - 1), *here, point(u, v + 1));
-      if (!right || !down) continue;
-      Vec3 n = glm::cross(*down, *right);
-      const double size = glm::length(n);
-      if (!(size > 0.0) || !std::isfinite(size)) continue;
-      n *= (glm::dot(n, *here) > 0.0 ? -1.0 : 1.0) / size;
-      double* to = &out[3 * static_cast<std::size_t>(v * in.width + u)];
-      std::copy_n(&n[0], 3, to);
-    }
-  return out;
-}
-
 Result<SonarInput> make_input(const MapFile& depth, const MapFile* normals, const MapFile* labels,
-                              const Intrinsics& intrinsics, const OfflineOptions& options) {
+                              const Intrinsics& intrinsics, const OfflineOptions& options,
+                              NormalEstimate* estimate) {
   SonarInput in;
   in.width = depth.width;
   in.height = depth.height;
   in.intrinsics = intrinsics;
-  in.depth_is_range = options.depth_is_range;
+  in.depth_is_range = options.depth_kind == DepthKind::kRange;
   in.normals_face_sensor = options.normals_face_sensor;
   NERITIC_TRY(const std::uint32_t channel, depth_channel(depth));
   in.depth.resize(depth.pixels());
-  for (std::size_t i = 0; i < in.depth.size(); ++i)
-    in.depth[i] = depth.at(i, channel) * options.depth_scale;
+  for (std::size_t i = 0; i < in.depth.size(); ++i) {
+    const double stored = depth.at(i, channel) * options.depth_scale;
+    if (options.depth_kind != DepthKind::kDisparity)
+      in.depth[i] = stored;
+    else if (stored > 0.0)  // else nothing was matched
+      in.depth[i] = intrinsics.fx * options.baseline_m / stored;
+  }
   if (normals != nullptr) {
     NERITIC_TRY_STATUS(check_size(depth, *normals));
     NERITIC_TRY(const auto channels, normal_channels(*normals));
     in.normals = normals_of(*normals, channels, options);
   } else {
-    in.normals = normals_from_depth(in);
+    DepthNormals made = normals_from_depth(in);
+    in.normals = std::move(made.normals);
     in.normals_face_sensor = true;
+    if (estimate != nullptr) *estimate = made.estimate;
   }
   if (labels != nullptr) {
     NERITIC_TRY_STATUS(check_size(depth, *labels));

@@ -182,9 +182,12 @@ void draw_gain(Canvas& canvas, double full_scale, const PanelOptions& options) {
   const double full_db = 10.0 * std::log10(full_scale);
   for (const double part : kScaleMarks)
     canvas.text(box.left - 9 * unit, box.bottom - part * (box.bottom - box.top), 9 * unit,
-                decibels ? number_text(std::round(full_db - (1.0 - part) * options.span_db)) + " dB"
+                decibels ? number_text(std::round(full_db - (1.0 - part) * options.span_db))
                          : fmt::format("{:.3g}", full_scale * std::pow(part, 1.0 / options.gamma)),
                 kPlotText.with_alpha(0.85f), Align::kRight, Face::kRegular, VerticalAlign::kMiddle);
+  canvas.text(canvas.width() - 26 * unit, 20 * unit, 9 * unit,
+              decibels ? "dB re 1 \u00b5Pa" : "mean cosine", kPlotText.with_alpha(0.85f),
+              Align::kRight);
   const char* gain = options.full_scale > 0.0 ? "fixed" : "auto gain,";
   canvas.text(24 * unit, canvas.height() - 15 * unit, 10.5 * unit,
               decibels ? fmt::format("display: {} full scale {:.0f} dB, {:g} dB below it shown",

@@ -82,6 +82,12 @@ void add_motion(Ping& ping, const scene::Sonar& sonar, const Head& head, const P
     const double columns_per_m = -state.yaw_rate_rad_s * 2.0 / c / head.samples.azimuth_step_rad();
     ping.shift_columns_per_row = static_cast<float>(columns_per_m * head.beams.range_step_m());
     ping.first_shift_columns = static_cast<float>(columns_per_m * head.beams.range_m(0));
+    // By then a target d r away is seen at d r - v 2r/c: its bearing b shifts by -2/c times the
+    // speed across it, v . (cos b, 0, sin b) in the head's axes (as of a level path).
+    const Vec3 in_head = glm::conjugate(state.world_from_sonar.rotation) * state.velocity_m_s;
+    const double columns_per_m_s = 2.0 / c / head.samples.azimuth_step_rad();
+    ping.shift_columns_right = static_cast<float>(columns_per_m_s * in_head.x);
+    ping.shift_columns_back = static_cast<float>(columns_per_m_s * in_head.z);
   }
   // An up-chirp of pulse T over bandwidth B: a closing speed v shortens the range by v f T / B.
   if (motion.doppler && sonar.terms.range_spread)

@@ -45,10 +45,18 @@ struct Ping {
   std::vector<float> correction;
   std::vector<glm::vec2> gains;
   float noise_power = 0.0f, shift_columns_per_row = 0.0f, first_shift_columns = 0.0f;
+  float shift_columns_right = 0.0f, shift_columns_back = 0.0f;
   std::uint32_t seed = 0, ping = 0;
   // The receiver's part of the ping; gains must live until the run.
   Receiver::Ping receiver() const {
-    return {gains, noise_power, seed, ping, first_shift_columns, shift_columns_per_row};
+    return {gains,
+            noise_power,
+            seed,
+            ping,
+            first_shift_columns,
+            shift_columns_per_row,
+            shift_columns_right,
+            shift_columns_back};
   }
   double sound_speed_m_s = 1500.0;  // that turns time to range
   double absorption_db_per_m = 0.0;

@@ -76,6 +76,36 @@ Result<std::uint32_t> columns_for(const scene::Sonar& sonar, const QualityLevel&
   return static_cast<std::uint32_t>(std::clamp(std::ceil(columns - 1e-6), 1.0, double{kMaxBins}));
 }
 
+// What a level that nobody named may cost: cells of [range][columns], and columns times rows.
+constexpr double kMostChosenCells = 8e6, kMostChosenSamples = 4e6, kMostChosenColumns = 8192;
+
+std::uint32_t& columns_of(scene::Sonar& sonar) {
+  return sonar.kind == SonarKind::kEchoSounder ? sonar.bins_azimuth : sonar.terms.beam.samples;
+}
+
+std::uint32_t rows_for(const scene::Sonar& sonar, const QualityLevel& level) {
+  const double span_m = sonar.range_max_m - sonar.range_min_m;
+  const double rows =
+      rows_are_counts(sonar.kind) ? level.rows : level.rows * span_m / range_cell_m(sonar);
+  return static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMaxBins}));
+}
+
+// A level that nobody named: the range bins stay, and nothing becomes coarser than the file says.
+Status apply_chosen(scene::Sonar& sonar, const QualityLevel& level) {
+  const bool many_beams = sonar.kind == SonarKind::kImaging || sonar.kind == SonarKind::kProfiling;
+  const double beams = many_beams ? sonar.bins_azimuth : 1.0;
+  NERITIC_TRY(const std::uint32_t columns, columns_for(sonar, level));
+  const double most_columns =
+      std::floor(std::min(kMostChosenColumns, kMostChosenCells / sonar.bins_range) / beams);
+  std::uint32_t& own = columns_of(sonar);
+  own = std::max(own, static_cast<std::uint32_t>(std::min<double>(columns, most_columns)));
+  const auto most_rows = static_cast<std::uint32_t>(kMostChosenSamples / (beams * own));
+  sonar.bins_elevation =
+      std::max(sonar.bins_elevation, std::min(rows_for(sonar, level), most_rows));
+  sonar.gbuffer_scale = level.gbuffer_scale;
+  return {};
+}
+
 }  // namespace
 
 std::span<const QualityLevel> quality_levels(SonarKind kind) {
@@ -118,6 +148,7 @@ Result<const QualityLevel*> quality_level(const scene::Sonar& sonar) {
 Status apply_quality(scene::Sonar& sonar) {
   NERITIC_TRY(const QualityLevel* level, quality_level(sonar));
   if (level == nullptr) return {};
+  if (sonar.quality_chosen) return apply_chosen(sonar, *level);
   const double span_m = sonar.range_max_m - sonar.range_min_m, cell_m = range_cell_m(sonar);
   const double least_bins = level->bins_a_cell * span_m / cell_m;
   // The last of a measured sensor's bins may be a fraction.
@@ -130,11 +161,8 @@ Status apply_quality(scene::Sonar& sonar) {
                                span_m, sonar.bins_range),
                    fmt::format("at most {}", kMaxBins));
   sonar.gbuffer_scale = level->gbuffer_scale;
-  const double rows = rows_are_counts(sonar.kind) ? level->rows : level->rows * span_m / cell_m;
-  sonar.bins_elevation =
-      static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMaxBins}));
-  NERITIC_TRY(const std::uint32_t columns, columns_for(sonar, *level));
-  (sonar.kind == SonarKind::kEchoSounder ? sonar.bins_azimuth : sonar.terms.beam.samples) = columns;
+  sonar.bins_elevation = rows_for(sonar, *level);
+  NERITIC_TRY(columns_of(sonar), columns_for(sonar, *level));
   return {};
 }
 

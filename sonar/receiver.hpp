@@ -26,9 +26,10 @@ struct ReceiverDesc {
   bool wrap = false;                    // a full turn
   bool coherent = false;                // sums are amplitudes, else powers
   bool noise = false;
-  bool shift = false;      // bearings turn while the echo comes back
-  Taps range, across;      // amplitudes where coherent, else powers
-  double sum_scale = 1.0;  // of the gather
+  bool shift = false;  // bearings turn while the echo comes back
+  double first_bearing_rad = 0.0, bearing_step_rad = 0.0;  // of the beams
+  Taps range, across;                                      // amplitudes where coherent, else powers
+  double sum_scale = 1.0;                                  // of the gather
 };
 
 class Receiver {
@@ -42,6 +43,8 @@ class Receiver {
     float noise_power = 0.0f;          // mean, of a bin
     std::uint32_t seed = 0, ping = 0;  // of its noise
     float first_shift_columns = 0.0f, shift_columns_per_row = 0.0f;
+    float shift_columns_right = 0.0f,
+          shift_columns_back = 0.0f;  // by the way to starboard and back
   };
   // Adds PREFIX"sonar resolve", "sonar pulse", "sonar beams", "sonar receive". target: where the
   // power goes, float [rows][beams]; absent: a transient buffer.

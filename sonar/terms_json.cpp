@@ -174,9 +174,10 @@ json sensor_json(const scene::Sonar& s) {
   return out;
 }
 
-json quality_json(const QualityLevel& level, double max_error) {
+json quality_json(const QualityLevel& level, double max_error, bool chosen) {
   json out{{"level", level.name}, {"measured_error", level.error}};
   if (max_error > 0.0) out["max_error"] = max_error;
+  if (chosen) out["chosen"] = "the scene names none";
   return out;
 }
 

@@ -15,8 +15,8 @@ nlohmann::json terms_json(const scene::SonarTerms& terms);
 // All of it but name, mount and track.
 nlohmann::json sensor_json(const scene::Sonar& sonar);
 
-// The sampling of a sonar: the level, its measured error, and the max_error that asked for it (0:
-// the scene named the level).
-nlohmann::json quality_json(const QualityLevel& level, double max_error);
+// The sampling of a sonar: the level, its measured error, and who asked for it: max_error, or if 0
+// the level's name in the scene, or if chosen nobody.
+nlohmann::json quality_json(const QualityLevel& level, double max_error, bool chosen);
 
 }  // namespace neritic::sonar

@@ -6,7 +6,6 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
-#include "engine/core/npy.hpp"
 #include "engine/scene/image_file.hpp"
 #include "sonar/trace_panel.hpp"
 
@@ -39,18 +38,18 @@ bool has_azimuth(const SonarFiles& files) {
 }
 
 template <class T>
-Status write_array(const std::filesystem::path& path, const SonarFiles& files,
+Status write_image(const std::filesystem::path& folder, const char* name, const SonarFiles& files,
                    const std::vector<T>& values) {
-  const SonarImage& image = files.image;
-  if (!has_azimuth(files)) return write_npy(path, std::span<const T>(values), {image.n_range});
-  return write_npy(path, std::span<const T>(values), {image.n_range, image.n_azimuth});
+  const std::size_t shape[] = {files.image.n_range, files.image.n_azimuth};
+  return write_array(folder, name, files.arrays, std::span<const T>(values),
+                     std::span(shape).first(has_azimuth(files) ? 2 : 1));
 }
 
 Status write_counts(const std::filesystem::path& folder, const SonarFiles& files) {
   const std::vector<std::uint16_t> counts = quantize(files.image.intensity, files.output);
-  if (files.output.bits == 16) return write_array(folder / "sonar_counts.npy", files, counts);
+  if (files.output.bits == 16) return write_image(folder, "sonar_counts", files, counts);
   const std::vector<std::uint8_t> bytes(counts.begin(), counts.end());
-  return write_array(folder / "sonar_counts.npy", files, bytes);
+  return write_image(folder, "sonar_counts", files, bytes);
 }
 
 nlohmann::json grid_facts(const BeamGrid& grid) {
@@ -94,9 +93,10 @@ std::vector<std::uint16_t> quantize(std::span<const float> power,
   return counts;
 }
 
-PanelOptions panel_options(scene::SonarKind kind, bool level, const scene::SonarOutput& output) {
+PanelOptions panel_options(scene::SonarKind kind, bool level, const scene::SonarOutput& output,
+                           const std::string& name) {
   PanelOptions options;
-  options.title = title_of(kind);
+  options.title = name.empty() ? title_of(kind) : name + "   " + title_of(kind);
   if (level) options.span_db = kShown_db;
   if (level && output.named) {
     options.full_scale = std::pow(10.0, 0.1 * (output.floor_db + output.span_db));
@@ -107,7 +107,7 @@ PanelOptions panel_options(scene::SonarKind kind, bool level, const scene::Sonar
 
 ImageU8 draw_sonar(const SonarFiles& files) {
   if (files.panel != nullptr) return files.panel->draw(files.image);
-  const PanelOptions options = panel_options(files.kind, files.level, files.output);
+  const PanelOptions options = panel_options(files.kind, files.level, files.output, files.name);
   if (files.image.n_azimuth > 1) return draw_panel(files.grid, files.image, options);
   return draw_trace(files.grid, files.image.intensity, options);
 }
@@ -117,13 +117,13 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(remove_earlier_sonar(folder));
   const SonarImage& image = files.image;
-  NERITIC_TRY_STATUS(write_array(folder / "sonar.npy", files, image.intensity));
+  NERITIC_TRY_STATUS(write_image(folder, "sonar", files, image.intensity));
   const LabelImage* energy = files.label_energy;
   NERITIC_TRY_STATUS(
-      write_array(folder / "sonar_labels.npy", files, energy ? energy->classes : image.labels));
+      write_image(folder, "sonar_labels", files, energy ? energy->classes : image.labels));
   if (energy) {
-    NERITIC_TRY_STATUS(write_array(folder / "sonar_instances.npy", files, energy->instances));
-    NERITIC_TRY_STATUS(write_array(folder / "sonar_label_fraction.npy", files, energy->fraction));
+    NERITIC_TRY_STATUS(write_image(folder, "sonar_instances", files, energy->instances));
+    NERITIC_TRY_STATUS(write_image(folder, "sonar_label_fraction", files, energy->fraction));
   }
   if (files.output.bits > 0) NERITIC_TRY_STATUS(write_counts(folder, files));
   if (files.cloud != nullptr) {
@@ -147,7 +147,7 @@ Status write_sonar(const std::filesystem::path& folder, const SonarFiles& files,
     json["counts"] = {{"bits", files.output.bits},
                       {"floor_db", files.output.floor_db},
                       {"span_db", files.output.span_db}};
-  const PanelOptions panel = panel_options(files.kind, files.level, files.output);
+  const PanelOptions panel = panel_options(files.kind, files.level, files.output, files.name);
   json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"gamma", panel.gamma}};
   if (panel.span_db > 0.0)
     json["display"] = {{"full_scale", panel_full_scale(image, panel)}, {"span_db", panel.span_db}};

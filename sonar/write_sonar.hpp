@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "engine/core/npz.hpp"
 #include "engine/scene/sonar_settings.hpp"
 #include "sonar/label_energy.hpp"
 #include "sonar/panel.hpp"
@@ -22,6 +23,8 @@ struct SonarFiles {
   bool picture = true;                       // sonar.png too, which takes longest
   const PolarPanel* panel = nullptr;         // of grid and panel_options, for many images; or none
   const PointCloud* cloud = nullptr;  // what one ping sounds, for cloud.npy and .pcd; or none
+  ArrayFormat arrays = ArrayFormat::kNpy;
+  std::string name;  // the sensor's, in the picture's title
 };
 
 // Counts of what leaves a receiver of 8 or 16 bits: 0 at floor_db and below, the largest count at
@@ -29,7 +32,9 @@ struct SonarFiles {
 std::vector<std::uint16_t> quantize(std::span<const float> power, const scene::SonarOutput& output);
 
 // How the picture shows it: decibels where it is a level, those of the output where it is named.
-PanelOptions panel_options(scene::SonarKind kind, bool level, const scene::SonarOutput& output);
+// name: the sensor's.
+PanelOptions panel_options(scene::SonarKind kind, bool level, const scene::SonarOutput& output,
+                           const std::string& name);
 // The picture: polar, or for a single beam the echo over range.
 ImageU8 draw_sonar(const SonarFiles& files);
 
@@ -42,7 +47,12 @@ inline constexpr const char* kSonarFiles[] = {"sonar.json",
                                               "sonar_counts.npy",
                                               "cloud.npy",
                                               "cloud.pcd",
-                                              "sonar.png"};
+                                              "sonar.png",
+                                              "sonar.npz",
+                                              "sonar_labels.npz",
+                                              "sonar_instances.npz",
+                                              "sonar_label_fraction.npz",
+                                              "sonar_counts.npz"};
 // An earlier image's files go, of whatever kind, so that none is taken for another's: the .json
 // first, so that none ever describes other arrays, however far the removing comes.
 Status remove_earlier_sonar(const std::filesystem::path& folder);

@@ -1,6 +1,6 @@
-// The fragment stage of the full G-buffer: what shading in compute needs, and labels. Compiled four
-// times, with and without NERITIC_EMISSIVE and NERITIC_MOTION: an output without an attachment would be
-// paid for all the same.
+// The fragment stage of a camera's G-buffer: what shading in compute needs, and labels. Compiled with
+// and without NERITIC_EMISSIVE and NERITIC_MOTION, and with NERITIC_SHAPE without what only shading
+// needs: an output without an attachment would be paid for all the same.
 #include "shared/octahedral.h"
 #include "shared/raster.h"
 #include "shared/material.glsl"
@@ -20,14 +20,18 @@ layout(push_constant, scalar) uniform Push { RasterPush push; };
 
 layout(location = 0) out vec2 out_normal;
 layout(location = 1) out uvec2 out_label;
+#ifndef NERITIC_SHAPE
 layout(location = 2) out vec4 out_albedo;
 layout(location = 3) out vec4 out_material;
+#endif
 #ifdef NERITIC_EMISSIVE
 layout(location = 4) out vec3 out_emissive;
 #endif
 #ifdef NERITIC_MOTION
-#ifdef NERITIC_EMISSIVE
+#if defined(NERITIC_EMISSIVE)
 layout(location = 5) out vec2 out_motion;
+#elif defined(NERITIC_SHAPE)
+layout(location = 2) out vec2 out_motion;
 #else
 layout(location = 4) out vec2 out_motion;
 #endif
@@ -37,10 +41,12 @@ void main() {
   vec4 base = material_base_color(uv, color);
   out_normal = octahedral_encode(fragment_normal(normal, tangent, uv));
   out_label = uvec2(label & 0xffffu, label >> 16);
+#ifndef NERITIC_SHAPE
   vec3 m = fragment_material(uv);
   bool unlit = material_has(kMaterialUnlit);
   out_albedo = vec4(unlit ? vec3(0.0) : sqrt(max(base.rgb, vec3(0.0))), 1.0);
-  out_material = vec4(m, unlit ? 1.0 : 0.0);
+  out_material = vec4(m, unlit ? 1.0 : material.reflectance);
+#endif
 #ifdef NERITIC_EMISSIVE
   out_emissive = unlit ? base.rgb : fragment_emissive(uv);
 #endif

@@ -12,6 +12,8 @@ struct PanelCorners {
   vec4 middle;
   vec4 right;
   vec4 up;
+  vec4
+      part;  // that is drawn: left, top, right, bottom, each 0 to 1 from the texture's left and top
 };
 
 NERITIC_CONST uint kMaxPanelViews = 4;  // of one group

@@ -62,6 +62,7 @@ NERITIC_CONST uint kMaterialEmissiveTexture = 16;
 NERITIC_CONST uint kMaterialUnlit = 32;
 NERITIC_CONST uint kMaterialVertexColor = 64;
 NERITIC_CONST uint kMaterialMask = 128;
+NERITIC_CONST uint kMaterialTransmissive = 256;
 
 // KHR_texture_transform and the UV set of one texture.
 struct TextureMapping {
@@ -70,11 +71,16 @@ struct TextureMapping {
   uint uv_set;
 };
 
+// The G-buffer's fourth number of a material: its reflectance, at most kMaxReflectance, or 1 for
+// unlit.
+NERITIC_CONST float kMaxReflectance = 0.8f;
+
 struct MaterialData {
   vec4 base_color;
   vec3 emissive;
   float metallic;
   float roughness;
+  float reflectance;  // (n - 1) / (n + 1) of the index of refraction; squared: at normal incidence
   float normal_scale;
   float occlusion_strength;
   float alpha_cutoff;

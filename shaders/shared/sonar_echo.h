@@ -96,6 +96,12 @@ struct SonarReceiverPush {
   float scale;        // resolve: counts to field
   float first_shift;  // spread across beams: columns that the bearing has turned until row 0
   float shift;        // and what it turns from row to row
+  // spread across beams: columns that a bearing shifts by as the sonar moves to starboard (times
+  // the bearing's cosine) and backwards (times its sine), and the beams' bearings.
+  float shift_right;
+  float shift_back;
+  float first_bearing_rad;
+  float bearing_step_rad;
   // spread across beams: correlation of the taps with themselves a column on, which says what power
   // the field between two columns has.
   float tap_correlation;

@@ -152,6 +152,33 @@ TEST(SonarQuality, RangeBinsGrowByAWholeNumberUntilTheyResolveThePulse) {
   EXPECT_LE(sonar.bins_range, 1.05 * wanted + 70);
 }
 
+// A level that nobody named keeps the bins that leave, makes nothing coarser, and fits.
+TEST(SonarQuality, AChosenLevelKeepsTheOutputAndCoarsensNothing) {
+  for (const SonarKind kind : kKinds)
+    for (const std::uint32_t range_bins : {70u, 5000u, 16384u}) {
+      scene::Sonar sonar = sonar_of(kind);
+      sonar.bins_range = range_bins;
+      sonar.bins_azimuth = kind == SonarKind::kImaging ? 2048 : 64;
+      sonar.bins_elevation = 900;
+      const scene::Sonar before = sonar;
+      sonar.quality = "standard";
+      sonar.quality_chosen = true;
+      ASSERT_TRUE(apply_quality(sonar).ok());
+      EXPECT_EQ(sonar.bins_range, range_bins);
+      EXPECT_GE(sonar.bins_azimuth, before.bins_azimuth);
+      EXPECT_GE(sonar.bins_elevation, before.bins_elevation);
+      EXPECT_GE(sonar.terms.beam.samples, before.terms.beam.samples);
+      EXPECT_EQ(sonar.gbuffer_scale, quality_levels(kind)[1].gbuffer_scale);
+      EXPECT_TRUE(plan_heads(sonar).ok()) << scene::name_of(kind) << " " << range_bins;
+      if (kind == SonarKind::kMechanical) {
+        EXPECT_GT(sonar.terms.beam.samples, 1u) << scene::name_of(kind);
+      }
+      const scene::Sonar once = sonar;
+      ASSERT_TRUE(apply_quality(sonar).ok());
+      EXPECT_TRUE(scene::same_settings(once, sonar)) << scene::name_of(kind);
+    }
+}
+
 // Every device that comes with the program can be had at every level, over all its range.
 TEST(SonarQuality, EveryPresetTakesEveryLevel) {
   for (const auto& entry :

@@ -1,0 +1,7 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+#define NERITIC_SHAPE
+#define NERITIC_MOTION
+#include "shared/gbuffer_fragment.glsl"

@@ -1,0 +1,193 @@
+// See depth_normals.hpp.
+//
+// Noise is measured by fourth differences of inverse depth, which is linear in the pixel on a plane
+// seen by a pinhole: they vanish on planes of any slope and nearly so on curved surfaces, and keep
+// sqrt(70) of the noise of a pixel (the root of the sum of 1, 4, 6, 4, 1 squared). Outlines are
+// outliers of the median.
+#include "sonar/depth_normals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace neritic::sonar {
+namespace {
+
+constexpr std::int64_t kTile = 32;           // pixels: noise is measured anew in each tile
+constexpr std::size_t kFewest = 64;          // fourth differences that a median takes
+constexpr double kMedianOfNormal = 0.6745;   // of the absolute value, in standard deviations
+constexpr double kClean_rad = radians(1.0);  // less error is left as it is
+constexpr double kWanted_rad = radians(2.0);
+constexpr int kWidest = 7;  // pixels to each side
+
+// Of a difference over 2 pixels, and of a plane fitted to 2 w + 1 by 2 w + 1: standard deviation of
+// a slope for noise 1 a pixel. Both slopes tilt a normal: hence sqrt(2).
+double error_of_fit(int w) {
+  return std::sqrt(2.0) * std::sqrt(3.0 / (w * (w + 1.0))) / (2.0 * w + 1.0);
+}
+constexpr double kErrorOfNeighbours = 1.0;
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The step to the neighbour's side along one image axis: towards the side whose depth is nearer to
+// this pixel's, or both. before and after may be absent.
+std::optional<Vec3> step(const std::optional<Vec3>& before, const Vec3& here,
+                         const std::optional<Vec3>& after) {
+  if (!before && !after) return std::nullopt;
+  if (!before) return *after - here;
+  if (!after) return here - *before;
+  const double back = std::abs(before->z - here.z), forth = std::abs(after->z - here.z);
+  // Three times: a smooth surface bends by far less from pixel to pixel, an outline by far more.
+  constexpr double kOutline = 3.0;
+  if (forth > kOutline * back) return here - *before;
+  if (back > kOutline * forth) return *after - here;
+  return *after - *before;
+}
+
+class Estimator {
+ public:
+  explicit Estimator(const SonarInput& in)
+      : in_(in), inverse_(in.depth.size(), 0.0), tiles_x_((in.width + kTile - 1) / kTile) {
+    for (std::uint32_t v = 0; v < in.height; ++v)
+      for (std::uint32_t u = 0; u < in.width; ++u)
+        if (const auto p = point_of(in, u, v)) inverse_[index(u, v)] = -1.0 / p->z;
+    measure_noise();
+  }
+
+  DepthNormals run() const {
+    DepthNormals out;
+    out.normals.assign(3 * in_.depth.size(), 0.0);
+    std::vector<double> noises, plain, errors, widths;
+    for (std::int64_t v = 0; v < in_.height; ++v)
+      for (std::int64_t u = 0; u < in_.width; ++u) {
+        const double q = inverse(u, v);
+        if (q == 0.0) continue;
+        // Slope error a pixel's width: noise in metres over the width of a pixel there.
+        const double noise_m = noise(u, v);
+        const double noise_px = noise_m * q * std::sqrt(in_.intrinsics.fx * in_.intrinsics.fy);
+        const int w = half_width(noise_px);
+        const auto n = w == 0 ? from_neighbours(u, v) : from_plane(u, v, w, noise_m * q * q);
+        if (!n) continue;
+        std::copy_n(&(*n)[0], 3, &out.normals[3 * index(u, v)]);
+        noises.push_back(noise_m);
+        plain.push_back(kErrorOfNeighbours * noise_px);
+        errors.push_back((w == 0 ? kErrorOfNeighbours : error_of_fit(w)) * noise_px);
+        widths.push_back(w == 0 ? 0.0 : 2.0 * w + 1.0);
+      }
+    if (noises.empty()) return out;
+    out.estimate = {median(noises), std::atan(median(plain)), std::atan(median(errors)),
+                    static_cast<int>(median(widths))};
+    return out;
+  }
+
+ private:
+  std::size_t index(std::int64_t u, std::int64_t v) const {
+    return static_cast<std::size_t>(v * in_.width + u);
+  }
+  // 0 beyond the edges and where nothing is seen.
+  double inverse(std::int64_t u, std::int64_t v) const {
+    return u < 0 || v < 0 || u >= in_.width || v >= in_.height ? 0.0 : inverse_[index(u, v)];
+  }
+  std::optional<Vec3> point(std::int64_t u, std::int64_t v) const {
+    if (inverse(u, v) == 0.0) return std::nullopt;
+    return point_of(in_, static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v));
+  }
+
+  // In metres: a difference of inverse depth times the depth squared.
+  void measure_noise() {
+    std::vector<std::vector<double>> tiles(tiles_x_ * ((in_.height + kTile - 1) / kTile));
+    std::vector<double> all;
+    for (std::int64_t v = 0; v < in_.height; ++v)
+      for (std::int64_t u = 0; u < in_.width; ++u) {
+        const double q = inverse(u, v);
+        for (const auto& [du, dv] : {std::pair{1, 0}, {0, 1}}) {
+          const double a = inverse(u - 2 * du, v - 2 * dv), b = inverse(u - du, v - dv),
+                       c = inverse(u + du, v + dv), d = inverse(u + 2 * du, v + 2 * dv);
+          if (q == 0.0 || a == 0.0 || b == 0.0 || c == 0.0 || d == 0.0) continue;
+          const double difference = std::abs(a - 4.0 * b + 6.0 * q - 4.0 * c + d) / (q * q);
+          tiles[tile(u, v)].push_back(difference);
+          all.push_back(difference);
+        }
+      }
+    const double scale = 1.0 / (kMedianOfNormal * std::sqrt(70.0));
+    const double everywhere = all.size() < kFewest ? 0.0 : scale * median(all);
+    for (std::vector<double>& values : tiles)
+      noise_m_.push_back(values.size() < kFewest ? everywhere : scale * median(values));
+  }
+  std::size_t tile(std::int64_t u, std::int64_t v) const {
+    return static_cast<std::size_t>(v / kTile * tiles_x_ + u / kTile);
+  }
+  double noise(std::int64_t u, std::int64_t v) const { return noise_m_[tile(u, v)]; }
+
+  // Pixels to each side that a plane is fitted to; 0: the neighbours are enough.
+  static int half_width(double noise_px) {
+    if (kErrorOfNeighbours * noise_px < kClean_rad) return 0;
+    int w = 1;
+    while (w < kWidest && error_of_fit(w) * noise_px > kWanted_rad) ++w;
+    return w;
+  }
+
+  std::optional<Vec3> from_neighbours(std::int64_t u, std::int64_t v) const {
+    const Vec3 here = *point(u, v);
+    const auto right = step(point(u - 1, v), here, point(u + 1, v));
+    const auto down = step(point(u, v - 1), here, point(u, v + 1));
+    if (!right || !down) return std::nullopt;
+    return facing(glm::cross(*down, *right), here);
+  }
+
+  static std::optional<Vec3> facing(const Vec3& n, const Vec3& here) {
+    const double size = glm::length(n);
+    if (!(size > 0.0) || !std::isfinite(size)) return std::nullopt;
+    return n * ((glm::dot(n, here) > 0.0 ? -1.0 : 1.0) / size);
+  }
+
+  // A plane n . P = d is seen at the inverse depth q = (n.x x + n.y y - n.z) / d in the ray (x, y,
+  // -1). Fitted by least squares to the pixels around; what lies off the first fits is of another
+  // surface.
+  std::optional<Vec3> from_plane(std::int64_t u, std::int64_t v, int w, double noise) const {
+    const double q = inverse(u, v);
+    // A surface turned by 72 degrees to the sight rises by 3 pixels' widths a pixel.
+    const double rise = 3.0 * q / std::sqrt(in_.intrinsics.fx * in_.intrinsics.fy);
+    Vec3 fit(q, 0.0, 0.0);  // q = fit.x + fit.y du + fit.z dv
+    for (int round = 0; round < 3; ++round) {
+      Mat3 normal(0.0);
+      Vec3 right(0.0);
+      int n = 0;
+      for (int dv = -w; dv <= w; ++dv)
+        for (int du = -w; du <= w; ++du) {
+          const double there = inverse(u + du, v + dv);
+          if (there == 0.0) continue;
+          const double off = std::abs(there - fit.x - fit.y * du - fit.z * dv);
+          const double slack = round == 0 ? rise * std::max(std::abs(du), std::abs(dv)) : 0.0;
+          if (off > 4.0 * noise + slack) continue;
+          const Vec3 at(1.0, du, dv);
+          normal += glm::outerProduct(at, at);
+          right += at * there;
+          ++n;
+        }
+      if (n < 3 || !(std::abs(glm::determinant(normal)) > 1e-9)) return std::nullopt;
+      fit = glm::inverse(normal) * right;
+    }
+    const Intrinsics& k = in_.intrinsics;
+    const double x = (u + 0.5 - k.cx) / k.fx, y = (k.cy - v - 0.5) / k.fy;
+    const double across = fit.y * k.fx, up = -fit.z * k.fy;
+    return facing(Vec3(across, up, -(fit.x - across * x - up * y)), *point(u, v));
+  }
+
+  const SonarInput& in_;
+  std::vector<double> inverse_;  // 1 / planar depth; 0: nothing is seen
+  std::int64_t tiles_x_;
+  std::vector<double> noise_m_;  // by tile
+};
+
+}  // namespace
+
+DepthNormals normals_from_depth(const SonarInput& in) {
+  return Estimator(in).run();
+}
+
+}  // namespace neritic::sonar
