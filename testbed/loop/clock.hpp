@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "engine/sim/run_clock.hpp"
 #include "engine/sim/step_pacer.hpp"
 
 namespace neritic::testbed {
@@ -12,7 +13,8 @@ namespace neritic::testbed {
 struct FrameTime {
   double time_s = 0.0;       // of the scene
   double next_time_s = 0.0;  // of the frame after it, as far as is known now
-  TimeNs host_ns = 0;        // when it is seen or, without a display, was due
+  // When it is seen or, without a display, was due; on the clock that paces the run.
+  TimeNs run_ns = 0;
 };
 
 class Clock {
@@ -20,8 +22,10 @@ class Clock {
   // The host's. If a display says when it shows the frames, their times are the display's.
   // Otherwise a frame is due each period; after a delay up to `catch_up` come at once, and time
   // runs on over the others, which are dropped. catch_up: kCatchUp for steps, 1 for pictures, so
-  // that a late one does not make the next ones hurry.
-  static Clock real(double start_s, double period_s, int catch_up = kCatchUp);
+  // that a late one does not make the next ones hurry. run: that a person may stop or speed up, on
+  // which the frames' times are; it outlives this.
+  static Clock real(double start_s, double period_s, int catch_up = kCatchUp,
+                    sim::RunClock* run = nullptr);
   // Frame k is at start_s + k * period_s. Nothing waits.
   static Clock simulated(double start_s, double period_s);
 
@@ -33,15 +37,16 @@ class Clock {
   std::uint64_t dropped() const { return pacer_ ? pacer_->counts().dropped : 0; }
 
  private:
-  Clock(bool real, double start_s, double period_s, int catch_up)
-      : real_(real), start_s_(start_s), period_s_(period_s), catch_up_(catch_up) {}
+  Clock(bool real, double start_s, double period_s, int catch_up, sim::RunClock* run)
+      : real_(real), start_s_(start_s), period_s_(period_s), catch_up_(catch_up), run_(run) {}
   TimeNs wait_for_due();
 
   bool real_;
   double start_s_, period_s_;
   int catch_up_;
+  sim::RunClock* run_;
   std::uint64_t frames_ = 0;
-  TimeNs begun_ns_ = 0;                  // of the first frame, on the host
+  TimeNs begun_ns_ = 0, seen_ns_ = 0;    // of the first and the newest frame of a display
   std::optional<sim::StepPacer> pacer_;  // without a display
   int due_ = 0;                          // frames that the pacer gave and that were not taken yet
 };

@@ -6,32 +6,38 @@
 
 #include <deque>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "testbed/loop/clock.hpp"
+#include "testbed/loop/frame_view.hpp"
 #include "testbed/motion/live_physics.hpp"
 #include "testbed/record/step_sink.hpp"
 #include "testbed/samples/source.hpp"
 #include "testbed/sensors/frame_sink.hpp"
+#include "testbed/sensors/image_consumer.hpp"
 #include "testbed/sensors/ping_schedule.hpp"
+#include "testbed/sensors/session.hpp"
 
 namespace neritic::testbed {
-
-class DiveView;
 
 // Cameras and sonars of the session's scene that someone wants. Any other is never declared.
 struct LoopSensors {
   Session* session = nullptr;
+  // For the view's panels and the frame sinks.
   std::vector<std::size_t> cameras, sonars;
-  Capture capture;         // to_host: for frame sinks
-  bool own_rates = false;  // each at its own rate; else all in each frame
+  Capture capture;                        // to_host: for frame sinks
+  bool own_rates = false;                 // each at its own rate; else all in each frame
+  std::vector<ImageConsumer*> consumers;  // each with a schedule of its own
 };
 
 struct LoopStop {
-  std::uint64_t frames = 0;           // with a view those that it shows; 0: no limit
-  double seconds = 0.0;               // of scene time since the first frame; 0: no limit
+  std::uint64_t frames = 0;  // with a view those that it shows; 0: no limit
+  // Of scene time since the first frame; 0: no limit. The last frame is at just that time, and the
+  // physics ends with the first step that reaches it.
+  double seconds = 0.0;
   std::function<bool()> interrupted;  // asked before each frame and step; empty: never
 };
 
@@ -41,7 +47,7 @@ struct LoopParts {
   Clock clock;
   LivePhysics* physics = nullptr;
   std::optional<LoopSensors> sensors;
-  DiveView* view = nullptr;            // with sensors
+  FrameView* view = nullptr;           // with sensors
   std::vector<SampleSource*> sources;  // polled by the physics
   std::vector<StepSink*> step_sinks;
   std::vector<FrameSink*> frame_sinks;
@@ -65,22 +71,35 @@ class Loop {
   // display_at_ns: when the view's display shows it.
   Status frame_at(std::optional<TimeNs> display_at_ns);
   double advance(const FrameTime& at);
-  bool is_last(double time_s);
-  FrameRequest request_at(const FrameTime& at, double time_s);
-  Status sense(const FrameRequest& request);
-  Status show(FrameRequest& request);
+  bool is_last(double time_s) const;
+  // A frame's request, and who asked for what of it.
+  struct Wanted {
+    FrameRequest request;
+    // For the frame sinks.
+    std::vector<std::size_t> cameras, sonars;
+    bool for_sinks = false;
+    std::vector<std::vector<ImageConsumer::Asked>> of_consumers;
+  };
+  Wanted wanted_at(const FrameTime& at, double time_s);
+  Status sense(Wanted wanted);
+  Status show(Wanted wanted);
   Status give_done(bool wait);
-  Status give(const FrameResult& result);
+  Status give(const Wanted& wanted, FrameResult result);
   // Asks whether the user stopped the run, or a source or a step sink failed.
   bool stopped();
   Status finish(const Status& status);
 
   LoopParts parts_;
-  std::optional<StepSinks> steps_;                    // with physics and sinks
-  std::optional<PingSchedule> schedule_;              // of the sensors, cameras first
-  std::deque<std::unique_ptr<SensorFrame>> pending_;  // submitted; the sinks do not have them yet
-  std::uint64_t frames_ = 0, sensed_ = 0;             // frames; those that are for frame sinks
-  double wall_s_ = 0.0, end_s_ = 0.0;                 // end_s_: the scene time at which it ends
+  std::optional<StepSinks> steps_;        // with physics and sinks
+  std::optional<PingSchedule> schedule_;  // of the sensors, cameras first
+  struct Pending {
+    std::unique_ptr<SensorFrame> frame;
+    Wanted wanted;
+  };
+  std::deque<Pending> pending_;            // submitted; the sinks do not have them yet
+  std::uint64_t frames_ = 0, sensed_ = 0;  // frames; those that are for frame sinks
+  double wall_s_ = 0.0;
+  double end_s_ = std::numeric_limits<double>::infinity();  // the scene time at which it ends
   bool started_ = false, interrupted_ = false, quit_ = false, last_ = false;
 };
 

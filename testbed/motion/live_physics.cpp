@@ -1,15 +1,14 @@
 #include "testbed/motion/live_physics.hpp"
 
 #include <algorithm>
-
-#include "testbed/motion/snapshot_motion.hpp"
+#include <cmath>
 
 namespace neritic::testbed {
 namespace {
 
 std::unique_ptr<PhysicsSimulation> simulation_of(const PhysicsWorld& world,
                                                  const LivePhysics::Options& options) {
-  auto simulation = world.simulation({.log = options.log, .seed = options.seed}, options.threads);
+  auto simulation = world.simulation({.log = false}, options.threads);
   if (options.start) restore_state(*simulation, *options.start);
   return simulation;
 }
@@ -19,6 +18,7 @@ std::unique_ptr<PhysicsSimulation> simulation_of(const PhysicsWorld& world,
 LivePhysics::LivePhysics(std::unique_ptr<const PhysicsWorld> world, const Options& options)
     : world_(std::move(world)),
       pace_(options.pace),
+      clock_(options.clock ? options.clock : &host_),
       simulation_(simulation_of(*world_, options)),
       history_(moved_objects(*world_)),
       start_step_(simulation_->newest().step),
@@ -29,7 +29,7 @@ LivePhysics::LivePhysics(std::unique_ptr<const PhysicsWorld> world, const Option
 
 Result<std::unique_ptr<LivePhysics>> LivePhysics::create(const scene::Scene& scene, Pace pace) {
   NERITIC_TRY(auto world, PhysicsWorld::create(scene));
-  return create(std::move(world), {.pace = pace, .seed = scene.seed});
+  return create(std::move(world), {.pace = pace});
 }
 
 std::unique_ptr<LivePhysics> LivePhysics::create(std::unique_ptr<const PhysicsWorld> world,
@@ -41,13 +41,49 @@ LivePhysics::~LivePhysics() {
   simulation_->stop();
 }
 
-void LivePhysics::observe(const Observer& each) {
+void LivePhysics::observe(const Observer& each, const Used& used) {
   if (each) each(simulation_->newest());
-  simulation_->observe(each);
+  simulation_->observe(each, used);
+}
+
+void LivePhysics::end_after(double seconds) {
+  constexpr double kSlack = 1e-9;  // steps are sums of rounded times
+  simulation_->end_at(start_step_ +
+                      static_cast<std::uint64_t>(std::ceil(seconds / world_->step_s() - kSlack)));
+}
+
+bool LivePhysics::ended() const {
+  return shown_snapshot().step >= simulation_->last_step();
 }
 
 void LivePhysics::start() {
-  if (pace_ == Pace::kClock) simulation_->start(clock_);
+  if (pace_ == Pace::kClock) simulation_->start(*clock_);
+}
+
+void LivePhysics::between_steps(const std::function<void(PhysicsSimulation&)>& act) {
+  const bool running = simulation_->running();
+  simulation_->stop();
+  act(*simulation_);
+  if (running) simulation_->start(*clock_);
+}
+
+Status LivePhysics::go_to(const SavedState& saved) {
+  NERITIC_CHECK(pace_ == Pace::kClock, "the loop's own times would not follow");
+  const auto known = inbox().source_names();
+  for (std::size_t id = 0; id < std::min(known.size(), saved.sources.size()); ++id)
+    if (known[id] != saved.sources[id])
+      return bad_input("its source {} is {}, here {}; accepted: a state of this run, or --restore",
+                       id, saved.sources[id], known[id]);
+  between_steps([&](PhysicsSimulation& simulation) {
+    restore_state(simulation, saved);
+    history_.clear();
+    history_.add(motion_of(*world_, simulation.newest()));
+    start_step_ = simulation.newest().step;
+    shown_s_ = simulation.newest().time_s;
+    if (simulation.observer()) simulation.observer()(simulation.newest());
+  });
+  reader_->update();
+  return {};
 }
 
 // Whether all sources could be polled, until now.
@@ -64,7 +100,8 @@ void LivePhysics::advance() {
 void LivePhysics::reach(double time_s, const Stop& stop) {
   // Half of the history: the other half holds what was kept for the time before.
   const double kept_s = (MotionHistory::kKept / 2 - 1) * world_->step_s();
-  while (simulation_->newest().time_s < time_s) {
+  while (simulation_->newest().time_s < time_s &&
+         simulation_->newest().step < simulation_->last_step()) {
     advance();
     if (!listening_.ok()) return;
     const auto& newest = simulation_->newest();

@@ -19,10 +19,9 @@ class LivePhysics {
   enum class Pace { kClock, kPicture };
   struct Options {
     Pace pace = Pace::kPicture;
-    bool log = false;                 // keep inputs and hashes, for a recording
-    std::uint64_t seed = 0;           // the scene's, for a recording
     unsigned threads = 0;             // of a step (PhysicsWorld::simulation)
     std::optional<SavedState> start;  // goes on from here; else from the scene's start
+    sim::StepClock* clock = nullptr;  // paces the thread and outlives this; nullptr: the host's
   };
   // Errors as PhysicsWorld::create. Precondition: PhysicsWorld::needed(scene).
   static Result<std::unique_ptr<LivePhysics>> create(const scene::Scene& scene, Pace pace);
@@ -31,18 +30,32 @@ class LivePhysics {
                                              const Options& options);
   ~LivePhysics();
 
-  // each sees every state in turn, the start first: on the stepping thread, which is the caller's
-  // in lock-step. Empty: nobody does from now on. Before start() or after stop().
+  // each sees every state in turn, the start first, and used each sample that the next step uses:
+  // on the stepping thread, which is the caller's in lock-step. Empty: nobody does from now on.
+  // Before start() or after stop().
   using Observer = std::function<void(const sim::Snapshot<PhysicsState>&)>;
-  void observe(const Observer& each);
+  using Used = std::function<void(const Sample&)>;
+  void observe(const Observer& each, const Used& used = {});
   // Polls the sources before each step of a lock-step, and in each follow() beside a thread. After
   // the first failure it polls no more, and a lock-step takes no more steps. Before start()
   // or after stop(); borrows them.
   void listen(std::vector<SampleSource*> sources) { sources_ = std::move(sources); }
   // The first failure of a source.
   const Status& listening() const { return listening_; }
+  // Ends with the first step that lies so long after the start, at any pace: follow(), reach() and
+  // advance() go no farther. Before start().
+  void end_after(double seconds);
+  // Whether the newest state that follow() found is that step's.
+  bool ended() const;
   // The time of the state that it starts from is now.
   void start();
+  // Calls act between two steps, with the thread at rest meanwhile: it may save, restore and change
+  // who observes.
+  void between_steps(const std::function<void(PhysicsSimulation&)>& act);
+  // Goes on from a saved state of this world at once, also an earlier one; samples that no step
+  // used yet are dropped. Beside a thread. kBadInput, and no change, if the inbox has other sources
+  // under the state's numbers.
+  Status go_to(const SavedState& saved);
   // After the last step; newest() and simulation() may be asked then, at any pace.
   void stop() { simulation_->stop(); }
 
@@ -81,7 +94,8 @@ class LivePhysics {
 
   std::unique_ptr<const PhysicsWorld> world_;
   Pace pace_;
-  sim::HostClock clock_;
+  sim::HostClock host_;
+  sim::StepClock* clock_;  // that paces the thread
   std::unique_ptr<PhysicsSimulation> simulation_;
   std::optional<sim::SnapshotReader<PhysicsState>> reader_;  // of the thread's states
   MotionHistory history_;

@@ -1,36 +1,15 @@
 #include "testbed/motion/motion_history.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/core/check.hpp"
+#include "testbed/simulation/object_motion.hpp"
 
 namespace neritic::testbed {
 namespace {
 
 int index_in(const std::vector<int>& table, std::size_t object) {
   return object < table.size() ? table[object] : -1;
-}
-
-// Positions along the line, attitudes along the shortest turn, velocities in proportion.
-scene::Motion between(const scene::Motion& a, const scene::Motion& b, double share) {
-  const auto mix = [share](const Vec3& from, const Vec3& to) { return from + (to - from) * share; };
-  return {{mix(a.pose.position_m, b.pose.position_m),
-           glm::normalize(glm::slerp(a.pose.rotation, b.pose.rotation, share))},
-          mix(a.velocity_m_s, b.velocity_m_s),
-          mix(a.angular_velocity_rad_s, b.angular_velocity_rad_s)};
-}
-
-// Both velocities stay as they are.
-scene::Motion predicted(const scene::Motion& from, double ahead_s) {
-  scene::Motion out = from;
-  out.pose.position_m += from.velocity_m_s * ahead_s;
-  const double rate_rad_s = glm::length(from.angular_velocity_rad_s);
-  if (rate_rad_s > 0.0)
-    out.pose.rotation = glm::normalize(
-        glm::angleAxis(rate_rad_s * ahead_s, from.angular_velocity_rad_s / rate_rad_s) *
-        from.pose.rotation);
-  return out;
 }
 
 }  // namespace
@@ -69,14 +48,17 @@ std::optional<scene::MotionAt> MotionHistory::at(std::size_t object, double time
   const auto index = static_cast<std::size_t>(place);
   const std::size_t age = age_before(time_s);
   const MotionSnapshot& before = at_age(age);
-  const scene::Motion& from = before.motions[index];
+  if (!before.motions[index]) return std::nullopt;
+  const Motion& from = *before.motions[index];
   const double since_s = time_s - before.time_s;
   if (since_s == 0.0) return scene::MotionAt{from};
   if (since_s < 0.0) return scene::MotionAt{{from.pose}, scene::Knowledge::kHeld};
   if (age > 0) {
     const MotionSnapshot& after = at_age(age - 1);
     const double share = since_s / (after.time_s - before.time_s);
-    return scene::MotionAt{between(from, after.motions[index], share), scene::Knowledge::kBetween};
+    // It goes back to its own track or place after what was known here.
+    const Motion& to = after.motions[index] ? *after.motions[index] : from;
+    return scene::MotionAt{between(from, to, share), scene::Knowledge::kBetween};
   }
   if (since_s <= kMostPredicted_s)
     return scene::MotionAt{predicted(from, since_s), scene::Knowledge::kPredicted, since_s};
@@ -95,6 +77,29 @@ std::optional<scene::ModelPose> MotionHistory::model_pose(std::size_t object,
                            {at_age(age).joints[index]}};
   if (age > 0) motion.keys.push_back(at_age(age - 1).joints[index]);
   return scene::evaluate_pose(model, motion, time_s);
+}
+
+std::vector<MotionHistory::Moved> moved_objects(const PhysicsWorld& world) {
+  std::vector<MotionHistory::Moved> moved;
+  for (const PhysicsVehicle& vehicle : world.vehicles()) moved.push_back({vehicle.object, {}});
+  for (const PhysicsHuman& human : world.humans()) moved.push_back({human.object, human.nodes});
+  for (const PhysicsObject& object : world.objects()) moved.push_back({object.object, {}});
+  return moved;
+}
+
+MotionSnapshot motion_of(const PhysicsWorld& world, const sim::Snapshot<PhysicsState>& snapshot) {
+  MotionSnapshot out;
+  out.time_s = snapshot.time_s;
+  for (const VehicleState& vehicle : snapshot.state.vehicles())
+    out.motions.push_back(motion_of(vehicle));
+  for (std::size_t i = 0; i < world.humans().size(); ++i) {
+    const HumanPhysics& state = snapshot.state.humans()[i];
+    out.motions.push_back(motion_of(state));
+    out.joints.push_back(drawn_joints(world.humans()[i], state, snapshot.time_s));
+  }
+  for (const ObjectState& object : snapshot.state.objects())
+    out.motions.push_back(motion_of(object));
+  return out;
 }
 
 }  // namespace neritic::testbed

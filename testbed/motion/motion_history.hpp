@@ -3,16 +3,19 @@
 // around that time are the same. Times are scene time, in seconds. Plain value; one thread.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/scene/motion.hpp"
+#include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
 
 // The objects that a simulation moves, at one instant, in the order of the history's objects.
 struct MotionSnapshot {
   double time_s = 0.0;
-  std::vector<scene::Motion> motions;          // world_from_object
+  // World_from_object; nothing: the object's own track or place has it.
+  std::vector<std::optional<Motion>> motions;
   std::vector<scene::NodeMotion::Key> joints;  // of the objects with nodes, in their order
 };
 
@@ -30,6 +33,7 @@ class MotionHistory final : public scene::SimulatedMotion {
 
   // Times rise; one that is not later than the newest is left out. The oldest makes room.
   void add(MotionSnapshot snapshot);
+  void clear() { added_ = count_ = 0; }
   bool empty() const { return count_ == 0; }
   double newest_s() const { return at_age(0).time_s; }
 
@@ -50,5 +54,10 @@ class MotionHistory final : public scene::SimulatedMotion {
   std::vector<MotionSnapshot> ring_;
   std::size_t added_ = 0, count_ = 0;
 };
+
+// What the history keeps of a physics' states: vehicles, then divers, then objects that devices
+// move.
+std::vector<MotionHistory::Moved> moved_objects(const PhysicsWorld& world);
+MotionSnapshot motion_of(const PhysicsWorld& world, const sim::Snapshot<PhysicsState>& snapshot);
 
 }  // namespace neritic::testbed

@@ -4,7 +4,9 @@
 
 #include <set>
 
+#include "testbed/output/camera_coco.hpp"
 #include "testbed/output/survey.hpp"
+#include "testbed/output/trajectory.hpp"
 #include "testbed/sensors/frame_sink.hpp"
 
 namespace neritic::testbed {
@@ -13,6 +15,7 @@ struct FrameFilesOptions {
   std::filesystem::path out;
   std::string scene;    // its file, as meta.json names it
   bool folders = true;  // false: only what accumulates
+  FrameFormat format;
   SurveyOptions survey;
 };
 
@@ -23,18 +26,23 @@ class FrameFiles final : public FrameSink {
   Status accept(const FrameResult& frame) override;
   Status finish() override;
 
-  // After finish: the sensors' folders, whether OUT/track has something, and what to name where a
-  // chart's cells are too fine.
+  // After finish: the sensors' folders, whether OUT/track has something, and what the user should
+  // know: that a chart's cells are too fine, that depths are beyond what a .png holds.
   const std::set<std::filesystem::path>& folders() const { return written_; }
   bool wrote_track() const { return wrote_track_; }
-  std::optional<std::string> hint() const { return survey_.hint(); }
+  std::vector<std::string> hints() const;
 
  private:
   Status write_folders(const FrameResult& frame);
+  Status write_camera(const std::filesystem::path& folder, const std::string& name,
+                      const ViewImages& eye, const FrameResult& frame);
   Session& session_;
   FrameFilesOptions options_;
   Survey survey_;
-  FrameFacts facts_;  // of the newest frame
+  CameraCoco coco_;
+  TrajectoryFiles trajectory_;
+  std::uint64_t far_pixels_ = 0, pixels_ = 0;  // of depth.png
+  FrameFacts facts_;                           // of the newest frame
   std::set<std::filesystem::path> written_;
   bool wrote_track_ = false;
 };

@@ -1,11 +1,12 @@
 #include "testbed/output/output.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
-#include "engine/core/npy.hpp"
+#include "engine/core/npz.hpp"
 #include "engine/scene/image_file.hpp"
 #include "shared/raster.h"
 #include "sonar/terms_json.hpp"
@@ -57,9 +58,10 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
 // An earlier run's arrays must not be taken for this one's. meta.json goes first and is written
 // last: where one is, it describes the arrays beside it.
 Status remove_earlier_view(const std::filesystem::path& folder) {
-  for (const char* name : {"meta.json", "depth.npy", "normals.npy", "labels.npy", "instances.npy",
-                           "motion.npy", "color.png"})
-    NERITIC_TRY_STATUS(remove_file(folder / name));
+  NERITIC_TRY_STATUS(remove_file(folder / "meta.json"));
+  for (const char* name : {"depth", "normals", "labels", "instances", "motion", "color"})
+    for (const char* ending : {".npy", ".npz", ".png"})
+      NERITIC_TRY_STATUS(remove_file(folder / (std::string(name) + ending)));
   return {};
 }
 
@@ -75,6 +77,47 @@ Status remove_earlier_sectors(const std::filesystem::path& folder) {
   return {};
 }
 
+constexpr double kDepthPng_m = 0.001;      // a unit
+constexpr std::uint16_t kFarther = 65535;  // in a depth.png
+
+ArrayFormat array_format(Packing packing) {
+  return packing == Packing::kNone ? ArrayFormat::kNpy : ArrayFormat::kNpz;
+}
+
+ImageU16 depth_units(const ImageF32& depth_m) {
+  ImageU16 out(depth_m.width, depth_m.height, 1);
+  for (std::size_t i = 0; i < depth_m.data.size(); ++i) {
+    const double units = std::round(double(depth_m.data[i]) / kDepthPng_m);
+    if (std::isfinite(units))
+      out.data[i] = static_cast<std::uint16_t>(std::clamp(units, 1.0, double(kFarther)));
+  }
+  return out;
+}
+
+// Colours v of 16 bits: n = 2 v / 65535 - 1, in error by 1.6e-5; black where nothing is.
+ImageU16 normal_units(const ImageF32& normals) {
+  ImageU16 out(normals.width, normals.height, 3);
+  for (std::size_t i = 0; i < normals.data.size(); i += 3) {
+    const float* n = &normals.data[i];
+    if (n[0] == 0.0f && n[1] == 0.0f && n[2] == 0.0f) continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      out.data[i + k] = static_cast<std::uint16_t>(
+          std::lround((std::clamp(n[k], -1.0f, 1.0f) + 1.0f) * 32767.5f));
+  }
+  return out;
+}
+
+template <class T>
+Status write_raster(const std::filesystem::path& folder, const char* name, const Raster<T>& image,
+                    Packing packing) {
+  if constexpr (std::is_same_v<T, std::uint16_t>)
+    if (packing == Packing::kPng)
+      return scene::write_png16(folder / (std::string(name) + ".png"), image);
+  const std::size_t shape[] = {image.height, image.width, image.channels};
+  return write_array(folder, name, array_format(packing), std::span<const T>(image.data),
+                     std::span(shape).first(image.channels > 1 ? 3 : 2));
+}
+
 }  // namespace
 
 std::string frame_folder(std::uint32_t number) {
@@ -87,37 +130,60 @@ std::filesystem::path sonar_folder(const SonarFrame& frame) {
 }
 
 Status write_view(const std::filesystem::path& folder, const ViewImages& view,
-                  const FrameFacts& facts) {
+                  const FrameFacts& facts, const FrameFormat& format) {
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(remove_earlier_view(folder));
-  const std::size_t w = view.width, h = view.height;
-  if (!view.depth.empty())
-    NERITIC_TRY_STATUS(write_npy(folder / "depth.npy", view.depth.data, {h, w}));
-  if (!view.normals.empty())
-    NERITIC_TRY_STATUS(write_npy(folder / "normals.npy", view.normals.data, {h, w, 3}));
-  if (!view.labels.empty())
-    NERITIC_TRY_STATUS(write_npy(folder / "labels.npy", view.labels.data, {h, w}));
-  if (!view.instances.empty())
-    NERITIC_TRY_STATUS(write_npy(folder / "instances.npy", view.instances.data, {h, w}));
-  if (!view.motion.empty())
-    NERITIC_TRY_STATUS(write_npy(folder / "motion.npy", view.motion.data, {h, w, 2}));
-  if (!view.color.empty()) NERITIC_TRY_STATUS(scene::write_png8(folder / "color.png", view.color));
-  return write_json(folder / "meta.json", meta_of(view, facts));
+  const auto wants = [&](Dataset dataset, const auto& image) {
+    return format.datasets.has(dataset) && !image.empty();
+  };
+  const Packing packing = format.packing;
+  nlohmann::json meta = meta_of(view, facts);
+  if (wants(Dataset::kDepth, view.depth)) {
+    if (packing == Packing::kPng) {
+      NERITIC_TRY_STATUS(write_raster(folder, "depth", depth_units(view.depth), packing));
+      meta["depth_png"] = {{"metres_per_unit", kDepthPng_m}, {"nothing", 0}, {"farther", kFarther}};
+    } else {
+      NERITIC_TRY_STATUS(write_raster(folder, "depth", view.depth, packing));
+    }
+  }
+  if (wants(Dataset::kNormals, view.normals)) {
+    if (packing == Packing::kPng) {
+      NERITIC_TRY_STATUS(write_raster(folder, "normals", normal_units(view.normals), packing));
+      meta["normals_png"] = {{"n", "2 v / 65535 - 1"}, {"nothing", {0, 0, 0}}};
+    } else {
+      NERITIC_TRY_STATUS(write_raster(folder, "normals", view.normals, packing));
+    }
+  }
+  if (wants(Dataset::kLabels, view.labels))
+    NERITIC_TRY_STATUS(write_raster(folder, "labels", view.labels, packing));
+  if (wants(Dataset::kInstances, view.instances))
+    NERITIC_TRY_STATUS(write_raster(folder, "instances", view.instances, packing));
+  if (wants(Dataset::kMotion, view.motion))
+    NERITIC_TRY_STATUS(write_raster(folder, "motion", view.motion, packing));
+  if (wants(Dataset::kColor, view.color))
+    NERITIC_TRY_STATUS(scene::write_png8(folder / "color.png", view.color));
+  return write_json(folder / "meta.json", meta);
 }
 
 sonar::SonarFiles sonar_files(const SonarFrame& frame) {
-  return {frame.grid,  frame.image,        frame.kind,
-          frame.level, frame.terms.output, frame.label_energy ? &*frame.label_energy : nullptr};
+  return {.grid = frame.grid,
+          .image = frame.image,
+          .kind = frame.kind,
+          .level = frame.level,
+          .output = frame.terms.output,
+          .label_energy = frame.label_energy ? &*frame.label_energy : nullptr,
+          .name = frame.head.empty() ? frame.name : frame.name + " " + frame.head};
 }
 
 Status write_sonar_frame(const std::filesystem::path& folder, const SonarFrame& frame,
-                         const FrameFacts& facts) {
+                         const FrameFacts& facts, const FrameFormat& format) {
   NERITIC_TRY_STATUS(make_folder(folder));
   NERITIC_TRY_STATUS(remove_earlier_sectors(folder));
   for (std::size_t i = 0; i < frame.sectors.size(); ++i)
     NERITIC_TRY_STATUS(
         write_view(frame.sectors.size() == 1 ? folder : folder / fmt::format("sector_{}", i),
-                   frame.sectors[i], facts));
+                   frame.sectors[i], facts, format));
+  if (!frame.heard()) return sonar::remove_earlier_sonar(folder);
   const nlohmann::json gbuffer{
       {"width", frame.gbuffer_width},
       {"height", frame.gbuffer_height},
@@ -146,13 +212,16 @@ Status write_sonar_frame(const std::filesystem::path& folder, const SonarFrame& 
       {"device", facts.device},
       {"timings_ms", {{"frame", to_microsecond(facts.frame_ms)}, {"passes", passes_of(facts)}}}};
   if (frame.quality != nullptr)
-    more["model"]["quality"] = sonar::quality_json(*frame.quality, frame.max_error);
+    more["model"]["quality"] =
+        sonar::quality_json(*frame.quality, frame.max_error, frame.quality_chosen);
   if (!frame.head.empty()) more["head"] = frame.head;
   if (frame.sound_speed_m_s > 0.0) {
     more["model"]["sound_speed_m_s"] = frame.sound_speed_m_s;
     more["model"]["absorption_db_per_m"] = frame.absorption_db_per_m;
   }
-  return sonar::write_sonar(folder, sonar_files(frame), more);
+  sonar::SonarFiles files = sonar_files(frame);
+  files.arrays = array_format(format.packing);
+  return sonar::write_sonar(folder, files, more);
 }
 
 }  // namespace neritic::testbed

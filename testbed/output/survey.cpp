@@ -180,6 +180,7 @@ Survey::Record& Survey::record_of(const SonarFrame& frame) {
 
 Status Survey::add(const FrameResult& result, std::uint32_t number, double time_s) {
   for (const SonarFrame& frame : result.sonars) {
+    if (!frame.heard()) continue;
     Record& record = record_of(frame);
     const Pose& world_from_sonar = frame.world_from_sonar;
     record.add(frame, time_s);

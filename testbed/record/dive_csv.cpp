@@ -1,4 +1,5 @@
-// Rows as a table (dive_record.hpp).
+#include "testbed/record/dive_csv.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -6,7 +7,6 @@
 #include <limits>
 
 #include "rov/frames.hpp"
-#include "testbed/record/dive_record.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -39,7 +39,8 @@ void append_numbers(std::string& out, std::initializer_list<double> numbers) {
 
 constexpr const char* kHumanColumns =
     ",tank,tank_bar,remaining_min,ventilation_l_min,breaths_min,lungs_l,jacket_l,net_weight_n,"
-    "buttons,kick_hz,limb_power_w,oxygen_l_min,ceiling_m,no_stop_min,stop_m,stop_min,"
+    "buttons,kick_hz,limb_power_w,oxygen_l_min,reserve_percent,ceiling_m,no_stop_min,stop_m,stop_"
+    "min,"
     "to_surface_min,po2_bar,gas_density_g_l,cns_percent,otu,ascent_m_min,ascent_alarm,ceiling_"
     "violated,"
     "heart_bpm,"
@@ -48,9 +49,11 @@ constexpr const char* kHumanColumns =
     "too_small";
 
 // A number that is not finite (no end of breath in sight) is an empty cell.
-void append_cells(std::string& out, std::initializer_list<double> numbers) {
-  for (const double number : numbers)
-    out += std::isfinite(number) ? fmt::format(",{:.9g}", number) : std::string(",");
+void append_cells(std::string& out, std::span<const double> numbers) {
+  for (const double number : numbers) {
+    out += ',';
+    if (std::isfinite(number)) fmt::format_to(std::back_inserter(out), "{:.9g}", number);
+  }
 }
 
 void append_empty(std::string& out, std::ptrdiff_t cells) {
@@ -127,8 +130,7 @@ void append_readings(std::string& out, const SensorColumns& sensor, const Readin
   const bool any = readings && sensor.count(*readings) > 0;
   const Numbers numbers =
       any ? sensor.numbers(*readings) : Numbers(static_cast<std::size_t>(columns), kNotHeard);
-  for (const double number : numbers)
-    out += std::isnan(number) ? std::string(",") : fmt::format(",{:.9g}", number);
+  append_cells(out, numbers);
 }
 
 // For vehicles that fly by their own sensors: their estimated position, as x_m to
@@ -176,16 +178,35 @@ void append_motion(std::string& out, const Pose& world_from_body, const Vec6& ve
   append_numbers(out, {wanted_m.x, wanted_m.y, wanted_m.z});
 }
 
-// Columns silent, in a scene that names live sources, and hash.
-void append_end(std::string& out, const PhysicsWorld& world, std::uint64_t silent,
-                std::uint64_t hash) {
-  if (!world.sources().empty()) fmt::format_to(std::back_inserter(out), ",{}", silent);
+}  // namespace
+
+struct DiveCsv::Columns {
+  std::size_t thrusters = 0;
+  std::vector<std::size_t> sensors;  // of kSensorColumns
+  bool estimate = false, humans = false, silent = false;
+};
+
+DiveCsv::DiveCsv(const PhysicsWorld& world) : world_(world) {
+  auto columns = std::make_unique<Columns>();
+  for (const PhysicsVehicle& vehicle : world.vehicles())
+    columns->thrusters = std::max<std::size_t>(columns->thrusters, vehicle.vehicle.thruster_count);
+  for (std::size_t i = 0; i < std::size(kSensorColumns); ++i)
+    if (any_has(world, kSensorColumns[i])) columns->sensors.push_back(i);
+  columns->estimate = any_navigates(world);
+  columns->humans = !world.humans().empty();
+  columns->silent = !world.sources().empty();
+  columns_ = std::move(columns);
+}
+
+DiveCsv::~DiveCsv() = default;
+
+void DiveCsv::append_end(std::string& out, std::uint64_t silent, std::uint64_t hash) const {
+  if (columns_->silent) fmt::format_to(std::back_inserter(out), ",{}", silent);
   fmt::format_to(std::back_inserter(out), ",{:016x}\n", hash);
 }
 
-void append_row(std::string& out, const PhysicsWorld& world, const DiveRow& row,
-                std::size_t thrusters) {
-  const PhysicsVehicle& vehicle = world.vehicles()[row.vehicle];
+void DiveCsv::append(std::string& out, const DiveRow& row) const {
+  const PhysicsVehicle& vehicle = world_.vehicles()[row.vehicle];
   const Vec3& p = row.world_from_body.position_m;
   fmt::format_to(std::back_inserter(out), "{:.9g},{}", row.time_s, vehicle.name);
   append_motion(out, row.world_from_body, row.velocity, row.current_m_s, row.wanted.position_m);
@@ -193,105 +214,103 @@ void append_row(std::string& out, const PhysicsWorld& world, const DiveRow& row,
                        glm::distance(p, row.wanted.position_m)});
   fmt::format_to(std::back_inserter(out), ",{},{},{},{}", row.waypoint, row.arrived,
                  row.near_points, row.touched_steps);
-  for (std::size_t i = 0; i < thrusters; ++i) {
+  for (std::size_t i = 0; i < columns_->thrusters; ++i) {
     if (i < vehicle.vehicle.thruster_count)
       append_numbers(out, {row.command_n[i], row.force_n[i]});
     else
       out += ",,";
   }
-  for (const SensorColumns& sensor : kSensorColumns)
-    if (any_has(world, sensor))
-      append_readings(out, sensor, sensor.has(vehicle.file.sensors) ? &row.readings : nullptr);
-  if (any_navigates(world)) append_estimate(out, row);
-  if (!world.humans().empty()) append_empty(out, cells_of(kHumanColumns));
-  append_end(out, world, row.silent, row.hash);
+  for (const std::size_t i : columns_->sensors) {
+    const SensorColumns& sensor = kSensorColumns[i];
+    append_readings(out, sensor, sensor.has(vehicle.file.sensors) ? &row.readings : nullptr);
+  }
+  if (columns_->estimate) append_estimate(out, row);
+  if (columns_->humans) append_empty(out, cells_of(kHumanColumns));
+  append_end(out, row.silent, row.hash);
 }
 
-void append_human(std::string& out, const PhysicsWorld& world, const HumanRow& row,
-                  std::size_t thrusters) {
+void DiveCsv::append(std::string& out, const HumanRow& row) const {
   const Vec3& p = row.world_from_body.position_m;
   const Vec3 wanted = rov::world_from_ned(row.goal.target_ned_m);
-  fmt::format_to(std::back_inserter(out), "{:.9g},{}", row.time_s, world.humans()[row.human].name);
+  fmt::format_to(std::back_inserter(out), "{:.9g},{}", row.time_s, world_.humans()[row.human].name);
   append_motion(out, row.world_from_body, row.velocity, row.current_m_s, wanted);
   fmt::format_to(std::back_inserter(out), ",,{:.9g},{},{},{},{}", glm::distance(p, wanted),
                  row.arrived, row.arrived, row.near_points, row.touched_steps);
-  append_empty(out, static_cast<std::ptrdiff_t>(2 * thrusters));
-  for (const SensorColumns& sensor : kSensorColumns)
-    if (any_has(world, sensor)) append_empty(out, cells_of(sensor.names));
-  if (any_navigates(world)) append_empty(out, cells_of(kEstimateColumns));
+  append_empty(out, static_cast<std::ptrdiff_t>(2 * columns_->thrusters));
+  for (const std::size_t i : columns_->sensors)
+    append_empty(out, cells_of(kSensorColumns[i].names));
+  if (columns_->estimate) append_empty(out, cells_of(kEstimateColumns));
   const diver::GasReading& gas = row.gas;
   const diver::DiveComputerView& deco = row.ascent.view;
   const diver::VitalState& vitals = row.vitals;
   const diver::RiskProxies& risk = vitals.risk;
   const Vec3 gaze = rov::world_from_ned(vitals.gaze_ned);
-  append_cells(out, {static_cast<double>(row.tank),
-                     1e-5 * gas.tank_pa,
-                     gas.remaining_s / 60.0,
-                     gas.ventilation_l_min,
-                     gas.breaths_min,
-                     1e3 * row.lungs_m3,
-                     1e3 * gas.jacket_m3,
-                     row.net_weight_n,
-                     static_cast<double>(row.buttons),
-                     row.kick_hz,
-                     row.limb_power_w,
-                     row.oxygen_l_min,
-                     deco.ceiling_m,
-                     deco.no_stop_min,
-                     deco.stop_m,
-                     deco.stop_min,
-                     deco.to_surface_min,
-                     deco.po2_bar,
-                     deco.density_g_l,
-                     row.cns_percent,
-                     row.otu,
-                     deco.ascent_m_min,
-                     static_cast<double>(deco.alarm),
-                     deco.ceiling_violated ? 1.0 : 0.0,
-                     vitals.heart_bpm,
-                     vitals.pause_s,
-                     gaze.x,
-                     gaze.y,
-                     gaze.z,
-                     static_cast<double>(vitals.measured),
-                     risk.co2_mmhg,
-                     risk.narcotic_depth_m,
-                     static_cast<double>(risk.co2),
-                     static_cast<double>(risk.narcosis),
-                     static_cast<double>(risk.gas_density),
-                     static_cast<double>(risk.breathing),
-                     static_cast<double>(risk.oxygen),
-                     row.out_of_gas_s,
-                     row.ascent.needed_l,
-                     row.ascent.there_l,
-                     static_cast<double>(row.ascent.too_small)});
-  append_end(out, world, row.silent, row.hash);
+  const double cells[] = {static_cast<double>(row.tank),
+                          1e-5 * gas.tank_pa,
+                          gas.remaining_s / 60.0,
+                          gas.ventilation_l_min,
+                          gas.breaths_min,
+                          1e3 * row.lungs_m3,
+                          1e3 * gas.jacket_m3,
+                          row.net_weight_n,
+                          static_cast<double>(row.buttons),
+                          row.kick_hz,
+                          row.limb_power_w,
+                          row.oxygen_l_min,
+                          100.0 * row.reserve_share,
+                          deco.ceiling_m,
+                          deco.no_stop_min,
+                          deco.stop_m,
+                          deco.stop_min,
+                          deco.to_surface_min,
+                          deco.po2_bar,
+                          deco.density_g_l,
+                          row.cns_percent,
+                          row.otu,
+                          deco.ascent_m_min,
+                          static_cast<double>(deco.alarm),
+                          deco.ceiling_violated ? 1.0 : 0.0,
+                          vitals.heart_bpm,
+                          vitals.pause_s,
+                          gaze.x,
+                          gaze.y,
+                          gaze.z,
+                          static_cast<double>(vitals.measured),
+                          risk.co2_mmhg,
+                          risk.narcotic_depth_m,
+                          static_cast<double>(risk.co2),
+                          static_cast<double>(risk.narcosis),
+                          static_cast<double>(risk.gas_density),
+                          static_cast<double>(risk.breathing),
+                          static_cast<double>(risk.oxygen),
+                          row.out_of_gas_s,
+                          row.ascent.needed_l,
+                          row.ascent.there_l,
+                          static_cast<double>(row.ascent.too_small)};
+  append_cells(out, cells);
+  append_end(out, row.silent, row.hash);
 }
 
-}  // namespace
-
-std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows,
-                   const std::vector<HumanRow>& human_rows) {
-  std::size_t thrusters = 0;
-  for (const PhysicsVehicle& vehicle : world.vehicles())
-    thrusters = std::max<std::size_t>(thrusters, vehicle.vehicle.thruster_count);
+std::string DiveCsv::heading() const {
   std::string out = kColumns;
-  for (std::size_t i = 1; i <= thrusters; ++i)
+  for (std::size_t i = 1; i <= columns_->thrusters; ++i)
     out += fmt::format(",command_{}_n,thrust_{}_n", i, i);
-  for (const SensorColumns& sensor : kSensorColumns)
-    if (any_has(world, sensor)) out += sensor.names;
-  if (any_navigates(world)) out += kEstimateColumns;
-  if (!world.humans().empty()) out += kHumanColumns;
-  if (!world.sources().empty()) out += ",silent";
-  out += ",hash\n";
-  std::size_t human = 0;
+  for (const std::size_t i : columns_->sensors) out += kSensorColumns[i].names;
+  if (columns_->estimate) out += kEstimateColumns;
+  if (columns_->humans) out += kHumanColumns;
+  if (columns_->silent) out += ",silent";
+  return out + ",hash\n";
+}
+
+std::string DiveCsv::lines(const DiveRows& rows) const {
+  std::string out;
+  auto human = rows.humans.begin();
   const auto humans_until = [&](double time_s) {
-    for (; human < human_rows.size() && human_rows[human].time_s < time_s; ++human)
-      append_human(out, world, human_rows[human], thrusters);
+    for (; human != rows.humans.end() && human->time_s < time_s; ++human) append(out, *human);
   };
-  for (const DiveRow& row : rows) {
+  for (const DiveRow& row : rows.vehicles) {
     humans_until(row.time_s);
-    append_row(out, world, row, thrusters);
+    append(out, row);
   }
   humans_until(std::numeric_limits<double>::infinity());
   return out;

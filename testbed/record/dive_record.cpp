@@ -28,6 +28,15 @@ bool due(double rows_a_step, std::uint64_t step) {
 
 }  // namespace
 
+void append(DiveRows& to, const DiveRows& more) {
+  to.vehicles.insert(to.vehicles.end(), more.vehicles.begin(), more.vehicles.end());
+  to.humans.insert(to.humans.end(), more.humans.begin(), more.humans.end());
+}
+
+std::size_t bytes_of(const DiveRows& rows) {
+  return rows.vehicles.size() * sizeof(DiveRow) + rows.humans.size() * sizeof(HumanRow);
+}
+
 DiveRecorder::DiveRecorder(const PhysicsWorld& world, const RecordOptions& options)
     : world_(world),
       options_(options),
@@ -70,6 +79,11 @@ DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState
   return row;
 }
 
+void DiveRecorder::clear_rows() {
+  rows_.vehicles.clear();
+  rows_.humans.clear();
+}
+
 void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
   for (std::size_t i = 0; i < figures_.size(); ++i) {
     const VehicleState &now = snapshot.state.vehicles()[i], &before = last_.vehicles()[i];
@@ -89,9 +103,12 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
           std::max(figures.largest_navigation_error_m.value_or(0.0), *figures.navigation_error_m);
     }
     figures.largest_tilt_rad = std::max(figures.largest_tilt_rad, tilt_of(now.body.attitude));
-    if (options_.rows && row_due(i, snapshot.step)) rows_.push_back(row_of(i, snapshot));
+    if (options_.rows && row_due(i, snapshot.step)) rows_.vehicles.push_back(row_of(i, snapshot));
   }
-  humans_.add(snapshot, options_.rows && human_row_due(snapshot.step));
+  humans_.add(snapshot);
+  if (options_.rows && human_row_due(snapshot.step))
+    for (std::size_t i = 0; i < humans_.figures().size(); ++i)
+      rows_.humans.push_back(human_row(world_, i, snapshot));
   last_ = snapshot.state;
   begun_ = true;
 }

@@ -1,8 +1,7 @@
-// The record of a simulation, kept as it goes: a row of numbers each control period, and
+// The record of a simulation, made as it goes: a row of numbers each control period, and
 // figures of the whole. One thread: the one that steps.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "testbed/record/human_record.hpp"
@@ -11,7 +10,7 @@
 namespace neritic::testbed {
 
 struct RecordOptions {
-  bool rows = false;         // keep rows
+  bool rows = false;         // make rows
   double row_rate_hz = 0.0;  // 0: one each control period, of divers ten a second
 };
 
@@ -40,6 +39,15 @@ struct DiveFigures {
   std::optional<double> navigation_error_m, largest_navigation_error_m;
 };
 
+// Each list in the order of time.
+struct DiveRows {
+  std::vector<DiveRow> vehicles;
+  std::vector<HumanRow> humans;
+  bool empty() const { return vehicles.empty() && humans.empty(); }
+};
+void append(DiveRows& to, const DiveRows& more);
+std::size_t bytes_of(const DiveRows& rows);
+
 class DiveRecorder {
  public:
   DiveRecorder(const PhysicsWorld& world, const RecordOptions& options);
@@ -47,7 +55,9 @@ class DiveRecorder {
   // Each step's result in turn, the start first.
   void add(const sim::Snapshot<PhysicsState>& snapshot);
 
-  const std::vector<DiveRow>& rows() const { return rows_; }
+  // The rows of the steps since they were last cleared: whoever makes rows clears them.
+  const DiveRows& rows() const { return rows_; }
+  void clear_rows();
   const std::vector<DiveFigures>& figures() const { return figures_; }
   const HumanRecorder& humans() const { return humans_; }
 
@@ -58,18 +68,11 @@ class DiveRecorder {
 
   const PhysicsWorld& world_;
   RecordOptions options_;
-  std::vector<DiveRow> rows_;
+  DiveRows rows_;
   std::vector<DiveFigures> figures_;
   PhysicsState last_;
   bool begun_ = false;
   HumanRecorder humans_;
 };
-
-// Rows as a table with a heading, in the order of time; world axes, degrees, body axes forward,
-// starboard, down. It has the thrusters of the vehicle with most, and the sensors that any vehicle
-// has; what a vehicle has not, or has not heard yet, is empty. Divers have columns of their own:
-// gas, breath, jacket, effort, tissues.
-std::string csv_of(const PhysicsWorld& world, const std::vector<DiveRow>& rows,
-                   const std::vector<HumanRow>& human_rows);
 
 }  // namespace neritic::testbed

@@ -3,55 +3,64 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
-#include "testbed/record/dive_record.hpp"
+#include "testbed/record/csv_log.hpp"
 #include "testbed/record/step_sink.hpp"
+#include "testbed/samples/sample_log.hpp"
 
 namespace neritic::testbed {
 
-// Rows and figures of the dive; the rows as a .csv.
+// Figures of the dive, and its rows for those who take them.
 class DiveLog final : public StepSink {
  public:
-  // csv: empty: no file.
-  DiveLog(const PhysicsWorld& world, const RecordOptions& options, std::filesystem::path csv)
-      : world_(world), recorder_(world, options), csv_(std::move(csv)) {}
+  DiveLog(const PhysicsWorld& world, double row_rate_hz, std::vector<std::unique_ptr<RowSink>> rows)
+      : world_(world),
+        options_{.rows = !rows.empty(), .row_rate_hz = row_rate_hz},
+        recorder_(std::in_place, world, options_),
+        rows_(std::move(rows)) {}
   Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
   Status finish() override;
-  const DiveRecorder& recorder() const { return recorder_; }
+  const DiveRecorder& recorder() const { return *recorder_; }
 
  private:
   const PhysicsWorld& world_;
-  DiveRecorder recorder_;
-  std::filesystem::path csv_;
+  RecordOptions options_;
+  std::optional<DiveRecorder> recorder_;  // begins anew if the run goes back
+  std::uint64_t last_step_ = 0;
+  std::vector<std::unique_ptr<RowSink>> rows_;
 };
 
-// A file that is made of the simulation after the last step.
-class EndFile : public StepSink {
+// The samples that the run uses, and the hash of each state, as they come, the state that it begins
+// with first.
+class RecordingFile final : public StepSink {
  public:
-  EndFile(const PhysicsWorld& world, const PhysicsSimulation& simulation,
-          std::filesystem::path path)
-      : world_(world), simulation_(simulation), path_(std::move(path)) {}
-  Status accept(const sim::Snapshot<PhysicsState>&, std::span<const Sample>) final { return {}; }
-
- protected:
-  const PhysicsWorld& world_;
-  const PhysicsSimulation& simulation_;
-  std::filesystem::path path_;
-};
-
-// The samples that the run used, and the hash of each state. The simulation keeps them itself.
-// Precondition: the simulation keeps its log, and begins at step 0.
-class RecordingFile final : public EndFile {
- public:
-  using EndFile::EndFile;
+  RecordingFile(const PhysicsWorld& world, const SampleInbox& inbox, std::filesystem::path path);
+  Status use(const Sample& sample) override;
+  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
   Status finish() override;
+
+ private:
+  void name_sources();
+
+  const SampleInbox& inbox_;
+  SampleLogWriter log_;
+  QueuedFile<std::string> file_;
 };
 
 // The state after the last step, and the inputs that hold then.
-class StateFile final : public EndFile {
+class StateFile final : public StepSink {
  public:
-  using EndFile::EndFile;
+  StateFile(const PhysicsWorld& world, const PhysicsSimulation& simulation,
+            std::filesystem::path path)
+      : world_(world), simulation_(simulation), path_(std::move(path)) {}
+  Status accept(const sim::Snapshot<PhysicsState>&, std::span<const Sample>) override { return {}; }
   Status finish() override;
+
+ private:
+  const PhysicsWorld& world_;
+  const PhysicsSimulation& simulation_;
+  std::filesystem::path path_;
 };
 
 }  // namespace neritic::testbed

@@ -15,9 +15,9 @@ HumanRecorder::HumanRecorder(const PhysicsWorld& world)
     last_tank_.push_back(human.start.human.held.tank);
 }
 
-HumanRow HumanRecorder::row_of(std::size_t index,
-                               const sim::Snapshot<PhysicsState>& snapshot) const {
-  const PhysicsHuman& human = world_.humans()[index];
+HumanRow human_row(const PhysicsWorld& world, std::size_t index,
+                   const sim::Snapshot<PhysicsState>& snapshot) {
+  const PhysicsHuman& human = world.humans()[index];
   const HumanPhysics& state = snapshot.state.humans()[index];
   const diver::RootState& root = state.human.root;
   HumanRow row;
@@ -25,7 +25,7 @@ HumanRow HumanRecorder::row_of(std::size_t index,
   row.human = index;
   row.world_from_body = world_pose(root.position_ned_m, root.attitude);
   row.velocity = root.velocity;
-  row.current_m_s = world_from_ned(world_.current_ned_m_s(root.position_ned_m, snapshot.time_s));
+  row.current_m_s = world_from_ned(world.current_ned_m_s(root.position_ned_m, snapshot.time_s));
   row.goal = swim_goal(human, state);
   row.arrived = state.arrived;
   row.near_points = state.contact.near_points;
@@ -36,6 +36,7 @@ HumanRow HumanRecorder::row_of(std::size_t index,
   row.kick_hz = state.swimmer.effort > 0.05 ? state.swimmer.frequency_hz : 0.0;
   row.limb_power_w = state.human.life.limb_power_w;
   row.oxygen_l_min = state.human.life.lungs.oxygen_l_min;
+  row.reserve_share = diver::reserve_share(human.body.fitness, state.human.life.spent_j);
   row.lungs_m3 = state.human.life.lungs.volume_m3;
   row.net_weight_n = diver::net_weight_n(human.body, state.human);
   row.out_of_gas_s = state.human.life.lungs.unfed_s;
@@ -100,7 +101,7 @@ void HumanRecorder::note_dangers(std::size_t index, const sim::Snapshot<PhysicsS
   f.most_po2_bar = std::max(f.most_po2_bar, po2_bar);
 }
 
-void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row) {
+void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
   if (!begun_) {  // at time 0, or at a restored state
     next_sample_s_ =
         diver::kComputerSample_s * std::ceil(snapshot.time_s / diver::kComputerSample_s - 1e-9);
@@ -121,7 +122,6 @@ void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot, bool row) {
     figures.shallowest_m = std::min(figures.shallowest_m, root.position_ned_m.z);
     note_tank(i, snapshot);
     if (sample) note_dangers(i, snapshot);
-    if (row) rows_.push_back(row_of(i, snapshot));
   }
   begun_ = true;
 }

@@ -1,4 +1,4 @@
-// The record of divers, kept as a run goes: rows of numbers, and figures of the whole. One thread:
+// The record of divers, made as a run goes: rows of numbers, and figures of the whole. One thread:
 // the one that steps.
 #pragma once
 
@@ -20,7 +20,8 @@ struct HumanRow {
   Vec3 current_m_s{0.0};
   diver::SwimGoal goal;
   std::uint64_t arrived = 0, near_points = 0, touched_steps = 0, buttons = 0, tank = 0, refused = 0;
-  double kick_hz = 0.0, limb_power_w = 0.0, oxygen_l_min = 0.0, lungs_m3 = 0.0, net_weight_n = 0.0;
+  double kick_hz = 0.0, limb_power_w = 0.0, oxygen_l_min = 0.0, reserve_share = 1.0, lungs_m3 = 0.0,
+         net_weight_n = 0.0;
   diver::GasReading gas;
   std::array<double, diver::kMaxTanks> tank_pa{};  // of each
   double out_of_gas_s = 0.0;                       // since nothing came to breathe; 0 while it does
@@ -54,23 +55,23 @@ struct HumanFigures {
   std::vector<TankChange> tank_changes;
 };
 
+HumanRow human_row(const PhysicsWorld& world, std::size_t human,
+                   const sim::Snapshot<PhysicsState>& snapshot);
+
 class HumanRecorder {
  public:
   explicit HumanRecorder(const PhysicsWorld& world);
 
-  // Each step's result in turn, the start first; row: whether to keep one.
-  void add(const sim::Snapshot<PhysicsState>& snapshot, bool row);
+  // Each step's result in turn, the start first.
+  void add(const sim::Snapshot<PhysicsState>& snapshot);
 
-  const std::vector<HumanRow>& rows() const { return rows_; }
   const std::vector<HumanFigures>& figures() const { return figures_; }
 
  private:
   void note_tank(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot);
   void note_dangers(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot);
-  HumanRow row_of(std::size_t human, const sim::Snapshot<PhysicsState>& snapshot) const;
 
   const PhysicsWorld& world_;
-  std::vector<HumanRow> rows_;
   std::vector<HumanFigures> figures_;
   std::vector<Vec3> last_ned_m_;
   std::vector<std::uint64_t> last_tank_;

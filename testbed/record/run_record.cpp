@@ -2,31 +2,27 @@
 
 namespace neritic::testbed {
 
-SampleLog recorded_run(const PhysicsWorld& world, const PhysicsSimulation& simulation) {
-  const PhysicsSimulation::Log& log = simulation.log();
-  NERITIC_CHECK(log.first_step == 0, "the log begins at step {}", log.first_step);
-  SampleLog out{
-      log.step_s, log.seed,  logged_streams(world.streams()), simulation.inbox().source_names(),
-      {},         log.hashes};
-  out.entries.reserve(log.entries.size());
-  for (const auto& entry : log.entries) out.entries.push_back({entry.step, entry.message});
-  return out;
-}
-
-Result<RecordedSource> source_of(const PhysicsWorld& world, SampleLog log,
-                                 const std::string& name) {
+Result<RecordedSource> source_of(const PhysicsWorld& world, SampleLog log, const std::string& name,
+                                 std::uint64_t start_step) {
   if (log.step_s != world.step_s())
     return bad_input("{}: steps of {} s; accepted: {} s, as in the scene", name, log.step_s,
                      world.step_s());
-  return RecordedSource::create(std::move(log), world.streams(), name);
+  return RecordedSource::create(std::move(log), world.streams(), name, start_step);
 }
 
 Status RecordingCheck::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) {
-  if (step.step >= hashes_.size()) return {};
-  if (step.hash != hashes_[step.step])
+  if (step.step < start_step_ || step.step - start_step_ >= hashes_.size()) return {};
+  const std::uint64_t at = step.step - start_step_;
+  if (step.hash != hashes_[at] && at == 0)
+    return bad_input(
+        "{}: begins at another state; accepted: the scene that was recorded, and --restore with "
+        "the "
+        "state that lies beside a recording begun in mid-run",
+        name_);
+  if (step.hash != hashes_[at])
     return failure(ErrorCode::kUnsupported, "{}: another state than recorded from step {} of {} on",
-                   name_, step.step, hashes_.size() - 1);
-  equal_ = step.step;
+                   name_, at, hashes_.size() - 1);
+  equal_ = at;
   return {};
 }
 

@@ -1,5 +1,5 @@
-// A run as a log of the samples that it used, and back: what `--record` writes and `--replay`
-// reads. Pure functions; any thread while the simulation rests.
+// The log of a run's samples as a source of another run, and the comparison of their states: what
+// `--replay` does. Pure functions; any thread while the simulation rests.
 #pragma once
 
 #include "testbed/record/step_sink.hpp"
@@ -8,19 +8,18 @@
 
 namespace neritic::testbed {
 
-// Precondition: the simulation keeps its log, and began at step 0.
-SampleLog recorded_run(const PhysicsWorld& world, const PhysicsSimulation& simulation);
-
 // The samples of a log as a source for this world. kBadInput for a log of another step or with
-// samples of other streams. name stands in messages.
-Result<RecordedSource> source_of(const PhysicsWorld& world, SampleLog log, const std::string& name);
+// samples of other streams. name stands in messages. start_step: of the run, where the log begins.
+Result<RecordedSource> source_of(const PhysicsWorld& world, SampleLog log, const std::string& name,
+                                 std::uint64_t start_step = 0);
 
 // Compares each state with the recorded one, as long as the recording lasts.
 class RecordingCheck final : public StepSink {
  public:
-  // Borrows the hashes, of each state from step 0 on.
-  RecordingCheck(std::span<const std::uint64_t> hashes, std::string name)
-      : hashes_(hashes), name_(std::move(name)) {}
+  // Borrows the hashes, of each state from start_step on.
+  RecordingCheck(std::span<const std::uint64_t> hashes, std::string name,
+                 std::uint64_t start_step = 0)
+      : hashes_(hashes), name_(std::move(name)), start_step_(start_step) {}
   // kUnsupported from the first state on that differs.
   Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
   Status finish() override { return {}; }
@@ -29,7 +28,8 @@ class RecordingCheck final : public StepSink {
  private:
   std::span<const std::uint64_t> hashes_;
   std::string name_;
-  std::uint64_t equal_ = 0;  // the newest step that was compared
+  std::uint64_t start_step_ = 0;
+  std::uint64_t equal_ = 0;  // steps that were compared
 };
 
 }  // namespace neritic::testbed

@@ -21,7 +21,7 @@ std::string change_words(const GroupState& before, const GroupState& now,
   return authority_words(words, sources);
 }
 
-// Group: DiverGroup or VehicleGroup.
+// Group: DiverGroup, VehicleGroup or ObjectGroup.
 template <class Group, class Groups>
 void tell_changes(double time_s, const std::string& name, const SampleInbox& inbox,
                   const Groups& groups, Groups& before, const SourceWatch::Tell& tell) {
@@ -40,7 +40,8 @@ SourceWatch::SourceWatch(const PhysicsWorld& world, const SampleInbox& inbox, Te
       inbox_(inbox),
       tell_(std::move(tell)),
       vehicles_(world.vehicles().size()),
-      humans_(world.humans().size()) {
+      humans_(world.humans().size()),
+      objects_(world.objects().size()) {
   // The scene's own choices are no news.
   for (std::size_t i = 0; i < vehicles_.size(); ++i)
     for (std::size_t k = 0; k < kVehicleGroups; ++k)
@@ -48,6 +49,9 @@ SourceWatch::SourceWatch(const PhysicsWorld& world, const SampleInbox& inbox, Te
   for (std::size_t i = 0; i < humans_.size(); ++i)
     for (std::size_t k = 0; k < kDiverGroups; ++k)
       humans_[i][k] = next_group({}, world.start_inputs().humans()[i].control[k], 0, 0.0);
+  for (std::size_t i = 0; i < objects_.size(); ++i)
+    for (std::size_t k = 0; k < kObjectGroups; ++k)
+      objects_[i][k] = next_group({}, world.start_inputs().objects()[i].control[k], 0, 0.0);
 }
 
 Status SourceWatch::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) {
@@ -58,6 +62,9 @@ Status SourceWatch::accept(const sim::Snapshot<PhysicsState>& step, std::span<co
   for (std::size_t i = 0; i < humans_.size(); ++i)
     tell_changes<DiverGroup>(step.time_s, world_.humans()[i].name, inbox_,
                              step.state.humans()[i].groups, humans_[i], tell_);
+  for (std::size_t i = 0; i < objects_.size(); ++i)
+    tell_changes<ObjectGroup>(step.time_s, world_.objects()[i].name, inbox_,
+                              step.state.objects()[i].groups, objects_[i], tell_);
   return {};
 }
 

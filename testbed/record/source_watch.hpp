@@ -27,6 +27,7 @@ class SourceWatch final : public StepSink {
   Tell tell_;
   std::vector<std::array<GroupState, kVehicleGroups>> vehicles_;  // as last told
   std::vector<std::array<GroupState, kDiverGroups>> humans_;
+  std::vector<std::array<GroupState, kObjectGroups>> objects_;
 };
 
 }  // namespace neritic::testbed

@@ -17,13 +17,22 @@ std::vector<StreamId> streams_of(const std::vector<StepSink*>& sinks) {
 StepSinks::StepSinks(const PhysicsWorld& world, std::vector<StepSink*> sinks)
     : sinks_(std::move(sinks)), outputs_(world, streams_of(sinks_)) {}
 
-void StepSinks::accept(const sim::Snapshot<PhysicsState>& step) {
-  const std::span<const Sample> outputs = outputs_.of(step);
+template <class Give>
+void StepSinks::give(Give&& give) {
   for (StepSink* sink : sinks_) {
     if (failed_) return;
-    status_ = sink->accept(step, outputs);
+    status_ = give(*sink);
     failed_ = !status_.ok();
   }
+}
+
+void StepSinks::use(const Sample& sample) {
+  give([&](StepSink& sink) { return sink.use(sample); });
+}
+
+void StepSinks::accept(const sim::Snapshot<PhysicsState>& step) {
+  const std::span<const Sample> outputs = outputs_.of(step);
+  give([&](StepSink& sink) { return sink.accept(step, outputs); });
 }
 
 Status StepSinks::finish() {

@@ -16,6 +16,8 @@ class StepSink {
   virtual ~StepSink() = default;
   // The streams whose samples it takes beside the states, asked once. Others cost nothing.
   virtual std::vector<StreamId> streams() const { return {}; }
+  // The stepping thread. Each sample that the next step uses, in their order.
+  virtual Status use(const Sample&) { return {}; }
   // The stepping thread. Each step's state in turn, the start (or the restored state) first.
   // outputs: the samples that are due at this step, of the streams of all sinks. An Error ends the
   // run.
@@ -31,18 +33,22 @@ class StepSinks {
   // Borrows the world and the sinks.
   StepSinks(const PhysicsWorld& world, std::vector<StepSink*> sinks);
 
-  // The stepping thread.
+  // The stepping thread, as the sinks want them.
+  void use(const Sample& sample);
   void accept(const sim::Snapshot<PhysicsState>& step);
   // Any thread.
   bool failed() const { return failed_; }
   // The owner's thread, after the last step. Finishes every sink, also where one of them fails.
-  // Returns the first failure, of accept too.
+  // Returns the first failure, of use and accept too.
   Status finish();
 
  private:
+  template <class Give>
+  void give(Give&& give);
+
   std::vector<StepSink*> sinks_;
   OutputSamples outputs_;
-  Status status_;  // of accept
+  Status status_;  // of use and accept
   std::atomic<bool> failed_{false};
 };
 

@@ -27,6 +27,10 @@ std::string_view name_of(VehicleGroup group) {
   return kVehicleGroupNames.at(static_cast<std::size_t>(group));
 }
 
+std::string_view name_of(ObjectGroup) {
+  return "pose";
+}
+
 std::optional<std::size_t> group_of(PayloadKind kind) {
   const auto diver = [](DiverGroup group) { return static_cast<std::size_t>(group); };
   const auto vehicle = [](VehicleGroup group) { return static_cast<std::size_t>(group); };
@@ -54,6 +58,8 @@ std::optional<std::size_t> group_of(PayloadKind kind) {
       return vehicle(VehicleGroup::kSetpoint);
     case PayloadKind::kFault:
       return vehicle(VehicleGroup::kFault);
+    case PayloadKind::kObjectPose:
+      return static_cast<std::size_t>(ObjectGroup::kPose);
     default:
       return std::nullopt;
   }

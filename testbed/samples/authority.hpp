@@ -15,8 +15,8 @@
 namespace neritic::testbed {
 
 enum class Authority : std::uint64_t {
-  kNobody,     // the group rests: limbs keep their posture, no button is pressed
-  kAutopilot,  // the swimmer, the mission, the effort's own breath and heart
+  kNobody,     // the group rests: limbs keep their posture, no button is pressed, objects stay
+  kAutopilot,  // the swimmer, the mission, the effort's own breath and heart, an object's track
   kRecording,  // a file of the scene
   kLive,       // samples of one source
 };
@@ -36,8 +36,11 @@ enum class DiverGroup : std::uint64_t {
 inline constexpr std::size_t kDiverGroups = 8;
 enum class VehicleGroup : std::uint64_t { kWrench, kSetpoint, kFault };
 inline constexpr std::size_t kVehicleGroups = 3;
+enum class ObjectGroup : std::uint64_t { kPose };
+inline constexpr std::size_t kObjectGroups = 1;
 std::string_view name_of(DiverGroup group);
 std::string_view name_of(VehicleGroup group);
+std::string_view name_of(ObjectGroup group);
 // The group that a kind of sample feeds, as its number; none for outputs and events.
 std::optional<std::size_t> group_of(PayloadKind kind);
 
@@ -48,6 +51,7 @@ inline constexpr double kHoldForever_s = 1e9;
 inline constexpr std::array<double, kDiverGroups> kDiverHold_s{0.5, 0.5,  0.5,  1.0,
                                                                0.5, 30.0, 10.0, kHoldForever_s};
 inline constexpr std::array<double, kVehicleGroups> kVehicleHold_s{0.5, 0.5, kHoldForever_s};
+inline constexpr std::array<double, kObjectGroups> kObjectHold_s{0.5};
 
 // The source that a group is to listen to, and the samples that came for it.
 struct GroupControl {

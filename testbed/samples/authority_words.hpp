@@ -16,8 +16,8 @@ std::string authority_words(const GroupState& state, const std::vector<std::stri
 // instead; samples of other sources are not used. Empty: none.
 std::string trouble_words(const GroupState& state, const std::vector<std::string>& sources);
 
-// A line a group in trouble, "diver: body: suit is silent, autopilot acts". Group: DiverGroup or
-// VehicleGroup.
+// A line a group in trouble, "diver: body: suit is silent, autopilot acts". Group: DiverGroup,
+// VehicleGroup or ObjectGroup.
 template <class Group, class Groups>
 void add_trouble(const std::string& name, const Groups& groups,
                  const std::vector<std::string>& sources, std::vector<std::string>& lines) {

@@ -45,6 +45,9 @@ DiverInputs autopilot_diver() {
 VehicleInputs autopilot_vehicle() {
   return all_autopilot<VehicleInputs>(kVehicleHold_s);
 }
+ObjectInputs autopilot_object() {
+  return all_autopilot<ObjectInputs>(kObjectHold_s);
+}
 
 bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step, std::uint64_t recorded) {
   if (const Event* event = std::get_if<Event>(&sample.payload))
@@ -71,6 +74,16 @@ bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step) {
   take(sample, inputs.wrench);
   take(sample, inputs.setpoint);
   take(sample, inputs.fault);
+  return true;
+}
+
+bool apply(ObjectInputs& inputs, const Sample& sample, std::uint64_t step) {
+  if (const Event* event = std::get_if<Event>(&sample.payload))
+    return apply_event(inputs, *event, 0);
+  if (!heard(inputs, sample, step)) return false;
+  const GroupControl& control = inputs.control.front();
+  if (control.heard == 1) inputs.track = {};  // another source's poses say nothing of this one's
+  inputs.track.take(std::get<ObjectPose>(sample.payload), sample.header, control.hold_s);
   return true;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "testbed/samples/authority.hpp"
+#include "testbed/samples/pose_track.hpp"
 
 namespace neritic::testbed {
 
@@ -62,15 +63,30 @@ struct VehicleInputs {
   }
 };
 
+// Of an object that devices move.
+struct ObjectInputs {
+  std::array<GroupControl, kObjectGroups> control;
+  PoseTrack track;
+  std::uint64_t refused_events = 0;  // that name no group, authority or recording
+
+  static void fields(auto&& field, auto& self) {
+    field("control", self.control);
+    field("track", self.track);
+    field("refused_events", self.refused_events);
+  }
+};
+
 // Everything under the autopilot, with each group's own hold time.
 DiverInputs autopilot_diver();
 VehicleInputs autopilot_vehicle();
+ObjectInputs autopilot_object();
 
 // Puts a sample that arrived before `step` into its group if its source has the authority. An event
 // sets an authority. False if it changed nothing; the group or `refused_events` counts it then.
-// recorded: bit i: the scene has a file for group i; a vehicle has none.
+// recorded: bit i: the scene has a file for group i; others have none.
 bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step,
            std::uint64_t recorded = 0);
 bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step);
+bool apply(ObjectInputs& inputs, const Sample& sample, std::uint64_t step);
 
 }  // namespace neritic::testbed

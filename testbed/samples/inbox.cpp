@@ -22,12 +22,21 @@ void count(SampleVerdict verdict, SourceCounts& counts) {
     case SampleVerdict::kNotFinite:
       ++counts.not_finite;
       break;
+    case SampleVerdict::kNotPlausible:
+      ++counts.not_plausible;
+      break;
     case SampleVerdict::kNotOfStream:
       ++counts.not_of_stream;
       break;
     case SampleVerdict::kUnknownSource:
       break;  // no source to count it by
   }
+}
+
+// A payload by its numbers alone.
+SampleVerdict content_of(const Payload& payload) {
+  if (!all_finite(payload)) return SampleVerdict::kNotFinite;
+  return plausible(payload) ? SampleVerdict::kAccepted : SampleVerdict::kNotPlausible;
 }
 
 }  // namespace
@@ -57,7 +66,7 @@ Result<SourceId> SampleInbox::open(const std::string& name, TimeNs max_age_ns) {
   return static_cast<SourceId>(sources_.size() - 1);
 }
 
-SampleVerdict SampleInbox::check(const Sample& sample, bool finite, Source& source) {
+SampleVerdict SampleInbox::check(const Sample& sample, SampleVerdict content, Source& source) {
   const SampleHeader& header = sample.header;
   if (header.stream >= streams_.size() || streams_[header.stream].kind != sample.kind() ||
       !enters(sample.kind()))
@@ -65,12 +74,13 @@ SampleVerdict SampleInbox::check(const Sample& sample, bool finite, Source& sour
   const bool late = header.captured_ns < header.arrived_ns - source.max_age_ns ||
                     header.captured_ns > header.arrived_ns + kMaxAhead_ns;
   // The number counts as come, whatever becomes of the sample; its capture time only if it is good.
+  const bool good = content == SampleVerdict::kAccepted;
   const auto found = source.tracks[header.stream].sequence.take(header.sequence, header.captured_ns,
-                                                                finite && !late);
+                                                                good && !late);
   source.counts.lost += found.missing;
   if (found.was_missing) --source.counts.lost;
   if (found.verdict != SampleVerdict::kAccepted) return found.verdict;
-  if (!finite) return SampleVerdict::kNotFinite;
+  if (!good) return content;
   return late ? SampleVerdict::kLate : SampleVerdict::kAccepted;
 }
 
@@ -92,14 +102,14 @@ void SampleInbox::store(const Sample& sample) {
 }
 
 SampleVerdict SampleInbox::push(const Sample& sample) {
-  const bool finite = all_finite(sample.payload);
+  const SampleVerdict content = content_of(sample.payload);
   const std::lock_guard lock(mutex_);
   if (sample.header.source >= sources_.size()) {
     ++unknown_sources_;
     return SampleVerdict::kUnknownSource;
   }
   Source& source = sources_[sample.header.source];
-  const SampleVerdict verdict = check(sample, finite, source);
+  const SampleVerdict verdict = check(sample, content, source);
   count(verdict, source.counts);
   if (verdict == SampleVerdict::kAccepted) store(sample);
   return verdict;

@@ -3,7 +3,8 @@
 // The inbox takes `capacity` samples between two drains. After that it keeps the newest sample of
 // each source and stream and counts those that it replaces, so that a burst costs old values, never
 // the newest one, and a drain never returns more than twice the capacity. Samples that are lost,
-// late, repeated, out of order or not finite are counted by source; only accepted ones are drained.
+// late, repeated, out of order, not finite or not plausible are counted by source; only accepted
+// ones are drained.
 #pragma once
 
 #include <atomic>
@@ -21,10 +22,11 @@ struct SourceCounts {
   std::uint64_t accepted = 0;
   std::uint64_t dropped = 0;  // accepted, then replaced by newer ones while the inbox was full
   std::uint64_t lost = 0;     // sequence numbers that never came
-  std::uint64_t late = 0, repeated = 0, out_of_order = 0, not_finite = 0, not_of_stream = 0;
+  std::uint64_t late = 0, repeated = 0, out_of_order = 0, not_finite = 0, not_plausible = 0;
+  std::uint64_t not_of_stream = 0;
 
   std::uint64_t refused() const {
-    return late + repeated + out_of_order + not_finite + not_of_stream;
+    return late + repeated + out_of_order + not_finite + not_plausible + not_of_stream;
   }
 };
 
@@ -73,7 +75,7 @@ class SampleInbox {
     std::vector<Track> tracks;  // by stream
   };
 
-  SampleVerdict check(const Sample& sample, bool finite, Source& source);
+  SampleVerdict check(const Sample& sample, SampleVerdict content, Source& source);
   void store(const Sample& sample);
 
   const StreamTable& streams_;

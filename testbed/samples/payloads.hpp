@@ -41,8 +41,9 @@ struct HandJoints {
   }
 };
 
-// Left, then right. Axes as a standing person's while the arm hangs at the side: x right, y from
-// the fingers to the wrist, z backwards.
+// Left, then right. Origin at the wrist; axes as a standing person's while the arm hangs at the
+// side: x right, y from the fingers to the wrist, z backwards. The arm bends so that the hand is
+// there.
 struct HandPoses {
   std::array<Pose, 2> world_from_hand{};
   std::uint64_t tracked = 0;  // bit 0 left, bit 1 right: the others' poses mean nothing
@@ -53,11 +54,16 @@ struct HandPoses {
   }
 };
 
-// View axes: x right, y up, z backwards. The neck turns the head so; the trunk carries its place.
+// The middle of the eyes; view axes: x right, y up, z backwards. The neck turns the head so.
 struct HeadPose {
   Pose world_from_head;
+  std::uint64_t placed =
+      0;  // 1: its place counts too, and the spine leans so that the eyes are there
 
-  static void fields(auto&& field, auto& self) { field("world_from_head", self.world_from_head); }
+  static void fields(auto&& field, auto& self) {
+    field("world_from_head", self.world_from_head);
+    field("placed", self.placed);
+  }
 };
 
 struct Gaze {
@@ -128,13 +134,29 @@ struct ThrusterFault {
   static void fields(auto&& field, auto& self) { field("failed", self.failed); }
 };
 
+// Input of an object that devices move: what a motion capture, a boat's receiver or a program
+// measures.
+struct ObjectPose {
+  Pose world_from_object;  // unit rotation
+  // Of the object's origin, world axes; count only if `measured` is 1. Else they follow from poses.
+  Vec3 velocity_m_s{0.0}, angular_velocity_rad_s{0.0};
+  std::uint64_t measured = 0;
+
+  static void fields(auto&& field, auto& self) {
+    field("world_from_object", self.world_from_object);
+    field("velocity_m_s", self.velocity_m_s);
+    field("angular_velocity_rad_s", self.angular_velocity_rad_s);
+    field("measured", self.measured);
+  }
+};
+
 // Something that happens once.
 enum class EventKind : std::uint64_t {
   kSetAuthority,  // `group` is from now on under `authority`, a live one of `source`
 };
 struct Event {
   EventKind kind = EventKind::kSetAuthority;
-  std::uint64_t group = 0;      // DiverGroup or VehicleGroup of the stream's owner (authority.hpp)
+  std::uint64_t group = 0;      // of the stream's owner (authority.hpp): DiverGroup, ...
   std::uint64_t authority = 0;  // Authority
   std::uint64_t source = 0;
   double hold_s = 0.0;  // of a new authority: how long it may be silent; 0: as it was

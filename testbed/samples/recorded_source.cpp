@@ -13,9 +13,9 @@ constexpr double kRounding_s = 1e-9;
 }  // namespace
 
 Result<RecordedSource> RecordedSource::create(SampleLog log, const StreamTable& table,
-                                              std::string name) {
+                                              std::string name, std::uint64_t start_step) {
   NERITIC_TRY_STATUS(check_streams(log, table, name));
-  RecordedSource source(std::move(log), std::move(name));
+  RecordedSource source(std::move(log), std::move(name), start_step);
   for (const SampleLog::LoggedStream& stream : source.log_.streams)
     source.streams_.push_back(table.find(stream.name).value_or(0));  // 0: of no sample
   source.last_.resize(source.log_.sources.size() * source.log_.streams.size());
@@ -72,7 +72,8 @@ Status RecordedSource::poll(SampleInbox& inbox, double scene_time_s) {
   if (sources_.empty()) NERITIC_TRY_STATUS(open_all(inbox));
   for (; !done(); ++next_) {
     const SampleLog::Entry& entry = log_.entries[next_];
-    if (static_cast<double>(entry.step) * log_.step_s > scene_time_s + kRounding_s) break;
+    const auto step = static_cast<double>(start_step_ + entry.step);
+    if (step * log_.step_s > scene_time_s + kRounding_s) break;
     if (enters(entry.sample.kind())) NERITIC_TRY_STATUS(push(inbox, entry));
   }
   return {};

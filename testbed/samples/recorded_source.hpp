@@ -13,8 +13,10 @@ namespace neritic::testbed {
 
 class RecordedSource final : public SampleSource {
  public:
-  // name stands in messages. kBadInput as check_streams.
-  static Result<RecordedSource> create(SampleLog log, const StreamTable& table, std::string name);
+  // name stands in messages. start_step: of this run, where the log begins. kBadInput as
+  // check_streams.
+  static Result<RecordedSource> create(SampleLog log, const StreamTable& table, std::string name,
+                                       std::uint64_t start_step = 0);
 
   // Exact if polled before each step. kBadInput if the inbox refuses a sample of the log.
   Status poll(SampleInbox& inbox, double scene_time_s) override;
@@ -31,13 +33,15 @@ class RecordedSource final : public SampleSource {
     std::uint64_t sequence = 0;
     TimeNs captured_ns = 0;
   };
-  RecordedSource(SampleLog log, std::string name) : log_(std::move(log)), name_(std::move(name)) {}
+  RecordedSource(SampleLog log, std::string name, std::uint64_t start_step)
+      : log_(std::move(log)), name_(std::move(name)), start_step_(start_step) {}
   Status open_all(SampleInbox& inbox);
   Status push(SampleInbox& inbox, const SampleLog::Entry& entry);
   Result<SourceId> open(SampleInbox& inbox, SourceId logged) const;
 
   SampleLog log_;
   std::string name_;
+  std::uint64_t start_step_ = 0;
   std::vector<StreamId> streams_;  // of the scene, by the log's
   std::vector<SourceId> sources_;  // of the inbox, by the log's; empty before the first poll
   std::vector<Last> last_;         // by the log's source and stream

@@ -1,6 +1,8 @@
 #include "testbed/samples/sample.hpp"
 
 #include <array>
+#include <cmath>
+#include <concepts>
 #include <utility>
 
 #include "engine/sim/fields.hpp"
@@ -9,15 +11,54 @@ namespace neritic::testbed {
 namespace {
 
 constexpr std::array<std::string_view, kPayloadKinds> kKindNames{
-    "joints",  "hands",     "hand_poses", "head",      "gaze",   "buttons", "breath", "heart",
-    "gas",     "wrench",    "setpoint",   "fault",     "event",  "imu",     "dvl",    "pressure",
-    "compass", "altimeter", "usbl",       "collision", "motion", "computer"};
+    "joints",   "hands",   "hand_poses", "head",  "gaze",      "buttons", "breath",  "heart",
+    "gas",      "wrench",  "setpoint",   "fault", "pose",      "event",   "imu",     "dvl",
+    "pressure", "compass", "altimeter",  "usbl",  "collision", "motion",  "computer"};
 
 template <std::size_t... index>
 Payload make_payload(std::size_t kind, std::index_sequence<index...>) {
   Payload payload;
   ((kind == index ? void(payload.emplace<index>()) : void()), ...);
   return payload;
+}
+
+// Of the squared length: 32-bit floats, and senders that round to three digits.
+constexpr double kUnitWithin = 2e-3;
+
+bool within(const Vec3& v, double most) {
+  return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
+}
+
+bool unit(const Quat& q) {
+  return std::abs(glm::dot(q, q) - 1.0) <= kUnitWithin;
+}
+
+// The poses and rotations in value, at any depth.
+template <class T>
+bool plausible_in(const T& value) {
+  if constexpr (std::same_as<T, Quat>) {
+    return unit(value);
+  } else if constexpr (std::same_as<T, Pose>) {
+    return within(value.position_m, kFarthest_m) && unit(value.rotation);
+  } else if constexpr (sim::Scalar<T> || std::is_enum_v<T>) {
+    return true;
+  } else {
+    bool good = true;
+    sim::for_each_part(value, [&](const auto&, const auto& part) { good &= plausible_in(part); });
+    return good;
+  }
+}
+
+bool plausible_in(const HandPoses& hands) {
+  for (std::size_t i = 0; i < 2; ++i)
+    if ((hands.tracked >> i & 1) != 0 && !plausible_in(hands.world_from_hand[i])) return false;
+  return true;
+}
+
+bool plausible_in(const ObjectPose& object) {
+  return plausible_in(object.world_from_object) &&
+         (object.measured == 0 || (within(object.velocity_m_s, kFastest) &&
+                                   within(object.angular_velocity_rad_s, kFastest)));
 }
 
 }  // namespace
@@ -34,6 +75,10 @@ Payload empty_payload(PayloadKind kind) {
 
 bool all_finite(const Payload& payload) {
   return std::visit([](const auto& value) { return sim::all_finite(value); }, payload);
+}
+
+bool plausible(const Payload& payload) {
+  return std::visit([](const auto& value) { return plausible_in(value); }, payload);
 }
 
 }  // namespace neritic::testbed

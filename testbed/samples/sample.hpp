@@ -36,11 +36,11 @@ struct SampleHeader {
 };
 
 // The order is that of PayloadKind.
-using Payload =
-    std::variant<BodyJoints, HandJoints, HandPoses, HeadPose, Gaze, JacketButtons, Breath, Heart,
-                 GasSupply, VehicleWrench, VehicleSetpoint, ThrusterFault, Event, rov::ImuReading,
-                 rov::DvlReading, rov::PressureReading, CompassReading, rov::AltimeterReading,
-                 rov::UsblReading, CollisionReading, DiverMotion, ComputerReading>;
+using Payload = std::variant<BodyJoints, HandJoints, HandPoses, HeadPose, Gaze, JacketButtons,
+                             Breath, Heart, GasSupply, VehicleWrench, VehicleSetpoint,
+                             ThrusterFault, ObjectPose, Event, rov::ImuReading, rov::DvlReading,
+                             rov::PressureReading, CompassReading, rov::AltimeterReading,
+                             rov::UsblReading, CollisionReading, DiverMotion, ComputerReading>;
 
 enum class PayloadKind : std::uint32_t {
   kBodyJoints,
@@ -55,6 +55,7 @@ enum class PayloadKind : std::uint32_t {
   kWrench,
   kSetpoint,
   kFault,
+  kObjectPose,
   kEvent,
   kImu,
   kDvl,
@@ -88,5 +89,10 @@ static_assert(std::is_trivially_copyable_v<Sample>);
 Payload empty_payload(PayloadKind kind);
 // Every number is finite.
 bool all_finite(const Payload& payload);
+// Nearer than kFarthest_m, slower than kFastest (m/s or rad/s), and every rotation is a unit
+// quaternion up to the rounding of 32-bit floats. Precondition: all_finite.
+bool plausible(const Payload& payload);
+inline constexpr double kFarthest_m = 4e7;  // the Earth's circumference
+inline constexpr double kFastest = 1e4;
 
 }  // namespace neritic::testbed

@@ -13,10 +13,10 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie");
 
-constexpr std::string_view kMagic = "NRTCLOG2", kOldMagic = "NRTCLOG1";
+constexpr std::string_view kMagic = "NRTCLOG3", kOldMagics[] = {"NRTCLOG1", "NRTCLOG2"};
+constexpr char kSource = 'N', kHash = 'H', kSample = 'S', kEnd = 'E';
 constexpr std::size_t kMaxStreams = 1'000'000, kMaxFields = 4096, kMaxName = 255;
-// The size of a sample without its payload, and that of the shortest stream and source.
-constexpr std::size_t kHeaderBytes = 8 + 4 + 4 + 8 + 8 + 8, kLeastName = 2;
+constexpr std::size_t kLeastName = 2;  // of the shortest stream
 
 // Sums of two such times do not overflow: 36 years.
 constexpr TimeNs kMostTime_ns = TimeNs{1} << 60;
@@ -53,26 +53,15 @@ std::vector<Field> fields_of(PayloadKind kind) {
   return fields;
 }
 
-class Writer {
- public:
-  template <class T>
-  void number(const T& value) {
-    const auto bytes = std::as_bytes(std::span(&value, 1));
-    out_.insert(out_.end(), bytes.begin(), bytes.end());
-  }
-  void text(std::string_view text) {
-    for (const char c : text) number(c);
-  }
-  void name(std::string_view name) {
-    NERITIC_CHECK(!name.empty() && name.size() <= kMaxName, "name '{}'", name);
-    number(static_cast<std::uint8_t>(name.size()));
-    text(name);
-  }
-  std::vector<std::byte> take() { return std::move(out_); }
-
- private:
-  std::vector<std::byte> out_;
-};
+template <class T>
+void put(std::string& out, const T& value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+void put_name(std::string& out, std::string_view name) {
+  NERITIC_CHECK(!name.empty() && name.size() <= kMaxName, "name '{}'", name);
+  put(out, static_cast<std::uint8_t>(name.size()));
+  out += name;
+}
 
 // Reads forward; after the end every number is 0 and whole() is false.
 class Cursor {
@@ -137,8 +126,9 @@ Result<PayloadKind> read_kind(Cursor& cursor, std::size_t index, const std::stri
                    kind_name);
 }
 
-Status read_tables(Cursor& cursor, std::uint32_t kinds, std::uint32_t streams,
-                   std::uint32_t sources, SampleLog& log, const std::string& name) {
+Status read_tables(Cursor& cursor, SampleLog& log, const std::string& name) {
+  const auto kinds = cursor.number<std::uint32_t>(), streams = cursor.number<std::uint32_t>();
+  if (!cursor.whole()) return bad_input("{}: the log's head is cut off", name);
   if (kinds > kPayloadKinds)
     return bad_input("{}: {} kinds of samples; accepted: up to {}", name, kinds, kPayloadKinds);
   std::vector<PayloadKind> kind_of;
@@ -146,10 +136,8 @@ Status read_tables(Cursor& cursor, std::uint32_t kinds, std::uint32_t streams,
     NERITIC_TRY(const PayloadKind kind, read_kind(cursor, i, name));
     kind_of.push_back(kind);
   }
-  if (streams > kMaxStreams || streams > cursor.left() / kLeastName ||
-      sources > cursor.left() / kLeastName)
-    return bad_input("{}: {} streams and {} sources named, the file is shorter", name, streams,
-                     sources);
+  if (streams > kMaxStreams || streams > cursor.left() / kLeastName)
+    return bad_input("{}: {} streams named, the file is shorter", name, streams);
   for (std::uint32_t i = 0; i < streams; ++i) {
     SampleLog::LoggedStream stream{cursor.name(), {}};
     const auto kind = cursor.number<std::uint32_t>();
@@ -158,51 +146,83 @@ Status read_tables(Cursor& cursor, std::uint32_t kinds, std::uint32_t streams,
     stream.kind = kind_of[kind];
     log.streams.push_back(std::move(stream));
   }
-  for (std::uint32_t i = 0; i < sources; ++i) {
-    log.sources.push_back(cursor.name());
-    if (!cursor.whole() || !printable(log.sources.back()))
-      return bad_input("{}: source {} is cut off, or has no name", name, i);
-  }
   return {};
 }
 
-Status read_samples(Cursor& cursor, std::uint64_t samples, std::uint64_t steps, SampleLog& log,
-                    const std::string& name) {
-  if (samples > cursor.left() / kHeaderBytes)
-    return bad_input("{}: {} samples named, the file has room for {}", name, samples,
-                     cursor.left() / kHeaderBytes);
-  std::uint64_t last_step = 0;
-  for (std::uint64_t i = 0; i < samples; ++i) {
-    SampleLog::Entry entry;
-    entry.step = cursor.number<std::uint64_t>();
-    sim::for_each_scalar(entry.sample.header, [&](auto& scalar) {
-      scalar = cursor.number<std::remove_cvref_t<decltype(scalar)>>();
-    });
-    const SampleHeader& header = entry.sample.header;
-    if (!cursor.whole() || header.stream >= log.streams.size() ||
-        header.source >= log.sources.size())
-      return bad_input("{}: sample {} is cut off, or of no stream or source of the file", name, i);
-    if (entry.step < last_step || entry.step >= steps)
-      return bad_input("{}: sample {} is of step {}; accepted: {} to {}", name, i, entry.step,
-                       last_step, steps == 0 ? 0 : steps - 1);
-    last_step = entry.step;
-    if (!plausible(header.captured_ns) || !plausible(header.arrived_ns))
-      return bad_input("{}: sample {} is of {} and {} ns; accepted: up to {} from 0", name, i,
-                       header.captured_ns, header.arrived_ns, kMostTime_ns);
-    entry.sample.payload = empty_payload(log.streams[header.stream].kind);
-    std::visit(
-        [&](auto& value) {
-          sim::for_each_scalar(value, [&](auto& scalar) {
-            scalar = cursor.number<std::remove_cvref_t<decltype(scalar)>>();
-          });
-        },
-        entry.sample.payload);
-    if (!cursor.whole()) return bad_input("{}: sample {} is cut off", name, i);
-    if (!all_finite(entry.sample.payload))
-      return bad_input("{}: sample {}, of {} at step {}, is not finite", name, i,
-                       log.streams[header.stream].name, entry.step);
-    log.entries.push_back(entry);
+Status read_source(Cursor& cursor, SampleLog& log, const std::string& name) {
+  std::string source = cursor.name();
+  if (cursor.whole() && !printable(source))
+    return bad_input("{}: source {} has no name in printable text", name, log.sources.size());
+  if (cursor.whole()) log.sources.push_back(std::move(source));
+  return {};
+}
+
+Status read_sample(Cursor& cursor, SampleLog& log, const std::string& name) {
+  const std::size_t index = log.entries.size();
+  SampleLog::Entry entry;
+  sim::for_each_scalar(entry.sample.header, [&](auto& scalar) {
+    scalar = cursor.number<std::remove_cvref_t<decltype(scalar)>>();
+  });
+  const SampleHeader& header = entry.sample.header;
+  if (!cursor.whole()) return {};
+  if (log.hashes.empty())
+    return bad_input("{}: sample {} comes before the hash of the start", name, index);
+  if (header.stream >= log.streams.size() || header.source >= log.sources.size())
+    return bad_input("{}: sample {} is of no stream or source of the file", name, index);
+  if (!plausible(header.captured_ns) || !plausible(header.arrived_ns))
+    return bad_input("{}: sample {} is of {} and {} ns; accepted: up to {} from 0", name, index,
+                     header.captured_ns, header.arrived_ns, kMostTime_ns);
+  entry.step = log.steps();
+  entry.sample.payload = empty_payload(log.streams[header.stream].kind);
+  std::visit(
+      [&](auto& value) {
+        sim::for_each_scalar(value, [&](auto& scalar) {
+          scalar = cursor.number<std::remove_cvref_t<decltype(scalar)>>();
+        });
+      },
+      entry.sample.payload);
+  if (!cursor.whole()) return {};
+  if (!all_finite(entry.sample.payload))
+    return bad_input("{}: sample {}, of {} at step {}, is not finite", name, index,
+                     log.streams[header.stream].name, entry.step);
+  log.entries.push_back(entry);
+  return {};
+}
+
+Status read_end(Cursor& cursor, const SampleLog& log, const std::string& name) {
+  const auto steps = cursor.number<std::uint64_t>(), samples = cursor.number<std::uint64_t>();
+  if (!cursor.whole()) return {};
+  const auto used = std::ranges::count_if(
+      log.entries, [&](const SampleLog::Entry& entry) { return entry.step < log.steps(); });
+  if (log.hashes.empty() || steps != log.steps() || samples != static_cast<std::uint64_t>(used))
+    return bad_input("{}: its end names {} steps and {} samples; found: {} and {}", name, steps,
+                     samples, log.steps(), used);
+  if (cursor.left() > 0) return bad_input("{}: {} bytes after its end", name, cursor.left());
+  return {};
+}
+
+// Up to the end, or to where the log was cut off.
+Status read_records(Cursor& cursor, SampleLog& log, const std::string& name) {
+  while (cursor.left() > 0) {
+    const char sort = cursor.number<char>();
+    if (sort == kEnd) {
+      NERITIC_TRY_STATUS(read_end(cursor, log, name));
+      log.whole = cursor.whole();
+      return {};
+    }
+    if (sort == kHash) {
+      const auto hash = cursor.number<std::uint64_t>();
+      if (cursor.whole()) log.hashes.push_back(hash);
+    } else if (sort == kSource) {
+      NERITIC_TRY_STATUS(read_source(cursor, log, name));
+    } else if (sort == kSample) {
+      NERITIC_TRY_STATUS(read_sample(cursor, log, name));
+    } else {
+      return bad_input("{}: a record of sort {:#x} found; accepted: N, H, S, E", name,
+                       static_cast<unsigned char>(sort));
+    }
   }
+  log.whole = false;
   return {};
 }
 
@@ -214,44 +234,76 @@ std::vector<SampleLog::LoggedStream> logged_streams(const StreamTable& table) {
   return streams;
 }
 
-std::vector<std::byte> encode_sample_log(const SampleLog& log) {
-  NERITIC_CHECK(!log.hashes.empty(), "a log has at least the hash of its start");
+SampleLogWriter::SampleLogWriter(double step_s, std::uint64_t seed,
+                                 const std::vector<SampleLog::LoggedStream>& streams) {
   std::vector<PayloadKind> kinds;  // of the streams, in their order
   const auto place_of = [&](PayloadKind kind) {
     return static_cast<std::uint32_t>(std::ranges::find(kinds, kind) - kinds.begin());
   };
-  for (const auto& stream : log.streams)
+  for (const auto& stream : streams)
     if (place_of(stream.kind) == kinds.size()) kinds.push_back(stream.kind);
-  Writer out;
-  out.text(kMagic);
-  out.number(log.step_s);
-  out.number(log.seed);
-  out.number(log.steps());
-  out.number(static_cast<std::uint64_t>(log.entries.size()));
-  for (const std::size_t count : {kinds.size(), log.streams.size(), log.sources.size()})
-    out.number(static_cast<std::uint32_t>(count));
+  bytes_ = kMagic;
+  put(bytes_, step_s);
+  put(bytes_, seed);
+  put(bytes_, static_cast<std::uint32_t>(kinds.size()));
+  put(bytes_, static_cast<std::uint32_t>(streams.size()));
   for (const PayloadKind kind : kinds) {
     const auto fields = fields_of(kind);
-    out.name(name_of(kind));
-    out.number(static_cast<std::uint32_t>(fields.size()));
+    put_name(bytes_, name_of(kind));
+    put(bytes_, static_cast<std::uint32_t>(fields.size()));
     for (const Field& field : fields) {
-      out.number(field.type);
-      out.name(field.name);
+      put(bytes_, field.type);
+      put_name(bytes_, field.name);
     }
   }
-  for (const auto& stream : log.streams) {
-    out.name(stream.name);
-    out.number(place_of(stream.kind));
+  for (const auto& stream : streams) {
+    put_name(bytes_, stream.name);
+    put(bytes_, place_of(stream.kind));
   }
-  for (const std::string& source : log.sources) out.name(source);
-  for (const SampleLog::Entry& entry : log.entries) {
-    const auto write = [&](const auto& scalar) { out.number(scalar); };
-    out.number(entry.step);
-    sim::for_each_scalar(entry.sample.header, write);
-    std::visit([&](const auto& value) { sim::for_each_scalar(value, write); },
-               entry.sample.payload);
+}
+
+void SampleLogWriter::source(std::string_view name) {
+  put(bytes_, kSource);
+  put_name(bytes_, name);
+  ++sources_;
+}
+
+void SampleLogWriter::sample(const Sample& sample) {
+  NERITIC_CHECK(sample.header.source < sources_ && hashes_ > 0, "source {} of {}, {} hashes",
+                sample.header.source, sources_, hashes_);
+  const auto write = [&](const auto& scalar) { put(bytes_, scalar); };
+  put(bytes_, kSample);
+  sim::for_each_scalar(sample.header, write);
+  std::visit([&](const auto& value) { sim::for_each_scalar(value, write); }, sample.payload);
+  ++samples_;
+}
+
+void SampleLogWriter::hash(std::uint64_t hash) {
+  put(bytes_, kHash);
+  put(bytes_, hash);
+  ++hashes_;
+  used_ = samples_;
+}
+
+void SampleLogWriter::end() {
+  NERITIC_CHECK(hashes_ > 0, "a log has at least the hash of its start");
+  put(bytes_, kEnd);
+  put(bytes_, hashes_ - 1);
+  put(bytes_, used_);
+}
+
+std::string encode_sample_log(const SampleLog& log) {
+  SampleLogWriter out(log.step_s, log.seed, log.streams);
+  for (const std::string& source : log.sources) out.source(source);
+  std::size_t next = 0;
+  for (std::uint64_t step = 0; step < log.hashes.size(); ++step) {
+    out.hash(log.hashes[step]);
+    for (; next < log.entries.size() && log.entries[next].step == step; ++next)
+      out.sample(log.entries[next].sample);
   }
-  for (const std::uint64_t hash : log.hashes) out.number(hash);
+  NERITIC_CHECK(next == log.entries.size(), "entry {} is of step {} of {}", next,
+                log.entries[next].step, log.steps());
+  out.end();
   return out.take();
 }
 
@@ -259,29 +311,23 @@ Result<SampleLog> parse_sample_log(std::span<const std::byte> bytes, const std::
   Cursor cursor(bytes);
   const auto magic = cursor.take(kMagic.size());
   const std::string_view found(reinterpret_cast<const char*>(magic.data()), magic.size());
-  if (found == kOldMagic)
-    return bad_input("{}: a log of inputs of an older version ({}); accepted: {}", name, kOldMagic,
+  if (std::ranges::find(kOldMagics, found) != std::end(kOldMagics))
+    return bad_input("{}: a log of inputs of an older version ({}); accepted: {}", name, found,
                      kMagic);
   if (found != kMagic)
     return bad_input("{}: not a log of samples (its first bytes are not {})", name, kMagic);
   SampleLog log;
   log.step_s = cursor.number<double>();
   log.seed = cursor.number<std::uint64_t>();
-  const auto steps = cursor.number<std::uint64_t>();
-  const auto samples = cursor.number<std::uint64_t>();
-  const auto kinds = cursor.number<std::uint32_t>();
-  const auto streams = cursor.number<std::uint32_t>();
-  const auto sources = cursor.number<std::uint32_t>();
   if (!cursor.whole()) return bad_input("{}: the log's head is cut off", name);
   if (!(log.step_s > 0.0 && log.step_s <= sim::kMaxStep_s))
     return bad_input("{}: a step of {} s; accepted: over 0 to {} s", name, log.step_s,
                      sim::kMaxStep_s);
-  NERITIC_TRY_STATUS(read_tables(cursor, kinds, streams, sources, log, name));
-  NERITIC_TRY_STATUS(read_samples(cursor, samples, steps, log, name));
-  if (cursor.left() % 8 != 0 || cursor.left() / 8 == 0 || cursor.left() / 8 - 1 != steps)
-    return bad_input("{}: {} bytes of hashes; {} steps need 8 each and 8 for the start", name,
-                     cursor.left(), steps);
-  while (cursor.left() > 0) log.hashes.push_back(cursor.number<std::uint64_t>());
+  NERITIC_TRY_STATUS(read_tables(cursor, log, name));
+  NERITIC_TRY_STATUS(read_records(cursor, log, name));
+  if (log.hashes.empty()) return bad_input("{}: ends before the hash of its start", name);
+  // Of a step that did not end.
+  while (!log.entries.empty() && log.entries.back().step >= log.steps()) log.entries.pop_back();
   return log;
 }
 
@@ -299,7 +345,7 @@ Status check_streams(const SampleLog& log, const StreamTable& table, const std::
 }
 
 Status write_sample_log(const std::filesystem::path& path, const SampleLog& log) {
-  return write_file(path, encode_sample_log(log));
+  return write_text(path, encode_sample_log(log));
 }
 
 Result<SampleLog> read_sample_log(const std::filesystem::path& path) {

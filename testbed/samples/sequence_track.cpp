@@ -14,6 +14,8 @@ std::string_view name_of(SampleVerdict verdict) {
       return "late";
     case SampleVerdict::kNotFinite:
       return "not finite";
+    case SampleVerdict::kNotPlausible:
+      return "not plausible";
     case SampleVerdict::kNotOfStream:
       return "not of its stream";
     case SampleVerdict::kUnknownSource:

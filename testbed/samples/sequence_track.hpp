@@ -17,6 +17,7 @@ enum class SampleVerdict {
   kOutOfOrder,     // older than what came before, by number or by capture time
   kLate,           // captured too long ago, or after it arrived
   kNotFinite,      // a number is NaN or infinite
+  kNotPlausible,   // a place off the Earth, a rotation that is no unit quaternion
   kNotOfStream,    // no such stream, an output, or another kind of payload than the stream's
   kUnknownSource,  // the source was never opened
 };

@@ -33,6 +33,12 @@ void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sen
   add(OwnerSort::kVehicle, static_cast<std::uint32_t>(first_[1].size()), name, kinds);
 }
 
+void StreamTable::add_object(const std::string& name) {
+  using enum PayloadKind;
+  add(OwnerSort::kObject, static_cast<std::uint32_t>(first_[2].size()), name,
+      std::to_array({kObjectPose, kEvent}));
+}
+
 std::optional<StreamId> StreamTable::find(const std::string& name) const {
   const auto at = ids_.find(name);
   if (at == ids_.end()) return std::nullopt;

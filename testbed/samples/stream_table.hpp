@@ -13,7 +13,7 @@
 namespace neritic::testbed {
 
 // Numbers of owners count from 0 in the order of the scene, each sort by itself.
-enum class OwnerSort : std::uint32_t { kDiver, kVehicle };
+enum class OwnerSort : std::uint32_t { kDiver, kVehicle, kObject };
 
 struct Stream {
   std::string name;
@@ -28,6 +28,8 @@ class StreamTable {
   void add_diver(const std::string& name);
   // Streams of its next vehicle: inputs, the sensors that it has, collisions, events.
   void add_vehicle(const std::string& name, const rov::SensorSet& sensors);
+  // Streams of its next object that devices move: pose, events.
+  void add_object(const std::string& name);
 
   std::span<const Stream> streams() const { return streams_; }
   std::size_t size() const { return streams_.size(); }
@@ -43,7 +45,7 @@ class StreamTable {
 
   std::vector<Stream> streams_;
   std::unordered_map<std::string, StreamId> ids_;
-  std::vector<StreamId> first_[2];  // of each owner, by sort
+  std::vector<StreamId> first_[3];  // of each owner, by sort
 };
 
 }  // namespace neritic::testbed

@@ -17,12 +17,13 @@ void decode_depth(std::span<const float> texels, ViewImages& out) {
         texels[i] > 0.0f ? near_m / texels[i] : std::numeric_limits<float>::infinity();
 }
 
-void decode_normals(std::span<const std::uint32_t> texels, ViewImages& out) {
+void decode_normals(std::span<const std::uint32_t> texels, std::span<const float> depth_texels,
+                    ViewImages& out) {
   out.normals = ImageF32(out.width, out.height, 3);
   const glm::mat3 view_from_world =
       glm::mat3(glm::mat3_cast(glm::conjugate(out.world_from_view.rotation)));
   for (std::size_t i = 0; i < texels.size(); ++i) {
-    if (!(out.depth.data[i] < std::numeric_limits<float>::infinity())) continue;
+    if (!(depth_texels[i] > 0.0f)) continue;
     const Vec3f n = view_from_world * shared::octahedral_decode(glm::unpackSnorm2x16(texels[i]));
     float* to = &out.normals.data[3 * i];
     to[0] = n.x;
@@ -31,12 +32,13 @@ void decode_normals(std::span<const std::uint32_t> texels, ViewImages& out) {
   }
 }
 
-void decode_labels(std::span<const std::uint32_t> texels, ViewImages& out) {
-  out.labels = ImageU16(out.width, out.height, 1);
-  out.instances = ImageU16(out.width, out.height, 1);
+void decode_labels(std::span<const std::uint32_t> texels, bool labels, bool instances,
+                   ViewImages& out) {
+  if (labels) out.labels = ImageU16(out.width, out.height, 1);
+  if (instances) out.instances = ImageU16(out.width, out.height, 1);
   for (std::size_t i = 0; i < texels.size(); ++i) {
-    out.labels.data[i] = static_cast<std::uint16_t>(texels[i] & 0xffffu);
-    out.instances.data[i] = static_cast<std::uint16_t>(texels[i] >> 16);
+    if (labels) out.labels.data[i] = static_cast<std::uint16_t>(texels[i] & 0xffffu);
+    if (instances) out.instances.data[i] = static_cast<std::uint16_t>(texels[i] >> 16);
   }
 }
 

@@ -8,10 +8,13 @@
 
 namespace neritic::testbed {
 
-// texels: one layer of the image. Depth before normals, which need its hits.
+// texels: one layer of the image. depth_texels: its depth, which tells the hits.
 void decode_depth(std::span<const float> texels, ViewImages& out);
-void decode_normals(std::span<const std::uint32_t> texels, ViewImages& out);
-void decode_labels(std::span<const std::uint32_t> texels, ViewImages& out);
+void decode_normals(std::span<const std::uint32_t> texels, std::span<const float> depth_texels,
+                    ViewImages& out);
+// Those that are asked for, of class and instance.
+void decode_labels(std::span<const std::uint32_t> texels, bool labels, bool instances,
+                   ViewImages& out);
 void decode_color(std::span<const std::uint32_t> texels, ViewImages& out);
 // next_from_view: the view's turn from now to the next frame's time. Where depth_texels hit
 // nothing, what is infinitely far moves by it alone; what would be behind the view then is NaN.

@@ -16,10 +16,10 @@ struct Picture {
 
 std::vector<Picture> pictures_of(const scene::Scene& scene, const FrameRequest& request) {
   std::vector<Picture> pictures;
-  for (const std::size_t i : request.cameras) {
-    const scene::Camera& camera = scene.cameras[i];
+  for (std::size_t i = 0; i < request.cameras.size(); ++i) {
+    const scene::Camera& camera = scene.cameras[request.cameras[i]];
     pictures.push_back({"camera " + camera.name, camera.width, camera.height,
-                        camera.stereo_baseline_m > 0.0 ? 2u : 1u, request.capture});
+                        camera.stereo_baseline_m > 0.0 ? 2u : 1u, request.camera_capture(i)});
   }
   for (const ViewsRequest& set : request.views)
     pictures.push_back(
@@ -32,12 +32,12 @@ std::vector<Picture> pictures_of(const scene::Scene& scene, const FrameRequest& 
 std::uint64_t host_bytes(const gpu::Device& device, const scene::Scene& scene,
                          const FrameRequest& request) {
   // Measured, a pixel: the device's images and read-backs; the host's arrays and their files.
-  constexpr std::uint64_t kDevice_bytes = 36, kHost_bytes = 66, kHostColor_bytes = 16;
+  constexpr std::uint64_t kDevice_bytes = 36;
   std::uint64_t bytes = 0;
   for (const Picture& picture : pictures_of(scene, request)) {
     const Capture& capture = picture.capture;
-    const std::uint64_t at_host =
-        capture.geometry || capture.motion ? kHost_bytes : kHostColor_bytes;
+    const std::uint64_t at_host = capture.color * 16 + capture.depth * 8 + capture.normals * 24 +
+                                  capture.labels * 4 + capture.instances * 4 + capture.motion * 16;
     bytes += picture.pixels() * picture.views *
              ((device.info().kind == "CPU" ? kDevice_bytes : 0) + (capture.to_host ? at_host : 0));
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,17 +12,28 @@
 
 namespace neritic::testbed {
 
+// What is false is neither computed nor allocated.
 struct Capture {
-  bool color = true;     // of cameras and view sets
-  bool geometry = true;  // depth, normals, labels, instances, of cameras, view sets and sonars
-  bool motion = true;    // of cameras and view sets; with color only
+  bool color = true;  // of cameras and view sets
+  // Of cameras, view sets and sonars.
+  bool depth = true, normals = true, labels = true, instances = true;
+  bool motion = true;  // of cameras and view sets
+  bool echoes = true;  // of sonars; without them a sonar's view gives its geometry alone
+  bool poses = false;  // of every participant (participants.hpp)
   // Read-backs are declared, so that the frame can be read to a FrameResult. Else the frame's
   // handles are all there is, and nothing leaves the GPU.
   bool to_host = true;
+
+  constexpr bool geometry() const { return depth || normals || labels || instances; }
+  constexpr Capture without_geometry() const {
+    Capture out = *this;
+    out.depth = out.normals = out.labels = out.instances = false;
+    return out;
+  }
 };
 // Colour for passes that draw with it, nothing at the host: what a window asks for.
-inline constexpr Capture kColorOnGpu{
-    .color = true, .geometry = false, .motion = false, .to_host = false};
+inline constexpr Capture kColorOnGpu =
+    Capture{.color = true, .motion = false, .to_host = false}.without_geometry();
 
 // A view set that is no camera of the scene: a window's, a headset's views, the sides of a cube.
 // One multiview pass draws all its views.
@@ -41,10 +53,32 @@ struct FrameRequest {
   // The number of each sonar's ping: noise and a scanner's step follow from it. Empty: all are the
   // frame-th.
   std::vector<std::uint32_t> pings;
-  Capture capture;  // of cameras and sonars
+  // Of the sonars' noise and speckle; absent: the scene's.
+  std::optional<std::uint64_t> seed = {};
+  Capture capture;  // of cameras and sonars; poses
+  // Of each camera and sonar, where they differ. Empty: all have `capture`.
+  std::vector<Capture> camera_captures, sonar_captures;
   std::vector<ViewsRequest> views;
   // Moves some objects instead of their tracks and clips; nullptr: none.
   const scene::SimulatedMotion* simulated = nullptr;
+
+  // By place in cameras and sonars.
+  const Capture& camera_capture(std::size_t i) const {
+    return camera_captures.empty() ? capture : camera_captures[i];
+  }
+  const Capture& sonar_capture(std::size_t i) const {
+    return sonar_captures.empty() ? capture : sonar_captures[i];
+  }
+  // Whether a picture leads to the next frame.
+  bool wants_motion() const;
 };
+
+inline bool FrameRequest::wants_motion() const {
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    if (camera_capture(i).motion) return true;
+  for (const ViewsRequest& set : views)
+    if (set.capture.motion) return true;
+  return false;
+}
 
 }  // namespace neritic::testbed

@@ -9,6 +9,7 @@
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
 #include "engine/gpu/frames.hpp"
+#include "engine/scene/motion.hpp"
 #include "sonar/beam_grid.hpp"
 #include "sonar/label_energy.hpp"
 #include "sonar/quality.hpp"
@@ -43,8 +44,9 @@ struct SonarFrame {
   std::string gather;
   sonar::BeamGrid grid;  // of the image: azimuth bins are beams
   // Intensity: the plain cosine's mean over elevation, or, with level, the power that leaves the
-  // receiver (times its gains), 1 being 1 uPa^2.
+  // receiver (times its gains), 1 being 1 uPa^2. Empty where no echoes were asked for.
   sonar::SonarImage image;
+  bool heard() const { return !image.intensity.empty(); }
   bool level = false;
   scene::SonarTerms terms;
   std::optional<sonar::LabelImage> label_energy;  // where labels by energy are named
@@ -54,6 +56,7 @@ struct SonarFrame {
   std::vector<float> noise_power;  // mean of the noise in each range row; empty: none is named
   const sonar::QualityLevel* quality = nullptr;  // the level that sets its sampling, if any
   double max_error = 0.0;                        // the error that chose the level; 0: its name did
+  bool quality_chosen = false;                   // the scene names none
   double fixed_scale = 1.0;
   std::uint32_t gbuffer_width = 1, gbuffer_height = 1;  // of one sector's arrays
   // The view that was gathered from: its size, and by how many pixels each of its rows is shifted
@@ -73,6 +76,7 @@ struct FrameResult {
   std::vector<CameraFrame> cameras;
   std::vector<CameraFrame> views;  // the request's view sets
   std::vector<SonarFrame> sonars;
+  std::vector<scene::MotionAt> poses;  // of every participant (participants.hpp), if asked for
   std::vector<gpu::PassTime> passes;
   double frame_ms = 0.0;  // from declare to the result
 };

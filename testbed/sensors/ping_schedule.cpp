@@ -16,9 +16,11 @@ PingSchedule::PingSchedule(const std::vector<double>& rates_hz) {
 
 std::vector<PingSchedule::Due> PingSchedule::due(double time_s) {
   std::vector<Due> out;
+  const bool anew = time_s < last_s_;
+  last_s_ = time_s;
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     Sensor& s = sensors_[i];
-    if (s.pings == 0) s.next_s = time_s;
+    if (s.pings == 0 || anew) s.next_s = time_s;
     if (time_s < s.next_s - kEarly * s.period_s) continue;
     out.push_back({i, s.pings++});
     s.next_s = std::max(s.next_s + s.period_s, time_s + 0.5 * s.period_s);

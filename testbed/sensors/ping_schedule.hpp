@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace neritic::testbed {
@@ -15,7 +16,8 @@ class PingSchedule {
     std::uint32_t number = 0;  // of its ping: 0, 1, 2, ...
   };
   // The sensors whose time has come: at the first call all, then each a period after its last, on
-  // its own beat. A late sensor pings once, not once for each ping missed. Times must not fall.
+  // its own beat. A late sensor pings once, not once for each ping missed. If the
+  // time falls, since the run went back, all begin their beat anew.
   std::vector<Due> due(double time_s);
 
  private:
@@ -24,6 +26,7 @@ class PingSchedule {
     std::uint32_t pings = 0;
   };
   std::vector<Sensor> sensors_;
+  double last_s_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace neritic::testbed

@@ -5,6 +5,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/clock.hpp"
 #include "testbed/sensors/frame_memory.hpp"
+#include "testbed/sensors/participants.hpp"
 #include "testbed/sensors/sonar_check.hpp"
 #include "testbed/sensors/sonar_sensor.hpp"
 #include "testbed/sensors/view_sensor.hpp"
@@ -16,6 +17,7 @@ struct FrameWork {
   TimeNs begun_ns = 0;
   std::uint32_t frame = 0;  // the request's
   render::FrameState state;
+  std::vector<scene::MotionAt> poses;
   // A picture: of a camera, or of a view set.
   struct Picture {
     std::string name;
@@ -49,6 +51,11 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Sce
   return session;
 }
 
+void Session::replace_sonar(std::size_t index, scene::Sonar sonar) {
+  NERITIC_CHECK(index < scene_.sonars.size(), "sonar {} of {}", index, scene_.sonars.size());
+  scene_.sonars[index] = std::move(sonar);
+}
+
 Result<std::unique_ptr<SensorFrame>> Session::declare(graph::FrameGraph& graph,
                                                       const FrameRequest& request) {
   // A CPU's driver promises memory that the machine does not have, and the system ends programs
@@ -71,16 +78,15 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   work.begun_ns = now_ns();
   work.frame = request.frame;
   const scene::MotionSource motion(scene_, request.simulated);
-  const auto moves = [](const Capture& capture) { return capture.motion && capture.color; };
-  const bool next =
-      (moves(request.capture) && !request.cameras.empty()) ||
-      std::ranges::any_of(request.views, [&](const auto& set) { return moves(set.capture); });
-  work.state =
-      render::evaluate_frame(motion, *gpu_scene_, request.time_s, request.next_time_s, next);
+  work.state = render::evaluate_frame(motion, *gpu_scene_, request.time_s, request.next_time_s,
+                                      request.wants_motion());
+  if (request.capture.poses && request.capture.to_host)
+    work.poses = motions_of(participants_of(scene_), motion, request.time_s);
   NERITIC_TRY(const render::DeformedGeometry deformed,
               renderer_->declare_deform(graph, *gpu_scene_, work.state));
-  const FrameParts parts{graph,  device_,    *renderer_, scene_,   *gpu_scene_,
-                         motion, work.state, deformed,   readback_};
+  const FrameParts parts{
+      graph,  device_,    *renderer_, scene_,    *gpu_scene_,
+      motion, work.state, deformed,   readback_, request.seed.value_or(scene_.seed)};
   const auto add = [&](const std::string& label, const ViewsRequest& set, std::size_t index,
                        auto& works, std::vector<SensorFrame::Views>& out) -> Status {
     works.push_back(std::make_unique<FrameWork::Picture>());
@@ -91,12 +97,13 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
     out.push_back(views);
     return {};
   };
-  for (const std::size_t i : request.cameras) {
+  for (std::size_t k = 0; k < request.cameras.size(); ++k) {
+    const std::size_t i = request.cameras[k];
     const scene::Camera& camera = scene_.cameras[i];
     NERITIC_TRY_STATUS(
         add("camera " + camera.name,
             {camera.name, camera_views(motion, camera, request.time_s, request.next_time_s),
-             camera.exposure, camera.antialias, request.capture},
+             camera.exposure, camera.antialias, request.camera_capture(k)},
             i, work.cameras, frame->cameras));
   }
   for (std::size_t i = 0; i < request.views.size(); ++i)
@@ -109,7 +116,7 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
     const std::uint32_t ping = request.pings.empty() ? request.frame : request.pings[i];
     while (sonars_.size() <= index)
       sonars_.push_back(std::make_unique<SonarSensor>(*echo_tables_, sonars_.size()));
-    auto sonar = sonars_[index]->declare(parts, request.capture, ping);
+    auto sonar = sonars_[index]->declare(parts, request.sonar_capture(i), ping);
     if (!sonar.ok()) return of_sonar(scene_, scene_.sonars[index], sonar.error());
     for (const auto& head : (*sonar)->heads)
       frame->sonars.push_back({index, head->state->head().beams, head->ping.image,
@@ -140,6 +147,7 @@ Result<FrameResult> Session::read(const SensorFrame& frame) {
   for (const auto& sonar : work.sonars)
     for (SonarFrame& head : sonars_[sonar->index]->decode(*sonar))
       result.sonars.push_back(std::move(head));
+  result.poses = work.poses;
   result.passes = frames_->pass_times_of(frame.done_at_);
   result.frame_ms = to_ms(now_ns() - work.begun_ns);
   return result;

@@ -29,12 +29,13 @@ class Session {
   ~Session();
 
   const scene::Scene& scene() const { return scene_; }
-  scene::Scene& scene() {
-    return scene_;
-  }  // poses and settings may change between frames, meshes not
   gpu::Device& device() { return device_; }
   gpu::Frames& frames() { return *frames_; }
   const render::GpuScene& gpu_scene() const { return *gpu_scene_; }
+
+  // Other settings and another mount of the scene's sonar of that index, from the next declared
+  // frame on; frames in flight keep theirs. Everything else of a scene stays as it was created.
+  void replace_sonar(std::size_t index, scene::Sonar sonar);
 
   // Adds the request's passes. The caller may add others that use the frame's handles, then begins
   // the frame, runs executor(), submits and tells the SensorFrame.

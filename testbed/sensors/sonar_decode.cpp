@@ -7,7 +7,7 @@ namespace neritic::testbed {
 std::vector<SonarFrame> SonarSensor::decode(const SonarWork& work) const {
   std::vector<SonarFrame> frames;
   for (const auto& head : work.heads)
-    if (head->buffers) frames.push_back(decode_head(*work.state, *head));
+    if (head->buffers || head->arrays.at_host()) frames.push_back(decode_head(*work.state, *head));
   return frames;
 }
 
@@ -21,12 +21,15 @@ SonarFrame SonarSensor::decode_head(const SonarState& made, const HeadWork& work
   frame.kind = sonar.kind;
   frame.gather = sonar::name_of(made.mode);
   frame.grid = head.beams;
-  frame.image = state.gather->image(work.ping);
-  frame.label_energy = state.gather->label_energy(work.ping);
+  if (work.buffers) {
+    frame.image = state.gather->image(work.ping);
+    frame.label_energy = state.gather->label_energy(work.ping);
+  }
   frame.level = sonar.terms.level.has_value();
   frame.terms = sonar.terms;
   if (const auto level = sonar::quality_level(sonar); level.ok()) frame.quality = *level;
   frame.max_error = sonar.max_error;
+  frame.quality_chosen = sonar.quality_chosen;
   frame.heading_rad = work.heading_rad;
   frame.world_from_sonar = work.world_from_sonar;
   frame.world_from_head =
@@ -44,10 +47,10 @@ SonarFrame SonarSensor::decode_head(const SonarState& made, const HeadWork& work
   frame.pixels_per_cell = made.pixels_per_cell;
   const FrustumTangents& t = state.upright.tangents;
   frame.pixels_per_cell_used = {
-      state.upright.size.width * head.samples.azimuth_step_rad() / (t.right - t.left),
-      state.upright.size.height * head.samples.elevation_step_rad() / (t.top - t.bottom)};
+      state.upright.size.width * state.shown.azimuth_step_rad() / (t.right - t.left),
+      state.upright.size.height * state.shown.elevation_step_rad() / (t.top - t.bottom)};
   if (!sonar.terms.level) frame.reflectivity = tables_.reflectivities;
-  if (state.gather->has_receiver()) {
+  if (work.buffers && state.gather->has_receiver()) {
     const sonar::Ping& ping = work.ping.ping;
     frame.sound_speed_m_s = ping.sound_speed_m_s;
     frame.absorption_db_per_m = ping.absorption_db_per_m;
@@ -55,7 +58,7 @@ SonarFrame SonarSensor::decode_head(const SonarState& made, const HeadWork& work
       for (const glm::vec2& gain : ping.gains)
         frame.noise_power.push_back(ping.noise_power * gain.y);
   }
-  if (work.arrays.depth) frame.sectors = decode_views(work.arrays);
+  if (work.arrays.at_host()) frame.sectors = decode_views(work.arrays);
   return frame;
 }
 

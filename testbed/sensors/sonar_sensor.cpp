@@ -24,12 +24,13 @@ render::ViewSet head_views(const scene::Sonar& sonar, const HeadState& head,
 
 // The geometry G-buffer of work.views.
 Result<render::GBuffer> declare_geometry(const FrameParts& frame, const std::string& prefix,
-                                         const render::DrawListOptions& options, ViewsWork& work) {
+                                         const render::DrawListOptions& options, ViewsWork& work,
+                                         const render::GBufferParts& parts = {}) {
   work.draws =
       render::build_draw_list(frame.scene, frame.gpu_scene, frame.state, work.views, options);
   return frame.renderer.declare_gbuffer(frame.graph, prefix, render::GBufferKind::kGeometry,
                                         frame.gpu_scene, frame.state, frame.deformed, work.views,
-                                        work.draws);
+                                        work.draws, parts);
 }
 
 sonar::HeadGather::View view_of(const render::GBuffer& g, const Pose& world_from_head) {
@@ -49,7 +50,7 @@ Result<std::unique_ptr<SonarWork>> SonarSensor::declare(const FrameParts& frame,
   work->index = index_;
   NERITIC_TRY(work->state, state_of(frame.device, sonar));
   SonarState& state = *work->state;
-  const scene::Motion motion = frame.motion.at(sonar.mount, frame.state.time_s).motion;
+  const Motion motion = frame.motion.at(sonar.mount, frame.state.time_s).motion;
   for (std::size_t place = 0; place < state.heads.size(); ++place) {
     work->heads.push_back(std::make_unique<HeadWork>());
     HeadWork& head = *work->heads.back();
@@ -64,7 +65,7 @@ Result<std::unique_ptr<SonarWork>> SonarSensor::declare(const FrameParts& frame,
     // About the head's own y: a side-scan looks down, so a part of the yaw turns its bearings.
     at.yaw_rate_rad_s =
         (glm::conjugate(head.world_from_head.rotation) * motion.angular_velocity_rad_s).y;
-    at.seed = frame.scene.seed;
+    at.seed = frame.seed;
     at.stream = static_cast<std::uint32_t>(index_ * 2 + place);
     at.ping = ping;
     at.backscatter_scale = tables_.backscatter_scale;
@@ -78,6 +79,28 @@ Status SonarSensor::declare_head(const FrameParts& frame, const Capture& capture
   HeadState& state = *work.state;
   sonar::HeadPing& ping = work.ping;
   ping.prefix = state.name + " ";
+  work.arrays.capture = capture;
+  work.sampled.views = head_views(sonar.made_from, state, state.sampled, work.world_from_head);
+  work.arrays.views = head_views(sonar.made_from, state, state.upright, work.world_from_head);
+  const bool arrays_wanted = capture.to_host && capture.geometry();
+  render::GBuffer arrays;
+  if (capture.echoes) {
+    NERITIC_TRY(arrays, declare_echoes(frame, capture, sonar, work));
+  }
+  if (!arrays_wanted) return {};
+  // Readers of the arrays expect a plain pinhole.
+  if (!capture.echoes || state.sampled.lean != 0.0) {
+    NERITIC_TRY(arrays, declare_geometry(frame, ping.prefix + "arrays ", kFrontFaces, work.arrays,
+                                         parts_of(capture)));
+  }
+  return bring_geometry(frame, ping.prefix, arrays, work.arrays);
+}
+
+// The gather of a ping; gives the G-buffer that it reads.
+Result<render::GBuffer> SonarSensor::declare_echoes(const FrameParts& frame, const Capture& capture,
+                                                    const SonarState& sonar, HeadWork& work) const {
+  HeadState& state = *work.state;
+  sonar::HeadPing& ping = work.ping;
   if (capture.to_host) {
     NERITIC_TRY(work.buffers,
                 state.buffers.take(
@@ -85,7 +108,6 @@ Status SonarSensor::declare_head(const FrameParts& frame, const Capture& capture
                     [&] { return state.gather->make_buffers(frame.device, ping.prefix); }));
     ping.host = &*work.buffers;
   }
-  work.sampled.views = head_views(sonar.made_from, state, state.sampled, work.world_from_head);
   NERITIC_TRY(const render::GBuffer g,
               declare_geometry(frame, ping.prefix, kFrontFaces, work.sampled));
   sonar::HeadGather::Table table;
@@ -97,14 +119,7 @@ Status SonarSensor::declare_head(const FrameParts& frame, const Capture& capture
   state.gather->begin(frame.graph, view_of(g, work.world_from_head), table, ping);
   NERITIC_TRY_STATUS(declare_ghosts(frame, sonar, work));
   state.gather->end(frame.graph, ping);
-  work.arrays.views = head_views(sonar.made_from, state, state.upright, work.world_from_head);
-  if (!capture.to_host || !capture.geometry) return {};
-  // Readers of the arrays expect a plain pinhole.
-  render::GBuffer arrays = g;
-  if (state.sampled.lean != 0.0) {
-    NERITIC_TRY(arrays, declare_geometry(frame, ping.prefix + "arrays ", kFrontFaces, work.arrays));
-  }
-  return bring_geometry(frame, ping.prefix, arrays, work.arrays);
+  return g;
 }
 
 // Ghosts of a mirror: the scene as the head's mirror image sees it, added to the head's sums.

@@ -25,6 +25,7 @@ struct HeadState {
   std::string name;  // of passes: the sonar's, and the head's where there are several
   std::vector<sonar::Sector> sectors;
   sonar::LeaningView upright;  // a plain pinhole, of the arrays
+  sonar::BeamGrid shown;       // the cells that its pixels are counted by: beams where it can
   // The view that beams gather from: it leans, but for cones and the published gather.
   sonar::LeaningView sampled;
   std::unique_ptr<sonar::HeadGather> gather;
@@ -76,6 +77,8 @@ class SonarSensor {
                               const SonarState& state, sonar::Head head) const;
   Status declare_head(const FrameParts& frame, const Capture& capture, const SonarState& sonar,
                       HeadWork& work) const;
+  Result<render::GBuffer> declare_echoes(const FrameParts& frame, const Capture& capture,
+                                         const SonarState& sonar, HeadWork& work) const;
   Status declare_ghosts(const FrameParts& frame, const SonarState& sonar, HeadWork& work) const;
   SonarFrame decode_head(const SonarState& sonar, const HeadWork& work) const;
 

@@ -48,13 +48,16 @@ Result<HeadState> SonarSensor::make_head(gpu::Device& device, const scene::Sonar
   h.name = head.name.empty() ? sonar.name : sonar.name + " " + head.name;
   h.sectors = sonar::plan_sectors(head.samples);
   const sonar::Sector& first = h.sectors.front();
-  h.upright = {first.tangents, 0.0,
-               sonar::gbuffer_size(head.samples, first, state.pixels_per_cell, max_extent)};
   // The published gather reads whole pixels of cells. A cone sees a bottom that is smooth beside
   // its cells, which upright pixels tell best in their middles.
-  h.sampled = state.mode == sonar::Gather::kPublished || head.folded
-                  ? h.upright
-                  : sonar::leaning_view(head.samples, first, state.pixels_per_cell, max_extent);
+  const bool upright = state.mode == sonar::Gather::kPublished || head.folded;
+  h.shown = head.samples;
+  if (!upright && head.beams.bins.azimuth > 1)
+    h.shown.bins.azimuth = std::max(1u, head.samples.bins.azimuth / head.samples_per_beam);
+  h.upright = {first.tangents, 0.0,
+               sonar::gbuffer_size(h.shown, first, state.pixels_per_cell, max_extent)};
+  h.sampled = upright ? h.upright
+                      : sonar::leaning_view(head.samples, first, state.pixels_per_cell, max_extent);
   sonar::GBufferLayout layout;
   layout.width = h.sampled.size.width;
   layout.height = h.sampled.size.height;

@@ -44,6 +44,16 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
                                         request.antialias);
 }
 
+}  // namespace
+
+render::GBufferParts parts_of(const Capture& capture) {
+  // What is not read back other passes may read: a view set's handles are whole.
+  if (!capture.to_host) return {};
+  return {.normal = capture.normals, .label = capture.labels || capture.instances};
+}
+
+namespace {
+
 ViewImages decode_view(const ViewsWork& work, std::size_t i) {
   const render::ViewDesc& view = work.views.views[i];
   ViewImages eye;
@@ -54,17 +64,20 @@ ViewImages decode_view(const ViewsWork& work, std::size_t i) {
   eye.height = work.views.height;
   const std::size_t pixels = std::size_t{eye.width} * eye.height;
   // Two halves of about the same bytes, which share nothing but the sizes.
+  const std::span<const float> depth =
+      work.depth ? layer_of<float>(*work.depth, i, pixels) : std::span<const float>();
   const auto shape = [&] {
-    if (work.depth) decode_depth(layer_of<float>(*work.depth, i, pixels), eye);
-    if (work.normal) decode_normals(layer_of<std::uint32_t>(*work.normal, i, pixels), eye);
+    if (work.capture.depth) decode_depth(depth, eye);
+    if (work.normal) decode_normals(layer_of<std::uint32_t>(*work.normal, i, pixels), depth, eye);
   };
   const auto look = [&] {
-    if (work.label) decode_labels(layer_of<std::uint32_t>(*work.label, i, pixels), eye);
+    if (work.label)
+      decode_labels(layer_of<std::uint32_t>(*work.label, i, pixels), work.capture.labels,
+                    work.capture.instances, eye);
     if (work.color) decode_color(layer_of<std::uint32_t>(*work.color, i, pixels), eye);
     if (work.motion)
       decode_motion(
-          layer_of<float>(*work.motion, i, pixels * 2),
-          work.depth ? layer_of<float>(*work.depth, i, pixels) : std::span<const float>(),
+          layer_of<float>(*work.motion, i, pixels * 2), depth,
           glm::conjugate(view.next_world_from_view.rotation) * view.world_from_view.rotation, eye);
   };
   if (pixels < kWorthAThread || !(work.depth && (work.color || work.motion))) {
@@ -87,13 +100,16 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
                 "{} has {} views", label, request.views.views.size());
   NERITIC_TRY_STATUS(check_size(frame.device, label, request.views));
   work.views = request.views;
+  work.capture = capture;
   work.draws = render::build_draw_list(frame.scene, frame.gpu_scene, frame.state, work.views);
   const std::string prefix = request.name + " ";
-  // With or without colour the same G-buffer: single-sided materials, no blended ones in the depth.
-  NERITIC_TRY(const render::GBuffer g,
-              frame.renderer.declare_gbuffer(frame.graph, prefix, render::GBufferKind::kSurface,
-                                             frame.gpu_scene, frame.state, frame.deformed,
-                                             work.views, work.draws));
+  // With or without colour the same geometry: single-sided materials, no blended ones in the depth.
+  const auto kind = capture.color ? render::GBufferKind::kSurface : render::GBufferKind::kShape;
+  NERITIC_TRY(
+      const render::GBuffer g,
+      frame.renderer.declare_gbuffer(frame.graph, prefix, kind, frame.gpu_scene, frame.state,
+                                     frame.deformed, work.views, work.draws,
+                                     capture.color ? render::GBufferParts{} : parts_of(capture)));
   SensorFrame::Views out{.depth = g.depth,
                          .normal = g.normal,
                          .label = g.label,
@@ -112,7 +128,7 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
   if (capture.color) {
     NERITIC_TRY(work.color, bring("color", out.color, render::kColorFormat));
   }
-  if (capture.geometry) NERITIC_TRY_STATUS(bring_geometry(frame, prefix, g, work));
+  NERITIC_TRY_STATUS(bring_geometry(frame, prefix, g, work));
   if (capture.motion && g.motion) {
     NERITIC_TRY(work.motion, bring("motion", g.motion, render::kMotionFormat));
   }
@@ -125,9 +141,17 @@ Status bring_geometry(const FrameParts& frame, const std::string& prefix, const 
     return frame.readback.declare(frame.graph, frame.device, prefix + name, image, format, g.width,
                                   g.height, g.layers);
   };
-  NERITIC_TRY(work.depth, bring("depth", g.depth, render::kDepthFormat));
-  NERITIC_TRY(work.normal, bring("normal", g.normal, render::kNormalFormat));
-  NERITIC_TRY(work.label, bring("label", g.label, render::kLabelFormat));
+  const Capture& capture = work.capture;
+  // Normals and motion need the depth on their way: it tells where nothing was hit.
+  if (capture.depth || capture.normals || (capture.motion && g.motion)) {
+    NERITIC_TRY(work.depth, bring("depth", g.depth, render::kDepthFormat));
+  }
+  if (capture.normals) {
+    NERITIC_TRY(work.normal, bring("normal", g.normal, render::kNormalFormat));
+  }
+  if (capture.labels || capture.instances) {
+    NERITIC_TRY(work.label, bring("label", g.label, render::kLabelFormat));
+  }
   return {};
 }
 

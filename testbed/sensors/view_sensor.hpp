@@ -23,19 +23,24 @@ struct FrameParts {
   const render::FrameState& state;
   const render::DeformedGeometry& deformed;
   ReadbackPool& readback;
+  std::uint64_t seed = 0;  // of noise and speckle
 };
 
 // A view set in one frame: data that the passes borrow, and the buffers that the host reads.
 struct ViewsWork {
   render::ViewSet views;
+  Capture capture;
   render::DrawList draws;
   Readback depth, normal, label, color, motion;  // empty where they were not asked for
+  bool at_host() const { return depth || normal || label || color || motion; }
 };
 
 // Adds the passes of a view set. label: of errors, "camera NAME".
 Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::string& label,
                                          const ViewsRequest& request, ViewsWork& work);
-// Declares the read-backs of a G-buffer's geometry.
+// What of a geometry or shape G-buffer a capture needs.
+render::GBufferParts parts_of(const Capture& capture);
+// Declares the read-backs of a G-buffer's geometry, as work.capture asks.
 Status bring_geometry(const FrameParts& frame, const std::string& prefix, const render::GBuffer& g,
                       ViewsWork& work);
 // The images that were asked for, a view each, after the frame is done.

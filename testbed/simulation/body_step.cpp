@@ -1,5 +1,7 @@
 #include "testbed/simulation/body_step.hpp"
 
+#include <algorithm>
+
 #include "rov/frames.hpp"
 
 namespace neritic::testbed {
@@ -27,17 +29,18 @@ rov::State step_once(const sim::StaticWorld& solid, const SolidBody& body, const
   return free;
 }
 
-// As one step's: the depth is that at its start.
+}  // namespace
+
 void add_part(const ContactReport& part, ContactReport& whole) {
   whole.motion.contacts = part.motion.contacts;
   whole.motion.pieces += part.motion.pieces;
+  whole.motion.touched = whole.motion.touched || part.motion.touched;
   whole.motion.converged = whole.motion.converged && part.motion.converged;
   whole.motion.lost_s += part.motion.lost_s;
+  whole.motion.deepest_m = std::max(whole.motion.deepest_m, part.motion.deepest_m);
   whole.motion.impulse_n_s += part.motion.impulse_n_s;
   whole.change_ned = whole.change_ned + part.change_ned;
 }
-
-}  // namespace
 
 SolidBody solid_body(const rov::Vehicle& vehicle) {
   return {{}, rov::world_from_ned(vehicle.inverse_mass).m};
@@ -79,8 +82,8 @@ rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
   ContactReport told;
   rov::State after = step_once(solid, step.body, step.before, free, step.dt_s, memory, told);
   if (told.motion.touched && !parted && step.method.contact_parts > 1) {
-    const double depth_m = told.motion.deepest_m, part_s = step.dt_s / step.method.contact_parts;
-    told = {{.pieces = 0, .touched = true, .deepest_m = depth_m}, {}};
+    const double part_s = step.dt_s / step.method.contact_parts;
+    told = {.motion = {.touched = true, .deepest_m = told.motion.deepest_m}, .change_ned = {}};
     after = step.before;
     rov::Inputs inputs = step.inputs;
     for (int i = 0; i < step.method.contact_parts; ++i) {
@@ -89,6 +92,7 @@ rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
       after = step_once(solid, step.body, before,
                         free_step({step.body, step.vehicle, before, inputs, part_s, step.method}),
                         part_s, memory, part);
+      part.motion.deepest_m = 0.0;  // within the step
       add_part(part, told);
       inputs.current_ned_m_s += part_s * inputs.current_change_ned_m_s2;
     }

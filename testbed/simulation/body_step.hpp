@@ -32,7 +32,7 @@ struct VehicleStep {
   const rov::State& before;
   const rov::Inputs& inputs;
   double dt_s;
-  const StepMethod& method;
+  StepMethod method;
 };
 
 // The effect of contacts in a step.
@@ -41,6 +41,9 @@ struct ContactReport {
   // Change of velocity that nothing else made: linear and angular, NED axes, m/s and rad/s.
   rov::Vec6 change_ned;
 };
+
+// Sums over the parts of a step; the number of contacts is the last part's.
+void add_part(const ContactReport& part, ContactReport& whole);
 
 // Linear and angular, NED axes.
 rov::Vec6 velocity_ned(const rov::State& state);

@@ -1,40 +1,41 @@
 // The effect of a diver's groups of inputs in a step (human_world.hpp).
 #include "diver/frames.hpp"
+#include "diver/reach.hpp"
 #include "testbed/simulation/human_world.hpp"
 
 namespace neritic::testbed {
 namespace {
 
-// The attitude of a segment: root, then each joint of the chain.
-Quat attitude_of_chain(const diver::HumanState& state,
-                       std::initializer_list<diver::Segment> chain) {
-  Quat q = state.root.attitude;
-  for (const diver::Segment segment : chain) q = q * state.limbs.rotation[diver::joint_of(segment)];
-  return q;
+// Body axes of a diver, from a pose in the world of something in a standing person's axes.
+Quat body_from_tracked(const diver::HumanState& state, const Pose& tracked) {
+  return glm::normalize(glm::conjugate(state.root.attitude) *
+                        diver::ned_from_standing(tracked.rotation));
+}
+Vec3 place_in_body(const diver::HumanState& state, const Pose& tracked) {
+  return glm::conjugate(state.root.attitude) *
+         (diver::ned_from_world(tracked.position_m) - state.root.position_ned_m);
 }
 
-Quat joint_towards(const Quat& ned_from_parent, const Quat& world_from_child) {
-  return glm::normalize(glm::conjugate(ned_from_parent) *
-                        diver::ned_from_standing(world_from_child));
-}
-
-void move_hands(const DiverInputs& inputs, const diver::HumanState& state,
-                diver::JointRotations& joints) {
-  using namespace diver;
-  if (inputs.hands_by_pose == 0) {
-    joints[joint_of(kLeftHand)] = inputs.hands.wrist[0];
-    joints[joint_of(kRightHand)] = inputs.hands.wrist[1];
-    return;
+// Head and hands go where they are tracked; a suit's wrists are joints already.
+void follow_tracking(const PhysicsHuman& human, const DiverInputs& inputs, bool head, bool hands,
+                     const diver::HumanState& state, diver::JointRotations& joints) {
+  diver::ReachTargets targets;
+  if (head) {
+    const Pose& tracked = inputs.head.world_from_head;
+    targets.head = body_from_tracked(state, tracked);
+    if (inputs.head.placed != 0) targets.eyes_m = place_in_body(state, tracked);
   }
-  const HandPoses& hands = inputs.hand_poses;
-  if ((hands.tracked & 1) != 0)
-    joints[joint_of(kLeftHand)] =
-        joint_towards(attitude_of_chain(state, {kAbdomen, kThorax, kLeftUpperArm, kLeftForearm}),
-                      hands.world_from_hand[0].rotation);
-  if ((hands.tracked & 2) != 0)
-    joints[joint_of(kRightHand)] =
-        joint_towards(attitude_of_chain(state, {kAbdomen, kThorax, kRightUpperArm, kRightForearm}),
-                      hands.world_from_hand[1].rotation);
+  if (hands && inputs.hands_by_pose == 0) {
+    joints[diver::joint_of(diver::kLeftHand)] = inputs.hands.wrist[0];
+    joints[diver::joint_of(diver::kRightHand)] = inputs.hands.wrist[1];
+  } else if (hands) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      if ((inputs.hand_poses.tracked >> i & 1) == 0) continue;
+      const Pose& tracked = inputs.hand_poses.world_from_hand[i];
+      targets.hands[i] = {place_in_body(state, tracked), body_from_tracked(state, tracked)};
+    }
+  }
+  joints = diver::reach(human.body, joints, targets);
 }
 
 diver::GazeState gaze_ned(const Gaze& gaze) {
@@ -75,18 +76,13 @@ diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& i
 
   diver::HumanInputs out;
   move_body(human, inputs, authority(DiverGroup::kBody), now_s, dt_s, state, out);
-  if (live(DiverGroup::kHands)) {
-    move_hands(inputs, state.human, out.joints);
-  } else if (authority(DiverGroup::kHands) == Authority::kNobody) {
+  const bool hands = live(DiverGroup::kHands), head = live(DiverGroup::kHead);
+  if (authority(DiverGroup::kHands) == Authority::kNobody)
     for (const diver::Segment hand : {diver::kLeftHand, diver::kRightHand})
       out.joints[diver::joint_of(hand)] = straight;
-  }
-  if (live(DiverGroup::kHead))
-    out.joints[diver::joint_of(diver::kHead)] =
-        joint_towards(attitude_of_chain(state.human, {diver::kAbdomen, diver::kThorax}),
-                      inputs.head.world_from_head.rotation);
-  else if (authority(DiverGroup::kHead) == Authority::kNobody)
+  if (authority(DiverGroup::kHead) == Authority::kNobody)
     out.joints[diver::joint_of(diver::kHead)] = straight;
+  if (hands || head) follow_tracking(human, inputs, head, hands, state.human, out.joints);
 
   const Authority buttons = authority(DiverGroup::kButtons);
   if (buttons == Authority::kLive)

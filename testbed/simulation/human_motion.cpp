@@ -33,22 +33,41 @@ void follow_plan(const PhysicsHuman& human, HumanPhysics& state) {
   state.leg_from_ned_m = to;
 }
 
+// The least speed through the water at which a swimmer steers, and the most that a plan may ask.
+constexpr double kSteerage_m_s = 0.1, kMostSwim_m_s = 1.2;
+
 // Coulomb's, of a diver on a vehicle: that of a scene's things.
 constexpr double kHumanFriction = sim::Surface{}.friction;
 
-bool computer_due(std::uint64_t step, double dt_s) {
+// How long before the end of the step the dive computer's sample in it is due; none: it is not.
+std::optional<double> since_sample_s(std::uint64_t step, double dt_s) {
   const auto samples = [&](std::uint64_t steps) {
     return std::floor(static_cast<double>(steps) * dt_s / diver::kComputerSample_s + 1e-9);
   };
-  return samples(step + 1) != samples(step);
+  const double last = samples(step + 1);
+  if (last == samples(step)) return std::nullopt;
+  const double since_s = static_cast<double>(step + 1) * dt_s - last * diver::kComputerSample_s;
+  return since_s > 1e-9 ? since_s : 0.0;
 }
 
 }  // namespace
 
+double through_water_m_s(double over_ground_m_s, const Vec3& way_ned, const Vec3& current_ned_m_s) {
+  const Vec3 level(way_ned.x, way_ned.y, 0.0);
+  const double length = glm::length(level);
+  if (!(length > 0.0)) return over_ground_m_s;
+  const Vec3 drift(current_ned_m_s.x, current_ned_m_s.y, 0.0);
+  return glm::length(over_ground_m_s / length * level - drift);
+}
+
 diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) {
-  if (swims_on(human, state))
-    return {human.waypoints_ned_m[waypoint_index(human, state)], human.speed_m_s};
-  return {state.leg_from_ned_m, 0.0};
+  if (!swims_on(human, state)) return {state.leg_from_ned_m, 0.0};
+  const Vec3& to = human.waypoints_ned_m[waypoint_index(human, state)];
+  if (human.speed_over == scene::SpeedOver::kWater) return {to, human.speed_m_s};
+  const double speed_m_s = through_water_m_s(human.speed_m_s, to - state.human.root.position_ned_m,
+                                             state.human.held.current_ned_m_s);
+  // One whom the current carries along still steers.
+  return {to, std::clamp(speed_m_s, kSteerage_m_s, kMostSwim_m_s)};
 }
 
 HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
@@ -109,21 +128,22 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
   state.contact.touched_steps += report.touched || parted ? 1 : 0;
   state.contact.deepest_m = std::max(state.contact.deepest_m, report.deepest_m);
   state.contact.impulse_n_s = report.impulse_n_s;
-  if (!computer_due(step, dt_s)) return;
+  const auto since_s = since_sample_s(step, dt_s);
+  if (!since_s) return;
+  const double sink_m_s = (after.attitude * after.velocity.linear()).z;
+  const double depth_m = after.position_ned_m.z - *since_s * sink_m_s;
   diver::DiveComputerState& computer = state.human.life.computer;
   // Out of a tank that the diver has not got nothing comes; without any there is the air above.
   const std::uint64_t tank = state.human.held.tank;
   const bool none = human.body.tank_count > 0 && tank >= human.body.tank_count;
   const bool known = tank < human.computer->settings().gases.size();
   const bool unfed = none || state.human.life.lungs.unfed_s > 0.0;
-  computer = human.computer->step(
-      computer, {after.position_ned_m.z, known ? tank : computer.last.gas, unfed ? 0U : 1U},
-      diver::kComputerSample_s);
-  const double sink_m_s = (after.attitude * after.velocity.linear()).z;
-  state.tank =
-      diver::step_gas_switch(human.file.gas_switching, human.computer->settings().gases, human.body,
-                             state.human.life.tanks, computer, tank, after.position_ned_m.z,
-                             sink_m_s, diver::kComputerSample_s, state.gas_switch);
+  computer =
+      human.computer->step(computer, {depth_m, known ? tank : computer.last.gas, unfed ? 0U : 1U},
+                           diver::kComputerSample_s);
+  state.tank = diver::step_gas_switch(human.file.gas_switching, human.computer->settings().gases,
+                                      human.body, state.human.life.tanks, computer, tank, depth_m,
+                                      sink_m_s, diver::kComputerSample_s, state.gas_switch);
 }
 
 Pose drawn_pose(const HumanPhysics& state) {

@@ -92,6 +92,7 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
     const scene::SwimPlan& plan = *object.human->swim;
     for (const Vec3& p : plan.waypoints_m) human.waypoints_ned_m.push_back(ned_from_world(p));
     human.speed_m_s = plan.speed_m_s;
+    human.speed_over = plan.speed_over;
     human.acceptance_m = plan.acceptance_m;
     human.repeat = plan.repeat;
     if (!plan.motion.empty()) {

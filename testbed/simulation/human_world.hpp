@@ -30,6 +30,7 @@ struct PhysicsHuman {
   // Where to swim; no points: hovers.
   std::vector<Vec3> waypoints_ned_m;
   double speed_m_s = 0.0, acceptance_m = 1.0;
+  scene::SpeedOver speed_over = scene::SpeedOver::kWater;
   bool repeat = false;
   std::optional<diver::LimbRecording> recording;  // moves the limbs instead
   // Presses the jacket's buttons from its first row on, instead of who swims.
@@ -47,7 +48,10 @@ struct PhysicsHuman {
 // Errors in one line: files that do not read, models without the segments' nodes.
 Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t object);
 
-// The diver's present goal.
+// The speed through the water that gives one over ground, in that current: the diver swims aslant
+// into a current from the side.
+double through_water_m_s(double over_ground_m_s, const Vec3& way_ned, const Vec3& current_ned_m_s);
+// The diver's present goal. One who swims by the speed over ground feels the current.
 diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state);
 
 // A diver on the way through a step, for what touches: world axes.

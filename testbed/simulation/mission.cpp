@@ -1,6 +1,8 @@
 #include "testbed/simulation/mission.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "rov/frames.hpp"
 
@@ -13,12 +15,14 @@ constexpr double kLeastWay = 0.01;
 }  // namespace
 
 MissionGuide::MissionGuide(const scene::Scene& scene, const scene::Mission& mission,
-                           const Movers& movers)
+                           const Movers& movers, double period_s)
     : kind_(mission.kind),
       acceptance_m_(mission.acceptance_m),
       speed_m_s_(mission.speed_m_s),
       radius_m_(mission.radius_m),
       distance_m_(mission.distance_m),
+      period_s_(period_s),
+      speed_over_(mission.speed_over),
       repeat_(mission.repeat),
       offset_frd_m_(rov::ned_from_world(mission.offset_m)),
       face_(face_of(scene, mission.facing, movers)),
@@ -43,6 +47,34 @@ std::size_t MissionGuide::waypoint_index(const MissionState& mission) const {
   return std::min<std::size_t>(mission.left, waypoints_.size() - 1);
 }
 
+std::vector<Vec3> MissionGuide::waypoints_ned_m() const {
+  std::vector<Vec3> out;
+  for (const Stop& stop : waypoints_) out.push_back(stop.position_ned_m);
+  return out;
+}
+
+std::vector<MissionGuide::Leg> MissionGuide::legs(const Vec3& start_ned_m) const {
+  std::vector<Leg> out;
+  const auto add = [&](const Vec3& from, const Stop& to) {
+    const Face& face = to.face.said() ? to.face : face_;
+    const Vec3 way = to.position_ned_m - from;
+    Leg leg{from, to.position_ned_m, face.heading_rad};
+    if (!face.said() && std::hypot(way.x, way.y) > kLeastWay)
+      leg.heading_rad = std::atan2(way.y, way.x);
+    out.push_back(leg);
+  };
+  for (std::size_t i = 0; i < waypoints_.size(); ++i)
+    add(i == 0 ? start_ned_m : waypoints_[i - 1].position_ned_m, waypoints_[i]);
+  if (repeat_ && waypoints_.size() > 1) add(waypoints_.back().position_ned_m, waypoints_.front());
+  return out;
+}
+
+std::vector<double> MissionGuide::holds_s() const {
+  std::vector<double> out;
+  for (const Stop& stop : waypoints_) out.push_back(stop.hold_s);
+  return out;
+}
+
 bool MissionGuide::done(const MissionState& mission) const {
   return !repeat_ && mission.arrived >= waypoints_.size();
 }
@@ -59,11 +91,35 @@ rov::Setpoint MissionGuide::to_waypoint(const rov::State& body, double time_s,
   if (mission.arrived > mission.left && !last && time_s - mission.arrived_s >= stop->hold_s) {
     ++mission.left;
     mission.leg_from_ned_m = stop->position_ned_m;
+    mission.more_m_s = 0.0;
     stop = &waypoints_[waypoint_index(mission)];
   }
   const bool holds = mission.arrived > mission.left;
-  if (holds || speed_m_s_ == 0.0) return rov::go_to({}, stop->position_ned_m);
-  return rov::go_to({}, body, mission.leg_from_ned_m, stop->position_ned_m, speed_m_s_);
+  if (holds) return rov::go_to({}, stop->position_ned_m);
+  rov::Setpoint setpoint;
+  setpoint.by_drag_alone = speed_m_s_ > 0.0 && speed_over_ == scene::SpeedOver::kWater;
+  const Vec3 way = rov::along(stop->position_ned_m - mission.leg_from_ned_m);
+  return rov::go_to(setpoint, body, mission.leg_from_ned_m, stop->position_ned_m,
+                    pushed_m_s(body, way, mission));
+}
+
+// The speed of the setpoint along its way.
+double MissionGuide::pushed_m_s(const rov::State& body, const Vec3& way,
+                                MissionState& mission) const {
+  if (speed_m_s_ == 0.0) return std::numeric_limits<double>::infinity();
+  if (speed_over_ == scene::SpeedOver::kWater) return std::abs(speed_m_s_);
+  const double now_m_s = glm::dot(body.attitude * body.velocity.linear(), way);
+  return rov::over_ground_m_s(std::abs(speed_m_s_), now_m_s, period_s_, mission.more_m_s);
+}
+
+rov::Setpoint MissionGuide::round(const Vec3& centre_ned_m, const rov::State& body,
+                                  MissionState& mission) const {
+  rov::Setpoint setpoint;
+  setpoint.by_drag_alone = speed_over_ == scene::SpeedOver::kWater;
+  const Vec3 way =
+      rov::along(rov::orbit({}, body, centre_ned_m, radius_m_, speed_m_s_).velocity_ned_m_s);
+  return rov::orbit(setpoint, body, centre_ned_m, radius_m_,
+                    std::copysign(1.0, speed_m_s_) * pushed_m_s(body, way, mission));
 }
 
 void MissionGuide::turn(rov::Setpoint& setpoint, const Face& face, const Vec3& way_ned,
@@ -83,6 +139,7 @@ rov::Setpoint MissionGuide::update(const PhysicsState& all, const rov::State& bo
   using Kind = scene::Mission::Kind;
   if (mission.piloted != 0) {  // the pilot gave it back somewhere else
     mission.piloted = 0;
+    mission.more_m_s = 0.0;
     mission.leg_from_ned_m = body.position_ned_m;
   }
   rov::Setpoint setpoint;
@@ -97,7 +154,7 @@ rov::Setpoint MissionGuide::update(const PhysicsState& all, const rov::State& bo
     if (mission.arrived == mission.left) way = stop.position_ned_m - mission.leg_from_ned_m;
   } else if (kind_ == Kind::kOrbit) {
     const Vec3 centre = rov::ned_from_world(target_.at(all, time_s).position_m);
-    setpoint = rov::orbit({}, body, centre, radius_m_, speed_m_s_);
+    setpoint = round(centre, body, mission);
     way = setpoint.velocity_ned_m_s;
   } else if (kind_ == Kind::kFollow) {
     const Pose target = target_.at(all, time_s);

@@ -12,7 +12,9 @@ namespace neritic::testbed {
 
 class MissionGuide {
  public:
-  MissionGuide(const scene::Scene& scene, const scene::Mission& mission, const Movers& movers);
+  // period_s: of control.
+  MissionGuide(const scene::Scene& scene, const scene::Mission& mission, const Movers& movers,
+               double period_s);
 
   // Where to be now. all: the states before this step; the mission's own state is advanced.
   rov::Setpoint update(const PhysicsState& all, const rov::State& body, double time_s,
@@ -22,6 +24,17 @@ class MissionGuide {
   // The waypoint that it flies to or holds at.
   std::size_t waypoint_index(const MissionState& mission) const;
   bool repeats() const { return repeat_; }
+  double speed_m_s() const { return speed_m_s_; }  // 0: none is said
+  scene::SpeedOver speed_over() const { return speed_over_; }
+  // The ways between its waypoints, from start on; where it repeats the way back too. heading_rad:
+  // where it faces there; none: as what it looks at moves.
+  struct Leg {
+    Vec3 from_ned_m{0.0}, to_ned_m{0.0};
+    std::optional<double> heading_rad;
+  };
+  std::vector<Leg> legs(const Vec3& start_ned_m) const;
+  std::vector<Vec3> waypoints_ned_m() const;
+  std::vector<double> holds_s() const;  // of each waypoint
   // All waypoints reached, of a mission that does not repeat.
   bool done(const MissionState& mission) const;
 
@@ -39,11 +52,16 @@ class MissionGuide {
   };
   Face face_of(const scene::Scene& scene, const scene::Facing& facing, const Movers& movers) const;
   rov::Setpoint to_waypoint(const rov::State& body, double time_s, MissionState& mission) const;
+  rov::Setpoint round(const Vec3& centre_ned_m, const rov::State& body,
+                      MissionState& mission) const;
+  double pushed_m_s(const rov::State& body, const Vec3& way, MissionState& mission) const;
   void turn(rov::Setpoint& setpoint, const Face& face, const Vec3& way_ned, const PhysicsState& all,
             double time_s, const MissionState& mission) const;
 
   scene::Mission::Kind kind_;
   double acceptance_m_, speed_m_s_, radius_m_, distance_m_;
+  double period_s_;
+  scene::SpeedOver speed_over_;
   bool repeat_;
   Vec3 offset_frd_m_;
   Face face_;

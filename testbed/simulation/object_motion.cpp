@@ -7,22 +7,51 @@ namespace neritic::testbed {
 namespace {
 
 // velocity: linear and angular, body axes, marine.
-ObjectMotion moving(const Pose& world_from_object, const Quat& ned_from_body,
-                    const Vec6& velocity) {
+Motion moving(const Pose& world_from_object, const Quat& ned_from_body, const Vec6& velocity) {
   return {world_from_object, world_from_ned(ned_from_body * velocity.linear()),
           world_from_ned(ned_from_body * velocity.angular())};
 }
 
 }  // namespace
 
-ObjectMotion motion_of(const VehicleState& vehicle) {
+Motion motion_of(const VehicleState& vehicle) {
   const rov::State& body = vehicle.body;
   return moving(world_pose(body.position_ned_m, body.attitude), body.attitude, body.velocity);
 }
 
-ObjectMotion motion_of(const HumanPhysics& human) {
+Motion motion_of(const HumanPhysics& human) {
   const diver::RootState& root = human.human.root;
   return moving(drawn_pose(human), root.attitude, root.velocity);
+}
+
+std::optional<Motion> motion_of(const ObjectState& object) {
+  if (object.placed == 0) return std::nullopt;
+  return object.motion;
+}
+
+Movers::Movers(const scene::Scene& scene)
+    : vehicle_of_object(scene.objects.size(), -1),
+      human_of_object(vehicle_of_object),
+      tracked_of_object(vehicle_of_object) {
+  int vehicles = 0, humans = 0, tracked = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const scene::Object& object = scene.objects[i];
+    if (object.dynamics) vehicle_of_object[i] = vehicles++;
+    if (object.human) human_of_object[i] = humans++;
+    if (!object.inputs.empty()) tracked_of_object[i] = tracked++;
+  }
+}
+
+std::optional<scene::MotionAt> StateMotion::at(std::size_t object, double) const {
+  const auto place = [object](const std::vector<int>& of) { return of.at(object); };
+  if (const int i = place(movers_.vehicle_of_object); i >= 0)
+    return scene::MotionAt{motion_of(state_.vehicles()[static_cast<std::size_t>(i)])};
+  if (const int i = place(movers_.human_of_object); i >= 0)
+    return scene::MotionAt{motion_of(state_.humans()[static_cast<std::size_t>(i)])};
+  if (const int i = place(movers_.tracked_of_object); i >= 0)
+    if (const auto motion = motion_of(state_.objects()[static_cast<std::size_t>(i)]))
+      return scene::MotionAt{*motion};
+  return std::nullopt;
 }
 
 }  // namespace neritic::testbed

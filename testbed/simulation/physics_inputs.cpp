@@ -19,7 +19,7 @@ Authority authority_of(const std::string& from) {
   return Authority::kLive;
 }
 
-// Group is DiverGroup or VehicleGroup.
+// Group is DiverGroup, VehicleGroup or ObjectGroup.
 template <class Group, class Inputs>
 void choose(const std::vector<scene::InputChoice>& choices, Inputs& inputs, SourceNames& sources) {
   for (const scene::InputChoice& choice : choices)
@@ -39,6 +39,13 @@ void choose(const std::vector<scene::InputChoice>& choices, Inputs& inputs, Sour
 VehicleInputs chosen_inputs(const std::vector<scene::InputChoice>& choices, SourceNames& sources) {
   VehicleInputs inputs = autopilot_vehicle();
   choose<VehicleGroup>(choices, inputs, sources);
+  return inputs;
+}
+
+ObjectInputs chosen_object_inputs(const std::vector<scene::InputChoice>& choices,
+                                  SourceNames& sources) {
+  ObjectInputs inputs = autopilot_object();
+  choose<ObjectGroup>(choices, inputs, sources);
   return inputs;
 }
 

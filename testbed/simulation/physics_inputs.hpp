@@ -1,5 +1,5 @@
-// The inputs of a scene's vehicles and divers, and the rule that a scene gives for each group of
-// them. One block of plain structs (testbed/samples/group_inputs.hpp). Any thread.
+// The inputs of a scene's vehicles, divers and tracked objects, and the rule that a scene gives for
+// each group of them. One block of plain structs (testbed/samples/group_inputs.hpp). Any thread.
 #pragma once
 
 #include <string>
@@ -11,31 +11,38 @@
 
 namespace neritic::testbed {
 
-// The inputs of every vehicle and diver of a scene.
-class PhysicsInputs : public sim::Block<VehicleInputs, DiverInputs> {
+// The inputs of every vehicle, diver and object that devices move.
+class PhysicsInputs : public sim::Block<VehicleInputs, DiverInputs, ObjectInputs> {
  public:
   PhysicsInputs() = default;
-  PhysicsInputs(std::size_t vehicles, std::size_t humans) : Block({vehicles, humans}) {}
+  PhysicsInputs(std::size_t vehicles, std::size_t humans, std::size_t objects = 0)
+      : Block({vehicles, humans, objects}) {}
 
   std::span<VehicleInputs> vehicles() { return part<VehicleInputs>(); }
   std::span<const VehicleInputs> vehicles() const { return part<VehicleInputs>(); }
   std::span<DiverInputs> humans() { return part<DiverInputs>(); }
   std::span<const DiverInputs> humans() const { return part<DiverInputs>(); }
+  std::span<ObjectInputs> objects() { return part<ObjectInputs>(); }
+  std::span<const ObjectInputs> objects() const { return part<ObjectInputs>(); }
 
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
     auto humans = self.humans();
+    auto objects = self.objects();
     field("vehicles", vehicles);
     field("humans", humans);
+    field("objects", objects);
   }
 };
 
 // The names of a scene's live sources. The first has the SourceId 1: an inbox opens them in order.
 using SourceNames = std::vector<std::string>;
 
-// The inputs of a vehicle or diver at the start, as the scene chooses; names not yet in sources are
+// The inputs of a participant at the start, as the scene chooses; names not yet in sources are
 // added. recorded_*: whether the scene names a file for that group.
 VehicleInputs chosen_inputs(const std::vector<scene::InputChoice>& choices, SourceNames& sources);
+ObjectInputs chosen_object_inputs(const std::vector<scene::InputChoice>& choices,
+                                  SourceNames& sources);
 DiverInputs chosen_inputs(const std::vector<scene::InputChoice>& choices, bool recorded_body,
                           bool recorded_buttons, SourceNames& sources);
 

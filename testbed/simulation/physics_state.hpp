@@ -26,6 +26,8 @@ struct MissionState {
   Vec3 leg_from_ned_m{0.0};             // where the way to the next waypoint begins
   // The pilot of the last control period: 0 the mission, 1 a pilot, 2 a setpoint from outside.
   std::uint64_t piloted = 0;
+  // By so much faster than the speed over ground that it wants does it push through the water.
+  double more_m_s = 0.0;
   // The controller's set value.
   Vec3 wanted_ned_m{0.0};
   Quat wanted_attitude{1.0, 0.0, 0.0, 0.0};
@@ -36,6 +38,7 @@ struct MissionState {
     field("arrived_s", self.arrived_s);
     field("leg_from_ned_m", self.leg_from_ned_m);
     field("piloted", self.piloted);
+    field("more_m_s", self.more_m_s);
     field("wanted_ned_m", self.wanted_ned_m);
     field("wanted_attitude", self.wanted_attitude);
   }
@@ -106,15 +109,32 @@ struct HumanPhysics {
   }
 };
 
+// An object that devices move.
+struct ObjectState {
+  Motion motion;                                 // world_from_object, where samples put it
+  std::uint64_t placed = 0;                      // 0: it is where its own track or place has it
+  std::array<GroupState, kObjectGroups> groups;  // of its inputs
+
+  static void fields(auto&& field, auto& self) {
+    fields_but_groups(field, self);
+    field("groups", self.groups);
+  }
+  static void fields_but_groups(auto&& field, auto& self) {
+    field("motion", self.motion);
+    field("placed", self.placed);
+  }
+};
+
 // The state of a scene's physics: one block, sized once from the scene (PhysicsWorld::start()).
-class PhysicsState
-    : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings, rov::NavigationState> {
+class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings,
+                                       rov::NavigationState, ObjectState> {
  public:
   PhysicsState() = default;
-  // sensing: vehicles that have sensors; navigating: those that fly on what they measure.
+  // sensing: vehicles that have sensors; navigating: those that fly on what they measure; objects:
+  // those that devices move.
   PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing,
-               std::size_t navigating)
-      : Block({vehicles, humans, sensing, navigating}) {}
+               std::size_t navigating, std::size_t objects = 0)
+      : Block({vehicles, humans, sensing, navigating, objects}) {}
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
@@ -126,20 +146,26 @@ class PhysicsState
   // For the vehicles that fly by their own sensors: PhysicsWorld::navigation() finds a vehicle's.
   std::span<rov::NavigationState> navigation() { return part<rov::NavigationState>(); }
   std::span<const rov::NavigationState> navigation() const { return part<rov::NavigationState>(); }
+  std::span<ObjectState> objects() { return part<ObjectState>(); }
+  std::span<const ObjectState> objects() const { return part<ObjectState>(); }
 
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
     auto humans = self.humans();
     auto readings = self.readings();
     auto navigation = self.navigation();
+    auto objects = self.objects();
     field("vehicles", vehicles);
     field("humans", humans);
     field("readings", readings);
     field("navigation", navigation);
+    field("objects", objects);
   }
-  // The hash covers groups once a live source was asked for, and navigation where there is any.
+  // The hash covers groups once a live source was asked for, and navigation and objects where there
+  // are any.
   std::span<const std::uint64_t> hashed_counts() const {
-    return std::span(counts()).first(navigation().empty() ? kKinds - 1 : kKinds);
+    const std::size_t kinds = !objects().empty() ? kKinds : kKinds - (navigation().empty() ? 2 : 1);
+    return std::span(counts()).first(kinds);
   }
   static void hashed_fields(auto&& field, auto& self) {
     const auto add = [&](auto& one) {
@@ -152,6 +178,7 @@ class PhysicsState
     };
     for (auto& vehicle : self.vehicles()) add(vehicle);
     for (auto& human : self.humans()) add(human);
+    for (auto& object : self.objects()) add(object);
     auto readings = self.readings();
     auto navigation = self.navigation();
     field("readings", readings);

@@ -1,25 +1,44 @@
 // The step (physics_world.hpp): every vehicle and diver by itself, then pairs that meet, then every
-// one along what is solid. Only the pairs depend on one another, so that threads share the rest.
+// one along what is solid. Only the pairs depend on one another, so that threads share the rest. A
+// vehicle's step has a part between any two instants of its control and its sensors; all parts but
+// the last end before pairs meet.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <thread>
 
 #include "rov/frames.hpp"
 #include "testbed/simulation/physics_world.hpp"
+#include "testbed/simulation/water_along.hpp"
 
 namespace neritic::testbed {
 namespace {
 
+// The mean rate of the velocity by contacts over dt_s, axes of the body as it now is.
+rov::Vec6 felt(const ContactReport& report, double dt_s, const rov::State& body) {
+  const Quat body_from_ned = glm::conjugate(body.attitude);
+  const double per_s =
+      dt_s > 0.0 ? 1.0 / dt_s : 0.0;  // a step of no time is refused: nothing moves
+  return per_s * rov::vec6(body_from_ned * report.change_ned.linear(),
+                           body_from_ned * report.change_ned.angular());
+}
+
 void add_contact(const ContactReport& report, double dt_s, VehicleState& state) {
-  const Quat body_from_ned = glm::conjugate(state.body.attitude);
   ContactState& contact = state.contact;
   contact.near_points = static_cast<std::uint64_t>(report.motion.contacts);
   contact.deepest_m = std::max(contact.deepest_m, report.motion.deepest_m);
   contact.impulse_n_s = report.motion.impulse_n_s;
-  const double per_s =
-      dt_s > 0.0 ? 1.0 / dt_s : 0.0;  // a step of no time is refused: nothing moves
-  contact.acceleration = per_s * rov::vec6(body_from_ned * report.change_ned.linear(),
-                                           body_from_ned * report.change_ned.angular());
+  contact.acceleration = felt(report, dt_s, state.body);
+  contact.touched_steps += report.motion.touched ? 1 : 0;
+}
+
+double time_at(const sim::StepTime& time, double share) {
+  return (static_cast<double>(time.step) + share) * time.step_s;
+}
+
+// All of a step keeps its bits.
+double length_s(const sim::StepTime& time, const StepPart& part) {
+  return part.from == 0.0 && part.to == 1.0 ? time.step_s : (part.to - part.from) * time.step_s;
 }
 
 // A thread is worth starting for this many vehicles: their step takes six times as long as the
@@ -33,17 +52,36 @@ unsigned threads_worth(std::size_t vehicles, std::size_t divers) {
   return static_cast<unsigned>(std::clamp<std::size_t>(worth, 1, cores));
 }
 
+// After the step: where the samples put it, or as it was, or where its own track or place has it.
+ObjectState next_object(const ObjectState& before, const ObjectInputs& inputs,
+                        const sim::StepTime& time) {
+  const GroupControl& control = inputs.control.front();
+  ObjectState next = before;
+  next.groups.front() = next_group(before.groups.front(), control, time.step, time.step_s);
+  const Authority by = acting(next.groups.front());
+  next.motion.velocity_m_s = next.motion.angular_velocity_rad_s = Vec3(0.0);
+  if (by == Authority::kLive) {
+    next.placed = 1;
+    next.motion =
+        inputs.track.at(static_cast<double>(time.step + 1 - control.heard_step) * time.step_s);
+  } else if (by == Authority::kAutopilot) {
+    next.placed = 0;
+    next.motion = {};
+  }
+  return next;
+}
+
 // Points of one body, thinned or not: more are seldom near at once.
 constexpr std::size_t kRoomForContacts = 256;
 
 }  // namespace
 
 PhysicsState PhysicsWorld::start() const {
-  PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_);
+  PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_, objects_.size());
   for (std::size_t i = 0; i < vehicles_.size(); ++i) state.vehicles()[i].body = vehicles_[i].start;
   for (std::size_t i = 0; i < humans_.size(); ++i) state.humans()[i] = humans_[i].start;
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-    sense(i, -1.0, 0.0, state);
+    sense(i, {}, -1.0, 0.0, state);
     start_navigation(i, state);
     state.vehicles()[i].mission = mission_start(known_state(state, i, 0.0));
   }
@@ -68,8 +106,10 @@ void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint6
   if (stream.sort == OwnerSort::kDiver)
     testbed::apply(inputs.humans()[stream.owner], sample, step,
                    recorded_groups(humans_[stream.owner]));
-  else
+  else if (stream.sort == OwnerSort::kVehicle)
     testbed::apply(inputs.vehicles()[stream.owner], sample, step);
+  else
+    testbed::apply(inputs.objects()[stream.owner], sample, step);
 }
 
 rov::RayQuery PhysicsWorld::rays() const {
@@ -109,10 +149,12 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
   after = before;
   const StepCall call{before, inputs, time, scratch, after};
   const std::size_t vehicles = vehicles_.size(), humans = humans_.size();
+  for (std::size_t i = 0; i < objects_.size(); ++i)
+    after.objects()[i] = next_object(before.objects()[i], inputs.objects()[i], time);
   // Each writes its own part of scratch and after, and reads before. Divers, which cost more, come
   // first: no thread is left with one at the end.
-  scratch.workers.run(humans + vehicles, [&](std::size_t i, unsigned) {
-    i < humans ? begin_human(call, i) : begin_vehicle(call, i - humans);
+  scratch.workers.run(humans + vehicles, [&](std::size_t i, unsigned thread) {
+    i < humans ? begin_human(call, i) : begin_vehicle(call, i - humans, thread);
   });
   if (vehicles + humans > 1) part_all(call);
   scratch.workers.run(humans + vehicles, [&](std::size_t i, unsigned thread) {
@@ -120,7 +162,8 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
   });
 }
 
-VehicleStep PhysicsWorld::vehicle_step(const StepCall& call, std::size_t i) const {
+// For what meets in it.
+VehicleStep PhysicsWorld::whole_step(const StepCall& call, std::size_t i) const {
   const PhysicsVehicle& vehicle = vehicles_[i];
   return {vehicle.kind.solid,
           vehicle.vehicle,
@@ -130,26 +173,56 @@ VehicleStep PhysicsWorld::vehicle_step(const StepCall& call, std::size_t i) cons
           method_};
 }
 
-void PhysicsWorld::begin_vehicle(const StepCall& call, std::size_t i) const {
+VehicleStep PhysicsWorld::part_step(const StepCall& call, std::size_t i) const {
+  const PhysicsVehicle& vehicle = vehicles_[i];
+  const VehicleScratch& own = call.scratch.vehicles[i];
+  StepMethod method = method_;
+  const double share = own.part.to - own.part.from;
+  method.contact_parts = static_cast<int>(std::ceil(share * method.contact_parts - 1e-6));
+  return {vehicle.kind.solid,
+          vehicle.vehicle,
+          call.after.vehicles()[i].body,
+          own.acting,
+          length_s(call.time, own.part),
+          method};
+}
+
+void PhysicsWorld::begin_vehicle(const StepCall& call, std::size_t i, unsigned thread) const {
   VehicleScratch& own = call.scratch.vehicles[i];
   VehicleState& state = call.after.vehicles()[i];
   const VehicleInputs& inputs = call.inputs.vehicles()[i];
-  const double time_s = call.time.time_s();
   own.parted = false;
+  own.contact = {};
   for (std::size_t k = 0; k < kVehicleGroups; ++k)
     state.groups[k] =
         next_group(state.groups[k], inputs.control[k], call.time.step, call.time.step_s);
-  own.refused = control_due(i, call.time.step) && !steer(i, call.before, inputs, time_s, state);
-  own.acting = acting_on(vehicles_[i], inputs, state, time_s, call.time.step_s);
-  own.free = free_step(vehicle_step(call, i));
+  for (own.part.from = 0.0;; own.part.from = own.part.to) {
+    own.part.to = next_of(vehicles_[i].kind.model.instants, call.time.step, own.part.from);
+    begin_part(call, i);
+    if (own.part.to == 1.0) break;
+    end_part(call, i, thread);
+  }
   own.alone_ned = velocity_ned(own.free);
+}
+
+void PhysicsWorld::begin_part(const StepCall& call, std::size_t i) const {
+  const PhysicsVehicle& vehicle = vehicles_[i];
+  VehicleScratch& own = call.scratch.vehicles[i];
+  VehicleState& state = call.after.vehicles()[i];
+  const double from_s = time_at(call.time, own.part.from);
+  const Instants& control = vehicle.kind.model.instants.front();
+  if (control.at(call.time.step, own.part.from) && !steer(i, call, from_s))
+    ++state.body.refused_inputs;
+  own.acting =
+      acting_on(vehicle, call.inputs.vehicles()[i], state, from_s, length_s(call.time, own.part));
+  own.free = free_step(part_step(call, i));
 }
 
 void PhysicsWorld::begin_human(const StepCall& call, std::size_t k) const {
   const diver::RootState& root = call.before.humans()[k].human.root;
   const diver::WaterFlow water =
-      water_along(root.position_ned_m, root.attitude * root.velocity.linear(), call.time.time_s(),
-                  call.time.step_s);
+      water_along(current_, root.position_ned_m, root.attitude * root.velocity.linear(),
+                  call.time.time_s(), call.time.step_s);
   call.scratch.humans[k] = {free_human(humans_[k], call.inputs.humans()[k], water, call.time.step,
                                        call.time.step_s, call.after.humans()[k]),
                             false};
@@ -162,7 +235,7 @@ void PhysicsWorld::part_all(const StepCall& call) const {
   const std::size_t vehicles = vehicles_.size(), bodies = vehicles + humans_.size();
   const auto sphere = [&](std::size_t i) -> PairSphere {
     const sim::PairBody body =
-        i < vehicles ? pair_body(vehicle_step(call, i), scratch.vehicles[i].free)
+        i < vehicles ? pair_body(whole_step(call, i), scratch.vehicles[i].free)
                      : pair_body(humans_[i - vehicles], scratch.humans[i - vehicles].moving);
     return {body.before.position_m, sim::pair_reach_m(body)};
   };
@@ -182,8 +255,7 @@ bool PhysicsWorld::part(const StepCall& call, std::size_t a, std::size_t b) cons
   StepScratch& scratch = call.scratch;
   if (a < vehicles) {
     VehicleScratch &one = scratch.vehicles[a], &two = scratch.vehicles[b];
-    if (!part_vehicles(vehicle_step(call, a), one.free, vehicle_step(call, b), two.free,
-                       scratch.pair))
+    if (!part_vehicles(whole_step(call, a), one.free, whole_step(call, b), two.free, scratch.pair))
       return false;
     one.parted = two.parted = true;
     return true;
@@ -192,8 +264,7 @@ bool PhysicsWorld::part(const StepCall& call, std::size_t a, std::size_t b) cons
   HumanScratch& own = scratch.humans[k];
   if (b < vehicles) {
     VehicleScratch& vehicle = scratch.vehicles[b];
-    if (!part_from_vehicle(humans_[k], own.moving, vehicle_step(call, b), vehicle.free,
-                           scratch.pair))
+    if (!part_from_vehicle(humans_[k], own.moving, whole_step(call, b), vehicle.free, scratch.pair))
       return false;
     vehicle.parted = own.parted = true;
     return true;
@@ -206,20 +277,27 @@ bool PhysicsWorld::part(const StepCall& call, std::size_t a, std::size_t b) cons
   return true;
 }
 
-void PhysicsWorld::finish_vehicle(const StepCall& call, std::size_t i, unsigned thread) const {
-  const VehicleScratch& own = call.scratch.vehicles[i];
+// The rest of the part that begin_part() began: contacts, then what the vehicle measures.
+void PhysicsWorld::end_part(const StepCall& call, std::size_t i, unsigned thread) const {
+  VehicleScratch& own = call.scratch.vehicles[i];
   VehicleState& state = call.after.vehicles()[i];
-  const double dt_s = call.time.step_s;
+  const VehicleStep step = part_step(call, i);
   ContactReport report;
-  state.body = step_among(solid_, vehicle_step(call, i), own.free, own.parted,
-                          call.scratch.contacts[thread], &report);
-  state.body.refused_inputs += own.refused ? 1 : 0;
-  if (own.parted) report.change_ned = report.change_ned + velocity_ned(own.free) - own.alone_ned;
-  add_contact(report, dt_s, state);
-  state.contact.touched_steps += report.motion.touched || own.parted ? 1 : 0;
-  const double end_s = sim::StepTime{call.time.step + 1, dt_s}.time_s();
-  sense(i, end_s - dt_s, end_s, call.after);
-  navigate(i, end_s, call.after);
+  state.body =
+      step_among(solid_, step, own.free, own.parted, call.scratch.contacts[thread], &report);
+  if (own.parted) {
+    report.motion.touched = true;
+    report.change_ned = report.change_ned + velocity_ned(own.free) - own.alone_ned;
+  }
+  const double to_s = time_at(call.time, own.part.to);
+  sense(i, felt(report, step.dt_s, state.body), to_s - step.dt_s, to_s, call.after);
+  navigate(i, to_s, call.after);
+  add_part(report, own.contact);
+}
+
+void PhysicsWorld::finish_vehicle(const StepCall& call, std::size_t i, unsigned thread) const {
+  end_part(call, i, thread);
+  add_contact(call.scratch.vehicles[i].contact, call.time.step_s, call.after.vehicles()[i]);
 }
 
 void PhysicsWorld::finish_human(const StepCall& call, std::size_t k, unsigned thread) const {
@@ -228,13 +306,15 @@ void PhysicsWorld::finish_human(const StepCall& call, std::size_t k, unsigned th
             call.scratch.contacts[thread], call.after.humans()[k]);
 }
 
-// The samples of the vehicle's sensors that are due in (from_s, to_s], of the state at to_s.
-void PhysicsWorld::sense(std::size_t index, double from_s, double to_s, PhysicsState& state) const {
+// The samples of the vehicle's sensors that are due in (from_s, to_s], of the state at to_s, whose
+// velocity contacts changed at this rate.
+void PhysicsWorld::sense(std::size_t index, const rov::Vec6& contact, double from_s, double to_s,
+                         PhysicsState& state) const {
   const PhysicsVehicle& vehicle = vehicles_[index];
   if (!vehicle.readings) return;
-  const VehicleState& now = state.vehicles()[index];
-  rov::update_readings(vehicle.file.sensors, sensor_world(index), vehicle.vehicle, now.body,
-                       now.contact.acceleration, from_s, to_s, state.readings()[*vehicle.readings]);
+  rov::update_readings(vehicle.file.sensors, sensor_world(index), vehicle.vehicle,
+                       state.vehicles()[index].body, contact, from_s, to_s,
+                       state.readings()[*vehicle.readings]);
 }
 
 rov::SensorWorld PhysicsWorld::sensor_world(std::size_t vehicle) const {

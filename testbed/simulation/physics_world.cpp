@@ -59,28 +59,24 @@ Result<sim::Current> current_of(const scene::Current& current) {
 
 bool PhysicsWorld::needed(const scene::Scene& scene) {
   for (const scene::Object& object : scene.objects)
-    if (object.dynamics || object.human) return true;
+    if (object.dynamics || object.human || !object.inputs.empty()) return true;
   return false;
 }
 
+PhysicsWorld::PhysicsWorld(const scene::Scene& scene) : movers_(scene) {}
+
 Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Scene& scene) {
-  std::unique_ptr<PhysicsWorld> world(new PhysicsWorld);
+  std::unique_ptr<PhysicsWorld> world(new PhysicsWorld(scene));
   world->seed_ = scene.seed;
   if (scene.current) {
     NERITIC_TRY(world->current_, current_of(*scene.current));
   }
   NERITIC_TRY(world->solid_, static_world_of(scene));
   NERITIC_TRY_STATUS(world->choose_step(scene));
-  Movers movers{std::vector<int>(scene.objects.size(), -1),
-                std::vector<int>(scene.objects.size(), -1)};
-  int vehicles = 0, humans = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    if (scene.objects[i].dynamics) movers.vehicle_of_object[i] = vehicles++;
-    if (scene.objects[i].human) movers.human_of_object[i] = humans++;
-  }
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i, movers));
+    if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i));
     if (scene.objects[i].human) NERITIC_TRY_STATUS(world->add_human(scene, i));
+    if (!scene.objects[i].inputs.empty()) world->objects_.push_back({scene.objects[i].name, i});
   }
   std::vector<std::uint64_t> vehicle_files;
   for (const PhysicsVehicle& vehicle : world->vehicles_)
@@ -94,7 +90,7 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
 }
 
 void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
-  start_inputs_ = PhysicsInputs(vehicles_.size(), humans_.size());
+  start_inputs_ = PhysicsInputs(vehicles_.size(), humans_.size(), objects_.size());
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     streams_.add_vehicle(vehicles_[i].name, vehicles_[i].file.sensors);
     start_inputs_.vehicles()[i] =
@@ -106,6 +102,11 @@ void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
     start_inputs_.humans()[i] =
         chosen_inputs(scene.objects[human.object].human->inputs, human.recording.has_value(),
                       human.buttons.has_value(), sources_);
+  }
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    streams_.add_object(objects_[i].name);
+    start_inputs_.objects()[i] =
+        chosen_object_inputs(scene.objects[objects_[i].object].inputs, sources_);
   }
 }
 
@@ -123,15 +124,15 @@ Status PhysicsWorld::choose_step(const scene::Scene& scene) {
   return {};
 }
 
-Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index,
-                                 const Movers& movers) {
+Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index) {
   const scene::Object& object = scene.objects[index];
   const scene::Dynamics& dynamics = *object.dynamics;
   NERITIC_TRY(const VehicleKind* kind, kinds_.of(scene, object, step_s_, method_));
   NERITIC_TRY_STATUS(check_anchor(scene, object, kind->model.vehicle.tether.has_value()));
   PhysicsVehicle out{.name = object.name, .object = index, .kind = *kind};
   out.failed_thrusters = dynamics.failed_thrusters;
-  if (dynamics.mission) out.mission.emplace(scene, *dynamics.mission, movers);
+  if (dynamics.mission)
+    out.mission.emplace(scene, *dynamics.mission, movers_, out.file.gains.period_s);
   if (dynamics.tether_anchor_m)
     out.tether_anchor_ned_m = rov::ned_from_world(*dynamics.tether_anchor_m);
   const Pose at = scene.world_from(object.mount, 0.0);

@@ -43,13 +43,22 @@ struct PhysicsVehicle {
   rov::SensorWater water;                       // around its sensors
 };
 
+// An object of the scene that devices move.
+struct PhysicsObject {
+  std::string name;
+  std::size_t object = 0;  // index into Scene::objects
+};
+
 // Memory that a step works in, kept from step to step so that none allocates. Its content means
 // nothing between steps.
 struct VehicleScratch {
+  // The part of the step that is being taken; its start is the state in the step's result.
+  StepPart part;
   rov::Inputs acting;
-  rov::State free;      // after the step, as if the water were empty; changed by what it meets
+  rov::State free;      // after the part, as if the water were empty; changed by what it meets
   rov::Vec6 alone_ned;  // its velocity then, as if there were no other vehicle or diver
-  bool parted = false, refused = false;
+  bool parted = false;
+  ContactReport contact;  // of the step so far
 };
 struct HumanScratch {
   HumanStep moving;
@@ -82,10 +91,12 @@ class PhysicsWorld {
 
   const std::vector<PhysicsVehicle>& vehicles() const { return vehicles_; }
   const std::vector<PhysicsHuman>& humans() const { return humans_; }
+  const std::vector<PhysicsObject>& objects() const { return objects_; }
   const sim::StaticWorld& solid() const { return solid_; }
+  std::uint64_t seed() const { return seed_; }
   double step_s() const { return step_s_; }
   const StepMethod& method() const { return method_; }
-  // Whether vehicle's controller acts in the step that begins at this state.
+  // Whether the state after so many steps is the first at or after an instant of vehicle's control.
   bool control_due(std::size_t vehicle, std::uint64_t step) const;
 
   PhysicsState start() const;
@@ -129,18 +140,21 @@ class PhysicsWorld {
                                                 unsigned threads = 0) const;
 
  private:
-  PhysicsWorld() = default;
+  explicit PhysicsWorld(const scene::Scene& scene);
   Status choose_step(const scene::Scene& scene);
-  Status add_vehicle(const scene::Scene& scene, std::size_t object, const Movers& movers);
+  Status add_vehicle(const scene::Scene& scene, std::size_t object);
   Status add_human(const scene::Scene& scene, std::size_t object);
   void choose_inputs(const scene::Scene& scene);
   Status check_start(const scene::Scene& scene, const std::string& name,
                      const sim::BodyShape& shape, const Pose& start) const;
-  bool steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs, double time_s,
-             VehicleState& state) const;
-  void sense(std::size_t index, double from_s, double to_s, PhysicsState& state) const;
-  VehicleStep vehicle_step(const StepCall& call, std::size_t i) const;
-  void begin_vehicle(const StepCall& call, std::size_t i) const;
+  bool steer(std::size_t index, const StepCall& call, double time_s) const;
+  void sense(std::size_t index, const rov::Vec6& contact, double from_s, double to_s,
+             PhysicsState& state) const;
+  VehicleStep whole_step(const StepCall& call, std::size_t i) const;
+  VehicleStep part_step(const StepCall& call, std::size_t i) const;
+  void begin_vehicle(const StepCall& call, std::size_t i, unsigned thread) const;
+  void begin_part(const StepCall& call, std::size_t i) const;
+  void end_part(const StepCall& call, std::size_t i, unsigned thread) const;
   void begin_human(const StepCall& call, std::size_t k) const;
   void part_all(const StepCall& call) const;
   bool part(const StepCall& call, std::size_t a, std::size_t b) const;
@@ -148,12 +162,10 @@ class PhysicsWorld {
   void finish_human(const StepCall& call, std::size_t k, unsigned thread) const;
   void start_navigation(std::size_t index, PhysicsState& state) const;
   void navigate(std::size_t index, double time_s, PhysicsState& state) const;
-  // Where something that moves so is, during a step.
-  diver::WaterFlow water_along(const Vec3& position_ned_m, const Vec3& velocity_ned_m_s,
-                               double time_s, double dt_s) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
                         const VehicleState& state, double time_s, double dt_s) const;
 
+  const Movers movers_;
   double step_s_ = 1.0 / 240.0;
   std::uint64_t seed_ = 0, scene_hash_ = 0;
   StepMethod method_;
@@ -162,6 +174,7 @@ class PhysicsWorld {
   VehicleKinds kinds_;
   std::vector<PhysicsVehicle> vehicles_;
   std::vector<PhysicsHuman> humans_;
+  std::vector<PhysicsObject> objects_;
   std::size_t sensing_ = 0;     // vehicles with sensors
   std::size_t navigating_ = 0;  // those that fly on what they measure
   StreamTable streams_;

@@ -1,33 +1,29 @@
-// Where the objects are that missions speak of: by their tracks, or by the simulation where they
-// move by physics. Built once, then only read; any thread. World frame.
+// Where the objects are that missions speak of, by the one source of motion
+// (engine/scene/motion.hpp) out of a state. Built once, then only read; any thread. World frame.
 #pragma once
 
-#include <vector>
-
-#include "engine/scene/scene.hpp"
-#include "testbed/simulation/physics_state.hpp"
+#include "testbed/simulation/object_motion.hpp"
 
 namespace neritic::testbed {
 
-// The objects that move by physics: index of an object's vehicle, or of its diver; -1: none.
-struct Movers {
-  std::vector<int> vehicle_of_object, human_of_object;
-};
-
-// One thing: what carries it, outermost last.
 class Place {
  public:
+  // Borrows movers.
   Place(const scene::Scene& scene, const scene::Aim& aim, const Movers& movers);
 
-  Pose at(const PhysicsState& state, double time_s) const;
+  Pose at(const PhysicsState& state, double time_s) const { return motion(state, time_s).pose; }
+  Vec3 velocity_m_s(const PhysicsState& state, double time_s) const {
+    return motion(state, time_s).velocity_m_s;
+  }
   // With -z ahead: a diver's head, where at() has the axes of the model, which stands.
   Quat facing(const PhysicsState& state, double time_s) const;
-  Vec3 velocity_m_s(const PhysicsState& state, double time_s) const;
 
  private:
-  std::vector<scene::Mount> chain_;  // itself first; each in the frame of the next
-  // The mover that the last of the chain is mounted on; both -1: the world.
-  int vehicle_ = -1, human_ = -1;
+  Motion motion(const PhysicsState& state, double time_s) const;
+
+  scene::CarriedThing thing_;
+  const Movers& movers_;
+  int human_ = -1;  // the diver that it is
 };
 
 }  // namespace neritic::testbed

@@ -14,7 +14,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are copied as
 
 constexpr std::string_view kMagic = "NRTCSAVE";
 constexpr std::size_t kLongestName = 255;
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 struct Header {
   char magic[8];
@@ -109,8 +109,8 @@ Result<std::vector<std::string>> parse_names(std::span<const std::byte> bytes, s
 
 std::uint64_t StateFormat::layout_hash() const {
   Hash64 hash;
-  add_fields(hash, PhysicsState(1, 1, 1, 1));
-  add_fields(hash, PhysicsInputs(1, 1));
+  add_fields(hash, PhysicsState(1, 1, 1, 1, 1));
+  add_fields(hash, PhysicsInputs(1, 1, 1));
   for (const std::uint64_t count : state.counts()) hash.add(count);
   for (const std::uint64_t count : inputs.counts()) hash.add(count);
   return hash.value();
@@ -195,6 +195,7 @@ SavedState saved_state(const PhysicsSimulation& simulation, const StateFormat& f
   };
   keep(inputs.vehicles());
   keep(inputs.humans());
+  keep(inputs.objects());
   std::vector<std::string> names = simulation.inbox().source_names();
   names.resize(std::min(named, names.size()));
   return {simulation.newest().step, simulation.newest().state, inputs, std::move(names)};

@@ -71,6 +71,7 @@ class SceneHash {
     if (!mount.track) return;
     number(mount.track->places.size());
     for (const auto& place : mount.track->places) numbers(place.time_s), vec(place.position_m);
+    numbers(mount.track->repeat_from_s, mount.track->repeat_s);
     number(mount.track->attitudes.size());
     for (const auto& at : mount.track->attitudes) numbers(at.time_s), quat(at.rotation);
   }
@@ -108,6 +109,7 @@ class SceneHash {
       number(object.copies.size());
       for (const Mat4& copy : object.copies) matrix(copy);
     }
+    if (!object.inputs.empty()) text("inputs"), add(object.inputs);
     if (object.dynamics) add(*object.dynamics);
     if (object.human) NERITIC_TRY_STATUS(add(*object.human));
     return {};
@@ -148,6 +150,7 @@ class SceneHash {
       add(waypoint.facing);
     }
     numbers(m.acceptance_m, m.speed_m_s, m.radius_m, m.distance_m);
+    number(static_cast<std::uint64_t>(m.speed_over));
     number(m.repeat);
     vec(m.offset_m);
     add(m.target), add(m.between_a), add(m.between_b);
@@ -162,6 +165,7 @@ class SceneHash {
     number(human.swim->waypoints_m.size());
     for (const Vec3& point : human.swim->waypoints_m) vec(point);
     numbers(human.swim->speed_m_s, human.swim->acceptance_m);
+    number(static_cast<std::uint64_t>(human.swim->speed_over));
     number(human.swim->repeat);
     return file(human.swim->motion);
   }

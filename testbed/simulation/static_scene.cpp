@@ -172,11 +172,10 @@ class StaticSceneBuilder {
 
 }  // namespace
 
-bool stands_still(const scene::Scene& scene, const scene::Mount& mount) {
-  if (mount.track) return false;
-  if (mount.object < 0) return true;
-  const scene::Object& carrier = scene.objects[static_cast<std::size_t>(mount.object)];
-  return !carrier.dynamics && stands_still(scene, carrier.mount);
+bool stands_still(const scene::Scene& scene, const scene::Object& object) {
+  if (object.mount.track || object.dynamics || object.human || !object.inputs.empty()) return false;
+  return object.mount.object < 0 ||
+         stands_still(scene, scene.objects[static_cast<std::size_t>(object.mount.object)]);
 }
 
 std::vector<Vec3> rest_points(const scene::Model& model, const Vec3& scale) {
@@ -187,8 +186,7 @@ std::vector<Vec3> rest_points(const scene::Model& model, const Vec3& scale) {
 Result<sim::StaticWorld> static_world_of(const scene::Scene& scene) {
   StaticSceneBuilder builder(scene);
   for (const scene::Object& object : scene.objects)
-    if (object.collision != Collision::kNone && object.model >= 0 && !object.dynamics &&
-        stands_still(scene, object.mount))
+    if (object.collision != Collision::kNone && object.model >= 0 && stands_still(scene, object))
       NERITIC_TRY_STATUS(builder.add(object));
   return builder.build();
 }

@@ -7,8 +7,8 @@
 
 namespace neritic::testbed {
 
-// Whether it has neither a track nor dynamics, nor hangs on what has one.
-bool stands_still(const scene::Scene& scene, const scene::Mount& mount);
+// Whether neither a track, nor physics, nor a device moves it or what carries it.
+bool stands_still(const scene::Scene& scene, const scene::Object& object);
 
 // Every vertex of a model at rest, times the scale.
 std::vector<Vec3> rest_points(const scene::Model& model, const Vec3& scale);

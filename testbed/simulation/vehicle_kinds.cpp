@@ -35,6 +35,22 @@ std::uint64_t hash_of(const std::string& text, const rov::VehicleFile& file) {
   return hash.value();
 }
 
+// The instants of control first, then of each sensor.
+std::vector<Instants> instants_of(const rov::VehicleFile& file, double step_s) {
+  std::vector<Instants> out{{1.0 / file.gains.period_s, step_s}};
+  const auto add = [&](const auto& sensor) {
+    if (sensor) out.emplace_back(sensor->rate_hz, step_s);
+  };
+  const rov::SensorSet& sensors = file.sensors;
+  add(sensors.imu);
+  add(sensors.dvl);
+  add(sensors.pressure);
+  add(sensors.compass);
+  add(sensors.altimeter);
+  add(sensors.usbl);
+  return out;
+}
+
 }  // namespace
 
 Result<const VehicleModel*> VehicleKinds::model_of(const scene::Scene& scene,
@@ -48,8 +64,7 @@ Result<const VehicleModel*> VehicleKinds::model_of(const scene::Scene& scene,
   NERITIC_TRY(model.file, rov::parse_vehicle(text, path.string(), path.parent_path(),
                                              scene.physics->water_kg_m3));
   model.hash = hash_of(text, model.file);
-  // A controller cannot act more often than the physics step.
-  model.file.gains.period_s = std::max(model.file.gains.period_s, step_s);
+  model.instants = instants_of(model.file, step_s);
   NERITIC_TRY(model.vehicle, rov::make_vehicle(model.file.parameters));
   rov::prepare_steps(model.vehicle, std::array{step_s, step_s / method.contact_parts});
   known = std::make_unique<const VehicleModel>(std::move(model));

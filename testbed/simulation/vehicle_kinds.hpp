@@ -9,11 +9,13 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "engine/scene/scene.hpp"
 #include "rov/allocation.hpp"
 #include "rov/vehicle_file.hpp"
 #include "testbed/simulation/body_step.hpp"
+#include "testbed/simulation/instants.hpp"
 
 namespace neritic::testbed {
 
@@ -23,6 +25,7 @@ struct VehicleModel {
   rov::Vehicle vehicle;
   // Hash of the file's bytes, and of what its thrust table makes of commands.
   std::uint64_t hash = 0;
+  std::vector<Instants> instants;  // at which its steps end a part; control's first
 };
 
 struct VehicleKind {

@@ -7,6 +7,7 @@
 #include "rov/thrust_priority.hpp"
 #include "testbed/simulation/physics_world.hpp"
 #include "testbed/simulation/surface.hpp"
+#include "testbed/simulation/water_along.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -40,8 +41,9 @@ bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
 
 // New commands for the thrusters: of a pilot's wrench, else of a setpoint from outside, else of the
 // mission. False where the commands are no numbers: the last ones hold.
-bool PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const VehicleInputs& inputs,
-                         double time_s, VehicleState& state) const {
+bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s) const {
+  const VehicleInputs& inputs = call.inputs.vehicles()[index];
+  VehicleState& state = call.after.vehicles()[index];
   if (!sim::all_finite(inputs)) return false;
   const PhysicsVehicle& vehicle = vehicles_[index];
   const Authority wrench_by = authority_of(inputs, state, VehicleGroup::kWrench);
@@ -53,15 +55,16 @@ bool PhysicsWorld::steer(std::size_t index, const PhysicsState& all, const Vehic
     state.command_n = {};
     return true;
   }
-  const rov::State known = known_state(all, index, time_s);
+  const rov::State known = known_state(call.after, index, time_s);
   rov::Setpoint setpoint = piloted ? piloted_setpoint(inputs.wrench.wrench, known, state.mission)
-                           : given ? given_setpoint(inputs.setpoint, state.mission)
-                                   : vehicle.mission->update(all, known, time_s, state.mission);
+                           : given
+                               ? given_setpoint(inputs.setpoint, state.mission)
+                               : vehicle.mission->update(call.before, known, time_s, state.mission);
   if (piloted) setpoint.pilot = inputs.wrench.wrench;
   rov::ControlState control{state.integral};
   const auto commands_by = [&](const rov::Allocator& allocator) {
-    return (piloted ? rov::piloted_inputs : rov::level_inputs)(
-        vehicle.vehicle, allocator, vehicle.file.gains, setpoint, known, control);
+    return rov::level_inputs(vehicle.vehicle, allocator, vehicle.file.gains, setpoint, known,
+                             control);
   };
   const std::uint64_t failed = failed_thrusters(vehicle, inputs, state);
   rov::Inputs commands = failed == vehicle.failed_thrusters
@@ -80,34 +83,14 @@ Vec3 PhysicsWorld::current_ned_m_s(const Vec3& position_ned_m, double time_s) co
       sim::sample(*current_, rov::world_from_ned(position_ned_m), time_s).velocity_m_s);
 }
 
-// The current where the thing will be half way through the step, how that changes on its way, and
-// the water's own acceleration: to second order in the step. A grid may jump within the thing's own
-// length: that is no acceleration of all the water around.
-diver::WaterFlow PhysicsWorld::water_along(const Vec3& position_ned_m, const Vec3& velocity_ned_m_s,
-                                           double time_s, double dt_s) const {
-  if (!current_) return {};
-  const Vec3 velocity_m_s = rov::world_from_ned(velocity_ned_m_s);
-  const sim::CurrentSample water =
-      sim::sample(*current_, rov::world_from_ned(position_ned_m) + 0.5 * dt_s * velocity_m_s,
-                  time_s + 0.5 * dt_s);
-  const auto change_along = [&](const Vec3& way_m_s) {
-    static_assert(rov::kMostWaterAcceleration_m_s2 == diver::kMostWaterAcceleration_m_s2);
-    constexpr double kMost = rov::kMostWaterAcceleration_m_s2;
-    return rov::ned_from_world(
-        glm::clamp(water.rate_m_s2 + water.gradient_per_s * way_m_s, Vec3(-kMost), Vec3(kMost)));
-  };
-  const Vec3 change = change_along(velocity_m_s);
-  return {rov::ned_from_world(water.velocity_m_s) - 0.5 * dt_s * change, change,
-          change_along(water.velocity_m_s)};
-}
-
 // The forces on it in the step to come.
 rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
                                     const VehicleState& state, double time_s, double dt_s) const {
   rov::Inputs acting;
   acting.thruster_n = state.command_n;
-  const diver::WaterFlow water = water_along(
-      state.body.position_ned_m, state.body.attitude * state.body.velocity.linear(), time_s, dt_s);
+  const diver::WaterFlow water =
+      water_along(current_, state.body.position_ned_m,
+                  state.body.attitude * state.body.velocity.linear(), time_s, dt_s);
   acting.current_ned_m_s = water.current_m_s;
   acting.current_change_ned_m_s2 = water.change_m_s2;
   acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;

@@ -177,6 +177,19 @@ TEST(Simulation, ThreadAndLockStepAgreeAndMayTakeTurns) {
   EXPECT_EQ(stepped.log().hashes, threaded.log().hashes);
 }
 
+TEST(Simulation, NoStepFollowsTheOneThatItEndsAt) {
+  SimulatedClock clock;
+  Spring spring = make_spring();
+  spring.end_at(5);
+  spring.advance(3);
+  spring.start(clock);
+  while (spring.pace().steps < 10) std::this_thread::yield();
+  spring.stop();
+  EXPECT_EQ(spring.newest().step, 5u);
+  spring.advance(1);
+  EXPECT_EQ(spring.newest().step, 5u);
+}
+
 TEST(Simulation, WhatNeedsNoThreadMayNotBeReadWhileItRuns) {
   SimulatedClock clock;
   Spring spring = make_spring();

@@ -192,8 +192,30 @@ TEST(LoopClock, ARealClockFollowsTheDisplayOrWaitsAndDropsWhatIsTooLate) {
   for (int i = 0; i < 5; ++i) waiting.next(std::nullopt);
   EXPECT_GE(now_ns() - begun_ns, 50'000'000);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  waiting.next(std::nullopt);
-  EXPECT_GE(waiting.dropped(), 15u);
+  // What is left to catch up of a busy machine's first frames comes before the late ones.
+  for (int i = 0; i < 10; ++i) waiting.next(std::nullopt);
+  EXPECT_GE(waiting.dropped(), 10u);
+}
+
+// A display says when its pictures are seen; the scene's time is the run's, which never falls.
+TEST(LoopClock, FramesOfAClockThatAPersonStopsStandAndGoOn) {
+  sim::SimulatedClock host;
+  sim::RunClock run(host);
+  Clock clock = Clock::real(5.0, 0.1, 1, &run);
+  const auto frame_after = [&](TimeNs host_ns) {
+    host.advance(host_ns);
+    return clock.next(host.now() + 16'000'000).time_s;  // seen a little later
+  };
+  EXPECT_EQ(frame_after(0), 5.0);
+  EXPECT_DOUBLE_EQ(frame_after(250'000'000), 5.25);
+  run.pause(true);
+  EXPECT_DOUBLE_EQ(frame_after(0), 5.25);
+  EXPECT_DOUBLE_EQ(frame_after(9'000'000'000), 5.25);
+  run.step(100'000'000);
+  EXPECT_NEAR(frame_after(1'000'000'000), 5.35, 0.017);
+  run.pause(false);
+  run.set_speed(0.5);
+  EXPECT_NEAR(frame_after(2'000'000'000), 6.35, 0.017);
 }
 
 // Frames of a run without a screen that take longer than their period: none is caught up, and the
@@ -204,7 +226,7 @@ TEST(LoopClock, TimeRunsOnOverDroppedFrames) {
   for (int i = 0; i < 4; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(35));
     const FrameTime at = clock.next(std::nullopt);
-    EXPECT_NEAR(at.time_s - first.time_s, 1e-9 * static_cast<double>(at.host_ns - first.host_ns),
+    EXPECT_NEAR(at.time_s - first.time_s, 1e-9 * static_cast<double>(at.run_ns - first.run_ns),
                 0.0101);
   }
   EXPECT_GE(clock.dropped(), 8u);

@@ -4,7 +4,6 @@
 
 #include <random>
 
-#include "testbed/motion/snapshot_motion.hpp"
 #include "tests/testbed/simulation/dives.hpp"
 
 namespace neritic::testbed {
@@ -17,12 +16,12 @@ constexpr double kRate = 0.7;  // rad/s about y
 
 // An object on a straight line that turns about y.
 MotionSnapshot snapshot_at(double time_s) {
-  return {
-      time_s,
-      {{{Vec3(3.0, -4.0, 5.0) + kVelocity * time_s, glm::angleAxis(kRate * time_s, Vec3(0, 1, 0))},
-        kVelocity,
-        Vec3(0, kRate, 0)}},
-      {}};
+  return {time_s,
+          {Motion{{Vec3(3.0, -4.0, 5.0) + kVelocity * time_s,
+                   glm::angleAxis(kRate * time_s, Vec3(0, 1, 0))},
+                  kVelocity,
+                  Vec3(0, kRate, 0)}},
+          {}};
 }
 
 MotionHistory history_of(std::initializer_list<double> times_s) {
@@ -32,7 +31,7 @@ MotionHistory history_of(std::initializer_list<double> times_s) {
 }
 
 void expect_on_the_line(const scene::MotionAt& at, double time_s) {
-  const scene::Motion expected = snapshot_at(time_s).motions[0];
+  const Motion expected = *snapshot_at(time_s).motions[0];
   EXPECT_LT(glm::distance(at.motion.pose.position_m, expected.pose.position_m), 1e-12) << time_s;
   EXPECT_GT(std::abs(glm::dot(at.motion.pose.rotation, expected.pose.rotation)), 1.0 - 1e-12);
   EXPECT_LT(glm::distance(at.motion.velocity_m_s, kVelocity), 1e-12);
@@ -58,12 +57,12 @@ TEST(MotionHistory, BeforeTheOldestAndBeyondThePredictionItStandsStill) {
   const MotionHistory history = history_of({0.25, 0.5});
   const auto early = history.at(1, -3.0), late = history.at(1, 9.0);
   EXPECT_EQ(early->known, Knowledge::kHeld);
-  EXPECT_EQ(early->motion.pose.position_m, snapshot_at(0.25).motions[0].pose.position_m);
+  EXPECT_EQ(early->motion.pose.position_m, snapshot_at(0.25).motions[0]->pose.position_m);
   EXPECT_EQ(early->motion.velocity_m_s, Vec3(0.0));
   EXPECT_EQ(late->known, Knowledge::kHeld);
   const double end_s = 0.5 + MotionHistory::kMostPredicted_s;
   EXPECT_LT(
-      glm::distance(late->motion.pose.position_m, snapshot_at(end_s).motions[0].pose.position_m),
+      glm::distance(late->motion.pose.position_m, snapshot_at(end_s).motions[0]->pose.position_m),
       1e-12);
   EXPECT_EQ(late->motion.velocity_m_s, Vec3(0.0));
 }
@@ -95,7 +94,7 @@ TEST(MotionSource, WhatIsCarriedMovesAsItsPoseChanges) {
       constexpr double kApart_s = 1e-5;
       const Pose before = source.world_from(mount, time_s - kApart_s),
                  after = source.world_from(mount, time_s + kApart_s);
-      const scene::Motion at = source.at(mount, time_s).motion;
+      const Motion at = source.at(mount, time_s).motion;
       EXPECT_LT(
           glm::distance((after.position_m - before.position_m) / (2.0 * kApart_s), at.velocity_m_s),
           1e-6)
@@ -132,7 +131,7 @@ TEST(MotionHistory, TheTwoNewestStatesGiveTheBitsThatAllGive) {
     const double time_s = previous.time_s + share * dive.world->step_s();
     for (const std::size_t object :
          {dive.world->vehicles()[0].object, dive.world->humans()[0].object}) {
-      const scene::Motion a = all.at(object, time_s)->motion, b = newest.at(object, time_s)->motion;
+      const Motion a = all.at(object, time_s)->motion, b = newest.at(object, time_s)->motion;
       ASSERT_EQ(a.pose.position_m, b.pose.position_m);
       ASSERT_EQ(a.pose.rotation, b.pose.rotation);
       ASSERT_EQ(a.velocity_m_s, b.velocity_m_s);

@@ -56,19 +56,31 @@ TEST(SampleInbox, EveryWrongSampleIsRefusedAndCountedByItsSource) {
   HeadPose head;
   head.world_from_head.position_m.y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(inbox.push(sample_of(table, "diver/head", suit, 0, head)), kNotFinite);
+  head.world_from_head = {Vec3(0.0, -1e12, 0.0), Quat(1, 0, 0, 0)};
+  EXPECT_EQ(inbox.push(sample_of(table, "diver/head", suit, 1, head)), kNotPlausible);
+  BodyJoints body;
+  body.joints[3] = Quat(0.0, 0.0, 0.0, 0.0);
+  EXPECT_EQ(inbox.push(sample_of(table, "diver/joints", suit, 0, body)), kNotPlausible);
+  HandPoses hands;
+  hands.tracked = 1;
+  hands.world_from_hand[1].rotation = Quat(0.0, 0.0, 0.0, 0.0);  // which is not tracked
+  EXPECT_EQ(inbox.push(sample_of(table, "diver/hand_poses", suit, 0, hands)), kAccepted);
+  hands.tracked = 2;
+  EXPECT_EQ(inbox.push(sample_of(table, "diver/hand_poses", suit, 1, hands)), kNotPlausible);
 
   const SourceCounts counts = inbox.counts(suit);
-  EXPECT_EQ(counts.accepted, 2u);
+  EXPECT_EQ(counts.accepted, 3u);
   EXPECT_EQ(counts.lost, 2u);  // 6 and 8
   EXPECT_EQ(counts.repeated, 1u);
   EXPECT_EQ(counts.out_of_order, 1u);
   EXPECT_EQ(counts.late, 2u);
   EXPECT_EQ(counts.not_finite, 1u);
+  EXPECT_EQ(counts.not_plausible, 3u);
   EXPECT_EQ(counts.not_of_stream, 2u);
-  EXPECT_EQ(counts.refused(), 7u);
+  EXPECT_EQ(counts.refused(), 10u);
   EXPECT_EQ(inbox.unknown_sources(), 1u);
   EXPECT_EQ(inbox.counts(other).refused(), 0u);
-  EXPECT_EQ(inbox.drain().size(), 2u);  // none of the wrong ones
+  EXPECT_EQ(inbox.drain().size(), 3u);  // none of the wrong ones
 }
 
 TEST(SampleInbox, ASourceThatIsOpenedAgainKeepsItsNumberAndStartsAnew) {

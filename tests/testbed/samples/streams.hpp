@@ -7,13 +7,14 @@
 
 namespace neritic::testbed {
 
-// A diver and a vehicle with an inertial unit.
+// A diver, a vehicle with an inertial unit and an object that devices move.
 inline StreamTable diver_and_rov() {
   StreamTable table;
   table.add_diver("diver");
   rov::SensorSet sensors;
   sensors.imu.emplace();
   table.add_vehicle("rov", sensors);
+  table.add_object("prop");
   return table;
 }
 

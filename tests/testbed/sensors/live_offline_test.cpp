@@ -108,7 +108,7 @@ TEST_F(LiveOffline, TheSonarHearsItsVehiclesVelocity) {
   constexpr double kTime_s = 4.0;
   physics->reach(kTime_s);
   const scene::MotionSource source(scene, &physics->motion());
-  const scene::Motion motion = source.at(scene.sonars[0].mount, kTime_s).motion;
+  const Motion motion = source.at(scene.sonars[0].mount, kTime_s).motion;
   ASSERT_GT(glm::length(motion.velocity_m_s), 0.3);
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
   const SonarFrame heard = ping_at(*session, kTime_s, &physics->motion());

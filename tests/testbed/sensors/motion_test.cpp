@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kSize = 161;  // odd: the middle pixel's centre lies on the optical axis
 const Vec3 kSpeed_m_s{1.0, 0.5, 0.0};
 
-class Motion : public test::GpuTest {
+class MotionVectors : public test::GpuTest {
  protected:
   // Moves node with kSpeed_m_s for a second.
   static void animate(scene::Model& model, int node) {
@@ -72,14 +72,14 @@ class Motion : public test::GpuTest {
   }
 };
 
-TEST_F(Motion, OfABodyMovedByAClipIsItsProjectedDisplacement) {
+TEST_F(MotionVectors, OfABodyMovedByAClipIsItsProjectedDisplacement) {
   scene::Model sphere = scene::make_sphere(1.0, 96);
   animate(sphere, 0);
   expect_motion(std::move(sphere), 3.0);
 }
 
 // A wall that passes the camera before the next frame is nowhere in the next picture.
-TEST_F(Motion, OfWhatWillBeBehindTheEyeIsNotANumber) {
+TEST_F(MotionVectors, OfWhatWillBeBehindTheEyeIsNotANumber) {
   scene::Scene scene;
   scene.path = "test";
   scene.models.push_back(std::make_shared<scene::Model>(scene::make_box({40.0, 40.0, 1.0})));
@@ -111,7 +111,7 @@ TEST_F(Motion, OfWhatWillBeBehindTheEyeIsNotANumber) {
   }
 }
 
-TEST_F(Motion, OfASkinnedQuadIsItsJointsProjectedDisplacement) {
+TEST_F(MotionVectors, OfASkinnedQuadIsItsJointsProjectedDisplacement) {
   scene::Primitive quad;
   for (const Vec3& corner : {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0)}) {
     quad.positions.emplace_back(corner);

@@ -74,7 +74,7 @@ TEST_F(OutOfMemory, AFrameTooLargeIsInNobodysWay) {
   NERITIC_ASSERT_OK(const auto session,
                     Session::create(device(), cameras_of({{100, 100}, {200, 200}, {4000, 4000}})));
   FrameRequest request;
-  request.capture = {true, false, false};
+  request.capture = Capture{.motion = false}.without_geometry();
   const LittleMemory little(VkDeviceSize{200} << 20);
   request.cameras = {2};
   const auto result = session->render(request);

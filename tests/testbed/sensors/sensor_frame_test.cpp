@@ -139,7 +139,7 @@ TEST_F(SensorFrameTest, AFrameKeepsItsResultsWhileOthersComeAndGo) {
 TEST_F(SensorFrameTest, TheRingSaysThatTooManyFramesHoldReadBacks) {
   FrameRequest request;
   request.sonars = {1};
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), sea_with_camera()));
   std::vector<std::unique_ptr<SensorFrame>> held;
   for (std::size_t i = 0; i < Ring<gpu::Buffer>::kMost; ++i) {
@@ -164,7 +164,9 @@ TEST_F(SensorFrameTest, NewSettingsDoNotTouchAFrameInFlight) {
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), sea_with_camera()));
   graph::FrameGraph graph;
   NERITIC_ASSERT_OK(const auto frame, session->declare(graph, request));
-  session->scene().sonars[1].bins_range = 60;
+  scene::Sonar sonar = session->scene().sonars[1];
+  sonar.bins_range = 60;
+  session->replace_sonar(1, sonar);
   NERITIC_ASSERT_OK(const FrameResult changed, session->render(request));
   EXPECT_EQ(changed.sonars[1].image.n_range, 60u);
   NERITIC_ASSERT_STATUS(run(*session, graph, *frame));

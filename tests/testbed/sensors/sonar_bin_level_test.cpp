@@ -103,6 +103,22 @@ TEST_F(SonarBinLevel, AFloorReadsTheSonarEquationInBinsOfAnyWidth) {
     }
 }
 
+// The same of both sides of a side-scan.
+TEST_F(SonarBinLevel, ASideScansFloorReadsTheSonarEquationInBinsOfAnyWidth) {
+  const BinnedDevice d = binned_devices().back();
+  ASSERT_EQ(d.name, "starfish_450");
+  for (const double bin_m : {0.0025, 0.006, 0.025, 15.0 * d.resolution_m}) {
+    scene::Sonar sonar = with_bins(d, bin_m);
+    sonar.kind = scene::SonarKind::kSideScan;
+    sonar.depression_rad = 0.0;
+    const auto sides = pings(device(), over_a_floor(sonar));
+    ASSERT_EQ(sides.size(), 2u);
+    for (const SonarFrame& side : sides)
+      EXPECT_NEAR(floor_over_equation_db(side, d.resolution_m), 0.0, 0.1)
+          << side.head << ", bins of " << bin_m << " m";
+  }
+}
+
 // Bins add what the pulse leaves: times their width over the pulse's length, a sphere's strength.
 TEST_F(SonarBinLevel, ASpheresStrengthIsTheSameInBinsOfAnyWidth) {
   const BinnedDevice imager = binned_devices().at(0);

@@ -42,7 +42,7 @@ TEST_F(SonarBits, TwentyRunsOfEveryTermGiveTheSameBits) {
     FrameRequest request;
     request.sonars = {0};
     request.frame = 5;
-    request.capture.geometry = false;
+    request.capture = request.capture.without_geometry();
     std::string first;
     std::unique_ptr<Session> session;
     for (int run = 0; run < 20; ++run) {

@@ -61,6 +61,46 @@ TEST_F(SonarMotion, ATurningSonarHearsLateEchoesOnTurnedBearings) {
   EXPECT_NEAR(weighted / sum, kTurn * 2.0 * 29.5 / 1500.0, radians(0.1));
 }
 
+// The bearing at which a moving sonar hears a ball, against where the ball is seen from the place
+// where the echo arrives: over bearings, speeds and directions, level.
+TEST_F(SonarMotion, ASonarThatMovesAsideHearsOnTheBearingsOfWhereItArrives) {
+  const auto heard_deg = [&](double bearing_rad, const Vec3& velocity_m_s) {
+    scene::Sonar sonar = sonar_of(25.0, 35.0, 50);
+    sonar.azimuth_rad = radians(100.0);
+    sonar.elevation_rad = radians(4.0);
+    sonar.bins_azimuth = 500;
+    sonar.bins_elevation = 16;
+    sonar.gbuffer_scale = 1.0;
+    sonar.terms.water.sound_speed_m_s = 1500.0;
+    sonar.terms.motion = scene::SonarMotion{.within_ping = true};
+    scene::Scene scene;
+    const Vec3 ball_m = 30.0 * Vec3(std::sin(bearing_rad), 0.0, -std::cos(bearing_rad));
+    scene.objects.push_back(object_of(scene, scene::make_sphere(0.5, 48), ball_m));
+    scene.sonars = {sonar};
+    scene.sonars[0].mount.track =
+        scene::Track{{{-1.0, -velocity_m_s}, {1.0, velocity_m_s}}, {{0.0, Quat(1, 0, 0, 0)}}};
+    const SonarFrame frame = ping(device(), scene);
+    double sum = 0.0, weighted = 0.0;
+    for (std::size_t i = 0; i < frame.image.intensity.size(); ++i) {
+      sum += frame.image.intensity[i];
+      weighted += frame.image.intensity[i] *
+                  frame.grid.azimuth_rad(static_cast<std::uint32_t>(i % frame.image.n_azimuth));
+    }
+    return degrees(weighted / sum);
+  };
+  for (const double bearing_deg : {-40.0, 25.0}) {
+    const double still_deg = heard_deg(radians(bearing_deg), Vec3(0.0));
+    EXPECT_NEAR(still_deg, bearing_deg, 0.02);
+    for (const Vec3& v : {Vec3(5, 0, 0), Vec3(-3, 0, 8)}) {
+      const double echo_s = 2.0 * 29.5 / 1500.0, b = radians(bearing_deg);
+      const Vec3 seen = 29.5 * Vec3(std::sin(b), 0.0, -std::cos(b)) - v * echo_s;
+      const double wanted_deg = degrees(std::atan2(seen.x, -seen.z)) - bearing_deg;
+      EXPECT_NEAR(heard_deg(b, v) - still_deg, wanted_deg, 0.02)
+          << bearing_deg << " at " << v.x << ", " << v.z << " m/s";
+    }
+  }
+}
+
 // A side-scan that looks 60 degrees down turns its bearings by half of what its vehicle yaws.
 TEST_F(SonarMotion, ASideScanTurnsByItsShareOfAYaw) {
   const auto heard = [&](double depression_rad, double yaw_rate_rad_s) {

@@ -50,7 +50,7 @@ inline std::vector<SonarFrame> pings(gpu::Device& device, const scene::Scene& sc
   FrameRequest request;
   request.sonars = {0};
   request.frame = number;
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   auto session = Session::create(device, scene);
   if (!session.ok()) {
     ADD_FAILURE() << session.error().message;

@@ -37,7 +37,7 @@ std::vector<double> altitudes_of(gpu::Device& device, const scene::Scene& scene)
   Survey survey((*session)->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   for (request.frame = 0; request.frame < 5; ++request.frame) {
     request.time_s = request.frame * 0.2;
     auto result = (*session)->render(request);
@@ -63,7 +63,7 @@ std::pair<double, double> most_off_on_the_way_down(gpu::Device& device, const sc
   EXPECT_TRUE(session.ok()) << session.error().message;
   FrameRequest request;
   request.sonars = {0};
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   double first = 0.0, strongest = 0.0;
   for (request.frame = 0; request.frame < 60; ++request.frame) {
     request.time_s = request.frame * 3.7;

@@ -20,7 +20,7 @@ namespace {
 
 using SonarSettings = test::GpuTest;
 
-scene::Sonar small_sonar(const std::string& name) {
+scene::Sonar small_named_sonar(const std::string& name) {
   scene::Sonar sonar;
   sonar.name = name;
   sonar.bins_range = 40;
@@ -52,7 +52,7 @@ FrameRequest all_sonars(const scene::Scene& scene) {
 }
 
 TEST_F(SonarSettings, ChangedBetweenFramesGiveTheImageOfANewSession) {
-  scene::Scene scene = sphere_and_sonars({small_sonar("a")});
+  scene::Scene scene = sphere_and_sonars({small_named_sonar("a")});
   const FrameRequest request = all_sonars(scene);
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
   NERITIC_ASSERT_OK(const FrameResult before, session->render(request));
@@ -62,7 +62,7 @@ TEST_F(SonarSettings, ChangedBetweenFramesGiveTheImageOfANewSession) {
   sonar.gbuffer_scale = 2.0;
   sonar.near_m = 0.1;
   sonar.gather = "nearest";
-  session->scene().sonars[0] = sonar;
+  session->replace_sonar(0, sonar);
   NERITIC_ASSERT_OK(const FrameResult after, session->render(request));
   NERITIC_ASSERT_OK(const auto fresh, Session::create(device(), scene));
   NERITIC_ASSERT_OK(const FrameResult expected, fresh->render(request));
@@ -76,7 +76,8 @@ TEST_F(SonarSettings, ChangedBetweenFramesGiveTheImageOfANewSession) {
 }
 
 TEST_F(SonarSettings, TwoSonarsHavePassTimesOfTheirOwn) {
-  const scene::Scene scene = sphere_and_sonars({small_sonar("port"), small_sonar("starboard")});
+  const scene::Scene scene =
+      sphere_and_sonars({small_named_sonar("port"), small_named_sonar("starboard")});
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
   NERITIC_ASSERT_OK(const FrameResult result, session->render(all_sonars(scene)));
   std::multiset<std::string> names;
@@ -87,7 +88,7 @@ TEST_F(SonarSettings, TwoSonarsHavePassTimesOfTheirOwn) {
 }
 
 TEST_F(SonarSettings, ReflectivityIsATableOnlyWhereAnObjectHasOne) {
-  scene::Scene scene = sphere_and_sonars({small_sonar("a")});
+  scene::Scene scene = sphere_and_sonars({small_named_sonar("a")});
   float full = 0.0f;
   for (const float reflectivity : {1.0f, 0.5f}) {
     scene.objects[0].reflectivity = reflectivity;
@@ -112,7 +113,7 @@ TEST_F(SonarSettings, ReflectivityIsATableOnlyWhereAnObjectHasOne) {
 }
 
 TEST_F(SonarSettings, FileSaysWhichPixelsACellWereAskedForAndUsed) {
-  scene::Scene scene = sphere_and_sonars({small_sonar("a")});
+  scene::Scene scene = sphere_and_sonars({small_named_sonar("a")});
   // Wider than any device's largest image, ten pixels high.
   scene.sonars[0].bins_azimuth = 4096;
   scene.sonars[0].bins_elevation = 1;
@@ -133,8 +134,8 @@ TEST_F(SonarSettings, FileSaysWhichPixelsACellWereAskedForAndUsed) {
 }
 
 TEST_F(SonarSettings, FileSaysWhichQualityTheSonarIsSampledBy) {
-  scene::Scene scene =
-      sphere_and_sonars({small_sonar("named"), small_sonar("bounded"), small_sonar("plain")});
+  scene::Scene scene = sphere_and_sonars(
+      {small_named_sonar("named"), small_named_sonar("bounded"), small_named_sonar("plain")});
   scene.sonars[0].quality = "draft";
   scene.sonars[1].max_error = 0.02;
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));

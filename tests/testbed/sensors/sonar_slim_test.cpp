@@ -76,6 +76,15 @@ SlimErrors pole_errors(gpu::Device& device, const scene::Sonar& sonar, double ra
   scene.objects.push_back(
       object_of(scene, scene::make_cylinder(radius_m, 6.0, 96), {0.0, 0.0, -kDistance_m}));
   scene.sonars = {sonar};
+  // The i-th place at i seconds.
+  scene::Track pole{{{0.0, Vec3(0.0, 0.0, -kDistance_m)}}, {}}, head{{{0.0, Vec3(0.0)}}, {}};
+  for (const PolePlace& at : places) {
+    const auto time_s = static_cast<double>(pole.attitudes.size());
+    pole.attitudes.push_back({time_s, glm::angleAxis(at.lean_rad, Vec3(0, 0, 1))});
+    head.attitudes.push_back({time_s, glm::angleAxis(at.bearing_rad, Vec3(0, 1, 0))});
+  }
+  scene.objects[0].mount.track = pole;
+  scene.sonars[0].mount.track = head;
   SlimErrors out;
   auto session = Session::create(device, scene);
   if (!session.ok()) {
@@ -84,18 +93,17 @@ SlimErrors pole_errors(gpu::Device& device, const scene::Sonar& sonar, double ra
   }
   FrameRequest request;
   request.sonars = {0};
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   double squares = 0.0;
-  for (const PolePlace& at : places) {
-    (*session)->scene().objects[0].mount.pose.rotation = glm::angleAxis(at.lean_rad, Vec3(0, 0, 1));
-    (*session)->scene().sonars[0].mount.pose.rotation =
-        glm::angleAxis(at.bearing_rad, Vec3(0, 1, 0));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    request.time_s = request.next_time_s = static_cast<double>(i);
     const auto frame = (*session)->render(request);
     if (!frame.ok()) {
       ADD_FAILURE() << frame.error().message;
       return out;
     }
-    const double off = total(frame->sonars[0]) / pole_energy(sonar, radius_m, at.lean_rad) - 1.0;
+    const double off =
+        total(frame->sonars[0]) / pole_energy(sonar, radius_m, places[i].lean_rad) - 1.0;
     out.mean += off / static_cast<double>(places.size());
     squares += off * off / static_cast<double>(places.size());
     out.worst = std::max(out.worst, std::abs(off));

@@ -84,7 +84,7 @@ TEST_F(SurveyTest, ALawnMowerTrackChartsTheRealBottom) {
   Survey survey(session->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   for (request.frame = 0; request.time_s < end_s; ++request.frame) {
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
     ASSERT_TRUE(survey.add(result, request.frame, request.time_s).ok());
@@ -124,7 +124,7 @@ TEST_F(SurveyTest, WhatStandsOnTheBottomIsChartedAndCountedApart) {
   Survey survey(session->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   for (request.frame = 0; request.frame < 24; ++request.frame) {
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
     ASSERT_TRUE(survey.add(result, request.frame, request.time_s).ok());
@@ -171,7 +171,7 @@ TEST_F(SurveyTest, NoiseIsNoBottom) {
   Survey survey(session->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   double loudest_beyond = 0.0;
   for (request.frame = 0; request.frame < 20; ++request.frame) {
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
@@ -213,7 +213,7 @@ TEST_F(SurveyTest, AnEchoSounderComesDownAtFiveMetresAMinute) {
   Survey survey(session->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   for (request.frame = 0; request.frame < 120; ++request.frame) {
     request.time_s = request.frame * 2.0;
     NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
@@ -268,7 +268,7 @@ TEST_F(SurveyTest, ASideScanPassesAnObjectAndItsShadow) {
   Survey survey(session->scene(), out.path());
   FrameRequest request;
   request.sonars = {0};
-  request.capture.geometry = false;
+  request.capture = request.capture.without_geometry();
   std::vector<float> abeam;
   for (request.frame = 0; request.frame < 40; ++request.frame) {
     request.time_s = request.frame * 0.25;

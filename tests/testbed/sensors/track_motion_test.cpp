@@ -13,8 +13,9 @@
 namespace neritic::testbed {
 namespace {
 
-constexpr std::uint32_t kSize = 81;  // odd: the middle pixel's centre lies on the optical axis
-constexpr double kSpeed_m_s = 2.0;
+constexpr std::uint32_t kTrackImageSize =
+    81;  // odd: the middle pixel's centre lies on the optical axis
+constexpr double kTrackSpeed_m_s = 2.0;
 
 scene::Object object_of(const char* name, int model, const Vec3& position_m) {
   scene::Object object;
@@ -38,7 +39,7 @@ scene::Scene scene_with_tracks(const Vec3& offset_m = Vec3(0.0)) {
                    object_of("wall", 1, offset_m + Vec3(0, -5, -20.5)), object_of("fish", 2, {}),
                    object_of("ship", 3, {})};
   const auto course = [](std::vector<Vec3> points, const scene::TrackHeading& heading) {
-    return scene::track_of(scene::places_of({std::move(points), kSpeed_m_s, 0.0}), heading);
+    return scene::track_of(scene::places_of({std::move(points), kTrackSpeed_m_s, 0.0}), heading);
   };
   scene.objects[2].mount.track =
       course({offset_m + Vec3(-3, -5.5, -9), offset_m + Vec3(9, -5.5, -9)}, {});
@@ -48,7 +49,7 @@ scene::Scene scene_with_tracks(const Vec3& offset_m = Vec3(0.0)) {
   scene.objects[0].mount.object = 3;
   scene::Camera camera;
   camera.name = "eye";
-  camera.width = camera.height = kSize;
+  camera.width = camera.height = kTrackImageSize;
   camera.mount.object = 3;
   camera.mount.pose.position_m = {0.0, 0.0, -0.5};
   scene.cameras.push_back(camera);
@@ -98,8 +99,8 @@ std::vector<std::size_t> compare_motion(const scene::Scene& scene, const ViewIma
   const Pose world_from_view = scene.world_from(scene.cameras[0].mount, time_s);
   const Pose next_view_from_world = inverse(scene.world_from(scene.cameras[0].mount, next_time_s));
   std::vector<std::size_t> compared(scene.objects.size() + 1, 0);
-  for (std::uint32_t y = 0; y < kSize; ++y)
-    for (std::uint32_t x = 0; x < kSize; ++x) {
+  for (std::uint32_t y = 0; y < kTrackImageSize; ++y)
+    for (std::uint32_t x = 0; x < kTrackImageSize; ++x) {
       const std::uint16_t label = eye.labels.at(x, y);
       if (label == 0) {
         // Infinitely far: only the view's turn moves it.
@@ -151,14 +152,14 @@ TEST_F(TrackMotion, ACarriedThingStandsStillInItsCarriersCameraAndTheWallComesNe
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene_with_tracks()));
   for (const double time_s : {0.2, 0.9, 1.3}) {  // before the turn
     const ViewImages eye = view_at(*session, time_s, time_s + 0.1);
-    const std::uint32_t middle = kSize / 2;
+    const std::uint32_t middle = kTrackImageSize / 2;
     ASSERT_EQ(eye.labels.at(middle, middle), 2);
-    const double wall_m = 20.0 - 0.5 - kSpeed_m_s * time_s;
+    const double wall_m = 20.0 - 0.5 - kTrackSpeed_m_s * time_s;
     EXPECT_NEAR(eye.depth.at(middle, middle), wall_m, 1e-3);
     // A point off the axis runs outwards as the wall comes nearer.
     const double off_px = 0.5 - eye.intrinsics.cx + 3;
-    EXPECT_NEAR(eye.motion.at(3, middle, 0), off_px * (wall_m / (wall_m - 0.1 * kSpeed_m_s) - 1.0),
-                2e-3);
+    EXPECT_NEAR(eye.motion.at(3, middle, 0),
+                off_px * (wall_m / (wall_m - 0.1 * kTrackSpeed_m_s) - 1.0), 2e-3);
     std::size_t ball = 0;
     for (std::size_t i = 0; i < eye.labels.data.size(); ++i) {
       if (eye.labels.data[i] != 1) continue;
@@ -182,7 +183,8 @@ TEST_F(TrackMotion, ASonarHearsFromWhereItsCarrierIs) {
       if (image.intensity[row * grid.bins.azimuth + beam] >
           image.intensity[loudest * grid.bins.azimuth + beam])
         loudest = row;
-    EXPECT_NEAR(grid.range_m(loudest), 19.5 - kSpeed_m_s * time_s, grid.range_step_m()) << time_s;
+    EXPECT_NEAR(grid.range_m(loudest), 19.5 - kTrackSpeed_m_s * time_s, grid.range_step_m())
+        << time_s;
   }
 }
 

@@ -383,11 +383,14 @@ TEST_F(WaterLight, AirDoesNotGlow) {
 Result<std::vector<Vec3>> radiance_map(Session& session, std::span<const double> evs) {
   std::vector<Vec3> map;
   for (const double ev : evs) {
-    session.scene().cameras[0].exposure.fixed_ev = ev;
     FrameRequest request;
-    request.cameras = {0};
+    const scene::MotionSource motion(session.scene());
+    request.views = {{.name = "map",
+                      .views = camera_views(motion, session.scene().cameras[0]),
+                      .exposure = {.fixed_ev = ev},
+                      .capture = Capture{.motion = false}.without_geometry()}};
     NERITIC_TRY(const FrameResult result, session.render(request));
-    const ImageU8& color = result.cameras[0].eyes[0].color;
+    const ImageU8& color = result.views[0].eyes[0].color;
     map.resize(std::size_t{color.width} * color.height, Vec3(0.0));
     for (std::size_t i = 0; i < map.size(); ++i) {
       const std::uint8_t* rgb = &color.data[3 * i];

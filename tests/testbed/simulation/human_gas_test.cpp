@@ -49,7 +49,7 @@ TEST(HumanGas, NitroxFromItsDepthOnAndBottomGasBelow) {
   EXPECT_LT(changes[1].po2_bar, 0.72);
   EXPECT_EQ(d.human().human.life.computer.last.gas, 0u);
   // Rows, tanks and computer say the same at every time.
-  const auto& rows = d.recorder->humans().rows();
+  const auto& rows = d.recorder->rows().humans;
   for (const HumanRow& row : rows) {
     const bool nitrox = row.time_s >= changes[0].time_s && row.time_s < changes[1].time_s;
     ASSERT_EQ(row.tank, nitrox ? 1u : 0u) << row.time_s;

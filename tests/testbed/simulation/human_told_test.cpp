@@ -1,5 +1,6 @@
 // The report of a diver's dive: rows of gas and tissues, what endangered the diver, the way up.
 #include "testbed/record/dive_record.hpp"
+#include "tests/testbed/csv_text.hpp"
 #include "tests/testbed/simulation/devices.hpp"
 #include "tests/testbed/simulation/senders.hpp"
 
@@ -13,7 +14,7 @@ TEST(HumanDive, RowsSayGasAndTissues) {
   DiveRecorder recorder(*dive.world, {.rows = true});
   recorder.add(dive.simulation->newest());
   dive.run(3.0, [&] { recorder.add(dive.simulation->newest()); });
-  const auto& rows = recorder.humans().rows();
+  const auto& rows = recorder.rows().humans;
   ASSERT_NEAR(static_cast<double>(rows.size()), 31.0, 1.0);
   for (const HumanRow& row : rows) {
     EXPECT_NEAR(row.gas.ambient_pa, 101325.0 + 1028.0 * 9.80665 * 18.0, 3e3);
@@ -24,9 +25,9 @@ TEST(HumanDive, RowsSayGasAndTissues) {
     EXPECT_NEAR(row.vitals.heart_bpm, 65.0, 5.0);
     EXPECT_NEAR(row.vitals.risk.narcotic_depth_m, 18.0, 1.0);
   }
-  const std::string csv = csv_of(*dive.world, recorder.rows(), rows);
+  const std::string csv = csv_of(*dive.world, recorder.rows());
   const auto lines = std::count(csv.begin(), csv.end(), '\n');
-  EXPECT_EQ(lines, static_cast<std::ptrdiff_t>(1 + rows.size() + recorder.rows().size()));
+  EXPECT_EQ(lines, static_cast<std::ptrdiff_t>(1 + rows.size() + recorder.rows().vehicles.size()));
   const auto commas =
       std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(csv.find('\n')), ',');
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), commas * lines);
@@ -142,7 +143,7 @@ TEST(HumanDive, OnlyGasThatIsThereShortensTheWayUp) {
     for (int i = 0; i < 30; ++i) computer = human.computer->step(computer, {45.0, 0}, 60.0);
     DiveRecorder recorder(*dive.world, {.rows = true});
     recorder.add(snapshot);
-    return recorder.humans().rows().front();
+    return recorder.rows().humans.front();
   };
   const HumanRow full = row_of(200.0, kStillWater), empty = row_of(3.0, kStillWater),
                  high = row_of(200.0, "title = \"a lake\"\n[physics]\naltitude_m = 2000\n");

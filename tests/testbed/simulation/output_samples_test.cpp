@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "testbed/record/dive_record.hpp"
+#include "tests/testbed/csv_text.hpp"
 #include "tests/testbed/simulation/dives.hpp"
 
 namespace neritic::testbed {
@@ -132,7 +133,7 @@ TEST(OutputSamples, EachStreamHasItsRateAndTheValuesOfTheLogWithoutGaps) {
     dive.simulation->advance(1);
     take();
   }
-  const Table table(csv_of(world, recorder.rows(), recorder.humans().rows()));
+  const Table table(csv_of(world, recorder.rows()));
 
   std::map<std::string, std::uint64_t> counts;
   for (const Out& o : out) {

@@ -6,9 +6,10 @@ namespace {
 
 constexpr const char* kSurvey = "bluerov2_heavy_survey_dynamics.toml";
 
+// At a rate of which every sensor's samples are states.
 TEST(SensorState, TheStepReadsWhatTheSensorsReadOfEachState) {
   TestDive dive = dive_of(
-      std::string(kStillWater) +
+      std::string(kStillWater) + "rate_hz = 200\n" +
       "[[objects]]\nname = \"sand\"\nclass = \"seabed\"\nshape = \"plane\"\nsize_m = [40, 40]\n"
       "position_m = [0, -12, 0]\n" +
       rov_text("position_m = [0, -10, 0]\n", "plain") +

@@ -56,8 +56,10 @@ bool meets_box(const Corners& t, const Vec3& half) {
 // Says how many triangles are in the boxes about a vehicle's parts.
 class Oracle {
  public:
-  Oracle(const scene::Scene& scene, const std::string& solid)
-      : triangles_(triangles_of(scene, solid)) {
+  Oracle(const scene::Scene& scene, const std::string& solid) {
+    for (const Corners& t : triangles_of(scene, solid))
+      triangles_.push_back(
+          {t, glm::min(t[0], glm::min(t[1], t[2])), glm::max(t[0], glm::max(t[1], t[2]))});
     EXPECT_GT(triangles_.size(), 10000u);
   }
   // The boxes made smaller by so much all round.
@@ -76,20 +78,42 @@ class Oracle {
     const Vec3 centre = world_from_box.position_m;
     const double reach = glm::length(half);
     std::size_t count = 0;
-    for (const Corners& t : triangles_) {
-      bool near = true;
-      for (int i = 0; i < 3 && near; ++i)
-        near = std::min({t[0][i], t[1][i], t[2][i]}) < centre[i] + reach &&
-               std::max({t[0][i], t[1][i], t[2][i]}) > centre[i] - reach;
-      if (!near) continue;
-      const Corners local{box_from_world * t[0], box_from_world * t[1], box_from_world * t[2]};
+    for (const Triangle& t : around(centre, reach)) {
+      if (!t.within(centre, reach)) continue;
+      const Corners local{box_from_world * t.corners[0], box_from_world * t.corners[1],
+                          box_from_world * t.corners[2]};
       if (meets_box(local, half)) ++count;
     }
     return count;
   }
 
  private:
-  std::vector<Corners> triangles_;
+  struct Triangle {
+    Corners corners;
+    Vec3 low, high;
+
+    bool within(const Vec3& centre, double reach) const {
+      return low.x < centre.x + reach && high.x > centre.x - reach && low.y < centre.y + reach &&
+             high.y > centre.y - reach && low.z < centre.z + reach && high.z > centre.z - reach;
+    }
+  };
+
+  // All triangles within reach of a place, and some more: they serve until the place has moved.
+  const std::vector<Triangle>& around(const Vec3& centre, double reach) const {
+    constexpr double kMoved_m = 1.0, kReach_m = 2.0;
+    if (reach <= reach_m_ && glm::distance(centre, about_m_) <= kMoved_m) return near_;
+    about_m_ = centre;
+    reach_m_ = std::max(reach, kReach_m);
+    near_.clear();
+    for (const Triangle& t : triangles_)
+      if (t.within(centre, reach_m_ + kMoved_m)) near_.push_back(t);
+    return near_;
+  }
+
+  std::vector<Triangle> triangles_;
+  mutable std::vector<Triangle> near_;
+  mutable Vec3 about_m_{0.0};
+  mutable double reach_m_ = -1.0;
 };
 
 const Oracle& wreck_oracle() {

@@ -1,0 +1,65 @@
+// Someone who takes images of a run as samples, each stream at a rate of its own. A loop asks each
+// of its consumers what is due in a frame, computes just that, and gives it. The thread of the
+// loop.
+#pragma once
+
+#include "testbed/sensors/image_sample.hpp"
+#include "testbed/sensors/ping_schedule.hpp"
+
+namespace neritic::testbed {
+
+class ImageSink {
+ public:
+  virtual ~ImageSink() = default;
+  // Whether it takes an image of that stream now. False: the image is counted as dropped, and not
+  // computed if nobody else takes it. A sink with a slow receiver has a bounded queue and a thread
+  // of its own, and says false while the queue is full.
+  virtual bool ready(const ImageStream&) { return true; }
+  // An Error ends the run.
+  virtual Status accept(const ImageSample& image) = 0;
+  // After the last frame, also of a run that failed.
+  virtual Status finish() { return {}; }
+};
+
+class ImageConsumer {
+ public:
+  struct Wish {
+    std::string stream;    // its name
+    double rate_hz = 0.0;  // 0, or more than the sensor's: the sensor's
+  };
+  struct Counts {
+    std::string stream;
+    std::uint64_t given = 0, dropped = 0;
+  };
+  // An image that a frame computes for a consumer.
+  struct Asked {
+    std::size_t wish = 0;
+    std::uint64_t beat = 0;
+  };
+
+  // Borrows the sink. kBadInput for a name that no stream of the scene has, and for a rate that is
+  // none.
+  static Result<ImageConsumer> create(const scene::Scene& scene, const std::vector<Wish>& wishes,
+                                      ImageSink& sink);
+
+  // Adds what is due at the request's time to the request.
+  std::vector<Asked> ask(FrameRequest& request);
+  // The images of a frame for which it asked.
+  Status give(const scene::Scene& scene, const std::vector<Asked>& asked,
+              const FrameResult& result);
+  Status finish() { return sink_->finish(); }
+  // Of each wish.
+  const std::vector<Counts>& counts() const { return counts_; }
+
+ private:
+  ImageConsumer(std::vector<ImageStream> streams, std::vector<StreamId> ids,
+                const std::vector<double>& rates_hz, ImageSink& sink);
+
+  std::vector<ImageStream> streams_;  // of each wish
+  std::vector<StreamId> ids_;
+  PingSchedule schedule_;
+  std::vector<Counts> counts_;
+  ImageSink* sink_;
+};
+
+}  // namespace neritic::testbed

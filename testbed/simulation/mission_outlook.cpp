@@ -1,0 +1,287 @@
+#include "testbed/simulation/mission_outlook.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rov/frames.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// The speed of missions that name none: half of what the shipped vehicles reach.
+constexpr double kUsualSpeed_m_s = 0.5;
+// To speed up, settle and turn.
+constexpr double kSlack_s = 10.0;
+// Slower ones count as that, so that no way is without end.
+constexpr double kLeastSpeed_m_s = 0.01;
+// A diver's legs sustain no more (assets/scenes/README.md).
+constexpr double kSustained_m_s = 0.8;
+// Headings at which a vehicle may face a current.
+constexpr int kHeadings = 72;
+
+// The force along a direction of the body's axes that the thrusters give at most.
+double most_along(const rov::Allocator& allocator, const rov::Vec6& direction) {
+  const auto given = allocator.allocate(1e6 * direction, rov::Saturation::kRedistribute).force_n;
+  return std::max(0.0, dot(allocator.wrench_of(given), direction));
+}
+
+rov::Vec6 axis_of(std::size_t axis, double sign) {
+  rov::Vec6 out;
+  out[axis] = sign;
+  return out;
+}
+
+void add_axes(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
+  constexpr std::pair<std::size_t, const char*> kAxes[] = {{0, "forward or back (surge)"},
+                                                           {1, "to the side (sway)"},
+                                                           {2, "up or down (heave)"},
+                                                           {5, "round (yaw)"}};
+  for (const auto& [axis, words] : kAxes)
+    if (std::min(most_along(vehicle.kind.allocator, axis_of(axis, 1.0)),
+                 most_along(vehicle.kind.allocator, axis_of(axis, -1.0))) < 1e-3)
+      lines.push_back(fmt::format("{}: its thrusters push 0 {} {}: that axis is not controlled",
+                                  vehicle.name, axis == 5 ? "N m" : "N", words));
+}
+
+void add_buoyancy(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
+  const double up_n = vehicle.vehicle.buoyancy_n - vehicle.vehicle.weight_n;
+  const double most_n = most_along(vehicle.kind.allocator, axis_of(2, up_n > 0.0 ? 1.0 : -1.0));
+  if (std::abs(up_n) <= most_n) return;
+  lines.push_back(
+      fmt::format("{}: {:.4g} N too {}: its thrusters push {} with {:.3g} N at most, so "
+                  "it does not hold its depth",
+                  vehicle.name, std::abs(up_n), up_n > 0.0 ? "buoyant" : "heavy",
+                  up_n > 0.0 ? "down" : "up", most_n));
+}
+
+// The drag in water that flows so past a vehicle at rest, body axes.
+Vec3 drag_n(const rov::Vehicle& vehicle, const Vec3& flow_m_s) {
+  const rov::Vec6 flow = rov::vec6(flow_m_s, Vec3(0.0));
+  rov::Vec6 drag = vehicle.linear_damping * flow;
+  for (std::size_t i = 0; i < 3; ++i)
+    drag[i] += vehicle.quadratic_damping[i] * std::abs(flow[i]) * flow[i];
+  return drag.linear();
+}
+
+// The least share of the thrusters' force that holds it there, over all headings, and the drag.
+struct Hold {
+  double share = 1e300, drag_n = 0.0, thrust_n = 0.0;
+};
+Hold hold_at(const PhysicsVehicle& vehicle, const Vec3& flow_ned_m_s, double heading_rad) {
+  const Quat attitude = rov::heading_attitude(heading_rad);
+  const Vec3 drag = drag_n(vehicle.vehicle, glm::conjugate(attitude) * flow_ned_m_s);
+  const double size_n = glm::length(drag);
+  if (!(size_n > 0.0)) return {0.0, 0.0, 0.0};
+  const double most_n = most_along(vehicle.kind.allocator, rov::vec6(drag / -size_n, Vec3(0.0)));
+  return {size_n / std::max(most_n, 1e-9), size_n, most_n};
+}
+Hold easiest_hold(const PhysicsVehicle& vehicle, const Vec3& flow_ned_m_s) {
+  Hold best;
+  for (int i = 0; i < kHeadings; ++i) {
+    const Hold hold = hold_at(vehicle, flow_ned_m_s, 2.0 * kPi * i / kHeadings);
+    if (hold.share < best.share) best = hold;
+  }
+  return best;
+}
+
+void add_current(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
+                 std::vector<std::string>& lines) {
+  std::vector<Vec3> places = vehicle.mission->waypoints_ned_m();
+  places.push_back(vehicle.start.position_ned_m);
+  Vec3 fastest(0.0);
+  for (const Vec3& place : places) {
+    const Vec3 current = world.current_ned_m_s(place, 0.0);
+    if (glm::length(current) > glm::length(fastest)) fastest = current;
+  }
+  const Hold hold = easiest_hold(vehicle, fastest);
+  if (hold.share <= 1.0) return;
+  lines.push_back(
+      fmt::format("{}: the current of {:.3g} m/s drags it with {:.4g} N, its thrusters push with "
+                  "{:.3g} N against it: it drifts away",
+                  vehicle.name, glm::length(fastest), hold.drag_n, hold.thrust_n));
+}
+
+// The component along a way of the current, at its end or start: where it is least.
+double current_along(const PhysicsWorld& world, const Vec3& from_ned_m, const Vec3& to_ned_m) {
+  const Vec3 way = rov::along(to_ned_m - from_ned_m);
+  return std::min(glm::dot(world.current_ned_m_s(from_ned_m, 0.0), way),
+                  glm::dot(world.current_ned_m_s(to_ned_m, 0.0), way));
+}
+
+// The legs on which a vehicle does not reach its speed over ground, or makes no way by its speed
+// through the water: the worst of them.
+void add_legs(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
+              std::vector<std::string>& lines) {
+  const double speed_m_s = vehicle.mission->speed_m_s();
+  if (!(speed_m_s > 0.0)) return;
+  const bool ground = vehicle.mission->speed_over() == scene::SpeedOver::kGround;
+  const auto legs = vehicle.mission->legs(vehicle.start.position_ned_m);
+  const std::size_t count = vehicle.mission->waypoint_count();
+  double worst = 1.0;
+  std::string line;
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    const auto& [from, to, heading_rad] = legs[i];
+    const double along_m_s = current_along(world, from, to);
+    if (!ground && speed_m_s + along_m_s <= 0.0 && -along_m_s / speed_m_s > worst) {
+      worst = -along_m_s / speed_m_s;
+      line = fmt::format(
+          "{}: {:.3g} m/s through the water makes no way to waypoint {} against a "
+          "current of {:.3g} m/s",
+          vehicle.name, speed_m_s, i % count + 1, -along_m_s);
+    }
+    const Vec3 wanted = speed_m_s * rov::along(to - from);
+    for (const Vec3& place : {from, to}) {
+      const Vec3 flow = world.current_ned_m_s(place, 0.0) - wanted;
+      if (!ground || wanted == Vec3(0.0)) break;
+      const Hold hold =
+          heading_rad ? hold_at(vehicle, flow, *heading_rad) : easiest_hold(vehicle, flow);
+      if (hold.share <= worst) continue;
+      worst = hold.share;
+      line = fmt::format(
+          "{}: {:.3g} m/s over ground to waypoint {} is {:.3g} m/s through the "
+          "water, whose drag is {:.4g} N; its thrusters push with {:.3g} N: it is "
+          "slower there",
+          vehicle.name, speed_m_s, i % count + 1, glm::length(flow), hold.drag_n, hold.thrust_n);
+    }
+  }
+  if (!line.empty()) lines.push_back(std::move(line));
+}
+
+// The speed over ground of a diver who swims at that speed through the water, aslant into the
+// current; 0: makes no way.
+double made_good_m_s(double through_water_m_s, const Vec3& way_ned, const Vec3& current_ned_m_s) {
+  const Vec3 way = rov::along(Vec3(way_ned.x, way_ned.y, 0.0));
+  if (way == Vec3(0.0)) return through_water_m_s;
+  const Vec3 drift(current_ned_m_s.x, current_ned_m_s.y, 0.0);
+  const double with = glm::dot(drift, way), aside = glm::length(drift - with * way);
+  if (aside >= through_water_m_s) return 0.0;
+  return std::max(0.0, with + std::sqrt((through_water_m_s - aside) * (through_water_m_s + aside)));
+}
+
+// The way of a swim plan on which the diver makes no way, or would have to swim too fast.
+void add_swim(const PhysicsWorld& world, const PhysicsHuman& human,
+              std::vector<std::string>& lines) {
+  if (human.waypoints_ned_m.empty()) return;
+  const bool ground = human.speed_over == scene::SpeedOver::kGround;
+  double most_m_s = kSustained_m_s;
+  std::string line;
+  Vec3 from = human.start.human.root.position_ned_m;
+  for (std::size_t i = 0; i < human.waypoints_ned_m.size(); ++i) {
+    const Vec3 &to = human.waypoints_ned_m[i], way = to - from;
+    for (const Vec3& place : {from, to}) {
+      const Vec3 current = world.current_ned_m_s(place, 0.0);
+      const double needed_m_s = through_water_m_s(human.speed_m_s, way, current);
+      if (ground && current != Vec3(0.0) && needed_m_s > most_m_s) {
+        most_m_s = needed_m_s;
+        line = fmt::format(
+            "{}: {:.3g} m/s over ground to waypoint {} is {:.3g} m/s through the "
+            "water; legs sustain some {:.2g} m/s",
+            human.name, human.speed_m_s, i + 1, needed_m_s, kSustained_m_s);
+      }
+      if (!ground && line.empty() && made_good_m_s(human.speed_m_s, way, current) <= 0.0)
+        line = fmt::format(
+            "{}: {:.3g} m/s through the water makes no way to waypoint {} in a "
+            "current of {:.3g} m/s",
+            human.name, human.speed_m_s, i + 1, glm::length(current));
+    }
+    from = to;
+  }
+  if (!line.empty()) lines.push_back(std::move(line));
+}
+
+// A way with its stops, of which so many waypoints were reached.
+struct Way {
+  std::string name;
+  Vec3 from_m{0.0}, at_m{0.0};  // its start, and where the traveller is
+  std::vector<Vec3> waypoints_m;
+  std::vector<double> holds_s;     // of each waypoint
+  std::vector<double> speeds_m_s;  // over ground, to each waypoint
+  std::size_t arrived = 0;
+};
+
+// Over ground, to each waypoint.
+std::vector<double> speeds_of(const PhysicsWorld& world, const PhysicsVehicle& vehicle) {
+  const double speed_m_s = vehicle.mission->speed_m_s();
+  const bool water = vehicle.mission->speed_over() == scene::SpeedOver::kWater;
+  std::vector<double> out;
+  for (const auto& [from, to, heading_rad] : vehicle.mission->legs(vehicle.start.position_ned_m))
+    out.push_back(speed_m_s == 0.0 ? kUsualSpeed_m_s
+                  : water ? std::max(kLeastSpeed_m_s, speed_m_s + current_along(world, from, to))
+                          : speed_m_s);
+  return out;
+}
+std::vector<double> speeds_of(const PhysicsWorld& world, const PhysicsHuman& human) {
+  const bool water = human.speed_over == scene::SpeedOver::kWater;
+  std::vector<double> out;
+  Vec3 from = human.start.human.root.position_ned_m;
+  for (const Vec3& to : human.waypoints_ned_m) {
+    const Vec3 current = world.current_ned_m_s(0.5 * (from + to), 0.0);
+    const double speed_m_s =
+        water ? made_good_m_s(human.speed_m_s, to - from, current) : human.speed_m_s;
+    out.push_back(std::clamp(speed_m_s, kLeastSpeed_m_s, human.speed_m_s));
+    from = to;
+  }
+  return out;
+}
+
+void add_unfinished(const Way& way, double seconds, std::vector<std::string>& lines) {
+  if (way.arrived >= way.waypoints_m.size()) return;
+  double nominal_s = 0.0, next_s = 0.0;
+  Vec3 from = way.from_m;
+  for (std::size_t i = 0; i < way.waypoints_m.size(); ++i) {
+    nominal_s += glm::distance(from, way.waypoints_m[i]) / way.speeds_m_s[i];
+    if (i == way.arrived) next_s = nominal_s;
+    if (i + 1 < way.waypoints_m.size()) nominal_s += way.holds_s[i];
+    from = way.waypoints_m[i];
+  }
+  if (seconds < nominal_s + kSlack_s && seconds < 2.0 * next_s + kSlack_s) return;
+  lines.push_back(fmt::format("{}: {} of {} waypoints left after {:.4g} s, {:.3g} m to the next",
+                              way.name, way.waypoints_m.size() - way.arrived,
+                              way.waypoints_m.size(), seconds,
+                              glm::distance(way.at_m, way.waypoints_m[way.arrived])));
+}
+
+}  // namespace
+
+std::vector<std::string> cannot_hold(const PhysicsWorld& world) {
+  std::vector<std::string> lines;
+  for (const PhysicsVehicle& vehicle : world.vehicles()) {
+    if (!vehicle.mission) continue;
+    add_axes(vehicle, lines);
+    add_buoyancy(vehicle, lines);
+    add_current(world, vehicle, lines);
+    add_legs(world, vehicle, lines);
+  }
+  for (const PhysicsHuman& human : world.humans()) add_swim(world, human, lines);
+  return lines;
+}
+
+std::vector<std::string> unfinished(const PhysicsWorld& world, const PhysicsState& state,
+                                    double seconds) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
+    const PhysicsVehicle& vehicle = world.vehicles()[i];
+    if (!vehicle.mission || vehicle.mission->repeats()) continue;
+    const VehicleState& now = state.vehicles()[i];
+    if (now.mission.piloted != 0) continue;  // somebody else flies it
+    add_unfinished({vehicle.name, vehicle.start.position_ned_m, now.body.position_ned_m,
+                    vehicle.mission->waypoints_ned_m(), vehicle.mission->holds_s(),
+                    speeds_of(world, vehicle), now.mission.arrived},
+                   seconds, lines);
+  }
+  for (std::size_t i = 0; i < world.humans().size(); ++i) {
+    const PhysicsHuman& human = world.humans()[i];
+    if (human.repeat) continue;
+    const HumanPhysics& now = state.humans()[i];
+    add_unfinished(
+        {human.name, human.start.human.root.position_ned_m, now.human.root.position_ned_m,
+         human.waypoints_ned_m, std::vector<double>(human.waypoints_ned_m.size()),
+         speeds_of(world, human), now.arrived},
+        seconds, lines);
+  }
+  return lines;
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,26 @@
+// What a scene's missions cannot do, told before a dive, and what is left of them after one. Pure
+// functions; any thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "testbed/simulation/physics_world.hpp"
+
+namespace neritic::testbed {
+
+// A line each, with numbers, for what a vehicle with a mission cannot hold at its start: an axis
+// that its thrusters do not push along (failed ones left out), weight or buoyancy beyond their
+// vertical thrust, drag in the current of its start and waypoints beyond their thrust, a speed over
+// ground that the current takes beyond it, a speed through the water that makes no way. For divers
+// who swim by plan: a speed over ground faster than legs sustain, or through the water without way.
+std::vector<std::string> cannot_hold(const PhysicsWorld& world);
+
+// A line each for the missions of vehicles and swim plans of divers that are not finished after
+// so many seconds from their start, though that was enough: longer than the way takes at its speed
+// (vehicles without one: 0.5 m/s) with its stops and 10 s more; or waypoints are missing that twice
+// that time was enough for. Those that repeat have no end; a vehicle that a pilot flies has none.
+std::vector<std::string> unfinished(const PhysicsWorld& world, const PhysicsState& state,
+                                    double seconds);
+
+}  // namespace neritic::testbed

@@ -1,0 +1,80 @@
+// The operator's console: what lies over the view in a window beside the diver's instruments.
+// Participants, the sonars' fans, times, notes, the recording's light, the keys. It works the run's
+// clock and files by key. Rendering thread.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/sim/run_clock.hpp"
+#include "engine/xr/desktop/overlay.hpp"
+#include "engine/xr/display.hpp"
+#include "testbed/sensors/participants.hpp"
+#include "testbed/sensors/session.hpp"
+#include "testbed/view/dive_fan.hpp"
+#include "testbed/view/dive_panels.hpp"
+#include "testbed/view/dive_pilot.hpp"
+#include "testbed/view/dive_times.hpp"
+#include "testbed/view/run_keeper.hpp"
+#include "testbed/view/viewpoints.hpp"
+
+namespace neritic::testbed {
+
+struct ConsoleOptions {
+  std::vector<std::size_t> sonars;  // of the scene, those that have a panel
+  sim::RunClock* clock = nullptr;   // of the run, for its pace
+  const RunKeeper* keeper = nullptr;
+};
+
+// Of the view in this frame.
+struct ConsoleFrame {
+  const xr::ViewGroup& group;
+  const ViewChoice& choice;
+  const DivePilot& pilot;
+  const DiveTimes& times;
+  double elapsed_s = 0.0, time_s = 0.0, view_scale = 1.0;
+};
+
+class Console {
+ public:
+  // session and overlay outlive it.
+  static Result<std::unique_ptr<Console>> create(Session& session, xr::Overlay& overlay,
+                                                 const ConsoleOptions& options);
+
+  xr::InputClaims claims() const { return overlay_.claims(); }
+  void take(const DiveInput& input);
+  // A line for a while.
+  void note(std::string text);
+  // Vehicles, divers and animals: where they are and what they do. eye_m: of the view.
+  void look(const scene::MotionSource& motion, double time_s, const DivePilot& pilot,
+            const Vec3& eye_m);
+  // Each ping becomes its sonar's fan, also while the panels are hidden: they show the newest when
+  // they are back.
+  Status declare_sonars(graph::FrameGraph& graph, const SensorFrame& frame);
+  // The panel over the view's first group; nothing where all is hidden.
+  Result<std::optional<xr::PanelLayer>> declare(graph::FrameGraph& graph,
+                                                const ConsoleFrame& frame);
+
+ private:
+  Console(Session& session, xr::Overlay& overlay, const ConsoleOptions& options);
+  PanelFacts facts(graph::FrameGraph& graph, const ConsoleFrame& frame);
+  std::string recording() const;
+  void draw(graph::FrameGraph& graph, const ConsoleFrame& frame);
+
+  Session& session_;
+  xr::Overlay& overlay_;
+  ConsoleOptions options_;
+  std::unique_ptr<SonarFans> fans_;
+  std::string note_;
+  TimeNs note_until_ns_ = 0;
+  bool show_panels_ = true, show_times_ = false;
+  std::optional<std::size_t> help_page_;
+  std::size_t help_pages_ = 1;
+  std::size_t first_sonar_ = 0;  // of the panels
+  std::vector<Participant> participants_;
+  std::vector<ParticipantRow> rows_;  // of this frame
+};
+
+}  // namespace neritic::testbed

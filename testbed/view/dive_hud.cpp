@@ -1,0 +1,195 @@
+#include "testbed/view/dive_hud.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diver/frames.hpp"
+#include "testbed/view/instrument_data.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// In a window an instrument is never smaller than this part of its natural size, as its smallest
+// text would not be read, and takes at most this part of the view.
+constexpr double kLeastScale = 0.75, kMostOfView = 0.6;
+
+std::uint32_t height_in_window(const hud::Layout& layout, const xr::ViewGroup& group) {
+  if (layout.window.height >= 1.0) return group.height;  // all of the view
+  const double wanted =
+      std::max(layout.window.height * group.height, kLeastScale * layout.height_px);
+  const double aspect = static_cast<double>(layout.width_px) / layout.height_px;
+  const double most = std::min(kMostOfView * group.height, group.width / aspect);
+  return static_cast<std::uint32_t>(std::max(1.0, std::round(std::min(wanted, most))));
+}
+
+// A rectangle of the view, in pixels from its left and top, as a panel a metre ahead.
+xr::PanelLayer over_pixels(const xr::ViewGroup& group, double left, double top, double width,
+                           double height) {
+  const FrustumTangents& t = group.views.front().tangents;
+  const double across = (t.right - t.left) / group.width, down = (t.top - t.bottom) / group.height;
+  const Vec3 centre(t.left + across * (left + 0.5 * width), t.top - down * (top + 0.5 * height),
+                    -1.0);
+  return {.lock = xr::PanelLayer::Lock::kHead,
+          .pose = group.views.front().head_from_view * Pose{centre},
+          .size_m = {across * width, down * height}};
+}
+
+// Where in the view the gaze goes, 0 to 1 from left and top; nothing where it is not measured or
+// goes elsewhere.
+std::optional<Vec2> gaze_in(const diver::VitalState& vitals, const HudView& view) {
+  if ((vitals.measured & diver::kGazeMeasured) == 0) return {};
+  const FrustumTangents& t = view.group.views.front().tangents;
+  const Vec3 ahead =
+      glm::conjugate(view.world_from_view.rotation) * diver::world_from_ned(vitals.gaze_ned);
+  if (!(ahead.z < 0.0)) return {};
+  const Vec2 at((-ahead.x / ahead.z - t.left) / (t.right - t.left),
+                (t.top + ahead.y / ahead.z) / (t.top - t.bottom));
+  if (!(at.x >= 0.0 && at.x <= 1.0 && at.y >= 0.0 && at.y <= 1.0)) return {};
+  return at;
+}
+
+void record_upload(const ImageU8& picture, const gpu::Image& image, gpu::Commands& commands) {
+  const gpu::UploadSlice texels = commands.upload(std::span<const std::uint8_t>(picture.data));
+  VkBufferImageCopy region{};
+  region.bufferOffset = texels.offset;
+  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.imageExtent = {picture.width, picture.height, 1};
+  vkCmdCopyBufferToImage(commands.handle(), texels.buffer, image.handle(),
+                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+}
+
+}  // namespace
+
+DiveHud::DiveHud(gpu::Device& device, gpu::Frames& frames, LivePhysics& physics,
+                 DiveHudOptions options)
+    : device_(device), frames_(frames), physics_(physics), options_(std::move(options)) {
+  for (const hud::Layout& layout : hud::layouts())
+    instruments_.push_back({hud::Hud(layout.kind, options_.units, layout.height_px), 0, {}});
+}
+
+bool DiveHud::shown(hud::LayoutKind layout) const {
+  if (choice_ > 0) return choice_ - 1 == static_cast<std::size_t>(layout);
+  return std::ranges::find(options_.layouts, layout) != options_.layouts.end();
+}
+
+void DiveHud::cycle() {
+  choice_ = (choice_ + 1) % (instruments_.size() + 2);
+}
+
+// Whether there is something new.
+bool DiveHud::look(const HudView& view) {
+  const sim::Snapshot<PhysicsState>& snapshot = physics_.shown_snapshot();
+  // A state that was restored may lie before the last one.
+  if (snapshot.time_s < next_s_ - 1e-9 && snapshot.time_s >= data_.time_s) return false;
+  const HumanPhysics& diver = snapshot.state.humans()[options_.diver];
+  data_ = instrument_data(physics_.world(), options_.diver, snapshot);
+  streams_ = stream_health(diver, physics_.inbox().source_names());
+  about_ = {.gaze = gaze_in(diver.human.life.vitals, view), .streams = streams_};
+  next_s_ = snapshot.time_s + 1.0 / kHudRate_hz;
+  return true;
+}
+
+Status DiveHud::declare(graph::FrameGraph& graph, const HudView& view,
+                        std::vector<xr::Layer>& layers) {
+  const bool anew = look(view);
+  for (Instrument& instrument : instruments_) {
+    const hud::Layout& layout = instrument.hud.layout();
+    if (!shown(layout.kind)) {
+      if (anew) instrument.hud.observe(data_);
+      continue;
+    }
+    const std::uint32_t height_px =
+        view.tracked ? layout.height_px : height_in_window(layout, view.group);
+    NERITIC_TRY(const graph::ImageHandle image,
+                declare_picture(graph, instrument, height_px, anew));
+    layers.push_back(place(instrument, view));
+    std::get<xr::PanelLayer>(layers.back()).image = image;
+  }
+  return {};
+}
+
+// The image for the hud's picture; one of another size lives until the GPU is done with it.
+Status DiveHud::make_image(Instrument& instrument) {
+  if (instrument.image)
+    frames_.retire([old = std::make_shared<gpu::Image>(std::move(instrument.image))]() mutable {
+      old.reset();
+    });
+  const ImageU8& picture = instrument.hud.picture();
+  NERITIC_TRY(instrument.image,
+              gpu::Image::create(
+                  device_, {.name = fmt::format("hud {}", instrument.hud.layout().name),
+                            .format = VK_FORMAT_R8G8B8A8_UNORM,
+                            .width = picture.width,
+                            .height = picture.height,
+                            .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                     VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                            .array_view = true}));
+  return {};
+}
+
+Result<graph::ImageHandle> DiveHud::declare_picture(graph::FrameGraph& graph,
+                                                    Instrument& instrument, std::uint32_t height_px,
+                                                    bool anew) {
+  const bool resized = height_px != instrument.height_px;
+  if (resized) {
+    instrument.hud.resize(height_px);
+    instrument.height_px = height_px;
+    NERITIC_TRY_STATUS(make_image(instrument));
+  }
+  const bool changed = (anew || resized) && instrument.hud.update(data_, about_);
+  if (!changed)
+    return graph.import_image(instrument.image,
+                              {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+  const graph::ImageHandle target = graph.import_image(instrument.image, {});
+  struct Data {
+    graph::ImageHandle image;
+  };
+  const graph::ImageHandle image =
+      graph
+          .add_pass<Data>(
+              instrument.image.desc().name,
+              [&](graph::PassBuilder& builder, Data& data) {
+                data.image = builder.write(target, graph::Access::kTransferWrite);
+              },
+              [&instrument](const Data& data, graph::PassContext& context) {
+                record_upload(instrument.hud.picture(), context.image(data.image),
+                              context.commands);
+              })
+          .image;
+  graph.output(image, graph::Access::kSampledFragment);
+  return image;
+}
+
+xr::PanelLayer DiveHud::place(const Instrument& instrument, const HudView& view) const {
+  const hud::Layout& layout = instrument.hud.layout();
+  const ImageU8& picture = instrument.hud.picture();
+  if (!view.tracked) {
+    const auto free = [](double part, std::uint32_t all, std::uint32_t used) {
+      return all > used ? std::round(part * (all - used)) : 0.0;
+    };
+    xr::PanelLayer panel = over_pixels(
+        view.group, free(layout.window.across, view.group.width, picture.width),
+        free(layout.window.down, view.group.height, picture.height), picture.width, picture.height);
+    panel.name = layout.name;
+    return panel;
+  }
+  xr::PanelLayer panel{.name = std::string(layout.name), .size_m = layout.size_m};
+  switch (layout.lock) {
+    case hud::Lock::kHead:
+      panel.pose = layout.lock_from_panel;
+      break;
+    case hud::Lock::kWrist:
+      panel.lock = xr::PanelLayer::Lock::kWorld;
+      panel.pose = world_from_wrist(physics_.world().humans()[options_.diver],
+                                    physics_.shown().humans()[options_.diver]) *
+                   layout.lock_from_panel;
+      break;
+    case hud::Lock::kWorld:
+      panel.lock = xr::PanelLayer::Lock::kWorld;
+      panel.pose = view.world_from_stage * layout.lock_from_panel;
+      break;
+  }
+  return panel;
+}
+
+}  // namespace neritic::testbed

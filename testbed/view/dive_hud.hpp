@@ -1,0 +1,70 @@
+// The instruments over a view: layouts of hud/ as panels of the display. In a window each lies at
+// its place, texel on pixel; where the display tracks a head, it is locked to head, wrist or world.
+// A picture is drawn on the CPU, and uploaded only when it changed. Rendering thread.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/gpu/frames.hpp"
+#include "engine/graph/frame_graph.hpp"
+#include "engine/xr/display.hpp"
+#include "hud/hud.hpp"
+#include "testbed/motion/live_physics.hpp"
+
+namespace neritic::testbed {
+
+// Numbers and alarms change no quicker; a flash takes half a second.
+inline constexpr double kHudRate_hz = 5.0;
+
+struct DiveHudOptions {
+  std::vector<hud::LayoutKind> layouts;  // empty: none
+  hud::Units units = hud::Units::kMetric;
+  std::size_t diver = 0;  // number of the diver among the world's
+};
+
+// Where the panels are seen.
+struct HudView {
+  const xr::ViewGroup& group;  // its first view is the window's
+  bool tracked = false;        // the display knows where the head is
+  Pose world_from_stage;       // the display's space
+  Pose world_from_view;        // of that first view
+};
+
+class DiveHud {
+ public:
+  // Borrows device, frames and physics, which must have that diver.
+  DiveHud(gpu::Device& device, gpu::Frames& frames, LivePhysics& physics, DiveHudOptions options);
+
+  // Adds the panels of this frame to the layers; those of which something changed are drawn anew.
+  Status declare(graph::FrameGraph& graph, const HudView& view, std::vector<xr::Layer>& layers);
+
+  // The next choice: each layout alone, then none, then those of the options.
+  void cycle();
+
+ private:
+  struct Instrument {
+    hud::Hud hud;
+    std::uint32_t height_px = 0;
+    gpu::Image image;  // of the hud's picture, once it was uploaded
+  };
+  bool look(const HudView& view);
+  Result<graph::ImageHandle> declare_picture(graph::FrameGraph& graph, Instrument& instrument,
+                                             std::uint32_t height_px, bool anew);
+  Status make_image(Instrument& instrument);
+  xr::PanelLayer place(const Instrument& instrument, const HudView& view) const;
+  bool shown(hud::LayoutKind layout) const;
+
+  gpu::Device& device_;
+  gpu::Frames& frames_;
+  LivePhysics& physics_;
+  DiveHudOptions options_;
+  std::vector<Instrument> instruments_;  // one a layout, so that alarms and traces go on unseen
+  std::size_t choice_ = 0;               // 0: the options'
+  hud::DiveData data_;
+  hud::OperatorData about_;
+  std::vector<hud::StreamHealth> streams_;  // of about_
+  double next_s_ = -1.0;                    // the scene time of the next look at the physics
+};
+
+}  // namespace neritic::testbed

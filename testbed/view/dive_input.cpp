@@ -1,0 +1,125 @@
+#include "testbed/view/dive_input.hpp"
+
+#include "diver/jacket.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// In the order of dive_actions().
+enum class Action {
+  kAstern,
+  kStarboard,
+  kUp,
+  kFast,
+  kWheel,
+  kLookX,
+  kLookY,
+  kLookRateX,
+  kLookRateY,
+  kPilot,
+  kTurn,
+  kInflate,
+  kDeflate,
+  kNextView,
+  kPreviousView,
+  kReset,
+  kHelp,
+  kPanels,
+  kHud,
+  kTimes,
+  kNextSonar,
+  kPause,
+  kStepFrame,
+  kSlower,
+  kFaster,
+  kSave,
+  kGoBack,
+  kRecord,
+  kScreenshot,
+  kQuit,
+};
+
+}  // namespace
+
+std::vector<xr::ActionDesc> dive_actions() {
+  using enum xr::ActionKind;
+  return {
+      {"move_astern",
+       kAxis,
+       {"-key W", "key S", "pad left_y", "left stick_y", "-right trigger"},
+       "ahead, astern"},
+      {"move_starboard",
+       kAxis,
+       {"-key A", "key D", "pad left_x", "left stick_x"},
+       "port, starboard"},
+      {"move_up",
+       kAxis,
+       {"key E", "key Space", "-key Q", "pad right_trigger", "-pad left_trigger", "-right stick_y"},
+       "up (E, Space), down"},
+      {"fast",
+       kAxis,
+       {"key LeftShift", "key RightShift", "pad left_bumper", "right squeeze"},
+       "four times as fast"},
+      {"speed", kMotion, {"mouse wheel"}, "faster, slower"},
+      {"look_x", kMotion, {"mouse x while mouse right"}, "look around"},
+      {"look_y", kMotion, {"mouse y while mouse right"}, ""},
+      {"look_rate_x", kAxis, {"pad right_x", "right stick_x"}, ""},
+      {"look_rate_y", kAxis, {"pad right_y"}, ""},
+      {"pilot", kPress, {"key P", "pad y"}, "fly a vehicle by hand, and back"},
+      {"turn",
+       kAxis,
+       {"-key Left", "key Right", "pad right_x", "right stick_x"},
+       "turn that vehicle"},
+      {"inflate", kAxis, {"key I", "left trigger", "left upper"}, "a diver's jacket: gas in"},
+      {"deflate", kAxis, {"key K", "left squeeze", "left lower", "right menu"}, "gas out"},
+      {"next_view", kPress, {"key V", "pad right_bumper"}, "next view: cameras, chases, free"},
+      {"previous_view", kPress, {"key C"}, "view before"},
+      {"reset", kPress, {"key Home", "pad back", "right upper"}, "back to the first view"},
+      {"help", kPress, {"key F1", "pad start"}, "this list"},
+      {"panels", kPress, {"key F2", "pad x", "left menu"}, "panels on or off"},
+      {"hud", kPress, {"key H"}, "instruments: each, none, as at first"},
+      {"times", kPress, {"key F3"}, "times of the GPU's passes"},
+      {"next_sonar", kPress, {"key Tab"}, "next sonar first"},
+      {"pause", kPress, {"key Enter"}, "pause, go on"},
+      {"step_frame", kPress, {"key F6"}, "while paused: one frame on"},
+      {"slower", kPress, {"key F7"}, "time slower, down to 0.1"},
+      {"faster", kPress, {"key F8"}, "time faster, up to 10"},
+      {"save", kPress, {"key F5"}, "save the run's state"},
+      {"go_back", kPress, {"key F9"}, "back to the saved state"},
+      {"record", kPress, {"key F4"}, "record the run, stop recording"},
+      {"screenshot", kPress, {"key F12"}, "screenshot"},
+      {"quit", kPress, {"key Escape"}, "end the dive"},
+  };
+}
+
+DiveInput read_input(const xr::ActionValues& values) {
+  const auto pressed = [&](Action action) { return values[action] > 0.0; };
+  return {.move = {values[Action::kStarboard], values[Action::kUp], values[Action::kAstern]},
+          .jacket = (values[Action::kInflate] > 0.5 ? diver::kInflate : 0) |
+                    (values[Action::kDeflate] > 0.5 ? diver::kDeflate : 0),
+          .turn = values[Action::kTurn],
+          .fast = values[Action::kFast] > 0.5,
+          .look_px = {values[Action::kLookX], values[Action::kLookY]},
+          .look_rate = {values[Action::kLookRateX], values[Action::kLookRateY]},
+          .wheel = values[Action::kWheel],
+          .toggle_help = pressed(Action::kHelp),
+          .toggle_panels = pressed(Action::kPanels),
+          .screenshot = pressed(Action::kScreenshot),
+          .reset = pressed(Action::kReset),
+          .cycle_hud = pressed(Action::kHud),
+          .toggle_times = pressed(Action::kTimes),
+          .next_sonar = pressed(Action::kNextSonar),
+          .toggle_pilot = pressed(Action::kPilot),
+          .quit = pressed(Action::kQuit),
+          .toggle_pause = pressed(Action::kPause),
+          .step_frame = pressed(Action::kStepFrame),
+          .faster =
+              static_cast<int>(values[Action::kFaster]) - static_cast<int>(values[Action::kSlower]),
+          .save = pressed(Action::kSave),
+          .go_back = pressed(Action::kGoBack),
+          .record = pressed(Action::kRecord),
+          .view_step = static_cast<int>(values[Action::kNextView]) -
+                       static_cast<int>(values[Action::kPreviousView])};
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,313 @@
+#include "testbed/view/dive_panels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/draw2d/axes.hpp"
+#include "testbed/view/panel_frame.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+constexpr float kLeastTimes_px = 60.0f;  // of the height of the times' panel
+
+std::string bearing_name(int degrees) {
+  switch (degrees) {
+    case 0:
+      return "N";
+    case 90:
+      return "E";
+    case 180:
+      return "S";
+    case 270:
+      return "W";
+    default:
+      return fmt::format("{:03}", degrees);
+  }
+}
+
+// The compass card: 120 degrees around the heading, a mark every 5, a number every 30.
+void draw_card(ImDrawList& list, double heading_deg, float x, float y, float half_width,
+               float scale) {
+  constexpr double kHalfSpan_deg = 60.0;
+  const float height = 30.0f * scale;
+  list.AddRectFilled(ImVec2(x - half_width, y), ImVec2(x + half_width, y + height), kPaper,
+                     4.0f * scale);
+  const int first = static_cast<int>(std::ceil((heading_deg - kHalfSpan_deg) / 5.0)) * 5;
+  for (int mark = first; mark <= heading_deg + kHalfSpan_deg; mark += 5) {
+    const auto off = static_cast<float>((mark - heading_deg) / kHalfSpan_deg);
+    const float at = x + off * (half_width - 14.0f * scale);
+    const int bearing = (mark % 360 + 360) % 360;
+    const bool named = bearing % 30 == 0;
+    list.AddLine(ImVec2(at, y + 2.0f * scale), ImVec2(at, y + (named ? 9.0f : 6.0f) * scale),
+                 named ? kInk : kFaint, scale);
+    if (named) centered_text(list, at, y + 12.0f * scale, kInk, bearing_name(bearing));
+  }
+  list.AddTriangleFilled(ImVec2(x - 5.0f * scale, y - 5.0f * scale),
+                         ImVec2(x + 5.0f * scale, y - 5.0f * scale), ImVec2(x, y + 3.0f * scale),
+                         kMark);
+}
+
+void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2 size) {
+  const sonar::Limits& l = panel.grid.limits;
+  // Rings about so many; a smaller first range has no room for its label.
+  constexpr double kRings = 6.0, kLeastLabelled = 0.06;
+  const auto at = [&](double range_m, double bearing_rad) {
+    const Vec2 p = panel.shape.place(range_m, bearing_rad);
+    return ImVec2(corner.x + static_cast<float>(p.x) * size.x,
+                  corner.y + static_cast<float>(p.y) * size.y);
+  };
+  const auto arc = [&](double range_m, ImU32 color) {
+    constexpr int kSteps = 64;
+    for (int i = 0; i <= kSteps; ++i)
+      list.PathLineTo(
+          at(range_m, glm::mix(l.azimuth_min_rad, l.azimuth_max_rad, double(i) / kSteps)));
+    list.PathStroke(color, ImDrawFlags_None, 1.0f);
+  };
+  const double middle = 0.5 * (l.azimuth_min_rad + l.azimuth_max_rad);
+  // From the outside in, each that meets no label before it.
+  std::optional<ImVec2> last;
+  const auto label = [&](double range_m) {
+    const ImVec2 edge = at(range_m, l.azimuth_max_rad);
+    const std::string text = fmt::format("{:.3g} m", range_m);
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    if (last && std::abs(last->y - edge.y) < size.y && std::abs(last->x - edge.x) < size.x + 4.0f)
+      return;
+    list.AddText(ImVec2(edge.x + 4.0f, edge.y - 2.0f), kInk, text.c_str());
+    last = edge;
+  };
+  arc(l.range_max_m, kRim);
+  label(l.range_max_m);
+  const double step = draw2d::nice_step(l.range_max_m, kRings);
+  for (double range_m = step * std::ceil(l.range_max_m / step - 0.65);
+       range_m > l.range_min_m + 0.5 * step && range_m > 0.5 * step; range_m -= step) {
+    if (range_m > l.range_max_m - 0.35 * step) continue;
+    arc(range_m, kLine);
+    label(range_m);
+  }
+  arc(l.range_min_m, kRim);
+  if (l.range_min_m > kLeastLabelled * l.range_max_m) label(l.range_min_m);
+  for (const double bearing : {l.azimuth_min_rad, l.azimuth_max_rad})
+    list.AddLine(at(l.range_min_m, bearing), at(l.range_max_m, bearing), kRim);
+  for (const double part : {0.25, 0.5, 0.75}) {
+    const double bearing = glm::mix(l.azimuth_min_rad, l.azimuth_max_rad, part);
+    list.AddLine(at(l.range_min_m, bearing), at(l.range_max_m, bearing), kLine);
+  }
+  const ImVec2 top = at(l.range_max_m, middle);
+  centered_text(list, top.x, top.y - ImGui::GetTextLineHeight() - 2.0f, kInk,
+                fmt::format("{:.0f}\u00b0", degrees(middle)));
+}
+
+void draw_sonar(const SonarPanel& panel, const PanelRect& rect, float scale) {
+  const sonar::Limits& l = panel.grid.limits;
+  begin_panel(panel.name + "###sonar " + panel.name, rect, scale, ImGuiWindowFlags_NoScrollbar);
+  const std::string settings =
+      fmt::format("{:.3g} to {:.3g} m  {:.0f}\u00b0 x {:.0f}\u00b0  {:g} Hz", l.range_min_m,
+                  l.range_max_m, degrees(l.azimuth_max_rad - l.azimuth_min_rad),
+                  degrees(l.elevation_max_rad - l.elevation_min_rad), panel.rate_hz);
+  const float inner = ImGui::GetContentRegionAvail().x;
+  const bool fits = ImGui::CalcTextSize(settings.c_str()).x <= inner;
+  ImGui::TextDisabled("%s", fits ? settings.c_str()
+                                 : fmt::format("{:.3g} m  {:.0f}\u00b0", l.range_max_m,
+                                               degrees(l.azimuth_max_rad - l.azimuth_min_rad))
+                                       .c_str());
+  const FanFrame frame;
+  const float aspect =
+      static_cast<float>(panel.shape.height) / static_cast<float>(panel.shape.width);
+  const float height = (rect.height - frame.above_and_below) * scale;
+  const float width = std::min((rect.width - 2.0f * frame.margin_x) * scale, height / aspect);
+  const ImVec2 start = ImGui::GetCursorScreenPos();
+  const ImVec2 corner((rect.x + 0.5f * rect.width) * scale - 0.5f * width,
+                      start.y + ImGui::GetTextLineHeight() + 2.0f * scale);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (panel.picture)
+    list.AddImage(panel.picture, corner, ImVec2(corner.x + width, corner.y + height));
+  draw_rings(list, panel, corner, ImVec2(width, height));
+  ImGui::End();
+}
+
+void timings_table(const DiveTimes& times, TimeNs now_ns, float scale) {
+  double gpu_ms = 0.0;
+  for (const TimeRow& pass : times.passes())
+    if (pass.name != "record" && times.recent(pass, now_ns)) gpu_ms += pass.smooth_ms;
+  if (!(gpu_ms > 0.0)) {  // the first frames are still under way, or the device measures none
+    ImGui::TextDisabled("no pass measured yet");
+    return;
+  }
+  const auto row = [&](const std::string& name, double ms) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    text_line(name);
+    ImGui::TableNextColumn();
+    const auto part = static_cast<float>(std::min(1.0, ms / gpu_ms));
+    ImGui::ProgressBar(part, ImVec2(-1.0f, ImGui::GetTextLineHeight()),
+                       fmt::format("{:.2f}", ms).c_str());
+  };
+  if (!ImGui::BeginTable("passes", 2)) return;
+  ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("ms", ImGuiTableColumnFlags_WidthFixed, 110.0f * scale);
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextDisabled("GPU pass");
+  ImGui::TableNextColumn();
+  ImGui::TextDisabled("ms");
+  for (const TimeRow& pass : times.passes())
+    if (times.recent(pass, now_ns))
+      row(pass.name == "record" ? "(record, host)" : pass.name, pass.smooth_ms);
+  row("all passes", gpu_ms);
+  ImGui::EndTable();
+}
+
+// At the lower edge of its place, as wide as its text.
+void draw_hint(const std::string& text, float scale, const PanelRect& rect) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  const float x = rect.x * scale, bottom = rect.bottom() * scale, pad = 8.0f * scale;
+  const float top = bottom - size.y - pad;
+  const float most = rect.width > 0.0f ? rect.width * scale : ImGui::GetIO().DisplaySize.x - x;
+  list.AddRectFilled(ImVec2(x, top), ImVec2(x + std::min(size.x + 2.0f * pad, most), bottom),
+                     kPaper, 4.0f * scale);
+  list.PushClipRect(ImVec2(x, top), ImVec2(x + most, bottom));
+  list.AddText(ImVec2(x + pad, top + 0.5f * pad), kInk, text.c_str());
+  list.PopClipRect();
+}
+
+void draw_readout(const FreeCamera& camera, const PanelRect& rect, float scale) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float half = 0.5f * rect.width * scale, x = rect.x * scale + half, y = rect.y * scale;
+  draw_card(list, camera.heading_deg(), x, y, half, scale);
+  const double depth_m = -camera.position_m().y;
+  const std::string heading =
+      fmt::format("heading {:03.0f}\u00b0", std::fmod(std::round(camera.heading_deg()), 360.0));
+  const std::string text = depth_m >= 0.0
+                               ? fmt::format("depth {:5.2f} m    {}", depth_m, heading)
+                               : fmt::format("{:.2f} m above water    {}", -depth_m, heading);
+  const float top = y + 34.0f * scale, height = 28.0f * scale;
+  list.AddRectFilled(ImVec2(x - half, top), ImVec2(x + half, top + height), kPaper, 4.0f * scale);
+  centered_text(list, x, top + 0.5f * (height - ImGui::GetTextLineHeight()), kInk, text);
+}
+
+void participants_table(const PanelFacts& facts, float scale) {
+  if (facts.participants.empty() || !ImGui::BeginTable("participants", 4)) return;
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
+  for (const char* column : {"depth", "speed", "away"})
+    ImGui::TableSetupColumn(column, ImGuiTableColumnFlags_WidthFixed, 62.0f * scale);
+  ImGui::TableNextRow();
+  for (const char* heading : {"participant", "depth", "speed", "away"}) {
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", heading);
+  }
+  for (const ParticipantRow& row : facts.participants) {
+    ImGui::TableNextRow();
+    for (const std::string& cell :
+         {row.name, fmt::format("{:.1f} m", row.depth_m), fmt::format("{:.2f} m/s", row.speed_m_s),
+          fmt::format("{:.1f} m", row.away_m)}) {
+      ImGui::TableNextColumn();
+      text_line(cell);
+    }
+  }
+  ImGui::EndTable();
+  for (const ParticipantRow& row : facts.participants)
+    if (!row.doing.empty())
+      ImGui::TextDisabled("%s", fmt::format("{}: {}", row.name, row.doing).c_str());
+}
+
+// A red light and what is recorded, in the current window.
+void recording_line(const std::string& text) {
+  const float height = ImGui::GetTextLineHeight();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::GetWindowDrawList()->AddCircleFilled(ImVec2(at.x + 0.45f * height, at.y + 0.5f * height),
+                                              0.42f * height, kAlarm);
+  ImGui::SetCursorScreenPos(ImVec2(at.x + 1.3f * height, at.y));
+  text_line(text);
+}
+
+std::size_t status_lines(const PanelFacts& facts) {
+  const auto& all = facts.participants;
+  return 3 + (facts.recording.empty() ? 0 : 1) + facts.troubles.size() +
+         (all.empty() ? 0 : all.size() + 1) +
+         static_cast<std::size_t>(
+             std::ranges::count_if(all, [](const auto& row) { return !row.doing.empty(); }));
+}
+
+void draw_status(const PanelFacts& facts, const PanelsShown& shown, const PanelRect& rect,
+                 float scale) {
+  begin_panel(facts.title + "###status", rect, scale);
+  if (!facts.recording.empty()) recording_line(facts.recording);
+  const double frame_ms = shown.frames->frame().smooth_ms;
+  const std::string rate =
+      frame_ms > 0.0 ? fmt::format("{:.1f} FPS   {:.1f} ms a frame", 1000.0 / frame_ms, frame_ms)
+                     : "first frame";
+  const std::string drawn =
+      facts.view_scale < 1.0 ? fmt::format("   drawn at {:.0f} %", 100.0 * facts.view_scale) : "";
+  text_line(fmt::format("{}   {} x {}", rate, facts.width, facts.height));
+  text_line(fmt::format("time {:.1f} s{}{}", facts.time_s,
+                        facts.pace.empty() ? "" : "   " + facts.pace,
+                        facts.water.empty() ? "" : "   water " + facts.water));
+  text_line(fmt::format("view {}{}{}", facts.view,
+                        facts.view == "free" ? fmt::format(", {:.2f} m/s", facts.speed_m_s) : "",
+                        drawn));
+  participants_table(facts, scale);
+  ImGui::PushTextWrapPos(0.0f);
+  for (const std::string& line : facts.troubles) text_line(line);
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+}
+
+// Below the status, instead of the hint.
+void draw_times(const PanelsShown& shown, const PanelLayout& layout, TimeNs now_ns, float scale) {
+  const float top = layout.status.bottom() + 8.0f;
+  ImGui::SetNextWindowPos(ImVec2(kEdge_px * scale, top * scale));
+  const float width = layout.status.width * scale;
+  const float room = (layout.hint.bottom() - top) * scale;
+  if (room < kLeastTimes_px * scale) return;
+  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0f), ImVec2(width, room));
+  ImGui::Begin("GPU passes###times", nullptr, kFixedPanel | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::TextDisabled("%s", shown.device.c_str());
+  timings_table(*shown.frames, now_ns, scale);
+  ImGui::End();
+}
+
+}  // namespace
+
+void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const PanelsShown& shown,
+                 TimeNs now_ns, float scale) {
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  std::vector<const SonarPanel*> sonars;  // the first one to show leads
+  std::vector<float> aspects;
+  for (std::size_t i = 0; i < facts.sonars.size(); ++i) {
+    sonars.push_back(&facts.sonars[(shown.first_sonar + i) % facts.sonars.size()]);
+    aspects.push_back(static_cast<float>(sonars.back()->shape.height) /
+                      static_cast<float>(sonars.back()->shape.width));
+  }
+  const PanelLayout layout = lay_out(display.x / scale, display.y / scale,
+                                     height_of_lines(status_lines(facts), scale), aspects);
+  if (!layout.readout.empty()) draw_readout(camera, layout.readout, scale);
+  if (!layout.status.empty()) draw_status(facts, shown, layout.status, scale);
+  for (std::size_t i = 0; i < layout.fans.size(); ++i)
+    draw_sonar(*sonars[i], layout.fans[i], scale);
+  const std::size_t more = sonars.size() - layout.fans.size();
+  if (!shown.device.empty()) {
+    draw_times(shown, layout, now_ns, scale);
+  } else if (!layout.hint.empty()) {
+    const std::string others =
+        more > 0 ? fmt::format("   Tab  {} more sonar{}", more, more > 1 ? "s" : "") : "";
+    draw_hint(shown.hint + others, scale, layout.hint);
+  }
+}
+
+void draw_recording_light(const std::string& text, float scale) {
+  ImGui::SetNextWindowPos(ImVec2(kEdge_px * scale, kEdge_px * scale));
+  ImGui::Begin("###light", nullptr,
+               kFixedPanel | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoInputs);
+  recording_line(text);
+  ImGui::End();
+}
+
+void draw_hint(const std::string& text, float scale) {
+  draw_hint(text, scale, {kEdge_px, ImGui::GetIO().DisplaySize.y / scale - 42.0f, 0.0f, 30.0f});
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,58 @@
+// The panels that `dive` draws over the picture: compass and depth, participants, the live sonars,
+// times of passes. Dear ImGui calls between Overlay::begin and Overlay::declare.
+// Rendering thread.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+#include <vector>
+
+#include "sonar/beam_grid.hpp"
+#include "testbed/view/dive_camera.hpp"
+#include "testbed/view/dive_fan.hpp"
+#include "testbed/view/dive_times.hpp"
+#include "testbed/view/panel_layout.hpp"
+
+namespace neritic::testbed {
+
+struct SonarPanel {
+  std::string name;
+  ImTextureID picture{};
+  FanShape shape;
+  sonar::BeamGrid grid;
+  double rate_hz = 0.0;
+};
+
+struct ParticipantRow {
+  std::string name, doing;  // doing: one line more; empty: none
+  double depth_m = 0.0, speed_m_s = 0.0, away_m = 0.0;
+};
+
+struct PanelFacts {
+  std::string title, water, view, pace;  // water empty: none; pace: that of the clock
+  std::uint32_t width = 0, height = 0;
+  double view_scale = 1.0;               // of the view's resolution, where the machine is too slow
+  double time_s = 0.0, speed_m_s = 0.0;  // of the scene; of the free view
+  std::vector<SonarPanel> sonars;        // that have pinged
+  std::vector<ParticipantRow> participants;
+  std::vector<std::string> troubles;  // a line each
+  std::string recording;              // "REC 0:12  FILE"; empty: nothing is recorded
+};
+
+// The panels of the picture, laid out for the display: compass with depth, status with
+// participants, sonars from `first_sonar` on. times: those of the passes are shown; nullptr: not.
+// hint: one line at the lower edge.
+struct PanelsShown {
+  std::size_t first_sonar = 0;
+  const DiveTimes* frames = nullptr;
+  std::string device;  // of the passes' times; empty: they are not shown
+  std::string hint;
+};
+void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const PanelsShown& shown,
+                 TimeNs now_ns, float scale);
+// Where the panels are hidden: one line at the lower edge; the light of a recording.
+void draw_hint(const std::string& text, float scale);
+void draw_recording_light(const std::string& text, float scale);
+
+}  // namespace neritic::testbed

@@ -1,0 +1,265 @@
+#include "testbed/view/dive_view.hpp"
+
+#include <algorithm>
+
+#include "engine/core/log.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0};
+
+std::uint32_t scaled(std::uint32_t pixels, double scale) {
+  return static_cast<std::uint32_t>(std::max(1.0, std::round(scale * pixels)));
+}
+
+}  // namespace
+
+DiveView::DiveView(Session& session, xr::Display& display, DivePilot pilot,
+                   const DiveViewOptions& options)
+    : session_(session),
+      display_(display),
+      options_(options),
+      choice_(session.scene(), options.viewpoint),
+      pilot_(std::move(pilot)),
+      world_from_stage_(session.scene().world_from_lab.value_or(level(choice_.world_from_view()))),
+      screenshots_(session.device(), session.frames(), options.screenshot),
+      times_(options.summary) {}
+
+Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display& display,
+                                                   xr::Overlay* overlay, LivePhysics* physics,
+                                                   const DiveViewOptions& options) {
+  NERITIC_TRY(DivePilot pilot, DivePilot::create(physics, options.may_fly));
+  std::unique_ptr<DiveView> view(new DiveView(session, display, std::move(pilot), options));
+  view->physics_ = physics;
+  if (options.may_fly && physics && !physics->world().humans().empty())
+    view->wearer_.emplace(*physics);
+  if (physics && options.keep) view->keeper_.emplace(*physics, *options.keep);
+  if (overlay) {
+    NERITIC_TRY(view->console_,
+                Console::create(session, *overlay,
+                                {.sonars = options.sonars,
+                                 .clock = options.clock,
+                                 .keeper = view->keeper_ ? &*view->keeper_ : nullptr}));
+  }
+  if (options.hud)
+    view->hud_ =
+        std::make_unique<DiveHud>(session.device(), session.frames(), *physics, *options.hud);
+  if (options.budget_ms > 0.0) view->governor_.emplace(options.budget_ms);
+  return view;
+}
+
+DiveView::~DiveView() {
+  session_.device().wait_idle();
+}
+
+Result<xr::FrameVerdict> DiveView::begin_frame() {
+  if (options_.timeline) timeline_.begin(now_ns());
+  NERITIC_TRY(frame_, display_.begin_frame(world_from_stage_));
+  in_frame_ = frame_.verdict != xr::FrameVerdict::kQuit;
+  const TimeNs now = now_ns();
+  if (options_.timeline) {
+    timeline_.current().begun = now;
+    timeline_.current().display_at = frame_.display_at_ns;
+  }
+  elapsed_s_ = last_frame_ns_ == 0 ? 0.0 : 1e-9 * static_cast<double>(now - last_frame_ns_);
+  if (last_frame_ns_ != 0 && shown()) times_.add_frame(elapsed_s_ * 1e3, now);
+  last_frame_ns_ = shown() ? now : 0;  // a pause is no slow frame
+  return frame_.verdict;
+}
+
+// The lab's frame where the scene says where that lies; else the eyes of the diver who is worn;
+// else level at the viewpoint, so that the horizon of a headset stays level.
+Pose DiveView::world_from_stage(const scene::MotionSource& motion, double time_s) const {
+  if (session_.scene().world_from_lab) return *session_.scene().world_from_lab;
+  if (wearer_ && wears_) return wearer_->world_from_stage(motion, time_s);
+  return level(choice_.world_from_view());
+}
+
+bool DiveView::take_input() {
+  const DiveInput input =
+      read_input(display_.take_actions(console_ ? console_->claims() : xr::InputClaims{}));
+  if (console_) console_->take(input);
+  if (input.cycle_hud && hud_) hud_->cycle();
+  if (options_.clock) take_time(input);
+  keep_run(input);
+  if (input.screenshot) screenshots_.ask();
+  if (input.view_step != 0) wears_ = false;
+  if (input.reset) wears_ = true;
+  // Until the stage lies at the diver's eyes, poses in it mean nothing to him.
+  if (wearer_) wearer_->take(wears_ && placed_ ? frame_ : xr::DisplayFrame{}, input);
+  const bool flew = pilot_.flying();
+  const bool flying = pilot_.take(input, choice_.carrier());
+  if (flying && !flew && choice_.carrier() != pilot_.object()) choice_.choose_on(pilot_.object());
+  choice_.take(input, elapsed_s_, flying);
+  return input.quit;
+}
+
+// In a window a note, else a line.
+void DiveView::tell(const std::string& note) {
+  if (note.empty()) return;
+  if (console_)
+    console_->note(note);
+  else
+    log_info("{}", note);
+}
+
+// The state and the recording by key.
+void DiveView::keep_run(const DiveInput& input) {
+  if (!keeper_) {
+    if (input.save || input.go_back || input.record) tell(options_.no_keys_for_files);
+    return;
+  }
+  if (input.save) tell(keeper_->save());
+  if (input.record) tell(keeper_->toggle_recording());
+  tell(keeper_->trouble());
+  if (!input.go_back) return;
+  bool went = false;
+  tell(keeper_->go_back(went));
+  if (!went) return;
+  pilot_.went_back();
+  if (wearer_) wearer_.emplace(*physics_);  // claims what is worn anew
+}
+
+std::uint32_t DiveView::ping_every() const {
+  return governor_ ? governor_->quality().ping_every : 1;
+}
+
+// Pause, one frame on, a speed of kSpeeds.
+void DiveView::take_time(const DiveInput& input) {
+  sim::RunClock& clock = *options_.clock;
+  if (input.toggle_pause) clock.pause(!clock.paused());
+  if (input.step_frame) clock.step(static_cast<TimeNs>(options_.frame_s * 1e9));
+  for (int i = 0; i < std::abs(input.faster); ++i) {
+    const double speed = clock.speed();
+    const auto above = std::ranges::upper_bound(kSpeeds, speed);
+    const auto below = std::ranges::lower_bound(kSpeeds, speed);
+    if (input.faster > 0 && above != std::end(kSpeeds)) clock.set_speed(*above);
+    if (input.faster < 0 && below != std::begin(kSpeeds)) clock.set_speed(*(below - 1));
+  }
+}
+
+void DiveView::add_views(FrameRequest& request) {
+  const scene::MotionSource motion(session_.scene(), request.simulated);
+  choice_.follow(motion, request.time_s);
+  world_from_stage_ = world_from_stage(motion, request.time_s);
+  display_.track(frame_, world_from_stage_);
+  placed_ = true;
+  world_from_head_ = frame_.world_from_head.value_or(choice_.world_from_view());
+  if (console_) console_->look(motion, request.time_s, pilot_, world_from_head_.position_m);
+  const scene::Camera& camera = session_.scene().cameras[choice_.viewpoint().camera];
+  const bool tracked = frame_.world_from_head.has_value();
+  for (std::size_t i = 0; i < frame_.groups.size(); ++i) {
+    const xr::ViewGroup& group = frame_.groups[i];
+    ViewsRequest views{.name = i == 0 ? camera.name : fmt::format("{} {}", camera.name, i),
+                       .exposure = camera.exposure,
+                       .antialias = camera.antialias};
+    const double scale = view_scale();
+    timeline_.current().view_scale = scale;
+    views.views.width = scaled(group.width, scale);
+    views.views.height = scaled(group.height, scale);
+    // A display that tracks nobody shows what the camera sees.
+    const FrustumTangents lens =
+        tangents_from_fov(camera.vertical_fov_rad, double(group.width) / group.height);
+    for (const xr::View& view : group.views) {
+      const Pose pose = world_from_head_ * view.head_from_view;
+      views.views.views.push_back({.world_from_view = pose,
+                                   .tangents = tracked ? view.tangents : lens,
+                                   .near_m = camera.near_m,
+                                   .next_world_from_view = pose});
+    }
+    request.views.push_back(std::move(views));
+  }
+}
+
+// Where nothing else reads a ping it still runs, as its sonar is wanted.
+Status DiveView::declare_sonars(graph::FrameGraph& graph, const SensorFrame& frame) {
+  if (console_) return console_->declare_sonars(graph, frame);
+  for (const SensorFrame::Sonar& ping : frame.sonars)
+    graph.output(ping.image, graph::Access::kStorageReadCompute);
+  return {};
+}
+
+Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, double time_s,
+                         bool last) {
+  NERITIC_TRY_STATUS(declare_sonars(graph, frame));
+  if (!shown()) return {};
+  std::vector<xr::Layer> layers;
+  // A display takes depth of its own size only.
+  const bool full_size = view_scale() == 1.0;
+  for (const SensorFrame::Views& views : frame.views)
+    layers.push_back(xr::ProjectionLayer{.group = views.index,
+                                         .color = views.color,
+                                         .depth = full_size ? views.depth : graph::ImageHandle{},
+                                         .near_m = views.near_m});
+  if (hud_) {
+    const xr::ViewGroup& group = frame_.groups.front();
+    const HudView seen{group, frame_.world_from_head.has_value(), world_from_stage_,
+                       world_from_head_ * group.views.front().head_from_view};
+    NERITIC_TRY_STATUS(hud_->declare(graph, seen, layers));
+  }
+  if (console_) {
+    NERITIC_TRY(const auto panels, console_->declare(graph, {.group = frame_.groups.front(),
+                                                             .choice = choice_,
+                                                             .pilot = pilot_,
+                                                             .times = times_,
+                                                             .elapsed_s = elapsed_s_,
+                                                             .time_s = time_s,
+                                                             .view_scale = view_scale()}));
+    if (panels) layers.push_back(*panels);
+  }
+  NERITIC_TRY(const xr::ShownPicture shown, display_.declare(graph, world_from_head_, layers));
+  NERITIC_TRY_STATUS(screenshots_.declare(graph, shown, last));
+  timeline_.current().declared = now_ns();
+  return {};
+}
+
+gpu::Frames::SubmitSync DiveView::sync() const {
+  timeline_.current().recorded = now_ns();
+  return shown() ? display_.sync() : gpu::Frames::SubmitSync{};
+}
+
+Status DiveView::end_frame(std::optional<std::uint64_t> value) {
+  in_frame_ = false;
+  if (value) timeline_.current().submitted = now_ns();
+  NERITIC_TRY_STATUS(display_.end_frame(value.has_value() && shown()));
+  if (options_.timeline) timeline_.end(now_ns(), value);
+  NERITIC_TRY(const std::uint64_t completed, session_.frames().completed());
+  NERITIC_TRY_STATUS(collect_times(completed));
+  if (value) {
+    in_flight_.push_back(*value);
+    screenshots_.submitted(*value);
+  }
+  NERITIC_TRY_STATUS(screenshots_.write_done(completed));
+  if (const auto note = screenshots_.take_note()) tell(*note);
+  return {};
+}
+
+Status DiveView::collect_times(std::uint64_t completed) {
+  for (; !in_flight_.empty() && in_flight_.front() <= completed; in_flight_.pop_front()) {
+    NERITIC_TRY_STATUS(session_.frames().wait(in_flight_.front()));  // it is done: no wait
+    const std::vector<gpu::PassTime> passes = session_.frames().pass_times_of(in_flight_.front());
+    times_.add_passes(passes, now_ns());
+    if (options_.timeline) timeline_.passes_of(in_flight_.front(), passes);
+    if (governor_ && shown()) add_work(passes);
+  }
+  return {};
+}
+
+// A device that is the host's processor does its work in the host's time, any other beside it.
+void DiveView::add_work(std::span<const gpu::PassTime> passes) {
+  double host_ms = 0.0, device_ms = 0.0;
+  for (const gpu::PassTime& pass : passes) (pass.name == "record" ? host_ms : device_ms) += pass.ms;
+  const bool one = session_.device().info().kind == "CPU";
+  governor_->add(elapsed_s_ * 1e3, one ? host_ms + device_ms : std::max(host_ms, device_ms));
+}
+
+Status DiveView::finish() {
+  if (!in_flight_.empty()) {
+    NERITIC_TRY_STATUS(session_.frames().wait(in_flight_.back()));
+    NERITIC_TRY_STATUS(collect_times(in_flight_.back()));
+  }
+  return screenshots_.finish();
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,114 @@
+// A person's view of a run: a display with all its views, a camera to fly or the
+// head that the display tracks, a vehicle flown by hand, the operator's console, screenshots.
+// Rendering thread.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/sim/run_clock.hpp"
+#include "engine/xr/display.hpp"
+#include "testbed/loop/frame_view.hpp"
+#include "testbed/sensors/session.hpp"
+#include "testbed/view/console.hpp"
+#include "testbed/view/dive_hud.hpp"
+#include "testbed/view/dive_pilot.hpp"
+#include "testbed/view/dive_times.hpp"
+#include "testbed/view/frame_timeline.hpp"
+#include "testbed/view/quality_governor.hpp"
+#include "testbed/view/screenshots.hpp"
+#include "testbed/view/viewpoints.hpp"
+#include "testbed/view/wearer.hpp"
+
+namespace neritic::testbed {
+
+struct DiveViewOptions {
+  std::size_t viewpoint = 0;          // of viewpoints_of(scene): where the view begins
+  std::vector<std::size_t> sonars;    // of the scene, those that have a panel
+  bool summary = false;               // keep samples of times for one
+  std::filesystem::path screenshot;   // of the last frame; empty: none
+  bool may_fly = true;                // a vehicle by hand; not in a replay
+  std::optional<DiveHudOptions> hud;  // instruments of a diver; needs physics with that diver
+  // The time for a frame: where the machine needs longer, quality comes down. 0: it stays full.
+  double budget_ms = 0.0;
+  sim::RunClock* clock = nullptr;  // of the run, for keys that stop or speed it up
+  double frame_s = 1.0 / 30.0;     // that a step of time shows
+  bool timeline = false;           // keep each frame's phases
+  // The run's state and recording by key, with physics on a thread; empty: they give a note why
+  // not.
+  std::optional<RunKeeperOptions> keep;
+  std::string no_keys_for_files;
+};
+
+class DiveView final : public FrameView {
+ public:
+  // overlay may be nullptr: no panels; physics too: nothing to fly. All outlive the view.
+  static Result<std::unique_ptr<DiveView>> create(Session& session, xr::Display& display,
+                                                  xr::Overlay* overlay, LivePhysics* physics,
+                                                  const DiveViewOptions& options);
+  // Waits for the GPU, which may still use the fans and the screenshot after a failure.
+  ~DiveView() override;
+
+  Result<xr::FrameVerdict> begin_frame() override;
+  std::optional<TimeNs> display_at_ns() const override { return frame_.display_at_ns; }
+  bool in_frame() const override { return in_frame_; }
+  bool shown() const override { return frame_.verdict == xr::FrameVerdict::kDraw; }
+  bool take_input() override;
+  std::uint32_t ping_every() const override;
+  void add_views(FrameRequest& request) override;
+  Status declare(graph::FrameGraph& graph, const SensorFrame& frame, double time_s,
+                 bool last) override;
+  gpu::Frames::SubmitSync sync() const override;
+  Status end_frame(std::optional<std::uint64_t> value) override;
+  Status finish() override;
+
+  // The keys' samples, for the simulation.
+  SampleSource& pilot() { return pilot_; }
+  // The person's, as a diver of the scene; nullptr: it has none, or it is a replay.
+  SampleSource* wearer() { return wearer_ ? &*wearer_ : nullptr; }
+  // Records by key: to be given each step; nullptr: nothing is recorded by key.
+  StepSink* recorder() { return keeper_ ? &keeper_->sink() : nullptr; }
+  const DiveTimes& times() const { return times_; }
+  const FrameTimeline& timeline() const { return timeline_; }
+  const ViewChoice& choice() const { return choice_; }
+
+ private:
+  DiveView(Session& session, xr::Display& display, DivePilot pilot, const DiveViewOptions& options);
+  Pose world_from_stage(const scene::MotionSource& motion, double time_s) const;
+  Status declare_sonars(graph::FrameGraph& graph, const SensorFrame& frame);
+  void take_time(const DiveInput& input);
+  void keep_run(const DiveInput& input);
+  void tell(const std::string& note);
+  double view_scale() const { return governor_ ? governor_->quality().view_scale : 1.0; }
+  Status collect_times(std::uint64_t completed);
+  void add_work(std::span<const gpu::PassTime> passes);
+
+  Session& session_;
+  xr::Display& display_;
+  LivePhysics* physics_ = nullptr;
+  DiveViewOptions options_;
+  ViewChoice choice_;
+  DivePilot pilot_;
+  std::optional<Wearer> wearer_;
+  Pose world_from_stage_;  // of the last frame
+  bool wears_ = true;      // is the diver; false: looks from another viewpoint
+  bool placed_ = false;    // the stage was placed for a picture
+  Pose world_from_head_;
+  std::optional<RunKeeper> keeper_;
+  std::unique_ptr<Console> console_;  // with an overlay
+  std::unique_ptr<DiveHud> hud_;
+  std::optional<QualityGovernor> governor_;
+  Screenshots screenshots_;
+  xr::DisplayFrame frame_;
+  bool in_frame_ = false;
+  TimeNs last_frame_ns_ = 0;  // 0: none, or it was hidden
+  double elapsed_s_ = 0.0;
+  std::deque<std::uint64_t> in_flight_;  // submissions whose times are not collected yet
+  DiveTimes times_;
+  mutable FrameTimeline timeline_;  // sync() says when the recording ended
+};
+
+}  // namespace neritic::testbed

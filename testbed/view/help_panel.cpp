@@ -1,0 +1,93 @@
+#include "testbed/view/help_panel.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "testbed/view/panel_frame.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+constexpr float kColumnGap_px = 24.0f, kKeyGap_px = 14.0f;
+
+struct Row {
+  std::string controls, help;
+};
+
+// "W  S", "mouse wheel": the controls of keyboard and mouse.
+std::string desktop_controls(const xr::ActionDesc& action) {
+  std::string text;
+  for (std::string binding : action.bindings) {
+    if (binding.starts_with('-')) binding.erase(0, 1);
+    if (!binding.starts_with("key ") && !binding.starts_with("mouse ")) continue;
+    if (binding.starts_with("key ")) binding.erase(0, 4);
+    if (const auto at = binding.find(" while "); at != std::string::npos)
+      binding = "hold " + binding.substr(at + 7);
+    text += (text.empty() ? "" : "  ") + binding;
+  }
+  return text;
+}
+
+// What rows take at the current font.
+struct Fit {
+  float keys = 0.0f, column = 0.0f;  // widths, pixels
+  std::size_t columns = 1, rows = 1;
+  std::size_t a_page() const { return columns * rows; }
+};
+
+Fit fit(const std::vector<Row>& rows, float scale) {
+  Fit out;
+  float help = 0.0f;
+  for (const Row& row : rows) {
+    out.keys = std::max(out.keys, ImGui::CalcTextSize(row.controls.c_str()).x);
+    help = std::max(help, ImGui::CalcTextSize(row.help.c_str()).x);
+  }
+  out.keys += kKeyGap_px * scale;
+  out.column = out.keys + help;
+  const ImVec2 display = ImGui::GetIO().DisplaySize, padding = ImGui::GetStyle().WindowPadding;
+  const float width = display.x - kEdge_px * scale - 2.0f * padding.x;
+  const float height = display.y - kEdge_px * scale - 2.0f * padding.y - ImGui::GetFrameHeight();
+  const auto whole = [](float room, float each) {
+    return static_cast<std::size_t>(std::max(1.0f, room / each));
+  };
+  out.rows = whole(height, ImGui::GetTextLineHeightWithSpacing());
+  out.columns = whole(width + kColumnGap_px * scale, out.column + kColumnGap_px * scale);
+  out.columns = std::min(out.columns, (rows.size() + out.rows - 1) / out.rows);
+  out.rows = std::min(out.rows, (rows.size() + out.columns - 1) / out.columns);
+  return out;
+}
+
+}  // namespace
+
+std::size_t draw_help(std::span<const xr::ActionDesc> actions, std::size_t page, float scale) {
+  std::vector<Row> rows;
+  for (const xr::ActionDesc& action : actions)
+    if (!action.help.empty()) rows.push_back({desktop_controls(action), action.help});
+  const Fit fits = fit(rows, scale);
+  const std::size_t pages = (rows.size() + fits.a_page() - 1) / fits.a_page();
+  const std::size_t first = std::min(page, pages - 1) * fits.a_page();
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(display.x * 0.5f, display.y * 0.5f), ImGuiCond_Always,
+                          ImVec2(0.5f, 0.5f));
+  ImGui::SetNextWindowBgAlpha(0.92f);
+  const std::string title =
+      pages > 1 ? fmt::format("Keys, page {} of {}   F1: on###keys", page + 1, pages)
+                : "Keys###keys";
+  ImGui::Begin(title.c_str(), nullptr, kFixedPanel | ImGuiWindowFlags_AlwaysAutoResize);
+  const ImVec2 start = ImGui::GetCursorPos();
+  for (std::size_t i = 0; i < fits.a_page() && first + i < rows.size(); ++i) {
+    const Row& row = rows[first + i];
+    const ImVec2 at(
+        start.x + static_cast<float>(i / fits.rows) * (fits.column + kColumnGap_px * scale),
+        start.y + static_cast<float>(i % fits.rows) * ImGui::GetTextLineHeightWithSpacing());
+    ImGui::SetCursorPos(at);
+    text_line(row.controls);
+    ImGui::SetCursorPos(ImVec2(at.x + fits.keys, at.y));
+    ImGui::TextDisabled("%s", row.help.c_str());
+  }
+  ImGui::End();
+  return pages;
+}
+
+}  // namespace neritic::testbed

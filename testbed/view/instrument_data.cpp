@@ -1,0 +1,130 @@
+#include "testbed/view/instrument_data.hpp"
+
+#include <cmath>
+
+#include "diver/frames.hpp"
+#include "diver/kinematics.hpp"
+#include "diver/reach.hpp"
+#include "testbed/samples/authority_words.hpp"
+#include "testbed/simulation/human_readings.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+void read_computer(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveData& out) {
+  const diver::AscentGas ascent = gas_for_ascent(human, state);
+  const diver::DiveComputerView& view = ascent.view;
+  const diver::DiveComputerState& computer = state.human.life.computer;
+  const diver::DiveComputerSettings& settings = human.computer->settings();
+  const diver::DecoEnvironment& environment = settings.conventions.environment;
+  out.surface_bar = environment.surface_bar;
+  out.bar_per_m = environment.bar_per_m;
+  out.dive_min = computer.dive_min;
+  out.depth_m = computer.last.depth_m;
+  out.deepest_m = computer.deepest_m;
+  out.ceiling_m = view.ceiling_m;
+  out.no_stop_min = view.no_stop_min;
+  out.stop_m = view.stop_m;
+  out.stop_min = view.stop_min;
+  out.to_surface_min = view.to_surface_min;
+  out.ascent_m_min = view.ascent_m_min;
+  out.ascent_limits = settings.ascent;
+  out.ascent_alarm = view.alarm;
+  out.ceiling_violated = view.ceiling_violated;
+  out.po2_bar = view.po2_bar;
+  out.cns_percent = computer.oxygen.cns_percent;
+  out.surface_gradient = view.surface_gradient;
+  out.needed_l = ascent.needed_l;
+  out.available_l = ascent.there_l;
+  const double ambient_bar = environment.pressure_bar(computer.last.depth_m);
+  const diver::Buehlmann model = settings.conventions.model();
+  for (std::size_t i = 0; i < out.tissues.size(); ++i)
+    out.tissues[i] = hud::tissue_bar(model, computer.tissues, i, ambient_bar);
+}
+
+void read_gas(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveData& out) {
+  const diver::GasReading gas = diver::read_gas(human.body, state.human);
+  const std::size_t tank = state.human.held.tank;
+  if (tank < human.body.tank_count) {
+    out.gas_known = true;
+    out.gas = human.body.tanks[tank].mix;
+  }
+  const bool bottom_gas = tank == 0;
+  out.oxygen_limit_bar = bottom_gas ? hud::kBottomOxygen_bar : hud::kDecoOxygen_bar;
+  out.mod_po2_bar = bottom_gas ? hud::kBottomOxygen_bar : diver::kMostOxygen_bar;
+  out.tank_pa = gas.tank_pa;
+  out.gas_min = gas.remaining_s / 60.0;
+  out.out_of_gas = state.human.life.lungs.unfed_s > 0.0;
+}
+
+void read_body(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveData& out) {
+  const diver::HumanState& diver = state.human;
+  if (human.body.jacket.capacity_m3 > 0.0) {
+    out.jacket_full_m3 = human.body.jacket.capacity_m3;
+    out.jacket_m3 = diver::read_gas(human.body, diver).jacket_m3;
+    out.lift_n = human.body.water_kg_m3 * diver::kGravity_m_s2 * out.jacket_m3;
+    out.buttons = diver.held.buttons;
+  }
+  out.net_weight_n = diver::net_weight_n(human.body, diver);
+  out.heading_rad = diver_heading_rad(diver.root.attitude);
+  out.heart_bpm = diver.life.vitals.heart_bpm;
+  out.breath_bpm = diver.life.vitals.breath_bpm;
+  out.lungs_m3 = diver.life.lungs.volume_m3;
+}
+
+hud::Health health_of(GroupPhase phase) {
+  switch (phase) {
+    case GroupPhase::kWaiting:
+      return hud::Health::kWaiting;
+    case GroupPhase::kLost:
+      return hud::Health::kLost;
+    default:
+      return hud::Health::kGood;
+  }
+}
+
+}  // namespace
+
+hud::DiveData instrument_data(const PhysicsWorld& world, std::size_t diver,
+                              const sim::Snapshot<PhysicsState>& snapshot) {
+  const PhysicsHuman& human = world.humans()[diver];
+  const HumanPhysics& state = snapshot.state.humans()[diver];
+  hud::DiveData out;
+  out.time_s = snapshot.time_s;
+  read_computer(human, state, out);
+  read_gas(human, state, out);
+  read_body(human, state, out);
+  return out;
+}
+
+std::vector<hud::StreamHealth> stream_health(const HumanPhysics& diver,
+                                             const std::vector<std::string>& sources) {
+  std::vector<hud::StreamHealth> out;
+  for (std::size_t i = 0; i < diver.groups.size(); ++i) {
+    const GroupState& group = diver.groups[i];
+    if (group.authority != Authority::kLive && group.unheeded == 0) continue;
+    const std::string trouble = trouble_words(group, sources);
+    out.push_back({std::string_view(name_of(static_cast<DiverGroup>(i))),
+                   std::string_view(trouble.empty() ? authority_words(group, sources) : trouble),
+                   health_of(group.phase)});
+  }
+  return out;
+}
+
+double diver_heading_rad(const Quat& ned_from_body) {
+  const Vec3 head = ned_from_body * Vec3(1.0, 0.0, 0.0),
+             belly = ned_from_body * Vec3(0.0, 0.0, 1.0);
+  const Vec3 ahead = head - head.z * belly;
+  const double heading = std::atan2(ahead.y, ahead.x);
+  return heading < 0.0 ? heading + 2.0 * kPi : heading;
+}
+
+Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state) {
+  const diver::RootState& root = state.human.root;
+  const Pose hand = diver::body_from_hand(
+      diver::posture_of(human.body, state.human.limbs.rotation, state.human.limbs.rate), false);
+  return diver::standing_pose(root.position_ned_m + root.attitude * hand.position_m,
+                              root.attitude * hand.rotation);
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,29 @@
+// The data of a diver's instruments and an operator's console, read off the simulation. Pure
+// functions; any thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hud/shown.hpp"
+#include "testbed/simulation/physics_world.hpp"
+
+namespace neritic::testbed {
+
+// Precondition: diver is the number of one of the world's divers.
+hud::DiveData instrument_data(const PhysicsWorld& world, std::size_t diver,
+                              const sim::Snapshot<PhysicsState>& snapshot);
+
+// The groups of the diver's inputs that a live source has or had: "heart", "live from strap".
+std::vector<hud::StreamHealth> stream_health(const HumanPhysics& diver,
+                                             const std::vector<std::string>& sources);
+
+// The heading of a diver in any attitude, from north towards east: ahead is where the head points
+// while the diver swims, and where the belly points while the diver stands. A body that lies on its
+// back or on its head is given a heading too.
+double diver_heading_rad(const Quat& ned_from_body);
+
+// The drawn left hand: origin at the wrist, axes of hud::Lock::kWrist.
+Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state);
+
+}  // namespace neritic::testbed

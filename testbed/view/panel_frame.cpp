@@ -1,0 +1,28 @@
+#include "testbed/view/panel_frame.hpp"
+
+#include <cmath>
+
+namespace neritic::testbed {
+
+void begin_panel(const std::string& title, const PanelRect& rect, float scale, int flags) {
+  ImGui::SetNextWindowPos(ImVec2(rect.x * scale, rect.y * scale));
+  ImGui::SetNextWindowSize(ImVec2(rect.width * scale, rect.height * scale));
+  ImGui::Begin(title.c_str(), nullptr, kFixedPanel | flags);
+}
+
+float height_of_lines(std::size_t lines, float scale) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float text = static_cast<float>(lines) * ImGui::GetTextLineHeightWithSpacing();
+  return (ImGui::GetFrameHeight() + 2.0f * style.WindowPadding.y + text) / scale;
+}
+
+void text_line(const std::string& text) {
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+}
+
+void centered_text(ImDrawList& list, float x, float y, ImU32 color, const std::string& text) {
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  list.AddText(ImVec2(std::floor(x - size.x * 0.5f), std::floor(y)), color, text.c_str());
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,35 @@
+// What the panels share: their window, colours and lines of text. Dear ImGui calls. Rendering
+// thread.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+
+#include "testbed/view/panel_layout.hpp"
+
+namespace neritic::testbed {
+
+inline constexpr ImGuiWindowFlags kFixedPanel =
+    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+    ImGuiWindowFlags_NoFocusOnAppearing;
+inline constexpr ImU32 kInk = IM_COL32(230, 242, 247, 255);
+inline constexpr ImU32 kFaint = IM_COL32(230, 242, 247, 150);
+inline constexpr ImU32 kLine = IM_COL32(158, 204, 219, 80);
+inline constexpr ImU32 kRim = IM_COL32(158, 204, 219, 170);
+inline constexpr ImU32 kPaper = IM_COL32(5, 12, 17, 190);
+inline constexpr ImU32 kMark = IM_COL32(255, 190, 80, 255);
+inline constexpr ImU32 kAlarm = IM_COL32(255, 84, 66, 255);
+inline constexpr float kEdge_px = 12.0f;  // between panels and the window's edges, at scale 1
+
+// A panel of just that place; ImGui::End() ends it. title: an ImGui name, what is shown before its
+// "###".
+void begin_panel(const std::string& title, const PanelRect& rect, float scale, int flags = 0);
+// The height of a panel with that many lines of text below its title, at scale 1.
+float height_of_lines(std::size_t lines, float scale);
+void text_line(const std::string& text);
+// Its middle is at x, its top at y.
+void centered_text(ImDrawList& list, float x, float y, ImU32 color, const std::string& text);
+
+}  // namespace neritic::testbed

@@ -1,0 +1,87 @@
+#include "testbed/view/run_keeper.hpp"
+
+#include <ctime>
+
+namespace neritic::testbed {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "NAME_20260131_235959" by local time, with a number behind if that is taken.
+fs::path free_name(const std::string& name) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y%m%d_%H%M%S", &local);
+  const std::string first = fmt::format("{}_{}", name, stamp);
+  std::string base = first;
+  std::error_code error;
+  for (int i = 2; fs::exists(base + ".log", error) || fs::exists(base + ".log.part", error); ++i)
+    base = fmt::format("{}_{}", first, i);
+  return base;
+}
+
+}  // namespace
+
+std::string RunKeeper::save() {
+  std::optional<SavedState> saved;
+  const StateFormat format = physics_.world().state_format();
+  physics_.between_steps(
+      [&](PhysicsSimulation& simulation) { saved = saved_state(simulation, format); });
+  const Status written = write_state(state_file(), format, *saved);
+  if (!written.ok()) return written.error().message;
+  return fmt::format("saved {:.1f} s to {}   F9 goes back to it",
+                     static_cast<double>(saved->step) * format.step_s, state_file().string());
+}
+
+std::string RunKeeper::go_back(bool& went) {
+  went = false;
+  if (!options_.no_way_back.empty()) return options_.no_way_back;
+  if (switch_.on()) return "F9: the recording cannot go back; F4 ends it";
+  std::error_code error;
+  if (!fs::exists(state_file(), error))
+    return fmt::format("F9: no {}; F5 saves it", state_file().string());
+  const auto saved = read_state(state_file(), physics_.world().state_format());
+  if (!saved.ok()) return saved.error().message;
+  const Status status = physics_.go_to(*saved);
+  if (!status.ok()) return fmt::format("{}: {}", state_file().string(), status.error().message);
+  went = true;
+  return fmt::format("back to {:.1f} s of {}", physics_.shown_snapshot().time_s,
+                     state_file().string());
+}
+
+std::string RunKeeper::toggle_recording() {
+  if (switch_.on()) return end_recording();
+  Status begun;
+  physics_.between_steps([&](PhysicsSimulation& simulation) {
+    begun = switch_.begin(simulation, free_name(options_.name));
+  });
+  if (!begun.ok()) return begun.error().message;
+  return "records " + switch_.log().string();
+}
+
+std::string RunKeeper::end_recording() {
+  std::unique_ptr<StepSink> files;
+  const bool in_mid_run = switch_.begun_s() > 0.0;
+  physics_.between_steps([&](PhysicsSimulation&) { files = switch_.end(); });
+  const Status written = files->finish();
+  if (!written.ok()) return written.error().message;
+  const std::string log = switch_.log().string();
+  const std::string state = fs::path(log).replace_extension(".state").string();
+  return in_mid_run ? fmt::format("wrote {}: --restore {} --replay {}", log, state, log)
+                    : fmt::format("wrote {}: --replay {}", log, log);
+}
+
+std::string RunKeeper::trouble() {
+  return switch_.on() && switch_.failed() ? end_recording() : "";
+}
+
+std::optional<RunKeeper::Recording> RunKeeper::recording() const {
+  const double now_s = physics_.shown_snapshot().time_s;
+  if (switch_.on()) return Recording{switch_.log().string(), now_s - switch_.begun_s()};
+  if (!options_.recording.empty()) return Recording{options_.recording, now_s - start_s_};
+  return {};
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,82 @@
+#include "testbed/view/screenshots.hpp"
+
+#include "engine/core/image.hpp"
+#include "engine/scene/image_file.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMaxShots = 10000;
+
+// The first free name in the current folder.
+fs::path free_name() {
+  for (int i = 1; i < kMaxShots; ++i) {
+    fs::path path = fmt::format("neritic_{:04}.png", i);
+    std::error_code error;
+    if (!fs::exists(path, error)) return path;
+  }
+  return "neritic_last.png";
+}
+
+ImageU8 rgb_of(std::span<const std::uint8_t> texels, std::uint32_t width, std::uint32_t height,
+               bool bgra) {
+  ImageU8 image(width, height, 3);
+  const std::size_t pixels = std::size_t{width} * height;
+  for (std::size_t i = 0; i < pixels; ++i)
+    for (std::size_t c = 0; c < 3; ++c) image.data[3 * i + c] = texels[4 * i + (bgra ? 2 - c : c)];
+  return image;
+}
+
+}  // namespace
+
+Status Screenshots::declare(graph::FrameGraph& graph, const xr::ShownPicture& shown, bool last) {
+  const bool final_one = !final_path_.empty();
+  if (last && final_one && shot_ && shot_->by_key) NERITIC_TRY_STATUS(write());
+  if (!(final_one || asked_) || (shot_ && shot_->by_key)) return {};
+  const bool by_key = std::exchange(asked_, false);
+  if (!shown.readable) {
+    if (!by_key)
+      return failure(ErrorCode::kUnsupported,
+                     "--screenshot: the images of this window cannot be read; use --headless");
+    note_ = "no screenshot: this window's images cannot be read";
+    return {};
+  }
+  Shot shot;
+  shot.path = by_key ? free_name() : final_path_;
+  shot.width = shown.width;
+  shot.height = shown.height;
+  shot.by_key = by_key;
+  shot.bgra = shown.format == VK_FORMAT_B8G8R8A8_UNORM;
+  NERITIC_TRY(shot.texels, readback_.declare(graph, device_, "screenshot", shown.image,
+                                             shown.format, shown.width, shown.height, 1));
+  shot_ = std::move(shot);
+  return {};
+}
+
+void Screenshots::submitted(std::uint64_t value) {
+  if (shot_ && shot_->done == 0) shot_->done = value;
+}
+
+Status Screenshots::write_done(std::uint64_t completed) {
+  // The one of the last frame is replaced by the next frame's until the end.
+  if (!shot_ || !shot_->by_key || shot_->done == 0 || shot_->done > completed) return {};
+  return write();
+}
+
+Status Screenshots::finish() {
+  return shot_ && shot_->done > 0 ? write() : Status();
+}
+
+Status Screenshots::write() {
+  NERITIC_TRY_STATUS(frames_.wait(shot_->done));
+  NERITIC_TRY_STATUS(scene::write_png8(
+      shot_->path,
+      rgb_of(shot_->texels->mapped<std::uint8_t>(), shot_->width, shot_->height, shot_->bgra)));
+  note_ = "wrote " + shot_->path.string();
+  shot_.reset();
+  return {};
+}
+
+}  // namespace neritic::testbed

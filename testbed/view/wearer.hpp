@@ -1,0 +1,58 @@
+// A person as the scene's first diver: head, hands, gaze and swimming of a headset's wearer, and
+// the jacket's buttons in a window too, become samples of the source "wearer", as those of any
+// other device. The stage goes with the diver's body, level, so that the wearer's eyes are the
+// diver's. Rendering thread.
+#pragma once
+
+#include <optional>
+
+#include "diver/gaze_events.hpp"
+#include "diver/swimmer.hpp"
+#include "engine/scene/motion.hpp"
+#include "engine/xr/display.hpp"
+#include "testbed/motion/live_physics.hpp"
+#include "testbed/samples/source.hpp"
+#include "testbed/view/dive_input.hpp"
+
+namespace neritic::testbed {
+
+class Wearer final : public SampleSource {
+ public:
+  // Precondition: the scene has a diver that moves by physics.
+  explicit Wearer(LivePhysics& physics);
+
+  // Where the stage lies for a head that is where the wearer recentred.
+  Pose world_from_stage(const scene::MotionSource& motion, double time_s) const;
+  // What the wearer does in this frame; frame.world_from_head tells whether he is tracked.
+  void take(const xr::DisplayFrame& frame, const DiveInput& input);
+  // Sends it, once a frame, and the limbs of whoever swims by hand. The wearer gets authority over
+  // groups of inputs that no other device has. kBadInput if the inbox has no room for the source.
+  Status poll(SampleInbox& inbox, double scene_time_s) override;
+
+ private:
+  void send(SampleInbox& inbox, PayloadKind kind, const Payload& payload, TimeNs captured_ns);
+  void claim(SampleInbox& inbox, DiverGroup group);
+  void swim(SampleInbox& inbox, double scene_time_s);
+  void send_gaze(SampleInbox& inbox, const xr::Tracked::Gaze& gaze);
+  const PhysicsHuman& human() const { return physics_->world().humans().front(); }
+  const HumanPhysics& state() const { return physics_->shown().humans()[0]; }
+
+  LivePhysics* physics_;
+  std::optional<SourceId> source_;  // opened with the first sample
+  Vec3 eyes_m_;  // of a straight body, in a standing person's axes, from the hips
+  std::optional<Pose> world_from_head_;
+  xr::Tracked tracked_;
+  DiveInput input_;
+  bool fresh_ = false;  // those were not sent yet
+  std::array<bool, kDiverGroups> claimed_{};
+  std::array<std::uint64_t, kPayloadKinds> sequences_{};
+  diver::GazeMonitor gaze_;
+  TimeNs gazed_ns_ = 0;
+  // Swimming by hand, from the first push on.
+  bool swims_ = false, pushes_ = false;
+  diver::SwimmerState swimmer_;
+  Vec3 stays_ned_m_{0.0};
+  double swum_s_ = 0.0;
+};
+
+}  // namespace neritic::testbed

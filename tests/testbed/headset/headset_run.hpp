@@ -1,0 +1,89 @@
+// A dive on the fake OpenXR runtime (tests/fakes), as `neritic dive` runs it: headset, device that
+// the runtime makes, session, view, loop; with the validation of Vulkan and, where it is installed,
+// of OpenXR, whose messages fail the test.
+#pragma once
+
+#include "engine/scene/image_file.hpp"
+#include "engine/xr/openxr/headset.hpp"
+#include "testbed/loop/loop.hpp"
+#include "testbed/view/dive_view.hpp"
+#include "tests/fakes/core_validation.hpp"
+#include "tests/fakes/fake_headset.hpp"
+#include "tests/support/device_gate.hpp"
+#include "tests/xr/ball_scene.hpp"
+
+namespace neritic::testbed {
+
+class HeadsetRun : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
+  }
+  void TearDown() override {
+    for (const std::string& message : vulkan_.messages) ADD_FAILURE() << message;
+    for (const std::string& message : openxr_) ADD_FAILURE() << message;
+  }
+  // So many frames that are shown; 0: until the runtime ends it.
+  Status dive(const scene::Scene& scene, std::uint64_t frames) {
+    std::unique_ptr<gpu::Device> device;  // outlives the headset
+    NERITIC_TRY(const auto headset,
+                xr::Headset::connect({.room = scene.world_from_lab.has_value(),
+                                      .actions = dive_actions(),
+                                      .validation = layer_ && fakes::CoreValidation::installed()}));
+    gpu::DeviceOptions options;
+    options.validation = true;
+    options.validation_sink = &vulkan_;
+    headset->require(options);
+    NERITIC_TRY(device, gpu::Device::create(options));
+    const Status status = dive_on(*headset, *device, scene, frames);
+    for (const std::string& message : headset->validation_messages()) openxr_.push_back(message);
+    return status;
+  }
+  // The layer (1.0.20) breaks rules itself where an instance is refused.
+  void without_layer() { layer_ = false; }
+  // In lock-step with the pictures; outlives the dive.
+  void with(LivePhysics& physics) { physics_ = &physics; }
+  // Ends the dive by time, shown or not.
+  void end_after(double seconds) { seconds_ = seconds; }
+  const std::string& folder() const { return folder_text_; }
+  // A frame's view as the wearer saw it.
+  ImageU8 picture(int frame, int view) const {
+    return scene::read_image8(fmt::format("{}/frame_{:04}_view_{}.png", folder_text_, frame, view))
+        .value();
+  }
+  std::uint64_t shown() const { return shown_; }
+
+ private:
+  Status dive_on(xr::Headset& headset, gpu::Device& device, const scene::Scene& scene,
+                 std::uint64_t frames) {
+    NERITIC_TRY_STATUS(headset.attach(device));
+    NERITIC_TRY(const auto session, Session::create(device, scene));
+    NERITIC_TRY(const auto view, DiveView::create(*session, headset, nullptr, physics_, {}));
+    std::vector<SampleSource*> sources;
+    if (view->wearer()) sources.push_back(view->wearer());
+    const TimeNs end_ns = now_ns() + 60'000'000'000;
+    Loop loop({.clock = Clock::real(0.0, 1.0 / 90.0),
+               .physics = physics_,
+               .sensors = LoopSensors{.session = session.get()},
+               .view = view.get(),
+               .sources = sources,
+               .stop = {.frames = frames, .seconds = seconds_, .interrupted = [&] {
+                          return now_ns() > end_ns;
+                        }}});
+    const Status status = loop.run();
+    shown_ = loop.frames();
+    if (loop.interrupted()) return failure(ErrorCode::kInterrupted, "it did not end");
+    return status;
+  }
+
+  test::ScratchFolder scratch_;
+  std::string folder_text_ = (scratch_ / "").string();
+  gpu::ValidationLog vulkan_;
+  std::vector<std::string> openxr_;
+  std::uint64_t shown_ = 0;
+  LivePhysics* physics_ = nullptr;
+  double seconds_ = 0.0;
+  bool layer_ = true;
+};
+
+}  // namespace neritic::testbed

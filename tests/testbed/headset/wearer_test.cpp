@@ -1,0 +1,68 @@
+// A headset's wearer as a diver: what is tracked and pressed becomes the diver's inputs.
+#include "diver/jacket.hpp"
+#include "testbed/view/dive_camera.hpp"
+#include "tests/testbed/headset/headset_run.hpp"
+#include "tests/testbed/simulation/devices.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+const std::string kPerson =
+    "size 40 40\nhead 0 0 1.6 0 20\ngaze 0 10 0\nhands_seen no\n"
+    "profile both oculus/touch_controller\ncontroller left 0 -0.2 1.2 -0.3\n";
+
+class HeadsetWearer : public HeadsetRun {
+ protected:
+  void SetUp() override {
+    HeadsetRun::SetUp();
+    if (IsSkipped()) return;
+    scene_ = dive_of(hover_text("")).scene;
+    scene_.cameras.push_back(camera_for(scene_));
+    NERITIC_ASSERT_OK(physics_, LivePhysics::create(scene_, LivePhysics::Pace::kPicture));
+    with(*physics_);
+  }
+  const DiverInputs& inputs() const { return physics_->simulation().inputs().humans()[0]; }
+  const HumanPhysics& state() const { return physics_->newest().state.humans()[0]; }
+
+  scene::Scene scene_;
+  std::unique_ptr<LivePhysics> physics_;
+};
+
+TEST_F(HeadsetWearer, HeadHandGazeAndButtonBecomeTheDiversInputs) {
+  fakes::FakeHeadset fake(kPerson +
+                          "real_time yes\nperiod 0.02\n"
+                          "input /user/hand/left/input/trigger/value 0 1\n");
+  NERITIC_ASSERT_STATUS(dive(scene_, 12));
+  const Pose head = inputs().head.world_from_head;
+  for (const DiverGroup group :
+       {DiverGroup::kHead, DiverGroup::kHands, DiverGroup::kGaze, DiverGroup::kButtons})
+    EXPECT_EQ(state().groups[static_cast<std::size_t>(group)].phase, GroupPhase::kLive)
+        << name_of(group);
+  EXPECT_EQ(inputs().buttons.pressed, diver::kInflate);
+  // The gaze is 10 degrees to port of where the head looks.
+  const Vec3 gaze = glm::conjugate(head.rotation) * inputs().gaze.state.direction;
+  EXPECT_NEAR(degrees(std::atan2(-gaze.x, -gaze.z)), 10.0, 0.1);
+  // The wrist is 0.08 m from the grip, in the stage; the head is turned by 20 degrees there.
+  ASSERT_EQ(inputs().hand_poses.tracked, 1u);
+  const Vec3 wrist = inverse(head) * inputs().hand_poses.world_from_hand[0].position_m;
+  const Vec3 expected =
+      from_yaw_pitch_roll(radians(-20.0), 0.0, 0.0) * Vec3(-0.2, -0.4 + 0.08, -0.3);
+  EXPECT_LT(glm::distance(wrist, expected), 1e-3);
+}
+
+TEST_F(HeadsetWearer, APushedStickSwimsWhereTheHeadLooks) {
+  fakes::FakeHeadset fake(
+      "size 40 40\nhead 0 0 1.6 0\nprofile both oculus/touch_controller\n"
+      "period 0.05\ninput /user/hand/left/input/thumbstick/y 0 1\n"
+      "input /user/hand/left/input/thumbstick 0 0 1\n");
+  const Vec3 start = state().human.root.position_ned_m;
+  NERITIC_ASSERT_STATUS(dive(scene_, 80));
+  EXPECT_EQ(state().groups[static_cast<std::size_t>(DiverGroup::kBody)].phase, GroupPhase::kLive);
+  const Vec3 moved = world_from_ned(state().human.root.position_ned_m - start);
+  const Vec3 ahead = inputs().head.world_from_head.rotation * Vec3(0, 0, -1);
+  EXPECT_GT(glm::dot(moved, ahead), 0.3) << moved.x << " " << moved.y << " " << moved.z << " ahead "
+                                         << ahead.x << " " << ahead.y << " " << ahead.z;
+}
+
+}  // namespace
+}  // namespace neritic::testbed

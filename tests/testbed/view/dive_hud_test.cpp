@@ -1,0 +1,190 @@
+// The instruments over a view: what they show is the state's, and each lies where its layout says.
+#include "testbed/view/dive_hud.hpp"
+
+#include <gtest/gtest.h>
+
+#include "diver/frames.hpp"
+#include "engine/xr/offscreen.hpp"
+#include "testbed/simulation/human_readings.hpp"
+#include "testbed/view/instrument_data.hpp"
+#include "tests/support/gpu_fixture.hpp"
+#include "tests/testbed/simulation/dives.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+constexpr std::uint32_t kWidth = 640, kHeight = 480;
+
+std::unique_ptr<LivePhysics> diver_physics() {
+  const scene::Scene scene =
+      load_text(kStillWater + diver_text("position_m = [0, -12, 0]\n" + std::string(kProne)))
+          .value();
+  auto physics = LivePhysics::create(scene, LivePhysics::Pace::kPicture).value();
+  physics->start();
+  physics->follow(0, 1.5);
+  return physics;
+}
+
+TEST(InstrumentData, IsWhatTheStateSays) {
+  const auto physics = diver_physics();
+  const PhysicsHuman& human = physics->world().humans()[0];
+  const HumanPhysics& state = physics->shown().humans()[0];
+  const hud::DiveData data = instrument_data(physics->world(), 0, physics->shown_snapshot());
+  const ComputerReading computer = computer_reading(human, state);
+  EXPECT_EQ(data.time_s, physics->shown_snapshot().time_s);
+  EXPECT_EQ(data.depth_m, computer.depth_m);
+  EXPECT_NEAR(data.depth_m, 12.0, 1.0);
+  EXPECT_EQ(data.po2_bar, computer.po2_bar);
+  EXPECT_EQ(data.cns_percent, computer.cns_percent);
+  EXPECT_EQ(data.no_stop_min, computer.no_stop_min);
+  const diver::GasReading gas = diver::read_gas(human.body, state.human);
+  EXPECT_EQ(data.tank_pa, gas.tank_pa);
+  EXPECT_EQ(data.gas_min, gas.remaining_s / 60.0);
+  EXPECT_EQ(data.jacket_m3, gas.jacket_m3);
+  EXPECT_EQ(data.lift_n, human.body.water_kg_m3 * 9.80665 * gas.jacket_m3);
+  EXPECT_EQ(data.heart_bpm, state.human.life.vitals.heart_bpm);
+  EXPECT_TRUE(data.gas_known);
+  // Air at saturation of the surface: n2 of 0.75 bar in 2.2 bar, and little more.
+  for (const double tissue : data.tissues) EXPECT_NEAR(tissue, 0.5 * 0.75 / 2.2, 0.05);
+}
+
+// From the axes: the head's way while the diver lies, the belly's while the diver stands.
+TEST(InstrumentData, HeadingIsAheadInAnyAttitude) {
+  for (const double heading : {0.1, 1.0, 2.5, 4.0, 6.0})
+    for (double pitch = -1.5; pitch <= 2.1; pitch += 0.2) {
+      const Quat yaw = glm::angleAxis(heading, Vec3(0, 0, 1));
+      const Quat up = glm::angleAxis(pitch, Vec3(0, 1, 0));  // the head rises
+      const double found = diver_heading_rad(yaw * up);
+      EXPECT_NEAR(std::remainder(found - heading, 2.0 * kPi), 0.0, 1e-6) << heading << " " << pitch;
+      EXPECT_GE(found, 0.0);
+    }
+}
+
+TEST(InstrumentData, TheWristIsAtTheDrawnHand) {
+  const auto physics = diver_physics();
+  const Pose wrist = world_from_wrist(physics->world().humans()[0], physics->shown().humans()[0]);
+  const Vec3 hips = diver::world_from_ned(physics->shown().humans()[0].human.root.position_ned_m);
+  // A prone diver who swims north; the left arm is to the west.
+  EXPECT_LT(wrist.position_m.x, hips.x - 0.1);
+  EXPECT_LT(glm::distance(wrist.position_m, hips), 1.2);
+}
+
+class DiveHudTest : public test::GpuTest {
+ protected:
+  void SetUp() override {
+    test::GpuTest::SetUp();
+    if (IsSkipped()) return;
+    physics_ = diver_physics();
+    frames_ = gpu::Frames::create(device(), 1).value();
+    executor_ = std::make_unique<graph::Executor>(*frames_);
+    group_ = xr::one_view(kWidth, kHeight, radians(60.0));
+    display_ = xr::OffscreenDisplay::create(device(), {{group_}}).value();
+  }
+  void TearDown() override {
+    executor_.reset();
+    test::GpuTest::TearDown();
+  }
+  // One frame; gives the names of its passes.
+  std::vector<std::string> frame(DiveHud& hud) {
+    graph::FrameGraph graph;
+    std::vector<xr::Layer> layers;
+    EXPECT_TRUE(hud.declare(graph, {group_, false, {}, {}}, layers).ok());
+    EXPECT_TRUE(display_->declare(graph, {}, layers).ok());
+    gpu::Commands* commands = frames_->begin().value();
+    EXPECT_TRUE(executor_->run(graph, *commands).ok());
+    EXPECT_TRUE(frames_->wait(frames_->submit().value()).ok());
+    std::vector<std::string> names;
+    for (const graph::PassDecl& pass : graph.declaration().passes) names.push_back(pass.name);
+    return names;
+  }
+  std::vector<std::byte> shown() {
+    return gpu::read_image(device(), display_->picture(0), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL)
+        .value();
+  }
+
+  std::unique_ptr<LivePhysics> physics_;
+  std::unique_ptr<gpu::Frames> frames_;
+  std::unique_ptr<graph::Executor> executor_;
+  xr::ViewGroup group_;
+  std::unique_ptr<xr::OffscreenDisplay> display_;
+};
+
+// Over black, premultiplied colour is itself: the corner's pixels are the picture's own.
+TEST_F(DiveHudTest, LiesInTheWindowTexelOnPixel) {
+  DiveHud hud(device(), *frames_, *physics_, {.layouts = {hud::LayoutKind::kCorner}});
+  frame(hud);
+  const auto pixels = shown();
+  const std::uint32_t height = 225;  // 0.75 of 300, which is more than 0.36 of 480
+  hud::Hud alone(hud::LayoutKind::kCorner, hud::Units::kMetric, height);
+  alone.update(instrument_data(physics_->world(), 0, physics_->shown_snapshot()));
+  const ImageU8& picture = alone.picture();
+  const auto left = static_cast<std::uint32_t>(std::round(0.98 * (kWidth - picture.width)));
+  const auto top = static_cast<std::uint32_t>(std::round(0.96 * (kHeight - picture.height)));
+  int off = 0, lit = 0;
+  for (std::uint32_t y = 0; y < kHeight; ++y)
+    for (std::uint32_t x = 0; x < kWidth; ++x)
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const bool inside =
+            x >= left && x < left + picture.width && y >= top && y < top + picture.height;
+        const int wanted = inside ? picture.at(x - left, y - top, c) : 0;
+        const int found = static_cast<int>(pixels[(std::size_t{y} * kWidth + x) * 4 + c]);
+        off += std::abs(found - wanted) > 2;
+        lit += wanted > 200;
+      }
+  EXPECT_EQ(off, 0);
+  EXPECT_GT(lit, 3000);
+}
+
+TEST_F(DiveHudTest, APictureIsUploadedOnlyWhereItChanged) {
+  DiveHud hud(device(), *frames_, *physics_, {.layouts = {hud::LayoutKind::kMask}});
+  const auto uploads = [&] { return std::ranges::count(frame(hud), "hud mask"); };
+  EXPECT_EQ(uploads(), 1);
+  EXPECT_EQ(uploads(), 0);  // the simulation stands still
+  const auto before = shown();
+  physics_->follow(0, 4.5);
+  EXPECT_EQ(uploads(), 1);  // the dive's time at least
+  EXPECT_NE(shown(), before);
+}
+
+TEST_F(DiveHudTest, TheKeyShowsEachAloneThenNoneThenTheChosenOnes) {
+  DiveHud hud(device(), *frames_, *physics_,
+              {.layouts = {hud::LayoutKind::kCorner, hud::LayoutKind::kWrist}});
+  const auto panels = [&] {
+    graph::FrameGraph graph;
+    std::vector<xr::Layer> layers;
+    EXPECT_TRUE(hud.declare(graph, {group_, false, {}, {}}, layers).ok());
+    std::string names;
+    for (const xr::Layer& layer : layers) names += std::get<xr::PanelLayer>(layer).name + " ";
+    return names;
+  };
+  EXPECT_EQ(panels(), "wrist corner ");
+  for (const char* wanted : {"wrist ", "mask ", "corner ", "console ", "", "wrist corner "}) {
+    hud.cycle();
+    EXPECT_EQ(panels(), wanted);
+  }
+}
+
+TEST_F(DiveHudTest, AHeadsetLocksEachToItsFrame) {
+  DiveHud hud(
+      device(), *frames_, *physics_,
+      {.layouts = {hud::LayoutKind::kWrist, hud::LayoutKind::kMask, hud::LayoutKind::kConsole}});
+  graph::FrameGraph graph;
+  std::vector<xr::Layer> layers;
+  const Pose stage{{3, -4, 5}, from_yaw_pitch_roll(1.0, 0.0, 0.0)};
+  NERITIC_ASSERT_STATUS(hud.declare(graph, {group_, true, stage, {}}, layers));
+  ASSERT_EQ(layers.size(), 3u);
+  const auto& wrist = std::get<xr::PanelLayer>(layers[0]);
+  const auto& mask = std::get<xr::PanelLayer>(layers[1]);
+  const auto& console = std::get<xr::PanelLayer>(layers[2]);
+  EXPECT_EQ(wrist.lock, xr::PanelLayer::Lock::kWorld);
+  const Pose hand = world_from_wrist(physics_->world().humans()[0], physics_->shown().humans()[0]);
+  EXPECT_LT(glm::distance(wrist.pose.position_m, hand.position_m), 0.08);
+  EXPECT_EQ(mask.lock, xr::PanelLayer::Lock::kHead);
+  EXPECT_EQ(mask.size_m, hud::layout_of(hud::LayoutKind::kMask).size_m);
+  EXPECT_EQ(console.lock, xr::PanelLayer::Lock::kWorld);
+  const Vec3 wanted = (stage * Pose{{0.0, 1.5, -1.6}}).position_m;
+  EXPECT_LT(glm::distance(console.pose.position_m, wanted), 1e-9);
+}
+
+}  // namespace
+}  // namespace neritic::testbed

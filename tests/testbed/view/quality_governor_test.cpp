@@ -1,0 +1,106 @@
+#include "testbed/view/quality_governor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace neritic::testbed {
+namespace {
+
+// A machine whose frame costs fixed_ms and full_ms at full resolution, with noise of 5 %.
+struct Machine {
+  double fixed_ms, full_ms, period_ms = 0.0;
+  std::mt19937 random{7};
+
+  void run(QualityGovernor& governor, int frames) {
+    std::normal_distribution<double> noise(1.0, 0.05);
+    for (int i = 0; i < frames; ++i) {
+      const double scale = governor.quality().view_scale;
+      const double work_ms = (fixed_ms + full_ms * scale * scale) * noise(random);
+      governor.add(std::max(work_ms, period_ms), work_ms);
+    }
+  }
+};
+
+TEST(QualityGovernor, ASlowMachineComesDownUntilItHoldsTheBudget) {
+  QualityGovernor governor(50.0);
+  Machine machine{12.0, 300.0};
+  machine.run(governor, 60);
+  const double scale = governor.quality().view_scale;
+  EXPECT_LE(12.0 + 300.0 * scale * scale, 1.08 * 50.0);
+  EXPECT_GE(scale, 0.25);  // and not farther than it must
+}
+
+TEST(QualityGovernor, AFastMachineKeepsFullQuality) {
+  QualityGovernor governor(16.7);
+  Machine machine{1.0, 8.0, 16.7};
+  machine.run(governor, 500);
+  EXPECT_EQ(governor.rung(), 0u);
+}
+
+TEST(QualityGovernor, AMachineBetweenTwoRungsDoesNotSwing) {
+  for (double full_ms = 40.0; full_ms < 400.0; full_ms *= 1.03) {
+    QualityGovernor governor(50.0);
+    Machine machine{10.0, full_ms};
+    machine.run(governor, 200);
+    int changes = 0;
+    for (int i = 0; i < 1200; ++i) {
+      const std::size_t before = governor.rung();
+      machine.run(governor, 1);
+      changes += governor.rung() != before;
+    }
+    EXPECT_LE(changes, 6) << full_ms;  // in a minute
+  }
+}
+
+TEST(QualityGovernor, QualityComesBackWhenTheLoadEnds) {
+  QualityGovernor governor(50.0);
+  Machine{12.0, 300.0}.run(governor, 60);
+  EXPECT_GT(governor.rung(), 3u);
+  Machine{5.0, 20.0, 16.7}.run(governor, 1200);
+  EXPECT_EQ(governor.rung(), 0u);
+}
+
+TEST(QualityGovernor, AMachineThatCannotHoldItEndsAtTheLastRung) {
+  QualityGovernor governor(50.0);
+  Machine{80.0, 300.0}.run(governor, 300);
+  EXPECT_EQ(governor.rung(), quality_rungs().size() - 1);
+}
+
+TEST(QualityGovernor, OneSlowFrameChangesNothing) {
+  QualityGovernor governor(50.0);
+  Machine machine{5.0, 30.0};
+  for (int i = 0; i < 20; ++i) {
+    machine.run(governor, 10);
+    governor.add(900.0, 900.0);
+  }
+  EXPECT_EQ(governor.rung(), 0u);
+}
+
+TEST(QualityGovernor, TimesThatAreNoneAreLeftOut) {
+  QualityGovernor governor(50.0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 100; ++i) {
+    for (const double bad : {nan, infinite, 0.0, -1.0}) governor.add(bad, 10.0);
+    governor.add(900.0, nan);
+    governor.add(1e-300, 1e-300);
+  }
+  EXPECT_EQ(governor.rung(), 0u);
+}
+
+// Each rung costs no more than the one before it, or it would not help.
+TEST(QualityGovernor, RungsComeDownInOrder) {
+  const auto rungs = quality_rungs();
+  EXPECT_EQ(rungs.front(), Quality{});
+  for (std::size_t i = 1; i < rungs.size(); ++i) {
+    EXPECT_LE(rungs[i].view_scale, rungs[i - 1].view_scale);
+    EXPECT_GE(rungs[i].ping_every, rungs[i - 1].ping_every);
+    EXPECT_NE(rungs[i], rungs[i - 1]);
+  }
+}
+
+}  // namespace
+}  // namespace neritic::testbed

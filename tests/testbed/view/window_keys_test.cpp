@@ -1,0 +1,119 @@
+// `dive` in a window, driven by keys under a virtual X server.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/device_gate.hpp"
+#include "tests/testbed/view/window_run.hpp"
+
+namespace neritic {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WindowKeys : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!test::can_drive_windows()) GTEST_SKIP() << "no xvfb-run or python3";
+    const std::string dynamics =
+        (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string();
+    std::ofstream(scratch_ / "flight.toml")
+        << "title = \"flight\"\n[physics]\n[sun]\n[[objects]]\nname = \"sand\"\nclass = "
+           "\"seabed\"\nshape = \"plane\"\nsize_m = [20, 20]\nposition_m = [0, -8, 0]\n"
+           "[[vehicles]]\nname = \"rov\"\nshape = \"box\"\ndynamics = \""
+        << dynamics
+        << "\"\nposition_m = [0, -6, 0]\nmission = { waypoints = [ { position_m = [0, -6, -9] } ] "
+           "}\n[[vehicles.cameras]]\nname = \"eye\"\nwidth = 32\nheight = 18\n"
+           "[[vehicles.sonars]]\nname = \"sonar\"\nrate_hz = 4\nrange_m = [0.5, 8]\n"
+           "azimuth_deg = 40\nelevation_deg = 10\nbins = [50, 16, 8]\n";
+  }
+  test::WindowRun drive(const std::string& arguments, const std::vector<std::string>& steps) {
+    return test::drive_window(scratch_.path(), "flight.toml --size 320x240 " + arguments, steps);
+  }
+  test::WindowRun dive(const std::string& arguments) {
+    const std::string command =
+        fmt::format("cd '{}' && '{}/tools/neritic' dive flight.toml --headless {} > out 2> err",
+                    scratch_.path().string(), NERITIC_BINARY_DIR, arguments);
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::text_of(scratch_ / "out"),
+            test::text_of(scratch_ / "err")};
+  }
+  // The only file of that ending.
+  std::string file(const std::string& ending) const {
+    std::string found;
+    for (const auto& entry : fs::directory_iterator(scratch_.path()))
+      if (const std::string name = entry.path().filename().string();
+          name.starts_with("flight_") && name.ends_with(ending)) {
+        EXPECT_EQ(found, "") << name;
+        found = name;
+      }
+    return found;
+  }
+  test::ScratchFolder scratch_;
+};
+
+// A screenshot is written frames after its key: all keys before it have been taken then.
+std::vector<std::string> steps_of(const std::vector<std::string>& keys) {
+  std::vector<std::string> out;
+  int shots = 0;
+  for (const std::string& key : keys) {
+    if (key != "shot") {
+      out.push_back(key);
+      continue;
+    }
+    out.push_back("key F12");
+    out.push_back(fmt::format("file neritic_{:04}.png", ++shots));
+  }
+  return out;
+}
+
+// Paused, so that no step lies between the key and the second save.
+TEST_F(WindowKeys, F9GoesBackToTheStateOfF5ToTheLastBit) {
+  const test::WindowRun run =
+      drive("", steps_of({"shot", "key Return", "shot", "key F5", "take flight.state first.state",
+                          "key Return", "shot", "wait 0.5", "key Return", "shot", "key F5",
+                          "take flight.state later.state", "take first.state flight.state",
+                          "key F9", "shot", "take flight.state first.state", "key F5",
+                          "take flight.state back.state", "key Escape"}));
+  if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string first = test::text_of(scratch_ / "first.state");
+  EXPECT_GT(first.size(), 500u);
+  EXPECT_NE(test::text_of(scratch_ / "later.state"), first);
+  EXPECT_EQ(test::text_of(scratch_ / "back.state"), first);
+}
+
+// A vehicle is taken over while it is recorded: what the keys did is in the recording.
+TEST_F(WindowKeys, ARecordingBegunInMidRunReplaysFromTheStateBesideIt) {
+  const test::WindowRun run =
+      drive("", steps_of({"shot", "key F4", "file flight_*.log.part", "key p", "down w", "shot",
+                          "up w", "key F9", "shot", "key F4", "file flight_*.log", "key Escape"}));
+  if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string log = file(".log"), state = file(".state");
+  ASSERT_NE(log, "");
+  ASSERT_NE(state, "");
+  EXPECT_NE(file(".csv"), "");
+  const test::WindowRun replay = dive("--restore " + state + " --replay " + log);
+  EXPECT_EQ(replay.status, 0) << replay.err;
+  EXPECT_NE(replay.out.find(" steps, each with the hash that was recorded"), std::string::npos)
+      << replay.out;
+  EXPECT_NE(test::text_of(scratch_ / log).find("keyboard"), std::string::npos);
+  const test::WindowRun alone = dive("--replay " + log);
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.err.find("begins at another state"), std::string::npos) << alone.err;
+}
+
+TEST_F(WindowKeys, AReplayIsNeitherSavedNorRecorded) {
+  ASSERT_EQ(dive("--seconds 3 --record whole.log").status, 0);
+  const test::WindowRun run =
+      drive("--replay whole.log", {"wait 0.5", "key F5", "key F4", "key F9", "wait 0.5", "key F12",
+                                   "file neritic_0001.png", "key Escape"});
+  if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_FALSE(fs::exists(scratch_ / "flight.state"));
+  EXPECT_EQ(file(".log") + file(".log.part"), "");
+}
+
+}  // namespace
+}  // namespace neritic
