@@ -105,7 +105,7 @@ TEST(CommandLine, HelpSaysWhatRenderWritesAndHowAPlanIsAskedFor) {
 
 TEST(CommandLine, AWrongSubcommandListsThem) {
   EXPECT_THAT(said({"rendre"}),
-              HasSubstr("render, sonar, dive, tradeoff, check, plan, physio, doctor"));
+              HasSubstr("render, sonar, dive, tradeoff, check, plan, physio, register, doctor"));
 }
 
 }  // namespace

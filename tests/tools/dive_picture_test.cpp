@@ -25,6 +25,12 @@ std::vector<HumanRow> slow_rise(std::size_t count) {
   return rows;
 }
 
+PlotRows plotted(const PhysicsWorld& world, const std::vector<HumanRow>& rows) {
+  PlotRows out(world);
+  for (const HumanRow& row : rows) out.add({{}, {row}});
+  return out;
+}
+
 TestDive one_diver() {
   return dive_of(std::string(kStillWater) + diver_text("position_m = [0, -12, 0]\n"));
 }
@@ -33,10 +39,12 @@ TEST(DivePicture, AnAlarmOfOneRowOutlivesTheThinning) {
   const TestDive dive = one_diver();
   std::vector<HumanRow> rows = slow_rise(20001);
   rows[7777].ascent.view.alarm = diver::AscentAlarm::kDangerous;
-  const nlohmann::json data = dive_picture_data("long", *dive.world, {}, rows, {HumanFigures()});
+  const nlohmann::json data =
+      dive_picture_data("long", *dive.world, plotted(*dive.world, rows), {HumanFigures()});
   const auto& diver = data["humans"][0];
   const auto times = diver["time_s"].get<std::vector<double>>();
   EXPECT_LT(times.size(), 2000u);
+  EXPECT_GT(times.size(), 800u);
   EXPECT_EQ(times.back(), 20000.0);
   const auto alarms = diver["ascent_alarm"].get<std::vector<int>>();
   ASSERT_EQ(alarms.size(), times.size());
@@ -53,8 +61,8 @@ TEST(DivePicture, EachDiverHasItsOwnRows) {
                                  std::regex("\"diver\"\nclass"), "\"buddy\"\nclass"));
   std::vector<HumanRow> rows = slow_rise(100);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].human = i % 2;
-  const nlohmann::json data =
-      dive_picture_data("two", *dive.world, {}, rows, {HumanFigures(), HumanFigures()});
+  const nlohmann::json data = dive_picture_data("two", *dive.world, plotted(*dive.world, rows),
+                                                {HumanFigures(), HumanFigures()});
   ASSERT_EQ(data["humans"].size(), 2u);
   EXPECT_EQ(data["humans"][1]["name"], "buddy");
   for (std::size_t human : {0u, 1u}) {
@@ -68,8 +76,8 @@ TEST(DivePicture, EachDiverHasItsOwnRows) {
 // Pixels of the red of a rise that is dangerously fast.
 std::size_t red_pixels(const PhysicsWorld& world, const std::vector<HumanRow>& rows) {
   const test::ScratchFolder folder;
-  const auto drawn =
-      write_picture(folder / "dive.png", dive_picture_data("", world, {}, rows, {HumanFigures()}));
+  const auto drawn = write_picture(
+      folder / "dive.png", dive_picture_data("", world, plotted(world, rows), {HumanFigures()}));
   EXPECT_TRUE(drawn.ok() && *drawn);
   const ImageU8 image = scene::read_image8(folder / "dive.png", 3).value();
   constexpr std::uint8_t kRed[] = {0xc0, 0x1a, 0x1a};

@@ -56,6 +56,26 @@ TEST(DoctorVerdict, ACompleteMachineDoesAllButTheHeadset) {
   EXPECT_FALSE(works(machine, "dive (headset)"));
 }
 
+TEST(DoctorVerdict, AHeadsetNeedsARuntimeThatAnswersAndIsThere) {
+  Machine machine = complete_machine();
+  machine.openxr_runtime = "/etc/xdg/openxr/1/active_runtime.json";
+  machine.openxr_manifest_exists = true;
+  machine.headset_trouble = "the OpenXR runtime does not start";
+  EXPECT_EQ(why(machine, "dive (headset)"), "the OpenXR runtime does not start");
+  machine.headset = xr::HeadsetInfo{
+      .runtime = "Good Runtime 1.2.3",
+      .system = "",
+      .extensions = {{"XR_KHR_composition_layer_depth", "depth with each picture", false}},
+      .others = {"XR_FB_passthrough"}};
+  EXPECT_THAT(why(machine, "dive (headset)"), HasSubstr("Good Runtime 1.2.3 has no headset now"));
+  EXPECT_FALSE(works(machine, "dive (headset)"));
+  machine.headset->system = "Good Goggles";
+  EXPECT_TRUE(works(machine, "dive (headset)"));
+  EXPECT_THAT(doctor_text(machine), HasSubstr("absent  depth with each picture"));
+  EXPECT_THAT(doctor_text(machine), HasSubstr("not used: XR_FB_passthrough"));
+  EXPECT_THAT(doctor_json(machine), HasSubstr("Good Goggles"));
+}
+
 TEST(DoctorText, SaysWhatItGoesRound) {
   Machine machine = complete_machine();
   EXPECT_EQ(doctor_text(machine).find("works around"), std::string::npos);

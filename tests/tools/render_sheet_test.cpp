@@ -16,20 +16,20 @@ namespace {
 namespace fs = std::filesystem;
 
 const ClassNames kNames = {{3, "wreck"}};
-constexpr std::uint32_t kWidth = 32, kHeight = 18;
+constexpr std::uint32_t kSheetWidth = 32, kHeight = 18;
 
 CameraFrame camera_frame(const std::string& name, float motion_px) {
   CameraFrame camera;
   camera.name = name;
   ViewImages view;
-  view.width = kWidth;
+  view.width = kSheetWidth;
   view.height = kHeight;
-  view.color = ImageU8(kWidth, kHeight, 3, 200);
-  view.depth = ImageF32(kWidth, kHeight, 1, 2.0f);
-  view.normals = ImageF32(kWidth, kHeight, 3, 0.5f);
-  view.labels = ImageU16(kWidth, kHeight, 1, 3);
-  view.instances = ImageU16(kWidth, kHeight, 1, 4);
-  view.motion = ImageF32(kWidth, kHeight, 2, motion_px);
+  view.color = ImageU8(kSheetWidth, kHeight, 3, 200);
+  view.depth = ImageF32(kSheetWidth, kHeight, 1, 2.0f);
+  view.normals = ImageF32(kSheetWidth, kHeight, 3, 0.5f);
+  view.labels = ImageU16(kSheetWidth, kHeight, 1, 3);
+  view.instances = ImageU16(kSheetWidth, kHeight, 1, 4);
+  view.motion = ImageF32(kSheetWidth, kHeight, 2, motion_px);
   camera.eyes.push_back(view);
   return camera;
 }

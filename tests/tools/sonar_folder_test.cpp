@@ -6,6 +6,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
+#include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
 #include "tests/tools/sonar_command.hpp"
 

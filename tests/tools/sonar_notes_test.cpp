@@ -136,8 +136,16 @@ TEST(SonarNotes, NormalsThatAreMissingAreTold) {
   row.height = 1;
   row.depth.resize(row.width);
   row.intrinsics.cy = 0.5;
-  row.normals = sonar::normals_from_depth(row);
+  row.normals = sonar::normals_from_depth(row).normals;
   EXPECT_THAT(normals_note_of(row, true), HasSubstr("no normal could be estimated for 100 %"));
+}
+
+TEST(SonarNotes, NoiseThatTiltsEstimatedNormalsIsTold) {
+  EXPECT_FALSE(tools::noise_note({.noise_m = 0.01, .error_of_neighbours_rad = 0.01}));
+  EXPECT_THAT(
+      tools::noise_note({0.0099, radians(30.7), radians(1.4), 11}).value_or(""),
+      HasSubstr("noisy by about 9.9 mm, which would tilt normals from neighbouring pixels by "
+                "31 degrees: they come from planes fitted to 11 x 11 pixels, off by about 1.4"));
 }
 
 sonar::MapFile depth_map(std::uint32_t channels, std::vector<double> values,

@@ -8,6 +8,7 @@
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/scene.hpp"
+#include "testbed/output/datasets.hpp"
 #include "tools/neritic/commands.hpp"
 
 namespace neritic::tools {
@@ -82,9 +83,28 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option(
       "--time", flags->time_s,
       "scene time of the first frame, seconds (a day at most where vehicles fly there)");
+  command->add_option(
+      "--clip", flags->clip,
+      "of a model: this animation, by name or number from 0 (else the first); --time "
+      "is its time, which begins anew at its end");
   command->add_option("--sensor", flags->sensors, "only this sensor, by name; may be given again")
       ->expected(1)
       ->take_all();
+  command
+      ->add_option("--only", flags->only,
+                   fmt::format("writes, and computes, these data alone, of each sensor that gives "
+                               "them: {}; coco: boxes and masks of all cameras (OUT/coco.json); "
+                               "trajectory: where every participant is (OUT/trajectory.csv and "
+                               "OUT/trajectory)",
+                               join(testbed::kDatasetNames)))
+      ->expected(1)
+      ->take_all();
+  command
+      ->add_option(
+          "--compress", flags->compress,
+          "of arrays: npz (lossless, numpy.load reads it), or png (16 bits a channel: labels, "
+          "instances, depth in mm up to 65.534 m, normals as colours; others .npz)")
+      ->check(CLI::IsMember({"npz", "png"}));
   command->add_option(
       "--water", flags->water,
       fmt::format("another Jerlov type than the scene's: {}", join(scene::kWaterTypes)));
@@ -120,13 +140,16 @@ void add_render(CLI::App& app, Run& run) {
 }
 
 void add_sonar_images(CLI::App& command, SonarFlags& flags) {
-  command.add_option("--depth", flags.depth,
-                     "depth image: .npy, .png (8, 16 bit) or .exr; or a folder or a quoted "
-                     "pattern, one frame per file");
+  command.add_option(
+      "--depth", flags.depth,
+      "depth image: .npy, .npz, .png and .pgm (8, 16 bit), .pfm or .exr; or a folder or a "
+      "quoted pattern, one frame per file");
   command.add_option("--normals", flags.normals,
                      "normal image, or a folder; without it normals are estimated from depth");
   command.add_option("--labels", flags.labels, "image of class numbers, 0 to 65535, or a folder");
-  command.add_option("--intrinsics", flags.intrinsics, "fx,fy,cx,cy in pixels, or a .json file")
+  command
+      .add_option("--intrinsics", flags.intrinsics,
+                  "fx,fy,cx,cy in pixels, or a .json or .yaml file (ROS camera_info, OpenCV)")
       ->required();
   command
       .add_option("--pixel-centers", flags.pixel_centers,
@@ -135,14 +158,21 @@ void add_sonar_images(CLI::App& command, SonarFlags& flags) {
       ->capture_default_str();
   command
       .add_option("--depth-kind", flags.depth_kind,
-                  "depth along the view axis (planar), or along each ray (range)")
-      ->check(CLI::IsMember({"planar", "range"}))
+                  "depth along the view axis (planar) or along each ray (range), or disparity in "
+                  "pixels, with --baseline")
+      ->check(CLI::IsMember({"planar", "range", "disparity"}))
       ->capture_default_str();
-  command.add_option("--depth-scale", flags.depth_scale, "metres per unit of the depth image")
+  command
+      .add_option("--depth-scale", flags.depth_scale,
+                  "metres per unit of the depth image; of disparity pixels per unit")
       ->capture_default_str();
+  command.add_option("--baseline", flags.baseline, "metres between the two cameras of a disparity");
   command.add_option("--axes", flags.axes, "axes of the normals")
       ->check(CLI::IsMember({"opengl", "opencv", "ros"}))
       ->capture_default_str();
+  command.add_option("--camera-pose", flags.camera_pose,
+                     "says that the normals are in world axes: the rotation from the camera's "
+                     "(--axes) to those, qx,qy,qz,qw or a .json or .yaml file");
   command
       .add_option("--normals-sign", flags.normals_sign,
                   "facing: normals point at the sensor; unknown: only the absolute value of the "
@@ -230,13 +260,24 @@ void add_dive(CLI::App& app, CommandLine& line) {
   auto flags = std::make_shared<DiveFlags>();
   CLI::App* command = app.add_subcommand(
       "dive",
-      "the live program: a scene (.toml) or a model (.gltf, .glb) in a window; F1 lists keys");
+      "the live program: a scene (.toml) or a model (.gltf, .glb) in a headset or a window; F1 "
+      "lists keys");
   command->add_option("scene", flags->scene, "scene or model file")->required();
   command->add_flag(
       "--headless", flags->headless,
       "no window. Where vehicles move by physics and no flag asks for pictures: their "
       "dive alone, as fast as it can; else frames at the camera's rate, then a "
       "summary of their times");
+  command
+      ->add_option(
+          "--display", flags->display,
+          "openxr: a headset; window; auto: the headset if an OpenXR runtime has one, else "
+          "a window")
+      ->check(CLI::IsMember({"auto", "openxr", "window"}));
+  command->add_option("--bindings", flags->bindings,
+                      "your own controls of some actions, a .toml (docs/headsets.md)");
+  command->add_option("--refresh", flags->refresh_hz, "pictures a second of the headset")
+      ->check(CLI::Range(1.0, 1000.0));
   command->add_option("--log", flags->files.log,
                       "the vehicles' dive as a .csv, a row a control period");
   command->add_option("--log-rate", flags->files.log_rate_hz, "rows a second instead");
@@ -266,10 +307,28 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command->add_flag("--json", flags->json, "the dive's summary as JSON");
   command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
   command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
+  command
+      ->add_option(
+          "--timeline", flags->timeline,
+          "the frames' phases, passes and resolution as a .png, its data beside as .plot.json")
+      ->check(png_file);
+  command->add_option(
+      "--hud", flags->hud,
+      "a diver's instruments over the view: none, or any of corner, mask, wrist, "
+      "console (default of a scene with divers: corner in a window, wrist in a headset; key H)");
+  command->add_option("--diver", flags->diver, "whose instruments (default: the first diver)");
+  command->add_option("--units", flags->units, "of the instruments: metric (default), imperial")
+      ->check(CLI::IsMember({"metric", "imperial"}));
+  command
+      ->add_option("--quality", flags->quality,
+                   "auto: resolution and sonars' rates come down where the machine is too slow for "
+                   "its screen, on a CPU for 20 pictures a second (default in a window); full")
+      ->check(CLI::IsMember({"auto", "full"}));
   command->add_option(
       "--seconds", flags->seconds,
       "stop after so many simulated seconds (default with --headless: 60 of physics "
-      "alone, 5 of frames)");
+      "alone, 5 of frames); exit status 1 if a mission is not finished though they were enough for "
+      "its way at its speed, and nothing is saved to go on from");
   command->add_option("--frames", flags->frames, "stop after so many frames")
       ->check(between(1, 1000000));
   command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png")
@@ -277,9 +336,11 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
   command
       ->add_option("--sensor", flags->sensors,
-                   "fly this camera, show only this sonar, by name; may be given again")
+                   "begin at this camera, show only this sonar, by name; may be given again")
       ->expected(1)
       ->take_all();
+  command->add_option("--view", flags->view,
+                      "begin here: a camera's name, chase:PARTICIPANT or free (V goes on)");
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_flag("--validate", flags->validation,
                     "run with Vulkan validation; any message is a failure");
@@ -465,6 +526,27 @@ void add_physio(CLI::App& app, Run& run) {
   command->callback([flags, &run] { run = [flags] { return run_physio(*flags); }; });
 }
 
+void add_register(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<RegisterFlags>();
+  CLI::App* command = app.add_subcommand(
+      "register",
+      "finds where a lab's tracking frame lies in a scene, from places that are marked in both");
+  command
+      ->add_option("file", flags->file,
+                   "table (.csv) with columns lab_x_m, lab_y_m, lab_z_m, scene_x_m, scene_y_m, "
+                   "scene_z_m; a row a place, at least 2, with --tilted 3")
+      ->required();
+  command
+      ->add_option("--lab-up", flags->lab_up, "the lab's vertical axis: y (headsets) or z (suits)")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
+  command->add_flag("--tilted", flags->tilted, "the lab's vertical is not the scene's: any turn");
+  command->add_flag("--json", flags->json, "JSON on standard output, for programs");
+  command->footer("Example: neritic register marks.csv >> scene.toml");
+  command->callback(
+      [flags, &run] { run = [flags] { return nothing_to_say(run_register(*flags)); }; });
+}
+
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
@@ -533,6 +615,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_check(app, line.run);
   add_plan(app, line.run);
   add_physio(app, line.run);
+  add_register(app, line.run);
   add_doctor(app, line.run);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(),

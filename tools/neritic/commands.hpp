@@ -22,8 +22,10 @@ struct StepFileFlags {
 };
 
 struct RenderFlags {
-  std::string scene, out, size, device, dump_graph, water;
+  std::string scene, out, size, device, dump_graph, water, clip;
   std::vector<std::string> sensors;
+  std::vector<std::string> only;  // lists of datasets; none: all
+  std::string compress;           // "npz", "png" or empty
   std::vector<double> offset_m;
   std::uint32_t frames = 1;
   double time_s = 0.0;
@@ -42,7 +44,7 @@ struct SonarFlags {
   std::string kind = "imaging";
   std::string depth, normals, labels, picture;
   std::filesystem::path sensor, out;
-  std::string intrinsics;
+  std::string intrinsics, baseline, camera_pose;
   std::string range, azimuth, elevation, bins;  // empty: the sensor's, else the kind's
   std::string method = "gpu", gather, depth_kind = "planar", axes = "opengl";
   std::string normals_sign = "facing", pixel_centers = "half", device;
@@ -57,11 +59,16 @@ struct SonarFlags {
 Result<std::string> run_sonar(const SonarFlags& flags);
 
 struct DiveFlags {
-  std::string scene, size, device, screenshot;
+  std::string scene, size, device, screenshot, view;
+  std::filesystem::path timeline;
+  std::string hud, diver, units = "metric", quality;  // not given: chosen by window or headless
   std::vector<std::string> sensors;
   std::uint64_t frames = 0;
   std::optional<double> seconds;
   bool headless = false, fast = false, panels = false, validation = false;
+  std::string display = "auto";  // auto, openxr or window
+  double refresh_hz = 0.0;       // of a headset; 0: its own choice
+  std::string bindings;          // a file; empty: ours
   // These need a scene with physics; play and realtime also --headless without pictures.
   StepFileFlags files;
   std::string play, replay, restore;
@@ -111,6 +118,12 @@ struct PhysioFlags {
   bool json = false, table = false, headset = false, realtime = false;
 };
 Result<std::string> run_physio(const PhysioFlags& flags);
+
+struct RegisterFlags {
+  std::string file, lab_up = "y";
+  bool tilted = false, json = false;
+};
+Status run_register(const RegisterFlags& flags);
 
 struct DoctorFlags {
   std::string device;

@@ -1,21 +1,29 @@
-// `neritic dive SCENE`: the live program. A desktop window with a free camera, the scene's sonars
-// and timings; or, with --headless, the same frames without a window and a summary of their times.
+// `neritic dive SCENE`: the live program. A headset; else a desktop window with a free camera, the
+// scene's sonars and timings; or, with --headless, the same frames without a window and a summary
+// of their times.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
+#include "engine/sim/run_clock.hpp"
 #include "engine/xr/desktop/desktop.hpp"
 #include "engine/xr/offscreen.hpp"
-#include "testbed/loop/dive_view.hpp"
+#include "engine/xr/openxr/headset.hpp"
 #include "testbed/loop/loop.hpp"
+#include "testbed/sensors/sight_check.hpp"
 #include "testbed/sensors/validation.hpp"
+#include "testbed/view/bindings.hpp"
+#include "testbed/view/dive_view.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/dive_physics.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/neritic/hud_flags.hpp"
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/named_sensors.hpp"
 #include "tools/neritic/step_files.hpp"
+#include "tools/neritic/timeline_picture.hpp"
 
 namespace neritic::tools {
 using namespace testbed;
@@ -26,54 +34,104 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kFramesInFlight = 2;  // as Session's
 constexpr double kHeadlessSeconds = 5.0;      // where neither --frames nor --seconds is given
 
-Result<scene::Scene> load(const DiveFlags& flags) {
-  NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size));
-  if (flags.seed) scene.seed = *flags.seed;
-  if (scene.cameras.empty()) {
-    scene.cameras.push_back(camera_for(scene));
-    if (!flags.size.empty()) {
-      NERITIC_TRY(const auto size, parse_size("--size", flags.size));
-      scene.cameras[0].width = size.first, scene.cameras[0].height = size.second;
-    }
-  }
-  return scene;
+// Not the strip of a scanning camera.
+bool shows_a_person_around(const scene::Camera& camera) {
+  const double aspect = static_cast<double>(camera.width) / camera.height;
+  return aspect > 0.25 && aspect < 4.0;
 }
 
-// The camera where the view begins, and the sonars that are wanted.
+// A camera to look from, and light to see by, where the scene has none.
+Status add_view(const DiveFlags& flags, scene::Scene& scene) {
+  if (!std::ranges::none_of(scene.cameras, shows_a_person_around)) return {};
+  scene.cameras.insert(scene.cameras.begin(), camera_for(scene));
+  if (!flags.size.empty()) {
+    NERITIC_TRY(const auto size, parse_size("--size", flags.size));
+    scene.cameras[0].width = size.first, scene.cameras[0].height = size.second;
+  }
+  // What was made for sonars alone is dark.
+  if (!scene.sun && scene.lamps.empty() && scene.model_lights.empty()) {
+    scene.sun = scene::Sun{};
+    scene.notes.push_back(flags.scene +
+                          ": no light and no camera in the scene; the view adds a sun");
+  }
+  return {};
+}
+
+// Where the view begins, and the sonars that are wanted.
 struct Chosen {
-  std::size_t camera = 0;
+  std::size_t viewpoint = 0, camera = 0;  // the camera's lens and size
   std::vector<std::size_t> sonars;
 };
 
-// The first camera and every sonar, or those named: a panel shows each sonar, and without panels
-// the summary of times has its passes.
+// Every sonar, or those named: a panel shows each, and without panels the summary of times has its
+// passes.
 Result<Chosen> choose_sensors(const DiveFlags& flags, const scene::Scene& scene) {
   NERITIC_TRY(const NamedSensors named, named_sensors(flags.sensors, scene));
-  return Chosen{named.cameras.empty() ? 0 : named.cameras.front(), named.sonars};
+  Chosen chosen{first_viewpoint(scene), 0, named.sonars};
+  const bool camera_named = !flags.sensors.empty() && !named.cameras.empty();
+  if (camera_named) chosen.viewpoint = named.cameras.front();  // cameras are the first viewpoints
+  if (!flags.view.empty()) {
+    NERITIC_TRY(chosen.viewpoint, viewpoint_named(flags.view, scene));
+  }
+  chosen.camera = viewpoints_of(scene)[chosen.viewpoint].camera;
+  return chosen;
 }
 
 // Where the pictures go. In the order of creation: each uses those before it.
 struct Screen {
-  std::unique_ptr<xr::Window> window;  // not with --headless
+  std::unique_ptr<xr::Window> window;  // of a dive on a desktop
   std::unique_ptr<gpu::Device> device;
+  std::unique_ptr<xr::Headset> headset;  // of a dive in one
+  std::string no_headset;                // why there is none, where one was looked for
   std::unique_ptr<xr::Display> display;
   std::unique_ptr<xr::Overlay> overlay;
+
+  xr::Display& shown_on() const { return headset ? *headset : *display; }
 };
 
-Status make_device(const DiveFlags& flags, const scene::Scene& scene, const scene::Camera& camera,
-                   Screen& screen) {
+// The headset where one is asked for, or is there.
+Status connect_headset(const DiveFlags& flags, const scene::Scene& scene,
+                       const std::vector<xr::ActionDesc>& actions, Screen& screen) {
+  if (flags.headless || flags.display == "window") return {};
+  auto headset = xr::Headset::connect({.room = scene.world_from_lab.has_value(),
+                                       .refresh_hz = flags.refresh_hz,
+                                       .actions = actions,
+                                       .validation = flags.validation});
+  if (headset.ok()) {
+    screen.headset = std::move(headset.value());
+    return {};
+  }
+  if (flags.display == "openxr" || headset.error().code == ErrorCode::kBadInput)
+    return headset.error();
+  screen.no_headset = headset.error().message;
+  return {};
+}
+
+Status make_device(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
   gpu::DeviceOptions options;
   options.device = flags.device;
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
-  if (!flags.headless) {
+  std::vector<xr::ActionDesc> actions = dive_actions();
+  if (!flags.bindings.empty()) {
+    NERITIC_TRY(actions, bound_actions(actions, flags.bindings));
+  }
+  NERITIC_TRY_STATUS(connect_headset(flags, scene, actions, screen));
+  if (screen.headset) {
+    screen.headset->require(options);
+  } else if (!flags.headless) {
+    std::pair<std::uint32_t, std::uint32_t> size{1280, 720};
+    if (!flags.size.empty()) {
+      NERITIC_TRY(size, parse_size("--size", flags.size));
+    }
     NERITIC_TRY(screen.window,
                 xr::Window::create({.title = "Neritic: " + scene.title,
-                                    .width = camera.width,
-                                    .height = camera.height,
-                                    .actions = dive_actions(),
+                                    .width = size.first,
+                                    .height = size.second,
+                                    .actions = actions,
                                     .hint = "use --headless, or neritic render for pictures"}));
     screen.window->require(options);
+    if (!screen.no_headset.empty()) log_warn("{}: the dive is in a window", screen.no_headset);
   }
   NERITIC_TRY(screen.device, gpu::Device::create(options));
   return {};
@@ -81,6 +139,7 @@ Status make_device(const DiveFlags& flags, const scene::Scene& scene, const scen
 
 Status make_display(const DiveFlags& flags, const scene::Camera& camera, Screen& screen) {
   gpu::Device& device = *screen.device;
+  if (screen.headset) return screen.headset->attach(device);
   if (screen.window) {
     xr::Window& window = *screen.window;
     NERITIC_TRY(screen.display, xr::DesktopDisplay::create(
@@ -97,21 +156,60 @@ Status make_display(const DiveFlags& flags, const scene::Camera& camera, Screen&
   return {};
 }
 
-// On standard output. A window says nothing but what --json asks for.
+// Where a diver looks for them; without panels nowhere.
+std::string unasked_hud(const Screen& screen) {
+  if (screen.headset) return "wrist";
+  return screen.overlay ? "corner" : "";
+}
+
+// Of a frame in ms; 0: quality stays full, whatever a frame takes.
+double frame_budget_ms(const DiveFlags& flags, const Screen& screen) {
+  constexpr double kSoftware_ms = 50.0, kUsualRefresh_hz = 60.0, kHeadsetRefresh_hz = 90.0;
+  if (flags.quality.empty() ? flags.headless : flags.quality == "full") return 0.0;
+  const double hz = screen.window ? screen.window->refresh_hz() : flags.refresh_hz;
+  const double usual_hz = screen.headset ? kHeadsetRefresh_hz : kUsualRefresh_hz;
+  const double period_ms = 1e3 / (hz > 0.0 ? hz : usual_hz);
+  return screen.device->info().kind == "CPU" ? std::max(period_ms, kSoftware_ms) : period_ms;
+}
+
+// The run's state and recording by key.
+std::optional<RunKeeperOptions> kept_by_key(const DiveFlags& flags) {
+  if (flags.headless || !flags.replay.empty()) return {};
+  const StepFileFlags& files = flags.files;
+  const char* const written = !files.record.empty() ? "--record"
+                              : !files.log.empty()  ? "--log"
+                              : !files.plot.empty() ? "--plot"
+                                                    : "";
+  return RunKeeperOptions{
+      .name = fs::path(flags.scene).stem().string(),
+      .recording = files.record,
+      .no_way_back =
+          *written ? fmt::format("F9: {} writes this run, which cannot go back", written) : ""};
+}
+
+// On standard output: a dive's end, the same as without pictures; without a window the times too.
 void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera& camera,
           const DiveView& view, const Loop& loop, const LivePhysics* physics,
           const DiveRecorder* recorder, double start_s) {
   if (flags.json)
     return print_summary(flags, physics->world(), physics->simulation(), *recorder,
                          {loop.wall_s(), physics->counts().dropped, start_s});
-  if (!flags.headless || flags.quiet) return;
-  fmt::print("{}, {} x {}\n{}", device.info().name, camera.width, camera.height,
-             view.times().summary(loop.frames(), loop.wall_s()));
-  if (physics)  // in the words of a dive without pictures, to be compared with it
-    fmt::print("physics: {} steps, hash {:016x}\n", physics->newest().step, physics->newest().hash);
+  if (flags.quiet) return;
+  if (flags.headless)
+    fmt::print("{}, {} x {}\n{}", device.info().name, camera.width, camera.height,
+               view.times().summary(loop.frames(), loop.wall_s()));
+  else
+    fmt::print("{} frames in {:.1f} s on {}\n", loop.frames(), loop.wall_s(), device.info().name);
+  if (physics)
+    print_summary(flags, physics->world(), physics->simulation(), *recorder,
+                  {loop.wall_s(), physics->counts().dropped, start_s});
 }
 
 Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt& interrupt) {
+  // What a person at a screen may stop and speed up.
+  sim::HostClock host;
+  sim::RunClock run(host);
+  sim::RunClock* const clock = flags.headless ? nullptr : &run;
   std::unique_ptr<LivePhysics> physics;
   std::unique_ptr<Replay> replay;
   if (PhysicsWorld::needed(scene)) {
@@ -119,42 +217,57 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
     using Pace = LivePhysics::Pace;
     const bool lock_step = flags.headless || !flags.replay.empty();
     NERITIC_TRY(physics,
-                make_dive_physics(flags, scene, lock_step ? Pace::kPicture : Pace::kClock));
+                make_dive_physics(flags, scene, lock_step ? Pace::kPicture : Pace::kClock, clock));
   }
   if (physics && !flags.replay.empty()) {
-    NERITIC_TRY(replay, Replay::read(flags.replay, physics->world()));
+    NERITIC_TRY(replay, Replay::read(flags.replay, physics->world(), physics->newest().step));
   }
   NERITIC_TRY(const Chosen chosen, choose_sensors(flags, scene));
   const scene::Camera camera = scene.cameras[chosen.camera];
   Screen screen;
-  NERITIC_TRY_STATUS(make_device(flags, scene, camera, screen));
+  NERITIC_TRY_STATUS(make_device(flags, scene, screen));
   NERITIC_TRY(const auto session, Session::create(*screen.device, std::move(scene)));
   NERITIC_TRY_STATUS(make_display(flags, camera, screen));
-  NERITIC_TRY(const auto view,
-              DiveView::create(*session, *screen.display, screen.overlay.get(), physics.get(),
-                               {.camera = chosen.camera,
-                                .sonars = chosen.sonars,
-                                .summary = flags.headless,
-                                .screenshot = flags.screenshot,
-                                .may_close = !flags.headless,
-                                .may_fly = !replay}));
+  NERITIC_TRY(const auto hud, hud_options(flags, physics.get(), unasked_hud(screen)));
+  NERITIC_TRY(
+      const auto view,
+      DiveView::create(
+          *session, screen.shown_on(), screen.overlay.get(), physics.get(),
+          {.viewpoint = chosen.viewpoint,
+           .sonars = chosen.sonars,
+           .summary = flags.headless,
+           .screenshot = flags.screenshot,
+           .may_fly = !replay,
+           .hud = hud,
+           .budget_ms = frame_budget_ms(flags, screen),
+           .clock = clock,
+           .frame_s = 1.0 / camera.rate_hz,
+           .timeline = !flags.timeline.empty(),
+           .keep = kept_by_key(flags),
+           .no_keys_for_files = replay ? "a replay is neither saved nor recorded"
+                                       : "nothing moves by physics: there is no state to save"}));
   std::optional<StepFiles> files;
   std::vector<StepSink*> step_sinks;
   std::vector<SampleSource*> sources{&view->pilot()};
+  if (view->wearer()) sources.push_back(view->wearer());
   if (physics) {
     files.emplace(flags.files, session->scene().title, *physics);
     step_sinks = files->sinks();
   }
+  if (view->recorder()) step_sinks.push_back(view->recorder());
   if (replay) {
     step_sinks.push_back(&replay->check);
     sources.push_back(&replay->source);
   }
   const double start_s = physics ? physics->newest().time_s : 0.0, period_s = 1.0 / camera.rate_hz;
+  SightCheck sight(*session, physics ? &physics->motion() : nullptr,
+                   [](const std::string& line) { log_warn("{}", line); });
+  NERITIC_TRY_STATUS(sight.look(start_s, {chosen.camera}, chosen.sonars));
   const bool limited = flags.frames > 0 || flags.seconds || replay;
   const double unlimited_s = limited || !flags.headless ? 0.0 : kHeadlessSeconds;
   const double recorded_s = replay ? replay->seconds() : 0.0;
   Loop loop({.clock = flags.fast ? Clock::simulated(start_s, period_s)
-                                 : Clock::real(start_s, period_s, 1),
+                                 : Clock::real(start_s, period_s, 1, clock),
              .physics = physics.get(),
              .sensors = LoopSensors{.session = session.get(),
                                     .sonars = chosen.sonars,
@@ -172,10 +285,21 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
   tell(flags, *screen.device, camera, *view, loop, physics.get(),
        files ? &files->recorder() : nullptr, start_s);
   NERITIC_TRY_STATUS(status);
+  if (!flags.timeline.empty())
+    NERITIC_TRY_STATUS(write_timeline(
+        flags.timeline,
+        fmt::format("Frames of {}, {}", session->scene().title, screen.device->info().name),
+        frame_budget_ms(flags, screen), view->timeline()));
   if (loop.interrupted())
     return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s; all until then is written",
                    loop.wall_s());
-  return check_validation(*screen.device);
+  if (screen.headset && !screen.headset->validation_messages().empty())
+    return failure(ErrorCode::kInternal, "OpenXR validation: {}",
+                   screen.headset->validation_messages().front());
+  NERITIC_TRY_STATUS(check_validation(*screen.device));
+  const bool whole = physics && !replay && flags.seconds &&
+                     physics->newest().time_s >= start_s + *flags.seconds - 1e-6;
+  return whole ? check_finished(flags, *physics) : Status();
 }
 
 }  // namespace
@@ -185,15 +309,21 @@ Status run_dive(const DiveFlags& flags) {
     return refusal("--seconds", fmt::format("{}", *flags.seconds), "a number above 0");
   if (flags.fast && !flags.headless)
     return refusal("--fast", "a run in a window", "with --headless (a window follows its screen)");
+  if (flags.display != "auto" && flags.headless)
+    return refusal("--display", "--headless beside it", "one of the two");
   if (flags.panels && !flags.headless)
     return refusal("--panels", "a run in a window", "with --headless (a window has them; F2)");
-  NERITIC_TRY_STATUS(check_step_files(flags.files, {"--screenshot", flags.screenshot}));
+  NERITIC_TRY_STATUS(check_step_files(
+      flags.files, {{"--screenshot", flags.screenshot}, {"--timeline", flags.timeline}}));
   const Interrupt interrupt;
-  NERITIC_TRY(scene::Scene scene, load(flags));
-  for (const std::string& note : scene.notes) log_warn("{}", note);
+  NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size));
+  if (flags.seed) scene.seed = *flags.seed;
   NERITIC_TRY_STATUS(check_physics_flags(flags, scene));
-  return asks_for_physics_alone(flags, scene) ? dive_physics(flags, scene, interrupt)
-                                              : dive_pictures(flags, std::move(scene), interrupt);
+  const bool pictures = !asks_for_physics_alone(flags, scene);
+  if (pictures) NERITIC_TRY_STATUS(add_view(flags, scene));
+  for (const std::string& note : scene.notes) log_warn("{}", note);
+  return pictures ? dive_pictures(flags, std::move(scene), interrupt)
+                  : dive_physics(flags, scene, interrupt);
 }
 
 }  // namespace neritic::tools

@@ -7,6 +7,7 @@
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/source_watch.hpp"
 #include "testbed/samples/recorded_source.hpp"
+#include "testbed/simulation/mission_outlook.hpp"
 #include "tools/neritic/dive_runs.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/step_files.hpp"
@@ -21,7 +22,8 @@ constexpr double kMostPhysicsSeconds = 1e6;
 bool draws(const DiveFlags& flags) {
   return flags.frames > 0 || flags.fast || flags.panels || flags.validation ||
          !flags.screenshot.empty() || !flags.size.empty() || !flags.sensors.empty() ||
-         !flags.device.empty();
+         !flags.view.empty() || !flags.device.empty() || !flags.hud.empty() ||
+         !flags.quality.empty() || !flags.timeline.empty();
 }
 
 // The first flag that needs physics; empty: none.
@@ -40,7 +42,6 @@ std::string physics_flag(const DiveFlags& flags) {
 std::string flag_beside_replay(const DiveFlags& flags) {
   if (const std::string flag = first_step_flag(flags.files); !flag.empty()) return flag;
   if (flags.seconds) return "--seconds";
-  if (!flags.restore.empty()) return "--restore";
   if (!flags.play.empty()) return "--play";
   if (flags.realtime) return "--realtime";
   if (flags.json) return "--json";
@@ -66,11 +67,10 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   if (const std::string beside = flag_beside_replay(flags);
       !flags.replay.empty() && !beside.empty())
     return refusal("--replay", beside + " beside it",
-                   "no --seconds, --log, --log-rate, --plot, --record, --save, --restore, --play, "
+                   "no --seconds, --log, --log-rate, --plot, --record, --save, --play, "
                    "--realtime, --json; it runs as long as the recording");
-  if (!flags.restore.empty() && !(flags.files.record.empty() && flags.play.empty()))
-    return refusal(flags.play.empty() ? "--record" : "--play", "--restore beside it",
-                   "a run from time 0, where a recording begins");
+  if (!flags.restore.empty() && !flags.play.empty())
+    return refusal("--play", "--restore beside it", "a run from time 0, where a recording begins");
   if (flags.runs && (!first_step_flag(flags.files).empty() || flags.realtime ||
                      !flags.replay.empty() || !flags.restore.empty() || !flags.play.empty()))
     return refusal("--runs", "a flag of one run beside it",
@@ -79,13 +79,17 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   return {};
 }
 
-Result<std::unique_ptr<Replay>> Replay::read(const std::string& file, const PhysicsWorld& world) {
+Result<std::unique_ptr<Replay>> Replay::read(const std::string& file, const PhysicsWorld& world,
+                                             std::uint64_t start_step) {
   NERITIC_TRY(SampleLog log, read_sample_log(file));
   if (log.steps() == 0) return refusal(file, "a recording of 0 steps", "1 step or more");
-  NERITIC_TRY(RecordedSource source, source_of(world, std::move(log), file));
+  if (!log.whole)
+    log_warn("{}: its run was cut off; its {} whole steps are replayed", file, log.steps());
+  NERITIC_TRY(RecordedSource source, source_of(world, std::move(log), file, start_step));
   // The hashes stay where they are when the source moves.
   const std::span<const std::uint64_t> hashes = source.log().hashes;
-  return std::make_unique<Replay>(Replay{std::move(source), RecordingCheck(hashes, file), file});
+  return std::make_unique<Replay>(
+      Replay{std::move(source), RecordingCheck(hashes, file, start_step), file});
 }
 
 void Replay::tell() const {
@@ -95,13 +99,14 @@ void Replay::tell() const {
 
 Result<std::unique_ptr<LivePhysics>> make_dive_physics(const DiveFlags& flags,
                                                        const scene::Scene& scene,
-                                                       LivePhysics::Pace pace) {
+                                                       LivePhysics::Pace pace,
+                                                       sim::StepClock* clock) {
   NERITIC_TRY(auto world, PhysicsWorld::create(scene));
-  LivePhysics::Options options{
-      .pace = pace, .log = !flags.files.record.empty(), .seed = scene.seed};
+  LivePhysics::Options options{.pace = pace, .clock = clock};
   if (!flags.restore.empty()) {
     NERITIC_TRY(options.start, read_state(flags.restore, world->state_format()));
   }
+  for (const std::string& line : cannot_hold(*world)) log_warn("{}", line);
   return LivePhysics::create(std::move(world), options);
 }
 
@@ -130,7 +135,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
     sources = {&*played};
   }
   if (!flags.replay.empty()) {
-    NERITIC_TRY(replay, Replay::read(flags.replay, world));
+    NERITIC_TRY(replay, Replay::read(flags.replay, world, physics->newest().step));
     sources = {&replay->source};
     sinks.push_back(&replay->check);
     seconds = replay->seconds();
@@ -153,7 +158,16 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
   if (loop.interrupted())
     return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s of {:g}{}",
                    physics->newest().time_s, seconds, replay ? "" : "; all until then is written");
-  return {};
+  return replay ? Status() : check_finished(flags, *physics);
+}
+
+Status check_finished(const DiveFlags& flags, const LivePhysics& physics) {
+  if (!flags.files.save.empty()) return {};  // it goes on later
+  const auto& newest = physics.newest();
+  const auto lines = unfinished(physics.world(), newest.state, newest.time_s);
+  if (lines.empty()) return {};
+  return failure(ErrorCode::kUnsupported, "{}: not finished: {}", flags.scene,
+                 fmt::join(lines, "; "));
 }
 
 }  // namespace neritic::tools

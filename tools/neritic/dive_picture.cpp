@@ -15,44 +15,18 @@ namespace {
 
 using nlohmann::json;
 
-// A picture tells no more rows apart; of many participants each has fewer.
-constexpr std::size_t kMostRows = 1500, kMostRowsOfAll = 48000;
 // The ground is sampled by rays on a square grid of this many cells a side.
 constexpr int kGroundCells = 180;
 constexpr double kRayTop_m = 100.0, kRayLength_m = 12000.0, kLeastSide_m = 10.0;
 
 template <class Row>
-using Rows = std::vector<const Row*>;
-
-std::size_t danger_bits(const DiveRow&) {
-  return 0;
-}
-std::size_t danger_bits(const HumanRow& row) {
-  const diver::RiskProxies& risk = row.vitals.risk;
-  const bool high = std::max({risk.co2, risk.narcosis, risk.gas_density, risk.breathing}) >=
-                    diver::RiskLevel::kHigh;
-  return static_cast<std::size_t>(row.ascent.view.alarm) |
-         (row.ascent.view.ceiling_violated ? 4u : 0u) | (high ? 8u : 0u) |
-         (risk.oxygen >= diver::RiskLevel::kHigh ? 16u : 0u) | (row.out_of_gas_s > 0.0 ? 32u : 0u) |
-         (row.tank << 6);
-}
-
-// Evenly thinned, the last row included; where a danger begins or ends the row stays.
-template <class Row>
-Rows<Row> thinned(const Rows<Row>& all, std::size_t most) {
-  Rows<Row> out;
-  const std::size_t every = all.size() / most + 1;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (i % every == 0 || i + 1 == all.size() || danger_bits(*all[i]) != danger_bits(*all[i - 1]))
-      out.push_back(all[i]);
-  return out;
-}
+using Rows = std::vector<Row>;
 
 template <class Row, class Value>
 json column(const Rows<Row>& rows, Value value) {
   json out = json::array();
-  for (const Row* row : rows) {
-    const auto v = value(*row);
+  for (const Row& row : rows) {
+    const auto v = value(row);
     if constexpr (std::is_floating_point_v<decltype(v)>)
       out.push_back(six_digits(v));  // what is not finite becomes null
     else
@@ -77,8 +51,7 @@ void add_path(json& out, const PhysicsWorld& world, const Rows<Row>& rows) {
 }
 
 json vehicle_data(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
-                  const Rows<DiveRow>& all, std::size_t most) {
-  const Rows<DiveRow> rows = thinned(all, most);
+                  const Rows<DiveRow>& rows) {
   json out{{"name", vehicle.name}, {"thrust_n", json::array()}, {"waypoints", json::array()}};
   add_path(out, world, rows);
   // A vehicle without a mission drifts: it is to be nowhere.
@@ -94,12 +67,12 @@ json vehicle_data(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
   for (std::size_t i = 0; i < vehicle.vehicle.thruster_count; ++i)
     out["thrust_n"].push_back(column(rows, [i](const DiveRow& r) { return r.force_n[i]; }));
   std::uint64_t arrived = 0;
-  for (const DiveRow* row : all) {
-    if (row->arrived == arrived) continue;
-    arrived = row->arrived;
-    const Vec3& at = row->world_from_body.position_m;
+  for (const DiveRow& row : rows) {
+    if (row.arrived == arrived) continue;
+    arrived = row.arrived;
+    const Vec3& at = row.world_from_body.position_m;
     out["waypoints"].push_back({{"number", arrived},
-                                {"at_s", six_digits(row->time_s)},
+                                {"at_s", six_digits(row.time_s)},
                                 {"at_x_m", six_digits(at.x)},
                                 {"at_z_m", six_digits(at.z)},
                                 {"at_depth_m", six_digits(-at.y)}});
@@ -118,8 +91,7 @@ json limits_data(const PhysicsHuman& human) {
 }
 
 json human_data(const PhysicsWorld& world, const PhysicsHuman& human, const HumanFigures& figures,
-                const Rows<HumanRow>& all, std::size_t most) {
-  const Rows<HumanRow> rows = thinned(all, most);
+                const Rows<HumanRow>& rows) {
   json out{{"name", human.name},
            {"limits", limits_data(human)},
            {"dangers", dangers_json(human, figures)},
@@ -137,6 +109,7 @@ json human_data(const PhysicsWorld& world, const PhysicsHuman& human, const Huma
   add("remaining_min", [](R r) { return r.gas.remaining_s / 60.0; });
   add("ventilation_l_min", [](R r) { return r.gas.ventilation_l_min; });
   add("oxygen_l_min", [](R r) { return r.oxygen_l_min; });
+  add("reserve_percent", [](R r) { return 100.0 * r.reserve_share; });
   add("breaths_min", [](R r) { return r.vitals.breath_bpm; });
   add("heart_bpm", [](R r) { return r.vitals.heart_bpm; });
   add("lungs_l", [](R r) { return 1e3 * r.lungs_m3; });
@@ -191,39 +164,29 @@ json ground_data(const PhysicsWorld& world, const std::vector<Vec3>& places) {
 
 }  // namespace
 
-json dive_picture_data(const std::string& title, const PhysicsWorld& world,
-                       const std::vector<DiveRow>& rows, const std::vector<HumanRow>& human_rows,
+json dive_picture_data(const std::string& title, const PhysicsWorld& world, const PlotRows& rows,
                        const std::vector<HumanFigures>& figures) {
-  std::vector<Rows<DiveRow>> of_vehicles(world.vehicles().size());
-  std::vector<Rows<HumanRow>> of_humans(world.humans().size());
+  json vehicles = json::array(), humans = json::array();
   std::vector<Vec3> places;
-  for (const DiveRow& row : rows) {
-    of_vehicles[row.vehicle].push_back(&row);
-    places.push_back(row.world_from_body.position_m);
+  const auto add_places = [&](const auto& of_one) {
+    for (const auto& row : of_one) places.push_back(row.world_from_body.position_m);
+  };
+  for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
+    const Rows<DiveRow> of_one = rows.vehicle(i);
+    add_places(of_one);
+    vehicles.push_back(vehicle_data(world, world.vehicles()[i], of_one));
   }
-  for (const HumanRow& row : human_rows) {
-    of_humans[row.human].push_back(&row);
-    places.push_back(row.world_from_body.position_m);
+  for (std::size_t i = 0; i < world.humans().size(); ++i) {
+    const Rows<HumanRow> of_one = rows.human(i);
+    add_places(of_one);
+    humans.push_back(human_data(world, world.humans()[i], figures[i], of_one));
   }
-  const std::size_t all = of_vehicles.size() + of_humans.size();
-  const std::size_t most = std::min(kMostRows, kMostRowsOfAll / std::max<std::size_t>(all, 1) + 1);
-  json out{{"picture", "dive"},
-           {"title", title},
-           {"risk_note", diver::kRiskNote},
-           {"ground", ground_data(world, places)},
-           {"vehicles", json::array()},
-           {"humans", json::array()}};
-  for (std::size_t i = 0; i < of_vehicles.size(); ++i)
-    out["vehicles"].push_back(vehicle_data(world, world.vehicles()[i], of_vehicles[i], most));
-  for (std::size_t i = 0; i < of_humans.size(); ++i)
-    out["humans"].push_back(human_data(world, world.humans()[i], figures[i], of_humans[i], most));
-  return out;
-}
-
-json dive_picture_data(const std::string& title, const PhysicsWorld& world,
-                       const DiveRecorder& recorder) {
-  return dive_picture_data(title, world, recorder.rows(), recorder.humans().rows(),
-                           recorder.humans().figures());
+  return {{"picture", "dive"},
+          {"title", title},
+          {"risk_note", diver::kRiskNote},
+          {"ground", ground_data(world, places)},
+          {"vehicles", std::move(vehicles)},
+          {"humans", std::move(humans)}};
 }
 
 }  // namespace neritic::tools

@@ -27,7 +27,7 @@ struct Outcome {
   bool done = false;
 };
 
-struct Run {
+struct SeededRun {
   Status status;
   std::vector<Outcome> outcomes;
 };
@@ -44,14 +44,15 @@ bool all_done(const PhysicsWorld& world, const PhysicsState& state) {
   return true;
 }
 
-Run run_with(scene::Scene scene, std::uint64_t seed, double seconds, const Interrupt& interrupt) {
+SeededRun run_with(scene::Scene scene, std::uint64_t seed, double seconds,
+                   const Interrupt& interrupt) {
   scene.seed = seed;
   auto made = PhysicsWorld::create(scene);
   if (!made.ok()) return {Status(made.error()), {}};
-  const auto physics = LivePhysics::create(std::move(*made), {.seed = seed, .threads = 1});
+  const auto physics = LivePhysics::create(std::move(*made), {.threads = 1});
   const PhysicsWorld& world = physics->world();
-  DiveLog log(world, {}, {});
-  Run run;
+  DiveLog log(world, 0.0, {});
+  SeededRun run;
   Loop loop(
       {.clock = Clock::simulated(0.0, world.step_s()),
        .physics = physics.get(),
@@ -127,7 +128,7 @@ Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, double secon
   if (std::ranges::none_of(world->vehicles(), has_end))
     return refusal("--runs", fmt::format("{}, which has no mission with an end", flags.scene),
                    "waypoints without repeat");
-  std::vector<Run> runs(*flags.runs);
+  std::vector<SeededRun> runs(*flags.runs);
   Progress progress("run", runs.size());
   std::mutex told;  // guards progress
   sim::Workers workers(std::max(1u, std::thread::hardware_concurrency()));
@@ -138,7 +139,7 @@ Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, double secon
     progress.step();
   });
   std::vector<Outcome> outcomes;
-  for (const Run& run : runs) {
+  for (const SeededRun& run : runs) {
     NERITIC_TRY_STATUS(run.status);
     outcomes.insert(outcomes.end(), run.outcomes.begin(), run.outcomes.end());
   }

@@ -198,6 +198,7 @@ std::string source_lines(const SampleInbox& inbox) {
                                        {counts.repeated, "repeated"},
                                        {counts.out_of_order, "out of order"},
                                        {counts.not_finite, "not finite"},
+                                       {counts.not_plausible, "not plausible"},
                                        {counts.not_of_stream, "not of their stream"}})
       if (count > 0) lines += fmt::format(", {} {}", count, words);
     lines += "\n";
@@ -221,6 +222,7 @@ nlohmann::json sources_json(const SampleInbox& inbox) {
                     {"repeated", counts.repeated},
                     {"out_of_order", counts.out_of_order},
                     {"not_finite", counts.not_finite},
+                    {"not_plausible", counts.not_plausible},
                     {"not_of_stream", counts.not_of_stream}});
   }
   return json;
@@ -242,6 +244,21 @@ nlohmann::json groups_json(const Groups& groups, const std::vector<std::string>&
         {"fell_silent", state.losses}};
   }
   return json;
+}
+
+// An object that devices move; its end is null while its own track or place has it.
+nlohmann::json object_json(const PhysicsObject& object, const ObjectState& state,
+                           std::uint64_t refused_events, const std::vector<std::string>& sources) {
+  nlohmann::json end;
+  if (state.placed != 0) {
+    const Vec3& p = state.motion.pose.position_m;
+    const Quat& q = state.motion.pose.rotation;
+    end = {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}};
+  }
+  return {{"name", object.name},
+          {"inputs", groups_json<ObjectGroup>(state.groups, sources)},
+          {"refused_events", refused_events},
+          {"end", std::move(end)}};
 }
 
 // A line a group of inputs whose live source fell silent, never spoke, or is not heeded, and one of
@@ -334,6 +351,11 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
       human["refused_events"] = simulation.inputs().humans()[i].refused_events;
       json["humans"].push_back(std::move(human));
     }
+    json["objects"] = nlohmann::json::array();
+    for (std::size_t i = 0; i < world.objects().size(); ++i)
+      json["objects"].push_back(object_json(world.objects()[i], newest.state.objects()[i],
+                                            simulation.inputs().objects()[i].refused_events,
+                                            sources));
     json["sources"] = sources_json(simulation.inbox());
     json["unknown_source_samples"] = simulation.inbox().unknown_sources();
     fmt::print("{}\n", json_text(json));
@@ -354,6 +376,10 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
     fmt::print("{}",
                group_lines<DiverGroup>(world.humans()[i].name, newest.state.humans()[i].groups,
                                        simulation.inputs().humans()[i].refused_events, sources));
+  for (std::size_t i = 0; i < world.objects().size(); ++i)
+    fmt::print("{}",
+               group_lines<ObjectGroup>(world.objects()[i].name, newest.state.objects()[i].groups,
+                                        simulation.inputs().objects()[i].refused_events, sources));
   fmt::print("{}", source_lines(simulation.inbox()));
   const std::string restored =
       pace.start_s > 0.0 ? fmt::format(" ({:g} s of them restored)", pace.start_s) : "";

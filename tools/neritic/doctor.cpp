@@ -40,13 +40,41 @@ Verdict window_verdict(const Machine& machine) {
 
 Verdict headset_verdict(const Machine& machine) {
   Verdict verdict{"dive (headset)", false, ""};
-  if (machine.openxr_runtime.empty())
-    verdict.why = "no OpenXR runtime is configured";
-  else if (!machine.openxr_manifest_exists)
+  if (!can_render(machine))
+    verdict.why = kNoDevice;
+  else if (machine.openxr_runtime.empty() && !machine.headset)
+    verdict.why = "no OpenXR runtime is configured (docs/headsets.md)";
+  else if (!machine.openxr_manifest_exists && !machine.headset)
     verdict.why = machine.openxr_runtime.string() + " (XR_RUNTIME_JSON) is not there";
+  else if (!machine.headset)
+    verdict.why = machine.headset_trouble;
+  else if (machine.headset->system.empty())
+    verdict.why = machine.headset->runtime + " has no headset now";
   else
-    verdict.why = "this version does not drive headsets yet; a runtime is configured";
+    verdict = {verdict.command, true,
+               "on " + machine.headset->system + " by " + machine.headset->runtime};
   return verdict;
+}
+
+std::string headset_text(const xr::HeadsetInfo& headset) {
+  std::string text =
+      fmt::format("  {}, {}\n", headset.runtime,
+                  headset.system.empty() ? "no headset now" : "headset " + headset.system);
+  for (const xr::HeadsetInfo::Extension& extension : headset.extensions)
+    text += fmt::format("  {:<44}{:<8}{}\n", extension.name,
+                        extension.offered ? "offered" : "absent", extension.adds);
+  std::string others;
+  for (const std::string& name : headset.others) others += (others.empty() ? "" : ", ") + name;
+  if (!others.empty()) text += "  not used: " + others + "\n";
+  return text;
+}
+
+nlohmann::json headset_json(const xr::HeadsetInfo& headset) {
+  nlohmann::json json{{"name", headset.runtime}, {"headset", headset.system}};
+  for (const xr::HeadsetInfo::Extension& extension : headset.extensions)
+    json["extensions"][extension.name] = {{"offered", extension.offered}, {"adds", extension.adds}};
+  json["others"] = headset.others;
+  return json;
 }
 
 std::string device_text(const Machine& machine, std::size_t position) {
@@ -132,6 +160,7 @@ std::string doctor_text(const Machine& machine) {
       "OpenXR runtime      {}{}\n",
       machine.openxr_runtime.empty() ? "none configured" : machine.openxr_runtime.string(),
       machine.openxr_runtime.empty() || machine.openxr_manifest_exists ? "" : " (no such file)");
+  if (machine.headset) text += headset_text(*machine.headset);
   text += fmt::format(
       "Pipeline cache      {}{}\n",
       machine.cache_folder.empty() ? "nowhere (HOME is not set)" : machine.cache_folder.string(),
@@ -163,6 +192,7 @@ std::string doctor_json(const Machine& machine) {
   json["display"] = {{"name", machine.display}, {"there", machine.display_there}};
   json["openxr"] = {{"runtime", machine.openxr_runtime.string()},
                     {"exists", machine.openxr_manifest_exists}};
+  if (machine.headset) json["openxr"]["answer"] = headset_json(*machine.headset);
   json["cache"] = {{"folder", machine.cache_folder.string()}, {"writable", machine.cache_writable}};
   json["cpu_threads"] = machine.cpu_threads;
   json["memory_bytes"] = machine.memory_bytes;

@@ -10,6 +10,7 @@
 
 #include "engine/core/result.hpp"
 #include "engine/gpu/device.hpp"
+#include "engine/xr/openxr/headset.hpp"
 
 namespace neritic::tools {
 
@@ -27,6 +28,8 @@ struct Machine {
   bool display_there = false;            // its socket is there (true for an X11 display elsewhere)
   std::filesystem::path openxr_runtime;  // the active runtime's manifest; empty: none configured
   bool openxr_manifest_exists = false;
+  std::optional<xr::HeadsetInfo> headset;  // what the runtime says
+  std::string headset_trouble;             // or why it says nothing
   std::filesystem::path cache_folder;
   bool cache_writable = false;
 

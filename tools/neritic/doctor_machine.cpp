@@ -126,6 +126,10 @@ Machine examine_machine(const std::string& wanted_device) {
   examine_display(machine);
   machine.openxr_runtime = find_openxr_runtime();
   machine.openxr_manifest_exists = is_file(machine.openxr_runtime);
+  if (auto headset = xr::examine_headset(); headset.ok())
+    machine.headset = std::move(headset).value();
+  else
+    machine.headset_trouble = headset.error().message;
   machine.cache_folder = gpu::default_cache_folder();
   machine.cache_writable = can_write(machine.cache_folder);
   machine.cpu_threads = std::thread::hardware_concurrency();

@@ -9,8 +9,9 @@
 namespace neritic::tools {
 
 // path: .toml, or .gltf / .glb (shown alone, framed by a camera). size: "WxH" of every camera, or
-// empty.
+// empty. clip: of a model, by name or number; empty: its first.
 Result<scene::Scene> load_scene_or_model(const std::string& path, const std::string& size,
-                                         const scene::SceneOptions& options = {});
+                                         const scene::SceneOptions& options = {},
+                                         const std::string& clip = {});
 
 }  // namespace neritic::tools

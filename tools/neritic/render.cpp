@@ -10,6 +10,7 @@
 #include "engine/render/water_optics.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/output/frame_files.hpp"
+#include "testbed/sensors/sight_check.hpp"
 #include "testbed/sensors/sonar_check.hpp"
 #include "testbed/sensors/validation.hpp"
 #include "tools/common/outputs.hpp"
@@ -43,13 +44,10 @@ Result<scene::Scene> load(const RenderFlags& flags) {
           fmt::format("{:g} {:g} {:g}", options.offset_m.x, options.offset_m.y, options.offset_m.z),
           fmt::format("three numbers of -{0:g} to {0:g} metres", scene::kFarthest_m));
   }
-  NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size, options));
+  options.sonar_quality = flags.quality;
+  NERITIC_TRY(scene::Scene scene,
+              load_scene_or_model(flags.scene, flags.size, options, flags.clip));
   if (flags.seed) scene.seed = *flags.seed;
-  if (!flags.quality.empty())
-    for (scene::Sonar& sonar : scene.sonars) {
-      sonar.quality = flags.quality;
-      sonar.max_error = 0.0;
-    }
   if (flags.water.empty()) return scene;
   if (!scene.water)
     return refusal("--water", fmt::format("{}, which names no water", flags.scene),
@@ -64,22 +62,54 @@ Result<scene::Scene> load(const RenderFlags& flags) {
   return scene;
 }
 
-Result<LoopSensors> sensors_of(const RenderFlags& flags, const scene::Scene& scene) {
-  NERITIC_TRY(NamedSensors named, named_sensors(flags.sensors, scene));
-  LoopSensors sensors{.cameras = std::move(named.cameras),
-                      .sonars = std::move(named.sonars),
-                      .own_rates = flags.own_rates};
-  for (const std::size_t i : sensors.sonars)
-    NERITIC_TRY_STATUS(check_sonar(scene, scene.sonars[i]));
-  if (sensors.cameras.empty() && sensors.sonars.empty())
-    return refusal(flags.scene, "no camera and no sonar", "one or more");
-  // A side-scan made from pictures needs their depth.
-  if (flags.track_only) {
-    sensors.capture.motion = false;
-    sensors.capture.geometry = std::ranges::any_of(
-        sensors.sonars, [&](std::size_t i) { return !scene.sonars[i].picture_camera.empty(); });
+// The sensors that frames have, the data that is written of them, and the rate of frames.
+struct ChosenRender {
+  LoopSensors sensors;
+  FrameFormat format;
+  double rate_hz = 0.0;
+};
+
+bool is_picture_camera(const scene::Scene& scene, const LoopSensors& sensors, std::size_t camera) {
+  return std::ranges::any_of(sensors.sonars, [&](std::size_t i) {
+    return scene.sonars[i].picture_camera == scene.cameras[camera].name;
+  });
+}
+
+Result<Datasets> datasets_of(const RenderFlags& flags, const LoopSensors& sensors) {
+  using enum Dataset;
+  Datasets accumulated;
+  accumulated.add(kSonar).add(kTrajectory);
+  if (flags.only.empty()) return flags.track_only ? accumulated : Datasets::all();
+  NERITIC_TRY(const Datasets datasets, parse_datasets("--only", flags.only));
+  for (std::size_t i = 0; i < std::size(kDatasetNames); ++i) {
+    const auto one = static_cast<Dataset>(i);
+    if (!datasets.has(one)) continue;
+    const std::string_view name = kDatasetNames[i];
+    if (flags.track_only && !accumulated.has(one))
+      return refusal("--only", fmt::format("{} with --track-only", name), "sonar, trajectory");
+    const Datasets alone = Datasets().add(one);
+    const bool given = one == kTrajectory || (alone.of_cameras() && !sensors.cameras.empty()) ||
+                       (alone.of_sonars() && !sensors.sonars.empty());
+    if (!given)
+      return refusal("--only", fmt::format("{}", name),
+                     alone.of_sonars() ? "that with a sonar" : "that with a camera");
   }
-  return sensors;
+  return datasets;
+}
+
+// Drops the sensors that give nothing of what is written.
+void drop_unused(const scene::Scene& scene, const Datasets& datasets, LoopSensors& sensors) {
+  if (!datasets.of_sonars()) sensors.sonars.clear();
+  const bool heard = datasets.has(Dataset::kSonar);
+  std::erase_if(sensors.cameras, [&](std::size_t i) {
+    return !datasets.of_cameras() && !(heard && is_picture_camera(scene, sensors, i));
+  });
+  sensors.capture = capture_of(datasets);
+  // A side-scan made from pictures needs their depth.
+  if (heard && std::ranges::any_of(sensors.cameras, [&](std::size_t i) {
+        return is_picture_camera(scene, sensors, i);
+      }))
+    sensors.capture.color = sensors.capture.depth = true;
 }
 
 // Frames follow the first camera's rate, or the first sonar's; or the fastest, where each sensor
@@ -89,6 +119,29 @@ double frame_rate_hz(const scene::Scene& scene, const LoopSensors& sensors) {
   for (const std::size_t i : sensors.cameras) rates_hz.push_back(scene.cameras[i].rate_hz);
   for (const std::size_t i : sensors.sonars) rates_hz.push_back(scene.sonars[i].rate_hz);
   return sensors.own_rates ? *std::ranges::max_element(rates_hz) : rates_hz.front();
+}
+
+Packing packing_of(const std::string& compress) {
+  return compress == "npz" ? Packing::kNpz : compress == "png" ? Packing::kPng : Packing::kNone;
+}
+
+Result<ChosenRender> choose(const RenderFlags& flags, const scene::Scene& scene) {
+  NERITIC_TRY(NamedSensors named, named_sensors(flags.sensors, scene));
+  LoopSensors sensors{.cameras = std::move(named.cameras),
+                      .sonars = std::move(named.sonars),
+                      .own_rates = flags.own_rates};
+  for (const std::size_t i : sensors.sonars)
+    NERITIC_TRY_STATUS(check_sonar(scene, scene.sonars[i]));
+  if (sensors.cameras.empty() && sensors.sonars.empty())
+    return refusal(flags.scene, "no camera and no sonar", "one or more");
+  NERITIC_TRY(const Datasets datasets, datasets_of(flags, sensors));
+  const double rate_hz = frame_rate_hz(scene, sensors);
+  drop_unused(scene, datasets, sensors);
+  const bool seen = !sensors.cameras.empty() &&
+                    (sensors.capture.color || sensors.capture.geometry() || sensors.capture.motion);
+  if (flags.sheet && !seen && !(datasets.has(Dataset::kSonar) && !sensors.sonars.empty()))
+    return refusal("--sheet", "nothing in --only to show", "data of a camera, or sonar");
+  return ChosenRender{std::move(sensors), {datasets, packing_of(flags.compress)}, rate_hz};
 }
 
 // A sonar cannot ping again before its farthest echo is back.
@@ -156,7 +209,7 @@ class FirstFrame final : public FrameSink {
 };
 
 // Warns of files of an earlier run that could be taken for this one's.
-void warn_of_leftovers(const RenderFlags& flags, bool wrote_track,
+void warn_of_leftovers(const RenderFlags& flags, const ChosenRender& chosen, bool wrote_track,
                        const std::set<fs::path>& written) {
   const fs::path out = flags.out;
   std::error_code ignored;
@@ -177,18 +230,30 @@ void warn_of_leftovers(const RenderFlags& flags, bool wrote_track,
     log_warn("{}: sheet.png is an earlier run's", flags.out);
   if (!wrote_track && fs::is_directory(out / "track", ignored))
     log_warn("{}: track is an earlier run's", flags.out);
+  const auto leftover = [&](const char* name, bool written_now) {
+    if (!written_now && fs::is_regular_file(out / name, ignored))
+      log_warn("{}: {} is an earlier run's", flags.out, name);
+  };
+  leftover("coco.json", !flags.track_only && chosen.format.datasets.has(Dataset::kCoco) &&
+                            !chosen.sensors.cameras.empty());
+  leftover("trajectory.csv", chosen.format.datasets.has(Dataset::kTrajectory));
 }
 
 // "out: frame_0000 to 0029 of rov_camera, rov_sonar; track; sheet.png shows all at one glance".
-std::string summary(const RenderFlags& flags, const scene::Scene& scene, const LoopSensors& sensors,
+std::string summary(const RenderFlags& flags, const scene::Scene& scene, const ChosenRender& chosen,
                     bool wrote_track) {
+  const LoopSensors& sensors = chosen.sensors;
+  const Datasets& datasets = chosen.format.datasets;
   std::vector<std::string> names, parts;
   for (const std::size_t i : sensors.cameras) names.push_back(scene.cameras[i].name);
   for (const std::size_t i : sensors.sonars) names.push_back(scene.sonars[i].name);
   const std::string last = flags.frames > 1 ? fmt::format(" to {:04}", flags.frames - 1) : "";
-  if (!flags.track_only)
+  if (!flags.track_only && !names.empty())
     parts.push_back(fmt::format("frame_0000{} of {}", last, fmt::join(names, ", ")));
   if (wrote_track) parts.push_back("track");
+  if (!flags.track_only && datasets.has(Dataset::kCoco) && !sensors.cameras.empty())
+    parts.push_back("coco.json");
+  if (datasets.has(Dataset::kTrajectory)) parts.push_back("trajectory.csv");
   if (flags.sheet) parts.push_back("sheet.png shows all at one glance");
   return fmt::format("{}: {}", flags.out, fmt::join(parts, "; "));
 }
@@ -217,13 +282,15 @@ Result<std::string> run_render(const RenderFlags& flags) {
                    fmt::format("{:g} to {:g} s", -kLatestTime_s, kLatestTime_s));
   NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
   const std::string graph_file = flags.dump_graph != "-" ? flags.dump_graph : "";
-  NERITIC_TRY_STATUS(check_step_files(flags.files, {"--dump-graph", graph_file}));
+  NERITIC_TRY_STATUS(check_step_files(flags.files, {{"--dump-graph", graph_file}}));
   const TimeNs start = now_ns();
   const Interrupt interrupt;
   NERITIC_TRY(scene::Scene scene, load(flags));
-  NERITIC_TRY(LoopSensors sensors, sensors_of(flags, scene));
+  NERITIC_TRY(ChosenRender chosen, choose(flags, scene));
+  LoopSensors& sensors = chosen.sensors;
   for (const std::string& note : scene.notes) log_warn("{}", note);
-  if (!sensors.cameras.empty() && !scene.sun && scene.lamps.empty() && scene.model_lights.empty())
+  if (!sensors.cameras.empty() && sensors.capture.color && !scene.sun && scene.lamps.empty() &&
+      scene.model_lights.empty())
     log_warn("{}: no sun and no lamps, so only what glows by itself is seen", flags.scene);
   log_info("scene read in {:.0f} ms: {} models, {} objects", to_ms(now_ns() - start),
            scene.models.size(), scene.objects.size());
@@ -232,7 +299,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(const auto device, gpu::Device::create(options));
-  const double rate_hz = frame_rate_hz(scene, sensors), step_s = 1.0 / rate_hz;
+  const double rate_hz = chosen.rate_hz, step_s = 1.0 / rate_hz;
   NERITIC_TRY(const auto physics, make_physics(flags, scene, flags.time_s + flags.frames * step_s));
   if (flags.frames > 1) warn_of_rates(scene, sensors, rate_hz);
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
@@ -251,25 +318,27 @@ Result<std::string> run_render(const RenderFlags& flags) {
   }
   // One frame makes no track, but boxes.
   const bool tracks = flags.frames > 1 || flags.track_only;
-  FrameFiles files(*session, {flags.out, flags.scene, !flags.track_only,
+  FrameFiles files(*session, {flags.out, flags.scene, !flags.track_only, chosen.format,
                               SurveyOptions{flags.chart_cell_m, tracks}});
   FirstFrame first(flags, *session);
+  SightCheck sight(*session, physics ? &physics->motion() : nullptr,
+                   [](const std::string& line) { log_warn("{}", line); });
   Loop loop(
       {.clock = Clock::simulated(flags.time_s, step_s),
        .physics = physics.get(),
        .sensors = sensors,
        .step_sinks = step_sinks,
-       .frame_sinks = {&files, &first},
+       .frame_sinks = {&files, &first, &sight},
        .stop = {.frames = flags.frames, .interrupted = [&] { return interrupt.requested(); }}});
   NERITIC_TRY_STATUS(loop.run());
   if (loop.frames() == 0)
     return Error{ErrorCode::kInterrupted, "interrupted before the first frame"};
-  if (const auto hint = files.hint()) log_warn("{}", *hint);
+  for (const std::string& hint : files.hints()) log_warn("{}", hint);
   if (loop.frames() < flags.frames)
     return stopped_render(flags, loop.frames(), step_s, files.wrote_track());
-  warn_of_leftovers(flags, files.wrote_track(), files.folders());
+  warn_of_leftovers(flags, chosen, files.wrote_track(), files.folders());
   NERITIC_TRY_STATUS(check_validation(*device));
-  return summary(flags, session->scene(), sensors, files.wrote_track());
+  return summary(flags, session->scene(), chosen, files.wrote_track());
 }
 
 }  // namespace neritic::tools

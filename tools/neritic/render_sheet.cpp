@@ -26,6 +26,7 @@ bool moves(const ImageF32& motion_px) {
 void add_camera(std::vector<Picture>& out, const CameraFrame& camera) {
   for (std::size_t e = 0; e < camera.eyes.size(); ++e) {
     const bool stereo = camera.eyes.size() > 1;
+    if (camera.eyes[e].color.empty()) continue;
     const std::string name = stereo ? camera.name + (e == 0 ? "_left" : "_right") : camera.name;
     out.push_back({{camera.eyes[e].color, name}, name + "_color"});
   }
@@ -70,7 +71,8 @@ void add_geometry(std::vector<Picture>& out, const CameraFrame& camera, const Cl
 // On a sheet no word of a sonar's own picture could be read, so the caption says what they do.
 Tile sonar_tile(const SonarFrame& sonar, const std::string& name) {
   const sonar::Limits& l = sonar.grid.limits;
-  sonar::PanelOptions options = sonar::panel_options(sonar.kind, sonar.level, sonar.terms.output);
+  sonar::PanelOptions options =
+      sonar::panel_options(sonar.kind, sonar.level, sonar.terms.output, sonar.name);
   options.words = false;
   if (sonar.image.n_azimuth == 1) return {sonar::draw_sonar(sonar_files(sonar)), name};
   return {sonar::draw_panel(sonar.grid, sonar.image, options),
@@ -85,6 +87,7 @@ Status write_sheet(const std::filesystem::path& out, const FrameResult& result,
   std::vector<Picture> pictures;
   for (const CameraFrame& camera : result.cameras) add_camera(pictures, camera);
   for (const SonarFrame& sonar : result.sonars) {
+    if (!sonar.heard()) continue;
     const std::string name = sonar.head.empty() ? sonar.name : sonar.name + "_" + sonar.head;
     pictures.push_back({sonar_tile(sonar, name), name + "_sonar"});
   }

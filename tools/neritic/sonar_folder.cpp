@@ -102,7 +102,7 @@ void keep_memory() {
 #endif
 }
 
-struct Run {
+struct FolderRun {
   const SonarJob& job;
   const std::vector<FrameFiles>& frames;
   const std::vector<std::size_t>& todo;
@@ -115,7 +115,7 @@ struct Run {
 // A fault in one frame's files leaves the frame out and deletes its results of an earlier run; any
 // other fault ends the run.
 template <class T>
-Result<std::optional<T>> or_skip(const Run& run, std::size_t frame, Result<T> made) {
+Result<std::optional<T>> or_skip(const FolderRun& run, std::size_t frame, Result<T> made) {
   if (made.ok()) return std::optional<T>(std::move(*made));
   if (made.error().code != ErrorCode::kBadInput) return made.error();
   run.skipped.add(frame, made.error().message);
@@ -124,7 +124,7 @@ Result<std::optional<T>> or_skip(const Run& run, std::size_t frame, Result<T> ma
 }
 
 template <class M>
-Status run_frames(const Run& run, SonarNotes& notes, const M& maker) {
+Status run_frames(const FolderRun& run, SonarNotes& notes, const M& maker) {
   using Heard = typename M::Heard;
   using Frames = Pipeline<typename M::Loaded, std::optional<Heard>>;
   Progress progress("frame", run.todo.size());
@@ -159,7 +159,7 @@ Status run_frames(const Run& run, SonarNotes& notes, const M& maker) {
   return Frames({run.todo.size(), run.workers, run.workers + 2}, std::move(steps)).run();
 }
 
-Status run_kind(const Run& run) {
+Status run_kind(const FolderRun& run) {
   const SonarJob& job = run.job;
   SonarNotes notes;
   if (job.flags.method == "image")
@@ -192,7 +192,7 @@ Status run_kind(const Run& run) {
 }
 
 // The files in the first finished frame's folder: all frames have the same.
-std::string files_of_a_result(const Run& run) {
+std::string files_of_a_result(const FolderRun& run) {
   for (const FrameFiles& frame : run.frames)
     if (const auto names = result_files(run.job.flags.out / frame.name); !names.empty())
       return fmt::format("{}", fmt::join(names, ", "));
@@ -200,7 +200,7 @@ std::string files_of_a_result(const Run& run) {
 }
 
 // How it went, in one line and in OUT/run.json.
-Result<std::string> report(const Run& run, double seconds) {
+Result<std::string> report(const FolderRun& run, double seconds) {
   const std::size_t skipped = run.skipped.size(), made = run.written;
   const std::size_t there = run.frames.size() - run.todo.size();
   const double per_s = static_cast<double>(made) / std::max(seconds, 1e-9);
@@ -225,7 +225,7 @@ Result<std::string> report(const Run& run, double seconds) {
   return line;
 }
 
-Error stopped_folder(const Run& run) {
+Error stopped_folder(const FolderRun& run) {
   const std::size_t there = run.frames.size() - run.todo.size() + run.written;
   return {ErrorCode::kInterrupted,
           fmt::format("interrupted: {} of {} frames are whole in {}, {} of them by this run; the "
@@ -250,9 +250,9 @@ Result<std::string> run_folder(const SonarJob& job) {
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   const Interrupt interrupt;
   std::atomic<std::size_t> written = 0;
-  const Run run{job,       frames, todo,
-                skipped,   silent, job.flags.workers > 0 ? job.flags.workers : cores,
-                interrupt, written};
+  const FolderRun run{job,       frames, todo,
+                      skipped,   silent, job.flags.workers > 0 ? job.flags.workers : cores,
+                      interrupt, written};
   const TimeNs start = now_ns();
   keep_memory();
   if (!todo.empty()) NERITIC_TRY_STATUS(run_kind(run));

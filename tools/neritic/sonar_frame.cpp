@@ -30,7 +30,7 @@ nlohmann::json facts_of(const SonarJob& job, const sonar::FrameFiles& files,
       {"depth_kind", flags.depth_kind},
       {"depth_scale", job.options.depth_scale},
       {"normals", normals ? files.paths[kNormalGroup].filename().string() : "estimated from depth"},
-      {"axes", flags.axes},
+      {"axes", flags.axes + (flags.camera_pose.empty() ? "" : ", turned from the world's")},
       {"normals_sign", normals ? flags.normals_sign : "facing"},
       {"gamma", job.options.gamma},
       {"image", {in.width, in.height}},
@@ -43,7 +43,7 @@ nlohmann::json facts_of(const SonarJob& job, const sonar::FrameFiles& files,
   json["terms"] = sonar::terms_json(job.sonar.terms);
   json["seed"] = flags.seed;
   if (const auto level = sonar::quality_level(job.sonar); level.ok() && *level != nullptr)
-    json["quality"] = sonar::quality_json(**level, job.sonar.max_error);
+    json["quality"] = sonar::quality_json(**level, job.sonar.max_error, false);
   if (job.sonar.terms.level) json["backscatter_db"] = std::stod(flags.backscatter_db);
   return json;
 }
@@ -145,13 +145,13 @@ Status check_classes(const sonar::SonarInput& in, const sonar::MapFile& labels) 
 
 Result<Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFile& image) {
   Intrinsics k;
-  if (is_json_name(flags.intrinsics)) {
+  if (is_camera_file(flags.intrinsics)) {
     NERITIC_TRY(k, sonar::read_intrinsics(flags.intrinsics, image));
   } else {
     const auto values = parse_numbers("intrinsics", flags.intrinsics, 4, 4);
     if (!values.ok())
       return refusal("--intrinsics", fmt::format("'{}'", flags.intrinsics),
-                     "fx,fy,cx,cy or a .json file");
+                     "fx,fy,cx,cy or a .json or .yaml file");
     k = {(*values)[0], (*values)[1], (*values)[2], (*values)[3]};
   }
   if (!(k.fx > 0.0 && k.fy > 0.0))
@@ -165,6 +165,7 @@ Result<Intrinsics> frame_intrinsics(const SonarFlags& flags, const sonar::MapFil
 
 void note_whole_metres(const SonarJob& job, const sonar::MapFile& depth, SonarNotes& notes) {
   if (depth.whole_numbers && job.options.depth_scale == 1.0 &&
+      job.options.depth_kind != sonar::DepthKind::kDisparity &&
       notes.first(SonarNotes::About::kWholeMetres))
     notes.say(fmt::format("{}: whole numbers taken as metres (--depth-scale 0.001 for millimetres)",
                           depth.path));
@@ -178,22 +179,35 @@ Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& fil
   note_whole_metres(job, depth, notes);
   std::optional<sonar::MapFile> normals, labels;
   if (!files.paths[kNormalGroup].empty()) {
-    NERITIC_TRY(normals, sonar::read_map(files.paths[kNormalGroup], sonar::MapUse::kColors));
+    NERITIC_TRY(normals, sonar::read_map(files.paths[kNormalGroup], sonar::MapUse::kNormals));
     if (normals->coding == sonar::MapFile::Coding::kNumbers && job.options.gamma != 1.0)
       return refusal(
           "--gamma", fmt::format("{:g}", job.options.gamma),
           fmt::format("1, since {} has plain numbers, not coded colours", normals->path));
   }
   if (!files.paths[kLabelGroup].empty()) {
-    NERITIC_TRY(labels, sonar::read_map(files.paths[kLabelGroup]));
+    NERITIC_TRY(labels, sonar::read_map(files.paths[kLabelGroup], sonar::MapUse::kLabels));
+  }
+  sonar::OfflineOptions options = job.options;
+  if (is_camera_file(job.flags.camera_pose)) {
+    NERITIC_TRY(options.world_from_camera,
+                sonar::read_camera_rotation(job.flags.camera_pose, depth));
   }
   LoadedFrame frame;
-  NERITIC_TRY(frame.in, sonar::make_input(depth, normals ? &*normals : nullptr,
-                                          labels ? &*labels : nullptr, intrinsics, job.options));
+  sonar::NormalEstimate estimate;
+  NERITIC_TRY(frame.in,
+              sonar::make_input(depth, normals ? &*normals : nullptr, labels ? &*labels : nullptr,
+                                intrinsics, options, &estimate));
   if (labels && job.sonar.terms.labels.energy) NERITIC_TRY_STATUS(check_classes(frame.in, *labels));
   note_coverage(job, frame.in, notes);
+  const auto noise = noise_note(estimate);
+  if (noise && notes.first(SonarNotes::About::kNoise)) notes.say(*noise);
   frame.files = files;
   frame.facts = facts_of(job, files, frame.in);
+  if (!normals)
+    frame.facts["estimated_normals"] = {{"depth_noise_m", estimate.noise_m},
+                                        {"error_deg", degrees(estimate.error_rad)},
+                                        {"width_px", estimate.width_px}};
   frame.facts["timings_ms"]["read"] = to_ms(now_ns() - start);
   return frame;
 }
@@ -261,7 +275,7 @@ std::unique_ptr<sonar::PolarPanel> panel_of(const SonarJob& job) {
   if (job.flags.no_pictures || job.head.beams.bins.azimuth == 1) return nullptr;
   return std::make_unique<sonar::PolarPanel>(
       job.head.beams, sonar::panel_options(job.sonar.kind, job.sonar.terms.level.has_value(),
-                                           job.sonar.terms.output));
+                                           job.sonar.terms.output, job.sonar.name));
 }
 
 Status write_heard_frame(const SonarJob& job, const fs::path& folder, HeardFrame frame,
@@ -276,7 +290,8 @@ Status write_heard_frame(const SonarJob& job, const fs::path& folder, HeardFrame
                              .label_energy = frame.label_energy ? &*frame.label_energy : nullptr,
                              .picture = !job.flags.no_pictures,
                              .panel = panel,
-                             .cloud = cloud ? &*cloud : nullptr},
+                             .cloud = cloud ? &*cloud : nullptr,
+                             .name = job.sonar.name},
                             frame.facts);
 }
 

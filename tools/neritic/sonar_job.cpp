@@ -209,9 +209,12 @@ Status check_effects(const SonarFlags& flags, const SonarJob& job) {
     NERITIC_TRY_STATUS(
         refuse({"--normals", "--labels", "--gather", "--elevation"}, "without --method image"));
   if (flags.normals.empty())
-    NERITIC_TRY_STATUS(refuse({"--axes", "--normals-sign", "--gamma"}, "with --normals"));
+    NERITIC_TRY_STATUS(
+        refuse({"--axes", "--normals-sign", "--gamma", "--camera-pose"}, "with --normals"));
   if (flags.depth.empty())
     NERITIC_TRY_STATUS(refuse({"--depth-kind", "--depth-scale"}, "with --depth"));
+  if (flags.depth_kind != "disparity")
+    NERITIC_TRY_STATUS(refuse({"--baseline"}, "with --depth-kind disparity"));
   if (flags.kind != "sidescan" || flags.method == "image")
     NERITIC_TRY_STATUS(refuse({"--side"}, "for the acoustic kind sidescan"));
   if (!job.sonar.terms.level)
@@ -223,7 +226,9 @@ Status check_effects(const SonarFlags& flags, const SonarJob& job) {
 
 Result<sonar::OfflineOptions> options_of(const SonarFlags& flags) {
   sonar::OfflineOptions options;
-  options.depth_is_range = flags.depth_kind == "range";
+  options.depth_kind = flags.depth_kind == "range"       ? sonar::DepthKind::kRange
+                       : flags.depth_kind == "disparity" ? sonar::DepthKind::kDisparity
+                                                         : sonar::DepthKind::kPlanar;
   options.normals_face_sensor = flags.normals_sign == "facing";
   options.axes = flags.axes == "opencv" ? sonar::NormalAxes::kOpencv
                  : flags.axes == "ros"  ? sonar::NormalAxes::kRos
@@ -234,6 +239,18 @@ Result<sonar::OfflineOptions> options_of(const SonarFlags& flags) {
     return refusal("--depth-scale", fmt::format("{:g}", scale[0]), "a positive number");
   if (!(gamma[0] > 0.0))
     return refusal("--gamma", fmt::format("{:g}", gamma[0]), "a positive number");
+  if (options.depth_kind == sonar::DepthKind::kDisparity) {
+    if (flags.baseline.empty())
+      return refusal("--baseline", "none", "metres, beside --depth-kind disparity");
+    NERITIC_TRY(const auto baseline, parse_numbers("baseline", flags.baseline, 1, 1));
+    if (!(baseline[0] > 0.0))
+      return refusal("--baseline", fmt::format("{:g}", baseline[0]), "a positive number");
+    options.baseline_m = baseline[0];
+  }
+  if (!flags.camera_pose.empty() && !is_camera_file(flags.camera_pose)) {
+    NERITIC_TRY(const auto q, parse_numbers("camera-pose", flags.camera_pose, 4, 4));
+    NERITIC_TRY(options.world_from_camera, sonar::rotation_of(q, "--camera-pose"));
+  }
   options.depth_scale = scale[0];
   options.gamma = gamma[0];
   return options;

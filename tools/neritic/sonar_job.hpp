@@ -29,8 +29,8 @@ struct SonarJob {
 // kBadInput that names the flag, or the sensor's file and key.
 Result<SonarJob> plan_job(const SonarFlags& flags);
 
-// Whether --intrinsics names a JSON file, rather than giving numbers.
-bool is_json_name(const std::string& intrinsics);
+// Whether --intrinsics or --camera-pose names a .json or .yaml file, rather than giving numbers.
+bool is_camera_file(const std::string& text);
 
 // job.settings; plan_job has set everything else. kBadInput where the intrinsics' file is not
 // there.

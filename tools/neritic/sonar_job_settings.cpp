@@ -56,8 +56,9 @@ std::string detection_text(const scene::SonarDetection& d) {
 
 }  // namespace
 
-bool is_json_name(const std::string& intrinsics) {
-  return lower_case(std::filesystem::path(intrinsics).extension().string()) == ".json";
+bool is_camera_file(const std::string& text) {
+  const std::string extension = lower_case(std::filesystem::path(text).extension().string());
+  return extension == ".json" || extension == ".yaml" || extension == ".yml";
 }
 
 Result<nlohmann::json> settings_of(const SonarJob& job) {
@@ -82,11 +83,15 @@ Result<nlohmann::json> settings_of(const SonarJob& job) {
       {"intrinsics", f.intrinsics},
       {"pixel_centers", f.pixel_centers},
       {"pictures", !f.no_pictures}};
-  if (is_json_name(f.intrinsics)) {
-    NERITIC_TRY(const std::string text, read_text(f.intrinsics));
+  if (f.depth_kind == "disparity") json["baseline_m"] = text(job.options.baseline_m);
+  if (!f.camera_pose.empty()) json["camera_pose"] = f.camera_pose;
+  for (const auto& [key, file] :
+       {std::pair{"intrinsics", f.intrinsics}, {"camera_pose", f.camera_pose}}) {
+    if (!is_camera_file(file)) continue;
+    NERITIC_TRY(const std::string text, read_text(file));
     Hash64 hash;
     hash.add_bytes(text.data(), text.size());
-    json["intrinsics"] = std::filesystem::path(f.intrinsics).filename().string() + " " + hash.hex();
+    json[key] = std::filesystem::path(file).filename().string() + " " + hash.hex();
   }
   if (job.sonar.terms.detection != scene::SonarDetection{})
     json["detection"] = detection_text(job.sonar.terms.detection);

@@ -134,6 +134,16 @@ std::optional<std::string> normals_note(const Coverage& coverage, bool estimated
       percent(none));
 }
 
+std::optional<std::string> noise_note(const sonar::NormalEstimate& estimate) {
+  if (estimate.width_px == 0) return std::nullopt;
+  return fmt::format(
+      "the depth is noisy by about {:.2g} mm, which would tilt normals from neighbouring pixels by "
+      "{:.0f} degrees: they come from planes fitted to {} x {} pixels, off by about {:.1f} "
+      "(--normals are better)",
+      1e3 * estimate.noise_m, degrees(estimate.error_of_neighbours_rad), estimate.width_px,
+      estimate.width_px, degrees(estimate.error_rad));
+}
+
 bool SonarNotes::first(About about) {
   const std::lock_guard lock(mutex_);
   const unsigned bit = 1u << static_cast<unsigned>(about);

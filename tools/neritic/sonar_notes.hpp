@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sonar/depth_normals.hpp"
 #include "sonar/reference.hpp"
 
 namespace neritic::tools {
@@ -34,10 +35,13 @@ std::optional<std::string> coverage_note(const sonar::BeamGrid& grid, const Cove
 // Where a good part of what lies in the wedge is silent by its normals. estimated: from the depth.
 std::optional<std::string> normals_note(const Coverage& coverage, bool estimated);
 
+// Where the depth's noise would have tilted estimated normals by much.
+std::optional<std::string> noise_note(const sonar::NormalEstimate& estimate);
+
 // Notes that are printed once in a run, however many frames they concern. Any thread.
 class SonarNotes {
  public:
-  enum class About : unsigned { kWholeMetres, kCoverage };
+  enum class About : unsigned { kWholeMetres, kCoverage, kNoise };
 
   // Whether nothing was said about it yet; true once.
   bool first(About about);

@@ -14,22 +14,27 @@ namespace {
 
 constexpr double kMostRows_hz = 1e4;
 
-// The rows of the log as a picture.
-class DivePlot final : public StepSink {
+// Rows, thinned, as a picture.
+class DivePlot final : public RowSink {
  public:
-  DivePlot(const PhysicsWorld& world, const DiveRecorder& recorder, std::string title,
-           std::string path)
-      : world_(world), recorder_(recorder), title_(std::move(title)), path_(std::move(path)) {}
-  Status accept(const sim::Snapshot<PhysicsState>&, std::span<const Sample>) override { return {}; }
+  DivePlot(const PhysicsWorld& world, std::string title, std::string path)
+      : world_(world), rows_(world), title_(std::move(title)), path_(std::move(path)) {}
+  Status accept(const DiveRows& rows) override {
+    rows_.add(rows);
+    return {};
+  }
   Status finish() override {
-    const auto drawn = write_picture(path_, dive_picture_data(title_, world_, recorder_));
+    const auto drawn = write_picture(path_, dive_picture_data(title_, world_, rows_, *figures_));
     return drawn.ok() ? Status() : Status(drawn.error());
   }
+  // Of the divers; before finish.
+  void set_figures(const std::vector<HumanFigures>& figures) { figures_ = &figures; }
 
  private:
   const PhysicsWorld& world_;
-  const DiveRecorder& recorder_;
+  PlotRows rows_;
   std::string title_, path_;
+  const std::vector<HumanFigures>* figures_ = nullptr;
 };
 
 }  // namespace
@@ -48,7 +53,7 @@ Error flag_without_physics(const std::string& flag, const std::string& scene) {
                  "a scene where a vehicle has dynamics or a diver swims");
 }
 
-Status check_step_files(const StepFileFlags& flags, const OutputFile& other) {
+Status check_step_files(const StepFileFlags& flags, const std::vector<OutputFile>& others) {
   const double rate_hz = flags.log_rate_hz.value_or(0.0);
   if (!(rate_hz >= 0.0 && rate_hz <= kMostRows_hz))
     return refusal("--log-rate", fmt::format("{}", rate_hz),
@@ -56,8 +61,8 @@ Status check_step_files(const StepFileFlags& flags, const OutputFile& other) {
   std::vector<OutputFile> files{{"--log", flags.log},
                                 {"--plot", flags.plot},
                                 {"--record", flags.record},
-                                {"--save", flags.save},
-                                other};
+                                {"--save", flags.save}};
+  files.insert(files.end(), others.begin(), others.end());
   for (const OutputFile& one : files) NERITIC_TRY_STATUS(check_output_file(one.flag, one.file));
   if (!flags.plot.empty()) files.push_back({"--plot", picture_data_path(flags.plot)});
   return check_outputs_differ(files);
@@ -69,16 +74,19 @@ StepFiles::StepFiles(const StepFileFlags& flags, const std::string& title,
   if (!flags.save.empty())
     files_.push_back(std::make_unique<StateFile>(world, physics.simulation(), flags.save));
   if (!flags.record.empty())
-    files_.push_back(std::make_unique<RecordingFile>(world, physics.simulation(), flags.record));
-  auto log =
-      std::make_unique<DiveLog>(world,
-                                RecordOptions{.rows = !flags.log.empty() || !flags.plot.empty(),
-                                              .row_rate_hz = flags.log_rate_hz.value_or(0.0)},
-                                flags.log);
+    files_.push_back(
+        std::make_unique<RecordingFile>(world, physics.simulation().inbox(), flags.record));
+  std::vector<std::unique_ptr<RowSink>> rows;
+  DivePlot* plot = nullptr;
+  if (!flags.log.empty()) rows.push_back(std::make_unique<CsvLog>(world, flags.log));
+  if (!flags.plot.empty()) {
+    rows.push_back(std::make_unique<DivePlot>(world, title, flags.plot));
+    plot = static_cast<DivePlot*>(rows.back().get());
+  }
+  auto log = std::make_unique<DiveLog>(world, flags.log_rate_hz.value_or(0.0), std::move(rows));
   log_ = log.get();
+  if (plot) plot->set_figures(log_->recorder().humans().figures());
   files_.push_back(std::move(log));
-  if (!flags.plot.empty())
-    files_.push_back(std::make_unique<DivePlot>(world, log_->recorder(), title, flags.plot));
 }
 
 std::vector<StepSink*> StepFiles::sinks() const {

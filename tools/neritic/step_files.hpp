@@ -17,10 +17,10 @@ namespace neritic::tools {
 std::string first_step_flag(const StepFileFlags& flags);
 // For a flag of physics in a scene where nothing moves by physics. scene: its path.
 Error flag_without_physics(const std::string& flag, const std::string& scene);
-// Checks these files and another that the command writes: kBadInput for a rate that is none and for
+// Checks these files and others that the command writes: kBadInput for a rate that is none and for
 // two flags with one file, kIo for a file that cannot be written: better known before a run of
 // hours than after it.
-Status check_step_files(const StepFileFlags& flags, const OutputFile& other);
+Status check_step_files(const StepFileFlags& flags, const std::vector<OutputFile>& others);
 
 // The sinks that the flags name, in the order in which they finish. The log's figures are always
 // there, for the summary.

@@ -32,8 +32,9 @@ def painters():
     import dive
     import physio
     import plan
+    import timeline
 
-    return {"dive": dive.draw, "plan": plan.draw, "curves": curves.draw} | physio.PAINTERS
+    return {"dive": dive.draw, "plan": plan.draw, "curves": curves.draw, "timeline": timeline.draw} | physio.PAINTERS
 
 
 def save(figure, path):

@@ -7,6 +7,10 @@ namespace neritic::tools {
 using namespace testbed;
 namespace {
 
+// Renders beyond those asked for, while every one took no time by the device's clock (lavapipe's
+// reads 0 where the machine's clock stood still).
+constexpr int kMoreTries = 50;
+
 KindBench::Measured times_of(const FrameResult& frame) {
   KindBench::Measured out;
   for (const gpu::PassTime& pass : frame.passes) {
@@ -42,20 +46,26 @@ Status KindBench::open(gpu::Device& device, const scene::Scene& scene) {
   return {};
 }
 
-Result<KindBench::Measured> KindBench::render(const scene::Sonar& sonar, int repeats) {
+void KindBench::place(std::size_t index, scene::Sonar sonar, const Shot& shot) {
+  sonar.mount = moving_mount(shot.world_from_sonar);
+  session_->replace_sonar(index, std::move(sonar));
+}
+
+Result<KindBench::Measured> KindBench::render(const scene::Sonar& sonar, int repeats,
+                                              std::uint64_t draw) {
   Measured out;
   placed_.clear();
   const double share = 1.0 / static_cast<double>(kind_.shots.size());
   for (const Shot& shot : kind_.shots) {
-    scene::Sonar& mine = session_->scene().sonars[0];
-    mine = sonar;
-    mine.mount = moving_mount(shot.world_from_sonar);
+    place(0, sonar, shot);
     FrameRequest request;
     request.sonars = {0};
+    request.seed = session_->scene().seed + draw;
     request.frame = shot.frame;
-    request.capture.geometry = false;
+    request.capture = request.capture.without_geometry();
     Measured least;
-    for (int i = 0; i < repeats + 1; ++i) {
+    const auto measured = [&] { return least.ms() > 0.0; };
+    for (int i = 0; i < repeats + 1 || (repeats > 0 && !measured() && i < kMoreTries); ++i) {
       NERITIC_TRY(const FrameResult frame, session_->render(request));
       if (i == 0) {  // the first also compiles
         for (std::size_t head = 0; head < frame.sonars.size(); ++head) {
@@ -66,7 +76,7 @@ Result<KindBench::Measured> KindBench::render(const scene::Sonar& sonar, int rep
         continue;
       }
       const Measured now = times_of(frame);
-      if (i == 1 || now.ms() < least.ms()) least = now;
+      if (!measured() || (now.ms() > 0.0 && now.ms() < least.ms())) least = now;
     }
     out.raster_ms += least.raster_ms * share;
     out.gather_ms += least.gather_ms * share;
@@ -80,13 +90,11 @@ Result<KindBench::Price> KindBench::price(const scene::Sonar& with, const scene:
   Price out;
   double variance = 0.0;
   for (const Shot& shot : kind_.shots) {
-    auto& sonars = session_->scene().sonars;
-    sonars[0] = with;
-    sonars[1] = without;
-    for (scene::Sonar& sonar : sonars) sonar.mount = moving_mount(shot.world_from_sonar);
+    place(0, with, shot);
+    place(1, without, shot);
     FrameRequest request;
     request.frame = shot.frame;
-    request.capture.geometry = false;
+    request.capture = request.capture.without_geometry();
     std::vector<double> more_ms;
     for (int i = -1; i < pairs; ++i) {  // the first also compile
       double ms[2];

@@ -27,8 +27,8 @@ class KindBench {
   explicit KindBench(const KindSetting& kind) : kind_(kind) {}
   Status open(gpu::Device& device, const scene::Scene& scene);
   // A setting of the kind's sensor; the least time of repeats (0: only images). The scene's own
-  // work (bodies that bend) is not counted.
-  Result<Measured> render(const scene::Sonar& sonar, int repeats);
+  // work (bodies that bend) is not counted. draw: added to the scene's seed.
+  Result<Measured> render(const scene::Sonar& sonar, int repeats, std::uint64_t draw = 0);
   // The extra time of one setting over another: both are run in turns, so that other load affects
   // both alike; the median of their differences, then the mean over shots.
   struct Price {
@@ -38,10 +38,10 @@ class KindBench {
   Result<Price> price(const scene::Sonar& with, const scene::Sonar& without, int pairs);
   // Sensor poses of the last render.
   const std::vector<Placed>& placed() const { return placed_; }
-  std::uint64_t seed() const { return session_->scene().seed; }
-  void set_seed(std::uint64_t seed) { session_->scene().seed = seed; }
 
  private:
+  void place(std::size_t index, scene::Sonar sonar, const Shot& shot);
+
   const KindSetting& kind_;
   std::unique_ptr<testbed::Session> session_;
   std::vector<Placed> placed_;

@@ -10,7 +10,7 @@ namespace {
 
 using scene::Sonar;
 using scene::SonarKind;
-using Measured = KindBench::Measured;
+using MeasuredTerm = KindBench::Measured;
 
 // Pairs of pings by which a term's cost is measured.
 constexpr int kPairs = 11;
@@ -39,8 +39,8 @@ class TermSweep {
       using Judge = TermCase::Judge;
       Sonar changed = c.with;
       if (c.judge == Judge::kNoise) changed.terms.noise->level_db = a_tenth_db(c);
-      NERITIC_TRY(const Measured with, bench_.render(changed, 0));
-      NERITIC_TRY(const Measured without, bench_.render(c.without, 0));
+      NERITIC_TRY(const MeasuredTerm with, bench_.render(changed, 0));
+      NERITIC_TRY(const MeasuredTerm without, bench_.render(c.without, 0));
       NERITIC_TRY(const KindBench::Price price,
                   bench_.price(changed, c.without, options_.quick ? 3 : kPairs));
       TermPoint p;
@@ -81,7 +81,7 @@ class TermSweep {
              profile_tables(c.with, -kind_.shots.front().world_from_sonar.position_m.y))
           out.terms.push_back(std::move(p));
       if (c.name != "level") continue;
-      NERITIC_TRY(const Measured level, bench_.render(c.with, 0));
+      NERITIC_TRY(const MeasuredTerm level, bench_.render(c.with, 0));
       for (TermPoint& p : counts_of(level.image)) out.terms.push_back(std::move(p));
     }
     return {};
@@ -100,17 +100,14 @@ class TermSweep {
 
   // Over draws of the world's scatterers.
   Result<SpeckleFound> speckle_of(Sonar sonar) {
-    const std::uint64_t seed = bench_.seed();
     Sonar without = sonar;
     without.terms.speckle.reset();
-    NERITIC_TRY(const Measured smooth, bench_.render(without, 0));
+    NERITIC_TRY(const MeasuredTerm smooth, bench_.render(without, 0));
     SpeckleMoments moments;
     for (std::uint64_t draw = 0; draw < (options_.quick ? 1u : 4u); ++draw) {
-      bench_.set_seed(seed + draw);
-      NERITIC_TRY(const Measured found, bench_.render(sonar, 0));
+      NERITIC_TRY(const MeasuredTerm found, bench_.render(sonar, 0, draw));
       moments.add(found.image, smooth.image);
     }
-    bench_.set_seed(seed);
     return moments.found();
   }
 
@@ -130,7 +127,7 @@ class TermSweep {
       Sonar s = with_knobs(kind_.base, kind_.middle);
       const double step_m = (s.range_max_m - s.range_min_m) / s.bins_range;
       s.terms.speckle = scene::SonarSpeckle{.scatterer_m = steps * step_m};
-      NERITIC_TRY(const Measured timed, bench_.render(s, repeats_));
+      NERITIC_TRY(const MeasuredTerm timed, bench_.render(s, repeats_));
       NERITIC_TRY(const SpeckleFound found, speckle_of(s));
       TermPoint p;
       p.term = fmt::format("speckle, scatterers of {:g} range steps", steps);

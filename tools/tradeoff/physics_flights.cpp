@@ -6,6 +6,7 @@
 #include "rov/bluerov2.hpp"
 #include "rov/closed_loop.hpp"
 #include "rov/guidance.hpp"
+#include "testbed/simulation/water_along.hpp"
 #include "tools/tradeoff/extrapolation.hpp"
 
 namespace neritic::tools {
@@ -20,21 +21,26 @@ std::size_t holds_of(double seconds) {
   return static_cast<std::size_t>(std::llround(seconds / kHold_s));
 }
 
-// Flies by the controller at 20 Hz, steps a hold as fine as asked, and keeps its commands.
-void record_commands(Flight& flight, double seconds, int count, const rov::Guide& guide,
-                     const Vec3& current_ned_m_s) {
+// At 20 Hz.
+Loop loop_of(const rov::Vehicle& vehicle, rov::Guide guide) {
   rov::ControlGains gains = rov::default_gains();
   gains.period_s = kHold_s;
-  const rov::Allocator allocator(flight.vehicle);
+  return {rov::Allocator(vehicle), gains, std::move(guide), std::nullopt};
+}
+
+// Flies by the controller, steps a hold as fine as asked, and keeps its commands.
+void record_commands(Flight& flight, double seconds, int count, const rov::Guide& guide,
+                     const Vec3& current_ned_m_s) {
+  const Loop loop = loop_of(flight.vehicle, guide);
   rov::State state = flight.start;
   rov::ControlState control;
   for (std::size_t k = 0; k < holds_of(seconds); ++k) {
-    rov::Inputs inputs =
-        rov::control_inputs(flight.vehicle, allocator, gains,
-                            guide(state, static_cast<double>(k) * kHold_s), state, control);
+    const double time_s = static_cast<double>(k) * kHold_s;
+    rov::Inputs inputs = rov::control_inputs(flight.vehicle, loop.allocator, loop.gains,
+                                             guide(state, time_s), state, control);
     inputs.current_ned_m_s = current_ned_m_s;
     flight.inputs.push_back(inputs);
-    for (int i = 0; i < count; ++i) state = flight.step(state, inputs, kHold_s / count, {});
+    for (int i = 0; i < count; ++i) state = flight.step(state, inputs, time_s, kHold_s / count, {});
   }
 }
 
@@ -60,9 +66,14 @@ Result<std::vector<rov::State>> extrapolated(const Flight& flight, double tolera
   const std::size_t n = flight.vehicle.thruster_count;
   std::vector<rov::State> out;
   Vector y = vector_of(flight.start, n);
-  for (const rov::Inputs& inputs : flight.inputs) {
-    const Slope slope = [&](double, const Vector& at) {
-      const rov::StateRate rate = rov::derivative(flight.vehicle, state_of(at, n), inputs);
+  rov::ControlState control;
+  for (std::size_t k = 0; k < flight.inputs.size(); ++k) {
+    const rov::Inputs inputs = flight.commands(k, state_of(y, n), control);
+    const Slope slope = [&](double t_s, const Vector& at) {
+      const rov::State now = state_of(at, n);
+      const double time_s = static_cast<double>(k) * kHold_s + t_s;
+      const rov::StateRate rate =
+          rov::derivative(flight.vehicle, now, flight.in_water(inputs, now, time_s, 0.0));
       rov::State as_state;
       as_state.position_ned_m = rate.position_m_s;
       as_state.attitude = rate.attitude;
@@ -83,11 +94,7 @@ Result<std::vector<rov::State>> extrapolated(const Flight& flight, double tolera
 
 std::vector<rov::State> stepped(const Flight& flight, int count) {
   std::vector<rov::State> out;
-  rov::State state = flight.start;
-  for (const rov::Inputs& inputs : flight.inputs) {
-    for (int i = 0; i < count; ++i) state = flight.step(state, inputs, kHold_s / count, {});
-    out.push_back(state);
-  }
+  flight.fly(count, {}, [&](std::size_t, const rov::State& state) { out.push_back(state); });
   return out;
 }
 
@@ -159,7 +166,106 @@ void slide_north(Flight& flight, double height_m, double slowing_m_s2, double tu
   }
 }
 
+// Water whose velocity changes with depth, place and time, evenly over 40 m and 40 s.
+sim::Current turning_current() {
+  sim::GridCurrent grid{.axes = {{-20.0, -30.0, -20.0}, Vec3(40.0), 0.0, 40.0},
+                        .counts = {2, 2, 2, 2},
+                        .velocities_m_s = {}};
+  for (int i = 0; i < 16; ++i) {
+    const double later = i >> 3 & 1, up = i >> 2 & 1, south = i >> 1 & 1, east = i & 1;
+    for (const double v :
+         {0.1 + 0.3 * up - 0.2 * later, 0.0, 0.2 * east - 0.3 * later + 0.1 * south})
+      grid.velocities_m_s.push_back(static_cast<float>(v));
+  }
+  return grid;
+}
+
+// Round a circle, up and down, turning.
+rov::Setpoint round_and_down(const rov::State&, double t_s) {
+  constexpr double kRadius_m = 2.0, kTurn_rad_s = 0.25;
+  const double a = kTurn_rad_s * t_s;
+  rov::Setpoint s;
+  s.position_ned_m = {kRadius_m * std::sin(a), kRadius_m * (1.0 - std::cos(a)),
+                      10.0 + 0.5 * std::sin(2.0 * a)};
+  s.velocity_ned_m_s = kRadius_m * kTurn_rad_s * Vec3(std::cos(a), std::sin(a), 0.0);
+  s.attitude = rov::heading_attitude(a);
+  return s;
+}
+
+// Down onto sand, along it, up, and against a wall.
+rov::Setpoint among_things(const rov::State&, double t_s) {
+  rov::Setpoint s;
+  if (t_s < 3.0)
+    s.position_ned_m = {0.3, 0.1, 0.2};  // down, into the sand
+  else if (t_s < 8.0)
+    s.position_ned_m = {1.0, 0.3, 0.1};  // along it
+  else if (t_s < 10.0)
+    s.position_ned_m = {0.7, 0.0, -1.2};  // up
+  else if (t_s < 14.0)
+    s.position_ned_m = {3.0, -0.5, -1.0};  // into the wall, a corner first
+  else if (t_s < 17.0)
+    s.position_ned_m = {2.5, 1.0, -1.3};  // along it
+  else
+    s.position_ned_m = {0.0, 0.0, -1.0};  // away
+  s.attitude = rov::heading_attitude(0.0);
+  return s;
+}
+
+// A speed controller's: 51 N at 1900 us, its square below, none within 28 us of the middle.
+rov::ThrustCurve pulse_curve() {
+  std::vector<double> pwm_us;
+  std::vector<std::vector<double>> thrust_n;
+  for (double us = 1100.0; us <= 1900.0; us += 4.0) {
+    const double share = std::max(0.0, std::abs(us - 1500.0) - 28.0) / 372.0;
+    pwm_us.push_back(us);
+    thrust_n.push_back({std::copysign(51.0 * share * share, us - 1500.0)});
+  }
+  return rov::ThrustCurve::make(std::move(pwm_us), {16.0}, std::move(thrust_n)).value();
+}
+
+// In fresh water over sand and before a wall, tilted.
+Flight vehicle_among_things(const char* name, bool lag) {
+  Flight flight{.name = name,
+                .vehicle = vehicle_of(rov::bluerov2_heavy_manual(rov::kFreshDensity), lag)};
+  flight.body = solid_body(flight.vehicle);
+  flight.body.shape.add_box({}, {0.2285, 0.127, 0.2875});
+  flight.solid = sand({.friction = 0.5}, true);
+  rov::teleport(flight.start, {0.0, 0.0, -0.5}, glm::angleAxis(0.15, Vec3(0.6, 0.8, 0.0)));
+  return flight;
+}
+
 }  // namespace
+
+rov::Inputs Flight::commands(std::size_t hold, const rov::State& state,
+                             rov::ControlState& control) const {
+  if (!loop) return inputs[hold];
+  rov::Inputs out =
+      rov::control_inputs(vehicle, loop->allocator, loop->gains,
+                          loop->guide(state, static_cast<double>(hold) * kHold_s), state, control);
+  if (loop->pulses)
+    for (std::size_t i = 0; i < vehicle.thruster_count; ++i)
+      out.thruster_n[i] = loop->pulses->realised_n(out.thruster_n[i], 16.0);
+  return out;
+}
+
+rov::Inputs Flight::in_water(rov::Inputs out, const rov::State& state, double time_s,
+                             double dt_s) const {
+  if (!current) return out;
+  const diver::WaterFlow water = water_along(
+      current, state.position_ned_m, state.attitude * state.velocity.linear(), time_s, dt_s);
+  out.current_ned_m_s = water.current_m_s;
+  out.current_change_ned_m_s2 = water.change_m_s2;
+  out.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
+  return out;
+}
+
+rov::State Flight::step(const rov::State& state, const rov::Inputs& held, double time_s,
+                        double dt_s, const StepMethod& method) const {
+  const rov::Inputs acting = in_water(held, state, time_s, dt_s);
+  const VehicleStep step{body, vehicle, state, acting, dt_s, method};
+  const rov::State free = free_step(step);
+  return solid ? step_among(*solid, step, free) : free;
+}
 
 Result<Flight> square_flight(bool lag, double seconds) {
   Flight flight{.name = lag ? "lag" : "no lag", .vehicle = vehicle_of(rov::bluerov2_heavy(), lag)};
@@ -174,33 +280,32 @@ Result<Flight> square_flight(bool lag, double seconds) {
   return flight;
 }
 
+Result<Flight> mission_flight(bool pulses, double seconds) {
+  Flight flight{.name = pulses ? "mission, pulses" : "mission",
+                .vehicle = vehicle_of(rov::bluerov2_heavy(), true)};
+  flight.start.position_ned_m.z = 10.0;
+  flight.inputs.assign(holds_of(seconds), {});
+  flight.current = turning_current();
+  flight.loop = loop_of(flight.vehicle, round_and_down);
+  if (pulses) flight.loop->pulses = pulse_curve();
+  NERITIC_TRY(flight.truth, extrapolated(flight, kTolerance));
+  NERITIC_TRY(const auto looser, extrapolated(flight, 10.0 * kTolerance));
+  flight.truth_error_m = most_apart_m(flight.truth, looser);
+  return flight;
+}
+
 Flight contact_flight(bool lag, double seconds) {
-  Flight flight{.name = lag ? "contact, lag" : "contact, no lag",
-                .vehicle = vehicle_of(rov::bluerov2_heavy_manual(rov::kFreshDensity), lag)};
-  flight.body = solid_body(flight.vehicle);
-  flight.body.shape.add_box({}, {0.2285, 0.127, 0.2875});
-  flight.solid = sand({.friction = 0.5}, true);
-  rov::teleport(flight.start, {0.0, 0.0, -0.5}, glm::angleAxis(0.15, Vec3(0.6, 0.8, 0.0)));
-  record_commands(
-      flight, seconds, 400,
-      [&](const rov::State&, double t_s) {
-        rov::Setpoint s = rov::stay(flight.start);
-        if (t_s < 3.0)
-          s.position_ned_m = {0.3, 0.1, 0.2};  // down, into the sand
-        else if (t_s < 8.0)
-          s.position_ned_m = {1.0, 0.3, 0.1};  // along it
-        else if (t_s < 10.0)
-          s.position_ned_m = {0.7, 0.0, -1.2};  // up
-        else if (t_s < 14.0)
-          s.position_ned_m = {3.0, -0.5, -1.0};  // into the wall, a corner first
-        else if (t_s < 17.0)
-          s.position_ned_m = {2.5, 1.0, -1.3};  // along it
-        else
-          s.position_ned_m = {0.0, 0.0, -1.0};  // away
-        s.attitude = rov::heading_attitude(0.0);
-        return s;
-      },
-      Vec3(0.0));
+  Flight flight = vehicle_among_things(lag ? "contact, lag" : "contact, no lag", lag);
+  record_commands(flight, seconds, 400, among_things, Vec3(0.0));
+  flight.truth = stepped(flight, kFinest);
+  flight.truth_error_m = most_apart_m(flight.truth, stepped(flight, kFinest / 2));
+  return flight;
+}
+
+Flight contact_mission_flight(double seconds) {
+  Flight flight = vehicle_among_things("mission, contact", true);
+  flight.inputs.assign(holds_of(seconds), {});
+  flight.loop = loop_of(flight.vehicle, among_things);
   flight.truth = stepped(flight, kFinest);
   flight.truth_error_m = most_apart_m(flight.truth, stepped(flight, kFinest / 2));
   return flight;

@@ -20,6 +20,7 @@ constexpr Integrator kDrawn[] = {Integrator::kSemiImplicit, Integrator::kRk4, In
 constexpr double kLevels_m[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 
 // Names of flights in tables and plots, in the order of kFlightNames.
+constexpr std::size_t kFirstAmongThings = 4;  // of the flights
 struct FlightWords {
   const char *title, *about;
 };
@@ -27,10 +28,16 @@ constexpr FlightWords kWords[] = {
     {"open water, no lag",
      "A BlueROV2 Heavy flies {:g} s round a square in a current, by the same recorded commands."},
     {"open water, lag", "The same with the third-order lag of its thrusters."},
+    {"controller in a current",
+     "A BlueROV2 Heavy with lag flies {:g} s round a circle by a controller in the loop, in a "
+     "current "
+     "that changes with place and time."},
+    {"controller with pulses", "The same with pulses in whole microseconds."},
     {"contact, no lag",
      "A BlueROV2 Heavy is set down on sand, driven along it, lifted, driven against a wall corner "
      "first, along it and away, {:g} s, by the same recorded commands."},
     {"contact, lag", "The same with lag."},
+    {"controller in contact", "The same with lag by a controller in the loop."},
     {"a ball that bounces", "Restitution 0.6, no drag: the closed form is the truth."},
     {"a block that slides",
      "At 1 m/s onto sand with friction 0.3, no drag: by Coulomb's law it stops after 1.67 m."},
@@ -170,7 +177,7 @@ Panel steps_panel(const PhysicsTradeoff& t) {
 // 240 Hz, with the steps that touch in parts.
 Panel parts_panel(const PhysicsTradeoff& t) {
   Panel panel{"240 Hz, guarded, steps that touch in parts: over cost", {kCost}, {kError}};
-  for (std::size_t f = 2; f < std::size(kFlightNames); ++f) {
+  for (std::size_t f = kFirstAmongThings; f < std::size(kFlightNames); ++f) {
     Series s{kWords[f].title, {}, {}};
     for (const PhysicsPoint& p : t.parts) {
       if (p.flight != kFlightNames[f] || !is_drawn(p)) continue;
@@ -189,7 +196,7 @@ Page physics_page(const PhysicsTradeoff& t) {
                          "sand and driven against a wall. Truth: extrapolation of order 16; among "
                          "things steps of 31 µs. Default: guarded, {:g} Hz.",
                          t.flight_s, scene::Physics{}.rate_hz)}};
-  for (std::size_t f = 0; f < 4; ++f) page.panels.push_back(flight_panel(t, f));
+  for (const std::size_t f : {0, 1, 4, 5}) page.panels.push_back(flight_panel(t, f));
   page.panels.push_back(steps_panel(t));
   page.panels.push_back(parts_panel(t));
   return page;

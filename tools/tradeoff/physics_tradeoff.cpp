@@ -36,24 +36,13 @@ struct Way {
   StepMethod method;
 };
 
-// Calls seen(hold, state) after every hold.
-template <class Seen>
-void fly_all(const Flight& flight, const Way& way, const Seen& seen) {
-  rov::State state = flight.start;
-  for (std::size_t k = 0; k < flight.inputs.size(); ++k) {
-    for (int i = 0; i < way.count; ++i)
-      state = flight.step(state, flight.inputs[k], kHold_s / way.count, way.method);
-    seen(k, state);
-  }
-}
-
 // Processor time of the whole flight: other programs' time does not count, but what they do to
 // caches and clocks does, hence the least of several.
 double least_cpu_us(const Flight& flight, const Way& way, int repeats) {
   double least = 1e300, farthest = 0.0;
   for (int i = 0; i < repeats; ++i) {
     const std::clock_t begin = std::clock();
-    fly_all(flight, way, [&](std::size_t, const rov::State& s) {
+    flight.fly(way.count, way.method, [&](std::size_t, const rov::State& s) {
       farthest = std::max(farthest, s.position_ned_m.x);
     });
     const double us = 1e6 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
@@ -88,10 +77,15 @@ Result<Flight> flight_of(std::size_t index, double seconds) {
       return square_flight(index == 1, seconds);
     case 2:
     case 3:
-      return contact_flight(index == 3, seconds);
+      return mission_flight(index == 3, seconds);
     case 4:
-      return bounce_flight(std::min(seconds, kClosedForms_s));
     case 5:
+      return contact_flight(index == 5, seconds);
+    case 6:
+      return contact_mission_flight(seconds);
+    case 7:
+      return bounce_flight(std::min(seconds, kClosedForms_s));
+    case 8:
       return slide_flight(std::min(seconds, kClosedForms_s));
     default:
       return roll_flight(std::min(seconds, kClosedForms_s));
@@ -119,7 +113,7 @@ void measure_flight(Flight& flight, const PhysicsTradeoffOptions& options, Physi
 FlownError flown_error(const Flight& flight, double step_s, const StepMethod& method) {
   FlownError out;
   const int count = static_cast<int>(std::lround(kHold_s / step_s));
-  fly_all(flight, {count, method}, [&](std::size_t k, const rov::State& state) {
+  flight.fly(count, method, [&](std::size_t k, const rov::State& state) {
     const rov::State& truth = flight.truth[k];
     const double off = glm::distance(state.position_ned_m, truth.position_ned_m);
     out.m = off <= out.m ? out.m : off;

@@ -23,7 +23,9 @@ std::uint64_t steps(const PhysicsTradeoffOptions& options);
 
 // The flights (physics_flights.hpp), in this order.
 inline constexpr const char* kFlightNames[] = {
-    "no lag", "lag", "contact, no lag", "contact, lag", "bounce", "slide", "roll"};
+    "no lag",          "lag",          "mission",          "mission, pulses",
+    "contact, no lag", "contact, lag", "mission, contact", "bounce",
+    "slide",           "roll"};
 
 struct PhysicsPoint {
   std::string flight;

@@ -147,7 +147,7 @@ Status measure_renderer(gpu::Device& device, scene::Scene scene, const Setting& 
   for (std::size_t i = 0; i < session->scene().sonars.size(); ++i) {
     FrameRequest request;
     request.sonars = {i};
-    request.capture.geometry = false;
+    request.capture = request.capture.without_geometry();
     std::vector<std::pair<double, double>> times;  // raster, gather
     Point point;
     for (int repeat = 0; repeat < (options.quick ? 2 : 6); ++repeat) {

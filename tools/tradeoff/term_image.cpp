@@ -260,10 +260,16 @@ void TermImage::end_column(int half) {
   const double turn = motion && motion->within_ping && !folded_
                           ? view_.yaw_rate_rad_s * 2.0 / sound_speed_m_s_
                           : 0.0;
+  // And it moves, so that a bearing slides back by the speed across it.
+  const Vec3 v = glm::transpose(view_.world_from_head) * view_.velocity_m_s;
+  const double slide =
+      motion && motion->within_ping && !folded_
+          ? -2.0 / sound_speed_m_s_ * (v.x * std::cos(column_rad_) + v.z * std::sin(column_rad_))
+          : 0.0;
   const std::uint32_t beams = grid_.bins.azimuth;
   const double counted = sonar_->terms.level || folded_ ? 1.0 : width_rad_;
   for (std::uint32_t b = 0; b < beams; ++b) {
-    const double off = column_rad_ - grid_.azimuth_rad(b);
+    const double off = column_rad_ + slide - grid_.azimuth_rad(b);
     const double still = folded_ ? 1.0 : beam_weight(off);
     const double most_turn = std::abs(turn) * grid_.limits.range_max_m;
     if (still == 0.0 && std::abs(std::remainder(off, 2.0 * kPi)) > weight_reach_rad() + most_turn)

@@ -1,0 +1,83 @@
+// How missions end: in a table of seeds, and with status 1 where they cannot.
+#include <nlohmann/json.hpp>
+
+#include "engine/core/json.hpp"
+#include "tests/tools/dive_physics.hpp"
+
+namespace neritic {
+namespace {
+
+// Sensors enough to navigate by: another seed is another way, and a table of seeds tells how they
+// ended.
+TEST_F(DivePhysics, RunsOfSeedsEndInATable) {
+  const std::string survey =
+      (test::source_dir() / "assets/vehicles/bluerov2_heavy_survey_dynamics.toml").string();
+  ASSERT_TRUE(write_text(scratch_ / "measured.toml",
+                         "include = \"dive.toml\"\n[[vehicles]]\nname = \"rov\"\ndynamics = \"" +
+                             survey + "\"\n[vehicles.mission]\nacceptance_m = 0.3\n")
+                  .ok());
+  const Outcome table = dive("--headless --seconds 40 --seed 5 --runs 3", "measured.toml");
+  EXPECT_EQ(table.status, 0) << table.err;
+  for (const char* seed : {"\n         5  rov", "\n         6  rov", "\n         7  rov"})
+    EXPECT_NE(table.out.find(seed), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("3 of 3 missions done, 0 touched something"), std::string::npos)
+      << table.out;
+  const Outcome json = dive("--headless --seconds 40 --seed 5 --runs 2 --json", "measured.toml");
+  const auto runs = parse_json(json.out);
+  ASSERT_TRUE(runs.ok()) << json.out;
+  ASSERT_EQ(runs->size(), 2u);
+  EXPECT_NE((*runs)[0]["largest_navigation_error_m"], (*runs)[1]["largest_navigation_error_m"]);
+  // Too short for the way.
+  const Outcome short_of = dive("--headless --seconds 0.5 --runs 1", "measured.toml");
+  EXPECT_EQ(short_of.status, 1);
+  EXPECT_NE(short_of.err.find("1 of 1 missions not done in 0.5 s"), std::string::npos)
+      << short_of.err;
+  EXPECT_EQ(dive("--headless --runs 2 --log x.csv", "measured.toml").status, 2);
+  const Outcome one = dive("--headless --seconds 2 --seed 5", "measured.toml");
+  EXPECT_NE(one.out.find("navigation off by up to 0."), std::string::npos) << one.out;
+}
+
+// Each with a line before the dive that says in numbers what does not hold, and with status 1 and a
+// line after it that says what is left.
+TEST_F(DivePhysics, AMissionThatCannotSucceedIsToldBeforeAndEndsWithStatusOne) {
+  struct Case {
+    std::string vehicle, keys, water, told;
+  };
+  const Case cases[] = {
+      {"buoyancy_n = 812.57\n", "", "", "rov: 680 N too buoyant: its thrusters push down with 1"},
+      {"", "failed_thrusters = [5, 6, 7, 8]\n", "",
+       "rov: its thrusters push 0 N up or down (heave): that axis is not controlled"},
+      {"", "", "[current]\nkind = \"uniform\"\nvelocity_m_s = [3, 0, 0]\n",
+       "rov: the current of 3 m/s drags it with "}};
+  for (const Case& one : cases) {
+    ASSERT_TRUE(
+        write_text(
+            scratch_ / "hard_vehicle.toml",
+            "include = \"" +
+                (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string() +
+                "\"\n" + one.vehicle)
+            .ok());
+    ASSERT_TRUE(write_text(scratch_ / "hard.toml",
+                           "[physics]\n" + one.water +
+                               "[[vehicles]]\nname = \"rov\"\nshape = \"box\"\ndynamics = "
+                               "\"hard_vehicle.toml\"\nposition_m = [0, -6, 0]\n" +
+                               one.keys +
+                               "mission = { waypoints = [ { position_m = [0, -9, -2] } ] }\n")
+                    .ok());
+    const Outcome outcome = dive("--headless --seconds 20", "hard.toml");
+    EXPECT_EQ(outcome.status, 1) << one.told;
+    EXPECT_NE(outcome.err.find(one.told), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("hard.toml: not finished: rov: 1 of 1 waypoints left after 20 s, "),
+              std::string::npos)
+        << outcome.err;
+    // A part of it on purpose.
+    EXPECT_EQ(dive("--headless --seconds 2", "hard.toml").status, 0);
+    EXPECT_EQ(dive("--headless --seconds 20 --save " + file("on.state"), "hard.toml").status, 0);
+  }
+  const Outcome well = dive("--headless --seconds 20");
+  EXPECT_EQ(well.status, 0) << well.err;
+  EXPECT_EQ(well.err.find("thrusters"), std::string::npos) << well.err;
+}
+
+}  // namespace
+}  // namespace neritic

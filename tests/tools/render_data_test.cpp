@@ -1,0 +1,214 @@
+// `neritic render` makes the data set that a user asks for: chosen data alone, compressed, with
+// boxes of cameras and trajectories of all that moves. numpy judges the files.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "engine/core/npy.hpp"
+#include "engine/scene/image_file.hpp"
+#include "tests/support/device_gate.hpp"
+#include "tests/support/gpu_fixture.hpp"
+#include "tests/support/support.hpp"
+#include "tools/neritic/commands.hpp"
+
+namespace neritic {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A bottom, two balls of one class and a box that swims round with a camera; a stereo camera and a
+// sonar that stand still.
+constexpr const char* kScene = R"(
+[sun]
+[[objects]]
+name = "bottom"
+shape = "plane"
+size_m = [40, 40]
+class = "seabed"
+position_m = [0, -12, 0]
+[[objects]]
+name = "balls"
+shape = "sphere"
+radius_m = 0.4
+class = "target"
+copies = [[-0.8, -11, -4], [0.9, -10.6, -5]]
+[[vehicles]]
+name = "sub"
+shape = "box"
+size_m = [0.5, 0.3, 0.4]
+[vehicles.track]
+file = "track.csv"
+[[vehicles.cameras]]
+name = "lens"
+width = 24
+height = 16
+position_m = [0, 0, -0.5]
+[[cameras]]
+name = "eyes"
+width = 96
+height = 64
+position_m = [0, -10, 0]
+pitch_deg = -10
+stereo_baseline_m = 0.1
+[[sonars]]
+name = "ears"
+position_m = [0, -10, 0]
+pitch_deg = -10
+bins = [64, 32, 32]
+range_m = [1, 10]
+)";
+
+class RenderData : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
+    ASSERT_TRUE(write_text(folder_ / "scene.toml", kScene).ok());
+    ASSERT_TRUE(write_text(folder_ / "track.csv",
+                           "t_s,x,y,z,yaw_deg,pitch_deg,roll_deg\n0,-1,-10,-6,0,0,0\n"
+                           "1,1,-10,-6.5,40,0,0\n")
+                    .ok());
+  }
+  Status render(const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"render", (folder_ / "scene.toml").string(), "--out",
+                                   (folder_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    NERITIC_TRY(const auto line, tools::parse_command_line(words));
+    const auto done = line.run();
+    return done.ok() ? Status() : Status(done.error());
+  }
+  // Every file of a sensor's folder, and the same as in the other run where it is one of theirs.
+  std::set<std::string> same_files(const std::string& sensor, const std::string& out) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_ / out / sensor)) {
+      const std::string name = entry.path().filename();
+      names.insert(name);
+      if (name.ends_with(".json")) continue;
+      EXPECT_EQ(read_file(entry.path()).value(), read_file(folder_ / "all" / sensor / name).value())
+          << entry.path();
+    }
+    return names;
+  }
+  test::ScratchFolder folder_;
+};
+
+using NameSet = std::set<std::string>;
+
+TEST_F(RenderData, WhatIsNotChosenIsNeitherWrittenNorDeclaredAndTheRestIsTheSame) {
+  NERITIC_ASSERT_STATUS(render("all", {}));
+  const std::string left = "frame_0000/eyes_left", ears = "frame_0000/ears";
+  NERITIC_ASSERT_STATUS(render("some", {"--only", "depth,labels", "--only", "motion",
+                                        "--dump-graph", (folder_ / "graph").string()}));
+  EXPECT_EQ(same_files(left, "some"),
+            (NameSet{"depth.npy", "labels.npy", "motion.npy", "meta.json"}));
+  EXPECT_EQ(same_files(ears, "some"), (NameSet{"depth.npy", "labels.npy", "meta.json"}));
+  for (const char* name : {"coco.json", "trajectory.csv", "track"})
+    EXPECT_FALSE(fs::exists(folder_ / "some" / name)) << name;
+  const std::string graph = read_text(folder_ / "graph").value();
+  EXPECT_NE(graph.find("eyes depth"), std::string::npos) << graph;
+  for (const char* absent :
+       {"albedo", "material", "eyes color", "shade", "normal", "gather", "intensity", "emission"})
+    EXPECT_EQ(graph.find(absent), std::string::npos) << absent << "\n" << graph;
+  // Echoes, and normals without their depth.
+  NERITIC_ASSERT_STATUS(render("heard", {"--only", "sonar,normals,instances"}));
+  EXPECT_EQ(same_files(ears, "heard"),
+            (NameSet{"normals.npy", "instances.npy", "meta.json", "sonar.npy", "sonar.json",
+                     "sonar.png", "sonar_labels.npy"}));
+  EXPECT_EQ(same_files(left, "heard"), (NameSet{"normals.npy", "instances.npy", "meta.json"}));
+}
+
+TEST_F(RenderData, BoxesAndTrajectoriesAreWhatNumpyFindsInTheArrays) {
+  NERITIC_ASSERT_STATUS(
+      render("out", {"--only", "color,trajectory", "--frames", "3", "--time", "0.3"}));
+  // The moving camera sees other things than the check counts.
+  NERITIC_ASSERT_STATUS(render("eyes", {"--only", "color,labels,instances,coco", "--frames", "3",
+                                        "--time", "0.3", "--sensor", "eyes"}));
+  const std::string check = (test::source_dir() / "tests/tools/render_data_check.py").string();
+  const auto judged = [&](const char* out, const char* what) {
+    return std::system(
+        fmt::format("/usr/bin/python3 -B '{}' '{}' {}", check, (folder_ / out).string(), what)
+            .c_str());
+  };
+  if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no numpy";
+  EXPECT_EQ(judged("out", "trajectory"), 0);
+  EXPECT_EQ(judged("eyes", "coco"), 0);
+  NERITIC_ASSERT_STATUS(render("where", {"--only", "trajectory", "--frames", "2"}));
+  EXPECT_FALSE(fs::exists(folder_ / "where/frame_0000"));
+  EXPECT_TRUE(fs::exists(folder_ / "where/trajectory/sub.txt"));
+}
+
+TEST_F(RenderData, CompressedDataAreTheSameNumbersInSmallerFiles) {
+  const std::vector<std::string> still{"--only", "depth,normals,labels,instances,sonar"};
+  auto with = [&](const char* form) {
+    auto words = still;
+    if (*form != 0) words.insert(words.end(), {"--compress", form});
+    return words;
+  };
+  NERITIC_ASSERT_STATUS(render("plain", with("")));
+  NERITIC_ASSERT_STATUS(render("npz", with("npz")));
+  const fs::path eye = "frame_0000/eyes_left";
+  for (const char* name : {"depth", "labels", "instances"}) {
+    const std::string file = name;
+    EXPECT_FALSE(fs::exists(folder_ / "npz" / eye / (file + ".npy")));
+    EXPECT_LT(fs::file_size(folder_ / "npz" / eye / (file + ".npz")),
+              fs::file_size(folder_ / "plain" / eye / (file + ".npy")));
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "npz/frame_0000/ears/sonar.npz"));
+  // A run of another form leaves nothing that could be taken for its own.
+  NERITIC_ASSERT_STATUS(render("npz", with("png")));
+  fs::rename(folder_ / "npz", folder_ / "png");
+  EXPECT_FALSE(fs::exists(folder_ / "png" / eye / "depth.npz"));
+  EXPECT_TRUE(fs::exists(folder_ / "png/frame_0000/ears/sonar.npz"));
+  const auto depth = read_npy(folder_ / "plain" / eye / "depth.npy")->to_doubles();
+  const auto labels = read_npy(folder_ / "plain" / eye / "labels.npy")->to_doubles();
+  NERITIC_ASSERT_OK(const ImageU16 units, scene::read_image16(folder_ / "png" / eye / "depth.png"));
+  NERITIC_ASSERT_OK(const ImageU16 classes,
+                    scene::read_image16(folder_ / "png" / eye / "labels.png"));
+  const auto meta = parse_json(read_text(folder_ / "png" / eye / "meta.json").value()).value();
+  const double unit_m = meta["depth_png"]["metres_per_unit"];
+  const auto normals = read_npy(folder_ / "plain" / eye / "normals.npy")->to_doubles();
+  NERITIC_ASSERT_OK(const ImageU16 colors,
+                    scene::read_image16(folder_ / "png" / eye / "normals.png"));
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    if (std::isfinite(depth[i / 3])) {
+      EXPECT_NEAR(2.0 * colors.data[i] / 65535.0 - 1.0, normals[i], 1.6e-5) << i;
+    } else {
+      EXPECT_EQ(colors.data[i], 0) << i;
+    }
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    EXPECT_EQ(classes.data[i], labels[i]);
+    if (!std::isfinite(depth[i])) {
+      EXPECT_EQ(units.data[i], 0);
+    } else {
+      ++hits;
+      EXPECT_NEAR(units.data[i] * unit_m, depth[i], 0.5001 * unit_m);
+    }
+  }
+  EXPECT_GT(hits, 100u);
+}
+
+TEST_F(RenderData, ANameThatIsNoneOrThatNothingGivesIsRefusedWithTheNames) {
+  const auto said = [&](const std::vector<std::string>& words) {
+    const auto result = render("out", words);
+    return result.ok() ? std::string() : result.error().message;
+  };
+  EXPECT_EQ(said({"--only", "color,deph"}),
+            "--only: found 'deph'; accepted: one or more of color, depth, normals, labels, "
+            "instances, motion, sonar, coco, trajectory");
+  EXPECT_EQ(said({"--only", "color", "--sensor", "ears"}),
+            "--only: found color; accepted: that with a camera");
+  EXPECT_EQ(said({"--only", "sonar", "--sensor", "eyes"}),
+            "--only: found sonar; accepted: that with a sonar");
+  EXPECT_NE(said({"--only", "depth", "--track-only"}).find("sonar, trajectory"), std::string::npos);
+  EXPECT_NE(said({"--only", "trajectory", "--sheet"}).find("--sheet"), std::string::npos);
+  const auto help = tools::parse_command_line({"render", "--help"});
+  EXPECT_NE(help->help.find("instances, motion, sonar, coco, trajectory"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace neritic
