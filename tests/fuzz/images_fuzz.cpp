@@ -1,5 +1,5 @@
-// Any bytes as a PNG, JPEG or OpenEXR picture: an Error in one line, or a picture of its own size.
-// The checksums of PNG chunks are mended first, or no change would get past them.
+// Any bytes as a PNG, JPEG, WebP, OpenEXR or Netpbm picture: an Error in one line, or a picture of
+// its own size. The checksums of PNG chunks are mended first, or no change would get past them.
 #include <zlib.h>
 
 #include <vector>
@@ -7,10 +7,13 @@
 #include "engine/core/check.hpp"
 #include "engine/scene/image_file.hpp"
 #include "engine/scene/image_file_png.hpp"
+#include "engine/scene/netpbm_file.hpp"
 #include "tests/fuzz/replay.hpp"
 
 namespace {
 using namespace neritic;
+
+constexpr std::uint64_t kMaxPixels = 1 << 20;
 
 template <class T>
 void check_picture(const Raster<T>& image, std::uint32_t channels) {
@@ -43,6 +46,9 @@ std::vector<std::uint8_t> with_checksums(const std::uint8_t* data, std::size_t s
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  // A few bytes of WebP make 16383 x 16383 pixels, which take seconds.
+  const scene::PictureSize stated = scene::peek_size(fuzz::as_bytes(data, size));
+  if (std::uint64_t{stated.width} * stated.height > kMaxPixels) return 0;
   const std::vector<std::uint8_t> mended = with_checksums(data, size);
   const auto bytes = fuzz::as_bytes(mended.data(), mended.size());
   if (const auto image = scene::decode_image8(bytes, "fuzz.png", 4); image.ok())
@@ -57,6 +63,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     check_picture(*image, 0);
   else
     check_error(image.error());
+  if (const auto map = scene::parse_netpbm(bytes, "fuzz.png"); map.ok())
+    NERITIC_CHECK(map->values.size() == std::size_t{map->width} * map->height * map->channels,
+                  "{} x {}: {} values", map->width, map->height, map->values.size());
+  else
+    check_error(map.error());
   if (const auto exr = scene::decode_exr(bytes, "fuzz.png"); exr.ok()) {
     check_picture(exr->image, 0);
     NERITIC_CHECK(exr->names.size() == exr->image.channels, "{} names", exr->names.size());

@@ -29,9 +29,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
                   "stream {}, source {}", header.stream, header.source);
   }
   // Kinds that no stream has are read and not written again.
-  const auto written = testbed::encode_sample_log(*log);
-  const auto again = testbed::parse_sample_log(written, "fuzz.log");
-  NERITIC_CHECK(again.ok() && std::ranges::equal(testbed::encode_sample_log(*again), written),
-                "{} bytes", size);
+  const std::string written = testbed::encode_sample_log(*log);
+  const auto again = testbed::parse_sample_log(std::as_bytes(std::span(written)), "fuzz.log");
+  NERITIC_CHECK(again.ok() && testbed::encode_sample_log(*again) == written, "{} bytes", size);
   return 0;
 }

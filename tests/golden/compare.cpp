@@ -57,7 +57,8 @@ std::pair<std::size_t, double> worst_line(const std::vector<double>& actual,
 
 }  // namespace
 
-PictureDifference difference_of(const ImageU8& actual, const ImageU8& golden, int level) {
+PictureDifference difference_of(const ImageU8& actual, const ImageU8& golden, int level,
+                                const std::vector<bool>& mask) {
   NERITIC_CHECK(actual.width == golden.width && actual.height == golden.height &&
                     actual.channels == golden.channels,
                 "pictures of one size are compared");
@@ -76,8 +77,27 @@ PictureDifference difference_of(const ImageU8& actual, const ImageU8& golden, in
   const auto pixel_count = static_cast<double>(pixels);
   out.fraction = static_cast<double>(std::ranges::count(differs, true)) / pixel_count;
   for (const std::int64_t sum : sums) out.means.push_back(static_cast<double>(sum) / pixel_count);
+  std::vector<bool> masked(pixels, false);
+  for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+    if (mask[pixel] && differs[pixel]) {
+      masked[pixel] = true;
+      differs[pixel] = false;
+    }
+  out.masked_patch_px = largest_patch(std::move(masked), actual.width, actual.height);
   out.patch_px = largest_patch(std::move(differs), actual.width, actual.height);
   return out;
+}
+
+std::vector<bool> mask_of(const ImageU16& labels, std::uint16_t value) {
+  std::vector<bool> mask(std::size_t{labels.width} * labels.height, false);
+  for (std::uint32_t y = 0; y < labels.height; ++y)
+    for (std::uint32_t x = 0; x < labels.width; ++x) {
+      if (labels.at(x, y) != value) continue;
+      for (std::uint32_t ny = y - (y > 0); ny <= std::min(y + 1, labels.height - 1); ++ny)
+        for (std::uint32_t nx = x - (x > 0); nx <= std::min(x + 1, labels.width - 1); ++nx)
+          mask[std::size_t{ny} * labels.width + nx] = true;
+    }
+  return mask;
 }
 
 std::vector<std::string> faults_of(const PictureDifference& difference,
@@ -91,10 +111,12 @@ std::vector<std::string> faults_of(const PictureDifference& difference,
     if (std::abs(difference.means[channel]) > limits.mean)
       faults.push_back(fmt::format("channel {} differs by {:+.3f} levels in the mean; accepted: {}",
                                    channel, difference.means[channel], limits.mean));
-  if (difference.patch_px > limits.patch_px)
-    faults.push_back(
-        fmt::format("a patch of {} pixels differs by more than {} levels; accepted: {}",
-                    difference.patch_px, limits.level, limits.patch_px));
+  for (const auto& [patch_px, most_px] : {std::pair{difference.patch_px, limits.patch_px},
+                                          {difference.masked_patch_px, limits.masked_patch_px}})
+    if (patch_px > most_px)
+      faults.push_back(
+          fmt::format("a patch of {} pixels differs by more than {} levels; accepted: {}", patch_px,
+                      limits.level, most_px));
   return faults;
 }
 

@@ -16,18 +16,25 @@ struct PictureLimits {
   int level = 5;            // a pixel differs if a channel does by more than this
   double fraction = 0.004;  // of all pixels that may differ
   double mean = 0.3;        // signed difference of a channel, mean over the picture, levels of 255
-  std::size_t patch_px = 12;  // pixels that differ and touch, corners included
+  std::size_t patch_px = 12;         // pixels that differ and touch, corners included
+  std::size_t masked_patch_px = 12;  // the same of masked pixels
 };
 
 struct PictureDifference {
   double fraction = 0.0;
-  std::size_t patch_px = 0;   // the largest
+  std::size_t patch_px = 0;  // the largest of the pixels that are not masked
+  std::size_t masked_patch_px = 0;
   int worst = 0;              // largest difference of any channel
   std::vector<double> means;  // a channel each, actual minus golden
 };
 
-// Precondition: equal sizes and channels.
-PictureDifference difference_of(const ImageU8& actual, const ImageU8& golden, int level);
+// mask: empty, or whether each pixel's patches are counted apart. Precondition: equal sizes and
+// channels.
+PictureDifference difference_of(const ImageU8& actual, const ImageU8& golden, int level,
+                                const std::vector<bool>& mask = {});
+
+// The pixels of one value, and those that touch them.
+std::vector<bool> mask_of(const ImageU16& labels, std::uint16_t value);
 
 // One line a limit that is exceeded; empty: alike.
 std::vector<std::string> faults_of(const PictureDifference& difference,

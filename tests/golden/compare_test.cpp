@@ -65,6 +65,32 @@ TEST(GoldenCompare, AnImageWithASmallFishPaintedOutFails) {
   EXPECT_LT(difference_of(without, golden, 5).patch_px, 60u);
 }
 
+// What a mask accepts it accepts of masked pixels alone.
+TEST(GoldenCompare, AMaskCountsItsPatchesApart) {
+  const ImageU8 golden(40, 20, 1, 100);
+  ImageU16 labels(40, 20, 1, 0);
+  for (std::uint32_t y = 5; y < 15; ++y)
+    for (std::uint32_t x = 5; x < 15; ++x) labels.at(x, y) = 3;
+  const std::vector<bool> mask = mask_of(labels, 3);
+  EXPECT_EQ(std::ranges::count(mask, true), 12 * 12);
+  const auto changed_at = [&](std::uint32_t left) {
+    ImageU8 actual = golden;
+    for (std::uint32_t x = left; x < left + 5; ++x)
+      for (std::uint32_t y = 7; y < 11; ++y) actual.at(x, y) = 150;
+    return difference_of(actual, golden, 5, mask);
+  };
+  EXPECT_EQ(changed_at(6).masked_patch_px, 20u);
+  EXPECT_EQ(changed_at(6).patch_px, 0u);
+  EXPECT_EQ(changed_at(25).patch_px, 20u);
+  EXPECT_EQ(changed_at(25).masked_patch_px, 0u);
+  PictureLimits limits;
+  limits.fraction = 1.0;
+  limits.mean = 2.0;
+  limits.masked_patch_px = 30;
+  EXPECT_THAT(faults_of(changed_at(6), limits), IsEmpty());
+  EXPECT_THAT(faults_of(changed_at(25), limits), ElementsAre(HasSubstr("a patch of 20 pixels")));
+}
+
 TEST(GoldenCompare, PatchesHangTogetherByCornersAndNotRoundTheEdge) {
   const ImageU8 golden(8, 4, 1, 100);
   ImageU8 actual = golden;

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "engine/core/clock.hpp"
+#include "engine/gpu/frame_timer.hpp"
 #include "engine/gpu/upload_arena.hpp"
 #include "shaders.hpp"
 #include "tests/support/gpu_fixture.hpp"
@@ -205,6 +206,15 @@ std::vector<std::string> names_of(const std::vector<PassTime>& times) {
   std::vector<std::string> names;
   for (const PassTime& time : times) names.push_back(time.name);
   return names;
+}
+
+TEST(ElapsedTicks, WrapAndAreNeverNegative) {
+  constexpr std::uint64_t kBits36 = (1ull << 36) - 1;
+  EXPECT_EQ(elapsed_ticks(100, 350, ~0ull), 250u);
+  EXPECT_EQ(elapsed_ticks(kBits36 - 9, 5, kBits36), 15u);
+  EXPECT_EQ(elapsed_ticks(350, 100, ~0ull), 0u);
+  EXPECT_EQ(elapsed_ticks(350, 100, kBits36), 0u);
+  EXPECT_EQ(elapsed_ticks(7, 7, ~0ull), 0u);
 }
 
 TEST_F(TimerTest, RegionsAreListedInOrderAndTheHeavyOneTakesTheTime) {
