@@ -44,9 +44,11 @@ class Stopwatch final : public testbed::FrameSink {
 
 }  // namespace
 
-Result<std::unique_ptr<testbed::Session>> open_scene(const Suite& suite, gpu::Device& device,
-                                                     const std::string& file) {
+Result<std::unique_ptr<testbed::Session>> open_scene(
+    const Suite& suite, gpu::Device& device, const std::string& file,
+    const std::function<void(scene::Scene&)>& change) {
   NERITIC_TRY(scene::Scene scene, scene::load_scene(suite.options().assets + "/scenes/" + file));
+  if (change) change(scene);
   return testbed::Session::create(device, std::move(scene));
 }
 

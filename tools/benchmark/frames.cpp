@@ -15,7 +15,9 @@ FrameRequest request_of(std::vector<std::size_t> cameras, std::vector<std::size_
   FrameRequest request;
   request.cameras = std::move(cameras);
   request.sonars = std::move(sonars);
-  request.capture = {color, geometry, motion};
+  request.capture.color = color;
+  request.capture.motion = motion;
+  if (!geometry) request.capture = request.capture.without_geometry();
   return request;
 }
 
@@ -47,15 +49,16 @@ Status bench_sonar_frame(Suite& suite, gpu::Device& device) {
   if (!suite.wants("sonar_frame")) return {};
   const std::string file = "benchmark_23k.toml";
   NERITIC_TRY(const auto one, open_scene(suite, device, file));
-  NERITIC_TRY(const auto ten, open_scene(suite, device, file));
   if (one->scene().sonars.empty()) return bad_input("{}: it has no sonar", file);
-  const scene::Sonar sonar = ten->scene().sonars[0];
+  const scene::Sonar& sonar = one->scene().sonars[0];
+  NERITIC_TRY(const auto ten, open_scene(suite, device, file, [&](scene::Scene& scene) {
+                for (std::size_t i = 1; i < 10; ++i) {
+                  scene.sonars.push_back(sonar);
+                  scene.sonars.back().name += fmt::format("_{}", i);
+                }
+              }));
   FrameRequest all = request_of({}, {0}, false, false, false);
-  for (std::size_t i = 1; i < 10; ++i) {
-    ten->scene().sonars.push_back(sonar);
-    ten->scene().sonars.back().name += fmt::format("_{}", i);
-    all.sonars.push_back(i);
-  }
+  for (std::size_t i = 1; i < 10; ++i) all.sonars.push_back(i);
   const FrameRequest image = request_of({}, {0}, false, false, false);
   const FrameRequest arrays = request_of({}, {0}, false, true, false);
   Contender single = frames_of("sonar_frame/23k", *one, image);
@@ -91,14 +94,13 @@ Status bench_sonar_frame(Suite& suite, gpu::Device& device) {
 
 Status bench_camera_frame(Suite& suite, gpu::Device& device) {
   if (!suite.wants("camera_frame")) return {};
-  const auto size_of = [](Session& session) {
-    session.scene().cameras[0].width = 1280;
-    session.scene().cameras[0].height = 720;
+  const auto resize = [](scene::Scene& scene) {
+    scene.cameras.at(0).width = 1280;
+    scene.cameras.at(0).height = 720;
   };
-  NERITIC_TRY(const auto wreck, open_scene(suite, device, "wreck.toml"));
-  NERITIC_TRY(const auto pool, open_scene(suite, device, "pool.toml"));
-  NERITIC_TRY(const auto instances, open_scene(suite, device, "instances.toml"));
-  for (Session* session : {wreck.get(), pool.get(), instances.get()}) size_of(*session);
+  NERITIC_TRY(const auto wreck, open_scene(suite, device, "wreck.toml", resize));
+  NERITIC_TRY(const auto pool, open_scene(suite, device, "pool.toml", resize));
+  NERITIC_TRY(const auto instances, open_scene(suite, device, "instances.toml", resize));
   const FrameRequest color = request_of({0}, {}, true, false, false);
   const FrameRequest everything = request_of({0}, {}, true, true, true);
   const auto contender = [&](const std::string& name, const std::string& file, Session& session,

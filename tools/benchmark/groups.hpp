@@ -30,9 +30,10 @@ Status bench_deco(Suite& suite);  // plans, views, tissues of many divers; no GP
 Status bench_start(Suite& suite, gpu::Device& device);               // process start to picture
 Status bench_threads(Suite& suite, const std::string& device_name);  // same bits on 1 and 2 threads
 
-// A scene of assets/scenes in a session.
-Result<std::unique_ptr<testbed::Session>> open_scene(const Suite& suite, gpu::Device& device,
-                                                     const std::string& file);
+// A scene of assets/scenes in a session, changed first.
+Result<std::unique_ptr<testbed::Session>> open_scene(
+    const Suite& suite, gpu::Device& device, const std::string& file,
+    const std::function<void(scene::Scene&)>& change = {});
 
 std::string hash_of(const sonar::SonarImage& image);
 std::string hash_of(const testbed::FrameResult& result);

@@ -100,7 +100,7 @@ Status bench_sonar_terms(Suite& suite, gpu::Device& device) {
   std::vector<Contender> contenders;
   testbed::FrameRequest request;
   request.sonars = {0};
-  request.capture = {.color = false, .geometry = false, .motion = false};
+  request.capture = testbed::Capture{.color = false, .motion = false}.without_geometry();
   for (const auto& [name, terms] : one_by_one()) {
     scene::Scene scene = base;
     scene.sonars.at(0).terms = terms;

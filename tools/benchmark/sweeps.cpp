@@ -39,11 +39,12 @@ Status sweep_pixels(Suite& suite, gpu::Device& device) {
   std::vector<std::unique_ptr<testbed::Session>> sessions;
   std::vector<Contender> contenders;
   for (const double scale : {0.25, 0.5, 1.0, 2.0}) {
-    NERITIC_TRY(auto session, open_scene(suite, device, "benchmark_23k.toml"));
-    session->scene().sonars[0].gbuffer_scale = scale;
+    NERITIC_TRY(auto session,
+                open_scene(suite, device, "benchmark_23k.toml",
+                           [&](scene::Scene& scene) { scene.sonars.at(0).gbuffer_scale = scale; }));
     testbed::FrameRequest request;
     request.sonars = {0};
-    request.capture = {false, false, false};
+    request.capture = testbed::Capture{.color = false, .motion = false}.without_geometry();
     contenders.push_back(
         frames_of(fmt::format("sweep/gbuffer_scale_{}", scale), *session, request));
     contenders.back().facts = {{"gbuffer_scale", scale}};
@@ -72,7 +73,7 @@ Status sweep_triangles(Suite& suite, gpu::Device& device) {
     NERITIC_TRY(auto session, testbed::Session::create(device, std::move(scene)));
     testbed::FrameRequest request;
     request.sonars = {0};
-    request.capture = {false, false, false};
+    request.capture = testbed::Capture{.color = false, .motion = false}.without_geometry();
     contenders.push_back(
         frames_of(fmt::format("sweep/triangles_{}", triangles), *session, request));
     contenders.back().facts = {{"triangles", static_cast<double>(triangles)}};
