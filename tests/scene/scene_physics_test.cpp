@@ -259,8 +259,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "s.toml:7: vehicles[0].mission.waypoints[0].position_m: found nothing; "
                      "accepted: [x, y, z] in metres"},
         WrongPhysics{"[physics]\n" BALL "inputs = { body = 'suit' }",
-                     "s.toml:5: objects[0].inputs: found a table; accepted: no such key without "
-                     "human or dynamics"},
+                     "s.toml:5: objects[0].inputs.body: unknown key; nearest known key: pose"},
         WrongPhysics{"[physics]\n" ROV "inputs = { body = 'suit' }",
                      "s.toml:6: vehicles[0].inputs.body: unknown key; nearest known key: fault"},
         WrongPhysics{"[physics]\n" ROV "inputs = { wrench = 'recording' }",
