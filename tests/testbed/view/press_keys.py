@@ -41,6 +41,26 @@ class InputEvent(ctypes.Structure):
                 ("detail", UINT), ("same_screen", INT), ("pad", ctypes.c_long * 24)]
 
 
+class ErrorEvent(ctypes.Structure):
+    """XErrorEvent."""
+    _fields_ = [("type", INT), ("display", VOID), ("resource", ULONG), ("serial", ULONG),
+                ("code", ctypes.c_ubyte), ("request", ctypes.c_ubyte), ("minor", ctypes.c_ubyte)]
+
+
+# Codes of the errors since they were last looked at. Without a handler Xlib ends the program.
+errors = []
+
+
+@ctypes.CFUNCTYPE(INT, VOID, ctypes.POINTER(ErrorEvent))
+def keep_error(_, event):
+    errors.append(event.contents.code)
+    return 0
+
+
+x11.XSetErrorHandler(keep_error)
+KEY_RELEASE = 3
+
+
 def wait_for(what, found):
     end = time.monotonic() + LONGEST_WAIT_S
     while time.monotonic() < end:
@@ -79,6 +99,10 @@ class Driver:
         mask = {2: 1, 3: 2, 4: 4, 5: 8}[kind]
         x11.XSendEvent(self.display, self.window, 1, mask, ctypes.byref(event))
         x11.XSync(self.display, 0)
+        # A key that closes the window is let go of after the window has gone.
+        if errors and kind != KEY_RELEASE:
+            sys.exit(f"event {kind}: X error {errors[0]}")
+        errors.clear()
 
     def key(self, kind, name):
         keysym = x11.XStringToKeysym(name.encode())
