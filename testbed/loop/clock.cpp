@@ -14,6 +14,12 @@ Clock Clock::simulated(double start_s, double period_s) {
   return {false, start_s, period_s, kCatchUp, nullptr};
 }
 
+Clock Clock::steps(std::uint64_t first, double period_s) {
+  Clock clock = simulated(0.0, period_s);
+  clock.frames_ = first;
+  return clock;
+}
+
 TimeNs Clock::wait_for_due() {
   sim::HostClock host;
   sim::StepClock& clock = run_ ? static_cast<sim::StepClock&>(*run_) : host;

@@ -28,6 +28,9 @@ class Clock {
                     sim::RunClock* run = nullptr);
   // Frame k is at start_s + k * period_s. Nothing waits.
   static Clock simulated(double start_s, double period_s);
+  // The same at (first + k) * period_s: the times of a simulation's steps from that one on, bit for
+  // bit.
+  static Clock steps(std::uint64_t first, double period_s);
 
   static constexpr int kCatchUp = 4;
 
@@ -45,7 +48,7 @@ class Clock {
   double start_s_, period_s_;
   int catch_up_;
   sim::RunClock* run_;
-  std::uint64_t frames_ = 0;
+  std::uint64_t frames_ = 0;             // so far, with those before the first
   TimeNs begun_ns_ = 0, seen_ns_ = 0;    // of the first and the newest frame of a display
   std::optional<sim::StepPacer> pacer_;  // without a display
   int due_ = 0;                          // frames that the pacer gave and that were not taken yet

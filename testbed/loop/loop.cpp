@@ -60,27 +60,39 @@ void keep(const scene::Scene& scene, const std::vector<std::size_t>& cameras,
 
 Loop::Loop(LoopParts parts) : parts_(std::move(parts)) {
   NERITIC_CHECK(parts_.sensors || (parts_.physics && !parts_.view), "nothing to run");
+  if (parts_.sensors)
+    for (const ImageConsumer* consumer : parts_.sensors->consumers)
+      NERITIC_CHECK(!consumer->takes() ||
+                        (parts_.sensors->consumers.size() == 1 && parts_.frame_sinks.empty()),
+                    "one takes pixels that others want");
   if (parts_.physics && !parts_.step_sinks.empty())
     steps_.emplace(parts_.physics->world(), parts_.step_sinks);
   if (parts_.sensors && parts_.sensors->own_rates) schedule_ = schedule_of(*parts_.sensors);
 }
 
 Status Loop::run() {
-  const TimeNs begun_ns = now_ns();
+  begin();
+  return end(run_frames());
+}
+
+void Loop::begin() {
+  begun_ns_ = now_ns();
   if (parts_.physics) {
     if (steps_)
       parts_.physics->observe([this](const auto& step) { steps_->accept(step); },
                               [this](const Sample& sample) { steps_->use(sample); });
     parts_.physics->listen(parts_.sources);
   }
-  const Status status = run_frames();
+}
+
+Status Loop::end(const Status& status) {
   if (parts_.physics) {
     parts_.physics->stop();
     // The physics may outlive the loop and its parts.
     parts_.physics->observe({});
     parts_.physics->listen({});
   }
-  wall_s_ = to_ms(now_ns() - begun_ns) * 1e-3;
+  wall_s_ = to_ms(now_ns() - begun_ns_) * 1e-3;
   return finish(status);
 }
 

@@ -59,6 +59,13 @@ class Loop {
   explicit Loop(LoopParts parts);
   // Once. Step sinks are finished also if a frame fails.
   Status run();
+  // run() in parts, for someone who holds the clock: begin() once, then frames, then end() with the
+  // first failure. stopped() between them tells of a failed source or sink.
+  void begin();
+  Status turn() { return frame(); }
+  Status end(const Status& status);
+  // Asks whether the user stopped the run, or a source or a step sink failed.
+  bool stopped();
 
   std::uint64_t frames() const { return frames_; }
   double wall_s() const { return wall_s_; }
@@ -85,8 +92,6 @@ class Loop {
   Status show(Wanted wanted);
   Status give_done(bool wait);
   Status give(const Wanted& wanted, FrameResult result);
-  // Asks whether the user stopped the run, or a source or a step sink failed.
-  bool stopped();
   Status finish(const Status& status);
 
   LoopParts parts_;
@@ -99,6 +104,7 @@ class Loop {
   std::deque<Pending> pending_;            // submitted; the sinks do not have them yet
   std::uint64_t frames_ = 0, sensed_ = 0;  // frames; those that are for frame sinks
   double wall_s_ = 0.0;
+  TimeNs begun_ns_ = 0;
   double end_s_ = std::numeric_limits<double>::infinity();  // the scene time at which it ends
   bool started_ = false, interrupted_ = false, quit_ = false, last_ = false;
 };

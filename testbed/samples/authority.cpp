@@ -53,8 +53,10 @@ std::optional<std::size_t> group_of(PayloadKind kind) {
     case PayloadKind::kGas:
       return diver(DiverGroup::kGas);
     case PayloadKind::kWrench:
+    case PayloadKind::kThrusters:
       return vehicle(VehicleGroup::kWrench);
     case PayloadKind::kSetpoint:
+    case PayloadKind::kVelocity:
       return vehicle(VehicleGroup::kSetpoint);
     case PayloadKind::kFault:
       return vehicle(VehicleGroup::kFault);

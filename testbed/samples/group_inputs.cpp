@@ -72,8 +72,14 @@ bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step) {
     return apply_event(inputs, *event, 0);
   if (!heard(inputs, sample, step)) return false;
   take(sample, inputs.wrench);
+  take(sample, inputs.thrusters);
   take(sample, inputs.setpoint);
+  take(sample, inputs.velocity);
   take(sample, inputs.fault);
+  if (sample.kind() == PayloadKind::kWrench) inputs.wrench_by_thrusters = 0;
+  if (sample.kind() == PayloadKind::kThrusters) inputs.wrench_by_thrusters = 1;
+  if (sample.kind() == PayloadKind::kSetpoint) inputs.setpoint_by_velocity = 0;
+  if (sample.kind() == PayloadKind::kVelocity) inputs.setpoint_by_velocity = 1;
   return true;
 }
 

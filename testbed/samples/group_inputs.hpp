@@ -45,7 +45,11 @@ struct DiverInputs {
 struct VehicleInputs {
   std::array<GroupControl, kVehicleGroups> control;
   VehicleWrench wrench;
+  VehicleThrusters thrusters;
   VehicleSetpoint setpoint;
+  VehicleVelocity velocity;
+  // 1: the newest sample of the group is forces of thrusters; a velocity.
+  std::uint64_t wrench_by_thrusters = 0, setpoint_by_velocity = 0;
   ThrusterFault fault;
   std::uint64_t refused_events = 0;  // that name no group, authority or recording
 
@@ -57,7 +61,11 @@ struct VehicleInputs {
   static void fields(auto&& field, auto& self) {
     field("control", self.control);
     field("wrench", self.wrench);
+    field("thrusters", self.thrusters);
     field("setpoint", self.setpoint);
+    field("velocity", self.velocity);
+    field("wrench_by_thrusters", self.wrench_by_thrusters);
+    field("setpoint_by_velocity", self.setpoint_by_velocity);
     field("fault", self.fault);
     field("refused_events", self.refused_events);
   }

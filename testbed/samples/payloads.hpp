@@ -12,6 +12,7 @@
 #include "diver/vitals.hpp"
 #include "rov/sensor_set.hpp"
 #include "rov/vector6.hpp"
+#include "rov/vehicle.hpp"
 
 namespace neritic::testbed {
 
@@ -126,6 +127,26 @@ struct VehicleSetpoint {
     field("velocity_m_s", self.velocity_m_s);
     field("heading_rad", self.heading_rad);
   }
+};
+
+// How fast the vehicle is to move over ground, level: forward, starboard, down of its heading,
+// which turns at yaw_rate_rad_s from north towards east.
+struct VehicleVelocity {
+  Vec3 velocity_m_s{0.0};
+  double yaw_rate_rad_s = 0.0;
+
+  static void fields(auto&& field, auto& self) {
+    field("velocity_m_s", self.velocity_m_s);
+    field("yaw_rate_rad_s", self.yaw_rate_rad_s);
+  }
+};
+
+// The force that each thruster is to give along its direction, in the order of the vehicle's file;
+// beyond its limits it gives what it can. Nothing is held beside it.
+struct VehicleThrusters {
+  std::array<double, rov::kMaxThrusters> force_n{};
+
+  static void fields(auto&& field, auto& self) { field("force_n", self.force_n); }
 };
 
 struct ThrusterFault {

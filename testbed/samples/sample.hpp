@@ -36,11 +36,12 @@ struct SampleHeader {
 };
 
 // The order is that of PayloadKind.
-using Payload = std::variant<BodyJoints, HandJoints, HandPoses, HeadPose, Gaze, JacketButtons,
-                             Breath, Heart, GasSupply, VehicleWrench, VehicleSetpoint,
-                             ThrusterFault, ObjectPose, Event, rov::ImuReading, rov::DvlReading,
-                             rov::PressureReading, CompassReading, rov::AltimeterReading,
-                             rov::UsblReading, CollisionReading, DiverMotion, ComputerReading>;
+using Payload =
+    std::variant<BodyJoints, HandJoints, HandPoses, HeadPose, Gaze, JacketButtons, Breath, Heart,
+                 GasSupply, VehicleWrench, VehicleSetpoint, VehicleVelocity, VehicleThrusters,
+                 ThrusterFault, ObjectPose, Event, rov::ImuReading, rov::DvlReading,
+                 rov::PressureReading, CompassReading, rov::AltimeterReading, rov::UsblReading,
+                 CollisionReading, DiverMotion, ComputerReading>;
 
 enum class PayloadKind : std::uint32_t {
   kBodyJoints,
@@ -54,6 +55,8 @@ enum class PayloadKind : std::uint32_t {
   kGas,
   kWrench,
   kSetpoint,
+  kVelocity,
+  kThrusters,
   kFault,
   kObjectPose,
   kEvent,

@@ -23,7 +23,8 @@ void StreamTable::add_diver(const std::string& name) {
 
 void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sensors) {
   using enum PayloadKind;
-  std::vector<PayloadKind> kinds{kWrench, kSetpoint, kFault, kEvent, kCollision};
+  std::vector<PayloadKind> kinds{kWrench, kThrusters, kSetpoint, kVelocity,
+                                 kFault,  kEvent,     kCollision};
   if (sensors.imu) kinds.push_back(kImu);
   if (sensors.dvl) kinds.push_back(kDvl);
   if (sensors.pressure) kinds.push_back(kPressure);

@@ -91,7 +91,7 @@ std::vector<ImageConsumer::Asked> ImageConsumer::ask(FrameRequest& request) {
 }
 
 Status ImageConsumer::give(const scene::Scene& scene, const std::vector<Asked>& asked,
-                           const FrameResult& result) {
+                           FrameResult& result) {
   for (const Asked& one : asked) {
     std::optional<ImageSample> image = image_of(streams_[one.wish], scene, result);
     if (!image) continue;
@@ -99,7 +99,12 @@ Status ImageConsumer::give(const scene::Scene& scene, const std::vector<Asked>& 
                      .sequence = one.beat,
                      .captured_ns = std::llround(result.time_s * 1e9),
                      .arrived_ns = now_ns()};
-    NERITIC_TRY_STATUS(sink_->accept(*image));
+    if (sink_->takes()) {
+      // The sample's span stays: the pixels move, not their bytes.
+      NERITIC_TRY_STATUS(sink_->take(*image, take_pixels(streams_[one.wish], scene, result)));
+    } else {
+      NERITIC_TRY_STATUS(sink_->accept(*image));
+    }
     ++counts_[one.wish].given;
   }
   return {};

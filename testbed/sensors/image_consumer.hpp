@@ -17,6 +17,11 @@ class ImageSink {
   virtual bool ready(const ImageStream&) { return true; }
   // An Error ends the run.
   virtual Status accept(const ImageSample& image) = 0;
+  // Whether it keeps the pixels themselves: take() is called then instead, without a copy of them.
+  // Such a sink's consumer is the only one of its loop, without frame sinks, and wishes for no
+  // stream twice.
+  virtual bool takes() const { return false; }
+  virtual Status take(const ImageSample& image, ImagePixels) { return accept(image); }
   // After the last frame, also of a run that failed.
   virtual Status finish() { return {}; }
 };
@@ -45,8 +50,8 @@ class ImageConsumer {
   // Adds what is due at the request's time to the request.
   std::vector<Asked> ask(FrameRequest& request);
   // The images of a frame for which it asked.
-  Status give(const scene::Scene& scene, const std::vector<Asked>& asked,
-              const FrameResult& result);
+  Status give(const scene::Scene& scene, const std::vector<Asked>& asked, FrameResult& result);
+  bool takes() const { return sink_->takes(); }
   Status finish() { return sink_->finish(); }
   // Of each wish.
   const std::vector<Counts>& counts() const { return counts_; }

@@ -130,6 +130,35 @@ std::vector<ImageStream> image_streams(const scene::Scene& scene) {
   return out;
 }
 
+ImagePixels take_pixels(const ImageStream& stream, const scene::Scene& scene, FrameResult& result) {
+  const auto of_view = [&](ViewImages& view) -> ImagePixels {
+    switch (stream.kind) {
+      case kColor:
+        return std::move(view.color.data);
+      case kDepth:
+        return std::move(view.depth.data);
+      case kNormals:
+        return std::move(view.normals.data);
+      case kLabels:
+        return std::move(view.labels.data);
+      case kInstances:
+        return std::move(view.instances.data);
+      default:
+        return std::move(view.motion.data);
+    }
+  };
+  if (!stream.sonar)
+    return of_view(
+        std::ranges::find(result.cameras, scene.cameras[stream.sensor].name, &CameraFrame::name)
+            ->eyes.at(stream.part));
+  const auto first =
+      std::ranges::find(result.sonars, scene.sonars[stream.sensor].name, &SonarFrame::name);
+  SonarFrame& sonar = *(first + static_cast<std::ptrdiff_t>(stream.part));
+  if (stream.kind == kEchoes) return std::move(sonar.image.intensity);
+  if (stream.kind != kEchoLabels) return of_view(sonar.sectors.front());
+  return std::move(sonar.label_energy ? sonar.label_energy->classes : sonar.image.labels);
+}
+
 std::optional<ImageSample> image_of(const ImageStream& stream, const scene::Scene& scene,
                                     const FrameResult& result) {
   ImageSample out;

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "engine/scene/scene.hpp"
@@ -67,5 +68,11 @@ struct ImageSample {
 // The image of a stream in a frame's result; nothing where it was not computed.
 std::optional<ImageSample> image_of(const ImageStream& stream, const scene::Scene& scene,
                                     const FrameResult& result);
+
+// The pixels of such an image, moved out of the result: whoever takes them keeps them without a
+// copy. An image_of that was made before still shows them while they live.
+using ImagePixels =
+    std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>>;
+ImagePixels take_pixels(const ImageStream& stream, const scene::Scene& scene, FrameResult& result);
 
 }  // namespace neritic::testbed

@@ -203,6 +203,36 @@ rov::Setpoint given_setpoint(const VehicleSetpoint& wanted, MissionState& missio
   return setpoint;
 }
 
+rov::Setpoint velocity_setpoint(const VehicleVelocity& wanted, const rov::State& body,
+                                double period_s, MissionState& mission) {
+  constexpr double kLeastAhead_m = 1.0, kMostAhead_s = 1.0, kMostTurnAhead_rad = 0.5;
+  if (mission.piloted != 3) drift_with(body, mission);
+  mission.piloted = 3;
+  const double now_rad = rov::heading_of(body.attitude);
+  const double ahead_rad = std::remainder(
+      rov::heading_of(mission.wanted_attitude) + wanted.yaw_rate_rad_s * period_s - now_rad,
+      2.0 * kPi);
+  rov::Setpoint setpoint;
+  setpoint.attitude = rov::heading_attitude(
+      now_rad + std::clamp(ahead_rad, -kMostTurnAhead_rad, kMostTurnAhead_rad));
+  setpoint.velocity_ned_m_s = setpoint.attitude * wanted.velocity_m_s;
+  Vec3 ahead_m = mission.wanted_ned_m + setpoint.velocity_ned_m_s * period_s - body.position_ned_m;
+  const double distance_m = glm::length(ahead_m);
+  const double most_m =
+      std::max(kLeastAhead_m, kMostAhead_s * glm::length(setpoint.velocity_ned_m_s));
+  if (distance_m > most_m) ahead_m *= most_m / distance_m;
+  setpoint.position_ned_m = body.position_ned_m + ahead_m;
+  mission.wanted_ned_m = setpoint.position_ned_m;
+  mission.wanted_attitude = setpoint.attitude;
+  return setpoint;
+}
+
+void drift_with(const rov::State& body, MissionState& mission) {
+  mission.piloted = 4;
+  mission.wanted_ned_m = body.position_ned_m;
+  mission.wanted_attitude = rov::heading_attitude(rov::heading_of(body.attitude));
+}
+
 MissionState mission_start(const rov::State& body) {
   MissionState mission;
   mission.leg_from_ned_m = mission.wanted_ned_m = body.position_ned_m;

@@ -75,6 +75,13 @@ rov::Setpoint piloted_setpoint(const rov::Vec6& wrench, const rov::State& body,
                                MissionState& mission);
 // From outside: there, level, at that heading.
 rov::Setpoint given_setpoint(const VehicleSetpoint& wanted, MissionState& mission);
+// From outside: a place that moves so, level, with its heading; it begins where the body is and
+// runs ahead of it by a second's way at most, so that a vehicle that is held does not dash off
+// later. Once a control period of period_s.
+rov::Setpoint velocity_setpoint(const VehicleVelocity& wanted, const rov::State& body,
+                                double period_s, MissionState& mission);
+// From outside: nothing is held while thrusters get their forces directly.
+void drift_with(const rov::State& body, MissionState& mission);
 
 // At the start: nothing reached, and held is where the body is.
 MissionState mission_start(const rov::State& body);

@@ -24,7 +24,8 @@ struct MissionState {
   std::uint64_t arrived = 0, left = 0;  // waypoints, all rounds together
   double arrived_s = 0.0;               // at the waypoint where it holds
   Vec3 leg_from_ned_m{0.0};             // where the way to the next waypoint begins
-  // The pilot of the last control period: 0 the mission, 1 a pilot, 2 a setpoint from outside.
+  // The pilot of the last control period: 0 the mission, 1 a pilot, 2 a setpoint from outside, 3 a
+  // velocity from outside, 4 forces of thrusters from outside.
   std::uint64_t piloted = 0;
   // By so much faster than the speed over ground that it wants does it push through the water.
   double more_m_s = 0.0;

@@ -147,7 +147,7 @@ std::vector<std::byte> encode_state(const StateFormat& format, const SavedState&
 Result<SavedState> parse_state(const StateFormat& format, std::span<const std::byte> bytes,
                                const std::string& name) {
   if (bytes.size() < kMagic.size() || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
-    return bad_input("{}: not a saved state (its first bytes are not {})", name, kMagic);
+    return bad_input("{}: found no saved state; accepted: bytes that begin with {}", name, kMagic);
   if (bytes.size() < sizeof(Header))
     return bad_input("{}: {} bytes, cut off in its head of {}", name, bytes.size(), sizeof(Header));
   Header header;

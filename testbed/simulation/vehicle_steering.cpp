@@ -56,9 +56,25 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
     return true;
   }
   const rov::State known = known_state(call.after, index, time_s);
+  if (piloted && inputs.wrench_by_thrusters != 0) {
+    rov::Inputs commands;
+    commands.thruster_n = inputs.thrusters.force_n;
+    rov::drive(vehicle.file, commands);
+    if (!sim::all_finite(commands)) return false;
+    drift_with(known, state.mission);
+    state.command_n = commands.thruster_n;
+    state.integral = {};
+    return true;
+  }
+  const auto given_by = [&] {
+    return inputs.setpoint_by_velocity != 0
+               ? velocity_setpoint(inputs.velocity, known, vehicle.file.gains.period_s,
+                                   state.mission)
+               : given_setpoint(inputs.setpoint, state.mission);
+  };
   rov::Setpoint setpoint = piloted ? piloted_setpoint(inputs.wrench.wrench, known, state.mission)
                            : given
-                               ? given_setpoint(inputs.setpoint, state.mission)
+                               ? given_by()
                                : vehicle.mission->update(call.before, known, time_s, state.mission);
   if (piloted) setpoint.pilot = inputs.wrench.wrench;
   rov::ControlState control{state.integral};

@@ -1,0 +1,368 @@
+#include "testbed/world/ros_samples.hpp"
+
+#include "testbed/world/ros_frames.hpp"
+
+namespace neritic::testbed::ros {
+namespace {
+
+// What is done with each field of a payload: listed, written or read. Each describe() below names a
+// payload's fields once for all three.
+struct Lister {
+  std::vector<Field>& fields;
+  template <class T>
+  void number(const char* name, T&) {
+    fields.push_back({name, 1});
+  }
+  template <class T>
+  void choice(const char* name, T& value, T) {
+    number(name, value);
+  }
+  template <class T, class To, class From>
+  void vector(const char* name, T&, const To&, const From&) {
+    fields.push_back({name, 3});
+  }
+  template <class T, class To, class From>
+  void rotation(const char* name, T&, const To&, const From&) {
+    fields.push_back({name, 4});
+  }
+  template <class T, class Both>
+  void angle(const char* name, T&, const Both&) {
+    fields.push_back({name, 1});
+  }
+  template <class T>
+  void bits(const char* name, T&, std::uint32_t count) {
+    fields.push_back({name, count});
+  }
+  template <class T>
+  void list(const char* name, T& values) {
+    fields.push_back({name, static_cast<std::uint32_t>(std::size(values))});
+  }
+  template <class T, class Both>
+  void rotations(const char* name, T& values, const Both&) {
+    fields.push_back({name, static_cast<std::uint32_t>(4 * std::size(values))});
+  }
+};
+
+struct Writer {
+  double* at;
+  void put(const Vec3& v) { *at++ = v.x, *at++ = v.y, *at++ = v.z; }
+  void put(const Quat& q) { *at++ = q.x, *at++ = q.y, *at++ = q.z, *at++ = q.w; }
+  template <class T>
+  void number(const char*, const T& value) {
+    *at++ = static_cast<double>(value);
+  }
+  template <class T>
+  void choice(const char* name, const T& value, T) {
+    number(name, value);
+  }
+  template <class T, class To, class From>
+  void vector(const char*, const T& value, const To& to, const From&) {
+    put(to(value));
+  }
+  template <class T, class To, class From>
+  void rotation(const char*, const T& value, const To& to, const From&) {
+    put(to(value));
+  }
+  template <class T, class Both>
+  void angle(const char*, const T& value, const Both& both) {
+    *at++ = both(value);
+  }
+  template <class T>
+  void bits(const char*, const T& value, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) *at++ = static_cast<double>(value >> i & 1);
+  }
+  template <class T>
+  void list(const char*, const T& values) {
+    for (const double value : values) *at++ = value;
+  }
+  template <class T, class Both>
+  void rotations(const char*, const T& values, const Both& both) {
+    for (const Quat& value : values) put(both(value));
+  }
+};
+
+struct Reader {
+  const double* at;
+  Vec3 vec3() {
+    at += 3;
+    return {at[-3], at[-2], at[-1]};
+  }
+  Quat quat() {
+    at += 4;
+    return unit_or_identity(Quat(at[-1], at[-4], at[-3], at[-2]));
+  }
+  template <class T>
+  void number(const char*, T& value) {
+    const double x = *at++;
+    if constexpr (std::is_floating_point_v<T>)
+      value = x;
+    else
+      value = static_cast<T>(static_cast<std::uint64_t>(x > 0.0 ? std::min(x, 9e15) : 0.0));
+  }
+  // Beyond the last: the first.
+  template <class T>
+  void choice(const char*, T& value, T last) {
+    const double x = *at++;
+    value = x >= 0.0 && x <= static_cast<double>(last)
+                ? static_cast<T>(static_cast<std::uint64_t>(x))
+                : T{};
+  }
+  template <class T, class To, class From>
+  void vector(const char*, T& value, const To&, const From& from) {
+    value = from(vec3());
+  }
+  template <class T, class To, class From>
+  void rotation(const char*, T& value, const To&, const From& from) {
+    value = from(quat());
+  }
+  template <class T, class Both>
+  void angle(const char*, T& value, const Both& both) {
+    value = both(*at++);
+  }
+  template <class T>
+  void bits(const char*, T& value, std::uint32_t count) {
+    value = 0;
+    for (std::uint32_t i = 0; i < count; ++i) value |= (*at++ != 0.0 ? T{1} : T{0}) << i;
+  }
+  template <class T>
+  void list(const char*, T& values) {
+    for (double& value : values) value = *at++;
+  }
+  template <class T, class Both>
+  void rotations(const char*, T& values, const Both& both) {
+    for (Quat& value : values) value = both(quat());
+  }
+};
+
+// The conversions: those of vectors and rotations there and back, those of angles both ways.
+constexpr auto same = [](double value) { return value; };
+constexpr auto minus = [](double value) { return -value; };
+const auto flu = [](const Vec3& v) { return flu_from_marine(v); };
+const auto ned = [](const Vec3& v) { return enu_from_ned(v); };
+const auto enu = [](const Vec3& v) { return enu_from_world(v); };
+const auto world = [](const Vec3& v) { return world_from_enu(v); };
+const auto attitude = [](const Quat& q) { return enu_from_body(q); };
+const auto body = [](const Quat& q) { return body_from_enu(q); };
+const auto joint = [](const Quat& q) { return flu_from_marine(q); };
+const auto yaw = [](double heading_rad) { return yaw_from_heading(heading_rad); };
+
+template <class Io, class T>
+void pose(Io& io, const char* position, const char* orientation, T& p) {
+  io.vector(position, p.position_m, enu, world);
+  io.rotation(orientation, p.rotation, attitude, body);
+}
+
+// Inputs.
+template <class Io>
+void describe(Io& io, auto& p, const BodyJoints*) {
+  io.rotations("joints", p.joints, joint);
+  io.number("other_power_w", p.other_power_w);
+}
+template <class Io>
+void describe(Io& io, auto& p, const HandJoints*) {
+  io.rotations("wrists", p.wrist, joint);
+  io.list("flexion", p.flexion_rad);
+}
+template <class Io>
+void describe(Io& io, auto& p, const HandPoses*) {
+  pose(io, "left_position", "left_orientation", p.world_from_hand[0]);
+  pose(io, "right_position", "right_orientation", p.world_from_hand[1]);
+  io.bits("tracked", p.tracked, 2);
+}
+template <class Io>
+void describe(Io& io, auto& p, const HeadPose*) {
+  pose(io, "position", "orientation", p.world_from_head);
+  io.number("placed", p.placed);
+}
+template <class Io>
+void describe(Io& io, auto& p, const Gaze*) {
+  io.number("time_s", p.state.time_s);
+  io.vector("direction", p.state.direction, enu, world);
+  io.choice("class", p.state.now, diver::GazeClass::kSaccade);
+  io.number("fixated_s", p.state.fixated_s);
+  io.vector("fixation", p.state.fixation, enu, world);
+}
+template <class Io>
+void describe(Io& io, auto& p, const JacketButtons*) {
+  io.bits("pressed", p.pressed, 3);
+}
+template <class Io>
+void describe(Io& io, auto& p, const Breath*) {
+  io.number("ventilation_l_min", p.ventilation_l_min);
+  io.number("bias_m3", p.bias_m3);
+  io.number("hold", p.hold);
+}
+template <class Io>
+void describe(Io& io, auto& p, const Heart*) {
+  io.number("time_s", p.state.time_s);
+  io.number("rate_bpm", p.state.rate_bpm);
+  io.choice("quality", p.state.quality, diver::SignalQuality::kGood);
+  io.number("beats", p.state.beats);
+}
+template <class Io>
+void describe(Io& io, auto& p, const GasSupply*) {
+  io.number("tank", p.tank);
+}
+template <class Io>
+void describe(Io& io, auto& p, const VehicleWrench*) {
+  Vec3 force(p.wrench[0], p.wrench[1], p.wrench[2]), torque(p.wrench[3], p.wrench[4], p.wrench[5]);
+  io.vector("force", force, flu, flu);
+  io.vector("torque", torque, flu, flu);
+  if constexpr (std::is_same_v<Io, Reader>) p.wrench = rov::vec6(force, torque);
+}
+template <class Io>
+void describe(Io& io, auto& p, const VehicleSetpoint*) {
+  io.vector("position", p.position_m, enu, world);
+  io.vector("velocity", p.velocity_m_s, enu, world);
+  io.angle("yaw", p.heading_rad, yaw);
+}
+template <class Io>
+void describe(Io& io, auto& p, const VehicleVelocity*) {
+  io.vector("linear", p.velocity_m_s, flu, flu);
+  io.angle("yaw_rate", p.yaw_rate_rad_s, minus);
+}
+template <class Io>
+void describe(Io& io, auto& p, const VehicleThrusters*) {
+  io.list("force_n", p.force_n);
+}
+template <class Io>
+void describe(Io& io, auto& p, const ThrusterFault*) {
+  io.bits("failed", p.failed, rov::kMaxThrusters);
+}
+template <class Io>
+void describe(Io& io, auto& p, const ObjectPose*) {
+  pose(io, "position", "orientation", p.world_from_object);
+  io.vector("linear_velocity", p.velocity_m_s, enu, world);
+  io.vector("angular_velocity", p.angular_velocity_rad_s, enu, world);
+  io.number("measured", p.measured);
+}
+void describe(auto&, auto&, const Event*) {}
+
+// Readings.
+template <class Io>
+void describe(Io& io, auto& p, const rov::ImuReading*) {
+  io.vector("angular_velocity", p.angular_rad_s, flu, flu);
+  io.vector("linear_acceleration", p.specific_force_m_s2, flu, flu);
+}
+template <class Io>
+void describe(Io& io, auto& p, const rov::DvlReading*) {
+  io.vector("velocity", p.velocity_m_s, flu, flu);
+  io.number("altitude_m", p.altitude_m);
+  io.list("range_m", p.range_m);
+  io.list("beam_velocity", p.speed_m_s);
+  io.bits("heard", p.heard, 4);
+}
+template <class Io>
+void describe(Io& io, auto& p, const rov::PressureReading*) {
+  io.number("pressure_pa", p.pressure_pa);
+  io.number("depth_m", p.depth_m);
+}
+template <class Io>
+void describe(Io& io, auto& p, const CompassReading*) {
+  io.angle("yaw", p.heading_rad, yaw);
+}
+template <class Io>
+void describe(Io& io, auto& p, const rov::AltimeterReading*) {
+  io.number("distance_m", p.distance_m);
+  io.number("heard", p.heard);
+}
+template <class Io>
+void describe(Io& io, auto& p, const rov::UsblReading*) {
+  io.number("heard", p.heard);
+  io.number("range_m", p.range_m);
+  io.angle("azimuth", p.bearing_rad, yaw);
+  io.angle("elevation", p.elevation_rad, minus);
+  io.vector("position", p.position_ned_m, ned, ned);
+  io.number("travel_s", p.travel_s);
+}
+template <class Io>
+void describe(Io& io, auto& p, const CollisionReading*) {
+  io.choice("with", p.with, CollisionWith::kDiver);
+  io.number("other", p.other);
+  io.vector("point", p.point_m, enu, world);
+  io.vector("normal", p.normal, enu, world);
+  io.number("depth_m", p.depth_m);
+  io.vector("impulse", p.impulse_n_s, enu, world);
+}
+template <class Io>
+void describe(Io& io, auto& p, const DiverMotion*) {
+  pose(io, "position", "orientation", p.world_from_body);
+  io.vector("linear_velocity", p.velocity_m_s, flu, flu);
+  io.vector("angular_velocity", p.angular_rad_s, flu, flu);
+  io.vector("gaze", p.gaze, enu, world);
+  io.number("heart_bpm", p.heart_bpm);
+  io.number("breath_bpm", p.breath_bpm);
+  io.number("ventilation_l_min", p.ventilation_l_min);
+  io.number("tank_pa", p.tank_pa);
+  io.number("jacket_m3", p.jacket_m3);
+  io.number("lungs_m3", p.lungs_m3);
+  io.number("tank", p.tank);
+  io.bits("buttons", p.buttons, 3);
+}
+template <class Io>
+void describe(Io& io, auto& p, const ComputerReading*) {
+  io.number("depth_m", p.depth_m);
+  io.number("ceiling_m", p.ceiling_m);
+  io.number("stop_m", p.stop_m);
+  io.number("no_stop_min", p.no_stop_min);
+  io.number("stop_min", p.stop_min);
+  io.number("to_surface_min", p.to_surface_min);
+  io.number("po2_bar", p.po2_bar);
+  io.number("ascent_m_min", p.ascent_m_min);
+  io.number("cns_percent", p.cns_percent);
+  io.number("gas", p.gas);
+  io.number("alarm", p.alarm);
+}
+
+}  // namespace
+
+std::vector<Field> fields_of(PayloadKind kind) {
+  std::vector<Field> fields;
+  Lister lister{fields};
+  Payload payload = empty_payload(kind);
+  std::visit([&](auto& p) { describe(lister, p, &p); }, payload);
+  return fields;
+}
+
+std::size_t value_count(PayloadKind kind) {
+  std::size_t count = 0;
+  for (const Field& field : fields_of(kind)) count += field.count;
+  return count;
+}
+
+std::size_t write_values(const Payload& payload, std::span<double> out) {
+  Writer writer{out.data()};
+  std::visit([&](const auto& p) { describe(writer, p, &p); }, payload);
+  return static_cast<std::size_t>(writer.at - out.data());
+}
+
+Payload read_values(PayloadKind kind, std::span<const double> values) {
+  Payload payload = empty_payload(kind);
+  Reader reader{values.data()};
+  std::visit([&](auto& p) { describe(reader, p, &p); }, payload);
+  return payload;
+}
+
+std::string frame_of(PayloadKind kind, const std::string& owner) {
+  switch (kind) {
+    case PayloadKind::kImu:
+    case PayloadKind::kDvl:
+    case PayloadKind::kPressure:
+    case PayloadKind::kAltimeter:
+      return owner + "/" + std::string(name_of(kind));
+    case PayloadKind::kUsbl:
+    case PayloadKind::kCompass:
+    case PayloadKind::kCollision:
+    case PayloadKind::kMotion:
+    case PayloadKind::kSetpoint:
+    case PayloadKind::kObjectPose:
+    case PayloadKind::kHeadPose:
+    case PayloadKind::kHandPoses:
+    case PayloadKind::kGaze:
+      return "world";
+    default:
+      return owner;
+  }
+}
+
+}  // namespace neritic::testbed::ros

@@ -1,0 +1,175 @@
+// A scene for programs: opened with a seed, stepped when they say so, read by stream, commanded by
+// name. In-process Python and the server are made on it. It configures the testbed's one loop
+// (testbed/loop) and turns it frame by frame; a device is made when the first image is asked for.
+//
+// ROS conventions (ros_frames.hpp): world east, north, up; bodies forward, left, up; quaternions
+// x, y, z, w. Numbers have names (fields of StreamInfo). One thread at a time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/core/result.hpp"
+#include "testbed/world/arrivals.hpp"
+
+namespace neritic::testbed {
+
+struct WorldOptions {
+  std::optional<std::uint64_t> seed;  // instead of the scene's
+  bool real_time = false;             // ticks wait for the host's clock; else they run at once
+  unsigned threads = 1;               // of a step
+  std::string device;                 // of images: part of its name; empty: the best
+  bool validation = false;            // of Vulkan, for images
+};
+
+struct StreamField {
+  std::string name;
+  std::uint32_t count = 1;
+};
+// A stream of readings, of inputs or of images. Its id is its place in World::streams().
+struct StreamInfo {
+  std::string name;   // "rov/imu", "diver/joints", "eye/color"
+  std::string owner;  // "rov"
+  std::string kind;   // "imu"
+  std::string frame;  // of its vectors or its picture
+  enum class Sort { kReading, kInput, kImage } sort = Sort::kReading;
+  std::vector<StreamField> fields;  // of readings and inputs
+  double rate_hz = 0.0;             // of images
+  std::string encoding;             // of images, as ROS's sensor_msgs/Image names it
+};
+struct AgentInfo {
+  std::string name;
+  std::string kind;  // "vehicle", "diver", "object"
+  // Of a vehicle.
+  std::vector<std::pair<double, double>> thruster_n;  // least and most force of each
+  bool takes_pwm = false;
+  bool has_mission = false;
+};
+
+struct Reading {
+  static constexpr std::size_t kMostValues = 32;
+  std::uint32_t stream = 0;
+  std::uint32_t count = 0;  // of values; 0: there is none yet
+  std::uint64_t sequence = 0;
+  TimeNs stamp_ns = 0, arrival_ns = 0;  // simulated time
+  std::array<double, kMostValues> values{};
+};
+
+// An image with its own pixels: rows from the top, channels interleaved. Move only where it lies.
+struct WorldImage {
+  std::uint32_t stream = 0;
+  std::uint64_t sequence = 0;
+  TimeNs stamp_ns = 0, arrival_ns = 0;
+  std::uint32_t width = 0, height = 0, channels = 1;
+  std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> pixels;
+  // Of its frame in the world: a camera's optical frame (right, down, forward), a sonar's head
+  // (forward, left, up).
+  std::array<double, 3> position{};
+  std::array<double, 4> orientation{0.0, 0.0, 0.0, 1.0};
+  std::array<double, 4> intrinsics{};  // fx, fy, cx, cy of a camera, in pixels
+  // Of a sonar: limits of the rows (m) and columns (rad, positive to the left), and of elevation.
+  std::array<double, 2> range_m{}, azimuth{}, elevation{};
+
+  std::span<const std::byte> bytes() const;
+};
+
+// What an agent truly does, apart from what is measured of it.
+struct Truth {
+  std::array<double, 3> position{};                             // of its origin, world
+  std::array<double, 4> orientation{0.0, 0.0, 0.0, 1.0};        // world from body
+  std::array<double, 3> linear_velocity{}, angular_velocity{};  // over ground, body axes
+  std::array<double, 3> current{};                              // of the water there, world axes
+  std::uint64_t touched_steps = 0;  // in which it touched something, so far
+  std::vector<double> thruster_n;   // of a vehicle: the commands that act
+};
+
+class World {
+ public:
+  // Errors in one line: the scene's file, or nothing in it moves by physics.
+  static Result<std::unique_ptr<World>> open(const std::filesystem::path& scene,
+                                             const WorldOptions& options = {});
+  // Ends the recording.
+  ~World();
+
+  const std::string& title() const;
+  const std::string& path() const;
+  std::uint64_t seed() const;
+  double step_s() const;
+  std::uint64_t step() const;
+  double time_s() const;
+  TimeNs time_ns() const;
+  std::uint64_t hash() const;  // of the state
+  const std::vector<AgentInfo>& agents() const;
+  const std::vector<StreamInfo>& streams() const;
+  // kBadInput with the nearest name.
+  Result<std::uint32_t> stream(const std::string& name) const;
+  Result<std::size_t> agent(const std::string& name) const;
+
+  // So many steps, in lock-step with the caller. An Error of a device, a source or a recording: the
+  // steps until then were taken.
+  Status tick(std::uint64_t steps = 1);
+
+  // The newest reading of each stream that has arrived, by stream; count 0 where there is none.
+  std::span<const Reading> newest() const;
+  // Every reading of a stream is kept for take_arrived(), at most kMostKept; then the oldest is
+  // dropped, and counted.
+  static constexpr std::size_t kMostKept = 1 << 16;
+  Status keep(std::uint32_t stream, bool on);
+  std::vector<Reading> take_arrived();
+  std::uint64_t dropped() const;
+  // On arrival only: what was measured stays. kBadInput for negative times or shares.
+  Status set_link(std::uint32_t stream, const LinkOptions& link);
+
+  // Images of that stream from the next tick on, at rate_hz or the sensor's own (0). The first one
+  // makes the device. keep: as above; else only the newest one waits.
+  Status want_image(std::uint32_t stream, double rate_hz = 0.0, bool keep = false);
+  Status drop_image(std::uint32_t stream);
+  // Those that arrived since the last call, in their order, with their pixels: nothing is copied.
+  std::vector<std::unique_ptr<WorldImage>> take_images();
+
+  // A command for an agent takes the authority over its group and holds until the next one,
+  // release() or, if hold_s > 0, until so long nothing came. Vehicles:
+  //   goto        x y z yaw [vx vy vz]: be there, level
+  //   velocity    vx vy vz yaw_rate: over ground, forward, left, up of its heading
+  //   wrench      fx fy fz tx ty tz: N, N m, body axes; depth and heading are held where it is 0
+  //   thrusters   a force each, N    pwm    a pulse width each, us    faults    1 each that fails
+  // Divers: buttons  inflate deflate dump; joints  15 quaternions; head  position, orientation,
+  // placed; hands, gaze, breath, heart, gas: the fields of the stream of that name.
+  // Objects: pose  x y z qx qy qz qw [vx vy vz wx wy wz].
+  // source: who commands, by name. kBadInput: what was found, what is accepted.
+  Status command(const std::string& agent, const std::string& kind, std::span<const double> values,
+                 double hold_s = 0.0, const std::string& source = kClient);
+  // Gives all groups of the agent back to what the scene chose for them.
+  Status release(const std::string& agent, const std::string& source = kClient);
+  // A sample as a device of that name sends it, into a stream of inputs; it acts if the scene (or a
+  // command) gives that source the authority. stamp_s: when it was measured; absent: now.
+  Status inject(const std::string& stream, std::span<const double> values,
+                const std::string& source, std::optional<double> stamp_s = {});
+  static constexpr const char* kClient = "client";
+
+  Result<Truth> truth(const std::string& agent) const;
+
+  // The whole state as bytes, and back at once; images and readings on their way are dropped.
+  std::vector<std::byte> save() const;
+  Status restore(std::span<const std::byte> bytes);
+
+  // From now on until stop_recording(): PATH.log, for `neritic dive --replay`, with PATH.csv, and
+  // PATH.state where it does not begin at the start.
+  Status record(const std::filesystem::path& path);
+  Status stop_recording();
+  bool recording() const;
+
+ private:
+  World();
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace neritic::testbed

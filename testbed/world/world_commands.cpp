@@ -1,0 +1,247 @@
+// Commands of a World: a sample of a client, and the authority that lets it act.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/refusal.hpp"
+#include "testbed/world/ros_samples.hpp"
+#include "testbed/world/world_parts.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+Status check_finite(const std::string& where, std::span<const double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      return refusal(where, fmt::format("{} at place {}", values[i], i), "finite numbers");
+  return {};
+}
+
+Status check_count(const std::string& where, std::size_t found, std::size_t least,
+                   std::size_t most) {
+  if (found >= least && found <= most) return {};
+  return refusal(where, fmt::format("{} numbers", found),
+                 least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most));
+}
+
+// A command's numbers as those of a payload's fields, and the kind of that.
+struct Said {
+  PayloadKind kind = PayloadKind::kEvent;
+  std::vector<double> values;
+};
+
+Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& where,
+                             const std::string& kind, std::span<const double> given) {
+  std::vector<double> values(given.begin(), given.end());
+  const std::size_t thrusters = vehicle.vehicle.thruster_count;
+  if (kind == "goto") {
+    NERITIC_TRY_STATUS(check_count(where, values.size() == 7 ? 4 : values.size(), 4, 4));
+    const double yaw = values[3];
+    values.erase(values.begin() + 3);
+    values.resize(6, 0.0);
+    values.push_back(yaw);
+    return Said{PayloadKind::kSetpoint, values};
+  }
+  if (kind == "velocity") {
+    NERITIC_TRY_STATUS(check_count(where, values.size(), 4, 4));
+    return Said{PayloadKind::kVelocity, values};
+  }
+  if (kind == "wrench") {
+    NERITIC_TRY_STATUS(check_count(where, values.size(), 6, 6));
+    return Said{PayloadKind::kWrench, values};
+  }
+  NERITIC_TRY_STATUS(check_count(where, values.size(), thrusters, thrusters));
+  if (kind == "pwm") {
+    if (!vehicle.file.curve)
+      return refusal(where, vehicle.name + ", whose file names no thrust table",
+                     "a vehicle with one, or 'thrusters' in N");
+    for (double& value : values)
+      value = vehicle.file.curve->thrust_n(value, vehicle.file.voltage_v);
+  }
+  values.resize(rov::kMaxThrusters, 0.0);
+  return Said{kind == "faults" ? PayloadKind::kFault : PayloadKind::kThrusters, values};
+}
+
+constexpr std::array kVehicleCommands{"goto", "velocity", "wrench", "thrusters", "pwm", "faults"};
+constexpr std::array kDiverCommands{
+    std::pair("buttons", PayloadKind::kButtons),  std::pair("joints", PayloadKind::kBodyJoints),
+    std::pair("hands", PayloadKind::kHandJoints), std::pair("hand_poses", PayloadKind::kHandPoses),
+    std::pair("head", PayloadKind::kHeadPose),    std::pair("gaze", PayloadKind::kGaze),
+    std::pair("breath", PayloadKind::kBreath),    std::pair("heart", PayloadKind::kHeart),
+    std::pair("gas", PayloadKind::kGas)};
+
+Result<Said> diver_command(const std::string& where, const std::string& kind,
+                           std::span<const double> given) {
+  std::vector<double> values(given.begin(), given.end());
+  const auto found =
+      std::ranges::find_if(kDiverCommands, [&](const auto& c) { return kind == c.first; });
+  if (found == kDiverCommands.end()) {
+    std::vector<std::string> names;
+    for (const auto& command : kDiverCommands) names.emplace_back(command.first);
+    return unknown_name(where, kind, names);
+  }
+  const std::size_t count = ros::value_count(found->second);
+  // Joints without the power beside them, as the swimmer's.
+  if (found->second == PayloadKind::kBodyJoints && values.size() + 1 == count)
+    values.push_back(0.0);
+  NERITIC_TRY_STATUS(check_count(where, values.size(), count, count));
+  return Said{found->second, values};
+}
+
+Result<Said> object_command(const std::string& where, const std::string& kind,
+                            std::span<const double> given) {
+  if (kind != "pose") return unknown_name(where, kind, {"pose"});
+  std::vector<double> values(given.begin(), given.end());
+  if (values.size() != 7) NERITIC_TRY_STATUS(check_count(where, values.size(), 7, 13));
+  if (values.size() != 7 && values.size() != 13)
+    return refusal(where, fmt::format("{} numbers", values.size()), "7 or 13");
+  const double measured = values.size() == 13 ? 1.0 : 0.0;
+  values.resize(13, 0.0);
+  values.push_back(measured);
+  return Said{PayloadKind::kObjectPose, values};
+}
+
+Authority chosen_authority(const PhysicsInputs& chosen, OwnerSort sort, std::size_t owner,
+                           std::size_t group, SourceId& source, double& hold_s) {
+  const GroupControl& control =
+      sort == OwnerSort::kVehicle ? chosen.vehicles()[owner].control[group]
+      : sort == OwnerSort::kDiver ? chosen.humans()[owner].control[group]
+                                  : chosen.objects()[owner].control[group];
+  source = static_cast<SourceId>(control.source);
+  hold_s = control.hold_s;
+  return control.authority;
+}
+
+}  // namespace
+
+Result<SourceId> World::Parts::source(const std::string& name) {
+  if (const auto known = sources.find(name); known != sources.end()) return known->second;
+  NERITIC_TRY(const SourceId id, physics->inbox().open(name));
+  sources.emplace(name, id);
+  return id;
+}
+
+Status World::Parts::push(SourceId source, StreamId stream, const Payload& payload,
+                          TimeNs captured_ns) {
+  const std::string& name = world().streams()[stream].name;
+  const TimeNs now = std::llround(newest().time_s * 1e9);
+  const SampleVerdict verdict = physics->inbox().push(
+      {{stream, source, sequences[{source, stream}]++, captured_ns, now}, payload});
+  if (verdict == SampleVerdict::kAccepted) return {};
+  return refusal(name, fmt::format("a sample that is {}", name_of(verdict)),
+                 "finite, plausible samples in their order, up to 0.5 s old");
+}
+
+Status World::Parts::hand_over(StreamId events, std::uint64_t group, Authority authority,
+                               SourceId source, double hold_s) {
+  const auto key = std::pair(events, group);
+  const auto held = holders.find(key);
+  const bool live = authority == Authority::kLive;
+  if (live && held != holders.end() && held->second.source == source &&
+      held->second.hold_s == hold_s)
+    return {};
+  // Events come under the source's own name, so that a recording says who took over.
+  NERITIC_TRY_STATUS(push(source, events,
+                          Event{.group = group,
+                                .authority = static_cast<std::uint64_t>(authority),
+                                .source = source,
+                                .hold_s = hold_s},
+                          std::llround(newest().time_s * 1e9)));
+  if (live)
+    holders[key] = {source, hold_s};
+  else
+    holders.erase(key);
+  return {};
+}
+
+Status World::command(const std::string& name, const std::string& kind,
+                      std::span<const double> values, double hold_s, const std::string& from) {
+  Parts& parts = *parts_;
+  NERITIC_TRY(const std::size_t index, agent(name));
+  const std::string where = name + ": " + kind;
+  if (!(hold_s >= 0.0 && hold_s <= kHoldForever_s))
+    return refusal(where + ": hold_s", fmt::format("{}", hold_s), "0 (for ever) or more seconds");
+  NERITIC_TRY_STATUS(check_finite(where, values));
+  const PhysicsWorld& world = parts.world();
+  const std::size_t vehicles = world.vehicles().size(), humans = world.humans().size();
+  OwnerSort sort = OwnerSort::kVehicle;
+  std::uint32_t owner = static_cast<std::uint32_t>(index);
+  Said said;
+  if (index < vehicles) {
+    if (std::ranges::find(kVehicleCommands, kind) == kVehicleCommands.end())
+      return unknown_name(name, kind, {kVehicleCommands.begin(), kVehicleCommands.end()});
+    NERITIC_TRY(said, vehicle_command(world.vehicles()[index], where, kind, values));
+  } else if (index < vehicles + humans) {
+    sort = OwnerSort::kDiver;
+    owner -= static_cast<std::uint32_t>(vehicles);
+    NERITIC_TRY(said, diver_command(where, kind, values));
+  } else {
+    sort = OwnerSort::kObject;
+    owner -= static_cast<std::uint32_t>(vehicles + humans);
+    NERITIC_TRY(said, object_command(where, kind, values));
+  }
+  const StreamId stream = world.streams().id(sort, owner, said.kind);
+  const StreamId events = world.streams().id(sort, owner, PayloadKind::kEvent);
+  NERITIC_TRY(const SourceId source, parts.source(from));
+  const double hold = hold_s == 0.0 ? kHoldForever_s : hold_s;
+  const std::size_t group = group_of(said.kind).value();
+  // A wrench acts before a setpoint: for a setpoint it goes.
+  constexpr auto kWrench = static_cast<std::uint64_t>(VehicleGroup::kWrench);
+  if (sort == OwnerSort::kVehicle && group == static_cast<std::size_t>(VehicleGroup::kSetpoint) &&
+      parts.holders.contains({events, kWrench}))
+    NERITIC_TRY_STATUS(
+        parts.hand_over(events, kWrench, Authority::kAutopilot, source, kVehicleHold_s[0]));
+  NERITIC_TRY_STATUS(parts.hand_over(events, group, Authority::kLive, source, hold));
+  return parts.push(source, stream, ros::read_values(said.kind, said.values), time_ns());
+}
+
+Status World::release(const std::string& name, const std::string& from) {
+  Parts& parts = *parts_;
+  NERITIC_TRY(const std::size_t index, agent(name));
+  const PhysicsWorld& world = parts.world();
+  const std::size_t vehicles = world.vehicles().size(), humans = world.humans().size();
+  const OwnerSort sort = index < vehicles            ? OwnerSort::kVehicle
+                         : index < vehicles + humans ? OwnerSort::kDiver
+                                                     : OwnerSort::kObject;
+  const auto owner =
+      static_cast<std::uint32_t>(index - (sort == OwnerSort::kVehicle ? 0
+                                          : sort == OwnerSort::kDiver ? vehicles
+                                                                      : vehicles + humans));
+  const StreamId events = world.streams().id(sort, owner, PayloadKind::kEvent);
+  NERITIC_TRY(const SourceId source, parts.source(from));
+  std::vector<std::uint64_t> groups;
+  for (const auto& [key, holder] : parts.holders)
+    if (key.first == events) groups.push_back(key.second);
+  for (const std::uint64_t group : groups) {
+    SourceId chosen = 0;
+    double hold_s = 0.0;
+    const Authority authority =
+        chosen_authority(world.start_inputs(), sort, owner, group, chosen, hold_s);
+    NERITIC_TRY_STATUS(parts.push(source, events,
+                                  Event{.group = group,
+                                        .authority = static_cast<std::uint64_t>(authority),
+                                        .source = chosen,
+                                        .hold_s = hold_s},
+                                  time_ns()));
+    parts.holders.erase({events, group});
+  }
+  return {};
+}
+
+Status World::inject(const std::string& name, std::span<const double> values,
+                     const std::string& from, std::optional<double> stamp_s) {
+  Parts& parts = *parts_;
+  NERITIC_TRY(const std::uint32_t id, stream(name));
+  if (parts.streams[id].sort != StreamInfo::Sort::kInput || parts.streams[id].fields.empty())
+    return refusal("inject: " + name, "a stream that leaves", "a stream of inputs");
+  const PayloadKind kind = parts.world().streams()[id].kind;
+  const std::size_t count = ros::value_count(kind);
+  NERITIC_TRY_STATUS(check_count(name, values.size(), count, count));
+  NERITIC_TRY_STATUS(check_finite(name, values));
+  if (stamp_s && !(std::abs(*stamp_s) <= 1e9))
+    return refusal(name + ": stamp", fmt::format("{}", *stamp_s), "seconds of simulated time");
+  NERITIC_TRY(const SourceId source, parts.source(from));
+  return parts.push(source, id, ros::read_values(kind, values),
+                    stamp_s ? std::llround(*stamp_s * 1e9) : time_ns());
+}
+
+}  // namespace neritic::testbed

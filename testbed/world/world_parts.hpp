@@ -1,0 +1,105 @@
+// The inside of a World: the parts that its loop turns. Private to testbed/world.
+#pragma once
+
+#include <deque>
+#include <map>
+
+#include "engine/gpu/device.hpp"
+#include "testbed/loop/loop.hpp"
+#include "testbed/record/recording_switch.hpp"
+#include "testbed/world/world.hpp"
+
+namespace neritic::testbed {
+
+// Takes what leaves the simulation, lets it arrive in its time, and feeds the recording.
+class Receiver final : public StepSink {
+ public:
+  // Borrows the world.
+  Receiver(const PhysicsWorld& world, std::uint64_t seed, std::size_t streams);
+
+  std::vector<StreamId> streams() const override { return outputs_; }
+  Status use(const Sample& sample) override { return recording.use(sample); }
+  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
+  // A loop's end is not the recording's: a world has one loop after another.
+  Status finish() override { return {}; }
+
+  // Between two ticks.
+  void take(WorldImage image);
+  void deliver(TimeNs now_ns);
+  void forget();  // what arrived or is on its way
+
+  RecordingSwitch recording;
+  std::vector<LinkOptions> links;  // by stream; images after the others
+  std::vector<Reading> newest;     // by stream of the table
+  std::vector<char> kept;          // by stream
+  std::deque<Reading> arrived;
+  std::deque<std::unique_ptr<WorldImage>> images;
+  std::uint64_t dropped = 0;
+
+ private:
+  void arrive(const Reading& reading);
+  void arrive(std::unique_ptr<WorldImage> image);
+
+  std::vector<StreamId> outputs_;
+  std::uint64_t seed_ = 0;
+  std::optional<std::uint64_t> last_step_;
+  OnTheWay<Reading> readings_;
+  OnTheWay<std::unique_ptr<WorldImage>> images_;
+};
+
+// The images that someone wants, as a World gives them.
+class ImageReceiver final : public ImageSink {
+ public:
+  ImageReceiver(Receiver& receiver, std::uint32_t first) : receiver_(receiver), first_(first) {}
+  bool takes() const override { return true; }
+  Status accept(const ImageSample&) override { return {}; }
+  Status take(const ImageSample& image, ImagePixels pixels) override;
+
+ private:
+  Receiver& receiver_;
+  std::uint32_t first_ = 0;  // stream of images
+};
+
+struct World::Parts {
+  WorldOptions options;
+  std::string path;
+  scene::Scene scene;
+  std::unique_ptr<LivePhysics> physics;
+  std::vector<AgentInfo> agents;
+  std::vector<StreamInfo> streams;
+  std::size_t first_image = 0;  // into streams
+  std::unique_ptr<Receiver> receiver;
+  // Images. In the order of creation: each uses those before it.
+  std::unique_ptr<gpu::Device> device;
+  std::unique_ptr<Session> session;
+  std::unique_ptr<ImageReceiver> image_receiver;
+  std::map<std::uint32_t, double> wished;  // rates by stream
+  std::optional<ImageConsumer> consumer;
+  std::optional<Loop> loop;
+  // Of commands: the source of a name, the next sequence by source and stream, and who has the
+  // authority over a group by this world's commands.
+  struct Holder {
+    SourceId source = 0;
+    double hold_s = 0.0;
+  };
+  std::map<std::string, SourceId> sources;
+  std::map<std::pair<SourceId, StreamId>, std::uint64_t> sequences;
+  std::map<std::pair<StreamId, std::uint64_t>, Holder> holders;  // by event stream and group
+
+  const PhysicsWorld& world() const { return physics->world(); }
+  const sim::Snapshot<PhysicsState>& newest() const { return physics->newest(); }
+  void begin_loop();
+  void end_loop();
+  Status make_session();
+  Status renew_consumer();
+  Result<SourceId> source(const std::string& name);
+  Status push(SourceId source, StreamId stream, const Payload& payload, TimeNs captured_ns);
+  Status hand_over(StreamId events, std::uint64_t group, Authority authority, SourceId source,
+                   double hold_s);
+};
+
+// kBadInput: where, the name that was found and the nearest that there is.
+Error unknown_name(std::string_view where, std::string_view name,
+                   const std::vector<std::string>& names);
+
+}  // namespace neritic::testbed

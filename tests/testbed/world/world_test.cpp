@@ -1,0 +1,153 @@
+// A World: what programs outside see of a scene, in ROS conventions, and what they can do to it.
+#include "testbed/world/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/files.hpp"
+#include "engine/core/math.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+std::string assets(const char* path) {
+  return (test::source_dir() / "assets" / path).string();
+}
+
+// One vehicle with all its sensors that faces east at 6 m, and a box that devices move.
+std::string scene_text() {
+  return "[physics]\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\ndynamics = \"" +
+         assets("vehicles/bluerov2_heavy_survey_dynamics.toml") +
+         "\"\nposition_m = [2, -6, -3]\nrotation_xyzw = [0, -0.7071067811865476, 0, 0.7071067811865476]\n";
+}
+
+class WorldTest : public testing::Test {
+ protected:
+  std::unique_ptr<World> open(const WorldOptions& options = {}) const {
+    EXPECT_TRUE(write_text(scratch_ / "s.toml", scene_text()).ok());
+    auto world = World::open(scratch_ / "s.toml", options);
+    EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
+    return std::move(world).value();
+  }
+  static Reading newest(const World& world, const std::string& name) {
+    return world.newest()[world.stream(name).value()];
+  }
+  const test::ScratchFolder scratch_;
+};
+
+TEST_F(WorldTest, SaysWhereAVehicleIsInEastNorthUp) {
+  const auto world = open();
+  const Truth truth = world->truth("rov").value();
+  // x east, y north (world z is south), z up.
+  EXPECT_NEAR(truth.position[0], 2.0, 1e-12);
+  EXPECT_NEAR(truth.position[1], 3.0, 1e-12);
+  EXPECT_NEAR(truth.position[2], -6.0, 1e-12);
+  // It faces east, which is yaw 0: forward is x.
+  EXPECT_NEAR(std::abs(truth.orientation[3]), 1.0, 1e-9);
+}
+
+TEST_F(WorldTest, AVehicleAtRestFeelsGravityUpward) {
+  const auto world = open();
+  ASSERT_TRUE(world->tick(24).ok());
+  const Reading imu = newest(*world, "rov/imu");
+  ASSERT_EQ(imu.count, 6u);
+  EXPECT_NEAR(imu.values[5], 9.8, 0.3);  // ROS: a sensor at rest reads +g up
+  EXPECT_LE(imu.stamp_ns, imu.arrival_ns);
+}
+
+TEST_F(WorldTest, GoesWhereItIsTold) {
+  const auto world = open();
+  const double there[] = {4.0, 3.0, -7.0, 0.5 * kPi};
+  ASSERT_TRUE(world->command("rov", "goto", there).ok());
+  ASSERT_TRUE(world->tick(240 * 15).ok());
+  const Truth truth = world->truth("rov").value();
+  EXPECT_NEAR(truth.position[0], 4.0, 0.1);
+  EXPECT_NEAR(truth.position[1], 3.0, 0.1);
+  EXPECT_NEAR(truth.position[2], -7.0, 0.1);
+  // It faces north.
+  EXPECT_NEAR(2.0 * std::atan2(truth.orientation[2], truth.orientation[3]), 0.5 * kPi, 0.05);
+}
+
+TEST_F(WorldTest, MovesAtTheVelocityThatItIsTold) {
+  const auto world = open();
+  const double ahead[] = {0.4, 0.1, 0.0, 0.0};
+  ASSERT_TRUE(world->command("rov", "velocity", ahead).ok());
+  ASSERT_TRUE(world->tick(240 * 4).ok());
+  const Truth before = world->truth("rov").value();
+  ASSERT_TRUE(world->tick(240 * 10).ok());
+  // It faces east: ahead is x, left is y.
+  const Truth truth = world->truth("rov").value();
+  EXPECT_NEAR(truth.position[0] - before.position[0], 4.0, 0.15);
+  EXPECT_NEAR(truth.position[1] - before.position[1], 1.0, 0.15);
+  EXPECT_NEAR(truth.position[2], -6.0, 0.1);
+}
+
+TEST_F(WorldTest, GivesThrustersTheirForces) {
+  const auto world = open();
+  const std::vector<double> forces(8, 0.0), some{10.0, 0, 0, 0, 0, 0, 0, 0};
+  ASSERT_TRUE(world->command("rov", "thrusters", some).ok());
+  ASSERT_TRUE(world->tick(48).ok());
+  EXPECT_NEAR(world->truth("rov")->thruster_n[0], 10.0, 0.5);
+  // A setpoint after it acts: the wrench's group is given back.
+  const double here[] = {2.0, 3.0, -6.0, 0.0};
+  ASSERT_TRUE(world->command("rov", "goto", here).ok());
+  ASSERT_TRUE(world->tick(240 * 20).ok());
+  EXPECT_NEAR(world->truth("rov")->position[0], 2.0, 0.15);
+}
+
+TEST_F(WorldTest, GoesOnFromSavedBytesWithTheSameHashes) {
+  const auto world = open();
+  const double there[] = {4.0, 3.0, -7.0, 0.0};
+  ASSERT_TRUE(world->command("rov", "goto", there).ok());
+  ASSERT_TRUE(world->tick(200).ok());
+  const auto saved = world->save();
+  ASSERT_TRUE(world->tick(200).ok());
+  const std::uint64_t hash = world->hash();
+  const Status back = world->restore(saved);
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(world->step(), 200u);
+  ASSERT_TRUE(world->tick(200).ok());
+  EXPECT_EQ(world->hash(), hash);
+  // Commands are heard again, though time went back.
+  EXPECT_TRUE(world->command("rov", "goto", there).ok());
+}
+
+TEST_F(WorldTest, DelaysAndLosesOnArrivalAlone) {
+  const auto near = open(), far = open();
+  const std::uint32_t imu = near->stream("rov/imu").value();
+  ASSERT_TRUE(far->set_link(imu, {.delay_s = 0.1, .jitter_s = 0.05, .loss = 0.2}).ok());
+  ASSERT_TRUE(near->keep(imu, true).ok());
+  ASSERT_TRUE(far->keep(imu, true).ok());
+  ASSERT_TRUE(near->tick(480).ok());
+  ASSERT_TRUE(far->tick(480).ok());
+  EXPECT_EQ(near->hash(), far->hash());
+  const auto all = near->take_arrived(), some = far->take_arrived();
+  ASSERT_GT(some.size(), all.size() / 2);
+  EXPECT_LT(some.size(), all.size() * 9 / 10);
+  for (const Reading& reading : some) {
+    EXPECT_GE(reading.arrival_ns - reading.stamp_ns, 100'000'000);
+    const Reading& same = all[reading.sequence - all.front().sequence];
+    ASSERT_EQ(same.sequence, reading.sequence);
+    EXPECT_EQ(same.stamp_ns, reading.stamp_ns);
+    EXPECT_EQ(same.values, reading.values);
+  }
+}
+
+TEST_F(WorldTest, RefusesInOneLine) {
+  const auto world = open();
+  const double two[] = {1.0, 2.0};
+  const double nan[] = {1.0, 2.0, NAN, 0.0};
+  for (const Status& status :
+       {world->command("rovv", "goto", two), world->command("rov", "got", two),
+        world->command("rov", "goto", two), world->command("rov", "goto", nan),
+        world->inject("rov/imu", two, "me"), world->restore({}), world->stop_recording(),
+        world->set_link(0, {.loss = 2.0})}) {
+    ASSERT_FALSE(status.ok());
+    EXPECT_NE(status.error().message.find("accepted: "), std::string::npos)
+        << status.error().message;
+    EXPECT_EQ(status.error().message.find('\n'), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace neritic::testbed
