@@ -25,21 +25,6 @@ namespace {
 
 // tools/plot/__main__.py ends with this where matplotlib is missing.
 constexpr int kNoMatplotlib = 3;
-// Debian's own Python comes first: that is where its package puts matplotlib.
-constexpr const char* kPythons[] = {"/usr/bin/python3", "python3"};
-
-// The module in a folder above the program: beside the sources, or installed. Empty: nowhere.
-fs::path find_module() {
-  std::error_code none;
-  const fs::path program = fs::read_symlink("/proc/self/exe", none);
-  for (fs::path folder = program.parent_path(); !folder.empty(); folder = folder.parent_path()) {
-    for (const char* place : {"tools/plot", "share/neritic/plot"})
-      if (fs::exists(folder / place / "__main__.py", none)) return folder / place;
-    if (folder == folder.root_path()) break;
-  }
-  return {};
-}
-
 struct Finished {
   int status = 0;    // of the program; 127 where it could not be started
   std::string said;  // on standard output and error
@@ -98,12 +83,23 @@ void say_not_drawn(const fs::path& picture, const fs::path& data, const std::str
 
 }  // namespace
 
+fs::path find_python_module(const std::string& name) {
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  for (fs::path folder = program.parent_path(); !folder.empty(); folder = folder.parent_path()) {
+    for (const char* place : {"tools", "share/neritic"})
+      if (fs::exists(folder / place / name / "__main__.py", none)) return folder / place / name;
+    if (folder == folder.root_path()) break;
+  }
+  return {};
+}
+
 fs::path picture_data_path(const fs::path& picture) {
   return fs::path(picture).replace_extension(".plot.json");
 }
 
 Result<bool> draw_picture(const fs::path& data, const fs::path& picture) {
-  const fs::path module = find_module();
+  const fs::path module = find_python_module("plot");
   if (module.empty()) {
     say_not_drawn(picture, data, "no tools/plot or share/neritic/plot above the program's folder");
     return false;

@@ -11,6 +11,13 @@
 
 namespace neritic::tools {
 
+// Debian's own Python comes first: that is where its packages are.
+inline constexpr const char* kPythons[] = {"/usr/bin/python3", "python3"};
+
+// A Python module of ours in a folder above the program: tools/NAME beside the sources, or
+// installed in share/neritic/NAME. Empty: nowhere.
+std::filesystem::path find_python_module(const std::string& name);
+
 // The data lies beside its picture: dive.plot.json beside dive.png.
 std::filesystem::path picture_data_path(const std::filesystem::path& picture);
 

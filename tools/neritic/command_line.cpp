@@ -547,6 +547,35 @@ void add_register(CLI::App& app, Run& run) {
       [flags, &run] { run = [flags] { return nothing_to_say(run_register(*flags)); }; });
 }
 
+void add_experiment(CLI::App& app, CommandLine& line) {
+  auto flags = std::make_shared<ExperimentFlags>();
+  CLI::App* command = app.add_subcommand(
+      "experiment", "runs a scenario many times and reports its numbers with confidence intervals");
+  command
+      ->add_option(
+          "name", flags->name,
+          "imaging, profiling, profiling_tide, profiling_sound_speed, echo_sounder, all, or "
+          "a scenario (.toml) of your own: tools/experiment/README.md")
+      ->required();
+  command
+      ->add_option("--out", flags->out,
+                   "folder for runs.jsonl, runs.csv, results.json, report.html")
+      ->required();
+  command->add_option("--runs", flags->runs, "runs of each condition, in place of the scenario's");
+  command->add_option("--seed", flags->seed, "seed of the first run, in place of the scenario's");
+  command->add_option(
+      "--set", flags->set,
+      "KEY=VALUE: a setting in place of the scenario's; a list [A, B] makes conditions");
+  command->add_option("--workers", flags->workers, "runs at once; 0: as many as cores");
+  command->add_flag("--resume", flags->resume, "keeps the finished runs that --out has");
+  command->add_flag("--json", flags->json, "JSON on standard output, for programs");
+  command->footer("Example: neritic experiment echo_sounder --out out/echo --set slope_deg=[0,8]");
+  command->callback([flags, &line] {
+    flags->quiet = line.quiet;
+    line.run = [flags] { return nothing_to_say(run_experiment(*flags)); };
+  });
+}
+
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
@@ -616,6 +645,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_plan(app, line.run);
   add_physio(app, line.run);
   add_register(app, line.run);
+  add_experiment(app, line);
   add_doctor(app, line.run);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(),

@@ -125,6 +125,16 @@ struct RegisterFlags {
 };
 Status run_register(const RegisterFlags& flags);
 
+struct ExperimentFlags {
+  std::string name, out;
+  std::optional<std::uint64_t> runs, seed;
+  std::vector<std::string> set;  // KEY=VALUE
+  std::uint32_t workers = 0;     // 0: as many as cores
+  bool resume = false, json = false, quiet = false;
+};
+// Becomes the Python module tools/experiment: returns only if that cannot be started.
+Status run_experiment(const ExperimentFlags& flags);
+
 struct DoctorFlags {
   std::string device;
   bool json = false;

@@ -1,0 +1,117 @@
+// `neritic experiment`: an echo sounder's short descent from scenario to report, the same numbers
+// on one worker and on two, resumed after a cut, and refusals in one line.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "tests/support/support.hpp"
+
+namespace neritic::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+struct Said {
+  int status = -1;
+  std::string text;
+};
+
+// The program of this build, with standard error.
+Said experiment(const std::string& arguments) {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "../tools/neritic";
+  std::FILE* pipe = ::popen((program.string() + " experiment " + arguments + " 2>&1").c_str(), "r");
+  if (!pipe) return {};
+  Said said;
+  char piece[4096];
+  while (const std::size_t size = std::fread(piece, 1, sizeof piece, pipe))
+    said.text.append(piece, size);
+  const int raw = ::pclose(pipe);
+  said.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
+  return said;
+}
+
+bool no_numpy() {
+  return std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0;
+}
+
+constexpr const char* kShort = " --set seconds=6 --set height_m=8 --set slope_deg=[0,8] ";
+
+nlohmann::json runs_of(const fs::path& folder) {
+  nlohmann::json measures;
+  const std::string text = *read_text(folder / "runs.jsonl");
+  std::size_t from = text.find('\n') + 1;
+  while (from < text.size()) {
+    const std::size_t to = text.find('\n', from);
+    const auto run = nlohmann::json::parse(text.substr(from, to - from));
+    measures[run["condition"].dump()] = run["measures"];
+    from = to + 1;
+  }
+  return measures;
+}
+
+TEST(Experiment, SameNumbersByOneWorkerAndByTwoAndAfterACut) {
+  if (no_numpy()) GTEST_SKIP() << "no numpy here";
+  const test::ScratchFolder folder;
+  const std::string one = (folder / "one").string(), two = (folder / "two").string();
+  const Said first = experiment("echo_sounder --workers 1 --out " + one + kShort);
+  EXPECT_EQ(first.status, 0) << first.text;
+  EXPECT_THAT(first.text, HasSubstr("2 runs, 0 failed"));
+  const Said second = experiment("echo_sounder --workers 2 --out " + two + kShort);
+  EXPECT_EQ(second.status, 0) << second.text;
+  const nlohmann::json truth = runs_of(one);
+  ASSERT_EQ(truth.size(), 2u);
+  EXPECT_EQ(runs_of(two), truth);
+  for (const char* file : {"report.html", "results.json", "runs.csv"})
+    EXPECT_TRUE(fs::exists(fs::path(one) / file)) << file;
+
+  // A kill in the middle of the second line.
+  const fs::path log = fs::path(one) / "runs.jsonl";
+  const std::string text = *read_text(log);
+  ASSERT_TRUE(write_text(log, text.substr(0, text.size() - 40)).ok());
+  EXPECT_THAT(experiment("echo_sounder --out " + one + kShort).text,
+              HasSubstr("accepted: --resume"));
+  const Said resumed = experiment("echo_sounder --resume --out " + one + kShort);
+  EXPECT_EQ(resumed.status, 0) << resumed.text;
+  EXPECT_EQ(runs_of(one), truth);
+  EXPECT_THAT(experiment("echo_sounder --resume --out " + one + kShort + "--set rate_hz=4").text,
+              HasSubstr("results of other settings"));
+}
+
+TEST(Experiment, RefusesBadScenariosInOneLine) {
+  if (no_numpy()) GTEST_SKIP() << "no numpy here";
+  const test::ScratchFolder folder;
+  const std::string out = " --out " + (folder / "out").string();
+  const auto refused = [&](const std::string& arguments, const char* words) {
+    const Said said = experiment(arguments + out);
+    EXPECT_EQ(said.status, 2) << arguments << "\n" << said.text;
+    EXPECT_THAT(said.text, HasSubstr(words));
+    EXPECT_EQ(std::count(said.text.begin(), said.text.end(), '\n'), 1) << said.text;
+    EXPECT_FALSE(fs::exists(folder / "out" / "runs.jsonl"));
+  };
+  refused("echo_sonder", "accepted: echo_sounder (the nearest)");
+  refused("echo_sounder --set slop_deg=3", "slope_deg (the nearest)");
+  refused("echo_sounder --set slope_deg=30", "accepted: a number in [0, 12]");
+  refused("echo_sounder --set bins=1.5", "a whole number");
+  const fs::path own = folder / "own.toml";
+  const auto with = [&](const std::string& text, const char* words) {
+    ASSERT_TRUE(write_text(own, text).ok());
+    refused(own.string(), words);
+  };
+  with("[experiment", "found no TOML");
+  with("[experiment]\nkind = \"sonar\"\n", "accepted: imaging, profiling, echo_sounder");
+  with("[experiment]\nkind = \"echo_sounder\"\nrun = 3\n", "runs (the nearest)");
+  with("[experiment]\nkind = \"echo_sounder\"\n[vary]\nslope_deg = [3.0, 1.0]\n",
+       "the lower number first");
+  with("[experiment]\nkind = \"echo_sounder\"\n[factors]\nslope_deg = []\n", "a list of levels");
+  with("[experiment]\nkind = \"echo_sounder\"\n[[criteria]]\nmeasure = \"rmse\"\n",
+       "criteria[0].measure");
+}
+
+}  // namespace
+}  // namespace neritic::tools

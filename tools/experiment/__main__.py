@@ -1,0 +1,95 @@
+"""neritic experiment: runs a scenario many times and reports it. The program starts this module; README.md has the
+format of scenarios. Exit status: 0 every criterion holds, 1 one does not or it could not be done, 2 bad input,
+130 interrupted (finished runs are kept)."""
+import argparse
+import json
+import os
+import sys
+
+sys.dont_write_bytecode = True
+HERE = os.path.dirname(os.path.realpath(__file__))
+sys.path[:0] = [HERE, os.path.join(HERE, "..", "plot")]
+
+try:
+    import numpy  # noqa: F401
+except ModuleNotFoundError:
+    print("neritic: experiment: no numpy here; tools/setup plots installs it", file=sys.stderr)
+    sys.exit(1)
+
+
+import echo_sounder
+import imaging
+import profiling
+
+import report
+import runner
+import scenario
+import summary
+
+KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder}
+
+
+def one(path, asked, out):
+    plan = scenario.Scenario(path, KINDS, asked.runs, asked.seed, asked.set)
+    try:
+        os.makedirs(out, exist_ok=True)
+    except OSError as error:
+        raise scenario.Failed(f"{out}: cannot be made: {error.strerror}") from None
+    if not os.access(out, os.W_OK):
+        raise scenario.Failed(f"{out}: cannot be written")
+    results = runner.run_all(plan, out, asked.program, asked.workers, asked.resume, asked.quiet)
+    told = summary.summarise(plan, results)
+    note = report.write(plan, results, told, out)
+    if note and not asked.quiet:
+        print(f"neritic: {plan.name}: {note}", file=sys.stderr)
+    return told
+
+
+def tell(told, out):
+    print(f"{told['experiment']}: {told['runs']} runs, {told['failed']} failed; {out}/report.html")
+    for c in told["criteria"]:
+        name = f"{c['statistic']} of {c['measure']}" + (f" ({report.words(c['where'])})" if c["where"] else "")
+        print(f"  {'holds' if c['holds'] else 'DOES NOT HOLD':<14}{name}: {report.number(c['found'])}; asked: {report.limit(c)}")
+    for condition in told["conditions"]:
+        for cause, n in condition["failures"].items():
+            print(f"  {n} runs failed ({report.words(condition['condition'])}): {cause}")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="neritic experiment")
+    parser.add_argument("name")
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--runs", type=int)
+    parser.add_argument("--seed", type=int)
+    parser.add_argument("--set", action="append", default=[])
+    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--resume", action="store_true")
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--quiet", action="store_true")
+    asked = parser.parse_args()
+    try:
+        if asked.name == "all":
+            told = [one(scenario.path_of(n), asked, os.path.join(asked.out, n)) for n in scenario.names()]
+            report.index(told, asked.out)
+        else:
+            told = [one(scenario.path_of(asked.name), asked, asked.out)]
+        if asked.json:
+            print(json.dumps(told if asked.name == "all" else told[0], indent=2))
+        elif not asked.quiet:
+            for t in told:
+                tell(t, os.path.join(asked.out, t["experiment"]) if asked.name == "all" else asked.out)
+        return 0 if all(t["passed"] for t in told) else 1
+    except scenario.Refused as error:
+        print(f"neritic: {error}", file=sys.stderr)
+        return 2
+    except scenario.Failed as error:
+        print(f"neritic: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print(f"neritic: experiment: interrupted; finished runs are kept, --resume goes on", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

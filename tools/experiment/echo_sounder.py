@@ -1,0 +1,114 @@
+"""The echo sounder of the published experiment: an ROV sinks from 20 m above the floor at 5 m/min for 180 s, in a heave
+that it does or does not feel. The slope of range over time is the speed; on a slope the first return is the
+perpendicular distance."""
+import csv
+import math
+import os
+
+import numpy as np
+
+from scenario import SHIPPED, Setting
+
+SETTINGS = {
+    "height_m": Setting(20.0, "above the floor at the start", 2.0, 40.0),
+    "speed_m_min": Setting(5.0, "downwards", 0.1, 60.0),
+    "seconds": Setting(180.0, "of the descent", 5.0, 600.0),
+    "rate_hz": Setting(2.0, "pings a second", 0.2, 20.0),
+    "slope_deg": Setting(0.0, "of the floor", 0.0, 12.0),
+    "heave_m": Setting(0.0, "amplitude of a heave of 8 s", 0.0, 2.0),
+    "bins": Setting(500, "range bins", 50, 4000, whole=True),
+}
+MEASURES = {
+    "slope_m_s": ("m/s", "of range over time, by a line fitted to the first returns"),
+    "slope_error_percent": ("%", "off the true speed"),
+    "residual_rms_bins": ("range bins", "of the first returns about the line"),
+    "first_return_bins": ("range bins", "largest error of a first return against the perpendicular distance"),
+    "heave_rms_m_s": ("m/s", "heave velocity by the first returns less the true one, over 2 s windows"),
+}
+SCENE = """seed = {seed}
+[[objects]]
+name = "floor"
+shape = "plane"
+size_m = [400, 400]
+class = "seabed"
+position_m = [0, {floor!r}, 0]
+roll_deg = {slope!r}
+[[sonars]]
+name = "sounder"
+kind = "echosounder"
+range_m = [0.5, {farthest!r}]
+semi_angle_deg = 12.5
+bins = [{bins}, 500, 500]
+gbuffer_scale = 0.5
+rate_hz = {rate!r}
+pitch_deg = -90
+track = {{ file = "descent.csv", heading = "fixed" }}
+"""
+TOP_M = -5.0  # where the descent begins
+
+
+def _depths(settings, times):
+    sunk = settings["speed_m_min"] / 60.0 * times
+    return sunk, settings["heave_m"] * np.sin(2 * math.pi * times / 8.0)
+
+
+def run(settings, seed, tools):
+    pings = int(round(settings["seconds"] * settings["rate_hz"])) + 1
+    times = np.arange(pings) / settings["rate_hz"]
+    sunk, heave = _depths(settings, times)
+    # Finer than the pings, so that the heave's straight pieces are none.
+    fine = np.arange(int(settings["seconds"] * 20) + 21) / 20.0
+    fine_sunk, fine_heave = _depths(settings, fine)
+    tools.write("descent.csv", "t_s,x,y,z\n" + "".join(
+        f"{t!r},0,{TOP_M - s + h!r},0\n" for t, s, h in zip(fine.tolist(), fine_sunk.tolist(), fine_heave.tolist())))
+    farthest = settings["height_m"] + settings["heave_m"] + 2.0
+    scene = tools.write("scene.toml", SCENE.format(
+        seed=seed, floor=TOP_M - settings["height_m"], slope=settings["slope_deg"], farthest=farthest,
+        bins=settings["bins"], rate=settings["rate_hz"]))
+    tools.neritic("render", scene, "--frames", pings, "--track-only", "--out", tools.folder, "-q")
+    trace = np.load(os.path.join(tools.folder, "track", "sounder", "echo_trace.npy"))
+    bin_m = (farthest - 0.5) / settings["bins"]
+    with open(os.path.join(tools.folder, "track", "sounder", "echo_trace.csv")) as file:
+        rows = list(csv.DictReader(file))
+    found = np.array([float(r["first_range_m"] or "nan") for r in rows])
+    first = 0.5 + (trace > 0).argmax(axis=1) * bin_m + 0.5 * bin_m
+    perpendicular = (settings["height_m"] - sunk + heave) * math.cos(math.radians(settings["slope_deg"]))
+    line = np.polyfit(times[np.isfinite(found)], found[np.isfinite(found)], 1)
+    true_slope = -settings["speed_m_min"] / 60.0 * math.cos(math.radians(settings["slope_deg"]))
+    residual = found - np.polyval(line, times)
+    measures = {"slope_m_s": float(line[0]), "slope_error_percent": float(abs(line[0] / true_slope - 1) * 100),
+                "first_return_bins": float(np.nanmax(np.abs(first - perpendicular)) / bin_m)}
+    if settings["heave_m"] == 0:
+        measures["residual_rms_bins"] = float(np.sqrt(np.nanmean(residual ** 2)) / bin_m)
+    # Velocity by lines over 2 s.
+    window = max(3, int(round(2.0 * settings["rate_hz"])) | 1)
+    middle = [np.polyfit(times[i:i + window], found[i:i + window], 1)[0] for i in range(pings - window + 1)]
+    true = [np.polyfit(times[i:i + window], perpendicular[i:i + window], 1)[0] for i in range(pings - window + 1)]
+    measures["heave_rms_m_s"] = float(np.sqrt(np.nanmean((np.array(middle) - np.array(true)) ** 2)))
+    keep = slice(None, None, max(1, pings // 400))
+    return measures, {"t": times[keep].tolist(), "range": found[keep].round(5).tolist(),
+                      "true": perpendicular[keep].round(5).tolist()}
+
+
+def figures(scenario, results, style):
+    done = [r for r in results if r["series"]]
+    if not done:
+        return
+    fig = style.figure(900, 560)
+    top = style.area(fig, 70, 50, 870, 330)
+    for i, r in enumerate(done[:4]):
+        t, found, true = (style.numbers(r["series"][k]) for k in ("t", "range", "true"))
+        name = ", ".join(f"{k.rsplit('_', 1)[0]} {v:g}" for k, v in r["condition"].items()) or "first return"
+        top.plot(t, found, color=style.color(i), lw=1.6, ls=("-", "--", ":", "-.")[i], label=name)
+    top.invert_yaxis()
+    top.set_ylabel("range of the first return, m")
+    style.title(top, "The descent")
+    style.legend(top)
+    low = style.area(fig, 70, 390, 870, 510)
+    for i, r in enumerate(done[:4]):
+        t, found, true = (style.numbers(r["series"][k]) for k in ("t", "range", "true"))
+        low.plot(t, 1000 * (found - true), color=style.color(i), lw=1.0, ls=("-", "--", ":", "-.")[i])
+    low.set_xlabel("time, s")
+    low.set_ylabel("error, mm")
+    style.title(low, "First return less the perpendicular distance")
+    yield "echo_sounder.png", "Range of the first return over the descent, and its error", fig

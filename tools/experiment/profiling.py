@@ -1,0 +1,178 @@
+"""The profiling sonar of the published experiment on a ship (90 x 0.5 degrees): a flat floor, and a survey of the swell
+z = 10 + sin(2 pi x / 10) on a chart of 0.25 m; the same with a ship that rolls, with a tide that nobody corrects or
+that is corrected, and with a wrong sound speed, whose smile is known."""
+import math
+import os
+
+import numpy as np
+
+from scenario import SHIPPED, Setting
+
+SETTINGS = {
+    "floor": Setting("waves", "flat, or the swell of 1 m", words=["flat", "waves"]),
+    "depth_m": Setting(10.0, "mean depth below the sonar", 4.0, 25.0),
+    "length_m": Setting(50.0, "of the line", 2.0, 200.0),
+    "spacing_m": Setting(0.125, "from ping to ping", 0.02, 5.0),
+    "cell_m": Setting(0.25, "of the chart", 0.05, 5.0),
+    "roll_deg": Setting(0.0, "amplitude of the ship's roll, 6 s, known to the processing", 0.0, 30.0),
+    "tide_m": Setting(0.0, "how far the water rises over the line", -5.0, 5.0),
+    "tide_known": Setting(True, "true: the processing corrects the tide"),
+    "surface_speed_m_s": Setting(1500.0, "sound speed at the sonar, which the processing takes for that of all the water", 1400.0, 1600.0),
+    "bottom_speed_m_s": Setting(1500.0, "true sound speed at 30 m, linear between", 1400.0, 1600.0),
+}
+MEASURES = {
+    "rmse_m": ("m", "root mean square error of the chart's cells"),
+    "bias_m": ("m", "mean error of the chart's cells, positive too deep"),
+    "coverage": ("", "share of the cells in the swath that have soundings"),
+    "worst_beam_bins": ("range bins", "largest error of a beam's range over the flat floor against r = h / cos(theta)"),
+    "smile_m": ("m", "depth error of the outer beams less that of the middle one, positive too deep"),
+    "smile_expected_m": ("m", "the same by rays traced through the layers"),
+}
+HALF_SWATH_RAD = math.radians(45.0)
+SPEED_M_S = 1.0
+GRID_M = 0.2  # of the swell's heights; straight lines between them are off by 2 mm at most
+SHIP = """seed = {seed}
+[[objects]]
+name = "ship"
+track = {{ file = "line.csv" }}
+[[objects.sonars]]
+name = "multibeam"
+include = "{sensor}"
+pitch_deg = -90
+range_m = [1, {farthest!r}]
+rate_hz = {rate!r}
+"""
+
+
+def depth_at(settings, x):
+    """Metres below the mean surface at metres along the line."""
+    waves = 1.0 if settings["floor"] == "waves" else 0.0
+    return settings["depth_m"] + waves * np.sin(2 * math.pi * np.asarray(x, float) / 10.0)
+
+
+def _floor(settings, tools):
+    length, half_wide = settings["length_m"], 1.4 * (settings["depth_m"] + 1) + 2
+    if settings["floor"] == "flat":
+        return (f'shape = "plane"\nsize_m = [{length + 6}, {2 * half_wide}]\n'
+                f'position_m = [{length / 2}, {-settings["depth_m"]}, 0]\n')
+    # Rows of a terrain run from north to south; the line runs along x, so all rows are equal.
+    count = 2 * math.ceil((length / 2 + 3) / GRID_M) + 1
+    along = length / 2 + (np.arange(count) - count // 2) * GRID_M
+    rows = 2 * math.ceil(half_wide / GRID_M) + 1
+    np.save(os.path.join(tools.folder, "floor.npy"),
+            np.repeat(-depth_at(settings, along)[None, :], rows, axis=0).astype(np.float32))
+    return f'terrain = "floor.npy"\ncell_m = {GRID_M}\nposition_m = [{length / 2}, 0, 0]\n'
+
+
+def _farthest_m(settings):
+    return (settings["depth_m"] + 1.2) / math.cos(HALF_SWATH_RAD) * 1.25
+
+
+def _tide_m(settings, x):
+    return settings["tide_m"] * x / settings["length_m"]
+
+
+def _scene(settings, seed, tools, pings):
+    rows = ["t_s,x,y,z,yaw_deg,pitch_deg,roll_deg"]
+    for i in range(pings):
+        x = i * settings["spacing_m"]
+        roll_deg = settings["roll_deg"] * math.sin(2 * math.pi * x / SPEED_M_S / 6.0)
+        rows.append(f"{x / SPEED_M_S!r},{x!r},{_tide_m(settings, x)!r},0,-90,0,{roll_deg!r}")
+    tools.write("line.csv", "\n".join(rows) + "\n")
+    scene = SHIP.format(seed=seed, sensor=os.path.join(SHIPPED, "..", "sensors", "profiling_90x0_5.toml"),
+                        farthest=_farthest_m(settings),
+                        rate=SPEED_M_S / settings["spacing_m"])
+    top, bottom = settings["surface_speed_m_s"], settings["bottom_speed_m_s"]
+    if bottom != top:
+        scene += (f"[objects.sonars.water]\nsound_speed_m_s = {top}\n[objects.sonars.sound_speed]\n"
+                  f'profile = [[0, {top}], [30, {bottom}]]\nrays = "bent"\n')
+    return tools.write("scene.toml", scene + '[[objects]]\nname = "floor"\nclass = "seabed"\n' + _floor(settings, tools))
+
+
+def traced_depth(settings, angle_rad, layers=4000):
+    """Depth that the processing finds where a ray at this angle off the vertical meets the flat floor: the ray bends by
+    Snell's law through thin layers, and its time counts at the surface's speed along a straight line."""
+    top, bottom, h = settings["surface_speed_m_s"], settings["bottom_speed_m_s"], settings["depth_m"]
+    speed = top + (bottom - top) * (np.arange(layers) + 0.5) / layers * h / 30.0
+    cosine = np.sqrt(1 - (math.sin(angle_rad) / top * speed) ** 2)
+    time = (h / layers / speed / cosine).sum()
+    return top * time * math.cos(angle_rad)
+
+
+def run(settings, seed, tools):
+    pings = int(round(settings["length_m"] / settings["spacing_m"])) + 1
+    scene = _scene(settings, seed, tools, pings)
+    tools.neritic("render", scene, "--frames", pings, "--track-only", "--out", tools.folder, "-q")
+    cloud = np.load(os.path.join(tools.folder, "track", "ship_multibeam", "cloud.npy"))
+    bin_m = (_farthest_m(settings) - 1) / 500
+    x, found, z = cloud[:, 0], -cloud[:, 1], cloud[:, 2]
+    if not settings["tide_known"]:
+        found = found + _tide_m(settings, x)  # the processing puts the ship at the mean surface
+
+    # The chart: the mean of the soundings of a cell, against the mean depth of the cell.
+    cell, length = settings["cell_m"], settings["length_m"]
+    columns = int(length / cell)
+    wide = int(2 * (settings["depth_m"] - (1 if settings["floor"] == "waves" else 0)) * math.tan(HALF_SWATH_RAD) / cell)
+    column, row = np.floor(x / cell).astype(int), np.floor(z / cell + wide / 2).astype(int)
+    inside = (column >= 0) & (column < columns) & (row >= 0) & (row < wide)
+    count, total = np.zeros((wide, columns)), np.zeros((wide, columns))
+    np.add.at(count, (row[inside], column[inside]), 1)
+    np.add.at(total, (row[inside], column[inside]), found[inside])
+    fine = (np.arange(columns * 20) + 0.5) * cell / 20
+    truth = depth_at(settings, fine).reshape(columns, 20).mean(axis=1)
+    error = (total / np.maximum(count, 1) - truth)[count > 0]
+    measures = {"rmse_m": float(np.sqrt((error ** 2).mean())), "bias_m": float(error.mean()),
+                "coverage": float((count > 0).mean())}
+    middle = np.abs(z) < 0.5
+    order = np.argsort(x[middle])[:: max(1, np.count_nonzero(middle) // 800)]
+    series = {"x": x[middle][order].round(4).tolist(), "depth": found[middle][order].round(4).tolist()}
+    if settings["floor"] == "flat":
+        up = _tide_m(settings, x)
+        height = settings["depth_m"] + up
+        angle = np.arctan2(z, -cloud[:, 1] + up)
+        measures["worst_beam_bins"] = float(np.abs((-cloud[:, 1] + up - height) / np.cos(angle)).max() / bin_m)
+        # Beams within a degree of the edge of the swath, and of the middle.
+        edge, centre = math.radians(43.0), math.radians(1.0)
+        outer, inner = np.abs(np.abs(angle) - edge) < centre, np.abs(angle) < centre
+        if outer.any() and inner.any():
+            measures["smile_m"] = float(found[outer].mean() - found[inner].mean())
+            measures["smile_expected_m"] = float(traced_depth(settings, edge) - traced_depth(settings, 0.0))
+        series["angle_deg"] = np.degrees(angle[:: max(1, len(angle) // 600)]).round(3).tolist()
+        series["beam_depth"] = found[:: max(1, len(angle) // 600)].round(4).tolist()
+    return measures, series
+
+
+def figures(scenario, results, style):
+    done = [r for r in results if r["series"]]
+    if not done:
+        return
+    fig = style.figure(900, 620)
+    line = style.area(fig, 70, 50, 870, 280)
+    swell = [r for r in done if r["settings"]["floor"] == "waves"] or done
+    x = np.linspace(0, swell[0]["settings"]["length_m"], 1000)
+    line.plot(x, depth_at(swell[0]["settings"], x), color=style.INK, lw=3.2, alpha=0.35, label="true")
+    line.plot(swell[0]["series"]["x"], swell[0]["series"]["depth"], ".", ms=2.5, color=style.BLUE, label="soundings")
+    line.invert_yaxis()
+    line.set_xlabel("along the line, m")
+    line.set_ylabel("depth, m")
+    style.title(line, "Soundings within 0.5 m of the middle")
+    style.legend(line)
+    left = style.area(fig, 70, 360, 450, 570)
+    names = [", ".join(str(v) for v in r["condition"].values()) or "all" for r in done]
+    for name, dx, hue in (("rmse_m", -0.2, style.BLUE), ("bias_m", 0.2, style.ORANGE)):
+        left.bar(np.arange(len(done)) + dx, [1000 * r["measures"][name] for r in done], 0.38, color=hue,
+                 edgecolor=style.INK, lw=0.6, label=name.removesuffix("_m"), hatch="//" if dx > 0 else None)
+    left.axhline(50, color=style.INK, lw=0.9, ls="--")
+    left.set_xticks(np.arange(len(done)), names, rotation=0 if len(done) < 5 else 90)
+    left.set_ylabel("error of the chart, mm")
+    style.title(left, "Chart")
+    style.legend(left)
+    right = style.area(fig, 520, 360, 870, 570)
+    for i, r in enumerate([r for r in done if "angle_deg" in r["series"]]):
+        right.plot(r["series"]["angle_deg"], r["series"]["beam_depth"], ".", ms=2.5, color=style.color(i),
+                   label=", ".join(str(v) for v in r["condition"].values()) or None)
+    right.invert_yaxis()
+    right.set_xlabel("angle of the beam, degrees")
+    right.set_ylabel("depth, m")
+    style.title(right, "Flat floor")
+    yield "profiling.png", "The line's soundings, the chart's errors by condition, and the flat floor by beam", fig

@@ -1,0 +1,140 @@
+"""The report of an experiment: results.json, runs.csv, report.html and its figures (PNG)."""
+import csv
+import html
+import io
+import json
+import os
+
+from scenario import Failed
+
+STYLE = """body{font:15px/1.5 "DejaVu Sans",sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#21262e;background:#fdfcfa}
+table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .7em;border-bottom:1px solid #d9d9d6;text-align:right}
+td:first-child,th:first-child{text-align:left}img{max-width:100%}.no{color:#c01a1a;font-weight:bold}.about{color:#50555e}"""
+
+
+def number(value):
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str):
+        return value
+    return f"{value:.4g}"
+
+
+def words(condition):
+    return ", ".join(f"{k} {number(v)}" for k, v in condition.items()) or "all runs"
+
+
+def limit(criterion):
+    low, high = criterion["at_least"], criterion["at_most"]
+    if low is not None and high is not None:
+        return f"{number(low)} to {number(high)}"
+    return f"at least {number(low)}" if low is not None else f"at most {number(high)}"
+
+
+def write_file(path, data):
+    """Whole or not at all."""
+    name = f"{path}.{os.getpid()}.tmp"
+    try:
+        with open(name, "wb") as file:
+            file.write(data if isinstance(data, bytes) else data.encode())
+        os.replace(name, path)
+    except OSError as error:
+        if os.path.exists(name):
+            os.remove(name)
+        raise Failed(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def runs_csv(scenario, results):
+    """A row a run: seed, the settings that vary, the measures, the cause of a failure."""
+    varied = list(scenario.factors) + list(scenario.vary)
+    out = io.StringIO()
+    table = csv.writer(out, lineterminator="\n")
+    table.writerow(["seed", *varied, *scenario.kind.MEASURES, "failure", "wall_s"])
+    for r in results:
+        table.writerow([r["seed"], *(r["settings"][k] for k in varied),
+                        *(_cell(r["measures"].get(m)) for m in scenario.kind.MEASURES), r["failure"] or "", r["wall_s"]])
+    return out.getvalue()
+
+
+def _cell(value):
+    return "" if value is None else int(value) if isinstance(value, bool) else repr(float(value))
+
+
+def _criteria_rows(summary):
+    rows = ["<tr><th>criterion</th><th>asked</th><th>found</th><th>runs</th><th></th></tr>"]
+    for c in summary["criteria"]:
+        name = f"{c['statistic']} of {c['measure']}" + (f" ({words(c['where'])})" if c["where"] else "")
+        verdict = "holds" if c["holds"] else '<span class="no">does not hold</span>'
+        rows.append(f"<tr><td>{html.escape(name)}</td><td>{limit(c)}</td><td>{number(c['found'])}</td>"
+                    f"<td>{c['n']}</td><td>{verdict}</td></tr>")
+    return "<table>" + "".join(rows) + "</table>" if summary["criteria"] else ""
+
+
+def _condition_table(scenario, condition):
+    rows = ["<tr><th>measure</th><th>median or share</th><th>95 % interval</th><th>least to most</th><th>runs</th></tr>"]
+    for name, m in condition["measures"].items():
+        unit = "" if m["unit"] in ("", "yes or no") else " " + m["unit"]
+        middle = f"{100 * m['share']:.1f} %" if "share" in m else number(m["median"]) + unit
+        scale = 100 if "share" in m else 1
+        interval = "–" if m["low"] is None else f"{number(m['low'] * scale)} to {number(m['high'] * scale)}"
+        spread = "" if "share" in m else f"{number(m['min'])} to {number(m['max'])}"
+        meaning = html.escape(scenario.kind.MEASURES[name][1])
+        rows.append(f"<tr><td title=\"{meaning}\">{name}</td><td>{middle}</td><td>{interval}</td><td>{spread}</td>"
+                    f"<td>{m['n']}</td></tr>")
+    failures = "".join(f"<p class=\"no\">{n} of {condition['runs']} runs: {html.escape(cause)}</p>"
+                       for cause, n in condition["failures"].items())
+    return f"<h3>{html.escape(words(condition['condition']))}</h3>{failures}<table>{''.join(rows)}</table>"
+
+
+def page(scenario, summary, pictures):
+    parts = [f"<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>{html.escape(scenario.title)}</title>"
+             f"<style>{STYLE}</style><h1>{html.escape(scenario.title)}</h1>",
+             f"<p class=\"about\">{html.escape(scenario.about)}</p>",
+             f"<p>{summary['runs']} runs with seeds from {summary['seed']} on; {summary['failed']} failed. "
+             "Medians with intervals by order statistics, shares with Wilson's.</p>",
+             _criteria_rows(summary)]
+    parts += [f"<p><img src=\"{name}\" alt=\"{html.escape(alt)}\"></p>" for name, alt in pictures]
+    parts += [_condition_table(scenario, c) for c in summary["conditions"]]
+    meanings = "".join(f"<tr><td>{k}</td><td style=\"text-align:left\">{html.escape(v[1])}</td></tr>"
+                       for k, v in scenario.kind.MEASURES.items())
+    settings = "".join(f"<tr><td>{k}</td><td>{number(v)}</td><td style=\"text-align:left\">"
+                       f"{html.escape(scenario.kind.SETTINGS[k].meaning)}</td></tr>" for k, v in summary["settings"].items())
+    parts.append(f"<h2>Measures</h2><table>{meanings}</table><h2>Settings</h2><table>{settings}</table></html>")
+    return "\n".join(parts)
+
+
+def write(scenario, results, summary, out):
+    """All files of one experiment; returns a note where matplotlib is missing, else None."""
+    write_file(os.path.join(out, "results.json"), json.dumps(summary, indent=2) + "\n")
+    write_file(os.path.join(out, "runs.csv"), runs_csv(scenario, results))
+    pictures, note = [], None
+    try:
+        import style  # of tools/plot; imports matplotlib
+        for name, alt, figure in scenario.kind.figures(scenario, results, style):
+            buffer = io.BytesIO()
+            figure.savefig(buffer, format="png", metadata={"Software": None})
+            write_file(os.path.join(out, name), buffer.getvalue())
+            pictures.append((name, alt))
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] != "matplotlib":
+            raise
+        note = "figures are not drawn: no matplotlib here; tools/setup plots installs it"
+    write_file(os.path.join(out, "report.html"), page(scenario, summary, pictures))
+    return note
+
+
+def index(summaries, out):
+    """One page of results over several experiments."""
+    rows = ["<tr><th>experiment</th><th>criterion</th><th>asked</th><th>found</th><th></th></tr>"]
+    for s in summaries:
+        for i, c in enumerate(s["criteria"]):
+            name = f"<a href=\"{s['experiment']}/report.html\">{s['experiment']}</a>" if i == 0 else ""
+            told = f"{c['statistic']} of {c['measure']}" + (f" ({words(c['where'])})" if c["where"] else "")
+            verdict = "holds" if c["holds"] else '<span class="no">does not hold</span>'
+            rows.append(f"<tr><td>{name}</td><td style=\"text-align:left\">{html.escape(told)}</td><td>{limit(c)}</td>"
+                        f"<td>{number(c['found'])}</td><td>{verdict}</td></tr>")
+    text = (f"<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>Experiments</title><style>{STYLE}</style>"
+            f"<h1>Experiments</h1><table>{''.join(rows)}</table></html>")
+    write_file(os.path.join(out, "index.html"), text + "\n")

@@ -1,0 +1,224 @@
+"""Scenario files: what an experiment is, as TOML. README.md lists the keys.
+
+A scenario becomes a list of runs: every combination of the factors' levels, each with the same seeds. What varies
+is drawn by (seed, key) alone, so a run is the same whatever runs beside it.
+"""
+import copy
+import difflib
+import hashlib
+import itertools
+import json
+import math
+import os
+import tomllib
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+SHIPPED = os.path.normpath(os.path.join(HERE, "..", "..", "assets", "experiments"))
+STATISTICS = ("median", "mean", "min", "max", "share")
+MOST_RUNS = 1_000_000
+
+
+class Refused(Exception):
+    """Bad input, in one line: where, what was found, what is accepted. Exit status 2."""
+
+
+class Failed(Exception):
+    """It could not be done here. Exit status 1."""
+
+
+def names():
+    """The shipped scenarios, in the order of `all`."""
+    order = ["imaging", "profiling", "echo_sounder", "shark"]
+    found = sorted(f[:-5] for f in os.listdir(SHIPPED) if f.endswith(".toml"))
+    return [n for n in order if n in found] + [n for n in found if n not in order]
+
+
+def path_of(name):
+    """A shipped scenario's file, or the user's own .toml."""
+    if name.endswith(".toml"):
+        if not os.path.isfile(name):
+            raise Refused(f"{name}: found no such file; accepted: a scenario, or one of {', '.join(names())}")
+        return name
+    if name not in names():
+        near = difflib.get_close_matches(name, names(), 1)
+        raise Refused(f"experiment: found \"{name}\"; accepted: {near[0] + ' (the nearest), ' if near else ''}"
+                      f"{', '.join(names())}, all, or a .toml file")
+    return os.path.join(SHIPPED, name + ".toml")
+
+
+def read(path):
+    try:
+        with open(path, "rb") as file:
+            return tomllib.load(file)
+    except OSError as error:
+        raise Refused(f"{path}: found a file that cannot be read ({error.strerror}); accepted: a scenario in TOML") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise Refused(f"{path}: found no TOML: {error}") from None
+
+
+def _check_keys(where, table, accepted):
+    if not isinstance(table, dict):
+        raise Refused(f"{where}: found {_words(table)}; accepted: a table")
+    for key in table:
+        if key not in accepted:
+            near = difflib.get_close_matches(key, accepted, 1)
+            raise Refused(f"{where}: found key \"{key}\"; accepted: "
+                          + (f"{near[0]} (the nearest)" if near else ", ".join(accepted)))
+
+
+def _words(value):
+    return json.dumps(value) if not isinstance(value, (dict, list)) else ("a table" if isinstance(value, dict) else "a list")
+
+
+def _number(where, value, low, high, whole=False):
+    good = isinstance(value, int) if whole else isinstance(value, (int, float))
+    if isinstance(value, bool) or not good or not (low <= value <= high):
+        kind = "a whole number" if whole else "a number"
+        raise Refused(f"{where}: found {_words(value)}; accepted: {kind} in [{low:g}, {high:g}]")
+    return value
+
+
+class Setting:
+    """A value that a kind of experiment understands: its default, its limits or words, and what it means."""
+
+    def __init__(self, default, meaning, low=None, high=None, words=None, whole=False):
+        self.default, self.meaning, self.low, self.high, self.words, self.whole = default, meaning, low, high, words, whole
+
+    def check(self, where, value):
+        if isinstance(self.default, bool):
+            if not isinstance(value, bool):
+                raise Refused(f"{where}: found {_words(value)}; accepted: true or false")
+        elif isinstance(self.default, str):
+            if not isinstance(value, str) or (self.words and value not in self.words):
+                raise Refused(f"{where}: found {_words(value)}; accepted: "
+                              + (", ".join(self.words) if self.words else "text"))
+        else:
+            _number(where, value, self.low, self.high, self.whole)
+        return value
+
+
+class Run:
+    """One run: its condition (the factors' levels), seed and settings. Plain data; crosses processes."""
+
+    def __init__(self, index, condition, seed, settings):
+        self.index, self.condition, self.seed, self.settings = index, condition, seed, settings
+
+    def key(self):
+        return json.dumps([self.condition, self.seed], sort_keys=True)
+
+
+def draw(seed, key, low, high):
+    """Uniform in [low, high): by a counter, SHA-256 of the seed and the key."""
+    digest = hashlib.sha256(f"{seed}:{key}".encode()).digest()
+    return low + (high - low) * (int.from_bytes(digest[:8], "big") >> 11) / 2 ** 53
+
+
+class Scenario:
+    """A checked scenario. kinds: {name: module with SETTINGS, MEASURES, run, figures}."""
+
+    def __init__(self, path, kinds, runs=None, seed=None, sets=()):
+        self.path = path
+        self.name = os.path.splitext(os.path.basename(path))[0]
+        data = copy.deepcopy(read(path))
+        _check_keys(path, data, ["experiment", "settings", "vary", "factors", "criteria"])
+        head = data.get("experiment", {})
+        _check_keys(f"{path}: experiment", head, ["title", "about", "kind", "runs", "seed"])
+        kind = head.get("kind")
+        if kind not in kinds:
+            raise Refused(f"{path}: experiment.kind: found {_words(kind)}; accepted: {', '.join(kinds)}")
+        self.kind_name, self.kind = kind, kinds[kind]
+        self.title, self.about = str(head.get("title", self.name)), str(head.get("about", ""))
+        self.runs = _number("--runs" if runs is not None else f"{path}: experiment.runs",
+                            runs if runs is not None else head.get("runs", 1), 1, MOST_RUNS, True)
+        self.seed = _number("--seed" if seed is not None else f"{path}: experiment.seed",
+                            seed if seed is not None else head.get("seed", 1), 0, 2 ** 53, True)
+        known = self.kind.SETTINGS
+        self.settings = {k: s.default for k, s in known.items()}
+        for table in ("settings", "vary", "factors"):
+            _check_keys(f"{path}: {table}", data.get(table, {}), list(known))
+        for key, value in data.get("settings", {}).items():
+            self.settings[key] = known[key].check(f"{path}: settings.{key}", value)
+        self.vary = {k: self._range(k, v) for k, v in data.get("vary", {}).items()}
+        self.factors = {k: self._levels(k, v) for k, v in data.get("factors", {}).items()}
+        for text in sets:
+            self._set(text)
+        both = set(self.vary) & set(self.factors)
+        if both:
+            raise Refused(f"{path}: vary.{min(both)}: found a factor of the same name; accepted: one of the two")
+        self.criteria = [self._criterion(i, c) for i, c in enumerate(data.get("criteria", []))]
+        conditions = math.prod(len(v) for v in self.factors.values())
+        if conditions * self.runs > MOST_RUNS:
+            raise Refused(f"{path}: found {conditions} conditions of {self.runs} runs; accepted: at most {MOST_RUNS} runs")
+
+    def _range(self, key, value):
+        where, setting = f"{self.path}: vary.{key}", self.kind.SETTINGS[key]
+        if isinstance(setting.default, (str, bool)) or not isinstance(value, list) or len(value) != 2:
+            raise Refused(f"{where}: found {_words(value)}; accepted: [lowest, highest] of a number")
+        low, high = (setting.check(where, v) for v in value)
+        if low > high:
+            raise Refused(f"{where}: found {value}; accepted: the lower number first")
+        return [low, high]
+
+    def _levels(self, key, value):
+        if not isinstance(value, list) or not value:
+            raise Refused(f"{self.path}: factors.{key}: found {_words(value)}; accepted: a list of levels")
+        levels = [self.kind.SETTINGS[key].check(f"{self.path}: factors.{key}", v) for v in value]
+        if len(set(levels)) < len(levels):
+            raise Refused(f"{self.path}: factors.{key}: found a level twice; accepted: levels that differ")
+        return levels
+
+    def _set(self, text):
+        """key=value of --set, in TOML: a number, a word in quotes or bare; a list makes a factor."""
+        key, mark, raw = text.partition("=")
+        key = key.strip()
+        if not mark or key not in self.kind.SETTINGS:
+            near = difflib.get_close_matches(key, list(self.kind.SETTINGS), 1)
+            raise Refused(f"--set: found \"{text}\"; accepted: KEY=VALUE, KEY one of "
+                          + (f"{near[0]} (the nearest), " if near else "") + ", ".join(self.kind.SETTINGS))
+        try:
+            value = tomllib.loads(f"v = {raw}")["v"]
+        except tomllib.TOMLDecodeError:
+            value = raw.strip()
+        self.vary.pop(key, None)
+        self.factors.pop(key, None)
+        if isinstance(value, list):
+            where, self.path = self.path, "--set"
+            try:
+                self.factors[key] = self._levels(key, value)
+            finally:
+                self.path = where
+        else:
+            self.settings[key] = self.kind.SETTINGS[key].check(f"--set {key}", value)
+
+    def _criterion(self, index, table):
+        where = f"{self.path}: criteria[{index}]"
+        _check_keys(where, table, ["measure", "statistic", "at_most", "at_least", "where"])
+        if table.get("measure") not in self.kind.MEASURES:
+            raise Refused(f"{where}.measure: found {_words(table.get('measure'))}; accepted: {', '.join(self.kind.MEASURES)}")
+        if table.get("statistic", "median") not in STATISTICS:
+            raise Refused(f"{where}.statistic: found {_words(table.get('statistic'))}; accepted: {', '.join(STATISTICS)}")
+        if ("at_most" in table) + ("at_least" in table) < 1:
+            raise Refused(f"{where}: found no limit; accepted: at_most, at_least or both")
+        for key in ("at_most", "at_least"):
+            if key in table:
+                _number(f"{where}.{key}", table[key], -1e300, 1e300)
+        for key, level in table.get("where", {}).items():
+            if key not in self.kind.SETTINGS:
+                raise Refused(f"{where}.where: found \"{key}\"; accepted: {', '.join(self.kind.SETTINGS)}")
+        return table
+
+    def list_runs(self):
+        out = []
+        for levels in itertools.product(*self.factors.values()):
+            condition = dict(zip(self.factors, levels))
+            for i in range(self.runs):
+                seed = self.seed + i
+                drawn = {k: draw(seed, k, *v) for k, v in self.vary.items()}
+                drawn = {k: int(v) if self.kind.SETTINGS[k].whole else v for k, v in drawn.items()}
+                out.append(Run(len(out), condition, seed, {**self.settings, **drawn, **condition}))
+        return out
+
+    def fingerprint(self):
+        """Of everything that decides a single run's numbers: results of another fingerprint are not resumed."""
+        told = [self.kind_name, self.settings, self.vary, sorted(self.factors)]
+        return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
