@@ -1,4 +1,4 @@
-#include "testbed/world/ros_frames.hpp"
+#include "engine/core/ros_frames.hpp"
 #include "testbed/world/ros_samples.hpp"
 #include "testbed/world/world_parts.hpp"
 

@@ -1,6 +1,6 @@
 #include "testbed/world/ros_samples.hpp"
 
-#include "testbed/world/ros_frames.hpp"
+#include "engine/core/ros_frames.hpp"
 
 namespace neritic::testbed::ros {
 namespace {

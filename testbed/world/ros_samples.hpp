@@ -1,5 +1,5 @@
-// The contents of samples as named numbers in ROS conventions (ros_frames.hpp), the same for
-// Python, the server and what else speaks to programs outside: "orientation" 4,
+// The contents of samples as named numbers in ROS conventions (engine/core/ros_frames.hpp), the
+// same for Python, the server and what else speaks to programs outside: "orientation" 4,
 // "linear_acceleration" 3. Pure functions; any thread.
 #pragma once
 
@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/ros_frames.hpp"
 #include "testbed/samples/sample.hpp"
 
 namespace neritic::testbed::ros {
+using namespace neritic::ros;
 
 struct Field {
   std::string name;  // with its unit where ROS does not fix it: "pressure_pa"

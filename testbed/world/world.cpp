@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "engine/core/refusal.hpp"
+#include "engine/core/ros_frames.hpp"
 #include "engine/core/text.hpp"
 #include "testbed/record/step_sink.hpp"
 #include "testbed/sensors/validation.hpp"
-#include "testbed/world/ros_frames.hpp"
 #include "testbed/world/ros_samples.hpp"
 #include "testbed/world/world_parts.hpp"
 

@@ -2,8 +2,8 @@
 // name. In-process Python and the server are made on it. It configures the testbed's one loop
 // (testbed/loop) and turns it frame by frame; a device is made when the first image is asked for.
 //
-// ROS conventions (ros_frames.hpp): world east, north, up; bodies forward, left, up; quaternions
-// x, y, z, w. Numbers have names (fields of StreamInfo). One thread at a time.
+// ROS conventions (engine/core/ros_frames.hpp): world east, north, up; bodies forward, left, up;
+// quaternions x, y, z, w. Numbers have names (fields of StreamInfo). One thread at a time.
 #pragma once
 
 #include <array>

@@ -48,6 +48,7 @@ const std::map<std::string, std::set<std::string>>& allowed() {
        {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "engine/sim", "engine/xr",
         "testbed/samples", "testbed/simulation", "testbed/motion", "testbed/record",
         "testbed/sensors"}},
+      {"testbed/envs", {"engine/core", "engine/sim", "rov"}},
       {"testbed/world",
        {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "engine/sim", "engine/xr",
         "sonar", "rov", "diver", "testbed/samples", "testbed/simulation", "testbed/motion",

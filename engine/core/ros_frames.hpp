@@ -7,7 +7,7 @@
 
 #include "engine/core/marine_frames.hpp"
 
-namespace neritic::testbed::ros {
+namespace neritic::ros {
 
 // World axes x east, y up, z south.
 inline Vec3 enu_from_world(const Vec3& v) {
@@ -65,4 +65,4 @@ inline double yaw_from_heading(double heading_rad) {
   return yaw_rad <= -kPi ? kPi : yaw_rad;
 }
 
-}  // namespace neritic::testbed::ros
+}  // namespace neritic::ros

@@ -1,0 +1,40 @@
+"""Neritic from Python: worlds of divers and underwater robots, in this process.
+
+    import neritic
+    world = neritic.open("scene.toml", seed=1)
+    rov = world["rov"]
+    rov.goto(4, 3, -7)                # east, north, up in metres
+    obs = world.tick(240)             # so many physics steps
+    print(obs["rov/imu"].linear_acceleration, world.truth("rov").position)
+
+Conventions are ROS's: the world is east, north, up; bodies are forward, left, up; quaternions are
+x, y, z, w; SI units, radians. Times are simulated seconds.
+
+open(scene)       a World: tick, observations, agents, images, save, restore, record
+vector(task)      thousands of environments at once, with Gymnasium's vector interface
+Error, BadInput   what is raised, in one line
+"""
+
+from . import _core
+from .errors import BadInput, Error
+from .vector import VectorEnv, vector
+from .world import (
+    Agent,
+    Diver,
+    Image,
+    Observations,
+    Reading,
+    Stream,
+    TrackedObject,
+    Truth,
+    Vehicle,
+    World,
+    open,
+)
+
+_core.set_errors(Error, BadInput)
+
+__all__ = [
+    "Agent", "BadInput", "Diver", "Error", "Image", "Observations", "Reading", "Stream",
+    "TrackedObject", "Truth", "VectorEnv", "Vehicle", "World", "open", "vector",
+]

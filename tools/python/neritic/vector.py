@@ -1,0 +1,170 @@
+"""Thousands of environments at once, with the interface of Gymnasium's VectorEnv."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, Mapping, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core, spaces
+from .errors import BadInput
+
+TASKS = ("hover", "track", "dock", "follow", "shark")
+RANDOMISED = {
+    "mass": 0.05,
+    "net_buoyancy_n": 1.0,
+    "drag": 0.3,
+    "thrust": 0.1,
+    "current_m_s": 0.3,
+    "position_noise_m": 0.02,
+    "velocity_noise_m_s": 0.02,
+    "angle_noise_rad": 0.01,
+    "rate_noise_rad_s": 0.01,
+}
+"""How much environments differ, unless vector(randomise=...) says otherwise: shares of the vehicle's
+values each way, a largest current, deviations of what is observed."""
+
+
+class VectorEnv:
+    """Environments of one vehicle each, stepped together. Made by neritic.vector().
+
+    Observations are a dict of float32 arrays, one row an environment, in the vehicle's own axes
+    (forward, left, up):
+
+    goal    12  to the goal: place (3), its velocity less the vehicle's (3), turn (3);
+                to the task's point (3): a second ahead on the path, the dock's mouth, the diver, the shark
+    motion  10  velocity over ground (3), angular velocity (3), up (3), depth
+    action      the newest action
+
+    The arrays that reset() and step() return are written in place by the next step: copy what you keep,
+    or ask for copies with copy=True.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": []}
+    render_mode = None
+
+    def __init__(self, task: str, num_envs: int, core: _core.VectorEnv, max_steps: int, step_s: float,
+                 autoreset: str, copy: bool) -> None:
+        self._core, self._copy = core, copy
+        self.task, self.num_envs, self.max_steps, self.step_s = task, num_envs, max_steps, step_s
+        self.metadata = {**self.metadata, "autoreset_mode": autoreset}
+        self._same_step = autoreset == "same_step"
+        self.closed = False
+        sizes = {"goal": _core.GOAL, "motion": _core.MOTION, "action": core.actions}
+        limits = {name: 1.0 if name == "action" else np.inf for name in sizes}
+
+        def observations(*rows: int) -> spaces.Dict:
+            return spaces.Dict({name: spaces.Box(-limits[name], limits[name], (*rows, size))
+                                for name, size in sizes.items()})
+
+        self.single_observation_space, self.observation_space = observations(), observations(num_envs)
+        self.single_action_space = spaces.Box(-1.0, 1.0, (core.actions,))
+        self.action_space = spaces.Box(-1.0, 1.0, (num_envs, core.actions))
+        self._observation = {name: np.zeros((num_envs, size), np.float32) for name, size in sizes.items()}
+        self._last = {name: np.zeros((num_envs, size), np.float32) for name, size in sizes.items()}
+        self._reward = np.zeros(num_envs, np.float32)
+        self._terminated = np.zeros(num_envs, np.bool_)
+        self._truncated = np.zeros(num_envs, np.bool_)
+        last = {"last_" + name: array if self._same_step else None for name, array in self._last.items()}
+        core.set_arrays({**self._observation, **last, "reward": self._reward,
+                         "terminated": self._terminated.view(np.uint8),
+                         "truncated": self._truncated.view(np.uint8)})
+        self.reset(seed=0)
+
+    @property
+    def unwrapped(self) -> VectorEnv:
+        """Itself."""
+        return self
+
+    def reset(self, *, seed: Union[None, int, Sequence[int]] = None,
+              options: Optional[Mapping[str, Any]] = None) -> tuple[dict[str, NDArray[np.float32]], dict[str, Any]]:
+        """All environments begin an episode: observations and an empty info. seed: one for all, or one
+        each; None: the next of a row. The same seeds and actions give the same bits, on any number of
+        threads."""
+        if options:
+            raise BadInput(f"options: found {sorted(options)}; accepted: none")
+        seeds = [self._next_seed] if seed is None else [seed] if isinstance(seed, (int, np.integer)) else list(seed)
+        if any(one < 0 for one in seeds):
+            raise BadInput(f"seed: found {min(seeds)}; accepted: 0 or more")
+        self._next_seed = int(seeds[0]) + 1
+        self._core.reset([int(one) for one in seeds])
+        return self._given(self._observation), {}
+
+    def step(self, actions: ArrayLike) -> tuple[dict[str, NDArray[np.float32]], NDArray[np.float32],
+                                                NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        """Observations, rewards, terminated, truncated, info. actions: [num_envs, actions] from -1 to 1:
+        shares of each thruster's largest force or, with control="wrench", of the largest surge, sway,
+        heave, roll, pitch, yaw.
+
+        An episode that ended begins anew in the next step, which then takes no action and rewards 0; with
+        autoreset="same_step" in the same step: info has "final_obs" and "_final_obs" then."""
+        self._core.step(actions)
+        info: dict[str, Any] = {}
+        if self._same_step:
+            over = self._terminated | self._truncated
+            if over.any():
+                info = {"final_obs": {k: v.copy() for k, v in self._last.items()}, "_final_obs": over}
+        if not self._copy:
+            return self._observation, self._reward, self._terminated, self._truncated, info
+        return (self._given(self._observation), self._reward.copy(), self._terminated.copy(),
+                self._truncated.copy(), info)
+
+    def truth(self) -> NDArray[np.float64]:
+        """What is true without noise, [num_envs, 13]: place (east, north, up), rotation (world from body, x y
+        z w), velocity over ground and angular velocity (forward, left, up)."""
+        return self._core.truth()
+
+    @property
+    def threads(self) -> int:
+        """That share a step."""
+        return self._core.threads
+
+    def close(self) -> None:
+        """Nothing is left open."""
+        self.closed = True
+
+    def __repr__(self) -> str:
+        return f"<{self.num_envs} environments '{self.task}'>"
+
+    def _given(self, arrays: Mapping[str, NDArray[np.float32]]) -> dict[str, NDArray[np.float32]]:
+        return {name: array.copy() if self._copy else array for name, array in arrays.items()}
+
+    _next_seed = 0
+
+
+def vector(task: str, num_envs: int = 1, *, vehicle: Union[None, str, os.PathLike[str]] = None,
+           step_s: float = 0.04, max_steps: int = 500, method: str = "split", substeps: int = 2,
+           thrust_table: bool = True, randomise: Union[bool, Mapping[str, float]] = True,
+           control: str = "thrusters", autoreset: str = "next_step", copy: bool = False,
+           threads: int = 0) -> VectorEnv:
+    """Environments for learning, all of one task:
+
+    hover   stay at a place and a heading       track   follow a point on a smooth path
+    dock    come into a dock along its axis     follow  keep beside a diver who swims about
+    shark   keep between a diver and a shark
+
+    vehicle: its file; None: a BlueROV2 Heavy. step_s, max_steps: of an episode. method, substeps: "split"
+    computes the thrusters' lag exactly and the rest by RK4 in so many substeps; "guarded" is what a scene's
+    simulation does. `python3 -m neritic.tradeoff` shows error over cost. thrust_table: commands in whole
+    microseconds, as in a scene. randomise: True (RANDOMISED), False, or a dict of some of its values.
+    control: "thrusters" or "wrench". autoreset: "next_step" or "same_step". threads: 0 for all cores."""
+    for name, found, accepted in (("control", control, ("thrusters", "wrench")),
+                                  ("autoreset", autoreset, ("next_step", "same_step"))):
+        if found not in accepted:
+            raise BadInput(f"{name}: found '{found}'; accepted: {', '.join(accepted)}")
+    for name, number in (("num_envs", num_envs), ("max_steps", max_steps), ("threads", threads)):
+        if not 0 <= number < 2**31:
+            raise BadInput(f"{name}: found {number}; accepted: 0 to {2**31 - 1}")
+    random = None if randomise is False else {**RANDOMISED, **(randomise if isinstance(randomise, Mapping) else {})}
+    path = os.fspath(vehicle) if vehicle is not None else str(_vehicle_file())
+    core = _core.VectorEnv(task, num_envs, path, step_s, max_steps, method, substeps, thrust_table, random,
+                           control == "wrench", autoreset == "same_step", threads)
+    return VectorEnv(task, num_envs, core, max_steps, step_s, autoreset, copy)
+
+
+def _vehicle_file() -> Path:
+    # The package lies in tools/python/neritic of the source, whatever link led here.
+    return Path(__file__).resolve().parents[3] / "assets/vehicles/bluerov2_heavy_dynamics.toml"
