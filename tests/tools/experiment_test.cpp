@@ -104,7 +104,7 @@ TEST(Experiment, RefusesBadScenariosInOneLine) {
     refused(own.string(), words);
   };
   with("[experiment", "found no TOML");
-  with("[experiment]\nkind = \"sonar\"\n", "accepted: imaging, profiling, echo_sounder");
+  with("[experiment]\nkind = \"sonar\"\n", "accepted: imaging, profiling, echo_sounder, shark");
   with("[experiment]\nkind = \"echo_sounder\"\nrun = 3\n", "runs (the nearest)");
   with("[experiment]\nkind = \"echo_sounder\"\n[vary]\nslope_deg = [3.0, 1.0]\n",
        "the lower number first");

@@ -20,13 +20,14 @@ except ModuleNotFoundError:
 import echo_sounder
 import imaging
 import profiling
+import shark
 
 import report
 import runner
 import scenario
 import summary
 
-KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder}
+KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder, "shark": shark}
 
 
 def one(path, asked, out):
@@ -48,8 +49,7 @@ def one(path, asked, out):
 def tell(told, out):
     print(f"{told['experiment']}: {told['runs']} runs, {told['failed']} failed; {out}/report.html")
     for c in told["criteria"]:
-        name = f"{c['statistic']} of {c['measure']}" + (f" ({report.words(c['where'])})" if c["where"] else "")
-        print(f"  {'holds' if c['holds'] else 'DOES NOT HOLD':<14}{name}: {report.number(c['found'])}; asked: {report.limit(c)}")
+        print(f"  {'holds' if c['holds'] else 'DOES NOT HOLD':<14}{report.claim(c)}: {report.number(c['found'])}; asked: {report.limit(c)}")
     for condition in told["conditions"]:
         for cause, n in condition["failures"].items():
             print(f"  {n} runs failed ({report.words(condition['condition'])}): {cause}")

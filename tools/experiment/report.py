@@ -26,6 +26,12 @@ def words(condition):
     return ", ".join(f"{k} {number(v)}" for k, v in condition.items()) or "all runs"
 
 
+def claim(c):
+    """ "median of time_to_block_s (delay_s 0.5) less that of delay_s 0"."""
+    return (f"{c['statistic']} of {c['measure']}" + (f" ({words(c['where'])})" if c["where"] else "")
+            + (f" less that of {words(c['less'])}" if c["less"] is not None else ""))
+
+
 def limit(criterion):
     low, high = criterion["at_least"], criterion["at_most"]
     if low is not None and high is not None:
@@ -65,7 +71,7 @@ def _cell(value):
 def _criteria_rows(summary):
     rows = ["<tr><th>criterion</th><th>asked</th><th>found</th><th>runs</th><th></th></tr>"]
     for c in summary["criteria"]:
-        name = f"{c['statistic']} of {c['measure']}" + (f" ({words(c['where'])})" if c["where"] else "")
+        name = claim(c)
         verdict = "holds" if c["holds"] else '<span class="no">does not hold</span>'
         rows.append(f"<tr><td>{html.escape(name)}</td><td>{limit(c)}</td><td>{number(c['found'])}</td>"
                     f"<td>{c['n']}</td><td>{verdict}</td></tr>")
@@ -131,7 +137,7 @@ def index(summaries, out):
     for s in summaries:
         for i, c in enumerate(s["criteria"]):
             name = f"<a href=\"{s['experiment']}/report.html\">{s['experiment']}</a>" if i == 0 else ""
-            told = f"{c['statistic']} of {c['measure']}" + (f" ({words(c['where'])})" if c["where"] else "")
+            told = claim(c)
             verdict = "holds" if c["holds"] else '<span class="no">does not hold</span>'
             rows.append(f"<tr><td>{name}</td><td style=\"text-align:left\">{html.escape(told)}</td><td>{limit(c)}</td>"
                         f"<td>{number(c['found'])}</td><td>{verdict}</td></tr>")

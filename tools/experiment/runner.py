@@ -50,6 +50,19 @@ class Tools:
             raise Failed(f"neritic {arguments[0]}: {lines[-1]}")
         return done.stdout
 
+    def python(self):
+        """The Python package, of the build that the program is in."""
+        import importlib
+        import sys
+        build = os.path.normpath(os.path.join(os.path.dirname(os.path.realpath(self.program)), "..", "python"))
+        if build not in sys.path:
+            sys.path.insert(0, build)
+        try:
+            return importlib.import_module("neritic")
+        except ImportError as error:
+            raise Failed(f"no Python package neritic in {build} ({error}); accepted: a build with pybind11-dev and "
+                         "python3-dev, run by /usr/bin/python3") from None
+
     def write(self, name, text):
         path = os.path.join(self.folder, name)
         with open(path, "w", encoding="utf-8") as file:

@@ -192,7 +192,7 @@ class Scenario:
 
     def _criterion(self, index, table):
         where = f"{self.path}: criteria[{index}]"
-        _check_keys(where, table, ["measure", "statistic", "at_most", "at_least", "where"])
+        _check_keys(where, table, ["measure", "statistic", "at_most", "at_least", "where", "less"])
         if table.get("measure") not in self.kind.MEASURES:
             raise Refused(f"{where}.measure: found {_words(table.get('measure'))}; accepted: {', '.join(self.kind.MEASURES)}")
         if table.get("statistic", "median") not in STATISTICS:
@@ -202,9 +202,8 @@ class Scenario:
         for key in ("at_most", "at_least"):
             if key in table:
                 _number(f"{where}.{key}", table[key], -1e300, 1e300)
-        for key, level in table.get("where", {}).items():
-            if key not in self.kind.SETTINGS:
-                raise Refused(f"{where}.where: found \"{key}\"; accepted: {', '.join(self.kind.SETTINGS)}")
+        for part in ("where", "less"):
+            _check_keys(f"{where}.{part}", table.get(part, {}), list(self.kind.SETTINGS))
         return table
 
     def list_runs(self):

@@ -55,13 +55,21 @@ def summarise(scenario, results):
 
 
 def _judge(scenario, results, criterion):
-    where, statistic = criterion.get("where", {}), criterion.get("statistic", "median")
-    chosen = [r for r in results if all(r["settings"].get(k) == v for k, v in where.items())]
-    values = values_of(chosen, criterion["measure"])
-    # A run that failed has no value: a criterion of a share counts it as a no.
-    if statistic == "share":
-        values += [0.0] * (len(chosen) - len(values))
-    found = _statistic(statistic, values)
+    """less: the same statistic of those runs is subtracted, so that two conditions are compared."""
+    where, less, name = criterion.get("where", {}), criterion.get("less"), criterion.get("statistic", "median")
+
+    def of(condition):
+        chosen = [r for r in results if all(r["settings"].get(k) == v for k, v in condition.items())]
+        values = values_of(chosen, criterion["measure"])
+        # A run that failed has no value: a criterion of a share counts it as a no.
+        if name == "share":
+            values += [0.0] * (len(chosen) - len(values))
+        return _statistic(name, values), len(values)
+
+    found, n = of(where)
+    if less is not None and found is not None:
+        base, _ = of(less)
+        found = None if base is None else found - base
     holds = found is not None and found <= criterion.get("at_most", math.inf) and found >= criterion.get("at_least", -math.inf)
-    return {"measure": criterion["measure"], "statistic": statistic, "where": where, "found": found, "n": len(values),
+    return {"measure": criterion["measure"], "statistic": name, "where": where, "less": less, "found": found, "n": n,
             "at_most": criterion.get("at_most"), "at_least": criterion.get("at_least"), "holds": holds}

@@ -554,7 +554,7 @@ void add_experiment(CLI::App& app, CommandLine& line) {
   command
       ->add_option(
           "name", flags->name,
-          "imaging, profiling, profiling_tide, profiling_sound_speed, echo_sounder, all, or "
+          "imaging, profiling, echo_sounder, shark or another of assets/experiments, all, or "
           "a scenario (.toml) of your own: tools/experiment/README.md")
       ->required();
   command
