@@ -21,13 +21,14 @@ import echo_sounder
 import imaging
 import profiling
 import shark
+import task
 
 import report
 import runner
 import scenario
 import summary
 
-KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder, "shark": shark}
+KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder, "shark": shark, "task": task.Task}
 
 
 def one(path, asked, out):

@@ -114,19 +114,22 @@ def draw(seed, key, low, high):
 
 
 class Scenario:
-    """A checked scenario. kinds: {name: module with SETTINGS, MEASURES, run, figures}."""
+    """A checked scenario. kinds: {name: module with SETTINGS, MEASURES, run, figures, or a class that makes such an
+    object of the file's path and data}."""
 
     def __init__(self, path, kinds, runs=None, seed=None, sets=()):
         self.path = path
         self.name = os.path.splitext(os.path.basename(path))[0]
-        data = copy.deepcopy(read(path))
-        _check_keys(path, data, ["experiment", "settings", "vary", "factors", "criteria"])
+        self.data = data = copy.deepcopy(read(path))
         head = data.get("experiment", {})
+        own = ["task", "stages", "measures"] if isinstance(head, dict) and head.get("kind") == "task" else []
+        _check_keys(path, data, ["experiment", "settings", "vary", "factors", "criteria", *own])
         _check_keys(f"{path}: experiment", head, ["title", "about", "kind", "runs", "seed"])
         kind = head.get("kind")
         if kind not in kinds:
             raise Refused(f"{path}: experiment.kind: found {_words(kind)}; accepted: {', '.join(kinds)}")
-        self.kind_name, self.kind = kind, kinds[kind]
+        self.kind_name = kind
+        self.kind = kinds[kind](path, data) if isinstance(kinds[kind], type) else kinds[kind]
         self.title, self.about = str(head.get("title", self.name)), str(head.get("about", ""))
         self.runs = _number("--runs" if runs is not None else f"{path}: experiment.runs",
                             runs if runs is not None else head.get("runs", 1), 1, MOST_RUNS, True)
@@ -219,5 +222,6 @@ class Scenario:
 
     def fingerprint(self):
         """Of everything that decides a single run's numbers: results of another fingerprint are not resumed."""
-        told = [self.kind_name, self.settings, self.vary, sorted(self.factors)]
+        own = [self.data.get(k) for k in ("task", "stages", "measures")]
+        told = [self.kind_name, self.settings, self.vary, sorted(self.factors), own]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]

@@ -1,0 +1,128 @@
+"""Formulas of scenarios: triggers, measures and stopping rules as text, as in "distance(rov, diver) < 2 and time > 5".
+
+Numbers, comparisons, and / or / not, + - * / **, and the functions of SIGNALS on participants' names. Nothing else is
+evaluated. World axes: east, north, up.
+"""
+import ast
+import math
+
+import numpy as np
+
+from scenario import Refused
+
+_BINARY = {ast.Add: lambda a, b: a + b, ast.Sub: lambda a, b: a - b, ast.Mult: lambda a, b: a * b,
+           ast.Div: lambda a, b: a / b if b else math.nan, ast.Pow: lambda a, b: a ** b}
+_COMPARE = {ast.Lt: lambda a, b: a < b, ast.LtE: lambda a, b: a <= b, ast.Gt: lambda a, b: a > b,
+            ast.GtE: lambda a, b: a >= b, ast.Eq: lambda a, b: a == b, ast.NotEq: lambda a, b: a != b}
+
+
+def _facing(m, a, b):
+    """Degrees between the way that a faces and the line from a to b."""
+    x, y, z, w = m.truth(a).orientation
+    ahead = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)])
+    line = m.place(b) - m.place(a)
+    return math.degrees(math.acos(max(-1.0, min(1.0, float(ahead @ line) / max(float(np.linalg.norm(line)), 1e-9)))))
+
+
+def _beside(m, a, b, c):
+    line = m.place(c) - m.place(b)
+    along = float((m.place(a) - m.place(b)) @ line / max(float(line @ line), 1e-12))
+    return float(np.linalg.norm(m.place(a) - m.place(b) - along * line))
+
+
+def _along(m, a, b, c):
+    line = m.place(c) - m.place(b)
+    return float((m.place(a) - m.place(b)) @ line / max(float(line @ line), 1e-12))
+
+
+# name: (function of the moment and the names, number of names, what it is)
+SIGNALS = {
+    "distance": (lambda m, a, b: float(np.linalg.norm(m.place(a) - m.place(b))), 2, "m between two"),
+    "level_distance": (lambda m, a, b: float(np.hypot(*(m.place(a) - m.place(b))[:2])), 2, "m between two, level"),
+    "depth": (lambda m, a: -float(m.place(a)[2]), 1, "m below the surface"),
+    "east": (lambda m, a: float(m.place(a)[0]), 1, "m"),
+    "north": (lambda m, a: float(m.place(a)[1]), 1, "m"),
+    "speed": (lambda m, a: float(np.linalg.norm(m.truth(a).linear_velocity)), 1, "m/s over ground"),
+    "facing": (_facing, 2, "degrees between the first's way ahead and the second"),
+    "along": (_along, 3, "projection of the first on the line from the second to the third, a share of it"),
+    "beside": (_beside, 3, "m from the first to the line through the second and the third"),
+    "touched": (lambda m, a: float(m.truth(a).touched_steps), 1, "steps in which it touched something"),
+}
+
+
+class Formula:
+    """A checked text. Plain data but for its syntax tree, which is made anew in each process."""
+
+    def __init__(self, where, text, names, numbers):
+        """names: the participants; numbers: words that stand for numbers (settings, time, what the controller tells)."""
+        self.where, self.text = where, text
+        if not isinstance(text, str):
+            raise Refused(f"{where}: found {text!r}; accepted: a formula in quotes")
+        try:
+            self._tree = ast.parse(text, mode="eval").body
+        except (SyntaxError, ValueError, RecursionError):
+            raise Refused(f"{where}: found \"{text}\"; accepted: a formula, as \"distance(rov, diver) < 2\"") from None
+        self._check(self._tree, set(names), set(numbers))
+
+    def _refuse(self, found, accepted):
+        raise Refused(f"{self.where}: found {found} in \"{self.text}\"; accepted: {accepted}")
+
+    def _check(self, node, names, numbers):
+        if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)):
+            return
+        if isinstance(node, ast.Name):
+            if node.id not in numbers:
+                self._refuse(f"\"{node.id}\"", ", ".join(sorted(numbers)))
+        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.Not)):
+            self._check(node.operand, names, numbers)
+        elif isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
+            self._check(node.left, names, numbers)
+            self._check(node.right, names, numbers)
+        elif isinstance(node, ast.BoolOp):
+            for value in node.values:
+                self._check(value, names, numbers)
+        elif isinstance(node, ast.Compare) and all(type(op) in _COMPARE for op in node.ops):
+            for value in (node.left, *node.comparators):
+                self._check(value, names, numbers)
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
+            if node.func.id not in SIGNALS:
+                self._refuse(f"\"{node.func.id}\"", ", ".join(SIGNALS))
+            count = SIGNALS[node.func.id][1]
+            told = [a.id for a in node.args if isinstance(a, ast.Name)]
+            if len(told) != len(node.args) or len(told) != count or not set(told) <= names:
+                self._refuse(f"{node.func.id}({', '.join(told)})", f"{count} of {', '.join(sorted(names))}")
+        else:
+            self._refuse(type(node).__name__, "numbers, comparisons, and, or, not, + - * / **, functions")
+
+    def __getstate__(self):
+        return self.where, self.text
+
+    def __setstate__(self, state):
+        self.where, self.text = state
+        self._tree = ast.parse(self.text, mode="eval").body
+
+    def value(self, moment):
+        return self._value(self._tree, moment)
+
+    def _value(self, node, m):
+        if isinstance(node, ast.Constant):
+            return float(node.value)
+        if isinstance(node, ast.Name):
+            return m.number(node.id)
+        if isinstance(node, ast.UnaryOp):
+            value = self._value(node.operand, m)
+            return -value if isinstance(node.op, ast.USub) else not value
+        if isinstance(node, ast.BinOp):
+            return _BINARY[type(node.op)](self._value(node.left, m), self._value(node.right, m))
+        if isinstance(node, ast.BoolOp):
+            values = (self._value(v, m) for v in node.values)
+            return all(values) if isinstance(node.op, ast.And) else any(values)
+        if isinstance(node, ast.Compare):
+            left = self._value(node.left, m)
+            for op, right in zip(node.ops, node.comparators):
+                right = self._value(right, m)
+                if not _COMPARE[type(op)](left, right):
+                    return False
+                left = right
+            return True
+        return SIGNALS[node.func.id][0](m, *(a.id for a in node.args))

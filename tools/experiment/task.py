@@ -1,0 +1,202 @@
+"""A task in a scene: participants, stages with triggers, measures, a controller in Python. The scenario file says it all:
+README.md lists its keys.
+
+The controller is a Python file with a class Controller: __init__(self, world, settings, seed) and
+act(self, observations, stage), called control_hz times a second. What act returns, a dict of numbers, formulas may name.
+"""
+import importlib.util
+import math
+import os
+
+import numpy as np
+
+from formulas import Formula
+from scenario import Failed, Refused, Setting, _check_keys, _number
+
+STATISTICS = ("last", "first", "mean", "rms", "min", "max", "ever", "share", "duration")
+MOST_SECONDS = 86400.0
+
+
+class Moment:
+    """What formulas see: the truth of one instant, and numbers by name."""
+
+    def __init__(self, world, fixed, numbers):
+        self._world, self._fixed, self._numbers, self._truths = world, fixed, numbers, {}
+
+    def truth(self, name):
+        if name not in self._truths:
+            self._truths[name] = self._world.truth(name)
+        return self._truths[name]
+
+    def place(self, name):
+        return self._fixed[name] if name in self._fixed else self.truth(name).position
+
+    def number(self, name):
+        value = self._numbers.get(name, math.nan)
+        return float(value)
+
+
+class Task:
+    """A kind of experiment, made of a scenario's tables. Plain data: it goes to the worker processes."""
+
+    def __init__(self, path, data):
+        self.path = path
+        task = data.get("task", {})
+        _check_keys(f"{path}: task", task, ["scene", "controller", "control_hz", "seconds", "participants", "places",
+                                            "settings", "tells", "stop"])
+        for key in ("scene", "controller"):
+            if not isinstance(task.get(key), str):
+                raise Refused(f"{path}: task.{key}: found {task.get(key)!r}; accepted: a file's name")
+        folder = os.path.dirname(os.path.abspath(path))
+        self.scene, self.controller = (os.path.join(folder, task[k]) for k in ("scene", "controller"))
+        for key, file in (("scene", self.scene), ("controller", self.controller)):
+            if not os.path.isfile(file):
+                raise Refused(f"{path}: task.{key}: found no file {file}; accepted: a file beside the scenario")
+        self.control_hz = _number(f"{path}: task.control_hz", task.get("control_hz", 20), 0.1, 1000)
+        self.seconds = _number(f"{path}: task.seconds", task.get("seconds", 60), 0.1, MOST_SECONDS)
+        self.participants = self._names("participants", task)
+        self.places = {}
+        for name, at in task.get("places", {}).items():
+            if not isinstance(at, list) or len(at) != 3:
+                raise Refused(f"{path}: task.places.{name}: found {at!r}; accepted: [east, north, up] in metres")
+            self.places[name] = [float(_number(f"{path}: task.places.{name}", v, -4e7, 4e7)) for v in at]
+        self.SETTINGS = {}
+        for name, table in task.get("settings", {}).items():
+            where = f"{path}: task.settings.{name}"
+            _check_keys(where, table, ["default", "meaning", "limits", "words"])
+            default = table.get("default")
+            low, high = table.get("limits", [-1e9, 1e9])
+            if not isinstance(default, (int, float, str)):
+                raise Refused(f"{where}.default: found {default!r}; accepted: a number, true, false or a word")
+            self.SETTINGS[name] = Setting(default, str(table.get("meaning", "")), low, high, table.get("words"))
+        self.tells = self._names("tells", task)
+        self.stages, names = [], self.participants + list(self.places)
+        numbers = ["time", "stage_time"] + self.tells + [k for k, s in self.SETTINGS.items() if not isinstance(s.default, str)]
+        self._formula = lambda where, text: Formula(where, text, names, numbers)
+        for i, stage in enumerate(data.get("stages", [])):
+            where = f"{path}: stages[{i}]"
+            _check_keys(where, stage, ["name", "until", "held_s", "at_most_s"])
+            if not isinstance(stage.get("name"), str):
+                raise Refused(f"{where}.name: found {stage.get('name')!r}; accepted: a word")
+            self.stages.append({"name": stage["name"], "until": self._formula(f"{where}.until", stage.get("until")),
+                                "held_s": _number(f"{where}.held_s", stage.get("held_s", 0), 0, MOST_SECONDS),
+                                "at_most_s": _number(f"{where}.at_most_s", stage.get("at_most_s", self.seconds), 0, MOST_SECONDS)})
+        if not self.stages:
+            raise Refused(f"{path}: stages: found none; accepted: one or more")
+        self.stop = self._formula(f"{path}: task.stop", task["stop"]) if "stop" in task else None
+        self.measures, self.MEASURES = [], {
+            "success": ("yes or no", "whether every stage ended in its time"),
+            "time_s": ("s", "until the last stage ended, of the runs that succeed")}
+        self.MEASURES |= {f"{s['name']}_s": ("s", f"how long the stage {s['name']} took") for s in self.stages}
+        for i, measure in enumerate(data.get("measures", [])):
+            where = f"{path}: measures[{i}]"
+            _check_keys(where, measure, ["name", "of", "statistic", "stage", "unit", "meaning"])
+            statistic, stage = measure.get("statistic", "mean"), measure.get("stage")
+            if not isinstance(measure.get("name"), str) or measure["name"] in self.MEASURES:
+                raise Refused(f"{where}.name: found {measure.get('name')!r}; accepted: a new word")
+            if statistic not in STATISTICS:
+                raise Refused(f"{where}.statistic: found {statistic!r}; accepted: {', '.join(STATISTICS)}")
+            if stage is not None and stage not in [s["name"] for s in self.stages]:
+                raise Refused(f"{where}.stage: found {stage!r}; accepted: {', '.join(s['name'] for s in self.stages)}")
+            self.measures.append({"name": measure["name"], "of": self._formula(f"{where}.of", measure.get("of")),
+                                  "statistic": statistic, "stage": stage})
+            unit = "yes or no" if statistic == "ever" else "s" if statistic == "duration" else str(measure.get("unit", ""))
+            self.MEASURES[measure["name"]] = (unit, str(measure.get("meaning", measure.get("of"))))
+        del self._formula
+
+    def _names(self, key, task):
+        names = task.get(key, [])
+        if not isinstance(names, list) or not all(isinstance(n, str) for n in names):
+            raise Refused(f"{self.path}: task.{key}: found {names!r}; accepted: a list of words")
+        return names
+
+    def run(self, settings, seed, tools):
+        neritic = tools.python()
+        world = neritic.open(self.scene, seed=seed)
+        missing = [n for n in self.participants if n not in world.agents]
+        if missing:
+            raise Failed(f"{self.scene}: found no participant {missing[0]}; accepted: {', '.join(world.agents)}")
+        controller = _controller(self.controller)(world, settings, seed)
+        fixed = {k: np.array(v) for k, v in self.places.items()}
+        every = max(1, round(1.0 / (self.control_hz * world.step_s)))
+        rows = {m["name"]: [] for m in self.measures}
+        series = {"t": [], "stage": [], **{m["name"]: [] for m in self.measures}}
+        stage, begun, held_from, ends, failure = 0, 0.0, None, {}, None
+        observations = world.observe()
+        while world.time < self.seconds - 1e-9 and stage < len(self.stages):
+            told = controller.act(observations, self.stages[stage]["name"]) or {}
+            unknown = [k for k in told if k not in self.tells]
+            if unknown:
+                raise Failed(f"{self.controller}: act told \"{unknown[0]}\"; accepted: {', '.join(self.tells) or 'nothing'}")
+            observations = world.tick(every)
+            time = world.time
+            moment = Moment(world, fixed, {**settings, **told, "time": time, "stage_time": time - begun})
+            series["t"].append(round(time, 3))
+            series["stage"].append(stage)
+            for m in self.measures:
+                value = float(m["of"].value(moment))
+                series[m["name"]].append(round(value, 5) if math.isfinite(value) else None)
+                if m["stage"] in (None, self.stages[stage]["name"]):
+                    rows[m["name"]].append(value)
+            if self.stop is not None and self.stop.value(moment):
+                failure = f"stopped in stage {self.stages[stage]['name']}: {self.stop.text}"
+                break
+            now = self.stages[stage]
+            if now["until"].value(moment):
+                held_from = time if held_from is None else held_from
+                if time - held_from >= now["held_s"] - 1e-9:
+                    ends[f"{now['name']}_s"] = held_from - begun
+                    stage, begun, held_from = stage + 1, time, None
+                    continue
+            else:
+                held_from = None
+            if time - begun > now["at_most_s"]:
+                failure = f"stage {now['name']} not done in {now['at_most_s']:g} s"
+                break
+        if stage < len(self.stages) and failure is None:
+            failure = f"stage {self.stages[stage]['name']} not done in {self.seconds:g} s"
+        measures = {"success": failure is None, **ends, "failure": failure}
+        if failure is None:
+            measures["time_s"] = begun if not ends else sum(ends.values())
+        for m in self.measures:
+            value = _statistic(m["statistic"], np.array(rows[m["name"]]), every * world.step_s)
+            if value is not None:
+                measures[m["name"]] = value
+        world.close()
+        keep = slice(None, None, max(1, len(series["t"]) // 400))
+        return measures, {k: v[keep] for k, v in series.items()}
+
+    def figures(self, scenario, results, style):
+        done = [r for r in results if r["series"]]
+        shown = [m["name"] for m in self.measures if m["statistic"] not in ("ever", "duration")][:4]
+        if not done or not shown:
+            return
+        fig = style.figure(900, 60 + 200 * len(shown))
+        for i, name in enumerate(shown):
+            ax = style.area(fig, 80, 50 + 200 * i, 870, 190 + 200 * i)
+            for k, r in enumerate(done[:40]):
+                ax.plot(r["series"]["t"], style.numbers(r["series"][name]), color=style.BLUE, lw=0.8,
+                        alpha=0.9 if len(done) < 4 else 0.45)
+            ax.set_ylabel(self.MEASURES[name][0])
+            style.title(ax, f"{name}: {self.MEASURES[name][1]}")
+        ax.set_xlabel("time, s")
+        yield "task.png", "The measures of each run over time", fig
+
+
+def _controller(path):
+    spec = importlib.util.spec_from_file_location("neritic_controller", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    if not hasattr(module, "Controller"):
+        raise Failed(f"{path}: found no class Controller; accepted: one with act(observations, stage)")
+    return module.Controller
+
+
+def _statistic(name, values, step_s):
+    values = values[np.isfinite(values)]
+    if len(values) == 0:
+        return None
+    return {"last": lambda: float(values[-1]), "first": lambda: float(values[0]), "mean": lambda: float(values.mean()),
+            "rms": lambda: float(np.sqrt((values ** 2).mean())), "min": lambda: float(values.min()),
+            "max": lambda: float(values.max()), "ever": lambda: bool((values > 0.5).any()),
+            "share": lambda: float((values > 0.5).mean()), "duration": lambda: float((values > 0.5).sum() * step_s)}[name]()
