@@ -83,6 +83,43 @@ TEST(Experiment, SameNumbersByOneWorkerAndByTwoAndAfterACut) {
               HasSubstr("results of other settings"));
 }
 
+TEST(Experiment, TheRovBlocksASharkInTimeUnlessItStartsTooFar) {
+  const fs::path build = fs::read_symlink("/proc/self/exe").parent_path().parent_path();
+  if (!fs::exists(build / "python/neritic/__init__.py")) GTEST_SKIP() << "no Python package here";
+  const test::ScratchFolder folder;
+  const Said said = experiment("shark_far --runs 1 --workers 1 --out " + (folder / "out").string());
+  EXPECT_EQ(said.status, 0) << said.text;
+  const nlohmann::json runs = runs_of(folder / "out");
+  // The reference of the control: 1.48 s from 1 m, 3.56 s from 2.5 m; told 20 times a second.
+  EXPECT_NEAR(runs[R"({"offset_m":1.0})"]["time_to_block_s"], 1.48, 0.10);
+  EXPECT_NEAR(runs[R"({"offset_m":2.5})"]["time_to_block_s"], 3.56, 0.15);
+  EXPECT_EQ(runs[R"({"offset_m":3.0})"]["blocked_in_3_s"], false);
+}
+
+TEST(Experiment, ATasksFormulasAreCheckedBeforeItRuns) {
+  if (no_numpy()) GTEST_SKIP() << "no numpy here";
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_text(folder / "scene.toml", "").ok());
+  ASSERT_TRUE(write_text(folder / "act.py", "class Controller: pass\n").ok());
+  const auto refused = [&](const std::string& until, const char* words) {
+    const fs::path own = folder / "task.toml";
+    ASSERT_TRUE(write_text(own,
+                           "[experiment]\nkind = \"task\"\n[task]\nscene = \"scene.toml\"\n"
+                           "controller = \"act.py\"\nparticipants = [\"rov\", \"diver\"]\n"
+                           "[[stages]]\nname = \"near\"\nuntil = \"" +
+                               until + "\"\n")
+                    .ok());
+    const Said said = experiment(own.string() + " --out " + (folder / "out").string());
+    EXPECT_EQ(said.status, 2) << said.text;
+    EXPECT_THAT(said.text, HasSubstr(words));
+  };
+  refused("distance(rov, shark) < 2", "accepted: 2 of diver, rov");
+  refused("__import__('os')", "accepted: distance");
+  refused("depth(rov) < deep", "accepted: stage_time, time");
+  refused("depth(rov) <", "accepted: a formula");
+  refused("[1][0]", "accepted: numbers, comparisons");
+}
+
 TEST(Experiment, RefusesBadScenariosInOneLine) {
   if (no_numpy()) GTEST_SKIP() << "no numpy here";
   const test::ScratchFolder folder;
@@ -104,7 +141,8 @@ TEST(Experiment, RefusesBadScenariosInOneLine) {
     refused(own.string(), words);
   };
   with("[experiment", "found no TOML");
-  with("[experiment]\nkind = \"sonar\"\n", "accepted: imaging, profiling, echo_sounder, shark");
+  with("[experiment]\nkind = \"sonar\"\n",
+       "accepted: imaging, profiling, echo_sounder, shark, task");
   with("[experiment]\nkind = \"echo_sounder\"\nrun = 3\n", "runs (the nearest)");
   with("[experiment]\nkind = \"echo_sounder\"\n[vary]\nslope_deg = [3.0, 1.0]\n",
        "the lower number first");

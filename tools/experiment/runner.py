@@ -20,7 +20,7 @@ FORMAT = 1
 def _one(do, run, program):
     """A worker process: one run. Its failure is a result, not the end of the others."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    begun = time.monotonic()
+    begun, folder = time.monotonic(), ""
     try:
         with tempfile.TemporaryDirectory(prefix="neritic_experiment_") as folder:
             measures, series = do(run.settings, run.seed, Tools(program, folder))
@@ -31,6 +31,7 @@ def _one(do, run, program):
         place = traceback.extract_tb(error.__traceback__)[-1]
         measures, series = {}, {}
         failure = f"{type(error).__name__}: {error} ({os.path.basename(place.filename)}:{place.lineno})"
+        failure = failure.replace(folder + os.sep, "")  # so that the same cause has the same words
     return {"condition": run.condition, "seed": run.seed, "settings": run.settings, "measures": measures,
             "failure": failure, "series": series, "wall_s": round(time.monotonic() - begun, 3)}
 

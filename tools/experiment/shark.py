@@ -46,15 +46,19 @@ rate_hz = {physics_hz}
 [[objects]]
 name = "diver"
 class = "diver"
+shape = "sphere"
 position_m = [0, -10, 0]
 inputs = {{ pose = {{ from = "python", hold_s = 3600 }} }}
 [[objects]]
 name = "shark"
 class = "shark"
+shape = "sphere"
 position_m = {shark}
 inputs = {{ pose = {{ from = "python", hold_s = 3600 }} }}
 [[vehicles]]
 name = "rov"
+shape = "box"
+size_m = [0.457, 0.254, 0.575]
 dynamics = "{vehicle}"
 navigation = "{navigation}"
 position_m = {rov}

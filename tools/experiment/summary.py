@@ -61,9 +61,9 @@ def _judge(scenario, results, criterion):
     def of(condition):
         chosen = [r for r in results if all(r["settings"].get(k) == v for k, v in condition.items())]
         values = values_of(chosen, criterion["measure"])
-        # A run that failed has no value: a criterion of a share counts it as a no.
+        # A run that failed has no value: a share counts it against the criterion.
         if name == "share":
-            values += [0.0] * (len(chosen) - len(values))
+            values += [1.0 if "at_most" in criterion else 0.0] * (len(chosen) - len(values))
         return _statistic(name, values), len(values)
 
     found, n = of(where)
