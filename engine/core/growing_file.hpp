@@ -28,6 +28,8 @@ class GrowingFile {
 
   Status append(std::string_view text);
   Status append(std::span<const std::byte> bytes);
+  // Writes what was appended, at once.
+  Status flush() { return write_chunk(); }
   // Writes what is left and gives the file its name. Also a file of nothing.
   Status finish();
   const std::filesystem::path& path() const { return path_; }

@@ -24,6 +24,13 @@ inline Vec3 enu_from_ned(const Vec3& v) {
 inline Vec3 flu_from_marine(const Vec3& v) {
   return {v.x, -v.y, -v.z};
 }
+// Of the program's bodies: starboard, up, back.
+inline Vec3 flu_from_body(const Vec3& v) {
+  return {-v.z, -v.x, v.y};
+}
+inline Vec3 body_from_flu(const Vec3& v) {
+  return {-v.y, v.z, -v.x};
+}
 // Between two frames of a body, both forward, starboard, down; its own inverse.
 inline Quat flu_from_marine(const Quat& q) {
   return {q.w, q.x, -q.y, -q.z};

@@ -122,7 +122,7 @@ Mat4 Scene::world_from_copy(const Object& object, std::size_t copy, double time_
 }
 
 Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& options) {
-  NERITIC_TRY(const SceneSource source, read_scene_source(path));
+  NERITIC_TRY(const SceneSource source, read_scene_source(path, options.text, options.added));
   NERITIC_TRY(SceneDraft draft, read_draft(source));
   NERITIC_TRY_STATUS(place_all(draft));
   NERITIC_TRY(LoadedModels loaded, load_models(draft.requests));

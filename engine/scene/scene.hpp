@@ -171,6 +171,10 @@ inline constexpr double kFarthest_m = 4e7;
 struct SceneOptions {
   Vec3 offset_m{0.0};         // added to everything fixed to the world: to test far from the origin
   std::string sonar_quality;  // of every sonar, whatever the file says; empty: as it says
+  // Stands for what the file says; paths in it are relative to the file, which need not be there.
+  std::optional<std::string> text;
+  // Files that are merged over it, as if each included it: more sensors, another light.
+  std::vector<std::filesystem::path> added;
 };
 
 // Reads a scene file (its format: assets/scenes/README.md). Every error names file, line and key,

@@ -80,8 +80,13 @@ void merge_table(TomlValue& base, TomlValue over) {
 
 class Includer {
  public:
-  Result<SceneSource> read(const fs::path& path) {
-    NERITIC_TRY(source_.root, read_table(path));
+  Result<SceneSource> read(const fs::path& path, const std::optional<std::string>& text,
+                           const std::vector<fs::path>& added) {
+    NERITIC_TRY(source_.root, text ? parse_table(*text, path) : read_table(path));
+    for (const fs::path& more : added) {
+      NERITIC_TRY(TomlValue over, read_table(more));
+      merge_table(source_.root, std::move(over));
+    }
     return std::move(source_);
   }
 
@@ -93,6 +98,10 @@ class Includer {
       return refusal(path.string(), fmt::format("{} bytes", bytes),
                      fmt::format("a scene file of at most {}", kMaxSceneBytes));
     NERITIC_TRY(const std::string text, read_text(path));
+    return parse_table(text, path);
+  }
+
+  Result<TomlValue> parse_table(const std::string& text, const fs::path& path) {
     source_.files.push_back(path.string());
     chain_.push_back(path);
     NERITIC_TRY(TomlValue table,
@@ -172,8 +181,9 @@ fs::path SceneSource::resolve(const TomlWhere& where, const std::string& written
   return (folder / written).lexically_normal();
 }
 
-Result<SceneSource> read_scene_source(const fs::path& path) {
-  return Includer().read(path);
+Result<SceneSource> read_scene_source(const fs::path& path, const std::optional<std::string>& text,
+                                      const std::vector<fs::path>& added) {
+  return Includer().read(path, text, added);
 }
 
 }  // namespace neritic::scene

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct SceneSource {
 
 // Merging: the included table is the base; keys of the including table win; tables merge key by
 // key; arrays of tables are joined, entries of the same name merged.
-Result<SceneSource> read_scene_source(const std::filesystem::path& path);
+// text: stands for the file's. added: files that are merged over it.
+Result<SceneSource> read_scene_source(const std::filesystem::path& path,
+                                      const std::optional<std::string>& text = {},
+                                      const std::vector<std::filesystem::path>& added = {});
 
 }  // namespace neritic::scene

@@ -19,35 +19,6 @@ Status DiveLog::finish() {
   return first;
 }
 
-RecordingFile::RecordingFile(const PhysicsWorld& world, const SampleInbox& inbox,
-                             std::filesystem::path path)
-    : inbox_(inbox),
-      log_(world.step_s(), world.seed(), logged_streams(world.streams())),
-      file_(std::move(path), log_.take(), [](const std::string& bytes) { return bytes; }) {}
-
-void RecordingFile::name_sources() {
-  const auto names = inbox_.source_names();
-  while (log_.sources() < names.size()) log_.source(names[log_.sources()]);
-}
-
-Status RecordingFile::use(const Sample& sample) {
-  if (sample.header.source >= log_.sources()) name_sources();
-  log_.sample(sample);
-  return {};
-}
-
-Status RecordingFile::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) {
-  log_.hash(step.hash);
-  return file_.add(log_.take());
-}
-
-Status RecordingFile::finish() {
-  name_sources();
-  log_.end();
-  if (const Status added = file_.add(log_.take()); !added.ok()) return added;
-  return file_.finish();
-}
-
 Status StateFile::finish() {
   return write_state(path_, world_.state_format(), saved_state(simulation_, world_.state_format()));
 }

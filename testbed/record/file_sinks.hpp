@@ -1,5 +1,5 @@
-// The files that a run of physics leaves: its log, its recording and its last state. Each is a step
-// sink; what they borrow outlives them.
+// The files that a run of physics leaves beside its recording: its log and its last state. Each is
+// a step sink; what they borrow outlives them.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,6 @@
 
 #include "testbed/record/csv_log.hpp"
 #include "testbed/record/step_sink.hpp"
-#include "testbed/samples/sample_log.hpp"
 
 namespace neritic::testbed {
 
@@ -29,23 +28,6 @@ class DiveLog final : public StepSink {
   std::optional<DiveRecorder> recorder_;  // begins anew if the run goes back
   std::uint64_t last_step_ = 0;
   std::vector<std::unique_ptr<RowSink>> rows_;
-};
-
-// The samples that the run uses, and the hash of each state, as they come, the state that it begins
-// with first.
-class RecordingFile final : public StepSink {
- public:
-  RecordingFile(const PhysicsWorld& world, const SampleInbox& inbox, std::filesystem::path path);
-  Status use(const Sample& sample) override;
-  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
-  Status finish() override;
-
- private:
-  void name_sources();
-
-  const SampleInbox& inbox_;
-  SampleLogWriter log_;
-  QueuedFile<std::string> file_;
 };
 
 // The state after the last step, and the inputs that hold then.

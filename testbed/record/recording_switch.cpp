@@ -13,13 +13,17 @@ std::filesystem::path with(std::filesystem::path base, const char* extension) {
 // The two files that grow.
 class RecordingSwitch::Files final : public StepSink {
  public:
-  Files(const PhysicsWorld& world, const SampleInbox& inbox, const std::filesystem::path& base)
-      : recording_(world, inbox, with(base, ".log")), csv_(world, 0.0, rows(world, base)) {}
+  Files(const PhysicsWorld& world, const PhysicsSimulation& simulation,
+        const std::filesystem::path& base, RecordingOptions options)
+      : recording_(world, simulation, with(base, ".mcap"), std::move(options)),
+        csv_(world, 0.0, rows(world, base)),
+        outputs_(world, recording_.streams()) {}
+  bool failed() const { return recording_.failed(); }
 
   Status use(const Sample& sample) override { return recording_.use(sample); }
-  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override {
-    NERITIC_TRY_STATUS(recording_.accept(step, outputs));
-    return csv_.accept(step, outputs);
+  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) override {
+    NERITIC_TRY_STATUS(recording_.accept(step, outputs_.of(step)));
+    return csv_.accept(step, {});
   }
   Status finish() override {
     const Status recorded = recording_.finish(), logged = csv_.finish();
@@ -36,22 +40,29 @@ class RecordingSwitch::Files final : public StepSink {
 
   RecordingFile recording_;
   DiveLog csv_;
+  OutputSamples outputs_;  // of the steps while it is on
 };
 
-Status RecordingSwitch::begin(const PhysicsSimulation& simulation, std::filesystem::path base) {
-  NERITIC_CHECK(!files_, "{} is being recorded", log_.string());
-  const StateFormat format = world_.state_format();
-  if (simulation.newest().step > 0)
-    NERITIC_TRY_STATUS(write_state(with(base, ".state"), format, saved_state(simulation, format)));
-  files_ = std::make_unique<Files>(world_, simulation.inbox(), base);
-  log_ = with(base, ".log");
+RecordingSwitch::RecordingSwitch(const PhysicsWorld& world) : world_(world) {}
+
+RecordingSwitch::~RecordingSwitch() = default;
+
+void RecordingSwitch::begin(const PhysicsSimulation& simulation, std::filesystem::path base,
+                            RecordingOptions options) {
+  NERITIC_CHECK(!files_, "{} is being recorded", file_.string());
+  files_ = std::make_unique<Files>(world_, simulation, base, std::move(options));
+  file_ = with(base, ".mcap");
   begun_s_ = simulation.newest().time_s;
   failed_ = false;
-  return accept(simulation.newest(), {});
+  (void)accept(simulation.newest(), {});
 }
 
 std::unique_ptr<StepSink> RecordingSwitch::end() {
   return std::move(files_);
+}
+
+Status RecordingSwitch::finish() {
+  return files_ ? end()->finish() : Status();
 }
 
 Status RecordingSwitch::use(const Sample& sample) {
@@ -61,7 +72,7 @@ Status RecordingSwitch::use(const Sample& sample) {
 
 Status RecordingSwitch::accept(const sim::Snapshot<PhysicsState>& step,
                                std::span<const Sample> outputs) {
-  if (files_ && !failed_) failed_ = !files_->accept(step, outputs).ok();
+  if (files_ && !failed_) failed_ = !files_->accept(step, outputs).ok() || files_->failed();
   return {};
 }
 

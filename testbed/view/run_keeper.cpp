@@ -17,7 +17,7 @@ fs::path free_name(const std::string& name) {
   const std::string first = fmt::format("{}_{}", name, stamp);
   std::string base = first;
   std::error_code error;
-  for (int i = 2; fs::exists(base + ".log", error) || fs::exists(base + ".log.part", error); ++i)
+  for (int i = 2; fs::exists(base + ".mcap", error) || fs::exists(base + ".mcap.part", error); ++i)
     base = fmt::format("{}_{}", first, i);
   return base;
 }
@@ -53,24 +53,19 @@ std::string RunKeeper::go_back(bool& went) {
 
 std::string RunKeeper::toggle_recording() {
   if (switch_.on()) return end_recording();
-  Status begun;
   physics_.between_steps([&](PhysicsSimulation& simulation) {
-    begun = switch_.begin(simulation, free_name(options_.name));
+    switch_.begin(simulation, free_name(options_.name), options_.scene);
   });
-  if (!begun.ok()) return begun.error().message;
-  return "records " + switch_.log().string();
+  return "records " + switch_.file().string();
 }
 
 std::string RunKeeper::end_recording() {
   std::unique_ptr<StepSink> files;
-  const bool in_mid_run = switch_.begun_s() > 0.0;
   physics_.between_steps([&](PhysicsSimulation&) { files = switch_.end(); });
   const Status written = files->finish();
   if (!written.ok()) return written.error().message;
-  const std::string log = switch_.log().string();
-  const std::string state = fs::path(log).replace_extension(".state").string();
-  return in_mid_run ? fmt::format("wrote {}: --restore {} --replay {}", log, state, log)
-                    : fmt::format("wrote {}: --replay {}", log, log);
+  const std::string file = switch_.file().string();
+  return fmt::format("wrote {}: --replay {}", file, file);
 }
 
 std::string RunKeeper::trouble() {
@@ -79,7 +74,7 @@ std::string RunKeeper::trouble() {
 
 std::optional<RunKeeper::Recording> RunKeeper::recording() const {
   const double now_s = physics_.shown_snapshot().time_s;
-  if (switch_.on()) return Recording{switch_.log().string(), now_s - switch_.begun_s()};
+  if (switch_.on()) return Recording{switch_.file().string(), now_s - switch_.begun_s()};
   if (!options_.recording.empty()) return Recording{options_.recording, now_s - start_s_};
   return {};
 }

@@ -11,8 +11,9 @@
 namespace neritic::testbed {
 
 struct RunKeeperOptions {
-  std::string name;       // of files: NAME.state, NAME_DATE.log
-  std::string recording;  // a file that records the whole run; empty: none
+  std::string name;        // of files: NAME.state, NAME_DATE.mcap
+  RecordingOptions scene;  // of recordings by key
+  std::string recording;   // a file that records the whole run; empty: none
   // Why the run cannot go back; empty: it can.
   std::string no_way_back;
 };

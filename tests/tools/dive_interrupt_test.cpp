@@ -25,14 +25,14 @@ bool catches(pid_t process, int signal) {
 }
 
 TEST_F(DivePhysics, AReplayCanBeInterrupted) {
-  ASSERT_EQ(dive("--headless --seconds 60 --record " + file("a.log")).status, 0);
+  ASSERT_EQ(dive("--headless --seconds 60 --record " + file("a.mcap")).status, 0);
   const pid_t program = ::fork();
   if (program == 0) {
     std::freopen((scratch_ / "out").c_str(), "w", stdout);
     std::freopen((scratch_ / "err").c_str(), "w", stderr);
     ::execl(fmt::format("{}/tools/neritic", NERITIC_BINARY_DIR).c_str(), "neritic", "dive",
             (scratch_ / "dive.toml").c_str(), "--headless", "--replay",
-            (scratch_ / "a.log").c_str(), nullptr);
+            (scratch_ / "a.mcap").c_str(), nullptr);
     ::_exit(127);
   }
   while (!catches(program, SIGINT)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -55,7 +55,7 @@ TEST_F(DivePhysics, InterruptedItWritesWhatItHas) {
       std::freopen((scratch_ / "err").c_str(), "w", stderr);
       ::execl(fmt::format("{}/tools/neritic", NERITIC_BINARY_DIR).c_str(), "neritic", "dive",
               (scratch_ / "dive.toml").c_str(), "--headless", "--realtime", "--seconds", "600",
-              "--log", (scratch_ / "a.csv").c_str(), "--record", (scratch_ / "a.log").c_str(),
+              "--log", (scratch_ / "a.csv").c_str(), "--record", (scratch_ / "a.mcap").c_str(),
               "--plot", (scratch_ / "a.png").c_str(), nullptr);
       ::_exit(127);
     }
@@ -81,7 +81,7 @@ TEST_F(DivePhysics, InterruptedItWritesWhatItHas) {
     EXPECT_NEAR(std::stod(times.back()), until_s, 0.0205);
     EXPECT_NEAR(static_cast<double>(times.size()), 1.0 + 50.0 * until_s, 1.1);
     EXPECT_TRUE(scene::read_image8(scratch_ / "a.png", 3).ok());
-    EXPECT_EQ(dive("--headless --replay " + file("a.log")).status, 0);
+    EXPECT_EQ(dive("--headless --replay " + file("a.mcap")).status, 0);
   }
 }
 

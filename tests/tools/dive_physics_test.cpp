@@ -11,7 +11,7 @@ namespace neritic {
 namespace {
 
 TEST_F(DivePhysics, QuietlyItPrintsItsJsonAlone) {
-  const std::string recording = file("a.log");
+  const std::string recording = file("a.mcap");
   const Outcome quiet = dive("-q --headless --seconds 1 --record " + recording);
   EXPECT_EQ(quiet.status, 0) << quiet.err;
   EXPECT_EQ(quiet.out + quiet.err, "");

@@ -44,13 +44,13 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
       {"--headless --log-rate 0", "still.toml", "--log-rate: found "},
       {"--realtime", "dive.toml",
        "--realtime: found a run with pictures; accepted: with --headless and without flags"},
-      {"--headless --replay none.log", "dive.toml", "none.log"},
-      {"--headless --replay a.log --log x.csv", "dive.toml",
-       "--replay: found --log beside it; accepted: no --seconds, --log, --log-rate, --plot, "},
-      {"--headless --replay a.log --seconds 10", "dive.toml",
+      {"--headless --replay none.mcap", "dive.toml", "none.mcap"},
+      {"--headless --replay a.mcap --save x.state", "dive.toml",
+       "--replay: found --save beside it; accepted: no --seconds, --record, --save, --play, "},
+      {"--headless --replay a.mcap --seconds 10", "dive.toml",
        "--replay: found --seconds beside it; accepted: no --seconds"},
       {"--headless --seconds 1e7", "dive.toml", "--seconds: found 10000000; accepted: up to 1e+06"},
-      {"--headless --play a.log --restore a.state", "dive.toml",
+      {"--headless --play a.mcap --restore a.state", "dive.toml",
        "--play: found --restore beside it; accepted: a run from time 0"},
       {"--headless --log-rate -1", "dive.toml", "--log-rate: found -1; accepted: 0 to 10000"}};
   for (const auto& wrong : cases) {

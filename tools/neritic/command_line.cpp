@@ -7,6 +7,7 @@
 
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
+#include "engine/core/version.hpp"
 #include "engine/scene/scene.hpp"
 #include "testbed/output/datasets.hpp"
 #include "tools/neritic/commands.hpp"
@@ -62,11 +63,32 @@ void add_quality(CLI::App& command, std::string& quality) {
       ->check(CLI::IsMember({"draft", "standard", "reference"}));
 }
 
+// What is shown of a recorded dive.
+void add_replay(CLI::App& command, std::string& replay, std::string& shown,
+                std::vector<std::string>& added) {
+  command.add_option(
+      "--replay", replay,
+      "a recorded dive (.mcap): its motion again, each state's hash compared; without SCENE in the "
+      "scene that was recorded");
+  command.add_option(
+      "--scene", shown,
+      "with --replay: shows the motion in this scene, whose objects of the same names "
+      "move so");
+  command
+      .add_option(
+          "--add", added,
+          "merges a .toml over the scene that is shown, as if it included it: other cameras, "
+          "sonars, lights; may be given again")
+      ->expected(1)
+      ->take_all();
+}
+
 void add_render(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RenderFlags>();
   CLI::App* command = app.add_subcommand(
       "render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
-  command->add_option("scene", flags->scene, "scene or model file")->required();
+  command->add_option("scene", flags->scene,
+                      "scene or model file; with --replay the recording's own if none is given");
   command
       ->add_option(
           "--out", flags->out,
@@ -76,7 +98,8 @@ void add_render(CLI::App& app, Run& run) {
       ->check(named);
   command
       ->add_option("--frames", flags->frames,
-                   "number of frames, apart by the rate_hz of the first camera, else of the first "
+                   "number of frames (1; with --replay as many as it lasts), apart by the rate_hz "
+                   "of the first camera, else of the first "
                    "sonar; of the quickest sensor with --own-rates")
       ->check(between(1, 1000000));
   command->add_option("--size", flags->size, "WxH of every camera, pixels");
@@ -108,6 +131,7 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option(
       "--water", flags->water,
       fmt::format("another Jerlov type than the scene's: {}", join(scene::kWaterTypes)));
+  add_replay(*command, flags->replay, flags->shown, flags->added);
   command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")
       ->expected(3);
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
@@ -262,7 +286,8 @@ void add_dive(CLI::App& app, CommandLine& line) {
       "dive",
       "the live program: a scene (.toml) or a model (.gltf, .glb) in a headset or a window; F1 "
       "lists keys");
-  command->add_option("scene", flags->scene, "scene or model file")->required();
+  command->add_option("scene", flags->scene,
+                      "scene or model file; with --replay the recording's own if none is given");
   command->add_flag(
       "--headless", flags->headless,
       "no window. Where vehicles move by physics and no flag asks for pictures: their "
@@ -286,13 +311,24 @@ void add_dive(CLI::App& app, CommandLine& line) {
                    "the dive as a .png, its data beside as .plot.json; tools/setup plots installs "
                    "what draws")
       ->check(png_file);
-  command->add_option("--record", flags->files.record, "inputs and state hashes, for --replay");
+  command->add_option(
+      "--record", flags->files.record,
+      "every sample in and out, state hashes and the scene, as an .mcap that --replay "
+      "and ROS 2 tools read (neritic recording --help)");
+  command
+      ->add_option("--record-images", flags->record_images,
+                   "with --record: also these images, such as rov_camera/color or rov_sonar/echoes "
+                   "(depth, normals, labels, instances, motion); may be given again. Without it "
+                   "`render --replay` makes them later")
+      ->expected(1)
+      ->take_all();
   command->add_option("--play", flags->play,
                       "sends the samples of a recorded dive as live ones: they drive the groups of "
                       "inputs that name their devices");
+  add_replay(*command, flags->replay, flags->shown, flags->added);
   command->add_option(
-      "--replay", flags->replay,
-      "runs a recorded dive again, in a window too, and compares each state's hash");
+      "--water", flags->water,
+      fmt::format("with --replay: another Jerlov type: {}", join(scene::kWaterTypes)));
   command->add_option("--save", flags->files.save, "the state at the end, for --restore");
   command->add_option("--restore", flags->restore,
                       "goes on from a saved state of the same scene, --seconds more");
@@ -576,6 +612,30 @@ void add_experiment(CLI::App& app, CommandLine& line) {
   });
 }
 
+void add_recording(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<RecordingFlags>();
+  CLI::App* command = app.add_subcommand(
+      "recording", "looks into a recording of a dive (.mcap), mends it, exports what it holds");
+  command
+      ->add_option("what", flags->what,
+                   "info: what it holds; check: whether it is whole; repair: what reads of a "
+                   "damaged one as a whole one; export: its messages in other forms")
+      ->required();
+  command->add_option("file", flags->file, "the recording")->required();
+  command->add_option("--out", flags->out, "repair: the new file; export: a folder")->check(named);
+  command
+      ->add_option("--format", flags->format,
+                   "export: csv (default) and npy, a file a topic; xdf, one of all numbers, for "
+                   "physiology; wav of sound; png of cameras and sonars")
+      ->check(CLI::IsMember({"csv", "npy", "xdf", "wav", "png"}));
+  command->add_option("--topic", flags->topics, "export: only this topic; may be given again")
+      ->expected(1)
+      ->take_all();
+  command->add_flag("--json", flags->json, "info: JSON on standard output, for programs");
+  command->footer("Example: neritic recording export dive.mcap --out tables --topic /rov/imu");
+  command->callback([flags, &run] { run = [flags] { return run_recording(*flags); }; });
+}
+
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
@@ -633,7 +693,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   app.require_subcommand(1);
   app.fallthrough();
   CommandLine line;
-  app.set_version_flag("--version", "neritic " NERITIC_VERSION);
+  app.set_version_flag("--version", std::string(program_version()));
   app.add_flag("-v,--verbose", line.verbose,
                "also prints on stderr what is loaded, chosen and compiled");
   app.add_flag("-q,--quiet", line.quiet, "no notes, and no summary of a dive but --json");
@@ -646,6 +706,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_physio(app, line.run);
   add_register(app, line.run);
   add_experiment(app, line);
+  add_recording(app, line.run);
   add_doctor(app, line.run);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(),

@@ -27,7 +27,9 @@ struct RenderFlags {
   std::vector<std::string> only;  // lists of datasets; none: all
   std::string compress;           // "npz", "png" or empty
   std::vector<double> offset_m;
-  std::uint32_t frames = 1;
+  std::string replay, shown;       // a recording whose motion is seen; in another scene
+  std::vector<std::string> added;  // files that are merged over the scene
+  std::uint32_t frames = 0;        // 0: not given
   double time_s = 0.0;
   bool sheet = false, validation = false;
   double chart_cell_m = 0.0;
@@ -72,6 +74,9 @@ struct DiveFlags {
   // These need a scene with physics; play and realtime also --headless without pictures.
   StepFileFlags files;
   std::string play, replay, restore;
+  std::vector<std::string> record_images;  // streams of images for --record
+  std::string shown, water;                // of a replay: another scene, another Jerlov type
+  std::vector<std::string> added;          // of a replay: files that are merged over the scene
   bool realtime = false, json = false;
   std::optional<std::uint64_t> seed;  // instead of the scene's
   std::optional<std::uint32_t> runs;  // with the seeds from there on
@@ -134,6 +139,15 @@ struct ExperimentFlags {
 };
 // Becomes the Python module tools/experiment: returns only if that cannot be started.
 Status run_experiment(const ExperimentFlags& flags);
+
+// what: info, check, repair or export; out: of repair a file, of export a folder.
+struct RecordingFlags {
+  std::string what, file, format = "csv";
+  std::filesystem::path out;
+  std::vector<std::string> topics;  // none: all
+  bool json = false;
+};
+Result<std::string> run_recording(const RecordingFlags& flags);
 
 struct DoctorFlags {
   std::string device;

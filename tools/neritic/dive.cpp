@@ -11,6 +11,7 @@
 #include "engine/xr/offscreen.hpp"
 #include "engine/xr/openxr/headset.hpp"
 #include "testbed/loop/loop.hpp"
+#include "testbed/output/recorded_images.hpp"
 #include "testbed/sensors/sight_check.hpp"
 #include "testbed/sensors/validation.hpp"
 #include "testbed/view/bindings.hpp"
@@ -22,6 +23,7 @@
 #include "tools/neritic/hud_flags.hpp"
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/named_sensors.hpp"
+#include "tools/neritic/recorded_scene.hpp"
 #include "tools/neritic/step_files.hpp"
 #include "tools/neritic/timeline_picture.hpp"
 
@@ -173,7 +175,8 @@ double frame_budget_ms(const DiveFlags& flags, const Screen& screen) {
 }
 
 // The run's state and recording by key.
-std::optional<RunKeeperOptions> kept_by_key(const DiveFlags& flags) {
+std::optional<RunKeeperOptions> kept_by_key(const DiveFlags& flags,
+                                            const RecordingOptions& recording) {
   if (flags.headless || !flags.replay.empty()) return {};
   const StepFileFlags& files = flags.files;
   const char* const written = !files.record.empty() ? "--record"
@@ -182,6 +185,7 @@ std::optional<RunKeeperOptions> kept_by_key(const DiveFlags& flags) {
                                                     : "";
   return RunKeeperOptions{
       .name = fs::path(flags.scene).stem().string(),
+      .scene = recording,
       .recording = files.record,
       .no_way_back =
           *written ? fmt::format("F9: {} writes this run, which cannot go back", written) : ""};
@@ -205,22 +209,30 @@ void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera
                   {loop.wall_s(), physics->counts().dropped, start_s});
 }
 
-Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt& interrupt) {
+// physics_scene: the one whose physics runs, if it is not the one that is shown.
+Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
+                     const std::optional<scene::Scene>& physics_scene,
+                     std::optional<SampleLog> recorded, const Interrupt& interrupt) {
   // What a person at a screen may stop and speed up.
   sim::HostClock host;
   sim::RunClock run(host);
   sim::RunClock* const clock = flags.headless ? nullptr : &run;
   std::unique_ptr<LivePhysics> physics;
   std::unique_ptr<Replay> replay;
-  if (PhysicsWorld::needed(scene)) {
+  const scene::Scene& run_scene = physics_scene ? *physics_scene : scene;
+  if (PhysicsWorld::needed(run_scene)) {
     // A recording is exact where its samples enter before the same step: in lock-step.
     using Pace = LivePhysics::Pace;
     const bool lock_step = flags.headless || !flags.replay.empty();
-    NERITIC_TRY(physics,
-                make_dive_physics(flags, scene, lock_step ? Pace::kPicture : Pace::kClock, clock));
+    NERITIC_TRY(physics, make_dive_physics(flags, scene, recorded ? &*recorded : nullptr,
+                                           lock_step ? Pace::kPicture : Pace::kClock, clock));
   }
-  if (physics && !flags.replay.empty()) {
-    NERITIC_TRY(replay, Replay::read(flags.replay, physics->world(), physics->newest().step));
+  if (physics && recorded) {
+    NERITIC_TRY(replay, Replay::of(std::move(*recorded), flags.replay, physics->world()));
+  }
+  RecordingOptions recording;
+  if (physics && !replay && (!flags.headless || !flags.files.record.empty())) {
+    NERITIC_TRY(recording, recording_options(scene.path, !flags.fast));
   }
   NERITIC_TRY(const Chosen chosen, choose_sensors(flags, scene));
   const scene::Camera camera = scene.cameras[chosen.camera];
@@ -243,7 +255,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
            .clock = clock,
            .frame_s = 1.0 / camera.rate_hz,
            .timeline = !flags.timeline.empty(),
-           .keep = kept_by_key(flags),
+           .keep = kept_by_key(flags, recording),
            .no_keys_for_files = replay ? "a replay is neither saved nor recorded"
                                        : "nothing moves by physics: there is no state to save"}));
   std::optional<StepFiles> files;
@@ -251,13 +263,26 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
   std::vector<SampleSource*> sources{&view->pilot()};
   if (view->wearer()) sources.push_back(view->wearer());
   if (physics) {
-    files.emplace(flags.files, session->scene().title, *physics);
+    files.emplace(flags.files, session->scene().title, recording, *physics);
     step_sinks = files->sinks();
   }
   if (view->recorder()) step_sinks.push_back(view->recorder());
   if (replay) {
     step_sinks.push_back(&replay->check);
     sources.push_back(&replay->source);
+  }
+  std::optional<RecordedImages> images;
+  std::optional<ImageConsumer> image_consumer;
+  std::vector<ImageConsumer*> consumers;
+  if (!flags.record_images.empty()) {
+    RecordingFile* file = files ? files->recording() : nullptr;
+    if (!file)
+      return refusal("--record-images", "no --record beside it", "with --record FILE.mcap");
+    images.emplace(file->out(), [file] { return file->ready(); });
+    std::vector<ImageConsumer::Wish> wishes;
+    for (const std::string& stream : flags.record_images) wishes.push_back({stream});
+    NERITIC_TRY(image_consumer, ImageConsumer::create(session->scene(), wishes, *images));
+    consumers.push_back(&*image_consumer);
   }
   const double start_s = physics ? physics->newest().time_s : 0.0, period_s = 1.0 / camera.rate_hz;
   SightCheck sight(*session, physics ? &physics->motion() : nullptr,
@@ -272,7 +297,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
              .sensors = LoopSensors{.session = session.get(),
                                     .sonars = chosen.sonars,
                                     .capture = kColorOnGpu,
-                                    .own_rates = true},
+                                    .own_rates = true,
+                                    .consumers = consumers},
              .view = view.get(),
              .sources = sources,
              .step_sinks = step_sinks,
@@ -281,7 +307,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
                       .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
   // A run that failed prints its summary too.
-  if (replay && !flags.quiet) replay->tell();
+  if (replay && !flags.quiet && !flags.json) replay->tell();
   tell(flags, *screen.device, camera, *view, loop, physics.get(),
        files ? &files->recorder() : nullptr, start_s);
   NERITIC_TRY_STATUS(status);
@@ -304,7 +330,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const Interrupt
 
 }  // namespace
 
-Status run_dive(const DiveFlags& flags) {
+Status run_dive(const DiveFlags& asked) {
+  DiveFlags flags = asked;
   if (flags.seconds && !(std::isfinite(*flags.seconds) && *flags.seconds > 0.0))
     return refusal("--seconds", fmt::format("{}", *flags.seconds), "a number above 0");
   if (flags.fast && !flags.headless)
@@ -313,17 +340,35 @@ Status run_dive(const DiveFlags& flags) {
     return refusal("--display", "--headless beside it", "one of the two");
   if (flags.panels && !flags.headless)
     return refusal("--panels", "a run in a window", "with --headless (a window has them; F2)");
+  NERITIC_TRY_STATUS(check_replay_flags(flags));
   NERITIC_TRY_STATUS(check_step_files(
       flags.files, {{"--screenshot", flags.screenshot}, {"--timeline", flags.timeline}}));
   const Interrupt interrupt;
-  NERITIC_TRY(scene::Scene scene, load_scene_or_model(flags.scene, flags.size));
+  std::optional<SampleLog> recorded;
+  if (!flags.replay.empty()) {
+    NERITIC_TRY(recorded, read_recording(flags.replay));
+  } else if (flags.scene.empty()) {
+    return refusal("SCENE", "none", "a scene or model file, or --replay with a recording");
+  }
+  NERITIC_TRY(scene::Scene scene,
+              recorded ? recorded_scene(*recorded, flags.replay, flags.scene, flags.size)
+                       : load_scene_or_model(flags.scene, flags.size));
+  if (flags.scene.empty()) flags.scene = scene.path;
   if (flags.seed) scene.seed = *flags.seed;
   NERITIC_TRY_STATUS(check_physics_flags(flags, scene));
   const bool pictures = !asks_for_physics_alone(flags, scene);
+  std::optional<scene::Scene> physics_scene;
+  const ShownChanges changes{flags.shown, flags.added, flags.water};
+  if (changes.any()) {
+    NERITIC_TRY(scene::Scene shown,
+                shown_scene(*recorded, flags.replay, asked.scene, flags.size, changes, scene));
+    physics_scene = std::exchange(scene, std::move(shown));
+  }
   if (pictures) NERITIC_TRY_STATUS(add_view(flags, scene));
   for (const std::string& note : scene.notes) log_warn("{}", note);
-  return pictures ? dive_pictures(flags, std::move(scene), interrupt)
-                  : dive_physics(flags, scene, interrupt);
+  return pictures
+             ? dive_pictures(flags, std::move(scene), physics_scene, std::move(recorded), interrupt)
+             : dive_physics(flags, scene, std::move(recorded), interrupt);
 }
 
 }  // namespace neritic::tools

@@ -22,8 +22,9 @@ constexpr double kMostPhysicsSeconds = 1e6;
 bool draws(const DiveFlags& flags) {
   return flags.frames > 0 || flags.fast || flags.panels || flags.validation ||
          !flags.screenshot.empty() || !flags.size.empty() || !flags.sensors.empty() ||
-         !flags.view.empty() || !flags.device.empty() || !flags.hud.empty() ||
-         !flags.quality.empty() || !flags.timeline.empty();
+         !flags.view.empty() || !flags.shown.empty() || !flags.water.empty() ||
+         !flags.added.empty() || !flags.record_images.empty() || !flags.device.empty() ||
+         !flags.hud.empty() || !flags.quality.empty() || !flags.timeline.empty();
 }
 
 // The first flag that needs physics; empty: none.
@@ -40,11 +41,13 @@ std::string physics_flag(const DiveFlags& flags) {
 
 // The first flag that a replay cannot have; empty: none.
 std::string flag_beside_replay(const DiveFlags& flags) {
-  if (const std::string flag = first_step_flag(flags.files); !flag.empty()) return flag;
+  if (!flags.files.record.empty()) return "--record";
+  if (!flags.files.save.empty()) return "--save";
   if (flags.seconds) return "--seconds";
   if (!flags.play.empty()) return "--play";
+  if (!flags.restore.empty()) return "--restore";
+  if (flags.seed) return "--seed";
   if (flags.realtime) return "--realtime";
-  if (flags.json) return "--json";
   return "";
 }
 
@@ -52,6 +55,21 @@ std::string flag_beside_replay(const DiveFlags& flags) {
 
 bool asks_for_physics_alone(const DiveFlags& flags, const scene::Scene& scene) {
   return flags.headless && PhysicsWorld::needed(scene) && !draws(flags);
+}
+
+Status check_replay_flags(const DiveFlags& flags) {
+  const char* const alone = !flags.shown.empty()   ? "--scene"
+                            : !flags.added.empty() ? "--add"
+                            : !flags.water.empty() ? "--water"
+                                                   : "";
+  if (flags.replay.empty() && *alone != '\0')
+    return refusal(alone, "no --replay beside it", "with a recording whose motion is shown");
+  const std::string beside = flags.replay.empty() ? "" : flag_beside_replay(flags);
+  if (beside.empty()) return {};
+  return refusal(
+      "--replay", beside + " beside it",
+      "no --seconds, --record, --save, --play, --restore, --seed, --realtime; it runs as "
+      "long as the recording, from where that begins");
 }
 
 Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
@@ -64,11 +82,6 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
                                            : "--play";
   if (*alone != '\0' && (!flags.headless || draws(flags)))
     return refusal(alone, "a run with pictures", "with --headless and without flags of pictures");
-  if (const std::string beside = flag_beside_replay(flags);
-      !flags.replay.empty() && !beside.empty())
-    return refusal("--replay", beside + " beside it",
-                   "no --seconds, --log, --log-rate, --plot, --record, --save, --play, "
-                   "--realtime, --json; it runs as long as the recording");
   if (!flags.restore.empty() && !flags.play.empty())
     return refusal("--play", "--restore beside it", "a run from time 0, where a recording begins");
   if (flags.runs && (!first_step_flag(flags.files).empty() || flags.realtime ||
@@ -79,26 +92,9 @@ Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   return {};
 }
 
-Result<std::unique_ptr<Replay>> Replay::read(const std::string& file, const PhysicsWorld& world,
-                                             std::uint64_t start_step) {
-  NERITIC_TRY(SampleLog log, read_sample_log(file));
-  if (log.steps() == 0) return refusal(file, "a recording of 0 steps", "1 step or more");
-  if (!log.whole)
-    log_warn("{}: its run was cut off; its {} whole steps are replayed", file, log.steps());
-  NERITIC_TRY(RecordedSource source, source_of(world, std::move(log), file, start_step));
-  // The hashes stay where they are when the source moves.
-  const std::span<const std::uint64_t> hashes = source.log().hashes;
-  return std::make_unique<Replay>(
-      Replay{std::move(source), RecordingCheck(hashes, file, start_step), file});
-}
-
-void Replay::tell() const {
-  fmt::print("{}: {} of {} steps, each with the hash that was recorded\n", file,
-             check.equal_steps(), steps());
-}
-
 Result<std::unique_ptr<LivePhysics>> make_dive_physics(const DiveFlags& flags,
                                                        const scene::Scene& scene,
+                                                       const SampleLog* recorded,
                                                        LivePhysics::Pace pace,
                                                        sim::StepClock* clock) {
   NERITIC_TRY(auto world, PhysicsWorld::create(scene));
@@ -106,21 +102,30 @@ Result<std::unique_ptr<LivePhysics>> make_dive_physics(const DiveFlags& flags,
   if (!flags.restore.empty()) {
     NERITIC_TRY(options.start, read_state(flags.restore, world->state_format()));
   }
+  if (recorded) {
+    NERITIC_TRY(options.start, start_of(*recorded, flags.replay, *world));
+  }
   for (const std::string& line : cannot_hold(*world)) log_warn("{}", line);
   return LivePhysics::create(std::move(world), options);
 }
 
-Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Interrupt& interrupt) {
+Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
+                    std::optional<SampleLog> recorded, const Interrupt& interrupt) {
   double seconds = flags.seconds.value_or(kPhysicsSeconds);
   if (seconds > kMostPhysicsSeconds)
     return refusal("--seconds", fmt::format("{}", seconds),
                    fmt::format("up to {:g}", kMostPhysicsSeconds));
   if (flags.runs) return dive_runs(flags, scene, seconds, interrupt);
-  NERITIC_TRY(const auto physics, make_dive_physics(flags, scene, LivePhysics::Pace::kPicture));
+  NERITIC_TRY(const auto physics, make_dive_physics(flags, scene, recorded ? &*recorded : nullptr,
+                                                    LivePhysics::Pace::kPicture));
   const PhysicsWorld& world = physics->world();
   const double start_s = physics->newest().time_s, step_s = world.step_s();
   SourceWatch watch(world, physics->inbox(), [](const std::string& line) { log_warn("{}", line); });
-  const StepFiles files(flags.files, scene.title, *physics);
+  RecordingOptions recording;
+  if (!flags.files.record.empty()) {
+    NERITIC_TRY(recording, recording_options(scene.path, flags.realtime));
+  }
+  const StepFiles files(flags.files, scene.title, recording, *physics);
   std::vector<StepSink*> sinks{&watch};
   for (StepSink* sink : files.sinks()) sinks.push_back(sink);
   // Recordings: one of a device, one of the whole run.
@@ -134,8 +139,8 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
       log_warn("{}: nothing to play: no live sample was recorded", flags.play);
     sources = {&*played};
   }
-  if (!flags.replay.empty()) {
-    NERITIC_TRY(replay, Replay::read(flags.replay, world, physics->newest().step));
+  if (recorded) {
+    NERITIC_TRY(replay, Replay::of(std::move(*recorded), flags.replay, world));
     sources = {&replay->source};
     sinks.push_back(&replay->check);
     seconds = replay->seconds();
@@ -151,7 +156,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene, const Int
                 .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
   // A run that failed prints its summary too.
-  if (replay && !flags.quiet) replay->tell();
+  if (replay && !flags.quiet && !flags.json) replay->tell();
   print_summary(flags, world, physics->simulation(), files.recorder(),
                 {loop.wall_s(), loop.dropped(), start_s});
   NERITIC_TRY_STATUS(status);

@@ -7,7 +7,6 @@
 #include "engine/core/files.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
-#include "engine/render/water_optics.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/output/frame_files.hpp"
 #include "testbed/sensors/sight_check.hpp"
@@ -18,6 +17,7 @@
 #include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/named_sensors.hpp"
+#include "tools/neritic/recorded_scene.hpp"
 #include "tools/neritic/render_sheet.hpp"
 #include "tools/neritic/step_files.hpp"
 
@@ -32,7 +32,9 @@ constexpr double kLongestFlight_s = 24.0 * 3600.0;  // of physics, from time 0 o
 // Thirty years: frames are still told apart to a tenth of a microsecond.
 constexpr double kLatestTime_s = 1e9;
 
-Result<scene::Scene> load(const RenderFlags& flags) {
+// The scene that is rendered; recorded: of --replay, and physics its scene.
+Result<scene::Scene> load(const RenderFlags& flags, const SampleLog* recorded,
+                          std::optional<scene::Scene>& physics) {
   scene::SceneOptions options;
   if (!flags.offset_m.empty()) {
     options.offset_m = {flags.offset_m[0], flags.offset_m[1], flags.offset_m[2]};
@@ -45,20 +47,16 @@ Result<scene::Scene> load(const RenderFlags& flags) {
           fmt::format("three numbers of -{0:g} to {0:g} metres", scene::kFarthest_m));
   }
   options.sonar_quality = flags.quality;
+  if (recorded) {
+    NERITIC_TRY(physics, recorded_scene(*recorded, flags.replay, flags.scene, flags.size));
+    return shown_scene(*recorded, flags.replay, flags.scene, flags.size,
+                       {flags.shown, flags.added, flags.water}, *physics, options);
+  }
+  for (const std::string& more : flags.added) options.added.emplace_back(more);
   NERITIC_TRY(scene::Scene scene,
               load_scene_or_model(flags.scene, flags.size, options, flags.clip));
   if (flags.seed) scene.seed = *flags.seed;
-  if (flags.water.empty()) return scene;
-  if (!scene.water)
-    return refusal("--water", fmt::format("{}, which names no water", flags.scene),
-                   "a scene with a table [water]");
-  // The types are written in capitals; a flag may be typed in any.
-  std::string type = flags.water;
-  std::transform(type.begin(), type.end(), type.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  if (const auto known = render::jerlov_optics(type); !known.ok())
-    return bad_input("--water: {}", known.error().message);
-  scene.water->type = type;
+  NERITIC_TRY_STATUS(set_water(scene, flags.water, flags.scene));
   return scene;
 }
 
@@ -159,7 +157,8 @@ void warn_of_rates(const scene::Scene& scene, const LoopSensors& sensors, double
 
 // The scene's physics; nullptr where nothing moves by physics.
 Result<std::unique_ptr<LivePhysics>> make_physics(const RenderFlags& flags,
-                                                  const scene::Scene& scene, double last_s) {
+                                                  const scene::Scene& scene, double last_s,
+                                                  const SampleLog* recorded) {
   if (!PhysicsWorld::needed(scene)) {
     if (const std::string flag = first_step_flag(flags.files); !flag.empty())
       return flag_without_physics(flag, flags.scene);
@@ -169,7 +168,12 @@ Result<std::unique_ptr<LivePhysics>> make_physics(const RenderFlags& flags,
     return refusal(scene.path, fmt::format("physics to {:g} s of scene time", last_s),
                    fmt::format("at most {:g} s", kLongestFlight_s));
   const TimeNs begun_ns = now_ns();
-  NERITIC_TRY(auto physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+  NERITIC_TRY(auto world, PhysicsWorld::create(scene));
+  LivePhysics::Options options;
+  if (recorded) {
+    NERITIC_TRY(options.start, start_of(*recorded, flags.replay, *world));
+  }
+  auto physics = LivePhysics::create(std::move(world), options);
   const auto counts = physics->world().solid().counts();
   log_info(
       "physics: {} solid things of {} triangles built in {:.0f} ms; {} vehicles and {} divers move",
@@ -274,9 +278,41 @@ Error stopped_render(const RenderFlags& flags, std::uint64_t frames, double step
                       flags.time_s + static_cast<double>(frames) * step_s, flags.frames - frames)};
 }
 
+Status check_replay(const RenderFlags& flags) {
+  if (flags.replay.empty() && flags.scene.empty())
+    return refusal("SCENE", "none", "a scene or model file, or --replay with a recording");
+  if (flags.replay.empty() && !flags.shown.empty())
+    return refusal("--scene", "no --replay beside it", "with a recording whose motion is shown");
+  if (!flags.replay.empty() && (flags.seed || !flags.offset_m.empty() || !flags.clip.empty()))
+    return refusal("--replay", "--seed, --offset or --clip beside it", "none of them");
+  return {};
+}
+
+// The frames that a recording lasts for, or those that are asked for.
+Status choose_frames(RenderFlags& flags, const SampleLog* recorded, double rate_hz) {
+  if (!recorded) {
+    flags.frames = std::max(flags.frames, 1u);
+    return {};
+  }
+  const double start_s = static_cast<double>(recorded->first_step) * recorded->step_s;
+  const double end_s = start_s + static_cast<double>(recorded->steps()) * recorded->step_s;
+  if (flags.time_s == 0.0) flags.time_s = start_s;
+  if (!(flags.time_s >= start_s && flags.time_s <= end_s))
+    return refusal("--time", fmt::format("{:g} s", flags.time_s),
+                   fmt::format("{:g} to {:g} s, as was recorded", start_s, end_s));
+  const double most = std::floor((end_s - flags.time_s) * rate_hz + 1e-6) + 1.0;
+  if (static_cast<double>(flags.frames) > most)
+    return refusal("--frames", fmt::format("{}", flags.frames),
+                   fmt::format("up to {}, as was recorded", most));
+  if (flags.frames == 0) flags.frames = static_cast<std::uint32_t>(std::min(most, 1e6));
+  return {};
+}
+
 }  // namespace
 
-Result<std::string> run_render(const RenderFlags& flags) {
+Result<std::string> run_render(const RenderFlags& asked) {
+  RenderFlags flags = asked;
+  NERITIC_TRY_STATUS(check_replay(flags));
   if (!(std::abs(flags.time_s) <= kLatestTime_s))
     return refusal("--time", fmt::format("{} s", flags.time_s),
                    fmt::format("{:g} to {:g} s", -kLatestTime_s, kLatestTime_s));
@@ -285,7 +321,14 @@ Result<std::string> run_render(const RenderFlags& flags) {
   NERITIC_TRY_STATUS(check_step_files(flags.files, {{"--dump-graph", graph_file}}));
   const TimeNs start = now_ns();
   const Interrupt interrupt;
-  NERITIC_TRY(scene::Scene scene, load(flags));
+  std::optional<SampleLog> recorded;
+  std::optional<scene::Scene> physics_scene;
+  if (!flags.replay.empty()) {
+    NERITIC_TRY(recorded, read_recording(flags.replay));
+  }
+  const SampleLog* log = recorded ? &*recorded : nullptr;
+  NERITIC_TRY(scene::Scene scene, load(flags, log, physics_scene));
+  if (flags.scene.empty()) flags.scene = scene.path;
   NERITIC_TRY(ChosenRender chosen, choose(flags, scene));
   LoopSensors& sensors = chosen.sensors;
   for (const std::string& note : scene.notes) log_warn("{}", note);
@@ -300,7 +343,13 @@ Result<std::string> run_render(const RenderFlags& flags) {
   options.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(const auto device, gpu::Device::create(options));
   const double rate_hz = chosen.rate_hz, step_s = 1.0 / rate_hz;
-  NERITIC_TRY(const auto physics, make_physics(flags, scene, flags.time_s + flags.frames * step_s));
+  NERITIC_TRY_STATUS(choose_frames(flags, log, rate_hz));
+  NERITIC_TRY(const auto physics, make_physics(flags, physics_scene ? *physics_scene : scene,
+                                               flags.time_s + flags.frames * step_s, log));
+  std::unique_ptr<Replay> replay;
+  if (physics && recorded) {
+    NERITIC_TRY(replay, Replay::of(std::move(*recorded), flags.replay, physics->world()));
+  }
   if (flags.frames > 1) warn_of_rates(scene, sensors, rate_hz);
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
@@ -312,9 +361,14 @@ Result<std::string> run_render(const RenderFlags& flags) {
   StepProgress approach("second of the dive", flags.time_s);
   std::vector<StepSink*> step_sinks;
   if (physics) {
-    step_files.emplace(flags.files, session->scene().title, *physics);
+    step_files.emplace(flags.files, session->scene().title, RecordingOptions{}, *physics);
     step_sinks = step_files->sinks();
     step_sinks.push_back(&approach);
+  }
+  std::vector<SampleSource*> sources;
+  if (replay) {
+    sources = {&replay->source};
+    step_sinks.push_back(&replay->check);
   }
   // One frame makes no track, but boxes.
   const bool tracks = flags.frames > 1 || flags.track_only;
@@ -327,6 +381,7 @@ Result<std::string> run_render(const RenderFlags& flags) {
       {.clock = Clock::simulated(flags.time_s, step_s),
        .physics = physics.get(),
        .sensors = sensors,
+       .sources = sources,
        .step_sinks = step_sinks,
        .frame_sinks = {&files, &first, &sight},
        .stop = {.frames = flags.frames, .interrupted = [&] { return interrupt.requested(); }}});

@@ -69,13 +69,16 @@ Status check_step_files(const StepFileFlags& flags, const std::vector<OutputFile
 }
 
 StepFiles::StepFiles(const StepFileFlags& flags, const std::string& title,
-                     const LivePhysics& physics) {
+                     const RecordingOptions& recording, const LivePhysics& physics) {
   const PhysicsWorld& world = physics.world();
   if (!flags.save.empty())
     files_.push_back(std::make_unique<StateFile>(world, physics.simulation(), flags.save));
-  if (!flags.record.empty())
-    files_.push_back(
-        std::make_unique<RecordingFile>(world, physics.simulation().inbox(), flags.record));
+  if (!flags.record.empty()) {
+    auto file =
+        std::make_unique<RecordingFile>(world, physics.simulation(), flags.record, recording);
+    recording_ = file.get();
+    files_.push_back(std::move(file));
+  }
   std::vector<std::unique_ptr<RowSink>> rows;
   DivePlot* plot = nullptr;
   if (!flags.log.empty()) rows.push_back(std::make_unique<CsvLog>(world, flags.log));

@@ -7,6 +7,7 @@
 
 #include "testbed/motion/live_physics.hpp"
 #include "testbed/record/file_sinks.hpp"
+#include "testbed/record/recording_file.hpp"
 #include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
@@ -26,15 +27,19 @@ Status check_step_files(const StepFileFlags& flags, const std::vector<OutputFile
 // there, for the summary.
 class StepFiles {
  public:
-  // title: of the scene, for the plot. The physics outlives it.
+  // title: of the scene, for the plot; recording: of the scene, for --record. The physics outlives
+  // it.
   StepFiles(const StepFileFlags& flags, const std::string& title,
-            const testbed::LivePhysics& physics);
+            const testbed::RecordingOptions& recording, const testbed::LivePhysics& physics);
   std::vector<testbed::StepSink*> sinks() const;
+  // Of --record; nullptr: there is none.
+  testbed::RecordingFile* recording() const { return recording_; }
   const testbed::DiveRecorder& recorder() const { return log_->recorder(); }
 
  private:
   std::vector<std::unique_ptr<testbed::StepSink>> files_;
   testbed::DiveLog* log_ = nullptr;  // one of them
+  testbed::RecordingFile* recording_ = nullptr;
 };
 
 // Counts simulated seconds up to a time.

@@ -131,16 +131,16 @@ TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
   pilot(dive, 1, inputs);
   dive.run(2.0);
   ASSERT_TRUE(
-      write_sample_log(scratch / "dive.log", recorded_run(*dive.world, *dive.simulation)).ok());
-  auto log = read_sample_log(scratch / "dive.log");
+      write_sample_log(scratch / "dive.mcap", recorded_run(*dive.world, *dive.simulation)).ok());
+  auto log = read_sample_log(scratch / "dive.mcap");
   ASSERT_TRUE(log.ok()) << log.error().message;
-  const auto report = replay_run(*dive.world, *log, "dive.log").value();
+  const auto report = replay_run(*dive.world, *log, "dive.mcap").value();
   EXPECT_EQ(report.steps, 1200u);
   EXPECT_FALSE(report.first_difference.has_value());
   auto& wrench = std::get<VehicleWrench>(log->entries[3].sample.payload);
   EXPECT_EQ(wrench.wrench[0], 30.0);
   wrench.wrench[0] = 35.0;
-  const auto other = replay_run(*dive.world, *log, "dive.log").value();
+  const auto other = replay_run(*dive.world, *log, "dive.mcap").value();
   ASSERT_TRUE(other.first_difference.has_value());
   EXPECT_GT(*other.first_difference, 240u);
   EXPECT_LT(*other.first_difference, 260u);

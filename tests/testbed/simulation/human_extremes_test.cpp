@@ -136,14 +136,14 @@ TEST(HumanDiveDeterminism, ARecordedDiveReplaysFromItsFile) {
     dive.run(0.1);
   }
   ASSERT_TRUE(
-      write_sample_log(scratch / "dive.log", recorded_run(*dive.world, *dive.simulation)).ok());
-  auto log = read_sample_log(scratch / "dive.log");
+      write_sample_log(scratch / "dive.mcap", recorded_run(*dive.world, *dive.simulation)).ok());
+  auto log = read_sample_log(scratch / "dive.mcap");
   ASSERT_TRUE(log.ok()) << log.error().message;
-  EXPECT_FALSE(replay_run(*dive.world, *log, "dive.log").value().first_difference.has_value());
+  EXPECT_FALSE(replay_run(*dive.world, *log, "dive.mcap").value().first_difference.has_value());
   for (auto& entry : log->entries)
     if (auto* body = std::get_if<BodyJoints>(&entry.sample.payload))
       body->joints[2] = glm::angleAxis(1.0, Vec3(0.0, 1.0, 0.0));
-  EXPECT_TRUE(replay_run(*dive.world, *log, "dive.log").value().first_difference.has_value());
+  EXPECT_TRUE(replay_run(*dive.world, *log, "dive.mcap").value().first_difference.has_value());
 }
 
 TEST(HumanDiveExtremes, AWildSuitIsBoundedAndTheDiverSwimsOn) {

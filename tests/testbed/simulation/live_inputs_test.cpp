@@ -51,7 +51,7 @@ TEST(LiveInputs, ThreeSourcesAtTheirOwnRatesAndTheReplayOfThem) {
   }
   const SampleLog log = recorded_run(*dive.world, *dive.simulation);
   EXPECT_EQ(log.entries.size(), 1200u + 50u + 5u);
-  EXPECT_FALSE(replay_run(*dive.world, log, "run.log").value().first_difference.has_value());
+  EXPECT_FALSE(replay_run(*dive.world, log, "run.mcap").value().first_difference.has_value());
 }
 
 TEST(LiveInputs, ASuitThatFallsSilentIsCountedAndTheAutopilotSwims) {
@@ -130,7 +130,7 @@ TEST(LiveInputs, ABurstBesideTheSteppingThreadIsCountedAndTheRunReplays) {
   EXPECT_EQ(counter.gaps, 0u);
   EXPECT_EQ(dive.simulation->inbox().counts(noise.source).accepted, 20'000u);
   EXPECT_GT(dive.simulation->inbox().counts(suit.source).not_of_stream, 0u);
-  EXPECT_FALSE(replay_run(*dive.world, recorded_run(*dive.world, *dive.simulation), "run.log")
+  EXPECT_FALSE(replay_run(*dive.world, recorded_run(*dive.world, *dive.simulation), "run.mcap")
                    .value()
                    .first_difference.has_value());
 }

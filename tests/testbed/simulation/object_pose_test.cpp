@@ -104,7 +104,7 @@ SampleLog circled(TestDive& dive, int steps) {
 TEST(ObjectPose, ARunIsRepeatedBitForBitAndAMissionFollowsTheProp) {
   TestDive dive = dive_of(followed_text());
   const SampleLog log = circled(dive, 2400);
-  const auto report = replay_run(*dive.world, log, "run.log").value();
+  const auto report = replay_run(*dive.world, log, "run.mcap").value();
   EXPECT_EQ(report.steps, 2400u);
   EXPECT_FALSE(report.first_difference.has_value());
   EXPECT_GT(dive.speed_m_s(), 0.2);
@@ -114,9 +114,9 @@ TEST(ObjectPose, ARunIsRepeatedBitForBitAndAMissionFollowsTheProp) {
               2.0, 0.1);
   // The bytes of the log say the same.
   const std::string bytes = encode_sample_log(log);
-  const auto read = parse_sample_log(std::as_bytes(std::span(bytes)), "run.log");
+  const auto read = parse_sample_log(std::as_bytes(std::span(bytes)), "run.mcap");
   ASSERT_TRUE(read.ok()) << read.error().message;
-  EXPECT_FALSE(replay_run(*dive.world, *read, "run.log")->first_difference.has_value());
+  EXPECT_FALSE(replay_run(*dive.world, *read, "run.mcap")->first_difference.has_value());
 }
 
 TEST(ObjectPose, ARecordingMovesThePropOfAnotherRun) {
@@ -124,7 +124,7 @@ TEST(ObjectPose, ARecordingMovesThePropOfAnotherRun) {
   SampleLog log = circled(first, 240);
   TestDive dive = dive_of(prop_text("inputs = { pose = \"mocap\" }\n"));
   auto recording =
-      RecordedSource::create(std::move(log), dive.world->streams(), "prop.log").value();
+      RecordedSource::create(std::move(log), dive.world->streams(), "prop.mcap").value();
   for (int i = 0; i < 240; ++i) {
     ASSERT_TRUE(recording.poll(dive.simulation->inbox(), dive.time_s()).ok());
     dive.simulation->advance(1);

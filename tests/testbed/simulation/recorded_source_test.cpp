@@ -30,7 +30,7 @@ SampleLog recorded_dive(std::uint64_t steps) {
 TEST(RecordedSource, DrivesOneGroupWhileAnotherIsLiveAndTheRestIsTheAutopilots) {
   TestDive dive = dive_of(hover_text("body = \"suit\", buttons = \"gamepad\", heart = \"strap\""));
   RecordedSource recording =
-      RecordedSource::create(recorded_dive(240), dive.world->streams(), "suit.log").value();
+      RecordedSource::create(recorded_dive(240), dive.world->streams(), "suit.mcap").value();
   Device live(dive, "gamepad", "diver/buttons");
   for (std::uint64_t step = 0; step < 240; ++step) {
     ASSERT_TRUE(recording.poll(dive.simulation->inbox(), dive.time_s()).ok());
@@ -76,7 +76,7 @@ TEST(RecordedSource, RepeatsARunInWhichADeviceWasRestartedAndAGroupHandedOver) {
   EXPECT_EQ(group(dive, DiverGroup::kButtons).heard, 180u);
   const SampleLog log = recorded_run(*dive.world, *dive.simulation);
   ASSERT_EQ(log.entries.size(), 601u);
-  const auto report = replay_run(*dive.world, log, "run.log").value();
+  const auto report = replay_run(*dive.world, log, "run.mcap").value();
   EXPECT_EQ(report.steps, 300u);
   EXPECT_FALSE(report.first_difference.has_value());
 }
@@ -86,12 +86,12 @@ TEST(RecordedSource, ALogThatNoInboxTakesIsRefusedInOneLine) {
   SampleLog log = recorded_dive(3);
   log.entries[1].sample.header.captured_ns = 1'000'000'000;  // after its arrival
   log.entries[1].sample.header.arrived_ns = 0;
-  EXPECT_EQ(replay_run(*dive.world, log, "run.log").error().message,
-            "run.log: diver/buttons at step 0: sample 0 is late; accepted: samples as an inbox "
+  EXPECT_EQ(replay_run(*dive.world, log, "run.mcap").error().message,
+            "run.mcap: diver/buttons at step 0: sample 0 is late; accepted: samples as an inbox "
             "takes them");
   log.step_s *= 2.0;
-  EXPECT_EQ(replay_run(*dive.world, log, "run.log").error().message,
-            fmt::format("run.log: steps of {} s; accepted: {} s, as in the scene", log.step_s,
+  EXPECT_EQ(replay_run(*dive.world, log, "run.mcap").error().message,
+            fmt::format("run.mcap: steps of {} s; accepted: {} s, as in the scene", log.step_s,
                         dive.world->step_s()));
 }
 

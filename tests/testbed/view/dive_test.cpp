@@ -208,7 +208,7 @@ TEST(Dive, LogRecordingAndStateDoNotDependOnWhoLooks) {
   const test::ScratchFolder scratch;
   const std::string scene = write_flight(scratch), at = scratch.path().string();
   const auto ask = [&](const std::string& name) {
-    return fmt::format("--log {0}/{1}.csv --record {0}/{1}.log --save {0}/{1}.state --json", at,
+    return fmt::format("--log {0}/{1}.csv --record {0}/{1}.mcap --save {0}/{1}.state --json", at,
                        name);
   };
   const Outcome alone =
@@ -228,7 +228,7 @@ TEST(Dive, LogRecordingAndStateDoNotDependOnWhoLooks) {
   EXPECT_EQ(text_of(scratch / "b.csv"), csv);
   EXPECT_EQ(text_of(scratch / "c.csv"), csv);
   const Outcome same =
-      dive(scratch, "", fmt::format("'{}' --headless --replay {}/b.log", scene, at));
+      dive(scratch, "", fmt::format("'{}' --headless --replay {}/b.mcap", scene, at));
   EXPECT_EQ(same.status, 0) << same.err;
   EXPECT_EQ(text_of(scratch / "b.state"), text_of(scratch / "a.state"));
   const auto hash_in = [](const std::string& out) { return out.substr(out.find("\"hash\""), 28); };
@@ -244,9 +244,9 @@ TEST(Dive, LogRecordingAndStateDoNotDependOnWhoLooks) {
   EXPECT_EQ(hash_in(on_shown.out), hash_in(on.out));
   EXPECT_NE(hash_in(on.out), hash_in(alone.out));
   const Outcome replay = dive(
-      scratch, "", fmt::format("'{}' --headless --fast --panels --replay {}/a.log", scene, at));
+      scratch, "", fmt::format("'{}' --headless --fast --panels --replay {}/a.mcap", scene, at));
   EXPECT_EQ(replay.status, 0) << replay.err;
-  EXPECT_NE(replay.out.find("a.log: 243 of 243 steps, each with the hash that was recorded"),
+  EXPECT_NE(replay.out.find("a.mcap: 243 of 243 steps, each with the hash that was recorded"),
             std::string::npos)
       << replay.out;
 }
@@ -258,7 +258,7 @@ TEST(Dive, AWindowKeepsTheLogOfThatManySecondsAndItsRecordingReplays) {
   const std::string scene = write_flight(scratch), at = scratch.path().string();
   const Outcome window =
       dive(scratch, "xvfb-run -a -s '-screen 0 640x480x24'",
-           fmt::format("'{}' --seconds 1 --log {}/w.csv --record {}/w.log --json", scene, at, at));
+           fmt::format("'{}' --seconds 1 --log {}/w.csv --record {}/w.mcap --json", scene, at, at));
   if (test::may_skip_without_device()) GTEST_SKIP() << window.err;
   ASSERT_EQ(window.status, 0) << window.err;
   EXPECT_NE(window.out.find("\"hash\""), std::string::npos) << window.out;
@@ -269,7 +269,7 @@ TEST(Dive, AWindowKeepsTheLogOfThatManySecondsAndItsRecordingReplays) {
   EXPECT_EQ(text_of(scratch / "w.csv"), text_of(scratch / "a.csv"));
   EXPECT_NE(window.out.find("\"steps\": 240"), std::string::npos) << window.out;
   const Outcome replay =
-      dive(scratch, "", fmt::format("'{}' --headless --replay {}/w.log", scene, at));
+      dive(scratch, "", fmt::format("'{}' --headless --replay {}/w.mcap", scene, at));
   EXPECT_EQ(replay.status, 0) << replay.err;
 }
 

@@ -1,0 +1,338 @@
+#include "engine/recording/mcap_reader.hpp"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <set>
+
+#include "engine/core/refusal.hpp"
+#include "engine/core/text.hpp"
+#include "engine/recording/mcap_bytes.hpp"
+
+namespace neritic::recording {
+namespace {
+
+constexpr std::size_t kNamedDamages = 20, kRecordHead_bytes = 9;
+
+struct Head {
+  McapOp op{};
+  std::uint64_t length = 0;
+};
+
+class Reading {
+ public:
+  Reading(McapSource& source, const std::string& name, McapVisitor& visitor, AfterDamage after)
+      : source_(source), name_(name), visitor_(visitor), after_(after) {}
+
+  Result<McapReport> run();
+
+ private:
+  // What a step of the reading found.
+  enum class Next { kGoOn, kEnd };
+
+  Result<Next> record();
+  Status chunk(std::span<const std::byte> content, std::uint64_t at);
+  Status chunk_records(std::span<const std::byte> records, std::uint64_t at);
+  Status schema(McapCursor cursor, std::uint64_t at);
+  Status channel(McapCursor cursor, std::uint64_t at);
+  Status message(McapCursor cursor, std::uint64_t at);
+  Status attachment(std::span<const std::byte> content, std::uint64_t at);
+  Status metadata(McapCursor cursor, std::uint64_t at);
+  void summary_record(Head head, McapCursor cursor, std::uint64_t at);
+  void footer(std::span<const std::byte> content, std::uint64_t at);
+  // Something that is not as it should be.
+  void damaged(std::uint64_t at, const std::string& what) {
+    if (++report_.damages <= kNamedDamages)
+      report_.damage.push_back(fmt::format("at byte {}: {}", at, what));
+  }
+  bool stopped() const { return report_.damages > 0 && after_ == AfterDamage::kStop; }
+  void unpack(std::string_view compression, std::span<const std::byte> packed, std::uint64_t size,
+              std::uint64_t at);
+
+  McapSource& source_;
+  const std::string& name_;
+  McapVisitor& visitor_;
+  AfterDamage after_;
+  McapReport report_;
+  std::uint64_t at_ = 0;
+  std::vector<std::byte> content_, unpacked_;
+  bool unpacked_whole_ = false;
+  std::set<std::uint16_t> schemas_, channels_;
+  std::set<std::pair<std::uint64_t, std::uint64_t>> chunks_;  // place and length
+  std::uint32_t data_crc_ = 0, summary_crc_ = 0;
+  bool in_summary_ = false, ended_ = false;
+};
+
+Status Reading::schema(McapCursor cursor, std::uint64_t at) {
+  const auto id = cursor.number<std::uint16_t>();
+  McapSchema schema{cursor.text(), cursor.text(), cursor.text()};
+  if (!cursor.whole() || id == 0) return damaged(at, "a schema that is cut off"), Status();
+  if (!schemas_.insert(id).second) return {};
+  return visitor_.schema(id, schema);
+}
+
+Status Reading::channel(McapCursor cursor, std::uint64_t at) {
+  const auto id = cursor.number<std::uint16_t>();
+  McapChannel channel{cursor.number<std::uint16_t>(), cursor.text(), cursor.text(), {}};
+  channel.metadata = cursor.words();
+  if (!cursor.whole()) return damaged(at, "a channel that is cut off"), Status();
+  if (channel.schema != 0 && !schemas_.contains(channel.schema))
+    return damaged(at, fmt::format("channel {} of schema {}, which comes nowhere before", id,
+                                   channel.schema)),
+           Status();
+  if (!channels_.insert(id).second) return {};
+  return visitor_.channel(id, channel);
+}
+
+Status Reading::message(McapCursor cursor, std::uint64_t at) {
+  McapMessage message{cursor.number<std::uint16_t>(),
+                      cursor.number<std::uint32_t>(),
+                      cursor.number<std::uint64_t>(),
+                      cursor.number<std::uint64_t>(),
+                      {}};
+  if (!cursor.whole()) return damaged(at, "a message that is cut off"), Status();
+  message.data = cursor.rest();
+  if (!channels_.contains(message.channel))
+    return damaged(at, fmt::format("a message of channel {}, which comes nowhere before",
+                                   message.channel)),
+           Status();
+  const bool first = report_.messages++ == 0;
+  report_.first_ns = first ? message.log_ns : std::min(report_.first_ns, message.log_ns);
+  report_.last_ns = first ? message.log_ns : std::max(report_.last_ns, message.log_ns);
+  return visitor_.message(message);
+}
+
+// Into unpacked_; says what is wrong else.
+void Reading::unpack(std::string_view compression, std::span<const std::byte> packed,
+                     std::uint64_t size, std::uint64_t at) {
+  unpacked_whole_ = false;
+  if (size > kMostChunk_bytes)
+    return damaged(at,
+                   fmt::format("a chunk of {} bytes; accepted: up to {}", size, kMostChunk_bytes));
+  if (compression.empty()) {
+    if (packed.size() != size) return damaged(at, "a chunk with another size than it says");
+    unpacked_.assign(packed.begin(), packed.end());
+  } else if (compression == "zstd") {
+    // Ours say their size; then nothing is reserved that is not there.
+    const unsigned long long inside = ZSTD_getFrameContentSize(packed.data(), packed.size());
+    if (inside == ZSTD_CONTENTSIZE_ERROR || (inside != ZSTD_CONTENTSIZE_UNKNOWN && inside != size))
+      return damaged(at, "a chunk that zstd cannot unpack");
+    unpacked_.resize(static_cast<std::size_t>(size));
+    const std::size_t got =
+        ZSTD_decompress(unpacked_.data(), unpacked_.size(), packed.data(), packed.size());
+    if (ZSTD_isError(got) || got != size) return damaged(at, "a chunk that zstd cannot unpack");
+  } else {
+    return damaged(at, fmt::format("a chunk with the compression '{}'; accepted: zstd or none",
+                                   printable(compression)));
+  }
+  unpacked_whole_ = true;
+}
+
+Status Reading::chunk(std::span<const std::byte> content, std::uint64_t at) {
+  McapCursor cursor(content);
+  cursor.take(16);  // times
+  const auto size = cursor.number<std::uint64_t>();
+  const auto crc = cursor.number<std::uint32_t>();
+  const std::string compression = cursor.text();
+  const auto packed = cursor.take(cursor.number<std::uint64_t>());
+  if (!cursor.whole() || cursor.left() > 0)
+    return damaged(at, "a chunk with another size than it says"), Status();
+  unpack(compression, packed, size, at);
+  if (!unpacked_whole_) return {};
+  if (crc != 0 && crc_of(unpacked_) != crc)
+    return damaged(at, "a chunk whose CRC differs"), Status();
+  ++report_.chunks;
+  report_.unpacked_bytes += size;
+  chunks_.emplace(at, kRecordHead_bytes + content.size());
+  return chunk_records(unpacked_, at);
+}
+
+Status Reading::chunk_records(std::span<const std::byte> records, std::uint64_t at) {
+  McapCursor cursor(records);
+  while (cursor.left() > 0 && !stopped()) {
+    const auto op = static_cast<McapOp>(cursor.number<std::uint8_t>());
+    const McapCursor content(cursor.take(cursor.number<std::uint64_t>()));
+    if (!cursor.whole()) return damaged(at, "a chunk that ends within a record"), Status();
+    if (op == McapOp::kSchema) NERITIC_TRY_STATUS(schema(content, at));
+    if (op == McapOp::kChannel) NERITIC_TRY_STATUS(channel(content, at));
+    if (op == McapOp::kMessage) NERITIC_TRY_STATUS(message(content, at));
+  }
+  return {};
+}
+
+Status Reading::attachment(std::span<const std::byte> content, std::uint64_t at) {
+  McapCursor cursor(content);
+  McapAttachment attachment{cursor.number<std::uint64_t>(),
+                            cursor.number<std::uint64_t>(),
+                            cursor.text(),
+                            cursor.text(),
+                            {}};
+  attachment.data = cursor.take(cursor.number<std::uint64_t>());
+  const auto crc = cursor.number<std::uint32_t>();
+  if (!cursor.whole() || cursor.left() > 0)
+    return damaged(at, "an attachment that is cut off"), Status();
+  if (crc != 0 && crc_of(content.first(content.size() - sizeof crc)) != crc)
+    return damaged(at,
+                   fmt::format("attachment '{}', whose CRC differs", printable(attachment.name))),
+           Status();
+  return visitor_.attachment(attachment);
+}
+
+Status Reading::metadata(McapCursor cursor, std::uint64_t at) {
+  McapMetadata metadata{cursor.text(), {}};
+  metadata.words = cursor.words();
+  if (!cursor.whole()) return damaged(at, "metadata that are cut off"), Status();
+  return visitor_.metadata(metadata);
+}
+
+// Compares the indexes with what was found.
+void Reading::summary_record(Head head, McapCursor cursor, std::uint64_t at) {
+  if (head.op == McapOp::kChunkIndex) {
+    cursor.take(16);
+    const auto offset = cursor.number<std::uint64_t>(), length = cursor.number<std::uint64_t>();
+    if (!cursor.whole() || chunks_.erase({offset, length}) == 0)
+      damaged(at, fmt::format("an index of a chunk at {}, where there is none", offset));
+  } else if (head.op == McapOp::kStatistics) {
+    const auto messages = cursor.number<std::uint64_t>();
+    if (!cursor.whole() || messages != report_.messages)
+      damaged(at, fmt::format("statistics of {} messages; found: {}", messages, report_.messages));
+  }
+}
+
+void Reading::footer(std::span<const std::byte> content, std::uint64_t at) {
+  McapCursor cursor(content);
+  const auto start = cursor.number<std::uint64_t>();
+  cursor.take(8);
+  const auto crc = cursor.number<std::uint32_t>();
+  if (!cursor.whole()) return damaged(at, "a footer that is cut off");
+  if (crc != 0 && crc != summary_crc_) damaged(at, "a summary whose CRC differs");
+  if (start != 0 && !chunks_.empty())
+    damaged(at, fmt::format("a summary without {} of the chunks", chunks_.size()));
+  std::string magic(kMcapMagic.size(), '\0');
+  ended_ = source_.size() - at_ == magic.size() &&
+           source_.read(at_, std::as_writable_bytes(std::span(magic))).ok() && magic == kMcapMagic;
+  if (!ended_) damaged(at_, "other bytes than the end of a file");
+}
+
+Result<Reading::Next> Reading::record() {
+  const std::uint64_t from = at_, left = source_.size() - at_;
+  std::byte bytes[kRecordHead_bytes];
+  if (left < kRecordHead_bytes) return Next::kEnd;
+  NERITIC_TRY_STATUS(source_.read(at_, bytes));
+  McapCursor cursor(bytes);
+  const Head head{static_cast<McapOp>(cursor.number<std::uint8_t>()),
+                  cursor.number<std::uint64_t>()};
+  // A file that was cut off ends within a record.
+  if (head.length > left - kRecordHead_bytes) return Next::kEnd;
+  if (head.length > kMostRecord_bytes) {
+    damaged(from, fmt::format("a record of {} bytes; accepted: up to {}", head.length,
+                              kMostRecord_bytes));
+    return Next::kEnd;
+  }
+  content_.resize(static_cast<std::size_t>(head.length));
+  NERITIC_TRY_STATUS(source_.read(at_ + kRecordHead_bytes, content_));
+  at_ += kRecordHead_bytes + head.length;
+  const std::span<const std::byte> content(content_);
+  if (head.op == McapOp::kFooter)
+    summary_crc_ = crc_of(content.first(std::min<std::size_t>(16, content.size())),
+                          crc_of(bytes, summary_crc_));
+  else if (in_summary_)
+    summary_crc_ = crc_of(content, crc_of(bytes, summary_crc_));
+  switch (head.op) {
+    case McapOp::kSchema:
+      NERITIC_TRY_STATUS(schema(McapCursor(content), from));
+      break;
+    case McapOp::kChannel:
+      NERITIC_TRY_STATUS(channel(McapCursor(content), from));
+      break;
+    case McapOp::kMessage:
+      NERITIC_TRY_STATUS(message(McapCursor(content), from));
+      break;
+    case McapOp::kChunk:
+      NERITIC_TRY_STATUS(chunk(content, from));
+      break;
+    case McapOp::kAttachment:
+      NERITIC_TRY_STATUS(attachment(content, from));
+      break;
+    case McapOp::kMetadata:
+      NERITIC_TRY_STATUS(metadata(McapCursor(content), from));
+      break;
+    case McapOp::kDataEnd: {
+      const auto crc = McapCursor(content).number<std::uint32_t>();
+      if (crc != 0 && crc != data_crc_) damaged(from, "a data section whose CRC differs");
+      in_summary_ = true;
+      break;
+    }
+    case McapOp::kFooter:
+      footer(content, from);
+      return Next::kEnd;
+    default:
+      if (in_summary_) summary_record(head, McapCursor(content), from);
+  }
+  if (!in_summary_) data_crc_ = crc_of(content, crc_of(bytes, data_crc_));
+  return stopped() ? Next::kEnd : Next::kGoOn;
+}
+
+Result<McapReport> Reading::run() {
+  report_.size_bytes = source_.size();
+  std::vector<std::byte> magic(kMcapMagic.size());
+  const auto no_mcap = [&] {
+    return refusal(name_, "no MCAP file", "a recording of this program, or another MCAP file");
+  };
+  if (source_.size() < magic.size()) return no_mcap();
+  NERITIC_TRY_STATUS(source_.read(0, magic));
+  if (std::memcmp(magic.data(), kMcapMagic.data(), magic.size()) != 0) return no_mcap();
+  data_crc_ = crc_of(magic);
+  at_ = magic.size();
+  // The header is the first record.
+  std::byte head[kRecordHead_bytes];
+  if (source_.size() - at_ >= sizeof head) {
+    NERITIC_TRY_STATUS(source_.read(at_, head));
+    McapCursor cursor(head);
+    const auto op = static_cast<McapOp>(cursor.number<std::uint8_t>());
+    const auto length = cursor.number<std::uint64_t>();
+    if (op != McapOp::kHeader) return no_mcap();
+    if (length <= source_.size() - at_ - sizeof head && length <= kMostRecord_bytes) {
+      content_.resize(static_cast<std::size_t>(length));
+      NERITIC_TRY_STATUS(source_.read(at_ + sizeof head, content_));
+      McapCursor words{std::span<const std::byte>(content_)};
+      const std::string profile = words.text(), library = words.text();
+      if (!words.whole()) return no_mcap();
+      NERITIC_TRY_STATUS(visitor_.header(profile, library));
+    }
+  }
+  while (true) {
+    NERITIC_TRY(const Next next, record());
+    if (next == Next::kEnd) break;
+  }
+  report_.whole = ended_ && report_.damages == 0;
+  return report_;
+}
+
+}  // namespace
+
+Status McapVisitor::header(const std::string&, const std::string&) {
+  return {};
+}
+Status McapVisitor::schema(std::uint16_t, const McapSchema&) {
+  return {};
+}
+Status McapVisitor::channel(std::uint16_t, const McapChannel&) {
+  return {};
+}
+Status McapVisitor::message(const McapMessage&) {
+  return {};
+}
+Status McapVisitor::attachment(const McapAttachment&) {
+  return {};
+}
+Status McapVisitor::metadata(const McapMetadata&) {
+  return {};
+}
+
+Result<McapReport> read_mcap(McapSource& source, const std::string& name, McapVisitor& visitor,
+                             AfterDamage after) {
+  return Reading(source, name, visitor, after).run();
+}
+
+}  // namespace neritic::recording

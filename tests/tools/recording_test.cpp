@@ -1,0 +1,121 @@
+// `neritic recording`, and what a recording says to other programs.
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/json.hpp"
+#include "engine/core/npy.hpp"
+#include "testbed/samples/sample_log.hpp"
+#include "tests/tools/dive_physics.hpp"
+
+namespace neritic {
+namespace {
+
+class Recording : public DivePhysics {
+ protected:
+  void SetUp() override {
+    DivePhysics::SetUp();
+    ASSERT_EQ(dive("--headless --seconds 4 --record " + file("a.mcap")).status, 0);
+  }
+  Outcome neritic(const std::string& arguments) {
+    const int raw = std::system(fmt::format("'{}/tools/neritic' {} > '{}' 2> '{}'",
+                                            NERITIC_BINARY_DIR, arguments,
+                                            (scratch_ / "out").string(),
+                                            (scratch_ / "err").string())
+                                    .c_str());
+    return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, read_text(scratch_ / "out").value(),
+            read_text(scratch_ / "err").value()};
+  }
+};
+
+TEST_F(Recording, SaysWhatItHoldsAndThatItIsWhole) {
+  const auto json = parse_json(neritic("recording info --json " + file("a.mcap")).out).value();
+  EXPECT_EQ(json["profile"], "ros2");
+  EXPECT_EQ(json["whole"], true);
+  EXPECT_EQ(json["run"]["seed"], "1");
+  std::map<std::string, nlohmann::json> topics;
+  for (const auto& topic : json["topics"]) topics[topic["topic"]] = topic;
+  ASSERT_TRUE(topics.contains("/rov/imu")) << json.dump();
+  EXPECT_EQ(topics["/rov/imu"]["type"], "sensor_msgs/msg/Imu");
+  EXPECT_EQ(topics["/rov/odometry"]["type"], "nav_msgs/msg/Odometry");
+  EXPECT_NEAR(topics["/rov/odometry"]["rate_hz"].get<double>(), 60.0, 0.1);
+  EXPECT_EQ(topics["/neritic/step"]["messages"], 961);
+  EXPECT_EQ(json["attachments"][0]["name"], "scene.toml");
+  const Outcome check = neritic("recording check " + file("a.mcap"));
+  EXPECT_EQ(check.status, 0) << check.err;
+  EXPECT_NE(check.out.find("whole; "), std::string::npos) << check.out;
+  EXPECT_NE(check.out.find("960 steps to replay"), std::string::npos) << check.out;
+}
+
+// The scene is in it: it may change or go, and the replay is of what was recorded.
+TEST_F(Recording, ReplaysWithoutItsSceneFile) {
+  ASSERT_TRUE(write_text(scratch_ / "dive.toml", "[physics]\n").ok());
+  const Outcome replay = neritic("dive --headless --replay " + file("a.mcap"));
+  EXPECT_EQ(replay.status, 0) << replay.err;
+  EXPECT_NE(replay.out.find("960 of 960 steps, each with the hash"), std::string::npos)
+      << replay.out;
+}
+
+TEST_F(Recording, ADamagedOneIsFoundAndMended) {
+  auto bytes = read_file(scratch_ / "a.mcap").value();
+  bytes.resize(bytes.size() / 2);
+  ASSERT_TRUE(write_file(scratch_ / "cut.mcap", bytes).ok());
+  const Outcome check = neritic("recording check " + file("cut.mcap"));
+  EXPECT_EQ(check.status, 1);
+  EXPECT_NE(check.err.find("cut off: it has no end; "), std::string::npos) << check.err;
+  const Outcome mended =
+      neritic("recording repair " + file("cut.mcap") + " --out " + file("new.mcap"));
+  EXPECT_EQ(mended.status, 0) << mended.err;
+  const Outcome again = neritic("recording check " + file("new.mcap"));
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(neritic("recording repair " + file("a.mcap") + " --out " + file("a.mcap")).status, 2);
+}
+
+TEST_F(Recording, ExportsTablesAndArrays) {
+  const std::string from = "recording export " + file("a.mcap") + " --out " + file("t");
+  const Outcome csv = neritic(from + " --topic /rov/odometry");
+  ASSERT_EQ(csv.status, 0) << csv.err;
+  const auto columns = table("t/rov_odometry.csv");
+  ASSERT_TRUE(columns.contains("pose_pose_position_z"));
+  EXPECT_EQ(columns.at("time_s").size(), 241u);
+  // East, north, up: it begins 6 m deep, and heads north to z = -2, which is y = 2.
+  EXPECT_NEAR(std::stod(columns.at("pose_pose_position_z").front()), -6.0, 1e-6);
+  EXPECT_GT(std::stod(columns.at("pose_pose_position_y").back()), 0.5);
+  // A model that faces -z heads north: a quarter turn to the left from east.
+  EXPECT_NEAR(std::abs(std::stod(columns.at("pose_pose_orientation_z").front())), std::sqrt(0.5),
+              0.02);
+  const Outcome npy = neritic(from + " --format npy --topic /rov/imu");
+  ASSERT_EQ(npy.status, 0) << npy.err;
+  const auto imu = read_npy(scratch_ / "t/rov_imu.npy").value();
+  const auto names = parse_json(read_text(scratch_ / "t/rov_imu.json").value()).value();
+  ASSERT_EQ(imu.shape.size(), 2u);
+  EXPECT_EQ(imu.shape[1], names["columns"].size());
+  // At rest an inertial unit feels the ground's push, upwards.
+  const auto up = std::ranges::find(names["columns"], "linear_acceleration_z");
+  const auto column = static_cast<std::size_t>(up - names["columns"].begin());
+  EXPECT_NEAR(imu.to_doubles()[10 * imu.shape[1] + column], 9.8, 1.0);
+  EXPECT_EQ(neritic(from + " --format xdf").status, 0);
+  EXPECT_EQ(read_text(scratch_ / "t/recording.xdf").value().substr(0, 4), "XDF:");
+  const Outcome none = neritic(from + " --topic /nose");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("--topic: found /nose; accepted: "), std::string::npos) << none.err;
+}
+
+// Another program's reader: npm's @mcap/core, where NODE_PATH leads to it.
+TEST_F(Recording, TheOfficialReaderReadsItBack) {
+  const std::string script =
+      (test::source_dir() / "tests/tools/read_recording.cjs").string();
+  const int raw = std::system(fmt::format("node '{}' '{}' > '{}' 2> '{}'", script,
+                                          (scratch_ / "a.mcap").string(),
+                                          (scratch_ / "out").string(), (scratch_ / "err").string())
+                                  .c_str());
+  const int status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
+  if (status == 127 || status == 77)
+    GTEST_SKIP() << "no node with @mcap/core and fzstd (npm install; NODE_PATH)";
+  const std::string out = read_text(scratch_ / "out").value();
+  ASSERT_EQ(status, 0) << read_text(scratch_ / "err").value();
+  EXPECT_NE(out.find("961 /neritic/step"), std::string::npos) << out;
+  EXPECT_NE(out.find("241 /rov/odometry"), std::string::npos) << out;
+}
+
+}  // namespace
+}  // namespace neritic
