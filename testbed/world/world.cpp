@@ -277,11 +277,13 @@ Status World::restore(std::span<const std::byte> bytes) {
 Status World::record(const std::filesystem::path& path) {
   RecordingSwitch& recording = parts_->receiver->recording;
   if (recording.on())
-    return refusal("record", "a recording that runs, " + recording.log().string(),
+    return refusal("record", "a recording that runs, " + recording.file().string(),
                    "stop_recording() before it");
+  NERITIC_TRY(RecordingOptions options, recording_of_scene(parts_->path));
   std::filesystem::path base = path;
-  if (base.extension() == ".log") base.replace_extension();
-  return recording.begin(parts_->physics->simulation(), base);
+  if (base.extension() == ".mcap") base.replace_extension();
+  recording.begin(parts_->physics->simulation(), base, std::move(options));
+  return {};
 }
 
 Status World::stop_recording() {

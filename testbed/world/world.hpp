@@ -160,8 +160,9 @@ class World {
   std::vector<std::byte> save() const;
   Status restore(std::span<const std::byte> bytes);
 
-  // From now on until stop_recording(): PATH.log, for `neritic dive --replay`, with PATH.csv, and
-  // PATH.state where it does not begin at the start.
+  // From now on until stop_recording(): PATH.mcap, which `neritic dive --replay` runs again
+  // (testbed/record/RECORDING.md), with PATH.csv. If the disk fails, the run goes on, and
+  // stop_recording() says so.
   Status record(const std::filesystem::path& path);
   Status stop_recording();
   bool recording() const;

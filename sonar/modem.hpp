@@ -1,0 +1,184 @@
+// Sound that carries messages between agents: travel time by the water's sound speed, spreading and
+// absorption against ambient noise and other senders, half duplex, bit rate, loss by the
+// signal-to-noise ratio. Depths are positive, positions north, east, down, metres; times seconds.
+// Pure functions; any thread. What is not modelled: echoes of surface and bottom as signals of their
+// own (their fading is, statistically), Doppler, shadows of what lies between.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "engine/core/math.hpp"
+#include "sonar/acoustics.hpp"
+#include "sonar/sound_speed_profile.hpp"
+
+namespace neritic::sonar {
+
+// How the paths' travel times are found: the knob of this model, from cheap to exact.
+enum class ModemPath : std::uint32_t {
+  kConstant,  // the sound speed half way between the two depths
+  kStraight,  // the integral of 1 / c along the straight line
+  kBent,      // along the ray that bends from one to the other (Snell)
+};
+
+struct ModemWater {
+  Water water{.temperature_c = 10.0};
+  std::optional<SoundSpeedProfile> profile;  // absent: Mackenzie's speed at the depth
+  ModemPath path = ModemPath::kStraight;
+  double spreading = 2.0;  // 2: spheres; 1: cylinders (shallow ducts); 1.5: between ("practical")
+  double wind_m_s = 5.0, shipping = 0.5;  // of the ambient noise
+};
+
+// A device, in the manner of small commercial modems.
+struct ModemSettings {
+  double source_level_db = 170.0;  // re 1 uPa at 1 m
+  double frequency_hz = 25e3, bandwidth_hz = 8e3;
+  double bit_rate_hz = 500.0;
+  double preamble_s = 0.05;        // before the bits
+  double coding_gain_db = 3.0;
+  double detection_db = 3.0;       // least signal-to-noise ratio in the band that starts a reception
+  double self_noise_db = 0.0;      // spectrum level of the carrier's own noise, re 1 uPa^2/Hz; 0: none
+  bool fading = true;              // Rayleigh: many echoes; false: a single steady path
+};
+
+// ---- Links ------------------------------------------------------------------------------------
+// One way. NaN gives NaN; nothing to travel takes no time.
+double modem_travel_s(const ModemWater& water, const Vec3& from_ned_m, const Vec3& to_ned_m);
+// 10 k log10 r + alpha r, dB re 1 m, r from kNearestRange_m on.
+double modem_loss_db(const ModemWater& water, double frequency_hz, const Vec3& from_ned_m,
+                     const Vec3& to_ned_m);
+// In a receiver's band, dB re 1 uPa^2: ambient and its own.
+double modem_noise_db(const ModemWater& water, const ModemSettings& receiver);
+double modem_duration_s(const ModemSettings& sender, std::size_t bytes);
+// Errors of non-coherent frequency keying in noise (Proakis, Digital Communications, 4th ed., eq.
+// 5.2-69: exp(-g / 2) / 2), or with Rayleigh fading (eq. 14.3-12: 1 / (2 + g)); g: energy of a bit
+// over the noise density.
+double modem_bit_error(const ModemSettings& settings, double snr_db);
+// Of all bits, by independent errors.
+double modem_success(const ModemSettings& settings, double snr_db, std::size_t bytes);
+
+// ---- A channel --------------------------------------------------------------------------------
+inline constexpr std::size_t kModemWords = 8;  // of a message: 64 bytes
+inline constexpr std::uint64_t kToAll = ~std::uint64_t{0};
+
+struct ModemMessage {
+  std::uint64_t from = 0, to = kToAll;  // numbers of modems
+  std::uint64_t sequence = 0;           // of its sender
+  std::uint64_t bytes = 0;              // up to 8 kModemWords
+  std::array<std::uint64_t, kModemWords> words{};  // little-endian
+
+  static void fields(auto&& field, auto& self) {
+    field("from", self.from);
+    field("to", self.to);
+    field("sequence", self.sequence);
+    field("bytes", self.bytes);
+    field("words", self.words);
+  }
+};
+
+// A message that a modem got, as the device reports it.
+struct ModemReceived {
+  ModemMessage message;
+  double sent_s = 0.0, heard_s = 0.0;  // its first sound, here and there: their difference is the travel
+  double snr_db = 0.0;
+
+  static void fields(auto&& field, auto& self) {
+    field("message", self.message);
+    field("sent_s", self.sent_s);
+    field("heard_s", self.heard_s);
+    field("snr_db", self.snr_db);
+  }
+};
+
+// What became of messages at a modem, since the start.
+struct ModemCounts {
+  std::uint64_t sent = 0, refused = 0;  // refused: it was sending, or the message was too long
+  std::uint64_t received = 0;
+  std::uint64_t too_weak = 0, noisy = 0, collided = 0, was_sending = 0;  // lost, by their cause
+
+  static void fields(auto&& field, auto& self) {
+    field("sent", self.sent);
+    field("refused", self.refused);
+    field("received", self.received);
+    field("too_weak", self.too_weak);
+    field("noisy", self.noisy);
+    field("collided", self.collided);
+    field("was_sending", self.was_sending);
+  }
+};
+
+// One modem's part of the channel: plain numbers, which a simulation's state can hold.
+struct ModemState {
+  static constexpr std::size_t kFlying = 4, kHearing = 8, kKept = 8;
+  struct Flight {  // a message on its way
+    ModemMessage message;
+    double sent_s = 0.0, ends_s = 0.0;  // at the sender
+    Vec3 from_ned_m{0.0};               // where it was sent
+    std::uint64_t flying = 0;           // 1: some modem may still hear it
+    std::uint64_t begun = 0;            // bit i: it has reached modem i
+
+    static void fields(auto&& field, auto& self) {
+      field("message", self.message);
+      field("sent_s", self.sent_s);
+      field("ends_s", self.ends_s);
+      field("from_ned_m", self.from_ned_m);
+      field("flying", self.flying);
+      field("begun", self.begun);
+    }
+  };
+  struct Hearing {  // a message that is arriving
+    ModemMessage message;
+    double sent_s = 0.0, begins_s = 0.0, ends_s = 0.0;
+    double power = 0.0, others_power = 0.0;  // uPa^2; the most at once of other messages
+    std::uint64_t arriving = 0, sending = 0;  // sending: the modem itself sent meanwhile
+
+    static void fields(auto&& field, auto& self) {
+      field("message", self.message);
+      field("sent_s", self.sent_s);
+      field("begins_s", self.begins_s);
+      field("ends_s", self.ends_s);
+      field("power", self.power);
+      field("others_power", self.others_power);
+      field("arriving", self.arriving);
+      field("sending", self.sending);
+    }
+  };
+  std::array<Flight, kFlying> flights{};
+  std::array<Hearing, kHearing> hearings{};
+  std::array<ModemReceived, kKept> received{};  // a ring: message k is at k % kKept
+  ModemCounts counts;
+
+  static void fields(auto&& field, auto& self) {
+    field("flights", self.flights);
+    field("hearings", self.hearings);
+    field("received", self.received);
+    field("counts", self.counts);
+  }
+};
+
+inline constexpr std::size_t kMostModems = 64;  // bits of Flight::begun
+
+// The devices of a channel and its water. Preconditions of the functions below: as many states and
+// positions as modems, at most kMostModems.
+struct ModemChannel {
+  ModemWater water;
+  std::span<const ModemSettings> modems;
+  std::uint64_t seed = 0;
+};
+
+// Sends a message at now_s. False, and counted: the modem is still sending, has kFlying messages on
+// the way, or the message has no bytes or too many. from and sequence are filled in.
+bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t from,
+          ModemMessage message, double now_s, const Vec3& from_ned_m);
+
+// What arrives in (from_s, to_s], with the modems where they are at its end. Messages are received
+// when their last bit has come; each modem's newest are in its ring.
+void step(const ModemChannel& channel, std::span<ModemState> states,
+          std::span<const Vec3> positions_ned_m, double from_s, double to_s);
+
+// Numbers of a ring's messages that are new since `seen` were received: [first, counts.received).
+std::uint64_t first_kept(const ModemState& state, std::uint64_t seen);
+
+}  // namespace neritic::sonar
