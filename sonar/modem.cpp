@@ -91,11 +91,9 @@ double modem_loss_db(const ModemWater& water, double frequency_hz, const Vec3& f
 }
 
 double modem_noise_db(const ModemWater& water, const ModemSettings& receiver) {
-  const double ambient_db =
-      ambient_noise_db(receiver.frequency_hz, water.wind_m_s, water.shipping);
+  const double ambient_db = ambient_noise_db(receiver.frequency_hz, water.wind_m_s, water.shipping);
   const double levels[] = {ambient_db, receiver.self_noise_db};
-  const double spectrum_db =
-      receiver.self_noise_db > 0.0 ? incoherent_sum_db(levels) : ambient_db;
+  const double spectrum_db = receiver.self_noise_db > 0.0 ? incoherent_sum_db(levels) : ambient_db;
   return band_level_db(spectrum_db, receiver.bandwidth_hz);
 }
 
@@ -127,8 +125,8 @@ bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t
   }
   message.from = from;
   message.sequence = sender.counts.sent++;
-  *free = {message, now_s, now_s + modem_duration_s(channel.modems[from], message.bytes),
-           from_ned_m, 1, std::uint64_t{1} << from};
+  *free = {message,    now_s, now_s + modem_duration_s(channel.modems[from], message.bytes),
+           from_ned_m, 1,     std::uint64_t{1} << from};
   // What was arriving is deaf to the rest.
   for (ModemState::Hearing& hearing : sender.hearings)
     if (hearing.arriving != 0) hearing.sending = 1;
@@ -147,9 +145,8 @@ bool sends_within(const ModemState& state, double from_s, double to_s) {
 void begin_hearing(const ModemChannel& channel, const ModemState::Flight& flight, double begins_s,
                    std::size_t to, const Vec3& to_ned_m, ModemState& state) {
   const ModemSettings& sender = channel.modems[flight.message.from];
-  const double level_db =
-      sender.source_level_db -
-      modem_loss_db(channel.water, sender.frequency_hz, flight.from_ned_m, to_ned_m);
+  const double level_db = sender.source_level_db - modem_loss_db(channel.water, sender.frequency_hz,
+                                                                 flight.from_ned_m, to_ned_m);
   const auto free = std::ranges::find(state.hearings, 0u, &ModemState::Hearing::arriving);
   const bool for_it = flight.message.to == kToAll || flight.message.to == to;
   if (free == state.hearings.end()) {  // more at once than any receiver keeps apart
@@ -157,8 +154,8 @@ void begin_hearing(const ModemChannel& channel, const ModemState::Flight& flight
     return;
   }
   const double ends_s = begins_s + flight.ends_s - flight.sent_s;
-  ModemState::Hearing now{flight.message, flight.sent_s, begins_s, ends_s, power_from_db(level_db),
-                          0.0,            1,             0};
+  ModemState::Hearing now{flight.message,          flight.sent_s, begins_s, ends_s,
+                          power_from_db(level_db), 0.0,           1,        0};
   now.sending = sends_within(state, begins_s, ends_s) ? 1 : 0;
   // All that overlap disturb each other, with the most power at once.
   const auto overlaps = [&](const ModemState::Hearing& other) {
@@ -194,10 +191,9 @@ void end_hearing(const ModemChannel& channel, std::size_t to, ModemState::Hearin
     return;
   }
   const std::size_t bytes = static_cast<std::size_t>(message.bytes);
-  const double draw = random_uniform({channel.seed, kModemStream + message.from, message.sequence},
-                                     to);
-  const bool got =
-      snr_db >= receiver.detection_db && draw < modem_success(receiver, snr_db, bytes);
+  const double draw =
+      random_uniform({channel.seed, kModemStream + message.from, message.sequence}, to);
+  const bool got = snr_db >= receiver.detection_db && draw < modem_success(receiver, snr_db, bytes);
   if (!got) {
     // Without the others it would have come.
     const bool by_others = draw < modem_success(receiver, alone_db, bytes);
@@ -214,23 +210,21 @@ void step(const ModemChannel& channel, std::span<ModemState> states,
           std::span<const Vec3> positions_ned_m, double from_s, double to_s) {
   const std::size_t count = channel.modems.size();
   NERITIC_CHECK(count <= kMostModems && states.size() == count && positions_ned_m.size() == count,
-                "{} modems, {} states, {} positions", count, states.size(),
-                positions_ned_m.size());
+                "{} modems, {} states, {} positions", count, states.size(), positions_ned_m.size());
   for (ModemState& sender : states)
     for (ModemState::Flight& flight : sender.flights) {
       if (flight.flying == 0) continue;
       for (std::size_t to = 0; to < count; ++to) {
         if ((flight.begun >> to & 1) != 0) continue;
-        const double begins_s = flight.sent_s + modem_travel_s(channel.water, flight.from_ned_m,
-                                                               positions_ned_m[to]);
+        const double begins_s =
+            flight.sent_s + modem_travel_s(channel.water, flight.from_ned_m, positions_ned_m[to]);
         if (begins_s > to_s) continue;
         flight.begun |= std::uint64_t{1} << to;
         // A receiver that came nearer hears it now, not before.
         begin_hearing(channel, flight, std::max(begins_s, std::min(from_s, to_s)), to,
                       positions_ned_m[to], states[to]);
       }
-      const std::uint64_t all =
-          count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+      const std::uint64_t all = count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
       if (flight.begun == all && flight.ends_s <= to_s) flight.flying = 0;
     }
   for (std::size_t to = 0; to < count; ++to)

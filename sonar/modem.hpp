@@ -1,8 +1,8 @@
 // Sound that carries messages between agents: travel time by the water's sound speed, spreading and
 // absorption against ambient noise and other senders, half duplex, bit rate, loss by the
 // signal-to-noise ratio. Depths are positive, positions north, east, down, metres; times seconds.
-// Pure functions; any thread. What is not modelled: echoes of surface and bottom as signals of their
-// own (their fading is, statistically), Doppler, shadows of what lies between.
+// Pure functions; any thread. What is not modelled: echoes of surface and bottom as signals of
+// their own (their fading is, statistically), Doppler, shadows of what lies between.
 #pragma once
 
 #include <array>
@@ -36,11 +36,11 @@ struct ModemSettings {
   double source_level_db = 170.0;  // re 1 uPa at 1 m
   double frequency_hz = 25e3, bandwidth_hz = 8e3;
   double bit_rate_hz = 500.0;
-  double preamble_s = 0.05;        // before the bits
+  double preamble_s = 0.05;  // before the bits
   double coding_gain_db = 3.0;
-  double detection_db = 3.0;       // least signal-to-noise ratio in the band that starts a reception
-  double self_noise_db = 0.0;      // spectrum level of the carrier's own noise, re 1 uPa^2/Hz; 0: none
-  bool fading = true;              // Rayleigh: many echoes; false: a single steady path
+  double detection_db = 3.0;   // least signal-to-noise ratio in the band that starts a reception
+  double self_noise_db = 0.0;  // spectrum level of the carrier's own noise, re 1 uPa^2/Hz; 0: none
+  bool fading = true;          // Rayleigh: many echoes; false: a single steady path
 };
 
 // ---- Links ------------------------------------------------------------------------------------
@@ -64,9 +64,9 @@ inline constexpr std::size_t kModemWords = 8;  // of a message: 64 bytes
 inline constexpr std::uint64_t kToAll = ~std::uint64_t{0};
 
 struct ModemMessage {
-  std::uint64_t from = 0, to = kToAll;  // numbers of modems
-  std::uint64_t sequence = 0;           // of its sender
-  std::uint64_t bytes = 0;              // up to 8 kModemWords
+  std::uint64_t from = 0, to = kToAll;             // numbers of modems
+  std::uint64_t sequence = 0;                      // of its sender
+  std::uint64_t bytes = 0;                         // up to 8 kModemWords
   std::array<std::uint64_t, kModemWords> words{};  // little-endian
 
   static void fields(auto&& field, auto& self) {
@@ -81,7 +81,8 @@ struct ModemMessage {
 // A message that a modem got, as the device reports it.
 struct ModemReceived {
   ModemMessage message;
-  double sent_s = 0.0, heard_s = 0.0;  // its first sound, here and there: their difference is the travel
+  double sent_s = 0.0,
+         heard_s = 0.0;  // its first sound, here and there: their difference is the travel
   double snr_db = 0.0;
 
   static void fields(auto&& field, auto& self) {
@@ -131,7 +132,7 @@ struct ModemState {
   struct Hearing {  // a message that is arriving
     ModemMessage message;
     double sent_s = 0.0, begins_s = 0.0, ends_s = 0.0;
-    double power = 0.0, others_power = 0.0;  // uPa^2; the most at once of other messages
+    double power = 0.0, others_power = 0.0;   // uPa^2; the most at once of other messages
     std::uint64_t arriving = 0, sending = 0;  // sending: the modem itself sent meanwhile
 
     static void fields(auto&& field, auto& self) {

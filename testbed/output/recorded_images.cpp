@@ -87,6 +87,10 @@ Status RecordedImages::accept(const ImageSample& image) {
                echoes ? "marine_acoustic_msgs/msg/ProjectedSonarImage" : "sensor_msgs/msg/Image",
                stream.name),
        sequence, at_ns, at_ns, std::as_bytes(std::span(bytes))});
+  // Once, however many images are taken from there.
+  const auto [said, first] = poses_.try_emplace(stream.frame_id, image.header.sequence);
+  if (!first && said->second == image.header.sequence) return {};
+  said->second = image.header.sequence;
   std::string pose;
   CdrWriter out(pose);
   out.header(image.header.captured_ns, "map");

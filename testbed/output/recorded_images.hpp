@@ -26,6 +26,7 @@ class RecordedImages final : public ImageSink {
   recording::McapOut& out_;
   std::function<bool()> ready_;
   std::map<std::string, std::uint16_t> channels_, schemas_;  // by topic, by type
+  std::map<std::string, std::uint64_t> poses_;               // the last one said, by frame
 };
 
 }  // namespace neritic::testbed

@@ -1,46 +1,47 @@
 #include "testbed/samples/sample_messages.hpp"
 
-#include <array>
-
 #include "engine/recording/ros_types.hpp"
 #include "testbed/samples/field_messages.hpp"
 
 namespace neritic::testbed {
 namespace {
 
-struct KindText {
-  const char* type;
-  const char* says;
-};
-// In the order of PayloadKind.
-constexpr std::array<KindText, kPayloadKinds> kTexts{{
-    {"BodyJoints", "posture: parent_from_child of each joint"},
-    {"HandJoints", "wrists (parent_from_child) and fingers, left hand first"},
-    {"HandPoses", "tracked hands, left first; tracked: bit 0 left, bit 1 right"},
-    {"HeadPose", "tracked head: the middle of the eyes; placed 1: its place counts"},
-    {"Gaze", "directions of the eyes"},
-    {"JacketButtons", "pressed: 1 inflate, 2 deflate, 4 dump"},
-    {"Breath", "measured breath"},
-    {"Heart", "measured heart"},
-    {"GasSupply", "the tank that is breathed from, 0 is the first"},
-    {"VehicleWrench", "surge, sway, heave in N, roll, pitch, yaw in N m: forward, starboard, down"},
-    {"VehicleSetpoint", "where a vehicle is to be; heading from north to east"},
-    {"ThrusterFault", "bit i: thruster i + 1 fails"},
-    {"ObjectPose", "a tracked object; measured 1: its velocities count"},
-    {"Event", "a change of authority"},
-    {"ImuReading", "inertial unit: forward, starboard, down"},
-    {"DvlReading", "Doppler velocity log; heard: bit i is beam i"},
-    {"PressureReading", "absolute pressure, and the depth that the sensor makes of it"},
-    {"CompassReading", "heading from north to east"},
-    {"AltimeterReading", "distance along the beam; heard 0: no echo"},
-    {"UsblReading", "acoustic position, north, east, down; heard 0: no answer"},
-    {"CollisionReading", "what a body touched"},
-    {"DiverMotion", "a diver's motion and signs of life; rotation from starboard, up, back"},
-    {"ComputerReading", "a dive computer's display; -1: no limit or no end"},
-}};
-
-const KindText& text_of(PayloadKind kind) {
-  return kTexts.at(static_cast<std::size_t>(kind));
+// For readers of the schema, beside the names of the fields.
+std::string_view words_of(PayloadKind kind) {
+  switch (kind) {
+    case PayloadKind::kBodyJoints:
+      return "posture: parent_from_child of each joint";
+    case PayloadKind::kHandPoses:
+      return "tracked hands, left first; tracked: bit 0 left, bit 1 right";
+    case PayloadKind::kHeadPose:
+      return "tracked head: the middle of the eyes; placed 1: its place counts";
+    case PayloadKind::kButtons:
+      return "pressed: 1 inflate, 2 deflate, 4 dump";
+    case PayloadKind::kGas:
+      return "the tank that is breathed from, 0 is the first";
+    case PayloadKind::kWrench:
+      return "surge, sway, heave in N, roll, pitch, yaw in N m: forward, starboard, down";
+    case PayloadKind::kSetpoint:
+      return "where a vehicle is to be; heading from north to east";
+    case PayloadKind::kVelocity:
+      return "forward, starboard, down of the heading; yaw from north to east";
+    case PayloadKind::kFault:
+      return "bit i: thruster i + 1 fails";
+    case PayloadKind::kObjectPose:
+      return "a tracked object; measured 1: its velocities count";
+    case PayloadKind::kPressure:
+      return "absolute pressure, and the depth that the sensor makes of it";
+    case PayloadKind::kCompass:
+      return "heading from north to east";
+    case PayloadKind::kUsbl:
+      return "acoustic position, north, east, down; heard 0: no answer";
+    case PayloadKind::kMotion:
+      return "motion and signs of life; rotation from starboard, up, back";
+    case PayloadKind::kComputer:
+      return "a dive computer's display; -1: no limit or no end";
+    default:
+      return "a sample";
+  }
 }
 
 constexpr const char* kEnvelope =
@@ -50,12 +51,19 @@ constexpr const char* kEnvelope =
 
 }  // namespace
 
+// "hand_poses" as "neritic_msgs/msg/HandPoses".
 std::string message_type(PayloadKind kind) {
-  return fmt::format("neritic_msgs/msg/{}", text_of(kind).type);
+  std::string type = "neritic_msgs/msg/";
+  bool begins = true;
+  for (const char c : name_of(kind)) {
+    if (c != '_') type += begins ? static_cast<char>(c - 'a' + 'A') : c;
+    begins = c == '_';
+  }
+  return type;
 }
 
 recording::McapSchema sample_schema(PayloadKind kind) {
-  std::string lines = fmt::format("# {}\n{}", text_of(kind).says, kEnvelope);
+  std::string lines = fmt::format("# {}\n{}", words_of(kind), kEnvelope);
   std::visit([&](const auto& value) { lines += message_lines(value); }, empty_payload(kind));
   return recording::own_schema(message_type(kind), lines);
 }

@@ -11,7 +11,7 @@
 
 namespace neritic::testbed {
 
-// "neritic_msgs/msg/BodyJoints"
+// "neritic_msgs/msg/Joints", after the kind's name.
 std::string message_type(PayloadKind kind);
 recording::McapSchema sample_schema(PayloadKind kind);
 

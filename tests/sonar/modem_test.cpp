@@ -156,12 +156,11 @@ TEST(Modem, FartherIsLostMoreOftenAndTheShareIsTheFormulas) {
       step(sea.channel(), sea.states, sea.positions, t, t + 5.0);
       step(sea.channel(), sea.states, sea.positions, t + 5.0, t + 10.0);
     }
-    const double snr_db = fading.source_level_db -
-                          modem_loss_db(sea.water, fading.frequency_hz, sea.positions[0],
-                                        sea.positions[1]) -
-                          modem_noise_db(sea.water, fading);
-    const double share =
-        snr_db >= fading.detection_db ? modem_success(fading, snr_db, 8) : 0.0;
+    const double snr_db =
+        fading.source_level_db -
+        modem_loss_db(sea.water, fading.frequency_hz, sea.positions[0], sea.positions[1]) -
+        modem_noise_db(sea.water, fading);
+    const double share = snr_db >= fading.detection_db ? modem_success(fading, snr_db, 8) : 0.0;
     const auto got = static_cast<double>(sea.states[1].counts.received);
     EXPECT_NEAR(got / messages, share, 0.08) << range_m << " m, " << snr_db << " dB";
     const ModemCounts& counts = sea.states[1].counts;
@@ -189,12 +188,13 @@ TEST(Modem, SameSeedSameBitsAndStatesAreWholeAndPlain) {
     sim::check_fields_cover(a[i]);
     EXPECT_TRUE(sim::all_finite(a[i]));
   }
-  EXPECT_FALSE(sim::same_bits(a[1].counts, c[1].counts) && sim::same_bits(a[2].counts, c[2].counts));
+  EXPECT_FALSE(sim::same_bits(a[1].counts, c[1].counts) &&
+               sim::same_bits(a[2].counts, c[2].counts));
 }
 
 TEST(Modem, ExtremesStayWhole) {
-  for (const Vec3& far : {Vec3(0, 0, 0), Vec3(4e7, 0, 12000), Vec3(1e-320, 0, 0),
-                          Vec3(0, 0, -1e6)}) {
+  for (const Vec3& far :
+       {Vec3(0, 0, 0), Vec3(4e7, 0, 12000), Vec3(1e-320, 0, 0), Vec3(0, 0, -1e6)}) {
     Sea sea({{0, 0, 0}, far});
     sea.water.profile = gradient(1480.0, 0.016);
     sea.water.path = ModemPath::kBent;
@@ -214,13 +214,13 @@ TEST(Modem, ExtremesStayWhole) {
 }
 
 // The knob, of a summer profile, in metres of range against the bent ray. Steep paths: the straight
-// line is nearly exact. Grazing ones: the quickest way runs along the warm water, and a straight line
-// errs by metres (DECISIONS.md).
+// line is nearly exact. Grazing ones: the quickest way runs along the warm water, and a straight
+// line errs by metres (DECISIONS.md).
 TEST(Modem, StraightPathsAreNearlyExactWhereTheyAreSteep) {
   ModemWater water;
-  water.profile = SoundSpeedProfile::of_table(
-                      {{0.0, 1520.0}, {20.0, 1518.0}, {60.0, 1492.0}, {300.0, 1488.0}})
-                      .value();
+  water.profile =
+      SoundSpeedProfile::of_table({{0.0, 1520.0}, {20.0, 1518.0}, {60.0, 1492.0}, {300.0, 1488.0}})
+          .value();
   const auto worst_m = [&](double level_m, double depth_m) {
     std::array<double, 3> worst{};
     for (int i = 0; i < 60; ++i) {

@@ -14,14 +14,18 @@ class Recording : public DivePhysics {
  protected:
   void SetUp() override {
     DivePhysics::SetUp();
+    // A vehicle with sensors.
+    auto text = read_text(scratch_ / "dive.toml").value();
+    const std::string plain = "bluerov2_heavy_dynamics";
+    text.replace(text.find(plain), plain.size(), "bluerov2_heavy_survey_dynamics");
+    ASSERT_TRUE(write_text(scratch_ / "dive.toml", text).ok());
     ASSERT_EQ(dive("--headless --seconds 4 --record " + file("a.mcap")).status, 0);
   }
   Outcome neritic(const std::string& arguments) {
-    const int raw = std::system(fmt::format("'{}/tools/neritic' {} > '{}' 2> '{}'",
-                                            NERITIC_BINARY_DIR, arguments,
-                                            (scratch_ / "out").string(),
-                                            (scratch_ / "err").string())
-                                    .c_str());
+    const int raw =
+        std::system(fmt::format("'{}/tools/neritic' {} > '{}' 2> '{}'", NERITIC_BINARY_DIR,
+                                arguments, (scratch_ / "out").string(), (scratch_ / "err").string())
+                        .c_str());
     return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, read_text(scratch_ / "out").value(),
             read_text(scratch_ / "err").value()};
   }
@@ -102,8 +106,7 @@ TEST_F(Recording, ExportsTablesAndArrays) {
 
 // Another program's reader: npm's @mcap/core, where NODE_PATH leads to it.
 TEST_F(Recording, TheOfficialReaderReadsItBack) {
-  const std::string script =
-      (test::source_dir() / "tests/tools/read_recording.cjs").string();
+  const std::string script = (test::source_dir() / "tests/tools/read_recording.cjs").string();
   const int raw = std::system(fmt::format("node '{}' '{}' > '{}' 2> '{}'", script,
                                           (scratch_ / "a.mcap").string(),
                                           (scratch_ / "out").string(), (scratch_ / "err").string())

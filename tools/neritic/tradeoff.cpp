@@ -9,6 +9,7 @@
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/tradeoff/deco_tradeoff.hpp"
+#include "tools/tradeoff/modem_tradeoff.hpp"
 #include "tools/tradeoff/physics_tradeoff.hpp"
 #include "tools/tradeoff/physiology_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
@@ -70,6 +71,14 @@ Result<std::string> trade_deco(const TradeoffFlags& flags) {
   return files(flags, "deco", drawn);
 }
 
+Result<std::string> trade_modem(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return refusal("tradeoff modem", fmt::format("kind '{}'", flags.kind), "none");
+  NERITIC_TRY(const bool drawn,
+              write_modem_tradeoff(flags.out, run_modem_tradeoff(flags.quick ? 100 : 20'000)));
+  return fmt::format("{}: modem.csv, .md, .plot.json{}", flags.out.string(), drawn ? ", .png" : "");
+}
+
 Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   SonarTradeoffOptions options;
   options.scene = flags.scene == "none" ? "" : flags.scene;
@@ -127,8 +136,9 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "swim") return trade_swim(flags);
   if (flags.what == "physiology") return trade_physiology(flags);
   if (flags.what == "deco") return trade_deco(flags);
+  if (flags.what == "modem") return trade_modem(flags);
   return refusal("tradeoff", fmt::format("'{}'", flags.what),
-                 "sonar, physics, swim, deco or physiology");
+                 "sonar, physics, swim, deco, physiology or modem");
 }
 
 }  // namespace neritic::tools
