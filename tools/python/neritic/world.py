@@ -479,8 +479,8 @@ class World:
 
     @contextmanager
     def record(self, path: Union[str, os.PathLike[str]]) -> Iterator[None]:
-        """Records what follows: `with world.record("out/run"): ...` leaves out/run.log for
-        `neritic dive --replay`, out/run.csv, and out/run.state if it does not begin at the start."""
+        """Records what follows: `with world.record("out/run"): ...` leaves out/run.mcap,
+        which `neritic dive --replay` runs again and ROS 2 tools read, and out/run.csv."""
         self._core.record(os.fspath(path))
         try:
             yield
