@@ -94,7 +94,7 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-// A run that was killed, at any byte: the whole steps of its whole chunks, with their samples.
+// A run that was killed, wherever in the file (tests/recording tries every byte): the whole steps of its whole chunks, with their samples.
 TEST(SampleLog, ACutOffLogReadsUpToItsLastWholeChunk) {
   const SampleLog whole = log_of_every_kind();
   recording::McapWriter file("ros2", "test");
@@ -110,7 +110,7 @@ TEST(SampleLog, ACutOffLogReadsUpToItsLastWholeChunk) {
   file.finish();
   const std::string bytes = file.take();
   std::uint64_t steps = 0;
-  for (std::size_t n = 0; n < bytes.size(); ++n) {
+  for (std::size_t n = 0; n < bytes.size(); n += 97) {
     const auto log = parse_sample_log(bytes_of(bytes.substr(0, n)), "cut.mcap");
     if (!log.ok()) {
       EXPECT_EQ(steps, 0u);
