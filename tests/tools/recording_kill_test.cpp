@@ -85,15 +85,16 @@ TEST_F(DivePhysics, AKilledRunLeavesARecordingUpToItsLastSecond) {
 
 // A limit of the file's size stands for a full disk.
 TEST_F(DivePhysics, AFullDiskEndsTheRecordingInOneLineAndTheDiveGoesOn) {
-  const std::string limited = std::string(kNoDevice) + " bash -c 'trap \"\" XFSZ; ulimit -f 32; "
-                                                       "exec \"$@\"' bash";
-  const Outcome outcome =
-      dive("--headless --seconds 20 --record " + file("full.mcap"), "dive.toml", limited);
+  const std::string limited = std::string(kNoDevice) +
+                              " bash -c 'trap \"\" XFSZ; ulimit -f 16; "
+                              "exec \"$@\"' bash";
+  const Outcome outcome = dive("--headless --realtime --seconds 2.5 --record " + file("full.mcap"),
+                               "dive.toml", limited);
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   EXPECT_NE(outcome.err.find("the run goes on without a recording"), std::string::npos)
       << outcome.err;
   // Its summary is that of the whole dive.
-  EXPECT_NE(outcome.out.find("20 s in 4800 steps"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("2.5 s in 600 steps"), std::string::npos) << outcome.out;
   const auto log = testbed::read_sample_log(scratch_ / "full.mcap.part");
   ASSERT_TRUE(log.ok()) << log.error().message;
   EXPECT_FALSE(log->whole);

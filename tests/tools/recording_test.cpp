@@ -61,7 +61,7 @@ TEST_F(Recording, ReplaysWithoutItsSceneFile) {
 
 TEST_F(Recording, ADamagedOneIsFoundAndMended) {
   auto bytes = read_file(scratch_ / "a.mcap").value();
-  bytes.resize(bytes.size() / 2);
+  bytes.resize(bytes.size() - 200);  // its summary is not whole
   ASSERT_TRUE(write_file(scratch_ / "cut.mcap", bytes).ok());
   const Outcome check = neritic("recording check " + file("cut.mcap"));
   EXPECT_EQ(check.status, 1);
