@@ -17,17 +17,17 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-struct Said {
+struct Answer {
   int status = -1;
   std::string text;
 };
 
 // The program of this build, with standard error.
-Said experiment(const std::string& arguments) {
+Answer experiment(const std::string& arguments) {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "../tools/neritic";
   std::FILE* pipe = ::popen((program.string() + " experiment " + arguments + " 2>&1").c_str(), "r");
   if (!pipe) return {};
-  Said said;
+  Answer said;
   char piece[4096];
   while (const std::size_t size = std::fread(piece, 1, sizeof piece, pipe))
     said.text.append(piece, size);
@@ -59,10 +59,10 @@ TEST(Experiment, SameNumbersByOneWorkerAndByTwoAndAfterACut) {
   if (no_numpy()) GTEST_SKIP() << "no numpy here";
   const test::ScratchFolder folder;
   const std::string one = (folder / "one").string(), two = (folder / "two").string();
-  const Said first = experiment("echo_sounder --workers 1 --out " + one + kShort);
+  const Answer first = experiment("echo_sounder --workers 1 --out " + one + kShort);
   EXPECT_EQ(first.status, 0) << first.text;
   EXPECT_THAT(first.text, HasSubstr("2 runs, 0 failed"));
-  const Said second = experiment("echo_sounder --workers 2 --out " + two + kShort);
+  const Answer second = experiment("echo_sounder --workers 2 --out " + two + kShort);
   EXPECT_EQ(second.status, 0) << second.text;
   const nlohmann::json truth = runs_of(one);
   ASSERT_EQ(truth.size(), 2u);
@@ -76,7 +76,7 @@ TEST(Experiment, SameNumbersByOneWorkerAndByTwoAndAfterACut) {
   ASSERT_TRUE(write_text(log, text.substr(0, text.size() - 40)).ok());
   EXPECT_THAT(experiment("echo_sounder --out " + one + kShort).text,
               HasSubstr("accepted: --resume"));
-  const Said resumed = experiment("echo_sounder --resume --out " + one + kShort);
+  const Answer resumed = experiment("echo_sounder --resume --out " + one + kShort);
   EXPECT_EQ(resumed.status, 0) << resumed.text;
   EXPECT_EQ(runs_of(one), truth);
   EXPECT_THAT(experiment("echo_sounder --resume --out " + one + kShort + "--set rate_hz=4").text,
@@ -87,7 +87,7 @@ TEST(Experiment, TheRovBlocksASharkInTimeUnlessItStartsTooFar) {
   const fs::path build = fs::read_symlink("/proc/self/exe").parent_path().parent_path();
   if (!fs::exists(build / "python/neritic/__init__.py")) GTEST_SKIP() << "no Python package here";
   const test::ScratchFolder folder;
-  const Said said = experiment("shark_far --runs 1 --workers 1 --out " + (folder / "out").string());
+  const Answer said = experiment("shark_far --runs 1 --workers 1 --out " + (folder / "out").string());
   EXPECT_EQ(said.status, 0) << said.text;
   const nlohmann::json runs = runs_of(folder / "out");
   // The reference of the control: 1.48 s from 1 m, 3.56 s from 2.5 m; told 20 times a second.
@@ -109,7 +109,7 @@ TEST(Experiment, ATasksFormulasAreCheckedBeforeItRuns) {
                            "[[stages]]\nname = \"near\"\nuntil = \"" +
                                until + "\"\n")
                     .ok());
-    const Said said = experiment(own.string() + " --out " + (folder / "out").string());
+    const Answer said = experiment(own.string() + " --out " + (folder / "out").string());
     EXPECT_EQ(said.status, 2) << said.text;
     EXPECT_THAT(said.text, HasSubstr(words));
   };
@@ -125,7 +125,7 @@ TEST(Experiment, RefusesBadScenariosInOneLine) {
   const test::ScratchFolder folder;
   const std::string out = " --out " + (folder / "out").string();
   const auto refused = [&](const std::string& arguments, const char* words) {
-    const Said said = experiment(arguments + out);
+    const Answer said = experiment(arguments + out);
     EXPECT_EQ(said.status, 2) << arguments << "\n" << said.text;
     EXPECT_THAT(said.text, HasSubstr(words));
     EXPECT_EQ(std::count(said.text.begin(), said.text.end(), '\n'), 1) << said.text;

@@ -17,7 +17,7 @@ using recording::RosValue;
 constexpr std::uint64_t kMostSide = 32768;
 constexpr double kShown_db = 60.0;
 
-struct Picture {
+struct MessagePicture {
   std::uint64_t width = 0, height = 0;
   std::string encoding;
   std::vector<std::byte> data;
@@ -36,13 +36,13 @@ Raster<T> raster_of(std::uint32_t width, std::uint32_t height, std::uint32_t cha
 }
 
 template <class T>
-std::vector<T> pixels_of(const Picture& picture) {
+std::vector<T> pixels_of(const MessagePicture& picture) {
   std::vector<T> out(picture.data.size() / sizeof(T));
   std::memcpy(out.data(), picture.data.data(), out.size() * sizeof(T));
   return out;
 }
 
-Status write_floats(const std::filesystem::path& path, const Picture& picture, bool sonar) {
+Status write_floats(const std::filesystem::path& path, const MessagePicture& picture, bool sonar) {
   const std::vector<float> values = pixels_of<float>(picture);
   const auto width = static_cast<std::uint32_t>(picture.width),
              height = static_cast<std::uint32_t>(picture.height);
@@ -84,7 +84,7 @@ Status write_message_picture(const std::filesystem::path& path, const std::strin
   const auto data = type.column(sonar ? "image_data" : "data");
   const auto bytes = data ? type.read_bytes(message, *data) : std::nullopt;
   if (!values || !bytes) return bad_input("{}: a message that does not fit its schema", topic);
-  Picture picture{0, 0, {}, *bytes};
+  MessagePicture picture{0, 0, {}, *bytes};
   if (sonar) {
     constexpr std::uint64_t kFloat32 = 8;
     const auto ranges = type.column("ranges");
