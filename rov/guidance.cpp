@@ -13,6 +13,11 @@ constexpr double kBraking = 0.5;
 constexpr double kLearning_1_s = 0.5;
 // Faster currents no vehicle here withstands.
 constexpr double kMostMore_m_s = 3.0;
+// Of lean(): its integral, four times slower than the controller comes to a place; how near that
+// place the controller's own integral does the rest; how slow a vehicle stands.
+constexpr double kLeaning_1_s = 0.25;
+constexpr double kNear_m = 0.1;
+constexpr double kStands_m_s = 0.15;
 
 // A velocity that the vehicle soon has.
 Vec3 gathered(double speed_m_s, const Vec3& along, const State& state) {
@@ -71,6 +76,21 @@ Setpoint stand_between(Setpoint s, const Vec3& a, const Vec3& b, double distance
   const double from_b = distance_m < 0.0 ? 0.5 * length : std::min(distance_m, length);
   if (length > 0.0) s = go_to(s, b + from_b / length * (a - b));
   return look_at(s, b);
+}
+
+Setpoint lean(Setpoint s, const State& state, double period_s, Vec3& lean_ned_m) {
+  const Vec3 off = s.position_ned_m - state.position_ned_m;
+  const Vec3 way = along(s.velocity_ned_m_s);
+  const Vec3 moves = state.attitude * state.velocity.linear() - s.velocity_ned_m_s;
+  const double off_m = glm::length(off);
+  // Farther off, the pull is clipped: it has all the thrust that there is.
+  if (off_m > kNear_m && off_m < kMostLean_m &&
+      glm::length(moves - glm::dot(moves, way) * way) < kStands_m_s)
+    lean_ned_m += kLeaning_1_s * period_s * off;
+  if (const double length_m = glm::length(lean_ned_m); length_m > kMostLean_m)
+    lean_ned_m *= kMostLean_m / length_m;
+  s.position_ned_m += lean_ned_m;
+  return s;
 }
 
 Setpoint look_at(Setpoint s, const Vec3& point, bool tilted) {

@@ -29,6 +29,7 @@ struct MissionState {
   std::uint64_t piloted = 0;
   // By so much faster than the speed over ground that it wants does it push through the water.
   double more_m_s = 0.0;
+  Vec3 lean_ned_m{0.0};  // of the controller's place against a steady push (rov::lean)
   // The controller's set value.
   Vec3 wanted_ned_m{0.0};
   Quat wanted_attitude{1.0, 0.0, 0.0, 0.0};
@@ -40,6 +41,7 @@ struct MissionState {
     field("leg_from_ned_m", self.leg_from_ned_m);
     field("piloted", self.piloted);
     field("more_m_s", self.more_m_s);
+    field("lean_ned_m", self.lean_ned_m);
     field("wanted_ned_m", self.wanted_ned_m);
     field("wanted_attitude", self.wanted_attitude);
   }

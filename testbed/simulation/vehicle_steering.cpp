@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rov/frames.hpp"
+#include "rov/guidance.hpp"
 #include "rov/thrust_priority.hpp"
 #include "testbed/simulation/physics_world.hpp"
 #include "testbed/simulation/surface.hpp"
@@ -76,7 +77,10 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
                            : given
                                ? given_by()
                                : vehicle.mission->update(call.before, known, time_s, state.mission);
-  if (piloted) setpoint.pilot = inputs.wrench.wrench;
+  if (piloted)
+    setpoint.pilot = inputs.wrench.wrench;
+  else
+    setpoint = rov::lean(setpoint, known, vehicle.file.gains.period_s, state.mission.lean_ned_m);
   rov::ControlState control{state.integral};
   const auto commands_by = [&](const rov::Allocator& allocator) {
     return rov::level_inputs(vehicle.vehicle, allocator, vehicle.file.gains, setpoint, known,
