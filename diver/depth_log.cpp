@@ -22,7 +22,7 @@ bool read_cell(std::string_view cell, double& value) {
   return fault == std::errc() && end == cell.data() + cell.size();
 }
 
-// What a line has on one line: other bytes become '?'.
+// A field's text for one line: other bytes become '?'.
 std::string shown(std::string_view cell) {
   std::string text(cell.substr(0, 40));
   for (char& c : text)

@@ -13,7 +13,7 @@ constexpr double kBraking = 0.5;
 constexpr double kLearning_1_s = 0.5;
 // Faster currents no vehicle here withstands.
 constexpr double kMostMore_m_s = 3.0;
-// Of lean(): its integral, four times slower than the controller comes to a place; how near that
+// lean(): its integral, four times slower than the controller comes to a place; how near that
 // place the controller's own integral does the rest; how slow a vehicle stands.
 constexpr double kLeaning_1_s = 0.25;
 constexpr double kNear_m = 0.1;

@@ -1,4 +1,4 @@
-// What a .json or .yaml file says of the camera of one image: ROS camera_info, OpenCV's
+// The camera of one image from a .json or .yaml file: ROS camera_info, OpenCV's
 // FileStorage, lists of frames. Any thread.
 #pragma once
 

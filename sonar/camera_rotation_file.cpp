@@ -20,7 +20,7 @@ Result<Mat3> checked(const Mat3& m, const std::string& place) {
   return m;
 }
 
-// Of 3 x 3, 3 x 4 or 4 x 4 numbers by rows.
+// From 3 x 3, 3 x 4 or 4 x 4 numbers by rows.
 Result<Mat3> rotation_in(const Json& matrix, const std::string& place) {
   const std::vector<double> n = numbers_in(matrix);
   if (n.size() != 9 && n.size() != 12 && n.size() != 16)

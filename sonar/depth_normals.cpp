@@ -20,8 +20,8 @@ constexpr double kClean_rad = radians(1.0);  // less error is left as it is
 constexpr double kWanted_rad = radians(2.0);
 constexpr int kWidest = 7;  // pixels to each side
 
-// Of a difference over 2 pixels, and of a plane fitted to 2 w + 1 by 2 w + 1: standard deviation of
-// a slope for noise 1 a pixel. Both slopes tilt a normal: hence sqrt(2).
+// For a difference over 2 pixels, and for a plane fitted to 2 w + 1 by 2 w + 1: standard deviation
+// of a slope for noise 1 a pixel. Both slopes tilt a normal: hence sqrt(2).
 double error_of_fit(int w) {
   return std::sqrt(2.0) * std::sqrt(3.0 / (w * (w + 1.0))) / (2.0 * w + 1.0);
 }

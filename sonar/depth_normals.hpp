@@ -11,7 +11,7 @@ namespace neritic::sonar {
 // Medians over the pixels with a normal.
 struct NormalEstimate {
   double noise_m = 0.0;  // standard deviation of the depth
-  // What it makes of normals from neighbouring points, and of these here.
+  // The error of normals from neighbouring points, and of these here.
   double error_of_neighbours_rad = 0.0, error_rad = 0.0;
   int width_px = 0;  // of the fitted planes; 0 where neighbours were enough
 };

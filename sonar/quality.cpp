@@ -76,7 +76,8 @@ Result<std::uint32_t> columns_for(const scene::Sonar& sonar, const QualityLevel&
   return static_cast<std::uint32_t>(std::clamp(std::ceil(columns - 1e-6), 1.0, double{kMaxBins}));
 }
 
-// What a level that nobody named may cost: cells of [range][columns], and columns times rows.
+// The most that a level that nobody named may cost: cells of [range][columns], and columns times
+// rows.
 constexpr double kMostChosenCells = 8e6, kMostChosenSamples = 4e6, kMostChosenColumns = 8192;
 
 std::uint32_t& columns_of(scene::Sonar& sonar) {
@@ -88,6 +89,37 @@ std::uint32_t rows_for(const scene::Sonar& sonar, const QualityLevel& level) {
   const double rows =
       rows_are_counts(sonar.kind) ? level.rows : level.rows * span_m / range_cell_m(sonar);
   return static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMaxBins}));
+}
+
+// A pixel of this share of a target's width has its centre on it wherever it lies: 1 / sqrt(2) of
+// it, and half as much again where pixels and cells do not meet.
+constexpr double kTargetCell = 0.47;
+constexpr double kMostTargetSamples = 2e6;  // of all columns and rows
+
+// Where a target at the farthest range is smaller than a cell, cells that are finer: it would be
+// between them in single pings.
+void hear_small_targets(scene::Sonar& sonar, double beams) {
+  if (!(sonar.least_target_m > 0.0)) return;
+  const bool cone = sonar.kind == SonarKind::kEchoSounder;
+  const double beam_rad = cone                                   ? 2.0 * sonar.semi_angle_rad
+                          : sonar.kind == SonarKind::kMechanical ? sonar.step_rad
+                                                                 : sonar.azimuth_rad / beams;
+  const double high_rad = cone ? beam_rad : sonar.elevation_rad;
+  const double room_rad = std::sqrt(beams * beam_rad * high_rad / kMostTargetSamples);
+  const double cell_rad =
+      std::max(kTargetCell * sonar.least_target_m / sonar.range_max_m, room_rad);
+  const auto count = [&](double span_rad) {
+    return static_cast<std::uint32_t>(
+        std::clamp(std::ceil(span_rad / cell_rad), 1.0, double{kMaxBins}));
+  };
+  const double most_columns =
+      std::floor(std::min(kMostChosenColumns, kMostChosenCells / sonar.bins_range) / beams);
+  std::uint32_t& columns = columns_of(sonar);
+  const std::uint32_t before = columns, rows = sonar.bins_elevation;
+  columns = std::max(columns, std::min(count(beam_rad), static_cast<std::uint32_t>(most_columns)));
+  sonar.bins_elevation = std::max(rows, count(high_rad));
+  if (columns != before || sonar.bins_elevation != rows)
+    sonar.gbuffer_scale = std::max(sonar.gbuffer_scale, 1.0);
 }
 
 // A level that nobody named: the range bins stay, and nothing becomes coarser than the file says.
@@ -103,6 +135,7 @@ Status apply_chosen(scene::Sonar& sonar, const QualityLevel& level) {
   sonar.bins_elevation =
       std::max(sonar.bins_elevation, std::min(rows_for(sonar, level), most_rows));
   sonar.gbuffer_scale = level.gbuffer_scale;
+  hear_small_targets(sonar, beams);
   return {};
 }
 

@@ -1,6 +1,6 @@
-// What a heart strap notifies: the Bluetooth heart rate measurement (characteristic 0x2A37; Heart
-// Rate Service 1.0) and the ECG of Polar's measurement data service (PMD). The same bytes come over
-// UDP, one notification a datagram. Pure functions of the bytes; any thread.
+// The notifications of a heart strap: the Bluetooth heart rate measurement (characteristic 0x2A37;
+// Heart Rate Service 1.0) and the ECG of Polar's measurement data service (PMD). The same bytes
+// come over UDP, one notification a datagram. Pure functions of the bytes; any thread.
 #pragma once
 
 #include <optional>

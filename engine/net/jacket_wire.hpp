@@ -14,7 +14,7 @@ namespace neritic::net {
 inline constexpr std::uint16_t kJacketPort = 47810;
 inline constexpr std::size_t kUbcdBytes = 26;
 
-// What only version 1 says. Counters wrap.
+// Fields of version 1 alone. Counters wrap.
 struct UbcdCounters {
   std::uint8_t device = 0;
   std::uint16_t sequence = 0;

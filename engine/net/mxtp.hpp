@@ -89,7 +89,7 @@ struct MxtpDatagram {
 // kBadInput: no MXTP, or its lengths do not agree. kUnsupported: another type.
 Result<MxtpDatagram> decode_mxtp(Bytes bytes);
 
-// Of a stream: how many bytes the datagram at the front has; 0: its header is not whole yet.
+// The bytes of the datagram at the front of a stream; 0: its header is not whole yet.
 // kBadInput: no datagram begins there.
 Result<std::size_t> mxtp_length(Bytes stream);
 

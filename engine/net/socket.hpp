@@ -44,7 +44,7 @@ class UdpReceiver {
   // Datagrams that the full queue dropped so far.
   std::uint64_t overflowed() const { return overflowed_; }
   int descriptor() const { return socket_.get(); }
-  // Of port 0 that the system chose.
+  // Where port 0 was asked for, the port that the system chose.
   std::uint16_t port() const;
 
  private:

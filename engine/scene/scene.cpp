@@ -10,6 +10,7 @@
 #include "engine/scene/motion.hpp"
 #include "engine/scene/scene_copies.hpp"
 #include "engine/scene/scene_draft.hpp"
+#include "engine/scene/small_targets.hpp"
 
 namespace neritic::scene {
 namespace {
@@ -88,7 +89,8 @@ void move_out(SceneDraft& draft, const Vec3& offset_m) {
 // The quality of sonars: as asked for, else as their file says, else chosen.
 void choose_sampling(Scene& scene, const std::string& asked) {
   constexpr std::size_t kFew = 4;
-  const char* level = scene.sonars.size() <= kFew ? "standard" : "draft";
+  const bool few = scene.sonars.size() <= kFew;
+  const char* level = few ? "standard" : "draft";
   std::vector<std::string> chosen;
   for (Sonar& sonar : scene.sonars) {
     if (!asked.empty()) {
@@ -97,11 +99,11 @@ void choose_sampling(Scene& scene, const std::string& asked) {
       sonar.quality_chosen = false;
     } else if (sonar.quality_chosen) {
       sonar.quality = level;
+      if (few) sonar.least_target_m = least_target_m(scene, sonar);
       chosen.push_back(sonar.name);
     }
   }
   if (chosen.empty()) return;
-  const bool few = scene.sonars.size() <= kFew;
   scene.notes.push_back(fmt::format("{}: {}: no quality is named, so \"{}\" it is; {}", scene.path,
                                     fmt::join(chosen, ", "), level,
                                     few ? "quality = \"draft\" is faster"

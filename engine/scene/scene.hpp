@@ -134,6 +134,7 @@ struct Sonar {
   // The file names nothing of how beams are sampled: load_scene chooses the quality, which then
   // keeps the range bins and makes nothing coarser.
   bool quality_chosen = false;
+  double least_target_m = 0.0;  // with a chosen standard: of small_targets.hpp; 0: none
   SonarTerms terms;
 };
 // Whether all but name, rate and mount are the same.

@@ -26,7 +26,7 @@ class FrameView {
   virtual bool in_frame() const = 0;
   // The user's actions since the last frame; true: quits.
   virtual bool take_input() = 0;
-  // Of the pings that are due, each sonar gives one of so many.
+  // Each sonar gives one of this number of pings that are due.
   virtual std::uint32_t ping_every() const { return 1; }
   // The views that the display wants, from where the head is now.
   virtual void add_views(FrameRequest& request) = 0;

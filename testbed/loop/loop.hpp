@@ -35,7 +35,7 @@ struct LoopSensors {
 
 struct LoopStop {
   std::uint64_t frames = 0;  // with a view those that it shows; 0: no limit
-  // Of scene time since the first frame; 0: no limit. The last frame is at just that time, and the
+  // Scene time since the first frame; 0: no limit. The last frame is at just that time, and the
   // physics ends with the first step that reaches it.
   double seconds = 0.0;
   std::function<bool()> interrupted;  // asked before each frame and step; empty: never

@@ -55,8 +55,8 @@ class MotionHistory final : public scene::SimulatedMotion {
   std::size_t added_ = 0, count_ = 0;
 };
 
-// What the history keeps of a physics' states: vehicles, then divers, then objects that devices
-// move.
+// The parts of a physics' states that the history keeps: vehicles, then divers, then objects that
+// devices move.
 std::vector<MotionHistory::Moved> moved_objects(const PhysicsWorld& world);
 MotionSnapshot motion_of(const PhysicsWorld& world, const sim::Snapshot<PhysicsState>& snapshot);
 

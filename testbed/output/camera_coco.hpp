@@ -1,4 +1,4 @@
-// What cameras see as one data set in the format of COCO (cocodataset.org, "Data format"), for
+// The sight of cameras as one data set in the format of COCO (cocodataset.org, "Data format"), for
 // training and judging detectors: OUT/coco.json with a category a class, an image a picture and an
 // annotation for each instance in it. Boxes and masks are of visible pixels. Written as it grows
 // (growing_file.hpp). One thread.

@@ -1,5 +1,5 @@
-// What of a run's data is written, by name: the user's choice (`render --only`), and what a frame
-// must give for it. Pure functions; any thread.
+// The data of a run that are written, by name: the user's choice (`render --only`), and what a
+// frame must give for it. Pure functions; any thread.
 #pragma once
 
 #include <bitset>
@@ -50,7 +50,7 @@ class Datasets {
 // "color,depth" or several of them. kBadInput names the flag, the word and the names accepted.
 Result<Datasets> parse_datasets(std::string_view flag, std::span<const std::string> lists);
 
-// What frames must bring to the host.
+// The data that frames must bring to the host.
 Capture capture_of(const Datasets& datasets);
 
 }  // namespace neritic::testbed

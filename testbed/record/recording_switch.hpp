@@ -30,7 +30,7 @@ class RecordingSwitch final : public StepSink {
 
   Status use(const Sample& sample) override;
   Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
-  // Of one that is still on when the run ends.
+  // Ends a recording that is still on when the run ends.
   Status finish() override;
 
  private:

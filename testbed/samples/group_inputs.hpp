@@ -71,7 +71,7 @@ struct VehicleInputs {
   }
 };
 
-// Of an object that devices move.
+// The inputs of an object that devices move.
 struct ObjectInputs {
   std::array<GroupControl, kObjectGroups> control;
   PoseTrack track;

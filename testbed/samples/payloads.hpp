@@ -159,7 +159,8 @@ struct ThrusterFault {
 // measures.
 struct ObjectPose {
   Pose world_from_object;  // unit rotation
-  // Of the object's origin, world axes; count only if `measured` is 1. Else they follow from poses.
+  // Motion of the object's origin, world axes; valid only if `measured` is 1. Else they follow from
+  // poses.
   Vec3 velocity_m_s{0.0}, angular_velocity_rad_s{0.0};
   std::uint64_t measured = 0;
 

@@ -23,7 +23,7 @@ Payload make_payload(std::size_t kind, std::index_sequence<index...>) {
   return payload;
 }
 
-// Of the squared length: 32-bit floats, and senders that round to three digits.
+// Tolerance of the squared length: 32-bit floats, and senders that round to three digits.
 constexpr double kUnitWithin = 2e-3;
 
 bool within(const Vec3& v, double most) {

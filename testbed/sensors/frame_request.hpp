@@ -12,10 +12,10 @@
 
 namespace neritic::testbed {
 
-// What is false is neither computed nor allocated.
+// Data whose flag is false is neither computed nor allocated.
 struct Capture {
   bool color = true;  // of cameras and view sets
-  // Of cameras, view sets and sonars.
+  // For cameras, view sets and sonars.
   bool depth = true, normals = true, labels = true, instances = true;
   bool motion = true;  // of cameras and view sets
   bool echoes = true;  // of sonars; without them a sonar's view gives its geometry alone
@@ -53,10 +53,10 @@ struct FrameRequest {
   // The number of each sonar's ping: noise and a scanner's step follow from it. Empty: all are the
   // frame-th.
   std::vector<std::uint32_t> pings;
-  // Of the sonars' noise and speckle; absent: the scene's.
+  // The seed of the sonars' noise and speckle; absent: the scene's.
   std::optional<std::uint64_t> seed = {};
   Capture capture;  // of cameras and sonars; poses
-  // Of each camera and sonar, where they differ. Empty: all have `capture`.
+  // The capture of each camera and sonar, where they differ. Empty: all have `capture`.
   std::vector<Capture> camera_captures, sonar_captures;
   std::vector<ViewsRequest> views;
   // Moves some objects instead of their tracks and clips; nullptr: none.

@@ -53,7 +53,7 @@ class ImageConsumer {
   Status give(const scene::Scene& scene, const std::vector<Asked>& asked, FrameResult& result);
   bool takes() const { return sink_->takes(); }
   Status finish() { return sink_->finish(); }
-  // Of each wish.
+  // One for each wish.
   const std::vector<Counts>& counts() const { return counts_; }
 
  private:

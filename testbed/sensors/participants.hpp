@@ -1,5 +1,5 @@
-// What moves or watches in a scene, by name: vehicles, divers, objects with a track, a clip or
-// inputs (or carried by one that moves), cameras, sonars; and where each is at a time. Pure
+// Everything that moves or watches in a scene, by name: vehicles, divers, objects with a track, a
+// clip or inputs (or carried by one that moves), cameras, sonars; and where each is at a time. Pure
 // functions; any thread.
 #pragma once
 

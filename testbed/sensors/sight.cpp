@@ -21,7 +21,7 @@ struct Span {
   }
 };
 
-// What is seen, by whose it is and by range.
+// The pixels that see something, by its owner and by range.
 struct Seen {
   Span own, nearer, within, farther;  // others' by the limits
   std::size_t pixels = 0;             // within the aperture
@@ -60,7 +60,7 @@ void each_pixel(const ViewImages& view, See see) {
     }
 }
 
-// What a sonar's beams meet.
+// Counts the surfaces that a sonar's beams meet.
 void look(const scene::Sonar& sonar, const SonarFrame& head, const std::vector<bool>& own,
           Seen& seen) {
   const sonar::Limits& l = head.grid.limits;
@@ -121,14 +121,18 @@ std::string behind_carrier(const scene::Scene& scene, const std::string& name,
 
 std::optional<std::string> blindness(const scene::Scene& scene, const scene::Camera& camera,
                                      const CameraFrame& frame) {
-  if (camera.mount.object < 0) return {};
   const std::vector<bool> own = own_instances(scene, camera.mount.object);
   Seen seen;
+  bool anything = scene.water && (scene.water->scattering || scene.water->surface);
   for (const ViewImages& eye : frame.eyes)
     each_pixel(eye, [&](const Vec3& point, std::uint16_t instance, bool hit) {
       ++seen.pixels;
+      anything = anything || hit;
       if (hit && own[instance]) seen.own.add(-point.z);
     });
+  if (!anything)
+    return fmt::format("camera {}: black, since no opaque surface is in its view: turn or move it",
+                       camera.name);
   if (seen.own.pixels < kAllOfAPicture * seen.pixels || seen.own.pixels == 0) return {};
   return behind_carrier(scene, "camera " + camera.name, camera.mount, seen.own);
 }

@@ -35,13 +35,12 @@ Status SightCheck::accept(const FrameResult& frame) {
   std::vector<std::size_t> cameras, sonars;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     const auto found = std::ranges::find(frame.cameras, scene.cameras[i].name, &CameraFrame::name);
-    if (scene.cameras[i].mount.object < 0 || found == frame.cameras.end() ||
-        !seen_.insert("camera " + found->name).second)
-      continue;
-    if (!brings_geometry(found->eyes))
-      cameras.push_back(i);
-    else if (const auto line = blindness(scene, scene.cameras[i], *found))
-      tell_(*line);
+    if (found == frame.cameras.end() || !seen_.insert("camera " + found->name).second) continue;
+    if (brings_geometry(found->eyes)) {
+      if (const auto line = blindness(scene, scene.cameras[i], *found)) tell_(*line);
+    } else if (scene.cameras[i].mount.object >= 0) {
+      cameras.push_back(i);  // worth another frame, since its carrier may be in its way
+    }
   }
   for (std::size_t i = 0; i < scene.sonars.size(); ++i) {
     const scene::Sonar& sonar = scene.sonars[i];

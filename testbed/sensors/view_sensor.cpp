@@ -47,7 +47,7 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
 }  // namespace
 
 render::GBufferParts parts_of(const Capture& capture) {
-  // What is not read back other passes may read: a view set's handles are whole.
+  // Images that are not read back other passes may read: a view set's handles are whole.
   if (!capture.to_host) return {};
   return {.normal = capture.normals, .label = capture.labels || capture.instances};
 }

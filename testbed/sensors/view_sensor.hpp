@@ -38,7 +38,7 @@ struct ViewsWork {
 // Adds the passes of a view set. label: of errors, "camera NAME".
 Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::string& label,
                                          const ViewsRequest& request, ViewsWork& work);
-// What of a geometry or shape G-buffer a capture needs.
+// The parts of a geometry or shape G-buffer that a capture needs.
 render::GBufferParts parts_of(const Capture& capture);
 // Declares the read-backs of a G-buffer's geometry, as work.capture asks.
 Status bring_geometry(const FrameParts& frame, const std::string& prefix, const render::GBuffer& g,

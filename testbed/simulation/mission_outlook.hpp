@@ -1,4 +1,4 @@
-// What a scene's missions cannot do, told before a dive, and what is left of them after one. Pure
+// The limits of a scene's missions, told before a dive, and the rest of them after one. Pure
 // functions; any thread.
 #pragma once
 

@@ -28,7 +28,7 @@ struct ConsoleOptions {
   const RunKeeper* keeper = nullptr;
 };
 
-// Of the view in this frame.
+// State of the view in this frame.
 struct ConsoleFrame {
   const xr::ViewGroup& group;
   const ViewChoice& choice;

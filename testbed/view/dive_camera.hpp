@@ -11,7 +11,7 @@ inline constexpr double kMaxPitch_rad = radians(89.0);
 // By how much mouse and stick turn the eye; x to starboard, y down.
 Vec2 turn_rad_of(const DiveInput& input, double elapsed_s);
 
-// Of the same place and heading, without pitch and roll.
+// The pose at the same place and heading, without pitch and roll.
 Pose level(const Pose& world_from_view);
 
 class FreeCamera {

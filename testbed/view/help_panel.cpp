@@ -29,7 +29,7 @@ std::string desktop_controls(const xr::ActionDesc& action) {
   return text;
 }
 
-// What rows take at the current font.
+// The height of rows in the current font.
 struct Fit {
   float keys = 0.0f, column = 0.0f;  // widths, pixels
   std::size_t columns = 1, rows = 1;

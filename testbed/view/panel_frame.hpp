@@ -1,4 +1,4 @@
-// What the panels share: their window, colours and lines of text. Dear ImGui calls. Rendering
+// The common parts of panels: their window, colours and lines of text. Dear ImGui calls. Rendering
 // thread.
 #pragma once
 

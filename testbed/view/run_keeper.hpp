@@ -35,7 +35,7 @@ class RunKeeper {
   // A note about a recording that failed by itself, once; empty: none.
   std::string trouble();
 
-  // What is being recorded, and since when; nothing while there is none.
+  // The recording in progress and its start; nothing while there is none.
   struct Recording {
     std::string file;
     double seconds = 0.0;

@@ -23,7 +23,7 @@ class Wearer final : public SampleSource {
 
   // Where the stage lies for a head that is where the wearer recentred.
   Pose world_from_stage(const scene::MotionSource& motion, double time_s) const;
-  // What the wearer does in this frame; frame.world_from_head tells whether he is tracked.
+  // The wearer's acts in this frame; frame.world_from_head tells whether he is tracked.
   void take(const xr::DisplayFrame& frame, const DiveInput& input);
   // Sends it, once a frame, and the limbs of whoever swims by hand. The wearer gets authority over
   // groups of inputs that no other device has. kBadInput if the inbox has no room for the source.

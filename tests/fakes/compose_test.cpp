@@ -177,7 +177,7 @@ TEST_F(Compositor, AViewDrawnBeforeTheHeadTurnedIsTurnedBack) {
   client_.end_frame({&layer});
   const auto read = scene::read_image8(out_ / "frame_0001_view_0.png");
   ASSERT_TRUE(read.ok()) << read.error().message;
-  // What lay ahead lies 10 degrees to the left: 50 - 50 tan 10 = 41.2.
+  // The thing that lay ahead lies 10 degrees to the left: 50 - 50 tan 10 = 41.2.
   double weight = 0, sum = 0;
   for (std::uint32_t x = 0; x < 100; ++x) {
     const double linear = std::pow(read->at(x, 50, 0) / 255.0, 2.2);

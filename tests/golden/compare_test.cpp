@@ -65,7 +65,7 @@ TEST(GoldenCompare, AnImageWithASmallFishPaintedOutFails) {
   EXPECT_LT(difference_of(without, golden, 5).patch_px, 60u);
 }
 
-// What a mask accepts it accepts of masked pixels alone.
+// A mask's larger limit is for masked pixels alone.
 TEST(GoldenCompare, AMaskCountsItsPatchesApart) {
   const ImageU8 golden(40, 20, 1, 100);
   ImageU16 labels(40, 20, 1, 0);

@@ -46,6 +46,22 @@ TEST(SceneSonar, WhatNamesNoSamplingGetsStandardAndOneNoteSaysSo) {
   EXPECT_EQ(scene.notes.size(), 1u);
 }
 
+TEST(SceneSonar, AChosenLevelKnowsTheSmallestTarget) {
+  const test::ScratchFolder scratch;
+  const std::string things =
+      "[[objects]]\nshape = \"sphere\"\nradius_m = 0.02\n"
+      "[[objects]]\nname = \"rod\"\nshape = \"box\"\nsize_m = [0.01, 9, 0.01]\n"
+      "[[objects.sonars]]\nname = \"own\"\n"
+      "[[objects]]\nshape = \"sphere\"\nradius_m = 0.001\ncopies = [[1, 0, 0], [2, 0, 0]]\n"
+      "[[objects]]\nshape = \"plane\"\nsize_m = [9, 9]\n";
+  const Scene scene = scene_of(scratch, things + "[[sonars]]\nname = \"free\"\n");
+  for (const Sonar& sonar : scene.sonars)
+    EXPECT_NEAR(sonar.least_target_m, sonar.name == "free" ? 0.01 : 0.04, 1e-9) << sonar.name;
+  EXPECT_EQ(
+      scene_of(scratch, things + "[[sonars]]\nquality = \"draft\"\n").sonars[0].least_target_m,
+      0.0);
+}
+
 TEST(SceneSonar, EmptyTermsHaveTheirDefaults) {
   const test::ScratchFolder scratch;
   const Sonar sonar =

@@ -62,8 +62,8 @@ std::vector<double> plain_normals(const SonarInput& in) {
   return out;
 }
 
-// What a sonar hears of them: the mean cosine of incidence against the true one's, as a share of
-// it.
+// The echo that a sonar would hear of them: the mean cosine of incidence against the true one's, as
+// a share of it.
 double echo_error(const Shape& shape, const SonarInput& in, std::span<const double> normals) {
   double found = 0.0, wanted = 0.0;
   for (std::uint32_t v = 8; v + 8 < in.height; ++v)

@@ -179,6 +179,32 @@ TEST(SonarQuality, AChosenLevelKeepsTheOutputAndCoarsensNothing) {
     }
 }
 
+// A ball of 3 cm at the end of the range fills a cell of each kind, as far as the count of samples
+// allows.
+TEST(SonarQuality, AChosenLevelIsFineEnoughForTheSmallestTarget) {
+  for (const SonarKind kind : kKinds) {
+    scene::Sonar sonar = sonar_of(kind);
+    sonar.range_max_m = 15.0;
+    sonar.bins_range = 500;
+    sonar.quality = "standard";
+    sonar.quality_chosen = true;
+    scene::Sonar coarse = sonar;
+    ASSERT_TRUE(apply_quality(coarse).ok());
+    sonar.least_target_m = 0.03;
+    ASSERT_TRUE(apply_quality(sonar).ok());
+    const bool cone = kind == SonarKind::kEchoSounder;
+    const double high_rad = cone ? 2.0 * sonar.semi_angle_rad : sonar.elevation_rad;
+    EXPECT_LT(high_rad / sonar.bins_elevation * 15.0, 0.03 / std::sqrt(2.0))
+        << scene::name_of(kind);
+    EXPECT_GE(sonar.gbuffer_scale, 1.0) << scene::name_of(kind);
+    EXPECT_GE(sonar.bins_elevation, coarse.bins_elevation);
+    EXPECT_TRUE(plan_heads(sonar).ok()) << scene::name_of(kind);
+    sonar.least_target_m = 1e-9;  // neither for ever
+    ASSERT_TRUE(apply_quality(sonar).ok());
+    EXPECT_TRUE(plan_heads(sonar).ok()) << scene::name_of(kind);
+  }
+}
+
 // Every device that comes with the program can be had at every level, over all its range.
 TEST(SonarQuality, EveryPresetTakesEveryLevel) {
   for (const auto& entry :

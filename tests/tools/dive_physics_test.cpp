@@ -1,4 +1,4 @@
-// What `neritic dive` says, logs and draws of a dive by physics alone.
+// The words, logs and plots of `neritic dive` for a dive by physics alone.
 #include "tests/tools/dive_physics.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What dives write to go on from or to run again: recordings, their live samples, saved states.
+// Files of dives to go on from or to run again: recordings, their live samples, saved states.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

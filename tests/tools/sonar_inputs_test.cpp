@@ -122,7 +122,7 @@ TEST_F(SonarInputs, NormalsInWorldAxesAreTurnedByTheCamerasPose) {
   std::vector<float> normals;
   for (std::size_t i = 0; i < depth_.size(); ++i) normals.insert(normals.end(), {0.0f, 0.0f, 1.0f});
   ASSERT_TRUE(write_npy(at("world.npy"), normals, {kHeight, kWidth, 3}).ok());
-  // Of OpenCV's camera: right is -y, down is -z, forward is x.
+  // In OpenCV's camera axes: right is -y, down is -z, forward is x.
   write("pose.json",
         R"({"camera_to_world": [[0, 0, 1, 5], [-1, 0, 0, 6], [0, -1, 0, 7], [0, 0, 0, 1]]})");
   write("pose.yaml", "pose:\n  rotation_xyzw: [-0.5, 0.5, -0.5, 0.5]\n");

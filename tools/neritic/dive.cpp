@@ -50,7 +50,7 @@ Status add_view(const DiveFlags& flags, scene::Scene& scene) {
     NERITIC_TRY(const auto size, parse_size("--size", flags.size));
     scene.cameras[0].width = size.first, scene.cameras[0].height = size.second;
   }
-  // What was made for sonars alone is dark.
+  // A scene made for sonars alone is dark.
   if (!scene.sun && scene.lamps.empty() && scene.model_lights.empty()) {
     scene.sun = scene::Sun{};
     scene.notes.push_back(flags.scene +
@@ -164,7 +164,7 @@ std::string unasked_hud(const Screen& screen) {
   return screen.overlay ? "corner" : "";
 }
 
-// Of a frame in ms; 0: quality stays full, whatever a frame takes.
+// The wanted time of a frame, ms; 0: quality stays full, whatever a frame takes.
 double frame_budget_ms(const DiveFlags& flags, const Screen& screen) {
   constexpr double kSoftware_ms = 50.0, kUsualRefresh_hz = 60.0, kHeadsetRefresh_hz = 90.0;
   if (flags.quality.empty() ? flags.headless : flags.quality == "full") return 0.0;

@@ -27,7 +27,7 @@ class DivePlot final : public RowSink {
     const auto drawn = write_picture(path_, dive_picture_data(title_, world_, rows_, *figures_));
     return drawn.ok() ? Status() : Status(drawn.error());
   }
-  // Of the divers; before finish.
+  // Figures of the divers; before finish.
   void set_figures(const std::vector<HumanFigures>& figures) { figures_ = &figures; }
 
  private:

@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 using testbed::FrameTimes;
 
-// Of the run's last frames: more are not told apart.
+// The run's last frames: more are not told apart.
 constexpr std::size_t kFramesInDetail = 3;
 
 double ms_between(TimeNs from, TimeNs to) {

@@ -146,7 +146,8 @@ XrResult attach(Call& call, XrSession handle, const XrSessionActionSetsAttachInf
   return XR_SUCCESS;
 }
 
-// What the person holds at a top-level path, if the client suggested bindings for it.
+// The controller that the person holds at a top-level path, if the client suggested bindings for
+// it.
 std::string current_profile(const Runtime& rt, const Instance& instance, const std::string& top) {
   const Script& script = rt.script;
   std::string profile;

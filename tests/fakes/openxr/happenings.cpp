@@ -1,4 +1,4 @@
-// What happens to a client without a call of its own: changes of state, losses, recentring.
+// Events that reach a client without a call of its own: changes of state, losses, recentring.
 #include <fmt/format.h>
 
 #include <sstream>
@@ -54,7 +54,7 @@ void change_mask(Session& session) {
   }
 }
 
-// What happens to one session. False: no such thing.
+// An event of one session. False: no such thing.
 bool perform_on(Session& session, const std::string& what, std::istringstream& words) {
   const std::map<std::string, XrSessionState> states{
       {"focused", XR_SESSION_STATE_FOCUSED},

@@ -177,7 +177,7 @@ Row row(const char* name, const char* extension, XrResult (*)(Arguments...)) {
 #define NERITIC_XR_ROW(name, function, extension) \
   row<function>(#name, extension, static_cast<PFN_##name>(nullptr))
 
-// What each file brings to the table.
+// The functions that each file adds to the table.
 void add_instance_functions(Table& table);
 void add_view_functions(Table& table);
 void add_vulkan_functions(Table& table);
@@ -228,7 +228,7 @@ std::uint32_t view_count(XrViewConfigurationType type);
 
 // The simulated time of the monotonic clock.
 XrTime real_now(const Runtime& runtime);
-// What happens at a frame, before it is predicted: the script's timed lines.
+// Events of a frame, before it is predicted: the script's timed lines.
 void perform_timed(Call& call, std::uint64_t frame);
 
 // Checks the layers of a frame; draws them where the script asks for it.

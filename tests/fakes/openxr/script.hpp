@@ -1,5 +1,6 @@
-// What the fake headset is and does, read from lines of text (README.md lists them). Lines can be
-// added while a program runs. Times are seconds of simulated time; angles in the text are degrees.
+// The fake headset's properties and acts, read from lines of text (README.md lists them). Lines can
+// be added while a program runs. Times are seconds of simulated time; angles in the text are
+// degrees.
 #pragma once
 
 #include <array>

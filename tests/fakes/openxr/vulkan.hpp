@@ -19,7 +19,7 @@ struct VulkanObjects {
   bool debug_utils = false;
 };
 
-// What the runtime calls on the client's device. Made with a session, destroyed with it.
+// The calls of the runtime on the client's device. Made with a session, destroyed with it.
 class Gpu {
  public:
   Gpu(const VulkanObjects& objects, std::uint32_t family, std::uint32_t index);
@@ -56,23 +56,23 @@ struct Gpu::Functions {
 #define NERITIC_VK_INSTANCE(_)           \
   _(vkGetPhysicalDeviceMemoryProperties) \
   _(vkGetDeviceProcAddr) _(vkCreateDebugUtilsMessengerEXT) _(vkDestroyDebugUtilsMessengerEXT)
-#define NERITIC_VK_DEVICE(_)                                                                 \
-  _(vkGetDeviceQueue)                                                                        \
-  _(vkCreateImage)                                                                           \
-  _(vkDestroyImage)                                                                          \
-  _(vkGetImageMemoryRequirements)                                                            \
-  _(vkCreateBuffer)                                                                          \
-  _(vkDestroyBuffer)                                                                         \
-  _(vkGetBufferMemoryRequirements)                                                           \
-  _(vkAllocateMemory)                                                                        \
-  _(vkFreeMemory)                                                                            \
-  _(vkBindImageMemory) _(vkBindBufferMemory) _(vkMapMemory) _(vkUnmapMemory)                 \
-      _(vkInvalidateMappedMemoryRanges) _(vkCreateCommandPool) _(vkDestroyCommandPool)       \
-          _(vkAllocateCommandBuffers) _(vkResetCommandPool) _(vkBeginCommandBuffer)          \
-              _(vkEndCommandBuffer) _(vkCmdPipelineBarrier) _(vkCmdCopyImageToBuffer)        \
-                  _(vkCmdClearColorImage) _(vkCmdClearDepthStencilImage) _(vkQueueSubmit)    \
-                      _(vkCreateFence) _(vkDestroyFence) _(vkWaitForFences) _(vkResetFences) \
-                          _(vkDeviceWaitIdle)
+#define NERITIC_VK_DEVICE(_)                                                              \
+  _(vkGetDeviceQueue)                                                                     \
+  _(vkCreateImage)                                                                        \
+  _(vkDestroyImage)                                                                       \
+  _(vkGetImageMemoryRequirements)                                                         \
+  _(vkCreateBuffer)                                                                       \
+  _(vkDestroyBuffer)                                                                      \
+  _(vkGetBufferMemoryRequirements)                                                        \
+  _(vkAllocateMemory)                                                                     \
+  _(vkFreeMemory)                                                                         \
+  _(vkBindImageMemory)                                                                    \
+  _(vkBindBufferMemory) _(vkMapMemory) _(vkUnmapMemory) _(vkInvalidateMappedMemoryRanges) \
+      _(vkCreateCommandPool) _(vkDestroyCommandPool) _(vkAllocateCommandBuffers)          \
+          _(vkResetCommandPool) _(vkBeginCommandBuffer) _(vkEndCommandBuffer)             \
+              _(vkCmdPipelineBarrier) _(vkCmdCopyImageToBuffer) _(vkCmdClearColorImage)   \
+                  _(vkCmdClearDepthStencilImage) _(vkQueueSubmit) _(vkCreateFence)        \
+                      _(vkDestroyFence) _(vkWaitForFences) _(vkResetFences) _(vkDeviceWaitIdle)
 #define NERITIC_VK_MEMBER(name) PFN_##name name = nullptr;
   NERITIC_VK_INSTANCE(NERITIC_VK_MEMBER)
   NERITIC_VK_DEVICE(NERITIC_VK_MEMBER)

@@ -1,4 +1,4 @@
-// What the wearer sees: each view by the pinhole equations of its own, asymmetric frustum, from
+// The wearer's sight: each view by the pinhole equations of its own, asymmetric frustum, from
 // where the head is when the picture is shown; in every format of the runtime's images.
 #include <algorithm>
 

@@ -192,7 +192,7 @@ TEST(LoopClock, ARealClockFollowsTheDisplayOrWaitsAndDropsWhatIsTooLate) {
   for (int i = 0; i < 5; ++i) waiting.next(std::nullopt);
   EXPECT_GE(now_ns() - begun_ns, 50'000'000);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  // What is left to catch up of a busy machine's first frames comes before the late ones.
+  // The time still to catch up of a busy machine's first frames comes before the late ones.
   for (int i = 0; i < 10; ++i) waiting.next(std::nullopt);
   EXPECT_GE(waiting.dropped(), 10u);
 }

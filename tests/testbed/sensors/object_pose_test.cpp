@@ -1,5 +1,5 @@
-// What devices move, in pictures and echoes: a camera sees it where it was measured, and a sonar on
-// it hears from there, at its velocity.
+// Objects that devices move, in pictures and echoes: a camera sees it where it was measured, and a
+// sonar on it hears from there, at its velocity.
 #include <gtest/gtest.h>
 
 #include "engine/core/files.hpp"

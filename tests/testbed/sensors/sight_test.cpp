@@ -124,6 +124,21 @@ TEST_F(Sight, EmptyWaterIsToldAlsoBesideNoise) {
       << lines[0];
 }
 
+TEST_F(Sight, ACameraBeforeWhichNothingIsSaysThatItIsBlack) {
+  scene::Scene scene = wall(3.0, short_sonar(SonarKind::kImaging));
+  scene.sonars.clear();
+  scene.cameras.resize(1);
+  scene.cameras[0].name = "eye";
+  scene.cameras[0].width = scene.cameras[0].height = 8;
+  EXPECT_THAT(told(device(), scene, Capture{}), ::testing::IsEmpty());
+  scene.cameras[0].mount.pose.rotation = glm::angleAxis(kPi, Vec3(0, 1, 0));
+  EXPECT_THAT(told(device(), scene, Capture{}),
+              ::testing::ElementsAre("camera eye: black, since no opaque surface is in its view: "
+                                     "turn or move it"));
+  scene.water = scene::Water{.scattering = true};  // open water is a picture
+  EXPECT_THAT(told(device(), scene, Capture{}), ::testing::IsEmpty());
+}
+
 TEST_F(Sight, WithoutACarrierACameraIsNeverRenderedTwice) {
   scene::Scene scene = wall(3.0, short_sonar(SonarKind::kImaging));
   scene.cameras.resize(1);

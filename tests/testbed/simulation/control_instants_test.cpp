@@ -124,7 +124,7 @@ TEST(ControlInstants, SensorsSampleAtTheirOwnTimesWhateverTheRateOfThePhysics) {
         << rate_hz;
     EXPECT_LT(glm::distance(read.dvl.value.velocity_m_s, wanted.dvl.value.velocity_m_s), 1e-6);
     EXPECT_NEAR(read.heading_rad.value, wanted.heading_rad.value, 1e-6);
-    // What it takes itself to do, and so what it does.
+    // Its own estimate, and the one of a run from the true start.
     EXPECT_LT(glm::distance(dive.world->estimate(dive.state(), 0)->position_ned_m,
                             truth.world->estimate(truth.state(), 0)->position_ned_m),
               2e-6)

@@ -13,7 +13,7 @@ struct Drawn {
   Quat head;
 };
 
-// Of the model that is drawn: the right hand, and the eyes behind its mask.
+// Places on the drawn model: the right hand, and the eyes behind its mask.
 Drawn drawn_diver(const TestDive& dive) {
   const PhysicsHuman& human = dive.world->humans()[0];
   const HumanPhysics& state = dive.state().humans()[0];

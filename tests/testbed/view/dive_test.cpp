@@ -163,7 +163,7 @@ TEST(Dive, SceneWithoutCameraOrSonarIsSeenAndPaysForNoSonar) {
   EXPECT_GT(drawn_pixels(*image), 200u);  // the ball
 }
 
-// What was made for sonars alone is seen from its first sonar, by a sun that the view adds.
+// A scene made for sonars alone is seen from its first sonar, by a sun that the view adds.
 TEST(Dive, ASceneOfSonarsAloneIsLit) {
   const test::ScratchFolder scratch;
   std::ofstream(scratch / "box.toml")

@@ -59,7 +59,7 @@ TEST(PanelLayout, FromTheSmallestWindowOnAllHavePlacesAndWideOnesShowEverySonar)
       EXPECT_GE(layout.status.height, 200.0f) << width;
       const std::size_t least = width < 1280 ? 1 : 3;
       EXPECT_GE(layout.fans.size(), std::min(least, fans.size())) << width;
-      // What a diver looks at: the middle of the picture.
+      // A diver looks at the middle of the picture.
       const PanelRect middle{0.4f * width, 0.4f * height, 0.1f * width, 0.2f * height};
       for (const PanelRect& rect : all_of(layout))
         EXPECT_FALSE(width >= 1280 && overlap(rect, middle)) << width;

@@ -19,7 +19,7 @@ scene::Scene shipped(const char* name) {
   return scene::load_scene(test::source_dir() / "assets/scenes" / name).value();
 }
 
-// What the view asks of each frame, beside where the motion source has the things of the scene.
+// The view's request for each frame, beside where the motion source has the things of the scene.
 class WatchedView final : public FrameView {
  public:
   explicit WatchedView(DiveView& view) : view_(view) {}
