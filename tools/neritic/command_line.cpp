@@ -391,7 +391,10 @@ void add_tradeoff(CLI::App& app, Run& run) {
   auto flags = std::make_shared<TradeoffFlags>();
   CLI::App* command = app.add_subcommand(
       "tradeoff", "measures the error of a model against its cost, over all of its settings");
-  command->add_option("what", flags->what, "sonar, physics, swim, deco, physiology or modem")->required();
+  command
+      ->add_option("what", flags->what,
+                   "sonar, physics, navigation, swim, deco, physiology or modem")
+      ->required();
   command
       ->add_option("--out", flags->out,
                    "folder for the tables (.csv, .md), their pictures and the quality levels")

@@ -10,6 +10,7 @@
 #include "tools/neritic/flags.hpp"
 #include "tools/tradeoff/deco_tradeoff.hpp"
 #include "tools/tradeoff/modem_tradeoff.hpp"
+#include "tools/tradeoff/navigation_tradeoff.hpp"
 #include "tools/tradeoff/physics_tradeoff.hpp"
 #include "tools/tradeoff/physiology_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
@@ -34,6 +35,23 @@ Result<std::string> trade_physics(const TradeoffFlags& flags) {
   NERITIC_TRY(const PhysicsTradeoff tradeoff, run_physics_tradeoff(options));
   NERITIC_TRY(const bool drawn, write_physics_tradeoff(flags.out, tradeoff));
   return files(flags, "physics", drawn);
+}
+
+Result<std::string> trade_navigation(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return refusal("tradeoff navigation", fmt::format("kind '{}'", flags.kind), "none");
+  NavigationTradeoffOptions options;
+  options.quick = flags.quick;
+  std::error_code none;
+  if (!std::filesystem::exists(options.vehicle, none))
+    return refusal("tradeoff navigation",
+                   fmt::format("no {} in this folder", options.vehicle.string()),
+                   "a start in the project's folder");
+  Progress progress("tradeoff navigation", steps(options));
+  options.step = [&] { progress.step(); };
+  NERITIC_TRY(const NavigationTradeoff tradeoff, run_navigation_tradeoff(options));
+  NERITIC_TRY(const bool drawn, write_navigation_tradeoff(flags.out, tradeoff));
+  return files(flags, "navigation", drawn);
 }
 
 Result<std::string> trade_swim(const TradeoffFlags& flags) {
@@ -133,12 +151,13 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
   if (flags.what == "sonar") return trade_sonar(flags);
   if (flags.what == "physics") return trade_physics(flags);
+  if (flags.what == "navigation") return trade_navigation(flags);
   if (flags.what == "swim") return trade_swim(flags);
   if (flags.what == "physiology") return trade_physiology(flags);
   if (flags.what == "deco") return trade_deco(flags);
   if (flags.what == "modem") return trade_modem(flags);
   return refusal("tradeoff", fmt::format("'{}'", flags.what),
-                 "sonar, physics, swim, deco, physiology or modem");
+                 "sonar, physics, navigation, swim, deco, physiology or modem");
 }
 
 }  // namespace neritic::tools
