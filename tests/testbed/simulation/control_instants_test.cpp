@@ -2,6 +2,7 @@
 // missions against one flown by RK4 in steps of a twentieth of a control period.
 #include <cmath>
 
+#include "rov/guidance.hpp"
 #include "rov/thrust_priority.hpp"
 #include "testbed/simulation/instants.hpp"
 #include "tests/testbed/simulation/dives.hpp"
@@ -51,7 +52,8 @@ std::vector<Vec3> flown_by_periods(const PhysicsWorld& world, double seconds) {
   const auto in_each = static_cast<std::int64_t>(std::llround(kEach_s / gains.period_s));
   for (std::int64_t k = 1; k <= periods; ++k) {
     const double time_s = static_cast<double>(k - 1) * gains.period_s;
-    const rov::Setpoint setpoint = rov.mission->update(all, state, time_s, mission);
+    const rov::Setpoint setpoint = rov::lean(rov.mission->update(all, state, time_s, mission),
+                                             state, gains.period_s, mission.lean_ned_m);
     rov::Inputs inputs =
         rov::level_inputs(rov.vehicle, rov.kind.allocator, gains, setpoint, state, control);
     inputs.current_ned_m_s = rov::ned_from_world(Vec3(0.1, 0.0, 0.15));
