@@ -9,7 +9,7 @@
 namespace neritic::testbed {
 namespace {
 
-constexpr double kWater_kg_m3 = 1025.0;
+constexpr double kWater_kg_m3 = 1028.0;  // a scene's, unless it says otherwise
 
 rov::Vec6 largest_wrench(const rov::Allocator& allocator) {
   rov::Vec6 out;
@@ -45,6 +45,14 @@ EnvModel::EnvModel(rov::VehicleFile file, rov::Vehicle vehicle, double step_s,
     constexpr int kFirst_us = 1000, kLast_us = 2000;
     for (int us = kFirst_us; us <= kLast_us; ++us)
       thrust_by_us_.push_back(file_.curve->thrust_n(us, file_.voltage_v));
+    constexpr int kBuckets = 1024;
+    bucket_n_ = (thrust_by_us_.back() - thrust_by_us_.front()) / kBuckets;
+    for (int i = 0; i <= kBuckets + 1; ++i) {
+      // A bucket earlier, so that a rounded quotient never begins too late.
+      const double from_n = thrust_by_us_.front() + (i - 1) * bucket_n_;
+      first_at_.push_back(static_cast<std::uint32_t>(
+          std::ranges::lower_bound(thrust_by_us_, from_n) - thrust_by_us_.begin()));
+    }
   }
 }
 
@@ -67,10 +75,12 @@ Result<std::unique_ptr<const EnvModel>> EnvModel::read(const std::filesystem::pa
 // As ThrustCurve::realised_n: between two whole microseconds the nearer one, in the dead band none.
 double EnvModel::realised_n(double command_n) const {
   if (thrust_by_us_.empty() || command_n == 0.0) return command_n;
-  const auto above = std::ranges::lower_bound(thrust_by_us_, command_n);
-  if (above == thrust_by_us_.end()) return thrust_by_us_.back();
-  if (above == thrust_by_us_.begin()) return thrust_by_us_.front();
-  const double high = *above, low = *(above - 1);
+  if (!(command_n > thrust_by_us_.front())) return thrust_by_us_.front();
+  if (command_n >= thrust_by_us_.back()) return thrust_by_us_.back();
+  std::size_t above =
+      first_at_[static_cast<std::size_t>((command_n - thrust_by_us_.front()) / bucket_n_)];
+  while (thrust_by_us_[above] < command_n) ++above;
+  const double high = thrust_by_us_[above], low = thrust_by_us_[above - 1];
   return high - command_n <= command_n - low ? high : low;
 }
 

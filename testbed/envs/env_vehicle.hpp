@@ -62,6 +62,8 @@ class EnvModel {
   rov::Vec6 most_wrench_;
   double step_s_;
   EnvMethod method_;
+  std::vector<std::uint32_t> first_at_;  // by buckets of force: where to look from
+  double bucket_n_ = 1.0;
   std::vector<double> thrust_by_us_;  // one a whole microsecond; empty: no table
 };
 

@@ -1,0 +1,268 @@
+"""The Python package: its examples run and do what they say, and what they do not show."""
+
+import asyncio
+import contextlib
+import importlib.util
+import inspect
+import io
+import os
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import neritic
+from neritic import tradeoff
+
+ROOT = Path(__file__).resolve().parents[2]
+MISSION = str(ROOT / "assets/scenes/mission.toml")
+MEASURED = str(ROOT / "assets/scenes/mission_measured.toml")
+
+
+def example(name):
+    spec = importlib.util.spec_from_file_location(name, ROOT / f"tools/python/examples/{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def quietly(call, *arguments):
+    with contextlib.redirect_stdout(io.StringIO()):
+        return call(*arguments)
+
+
+class Examples(unittest.TestCase):
+    def setUp(self):
+        os.chdir(ROOT)
+
+    def test_a_square_is_flown_to_each_corner(self):
+        self.assertLess(quietly(example("square").main), 0.15)
+
+    def test_a_vehicle_keeps_beside_a_diver_who_is_seen_late(self):
+        self.assertAlmostEqual(quietly(example("follow_diver").main), 2.0, delta=0.5)
+
+    def test_a_controller_of_ones_own_holds_the_depth(self):
+        self.assertLess(abs(quietly(example("own_controller").main)), 0.2)
+
+    def test_a_sonar_dataset_is_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(quietly(example("sonar_dataset").main, MISSION, folder, 2), 2)
+            files = sorted(Path(folder).glob("*.npz"))
+            self.assertEqual(len(files), 2)
+            data = np.load(files[0])
+            self.assertEqual(data["echoes"].dtype, np.float32)
+            self.assertGreater(data["echoes"].max(), 0.0)
+            self.assertAlmostEqual(np.linalg.norm(data["orientation"]), 1.0, places=6)
+
+
+class Worlds(unittest.TestCase):
+    def test_the_same_seed_and_commands_give_the_same_hashes(self):
+        hashes = []
+        for _ in range(2):
+            world = neritic.open(MEASURED, seed=7)
+            world["rov"].velocity(0.3, yaw_rate=0.1)
+            world.tick(480)
+            hashes.append(world.hash)
+        self.assertEqual(*hashes)
+        self.assertNotEqual(neritic.open(MEASURED, seed=8).hash, neritic.open(MEASURED, seed=7).hash)
+
+    def test_a_saved_state_goes_on_with_the_same_hashes(self):
+        world = neritic.open(MISSION, seed=1)
+        world.tick(100)
+        state = world.save()
+        world.tick(100)
+        ended = world.hash
+        world.restore(state)
+        self.assertEqual(world.step, 100)
+        world.tick(100)
+        self.assertEqual(world.hash, ended)
+
+    def test_observations_do_not_change_and_say_where_they_come_from(self):
+        world = neritic.open(MEASURED, seed=1)
+        before = world.tick(48)
+        imu = before["rov/imu"]
+        kept = imu.linear_acceleration
+        copied, sequence = kept.copy(), imu.sequence
+        world.tick(48)
+        self.assertTrue((kept == copied).all())
+        self.assertEqual(imu.sequence, sequence)
+        self.assertEqual(imu.frame, "rov/imu")
+        self.assertLessEqual(imu.stamp, imu.arrival)
+        self.assertFalse(kept.flags.writeable)
+        self.assertGreater(world.observe()["rov/imu"].sequence, sequence)
+
+    def test_a_link_delays_and_loses_on_arrival_alone(self):
+        world = neritic.open(MEASURED, seed=1)
+        world.link("rov/imu", delay=0.1, loss=0.3)
+        arrived = []
+        world.on("rov/imu", arrived.append)
+        world.tick(480)
+        numbers = [reading.sequence for reading in arrived]
+        self.assertEqual(numbers, sorted(numbers))
+        lost = 1 - len(numbers) / (numbers[-1] + 1)
+        self.assertAlmostEqual(lost, 0.3, delta=0.1)
+        self.assertTrue(all(abs(r.arrival - r.stamp - 0.1) < 0.005 for r in arrived))
+
+    def test_an_asynchronous_iterator_ticks(self):
+        async def run():
+            world = neritic.open(MISSION, seed=1)
+            return [obs.step async for obs in world.ticks(10, count=3)]
+
+        self.assertEqual(asyncio.run(run()), [10, 20, 30])
+
+    def test_other_threads_run_while_a_world_steps(self):
+        world = neritic.open(MISSION, seed=1)
+        counted, done = [0], threading.Event()
+
+        def count():
+            while not done.is_set():
+                counted[0] += 1
+                time.sleep(0.0005)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        world.tick(20000)
+        done.set()
+        thread.join()
+        self.assertGreater(counted[0], 10)
+
+    def test_an_image_is_the_same_memory_and_outlives_its_world(self):
+        world = neritic.open(MISSION, seed=1)
+        world.images("rov_sonar/echoes")
+        image = world.tick(1)["rov_sonar/echoes"]
+        pixels = image.pixels
+        self.assertTrue(np.shares_memory(pixels, image.pixels))
+        self.assertFalse(pixels.flags.owndata)
+        begun = time.perf_counter()
+        for _ in range(100):
+            image.pixels
+        self.assertLess((time.perf_counter() - begun) / 100, 0.2e-3)
+        total = float(pixels.sum())
+        world.close()
+        del world, image
+        self.assertEqual(float(pixels.sum()), total)
+        self.assertGreater(total, 0.0)
+
+    def test_a_recording_is_made(self):
+        world = neritic.open(MISSION, seed=1)
+        with tempfile.TemporaryDirectory() as folder:
+            with world.record(Path(folder) / "run"):
+                world["rov"].goto(5, 5, -5)
+                world.tick(240)
+            self.assertEqual((Path(folder) / "run.log").read_bytes()[:8], b"NRTCLOG3")
+
+    def test_refusals_are_one_line_that_says_what_is_accepted(self):
+        world = neritic.open(MISSION, seed=1)
+        rov = world["rov"]
+        for call in (lambda: neritic.open("nowhere.toml"), lambda: world["ROV"],
+                     lambda: world.truth("rob"), lambda: rov.thrusters([1.0]),
+                     lambda: rov.goto(float("nan"), 0, 0), lambda: rov.command("fly", [1]),
+                     lambda: world.link("rov/collision", loss=2), lambda: world.images("rov/imu"),
+                     lambda: world.restore(b"nothing"), lambda: neritic.vector("sleep", 2),
+                     lambda: neritic.vector("hover", 2, randomise={"colour": 1}),
+                     lambda: neritic.vector("hover", 0), lambda: neritic.vector("hover", 2).step(np.zeros(3))):
+            with self.assertRaises(neritic.BadInput) as caught:
+                call()
+            line = str(caught.exception)
+            self.assertNotIn("\n", line)
+        with self.assertRaises(KeyError):
+            world.tick()["rov/imu"]
+        world.close()
+        with self.assertRaises(neritic.BadInput):
+            world.tick()
+
+    def test_everything_public_is_documented(self):
+        for name in neritic.__all__:
+            thing = getattr(neritic, name)
+            self.assertTrue(inspect.getdoc(thing), name)
+            if inspect.isclass(thing):
+                for member, value in vars(thing).items():
+                    if not member.startswith("_") and (callable(value) or isinstance(value, property)):
+                        self.assertTrue(inspect.getdoc(value), f"{name}.{member}")
+
+
+class Environments(unittest.TestCase):
+    def test_arrays_are_written_in_place_and_contiguous(self):
+        env = neritic.vector("hover", 64)
+        first, info = env.reset(seed=1)
+        observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+        for name, array in observation.items():
+            self.assertIs(array, first[name])
+            self.assertTrue(array.flags.c_contiguous)
+            self.assertEqual(array.dtype, np.float32)
+        self.assertTrue(env.observation_space.contains(observation))
+        self.assertEqual((reward.shape, terminated.dtype, truncated.dtype), ((64,), np.bool_, np.bool_))
+
+    def test_the_same_seed_gives_the_same_bits_on_any_number_of_threads(self):
+        for task in ("hover", "track", "dock", "follow", "shark"):
+            ends = []
+            for threads in (1, 2, 5):
+                env = neritic.vector(task, 200, threads=threads, max_steps=20)
+                env.reset(seed=3)
+                random = np.random.default_rng(1)
+                for _ in range(50):
+                    obs, reward, *_ = env.step(random.uniform(-1, 1, (200, 8)))
+                ends.append(b"".join(a.tobytes() for a in obs.values()) + reward.tobytes())
+            self.assertEqual(ends[0], ends[1], task)
+            self.assertEqual(ends[0], ends[2], task)
+
+    def test_episodes_end_and_begin_anew(self):
+        for mode in ("next_step", "same_step"):
+            env = neritic.vector("hover", 3, max_steps=5, autoreset=mode, control="wrench")
+            still = np.zeros((3, 6), np.float32)
+            for _ in range(4):
+                *_, truncated, info = env.step(still)
+                self.assertFalse(truncated.any())
+            obs, _, _, truncated, info = env.step(still)
+            self.assertTrue(truncated.all())
+            last = {k: v.copy() for k, v in obs.items()}
+            if mode == "same_step":
+                self.assertTrue(info["_final_obs"].all())
+                self.assertFalse((info["final_obs"]["goal"] == last["goal"]).all())
+                continue
+            obs, reward, terminated, truncated, _ = env.step(still)
+            self.assertFalse(truncated.any() or terminated.any() or reward.any())
+            self.assertGreater(np.abs(obs["goal"] - last["goal"]).max(), 0.1)
+
+    def test_environments_differ_only_as_they_are_told(self):
+        same = neritic.vector("hover", 2, randomise=False)
+        obs, _ = same.reset(seed=[5, 6])
+        self.assertGreater(np.abs(obs["goal"][0] - obs["goal"][1]).max(), 0.0)  # places do
+        self.assertEqual(obs["motion"][0, :3].tolist(), [0, 0, 0])  # no noise
+        noisy, _ = neritic.vector("hover", 2).reset(seed=5)
+        self.assertGreater(np.abs(noisy["motion"][0, :3]).max(), 0.0)
+
+    def test_each_task_can_be_done(self):
+        # A damped spring to the goal, with the wrench that it asks for.
+        floors = {"hover": 0.8, "track": 0.5, "dock": 0.8, "follow": 0.6, "shark": 0.8}
+        for task, floor in floors.items():
+            env = neritic.vector(task, 64, control="wrench", randomise={"current_m_s": 0.1}, max_steps=400)
+            obs, _ = env.reset(seed=2)
+            good = np.zeros(64, bool)
+            failed = np.zeros(64, bool)
+            for _ in range(400):
+                goal, motion = obs["goal"], obs["motion"]
+                force = 0.6 * goal[:, :3] + 0.6 * goal[:, 3:6]
+                if task == "dock":  # to the mouth first, then in
+                    aside = np.linalg.norm(goal[:, 1:3], axis=1, keepdims=True)
+                    force = np.where(aside > 0.15, 0.4 * goal[:, 9:], 0.3 * goal[:, :3]) - 0.8 * motion[:, :3]
+                torque = 1.0 * goal[:, 6:9] - 0.5 * motion[:, 3:6]
+                obs, reward, terminated, truncated, _ = env.step(np.hstack([force, torque]))
+                if task == "dock":
+                    good |= (reward == 10.0) & ~failed
+                failed |= reward == -10.0
+            if task != "dock":
+                near = 0.5 if task == "hover" else 1.0
+                good = ~failed if task == "shark" else ~failed & (np.linalg.norm(obs["goal"][:, :3], axis=1) < near)
+            self.assertGreater(good.mean(), floor, f"{task}: {good.mean()}")
+
+    def test_it_moves_as_the_simulation_of_a_scene(self):
+        self.assertLess(tradeoff.error_against_scene(substeps=2, seconds=4.0), 0.01)
+        self.assertLess(tradeoff.error_against_scene(substeps=8, seconds=4.0), 0.001)
+
+
+if __name__ == "__main__":
+    unittest.main()
