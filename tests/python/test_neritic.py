@@ -152,7 +152,7 @@ class Worlds(unittest.TestCase):
             with world.record(Path(folder) / "run"):
                 world["rov"].goto(5, 5, -5)
                 world.tick(240)
-            self.assertEqual((Path(folder) / "run.log").read_bytes()[:8], b"NRTCLOG3")
+            self.assertEqual((Path(folder) / "run.mcap").read_bytes()[:8], b"\x89MCAP0\r\n")
 
     def test_refusals_are_one_line_that_says_what_is_accepted(self):
         world = neritic.open(MISSION, seed=1)
