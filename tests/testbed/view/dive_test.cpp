@@ -251,6 +251,47 @@ TEST(Dive, LogRecordingAndStateDoNotDependOnWhoLooks) {
       << replay.out;
 }
 
+// A recording made without pictures gives later those that the run would have given, bit for bit;
+// and those of sensors and scenes that it never had.
+TEST(Dive, ARecordingIsRenderedLaterAlsoByOtherSensorsAndElsewhere) {
+  const test::ScratchFolder scratch;
+  const std::string scene = write_flight(scratch), at = scratch.path().string();
+  const Outcome run = dive(
+      scratch, "", fmt::format("'{}' --headless --seconds 1.01 --record {}/a.mcap", scene, at));
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto render = [&](const std::string& what, const std::string& out) {
+    return neritic(scratch, "", fmt::format("render {} --out {}/{}", what, at, out));
+  };
+  const Outcome then = render("'" + scene + "' --frames 5", "then");
+  if (test::may_skip_without_device()) GTEST_SKIP() << then.err;
+  ASSERT_EQ(then.status, 0) << then.err;
+  const std::string replay = fmt::format("--replay {}/a.mcap ", at);
+  const Outcome later = render(replay + "--frames 5", "later");
+  ASSERT_EQ(later.status, 0) << later.err;
+  const std::string first = text_of(scratch / "then/frame_0000/rov_eye/depth.npy");
+  for (const char* file : {"frame_0004/rov_eye/depth.npy", "frame_0004/rov_sonar/sonar.npy"}) {
+    const std::string pixels = text_of(scratch / "then" / file);
+    EXPECT_GT(pixels.size(), 1000u) << file;
+    EXPECT_NE(pixels, first) << file;  // it moved
+    EXPECT_EQ(text_of(scratch / "later" / file), pixels) << file;
+  }
+  // Another sonar, which the scene never had, and no more frames than were recorded.
+  ASSERT_TRUE(write_text(scratch / "more.toml",
+                         "[[sonars]]\nname = \"second\"\non = \"rov\"\nposition_m = [0, 0, -0.4]\n"
+                         "range_m = [0.5, 8]\nazimuth_deg = 40\nelevation_deg = 10\n"
+                         "bins = [40, 8, 8]\nrate_hz = 4\n")
+                  .ok());
+  const Outcome other =
+      render(replay + fmt::format("--add {}/more.toml --sensor second", at), "other");
+  ASSERT_EQ(other.status, 0) << other.err;
+  EXPECT_FALSE(text_of(scratch / "other/frame_0004/second/sonar.npy").empty());
+  EXPECT_FALSE(std::filesystem::exists(scratch / "other/frame_0005"));
+  const Outcome longer = render(replay + "--sensor rov_sonar --frames 500", "longer");
+  EXPECT_EQ(longer.status, 2);
+  EXPECT_NE(longer.err.find("--frames: found 500; accepted: up to "), std::string::npos)
+      << longer.err;
+}
+
 // Its simulation has a thread of its own, and ends with the same step as one without a window.
 TEST(Dive, AWindowKeepsTheLogOfThatManySecondsAndItsRecordingReplays) {
   if (!has_program("xvfb-run")) GTEST_SKIP() << "no xvfb-run (Debian package xvfb)";
