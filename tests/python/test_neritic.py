@@ -260,7 +260,7 @@ class Environments(unittest.TestCase):
             self.assertGreater(good.mean(), floor, f"{task}: {good.mean()}")
 
     def test_it_moves_as_the_simulation_of_a_scene(self):
-        self.assertLess(tradeoff.error_against_scene(substeps=2, seconds=4.0), 0.01)
+        self.assertLess(tradeoff.error_against_scene(substeps=1, seconds=4.0), 0.01)
         self.assertLess(tradeoff.error_against_scene(substeps=8, seconds=4.0), 0.001)
 
 

@@ -136,7 +136,7 @@ class VectorEnv:
 
 
 def vector(task: str, num_envs: int = 1, *, vehicle: Union[None, str, os.PathLike[str]] = None,
-           step_s: float = 0.04, max_steps: int = 500, method: str = "split", substeps: int = 2,
+           step_s: float = 0.04, max_steps: int = 500, method: str = "split", substeps: int = 1,
            thrust_table: bool = True, randomise: Union[bool, Mapping[str, float]] = True,
            control: str = "thrusters", autoreset: str = "next_step", copy: bool = False,
            threads: int = 0) -> VectorEnv:
