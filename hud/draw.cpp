@@ -51,7 +51,7 @@ void draw_wrist(Painter& p, const Shown& s) {
           14.0,
           depth_tone(s)});
   p.ascent_bar({262.0, 28.0, 34.0, 108.0}, s, 16.0);
-  draw_limit(p, {310.0, 20.0, 152.0, 122.0}, s, s.in_stops ? 40.0 : 54.0, 14.0);
+  draw_limit(p, {310.0, 20.0, 152.0, 122.0}, s, s.in_stops ? 40.0 : 54.0, s.in_stops ? 12.0 : 14.0);
   p.line(20.0, 149.0, 460.0, 149.0, 1.5, kFaint);
   p.cell({{18.0, 154.0, 150.0, 74.0}, "TIME", s.dive_time.view(), "", 30.0, 13.0});
   if (s.in_stops)

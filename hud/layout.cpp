@@ -33,6 +33,7 @@ const std::array<Layout, 4>& all() {
         .lock_from_panel = {{0.0, -0.30, -0.95}, from_yaw_pitch_roll(0.0, -0.30, 0.0)},
         .head_from_panel = {{0.0, -0.30, -0.95}, from_yaw_pitch_roll(0.0, -0.30, 0.0)},
         .size_m = {0.72, 0.105},
+        .radius_m = 1.0,
         .viewing_m = 1.0,
         .window = {.height = 0.155, .across = 0.5, .down = 0.97}},
        {.name = "corner",
@@ -53,6 +54,7 @@ const std::array<Layout, 4>& all() {
         .lock_from_panel = {{0.0, 1.5, -1.6}},
         .head_from_panel = {{0.0, 0.0, -1.6}},
         .size_m = {1.44, 0.81},
+        .radius_m = 1.6,
         .viewing_m = 1.6,
         .window = {.height = 1.0, .across = 0.5, .down = 0.5}}}};
   return table;

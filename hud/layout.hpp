@@ -32,6 +32,7 @@ struct Layout {
   Pose lock_from_panel;  // of its centre: x right, y up, z to the viewer
   Pose head_from_panel;  // where the lock's frame is not tracked
   Vec2 size_m{1.0};
+  double radius_m = 0.0;   // bent sideways around the eye; 0: flat
   double viewing_m = 1.0;  // from the eye to the panel's centre
   WindowPlace window;
 };

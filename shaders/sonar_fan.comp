@@ -47,7 +47,7 @@ void main() {
     sum += value;
     inside += 1.0;
   }
-  float part = inside > 0.0 && full_scale > 0.0 ? sum / inside / full_scale : 0.0;
+  float part = inside > 0.0 && full_scale > 0.0 ? c.gain * sum / inside / full_scale : 0.0;
   vec3 rgb = copper(part > 0.0 ? pow(part, c.gamma) : 0.0);
   imageStore(picture, ivec3(at, 0), vec4(rgb, inside / 4.0));
 }

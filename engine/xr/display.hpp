@@ -85,7 +85,9 @@ struct PanelLayer {
   Lock lock = Lock::kHead;
   Pose pose;         // of its centre in the head's frame or the world's: x right, y up, z to the
                      // viewer
-  Vec2 size_m{1.0};  // width and height
+  Vec2 size_m{1.0};  // width and height; of a bent one along the arc
+  // Bent sideways around its viewer, by this radius, where the display can do that; 0: flat.
+  double radius_m = 0.0;
   // Disjoint; the picture is clear outside of them, so that a display may leave that out.
   std::vector<PanelPart> parts{PanelPart{}};
 };

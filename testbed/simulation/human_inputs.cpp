@@ -1,6 +1,7 @@
 // The effect of a diver's groups of inputs in a step (human_world.hpp).
 #include "diver/frames.hpp"
 #include "diver/reach.hpp"
+#include "testbed/samples/riding.hpp"
 #include "testbed/simulation/human_world.hpp"
 
 namespace neritic::testbed {
@@ -16,14 +17,20 @@ Vec3 place_in_body(const diver::HumanState& state, const Pose& tracked) {
          (diver::ned_from_world(tracked.position_m) - state.root.position_ned_m);
 }
 
+// In the world, of a pose that rides with the body or is there already.
+Pose world_from(const diver::HumanState& state, const Pose& pose, bool rides) {
+  return rides ? diver::standing_pose(state.root.position_ned_m, state.root.attitude) * pose : pose;
+}
+
 // Head and hands go where they are tracked; a suit's wrists are joints already.
 void follow_tracking(const PhysicsHuman& human, const DiverInputs& inputs, bool head, bool hands,
                      const diver::HumanState& state, diver::JointRotations& joints) {
   diver::ReachTargets targets;
   if (head) {
-    const Pose& tracked = inputs.head.world_from_head;
+    const Pose tracked =
+        world_from(state, inputs.head.world_from_head, inputs.head.placed & kHeadRides);
     targets.head = body_from_tracked(state, tracked);
-    if (inputs.head.placed != 0) targets.eyes_m = place_in_body(state, tracked);
+    if (inputs.head.placed & kHeadPlaced) targets.eyes_m = place_in_body(state, tracked);
   }
   if (hands && inputs.hands_by_pose == 0) {
     joints[diver::joint_of(diver::kLeftHand)] = inputs.hands.wrist[0];
@@ -31,7 +38,8 @@ void follow_tracking(const PhysicsHuman& human, const DiverInputs& inputs, bool 
   } else if (hands) {
     for (std::size_t i = 0; i < 2; ++i) {
       if ((inputs.hand_poses.tracked >> i & 1) == 0) continue;
-      const Pose& tracked = inputs.hand_poses.world_from_hand[i];
+      const Pose tracked = world_from(state, inputs.hand_poses.world_from_hand[i],
+                                      inputs.hand_poses.tracked & kHandsRide);
       targets.hands[i] = {place_in_body(state, tracked), body_from_tracked(state, tracked)};
     }
   }

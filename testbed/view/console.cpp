@@ -1,11 +1,17 @@
 #include "testbed/view/console.hpp"
 
+#include <imgui_internal.h>
+
+#include <cmath>
+
 #include "testbed/view/help_panel.hpp"
+#include "testbed/view/panel_frame.hpp"
 
 namespace neritic::testbed {
 namespace {
 
 constexpr TimeNs kNote_ns = 5'000'000'000;  // how long a note stays on the screen
+constexpr double kGainStep_db = 3.0, kMostGain_db = 24.0;
 
 // "paused", "0.5 x speed"; empty at the host's pace.
 std::string pace_words(sim::RunClock* clock) {
@@ -35,12 +41,18 @@ Console::Console(Session& session, xr::Overlay& overlay, const ConsoleOptions& o
       options_(options),
       participants_(participants_of(session.scene())) {
   std::erase_if(participants_, [](const Participant& one) { return !has_body(one); });
+  const ViewMemory& memory = options_.memory;
+  show_panels_ = memory.panels, show_times_ = memory.times;
+  show_map_ = memory.map, show_graphs_ = memory.graphs;
+  graphs_.names = memory.numbers;
+  gain_db_ = memory.sonar_gain_db, range_part_ = memory.sonar_range_part;
 }
 
 Result<std::unique_ptr<Console>> Console::create(Session& session, xr::Overlay& overlay,
                                                  const ConsoleOptions& options) {
   std::unique_ptr<Console> console(new Console(session, overlay, options));
   NERITIC_TRY(console->fans_, SonarFans::create(session.device()));
+  console->show_sonars();
   return console;
 }
 
@@ -55,6 +67,35 @@ void Console::take(const DiveInput& input) {
   if (input.toggle_panels) show_panels_ = !show_panels_;
   if (input.toggle_times) show_times_ = !show_times_;
   first_sonar_ += input.next_sonar ? 1 : 0;
+  if (input.toggle_map) show_map_ = !show_map_;
+  if (input.toggle_graphs) show_graphs_ = !show_graphs_;
+  if (input.next_inset) {
+    const std::size_t next = inset_ ? *inset_ + 1 : 0;
+    inset_ = next < session_.scene().cameras.size() ? std::optional(next) : std::nullopt;
+  }
+  if (input.gain_step == 0 && !input.next_range) return;
+  gain_db_ = std::clamp(gain_db_ + kGainStep_db * input.gain_step, -kMostGain_db, kMostGain_db);
+  if (input.next_range) range_part_ = range_part_ > 0.3 ? 0.5 * range_part_ : 1.0;
+  show_sonars();
+}
+
+// The sonars' pictures as gain and range are now.
+void Console::show_sonars() {
+  fans_->show(std::pow(10.0, gain_db_ / 20.0), range_part_);
+}
+
+void Console::mark(Picked picked) {
+  picked_ = std::move(picked);
+  picked_until_ns_ = now_ns() + kNote_ns;
+}
+
+ViewMemory Console::memory() const {
+  ViewMemory out = options_.memory;
+  out.panels = show_panels_, out.times = show_times_;
+  out.map = show_map_, out.graphs = show_graphs_;
+  out.numbers = graphs_.names;
+  out.sonar_gain_db = gain_db_, out.sonar_range_part = range_part_;
+  return out;
 }
 
 void Console::note(std::string text) {
@@ -66,12 +107,15 @@ void Console::look(const scene::MotionSource& motion, double time_s, const DiveP
                    const Vec3& eye_m) {
   if (!show_panels_) return;
   rows_.clear();
+  marks_.clear();
   for (const Participant& one : participants_) {
     const Motion at = motion.at(one.mount, time_s).motion;
     rows_.push_back({one.name, pilot.doing(static_cast<std::size_t>(one.mount.object)),
                      -at.pose.position_m.y, glm::length(at.velocity_m_s),
                      glm::distance(at.pose.position_m, eye_m)});
+    marks_.push_back({one.name, at.pose.position_m, -course_of(at.pose.rotation)});
   }
+  trails_.add(marks_, time_s);
 }
 
 Status Console::declare_sonars(graph::FrameGraph& graph, const SensorFrame& frame) {
@@ -121,6 +165,57 @@ PanelFacts Console::facts(graph::FrameGraph& graph, const ConsoleFrame& frame) {
   return facts;
 }
 
+// Panels that the user asked for, or that steering needs.
+void Console::add_on_demand(graph::FrameGraph&, const ConsoleFrame& frame, PanelFacts& facts) {
+  facts.sonar_gain_db = gain_db_;
+  facts.marks = marks_;
+  facts.eye = {"", frame.choice.eye().position_m(), radians(frame.choice.eye().heading_deg())};
+  if (frame.inset && inset_) {
+    const scene::Camera& camera = session_.scene().cameras[*inset_];
+    facts.inset = InsetPanel{camera.name, overlay_.texture(frame.inset),
+                             static_cast<float>(camera.height) / static_cast<float>(camera.width)};
+  }
+  if (!options_.physics) return;
+  numbers_.look(options_.physics->world(), options_.physics->shown_snapshot(),
+                frame.times.frame().smooth_ms, frame.view_scale);
+  if (graphs_.names.empty() && show_graphs_ && !numbers_.all().empty())
+    graphs_.names.push_back(numbers_.all().front().name);
+  const auto& vehicles = options_.physics->world().vehicles();
+  for (std::size_t i = 0; i < vehicles.size() && frame.pilot.flying(); ++i)
+    if (static_cast<int>(vehicles[i].object) == frame.pilot.object())
+      facts.gauges = gauges_of(vehicles[i], options_.physics->shown().vehicles()[i]);
+}
+
+// A ring around what was clicked, and what it is.
+void Console::draw_mark(TimeNs now_ns, float scale) const {
+  if (!picked_ || now_ns >= picked_until_ns_) return;
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImVec2 at(static_cast<float>(picked_->at.x) * display.x,
+                  static_cast<float>(picked_->at.y) * display.y);
+  const ImVec2 text = ImGui::CalcTextSize(picked_->words.c_str());
+  const float pad = 6.0f * scale;
+  const float x = std::clamp(at.x + 12.0f * scale, 0.0f, std::max(0.0f, display.x - text.x - pad));
+  list.AddCircle(at, 7.0f * scale, kMark, 0, 2.0f * scale);
+  list.AddRectFilled(ImVec2(x - pad, at.y - 0.5f * text.y - pad),
+                     ImVec2(x + text.x + pad, at.y + 0.5f * text.y + pad), kPaper, 4.0f * scale);
+  list.AddText(ImVec2(x, at.y - 0.5f * text.y), kInk, picked_->words.c_str());
+}
+
+// A click into the picture, and the panel that the cursor is over.
+void Console::look_at_cursor() {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 display = io.DisplaySize;
+  hovered_.reset();
+  if (const ImGuiWindow* const window = ImGui::GetCurrentContext()->HoveredWindow) {
+    const ImGuiWindow& root = *window->RootWindow;
+    hovered_ = {root.Pos.x / display.x, root.Pos.y / display.y,
+                (root.Pos.x + root.Size.x) / display.x, (root.Pos.y + root.Size.y) / display.y};
+  }
+  if (!io.WantCaptureMouse && ImGui::IsMousePosValid() && ImGui::IsMouseClicked(0))
+    clicked_ = {io.MousePos.x / display.x, io.MousePos.y / display.y};
+}
+
 void Console::draw(graph::FrameGraph& graph, const ConsoleFrame& frame) {
   const TimeNs now = now_ns();
   const float scale = overlay_.scale();
@@ -128,11 +223,18 @@ void Console::draw(graph::FrameGraph& graph, const ConsoleFrame& frame) {
   if (help_page_) {
     help_pages_ = draw_help(dive_actions(), *help_page_, scale);
   } else if (show_panels_) {
-    draw_panels(facts(graph, frame), frame.choice.eye(),
+    PanelFacts facts = this->facts(graph, frame);
+    add_on_demand(graph, frame, facts);
+    const bool graphs = show_graphs_ && options_.physics;
+    draw_panels(facts, frame.choice.eye(),
                 {.first_sonar = first_sonar_,
                  .frames = &frame.times,
                  .device = show_times_ ? session_.device().info().name : "",
-                 .hint = noted ? note_ : "F1  keys   V  view"},
+                 .hint = noted ? note_ : "F1  keys   V  view",
+                 .trails = show_map_ ? &trails_ : nullptr,
+                 .numbers = graphs ? &numbers_ : nullptr,
+                 .taken = frame.taken,
+                 .graphs = graphs ? &graphs_ : nullptr},
                 now, scale);
   } else {
     if (noted) draw_hint(note_, scale);
@@ -144,10 +246,13 @@ Result<std::optional<xr::PanelLayer>> Console::declare(graph::FrameGraph& graph,
                                                        const ConsoleFrame& frame) {
   NERITIC_TRY_STATUS(overlay_.fit(frame.group.height));
   overlay_.begin(frame.group.width, frame.group.height, frame.elapsed_s);
-  const bool noted = now_ns() < note_until_ns_;
+  look_at_cursor();
+  const TimeNs now = now_ns();
+  const bool noted = now < note_until_ns_ || (picked_ && now < picked_until_ns_);
   if (!show_panels_ && !help_page_ && !noted && recording().empty())
     return std::optional<xr::PanelLayer>();
   draw(graph, frame);
+  draw_mark(now, overlay_.scale());
   const graph::ImageHandle image = overlay_.declare(graph);
   return std::optional(screen_panel(frame.group, image, overlay_.drawn()));
 }

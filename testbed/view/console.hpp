@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/sim/run_clock.hpp"
@@ -17,7 +18,10 @@
 #include "testbed/view/dive_panels.hpp"
 #include "testbed/view/dive_pilot.hpp"
 #include "testbed/view/dive_times.hpp"
+#include "testbed/view/picker.hpp"
 #include "testbed/view/run_keeper.hpp"
+#include "testbed/view/run_numbers.hpp"
+#include "testbed/view/view_memory.hpp"
 #include "testbed/view/viewpoints.hpp"
 
 namespace neritic::testbed {
@@ -26,6 +30,8 @@ struct ConsoleOptions {
   std::vector<std::size_t> sonars;  // of the scene, those that have a panel
   sim::RunClock* clock = nullptr;   // of the run, for its pace
   const RunKeeper* keeper = nullptr;
+  LivePhysics* physics = nullptr;  // whose numbers are drawn; nullptr: nothing moves by physics
+  ViewMemory memory;               // as the last window looked
 };
 
 // State of the view in this frame.
@@ -35,6 +41,9 @@ struct ConsoleFrame {
   const DivePilot& pilot;
   const DiveTimes& times;
   double elapsed_s = 0.0, time_s = 0.0, view_scale = 1.0;
+  TakenCorner taken;  // by a diver's instrument, pixels
+  // The picture of the camera that inset() names; empty: it is not drawn in this frame.
+  graph::ImageHandle inset;
 };
 
 class Console {
@@ -45,6 +54,15 @@ class Console {
 
   xr::InputClaims claims() const { return overlay_.claims(); }
   void take(const DiveInput& input);
+  // The camera of the scene whose picture lies in a panel; nothing: none.
+  std::optional<std::size_t> inset() const { return show_panels_ ? inset_ : std::nullopt; }
+  // Where the user clicked in the picture, since this was asked last: 0 to 1 from left and top.
+  std::optional<Vec2> take_click() { return std::exchange(clicked_, std::nullopt); }
+  // Words at a place of the picture, for a while.
+  void mark(Picked picked);
+  // The panel that the cursor is over, of the whole picture.
+  std::optional<xr::PanelPart> panel_under_cursor() const { return hovered_; }
+  ViewMemory memory() const;
   // A line for a while.
   void note(std::string text);
   // Vehicles, divers and animals: where they are and what they do. eye_m: of the view.
@@ -62,6 +80,10 @@ class Console {
   PanelFacts facts(graph::FrameGraph& graph, const ConsoleFrame& frame);
   std::string recording() const;
   void draw(graph::FrameGraph& graph, const ConsoleFrame& frame);
+  void add_on_demand(graph::FrameGraph& graph, const ConsoleFrame& frame, PanelFacts& facts);
+  void draw_mark(TimeNs now_ns, float scale) const;
+  void look_at_cursor();
+  void show_sonars();
 
   Session& session_;
   xr::Overlay& overlay_;
@@ -75,6 +97,18 @@ class Console {
   std::size_t first_sonar_ = 0;  // of the panels
   std::vector<Participant> participants_;
   std::vector<ParticipantRow> rows_;  // of this frame
+  std::vector<MapMark> marks_;
+  MapMark eye_;
+  MapTrails trails_;
+  RunNumbers numbers_;
+  GraphChoice graphs_;
+  bool show_map_ = false, show_graphs_ = false;
+  std::optional<std::size_t> inset_;
+  double gain_db_ = 0.0, range_part_ = 1.0;  // of the sonars' pictures
+  std::optional<Vec2> clicked_;
+  std::optional<Picked> picked_;
+  TimeNs picked_until_ns_ = 0;
+  std::optional<xr::PanelPart> hovered_;
 };
 
 }  // namespace neritic::testbed

@@ -18,7 +18,8 @@ constexpr std::uint32_t groups(std::uint32_t pixels) {
   return (pixels + shared::kSonarFanGroup - 1) / shared::kSonarFanGroup;
 }
 
-shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid, bool is_power) {
+shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid, bool is_power,
+                             double gain) {
   const sonar::Limits& l = grid.limits;
   const double half = (l.azimuth_max_rad - l.azimuth_min_rad) / 2.0;
   return {.width = shape.width,
@@ -34,6 +35,7 @@ shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid,
           .azimuth_half_rad = static_cast<float>(half),
           .bins_per_rad = static_cast<float>(1.0 / grid.azimuth_step_rad()),
           .gamma = kGamma,
+          .gain = static_cast<float>(gain),
           .is_power = is_power};
 }
 
@@ -88,21 +90,39 @@ Result<std::unique_ptr<SonarFans>> SonarFans::create(gpu::Device& device) {
   return fans;
 }
 
+void SonarFans::show(double gain, double range_part) {
+  gain_ = gain;
+  range_part_ = range_part;
+}
+
+// The shape and the picture for the part of the range that is shown.
+Status SonarFans::shape_fan(Fan& fan, const std::string& name, const sonar::BeamGrid& grid) {
+  if (fan.picture) device_.wait_idle();  // a frame in flight may show it; ranges change seldom
+  fan.grid = grid;
+  fan.range_part = range_part_;
+  sonar::Limits& shown = fan.grid.limits;
+  shown.range_max_m = glm::mix(shown.range_min_m, shown.range_max_m, range_part_);
+  fan.shape = fan_shape(shown, kLongestSide_px);
+  NERITIC_TRY(fan.picture, gpu::Image::create(device_, {.name = name + " fan",
+                                                        .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                                        .width = fan.shape.width,
+                                                        .height = fan.shape.height,
+                                                        .usage = VK_IMAGE_USAGE_STORAGE_BIT |
+                                                                 VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                                                        .array_view = true}));
+  return {};
+}
+
 Result<SonarFans::Fan*> SonarFans::fan_of(std::size_t sonar, const std::string& name,
                                           const sonar::BeamGrid& grid) {
   std::unique_ptr<Fan>& slot = fans_[sonar];
-  if (slot) return slot.get();
+  if (slot) {
+    if (slot->range_part != range_part_) NERITIC_TRY_STATUS(shape_fan(*slot, name, grid));
+    return slot.get();
+  }
   auto fan = std::make_unique<Fan>();
-  fan->grid = grid;
-  fan->shape = fan_shape(grid.limits, kLongestSide_px);
-  NERITIC_TRY(fan->picture, gpu::Image::create(device_, {.name = name + " fan",
-                                                         .format = VK_FORMAT_R8G8B8A8_UNORM,
-                                                         .width = fan->shape.width,
-                                                         .height = fan->shape.height,
-                                                         .usage = VK_IMAGE_USAGE_STORAGE_BIT |
-                                                                  VK_IMAGE_USAGE_SAMPLED_BIT |
-                                                                  VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                                                         .array_view = true}));
+  NERITIC_TRY_STATUS(shape_fan(*fan, name, grid));
   NERITIC_TRY(fan->scale,
               gpu::Buffer::create(device_, {.name = name + " fan scale",
                                             .size = sizeof(float),
@@ -170,7 +190,7 @@ Status SonarFans::declare(graph::FrameGraph& graph, const std::string& name,
                 builder.read(scale, graph::Access::kStorageReadCompute);
                 data.picture = builder.write(picture, graph::Access::kStorageWriteCompute);
               },
-              [this, push = push_of(fan->shape, ping.grid, ping.is_float)](
+              [this, push = push_of(fan->shape, ping.grid, ping.is_float, gain_)](
                   const Data& data, graph::PassContext& context) {
                 gpu::Commands& commands = context.commands;
                 commands.bind_pipeline(draw_);

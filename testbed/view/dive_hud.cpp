@@ -72,6 +72,16 @@ bool DiveHud::shown(hud::LayoutKind layout) const {
   return std::ranges::find(options_.layouts, layout) != options_.layouts.end();
 }
 
+TakenCorner DiveHud::corner(const xr::ViewGroup& group) const {
+  if (!shown(hud::LayoutKind::kCorner)) return {};
+  const hud::Layout& layout = hud::layout_of(hud::LayoutKind::kCorner);
+  const double height = height_in_window(layout, group);
+  const double width = height * layout.width_px / layout.height_px;
+  const auto free = [](double all, double used) { return std::max(0.0, all - used); };
+  return {static_cast<float>(layout.window.down * free(group.height, height)),
+          static_cast<float>(width + (1.0 - layout.window.across) * free(group.width, width))};
+}
+
 void DiveHud::cycle() {
   choice_ = (choice_ + 1) % (instruments_.size() + 2);
 }
@@ -173,20 +183,24 @@ xr::PanelLayer DiveHud::place(const Instrument& instrument, const HudView& view)
     panel.name = layout.name;
     return panel;
   }
-  xr::PanelLayer panel{.name = std::string(layout.name), .size_m = layout.size_m};
+  xr::PanelLayer panel{
+      .name = std::string(layout.name), .size_m = layout.size_m, .radius_m = layout.radius_m};
   switch (layout.lock) {
     case hud::Lock::kHead:
       panel.pose = layout.lock_from_panel;
       break;
     case hud::Lock::kWrist:
-      panel.lock = xr::PanelLayer::Lock::kWorld;
-      panel.pose = world_from_wrist(physics_.world().humans()[options_.diver],
-                                    physics_.shown().humans()[options_.diver]) *
-                   layout.lock_from_panel;
+      if (view.world_from_wrist) {
+        panel.lock = xr::PanelLayer::Lock::kWorld;
+        panel.pose = *view.world_from_wrist * layout.lock_from_panel;
+      } else {
+        panel.pose = layout.head_from_panel;
+      }
       break;
     case hud::Lock::kWorld:
       panel.lock = xr::PanelLayer::Lock::kWorld;
-      panel.pose = view.world_from_stage * layout.lock_from_panel;
+      panel.pose = view.world_from_stage *
+                   (view.stage_at_eyes ? layout.head_from_panel : layout.lock_from_panel);
       break;
   }
   return panel;

@@ -11,6 +11,7 @@
 #include "engine/xr/display.hpp"
 #include "hud/hud.hpp"
 #include "testbed/motion/live_physics.hpp"
+#include "testbed/view/panel_layout.hpp"
 
 namespace neritic::testbed {
 
@@ -29,6 +30,10 @@ struct HudView {
   bool tracked = false;        // the display knows where the head is
   Pose world_from_stage;       // the display's space
   Pose world_from_view;        // of that first view
+  // The left hand that instruments are worn on, at the wrist; absent: it is not tracked, and they
+  // are held before the eyes.
+  std::optional<Pose> world_from_wrist = {};
+  bool stage_at_eyes = false;  // the stage's origin is where the head was, not the floor
 };
 
 class DiveHud {
@@ -38,6 +43,9 @@ class DiveHud {
 
   // Adds the panels of this frame to the layers; those of which something changed are drawn anew.
   Status declare(graph::FrameGraph& graph, const HudView& view, std::vector<xr::Layer>& layers);
+
+  // The pixels of a window that the corner's instrument has.
+  TakenCorner corner(const xr::ViewGroup& group) const;
 
   // The next choice: each layout alone, then none, then those of the options.
   void cycle();

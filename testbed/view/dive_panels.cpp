@@ -10,7 +10,7 @@
 namespace neritic::testbed {
 namespace {
 
-constexpr float kLeastTimes_px = 60.0f;  // of the height of the times' panel
+constexpr float kLeastTimes_px = 110.0f;  // of the height of the times' panel
 
 std::string bearing_name(int degrees) {
   switch (degrees) {
@@ -99,13 +99,14 @@ void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2
                 fmt::format("{:.0f}\u00b0", degrees(middle)));
 }
 
-void draw_sonar(const SonarPanel& panel, const PanelRect& rect, float scale) {
+void draw_sonar(const SonarPanel& panel, const PanelRect& rect, double gain_db, float scale) {
   const sonar::Limits& l = panel.grid.limits;
   begin_panel(panel.name + "###sonar " + panel.name, rect, scale, ImGuiWindowFlags_NoScrollbar);
   const std::string settings =
-      fmt::format("{:.3g} to {:.3g} m  {:.0f}\u00b0 x {:.0f}\u00b0  {:g} Hz", l.range_min_m,
+      fmt::format("{:.3g} to {:.3g} m  {:.0f}\u00b0 x {:.0f}\u00b0  {:g} Hz{}", l.range_min_m,
                   l.range_max_m, degrees(l.azimuth_max_rad - l.azimuth_min_rad),
-                  degrees(l.elevation_max_rad - l.elevation_min_rad), panel.rate_hz);
+                  degrees(l.elevation_max_rad - l.elevation_min_rad), panel.rate_hz,
+                  gain_db == 0.0 ? "" : fmt::format("  {:+g} dB", gain_db));
   const float inner = ImGui::GetContentRegionAvail().x;
   const bool fits = ImGui::CalcTextSize(settings.c_str()).x <= inner;
   ImGui::TextDisabled("%s", fits ? settings.c_str()
@@ -255,18 +256,62 @@ void draw_status(const PanelFacts& facts, const PanelsShown& shown, const PanelR
   ImGui::End();
 }
 
-// Below the status, instead of the hint.
-void draw_times(const PanelsShown& shown, const PanelLayout& layout, TimeNs now_ns, float scale) {
-  const float top = layout.status.bottom() + 8.0f;
-  ImGui::SetNextWindowPos(ImVec2(kEdge_px * scale, top * scale));
-  const float width = layout.status.width * scale;
-  const float room = (layout.hint.bottom() - top) * scale;
-  if (room < kLeastTimes_px * scale) return;
-  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0f), ImVec2(width, room));
-  ImGui::Begin("GPU passes###times", nullptr, kFixedPanel | ImGuiWindowFlags_AlwaysAutoResize);
+void draw_inset(const InsetPanel& inset, const PanelRect& rect, float scale) {
+  begin_panel(inset.name + "###inset", rect, scale, ImGuiWindowFlags_NoScrollbar);
+  const ImVec2 from = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+  const float width = std::min(room.x, room.y / inset.aspect);
+  const float x = from.x + 0.5f * (room.x - width);
+  if (inset.picture)
+    ImGui::GetWindowDrawList()->AddImage(inset.picture, ImVec2(x, from.y),
+                                         ImVec2(x + width, from.y + width * inset.aspect));
+  ImGui::End();
+}
+
+void draw_times(const PanelsShown& shown, const PanelRect& rect, TimeNs now_ns, float scale) {
+  begin_panel("GPU passes###times", rect, scale);
   ImGui::TextDisabled("%s", shown.device.c_str());
   timings_table(*shown.frames, now_ns, scale);
   ImGui::End();
+}
+
+// The panels on demand, in the order of what an operator needs first.
+struct Demand {
+  std::vector<PanelWish> wishes;
+  std::optional<std::size_t> times, gauges, inset, map, graphs;  // their places in it
+};
+
+Demand demand_of(const PanelFacts& facts, const PanelsShown& shown, float scale) {
+  constexpr float kInsetWidth_px = 300.0f, kInsetFrame_px = 40.0f, kLeastInset_px = 130.0f;
+  Demand out;
+  const auto add = [&](bool wanted, const PanelWish& wish) -> std::optional<std::size_t> {
+    if (!wanted) return std::nullopt;
+    out.wishes.push_back(wish);
+    return out.wishes.size() - 1;
+  };
+  const std::size_t passes = shown.frames ? shown.frames->passes().size() : 0;
+  out.times = add(!shown.device.empty(),
+                  {.wanted = height_of_lines(passes + 4, scale), .least = kLeastTimes_px});
+  out.gauges =
+      add(facts.gauges.has_value(), facts.gauges ? gauges_wish(*facts.gauges) : PanelWish{});
+  const float aspect = facts.inset ? facts.inset->aspect : 1.0f;
+  out.inset = add(facts.inset.has_value(),
+                  {.wanted = kInsetWidth_px * aspect + kInsetFrame_px, .least = kLeastInset_px});
+  out.map = add(shown.trails != nullptr, kMapWish);
+  out.graphs =
+      add(shown.numbers != nullptr, shown.graphs ? graphs_wish(*shown.graphs) : PanelWish{});
+  return out;
+}
+
+void draw_on_demand(const PanelFacts& facts, const PanelsShown& shown, const Demand& demand,
+                    const std::vector<PanelRect>& places, TimeNs now_ns, float scale) {
+  const auto place = [&](std::optional<std::size_t> at) { return at ? places[*at] : PanelRect{}; };
+  if (const PanelRect at = place(demand.times); !at.empty()) draw_times(shown, at, now_ns, scale);
+  if (const PanelRect at = place(demand.gauges); !at.empty()) draw_gauges(*facts.gauges, at, scale);
+  if (const PanelRect at = place(demand.inset); !at.empty()) draw_inset(*facts.inset, at, scale);
+  if (const PanelRect at = place(demand.map); !at.empty())
+    draw_map(facts.marks, facts.eye, *shown.trails, at, scale);
+  if (const PanelRect at = place(demand.graphs); !at.empty())
+    draw_graphs(*shown.numbers, *shown.graphs, at, scale);
 }
 
 }  // namespace
@@ -281,16 +326,17 @@ void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const Panels
     aspects.push_back(static_cast<float>(sonars.back()->shape.height) /
                       static_cast<float>(sonars.back()->shape.width));
   }
-  const PanelLayout layout = lay_out(display.x / scale, display.y / scale,
-                                     height_of_lines(status_lines(facts), scale), aspects);
+  const Demand demand = demand_of(facts, shown, scale);
+  const PanelLayout layout =
+      lay_out(display.x / scale, display.y / scale, height_of_lines(status_lines(facts), scale),
+              aspects, demand.wishes, {shown.taken.top / scale, shown.taken.width / scale});
   if (!layout.readout.empty()) draw_readout(camera, layout.readout, scale);
   if (!layout.status.empty()) draw_status(facts, shown, layout.status, scale);
   for (std::size_t i = 0; i < layout.fans.size(); ++i)
-    draw_sonar(*sonars[i], layout.fans[i], scale);
+    draw_sonar(*sonars[i], layout.fans[i], facts.sonar_gain_db, scale);
+  draw_on_demand(facts, shown, demand, layout.extras, now_ns, scale);
   const std::size_t more = sonars.size() - layout.fans.size();
-  if (!shown.device.empty()) {
-    draw_times(shown, layout, now_ns, scale);
-  } else if (!layout.hint.empty()) {
+  if (!layout.hint.empty()) {
     const std::string others =
         more > 0 ? fmt::format("   Tab  {} more sonar{}", more, more > 1 ? "s" : "") : "";
     draw_hint(shown.hint + others, scale, layout.hint);

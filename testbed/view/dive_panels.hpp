@@ -5,6 +5,7 @@
 
 #include <imgui.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include "testbed/view/dive_camera.hpp"
 #include "testbed/view/dive_fan.hpp"
 #include "testbed/view/dive_times.hpp"
+#include "testbed/view/gauge_panel.hpp"
+#include "testbed/view/graph_panel.hpp"
+#include "testbed/view/map_panel.hpp"
 #include "testbed/view/panel_layout.hpp"
 
 namespace neritic::testbed {
@@ -29,6 +33,13 @@ struct ParticipantRow {
   double depth_m = 0.0, speed_m_s = 0.0, away_m = 0.0;
 };
 
+// Another camera's live picture.
+struct InsetPanel {
+  std::string name;
+  ImTextureID picture{};
+  float aspect = 0.75f;  // height over width
+};
+
 struct PanelFacts {
   std::string title, water, view, pace;  // water empty: none; pace: that of the clock
   std::uint32_t width = 0, height = 0;
@@ -38,6 +49,12 @@ struct PanelFacts {
   std::vector<ParticipantRow> participants;
   std::vector<std::string> troubles;  // a line each
   std::string recording;              // "REC 0:12  FILE"; empty: nothing is recorded
+  double sonar_gain_db = 0.0;
+  // On demand; those that are absent are not drawn.
+  std::optional<VehicleGauges> gauges;
+  std::optional<InsetPanel> inset;
+  std::vector<MapMark> marks;  // of the map
+  MapMark eye;
 };
 
 // The panels of the picture, laid out for the display: compass with depth, status with
@@ -48,6 +65,10 @@ struct PanelsShown {
   const DiveTimes* frames = nullptr;
   std::string device;  // of the passes' times; empty: they are not shown
   std::string hint;
+  const MapTrails* trails = nullptr;    // nullptr: no map
+  const RunNumbers* numbers = nullptr;  // nullptr: no graphs
+  TakenCorner taken;  // by a diver's instrument, pixels
+  GraphChoice* graphs = nullptr;        // with numbers
 };
 void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const PanelsShown& shown,
                  TimeNs now_ns, float scale);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/log.hpp"
+#include "testbed/view/instrument_data.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -24,6 +25,7 @@ DiveView::DiveView(Session& session, xr::Display& display, DivePilot pilot,
       pilot_(std::move(pilot)),
       world_from_stage_(session.scene().world_from_lab.value_or(level(choice_.world_from_view()))),
       screenshots_(session.device(), session.frames(), options.screenshot),
+      picker_(session.device()),
       times_(options.summary) {}
 
 Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display& display,
@@ -40,7 +42,9 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
                 Console::create(session, *overlay,
                                 {.sonars = options.sonars,
                                  .clock = options.clock,
-                                 .keeper = view->keeper_ ? &*view->keeper_ : nullptr}));
+                                 .keeper = view->keeper_ ? &*view->keeper_ : nullptr,
+                                 .physics = physics,
+                                 .memory = options.memory}));
   }
   if (options.hud)
     view->hud_ =
@@ -70,29 +74,67 @@ Result<xr::FrameVerdict> DiveView::begin_frame() {
 
 // The lab's frame where the scene says where that lies; else the eyes of the diver who is worn;
 // else level at the viewpoint, so that the horizon of a headset stays level.
-Pose DiveView::world_from_stage(const scene::MotionSource& motion, double time_s) const {
+Pose DiveView::world_from_stage(const scene::MotionSource& motion, double time_s) {
   if (session_.scene().world_from_lab) return *session_.scene().world_from_lab;
   if (wearer_ && wears_) return wearer_->world_from_stage(motion, time_s);
   return level(choice_.world_from_view());
 }
 
+// The key that flies a vehicle swims the worn diver where the view is his, or no vehicle is there.
+bool DiveView::swum_by_keys(DiveInput& input) {
+  if (!wearer_ || frame_.world_from_head) return false;
+  const bool his = choice_.carrier() == static_cast<int>(wearer_->object());
+  if (input.toggle_pilot && (wearer_->swum_by_keys() || his || pilot_.object() < 0)) {
+    input.toggle_pilot = false;
+    const bool on = !wearer_->swum_by_keys();
+    wearer_->swim_by_keys(on);
+    if (on && !his) choice_.choose_on(static_cast<int>(wearer_->object()));
+    tell(on ? "you swim the diver: W ahead, A D turn, E Q up and down, I K the jacket, P lets go"
+            : "the diver goes on as before");
+  }
+  return wearer_->swum_by_keys();
+}
+
 bool DiveView::take_input() {
-  const DiveInput input =
+  DiveInput input =
       read_input(display_.take_actions(console_ ? console_->claims() : xr::InputClaims{}));
   if (console_) console_->take(input);
   if (input.cycle_hud && hud_) hud_->cycle();
   if (options_.clock) take_time(input);
   keep_run(input);
   if (input.screenshot) screenshots_.ask();
+  if (input.panel_screenshot) {
+    if (const auto part = console_ ? console_->panel_under_cursor() : std::nullopt)
+      screenshots_.ask(*part);
+    else
+      tell("no panel under the cursor");
+  }
+  take_click();
   if (input.view_step != 0) wears_ = false;
   if (input.reset) wears_ = true;
+  const bool swum = swum_by_keys(input);
   // Until the stage lies at the diver's eyes, poses in it mean nothing to him.
   if (wearer_) wearer_->take(wears_ && placed_ ? frame_ : xr::DisplayFrame{}, input);
   const bool flew = pilot_.flying();
-  const bool flying = pilot_.take(input, choice_.carrier());
+  DiveInput flown = input;
+  if (swum) flown.move = Vec3(0.0), flown.turn = 0.0;
+  const bool flying = pilot_.take(flown, choice_.carrier());
   if (flying && !flew && choice_.carrier() != pilot_.object()) choice_.choose_on(pilot_.object());
-  choice_.take(input, elapsed_s_, flying);
+  choice_.take(input, elapsed_s_, flying || swum);
   return input.quit;
+}
+
+void DiveView::take_click() {
+  const auto click = console_ ? console_->take_click() : std::nullopt;
+  if (!click || !shown()) return;
+  const xr::ViewGroup& group = frame_.groups.front();
+  const scene::Camera& camera = session_.scene().cameras[choice_.viewpoint().camera];
+  picker_.ask(*click, tangents_from_fov(camera.vertical_fov_rad,
+                                        static_cast<double>(group.width) / group.height));
+}
+
+std::optional<ViewMemory> DiveView::memory() const {
+  return console_ ? std::optional(console_->memory()) : std::nullopt;
 }
 
 // In a window a note, else a line.
@@ -170,6 +212,27 @@ void DiveView::add_views(FrameRequest& request) {
     }
     request.views.push_back(std::move(views));
   }
+  add_inset(request, motion);
+}
+
+// A camera's picture beside the views, no larger than a panel shows it.
+void DiveView::add_inset(FrameRequest& request, const scene::MotionSource& motion) const {
+  const auto inset = console_ && shown() ? console_->inset() : std::nullopt;
+  if (!inset) return;
+  constexpr double kMostSide_px = 384.0;
+  const scene::Camera& camera = session_.scene().cameras[*inset];
+  const double scale = std::min(1.0, kMostSide_px / std::max(camera.width, camera.height));
+  ViewsRequest views{.name = "inset " + camera.name, .exposure = camera.exposure};
+  views.views.width = scaled(camera.width, scale);
+  views.views.height = scaled(camera.height, scale);
+  const Pose pose = motion.world_from(camera.mount, request.time_s);
+  views.views.views.push_back(
+      {.world_from_view = pose,
+       .tangents = tangents_from_fov(camera.vertical_fov_rad,
+                                     static_cast<double>(camera.width) / camera.height),
+       .near_m = camera.near_m,
+       .next_world_from_view = pose});
+  request.views.push_back(std::move(views));
 }
 
 // Where nothing else reads a ping it still runs, as its sonar is wanted.
@@ -187,25 +250,40 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
   std::vector<xr::Layer> layers;
   // A display takes depth of its own size only.
   const bool full_size = view_scale() == 1.0;
-  for (const SensorFrame::Views& views : frame.views)
+  graph::ImageHandle inset;
+  for (const SensorFrame::Views& views : frame.views) {
+    if (views.index >= frame_.groups.size()) {
+      inset = views.color;
+      continue;
+    }
+    if (views.index == 0) NERITIC_TRY_STATUS(picker_.declare(graph, views));
     layers.push_back(xr::ProjectionLayer{.group = views.index,
                                          .color = views.color,
                                          .depth = full_size ? views.depth : graph::ImageHandle{},
                                          .near_m = views.near_m});
+  }
   if (hud_) {
     const xr::ViewGroup& group = frame_.groups.front();
-    const HudView seen{group, frame_.world_from_head.has_value(), world_from_stage_,
-                       world_from_head_ * group.views.front().head_from_view};
+    HudView seen{group, frame_.world_from_head.has_value(), world_from_stage_,
+                 world_from_head_ * group.views.front().head_from_view};
+    seen.stage_at_eyes = !session_.scene().world_from_lab;
+    // On the drawn arm, which follows the tracked one.
+    if (frame_.tracked.hands[0] && wearer_ && wears_)
+      seen.world_from_wrist =
+          world_from_wrist(physics_->world().humans()[0], physics_->shown().humans()[0]);
     NERITIC_TRY_STATUS(hud_->declare(graph, seen, layers));
   }
   if (console_) {
+    const TakenCorner taken = hud_ ? hud_->corner(frame_.groups.front()) : TakenCorner{};
     NERITIC_TRY(const auto panels, console_->declare(graph, {.group = frame_.groups.front(),
                                                              .choice = choice_,
                                                              .pilot = pilot_,
                                                              .times = times_,
                                                              .elapsed_s = elapsed_s_,
                                                              .time_s = time_s,
-                                                             .view_scale = view_scale()}));
+                                                             .view_scale = view_scale(),
+                                                             .taken = taken,
+                                                             .inset = inset}));
     if (panels) layers.push_back(*panels);
   }
   NERITIC_TRY(const xr::ShownPicture shown, display_.declare(graph, world_from_head_, layers));
@@ -229,7 +307,10 @@ Status DiveView::end_frame(std::optional<std::uint64_t> value) {
   if (value) {
     in_flight_.push_back(*value);
     screenshots_.submitted(*value);
+    picker_.submitted(*value);
   }
+  if (auto picked = picker_.take(completed, session_.scene()); picked && console_)
+    console_->mark(std::move(*picked));
   NERITIC_TRY_STATUS(screenshots_.write_done(completed));
   if (const auto note = screenshots_.take_note()) tell(*note);
   return {};

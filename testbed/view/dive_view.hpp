@@ -18,6 +18,7 @@
 #include "testbed/view/dive_pilot.hpp"
 #include "testbed/view/dive_times.hpp"
 #include "testbed/view/frame_timeline.hpp"
+#include "testbed/view/picker.hpp"
 #include "testbed/view/quality_governor.hpp"
 #include "testbed/view/screenshots.hpp"
 #include "testbed/view/viewpoints.hpp"
@@ -41,6 +42,7 @@ struct DiveViewOptions {
   // not.
   std::optional<RunKeeperOptions> keep;
   std::string no_keys_for_files;
+  ViewMemory memory;  // as the last window looked
 };
 
 class DiveView final : public FrameView {
@@ -74,12 +76,17 @@ class DiveView final : public FrameView {
   const DiveTimes& times() const { return times_; }
   const FrameTimeline& timeline() const { return timeline_; }
   const ViewChoice& choice() const { return choice_; }
+  // How the window looks now, but for its size; nothing: it has no panels.
+  std::optional<ViewMemory> memory() const;
 
  private:
   DiveView(Session& session, xr::Display& display, DivePilot pilot, const DiveViewOptions& options);
-  Pose world_from_stage(const scene::MotionSource& motion, double time_s) const;
+  Pose world_from_stage(const scene::MotionSource& motion, double time_s);
+  bool swum_by_keys(DiveInput& input);
   Status declare_sonars(graph::FrameGraph& graph, const SensorFrame& frame);
   void take_time(const DiveInput& input);
+  void take_click();
+  void add_inset(FrameRequest& request, const scene::MotionSource& motion) const;
   void keep_run(const DiveInput& input);
   void tell(const std::string& note);
   double view_scale() const { return governor_ ? governor_->quality().view_scale : 1.0; }
@@ -102,6 +109,7 @@ class DiveView final : public FrameView {
   std::unique_ptr<DiveHud> hud_;
   std::optional<QualityGovernor> governor_;
   Screenshots screenshots_;
+  Picker picker_;
   xr::DisplayFrame frame_;
   bool in_frame_ = false;
   TimeNs last_frame_ns_ = 0;  // 0: none, or it was hidden

@@ -94,7 +94,8 @@ float fan_panel_height(float width, float aspect, const FanFrame& frame) {
 }
 
 PanelLayout lay_out(float width, float height, float status_height,
-                    std::span<const float> fan_aspects, std::span<const PanelWish> wishes) {
+                    std::span<const float> fan_aspects, std::span<const PanelWish> wishes,
+                    const TakenCorner& taken) {
   PanelLayout out;
   const bool narrow = width < kOneColumn;
   const float inner = width - 2.0f * kEdge;
@@ -103,16 +104,22 @@ PanelLayout lay_out(float width, float height, float status_height,
   if (height > kReadoutHeight + 2.0f * kEdge && inner > 0.0f)
     out.readout = {0.5f * (width - readout_width), narrow ? floor - kReadoutHeight : kEdge,
                    readout_width, kReadoutHeight};
+  if (out.readout.bottom() > taken.top) {  // beside the instrument
+    out.readout.x = kEdge;
+    out.readout.width = std::min(readout_width, inner - taken.width - kGap);
+  }
   if (narrow) floor = std::min(floor, out.readout.y - kGap);
   const float above = narrow ? kEdge : out.readout.bottom() + kGap;
   if (floor - kHintHeight > above && inner > 0.0f)
     out.hint = {kEdge, floor - kHintHeight, narrow ? inner : 0.5f * inner, kHintHeight};
+  if (out.hint.bottom() > taken.top)
+    out.hint.width = std::min(out.hint.width, inner - taken.width - kGap);
   const float left_floor = out.hint.empty() ? floor : out.hint.y - kGap;
   const float status_width = std::min(kStatusWidth, inner);
   if (left_floor - kEdge >= kLeastStatusHeight && status_width > 0.0f)
     out.status = {kEdge, kEdge, status_width, std::min(status_height, left_floor - kEdge)};
   const float beside = narrow ? out.status.right() : out.readout.right();
-  const float fan_floor = narrow ? left_floor : floor;
+  const float fan_floor = std::min(narrow ? left_floor : floor, taken.top - kGap);
   const float most = narrow ? width : (1.0f - kLeastPicture) * width;
   Room room{width - kEdge, kEdge,
             std::min(most, width - kEdge - kGap - std::max(beside, out.status.right())),

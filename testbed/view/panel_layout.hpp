@@ -32,6 +32,11 @@ struct PanelWish {
   float wanted = 0.0f, least = 0.0f;
 };
 
+// The window's lower right corner, from that height down and that wide from the right edge.
+struct TakenCorner {
+  float top = 1e9f, width = 0.0f;
+};
+
 struct PanelLayout {
   PanelRect status, readout, hint;
   std::vector<PanelRect> extras;  // of each wish, below the status, else at the right; empty: no room
@@ -39,7 +44,9 @@ struct PanelLayout {
 };
 
 // status_height: that it wants. fan_aspects: of each sonar's fan; extras come before fans.
+// taken: the lower right corner that a diver's instrument has.
 PanelLayout lay_out(float width, float height, float status_height,
-                    std::span<const float> fan_aspects, std::span<const PanelWish> wishes = {});
+                    std::span<const float> fan_aspects, std::span<const PanelWish> wishes = {},
+                    const TakenCorner& taken = {});
 
 }  // namespace neritic::testbed

@@ -1,5 +1,8 @@
 #include "testbed/view/screenshots.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/core/image.hpp"
 #include "engine/scene/image_file.hpp"
 
@@ -29,13 +32,29 @@ ImageU8 rgb_of(std::span<const std::uint8_t> texels, std::uint32_t width, std::u
   return image;
 }
 
+// A part of the picture, at least a pixel.
+ImageU8 cut(const ImageU8& image, const xr::PanelPart& part) {
+  const auto edge = [](double at, std::uint32_t size) {
+    return static_cast<std::uint32_t>(std::clamp(std::round(at * size), 0.0, size * 1.0));
+  };
+  const std::uint32_t left = std::min(edge(part.left, image.width), image.width - 1);
+  const std::uint32_t top = std::min(edge(part.top, image.height), image.height - 1);
+  const std::uint32_t right = std::max(edge(part.right, image.width), left + 1);
+  const std::uint32_t bottom = std::max(edge(part.bottom, image.height), top + 1);
+  ImageU8 out(right - left, bottom - top, image.channels);
+  for (std::uint32_t y = top; y < bottom; ++y)
+    std::copy_n(&image.at(left, y), std::size_t{out.width} * image.channels, &out.at(0, y - top));
+  return out;
+}
+
 }  // namespace
 
 Status Screenshots::declare(graph::FrameGraph& graph, const xr::ShownPicture& shown, bool last) {
   const bool final_one = !final_path_.empty();
   if (last && final_one && shot_ && shot_->by_key) NERITIC_TRY_STATUS(write());
   if (!(final_one || asked_) || (shot_ && shot_->by_key)) return {};
-  const bool by_key = std::exchange(asked_, false);
+  const auto asked = std::exchange(asked_, std::nullopt);
+  const bool by_key = asked.has_value();
   if (!shown.readable) {
     if (!by_key)
       return failure(ErrorCode::kUnsupported,
@@ -48,6 +67,7 @@ Status Screenshots::declare(graph::FrameGraph& graph, const xr::ShownPicture& sh
   shot.width = shown.width;
   shot.height = shown.height;
   shot.by_key = by_key;
+  shot.part = asked.value_or(xr::PanelPart{});
   shot.bgra = shown.format == VK_FORMAT_B8G8R8A8_UNORM;
   NERITIC_TRY(shot.texels, readback_.declare(graph, device_, "screenshot", shown.image,
                                              shown.format, shown.width, shown.height, 1));
@@ -73,7 +93,8 @@ Status Screenshots::write() {
   NERITIC_TRY_STATUS(frames_.wait(shot_->done));
   NERITIC_TRY_STATUS(scene::write_png8(
       shot_->path,
-      rgb_of(shot_->texels->mapped<std::uint8_t>(), shot_->width, shot_->height, shot_->bgra)));
+      cut(rgb_of(shot_->texels->mapped<std::uint8_t>(), shot_->width, shot_->height, shot_->bgra),
+          shot_->part)));
   note_ = "wrote " + shot_->path.string();
   shot_.reset();
   return {};

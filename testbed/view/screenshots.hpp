@@ -20,8 +20,8 @@ class Screenshots {
   Screenshots(gpu::Device& device, gpu::Frames& frames, std::filesystem::path final_path)
       : device_(device), frames_(frames), final_path_(std::move(final_path)) {}
 
-  // One of the next frame, to a free name in the current folder.
-  void ask() { asked_ = true; }
+  // One of the next frame, to a free name in the current folder: all of it, or a part.
+  void ask(const xr::PanelPart& part = {}) { asked_ = part; }
   // Brings the shown picture to the host, if this frame's is wanted. kUnsupported where the last
   // frame's is wanted and the display's images cannot be read.
   Status declare(graph::FrameGraph& graph, const xr::ShownPicture& shown, bool last);
@@ -39,6 +39,7 @@ class Screenshots {
     Readback texels;
     std::uint32_t width = 0, height = 0;
     bool bgra = false, by_key = false;
+    xr::PanelPart part;
     std::uint64_t done = 0;  // the submission that fills it; 0: not submitted yet
   };
   Status write();
@@ -46,7 +47,7 @@ class Screenshots {
   gpu::Device& device_;
   gpu::Frames& frames_;
   std::filesystem::path final_path_;
-  bool asked_ = false;
+  std::optional<xr::PanelPart> asked_;
   ReadbackPool readback_;
   std::optional<Shot> shot_;
   std::optional<std::string> note_;

@@ -5,17 +5,20 @@
 #include "diver/frames.hpp"
 #include "diver/jacket.hpp"
 #include "diver/reach.hpp"
+#include "testbed/samples/riding.hpp"
 #include "testbed/view/dive_camera.hpp"
 
 namespace neritic::testbed {
 namespace {
 
 // A frame that sends nothing for so long has let go (kDiverHold_s is of the same order).
-constexpr double kHold_s = 0.5;
+constexpr double kHold_s = 1.0;
 constexpr double kPush = 0.1;                         // of a stick: less is its rest
 constexpr double kSpeed_m_s = 0.5, kFast_m_s = 0.68;  // with full gear (diver/swimmer.hpp)
 constexpr double kAhead_m = 5.0;                      // of the place that is swum to
 constexpr double kLongestStep_s = 0.05;
+// By keys: a turn aims so far beside the course, and one without a push ahead swims so slowly.
+constexpr double kTurn_rad = radians(60.0), kTurningShare = 0.4;
 
 }  // namespace
 
@@ -28,10 +31,11 @@ Wearer::Wearer(LivePhysics& physics)
 }
 
 // The wearer faces where the diver's crown points, of a swimmer, or the chest, of one upright.
-Pose Wearer::world_from_stage(const scene::MotionSource& motion, double time_s) const {
+Pose Wearer::world_from_stage(const scene::MotionSource& motion, double time_s) {
   scene::Mount hips;
   hips.object = static_cast<int>(human().object);
   const Pose body = motion.world_from(hips, time_s);
+  world_from_body_ = body;
   const Vec3 ahead = body.rotation * Vec3(0, 1, -1);
   return {body * eyes_m_, from_yaw_pitch_roll(std::atan2(-ahead.x, -ahead.z), 0.0, 0.0)};
 }
@@ -63,37 +67,71 @@ void Wearer::claim(SampleInbox& inbox, DiverGroup group) {
   send(inbox, PayloadKind::kEvent, event, now_ns());
 }
 
+// Gives back what was swum by keys, to the scene's choice.
+void Wearer::let_go(SampleInbox& inbox) {
+  swims_ = false;
+  for (const DiverGroup group : {DiverGroup::kBody, DiverGroup::kButtons}) {
+    if (!std::exchange(claimed_[static_cast<std::size_t>(group)], false)) continue;
+    const GroupControl& chosen = physics_->world().start_inputs().humans()[0].of(group);
+    if (chosen.authority == Authority::kLive) continue;
+    Event event{.group = static_cast<std::uint64_t>(group)};
+    event.authority = static_cast<std::uint64_t>(chosen.authority);
+    event.source = chosen.source;
+    event.hold_s = chosen.hold_s;
+    send(inbox, PayloadKind::kEvent, event, now_ns());
+  }
+}
+
+void Wearer::swim_by_keys(bool on) {
+  by_keys_ = on;
+  yaw_rad_ = course_of(diver::standing_pose(Vec3(0.0), state().human.root.attitude).rotation);
+}
+
+void Wearer::begin_swimming(SampleInbox& inbox, double scene_time_s) {
+  swims_ = true;
+  began_by_keys_ = by_keys_;
+  swimmer_ = state().swimmer;
+  stays_ned_m_ = state().human.root.position_ned_m;
+  swum_s_ = scene_time_s;
+  claim(inbox, DiverGroup::kBody);
+}
+
+// In the frame of the body with which it rides.
+Pose Wearer::riding(const Pose& world_from_tracked) const {
+  return world_from_body_ ? inverse(*world_from_body_) * world_from_tracked : world_from_tracked;
+}
+
 Status Wearer::poll(SampleInbox& inbox, double scene_time_s) {
   if (swims_) swim(inbox, scene_time_s);
   if (!std::exchange(fresh_, false)) return {};
-  if (!world_from_head_ && input_.jacket == 0) return {};
+  const bool ends = swims_ && began_by_keys_ && !by_keys_;
+  if (!world_from_head_ && input_.jacket == 0 && !by_keys_ && !ends) return {};
   if (!source_) {
     NERITIC_TRY(source_, inbox.open("wearer"));
   }
   const TimeNs now = now_ns();
   if (world_from_head_) {
     claim(inbox, DiverGroup::kHead);
-    send(inbox, PayloadKind::kHeadPose, HeadPose{*world_from_head_, 1}, now);
+    send(inbox, PayloadKind::kHeadPose,
+         HeadPose{riding(*world_from_head_), kHeadPlaced | (world_from_body_ ? kHeadRides : 0)},
+         now);
   }
   HandPoses hands;
   for (std::size_t i = 0; i < 2; ++i) {
     if (!tracked_.hands[i]) continue;
-    hands.world_from_hand[i] = *tracked_.hands[i];
+    hands.world_from_hand[i] = riding(*tracked_.hands[i]);
     hands.tracked |= std::uint64_t{1} << i;
   }
   if (hands.tracked != 0) {
     claim(inbox, DiverGroup::kHands);
+    if (world_from_body_) hands.tracked |= kHandsRide;
     send(inbox, PayloadKind::kHandPoses, hands, now);
   }
   if (tracked_.gaze) send_gaze(inbox, *tracked_.gaze);
-  pushes_ = world_from_head_ && glm::length(input_.move) > kPush;
-  if (pushes_ && !swims_) {
-    swims_ = true;
-    swimmer_ = state().swimmer;
-    stays_ned_m_ = state().human.root.position_ned_m;
-    swum_s_ = scene_time_s;
-    claim(inbox, DiverGroup::kBody);
-  }
+  if (ends)
+    let_go(inbox);
+  else if (!swims_ && (by_keys_ || (world_from_head_ && glm::length(input_.move) > kPush)))
+    begin_swimming(inbox, scene_time_s);
   if (input_.jacket != 0 && !swims_) {
     claim(inbox, DiverGroup::kButtons);
     send(inbox, PayloadKind::kButtons, JacketButtons{input_.jacket}, now);
@@ -111,22 +149,45 @@ void Wearer::send_gaze(SampleInbox& inbox, const xr::Tracked::Gaze& gaze) {
   send(inbox, PayloadKind::kGaze, Gaze{gaze_.state()}, gaze.sampled_ns);
 }
 
-// The swimmer's own kick, towards where the head looks and the sticks push; without a push the
-// diver stays at the place. The buttons trim too, as under the autopilot.
+// Towards where the head looks and the sticks push.
+std::optional<diver::SwimGoal> Wearer::pushed() const {
+  if (!world_from_head_ || !(glm::length(input_.move) > kPush)) return std::nullopt;
+  const Vec3 push = world_from_head_->rotation * Vec3(input_.move.x, 0.0, input_.move.z) +
+                    Vec3(0.0, input_.move.y, 0.0);
+  const double share = std::min(1.0, glm::length(push));
+  return diver::SwimGoal{state().human.root.position_ned_m +
+                             diver::ned_from_world(push) * (kAhead_m / std::max(share, kPush)),
+                         share * (input_.fast ? kFast_m_s : kSpeed_m_s)};
+}
+
+// Ahead, up and down along the course, which the other keys turn. Without a key he stays there.
+diver::SwimGoal Wearer::pushed_by_keys() {
+  const double turn = std::clamp(input_.move.x + input_.turn, -1.0, 1.0);
+  const double ahead = std::max(0.0, -input_.move.z), up = input_.move.y;
+  if (!(std::abs(turn) > kPush || ahead > kPush || std::abs(up) > kPush))
+    return {stays_ned_m_, 0.0};
+  const double course =
+      course_of(diver::standing_pose(Vec3(0.0), state().human.root.attitude).rotation, yaw_rad_);
+  if (std::abs(turn) > kPush) yaw_rad_ = course - turn * kTurn_rad;
+  const double level =
+      std::max({ahead, kTurningShare * std::abs(turn), kTurningShare * std::abs(up)});
+  const Vec3 push = from_yaw_pitch_roll(yaw_rad_, 0.0, 0.0) * Vec3(0.0, up, -level);
+  const double share = std::min(1.0, glm::length(push));
+  return {
+      state().human.root.position_ned_m + diver::ned_from_world(glm::normalize(push)) * kAhead_m,
+      share * (input_.fast ? kFast_m_s : kSpeed_m_s)};
+}
+
+// The swimmer's own kick; without a push the diver stays at the place. The buttons trim too, as
+// under the autopilot.
 void Wearer::swim(SampleInbox& inbox, double scene_time_s) {
   const double dt_s = std::min(scene_time_s - swum_s_, kLongestStep_s);
   if (!(dt_s > 0.0)) return;
   swum_s_ = scene_time_s;
   const diver::HumanState& body = state().human;
-  diver::SwimGoal goal{stays_ned_m_, 0.0};
-  if (pushes_ && world_from_head_) {
-    const Vec3 push = world_from_head_->rotation * Vec3(input_.move.x, 0.0, input_.move.z) +
-                      Vec3(0.0, input_.move.y, 0.0);
-    const double share = std::min(1.0, glm::length(push));
-    stays_ned_m_ = body.root.position_ned_m;
-    goal = {stays_ned_m_ + diver::ned_from_world(push) * (kAhead_m / std::max(share, kPush)),
-            share * (input_.fast ? kFast_m_s : kSpeed_m_s)};
-  }
+  const diver::SwimGoal goal =
+      by_keys_ ? pushed_by_keys() : pushed().value_or(diver::SwimGoal{stays_ned_m_, 0.0});
+  if (goal.speed_m_s > 0.0) stays_ned_m_ = body.root.position_ned_m;
   diver::HumanInputs limbs;
   diver::swim(human().body, human().file.swimmer, goal, body, swimmer_, dt_s, limbs);
   const TimeNs now = now_ns();

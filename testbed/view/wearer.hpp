@@ -1,7 +1,7 @@
 // A person as the scene's first diver: head, hands, gaze and swimming of a headset's wearer, and
-// the jacket's buttons in a window too, become samples of the source "wearer", as those of any
-// other device. The stage goes with the diver's body, level, so that the wearer's eyes are the
-// diver's. Rendering thread.
+// in a window the jacket's buttons and swimming by keys, become samples of the source "wearer", as
+// those of any other device. The stage goes with the diver's body, level, so that the wearer's eyes
+// are the diver's. Rendering thread.
 #pragma once
 
 #include <optional>
@@ -21,10 +21,15 @@ class Wearer final : public SampleSource {
   // Precondition: the scene has a diver that moves by physics.
   explicit Wearer(LivePhysics& physics);
 
-  // Where the stage lies for a head that is where the wearer recentred.
-  Pose world_from_stage(const scene::MotionSource& motion, double time_s) const;
+  // Where the stage lies for a head that is where the wearer recentred. From then on what is
+  // tracked rides with the body: a step between two frames moves both.
+  Pose world_from_stage(const scene::MotionSource& motion, double time_s);
   // The wearer's acts in this frame; frame.world_from_head tells whether he is tracked.
   void take(const xr::DisplayFrame& frame, const DiveInput& input);
+  // Without a headset: the keys swim the diver from now on, or no longer. Ahead is where he swims.
+  void swim_by_keys(bool on);
+  bool swum_by_keys() const { return by_keys_; }
+  std::size_t object() const { return human().object; }
   // Sends it, once a frame, and the limbs of whoever swims by hand. The wearer gets authority over
   // groups of inputs that no other device has. kBadInput if the inbox has no room for the source.
   Status poll(SampleInbox& inbox, double scene_time_s) override;
@@ -32,6 +37,11 @@ class Wearer final : public SampleSource {
  private:
   void send(SampleInbox& inbox, PayloadKind kind, const Payload& payload, TimeNs captured_ns);
   void claim(SampleInbox& inbox, DiverGroup group);
+  void let_go(SampleInbox& inbox);
+  void begin_swimming(SampleInbox& inbox, double scene_time_s);
+  std::optional<diver::SwimGoal> pushed() const;
+  diver::SwimGoal pushed_by_keys();
+  Pose riding(const Pose& world_from_tracked) const;
   void swim(SampleInbox& inbox, double scene_time_s);
   void send_gaze(SampleInbox& inbox, const xr::Tracked::Gaze& gaze);
   const PhysicsHuman& human() const { return physics_->world().humans().front(); }
@@ -41,6 +51,7 @@ class Wearer final : public SampleSource {
   std::optional<SourceId> source_;  // opened with the first sample
   Vec3 eyes_m_;  // of a straight body, in a standing person's axes, from the hips
   std::optional<Pose> world_from_head_;
+  std::optional<Pose> world_from_body_;  // the hips when the stage was placed
   xr::Tracked tracked_;
   DiveInput input_;
   bool fresh_ = false;  // those were not sent yet
@@ -49,7 +60,8 @@ class Wearer final : public SampleSource {
   diver::GazeMonitor gaze_;
   TimeNs gazed_ns_ = 0;
   // Swimming by hand, from the first push on.
-  bool swims_ = false, pushes_ = false;
+  bool swims_ = false, by_keys_ = false, began_by_keys_ = false;
+  double yaw_rad_ = 0.0;  // by keys: the course that is held
   diver::SwimmerState swimmer_;
   Vec3 stays_ned_m_{0.0};
   double swum_s_ = 0.0;

@@ -146,7 +146,7 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(SonarFanPush, m_per_px), MEMBER(SonarFanPush, range_min_m),
         MEMBER(SonarFanPush, bins_per_m), MEMBER(SonarFanPush, azimuth_middle_rad),
         MEMBER(SonarFanPush, azimuth_half_rad), MEMBER(SonarFanPush, bins_per_rad),
-        MEMBER(SonarFanPush, gamma), MEMBER(SonarFanPush, is_power)}},
+        MEMBER(SonarFanPush, gamma), MEMBER(SonarFanPush, gain), MEMBER(SonarFanPush, is_power)}},
       {"SonarFanScalePush",
        {MEMBER(SonarFanScalePush, cells), MEMBER(SonarFanScalePush, stride),
         MEMBER(SonarFanScalePush, quantile), MEMBER(SonarFanScalePush, follow),

@@ -104,8 +104,8 @@ TEST(CommandLine, HelpSaysWhatRenderWritesAndHowAPlanIsAskedFor) {
 }
 
 TEST(CommandLine, AWrongSubcommandListsThem) {
-  EXPECT_THAT(said({"rendre"}),
-              HasSubstr("render, sonar, dive, tradeoff, check, plan, physio, register, doctor"));
+  EXPECT_THAT(said({"rendre"}), HasSubstr("render, sonar, dive, tradeoff, check, plan, physio, "
+                                          "register, experiment, recording, hud, doctor"));
 }
 
 }  // namespace

@@ -393,7 +393,7 @@ void add_tradeoff(CLI::App& app, Run& run) {
       "tradeoff", "measures the error of a model against its cost, over all of its settings");
   command
       ->add_option("what", flags->what,
-                   "sonar, physics, navigation, swim, deco, physiology or modem")
+                   "sonar, physics, navigation, swim, deco, physiology, modem or xr")
       ->required();
   command
       ->add_option("--out", flags->out,
@@ -403,7 +403,7 @@ void add_tradeoff(CLI::App& app, Run& run) {
   command
       ->add_option("scene,--scene", flags->scene,
                    "sonar: the scene whose first sonar gives the place; none: only scenes with a "
-                   "closed-form answer")
+                   "closed-form answer; xr: whose first camera is the head (dive.toml)")
       ->capture_default_str();
   command->add_option(
       "--kind", flags->kind,
@@ -639,6 +639,31 @@ void add_recording(CLI::App& app, Run& run) {
   command->callback([flags, &run] { run = [flags] { return run_recording(*flags); }; });
 }
 
+void add_hud(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<HudFlags>();
+  CLI::App* command = app.add_subcommand(
+      "hud",
+      "shows a diver's instruments over any other OpenXR program (XR_EXTX_overlay), from a dive "
+      "that was recorded");
+  command->add_option("scene", flags->scene,
+                      "scene (.toml) of the dive, where it is not the recording's own");
+  command
+      ->add_option("--replay", flags->replay,
+                   "its recording (dive --record), at the pace of the dive")
+      ->required();
+  command->add_option("--hud", flags->layouts,
+                      "any of mask (default), corner, wrist, console, with commas between");
+  command->add_option("--diver", flags->diver, "whose instruments (default: the first diver)");
+  command->add_option("--units", flags->units, "metric (default), imperial")
+      ->check(CLI::IsMember({"metric", "imperial"}));
+  command->add_option("--frames", flags->frames, "stop after so many frames that are seen")
+      ->check(between(1, 1000000));
+  command->add_flag("--validate", flags->validation,
+                    "fail if Vulkan's validation layer says anything");
+  command->footer("Example: neritic hud --replay dive.mcap --hud mask,wrist");
+  command->callback([flags, &run] { run = [flags] { return nothing_to_say(run_hud(*flags)); }; });
+}
+
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
@@ -710,6 +735,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_register(app, line.run);
   add_experiment(app, line);
   add_recording(app, line.run);
+  add_hud(app, line.run);
   add_doctor(app, line.run);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(),

@@ -124,6 +124,13 @@ struct PhysioFlags {
 };
 Result<std::string> run_physio(const PhysioFlags& flags);
 
+struct HudFlags {
+  std::string scene, replay, layouts, diver, units = "metric";
+  std::uint64_t frames = 0;  // that are seen; 0: all of the recording
+  bool validation = false;
+};
+Status run_hud(const HudFlags& flags);
+
 struct RegisterFlags {
   std::string file, lab_up = "y";
   bool tilted = false, json = false;

@@ -85,6 +85,7 @@ struct Screen {
   std::unique_ptr<gpu::Device> device;
   std::unique_ptr<xr::Headset> headset;  // of a dive in one
   std::string no_headset;                // why there is none, where one was looked for
+  ViewMemory memory;                     // of the last window
   std::unique_ptr<xr::Display> display;
   std::unique_ptr<xr::Overlay> overlay;
 
@@ -122,7 +123,12 @@ Status make_device(const DiveFlags& flags, const scene::Scene& scene, Screen& sc
   if (screen.headset) {
     screen.headset->require(options);
   } else if (!flags.headless) {
-    std::pair<std::uint32_t, std::uint32_t> size{1280, 720};
+    const Result<ViewMemory> memory = read_view_memory(view_memory_file());
+    if (memory.ok())
+      screen.memory = *memory;
+    else
+      log_warn("{}", memory.error().message);
+    std::pair<std::uint32_t, std::uint32_t> size{screen.memory.width, screen.memory.height};
     if (!flags.size.empty()) {
       NERITIC_TRY(size, parse_size("--size", flags.size));
     }
@@ -209,6 +215,20 @@ void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera
                   {loop.wall_s(), physics->counts().dropped, start_s});
 }
 
+// The window's size where it has one, and its panels, for the next time. A folder that cannot be
+// written is no reason to fail a dive.
+void keep_memory(const DiveFlags& flags, const Screen& screen, const DiveView& view) {
+  auto memory = view.memory();
+  if (!screen.window || !memory) return;
+  if (flags.size.empty() && screen.window->width() > 0 && screen.window->height() > 0) {
+    memory->width = screen.window->width();
+    memory->height = screen.window->height();
+  }
+  if (*memory == screen.memory) return;
+  if (const Status kept = write_view_memory(view_memory_file(), *memory); !kept.ok())
+    log_warn("{}", kept.error().message);
+}
+
 // physics_scene: the one whose physics runs, if it is not the one that is shown.
 Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
                      const std::optional<scene::Scene>& physics_scene,
@@ -241,23 +261,23 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   NERITIC_TRY(const auto session, Session::create(*screen.device, std::move(scene)));
   NERITIC_TRY_STATUS(make_display(flags, camera, screen));
   NERITIC_TRY(const auto hud, hud_options(flags, physics.get(), unasked_hud(screen)));
-  NERITIC_TRY(
-      const auto view,
-      DiveView::create(
-          *session, screen.shown_on(), screen.overlay.get(), physics.get(),
-          {.viewpoint = chosen.viewpoint,
-           .sonars = chosen.sonars,
-           .summary = flags.headless,
-           .screenshot = flags.screenshot,
-           .may_fly = !replay,
-           .hud = hud,
-           .budget_ms = frame_budget_ms(flags, screen),
-           .clock = clock,
-           .frame_s = 1.0 / camera.rate_hz,
-           .timeline = !flags.timeline.empty(),
-           .keep = kept_by_key(flags, recording),
-           .no_keys_for_files = replay ? "a replay is neither saved nor recorded"
-                                       : "nothing moves by physics: there is no state to save"}));
+  NERITIC_TRY(const auto view,
+              DiveView::create(*session, screen.shown_on(), screen.overlay.get(), physics.get(),
+                               {.viewpoint = chosen.viewpoint,
+                                .sonars = chosen.sonars,
+                                .summary = flags.headless,
+                                .screenshot = flags.screenshot,
+                                .may_fly = !replay,
+                                .hud = hud,
+                                .budget_ms = frame_budget_ms(flags, screen),
+                                .clock = clock,
+                                .frame_s = 1.0 / camera.rate_hz,
+                                .timeline = !flags.timeline.empty(),
+                                .keep = kept_by_key(flags, recording),
+                                .no_keys_for_files =
+                                    replay ? "a replay is neither saved nor recorded"
+                                           : "nothing moves by physics: there is no state to save",
+                                .memory = screen.memory}));
   std::optional<StepFiles> files;
   std::vector<StepSink*> step_sinks;
   std::vector<SampleSource*> sources{&view->pilot()};
@@ -306,6 +326,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
                       .seconds = replay ? recorded_s : flags.seconds.value_or(unlimited_s),
                       .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
+  keep_memory(flags, screen, *view);
   // A run that failed prints its summary too.
   if (replay && !flags.quiet && !flags.json) replay->tell();
   tell(flags, *screen.device, camera, *view, loop, physics.get(),

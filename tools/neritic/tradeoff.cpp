@@ -15,6 +15,7 @@
 #include "tools/tradeoff/physiology_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
 #include "tools/tradeoff/swim_tradeoff.hpp"
+#include "tools/tradeoff/xr_tradeoff.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -97,6 +98,20 @@ Result<std::string> trade_modem(const TradeoffFlags& flags) {
   return fmt::format("{}: modem.csv, .md, .plot.json{}", flags.out.string(), drawn ? ", .png" : "");
 }
 
+Result<std::string> trade_xr(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return refusal("tradeoff xr", fmt::format("kind '{}'", flags.kind), "none");
+  XrTradeoffOptions options;
+  if (flags.scene != TradeoffFlags().scene) options.scene = flags.scene;
+  options.device = flags.device;
+  options.quick = flags.quick;
+  Progress progress("tradeoff xr", steps(options));
+  options.step = [&] { progress.step(); };
+  NERITIC_TRY(const XrTradeoff tradeoff, run_xr_tradeoff(options));
+  NERITIC_TRY(const bool drawn, write_xr_tradeoff(flags.out, tradeoff));
+  return files(flags, "xr", drawn);
+}
+
 Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   SonarTradeoffOptions options;
   options.scene = flags.scene == "none" ? "" : flags.scene;
@@ -156,8 +171,9 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "physiology") return trade_physiology(flags);
   if (flags.what == "deco") return trade_deco(flags);
   if (flags.what == "modem") return trade_modem(flags);
+  if (flags.what == "xr") return trade_xr(flags);
   return refusal("tradeoff", fmt::format("'{}'", flags.what),
-                 "sonar, physics, navigation, swim, deco, physiology or modem");
+                 "sonar, physics, navigation, swim, deco, physiology, modem or xr");
 }
 
 }  // namespace neritic::tools

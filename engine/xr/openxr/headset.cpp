@@ -108,7 +108,7 @@ Status OpenXrHeadset::attach(gpu::Device& device) {
 Status OpenXrHeadset::start_session() {
   Parts parts;
   NERITIC_TRY(parts.session, Session::create(*runtime_, *device_, options_));
-  NERITIC_TRY(parts.views, Views::create(*runtime_, *parts.session, *device_));
+  NERITIC_TRY(parts.views, Views::create(*runtime_, *parts.session, *device_, !options_.overlay));
   NERITIC_TRY(parts.panels, Panels::create(*runtime_, *parts.session, *device_, *presenter_));
   NERITIC_TRY(parts.inputs, Inputs::create(*runtime_, *parts.session));
   parts_ = std::move(parts);
@@ -293,7 +293,7 @@ Status OpenXrHeadset::end(bool submitted) {
       if (near_m_[i] > 0.0) NERITIC_TRY_STATUS(group.depth->release());
       whole = whole && projected_[i];
     }
-    if (whole) layers.push_back(parts_.views->layer(near_m_));
+    if (whole && !projected_.empty()) layers.push_back(parts_.views->layer(near_m_));
     NERITIC_TRY(const auto panels, parts_.panels->finish(world_from_stage_));
     layers.insert(layers.end(), panels.begin(), panels.end());
   } else {

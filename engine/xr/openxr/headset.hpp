@@ -30,6 +30,9 @@ struct HeadsetOptions {
   bool room = false;
   double refresh_hz = 0.0;  // asked for where the runtime lets programs choose; 0: its own choice
   std::vector<ActionDesc> actions;
+  // Over another program's picture, which goes on (XR_EXTX_overlay): panels alone, no views.
+  // kUnsupported where the runtime cannot do that.
+  bool overlay = false;
   // OpenXR's validation layer (Debian package openxr-layer-corevalidation). kUnsupported where it
   // is not installed.
   bool validation = false;

@@ -35,26 +35,48 @@ Status Panels::declare(graph::FrameGraph& graph, const PanelLayer& panel) {
   return {};
 }
 
+const XrCompositionLayerBaseHeader* Panels::flat(const Shown& shown, XrSpace space,
+                                                 const Pose& pose) {
+  XrCompositionLayerQuad quad{XR_TYPE_COMPOSITION_LAYER_QUAD};
+  quad.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
+  quad.space = space;
+  quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
+  quad.subImage = shown.chain->sub_image(0);
+  quad.pose = to_xr(pose);
+  quad.size = {static_cast<float>(shown.panel.size_m.x), static_cast<float>(shown.panel.size_m.y)};
+  return reinterpret_cast<const XrCompositionLayerBaseHeader*>(&quads_.emplace_back(quad));
+}
+
+// Its middle is where the flat one's is; the axis lies before it, towards the viewer.
+const XrCompositionLayerBaseHeader* Panels::bent(const Shown& shown, XrSpace space,
+                                                 const Pose& pose) {
+  const PanelLayer& panel = shown.panel;
+  XrCompositionLayerCylinderKHR cylinder{XR_TYPE_COMPOSITION_LAYER_CYLINDER_KHR};
+  cylinder.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
+  cylinder.space = space;
+  cylinder.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
+  cylinder.subImage = shown.chain->sub_image(0);
+  cylinder.pose = to_xr(pose * Pose{{0.0, 0.0, panel.radius_m}});
+  cylinder.radius = static_cast<float>(panel.radius_m);
+  cylinder.centralAngle = static_cast<float>(panel.size_m.x / panel.radius_m);
+  cylinder.aspectRatio = static_cast<float>(panel.size_m.x / panel.size_m.y);
+  return reinterpret_cast<const XrCompositionLayerBaseHeader*>(&cylinders_.emplace_back(cylinder));
+}
+
 Result<std::vector<const XrCompositionLayerBaseHeader*>> Panels::finish(
     const Pose& world_from_stage) {
   quads_.clear();
+  cylinders_.clear();
+  std::vector<const XrCompositionLayerBaseHeader*> layers;
   for (const Shown& shown : shown_) {
     NERITIC_TRY_STATUS(shown.chain->release());
     const bool head = shown.panel.lock == PanelLayer::Lock::kHead;
-    XrCompositionLayerQuad quad{XR_TYPE_COMPOSITION_LAYER_QUAD};
-    quad.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
-    quad.space = head ? session_.head() : session_.stage();
-    quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
-    quad.subImage = shown.chain->sub_image(0);
-    quad.pose = to_xr(head ? shown.panel.pose : inverse(world_from_stage) * shown.panel.pose);
-    quad.size = {static_cast<float>(shown.panel.size_m.x),
-                 static_cast<float>(shown.panel.size_m.y)};
-    quads_.push_back(quad);
+    const XrSpace space = head ? session_.head() : session_.stage();
+    const Pose pose = head ? shown.panel.pose : inverse(world_from_stage) * shown.panel.pose;
+    const bool bends = runtime_.has().cylinder && shown.panel.radius_m > 0.0;
+    layers.push_back(bends ? bent(shown, space, pose) : flat(shown, space, pose));
   }
   shown_.clear();
-  std::vector<const XrCompositionLayerBaseHeader*> layers;
-  for (const XrCompositionLayerQuad& quad : quads_)
-    layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&quad));
   return layers;
 }
 

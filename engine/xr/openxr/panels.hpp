@@ -1,7 +1,8 @@
-// Inside engine/xr/openxr only: panels as composition layers of their own, each with the runtime's
-// images in the panel's own resolution. Rendering thread.
+// Inside engine/xr/openxr only: panels as composition layers of their own, quads or, bent,
+// cylinders, each with the runtime's images in the panel's own resolution. Rendering thread.
 #pragma once
 
+#include <deque>
 #include <map>
 
 #include "engine/xr/display.hpp"
@@ -42,7 +43,11 @@ class Panels {
   VkFormat format_ = VK_FORMAT_UNDEFINED;
   std::map<std::string, Kept> chains_;  // by panel
   std::vector<Shown> shown_;            // of this frame
-  std::vector<XrCompositionLayerQuad> quads_;
+  const XrCompositionLayerBaseHeader* bent(const Shown& shown, XrSpace space, const Pose& pose);
+  const XrCompositionLayerBaseHeader* flat(const Shown& shown, XrSpace space, const Pose& pose);
+  // Of this frame; their addresses are the runtime's until the frame has ended.
+  std::deque<XrCompositionLayerQuad> quads_;
+  std::deque<XrCompositionLayerCylinderKHR> cylinders_;
 };
 
 }  // namespace neritic::xr::openxr

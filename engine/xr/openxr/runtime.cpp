@@ -29,6 +29,10 @@ constexpr Known kKnown[] = {
     {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "the diver's hands follow the wearer's",
      &Extensions::hands},
     {XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME, "the wearer's gaze", &Extensions::gaze},
+    {XR_KHR_COMPOSITION_LAYER_CYLINDER_EXTENSION_NAME,
+     "wide instruments are bent around the wearer", &Extensions::cylinder},
+    {XR_EXTX_OVERLAY_EXTENSION_NAME, "neritic hud: instruments over another program",
+     &Extensions::overlay},
 };
 
 std::vector<std::string> names_of(const Loader& loader, const char* layer) {
@@ -89,13 +93,18 @@ Status Runtime::create_instance(const Loader& loader, const HeadsetOptions& opti
   for (const Known& known : kKnown) {
     // The gaze moves the sharp views of four only.
     const bool is_offered = contains(offered, known.name);
-    const bool here = is_offered && (known.flag != &Extensions::foveated || has_.quad_views);
+    const bool here = is_offered && (known.flag != &Extensions::foveated || has_.quad_views) &&
+                      (known.flag != &Extensions::overlay || options.overlay);
     info_.extensions.push_back({known.name, known.adds, is_offered});
     if (known.flag) has_.*known.flag = here;
     if (here) wanted.push_back(known.name);
     if (!here && !known.flag)
       return failure(ErrorCode::kUnsupported, "the OpenXR runtime has no {}", known.name);
   }
+  if (options.overlay && !has_.overlay)
+    return failure(ErrorCode::kUnsupported,
+                   "the OpenXR runtime has no {}: it shows nothing over another program",
+                   XR_EXTX_OVERLAY_EXTENSION_NAME);
   for (const std::string& name : offered)
     if (std::none_of(std::begin(kKnown), std::end(kKnown),
                      [&](const Known& known) { return name == known.name; }))

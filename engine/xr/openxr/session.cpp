@@ -14,6 +14,8 @@ Result<std::unique_ptr<Session>> Session::create(Runtime& runtime, const gpu::De
   binding.physicalDevice = device.physical();
   binding.device = device.handle();
   binding.queueFamilyIndex = device.queue_family();
+  XrSessionCreateInfoOverlayEXTX overlay{XR_TYPE_SESSION_CREATE_INFO_OVERLAY_EXTX};
+  if (options.overlay) binding.next = &overlay;
   XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &binding};
   info.systemId = runtime.system();
   NERITIC_TRY_STATUS(runtime.check(

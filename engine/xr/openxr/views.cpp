@@ -8,12 +8,13 @@
 namespace neritic::xr::openxr {
 
 Result<std::unique_ptr<Views>> Views::create(Runtime& runtime, const Session& session,
-                                             gpu::Device& device) {
+                                             gpu::Device& device, bool pictures) {
   std::unique_ptr<Views> views(new Views(runtime, session));
   NERITIC_TRY_STATUS(views->choose_configuration());
   NERITIC_TRY_STATUS(views->choose_blend_mode());
   NERITIC_TRY(const auto sizes, views->sizes());
-  NERITIC_TRY_STATUS(views->make_swapchains(device, sizes));
+  views->foveated_ = views->foveated_ && pictures;
+  if (pictures) NERITIC_TRY_STATUS(views->make_swapchains(device, sizes));
   views->views_.assign(sizes.size(), {XR_TYPE_VIEW});
   for (XrView& view : views->views_) view.pose = to_xr({});
   return views;

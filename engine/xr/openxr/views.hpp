@@ -12,8 +12,9 @@ namespace neritic::xr::openxr {
 class Views {
  public:
   // runtime, session and device must outlive it.
+  // pictures: false: of an overlay, which has none.
   static Result<std::unique_ptr<Views>> create(Runtime& runtime, const Session& session,
-                                               gpu::Device& device);
+                                               gpu::Device& device, bool pictures);
   XrViewConfigurationType configuration() const { return configuration_; }
   XrEnvironmentBlendMode blend_mode() const { return blend_mode_; }
 

@@ -31,7 +31,7 @@ class HeadsetRun : public ::testing::Test {
                                       .actions = dive_actions(),
                                       .validation = layer_ && fakes::CoreValidation::installed()}));
     gpu::DeviceOptions options;
-    options.validation = true;
+    options.validation = validation_;
     options.validation_sink = &vulkan_;
     headset->require(options);
     NERITIC_TRY(device, gpu::Device::create(options));
@@ -41,8 +41,12 @@ class HeadsetRun : public ::testing::Test {
   }
   // The layer (1.0.20) breaks rules itself where an instance is refused.
   void without_layer() { layer_ = false; }
+  void without_validation() { validation_ = false; }
   // In lock-step with the pictures; outlives the dive.
   void with(LivePhysics& physics) { physics_ = &physics; }
+  void with(DiveHudOptions hud) { hud_ = std::move(hud); }
+  // Polled once a frame, on the rendering thread.
+  void with(SampleSource& source) { source_ = &source; }
   // Ends the dive by time, shown or not.
   void end_after(double seconds) { seconds_ = seconds; }
   const std::string& folder() const { return folder_text_; }
@@ -58,9 +62,11 @@ class HeadsetRun : public ::testing::Test {
                  std::uint64_t frames) {
     NERITIC_TRY_STATUS(headset.attach(device));
     NERITIC_TRY(const auto session, Session::create(device, scene));
-    NERITIC_TRY(const auto view, DiveView::create(*session, headset, nullptr, physics_, {}));
+    NERITIC_TRY(const auto view,
+                DiveView::create(*session, headset, nullptr, physics_, {.hud = hud_}));
     std::vector<SampleSource*> sources;
     if (view->wearer()) sources.push_back(view->wearer());
+    if (source_) sources.push_back(source_);
     const TimeNs end_ns = now_ns() + 60'000'000'000;
     Loop loop({.clock = Clock::real(0.0, 1.0 / 90.0),
                .physics = physics_,
@@ -82,8 +88,10 @@ class HeadsetRun : public ::testing::Test {
   std::vector<std::string> openxr_;
   std::uint64_t shown_ = 0;
   LivePhysics* physics_ = nullptr;
+  std::optional<DiveHudOptions> hud_;
+  SampleSource* source_ = nullptr;
   double seconds_ = 0.0;
-  bool layer_ = true;
+  bool layer_ = true, validation_ = true;
 };
 
 }  // namespace neritic::testbed

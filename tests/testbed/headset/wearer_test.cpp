@@ -1,5 +1,6 @@
 // A headset's wearer as a diver: what is tracked and pressed becomes the diver's inputs.
 #include "diver/jacket.hpp"
+#include "testbed/samples/riding.hpp"
 #include "testbed/view/dive_camera.hpp"
 #include "tests/testbed/headset/headset_run.hpp"
 #include "tests/testbed/simulation/devices.hpp"
@@ -39,15 +40,42 @@ TEST_F(HeadsetWearer, HeadHandGazeAndButtonBecomeTheDiversInputs) {
     EXPECT_EQ(state().groups[static_cast<std::size_t>(group)].phase, GroupPhase::kLive)
         << name_of(group);
   EXPECT_EQ(inputs().buttons.pressed, diver::kInflate);
+  // Tracked poses ride with the body.
+  EXPECT_TRUE(inputs().head.placed & kHeadRides);
+  const Pose body = drawn_pose(state());
   // The gaze is 10 degrees to port of where the head looks.
-  const Vec3 gaze = glm::conjugate(head.rotation) * inputs().gaze.state.direction;
-  EXPECT_NEAR(degrees(std::atan2(-gaze.x, -gaze.z)), 10.0, 0.1);
+  const Vec3 gaze = glm::conjugate((body * head).rotation) * inputs().gaze.state.direction;
+  EXPECT_NEAR(degrees(std::atan2(-gaze.x, -gaze.z)), 10.0, 0.5);
   // The wrist is 0.08 m from the grip, in the stage; the head is turned by 20 degrees there.
-  ASSERT_EQ(inputs().hand_poses.tracked, 1u);
+  ASSERT_EQ(inputs().hand_poses.tracked, 1u | kHandsRide);
   const Vec3 wrist = inverse(head) * inputs().hand_poses.world_from_hand[0].position_m;
   const Vec3 expected =
       from_yaw_pitch_roll(radians(-20.0), 0.0, 0.0) * Vec3(-0.2, -0.4 + 0.08, -0.3);
   EXPECT_LT(glm::distance(wrist, expected), 1e-3);
+}
+
+// A wearer who holds still neither rows nor brakes the diver who swims on by plan, however seldom
+// frames come.
+TEST_F(HeadsetWearer, WhatIsTrackedRidesWithTheBodyThatSwimsOn) {
+  fakes::FakeHeadset fake(
+      "size 16 16\nperiod 0.1\nhead 0 0 1.6 0\nhand left 0 -0.15 1.35 -0.35\n"
+      "hand right 0 0.2 1.3 -0.35\n");
+  scene_ = dive_of(kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
+                                            "swim = { waypoints_m = [[0, -12, -50]], "
+                                            "speed_m_s = 0.5 }\n"))
+               .scene;
+  scene_.cameras.push_back(camera_for(scene_));
+  NERITIC_ASSERT_OK(physics_, LivePhysics::create(scene_, LivePhysics::Pace::kPicture));
+  with(*physics_);
+  double fastest_m_s = 0.0;
+  physics_->observe([&](const sim::Snapshot<PhysicsState>& now) {
+    const auto& root = now.state.humans()[0].human.root;
+    if (now.time_s > 2.0) fastest_m_s = std::max(fastest_m_s, glm::length(root.velocity.linear()));
+  });
+  NERITIC_ASSERT_STATUS(dive(scene_, 60));
+  EXPECT_EQ(state().groups[static_cast<std::size_t>(DiverGroup::kHands)].phase, GroupPhase::kLive);
+  EXPECT_GT(fastest_m_s, 0.1);
+  EXPECT_LT(fastest_m_s, 0.8);
 }
 
 TEST_F(HeadsetWearer, APushedStickSwimsWhereTheHeadLooks) {
@@ -59,7 +87,8 @@ TEST_F(HeadsetWearer, APushedStickSwimsWhereTheHeadLooks) {
   NERITIC_ASSERT_STATUS(dive(scene_, 80));
   EXPECT_EQ(state().groups[static_cast<std::size_t>(DiverGroup::kBody)].phase, GroupPhase::kLive);
   const Vec3 moved = world_from_ned(state().human.root.position_ned_m - start);
-  const Vec3 ahead = inputs().head.world_from_head.rotation * Vec3(0, 0, -1);
+  const Vec3 ahead =
+      drawn_pose(state()).rotation * inputs().head.world_from_head.rotation * Vec3(0, 0, -1);
   EXPECT_GT(glm::dot(moved, ahead), 0.3) << moved.x << " " << moved.y << " " << moved.z << " ahead "
                                          << ahead.x << " " << ahead.y << " " << ahead.z;
 }

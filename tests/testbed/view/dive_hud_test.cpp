@@ -171,19 +171,25 @@ TEST_F(DiveHudTest, AHeadsetLocksEachToItsFrame) {
   graph::FrameGraph graph;
   std::vector<xr::Layer> layers;
   const Pose stage{{3, -4, 5}, from_yaw_pitch_roll(1.0, 0.0, 0.0)};
-  NERITIC_ASSERT_STATUS(hud.declare(graph, {group_, true, stage, {}}, layers));
+  const Pose hand = world_from_wrist(physics_->world().humans()[0], physics_->shown().humans()[0]);
+  NERITIC_ASSERT_STATUS(hud.declare(graph, {group_, true, stage, {}, hand}, layers));
   ASSERT_EQ(layers.size(), 3u);
   const auto& wrist = std::get<xr::PanelLayer>(layers[0]);
   const auto& mask = std::get<xr::PanelLayer>(layers[1]);
   const auto& console = std::get<xr::PanelLayer>(layers[2]);
   EXPECT_EQ(wrist.lock, xr::PanelLayer::Lock::kWorld);
-  const Pose hand = world_from_wrist(physics_->world().humans()[0], physics_->shown().humans()[0]);
   EXPECT_LT(glm::distance(wrist.pose.position_m, hand.position_m), 0.08);
   EXPECT_EQ(mask.lock, xr::PanelLayer::Lock::kHead);
   EXPECT_EQ(mask.size_m, hud::layout_of(hud::LayoutKind::kMask).size_m);
   EXPECT_EQ(console.lock, xr::PanelLayer::Lock::kWorld);
   const Vec3 wanted = (stage * Pose{{0.0, 1.5, -1.6}}).position_m;
   EXPECT_LT(glm::distance(console.pose.position_m, wanted), 1e-9);
+  // Without a tracked hand the wrist's is held before the eyes.
+  layers.clear();
+  NERITIC_ASSERT_STATUS(hud.declare(graph, {group_, true, stage, {}}, layers));
+  const auto& held = std::get<xr::PanelLayer>(layers[0]);
+  EXPECT_EQ(held.lock, xr::PanelLayer::Lock::kHead);
+  EXPECT_LT(held.pose.position_m.z, 0.0);
 }
 
 }  // namespace

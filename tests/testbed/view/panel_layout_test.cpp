@@ -66,6 +66,17 @@ TEST(PanelLayout, FromTheSmallestWindowOnAllHavePlacesAndWideOnesShowEverySonar)
     }
 }
 
+TEST(PanelLayout, ADiversInstrumentKeepsItsCorner) {
+  for (const auto& fans : kFans)
+    for (const auto& [width, height] : {std::pair(640.0f, 480.0f), {1280, 720}, {1920, 1080}}) {
+      const TakenCorner taken{height - 235.0f, 307.0f};
+      const PanelLayout layout = lay_out(width, height, 200.0f, fans, kWishes, taken);
+      const PanelRect corner{width - taken.width, taken.top, taken.width, height - taken.top};
+      for (const PanelRect& rect : all_of(layout)) EXPECT_FALSE(overlap(rect, corner)) << width;
+      EXPECT_GT(layout.readout.width, 250.0f) << width;
+    }
+}
+
 TEST(PanelLayout, PanelsOnDemandComeBeforeFansAndFitTheSmallestWindowByOne) {
   for (const auto& wish : kWishes) {
     const PanelLayout layout = lay_out(640, 480, 130, kFans[2], std::span(&wish, 1));

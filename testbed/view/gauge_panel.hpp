@@ -1,0 +1,25 @@
+// Gauges of the vehicle that is flown by hand: depth, speed, the share of each thruster's limit,
+// the tether's pull. Dear ImGui calls. Rendering thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "testbed/simulation/physics_world.hpp"
+#include "testbed/view/panel_layout.hpp"
+
+namespace neritic::testbed {
+
+struct VehicleGauges {
+  std::string name;
+  double depth_m = 0.0, heading_deg = 0.0, speed_m_s = 0.0;
+  std::vector<double> thrust;  // each thruster's share of its limit, -1 to 1
+  std::vector<bool> failed;
+  double tether_n = 0.0, tether_used = 0.0;  // pull; distance over its length. used 0: no tether
+};
+VehicleGauges gauges_of(const PhysicsVehicle& vehicle, const VehicleState& state);
+
+PanelWish gauges_wish(const VehicleGauges& gauges);
+void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, float scale);
+
+}  // namespace neritic::testbed

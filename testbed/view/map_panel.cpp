@@ -1,0 +1,111 @@
+#include "testbed/view/map_panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/draw2d/axes.hpp"
+#include "testbed/view/panel_frame.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+constexpr double kLeastSide_m = 20.0, kRoom = 1.25;
+
+Vec2 east_north(const Vec3& position_m) {
+  return {position_m.x, -position_m.z};
+}
+
+bool on_a_map(const Vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.z) && std::abs(p.x) < 1e7 && std::abs(p.z) < 1e7;
+}
+
+// A dart that points along its course.
+void draw_dart(ImDrawList& list, ImVec2 at, double course_rad, float size, ImU32 color) {
+  const auto corner = [&](double angle, float far) {
+    return ImVec2(at.x + far * static_cast<float>(std::sin(course_rad + angle)),
+                  at.y - far * static_cast<float>(std::cos(course_rad + angle)));
+  };
+  list.AddTriangleFilled(corner(0.0, 1.3f * size), corner(2.5, size), corner(-2.5, size), color);
+}
+
+}  // namespace
+
+void MapTrails::add(const std::vector<MapMark>& marks, double time_s) {
+  if (time_s < time_s_) trails_.clear();  // the run went back
+  time_s_ = time_s;
+  for (const MapMark& mark : marks) {
+    if (!on_a_map(mark.position_m)) continue;
+    Trail& trail = trails_[mark.name];
+    const Vec2 at = east_north(mark.position_m);
+    if (!trail.points.empty() && glm::distance(trail.points.back(), at) < trail.least_m) continue;
+    trail.points.push_back(at);
+    if (trail.points.size() <= kMostPoints) continue;
+    for (std::size_t i = 1; 2 * i < trail.points.size(); ++i) trail.points[i] = trail.points[2 * i];
+    trail.points.resize((trail.points.size() + 1) / 2);
+    trail.least_m *= 2.0;
+  }
+}
+
+const std::vector<Vec2>& MapTrails::of(const std::string& name) const {
+  static const std::vector<Vec2> kNone;
+  const auto found = trails_.find(name);
+  return found == trails_.end() ? kNone : found->second.points;
+}
+
+MapFrame map_frame(const std::vector<MapMark>& marks, const MapTrails& trails) {
+  Vec2 low(1e300), high(-1e300);
+  const auto add = [&](const Vec2& p) { low = glm::min(low, p), high = glm::max(high, p); };
+  for (const MapMark& mark : marks) {
+    if (on_a_map(mark.position_m)) add(east_north(mark.position_m));
+    for (const Vec2& p : trails.of(mark.name)) add(p);
+  }
+  if (!(low.x <= high.x)) return {};
+  return {0.5 * (low + high),
+          std::max(kLeastSide_m, kRoom * std::max(high.x - low.x, high.y - low.y))};
+}
+
+void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTrails& trails,
+              const PanelRect& rect, float scale) {
+  begin_panel("Map, north up###map", rect, scale, ImGuiWindowFlags_NoScrollbar);
+  const MapFrame frame = map_frame(marks, trails);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 from = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+  const ImVec2 to(from.x + room.x, from.y + room.y);
+  list.AddRectFilled(from, to, kPaper, 3.0f * scale);
+  list.PushClipRect(from, to, true);
+  const double px_per_m = std::min(room.x, room.y) / frame.side_m;
+  const auto place = [&](const Vec2& p) {
+    return ImVec2(from.x + 0.5f * room.x + static_cast<float>((p.x - frame.middle.x) * px_per_m),
+                  from.y + 0.5f * room.y - static_cast<float>((p.y - frame.middle.y) * px_per_m));
+  };
+  const double step = draw2d::nice_step(frame.side_m, 4.0);
+  const auto lines = [&](double middle, double half, auto draw) {
+    for (double at = step * std::ceil((middle - half) / step); at <= middle + half; at += step)
+      draw(at);
+  };
+  lines(frame.middle.x, 0.5 * room.x / px_per_m, [&](double east) {
+    const float x = place({east, 0.0}).x;
+    list.AddLine(ImVec2(x, from.y), ImVec2(x, to.y), kLine);
+  });
+  lines(frame.middle.y, 0.5 * room.y / px_per_m, [&](double north) {
+    const float y = place({0.0, north}).y;
+    list.AddLine(ImVec2(from.x, y), ImVec2(to.x, y), kLine);
+  });
+  draw_dart(list, place(east_north(eye.position_m)), eye.course_rad, 5.0f * scale, kFaint);
+  for (const MapMark& mark : marks) {
+    for (const Vec2& p : trails.of(mark.name)) list.PathLineTo(place(p));
+    list.PathStroke(kRim, ImDrawFlags_None, 1.5f * scale);
+    if (!on_a_map(mark.position_m)) continue;
+    const ImVec2 at = place(east_north(mark.position_m));
+    draw_dart(list, at, mark.course_rad, 6.0f * scale, kMark);
+    const float width = ImGui::CalcTextSize(mark.name.c_str()).x;
+    const float x = std::clamp(at.x + 8.0f * scale, from.x, std::max(from.x, to.x - width));
+    list.AddText(ImVec2(x, at.y - ImGui::GetTextLineHeight()), kInk, mark.name.c_str());
+  }
+  list.AddText(ImVec2(from.x + 4.0f * scale, to.y - ImGui::GetTextLineHeight() - 2.0f * scale),
+               kFaint, fmt::format("grid {:g} m", step).c_str());
+  list.PopClipRect();
+  ImGui::End();
+}
+
+}  // namespace neritic::testbed

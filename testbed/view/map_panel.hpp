@@ -1,0 +1,47 @@
+// A map for an operator: participants from above with the ways that they came, north up, and where
+// the view looks. Dear ImGui calls. Rendering thread.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/core/math.hpp"
+#include "testbed/view/panel_layout.hpp"
+
+namespace neritic::testbed {
+
+struct MapMark {
+  std::string name;
+  Vec3 position_m{0.0};
+  double course_rad = 0.0;  // from north towards east
+};
+
+// The ways of participants, thinned as they grow longer: at most kMostPoints each.
+class MapTrails {
+ public:
+  static constexpr std::size_t kMostPoints = 400;
+  void add(const std::vector<MapMark>& marks, double time_s);
+  const std::vector<Vec2>& of(const std::string& name) const;  // east, north
+
+ private:
+  struct Trail {
+    std::vector<Vec2> points;
+    double least_m = 0.5;  // between two points
+  };
+  std::map<std::string, Trail> trails_;
+  double time_s_ = -1e9;
+};
+
+// A square of east and north that holds all marks and trails with some room.
+struct MapFrame {
+  Vec2 middle{0.0};
+  double side_m = 20.0;
+};
+MapFrame map_frame(const std::vector<MapMark>& marks, const MapTrails& trails);
+
+inline constexpr PanelWish kMapWish{.wanted = 300.0f, .least = 180.0f};
+void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTrails& trails,
+              const PanelRect& rect, float scale);
+
+}  // namespace neritic::testbed

@@ -1,0 +1,45 @@
+// The numbers of a run over its last two minutes, for an operator's graphs: of each vehicle and
+// diver that moves by physics, and of the frames. Four values a second. Rendering thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/sim/snapshot.hpp"
+#include "testbed/simulation/physics_world.hpp"
+
+namespace neritic::testbed {
+
+inline constexpr double kNumbers_hz = 4.0;
+inline constexpr std::size_t kNumbersKept = 480;
+
+struct RunNumber {
+  std::string name, unit;   // "diver depth", "m"
+  bool down = false;        // larger is lower: depths
+  double newest = 0.0;      // NaN: not known
+  std::vector<float> kept;  // a ring of kNumbersKept, NaN where nothing is known
+};
+
+class RunNumbers {
+ public:
+  // At most kNumbers_hz; a scene time before the last one begins anew.
+  void look(const PhysicsWorld& world, const sim::Snapshot<PhysicsState>& snapshot, double frame_ms,
+            double view_scale);
+  const std::vector<RunNumber>& all() const { return all_; }
+  // How many values each has, and the i-th of one, the oldest first.
+  std::size_t count() const { return count_; }
+  float at(const RunNumber& number, std::size_t i) const {
+    return number.kept[(first_ + i) % kNumbersKept];
+  }
+
+ private:
+  void add(const std::string& name, const char* unit, double value, bool down = false);
+  void add_vehicles(const PhysicsWorld& world, const PhysicsState& state);
+  void add_divers(const PhysicsWorld& world, const sim::Snapshot<PhysicsState>& snapshot);
+  std::vector<RunNumber> all_;
+  std::size_t next_ = 0;               // of all_, while a look adds
+  std::size_t first_ = 0, count_ = 0;  // of the rings
+  double looked_s_ = -1e9;
+};
+
+}  // namespace neritic::testbed

@@ -1,0 +1,123 @@
+// The operator's console: numbers kept for graphs, the map's trails, gauges of a vehicle, words of
+// what was clicked, and what a window remembers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "testbed/view/gauge_panel.hpp"
+#include "testbed/view/map_panel.hpp"
+#include "testbed/view/picker.hpp"
+#include "testbed/view/run_numbers.hpp"
+#include "testbed/view/view_memory.hpp"
+#include "tests/testbed/simulation/dives.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+const RunNumber& number(const RunNumbers& numbers, const std::string& name) {
+  for (const RunNumber& one : numbers.all())
+    if (one.name == name) return one;
+  ADD_FAILURE() << name;
+  return numbers.all().front();
+}
+
+TEST(RunNumbers, KeepTheStatesNumbersFourTimesASecondAndForgetWhereTheRunWentBack) {
+  TestDive dive = dive_of("[physics]\n" + rov_text("position_m = [0, -10, 0]\n") +
+                          diver_text(std::string("position_m = [4, -12, 0]\n") + kProne));
+  RunNumbers numbers;
+  std::vector<double> depths;
+  for (int i = 0; i < 480; ++i) {
+    numbers.look(*dive.world, dive.simulation->newest(), 20.0, 0.5);
+    if (i % 60 == 0) depths.push_back(dive.state().vehicles()[0].body.position_ned_m.z);
+    dive.run(1.0 / 240.0);
+  }
+  const RunNumber& depth = number(numbers, "rov depth");
+  ASSERT_EQ(numbers.count(), 8u);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(numbers.at(depth, i), depths[i], 1e-5) << i;
+  EXPECT_TRUE(depth.down);
+  EXPECT_NEAR(number(numbers, "diver tank").newest, 200.0, 3.0);
+  EXPECT_EQ(number(numbers, "view's resolution").newest, 50.0);
+  TestDive again = dive_of("[physics]\n" + rov_text("position_m = [0, -10, 0]\n") +
+                           diver_text(std::string("position_m = [4, -12, 0]\n") + kProne));
+  numbers.look(*again.world, again.simulation->newest(), 20.0, 0.5);
+  EXPECT_EQ(numbers.count(), 1u);
+}
+
+TEST(MapTrails, AreBoundedAndTheMapHoldsThemAll) {
+  MapTrails trails;
+  std::vector<MapMark> marks{{"rov", {0, -5, 0}}, {"lost", {NAN, 0, 1e300}}};
+  for (int i = 0; i < 20000; ++i) {
+    marks[0].position_m = {0.1 * i, -5, -0.05 * i};
+    trails.add(marks, 0.1 * i);
+  }
+  EXPECT_LE(trails.of("rov").size(), MapTrails::kMostPoints);
+  EXPECT_GT(trails.of("rov").size(), MapTrails::kMostPoints / 3);
+  EXPECT_EQ(trails.of("rov").front(), Vec2(0.0));
+  EXPECT_NEAR(trails.of("rov").back().x, 2000.0, 20.0);
+  EXPECT_TRUE(trails.of("lost").empty());
+  const MapFrame frame = map_frame(marks, trails);
+  EXPECT_NEAR(frame.middle.x, 1000.0, 1.0);
+  EXPECT_NEAR(frame.middle.y, 500.0, 1.0);
+  EXPECT_GT(frame.side_m, 2000.0);
+  trails.add(marks, 1.0);  // the run went back
+  EXPECT_EQ(trails.of("rov").size(), 1u);
+}
+
+TEST(VehicleGauges, SayTheSharesOfTheThrustersLimits) {
+  TestDive dive =
+      dive_of("[physics]\n" + rov_text("position_m = [0, -10, 0]\nmission = { waypoints "
+                                       "= [ { position_m = [0, -10, -20] } ] }\n"));
+  dive.run(3.0);
+  const VehicleGauges gauges = gauges_of(dive.world->vehicles()[0], dive.state().vehicles()[0]);
+  ASSERT_EQ(gauges.thrust.size(), dive.world->vehicles()[0].vehicle.thruster_count);
+  double most = 0.0;
+  for (const double share : gauges.thrust) {
+    EXPECT_LE(std::abs(share), 1.0 + 1e-9);
+    most = std::max(most, std::abs(share));
+  }
+  EXPECT_GT(most, 0.02);
+  EXPECT_NEAR(gauges.depth_m, 10.0, 0.3);
+  EXPECT_EQ(gauges.tether_used, 0.0);
+}
+
+TEST(Picked, WordsAreAnObjectsNameAndClass) {
+  const scene::Scene scene =
+      load_text(
+          "[[objects]]\nname = \"anchor\"\nclass = \"wreck\"\nshape = \"box\"\n"
+          "position_m = [0, -5, -5]\n[[objects]]\nname = \"ball\"\nshape = \"sphere\"\n"
+          "position_m = [2, -5, -5]\n")
+          .value();
+  const scene::Object& anchor = scene.objects[0];
+  EXPECT_EQ(words_of_label(scene, anchor.class_id, anchor.instance), "anchor, wreck");
+  EXPECT_NE(
+      words_of_label(scene, scene.objects[1].class_id, scene.objects[1].instance).find("ball"),
+      std::string::npos);
+  EXPECT_EQ(words_of_label(scene, 0, 0), "");
+}
+
+TEST(ViewMemory, ComesBackAsItWasAndABrokenFileIsNamedInOneLine) {
+  const test::ScratchFolder scratch;
+  const auto file = scratch / "state" / "window.json";
+  EXPECT_EQ(read_view_memory(file).value(), ViewMemory{});
+  const ViewMemory wanted{.width = 900,
+                          .height = 700,
+                          .panels = false,
+                          .map = true,
+                          .numbers = {"diver depth", "frame"},
+                          .sonar_gain_db = -6.0,
+                          .sonar_range_part = 0.5};
+  ASSERT_TRUE(write_view_memory(file, wanted).ok());
+  EXPECT_EQ(read_view_memory(file).value(), wanted);
+  std::ofstream(file) << "{ \"width_px\": 1e300, \"sonar_gain_db\": \"loud\", \"numbers\": [1] }";
+  const ViewMemory odd = read_view_memory(file).value();
+  EXPECT_EQ(odd.sonar_gain_db, 0.0);
+  EXPECT_TRUE(odd.numbers.empty());
+  std::ofstream(file) << "{ \"width_px\"";
+  const auto broken = read_view_memory(file);
+  ASSERT_FALSE(broken.ok());
+  EXPECT_NE(broken.error().message.find("window.json"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace neritic::testbed

@@ -1,0 +1,83 @@
+// A diver swum by keys in a window: where the keys say, up, down and round, and given back.
+#include <gtest/gtest.h>
+
+#include "diver/frames.hpp"
+#include "diver/jacket.hpp"
+#include "testbed/view/dive_camera.hpp"
+#include "testbed/view/wearer.hpp"
+#include "tests/testbed/simulation/devices.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+class DiverKeys : public testing::Test {
+ protected:
+  void SetUp() override {
+    scene_ =
+        dive_of(kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne)).scene;
+    physics_ = LivePhysics::create(scene_, LivePhysics::Pace::kPicture).value();
+    physics_->start();
+    wearer_.emplace(*physics_);
+  }
+  void hold(const DiveInput& input, double seconds) {
+    for (const double end_s = time_s_ + seconds; time_s_ < end_s; time_s_ += 0.05) {
+      wearer_->take({}, input);
+      ASSERT_TRUE(wearer_->poll(physics_->inbox(), time_s_).ok());
+      physics_->follow(0, time_s_);
+    }
+  }
+  const HumanPhysics& state() const { return physics_->shown().humans()[0]; }
+  Vec3 place() const { return diver::world_from_ned(state().human.root.position_ned_m); }
+  GroupPhase phase(DiverGroup group) const {
+    return state().groups[static_cast<std::size_t>(group)].phase;
+  }
+  Vec3 ahead() const {
+    return from_yaw_pitch_roll(course_of(drawn_pose(state()).rotation), 0.0, 0.0) * Vec3(0, 0, -1);
+  }
+
+  scene::Scene scene_;
+  std::unique_ptr<LivePhysics> physics_;
+  std::optional<Wearer> wearer_;
+  double time_s_ = 0.0;
+};
+
+TEST_F(DiverKeys, AheadRoundDownAndStay) {
+  hold({}, 1.0);
+  EXPECT_NE(phase(DiverGroup::kBody), GroupPhase::kLive);
+  wearer_->swim_by_keys(true);
+  Vec3 start = place(), before = ahead();
+  hold({.move = {0, 0, -1}}, 8.0);  // W
+  EXPECT_EQ(phase(DiverGroup::kBody), GroupPhase::kLive);
+  EXPECT_GT(glm::dot(place() - start, before), 1.5);
+  hold({.move = {1, 0, -1}}, 6.0);  // W and D: to starboard
+  EXPECT_GT(glm::dot(glm::cross(before, ahead()), Vec3(0, -1, 0)), 0.4);
+  start = place();
+  hold({.move = {0, -1, -1}}, 25.0);  // W and Q
+  EXPECT_LT(place().y, start.y - 0.5);
+  hold({}, 6.0);
+  start = place();
+  hold({}, 6.0);
+  EXPECT_LT(glm::distance(start, place()), 1.2);
+}
+
+TEST_F(DiverKeys, TheJacketsKeysGoBeforeTheSwimmersOwn) {
+  wearer_->swim_by_keys(true);
+  hold({.jacket = diver::kInflate}, 1.0);
+  EXPECT_EQ(state().human.held.buttons, diver::kInflate);
+}
+
+TEST_F(DiverKeys, LettingGoGivesTheDiverBack) {
+  wearer_->swim_by_keys(true);
+  hold({.move = {0, 0, -1}}, 2.0);
+  wearer_->swim_by_keys(false);
+  hold({}, 1.0);
+  EXPECT_NE(phase(DiverGroup::kBody), GroupPhase::kLive);
+  EXPECT_NE(phase(DiverGroup::kButtons), GroupPhase::kLive);
+  EXPECT_NE(phase(DiverGroup::kBody), GroupPhase::kLost);
+  wearer_->swim_by_keys(true);
+  hold({.move = {0, 0, -1}}, 1.0);
+  EXPECT_EQ(phase(DiverGroup::kBody), GroupPhase::kLive);
+}
+
+}  // namespace
+}  // namespace neritic::testbed
