@@ -19,12 +19,36 @@ layout(set = 0, binding = kShadeMaterial) uniform texture2DArray material_image;
 layout(set = 0, binding = kShadeEmissive) uniform texture2DArray emissive_image;
 layout(set = 0, binding = kShadeHdr, rgba16f) writeonly uniform image2DArray hdr_image;
 
+layout(set = 0, binding = kShadeSeen) uniform texture2DArray seen_image;
+
 layout(constant_id = kSpecTerms) const uint kTerms = ~0u;
 layout(constant_id = kSpecLamps) const uint kLamps = kMaxLamps;
 bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return kLamps; }
 
 #include "shared/surface.glsl"
+#include "shared/visibility.glsl"
+
+// The visibility image at a pixel: between its four nearest, the farther off in distance the less.
+Seen seen_at(ivec3 at, ivec2 size, float planar_m) {
+  if (!light_has(kLightSeen)) return kAllSeen;
+  ivec2 seen_size = textureSize(seen_image, 0).xy;
+  // Its pixel (x, y) was made for the picture's (x, y) or (2 x, 2 y).
+  vec2 place = vec2(at.xy) * (seen_size == size ? 1.0 : 0.5);
+  ivec2 corner = ivec2(place);
+  vec2 part = place - vec2(corner);
+  float own = visibility_distance(planar_m);
+  vec4 sum = vec4(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 offset = ivec2(i & 1, i >> 1);
+    vec4 seen = texelFetch(seen_image, ivec3(min(corner + offset, seen_size - 1), at.z), 0);
+    vec2 w = mix(1.0 - part, part, vec2(offset));
+    float weight = w.x * w.y * max(1.0 - abs(seen.a - own) * 40.0, 0.0) + 1e-5;
+    sum += vec4(seen.rgb, 1.0) * weight;
+  }
+  sum.rgb /= sum.a;
+  return Seen(sum.r, sum.g, sum.b);
+}
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
@@ -51,7 +75,7 @@ void main() {
   s.occlusion = material.z;
   s.reflectance = material.w;
   vec3 radiance = emitted;
-  if (material.w < 0.9) radiance += shade_surface(s, -direction);  // else unlit
+  if (material.w < 0.9) radiance += shade_surface(s, -direction, seen_at(at, size, planar_m));  // else unlit
   if (!hit) radiance = beyond(eye_depth_m, direction);
   Sight sight = look_through(eye_depth_m, direction, hit ? planar_m * stretch : kForever_m);
   radiance = radiance * sight.transmittance + sight.added;

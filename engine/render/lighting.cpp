@@ -1,6 +1,7 @@
 #include "engine/render/lighting.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -53,10 +54,31 @@ struct SunLight {
   double irradiance_lx = 0.0, direct_share = 0.0;
 };
 
+// Light of the sky with the sun below the horizon, over that at sunset. Civil, nautical and
+// astronomical twilight end at 6, 12 and 18 degrees with 3.4, 0.008 and 0.0006 lux of some 400 at
+// sunset (AMS Glossary of Meteorology; Seidelmann 1992); evenly between in the logarithm.
+double twilight(double elevation_rad) {
+  constexpr std::array<double, 4> kDecades{0.0, -2.07, -4.70, -5.82};
+  const double step = std::min(-elevation_rad / radians(6.0), 3.0);
+  const auto i = std::min<std::size_t>(static_cast<std::size_t>(step), 2);
+  return std::pow(10.0, std::lerp(kDecades[i], kDecades[i + 1], step - double(i)));
+}
+
+// Clouds: of the sum 1 - 0.75 c^3.4 is left, and its diffuse share grows to 1 as c^2 (Kasten and
+// Czeplak 1980, Solar Energy 24, 177).
+void cover(double share, double& direct, double& sky) {
+  const double sum = (direct + sky) * (1.0 - 0.75 * std::pow(share, 3.4));
+  const double kept = direct / (direct + sky) * (1.0 - share * share);
+  direct = sum * kept;
+  sky = sum - direct;
+}
+
 SunLight sun_light(const scene::Sun& sun, bool under_water) {
   const double sine = std::sin(sun.elevation_rad);
   double direct = kSunShare * std::max(sine, 0.0);
   double sky = (1.0 - kSunShare) * std::max(std::sqrt(std::max(sine, 0.0)), kSkyAtSunset);
+  if (sun.elevation_rad < 0.0) sky *= twilight(sun.elevation_rad);
+  if (sun.overcast > 0.0) cover(sun.overcast, direct, sky);
   if (under_water) {
     direct *= fresnel_transmittance(std::max(sine, 0.0));
     sky *= shared::kSkyTransmittance;
@@ -184,6 +206,11 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
     light.direct_share = static_cast<float>(sun.direct_share);
     light.sun_cosine = static_cast<float>(sun.beam.cosine);
   }
+  if (scene.ambient) {
+    light.terms |= shared::kLightAmbient;
+    light.bottom_color = scene.ambient->bottom_color;
+    light.bottom_depth_m = static_cast<float>(scene.ambient->bottom_depth_m.value_or(-1.0));
+  }
   if (scene.lamps.size() > shared::kMaxLamps)
     return refusal(fmt::format("{}: lamps", scene.path), fmt::format("{}", scene.lamps.size()),
                    fmt::format("at most {}", shared::kMaxLamps));
@@ -213,7 +240,9 @@ std::string names_of_terms(const shared::Lighting& lighting) {
       {shared::kLightScattering, "scattering"},
       {shared::kLightSurface, "surface"},
       {shared::kLightEmissive, "emission"},
-      {shared::kLightGlow, "glow of lamps"}};
+      {shared::kLightGlow, "glow of lamps"},
+      {shared::kLightAmbient, "ambient"},
+      {shared::kLightSeen, "visibility"}};
   std::vector<std::string> names;
   for (const auto& [bit, name] : kNames)
     if (lighting.terms & bit) names.emplace_back(name);

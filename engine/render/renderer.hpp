@@ -15,6 +15,7 @@
 #include "engine/gpu/pipeline.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "engine/render/draw_list.hpp"
+#include "engine/render/shadow_maps.hpp"
 #include "shared/lighting.h"
 
 namespace neritic::render {
@@ -58,6 +59,12 @@ struct DeformedGeometry {
   graph::BufferHandle positions, next_positions;
 };
 
+// What light meets on its way to the surfaces of one view set; empty handles where the scene does
+// not name it.
+struct LightImages {
+  graph::ImageHandle seen;  // of sun, sky and surroundings (shaders/visibility.comp)
+};
+
 // Inputs of shading. An effect that shading uses adds its image here as a handle that may be
 // empty, as GBuffer::emissive is: an empty handle is not declared, and its bit in Lighting::terms
 // is 0.
@@ -65,6 +72,7 @@ struct ShadeInputs {
   const GBuffer& gbuffer;  // of kind kSurface
   const ViewSet& views;
   const shared::Lighting& lighting;
+  const LightImages& light;
 };
 
 enum class GBufferKind {
@@ -93,6 +101,20 @@ class Renderer {
                                   GBufferKind kind, const GpuScene& scene, const FrameState& state,
                                   const DeformedGeometry& deformed, const ViewSet& views,
                                   const DrawList& draws, const GBufferParts& parts = {});
+  // Depth maps as lights see the scene, a layer each: R32's reversed depth, as a G-buffer's.
+  Result<graph::ImageHandle> declare_shadow_maps(graph::FrameGraph& graph, const std::string& name,
+                                                 const GpuScene& scene,
+                                                 const DeformedGeometry& deformed,
+                                                 const std::vector<ShadowMap>& maps);
+  // Which share of sun, sky and surroundings surfaces see, by the sun's maps (an empty handle: no
+  // shadows) and by ambient occlusion of so many taps (0: none). full: as large as the picture,
+  // else half.
+  Result<graph::ImageHandle> declare_visibility(graph::FrameGraph& graph, const std::string& prefix,
+                                                const GBuffer& gbuffer, const ViewSet& views,
+                                                const shared::VisibilityParams& params,
+                                                graph::ImageHandle cascades,
+                                                std::uint32_t cascade_count,
+                                                std::uint32_t occlusion_taps, bool full);
   // HDR picture of a surface G-buffer.
   Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix,
                                            const ShadeInputs& inputs);
@@ -162,6 +184,9 @@ class Renderer {
   std::map<RasterKey, gpu::Pipeline> raster_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline>
       shade_;  // by terms, number of lamps
+  std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, gpu::Pipeline>
+      visibility_;  // by cascades, taps, full
+  gpu::Pipeline visibility_blur_;
   gpu::Pipeline deform_, tonemap_, tonemap_luma_, antialias_;
   // Bound where a shader declares a buffer that this frame does not use: one to read, one to write,
   // since what is bound counts as read or written.

@@ -28,6 +28,7 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   const GBuffer& gbuffer = inputs.gbuffer;
   const ViewSet& views = inputs.views;
   const shared::Lighting& lighting = inputs.lighting;
+  const LightImages light = inputs.light;
   gpu::Pipeline& pipeline = shade_[{lighting.terms, lighting.lamp_count}];
   if (!pipeline) {
     gpu::ComputePipelineDesc desc;
@@ -40,7 +41,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                             {shared::kShadeAlbedo, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeMaterial, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeEmissive, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                            {shared::kShadeHdr, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+                            {shared::kShadeHdr, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                            {shared::kShadeSeen, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
     desc.constants = {{shared::kSpecTerms, lighting.terms},
                       {shared::kSpecLamps, lighting.lamp_count}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
@@ -52,15 +54,15 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
       prefix + "shade",
       [&](graph::PassBuilder& builder, Data& data) {
         builder.terms(names_of_terms(lighting));
-        for (const graph::ImageHandle handle :
-             {gbuffer.depth, gbuffer.normal, gbuffer.albedo, gbuffer.material, gbuffer.emissive})
+        for (const graph::ImageHandle handle : {gbuffer.depth, gbuffer.normal, gbuffer.albedo,
+                                                gbuffer.material, gbuffer.emissive, light.seen})
           if (handle) builder.read(handle, graph::Access::kSampledCompute);
         data.hdr = builder.write(
             builder.create_image(prefix + "hdr",
                                  {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
             graph::Access::kStorageWriteCompute);
       },
-      [&pipeline, gbuffer, lighting, &views](const Data& data, graph::PassContext& context) {
+      [&pipeline, gbuffer, lighting, light, &views](const Data& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::UploadSlice view_data =
             commands.upload(std::span<const shared::View>(gpu_views(views)));
@@ -81,7 +83,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
              texels(shared::kShadeMaterial, gbuffer.material),
              // Without emission the shader's flag keeps it from reading what is bound here.
              texels(shared::kShadeEmissive, gbuffer.emissive ? gbuffer.emissive : gbuffer.albedo),
-             gpu::bound_storage_image(shared::kShadeHdr, context.image(data.hdr).view())});
+             gpu::bound_storage_image(shared::kShadeHdr, context.image(data.hdr).view()),
+             texels(shared::kShadeSeen, light.seen ? light.seen : gbuffer.albedo)});
         commands.dispatch(groups(gbuffer.width), groups(gbuffer.height), gbuffer.layers);
       });
   return pass.hdr;

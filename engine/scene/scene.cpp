@@ -59,6 +59,8 @@ void move_out(Dynamics& dynamics, const Vec3& offset_m) {
 void move_out(SceneDraft& draft, const Vec3& offset_m) {
   Scene& scene = draft.scene;
   if (scene.current) scene.current->origin_m += offset_m;
+  if (scene.ambient && scene.ambient->bottom_depth_m)
+    *scene.ambient->bottom_depth_m -= offset_m.y;
   if (scene.world_from_lab) scene.world_from_lab->position_m += offset_m;
   const auto moved = [&offset_m](Mount mount) {
     if (mount.object >= 0) return mount;

@@ -16,6 +16,7 @@
 #include "engine/core/result.hpp"
 #include "engine/scene/model.hpp"
 #include "engine/scene/physics_settings.hpp"
+#include "engine/scene/scene_light.hpp"
 #include "engine/scene/sonar_settings.hpp"
 #include "engine/scene/track.hpp"
 
@@ -65,6 +66,10 @@ struct Sun {
   double elevation_rad = 1.0,
          azimuth_rad = 0.0;  // in air; azimuth from -Z (north) towards +X (east)
   double intensity = 1.0;    // 1: clear day
+  double overcast = 0.0;     // share of the sky that clouds cover
+  std::optional<SunShadows> shadows = {};
+  std::optional<Caustics> caustics = {};
+  std::optional<Shafts> shafts = {};
 };
 
 // Jerlov's optical water types (Jerlov 1976): five oceanic, five coastal.
@@ -83,6 +88,9 @@ struct Lamp {
   Vec3f color{1.0f};
   double intensity_cd = 1000.0;
   double inner_cone_rad = 0.3, outer_cone_rad = 0.6;
+  bool shadows = false;
+  std::uint32_t shadow_size = 512;                     // texels a side of what it sees
+  double strobe_period_s = 0.0, strobe_flash_s = 0.0;  // 0: it burns steadily
 };
 
 // A light that a model brings, shown by an object or one of its copies (see model_lights.hpp).
@@ -148,6 +156,7 @@ struct Scene {
   std::vector<Object> objects;
   std::map<std::uint16_t, std::string> class_names;
   std::optional<Sun> sun;
+  std::optional<Ambient> ambient;
   std::optional<Water> water;
   std::optional<Physics> physics;
   std::optional<Current> current;

@@ -12,13 +12,22 @@ using Key = std::string_view;
 using KeyList = std::span<const Key>;
 
 inline constexpr auto kSceneKeys =
-    std::to_array<Key>({"title", "seed", "include", "classes", "sun", "water", "physics", "current",
-                        "objects", "vehicles", "cameras", "sonars", "lamps", "lab"});
+    std::to_array<Key>({"title", "seed", "include", "classes", "sun", "ambient", "water", "physics",
+                        "current", "objects", "vehicles", "cameras", "sonars", "lamps", "lab"});
 
 inline constexpr auto kLabKeys =
     std::to_array<Key>({"position_m", "yaw_deg", "pitch_deg", "roll_deg", "rotation_xyzw"});
 
-inline constexpr auto kSunKeys = std::to_array<Key>({"elevation_deg", "azimuth_deg", "intensity"});
+inline constexpr auto kSunKeys =
+    std::to_array<Key>({"elevation_deg", "azimuth_deg", "latitude_deg", "day", "hour", "intensity",
+                        "overcast", "shadows", "caustics", "shafts"});
+inline constexpr auto kSunShadowKeys =
+    std::to_array<Key>({"size", "cascades", "reach_m", "full_resolution"});
+inline constexpr auto kCausticsKeys =
+    std::to_array<Key>({"waves", "wind_m_s", "direction_deg", "tile_m", "texels"});
+inline constexpr auto kShaftsKeys = std::to_array<Key>({"samples", "reach_m"});
+inline constexpr auto kAmbientKeys =
+    std::to_array<Key>({"bottom_color", "bottom_depth_m", "occlusion_m", "occlusion_samples"});
 
 inline constexpr auto kWaterKeys = std::to_array<Key>({"type", "scattering", "surface"});
 
@@ -181,6 +190,7 @@ inline constexpr auto kSonarTables =
 
 inline constexpr auto kLampKeys = std::to_array<Key>(
     {"name", "include", "on", "track", "position_m", "yaw_deg", "pitch_deg", "roll_deg",
-     "rotation_xyzw", "look_at_m", "look_at", "color", "intensity_cd", "cone_deg"});
+     "rotation_xyzw", "look_at_m", "look_at", "color", "temperature_k", "intensity_cd", "cone_deg",
+     "shadows", "shadow_size", "strobe_s"});
 
 }  // namespace neritic::scene

@@ -39,17 +39,6 @@ Status read_classes(Scene& scene, const SceneSource& source, const TomlValue* ta
   return {};
 }
 
-Result<Sun> read_sun(const SceneSource& source, const TomlValue& table) {
-  TableReader reader(source, table, "sun", kSunKeys);
-  Sun sun;
-  sun.elevation_rad =
-      radians(reader.number("elevation_deg", 55.0, {0, 90, false, false, "degrees"}));
-  sun.azimuth_rad = radians(reader.number("azimuth_deg", 0.0, kAnyTurn));
-  sun.intensity = reader.number("intensity", 1.0, {0, 1000});
-  NERITIC_TRY_STATUS(reader.status());
-  return sun;
-}
-
 Result<Water> read_water(const SceneSource& source, const TomlValue& table) {
   TableReader reader(source, table, "water", kWaterKeys);
   Water water;
@@ -135,6 +124,7 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   scene.seed = reader.whole("seed", 1, 0, INT64_MAX);
   const TomlValue* classes = reader.table("classes");
   const TomlValue* sun = reader.table("sun");
+  const TomlValue* ambient = reader.table("ambient");
   const TomlValue* water = reader.table("water");
   const TomlValue* physics = reader.table("physics");
   const TomlValue* current = reader.table("current");
@@ -145,6 +135,9 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   NERITIC_TRY_STATUS(read_classes(scene, source, classes));
   if (sun) {
     NERITIC_TRY(scene.sun, read_sun(source, *sun));
+  }
+  if (ambient) {
+    NERITIC_TRY(scene.ambient, read_ambient(source, *ambient));
   }
   if (water) {
     NERITIC_TRY(scene.water, read_water(source, *water));

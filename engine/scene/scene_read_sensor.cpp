@@ -1,5 +1,6 @@
 // Reads [[cameras]], [[sonars]] and [[lamps]], of the scene or of an object that carries them.
 #include "engine/core/image.hpp"
+#include "engine/scene/color_temperature.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
 
@@ -35,6 +36,22 @@ void read_camera(TableReader& reader, Camera& camera) {
 
 void read_lamp(TableReader& reader, Lamp& lamp) {
   lamp.color = Vec3f(reader.vector3("color", Vec3(1.0), {0, 1}));
+  if (reader.has("temperature_k")) {
+    if (reader.has("color")) reader.refuse("temperature_k", "no color beside it");
+    lamp.color = color_of_temperature(
+        reader.number("temperature_k", 5600.0, {1500, 15000, false, false, "kelvin"}));
+  }
+  lamp.shadows = reader.flag("shadows", false);
+  lamp.shadow_size = static_cast<std::uint32_t>(reader.whole("shadow_size", 512, 64, 2048));
+  if (reader.has("shadow_size") && !lamp.shadows)
+    reader.refuse("shadow_size", "beside shadows = true");
+  const std::vector<double> strobe =
+      reader.numbers("strobe_s", {2}, {0, 3600, true, false, "seconds"});
+  if (strobe.size() == 2) {
+    lamp.strobe_period_s = strobe[0];
+    lamp.strobe_flash_s = strobe[1];
+    if (!(strobe[1] < strobe[0])) reader.refuse("strobe_s", "[period, flash], the flash shorter");
+  }
   lamp.intensity_cd = reader.number("intensity_cd", 1000.0, {0, 1e7, false, false, "candela"});
   const std::vector<double> cone =
       reader.numbers("cone_deg", {2}, {0, 90, false, false, "degrees"});

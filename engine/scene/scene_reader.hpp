@@ -83,4 +83,8 @@ class TableReader {
   std::optional<Error> error_;
 };
 
+// [sun] and [ambient] (scene_read_light.cpp).
+Result<Sun> read_sun(const SceneSource& source, const TomlValue& table);
+Result<Ambient> read_ambient(const SceneSource& source, const TomlValue& table);
+
 }  // namespace neritic::scene

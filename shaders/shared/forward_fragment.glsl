@@ -49,7 +49,7 @@ void main() {
       s.albedo *= mix(base.a, 1.0, m.y);
       own = 1.0;
     }
-    radiance = shade_surface(s, -along) + fragment_emissive(uv) * light.emissive_scale;
+    radiance = shade_surface(s, -along, kAllSeen) + fragment_emissive(uv) * light.emissive_scale;
   }
   Sight sight = look_through(light.origin_depth_m - views[view].eye.y, along, distance_m);
   vec3 glow = lamp_glow(views[view].eye, along, distance_m);

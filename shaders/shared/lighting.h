@@ -13,6 +13,8 @@ NERITIC_CONST uint kLightSurface = 8;
 NERITIC_CONST uint kLightEmissive = 16;  // the G-buffer has an emissive image
 // Lamps whose beams are seen in the water: scattering and kGlowReach.
 NERITIC_CONST uint kLightGlow = 32;
+NERITIC_CONST uint kLightAmbient = 1u << 16;  // the bottom's light
+NERITIC_CONST uint kLightSeen = 1u << 17;     // the visibility image: shadows of the sun, occlusion
 // Refractive index of sea water against air, in the visible (1.33 to 1.34, Mobley 1994).
 NERITIC_CONST float kWaterIndex = 1.333f;
 // Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance 0.066).
@@ -44,6 +46,8 @@ struct Lighting {
   float emissive_scale;      // lux per steradian of emission 1
   float exposure;            // multiplies radiance before it is stored
   float sun_cosine;          // of the refracted sun to the vertical
+  vec3 bottom_color;         // of the bottom: the share of light that it sends back up
+  float bottom_depth_m;      // negative: as deep as what it lights
   SpotLight lamps[16];
 };
 NERITIC_CONST uint kMaxLamps = 16;
@@ -57,6 +61,7 @@ NERITIC_CONST uint kShadeAlbedo = 4;
 NERITIC_CONST uint kShadeMaterial = 5;
 NERITIC_CONST uint kShadeEmissive = 6;
 NERITIC_CONST uint kShadeHdr = 7;
+NERITIC_CONST uint kShadeSeen = 16;
 NERITIC_CONST uint kShadeGroup = 8;
 // Specialisation constants of the shade pass: the terms and the number of lamps. Terms that a scene
 // does not name are not compiled: a CPU driver computes both sides of a branch, and runs the body

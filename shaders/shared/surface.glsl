@@ -2,6 +2,7 @@
 // Fresnel by Schlick 1994), under sun, diffuse water light and lamps. GLSL only.
 #ifndef NERITIC_SURFACE_GLSL
 #define NERITIC_SURFACE_GLSL
+#include "shared/visibility.h"
 #include "shared/water.glsl"
 
 struct Surface {
@@ -60,8 +61,24 @@ vec3 reflect_light(Surface s, vec3 to_eye, vec3 to_light, float spread) {
   return (diffuse + fresnel * distribution * visibility) * n_l;
 }
 
+// What reaches a surface, 1 where nothing stands between: of the sun's beam, of the light round it, of the
+// surroundings.
+struct Seen {
+  float sun;
+  float sky;
+  float around;
+};
+const Seen kAllSeen = Seen(1.0, 1.0, 1.0);
+
+// Share of the sun's light that comes from within its core of some 15 degrees, in a beam not yet scattered or
+// only by a little (kOutOfCore). The shadow of the rest is as wide as the sky's.
+float core_share(float depth_m) {
+  if (!light_has(kLightWater)) return 1.0;
+  return exp(-min(kOutOfCore * light.particle_scattering.g * max(depth_m, 0.0) / light.sun_cosine, 80.0));
+}
+
 // Radiance that the surface sends towards the eye (before the water between).
-vec3 shade_surface(Surface s, vec3 to_eye) {
+vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
   vec3 radiance = vec3(0.0);
   if (light_has(kLightSun)) {
     float depth_m = light.origin_depth_m - s.position.y;
@@ -70,13 +87,18 @@ vec3 shade_surface(Surface s, vec3 to_eye) {
     // The sun's disk has a half-angle of 4.7 mrad; waves spread its beam below them over some 10 degrees
     // (slopes of Cox and Munk 1954 at a light breeze).
     float sun_spread = light_has(kLightWater) ? 0.17 : 0.0047;
-    radiance += irradiance * direct / light.sun_cosine * reflect_light(s, to_eye, light.to_sun, sun_spread);
+    vec3 beam = irradiance * direct / light.sun_cosine;
+    if (light_has(kLightSeen)) beam *= mix(seen.sky, seen.sun, core_share(depth_m));
+    radiance += beam * reflect_light(s, to_eye, light.to_sun, sun_spread);
     // Diffuse light comes mostly from above.
     float from_below = light_has(kLightWater) ? kWaterFromBelow : kGroundFromBelow;
     float up = 0.5 + 0.5 * s.normal.y;
-    float share = mix(from_below, 1.0, up * up * (3.0 - 2.0 * up));
+    float above = up * up * (3.0 - 2.0 * up);
     vec3 diffuse_color = s.albedo * (1.0 - s.metallic) + mix(vec3(dielectric_f0(s)), s.albedo, s.metallic) * kEvenReflectance;
-    radiance += irradiance * (1.0 - direct) * share * s.occlusion * diffuse_color / kPi;
+    vec3 around = irradiance * (1.0 - direct) * mix(from_below, 1.0, above);
+    if (light_has(kLightAmbient))
+      around = irradiance * ((1.0 - direct) * above * seen.sky + (from_bottom(depth_m) + 0.02) * (1.0 - above));
+    radiance += around * s.occlusion * seen.around * diffuse_color / kPi;
   }
   for (uint i = 0u; i < lamp_count(); ++i) {
     vec3 to_lamp = light.lamps[i].position - s.position;

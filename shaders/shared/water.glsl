@@ -27,6 +27,13 @@ vec3 direct_share(float depth_m) {
   return light.direct_share * exp(-turned * max(depth_m, 0.0) / light.sun_cosine);
 }
 
+// The light that comes back up from the bottom over what comes down here: the bottom's colour, less what
+// fades on the way down and up again, both by K_d.
+vec3 from_bottom(float depth_m) {
+  float height_m = light.bottom_depth_m < 0.0 ? 0.0 : max(light.bottom_depth_m - max(depth_m, 0.0), 0.0);
+  return light.bottom_color * exp(-min(light.diffuse_attenuation * (2.0 * height_m), vec3(80.0)));
+}
+
 // Radiance that a metre of water adds along a sight in the unit direction, 1/m, where irradiance comes
 // down and the share direct of it still in the sun's beam.
 vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct) {
@@ -82,6 +89,12 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
   sight.transmittance = exp(-min(light.beam_attenuation * length_m, vec3(80.0)));
   if (!light_has(kLightScattering) || !light_has(kLightSun)) return sight;
   vec3 source = scattered_towards(direction, downwelling(depth_m), direct_share(depth_m));
+  if (light_has(kLightAmbient) && light.bottom_depth_m >= 0.0) {
+    // The bottom shines evenly from below; of its light a level sight is sent half, one that looks down, along
+    // which it travels forwards, nearly all.
+    vec3 upwards = downwelling(depth_m) * from_bottom(depth_m) / kPi;
+    source += upwards * (light.particle_scattering + light.water_scattering) * (0.5 - 0.45 * direction.y);
+  }
   // Integral of source * exp(-(c + K_d down) s) over the length; down is the sine of the dive angle.
   vec3 rate = light.beam_attenuation - light.diffuse_attenuation * direction.y;
   vec3 exponent = clamp(rate * length_m, vec3(-80.0), vec3(80.0));

@@ -28,15 +28,45 @@ Status check_size(const gpu::Device& device, const std::string& what,
   return {};
 }
 
+// What stands in the light's way; sets the terms of what is there.
+Result<render::LightImages> declare_light(const FrameParts& frame, const std::string& prefix,
+                                          const render::GBuffer& g, ViewsWork& work,
+                                          shared::Lighting& lighting) {
+  render::LightImages light;
+  const scene::Scene& scene = frame.scene;
+  const auto* shadows = scene.sun && scene.sun->shadows ? &*scene.sun->shadows : nullptr;
+  const std::uint32_t taps =
+      scene.ambient && scene.ambient->occlusion_m > 0.0 ? scene.ambient->occlusion_samples : 0;
+  graph::ImageHandle cascades;
+  // Without a beam nothing throws a shadow: at night, or under full cloud.
+  if (shadows && lighting.direct_share > 0.0f) {
+    work.cascades =
+        render::shadow_maps(scene, frame.gpu_scene, frame.state,
+                            render::sun_views(work.views, *shadows, Vec3(lighting.to_sun)));
+    NERITIC_TRY(cascades,
+                frame.renderer.declare_shadow_maps(frame.graph, prefix + "sun shadows",
+                                                   frame.gpu_scene, frame.deformed, work.cascades));
+  }
+  if (!cascades && taps == 0) return light;
+  lighting.terms |= shared::kLightSeen;
+  NERITIC_TRY(light.seen, frame.renderer.declare_visibility(
+                              frame.graph, prefix, g, work.views,
+                              render::visibility_params(scene, work.views, lighting, work.cascades),
+                              cascades, static_cast<std::uint32_t>(work.cascades.size()), taps,
+                              shadows && shadows->full_resolution));
+  return light;
+}
+
 // The tonemapped picture of a surface G-buffer.
 Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::string& prefix,
                                          const render::GBuffer& g, const ViewsRequest& request,
-                                         const ViewsWork& work) {
-  NERITIC_TRY(const shared::Lighting lighting,
+                                         ViewsWork& work) {
+  NERITIC_TRY(shared::Lighting lighting,
               render::make_lighting(frame.scene, frame.state, work.views.origin_m(),
                                     request.exposure, frame.gpu_scene.has_emission()));
+  NERITIC_TRY(const render::LightImages light, declare_light(frame, prefix, g, work, lighting));
   NERITIC_TRY(graph::ImageHandle hdr,
-              frame.renderer.declare_shade(frame.graph, prefix, {g, work.views, lighting}));
+              frame.renderer.declare_shade(frame.graph, prefix, {g, work.views, lighting, light}));
   NERITIC_TRY(hdr,
               frame.renderer.declare_forward(frame.graph, prefix, hdr, g, frame.gpu_scene,
                                              frame.deformed, work.views, work.draws, lighting));

@@ -31,6 +31,7 @@ struct ViewsWork {
   render::ViewSet views;
   Capture capture;
   render::DrawList draws;
+  std::vector<render::ShadowMap> cascades;       // of the sun; empty where it throws no shadows
   Readback depth, normal, label, color, motion;  // empty where they were not asked for
   bool at_host() const { return depth || normal || label || color || motion; }
 };

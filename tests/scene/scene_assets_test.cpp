@@ -130,6 +130,10 @@ TEST(SceneAssets, TheFormatsPageHasEveryKey) {
   ASSERT_TRUE(page.ok());
   for (const KeyList keys : {KeyList(kSceneKeys),
                              KeyList(kSunKeys),
+                             KeyList(kSunShadowKeys),
+                             KeyList(kCausticsKeys),
+                             KeyList(kShaftsKeys),
+                             KeyList(kAmbientKeys),
                              KeyList(kLabKeys),
                              KeyList(kWaterKeys),
                              KeyList(kObjectKeys),

@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongLine{"[sonars]",
                   "s.toml:1: sonars: found a table; accepted: tables, each under [[sonars]]"},
         WrongLine{"\n[sun]\nelevation_deg = 91",
-                  "s.toml:3: sun.elevation_deg: found 91; accepted: a number in [0, 90] degrees"},
+                  "s.toml:3: sun.elevation_deg: found 91; accepted: a number in [-90, 90] degrees"},
         WrongLine{"[sun]\nazimuth_deg = inf", "s.toml:2: sun.azimuth_deg: found inf; " TURN},
         WrongLine{"[sun]\nazimuth_deg = 2024-01-01",
                   "s.toml:2: sun.azimuth_deg: found a date or time; " TURN},

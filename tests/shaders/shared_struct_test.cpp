@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "shaders.hpp"
+#include "shared/caustics.h"
 #include "shared/imgui.h"
 #include "shared/lighting.h"
 #include "shared/panel.h"
@@ -17,6 +18,7 @@
 #include "shared/sonar.h"
 #include "shared/sonar_echo.h"
 #include "shared/sonar_fan.h"
+#include "shared/visibility.h"
 
 namespace neritic::shared {
 namespace {
@@ -65,7 +67,28 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(Lighting, beam_attenuation), MEMBER(Lighting, water_scattering),
         MEMBER(Lighting, particle_scattering), MEMBER(Lighting, background),
         MEMBER(Lighting, emissive_scale), MEMBER(Lighting, exposure), MEMBER(Lighting, sun_cosine),
+        MEMBER(Lighting, bottom_color), MEMBER(Lighting, bottom_depth_m),
+        MEMBER(Lighting, caustic_origin_m), MEMBER(Lighting, caustic_tile_m),
         MEMBER(Lighting, lamps)}},
+      {"LampShadows",
+       {MEMBER(LampShadows, clip_from_origin), MEMBER(LampShadows, near_m),
+        MEMBER(LampShadows, layer)}},
+      {"Cascade",
+       {MEMBER(Cascade, clip_from_origin), MEMBER(Cascade, across), MEMBER(Cascade, along),
+        MEMBER(Cascade, near_m), MEMBER(Cascade, half_m)}},
+      {"VisibilityParams",
+       {MEMBER(VisibilityParams, cascades), MEMBER(VisibilityParams, to_sun),
+        MEMBER(VisibilityParams, origin_depth_m), MEMBER(VisibilityParams, spread),
+        MEMBER(VisibilityParams, scattering_m), MEMBER(VisibilityParams, sun_cosine),
+        MEMBER(VisibilityParams, occlusion_m)}},
+      {"CausticWave",
+       {MEMBER(CausticWave, wave_number), MEMBER(CausticWave, amplitude_m),
+        MEMBER(CausticWave, angle_rad)}},
+      {"CausticsParams",
+       {MEMBER(CausticsParams, count), MEMBER(CausticsParams, texels),
+        MEMBER(CausticsParams, tile_m), MEMBER(CausticsParams, first_m),
+        MEMBER(CausticsParams, step), MEMBER(CausticsParams, travel_air),
+        MEMBER(CausticsParams, waves)}},
       {"SonarColumn",
        {MEMBER(SonarColumn, beam_base), MEMBER(SonarColumn, sec_theta), MEMBER(SonarColumn, right),
         MEMBER(SonarColumn, pixel_tan), MEMBER(SonarColumn, up), MEMBER(SonarColumn, forward),

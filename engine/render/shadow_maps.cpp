@@ -1,0 +1,97 @@
+#include "engine/render/shadow_maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace neritic::render {
+namespace {
+
+// So far away that rays over a square of 40 m differ by 0.5 degrees, the width of the sun's disk;
+// floats still tell half a millimetre there.
+constexpr double kSunAway_m = 5000.0;
+// What stands nearer to the sun than this, or further, throws no shadow.
+constexpr double kCasters_m = 300.0;
+// Half width of each square over that of the next.
+constexpr double kCascadeStep = 1.0 / 3.0;
+// The squares lie ahead of the camera, by this share of their half width.
+constexpr double kAhead = 0.6;
+
+}  // namespace
+
+std::vector<ViewSet> sun_views(const ViewSet& camera, const scene::SunShadows& shadows,
+                               const Vec3& to_sun) {
+  // Axes as any view's: z towards the sun, x level.
+  const Vec3 side = std::abs(to_sun.y) < 0.999 ? Vec3(0.0, 1.0, 0.0) : Vec3(0.0, 0.0, -1.0);
+  const Vec3 x = glm::normalize(glm::cross(side, to_sun));
+  const Vec3 y = glm::cross(to_sun, x);
+  const Quat rotation = glm::normalize(glm::quat_cast(Mat3(x, y, to_sun)));
+  Vec3 eye_m(0.0), ahead(0.0);
+  for (const ViewDesc& view : camera.views) {
+    eye_m += view.world_from_view.position_m / double(camera.views.size());
+    ahead += view.world_from_view.rotation * Vec3(0.0, 0.0, -1.0);
+  }
+  if (glm::dot(ahead, ahead) > 0.0) ahead = glm::normalize(ahead);
+  std::vector<ViewSet> out;
+  for (std::uint32_t i = 0; i < shadows.cascades; ++i) {
+    const double half_m =
+        shadows.reach_m * std::pow(kCascadeStep, double(shadows.cascades - 1 - i));
+    const double texel_m = 2.0 * half_m / shadows.size;
+    const Vec3 wanted_m = eye_m + ahead * (kAhead * half_m);
+    const Vec3 center_m = x * (std::floor(glm::dot(wanted_m, x) / texel_m) * texel_m) +
+                          y * (std::floor(glm::dot(wanted_m, y) / texel_m) * texel_m) +
+                          to_sun * std::floor(glm::dot(wanted_m, to_sun));
+    ViewSet set;
+    set.width = set.height = shadows.size;
+    ViewDesc view;
+    const double tangent = half_m / kSunAway_m;
+    view.tangents = {-tangent, tangent, -tangent, tangent};
+    view.near_m = kSunAway_m - kCasters_m;
+    view.world_from_view = view.next_world_from_view = {center_m + to_sun * kSunAway_m, rotation};
+    set.views = {view};
+    out.push_back(std::move(set));
+  }
+  return out;
+}
+
+std::vector<ShadowMap> shadow_maps(const scene::Scene& scene, const GpuScene& gpu_scene,
+                                   const FrameState& state, std::vector<ViewSet> views) {
+  std::vector<ShadowMap> maps;
+  for (ViewSet& set : views) {
+    ShadowMap& map = maps.emplace_back();
+    map.views = std::move(set);
+    map.draws = build_draw_list(scene, gpu_scene, state, map.views, {.hide_back_faces = true});
+    map.draws.blended.clear();
+  }
+  return maps;
+}
+
+shared::VisibilityParams visibility_params(const scene::Scene& scene, const ViewSet& camera,
+                                           const shared::Lighting& lighting,
+                                           const std::vector<ShadowMap>& cascades) {
+  shared::VisibilityParams params{};
+  params.to_sun = lighting.to_sun;
+  params.origin_depth_m = lighting.origin_depth_m;
+  // The disk's half-angle; waves of a light breeze turn the beam by a quarter of their slopes
+  // ((n - 1) / n; Cox and Munk 1954: some 0.16 at 4 m/s).
+  params.spread = scene.water ? 0.04f : 0.0047f;
+  params.scattering_m = lighting.particle_scattering.y;
+  params.sun_cosine = lighting.sun_cosine;
+  if (scene.ambient) params.occlusion_m = static_cast<float>(scene.ambient->occlusion_m);
+  for (std::size_t i = 0; i < cascades.size(); ++i) {
+    const ViewSet& set = cascades[i].views;
+    const ViewDesc& view = set.views.front();
+    Pose origin_from_view = view.world_from_view;
+    origin_from_view.position_m -= camera.origin_m();
+    shared::Cascade& cascade = params.cascades[i];
+    cascade.clip_from_origin = Mat4f(reversed_z_projection(view.tangents, view.near_m) *
+                                     to_matrix(inverse(origin_from_view)));
+    cascade.across = Vec3f(view.world_from_view.rotation * Vec3(1.0, 0.0, 0.0));
+    cascade.along = Vec3f(view.world_from_view.rotation * Vec3(0.0, 1.0, 0.0));
+    cascade.near_m = static_cast<float>(view.near_m);
+    cascade.half_m = static_cast<float>(view.tangents.right * kSunAway_m);
+  }
+  return params;
+}
+
+}  // namespace neritic::render

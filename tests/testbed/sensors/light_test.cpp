@@ -1,0 +1,184 @@
+// Light as a scene names it: shadows lie where geometry puts them, caustics keep the sun's energy
+// and come to a focus where a lens's formula says, an even furnace stays even, and what is not
+// named is not in the graph.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+
+#include "engine/render/caustic_waves.hpp"
+#include "engine/render/lighting.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/shapes.hpp"
+#include "engine/scene/sun_position.hpp"
+#include "testbed/sensors/readback.hpp"
+#include "testbed/sensors/session.hpp"
+#include "tests/support/gpu_fixture.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+using Light = test::GpuTest;
+
+void add_box(scene::Scene& scene, const Vec3& size_m, const Vec3& place_m) {
+  scene::Model box = scene::make_box(size_m);
+  scene::Material paint;
+  paint.metallic = 0.0f;
+  paint.base_color = Vec4f(0.5f, 0.5f, 0.5f, 1.0f);
+  box.materials = {paint};
+  for (scene::Primitive& primitive : box.meshes[0].primitives) primitive.material = 0;
+  scene.models.push_back(std::make_shared<scene::Model>(std::move(box)));
+  scene::Object object;
+  object.name = fmt::format("box {}", scene.objects.size());
+  object.model = static_cast<int>(scene.models.size()) - 1;
+  object.class_id = 1;
+  object.instance = static_cast<std::uint16_t>(scene.objects.size() + 1);
+  object.mount.pose.position_m = place_m;
+  scene.objects.push_back(object);
+}
+
+// A floor at 0, in air, seen from 10 m above through a picture of 0.05 m a pixel; the sun stands in
+// the east at 45 degrees, and a slab of 4 x 4 m hovers at 2 m.
+scene::Scene floor_and_slab(bool slab) {
+  scene::Scene scene;
+  scene.path = "test";
+  scene.sun = scene::Sun{.elevation_rad = radians(45.0), .azimuth_rad = radians(90.0)};
+  scene.sun->shadows = scene::SunShadows{.full_resolution = true};
+  add_box(scene, {60.0, 1.0, 60.0}, {0.0, -0.5, 0.0});
+  if (slab) add_box(scene, {4.0, 0.1, 4.0}, {3.0, 2.0, 0.0});
+  scene::Camera camera;
+  camera.name = "eye";
+  camera.width = 320;
+  camera.height = 32;
+  camera.vertical_fov_rad = 2.0 * std::atan(0.08);
+  camera.exposure.fixed_ev = 15.0;
+  camera.mount.pose = {Vec3(-4.0, 10.0, 0.0), glm::angleAxis(-kPi / 2, Vec3(1.0, 0.0, 0.0))};
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+Result<FrameResult> render_one(gpu::Device& device, scene::Scene scene, std::string* plan) {
+  NERITIC_TRY(const auto session, Session::create(device, std::move(scene)));
+  session->keep_plan_dump(true);
+  FrameRequest request;
+  request.cameras = {0};
+  NERITIC_TRY(FrameResult result, session->render(request));
+  if (plan) *plan = session->plan_text();
+  return result;
+}
+
+TEST_F(Light, ShadowsEdgeLiesWhereGeometryPutsIt) {
+  NERITIC_ASSERT_OK(const auto result, render_one(device(), floor_and_slab(true), nullptr));
+  const auto& eye = result.cameras[0].eyes[0];
+  // The slab's western edge at x = 1 and its upper side at 2.05 m: sunlight from the east leads it
+  // 2.05 m westwards, its lower edge 1.95. The shadow's western end is the upper edge's.
+  const auto level = [&](double x_m) {
+    const double metres_a_pixel = 10.0 * 0.16 / 32.0;
+    return int(eye.color.at(static_cast<std::uint32_t>(160.0 + (x_m + 4.0) / metres_a_pixel), 16, 1));
+  };
+  const double edge_m = 1.0 - 2.05;
+  EXPECT_GT(level(edge_m - 0.35), level(edge_m + 0.35) + 60);
+  EXPECT_NEAR(level(edge_m - 0.35), level(edge_m - 3.0), 3);
+  const int half = (level(edge_m - 0.35) + level(edge_m + 0.35)) / 2;
+  EXPECT_GT(level(edge_m - 0.12), half);
+  EXPECT_LT(level(edge_m + 0.17), half);
+}
+
+TEST_F(Light, FlatGroundHidesNothingFromItself) {
+  scene::Scene scene = floor_and_slab(false);
+  scene.ambient = scene::Ambient{.occlusion_m = 1.0};
+  NERITIC_ASSERT_OK(const auto with, render_one(device(), std::move(scene), nullptr));
+  scene = floor_and_slab(false);
+  scene.sun->shadows.reset();
+  scene.ambient = scene::Ambient{};
+  NERITIC_ASSERT_OK(const auto without, render_one(device(), std::move(scene), nullptr));
+  for (std::uint32_t x = 0; x < 320; x += 7)
+    EXPECT_NEAR(int(with.cameras[0].eyes[0].color.at(x, 16, 1)),
+                int(without.cameras[0].eyes[0].color.at(x, 16, 1)), 1)
+        << x;
+}
+
+TEST_F(Light, WhatIsNotNamedIsNotInTheGraph) {
+  scene::Scene scene = floor_and_slab(true);
+  std::string plan;
+  NERITIC_ASSERT_OK(const auto with, render_one(device(), scene, &plan));
+  EXPECT_NE(plan.find("sun shadows"), std::string::npos);
+  scene.sun->shadows.reset();
+  NERITIC_ASSERT_OK(const auto without, render_one(device(), scene, &plan));
+  for (const char* pass : {"shadows", "visibility", "caustics"})
+    EXPECT_EQ(plan.find(pass), std::string::npos) << pass;
+}
+
+// Light on the levels below a tile, a layer of four channels for four levels.
+std::vector<float> thrown(gpu::Device& device, const shared::CausticsParams& params) {
+  auto renderer = render::Renderer::create(device);
+  auto frames = gpu::Frames::create(device);
+  EXPECT_TRUE(renderer.ok() && frames.ok());
+  graph::Executor executor(**frames);
+  graph::FrameGraph graph;
+  auto image = (*renderer)->declare_caustics(graph, params);
+  EXPECT_TRUE(image.ok());
+  ReadbackPool pool;
+  const std::uint32_t n = params.texels;
+  auto pin = pool.declare(graph, device, "caustics", *image, render::kHdrFormat, n, n, 2);
+  EXPECT_TRUE(pin.ok());
+  auto commands = (*frames)->begin();
+  EXPECT_TRUE(commands.ok());
+  EXPECT_TRUE(executor.run(graph, **commands).ok());
+  auto done = (*frames)->submit();
+  EXPECT_TRUE(done.ok() && (*frames)->wait(*done).ok());
+  std::vector<float> out;
+  for (const std::uint16_t half : (**pin)->mapped<std::uint16_t>())
+    out.push_back(glm::unpackHalf1x16(half));
+  device.wait_idle();
+  return out;
+}
+
+double mean_of_level(const std::vector<float>& light, std::uint32_t n, std::uint32_t level) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < std::size_t{n} * n; ++i)
+    sum += light[(std::size_t{level / 4} * n * n + i) * 4 + level % 4];
+  return sum / (double(n) * n);
+}
+
+TEST_F(Light, FlatWaterThrowsNoNetAndWavesKeepTheMean) {
+  scene::Caustics caustics{.tile_m = 4.0, .texels = 96};
+  shared::CausticsParams params =
+      render::caustics_params(caustics, glm::normalize(Vec3(0.4, 1.0, 0.2)), 3.0, 7);
+  const std::vector<float> waves = thrown(device(), params);
+  for (std::uint32_t level = 0; level < shared::kCausticLevels; ++level)
+    EXPECT_NEAR(mean_of_level(waves, 96, level), 1.0, 0.01) << level;
+  float most = 0.0f;
+  for (const float light : waves) most = std::max(most, light);
+  EXPECT_GT(most, 2.0f);
+  params.count = 0;
+  for (const float light : thrown(device(), params)) ASSERT_EQ(light, 1.0f);
+}
+
+TEST_F(Light, ASineWavesFirstFocusLiesWhereTheFormulaSays) {
+  // Paraxial optics: on the axis of a crest the light at depth d is 1 / (1 - d / f), f = n / ((n - 1)
+  // A k^2) = 2.028 m for 5 cm and 1 m. Read well above the focus, where the texels resolve it.
+  const scene::Caustics caustics{.waves = {{0.05, 1.0, radians(90.0)}}, .tile_m = 2.0, .texels = 256};
+  shared::CausticsParams params = render::caustics_params(caustics, Vec3(0.0, 1.0, 0.0), 0.0, 1);
+  params.first_m = 1.0f;
+  params.step = 1.0f;
+  const std::vector<float> light = thrown(device(), params);
+  double crest = 0.0;
+  for (std::uint32_t x = 0; x < 256; ++x) crest = std::max(crest, double(light[x * 4]));
+  EXPECT_NEAR(1.0 / (1.0 - 1.0 / crest), 2.028, 0.04);
+}
+
+TEST(SunPosition, NoonAtTheTropicOnMidsummerIsInTheZenithAndEveningInTheWest) {
+  const auto noon = scene::sun_position(radians(23.45), 172, 12.0);
+  EXPECT_GT(noon.elevation_rad, radians(89.5));
+  // Equinox at 50 degrees north: noon at 40 degrees in the south, six o'clock on the horizon in the west.
+  const auto spring = scene::sun_position(radians(50.0), 81, 12.0);
+  EXPECT_NEAR(spring.elevation_rad, radians(40.0), radians(0.5));
+  EXPECT_NEAR(std::abs(spring.azimuth_rad), kPi, 1e-6);
+  const auto evening = scene::sun_position(radians(50.0), 81, 18.0);
+  EXPECT_NEAR(evening.elevation_rad, 0.0, radians(0.5));
+  EXPECT_NEAR(evening.azimuth_rad, -kPi / 2, radians(1.0));
+}
+
+}  // namespace
+}  // namespace neritic::testbed
