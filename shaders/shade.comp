@@ -20,14 +20,56 @@ layout(set = 0, binding = kShadeEmissive) uniform texture2DArray emissive_image;
 layout(set = 0, binding = kShadeHdr, rgba16f) writeonly uniform image2DArray hdr_image;
 
 layout(set = 0, binding = kShadeSeen) uniform texture2DArray seen_image;
+layout(set = 0, binding = kShadeCaustics) uniform sampler2DArray caustics_image;
+layout(set = 0, binding = kShadeLampMaps) uniform texture2DArray lamp_maps;
+layout(set = 0, binding = kShadeLampShadows, scalar) uniform Shadows { LampShadows lamp_shadows; };
 
 layout(constant_id = kSpecTerms) const uint kTerms = ~0u;
 layout(constant_id = kSpecLamps) const uint kLamps = kMaxLamps;
 bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return kLamps; }
 
+#include "shared/caustics.h"
 #include "shared/surface.glsl"
 #include "shared/visibility.glsl"
+
+// What the lamp's map says, between four texels.
+float lamp_seen(uint lamp, vec3 position, vec3 normal) {
+  uint layer = min(lamp_shadows.layer[lamp], kMaxLampShadows - 1u);
+  vec4 clip = lamp_shadows.clip_from_origin[layer] * vec4(position + normal * 0.01, 1.0);
+  int size = textureSize(lamp_maps, 0).x;
+  vec2 place = (clip.xy / max(clip.w, 1e-3) * 0.5 + 0.5) * float(size) - 0.5;
+  vec2 corner = floor(place), part = place - corner;
+  // A texel's slope at grazing sight, at that distance.
+  float limit_m = clip.w * (1.0 - 3.0 / float(size)) - 0.01;
+  float seen = 0.0;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    vec2 offset = vec2(i & 1, i >> 1);
+    ivec2 at = clamp(ivec2(corner + offset), ivec2(0), ivec2(size - 1));
+    float depth = texelFetch(lamp_maps, ivec3(at, layer), 0).r;
+    vec2 w = mix(1.0 - part, part, offset);
+    if (depth * limit_m <= lamp_shadows.near_m) seen += w.x * w.y;
+  }
+  return lamp_shadows.layer[lamp] >= kMaxLampShadows || clip.w < lamp_shadows.near_m ? 1.0 : seen;
+}
+
+// The sun's beam at a place over that under flat water, by the levels above and below it. The part that water has
+// scattered (b) has lost the net, and where a pixel is as wide as its meshes it has their mean.
+float caustic_at(vec3 position, float pixel_m) {
+  if (!light_has(kLightCaustics)) return 1.0;
+  float depth_m = light.origin_depth_m - position.y;
+  vec2 surface = position.xz + light.to_sun.xz * (depth_m / light.to_sun.y) + light.caustic_origin_m;
+  vec2 uv = surface / light.caustic_tile_m;
+  float level = clamp(log2(max(depth_m, 1e-3) / kCausticFirst_m) / log2(kCausticStep), 0.0, float(kCausticLevels - 1u));
+  uint low = min(uint(level), kCausticLevels - 2u), high = low + 1u;
+  float above = textureLod(caustics_image, vec3(uv, float(low / 4u)), 0.0)[low & 3u];
+  float below = textureLod(caustics_image, vec3(uv, float(high / 4u)), 0.0)[high & 3u];
+  float scattered = (light.particle_scattering.g + light.water_scattering.g) * max(depth_m, 0.0) / light.sun_cosine;
+  float texel_m = light.caustic_tile_m / float(textureSize(caustics_image, 0).x);
+  float kept = exp(-min(scattered, 80.0)) * clamp(depth_m / kCausticFirst_m, 0.0, 1.0) *
+               clamp(1.5 - pixel_m / (4.0 * texel_m), 0.0, 1.0);
+  return 1.0 + (mix(above, below, level - float(low)) - 1.0) * kept;
+}
 
 // The visibility image at a pixel: between its four nearest, the farther off in distance the less.
 Seen seen_at(ivec3 at, ivec2 size, float planar_m) {
@@ -47,7 +89,7 @@ Seen seen_at(ivec3 at, ivec2 size, float planar_m) {
     sum += vec4(seen.rgb, 1.0) * weight;
   }
   sum.rgb /= sum.a;
-  return Seen(sum.r, sum.g, sum.b);
+  return Seen(sum.r, sum.g, sum.b, 1.0);
 }
 
 void main() {
@@ -75,7 +117,11 @@ void main() {
   s.occlusion = material.z;
   s.reflectance = material.w;
   vec3 radiance = emitted;
-  if (material.w < 0.9) radiance += shade_surface(s, -direction, seen_at(at, size, planar_m));  // else unlit
+  if (material.w < 0.9) {
+    Seen seen = seen_at(at, size, planar_m);
+    seen.caustic = caustic_at(s.position, planar_m * length(views[layer].ray_dx));
+    radiance += shade_surface(s, -direction, seen);
+  }  // else unlit
   if (!hit) radiance = beyond(eye_depth_m, direction);
   Sight sight = look_through(eye_depth_m, direction, hit ? planar_m * stretch : kForever_m);
   radiance = radiance * sight.transmittance + sight.added;

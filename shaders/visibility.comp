@@ -23,10 +23,12 @@ layout(constant_id = kSpecCascades) const uint kCascades = 0;
 layout(constant_id = kSpecOcclusionTaps) const uint kOcclusionTaps = 0;
 layout(constant_id = kSpecVisibilityScale) const uint kScale = 2;
 
-const uint kTaps = 12;
+const uint kTaps = 9;
 // Radii of the taps' rings, of the narrowest and the factor to the next.
-const float kRing_m = 0.02, kRingFactor = 1.5;
-const float kGolden = 2.39996323;
+const float kRing_m = 0.02, kRingFactor = 1.75;
+// Cosine and sine of the golden angle, by which each tap is turned on against the one before.
+const vec2 kGolden = vec2(-0.73736888, 0.67549029);
+vec2 turned_on(vec2 v) { return vec2(kGolden.x * v.x - kGolden.y * v.y, kGolden.y * v.x + kGolden.x * v.y); }
 
 // Shares of the sun's core (x) and of the light round it (y) that what stands between takes away. A tap says of
 // a ring at its height over the surface how far light from within the ring would have to be turned; the
@@ -62,9 +64,10 @@ vec2 sun_hidden(vec3 position, vec3 normal, float depth_m, float turn) {
   vec2 last = vec2(ring_m * pow(kRingFactor, float(kTaps) - 1.0) * kEdge);
   last *= last;
   float inner_m = 0.0;
+  vec2 way = vec2(cos(turn * 6.2831853), sin(turn * 6.2831853));
   for (uint i = 0u; i < kTaps; ++i) {
-    float angle = float(i) * kGolden + turn * 6.2831853;
-    vec2 offset_m = ring_m * vec2(cos(angle), sin(angle));
+    vec2 offset_m = ring_m * way;
+    way = turned_on(way);
     ivec2 at = ivec2((where * 0.5 + 0.5 + offset_m * vec2(0.5, -0.5) / half_m) * float(size));
     at = clamp(at, ivec2(0), ivec2(size - 1));
     float seen_m = near_m / max(texelFetch(cascade_image, ivec3(at, cascade), 0).r, 1e-9);
@@ -88,10 +91,11 @@ float occluded(uint layer, ivec2 full, ivec2 size, vec3 position, vec3 normal, f
   pixels = min(pixels, 0.25 * float(size.y));
   if (pixels < 2.0) return 0.0;
   float sum = 0.0;
+  vec2 way = vec2(cos(turn * 6.2831853), sin(turn * 6.2831853));
   for (uint i = 0u; i < kOcclusionTaps; ++i) {
     float share = (float(i) + 0.2 + 0.8 * turn) / float(kOcclusionTaps);
-    float angle = float(i) * kGolden + turn * 6.2831853;
-    vec2 offset = vec2(cos(angle), sin(angle)) * max(pixels * share * share, 1.5 + float(i) * 0.5);
+    vec2 offset = way * max(pixels * share * share, 1.5 + float(i) * 0.5);
+    way = turned_on(way);
     ivec2 at = full + ivec2(round(offset));
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) continue;
     float depth = texelFetch(depth_image, ivec3(at, layer), 0).r;

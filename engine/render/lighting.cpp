@@ -9,6 +9,7 @@
 #include "engine/core/refusal.hpp"
 #include "engine/render/water_optics.hpp"
 #include "engine/scene/model_lights.hpp"
+#include "shared/phase.h"
 
 namespace neritic::render {
 namespace {
@@ -113,6 +114,41 @@ double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& s
   return std::max({sum, lamps * 0.5, kDarkest_lx});
 }
 
+// Auto exposure where the water itself shines meters as cameras do: half of the picture water, half
+// ground of this albedo, whose mean becomes a mid-tone.
+constexpr double kMidTone = 0.20, kWaterShare = 0.5, kGround = 0.25;
+
+// Luminance of the water on a level sight at the origin's depth, the mean of four azimuths: what
+// look_through() of shaders/shared/water.glsl adds over an endless length.
+double water_luminance(const shared::Lighting& light) {
+  constexpr std::uint32_t kNeeded = shared::kLightSun | shared::kLightScattering;
+  if ((light.terms & kNeeded) != kNeeded) return 0.0;
+  constexpr double kDiffuseCosine = 0.8;  // water.glsl
+  const double depth_m = std::max(0.0f, light.origin_depth_m);
+  const double height_m = std::max(0.0, light.bottom_depth_m - depth_m);
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double particles = light.particle_scattering[i], water = light.water_scattering[i];
+    const double down =
+        light.surface_irradiance[i] * std::exp(-light.diffuse_attenuation[i] * depth_m);
+    const double direct =
+        light.direct_share *
+        std::exp(-(particles * (1.0 - shared::kParticleG) + water) * depth_m / light.sun_cosine);
+    double beam = 0.0;
+    for (const float cosine : {light.to_sun.x, -light.to_sun.x, light.to_sun.z, -light.to_sun.z})
+      beam += 0.25 * (particles * shared::henyey_greenstein(cosine, shared::kParticleG) +
+                      water * shared::sea_water_phase(cosine));
+    const double diffuse = particles * shared::henyey_greenstein(0.0f, shared::kDiffuseG) +
+                           water * shared::sea_water_phase(0.0f);
+    double source = direct * beam / light.sun_cosine + (1.0 - direct) * diffuse / kDiffuseCosine;
+    if ((light.terms & shared::kLightAmbient) && light.bottom_depth_m >= 0.0f)
+      source += light.bottom_color[i] * std::exp(-2.0 * light.diffuse_attenuation[i] * height_m) *
+                0.5 * (particles + water) / kPi;
+    sum += kLuminance[i] * down * source / light.beam_attenuation[i];
+  }
+  return sum;
+}
+
 // Beams that reach less than this past their lamp (in daylight, say) are not worth a term.
 constexpr float kLeastGlow_m = 1.0f;
 
@@ -148,6 +184,13 @@ void add_model_sun(shared::Lighting& light, const PlacedLight& placed) {
   light.surface_irradiance = placed.light->color * static_cast<float>(irradiance_lx);
 }
 
+// A strobe flashes at the start of each period.
+bool burns(const scene::Lamp& lamp, double time_s) {
+  if (lamp.strobe_period_s <= 0.0) return true;
+  const double since_s = time_s - std::floor(time_s / lamp.strobe_period_s) * lamp.strobe_period_s;
+  return since_s < lamp.strobe_flash_s;
+}
+
 void add_lamp(shared::Lighting& light, const scene::Lamp& lamp, const Pose& pose,
               const Vec3& origin_m) {
   shared::SpotLight& spot = light.lamps[light.lamp_count++];
@@ -180,6 +223,12 @@ void add_model_lamp(shared::Lighting& light, const PlacedLight& placed, const Ve
 }  // namespace
 
 static_assert(scene::kMaxLamps == shared::kMaxLamps);
+
+Vec3 to_sun_in_air(const scene::Sun& sun) {
+  const double level = std::cos(sun.elevation_rad);
+  return {level * std::sin(sun.azimuth_rad), std::sin(sun.elevation_rad),
+          -level * std::cos(sun.azimuth_rad)};
+}
 
 Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameState& state,
                                        const Vec3& origin_m, const scene::Exposure& exposure,
@@ -216,8 +265,10 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
                    fmt::format("at most {}", shared::kMaxLamps));
   NERITIC_CHECK(state.world_from_lamp.size() == scene.lamps.size(), "{} poses of {} lamps",
                 state.world_from_lamp.size(), scene.lamps.size());
-  for (std::size_t i = 0; i < scene.lamps.size(); ++i)
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
     add_lamp(light, scene.lamps[i], state.world_from_lamp[i], origin_m);
+    if (!burns(scene.lamps[i], state.time_s)) light.lamps[i].intensity_cd = Vec3f(0.0f);
+  }
   for (const PlacedLight& placed : state.lights)
     if (placed.light->kind == scene::Light::Kind::kDirectional)
       add_model_sun(light, placed);
@@ -225,6 +276,8 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
       add_model_lamp(light, placed, origin_m);
   const double illuminance = scene_illuminance_lx(light, scene, state.lights);
   double scale = kPi / illuminance;
+  if (const double water = water_luminance(light); water > 0.0)
+    scale = kMidTone / (kWaterShare * water + (1.0 - kWaterShare) * kGround * illuminance / kPi);
   if (exposure.fixed_ev) scale = std::exp2(-*exposure.fixed_ev);
   light.exposure = static_cast<float>(scale * std::exp2(exposure.compensation_ev));
   if (glows(light)) light.terms |= shared::kLightGlow;
@@ -242,7 +295,9 @@ std::string names_of_terms(const shared::Lighting& lighting) {
       {shared::kLightEmissive, "emission"},
       {shared::kLightGlow, "glow of lamps"},
       {shared::kLightAmbient, "ambient"},
-      {shared::kLightSeen, "visibility"}};
+      {shared::kLightSeen, "visibility"},
+      {shared::kLightCaustics, "caustics"},
+      {shared::kLightLampShadows, "shadows of lamps"}};
   std::vector<std::string> names;
   for (const auto& [bit, name] : kNames)
     if (lighting.terms & bit) names.emplace_back(name);

@@ -22,6 +22,9 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
                                        const Vec3& origin_m, const scene::Exposure& exposure,
                                        bool has_emission);
 
+// Unit, towards the scene's sun above the surface.
+Vec3 to_sun_in_air(const scene::Sun& sun);
+
 // The terms that shading computes, for the frame graph's dump: "sun, water, scattering, 2 lamps".
 std::string names_of_terms(const shared::Lighting& lighting);
 

@@ -40,6 +40,11 @@ void begin_rendering(VkCommandBuffer cmd, const GBuffer& gbuffer, std::uint32_t 
                      std::span<const VkRenderingAttachmentInfo> colors,
                      const VkRenderingAttachmentInfo& depth);
 
+// Workgroups along a side of so many pixels.
+constexpr std::uint32_t groups(std::uint32_t size) {
+  return (size + shared::kShadeGroup - 1) / shared::kShadeGroup;
+}
+
 gpu::BoundResource bound_slice(std::uint32_t binding, const gpu::UploadSlice& slice);
 
 }  // namespace neritic::render

@@ -14,6 +14,7 @@
 #include "engine/gpu/needed_formats.hpp"
 #include "engine/gpu/pipeline.hpp"
 #include "engine/graph/frame_graph.hpp"
+#include "engine/render/caustic_waves.hpp"
 #include "engine/render/draw_list.hpp"
 #include "engine/render/shadow_maps.hpp"
 #include "shared/lighting.h"
@@ -63,6 +64,9 @@ struct DeformedGeometry {
 // not name it.
 struct LightImages {
   graph::ImageHandle seen;  // of sun, sky and surroundings (shaders/visibility.comp)
+  graph::ImageHandle caustics;
+  graph::ImageHandle lamp_maps;
+  shared::LampShadows lamp_shadows{};  // of lamp_maps
 };
 
 // Inputs of shading. An effect that shading uses adds its image here as a handle that may be
@@ -115,6 +119,9 @@ class Renderer {
                                                 graph::ImageHandle cascades,
                                                 std::uint32_t cascade_count,
                                                 std::uint32_t occlusion_taps, bool full);
+  // Light under waves on levels below a tile of the surface; once a frame.
+  Result<graph::ImageHandle> declare_caustics(graph::FrameGraph& graph,
+                                              const shared::CausticsParams& params);
   // HDR picture of a surface G-buffer.
   Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix,
                                            const ShadeInputs& inputs);
@@ -186,7 +193,8 @@ class Renderer {
       shade_;  // by terms, number of lamps
   std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, gpu::Pipeline>
       visibility_;  // by cascades, taps, full
-  gpu::Pipeline visibility_blur_;
+  gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_;
+  gpu::Sampler tile_sampler_;  // linear, repeating
   gpu::Pipeline deform_, tonemap_, tonemap_luma_, antialias_;
   // Bound where a shader declares a buffer that this frame does not use: one to read, one to write,
   // since what is bound counts as read or written.

@@ -1,17 +1,10 @@
 // Renderer: creation, and the compute passes on the G-buffer: shade and tonemap.
 #include "engine/render/lighting.hpp"
+#include "engine/render/raster_draws.hpp"
 #include "engine/render/renderer.hpp"
 #include "shaders.hpp"
 
 namespace neritic::render {
-namespace {
-
-constexpr std::uint32_t groups(std::uint32_t size) {
-  return (size + shared::kShadeGroup - 1) / shared::kShadeGroup;
-}
-
-}  // namespace
-
 Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device) {
   std::unique_ptr<Renderer> renderer(new Renderer(device));
   NERITIC_TRY(renderer->material_layout_, create_material_layout(device));
@@ -19,6 +12,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device) {
               gpu::Buffer::create(device, {"nothing", 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
   NERITIC_TRY(renderer->nowhere_,
               gpu::Buffer::create(device, {"nowhere", 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
+  NERITIC_TRY(renderer->tile_sampler_,
+              gpu::Sampler::create(device, {.name = "tile", .mipmapped = false}));
   return renderer;
 }
 
@@ -42,7 +37,10 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                             {shared::kShadeMaterial, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeEmissive, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeHdr, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-                            {shared::kShadeSeen, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+                            {shared::kShadeSeen, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                            {shared::kShadeCaustics, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+                            {shared::kShadeLampMaps, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                            {shared::kShadeLampShadows, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
     desc.constants = {{shared::kSpecTerms, lighting.terms},
                       {shared::kSpecLamps, lighting.lamp_count}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
@@ -54,19 +52,23 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
       prefix + "shade",
       [&](graph::PassBuilder& builder, Data& data) {
         builder.terms(names_of_terms(lighting));
-        for (const graph::ImageHandle handle : {gbuffer.depth, gbuffer.normal, gbuffer.albedo,
-                                                gbuffer.material, gbuffer.emissive, light.seen})
+        for (const graph::ImageHandle handle :
+             {gbuffer.depth, gbuffer.normal, gbuffer.albedo, gbuffer.material, gbuffer.emissive,
+              light.seen, light.caustics, light.lamp_maps})
           if (handle) builder.read(handle, graph::Access::kSampledCompute);
         data.hdr = builder.write(
             builder.create_image(prefix + "hdr",
                                  {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
             graph::Access::kStorageWriteCompute);
       },
-      [&pipeline, gbuffer, lighting, light, &views](const Data& data, graph::PassContext& context) {
+      [this, &pipeline, gbuffer, lighting, light, &views](const Data& data,
+                                                          graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::UploadSlice view_data =
             commands.upload(std::span<const shared::View>(gpu_views(views)));
         const gpu::UploadSlice light_data = commands.upload(&lighting, sizeof lighting);
+        const gpu::UploadSlice shadow_data =
+            commands.upload(&light.lamp_shadows, sizeof light.lamp_shadows);
         const auto texels = [&](std::uint32_t binding, graph::ImageHandle handle) {
           return gpu::bound_texel_image(binding, context.image(handle).view());
         };
@@ -84,7 +86,14 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
              // Without emission the shader's flag keeps it from reading what is bound here.
              texels(shared::kShadeEmissive, gbuffer.emissive ? gbuffer.emissive : gbuffer.albedo),
              gpu::bound_storage_image(shared::kShadeHdr, context.image(data.hdr).view()),
-             texels(shared::kShadeSeen, light.seen ? light.seen : gbuffer.albedo)});
+             texels(shared::kShadeSeen, light.seen ? light.seen : gbuffer.albedo),
+             gpu::bound_texture(
+                 shared::kShadeCaustics,
+                 context.image(light.caustics ? light.caustics : gbuffer.albedo).view(),
+                 tile_sampler_.handle()),
+             texels(shared::kShadeLampMaps, light.lamp_maps ? light.lamp_maps : gbuffer.depth),
+             gpu::bound_buffer(shared::kShadeLampShadows, shadow_data.buffer, shadow_data.offset,
+                               shadow_data.size)});
         commands.dispatch(groups(gbuffer.width), groups(gbuffer.height), gbuffer.layers);
       });
   return pass.hdr;

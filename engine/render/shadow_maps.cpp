@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/core/refusal.hpp"
+
 namespace neritic::render {
 namespace {
 
@@ -16,6 +18,18 @@ constexpr double kCasters_m = 300.0;
 constexpr double kCascadeStep = 1.0 / 3.0;
 // The squares lie ahead of the camera, by this share of their half width.
 constexpr double kAhead = 0.6;
+
+// Lamps see what is farther than their glass. A wider cone than this throws its outermost light
+// without shadows.
+constexpr double kLampNear_m = 0.08, kWidestLamp_rad = radians(75.0);
+
+// From positions relative to the camera's origin to another view's clip space.
+Mat4f clip_from(const ViewSet& camera, const ViewDesc& view) {
+  Pose origin_from_view = view.world_from_view;
+  origin_from_view.position_m -= camera.origin_m();
+  return Mat4f(reversed_z_projection(view.tangents, view.near_m) *
+               to_matrix(inverse(origin_from_view)));
+}
 
 }  // namespace
 
@@ -66,6 +80,41 @@ std::vector<ShadowMap> shadow_maps(const scene::Scene& scene, const GpuScene& gp
   return maps;
 }
 
+Result<std::vector<ViewSet>> lamp_views(const scene::Scene& scene, const FrameState& state) {
+  std::vector<ViewSet> out;
+  std::uint32_t size = 0;
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
+    const scene::Lamp& lamp = scene.lamps[i];
+    if (!lamp.shadows) continue;
+    ViewDesc view;
+    const double tangent = std::tan(std::min(lamp.outer_cone_rad, kWidestLamp_rad) + 1e-3);
+    view.tangents = {-tangent, tangent, -tangent, tangent};
+    view.near_m = kLampNear_m;
+    view.world_from_view = view.next_world_from_view = state.world_from_lamp[i];
+    out.emplace_back().views = {view};
+    size = std::max(size, lamp.shadow_size);
+  }
+  if (out.size() > shared::kMaxLampShadows)
+    return refusal(fmt::format("{}: lamps with shadows", scene.path), fmt::format("{}", out.size()),
+                   fmt::format("at most {}", shared::kMaxLampShadows));
+  for (ViewSet& set : out) set.width = set.height = size;
+  return out;
+}
+
+shared::LampShadows lamp_shadows(const scene::Scene& scene, const ViewSet& camera,
+                                 const std::vector<ShadowMap>& maps) {
+  shared::LampShadows out{};
+  out.near_m = static_cast<float>(kLampNear_m);
+  std::ranges::fill(out.layer, shared::kMaxLampShadows);
+  for (std::uint32_t i = 0, layer = 0; i < scene.lamps.size(); ++i)
+    if (scene.lamps[i].shadows) {
+      out.layer[i] = layer;
+      out.clip_from_origin[layer] = clip_from(camera, maps[layer].views.views.front());
+      ++layer;
+    }
+  return out;
+}
+
 shared::VisibilityParams visibility_params(const scene::Scene& scene, const ViewSet& camera,
                                            const shared::Lighting& lighting,
                                            const std::vector<ShadowMap>& cascades) {
@@ -81,11 +130,8 @@ shared::VisibilityParams visibility_params(const scene::Scene& scene, const View
   for (std::size_t i = 0; i < cascades.size(); ++i) {
     const ViewSet& set = cascades[i].views;
     const ViewDesc& view = set.views.front();
-    Pose origin_from_view = view.world_from_view;
-    origin_from_view.position_m -= camera.origin_m();
     shared::Cascade& cascade = params.cascades[i];
-    cascade.clip_from_origin = Mat4f(reversed_z_projection(view.tangents, view.near_m) *
-                                     to_matrix(inverse(origin_from_view)));
+    cascade.clip_from_origin = clip_from(camera, view);
     cascade.across = Vec3f(view.world_from_view.rotation * Vec3(1.0, 0.0, 0.0));
     cascade.along = Vec3f(view.world_from_view.rotation * Vec3(0.0, 1.0, 0.0));
     cascade.near_m = static_cast<float>(view.near_m);

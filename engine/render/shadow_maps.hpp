@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "engine/core/result.hpp"
 #include "engine/render/draw_list.hpp"
 #include "engine/scene/scene.hpp"
 #include "shared/lighting.h"
@@ -26,6 +27,14 @@ std::vector<ViewSet> sun_views(const ViewSet& camera, const scene::SunShadows& s
 // Draw lists of these views.
 std::vector<ShadowMap> shadow_maps(const scene::Scene& scene, const GpuScene& gpu_scene,
                                    const FrameState& state, std::vector<ViewSet> views);
+
+// What each lamp of the scene with shadows sees, in the order of the lamps. kBadInput: more than
+// kMaxLampShadows.
+Result<std::vector<ViewSet>> lamp_views(const scene::Scene& scene, const FrameState& state);
+
+// The lamps' maps as a camera's shading reads them.
+shared::LampShadows lamp_shadows(const scene::Scene& scene, const ViewSet& camera,
+                                 const std::vector<ShadowMap>& maps);
 
 // Parameters of the visibility pass for a camera's view set: terms of the scene's sun and ambient.
 shared::VisibilityParams visibility_params(const scene::Scene& scene, const ViewSet& camera,

@@ -25,9 +25,9 @@ Result<graph::ImageHandle> Renderer::declare_shadow_maps(graph::FrameGraph& grap
       name,
       [&](graph::PassBuilder& builder, Data& data) {
         const ViewSet& first = maps.front().views;
-        const graph::ImageHandle image =
-            builder.create_image(name, {kDepthFormat, first.width, first.height,
-                                        static_cast<std::uint32_t>(maps.size())});
+        const graph::ImageHandle image = builder.create_image(
+            name,
+            {kDepthFormat, first.width, first.height, static_cast<std::uint32_t>(maps.size())});
         data.depth = image;
         for (std::uint32_t i = 0; i < maps.size(); ++i) {
           data.layers.push_back(

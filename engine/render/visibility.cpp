@@ -6,10 +6,6 @@
 namespace neritic::render {
 namespace {
 
-constexpr std::uint32_t groups(std::uint32_t size) {
-  return (size + shared::kShadeGroup - 1) / shared::kShadeGroup;
-}
-
 constexpr auto kTexels = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
                kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                kStorageImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;

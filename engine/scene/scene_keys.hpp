@@ -20,12 +20,11 @@ inline constexpr auto kLabKeys =
 
 inline constexpr auto kSunKeys =
     std::to_array<Key>({"elevation_deg", "azimuth_deg", "latitude_deg", "day", "hour", "intensity",
-                        "overcast", "shadows", "caustics", "shafts"});
+                        "overcast", "shadows", "caustics"});
 inline constexpr auto kSunShadowKeys =
     std::to_array<Key>({"size", "cascades", "reach_m", "full_resolution"});
 inline constexpr auto kCausticsKeys =
     std::to_array<Key>({"waves", "wind_m_s", "direction_deg", "tile_m", "texels"});
-inline constexpr auto kShaftsKeys = std::to_array<Key>({"samples", "reach_m"});
 inline constexpr auto kAmbientKeys =
     std::to_array<Key>({"bottom_color", "bottom_depth_m", "occlusion_m", "occlusion_samples"});
 

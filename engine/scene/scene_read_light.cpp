@@ -39,13 +39,6 @@ Caustics read_caustics(TableReader& reader) {
   return caustics;
 }
 
-Shafts read_shafts(TableReader& reader) {
-  Shafts shafts;
-  shafts.samples = static_cast<std::uint32_t>(reader.whole("samples", shafts.samples, 2, 128));
-  shafts.reach_m = reader.number("reach_m", shafts.reach_m, {1, 200, false, false, "metres"});
-  return shafts;
-}
-
 // By elevation and azimuth, or by latitude, day and hour.
 void read_place_of_sun(TableReader& reader, Sun& sun) {
   const bool by_time = reader.has("latitude_deg") || reader.has("day") || reader.has("hour");
@@ -82,11 +75,6 @@ Result<Sun> read_sun(const SceneSource& source, const TomlValue& table) {
   if (const TomlValue* caustics = reader.table("caustics")) {
     TableReader inner(source, *caustics, "sun.caustics", kCausticsKeys);
     sun.caustics = read_caustics(inner);
-    NERITIC_TRY_STATUS(inner.status());
-  }
-  if (const TomlValue* shafts = reader.table("shafts")) {
-    TableReader inner(source, *shafts, "sun.shafts", kShaftsKeys);
-    sun.shafts = read_shafts(inner);
     NERITIC_TRY_STATUS(inner.status());
   }
   NERITIC_TRY_STATUS(reader.status());

@@ -20,6 +20,7 @@ bool light_has(uint term) { return (light.terms & term) != 0u; }
 uint lamp_count() { return light.lamp_count; }
 
 #include "shared/surface.glsl"
+float lamp_seen(uint lamp, vec3 position, vec3 normal) { return 1.0; }
 
 #ifdef NERITIC_TINTED
 layout(location = 0, index = 0) out vec4 out_color;

@@ -15,6 +15,8 @@ NERITIC_CONST uint kLightEmissive = 16;  // the G-buffer has an emissive image
 NERITIC_CONST uint kLightGlow = 32;
 NERITIC_CONST uint kLightAmbient = 1u << 16;  // the bottom's light
 NERITIC_CONST uint kLightSeen = 1u << 17;     // the visibility image: shadows of the sun, occlusion
+NERITIC_CONST uint kLightCaustics = 1u << 18;
+NERITIC_CONST uint kLightLampShadows = 1u << 19;
 // Refractive index of sea water against air, in the visible (1.33 to 1.34, Mobley 1994).
 NERITIC_CONST float kWaterIndex = 1.333f;
 // Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance 0.066).
@@ -48,9 +50,19 @@ struct Lighting {
   float sun_cosine;          // of the refracted sun to the vertical
   vec3 bottom_color;         // of the bottom: the share of light that it sends back up
   float bottom_depth_m;      // negative: as deep as what it lights
+  vec2 caustic_origin_m;     // of the view set's origin in the tile, along x and z
+  float caustic_tile_m;
   SpotLight lamps[16];
 };
 NERITIC_CONST uint kMaxLamps = 16;
+
+// Lamps whose light solids stop: their depth maps, a layer each.
+NERITIC_CONST uint kMaxLampShadows = 8;
+struct LampShadows {
+  mat4 clip_from_origin[8];
+  float near_m;    // metres from the lamp = near_m / depth
+  uint layer[16];  // of a lamp; kMaxLampShadows: it throws none
+};
 
 // Bindings of the shade pass.
 NERITIC_CONST uint kShadeViews = 0;
@@ -62,6 +74,9 @@ NERITIC_CONST uint kShadeMaterial = 5;
 NERITIC_CONST uint kShadeEmissive = 6;
 NERITIC_CONST uint kShadeHdr = 7;
 NERITIC_CONST uint kShadeSeen = 16;
+NERITIC_CONST uint kShadeCaustics = 17;
+NERITIC_CONST uint kShadeLampMaps = 18;
+NERITIC_CONST uint kShadeLampShadows = 19;
 NERITIC_CONST uint kShadeGroup = 8;
 // Specialisation constants of the shade pass: the terms and the number of lamps. Terms that a scene
 // does not name are not compiled: a CPU driver computes both sides of a branch, and runs the body

@@ -67,8 +67,11 @@ struct Seen {
   float sun;
   float sky;
   float around;
+  float caustic;  // the beam's light over that under flat water
 };
-const Seen kAllSeen = Seen(1.0, 1.0, 1.0);
+const Seen kAllSeen = Seen(1.0, 1.0, 1.0, 1.0);
+// Share of a lamp that the place sees. The including file defines it.
+float lamp_seen(uint lamp, vec3 position, vec3 normal);
 
 // Share of the sun's light that comes from within its core of some 15 degrees, in a beam not yet scattered or
 // only by a little (kOutOfCore). The shadow of the rest is as wide as the sky's.
@@ -89,6 +92,7 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
     float sun_spread = light_has(kLightWater) ? 0.17 : 0.0047;
     vec3 beam = irradiance * direct / light.sun_cosine;
     if (light_has(kLightSeen)) beam *= mix(seen.sky, seen.sun, core_share(depth_m));
+    if (light_has(kLightCaustics)) beam *= seen.caustic;
     radiance += beam * reflect_light(s, to_eye, light.to_sun, sun_spread);
     // Diffuse light comes mostly from above.
     float from_below = light_has(kLightWater) ? kWaterFromBelow : kGroundFromBelow;
@@ -114,6 +118,7 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
       float in_water_m = water_length(light.origin_depth_m - light.lamps[i].position.y, depth_m, distance_m);
       arriving *= exp(-min(light.beam_attenuation * in_water_m, vec3(80.0)));
     }
+    if (light_has(kLightLampShadows)) arriving *= lamp_seen(i, s.position, s.normal);
     radiance += arriving * reflect_light(s, to_eye, to_lamp, clamp(0.05 / distance_m, 0.01, 1.0));
   }
   return radiance;

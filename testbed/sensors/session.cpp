@@ -26,6 +26,7 @@ struct FrameWork {
   };
   std::vector<std::unique_ptr<Picture>> cameras, views;
   std::vector<std::unique_ptr<SonarWork>> sonars;
+  FrameLight light;
 };
 
 SensorFrame::SensorFrame() : work_(std::make_unique<FrameWork>()) {}
@@ -85,8 +86,9 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   NERITIC_TRY(const render::DeformedGeometry deformed,
               renderer_->declare_deform(graph, *gpu_scene_, work.state));
   const FrameParts parts{
-      graph,  device_,    *renderer_, scene_,    *gpu_scene_,
-      motion, work.state, deformed,   readback_, request.seed.value_or(scene_.seed)};
+      graph,     device_,    *renderer_, scene_,    *gpu_scene_,
+      motion,    work.state, deformed,   readback_, request.seed.value_or(scene_.seed),
+      work.light};
   const auto add = [&](const std::string& label, const ViewsRequest& set, std::size_t index,
                        auto& works, std::vector<SensorFrame::Views>& out) -> Status {
     works.push_back(std::make_unique<FrameWork::Picture>());

@@ -1,5 +1,6 @@
 #include "testbed/sensors/view_sensor.hpp"
 
+#include <cmath>
 #include <future>
 
 #include "engine/core/check.hpp"
@@ -28,6 +29,46 @@ Status check_size(const gpu::Device& device, const std::string& what,
   return {};
 }
 
+// Caustics and the lamps' maps, which all cameras share.
+Status declare_shared_light(const FrameParts& frame, const ViewsWork& work,
+                            shared::Lighting& lighting, render::LightImages& light) {
+  const scene::Scene& scene = frame.scene;
+  FrameLight& shared_light = frame.light;
+  if (!shared_light.lamps_known) {
+    shared_light.lamps_known = true;
+    NERITIC_TRY(auto views, render::lamp_views(scene, frame.state));
+    shared_light.lamps = render::shadow_maps(scene, frame.gpu_scene, frame.state, std::move(views));
+    if (!shared_light.lamps.empty()) {
+      NERITIC_TRY(shared_light.lamp_maps,
+                  frame.renderer.declare_shadow_maps(frame.graph, "lamp shadows", frame.gpu_scene,
+                                                     frame.deformed, shared_light.lamps));
+    }
+  }
+  if (shared_light.lamp_maps) {
+    lighting.terms |= shared::kLightLampShadows;
+    light.lamp_maps = shared_light.lamp_maps;
+    light.lamp_shadows = render::lamp_shadows(scene, work.views, shared_light.lamps);
+  }
+  // Only a beam throws a net, and only through a surface.
+  if (!scene.sun || !scene.sun->caustics || !scene.water || !(lighting.direct_share > 0.0f))
+    return {};
+  const scene::Caustics& caustics = *scene.sun->caustics;
+  if (!shared_light.caustics) {
+    NERITIC_TRY(
+        shared_light.caustics,
+        frame.renderer.declare_caustics(
+            frame.graph, render::caustics_params(caustics, render::to_sun_in_air(*scene.sun),
+                                                 frame.state.time_s, scene.seed)));
+  }
+  lighting.terms |= shared::kLightCaustics;
+  light.caustics = shared_light.caustics;
+  lighting.caustic_tile_m = static_cast<float>(caustics.tile_m);
+  const Vec3 origin_m = work.views.origin_m();
+  lighting.caustic_origin_m = {static_cast<float>(std::fmod(origin_m.x, caustics.tile_m)),
+                               static_cast<float>(std::fmod(origin_m.z, caustics.tile_m))};
+  return {};
+}
+
 // What stands in the light's way; sets the terms of what is there.
 Result<render::LightImages> declare_light(const FrameParts& frame, const std::string& prefix,
                                           const render::GBuffer& g, ViewsWork& work,
@@ -47,6 +88,7 @@ Result<render::LightImages> declare_light(const FrameParts& frame, const std::st
                 frame.renderer.declare_shadow_maps(frame.graph, prefix + "sun shadows",
                                                    frame.gpu_scene, frame.deformed, work.cascades));
   }
+  NERITIC_TRY_STATUS(declare_shared_light(frame, work, lighting, light));
   if (!cascades && taps == 0) return light;
   lighting.terms |= shared::kLightSeen;
   NERITIC_TRY(light.seen, frame.renderer.declare_visibility(

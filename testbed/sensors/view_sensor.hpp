@@ -12,6 +12,13 @@
 
 namespace neritic::testbed {
 
+// Light that all cameras of a frame share, declared with the first that needs it.
+struct FrameLight {
+  bool lamps_known = false;
+  std::vector<render::ShadowMap> lamps;  // those with shadows
+  graph::ImageHandle lamp_maps, caustics;
+};
+
 // Shared by all sensors of a frame while it is declared.
 struct FrameParts {
   graph::FrameGraph& graph;
@@ -24,6 +31,7 @@ struct FrameParts {
   const render::DeformedGeometry& deformed;
   ReadbackPool& readback;
   std::uint64_t seed = 0;  // of noise and speckle
+  FrameLight& light;
 };
 
 // A view set in one frame: data that the passes borrow, and the buffers that the host reads.

@@ -132,7 +132,6 @@ TEST(SceneAssets, TheFormatsPageHasEveryKey) {
                              KeyList(kSunKeys),
                              KeyList(kSunShadowKeys),
                              KeyList(kCausticsKeys),
-                             KeyList(kShaftsKeys),
                              KeyList(kAmbientKeys),
                              KeyList(kLabKeys),
                              KeyList(kWaterKeys),

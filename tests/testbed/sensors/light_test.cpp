@@ -74,7 +74,8 @@ TEST_F(Light, ShadowsEdgeLiesWhereGeometryPutsIt) {
   // 2.05 m westwards, its lower edge 1.95. The shadow's western end is the upper edge's.
   const auto level = [&](double x_m) {
     const double metres_a_pixel = 10.0 * 0.16 / 32.0;
-    return int(eye.color.at(static_cast<std::uint32_t>(160.0 + (x_m + 4.0) / metres_a_pixel), 16, 1));
+    return int(
+        eye.color.at(static_cast<std::uint32_t>(160.0 + (x_m + 4.0) / metres_a_pixel), 16, 1));
   };
   const double edge_m = 1.0 - 2.05;
   EXPECT_GT(level(edge_m - 0.35), level(edge_m + 0.35) + 60);
@@ -156,9 +157,10 @@ TEST_F(Light, FlatWaterThrowsNoNetAndWavesKeepTheMean) {
 }
 
 TEST_F(Light, ASineWavesFirstFocusLiesWhereTheFormulaSays) {
-  // Paraxial optics: on the axis of a crest the light at depth d is 1 / (1 - d / f), f = n / ((n - 1)
-  // A k^2) = 2.028 m for 5 cm and 1 m. Read well above the focus, where the texels resolve it.
-  const scene::Caustics caustics{.waves = {{0.05, 1.0, radians(90.0)}}, .tile_m = 2.0, .texels = 256};
+  // Paraxial optics: on the axis of a crest the light at depth d is 1 / (1 - d / f), f = n / ((n -
+  // 1) A k^2) = 2.028 m for 5 cm and 1 m. Read well above the focus, where the texels resolve it.
+  const scene::Caustics caustics{
+      .waves = {{0.05, 1.0, radians(90.0)}}, .tile_m = 2.0, .texels = 256};
   shared::CausticsParams params = render::caustics_params(caustics, Vec3(0.0, 1.0, 0.0), 0.0, 1);
   params.first_m = 1.0f;
   params.step = 1.0f;
@@ -171,7 +173,8 @@ TEST_F(Light, ASineWavesFirstFocusLiesWhereTheFormulaSays) {
 TEST(SunPosition, NoonAtTheTropicOnMidsummerIsInTheZenithAndEveningInTheWest) {
   const auto noon = scene::sun_position(radians(23.45), 172, 12.0);
   EXPECT_GT(noon.elevation_rad, radians(89.5));
-  // Equinox at 50 degrees north: noon at 40 degrees in the south, six o'clock on the horizon in the west.
+  // Equinox at 50 degrees north: noon at 40 degrees in the south, six o'clock on the horizon in the
+  // west.
   const auto spring = scene::sun_position(radians(50.0), 81, 12.0);
   EXPECT_NEAR(spring.elevation_rad, radians(40.0), radians(0.5));
   EXPECT_NEAR(std::abs(spring.azimuth_rad), kPi, 1e-6);

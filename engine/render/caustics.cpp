@@ -1,0 +1,72 @@
+// Renderer: the light that waves throw on levels below a tile of the surface.
+#include "engine/render/raster_draws.hpp"
+#include "engine/render/renderer.hpp"
+#include "shaders.hpp"
+
+namespace neritic::render {
+Result<graph::ImageHandle> Renderer::declare_caustics(graph::FrameGraph& graph,
+                                                      const shared::CausticsParams& params) {
+  constexpr auto kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+                 kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  if (!caustics_) {
+    gpu::ComputePipelineDesc desc;
+    desc.name = "caustics";
+    desc.code = shaders::kCausticsComp;
+    desc.layout.bindings = {{shared::kCausticsParams, kUniform}, {shared::kCausticsSums, kStorage}};
+    NERITIC_TRY(caustics_, gpu::Pipeline::create(device_, desc));
+    desc.name = "caustics resolve";
+    desc.code = shaders::kCausticsResolveComp;
+    desc.layout.bindings.push_back({shared::kCausticsOut, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
+    NERITIC_TRY(caustics_resolve_, gpu::Pipeline::create(device_, desc));
+  }
+  const std::uint32_t n = params.texels;
+  struct Data {
+    graph::BufferHandle sums;
+    graph::ImageHandle out;
+  };
+  const Data& cleared = graph.add_pass<Data>(
+      "caustics clear",
+      [&](graph::PassBuilder& builder, Data& data) {
+        data.sums =
+            builder.write(builder.create_buffer("caustics sums",
+                                                std::uint64_t{4} * shared::kCausticLevels * n * n),
+                          graph::Access::kTransferWrite);
+      },
+      [](const Data& data, graph::PassContext& context) {
+        vkCmdFillBuffer(context.cmd(), context.buffer(data.sums).handle(), 0, VK_WHOLE_SIZE, 0);
+      });
+  const Data& thrown = graph.add_pass<Data>(
+      "caustics",
+      [&](graph::PassBuilder& builder, Data& data) {
+        data.sums = builder.write(cleared.sums, graph::Access::kStorageWriteCompute);
+      },
+      [this, params, n](const Data& data, graph::PassContext& context) {
+        context.commands.bind_pipeline(caustics_);
+        context.commands.bind(
+            caustics_,
+            {bound_slice(shared::kCausticsParams, context.commands.upload(&params, sizeof params)),
+             gpu::bound_buffer(shared::kCausticsSums, context.buffer(data.sums).handle())});
+        context.commands.dispatch(groups(n), groups(n), 1);
+      });
+  const Data& resolved = graph.add_pass<Data>(
+      "caustics resolve",
+      [&](graph::PassBuilder& builder, Data& data) {
+        data.sums = thrown.sums;
+        builder.read(thrown.sums, graph::Access::kStorageReadCompute);
+        data.out = builder.write(
+            builder.create_image("caustics", {kHdrFormat, n, n, shared::kCausticLevels / 4}),
+            graph::Access::kStorageWriteCompute);
+      },
+      [this, params, n](const Data& data, graph::PassContext& context) {
+        context.commands.bind_pipeline(caustics_resolve_);
+        context.commands.bind(
+            caustics_resolve_,
+            {bound_slice(shared::kCausticsParams, context.commands.upload(&params, sizeof params)),
+             gpu::bound_buffer(shared::kCausticsSums, context.buffer(data.sums).handle()),
+             gpu::bound_storage_image(shared::kCausticsOut, context.image(data.out).view())});
+        context.commands.dispatch(groups(n), groups(n), shared::kCausticLevels / 4);
+      });
+  return resolved.out;
+}
+
+}  // namespace neritic::render

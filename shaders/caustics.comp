@@ -1,0 +1,52 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// One ray a texel of the surface: refracted by the waves' slope (Snell), it lands on each level beside where flat
+// water would send it, and its energy is shared by four texels. The tile repeats, so nothing leaves it.
+#include "shared/caustics.h"
+#include "shared/lighting.h"
+
+layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
+
+layout(set = 0, binding = kCausticsParams, scalar) uniform Params { CausticsParams params; };
+layout(set = 0, binding = kCausticsSums, scalar) buffer Sums { uint sums[]; };
+
+void add(uint level, uvec2 at, uint energy) {
+  uint n = params.texels;
+  atomicAdd(sums[(level * n + at.y % n) * n + at.x % n], energy);
+}
+
+void main() {
+  uvec2 at = gl_GlobalInvocationID.xy;
+  if (at.x >= params.texels || at.y >= params.texels) return;
+  float texel_m = params.tile_m / float(params.texels);
+  vec2 place = (vec2(at) + 0.5) * texel_m;
+  vec2 slope = vec2(0.0);
+  for (uint i = 0u; i < params.count; ++i) {
+    CausticWave w = params.waves[i];
+    slope -= w.amplitude_m * sin(dot(w.wave_number, place) + w.angle_rad) * w.wave_number;
+  }
+  vec3 normal = normalize(vec3(-slope.x, 1.0, -slope.y));
+  // A slope that turns away from the sun lies in the shadow of its own crest: no steeper than grazing.
+  vec3 travel = params.travel_air;
+  float facing = dot(travel, normal);
+  if (facing > -0.02) travel = normalize(travel - (facing + 0.02) * normal);
+  vec3 below = refract(travel, normal, 1.0 / kWaterIndex);
+  vec3 flat_below = refract(params.travel_air, vec3(0.0, 1.0, 0.0), 1.0 / kWaterIndex);
+  vec2 aside = below.xz / max(-below.y, 0.05) - flat_below.xz / max(-flat_below.y, 0.05);
+  float depth_m = params.first_m;
+  for (uint level = 0u; level < kCausticLevels; ++level) {
+    // From the texel's corner; far enough into positive numbers that rounding is towards zero.
+    vec2 lands = vec2(at) + aside * (depth_m / texel_m);
+    vec2 whole = floor(lands);
+    uvec2 part = uvec2((lands - whole) * float(kCausticPart) + 0.5);
+    uvec2 first = uvec2(ivec2(mod(whole, vec2(params.texels))));
+    uvec2 rest = kCausticPart - part;
+    add(level, first, rest.x * rest.y);
+    add(level, first + uvec2(1, 0), part.x * rest.y);
+    add(level, first + uvec2(0, 1), rest.x * part.y);
+    add(level, first + uvec2(1, 1), part.x * part.y);
+    depth_m *= params.step;
+  }
+}
