@@ -41,7 +41,7 @@ inline constexpr std::array kNeededFormats{
     NeededFormat{VK_FORMAT_R8G8B8A8_SRGB, kMippedTexture | kCopied, "R8G8B8A8_SRGB"},
     NeededFormat{VK_FORMAT_R16G16B16A16_SFLOAT,
                  kColorTarget | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT | kTexture |
-                     kStorageImage | kCopied,
+                     VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT | kStorageImage | kCopied,
                  "R16G16B16A16_SFLOAT"},
     NeededFormat{VK_FORMAT_R32G32_SFLOAT, kColorTarget | kTexture | kStorageImage | kCopied,
                  "R32G32_SFLOAT"},

@@ -45,6 +45,7 @@ static_assert(gpu::is_needed(kMaterialFormat, gpu::kColorTarget | gpu::kTexture)
 static_assert(gpu::is_needed(kEmissiveFormat, gpu::kColorTarget | gpu::kTexture));
 static_assert(gpu::is_needed(kMotionFormat, gpu::kColorTarget));
 static_assert(gpu::is_needed(kHdrFormat, gpu::kColorTarget | gpu::kTexture | gpu::kStorageImage |
+                                             VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
                                              VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT));
 static_assert(gpu::is_needed(kColorFormat, gpu::kTexture | gpu::kStorageImage));
 

@@ -69,7 +69,6 @@ struct Sun {
   double overcast = 0.0;     // share of the sky that clouds cover
   std::optional<SunShadows> shadows = {};
   std::optional<Caustics> caustics = {};
-  std::optional<Shafts> shafts = {};
 };
 
 // Jerlov's optical water types (Jerlov 1976): five oceanic, five coastal.

@@ -41,10 +41,4 @@ struct Caustics {
   std::uint32_t texels = 192;  // a side of the tile
 };
 
-// [sun.shafts]: beams in the water under waves, and shadows in it.
-struct Shafts {
-  std::uint32_t samples = 12;  // along a sight
-  double reach_m = 20.0;
-};
-
 }  // namespace neritic::scene
