@@ -77,7 +77,7 @@ struct ShadeInputs {
   const GBuffer& gbuffer;  // of kind kSurface
   const ViewSet& views;
   const shared::Lighting& lighting;
-  const LightImages& light;
+  LightImages light = {};
 };
 
 enum class GBufferKind {
