@@ -129,7 +129,7 @@ std::vector<float> thrown(gpu::Device& device, const shared::CausticsParams& par
   auto done = (*frames)->submit();
   EXPECT_TRUE(done.ok() && (*frames)->wait(*done).ok());
   std::vector<float> out;
-  for (const std::uint16_t half : (**pin)->mapped<std::uint16_t>())
+  for (const std::uint16_t half : (*pin)->mapped<std::uint16_t>())
     out.push_back(glm::unpackHalf1x16(half));
   device.wait_idle();
   return out;
