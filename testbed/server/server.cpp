@@ -168,8 +168,10 @@ void Server::Network::greet(ClientId id, Client& client, const Request& request)
   map["id"] = request.id;
   map["ok"] = true;
   map["name"] = client.name;
+  map["step"] = step_;
+  map["time_ns"] = time_ns_;
   if (ring_) map["shared_memory"] = ring_->path();
-  deliver(id, client, std::move(map), {{{}}}, true);
+  send(id, map, {{{}}});
 }
 
 void Server::Network::answer_here(ClientId id, Client& client, const Request& request) {

@@ -54,6 +54,7 @@ const std::map<std::string, std::set<std::string>>& allowed() {
        {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "engine/sim", "engine/xr",
         "sonar", "rov", "diver", "testbed/samples", "testbed/simulation", "testbed/motion",
         "testbed/record", "testbed/sensors", "testbed/loop"}},
+      {"testbed/server", {"engine/core", "engine/net", "testbed/world"}},
       {"testbed/view",
        {"engine/core", "engine/gpu", "engine/graph", "engine/draw2d", "engine/scene",
         "engine/render", "engine/sim", "engine/xr", "sonar", "rov", "diver", "hud", "shared",

@@ -664,6 +664,53 @@ void add_hud(CLI::App& app, Run& run) {
   command->callback([flags, &run] { run = [flags] { return nothing_to_say(run_hud(*flags)); }; });
 }
 
+void add_serve(CLI::App& app, CommandLine& line) {
+  auto flags = std::make_shared<ServeFlags>();
+  CLI::App* command = app.add_subcommand(
+      "serve", "a scene for clients: Python's neritic.connect, other machines (neritic keys)");
+  command->add_option("scene", flags->scene, "scene file")->required();
+  command
+      ->add_option("--bind", flags->bind,
+                   "where it listens: tcp://ADDRESS:PORT; beyond 127.x.x.x with --keys")
+      ->capture_default_str();
+  command->add_option("--keys", flags->keys, "folder of keys: others are not heard (neritic keys)");
+  CLI::Option* real_time = command->add_flag("--realtime", flags->real_time,
+                                             "goes on by itself, at the host's pace; nobody ticks");
+  command
+      ->add_flag("--lockstep", flags->lock_step,
+                 "goes on when a client ticks, as far as it says (the default)")
+      ->excludes(real_time);
+  command->add_option("--clients", flags->clients, "most clients at a time")
+      ->capture_default_str()
+      ->check(between(1u, 4096u));
+  command->add_option("--seconds", flags->seconds, "ends after so much simulated time")
+      ->check(between(1e-3, 1e9));
+  command->add_option("--seed", flags->seed, "instead of the scene's")->check(seed_number);
+  command->add_option("--record", flags->record, "records the whole run, for dive --replay");
+  command->add_option("--recordings", flags->recordings,
+                      "folder in which clients may record; without it they may not");
+  command->add_flag("--no-shared-memory", flags->no_shared_memory,
+                    "arrays as frames, also for clients on this machine");
+  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
+  command->add_flag("--validation", flags->validation, "checks every Vulkan call; slow");
+  command->callback([flags, &line] {
+    flags->quiet = line.quiet;
+    line.run = [flags] { return nothing_to_say(run_serve(*flags)); };
+  });
+}
+
+void add_keys(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<KeysFlags>();
+  CLI::App* command =
+      app.add_subcommand("keys", "makes the keys of a server and of its clients (CURVE)");
+  command->add_option("folder", flags->folder, "folder of keys; what is there stays")
+      ->required()
+      ->check(named);
+  command->add_option("--client", flags->client,
+                      "a client that may connect; goes with its secret to its machine");
+  command->callback([flags, &run] { run = [flags] { return run_keys(*flags); }; });
+}
+
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
@@ -728,6 +775,8 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_render(app, line.run);
   add_sonar(app, line.run);
   add_dive(app, line);
+  add_serve(app, line);
+  add_keys(app, line.run);
   add_tradeoff(app, line.run);
   add_check(app, line.run);
   add_plan(app, line.run);

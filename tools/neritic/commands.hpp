@@ -84,6 +84,23 @@ struct DiveFlags {
 };
 Status run_dive(const DiveFlags& flags);
 
+struct ServeFlags {
+  std::string scene, bind = "tcp://127.0.0.1:47910", device;
+  std::filesystem::path keys, recordings, record;  // empty: none
+  std::uint32_t clients = 64;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> seconds;  // of simulated time; absent: until it is stopped
+  bool real_time = false, lock_step = false, no_shared_memory = false, validation = false,
+       quiet = false;
+};
+Status run_serve(const ServeFlags& flags);
+
+struct KeysFlags {
+  std::filesystem::path folder;
+  std::string client;
+};
+Result<std::string> run_keys(const KeysFlags& flags);
+
 struct TradeoffFlags {
   std::string what, device, kind, scene = "assets/scenes/harbour.toml";
   std::filesystem::path out, recordings;
