@@ -11,12 +11,14 @@ Conventions are ROS's: the world is east, north, up; bodies are forward, left, u
 x, y, z, w; SI units, radians. Times are simulated seconds.
 
 open(scene)       a World: tick, observations, agents, images, save, restore, record
+connect(address)  the same on a server, `neritic serve`
 vector(task)      thousands of environments at once, with Gymnasium's vector interface
 Error, BadInput   what is raised, in one line
 """
 
 from . import _core
 from .errors import BadInput, Error
+from .remote import RemoteWorld, connect
 from .vector import VectorEnv, vector
 from .world import (
     Agent,
@@ -35,6 +37,6 @@ from .world import (
 _core.set_errors(Error, BadInput)
 
 __all__ = [
-    "Agent", "BadInput", "Diver", "Error", "Image", "Observations", "Reading", "Stream",
-    "TrackedObject", "Truth", "VectorEnv", "Vehicle", "World", "open", "vector",
+    "Agent", "BadInput", "Diver", "Error", "Image", "Observations", "Reading", "RemoteWorld", "Stream",
+    "TrackedObject", "Truth", "VectorEnv", "Vehicle", "World", "connect", "open", "vector",
 ]

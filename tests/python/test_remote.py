@@ -1,0 +1,97 @@
+"""A world on a server is the world in this process: the same observations, hashes and truths."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+import neritic
+
+try:
+    import msgpack  # noqa: F401
+    import zmq  # noqa: F401
+except ImportError as missing:
+    print(f"skipped: no {missing.name}")
+    sys.exit(0)
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("NERITIC", str(ROOT / "build/release/tools/neritic"))
+SCENE = str(ROOT / "assets/scenes/dive.toml")
+PORT = 47000 + os.getpid() % 900
+
+
+class Served:
+    """`neritic serve` of the scene, until the end of the block."""
+
+    def __init__(self, *flags, address="127.0.0.1"):
+        self.address = f"tcp://{address}:{PORT}"
+        self.flags = flags
+
+    def __enter__(self):
+        self.process = subprocess.Popen(
+            [PROGRAM, "serve", SCENE, "--seed", "3", "--bind", self.address, *self.flags],
+            stdout=subprocess.PIPE, text=True)
+        self.process.stdout.readline()
+        return self.address
+
+    def __exit__(self, *_):
+        self.process.terminate()
+        self.process.communicate(timeout=30)
+
+
+class Remote(unittest.TestCase):
+    def same(self, here, there):
+        self.assertEqual(list(here), list(there))
+        for name in here:
+            a, b = here[name], there[name]
+            self.assertEqual((a.stamp, a.arrival, a.sequence, a.frame), (b.stamp, b.arrival, b.sequence, b.frame))
+            np.testing.assert_array_equal(a.values, b.values)
+
+    def test_observations_are_those_of_the_process(self):
+        with Served() as address, neritic.open(SCENE, seed=3) as here, neritic.connect(address) as there:
+            self.assertEqual([s for s in here.streams], [s for s in there.streams])
+            heard = ([], [])
+            for world, list_ in zip((here, there), heard):
+                world.link("diver/motion", delay=0.02, jitter=0.01, loss=0.1)
+                world.on("diver/motion", lambda reading, to=list_: to.append((reading.sequence, reading.arrival)))
+            for turn in range(6):
+                if turn == 2:
+                    for world in (here, there):
+                        world["rov"].goto(8, 15, -20)
+                        world["diver"].jacket(inflate=True)
+                self.same(here.tick(40), there.tick(40))
+                self.assertEqual(here.hash, there.hash)
+                a, b = here.truth("rov"), there.truth("rov")
+                np.testing.assert_array_equal(a.position, b.position)
+                np.testing.assert_array_equal(a.thruster_n, b.thruster_n)
+            self.assertEqual(*heard)
+            self.assertGreater(len(heard[0]), 10)
+            state = there.save()
+            self.assertEqual(state, here.save())
+            there.tick(10)
+            there.restore(state)
+            self.assertEqual(there.hash, here.hash)
+            with self.assertRaisesRegex(neritic.BadInput, "agent"):
+                there._core.truth("fish")
+
+    def test_keys_let_in_and_keep_out(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("ada", "eve"):
+                subprocess.run([PROGRAM, "-q", "keys", folder, "--client", name], check=True)
+            os.remove(f"{folder}/clients/eve.public")
+            with Served("--keys", folder, "--realtime") as address:
+                server = f"{folder}/server.public"
+                with neritic.connect(address, key=f"{folder}/ada.secret", server_key=server) as world:
+                    step = world.tick(5).step
+                    self.assertGreaterEqual(world.tick(5).step, step + 5)
+                for keys in ({"key": f"{folder}/eve.secret", "server_key": server}, {}):
+                    with self.assertRaisesRegex(neritic.Error, "no answer"):
+                        neritic.connect(address, patience=0.5, **keys)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())

@@ -1,0 +1,344 @@
+"""A scene on a server (`neritic serve`), with the same objects as in this process.
+
+The messages are in testbed/server/PROTOCOL.md. Needs Debian's python3-zmq and python3-msgpack.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+import re
+import struct
+import threading
+import time
+from typing import Any, Mapping, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import BadInput, Error
+from .world import World
+
+_PROTOCOL = 1
+_ROW = struct.Struct("<IIQqq")
+Row = tuple[tuple[int, int, int, int, int], NDArray[np.float64]]
+
+
+class Readings:
+    """Readings that came: the newest of each stream, or those that arrived."""
+
+    def __init__(self, rows: list[Row], step: int, time_s: float) -> None:
+        self._rows, self.step, self.time = rows, step, time_s
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def header(self, i: int) -> tuple[int, int, int, int, int]:
+        """Stream, count of values, sequence, stamp and arrival in nanoseconds."""
+        return self._rows[i][0]
+
+    def number(self, i: int, k: int) -> float:
+        """One value."""
+        return float(self._rows[i][1][k])
+
+    def values(self, i: int, first: int, count: int) -> NDArray[np.float64]:
+        """Some values, in the memory of the message."""
+        return self._rows[i][1][first:first + count]
+
+
+class Image:
+    """An image that came."""
+
+    def __init__(self, facts: Mapping[str, Any], data: Union[bytes, bytearray]) -> None:
+        height, width, channels = facts["shape"]
+        shape = (height, width) if channels == 1 else (height, width, channels)
+        self.pixels = np.frombuffer(data, np.dtype(facts["type"])).reshape(shape)
+        self.stream, self.sequence = facts["stream"], facts["sequence"]
+        self.stamp_ns, self.arrival_ns = facts["stamp_ns"], facts["arrival_ns"]
+        self.position, self.orientation = facts["position"], facts["orientation"]
+        self.intrinsics, self.range_m = facts["intrinsics"], facts["range_m"]
+        self.azimuth, self.elevation = facts["azimuth"], facts["elevation"]
+
+
+class _Ring:
+    """The server's memory of arrays, mapped."""
+
+    def __init__(self, path: str) -> None:
+        handle = os.open(path, os.O_RDONLY)
+        try:
+            self._map = mmap.mmap(handle, 0, prot=mmap.PROT_READ)
+        finally:
+            os.close(handle)
+        magic, self.token, self.capacity = struct.unpack_from("<8sQQ", self._map)
+        if magic != b"NRTCRNG1" or self.capacity != len(self._map) - 4096:
+            raise OSError("no memory of arrays")
+
+    def read(self, position: int, size: int) -> Optional[bytes]:
+        """A copy; None: overwritten meanwhile."""
+        at = 4096 + position % self.capacity
+        data = self._map[at:at + size]
+        claimed, = struct.unpack_from("<Q", self._map, 24)
+        return data if len(data) == size and claimed - position <= self.capacity else None
+
+
+def _key(file: Union[str, os.PathLike[str]], word: str) -> bytes:
+    with open(file, encoding="ascii", errors="replace") as lines:
+        found = re.search(rf"^{word} (\S{{40}})$", lines.read(), re.MULTILINE)
+    if not found:
+        raise BadInput(f"{os.fspath(file)}: found no line \"{word} KEY\"; accepted: a key file of neritic keys")
+    return found[1].encode()
+
+
+class Core:
+    """The other end of a connection, with the interface of a world in this process."""
+
+    def __init__(self, address: str, name: str, key: Optional[str], server_key: Optional[str],
+                 patience: float) -> None:
+        try:
+            import msgpack
+            import zmq
+        except ImportError as missing:
+            raise Error(f"connect: found no {missing.name}; accepted: Debian's python3-zmq and "
+                        "python3-msgpack") from None
+        if not re.fullmatch(r"tcp://[\w.\-]+:\d{1,5}", address):
+            raise BadInput(f"connect: found '{address}'; accepted: tcp://ADDRESS:PORT")
+        if (key is None) != (server_key is None):
+            raise BadInput("connect: found one key; accepted: key and server_key, or neither")
+        self._msgpack, self._zmq, self._address, self._patience = msgpack, zmq, address, patience
+        self._lock = threading.Lock()
+        self._context = zmq.Context()
+        socket = self._socket = self._context.socket(zmq.DEALER)
+        socket.linger = 0
+        if key is not None and server_key is not None:
+            socket.curve_serverkey = _key(server_key, "public")
+            socket.curve_publickey, socket.curve_secretkey = _key(key, "public"), _key(key, "secret")
+        self.closed, self._next, self._ring = False, 0, None
+        try:
+            socket.connect(address)
+            hello, _ = self._call("hello", protocol=_PROTOCOL, name=name)
+        except BaseException:
+            self.close()
+            raise
+        self.title, self.path, self.seed = hello["title"], hello["path"], hello["seed"]
+        self.step_s, self.real_time = hello["step_s"], hello["real_time"]
+        self.name = hello["name"]
+        self.streams = [(s["name"], s["owner"], s["kind"], s["frame"], s["sort"],
+                         [tuple(field) for field in s["fields"]], s["rate_hz"], s["encoding"])
+                        for s in hello["streams"]]
+        self.agents = [(a["name"], a["kind"], [tuple(pair) for pair in a["thruster_n"]],
+                        a["takes_pwm"], a["has_mission"]) for a in hello["agents"]]
+        self._places = {stream[0]: i for i, stream in enumerate(self.streams)}
+        self._newest: list[Row] = [((i, 0, 0, 0, 0), np.zeros(0)) for i in range(len(self.streams))]
+        self._arrived: list[Row] = []
+        self._images: list[Image] = []
+        self.step, self.time, self._hash = hello["step"], hello["time_ns"] * 1e-9, None
+        self.lost_readings = self.lost_images = self._lost_here = 0
+        self.clock = ""
+        self._share(hello.get("shared_memory"))
+        self._take(*self._call("observe"))
+
+    # Messages.
+
+    def _call(self, op: str, lasts: float = 0.0, data: Optional[bytes] = None,
+              **keys: Any) -> tuple[dict[str, Any], list[bytes]]:
+        with self._lock:
+            if self.closed:
+                raise BadInput("found a world that is closed; accepted: neritic.connect()")
+            self._next += 1
+            frames = [self._msgpack.packb({"op": op, "id": self._next, **keys})]
+            self._socket.send_multipart(frames if data is None else [*frames, data])
+            until = time.monotonic() + self._patience + lasts
+            while True:
+                left = until - time.monotonic()
+                if left <= 0 or not self._socket.poll(left * 1e3):
+                    raise Error(f"{self._address}: no answer in {self._patience + lasts:g} s: no server, "
+                                "one that is busy, or one with other keys")
+                frames = self._socket.recv_multipart()
+                answer = self._msgpack.unpackb(frames[0])
+                if answer.get("id") != self._next:
+                    continue  # of a call that was given up
+                if not answer.get("ok"):
+                    raise BadInput(f"{self._address}: {answer.get('error', 'refused')}")
+                return answer, frames
+
+    def _share(self, path: Optional[str]) -> None:
+        if not path or not re.fullmatch(r"/proc/\d+/fd/\d+", path):
+            return
+        try:
+            ring = _Ring(path)
+            self._call("shared", token=ring.token)
+        except (OSError, ValueError, struct.error):
+            return  # another machine or user: arrays come as frames
+        self._ring = ring
+
+    def _rows(self, array: Mapping[str, int], frames: list[bytes]) -> list[Row]:
+        rows, columns, data = array["rows"], array["columns"], frames[array["frame"]]
+        size = _ROW.size + 8 * columns
+        if len(data) != rows * size:
+            raise Error(f"{self._address}: found {len(data)} bytes of readings; accepted: {rows * size}")
+        out = []
+        for at in range(0, len(data), size):
+            header = _ROW.unpack_from(data, at)
+            out.append((header, np.frombuffer(data, "<f8", header[1], at + _ROW.size)))
+        return out
+
+    def _take(self, answer: Mapping[str, Any], frames: list[bytes]) -> None:
+        if "newest" in answer:
+            for row in self._rows(answer["newest"], frames):
+                self._newest[row[0][0]] = row
+        if "arrived" in answer:
+            self._arrived += self._rows(answer["arrived"], frames)
+        for facts in answer.get("images", ()):
+            if "frame" in facts:
+                self._images.append(Image(facts, frames[facts["frame"]]))
+                continue
+            size = int(np.prod(facts["shape"])) * np.dtype(facts["type"]).itemsize
+            data = self._ring.read(facts["shared"], size) if self._ring else None
+            if data is None:
+                self._lost_here += 1
+            else:
+                self._images.append(Image(facts, data))
+        self.lost_readings = answer.get("lost_readings", self.lost_readings)
+        self.lost_images = answer.get("lost_images", 0) + self._lost_here
+        self.step, self.time = answer["step"], answer["time_ns"] * 1e-9
+        self._hash, self.clock = answer.get("hash", self._hash), answer["clock"]
+
+    # A world's interface.
+
+    @property
+    def hash(self) -> int:
+        if self._hash is None:
+            raise BadInput("hash: found no tick yet; accepted: after a tick")
+        return self._hash
+
+    def stream(self, name: str) -> int:
+        try:
+            return self._places[name]
+        except KeyError:
+            raise BadInput(f"stream: found '{name}'; accepted: {', '.join(self._places)}") from None
+
+    def tick(self, steps: int) -> Readings:
+        lasts = 60.0 + steps * self.step_s
+        self._take(*self._call("tick", lasts, steps=steps))
+        return Readings(list(self._newest), self.step, self.time)
+
+    def newest(self) -> Readings:
+        self._take(*self._call("observe"))
+        return Readings(list(self._newest), self.step, self.time)
+
+    def keep(self, place: int, on: bool) -> None:
+        self._call("keep", stream=self.streams[place][0], on=on)
+
+    def take_arrived(self) -> Readings:
+        arrived, self._arrived = self._arrived, []
+        return Readings(arrived, self.step, self.time)
+
+    def take_images(self) -> list[Image]:
+        images, self._images = self._images, []
+        return images
+
+    def set_link(self, place: int, delay: float, jitter: float, loss: float) -> None:
+        self._hold()
+        self._call("link", stream=self.streams[place][0], delay_s=delay, jitter_s=jitter, loss=loss)
+
+    def want_image(self, place: int, rate: float, keep: bool) -> None:
+        self._call("image", 60.0, stream=self.streams[place][0], rate_hz=rate, keep=keep)
+
+    def drop_image(self, place: int) -> None:
+        self._call("image", stream=self.streams[place][0], on=False)
+
+    def command(self, agent: str, kind: str, values: NDArray[np.float64], hold: float,
+                source: str) -> None:
+        self._call("command", agent=agent, kind=kind, values=values.tolist(), hold_s=float(hold))
+
+    def release(self, agent: str, source: str) -> None:
+        self._call("release", agent=agent)
+
+    def inject(self, stream: str, values: NDArray[np.float64], source: str,
+               stamp: Optional[float]) -> None:
+        stamps = {} if stamp is None else {"stamp_s": float(stamp)}
+        self._call("inject", stream=stream, values=values.tolist(), source=source, **stamps)
+
+    def truth(self, agent: str) -> dict[str, Any]:
+        values = np.array(self._call("truth", agent=agent)[0]["values"])
+        return {"position": values[0:3], "orientation": values[3:7], "linear_velocity": values[7:10],
+                "angular_velocity": values[10:13], "current": values[13:16],
+                "touched_steps": int(values[16]), "thruster_n": values[17:]}
+
+    def save(self) -> bytes:
+        answer, frames = self._call("save", 10.0)
+        return frames[answer["state"]["frame"]]
+
+    def restore(self, state: bytes) -> None:
+        self._hold()
+        self._arrived, self._images = [], []
+        self._newest = [((i, 0, 0, 0, 0), np.zeros(0)) for i in range(len(self.streams))]
+        self._take(*self._call("restore", 10.0, state))
+
+    def record(self, name: str) -> None:
+        self._call("record", name=name)
+
+    def stop_recording(self) -> None:
+        self._call("stop_recording", 60.0)
+
+    def _hold(self) -> None:
+        if not self.real_time:
+            self.take_clock(True)
+
+    def take_clock(self, take: bool) -> None:
+        self._call("clock", take=take)
+
+    def wait(self, steps: int, most: float) -> None:
+        self._take(*self._call("wait", most, steps=steps, wait_s=most))
+
+    def counts(self) -> dict[str, int]:
+        return self._call("counts")[0]["counts"]
+
+    def close(self) -> None:
+        self.closed = True
+        self._socket.close(0)
+        self._context.term()
+
+
+class RemoteWorld(World):
+    """A world on a server. In lock-step the first client that ticks holds the clock; in real time the
+    world goes on by itself and a tick waits for so many steps. `record` takes a plain name: the file is
+    the server's."""
+
+    _core: Core
+
+    @property
+    def clock(self) -> str:
+        """The client that holds the clock; empty: nobody."""
+        return self._core.clock
+
+    @property
+    def lost_images(self) -> int:
+        """Images that this client was too slow for."""
+        return self._core.lost_images
+
+    def take_clock(self) -> None:
+        """Takes the clock before a first tick."""
+        self._core.take_clock(True)
+
+    def give_clock(self) -> None:
+        """Gives the clock back, so that another client may tick."""
+        self._core.take_clock(False)
+
+    def wait(self, steps: int = 1, most: float = 60.0) -> None:
+        """Waits until so many steps of others are done, at most so many seconds."""
+        self._core.wait(steps, most)
+
+    def counts(self) -> dict[str, int]:
+        """What the server counts: clients, requests, refusals, losses."""
+        return self._core.counts()
+
+
+def connect(address: str, *, name: str = World.source, key: Optional[str] = None,
+            server_key: Optional[str] = None, patience: float = 10.0) -> RemoteWorld:
+    """Connects to `neritic serve`: connect("tcp://127.0.0.1:47910").
+
+    name: under which commands enter recordings (the key's name with keys). key, server_key: files
+    NAME.secret and server.public of `neritic keys`. patience: seconds until a server that does not
+    answer is an error."""
+    return RemoteWorld(Core(address, name, key, server_key, patience))
