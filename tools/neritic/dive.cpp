@@ -233,7 +233,7 @@ void keep_memory(const DiveFlags& flags, const Screen& screen, const DiveView& v
 Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
                      const std::optional<scene::Scene>& physics_scene,
                      std::optional<SampleLog> recorded, const Interrupt& interrupt) {
-  // What a person at a screen may stop and speed up.
+  // A run that a person at a screen may stop and speed up.
   sim::HostClock host;
   sim::RunClock run(host);
   sim::RunClock* const clock = flags.headless ? nullptr : &run;
