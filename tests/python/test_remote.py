@@ -16,7 +16,7 @@ try:
     import zmq  # noqa: F401
 except ImportError as missing:
     print(f"skipped: no {missing.name}")
-    sys.exit(0)
+    sys.exit(77)
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("NERITIC", str(ROOT / "build/release/tools/neritic"))
