@@ -104,8 +104,9 @@ TEST(CommandLine, HelpSaysWhatRenderWritesAndHowAPlanIsAskedFor) {
 }
 
 TEST(CommandLine, AWrongSubcommandListsThem) {
-  EXPECT_THAT(said({"rendre"}), HasSubstr("render, sonar, dive, tradeoff, check, plan, physio, "
-                                          "register, experiment, recording, hud, doctor"));
+  EXPECT_THAT(said({"rendre"}),
+              HasSubstr("render, sonar, dive, serve, keys, tradeoff, check, plan, physio, "
+                        "register, experiment, recording, hud, doctor"));
 }
 
 }  // namespace
