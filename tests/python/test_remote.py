@@ -10,6 +10,7 @@ import unittest
 import numpy as np
 
 import neritic
+import neritic.join
 
 try:
     import msgpack  # noqa: F401
@@ -25,15 +26,15 @@ PORT = 47000 + os.getpid() % 900
 
 
 class Served:
-    """`neritic serve` of the scene, until the end of the block."""
+    """`neritic serve` of a scene, until the end of the block."""
 
-    def __init__(self, *flags, address="127.0.0.1"):
-        self.address = f"tcp://{address}:{PORT}"
-        self.flags = flags
+    def __init__(self, *flags, scene=SCENE):
+        self.address = f"tcp://127.0.0.1:{PORT}"
+        self.flags, self.scene = flags, scene
 
     def __enter__(self):
         self.process = subprocess.Popen(
-            [PROGRAM, "serve", SCENE, "--seed", "3", "--bind", self.address, *self.flags],
+            [PROGRAM, "serve", self.scene, "--seed", "3", "--bind", self.address, *self.flags],
             stdout=subprocess.PIPE, text=True)
         self.process.stdout.readline()
         return self.address
@@ -91,6 +92,28 @@ class Remote(unittest.TestCase):
                 for keys in ({"key": f"{folder}/eve.secret", "server_key": server}, {}):
                     with self.assertRaisesRegex(neritic.Error, "no answer"):
                         neritic.connect(address, patience=0.5, **keys)
+
+
+    def test_two_machines_see_each_others_vehicles(self):
+        vehicle = ('[[vehicles]]\nname = "{0}"\nshape = "box"\nposition_m = [{1}, -6, 0]\ndynamics = "'
+                   + str(ROOT / "assets/vehicles/bluerov2_heavy_dynamics.toml") + '"\n')
+        thing = ('[[objects]]\nname = "{0}"\nshape = "box"\nposition_m = [{1}, -6, 0]\n'
+                 'inputs = {{ pose = "network" }}\n')
+        with tempfile.TemporaryDirectory() as folder:
+            scenes = []
+            for i, (one, other) in enumerate(((vehicle, thing), (thing, vehicle))):
+                scenes.append(pathlib.Path(folder) / f"{i}.toml")
+                scenes[-1].write_text("[physics]\n" + one.format("ada", 0) + other.format("bob", 9))
+            with Served("--realtime", scene=str(scenes[0])) as address, \
+                    neritic.open(scenes[1], real_time=True) as here, \
+                    neritic.connect(address, name="bob") as there:
+                here["bob"].goto(9, 3, -5)
+                there["ada"].goto(0, 3, -5)
+                neritic.join.join(here, there, "bob", seconds=2.0)
+                for name in ("ada", "bob"):
+                    a, b = here.truth(name), there.truth(name)
+                    self.assertGreater(np.linalg.norm(a.position - [9.0 * (name == "bob"), 0, -6]), 0.2)
+                    self.assertLess(np.linalg.norm(a.position - b.position), 0.05)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import BadInput, Error
-from .world import World
+from .world import Truth, World
 
 _PROTOCOL = 1
 _ROW = struct.Struct("<IIQqq")
@@ -265,6 +265,10 @@ class Core:
                 "angular_velocity": values[10:13], "current": values[13:16],
                 "touched_steps": int(values[16]), "thruster_n": values[17:]}
 
+    def poses(self) -> NDArray[np.float64]:
+        answer, frames = self._call("poses")
+        return np.frombuffer(frames[answer["poses"]["frame"]], "<f8").reshape(len(self.agents), 13)
+
     def save(self) -> bytes:
         answer, frames = self._call("save", 10.0)
         return frames[answer["state"]["frame"]]
@@ -328,6 +332,12 @@ class RemoteWorld(World):
     def wait(self, steps: int = 1, most: float = 60.0) -> None:
         """Waits until so many steps of others are done, at most so many seconds."""
         self._core.wait(steps, most)
+
+    def poses(self) -> dict[str, Truth]:
+        """What every agent truly does, in one call; without the current, forces and contacts."""
+        nothing = np.zeros(0)
+        return {agent[0]: Truth(row[0:3], row[3:7], row[7:10], row[10:13], nothing, nothing, 0)
+                for agent, row in zip(self._core.agents, self._core.poses())}
 
     def counts(self) -> dict[str, int]:
         """What the server counts: clients, requests, refusals, losses."""

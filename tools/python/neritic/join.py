@@ -1,0 +1,80 @@
+"""Takes part in a dive on a server from this machine: several people and vehicles, each on its own.
+
+    python3 -m neritic.join tcp://SERVER:47910 scene.toml --as rov
+
+The scene here has the participant by its own physics and the others as objects with a pose input; the
+server's scene has the participant so. Poses go both ways as samples, 60 times a second, with velocities,
+and each side moves them on between two (testbed/samples). A participant that falls silent for half a
+second goes back to its own track.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from typing import Optional
+
+import numpy as np
+
+from .remote import RemoteWorld, connect
+from .world import TrackedObject, Truth, World, open
+
+_HOLD_S = 0.5
+
+
+def _turned(orientation: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """A vector of the body in the world."""
+    axis, w = orientation[:3], orientation[3]
+    t = 2.0 * np.cross(axis, v)
+    return v + w * t + np.cross(axis, t)
+
+
+def _place(world: World, name: str, truth: Truth) -> None:
+    world[name].pose(truth.position, truth.orientation, _turned(truth.orientation, truth.linear_velocity),
+                     _turned(truth.orientation, truth.angular_velocity), hold=_HOLD_S)
+
+
+def exchange(here: World, there: RemoteWorld, own: Optional[str]) -> int:
+    """Sends where `own` is and fetches where the others are; the number of those. None: only looks."""
+    if own is not None:
+        _place(there, own, here.truth(own))
+    placed = 0
+    for name, truth in there.poses().items():
+        if name != own and isinstance(here.agents.get(name), TrackedObject):
+            _place(here, name, truth)
+            placed += 1
+    return placed
+
+
+def join(here: World, there: RemoteWorld, own: Optional[str], seconds: Optional[float] = None,
+         rate_hz: float = 60.0) -> None:
+    """Exchanges poses while the world here, opened with real_time=True, goes on."""
+    steps = max(1, round(1.0 / (rate_hz * here.step_s)))
+    end = None if seconds is None else time.monotonic() + seconds
+    while end is None or time.monotonic() < end:
+        exchange(here, there, own)
+        here.tick(steps)
+
+
+def main() -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="neritic.join", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("server", help="tcp://ADDRESS:PORT")
+    parser.add_argument("scene", help="the scene here")
+    parser.add_argument("--as", dest="own", help="the participant that is here; none: only looks")
+    parser.add_argument("--key", help="NAME.secret of neritic keys")
+    parser.add_argument("--server-key", help="server.public")
+    parser.add_argument("--seconds", type=float, help="ends after so long")
+    flags = parser.parse_args()
+    name = flags.own or World.source
+    with open(flags.scene, real_time=True) as here, \
+            connect(flags.server, name=name, key=flags.key, server_key=flags.server_key) as there:
+        try:
+            join(here, there, flags.own, flags.seconds)
+        except KeyboardInterrupt:
+            pass
+
+
+if __name__ == "__main__":
+    main()
