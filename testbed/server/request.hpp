@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/result.hpp"
 #include "engine/net/wire_bytes.hpp"
 #include "testbed/world/arrivals.hpp"
 
