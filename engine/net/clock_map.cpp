@@ -9,6 +9,9 @@ namespace neritic::net {
 namespace {
 
 constexpr double kForget = 1.0 / 256.0;  // of the spread, a packet
+// A device that sends less often, as a heart strap, is remembered for ten minutes, so that there
+// are as many quick packets among those of its last buckets.
+constexpr TimeNs kSparse_ns = 250'000'000, kSparseBucket_ns = 5 * ClockMap::kBucket_ns;
 
 }  // namespace
 
@@ -45,8 +48,10 @@ void ClockMap::add(TimeNs sent_ns, TimeNs arrived_ns) {
       restart();
     }
   }
+  const bool sparse = !lowest_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
+  const TimeNs bucket_ns = sparse ? kSparseBucket_ns : kBucket_ns;
   newest_sent_ns_ = lowest_.empty() ? sent_ns : std::max(newest_sent_ns_, sent_ns);
-  const auto second = [](TimeNs t) { return t / kBucket_ns; };
+  const auto second = [&](TimeNs t) { return t / bucket_ns; };
   const auto at = std::ranges::find_if(
       lowest_, [&](const Point& p) { return second(p.sent_ns) >= second(sent_ns); });
   bool changed = true;

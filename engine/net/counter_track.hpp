@@ -15,6 +15,7 @@ struct LinkCounts {
   std::uint64_t datagrams = 0, bytes = 0;
   std::uint64_t malformed = 0;  // no datagram of the device's, or one that is not whole
   std::uint64_t unused = 0;     // whole ones that the scene has no use for
+  std::uint64_t used = 0;       // all others that are new
   std::uint64_t repeated = 0, older = 0, lost = 0;
   std::uint64_t restarts = 0;    // of the device
   std::uint64_t refused = 0;     // parts of whole ones: a segment that is not finite

@@ -68,6 +68,7 @@ const SuitFrame* SuitFrames::publish(Pending& pending, std::uint8_t props, LinkC
     }
   }
   frame_.has_hands = pending.hands;
+  frame_.first_ns = pending.at_ns;
   // The clock of 32 bits, in ms, wraps after 50 days.
   const auto step = static_cast<std::int32_t>(pending.time_ms - time_ms_);
   frame_.time_ms =

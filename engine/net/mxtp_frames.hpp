@@ -13,6 +13,7 @@ namespace neritic::net {
 struct SuitFrame {
   std::uint64_t sample = 0;   // without wraps
   std::uint64_t time_ms = 0;  // the sender's clock without wraps
+  TimeNs first_ns = 0;        // arrival of its first part
   std::array<MxtpPose, kMxtpBodySegments> body{};
   // Left hand, right hand: the carpus, then three of the thumb and four of each finger.
   std::array<std::array<MxtpPose, kMxtpHandSegments>, 2> hands{};
@@ -27,7 +28,7 @@ class SuitFrames {
   const SuitFrame* take(const MxtpDatagram& datagram, TimeNs arrived_ns, LinkCounts& counts);
 
   // Frames that may be incomplete at once, and datagrams of one.
-  static constexpr std::size_t kPending = 4, kMostParts = 16;
+  static constexpr std::size_t kPending = 16, kMostParts = 16;
 
  private:
   struct Pending {

@@ -18,6 +18,7 @@
 #include "engine/scene/physics_settings.hpp"
 #include "engine/scene/scene_light.hpp"
 #include "engine/scene/sonar_settings.hpp"
+#include "engine/scene/source_settings.hpp"
 #include "engine/scene/track.hpp"
 
 namespace neritic::scene {
@@ -159,6 +160,7 @@ struct Scene {
   std::optional<Water> water;
   std::optional<Physics> physics;
   std::optional<Current> current;
+  std::vector<DeviceSource> sources;  // devices that feed its divers
   std::vector<Lamp> lamps;
   std::vector<ModelLight> model_lights;  // those that shine beside lamps and sun
   std::vector<Camera> cameras;

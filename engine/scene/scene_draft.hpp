@@ -132,6 +132,11 @@ SpeedOver read_speed_over(TableReader& reader, SpeedOver otherwise);
 // absent. recorded: the groups for which the scene names a file. then: the default of that key.
 std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded,
                                      const std::string& then = "autopilot");
+// Whether a live source may have that name.
+bool names_a_source(const std::string& name);
+// scene_read_sources.cpp: [sources], absent where nullptr, once all objects and their inputs are
+// read.
+Status read_sources(SceneDraft& draft, const SceneSource& source, const TomlValue* sources);
 
 // scene_models.cpp: one model a distinct request, in the order of first use, and each request's.
 struct LoadedModels {

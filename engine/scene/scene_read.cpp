@@ -129,6 +129,7 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   const TomlValue* physics = reader.table("physics");
   const TomlValue* current = reader.table("current");
   const TomlValue* lab = reader.table("lab");
+  const TomlValue* sources = reader.table("sources");
   const auto& objects = reader.tables("objects");
   const auto& vehicles = reader.tables("vehicles");
   NERITIC_TRY_STATUS(reader.status());
@@ -151,6 +152,7 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   NERITIC_TRY_STATUS(read_objects(draft, source, vehicles, "vehicles"));
   NERITIC_TRY_STATUS(read_vehicle_physics(draft, source, objects, "objects", 0));
   NERITIC_TRY_STATUS(read_vehicle_physics(draft, source, vehicles, "vehicles", objects.size()));
+  NERITIC_TRY_STATUS(read_sources(draft, source, sources));
   return draft;
 }
 

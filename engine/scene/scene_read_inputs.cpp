@@ -11,11 +11,6 @@ namespace {
 constexpr Interval kHold{0, 3600, false, false, "seconds"};
 constexpr std::size_t kLongestSourceName = 64;
 
-bool names_a_source(const std::string& name) {
-  return !name.empty() && name.size() <= kLongestSourceName &&
-         std::ranges::all_of(name, [](char c) { return c > ' ' && c <= '~'; });
-}
-
 bool is_live(const std::string& from) {
   return from != "autopilot" && from != "recording" && from != "nobody";
 }
@@ -54,6 +49,11 @@ InputChoice read_choice(TableReader& reader, Key group, KeyList recorded, const 
 }
 
 }  // namespace
+
+bool names_a_source(const std::string& name) {
+  return !name.empty() && name.size() <= kLongestSourceName &&
+         std::ranges::all_of(name, [](char c) { return c > ' ' && c <= '~'; });
+}
 
 std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded,
                                      const std::string& then) {

@@ -155,6 +155,9 @@ PanelFacts Console::facts(graph::FrameGraph& graph, const ConsoleFrame& frame) {
                    .participants = rows_,
                    .troubles = frame.pilot.troubles(),
                    .recording = recording()};
+  if (options_.devices)
+    for (const DeviceHealth& health : options_.devices->health())
+      facts.devices.push_back(stream_words(health, now_ns()));
   for (const std::size_t index : options_.sonars) {
     const graph::ImageHandle picture = fans_->picture(graph, index);
     if (!picture) continue;

@@ -12,6 +12,7 @@
 #include "engine/sim/run_clock.hpp"
 #include "engine/xr/desktop/overlay.hpp"
 #include "engine/xr/display.hpp"
+#include "testbed/devices/devices.hpp"
 #include "testbed/sensors/participants.hpp"
 #include "testbed/sensors/session.hpp"
 #include "testbed/view/dive_fan.hpp"
@@ -32,6 +33,7 @@ struct ConsoleOptions {
   const RunKeeper* keeper = nullptr;
   LivePhysics* physics = nullptr;  // whose numbers are drawn; nullptr: nothing moves by physics
   ViewMemory memory;               // as the last window looked
+  const Devices* devices = nullptr;  // of the run
 };
 
 // State of the view in this frame.

@@ -61,8 +61,12 @@ void record_upload(const ImageU8& picture, const gpu::Image& image, gpu::Command
 }  // namespace
 
 DiveHud::DiveHud(gpu::Device& device, gpu::Frames& frames, LivePhysics& physics,
-                 DiveHudOptions options)
-    : device_(device), frames_(frames), physics_(physics), options_(std::move(options)) {
+                 DiveHudOptions options, const Devices* devices)
+    : device_(device),
+      frames_(frames),
+      physics_(physics),
+      options_(std::move(options)),
+      devices_(devices) {
   for (const hud::Layout& layout : hud::layouts())
     instruments_.push_back({hud::Hud(layout.kind, options_.units, layout.height_px), 0, {}});
 }
@@ -94,6 +98,8 @@ bool DiveHud::look(const HudView& view) {
   const HumanPhysics& diver = snapshot.state.humans()[options_.diver];
   data_ = instrument_data(physics_.world(), options_.diver, snapshot);
   streams_ = stream_health(diver, physics_.inbox().source_names());
+  if (devices_ && !devices_->empty())
+    add_links(diver, devices_->health(), physics_.inbox().source_names(), streams_);
   about_ = {.gaze = gaze_in(diver.human.life.vitals, view), .streams = streams_};
   next_s_ = snapshot.time_s + 1.0 / kHudRate_hz;
   return true;

@@ -10,6 +10,7 @@
 #include "engine/graph/frame_graph.hpp"
 #include "engine/xr/display.hpp"
 #include "hud/hud.hpp"
+#include "testbed/devices/devices.hpp"
 #include "testbed/motion/live_physics.hpp"
 #include "testbed/view/panel_layout.hpp"
 
@@ -39,7 +40,9 @@ struct HudView {
 class DiveHud {
  public:
   // Borrows device, frames and physics, which must have that diver.
-  DiveHud(gpu::Device& device, gpu::Frames& frames, LivePhysics& physics, DiveHudOptions options);
+  // devices: of the run; nullptr: none.
+  DiveHud(gpu::Device& device, gpu::Frames& frames, LivePhysics& physics, DiveHudOptions options,
+          const Devices* devices = nullptr);
 
   // Adds the panels of this frame to the layers; those of which something changed are drawn anew.
   Status declare(graph::FrameGraph& graph, const HudView& view, std::vector<xr::Layer>& layers);
@@ -67,6 +70,7 @@ class DiveHud {
   gpu::Frames& frames_;
   LivePhysics& physics_;
   DiveHudOptions options_;
+  const Devices* devices_;
   std::vector<Instrument> instruments_;  // one a layout, so that alarms and traces go on unseen
   std::size_t choice_ = 0;               // 0: the options'
   hud::DiveData data_;

@@ -226,7 +226,7 @@ void recording_line(const std::string& text) {
 
 std::size_t status_lines(const PanelFacts& facts) {
   const auto& all = facts.participants;
-  return 3 + (facts.recording.empty() ? 0 : 1) + facts.troubles.size() +
+  return 3 + (facts.recording.empty() ? 0 : 1) + facts.troubles.size() + 2 * facts.devices.size() +
          (all.empty() ? 0 : all.size() + 1) +
          static_cast<std::size_t>(
              std::ranges::count_if(all, [](const auto& row) { return !row.doing.empty(); }));
@@ -252,6 +252,7 @@ void draw_status(const PanelFacts& facts, const PanelsShown& shown, const PanelR
   participants_table(facts, scale);
   ImGui::PushTextWrapPos(0.0f);
   for (const std::string& line : facts.troubles) text_line(line);
+  for (const std::string& line : facts.devices) text_line(line);
   ImGui::PopTextWrapPos();
   ImGui::End();
 }

@@ -48,6 +48,7 @@ struct PanelFacts {
   std::vector<SonarPanel> sonars;        // that have pinged
   std::vector<ParticipantRow> participants;
   std::vector<std::string> troubles;  // a line each
+  std::vector<std::string> devices;   // of the lab, up to two lines each
   std::string recording;              // "REC 0:12  FILE"; empty: nothing is recorded
   double sonar_gain_db = 0.0;
   // On demand; those that are absent are not drawn.

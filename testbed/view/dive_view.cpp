@@ -44,11 +44,12 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
                                  .clock = options.clock,
                                  .keeper = view->keeper_ ? &*view->keeper_ : nullptr,
                                  .physics = physics,
-                                 .memory = options.memory}));
+                                 .memory = options.memory,
+                                 .devices = options.devices}));
   }
   if (options.hud)
-    view->hud_ =
-        std::make_unique<DiveHud>(session.device(), session.frames(), *physics, *options.hud);
+    view->hud_ = std::make_unique<DiveHud>(session.device(), session.frames(), *physics,
+                                           *options.hud, options.devices);
   if (options.budget_ms > 0.0) view->governor_.emplace(options.budget_ms);
   return view;
 }

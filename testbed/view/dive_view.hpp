@@ -43,6 +43,7 @@ struct DiveViewOptions {
   std::optional<RunKeeperOptions> keep;
   std::string no_keys_for_files;
   ViewMemory memory;  // as the last window looked
+  const Devices* devices = nullptr;  // whose health the panels show; outlives the view
 };
 
 class DiveView final : public FrameView {

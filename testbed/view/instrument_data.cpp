@@ -111,6 +111,19 @@ std::vector<hud::StreamHealth> stream_health(const HumanPhysics& diver,
   return out;
 }
 
+void add_links(const HumanPhysics& diver, const std::vector<DeviceHealth>& devices,
+               const std::vector<std::string>& sources, std::vector<hud::StreamHealth>& streams) {
+  for (std::size_t i = 0; i < diver.groups.size(); ++i) {
+    const GroupState& group = diver.groups[i];
+    if (group.phase != GroupPhase::kLive || group.source >= sources.size()) continue;
+    const auto device = std::ranges::find(devices, sources[group.source], &DeviceHealth::name);
+    if (device == devices.end()) continue;
+    for (hud::StreamHealth& stream : streams)
+      if (stream.name == hud::FixedText(std::string_view(name_of(static_cast<DiverGroup>(i)))))
+        stream.note = std::string_view(link_words(*device));
+  }
+}
+
 double diver_heading_rad(const Quat& ned_from_body) {
   const Vec3 head = ned_from_body * Vec3(1.0, 0.0, 0.0),
              belly = ned_from_body * Vec3(0.0, 0.0, 1.0);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hud/shown.hpp"
+#include "testbed/devices/device_source.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
@@ -17,6 +18,11 @@ hud::DiveData instrument_data(const PhysicsWorld& world, std::size_t diver,
 // The groups of the diver's inputs that a live source has or had: "heart", "live from strap".
 std::vector<hud::StreamHealth> stream_health(const HumanPhysics& diver,
                                              const std::vector<std::string>& sources);
+
+// Adds each device's link and clock to the notes of the groups that it feeds: "suit 480/s, 2.0 %
+// lost, +12 ppm". streams: of stream_health, in its order.
+void add_links(const HumanPhysics& diver, const std::vector<DeviceHealth>& devices,
+               const std::vector<std::string>& sources, std::vector<hud::StreamHealth>& streams);
 
 // The heading of a diver in any attitude, from north towards east: ahead is where the head points
 // while the diver swims, and where the belly points while the diver stands. A body that lies on its

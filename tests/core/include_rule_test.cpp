@@ -39,6 +39,12 @@ const std::map<std::string, std::set<std::string>>& allowed() {
       {"testbed/motion",
        {"engine/core", "engine/scene", "testbed/samples", "engine/sim", "rov", "diver",
         "testbed/simulation"}},
+      {"testbed/devices",
+       {"engine/core", "engine/net", "engine/scene", "testbed/samples", "engine/sim", "rov", "diver",
+        "testbed/simulation"}},
+      {"testbed/simulators",
+       {"engine/core", "engine/net", "engine/scene", "testbed/samples", "engine/sim", "rov", "diver",
+        "testbed/simulation", "testbed/devices"}},
       {"testbed/sensors",
        {"testbed/samples", "engine/core", "engine/gpu", "engine/graph", "engine/scene",
         "engine/render", "sonar", "shared"}},
@@ -59,7 +65,7 @@ const std::map<std::string, std::set<std::string>>& allowed() {
        {"engine/core", "engine/gpu", "engine/graph", "engine/draw2d", "engine/scene",
         "engine/render", "engine/sim", "engine/xr", "sonar", "rov", "diver", "hud", "shared",
         "testbed/samples", "testbed/simulation", "testbed/motion", "testbed/record",
-        "testbed/sensors", "testbed/loop"}},
+        "testbed/devices", "testbed/sensors", "testbed/loop"}},
       {"shaders/shared", {"shared"}}};
   return table;
 }

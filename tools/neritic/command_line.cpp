@@ -393,7 +393,7 @@ void add_tradeoff(CLI::App& app, Run& run) {
       "tradeoff", "measures the error of a model against its cost, over all of its settings");
   command
       ->add_option("what", flags->what,
-                   "sonar, physics, navigation, swim, deco, physiology, modem or xr")
+                   "sonar, physics, navigation, swim, deco, physiology, modem, network or xr")
       ->required();
   command
       ->add_option("--out", flags->out,
@@ -403,7 +403,8 @@ void add_tradeoff(CLI::App& app, Run& run) {
   command
       ->add_option("scene,--scene", flags->scene,
                    "sonar: the scene whose first sonar gives the place; none: only scenes with a "
-                   "closed-form answer; xr: whose first camera is the head (dive.toml)")
+                   "closed-form answer; xr: whose first camera is the head (dive.toml); network: "
+                   "one with [sources] (lab.toml)")
       ->capture_default_str();
   command->add_option(
       "--kind", flags->kind,
@@ -711,6 +712,58 @@ void add_keys(CLI::App& app, Run& run) {
   command->callback([flags, &run] { run = [flags] { return run_keys(*flags); }; });
 }
 
+void add_simulate(CLI::App& app, CommandLine& line) {
+  auto flags = std::make_shared<SimulateFlags>();
+  CLI::App* command = app.add_subcommand("simulate",
+                                         "sends the bytes of a lab's devices: those of a scene's "
+                                         "[sources], worn by a person who swims "
+                                         "by himself, or recordings (docs/devices.md)");
+  command
+      ->add_option(
+          "what", flags->what,
+          "suit, strap, jacket, microphone or a source's name, one or more: sends to a "
+          "dive that runs elsewhere. lab: a dive and all of its devices in simulated "
+          "time. flood: a dive under --rate packets a second. latency: from a suit's packet to "
+          "the picture that shows it")
+      ->required();
+  command->add_option("--scene", flags->scene, "scene with [sources]")->capture_default_str();
+  command->add_option("--to", flags->to,
+                      "IPv4 address of the machine that listens, else as the "
+                      "scene says");
+  command->add_option("--seconds", flags->seconds,
+                      "how long: devices until Ctrl-C, lab and flood 60");
+  command->add_option("--delay-ms", flags->delay_ms, "of every packet");
+  command->add_option("--jitter-ms", flags->jitter_ms,
+                      "evenly up to this much more, so that packets overtake one another");
+  command->add_option("--loss", flags->loss, "percent of packets");
+  command->add_option("--repeat", flags->repeat, "percent that come twice");
+  command->add_option("--cut", flags->cut, "percent that are cut short");
+  command->add_option("--corrupt", flags->corrupt, "percent with a wrong bit");
+  command->add_option("--garbage", flags->garbage, "percent that are random bytes");
+  command->add_option("--seed", flags->seed, "of faults, clocks and noise")->check(seed_number);
+  command->add_option("--limbs", flags->limbs, "suit: joint angles (.csv, as swim.motion)");
+  command->add_option("--buttons", flags->buttons, "jacket: presses (.csv, as jacket_buttons)");
+  command->add_option("--ecg", flags->ecg, "strap: a recording in uV (.csv, .wav, .hea)");
+  command->add_option("--sound", flags->sound, "microphone: a recording (.wav)");
+  command->add_option("--suit-hz", flags->suit_hz, "frames a second")->capture_default_str();
+  command->add_flag("--no-gloves", flags->no_gloves, "the suit without fingers");
+  command->add_option("--rate", flags->rate_hz, "flood: packets a second")->capture_default_str();
+  command->add_option("--picture-hz", flags->picture_hz,
+                      "latency: pictures a second, else the first camera's rate");
+  command->add_option("--size", flags->size, "latency: WxH of the pictures [320x180]");
+  command->add_option("--device", flags->device,
+                      "latency: Vulkan device: index or part of its name");
+  command->add_option("--record", flags->files.record,
+                      "lab: every sample and state (neritic dive --replay)");
+  command->add_option("--log", flags->files.log, "lab: the dive as a .csv");
+  command->add_flag("--json", flags->json,
+                    "lab, flood, latency: JSON on standard output, for programs");
+  command->callback([flags, &line] {
+    flags->quiet = line.quiet;
+    line.run = [flags] { return nothing_to_say(run_simulate(*flags)); };
+  });
+}
+
 void add_doctor(CLI::App& app, Run& run) {
   auto flags = std::make_shared<DoctorFlags>();
   CLI::App* command =
@@ -785,6 +838,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_experiment(app, line);
   add_recording(app, line.run);
   add_hud(app, line.run);
+  add_simulate(app, line);
   add_doctor(app, line.run);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(),

@@ -173,6 +173,24 @@ struct RecordingFlags {
 };
 Result<std::string> run_recording(const RecordingFlags& flags);
 
+// what: devices (a kind or a source's name), which send by the host's clock; or "lab", "flood",
+// "latency".
+struct SimulateFlags {
+  std::vector<std::string> what;
+  std::string scene = "assets/scenes/lab.toml", to;
+  std::optional<double> seconds;
+  double delay_ms = 0.0, jitter_ms = 0.0;
+  double loss = 0.0, repeat = 0.0, cut = 0.0, corrupt = 0.0, garbage = 0.0;  // percent
+  std::uint64_t seed = 1;
+  std::string limbs, buttons, ecg, sound;  // recordings; empty: as the person does
+  double suit_hz = 240.0, rate_hz = 100'000.0;
+  double picture_hz = 0.0;   // of latency; 0: the camera's
+  std::string size, device;  // of its pictures
+  bool no_gloves = false, json = false, quiet = false;
+  StepFileFlags files;  // of a lab
+};
+Status run_simulate(const SimulateFlags& flags);
+
 struct DoctorFlags {
   std::string device;
   bool json = false;

@@ -10,6 +10,7 @@
 #include "engine/xr/desktop/desktop.hpp"
 #include "engine/xr/offscreen.hpp"
 #include "engine/xr/openxr/headset.hpp"
+#include "testbed/devices/devices.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/output/recorded_images.hpp"
 #include "testbed/sensors/sight_check.hpp"
@@ -200,10 +201,12 @@ std::optional<RunKeeperOptions> kept_by_key(const DiveFlags& flags,
 // On standard output: a dive's end, the same as without pictures; without a window the times too.
 void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera& camera,
           const DiveView& view, const Loop& loop, const LivePhysics* physics,
-          const DiveRecorder* recorder, double start_s) {
+          const DiveRecorder* recorder, double start_s, const Devices* devices) {
+  const std::vector<DeviceHealth> health =
+      devices ? devices->health() : std::vector<DeviceHealth>();
   if (flags.json)
     return print_summary(flags, physics->world(), physics->simulation(), *recorder,
-                         {loop.wall_s(), physics->counts().dropped, start_s});
+                         {loop.wall_s(), physics->counts().dropped, start_s, health});
   if (flags.quiet) return;
   if (flags.headless)
     fmt::print("{}, {} x {}\n{}", device.info().name, camera.width, camera.height,
@@ -212,7 +215,7 @@ void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera
     fmt::print("{} frames in {:.1f} s on {}\n", loop.frames(), loop.wall_s(), device.info().name);
   if (physics)
     print_summary(flags, physics->world(), physics->simulation(), *recorder,
-                  {loop.wall_s(), physics->counts().dropped, start_s});
+                  {loop.wall_s(), physics->counts().dropped, start_s, health});
 }
 
 // The window's size where it has one, and its panels, for the next time. A folder that cannot be
@@ -260,6 +263,11 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   NERITIC_TRY_STATUS(make_device(flags, scene, screen));
   NERITIC_TRY(const auto session, Session::create(*screen.device, std::move(scene)));
   NERITIC_TRY_STATUS(make_display(flags, camera, screen));
+  std::unique_ptr<Devices> devices;
+  if (physics && !replay) {
+    NERITIC_TRY(devices, Devices::open(session->scene(), physics->world(), physics->inbox(),
+                                       DeviceSource::Pace::kThread));
+  }
   NERITIC_TRY(const auto hud, hud_options(flags, physics.get(), unasked_hud(screen)));
   NERITIC_TRY(const auto view,
               DiveView::create(*session, screen.shown_on(), screen.overlay.get(), physics.get(),
@@ -277,7 +285,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
                                 .no_keys_for_files =
                                     replay ? "a replay is neither saved nor recorded"
                                            : "nothing moves by physics: there is no state to save",
-                                .memory = screen.memory}));
+                                .memory = screen.memory,
+                                .devices = devices.get()}));
   std::optional<StepFiles> files;
   std::vector<StepSink*> step_sinks;
   std::vector<SampleSource*> sources{&view->pilot()};
@@ -330,7 +339,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   // A run that failed prints its summary too.
   if (replay && !flags.quiet && !flags.json) replay->tell();
   tell(flags, *screen.device, camera, *view, loop, physics.get(),
-       files ? &files->recorder() : nullptr, start_s);
+       files ? &files->recorder() : nullptr, start_s, devices.get());
   NERITIC_TRY_STATUS(status);
   if (!flags.timeline.empty())
     NERITIC_TRY_STATUS(write_timeline(

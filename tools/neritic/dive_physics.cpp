@@ -4,6 +4,7 @@
 
 #include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
+#include "testbed/devices/devices.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/source_watch.hpp"
 #include "testbed/samples/recorded_source.hpp"
@@ -145,6 +146,16 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
     sinks.push_back(&replay->check);
     seconds = replay->seconds();
   }
+  const bool live = !replay && !scene.sources.empty();
+  std::unique_ptr<Devices> devices;
+  if (live) {
+    if (!flags.realtime)
+      log_warn("{}: its devices send by the clock on the wall; --realtime runs by it too",
+               flags.scene);
+    NERITIC_TRY(devices,
+                Devices::open(scene, world, physics->inbox(), DeviceSource::Pace::kThread));
+    for (SampleSource* source : devices->sources()) sources.push_back(source);
+  }
   StepProgress progress("second", start_s + seconds);
   sinks.push_back(&progress);
   Loop loop(
@@ -158,7 +169,8 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
   // A run that failed prints its summary too.
   if (replay && !flags.quiet && !flags.json) replay->tell();
   print_summary(flags, world, physics->simulation(), files.recorder(),
-                {loop.wall_s(), loop.dropped(), start_s});
+                {loop.wall_s(), loop.dropped(), start_s,
+                 devices ? devices->health() : std::vector<DeviceHealth>()});
   NERITIC_TRY_STATUS(status);
   if (loop.interrupted())
     return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s of {:g}{}",

@@ -5,6 +5,7 @@
 
 #include "diver/gas_label.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/log.hpp"
 #include "rov/frames.hpp"
 #include "testbed/samples/authority_words.hpp"
 
@@ -208,7 +209,34 @@ std::string source_lines(const SampleInbox& inbox) {
   return lines;
 }
 
-nlohmann::json sources_json(const SampleInbox& inbox) {
+// A device's packets and clock, as a source of samples has them.
+nlohmann::json device_json(const DeviceHealth& health) {
+  const net::LinkCounts& link = health.link;
+  const net::ClockEstimate& clock = health.clock;
+  nlohmann::json json{{"device", health.device},
+                      {"where", health.where},
+                      {"datagrams", link.datagrams},
+                      {"bytes", link.bytes},
+                      {"used", link.used},
+                      {"malformed", link.malformed},
+                      {"unused", link.unused},
+                      {"repeated", link.repeated},
+                      {"older", link.older},
+                      {"lost", link.lost},
+                      {"restarts", link.restarts},
+                      {"refused_parts", link.refused},
+                      {"queue_overflowed", link.overflowed},
+                      {"clock", nullptr}};
+  if (clock.known)
+    json["clock"] = {{"offset_s", clock.offset_s},
+                     {"drift_ppm", clock.drift_ppm},
+                     {"jitter_ms", clock.spread_ms},
+                     {"longest_ms", clock.longest_ms},
+                     {"jumps", clock.jumps}};
+  return json;
+}
+
+nlohmann::json sources_json(const SampleInbox& inbox, const std::vector<DeviceHealth>& devices) {
   nlohmann::json json = nlohmann::json::array();
   const auto names = inbox.source_names();
   for (SourceId id = 0; id < names.size(); ++id) {
@@ -224,6 +252,8 @@ nlohmann::json sources_json(const SampleInbox& inbox) {
                     {"not_finite", counts.not_finite},
                     {"not_plausible", counts.not_plausible},
                     {"not_of_stream", counts.not_of_stream}});
+    for (const DeviceHealth& health : devices)
+      if (health.name == names[id]) json.back()["link"] = device_json(health);
   }
   return json;
 }
@@ -318,6 +348,48 @@ nlohmann::json dangers_json(const PhysicsHuman& human, const HumanFigures& figur
   return json;
 }
 
+nlohmann::json summary_json(const DiveFlags& flags, const PhysicsWorld& world,
+                            const PhysicsSimulation& simulation, const DiveRecorder& recorder,
+                            const Pace& pace) {
+  const auto& newest = simulation.newest();
+  const double speed = (newest.time_s - pace.start_s) / std::max(pace.wall_s, 1e-9);
+  const std::string hash = fmt::format("{:016x}", newest.hash);
+  const auto sources = simulation.inbox().source_names();
+  nlohmann::json json{{"scene", flags.scene},
+                      {"simulated_s", newest.time_s},
+                      {"steps", newest.step},
+                      {"step_s", world.step_s()},
+                      {"wall_s", pace.wall_s},
+                      {"speed", speed},
+                      {"dropped", pace.dropped},
+                      {"refused_states", simulation.refused_states()},
+                      {"hash", hash},
+                      {"vehicles", nlohmann::json::array()}};
+  for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
+    const VehicleState& state = newest.state.vehicles()[i];
+    auto vehicle = vehicle_json(world.vehicles()[i], state, recorder.figures()[i]);
+    vehicle["inputs"] = groups_json<VehicleGroup>(state.groups, sources);
+    vehicle["refused_events"] = simulation.inputs().vehicles()[i].refused_events;
+    json["vehicles"].push_back(std::move(vehicle));
+  }
+  json["humans"] = nlohmann::json::array();
+  for (std::size_t i = 0; i < world.humans().size(); ++i) {
+    const HumanPhysics& state = newest.state.humans()[i];
+    auto human = human_json(world.humans()[i], state, recorder.humans().figures()[i]);
+    human["inputs"] = groups_json<DiverGroup>(state.groups, sources);
+    human["refused_events"] = simulation.inputs().humans()[i].refused_events;
+    json["humans"].push_back(std::move(human));
+  }
+  json["objects"] = nlohmann::json::array();
+  for (std::size_t i = 0; i < world.objects().size(); ++i)
+    json["objects"].push_back(object_json(world.objects()[i], newest.state.objects()[i],
+                                          simulation.inputs().objects()[i].refused_events,
+                                          sources));
+  json["sources"] = sources_json(simulation.inbox(), pace.devices);
+  json["unknown_source_samples"] = simulation.inbox().unknown_sources();
+  return json;
+}
+
 void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                    const PhysicsSimulation& simulation, const DiveRecorder& recorder,
                    const Pace& pace) {
@@ -326,39 +398,7 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
   const std::string hash = fmt::format("{:016x}", newest.hash);
   const auto sources = simulation.inbox().source_names();
   if (flags.json) {
-    nlohmann::json json{{"scene", flags.scene},
-                        {"simulated_s", newest.time_s},
-                        {"steps", newest.step},
-                        {"step_s", world.step_s()},
-                        {"wall_s", pace.wall_s},
-                        {"speed", speed},
-                        {"dropped", pace.dropped},
-                        {"refused_states", simulation.refused_states()},
-                        {"hash", hash},
-                        {"vehicles", nlohmann::json::array()}};
-    for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
-      const VehicleState& state = newest.state.vehicles()[i];
-      auto vehicle = vehicle_json(world.vehicles()[i], state, recorder.figures()[i]);
-      vehicle["inputs"] = groups_json<VehicleGroup>(state.groups, sources);
-      vehicle["refused_events"] = simulation.inputs().vehicles()[i].refused_events;
-      json["vehicles"].push_back(std::move(vehicle));
-    }
-    json["humans"] = nlohmann::json::array();
-    for (std::size_t i = 0; i < world.humans().size(); ++i) {
-      const HumanPhysics& state = newest.state.humans()[i];
-      auto human = human_json(world.humans()[i], state, recorder.humans().figures()[i]);
-      human["inputs"] = groups_json<DiverGroup>(state.groups, sources);
-      human["refused_events"] = simulation.inputs().humans()[i].refused_events;
-      json["humans"].push_back(std::move(human));
-    }
-    json["objects"] = nlohmann::json::array();
-    for (std::size_t i = 0; i < world.objects().size(); ++i)
-      json["objects"].push_back(object_json(world.objects()[i], newest.state.objects()[i],
-                                            simulation.inputs().objects()[i].refused_events,
-                                            sources));
-    json["sources"] = sources_json(simulation.inbox());
-    json["unknown_source_samples"] = simulation.inbox().unknown_sources();
-    fmt::print("{}\n", json_text(json));
+    fmt::print("{}\n", json_text(summary_json(flags, world, simulation, recorder, pace)));
     return;
   }
   if (flags.quiet) return;
@@ -381,6 +421,7 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                group_lines<ObjectGroup>(world.objects()[i].name, newest.state.objects()[i].groups,
                                         simulation.inputs().objects()[i].refused_events, sources));
   fmt::print("{}", source_lines(simulation.inbox()));
+  for (const DeviceHealth& health : pace.devices) log_info("{}", health_words(health, now_ns()));
   const std::string restored =
       pace.start_s > 0.0 ? fmt::format(" ({:g} s of them restored)", pace.start_s) : "";
   fmt::print("{:g} s in {} steps{}, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
+#include "testbed/devices/device_source.hpp"
 #include "testbed/record/dive_record.hpp"
 #include "tools/neritic/commands.hpp"
 
@@ -15,12 +16,18 @@ struct Pace {
   double wall_s = 0.0;
   std::uint64_t dropped = 0;
   double start_s = 0.0;  // of a restored state; 0: a new run
+  std::vector<testbed::DeviceHealth> devices = {};  // as they were at the end
 };
 
 // By --json as JSON; with --quiet that alone.
 void print_summary(const DiveFlags& flags, const testbed::PhysicsWorld& world,
                    const testbed::PhysicsSimulation& simulation,
                    const testbed::DiveRecorder& recorder, const Pace& pace);
+
+// What --json prints.
+nlohmann::json summary_json(const DiveFlags& flags, const testbed::PhysicsWorld& world,
+                            const testbed::PhysicsSimulation& simulation,
+                            const testbed::DiveRecorder& recorder, const Pace& pace);
 
 // Dangers to a diver, and the changes to another tank: keys of the summary and of the
 // picture's data (testbed/record/LOG.md). Null: it did not happen.

@@ -8,9 +8,11 @@
 #include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
+#include "tools/neritic/load_scene.hpp"
 #include "tools/tradeoff/deco_tradeoff.hpp"
 #include "tools/tradeoff/modem_tradeoff.hpp"
 #include "tools/tradeoff/navigation_tradeoff.hpp"
+#include "tools/tradeoff/network_tradeoff.hpp"
 #include "tools/tradeoff/physics_tradeoff.hpp"
 #include "tools/tradeoff/physiology_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
@@ -112,6 +114,20 @@ Result<std::string> trade_xr(const TradeoffFlags& flags) {
   return files(flags, "xr", drawn);
 }
 
+Result<std::string> trade_network(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return refusal("tradeoff network", fmt::format("kind '{}'", flags.kind), "none");
+  NetworkTradeoffOptions options;
+  const bool named = flags.scene != TradeoffFlags().scene;
+  NERITIC_TRY(options.scene, load_scene_or_model(named ? flags.scene : SimulateFlags().scene, ""));
+  options.quick = flags.quick;
+  Progress progress("tradeoff network", steps(options));
+  options.step = [&] { progress.step(); };
+  NERITIC_TRY(const NetworkTradeoff tradeoff, run_network_tradeoff(options));
+  NERITIC_TRY(const bool drawn, write_network_tradeoff(flags.out, tradeoff));
+  return files(flags, "network", drawn);
+}
+
 Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   SonarTradeoffOptions options;
   options.scene = flags.scene == "none" ? "" : flags.scene;
@@ -172,8 +188,9 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "deco") return trade_deco(flags);
   if (flags.what == "modem") return trade_modem(flags);
   if (flags.what == "xr") return trade_xr(flags);
+  if (flags.what == "network") return trade_network(flags);
   return refusal("tradeoff", fmt::format("'{}'", flags.what),
-                 "sonar, physics, navigation, swim, deco, physiology, modem or xr");
+                 "sonar, physics, navigation, swim, deco, physiology, modem, network or xr");
 }
 
 }  // namespace neritic::tools

@@ -1,0 +1,40 @@
+// The buttons of a buoyancy jacket. UBCD packets say how long each button was pressed in all: what
+// was pressed while packets were lost is pressed for as long when the next one comes, so that loss
+// changes no gas. The other two forms say only what is pressed now. The thread of the device.
+#pragma once
+
+#include "engine/net/jacket_wire.hpp"
+#include "testbed/devices/adapter.hpp"
+
+namespace neritic::testbed {
+
+class JacketAdapter final : public DeviceAdapter {
+ public:
+  TimeNs wakes_at_ns() const override;
+  void tick(TimeNs now_ns, Outlet& out) override;
+
+  // After a silence of so long nothing is owed any more: a press that is not known to be wanted
+  // still must not fill a jacket. The group's own hold time lets the buttons go.
+  static constexpr TimeNs kSilence_ns = 500'000'000;
+  // What a button owes that is less is the wait for the next packet.
+  static constexpr TimeNs kLeastOwed_ns = 15'000'000;
+
+ private:
+  void receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet& out) override;
+  void take_counters(const net::JacketPacket& packet, TimeNs arrived_ns, Outlet& out);
+  void go_on(TimeNs now_ns);
+
+  struct Button {
+    TimeNs said_ns = 0, given_ns = 0;  // pressed so far by the jacket, and in the scene
+    TimeNs until_ns = 0;               // owed presses end then
+    std::uint16_t said_ms = 0;         // as it came
+  };
+  net::CounterTrack sequence_{16};
+  std::array<Button, 3> buttons_;
+  std::uint64_t given_ = 0;  // bits that are pressed in the scene
+  TimeNs went_on_ns_ = 0, heard_ns_ = 0;
+  std::uint64_t time_us_ = 0;
+  bool any_ = false;
+};
+
+}  // namespace neritic::testbed

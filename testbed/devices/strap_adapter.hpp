@@ -1,0 +1,31 @@
+// A heart strap as a diver's heart: its ECG (Polar's measurement data) or, without one, the
+// intervals that it counts itself (0x2A37), or the rate alone. The thread of the device.
+#pragma once
+
+#include <optional>
+
+#include "diver/heart_monitor.hpp"
+#include "testbed/devices/adapter.hpp"
+
+namespace neritic::testbed {
+
+class StrapAdapter final : public DeviceAdapter {
+ public:
+  // It speaks once a second, of what was before.
+  TimeNs max_age_ns() const override { return 3'000'000'000; }
+
+ private:
+  void receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet& out) override;
+  void take_rate(net::Bytes bytes, TimeNs arrived_ns, Outlet& out);
+  void take_ecg(net::Bytes bytes, TimeNs arrived_ns, Outlet& out);
+  void fill_gap(double gap_s);
+
+  diver::HeartMonitor intervals_;
+  std::optional<diver::HeartMonitor> ecg_;
+  bool any_interval_ = false;
+  TimeNs begun_ns_ = 0, rate_ns_ = 0, ecg_ns_ = 0;  // arrivals: first, last of each
+  std::vector<std::byte> last_rate_;
+  std::optional<std::uint64_t> last_ecg_ns_;  // by the strap's clock
+};
+
+}  // namespace neritic::testbed

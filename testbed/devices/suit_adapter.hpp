@@ -1,0 +1,26 @@
+// A motion suit with gloves (Xsens MVN's MXTP, type 02) as a diver's body and hands. Of the other
+// types that MVN can send beside it, all are decoded and counted as unused. The thread of the
+// device.
+#pragma once
+
+#include "testbed/devices/adapter.hpp"
+#include "testbed/devices/suit_posture.hpp"
+
+namespace neritic::testbed {
+
+class SuitAdapter final : public DeviceAdapter {
+ public:
+  // stream: the bytes come over TCP, in pieces of any length.
+  SuitAdapter(std::uint8_t character, bool stream) : frames_(character), stream_(stream) {}
+
+ private:
+  void receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet& out) override;
+  void take_datagram(net::Bytes bytes, TimeNs arrived_ns, Outlet& out);
+  void resume();
+
+  net::SuitFrames frames_;
+  bool stream_;
+  std::vector<std::byte> left_;  // of the stream: less than a datagram
+};
+
+}  // namespace neritic::testbed

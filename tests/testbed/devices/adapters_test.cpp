@@ -1,0 +1,324 @@
+// Devices' bytes as samples: the wire vectors, loss, order, wraps, floods.
+#include "diver/kinematics.hpp"
+#include "engine/core/random.hpp"
+#include "engine/net/heart_strap.hpp"
+#include "engine/net/rough_link.hpp"
+#include "testbed/devices/jacket_adapter.hpp"
+#include "testbed/devices/microphone_adapter.hpp"
+#include "testbed/devices/strap_adapter.hpp"
+#include "testbed/devices/suit_adapter.hpp"
+#include "testbed/simulators/simulated_device.hpp"
+#include "tests/testbed/devices/lab_scene.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+using net::bytes_of;
+
+double angle_between(const Quat& a, const Quat& b) {
+  const Quat d = glm::conjugate(a) * b;
+  return 2.0 * std::atan2(glm::length(Vec3(d.x, d.y, d.z)), std::abs(d.w));
+}
+
+TEST(SceneSources, ALineEachIsReadAndGivesTheGroupsThatNothingElseHas) {
+  const TestDive dive =
+      dive_of(lab_text("suit = \"mxtp udp 9763\"\nstrap = \"strap bluetooth Polar H10\"\n"
+                       "mic = { device = \"microphone udp 0.0.0.0:5004\", rate_hz = 44100 "
+                       "}\njacket = \"jacket udp\"\n"));
+  ASSERT_EQ(dive.scene.sources.size(), 4u);
+  for (const scene::DeviceSource& source : dive.scene.sources) {
+    EXPECT_EQ(source.diver, "diver");
+    if (source.name == "suit") {
+      EXPECT_EQ(to_text(source.address), "udp://127.0.0.1:9763");
+    }
+    if (source.name == "strap") {
+      EXPECT_EQ(source.port, "Polar H10");
+    }
+    if (source.name == "mic") {
+      EXPECT_EQ(to_text(source.address), "udp://0.0.0.0:5004");
+      EXPECT_EQ(source.rate_hz, 44100.0);
+    }
+    if (source.name == "jacket") {
+      EXPECT_EQ(source.address.port, net::kJacketPort);
+    }
+  }
+  const DiverInputs& inputs = dive.world->start_inputs().humans()[0];
+  for (const DiverGroup group : {DiverGroup::kBody, DiverGroup::kHands, DiverGroup::kButtons,
+                                 DiverGroup::kBreath, DiverGroup::kHeart})
+    EXPECT_EQ(inputs.of(group).authority, Authority::kLive) << name_of(group);
+  EXPECT_EQ(inputs.of(DiverGroup::kGaze).authority, Authority::kAutopilot);
+}
+
+TEST(SceneSources, WhatIsNoSourceIsRefusedWithItsLine) {
+  for (const char* line :
+       {"suit = \"xsens udp 9763\"", "suit = \"mxtp bluetooth x\"", "suit = \"mxtp udp 0\"",
+        "suit = \"mxtp udp host:1\"", "suit = \"\"", "suit = 3", "strap = \"strap bluetooth\"",
+        "suit = { device = \"mxtp udp\", diver = \"nobody\" }", "autopilot = \"mxtp udp\"",
+        "suit = { device = \"mxtp udp\", rate_hz = 8000 }", "suit = { character = 1 }",
+        "suit = { device = \"mxtp udp\", characters = 1 }"}) {
+    const auto scene = load_text(lab_text(std::string(line) + "\n"));
+    ASSERT_FALSE(scene.ok()) << line;
+    const std::string& message = scene.error().message;
+    EXPECT_TRUE(message.find("accepted: ") != message.npos ||
+                message.find("nearest known key: ") != message.npos)
+        << message;
+    EXPECT_NE(scene.error().message.find("dive.toml:"), std::string::npos)
+        << line << scene.error().message;
+  }
+  EXPECT_FALSE(load_text("[sources]\nsuit = \"mxtp udp\"\n").ok());
+  EXPECT_FALSE(load_text("[physics]\n[sources]\nsuit = \"mxtp udp\"\n").ok());
+}
+
+TEST(SuitPosture, JointsAndFingersComeBackThroughASuitsFrame) {
+  diver::JointAngles angles{};
+  for (std::size_t i = 0; i < angles.size(); ++i)
+    angles[i] = Vec3(0.1, -0.3, 0.2) * (0.3 + 0.1 * static_cast<double>(i));
+  const diver::JointRotations joints = diver::rotations_of(angles);
+  std::array<double, 10> flexion{};
+  for (std::size_t i = 0; i < 10; ++i) flexion[i] = 0.1 * static_cast<double>(i);
+  const Quat turned = glm::angleAxis(1.1, glm::normalize(Vec3(1, 2, 3)));
+  const net::SuitFrame frame = suit_frame(joints, flexion, turned);
+  const diver::JointRotations back = joints_of(frame);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    EXPECT_LT(angle_between(joints[i], back[i]), 1e-6) << diver::kSegmentNames[i + 1];
+  const HandJoints hands = hands_of(frame, back);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(hands.flexion_rad[i], flexion[i], 1e-6) << i;
+  EXPECT_LT(angle_between(hands.wrist[0], joints[diver::joint_of(diver::kLeftHand)]), 1e-6);
+}
+
+// The wire's posture at rest is that with arms spread; a knee bends about the wire's y.
+TEST(SuitPosture, RestIsArmsSpreadAndAxesAreMvns) {
+  net::SuitFrame frame;
+  for (std::size_t i = 0; i < frame.body.size(); ++i)
+    frame.body[i] = {static_cast<std::uint32_t>(i + 1), {}, {1, 0, 0, 0}};
+  diver::JointAngles angles = diver::angles_of(joints_of(frame));
+  EXPECT_NEAR(angles[diver::joint_of(diver::kLeftUpperArm)].z, kPi / 2, 1e-9);
+  EXPECT_NEAR(angles[diver::joint_of(diver::kRightUpperArm)].z, -kPi / 2, 1e-9);
+  for (std::size_t i = 0; i < angles.size(); ++i)
+    if (diver::child_of(i) != diver::kLeftUpperArm && diver::child_of(i) != diver::kRightUpperArm) {
+      EXPECT_LT(glm::length(angles[i]), 1e-9) << i;
+    }
+  // Shin and foot turned by +60 degrees about y, to the left: the heel rises behind.
+  for (const MvnSegment segment : {kMvnRightLowerLeg, kMvnRightFoot, kMvnRightToe})
+    frame.body[segment].rotation = {std::sqrt(0.75F), 0, 0.5F, 0};
+  angles = diver::angles_of(joints_of(frame));
+  EXPECT_NEAR(angles[diver::joint_of(diver::kRightLowerLeg)].y, -kPi / 3, 1e-6);
+}
+
+TEST(SuitAdapter, TheVectorsFrameIsWholeWithItsSecondPartAndBendsTheAbdomen) {
+  Bench bench("suit = \"mxtp udp\"\n");
+  SuitAdapter suit(0, false);
+  const auto all = net::wire_vectors();
+  const auto& vectors = all["xsens_mvn"]["vectors"];
+  suit.take(bytes_of(vectors[0]), false, 1'000'000'000, bench.out);
+  EXPECT_TRUE(bench.samples().empty());
+  suit.take(bytes_of(vectors[1]), false, 1'001'000'000, bench.out);
+  const auto samples = bench.samples();
+  ASSERT_EQ(samples.size(), 2u);
+  const auto& body = std::get<BodyJoints>(samples[0].payload);
+  // L5 leans forward by 90 degrees about y, L3 not at all: the abdomen is between them.
+  EXPECT_NEAR(angle_between(body.joints[diver::joint_of(diver::kAbdomen)], Quat(1, 0, 0, 0)),
+              kPi / 4, 1e-6);
+  EXPECT_EQ(samples[0].header.captured_ns, 1'000'000'000);  // its first part came then
+  // Other types are whole and of no use here.
+  for (std::size_t i = 2; i <= 9; ++i)
+    suit.take(bytes_of(vectors[i]), false, 1'002'000'000, bench.out);
+  for (const auto& bad : all["xsens_mvn"]["malformed"])
+    if (bad["hex"] != "") suit.take(bytes_of(bad), false, 1'003'000'000, bench.out);
+  EXPECT_EQ(suit.counts().unused, 8u);
+  EXPECT_EQ(suit.counts().malformed, 5u);
+  expect_adds_up(suit.counts());
+}
+
+TEST(SuitAdapter, AStreamInPiecesGivesTheSameFrames) {
+  Bench bench("suit = \"mxtp tcp\"\n");
+  SuitAdapter suit(0, true);
+  SimulatedDeviceOptions options;
+  options.rate_hz = 50.0;
+  const auto device = simulated_device("mxtp", options);
+  std::vector<std::byte> wire;
+  for (int ms = 1; ms <= 2000; ++ms)
+    device->run({}, TimeNs{ms} * kMillisecond_ns, [&](std::vector<std::byte> bytes, TimeNs) {
+      wire.insert(wire.end(), bytes.begin(), bytes.end());
+      if (ms / 20 == 50) wire.insert(wire.end(), 77, std::byte{'M'});  // what is none in between
+    });
+  for (std::size_t at = 0, i = 0; at < wire.size(); ++i) {
+    const std::size_t some = std::min<std::size_t>(1 + mix64(i) % 3000, wire.size() - at);
+    suit.take(net::Bytes(wire).subspan(at, some), false, static_cast<TimeNs>(at), bench.out);
+    at += some;
+  }
+  EXPECT_EQ(bench.samples().size(), 200u);
+  EXPECT_GE(suit.counts().malformed, 1u);
+  EXPECT_EQ(suit.counts().used, 200u);
+  expect_adds_up(suit.counts());
+}
+
+TEST(StrapAdapter, VectorsGiveRatesAndAStrapThatIsOffIsAGapNotASlowHeart) {
+  Bench bench("strap = \"strap udp\"\n");
+  StrapAdapter strap;
+  TimeNs now = kSecond_ns;
+  const auto rate = [&](const char* hex) {
+    now += kSecond_ns;
+    strap.take(bytes_of(std::string(hex)), false, now, bench.out);
+    const auto samples = bench.samples();
+    return samples.empty() ? -1.0 : std::get<Heart>(samples.back().payload).state.rate_bpm;
+  };
+  EXPECT_EQ(rate("003C"), 60.0);  // the rate alone
+  EXPECT_EQ(rate("104800"), -1.0);
+  for (int i = 0; i < 12; ++i) (void)rate("10480004");  // intervals of 1 s
+  EXPECT_NEAR(rate("10480004"), 60.0, 1e-9);
+  EXPECT_EQ(rate("0400"), 0.0);
+  EXPECT_EQ(strap.counts().malformed, 1u);
+  strap.take(bytes_of(std::string("0400")), false, now + kSecond_ns / 10, bench.out);
+  EXPECT_EQ(strap.counts().repeated, 1u);
+  now += 9 * kSecond_ns;
+  (void)rate("10480004");
+  EXPECT_EQ(strap.counts().lost, 9u);
+  expect_adds_up(strap.counts());
+}
+
+// A simulator's packets over a link, at 60 bpm and more; the newest sample.
+template <class Adapter>
+std::vector<Sample> run_device(const char* kind, const PersonActs& acts, double seconds,
+                               const net::LinkFaults& faults, Adapter& adapter, Bench& bench,
+                               const SimulatedDeviceOptions& options = {}) {
+  const auto device = simulated_device(kind, options);
+  net::RoughLink link(faults);
+  std::vector<Sample> out;
+  for (TimeNs now = 4 * kMillisecond_ns; now < static_cast<TimeNs>(seconds * 1e9);
+       now += 4 * kMillisecond_ns) {
+    device->run(acts, now,
+                [&](std::vector<std::byte> bytes, TimeNs at) { link.send(at, std::move(bytes)); });
+    while (!link.empty() && link.next().due_ns <= now) {
+      const auto packet = link.take_next();
+      adapter.take(packet.bytes, false, packet.due_ns, bench.out);
+    }
+    adapter.tick(now, bench.out);
+    for (const Sample& sample : bench.samples()) out.push_back(sample);
+  }
+  return out;
+}
+
+TEST(StrapAdapter, AnEcgOverALossyLinkGivesTheHeartsRate) {
+  for (const double bpm : {52.0, 80.0, 140.0}) {
+    Bench bench("strap = \"strap udp\"\n");
+    StrapAdapter strap;
+    const auto samples = run_device("strap", {.heart_bpm = bpm}, 40.0,
+                                    {.jitter_s = 0.02, .loss = 0.02}, strap, bench);
+    ASSERT_FALSE(samples.empty());
+    EXPECT_NEAR(std::get<Heart>(samples.back().payload).state.rate_bpm, bpm, 0.04 * bpm);
+    EXPECT_GT(strap.counts().unused, 20u);  // its own rate, while there is an ECG
+    expect_adds_up(strap.counts());
+  }
+}
+
+TEST(JacketAdapter, AllFormsPress) {
+  Bench bench("jacket = \"jacket udp\"\n");
+  JacketAdapter jacket;
+  const auto all = net::wire_vectors();
+  std::vector<std::uint64_t> pressed;
+  TimeNs now = kSecond_ns;
+  for (const auto& vector : all["jacket"]["compat_vectors"]) {
+    jacket.take(bytes_of(vector), false, now += kMillisecond_ns, bench.out);
+    for (const Sample& sample : bench.samples())
+      pressed.push_back(std::get<JacketButtons>(sample.payload).pressed);
+  }
+  EXPECT_EQ(pressed, (std::vector<std::uint64_t>{1, 5, 1}));
+  EXPECT_EQ(jacket.counts().malformed, 1u);
+  jacket.take(bytes_of(all["jacket"]["vectors"][0]), false, now += kMillisecond_ns, bench.out);
+  EXPECT_EQ(std::get<JacketButtons>(bench.samples().at(0).payload).pressed, diver::kInflate);
+}
+
+TEST(JacketAdapter, LossAndJitterChangeNoGas) {
+  for (const double loss : {0.0, 0.02, 0.5}) {
+    Bench bench("jacket = \"jacket udp\"\n");
+    JacketAdapter jacket;
+    const auto device = simulated_device("jacket", {});
+    net::RoughLink link({.jitter_s = 0.02, .loss = loss, .seed = 3});
+    PersonActs acts;
+    TimeNs pressed_ns = 0, given_ns = 0;
+    std::uint64_t given = 0;
+    constexpr TimeNs kTick = 2 * kMillisecond_ns;
+    for (TimeNs now = kTick; now < 60 * kSecond_ns; now += kTick) {
+      // Presses of 60 ms to 0.46 s, one a second.
+      const TimeNs second = now / kSecond_ns, within = now % kSecond_ns;
+      acts.buttons =
+          second % 2 == 0 && second < 58 && within < (60 + 10 * (second % 40)) * kMillisecond_ns
+              ? diver::kInflate
+              : 0;
+      if (acts.buttons != 0) pressed_ns += kTick;
+      device->run(acts, now, [&](std::vector<std::byte> bytes, TimeNs at) {
+        link.send(at, std::move(bytes));
+      });
+      while (!link.empty() && link.next().due_ns <= now)
+        jacket.take(link.take_next().bytes, false, now, bench.out);
+      jacket.tick(now, bench.out);
+      for (const Sample& sample : bench.samples())
+        given = std::get<JacketButtons>(sample.payload).pressed;
+      if (given != 0) given_ns += kTick;
+    }
+    EXPECT_NEAR(to_ms(given_ns), to_ms(pressed_ns), 0.03 * to_ms(pressed_ns)) << loss;
+    expect_adds_up(jacket.counts());
+  }
+}
+
+TEST(MicrophoneAdapter, BreathIsFoundOverALossyLink) {
+  Bench bench("mic = \"microphone udp\"\n");
+  MicrophoneAdapter microphone(16'000.0);
+  SimulatedDeviceOptions options;
+  options.clock.offset_ns = 10 * kSecond_ns;
+  const auto samples = run_device("microphone", {.breath_bpm = 15.0}, 61.0,
+                                  {.jitter_s = 0.02, .loss = 0.02}, microphone, bench, options);
+  ASSERT_GE(samples.size(), 5u);
+  const Breath& breath = std::get<Breath>(samples.back().payload);
+  EXPECT_NEAR(breath.monitor.estimate.rate_bpm, 15.0, 1.0);
+  EXPECT_NEAR(microphone.clock().offset_s, -10.0, 1e-3);
+  expect_adds_up(microphone.counts());
+}
+
+// A quarter of a million packets of each device, out of order, repeated, cut, with wrong bits, and
+// random ones: all are counted once, and what comes out is what the inbox takes.
+TEST(Adapters, AMillionBadPacketsCrashNothingAndCountsAddUp) {
+  for (const char* kind : {"mxtp", "strap", "jacket", "microphone"}) {
+    Bench bench(fmt::format("it = \"{} udp\"\n", kind));
+    std::unique_ptr<DeviceAdapter> adapter;
+    if (std::string(kind) == "mxtp") adapter = std::make_unique<SuitAdapter>(0, false);
+    if (std::string(kind) == "strap") adapter = std::make_unique<StrapAdapter>();
+    if (std::string(kind) == "jacket") adapter = std::make_unique<JacketAdapter>();
+    if (std::string(kind) == "microphone") adapter = std::make_unique<MicrophoneAdapter>(16'000.0);
+    SimulatedDeviceOptions options;
+    options.rate_hz = std::string(kind) == "mxtp" ? 1000.0 : 0.0;
+    const auto device = simulated_device(kind, options);
+    std::vector<std::vector<std::byte>> good;
+    for (TimeNs now = kMillisecond_ns; good.size() < 500; now += kMillisecond_ns)
+      device->run({}, now,
+                  [&](std::vector<std::byte> bytes, TimeNs) { good.push_back(std::move(bytes)); });
+    const std::uint64_t count = test::kFast ? 250'000 : 5'000;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const RandomKey key{7, 1, i};
+      std::vector<std::byte> bytes = good[random_bits(key, 0) % good.size()];
+      const double kindness = random_uniform(key, 1);
+      if (kindness < 0.2) bytes.resize(random_bits(key, 2) % (bytes.size() + 1));
+      if (kindness > 0.5)
+        for (std::uint64_t k = 0; k < 1 + random_bits(key, 3) % 4 && !bytes.empty(); ++k)
+          bytes[random_bits(key, 4 + k) % bytes.size()] =
+              static_cast<std::byte>(random_bits(key, 9 + k));
+      const auto now = static_cast<TimeNs>(i) * 10'000;
+      adapter->take(bytes, random_uniform(key, 20) < 0.01, now, bench.out);
+      adapter->tick(now, bench.out);
+      if (i % 1000 != 0) continue;
+      for (const Sample& sample : bench.samples()) {
+        ASSERT_TRUE(all_finite(sample.payload) && plausible(sample.payload)) << kind;
+      }
+    }
+    EXPECT_EQ(adapter->counts().datagrams, count) << kind;
+    expect_adds_up(adapter->counts());
+    EXPECT_GT(adapter->counts().malformed, 0u) << kind;
+    EXPECT_EQ(bench.out.sent(),
+              bench.out.accepted() + bench.dive.simulation->inbox().counts(bench.source).refused())
+        << kind;
+  }
+}
+
+}  // namespace
+}  // namespace neritic::testbed

@@ -1,0 +1,138 @@
+// A whole dive over real sockets: a person who wears simulated devices, with loss and jitter.
+#include "testbed/simulators/lab.hpp"
+
+#include "testbed/record/run_record.hpp"
+#include "tests/testbed/devices/lab_scene.hpp"
+#include "tests/testbed/simulation/replay_run.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+constexpr const char* kSources =
+    "suit = \"mxtp udp 39763\"\nstrap = \"strap udp 39764\"\njacket = \"jacket udp 39765\"\n"
+    "microphone = \"microphone udp 39766\"\n";
+
+struct Lab {
+  explicit Lab(const net::LinkFaults& faults, const std::string& sources = kSources)
+      : dive(dive_of(lab_text(sources))) {
+    auto opened = Devices::open(dive.scene, *dive.world, dive.simulation->inbox(),
+                                DeviceSource::Pace::kPolled);
+    EXPECT_TRUE(opened.ok()) << opened.error().message;
+    devices = std::move(opened).value();
+    LabOptions options;
+    options.faults = faults;
+    auto made = SimulatedLab::create(
+        dive.scene, *dive.world, devices.get(),
+        [this](std::size_t diver) -> const HumanPhysics& { return dive.state().humans()[diver]; },
+        options);
+    EXPECT_TRUE(made.ok()) << made.error().message;
+    lab = std::move(made).value();
+  }
+  void run(double seconds) {
+    for (const double end = dive.time_s() + seconds - 1e-9; dive.time_s() < end;) {
+      ASSERT_TRUE(lab->poll(dive.simulation->inbox(), dive.time_s()).ok());
+      dive.simulation->advance(1);
+    }
+  }
+  const GroupState& group(DiverGroup group) const {
+    return dive.state().humans()[0].groups[static_cast<std::size_t>(group)];
+  }
+  TestDive dive;
+  std::unique_ptr<Devices> devices;
+  std::unique_ptr<SimulatedLab> lab;
+};
+
+TEST(SimulatedLab, AWholeDiveWorksOverALossyNetworkAndReplaysToTheSameHashes) {
+  Lab lab({.jitter_s = 0.02, .loss = 0.02});
+  lab.run(test::kFast ? 75.0 : 5.0);
+  for (const DiverGroup group :
+       {DiverGroup::kBody, DiverGroup::kHands, DiverGroup::kButtons, DiverGroup::kHeart}) {
+    EXPECT_EQ(lab.group(group).phase, GroupPhase::kLive) << name_of(group);
+    EXPECT_EQ(lab.group(group).losses, 0u) << name_of(group);
+  }
+  const HumanPhysics& diver = lab.dive.state().humans()[0];
+  if (test::kFast) {
+    EXPECT_EQ(lab.group(DiverGroup::kBreath).phase, GroupPhase::kLive);
+    // He swims north along his line, at its depth.
+    EXPECT_GT(diver.human.root.position_ned_m.x, 20.0);
+    EXPECT_NEAR(diver.human.root.position_ned_m.y, 0.0, 1.5);
+    EXPECT_NEAR(diver.human.root.position_ned_m.z, 12.0, 1.5);
+    EXPECT_NEAR(diver.human.life.vitals.heart_bpm, lab.lab->acts(0).heart_bpm, 6.0);
+    for (const ClockError& error : lab.lab->clock_errors()) {
+      EXPECT_TRUE(error.has_clock) << error.name;
+      EXPECT_LT(std::abs(error.now_ms), 1.0) << error.name;
+    }
+  }
+  std::uint64_t received = 0;
+  for (const auto& device : lab.devices->all()) received += device->clock_map().estimate().known;
+  EXPECT_EQ(received, 4u);
+  const SampleLog log = recorded_run(*lab.dive.world, *lab.dive.simulation);
+  const auto again = replay_run(*lab.dive.world, log, "lab");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_FALSE(again->first_difference.has_value());
+}
+
+TEST(SimulatedLab, TheSameSeedGivesTheSameDiveOverSockets) {
+  const auto run = [](std::uint64_t seed) {
+    Lab lab({.jitter_s = 0.02, .loss = 0.05, .repeat = 0.02, .corrupt = 0.02, .seed = seed});
+    lab.run(3.0);
+    return lab.dive.simulation->newest().hash;
+  };
+  const std::uint64_t first = run(1);
+  EXPECT_EQ(first, run(1));
+  EXPECT_NE(first, run(2));
+}
+
+TEST(SimulatedLab, ASuitByTcpSwimsTheSame) {
+  Lab lab({}, "suit = \"mxtp tcp 39767\"\n");
+  lab.run(3.0);
+  EXPECT_EQ(lab.group(DiverGroup::kBody).phase, GroupPhase::kLive);
+  EXPECT_GT(lab.group(DiverGroup::kBody).heard, 600u);
+}
+
+TEST(DeviceSource, ASourceThatDiesIsLostAndTheAutopilotSwims) {
+  Lab lab({}, "suit = \"mxtp udp 39768\"\n");
+  lab.run(1.0);
+  EXPECT_EQ(lab.group(DiverGroup::kBody).phase, GroupPhase::kLive);
+  lab.dive.run(1.0);
+  EXPECT_EQ(lab.group(DiverGroup::kBody).phase, GroupPhase::kLost);
+  EXPECT_EQ(acting(lab.group(DiverGroup::kBody)), Authority::kAutopilot);
+}
+
+TEST(DeviceSource, APortThatIsTakenIsRefusedInOneLineWithTheSourcesName) {
+  TestDive dive = dive_of(lab_text("suit = \"mxtp udp 39769\"\njacket = \"jacket udp 39769\"\n"));
+  const auto opened =
+      Devices::open(dive.scene, *dive.world, dive.simulation->inbox(), DeviceSource::Pace::kPolled);
+  ASSERT_FALSE(opened.ok());
+  EXPECT_TRUE(opened.error().message.starts_with("source suit: udp://127.0.0.1:39769: ") ||
+              opened.error().message.starts_with("source jacket: udp://127.0.0.1:39769: "))
+      << opened.error().message;
+}
+
+// With a thread of its own, beside a simulation on another.
+TEST(DeviceSource, AThreadDeliversWhileTheSimulationSteps) {
+  TestDive dive = dive_of(lab_text("jacket = \"jacket udp 39770\"\n"));
+  auto devices =
+      Devices::open(dive.scene, *dive.world, dive.simulation->inbox(), DeviceSource::Pace::kThread);
+  ASSERT_TRUE(devices.ok()) << devices.error().message;
+  const auto sender = net::UdpSender::create({.transport = Transport::kUdp, .port = 39770}).value();
+  sim::HostClock clock;
+  dive.simulation->start(clock);
+  const std::vector<std::byte> pressed{std::byte{1}, std::byte{0}, std::byte{0}};
+  bool live = false;
+  auto reader = dive.simulation->reader();
+  for (int i = 0; i < 500 && !live; ++i) {
+    ASSERT_TRUE(sender.send(pressed));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    reader.update();
+    live = reader.newest().state.humans()[0].human.held.buttons == diver::kInflate;
+  }
+  dive.simulation->stop();
+  EXPECT_TRUE(live);
+  const DeviceHealth health = (*devices)->health()[0];
+  EXPECT_GT(health.link.used, 0u);
+  EXPECT_NE(health_words(health, now_ns()).find("no clock in its packets"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace neritic::testbed

@@ -1,0 +1,176 @@
+// `neritic simulate flood`: a scene that runs by the host's clock while packets come at a rate that
+// no device has, good ones and bad ones. Tells whether a step was dropped and whether every packet
+// was counted once.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "engine/core/json.hpp"
+#include "engine/core/refusal.hpp"
+#include "engine/net/heart_strap.hpp"
+#include "engine/net/jacket_wire.hpp"
+#include "engine/net/rtp.hpp"
+#include "testbed/devices/suit_posture.hpp"
+#include "testbed/loop/loop.hpp"
+#include "tools/neritic/simulate.hpp"
+
+namespace neritic::tools {
+using namespace testbed;
+namespace {
+
+constexpr double kFloodSeconds = 60.0;
+constexpr std::size_t kBurst = 100;  // packets at once
+
+// Good packets of a device, each with the next number.
+class PacketMaker {
+ public:
+  explicit PacketMaker(std::string device) : device_(std::move(device)) {
+    const net::SuitFrame frame = suit_frame(diver::straight_joints(), {}, Quat(1.0, 0.0, 0.0, 0.0));
+    body_.assign(frame.body.begin(), frame.body.end());
+  }
+  bool makes(std::string_view device) const { return device_ == device; }
+  std::vector<std::byte> next() {
+    const std::uint64_t n = number_++;
+    if (device_ == "mxtp")
+      return net::encode_mxtp({.sample = static_cast<std::uint32_t>(n),
+                               .time_ms = static_cast<std::uint32_t>(n / 100),
+                               .body_segments = net::kMxtpBodySegments},
+                              body_);
+    if (device_ == "strap")
+      return net::encode_ecg({n * 10'000'000, std::vector<std::int32_t>(73, 100)});
+    if (device_ == "microphone") {
+      net::RtpPacket packet{.sequence = static_cast<std::uint16_t>(n),
+                            .timestamp = static_cast<std::uint32_t>(16 * n)};
+      packet.samples.assign(16, 0.01F);
+      return net::encode_rtp(packet);
+    }
+    net::JacketPacket packet;
+    packet.counters =
+        net::UbcdCounters{.sequence = static_cast<std::uint16_t>(n), .time_us = n * 10'000};
+    return net::encode_jacket(packet);
+  }
+
+ private:
+  std::string device_;
+  std::vector<net::MxtpPose> body_;
+  std::uint64_t number_ = 0;
+};
+
+struct Target {
+  PacketMaker maker;
+  net::RoughLink link;
+  net::UdpSender sender;
+};
+
+// Sends until it is told to stop; gives the number of packets that the system took.
+std::uint64_t flood(std::vector<Target>& targets, double rate_hz, const std::atomic<bool>& stop) {
+  std::uint64_t sent = 0, made = 0;
+  const TimeNs begun_ns = now_ns();
+  while (!stop) {
+    const TimeNs due_ns = begun_ns + static_cast<TimeNs>(1e9 * static_cast<double>(made) / rate_hz);
+    if (const TimeNs wait_ns = due_ns - now_ns(); wait_ns > 0)
+      std::this_thread::sleep_for(std::chrono::nanoseconds(wait_ns));
+    for (std::size_t i = 0; i < kBurst; ++i, ++made) {
+      // Nine of ten go to the first device, the others in turn.
+      Target& target = targets[made % 10 == 0 ? (made / 10) % targets.size() : 0];
+      target.link.send(due_ns, target.maker.next());
+    }
+    for (Target& target : targets)
+      while (!target.link.empty() && target.link.next().due_ns <= due_ns)
+        sent += target.sender.send(target.link.take_next().bytes) ? 1 : 0;
+  }
+  return sent;
+}
+
+bool adds_up(const net::LinkCounts& c) {
+  return c.datagrams == c.used + c.malformed + c.unused + c.repeated + c.older;
+}
+
+}  // namespace
+
+Status simulate_flood(const SimulateFlags& flags, const scene::Scene& scene,
+                      const Interrupt& interrupt) {
+  SimulatedSignals none;
+  NERITIC_TRY(const LabOptions options, lab_options(flags, none));
+  if (!(flags.rate_hz >= 1.0 && flags.rate_hz <= 1e6))
+    return refusal("--rate", fmt::format("{:g}", flags.rate_hz), "1 to 1000000 packets a second");
+  NERITIC_TRY(auto made, PhysicsWorld::create(scene));
+  sim::HostClock host;
+  sim::RunClock run(host);
+  const auto physics =
+      LivePhysics::create(std::move(made), {.pace = LivePhysics::Pace::kClock, .clock = &run});
+  NERITIC_TRY(const auto devices, Devices::open(scene, physics->world(), physics->inbox(),
+                                                DeviceSource::Pace::kThread));
+  std::vector<Target> targets;
+  for (const scene::DeviceSource& source : scene.sources) {
+    if (source.by != "udp") continue;
+    Address to = source.address;
+    to.ipv4 = Address().ipv4;
+    NERITIC_TRY(net::UdpSender sender, net::UdpSender::create(to));
+    net::LinkFaults faults = options.faults;
+    faults.seed += targets.size();
+    targets.push_back({PacketMaker(source.device), net::RoughLink(faults), std::move(sender)});
+  }
+  // Most go to the suit, whose packets are the longest.
+  std::ranges::stable_partition(targets,
+                                [](const Target& target) { return target.maker.makes("mxtp"); });
+  if (targets.empty()) return refusal(flags.scene, "no source by udp", "one or more to flood");
+  const double seconds = flags.seconds.value_or(kFloodSeconds);
+  physics->start();
+  std::atomic<bool> stop{false};
+  std::uint64_t sent = 0;
+  std::thread sender([&] { sent = flood(targets, flags.rate_hz, stop); });
+  const TimeNs begun_ns = now_ns();
+  while (!interrupt.requested() && 1e-9 * static_cast<double>(now_ns() - begun_ns) < seconds)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  stop = true;
+  sender.join();
+  const double took_s = 1e-9 * static_cast<double>(now_ns() - begun_ns);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // for what waits in the kernel
+  physics->stop();
+  std::uint64_t received = 0, overflowed = 0;
+  bool whole = true;
+  nlohmann::json links = nlohmann::json::object();
+  for (const DeviceHealth& health : devices->health()) {
+    const net::LinkCounts& c = health.link;
+    received += c.datagrams;
+    overflowed += c.overflowed;
+    whole = whole && adds_up(c);
+    links[health.name] = {{"datagrams", c.datagrams}, {"used", c.used},
+                          {"malformed", c.malformed}, {"unused", c.unused},
+                          {"repeated", c.repeated},   {"older", c.older},
+                          {"lost", c.lost},           {"overflowed", c.overflowed},
+                          {"samples", health.samples}};
+    if (!flags.json && !flags.quiet) fmt::print("{}\n", health_words(health, now_ns()));
+  }
+  const auto counts = physics->counts();
+  whole = whole && received + overflowed <= sent;
+  if (flags.json) {
+    nlohmann::json json{{"seconds", took_s},
+                        {"rate_hz", sent / took_s},
+                        {"sent", sent},
+                        {"received", received},
+                        {"overflowed", overflowed},
+                        {"steps", counts.steps},
+                        {"steps_caught_up", counts.caught_up},
+                        {"steps_dropped", counts.dropped},
+                        {"counts_add_up", whole},
+                        {"links", links}};
+    fmt::print("{}\n", json_text(json));
+  } else if (!flags.quiet) {
+    fmt::print(
+        "{} packets in {:.1f} s ({:.0f} a second): {} received, {} dropped by full queues; {} "
+        "steps, "
+        "{} of them caught up, {} dropped\n",
+        sent, took_s, static_cast<double>(sent) / took_s, received, overflowed, counts.steps,
+        counts.caught_up, counts.dropped);
+  }
+  if (!whole) return failure(ErrorCode::kInternal, "the counts of packets do not add up");
+  if (counts.dropped > 0)
+    return failure(ErrorCode::kUnsupported, "{} steps were dropped", counts.dropped);
+  return {};
+}
+
+}  // namespace neritic::tools
