@@ -31,8 +31,8 @@ struct ConsoleOptions {
   std::vector<std::size_t> sonars;  // of the scene, those that have a panel
   sim::RunClock* clock = nullptr;   // of the run, for its pace
   const RunKeeper* keeper = nullptr;
-  LivePhysics* physics = nullptr;  // whose numbers are drawn; nullptr: nothing moves by physics
-  ViewMemory memory;               // as the last window looked
+  LivePhysics* physics = nullptr;    // whose numbers are drawn; nullptr: nothing moves by physics
+  ViewMemory memory;                 // as the last window looked
   const Devices* devices = nullptr;  // of the run
 };
 

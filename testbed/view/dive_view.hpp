@@ -42,7 +42,7 @@ struct DiveViewOptions {
   // not.
   std::optional<RunKeeperOptions> keep;
   std::string no_keys_for_files;
-  ViewMemory memory;  // as the last window looked
+  ViewMemory memory;                 // as the last window looked
   const Devices* devices = nullptr;  // whose health the panels show; outlives the view
 };
 
