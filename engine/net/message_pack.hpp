@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "engine/core/result.hpp"
 #include "engine/net/wire_bytes.hpp"
 
 namespace neritic::net {
