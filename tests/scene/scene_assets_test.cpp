@@ -148,6 +148,7 @@ TEST(SceneAssets, TheFormatsPageHasEveryKey) {
                              KeyList(kVehicleInputKeys),
                              KeyList(kObjectInputKeys),
                              KeyList(kInputChoiceKeys),
+                             KeyList(kSourceKeys),
                              KeyList(kTrackKeys),
                              KeyList(kLawnMowerKeys),
                              KeyList(kCameraKeys),
