@@ -22,10 +22,12 @@ using ivec2 = glm::ivec2;
 using mat3 = glm::mat3;
 using mat4 = glm::mat4;
 using glm::abs;
+using glm::cos;
 using glm::max;
 using glm::min;
 using glm::normalize;
 using glm::pow;
+using glm::sin;
 }  // namespace neritic::shared
 #define NERITIC_SHARED_BEGIN namespace neritic::shared {
 #define NERITIC_SHARED_END }
