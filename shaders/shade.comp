@@ -7,6 +7,7 @@
 // Shading in compute on the G-buffer: surface light, then the water between it and the eye.
 #include "shared/octahedral.h"
 #include "shared/lighting.h"
+#include "shared/waves.h"
 
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 
@@ -18,6 +19,8 @@ layout(set = 0, binding = kShadeAlbedo) uniform texture2DArray albedo_image;
 layout(set = 0, binding = kShadeMaterial) uniform texture2DArray material_image;
 layout(set = 0, binding = kShadeEmissive) uniform texture2DArray emissive_image;
 layout(set = 0, binding = kShadeHdr, rgba16f) writeonly uniform image2DArray hdr_image;
+layout(set = 0, binding = kShadeScattered, rgba16f) writeonly uniform image2DArray scattered_image;
+layout(set = 0, binding = kShadeWaves, scalar) uniform Sea { Waves sea; };
 
 layout(set = 0, binding = kShadeSeen) uniform texture2DArray seen_image;
 layout(set = 0, binding = kShadeCaustics) uniform sampler2DArray caustics_image;
@@ -31,6 +34,7 @@ uint lamp_count() { return kLamps; }
 
 #include "shared/caustics.h"
 #include "shared/surface.glsl"
+#include "shared/sea_surface.glsl"
 #include "shared/visibility.glsl"
 
 // What the lamp's map says, between four texels.
@@ -122,9 +126,37 @@ void main() {
     seen.caustic = caustic_at(s.position, planar_m * length(views[layer].ray_dx));
     radiance += shade_surface(s, -direction, seen);
   }  // else unlit
-  if (!hit) radiance = beyond(eye_depth_m, direction);
-  Sight sight = look_through(eye_depth_m, direction, hit ? planar_m * stretch : kForever_m);
+  float sight_m = hit ? planar_m * stretch : kForever_m;
+  SeaPoint surface;
+  bool meets = false, from_above = false;
+  if (light_has(kLightWaves)) {
+    from_above = eye_depth_m + sea.eye_height_m < 0.0;
+    meets = sea_meets(views[layer].eye, direction, length(views[layer].ray_dx), surface);
+    meets = meets && surface.distance_m < sight_m;
+    if (meets && !from_above) {
+      // What is above the water is not seen from below, but for the sky.
+      radiance = sea_from_below(surface, views[layer].eye, direction);
+      hit = false;
+      sight_m = surface.distance_m;
+    } else if (!hit) {
+      radiance = from_above && !meets ? sky_over(direction) : vec3(0.0);
+    }
+    // So that the still surface lies where the sight meets the waves.
+    if (meets) eye_depth_m = max(from_above ? -1e9 : 0.0, surface.distance_m * direction.y);
+    else if (from_above) eye_depth_m = -1e9;
+    else eye_depth_m = max(eye_depth_m + sea.eye_height_m, 1e-3);
+  } else if (!hit) {
+    radiance = beyond(eye_depth_m, direction);
+  }
+  Sight sight = look_through(eye_depth_m, direction, sight_m);
+  if (light_has(kLightForwardScatter)) {
+    // How much lighter than the water there, with what scatters forwards on the way, and the distance.
+    vec3 kept = (radiance - sight.water) * kept_forwards(sight.length_m) * light.exposure;
+    imageStore(scattered_image, at, hit ? vec4(clamp(kept, vec3(-60000.0), vec3(60000.0)), sight.length_m) : vec4(0.0));
+  }
   radiance = radiance * sight.transmittance + sight.added;
-  radiance += lamp_glow(views[layer].eye, direction, hit ? planar_m * stretch : kForever_m);
+  if (light_has(kLightWaves) && meets && from_above)
+    radiance = sea_from_above(surface, views[layer].eye, direction, radiance);
+  radiance += lamp_glow(views[layer].eye, direction, sight_m);
   imageStore(hdr_image, at, vec4(min(radiance * light.exposure, vec3(60000.0)), 1.0));
 }

@@ -242,6 +242,14 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
     light.terms |= shared::kLightWater;
     if (scene.water->scattering) light.terms |= shared::kLightScattering;
     if (scene.water->surface) light.terms |= shared::kLightSurface;
+    if (scene.water->forward_scatter) light.terms |= shared::kLightForwardScatter;
+    if (scene.water->waves) light.terms |= shared::kLightWaves;
+    if (scene.water->murk && scene.water->murk->factor > 1.0) {
+      light.terms |= shared::kLightMurk;
+      light.murk_bed_m = static_cast<float>(scene.water->murk->bed_depth_m);
+      light.murk_thickness_m = static_cast<float>(scene.water->murk->thickness_m);
+      light.murk_more = static_cast<float>(scene.water->murk->factor - 1.0);
+    }
     light.diffuse_attenuation = Vec3f(optics.diffuse_attenuation_m);
     light.beam_attenuation = Vec3f(optics.beam_attenuation_m());
     light.water_scattering = Vec3f(optics.water_scattering_m);
@@ -297,7 +305,10 @@ std::string names_of_terms(const shared::Lighting& lighting) {
       {shared::kLightAmbient, "ambient"},
       {shared::kLightSeen, "visibility"},
       {shared::kLightCaustics, "caustics"},
-      {shared::kLightLampShadows, "shadows of lamps"}};
+      {shared::kLightLampShadows, "shadows of lamps"},
+      {shared::kLightForwardScatter, "forward scatter"},
+      {shared::kLightWaves, "waves"},
+      {shared::kLightMurk, "murk"}};
   std::vector<std::string> names;
   for (const auto& [bit, name] : kNames)
     if (lighting.terms & bit) names.emplace_back(name);

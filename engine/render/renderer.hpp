@@ -17,7 +17,9 @@
 #include "engine/render/caustic_waves.hpp"
 #include "engine/render/draw_list.hpp"
 #include "engine/render/shadow_maps.hpp"
+#include "engine/render/water_passes.hpp"
 #include "shared/lighting.h"
+#include "shared/waves.h"
 
 namespace neritic::render {
 
@@ -78,6 +80,9 @@ struct ShadeInputs {
   const ViewSet& views;
   const shared::Lighting& lighting;
   LightImages light = {};
+  // Gets what forward scatter spreads, where the term kLightForwardScatter is on.
+  graph::ImageHandle* scattered = nullptr;
+  const shared::Waves* waves = nullptr;  // with the term kLightWaves
 };
 
 enum class GBufferKind {
@@ -133,6 +138,8 @@ class Renderer {
                                              const DeformedGeometry& deformed, const ViewSet& views,
                                              const DrawList& draws,
                                              const shared::Lighting& lighting);
+  // The passes of the scene's water, between forward and the display picture.
+  WaterPasses& water() { return water_; }
   // Display picture, kColorFormat: tonemap and, where asked for, antialias, which smooths edges.
   Result<graph::ImageHandle> declare_picture(graph::FrameGraph& graph, const std::string& prefix,
                                              graph::ImageHandle hdr, std::uint32_t width,
@@ -155,7 +162,7 @@ class Renderer {
   // stage, topology, motion, emissive, clipped, view mask, the material's flags, parts.
   using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, bool, std::uint32_t,
                                std::uint32_t, GBufferParts>;
-  explicit Renderer(gpu::Device& device) : device_(device) {}
+  explicit Renderer(gpu::Device& device) : device_(device), water_(device) {}
   Result<const gpu::Pipeline*> raster_pipeline(const RasterKey& key);
   // The pipelines that a list of draws needs, made before the pass records.
   struct PreparedDraws;
@@ -188,6 +195,7 @@ class Renderer {
                            gpu::Commands& commands);
 
   gpu::Device& device_;
+  WaterPasses water_;
   gpu::SetLayout material_layout_;
   std::map<RasterKey, gpu::Pipeline> raster_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline>

@@ -1,4 +1,5 @@
 // Renderer: creation, and the compute passes on the G-buffer: shade and tonemap.
+#include "engine/core/check.hpp"
 #include "engine/render/lighting.hpp"
 #include "engine/render/raster_draws.hpp"
 #include "engine/render/renderer.hpp"
@@ -40,13 +41,18 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                             {shared::kShadeSeen, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeCaustics, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
                             {shared::kShadeLampMaps, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                            {shared::kShadeLampShadows, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
+                            {shared::kShadeLampShadows, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                            {shared::kShadeScattered, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                            {shared::kShadeWaves, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
     desc.constants = {{shared::kSpecTerms, lighting.terms},
                       {shared::kSpecLamps, lighting.lamp_count}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
+  const std::optional<shared::Waves> waves =
+      inputs.waves ? std::optional(*inputs.waves) : std::nullopt;
+  NERITIC_CHECK(waves || !(lighting.terms & shared::kLightWaves), "{}shade: no waves", prefix);
   struct Data {
-    graph::ImageHandle hdr;
+    graph::ImageHandle hdr, scattered;
   };
   const Data& pass = graph.add_pass<Data>(
       prefix + "shade",
@@ -60,15 +66,24 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
             builder.create_image(prefix + "hdr",
                                  {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
             graph::Access::kStorageWriteCompute);
+        if (lighting.terms & shared::kLightForwardScatter)
+          data.scattered = builder.write(
+              builder.create_image(prefix + "scattered",
+                                   {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
+              graph::Access::kStorageWriteCompute);
       },
-      [this, &pipeline, gbuffer, lighting, light, &views](const Data& data,
-                                                          graph::PassContext& context) {
+      [this, &pipeline, gbuffer, lighting, light, waves, &views](const Data& data,
+                                                                 graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::UploadSlice view_data =
             commands.upload(std::span<const shared::View>(gpu_views(views)));
         const gpu::UploadSlice light_data = commands.upload(&lighting, sizeof lighting);
         const gpu::UploadSlice shadow_data =
             commands.upload(&light.lamp_shadows, sizeof light.lamp_shadows);
+        // Without waves the shader reads nothing of what is bound there; it is large enough.
+        static_assert(sizeof(shared::Waves) <= sizeof(shared::View) * shared::kMaxViews);
+        const gpu::UploadSlice wave_data =
+            waves ? commands.upload(&*waves, sizeof *waves) : view_data;
         const auto texels = [&](std::uint32_t binding, graph::ImageHandle handle) {
           return gpu::bound_texel_image(binding, context.image(handle).view());
         };
@@ -93,9 +108,15 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                  tile_sampler_.handle()),
              texels(shared::kShadeLampMaps, light.lamp_maps ? light.lamp_maps : gbuffer.depth),
              gpu::bound_buffer(shared::kShadeLampShadows, shadow_data.buffer, shadow_data.offset,
-                               shadow_data.size)});
+                               shadow_data.size),
+             gpu::bound_buffer(shared::kShadeWaves, wave_data.buffer, wave_data.offset,
+                               wave_data.size),
+             gpu::bound_storage_image(
+                 shared::kShadeScattered,
+                 context.image(data.scattered ? data.scattered : data.hdr).view())});
         commands.dispatch(groups(gbuffer.width), groups(gbuffer.height), gbuffer.layers);
       });
+  if (inputs.scattered) *inputs.scattered = pass.scattered;
   return pass.hdr;
 }
 

@@ -11,6 +11,7 @@
 #include "engine/scene/scene_copies.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/small_targets.hpp"
+#include "engine/scene/scene_reader.hpp"
 
 namespace neritic::scene {
 namespace {
@@ -41,6 +42,12 @@ Status number_instances(SceneDraft& draft) {
 }
 
 // Vehicle settings in world coordinates.
+// Beds move with the scene; layers keep their depth, as the surface does.
+void move_out(Water& water, const Vec3& offset_m) {
+  if (water.murk) water.murk->bed_depth_m -= offset_m.y;
+  for (SiltSource& silt : water.silt) silt.bed_depth_m -= offset_m.y;
+}
+
 void move_out(Dynamics& dynamics, const Vec3& offset_m) {
   if (dynamics.tether_anchor_m) *dynamics.tether_anchor_m += offset_m;
   if (!dynamics.mission) return;
@@ -62,6 +69,7 @@ void move_out(SceneDraft& draft, const Vec3& offset_m) {
   if (scene.ambient && scene.ambient->bottom_depth_m)
     *scene.ambient->bottom_depth_m -= offset_m.y;
   if (scene.world_from_lab) scene.world_from_lab->position_m += offset_m;
+  if (scene.water) move_out(*scene.water, offset_m);
   const auto moved = [&offset_m](Mount mount) {
     if (mount.object >= 0) return mount;
     mount.pose.position_m += offset_m;
@@ -142,6 +150,7 @@ Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& 
           draft.scene.notes.end())
         draft.scene.notes.push_back(note);
   draft.scene.models = std::move(loaded.models);
+  NERITIC_TRY_STATUS(resolve_water_sources(draft.scene));
   choose_model_lights(draft.scene);
   choose_sampling(draft.scene, options.sonar_quality);
   return std::move(draft.scene);

@@ -17,6 +17,7 @@
 #include "engine/scene/model.hpp"
 #include "engine/scene/physics_settings.hpp"
 #include "engine/scene/scene_light.hpp"
+#include "engine/scene/scene_water.hpp"
 #include "engine/scene/sonar_settings.hpp"
 #include "engine/scene/source_settings.hpp"
 #include "engine/scene/track.hpp"
@@ -80,6 +81,12 @@ struct Water {
   std::string type = "II";  // of kWaterTypes
   bool scattering = false;  // backscatter along the line of sight
   bool surface = false;     // the surface seen from below (Snell's window)
+  std::optional<ForwardScatter> forward_scatter = {};
+  std::optional<Snow> snow = {};
+  std::optional<SeaState> waves = {};  // of the surface; absent: flat
+  std::optional<Murk> murk = {};
+  std::vector<BubbleSource> bubbles = {};
+  std::vector<SiltSource> silt = {};
 };
 
 struct Lamp {

@@ -29,7 +29,19 @@ inline constexpr auto kCausticsKeys =
 inline constexpr auto kAmbientKeys =
     std::to_array<Key>({"bottom_color", "bottom_depth_m", "occlusion_m", "occlusion_samples"});
 
-inline constexpr auto kWaterKeys = std::to_array<Key>({"type", "scattering", "surface"});
+inline constexpr auto kWaterKeys =
+    std::to_array<Key>({"type", "scattering", "surface", "forward_scatter", "snow", "waves", "murk",
+                        "bubbles", "silt"});
+inline constexpr auto kForwardScatterKeys = std::to_array<Key>({"angle_deg", "levels"});
+inline constexpr auto kSnowKeys = std::to_array<Key>(
+    {"density_m3", "diameter_mm", "spread", "range_m", "drift_m_s", "shutter_s"});
+inline constexpr auto kWavesKeys =
+    std::to_array<Key>({"wind_m_s", "fetch_km", "direction_deg", "components", "seed"});
+inline constexpr auto kMurkKeys = std::to_array<Key>({"bed_depth_m", "thickness_m", "factor"});
+inline constexpr auto kBubbleKeys =
+    std::to_array<Key>({"on", "position_m", "breath_s", "flow_l_min", "diameter_mm", "height_m"});
+inline constexpr auto kSiltKeys =
+    std::to_array<Key>({"on", "position_m", "bed_depth_m", "reach_m", "hang_s"});
 
 // Keys of [[objects]] and [[vehicles]].
 inline constexpr auto kObjectKeys = std::to_array<Key>({"name",

@@ -45,6 +45,7 @@ Result<Water> read_water(const SceneSource& source, const TomlValue& table) {
   water.type = reader.choice("type", "II", kWaterTypes);
   water.scattering = reader.flag("scattering", false);
   water.surface = reader.flag("surface", false);
+  read_water_terms(reader, water);
   NERITIC_TRY_STATUS(reader.status());
   return water;
 }

@@ -86,5 +86,9 @@ class TableReader {
 // [sun] and [ambient] (scene_read_light.cpp).
 Result<Sun> read_sun(const SceneSource& source, const TomlValue& table);
 Result<Ambient> read_ambient(const SceneSource& source, const TomlValue& table);
+// The terms under [water] (scene_water.hpp), and, when all objects are known, those of their
+// places.
+void read_water_terms(TableReader& reader, Water& water);
+Status resolve_water_sources(Scene& scene);
 
 }  // namespace neritic::scene

@@ -17,6 +17,11 @@ NERITIC_CONST uint kLightAmbient = 1u << 16;  // the bottom's light
 NERITIC_CONST uint kLightSeen = 1u << 17;     // the visibility image: shadows of the sun, occlusion
 NERITIC_CONST uint kLightCaustics = 1u << 18;
 NERITIC_CONST uint kLightLampShadows = 1u << 19;
+// Light that water scatters forwards by small angles is kept: shading writes what it would lose.
+NERITIC_CONST uint kLightForwardScatter = 1u << 20;
+// The surface has waves. More particles hang near the bed.
+NERITIC_CONST uint kLightWaves = 1u << 21;
+NERITIC_CONST uint kLightMurk = 1u << 22;
 // Refractive index of sea water against air, in the visible (1.33 to 1.34, Mobley 1994).
 NERITIC_CONST float kWaterIndex = 1.333f;
 // Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance 0.066).
@@ -52,6 +57,9 @@ struct Lighting {
   float bottom_depth_m;      // negative: as deep as what it lights
   vec2 caustic_origin_m;     // of the view set's origin in the tile, along x and z
   float caustic_tile_m;
+  float murk_bed_m;          // depth of the bed that murk lies on
+  float murk_thickness_m;
+  float murk_more;           // particles and what they absorb at the bed, over those elsewhere, less 1
   SpotLight lamps[16];
 };
 NERITIC_CONST uint kMaxLamps = 16;
@@ -77,6 +85,8 @@ NERITIC_CONST uint kShadeSeen = 16;
 NERITIC_CONST uint kShadeCaustics = 17;
 NERITIC_CONST uint kShadeLampMaps = 18;
 NERITIC_CONST uint kShadeLampShadows = 19;
+NERITIC_CONST uint kShadeScattered = 24;  // with kLightForwardScatter
+NERITIC_CONST uint kShadeWaves = 25;      // with kLightWaves
 NERITIC_CONST uint kShadeGroup = 8;
 // Specialisation constants of the shade pass: the terms and the number of lamps. Terms that a scene
 // does not name are not compiled: a CPU driver computes both sides of a branch, and runs the body

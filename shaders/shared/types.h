@@ -23,6 +23,7 @@ using mat3 = glm::mat3;
 using mat4 = glm::mat4;
 using glm::abs;
 using glm::cos;
+using glm::exp;
 using glm::max;
 using glm::min;
 using glm::normalize;

@@ -61,6 +61,17 @@ vec2 water_part(float depth_m, vec3 direction, float length_m) {
   return vec2(begin_m, max(begin_m, end_m));
 }
 
+// Metres of clear water as murky as a sight: murk thins out over the bed as exp(-height / thickness).
+float murky_length(float depth_m, vec3 direction, float length_m) {
+  if (!light_has(kLightMurk)) return length_m;
+  // In thicknesses over the bed; below it murk grows no denser.
+  float start = max((light.murk_bed_m - depth_m) / light.murk_thickness_m, 0.0);
+  float end = max(start + direction.y * length_m / light.murk_thickness_m, 0.0);
+  float rise = end - start;
+  float mean = abs(rise) < 1e-3 ? exp(-start) : (exp(-start) - exp(-end)) / rise;
+  return length_m * (1.0 + light.murk_more * mean);
+}
+
 // Metres of a straight way between two depths (m, positive down) that lie in water.
 float water_length(float from_depth_m, float to_depth_m, float length_m) {
   float high_m = min(from_depth_m, to_depth_m);
@@ -73,20 +84,33 @@ float water_length(float from_depth_m, float to_depth_m, float length_m) {
 struct Sight {
   vec3 transmittance;
   vec3 added;
+  vec3 water;      // radiance of endless water behind its end
+  float length_m;  // in water
 };
+
+// Share of an object's light that a length of water neither absorbs nor scatters backwards or far aside.
+vec3 kept_forwards(float length_m) {
+  return exp(-min((light.beam_attenuation - light.particle_scattering) * length_m, vec3(80.0)));
+}
 
 // From a point at depth_m along the unit direction (world axes) for length_m (may be infinite).
 Sight look_through(float depth_m, vec3 direction, float length_m) {
   Sight sight;
   sight.transmittance = vec3(1.0);
   sight.added = vec3(0.0);
+  sight.water = vec3(0.0);
+  sight.length_m = 0.0;
   if (!light_has(kLightWater)) return sight;
   vec2 part_m = water_part(depth_m, direction, length_m);
   length_m = part_m.y - part_m.x;
   if (length_m <= 0.0) return sight;
   depth_m = max(depth_m, 0.0);
+  sight.length_m = murky_length(depth_m, direction, length_m);
+  // As if the murk of the whole sight were spread evenly over it.
+  float murky_m = murky_length(depth_m, direction, length_m);
+  float murk = murky_m / length_m;
   // Exponents beyond 80 are as good as infinite and keep inf * 0 out.
-  sight.transmittance = exp(-min(light.beam_attenuation * length_m, vec3(80.0)));
+  sight.transmittance = exp(-min(light.beam_attenuation * murky_m, vec3(80.0)));
   if (!light_has(kLightScattering) || !light_has(kLightSun)) return sight;
   vec3 source = scattered_towards(direction, downwelling(depth_m), direct_share(depth_m));
   if (light_has(kLightAmbient) && light.bottom_depth_m >= 0.0) {
@@ -96,10 +120,16 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
     source += upwards * (light.particle_scattering + light.water_scattering) * (0.5 - 0.45 * direction.y);
   }
   // Integral of source * exp(-(c + K_d down) s) over the length; down is the sine of the dive angle.
-  vec3 rate = light.beam_attenuation - light.diffuse_attenuation * direction.y;
+  source *= murk;
+  vec3 rate = light.beam_attenuation * murk - light.diffuse_attenuation * direction.y;
   vec3 exponent = clamp(rate * length_m, vec3(-80.0), vec3(80.0));
   vec3 integral = (1.0 - exp(-exponent)) / (abs(rate) + 1e-9) * sign(rate);
   sight.added = source * mix(integral, vec3(length_m), lessThan(abs(exponent), vec3(1e-4)));
+  if (light_has(kLightForwardScatter)) {
+    // Upwards in clear water light grows faster than it fades, up to the surface: a tenth of c is the floor.
+    vec3 deeper = exp(clamp(light.diffuse_attenuation * direction.y * length_m, vec3(-80.0), vec3(80.0)));
+    sight.water = source * deeper / max(rate, 0.1 * light.beam_attenuation + 1e-9);
+  }
   return sight;
 }
 

@@ -8,7 +8,7 @@
 
 NERITIC_SHARED_BEGIN
 
-NERITIC_CONST uint kMaxWaves = 64;
+NERITIC_CONST uint kMaxWaves = 48;
 
 struct Wave {
   vec2 wave_number;  // 1/m, along world x and z: 2 pi over the wavelength
@@ -21,7 +21,9 @@ struct Waves {
   float height_rms_m;  // of the sum
   float slope2;        // mean square slope of the sum, both axes
   float fine_slope2;   // of the waves shorter than those of the sum, both axes
-  float foam_share;    // of the surface that whitecaps cover
+  float foam_height_m;   // crests above it are whitecaps
+  vec2 foam_shift;       // of the whitecaps' pattern at the origin
+  float eye_height_m;    // of the surface over the first view's eye
   Wave waves[kMaxWaves];  // from long to short
 };
 

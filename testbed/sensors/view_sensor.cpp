@@ -6,6 +6,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/render/lighting.hpp"
+#include "engine/render/sea_waves.hpp"
 #include "testbed/sensors/decode.hpp"
 #include "testbed/sensors/session.hpp"
 
@@ -107,11 +108,31 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
               render::make_lighting(frame.scene, frame.state, work.views.origin_m(),
                                     request.exposure, frame.gpu_scene.has_emission()));
   NERITIC_TRY(const render::LightImages light, declare_light(frame, prefix, g, work, lighting));
+  graph::ImageHandle scattered;
+  std::optional<shared::Waves> waves;
+  if (lighting.terms & shared::kLightWaves)
+    waves = render::gpu_waves(SeaWaves(*frame.scene.water->waves), work.views.origin_m(),
+                              frame.state.time_s);
   NERITIC_TRY(graph::ImageHandle hdr,
-              frame.renderer.declare_shade(frame.graph, prefix, {g, work.views, lighting, light}));
+              frame.renderer.declare_shade(
+                  frame.graph, prefix,
+                  {g, work.views, lighting, light, &scattered, waves ? &*waves : nullptr}));
   NERITIC_TRY(hdr,
               frame.renderer.declare_forward(frame.graph, prefix, hdr, g, frame.gpu_scene,
                                              frame.deformed, work.views, work.draws, lighting));
+  if (scattered) {
+    NERITIC_TRY(hdr, frame.renderer.water().declare_forward_scatter(
+                         frame.graph, prefix, hdr, scattered, g, work.views, lighting,
+                         *frame.scene.water->forward_scatter));
+  }
+  if (render::has_particles(frame.scene)) {
+    const double time_s = frame.state.time_s, step_s = frame.state.next_time_s - time_s;
+    work.particles = render::view_particles(frame.motion, frame.scene.seed, work.views, time_s);
+    const double shutter = step_s > 0.0 ? work.particles.shutter_s / step_s : 0.0;
+    NERITIC_TRY(hdr, frame.renderer.water().declare_particles(
+                         frame.graph, prefix, hdr, g, work.views, lighting,
+                         work.particles.particles, static_cast<float>(shutter)));
+  }
   return frame.renderer.declare_picture(frame.graph, prefix, hdr, g.width, g.height, g.layers,
                                         request.antialias);
 }

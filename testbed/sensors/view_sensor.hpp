@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "engine/render/particles.hpp"
 #include "engine/render/renderer.hpp"
 #include "testbed/sensors/frame_request.hpp"
 #include "testbed/sensors/frame_result.hpp"
@@ -40,6 +41,7 @@ struct ViewsWork {
   Capture capture;
   render::DrawList draws;
   std::vector<render::ShadowMap> cascades;       // of the sun; empty where it throws no shadows
+  render::ViewParticles particles;               // of the scene's water
   Readback depth, normal, label, color, motion;  // empty where they were not asked for
   bool at_host() const { return depth || normal || label || color || motion; }
 };

@@ -1,0 +1,89 @@
+// WaterPasses: particles over the shaded picture, one instance each.
+#include "engine/render/lighting.hpp"
+#include "engine/render/raster_draws.hpp"
+#include "engine/render/water_passes.hpp"
+#include "shaders.hpp"
+
+namespace neritic::render {
+
+Result<graph::ImageHandle> WaterPasses::declare_particles(
+    graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
+    const GBuffer& gbuffer, const ViewSet& views, const shared::Lighting& lighting,
+    const std::vector<shared::Particle>& particles, float shutter) {
+  if (particles.empty()) return hdr;
+  const std::vector<std::uint32_t> masks = view_masks_of(gbuffer.layers, device_);
+  for (const std::uint32_t mask : masks) {
+    gpu::Pipeline& pipeline = particles_[mask];
+    if (pipeline) continue;
+    gpu::GraphicsPipelineDesc desc;
+    desc.name = "particles";
+    desc.vertex_code = shaders::kParticlesVert;
+    desc.fragment_code = shaders::kParticlesFrag;
+    desc.layout.bindings = {{shared::kParticleViews, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                            {shared::kParticleLighting, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                            {shared::kParticleDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+    desc.layout.push_constant_bytes = sizeof(shared::ParticlePush);
+    desc.constants = {{shared::kSpecMultiview, mask != 0}};
+    desc.streams = {
+        {sizeof(shared::Particle),
+         {{shared::kParticlePosition, VK_FORMAT_R32G32B32A32_SFLOAT,
+           offsetof(shared::Particle, position)},
+          {shared::kParticleMoved, VK_FORMAT_R32G32B32A32_SFLOAT,
+           offsetof(shared::Particle, moved)},
+          {shared::kParticleKind, VK_FORMAT_R32G32_UINT, offsetof(shared::Particle, kind)}},
+         true}};
+    desc.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+    desc.color_formats = {kHdrFormat};
+    desc.depth_format = kDepthFormat;
+    desc.depth_write = false;
+    desc.blend = gpu::Blend::kAlphaOver;
+    desc.view_mask = mask;
+    NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
+  }
+  struct Data {
+    graph::ImageHandle hdr;
+  };
+  const Data& pass = graph.add_pass<Data>(
+      prefix + "particles",
+      [&](graph::PassBuilder& builder, Data& data) {
+        builder.terms(fmt::format("{} particles", particles.size()));
+        data.hdr = builder.write(hdr, graph::Access::kColorAttachment);
+        builder.read(gbuffer.depth, graph::Access::kDepthTestAndSampled);
+      },
+      [this, masks, gbuffer, lighting, shutter, &views, &particles](const Data& data,
+                                                                    graph::PassContext& context) {
+        gpu::Commands& commands = context.commands;
+        const VkImageLayout depth_layout =
+            graph::access_info(graph::Access::kDepthTestAndSampled).layout;
+        const gpu::BoundResource set0[] = {
+            bound_slice(shared::kParticleViews,
+                        commands.upload(std::span<const shared::View>(gpu_views(views)))),
+            bound_slice(shared::kParticleLighting, commands.upload(&lighting, sizeof lighting)),
+            gpu::bound_texel_image(shared::kParticleDepth, context.image(gbuffer.depth).view(),
+                                   depth_layout)};
+        const VkRenderingAttachmentInfo color =
+            attachment(context.image(data.hdr), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                       VK_ATTACHMENT_LOAD_OP_LOAD);
+        VkRenderingAttachmentInfo depth =
+            attachment(context.image(gbuffer.depth), depth_layout, VK_ATTACHMENT_LOAD_OP_LOAD);
+        depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;
+        const gpu::UploadSlice stream =
+            commands.upload(std::span<const shared::Particle>(particles));
+        const shared::ParticlePush push{Vec2f(gbuffer.width, gbuffer.height), shutter};
+        for (const std::uint32_t mask : masks) {
+          const gpu::Pipeline& pipeline = particles_.at(mask);
+          begin_rendering(context.cmd(), gbuffer, mask, std::span(&color, 1), depth);
+          commands.bind_pipeline(pipeline);
+          commands.bind(pipeline, set0);
+          commands.push(pipeline, push);
+          vkCmdSetCullMode(context.cmd(), VK_CULL_MODE_NONE);
+          vkCmdSetFrontFace(context.cmd(), VK_FRONT_FACE_COUNTER_CLOCKWISE);
+          vkCmdBindVertexBuffers(context.cmd(), 0, 1, &stream.buffer, &stream.offset);
+          vkCmdDraw(context.cmd(), 4, static_cast<std::uint32_t>(particles.size()), 0, 0);
+          vkCmdEndRendering(context.cmd());
+        }
+      });
+  return pass.hdr;
+}
+
+}  // namespace neritic::render

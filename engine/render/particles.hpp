@@ -1,0 +1,45 @@
+// Where the particles of a scene's water are at an instant, in double, before any view is drawn:
+// marine snow, bubbles, silt. Counter-based: the same seed, time and place give the same particles
+// whoever looks. Pure functions; any thread.
+#pragma once
+
+#include <vector>
+
+#include "engine/render/views.hpp"
+#include "engine/scene/motion.hpp"
+#include "shared/particles.h"
+
+namespace neritic::render {
+
+// A particle in the world.
+struct WorldParticle {
+  Vec3 position_m{0.0}, velocity_m_s{0.0};
+  double radius_m = 0.0, opacity = 1.0;
+  std::uint32_t kind = 0, seed = 0;
+};
+
+// Snow within range_m of a point, that drifts and stays in the water while cameras move.
+std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t seed,
+                                       const Vec3& center_m, double time_s);
+
+// Speed at which a bubble rises in still water.
+double bubble_speed_m_s(double radius_m);
+// A source's bubbles, and its silt, at a time; number: of the source, for its randomness.
+void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& source,
+                 std::uint64_t number, std::uint64_t seed, double time_s,
+                 std::vector<WorldParticle>& out);
+void add_silt(const scene::MotionSource& motion, const scene::SiltSource& source,
+              std::uint64_t number, std::uint64_t seed, double time_s,
+              std::vector<WorldParticle>& out);
+
+// All particles that a view set sees at a time, relative to its origin, from far to near.
+// shutter_s: of the exposure, for streaks.
+struct ViewParticles {
+  std::vector<shared::Particle> particles;
+  double shutter_s = 0.0;
+};
+bool has_particles(const scene::Scene& scene);
+ViewParticles view_particles(const scene::MotionSource& motion, std::uint64_t seed,
+                             const ViewSet& views, double time_s);
+
+}  // namespace neritic::render

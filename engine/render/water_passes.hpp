@@ -1,0 +1,57 @@
+// The passes of a scene's water beside shading: forward scatter and particles. Each is declared
+// only where the scene names it. Pipelines are created at first use. Rendering thread only.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/gpu/device.hpp"
+#include "engine/gpu/pipeline.hpp"
+#include "engine/graph/frame_graph.hpp"
+#include "engine/render/views.hpp"
+#include "engine/scene/scene_water.hpp"
+#include "shared/forward_scatter.h"
+#include "shared/lighting.h"
+#include "shared/particles.h"
+
+namespace neritic::render {
+
+struct GBuffer;
+
+class WaterPasses {
+ public:
+  explicit WaterPasses(gpu::Device& device) : device_(device) {}
+
+  // The picture with the light that water scatters forwards. scattered: what shading wrote beside
+  // hdr.
+  Result<graph::ImageHandle> declare_forward_scatter(
+      graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
+      graph::ImageHandle scattered, const GBuffer& gbuffer, const ViewSet& views,
+      const shared::Lighting& lighting, const scene::ForwardScatter& settings);
+  // Particles over the picture, from far to near. They must live until the graph has run. shutter:
+  // share of the time to the next frame that the exposure lasts.
+  Result<graph::ImageHandle> declare_particles(graph::FrameGraph& graph, const std::string& prefix,
+                                               graph::ImageHandle hdr, const GBuffer& gbuffer,
+                                               const ViewSet& views,
+                                               const shared::Lighting& lighting,
+                                               const std::vector<shared::Particle>& particles,
+                                               float shutter);
+
+ private:
+  gpu::Device& device_;
+  gpu::Pipeline scatter_first_, scatter_down_, scatter_up_, scatter_add_;
+  std::map<std::uint32_t, gpu::Pipeline> particles_;  // by view mask
+};
+
+// A level of the forward scatter's pyramid: its size, and its octave in cycles a radian.
+struct ScatterLevel {
+  std::uint32_t width = 1, height = 1;
+  shared::ScatterPush push{};
+};
+// From the finest to the coarsest, as many as the picture has room for, at most settings.levels.
+std::vector<ScatterLevel> scatter_levels(const scene::ForwardScatter& settings,
+                                         const shared::Lighting& lighting, std::uint32_t width,
+                                         std::uint32_t height, double pixels_rad);
+
+}  // namespace neritic::render

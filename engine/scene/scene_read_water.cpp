@@ -1,0 +1,132 @@
+// Reads the terms under [water], each a table: what is not named is not modelled.
+#include "engine/core/refusal.hpp"
+#include "engine/scene/scene_draft.hpp"
+#include "engine/scene/scene_reader.hpp"
+
+namespace neritic::scene {
+namespace {
+
+constexpr Interval kBedDepth{-kFarthest_m, kFarthest_m, false, false, "metres"};
+constexpr Interval kReach{0, 1000, true, false, "metres"};
+constexpr Interval kSomeSeconds{0, 1000, false, false, "seconds"};
+
+// Reads the table under key, where it is there; its fault becomes the water's.
+template <class Term, class Read>
+std::optional<Term> read_water_term(TableReader& water, Key key, KeyList keys, Read read) {
+  const TomlValue* table = water.table(key);
+  if (!table) return std::nullopt;
+  TableReader reader(water.source(), *table, water.path(key), keys);
+  Term term = read(reader);
+  if (!reader.ok()) water.fail(reader.status().error());
+  return term;
+}
+
+ForwardScatter read_forward_scatter(TableReader& reader) {
+  ForwardScatter out;
+  out.angle_rad = radians(
+      reader.number("angle_deg", degrees(out.angle_rad), {0.1, 10, false, false, "degrees"}));
+  out.levels = static_cast<std::uint32_t>(reader.whole("levels", out.levels, 2, 8));
+  return out;
+}
+
+Snow read_snow(TableReader& reader) {
+  Snow out;
+  out.density_m3 = reader.number("density_m3", out.density_m3,
+                                 {0, 20000, false, false, "particles per cubic metre"});
+  out.diameter_m = 1e-3 * reader.number("diameter_mm", 1e3 * out.diameter_m,
+                                        {0, 50, true, false, "millimetres"});
+  out.spread = reader.number("spread", out.spread, {0, 2});
+  out.range_m = reader.number("range_m", out.range_m, {0, 20, true, false, "metres"});
+  out.drift_m_s = reader.vector3("drift_m_s", out.drift_m_s, {-100, 100, false, false, "m/s"});
+  out.shutter_s = reader.number("shutter_s", out.shutter_s, {0, 1, false, false, "seconds"});
+  return out;
+}
+
+SeaState read_waves(TableReader& reader) {
+  SeaState out;
+  out.wind_m_s = reader.number("wind_m_s", out.wind_m_s, {0, 60, false, false, "m/s"});
+  out.fetch_m =
+      1e3 * reader.number("fetch_km", 1e-3 * out.fetch_m, {0.01, 1e4, false, false, "kilometres"});
+  out.direction_rad = radians(reader.number("direction_deg", 0.0, kAnyTurn));
+  out.components = static_cast<std::uint32_t>(reader.whole("components", out.components, 1, 48));
+  out.seed = reader.whole("seed", out.seed, 0, INT64_MAX);
+  return out;
+}
+
+BubbleSource read_bubbles(TableReader& reader) {
+  BubbleSource out;
+  out.on = reader.text("on", "");
+  out.place = reader.place("on");
+  if (out.on.empty()) reader.refuse("on", "the name of an object");
+  out.position_m = reader.vector3("position_m", Vec3(0.0), kAnyMetres);
+  out.breath_s = reader.number("breath_s", out.breath_s, {0, 120, false, false, "seconds"});
+  out.flow_m3_s =
+      reader.number("flow_l_min", 6e4 * out.flow_m3_s, {0, 2000, true, false, "litres a minute"}) /
+      6e4;
+  out.median_radius_m = 0.5e-3 * reader.number("diameter_mm", 2e3 * out.median_radius_m,
+                                               {0.5, 100, false, false, "millimetres"});
+  out.height_m = reader.number("height_m", out.height_m, {0, 100, true, false, "metres"});
+  return out;
+}
+
+SiltSource read_silt(TableReader& reader) {
+  SiltSource out;
+  out.on = reader.text("on", "");
+  out.place = reader.place("on");
+  if (out.on.empty()) reader.refuse("on", "the name of an object");
+  out.position_m = reader.vector3("position_m", Vec3(0.0), kAnyMetres);
+  if (!reader.has("bed_depth_m")) reader.refuse_table("no bed_depth_m", "bed_depth_m, in metres");
+  out.bed_depth_m = reader.number("bed_depth_m", 0.0, kBedDepth);
+  out.reach_m = reader.number("reach_m", out.reach_m, {0, 20, true, false, "metres"});
+  out.hang_s = reader.number("hang_s", out.hang_s, {1, 600, false, false, "seconds"});
+  return out;
+}
+
+Murk read_murk(TableReader& reader) {
+  Murk out;
+  if (!reader.has("bed_depth_m")) reader.refuse_table("no bed_depth_m", "bed_depth_m, in metres");
+  out.bed_depth_m = reader.number("bed_depth_m", 0.0, kBedDepth);
+  out.thickness_m = reader.number("thickness_m", out.thickness_m, kReach);
+  out.factor = reader.number("factor", out.factor, {1, 1000});
+  return out;
+}
+
+}  // namespace
+
+void read_water_terms(TableReader& reader, Water& water) {
+  water.forward_scatter = read_water_term<ForwardScatter>(
+      reader, "forward_scatter", kForwardScatterKeys, read_forward_scatter);
+  water.snow = read_water_term<Snow>(reader, "snow", kSnowKeys, read_snow);
+  water.waves = read_water_term<SeaState>(reader, "waves", kWavesKeys, read_waves);
+  water.murk = read_water_term<Murk>(reader, "murk", kMurkKeys, read_murk);
+  const auto each = [&](Key key, KeyList keys, auto read, auto& out) {
+    std::size_t i = 0;
+    for (const TomlValue& table : reader.tables(key)) {
+      TableReader one(reader.source(), table, fmt::format("{}[{}]", reader.path(key), i++), keys);
+      out.push_back(read(one));
+      if (!one.ok()) reader.fail(one.status().error());
+    }
+  };
+  each("bubbles", kBubbleKeys, read_bubbles, water.bubbles);
+  each("silt", kSiltKeys, read_silt, water.silt);
+  if (water.waves && !water.surface)
+    reader.refuse_table("waves without a surface", "surface = true");
+}
+
+Status resolve_water_sources(Scene& scene) {
+  if (!scene.water) return {};
+  const auto resolve = [&](auto& sources) -> Status {
+    for (auto& source : sources) {
+      for (std::size_t i = 0; i < scene.objects.size(); ++i)
+        if (scene.objects[i].name == source.on) source.object = static_cast<int>(i);
+      if (source.object < 0)
+        return refusal(source.place, fmt::format("\"{}\"", source.on),
+                       "the name of an object of the scene");
+    }
+    return {};
+  };
+  NERITIC_TRY_STATUS(resolve(scene.water->bubbles));
+  return resolve(scene.water->silt);
+}
+
+}  // namespace neritic::scene

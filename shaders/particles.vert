@@ -1,0 +1,114 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_multiview : require
+
+// A particle's spot on the picture: where it is, how wide with its blur, its streak, and its light. A spot
+// that would be narrower than a pixel and a half is as wide and fainter, so that it does not flicker.
+#include "shared/lighting.h"
+#include "shared/particles.h"
+
+layout(constant_id = kSpecMultiview) const bool kMultiview = true;
+
+layout(location = kParticlePosition) in vec4 in_position;
+layout(location = kParticleMoved) in vec4 in_moved;
+layout(location = kParticleKind) in uvec2 in_kind;
+
+layout(set = 0, binding = kParticleViews, scalar) uniform Views { View views[kMaxViews]; };
+layout(set = 0, binding = kParticleLighting, scalar) uniform Light { Lighting light; };
+layout(push_constant, scalar) uniform Push { ParticlePush push; };
+
+bool light_has(uint term) { return (light.terms & term) != 0u; }
+uint lamp_count() { return light.lamp_count; }
+
+#include "shared/water.glsl"
+
+layout(location = 0) out vec2 place;         // pixels from the streak's middle: along, across
+layout(location = 1) flat out vec3 shape;    // half streak, radius (pixels), opacity
+layout(location = 2) flat out vec3 body;     // radiance that arrives from an opaque one, exposed
+layout(location = 3) flat out vec3 bright;   // of a bubble: of what mirrors the light from above
+layout(location = 4) flat out uvec2 kind;
+layout(location = 5) flat out vec4 flatness;  // distance (m), radius (m), direction of the streak
+
+// Share of even light that a small pale thing sends on. Aggregates of marine snow are translucent.
+const vec3 kSnowAlbedo = vec3(0.55, 0.57, 0.55);
+const vec3 kSiltAlbedo = vec3(0.42, 0.38, 0.30);
+
+// Radiance of a diffuse sphere, as a mean over its disk: 2/3 of albedo / pi where light and eye are on one
+// side (Lambert's sphere), falling to none; what passes through counts for a third.
+float sphere_share(float cosine) { return (0.33 + 0.67 * (0.5 + 0.5 * cosine)) * 0.667 / kPi; }
+
+vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo) {
+  vec3 sum = vec3(0.0);
+  if (light_has(kLightSun)) {
+    float depth_m = light.origin_depth_m - at.y;
+    vec3 irradiance = downwelling(depth_m);
+    vec3 direct = direct_share(depth_m);
+    sum += irradiance * direct / light.sun_cosine * sphere_share(dot(light.to_sun, to_eye));
+    sum += irradiance * (1.0 - direct) * sphere_share(to_eye.y) * 1.3;
+  }
+  for (uint i = 0u; i < lamp_count(); ++i) {
+    vec3 to_lamp = light.lamps[i].position - at;
+    float distance_m = max(length(to_lamp), 0.05);
+    to_lamp /= distance_m;
+    float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, dot(-to_lamp, light.lamps[i].direction));
+    vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.0025);
+    if (light_has(kLightWater)) arriving *= exp(-min(light.beam_attenuation * distance_m, vec3(80.0)));
+    sum += arriving * sphere_share(dot(to_lamp, to_eye));
+  }
+  return sum * albedo;
+}
+
+void main() {
+  int view = kMultiview ? gl_ViewIndex : 0;
+  vec4 now = views[view].clip_from_origin * vec4(in_position.xyz, 1.0);
+  vec4 later = mix(views[view].clip_from_origin * vec4(in_position.xyz + in_moved.xyz, 1.0),
+                   views[view].next_clip_from_origin * vec4(in_position.xyz + in_moved.xyz, 1.0), push.shutter);
+  gl_Position = vec4(0.0, 0.0, -1.0, 1.0);  // nothing, unless it is before the camera
+  place = vec2(0.0);
+  shape = body = bright = vec3(0.0);
+  kind = in_kind;
+  flatness = vec4(0.0);
+  if (!(now.w > views[view].near_m)) return;
+  if (!(later.w > views[view].near_m)) later = now;
+  vec2 half_size = 0.5 * push.target_size;
+  vec2 a = now.xy / now.w * half_size, b = later.xy / later.w * half_size;
+  vec2 along = b - a;
+  float streak = length(along);
+  along = streak > 1e-3 ? along / streak : vec2(1.0, 0.0);
+  streak = min(streak, 0.25 * push.target_size.x);
+  // Pixels a metre at that distance.
+  vec3 from_eye = in_position.xyz - views[view].eye;
+  float distance_m = max(length(from_eye), 1e-3);
+  vec3 to_eye = -from_eye / distance_m;
+  float pixels_m = length(views[view].ray_dx) > 0.0 ? 1.0 / (length(views[view].ray_dx) * now.w) : 0.0;
+  float own = in_position.w * pixels_m;
+  float blur = 0.5 * kLensOpening_m * abs(1.0 / now.w - 1.0 / kLensFocus_m) / length(views[view].ray_dx);
+  float radius = in_kind.x == kParticleSilt ? own : sqrt(own * own + blur * blur + 0.56);
+  // A spot's light is spread over its blur and its streak.
+  float share = in_kind.x == kParticleSilt ? 1.0 : own * own / (radius * radius) * (radius * kPi / (radius * kPi + 2.0 * streak));
+  vec3 albedo = in_kind.x == kParticleSilt ? kSiltAlbedo : kSnowAlbedo;
+  Sight sight = look_through(light.origin_depth_m - views[view].eye.y, -to_eye, distance_m);
+  vec3 own_light = radiance_of(in_position.xyz, to_eye, albedo);
+  if (in_kind.x == kParticleBubble) {
+    // A bubble's rim mirrors what is about it; from where the sky's light comes it is bright.
+    float depth_m = light.origin_depth_m - in_position.y;
+    own_light = sight.water;
+    vec3 above = light_has(kLightSun) ? downwelling(depth_m) * (1.0 / kPi) : vec3(0.0);
+    vec3 lamps = radiance_of(in_position.xyz, to_eye, vec3(1.0));
+    own_light = 0.25 * above + 0.3 * lamps;
+    bright = ((above + 0.5 * lamps) * sight.transmittance + sight.added) * light.exposure;
+  }
+  body = (own_light * sight.transmittance + sight.added) * light.exposure;
+  body = min(body, vec3(60000.0));
+  bright = min(bright, vec3(60000.0));
+  shape = vec3(0.5 * streak, radius, in_moved.w * share);
+  flatness = vec4(distance_m, in_position.w, along);
+  // Corners of the strip, a pixel wider than the spot.
+  vec2 corner = vec2((gl_VertexIndex & 1) == 0 ? -1.0 : 1.0, (gl_VertexIndex & 2) == 0 ? -1.0 : 1.0);
+  place = corner * vec2(0.5 * streak + radius + 1.0, radius + 1.0);
+  vec2 middle = a + along * (0.5 * streak);
+  vec2 pixel = middle + along * place.x + vec2(-along.y, along.x) * place.y;
+  gl_Position = vec4(pixel / half_size * now.w, now.z, now.w);
+}

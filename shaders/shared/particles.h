@@ -1,0 +1,43 @@
+// Small things in the water, drawn as soft spots: marine snow, bubbles, silt. The host places them
+// (engine/render/particles.hpp), one instance each.
+#ifndef NERITIC_SHARED_PARTICLES_H
+#define NERITIC_SHARED_PARTICLES_H
+#include "shared/raster.h"
+
+NERITIC_SHARED_BEGIN
+
+NERITIC_CONST uint kParticleSnow = 0;
+NERITIC_CONST uint kParticleBubble = 1;
+NERITIC_CONST uint kParticleSilt = 2;
+
+struct Particle {
+  vec3 position;  // relative to the view set's origin
+  float radius_m;
+  vec3 moved;      // during the exposure
+  float opacity;   // of its middle
+  uint kind;
+  uint seed;  // of its shape
+};
+
+struct ParticlePush {
+  vec2 target_size;  // pixels
+  float shutter;     // share of the time to the next frame that the exposure lasts
+};
+
+// Locations of the instance stream.
+NERITIC_CONST uint kParticlePosition = 0;  // and radius
+NERITIC_CONST uint kParticleMoved = 1;     // and opacity
+NERITIC_CONST uint kParticleKind = 2;      // and seed
+
+// Bindings.
+NERITIC_CONST uint kParticleViews = 0;
+NERITIC_CONST uint kParticleLighting = 1;
+NERITIC_CONST uint kParticleDepth = 2;
+
+// A lens of this opening (m), focussed at this distance (m), blurs what is nearer or farther: a wide lens of
+// a compact camera, 4.5 mm at f/2.8, behind a flat port.
+NERITIC_CONST float kLensOpening_m = 0.0016f;
+NERITIC_CONST float kLensFocus_m = 2.0f;
+
+NERITIC_SHARED_END
+#endif

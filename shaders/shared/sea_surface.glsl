@@ -1,0 +1,166 @@
+// The wavy surface as seen from below and above: Snell's window with the refracted sky, total reflection
+// outside, the sun's glitter, whitecaps. GLSL only; the including file declares `sea`, a uniform block of type
+// Waves, and includes shared/water.glsl first. Slopes of waves too short for a pixel spread what is seen.
+#ifndef NERITIC_SEA_SURFACE_GLSL
+#define NERITIC_SEA_SURFACE_GLSL
+
+struct SeaPoint {
+  float distance_m;  // along the sight
+  float height_m;
+  vec2 slope;
+  float rough2;  // mean square slope of what is not resolved, both axes
+  float crest;   // height over the whitecaps' threshold, in the sea's rms
+};
+
+// The sum of waves about a place, without what is shorter than a footprint.
+SeaPoint sea_at(vec2 at, float footprint_m) {
+  SeaPoint point;
+  vec3 sum = vec3(0.0);
+  float resolved = 0.0;
+  for (uint i = 0u; i < sea.count; ++i) {
+    Wave wave = sea.waves[i];
+    float k = length(wave.wave_number) * footprint_m;
+    if (k > 3.0) break;  // so are all that follow
+    float kept = exp(-0.5 * k * k);
+    sum += kept * wave_surface(wave, at.x, at.y);
+    float steep = kept * wave.amplitude_m * length(wave.wave_number);
+    resolved += 0.5 * steep * steep;
+  }
+  point.height_m = sum.x;
+  point.slope = sum.yz;
+  point.rough2 = sea.fine_slope2 + max(sea.slope2 - resolved, 0.0);
+  point.crest = (sum.x - sea.foam_height_m) / max(sea.height_rms_m, 1e-4);
+  return point;
+}
+
+// Farther off the surface is not told from the horizon, m.
+const float kFarthestSea_m = 3000.0;
+
+// Where a sight meets the surface. pixel_rad: of one pixel. Sights along the surface never do.
+bool sea_meets(vec3 eye, vec3 direction, float pixel_rad, out SeaPoint point) {
+  float over_m = eye.y - light.origin_depth_m;
+  float towards = over_m - sea.eye_height_m < 0.0 ? direction.y : -direction.y;
+  if (towards < 2e-3) return false;
+  float distance_m = abs(over_m - sea.eye_height_m) / towards;
+  if (distance_m > kFarthestSea_m) return false;
+  for (int i = 0; i < 2; ++i) {
+    float footprint_m = 0.5 * pixel_rad * distance_m * inversesqrt(towards);
+    vec3 at = eye + direction * distance_m;
+    point = sea_at(at.xz, footprint_m);
+    distance_m = max((point.height_m - over_m) / direction.y, 0.0);
+    if (distance_m > kFarthestSea_m) return false;
+  }
+  point.distance_m = distance_m;
+  return true;
+}
+
+// The sky's radiance in air: a clear sky is about half brighter at the horizon than overhead; its irradiance
+// is what does not come straight from the sun.
+vec3 sky_over(vec3 direction) {
+  float low = 1.0 - max(direction.y, 0.0);
+  const vec3 kTint = vec3(0.8612, 1.0227, 1.1841);
+  vec3 even = light.surface_irradiance * ((1.0 - light.direct_share) / (kPi * kSkyTransmittance)) * kTint;
+  return even * ((0.8 + 0.6 * low * low) / 0.9);
+}
+
+// Unpolarised reflectance; cosines on the water's and the air's side.
+float fresnel_of(float in_water, float in_air) {
+  float rs = (kWaterIndex * in_water - in_air) / (kWaterIndex * in_water + in_air);
+  float rp = (kWaterIndex * in_air - in_water) / (kWaterIndex * in_air + in_water);
+  return 0.5 * (rs * rs + rp * rp);
+}
+
+vec3 sun_in_air() {
+  vec2 level = light.to_sun.xz * kWaterIndex;
+  return normalize(vec3(level.x, sqrt(max(1.0 - dot(level, level), 1e-4)), level.y));
+}
+
+// The sun's beam spread over a lobe of that variance per axis (rad^2), 1/sr; its disk has 4.7 mrad.
+float sun_lobe(vec3 direction, vec3 sun, float variance) {
+  float v = variance + 6e-6;
+  vec3 off = direction - sun;
+  return exp(-min(0.5 * dot(off, off) / v, 80.0)) / (2.0 * kPi * v);
+}
+
+float foam_noise(vec2 p) {
+  vec2 cell = floor(p), part = p - cell;
+  part = part * part * (3.0 - 2.0 * part);
+  vec4 h;
+  for (int i = 0; i < 4; ++i) {
+    uvec2 c = uvec2(ivec2(cell) + ivec2(i & 1, i >> 1));
+    uint n = (c.x * 1664525u ^ c.y * 22695477u) * 2654435769u;
+    n ^= n >> 15;
+    n *= 2246822519u;
+    h[i] = float(n >> 8) * (1.0 / 16777216.0);
+  }
+  return mix(mix(h.x, h.y, part.x), mix(h.z, h.w, part.x), part.y);
+}
+
+// Share of the surface there that foam covers: on crests, broken up. at: relative to the origin.
+float foam_at(SeaPoint point, vec2 at) {
+  float torn = 0.6 * foam_noise(at * 3.0 + sea.foam_shift) + 0.4 * foam_noise(at * 11.0 + sea.foam_shift * 3.7);
+  return smoothstep(-0.05, 0.35, point.crest + 0.5 * (torn - 0.7)) * smoothstep(0.25, 0.6, torn);
+}
+
+// Radiance of the deep that the surface mirrors down a direction: endless water, lit from the surface.
+vec3 deep_below(vec3 down) {
+  if (!light_has(kLightScattering) || !light_has(kLightSun)) return vec3(0.0);
+  vec3 rate = light.beam_attenuation - light.diffuse_attenuation * down.y;
+  return scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);
+}
+
+// What one facet of the surface sends down against a sight upwards.
+vec3 facet_from_below(vec3 direction, vec2 slope, float rough2, vec3 sun) {
+  vec3 normal = normalize(vec3(-slope.x, 1.0, -slope.y));
+  float in_water = max(dot(direction, normal), 0.02);
+  float sine2 = kWaterIndex * kWaterIndex * (1.0 - in_water * in_water);
+  vec3 mirror = direction - 2.0 * dot(direction, normal) * normal;
+  mirror.y = -max(-mirror.y, 0.02);
+  vec3 mirrored = deep_below(normalize(mirror));
+  if (sine2 >= 1.0) return mirrored;
+  float in_air = sqrt(1.0 - sine2);
+  vec3 up = normalize(kWaterIndex * direction + (in_air - kWaterIndex * in_water) * normal);
+  up.y = max(up.y, 0.0);
+  float reflected = fresnel_of(in_water, in_air);
+  vec3 sky = sky_over(up) * (kWaterIndex * kWaterIndex);
+  // A facet that tilts by d turns the refracted ray by (n cos / cos' - 1) d.
+  float turn = kWaterIndex * in_water / max(in_air, 0.2) - 1.0;
+  // Irradiance that has passed a level surface, so that Fresnel's share is already in it.
+  vec3 beam = light.surface_irradiance * light.direct_share / max(sun.y, 0.05) * (kWaterIndex * kWaterIndex);
+  vec3 through = sky * (1.0 - reflected) + beam * sun_lobe(up, sun, 0.5 * rough2 * turn * turn);
+  return mix(through, mirrored, reflected);
+}
+
+// Radiance just below the surface, down along a sight that goes up.
+vec3 sea_from_below(SeaPoint point, vec3 eye, vec3 direction) {
+  vec3 sun = sun_in_air();
+  // Facets that are not resolved, along the sight: Gauss and Hermite's three points.
+  vec2 along = normalize(direction.xz + vec2(1e-6, 0.0)) * sqrt(1.5 * point.rough2);
+  vec3 sum = (4.0 / 6.0) * facet_from_below(direction, point.slope, point.rough2, sun) +
+             (1.0 / 6.0) * facet_from_below(direction, point.slope + along, point.rough2, sun) +
+             (1.0 / 6.0) * facet_from_below(direction, point.slope - along, point.rough2, sun);
+  float foam = foam_at(point, (eye + direction * point.distance_m).xz);
+  // Foam lets some half of the light through, evenly.
+  return mix(sum, light.surface_irradiance * (0.5 / kPi), foam);
+}
+
+// Radiance just above the surface, up along a sight that goes down; below: what comes up in the water.
+vec3 sea_from_above(SeaPoint point, vec3 eye, vec3 direction, vec3 below) {
+  vec3 sun = sun_in_air();
+  vec3 normal = normalize(vec3(-point.slope.x, 1.0, -point.slope.y));
+  float facing = dot(-direction, normal);
+  // Unresolved slopes show their nearer sides: the least cosine is about their deviation.
+  float in_air = max(facing, 0.6 * sqrt(0.5 * point.rough2) + 0.01);
+  float in_water = sqrt(1.0 - (1.0 - in_air * in_air) / (kWaterIndex * kWaterIndex));
+  float reflected = fresnel_of(in_water, in_air);
+  vec3 mirror = direction + 2.0 * in_air * normal;
+  mirror = normalize(vec3(mirror.x, max(mirror.y, 0.02), mirror.z));
+  vec3 beam = light.surface_irradiance * light.direct_share / max(sun.y, 0.05);
+  vec3 radiance = reflected * (sky_over(mirror) + beam * sun_lobe(mirror, sun, 2.0 * point.rough2)) +
+                  (1.0 - reflected) * below / (kWaterIndex * kWaterIndex);
+  float foam = foam_at(point, (eye + direction * point.distance_m).xz);
+  // Whitecaps send back some 0.55 of daylight (Koepke 1984: fresh foam).
+  return mix(radiance, light.surface_irradiance * (0.55 / kPi), foam);
+}
+
+#endif

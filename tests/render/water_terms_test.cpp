@@ -1,0 +1,251 @@
+// The water's terms: forward scatter against Wells's formula as the passes leave it, snow's density
+// and its rest in the water, bubbles' rise and growth, the shaders' waves against those in double.
+#include <gtest/gtest.h>
+
+#include <glm/gtc/packing.hpp>
+
+#include "engine/gpu/frames.hpp"
+#include "engine/render/particles.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/render/sea_waves.hpp"
+#include "tests/support/gpu_fixture.hpp"
+
+namespace neritic::render {
+namespace {
+
+using ForwardScatterGpu = test::GpuTest;
+
+constexpr std::uint32_t kWidth = 2048, kHeight = 64;
+constexpr double kPixelsRad = 692.0;  // of 1280x720 at 55 degrees
+
+// Type II in the green: b of particles 0.357, c 0.42.
+shared::Lighting type_ii() {
+  shared::Lighting light{};
+  light.terms = shared::kLightWater | shared::kLightForwardScatter;
+  light.particle_scattering = Vec3f(0.357f);
+  light.beam_attenuation = Vec3f(0.42f);
+  return light;
+}
+
+gpu::Image picture_of(gpu::Device& device, const char* name,
+                      const std::function<Vec4(int)>& column) {
+  auto image =
+      gpu::Image::create(device, {name, kHdrFormat, kWidth, kHeight, 1, 1,
+                                  VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                      VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                  true});
+  EXPECT_TRUE(image.ok());
+  std::vector<std::uint16_t> texels;
+  for (std::uint32_t y = 0; y < kHeight; ++y)
+    for (std::uint32_t x = 0; x < kWidth; ++x)
+      for (int i = 0; i < 4; ++i)
+        texels.push_back(glm::packHalf1x16(static_cast<float>(column(static_cast<int>(x))[i])));
+  EXPECT_TRUE(gpu::upload_image(device, *image, std::as_bytes(std::span(texels))).ok());
+  return std::move(*image);
+}
+
+// Contrast that is left of stripes of psi cycles a radian at a distance.
+double contrast_left(gpu::Device& device, double psi, double distance_m, std::uint32_t levels) {
+  const shared::Lighting light = type_ii();
+  const auto stripes = [&](int x) {
+    return std::cos(2.0 * kPi * psi * (x + 0.5 - kWidth / 2) / kPixelsRad);
+  };
+  // As shading leaves them: the picture by c; what scatters forwards by c - b. Brighter, to use
+  // halves well.
+  const double scale = 100.0 * std::exp(0.063 * distance_m);
+  const double sharp = scale * std::exp(-0.42 * distance_m),
+               kept = scale * std::exp(-0.063 * distance_m);
+  gpu::Image hdr = picture_of(device, "picture",
+                              [&](int x) { return Vec4(Vec3(sharp * stripes(x) + 300.0), 1.0); });
+  gpu::Image scattered = picture_of(
+      device, "scattered", [&](int x) { return Vec4(Vec3(kept * stripes(x)), distance_m); });
+  WaterPasses passes(device);
+  ViewSet views;
+  views.width = kWidth;
+  views.height = kHeight;
+  views.views.resize(1);
+  const double top = 0.5 * kHeight / kPixelsRad, right = 0.5 * kWidth / kPixelsRad;
+  views.views[0].tangents = {-right, right, -top, top};
+  GBuffer gbuffer;
+  gbuffer.width = kWidth;
+  gbuffer.height = kHeight;
+  auto frames = gpu::Frames::create(device);
+  EXPECT_TRUE(frames.ok());
+  graph::Executor executor(**frames);
+  graph::FrameGraph graph;
+  const graph::ImportState state{.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  const auto out = passes.declare_forward_scatter(
+      graph, "", graph.import_image(hdr, state), graph.import_image(scattered, state), gbuffer,
+      views, light, {.angle_rad = 0.03, .levels = levels});
+  EXPECT_TRUE(out.ok());
+  graph.output(*out, graph::Access::kTransferRead);
+  const auto commands = (*frames)->begin();
+  EXPECT_TRUE(executor.run(graph, **commands).ok());
+  EXPECT_TRUE((*frames)->wait((*frames)->submit().value()).ok());
+  const auto bytes = gpu::read_image(device, hdr, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  EXPECT_TRUE(bytes.ok());
+  const auto* halves = reinterpret_cast<const std::uint16_t*>(bytes->data());
+  // Over whole periods about the middle, where the picture's ends do not reach.
+  const double period = kPixelsRad / psi;
+  const int half = static_cast<int>(std::max(1.0, std::floor(384.0 / period)) * period);
+  double sum = 0.0, norm = 0.0;
+  for (int x = static_cast<int>(kWidth) / 2 - half; x < static_cast<int>(kWidth) / 2 + half; ++x) {
+    const double green = glm::unpackHalf1x16(halves[4 * (kHeight / 2 * kWidth + x) + 1]);
+    sum += (green - 300.0) * stripes(x);
+    norm += stripes(x) * stripes(x);
+  }
+  return sum / norm / scale;
+}
+
+double wells(double psi, double distance_m) {
+  const double x = 2.0 * kPi * 0.03 * psi;
+  return std::exp(-(0.42 - 0.357 * (1.0 - std::exp(-x)) / x) * distance_m);
+}
+
+TEST_F(ForwardScatterGpu, ContrastAtFiveAndTwentyMetresIsWellss) {
+  for (const double distance_m : {5.0, 20.0})
+    for (const double psi : {2.0, 5.0, 12.0, 40.0}) {
+      const double left = contrast_left(device(), psi, distance_m, 7);
+      RecordProperty(fmt::format("psi_{}_at_{}_m", psi, distance_m), fmt::format("{:.4f}", left));
+      EXPECT_NEAR(left, wells(psi, distance_m), 0.05)
+          << psi << " cycles/rad, " << distance_m << " m";
+    }
+}
+
+TEST(ForwardScatter, OctavesFollowFromFineToCoarseAndEndInAllThatIsLeft) {
+  const auto levels = scatter_levels({}, type_ii(), 1280, 720, kPixelsRad);
+  ASSERT_EQ(levels.size(), scene::ForwardScatter{}.levels);
+  EXPECT_EQ(levels.front().width, 320u);
+  EXPECT_EQ(levels.front().push.high_cycles_rad, 0.0f);
+  EXPECT_EQ(levels.back().push.low_cycles_rad, 0.0f);
+  for (std::size_t i = 1; i < levels.size(); ++i)
+    EXPECT_FLOAT_EQ(levels[i].push.high_cycles_rad, levels[i - 1].push.low_cycles_rad);
+  // A picture without room for them has fewer.
+  EXPECT_EQ(scatter_levels({.levels = 8}, type_ii(), 3, 3, kPixelsRad).size(), 1u);
+}
+
+TEST(Snow, HasTheDensityThatIsNamed) {
+  for (const double density : {30.0, 400.0, 3000.0}) {
+    const scene::Snow snow{.density_m3 = density, .range_m = 2.0};
+    double count = 0.0;
+    constexpr int kPlaces = 8;
+    for (int i = 0; i < kPlaces; ++i)
+      count += static_cast<double>(snow_around(snow, 5, Vec3(17.0 * i, -30.0, 3.0), 0.0).size());
+    const double wanted = density * 4.0 / 3.0 * kPi * 8.0 * kPlaces;
+    EXPECT_NEAR(count, wanted, 4.0 * std::sqrt(wanted)) << density;
+  }
+}
+
+TEST(Snow, StaysInTheWaterWhileTheCameraMoves) {
+  const scene::Snow snow{};
+  const auto first = snow_around(snow, 5, Vec3(0.0, -10.0, 0.0), 0.0);
+  const auto second = snow_around(snow, 5, Vec3(0.4, -10.1, 0.2), 0.0);
+  std::size_t same = 0;
+  for (const WorldParticle& a : first)
+    for (const WorldParticle& b : second)
+      if (a.seed == b.seed && glm::length(a.position_m - b.position_m) < 1e-9) ++same;
+  // The two spheres of 3 m share nine tenths.
+  EXPECT_GT(same, first.size() * 8 / 10);
+  // And drifts with it.
+  scene::Snow drifting = snow;
+  drifting.drift_m_s = Vec3(0.1, 0.0, 0.0);
+  const auto before = snow_around(drifting, 5, Vec3(0.0, -10.0, 0.0), 0.0);
+  const auto after = snow_around(drifting, 5, Vec3(0.2, -10.0, 0.0), 2.0);
+  ASSERT_EQ(before.size(), after.size());
+  EXPECT_NEAR(after[0].position_m.x - before[0].position_m.x, 0.2, 1e-9);
+}
+
+TEST(Snow, IsFiniteFarOutAndNoneIsAboveTheWater) {
+  for (const double x : {0.0, 1e7, -4e7})
+    for (const double y : {0.0, -0.01, -1000.0, 100.0})
+      for (const WorldParticle& particle : snow_around({.range_m = 1.0}, 5, Vec3(x, y, -x), 1e5)) {
+        EXPECT_TRUE(std::isfinite(glm::length(particle.position_m)));
+        EXPECT_LT(particle.position_m.y, 0.0);
+        EXPECT_LE(glm::distance(particle.position_m, Vec3(x, y, -x)), 1.001);
+      }
+}
+
+TEST(Bubbles, RiseAsMendelsonSays) {
+  // Of 1 cm and 4 cm in diameter; in contaminated water of small ones Clift, Grace and Weber 1978,
+  // fig. 7.3.
+  EXPECT_NEAR(bubble_speed_m_s(0.005), 0.252, 0.003);
+  EXPECT_NEAR(bubble_speed_m_s(0.020), 0.447, 0.003);
+  EXPECT_LT(bubble_speed_m_s(0.0005), 0.35);
+}
+
+TEST(Bubbles, GrowRiseAndEndAtTheSurfaceTheSameEachTime) {
+  scene::Scene scene;
+  scene.objects.resize(1);
+  scene.objects[0].mount.pose.position_m = Vec3(1.0, -6.0, 2.0);
+  const scene::MotionSource motion(scene);
+  scene::BubbleSource source;
+  source.object = 0;
+  source.height_m = 20.0;
+  std::vector<WorldParticle> at, again;
+  add_bubbles(motion, source, 0, 9, 33.0, at);
+  add_bubbles(motion, source, 0, 9, 33.0, again);
+  ASSERT_GT(at.size(), 100u);
+  ASSERT_EQ(at.size(), again.size());
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    EXPECT_EQ(at[i].position_m, again[i].position_m);
+    EXPECT_LT(at[i].position_m.y, 0.0);
+    EXPECT_GE(at[i].position_m.y, -6.1);
+  }
+  // Two moments later the same bubble is higher and larger, by Boyle.
+  std::vector<WorldParticle> later;
+  add_bubbles(motion, source, 0, 9, 33.5, later);
+  int followed = 0;
+  for (const WorldParticle& a : at)
+    for (const WorldParticle& b : later)
+      if (a.seed == b.seed) {
+        ++followed;
+        EXPECT_GT(b.position_m.y, a.position_m.y);
+        const double pressures = (10.07 - a.position_m.y) / (10.07 - b.position_m.y);
+        EXPECT_NEAR(b.radius_m / a.radius_m, std::cbrt(pressures), 1e-3);
+      }
+  EXPECT_GT(followed, 50);
+}
+
+TEST(Silt, IsKickedUpOnlyNearTheBedAndSettles) {
+  scene::Scene scene;
+  scene.objects.resize(1);
+  const scene::MotionSource motion(scene);
+  scene::SiltSource source;
+  source.object = 0;
+  source.bed_depth_m = 10.0;
+  std::vector<WorldParticle> silt;
+  scene.objects[0].mount.pose.position_m.y = -8.0;
+  add_silt(motion, source, 0, 1, 50.0, silt);
+  EXPECT_TRUE(silt.empty());
+  scene.objects[0].mount.pose.position_m.y = -9.7;
+  add_silt(motion, source, 0, 1, 50.0, silt);
+  EXPECT_GT(silt.size(), 10u);
+  for (const WorldParticle& cloud : silt) {
+    EXPECT_GT(cloud.position_m.y, -10.0);
+    EXPECT_LT(cloud.position_m.y, -8.5);
+    EXPECT_LE(cloud.opacity, 1.0);
+  }
+}
+
+TEST(GpuWaves, AreTheSameAsInDoubleNearTheOriginAndFarOut) {
+  const SeaWaves sea(
+      {.wind_m_s = 8.0, .fetch_m = 2e4, .direction_rad = 0.3, .components = 40, .seed = 2});
+  for (const Vec3& origin : {Vec3(0.0), Vec3(1e7, -3.0, -2e7)})
+    for (const double t : {0.0, 1e5}) {
+      const shared::Waves waves = gpu_waves(sea, origin, t);
+      ASSERT_EQ(waves.count, 40u);
+      for (int i = 0; i < 50; ++i) {
+        const float x = 1.7f * static_cast<float>(i), z = -0.9f * static_cast<float>(i);
+        Vec3f sum(0.0f);
+        for (std::uint32_t k = 0; k < waves.count; ++k)
+          sum += shared::wave_surface(waves.waves[k], x, z);
+        EXPECT_NEAR(sum.x, sea.height_m(origin.x + x, origin.z + z, t), 2e-3);
+        EXPECT_NEAR(sum.y, sea.slope(origin.x + x, origin.z + z, t).x, 2e-3);
+      }
+      EXPECT_NEAR(waves.eye_height_m, sea.height_m(origin.x, origin.z, t), 1e-5);
+    }
+  EXPECT_EQ(gpu_waves(SeaWaves({.wind_m_s = 0.0}), Vec3(0.0), 1.0).count, 0u);
+}
+
+}  // namespace
+}  // namespace neritic::render
