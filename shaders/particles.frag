@@ -63,7 +63,7 @@ void main() {
     float behind_m = depth > 0.0 ? views[view].near_m / depth - views[view].near_m / gl_FragCoord.z : 1e9;
     alpha *= clamp(0.5 + behind_m / (2.0 * flatness.y), 0.0, 1.0);
   } else {
-    alpha = 1.0 - smoothstep(1.0 - 1.0 / shape.y, 1.0, r);
+    alpha = max(1.0 - r * r, 0.0);
   }
   alpha = clamp(alpha * shape.z, 0.0, 1.0);
   out_color = vec4(color * alpha, alpha);

@@ -86,8 +86,8 @@ void main() {
   float own = in_position.w * pixels_m;
   float blur = 0.5 * kLensOpening_m * abs(1.0 / now.w - 1.0 / kLensFocus_m) / length(views[view].ray_dx);
   float radius = in_kind.x == kParticleSilt ? own : sqrt(own * own + blur * blur + 0.56);
-  // A spot's light is spread over its blur and its streak.
-  float share = in_kind.x == kParticleSilt ? 1.0 : own * own / (radius * radius) * (radius * kPi / (radius * kPi + 2.0 * streak));
+  // A spot's light is spread over its blur and its streak; snow's soft disk has half the light of a flat one.
+  float share = in_kind.x == kParticleSilt ? 1.0 : (in_kind.x == kParticleSnow ? 2.0 : 1.0) * own * own / (radius * radius) * (radius * kPi / (radius * kPi + 2.0 * streak));
   vec3 albedo = in_kind.x == kParticleSilt ? kSiltAlbedo : kSnowAlbedo;
   Sight sight = look_through(light.origin_depth_m - views[view].eye.y, -to_eye, distance_m);
   vec3 own_light = radiance_of(in_position.xyz, to_eye, albedo);

@@ -11,7 +11,7 @@ constexpr std::uint64_t kSnowStream = 0x736e6f77;
 // Mean number of particles in a cell of the lattice.
 constexpr double kCellMean = 24.0;
 // Particles fade in between these distances from the eye: nearer there is the camera's housing.
-constexpr double kNearest_m = 0.12, kNear_m = 0.35;
+constexpr double kNearest_m = 0.20, kNear_m = 0.80;
 
 std::uint64_t word(std::int64_t cell) {
   return static_cast<std::uint64_t>(cell);
@@ -66,8 +66,8 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
               0.5 * snow.diameter_m *
               std::exp(snow.spread * std::clamp(normal(random_uniform(key, 8 * i + 4),
                                                        random_uniform(key, 8 * i + 5)),
-                                                -3.0, 3.0));
-          particle.opacity = (0.35 + 0.65 * random_uniform(key, 8 * i + 6)) *
+                                                -2.5, 2.0));
+          particle.opacity = (0.10 + 0.50 * random_uniform(key, 8 * i + 6)) *
                              (1.0 - smooth(0.7 * snow.range_m, snow.range_m, range_m)) *
                              smooth(kNearest_m, kNear_m, range_m);
           particle.kind = shared::kParticleSnow;

@@ -35,8 +35,8 @@ NERITIC_CONST uint kParticleLighting = 1;
 NERITIC_CONST uint kParticleDepth = 2;
 
 // A lens of this opening (m), focussed at this distance (m), blurs what is nearer or farther: a wide lens of
-// a compact camera, 4.5 mm at f/2.8, behind a flat port.
-NERITIC_CONST float kLensOpening_m = 0.0016f;
+// 11 mm at f/2.8.
+NERITIC_CONST float kLensOpening_m = 0.0040f;
 NERITIC_CONST float kLensFocus_m = 2.0f;
 
 NERITIC_SHARED_END

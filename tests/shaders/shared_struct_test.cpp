@@ -11,14 +11,17 @@
 
 #include "shaders.hpp"
 #include "shared/caustics.h"
+#include "shared/forward_scatter.h"
 #include "shared/imgui.h"
 #include "shared/lighting.h"
 #include "shared/panel.h"
+#include "shared/particles.h"
 #include "shared/raster.h"
 #include "shared/sonar.h"
 #include "shared/sonar_echo.h"
 #include "shared/sonar_fan.h"
 #include "shared/visibility.h"
+#include "shared/waves.h"
 
 namespace neritic::shared {
 namespace {
@@ -90,6 +93,15 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(CausticsParams, tile_m), MEMBER(CausticsParams, first_m),
         MEMBER(CausticsParams, step), MEMBER(CausticsParams, travel_air),
         MEMBER(CausticsParams, waves)}},
+      {"Wave", {MEMBER(Wave, wave_number), MEMBER(Wave, amplitude_m), MEMBER(Wave, angle_rad)}},
+      {"Waves",
+       {MEMBER(Waves, count), MEMBER(Waves, height_rms_m), MEMBER(Waves, slope2),
+        MEMBER(Waves, fine_slope2), MEMBER(Waves, foam_height_m), MEMBER(Waves, foam_shift),
+        MEMBER(Waves, eye_height_m), MEMBER(Waves, waves)}},
+      {"ScatterPush",
+       {MEMBER(ScatterPush, scattering), MEMBER(ScatterPush, high_cycles_rad),
+        MEMBER(ScatterPush, low_cycles_rad), MEMBER(ScatterPush, angle_rad)}},
+      {"ParticlePush", {MEMBER(ParticlePush, target_size), MEMBER(ParticlePush, shutter)}},
       {"SonarColumn",
        {MEMBER(SonarColumn, beam_base), MEMBER(SonarColumn, sec_theta), MEMBER(SonarColumn, right),
         MEMBER(SonarColumn, pixel_tan), MEMBER(SonarColumn, up), MEMBER(SonarColumn, forward),
