@@ -9,7 +9,7 @@ namespace neritic::render {
 namespace {
 
 constexpr std::uint64_t kBubbleStream = 0x627562, kSiltStream = 0x73696c74;
-constexpr double kGravity_m_s2 = 9.81, kDensity_kg_m3 = 1026.0, kAir_pa = 101325.0;
+constexpr double kFreeFall_m_s2 = 9.81, kDensity_kg_m3 = 1026.0, kAir_pa = 101325.0;
 // Surface tension of sea water, N/m.
 constexpr double kTension_n_m = 0.0735;
 // Deviation of the logarithm of bubbles' radii: a few large caps among many small ones.
@@ -47,7 +47,7 @@ WorldParticle risen(const scene::BubbleSource& source, const Vec3& from_m, doubl
                                     off * std::sin(turn) + side * std::sin(2.0 * turn));
   bubble.velocity_m_s = Vec3(0.0, speed, 0.0);
   const auto pressure = [](double y_m) {
-    return kAir_pa + kDensity_kg_m3 * kGravity_m_s2 * std::max(-y_m, 0.0);
+    return kAir_pa + kDensity_kg_m3 * kFreeFall_m_s2 * std::max(-y_m, 0.0);
   };
   // Boyle: the volume grows as the pressure falls.
   bubble.radius_m = radius_m * std::cbrt(pressure(from_m.y) / pressure(bubble.position_m.y));
@@ -64,7 +64,7 @@ double bubble_speed_m_s(double radius_m) {
   // over 1.3 mm. Smaller ones slow down in proportion.
   const double diameter_m = std::max(2.0 * radius_m, 1.3e-3);
   const double speed = std::sqrt(2.0 * kTension_n_m / (kDensity_kg_m3 * diameter_m) +
-                                 0.5 * kGravity_m_s2 * diameter_m);
+                                 0.5 * kFreeFall_m_s2 * diameter_m);
   return speed * std::min(2.0 * radius_m / 1.3e-3, 1.0);
 }
 
