@@ -7,6 +7,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
+#include "engine/core/math.hpp"
 #include "tests/support/support.hpp"
 #include "tests/tools/page_words.hpp"
 #include "tools/tradeoff/physiology_signals.hpp"

@@ -79,7 +79,8 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
       {"render " + scene("pool.toml") + out + " --chart-cell 2000",
        "--chart-cell: found '2000'; accepted: 0.001 to 1000"},
       {"rendre " + scene("pool.toml"), "rendre"},
-      {"render", "scene"}};
+      {"render", "--out is required"},
+      {"render" + out, "SCENE: found none"}};
   for (const auto& c : cases) {
     const Outcome outcome = neritic(c.arguments);
     EXPECT_EQ(outcome.status, 2) << c.arguments << "\n" << outcome.said;
