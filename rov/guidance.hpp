@@ -32,9 +32,10 @@ Setpoint follow(Setpoint s, const Vec3& target, const Vec3& target_velocity_m_s,
 // On the line from a to b at distance_m from b (negative: the middle), facing b.
 Setpoint stand_between(Setpoint s, const Vec3& a, const Vec3& b, double distance_m = -1.0);
 
-// Against a steady push, such as a current's, that holds the vehicle off its place: the controller's
-// integral advances near the setpoint alone. The place moves on by what is learnt into lean_ned_m
-// while the vehicle stands beside it, up to kMostLean_m. Call it last, once a control period.
+// Against a steady push, such as a current's, that holds the vehicle off its place: the
+// controller's integral advances near the setpoint alone. The place moves on by what is learnt into
+// lean_ned_m while the vehicle stands beside it, up to kMostLean_m. Call it last, once a control
+// period.
 inline constexpr double kMostLean_m = 1.2;
 Setpoint lean(Setpoint s, const State& state, double period_s, Vec3& lean_ned_m);
 

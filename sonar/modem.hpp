@@ -56,7 +56,7 @@ double modem_duration_s(const ModemSettings& sender, std::size_t bytes);
 // 5.2-69: exp(-g / 2) / 2), or with Rayleigh fading (eq. 14.3-12: 1 / (2 + g)); g: energy of a bit
 // over the noise density.
 double modem_bit_error(const ModemSettings& settings, double snr_db);
-// Of all bits, by independent errors.
+// For all bits, by independent errors.
 double modem_success(const ModemSettings& settings, double snr_db, std::size_t bytes);
 
 // ---- A channel --------------------------------------------------------------------------------

@@ -24,7 +24,7 @@ inline Vec3 enu_from_ned(const Vec3& v) {
 inline Vec3 flu_from_marine(const Vec3& v) {
   return {v.x, -v.y, -v.z};
 }
-// Of the program's bodies: starboard, up, back.
+// For the program's bodies: starboard, up, back.
 inline Vec3 flu_from_body(const Vec3& v) {
   return {-v.z, -v.x, v.y};
 }
@@ -47,14 +47,14 @@ inline Quat ned_from_enu(const Quat& enu_from_flu) {
   constexpr double kHalf = 0.70710678118654752440;
   return Quat(0.0, -kHalf, -kHalf, 0.0) * enu_from_flu * Quat(0.0, 1.0, 0.0, 0.0);
 }
-// Of a body with the program's axes: x starboard, y up, z backwards.
+// For a body with the program's axes: x starboard, y up, z backwards.
 inline Quat enu_from_body(const Quat& world_from_body) {
   return enu_from_ned(ned_from_world(world_from_body));
 }
 inline Quat body_from_enu(const Quat& enu_from_flu) {
   return world_from_ned(ned_from_enu(enu_from_flu));
 }
-// Of a view (x right, y up, z backwards) as an optical frame: half a turn about x.
+// For a view (x right, y up, z backwards) as an optical frame: half a turn about x.
 inline Quat enu_from_optical(const Quat& world_from_view) {
   constexpr double kHalf = 0.70710678118654752440;
   const Quat enu_from_world_axes(kHalf, kHalf, 0.0, 0.0);  // a quarter turn about east

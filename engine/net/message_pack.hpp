@@ -9,7 +9,7 @@
 
 namespace neritic::net {
 
-// Of one message. Beyond them it is refused before it is built: a stranger's bytes cost no more
+// For one message. Beyond them it is refused before it is built: a stranger's bytes cost no more
 // memory or stack than these.
 struct PackLimits {
   std::size_t bytes = std::size_t{1} << 20;

@@ -10,8 +10,8 @@
 #include "engine/scene/motion.hpp"
 #include "engine/scene/scene_copies.hpp"
 #include "engine/scene/scene_draft.hpp"
-#include "engine/scene/small_targets.hpp"
 #include "engine/scene/scene_reader.hpp"
+#include "engine/scene/small_targets.hpp"
 
 namespace neritic::scene {
 namespace {
@@ -66,8 +66,7 @@ void move_out(Dynamics& dynamics, const Vec3& offset_m) {
 void move_out(SceneDraft& draft, const Vec3& offset_m) {
   Scene& scene = draft.scene;
   if (scene.current) scene.current->origin_m += offset_m;
-  if (scene.ambient && scene.ambient->bottom_depth_m)
-    *scene.ambient->bottom_depth_m -= offset_m.y;
+  if (scene.ambient && scene.ambient->bottom_depth_m) *scene.ambient->bottom_depth_m -= offset_m.y;
   if (scene.world_from_lab) scene.world_from_lab->position_m += offset_m;
   if (scene.water) move_out(*scene.water, offset_m);
   const auto moved = [&offset_m](Mount mount) {

@@ -11,10 +11,9 @@ namespace neritic::scene {
 using Key = std::string_view;
 using KeyList = std::span<const Key>;
 
-inline constexpr auto kSceneKeys =
-    std::to_array<Key>({"title", "seed", "include", "classes", "sun", "ambient", "water", "physics",
-                        "current", "objects", "vehicles", "cameras", "sonars", "lamps", "lab",
-                        "sources"});
+inline constexpr auto kSceneKeys = std::to_array<Key>(
+    {"title", "seed", "include", "classes", "sun", "ambient", "water", "physics", "current",
+     "objects", "vehicles", "cameras", "sonars", "lamps", "lab", "sources"});
 
 inline constexpr auto kLabKeys =
     std::to_array<Key>({"position_m", "yaw_deg", "pitch_deg", "roll_deg", "rotation_xyzw"});
@@ -126,8 +125,7 @@ inline constexpr auto kDiverInputKeys =
 inline constexpr auto kVehicleInputKeys = std::to_array<Key>({"wrench", "setpoint", "fault"});
 inline constexpr auto kObjectInputKeys = std::to_array<Key>({"pose"});
 inline constexpr auto kInputChoiceKeys = std::to_array<Key>({"from", "hold_s", "then"});
-inline constexpr auto kSourceKeys =
-    std::to_array<Key>({"device", "diver", "character", "rate_hz"});
+inline constexpr auto kSourceKeys = std::to_array<Key>({"device", "diver", "character", "rate_hz"});
 inline constexpr auto kStandBetweenKeys = std::to_array<Key>({"a", "b", "distance_m"});
 
 inline constexpr auto kScatterKeys =

@@ -1,4 +1,5 @@
-// Caustics: parameters and bindings of the passes that throw rays from a tile of the surface onto levels below.
+// Caustics: parameters and bindings of the passes that throw rays from a tile of the surface onto
+// levels below.
 #ifndef NERITIC_SHARED_CAUSTICS_H
 #define NERITIC_SHARED_CAUSTICS_H
 #include "shared/types.h"
@@ -15,16 +16,16 @@ struct CausticWave {
 
 struct CausticsParams {
   uint count;
-  uint texels;       // a side of the tile
+  uint texels;  // a side of the tile
   float tile_m;
-  float first_m;     // depth of the first level
-  float step;        // depth of a level over that of the one before
-  vec3 travel_air;   // unit, the way sunlight travels above the surface
+  float first_m;    // depth of the first level
+  float step;       // depth of a level over that of the one before
+  vec3 travel_air;  // unit, the way sunlight travels above the surface
   CausticWave waves[32];
 };
 
-// Depths of the levels of pictures, m: kCausticFirst_m kCausticStep^i. Between them the picture is blended,
-// beyond them the last stays.
+// Depths of the levels of pictures, m: kCausticFirst_m kCausticStep^i. Between them the picture is
+// blended, beyond them the last stays.
 NERITIC_CONST uint kCausticLevels = 8;
 NERITIC_CONST float kCausticFirst_m = 0.4f;
 NERITIC_CONST float kCausticStep = 1.6f;
@@ -33,7 +34,7 @@ NERITIC_CONST float kCausticStep = 1.6f;
 NERITIC_CONST uint kCausticPart = 64;
 NERITIC_CONST uint kCausticsParams = 0;
 NERITIC_CONST uint kCausticsSums = 1;
-NERITIC_CONST uint kCausticsOut = 2;    // resolve: rgba16f, two layers of four levels
+NERITIC_CONST uint kCausticsOut = 2;  // resolve: rgba16f, two layers of four levels
 
 NERITIC_SHARED_END
 #endif

@@ -57,9 +57,9 @@ struct Lighting {
   float bottom_depth_m;      // negative: as deep as what it lights
   vec2 caustic_origin_m;     // of the view set's origin in the tile, along x and z
   float caustic_tile_m;
-  float murk_bed_m;          // depth of the bed that murk lies on
+  float murk_bed_m;  // depth of the bed that murk lies on
   float murk_thickness_m;
-  float murk_more;           // particles and what they absorb at the bed, over those elsewhere, less 1
+  float murk_more;  // particles and what they absorb at the bed, over those elsewhere, less 1
   SpotLight lamps[16];
 };
 NERITIC_CONST uint kMaxLamps = 16;

@@ -13,8 +13,8 @@ NERITIC_CONST uint kParticleSilt = 2;
 struct Particle {
   vec3 position;  // relative to the view set's origin
   float radius_m;
-  vec3 moved;      // during the exposure
-  float opacity;   // of its middle
+  vec3 moved;     // during the exposure
+  float opacity;  // of its middle
   uint kind;
   uint seed;  // of its shape
 };
@@ -34,8 +34,8 @@ NERITIC_CONST uint kParticleViews = 0;
 NERITIC_CONST uint kParticleLighting = 1;
 NERITIC_CONST uint kParticleDepth = 2;
 
-// A lens of this opening (m), focussed at this distance (m), blurs what is nearer or farther: a wide lens of
-// 11 mm at f/2.8.
+// A lens of this opening (m), focussed at this distance (m), blurs what is nearer or farther: a
+// wide lens of 11 mm at f/2.8.
 NERITIC_CONST float kLensOpening_m = 0.0040f;
 NERITIC_CONST float kLensFocus_m = 2.0f;
 

@@ -19,7 +19,7 @@ struct SonarFanPush {
   float azimuth_middle_rad;
   float azimuth_half_rad;
   float bins_per_rad;
-  float gamma;    // shown brightness = (value gain / full scale)^gamma
+  float gamma;  // shown brightness = (value gain / full scale)^gamma
   float gain;
   uint is_power;  // cells are floats of power, shown as amplitudes; else counts
 };

@@ -20,12 +20,12 @@ struct Cascade {
 
 struct VisibilityParams {
   Cascade cascades[4];
-  vec3 to_sun;             // unit, in water where there is water
-  float origin_depth_m;    // of the view set's origin
-  float spread;            // tangent of the sun's half-angle, with the waves' share under water
-  float scattering_m;      // b of particles in the green, 1/m
-  float sun_cosine;        // of the refracted sun
-  float occlusion_m;       // reach of ambient occlusion
+  vec3 to_sun;           // unit, in water where there is water
+  float origin_depth_m;  // of the view set's origin
+  float spread;          // tangent of the sun's half-angle, with the waves' share under water
+  float scattering_m;    // b of particles in the green, 1/m
+  float sun_cosine;      // of the refracted sun
+  float occlusion_m;     // reach of ambient occlusion
 };
 
 NERITIC_CONST uint kVisibilityViews = 0;

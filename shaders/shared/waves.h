@@ -1,7 +1,8 @@
-// The waves of the water's surface as the shaders see them: a sum of sines (Airy's linear waves in deep
-// water), whose angles are those at the view set's origin at the frame's time, reduced in double. The host
-// makes them from a spectrum (engine/core/sea_waves.hpp), so that light, pictures and buoyancy share them.
-// Height and slope at a place relative to the origin: add wave_surface of all waves.
+// The waves of the water's surface as the shaders see them: a sum of sines (Airy's linear waves in
+// deep water), whose angles are those at the view set's origin at the frame's time, reduced in
+// double. The host makes them from a spectrum (engine/core/sea_waves.hpp), so that light, pictures
+// and buoyancy share them. Height and slope at a place relative to the origin: add wave_surface of
+// all waves.
 #ifndef NERITIC_SHARED_WAVES_H
 #define NERITIC_SHARED_WAVES_H
 #include "shared/types.h"
@@ -18,12 +19,12 @@ struct Wave {
 
 struct Waves {
   uint count;
-  float height_rms_m;  // of the sum
-  float slope2;        // mean square slope of the sum, both axes
-  float fine_slope2;   // of the waves shorter than those of the sum, both axes
-  float foam_height_m;   // crests above it are whitecaps
-  vec2 foam_shift;       // of the whitecaps' pattern at the origin
-  float eye_height_m;    // of the surface over the first view's eye
+  float height_rms_m;     // of the sum
+  float slope2;           // mean square slope of the sum, both axes
+  float fine_slope2;      // of the waves shorter than those of the sum, both axes
+  float foam_height_m;    // crests above it are whitecaps
+  vec2 foam_shift;        // of the whitecaps' pattern at the origin
+  float eye_height_m;     // of the surface over the first view's eye
   Wave waves[kMaxWaves];  // from long to short
 };
 
@@ -31,7 +32,8 @@ struct Waves {
 NERITIC_INLINE vec3 wave_surface(Wave wave, float x_m, float z_m) {
   float angle = wave.wave_number.x * x_m + wave.wave_number.y * z_m + wave.angle_rad;
   float slope = -wave.amplitude_m * sin(angle);
-  return vec3(wave.amplitude_m * cos(angle), slope * wave.wave_number.x, slope * wave.wave_number.y);
+  return vec3(wave.amplitude_m * cos(angle), slope * wave.wave_number.x,
+              slope * wave.wave_number.y);
 }
 
 NERITIC_SHARED_END

@@ -25,7 +25,7 @@ Result<std::unique_ptr<DeviceAdapter>> adapter_of(const scene::DeviceSource& sou
   return Adapter(std::make_unique<MicrophoneAdapter>(source.rate_hz));
 }
 
-// Of what was sent, as far as counters tell.
+// For what was sent, as far as counters tell.
 double lost_share(const net::LinkCounts& link) {
   return static_cast<double>(link.lost) /
          static_cast<double>(std::max<std::uint64_t>(1, link.lost + link.used));

@@ -21,7 +21,7 @@ class Feed {
   virtual std::uint64_t overflowed() const { return 0; }
   // Whether the other end is there, in words; empty: nothing to say.
   virtual std::string trouble() const { return {}; }
-  // Of feeds whose protocol asks for the device's time.
+  // For feeds whose protocol asks for the device's time.
   virtual void exchange_times(DeviceAdapter&) {}
 };
 

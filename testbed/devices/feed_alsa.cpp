@@ -11,7 +11,7 @@
 namespace neritic::testbed {
 namespace {
 
-// Of ALSA's interface (alsa/pcm.h), which has not changed since 2000.
+// For ALSA's interface (alsa/pcm.h), which has not changed since 2000.
 constexpr int kCapture = 1, kNonblock = 1, kS16Le = 2, kInterleaved = 3;
 constexpr unsigned kLatency_us = 100'000;
 constexpr double kSoundPacket_s = 0.02;

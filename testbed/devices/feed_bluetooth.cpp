@@ -31,7 +31,7 @@ struct BusError {
 };
 using BusHandler = int (*)(void* message, void* user, BusError* error);
 
-// Of sd-bus (systemd/sd-bus.h), version 240 and later.
+// For sd-bus (systemd/sd-bus.h), version 240 and later.
 struct SdBus {
   int (*open_system)(void** bus) = nullptr;
   void* (*unref)(void* bus) = nullptr;

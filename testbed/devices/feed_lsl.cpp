@@ -20,7 +20,7 @@ constexpr TimeNs kAskEvery_ns = 5 * kSecond_ns;
 constexpr std::size_t kMostPulled = 4096;
 constexpr std::size_t kEcgChunk = 73;
 
-// Of LSL's C interface (lsl_c.h), version 1.13 and later.
+// For LSL's C interface (lsl_c.h), version 1.13 and later.
 struct Lsl {
   int (*resolve)(void** infos, std::uint32_t most, const char* property, const char* value,
                  int minimum, double timeout_s) = nullptr;

@@ -22,7 +22,7 @@ class Dice {
   }
   // Around 1, up to `by` either way.
   double factor(std::uint64_t place, double by) const { return between(place, 1.0 - by, 1.0 + by); }
-  // Of mean 0 and deviation 1: the sum of four even shares, which ends at 3.46 deviations
+  // For mean 0 and deviation 1: the sum of four even shares, which ends at 3.46 deviations
   // (Irwin-Hall). A tenth of the time of Box and Muller's.
   double normal(std::uint64_t place) const {
     const std::uint64_t b = bits(place);

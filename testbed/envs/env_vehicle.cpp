@@ -95,7 +95,7 @@ void EnvVehicle::begin(const EnvModel& model, const Randomisation& random, const
     p.weight_n *= mass;
     p.buoyancy_n =
         p.buoyancy_n * mass + dice.between(1, -random.net_buoyancy_n, random.net_buoyancy_n);
-    // Of parameters that are good with every mass: this cannot fail.
+    // For parameters that are good with every mass: this cannot fail.
     rov::Vehicle made = rov::make_vehicle(p).value();
     made.prepared = vehicle.prepared;
     vehicle = std::move(made);

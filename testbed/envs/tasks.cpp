@@ -16,18 +16,18 @@ constexpr std::array<std::string_view, 5> kTaskNames{"hover", "track", "dock", "
 constexpr double kLost_m = 5.0;
 constexpr double kLostWorth = -10.0, kDoneWorth = 10.0;
 
-// Of the dock: a cone in front of it must be kept to, and its back is solid.
+// For the dock: a cone in front of it must be kept to, and its back is solid.
 constexpr double kDockRadius_m = 0.15, kDockSpeed_m_s = 0.25, kDockTurn_rad = 0.2;
 constexpr double kMouth_m = 1.0, kConeSlope = 0.5;
 
-// Of the diver: speeds of fin swimming (Zamparo et al. 2002 measured 0.4 to 0.9 m/s), turns that
+// For the diver: speeds of fin swimming (Zamparo et al. 2002 measured 0.4 to 0.9 m/s), turns that
 // change as a random walk that returns to straight ahead.
 constexpr double kTurnReturns_1_s = 0.5, kTurnWalk_rad_s = 0.25;
 // The vehicle swims beside the diver at this place of the diver's heading: forward, starboard,
 // down.
 const Vec3 kBeside_m(0.5, 2.0, -0.3);
 
-// Of the shark: it comes on until a vehicle is near, then turns away for a while.
+// For the shark: it comes on until a vehicle is near, then turns away for a while.
 constexpr double kSharkShies_m = 2.5, kSharkBites_m = 1.0, kSharkAway_s = 6.0;
 constexpr double kSharkTurn_rad_s = 0.8;
 

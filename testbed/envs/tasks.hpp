@@ -32,9 +32,9 @@ struct Goal {
 // All that changes of a task in an episode.
 struct TaskState {
   Goal goal;
-  // Of a path: amplitudes, rates and phases of its three axes around the middle.
+  // For a path: amplitudes, rates and phases of its three axes around the middle.
   Vec3 middle_ned_m{0.0}, amplitude_m{0.0}, rate_rad_s{0.0}, phase_rad{0.0};
-  // Of the diver and of the shark.
+  // For the diver and of the shark.
   Vec3 diver_ned_m{0.0}, shark_ned_m{0.0};
   double diver_heading_rad = 0.0, diver_turn_rad_s = 0.0, diver_speed_m_s = 0.0;
   double shark_heading_rad = 0.0, shark_away_s = 0.0, shark_speed_m_s = 0.0;

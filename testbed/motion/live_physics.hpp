@@ -53,8 +53,8 @@ class LivePhysics {
   // who observes.
   void between_steps(const std::function<void(PhysicsSimulation&)>& act);
   // Goes on from a saved state of this world at once, also an earlier one; samples that no step
-  // used yet are dropped. kBadInput, and no change, if the inbox has other sources under the state's
-  // numbers. Lock-step: the loop's clock has to begin anew there.
+  // used yet are dropped. kBadInput, and no change, if the inbox has other sources under the
+  // state's numbers. Lock-step: the loop's clock has to begin anew there.
   Status go_to(const SavedState& saved);
   // After the last step; newest() and simulation() may be asked then, at any pace.
   void stop() { simulation_->stop(); }

@@ -7,10 +7,10 @@
 
 namespace neritic::testbed {
 
-// Of HeadPose::placed: its place counts; the pose is in the frame of the diver's body (origin at
+// For HeadPose::placed: its place counts; the pose is in the frame of the diver's body (origin at
 // the hips, axes as a standing person's), not in the world.
 inline constexpr std::uint64_t kHeadPlaced = 1, kHeadRides = 2;
-// Of HandPoses::tracked, beside the bits of the two hands: both poses are in the body's frame.
+// For HandPoses::tracked, beside the bits of the two hands: both poses are in the body's frame.
 inline constexpr std::uint64_t kHandsRide = 4;
 
 }  // namespace neritic::testbed

@@ -215,7 +215,7 @@ Result<SampleLog> LogVisitor::log(const recording::McapReport& report) {
   if (log_.hashes.empty()) return bad_input("{}: ends before the hash of its start", name_);
   log_.whole = report.whole;
   if (!report.damage.empty()) log_.damage = report.damage.front();
-  // Of a step that did not end.
+  // For a step that did not end.
   while (!log_.entries.empty() && log_.entries.back().step >= log_.steps()) log_.entries.pop_back();
   return std::move(log_);
 }

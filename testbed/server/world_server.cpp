@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kRequestsAtOnce = 64;     // between two steps
 constexpr std::uint64_t kStepsAtOnce = 24;      // between two looks at the requests
 constexpr std::chrono::milliseconds kIdle{50};  // that it waits for requests at most
-// Of the inbox's numbers of sources; the rest is left to the scene's devices.
+// For the inbox's numbers of sources; the rest is left to the scene's devices.
 constexpr std::size_t kMostSources = 128;
 // Readings and images that wait while the network's thread is behind.
 constexpr std::size_t kMostArrived = 1 << 15, kMostImages = 16;

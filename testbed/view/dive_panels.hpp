@@ -68,7 +68,7 @@ struct PanelsShown {
   std::string hint;
   const MapTrails* trails = nullptr;    // nullptr: no map
   const RunNumbers* numbers = nullptr;  // nullptr: no graphs
-  TakenCorner taken;  // by a diver's instrument, pixels
+  TakenCorner taken;                    // by a diver's instrument, pixels
   GraphChoice* graphs = nullptr;        // with numbers
 };
 void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const PanelsShown& shown,

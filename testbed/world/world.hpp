@@ -47,7 +47,7 @@ struct StreamInfo {
 struct AgentInfo {
   std::string name;
   std::string kind;  // "vehicle", "diver", "object"
-  // Of a vehicle.
+  // For a vehicle.
   std::vector<std::pair<double, double>> thruster_n;  // least and most force of each
   bool takes_pwm = false;
   bool has_mission = false;
@@ -69,12 +69,12 @@ struct WorldImage {
   TimeNs stamp_ns = 0, arrival_ns = 0;
   std::uint32_t width = 0, height = 0, channels = 1;
   std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> pixels;
-  // Of its frame in the world: a camera's optical frame (right, down, forward), a sonar's head
+  // For its frame in the world: a camera's optical frame (right, down, forward), a sonar's head
   // (forward, left, up).
   std::array<double, 3> position{};
   std::array<double, 4> orientation{0.0, 0.0, 0.0, 1.0};
   std::array<double, 4> intrinsics{};  // fx, fy, cx, cy of a camera, in pixels
-  // Of a sonar: limits of the rows (m) and columns (rad, positive to the left), and of elevation.
+  // For a sonar: limits of the rows (m) and columns (rad, positive to the left), and of elevation.
   std::array<double, 2> range_m{}, azimuth{}, elevation{};
 
   std::span<const std::byte> bytes() const;

@@ -76,7 +76,7 @@ struct World::Parts {
   std::map<std::uint32_t, double> wished;  // rates by stream
   std::optional<ImageConsumer> consumer;
   std::optional<Loop> loop;
-  // Of commands: the source of a name, the next sequence by source and stream, and who has the
+  // For commands: the source of a name, the next sequence by source and stream, and who has the
   // authority over a group by this world's commands.
   struct Holder {
     SourceId source = 0;

@@ -39,8 +39,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   }
   TimeNs now = kSecond_ns;
   for (std::size_t at = 1; at + 2 <= bytes.size();) {
-    const std::size_t length = std::min<std::size_t>(net::big_endian<std::uint16_t>(bytes, at),
-                                                     bytes.size() - at - 2);
+    const std::size_t length =
+        std::min<std::size_t>(net::big_endian<std::uint16_t>(bytes, at), bytes.size() - at - 2);
     adapter->take(bytes.subspan(at + 2, length), length % 31 == 30, now, out);
     now += static_cast<TimeNs>(length) * kMillisecond_ns;
     adapter->tick(now, out);

@@ -166,7 +166,7 @@ TEST(Snow, IsFiniteFarOutAndNoneIsAboveTheWater) {
 }
 
 TEST(Bubbles, RiseAsMendelsonSays) {
-  // Of 1 cm and 4 cm in diameter; in contaminated water of small ones Clift, Grace and Weber 1978,
+  // For 1 cm and 4 cm in diameter; in contaminated water of small ones Clift, Grace and Weber 1978,
   // fig. 7.3.
   EXPECT_NEAR(bubble_speed_m_s(0.005), 0.252, 0.003);
   EXPECT_NEAR(bubble_speed_m_s(0.020), 0.447, 0.003);

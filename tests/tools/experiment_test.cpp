@@ -87,7 +87,8 @@ TEST(Experiment, TheRovBlocksASharkInTimeUnlessItStartsTooFar) {
   const fs::path build = fs::read_symlink("/proc/self/exe").parent_path().parent_path();
   if (!fs::exists(build / "python/neritic/__init__.py")) GTEST_SKIP() << "no Python package here";
   const test::ScratchFolder folder;
-  const Answer said = experiment("shark_far --runs 1 --workers 1 --out " + (folder / "out").string());
+  const Answer said =
+      experiment("shark_far --runs 1 --workers 1 --out " + (folder / "out").string());
   EXPECT_EQ(said.status, 0) << said.text;
   const nlohmann::json runs = runs_of(folder / "out");
   // The reference of the control: 1.48 s from 1 m, 3.56 s from 2.5 m; told 20 times a second.

@@ -54,9 +54,9 @@ const std::set<std::string> kPictures{
 
 TEST(LinkRule, TheSimulationPartLinksNoPicture) {
   const Graph graph = link_graph();
-  for (const char* target : {"neritic_samples", "neritic_simulation", "neritic_motion",
-                             "neritic_record", "neritic_rov", "neritic_diver", "neritic_sim",
-                             "neritic_envs"}) {
+  for (const char* target :
+       {"neritic_samples", "neritic_simulation", "neritic_motion", "neritic_record", "neritic_rov",
+        "neritic_diver", "neritic_sim", "neritic_envs"}) {
     ASSERT_TRUE(graph.contains(target)) << target;
     const auto linked = all_linked(graph, target);
     EXPECT_TRUE(linked.contains("neritic_core")) << target;

@@ -32,7 +32,7 @@ class StepFiles {
   StepFiles(const StepFileFlags& flags, const std::string& title,
             const testbed::RecordingOptions& recording, const testbed::LivePhysics& physics);
   std::vector<testbed::StepSink*> sinks() const;
-  // Of --record; nullptr: there is none.
+  // For --record; nullptr: there is none.
   testbed::RecordingFile* recording() const { return recording_; }
   const testbed::DiveRecorder& recorder() const { return log_->recorder(); }
 

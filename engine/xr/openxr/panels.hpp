@@ -45,7 +45,7 @@ class Panels {
   std::vector<Shown> shown_;            // of this frame
   const XrCompositionLayerBaseHeader* bent(const Shown& shown, XrSpace space, const Pose& pose);
   const XrCompositionLayerBaseHeader* flat(const Shown& shown, XrSpace space, const Pose& pose);
-  // Of this frame; their addresses are the runtime's until the frame has ended.
+  // For this frame; their addresses are the runtime's until the frame has ended.
   std::deque<XrCompositionLayerQuad> quads_;
   std::deque<XrCompositionLayerCylinderKHR> cylinders_;
 };

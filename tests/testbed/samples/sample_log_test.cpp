@@ -94,7 +94,8 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-// A run that was killed, wherever in the file (tests/recording tries every byte): the whole steps of its whole chunks, with their samples.
+// A run that was killed, wherever in the file (tests/recording tries every byte): the whole steps
+// of its whole chunks, with their samples.
 TEST(SampleLog, ACutOffLogReadsUpToItsLastWholeChunk) {
   const SampleLog whole = log_of_every_kind();
   recording::McapWriter file("ros2", "test");
