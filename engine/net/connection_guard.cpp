@@ -71,7 +71,7 @@ bool ConnectionGuard::send(int fd, std::uint64_t bytes) {
   if (at == connections_.end()) return false;
   Connection& connection = at->second;
   if (const auto so_far = bytes_so_far(connection.own.get())) {
-    // What the transport adds to messages must not make room for more of them.
+    // The bytes that the transport adds to messages must not make room for more of them.
     connection.sent = std::max(connection.sent, so_far->acknowledged);
     if (connection.sent - so_far->acknowledged + bytes > limits_.unsent_bytes) return false;
   }

@@ -27,7 +27,7 @@ class Reading {
   Result<McapReport> run();
 
  private:
-  // What a step of the reading found.
+  // The findings of one step of the reading.
   enum class Next { kGoOn, kEnd };
 
   Result<Next> record();

@@ -121,7 +121,7 @@ void McapWriter::end_chunk() {
   if (!any_in_chunk_) return;
   ChunkFacts facts{first_ns_, last_ns_, 0, 0, 0, 0, chunk_.size(), {}, true};
   std::string packed = level_ > 0 ? compressed(chunk_, level_) : chunk_;
-  // What does not shrink (pictures that are compressed already) stays as it is.
+  // Data that does not shrink (pictures that are compressed already) stays as it is.
   facts.packed = packed.size() < chunk_.size();
   if (!facts.packed) packed = chunk_;
   facts.compressed = packed.size();

@@ -68,7 +68,8 @@ struct Gpu::Functions {
   _(vkFreeMemory)                                                                              \
   _(vkBindImageMemory)                                                                         \
   _(vkBindBufferMemory)                                                                        \
-  _(vkMapMemory) _(vkUnmapMemory) _(vkInvalidateMappedMemoryRanges) _(vkCreateCommandPool)     \
+  _(vkMapMemory)                                                                               \
+  _(vkUnmapMemory) _(vkInvalidateMappedMemoryRanges) _(vkCreateCommandPool)                    \
       _(vkDestroyCommandPool) _(vkAllocateCommandBuffers) _(vkResetCommandPool)                \
           _(vkBeginCommandBuffer) _(vkEndCommandBuffer) _(vkCmdPipelineBarrier)                \
               _(vkCmdCopyImageToBuffer) _(vkCmdClearColorImage) _(vkCmdClearDepthStencilImage) \
