@@ -1,0 +1,77 @@
+"""A sea cave to swim into: cave.glb, rock seen from inside, mouth at z = +9 towards the sea.
+
+The floor lies near y = 0; the tunnel winds from the mouth 22 m into the rock and rises to a chamber.
+Stalactites hang from the roof. Origin: on the floor, in the middle.
+"""
+from pathlib import Path
+
+import numpy as np
+
+import noise as N
+from glb import Glb
+from mesh import box_uv, join, loft, Part, shade
+from rocks import texture
+from shapes import tube
+
+OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
+
+
+def line(s):
+    """The middle of the tunnel and its half width and height at s from 0 (mouth) to 1."""
+    z = 9.0 - 22.0 * s
+    x = 1.1 * np.sin(s * 5.2) + 0.6 * np.sin(s * 11 + 1)
+    y = 1.5 + 0.5 * s + 0.15 * np.sin(s * 9)
+    wide = 2.5 + 1.0 * np.exp(-(((s - 0.55) / 0.16) ** 2)) - 0.7 * np.exp(-(((s - 0.25) / 0.10) ** 2)) - 1.2 * N.smooth(0.85, 1, s)
+    high = 1.75 + 0.9 * np.exp(-(((s - 0.55) / 0.16) ** 2)) - 0.3 * np.exp(-(((s - 0.25) / 0.10) ** 2)) - 0.8 * N.smooth(0.85, 1, s)
+    return np.array([x, y, z]), wide, high
+
+
+def main():
+    n, m = 96, 116
+    rings = []
+    ang = np.arange(n) / n * 2 * np.pi
+    for s in np.linspace(-0.02, 1, m):
+        at, wide, high = line(s)
+        c, d = np.cos(ang), np.sin(ang)
+        p = np.column_stack([at[0] + wide * np.sign(c) * np.abs(c) ** 0.85, at[1] + high * d, np.full(n, at[2])])
+        rough = 0.42 * N.fbm3(p, 3, 0.55, 3) + 0.20 * np.abs(N.fbm3(p, 8, 1.3, 3)) + 0.07 * N.fbm3(p, 13, 4.0, 3)
+        ledge = 0.10 * N.smooth(0.2, 0.8, np.abs((p[:, 1] * 1.6 + 0.4 * N.fbm3(p, 17, 0.7, 2)) % 1 - 0.5) * 2)
+        p = p - (rough + ledge)[:, None] * np.column_stack([c, d, np.zeros(n)])
+        floor = 0.06 * N.fbm3(p, 23, 1.1, 3)
+        p[:, 1] = np.maximum(p[:, 1], floor + 0.25 * (p[:, 1] < 0) * 0)
+        rings.append(p)
+    wall = loft(np.array(rings), (False, True), orient=False)
+    t = shade(wall, 60)
+    middle = np.array([line((9.0 - z) / 22.0)[0] for z in t.pos[:, 2]])
+    if ((middle - t.pos) * t.nrm).sum(1).mean() < 0:
+        wall = wall.flipped()
+    rng = np.random.default_rng(5)
+    parts = [wall]
+    for k in range(26):  # stalactites
+        s = 0.25 + 0.65 * rng.random()
+        at, wide, high = line(s)
+        x = at[0] + (rng.random() - 0.5) * wide * 1.2
+        top = at[1] + high * 0.82
+        ln = 0.25 + 0.75 * rng.random() ** 2
+        z = at[2] + rng.normal(0, 0.3)
+        q = np.linspace(0, 1, 7)[:, None]
+        p = np.array([x, top + 0.35, z]) - q * np.array([0.04 * rng.normal(), ln + 0.35, 0.04 * rng.normal()])
+        parts.append(tube(p, np.linspace(0.13, 0.012, 7) * (0.6 + 0.6 * rng.random()), 8, (False, True)))
+    part = shade(join(parts), 55)
+    up = N.smooth(0.35, 0.9, part.nrm[:, 1])
+    g = N.fbm3(part.pos, 31, 0.8, 4)
+    light = N.smooth(1.0, 8.5, part.pos[:, 2])  # growth needs daylight
+    c = np.tile([0.78, 0.72, 0.64], (len(part.pos), 1)) * (1 + 0.22 * g)[:, None]
+    c = N.mix(c, np.array([0.72, 0.46, 0.36]), 0.5 * N.smooth(0.0, 0.5, N.fbm3(part.pos, 37, 1.7, 3)) * (0.3 + 0.7 * light))
+    c = N.mix(c, np.array([0.52, 0.58, 0.36]), 0.6 * light * N.smooth(-0.2, 0.5, g))
+    c = N.mix(c, np.array([1.0, 0.93, 0.80]), 0.85 * up)
+    part.col = np.column_stack([np.clip(c, 0, 1), np.ones(len(c))])
+    col, _, nm = texture(512)
+    glb = Glb("cave")
+    m_r = glb.material("rock", base=glb.texture("rock_color", col, 74), normal=glb.texture("rock_normal", nm, 64), rough=0.9, double=True)
+    glb.node("cave", glb.mesh("cave", [(box_uv(part, 1.7), m_r)]))
+    glb.save(OUT / "cave.glb")
+
+
+if __name__ == "__main__":
+    main()

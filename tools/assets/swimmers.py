@@ -1,0 +1,388 @@
+"""Animals that swim by their bodies: turtle.glb and ray.glb (clip swim), jellyfish.glb (clip pulse); and
+school_fish.glb: sardine (for thousands), snapper and damsel. Nose along -z, origin in the middle.
+"""
+from pathlib import Path
+
+import numpy as np
+
+import noise as N
+from glb import Glb, qmul, quat
+from mesh import box_uv, join, loft, Part, shade
+from sealife import ribbon
+from shapes import foil, revolve, sphere, tube
+
+OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
+
+
+def coloured(part, rgb, crease=60):
+    p = part if part.nrm is not None else shade(part, crease)
+    p.col = np.column_stack([np.clip(rgb(p), 0, 1), np.ones(len(p.pos))])
+    return p
+
+
+def bound(part, weights):
+    """weights [n, joints]: the four largest count."""
+    top = np.argsort(-weights, 1)[:, :4]
+    w = np.take_along_axis(weights, top, 1)
+    part.joints, part.weights = np.where(w > 0, top, 0), w / w.sum(1, keepdims=True)
+    return part
+
+
+def scutes(n=512):
+    """A carapace from above (u across, v from head to tail): five scutes along the keel, four each side."""
+    y, x = np.meshgrid((np.arange(n) + 0.5) / n, (np.arange(n) + 0.5) / n, indexing="ij")
+    pts = [(0.5, v) for v in (0.13, 0.31, 0.50, 0.68, 0.85)]
+    pts += [(0.5 + s * d, v) for s in (-1, 1) for d, v in ((0.20, 0.25), (0.235, 0.44), (0.22, 0.62), (0.165, 0.79))]
+    rim = [(0.5 + 0.47 * np.sin(a), 0.5 - 0.49 * np.cos(a)) for a in np.linspace(0.25, 2 * np.pi - 0.25, 24)]
+    dist = np.array([np.hypot((x - px) * 1.0, (y - py) * 1.15) + (0.075 if k >= 13 else 0) for k, (px, py) in enumerate(pts + rim)])
+    order = np.sort(dist, 0)
+    who = np.argmin(dist, 0)
+    gap = order[1] - order[0]
+    px = np.array([p[0] for p in pts + rim])[who]
+    py = np.array([p[1] for p in pts + rim])[who]
+    a = np.arctan2(x - px, y - py + 0.035)
+    rays = 0.5 + 0.5 * np.cos(a * 17 + 3 * N.spectral(n, 4, 2, 3))
+    f = N.spectral(n, 6, 1.0, 12)
+    col = N.mix(N.flat(n, (0.36, 0.24, 0.11)), (0.62, 0.46, 0.22), N.smooth(0.25, 0.85, rays) * N.smooth(0.0, 0.09, gap))
+    col = N.mix(col, (0.16, 0.11, 0.06), 0.7 * N.smooth(0.4, 1.6, N.spectral(n, 8, 1.6, 4)))
+    col = N.mix(col, (0.70, 0.62, 0.42), N.smooth(0.011, 0.003, gap))
+    col = N.mix(col, (0.42, 0.44, 0.26), 0.45 * N.smooth(0.3, 1.5, N.spectral(n, 9, 2, 2)))
+    h = -0.004 * N.smooth(0.016, 0.0, gap) + 0.0008 * rays + 0.0006 * f
+    return np.clip(col * (1 + 0.05 * f)[..., None], 0, 1), N.normal_map(h, 0.7, 0.9)
+
+
+def skin_scales(n=256):
+    d1, d2, who = N.cells(n, 420, 12)
+    tone = np.random.default_rng(3).random(420)[who]
+    edge = N.smooth(0.012, 0.003, d2 - d1)
+    col = N.mix(N.flat(n, (0.66, 0.60, 0.46)) * (0.7 + 0.5 * tone[..., None]), (0.92, 0.88, 0.70), edge)
+    return np.clip(col, 0, 1), N.normal_map(-0.0012 * edge + 0.0005 * tone, 0.25)
+
+
+def turtle():
+    """A green turtle: carapace 0.92 m. Joints: body, head, two flippers of two joints, two hind ones."""
+    n, m = 44, 23
+    u = np.linspace(0, 1, m)
+    z = -0.45 + 0.92 * u
+    half = 0.335 * np.sin(np.pi * np.clip(u * 0.94 + 0.035, 0, 1)) ** 0.62 * (1 - 0.22 * u)
+    high = 0.165 * np.sin(np.pi * np.clip(u * 0.93 + 0.05, 0, 1)) ** 0.8
+    rings, uv = [], []
+    a = np.linspace(0, np.pi, n)
+    for k in range(m):
+        rings.append(np.column_stack([-half[k] * np.cos(a), high[k] * np.sin(a) ** 0.9 + 0.012 * np.exp(-((a - np.pi / 2) / 0.12) ** 2), np.full(n, z[k])]))
+        uv.append(np.column_stack([0.5 - 0.485 * np.cos(a) * half[k] / 0.335 / max(1 - 0.22 * u[k], 0.1), np.full(n, 0.02 + 0.96 * u[k])]))
+    shell = loft(np.array(rings), (False, False), wrap=False, orient=False)
+    shell.uv = np.concatenate(uv)
+    if shade(shell, 80).nrm[:, 1].mean() < 0:
+        shell = shell.flipped()
+    shell = shade(shell, 70)
+    under = []
+    for k in range(m):
+        b = np.linspace(np.pi, 2 * np.pi, 15)
+        under.append(np.column_stack([-half[k] * np.cos(b) * 0.985, 0.075 * np.sin(b) * np.clip(np.sin(np.pi * u[k]) * 1.3, 0, 1) ** 0.5 + 0.002, np.full(15, z[k])]))
+    belly = loft(np.array(under), (False, False), wrap=False, orient=False)
+    if shade(belly, 80).nrm[:, 1].mean() > 0:
+        belly = belly.flipped()
+    belly = coloured(belly, lambda p: np.tile([0.90, 0.84, 0.62], (len(p.pos), 1)))
+    # head and neck
+    prof = [(0.082, -0.36), (0.078, -0.44), (0.066, -0.50), (0.072, -0.555), (0.083, -0.605), (0.079, -0.655), (0.060, -0.700), (0.034, -0.728), (0.004, -0.738)]
+    head = revolve([(r, zz) for r, zz in prof[::-1]], 22)
+    head = head.map(lambda p: np.column_stack([p[:, 0] * 0.86, p[:, 1] * 0.92 + 0.03, p[:, 2]]))
+    tone = lambda p: N.mix(np.tile([0.40, 0.33, 0.20], (len(p.pos), 1)), np.array([0.86, 0.80, 0.58]), N.smooth(0.2, -0.5, p.nrm[:, 1]))
+    skin = [coloured(head, tone)]
+    eyes = [coloured(sphere(0.0135, 10, 8).at(s * 0.055, 0.052, -0.655), lambda p: np.tile([0.02, 0.02, 0.02], (len(p.pos), 1))) for s in (-1, 1)]
+    up = np.array([0.0, 1.0, 0.0])
+    front = foil([
+        ((0.22, 0.005, -0.33), (0.24, 0.0, -0.13), 0.062, up), ((0.36, 0.0, -0.40), (0.37, -0.005, -0.19), 0.050, up),
+        ((0.49, -0.01, -0.43), (0.50, -0.015, -0.235), 0.036, up), ((0.62, -0.02, -0.38), (0.60, -0.025, -0.22), 0.027, up),
+        ((0.73, -0.03, -0.28), (0.69, -0.035, -0.16), 0.018, up), ((0.80, -0.04, -0.15), (0.775, -0.04, -0.09), 0.008, up),
+        ((0.815, -0.045, -0.075), (0.81, -0.045, -0.06), 0.003, up)], 11)
+    hind = foil([((0.14, 0.0, 0.30), (0.10, 0.0, 0.44), 0.045, up), ((0.21, -0.01, 0.37), (0.14, -0.01, 0.50), 0.032, up), ((0.27, -0.015, 0.46), (0.17, -0.015, 0.57), 0.018, up), ((0.26, -0.02, 0.56), (0.20, -0.02, 0.60), 0.005, up)], 9)
+    for part in (front, front.mirrored(), hind, hind.mirrored()):
+        skin.append(coloured(part, tone))
+    tail = tube(np.array([(0, 0.0, 0.42), (0, -0.01, 0.49), (0, -0.02, 0.55)]), [0.035, 0.022, 0.004], 8)
+    skin.append(coloured(tail, tone))
+    skin = box_uv(join(skin + eyes), 0.25)
+    joints = ["body", "head", "shoulder_l", "hand_l", "shoulder_r", "hand_r", "hind_l", "hind_r"]
+    rest = np.array([(0, 0, 0), (0, 0.02, -0.40), (-0.25, 0, -0.24), (-0.50, -0.01, -0.32), (0.25, 0, -0.24), (0.50, -0.01, -0.32), (-0.13, 0, 0.33), (0.13, 0, 0.33)])
+    w = np.zeros((len(skin.pos), 8))
+    x, zz = np.abs(skin.pos[:, 0]), skin.pos[:, 2]
+    left = skin.pos[:, 0] < 0
+    fl = (zz < 0.15) & (x > 0.17) & (zz > -0.5)
+    arm, hand = N.smooth(0.20, 0.32, x) * fl, N.smooth(0.42, 0.56, x) * fl
+    for side, (i, j) in ((left, (2, 3)), (~left, (4, 5))):
+        w[side, j] = (arm * hand)[side]
+        w[side, i] = (arm * (1 - hand))[side]
+    back = (zz > 0.26) & (x > 0.05)
+    hw = N.smooth(0.28, 0.40, zz + 0.5 * x) * back
+    w[left, 6], w[~left, 7] = hw[left], hw[~left]
+    w[:, 1] = N.smooth(-0.38, -0.50, zz) * (x < 0.13)
+    w[:, 0] = np.maximum(0, 1 - w[:, 1:].sum(1))
+    one = lambda part: bound(part, np.eye(8)[np.zeros(len(part.pos), int)])
+    g = Glb("turtle")
+    sc, sn = scutes()
+    kc, kn = skin_scales()
+    m_s = g.material("shell", base=g.texture("shell_color", sc, 82), normal=g.texture("shell_normal", sn, 78), rough=0.55)
+    m_k = g.material("skin", base=g.texture("skin_color", kc, 80), normal=g.texture("skin_normal", kn, 76), rough=0.7)
+    nodes = []
+    for k, name in enumerate(joints):
+        parent = None if k == 0 else nodes[{3: 2, 5: 4}.get(k, 0)]
+        base = rest[{3: 2, 5: 4}.get(k, 0)] if k else np.zeros(3)
+        nodes.append(g.node(name, at=rest[k] - base, parent=parent))
+    belly = box_uv(belly, 0.25)
+    mesh = g.mesh("turtle", [(one(shell), m_s), (join([bound(skin, w), one(belly)]), m_k)])
+    g.node("turtle", mesh, skin=g.skin("turtle", nodes, rest))
+    t = np.linspace(0, 3.2, 33)
+    ph = t / 3.2 * 2 * np.pi
+    beat, lag = 34 * np.sin(ph) + 6, 24 * np.sin(ph - 1.0)
+    sweep = 14 * np.cos(ph)
+    tracks = []
+    for i, j, s in ((nodes[2], nodes[3], -1), (nodes[4], nodes[5], 1)):
+        tracks.append((i, "rotation", qmul(quat("y", -s * sweep), qmul(quat("z", s * beat), quat("x", -16 * np.cos(ph))))))
+        tracks.append((j, "rotation", quat("z", s * lag)))
+    for i, s in ((nodes[6], -1), (nodes[7], 1)):
+        tracks.append((i, "rotation", qmul(quat("y", s * (10 + 6 * np.sin(ph))), quat("x", 5 * np.sin(ph + 1)))))
+    tracks.append((nodes[1], "rotation", quat("x", 5 + 3 * np.sin(ph + 0.5))))
+    tracks.append((nodes[0], "rotation", quat("x", 2.5 * np.sin(ph - 0.4))))
+    tracks.append((nodes[0], "translation", np.column_stack([0 * t, 0.018 * np.sin(ph - 1.6), 0 * t])))
+    g.animation("swim", t, tracks)
+    g.save(OUT / "turtle.glb")
+
+
+def ray_texture(n=512):
+    y, x = np.meshgrid((np.arange(n) + 0.5) / n, (np.arange(n) + 0.5) / n, indexing="ij")
+    f = N.spectral(n, 6, 1.0, 20)
+    col = N.mix(N.flat(n, (0.13, 0.14, 0.16)), (0.24, 0.25, 0.27), N.smooth(-1, 1.4, N.spectral(n, 4, 2, 2)))
+    rng = np.random.default_rng(6)
+    for _ in range(130):  # white spots of an eagle ray
+        a, r, s = rng.random() * 2 * np.pi, 0.46 * np.sqrt(rng.random()), 0.006 + 0.009 * rng.random()
+        cx, cy = 0.5 + r * np.cos(a), 0.42 + 0.8 * r * np.sin(a)
+        d = np.hypot(x - cx, (y - cy)) + 0.002 * f
+        col = N.mix(col, (0.80, 0.82, 0.80), 0.85 * N.smooth(s, s * 0.55, d))
+    return np.clip(col * (1 + 0.06 * f)[..., None], 0, 1)
+
+
+def ray():
+    """A spotted eagle ray, 1.9 m across. Joints: body, three along each wing, two of the tail."""
+    m, n = 41, 13
+    span = np.linspace(-1, 1, m)
+    s = np.abs(span)
+    rings, uv = [], []
+    lead = -0.46 + 0.10 * N.smooth(0, 0.13, s) + 0.40 * N.smooth(0.10, 1, s) ** 1.25 - 0.16 * np.exp(-((s - 0.34) / 0.22) ** 2)
+    trail = 0.50 - 0.02 * s - 0.34 * N.smooth(0.0, 0.55, s) + 0.26 * N.smooth(0.5, 1, s) ** 2
+    thick = 0.30 * np.exp(-(s / 0.20) ** 2) + 0.075 * (1 - s) ** 1.1 + 0.003
+    q = (1 - np.cos(np.linspace(0, np.pi, n))) / 2
+    half = 2.6 * (0.2969 * np.sqrt(q) - 0.126 * q - 0.3516 * q**2 + 0.2843 * q**3 - 0.1036 * q**4) * 0.5
+    for k in range(m):
+        zz = lead[k] + (trail[k] - lead[k]) * q
+        up, down = half * thick[k] * 2.1, -half * thick[k] * 1.2
+        x = np.full(n, span[k] * 0.95)
+        line = np.column_stack([x, up, zz])
+        low = np.column_stack([x, down, zz])[-2:0:-1]
+        rings.append(np.concatenate([line, low]))
+        v = np.concatenate([zz, zz[-2:0:-1]])
+        uv.append(np.column_stack([np.full(len(v), 0.5 + 0.48 * span[k]), 0.5 + v * 0.85]))
+    body = loft(np.array(rings), (True, True))
+    body.uv = np.column_stack([0.5 + 0.505 * body.pos[:, 0] / 0.95 * 0.95, 0.5 + body.pos[:, 2] * 0.85])
+    snout = revolve([(0.01, -0.60), (0.055, -0.575), (0.085, -0.52), (0.105, -0.44), (0.11, -0.33)], 16)
+    snout = snout.map(lambda p: np.column_stack([p[:, 0] * 1.05, p[:, 1] * 0.72 + 0.03, p[:, 2]]))
+    snout.uv = np.column_stack([0.5 + 0.5 * snout.pos[:, 0], 0.5 + snout.pos[:, 2] * 0.85])
+    tail = tube(np.column_stack([np.zeros(16), 0.02 - 0.06 * np.linspace(0, 1, 16), np.linspace(0.42, 1.75, 16)]), np.linspace(0.022, 0.003, 16), 7)
+    tail.uv = np.column_stack([0.5 + tail.pos[:, 0], np.full(len(tail.pos), 0.97)])
+    whole = shade(join([body, snout, tail]), 60)
+    belly = N.smooth(0.05, -0.3, whole.nrm[:, 1])
+    tint = N.mix(np.tile([1.0, 1.0, 1.0], (len(whole.pos), 1)), np.array([1.0, 1.0, 1.0]), belly)
+    whole.col = np.column_stack([tint, np.ones(len(tint))])
+    x = whole.pos[:, 0]
+    w = np.zeros((len(x), 9))
+    knots = np.array([0.0, 0.22, 0.48, 0.74])
+    for side, first in ((x < 0, 1), (x >= 0, 4)):
+        d = np.abs(x)
+        for k in range(4):
+            reach = 0.26
+            v = np.clip(1 - np.abs(d - knots[k]) / reach, 0, 1) if k < 3 else N.smooth(0.48, 0.74, d)
+            w[side, 0 if k == 0 else first + k - 1] += v[side]
+    tz = whole.pos[:, 2]
+    thin = (tz > 0.50) & (np.abs(x) < 0.05)
+    w[thin] = 0
+    w[thin, 7] = 1 - N.smooth(0.9, 1.3, tz[thin])
+    w[thin, 8] = N.smooth(0.9, 1.3, tz[thin])
+    w[:, 0] += 1e-6
+    bound(whole, w)
+    names = ["body", "wing_l_0", "wing_l_1", "wing_l_2", "wing_r_0", "wing_r_1", "wing_r_2", "tail_0", "tail_1"]
+    rest = np.array([(0, 0, 0)] + [(-k, 0, 0) for k in (0.12, 0.36, 0.62)] + [(k, 0, 0) for k in (0.12, 0.36, 0.62)] + [(0, 0, 0.48), (0, -0.03, 1.05)], float)
+    parent = [None, 0, 1, 2, 0, 4, 5, 0, 7]
+    g = Glb("ray")
+    top = g.texture("ray_color", ray_texture(), 84)
+    grey = g.material("back", base=top, rough=0.45)
+    white = g.material("belly", (0.80, 0.81, 0.80, 1), rough=0.5)
+    tri_up = whole.nrm[whole.tri].mean(1)[:, 1] > -0.15
+    upper, lower = whole.copy(), whole.copy()
+    upper.tri, lower.tri = whole.tri[tri_up], whole.tri[~tri_up]
+    nodes = []
+    for k, name in enumerate(names):
+        base = rest[parent[k]] if parent[k] is not None else np.zeros(3)
+        nodes.append(g.node(name, at=rest[k] - base, parent=None if parent[k] is None else nodes[parent[k]]))
+    mesh = g.mesh("ray", [(upper, grey), (lower, white)])
+    g.node("ray", mesh, skin=g.skin("ray", nodes, rest))
+    t = np.linspace(0, 2.6, 27)
+    ph = t / 2.6 * 2 * np.pi
+    tracks = []
+    for s_, first in ((-1, 1), (1, 4)):
+        for k, (amp, lag) in enumerate(((17, 0.0), (15, 0.75), (15, 1.5))):
+            swing = s_ * (amp * np.sin(ph - lag) + (3 if k == 0 else 0))
+            tracks.append((nodes[first + k], "rotation", qmul(quat("z", swing), quat("x", 5 * np.cos(ph - lag)))))
+    tracks.append((nodes[7], "rotation", quat("y", 5 * np.sin(ph))))
+    tracks.append((nodes[8], "rotation", quat("y", 9 * np.sin(ph - 1.1))))
+    tracks.append((nodes[0], "translation", np.column_stack([0 * t, -0.035 * np.sin(ph - 0.3), 0 * t])))
+    g.animation("swim", t, tracks)
+    g.save(OUT / "ray.glb")
+
+
+def jellyfish():
+    """A compass jellyfish: bell of 0.24 m, mouth arms 0.8 m. It pulses by its rim. Nose (crown) is +y."""
+    n = 36
+    prof = [(0.004, 0.075), (0.035, 0.072), (0.066, 0.060), (0.092, 0.040), (0.110, 0.012), (0.118, -0.018), (0.114, -0.040), (0.100, -0.036), (0.086, -0.005), (0.060, 0.022), (0.03, 0.034), (0.004, 0.036)]
+    ang = np.arange(n) / n * 2 * np.pi
+    rings = [np.column_stack([r * np.cos(ang) * (1 + (0.035 * np.cos(16 * ang) if 4 < k < 8 else 0)), np.full(n, y), r * np.sin(ang)]) for k, (r, y) in enumerate(prof)]
+    bell = shade(loft(np.array(rings), (True, True)), 80)
+    a = np.arctan2(bell.pos[:, 2], bell.pos[:, 0])
+    r = np.hypot(bell.pos[:, 0], bell.pos[:, 2])
+    ray_ = N.smooth(0.35, 0.75, np.cos(16 * a)) * N.smooth(0.045, 0.075, r)
+    spot = N.smooth(0.026, 0.018, r)
+    c = N.mix(np.tile([0.66, 0.58, 0.48], (len(r), 1)), np.array([0.52, 0.24, 0.10]), np.maximum(0.85 * ray_, 0.7 * spot))
+    alpha = 0.42 + 0.45 * np.maximum(ray_, spot) + 0.25 * N.smooth(0.10, 0.118, r)
+    bell.col = np.column_stack([c, np.clip(alpha, 0, 1)])
+    rim = N.smooth(0.045, 0.112, r) * 0.9
+    w = np.zeros((len(r), 6))
+    w[:, 1], w[:, 0] = rim, 1 - rim
+    bound(bell, w)
+    rng = np.random.default_rng(2)
+    arms, threads = [], []
+    for k in range(4):
+        b = k * np.pi / 2 + 0.4
+        q = np.linspace(0, 1, 26)[:, None]
+        p = np.column_stack([0.022 * np.cos(b) + 0.05 * q[:, 0] * np.cos(b + 2.5 * q[:, 0]), 0.03 - 0.72 * q[:, 0], 0.022 * np.sin(b) + 0.05 * q[:, 0] * np.sin(b + 2.5 * q[:, 0])])
+        width = 0.036 * (1 - q[:, 0]) ** 0.7 * (1 + 0.45 * np.sin(q[:, 0] * 46 + k)) + 0.002
+        arms.append(ribbon(p, width, np.array([np.cos(b + 1.2), 0.2 * np.sin(k), np.sin(b + 1.2)]), curl=0.35))
+    for k in range(24):
+        b = k / 24 * 2 * np.pi
+        q = np.linspace(0, 1, 12)[:, None]
+        ln = 0.42 + 0.30 * rng.random()
+        p = np.column_stack([np.cos(b) * (0.112 + 0.035 * q[:, 0] ** 2) + 0.012 * np.sin(9 * q[:, 0] + k), -0.035 - ln * q[:, 0], np.sin(b) * (0.112 + 0.035 * q[:, 0] ** 2) + 0.012 * np.cos(8 * q[:, 0] + k)])
+        threads.append(tube(p, np.linspace(0.0016, 0.0006, 12), 4, (False, False)))
+    hang = join([coloured(join(arms), lambda p: np.tile([0.58, 0.47, 0.38], (len(p.pos), 1)), 80), coloured(join(threads), lambda p: np.tile([0.42, 0.26, 0.17], (len(p.pos), 1)), 80)])
+    y = hang.pos[:, 1]
+    w = np.zeros((len(y), 6))
+    knots = np.array([-0.05, -0.25, -0.48, -0.72])
+    for k in range(4):
+        w[:, 2 + k] = np.clip(1 - np.abs(y - knots[k]) / 0.24, 0, 1)
+    outer = N.smooth(0.085, 0.11, np.hypot(hang.pos[:, 0], hang.pos[:, 2])) * N.smooth(-0.20, -0.06, y)
+    w *= (1 - outer)[:, None]
+    w[:, 1] = outer
+    w[:, 0] = N.smooth(-0.04, 0.03, y) * (1 - outer) + 1e-6
+    bound(hang, w)
+    g = Glb("jellyfish")
+    m_bell = g.material("bell", rough=0.25, double=True, blend=True)
+    m_hang = g.material("arms", rough=0.5, double=True)
+    rest = np.array([(0, 0, 0), (0, 0, 0), (0, 0.0, 0), (0, -0.2, 0), (0, -0.42, 0), (0, -0.64, 0)], float)
+    parent = [None, 0, 0, 2, 3, 4]
+    nodes = []
+    for k, name in enumerate(["bell", "rim", "arm_0", "arm_1", "arm_2", "arm_3"]):
+        base = rest[parent[k]] if parent[k] is not None else np.zeros(3)
+        nodes.append(g.node(name, at=rest[k] - base, parent=None if parent[k] is None else nodes[parent[k]]))
+    g.node("jellyfish", g.mesh("jellyfish", [(hang, m_hang), (bell, m_bell)]), skin=g.skin("jellyfish", nodes, rest))
+    t = np.linspace(0, 1.8, 25)
+    ph = t / 1.8 * 2 * np.pi
+    pulse = np.maximum(0, np.sin(ph)) ** 1.3
+    rim_s = 1.06 - 0.34 * pulse
+    tracks = [
+        (nodes[1], "scale", np.column_stack([rim_s, 1 + 0.25 * pulse, rim_s])),
+        (nodes[1], "translation", np.column_stack([0 * t, -0.022 * pulse, 0 * t])),
+        (nodes[0], "translation", np.column_stack([0 * t, 0.02 * np.sin(ph - 1.2), 0 * t])),
+    ]
+    for k in range(4):
+        sway = 6 * np.sin(ph - 0.9 * k)
+        tracks.append((nodes[2 + k], "rotation", qmul(quat("x", sway), quat("z", 4 * np.cos(ph - 0.9 * k)))))
+    g.animation("pulse", t, tracks)
+    g.save(OUT / "jellyfish.glb")
+
+
+def fish_body(zs, h, w, sides, n_uv=1.0):
+    """A body strip between nose and tail root; uv: x along, y from back to belly."""
+    v = np.linspace(0, 1, sides)
+    rows, uv = [], []
+    for z, hh, ww in zip(zs, h, w):
+        a = np.pi * v
+        rows.append(np.column_stack([ww * np.sin(a) ** 0.85, hh * np.cos(a), np.full(sides, z)]))
+        uv.append(np.column_stack([np.full(sides, (z - zs[0]) / (0.97 * 2 * -zs[0])), 0.04 + 0.92 * v]))
+    p = loft(np.array(rows), (False, False), wrap=False, orient=False)
+    p.uv = np.concatenate(uv)
+    t = p.pos[p.tri]
+    if np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])[:, 0].sum() < 0:
+        p = p.flipped()
+    return join([p, p.mirrored()])
+
+
+def fin(points, length):
+    q = np.array([(0, y, z) for y, z in points], float)
+    n = len(q)
+    tri = [(0, k, k + 1) for k in range(1, n - 1)]
+    return Part(q, tri, np.column_stack([(q[:, 2] + length / 2) / length * 0.98, np.full(n, 0.06) + 0.88 * (q[:, 1] < 0)]))
+
+
+def fish_picture(back, flank, belly, marks, n=64, m=128):
+    v = ((np.arange(n) + 0.5) / n)[:, None] * np.ones((1, m))
+    u = ((np.arange(m) + 0.5) / m)[None, :] * np.ones((n, 1))
+    f = N.spectral(n, 3, 0.6, 10, m=m)
+    col = N.mix(N.flat(n, back, m), flank, N.smooth(0.22, 0.42, v))
+    col = N.mix(col, belly, N.smooth(0.60, 0.85, v))
+    col = marks(col, u, v)
+    scales = 0.5 + 0.5 * np.cos(u * m * 0.9) * np.cos(v * n * 0.9)
+    col = col * (1 + 0.05 * f + 0.07 * (scales - 0.5))[..., None]
+    r = np.hypot((u - 0.09) * 2.6, v - 0.40)
+    col = N.mix(col, (0.80, 0.74, 0.50), N.smooth(0.085, 0.07, r))
+    col = N.mix(col, (0.01, 0.01, 0.01), N.smooth(0.055, 0.045, r))
+    return np.clip(col, 0, 1)
+
+
+def school_fish():
+    g = Glb("school_fish")
+
+    def add(name, parts, picture, at, rough):
+        b = g.texture(f"{name}_color", picture, 84)
+        m_b = g.material(f"{name}_body", base=b, rough=rough)
+        m_f = g.material(f"{name}_fin", base=b, rough=0.6, double=True)
+        g.node(name, g.mesh(name, [(shade(parts[0], 80), m_b), (shade(join(parts[1:]), 80), m_f)]), at=at)
+
+    # 58 triangles, for thousands
+    sardine = [fish_body([-0.08, -0.055, -0.015, 0.03, 0.065], [0.002, 0.013, 0.018, 0.013, 0.005], [0.001, 0.007, 0.009, 0.006, 0.002], 4),
+               fin([(0, 0.060), (0.020, 0.088), (0.003, 0.076), (-0.003, 0.076), (-0.020, 0.088)], 0.16), fin([(0.016, -0.01), (0.028, 0.004), (0.014, 0.016)], 0.16)]
+    silver = lambda col, u, v: N.mix(col, (0.70, 0.78, 0.80), 0.5 * N.smooth(0.08, 0.02, np.abs(v - 0.52)))
+    add("sardine", sardine, fish_picture((0.07, 0.12, 0.15), (0.40, 0.47, 0.50), (0.56, 0.60, 0.60), silver, 32, 64), (-0.5, 0, 0), 0.3)
+    zs = [-0.16, -0.152, -0.13, -0.095, -0.05, 0.0, 0.05, 0.10]
+    snapper = [fish_body(zs, [0.004, 0.018, 0.036, 0.053, 0.060, 0.053, 0.036, 0.017], [0.003, 0.010, 0.018, 0.025, 0.027, 0.022, 0.014, 0.005], 9),
+               fin([(0.0, 0.092), (0.016, 0.096), (0.050, 0.150), (0.054, 0.160), (0.018, 0.138), (0.0, 0.130), (-0.018, 0.138), (-0.054, 0.160), (-0.050, 0.150), (-0.016, 0.096)], 0.32),
+               fin([(0.050, 0.0), (0.056, -0.080), (0.078, -0.068), (0.084, -0.030), (0.072, 0.01), (0.066, 0.05), (0.030, 0.070), (0.028, 0.06)], 0.32),
+               fin([(-0.045, 0.02), (-0.030, 0.06), (-0.046, 0.072), (-0.066, 0.052), (-0.062, 0.025)], 0.32), fin([(-0.045, -0.07), (-0.050, -0.045), (-0.078, -0.028), (-0.074, -0.045)], 0.32)]
+    bands = lambda col, u, v: N.mix(col, (0.16, 0.34, 0.50), 0.8 * sum(N.smooth(0.022, 0.012, np.abs(v - b)) for b in (0.26, 0.40, 0.54)) * N.smooth(0.1, 0.16, u))
+    add("snapper", snapper, fish_picture((0.52, 0.40, 0.10), (0.72, 0.56, 0.14), (0.66, 0.60, 0.46), bands), (0, 0, 0), 0.45)
+    zs = [-0.062, -0.057, -0.045, -0.026, -0.004, 0.018, 0.036, 0.046]
+    damsel = [fish_body(zs, [0.002, 0.012, 0.024, 0.034, 0.037, 0.031, 0.017, 0.009], [0.001, 0.005, 0.009, 0.012, 0.012, 0.009, 0.005, 0.002], 8),
+              fin([(0.0, 0.040), (0.010, 0.044), (0.026, 0.066), (0.006, 0.056), (-0.006, 0.056), (-0.026, 0.066), (-0.010, 0.044)], 0.124),
+              fin([(0.030, 0.005), (0.032, -0.030), (0.046, -0.018), (0.050, 0.014), (0.044, 0.034), (0.018, 0.032)], 0.124),
+              fin([(-0.028, 0.005), (-0.018, 0.032), (-0.038, 0.036), (-0.050, 0.018), (-0.042, 0.0)], 0.124), fin([(-0.028, -0.030), (-0.030, -0.016), (-0.052, -0.004), (-0.046, -0.018)], 0.124)]
+    tail = lambda col, u, v: N.mix(col, (0.85, 0.66, 0.10), N.smooth(0.72, 0.80, u + 0.25 * (v - 0.4)))
+    add("damsel", damsel, fish_picture((0.05, 0.12, 0.36), (0.10, 0.24, 0.58), (0.20, 0.36, 0.62), tail), (0.4, 0, 0), 0.5)
+    g.save(OUT / "school_fish.glb")
+
+
+def main():
+    turtle()
+    ray()
+    jellyfish()
+    school_fish()
+
+
+if __name__ == "__main__":
+    main()
