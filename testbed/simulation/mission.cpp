@@ -53,19 +53,52 @@ std::vector<Vec3> MissionGuide::waypoints_ned_m() const {
   return out;
 }
 
-std::vector<MissionGuide::Leg> MissionGuide::legs(const Vec3& start_ned_m) const {
+MissionGuide::Leg MissionGuide::leg(const Vec3& from_ned_m, const Vec3& to_ned_m, const Face& face,
+                                    double start_rad, const PhysicsState& all) const {
+  const Vec3 way = to_ned_m - from_ned_m;
+  Leg out{from_ned_m, to_ned_m, {}};
+  for (std::size_t i = 0; i < out.points.size(); ++i) {
+    LegPoint& point = out.points[i];
+    point.place_ned_m = from_ned_m + 0.5 * static_cast<double>(i) * way;
+    if (face.heading_rad) {
+      point.heading_rad = face.heading_rad;
+    } else if (face.look_at) {
+      const Vec3 to =
+          rov::ned_from_world(face.look_at->at(all, 0.0).position_m) - point.place_ned_m;
+      if (std::hypot(to.x, to.y) > kLeastWay) point.heading_rad = std::atan2(to.y, to.x);
+    } else if (std::hypot(way.x, way.y) > kLeastWay) {
+      point.heading_rad = std::atan2(way.y, way.x);
+    } else if (kind_ == scene::Mission::Kind::kStation) {
+      point.heading_rad = start_rad;
+    }
+  }
+  return out;
+}
+
+std::vector<MissionGuide::Leg> MissionGuide::legs(const rov::State& start,
+                                                  const PhysicsState& all) const {
+  constexpr int kParts = 8;  // of an orbit
   std::vector<Leg> out;
-  const auto add = [&](const Vec3& from, const Stop& to) {
-    const Face& face = to.face.said() ? to.face : face_;
-    const Vec3 way = to.position_ned_m - from;
-    Leg leg{from, to.position_ned_m, face.heading_rad};
-    if (!face.said() && std::hypot(way.x, way.y) > kLeastWay)
-      leg.heading_rad = std::atan2(way.y, way.x);
-    out.push_back(leg);
+  const auto add = [&](const Vec3& from_ned_m, const Vec3& to_ned_m, const Face& face) {
+    out.push_back(leg(from_ned_m, to_ned_m, face, rov::heading_of(start.attitude), all));
   };
+  const auto add_stop = [&](const Vec3& from_ned_m, const Stop& to) {
+    add(from_ned_m, to.position_ned_m, to.face.said() ? to.face : face_);
+  };
+  if (kind_ == scene::Mission::Kind::kStation)
+    add(start.position_ned_m, start.position_ned_m, face_);
+  if (kind_ == scene::Mission::Kind::kOrbit) {
+    const Vec3 centre = rov::ned_from_world(target_.at(all, 0.0).position_m);
+    const auto at = [&](int part) {
+      const double angle = std::copysign(2.0 * kPi * part / kParts, speed_m_s_);
+      return centre + radius_m_ * Vec3(std::cos(angle), std::sin(angle), 0.0);
+    };
+    for (int part = 0; part < kParts; ++part) add(at(part), at(part + 1), face_);
+  }
   for (std::size_t i = 0; i < waypoints_.size(); ++i)
-    add(i == 0 ? start_ned_m : waypoints_[i - 1].position_ned_m, waypoints_[i]);
-  if (repeat_ && waypoints_.size() > 1) add(waypoints_.back().position_ned_m, waypoints_.front());
+    add_stop(i == 0 ? start.position_ned_m : waypoints_[i - 1].position_ned_m, waypoints_[i]);
+  if (repeat_ && waypoints_.size() > 1)
+    add_stop(waypoints_.back().position_ned_m, waypoints_.front());
   return out;
 }
 

@@ -2,6 +2,7 @@
 // once a control period. Built once, then only read; any thread. North, east, down.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -26,13 +27,18 @@ class MissionGuide {
   bool repeats() const { return repeat_; }
   double speed_m_s() const { return speed_m_s_; }  // 0: none is said
   scene::SpeedOver speed_over() const { return speed_over_; }
-  // The ways between its waypoints, from start on; where it repeats the way back too. heading_rad:
-  // where it faces there; none: as what it looks at moves.
+  // The ways between its waypoints, from start on; where it repeats the way back too. Of an orbit
+  // eight parts, of a station its place.
+  struct LegPoint {
+    Vec3 place_ned_m{0.0};
+    std::optional<double> heading_rad;  // where it faces there; none: anywhere
+  };
   struct Leg {
     Vec3 from_ned_m{0.0}, to_ned_m{0.0};
-    std::optional<double> heading_rad;
+    std::array<LegPoint, 3> points;  // start, middle, end
   };
-  std::vector<Leg> legs(const Vec3& start_ned_m) const;
+  // start: the vehicle's; all: where what it looks at is, at time 0.
+  std::vector<Leg> legs(const rov::State& start, const PhysicsState& all) const;
   std::vector<Vec3> waypoints_ned_m() const;
   std::vector<double> holds_s() const;  // of each waypoint
   // All waypoints reached, of a mission that does not repeat.
@@ -50,6 +56,8 @@ class MissionGuide {
     Face face;
     double hold_s = 0.0;
   };
+  Leg leg(const Vec3& from_ned_m, const Vec3& to_ned_m, const Face& face, double start_rad,
+          const PhysicsState& all) const;
   Face face_of(const scene::Scene& scene, const scene::Facing& facing, const Movers& movers) const;
   rov::Setpoint to_waypoint(const rov::State& body, double time_s, MissionState& mission) const;
   rov::Setpoint round(const Vec3& centre_ned_m, const rov::State& body,

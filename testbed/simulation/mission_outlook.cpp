@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "rov/frames.hpp"
 
@@ -18,12 +19,15 @@ constexpr double kSlack_s = 10.0;
 constexpr double kLeastSpeed_m_s = 0.01;
 // A diver's legs sustain no more (assets/scenes/README.md).
 constexpr double kSustained_m_s = 0.8;
+// A vehicle that is slower along its way makes none.
+constexpr double kLeastWay_m_s = 0.05;
 // Headings at which a vehicle may face a current.
 constexpr int kHeadings = 72;
 
-// The force along a direction of the body's axes that the thrusters give at most.
-double most_along(const rov::Allocator& allocator, const rov::Vec6& direction) {
-  const auto given = allocator.allocate(1e6 * direction, rov::Saturation::kRedistribute).force_n;
+// The force along a direction of the body's axes that control gets from the thrusters at most.
+double most_along(const PhysicsVehicle& vehicle, const rov::Vec6& direction) {
+  const rov::Allocator& allocator = vehicle.kind.allocator;
+  const auto given = allocator.allocate(1e6 * direction, vehicle.file.gains.saturation).force_n;
   return std::max(0.0, dot(allocator.wrench_of(given), direction));
 }
 
@@ -39,15 +43,15 @@ void add_axes(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
                                                            {2, "up or down (heave)"},
                                                            {5, "round (yaw)"}};
   for (const auto& [axis, words] : kAxes)
-    if (std::min(most_along(vehicle.kind.allocator, axis_of(axis, 1.0)),
-                 most_along(vehicle.kind.allocator, axis_of(axis, -1.0))) < 1e-3)
+    if (std::min(most_along(vehicle, axis_of(axis, 1.0)),
+                 most_along(vehicle, axis_of(axis, -1.0))) < 1e-3)
       lines.push_back(fmt::format("{}: its thrusters push 0 {} {}: that axis is not controlled",
                                   vehicle.name, axis == 5 ? "N m" : "N", words));
 }
 
 void add_buoyancy(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
   const double up_n = vehicle.vehicle.buoyancy_n - vehicle.vehicle.weight_n;
-  const double most_n = most_along(vehicle.kind.allocator, axis_of(2, up_n > 0.0 ? 1.0 : -1.0));
+  const double most_n = most_along(vehicle, axis_of(2, up_n > 0.0 ? 1.0 : -1.0));
   if (std::abs(up_n) <= most_n) return;
   lines.push_back(
       fmt::format("{}: {:.4g} N too {}: its thrusters push {} with {:.3g} N at most, so "
@@ -74,7 +78,7 @@ Hold hold_at(const PhysicsVehicle& vehicle, const Vec3& flow_ned_m_s, double hea
   const Vec3 drag = drag_n(vehicle.vehicle, glm::conjugate(attitude) * flow_ned_m_s);
   const double size_n = glm::length(drag);
   if (!(size_n > 0.0)) return {0.0, 0.0, 0.0};
-  const double most_n = most_along(vehicle.kind.allocator, rov::vec6(drag / -size_n, Vec3(0.0)));
+  const double most_n = most_along(vehicle, rov::vec6(drag / -size_n, Vec3(0.0)));
   return {size_n / std::max(most_n, 1e-9), size_n, most_n};
 }
 Hold easiest_hold(const PhysicsVehicle& vehicle, const Vec3& flow_ned_m_s) {
@@ -86,7 +90,8 @@ Hold easiest_hold(const PhysicsVehicle& vehicle, const Vec3& flow_ned_m_s) {
   return best;
 }
 
-void add_current(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
+// Whether the current drags it away at any heading.
+bool add_current(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
                  std::vector<std::string>& lines) {
   std::vector<Vec3> places = vehicle.mission->waypoints_ned_m();
   places.push_back(vehicle.start.position_ned_m);
@@ -96,11 +101,12 @@ void add_current(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
     if (glm::length(current) > glm::length(fastest)) fastest = current;
   }
   const Hold hold = easiest_hold(vehicle, fastest);
-  if (hold.share <= 1.0) return;
+  if (hold.share <= 1.0) return false;
   lines.push_back(
       fmt::format("{}: the current of {:.3g} m/s drags it with {:.4g} N, its thrusters push with "
                   "{:.3g} N against it: it drifts away",
                   vehicle.name, glm::length(fastest), hold.drag_n, hold.thrust_n));
+  return true;
 }
 
 // The component along a way of the current, at its end or start: where it is least.
@@ -110,41 +116,82 @@ double current_along(const PhysicsWorld& world, const Vec3& from_ned_m, const Ve
                   glm::dot(world.current_ned_m_s(to_ned_m, 0.0), way));
 }
 
-// The legs on which a vehicle does not reach its speed over ground, or makes no way by its speed
-// through the water: the worst of them.
-void add_legs(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
-              std::vector<std::string>& lines) {
-  const double speed_m_s = vehicle.mission->speed_m_s();
-  if (!(speed_m_s > 0.0)) return;
-  const bool ground = vehicle.mission->speed_over() == scene::SpeedOver::kGround;
-  const auto legs = vehicle.mission->legs(vehicle.start.position_ned_m);
+// The hardest place of a leg for a vehicle that moves along it so, over ground.
+struct HardPlace {
+  Hold hold{0.0, 0.0, 0.0};
+  Vec3 current_m_s{0.0}, flow_m_s{0.0};
+};
+HardPlace hardest(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
+                  const MissionGuide::Leg& leg, double speed_m_s) {
+  const Vec3 moves = speed_m_s * rov::along(leg.to_ned_m - leg.from_ned_m);
+  HardPlace out;
+  for (const auto& [place, heading_rad] : leg.points) {
+    const Vec3 current = world.current_ned_m_s(place, 0.0), flow = current - moves;
+    const Hold hold =
+        heading_rad ? hold_at(vehicle, flow, *heading_rad) : easiest_hold(vehicle, flow);
+    if (hold.share > out.hold.share) out = {hold, current, flow};
+  }
+  return out;
+}
+
+// Where a leg leads, as the end of a sentence.
+std::string where_of(const PhysicsVehicle& vehicle, std::size_t leg) {
   const std::size_t count = vehicle.mission->waypoint_count();
+  if (count > 0) return fmt::format("to waypoint {}", leg % count + 1);
+  return "on its orbit";
+}
+
+// The leg on which the current keeps a vehicle from its way at any speed: the worst. Whether there
+// is one.
+bool add_no_way(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
+                std::span<const MissionGuide::Leg> legs, std::vector<std::string>& lines) {
   double worst = 1.0;
   std::string line;
   for (std::size_t i = 0; i < legs.size(); ++i) {
-    const auto& [from, to, heading_rad] = legs[i];
-    const double along_m_s = current_along(world, from, to);
+    const HardPlace hard = hardest(world, vehicle, legs[i], kLeastWay_m_s);
+    if (hard.current_m_s == Vec3(0.0) || hard.hold.share <= worst) continue;
+    worst = hard.hold.share;
+    const bool stays = legs[i].from_ned_m == legs[i].to_ned_m;
+    line = fmt::format(
+        "{}: the current of {:.3g} m/s drags it with {:.4g} N{}, its thrusters push with {:.3g} N "
+        "against it at the heading there: {}",
+        vehicle.name, glm::length(hard.current_m_s), hard.hold.drag_n,
+        stays
+            ? ""
+            : (vehicle.mission->waypoint_count() > 0 ? " on its way " : " ") + where_of(vehicle, i),
+        hard.hold.thrust_n, stays ? "it drifts away" : "it leaves its line and may not arrive");
+  }
+  if (line.empty()) return false;
+  lines.push_back(std::move(line));
+  return true;
+}
+
+// The legs on which a vehicle does not reach its speed over ground, or makes no way by its speed
+// through the water: the worst of them.
+void add_slow(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
+              std::span<const MissionGuide::Leg> legs, std::vector<std::string>& lines) {
+  const double speed_m_s = std::abs(vehicle.mission->speed_m_s());
+  if (!(speed_m_s > 0.0)) return;
+  const bool ground = vehicle.mission->speed_over() == scene::SpeedOver::kGround;
+  double worst = 1.0;
+  std::string line;
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    const double along_m_s = current_along(world, legs[i].from_ned_m, legs[i].to_ned_m);
     if (!ground && speed_m_s + along_m_s <= 0.0 && -along_m_s / speed_m_s > worst) {
       worst = -along_m_s / speed_m_s;
       line = fmt::format(
-          "{}: {:.3g} m/s through the water makes no way to waypoint {} against a "
-          "current of {:.3g} m/s",
-          vehicle.name, speed_m_s, i % count + 1, -along_m_s);
+          "{}: {:.3g} m/s through the water makes no way {} against a current of {:.3g} m/s",
+          vehicle.name, speed_m_s, where_of(vehicle, i), -along_m_s);
     }
-    const Vec3 wanted = speed_m_s * rov::along(to - from);
-    for (const Vec3& place : {from, to}) {
-      const Vec3 flow = world.current_ned_m_s(place, 0.0) - wanted;
-      if (!ground || wanted == Vec3(0.0)) break;
-      const Hold hold =
-          heading_rad ? hold_at(vehicle, flow, *heading_rad) : easiest_hold(vehicle, flow);
-      if (hold.share <= worst) continue;
-      worst = hold.share;
-      line = fmt::format(
-          "{}: {:.3g} m/s over ground to waypoint {} is {:.3g} m/s through the "
-          "water, whose drag is {:.4g} N; its thrusters push with {:.3g} N: it is "
-          "slower there",
-          vehicle.name, speed_m_s, i % count + 1, glm::length(flow), hold.drag_n, hold.thrust_n);
-    }
+    if (!ground || legs[i].from_ned_m == legs[i].to_ned_m) continue;
+    const HardPlace hard = hardest(world, vehicle, legs[i], speed_m_s);
+    if (hard.hold.share <= worst) continue;
+    worst = hard.hold.share;
+    line = fmt::format(
+        "{}: {:.3g} m/s over ground {} is {:.3g} m/s through the water, whose drag is {:.4g} N; "
+        "its thrusters push with {:.3g} N: it is slower there",
+        vehicle.name, speed_m_s, where_of(vehicle, i), glm::length(hard.flow_m_s), hard.hold.drag_n,
+        hard.hold.thrust_n);
   }
   if (!line.empty()) lines.push_back(std::move(line));
 }
@@ -206,7 +253,7 @@ std::vector<double> speeds_of(const PhysicsWorld& world, const PhysicsVehicle& v
   const double speed_m_s = vehicle.mission->speed_m_s();
   const bool water = vehicle.mission->speed_over() == scene::SpeedOver::kWater;
   std::vector<double> out;
-  for (const auto& [from, to, heading_rad] : vehicle.mission->legs(vehicle.start.position_ned_m))
+  for (const auto& [from, to, points] : vehicle.mission->legs(vehicle.start, world.start()))
     out.push_back(speed_m_s == 0.0 ? kUsualSpeed_m_s
                   : water ? std::max(kLeastSpeed_m_s, speed_m_s + current_along(world, from, to))
                           : speed_m_s);
@@ -247,12 +294,14 @@ void add_unfinished(const Way& way, double seconds, std::vector<std::string>& li
 
 std::vector<std::string> cannot_hold(const PhysicsWorld& world) {
   std::vector<std::string> lines;
+  const PhysicsState start = world.start();
   for (const PhysicsVehicle& vehicle : world.vehicles()) {
     if (!vehicle.mission) continue;
     add_axes(vehicle, lines);
     add_buoyancy(vehicle, lines);
-    add_current(world, vehicle, lines);
-    add_legs(world, vehicle, lines);
+    if (add_current(world, vehicle, lines)) continue;
+    const auto legs = vehicle.mission->legs(vehicle.start, start);
+    if (!add_no_way(world, vehicle, legs, lines)) add_slow(world, vehicle, legs, lines);
   }
   for (const PhysicsHuman& human : world.humans()) add_swim(world, human, lines);
   return lines;

@@ -11,9 +11,11 @@ namespace neritic::testbed {
 
 // A line each, with numbers, for what a vehicle with a mission cannot hold at its start: an axis
 // that its thrusters do not push along (failed ones left out), weight or buoyancy beyond their
-// vertical thrust, drag in the current of its start and waypoints beyond their thrust, a speed over
-// ground that the current takes beyond it, a speed through the water that makes no way. For divers
-// who swim by plan: a speed over ground faster than legs sustain, or through the water without way.
+// vertical thrust, drag in the current of its start and waypoints beyond their thrust at any
+// heading, or at the heading of a leg, of an orbit, of its station; a speed over ground that the
+// current takes beyond it, a speed through the water that makes no way. Thrust is what its own
+// saturation gives (rov/allocation.hpp). For divers who swim by plan: a speed over ground faster
+// than legs sustain, or through the water without way.
 std::vector<std::string> cannot_hold(const PhysicsWorld& world);
 
 // A line each for the missions of vehicles and swim plans of divers that are not finished after

@@ -7,10 +7,12 @@
 #include <thread>
 
 #include "engine/core/json.hpp"
+#include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/sim/workers.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/file_sinks.hpp"
+#include "testbed/simulation/mission_outlook.hpp"
 #include "tools/neritic/flags.hpp"
 
 namespace neritic::tools {
@@ -128,6 +130,7 @@ Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, double secon
   if (std::ranges::none_of(world->vehicles(), has_end))
     return refusal("--runs", fmt::format("{}, which has no mission with an end", flags.scene),
                    "waypoints without repeat");
+  for (const std::string& line : cannot_hold(*world)) log_warn("{}", line);
   std::vector<SeededRun> runs(*flags.runs);
   Progress progress("run", runs.size());
   std::mutex told;  // guards progress

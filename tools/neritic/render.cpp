@@ -12,6 +12,7 @@
 #include "testbed/sensors/sight_check.hpp"
 #include "testbed/sensors/sonar_check.hpp"
 #include "testbed/sensors/validation.hpp"
+#include "testbed/simulation/mission_outlook.hpp"
 #include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/interrupt.hpp"
@@ -172,6 +173,8 @@ Result<std::unique_ptr<LivePhysics>> make_physics(const RenderFlags& flags,
   LivePhysics::Options options;
   if (recorded) {
     NERITIC_TRY(options.start, start_of(*recorded, flags.replay, *world));
+  } else if (last_s > 0.0) {
+    for (const std::string& line : cannot_hold(*world)) log_warn("{}", line);
   }
   auto physics = LivePhysics::create(std::move(world), options);
   const auto counts = physics->world().solid().counts();

@@ -162,6 +162,38 @@ TEST(MissionSpeed, TheOutlookNamesTheLegOnWhichItIsNotHeld) {
   EXPECT_EQ(lines("speed_m_s = 0.6\nspeed_over = \"water\"\n"), "");
 }
 
+// A mission without a speed that stays unfinished in a current is told before, and none that is
+// finished well: at 0.6 m/s.
+TEST(MissionSpeed, TheOutlookNamesTheLegOnWhichACurrentLeavesNoWay) {
+  const auto lines = [](const Vec3& current_m_s, const std::string& keys) {
+    return told(current_text(current_m_s) + rov_text("position_m = [0, -10, 0]\n" + keys) +
+                "[[objects]]\nname = \"post\"\nshape = \"sphere\"\nposition_m = [20, -10, 0]\n");
+  };
+  const std::string way =
+      "[vehicles.mission]\nwaypoints = [ { position_m = [0, -10, -8] }, { "
+      "position_m = [0, -10, 8] } ]\n";
+  const Vec3 south_east(0.5, 0, 0.5);
+  EXPECT_EQ(lines(0.6 / 0.7072 * south_east, way), "");
+  EXPECT_EQ(lines(0.6 / 0.7072 * south_east, way + "heading_deg = 30\n"), "");
+  EXPECT_EQ(lines({0, 0, 0.7}, way), "");  // along its way
+  const std::string aslant = lines(south_east, way + "heading_deg = 30\n");
+  EXPECT_TRUE(aslant.starts_with("rov: the current of 0.707 m/s drags it with ")) << aslant;
+  EXPECT_NE(aslant.find(" N on its way to waypoint 1, its thrusters push with "), std::string::npos)
+      << aslant;
+  EXPECT_TRUE(aslant.ends_with("it leaves its line and may not arrive")) << aslant;
+  const std::string aside = lines({0.75, 0, 0}, way);
+  EXPECT_NE(aside.find("on its way to waypoint "), std::string::npos) << aside;
+  // What it looks at turns its side to the current; facing it, it stays.
+  EXPECT_NE(lines({0, 0, 0.75}, "mission = { hold = \"station\", look_at = \"post\" }\n")
+                .find("at the heading there: it drifts away"),
+            std::string::npos);
+  EXPECT_EQ(lines({0.75, 0, 0}, "mission = { hold = \"station\", look_at = \"post\" }\n"), "");
+  EXPECT_NE(lines({0, 0, 0.75}, "mission = { orbit = { object = \"post\", radius_m = 4 } }\n")
+                .find(" N on its orbit, its thrusters"),
+            std::string::npos);
+  EXPECT_EQ(lines({0, 0, 0.3}, "mission = { orbit = { object = \"post\", radius_m = 4 } }\n"), "");
+}
+
 double swim_m_s(const std::string& swim, const Vec3& current_m_s, const Vec3& to_m) {
   TestDive dive = dive_of(
       current_text(current_m_s) +
