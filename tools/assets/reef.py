@@ -48,7 +48,7 @@ def staghorn():
             path.append(path[-1] + way * length / (n - 1))
         last = left == 0
         rad = np.linspace(r, r * (0.35 if last else 0.82), n)
-        parts.append((tube(np.array(path), rad, 6 if left > 1 else 5, (False, True)), len(tips)))
+        parts.append((tube(np.array(path), rad, 5 if left > 1 else 4, (False, True)), len(tips)))
         tips.append(path[-1] if last else None)
         if last:
             return
@@ -85,14 +85,14 @@ def table():
     plate = loft(rings, (True, True))
     stalk = revolve([(0.13, -0.04), (0.085, 0.05), (0.06, 0.18), (0.10, 0.30), (0.16, 0.345)], 18).rot("x", -90)
     parts = [plate, stalk]
-    for _ in range(330):
+    for _ in range(190):
         s, a = np.sqrt(rng.random()) * 0.97, rng.random() * 2 * np.pi
         r = s * np.interp(a, np.append(ang, 2 * np.pi), np.append(rim, rim[0]))
         y = 0.34 + 0.05 * s**2 + 0.01
         out = np.array([np.cos(a), 0, np.sin(a)])
         b = np.array([r * out[0], y, r * out[2]])
         h = 0.022 + 0.022 * rng.random()
-        parts.append(tube(np.array([b - [0, 0.01, 0], b + np.array([0, h, 0]) + out * 0.3 * h * s]), [0.0075, 0.0045], 5, (False, True)))
+        parts.append(tube(np.array([b - [0, 0.01, 0], b + np.array([0, h, 0]) + out * 0.3 * h * s]), [0.0095, 0.0055], 4, (False, True)))
     return box_uv(
         paint(join(parts), (0.38, 0.30, 0.20), (0.74, 0.62, 0.42), lambda p: N.smooth(0.36, 0.42, p[:, 1]) * (0.55 + 0.45 * N.smooth(0.38, 0.52, np.hypot(p[:, 0], p[:, 2]))), 13),
         0.25,
@@ -228,20 +228,20 @@ def tube_sponges():
 def anemone():
     rng = np.random.default_rng(41)
     parts = [revolve([(0.13, -0.03), (0.12, 0.03), (0.15, 0.075), (0.10, 0.09), (0.02, 0.08)], 22).rot("x", -90)]
-    for k in range(120):
-        s, a = 0.03 + 0.115 * np.sqrt(k / 120), k * 2.39996
+    for k in range(96):
+        s, a = 0.03 + 0.115 * np.sqrt(k / 96), k * 2.39996
         way = unit([np.cos(a) * (0.25 + 4.2 * s), 0.9, np.sin(a) * (0.25 + 4.2 * s)])
         ln = 0.10 + 0.06 * rng.random()
         q = np.linspace(0, 1, 5)[:, None]
         sway = np.array([0.035, 0.0, 0.018])
         p = np.array([s * np.cos(a), 0.075, s * np.sin(a)]) + way * ln * q + sway * q**2 + 0.008 * np.sin(q * 5 + k) * rng.normal(0, 1, 3)
-        parts.append(tube(p, [0.0085, 0.0078, 0.007, 0.0075, 0.0045], 5, (False, True)))
+        parts.append(tube(p, [0.009, 0.0085, 0.0078, 0.008, 0.005], 4, (False, True)))
     tip = lambda p: N.smooth(0.09, 0.22, p[:, 1] + 0.25 * np.maximum(0, np.hypot(p[:, 0], p[:, 2]) - 0.12))
     return box_uv(paint(join(parts), (0.30, 0.34, 0.16), (0.72, 0.46, 0.62), tip, 43, 0.08, 70), 0.2)
 
 
 def starfish():
-    n, m = 80, 12
+    n, m = 60, 8
     ang = np.arange(n) / n * 2 * np.pi
     arm = 0.5 + 0.5 * np.cos(5 * ang)
     reach = 0.036 + 0.090 * arm**2.2
@@ -276,7 +276,7 @@ def urchin():
 
 
 def scallop(size, rng):
-    n, m = 21, 9
+    n, m = 17, 7
     a, s = np.meshgrid(np.linspace(-1.15, 1.15, n), np.linspace(0.05, 1, m))
     rib = 0.035 * np.cos(a * 26)
     r = s * (1 + 0.05 * np.cos(a * 26) * s)
@@ -296,7 +296,7 @@ def scallop(size, rng):
 
 
 def turret(size, rng):
-    t = np.linspace(0, 6 * 2 * np.pi, 74)
+    t = np.linspace(0, 6 * 2 * np.pi, 56)
     k = t / t[-1]
     r = size * 0.30 * (1 - k) ** 1.05 + 0.0004
     path = np.column_stack([r * np.cos(t), size * (0.30 * (1 - k) + 1.7 * k), r * np.sin(t)])
@@ -325,7 +325,7 @@ def rubble():
         r, a = 0.55 * rng.random() ** 0.7, rng.random() * 2 * np.pi
         at = np.array([r * np.cos(a), 0, r * np.sin(a)])
         if k % 3:  # a stone
-            v, f = icosphere(1 if k % 2 else 2)
+            v, f = icosphere(2 if k % 9 == 1 else 1)
             size = 0.012 + 0.055 * rng.random() ** 2.6
             s = v * (1 + 0.28 * N.fbm3(v, 80 + k, 1.4, 2))[:, None] * size * np.array([1.2, 0.62, 0.9])
             part = Part(s, f).rot("y", rng.random() * 360).rot("x", rng.normal(0, 18))

@@ -10,7 +10,7 @@ import noise as N
 from glb import Glb
 from mesh import box_uv, join, loft, Part, shade
 from reef import paint, unit
-from shapes import box, circle, curve, cylinder, revolve, torus, tube
+from shapes import circle, curve, cylinder, revolve, torus, tube
 from wreck_textures import corroded
 
 OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
@@ -41,7 +41,7 @@ def tyre():
     for row, z in enumerate((-0.058, -0.020, 0.020, 0.058)):
         for k in range(44):
             a = (k + 0.5 * (row % 2)) * 2 * np.pi / 44
-            block = box(0.030, 0.014, 0.030, 0.003, 1)
+            block = loft(np.array([[(sx * w, -0.007, sz * w) for sx, sz in ((-1, -1), (1, -1), (1, 1), (-1, 1))] if low else [(sx * w, 0.007, sz * w) for sx, sz in ((-1, -1), (1, -1), (1, 1), (-1, 1))] for low, w in ((1, 0.016), (0, 0.0145))], float))
             r = 0.305 - 0.10 * z * z / 0.06
             parts.append(block.rot("z", 0).at(0, r, z).rot("z", np.degrees(a)))
     p = join(parts).rot("x", 90).at(0, 0.075, 0).rot("z", 7)

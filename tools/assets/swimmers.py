@@ -360,6 +360,16 @@ def school_fish():
                fin([(0, 0.060), (0.020, 0.088), (0.003, 0.076), (-0.003, 0.076), (-0.020, 0.088)], 0.16), fin([(0.016, -0.01), (0.028, 0.004), (0.014, 0.016)], 0.16)]
     silver = lambda col, u, v: N.mix(col, (0.70, 0.78, 0.80), 0.5 * N.smooth(0.08, 0.02, np.abs(v - 0.52)))
     add("sardine", sardine, fish_picture((0.07, 0.12, 0.15), (0.40, 0.47, 0.50), (0.56, 0.60, 0.60), silver, 32, 64), (-0.5, 0, 0), 0.3)
+    # 14 triangles in one piece, for ten thousand in the distance
+    rim = np.array([(0, 0, -0.08), (0, 0.018, -0.015), (0, 0.005, 0.062), (0, 0.020, 0.088), (0, -0.020, 0.088), (0, -0.005, 0.062), (0, -0.018, -0.015)])
+    side = np.vstack([rim, [(0.008, 0.0, -0.012)]])
+    fan_of = lambda mid: [(mid, k, k + 1) for k in range(6)] + [(mid, 6, 0)]
+    right = Part(side, np.array(fan_of(7))[:, ::-1], np.column_stack([(side[:, 2] + 0.08) / 0.17, 0.5 - side[:, 1] / 0.045]))
+    if shade(right, 80).nrm[:, 0].mean() < 0:
+        right = right.flipped()
+    b_far = len(g.doc["textures"]) - 1
+    m_far = g.material("sardine_far", base=b_far, rough=0.35)
+    g.node("sardine_far", g.mesh("sardine_far", [(shade(join([right, right.mirrored()]), 80), m_far)]), at=(-0.5, 0.3, 0))
     zs = [-0.16, -0.152, -0.13, -0.095, -0.05, 0.0, 0.05, 0.10]
     snapper = [fish_body(zs, [0.004, 0.018, 0.036, 0.053, 0.060, 0.053, 0.036, 0.017], [0.003, 0.010, 0.018, 0.025, 0.027, 0.022, 0.014, 0.005], 9),
                fin([(0.0, 0.092), (0.016, 0.096), (0.050, 0.150), (0.054, 0.160), (0.018, 0.138), (0.0, 0.130), (-0.018, 0.138), (-0.054, 0.160), (-0.050, 0.150), (-0.016, 0.096)], 0.32),
