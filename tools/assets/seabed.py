@@ -88,15 +88,16 @@ def ripples(n, waves, seed, spread=0.20, angle=0.16):
 
 
 def sand(n=1024):
-    zf = ripples(n, 16, 5)
+    zf = ripples(n, 15, 5, 0.30, 0.42)  # they fork, turn and change their spacing
     amp = np.abs(zf) / np.abs(zf).mean()
     ph = np.angle(zf)
     crest = np.cos(ph + 0.45 * np.sin(ph))
     crest = np.where(crest > 0, np.maximum(crest, 0) ** 1.25, crest * 0.8)
-    crest = N.blur(crest, 2.0) * N.smooth(0.12, 0.7, amp)
+    crest = N.blur(crest, 2.0) * N.smooth(0.15, 1.1, amp)
+    crest = crest * (0.15 + 0.85 * N.smooth(-1.1, 0.7, N.spectral(n, 9, 3.0, 1, 5)))  # and die out in patches
     small = np.cos(np.angle(ripples(n, 43, 8, 0.25, 0.5)))
     soft, mid, f = N.spectral(n, 2, 2.2, 1.5, 30), N.spectral(n, 3, 1.0, 20, 200), N.spectral(n, 4, 0.0, 150)
-    col = N.mix(N.flat(n, (0.60, 0.53, 0.42)), (0.80, 0.74, 0.62), N.smooth(-0.9, 0.9, crest + 0.25 * mid))
+    col = N.mix(N.flat(n, (0.62, 0.55, 0.45)), (0.77, 0.71, 0.60), N.smooth(-1.1, 1.1, crest + 0.30 * mid + 0.25 * soft))
     col *= (1 + 0.035 * soft + 0.04 * mid + 0.055 * f)[..., None]
     grain = N.smooth(2.3, 3.2, f)
     col = N.mix(col, (0.93, 0.90, 0.84), 0.7 * grain)
