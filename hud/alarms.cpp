@@ -19,6 +19,10 @@ AlarmLevel caution_if(bool is) {
   return is ? AlarmLevel::kCaution : AlarmLevel::kOff;
 }
 
+Asked link(const DiveData& d) {
+  return {danger_if(d.link_lost), danger_if(d.link_lost)};
+}
+
 Asked gas(const DiveData& d) {
   if (d.out_of_gas) return {AlarmLevel::kDanger, AlarmLevel::kDanger};
   const bool for_ascent = std::isfinite(d.needed_l) && std::isfinite(d.available_l);
@@ -64,8 +68,8 @@ bool AlarmState::any() const {
 }
 
 AlarmState step_alarms(const AlarmState& before, const DiveData& data) {
-  const std::array<Asked, kAlarms> asked{gas(data), ceiling(data), oxygen(data), ascent(data),
-                                         no_stop(data)};
+  const std::array<Asked, kAlarms> asked{link(data),   gas(data),    ceiling(data),
+                                         oxygen(data), ascent(data), no_stop(data)};
   AlarmState after = before;
   for (std::size_t i = 0; i < kAlarms; ++i) {
     const AlarmLevel was = before.level[i];
@@ -81,6 +85,8 @@ AlarmState step_alarms(const AlarmState& before, const DiveData& data) {
 AlarmWords words_of(Alarm alarm, AlarmLevel level) {
   const bool danger = level == AlarmLevel::kDanger;
   switch (alarm) {
+    case Alarm::kLink:
+      return {"CONNECTION LOST", "USE OWN GAUGES"};
     case Alarm::kGas:
       return danger ? AlarmWords{"NO GAS", "CHANGE GAS"} : AlarmWords{"GAS LOW", "GO UP"};
     case Alarm::kCeiling:
@@ -97,7 +103,7 @@ AlarmWords words_of(Alarm alarm, AlarmLevel level) {
 }
 
 const char* name_of(Alarm alarm) {
-  constexpr const char* kNames[] = {"gas", "ceiling", "oxygen", "ascent", "no_stop"};
+  constexpr const char* kNames[] = {"link", "gas", "ceiling", "oxygen", "ascent", "no_stop"};
   return kNames[static_cast<std::size_t>(alarm)];
 }
 

@@ -11,8 +11,9 @@
 namespace neritic::hud {
 
 // The most pressing first.
-enum class Alarm : std::uint8_t { kGas, kCeiling, kOxygen, kAscent, kNoStop };
-inline constexpr std::size_t kAlarms = 5;
+// kLink: the numbers come from elsewhere, and come no longer.
+enum class Alarm : std::uint8_t { kLink, kGas, kCeiling, kOxygen, kAscent, kNoStop };
+inline constexpr std::size_t kAlarms = 6;
 enum class AlarmLevel : std::uint8_t { kOff, kCaution, kDanger };
 
 inline constexpr double kLeastOn_s = 5.0;
@@ -41,7 +42,7 @@ struct AlarmWords {
   const char *what, *act;
 };
 AlarmWords words_of(Alarm alarm, AlarmLevel level);
-const char* name_of(Alarm alarm);       // "gas", "ceiling", "oxygen", "ascent", "no_stop"
+const char* name_of(Alarm alarm);       // "link", "gas", "ceiling", "oxygen", "ascent", "no_stop"
 const char* name_of(AlarmLevel level);  // "off", "caution", "danger"
 
 }  // namespace neritic::hud

@@ -34,9 +34,10 @@ struct Answer {
   std::string error;  // one line
   std::uint64_t step = 0, hash = 0;
   double time_s = 0.0;
-  std::vector<double> values;    // of kTruth, kPoses
-  std::vector<std::byte> bytes;  // of kSave
-  std::string text;              // of kRecord: the file
+  std::vector<double> values;                // of kTruth, kPoses
+  std::vector<std::byte> bytes;              // of kSave
+  std::string text;                          // of kRecord: the file
+  std::unique_ptr<Instruments> instruments;  // of kInstruments
 };
 struct News {
   std::uint64_t step = 0;

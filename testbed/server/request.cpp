@@ -15,9 +15,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array<std::string_view, kOps> kNames{
-    "hello", "time",  "counts", "observe", "shared",  "tick",          "wait",
-    "clock", "keep",  "image",  "link",    "command", "release",       "inject",
-    "truth", "poses", "save",   "restore", "record",  "stop_recording"};
+    "hello", "time",  "counts",      "observe", "shared",  "tick",    "wait",
+    "clock", "keep",  "image",       "link",    "command", "release", "inject",
+    "truth", "poses", "instruments", "save",    "restore", "record",  "stop_recording"};
 
 // What was found, short enough for a line and printable.
 std::string shown(const json& value) {
@@ -190,6 +190,7 @@ void read_keys(Keys& keys, Request& request) {
       return;
     case Op::kRelease:
     case Op::kTruth:
+    case Op::kInstruments:
       keys.text("agent", request.agent, true);
       return;
     case Op::kRecord:

@@ -34,6 +34,7 @@ enum class Op : std::uint32_t {
   kInject,
   kTruth,
   kPoses,
+  kInstruments,
   kSave,
   kRestore,
   kRecord,

@@ -284,6 +284,13 @@ void Server::Network::answer(const Answer& answer) {
       map["poses"] = {{"rows", facts_.agents.size()}, {"columns", 13}, {"frame", 1}};
       break;
     }
+    case Op::kInstruments: {
+      map["time_s"] = answer.instruments->time_s;
+      json& numbers = map["numbers"] = json::object();
+      for (const auto& [name, value] : answer.instruments->numbers) numbers[name] = value;
+      map["streams"] = answer.instruments->streams;
+      break;
+    }
     case Op::kSave:
       message.frames.push_back(answer.bytes);
       map["state"] = {{"frame", 1}};

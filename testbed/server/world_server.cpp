@@ -42,6 +42,12 @@ ServedFacts facts_of(const World& world, bool real_time, const std::string& vers
           .streams = world.streams()};
 }
 
+void WorldServer::turn() {
+  (void)take_requests();
+  publish();
+  finish_waiting({});
+}
+
 Status WorldServer::run(const std::function<bool()>& stop) {
   publish();
   while (!stop()) {
@@ -275,6 +281,11 @@ Status WorldServer::act(const Ask& ask, Answer& answer) {
     case Op::kPoses:
       for (std::size_t i = 0; i < world_.agents().size(); ++i) truth_of(i, answer.values);
       return {};
+    case Op::kInstruments: {
+      NERITIC_TRY(Instruments instruments, world_.instruments(request.agent));
+      answer.instruments = std::make_unique<Instruments>(std::move(instruments));
+      return {};
+    }
     case Op::kSave:
       answer.bytes = world_.save();
       return {};

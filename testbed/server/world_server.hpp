@@ -29,6 +29,9 @@ class WorldServer {
 
   // Until stop, which is asked before each step, or an Error of the world in real time.
   Status run(const std::function<bool()>& stop);
+  // Instead of run(), for a world that goes on by itself (World::attach), in real time: answers
+  // what was asked since the last turn and tells what is new.
+  void turn();
 
  private:
   struct Turn {  // a tick that goes on

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "diver/frames.hpp"
-#include "testbed/view/instrument_data.hpp"
+#include "testbed/instruments/instrument_data.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -36,11 +36,10 @@ xr::PanelLayer over_pixels(const xr::ViewGroup& group, double left, double top, 
 
 // Where in the view the gaze goes, 0 to 1 from left and top; nothing where it is not measured or
 // goes elsewhere.
-std::optional<Vec2> gaze_in(const diver::VitalState& vitals, const HudView& view) {
-  if ((vitals.measured & diver::kGazeMeasured) == 0) return {};
+std::optional<Vec2> gaze_in(const std::optional<Vec3>& gaze, const HudView& view) {
+  if (!gaze) return {};
   const FrustumTangents& t = view.group.views.front().tangents;
-  const Vec3 ahead =
-      glm::conjugate(view.world_from_view.rotation) * diver::world_from_ned(vitals.gaze_ned);
+  const Vec3 ahead = glm::conjugate(view.world_from_view.rotation) * *gaze;
   if (!(ahead.z < 0.0)) return {};
   const Vec2 at((-ahead.x / ahead.z - t.left) / (t.right - t.left),
                 (t.top + ahead.y / ahead.z) / (t.top - t.bottom));
@@ -58,15 +57,41 @@ void record_upload(const ImageU8& picture, const gpu::Image& image, gpu::Command
                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
 }
 
+// Of a dive in this process.
+class PhysicsFeed final : public InstrumentFeed {
+ public:
+  PhysicsFeed(LivePhysics& physics, std::size_t diver, const Devices* devices)
+      : physics_(physics), diver_(diver), devices_(devices) {}
+  double time_s() const override { return physics_.shown_snapshot().time_s; }
+  InstrumentNews read() override {
+    const sim::Snapshot<PhysicsState>& snapshot = physics_.shown_snapshot();
+    const HumanPhysics& diver = snapshot.state.humans()[diver_];
+    const auto sources = physics_.inbox().source_names();
+    InstrumentNews news{
+        instrument_data(physics_.world(), diver_, snapshot), stream_health(diver, sources), {}};
+    if (devices_ && !devices_->empty()) add_links(diver, devices_->health(), sources, news.streams);
+    const diver::VitalState& vitals = diver.human.life.vitals;
+    if ((vitals.measured & diver::kGazeMeasured) != 0)
+      news.gaze = diver::world_from_ned(vitals.gaze_ned);
+    return news;
+  }
+
+ private:
+  LivePhysics& physics_;
+  std::size_t diver_;
+  const Devices* devices_;
+};
+
 }  // namespace
 
 DiveHud::DiveHud(gpu::Device& device, gpu::Frames& frames, LivePhysics& physics,
                  DiveHudOptions options, const Devices* devices)
-    : device_(device),
-      frames_(frames),
-      physics_(physics),
-      options_(std::move(options)),
-      devices_(devices) {
+    : DiveHud(device, frames, std::make_unique<PhysicsFeed>(physics, options.diver, devices),
+              options) {}
+
+DiveHud::DiveHud(gpu::Device& device, gpu::Frames& frames, std::unique_ptr<InstrumentFeed> feed,
+                 DiveHudOptions options)
+    : device_(device), frames_(frames), feed_(std::move(feed)), options_(std::move(options)) {
   for (const hud::Layout& layout : hud::layouts())
     instruments_.push_back({hud::Hud(layout.kind, options_.units, layout.height_px), 0, {}});
 }
@@ -92,16 +117,14 @@ void DiveHud::cycle() {
 
 // Whether there is something new.
 bool DiveHud::look(const HudView& view) {
-  const sim::Snapshot<PhysicsState>& snapshot = physics_.shown_snapshot();
+  const double time_s = feed_->time_s();
   // A state that was restored may lie before the last one.
-  if (snapshot.time_s < next_s_ - 1e-9 && snapshot.time_s >= data_.time_s) return false;
-  const HumanPhysics& diver = snapshot.state.humans()[options_.diver];
-  data_ = instrument_data(physics_.world(), options_.diver, snapshot);
-  streams_ = stream_health(diver, physics_.inbox().source_names());
-  if (devices_ && !devices_->empty())
-    add_links(diver, devices_->health(), physics_.inbox().source_names(), streams_);
-  about_ = {.gaze = gaze_in(diver.human.life.vitals, view), .streams = streams_};
-  next_s_ = snapshot.time_s + 1.0 / kHudRate_hz;
+  if (time_s < next_s_ - 1e-9 && time_s >= data_.time_s) return false;
+  InstrumentNews news = feed_->read();
+  data_ = news.data;
+  streams_ = std::move(news.streams);
+  about_ = {.gaze = gaze_in(news.gaze, view), .streams = streams_};
+  next_s_ = data_.time_s + 1.0 / kHudRate_hz;
   return true;
 }
 

@@ -11,6 +11,7 @@
 #include "engine/xr/display.hpp"
 #include "hud/hud.hpp"
 #include "testbed/devices/devices.hpp"
+#include "testbed/instruments/instrument_feed.hpp"
 #include "testbed/motion/live_physics.hpp"
 #include "testbed/view/panel_layout.hpp"
 
@@ -43,6 +44,9 @@ class DiveHud {
   // devices: of the run; nullptr: none.
   DiveHud(gpu::Device& device, gpu::Frames& frames, LivePhysics& physics, DiveHudOptions options,
           const Devices* devices = nullptr);
+  // Of a dive that anything feeds; options.diver means nothing then.
+  DiveHud(gpu::Device& device, gpu::Frames& frames, std::unique_ptr<InstrumentFeed> feed,
+          DiveHudOptions options);
 
   // Adds the panels of this frame to the layers; those of which something changed are drawn anew.
   Status declare(graph::FrameGraph& graph, const HudView& view, std::vector<xr::Layer>& layers);
@@ -68,15 +72,14 @@ class DiveHud {
 
   gpu::Device& device_;
   gpu::Frames& frames_;
-  LivePhysics& physics_;
+  std::unique_ptr<InstrumentFeed> feed_;
   DiveHudOptions options_;
-  const Devices* devices_;
   std::vector<Instrument> instruments_;  // one a layout, so that alarms and traces go on unseen
   std::size_t choice_ = 0;               // 0: the options'
   hud::DiveData data_;
   hud::OperatorData about_;
   std::vector<hud::StreamHealth> streams_;  // of about_
-  double next_s_ = -1.0;                    // the scene time of the next look at the physics
+  double next_s_ = -1.0;                    // the scene time of the next look at the feed
 };
 
 }  // namespace neritic::testbed

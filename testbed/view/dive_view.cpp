@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/log.hpp"
-#include "testbed/view/instrument_data.hpp"
+#include "testbed/instruments/instrument_data.hpp"
 
 namespace neritic::testbed {
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "rov/frames.hpp"
-#include "testbed/view/instrument_data.hpp"
+#include "testbed/instruments/instrument_data.hpp"
 
 namespace neritic::testbed {
 

@@ -11,8 +11,9 @@
 namespace neritic::testbed {
 namespace {
 
-// A frame that sends nothing for so long has let go (kDiverHold_s is of the same order).
-constexpr double kHold_s = 1.0;
+// Frames that send nothing for so long have let go (kDiverHold_s is of the same order); of slow
+// frames so many must be missing, and nobody waits longer than the last.
+constexpr double kHold_s = 1.0, kHoldFrames = 3.0, kLongestHold_s = 15.0;
 constexpr double kPush = 0.1;                         // of a stick: less is its rest
 constexpr double kSpeed_m_s = 0.5, kFast_m_s = 0.68;  // with full gear (diver/swimmer.hpp)
 constexpr double kAhead_m = 5.0;                      // of the place that is swum to
@@ -23,7 +24,9 @@ constexpr double kTurn_rad = radians(60.0), kTurningShare = 0.4;
 }  // namespace
 
 Wearer::Wearer(LivePhysics& physics)
-    : physics_(&physics), gaze_(diver::headset_gaze(diver::GazeMethod::kVelocity)) {
+    : physics_(&physics),
+      hold_s_(kHold_s),
+      gaze_(diver::headset_gaze(diver::GazeMethod::kVelocity)) {
   const diver::Body& body = human().body;
   const Vec3 eyes =
       diver::body_from_eyes(body, diver::posture_of(body, diver::straight_joints(), {})).position_m;
@@ -45,6 +48,16 @@ void Wearer::take(const xr::DisplayFrame& frame, const DiveInput& input) {
   tracked_ = frame.tracked;
   input_ = input;
   fresh_ = true;
+  const TimeNs now = now_ns();
+  if (taken_ns_ > 0) hold_for(kHoldFrames * 1e-9 * static_cast<double>(now - taken_ns_));
+  taken_ns_ = now;
+}
+
+// Seldom frames are no silence: what was claimed is claimed anew, for longer.
+void Wearer::hold_for(double seconds) {
+  if (!(seconds > hold_s_) || hold_s_ >= kLongestHold_s) return;
+  hold_s_ = std::min(1.5 * seconds, kLongestHold_s);
+  claimed_.fill(false);
 }
 
 void Wearer::send(SampleInbox& inbox, PayloadKind kind, const Payload& payload,
@@ -63,7 +76,7 @@ void Wearer::claim(SampleInbox& inbox, DiverGroup group) {
   Event event{.group = static_cast<std::uint64_t>(group)};
   event.authority = static_cast<std::uint64_t>(Authority::kLive);
   event.source = *source_;
-  event.hold_s = kHold_s;
+  event.hold_s = hold_s_;
   send(inbox, PayloadKind::kEvent, event, now_ns());
 }
 

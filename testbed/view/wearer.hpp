@@ -37,6 +37,7 @@ class Wearer final : public SampleSource {
  private:
   void send(SampleInbox& inbox, PayloadKind kind, const Payload& payload, TimeNs captured_ns);
   void claim(SampleInbox& inbox, DiverGroup group);
+  void hold_for(double seconds);
   void let_go(SampleInbox& inbox);
   void begin_swimming(SampleInbox& inbox, double scene_time_s);
   std::optional<diver::SwimGoal> pushed() const;
@@ -55,6 +56,8 @@ class Wearer final : public SampleSource {
   xr::Tracked tracked_;
   DiveInput input_;
   bool fresh_ = false;  // those were not sent yet
+  TimeNs taken_ns_ = 0;
+  double hold_s_;  // of what is claimed
   std::array<bool, kDiverGroups> claimed_{};
   std::array<std::uint64_t, kPayloadKinds> sequences_{};
   diver::GazeMonitor gaze_;

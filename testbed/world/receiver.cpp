@@ -17,6 +17,11 @@ Status Receiver::accept(const sim::Snapshot<PhysicsState>& step, std::span<const
   if (last_step_ == step.step) return {};
   last_step_ = step.step;
   NERITIC_TRY_STATUS(recording.accept(step, outputs));
+  receive(outputs);
+  return {};
+}
+
+void Receiver::receive(std::span<const Sample> outputs) {
   for (const Sample& sample : outputs) {
     const SampleHeader& header = sample.header;
     const LinkOptions& link = links[header.stream];
@@ -33,7 +38,6 @@ Status Receiver::accept(const sim::Snapshot<PhysicsState>& step, std::span<const
     else
       readings_.send(*arrival_ns, reading);
   }
-  return {};
 }
 
 void Receiver::arrive(const Reading& reading) {

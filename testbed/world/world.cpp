@@ -6,6 +6,8 @@
 #include "engine/core/refusal.hpp"
 #include "engine/core/ros_frames.hpp"
 #include "engine/core/text.hpp"
+#include "testbed/instruments/instrument_data.hpp"
+#include "testbed/instruments/instrument_numbers.hpp"
 #include "testbed/record/step_sink.hpp"
 #include "testbed/sensors/validation.hpp"
 #include "testbed/world/ros_samples.hpp"
@@ -94,8 +96,9 @@ Result<std::unique_ptr<World>> World::open(const std::filesystem::path& path,
   Parts& parts = *world->parts_;
   parts.options = options;
   parts.path = path.string();
-  parts.physics = LivePhysics::create(
+  parts.owned_physics = LivePhysics::create(
       std::move(physics), {.pace = LivePhysics::Pace::kPicture, .threads = options.threads});
+  parts.physics = parts.owned_physics.get();
   parts.scene = std::move(scene);
   parts.agents = agents_of(parts.world());
   parts.streams = streams_of(parts.world(), parts.scene);
@@ -103,6 +106,23 @@ Result<std::unique_ptr<World>> World::open(const std::filesystem::path& path,
   parts.receiver =
       std::make_unique<Receiver>(parts.world(), parts.scene.seed, parts.streams.size());
   parts.begin_loop();
+  return world;
+}
+
+std::unique_ptr<World> World::attach(LivePhysics& physics, const scene::Scene& scene,
+                                     const std::string& path) {
+  std::unique_ptr<World> world(new World);
+  world->parts_ = std::make_unique<Parts>();
+  Parts& parts = *world->parts_;
+  parts.options.real_time = true;
+  parts.path = path;
+  parts.physics = &physics;
+  parts.scene.title = scene.title, parts.scene.seed = scene.seed;
+  parts.motions = &scene;
+  parts.agents = agents_of(parts.world());
+  parts.streams = streams_of(parts.world(), parts.scene);
+  parts.first_image = parts.world().streams().size();
+  parts.receiver = std::make_unique<Receiver>(parts.world(), scene.seed, parts.streams.size());
   return world;
 }
 
@@ -155,8 +175,36 @@ Result<std::size_t> World::agent(const std::string& name) const {
   return unknown_name("agent", name, names);
 }
 
+void World::receive(std::span<const Sample> outputs) {
+  parts_->receiver->receive(outputs);
+  parts_->receiver->deliver(time_ns());
+}
+
+Result<Instruments> World::instruments(const std::string& name) const {
+  const auto& humans = parts_->world().humans();
+  const auto found = std::ranges::find(humans, name, &PhysicsHuman::name);
+  if (found == humans.end()) {
+    std::vector<std::string> names;
+    for (const PhysicsHuman& human : humans) names.push_back(human.name);
+    return unknown_name("diver", name, names);
+  }
+  const auto diver = static_cast<std::size_t>(found - humans.begin());
+  const auto& newest = parts_->newest();
+  Instruments out{.time_s = newest.time_s,
+                  .numbers = numbers_of(instrument_data(parts_->world(), diver, newest)),
+                  .streams = {}};
+  for (const hud::StreamHealth& stream :
+       stream_health(newest.state.humans()[diver], parts_->physics->inbox().source_names()))
+    out.streams.push_back({std::string(stream.name.view()), std::string(stream.note.view()),
+                           stream.health == hud::Health::kGood      ? "good"
+                           : stream.health == hud::Health::kWaiting ? "waiting"
+                                                                    : "lost"});
+  return out;
+}
+
 Status World::tick(std::uint64_t steps) {
   Parts& parts = *parts_;
+  NERITIC_CHECK(parts.loop, "an attached world goes on by itself");
   for (std::uint64_t i = 0; i < steps; ++i) {
     NERITIC_TRY_STATUS(parts.loop->turn());
     if (parts.loop->stopped()) return parts.loop->end({});
@@ -237,7 +285,7 @@ Result<Truth> World::truth(const std::string& name) const {
         .object = static_cast<int>(world.objects()[index - vehicles - humans].object)};
     const Motion motion = object.placed != 0
                               ? object.motion
-                              : scene::MotionSource(parts_->scene).at(mount, time_s()).motion;
+                              : scene::MotionSource(*parts_->motions).at(mount, time_s()).motion;
     out.position = three(ros::enu_from_world(motion.pose.position_m));
     out.orientation = ros::xyzw(ros::enu_from_body(motion.pose.rotation));
     const Quat to_body = glm::conjugate(motion.pose.rotation);
@@ -252,11 +300,19 @@ Result<Truth> World::truth(const std::string& name) const {
 
 std::vector<std::byte> World::save() const {
   const StateFormat format = parts_->world().state_format();
-  return encode_state(format, saved_state(parts_->physics->simulation(), format));
+  if (parts_->owned_physics)
+    return encode_state(format, saved_state(parts_->physics->simulation(), format));
+  std::vector<std::byte> out;
+  parts_->physics->between_steps([&](PhysicsSimulation& simulation) {
+    out = encode_state(format, saved_state(simulation, format));
+  });
+  return out;
 }
 
 Status World::restore(std::span<const std::byte> bytes) {
   Parts& parts = *parts_;
+  if (!parts.owned_physics)
+    return refusal("restore", "a dive with a display", "its own keys, or `neritic serve`");
   if (recording()) return refusal("restore", "a recording that runs", "stop_recording() before it");
   NERITIC_TRY(const SavedState saved,
               parse_state(parts.world().state_format(), bytes, "the saved state"));
@@ -275,6 +331,8 @@ Status World::restore(std::span<const std::byte> bytes) {
 }
 
 Status World::record(const std::filesystem::path& path) {
+  if (!parts_->owned_physics)
+    return refusal("record", "a dive with a display", "its own keys or flags, or `neritic serve`");
   RecordingSwitch& recording = parts_->receiver->recording;
   if (recording.on())
     return refusal("record", "a recording that runs, " + recording.file().string(),
@@ -301,7 +359,7 @@ void World::Parts::begin_loop() {
   const double step_s = world().step_s();
   LoopParts made{.clock = options.real_time ? Clock::real(newest().time_s, step_s)
                                             : Clock::steps(step + 1, step_s),
-                 .physics = physics.get(),
+                 .physics = physics,
                  .step_sinks = {receiver.get()}};
   if (consumer) made.sensors = LoopSensors{.session = session.get(), .consumers = {&*consumer}};
   loop.emplace(std::move(made));

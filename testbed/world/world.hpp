@@ -19,6 +19,10 @@
 #include "engine/core/result.hpp"
 #include "testbed/world/arrivals.hpp"
 
+namespace neritic::scene {
+struct Scene;
+}
+
 namespace neritic::testbed {
 
 struct WorldOptions {
@@ -90,11 +94,26 @@ struct Truth {
   std::vector<double> thruster_n;   // of a vehicle: the commands that act
 };
 
+// A diver's instruments as numbers with names (testbed/instruments), and the health of the streams
+// that feed the diver: name, note, "good", "waiting" or "lost".
+struct Instruments {
+  double time_s = 0.0;
+  std::vector<std::pair<std::string, double>> numbers;
+  std::vector<std::array<std::string, 3>> streams;
+};
+
+class LivePhysics;
+struct Sample;
+
 class World {
  public:
   // Errors in one line: the scene's file, or nothing in it moves by physics.
   static Result<std::unique_ptr<World>> open(const std::filesystem::path& scene,
                                              const WorldOptions& options = {});
+  // Of a physics that another loop turns; it and the scene outlive this world: readings, commands
+  // and truths of it, no images, no tick(), no restore(), no recording. path: of the scene.
+  static std::unique_ptr<World> attach(LivePhysics& physics, const scene::Scene& scene,
+                                       const std::string& path);
   // Ends the recording.
   ~World();
 
@@ -155,6 +174,10 @@ class World {
   static constexpr const char* kClient = "client";
 
   Result<Truth> truth(const std::string& agent) const;
+  // kBadInput for an agent that is no diver.
+  Result<Instruments> instruments(const std::string& agent) const;
+  // An attached world: samples that left its physics, in their order, with simulated times.
+  void receive(std::span<const Sample> outputs);
 
   // The whole state as bytes, and back at once; images and readings on their way are dropped.
   std::vector<std::byte> save() const;

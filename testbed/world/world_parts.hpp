@@ -20,6 +20,7 @@ class Receiver final : public StepSink {
   std::vector<StreamId> streams() const override { return outputs_; }
   Status use(const Sample& sample) override { return recording.use(sample); }
   Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
+  void receive(std::span<const Sample> outputs);
   // A loop's end is not the recording's: a world has one loop after another.
   Status finish() override { return {}; }
 
@@ -64,7 +65,9 @@ struct World::Parts {
   WorldOptions options;
   std::string path;
   scene::Scene scene;
-  std::unique_ptr<LivePhysics> physics;
+  const scene::Scene* motions = &scene;  // whose tracks move objects; another one's if attached
+  std::unique_ptr<LivePhysics> owned_physics;  // absent: attached
+  LivePhysics* physics = nullptr;
   std::vector<AgentInfo> agents;
   std::vector<StreamInfo> streams;
   std::size_t first_image = 0;  // into streams
@@ -87,7 +90,7 @@ struct World::Parts {
   std::map<std::pair<StreamId, std::uint64_t>, Holder> holders;  // by event stream and group
 
   const PhysicsWorld& world() const { return physics->world(); }
-  const sim::Snapshot<PhysicsState>& newest() const { return physics->newest(); }
+  const sim::Snapshot<PhysicsState>& newest() const { return physics->shown_snapshot(); }
   void begin_loop();
   void end_loop();
   Status make_session();

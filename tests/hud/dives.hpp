@@ -61,6 +61,10 @@ inline DiveData alarmed_dive(Alarm alarm, AlarmLevel level) {
   const bool danger = level == AlarmLevel::kDanger;
   DiveData d = alarm == Alarm::kCeiling ? stops_dive() : calm_dive();
   switch (alarm) {
+    case Alarm::kLink:
+      d = {};
+      d.link_lost = true;
+      break;
     case Alarm::kGas:
       d.tank_pa = danger ? 1.2e5 : 44.3e5;
       d.gas_min = 0.0;

@@ -339,6 +339,10 @@ void add_dive(CLI::App& app, CommandLine& line) {
                    "with --headless: so many dives, with the seeds from --seed on, until their "
                    "missions are done; a table of outcomes")
       ->check(between(1, 100000));
+  command->add_option("--serve", flags->serve,
+                      "lets other programs read and command this dive (neritic serve, hud "
+                      "--connect): tcp://ADDRESS:PORT; beyond 127.x.x.x with --keys");
+  command->add_option("--keys", flags->keys, "with --serve: folder of keys (neritic keys)");
   command->add_flag("--realtime", flags->realtime, "physics without pictures at the clock's pace");
   command->add_flag("--json", flags->json, "the dive's summary as JSON");
   command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
@@ -574,8 +578,12 @@ void add_register(CLI::App& app, Run& run) {
   command
       ->add_option("file", flags->file,
                    "table (.csv) with columns lab_x_m, lab_y_m, lab_z_m, scene_x_m, scene_y_m, "
-                   "scene_z_m; a row a place, at least 2, with --tilted 3")
+                   "scene_z_m; a row a place, at least 2, with --tilted 3; with --headset the last "
+                   "three alone")
       ->required();
+  command->add_flag("--headset", flags->headset,
+                    "measures the lab's side: hold the headset still at each place in turn, the "
+                    "same way round, for 2 s (docs/headsets.md)");
   command
       ->add_option("--lab-up", flags->lab_up, "the lab's vertical axis: y (headsets) or z (suits)")
       ->check(CLI::IsMember({"y", "z"}))
@@ -645,13 +653,19 @@ void add_hud(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand(
       "hud",
       "shows a diver's instruments over any other OpenXR program (XR_EXTX_overlay), from a dive "
-      "that was recorded");
+      "that was recorded or runs elsewhere");
   command->add_option("scene", flags->scene,
                       "scene (.toml) of the dive, where it is not the recording's own");
-  command
-      ->add_option("--replay", flags->replay,
-                   "its recording (dive --record), at the pace of the dive")
-      ->required();
+  auto* from = command->add_option_group("where the numbers come from");
+  from->add_option("--replay", flags->replay,
+                   "a recording (dive --record), at the pace of the dive");
+  from->add_option("--connect", flags->connect,
+                   "a dive that runs (serve, dive --serve): tcp://ADDRESS:PORT");
+  from->require_option(1);
+  command->add_option("--key", flags->key,
+                      "with --connect: NAME.secret of `neritic keys`, for a server with keys");
+  command->add_option("--server-key", flags->server_key,
+                      "server.public, where it is not beside NAME.secret");
   command->add_option("--hud", flags->layouts,
                       "any of mask (default), corner, wrist, console, with commas between");
   command->add_option("--diver", flags->diver, "whose instruments (default: the first diver)");
@@ -661,7 +675,9 @@ void add_hud(CLI::App& app, Run& run) {
       ->check(between(1, 1000000));
   command->add_flag("--validate", flags->validation,
                     "fail if Vulkan's validation layer says anything");
-  command->footer("Example: neritic hud --replay dive.mcap --hud mask,wrist");
+  command->footer(
+      "Examples: neritic hud --replay dive.mcap --hud mask,wrist\n"
+      "          neritic hud --connect tcp://192.168.1.20:47910 --key ada.secret");
   command->callback([flags, &run] { run = [flags] { return nothing_to_say(run_hud(*flags)); }; });
 }
 

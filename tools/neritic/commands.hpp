@@ -81,6 +81,8 @@ struct DiveFlags {
   std::optional<std::uint64_t> seed;  // instead of the scene's
   std::optional<std::uint32_t> runs;  // with the seeds from there on
   bool quiet = false;                 // no summary but --json's
+  std::string serve;                  // an address; empty: not for other programs
+  std::filesystem::path keys;         // of its clients
 };
 Status run_dive(const DiveFlags& flags);
 
@@ -143,13 +145,16 @@ Result<std::string> run_physio(const PhysioFlags& flags);
 
 struct HudFlags {
   std::string scene, replay, layouts, diver, units = "metric";
-  std::uint64_t frames = 0;  // that are seen; 0: all of the recording
+  std::string connect;                    // an address, instead of replay
+  std::filesystem::path key, server_key;  // of the connection; empty: none
+  std::uint64_t frames = 0;               // that are seen; 0: all of the recording
   bool validation = false;
 };
 Status run_hud(const HudFlags& flags);
 
 struct RegisterFlags {
   std::string file, lab_up = "y";
+  bool headset = false;  // the lab's side is measured by holding a headset at each place
   bool tilted = false, json = false;
 };
 Status run_register(const RegisterFlags& flags);

@@ -19,6 +19,7 @@
 #include "testbed/view/dive_view.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/dive_physics.hpp"
+#include "tools/neritic/dive_served.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/hud_flags.hpp"
@@ -35,7 +36,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kFramesInFlight = 2;  // as Session's
-constexpr double kHeadlessSeconds = 5.0;      // where neither --frames nor --seconds is given
+constexpr std::uint32_t kServedClients = 64;
+constexpr double kHeadlessSeconds = 5.0;  // where neither --frames nor --seconds is given
 
 // Not the strip of a scanning camera.
 bool shows_a_person_around(const scene::Camera& camera) {
@@ -300,6 +302,19 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
     step_sinks.push_back(&replay->check);
     sources.push_back(&replay->source);
   }
+  std::unique_ptr<ServedDive> served;
+  if (!flags.serve.empty()) {
+    NERITIC_TRY(const ServerOptions options,
+                server_options("--serve", flags.serve, flags.keys, kServedClients));
+    NERITIC_TRY(served, ServedDive::start(options, *physics, session->scene()));
+    step_sinks.push_back(&served->link());
+    sources.push_back(&served->link());
+    if (!flags.quiet && !flags.json) {
+      fmt::print("{} at {}, {}\n", session->scene().title, to_text(served->address()),
+                 flags.keys.empty() ? "for this machine alone" : "for clients with a key");
+      std::fflush(stdout);  // programs wait for this line
+    }
+  }
   std::optional<RecordedImages> images;
   std::optional<ImageConsumer> image_consumer;
   std::vector<ImageConsumer*> consumers;
@@ -358,6 +373,18 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   return whole ? check_finished(flags, *physics) : Status();
 }
 
+Status check_serve_flags(const DiveFlags& flags, const scene::Scene& scene, bool pictures) {
+  if (flags.serve.empty())
+    return flags.keys.empty() ? Status()
+                              : refusal("--keys", "no --serve beside it", "with --serve");
+  if (!flags.replay.empty()) return refusal("--serve", "--replay beside it", "one of the two");
+  if (!PhysicsWorld::needed(scene))
+    return refusal("--serve", "a scene in which nothing moves by physics",
+                   "a scene with [physics] and a vehicle, a diver or an object with inputs");
+  if (!pictures) return refusal("--serve", "a dive without pictures", "neritic serve SCENE");
+  return {};
+}
+
 }  // namespace
 
 Status run_dive(const DiveFlags& asked) {
@@ -387,6 +414,7 @@ Status run_dive(const DiveFlags& asked) {
   if (flags.seed) scene.seed = *flags.seed;
   NERITIC_TRY_STATUS(check_physics_flags(flags, scene));
   const bool pictures = !asks_for_physics_alone(flags, scene);
+  NERITIC_TRY_STATUS(check_serve_flags(flags, scene, pictures));
   std::optional<scene::Scene> physics_scene;
   const ShownChanges changes{flags.shown, flags.added, flags.water};
   if (changes.any()) {

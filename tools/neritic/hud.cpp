@@ -1,10 +1,11 @@
-// `neritic hud --replay FILE`: a diver's instruments over any other OpenXR program, as an
-// overlay session of its own, from a recorded dive that runs again at its own pace.
+// `neritic hud`: a diver's instruments over any other OpenXR program, as an overlay session of its
+// own: from a recorded dive that runs again at its own pace, or from one that runs elsewhere.
 #include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "engine/xr/openxr/headset.hpp"
 #include "testbed/sensors/validation.hpp"
+#include "testbed/server/remote_instruments.hpp"
 #include "testbed/view/dive_hud.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/dive_physics.hpp"
@@ -60,16 +61,12 @@ Status show_frame(OverlaySession& overlay, const xr::DisplayFrame& frame, DiveHu
   return drawn;
 }
 
-// Until the recording ends, the runtime quits it, or so many frames were seen (0: all).
-Status show_recording(OverlaySession& overlay, LivePhysics& physics, DiveHud& hud, double seconds,
-                      std::uint64_t frames, const Interrupt& interrupt) {
-  const TimeNs start_ns = now_ns();
-  const double start_s = physics.newest().time_s;
-  for (std::uint64_t shown = 0; !interrupt.requested() && (frames == 0 || shown < frames);) {
-    const double time_s = 1e-9 * static_cast<double>(now_ns() - start_ns);
-    if (time_s > seconds) break;
-    physics.follow(0, start_s + time_s);
-    NERITIC_TRY_STATUS(physics.listening());
+// Until go_on says no, the runtime quits it, or so many frames were seen (0: all).
+Status show_frames(OverlaySession& overlay, DiveHud& hud, std::uint64_t frames,
+                   const std::function<Result<bool>()>& go_on) {
+  for (std::uint64_t shown = 0; frames == 0 || shown < frames;) {
+    NERITIC_TRY(const bool on, go_on());
+    if (!on) break;
     NERITIC_TRY(const xr::DisplayFrame frame, overlay.headset->begin_frame({}));
     if (frame.verdict == xr::FrameVerdict::kQuit) break;
     shown += frame.verdict == xr::FrameVerdict::kDraw ? 1 : 0;
@@ -78,10 +75,51 @@ Status show_recording(OverlaySession& overlay, LivePhysics& physics, DiveHud& hu
   return {};
 }
 
+Result<std::unique_ptr<RemoteInstruments>> connect(const HudFlags& flags) {
+  RemoteInstrumentsOptions options{.remote = {.name = "hud"}, .diver = flags.diver};
+  auto address = parse_address(flags.connect);
+  if (!address.ok()) return bad_input("--connect: {}", address.error().message);
+  if (address->transport != Transport::kTcp)
+    return refusal("--connect", flags.connect, "tcp://ADDRESS:PORT");
+  options.remote.socket.address = *address;
+  if (!flags.key.empty()) {
+    NERITIC_TRY(options.remote.socket.keys, net::read_secret(flags.key));
+    const auto beside = flags.key.parent_path() / "server.public";
+    NERITIC_TRY(options.remote.socket.server_z85,
+                net::read_public(flags.server_key.empty() ? beside : flags.server_key));
+  } else if (!flags.server_key.empty()) {
+    return refusal("--server-key", "no --key beside it", "with --key NAME.secret");
+  }
+  return RemoteInstruments::connect(options);
+}
+
+Status show_remote(const HudFlags& flags, const Interrupt& interrupt) {
+  if (!flags.scene.empty())
+    return refusal("--connect", "a scene beside it", "the address alone: the dive has its own");
+  DiveHudOptions options;
+  NERITIC_TRY(options.layouts, hud_layouts(flags.layouts.empty() ? "mask" : flags.layouts));
+  if (flags.units == "imperial") options.units = hud::Units::kImperial;
+  NERITIC_TRY(auto feed, connect(flags));
+  OverlaySession overlay;
+  NERITIC_TRY_STATUS(start_overlay(flags, overlay));
+  fmt::print("{} of {}, from {}\n", feed->diver(), feed->title(), flags.connect);
+  std::fflush(stdout);
+  DiveHud hud(*overlay.device, *overlay.frames, std::move(feed), options);
+  const Status status = show_frames(overlay, hud, flags.frames,
+                                    [&]() -> Result<bool> { return !interrupt.requested(); });
+  overlay.device->wait_idle();
+  NERITIC_TRY_STATUS(status);
+  return check_validation(*overlay.device);
+}
+
 }  // namespace
 
 Status run_hud(const HudFlags& flags) {
   const Interrupt interrupt;
+  if (!flags.connect.empty()) return show_remote(flags, interrupt);
+  if (!flags.key.empty() || !flags.server_key.empty())
+    return refusal(flags.key.empty() ? "--server-key" : "--key", "no --connect beside it",
+                   "with --connect");
   NERITIC_TRY(SampleLog recorded, read_recording(flags.replay));
   NERITIC_TRY(const scene::Scene scene, recorded_scene(recorded, flags.replay, flags.scene, ""));
   if (!PhysicsWorld::needed(scene))
@@ -102,8 +140,15 @@ Status run_hud(const HudFlags& flags) {
   DiveHud hud(*overlay.device, *overlay.frames, *physics, *options);
   physics->listen({&replay->source});
   physics->start();
-  const Status status =
-      show_recording(overlay, *physics, hud, replay->seconds(), flags.frames, interrupt);
+  const TimeNs start_ns = now_ns();
+  const double start_s = physics->newest().time_s;
+  const Status status = show_frames(overlay, hud, flags.frames, [&]() -> Result<bool> {
+    const double time_s = 1e-9 * static_cast<double>(now_ns() - start_ns);
+    if (interrupt.requested() || time_s > replay->seconds()) return false;
+    physics->follow(0, start_s + time_s);
+    NERITIC_TRY_STATUS(physics->listening());
+    return true;
+  });
   overlay.device->wait_idle();
   NERITIC_TRY_STATUS(status);
   return check_validation(*overlay.device);

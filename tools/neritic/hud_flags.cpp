@@ -6,10 +6,8 @@
 
 namespace neritic::tools {
 using namespace testbed;
-namespace {
 
-// "corner,wrist"
-Result<std::vector<hud::LayoutKind>> parse_layouts(const std::string& text) {
+Result<std::vector<hud::LayoutKind>> hud_layouts(const std::string& text) {
   std::vector<hud::LayoutKind> out;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
@@ -23,6 +21,8 @@ Result<std::vector<hud::LayoutKind>> parse_layouts(const std::string& text) {
   }
   return out;
 }
+
+namespace {
 
 Result<std::size_t> find_diver(const std::string& name, const std::vector<PhysicsHuman>& divers) {
   if (name.empty()) return std::size_t{0};
@@ -52,7 +52,7 @@ Result<std::optional<DiveHudOptions>> hud_options(const DiveFlags& flags,
   if (flags.units == "imperial") options.units = hud::Units::kImperial;
   if (asked.empty()) return out;
   if (asked != "none") {
-    NERITIC_TRY(options.layouts, parse_layouts(asked));
+    NERITIC_TRY(options.layouts, hud_layouts(asked));
   }
   out = std::move(options);
   return out;

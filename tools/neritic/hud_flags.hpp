@@ -8,6 +8,9 @@
 
 namespace neritic::tools {
 
+// "corner,wrist"
+Result<std::vector<hud::LayoutKind>> hud_layouts(const std::string& text);
+
 // Nothing: no instruments. physics: nullptr where the scene has none. unasked: the layouts of a
 // scene with divers where the user names none, as in --hud; empty: none. kBadInput: layouts or
 // divers that do not exist.

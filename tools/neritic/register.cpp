@@ -1,6 +1,7 @@
 // `neritic register PAIRS.csv`: the place of a lab's tracking frame in a scene, from places that
 // are marked in both; prints the scene's [lab] table and how well the pairs fit.
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "diver/physio_csv.hpp"
 #include "engine/core/files.hpp"
@@ -8,6 +9,7 @@
 #include "engine/core/refusal.hpp"
 #include "engine/core/registration.hpp"
 #include "tools/neritic/commands.hpp"
+#include "tools/neritic/register_headset.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -21,26 +23,30 @@ const Quat& y_up_from_z_up() {
   return turn;
 }
 
+// flags.headset: the places of the scene alone; the lab's side is left at 0.
 Result<std::vector<PointPair>> read_pairs(const RegisterFlags& flags) {
   NERITIC_TRY(const std::string text, read_text(flags.file));
   NERITIC_TRY(const diver::SampleTable table, diver::parse_sample_table(text, flags.file));
   constexpr std::array<std::string_view, 6> kNames{"lab_x_m",   "lab_y_m",   "lab_z_m",
                                                    "scene_x_m", "scene_y_m", "scene_z_m"};
   std::array<const std::vector<double>*, 6> columns{};
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
+  const std::size_t first = flags.headset ? 3 : 0;
+  for (std::size_t i = first; i < kNames.size(); ++i) {
     const auto column = table.find(kNames[i]);
     if (!column)
       return refusal(flags.file, fmt::format("columns {}", fmt::join(table.names, ", ")),
-                     fmt::format("{}", fmt::join(kNames, ", ")));
+                     fmt::format("{}", fmt::join(std::span(kNames).subspan(first), ", ")));
     columns[i] = &table.columns[*column];
   }
   std::vector<PointPair> pairs;
   for (std::size_t row = 0; row < table.lines.size(); ++row) {
-    for (std::size_t i = 0; i < kNames.size(); ++i)
+    for (std::size_t i = first; i < kNames.size(); ++i)
       if (!std::isfinite((*columns[i])[row]))
         return refusal(fmt::format("{}:{}: {}", flags.file, table.lines[row], kNames[i]),
                        "no number", "metres");
-    const Vec3 lab((*columns[0])[row], (*columns[1])[row], (*columns[2])[row]);
+    const Vec3 lab = flags.headset
+                         ? Vec3(0.0)
+                         : Vec3((*columns[0])[row], (*columns[1])[row], (*columns[2])[row]);
     pairs.push_back({flags.lab_up == "z" ? y_up(lab) : lab,
                      {(*columns[3])[row], (*columns[4])[row], (*columns[5])[row]}});
   }
@@ -54,7 +60,10 @@ std::string number(double value) {
 }  // namespace
 
 Status run_register(const RegisterFlags& flags) {
-  NERITIC_TRY(const std::vector<PointPair> pairs, read_pairs(flags));
+  if (flags.headset && flags.lab_up != "y")
+    return refusal("--lab-up", flags.lab_up + " beside --headset", "y, as headsets have it");
+  NERITIC_TRY(std::vector<PointPair> pairs, read_pairs(flags));
+  if (flags.headset) NERITIC_TRY_STATUS(measure_by_headset(pairs));
   Result<Registration> found = register_points(
       pairs, flags.tilted ? RegistrationFreedom::kFree : RegistrationFreedom::kLevel);
   if (!found.ok()) return failure(found.error().code, "{}: {}", flags.file, found.error().message);

@@ -7,6 +7,7 @@
 #include "testbed/server/server.hpp"
 #include "testbed/server/world_server.hpp"
 #include "tools/neritic/commands.hpp"
+#include "tools/neritic/dive_served.hpp"
 #include "tools/neritic/interrupt.hpp"
 
 namespace neritic::tools {
@@ -14,18 +15,9 @@ using namespace testbed;
 namespace {
 
 Result<ServerOptions> options_of(const ServeFlags& flags) {
-  ServerOptions options;
-  auto address = parse_address(flags.bind);
-  if (!address.ok()) return bad_input("--bind: {}", address.error().message);
-  if (address->transport != Transport::kTcp)
-    return refusal("--bind", flags.bind, "tcp://ADDRESS:PORT");
-  options.socket.address = *address;
-  options.socket.clients = flags.clients;
-  options.socket.guard.connections = flags.clients + 96;
+  NERITIC_TRY(ServerOptions options,
+              server_options("--bind", flags.bind, flags.keys, flags.clients));
   options.shared_memory = !flags.no_shared_memory;
-  if (!flags.keys.empty()) {
-    NERITIC_TRY(options.socket.keys, net::read_server_keys(flags.keys));
-  }
   return options;
 }
 

@@ -3,8 +3,8 @@
 // eye's frustum puts it. NERITIC_UPDATE_GOLDEN=1 (tools/golden) writes the goldens anew.
 #include <cstdlib>
 
+#include "testbed/instruments/instrument_data.hpp"
 #include "testbed/view/dive_camera.hpp"
-#include "testbed/view/instrument_data.hpp"
 #include "tests/testbed/headset/headset_run.hpp"
 #include "tests/testbed/simulation/devices.hpp"
 

@@ -54,6 +54,38 @@ TEST_F(HeadsetWearer, HeadHandGazeAndButtonBecomeTheDiversInputs) {
   EXPECT_LT(glm::distance(wrist, expected), 1e-3);
 }
 
+// From the tracker's measurement to the stream: both on this computer's clock.
+TEST_F(HeadsetWearer, AGazeSampleIsInTheStreamInLessThanAFrame) {
+  constexpr double kPeriod_s = 0.1;
+  fakes::FakeHeadset fake(kPerson +
+                          fmt::format("real_time yes\nperiod {}\ngaze_period 0.005\n", kPeriod_s));
+  std::vector<double> delays_s;
+  physics_->observe({}, [&](const Sample& sample) {
+    if (sample.kind() == PayloadKind::kGaze)
+      delays_s.push_back(1e-9 *
+                         static_cast<double>(sample.header.arrived_ns - sample.header.captured_ns));
+  });
+  NERITIC_ASSERT_STATUS(dive(scene_, 12));
+  ASSERT_GE(delays_s.size(), 8u);
+  for (const double delay_s : delays_s) {
+    EXPECT_GE(delay_s, 0.0);
+    EXPECT_LT(delay_s, kPeriod_s);
+  }
+}
+
+// Frames of 1.4 s, with a simulation that goes on meanwhile.
+TEST_F(HeadsetWearer, SeldomFramesAreNoSilence) {
+  fakes::FakeHeadset fake(kPerson + "real_time yes\nperiod 1.4\n");
+  NERITIC_ASSERT_OK(physics_, LivePhysics::create(scene_, LivePhysics::Pace::kClock));
+  with(*physics_);
+  NERITIC_ASSERT_STATUS(dive(scene_, 5));
+  physics_->stop();
+  const GroupState& head =
+      physics_->newest().state.humans()[0].groups[static_cast<std::size_t>(DiverGroup::kHead)];
+  EXPECT_EQ(head.phase, GroupPhase::kLive);
+  EXPECT_LE(head.losses, 1u);  // before the first such frames
+}
+
 // A wearer who holds still neither rows nor brakes the diver who swims on by plan, however seldom
 // frames come.
 TEST_F(HeadsetWearer, WhatIsTrackedRidesWithTheBodyThatSwimsOn) {

@@ -5,8 +5,8 @@
 
 #include "diver/frames.hpp"
 #include "engine/xr/offscreen.hpp"
+#include "testbed/instruments/instrument_data.hpp"
 #include "testbed/simulation/human_readings.hpp"
-#include "testbed/view/instrument_data.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/testbed/simulation/dives.hpp"
 

@@ -5,6 +5,7 @@ press_keys.py TITLE STEP...   TITLE: how the window's title begins; it is waited
   key F5          pressed and let go        down w, up w    held until let go
   move X Y        the cursor                click X Y       left button there
   size W H        of the window             wait SECONDS
+  minimise        as a window manager says  restore
   file PATTERN    waits until a file is there
   take A B        the same, and renames it
 Ends with 1 and a line if something does not come within 60 s.
@@ -31,6 +32,9 @@ x11.XWarpPointer.argtypes = [VOID, ULONG, ULONG, INT, INT, UINT, UINT, INT, INT]
 x11.XSetInputFocus.argtypes = [VOID, ULONG, INT, ULONG]
 x11.XResizeWindow.argtypes = [VOID, ULONG, UINT, UINT]
 x11.XSync.argtypes = [VOID, INT]
+x11.XInternAtom.argtypes = [VOID, ctypes.c_char_p, INT]
+x11.XInternAtom.restype = ULONG
+x11.XChangeProperty.argtypes = [VOID, ULONG, ULONG, ULONG, INT, INT, VOID, INT]
 
 
 class InputEvent(ctypes.Structure):
@@ -135,6 +139,12 @@ class Driver:
         elif name == "size":
             width, height = map(int, rest.split())
             x11.XResizeWindow(self.display, self.window, width, height)
+            x11.XSync(self.display, 0)
+        elif name in ("minimise", "restore"):
+            # Without a window manager: WM_STATE as one writes it (ICCCM 4.1.3.1).
+            atom = x11.XInternAtom(self.display, b"WM_STATE", 0)
+            state = (ULONG * 2)(3 if name == "minimise" else 1, 0)
+            x11.XChangeProperty(self.display, self.window, atom, atom, 32, 0, state, 2)
             x11.XSync(self.display, 0)
         elif name == "wait":
             time.sleep(float(rest))

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/device_gate.hpp"
 #include "tests/testbed/view/window_run.hpp"
@@ -97,6 +98,32 @@ TEST_F(WindowKeys, ARecordingBegunInMidRunReplaysFromTheStateInIt) {
   EXPECT_EQ(replay.status, 0) << replay.err;
   EXPECT_NE(replay.out.find(" steps, each with the hash that was recorded"), std::string::npos)
       << replay.out;
+}
+
+// Nothing is drawn meanwhile, and what is saved shows that time passes.
+TEST_F(WindowKeys, AMinimisedWindowDrawsNothingWhileTheDiveGoesOn) {
+  const test::WindowRun run =
+      drive("--timeline t.png",
+            steps_of({"shot", "minimise", "wait 0.5", "key F5", "take flight.state first.state",
+                      "wait 2.5", "key F5", "take flight.state later.state", "restore", "shot",
+                      "key Escape"}));
+  if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string first = test::text_of(scratch_ / "first.state");
+  EXPECT_GT(first.size(), 500u);
+  EXPECT_NE(test::text_of(scratch_ / "later.state"), first);
+  // Between two frames that were drawn lie those 3 s.
+  const auto timeline =
+      nlohmann::json::parse(test::text_of(scratch_ / "t.plot.json"), nullptr, false);
+  ASSERT_TRUE(timeline.is_object());
+  double longest_ms = 0.0, end_ms = -1.0;
+  for (const auto& frame : timeline["frames"])
+    for (const auto& phase : frame["host"]) {
+      if (phase[0] != "record") continue;
+      if (end_ms >= 0.0) longest_ms = std::max(longest_ms, phase[1].get<double>() - end_ms);
+      end_ms = phase[1].get<double>() + phase[2].get<double>();
+    }
+  EXPECT_GT(longest_ms, 2500.0);
 }
 
 TEST_F(WindowKeys, AReplayIsNeitherSavedNorRecorded) {

@@ -1,4 +1,4 @@
-#include "testbed/view/instrument_data.hpp"
+#include "testbed/instruments/instrument_data.hpp"
 
 #include <cmath>
 

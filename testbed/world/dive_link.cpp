@@ -1,0 +1,38 @@
+#include "testbed/world/dive_link.hpp"
+
+#include <cmath>
+
+#include "testbed/motion/live_physics.hpp"
+
+namespace neritic::testbed {
+
+DiveLink::DiveLink(LivePhysics& physics, const scene::Scene& scene, const std::string& path)
+    : world_(World::attach(physics, scene, path)), outputs_(OutputSamples::all(physics.world())) {}
+
+Status DiveLink::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) {
+  if (outputs.empty()) return {};
+  // Programs outside go by simulated time, the thread's samples by its clock.
+  const TimeNs shift_ns = std::llround(step.time_s * 1e9) - step.due_ns;
+  const std::lock_guard lock(mutex_);
+  if (waiting_.size() + outputs.size() > kMostWaiting)
+    waiting_.erase(waiting_.begin(), waiting_.begin() + kMostWaiting / 2);
+  for (Sample sample : outputs) {
+    sample.header.captured_ns += shift_ns;
+    sample.header.arrived_ns += shift_ns;
+    waiting_.push_back(sample);
+  }
+  return {};
+}
+
+Status DiveLink::poll(SampleInbox&, double) {
+  taken_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    std::swap(taken_, waiting_);
+  }
+  world_->receive(taken_);
+  if (act_) act_();
+  return {};
+}
+
+}  // namespace neritic::testbed

@@ -1,0 +1,39 @@
+#include "tools/neritic/dive_served.hpp"
+
+#include "engine/core/refusal.hpp"
+#include "engine/core/version.hpp"
+
+namespace neritic::tools {
+using namespace testbed;
+
+Result<ServerOptions> server_options(const std::string& flag, const std::string& address,
+                                     const std::filesystem::path& keys, std::uint32_t clients) {
+  ServerOptions options;
+  auto parsed = parse_address(address);
+  if (!parsed.ok()) return bad_input("{}: {}", flag, parsed.error().message);
+  if (parsed->transport != Transport::kTcp) return refusal(flag, address, "tcp://ADDRESS:PORT");
+  options.socket.address = *parsed;
+  options.socket.clients = clients;
+  options.socket.guard.connections = clients + 96;
+  if (!keys.empty()) {
+    NERITIC_TRY(options.socket.keys, net::read_server_keys(keys));
+  }
+  return options;
+}
+
+ServedDive::ServedDive(LivePhysics& physics, const scene::Scene& scene)
+    : link_(physics, scene, scene.path), served_(link_.world(), hand_off_, {.real_time = true}) {
+  link_.each_turn([this] { served_.turn(); });
+}
+
+Result<std::unique_ptr<ServedDive>> ServedDive::start(const ServerOptions& options,
+                                                      LivePhysics& physics,
+                                                      const scene::Scene& scene) {
+  std::unique_ptr<ServedDive> dive(new ServedDive(physics, scene));
+  NERITIC_TRY(dive->server_,
+              Server::start(facts_of(dive->link_.world(), true, std::string(program_version())),
+                            dive->hand_off_, options));
+  return dive;
+}
+
+}  // namespace neritic::tools

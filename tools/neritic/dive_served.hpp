@@ -1,0 +1,34 @@
+// `dive --serve`: a dive with a display for programs, as `neritic serve` is without one.
+#pragma once
+
+#include "testbed/server/server.hpp"
+#include "testbed/server/world_server.hpp"
+#include "testbed/world/dive_link.hpp"
+
+namespace neritic::tools {
+
+// Where a server listens. flag: "--bind". keys: a folder; empty: none.
+Result<testbed::ServerOptions> server_options(const std::string& flag, const std::string& address,
+                                              const std::filesystem::path& keys,
+                                              std::uint32_t clients);
+
+// Joins the loop as a step sink and a source; the network has a thread of its own.
+class ServedDive {
+ public:
+  // Borrows physics and scene. Errors as Server::start.
+  static Result<std::unique_ptr<ServedDive>> start(const testbed::ServerOptions& options,
+                                                   testbed::LivePhysics& physics,
+                                                   const scene::Scene& scene);
+  testbed::DiveLink& link() { return link_; }
+  Address address() const { return server_->address(); }
+
+ private:
+  ServedDive(testbed::LivePhysics& physics, const scene::Scene& scene);
+
+  testbed::DiveLink link_;
+  testbed::HandOff hand_off_;
+  std::unique_ptr<testbed::Server> server_;
+  testbed::WorldServer served_;
+};
+
+}  // namespace neritic::tools
