@@ -19,8 +19,9 @@ AlarmLevel caution_if(bool is) {
   return is ? AlarmLevel::kCaution : AlarmLevel::kOff;
 }
 
+// Numbers end it, not the connection alone.
 Asked link(const DiveData& d) {
-  return {danger_if(d.link_lost), danger_if(d.link_lost)};
+  return {danger_if(d.link_lost), danger_if(d.link_lost || std::isnan(d.depth_m))};
 }
 
 Asked gas(const DiveData& d) {

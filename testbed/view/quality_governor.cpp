@@ -6,20 +6,25 @@
 namespace neritic::testbed {
 namespace {
 
-constexpr std::array<Quality, 14> kRungs{{{1.0, 1},
-                                          {0.9, 1},
-                                          {0.8, 1},
-                                          {0.7, 1},
-                                          {0.6, 1},
-                                          {0.5, 1},
-                                          {0.5, 2},
-                                          {0.42, 2},
-                                          {0.35, 2},
-                                          {0.35, 4},
-                                          {0.3, 4},
-                                          {0.25, 4},
-                                          {0.2, 4},
-                                          {0.2, 8}}};
+constexpr std::array<Quality, 16> kRungs{{{1.0, 1, 0},
+                                          {0.9, 1, 0},
+                                          {0.8, 1, 0},
+                                          {0.8, 1, 1},
+                                          {0.7, 1, 1},
+                                          {0.6, 1, 1},
+                                          {0.6, 2, 2},
+                                          {0.5, 2, 2},
+                                          {0.42, 2, 2},
+                                          {0.42, 4, 3},
+                                          {0.35, 4, 3},
+                                          {0.3, 4, 3},
+                                          {0.26, 4, 3},
+                                          {0.23, 4, 3},
+                                          {0.2, 4, 3},
+                                          {0.2, 8, 3}}};
+
+// The cost of a level of light beside the best (measured in software: wreck, 320 x 180).
+constexpr std::array<double, kLightLevels> kLightCost{1.0, 0.75, 0.6, 0.5};
 
 constexpr double kMissed = 1.08;  // of the budget: slower is a miss
 constexpr double kRoom =
@@ -27,8 +32,9 @@ constexpr double kRoom =
 constexpr std::size_t kInFlight = 3;  // frames after a change that were begun before it
 constexpr double kSettled_s = 5.0, kLongestWait_s = 60.0;
 
-double area(const Quality& quality) {
-  return quality.view_scale * quality.view_scale;
+// As if all work went with it.
+double cost(const Quality& quality) {
+  return quality.view_scale * quality.view_scale * kLightCost[quality.light];
 }
 
 double middle(std::array<double, 5> values) {
@@ -61,16 +67,16 @@ void QualityGovernor::add(double interval_ms, double work_ms) {
   }
 }
 
-// To the rung whose area is expected to fit, as if all work went with it: at least one, at most
-// three, since fixed costs make the guess too good.
+// To the rung whose cost is expected to fit: at least one, at most three, since fixed costs make the
+// guess too good.
 void QualityGovernor::go_down(double interval_ms) {
   if (rung_ + 1 >= kRungs.size()) return;
   if (climbed_ && on_rung_s_ <= kSettled_s)
     wait_s_[rung_] = std::min(2.0 * wait_s_[rung_], kLongestWait_s);
-  const double wanted = area(quality()) * budget_ms_ / interval_ms;
+  const double wanted = cost(quality()) * budget_ms_ / interval_ms;
   const std::size_t farthest = std::min(rung_ + 3, kRungs.size() - 1);
   std::size_t next = rung_ + 1;
-  while (next < farthest && area(kRungs[next]) > wanted) ++next;
+  while (next < farthest && cost(kRungs[next]) > wanted) ++next;
   rung_ = next;
   climbed_ = false;
   forget();
@@ -79,7 +85,7 @@ void QualityGovernor::go_down(double interval_ms) {
 void QualityGovernor::go_up(double work_ms) {
   if (rung_ == 0 || on_rung_s_ < wait_s_[rung_ - 1]) return;
   const Quality& better = kRungs[rung_ - 1];
-  if (work_ms * area(better) / area(quality()) > kRoom * budget_ms_) return;
+  if (work_ms * cost(better) / cost(quality()) > kRoom * budget_ms_) return;
   --rung_;
   climbed_ = true;
   forget();

@@ -13,10 +13,14 @@ namespace neritic::testbed {
 struct Quality {
   double view_scale = 1.0;       // of the view's width and height in pixels
   std::uint32_t ping_every = 1;  // each sonar gives one of so many pings that are due
+  std::uint32_t light = 0;       // 0: as the camera says; to kLightLevels - 1, each cheaper
   friend bool operator==(const Quality&, const Quality&) = default;
 };
 
-// Best first: the view's resolution, then the sonars' rates, then both.
+inline constexpr std::uint32_t kLightLevels = 4;
+
+// Best first: some of the view's resolution, then size and number of the sun's shadow maps, ambient
+// occlusion, waves and forward scatter, then the sonars' rates, and so on in turn.
 std::span<const Quality> quality_rungs();
 
 class QualityGovernor {

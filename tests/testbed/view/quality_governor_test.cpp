@@ -98,6 +98,8 @@ TEST(QualityGovernor, RungsComeDownInOrder) {
   for (std::size_t i = 1; i < rungs.size(); ++i) {
     EXPECT_LE(rungs[i].view_scale, rungs[i - 1].view_scale);
     EXPECT_GE(rungs[i].ping_every, rungs[i - 1].ping_every);
+    EXPECT_GE(rungs[i].light, rungs[i - 1].light);
+    EXPECT_LT(rungs[i].light, kLightLevels);
     EXPECT_NE(rungs[i], rungs[i - 1]);
   }
 }
