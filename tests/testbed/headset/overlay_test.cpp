@@ -97,9 +97,9 @@ class ServedProcess {
   std::function<std::string()> said_;
 };
 
-// Frame 12 is seen while the dive runs; it is then ended, and frame 120 is seen some 5 s later.
+// Frame 12 is seen while the dive runs; it is then ended, and the others are seen some 5 s later.
 TEST_F(OverlayProcess, ADiveThatRunsElsewhereFeedsItAndALostConnectionIsAnAlarm) {
-  script(fmt::format("{}out {}\nout_frames 12 120\n", kOver, path("")));
+  script(fmt::format("{}out {}\nout_frames 12 110 113 117 120\n", kOver, path("")));
   ServedProcess server(
       command("serve '" + scene() + "' --realtime --bind tcp://127.0.0.1:47931", "served"),
       [&] { return text("served"); });
@@ -116,7 +116,10 @@ TEST_F(OverlayProcess, ADiveThatRunsElsewhereFeedsItAndALostConnectionIsAnAlarm)
   EXPECT_EQ(text("report"), "");
   EXPECT_GT(ink_and_other(12).first, 300u);
   EXPECT_EQ(alarmed(12), 0u);
-  EXPECT_GT(alarmed(120), 500u);
+  // It flashes, twice a second.
+  std::size_t most = 0;
+  for (const int frame : {110, 113, 117, 120}) most = std::max(most, alarmed(frame));
+  EXPECT_GT(most, 300u);
 }
 
 TEST_F(OverlayProcess, ABadAddressOrNoServerIsOneLine) {

@@ -25,7 +25,7 @@ class ServedWorld {
     EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
     world_ = std::move(*world);
     EXPECT_TRUE(world_->tick(steps).ok());
-    wanted_ = world_->instruments(world_->agents().front().name).value();
+    wanted_ = world_->instruments("diver").value();
     auto started = Server::start(facts_of(*world_, false, "test"), hand_off_,
                                  {.socket = {.address = {Transport::kTcp, 0x7f000001, port}}});
     EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error().message);
