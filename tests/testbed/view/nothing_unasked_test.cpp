@@ -43,7 +43,7 @@ class NothingUnasked : public test::GpuTest {
     physics_.reset(), display_.reset(), session_.reset();
     GpuTest::TearDown();
   }
-  VkDeviceSize used() const { return device().allocator().statistics().used_bytes; }
+  VkDeviceSize used() { return device().allocator().statistics().used_bytes; }
   std::string render() {
     FrameRequest request;
     request.cameras = {0};
