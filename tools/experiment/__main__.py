@@ -17,34 +17,69 @@ except ModuleNotFoundError:
     sys.exit(1)
 
 
+import crops
+import detector
 import echo_sounder
 import imaging
+import outcomes
 import profiling
 import shark
+import sonar_crops
 import task
+import training
 
 import report
 import runner
 import scenario
 import summary
 
-KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder, "shark": shark, "task": task.Task}
+KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder, "shark": shark, "detector": detector,
+         "task": task.Task}
+TRAINED = {"train_camera": ("camera", crops, 3), "train_sonar": ("sonar", sonar_crops, 1)}
 
 
 def one(path, asked, out):
-    plan = scenario.Scenario(path, KINDS, asked.runs, asked.seed, asked.set)
+    return do(scenario.Scenario(path, KINDS, asked.runs, asked.seed, asked.set), asked, out)[0]
+
+
+def folder(out):
     try:
         os.makedirs(out, exist_ok=True)
     except OSError as error:
         raise scenario.Failed(f"{out}: cannot be made: {error.strerror}") from None
     if not os.access(out, os.W_OK):
         raise scenario.Failed(f"{out}: cannot be written")
+
+
+def do(plan, asked, out):
+    """(summary, results) of a scenario; its files are in out."""
+    folder(out)
     results = runner.run_all(plan, out, asked.program, asked.workers, asked.resume, asked.quiet)
     told = summary.summarise(plan, results)
     note = report.write(plan, results, told, out)
     if note and not asked.quiet:
         print(f"neritic: {plan.name}: {note}", file=sys.stderr)
-    return told
+    return told, results
+
+
+def train(asked):
+    name, maker, channels = TRAINED[asked.name]
+    folder(asked.out)
+    share = training.train(name, maker.Maker, maker.CLASSES, channels, asked.program, asked.runs, asked.seed or 1, asked.workers,
+                           asked.out, asked.quiet)
+    if not asked.quiet:
+        print(f"{asked.out}/{name}.onnx: {100 * share:.1f} % of the crops kept aside")
+    return 0
+
+
+def trade(asked):
+    folder(asked.out)
+    rows = outcomes.run(KINDS, lambda plan, out: do(plan, asked, out)[1], asked)
+    if asked.json:
+        print(json.dumps(rows, indent=2))
+    elif not asked.quiet:
+        print(f"{asked.out}: index.html, outcomes.csv, .json, .png; a folder a knob")
+    return 0
 
 
 def tell(told, out):
@@ -70,6 +105,10 @@ def main():
     parser.add_argument("--quiet", action="store_true")
     asked = parser.parse_args()
     try:
+        if asked.name in TRAINED:
+            return train(asked)
+        if asked.name == "tradeoff":
+            return trade(asked)
         if asked.name == "all":
             told = [one(scenario.path_of(n), asked, os.path.join(asked.out, n)) for n in scenario.names()]
             report.index(told, asked.out)

@@ -9,7 +9,8 @@ import os
 
 import numpy as np
 
-from scenario import SHIPPED, Failed, Setting, draw
+from scenario import SHIPPED, Setting, draw
+from shark_senses import DIVER, SEEN, SONAR, Gaze, SonarTrack
 
 SETTINGS = {
     "offset_m": Setting(1.0, "the ROV's start beside the line from diver to shark, at its middle", 0.0, 10.0),
@@ -19,9 +20,18 @@ SETTINGS = {
     "shark_speed_m_s": Setting(0.3, "of its approach", 0.0, 5.0),
     "shark_circling_m_s": Setting(0.1, "across the line, to its left", -5.0, 5.0),
     "delay_s": Setting(0.0, "injected between the detector's word and the ROV", 0.0, 10.0),
-    "detector_latency_s": Setting(0.0, "from the gaze to the detector's word", 0.0, 10.0),
-    "detector_miss": Setting(0.0, "share of its looks, ten a second, in which it misses the shark", 0.0, 0.99),
+    "detector": Setting("assumed", "assumed: a share of misses; shipped: the diver's gaze crops go to it; or an .onnx file"),
+    "detector_latency_s": Setting(0.0, "from the gaze to the detector's word, in simulated time", 0.0, 10.0),
+    "detector_miss": Setting(0.0, "share of its looks, ten a second, in which an assumed one misses the shark", 0.0, 0.99),
+    "detector_least": Setting(0.6, "how sure one that looks must be", 0.0, 1.0),
+    "crop_px": Setting(64, "side of the gaze crops", 16, 512, whole=True),
+    "gaze_error_deg": Setting(1.5, "how far the crop's middle is off the shark, at most, by each look", 0.0, 10.0),
+    "water": Setting("IB", "Jerlov's type, for a detector that looks", words=["I", "IA", "IB", "II", "III", "1C", "3C", "5C"]),
     "heading_deg": Setting(0.0, "the ROV's heading at the start, relative to the shark's bearing", -180.0, 180.0),
+    "shark_known_by": Setting("truth", "the ROV knows the shark's place truly, or by its sonar from where the word says it is",
+                              words=["truth", "sonar"]),
+    "sonar_quality": Setting("draft", "of that sonar", words=["draft", "standard", "reference"]),
+    "sonar_hz": Setting(5.0, "its pings a second", 0.5, 20.0),
     "navigation": Setting("truth", "the ROV flies by its true state or by what its sensors measure", words=["truth", "measured"]),
     "current_m_s": Setting(0.0, "of the water, towards east", -2.0, 2.0),
     "physics_hz": Setting(240, "steps a second", 60, 1000, whole=True),
@@ -36,6 +46,10 @@ MEASURES = {
     "shark_in_sonar": ("", "share of the time after the block in which the shark is in the sonar's sight (90 x 28 degrees, 10 m)"),
     "beside_rms_m": ("m", "distance from the line over the 2 s after the block"),
     "largest_force_n": ("N", "largest force of a thruster"),
+    "track_error_m": ("m", "rms error of the shark's place, level, by the sonar"),
+    "looks": ("", "of a detector that looks, until it says shark"),
+    "wrong_words": ("", "how often it named something else before"),
+    "look_ms": ("ms", "median of its answers on a thread of its own; by the clock, so it differs from run to run"),
 }
 BESIDE_M, HELD_S, LEAST, MOST = 0.35, 1.0, 0.1, 0.9
 SCENE = """title = "A shark, a diver, an ROV"
@@ -43,28 +57,29 @@ seed = {seed}
 [physics]
 rate_hz = {physics_hz}
 {current}
+{seen}
 [[objects]]
 name = "diver"
 class = "diver"
 shape = "sphere"
+radius_m = 0.05
 position_m = [0, -10, 0]
 inputs = {{ pose = {{ from = "python", hold_s = 3600 }} }}
 [[objects]]
 name = "shark"
 class = "shark"
-shape = "sphere"
+{shark_drawn}
 position_m = {shark}
 inputs = {{ pose = {{ from = "python", hold_s = 3600 }} }}
 [[vehicles]]
 name = "rov"
-shape = "box"
-size_m = [0.457, 0.254, 0.575]
+{rov_drawn}
 dynamics = "{vehicle}"
 navigation = "{navigation}"
 position_m = {rov}
 yaw_deg = {yaw!r}
 mission = {{ hold = "station" }}
-"""
+{sonar}"""
 
 
 def _scene_of_enu(p):
@@ -86,9 +101,6 @@ def _shark_at(s, time):
     out = np.array([math.sin(angle), math.cos(angle), 0.0])
     left = np.array([-math.cos(angle), math.sin(angle), 0.0])
     return DIVER + r * out, -fast * (r > 1.0) * out + s["shark_circling_m_s"] * left
-
-
-DIVER = np.array([0.0, 0.0, -10.0])
 
 
 def between(rov, diver, shark):
@@ -116,26 +128,41 @@ def run(s, seed, tools):
     file = "bluerov2_heavy_survey_dynamics.toml" if s["navigation"] == "measured" else "bluerov2_heavy_dynamics.toml"
     current = (f'[current]\nkind = "uniform"\nvelocity_m_s = [{s["current_m_s"]!r}, 0, 0]' if s["current_m_s"] else "")
     # A scene's yaw is to port from north; a bearing is to starboard.
+    looks, sounds = s["detector"] != "assumed", s["shark_known_by"] == "sonar"
+    models = os.path.join(SHIPPED, "..", "models")
     scene = tools.write("scene.toml", SCENE.format(
+        seen=SEEN.format(fov=CROP_DEG, **s) if looks else "",
+        shark_drawn=f'model = "{models}/shark.glb"\nclip = "swim"' if looks or sounds else 'shape = "sphere"',
+        sonar=SONAR.format(**s) if sounds else "",
+        rov_drawn=f'model = "{models}/rov.glb"' if looks else 'shape = "box"\nsize_m = [0.457, 0.254, 0.575]',
         seed=seed, physics_hz=s["physics_hz"], current=current, shark=_scene_of_enu(shark), rov=_scene_of_enu(rov),
         vehicle=os.path.join(SHIPPED, "..", "vehicles", file), navigation=s["navigation"],
         yaw=-(s["shark_bearing_deg"] + s["heading_deg"])))
     world = neritic.open(scene, seed=seed)
-    ship, told_s = world["rov"], _word_s(s, seed) + s["delay_s"]
+    gaze = Gaze(world, s, seed) if looks else None
+    track = SonarTrack(world, s) if sounds else None
+    ship, told_s = world["rov"], math.inf if looks else _word_s(s, seed) + s["delay_s"]
     every = max(1, int(round(s["physics_hz"] / s["control_hz"])))
     held_from, blocked_s, in_sight, beside_after, force = None, None, [], [], 0.0
     series = {"t": [], "beside": [], "along": []}
     world["diver"].pose(DIVER)
-    steps = int(round(s["seconds"] * s["physics_hz"]))
-    for step in range(0, steps, every):
-        time = step / s["physics_hz"]
+    # Told control_hz times a second; judged at least 20 times a second.
+    part, next_told = min(every, max(1, int(round(s["physics_hz"] / 20)))), 0
+    while world.time < s["seconds"] - 1e-9:
+        time = world.time
         shark, speed = _shark_at(s, time)
-        world["shark"].pose(shark, velocity=speed)
-        if time >= told_s - 1e-9:
-            middle = 0.5 * (DIVER + shark)
-            yaw = math.atan2(shark[1] - middle[1], shark[0] - middle[0])
-            ship.goto(*middle, yaw, velocity=0.5 * speed)
-        world.tick(every)
+        heading = math.atan2(speed[1], speed[0]) if np.hypot(*speed[:2]) > 1e-6 else math.atan2(-shark[1], -shark[0])
+        world["shark"].pose(shark, [0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)], velocity=speed)
+        if looks and not math.isfinite(told_s) and time >= 0.1 * gaze.looks - 1e-9:
+            if gaze.sees_shark(shark):
+                told_s = time + s["detector_latency_s"] + s["delay_s"]
+        if world.step >= next_told:
+            next_told = world.step + every
+            if time >= told_s - 1e-9:
+                at, moves = track.estimate(shark) if sounds else (shark, speed)
+                middle = 0.5 * (DIVER + at)
+                ship.goto(*middle, math.atan2(at[1] - middle[1], at[0] - middle[0]), velocity=0.5 * moves)
+        world.tick(part)
         truth, time = world.truth("rov"), world.time
         shark, _ = _shark_at(s, time)
         along, beside = between(truth.position, DIVER, shark)
@@ -155,7 +182,13 @@ def run(s, seed, tools):
         if blocked_s is not None and time >= blocked_s + 2.0:
             break
     world.close()
-    measures = {"blocked": blocked_s is not None, "blocked_in_3_s": blocked_s is not None and blocked_s <= 3.0,
+    looked = {}
+    if looks:
+        gaze.close()
+        looked = {"looks": gaze.looks, "wrong_words": gaze.wrong, "look_ms": 1e3 * float(np.median(gaze.work_s or [0.0]))}
+    if sounds and track.errors:
+        looked["track_error_m"] = float(np.sqrt(np.mean(np.square(track.errors))))
+    measures = {**looked, "blocked": blocked_s is not None, "blocked_in_3_s": blocked_s is not None and blocked_s <= 3.0,
                 "largest_force_n": force}
     if blocked_s is not None:
         measures |= {"time_to_block_s": blocked_s, "time_of_motion_s": blocked_s - told_s,

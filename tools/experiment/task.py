@@ -3,6 +3,8 @@ README.md lists its keys.
 
 The controller is a Python file with a class Controller: __init__(self, world, settings, seed) and
 act(self, observations, stage), called control_hz times a second. What act returns, a dict of numbers, formulas may name.
+A player, a class Player of the same form, plays people and props by rules, so that controllers can be compared: its act has
+a third argument, what the controller told last, and is called first; the controller may ask for what it tells as self.told.
 """
 import importlib.util
 import math
@@ -43,13 +45,16 @@ class Task:
         self.path = path
         task = data.get("task", {})
         _check_keys(f"{path}: task", task, ["scene", "controller", "control_hz", "seconds", "participants", "places",
-                                            "settings", "tells", "stop"])
+                                            "settings", "tells", "stop", "player"])
         for key in ("scene", "controller"):
             if not isinstance(task.get(key), str):
                 raise Refused(f"{path}: task.{key}: found {task.get(key)!r}; accepted: a file's name")
         folder = os.path.dirname(os.path.abspath(path))
         self.scene, self.controller = (os.path.join(folder, task[k]) for k in ("scene", "controller"))
-        for key, file in (("scene", self.scene), ("controller", self.controller)):
+        if not isinstance(task.get("player", ""), str):
+            raise Refused(f"{path}: task.player: found {task['player']!r}; accepted: a file's name")
+        self.player = os.path.join(folder, task["player"]) if "player" in task else None
+        for key, file in (("scene", self.scene), ("controller", self.controller), ("player", self.player or self.scene)):
             if not os.path.isfile(file):
                 raise Refused(f"{path}: task.{key}: found no file {file}; accepted: a file beside the scenario")
         self.control_hz = _number(f"{path}: task.control_hz", task.get("control_hz", 20), 0.1, 1000)
@@ -116,18 +121,21 @@ class Task:
         missing = [n for n in self.participants if n not in world.agents]
         if missing:
             raise Failed(f"{self.scene}: found no participant {missing[0]}; accepted: {', '.join(world.agents)}")
+        player = _controller(self.player, "Player")(world, settings, seed) if self.player else None
         controller = _controller(self.controller)(world, settings, seed)
         fixed = {k: np.array(v) for k, v in self.places.items()}
         every = max(1, round(1.0 / (self.control_hz * world.step_s)))
         rows = {m["name"]: [] for m in self.measures}
         series = {"t": [], "stage": [], **{m["name"]: [] for m in self.measures}}
         stage, begun, held_from, ends, failure = 0, 0.0, None, {}, None
-        observations = world.observe()
+        observations, told = world.observe(), {}
         while world.time < self.seconds - 1e-9 and stage < len(self.stages):
-            told = controller.act(observations, self.stages[stage]["name"]) or {}
+            played = player.act(observations, self.stages[stage]["name"], told) or {} if player else {}
+            controller.told = played
+            told = {**played, **(controller.act(observations, self.stages[stage]["name"]) or {})}
             unknown = [k for k in told if k not in self.tells]
             if unknown:
-                raise Failed(f"{self.controller}: act told \"{unknown[0]}\"; accepted: {', '.join(self.tells) or 'nothing'}")
+                raise Failed(f"{self.controller if not self.player else self.path}: act told \"{unknown[0]}\"; accepted: {', '.join(self.tells) or 'nothing'}")
             observations = world.tick(every)
             time = world.time
             moment = Moment(world, fixed, {**settings, **told, "time": time, "stage_time": time - begun})
@@ -183,13 +191,13 @@ class Task:
         yield "task.png", "The measures of each run over time", fig
 
 
-def _controller(path):
+def _controller(path, name="Controller"):
     spec = importlib.util.spec_from_file_location("neritic_controller", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    if not hasattr(module, "Controller"):
-        raise Failed(f"{path}: found no class Controller; accepted: one with act(observations, stage)")
-    return module.Controller
+    if not hasattr(module, name):
+        raise Failed(f"{path}: found no class {name}; accepted: one with act(observations, stage)")
+    return getattr(module, name)
 
 
 def _statistic(name, values, step_s):

@@ -1,0 +1,167 @@
+"""A detector read from an ONNX file by OpenCV, and a thread of its own that looks at pictures with it.
+
+Beside NAME.onnx lies NAME.json: {"kind": "classifier", "yolo5", "yolo8" or "ssd", "classes": [...], "side": 64,
+"normalise": "crop" or "none", "channels": 3}. A classifier gives a share to each class of a whole crop. YOLO's raw output and
+SSD's rows (image, class, confidence, box) give boxes; overlapping ones are thinned. Pictures are [row, column(, channel)]
+as the cameras and sonars give them, RGB.
+"""
+import json
+import os
+import queue
+import threading
+import time
+
+import numpy as np
+
+from scenario import Failed, Refused
+
+KINDS = ("classifier", "yolo5", "yolo8", "ssd")
+
+
+def normalised(pixels):
+    """Light and contrast of a crop taken out: mean 0 and deviation 1 of each channel, at least 2 levels of 255."""
+    x = pixels.astype(np.float32)
+    x = x[..., None] if x.ndim == 2 else x
+    mean, spread = x.mean(axis=(0, 1)), x.std(axis=(0, 1))
+    return (x - mean) / np.maximum(spread, 2.0)
+
+
+class Detector:
+    """One thread at a time uses it."""
+
+    def __init__(self, path):
+        try:
+            import cv2
+        except ModuleNotFoundError:
+            raise Failed("detector: no OpenCV here; tools/setup detector installs python3-opencv") from None
+        self._cv2, about = cv2, os.path.splitext(path)[0] + ".json"
+        for file in (path, about):
+            if not os.path.isfile(file):
+                raise Refused(f"{file}: found no such file; accepted: a detector's .onnx with its .json beside it")
+        try:
+            with open(about, encoding="utf-8") as file:
+                self.about = json.load(file)
+            self.kind, self.classes, self.side = self.about["kind"], list(self.about["classes"]), int(self.about["side"])
+        except (ValueError, KeyError, TypeError, OSError) as error:
+            raise Refused(f"{about}: found no description ({error!r}); accepted: kind, classes, side, normalise, channels") from None
+        if self.kind not in KINDS or not 8 <= self.side <= 4096 or not self.classes:
+            raise Refused(f"{about}: found kind {self.kind!r}, side {self.side}, {len(self.classes)} classes; accepted: "
+                          f"{', '.join(KINDS)}; 8 to 4096; one or more")
+        try:
+            self._net = cv2.dnn.readNetFromONNX(path)
+            self._net.setPreferableBackend(cv2.dnn.DNN_BACKEND_OPENCV)
+        except cv2.error as error:
+            raise Refused(f"{path}: found a network that OpenCV cannot read ({_line(error)}); accepted: ONNX of its layers") from None
+
+    def _blob(self, pixels):
+        x = self._cv2.resize(pixels, (self.side, self.side), interpolation=self._cv2.INTER_AREA) \
+            if pixels.shape[:2] != (self.side, self.side) else pixels
+        x = normalised(x) if self.about.get("normalise", "crop") == "crop" else np.atleast_3d(x).astype(np.float32) / 255.0
+        return np.ascontiguousarray(x.transpose(2, 0, 1)[None])
+
+    def forward(self, pixels):
+        try:
+            self._net.setInput(self._blob(pixels))
+            return np.asarray(self._net.forward())
+        except self._cv2.error as error:
+            raise Failed(f"detector: {_line(error)}") from None
+
+    def shares(self, pixels):
+        """Of a classifier: the share of each class, their sum is 1."""
+        out = self.forward(pixels).ravel()
+        if self.kind != "classifier" or out.size != len(self.classes):
+            raise Failed(f"detector: found a {self.kind} of {out.size} numbers; accepted: a classifier of {len(self.classes)}")
+        return out
+
+    def look(self, pixels, least=0.25, overlap=0.45):
+        """[(class, confidence, (left, top, width, height) in pixels of the picture)], surest first; never "nothing"."""
+        high, wide = pixels.shape[:2]
+        if self.kind == "classifier":
+            shares = self.shares(pixels)
+            best = int(shares.argmax())
+            name = self.classes[best]
+            return [] if name == "nothing" or shares[best] < least else [(name, float(shares[best]), (0, 0, wide, high))]
+        rows = boxes_of(self.kind, self.forward(pixels), len(self.classes), self.side)
+        rows = [r for r in rows if r[1] >= least]
+        chosen = self._cv2.dnn.NMSBoxes([list(r[2]) for r in rows], [r[1] for r in rows], least, overlap) if rows else []
+        scale = (wide / self.side, high / self.side) * 2
+        return [(self.classes[rows[i][0]], rows[i][1], tuple(float(v * s) for v, s in zip(rows[i][2], scale)))
+                for i in np.array(chosen).ravel()]
+
+
+def boxes_of(kind, out, classes, side):
+    """[(class, confidence, (left, top, width, height) in pixels of the network's input)] of a raw output."""
+    if kind == "ssd":  # [1, 1, n, 7]: image, class, confidence, left, top, right, bottom as shares of the picture
+        rows = out.reshape(-1, 7)
+        return [(int(r[1]), float(r[2]), (r[3] * side, r[4] * side, (r[5] - r[3]) * side, (r[6] - r[4]) * side))
+                for r in rows.astype(float) if 0 <= int(r[1]) < classes]
+    rows = out.reshape(out.shape[-2:])
+    if kind == "yolo8":  # [1, 4 + classes, n]: no objectness
+        rows = rows.T
+    head = 5 if kind == "yolo5" else 4
+    if rows.shape[1] != head + classes:
+        raise Failed(f"detector: found rows of {rows.shape[1]} numbers; accepted: {head + classes} for {classes} classes of {kind}")
+    share = rows[:, head:] * (rows[:, 4:5] if kind == "yolo5" else 1.0)
+    best = share.argmax(axis=1)
+    return [(int(b), float(s[b]), (float(r[0] - r[2] / 2), float(r[1] - r[3] / 2), float(r[2]), float(r[3])))
+            for r, s, b in zip(rows, share, best)]
+
+
+def _line(error):
+    return str(error).strip().splitlines()[0][:160]
+
+
+class Looker:
+    """Looks on a thread of its own; the newest picture waits, older ones that wait are dropped and counted.
+
+    show() and answers() belong to the thread that made it. Each answer is a dict: sequence, found (as look() gives),
+    latency_s from show() to the answer by the clock, of which work_s in the network."""
+
+    def __init__(self, detector, least=0.25):
+        self.detector, self.least, self.dropped = detector, least, 0
+        self._next, self._out = queue.Queue(1), queue.Queue()
+        self._thread = threading.Thread(target=self._run, name="looker", daemon=True)
+        self._thread.start()
+
+    def show(self, pixels, sequence):
+        one = (pixels, sequence, time.monotonic())
+        while True:
+            try:
+                self._next.put_nowait(one)
+                return
+            except queue.Full:
+                try:
+                    self._next.get_nowait()
+                    self.dropped += 1
+                except queue.Empty:
+                    pass
+
+    def answers(self, wait_s=0.0):
+        """Every answer since the last call; waits up to wait_s for the first."""
+        out = []
+        try:
+            out.append(self._out.get(timeout=wait_s) if wait_s > 0 else self._out.get_nowait())
+            while True:
+                out.append(self._out.get_nowait())
+        except queue.Empty:
+            pass
+        for one in out:
+            if isinstance(one, Exception):
+                raise one
+        return out
+
+    def close(self):
+        self._next.put(None)
+        self._thread.join()
+
+    def _run(self):
+        while (one := self._next.get()) is not None:
+            pixels, sequence, shown = one
+            begun = time.monotonic()
+            try:
+                found = self.detector.look(pixels, self.least)
+            except Exception as error:  # told by answers(), on the caller's thread
+                self._out.put(error)
+                continue
+            done = time.monotonic()
+            self._out.put({"sequence": sequence, "found": found, "latency_s": done - shown, "work_s": done - begun})

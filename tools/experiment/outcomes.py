@@ -1,0 +1,110 @@
+"""`neritic tradeoff experiment`: what speed costs in truth at the level that matters, the outcome. The task `shark` is run
+with one knob turned at a time: time to block and success, over what a run costs by the clock.
+
+Each knob is a scenario of its own in OUT/KNOB, with all of its runs; --resume goes on. OUT gets outcomes.csv, outcomes.json,
+outcomes.png and index.html.
+"""
+import csv
+import html
+import io
+import json
+import os
+
+import intervals
+import report
+import scenario
+from summary import values_of
+
+# (knob, levels from cheap and rough to costly and fine, other settings, what it is)
+LOOKS = ['detector="shipped"', "detector_least=0.6"]
+KNOBS = [
+    ("physics_hz", [60, 120, 240, 480, 960], [], "physics, steps a second"),
+    ("control_hz", [1.0, 2.0, 5.0, 10.0, 20.0, 60.0], [], "the ROV is told its place, times a second"),
+    ("delay_s", [0.0, 0.1, 0.2, 0.5, 1.0], [], "delay of the detector's word, s"),
+    ("navigation", ["truth", "measured"], [], "the ROV flies by"),
+    ("crop_px", [12, 16, 24, 32, 64], LOOKS, "side of the gaze crops, pixels"),
+    ("detector", ["small", "shipped"], LOOKS[1:], "the detector that looks"),
+    ("sonar_quality", ["draft", "standard", "reference"], ['shark_known_by="sonar"'], "quality of the sonar that knows the shark"),
+]
+RUNS = 30
+
+
+def run(kinds, one, asked):
+    """one(plan): the runner of a scenario, as __main__ has it. Returns the summaries."""
+    rows = []
+    for knob, levels, others, words in KNOBS:
+        sets = [f"{knob}={json.dumps(levels)}", *others, *asked.set]
+        plan = scenario.Scenario(scenario.path_of("shark"), kinds, asked.runs or RUNS, asked.seed, sets)
+        plan.title = f"Time to block over {words}"
+        results = one(plan, os.path.join(asked.out, knob))
+        for level in levels:
+            of = [r for r in results if r["condition"].get(knob) == level]
+            times = values_of(of, "time_to_block_s")
+            middle, low, high = intervals.median_interval(times)
+            blocked = sum(1 for r in of if r["measures"].get("blocked_in_3_s"))
+            share, share_low, share_high = intervals.share_interval(blocked, len(of))
+            walls = sorted(r["wall_s"] for r in of)
+            rows.append({"knob": knob, "level": level, "runs": len(of), "time_to_block_s": middle, "time_low_s": low,
+                         "time_high_s": high, "blocked_in_3_s": share, "share_low": share_low, "share_high": share_high,
+                         "wall_s": walls[len(walls) // 2]})
+    _write(rows, asked.out)
+    return rows
+
+
+def _write(rows, out):
+    text = io.StringIO()
+    table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    table.writeheader()
+    table.writerows(rows)
+    report.write_file(os.path.join(out, "outcomes.csv"), text.getvalue())
+    report.write_file(os.path.join(out, "outcomes.json"), json.dumps(rows, indent=2) + "\n")
+    try:
+        import style
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] != "matplotlib":
+            raise
+    else:
+        buffer = io.BytesIO()
+        _figure(rows, style).savefig(buffer, format="png", metadata={"Software": None})
+        report.write_file(os.path.join(out, "outcomes.png"), buffer.getvalue())
+    cells = "".join(
+        f"<tr><td><a href=\"{r['knob']}/report.html\">{r['knob']}</a></td><td>{html.escape(report.number(r['level']))}</td>"
+        f"<td>{report.number(r['time_to_block_s'])} s</td><td>{report.number(r['time_low_s'])} to {report.number(r['time_high_s'])}</td>"
+        f"<td>{100 * r['blocked_in_3_s']:.0f} %</td><td>{r['wall_s']:.2f} s</td><td>{r['runs']}</td></tr>" for r in rows)
+    page = (f"<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>Outcomes</title><style>{report.STYLE}</style>"
+            "<h1>What speed costs in the outcome</h1><p class=\"about\">The task of the shark, one knob turned at a time: median "
+            "time to block of the runs that blocked, with its 95 % interval, the share that blocked within 3 s, and the median "
+            "wall time of a run. The same seeds everywhere.</p><p><img src=\"outcomes.png\" alt=\"Time to block and success over "
+            "each knob\"></p><table><tr><th>knob</th><th>level</th><th>time to block</th><th>95 % interval</th>"
+            f"<th>within 3 s</th><th>a run takes</th><th>runs</th></tr>{cells}</table></html>\n")
+    report.write_file(os.path.join(out, "index.html"), page)
+
+
+def _figure(rows, style):
+    """A row of three panels a pair of knobs: time to block by level; the share within 3 s as the number above; cost below."""
+    names = list(dict.fromkeys(r["knob"] for r in rows))
+    words = {k[0]: k[3] for k in KNOBS}
+    across = 3
+    down = -(-len(names) // across)
+    fig = style.figure(940, 50 + 250 * down)
+    top = max(r["time_high_s"] or r["time_to_block_s"] or 0 for r in rows) * 1.15
+    for i, knob in enumerate(names):
+        of = [r for r in rows if r["knob"] == knob]
+        left, up = 62 + 305 * (i % across), 40 + 250 * (i // across)
+        ax = style.area(fig, left, up, left + 235, up + 160)
+        for k, r in enumerate(of):
+            if r["time_to_block_s"] is not None:
+                if r["time_low_s"] is not None:
+                    ax.plot([k, k], [r["time_low_s"], r["time_high_s"]], color=style.BLUE, lw=1.6)
+                ax.plot(k, r["time_to_block_s"], "o", color=style.BLUE, ms=6, mec=style.INK, mew=0.6)
+            ax.text(k, top * 0.93, f"{100 * r['blocked_in_3_s']:.0f} %", ha="center", size=8)
+        ax.set_ylim(0, top)
+        ax.set_xlim(-0.5, len(of) - 0.5)
+        ax.set_xticks(range(len(of)), [f"{report.number(r['level'])}\n{r['wall_s']:.2g} s" for r in of])
+        ax.set_xlabel("level, and what a run takes by the clock", size=7.5)
+        if i % across == 0:
+            ax.set_ylabel("time to block, s")
+        style.title(ax, words[knob], 8.5)
+    width, height = fig.get_size_inches() * style.DPI
+    fig.text(24 / width, 1 - 18 / height, "Median and 95 % interval of the time to block; above, the share that blocked within 3 s", size=9)
+    return fig
