@@ -33,8 +33,8 @@ import runner
 import scenario
 import summary
 
-KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder, "shark": shark, "detector": detector,
-         "task": task.Task}
+KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder, "shark": shark,
+         "task": task.Task, "detector": detector}
 TRAINED = {"train_camera": ("camera", crops, 3), "train_sonar": ("sonar", sonar_crops, 1)}
 
 

@@ -65,12 +65,14 @@ class Task:
             if not isinstance(at, list) or len(at) != 3:
                 raise Refused(f"{path}: task.places.{name}: found {at!r}; accepted: [east, north, up] in metres")
             self.places[name] = [float(_number(f"{path}: task.places.{name}", v, -4e7, 4e7)) for v in at]
-        self.SETTINGS = {}
+        self.SETTINGS = {"controller": Setting("baseline", "the scenario's own, null (the robot that holds still), or a .py file of yours")}
         for name, table in task.get("settings", {}).items():
             where = f"{path}: task.settings.{name}"
             _check_keys(where, table, ["default", "meaning", "limits", "words"])
             default = table.get("default")
             low, high = table.get("limits", [-1e9, 1e9])
+            if name == "controller":
+                raise Refused(f"{where}: found a setting that every task has; accepted: another name")
             if not isinstance(default, (int, float, str)):
                 raise Refused(f"{where}.default: found {default!r}; accepted: a number, true, false or a word")
             self.SETTINGS[name] = Setting(default, str(table.get("meaning", "")), low, high, table.get("words"))
@@ -122,7 +124,8 @@ class Task:
         if missing:
             raise Failed(f"{self.scene}: found no participant {missing[0]}; accepted: {', '.join(world.agents)}")
         player = _controller(self.player, "Player")(world, settings, seed) if self.player else None
-        controller = _controller(self.controller)(world, settings, seed)
+        path = {"baseline": self.controller, "null": None}.get(settings["controller"], settings["controller"])
+        controller = _controller(path)(world, settings, seed) if path else Null(world, settings, seed)
         fixed = {k: np.array(v) for k, v in self.places.items()}
         every = max(1, round(1.0 / (self.control_hz * world.step_s)))
         rows = {m["name"]: [] for m in self.measures}
@@ -191,7 +194,19 @@ class Task:
         yield "task.png", "The measures of each run over time", fig
 
 
+class Null:
+    """The null robot: it holds where it starts, by the scene's own mission, and tells nothing."""
+
+    def __init__(self, world, settings, seed):
+        pass
+
+    def act(self, observations, stage):
+        return {}
+
+
 def _controller(path, name="Controller"):
+    if not os.path.isfile(path):
+        raise Failed(f"{path}: found no such file; accepted: baseline, null, or a controller's .py")
     spec = importlib.util.spec_from_file_location("neritic_controller", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

@@ -16,7 +16,7 @@ from runner import Tools
 from scenario import Failed
 
 EACH = 20  # crops of a class and a scene
-PASSES, BATCH, THREADS = 30, 64, 2
+PASSES, BATCH, THREADS = 18, 64, 2
 
 
 def _scene(maker, program, seed, each):
@@ -41,7 +41,7 @@ def gather(maker, program, scenes, seed, workers, told):
 
 
 def network(torch, channels, classes):
-    """Five convolutions, then the mean and the largest of each map: 46 000 weights."""
+    """Four convolutions, then the mean of each map: 47 000 weights."""
     nn = torch.nn
 
     def block(a, b, stride):
@@ -50,9 +50,9 @@ def network(torch, channels, classes):
     class Net(nn.Module):
         def __init__(self):
             super().__init__()
-            self.maps = nn.Sequential(*block(channels, 16, 2), *block(16, 24, 1), nn.MaxPool2d(2), *block(24, 32, 1),
-                                      *block(32, 48, 2), *block(48, 48, 1))
-            self.last = nn.Linear(48, classes)
+            self.maps = nn.Sequential(*block(channels, 16, 2), nn.MaxPool2d(2), *block(16, 32, 1), *block(32, 48, 2),
+                                      *block(48, 64, 1))
+            self.last = nn.Linear(64, classes)
             self.mean = nn.AvgPool2d(8)
 
         def forward(self, x):
@@ -81,7 +81,8 @@ def train(name, maker, classes, channels, program, scenes, seed, workers, out, q
     if not quiet:
         print(f"{len(y)} crops to learn from, {len(yv)} to choose by: {np.bincount(y, minlength=len(classes)).tolist()}", flush=True)
     x, y, xv, yv = torch.tensor(_blobs(x)), torch.tensor(y), torch.tensor(_blobs(xv)), torch.tensor(yv)
-    net = network(torch, channels, len(classes))
+    x, xv = (t.to(memory_format=torch.channels_last) for t in (x, xv))  # four times as fast
+    net = network(torch, channels, len(classes)).to(memory_format=torch.channels_last)
     steps = PASSES * (len(y) // BATCH)
     optimiser = torch.optim.AdamW(net.parameters(), lr=3e-3, weight_decay=2e-2)
     rate = torch.optim.lr_scheduler.OneCycleLR(optimiser, max_lr=6e-3, total_steps=steps)
@@ -101,7 +102,7 @@ def train(name, maker, classes, channels, program, scenes, seed, workers, out, q
         share = float((_logits(torch, net, xv).argmax(1) == yv).float().mean())
         if share >= best:
             best, best_state = share, {k: v.clone() for k, v in net.state_dict().items()}
-        if not quiet and (turn + 1) % 5 == 0:
+        if not quiet and (turn + 1) % 3 == 0:
             print(f"pass {turn + 1} of {PASSES}: {100 * share:.1f} % of the crops kept aside", flush=True)
     net.load_state_dict(best_state)
     temperature = _temperature(torch, _logits(torch, net, xv), yv)
@@ -135,7 +136,7 @@ def _temperature(torch, logits, y):
 def _export(torch, model, name, channels, classes, seed, scenes, share, out):
     os.makedirs(out, exist_ok=True)
     path = os.path.join(out, name + ".onnx")
-    torch.onnx.export(model, torch.zeros(1, channels, 64, 64), path + ".tmp", opset_version=11,
+    torch.onnx.export(model.to(memory_format=torch.contiguous_format), torch.zeros(1, channels, 64, 64), path + ".tmp", opset_version=11,
                       input_names=["crop"], output_names=["shares"])
     about = {"kind": "classifier", "classes": classes, "side": 64, "channels": channels, "normalise": "crop",
              "made_by": f"neritic experiment train_{name} --runs {scenes} --seed {seed}",

@@ -397,7 +397,8 @@ void add_tradeoff(CLI::App& app, Run& run) {
       "tradeoff", "measures the error of a model against its cost, over all of its settings");
   command
       ->add_option("what", flags->what,
-                   "sonar, physics, navigation, swim, deco, physiology, modem, network or xr")
+                   "sonar, physics, navigation, swim, deco, physiology, modem, network, xr or "
+                   "experiment (time to block and success of the task `shark`)")
       ->required();
   command
       ->add_option("--out", flags->out,
@@ -621,6 +622,25 @@ void add_experiment(CLI::App& app, CommandLine& line) {
   command->callback([flags, &line] {
     flags->quiet = line.quiet;
     line.run = [flags] { return nothing_to_say(run_experiment(*flags)); };
+  });
+}
+
+void add_study(CLI::App& app, CommandLine& line) {
+  CLI::App* command = app.add_subcommand(
+      "study", "runs a study with people: consent, blocks in balanced order, questionnaires");
+  command->prefix_command();
+  command->footer(
+      "neritic study begin FOLDER --plan FILE.toml   a new study\n"
+      "neritic study enrol FOLDER                    consent; gives a pseudonym and an order\n"
+      "neritic study run FOLDER P01                  the blocks that P01 has yet to do\n"
+      "neritic study ask FOLDER P01 nasa_tlx         one questionnaire (nasa_tlx, ssq, presence, "
+      "trust)\n"
+      "neritic study mark FOLDER P01 TEXT            a marker at this moment\n"
+      "neritic study withdraw FOLDER P01             erases what P01 left, and nothing else\n"
+      "neritic study table FOLDER                    all answers and scores, by pseudonym\n"
+      "tools/experiment/STUDIES.md says the rest");
+  command->callback([command, &line] {
+    line.run = [words = command->remaining()] { return nothing_to_say(run_study(words)); };
   });
 }
 
@@ -852,6 +872,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_physio(app, line.run);
   add_register(app, line.run);
   add_experiment(app, line);
+  add_study(app, line);
   add_recording(app, line.run);
   add_hud(app, line.run);
   add_simulate(app, line);

@@ -168,6 +168,8 @@ struct ExperimentFlags {
 };
 // Becomes the Python module tools/experiment: returns only if that cannot be started.
 Status run_experiment(const ExperimentFlags& flags);
+// words: of `neritic study`, which tools/experiment/study reads.
+Status run_study(const std::vector<std::string>& words);
 
 // what: info, check, repair or export; out: of repair a file, of export a folder.
 struct RecordingFlags {

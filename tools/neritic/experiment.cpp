@@ -1,5 +1,5 @@
-// `neritic experiment NAME`: becomes the Python module tools/experiment, which runs scenarios and
-// reports them. Ctrl-C goes straight to it.
+// `neritic experiment NAME` and `neritic study`: become the Python module tools/experiment, which
+// runs scenarios and studies and reports them. Ctrl-C goes straight to it.
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,21 +11,41 @@
 
 namespace neritic::tools {
 
-Status run_experiment(const ExperimentFlags& flags) {
-  const std::filesystem::path module = find_python_module("experiment");
+namespace {
+
+// Becomes Python with these words after the module's path; returns only if that cannot be.
+Status become(const char* what, const std::filesystem::path& module,
+              std::vector<std::string> words) {
+  words.insert(words.begin(), {"", "-B", module.string()});
+  for (const char* python : kPythons) {
+    words.front() = python;
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    ::execvp(python, argv.data());
+  }
+  return failure(ErrorCode::kIo, "{}: no Python here: {}", what, std::strerror(errno));
+}
+
+Result<std::filesystem::path> module_of(const char* what) {
+  std::filesystem::path module = find_python_module("experiment");
   if (module.empty())
-    return failure(
-        ErrorCode::kIo,
-        "experiment: no tools/experiment or share/neritic/experiment above the program's folder");
+    return failure(ErrorCode::kIo,
+                   "{}: no tools/experiment or share/neritic/experiment above the program's folder",
+                   what);
+  return module;
+}
+
+std::string this_program() {
   std::error_code none;
-  std::vector<std::string> words{"",
-                                 "-B",
-                                 module.string(),
-                                 flags.name,
-                                 "--out",
-                                 flags.out,
-                                 "--program",
-                                 std::filesystem::read_symlink("/proc/self/exe", none).string()};
+  return std::filesystem::read_symlink("/proc/self/exe", none).string();
+}
+
+}  // namespace
+
+Status run_experiment(const ExperimentFlags& flags) {
+  NERITIC_TRY(const std::filesystem::path module, module_of("experiment"));
+  std::vector<std::string> words{flags.name, "--out", flags.out, "--program", this_program()};
   const auto add = [&](const char* flag, const auto& value) {
     if (value) words.insert(words.end(), {flag, std::to_string(*value)});
   };
@@ -36,14 +56,14 @@ Status run_experiment(const ExperimentFlags& flags) {
   if (flags.resume) words.push_back("--resume");
   if (flags.json) words.push_back("--json");
   if (flags.quiet) words.push_back("--quiet");
-  for (const char* python : kPythons) {
-    words.front() = python;
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    ::execvp(python, argv.data());
-  }
-  return failure(ErrorCode::kIo, "experiment: no Python here: {}", std::strerror(errno));
+  return become("experiment", module, std::move(words));
+}
+
+Status run_study(const std::vector<std::string>& words) {
+  NERITIC_TRY(const std::filesystem::path module, module_of("study"));
+  std::vector<std::string> all{"--program", this_program()};
+  all.insert(all.end(), words.begin(), words.end());
+  return become("study", module / "study.py", std::move(all));
 }
 
 }  // namespace neritic::tools

@@ -128,6 +128,18 @@ Result<std::string> trade_network(const TradeoffFlags& flags) {
   return files(flags, "network", drawn);
 }
 
+// Becomes the module tools/experiment, which says what it wrote.
+Result<std::string> trade_experiment(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return refusal("tradeoff experiment", fmt::format("kind '{}'", flags.kind), "none");
+  ExperimentFlags experiment;
+  experiment.name = "tradeoff";
+  experiment.out = flags.out.string();
+  if (flags.quick) experiment.runs = 6;
+  NERITIC_TRY_STATUS(run_experiment(experiment));
+  return std::string();
+}
+
 Result<std::string> trade_sonar(const TradeoffFlags& flags) {
   SonarTradeoffOptions options;
   options.scene = flags.scene == "none" ? "" : flags.scene;
@@ -189,8 +201,10 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "modem") return trade_modem(flags);
   if (flags.what == "xr") return trade_xr(flags);
   if (flags.what == "network") return trade_network(flags);
+  if (flags.what == "experiment") return trade_experiment(flags);
   return refusal("tradeoff", fmt::format("'{}'", flags.what),
-                 "sonar, physics, navigation, swim, deco, physiology, modem, network or xr");
+                 "sonar, physics, navigation, swim, deco, physiology, modem, network, xr or "
+                 "experiment");
 }
 
 }  // namespace neritic::tools

@@ -1,0 +1,312 @@
+"""`neritic study`: a study with people, from consent to withdrawal. STUDIES.md has the plan's format and the files.
+
+What a participant leaves is under FOLDER/participants/PNN and nowhere else: study.json names blocks, orders and pseudonyms
+that were given, never a person. Exit status: 0 done, 1 could not, 2 bad input, 130 interrupted (what is answered is kept).
+"""
+import argparse
+import csv
+import io
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+import tomllib
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+
+import questionnaires
+from report import write_file
+from scenario import Failed, Refused, _check_keys
+
+WORDS = ("begin", "enrol", "run", "ask", "mark", "withdraw", "table", "wizard")
+
+
+def read_plan(path):
+    try:
+        with open(path, "rb") as file:
+            plan = tomllib.load(file)
+    except OSError as error:
+        raise Refused(f"{path}: found a file that cannot be read ({error.strerror}); accepted: a study's plan in TOML") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise Refused(f"{path}: found no TOML: {error}") from None
+    _check_keys(path, plan, ["study", "blocks"])
+    study = plan.get("study", {})
+    _check_keys(f"{path}: study", study, ["title", "consent", "before", "after_block", "after", "practice", "seed"])
+    for key in ("title", "consent"):
+        if not isinstance(study.get(key), str) or not study[key].strip():
+            raise Refused(f"{path}: study.{key}: found {study.get(key)!r}; accepted: text")
+    for key in ("before", "after_block", "after"):
+        for name in study.get(key, []):
+            if name not in questionnaires.FORMS:
+                raise Refused(f"{path}: study.{key}: found {name!r}; accepted: {', '.join(questionnaires.FORMS)}")
+    blocks = plan.get("blocks", [])
+    if not isinstance(blocks, list) or not 1 <= len(blocks) <= 20:
+        raise Refused(f"{path}: blocks: found {len(blocks) if isinstance(blocks, list) else blocks!r}; accepted: 1 to 20")
+    names = []
+    for i, block in enumerate(blocks):
+        _check_keys(f"{path}: blocks[{i}]", block, ["name", "about", "command", "wizard"])
+        if not isinstance(block.get("name"), str) or not block["name"].replace("_", "").isalnum() or block["name"] in names:
+            raise Refused(f"{path}: blocks[{i}].name: found {block.get('name')!r}; accepted: a new word of letters, digits, _")
+        if not isinstance(block.get("command", []), list) or not all(isinstance(w, str) for w in block.get("command", [])):
+            raise Refused(f"{path}: blocks[{i}].command: found {block['command']!r}; accepted: a list of words for neritic")
+        names.append(block["name"])
+    return plan
+
+
+class Study:
+    def __init__(self, folder):
+        self.folder, path = folder, os.path.join(folder, "study.json")
+        try:
+            with open(path, encoding="utf-8") as file:
+                self.data = json.load(file)
+        except OSError:
+            raise Refused(f"{folder}: found no study; accepted: a folder that `neritic study begin` made") from None
+        except ValueError:
+            raise Refused(f"{path}: found no JSON; accepted: a file that `neritic study` wrote") from None
+        self.plan = self.data["plan"]
+        self.names = [b["name"] for b in self.plan["blocks"]]
+
+    def save(self):
+        write_file(os.path.join(self.folder, "study.json"), json.dumps(self.data, indent=2) + "\n")
+
+    def place(self, who):
+        known = self.data["participants"]
+        if who not in known:
+            raise Refused(f"{self.folder}: found no participant {who}; accepted: {', '.join(known) or 'none yet: enrol'}")
+        if known[who]["withdrawn"]:
+            raise Refused(f"{self.folder}: found {who}, who has withdrawn; accepted: one who takes part")
+        return os.path.join(self.folder, "participants", who)
+
+
+def now():
+    return {"unix_ns": time.time_ns(), "monotonic_ns": time.monotonic_ns()}
+
+
+def note(place, **what):
+    """A marker: one line, on the disk before the next thing happens. recordings' clock is the host's monotonic one."""
+    with open(os.path.join(place, "markers.jsonl"), "a", encoding="utf-8") as file:
+        file.write(json.dumps({**now(), **what}) + "\n")
+        file.flush()
+        os.fsync(file.fileno())
+
+
+class Screen:
+    """The terminal; or a file of answers, one a line, for rehearsals."""
+
+    def __init__(self, answers):
+        self.lines = None
+        if answers:
+            try:
+                with open(answers, encoding="utf-8") as file:
+                    self.lines = iter(file.read().splitlines())
+            except OSError as error:
+                raise Refused(f"{answers}: found a file that cannot be read ({error.strerror}); accepted: answers, one a line") from None
+
+    def say(self, text):
+        print(text, flush=True)
+
+    def ask(self, text):
+        print(text, end=" ", flush=True)
+        try:
+            answer = next(self.lines) if self.lines is not None else input()
+        except (EOFError, StopIteration):
+            raise Failed("study: no more answers; what was answered is kept") from None
+        if self.lines is not None:
+            print(answer)
+        return answer.strip()
+
+
+def questionnaire(study, who, name, when, screen):
+    """Asks what is not yet answered: a questionnaire that was interrupted goes on where it stopped."""
+    place = study.place(who)
+    path = os.path.join(place, f"{when}_{name}.json")
+    title, items, low, high, _, ends, score = questionnaires.FORMS[name]
+    given = {"questionnaire": name, "when": when, "answers": []}
+    if os.path.exists(path):
+        with open(path, encoding="utf-8") as file:
+            given = json.load(file)
+    if len(given["answers"]) == len(items):
+        return given
+    screen.say(f"\n{title}: {len(items)} questions, {ends}.")
+    note(place, marker=f"questionnaire {name} begins", when=when)
+    for i in range(len(given["answers"]), len(items)):
+        while True:
+            value, wrong = questionnaires.check(name, i, screen.ask(f"  {i + 1}/{len(items)} {items[i]} [{low}-{high}]:"))
+            if wrong is None:
+                break
+            screen.say(f"    {wrong}")
+        given["answers"].append(value)
+        if len(given["answers"]) == len(items):
+            given["scores"] = score(given["answers"])
+        write_file(path, json.dumps(given, indent=2) + "\n")
+    note(place, marker=f"questionnaire {name} ends", when=when)
+    return given
+
+
+def begin(asked):
+    plan = read_plan(asked.plan or "")
+    if os.path.exists(os.path.join(asked.folder, "study.json")):
+        raise Refused(f"{asked.folder}: found a study; accepted: a new folder")
+    try:
+        os.makedirs(os.path.join(asked.folder, "participants"), exist_ok=True)
+    except OSError as error:
+        raise Failed(f"{asked.folder}: cannot be made: {error.strerror}") from None
+    orders = questionnaires.latin_square(len(plan["blocks"]))
+    write_file(os.path.join(asked.folder, "study.json"),
+               json.dumps({"format": 1, "plan": plan, "orders": orders, "participants": {}}, indent=2) + "\n")
+    print(f"{asked.folder}: {len(plan['blocks'])} blocks in {len(orders)} orders; balanced after every {len(orders)} participants")
+
+
+def enrol(asked, screen):
+    study = Study(asked.folder)
+    screen.say(study.plan["study"]["consent"].strip())
+    if screen.ask("Do you consent? Type yes:").lower() != "yes":
+        screen.say("No consent: nothing is kept.")
+        return
+    known = study.data["participants"]
+    who = f"P{len(known) + 1:02d}"
+    # The order that fewest who take part have: those who withdraw leave their place in the balance to the next.
+    used = [p["order"] for p in known.values() if not p["withdrawn"]]
+    order = min(range(len(study.data["orders"])), key=lambda i: (used.count(i), i))
+    place = os.path.join(asked.folder, "participants", who)
+    os.makedirs(place, exist_ok=True)
+    note(place, marker="consent given")
+    known[who] = {"order": order, "withdrawn": False}
+    study.save()
+    screen.say(f"You are {who}. Blocks: {', '.join(study.names[i] for i in study.data['orders'][order])}")
+
+
+def run(asked, screen):
+    study = Study(asked.folder)
+    who, place = asked.who, study.place(asked.who)
+    head = study.plan["study"]
+    for name in head.get("before", []):
+        questionnaire(study, who, name, "before", screen)
+    order = study.data["orders"][study.data["participants"][who]["order"]]
+    for turn, index in enumerate(order, 1):
+        block = study.plan["blocks"][index]
+        done = os.path.join(place, f"{block['name']}.done")
+        if not os.path.exists(done):
+            screen.say(f"\nBlock {turn} of {len(order)}: {block.get('about', block['name'])}")
+            screen.ask("Press Enter to begin.")
+            _block(asked, place, block, turn)
+            write_file(done, "")
+        for name in head.get("after_block", []):
+            questionnaire(study, who, name, block["name"], screen)
+    for name in head.get("after", []):
+        questionnaire(study, who, name, "after", screen)
+    screen.say(f"\n{who} has done all blocks. Thank you.")
+
+
+def _block(asked, place, block, turn):
+    """The block's program; {record} becomes a file of the participant's folder, numbered so that no try replaces another."""
+    tries = 1
+    while os.path.exists(os.path.join(place, f"{block['name']}_{tries}.mcap")) or \
+            os.path.exists(os.path.join(place, f"{block['name']}_{tries}")):
+        tries += 1
+    record = os.path.join(place, f"{block['name']}_{tries}")
+    words = [w.replace("{record}", record).replace("{folder}", place) for w in block.get("command", [])]
+    note(place, marker="block begins", block=block["name"], turn=turn, attempt=tries)
+    status = subprocess.run([asked.program, *words]).returncode if words else 0
+    note(place, marker="block ends", block=block["name"], turn=turn, attempt=tries, status=status)
+    if status != 0:
+        raise Failed(f"study: block {block['name']} ended with status {status}; `neritic study run` begins it anew")
+
+
+def withdraw(asked, screen):
+    study = Study(asked.folder)
+    place = study.place(asked.who)
+    if not asked.yes and screen.ask(f"This erases all that {asked.who} left, for good. Type {asked.who} to do it:") != asked.who:
+        screen.say("Nothing is erased.")
+        return
+    # First the word that they have withdrawn, then the data: a cut in between leaves nobody's data in a table.
+    study.data["participants"][asked.who]["withdrawn"] = True
+    study.save()
+    shutil.rmtree(place)
+    if os.path.exists(os.path.join(asked.folder, "scores.csv")):
+        write_file(os.path.join(asked.folder, "scores.csv"), scores(study))
+    screen.say(f"{asked.who} is erased. The pseudonym is not given again; the others' data stay as they are.")
+
+
+def scores(study):
+    """CSV: a row a participant and block (before and after are blocks too), the scores side by side."""
+    rows, columns = [], ["participant", "block", "turn"]
+    for who, about in study.data["participants"].items():
+        if about["withdrawn"]:
+            continue
+        place = os.path.join(study.folder, "participants", who)
+        order = [study.names[i] for i in study.data["orders"][about["order"]]]
+        for when in ["before", *order, "after"]:
+            row = {"participant": who, "block": when, "turn": order.index(when) + 1 if when in order else ""}
+            for name in questionnaires.FORMS:
+                path = os.path.join(place, f"{when}_{name}.json")
+                if os.path.exists(path):
+                    with open(path, encoding="utf-8") as file:
+                        row |= {k: round(v, 4) for k, v in json.load(file).get("scores", {}).items()}
+            if len(row) > 3:
+                rows.append(row)
+                columns += [c for c in row if c not in columns]
+    text = io.StringIO()
+    out = csv.DictWriter(text, columns, lineterminator="\n")
+    out.writeheader()
+    out.writerows(rows)
+    return text.getvalue()
+
+
+def table(asked):
+    text = scores(Study(asked.folder))
+    write_file(os.path.join(asked.folder, "scores.csv"), text)
+    print(text, end="")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="neritic study", description=__doc__.splitlines()[0])
+    parser.add_argument("--program", required=True, help=argparse.SUPPRESS)
+    parser.add_argument("what", choices=WORDS)
+    parser.add_argument("folder")
+    parser.add_argument("who", nargs="?")
+    parser.add_argument("text", nargs="?")
+    parser.add_argument("--plan")
+    parser.add_argument("--answers", help="a file of answers, one a line, in place of the keyboard: for rehearsals")
+    parser.add_argument("--yes", action="store_true")
+    asked = parser.parse_args()
+    try:
+        screen = Screen(asked.answers)
+        if asked.what in ("run", "ask", "mark", "withdraw", "wizard") and not asked.who:
+            raise Refused(f"study {asked.what}: found no participant; accepted: one's pseudonym, as P01")
+        if asked.what == "begin":
+            begin(asked)
+        elif asked.what == "enrol":
+            enrol(asked, screen)
+        elif asked.what == "run":
+            run(asked, screen)
+        elif asked.what == "ask":
+            if asked.text not in questionnaires.FORMS:
+                raise Refused(f"study ask: found {asked.text!r}; accepted: {', '.join(questionnaires.FORMS)}")
+            questionnaire(Study(asked.folder), asked.who, asked.text, time.strftime("asked_%Y%m%d_%H%M%S"), screen)
+        elif asked.what == "mark":
+            note(Study(asked.folder).place(asked.who), marker=asked.text or "mark")
+        elif asked.what == "withdraw":
+            withdraw(asked, screen)
+        elif asked.what == "wizard":
+            import wizard
+            wizard.run(asked, Study(asked.folder).place(asked.who), lambda **w: note(Study(asked.folder).place(asked.who), **w))
+        else:
+            table(asked)
+        return 0
+    except Refused as error:
+        print(f"neritic: {error}", file=sys.stderr)
+        return 2
+    except (Failed, OSError) as error:
+        print(f"neritic: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("\nneritic: study: interrupted; what is answered is kept, the same command goes on", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())
