@@ -67,6 +67,17 @@ def power_of(values, runs, ratio=1.1):
     return normal_share(abs(mean * (ratio - 1)) / math.sqrt(2 * variance / runs) - Z95)
 
 
+def power_by_draws(values, runs, ratio=1.1, draws=2000):
+    """The same without the normal approximation: groups of so many runs are drawn from the values, one of them longer by the
+    ratio, and Welch's test (1947) is made on each pair; from 20 runs on its limit is near the normal one. Counter-based draws."""
+    import numpy as np
+    rng = np.random.Generator(np.random.Philox(key=runs))
+    have = np.asarray(values, float)
+    a, b = (have[rng.integers(0, len(have), (draws, runs))] * r for r in (1.0, ratio))
+    spread = np.sqrt(a.var(axis=1, ddof=1) / runs + b.var(axis=1, ddof=1) / runs)
+    return float((np.abs(b.mean(axis=1) - a.mean(axis=1)) > Z95 * spread).mean())
+
+
 def normal_share(z):
     """P(Z <= z) of the standard normal distribution."""
     return 0.5 * (1 + math.erf(z / math.sqrt(2)))

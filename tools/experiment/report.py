@@ -94,13 +94,15 @@ def _condition_table(scenario, condition):
     return f"<h3>{html.escape(words(condition['condition']))}</h3>{failures}<table>{''.join(rows)}</table>"
 
 
-def page(scenario, summary, pictures):
+def page(scenario, summary, pictures, results=()):
     parts = [f"<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>{html.escape(scenario.title)}</title>"
              f"<style>{STYLE}</style><h1>{html.escape(scenario.title)}</h1>",
              f"<p class=\"about\">{html.escape(scenario.about)}</p>",
              f"<p>{summary['runs']} runs with seeds from {summary['seed']} on; {summary['failed']} failed. "
              "Medians with intervals by order statistics, shares with Wilson's.</p>",
              _criteria_rows(summary)]
+    if hasattr(scenario.kind, "notes"):
+        parts += [f"<p>{html.escape(line)}</p>" for line in scenario.kind.notes(results)]
     parts += [f"<p><img src=\"{name}\" alt=\"{html.escape(alt)}\"></p>" for name, alt in pictures]
     parts += [_condition_table(scenario, c) for c in summary["conditions"]]
     meanings = "".join(f"<tr><td>{k}</td><td style=\"text-align:left\">{html.escape(v[1])}</td></tr>"
@@ -127,7 +129,7 @@ def write(scenario, results, summary, out):
         if (error.name or "").split(".")[0] != "matplotlib":
             raise
         note = "figures are not drawn: no matplotlib here; tools/setup plots installs it"
-    write_file(os.path.join(out, "report.html"), page(scenario, summary, pictures))
+    write_file(os.path.join(out, "report.html"), page(scenario, summary, pictures, results))
     return note
 
 

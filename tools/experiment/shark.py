@@ -51,6 +51,7 @@ MEASURES = {
     "wrong_words": ("", "how often it named something else before"),
     "look_ms": ("ms", "median of its answers on a thread of its own; by the clock, so it differs from run to run"),
 }
+LINES = ("-", "--", ":", "-.", (0, (1, 1)), (0, (5, 1)))  # of conditions, told apart in grey too
 BESIDE_M, HELD_S, LEAST, MOST = 0.35, 1.0, 0.1, 0.9
 SCENE = """title = "A shark, a diver, an ROV"
 seed = {seed}
@@ -208,6 +209,36 @@ def _in_sight(truth, shark):
                 and abs(math.atan2(up, math.hypot(ahead, left))) <= math.radians(14))
 
 
+def _paired(results):
+    """(mean time, deviation of the differences by seed) of the first two conditions; None where there are not two."""
+    import summary
+    groups = [{r["seed"]: r["measures"]["time_to_block_s"] for r in group if "time_to_block_s" in r["measures"]}
+              for _, group in summary.by_condition(results)[:2]]
+    seeds = sorted(set(groups[0]) & set(groups[1])) if len(groups) == 2 else []
+    if len(seeds) < 6:
+        return None
+    return float(np.mean(list(groups[0].values()))), float(np.std([groups[1][k] - groups[0][k] for k in seeds], ddof=1))
+
+
+def notes(results):
+    """Lines for the report."""
+    import intervals
+    import summary
+    for condition, group in summary.by_condition(results):
+        times = summary.values_of(group, "time_to_block_s")
+        runs = intervals.runs_to_tell(times) if len(times) >= 6 else None
+        if runs:
+            name = ", ".join(f"{k} {v}" for k, v in condition.items()) or "all runs"
+            yield (f"{name}: {runs} runs a group tell a time to block that is 10 % longer, with a power of 80 % at 5 % (two-sided, "
+                   f"unpaired); by drawing groups of {max(runs, 20)} from these runs the power is "
+                   f"{100 * intervals.power_by_draws(times, max(runs, 20)):.0f} %.")
+    spread = _paired(results)
+    if spread is not None:
+        pairs = math.ceil(((intervals.Z95 + intervals.normal_quantile(0.8)) * spread[1] / (0.1 * spread[0])) ** 2)
+        yield (f"With the same seeds in both conditions, by the spread of the differences between the first two, {max(2, pairs)} "
+               "pairs tell it: compare conditions by factors, not by two experiments.")
+
+
 def figures(scenario, results, style):
     done = [r for r in results if r["series"]]
     if not done:
@@ -219,7 +250,7 @@ def figures(scenario, results, style):
     top = style.area(fig, 70, 60, 870, 320)
     for i, (name, runs) in enumerate(list(groups.items())[:6]):
         for k, r in enumerate(runs[:30]):
-            top.plot(r["series"]["t"], r["series"]["beside"], color=style.color(i), lw=0.8, alpha=0.6,
+            top.plot(r["series"]["t"], r["series"]["beside"], color=style.color(i), lw=0.8, alpha=0.6, ls=LINES[i],
                      label=name if k == 0 else None)
     top.axhline(BESIDE_M, color=style.INK, lw=0.9, ls="--")
     top.set_xlabel("time since the gaze met the shark, s")
@@ -231,7 +262,7 @@ def figures(scenario, results, style):
         times = sorted(r["measures"]["time_to_block_s"] for r in runs if "time_to_block_s" in r["measures"])
         if times:
             left.step([0, *times], np.arange(len(times) + 1) / len(runs), where="post", color=style.color(i), lw=1.4,
-                      ls=("-", "--", ":", "-.", (0, (1, 1)), (0, (5, 1)))[i])
+                      ls=LINES[i])
     left.set_xlim(0, None)
     left.set_ylim(0, 1.03)
     left.set_xlabel("time to block, s")
@@ -241,10 +272,22 @@ def figures(scenario, results, style):
     for i, (name, runs) in enumerate(list(groups.items())[:6]):
         times = [r["measures"]["time_to_block_s"] for r in runs if "time_to_block_s" in r["measures"]]
         if len(times) >= 6:
-            n = np.arange(2, 101)
-            right.plot(n, [intervals.power_of(times, int(k)) for k in n], color=style.color(i), lw=1.4)
+            n = np.unique(np.geomspace(2, 2000, 120).astype(int))
+            right.plot(n, [intervals.power_of(times, int(k)) for k in n], color=style.color(i), lw=1.4, ls=LINES[i])
+            drawn = [20, 60, 200, 600, 2000]
+            right.plot(drawn, [intervals.power_by_draws(times, k) for k in drawn], "o", color=style.color(i), ms=4.5,
+                       mec=style.INK, mew=0.5)
+    spread = _paired(results)
+    if spread is not None:
+        mean, deviation = spread
+        n = np.unique(np.geomspace(2, 2000, 120).astype(int))
+        right.plot(n, [intervals.normal_share(0.1 * mean * math.sqrt(k) / max(deviation, 1e-12) - intervals.Z95) for k in n],
+                   color=style.INK, lw=1.2, ls=":")
+        right.text(0.35, 0.06, "dotted: the same seeds in both groups", transform=right.transAxes, size=7.5)
+    right.set_xscale("log")
+    style.plain_log(right.xaxis)
     right.axhline(0.8, color=style.INK, lw=0.9, ls="--")
     right.set_ylim(0, 1.03)
     right.set_xlabel("runs a group")
-    style.title(right, "Power to tell a 10 % difference")
+    style.title(right, "Power to tell 10 % more time to block (dots: by draws)", 8.5)
     yield "shark.png", "The ROV's distance from the line over time, times to block, and the power of so many runs", fig
