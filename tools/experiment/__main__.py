@@ -35,7 +35,9 @@ import summary
 
 KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder, "shark": shark,
          "task": task.Task, "detector": detector}
-TRAINED = {"train_camera": ("camera", crops, 3), "train_sonar": ("sonar", sonar_crops, 1)}
+# name: the file's name, where crops come from, their channels, the network's width
+TRAINED = {"train_camera": ("camera", crops, 3, 16), "train_camera_small": ("camera_small", crops, 3, 8),
+           "train_sonar": ("sonar", sonar_crops, 1, 16)}
 
 
 def one(path, asked, out):
@@ -63,9 +65,9 @@ def do(plan, asked, out):
 
 
 def train(asked):
-    name, maker, channels = TRAINED[asked.name]
+    name, maker, channels, width = TRAINED[asked.name]
     folder(asked.out)
-    share = training.train(name, maker.Maker, maker.CLASSES, channels, asked.program, asked.runs, asked.seed or 1, asked.workers,
+    share = training.train(name, maker.Maker, maker.CLASSES, channels, width, asked.program, asked.runs, asked.seed or 1, asked.workers,
                            asked.out, asked.quiet)
     if not asked.quiet:
         print(f"{asked.out}/{name}.onnx: {100 * share:.1f} % of the crops kept aside")

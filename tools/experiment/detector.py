@@ -15,7 +15,7 @@ from scenario import SHIPPED, Failed, Setting
 MAKERS = {"camera": crops, "sonar": sonar_crops}
 SETTINGS = {
     "eye": Setting("camera", "pictures of a camera or of an imaging sonar", words=list(MAKERS)),
-    "model": Setting("shipped", "an .onnx file with its .json beside it, in place of the shipped one"),
+    "model": Setting("shipped", "shipped, small (a quarter of its weights), or an .onnx file with its .json beside it"),
     "crops": Setting(12, "of each class and scene", 1, 1000, whole=True),
 }
 MEASURES = {
@@ -28,7 +28,8 @@ DETECTORS = os.path.join(SHIPPED, "..", "detectors")
 
 
 def model_of(name, eye="camera"):
-    return os.path.join(DETECTORS, eye + ".onnx") if name == "shipped" else name
+    """The file of "shipped", of "small" (a quarter of the weights), or the user's own."""
+    return os.path.join(DETECTORS, {"shipped": eye, "small": eye + "_small"}[name] + ".onnx") if name in ("shipped", "small") else name
 
 
 def run(settings, seed, tools):

@@ -45,7 +45,8 @@ def share_interval(successes, n):
 
 def runs_to_tell(values, ratio=1.1, power=0.8):
     """Runs a group that tell a change of the mean by this ratio apart at 5 % (two-sided), with this power: the normal
-    approximation for two groups of the spread that these values have. None where they do not spread or are too few."""
+    approximation for two groups, one of the spread that these values have, the other longer and wider by the ratio. None
+    where they do not spread or are too few."""
     n = len(values)
     if n < 2:
         return None
@@ -54,7 +55,7 @@ def runs_to_tell(values, ratio=1.1, power=0.8):
     difference = abs(mean * (ratio - 1))
     if difference == 0:
         return None
-    return max(2, math.ceil(2 * variance * (Z95 + normal_quantile(power)) ** 2 / difference ** 2))
+    return max(2, math.ceil((1 + ratio ** 2) * variance * (Z95 + normal_quantile(power)) ** 2 / difference ** 2))
 
 
 def power_of(values, runs, ratio=1.1):
@@ -64,7 +65,7 @@ def power_of(values, runs, ratio=1.1):
     variance = sum((v - mean) ** 2 for v in values) / (n - 1)
     if variance == 0:
         return 1.0
-    return normal_share(abs(mean * (ratio - 1)) / math.sqrt(2 * variance / runs) - Z95)
+    return normal_share(abs(mean * (ratio - 1)) / math.sqrt((1 + ratio ** 2) * variance / runs) - Z95)
 
 
 def power_by_draws(values, runs, ratio=1.1, draws=2000):

@@ -1,0 +1,132 @@
+"""The parts of tools/experiment that need no program: boxes of detectors, orders, scores, intervals, power. Exit 77: skipped."""
+import math
+import os
+import sys
+import tempfile
+import unittest
+
+try:
+    import numpy as np
+except ModuleNotFoundError:
+    sys.exit(77)
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(HERE, "..", "..", "tools", "experiment"))
+
+import crops
+import detector
+import intervals
+import looking
+import questionnaires
+from scenario import Failed, Refused
+
+try:
+    import cv2
+except ModuleNotFoundError:
+    cv2 = None
+
+
+class Boxes(unittest.TestCase):
+    """One thing of class 1 with its middle at (32, 16), 20 wide and 8 high, in the raw output of each kind."""
+
+    def found(self, kind, rows):
+        (name, sure, box), = [r for r in looking.boxes_of(kind, np.array(rows, np.float32), 2, 64) if r[1] > 0.1]
+        self.assertEqual(name, 1)
+        np.testing.assert_allclose(box, [22, 12, 20, 8], atol=1e-4)
+        return sure
+
+    def test_yolo5_multiplies_objectness_and_share(self):
+        self.assertAlmostEqual(self.found("yolo5", [[[32, 16, 20, 8, 0.9, 0.1, 0.8], [5, 5, 2, 2, 0.01, 0.5, 0.5]]]), 0.72, 5)
+
+    def test_yolo8_lies_on_its_side(self):
+        self.assertAlmostEqual(self.found("yolo8", np.transpose([[[32, 16, 20, 8, 0.1, 0.8], [5, 5, 2, 2, 0, 0]]], (0, 2, 1))), 0.8, 5)
+
+    def test_ssd_tells_corners_as_shares(self):
+        self.assertAlmostEqual(self.found("ssd", [[[[0, 1, 0.7, 22 / 64, 12 / 64, 42 / 64, 20 / 64]]]]), 0.7, 5)
+
+    def test_rows_of_another_width_are_told(self):
+        with self.assertRaisesRegex(Failed, "rows of 6 numbers; accepted: 7 for 2 classes of yolo5"):
+            looking.boxes_of("yolo5", np.zeros((1, 3, 6)), 2, 64)
+
+
+class Questionnaires(unittest.TestCase):
+    def test_each_block_stands_once_at_each_place_and_after_each_other(self):
+        for n in range(1, 9):
+            rows = questionnaires.latin_square(n)
+            times = len(rows) // n
+            for place in range(n):
+                self.assertEqual(sorted(r[place] for r in rows), sorted(list(range(n)) * times))
+            after = [(a, b) for r in rows for a, b in zip(r, r[1:])]
+            if n > 1:
+                counts = {p: after.count(p) for p in after}
+                self.assertEqual(len(counts), n * (n - 1))
+                self.assertEqual(len(set(counts.values())), 1)
+
+    def test_scores_at_the_ends_of_the_published_scales(self):
+        worst = questionnaires.score_ssq([3] * 16)  # Kennedy et al. 1993: 200.34, 159.18, 292.32, 235.62
+        np.testing.assert_allclose(list(worst.values()), [200.34, 159.18, 292.32, 235.62])
+        self.assertEqual(questionnaires.score_ssq([0] * 16)["ssq_total"], 0)
+        self.assertEqual(questionnaires.score_tlx([0, 20, 40, 60, 80, 100])["tlx_raw"], 50)
+        self.assertEqual(questionnaires.score_trust([1] * 5 + [7] * 7)["trust_mean"], 7)
+        self.assertEqual(questionnaires.score_presence([7, 6, 5, 5, 5, 2]), {"presence_mean": 5, "presence_high": 2})
+
+    def test_answers_off_the_scale_are_refused(self):
+        for text in ("", "seven", "101", "-5", "7"):
+            self.assertIsNone(questionnaires.check("nasa_tlx", 0, text)[0])
+        self.assertEqual(questionnaires.check("nasa_tlx", 0, " 55 "), (55, None))
+
+
+class Power(unittest.TestCase):
+    def test_runs_to_tell_by_the_textbook(self):
+        # Deviations 1 and 1.1, difference 1 (10 % of 10): (1 + 1.21) (1.96 + 0.8416)^2 = 17.3.
+        values = [10 + z for z in (-1.2247449, 0, 1.2247449)]
+        self.assertEqual(intervals.runs_to_tell(values * 1000, 1.1), 18)
+
+    def test_draws_agree_with_the_approximation(self):
+        values = [10 + 3 * intervals.normal_quantile((i + 0.5) / 400) for i in range(400)]
+        for runs in (40, 100, 200):
+            self.assertAlmostEqual(intervals.power_by_draws(values, runs), intervals.power_of(values, runs), delta=0.04)
+
+
+@unittest.skipIf(cv2 is None, "no OpenCV here")
+class Looking(unittest.TestCase):
+    def test_bad_files_are_refused_in_one_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "net.onnx")
+            with self.assertRaisesRegex(Refused, "found no such file"):
+                looking.Detector(path)
+            with open(path, "wb") as file:
+                file.write(b"\x08\x07not a network" * 20)
+            about = os.path.join(folder, "net.json")
+            for text, words in (("{", "found no description"), ('{"kind": "classifier", "classes": [], "side": 64}', "0 classes"),
+                                ('{"kind": "guess", "classes": ["a"], "side": 64}', "kind 'guess'"),
+                                ('{"kind": "classifier", "classes": ["a"], "side": 64}', "cannot read")):
+                with open(about, "w") as file:
+                    file.write(text)
+                with self.assertRaisesRegex(Refused, words):
+                    looking.Detector(path)
+
+    @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
+    def test_a_thread_answers_and_drops_what_is_old(self):
+        shipped = looking.Detector(detector.model_of("shipped"))
+        self.assertEqual(shipped.classes, crops.CLASSES)
+        self.assertLess(os.path.getsize(detector.model_of("shipped")), 250_000)
+        rng = np.random.Generator(np.random.Philox(key=1))
+        picture = rng.integers(0, 255, (48, 80, 3), dtype=np.uint8)
+        shares = shipped.shares(picture)
+        self.assertAlmostEqual(float(shares.sum()), 1.0, 5)
+        np.testing.assert_array_equal(shares, shipped.shares(picture))  # the same bits
+        looker = looking.Looker(shipped, 0.0)
+        for i in range(50):
+            looker.show(picture, i)
+        told = looker.answers(wait_s=10)
+        while told[-1]["sequence"] != 49:
+            told += looker.answers(wait_s=10)
+        looker.close()
+        self.assertEqual(len(told) + looker.dropped, 50)
+        self.assertTrue(all(a["latency_s"] >= a["work_s"] > 0 for a in told))
+
+
+if __name__ == "__main__":
+    unittest.main()
