@@ -4,11 +4,13 @@ README.md lists its keys.
 The controller is a Python file with a class Controller: __init__(self, world, settings, seed) and
 act(self, observations, stage), called control_hz times a second. What act returns, a dict of numbers, formulas may name.
 A player, a class Player of the same form, plays people and props by rules, so that controllers can be compared: its act has
-a third argument, what the controller told last, and is called first; the controller may ask for what it tells as self.told.
+a third argument, what the controller told last, and is called first; the controller has what it tells as self.told, and the
+player itself as self.player.
 """
 import importlib.util
 import math
 import os
+import sys
 
 import numpy as np
 
@@ -131,6 +133,7 @@ class Task:
         rows = {m["name"]: [] for m in self.measures}
         series = {"t": [], "stage": [], **{m["name"]: [] for m in self.measures}}
         stage, begun, held_from, ends, failure = 0, 0.0, None, {}, None
+        controller.player = player
         observations, told = world.observe(), {}
         while world.time < self.seconds - 1e-9 and stage < len(self.stages):
             played = player.act(observations, self.stages[stage]["name"], told) or {} if player else {}
@@ -178,20 +181,54 @@ class Task:
         return measures, {k: v[keep] for k, v in series.items()}
 
     def figures(self, scenario, results, style):
-        done = [r for r in results if r["series"]]
-        shown = [m["name"] for m in self.measures if m["statistic"] not in ("ever", "duration")][:4]
-        if not done or not shown:
+        import summary
+        groups = summary.by_condition(results)
+        names = [", ".join(f"{k} {v}" for k, v in c.items()) or "all runs" for c, _ in groups]
+        judged = list(dict.fromkeys(c["measure"] for c in scenario.criteria if "less" not in c))[:6]
+        if judged:
+            yield "outcome.png", "The measures of the criteria, a dot a run", self._dots(scenario, judged, groups, names, style)
+        shown = [m["name"] for m in self.measures if m["statistic"] not in ("ever", "duration", "share")][:4]
+        if not shown or not any(r["series"] for r in results):
             return
         fig = style.figure(900, 60 + 200 * len(shown))
         for i, name in enumerate(shown):
             ax = style.area(fig, 80, 50 + 200 * i, 870, 190 + 200 * i)
-            for k, r in enumerate(done[:40]):
-                ax.plot(r["series"]["t"], style.numbers(r["series"][name]), color=style.BLUE, lw=0.8,
-                        alpha=0.9 if len(done) < 4 else 0.45)
+            for g, (_, group) in enumerate(groups[:6]):
+                for k, r in enumerate([r for r in group if r["series"]][:30]):
+                    ax.plot(r["series"]["t"], style.numbers(r["series"][name]), color=style.color(g), lw=0.8,
+                            ls=("-", "--", ":", "-.")[g % 4], alpha=0.9 if len(results) < 4 else 0.5, label=names[g] if k == 0 else None)
             ax.set_ylabel(self.MEASURES[name][0])
-            style.title(ax, f"{name}: {self.MEASURES[name][1]}")
+            style.title(ax, f"{name}: {self.MEASURES[name][1]}" if self.MEASURES[name][1] != name else name)
+            if i == 0:
+                style.legend(ax)
         ax.set_xlabel("time, s")
         yield "task.png", "The measures of each run over time", fig
+
+    def _dots(self, scenario, judged, groups, names, style):
+        import summary
+        fig = style.figure(900, 50 + 190 * ((len(judged) + 1) // 2))
+        for i, name in enumerate(judged):
+            left, top = 80 + 440 * (i % 2), 40 + 190 * (i // 2)
+            ax = style.area(fig, left, top, left + 350, top + 115)
+            for g, (_, group) in enumerate(groups):
+                values = summary.values_of(group, name)
+                # Equal values side by side, so that each run is seen.
+                for value in sorted(set(values)):
+                    n = values.count(value)
+                    ax.plot(g + (np.arange(n) - (n - 1) / 2) * min(0.04, 0.7 / n), [value] * n, "o", ms=4, color=style.color(g),
+                            mec=style.INK, mew=0.4)
+                if values:
+                    ax.plot([g - 0.3, g + 0.3], [float(np.median(values))] * 2, color=style.INK, lw=1.6)
+            for c in scenario.criteria:
+                if c["measure"] == name and "less" not in c:
+                    for key in ("at_least", "at_most"):
+                        if key in c:
+                            ax.axhline(c[key], color=style.RED, lw=0.9, ls="--")
+            ax.set_xlim(-0.5, len(groups) - 0.5)
+            ax.set_xticks(range(len(groups)), names, rotation=0 if len(groups) < 4 else 25)
+            ax.set_ylabel(self.MEASURES[name][0])
+            style.title(ax, name)
+        return fig
 
 
 class Null:
@@ -207,6 +244,9 @@ class Null:
 def _controller(path, name="Controller"):
     if not os.path.isfile(path):
         raise Failed(f"{path}: found no such file; accepted: baseline, null, or a controller's .py")
+    folder = os.path.dirname(os.path.abspath(path))
+    if folder not in sys.path:
+        sys.path.insert(0, folder)  # for what lies beside it
     spec = importlib.util.spec_from_file_location("neritic_controller", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

@@ -1,0 +1,80 @@
+"""Plays two divers, what lies on the bottom, and the channel. An ROV that passes within swath_m / 2 looks at the bottom there and
+finds a contact with find_share; a diver who is told of a contact swims to the nearest one that he knows and nobody has
+told to be done, and looks at it for look_s. He tells of it by his own modem."""
+import numpy as np
+
+from channel import Channel
+
+TEAMS, UP = ("a", "b"), -12.0
+
+
+class Player:
+    def __init__(self, world, settings, seed):
+        self.world, self.s = world, settings
+        rng = self.rng = np.random.Generator(np.random.Philox(key=seed))
+        self.side, n = settings["side_m"], int(settings["side_m"])
+        middle = np.arange(n) + 0.5
+        self.cells = np.stack(np.meshgrid(middle, middle, indexing="ij"), -1)  # east, north
+        self.looks = {t: np.zeros((n, n), bool) for t in TEAMS}
+        self.contacts = rng.uniform(1.0, self.side - 1.0, (int(settings["contacts"]), 2))
+        self.done, self.looked_s = set(), {}
+        self.divers = {"a": np.array([0.0, 0.0]), "b": np.array([4.0, 0.0])}
+        self.knows = {t: {} for t in TEAMS}  # of a diver: {contact: done}
+        self.found, self.tried = {t: set() for t in TEAMS}, {}  # of an ROV, to tell on
+        self.names = [f"{k}_{t}" for t in TEAMS for k in ("rov", "diver")]
+        self.channel = Channel(self.names, settings["bit_s"], settings["lost_at_100_m"], seed)
+        self.last = 0.0
+
+    def act(self, obs, stage, told):
+        time = self.world.time
+        dt, self.last = time - self.last, time
+        rovs = {t: np.array(self.world.truth(f"rov_{t}").position) for t in TEAMS}
+        places = {**{f"rov_{t}": rovs[t] for t in TEAMS}, **{f"diver_{t}": np.array([*self.divers[t], UP]) for t in TEAMS}}
+        if self.s["channel"]:
+            self.channel.step(time, places)
+        for team in TEAMS:
+            self._look(team, rovs[team])
+            self._dive(team, dt)
+        c = self.channel
+        return {"covered": float((self.looks["a"] | self.looks["b"]).mean()),
+                "twice": float((self.looks["a"] & self.looks["b"]).mean()),
+                "found": float(len(self.found["a"] | self.found["b"])),
+                "inspected": float(len(self.done)), "sent": float(c.sent), "collided": float(c.collided), "faded": float(c.faded),
+                "arrived": float(c.arrived), "delay_s": float(np.median(c.delays_s)) if c.delays_s else float("nan")}
+
+    def _look(self, team, at):
+        near = np.hypot(*(self.cells - at[:2]).transpose(2, 0, 1)) <= self.s["swath_m"] / 2
+        self.looks[team] |= near
+        for i, place in enumerate(self.contacts):
+            if np.hypot(*(place - at[:2])) <= self.s["swath_m"] / 2:
+                # One draw each 2 m of way, so that a second pass can find what the first missed.
+                key = (team, i, int(at[0] // 2), int(at[1] // 2))
+                if key not in self.tried:
+                    self.tried[key] = self.rng.random() < self.s["find_share"]
+                    if self.tried[key]:
+                        self.found[team].add(i)
+
+    def _dive(self, team, dt):
+        me, knows = f"diver_{team}", self.knows[team]
+        for _, message, _ in self.channel.heard(me):
+            if message["kind"] == "contact":
+                knows.setdefault(message["contact"], False)
+            elif message["kind"] == "done":
+                for i in message["contacts"]:
+                    knows[i] = True
+        open_ones = [i for i, over in knows.items() if not over]
+        speed = np.zeros(2)
+        if open_ones:
+            goal = min(open_ones, key=lambda i: (float(np.hypot(*(self.contacts[i] - self.divers[team]))), i))
+            line = self.contacts[goal] - self.divers[team]
+            far = float(np.hypot(*line))
+            if far > 1.0:
+                speed = 0.35 * line / far
+            else:
+                self.looked_s[team, goal] = self.looked_s.get((team, goal), 0.0) + dt
+                if self.looked_s[team, goal] >= self.s["look_s"]:
+                    knows[goal] = True
+                    self.done.add(goal)
+                    self.channel.send(me, {"kind": "done", "contacts": sorted(i for i, over in knows.items() if over)}, 12)
+        self.divers[team] = self.divers[team] + speed * dt
+        self.world[me].pose([*self.divers[team], UP], velocity=[*speed, 0.0])
