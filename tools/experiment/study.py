@@ -262,8 +262,13 @@ def table(asked):
     print(text, end="")
 
 
+class Flags(argparse.ArgumentParser):
+    def error(self, message):
+        raise Refused(f"study: {message}; accepted: {', '.join(WORDS)}, FOLDER, PNN: neritic study --help")
+
+
 def main():
-    parser = argparse.ArgumentParser(prog="neritic study", description=__doc__.splitlines()[0])
+    parser = Flags(prog="neritic study", description=__doc__.splitlines()[0])
     parser.add_argument("--program", required=True, help=argparse.SUPPRESS)
     parser.add_argument("what", choices=WORDS)
     parser.add_argument("folder")
@@ -272,8 +277,8 @@ def main():
     parser.add_argument("--plan")
     parser.add_argument("--answers", help="a file of answers, one a line, in place of the keyboard: for rehearsals")
     parser.add_argument("--yes", action="store_true")
-    asked = parser.parse_args()
     try:
+        asked = parser.parse_args()
         screen = Screen(asked.answers)
         if asked.what in ("run", "ask", "mark", "withdraw", "wizard") and not asked.who:
             raise Refused(f"study {asked.what}: found no participant; accepted: one's pseudonym, as P01")
