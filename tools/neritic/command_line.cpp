@@ -628,7 +628,8 @@ void add_experiment(CLI::App& app, CommandLine& line) {
 void add_study(CLI::App& app, CommandLine& line) {
   CLI::App* command = app.add_subcommand(
       "study", "runs a study with people: consent, blocks in balanced order, questionnaires");
-  command->prefix_command();
+  command->prefix_command();  // the module reads all that follows
+  command->allow_extras();
   command->footer(
       "neritic study begin FOLDER --plan FILE.toml   a new study\n"
       "neritic study enrol FOLDER                    consent; gives a pseudonym and an order\n"
