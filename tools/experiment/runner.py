@@ -4,6 +4,7 @@ OUT/runs.jsonl has a first line that names the scenario and then one line a fini
 ended; each is flushed to the disk. A line that a kill cut off is dropped when the file is resumed.
 """
 import concurrent.futures
+import concurrent.futures.process
 import json
 import os
 import signal
@@ -132,6 +133,9 @@ def run_all(scenario, out, program, workers, resume, quiet):
                 progress.step()
     except OSError as error:
         raise Failed(f"{path}: cannot be written: {error.strerror}; {len(kept)} finished runs are kept") from None
+    except concurrent.futures.process.BrokenProcessPool:
+        raise Failed(f"{scenario.name}: a run's process was killed, as where memory ends; {len(kept)} finished runs are kept, "
+                     "--resume goes on, --workers 1 needs less memory") from None
     finally:
         progress.end()
     return [kept[r.key()] for r in runs]
