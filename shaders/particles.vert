@@ -21,6 +21,7 @@ layout(push_constant, scalar) uniform Push { ParticlePush push; };
 
 bool light_has(uint term) { return (light.terms & term) != 0u; }
 uint lamp_count() { return light.lamp_count; }
+uint glow_samples() { return 4u; }
 
 #include "shared/water.glsl"
 

@@ -11,6 +11,7 @@
 
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 
+layout(push_constant, scalar) uniform Push { ShadePush push; };
 layout(set = 0, binding = kShadeViews, scalar) uniform Views { View views[kMaxViews]; };
 layout(set = 0, binding = kShadeLighting, scalar) uniform Light { Lighting light; };
 layout(set = 0, binding = kShadeDepth) uniform texture2DArray depth_image;
@@ -29,8 +30,12 @@ layout(set = 0, binding = kShadeLampShadows, scalar) uniform Shadows { LampShado
 
 layout(constant_id = kSpecTerms) const uint kTerms = ~0u;
 layout(constant_id = kSpecLamps) const uint kLamps = kMaxLamps;
+layout(constant_id = kSpecSeenStep) const uint kSeenStep = 2;
+layout(constant_id = kSpecSeaSeen) const bool kSeaSeen = true;
+layout(constant_id = kSpecGlowSamples) const uint kGlowSamples = 4;
 bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return kLamps; }
+uint glow_samples() { return kGlowSamples; }
 
 #include "shared/caustics.h"
 #include "shared/surface.glsl"
@@ -76,11 +81,11 @@ float caustic_at(vec3 position, float pixel_m) {
 }
 
 // The visibility image at a pixel: between its four nearest, the farther off in distance the less.
-Seen seen_at(ivec3 at, ivec2 size, float planar_m) {
+Seen seen_at(ivec3 at, float planar_m) {
   if (!light_has(kLightSeen)) return kAllSeen;
   ivec2 seen_size = textureSize(seen_image, 0).xy;
-  // Its pixel (x, y) was made for the picture's (x, y) or (2 x, 2 y).
-  vec2 place = vec2(at.xy) * (seen_size == size ? 1.0 : 0.5);
+  // Its pixel (x, y) was made for the picture's kSeenStep times (x, y).
+  vec2 place = vec2(at.xy) / float(kSeenStep);
   ivec2 corner = ivec2(place);
   vec2 part = place - vec2(corner);
   float own = visibility_distance(planar_m);
@@ -98,6 +103,7 @@ Seen seen_at(ivec3 at, ivec2 size, float planar_m) {
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
+  at.y += int(push.first_group * kShadeGroup);
   ivec2 size = imageSize(hdr_image).xy;
   if (at.x >= size.x || at.y >= size.y) return;
   // The layer by workgroup: so drivers see that a whole group reads one view.
@@ -122,7 +128,7 @@ void main() {
   s.reflectance = material.w;
   vec3 radiance = emitted;
   if (material.w < 0.9) {
-    Seen seen = seen_at(at, size, planar_m);
+    Seen seen = seen_at(at, planar_m);
     seen.caustic = caustic_at(s.position, planar_m * length(views[layer].ray_dx));
     radiance += shade_surface(s, -direction, seen);
   }  // else unlit
@@ -131,7 +137,7 @@ void main() {
   bool meets = false, from_above = false;
   if (light_has(kLightWaves)) {
     from_above = eye_depth_m + sea.eye_height_m < 0.0;
-    meets = sea_meets(views[layer].eye, direction, length(views[layer].ray_dx), surface);
+    meets = kSeaSeen && sea_meets(views[layer].eye, direction, length(views[layer].ray_dx), surface);
     meets = meets && surface.distance_m < sight_m;
     if (meets && !from_above) {
       // What is above the water is not seen from below, but for the sky.

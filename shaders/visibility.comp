@@ -23,9 +23,9 @@ layout(constant_id = kSpecCascades) const uint kCascades = 0;
 layout(constant_id = kSpecOcclusionTaps) const uint kOcclusionTaps = 0;
 layout(constant_id = kSpecVisibilityScale) const uint kScale = 2;
 
-const uint kTaps = 9;
-// Radii of the taps' rings, of the narrowest and the factor to the next.
-const float kRing_m = 0.02, kRingFactor = 1.75;
+layout(constant_id = kSpecShadowTaps) const uint kTaps = 9;
+// Radii of the taps' rings, of the narrowest and the factor to the next. However many, they reach as far.
+const float kRing_m = 0.02, kRingReach = 88.0;
 // Cosine and sine of the golden angle, by which each tap is turned on against the one before.
 const vec2 kGolden = vec2(-0.73736888, 0.67549029);
 vec2 turned_on(vec2 v) { return vec2(kGolden.x * v.x - kGolden.y * v.y, kGolden.y * v.x + kGolden.x * v.y); }
@@ -59,9 +59,10 @@ vec2 sun_hidden(vec3 position, vec3 normal, float depth_m, float turn) {
   float core = sqrt(params.spread * params.spread + params.scattering_m * way_m * kCoreVariance);
   vec2 spread = vec2(core, kSkySpread);
   vec2 hidden = vec2(0.0);
-  float ring_m = kRing_m * pow(kRingFactor, turn - 0.5);
-  const float kEdge = sqrt(kRingFactor);
-  vec2 last = vec2(ring_m * pow(kRingFactor, float(kTaps) - 1.0) * kEdge);
+  const float kOctaves = log2(kRingReach) / float(max(kTaps, 2u) - 1u);
+  const float kRingFactor = exp2(kOctaves), kEdge = exp2(0.5 * kOctaves);
+  float ring_m = kRing_m * exp2(kOctaves * (turn - 0.5));
+  vec2 last = vec2(ring_m * exp2(kOctaves * (float(kTaps) - 1.0)) * kEdge);
   last *= last;
   float inner_m = 0.0;
   vec2 way = vec2(cos(turn * 6.2831853), sin(turn * 6.2831853));

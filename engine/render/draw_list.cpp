@@ -119,6 +119,7 @@ class DrawListBuilder {
     for (const Appearance& a : group.appearances) {
       const std::uint16_t class_id = scene_.objects[a.object].class_id;
       if (class_id != 0 && class_id == options_.without_class) continue;
+      if (!options_.objects.empty() && !options_.objects[a.object]) continue;
       const std::uint32_t deformed =
           primitive.deforms() ? state_.deformed_at(g, a.object, a.node) : kNone;
       const bool skinned = primitive.first_skin != kNone && deformed != kNone;

@@ -2,6 +2,8 @@
 // that some view can see. Plain data made on the CPU.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/render/cluster_culling.hpp"
@@ -38,6 +40,8 @@ struct DrawListOptions {
   bool hide_back_faces = false;
   // Objects of this class are left out; 0: none are.
   std::uint16_t without_class = 0;
+  // Flags by object: those with 0 are left out. Empty: none is.
+  std::span<const std::uint8_t> objects = {};
 };
 
 // Up to this many visible instances of a mesh with clusters are examined one by one, and each that

@@ -30,7 +30,8 @@ double smooth(double low, double high, double x) {
 }  // namespace
 
 std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t seed,
-                                       const Vec3& center_m, double time_s) {
+                                       const Vec3& center_m, double time_s, const ViewSet* views,
+                                       double share) {
   std::vector<WorldParticle> out;
   if (!(snow.density_m3 > 0.0)) return out;
   const double cell_m = std::clamp(std::cbrt(kCellMean / snow.density_m3), 0.1, 2.0);
@@ -49,6 +50,12 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
   for (std::int64_t y = low(1); y <= high(1); ++y)
     for (std::int64_t z = low(2); z <= high(2); ++z)
       for (std::int64_t x = low(0); x <= high(0); ++x) {
+        // Most cells lie beside or behind the views, or out of range.
+        const Vec3 middle = cell_m * (Vec3(x, y, z) + 0.5) - center;
+        const double half_m = 0.5 * std::sqrt(3.0) * cell_m;
+        if (glm::length(middle) >= snow.range_m + half_m) continue;
+        if (views && !any_view_sees(*views, middle + center_m - views->origin_m(), half_m + 0.05))
+          continue;
         const RandomKey key{seed, kSnowStream ^ mix64(word(y)), mix64(word(x)) ^ (word(z) << 1)};
         for (std::uint64_t i = 0; i < slots; ++i) {
           if (random_uniform(key, 8 * i) >= taken) continue;
@@ -72,6 +79,7 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
                              smooth(kNearest_m, kNear_m, range_m);
           particle.kind = shared::kParticleSnow;
           particle.seed = static_cast<std::uint32_t>(random_bits(key, 8 * i + 7));
+          if (!(particle.seed * 0x1p-32 < share)) continue;
           out.push_back(particle);
         }
       }
@@ -84,13 +92,13 @@ bool has_particles(const scene::Scene& scene) {
 }
 
 ViewParticles view_particles(const scene::MotionSource& motion, std::uint64_t seed,
-                             const ViewSet& views, double time_s) {
+                             const ViewSet& views, double time_s, double snow_share) {
   ViewParticles out;
   const scene::Water& water = *motion.scene().water;
   const Vec3 origin = views.origin_m();
   std::vector<WorldParticle> all;
   if (water.snow) {
-    all = snow_around(*water.snow, seed, origin, time_s);
+    all = snow_around(*water.snow, seed, origin, time_s, &views, snow_share);
     out.shutter_s = water.snow->shutter_s;
   }
   for (std::size_t i = 0; i < water.bubbles.size(); ++i)

@@ -18,9 +18,11 @@ struct WorldParticle {
   std::uint32_t kind = 0, seed = 0;
 };
 
-// Snow within range_m of a point, that drifts and stays in the water while cameras move.
+// Snow within range_m of a point, that drifts and stays in the water while cameras move. views:
+// only what lies in cells that one of them sees. share: of the snow.
 std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t seed,
-                                       const Vec3& center_m, double time_s);
+                                       const Vec3& center_m, double time_s,
+                                       const ViewSet* views = nullptr, double share = 1.0);
 
 // Speed at which a bubble rises in still water.
 double bubble_speed_m_s(double radius_m);
@@ -40,6 +42,6 @@ struct ViewParticles {
 };
 bool has_particles(const scene::Scene& scene);
 ViewParticles view_particles(const scene::MotionSource& motion, std::uint64_t seed,
-                             const ViewSet& views, double time_s);
+                             const ViewSet& views, double time_s, double snow_share = 1.0);
 
 }  // namespace neritic::render

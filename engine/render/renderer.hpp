@@ -3,6 +3,8 @@
 // without skins has no deform pass, a sonar's view no albedo. Rendering thread only.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -83,6 +85,25 @@ struct ShadeInputs {
   // Gets what forward scatter spreads, where the term kLightForwardScatter is on.
   graph::ImageHandle* scattered = nullptr;
   const shared::Waves* waves = nullptr;  // with the term kLightWaves
+  std::uint32_t visibility_step = 2;     // of light.seen
+  std::uint32_t inscatter_samples = 4;   // of a lamp's beam along a sight
+};
+
+// Where depth maps of lights are drawn: into layers of an image that is there, over what it has or
+// over nothing.
+struct ShadowTarget {
+  graph::ImageHandle image;  // all layers; empty: a new one, with as many layers as maps
+  bool over = false;
+  std::function<void()> drawn;  // called once the maps are recorded; may be empty
+};
+
+// Of visibility_: what shaders compile in.
+struct VisibilityKnobs {
+  std::uint32_t cascades = 0;        // 0: no shadows
+  std::uint32_t shadow_samples = 9;  // rings of taps
+  std::uint32_t occlusion_taps = 0;  // 0: none
+  std::uint32_t step = 2;            // pixels of the picture to one of visibility, a side
+  auto operator<=>(const VisibilityKnobs&) const = default;
 };
 
 enum class GBufferKind {
@@ -115,16 +136,19 @@ class Renderer {
   Result<graph::ImageHandle> declare_shadow_maps(graph::FrameGraph& graph, const std::string& name,
                                                  const GpuScene& scene,
                                                  const DeformedGeometry& deformed,
-                                                 const std::vector<ShadowMap>& maps);
+                                                 const std::vector<ShadowMap>& maps,
+                                                 const ShadowTarget& target = {});
+  // A copy of depth maps, to draw over.
+  static graph::ImageHandle declare_shadow_copy(graph::FrameGraph& graph, const std::string& name,
+                                                graph::ImageHandle maps, std::uint32_t size,
+                                                std::uint32_t layers);
   // Which share of sun, sky and surroundings surfaces see, by the sun's maps (an empty handle: no
-  // shadows) and by ambient occlusion of so many taps (0: none). full: as large as the picture,
-  // else half.
+  // shadows) and by ambient occlusion.
   Result<graph::ImageHandle> declare_visibility(graph::FrameGraph& graph, const std::string& prefix,
                                                 const GBuffer& gbuffer, const ViewSet& views,
                                                 const shared::VisibilityParams& params,
                                                 graph::ImageHandle cascades,
-                                                std::uint32_t cascade_count,
-                                                std::uint32_t occlusion_taps, bool full);
+                                                const VisibilityKnobs& knobs);
   // Light under waves on levels below a tile of the surface; once a frame.
   Result<graph::ImageHandle> declare_caustics(graph::FrameGraph& graph,
                                               const shared::CausticsParams& params);
@@ -140,6 +164,10 @@ class Renderer {
                                              const shared::Lighting& lighting);
   // The passes of the scene's water, between forward and the display picture.
   WaterPasses& water() { return water_; }
+  // A display picture of another size: between its four nearest pixels.
+  Result<graph::ImageHandle> declare_resize(graph::FrameGraph& graph, const std::string& prefix,
+                                            graph::ImageHandle color, std::uint32_t width,
+                                            std::uint32_t height, std::uint32_t layers);
   // Display picture, kColorFormat: tonemap and, where asked for, antialias, which smooths edges.
   Result<graph::ImageHandle> declare_picture(graph::FrameGraph& graph, const std::string& prefix,
                                              graph::ImageHandle hdr, std::uint32_t width,
@@ -198,13 +226,12 @@ class Renderer {
   WaterPasses water_;
   gpu::SetLayout material_layout_;
   std::map<RasterKey, gpu::Pipeline> raster_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline>
-      shade_;  // by terms, number of lamps
-  std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, gpu::Pipeline>
-      visibility_;  // by cascades, taps, full
+  // By terms, number of lamps, visibility's step, inscatter's samples, whether the sea is seen.
+  std::map<std::array<std::uint32_t, 5>, gpu::Pipeline> shade_;
+  std::map<VisibilityKnobs, gpu::Pipeline> visibility_;
   gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_;
   gpu::Sampler tile_sampler_;  // linear, repeating
-  gpu::Pipeline deform_, tonemap_, tonemap_luma_, antialias_;
+  gpu::Pipeline deform_, tonemap_, tonemap_luma_, antialias_, resize_;
   // Bound where a shader declares a buffer that this frame does not use: one to read, one to write,
   // since what is bound counts as read or written.
   gpu::Buffer nothing_, nowhere_;

@@ -1,4 +1,6 @@
 // Renderer: creation, and the compute passes on the G-buffer: shade and tonemap.
+#include <algorithm>
+
 #include "engine/core/check.hpp"
 #include "engine/render/lighting.hpp"
 #include "engine/render/raster_draws.hpp"
@@ -6,6 +8,48 @@
 #include "shaders.hpp"
 
 namespace neritic::render {
+namespace {
+
+// Rows of workgroups that one pipeline shades.
+struct ShadeRows {
+  std::uint32_t first = 0, end = 0;
+  bool sea = false;
+  const gpu::Pipeline* pipeline = nullptr;
+};
+
+// Splits the picture where no view sees the wavy surface before the water has hidden it (sea_meets
+// in shaders/shared/sea_surface.glsl, with room for the waves' height).
+std::vector<ShadeRows> rows_of_sea(const ViewSet& views, const shared::Lighting& lighting,
+                                   const shared::Waves& waves, std::uint32_t groups_high) {
+  const float clearest = std::min(
+      {lighting.beam_attenuation.x, lighting.beam_attenuation.y, lighting.beam_attenuation.z});
+  const float room_m = 6.0f * waves.height_rms_m + 0.05f;
+  std::uint32_t first = groups_high, end = 0;
+  const auto all = gpu_views(views);
+  for (const shared::View& view : std::span(all).first(views.views.size())) {
+    const float deep_m = lighting.origin_depth_m - view.eye.y + waves.eye_height_m - room_m;
+    if (!(deep_m > 0.0f)) return {{0, groups_high, true, nullptr}};
+    const float least = std::max(deep_m * clearest / shared::kSeaFaded, 2e-3f);
+    for (std::uint32_t g = 0; g < groups_high; ++g) {
+      float up = -1.0f;  // at least the sine of every sight of these rows, as rays are 1 or longer
+      for (const float y : {g * 8.0f, g * 8.0f + 8.0f})
+        for (const float x : {0.0f, static_cast<float>(views.width)})
+          up = std::max(up, view.ray_corner.y + x * view.ray_dx.y + y * view.ray_dy.y);
+      if (up <= 0.99f * least) continue;
+      first = std::min(first, g);
+      end = std::max(end, g + 1);
+    }
+  }
+  static_assert(shared::kShadeGroup == 8);
+  if (first >= end) return {{0, groups_high, false, nullptr}};
+  std::vector<ShadeRows> rows{{first, end, true, nullptr}};
+  if (first > 0) rows.push_back({0, first, false, nullptr});
+  if (end < groups_high) rows.push_back({end, groups_high, false, nullptr});
+  return rows;
+}
+
+}  // namespace
+
 Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device) {
   std::unique_ptr<Renderer> renderer(new Renderer(device));
   NERITIC_TRY(renderer->material_layout_, create_material_layout(device));
@@ -25,8 +69,17 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   const ViewSet& views = inputs.views;
   const shared::Lighting& lighting = inputs.lighting;
   const LightImages light = inputs.light;
-  gpu::Pipeline& pipeline = shade_[{lighting.terms, lighting.lamp_count}];
-  if (!pipeline) {
+  const std::optional<shared::Waves> waves =
+      inputs.waves ? std::optional(*inputs.waves) : std::nullopt;
+  NERITIC_CHECK(waves || !(lighting.terms & shared::kLightWaves), "{}shade: no waves", prefix);
+  // Rows that see no sea are spared its waves: a CPU driver computes them for every pixel.
+  std::vector<ShadeRows> rows{{0, groups(gbuffer.height), waves.has_value(), nullptr}};
+  if (waves) rows = rows_of_sea(views, lighting, *waves, groups(gbuffer.height));
+  for (ShadeRows& part : rows) {
+    gpu::Pipeline& pipeline = shade_[{lighting.terms, lighting.lamp_count, inputs.visibility_step,
+                                      inputs.inscatter_samples, part.sea ? 1u : 0u}];
+    part.pipeline = &pipeline;
+    if (pipeline) continue;
     gpu::ComputePipelineDesc desc;
     desc.name = "shade";
     desc.code = shaders::kShadeComp;
@@ -45,12 +98,13 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                             {shared::kShadeScattered, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                             {shared::kShadeWaves, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
     desc.constants = {{shared::kSpecTerms, lighting.terms},
-                      {shared::kSpecLamps, lighting.lamp_count}};
+                      {shared::kSpecLamps, lighting.lamp_count},
+                      {shared::kSpecSeenStep, inputs.visibility_step},
+                      {shared::kSpecGlowSamples, inputs.inscatter_samples},
+                      {shared::kSpecSeaSeen, part.sea ? 1u : 0u}};
+    desc.layout.push_constant_bytes = sizeof(shared::ShadePush);
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
-  const std::optional<shared::Waves> waves =
-      inputs.waves ? std::optional(*inputs.waves) : std::nullopt;
-  NERITIC_CHECK(waves || !(lighting.terms & shared::kLightWaves), "{}shade: no waves", prefix);
   struct Data {
     graph::ImageHandle hdr, scattered;
   };
@@ -72,8 +126,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                                    {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
               graph::Access::kStorageWriteCompute);
       },
-      [this, &pipeline, gbuffer, lighting, light, waves, &views](const Data& data,
-                                                                 graph::PassContext& context) {
+      [this, rows, gbuffer, lighting, light, waves, &views](const Data& data,
+                                                            graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::UploadSlice view_data =
             commands.upload(std::span<const shared::View>(gpu_views(views)));
@@ -87,34 +141,37 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
         const auto texels = [&](std::uint32_t binding, graph::ImageHandle handle) {
           return gpu::bound_texel_image(binding, context.image(handle).view());
         };
-        commands.bind_pipeline(pipeline);
-        commands.bind(
-            pipeline,
-            {gpu::bound_buffer(shared::kShadeViews, view_data.buffer, view_data.offset,
-                               view_data.size),
-             gpu::bound_buffer(shared::kShadeLighting, light_data.buffer, light_data.offset,
-                               light_data.size),
-             texels(shared::kShadeDepth, gbuffer.depth),
-             texels(shared::kShadeNormal, gbuffer.normal),
-             texels(shared::kShadeAlbedo, gbuffer.albedo),
-             texels(shared::kShadeMaterial, gbuffer.material),
-             // Without emission the shader's flag keeps it from reading what is bound here.
-             texels(shared::kShadeEmissive, gbuffer.emissive ? gbuffer.emissive : gbuffer.albedo),
-             gpu::bound_storage_image(shared::kShadeHdr, context.image(data.hdr).view()),
-             texels(shared::kShadeSeen, light.seen ? light.seen : gbuffer.albedo),
-             gpu::bound_texture(
-                 shared::kShadeCaustics,
-                 context.image(light.caustics ? light.caustics : gbuffer.albedo).view(),
-                 tile_sampler_.handle()),
-             texels(shared::kShadeLampMaps, light.lamp_maps ? light.lamp_maps : gbuffer.depth),
-             gpu::bound_buffer(shared::kShadeLampShadows, shadow_data.buffer, shadow_data.offset,
-                               shadow_data.size),
-             gpu::bound_buffer(shared::kShadeWaves, wave_data.buffer, wave_data.offset,
-                               wave_data.size),
-             gpu::bound_storage_image(
-                 shared::kShadeScattered,
-                 context.image(data.scattered ? data.scattered : data.hdr).view())});
-        commands.dispatch(groups(gbuffer.width), groups(gbuffer.height), gbuffer.layers);
+        const auto resources = {
+            gpu::bound_buffer(shared::kShadeViews, view_data.buffer, view_data.offset,
+                              view_data.size),
+            gpu::bound_buffer(shared::kShadeLighting, light_data.buffer, light_data.offset,
+                              light_data.size),
+            texels(shared::kShadeDepth, gbuffer.depth),
+            texels(shared::kShadeNormal, gbuffer.normal),
+            texels(shared::kShadeAlbedo, gbuffer.albedo),
+            texels(shared::kShadeMaterial, gbuffer.material),
+            // Without emission the shader's flag keeps it from reading what is bound here.
+            texels(shared::kShadeEmissive, gbuffer.emissive ? gbuffer.emissive : gbuffer.albedo),
+            gpu::bound_storage_image(shared::kShadeHdr, context.image(data.hdr).view()),
+            texels(shared::kShadeSeen, light.seen ? light.seen : gbuffer.albedo),
+            gpu::bound_texture(
+                shared::kShadeCaustics,
+                context.image(light.caustics ? light.caustics : gbuffer.albedo).view(),
+                tile_sampler_.handle()),
+            texels(shared::kShadeLampMaps, light.lamp_maps ? light.lamp_maps : gbuffer.depth),
+            gpu::bound_buffer(shared::kShadeLampShadows, shadow_data.buffer, shadow_data.offset,
+                              shadow_data.size),
+            gpu::bound_buffer(shared::kShadeWaves, wave_data.buffer, wave_data.offset,
+                              wave_data.size),
+            gpu::bound_storage_image(
+                shared::kShadeScattered,
+                context.image(data.scattered ? data.scattered : data.hdr).view())};
+        for (const ShadeRows& part : rows) {
+          commands.bind_pipeline(*part.pipeline);
+          commands.bind(*part.pipeline, resources);
+          commands.push(*part.pipeline, shared::ShadePush{part.first});
+          commands.dispatch(groups(gbuffer.width), part.end - part.first, gbuffer.layers);
+        }
       });
   if (inputs.scattered) *inputs.scattered = pass.scattered;
   return pass.hdr;
@@ -158,6 +215,14 @@ Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph,
         commands.dispatch(groups(width), groups(height), layers);
       });
   return pass.out;
+}
+
+Result<graph::ImageHandle> Renderer::declare_resize(graph::FrameGraph& graph,
+                                                    const std::string& prefix,
+                                                    graph::ImageHandle color, std::uint32_t width,
+                                                    std::uint32_t height, std::uint32_t layers) {
+  return declare_filter(graph, prefix, {"resize", "full color", shaders::kResizeComp, {}}, resize_,
+                        color, width, height, layers);
 }
 
 Result<graph::ImageHandle> Renderer::declare_picture(graph::FrameGraph& graph,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/core/hash.hpp"
 #include "engine/core/refusal.hpp"
 
 namespace neritic::render {
@@ -18,6 +19,8 @@ constexpr double kCasters_m = 300.0;
 constexpr double kCascadeStep = 1.0 / 3.0;
 // The squares lie ahead of the camera, by this share of their half width.
 constexpr double kAhead = 0.6;
+// Steps in which a square moves, over its width.
+constexpr std::uint32_t kStepsAcross = 16;
 
 // Lamps see what is farther than their glass. A wider cone than this throws its outermost light
 // without shadows.
@@ -50,11 +53,12 @@ std::vector<ViewSet> sun_views(const ViewSet& camera, const scene::SunShadows& s
   for (std::uint32_t i = 0; i < shadows.cascades; ++i) {
     const double half_m =
         shadows.reach_m * std::pow(kCascadeStep, double(shadows.cascades - 1 - i));
-    const double texel_m = 2.0 * half_m / shadows.size;
+    const double step_m = 2.0 * half_m / shadows.size * std::max(shadows.size / kStepsAcross, 1u);
     const Vec3 wanted_m = eye_m + ahead * (kAhead * half_m);
-    const Vec3 center_m = x * (std::floor(glm::dot(wanted_m, x) / texel_m) * texel_m) +
-                          y * (std::floor(glm::dot(wanted_m, y) / texel_m) * texel_m) +
-                          to_sun * std::floor(glm::dot(wanted_m, to_sun));
+    const auto stepped = [&](const Vec3& axis) {
+      return axis * (std::round(glm::dot(wanted_m, axis) / step_m) * step_m);
+    };
+    const Vec3 center_m = stepped(x) + stepped(y) + stepped(to_sun);
     ViewSet set;
     set.width = set.height = shadows.size;
     ViewDesc view;
@@ -69,15 +73,50 @@ std::vector<ViewSet> sun_views(const ViewSet& camera, const scene::SunShadows& s
 }
 
 std::vector<ShadowMap> shadow_maps(const scene::Scene& scene, const GpuScene& gpu_scene,
-                                   const FrameState& state, std::vector<ViewSet> views) {
+                                   const FrameState& state, std::vector<ViewSet> views,
+                                   std::span<const std::uint8_t> of) {
   std::vector<ShadowMap> maps;
   for (ViewSet& set : views) {
     ShadowMap& map = maps.emplace_back();
+    map.layer = static_cast<std::uint32_t>(maps.size() - 1);
     map.views = std::move(set);
-    map.draws = build_draw_list(scene, gpu_scene, state, map.views, {.hide_back_faces = true});
+    map.draws = build_draw_list(scene, gpu_scene, state, map.views,
+                                {.hide_back_faces = true, .objects = of});
     map.draws.blended.clear();
   }
   return maps;
+}
+
+std::vector<std::uint8_t> moving_objects(const scene::Scene& scene) {
+  std::vector<std::uint8_t> out;
+  for (const scene::Object& object : scene.objects) {
+    bool moves = object.clip >= 0;
+    if (object.model >= 0) {
+      const scene::Model& model = *scene.models[static_cast<std::size_t>(object.model)];
+      for (const scene::Node& node : model.nodes) moves |= node.skin >= 0;
+    }
+    // With all that carries it.
+    const scene::Object* at = &object;
+    for (std::size_t steps = 0; at && steps <= scene.objects.size(); ++steps) {
+      moves |= at->mount.track || at->dynamics || at->human || !at->inputs.empty();
+      at = at->mount.object >= 0 ? &scene.objects[static_cast<std::size_t>(at->mount.object)]
+                                 : nullptr;
+    }
+    out.push_back(moves ? 1 : 0);
+  }
+  return out;
+}
+
+std::uint64_t still_hash(const FrameState& state, std::span<const std::uint8_t> moving) {
+  Hash64 hash;
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    if (moving[i]) continue;
+    hash.add(state.world_from_object[i]);
+    hash.add_span(std::span<const Mat4>(state.poses[i].model_from_node));
+    for (const auto& weights : state.poses[i].morph_weights)
+      hash.add_span(std::span<const float>(weights));
+  }
+  return hash.value();
 }
 
 Result<std::vector<ViewSet>> lamp_views(const scene::Scene& scene, const FrameState& state) {
@@ -117,7 +156,7 @@ shared::LampShadows lamp_shadows(const scene::Scene& scene, const ViewSet& camer
 
 shared::VisibilityParams visibility_params(const scene::Scene& scene, const ViewSet& camera,
                                            const shared::Lighting& lighting,
-                                           const std::vector<ShadowMap>& cascades) {
+                                           const std::vector<ViewSet>& cascades) {
   shared::VisibilityParams params{};
   params.to_sun = lighting.to_sun;
   params.origin_depth_m = lighting.origin_depth_m;
@@ -128,7 +167,7 @@ shared::VisibilityParams visibility_params(const scene::Scene& scene, const View
   params.sun_cosine = lighting.sun_cosine;
   if (scene.ambient) params.occlusion_m = static_cast<float>(scene.ambient->occlusion_m);
   for (std::size_t i = 0; i < cascades.size(); ++i) {
-    const ViewSet& set = cascades[i].views;
+    const ViewSet& set = cascades[i];
     const ViewDesc& view = set.views.front();
     shared::Cascade& cascade = params.cascades[i];
     cascade.clip_from_origin = clip_from(camera, view);

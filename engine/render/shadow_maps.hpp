@@ -2,6 +2,8 @@
 // the CPU, in double.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/core/result.hpp"
@@ -15,18 +17,26 @@ namespace neritic::render {
 // One layer of a map; a view set of one view.
 struct ShadowMap {
   ViewSet views;
-  DrawList draws;  // opaque surfaces only: glass throws no shadow
+  DrawList draws;           // opaque surfaces only: glass throws no shadow
+  std::uint32_t layer = 0;  // of the image
 };
 
 // Sees what to_sun (unit) shines on, out of 5 km: squares round what the camera looks at, each
-// three times as narrow as the next. They move with the camera in whole texels, so that edges do
-// not crawl.
+// three times as narrow as the next. They follow the camera in steps of an eighth of their half
+// width and of whole texels, so that edges do not crawl, and a map is drawn anew only at a step.
 std::vector<ViewSet> sun_views(const ViewSet& camera, const scene::SunShadows& shadows,
                                const Vec3& to_sun);
 
-// Draw lists of these views.
+// Draw lists of these views, a layer each. of: flags by object, what is drawn; empty: all.
 std::vector<ShadowMap> shadow_maps(const scene::Scene& scene, const GpuScene& gpu_scene,
-                                   const FrameState& state, std::vector<ViewSet> views);
+                                   const FrameState& state, std::vector<ViewSet> views,
+                                   std::span<const std::uint8_t> of = {});
+
+// Flags by object: 1 where something of the scene may move or deform it.
+std::vector<std::uint8_t> moving_objects(const scene::Scene& scene);
+// Of where the others are: differs if one of them has moved after all (a replay shows its motion
+// in another scene).
+std::uint64_t still_hash(const FrameState& state, std::span<const std::uint8_t> moving);
 
 // What each lamp of the scene with shadows sees, in the order of the lamps. kBadInput: more than
 // kMaxLampShadows.
@@ -39,6 +49,6 @@ shared::LampShadows lamp_shadows(const scene::Scene& scene, const ViewSet& camer
 // Parameters of the visibility pass for a camera's view set: terms of the scene's sun and ambient.
 shared::VisibilityParams visibility_params(const scene::Scene& scene, const ViewSet& camera,
                                            const shared::Lighting& lighting,
-                                           const std::vector<ShadowMap>& cascades);
+                                           const std::vector<ViewSet>& cascades);
 
 }  // namespace neritic::render

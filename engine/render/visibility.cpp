@@ -15,9 +15,9 @@ constexpr auto kTexels = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
 Result<graph::ImageHandle> Renderer::declare_visibility(
     graph::FrameGraph& graph, const std::string& prefix, const GBuffer& gbuffer,
     const ViewSet& views, const shared::VisibilityParams& params, graph::ImageHandle cascades,
-    std::uint32_t cascade_count, std::uint32_t occlusion_taps, bool full) {
-  gpu::Pipeline& pipeline = visibility_[{cascade_count, occlusion_taps, full}];
-  const std::uint32_t scale = full ? 1 : 2;
+    const VisibilityKnobs& knobs) {
+  gpu::Pipeline& pipeline = visibility_[knobs];
+  const std::uint32_t scale = knobs.step;
   if (!pipeline) {
     gpu::ComputePipelineDesc desc;
     desc.name = "visibility";
@@ -26,9 +26,10 @@ Result<graph::ImageHandle> Renderer::declare_visibility(
         {shared::kVisibilityViews, kUniform},   {shared::kVisibilityParams, kUniform},
         {shared::kVisibilityDepth, kTexels},    {shared::kVisibilityNormal, kTexels},
         {shared::kVisibilityCascades, kTexels}, {shared::kVisibilityOut, kStorageImage}};
-    desc.constants = {{shared::kSpecCascades, cascade_count},
-                      {shared::kSpecOcclusionTaps, occlusion_taps},
-                      {shared::kSpecVisibilityScale, scale}};
+    desc.constants = {{shared::kSpecCascades, knobs.cascades},
+                      {shared::kSpecOcclusionTaps, knobs.occlusion_taps},
+                      {shared::kSpecVisibilityScale, scale},
+                      {shared::kSpecShadowTaps, knobs.shadow_samples}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
   if (!visibility_blur_) {
@@ -47,9 +48,9 @@ Result<graph::ImageHandle> Renderer::declare_visibility(
   const Data& taps = graph.add_pass<Data>(
       prefix + "visibility",
       [&](graph::PassBuilder& builder, Data& data) {
-        builder.terms(fmt::format("{}{}{}", cascade_count ? "sun shadows" : "",
-                                  cascade_count && occlusion_taps ? ", " : "",
-                                  occlusion_taps ? "ambient occlusion" : ""));
+        builder.terms(fmt::format("{}{}{}", knobs.cascades ? "sun shadows" : "",
+                                  knobs.cascades && knobs.occlusion_taps ? ", " : "",
+                                  knobs.occlusion_taps ? "ambient occlusion" : ""));
         for (const graph::ImageHandle handle : {gbuffer.depth, gbuffer.normal, cascades})
           if (handle) builder.read(handle, graph::Access::kSampledCompute);
         data.out =

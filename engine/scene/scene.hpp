@@ -16,6 +16,7 @@
 #include "engine/core/result.hpp"
 #include "engine/scene/model.hpp"
 #include "engine/scene/physics_settings.hpp"
+#include "engine/scene/picture_detail.hpp"
 #include "engine/scene/scene_light.hpp"
 #include "engine/scene/scene_water.hpp"
 #include "engine/scene/sonar_settings.hpp"
@@ -122,6 +123,7 @@ struct Camera {
   double rate_hz = 30.0;
   double stereo_baseline_m = 0.0;  // > 0: a stereo pair by one multiview pass
   bool antialias = false;          // smooth edges of the display picture
+  PictureDetail detail;            // how finely that is made
   Exposure exposure;
 };
 

@@ -150,7 +150,14 @@ inline constexpr auto kCameraKeys = std::to_array<Key>({"name",
                                                         "stereo_baseline_m",
                                                         "antialias",
                                                         "exposure",
-                                                        "exposure_compensation_ev"});
+                                                        "exposure_compensation_ev",
+                                                        "quality",
+                                                        "max_error",
+                                                        "detail"});
+
+inline constexpr auto kDetailKeys = std::to_array<Key>(
+    {"resolution", "shadow_size", "cascades", "shadow_samples", "visibility_step",
+     "occlusion_samples", "inscatter_samples", "waves", "scatter_levels", "particles"});
 
 inline constexpr auto kSonarKeys = std::to_array<Key>(
     {"name",           "include",        "on",           "track",         "position_m",

@@ -21,6 +21,42 @@ Exposure read_exposure(TableReader& reader) {
   return exposure;
 }
 
+// The level's knobs, and those that the file turns itself.
+PictureDetail read_detail(TableReader& reader) {
+  PictureDetail detail = picture_level(reader.choice("quality", "standard", kPictureLevels)).detail;
+  if (reader.has("max_error")) {
+    const PictureLevel* level =
+        picture_level_within(reader.number("max_error", 1.0, {0, 1, true, false}));
+    if (reader.has("quality")) {
+      reader.refuse("max_error", "no such key beside quality");
+    } else if (!level) {
+      reader.refuse("max_error",
+                    fmt::format("at least {}, the best level's", picture_level("reference").error));
+    } else {
+      detail = level->detail;
+    }
+  }
+  const TomlValue* table = reader.table("detail");
+  if (!table) return detail;
+  TableReader knobs(reader.source(), *table, reader.path("detail"), kDetailKeys);
+  const auto whole = [&](Key key, std::uint32_t& value, std::int64_t low, std::int64_t high) {
+    value = static_cast<std::uint32_t>(knobs.whole(key, value, low, high));
+  };
+  detail.resolution = knobs.number("resolution", detail.resolution, {0.1, 1});
+  detail.shadow_size = knobs.number("shadow_size", detail.shadow_size, {0.0625, 4});
+  whole("cascades", detail.cascades, 1, 4);
+  whole("shadow_samples", detail.shadow_samples, 1, 64);
+  whole("visibility_step", detail.visibility_step, 1, 4);
+  detail.occlusion_samples =
+      knobs.number("occlusion_samples", detail.occlusion_samples, {0.125, 8});
+  whole("inscatter_samples", detail.inscatter_samples, 1, 64);
+  whole("waves", detail.waves, 1, 48);
+  whole("scatter_levels", detail.scatter_levels, 2, 8);
+  detail.particles = knobs.number("particles", detail.particles, {0, 1});
+  if (!knobs.ok()) reader.fail(knobs.status().error());
+  return detail;
+}
+
 void read_camera(TableReader& reader, Camera& camera) {
   camera.width = static_cast<std::uint32_t>(reader.whole("width", 1280, 1, kMaxPictureSide));
   camera.height = static_cast<std::uint32_t>(reader.whole("height", 720, 1, kMaxPictureSide));
@@ -32,6 +68,7 @@ void read_camera(TableReader& reader, Camera& camera) {
       reader.number("stereo_baseline_m", 0.0, {0, 10, false, false, "metres"});
   camera.antialias = reader.flag("antialias", false);
   camera.exposure = read_exposure(reader);
+  camera.detail = read_detail(reader);
 }
 
 void read_lamp(TableReader& reader, Lamp& lamp) {

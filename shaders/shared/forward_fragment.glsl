@@ -18,6 +18,7 @@ layout(set = 0, binding = kRasterLighting, scalar) uniform Light { Lighting ligh
 
 bool light_has(uint term) { return (light.terms & term) != 0u; }
 uint lamp_count() { return light.lamp_count; }
+uint glow_samples() { return 4u; }
 
 #include "shared/surface.glsl"
 float lamp_seen(uint lamp, vec3 position, vec3 normal) { return 1.0; }

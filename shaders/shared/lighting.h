@@ -93,6 +93,13 @@ NERITIC_CONST uint kShadeGroup = 8;
 // of a loop at least once.
 NERITIC_CONST uint kSpecTerms = 0;
 NERITIC_CONST uint kSpecLamps = 1;
+NERITIC_CONST uint kSpecSeenStep = 2;     // pixels a side to one of the visibility image
+NERITIC_CONST uint kSpecGlowSamples = 3;  // of a lamp's beam along a sight
+NERITIC_CONST uint kSpecSeaSeen = 4;      // with kLightWaves: whether these rows can see the surface
+// Push constant of the shade pass: the first row of workgroups.
+struct ShadePush {
+  uint first_group;
+};
 
 // Bindings of the tonemap pass.
 NERITIC_CONST uint kTonemapHdr = 0;
@@ -103,6 +110,10 @@ NERITIC_CONST uint kSpecLumaInAlpha = 0;
 // Bindings of the antialias pass.
 NERITIC_CONST uint kAntialiasIn = 0;
 NERITIC_CONST uint kAntialiasOut = 1;
+
+// Bindings of the resize pass.
+NERITIC_CONST uint kResizeIn = 0;
+NERITIC_CONST uint kResizeOut = 1;
 
 NERITIC_SHARED_END
 #endif

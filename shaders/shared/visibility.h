@@ -38,6 +38,7 @@ NERITIC_CONST uint kVisibilityOut = 5;
 NERITIC_CONST uint kSpecCascades = 0;  // 0: no sun shadows
 NERITIC_CONST uint kSpecOcclusionTaps = 1;
 NERITIC_CONST uint kSpecVisibilityScale = 2;  // pixels of the picture to one of this, linear
+NERITIC_CONST uint kSpecShadowTaps = 3;
 
 NERITIC_CONST uint kVisibilityBlurIn = 0;
 NERITIC_CONST uint kVisibilityBlurOut = 1;

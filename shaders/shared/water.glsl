@@ -2,7 +2,7 @@
 // Greenstein (1941), Morel (1974) for the phase function of pure sea water. GLSL only.
 // The including file declares `light`, a uniform block of type Lighting (no parameter: the copy of a
 // struct with all its lamps is paid for by every pixel on drivers that do not see through it), and
-// light_has(term) and lamp_count(), from constants where the pipeline knows them.
+// light_has(term), lamp_count() and glow_samples(), from constants where the pipeline knows them.
 #ifndef NERITIC_WATER_GLSL
 #define NERITIC_WATER_GLSL
 #include "shared/phase.h"
@@ -181,8 +181,8 @@ vec3 one_lamp_glow(uint i, vec3 from_lamp, vec3 direction, vec2 part_m, float ne
   float lamp_depth_m = light.origin_depth_m - light.lamps[i].position.y;
   float from_angle = atan(part_m.x - nearest_t, distance_m);
   float to_angle = atan(part_m.y - nearest_t, distance_m);
-  for (uint k = 0u; k < 4u; ++k) {
-    float t = nearest_t + distance_m * tan(mix(from_angle, to_angle, (float(k) + 0.5) * 0.25));
+  for (uint k = 0u; k < glow_samples(); ++k) {
+    float t = nearest_t + distance_m * tan(mix(from_angle, to_angle, (float(k) + 0.5) / float(glow_samples())));
     vec3 travel = from_lamp + direction * t;
     float reach = max(length(travel), 0.05);
     float in_water_m = water_length(lamp_depth_m, lamp_depth_m - travel.y, reach) + t - part_m.x;
@@ -193,14 +193,14 @@ vec3 one_lamp_glow(uint i, vec3 from_lamp, vec3 direction, vec2 part_m, float ne
                   light.water_scattering * sea_water_phase(cosine);
     sum += cone * turned * exp(-min(light.beam_attenuation * in_water_m, vec3(80.0)));
   }
-  return sum * light.lamps[i].intensity_cd * (to_angle - from_angle) / (4.0 * distance_m);
+  return sum * light.lamps[i].intensity_cd * (to_angle - from_angle) / (float(glow_samples()) * distance_m);
 }
 
 // No glow is seen from farther away, m.
 const float kFarthestGlow_m = 100.0;
 
 // Radiance that the water in the lamps' beams sends along a sight from the eye (relative to the origin):
-// single scattering, four samples a lamp, placed equi-angularly (Kulla and Fajardo 2012). Rays that
+// single scattering, glow_samples() a lamp, placed equi-angularly (Kulla and Fajardo 2012). Rays that
 // cross the surface go straight on.
 vec3 lamp_glow(vec3 eye, vec3 direction, float length_m) {
   vec3 sum = vec3(0.0);

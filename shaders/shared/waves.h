@@ -10,6 +10,8 @@
 NERITIC_SHARED_BEGIN
 
 NERITIC_CONST uint kMaxWaves = 48;
+// Attenuation lengths of the clearest channel after which nothing is left of the surface.
+NERITIC_CONST float kSeaFaded = 9.0f;
 
 struct Wave {
   vec2 wave_number;  // 1/m, along world x and z: 2 pi over the wavelength

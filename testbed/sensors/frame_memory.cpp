@@ -11,6 +11,7 @@ struct Picture {
   std::string name;
   std::uint32_t width = 1, height = 1, views = 1;
   Capture capture;
+  scene::PictureDetail detail;
   std::uint64_t pixels() const { return std::uint64_t{width} * height; }
 };
 
@@ -19,12 +20,46 @@ std::vector<Picture> pictures_of(const scene::Scene& scene, const FrameRequest& 
   for (std::size_t i = 0; i < request.cameras.size(); ++i) {
     const scene::Camera& camera = scene.cameras[request.cameras[i]];
     pictures.push_back({"camera " + camera.name, camera.width, camera.height,
-                        camera.stereo_baseline_m > 0.0 ? 2u : 1u, request.camera_capture(i)});
+                        camera.stereo_baseline_m > 0.0 ? 2u : 1u, request.camera_capture(i),
+                        camera.detail});
   }
   for (const ViewsRequest& set : request.views)
-    pictures.push_back(
-        {"views " + set.name, set.views.width, set.views.height, set.views.layers(), set.capture});
+    pictures.push_back({"views " + set.name, set.views.width, set.views.height, set.views.layers(),
+                        set.capture, set.detail});
   return pictures;
+}
+
+// Of the sun's maps of a picture, kept and once more where something moves over them.
+std::uint64_t sun_map_bytes(const scene::Scene& scene, const Picture& picture) {
+  if (!picture.capture.color || !scene.sun || !scene.sun->shadows) return 0;
+  const double side = scene.sun->shadows->size * picture.detail.shadow_size;
+  const auto layers = std::min(scene.sun->shadows->cascades, picture.detail.cascades);
+  return static_cast<std::uint64_t>(2.0 * 4.0 * side * side) * layers;
+}
+
+// A pixel's, of what the scene's terms add: visibility, what forward scatter spreads.
+std::uint64_t term_bytes(const scene::Scene& scene) {
+  std::uint64_t bytes = 0;
+  if ((scene.sun && scene.sun->shadows) || (scene.ambient && scene.ambient->occlusion_m > 0.0))
+    bytes += 8;
+  if (scene.water && scene.water->forward_scatter) bytes += 9;
+  return bytes;
+}
+
+// Of what all pictures share: lamps' maps, the caustics' tile.
+std::uint64_t shared_light_bytes(const scene::Scene& scene) {
+  std::uint64_t bytes = 0, lamps = 0, side = 0;
+  for (const scene::Lamp& lamp : scene.lamps) {
+    if (!lamp.shadows) continue;
+    ++lamps;
+    side = std::max<std::uint64_t>(side, lamp.shadow_size);
+  }
+  bytes += lamps * 4 * side * side;
+  if (scene.sun && scene.sun->caustics) {
+    const std::uint64_t texels = scene.sun->caustics->texels;
+    bytes += texels * texels * (8 * 4 + 2 * 8);  // sums of eight levels, and two layers of halves
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -33,13 +68,16 @@ std::uint64_t host_bytes(const gpu::Device& device, const scene::Scene& scene,
                          const FrameRequest& request) {
   // Measured, a pixel: the device's images and read-backs; the host's arrays and their files.
   constexpr std::uint64_t kDevice_bytes = 36;
-  std::uint64_t bytes = 0;
+  const bool on_cpu = device.info().kind == "CPU";
+  std::uint64_t bytes = on_cpu ? shared_light_bytes(scene) : 0;
   for (const Picture& picture : pictures_of(scene, request)) {
+    if (on_cpu) bytes += sun_map_bytes(scene, picture);
     const Capture& capture = picture.capture;
     const std::uint64_t at_host = capture.color * 16 + capture.depth * 8 + capture.normals * 24 +
                                   capture.labels * 4 + capture.instances * 4 + capture.motion * 16;
     bytes += picture.pixels() * picture.views *
-             ((device.info().kind == "CPU" ? kDevice_bytes : 0) + (capture.to_host ? at_host : 0));
+             ((on_cpu ? kDevice_bytes + (capture.color ? term_bytes(scene) : 0) : 0) +
+              (capture.to_host ? at_host : 0));
   }
   return bytes;
 }

@@ -42,6 +42,7 @@ struct ViewsRequest {
   render::ViewSet views;
   scene::Exposure exposure;
   bool antialias = false;
+  scene::PictureDetail detail = {};  // what the camera's file says, or a governor
   Capture capture = kColorOnGpu;
 };
 

@@ -48,6 +48,9 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Sce
   NERITIC_TRY(session->gpu_scene_, render::GpuScene::create(device, session->scene_,
                                                             session->renderer_->material_layout()));
   NERITIC_TRY(EchoTables tables, EchoTables::create(device, session->scene_));
+  session->sun_maps_ = std::make_unique<SunMaps>();
+  session->moving_ = render::moving_objects(session->scene_);
+  for (const std::uint8_t moves : session->moving_) session->still_.push_back(moves ? 0 : 1);
   session->echo_tables_ = std::make_unique<EchoTables>(std::move(tables));
   return session;
 }
@@ -86,9 +89,9 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   NERITIC_TRY(const render::DeformedGeometry deformed,
               renderer_->declare_deform(graph, *gpu_scene_, work.state));
   const FrameParts parts{
-      graph,     device_,    *renderer_, scene_,    *gpu_scene_,
-      motion,    work.state, deformed,   readback_, request.seed.value_or(scene_.seed),
-      work.light};
+      graph,      device_,    *renderer_, scene_,    *gpu_scene_,
+      motion,     work.state, deformed,   readback_, request.seed.value_or(scene_.seed),
+      work.light, *sun_maps_, moving_,    still_};
   const auto add = [&](const std::string& label, const ViewsRequest& set, std::size_t index,
                        auto& works, std::vector<SensorFrame::Views>& out) -> Status {
     works.push_back(std::make_unique<FrameWork::Picture>());
@@ -105,7 +108,7 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
     NERITIC_TRY_STATUS(
         add("camera " + camera.name,
             {camera.name, camera_views(motion, camera, request.time_s, request.next_time_s),
-             camera.exposure, camera.antialias, request.camera_capture(k)},
+             camera.exposure, camera.antialias, camera.detail, request.camera_capture(k)},
             i, work.cameras, frame->cameras));
   }
   for (std::size_t i = 0; i < request.views.size(); ++i)

@@ -22,6 +22,7 @@ namespace neritic::testbed {
 
 struct EchoTables;
 class SonarSensor;
+class SunMaps;
 
 class Session {
  public:
@@ -68,6 +69,8 @@ class Session {
   std::unique_ptr<EchoTables> echo_tables_;
   std::vector<std::unique_ptr<SonarSensor>> sonars_;  // the scene's, as far as asked for
   ReadbackPool readback_;
+  std::unique_ptr<SunMaps> sun_maps_;
+  std::vector<std::uint8_t> moving_, still_;  // flags by object
   std::string plan_text_, plan_graphviz_;
   bool keep_dump_ = false;
   std::uint64_t room_found_bytes_ = 0;  // the largest frame so far that memory sufficed for

@@ -70,71 +70,105 @@ Status declare_shared_light(const FrameParts& frame, const ViewsWork& work,
   return {};
 }
 
+std::uint32_t times(std::uint32_t named, double factor, double least, double most) {
+  return static_cast<std::uint32_t>(std::clamp(std::round(named * factor), least, most));
+}
+
+std::uint32_t visibility_step(const scene::Scene& scene, const scene::PictureDetail& detail) {
+  const bool full = scene.sun && scene.sun->shadows && scene.sun->shadows->full_resolution;
+  return full ? 1 : detail.visibility_step;
+}
+
 // What stands in the light's way; sets the terms of what is there.
 Result<render::LightImages> declare_light(const FrameParts& frame, const std::string& prefix,
-                                          const render::GBuffer& g, ViewsWork& work,
+                                          const render::GBuffer& g, const render::ViewSet& views,
+                                          const scene::PictureDetail& detail, ViewsWork& work,
                                           shared::Lighting& lighting) {
   render::LightImages light;
   const scene::Scene& scene = frame.scene;
   const auto* shadows = scene.sun && scene.sun->shadows ? &*scene.sun->shadows : nullptr;
-  const std::uint32_t taps =
-      scene.ambient && scene.ambient->occlusion_m > 0.0 ? scene.ambient->occlusion_samples : 0;
+  render::VisibilityKnobs knobs{.shadow_samples = detail.shadow_samples,
+                                .step = visibility_step(scene, detail)};
+  if (scene.ambient && scene.ambient->occlusion_m > 0.0)
+    knobs.occlusion_taps = times(scene.ambient->occlusion_samples, detail.occlusion_samples, 1, 64);
   graph::ImageHandle cascades;
   // Without a beam nothing throws a shadow: at night, or under full cloud.
   if (shadows && lighting.direct_share > 0.0f) {
-    work.cascades =
-        render::shadow_maps(scene, frame.gpu_scene, frame.state,
-                            render::sun_views(work.views, *shadows, Vec3(lighting.to_sun)));
-    NERITIC_TRY(cascades,
-                frame.renderer.declare_shadow_maps(frame.graph, prefix + "sun shadows",
-                                                   frame.gpu_scene, frame.deformed, work.cascades));
+    scene::SunShadows settings = *shadows;
+    settings.size = times(settings.size, detail.shadow_size, 64, 4096);
+    settings.cascades = std::min(settings.cascades, detail.cascades);
+    work.cascades = render::sun_views(work.views, settings, Vec3(lighting.to_sun));
+    knobs.cascades = settings.cascades;
+    NERITIC_TRY(cascades, frame.sun_maps.declare(frame, prefix, work));
   }
   NERITIC_TRY_STATUS(declare_shared_light(frame, work, lighting, light));
-  if (!cascades && taps == 0) return light;
+  if (!cascades && knobs.occlusion_taps == 0) return light;
   lighting.terms |= shared::kLightSeen;
   NERITIC_TRY(light.seen, frame.renderer.declare_visibility(
-                              frame.graph, prefix, g, work.views,
-                              render::visibility_params(scene, work.views, lighting, work.cascades),
-                              cascades, static_cast<std::uint32_t>(work.cascades.size()), taps,
-                              shadows && shadows->full_resolution));
+                              frame.graph, prefix, g, views,
+                              render::visibility_params(scene, views, lighting, work.cascades),
+                              cascades, knobs));
   return light;
 }
 
 // The tonemapped picture of a surface G-buffer.
 Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::string& prefix,
-                                         const render::GBuffer& g, const ViewsRequest& request,
+                                         const render::GBuffer& g, const render::ViewSet& views,
+                                         const render::DrawList& draws, const ViewsRequest& request,
                                          ViewsWork& work) {
+  const scene::PictureDetail& detail = request.detail;
   NERITIC_TRY(shared::Lighting lighting,
-              render::make_lighting(frame.scene, frame.state, work.views.origin_m(),
-                                    request.exposure, frame.gpu_scene.has_emission()));
-  NERITIC_TRY(const render::LightImages light, declare_light(frame, prefix, g, work, lighting));
+              render::make_lighting(frame.scene, frame.state, views.origin_m(), request.exposure,
+                                    frame.gpu_scene.has_emission()));
+  NERITIC_TRY(const render::LightImages light,
+              declare_light(frame, prefix, g, views, detail, work, lighting));
   graph::ImageHandle scattered;
   std::optional<shared::Waves> waves;
-  if (lighting.terms & shared::kLightWaves)
-    waves = render::gpu_waves(SeaWaves(*frame.scene.water->waves), work.views.origin_m(),
+  if (lighting.terms & shared::kLightWaves) {
+    waves = render::gpu_waves(SeaWaves(*frame.scene.water->waves), views.origin_m(),
                               frame.state.time_s);
+    // The slopes of what is left out count among those that no pixel resolves.
+    waves->count = std::min(waves->count, detail.waves);
+  }
   NERITIC_TRY(graph::ImageHandle hdr,
-              frame.renderer.declare_shade(
-                  frame.graph, prefix,
-                  {g, work.views, lighting, light, &scattered, waves ? &*waves : nullptr}));
-  NERITIC_TRY(hdr,
-              frame.renderer.declare_forward(frame.graph, prefix, hdr, g, frame.gpu_scene,
-                                             frame.deformed, work.views, work.draws, lighting));
+              frame.renderer.declare_shade(frame.graph, prefix,
+                                           {.gbuffer = g,
+                                            .views = views,
+                                            .lighting = lighting,
+                                            .light = light,
+                                            .scattered = &scattered,
+                                            .waves = waves ? &*waves : nullptr,
+                                            .visibility_step = visibility_step(frame.scene, detail),
+                                            .inscatter_samples = detail.inscatter_samples}));
+  NERITIC_TRY(hdr, frame.renderer.declare_forward(frame.graph, prefix, hdr, g, frame.gpu_scene,
+                                                  frame.deformed, views, draws, lighting));
   if (scattered) {
+    scene::ForwardScatter scatter = *frame.scene.water->forward_scatter;
+    scatter.levels = std::min(scatter.levels, detail.scatter_levels);
     NERITIC_TRY(hdr, frame.renderer.water().declare_forward_scatter(
-                         frame.graph, prefix, hdr, scattered, g, work.views, lighting,
-                         *frame.scene.water->forward_scatter));
+                         frame.graph, prefix, hdr, scattered, g, views, lighting, scatter));
   }
   if (render::has_particles(frame.scene)) {
     const double time_s = frame.state.time_s, step_s = frame.state.next_time_s - time_s;
-    work.particles = render::view_particles(frame.motion, frame.scene.seed, work.views, time_s);
+    work.particles =
+        render::view_particles(frame.motion, frame.scene.seed, views, time_s, detail.particles);
     const double shutter = step_s > 0.0 ? work.particles.shutter_s / step_s : 0.0;
-    NERITIC_TRY(hdr, frame.renderer.water().declare_particles(
-                         frame.graph, prefix, hdr, g, work.views, lighting,
-                         work.particles.particles, static_cast<float>(shutter)));
+    NERITIC_TRY(hdr, frame.renderer.water().declare_particles(frame.graph, prefix, hdr, g, views,
+                                                              lighting, work.particles.particles,
+                                                              static_cast<float>(shutter)));
   }
-  return frame.renderer.declare_picture(frame.graph, prefix, hdr, g.width, g.height, g.layers,
-                                        request.antialias);
+  NERITIC_TRY(const graph::ImageHandle color,
+              frame.renderer.declare_picture(frame.graph, prefix, hdr, g.width, g.height, g.layers,
+                                             request.antialias));
+  const render::ViewSet& asked = work.views;
+  if (g.width == asked.width && g.height == asked.height) return color;
+  return frame.renderer.declare_resize(frame.graph, prefix, color, asked.width, asked.height,
+                                       g.layers);
+}
+
+// A side of the picture as it is shaded.
+std::uint32_t shaded(std::uint32_t side, double resolution) {
+  return std::max(static_cast<std::uint32_t>(std::lround(side * resolution)), 1u);
 }
 
 }  // namespace
@@ -194,29 +228,46 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
   NERITIC_TRY_STATUS(check_size(frame.device, label, request.views));
   work.views = request.views;
   work.capture = capture;
-  work.draws = render::build_draw_list(frame.scene, frame.gpu_scene, frame.state, work.views);
   const std::string prefix = request.name + " ";
+  const auto declare = [&](const std::string& name, render::GBufferKind kind,
+                           const render::ViewSet& views, render::DrawList& draws,
+                           const render::GBufferParts& parts) {
+    draws = render::build_draw_list(frame.scene, frame.gpu_scene, frame.state, views);
+    return frame.renderer.declare_gbuffer(frame.graph, name, kind, frame.gpu_scene, frame.state,
+                                          frame.deformed, views, draws, parts);
+  };
+  const bool coarse = capture.color && request.detail.resolution < 1.0;
+  SensorFrame::Views out{.near_m = work.views.views.front().near_m,
+                         .width = work.views.width,
+                         .height = work.views.height,
+                         .layers = work.views.layers()};
   // With or without colour the same geometry: single-sided materials, no blended ones in the depth.
-  const auto kind = capture.color ? render::GBufferKind::kSurface : render::GBufferKind::kShape;
-  NERITIC_TRY(
-      const render::GBuffer g,
-      frame.renderer.declare_gbuffer(frame.graph, prefix, kind, frame.gpu_scene, frame.state,
-                                     frame.deformed, work.views, work.draws,
-                                     capture.color ? render::GBufferParts{} : parts_of(capture)));
-  SensorFrame::Views out{.depth = g.depth,
-                         .normal = g.normal,
-                         .label = g.label,
-                         .near_m = work.views.views.front().near_m,
-                         .width = g.width,
-                         .height = g.height,
-                         .layers = g.layers};
-  if (capture.color) {
-    NERITIC_TRY(out.color, declare_color(frame, prefix, g, request, work));
+  render::GBuffer g;
+  if (!coarse || capture.geometry() || capture.motion) {
+    const bool surface = capture.color && !coarse;
+    NERITIC_TRY(
+        g, declare(prefix, surface ? render::GBufferKind::kSurface : render::GBufferKind::kShape,
+                   work.views, work.draws, surface ? render::GBufferParts{} : parts_of(capture)));
+    out.depth = g.depth;
+    out.normal = g.normal;
+    out.label = g.label;
+  }
+  if (coarse) {
+    work.shaded_views = work.views;
+    work.shaded_views.width = shaded(work.views.width, request.detail.resolution);
+    work.shaded_views.height = shaded(work.views.height, request.detail.resolution);
+    NERITIC_TRY(const render::GBuffer shading,
+                declare(prefix + "shaded ", render::GBufferKind::kSurface, work.shaded_views,
+                        work.shaded_draws, {}));
+    NERITIC_TRY(out.color, declare_color(frame, prefix, shading, work.shaded_views,
+                                         work.shaded_draws, request, work));
+  } else if (capture.color) {
+    NERITIC_TRY(out.color, declare_color(frame, prefix, g, work.views, work.draws, request, work));
   }
   if (!capture.to_host) return out;
   const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {
-    return frame.readback.declare(frame.graph, frame.device, prefix + name, image, format, g.width,
-                                  g.height, g.layers);
+    return frame.readback.declare(frame.graph, frame.device, prefix + name, image, format,
+                                  out.width, out.height, out.layers);
   };
   if (capture.color) {
     NERITIC_TRY(work.color, bring("color", out.color, render::kColorFormat));

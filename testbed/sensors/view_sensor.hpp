@@ -2,6 +2,8 @@
 // testbed/sensors; rendering thread.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/render/particles.hpp"
@@ -10,6 +12,7 @@
 #include "testbed/sensors/frame_result.hpp"
 #include "testbed/sensors/readback.hpp"
 #include "testbed/sensors/sensor_frame.hpp"
+#include "testbed/sensors/sun_maps.hpp"
 
 namespace neritic::testbed {
 
@@ -18,6 +21,8 @@ struct FrameLight {
   bool lamps_known = false;
   std::vector<render::ShadowMap> lamps;  // those with shadows
   graph::ImageHandle lamp_maps, caustics;
+  bool still_known = false;
+  std::uint64_t still = 0;  // render::still_hash
 };
 
 // Shared by all sensors of a frame while it is declared.
@@ -33,6 +38,9 @@ struct FrameParts {
   ReadbackPool& readback;
   std::uint64_t seed = 0;  // of noise and speckle
   FrameLight& light;
+  SunMaps& sun_maps;
+  // Flags by object: what may move, and its opposite.
+  std::span<const std::uint8_t> moving, still;
 };
 
 // A view set in one frame: data that the passes borrow, and the buffers that the host reads.
@@ -40,9 +48,13 @@ struct ViewsWork {
   render::ViewSet views;
   Capture capture;
   render::DrawList draws;
-  std::vector<render::ShadowMap> cascades;       // of the sun; empty where it throws no shadows
-  render::ViewParticles particles;               // of the scene's water
-  Readback depth, normal, label, color, motion;  // empty where they were not asked for
+  // Where capture asks for arrays and shading has fewer pixels: the shading's own.
+  render::ViewSet shaded_views;
+  render::DrawList shaded_draws;
+  std::vector<render::ViewSet> cascades;  // of the sun; empty where it throws no shadows
+  std::vector<render::ShadowMap> still_maps, moving_maps;  // of them, drawn in this frame
+  render::ViewParticles particles;                         // of the scene's water
+  Readback depth, normal, label, color, motion;            // empty where they were not asked for
   bool at_host() const { return depth || normal || label || color || motion; }
 };
 

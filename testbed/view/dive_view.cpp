@@ -196,7 +196,8 @@ void DiveView::add_views(FrameRequest& request) {
     const xr::ViewGroup& group = frame_.groups[i];
     ViewsRequest views{.name = i == 0 ? camera.name : fmt::format("{} {}", camera.name, i),
                        .exposure = camera.exposure,
-                       .antialias = camera.antialias};
+                       .antialias = camera.antialias,
+                       .detail = camera.detail};
     const double scale = view_scale();
     timeline_.current().view_scale = scale;
     views.views.width = scaled(group.width, scale);

@@ -158,6 +158,7 @@ TEST(SceneAssets, TheFormatsPageHasEveryKey) {
                              KeyList(kTrackKeys),
                              KeyList(kLawnMowerKeys),
                              KeyList(kCameraKeys),
+                             KeyList(kDetailKeys),
                              KeyList(kSonarKeys),
                              KeyList(kSonarWaterKeys),
                              KeyList(kSonarLevelKeys),

@@ -13,8 +13,8 @@ namespace neritic::bench {
 
 // The last three need no device.
 inline constexpr std::string_view kGroups[] = {
-    "sonar_binning", "sonar_frame", "sonar_terms", "camera_frame", "sweep", "deco",
-    "start",         "threads",     "physics",     "contacts",     "diver"};
+    "sonar_binning", "sonar_frame", "sonar_terms", "camera_frame", "picture_terms", "sweep",
+    "deco",          "start",       "threads",     "physics",      "contacts",      "diver"};
 inline constexpr std::size_t kGroupsWithoutDevice = 3;
 
 Status bench_physics(Suite& suite);                             // vehicles, hand-off of states
@@ -25,6 +25,7 @@ Status bench_sonar_binning(Suite& suite, gpu::Device& device);  // the gather ag
 Status bench_sonar_frame(Suite& suite, gpu::Device& device);    // whole frames, one sonar and ten
 Status bench_sonar_terms(Suite& suite, gpu::Device& device);    // a frame with each term named
 Status bench_camera_frame(Suite& suite, gpu::Device& device);   // pictures, many instances
+Status bench_picture_terms(Suite& suite, gpu::Device& device);  // each term of a picture
 Status bench_sweeps(Suite& suite, gpu::Device& device);         // cost against sizes
 Status bench_deco(Suite& suite);  // plans, views, tissues of many divers; no GPU
 Status bench_start(Suite& suite, gpu::Device& device);               // process start to picture

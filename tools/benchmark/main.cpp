@@ -54,6 +54,7 @@ Status run_on_device(Suite& suite, std::string& name) {
   NERITIC_TRY_STATUS(bench_sonar_frame(suite, *device));
   NERITIC_TRY_STATUS(bench_sonar_terms(suite, *device));
   NERITIC_TRY_STATUS(bench_camera_frame(suite, *device));
+  NERITIC_TRY_STATUS(bench_picture_terms(suite, *device));
   NERITIC_TRY_STATUS(bench_sweeps(suite, *device));
   NERITIC_TRY_STATUS(bench_deco(suite));
   if (!suite.options().once) NERITIC_TRY_STATUS(bench_start(suite, *device));
@@ -88,7 +89,8 @@ constexpr Flag kFlags[] = {
     {"--json", "also write the results to this file", &Options::json},
     {"--filter",
      "only groups whose name holds this: sonar_binning, sonar_frame, sonar_terms, camera_frame,\n"
-     "             sweep, deco, start, threads, physics, contacts, diver; or one GROUP/NAME",
+     "             picture_terms, sweep, deco, start, threads, physics, contacts, diver; or one "
+     "GROUP/NAME",
      &Options::filter},
     {"--device", "Vulkan device: index or part of its name", &Options::device},
     {"--assets", "the folder that holds scenes/", &Options::assets},

@@ -397,8 +397,8 @@ void add_tradeoff(CLI::App& app, Run& run) {
       "tradeoff", "measures the error of a model against its cost, over all of its settings");
   command
       ->add_option("what", flags->what,
-                   "sonar, physics, navigation, swim, deco, physiology, modem, network, xr or "
-                   "experiment (time to block and success of the task `shark`)")
+                   "sonar, physics, navigation, swim, deco, physiology, modem, network, xr, camera, "
+                   "optics or experiment (time to block and success of the task `shark`)")
       ->required();
   command
       ->add_option("--out", flags->out,
@@ -408,7 +408,8 @@ void add_tradeoff(CLI::App& app, Run& run) {
   command
       ->add_option("scene,--scene", flags->scene,
                    "sonar: the scene whose first sonar gives the place; none: only scenes with a "
-                   "closed-form answer; xr: whose first camera is the head (dive.toml); network: "
+                   "closed-form answer; xr: whose first camera is the head (dive.toml); camera: "
+                   "whose first camera it is (wreck.toml); network: "
                    "one with [sources] (lab.toml)")
       ->capture_default_str();
   command->add_option(

@@ -9,10 +9,12 @@
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/load_scene.hpp"
+#include "tools/tradeoff/camera_tradeoff.hpp"
 #include "tools/tradeoff/deco_tradeoff.hpp"
 #include "tools/tradeoff/modem_tradeoff.hpp"
 #include "tools/tradeoff/navigation_tradeoff.hpp"
 #include "tools/tradeoff/network_tradeoff.hpp"
+#include "tools/tradeoff/optics_tradeoff.hpp"
 #include "tools/tradeoff/physics_tradeoff.hpp"
 #include "tools/tradeoff/physiology_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
@@ -114,6 +116,33 @@ Result<std::string> trade_xr(const TradeoffFlags& flags) {
   return files(flags, "xr", drawn);
 }
 
+Result<std::string> trade_camera(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return refusal("tradeoff camera", fmt::format("kind '{}'", flags.kind), "none");
+  CameraTradeoffOptions options;
+  if (flags.scene != TradeoffFlags().scene) options.scene = flags.scene;
+  options.device = flags.device;
+  options.quick = flags.quick;
+  Progress progress("tradeoff camera", steps(options));
+  options.step = [&] { progress.step(); };
+  NERITIC_TRY(const CameraTradeoff tradeoff, run_camera_tradeoff(options));
+  NERITIC_TRY(const bool drawn, write_camera_tradeoff(flags.out, tradeoff));
+  return files(flags, "camera", drawn);
+}
+
+Result<std::string> trade_optics(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return refusal("tradeoff optics", fmt::format("kind '{}'", flags.kind), "none");
+  OpticsTradeoffOptions options;
+  options.device = flags.device;
+  options.quick = flags.quick;
+  Progress progress("tradeoff optics", steps(options));
+  options.step = [&] { progress.step(); };
+  NERITIC_TRY(const OpticsTradeoff tradeoff, run_optics_tradeoff(options));
+  NERITIC_TRY(const bool drawn, write_optics_tradeoff(flags.out, tradeoff));
+  return files(flags, "optics", drawn);
+}
+
 Result<std::string> trade_network(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
     return refusal("tradeoff network", fmt::format("kind '{}'", flags.kind), "none");
@@ -202,9 +231,11 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "xr") return trade_xr(flags);
   if (flags.what == "network") return trade_network(flags);
   if (flags.what == "experiment") return trade_experiment(flags);
+  if (flags.what == "camera") return trade_camera(flags);
+  if (flags.what == "optics") return trade_optics(flags);
   return refusal("tradeoff", fmt::format("'{}'", flags.what),
-                 "sonar, physics, navigation, swim, deco, physiology, modem, network, xr or "
-                 "experiment");
+                 "sonar, physics, navigation, swim, deco, physiology, modem, network, xr, "
+                 "experiment, camera or optics");
 }
 
 }  // namespace neritic::tools

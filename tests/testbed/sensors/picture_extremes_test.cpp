@@ -1,0 +1,190 @@
+// Pictures with every term of light and water at extremes: no pixel that is not a number (the tone
+// curve makes those black), nothing that flickers where eye or time move by next to nothing.
+#include <gtest/gtest.h>
+
+#include "engine/scene/shapes.hpp"
+#include "testbed/sensors/session.hpp"
+#include "tests/support/gpu_fixture.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+using PictureExtremes = test::GpuTest;
+
+struct Place {
+  Vec3 eye_m{0.0, -5.0, 0.0};
+  double pitch_rad = -0.2, yaw_rad = 0.0, sun_rad = radians(50.0), bed_m = 8.0;
+  std::optional<double> ev = {};
+  Vec3 shift_m{0.0};
+  bool particles = true;
+};
+
+scene::Scene everything(const Place& place) {
+  scene::Scene scene;
+  scene.path = "test";
+  scene.sun = scene::Sun{.elevation_rad = place.sun_rad, .azimuth_rad = 0.0};
+  scene.sun->shadows = scene::SunShadows{.size = 256, .cascades = 2};
+  scene.sun->caustics = scene::Caustics{.texels = 64};
+  scene.ambient = scene::Ambient{.bottom_depth_m = place.bed_m, .occlusion_m = 0.5};
+  scene::Water water{.type = "IB", .scattering = true, .surface = true};
+  water.forward_scatter = scene::ForwardScatter{};
+  water.waves = SeaState{};
+  water.murk = scene::Murk{.bed_depth_m = place.bed_m};
+  if (place.particles) {
+    water.snow = scene::Snow{};
+    scene::BubbleSource bubbles;
+    bubbles.object = 1;
+    water.bubbles = {bubbles};
+    scene::SiltSource silt;
+    silt.object = 1;
+    silt.bed_depth_m = place.bed_m;
+    silt.reach_m = 20.0;
+    water.silt = {silt};
+  }
+  scene.water = water;
+  const auto add = [&](const Vec3& size_m, const Vec3& at_m) {
+    scene.models.push_back(std::make_shared<scene::Model>(scene::make_box(size_m)));
+    scene::Object object;
+    object.name = fmt::format("box_{}", scene.objects.size());
+    object.model = static_cast<int>(scene.models.size()) - 1;
+    object.class_id = 1;
+    object.instance = static_cast<std::uint16_t>(scene.objects.size() + 1);
+    object.mount.pose.position_m = at_m + place.shift_m;
+    scene.objects.push_back(object);
+  };
+  add({40.0, 1.0, 40.0}, {0.0, -place.bed_m - 0.5, 0.0});
+  add({1.0, 1.0, 1.0}, {0.5, -place.bed_m + 0.5, -3.0});
+  scene::Lamp lamp;
+  lamp.name = "lamp";
+  lamp.shadows = true;
+  lamp.shadow_size = 128;
+  lamp.mount.pose.position_m = place.eye_m + Vec3(0.3, 0.1, 0.0) + place.shift_m;
+  scene.lamps.push_back(lamp);
+  scene::Camera camera;
+  camera.name = "eye";
+  camera.width = 96;
+  camera.height = 64;
+  camera.exposure.fixed_ev = place.ev;
+  camera.mount.pose = {place.eye_m + place.shift_m,
+                       glm::angleAxis(place.yaw_rad, Vec3(0.0, 1.0, 0.0)) *
+                           glm::angleAxis(place.pitch_rad, Vec3(1.0, 0.0, 0.0))};
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+Result<ImageU8> shown(gpu::Device& device, const Place& place, double time_s = 2.0) {
+  NERITIC_TRY(const auto session, Session::create(device, everything(place)));
+  FrameRequest request;
+  request.cameras = {0};
+  request.time_s = time_s;
+  request.next_time_s = time_s + 1.0 / 30.0;
+  request.capture = Capture{.motion = false}.without_geometry();
+  NERITIC_TRY(FrameResult result, session->render(request));
+  return std::move(result.cameras[0].eyes[0].color);
+}
+
+int luma(const ImageU8& image, std::uint32_t x, std::uint32_t y) {
+  return (2 * image.at(x, y, 0) + 5 * image.at(x, y, 1) + image.at(x, y, 2)) / 8;
+}
+
+// Black pixels among pixels that are not dark.
+int holes(const ImageU8& image) {
+  int count = 0;
+  for (std::uint32_t y = 1; y + 1 < image.height; ++y)
+    for (std::uint32_t x = 1; x + 1 < image.width; ++x)
+      if (luma(image, x, y) == 0 && luma(image, x - 1, y) + luma(image, x + 1, y) +
+                                            luma(image, x, y - 1) + luma(image, x, y + 1) >
+                                        80)
+        ++count;
+  return count;
+}
+
+double mean_difference(const ImageU8& a, const ImageU8& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.data.size(); ++i) sum += std::abs(int(a.data[i]) - int(b.data[i]));
+  return sum / static_cast<double>(a.data.size());
+}
+
+TEST_F(PictureExtremes, HaveNoHolesAndDoNotFlicker) {
+  const double sun_in_water = std::acos(std::cos(radians(50.0)) / 1.333);
+  const std::pair<const char*, Place> places[] = {
+      {"at the surface", {.eye_m = {0.0, 0.0, 0.0}, .particles = false}},
+      {"just under it", {.eye_m = {0.0, -1e-6, 0.0}, .pitch_rad = 0.1, .particles = false}},
+      {"just over it", {.eye_m = {0.0, 1e-6, 0.0}, .pitch_rad = 0.1, .particles = false}},
+      {"in silt", {.eye_m = {0.5, -7.5, -3.0}, .particles = true}},
+      {"facing the sun", {.pitch_rad = sun_in_water, .particles = false}},
+      {"straight up", {.pitch_rad = kPi / 2, .particles = false}},
+      {"1000 m deep", {.eye_m = {0.0, -998.0, 0.0}, .bed_m = 1000.0}},
+      {"sun on the horizon", {.sun_rad = 0.0}},
+      {"sun below the horizon", {.sun_rad = radians(-20.0)}},
+      {"1e7 m away", {.shift_m = {1e7, 0.0, -1e7}, .particles = false}},
+  };
+  for (const auto& [name, place] : places) {
+    NERITIC_ASSERT_OK(const ImageU8 first, shown(device(), place));
+    EXPECT_EQ(holes(first), 0) << name;
+    Place nudged = place;
+    nudged.eye_m.x += 1e-4;
+    NERITIC_ASSERT_OK(const ImageU8 second, shown(device(), nudged));
+    EXPECT_LT(mean_difference(first, second), 1.0) << name;
+  }
+}
+
+TEST_F(PictureExtremes, ExposureOverTwentyStopsGoesFromBlackToWhiteWithoutHoles) {
+  double last = 1e9;
+  for (const double ev : {3.0, 7.0, 11.0, 15.0, 19.0, 23.0}) {
+    NERITIC_ASSERT_OK(const ImageU8 picture, shown(device(), {.ev = ev, .particles = false}));
+    EXPECT_EQ(holes(picture), 0) << ev;
+    double mean = 0.0;
+    for (const std::uint8_t value : picture.data) mean += value;
+    mean /= static_cast<double>(picture.data.size());
+    EXPECT_LE(mean, last) << ev;
+    last = mean;
+  }
+  EXPECT_LT(last, 1.0);
+}
+
+TEST_F(PictureExtremes, AStillSceneChangesByLessThanALevelAFrame) {
+  const Place place{.particles = false};
+  NERITIC_ASSERT_OK(const ImageU8 now, shown(device(), place, 2.0));
+  NERITIC_ASSERT_OK(const ImageU8 next, shown(device(), place, 2.0 + 1.0 / 30.0));
+  EXPECT_LT(mean_difference(now, next), 1.0);
+}
+
+TEST_F(PictureExtremes, EachTermIsInTheGraphOnlyWhereItIsNamed) {
+  const auto plan_of = [&](const std::function<void(scene::Scene&)>& without) {
+    scene::Scene scene = everything({});
+    without(scene);
+    auto session = Session::create(device(), std::move(scene));
+    EXPECT_TRUE(session.ok());
+    (*session)->keep_plan_dump(true);
+    FrameRequest request;
+    request.cameras = {0};
+    request.time_s = 2.0;
+    EXPECT_TRUE((*session)->render(request).ok());
+    return std::pair((*session)->plan_text(), (*session)->executor().transient_bytes());
+  };
+  const auto [all, all_bytes] = plan_of([](scene::Scene&) {});
+  const std::tuple<const char*, const char*, std::function<void(scene::Scene&)>> terms[] = {
+      {"shadows", "eye sun shadows", [](scene::Scene& s) { s.sun->shadows.reset(); }},
+      {"caustics", "caustics", [](scene::Scene& s) { s.sun->caustics.reset(); }},
+      {"occlusion", "ambient occlusion", [](scene::Scene& s) { s.ambient.reset(); }},
+      {"forward scatter", "forward scatter",
+       [](scene::Scene& s) { s.water->forward_scatter.reset(); }},
+      {"particles", "particles",
+       [](scene::Scene& s) {
+         s.water->snow.reset();
+         s.water->bubbles.clear();
+         s.water->silt.clear();
+       }},
+      {"lamp shadows", "lamp shadows", [](scene::Scene& s) { s.lamps[0].shadows = false; }},
+  };
+  for (const auto& [name, pass, without] : terms) {
+    EXPECT_NE(all.find(pass), std::string::npos) << name;
+    const auto [plan, bytes] = plan_of(without);
+    EXPECT_EQ(plan.find(pass), std::string::npos) << name;
+    EXPECT_LE(bytes, all_bytes) << name;
+  }
+}
+
+}  // namespace
+}  // namespace neritic::testbed

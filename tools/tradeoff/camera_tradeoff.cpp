@@ -1,0 +1,220 @@
+#include "tools/tradeoff/camera_tradeoff.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
+#include "engine/core/refusal.hpp"
+#include "testbed/sensors/session.hpp"
+#include "tools/common/curves.hpp"
+#include "tools/common/picture.hpp"
+
+namespace neritic::tools {
+namespace {
+
+using scene::PictureDetail;
+
+struct Setting {
+  std::string knob, value;
+  PictureDetail detail;
+};
+
+// Each knob over its range, the others at the level "standard"; then the levels.
+std::vector<Setting> settings_of(bool quick) {
+  std::vector<Setting> out;
+  const auto knob = [&](const std::string& name, const std::vector<double>& values, auto turn) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (quick && i > 0 && i + 1 < values.size()) continue;
+      Setting setting{name, fmt::format("{:g}", values[i]), {}};
+      turn(setting.detail, values[i]);
+      out.push_back(std::move(setting));
+    }
+  };
+  const auto whole = [](double value) { return static_cast<std::uint32_t>(value); };
+  knob("resolution", {0.25, 0.35, 0.5, 0.7, 0.85, 1.0},
+       [](PictureDetail& d, double v) { d.resolution = v; });
+  knob("shadow_size", {0.125, 0.25, 0.5, 1.0, 2.0},
+       [](PictureDetail& d, double v) { d.shadow_size = v; });
+  knob("cascades", {1, 2, 3, 4}, [&](PictureDetail& d, double v) { d.cascades = whole(v); });
+  knob("shadow_samples", {3, 5, 7, 9, 18},
+       [&](PictureDetail& d, double v) { d.shadow_samples = whole(v); });
+  knob("visibility_step", {4, 3, 2, 1},
+       [&](PictureDetail& d, double v) { d.visibility_step = whole(v); });
+  knob("occlusion_samples", {0.25, 0.5, 1.0, 2.0, 4.0},
+       [](PictureDetail& d, double v) { d.occlusion_samples = v; });
+  knob("inscatter_samples", {1, 2, 4, 8, 16},
+       [&](PictureDetail& d, double v) { d.inscatter_samples = whole(v); });
+  knob("waves", {4, 12, 24, 48}, [&](PictureDetail& d, double v) { d.waves = whole(v); });
+  knob("scatter_levels", {2, 4, 6, 8},
+       [&](PictureDetail& d, double v) { d.scatter_levels = whole(v); });
+  knob("particles", {0.0, 0.25, 0.5, 1.0}, [](PictureDetail& d, double v) { d.particles = v; });
+  for (const std::string_view level : scene::kPictureLevels)
+    out.push_back({"level", std::string(level), scene::picture_level(level).detail});
+  return out;
+}
+
+struct Shown {
+  ImageU8 color;
+  double ms = 1e300;
+};
+
+Result<Shown> show(testbed::Session& session, const PictureDetail& detail, int repeats) {
+  const scene::Camera& camera = session.scene().cameras.front();
+  Shown out;
+  for (int i = 0; i < repeats; ++i) {
+    testbed::FrameRequest request;
+    request.views.push_back({.name = camera.name,
+                             .views = testbed::camera_views(session.scene(), camera),
+                             .exposure = camera.exposure,
+                             .antialias = camera.antialias,
+                             .detail = detail,
+                             .capture = testbed::Capture{.motion = false}.without_geometry()});
+    NERITIC_TRY(testbed::FrameResult result, session.render(request));
+    double ms = 0.0;
+    for (const gpu::PassTime& pass : result.passes)
+      if (pass.name != "record" && pass.name.find("readback") == std::string::npos) ms += pass.ms;
+    // The first frame draws what later ones keep: maps of what stands still.
+    if (i > 0 || repeats == 1) out.ms = std::min(out.ms, ms);
+    out.color = std::move(result.views[0].eyes[0].color);
+  }
+  return out;
+}
+
+double linear_of(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+// Ottosson 2020: lightness and the two opponent axes.
+Vec3 oklab_of(const Vec3& rgb) {
+  const Vec3 c(linear_of(rgb.x), linear_of(rgb.y), linear_of(rgb.z));
+  const double l = std::cbrt(0.4122214708 * c.x + 0.5363325363 * c.y + 0.0514459929 * c.z);
+  const double m = std::cbrt(0.2119034982 * c.x + 0.6806995451 * c.y + 0.1073969566 * c.z);
+  const double s = std::cbrt(0.0883024619 * c.x + 0.2817188376 * c.y + 0.6299787005 * c.z);
+  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+          0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
+}
+
+Vec3 blurred(const ImageU8& image, std::uint32_t x, std::uint32_t y) {
+  Vec3 sum(0.0);
+  for (int v = -1; v <= 1; ++v)
+    for (int u = -1; u <= 1; ++u) {
+      const auto at = [](std::uint32_t place, int off, std::uint32_t size) {
+        return static_cast<std::uint32_t>(
+            std::clamp<std::int64_t>(std::int64_t{place} + off, 0, std::int64_t{size} - 1));
+      };
+      const double weight = (2 - std::abs(u)) * (2 - std::abs(v)) / 16.0;
+      for (std::uint32_t c = 0; c < 3; ++c)
+        sum[static_cast<int>(c)] +=
+            weight * image.at(at(x, u, image.width), at(y, v, image.height), c) / 255.0;
+    }
+  return sum;
+}
+
+std::string psnr(double error) {
+  return error > 0.0 ? fmt::format("{:.1f}", -20.0 * std::log10(error)) : "exact";
+}
+
+}  // namespace
+
+std::uint64_t steps(const CameraTradeoffOptions& options) {
+  return settings_of(options.quick).size();
+}
+
+double rms_error(const ImageU8& shown, const ImageU8& wanted) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < wanted.data.size(); ++i) {
+    const double off = (int(shown.data[i]) - int(wanted.data[i])) / 255.0;
+    sum += off * off;
+  }
+  return wanted.data.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(wanted.data.size()));
+}
+
+double perceived_error(const ImageU8& shown, const ImageU8& wanted) {
+  double sum = 0.0;
+  for (std::uint32_t y = 0; y < wanted.height; ++y)
+    for (std::uint32_t x = 0; x < wanted.width; ++x)
+      sum += glm::length(oklab_of(blurred(shown, x, y)) - oklab_of(blurred(wanted, x, y)));
+  return sum / std::max(1.0, double(wanted.width) * wanted.height);
+}
+
+Result<CameraTradeoff> run_camera_tradeoff(const CameraTradeoffOptions& options) {
+  gpu::DeviceOptions device_options;
+  device_options.device = options.device;
+  device_options.cache_folder = gpu::default_cache_folder();
+  NERITIC_TRY(const auto device, gpu::Device::create(device_options));
+  NERITIC_TRY(scene::Scene scene, scene::load_scene(options.scene));
+  if (scene.cameras.empty()) return refusal(options.scene, "no camera", "a scene with a camera");
+  scene::Camera& camera = scene.cameras.front();
+  camera.stereo_baseline_m = 0.0;
+  if (options.quick) {
+    camera.width = std::max(camera.width / 8, 16u);
+    camera.height = std::max(camera.height / 8, 16u);
+  }
+  CameraTradeoff out{device->info().name, options.scene, camera.name,
+                     camera.width,        camera.height, {}};
+  NERITIC_TRY(const auto session, testbed::Session::create(*device, std::move(scene)));
+  NERITIC_TRY(const Shown best, show(*session, scene::picture_level("reference").detail, 1));
+  for (const Setting& setting : settings_of(options.quick)) {
+    NERITIC_TRY(const Shown shown, show(*session, setting.detail, options.quick ? 2 : 4));
+    out.points.push_back({setting.knob, setting.value, shown.ms, rms_error(shown.color, best.color),
+                          perceived_error(shown.color, best.color)});
+    options.step();
+  }
+  return out;
+}
+
+Result<bool> write_camera_tradeoff(const std::filesystem::path& folder,
+                                   const CameraTradeoff& tradeoff) {
+  std::string csv = "knob,value,ms,error,psnr_db,perceived\n";
+  std::string md = fmt::format(
+      "# A camera's picture: error over cost\n\n{}; `{}`, camera {}, {} x {}. Against every knob "
+      "at its best (`reference`); the other knobs are those of `standard`. ms: all passes of the "
+      "device, maps of what stands still kept. Error: root mean square, 1 from black to white. "
+      "Perceived: mean distance in Oklab after the eye's blur.\n\n| knob | value | ms | error | "
+      "PSNR, dB | perceived |\n|---|---|---|---|---|---|\n",
+      tradeoff.device, tradeoff.scene, tradeoff.camera, tradeoff.width, tradeoff.height);
+  nlohmann::json json{{"device", tradeoff.device},
+                      {"scene", tradeoff.scene},
+                      {"camera", tradeoff.camera},
+                      {"size", {tradeoff.width, tradeoff.height}}};
+  Page page{"A camera's picture: error over cost",
+            {fmt::format("{}, camera {} of {}, {} x {}", tradeoff.device, tradeoff.camera,
+                         tradeoff.scene, tradeoff.width, tradeoff.height)}};
+  Panel plain{"Root mean square", {"device, ms a frame"}, {"error, 1 from black to white"}};
+  Panel seen{"As an eye sees it", {"device, ms a frame"}, {"mean distance in Oklab"}};
+  for (std::size_t i = 0; i < tradeoff.points.size();) {
+    const std::string& knob = tradeoff.points[i].knob;
+    Series errors{knob, {}, {}}, eyes{knob, {}, {}};
+    for (; i < tradeoff.points.size() && tradeoff.points[i].knob == knob; ++i) {
+      const CameraPoint& p = tradeoff.points[i];
+      csv += fmt::format("{},{},{:.3f},{:.6f},{},{:.6f}\n", p.knob, p.value, p.ms, p.error,
+                         psnr(p.error), p.perceived);
+      md += fmt::format("| {} | {} | {:.1f} | {:.4f} | {} | {:.4f} |\n", p.knob, p.value, p.ms,
+                        p.error, psnr(p.error), p.perceived);
+      json["points"].push_back({{"knob", p.knob},
+                                {"value", p.value},
+                                {"ms", p.ms},
+                                {"error", p.error},
+                                {"perceived", p.perceived}});
+      for (Series* series : {&errors, &eyes}) {
+        series->x.push_back(p.ms);
+        series->notes.push_back(p.value);
+      }
+      errors.y.push_back(std::max(p.error, 1e-5));
+      eyes.y.push_back(std::max(p.perceived, 1e-6));
+    }
+    plain.series.push_back(std::move(errors));
+    seen.series.push_back(std::move(eyes));
+  }
+  page.panels = {std::move(plain), std::move(seen)};
+  NERITIC_TRY_STATUS(make_folder(folder));
+  NERITIC_TRY_STATUS(write_text(folder / "camera.csv", csv));
+  NERITIC_TRY_STATUS(write_text(folder / "camera.md", md));
+  NERITIC_TRY_STATUS(write_json(folder / "camera.json", json));
+  return write_picture(folder / "camera.png", page_data(page));
+}
+
+}  // namespace neritic::tools

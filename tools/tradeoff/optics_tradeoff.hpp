@@ -1,0 +1,40 @@
+// `neritic tradeoff optics`: what the water's optics cost over their error against brute force on
+// the CPU, in double: a lamp's inscatter along a sight by its samples, caustics by the texels of
+// their tile, forward scatter by its octaves. One thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/core/result.hpp"
+
+namespace neritic::tools {
+
+struct OpticsTradeoffOptions {
+  std::string device;
+  bool quick = false;                  // coarser truths, few settings
+  std::function<void()> step = [] {};  // after each of steps(options)
+};
+std::uint64_t steps(const OpticsTradeoffOptions& options);
+
+struct OpticsPoint {
+  std::string term;         // "inscatter", "caustics", "forward scatter"
+  std::uint32_t value = 0;  // samples, texels a side, octaves
+  double error = 0.0;       // inscatter, caustics: root mean square, relative; contrast: largest
+  double ms = 0.0;          // of the device: a megapixel; of caustics: a frame's tile
+};
+
+struct OpticsTradeoff {
+  std::string device;
+  std::vector<OpticsPoint> points;
+};
+Result<OpticsTradeoff> run_optics_tradeoff(const OpticsTradeoffOptions& options);
+
+// In the folder optics.csv, .md, .json and .plot.json, and where it can be drawn (true) optics.png.
+Result<bool> write_optics_tradeoff(const std::filesystem::path& folder,
+                                   const OpticsTradeoff& tradeoff);
+
+}  // namespace neritic::tools
