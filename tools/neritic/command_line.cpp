@@ -396,9 +396,10 @@ void add_tradeoff(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand(
       "tradeoff", "measures the error of a model against its cost, over all of its settings");
   command
-      ->add_option("what", flags->what,
-                   "sonar, physics, navigation, swim, deco, physiology, modem, network, xr, camera, "
-                   "optics or experiment (time to block and success of the task `shark`)")
+      ->add_option(
+          "what", flags->what,
+          "sonar, physics, navigation, swim, deco, physiology, modem, network, xr, camera, "
+          "optics or experiment (time to block and success of the task `shark`)")
       ->required();
   command
       ->add_option("--out", flags->out,
