@@ -9,6 +9,7 @@
 namespace neritic::sonar {
 namespace {
 
+constexpr double kSilence_db = -300.0;                   // of a path through the surface
 constexpr std::uint64_t kModemStream = 0x6d6f64656dull;  // of random numbers
 
 double range_of(const Vec3& from_ned_m, const Vec3& to_ned_m) {
@@ -111,6 +112,15 @@ double modem_success(const ModemSettings& settings, double snr_db, std::size_t b
   return std::pow(1.0 - modem_bit_error(settings, snr_db), 8.0 * static_cast<double>(bytes));
 }
 
+namespace {
+
+void report_event(ModemState& state, std::uint64_t ModemCounts::*count, const ModemReport& said) {
+  state.reports[state.counts.all() % ModemState::kKept] = said;
+  ++(state.counts.*count);
+}
+
+}  // namespace
+
 bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t from,
           ModemMessage message, double now_s, const Vec3& from_ned_m) {
   ModemState& sender = states[from];
@@ -118,13 +128,16 @@ bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t
   const bool sending = std::ranges::any_of(sender.flights, [&](const ModemState::Flight& flight) {
     return flight.flying != 0 && flight.ends_s > now_s;
   });
+  message.from = from;
   if (sending || free == sender.flights.end() || message.bytes == 0 ||
       message.bytes > 8 * kModemWords) {
-    ++sender.counts.refused;
+    message.sequence = sender.counts.sent;
+    report_event(sender, &ModemCounts::refused,
+                 {ModemEvent::kRefused, message, now_s, now_s, now_s, 0.0});
     return false;
   }
-  message.from = from;
-  message.sequence = sender.counts.sent++;
+  message.sequence = sender.counts.sent;
+  report_event(sender, &ModemCounts::sent, {ModemEvent::kSent, message, now_s, now_s, now_s, 0.0});
   *free = {message,    now_s, now_s + modem_duration_s(channel.modems[from], message.bytes),
            from_ned_m, 1,     std::uint64_t{1} << from};
   // What was arriving is deaf to the rest.
@@ -141,16 +154,27 @@ bool sends_within(const ModemState& state, double from_s, double to_s) {
   });
 }
 
+ModemMessage without_words(ModemMessage message) {
+  message.words = {};
+  return message;
+}
+
 // The message's first sound reaches the modem.
-void begin_hearing(const ModemChannel& channel, const ModemState::Flight& flight, double begins_s,
-                   std::size_t to, const Vec3& to_ned_m, ModemState& state) {
-  const ModemSettings& sender = channel.modems[flight.message.from];
-  const double level_db = sender.source_level_db - modem_loss_db(channel.water, sender.frequency_hz,
-                                                                 flight.from_ned_m, to_ned_m);
+void begin_hearing(const ModemChannel& channel, std::size_t from, const ModemState::Flight& flight,
+                   double begins_s, std::size_t to, const Vec3& to_ned_m, ModemState& state) {
+  const ModemSettings& sender = channel.modems[from];
+  const bool in_water = flight.from_ned_m.z >= 0.0 && to_ned_m.z >= 0.0;
+  const double level_db =
+      in_water ? sender.source_level_db -
+                     modem_loss_db(channel.water, sender.frequency_hz, flight.from_ned_m, to_ned_m)
+               : kSilence_db;
   const auto free = std::ranges::find(state.hearings, 0u, &ModemState::Hearing::arriving);
   const bool for_it = flight.message.to == kToAll || flight.message.to == to;
   if (free == state.hearings.end()) {  // more at once than any receiver keeps apart
-    state.counts.collided += for_it ? 1 : 0;
+    if (for_it)
+      report_event(state, &ModemCounts::collided,
+                   {ModemEvent::kCollided, without_words(flight.message), begins_s, flight.sent_s,
+                    begins_s, 0.0});
     return;
   }
   const double ends_s = begins_s + flight.ends_s - flight.sent_s;
@@ -181,15 +205,14 @@ void end_hearing(const ModemChannel& channel, std::size_t to, ModemState::Hearin
   const double noise = power_from_db(modem_noise_db(channel.water, receiver));
   const double alone_db = db_from_power(hearing.power / noise);
   const double snr_db = db_from_power(hearing.power / (noise + hearing.others_power));
-  ModemCounts& counts = state.counts;
-  if (hearing.sending != 0) {
-    ++counts.was_sending;
-    return;
-  }
-  if (!(alone_db >= receiver.detection_db)) {
-    ++counts.too_weak;
-    return;
-  }
+  const auto lost = [&](std::uint64_t ModemCounts::*count, ModemEvent event) {
+    report_event(
+        state, count,
+        {event, without_words(message), hearing.ends_s, hearing.sent_s, hearing.begins_s, 0.0});
+  };
+  if (hearing.sending != 0) return lost(&ModemCounts::was_sending, ModemEvent::kWasSending);
+  if (!(alone_db >= receiver.detection_db))
+    return lost(&ModemCounts::too_weak, ModemEvent::kTooWeak);
   const std::size_t bytes = static_cast<std::size_t>(message.bytes);
   const double draw =
       random_uniform({channel.seed, kModemStream + message.from, message.sequence}, to);
@@ -197,11 +220,12 @@ void end_hearing(const ModemChannel& channel, std::size_t to, ModemState::Hearin
   if (!got) {
     // Without the others it would have come.
     const bool by_others = draw < modem_success(receiver, alone_db, bytes);
-    ++(by_others ? counts.collided : counts.noisy);
-    return;
+    return by_others ? lost(&ModemCounts::collided, ModemEvent::kCollided)
+                     : lost(&ModemCounts::noisy, ModemEvent::kNoisy);
   }
-  state.received[counts.received++ % ModemState::kKept] = {message, hearing.sent_s,
-                                                           hearing.begins_s, snr_db};
+  report_event(
+      state, &ModemCounts::received,
+      {ModemEvent::kReceived, message, hearing.ends_s, hearing.sent_s, hearing.begins_s, snr_db});
 }
 
 }  // namespace
@@ -211,8 +235,8 @@ void step(const ModemChannel& channel, std::span<ModemState> states,
   const std::size_t count = channel.modems.size();
   NERITIC_CHECK(count <= kMostModems && states.size() == count && positions_ned_m.size() == count,
                 "{} modems, {} states, {} positions", count, states.size(), positions_ned_m.size());
-  for (ModemState& sender : states)
-    for (ModemState::Flight& flight : sender.flights) {
+  for (std::size_t from = 0; from < count; ++from)
+    for (ModemState::Flight& flight : states[from].flights) {
       if (flight.flying == 0) continue;
       for (std::size_t to = 0; to < count; ++to) {
         if ((flight.begun >> to & 1) != 0) continue;
@@ -221,7 +245,7 @@ void step(const ModemChannel& channel, std::span<ModemState> states,
         if (begins_s > to_s) continue;
         flight.begun |= std::uint64_t{1} << to;
         // A receiver that came nearer hears it now, not before.
-        begin_hearing(channel, flight, std::max(begins_s, std::min(from_s, to_s)), to,
+        begin_hearing(channel, from, flight, std::max(begins_s, std::min(from_s, to_s)), to,
                       positions_ned_m[to], states[to]);
       }
       const std::uint64_t all = count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
@@ -234,7 +258,7 @@ void step(const ModemChannel& channel, std::span<ModemState> states,
 }
 
 std::uint64_t first_kept(const ModemState& state, std::uint64_t seen) {
-  const std::uint64_t all = state.counts.received;
+  const std::uint64_t all = state.counts.all();
   const std::uint64_t oldest = all > ModemState::kKept ? all - ModemState::kKept : 0;
   return std::clamp(seen, oldest, all);
 }

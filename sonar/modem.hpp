@@ -63,13 +63,21 @@ double modem_success(const ModemSettings& settings, double snr_db, std::size_t b
 inline constexpr std::size_t kModemWords = 8;  // of a message: 64 bytes
 inline constexpr std::uint64_t kToAll = ~std::uint64_t{0};
 
+enum class ModemKind : std::uint64_t {
+  kMessage,
+  kRequest,  // for an answer, from which the sender finds its range
+  kAnswer,
+};
+
 struct ModemMessage {
+  ModemKind kind = ModemKind::kMessage;
   std::uint64_t from = 0, to = kToAll;             // numbers of modems
   std::uint64_t sequence = 0;                      // of its sender
   std::uint64_t bytes = 0;                         // up to 8 kModemWords
   std::array<std::uint64_t, kModemWords> words{};  // little-endian
 
   static void fields(auto&& field, auto& self) {
+    field("kind", self.kind);
     field("from", self.from);
     field("to", self.to);
     field("sequence", self.sequence);
@@ -78,15 +86,30 @@ struct ModemMessage {
   }
 };
 
-// A message that a modem got, as the device reports it.
-struct ModemReceived {
-  ModemMessage message;
+// What became of a message at a modem: at its sender, or at one that it was for.
+enum class ModemEvent : std::uint64_t {
+  kSent,
+  kRefused,  // the modem was sending, or the message was too long
+  kReceived,
+  // Lost, by the cause.
+  kTooWeak,
+  kNoisy,
+  kCollided,
+  kWasSending,
+};
+
+struct ModemReport {
+  ModemEvent event = ModemEvent::kSent;
+  ModemMessage message;  // without its words where it was lost
+  double at_s = 0.0;     // when the modem knew: as it began to send, or when the last bit had come
   double sent_s = 0.0,
          heard_s = 0.0;  // its first sound, here and there: their difference is the travel
-  double snr_db = 0.0;
+  double snr_db = 0.0;   // of one that came
 
   static void fields(auto&& field, auto& self) {
+    field("event", self.event);
     field("message", self.message);
+    field("at_s", self.at_s);
     field("sent_s", self.sent_s);
     field("heard_s", self.heard_s);
     field("snr_db", self.snr_db);
@@ -98,6 +121,11 @@ struct ModemCounts {
   std::uint64_t sent = 0, refused = 0;  // refused: it was sending, or the message was too long
   std::uint64_t received = 0;
   std::uint64_t too_weak = 0, noisy = 0, collided = 0, was_sending = 0;  // lost, by their cause
+
+  // As many as there are reports.
+  std::uint64_t all() const {
+    return sent + refused + received + too_weak + noisy + collided + was_sending;
+  }
 
   static void fields(auto&& field, auto& self) {
     field("sent", self.sent);
@@ -112,7 +140,7 @@ struct ModemCounts {
 
 // One modem's part of the channel: plain numbers, which a simulation's state can hold.
 struct ModemState {
-  static constexpr std::size_t kFlying = 4, kHearing = 8, kKept = 8;
+  static constexpr std::size_t kFlying = 4, kHearing = 8, kKept = 16;
   struct Flight {  // a message on its way
     ModemMessage message;
     double sent_s = 0.0, ends_s = 0.0;  // at the sender
@@ -148,13 +176,13 @@ struct ModemState {
   };
   std::array<Flight, kFlying> flights{};
   std::array<Hearing, kHearing> hearings{};
-  std::array<ModemReceived, kKept> received{};  // a ring: message k is at k % kKept
+  std::array<ModemReport, kKept> reports{};  // a ring: report k of counts.all() is at k % kKept
   ModemCounts counts;
 
   static void fields(auto&& field, auto& self) {
     field("flights", self.flights);
     field("hearings", self.hearings);
-    field("received", self.received);
+    field("reports", self.reports);
     field("counts", self.counts);
   }
 };
@@ -164,22 +192,23 @@ inline constexpr std::size_t kMostModems = 64;  // bits of Flight::begun
 // The devices of a channel and its water. Preconditions of the functions below: as many states and
 // positions as modems, at most kMostModems.
 struct ModemChannel {
-  ModemWater water;
+  const ModemWater& water;
   std::span<const ModemSettings> modems;
   std::uint64_t seed = 0;
 };
 
 // Sends a message at now_s. False, and counted: the modem is still sending, has kFlying messages on
-// the way, or the message has no bytes or too many. from and sequence are filled in.
+// the way, or the message has no bytes or too many. from and sequence are filled in. What is above
+// the surface neither says nor hears anything.
 bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t from,
           ModemMessage message, double now_s, const Vec3& from_ned_m);
 
 // What arrives in (from_s, to_s], with the modems where they are at its end. Messages are received
-// when their last bit has come; each modem's newest are in its ring.
+// when their last bit has come; each modem's newest reports are in its ring.
 void step(const ModemChannel& channel, std::span<ModemState> states,
           std::span<const Vec3> positions_ned_m, double from_s, double to_s);
 
-// Numbers of a ring's messages that are new since `seen` were received: [first, counts.received).
+// Numbers of a ring's reports that are new since there were `seen`: [first, counts.all()).
 std::uint64_t first_kept(const ModemState& state, std::uint64_t seen);
 
 }  // namespace neritic::sonar

@@ -1,11 +1,11 @@
 // Maps a device's clock to the host's. A packet that was sent at s by the device's clock and
 // arrived at a by the host's says that the host's clock is at most a - s ahead: the way took some
-// time. Over the last two minutes the line under all such points is kept that lies nearest to them
-// on average (linear programming over the lower convex hull: Moon, Skelly, Towsley 1999, Estimation
-// and removal of clock skew from network delay measurements, INFOCOM), so jitter does not move it.
-// One way alone cannot tell a constant delay from an offset: the shortest way counts as none.
-// Exchanges both ways do tell (LSL, NTP), and then bound the offset from both sides.
-// Plain value; one thread.
+// time. Over the last two minutes a line under all such points is kept that lies near to them: the
+// one nearest on average (linear programming over the lower convex hull: Moon, Skelly, Towsley
+// 1999, Estimation and removal of clock skew from network delay measurements, INFOCOM), its slope
+// averaged over pairs of quick packets that lie far apart. Jitter does not move it. One way alone
+// cannot tell a constant delay from an offset: the shortest way counts as none. Exchanges both ways
+// do tell (LSL, NTP), and then bound the offset from both sides. Plain value; one thread.
 #pragma once
 
 #include <deque>
@@ -51,6 +51,7 @@ class ClockMap {
     TimeNs sent_ns = 0, way_ns = 0;  // way: arrived - sent
   };
   void fit();
+  double slope_across(double share, double slope) const;
   void note_way(TimeNs way_ns, TimeNs arrived_ns);
   bool jumped(TimeNs late_ns, TimeNs arrived_ns);
 

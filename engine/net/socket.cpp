@@ -131,6 +131,31 @@ bool UdpSender::send(Bytes bytes) const {
                   sizeof to) == static_cast<ssize_t>(bytes.size());
 }
 
+std::size_t UdpSender::send(std::span<const std::vector<std::byte>> datagrams) const {
+  sockaddr_in to = system_address(to_);
+  std::array<mmsghdr, kBatch> messages{};
+  std::array<iovec, kBatch> parts{};
+  std::size_t total = 0;
+  while (total < datagrams.size()) {
+    const std::size_t wanted = std::min(kBatch, datagrams.size() - total);
+    for (std::size_t i = 0; i < wanted; ++i) {
+      const auto& bytes = datagrams[total + i];
+      parts[i] = {const_cast<std::byte*>(bytes.data()), bytes.size()};
+      messages[i].msg_hdr = {};
+      messages[i].msg_hdr.msg_name = &to;
+      messages[i].msg_hdr.msg_namelen = sizeof to;
+      messages[i].msg_hdr.msg_iov = &parts[i];
+      messages[i].msg_hdr.msg_iovlen = 1;
+    }
+    const int sent = ::sendmmsg(socket_.get(), messages.data(), static_cast<unsigned>(wanted),
+                                MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent <= 0) break;
+    total += static_cast<std::size_t>(sent);
+    if (static_cast<std::size_t>(sent) < wanted) break;
+  }
+  return total;
+}
+
 Result<TcpReceiver> TcpReceiver::open(const Address& address, Way way) {
   TcpReceiver out(address, way);
   out.buffer_.resize(kStreamRead);

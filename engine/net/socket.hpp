@@ -60,6 +60,8 @@ class UdpSender {
   static Result<UdpSender> create(const Address& to);
   // False: the system did not take it (nobody listens, or its queue is full). Never waits.
   bool send(Bytes bytes) const;
+  // Several at once; how many of the first ones the system took.
+  std::size_t send(std::span<const std::vector<std::byte>> datagrams) const;
 
  private:
   UdpSender(Descriptor socket, const Address& to) : socket_(std::move(socket)), to_(to) {}

@@ -15,6 +15,7 @@
 #include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
 #include "engine/scene/model.hpp"
+#include "engine/scene/modem_settings.hpp"
 #include "engine/scene/physics_settings.hpp"
 #include "engine/scene/picture_detail.hpp"
 #include "engine/scene/scene_light.hpp"
@@ -177,6 +178,8 @@ struct Scene {
   // Where the frame of a lab's tracking (headset, motion suit) lies; absent: as the wearer starts.
   std::optional<Pose> world_from_lab;
   std::vector<std::string> notes;  // what was ignored, once each
+  std::vector<Modem> modems;       // each on an object that physics or devices move
+  std::optional<Acoustics> acoustics;
 
   // World_from_mount at a time by tracks, with all that carries it (motion.hpp: by physics too).
   Pose world_from(const Mount& mount, double time_s = 0.0) const;

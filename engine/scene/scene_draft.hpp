@@ -132,6 +132,9 @@ SpeedOver read_speed_over(TableReader& reader, SpeedOver otherwise);
 // absent. recorded: the groups for which the scene names a file. then: the default of that key.
 std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded,
                                      const std::string& then = "autopilot");
+// scene_read_modem.cpp: the table modem, where it is there; [acoustics].
+std::optional<Modem> read_modem(TableReader& reader);
+Result<Acoustics> read_acoustics(const SceneSource& source, const TomlValue& table);
 // Whether a live source may have that name.
 bool names_a_source(const std::string& name);
 // scene_read_sources.cpp: [sources], absent where nullptr, once all objects and their inputs are

@@ -13,7 +13,7 @@ using KeyList = std::span<const Key>;
 
 inline constexpr auto kSceneKeys = std::to_array<Key>(
     {"title", "seed", "include", "classes", "sun", "ambient", "water", "physics", "current",
-     "objects", "vehicles", "cameras", "sonars", "lamps", "lab", "sources"});
+     "objects", "vehicles", "cameras", "sonars", "lamps", "lab", "sources", "acoustics"});
 
 inline constexpr auto kLabKeys =
     std::to_array<Key>({"position_m", "yaw_deg", "pitch_deg", "roll_deg", "rotation_xyzw"});
@@ -94,13 +94,15 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "swim",
                                                         "jacket_buttons",
                                                         "inputs",
+                                                        "modem",
                                                         "cameras",
                                                         "sonars",
                                                         "lamps"});
 
 // Keys of things that move.
-inline constexpr auto kTrackKeys = std::to_array<Key>(
-    {"waypoints_m", "lawn_mower", "file", "speed_m_s", "start_s", "heading", "turn_m", "repeat"});
+inline constexpr auto kTrackKeys =
+    std::to_array<Key>({"waypoints_m", "lawn_mower", "file", "recording", "participant",
+                        "speed_m_s", "start_s", "heading", "turn_m", "repeat"});
 inline constexpr auto kLawnMowerKeys =
     std::to_array<Key>({"area_m", "depth_m", "spacing_m", "legs"});
 
@@ -125,6 +127,14 @@ inline constexpr auto kDiverInputKeys =
 inline constexpr auto kVehicleInputKeys = std::to_array<Key>({"wrench", "setpoint", "fault"});
 inline constexpr auto kObjectInputKeys = std::to_array<Key>({"pose"});
 inline constexpr auto kInputChoiceKeys = std::to_array<Key>({"from", "hold_s", "then"});
+inline constexpr auto kModemKeys = std::to_array<Key>(
+    {"position_m", "source_level_db", "frequency_hz", "bandwidth_hz", "bit_rate_hz", "preamble_s",
+     "coding_gain_db", "detection_db", "self_noise_db", "fading", "turnaround_s", "usbl"});
+inline constexpr auto kModemUsblKeys = std::to_array<Key>(
+    {"target", "interval_s", "range_noise_m", "direction_noise_deg", "sound_m_s"});
+inline constexpr auto kAcousticsKeys =
+    std::to_array<Key>({"temperature_c", "salinity_psu", "ph", "profile", "path", "spreading",
+                        "wind_m_s", "shipping"});
 inline constexpr auto kSourceKeys = std::to_array<Key>({"device", "diver", "character", "rate_hz"});
 inline constexpr auto kStandBetweenKeys = std::to_array<Key>({"a", "b", "distance_m"});
 

@@ -129,6 +129,7 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   const TomlValue* water = reader.table("water");
   const TomlValue* physics = reader.table("physics");
   const TomlValue* current = reader.table("current");
+  const TomlValue* acoustics = reader.table("acoustics");
   const TomlValue* lab = reader.table("lab");
   const TomlValue* sources = reader.table("sources");
   const auto& objects = reader.tables("objects");
@@ -143,6 +144,9 @@ Result<SceneDraft> read_draft(const SceneSource& source) {
   }
   if (water) {
     NERITIC_TRY(scene.water, read_water(source, *water));
+  }
+  if (acoustics) {
+    NERITIC_TRY(scene.acoustics, read_acoustics(source, *acoustics));
   }
   if (lab) {
     NERITIC_TRY(scene.world_from_lab, read_lab(source, *lab));

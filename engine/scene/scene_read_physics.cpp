@@ -19,7 +19,7 @@ constexpr std::size_t kMaxFailedThruster = 16;
 
 constexpr Key kPhysicsOnly[] = {"collision",       "dynamics",   "mission", "failed_thrusters",
                                 "tether_anchor_m", "navigation", "human",   "swim",
-                                "jacket_buttons",  "inputs"};
+                                "jacket_buttons",  "inputs",     "modem"};
 constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m", "navigation"};
 // The default classes that vehicles cannot pass.
 constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
@@ -95,6 +95,8 @@ class VehiclePhysicsReader {
   VehiclePhysicsReader(TableReader& reader, ObjectDraft& object, const SceneDraft& draft)
       : reader_(reader), object_(object), draft_(draft) {}
 
+  std::optional<Modem> modem;  // that it carries
+
   Status read() {
     if (!draft_.scene.physics) {
       for (const Key key : kPhysicsOnly)
@@ -104,6 +106,9 @@ class VehiclePhysicsReader {
     read_collision();
     read_human();
     read_tracked();
+    modem = read_modem(reader_);
+    if (reader_.has("modem") && !reader_.has("dynamics") && !reader_.has("human") && !is_tracked())
+      reader_.refuse("modem", "a modem of what has dynamics, human or inputs");
     if (!reader_.has("dynamics")) {
       for (const Key key : kDynamicsOnly)
         if (reader_.has(key)) reader_.refuse(key, "no such key without dynamics");
@@ -257,6 +262,9 @@ Status read_vehicle_physics(SceneDraft& draft, const SceneSource& source,
     TableReader reader(source, tables[i], fmt::format("{}[{}]", path, i), kObjectKeys);
     VehiclePhysicsReader physics(reader, draft.objects[first_object + i], draft);
     NERITIC_TRY_STATUS(physics.read());
+    if (!physics.modem) continue;
+    physics.modem->object = static_cast<int>(first_object + i);
+    draft.scene.modems.push_back(std::move(*physics.modem));
   }
   return {};
 }

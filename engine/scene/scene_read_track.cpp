@@ -5,6 +5,7 @@
 #include "engine/scene/number_rows.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
+#include "engine/scene/track_recording.hpp"
 
 namespace neritic::scene {
 namespace {
@@ -88,11 +89,33 @@ void read_track_file(TableReader& reader, TrackDraft& track, std::vector<Vec3>& 
     reader.fail({taken.error().code, reader.place("file") + ": " + taken.error().message});
 }
 
+// Places and attitudes of a participant of a recorded dive.
+void read_track_recording(TableReader& reader, TrackDraft& track) {
+  const std::filesystem::path file = reader.file("recording");
+  if (file.empty()) return;
+  const std::string participant = reader.text("participant", "");
+  if (participant.empty()) reader.refuse("participant", "the name of one of the recording's");
+  if (!reader.ok()) return;
+  auto read = read_recorded_track(file, participant);
+  if (!read.ok()) {
+    reader.fail({read.error().code, reader.place("recording") + ": " + read.error().message});
+    return;
+  }
+  // From start_s on instead of the recording's own time.
+  const double later_s = reader.has("start_s")
+                             ? reader.number("start_s", 0.0, kTime) - read->places.front().time_s
+                             : 0.0;
+  for (Track::Place& place : read->places) place.time_s += later_s;
+  track.places = std::move(read->places);
+  for (const Track::Attitude& at : read->attitudes) track.recorded.push_back(at.rotation);
+}
+
 // Times for points without: by speed_m_s, from start_s on.
 void give_times(TableReader& reader, std::vector<Vec3> points, TrackDraft& track) {
   if (!track.places.empty()) {
     for (const Key key : {"speed_m_s", "start_s", "repeat"})
-      if (reader.has(key)) reader.refuse(key, "no such key beside a file with times");
+      if (reader.has(key) && !(key == "start_s" && reader.has("recording")))
+        reader.refuse(key, "no such key beside a file with times");
     return;
   }
   Waypoints waypoints{std::move(points), 1.0, reader.number("start_s", 0.0, kTime)};
@@ -126,12 +149,18 @@ std::optional<TrackDraft> read_track(TableReader& parent) {
   const TomlValue* table = parent.table("track");
   if (!table) return std::nullopt;
   TableReader reader(parent.source(), *table, parent.path("track"), kTrackKeys);
-  if (int{reader.has("waypoints_m")} + int{reader.has("lawn_mower")} + int{reader.has("file")} != 1)
-    reader.refuse_table("none or more than one of waypoints_m, lawn_mower, file", "one of them");
+  if (int{reader.has("waypoints_m")} + int{reader.has("lawn_mower")} + int{reader.has("file")} +
+          int{reader.has("recording")} !=
+      1)
+    reader.refuse_table("none or more than one of waypoints_m, lawn_mower, file, recording",
+                        "one of them");
+  if (reader.has("participant") && !reader.has("recording"))
+    reader.refuse("participant", "no such key without recording");
   TrackDraft track;
   std::vector<Vec3> points = read_waypoints(reader);
   if (points.empty()) points = read_lawn_mower(reader);
   read_track_file(reader, track, points);
+  read_track_recording(reader, track);
   if (reader.ok()) give_times(reader, std::move(points), track);
   read_heading(reader, track);
   if (!reader.ok()) {

@@ -1,5 +1,9 @@
 #include "testbed/devices/device_source.hpp"
 
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "diver/breath_bands.hpp"
@@ -13,6 +17,8 @@ namespace {
 
 // So soon a thread that is asked to stop does.
 constexpr int kLongestWait_ms = 20;
+// Of its thread: in a flood of packets it gives way to the simulation.
+constexpr int kNice = 5;
 
 Result<std::unique_ptr<DeviceAdapter>> adapter_of(const scene::DeviceSource& source) {
   using Adapter = std::unique_ptr<DeviceAdapter>;
@@ -67,6 +73,7 @@ DeviceSource::~DeviceSource() {
 }
 
 void DeviceSource::run() {
+  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
   while (!stop_) {
     const TimeNs wake_ns = adapter_->wakes_at_ns();
     const TimeNs wait_ns =

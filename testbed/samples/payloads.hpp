@@ -172,6 +172,20 @@ struct ObjectPose {
   }
 };
 
+// A message that a modem is to send, up to kModemBytes.
+inline constexpr std::size_t kModemBytes = 64;
+struct ModemSend {
+  std::uint64_t to = 0;  // number of a modem from 1 on, in the order of the world; 0: to all
+  std::uint64_t bytes = 0;
+  std::array<std::uint32_t, kModemBytes / 4> words{};  // little-endian
+
+  static void fields(auto&& field, auto& self) {
+    field("to", self.to);
+    field("bytes", self.bytes);
+    field("words", self.words);
+  }
+};
+
 // Something that happens once.
 enum class EventKind : std::uint64_t {
   kSetAuthority,  // `group` is from now on under `authority`, a live one of `source`
@@ -221,6 +235,46 @@ struct CollisionReading {
     field("normal", self.normal);
     field("depth_m", self.depth_m);
     field("impulse_n_s", self.impulse_n_s);
+  }
+};
+
+// What became of a message at a modem: at its sender, or at one that it was for.
+enum class ModemEvent : std::uint64_t {
+  kSent,
+  kRefused,   // it was sending, had too much on the way, or the message was too long
+  kReceived,  // and lost, by the cause:
+  kTooWeak,
+  kNoisy,
+  kCollided,
+  kWasSending,
+};
+enum class ModemKind : std::uint64_t {
+  kMessage,
+  kRequest,  // of a modem that ranges, and its answer
+  kAnswer,
+};
+struct ModemReading {
+  ModemEvent event = ModemEvent::kSent;
+  ModemKind kind = ModemKind::kMessage;
+  std::uint64_t from = 0, to = 0;  // as of ModemSend
+  std::uint64_t number = 0;        // of its sender's messages, from 0
+  std::uint64_t bytes = 0;
+  std::array<std::uint32_t, kModemBytes / 4> words{};  // of one that was sent or came
+  // Its first sound, here and there, on the scene's clock: their difference is the travel.
+  double sent_s = 0.0, heard_s = 0.0;
+  double snr_db = 0.0;  // of one that came
+
+  static void fields(auto&& field, auto& self) {
+    field("event", self.event);
+    field("message_kind", self.kind);
+    field("from", self.from);
+    field("to", self.to);
+    field("number", self.number);
+    field("bytes", self.bytes);
+    field("words", self.words);
+    field("sent_s", self.sent_s);
+    field("heard_s", self.heard_s);
+    field("snr_db", self.snr_db);
   }
 };
 

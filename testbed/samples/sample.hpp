@@ -41,7 +41,7 @@ using Payload =
                  GasSupply, VehicleWrench, VehicleSetpoint, VehicleVelocity, VehicleThrusters,
                  ThrusterFault, ObjectPose, Event, rov::ImuReading, rov::DvlReading,
                  rov::PressureReading, CompassReading, rov::AltimeterReading, rov::UsblReading,
-                 CollisionReading, DiverMotion, ComputerReading>;
+                 CollisionReading, DiverMotion, ComputerReading, ModemReading, ModemSend>;
 
 enum class PayloadKind : std::uint32_t {
   kBodyJoints,
@@ -69,15 +69,17 @@ enum class PayloadKind : std::uint32_t {
   kCollision,
   kMotion,
   kComputer,
+  kModem,
+  kSend,
 };
 inline constexpr std::size_t kPayloadKinds = std::variant_size_v<Payload>;
-static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kComputer) + 1);
+static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kSend) + 1);
 
 // The last part of a stream's name: "joints", "imu".
 std::string_view name_of(PayloadKind kind);
 // Whether samples of the kind are inputs; the others leave.
 constexpr bool enters(PayloadKind kind) {
-  return kind <= PayloadKind::kEvent;
+  return kind <= PayloadKind::kEvent || kind == PayloadKind::kSend;
 }
 
 struct Sample {

@@ -29,6 +29,11 @@ std::string_view words_of(PayloadKind kind) {
       return "bit i: thruster i + 1 fails";
     case PayloadKind::kObjectPose:
       return "a tracked object; measured 1: its velocities count";
+    case PayloadKind::kSend:
+      return "a message for a modem to send; to: from 1 on, 0 all; words: its bytes, little-endian";
+    case PayloadKind::kModem:
+      return "event: 0 sent, 1 refused, 2 received, lost: 3 too weak, 4 noisy, 5 collided, 6 was "
+             "sending; message_kind: 1, 2 of ranging";
     case PayloadKind::kPressure:
       return "absolute pressure, and the depth that the sensor makes of it";
     case PayloadKind::kCompass:

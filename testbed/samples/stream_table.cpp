@@ -3,7 +3,12 @@
 namespace neritic::testbed {
 
 void StreamTable::add(OwnerSort sort, std::uint32_t owner, const std::string& name,
-                      std::span<const PayloadKind> kinds) {
+                      std::vector<PayloadKind> kinds, ModemSort modem) {
+  if (modem != ModemSort::kNone) {
+    kinds.push_back(PayloadKind::kSend);
+    kinds.push_back(PayloadKind::kModem);
+  }
+  if (modem == ModemSort::kRanges) kinds.push_back(PayloadKind::kUsbl);
   auto& first = first_[static_cast<std::size_t>(sort)];
   if (owner == first.size()) first.push_back(static_cast<StreamId>(streams_.size()));
   for (const PayloadKind kind : kinds) {
@@ -13,15 +18,17 @@ void StreamTable::add(OwnerSort sort, std::uint32_t owner, const std::string& na
   }
 }
 
-void StreamTable::add_diver(const std::string& name) {
+void StreamTable::add_diver(const std::string& name, ModemSort modem) {
   using enum PayloadKind;
   const auto owner = static_cast<std::uint32_t>(first_[0].size());
   add(OwnerSort::kDiver, owner, name,
-      std::to_array({kBodyJoints, kHandJoints, kHandPoses, kHeadPose, kGaze, kButtons, kBreath,
-                     kHeart, kGas, kEvent, kMotion, kComputer, kCollision}));
+      {kBodyJoints, kHandJoints, kHandPoses, kHeadPose, kGaze, kButtons, kBreath, kHeart, kGas,
+       kEvent, kMotion, kComputer, kCollision},
+      modem);
 }
 
-void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sensors) {
+void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sensors,
+                              ModemSort modem) {
   using enum PayloadKind;
   std::vector<PayloadKind> kinds{kWrench, kThrusters, kSetpoint, kVelocity,
                                  kFault,  kEvent,     kCollision};
@@ -31,13 +38,13 @@ void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sen
   if (sensors.compass) kinds.push_back(kCompass);
   if (sensors.altimeter) kinds.push_back(kAltimeter);
   if (sensors.usbl) kinds.push_back(kUsbl);
-  add(OwnerSort::kVehicle, static_cast<std::uint32_t>(first_[1].size()), name, kinds);
+  add(OwnerSort::kVehicle, static_cast<std::uint32_t>(first_[1].size()), name, kinds, modem);
 }
 
-void StreamTable::add_object(const std::string& name) {
+void StreamTable::add_object(const std::string& name, ModemSort modem) {
   using enum PayloadKind;
-  add(OwnerSort::kObject, static_cast<std::uint32_t>(first_[2].size()), name,
-      std::to_array({kObjectPose, kEvent}));
+  add(OwnerSort::kObject, static_cast<std::uint32_t>(first_[2].size()), name, {kObjectPose, kEvent},
+      modem);
 }
 
 std::optional<StreamId> StreamTable::find(const std::string& name) const {

@@ -15,6 +15,9 @@ namespace neritic::testbed {
 // Numbers of owners count from 0 in the order of the scene, each sort by itself.
 enum class OwnerSort : std::uint32_t { kDiver, kVehicle, kObject };
 
+// The modem of an owner, if it has one.
+enum class ModemSort { kNone, kTalks, kRanges };
+
 struct Stream {
   std::string name;
   PayloadKind kind = PayloadKind::kEvent;
@@ -25,11 +28,12 @@ struct Stream {
 class StreamTable {
  public:
   // Streams of the scene's next diver: inputs, motion, dive computer, collisions, events.
-  void add_diver(const std::string& name);
+  void add_diver(const std::string& name, ModemSort modem = ModemSort::kNone);
   // Streams of its next vehicle: inputs, the sensors that it has, collisions, events.
-  void add_vehicle(const std::string& name, const rov::SensorSet& sensors);
+  void add_vehicle(const std::string& name, const rov::SensorSet& sensors,
+                   ModemSort modem = ModemSort::kNone);
   // Streams of its next object that devices move: pose, events.
-  void add_object(const std::string& name);
+  void add_object(const std::string& name, ModemSort modem = ModemSort::kNone);
 
   std::span<const Stream> streams() const { return streams_; }
   std::size_t size() const { return streams_.size(); }
@@ -41,7 +45,7 @@ class StreamTable {
 
  private:
   void add(OwnerSort sort, std::uint32_t owner, const std::string& name,
-           std::span<const PayloadKind> kinds);
+           std::vector<PayloadKind> kinds, ModemSort modem);
 
   std::vector<Stream> streams_;
   std::unordered_map<std::string, StreamId> ids_;

@@ -31,6 +31,7 @@ json described(const ServedFacts& facts) {
                       {"kind", one.kind},
                       {"thruster_n", thrusters},
                       {"takes_pwm", one.takes_pwm},
+                      {"modem", one.modem},
                       {"has_mission", one.has_mission}});
   }
   constexpr const char* kSorts[] = {"reading", "input", "image"};

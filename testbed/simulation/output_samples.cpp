@@ -19,6 +19,7 @@ bool leaves(const Stream& stream) {
     case PayloadKind::kCollision:
     case PayloadKind::kMotion:
     case PayloadKind::kComputer:
+    case PayloadKind::kModem:
       return true;
     default:
       return false;
@@ -67,7 +68,7 @@ OutputSamples::OutputSamples(const PhysicsWorld& world, const std::vector<Stream
     NERITIC_CHECK(leaves(world.streams()[id]), "stream {} enters", world.streams()[id].name);
     outputs_.push_back({id});
   }
-  samples_.reserve(outputs_.size());
+  samples_.reserve(outputs_.size() + world.modems().all().size() * sonar::ModemState::kKept);
 }
 
 // Readings at 0, period_s, 2 period_s ..., each at the first step that is not before it.
@@ -90,13 +91,42 @@ OutputSamples::Made OutputSamples::made(const Stream& stream,
     // Whether the step before the first snapshot touched something is not known.
     return {contact.touched_steps, begun_ ? snapshot.time_s : kLongAgo_s};
   }
+  if (const auto modem = ranging_of(stream)) {
+    const auto& fix = snapshot.state.modem_tasks()[*modem].fix;
+    return {fix.count, fix.time_s};
+  }
   return with_reading(stream.kind, *world_.readings(snapshot.state, stream.owner),
                       [](const auto& reading) {
                         return Made{reading.count, reading.time_s};
                       });
 }
 
+// The modem whose ranges the stream has.
+std::optional<std::size_t> OutputSamples::ranging_of(const Stream& stream) const {
+  if (stream.kind != PayloadKind::kUsbl) return std::nullopt;
+  const auto modem = world_.modems().find(stream.sort, stream.owner);
+  return modem && world_.modems().all()[*modem].ranging ? modem : std::nullopt;
+}
+
+// Everything that a modem reported since the last snapshot: of the first, since its step began.
+void OutputSamples::add_reports(Output& output, const Stream& stream,
+                                const sim::Snapshot<PhysicsState>& snapshot) {
+  const sonar::ModemState& modem =
+      snapshot.state.modems()[*world_.modems().find(stream.sort, stream.owner)];
+  const std::uint64_t all = modem.counts.all();
+  const double began_s = snapshot.time_s - world_.step_s();
+  for (std::uint64_t k = sonar::first_kept(modem, begun_ ? output.count : 0); k < all; ++k) {
+    const sonar::ModemReport& report = modem.reports[k % sonar::ModemState::kKept];
+    if (!begun_ && report.at_s <= began_s) continue;
+    const TimeNs age_ns = std::max<TimeNs>(to_ns(snapshot.time_s - report.at_s), 0);
+    samples_.push_back({{output.stream, kSimulation, k, snapshot.due_ns - age_ns, snapshot.due_ns},
+                        modem_reading(report)});
+  }
+  output.count = all;
+}
+
 Payload OutputSamples::payload(const Stream& stream, const PhysicsState& state) {
+  if (const auto modem = ranging_of(stream)) return state.modem_tasks()[*modem].fix.value;
   if (stream.kind == PayloadKind::kCollision)
     return collisions_.find(stream.sort, stream.owner, state);
   if (stream.sort == OwnerSort::kDiver) {
@@ -119,6 +149,10 @@ std::span<const Sample> OutputSamples::of(const sim::Snapshot<PhysicsState>& sna
   const double step_began_s = snapshot.time_s - world_.step_s();
   for (Output& output : outputs_) {
     const Stream& stream = world_.streams()[output.stream];
+    if (stream.kind == PayloadKind::kModem) {
+      add_reports(output, stream, snapshot);
+      continue;
+    }
     const Made now = made(stream, snapshot);
     // At the first snapshot: those of its own step.
     const bool due = begun_ ? now.count != output.count : now.time_s > step_began_s;

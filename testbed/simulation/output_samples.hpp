@@ -44,6 +44,9 @@ class OutputSamples {
     double time_s = 0.0;
   };
   Made made(const Stream& stream, const sim::Snapshot<PhysicsState>& snapshot) const;
+  std::optional<std::size_t> ranging_of(const Stream& stream) const;
+  void add_reports(Output& output, const Stream& stream,
+                   const sim::Snapshot<PhysicsState>& snapshot);
   Made every(double period_s, std::uint64_t step) const;
   Payload payload(const Stream& stream, const PhysicsState& state);
 

@@ -11,12 +11,25 @@
 
 namespace neritic::testbed {
 
-// The inputs of every vehicle, diver and object that devices move.
-class PhysicsInputs : public sim::Block<VehicleInputs, DiverInputs, ObjectInputs> {
+// What a modem was asked to send; the state counts what it has sent of it.
+struct ModemInputs {
+  static constexpr std::size_t kQueued = 4;  // in a step
+  std::uint64_t asked = 0;
+  std::array<ModemSend, kQueued> queue{};  // a ring: message k is at k % kQueued
+
+  static void fields(auto&& field, auto& self) {
+    field("asked", self.asked);
+    field("queue", self.queue);
+  }
+};
+
+// The inputs of every vehicle, diver and object that devices move, and of every modem.
+class PhysicsInputs : public sim::Block<VehicleInputs, DiverInputs, ObjectInputs, ModemInputs> {
  public:
   PhysicsInputs() = default;
-  PhysicsInputs(std::size_t vehicles, std::size_t humans, std::size_t objects = 0)
-      : Block({vehicles, humans, objects}) {}
+  PhysicsInputs(std::size_t vehicles, std::size_t humans, std::size_t objects = 0,
+                std::size_t modems = 0)
+      : Block({vehicles, humans, objects, modems}) {}
 
   std::span<VehicleInputs> vehicles() { return part<VehicleInputs>(); }
   std::span<const VehicleInputs> vehicles() const { return part<VehicleInputs>(); }
@@ -24,14 +37,18 @@ class PhysicsInputs : public sim::Block<VehicleInputs, DiverInputs, ObjectInputs
   std::span<const DiverInputs> humans() const { return part<DiverInputs>(); }
   std::span<ObjectInputs> objects() { return part<ObjectInputs>(); }
   std::span<const ObjectInputs> objects() const { return part<ObjectInputs>(); }
+  std::span<ModemInputs> modems() { return part<ModemInputs>(); }
+  std::span<const ModemInputs> modems() const { return part<ModemInputs>(); }
 
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
     auto humans = self.humans();
     auto objects = self.objects();
+    auto modems = self.modems();
     field("vehicles", vehicles);
     field("humans", humans);
     field("objects", objects);
+    field("modems", modems);
   }
 };
 

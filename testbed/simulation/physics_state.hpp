@@ -14,6 +14,7 @@
 #include "rov/dynamics.hpp"
 #include "rov/navigation_state.hpp"
 #include "rov/sensor_set.hpp"
+#include "sonar/modem.hpp"
 #include "testbed/samples/inbox.hpp"
 #include "testbed/simulation/physics_inputs.hpp"
 
@@ -128,16 +129,44 @@ struct ObjectState {
   }
 };
 
+// What a modem does beside its messages: answers that it owes, and its own ranging.
+struct ModemTasks {
+  std::uint64_t sent = 0;                                       // of ModemInputs::asked
+  std::uint64_t looked = 0;                                     // at reports of its ModemState
+  std::uint64_t answers = 0, answer_to = 0, answer_number = 0;  // 1: it owes an answer
+  double answer_at_s = 0.0;
+  // Of one that ranges.
+  std::uint64_t asks = 0;  // so far
+  std::uint64_t waits = 0, asked_number = 0;
+  double asked_s = 0.0;
+  rov::Reading<rov::UsblReading> fix;
+
+  static void fields(auto&& field, auto& self) {
+    field("sent", self.sent);
+    field("looked", self.looked);
+    field("answers", self.answers);
+    field("answer_to", self.answer_to);
+    field("answer_number", self.answer_number);
+    field("answer_at_s", self.answer_at_s);
+    field("asks", self.asks);
+    field("waits", self.waits);
+    field("asked_number", self.asked_number);
+    field("asked_s", self.asked_s);
+    field("fix", self.fix);
+  }
+};
+
 // The state of a scene's physics: one block, sized once from the scene (PhysicsWorld::start()).
-class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings,
-                                       rov::NavigationState, ObjectState> {
+class PhysicsState
+    : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings, rov::NavigationState,
+                        ObjectState, sonar::ModemState, ModemTasks> {
  public:
   PhysicsState() = default;
   // sensing: vehicles that have sensors; navigating: those that fly on what they measure; objects:
   // those that devices move.
   PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing,
-               std::size_t navigating, std::size_t objects = 0)
-      : Block({vehicles, humans, sensing, navigating, objects}) {}
+               std::size_t navigating, std::size_t objects = 0, std::size_t modems = 0)
+      : Block({vehicles, humans, sensing, navigating, objects, modems, modems}) {}
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
@@ -151,6 +180,10 @@ class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorRe
   std::span<const rov::NavigationState> navigation() const { return part<rov::NavigationState>(); }
   std::span<ObjectState> objects() { return part<ObjectState>(); }
   std::span<const ObjectState> objects() const { return part<ObjectState>(); }
+  std::span<sonar::ModemState> modems() { return part<sonar::ModemState>(); }
+  std::span<const sonar::ModemState> modems() const { return part<sonar::ModemState>(); }
+  std::span<ModemTasks> modem_tasks() { return part<ModemTasks>(); }
+  std::span<const ModemTasks> modem_tasks() const { return part<ModemTasks>(); }
 
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
@@ -158,16 +191,23 @@ class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorRe
     auto readings = self.readings();
     auto navigation = self.navigation();
     auto objects = self.objects();
+    auto modems = self.modems();
+    auto modem_tasks = self.modem_tasks();
     field("vehicles", vehicles);
     field("humans", humans);
     field("readings", readings);
     field("navigation", navigation);
     field("objects", objects);
+    field("modems", modems);
+    field("modem_tasks", modem_tasks);
   }
-  // The hash covers groups once a live source was asked for, and navigation and objects where there
-  // are any.
+  // The hash covers groups once a live source was asked for, and navigation, objects and modems
+  // where there are any.
   std::span<const std::uint64_t> hashed_counts() const {
-    const std::size_t kinds = !objects().empty() ? kKinds : kKinds - (navigation().empty() ? 2 : 1);
+    const std::size_t kinds = !modems().empty()       ? kKinds
+                              : !objects().empty()    ? 5
+                              : !navigation().empty() ? 4
+                                                      : 3;
     return std::span(counts()).first(kinds);
   }
   static void hashed_fields(auto&& field, auto& self) {
@@ -186,6 +226,11 @@ class PhysicsState : public sim::Block<VehicleState, HumanPhysics, rov::SensorRe
     auto navigation = self.navigation();
     field("readings", readings);
     if (!navigation.empty()) field("navigation", navigation);
+    if (self.modems().empty()) return;
+    auto modems = self.modems();
+    auto modem_tasks = self.modem_tasks();
+    field("modems", modems);
+    field("modem_tasks", modem_tasks);
   }
 };
 

@@ -77,7 +77,8 @@ constexpr std::size_t kRoomForContacts = 256;
 }  // namespace
 
 PhysicsState PhysicsWorld::start() const {
-  PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_, objects_.size());
+  PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_, objects_.size(),
+                     modems_.all().size());
   for (std::size_t i = 0; i < vehicles_.size(); ++i) state.vehicles()[i].body = vehicles_[i].start;
   for (std::size_t i = 0; i < humans_.size(); ++i) state.humans()[i] = humans_[i].start;
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
@@ -103,6 +104,11 @@ std::uint64_t recorded_groups(const PhysicsHuman& human) {
 
 void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) const {
   const Stream& stream = streams_[sample.header.stream];
+  if (const ModemSend* message = std::get_if<ModemSend>(&sample.payload)) {
+    ModemInputs& modem = inputs.modems()[*modems_.find(stream.sort, stream.owner)];
+    modem.queue[modem.asked++ % ModemInputs::kQueued] = *message;
+    return;
+  }
   if (stream.sort == OwnerSort::kDiver)
     testbed::apply(inputs.humans()[stream.owner], sample, step,
                    recorded_groups(humans_[stream.owner]));
@@ -160,6 +166,11 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
   scratch.workers.run(humans + vehicles, [&](std::size_t i, unsigned thread) {
     i < humans ? finish_human(call, i, thread) : finish_vehicle(call, i - humans, thread);
   });
+  if (!modems_.all().empty()) step_modems(call);
+}
+
+void PhysicsWorld::step_modems(const StepCall& call) const {
+  modems_.step(call.before, call.inputs, call.time, seed_, call.after);
 }
 
 // For what meets in it.

@@ -78,6 +78,12 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
     if (scene.objects[i].human) NERITIC_TRY_STATUS(world->add_human(scene, i));
     if (!scene.objects[i].inputs.empty()) world->objects_.push_back({scene.objects[i].name, i});
   }
+  NERITIC_TRY(world->modems_, Modems::create(scene, world->movers_));
+  for (const PhysicsModem& modem : world->modems_.all())
+    if (modem.sort == OwnerSort::kVehicle && modem.ranging &&
+        world->vehicles_[modem.owner].file.sensors.usbl)
+      return bad_input("{}: {}: modem.usbl beside a file with [usbl]; accepted: one of them",
+                       scene.path, modem.name);
   std::vector<std::uint64_t> vehicle_files;
   for (const PhysicsVehicle& vehicle : world->vehicles_)
     vehicle_files.push_back(vehicle.kind.model.hash);
@@ -90,21 +96,26 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
 }
 
 void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
-  start_inputs_ = PhysicsInputs(vehicles_.size(), humans_.size(), objects_.size());
+  start_inputs_ =
+      PhysicsInputs(vehicles_.size(), humans_.size(), objects_.size(), modems_.all().size());
+  const auto modem = [&](OwnerSort sort, std::size_t owner) {
+    return modems_.sort_of(sort, static_cast<std::uint32_t>(owner));
+  };
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-    streams_.add_vehicle(vehicles_[i].name, vehicles_[i].file.sensors);
+    streams_.add_vehicle(vehicles_[i].name, vehicles_[i].file.sensors,
+                         modem(OwnerSort::kVehicle, i));
     start_inputs_.vehicles()[i] =
         chosen_inputs(scene.objects[vehicles_[i].object].dynamics->inputs, sources_);
   }
   for (std::size_t i = 0; i < humans_.size(); ++i) {
     const PhysicsHuman& human = humans_[i];
-    streams_.add_diver(human.name);
+    streams_.add_diver(human.name, modem(OwnerSort::kDiver, i));
     start_inputs_.humans()[i] =
         chosen_inputs(scene.objects[human.object].human->inputs, human.recording.has_value(),
                       human.buttons.has_value(), sources_);
   }
   for (std::size_t i = 0; i < objects_.size(); ++i) {
-    streams_.add_object(objects_[i].name);
+    streams_.add_object(objects_[i].name, modem(OwnerSort::kObject, i));
     start_inputs_.objects()[i] =
         chosen_object_inputs(scene.objects[objects_[i].object].inputs, sources_);
   }

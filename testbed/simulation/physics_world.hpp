@@ -15,6 +15,7 @@
 #include "testbed/simulation/body_step.hpp"
 #include "testbed/simulation/human_world.hpp"
 #include "testbed/simulation/mission.hpp"
+#include "testbed/simulation/modems.hpp"
 #include "testbed/simulation/pair_finder.hpp"
 #include "testbed/simulation/saved_state.hpp"
 #include "testbed/simulation/vehicle_kinds.hpp"
@@ -92,6 +93,7 @@ class PhysicsWorld {
   const std::vector<PhysicsVehicle>& vehicles() const { return vehicles_; }
   const std::vector<PhysicsHuman>& humans() const { return humans_; }
   const std::vector<PhysicsObject>& objects() const { return objects_; }
+  const Modems& modems() const { return modems_; }
   const sim::StaticWorld& solid() const { return solid_; }
   std::uint64_t seed() const { return seed_; }
   double step_s() const { return step_s_; }
@@ -160,6 +162,7 @@ class PhysicsWorld {
   bool part(const StepCall& call, std::size_t a, std::size_t b) const;
   void finish_vehicle(const StepCall& call, std::size_t i, unsigned thread) const;
   void finish_human(const StepCall& call, std::size_t k, unsigned thread) const;
+  void step_modems(const StepCall& call) const;
   void start_navigation(std::size_t index, PhysicsState& state) const;
   void navigate(std::size_t index, double time_s, PhysicsState& state) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
@@ -180,6 +183,7 @@ class PhysicsWorld {
   StreamTable streams_;
   SourceNames sources_;
   PhysicsInputs start_inputs_;
+  Modems modems_;
 };
 
 // How a vehicle with these sensors navigates, as the scene chooses; none: by its true state. An

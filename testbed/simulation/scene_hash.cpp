@@ -25,6 +25,8 @@ class SceneHash {
     if (scene.current) NERITIC_TRY_STATUS(add(*scene.current));
     number(scene.objects.size());
     for (const scene::Object& object : scene.objects) NERITIC_TRY_STATUS(add(scene, object));
+    if (!scene.modems.empty()) add(scene.acoustics.value_or(scene::Acoustics{}));
+    for (const scene::Modem& modem : scene.modems) add(modem);
     return {};
   }
   std::uint64_t value() const { return hash_.value(); }
@@ -62,6 +64,29 @@ class SceneHash {
     vec(c.velocity_m_s), vec(c.deep_velocity_m_s), vec(c.origin_m), vec(c.spacing_m);
     numbers(c.depth_m, c.exponent, c.start_s, c.interval_s);
     return file(c.file);
+  }
+
+  void add(const scene::Acoustics& water) {
+    text("acoustics");
+    numbers(water.temperature_c, water.salinity_psu, water.ph, water.spreading, water.wind_m_s,
+            water.shipping);
+    number(static_cast<std::uint64_t>(water.path));
+    number(water.profile.size());
+    for (const scene::SonarRow& row : water.profile) numbers(row.x, row.y);
+  }
+  void add(const scene::Modem& modem) {
+    text("modem");
+    number(static_cast<std::uint64_t>(modem.object));
+    vec(modem.position_m);
+    numbers(modem.source_level_db, modem.frequency_hz, modem.bandwidth_hz, modem.bit_rate_hz,
+            modem.preamble_s, modem.coding_gain_db, modem.detection_db, modem.self_noise_db,
+            modem.turnaround_s);
+    number(modem.fading);
+    number(modem.usbl.has_value());
+    if (!modem.usbl) return;
+    text(modem.usbl->target);
+    numbers(modem.usbl->interval_s, modem.usbl->range_noise_m, modem.usbl->direction_noise_rad,
+            modem.usbl->sound_m_s.value_or(-1.0));
   }
 
   void add(const scene::Mount& mount) {

@@ -1,5 +1,7 @@
 #include "testbed/world/ros_samples.hpp"
 
+#include <algorithm>
+
 #include "engine/core/ros_frames.hpp"
 
 namespace neritic::testbed::ros {
@@ -36,6 +38,10 @@ struct Lister {
   template <class T>
   void list(const char* name, T& values) {
     fields.push_back({name, static_cast<std::uint32_t>(std::size(values))});
+  }
+  template <class T>
+  void words(const char* name, T& values) {
+    list(name, values);
   }
   template <class T, class Both>
   void rotations(const char* name, T& values, const Both&) {
@@ -74,6 +80,10 @@ struct Writer {
   template <class T>
   void list(const char*, const T& values) {
     for (const double value : values) *at++ = value;
+  }
+  template <class T>
+  void words(const char*, const T& values) {
+    for (const std::uint32_t value : values) *at++ = static_cast<double>(value);
   }
   template <class T, class Both>
   void rotations(const char*, const T& values, const Both& both) {
@@ -127,6 +137,11 @@ struct Reader {
   template <class T>
   void list(const char*, T& values) {
     for (double& value : values) value = *at++;
+  }
+  template <class T>
+  void words(const char*, T& values) {
+    for (std::uint32_t& value : values)
+      value = static_cast<std::uint32_t>(std::clamp(*at++, 0.0, 4294967295.0));
   }
   template <class T, class Both>
   void rotations(const char*, T& values, const Both& both) {
@@ -236,6 +251,12 @@ void describe(Io& io, auto& p, const ObjectPose*) {
   io.vector("angular_velocity", p.angular_velocity_rad_s, enu, world);
   io.number("measured", p.measured);
 }
+template <class Io>
+void describe(Io& io, auto& p, const ModemSend*) {
+  io.number("to", p.to);
+  io.number("bytes", p.bytes);
+  io.words("words", p.words);
+}
 void describe(auto&, auto&, const Event*) {}
 
 // Readings.
@@ -283,6 +304,19 @@ void describe(Io& io, auto& p, const CollisionReading*) {
   io.vector("normal", p.normal, enu, world);
   io.number("depth_m", p.depth_m);
   io.vector("impulse", p.impulse_n_s, enu, world);
+}
+template <class Io>
+void describe(Io& io, auto& p, const ModemReading*) {
+  io.choice("event", p.event, ModemEvent::kWasSending);
+  io.choice("message_kind", p.kind, ModemKind::kAnswer);
+  io.number("sender", p.from);
+  io.number("to", p.to);
+  io.number("number", p.number);
+  io.number("bytes", p.bytes);
+  io.words("words", p.words);
+  io.number("sent", p.sent_s);
+  io.number("heard", p.heard_s);
+  io.number("snr_db", p.snr_db);
 }
 template <class Io>
 void describe(Io& io, auto& p, const DiverMotion*) {

@@ -32,6 +32,12 @@ std::vector<AgentInfo> agents_of(const PhysicsWorld& world) {
     out.push_back({.name = human.name, .kind = "diver"});
   for (const PhysicsObject& object : world.objects())
     out.push_back({.name = object.name, .kind = "object"});
+  const std::size_t first[] = {world.vehicles().size(), 0,
+                               world.vehicles().size() + world.humans().size()};
+  for (std::size_t i = 0; i < world.modems().all().size(); ++i) {
+    const PhysicsModem& modem = world.modems().all()[i];
+    out[first[static_cast<std::size_t>(modem.sort)] + modem.owner].modem = i + 1;
+  }
   return out;
 }
 

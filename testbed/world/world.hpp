@@ -55,6 +55,7 @@ struct AgentInfo {
   std::vector<std::pair<double, double>> thruster_n;  // least and most force of each
   bool takes_pwm = false;
   bool has_mission = false;
+  std::uint64_t modem = 0;  // its number among the scene's modems, from 1 on; 0: it has none
 };
 
 struct Reading {
@@ -162,6 +163,8 @@ class World {
   // Divers: buttons  inflate deflate dump; joints  15 quaternions; head  position, orientation,
   // placed; hands, gaze, breath, heart, gas: the fields of the stream of that name.
   // Objects: pose  x y z qx qy qz qw [vx vy vz wx wy wz].
+  // Modems: send  the number of the modem that it is for (0: all), then 1 to 64 bytes; it takes no
+  // authority, and what comes of it is read from AGENT/modem.
   // source: who commands, by name. kBadInput: what was found, what is accepted.
   Status command(const std::string& agent, const std::string& kind, std::span<const double> values,
                  double hold_s = 0.0, const std::string& source = kClient);

@@ -100,6 +100,26 @@ Result<Said> object_command(const std::string& where, const std::string& kind,
   return Said{PayloadKind::kObjectPose, values};
 }
 
+// A message of bytes.
+Result<ModemSend> message_of(const std::string& where, std::uint64_t modems,
+                             std::span<const double> values) {
+  NERITIC_TRY_STATUS(check_count(where, std::min<std::size_t>(values.size(), kModemBytes + 2), 2,
+                                 kModemBytes + 1));
+  const auto whole = [](double value, double most) {
+    return value >= 0.0 && value <= most && value == std::floor(value);
+  };
+  if (!whole(values[0], static_cast<double>(modems)))
+    return refusal(where, fmt::format("to {}", values[0]),
+                   fmt::format("the number of a modem, 1 to {}, or 0 for all", modems));
+  ModemSend message{.to = static_cast<std::uint64_t>(values[0]), .bytes = values.size() - 1};
+  for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+    if (!whole(values[i + 1], 255.0))
+      return refusal(where, fmt::format("{} at place {}", values[i + 1], i + 1), "bytes, 0 to 255");
+    message.words[i / 4] |= static_cast<std::uint32_t>(values[i + 1]) << (8 * (i % 4));
+  }
+  return message;
+}
+
 Authority chosen_authority(const PhysicsInputs& chosen, OwnerSort sort, std::size_t owner,
                            std::size_t group, SourceId& source, double& hold_s) {
   const GroupControl& control =
@@ -168,6 +188,16 @@ Status World::command(const std::string& name, const std::string& kind,
   NERITIC_TRY_STATUS(check_finite(where, values));
   const PhysicsWorld& world = parts.world();
   const std::size_t vehicles = world.vehicles().size(), humans = world.humans().size();
+  if (kind == "send") {
+    const std::uint64_t modem = parts.agents[index].modem;
+    if (modem == 0)
+      return refusal(where, "an agent without a modem", "one whose object has the table modem");
+    NERITIC_TRY(const ModemSend message, message_of(where, world.modems().all().size(), values));
+    const PhysicsModem& owner = world.modems().all()[modem - 1];
+    NERITIC_TRY(const SourceId source, parts.source(from));
+    return parts.push(source, world.streams().id(owner.sort, owner.owner, PayloadKind::kSend),
+                      message, time_ns());
+  }
   OwnerSort sort = OwnerSort::kVehicle;
   std::uint32_t owner = static_cast<std::uint32_t>(index);
   Said said;

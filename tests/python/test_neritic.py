@@ -19,6 +19,7 @@ from neritic import tradeoff
 
 ROOT = Path(__file__).resolve().parents[2]
 MISSION = str(ROOT / "assets/scenes/mission.toml")
+TALK = str(ROOT / "assets/scenes/talk.toml")
 MEASURED = str(ROOT / "assets/scenes/mission_measured.toml")
 
 
@@ -46,6 +47,12 @@ class Examples(unittest.TestCase):
 
     def test_a_controller_of_ones_own_holds_the_depth(self):
         self.assertLess(abs(quietly(example("own_controller").main)), 0.2)
+
+    def test_a_diver_and_a_vehicle_talk_by_sound(self):
+        said = quietly(example("talk").main, "assets/scenes/talk.toml", 20.0)
+        self.assertGreaterEqual(said["told"], 4)
+        self.assertLess(said["worst_m"], 1.5)
+        self.assertGreaterEqual(said["answered"], 2)
 
     def test_a_sonar_dataset_is_written(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -105,6 +112,26 @@ class Worlds(unittest.TestCase):
         lost = 1 - len(numbers) / (numbers[-1] + 1)
         self.assertAlmostEqual(lost, 0.3, delta=0.1)
         self.assertTrue(all(abs(r.arrival - r.stamp - 0.1) < 0.005 for r in arrived))
+
+    def test_messages_take_their_way_and_bad_ones_are_refused(self):
+        world = neritic.open(TALK, seed=1)
+        diver, rov = world["diver"], world["rov"]
+        diver.send("up", to="rov")
+        self.assertEqual(rov.receive(), [])
+        heard = []
+        while not heard:
+            world.tick(12)
+            heard = rov.receive()
+        message, = heard
+        self.assertEqual((message.sender, message.data), ("diver", b"up"))
+        away = np.linalg.norm(world.truth("rov").position - world.truth("diver").position)
+        self.assertAlmostEqual((message.heard - message.sent) * 1500.0, away, delta=0.3)
+        self.assertGreater(message.received, message.heard)
+        for call in (lambda: diver.send(b"", to="rov"), lambda: diver.send(bytes(65)),
+                     lambda: diver.send(b"x", to="fish"), lambda: rov.command("send", [9, 1]),
+                     lambda: rov.command("send", [0, 256])):
+            with self.assertRaises(neritic.BadInput):
+                call()
 
     def test_an_asynchronous_iterator_ticks(self):
         async def run():

@@ -79,6 +79,20 @@ class Remote(unittest.TestCase):
             with self.assertRaisesRegex(neritic.BadInput, "agent"):
                 there._core.truth("fish")
 
+    def test_messages_by_sound_are_those_of_the_process(self):
+        talk = str(ROOT / "assets/scenes/talk.toml")
+        with Served(scene=talk) as address, neritic.open(talk, seed=3) as here, neritic.connect(address) as there:
+            heard = []
+            for world in (here, there):
+                world["diver"].send("look", to="rov")
+                world.tick(120)
+                world["rov"].send(bytes(range(64)))
+                world.tick(600)
+                heard.append(world["rov"].receive() + world["diver"].receive())
+            self.assertEqual(*heard)
+            self.assertEqual([m.data for m in heard[0]], [b"look", bytes(range(64))])
+            self.assertEqual(here.hash, there.hash)
+
     def test_keys_let_in_and_keep_out(self):
         with tempfile.TemporaryDirectory() as folder:
             for name in ("ada", "eve"):

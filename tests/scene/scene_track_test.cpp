@@ -214,7 +214,8 @@ TEST_P(TrackError, IsTheDocumentedLine) {
 #define TWO "waypoints_m = [[0,0,0],[1,0,0]]"
 #define AREA "area_m = [0,0,1,1]"
 #define WAY                                                                                  \
-  "s.toml:2: lamps[0].track: found none or more than one of waypoints_m, lawn_mower, file; " \
+  "s.toml:2: lamps[0].track: found none or more than one of waypoints_m, lawn_mower, file, " \
+  "recording; "                                                                              \
   "accepted: one of them"
 
 INSTANTIATE_TEST_SUITE_P(

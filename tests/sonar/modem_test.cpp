@@ -105,7 +105,8 @@ TEST(Modem, AMessageComesAfterItsTravelAndItsBits) {
   EXPECT_EQ(sea.states[1].counts.received, 0u);
   sea.run(travel_s + bits_s - 0.01, travel_s + bits_s + 0.01);
   ASSERT_EQ(sea.states[1].counts.received, 1u);
-  const ModemReceived& got = sea.states[1].received[0];
+  const ModemReport& got = sea.states[1].reports[0];
+  EXPECT_EQ(got.event, ModemEvent::kReceived);
   EXPECT_EQ(got.message.words[0], 0x1122334455667788ull);
   EXPECT_EQ(got.message.from, 0u);
   EXPECT_NEAR(got.heard_s - got.sent_s, travel_s, 1e-12);  // of a range, whatever the step

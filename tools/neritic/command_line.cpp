@@ -314,7 +314,8 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command->add_option(
       "--record", flags->files.record,
       "every sample in and out, state hashes and the scene, as an .mcap that --replay "
-      "and ROS 2 tools read (neritic recording --help)");
+      "and ROS 2 tools read (neritic recording --help); F.xdf: beside F.mcap all numbers for "
+      "physiology labs");
   command
       ->add_option("--record-images", flags->record_images,
                    "with --record: also these images, such as rov_camera/color or rov_sonar/echoes "

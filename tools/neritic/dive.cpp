@@ -26,6 +26,7 @@
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/named_sensors.hpp"
 #include "tools/neritic/recorded_scene.hpp"
+#include "tools/neritic/recording_export.hpp"
 #include "tools/neritic/step_files.hpp"
 #include "tools/neritic/timeline_picture.hpp"
 
@@ -385,9 +386,8 @@ Status check_serve_flags(const DiveFlags& flags, const scene::Scene& scene, bool
   return {};
 }
 
-}  // namespace
-
-Status run_dive(const DiveFlags& asked) {
+// With every flag but the form of the recording as it is.
+Status run_whole_dive(const DiveFlags& asked) {
   DiveFlags flags = asked;
   if (flags.seconds && !(std::isfinite(*flags.seconds) && *flags.seconds > 0.0))
     return refusal("--seconds", fmt::format("{}", *flags.seconds), "a number above 0");
@@ -427,6 +427,22 @@ Status run_dive(const DiveFlags& asked) {
   return pictures
              ? dive_pictures(flags, std::move(scene), physics_scene, std::move(recorded), interrupt)
              : dive_physics(flags, scene, std::move(recorded), interrupt);
+}
+
+}  // namespace
+
+// An .xdf is made at the end of the recording beside it, which alone survives a crash.
+Status run_dive(const DiveFlags& asked) {
+  const fs::path xdf = asked.files.record;
+  if (xdf.extension() != ".xdf") return run_whole_dive(asked);
+  NERITIC_TRY_STATUS(check_output_file("--record", xdf.string()));
+  DiveFlags flags = asked;
+  const fs::path recording = fs::path(xdf).replace_extension(".mcap");
+  flags.files.record = recording.string();
+  const Status status = run_whole_dive(flags);
+  if (!status.ok() && status.error().code != ErrorCode::kInterrupted) return status;
+  NERITIC_TRY_STATUS(write_xdf(recording, xdf));
+  return status;
 }
 
 }  // namespace neritic::tools

@@ -111,6 +111,29 @@ std::string human_line(const PhysicsHuman& human, const HumanPhysics& state,
   return line + "\n" + change_lines(human, figures) + warning_lines(human, figures);
 }
 
+std::string modem_line(const std::string& name, const sonar::ModemCounts& counts) {
+  std::string line =
+      fmt::format("{}: modem: {} messages sent, {} received", name, counts.sent, counts.received);
+  for (const auto& [count, words] : {std::pair(counts.refused, "not sent"),
+                                     {counts.too_weak, "lost: too weak"},
+                                     {counts.noisy, "lost in noise"},
+                                     {counts.collided, "lost to others"},
+                                     {counts.was_sending, "lost while it sent"}})
+    if (count > 0) line += fmt::format(", {} {}", count, words);
+  return line + "\n";
+}
+
+nlohmann::json modem_json(const std::string& name, const sonar::ModemCounts& counts) {
+  return {{"name", name},
+          {"sent", counts.sent},
+          {"refused", counts.refused},
+          {"received", counts.received},
+          {"too_weak", counts.too_weak},
+          {"noisy", counts.noisy},
+          {"collided", counts.collided},
+          {"was_sending", counts.was_sending}};
+}
+
 nlohmann::json human_json(const PhysicsHuman& human, const HumanPhysics& state,
                           const HumanFigures& figures) {
   const diver::GasReading gas = diver::read_gas(human.body, state.human);
@@ -385,6 +408,9 @@ nlohmann::json summary_json(const DiveFlags& flags, const PhysicsWorld& world,
     json["objects"].push_back(object_json(world.objects()[i], newest.state.objects()[i],
                                           simulation.inputs().objects()[i].refused_events,
                                           sources));
+  for (std::size_t i = 0; i < world.modems().all().size(); ++i)
+    json["modems"].push_back(
+        modem_json(world.modems().all()[i].name, newest.state.modems()[i].counts));
   json["sources"] = sources_json(simulation.inbox(), pace.devices);
   json["unknown_source_samples"] = simulation.inbox().unknown_sources();
   return json;
@@ -420,6 +446,8 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
     fmt::print("{}",
                group_lines<ObjectGroup>(world.objects()[i].name, newest.state.objects()[i].groups,
                                         simulation.inputs().objects()[i].refused_events, sources));
+  for (std::size_t i = 0; i < world.modems().all().size(); ++i)
+    fmt::print("{}", modem_line(world.modems().all()[i].name, newest.state.modems()[i].counts));
   fmt::print("{}", source_lines(simulation.inbox()));
   for (const DeviceHealth& health : pace.devices) log_info("{}", health_words(health, now_ns()));
   const std::string restored =

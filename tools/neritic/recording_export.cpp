@@ -236,9 +236,8 @@ class XdfTopic final : public TopicFile {
 
 class ExportVisitor final : public recording::McapVisitor {
  public:
-  explicit ExportVisitor(const RecordingFlags& flags) : flags_(flags) {
-    if (flags.format == "xdf")
-      xdf_.emplace(recording::XdfWriter(), GrowingFile(flags.out / "recording.xdf"));
+  ExportVisitor(const RecordingFlags& flags, const fs::path& xdf) : flags_(flags) {
+    if (flags.format == "xdf") xdf_.emplace(recording::XdfWriter(), GrowingFile(xdf));
   }
 
   Status schema(std::uint16_t id, const recording::McapSchema& schema) override {
@@ -314,12 +313,23 @@ class ExportVisitor final : public recording::McapVisitor {
 
 }  // namespace
 
+Status write_xdf(const fs::path& mcap, const fs::path& xdf) {
+  RecordingFlags flags;
+  flags.format = "xdf";
+  NERITIC_TRY(const auto source, recording::open_mcap(mcap));
+  ExportVisitor visitor(flags, xdf);
+  const auto report =
+      recording::read_mcap(*source, mcap.string(), visitor, recording::AfterDamage::kGoOn);
+  if (!report.ok()) return report.error();
+  return visitor.finish();
+}
+
 Result<std::string> export_recording(const RecordingFlags& flags) {
   if (flags.out.empty()) return refusal("--out", "none", "a folder");
   NERITIC_TRY_STATUS(check_output_folder("--out", flags.out.string()));
   NERITIC_TRY(const auto source, recording::open_mcap(flags.file));
   NERITIC_TRY_STATUS(make_folder(flags.out));
-  ExportVisitor visitor(flags);
+  ExportVisitor visitor(flags, flags.out / "recording.xdf");
   NERITIC_TRY(const auto report,
               recording::read_mcap(*source, flags.file, visitor, recording::AfterDamage::kGoOn));
   NERITIC_TRY_STATUS(visitor.finish());

@@ -68,6 +68,7 @@ struct Target {
 std::uint64_t flood(std::vector<Target>& targets, double rate_hz, const std::atomic<bool>& stop) {
   std::uint64_t sent = 0, made = 0;
   const TimeNs begun_ns = now_ns();
+  std::vector<std::vector<std::byte>> ready;
   while (!stop) {
     const TimeNs due_ns = begun_ns + static_cast<TimeNs>(1e9 * static_cast<double>(made) / rate_hz);
     if (const TimeNs wait_ns = due_ns - now_ns(); wait_ns > 0)
@@ -77,9 +78,12 @@ std::uint64_t flood(std::vector<Target>& targets, double rate_hz, const std::ato
       Target& target = targets[made % 10 == 0 ? (made / 10) % targets.size() : 0];
       target.link.send(due_ns, target.maker.next());
     }
-    for (Target& target : targets)
+    for (Target& target : targets) {
+      ready.clear();
       while (!target.link.empty() && target.link.next().due_ns <= due_ns)
-        sent += target.sender.send(target.link.take_next().bytes) ? 1 : 0;
+        ready.push_back(target.link.take_next().bytes);
+      sent += target.sender.send(ready);
+    }
   }
   return sent;
 }

@@ -141,7 +141,7 @@ py::list agents_of(const World& world) {
   py::list out;
   for (const AgentInfo& agent : world.agents())
     out.append(py::make_tuple(agent.name, agent.kind, agent.thruster_n, agent.takes_pwm,
-                              agent.has_mission));
+                              agent.has_mission, agent.modem));
   return out;
 }
 

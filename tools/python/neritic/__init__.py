@@ -21,9 +21,11 @@ from .errors import BadInput, Error
 from .remote import RemoteWorld, connect
 from .vector import VectorEnv, vector
 from .world import (
+    MODEM_EVENTS,
     Agent,
     Diver,
     Image,
+    Message,
     Observations,
     Reading,
     Stream,
@@ -37,6 +39,6 @@ from .world import (
 _core.set_errors(Error, BadInput)
 
 __all__ = [
-    "Agent", "BadInput", "Diver", "Error", "Image", "Observations", "Reading", "RemoteWorld", "Stream",
+    "Agent", "BadInput", "Diver", "Error", "Image", "MODEM_EVENTS", "Message", "Observations", "Reading", "RemoteWorld", "Stream",
     "TrackedObject", "Truth", "VectorEnv", "Vehicle", "World", "connect", "open", "vector",
 ]

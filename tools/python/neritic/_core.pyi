@@ -44,7 +44,7 @@ class World:
     time: float
     hash: int
     streams: list[tuple[str, str, str, str, str, list[tuple[str, int]], float, str]]
-    agents: list[tuple[str, str, list[tuple[float, float]], bool, bool]]
+    agents: list[tuple[str, str, list[tuple[float, float]], bool, bool, int]]
     dropped: int
     recording: bool
     def close(self) -> None: ...

@@ -126,7 +126,7 @@ class Core:
                          [tuple(field) for field in s["fields"]], s["rate_hz"], s["encoding"])
                         for s in hello["streams"]]
         self.agents = [(a["name"], a["kind"], [tuple(pair) for pair in a["thruster_n"]],
-                        a["takes_pwm"], a["has_mission"]) for a in hello["agents"]]
+                        a["takes_pwm"], a["has_mission"], a.get("modem", 0)) for a in hello["agents"]]
         self._places = {stream[0]: i for i, stream in enumerate(self.streams)}
         self._newest: list[Row] = [((i, 0, 0, 0, 0), np.zeros(0)) for i in range(len(self.streams))]
         self._arrived: list[Row] = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+from collections import deque
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, AsyncIterator, Callable, Iterator, Mapping, Optional, Sequence, Union
@@ -230,12 +231,55 @@ class Truth:
     touched_steps: int  # in which it touched something, so far
 
 
+MODEM_EVENTS = ("sent", "refused", "received", "too_weak", "noisy", "collided", "was_sending")
+"""What the number `event` of a reading of NAME/modem means: what became of a message at its sender, or
+at a modem that it was for. The last four are the causes of its loss."""
+
+
+@dataclass(frozen=True)
+class Message:
+    """A message that a modem received."""
+
+    sender: str  # the agent that sent it
+    data: bytes
+    sent: float  # when its first sound left, and arrived, in simulated seconds: their difference is the
+    heard: float  # travel, as modems with synchronised clocks measure it
+    received: float  # when the last bit had come
+    snr_db: float  # signal to noise in the receiver's band
+
+
 class Agent:
     """A vehicle, a diver or an object of the scene. A command holds until the next one, until
     release(), or, with hold > 0, until so many seconds passed without one."""
 
     def __init__(self, world: World, name: str) -> None:
         self._world, self.name = world, name
+        self.modem = 0
+        """The number of its modem among the scene's, from 1 on; 0: it has none."""
+
+    def send(self, data: Union[bytes, str], to: Optional[str] = None) -> None:
+        """Sends up to 64 bytes by sound with the next step, to one agent's modem or to all (None). Whether
+        and when it arrives is the water's affair: receive() of the other one, and readings of NAME/modem
+        (event: MODEM_EVENTS)."""
+        if isinstance(data, str):
+            data = data.encode()
+        number = 0
+        if to is not None:
+            number = self._world[to].modem
+            if not number:
+                raise BadInput(f"{self.name}: send: found {to}, an agent without a modem; accepted: "
+                               f"{', '.join(self._world._modems)}")
+        self.command("send", [number, *data])
+
+    def receive(self) -> list[Message]:
+        """The messages that its modem received since the last call, oldest first (the newest 1024)."""
+        if not self.modem:
+            raise BadInput(f"{self.name}: receive: found an agent without a modem; accepted: "
+                           f"{', '.join(self._world._modems)}")
+        mail = self._world._mail[f"{self.name}/modem"]
+        messages = list(mail)
+        mail.clear()
+        return messages
 
     def command(self, kind: str, values: ArrayLike, hold: float = 0.0) -> None:
         """A command by its name and numbers, as the methods below send it."""
@@ -346,10 +390,19 @@ class World:
         self._images: dict[str, Image] = {}  # the newest; another one with each change
         self._senses = False  # images are wanted
         self._agents: dict[str, Agent] = {}
-        for name, kind, thruster_n, takes_pwm, _ in core.agents:
+        self._modems: list[str] = []  # their agents, by number
+        self._mail: dict[str, deque[Message]] = {}
+        modems: dict[int, str] = {}
+        for name, kind, thruster_n, takes_pwm, _, modem in core.agents:
+            if modem:
+                modems[modem] = name
+                self._mail[f"{name}/modem"] = deque(maxlen=1024)
+                core.keep(self._places[f"{name}/modem"], True)
             self._agents[name] = (Vehicle(self, name, thruster_n, takes_pwm) if kind == "vehicle"
                                   else Diver(self, name) if kind == "diver"
                                   else TrackedObject(self, name))
+            self._agents[name].modem = modem
+        self._modems = [modems[number] for number in sorted(modems)]
 
     # The scene.
 
@@ -409,9 +462,7 @@ class World:
     def tick(self, steps: int = 1) -> Observations:
         """Takes so many physics steps and returns what has arrived by then. Callbacks run after them."""
         of = self._core.tick(steps)
-        if self._senses or self._callbacks:
-            self._take_images()
-            self._call_back()
+        self._after_tick()
         return Observations(self, of, self._images)
 
     def observe(self) -> Observations:
@@ -424,9 +475,7 @@ class World:
         done = 0
         while count is None or done < count:
             of = await asyncio.get_running_loop().run_in_executor(None, self._core.tick, steps)
-            if self._senses or self._callbacks:
-                self._take_images()
-                self._call_back()
+            self._after_tick()
             yield Observations(self, of, self._images)
             done += 1
 
@@ -442,7 +491,7 @@ class World:
         """Ends the callbacks of a stream."""
         self._callbacks.pop(stream, None)
         place = self._core.stream(stream)
-        if self._streams[place].sort != "image":
+        if self._streams[place].sort != "image" and stream not in self._mail:
             self._core.keep(place, False)
 
     def link(self, stream: str, delay: float = 0.0, jitter: float = 0.0, loss: float = 0.0) -> None:
@@ -476,6 +525,8 @@ class World:
         """Goes on from a saved state of this scene. What is on its way is dropped; commands end."""
         self._core.restore(state)
         self._images = {}
+        for mail in self._mail.values():
+            mail.clear()
 
     @contextmanager
     def record(self, path: Union[str, os.PathLike[str]]) -> Iterator[None]:
@@ -521,15 +572,31 @@ class World:
                 call(image)
         self._images = newest  # observations that were given keep theirs
 
+    def _after_tick(self) -> None:
+        if self._senses or self._callbacks or self._mail:
+            self._take_images()
+            self._call_back()
+
     def _call_back(self) -> None:
-        if not self._callbacks:
+        if not self._callbacks and not self._mail:
             return
         arrived = self._core.take_arrived()
         for i in range(len(arrived)):
             place = arrived.header(i)[0]
             stream = self._streams[place]
+            reading = Reading(arrived, i, stream, self._offsets[place])
+            if stream.name in self._mail:
+                self._sort_mail(reading)
             for call in self._callbacks.get(stream.name, ()):
-                call(Reading(arrived, i, stream, self._offsets[place]))
+                call(reading)
+
+    def _sort_mail(self, reading: Reading) -> None:
+        if MODEM_EVENTS[int(reading.event)] != "received" or reading.message_kind:
+            return
+        data = np.asarray(reading.words, "<u4").tobytes()[:int(reading.bytes)]
+        self._mail[reading.stream].append(
+            Message(self._modems[int(reading.sender) - 1], data, reading.sent, reading.heard,
+                    reading.stamp, reading.snr_db))
 
 
 def _offsets(fields: Sequence[tuple[str, int]]) -> dict[str, tuple[int, int]]:

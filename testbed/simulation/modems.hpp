@@ -1,0 +1,61 @@
+// A scene's acoustic modems (sonar/modem.hpp), on vehicles, divers and objects that devices move:
+// their messages as a part of the step, and the ranging of those that find another one as a USBL
+// does. Built once, then only read; the step is pure. Depths positive; north, east, down.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.hpp"
+#include "engine/sim/step_time.hpp"
+#include "testbed/simulation/object_motion.hpp"
+
+namespace neritic::testbed {
+
+struct PhysicsModem {
+  std::string name;  // of its owner
+  OwnerSort sort = OwnerSort::kVehicle;
+  std::uint32_t owner = 0;
+  Vec3 position_m{0.0};  // on the owner: forward, starboard, down
+  Motion at_rest;        // of an object until a sample places it
+  double turnaround_s = 0.5;
+  std::optional<scene::Ranging> ranging;
+  std::size_t target = 0;  // of the ranging: a modem
+};
+
+class Modems {
+ public:
+  // Errors in one line: too many, or a target without a modem.
+  static Result<Modems> create(const scene::Scene& scene, const Movers& movers);
+
+  const std::vector<PhysicsModem>& all() const { return all_; }
+  // The modem of an owner.
+  std::optional<std::size_t> find(OwnerSort sort, std::uint32_t owner) const;
+  ModemSort sort_of(OwnerSort sort, std::uint32_t owner) const;
+  const sonar::ModemWater& water() const { return water_; }
+  // Where a modem is.
+  Vec3 position_ned_m(std::size_t modem, const PhysicsState& state) const;
+
+  // After everything has moved: what is to be sent leaves where its sender was at the step's
+  // beginning, what arrives is heard where its receiver is at the end.
+  void step(const PhysicsState& before, const PhysicsInputs& inputs, const sim::StepTime& time,
+            std::uint64_t seed, PhysicsState& after) const;
+
+ private:
+  struct Call;
+  void say(const Call& call, std::size_t modem, sonar::ModemMessage message, double at_s) const;
+  void send_asked(const Call& call, std::size_t modem) const;
+  void range(const Call& call, std::size_t modem) const;
+  void look(const Call& call, std::size_t modem) const;
+  void fix(const Call& call, std::size_t modem, const sonar::ModemReport& answer) const;
+
+  std::vector<PhysicsModem> all_;
+  std::vector<sonar::ModemSettings> settings_;
+  sonar::ModemWater water_;
+};
+
+// As a sample says it.
+ModemReading modem_reading(const sonar::ModemReport& report);
+
+}  // namespace neritic::testbed

@@ -1,0 +1,171 @@
+// Modems of a scene: messages that take their time, ranges by a USBL, and a run with both recorded,
+// repeated, saved and restored.
+#include "testbed/simulation/output_samples.hpp"
+#include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/simulation/replay_run.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// An ROV at the origin and one so far north of it, each 6 m deep; keys of the scene follow.
+std::string two_text(double north_m, const std::string& modem = "modem = { fading = false }\n",
+                     const std::string& keys = {}) {
+  return std::string(kStillWater) + keys + rov_text("position_m = [0, -6, 0]\n" + modem, "ada") +
+         rov_text(fmt::format("position_m = [0, -6, {}]\nmodem = {{ fading = false }}\n", -north_m),
+                  "bob");
+}
+
+TestDive two(const std::string& text) {
+  return dive_of(load_text(text).value());
+}
+
+// As a client sends it.
+void say(TestDive& dive, const std::string& stream, std::uint64_t to, std::uint64_t bytes,
+         std::uint32_t word = 0x31323334u) {
+  static std::uint64_t sequence = 0;
+  SampleInbox& inbox = dive.simulation->inbox();
+  const SourceId source = inbox.open("client").value();
+  const auto now = static_cast<TimeNs>(dive.time_s() * 1e9);
+  ModemSend send{.to = to, .bytes = bytes};
+  send.words[0] = word;
+  EXPECT_EQ(inbox.push(
+                {{dive.world->streams().find(stream).value(), source, sequence++, now, now}, send}),
+            SampleVerdict::kAccepted);
+}
+
+std::vector<ModemReading> heard(TestDive& dive, const std::string& stream, double seconds) {
+  OutputSamples outputs(*dive.world, {dive.world->streams().find(stream).value()});
+  std::vector<ModemReading> all;
+  std::uint64_t next = 0;
+  bool begun = false;
+  dive.run(seconds, [&] {
+    for (const Sample& sample : outputs.of(dive.simulation->newest())) {
+      if (begun) EXPECT_EQ(sample.header.sequence, next);
+      begun = true, next = sample.header.sequence + 1;
+      EXPECT_LE(sample.header.captured_ns, sample.header.arrived_ns);
+      all.push_back(std::get<ModemReading>(sample.payload));
+    }
+  });
+  return all;
+}
+
+TEST(SceneModem, AMessageTakesItsTravelAndSaysWhatWasSent) {
+  TestDive dive = two(two_text(300.0));
+  say(dive, "ada/send", 2, 4);
+  const auto got = heard(dive, "bob/modem", 1.0);
+  ASSERT_EQ(got.size(), 1u);
+  EXPECT_EQ(got[0].event, ModemEvent::kReceived);
+  EXPECT_EQ(got[0].from, 1u);
+  EXPECT_EQ(got[0].to, 2u);
+  EXPECT_EQ(got[0].bytes, 4u);
+  EXPECT_EQ(got[0].words[0], 0x31323334u);
+  // Mackenzie at 10 C, 35 psu, 6 m: 1489.90 m/s.
+  EXPECT_NEAR(got[0].heard_s - got[0].sent_s, 300.0 / 1489.90, 1e-4);
+  EXPECT_EQ(dive.state().modems()[0].counts.sent, 1u);
+}
+
+TEST(SceneModem, LossesAreToldWithTheirCauseAndRefusalsToTheSender) {
+  TestDive dive = two(two_text(300.0));
+  say(dive, "ada/send", 0, 20), say(dive, "bob/send", 0, 20);
+  say(dive, "ada/send", 0, 20);   // it is sending
+  say(dive, "bob/send", 99, 20);  // nobody
+  say(dive, "bob/send", 0, 65);   // too long
+  const auto got = heard(dive, "ada/modem", 2.0);
+  ASSERT_EQ(got.size(), 3u);
+  EXPECT_EQ(got[0].event, ModemEvent::kSent);
+  EXPECT_EQ(got[1].event, ModemEvent::kRefused);
+  // Both sent at once: each was still sending as the other's first sound came.
+  EXPECT_EQ(got[2].event, ModemEvent::kWasSending);
+  EXPECT_EQ(got[2].words[0], 0u);
+  EXPECT_EQ(dive.state().modems()[1].counts.refused, 2u);
+}
+
+TEST(SceneModem, AUsblRangesByTheTravelThereAndBack) {
+  const std::string ranging =
+      "modem = { fading = false, usbl = { target = \"bob\", interval_s = 2, range_noise_m = 0, "
+      "direction_noise_deg = 0 } }\n";
+  TestDive dive = two(two_text(400.0, ranging));
+  dive.run(1.9);
+  const rov::UsblReading fix = dive.state().modem_tasks()[0].fix.value;
+  EXPECT_EQ(dive.state().modem_tasks()[0].fix.count, 1u);
+  EXPECT_EQ(fix.heard, 1u);
+  EXPECT_NEAR(fix.range_m, 400.0, 0.02);
+  EXPECT_NEAR(fix.travel_s, 800.0 / 1489.90, 1e-4);
+  EXPECT_NEAR(fix.bearing_rad, 0.0, 1e-3);
+  EXPECT_NEAR(fix.position_ned_m.x, 400.0, 0.05);
+  // A sound speed that is 1 % off makes a range that is.
+  const std::string wrong = ranging.substr(0, ranging.size() - 5) + ", sound_m_s = 1504.8 } }\n";
+  TestDive off = two(two_text(400.0, wrong));
+  off.run(1.9);
+  EXPECT_NEAR(off.state().modem_tasks()[0].fix.value.range_m, 404.0, 0.05);
+}
+
+TEST(SceneModem, OutOfReachARangeIsNotHeard) {
+  TestDive dive = two(two_text(
+      400.0, "modem = { source_level_db = 60, usbl = { target = \"bob\", interval_s = 1 } }\n"));
+  dive.run(1.5);
+  EXPECT_EQ(dive.state().modem_tasks()[0].fix.count, 1u);
+  EXPECT_EQ(dive.state().modem_tasks()[0].fix.value.heard, 0u);
+  EXPECT_EQ(dive.state().modems()[1].counts.too_weak, 1u);
+}
+
+TEST(SceneModem, ARunIsRepeatedBitForBitAndGoesOnFromASavedState) {
+  const std::string text = two_text(700.0, "modem = { usbl = { target = \"bob\" } }\n",
+                                    "[acoustics]\nspreading = 1.5\n");
+  TestDive dive = two(text), again = two(text);
+  for (TestDive* one : {&dive, &again})
+    for (int i = 0; i < 8; ++i) {
+      say(*one, i % 2 ? "ada/send" : "bob/send", 0, 8);
+      one->run(0.6);
+    }
+  EXPECT_EQ(dive.simulation->newest().hash, again.simulation->newest().hash);
+  const auto replayed =
+      replay_run(*dive.world, recorded_run(*dive.world, *dive.simulation), "modems");
+  ASSERT_TRUE(replayed.ok());
+  EXPECT_FALSE(replayed->first_difference);
+  // In the middle of messages that are on their way.
+  say(dive, "ada/send", 2, 40);
+  dive.run(0.2);
+  const StateFormat format = dive.world->state_format();
+  const auto bytes = encode_state(format, saved_state(*dive.simulation, format));
+  const auto saved = parse_state(format, bytes, "state");
+  ASSERT_TRUE(saved.ok()) << saved.error().message;
+  TestDive on = two(text);
+  restore_state(*on.simulation, *saved);
+  dive.run(2.0), on.run(2.0);
+  EXPECT_EQ(dive.simulation->newest().hash, on.simulation->newest().hash);
+  EXPECT_GT(dive.state().modems()[1].counts.received, 0u);
+}
+
+TEST(SceneModem, WithoutModemsTheHashIsAsItWas) {
+  TestDive dive = dive_of(load_text(kStillWater + rov_text("position_m = [0, -6, 0]\n")).value());
+  EXPECT_TRUE(dive.state().modems().empty());
+  EXPECT_EQ(dive.state().hashed_counts().size(), 3u);
+}
+
+TEST(SceneModem, WrongKeysAreRefusedInOneLine) {
+  const auto refused = [](const std::string& text) {
+    const auto scene = load_text(text);
+    if (!scene.ok()) return scene.error().message;
+    const auto world = PhysicsWorld::create(*scene);
+    EXPECT_FALSE(world.ok());
+    return world.ok() ? std::string() : world.error().message;
+  };
+  EXPECT_NE(refused(two_text(9.0, "modem = { bit_rate = 5 }\n")).find("bit_rate_hz"),
+            std::string::npos);
+  EXPECT_NE(refused(two_text(9.0, "modem = { bandwidth_hz = 90000 }\n")).find("50000"),
+            std::string::npos);
+  EXPECT_NE(refused(two_text(9.0, "modem = { usbl = { target = \"eve\" } }\n"))
+                .find("found 'eve'; accepted: bob"),
+            std::string::npos);
+  EXPECT_NE(refused(std::string(kStillWater) + rov_text("") +
+                    "[[objects]]\nname = \"rock\"\nshape = \"box\"\nmodem = {}\n")
+                .find("dynamics, human or inputs"),
+            std::string::npos);
+  EXPECT_NE(refused(two_text(9.0, "modem = {}\n", "[acoustics]\npath = \"bent\"\n"))
+                .find("without a profile"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace neritic::testbed
