@@ -129,6 +129,24 @@ class Remote(unittest.TestCase):
                     self.assertGreater(np.linalg.norm(a.position - [9.0 * (name == "bob"), 0, -6]), 0.2)
                     self.assertLess(np.linalg.norm(a.position - b.position), 0.05)
 
+    def test_a_diver_who_joins_is_shown_lying_as_he_swims(self):
+        assets = str(ROOT / "assets")
+        eve = f'[[objects]]\nname = "eve"\nmodel = "{assets}/models/diver.glb"\nposition_m = [5, -8, 0]\n'
+        with tempfile.TemporaryDirectory() as folder:
+            scenes = [pathlib.Path(folder) / "sea.toml", pathlib.Path(folder) / "lab.toml"]
+            scenes[0].write_text("[physics]\n" + eve + 'inputs = { pose = "network" }\n')
+            scenes[1].write_text("[physics]\n" + eve + f'human = "{assets}/divers/recreational.toml"\npitch_deg = -90\n'
+                                 "swim = { waypoints_m = [[5, -8, -30]] }\n")
+            with Served("--realtime", scene=str(scenes[0])) as address, \
+                    neritic.open(scenes[1], real_time=True) as here, \
+                    neritic.connect(address, name="eve") as there:
+                neritic.join.join(here, there, "eve", seconds=1.5)
+                a, b = here.truth("eve"), there.truth("eve")
+                self.assertLess(np.linalg.norm(a.position - b.position), 0.05)
+                to_head = neritic.join._turned(a.orientation, np.array((1.0, 0.0, 0.0)))
+                up = neritic.join._turned(b.orientation, np.array((0.0, 0.0, 1.0)))
+                self.assertGreater(to_head @ up, 0.99)
+
 
 if __name__ == "__main__":
     sys.exit(unittest.main())

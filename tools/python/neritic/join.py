@@ -5,7 +5,8 @@
 The scene here has the participant by its own physics and the others as objects with a pose input; the
 server's scene has the participant so. Poses go both ways as samples, 60 times a second, with velocities,
 and each side moves them on between two (testbed/samples). A participant that falls silent for half a
-second goes back to its own track.
+second goes back to its own track. Vehicles and divers join alike: elsewhere a diver is an object with a diver's
+model, whose limbs move by its clip. What is said by modem stays in the scene where it is said.
 """
 
 from __future__ import annotations
@@ -17,9 +18,18 @@ from typing import Optional
 import numpy as np
 
 from .remote import RemoteWorld, connect
-from .world import TrackedObject, Truth, World, open
+from .world import Diver, TrackedObject, Truth, World, open
 
 _HOLD_S = 0.5
+
+
+# A diver's body has forward from the hips to the head; a diver's model stands.
+_STANDS = np.array((0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)))
+
+
+def _times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The product of two rotations x, y, z, w."""
+    return np.array((*(a[3] * b[:3] + b[3] * a[:3] + np.cross(a[:3], b[:3])), a[3] * b[3] - a[:3] @ b[:3]))
 
 
 def _turned(orientation: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -29,19 +39,20 @@ def _turned(orientation: np.ndarray, v: np.ndarray) -> np.ndarray:
     return v + w * t + np.cross(axis, t)
 
 
-def _place(world: World, name: str, truth: Truth) -> None:
-    world[name].pose(truth.position, truth.orientation, _turned(truth.orientation, truth.linear_velocity),
+def _place(world: World, name: str, truth: Truth, diver: bool) -> None:
+    drawn = _times(truth.orientation, _STANDS) if diver else truth.orientation
+    world[name].pose(truth.position, drawn, _turned(truth.orientation, truth.linear_velocity),
                      _turned(truth.orientation, truth.angular_velocity), hold=_HOLD_S)
 
 
 def exchange(here: World, there: RemoteWorld, own: Optional[str]) -> int:
     """Sends where `own` is and fetches where the others are; the number of those. None: only looks."""
     if own is not None:
-        _place(there, own, here.truth(own))
+        _place(there, own, here.truth(own), isinstance(here[own], Diver))
     placed = 0
     for name, truth in there.poses().items():
         if name != own and isinstance(here.agents.get(name), TrackedObject):
-            _place(here, name, truth)
+            _place(here, name, truth, isinstance(there[name], Diver))
             placed += 1
     return placed
 
