@@ -84,10 +84,11 @@ class Remote(unittest.TestCase):
         with Served(scene=talk) as address, neritic.open(talk, seed=3) as here, neritic.connect(address) as there:
             heard = []
             for world in (here, there):
+                world.tick(240)
                 world["diver"].send("look", to="rov")
                 world.tick(120)
                 world["rov"].send(bytes(range(64)))
-                world.tick(600)
+                world.tick(360)
                 heard.append(world["rov"].receive() + world["diver"].receive())
             self.assertEqual(*heard)
             self.assertEqual([m.data for m in heard[0]], [b"look", bytes(range(64))])
