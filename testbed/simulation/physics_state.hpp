@@ -237,3 +237,19 @@ class PhysicsState
 using PhysicsSimulation = sim::Simulation<PhysicsState, PhysicsInputs, SampleInbox>;
 
 }  // namespace neritic::testbed
+
+// Compiled once, with the optimisation of this library: programs that use them in code of less
+// optimisation would else step, hash and check with that code's copy.
+namespace neritic::sim {
+
+extern template void add_state(Hash64& hash, const testbed::PhysicsState& state);
+extern template std::uint64_t state_hash(const testbed::PhysicsState& state);
+extern template std::uint64_t state_hash(std::uint64_t step, const testbed::PhysicsState& state);
+extern template bool all_finite(const testbed::PhysicsState& state);
+extern template void check_fields_cover(const testbed::PhysicsState& state);
+extern template class SnapshotSource<testbed::PhysicsState>;
+extern template class SnapshotReader<testbed::PhysicsState>;
+extern template class Simulation<testbed::PhysicsState, testbed::PhysicsInputs,
+                                 testbed::SampleInbox>;
+
+}  // namespace neritic::sim
