@@ -1,4 +1,4 @@
-"""What the diver carries, each part already bound to the skeleton: jacket, tank, hoses.
+"""All that the diver carries, each part already bound to the skeleton: jacket, tank, hoses.
 
 gear() returns lists of Parts by material: cloth, rubber, metal, glass.
 """

@@ -1,4 +1,4 @@
-"""What the diver wears on head, hips, feet and limbs: mask, belt, fins, computer, knife."""
+"""All that the diver wears on head, hips, feet and limbs: mask, belt, fins, computer, knife."""
 import numpy as np
 
 import noise as N

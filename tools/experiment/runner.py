@@ -38,7 +38,7 @@ def _one(do, run, program):
 
 
 class Tools:
-    """What a kind of experiment may use: the program, a folder that is removed after the run."""
+    """Things that a kind of experiment may use: the program, a folder that is removed after the run."""
 
     def __init__(self, program, folder):
         self.program, self.folder = program, folder

@@ -221,7 +221,7 @@ class Scenario:
         return out
 
     def fingerprint(self):
-        """Of everything that decides a single run's numbers: results of another fingerprint are not resumed."""
+        """The hash of everything that decides a single run's numbers: results of another fingerprint are not resumed."""
         own = [self.data.get(k) for k in ("task", "stages", "measures")]
         told = [self.kind_name, self.settings, self.vary, sorted(self.factors), own]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]

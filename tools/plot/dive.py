@@ -143,7 +143,7 @@ def draw_depth(ax, data, strips, seconds):
 
 
 def danger_strips(data):
-    """Of each danger that was met: words, colour, its times, and the line of depth it lies on."""
+    """For each danger that was met: words, colour, its times, and the line of depth it lies on."""
     strips = []
     for diver in data["humans"]:
         time, depth = numbers(diver["time_s"]), numbers(diver["depth_m"])

@@ -1,4 +1,4 @@
-"""What all pictures share: colours, panels, legends clear of the curves, labels that never collide.
+"""Shared by all pictures: colours, panels, legends clear of the curves, labels that never collide.
 
 A legend stands above its panel, on the line of the title; where it would reach the title it is set
 smaller, then its last entries are left out. A label beside a point takes the first of

@@ -1,4 +1,4 @@
-"""What neritic raises: one line each, "WHERE: found X; accepted: Y"."""
+"""The errors that neritic raises: one line each, "WHERE: found X; accepted: Y"."""
 
 
 class Error(RuntimeError):

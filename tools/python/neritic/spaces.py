@@ -18,7 +18,7 @@ class Box:
         self._random = np.random.default_rng(seed)
 
     def seed(self, seed: Optional[int] = None) -> None:
-        """Of the samples that follow."""
+        """Seeds the samples that follow."""
         self._random = np.random.default_rng(seed)
 
     def sample(self) -> NDArray[np.float32]:
@@ -52,7 +52,7 @@ class Dict(Mapping[str, Box]):
         return len(self.spaces)
 
     def seed(self, seed: Optional[int] = None) -> None:
-        """Of the samples that follow."""
+        """Seeds the samples that follow."""
         for i, space in enumerate(self.spaces.values()):
             space.seed(None if seed is None else seed + i)
 

@@ -113,7 +113,7 @@ class VectorEnv:
                 self._truncated.copy(), info)
 
     def truth(self) -> NDArray[np.float64]:
-        """What is true without noise, [num_envs, 13]: place (east, north, up), rotation (world from body, x y
+        """The truth, without noise, [num_envs, 13]: place (east, north, up), rotation (world from body, x y
         z w), velocity over ground and angular velocity (forward, left, up)."""
         return self._core.truth()
 
