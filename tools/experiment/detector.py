@@ -32,6 +32,11 @@ def model_of(name, eye="camera"):
     return os.path.join(DETECTORS, {"shipped": eye, "small": eye + "_small"}[name] + ".onnx") if name in ("shipped", "small") else name
 
 
+def check(settings):
+    """Refuses a model that is not there, before anything runs."""
+    looking.files_of(model_of(settings["model"], settings["eye"]))
+
+
 def run(settings, seed, tools):
     maker = MAKERS[settings["eye"]]
     detector = looking.Detector(model_of(settings["model"], settings["eye"]))

@@ -26,6 +26,15 @@ def normalised(pixels):
     return (x - mean) / np.maximum(spread, 2.0)
 
 
+def files_of(path):
+    """(path, its description); refused where one is not there."""
+    files = (path, os.path.splitext(path)[0] + ".json")
+    for file in files:
+        if not os.path.isfile(file):
+            raise Refused(f"{file}: found no such file; accepted: a detector's .onnx with its .json beside it")
+    return files
+
+
 class Detector:
     """One thread at a time uses it."""
 
@@ -34,10 +43,7 @@ class Detector:
             import cv2
         except ModuleNotFoundError:
             raise Failed("detector: no OpenCV here; tools/setup detector installs python3-opencv") from None
-        self._cv2, about = cv2, os.path.splitext(path)[0] + ".json"
-        for file in (path, about):
-            if not os.path.isfile(file):
-                raise Refused(f"{file}: found no such file; accepted: a detector's .onnx with its .json beside it")
+        self._cv2, about = cv2, files_of(path)[1]
         try:
             with open(about, encoding="utf-8") as file:
                 self.about = json.load(file)

@@ -145,6 +145,9 @@ class Scenario:
         self.factors = {k: self._levels(k, v) for k, v in data.get("factors", {}).items()}
         for text in sets:
             self._set(text)
+        if hasattr(self.kind, "check"):  # of files that settings name, before anything runs
+            for levels in itertools.product(*self.factors.values()):
+                self.kind.check({**self.settings, **dict(zip(self.factors, levels))})
         both = set(self.vary) & set(self.factors)
         if both:
             raise Refused(f"{path}: vary.{min(both)}: found a factor of the same name; accepted: one of the two")

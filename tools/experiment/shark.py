@@ -9,6 +9,8 @@ import os
 
 import numpy as np
 
+import looking
+from detector import model_of
 from scenario import SHIPPED, Setting, draw
 from shark_senses import DIVER, SEEN, SONAR, Gaze, SonarTrack
 
@@ -207,6 +209,12 @@ def _in_sight(truth, shark):
     ahead, left, up = turn.T @ (shark - truth.position)
     return bool(math.hypot(ahead, left, up) <= 10.0 and abs(math.atan2(left, ahead)) <= math.radians(45)
                 and abs(math.atan2(up, math.hypot(ahead, left))) <= math.radians(14))
+
+
+def check(settings):
+    """Refuses a detector that is not there, before anything runs."""
+    if settings["detector"] != "assumed":
+        looking.files_of(model_of(settings["detector"]))
 
 
 def _paired(results):

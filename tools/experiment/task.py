@@ -119,6 +119,11 @@ class Task:
             raise Refused(f"{self.path}: task.{key}: found {names!r}; accepted: a list of words")
         return names
 
+    def check(self, settings):
+        """Refuses a controller that is not there, before anything runs."""
+        if settings["controller"] not in ("baseline", "null") and not os.path.isfile(settings["controller"]):
+            raise Refused(f"controller: found no file {settings['controller']}; accepted: baseline, null, or a controller's .py")
+
     def run(self, settings, seed, tools):
         neritic = tools.python()
         world = neritic.open(self.scene, seed=seed)
