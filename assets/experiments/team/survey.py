@@ -2,6 +2,7 @@
 so, and says so again every say_s; where two have claimed one, the one who said so later turns to another. Contacts
 are told to the divers until one tells that they are done. Without a channel each ROV knows its own strips alone."""
 import math
+import struct
 
 import numpy as np
 
@@ -23,15 +24,15 @@ class Controller:
         return {}
 
     def _listen(self, name, team):
-        for _, message, _ in self.player.channel.heard(f"rov_{name}"):
-            if message["kind"] == "claim":
-                for strip, when in message["strips"].items():
+        for _, data in self.player.talk.heard(f"rov_{name}"):
+            if data[:1] == b"C":
+                for strip, when in struct.iter_unpack("<BH", data[1:]):
                     mine = team["taken"].get(strip)
                     team["taken"][strip] = when if mine is None else min(mine, when)
                     if strip == team["strip"] and mine is not None and when < mine and len(team["way"]) == 2:
                         team["strip"] = None  # the other was first, and this one has not begun
-            elif message["kind"] == "done":
-                team["over"] |= set(message["contacts"])
+            elif data[:1] == b"D":
+                team["over"] |= set(data[1:])
 
     def _fly(self, name, team):
         rov, time = np.array(self.world.truth(f"rov_{name}").position), self.world.time
@@ -40,7 +41,7 @@ class Controller:
             if not free:
                 return
             team["strip"] = min(free, key=lambda k: (abs(self._east(k) - rov[0]), k))
-            team["taken"][team["strip"]], team["said"] = time, -99.0
+            team["taken"][team["strip"]], team["said"] = int(time), -99.0
             ends = [np.array([self._east(team["strip"]), north, UP]) for north in (0.0, self.s["side_m"])]
             team["way"] = ends if np.linalg.norm(ends[0] - rov) < np.linalg.norm(ends[1] - rov) else ends[::-1]
             team["at"] = rov
@@ -60,12 +61,12 @@ class Controller:
         return (strip + 0.5) * self.s["side_m"] / self.strips
 
     def _talk(self, name, team):
-        time, channel = self.world.time, self.player.channel
+        time, talk = self.world.time, self.player.talk
         if time - team["said"] >= self.s["say_s"]:
             team["said"] = time
-            channel.send(f"rov_{name}", {"kind": "claim", "strips": dict(team["taken"])}, 4 + 2 * len(team["taken"]))
+            newest = sorted(team["taken"].items(), key=lambda k: -k[1])[:21]  # what fits into 64 bytes
+            talk.send(f"rov_{name}", b"C" + b"".join(struct.pack("<BH", k, int(when)) for k, when in newest), "claim")
         open_ones = sorted(self.player.found[name] - team["over"])
         if open_ones and time - team["told"] >= self.s["say_s"]:
             team["told"] = time
-            for contact in open_ones:
-                channel.send(f"rov_{name}", {"kind": "contact", "contact": contact}, 8)
+            talk.send(f"rov_{name}", b"K" + bytes(open_ones), "contact")

@@ -1,9 +1,11 @@
-"""Plays two divers, what lies on the bottom, and the channel. An ROV that passes within swath_m / 2 looks at the bottom there and
+"""Plays two divers and what lies on the bottom. An ROV that passes within swath_m / 2 looks at the bottom there and
 finds a contact with find_share; a diver who is told of a contact swims to the nearest one that he knows and nobody has
-told to be done, and looks at it for look_s. He tells of it by his own modem."""
+told to be done, and looks at it for look_s. He tells of it by his own modem.
+
+Messages, at most 64 bytes: C and rows of (strip, seconds) a claim; K and numbers the contacts; D and numbers what is done."""
 import numpy as np
 
-from channel import Channel
+from turns import Turns
 
 TEAMS, UP = ("a", "b"), -12.0
 
@@ -21,26 +23,23 @@ class Player:
         self.divers = {"a": np.array([0.0, 0.0]), "b": np.array([4.0, 0.0])}
         self.knows = {t: {} for t in TEAMS}  # of a diver: {contact: done}
         self.found, self.tried = {t: set() for t in TEAMS}, {}  # of an ROV, to tell on
-        self.names = [f"{k}_{t}" for t in TEAMS for k in ("rov", "diver")]
-        self.channel = Channel(self.names, settings["bit_s"], settings["lost_at_100_m"], seed)
+        self.talk = Turns(world, [f"{k}_{t}" for t in TEAMS for k in ("rov", "diver")], settings["slot_s"])
         self.last = 0.0
 
     def act(self, obs, stage, told):
         time = self.world.time
         dt, self.last = time - self.last, time
         rovs = {t: np.array(self.world.truth(f"rov_{t}").position) for t in TEAMS}
-        places = {**{f"rov_{t}": rovs[t] for t in TEAMS}, **{f"diver_{t}": np.array([*self.divers[t], UP]) for t in TEAMS}}
         if self.s["channel"]:
-            self.channel.step(time, places)
+            self.talk.step()
         for team in TEAMS:
             self._look(team, rovs[team])
             self._dive(team, dt)
-        c = self.channel
+        c = self.talk.counts
         return {"covered": float((self.looks["a"] | self.looks["b"]).mean()),
                 "twice": float((self.looks["a"] & self.looks["b"]).mean()),
-                "found": float(len(self.found["a"] | self.found["b"])),
-                "inspected": float(len(self.done)), "sent": float(c.sent), "collided": float(c.collided), "faded": float(c.faded),
-                "arrived": float(c.arrived), "delay_s": float(np.median(c.delays_s)) if c.delays_s else float("nan")}
+                "found": float(len(self.found["a"] | self.found["b"])), "inspected": float(len(self.done)),
+                "sent": float(c["sent"]), "lost": float(c["lost"]), "received": float(c["received"]), "delay_s": self.talk.delay_s()}
 
     def _look(self, team, at):
         near = np.hypot(*(self.cells - at[:2]).transpose(2, 0, 1)) <= self.s["swath_m"] / 2
@@ -56,12 +55,9 @@ class Player:
 
     def _dive(self, team, dt):
         me, knows = f"diver_{team}", self.knows[team]
-        for _, message, _ in self.channel.heard(me):
-            if message["kind"] == "contact":
-                knows.setdefault(message["contact"], False)
-            elif message["kind"] == "done":
-                for i in message["contacts"]:
-                    knows[i] = True
+        for _, data in self.talk.heard(me):
+            for i in data[1:] if data[:1] in (b"K", b"D") else ():
+                knows[i] = knows.get(i, False) or data[:1] == b"D"
         open_ones = [i for i, over in knows.items() if not over]
         speed = np.zeros(2)
         if open_ones:
@@ -75,6 +71,6 @@ class Player:
                 if self.looked_s[team, goal] >= self.s["look_s"]:
                     knows[goal] = True
                     self.done.add(goal)
-                    self.channel.send(me, {"kind": "done", "contacts": sorted(i for i, over in knows.items() if over)}, 12)
+                    self.talk.send(me, b"D" + bytes(sorted(i for i, over in knows.items() if over)), "done")
         self.divers[team] = self.divers[team] + speed * dt
         self.world[me].pose([*self.divers[team], UP], velocity=[*speed, 0.0])
