@@ -23,9 +23,9 @@ struct Answer {
 };
 
 // The program of this build, with standard error.
-Answer said_by_program(const std::string& arguments) {
+Answer experiment(const std::string& arguments) {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "../tools/neritic";
-  std::FILE* pipe = ::popen((program.string() + " " + arguments + " 2>&1").c_str(), "r");
+  std::FILE* pipe = ::popen((program.string() + " experiment " + arguments + " 2>&1").c_str(), "r");
   if (!pipe) return {};
   Answer said;
   char piece[4096];
@@ -34,10 +34,6 @@ Answer said_by_program(const std::string& arguments) {
   const int raw = ::pclose(pipe);
   said.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
   return said;
-}
-
-Answer experiment(const std::string& arguments) {
-  return said_by_program("experiment " + arguments);
 }
 
 bool no_numpy() {
@@ -154,55 +150,6 @@ TEST(Experiment, RefusesBadScenariosInOneLine) {
   with("[experiment]\nkind = \"echo_sounder\"\n[factors]\nslope_deg = []\n", "a list of levels");
   with("[experiment]\nkind = \"echo_sounder\"\n[[criteria]]\nmeasure = \"rmse\"\n",
        "criteria[0].measure");
-}
-
-// Two participants of two blocks; the second stops in the middle of a questionnaire and goes on.
-TEST(Study, WithdrawalErasesOneParticipantAndLeavesTheRest) {
-  if (no_numpy()) GTEST_SKIP() << "no numpy here";
-  const test::ScratchFolder folder;
-  const std::string study = (folder / "study").string();
-  const auto answers = [&](const std::string& lines) {
-    EXPECT_TRUE(write_text(folder / "answers", lines).ok());
-    return " --answers " + (folder / "answers").string();
-  };
-  ASSERT_TRUE(write_text(folder / "plan.toml",
-                         "[study]\ntitle = \"T\"\nconsent = \"Do you?\"\nafter_block = "
-                         "[\"nasa_tlx\"]\nafter = [\"ssq\"]\n"
-                         "[[blocks]]\nname = \"a\"\n[[blocks]]\nname = \"b\"\n")
-                  .ok());
-  const std::string plan = " --plan " + (folder / "plan.toml").string();
-  EXPECT_EQ(said_by_program("study begin " + study + plan).status, 0);
-  EXPECT_THAT(said_by_program("study enrol " + study + answers("no\n")).text,
-              HasSubstr("nothing is kept"));
-  EXPECT_THAT(said_by_program("study enrol " + study + answers("yes\n")).text,
-              HasSubstr("P01. Blocks: a, b"));
-  EXPECT_THAT(said_by_program("study enrol " + study + answers("yes\n")).text,
-              HasSubstr("P02. Blocks: b, a"));
-  // Performance 101 is refused and asked again. SSQ all at 3 is its largest total, 235.62.
-  const std::string tlx = "50\n55\n60\n101\n10\n0\n100\n", block = "\n" + tlx;
-  std::string ssq;
-  for (int i = 0; i < 16; ++i) ssq += "3\n";
-  EXPECT_EQ(said_by_program("study run " + study + " P01" + answers(block + block + ssq)).status,
-            0);
-  const Answer cut = said_by_program("study run " + study + " P02" + answers("\n50\n55\n"));
-  EXPECT_EQ(cut.status, 1) << cut.text;
-  const Answer rest =
-      said_by_program("study run " + study + " P02" + answers("60\n10\n0\n100\n" + block + ssq));
-  EXPECT_EQ(rest.status, 0) << rest.text;
-  const std::string before = said_by_program("study table " + study).text;
-  EXPECT_THAT(before, HasSubstr("P01,a,1,45.8333"));
-  EXPECT_THAT(before, HasSubstr("P02,b,1,45.8333"));
-  EXPECT_THAT(before, HasSubstr("P01,after,,,200.34,159.18,292.32,235.62"));
-  const std::string kept = *read_text(fs::path(study) / "participants/P02/markers.jsonl");
-  EXPECT_EQ(said_by_program("study withdraw " + study + " P01 --yes").status, 0);
-  EXPECT_FALSE(fs::exists(fs::path(study) / "participants/P01"));
-  EXPECT_EQ(*read_text(fs::path(study) / "participants/P02/markers.jsonl"), kept);
-  EXPECT_THAT(*read_text(fs::path(study) / "scores.csv"), ::testing::Not(HasSubstr("P01")));
-  EXPECT_THAT(*read_text(fs::path(study) / "scores.csv"), HasSubstr("P02,b,1,45.8333"));
-  EXPECT_EQ(said_by_program("study run " + study + " P01").status, 2);
-  // The next one takes the order of the one who left, under a new name.
-  EXPECT_THAT(said_by_program("study enrol " + study + answers("yes\n")).text,
-              HasSubstr("P03. Blocks: a, b"));
 }
 
 }  // namespace
