@@ -100,6 +100,8 @@ def _write(out: Path, rows: list[tuple[str, float, float, float]]) -> None:
             axes.annotate(name.split()[1], (cost, max(median, 1e-9)), textcoords="offset points", xytext=(5, 5))
     axes.set(xlabel="processor time of an environment's step, us", ylabel="median error of place after 10 s, mm",
              title="Vectorised environments: error over cost, by substeps")
+    ticks = [1, 2, 5, 10, 20]
+    axes.set_xticks(ticks, [str(tick) for tick in ticks])
     axes.grid(True, which="both", alpha=0.3)
     axes.legend()
     figure.savefig(out / "tradeoff_envs.png", dpi=120)
