@@ -150,6 +150,18 @@ TEST(Experiment, RefusesBadScenariosInOneLine) {
   with("[experiment]\nkind = \"echo_sounder\"\n[factors]\nslope_deg = []\n", "a list of levels");
   with("[experiment]\nkind = \"echo_sounder\"\n[[criteria]]\nmeasure = \"rmse\"\n",
        "criteria[0].measure");
+  // Values of a kind that the key does not have.
+  with("[experiment]\nkind = [1]\n", "experiment.kind: found a list");
+  with("[experiment]\nkind = 1979-05-27\n", "experiment.kind: found \"1979-05-27\"");
+  with("[experiment]\nkind = \"echo_sounder\"\n[[criteria]]\nmeasure = { a = 1 }\n",
+       "criteria[0].measure: found a table");
+  with("criteria = 3\n[experiment]\nkind = \"echo_sounder\"\n", "criteria: found 3");
+  const std::string task = "scene = \"own.toml\"\ncontroller = \"own.toml\"\n";
+  with("[experiment]\nkind = \"task\"\n[task]\nplaces = 3\n" + task, "task.places: found 3");
+  with("[experiment]\nkind = \"task\"\n[task]\n" + task +
+           "[task.settings]\na = { default = 1, limits = [1] }\n",
+       "task.settings.a.limits: found [1]");
+  with("stages = 3\n[experiment]\nkind = \"task\"\n[task]\n" + task, "stages: found 3");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@ evaluated. World axes: east, north, up.
 """
 import ast
 import math
+import warnings
 
 import numpy as np
 
@@ -59,7 +60,9 @@ class Formula:
         if not isinstance(text, str):
             raise Refused(f"{where}: found {text!r}; accepted: a formula in quotes")
         try:
-            self._tree = ast.parse(text, mode="eval").body
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", SyntaxWarning)  # is raised as a SyntaxError: "1or 2"
+                self._tree = ast.parse(text, mode="eval").body
         except (SyntaxError, ValueError, RecursionError):
             raise Refused(f"{where}: found \"{text}\"; accepted: a formula, as \"distance(rov, diver) < 2\"") from None
         self._check(self._tree, set(names), set(numbers))

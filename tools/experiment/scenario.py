@@ -67,7 +67,7 @@ def _check_keys(where, table, accepted):
 
 
 def _words(value):
-    return json.dumps(value) if not isinstance(value, (dict, list)) else ("a table" if isinstance(value, dict) else "a list")
+    return json.dumps(value, default=str) if not isinstance(value, (dict, list)) else ("a table" if isinstance(value, dict) else "a list")
 
 
 def _number(where, value, low, high, whole=False):
@@ -76,6 +76,11 @@ def _number(where, value, low, high, whole=False):
         kind = "a whole number" if whole else "a number"
         raise Refused(f"{where}: found {_words(value)}; accepted: {kind} in [{low:g}, {high:g}]")
     return value
+
+
+def _word_of(where, value, accepted):
+    if not isinstance(value, str) or value not in accepted:
+        raise Refused(f"{where}: found {_words(value)}; accepted: {', '.join(accepted)}")
 
 
 class Setting:
@@ -126,8 +131,7 @@ class Scenario:
         _check_keys(path, data, ["experiment", "settings", "vary", "factors", "criteria", *own])
         _check_keys(f"{path}: experiment", head, ["title", "about", "kind", "runs", "seed"])
         kind = head.get("kind")
-        if kind not in kinds:
-            raise Refused(f"{path}: experiment.kind: found {_words(kind)}; accepted: {', '.join(kinds)}")
+        _word_of(f"{path}: experiment.kind", kind, kinds)
         self.kind_name = kind
         self.kind = kinds[kind](path, data) if isinstance(kinds[kind], type) else kinds[kind]
         self.title, self.about = str(head.get("title", self.name)), str(head.get("about", ""))
@@ -151,7 +155,10 @@ class Scenario:
         both = set(self.vary) & set(self.factors)
         if both:
             raise Refused(f"{path}: vary.{min(both)}: found a factor of the same name; accepted: one of the two")
-        self.criteria = [self._criterion(i, c) for i, c in enumerate(data.get("criteria", []))]
+        criteria = data.get("criteria", [])
+        if not isinstance(criteria, list):
+            raise Refused(f"{path}: criteria: found {_words(criteria)}; accepted: tables, each [[criteria]]")
+        self.criteria = [self._criterion(i, c) for i, c in enumerate(criteria)]
         conditions = math.prod(len(v) for v in self.factors.values())
         if conditions * self.runs > MOST_RUNS:
             raise Refused(f"{path}: found {conditions} conditions of {self.runs} runs; accepted: at most {MOST_RUNS} runs")
@@ -199,10 +206,8 @@ class Scenario:
     def _criterion(self, index, table):
         where = f"{self.path}: criteria[{index}]"
         _check_keys(where, table, ["measure", "statistic", "at_most", "at_least", "where", "less"])
-        if table.get("measure") not in self.kind.MEASURES:
-            raise Refused(f"{where}.measure: found {_words(table.get('measure'))}; accepted: {', '.join(self.kind.MEASURES)}")
-        if table.get("statistic", "median") not in STATISTICS:
-            raise Refused(f"{where}.statistic: found {_words(table.get('statistic'))}; accepted: {', '.join(STATISTICS)}")
+        _word_of(f"{where}.measure", table.get("measure"), self.kind.MEASURES)
+        _word_of(f"{where}.statistic", table.get("statistic", "median"), STATISTICS)
         if ("at_most" in table) + ("at_least" in table) < 1:
             raise Refused(f"{where}: found no limit; accepted: at_most, at_least or both")
         for key in ("at_most", "at_least"):

@@ -15,7 +15,7 @@ import sys
 import numpy as np
 
 from formulas import Formula
-from scenario import Failed, Refused, Setting, _check_keys, _number
+from scenario import Failed, Refused, Setting, _check_keys, _number, _word_of
 
 STATISTICS = ("last", "first", "mean", "rms", "min", "max", "ever", "share", "duration")
 MOST_SECONDS = 86400.0
@@ -63,26 +63,33 @@ class Task:
         self.seconds = _number(f"{path}: task.seconds", task.get("seconds", 60), 0.1, MOST_SECONDS)
         self.participants = self._names("participants", task)
         self.places = {}
-        for name, at in task.get("places", {}).items():
+        for name, at in _table(f"{path}: task.places", task.get("places", {})).items():
             if not isinstance(at, list) or len(at) != 3:
                 raise Refused(f"{path}: task.places.{name}: found {at!r}; accepted: [east, north, up] in metres")
             self.places[name] = [float(_number(f"{path}: task.places.{name}", v, -4e7, 4e7)) for v in at]
         self.SETTINGS = {"controller": Setting("baseline", "the scenario's own, null (the robot that holds still), or a .py file of yours")}
-        for name, table in task.get("settings", {}).items():
+        for name, table in _table(f"{path}: task.settings", task.get("settings", {})).items():
             where = f"{path}: task.settings.{name}"
             _check_keys(where, table, ["default", "meaning", "limits", "words"])
             default = table.get("default")
-            low, high = table.get("limits", [-1e9, 1e9])
+            limits, words = table.get("limits", [-1e9, 1e9]), table.get("words")
+            if not isinstance(limits, list) or len(limits) != 2:
+                raise Refused(f"{where}.limits: found {limits!r}; accepted: [lowest, highest]")
+            low = _number(f"{where}.limits", limits[0], -1e12, 1e12)
+            high = _number(f"{where}.limits", limits[1], low, 1e12)
+            if words is not None and not (isinstance(words, list) and all(isinstance(w, str) for w in words)):
+                raise Refused(f"{where}.words: found {words!r}; accepted: a list of words")
             if name == "controller":
                 raise Refused(f"{where}: found a setting that every task has; accepted: another name")
             if not isinstance(default, (int, float, str)):
                 raise Refused(f"{where}.default: found {default!r}; accepted: a number, true, false or a word")
-            self.SETTINGS[name] = Setting(default, str(table.get("meaning", "")), low, high, table.get("words"))
+            self.SETTINGS[name] = Setting(default, str(table.get("meaning", "")), low, high, words)
+            self.SETTINGS[name].check(f"{where}.default", default)
         self.tells = self._names("tells", task)
         self.stages, names = [], self.participants + list(self.places)
         numbers = ["time", "stage_time"] + self.tells + [k for k, s in self.SETTINGS.items() if not isinstance(s.default, str)]
         self._formula = lambda where, text: Formula(where, text, names, numbers)
-        for i, stage in enumerate(data.get("stages", [])):
+        for i, stage in enumerate(_tables(f"{path}: stages", data.get("stages", []))):
             where = f"{path}: stages[{i}]"
             _check_keys(where, stage, ["name", "until", "held_s", "at_most_s"])
             if not isinstance(stage.get("name"), str):
@@ -97,14 +104,13 @@ class Task:
             "success": ("yes or no", "whether every stage ended in its time"),
             "time_s": ("s", "until the last stage ended, of the runs that succeed")}
         self.MEASURES |= {f"{s['name']}_s": ("s", f"how long the stage {s['name']} took") for s in self.stages}
-        for i, measure in enumerate(data.get("measures", [])):
+        for i, measure in enumerate(_tables(f"{path}: measures", data.get("measures", []))):
             where = f"{path}: measures[{i}]"
             _check_keys(where, measure, ["name", "of", "statistic", "stage", "unit", "meaning"])
             statistic, stage = measure.get("statistic", "mean"), measure.get("stage")
             if not isinstance(measure.get("name"), str) or measure["name"] in self.MEASURES:
                 raise Refused(f"{where}.name: found {measure.get('name')!r}; accepted: a new word")
-            if statistic not in STATISTICS:
-                raise Refused(f"{where}.statistic: found {statistic!r}; accepted: {', '.join(STATISTICS)}")
+            _word_of(f"{where}.statistic", statistic, STATISTICS)
             if stage is not None and stage not in [s["name"] for s in self.stages]:
                 raise Refused(f"{where}.stage: found {stage!r}; accepted: {', '.join(s['name'] for s in self.stages)}")
             self.measures.append({"name": measure["name"], "of": self._formula(f"{where}.of", measure.get("of")),
@@ -244,6 +250,18 @@ class Null:
 
     def act(self, observations, stage):
         return {}
+
+
+def _table(where, value):
+    if not isinstance(value, dict):
+        raise Refused(f"{where}: found {value!r}; accepted: a table")
+    return value
+
+
+def _tables(where, value):
+    if not isinstance(value, list):
+        raise Refused(f"{where}: found {value!r}; accepted: tables, each [[{where.split()[-1]}]]")
+    return value
 
 
 def _controller(path, name="Controller"):
