@@ -1,5 +1,6 @@
 // Divers in scenes: they swim where they are told, a vehicle keeps beside, nothing is swum through,
 // and what is drawn is the body that the physics has.
+#include "diver/exertion.hpp"
 #include "diver/frames.hpp"
 #include "engine/scene/animation.hpp"
 #include "testbed/record/dive_record.hpp"
@@ -211,6 +212,17 @@ TEST(HumanDive, RecordedLimbsSwim) {
   EXPECT_LT(speed_m_s, 0.7);
   EXPECT_EQ(dive.state().humans()[0].human.far_joints, 0u);
   EXPECT_LT(dive.state().humans()[0].human.life.limb_power_w, 300.0);
+}
+
+// As fast as the legs go, some 227 W: within four minutes a fifth of the reserve is spent.
+TEST(HumanDive, TheShippedDiverTiresAtTheHardestPaceWithinFiveMinutes) {
+  TestDive dive = dive_of(
+      kStillWater + diver_text("position_m = [0, -10, 0]\nyaw_deg = 180\npitch_deg = -90\n"
+                               "swim = { speed_m_s = 0.9, waypoints_m = [[0, -10, 500]] }\n"));
+  dive.run(240.0);
+  const auto& life = dive.state().humans()[0].human.life;
+  EXPECT_GT(life.limb_power_w, 200.0);
+  EXPECT_LT(diver::reserve_share(dive.world->humans()[0].body.fitness, life.spent_j), 0.8);
 }
 
 TEST(HumanDive, RunsAndReplaysWithTheSameHashes) {
