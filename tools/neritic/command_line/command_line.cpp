@@ -1,0 +1,102 @@
+// Reads the command line of `neritic`. The files of this folder alone know the parser, which takes
+// long to compile.
+#include <algorithm>
+
+#include "engine/core/text.hpp"
+#include "engine/core/version.hpp"
+#include "tools/neritic/command_line/subcommands.hpp"
+
+namespace neritic::tools {
+namespace {
+
+// The parser's words, but where it says less than is known: what a flag wants that was given
+// something else, and the flag that is nearest to one that there is not.
+std::string what_was_wrong(const CLI::App& app, const CLI::App& command,
+                           const std::vector<std::string>& arguments,
+                           const CLI::ParseError& error) {
+  const std::string said = error.what(), unconverted = "Could not convert: ";
+  if (const std::size_t value = said.find(" = ");
+      said.starts_with(unconverted) && value != said.npos) {
+    const std::string name = said.substr(unconverted.size(), value - unconverted.size());
+    if (const CLI::Option* option = command.get_option_no_throw(name))
+      return refusal(name, fmt::format("'{}'", printable(said.substr(value + 3))),
+                     fmt::format("a number: {}", option->get_description()))
+          .message;
+  }
+  // "--offset: At least 3 required but received 2"
+  const std::size_t least = said.find(": At least "), got = said.find(" required but received ");
+  if (least != said.npos && got != said.npos) {
+    const std::string name = said.substr(0, least);
+    if (const CLI::Option* option = command.get_option_no_throw(name))
+      return refusal(name,
+                     fmt::format("{} of {} values", said.substr(got + 23),
+                                 said.substr(least + 11, got - least - 11)),
+                     option->get_description())
+          .message;
+  }
+  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return said;
+  std::vector<std::string> names;
+  for (const CLI::App* of : {&command, &app})
+    for (const CLI::Option* option : of->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const std::string& argument : arguments) {
+    const std::string name = argument.substr(0, argument.find('='));
+    if (!name.starts_with("--") || name == "--" || std::ranges::find(names, name) != names.end())
+      continue;
+    return fmt::format("{}: no such flag; the nearest is {}", printable(name),
+                       nearest(name, std::vector<std::string_view>(names.begin(), names.end())));
+  }
+  return said;
+}
+
+}  // namespace
+
+Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments) {
+  CLI::App app{"Neritic: divers and underwater robots together in one simulated sea", "neritic"};
+  app.require_subcommand(1);
+  app.fallthrough();
+  CommandLine line;
+  app.set_version_flag("--version", std::string(program_version()));
+  app.add_flag("-v,--verbose", line.verbose,
+               "also prints on stderr what is loaded, chosen and compiled");
+  app.add_flag("-q,--quiet", line.quiet, "no notes, and no summary of a dive but --json");
+  add_render(app, line.run);
+  add_sonar(app, line.run);
+  add_dive(app, line);
+  add_serve(app, line);
+  add_keys(app, line.run);
+  add_tradeoff(app, line.run);
+  add_check(app, line.run);
+  add_plan(app, line.run);
+  add_physio(app, line.run);
+  add_register(app, line.run);
+  add_experiment(app, line);
+  add_study(app, line);
+  add_recording(app, line.run);
+  add_hud(app, line.run);
+  add_simulate(app, line);
+  add_doctor(app, line.run);
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(),
+                                       arguments.rend()));  // back to front, as it wants them
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    line.help = chosen.empty() ? app.help() : chosen.front()->help(app.get_name());
+  } catch (const CLI::CallForVersion& version) {
+    line.help = std::string(version.what()) + "\n";
+  } catch (const CLI::ParseError& error) {
+    if (app.get_subcommands().empty() && !arguments.empty() && !arguments[0].starts_with('-')) {
+      std::string names;
+      for (const CLI::App* command : app.get_subcommands(nullptr))
+        names += (names.empty() ? "" : ", ") + command->get_name();
+      return refusal("", fmt::format("command '{}'", arguments[0]), fmt::format("{}", names));
+    }
+    const auto chosen = app.get_subcommands();
+    const CLI::App& command = chosen.empty() ? app : *chosen.front();
+    return bad_input("{} (see neritic {}--help)", what_was_wrong(app, command, arguments, error),
+                     chosen.empty() ? "" : command.get_name() + " ");
+  }
+  return line;
+}
+
+}  // namespace neritic::tools

@@ -1,0 +1,204 @@
+// The flags of the commands that show a scene: render and dive.
+#include <memory>
+
+#include "engine/core/text.hpp"
+#include "engine/scene/scene.hpp"
+#include "testbed/output/datasets.hpp"
+#include "tools/neritic/command_line/shared_flags.hpp"
+#include "tools/neritic/command_line/subcommands.hpp"
+
+namespace neritic::tools {
+
+void add_render(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<RenderFlags>();
+  CLI::App* command = app.add_subcommand(
+      "render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
+  command->add_option("scene", flags->scene,
+                      "scene or model file; with --replay the recording's own if none is given");
+  command
+      ->add_option(
+          "--out", flags->out,
+          "folder for the results: in OUT/frame_0000 a folder a sensor with pictures (.png), "
+          "arrays (.npy) and facts (.json); in OUT/track what sonars accumulate over frames")
+      ->required()
+      ->check(named);
+  command
+      ->add_option("--frames", flags->frames,
+                   "number of frames (1; with --replay as many as it lasts), apart by the rate_hz "
+                   "of the first camera, else of the first "
+                   "sonar; of the quickest sensor with --own-rates")
+      ->check(between(1, 1000000));
+  command->add_option("--size", flags->size, "WxH of every camera, pixels");
+  command->add_option(
+      "--time", flags->time_s,
+      "scene time of the first frame, seconds (a day at most where vehicles fly there)");
+  command->add_option(
+      "--clip", flags->clip,
+      "of a model: this animation, by name or number from 0 (else the first); --time "
+      "is its time, which begins anew at its end");
+  command->add_option("--sensor", flags->sensors, "only this sensor, by name; may be given again")
+      ->expected(1)
+      ->take_all();
+  command
+      ->add_option("--only", flags->only,
+                   fmt::format("writes, and computes, these data alone, of each sensor that gives "
+                               "them: {}; coco: boxes and masks of all cameras (OUT/coco.json); "
+                               "trajectory: where every participant is (OUT/trajectory.csv and "
+                               "OUT/trajectory)",
+                               join(testbed::kDatasetNames)))
+      ->expected(1)
+      ->take_all();
+  command
+      ->add_option(
+          "--compress", flags->compress,
+          "of arrays: npz (lossless, numpy.load reads it), or png (16 bits a channel: labels, "
+          "instances, depth in mm up to 65.534 m, normals as colours; others .npz)")
+      ->check(CLI::IsMember({"npz", "png"}));
+  command->add_option(
+      "--water", flags->water,
+      fmt::format("another Jerlov type than the scene's: {}", join(scene::kWaterTypes)));
+  add_replay(*command, flags->replay, flags->shown, flags->added);
+  command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")
+      ->expected(3);
+  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
+  command->add_option(
+      "--dump-graph", flags->dump_graph,
+      "the frame graph's plan: to a file (.dot: Graphviz), or - for standard output");
+  command
+      ->add_option("--chart-cell", flags->chart_cell_m,
+                   "metres a cell of charts that profiling sonars sound")
+      ->check(between(0.001, 1000.0));
+  add_quality(*command, flags->quality);
+  command->add_flag("--track-only", flags->track_only,
+                    "no frame folders: only what sonars accumulate over the frames (OUT/track)");
+  command->add_flag(
+      "--own-rates", flags->own_rates,
+      "each sensor only in the frames in which its rate_hz makes it due (else all in each)");
+  command->add_option("--log", flags->files.log,
+                      "where vehicles or divers move by physics: their dive as a .csv");
+  command->add_option("--log-rate", flags->files.log_rate_hz,
+                      "its rows a second, else one a control period");
+  command->add_option("--seed", flags->seed,
+                      "of the sensors' noise, instead of the scene's; what is scattered stays");
+  command->add_flag(
+      "--sheet", flags->sheet,
+      "also pictures of what each sensor sees and of the first camera's depth, normals, "
+      "labels and motion (OUT/sheet), and all on one (OUT/sheet.png)");
+  command->add_flag("--validate", flags->validation,
+                    "run with Vulkan validation; any message is a failure");
+  command->callback([flags, &run] { run = [flags] { return run_render(*flags); }; });
+}
+
+void add_dive(CLI::App& app, CommandLine& line) {
+  auto flags = std::make_shared<DiveFlags>();
+  CLI::App* command = app.add_subcommand(
+      "dive",
+      "the live program: a scene (.toml) or a model (.gltf, .glb) in a headset or a window; F1 "
+      "lists keys");
+  command->add_option("scene", flags->scene,
+                      "scene or model file; with --replay the recording's own if none is given");
+  command->add_flag(
+      "--headless", flags->headless,
+      "no window. Where vehicles move by physics and no flag asks for pictures: their "
+      "dive alone, as fast as it can; else frames at the camera's rate, then a "
+      "summary of their times");
+  command
+      ->add_option(
+          "--display", flags->display,
+          "openxr: a headset; window; auto: the headset if an OpenXR runtime has one, else "
+          "a window")
+      ->check(CLI::IsMember({"auto", "openxr", "window"}));
+  command->add_option("--bindings", flags->bindings,
+                      "your own controls of some actions, a .toml (docs/headsets.md)");
+  command->add_option("--refresh", flags->refresh_hz, "pictures a second of the headset")
+      ->check(CLI::Range(1.0, 1000.0));
+  command->add_option("--log", flags->files.log,
+                      "the vehicles' dive as a .csv, a row a control period");
+  command->add_option("--log-rate", flags->files.log_rate_hz, "rows a second instead");
+  command
+      ->add_option("--plot", flags->files.plot,
+                   "the dive as a .png, its data beside as .plot.json; tools/setup plots installs "
+                   "what draws")
+      ->check(png_file);
+  command->add_option(
+      "--record", flags->files.record,
+      "every sample in and out, state hashes and the scene, as an .mcap that --replay "
+      "and ROS 2 tools read (neritic recording --help); F.xdf: beside F.mcap all numbers for "
+      "physiology labs");
+  command
+      ->add_option("--record-images", flags->record_images,
+                   "with --record: also these images, such as rov_camera/color or rov_sonar/echoes "
+                   "(depth, normals, labels, instances, motion); may be given again. Without it "
+                   "`render --replay` makes them later")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--play", flags->play,
+                      "sends the samples of a recorded dive as live ones: they drive the groups of "
+                      "inputs that name their devices");
+  add_replay(*command, flags->replay, flags->shown, flags->added);
+  command->add_option(
+      "--water", flags->water,
+      fmt::format("with --replay: another Jerlov type: {}", join(scene::kWaterTypes)));
+  command->add_option("--save", flags->files.save, "the state at the end, for --restore");
+  command->add_option("--restore", flags->restore,
+                      "goes on from a saved state of the same scene, --seconds more");
+  command->add_option("--seed", flags->seed,
+                      "of the sensors' noise, instead of the scene's; what is scattered stays");
+  command
+      ->add_option("--runs", flags->runs,
+                   "with --headless: so many dives, with the seeds from --seed on, until their "
+                   "missions are done; a table of outcomes")
+      ->check(between(1, 100000));
+  command->add_option("--serve", flags->serve,
+                      "lets other programs read and command this dive (neritic serve, hud "
+                      "--connect): tcp://ADDRESS:PORT; beyond 127.x.x.x with --keys");
+  command->add_option("--keys", flags->keys, "with --serve: folder of keys (neritic keys)");
+  command->add_flag("--realtime", flags->realtime, "physics without pictures at the clock's pace");
+  command->add_flag("--json", flags->json, "the dive's summary as JSON");
+  command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
+  command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
+  command
+      ->add_option(
+          "--timeline", flags->timeline,
+          "the frames' phases, passes and resolution as a .png, its data beside as .plot.json")
+      ->check(png_file);
+  command->add_option(
+      "--hud", flags->hud,
+      "a diver's instruments over the view: none, or any of corner, mask, wrist, "
+      "console (default of a scene with divers: corner in a window, wrist in a headset; key H)");
+  command->add_option("--diver", flags->diver, "whose instruments (default: the first diver)");
+  command->add_option("--units", flags->units, "of the instruments: metric (default), imperial")
+      ->check(CLI::IsMember({"metric", "imperial"}));
+  command
+      ->add_option("--quality", flags->quality,
+                   "auto: resolution and sonars' rates come down where the machine is too slow for "
+                   "its screen, on a CPU for 20 pictures a second (default in a window); full")
+      ->check(CLI::IsMember({"auto", "full"}));
+  command->add_option(
+      "--seconds", flags->seconds,
+      "stop after so many simulated seconds (default with --headless: 60 of physics "
+      "alone, 5 of frames); exit status 1 if a mission is not finished though they were enough for "
+      "its way at its speed, and nothing is saved to go on from");
+  command->add_option("--frames", flags->frames, "stop after so many frames")
+      ->check(between(1, 1000000));
+  command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png")
+      ->check(png_file);
+  command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
+  command
+      ->add_option("--sensor", flags->sensors,
+                   "begin at this camera, show only this sonar, by name; may be given again")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--view", flags->view,
+                      "begin here: a camera's name, chase:PARTICIPANT or free (V goes on)");
+  command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
+  command->add_flag("--validate", flags->validation,
+                    "run with Vulkan validation; any message is a failure");
+  // The flags of all commands are read by then.
+  command->callback([flags, &line] {
+    flags->quiet = line.quiet;
+    line.run = [flags] { return nothing_to_say(run_dive(*flags)); };
+  });
+}
+
+}  // namespace neritic::tools
