@@ -42,7 +42,7 @@ struct WaterFlow {
 struct LimbWork {
   double power_w = 0.0;  // mean mechanical power of all joints; negative: the water moved them
   // To speed up arms and legs against the trunk, each limb for itself: the internal power (Zamparo
-  // et al. 2002, J. Exp. Biol. 205, 2665). What slows down gives nothing back.
+  // et al. 2002, J. Exp. Biol. 205, 2665). Slowing down gives nothing back.
   double moving_w = 0.0;
 };
 

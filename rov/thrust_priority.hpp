@@ -1,7 +1,7 @@
-// Control when the thrusters cannot give all. What holds the vehicle level comes first, then what
-// holds it at its depth and on its path; what pushes it along the path gets the rest. Cutting all
-// by one factor would take moments and depth too: a vehicle at full thrust would overturn, or rise
-// and sink about its path. NED; body axes forward, starboard, down. Pure functions without
+// Control when the thrusters cannot give all. Moments that hold the vehicle level come first, then
+// what holds it at its depth and on its path; what pushes it along the path gets the rest. Cutting
+// all by one factor would take moments and depth too: a vehicle at full thrust would overturn, or
+// rise and sink about its path. NED; body axes forward, starboard, down. Pure functions without
 // allocation of memory; any thread.
 #pragma once
 

@@ -99,7 +99,7 @@ void main() {
     vec3 above = light_has(kLightSun) ? downwelling(depth_m) * (1.0 / kPi) : vec3(0.0);
     vec3 lamps = radiance_of(in_position.xyz, to_eye, vec3(1.0));
     own_light = 0.5 * above + 0.3 * lamps;
-    // What it mirrors comes out of Snell's cone, whose radiance is 1 / sin^2 48.6 deg of an even sky's, and is
+    // The light that it mirrors comes out of Snell's cone, whose radiance is 1 / sin^2 48.6 deg of an even sky's, and is
     // brighter still towards the sun.
     bright = ((2.5 * above + 0.5 * lamps) * sight.transmittance + sight.added) * light.exposure;
   }

@@ -140,7 +140,7 @@ bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t
   report_event(sender, &ModemCounts::sent, {ModemEvent::kSent, message, now_s, now_s, now_s, 0.0});
   *free = {message,    now_s, now_s + modem_duration_s(channel.modems[from], message.bytes),
            from_ned_m, 1,     std::uint64_t{1} << from};
-  // What was arriving is deaf to the rest.
+  // The rest of a message that was arriving is lost.
   for (ModemState::Hearing& hearing : sender.hearings)
     if (hearing.arriving != 0) hearing.sending = 1;
   return true;

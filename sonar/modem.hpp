@@ -1,7 +1,7 @@
 // Sound that carries messages between agents: travel time by the water's sound speed, spreading and
 // absorption against ambient noise and other senders, half duplex, bit rate, loss by the
 // signal-to-noise ratio. Depths are positive, positions north, east, down, metres; times seconds.
-// Pure functions; any thread. What is not modelled: echoes of surface and bottom as signals of
+// Pure functions; any thread. Not modelled: echoes of surface and bottom as signals of
 // their own (their fading is, statistically), Doppler, shadows of what lies between.
 #pragma once
 
@@ -86,7 +86,7 @@ struct ModemMessage {
   }
 };
 
-// What became of a message at a modem: at its sender, or at one that it was for.
+// The fate of a message at a modem: at its sender, or at one that it was for.
 enum class ModemEvent : std::uint64_t {
   kSent,
   kRefused,  // the modem was sending, or the message was too long
@@ -116,7 +116,7 @@ struct ModemReport {
   }
 };
 
-// What became of messages at a modem, since the start.
+// The fate of messages at a modem, counted since the start.
 struct ModemCounts {
   std::uint64_t sent = 0, refused = 0;  // refused: it was sending, or the message was too long
   std::uint64_t received = 0;
@@ -203,8 +203,8 @@ struct ModemChannel {
 bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t from,
           ModemMessage message, double now_s, const Vec3& from_ned_m);
 
-// What arrives in (from_s, to_s], with the modems where they are at its end. Messages are received
-// when their last bit has come; each modem's newest reports are in its ring.
+// Delivers what arrives in (from_s, to_s], with the modems where they are at its end. Messages are
+// received when their last bit has come; each modem's newest reports are in its ring.
 void step(const ModemChannel& channel, std::span<ModemState> states,
           std::span<const Vec3> positions_ned_m, double from_s, double to_s);
 

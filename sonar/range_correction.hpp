@@ -23,7 +23,7 @@ struct RangeCorrection {
 // assumed_speed_m_s: what the sonar turns time to range with. Straight rays: the exact time along
 // the straight path. Bent rays: along the ray that ends at the same point, found by iteration;
 // where no ray comes within a thousandth of the range (a shadow zone) the straight path's time
-// stands, and no bend. What a bent ray passes through on its way is not looked at: what hides what
+// stands, and no bend. Along a bent ray nothing is looked at: what hides what
 // is as with straight rays. A profile that the settings' reader has accepted. Sizes, at least 2
 // each: what interpolation in them is off by say the rows "profile's table" of sonar/TRADE.md.
 struct RangeCorrectionSize {

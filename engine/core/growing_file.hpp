@@ -2,7 +2,7 @@
 // keeps what it had written. It grows under its name with ".part" and takes its name when it is
 // whole: a half-written file never carries its final name. A run that is killed, fails or fills the
 // disk leaves the .part, which ends with a whole append; the next file of the same name replaces
-// it. What is no plain file (a device, a pipe) is written to as it stands. One thread.
+// it. A device or a pipe is written to as it stands. One thread.
 #pragma once
 
 #include <cstdio>

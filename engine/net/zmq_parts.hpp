@@ -1,4 +1,4 @@
-// What the sockets over ZeroMQ share: owners of its objects. Included by their sources alone. One
+// Shared by the sockets over ZeroMQ: owners of its objects. Included by their sources alone. One
 // thread each.
 #pragma once
 

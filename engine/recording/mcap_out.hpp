@@ -1,5 +1,5 @@
 // Where the messages of a recording go: into bytes at once (McapWriter), or to a thread that makes
-// them. What writes messages needs no more than this.
+// them. Writers of messages need no more than this.
 #pragma once
 
 #include "engine/recording/mcap.hpp"

@@ -1,5 +1,5 @@
 // Reads an MCAP file from its start to its end, or to where it was cut off, record by record, in
-// bounded memory. What is damaged is named; the rest is read. Any bytes are safe. One thread.
+// bounded memory. Damage is named; the rest is read. Any bytes are safe. One thread.
 #pragma once
 
 #include <filesystem>
@@ -25,8 +25,8 @@ Result<std::unique_ptr<McapSource>> open_mcap(const std::filesystem::path& path)
 // Borrows the bytes.
 std::unique_ptr<McapSource> mcap_of(std::span<const std::byte> bytes);
 
-// What is found, in the order of the file. A schema and a channel come before the messages that
-// need them; the summary's copies are left out. An Error ends the reading.
+// Gets all that is found, in the order of the file. A schema and a channel come before the messages
+// that need them; the summary's copies are left out. An Error ends the reading.
 class McapVisitor {
  public:
   virtual ~McapVisitor() = default;

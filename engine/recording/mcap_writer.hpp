@@ -30,7 +30,7 @@ class McapWriter final : public McapOut {
   std::size_t open_bytes() const { return chunk_.size(); }
   // The summary. Nothing comes after it.
   void finish();
-  // What was made since the last call.
+  // The bytes made since the last call.
   std::string take() { return std::exchange(out_, {}); }
 
  private:

@@ -25,7 +25,7 @@ class XdfWriter {
   void sample(std::uint32_t stream, double time_s, std::span<const double> values);
   // Nothing comes after it.
   void finish();
-  // What was made since the last call.
+  // The bytes made since the last call.
   std::string take() { return std::exchange(out_, {}); }
 
  private:

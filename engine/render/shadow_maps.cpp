@@ -13,7 +13,7 @@ namespace {
 // So far away that rays over a square of 40 m differ by 0.5 degrees, the width of the sun's disk;
 // floats still tell half a millimetre there.
 constexpr double kSunAway_m = 5000.0;
-// What stands nearer to the sun than this, or further, throws no shadow.
+// Things nearer to the sun than this, or further, throw no shadow.
 constexpr double kCasters_m = 300.0;
 // Half width of each square over that of the next.
 constexpr double kCascadeStep = 1.0 / 3.0;

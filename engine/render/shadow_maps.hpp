@@ -1,4 +1,4 @@
-// What the sun and lamps see: views of depth alone, drawn before the picture. Plain data made on
+// The views of sun and lamps: views of depth alone, drawn before the picture. Plain data made on
 // the CPU, in double.
 #pragma once
 
@@ -34,11 +34,11 @@ std::vector<ShadowMap> shadow_maps(const scene::Scene& scene, const GpuScene& gp
 
 // Flags by object: 1 where something of the scene may move or deform it.
 std::vector<std::uint8_t> moving_objects(const scene::Scene& scene);
-// Of where the others are: differs if one of them has moved after all (a replay shows its motion
-// in another scene).
+// Hash of where the others are: differs if one of them has moved after all (a replay shows its
+// motion in another scene).
 std::uint64_t still_hash(const FrameState& state, std::span<const std::uint8_t> moving);
 
-// What each lamp of the scene with shadows sees, in the order of the lamps. kBadInput: more than
+// The views of each lamp that casts shadows, in the order of the lamps. kBadInput: more than
 // kMaxLampShadows.
 Result<std::vector<ViewSet>> lamp_views(const scene::Scene& scene, const FrameState& state);
 

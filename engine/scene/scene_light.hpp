@@ -1,4 +1,4 @@
-// What a scene may name of its light besides sun and lamps: shadows, ambient light, caustics,
+// Terms that a scene may name of its light besides sun and lamps: shadows, ambient light, caustics,
 // shafts. Each is absent unless it is named. Plain values.
 #pragma once
 

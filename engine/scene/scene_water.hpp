@@ -1,5 +1,5 @@
-// What a scene may name of its water beside the type: each is absent until named, and then neither
-// computed nor allocated nor declared. Plain data; any thread.
+// Terms that a scene may name of its water beside the type: each is absent until named, and then
+// neither computed nor allocated nor declared. Plain data; any thread.
 #pragma once
 
 #include <optional>

@@ -24,7 +24,7 @@ struct DeviceSource {
   double rate_hz = 0.0;  // of sound
 };
 
-// What a device can be, and the groups of a diver's inputs that it feeds.
+// The kinds of devices, and the groups of a diver's inputs that it feeds.
 struct DeviceKind {
   std::string_view name;
   std::array<std::string_view, 2> groups;  // the second may be empty

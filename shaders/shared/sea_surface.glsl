@@ -135,7 +135,7 @@ vec3 deep_below(vec3 down) {
   return scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);
 }
 
-// What one facet of the surface sends down against a sight upwards.
+// Light that one facet of the surface sends down against a sight upwards.
 vec3 facet_from_below(vec3 direction, vec2 slope, float rough2, vec3 sun, vec3 mirrored) {
   vec3 normal = normalize(vec3(-slope.x, 1.0, -slope.y));
   float in_water = max(dot(direction, normal), 0.02);

@@ -61,7 +61,7 @@ vec3 reflect_light(Surface s, vec3 to_eye, vec3 to_light, float spread) {
   return (diffuse + fresnel * distribution * visibility) * n_l;
 }
 
-// What reaches a surface, 1 where nothing stands between: of the sun's beam, of the light round it, of the
+// Light that reaches a surface, 1 where nothing stands between: of the sun's beam, of the light round it, of the
 // surroundings.
 struct Seen {
   float sun;

@@ -17,7 +17,7 @@ namespace {
 
 // So soon a thread that is asked to stop does.
 constexpr int kLongestWait_ms = 20;
-// Of its thread: in a flood of packets it gives way to the simulation.
+// The priority of its thread: in a flood of packets it gives way to the simulation.
 constexpr int kNice = 5;
 
 Result<std::unique_ptr<DeviceAdapter>> adapter_of(const scene::DeviceSource& source) {

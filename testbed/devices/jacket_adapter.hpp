@@ -16,7 +16,7 @@ class JacketAdapter final : public DeviceAdapter {
   // After a silence of so long nothing is owed any more: a press that is not known to be wanted
   // still must not fill a jacket. The group's own hold time lets the buttons go.
   static constexpr TimeNs kSilence_ns = 500'000'000;
-  // What a button owes that is less is the wait for the next packet.
+  // A smaller debt of a button is the wait for the next packet.
   static constexpr TimeNs kLeastOwed_ns = 15'000'000;
 
  private:

@@ -54,7 +54,7 @@ void MicrophoneAdapter::tick(TimeNs now_ns, Outlet& out) {
   if (now_ns >= wakes_at_ns()) give(true, now_ns, out);
 }
 
-// What is in order; where one is missing for too long, what comes after the gap.
+// Gives packets in order; where one is missing for too long, those after the gap.
 void MicrophoneAdapter::give(bool all, TimeNs now_ns, Outlet& out) {
   while (!waiting_.empty()) {
     const auto first = waiting_.begin();

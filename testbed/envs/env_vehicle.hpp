@@ -38,7 +38,7 @@ struct EnvMethod {
 };
 Result<EnvMethod::Kind> env_method_of(std::string_view name);  // "split", "guarded"
 
-// What all vehicles of a batch share.
+// Shared by all vehicles of a batch.
 class EnvModel {
  public:
   static Result<std::unique_ptr<const EnvModel>> read(const std::filesystem::path& vehicle,

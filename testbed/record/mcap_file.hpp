@@ -1,5 +1,5 @@
 // An MCAP file that grows while a run goes on: whoever has messages hands them over, and a thread
-// of its own compresses them and waits for the disk. What was handed over is in the file half a
+// of its own compresses them and waits for the disk. Bytes handed over are in the file half a
 // second later, so that a killed run, a full disk or a removed one leaves a file that reads up to
 // there. The memory is bounded: message() waits while much is not written, up to ten seconds; after
 // a failure everything is dropped at once.

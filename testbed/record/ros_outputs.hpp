@@ -1,4 +1,4 @@
-// What leaves a run as messages of ROS 2 packages (sensor_msgs, nav_msgs, marine_acoustic_msgs),
+// A run's outputs as messages of ROS 2 packages (sensor_msgs, nav_msgs, marine_acoustic_msgs),
 // in its axes: world "map" east, north, up; bodies "NAME/base_link" forward, left, up. Beside the
 // readings, the true motion of vehicles, divers and tracked objects (NAME/odometry). README.md has
 // the topics. The thread that has the steps.

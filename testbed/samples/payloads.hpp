@@ -238,7 +238,7 @@ struct CollisionReading {
   }
 };
 
-// What became of a message at a modem: at its sender, or at one that it was for.
+// The fate of a message at a modem: at its sender, or at one that it was for.
 enum class ModemEvent : std::uint64_t {
   kSent,
   kRefused,   // it was sending, had too much on the way, or the message was too long

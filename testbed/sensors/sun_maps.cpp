@@ -10,7 +10,7 @@
 namespace neritic::testbed {
 namespace {
 
-// Of what a layer shows; never 0.
+// Hash of what a layer shows; never 0.
 std::uint64_t content_of(std::uint64_t still, const render::ViewSet& set) {
   const render::ViewDesc& view = set.views.front();
   Hash64 hash;

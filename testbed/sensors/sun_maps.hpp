@@ -1,6 +1,6 @@
 // The sun's depth maps of each view set of a session, kept from frame to frame: a layer is drawn
-// anew if the sun, the layer's place or what stands still has changed. What moves is drawn over a
-// copy, in a frame in which some of it is in sight. Frames run in the order in which they are
+// anew if the sun, the layer's place or what stands still has changed. Moving things are drawn over
+// a copy, in a frame in which some of it is in sight. Frames run in the order in which they are
 // declared. Private to testbed/sensors; rendering thread.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the network's thread keeps for one client: what it has not been given yet, in bounded
+// Kept by the network's thread for one client: all that it has not been given yet, in bounded
 // queues, of which a slow client loses the oldest, counted. The network's thread.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What goes between the network's thread and the simulation's: requests one way, answers and what
+// Hand-offs between the network's thread and the simulation's: requests one way, answers and what
 // was measured the other. Both ways over bounded queues; nothing else is shared. Plain values that
 // one thread at a time owns.
 #pragma once
@@ -68,7 +68,7 @@ struct HandOff {
   }
 };
 
-// What does not change while a world is served, for the network's thread.
+// Facts that do not change while a world is served, for the network's thread.
 struct ServedFacts {
   std::string title, path, version;
   std::uint64_t seed = 0;

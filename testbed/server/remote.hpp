@@ -23,7 +23,7 @@ class Remote {
   static Result<std::unique_ptr<Remote>> connect(const RemoteOptions& options);
   ~Remote();
 
-  // What the server said of itself at first.
+  // The server's first words about itself.
   const nlohmann::json& hello() const;
   // map: with "op"; its number is added. The server's own line where it refuses.
   Result<Reply> call(nlohmann::json map, const std::vector<net::Bytes>& arrays = {},

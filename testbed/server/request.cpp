@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, kOps> kNames{
     "clock", "keep",  "image",       "link",    "command", "release", "inject",
     "truth", "poses", "instruments", "save",    "restore", "record",  "stop_recording"};
 
-// What was found, short enough for a line and printable.
+// The value found, short enough for a line and printable.
 std::string shown(const json& value) {
   if (value.is_string()) {
     std::string text = value.get<std::string>().substr(0, 40);

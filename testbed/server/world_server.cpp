@@ -318,7 +318,7 @@ void WorldServer::finish_waiting(const Status& status) {
   });
 }
 
-// What changed since the last time. Where the queue is full it goes with the next.
+// Sends what changed since the last time; if the queue is full, with the next.
 void WorldServer::publish() {
   if (!news_) news_ = std::make_unique<News>();
   News& news = *news_;

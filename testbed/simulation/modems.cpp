@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kRangingStream = 0x72616e67696e67ull;  // of random numbers
 constexpr std::uint64_t kRangingBytes = 1, kAnswerBytes = 2;
-// Of a modem in one step; an inbox drains no more.
+// The most of a modem in one step; an inbox drains no more.
 constexpr std::uint64_t kMostAsked = 2 * SampleInbox::kCapacity;
 
 // Standard normal (Box and Muller 1958), of a counter.
@@ -232,7 +232,7 @@ void Modems::fix(const Call& call, std::size_t index, const sonar::ModemReport& 
   tasks.waits = 0;
 }
 
-// What came in: requests are answered, answers become ranges.
+// Handles what came in: requests are answered, answers become ranges.
 void Modems::look(const Call& call, std::size_t index) const {
   ModemTasks& tasks = call.after.modem_tasks()[index];
   const sonar::ModemState& state = call.after.modems()[index];

@@ -117,7 +117,7 @@ void OutputSamples::add_reports(Output& output, const Stream& stream,
   const double began_s = snapshot.time_s - world_.step_s();
   for (std::uint64_t k = sonar::first_kept(modem, begun_ ? output.count : 0); k < all; ++k) {
     const sonar::ModemReport& report = modem.reports[k % sonar::ModemState::kKept];
-    // What is sent leaves at the step's beginning, what comes comes after it.
+    // Sent messages leave at the step's beginning; those that come, come after it.
     const bool leaves = report.event <= sonar::ModemEvent::kRefused;
     if (!begun_ && (leaves ? report.at_s < began_s : report.at_s <= began_s)) continue;
     const TimeNs age_ns = std::max<TimeNs>(to_ns(snapshot.time_s - report.at_s), 0);

@@ -11,7 +11,7 @@
 
 namespace neritic::testbed {
 
-// What a modem was asked to send; the state counts what it has sent of it.
+// Messages that a modem was asked to send; the state counts what it has sent of it.
 struct ModemInputs {
   static constexpr std::size_t kQueued = 4;  // in a step
   std::uint64_t asked = 0;

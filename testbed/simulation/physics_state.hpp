@@ -129,13 +129,13 @@ struct ObjectState {
   }
 };
 
-// What a modem does beside its messages: answers that it owes, and its own ranging.
+// The tasks of a modem beside its messages: answers that it owes, and its own ranging.
 struct ModemTasks {
   std::uint64_t sent = 0;                                       // of ModemInputs::asked
   std::uint64_t looked = 0;                                     // at reports of its ModemState
   std::uint64_t answers = 0, answer_to = 0, answer_number = 0;  // 1: it owes an answer
   double answer_at_s = 0.0;
-  // Of one that ranges.
+  // The rest: of one that ranges.
   std::uint64_t asks = 0;  // so far
   std::uint64_t waits = 0, asked_number = 0;
   double asked_s = 0.0;

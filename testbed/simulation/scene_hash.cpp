@@ -9,7 +9,7 @@
 namespace neritic::testbed {
 namespace {
 
-// Adds values member by member: padding has no meaning. What may be any number of things begins
+// Adds values member by member: padding has no meaning. A list begins
 // with their count, so that the end of one list is never read as the start of what follows.
 class SceneHash {
  public:

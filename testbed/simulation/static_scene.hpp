@@ -13,7 +13,7 @@ bool stands_still(const scene::Scene& scene, const scene::Object& object);
 // Every vertex of a model at rest, times the scale.
 std::vector<Vec3> rest_points(const scene::Model& model, const Vec3& scale);
 
-// Each copy's label is its instance's. What does not stand still is left out. Errors name the
+// Each copy's label is its instance's. Moving things are left out. Errors name the
 // object.
 Result<sim::StaticWorld> static_world_of(const scene::Scene& scene);
 

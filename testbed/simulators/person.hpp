@@ -19,7 +19,7 @@ class SimulatedPerson {
  public:
   // human: of the scene; outlives this.
   explicit SimulatedPerson(const PhysicsHuman& human);
-  // What he does in the next dt_s, who sees himself so.
+  // The person's acts in the next dt_s, for the body that he sees.
   const PersonActs& act(const HumanPhysics& seen, double time_s, double dt_s);
   const PersonActs& acts() const { return acts_; }
   // Limbs, or buttons, as a file says instead; it outlives this.

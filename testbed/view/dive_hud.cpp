@@ -57,7 +57,7 @@ void record_upload(const ImageU8& picture, const gpu::Image& image, gpu::Command
                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
 }
 
-// Of a dive in this process.
+// The source of a dive in this process.
 class PhysicsFeed final : public InstrumentFeed {
  public:
   PhysicsFeed(LivePhysics& physics, std::size_t diver, const Devices* devices)

@@ -1,6 +1,6 @@
 // When readings reach a client: at once, or after a delay, with jitter and loss by stream, as over
-// a network. What is measured, and when, stays as it is; the same seed gives the same arrivals.
-// Plain value; one thread.
+// a network. The measurements and their times stay as they are; the same seed gives the same
+// arrivals. Plain value; one thread.
 #pragma once
 
 #include <algorithm>

@@ -7,8 +7,8 @@
 namespace neritic::testbed::ros {
 namespace {
 
-// What is done with each field of a payload: listed, written or read. Each describe() below names a
-// payload's fields once for all three.
+// The three things done with each field of a payload: listed, written or read. Each describe()
+// below names a payload's fields once for all three.
 struct Lister {
   std::vector<Field>& fields;
   template <class T>

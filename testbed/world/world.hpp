@@ -85,7 +85,7 @@ struct WorldImage {
   std::span<const std::byte> bytes() const;
 };
 
-// What an agent truly does, apart from what is measured of it.
+// The true motion of an agent, apart from what is measured of it.
 struct Truth {
   std::array<double, 3> position{};                             // of its origin, world
   std::array<double, 4> orientation{0.0, 0.0, 0.0, 1.0};        // world from body
@@ -111,8 +111,9 @@ class World {
   // Errors in one line: the scene's file, or nothing in it moves by physics.
   static Result<std::unique_ptr<World>> open(const std::filesystem::path& scene,
                                              const WorldOptions& options = {});
-  // Of a physics that another loop turns; it and the scene outlive this world: readings, commands
-  // and truths of it, no images, no tick(), no restore(), no recording. path: of the scene.
+  // A world of a physics that another loop turns; it and the scene outlive this world: readings,
+  // commands and truths of it, no images, no tick(), no restore(), no recording. path: of the
+  // scene.
   static std::unique_ptr<World> attach(LivePhysics& physics, const scene::Scene& scene,
                                        const std::string& path);
   // Ends the recording.

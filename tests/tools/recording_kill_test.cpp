@@ -22,7 +22,7 @@ std::int64_t wall_ns() {
       .count();
 }
 
-// What a recording says of when it began.
+// The time at which a recording says that it began.
 class Begun final : public recording::McapVisitor {
  public:
   Status metadata(const recording::McapMetadata& metadata) override {

@@ -1,4 +1,4 @@
-"""What people lost: relics.glb, a node a thing, laid out side by side, standing or lying on y = 0.
+"""Things that people lost: relics.glb, a node a thing, laid out side by side, standing or lying on y = 0.
 
 A tyre, an oil drum, an Admiralty anchor, a length of chain, a coil of rope, a piece of trawl net.
 """

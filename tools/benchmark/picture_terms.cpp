@@ -11,7 +11,7 @@ namespace {
 using testbed::FrameRequest;
 using testbed::Session;
 
-// What a diver would see there and a scene can name.
+// All that a diver would see there and a scene can name.
 void name_everything(scene::Scene& scene) {
   scene.cameras.at(0).width = 1280;
   scene.cameras.at(0).height = 720;

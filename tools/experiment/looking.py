@@ -73,7 +73,7 @@ class Detector:
             raise Failed(f"detector: {_line(error)}") from None
 
     def shares(self, pixels):
-        """Of a classifier: the share of each class, their sum is 1."""
+        """The answer of a classifier: the share of each class, their sum is 1."""
         out = self.forward(pixels).ravel()
         if self.kind != "classifier" or out.size != len(self.classes):
             raise Failed(f"detector: found a {self.kind} of {out.size} numbers; accepted: a classifier of {len(self.classes)}")

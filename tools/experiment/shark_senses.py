@@ -1,4 +1,4 @@
-"""What the shark's task can sense with: a diver's eyes whose crops go to a detector, and an ROV's sonar that keeps track."""
+"""The senses of the shark's task: a diver's eyes whose crops go to a detector, and an ROV's sonar that keeps track."""
 import math
 
 import numpy as np

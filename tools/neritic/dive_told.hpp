@@ -24,7 +24,7 @@ void print_summary(const DiveFlags& flags, const testbed::PhysicsWorld& world,
                    const testbed::PhysicsSimulation& simulation,
                    const testbed::DiveRecorder& recorder, const Pace& pace);
 
-// What --json prints.
+// The text that --json prints.
 nlohmann::json summary_json(const DiveFlags& flags, const testbed::PhysicsWorld& world,
                             const testbed::PhysicsSimulation& simulation,
                             const testbed::DiveRecorder& recorder, const Pace& pace);

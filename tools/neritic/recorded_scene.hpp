@@ -20,8 +20,8 @@ Result<scene::Scene> recorded_scene(const testbed::SampleLog& log, const std::st
                                     const std::string& path, const std::string& size,
                                     scene::SceneOptions options = {});
 
-// What is shown of a recording: other files' cameras, sonars, lights and things over its scene, or
-// another scene, in which the participants of the same names move as they were recorded.
+// Changes to what is shown of a recording: other files' cameras, sonars, lights and things over its
+// scene, or another scene, in which the participants of the same names move as they were recorded.
 struct ShownChanges {
   std::string scene;               // empty: its own
   std::vector<std::string> added;  // files that are merged over it
@@ -59,7 +59,7 @@ Result<testbed::SampleLog> read_recording(const std::string& file);
 Result<std::optional<testbed::SavedState>> start_of(const testbed::SampleLog& log,
                                                     const std::string& file,
                                                     const testbed::PhysicsWorld& world);
-// What a new recording says of its run. on_clock: it runs at a real clock's pace.
+// The facts that a new recording says of its run. on_clock: it runs at a real clock's pace.
 Result<testbed::RecordingOptions> recording_options(const std::string& scene, bool on_clock);
 
 }  // namespace neritic::tools

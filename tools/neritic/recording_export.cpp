@@ -49,7 +49,7 @@ std::string in_cell(const RosValue& value) {
   return fmt::format("{}", fmt::join(std::get<std::vector<double>>(value), " "));
 }
 
-// What one topic becomes.
+// The form that one topic is exported to.
 class TopicFile {
  public:
   virtual ~TopicFile() = default;

@@ -9,7 +9,8 @@
 
 namespace neritic::tools {
 
-// What the flags name in place of the person's signals. It stays where it is while a lab uses it.
+// The recordings that flags name in place of the person's signals. It stays where it is while a lab
+// uses it.
 struct SimulatedSignals {
   std::optional<diver::LimbRecording> limbs;
   std::optional<diver::ButtonRecording> buttons;

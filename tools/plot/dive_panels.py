@@ -1,4 +1,4 @@
-"""The small panels of a dive (dive.py). Of its story: gas, pace and risks of each diver, errors and
+"""The small panels of a dive (dive.py). They tell its story: gas, pace and risks of each diver, errors and
 thruster load of vehicles. On request (`--all`): times left, ascent, limbs, gas held and weight of each
 diver; each thruster and the speed of vehicles.
 """

@@ -35,7 +35,7 @@ struct CameraTradeoff {
 };
 Result<CameraTradeoff> run_camera_tradeoff(const CameraTradeoffOptions& options);
 
-// Of two pictures of one size, in sRGB.
+// The difference of two pictures of one size, in sRGB.
 double rms_error(const ImageU8& shown, const ImageU8& wanted);
 // Mean distance in Oklab (Ottosson 2020) after a blur of 3 x 3 pixels (1 2 1 over 4): what is
 // smaller than 1/67 degree is not seen. 1: from black to white.

@@ -13,7 +13,7 @@ using namespace testbed;
 
 constexpr double kSettled_s = 5.0;
 
-// What a dive leaves, step by step.
+// The record of a dive, step by step.
 struct Trace {
   std::vector<Vec3> diver_m;
   std::vector<double> robot_m;  // away from the diver

@@ -35,7 +35,7 @@ struct Sight {
   double length_m;
 };
 
-// What a candela sends along the sight from a metre at t.
+// The light that a candela sends along the sight from a metre at t.
 double source_at(const Sight& sight, double t) {
   const Vec3 travel = sight.from_lamp + sight.direction * t;
   const double way = std::max(glm::length(travel), 0.05);

@@ -17,7 +17,7 @@ class HeadsetProcess : public ::testing::Test {
   }
   static std::string scene() { return (test::source_dir() / "assets/scenes/ascent.toml").string(); }
   std::string path(const char* name) const { return (scratch_ / name).string(); }
-  // What the runtime does in runs from now on; it writes its complaints to "report".
+  // The runtime's behaviour in runs from now on; it writes its complaints to "report".
   void script(const std::string& lines) const {
     std::ofstream(scratch_ / "script") << lines << "report " << path("report") << '\n';
   }

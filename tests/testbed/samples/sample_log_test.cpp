@@ -32,7 +32,7 @@ SampleLog log_of_every_kind() {
   return log;
 }
 
-// What a replay needs; the readings that leave a run come again by themselves.
+// The entries that a replay needs; the readings that leave a run come again by themselves.
 std::vector<SampleLog::Entry> inputs(const SampleLog& log) {
   std::vector<SampleLog::Entry> out;
   for (const SampleLog::Entry& entry : log.entries)

@@ -70,7 +70,7 @@ scene::Scene everything(const Place& place) {
   return scene;
 }
 
-// Of one session, as its camera sees it, a little aside, and at an exposure.
+// Pictures of one session: as its camera sees it, a little aside, and at an exposure.
 Result<ImageU8> shown(Session& session, double time_s = 2.0, double aside_m = 0.0,
                       std::optional<double> ev = {}) {
   const scene::Camera& camera = session.scene().cameras.front();

@@ -183,7 +183,7 @@ TEST(MissionSpeed, TheOutlookNamesTheLegOnWhichACurrentLeavesNoWay) {
   EXPECT_TRUE(aslant.ends_with("it leaves its line and may not arrive")) << aslant;
   const std::string aside = lines({0.75, 0, 0}, way);
   EXPECT_NE(aside.find("on its way to waypoint "), std::string::npos) << aside;
-  // What it looks at turns its side to the current; facing it, it stays.
+  // Looking at its aim turns its side to the current; facing it, it stays.
   EXPECT_NE(lines({0, 0, 0.75}, "mission = { hold = \"station\", look_at = \"post\" }\n")
                 .find("at the heading there: it drifts away"),
             std::string::npos);

@@ -334,13 +334,13 @@ class RemoteWorld(World):
         self._core.wait(steps, most)
 
     def poses(self) -> dict[str, Truth]:
-        """What every agent truly does, in one call; without the current, forces and contacts."""
+        """The true motion of every agent, in one call; without the current, forces and contacts."""
         nothing = np.zeros(0)
         return {agent[0]: Truth(row[0:3], row[3:7], row[7:10], row[10:13], nothing, nothing, 0)
                 for agent, row in zip(self._core.agents, self._core.poses())}
 
     def counts(self) -> dict[str, int]:
-        """What the server counts: clients, requests, refusals, losses."""
+        """The server's counts: clients, requests, refusals, losses."""
         return self._core.counts()
 
 

@@ -20,7 +20,7 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stream:
-    """What a world can tell or be told, by name."""
+    """All that a world can tell or be told, by name."""
 
     name: str  # "rov/imu"
     owner: str  # "rov"
@@ -142,7 +142,7 @@ class Image:
 
     @property
     def position(self) -> Float:
-        """Of the frame in the world: east, north, up."""
+        """The rotation of the frame in the world: east, north, up."""
         return np.array(self._of.position)
 
     @property
@@ -153,17 +153,17 @@ class Image:
 
     @property
     def intrinsics(self) -> Float:
-        """Of a camera's picture: fx, fy, cx, cy in pixels."""
+        """The pinhole of a camera's picture: fx, fy, cx, cy in pixels."""
         return np.array(self._of.intrinsics)
 
     @property
     def range_limits(self) -> tuple[float, float]:
-        """Of a sonar image: the ranges of its first and last edge, in metres."""
+        """The ranges of a sonar image's first and last edge, in metres."""
         return (self._of.range_m[0], self._of.range_m[1])
 
     @property
     def azimuth_limits(self) -> tuple[float, float]:
-        """Of a sonar image: the bearings of its first and last edge, positive to the left."""
+        """The bearings of a sonar image's first and last edge, positive to the left."""
         return (self._of.azimuth[0], self._of.azimuth[1])
 
     def __repr__(self) -> str:
@@ -220,7 +220,7 @@ class Observations(Mapping[str, Union[Reading, Image]]):
 
 @dataclass(frozen=True)
 class Truth:
-    """What an agent truly does. Nothing of it is measured."""
+    """The true motion of an agent. Nothing of it is measured."""
 
     position: Float  # of its origin: east, north, up
     orientation: Float  # world from body: x, y, z, w
@@ -232,7 +232,7 @@ class Truth:
 
 
 MODEM_EVENTS = ("sent", "refused", "received", "too_weak", "noisy", "collided", "was_sending")
-"""What the number `event` of a reading of NAME/modem means: what became of a message at its sender, or
+"""The meanings of the number `event` of a reading of NAME/modem: what became of a message at its sender, or
 at a modem that it was for. The last four are the causes of its loss."""
 
 
@@ -433,7 +433,7 @@ class World:
 
     @property
     def hash(self) -> int:
-        """Of the state: two runs with the same hash are in the same state, bit for bit."""
+        """The hash of the state: two runs with the same hash are in the same state, bit for bit."""
         return self._core.hash
 
     @property
@@ -454,7 +454,7 @@ class World:
             raise BadInput(f"agent: found '{name}'; accepted: {', '.join(self._agents)}") from None
 
     def truth(self, agent: str) -> Truth:
-        """What the agent truly does, apart from what is measured of it."""
+        """The true motion of the agent, apart from what is measured of it."""
         return Truth(**self._core.truth(agent))
 
     # Time.
@@ -466,7 +466,7 @@ class World:
         return Observations(self, of, self._images)
 
     def observe(self) -> Observations:
-        """What has arrived so far, without a step."""
+        """Returns what has arrived so far, without a step."""
         return Observations(self, self._core.newest(), self._images)
 
     async def ticks(self, steps: int = 1, count: Optional[int] = None) -> AsyncIterator[Observations]:
@@ -496,7 +496,7 @@ class World:
 
     def link(self, stream: str, delay: float = 0.0, jitter: float = 0.0, loss: float = 0.0) -> None:
         """Readings of the stream arrive `delay` seconds late and evenly up to `jitter` more, and a share
-        `loss` never. What is measured, and when, stays as it is."""
+        `loss` never. The measurements and their times stay as they are."""
         self._core.set_link(self._core.stream(stream), delay, jitter, loss)
 
     # Images.
@@ -522,7 +522,7 @@ class World:
         return self._core.save()
 
     def restore(self, state: bytes) -> None:
-        """Goes on from a saved state of this scene. What is on its way is dropped; commands end."""
+        """Goes on from a saved state of this scene. Readings on their way are dropped; commands end."""
         self._core.restore(state)
         self._images = {}
         for mail in self._mail.values():
