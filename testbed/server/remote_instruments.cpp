@@ -11,16 +11,22 @@
 #include "testbed/server/remote_reply.hpp"
 
 namespace neritic::testbed {
-namespace {
-
-using nlohmann::json;
-
-constexpr std::size_t kMostStreams = 64;
+namespace remote_instruments {
 
 struct Heard {
   hud::DiveData data;
   std::vector<hud::StreamHealth> streams;
 };
+
+}  // namespace remote_instruments
+
+namespace {
+
+using remote_instruments::Heard;
+
+using nlohmann::json;
+
+constexpr std::size_t kMostStreams = 64;
 
 std::string text_in(const json& map, const char* key) {
   const auto at = map.find(key);

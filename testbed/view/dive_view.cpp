@@ -194,10 +194,11 @@ void DiveView::add_views(FrameRequest& request) {
   const bool tracked = frame_.world_from_head.has_value();
   for (std::size_t i = 0; i < frame_.groups.size(); ++i) {
     const xr::ViewGroup& group = frame_.groups[i];
-    ViewsRequest views{.name = i == 0 ? camera.name : fmt::format("{} {}", camera.name, i),
-                       .exposure = camera.exposure,
-                       .antialias = camera.antialias,
-                       .detail = camera.detail};
+    ViewsRequest views{
+        .name = i == 0 ? camera.name : fmt::format("{} {}", camera.name, i),
+        .exposure = camera.exposure,
+        .antialias = camera.antialias,
+        .detail = detail_at(camera.detail, governor_ ? governor_->quality().light : 0)};
     const double scale = view_scale();
     timeline_.current().view_scale = scale;
     views.views.width = scaled(group.width, scale);

@@ -23,6 +23,34 @@ constexpr std::array<Quality, 16> kRungs{{{1.0, 1, 0},
                                           {0.2, 4, 3},
                                           {0.2, 8, 3}}};
 
+// The knobs of the levels of light; the first leaves the camera its own.
+const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
+                                                             {.shadow_size = 0.5,
+                                                              .shadow_samples = 5,
+                                                              .occlusion_samples = 0.5,
+                                                              .inscatter_samples = 2,
+                                                              .waves = 24,
+                                                              .scatter_levels = 6,
+                                                              .particles = 0.7},
+                                                             {.shadow_size = 0.5,
+                                                              .cascades = 2,
+                                                              .shadow_samples = 3,
+                                                              .visibility_step = 4,
+                                                              .occlusion_samples = 0.25,
+                                                              .inscatter_samples = 1,
+                                                              .waves = 16,
+                                                              .scatter_levels = 4,
+                                                              .particles = 0.5},
+                                                             {.shadow_size = 0.25,
+                                                              .cascades = 1,
+                                                              .shadow_samples = 1,
+                                                              .visibility_step = 4,
+                                                              .occlusion_samples = 0.125,
+                                                              .inscatter_samples = 1,
+                                                              .waves = 8,
+                                                              .scatter_levels = 2,
+                                                              .particles = 0.25}}};
+
 // The cost of a level of light beside the best (measured in software: wreck, 320 x 180).
 constexpr std::array<double, kLightLevels> kLightCost{1.0, 0.75, 0.6, 0.5};
 
@@ -48,6 +76,22 @@ std::span<const Quality> quality_rungs() {
   return kRungs;
 }
 
+scene::PictureDetail detail_at(const scene::PictureDetail& camera, std::uint32_t light) {
+  if (light == 0) return camera;
+  scene::PictureDetail out = camera;
+  const scene::PictureDetail& level = kLight.at(light);
+  out.shadow_size = std::min(out.shadow_size, level.shadow_size);
+  out.cascades = std::min(out.cascades, level.cascades);
+  out.shadow_samples = std::min(out.shadow_samples, level.shadow_samples);
+  out.visibility_step = std::max(out.visibility_step, level.visibility_step);
+  out.occlusion_samples = std::min(out.occlusion_samples, level.occlusion_samples);
+  out.inscatter_samples = std::min(out.inscatter_samples, level.inscatter_samples);
+  out.waves = std::min(out.waves, level.waves);
+  out.scatter_levels = std::min(out.scatter_levels, level.scatter_levels);
+  out.particles = std::min(out.particles, level.particles);
+  return out;
+}
+
 void QualityGovernor::add(double interval_ms, double work_ms) {
   if (!(std::isfinite(interval_ms) && interval_ms > 0.0 && work_ms > 0.0)) return;
   on_rung_s_ += interval_ms * 1e-3;
@@ -67,8 +111,8 @@ void QualityGovernor::add(double interval_ms, double work_ms) {
   }
 }
 
-// To the rung whose cost is expected to fit: at least one, at most three, since fixed costs make the
-// guess too good.
+// To the rung whose cost is expected to fit: at least one, at most three, since fixed costs make
+// the guess too good.
 void QualityGovernor::go_down(double interval_ms) {
   if (rung_ + 1 >= kRungs.size()) return;
   if (climbed_ && on_rung_s_ <= kSettled_s)

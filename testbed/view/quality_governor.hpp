@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/scene/picture_detail.hpp"
+
 namespace neritic::testbed {
 
 struct Quality {
@@ -22,6 +24,9 @@ inline constexpr std::uint32_t kLightLevels = 4;
 // Best first: some of the view's resolution, then size and number of the sun's shadow maps, ambient
 // occlusion, waves and forward scatter, then the sonars' rates, and so on in turn.
 std::span<const Quality> quality_rungs();
+
+// A camera's knobs at a level of light: none finer than the camera has it.
+scene::PictureDetail detail_at(const scene::PictureDetail& camera, std::uint32_t light);
 
 class QualityGovernor {
  public:

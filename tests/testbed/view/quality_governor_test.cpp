@@ -91,6 +91,27 @@ TEST(QualityGovernor, TimesThatAreNoneAreLeftOut) {
   EXPECT_EQ(governor.rung(), 0u);
 }
 
+// A level of light is never finer than the camera nor than the level before it.
+TEST(QualityGovernor, LightComesDownKnobByKnob) {
+  scene::PictureDetail before;
+  before.waves = 10, before.cascades = 1;
+  const scene::PictureDetail camera = before;
+  for (std::uint32_t light = 0; light < kLightLevels; ++light) {
+    const scene::PictureDetail now = detail_at(camera, light);
+    EXPECT_LE(now.shadow_size, before.shadow_size);
+    EXPECT_LE(now.cascades, before.cascades);
+    EXPECT_LE(now.shadow_samples, before.shadow_samples);
+    EXPECT_GE(now.visibility_step, before.visibility_step);
+    EXPECT_LE(now.occlusion_samples, before.occlusion_samples);
+    EXPECT_LE(now.inscatter_samples, before.inscatter_samples);
+    EXPECT_LE(now.waves, before.waves);
+    EXPECT_LE(now.scatter_levels, before.scatter_levels);
+    EXPECT_LE(now.particles, before.particles);
+    EXPECT_EQ(now == camera, light == 0);
+    before = now;
+  }
+}
+
 // Each rung costs no more than the one before it, or it would not help.
 TEST(QualityGovernor, RungsComeDownInOrder) {
   const auto rungs = quality_rungs();

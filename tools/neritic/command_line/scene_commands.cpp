@@ -171,8 +171,9 @@ void add_dive(CLI::App& app, CommandLine& line) {
       ->check(CLI::IsMember({"metric", "imperial"}));
   command
       ->add_option("--quality", flags->quality,
-                   "auto: resolution and sonars' rates come down where the machine is too slow for "
-                   "its screen, on a CPU for 20 pictures a second (default in a window); full")
+                   "auto: resolution, then shadows, occlusion, waves and scatter, then sonars' "
+                   "rates, in turn, come down where the machine is too slow for its screen, on a "
+                   "CPU for 20 pictures a second (default in a window); full")
       ->check(CLI::IsMember({"auto", "full"}));
   command->add_option(
       "--seconds", flags->seconds,
