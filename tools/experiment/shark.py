@@ -4,6 +4,8 @@ them and keeps the shark in its sonar. The ROV flies by its own thrusters, contr
 Blocked: the ROV's projection on the line from diver to shark lies in [0.1, 0.9] of it, and the ROV is at most 0.35 m
 beside it, for 1 s; the time counts to the beginning of that second, from when the diver's gaze met the shark.
 """
+import contextlib
+import csv
 import math
 import os
 
@@ -11,7 +13,7 @@ import numpy as np
 
 import looking
 from detector import model_of
-from scenario import SHIPPED, Setting, draw
+from scenario import SHIPPED, Failed, Setting, draw
 from shark_senses import DIVER, SEEN, SONAR, Gaze, SonarTrack
 
 SETTINGS = {
@@ -39,6 +41,7 @@ SETTINGS = {
     "physics_hz": Setting(240, "steps a second", 60, 1000, whole=True),
     "control_hz": Setting(20.0, "how often the ROV is told its place", 1.0, 240.0),
     "seconds": Setting(8.0, "of a run at most", 1.0, 120.0),
+    "from_recording": Setting(False, "true: the run is recorded, replayed by the program and judged again from the replay's log"),
 }
 MEASURES = {
     "blocked": ("yes or no", "whether the ROV blocked the shark at all"),
@@ -48,6 +51,7 @@ MEASURES = {
     "shark_in_sonar": ("", "share of the time after the block in which the shark is in the sonar's sight (90 x 28 degrees, 10 m)"),
     "beside_rms_m": ("m", "distance from the line over the 2 s after the block"),
     "largest_force_n": ("N", "largest force of a thruster"),
+    "same_from_recording": ("yes or no", "whether the replay's judgement is the run's"),
     "track_error_m": ("m", "rms error of the shark's place, level, by the sonar"),
     "looks": ("", "of a detector that looks, until it says shark"),
     "wrong_words": ("", "how often it named something else before"),
@@ -113,6 +117,39 @@ def between(rov, diver, shark):
     return along, float(np.linalg.norm(rov - diver - along * line))
 
 
+class Judge:
+    """Whether the shark is blocked, and since when."""
+
+    def __init__(self):
+        self.held_from, self.blocked_s = None, None
+
+    def see(self, time, rov, shark):
+        """(along, beside) at this instant."""
+        along, beside = between(rov, DIVER, shark)
+        if beside <= BESIDE_M and LEAST <= along <= MOST:
+            self.held_from = time if self.held_from is None else self.held_from
+            if self.blocked_s is None and time - self.held_from >= HELD_S - 1e-9:
+                self.blocked_s = self.held_from
+        elif self.blocked_s is None:
+            self.held_from = None
+        return along, beside
+
+
+def _from_recording(s, tools, record, times):
+    """When the shark was blocked, by the program's replay of the run's recording: at the same instants, by its log."""
+    log = os.path.join(tools.folder, "replayed.csv")
+    tools.neritic("dive", "--replay", record + ".mcap", "--headless", "--log", log, "--log-rate", s["physics_hz"], "-q")
+    with open(log, encoding="utf-8") as file:
+        rows = {round(float(r["time_s"]), 4): r for r in csv.DictReader(file) if r["vehicle"] == "rov"}
+    judge = Judge()
+    for time in times:
+        row = rows.get(round(time, 4))
+        if row is None:
+            raise Failed(f"the replay's log has no line at {time:g} s")
+        judge.see(time, np.array([float(row["x_m"]), -float(row["z_m"]), float(row["y_m"])]), _shark_at(s, time)[0])
+    return judge.blocked_s
+
+
 def _word_s(s, seed):
     """When the detector says "shark": its first look that does not miss, after its latency."""
     look = 0
@@ -146,8 +183,11 @@ def run(s, seed, tools):
     track = SonarTrack(world, s) if sounds else None
     ship, told_s = world["rov"], math.inf if looks else _word_s(s, seed) + s["delay_s"]
     every = max(1, int(round(s["physics_hz"] / s["control_hz"])))
-    held_from, blocked_s, in_sight, beside_after, force = None, None, [], [], 0.0
+    judge, in_sight, beside_after, force, seen_at = Judge(), [], [], 0.0, []
     series = {"t": [], "beside": [], "along": []}
+    recording, record = contextlib.ExitStack(), os.path.join(tools.folder, "run")
+    if s["from_recording"]:
+        recording.enter_context(world.record(record))
     world["diver"].pose(DIVER)
     # Told control_hz times a second; judged at least 20 times a second.
     part, next_told = min(every, max(1, int(round(s["physics_hz"] / 20)))), 0
@@ -168,27 +208,26 @@ def run(s, seed, tools):
         world.tick(part)
         truth, time = world.truth("rov"), world.time
         shark, _ = _shark_at(s, time)
-        along, beside = between(truth.position, DIVER, shark)
+        along, beside = judge.see(time, truth.position, shark)
+        seen_at.append(time)
         force = max(force, float(np.abs(truth.thruster_n).max()))
         series["t"].append(round(time, 4))
         series["beside"].append(round(beside, 4))
         series["along"].append(round(along, 4))
-        if beside <= BESIDE_M and LEAST <= along <= MOST:
-            held_from = time if held_from is None else held_from
-            if blocked_s is None and time - held_from >= HELD_S - 1e-9:
-                blocked_s = held_from
-        elif blocked_s is None:
-            held_from = None
-        if held_from is not None:
+        if judge.held_from is not None:
             in_sight.append(_in_sight(truth, shark))
             beside_after.append(beside)
-        if blocked_s is not None and time >= blocked_s + 2.0:
+        if judge.blocked_s is not None and time >= judge.blocked_s + 2.0:
             break
+    blocked_s = judge.blocked_s
+    recording.close()
     world.close()
     looked = {}
     if looks:
         gaze.close()
         looked = {"looks": gaze.looks, "wrong_words": gaze.wrong, "look_ms": 1e3 * float(np.median(gaze.work_s or [0.0]))}
+    if s["from_recording"]:
+        looked["same_from_recording"] = _from_recording(s, tools, record, seen_at) == blocked_s
     if sounds and track.errors:
         looked["track_error_m"] = float(np.sqrt(np.mean(np.square(track.errors))))
     measures = {**looked, "blocked": blocked_s is not None, "blocked_in_3_s": blocked_s is not None and blocked_s <= 3.0,

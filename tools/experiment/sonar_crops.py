@@ -34,6 +34,7 @@ range_m = [{near:.2f}, {far:.2f}]
 azimuth_deg = {azimuth:.2f}
 elevation_deg = 20
 bins = [64, 64, 64]
+quality = "draft"
 rate_hz = 60
 frequency_hz = {hertz:.0f}
 bandwidth_hz = {band:.0f}
