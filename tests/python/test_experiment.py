@@ -1,6 +1,7 @@
-"""The parts of tools/experiment that need no program: boxes of detectors, orders, scores, intervals, power. Exit 77: skipped."""
+"""The parts of tools/experiment that need no program: boxes of detectors, orders, scores, studies, intervals, power. Exit 77: skipped."""
 import math
 import os
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -12,7 +13,8 @@ except ModuleNotFoundError:
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.dont_write_bytecode = True
-sys.path.insert(0, os.path.join(HERE, "..", "..", "tools", "experiment"))
+TOOLS = os.path.join(HERE, "..", "..", "tools", "experiment")
+sys.path.insert(0, TOOLS)
 
 import crops
 import detector
@@ -75,6 +77,62 @@ class Questionnaires(unittest.TestCase):
         for text in ("", "seven", "101", "-5", "7"):
             self.assertIsNone(questionnaires.check("nasa_tlx", 0, text)[0])
         self.assertEqual(questionnaires.check("nasa_tlx", 0, " 55 "), (55, None))
+
+
+class Study(unittest.TestCase):
+    """Two participants of two blocks; the second stops in the middle of a questionnaire and goes on."""
+
+    PLAN = ('[study]\ntitle = "T"\nconsent = "Do you?"\nafter_block = ["nasa_tlx"]\nafter = ["ssq"]\n'
+            '[[blocks]]\nname = "a"\n[[blocks]]\nname = "b"\n')
+
+    def study(self, what, *words, answers=None):
+        call = [sys.executable, "-B", os.path.join(TOOLS, "study.py"), "--program", "none", what, self.folder, *words]
+        if answers is not None:
+            self.write("answers", answers)
+            call += ["--answers", os.path.join(self.scratch, "answers")]
+        done = subprocess.run(call, capture_output=True, text=True)
+        return done.returncode, done.stdout + done.stderr
+
+    def write(self, name, text):
+        with open(os.path.join(self.scratch, name), "w") as file:
+            file.write(text)
+
+    def read(self, name):
+        with open(os.path.join(self.folder, name)) as file:
+            return file.read()
+
+    def test_withdrawal_erases_one_participant_and_leaves_the_rest(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            self.write("plan.toml", self.PLAN)
+            self.assertEqual(self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))[0], 0)
+            self.assertIn("nothing is kept", self.study("enrol", answers="no\n")[1])
+            self.assertIn("P01. Blocks: a, b", self.study("enrol", answers="yes\n")[1])
+            self.assertIn("P02. Blocks: b, a", self.study("enrol", answers="yes\n")[1])
+            block = "\n50\n55\n60\n101\n10\n0\n100\n"  # 101 is refused and asked again
+            ssq = "3\n" * 16
+            self.assertEqual(self.study("run", "P01", answers=block + block + ssq)[0], 0)
+            self.assertEqual(self.study("run", "P02", answers="\n50\n55\n")[0], 1)
+            self.assertEqual(self.study("run", "P02", answers="60\n10\n0\n100\n" + block + ssq)[0], 0)
+            table = self.study("table")[1]
+            for row in ("P01,a,1,45.8333", "P02,b,1,45.8333", "P01,after,,,200.34,159.18,292.32,235.62"):
+                self.assertIn(row, table)
+            kept = self.read("participants/P02/markers.jsonl")
+            self.assertEqual(self.study("withdraw", "P01", "--yes")[0], 0)
+            self.assertFalse(os.path.exists(os.path.join(self.folder, "participants", "P01")))
+            self.assertEqual(self.read("participants/P02/markers.jsonl"), kept)
+            self.assertNotIn("P01", self.read("scores.csv"))
+            self.assertIn("P02,b,1,45.8333", self.read("scores.csv"))
+            self.assertEqual(self.study("run", "P01")[0], 2)
+            # The next one takes the order of the one who left, under a new name.
+            self.assertIn("P03. Blocks: a, b", self.study("enrol", answers="yes\n")[1])
+
+    def test_bad_words_are_refused_in_one_line(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            for words in (("beginn",), ("run",), ("run", "P01"), ("begin", "--plan", "none.toml"), ("ask", "P01", "mood")):
+                status, text = self.study(*words)
+                self.assertEqual((status, text.count("\n")), (2, 1), text)
 
 
 class Power(unittest.TestCase):
