@@ -98,9 +98,11 @@ TEST_P(SceneFiles, TwentyRunsGiveTheSameBits) {
 TEST_P(SceneFiles, HundredKilometresAwayLooksAndSoundsTheSame) {
   NERITIC_ASSERT_OK(scene::Scene here, small_scene(GetParam()));
   NERITIC_ASSERT_OK(scene::Scene there, small_scene(GetParam(), {1e5, 0.0, -1e5}));
-  // Waves belong to their place, so nets of light differ from place to place.
-  for (scene::Scene* scene : {&here, &there})
+  // Waves and snow belong to their place, so nets of light and flakes differ from place to place.
+  for (scene::Scene* scene : {&here, &there}) {
     if (scene->sun) scene->sun->caustics.reset();
+    if (scene->water) scene->water->snow.reset();
+  }
   // Texels of shadow maps lie on a lattice of the world, so the edges of shadows move by parts of
   // one.
   const bool shadows = here.sun && here.sun->shadows;
