@@ -42,33 +42,25 @@ bool full_turn(const BeamGrid& grid) {
   return grid.limits.azimuth_max_rad - grid.limits.azimuth_min_rad > 2.0 * kPi - 1e-9;
 }
 
-// Rows beyond an aperture whose half is half_rad, so that all within reach_rad of the axis is
-// gathered; no more than a pinhole holds, and no more than a few apertures: of one much narrower
-// than its pattern the wedge stays cut.
-std::uint32_t rows_beyond(double half_rad, double step_rad, double reach_rad, std::uint32_t bins) {
-  constexpr double kMostApertures = 4.0;
-  const double most = std::floor((kMaxElevation_rad / 2.0 - half_rad) / step_rad + 1e-6);
-  const double rows =
-      std::min({std::ceil((reach_rad - half_rad) / step_rad - 1e-6), most, kMostApertures * bins});
-  return static_cast<std::uint32_t>(std::max(rows, 0.0));
-}
-
-// Where the rows beyond would make more than this, all rows grow instead: what is heard there is
-// never cut off, and nobody pays for more rows than these or those asked for.
-constexpr std::uint32_t kMostWidened = 1536;
-constexpr std::uint32_t kMostBent = 768;  // the same of rows as far as rays bend
+constexpr std::uint32_t kMostBent = 768;  // kMostWidenedRows of rows as far as rays bend
 
 // An elevation pattern is heard beyond the aperture that its half power names: as far as its second
 // null. What lies straight below a side-scan, or the surface above a flat beam, comes in there.
-void widen_elevation(Head& head, const HeadPatterns& patterns) {
-  const auto& pattern = patterns.upright();
-  if (!pattern) return;
+void widen_elevation(const scene::Sonar& sonar, Head& head, const HeadPatterns& patterns) {
+  if (!patterns.upright()) return;
   BeamGrid& g = head.samples;
+  const double cell_rad = target_cell_rad(sonar, patterns);
   const auto widen = [&](double& min_rad, double& max_rad, double step_rad, std::uint32_t& bins) {
-    const std::uint32_t rows = rows_beyond(max_rad, step_rad, pattern->second_null_rad(), bins);
-    bins = std::min(bins + 2 * rows, std::max(bins, kMostWidened));
+    const double beyond_rad = heard_half_rad(max_rad, patterns) - max_rad;
+    const auto rows = static_cast<std::uint32_t>(std::clamp(
+        std::ceil(beyond_rad / step_rad - 1e-6), 0.0,
+        std::max(0.0, std::floor((kMaxElevation_rad / 2.0 - max_rad) / step_rad + 1e-6))));
     min_rad -= rows * step_rad;
     max_rad += rows * step_rad;
+    const double for_targets = cell_rad > 0.0 ? std::ceil((max_rad - min_rad) / cell_rad) : 0.0;
+    const auto most = std::max(kMostWidenedRows,
+                               static_cast<std::uint32_t>(std::min(for_targets, double{kMaxBins})));
+    bins = std::min(bins + 2 * rows, std::max(bins, most));
   };
   Limits& l = g.limits;
   widen(l.elevation_min_rad, l.elevation_max_rad, g.elevation_step_rad(), g.bins.elevation);
@@ -205,7 +197,7 @@ Result<Head> plan_head(const scene::Sonar& sonar, std::string name, const Quat& 
   auto made = head_patterns(sonar);
   if (!made.ok()) return bad_input("sonar {}: beam: {}", sonar.name, made.error().message);
   const HeadPatterns& patterns = *made;
-  widen_elevation(head, patterns);
+  widen_elevation(sonar, head, patterns);
   head.heard_up_rad = head.samples.limits.elevation_max_rad;
   if (t.profile && t.profile->bent) widen_for_bends(head, *t.profile, patterns.cone);
   // Side-scans and scanners hear one beam: their azimuth bins sample it.

@@ -29,6 +29,34 @@ int places_over(const BeamPattern& pattern, double width_rad) {
 
 }  // namespace
 
+double heard_half_rad(double half_rad, const HeadPatterns& patterns) {
+  // Of an aperture much narrower than its pattern the wedge stays cut.
+  constexpr double kMostApertures = 9.0;
+  if (!patterns.upright()) return half_rad;
+  return std::min(std::max(half_rad, patterns.upright()->second_null_rad()),
+                  std::max(half_rad, std::min(kMaxElevation_rad / 2.0, kMostApertures * half_rad)));
+}
+
+double target_cell_rad(const scene::Sonar& sonar, const HeadPatterns& patterns) {
+  // A pixel of this share of a target's width has its centre on it wherever it lies: 1 / sqrt(2) of
+  // it, and half as much again where pixels and cells do not meet.
+  constexpr double kTargetCell = 0.47;
+  // Of all columns and rows; of sonars of one beam, which ping more often to see as much, fewer.
+  constexpr double kMostTargetSamples = 8e6, kMostOfOneBeam = 2e6;
+  using Kind = scene::SonarKind;
+  if (!sonar.quality_chosen || !(sonar.least_target_m > 0.0)) return 0.0;
+  const bool many = sonar.kind == Kind::kImaging || sonar.kind == Kind::kProfiling;
+  const double wide_rad = sonar.kind == Kind::kEchoSounder
+                              ? 2.0 * heard_half_rad(sonar.semi_angle_rad, patterns)
+                          : sonar.kind == Kind::kMechanical ? sonar.step_rad
+                                                            : sonar.azimuth_rad;
+  const double high_rad = sonar.kind == Kind::kEchoSounder
+                              ? wide_rad
+                              : 2.0 * heard_half_rad(sonar.elevation_rad / 2.0, patterns);
+  return std::max(kTargetCell * sonar.least_target_m / sonar.range_max_m,
+                  std::sqrt(wide_rad * high_rad / (many ? kMostTargetSamples : kMostOfOneBeam)));
+}
+
 double sound_speed_of(const scene::SonarWater& water, double depth_m) {
   if (water.sound_speed_m_s) return *water.sound_speed_m_s;
   return sound_speed_mackenzie_m_s({water.temperature_c, water.salinity_psu,

@@ -39,6 +39,19 @@ struct HeadPatterns {
 // kBadInput names what is wrong with a pattern.
 Result<HeadPatterns> head_patterns(const scene::Sonar& sonar);
 
+// Where rows beyond the aperture, which a pattern is heard in, would make more than this, all rows
+// grow instead: what is heard there is never cut off, and nobody pays for more rows than these,
+// those asked for, or those that small targets need.
+inline constexpr std::uint32_t kMostWidenedRows = 1536;
+
+// Half of the elevations (of a cone: of all angles) that a head hears whose aperture's half is
+// half_rad: as far as its pattern's second null, a pinhole and a few apertures go.
+double heard_half_rad(double half_rad, const HeadPatterns& patterns);
+
+// A cell of columns and rows that the smallest target of a sonar whose level was chosen does not
+// slip through (scene::least_target_m), or as fine as a ping may cost; 0: no target asks for one.
+double target_cell_rad(const scene::Sonar& sonar, const HeadPatterns& patterns);
+
 // The share of a cell of the grid within the cone of semi-angle semi_rad about the axis, 0 to 1.
 double cone_share(const BeamGrid& grid, std::uint32_t column, std::uint32_t row, double semi_rad);
 

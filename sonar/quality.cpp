@@ -91,23 +91,18 @@ std::uint32_t rows_for(const scene::Sonar& sonar, const QualityLevel& level) {
   return static_cast<std::uint32_t>(std::clamp(std::ceil(rows), 1.0, double{kMaxBins}));
 }
 
-// A pixel of this share of a target's width has its centre on it wherever it lies: 1 / sqrt(2) of
-// it, and half as much again where pixels and cells do not meet.
-constexpr double kTargetCell = 0.47;
-constexpr double kMostTargetSamples = 2e6;  // of all columns and rows
-
 // Where a target at the farthest range is smaller than a cell, cells that are finer: it would be
 // between them in single pings.
-void hear_small_targets(scene::Sonar& sonar, double beams) {
-  if (!(sonar.least_target_m > 0.0)) return;
+Status hear_small_targets(scene::Sonar& sonar, double beams) {
+  if (!(sonar.least_target_m > 0.0)) return {};
+  const auto patterns = head_patterns(sonar);
+  if (!patterns.ok()) return bad_input("sonar {}: beam: {}", sonar.name, patterns.error().message);
   const bool cone = sonar.kind == SonarKind::kEchoSounder;
   const double beam_rad = cone                                   ? 2.0 * sonar.semi_angle_rad
                           : sonar.kind == SonarKind::kMechanical ? sonar.step_rad
                                                                  : sonar.azimuth_rad / beams;
   const double high_rad = cone ? beam_rad : sonar.elevation_rad;
-  const double room_rad = std::sqrt(beams * beam_rad * high_rad / kMostTargetSamples);
-  const double cell_rad =
-      std::max(kTargetCell * sonar.least_target_m / sonar.range_max_m, room_rad);
+  const double cell_rad = target_cell_rad(sonar, *patterns);
   const auto count = [&](double span_rad) {
     return static_cast<std::uint32_t>(
         std::clamp(std::ceil(span_rad / cell_rad), 1.0, double{kMaxBins}));
@@ -118,8 +113,10 @@ void hear_small_targets(scene::Sonar& sonar, double beams) {
   const std::uint32_t before = columns, rows = sonar.bins_elevation;
   columns = std::max(columns, std::min(count(beam_rad), static_cast<std::uint32_t>(most_columns)));
   sonar.bins_elevation = std::max(rows, count(high_rad));
-  if (columns != before || sonar.bins_elevation != rows)
+  const double heard_rad = 2.0 * heard_half_rad(high_rad / 2.0, *patterns);
+  if (columns != before || sonar.bins_elevation != rows || heard_rad / cell_rad > kMostWidenedRows)
     sonar.gbuffer_scale = std::max(sonar.gbuffer_scale, 1.0);
+  return {};
 }
 
 // A level that nobody named: the range bins stay, and nothing becomes coarser than the file says.
@@ -135,8 +132,7 @@ Status apply_chosen(scene::Sonar& sonar, const QualityLevel& level) {
   sonar.bins_elevation =
       std::max(sonar.bins_elevation, std::min(rows_for(sonar, level), most_rows));
   sonar.gbuffer_scale = level.gbuffer_scale;
-  hear_small_targets(sonar, beams);
-  return {};
+  return hear_small_targets(sonar, beams);
 }
 
 }  // namespace
