@@ -134,7 +134,7 @@ def _calibration(ax, right, sure, style):
     ax.set_ylim(0, 1.09)
     ax.set_xlabel("how sure it says it is")
     ax.set_ylabel("share that is right")
-    style.title(ax, f"Calibration: off by {100 * error:.1f} % on average (crops at the points)")
+    style.title(ax, f"Calibration: {100 * error:.1f} % off on average")
 
 
 def _gallery(done, names, style):

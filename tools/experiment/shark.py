@@ -14,7 +14,7 @@ import numpy as np
 import looking
 from detector import model_of
 from scenario import SHIPPED, Failed, Setting, draw
-from shark_senses import DIVER, SEEN, SONAR, Gaze, SonarTrack
+from shark_senses import CROP_DEG, DIVER, SEEN, SONAR, Gaze, SonarTrack
 
 SETTINGS = {
     "offset_m": Setting(1.0, "the ROV's start beside the line from diver to shark, at its middle", 0.0, 10.0),
