@@ -42,7 +42,7 @@ uint glow_samples() { return kGlowSamples; }
 #include "shared/sea_surface.glsl"
 #include "shared/visibility.glsl"
 
-// What the lamp's map says, between four texels.
+// The lamp's map, between four texels.
 float lamp_seen(uint lamp, vec3 position, vec3 normal) {
   uint layer = min(lamp_shadows.layer[lamp], kMaxLampShadows - 1u);
   vec4 clip = lamp_shadows.clip_from_origin[layer] * vec4(position + normal * 0.01, 1.0);
@@ -140,7 +140,7 @@ void main() {
     meets = kSeaSeen && sea_meets(views[layer].eye, direction, length(views[layer].ray_dx), surface);
     meets = meets && surface.distance_m < sight_m;
     if (meets && !from_above) {
-      // What is above the water is not seen from below, but for the sky.
+      // From below nothing above the water is seen but the sky.
       radiance = sea_from_below(surface, views[layer].eye, direction);
       hit = false;
       sight_m = surface.distance_m;

@@ -34,7 +34,7 @@ class QualityGovernor {
   explicit QualityGovernor(double budget_ms) : budget_ms_(budget_ms) {}
 
   // One frame that was seen. interval_ms: since the frame before; work_ms: the time that host and
-  // device were busy with it, at most the interval. What is not a time above 0 is left out.
+  // device were busy with it, at most the interval. Values that are no time above 0 are left out.
   void add(double interval_ms, double work_ms);
 
   const Quality& quality() const { return quality_rungs()[rung_]; }
