@@ -113,6 +113,10 @@ void main() {
   float stretch = length(ray);
   vec3 direction = ray / stretch;
   float depth = texelFetch(depth_image, at, 0).r;
+  if (depth >= 1.0) {  // hidden from the wearer (hidden.vert): not even the near plane is there
+    imageStore(hdr_image, at, vec4(0.0, 0.0, 0.0, 1.0));
+    return;
+  }
   bool hit = depth > 0.0;
   float planar_m = hit ? views[layer].near_m / depth : kForever_m;
   vec4 material = texelFetch(material_image, at, 0);

@@ -121,7 +121,9 @@ class DrawListBuilder {
       if (class_id != 0 && class_id == options_.without_class) continue;
       if (!options_.objects.empty() && !options_.objects[a.object]) continue;
       const std::uint32_t deformed =
-          primitive.deforms() ? state_.deformed_at(g, a.object, a.node) : kNone;
+          primitive.deforms()
+              ? state_.deformed_at(g, a.object, a.node, a.object == views_.worn_object)
+              : kNone;
       const bool skinned = primitive.first_skin != kNone && deformed != kNone;
       Mat4 m = world_from_appearance(scene_, state_.world_from_object[a.object],
                                      state_.poses[a.object], a, skinned);

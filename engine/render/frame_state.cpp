@@ -11,9 +11,32 @@
 namespace neritic::render {
 namespace {
 
+// Which joints of a skin hang on the node "head"; none where the model has no such node.
+std::vector<bool> joints_of_head(const scene::Model& model, int skin) {
+  const auto& joints = model.skins[static_cast<std::size_t>(skin)].joints;
+  std::vector<bool> out(joints.size(), false);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    for (int node = joints[i]; node >= 0 && !out[i];
+         node = model.nodes[static_cast<std::size_t>(node)].parent)
+      out[i] = model.nodes[static_cast<std::size_t>(node)].name == "head";
+  return out;
+}
+
+// headless: joints that shrink into the place of the node "head", which is the neck, with all their
+// skin. Not to nothing: normals keep their directions.
 void append_joints(std::vector<Mat4f>& out, const scene::Model& model, const scene::ModelPose& pose,
-                   int skin) {
-  for (const Mat4& m : scene::joint_matrices(model, pose, skin)) out.push_back(Mat4f(m));
+                   int skin, const std::vector<bool>& headless = {}) {
+  const auto matrices = scene::joint_matrices(model, pose, skin);
+  constexpr double kShrunk = 1e-4;
+  Mat4 shrink(1.0);
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    if (model.nodes[i].name != "head") continue;
+    const Vec3 neck(pose.model_from_node[i][3]);
+    shrink = glm::scale(glm::translate(Mat4(1.0), neck), Vec3(kShrunk));
+    shrink = glm::translate(shrink, -neck);
+  }
+  for (std::size_t i = 0; i < matrices.size(); ++i)
+    out.push_back(Mat4f(i < headless.size() && headless[i] ? shrink * matrices[i] : matrices[i]));
 }
 
 // KHR_lights_punctual: a light shines along its node's -z; scale changes neither light nor
@@ -40,19 +63,23 @@ void append_weights(std::vector<float>& out, const scene::ModelPose& pose, std::
 
 }  // namespace
 
-std::uint32_t FrameState::deformed_at(std::uint32_t group, std::uint32_t object,
-                                      std::uint32_t node) const {
-  const auto key = std::make_tuple(group, object, node);
-  const auto at = std::lower_bound(deforms.begin(), deforms.end(), key,
-                                   [](const DeformJob& job, const auto& k) {
-                                     return std::make_tuple(job.group, job.object, job.node) < k;
-                                   });
-  if (at == deforms.end() || std::make_tuple(at->group, at->object, at->node) != key) return kNone;
+std::uint32_t FrameState::deformed_at(std::uint32_t group, std::uint32_t object, std::uint32_t node,
+                                      bool headless) const {
+  const auto key_of = [](const DeformJob& job) {
+    return std::make_tuple(job.group, job.object, job.node, job.headless);
+  };
+  const auto key = std::make_tuple(group, object, node, headless);
+  const auto at =
+      std::lower_bound(deforms.begin(), deforms.end(), key,
+                       [&](const DeformJob& job, const auto& k) { return key_of(job) < k; });
+  if (at == deforms.end() || key_of(*at) != key)
+    return headless ? deformed_at(group, object, node) : kNone;
   return at->push.first_out;
 }
 
 FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu_scene,
-                          double time_s, double next_time_s, bool motion) {
+                          double time_s, double next_time_s, bool motion,
+                          std::span<const std::uint32_t> worn) {
   const scene::Scene& scene = source.scene();
   FrameState state;
   state.time_s = time_s;
@@ -88,7 +115,7 @@ FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu
       const int skin = model.nodes[node].skin;
       const bool skinned = primitive.first_skin != kNone && skin >= 0;
       if (!skinned && primitive.morph_targets == 0) continue;
-      DeformJob job{g, object, node, {}};
+      DeformJob job{g, object, node, false, {}};
       job.push.vertex_count = primitive.vertex_count;
       job.push.first_source = primitive.first_vertex;
       job.push.first_skin = skinned ? primitive.first_skin : kNone;
@@ -106,6 +133,16 @@ FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu
       job.push.weight_stride = primitive.morph_targets;
       if (motion)
         append_weights(state.weights, state.next_poses[object], node, primitive.morph_targets);
+      state.deformed_vertices += primitive.vertex_count;
+      state.deforms.push_back(job);
+      if (!skinned || std::ranges::find(worn, object) == worn.end()) continue;
+      const std::vector<bool> head = joints_of_head(model, skin);
+      if (std::ranges::find(head, true) == head.end()) continue;
+      job.headless = true;
+      job.push.first_joint = static_cast<std::uint32_t>(state.joints.size());
+      job.push.first_out = state.deformed_vertices;
+      append_joints(state.joints, model, state.poses[object], skin, head);
+      if (motion) append_joints(state.joints, model, state.next_poses[object], skin, head);
       state.deformed_vertices += primitive.vertex_count;
       state.deforms.push_back(job);
     }

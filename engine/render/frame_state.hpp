@@ -3,6 +3,7 @@
 // shared by all view sets. A plain value.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/render/gpu_scene.hpp"
@@ -13,6 +14,7 @@ namespace neritic::render {
 // One skinned or morphed primitive of one object's node: its vertices are made anew this frame.
 struct DeformJob {
   std::uint32_t group = 0, object = 0, node = 0;
+  bool headless = false;  // beside the whole one
   shared::DeformPush push{};
 };
 
@@ -36,12 +38,16 @@ struct FrameState {
   std::uint32_t deformed_vertices = 0;
 
   // First vertex of that appearance in the deformed stream; kNone where it does not deform.
-  std::uint32_t deformed_at(std::uint32_t group, std::uint32_t object, std::uint32_t node) const;
+  // headless: of its skinned mesh without the head, where the object is worn and has one.
+  std::uint32_t deformed_at(std::uint32_t group, std::uint32_t object, std::uint32_t node,
+                            bool headless = false) const;
 };
 
-// with_next: the next instant too, for motion.
+// with_next: the next instant too, for motion. worn: objects that some view looks out of; what
+// hangs on their models' node "head" is drawn into its neck there.
 FrameState evaluate_frame(const scene::MotionSource& motion, const GpuScene& gpu_scene,
-                          double time_s, double next_time_s, bool with_next);
+                          double time_s, double next_time_s, bool with_next,
+                          std::span<const std::uint32_t> worn = {});
 
 // World_from_primitive of an appearance: object, copy, node (unless skinned: joints hold it),
 // instance.

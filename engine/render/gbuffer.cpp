@@ -6,7 +6,7 @@
 
 namespace neritic::render {
 
-void Renderer::record_gbuffer(const GBuffer& g, VkAttachmentLoadOp load,
+void Renderer::record_gbuffer(const GBuffer& g, GBufferLoads loads,
                               std::span<const MaskedDraws> masked, const RasterInputs& in,
                               graph::PassContext& context) const {
   gpu::Commands& commands = context.commands;
@@ -26,13 +26,13 @@ void Renderer::record_gbuffer(const GBuffer& g, VkAttachmentLoadOp load,
   // The stages write to the first two by number: what is not kept leaves its place empty.
   for (const graph::ImageHandle handle : {g.normal, g.label}) {
     if (!handle) colors.push_back({VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO});
-    add(handle, load);
+    add(handle, loads.colors);
   }
-  for (const graph::ImageHandle handle : {g.albedo, g.material}) add(handle, load);
+  for (const graph::ImageHandle handle : {g.albedo, g.material}) add(handle, loads.colors);
   add(g.emissive, VK_ATTACHMENT_LOAD_OP_CLEAR);
-  add(g.motion, load);
-  const VkRenderingAttachmentInfo depth =
-      attachment(context.image(g.depth), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, load);
+  add(g.motion, loads.colors);
+  const VkRenderingAttachmentInfo depth = attachment(
+      context.image(g.depth), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, loads.depth);
   const auto instances = upload_instances(commands, in.draws, bool(g.motion));
   for (const MaskedDraws& m : masked) {
     begin_rendering(context.cmd(), g, m.view_mask, colors, depth);
@@ -69,6 +69,9 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
     NERITIC_TRY(prepared, prepare(scene, draws, draws.opaque, kind, false, motion, true, mask));
     glowing.push_back({mask, std::move(prepared)});
   }
+  NERITIC_TRY(const graph::ImageHandle hidden, declare_hidden(graph, prefix, views));
+  const GBufferLoads first{VK_ATTACHMENT_LOAD_OP_CLEAR,
+                           hidden ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR};
   const RasterInputs inputs{scene, views, draws, deformed};
   const auto read_deformed = [&](graph::PassBuilder& builder) {
     if (deformed.positions) builder.read(deformed.positions, graph::Access::kVertexBuffer);
@@ -86,7 +89,7 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
           return builder.write(
               builder.create_image(prefix + name, {format, g.width, g.height, layers}), access);
         };
-        g.depth = target("depth", kDepthFormat, kDepth);
+        g.depth = hidden ? builder.write(hidden, kDepth) : target("depth", kDepthFormat, kDepth);
         if (parts.normal) g.normal = target("normal", kNormalFormat, kColor);
         if (parts.label) g.label = target("label", kLabelFormat, kColor);
         if (surface) {
@@ -96,8 +99,9 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
         if (motion) g.motion = target("motion", kMotionFormat, kColor);
         read_deformed(builder);
       },
-      [this, inputs, masked = std::move(masked)](const GBuffer& g, graph::PassContext& context) {
-        record_gbuffer(g, VK_ATTACHMENT_LOAD_OP_CLEAR, masked, inputs, context);
+      [this, inputs, first, masked = std::move(masked)](const GBuffer& g,
+                                                        graph::PassContext& context) {
+        record_gbuffer(g, first, masked, inputs, context);
       });
   if (glowing.empty()) return plain;
   return graph.add_pass<GBuffer>(
@@ -113,7 +117,8 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
         read_deformed(builder);
       },
       [this, inputs, glowing = std::move(glowing)](const GBuffer& g, graph::PassContext& context) {
-        record_gbuffer(g, VK_ATTACHMENT_LOAD_OP_LOAD, glowing, inputs, context);
+        record_gbuffer(g, {VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_LOAD_OP_LOAD}, glowing, inputs,
+                       context);
       });
 }
 

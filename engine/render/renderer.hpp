@@ -174,6 +174,10 @@ class Renderer {
                                              std::uint32_t height, std::uint32_t layers,
                                              bool antialias);
 
+  // The depth of a set's hidden triangles, nearest of all, before its G-buffer. Empty: it has none.
+  Result<graph::ImageHandle> declare_hidden(graph::FrameGraph& graph, const std::string& prefix,
+                                            const ViewSet& views);
+
  private:
   // A pass that turns one picture into another of the same size, pixel by pixel.
   struct PictureFilter {
@@ -214,7 +218,11 @@ class Renderer {
     DeformedGeometry deformed;
   };
   // load: of all images but the emission's, which is cleared.
-  void record_gbuffer(const GBuffer& gbuffer, VkAttachmentLoadOp load,
+  struct GBufferLoads {
+    VkAttachmentLoadOp colors, depth;
+  };
+  Result<const gpu::Pipeline*> hidden_pipeline(std::uint32_t view_mask);
+  void record_gbuffer(const GBuffer& gbuffer, GBufferLoads loads,
                       std::span<const MaskedDraws> masked, const RasterInputs& inputs,
                       graph::PassContext& context) const;
   static void record_draws(const PreparedDraws& prepared, const GpuScene& scene,
@@ -231,6 +239,7 @@ class Renderer {
   std::map<VisibilityKnobs, gpu::Pipeline> visibility_;
   gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_;
   gpu::Sampler tile_sampler_;  // linear, repeating
+  std::map<std::uint32_t, gpu::Pipeline> hidden_pipelines_;  // by view mask
   gpu::Pipeline deform_, tonemap_, tonemap_luma_, antialias_, resize_;
   // Bound where a shader declares a buffer that this frame does not use: one to read, one to write,
   // since what is bound counts as read or written.

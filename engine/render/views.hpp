@@ -22,7 +22,11 @@ struct ViewDesc {
   // pixel. Only sonars use it.
   double lean = 0.0;
   Pose next_world_from_view;  // at the next frame's time, for motion
+  // Triangles that nobody sees, three corners each, as tangents (x right, y up at z = -1): a
+  // headset's lens has no room for them. They are not shaded. At most kMostHidden corners.
+  std::vector<Vec2f> hidden;
 };
+inline constexpr std::size_t kMostHidden = 6000;
 
 // Points of the world with dot(normal, point) + offset_m >= 0. normal: unit.
 struct HalfSpace {
@@ -34,6 +38,10 @@ struct ViewSet {
   std::uint32_t width = 1, height = 1;  // pixels, each view's
   std::vector<ViewDesc> views;          // 1 to shared::kMaxViews
   std::optional<HalfSpace> within;      // nothing else is seen: of what a mirror shows
+  // The object whose eyes these are, drawn without its head; kWornByNobody: none. Its frame must
+  // have been made with that object (evaluate_frame).
+  static constexpr std::uint32_t kWornByNobody = ~0u;
+  std::uint32_t worn_object = kWornByNobody;
   Vec3 origin_m() const { return views.front().world_from_view.position_m; }
   std::uint32_t layers() const { return static_cast<std::uint32_t>(views.size()); }
 };

@@ -22,6 +22,9 @@ namespace neritic::xr {
 struct View {
   Pose head_from_view;
   FrustumTangents tangents;  // asymmetric ones are the rule in a headset
+  // Triangles that the lenses cannot show, three corners each, as tangents: nothing need be drawn
+  // there.
+  std::vector<Vec2f> hidden;
 };
 
 // Views of one size, drawn by one multiview pass: a window's one, a headset's two, the outer or

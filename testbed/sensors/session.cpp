@@ -60,6 +60,14 @@ void Session::replace_sonar(std::size_t index, scene::Sonar sonar) {
   scene_.sonars[index] = std::move(sonar);
 }
 
+void Session::dim_lamp(std::size_t index, double share) {
+  NERITIC_CHECK(index < scene_.lamps.size(), "lamp {} of {}", index, scene_.lamps.size());
+  NERITIC_CHECK(share >= 0.0 && share <= 1.0, "a share of {}", share);
+  if (lamp_cd_.empty())
+    for (const scene::Lamp& lamp : scene_.lamps) lamp_cd_.push_back(lamp.intensity_cd);
+  scene_.lamps[index].intensity_cd = share * lamp_cd_[index];
+}
+
 Result<std::unique_ptr<SensorFrame>> Session::declare(graph::FrameGraph& graph,
                                                       const FrameRequest& request) {
   // A CPU's driver promises memory that the machine does not have, and the system ends programs
@@ -82,8 +90,12 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   work.begun_ns = now_ns();
   work.frame = request.frame;
   const scene::MotionSource motion(scene_, request.simulated);
+  std::vector<std::uint32_t> worn;
+  for (const ViewsRequest& set : request.views)
+    if (set.views.worn_object != render::ViewSet::kWornByNobody)
+      worn.push_back(set.views.worn_object);
   work.state = render::evaluate_frame(motion, *gpu_scene_, request.time_s, request.next_time_s,
-                                      request.wants_motion());
+                                      request.wants_motion(), worn);
   if (request.capture.poses && request.capture.to_host)
     work.poses = motions_of(participants_of(scene_), motion, request.time_s);
   NERITIC_TRY(const render::DeformedGeometry deformed,

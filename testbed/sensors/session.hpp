@@ -37,6 +37,9 @@ class Session {
   // Other settings and another mount of the scene's sonar of that index, from the next declared
   // frame on; frames in flight keep theirs. Everything else of a scene stays as it was created.
   void replace_sonar(std::size_t index, scene::Sonar sonar);
+  // The scene's lamp of that index at such a share of its intensity, from the next declared frame
+  // on. share: 0 to 1.
+  void dim_lamp(std::size_t index, double share);
 
   // Adds the request's passes. The caller may add others that use the frame's handles, then begins
   // the frame, runs executor(), submits and tells the SensorFrame.
@@ -71,6 +74,7 @@ class Session {
   ReadbackPool readback_;
   std::unique_ptr<SunMaps> sun_maps_;
   std::vector<std::uint8_t> moving_, still_;  // flags by object
+  std::vector<double> lamp_cd_;  // of lamps at their full intensity, once one was dimmed
   std::string plan_text_, plan_graphviz_;
   bool keep_dump_ = false;
   std::uint64_t room_found_bytes_ = 0;  // the largest frame so far that memory sufficed for

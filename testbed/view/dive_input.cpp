@@ -34,6 +34,7 @@ enum class Action {
   kMap,
   kGraphs,
   kInset,
+  kLamps,
   kPause,
   kStepFrame,
   kSlower,
@@ -96,6 +97,7 @@ std::vector<xr::ActionDesc> dive_actions() {
       {"map", kPress, {"key M"}, "map"},
       {"graphs", kPress, {"key G"}, "graphs of any number"},
       {"inset", kPress, {"key N"}, "inset: next camera, none"},
+      {"lamps", kPress, {"key L"}, "lamps of the flown vehicle: off, half, full"},
       {"pause", kPress, {"key Enter"}, "pause, go on"},
       {"step_frame", kPress, {"key F6"}, "while paused: one frame on"},
       {"slower", kPress, {"key F7"}, "time slower, down to 0.1"},
@@ -138,6 +140,7 @@ DiveInput read_input(const xr::ActionValues& values) {
           .toggle_graphs = pressed(Action::kGraphs),
           .toggle_map = pressed(Action::kMap),
           .next_inset = pressed(Action::kInset),
+          .next_lamps = pressed(Action::kLamps),
           .panel_screenshot = pressed(Action::kPanelScreenshot),
           .next_range = pressed(Action::kSonarRange),
           .gain_step = static_cast<int>(values[Action::kLouder]) -

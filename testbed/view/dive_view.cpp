@@ -111,6 +111,7 @@ bool DiveView::take_input() {
       tell("no panel under the cursor");
   }
   take_click();
+  if (input.next_lamps) switch_lamps();
   if (input.view_step != 0) wears_ = false;
   if (input.reset) wears_ = true;
   const bool swum = swum_by_keys(input);
@@ -132,6 +133,28 @@ void DiveView::take_click() {
   const scene::Camera& camera = session_.scene().cameras[choice_.viewpoint().camera];
   picker_.ask(*click, tangents_from_fov(camera.vertical_fov_rad,
                                         static_cast<double>(group.width) / group.height));
+}
+
+// Those of the vehicle that is flown, or is looked from; without one all of the scene. A recording
+// does not have it.
+void DiveView::switch_lamps() {
+  const scene::Scene& scene = session_.scene();
+  const int carrier = pilot_.flying() ? pilot_.object() : choice_.carrier();
+  const auto is_on = [&](const scene::Lamp& lamp, int object) {
+    return carrier_of(scene, lamp.mount) == object;
+  };
+  const bool own = std::ranges::any_of(
+      scene.lamps, [&](const scene::Lamp& lamp) { return carrier >= 0 && is_on(lamp, carrier); });
+  lamp_share_ = lamp_share_ == 1.0 ? 0.0 : lamp_share_ + 0.5;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
+    if (own && !is_on(scene.lamps[i], carrier)) continue;
+    session_.dim_lamp(i, lamp_share_);
+    ++count;
+  }
+  tell(count == 0 ? "no lamp to switch"
+                  : fmt::format("{} {}: {:.0f} %", count, count == 1 ? "lamp" : "lamps",
+                                100.0 * lamp_share_));
 }
 
 std::optional<ViewMemory> DiveView::memory() const {
@@ -211,7 +234,8 @@ void DiveView::add_views(FrameRequest& request) {
       views.views.views.push_back({.world_from_view = pose,
                                    .tangents = tracked ? view.tangents : lens,
                                    .near_m = camera.near_m,
-                                   .next_world_from_view = pose});
+                                   .next_world_from_view = pose,
+                                   .hidden = tracked ? view.hidden : std::vector<Vec2f>()});
     }
     request.views.push_back(std::move(views));
   }

@@ -87,6 +87,7 @@ class DiveView final : public FrameView {
   Status declare_sonars(graph::FrameGraph& graph, const SensorFrame& frame);
   void take_time(const DiveInput& input);
   void take_click();
+  void switch_lamps();
   void add_inset(FrameRequest& request, const scene::MotionSource& motion) const;
   void keep_run(const DiveInput& input);
   void tell(const std::string& note);
@@ -109,6 +110,7 @@ class DiveView final : public FrameView {
   std::unique_ptr<Console> console_;  // with an overlay
   std::unique_ptr<DiveHud> hud_;
   std::optional<QualityGovernor> governor_;
+  double lamp_share_ = 1.0;  // of those that the key switches
   Screenshots screenshots_;
   Picker picker_;
   xr::DisplayFrame frame_;

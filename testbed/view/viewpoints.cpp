@@ -46,18 +46,18 @@ Viewpoint chase_of(const scene::Scene& scene, const Participant& participant) {
   return out;
 }
 
+bool moves(const DiveInput& input) {
+  return input.move.x != 0.0 || input.move.y != 0.0 || input.move.z != 0.0;
+}
+
+}  // namespace
+
 int carrier_of(const scene::Scene& scene, const scene::Mount& mount) {
   int carrier = mount.object;
   while (carrier >= 0 && scene.objects[static_cast<std::size_t>(carrier)].mount.object >= 0)
     carrier = scene.objects[static_cast<std::size_t>(carrier)].mount.object;
   return carrier;
 }
-
-bool moves(const DiveInput& input) {
-  return input.move.x != 0.0 || input.move.y != 0.0 || input.move.z != 0.0;
-}
-
-}  // namespace
 
 bool has_body(const Participant& participant) {
   const std::string_view kind = participant.kind;

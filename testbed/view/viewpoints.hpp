@@ -26,6 +26,9 @@ struct Viewpoint {
 // Not a camera or a sonar, which have no body to look at.
 bool has_body(const Participant& participant);
 
+// The object that carries a mount and stands on none; -1: the world.
+int carrier_of(const scene::Scene& scene, const scene::Mount& mount);
+
 // Cameras, chases of all that moves by physics, track or clip, free. Precondition: a camera.
 std::vector<Viewpoint> viewpoints_of(const scene::Scene& scene);
 // Where a dive begins that names no view: behind the first diver that moves by physics, else the

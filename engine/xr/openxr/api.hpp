@@ -74,6 +74,7 @@ namespace neritic::xr::openxr {
   X(CreateHandTrackerEXT)                \
   X(DestroyHandTrackerEXT)               \
   X(LocateHandJointsEXT)                 \
+  X(GetVisibilityMaskKHR)                \
   X(CreateDebugUtilsMessengerEXT)        \
   X(DestroyDebugUtilsMessengerEXT)
 

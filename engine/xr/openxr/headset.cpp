@@ -178,6 +178,7 @@ Result<DisplayFrame> OpenXrHeadset::begin_frame(const Pose& world_from_stage) {
 Status OpenXrHeadset::begin(DisplayFrame& frame) {
   Session& session = *parts_.session;
   NERITIC_TRY_STATUS(session.poll(parts_.views->configuration()));
+  if (session.take_mask_change()) parts_.views->read_masks();
   if (runtime_->loss() != Loss::kNone) return {};
   if (session.exits()) {
     frame.verdict = FrameVerdict::kQuit;

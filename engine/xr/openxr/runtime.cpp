@@ -31,6 +31,8 @@ constexpr Known kKnown[] = {
     {XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME, "the wearer's gaze", &Extensions::gaze},
     {XR_KHR_COMPOSITION_LAYER_CYLINDER_EXTENSION_NAME,
      "wide instruments are bent around the wearer", &Extensions::cylinder},
+    {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, "what the lenses cannot show is not drawn",
+     &Extensions::mask},
     {XR_EXTX_OVERLAY_EXTENSION_NAME, "neritic hud: instruments over another program",
      &Extensions::overlay},
 };

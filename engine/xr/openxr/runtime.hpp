@@ -21,7 +21,7 @@ enum class Loss {
 
 struct Extensions {
   bool timespec = false, depth = false, refresh_rate = false, quad_views = false, foveated = false,
-       hands = false, gaze = false, cylinder = false, overlay = false, debug = false;
+       hands = false, gaze = false, cylinder = false, mask = false, overlay = false, debug = false;
 };
 
 class Runtime {

@@ -105,6 +105,9 @@ Status Session::poll(XrViewConfigurationType configuration) {
                  reinterpret_cast<const XrEventDataDisplayRefreshRateChangedFB*>(header)
                      ->toDisplayRefreshRate);
         break;
+      case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
+        mask_changed_ = true;
+        break;
       default:
         break;
     }

@@ -31,6 +31,8 @@ class Session {
   XrSpace head() const { return head_; }
   // Whether the space is the room's, as was asked for.
   bool in_room() const { return in_room_; }
+  // Whether the lenses' masks changed since the last call.
+  bool take_mask_change() { return std::exchange(mask_changed_, false); }
 
  private:
   explicit Session(Runtime& runtime) : runtime_(runtime) {}
@@ -42,7 +44,7 @@ class Session {
   Runtime& runtime_;
   XrSession handle_ = XR_NULL_HANDLE;
   XrSpace stage_ = XR_NULL_HANDLE, head_ = XR_NULL_HANDLE;
-  bool running_ = false, exits_ = false, in_room_ = false;
+  bool running_ = false, exits_ = false, in_room_ = false, mask_changed_ = false;
 };
 
 }  // namespace neritic::xr::openxr

@@ -6,6 +6,12 @@
 #include "engine/core/log.hpp"
 
 namespace neritic::xr::openxr {
+namespace {
+
+// Runtimes give some hundred.
+constexpr std::size_t kMostHiddenCorners = 6000;
+
+}  // namespace
 
 Result<std::unique_ptr<Views>> Views::create(Runtime& runtime, const Session& session,
                                              gpu::Device& device, bool pictures) {
@@ -17,6 +23,7 @@ Result<std::unique_ptr<Views>> Views::create(Runtime& runtime, const Session& se
   if (pictures) NERITIC_TRY_STATUS(views->make_swapchains(device, sizes));
   views->views_.assign(sizes.size(), {XR_TYPE_VIEW});
   for (XrView& view : views->views_) view.pose = to_xr({});
+  if (pictures) views->read_masks();
   return views;
 }
 
@@ -121,6 +128,32 @@ Status Views::make_swapchains(gpu::Device& device, std::span<const XrViewConfigu
   return {};
 }
 
+void Views::read_masks() {
+  hidden_.assign(views_.size(), {});
+  if (!runtime_.has().mask || !runtime_.xr().GetVisibilityMaskKHR) return;
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    const auto ask = [&](XrVisibilityMaskKHR& mask) {
+      return XR_SUCCEEDED(runtime_.xr().GetVisibilityMaskKHR(
+          session_.handle(), configuration_, static_cast<std::uint32_t>(i),
+          XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR, &mask));
+    };
+    XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
+    // A sharp view that follows the gaze has another frustum in each frame.
+    if (foveated_ && i >= 2) break;
+    if (!ask(mask) || mask.vertexCountOutput == 0 || mask.indexCountOutput == 0) continue;
+    std::vector<XrVector2f> points(mask.vertexCountOutput);
+    std::vector<std::uint32_t> corners(mask.indexCountOutput);
+    mask.vertexCapacityInput = mask.vertexCountOutput;
+    mask.indexCapacityInput = mask.indexCountOutput;
+    mask.vertices = points.data();
+    mask.indices = corners.data();
+    // A mesh that names points it has not, or more triangles than a mask needs, is no mask.
+    if (!ask(mask) || corners.size() % 3 != 0 || corners.size() > kMostHiddenCorners) continue;
+    if (std::ranges::any_of(corners, [&](std::uint32_t c) { return c >= points.size(); })) continue;
+    for (const std::uint32_t c : corners) hidden_[i].emplace_back(points[c].x, points[c].y);
+  }
+}
+
 bool Views::gaze_ready(XrTime at) const {
   XrSpaceLocation eyes{XR_TYPE_SPACE_LOCATION};
   return foveated_ && XR_SUCCEEDED(runtime_.xr().LocateSpace(eyes_, session_.head(), at, &eyes)) &&
@@ -159,8 +192,8 @@ std::vector<ViewGroup> Views::groups() const {
   for (const Group& group : groups_) {
     ViewGroup views{group.color->desc().width, group.color->desc().height, {}};
     for (std::size_t i = group.first; i < group.first + group.count; ++i)
-      views.views.push_back(
-          {inverse(stage_from_head_) * to_pose(views_[i].pose), to_tangents(views_[i].fov)});
+      views.views.push_back({inverse(stage_from_head_) * to_pose(views_[i].pose),
+                             to_tangents(views_[i].fov), hidden_[i]});
     out.push_back(std::move(views));
   }
   return out;

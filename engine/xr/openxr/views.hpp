@@ -15,6 +15,8 @@ class Views {
   // pictures: false: of an overlay, which has none.
   static Result<std::unique_ptr<Views>> create(Runtime& runtime, const Session& session,
                                                gpu::Device& device, bool pictures);
+  // Reads the parts that the lenses hide; where that fails, nothing is hidden.
+  void read_masks();
   XrViewConfigurationType configuration() const { return configuration_; }
   XrEnvironmentBlendMode blend_mode() const { return blend_mode_; }
 
@@ -48,6 +50,7 @@ class Views {
   bool foveated_ = false;
   XrSpace eyes_ = XR_NULL_HANDLE;  // with foveated_
   std::vector<Group> groups_;
+  std::vector<std::vector<Vec2f>> hidden_;  // by view (xr::View)
   std::vector<XrView> views_;
   Pose stage_from_head_;
   XrCompositionLayerProjection layer_{XR_TYPE_COMPOSITION_LAYER_PROJECTION};

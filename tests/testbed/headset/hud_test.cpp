@@ -147,5 +147,31 @@ TEST_F(HeadsetHud, TextIsUprightAndUnmirroredWhereEachEyesFrustumPutsIt) {
   }
 }
 
+// What the lenses hide is not drawn, and nothing else changes.
+TEST_F(HeadsetHud, WhatTheLensesHideIsNotDrawn) {
+  std::vector<ImageU8> pictures;
+  for (const char* without : {"", "without XR_KHR_visibility_mask\n"}) {
+    fakes::FakeHeadset fake(fmt::format("{}{}size 120 120\nperiod 0.05\nout {}\nout_frames 3\n",
+                                        kWearer, without, folder()));
+    NERITIC_ASSERT_OK(physics_, LivePhysics::create(scene_, LivePhysics::Pace::kPicture));
+    HeadsetRun::with(*physics_);
+    NERITIC_ASSERT_STATUS(dive(scene_, 5));
+    pictures.push_back(picture(3, 1));
+  }
+  std::size_t dark = 0, other = 0;
+  for (std::uint32_t y = 0; y < 120; ++y)
+    for (std::uint32_t x = 0; x < 120; ++x) {
+      const auto* masked = &pictures[0].at(x, y);
+      const bool black = masked[0] + masked[1] + masked[2] == 0;
+      dark += black;
+      for (int c = 0; c < 3 && !black; ++c)
+        other += std::abs(masked[c] - (&pictures[1].at(x, y))[c]) > 2;
+    }
+  // The fake's octagon leaves out a corner of a quarter by a quarter, halved, four times.
+  EXPECT_NEAR(static_cast<double>(dark), 120.0 * 120.0 / 8.0, 250.0);
+  EXPECT_EQ(other, 0u);
+  EXPECT_GT(pictures[1].at(0, 0, 2), 20);
+}
+
 }  // namespace
 }  // namespace neritic::testbed
