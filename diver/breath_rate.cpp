@@ -31,6 +31,8 @@ constexpr double kFirstPeak = 0.85;
 // How far off the next but one breath is looked for, in periods.
 constexpr double kReach = 0.15;
 constexpr double kMostDeviations = 1.5;  // of a level, from its mean
+// How near half of a rate another is half of it.
+constexpr double kHalves = 0.1;
 // The baselines look no lower, as published.
 constexpr double kSlowestOfBaselines_hz = 0.1;
 constexpr double kDecibelsANeper = 4.342944819032518;  // of power
@@ -136,10 +138,11 @@ void by_spectrum(const Levels& envelope, BreathEstimate& out) {
 }
 
 // An estimate, and whether a longer window may tell more: of a breath longer than this one can
-// measure, or of bursts that are alike.
+// measure, or of bursts that are alike; or whether the rate may be that of halves.
 struct WindowEstimate {
   BreathEstimate breath;
   bool asks_for_more = false;
+  bool doubtful = false;
 };
 
 void by_rhythm(const std::vector<Levels>& bands, WindowEstimate& out) {
@@ -147,6 +150,15 @@ void by_rhythm(const std::vector<Levels>& bands, WindowEstimate& out) {
   out.breath.rate_bpm = 60.0 * rhythm.rate_hz;
   out.breath.confidence = rhythm.confidence;
   out.asks_for_more = rhythm.slower || rhythm.alike;
+  out.doubtful = rhythm.doubtful;
+}
+
+// A rate that may be twice the breath's is none.
+BreathEstimate unsure(BreathEstimate breath) {
+  breath.breathing = 0;
+  breath.rate_bpm = 0.0;
+  breath.confidence = std::min(breath.confidence, kAlikeConfidence);
+  return breath;
 }
 
 Levels log_levels(std::span<const BreathFrame> frames, std::size_t band) {
@@ -270,13 +282,31 @@ BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const Breath
   return estimate_breath(frames, front, estimator, confidence_asked(estimator));
 }
 
+// Besides: where half of the rate is slower than the window can measure, a history that finds that
+// half is believed; until it lasts 40 s such a rate is none if anything speaks for its half.
 BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, double window_s,
                                       const BreathBands& front, BreathEstimator estimator) {
   const auto window = static_cast<std::size_t>(std::lround(window_s * kBreathFrames_hz));
   const WindowEstimate newest = estimate_window(history.last(std::min(window, history.size())),
                                                 front, estimator, confidence_asked(estimator));
-  if (!newest.asks_for_more || history.size() <= window) return newest.breath;
-  return estimate_breath(history, front, estimator);
+  // Two breaths of half the rate do not fit into the window: a longer one sees whether they are
+  // what repeats.
+  const bool may_be_halves = estimator == BreathEstimator::kMultiBand &&
+                             newest.breath.breathing != 0 &&
+                             newest.breath.rate_bpm / 60.0 < 2.0 * slowest_breath_hz(window_s);
+  const auto enough = static_cast<std::size_t>(2.0 / kSlowestBreath_hz * kBreathFrames_hz);
+  if (!newest.asks_for_more && !may_be_halves) return newest.breath;
+  if (history.size() <= window) {
+    if (may_be_halves && newest.doubtful && history.size() < enough) return unsure(newest.breath);
+    return newest.breath;
+  }
+  const WindowEstimate all =
+      estimate_window(history, front, estimator, confidence_asked(estimator));
+  if (newest.asks_for_more) return all.breath;
+  const double share = all.breath.rate_bpm / newest.breath.rate_bpm;
+  if (all.breath.breathing != 0 && std::abs(share - 0.5) < kHalves) return all.breath;
+  const bool doubtful = newest.doubtful || all.doubtful || all.asks_for_more;
+  return doubtful && history.size() < enough ? unsure(newest.breath) : newest.breath;
 }
 
 double quiet_for(std::span<const BreathFrame> frames, const BreathBands& front) {

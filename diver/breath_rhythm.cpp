@@ -202,7 +202,7 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
   const double confidence = share_of_arrhythmic_below(at(best), frames / kBreathFrames_hz);
   double line = static_cast<double>(best) + parabola_top(at(best - 1), at(best), at(best + 1));
   constexpr auto kReach = static_cast<std::size_t>(kLinesAResolution / 4.0);
-  bool slower = false, alike = false;
+  bool slower = false, alike = false, doubtful = false;
   // A window must hold one breath at least to show its line.
   const double slowest_half_hz = std::max(kSlowestBreath_hz, kBreathFrames_hz / frames);
   if (best / 2 >= line_of(slowest_half_hz)) {
@@ -216,6 +216,8 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
     if (stands_out && (best / 2 >= line_of(0.1) || highest > kSlowHalf * at(best))) {
       line *= 0.5;
       slower = best / 2 < slowest;
+    } else {
+      doubtful = stands_out;
     }
   }
   if (line > 0.75 * static_cast<double>(best) && turn_to_loudness(bands, components[0])) {
@@ -229,7 +231,10 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
     slower = alternates && line < static_cast<double>(slowest);
   }
   if (slower) return {.slower = true};
-  return {step_hz * line, alike ? std::min(confidence, kAlikeConfidence) : confidence, alike};
+  return {.rate_hz = step_hz * line,
+          .confidence = alike ? std::min(confidence, kAlikeConfidence) : confidence,
+          .alike = alike,
+          .doubtful = doubtful && line > 0.75 * static_cast<double>(best)};
 }
 
 }  // namespace neritic::diver

@@ -25,6 +25,9 @@ struct Rhythm {
   // A line at half of the rate says that a breath is longer than the window can measure; rate_hz
   // and confidence are 0.
   bool slower = false;
+  // A line at half of the rate stands out, too weak to be believed beside the levels' slow drift: a
+  // longer window tells.
+  bool doubtful = false;
 };
 
 // The rhythm of levels of equal length, each with mean 0 and deviation about 1. Principal

@@ -106,7 +106,7 @@ class LogReader {
     else if (!read_cell(cells[depth_], sample.depth_m))
       return refusal(fmt::format("{}: line {}", name_, line_),
                      fmt::format("depth '{}'", shown(cells[depth_])), "a number");
-    if (upwards_) sample.depth_m = -sample.depth_m;
+    if (upwards_) sample.depth_m = 0.0 - sample.depth_m;  // not -0
     if (sample.depth_m < -kMostAbove_m)
       return refusal(fmt::format("{}: line {}", name_, line_),
                      fmt::format("depth '{}'", shown(cells[depth_])),

@@ -100,6 +100,31 @@ TEST(BreathSound, SlowBreathIsRightOrRefusedAndNeverDoubled) {
     }
 }
 
+// In swells and fades for 0.35 of a breath, out for 0.45 of it: a window of 20 s, which two breaths
+// do not fit into, took halves for breaths.
+TEST(BreathSound, SlowBreathThatSwellsAndFadesIsNeverDoubled) {
+  constexpr double kRate_hz = 2000.0;
+  for (const double rate_bpm : {3.0, 4.0, 5.0}) {
+    auto hiss = SecondOrderFilter::high_pass(300.0, kRate_hz);
+    auto bubbles = SecondOrderFilter::low_pass(300.0, kRate_hz);
+    Recording sound{"", kRate_hz};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(180.0 * kRate_hz); ++i) {
+      const double share = std::fmod(static_cast<double>(i) / kRate_hz * rate_bpm / 60.0, 1.0);
+      const double noise = test::gauss({13}, i), high = hiss.step(noise), low = bubbles.step(noise);
+      const double in = share < 0.35 ? std::sin(kPi * share / 0.35) : 0.0;
+      const double out = share > 0.4 && share < 0.85 ? std::sin(kPi * (share - 0.4) / 0.45) : 0.0;
+      sound.samples.push_back(0.3 * in * high + 0.6 * out * low + 0.002 * test::gauss({14}, i));
+    }
+    int right = 0;
+    for (const BreathState& state : analyse_breath(sound, {})) {
+      if (!state.estimate.breathing) continue;
+      EXPECT_NEAR(state.estimate.rate_bpm, rate_bpm, 0.3) << rate_bpm << ", " << state.time_s;
+      ++right;
+    }
+    EXPECT_GE(right, 5) << rate_bpm;
+  }
+}
+
 // In and out are the same noise, out quieter by that factor; the gain drifts, and noise is added.
 std::vector<float> halves(double rate_bpm, double out, double share, double drift, double noise) {
   constexpr double kRate_hz = 2000.0;
