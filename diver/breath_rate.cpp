@@ -142,6 +142,7 @@ void by_spectrum(const Levels& envelope, BreathEstimate& out) {
 struct WindowEstimate {
   BreathEstimate breath;
   bool asks_for_more = false;
+  bool slower = false;  // asks for it since a breath is longer
   bool doubtful = false;
 };
 
@@ -150,6 +151,7 @@ void by_rhythm(const std::vector<Levels>& bands, WindowEstimate& out) {
   out.breath.rate_bpm = 60.0 * rhythm.rate_hz;
   out.breath.confidence = rhythm.confidence;
   out.asks_for_more = rhythm.slower || rhythm.alike;
+  out.slower = rhythm.slower;
   out.doubtful = rhythm.doubtful;
 }
 
@@ -302,7 +304,8 @@ BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, doub
   }
   const WindowEstimate all =
       estimate_window(history, front, estimator, confidence_asked(estimator));
-  if (newest.asks_for_more) return all.breath;
+  if (newest.asks_for_more)
+    return newest.slower && history.size() < enough ? unsure(all.breath) : all.breath;
   const double share = all.breath.rate_bpm / newest.breath.rate_bpm;
   if (all.breath.breathing != 0 && std::abs(share - 0.5) < kHalves) return all.breath;
   const bool doubtful = newest.doubtful || all.doubtful || all.asks_for_more;
