@@ -166,6 +166,7 @@ void add_study(CLI::App& app, CommandLine& line) {
       "study", "runs a study with people: consent, blocks in balanced order, questionnaires");
   command->prefix_command();  // the module reads all that follows
   command->allow_extras();
+  command->fallthrough(false);  // else the program takes them for its own
   command->footer(
       "neritic study begin FOLDER --plan FILE.toml   a new study\n"
       "neritic study enrol FOLDER                    consent; gives a pseudonym and an order\n"
