@@ -113,6 +113,7 @@ const std::map<std::string, Offsets>& shared_structs() {
       {"ScatterPush",
        {MEMBER(ScatterPush, scattering), MEMBER(ScatterPush, high_cycles_rad),
         MEMBER(ScatterPush, low_cycles_rad), MEMBER(ScatterPush, angle_rad)}},
+      {"ShadePush", {MEMBER(ShadePush, first_group)}},
       {"ParticlePush", {MEMBER(ParticlePush, target_size), MEMBER(ParticlePush, shutter)}},
       {"SonarColumn",
        {MEMBER(SonarColumn, beam_base), MEMBER(SonarColumn, sec_theta), MEMBER(SonarColumn, right),
